@@ -1,0 +1,58 @@
+# `make paper` and `make test` do all the set-up they need in .venv; nothing else has to be installed.
+
+PYTHON ?= python3
+VENV := .venv
+BIN := $(VENV)/bin
+UV := $(shell command -v uv 2>/dev/null)
+OUT ?= paper
+
+.PHONY: paper test lint format benchmark clean
+
+paper: $(VENV)/.installed
+	$(BIN)/kvtheory steady
+	$(BIN)/kvtheory asymptotes
+	$(BIN)/kvtheory derive -o $(OUT)/derivations
+	$(BIN)/python -m figures -o $(OUT)/figures
+	@echo "Done: open $(OUT)/derivations/derivations.html and $(OUT)/figures"
+
+test: $(VENV)/.installed-test
+	$(BIN)/python -m pytest -n auto
+
+lint: $(VENV)/.installed-test
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+	$(BIN)/mypy
+	$(BIN)/lint-imports
+
+format: $(VENV)/.installed-test
+	$(BIN)/ruff check --fix .
+	$(BIN)/ruff format .
+
+benchmark: $(VENV)/.installed
+	$(BIN)/python -m figures.benchmark
+
+clean:
+	rm -rf $(VENV) $(OUT) build dist *.egg-info .pytest_cache .mypy_cache .ruff_cache .hypothesis .import_linter_cache
+
+$(BIN)/python:
+ifdef UV
+	$(UV) venv --python $(PYTHON) $(VENV)
+else
+	$(PYTHON) -m venv $(VENV)
+endif
+
+$(VENV)/.installed: pyproject.toml constraints.txt | $(BIN)/python
+ifdef UV
+	$(UV) pip install --quiet --python $(BIN)/python --constraint constraints.txt --editable .
+else
+	$(BIN)/python -m pip install --quiet --constraint constraints.txt --editable .
+endif
+	@touch $@
+
+$(VENV)/.installed-test: $(VENV)/.installed
+ifdef UV
+	$(UV) pip install --quiet --python $(BIN)/python --constraint constraints.txt --editable '.[test]'
+else
+	$(BIN)/python -m pip install --quiet --constraint constraints.txt --editable '.[test]'
+endif
+	@touch $@
