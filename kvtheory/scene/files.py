@@ -1,0 +1,258 @@
+"""Scene files: TOML in and out, overrides, and the commented template."""
+
+import tomllib
+from collections.abc import Iterable, Mapping
+from pathlib import Path
+from typing import Any
+
+from kvtheory.scene.fields import (
+    Quantity,
+    SceneError,
+    absent,
+    convert,
+    nearest,
+    problem,
+    quantities,
+    required,
+)
+from kvtheory.scene.indenters import SHAPES
+from kvtheory.scene.model import SUPPORTS, Drive, Foundation, Run, Scene
+from kvtheory.scene.units import expected
+
+SECTIONS = ("indenter", "foundation", "support", "drive", "run")
+CHOICES = {"indenter": ("shape", SHAPES), "support": ("kind", SUPPORTS)}
+"""Sections in which one key chooses the model; the other keys depend on it."""
+PLAIN = {"foundation": Foundation, "drive": Drive, "run": Run}
+OPTIONAL = {"run"}
+
+
+def load_scene(path: str | Path | None = None, overrides: Iterable[str] = ()) -> Scene:
+    """Read a scene from a TOML file, or take Table 1 where `path` is None.
+
+    Parameters
+    ----------
+    path
+        The scene file.
+    overrides
+        Texts ``"section.key=value"`` that replace or add keys. A new ``support.kind`` or
+        ``indenter.shape`` replaces that whole section; without a file it starts from Table 1.
+
+    Raises
+    ------
+    SceneError
+        Listing every mistake in the file and the overrides.
+    OSError
+        If the file cannot be read.
+
+    Examples
+    --------
+    >>> load_scene(overrides=["drive.velocity=50 mm/s"]).drive.velocity
+    0.05
+    """
+    tables = _tables(Scene.table1()) if path is None else _read(Path(path))
+    problems = _override(tables, list(overrides), embedded=path is None)
+    return _build(tables, problems)
+
+
+def to_toml(scene: Scene) -> str:
+    """Write a scene as TOML in SI units; `load_scene` reads it back equal to the last bit."""
+    lines = []
+    for section, table in _tables(scene).items():
+        lines.append(f"[{section}]")
+        lines += [f"{key} = {_toml(value)}" for key, value in table.items()]
+        lines.append("")
+    return "\n".join(lines)
+
+
+def template(support: str = "dead-weight") -> str:
+    """Return Table 1 as a scene file with a comment on every key."""
+    shown = {
+        "radius": "10 mm", "stiffness": "10 GN/m^3", "retardation_time": "100 ms",
+        "depth": "300 µm", "mass": "1 kg/mm", "gravity": "9.80665 m/s^2",
+        "velocity": "100 mm/s", "duration": "200 ms",
+    }  # fmt: skip
+    scene = Scene.table1(support)
+    lines = ["# A scene for kvtheory: a rigid indenter slides on a Kelvin-Voigt foundation.", ""]
+    for section in SECTIONS:
+        part = getattr(scene, section)
+        lines.append(f"[{section}]")
+        if section in CHOICES:
+            key, models = CHOICES[section]
+            lines.append(
+                f'{key} = "{getattr(type(part), key)}"{" " * 12}# or one of: {", ".join(models)}'
+            )
+        for name, spec in quantities(part).items():
+            value = "30 MN/m^2" if spec.unit == "N/m^2" else shown[name]
+            lines.append(f'{name} = "{value}"'.ljust(36) + f"# {spec.doc}")
+        if section == "drive":
+            lines += [
+                "# or a history, linear between its points, a jump where a time stands twice:",
+                '# history = [["0 ms", "100 mm/s"], ["50 ms", "100 mm/s"], ["50 ms", "0 mm/s"]]',
+            ]
+        lines.append("")
+    return "\n".join(lines)
+
+
+def _tables(scene: Scene) -> dict[str, dict[str, Any]]:
+    """Return the scene as the tables of its TOML file."""
+    tables: dict[str, dict[str, Any]] = {}
+    for section in SECTIONS:
+        part = getattr(scene, section)
+        table: dict[str, Any] = {}
+        if section in CHOICES:
+            table[CHOICES[section][0]] = getattr(type(part), CHOICES[section][0])
+        for name, spec in quantities(part).items():
+            if getattr(part, name) is not None:
+                table[name] = _text(getattr(part, name), spec.unit)
+        if section == "drive" and part.history is not None:
+            table["history"] = [[_text(t, "s"), _text(v, "m/s")] for t, v in part.history]
+        tables[section] = table
+    if tables["indenter"]["shape"] not in SHAPES:
+        raise ValueError(
+            "`scene` has an indenter made of Python functions, which a file cannot hold"
+        )
+    return tables
+
+
+def _text(value: float, unit: str) -> Any:
+    return value if unit == "1" else f"{value!r} {unit}"
+
+
+def _toml(value: Any) -> str:
+    if isinstance(value, list):
+        return "[" + ", ".join(_toml(item) for item in value) + "]"
+    return f'"{value}"' if isinstance(value, str) else repr(value)
+
+
+def _read(path: Path) -> dict[str, Any]:
+    try:
+        return tomllib.loads(path.read_text(encoding="utf-8"))
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+        raise SceneError([f"{path} is not a TOML file: {error}"]) from None
+
+
+def _override(tables: dict[str, Any], overrides: list[str], *, embedded: bool) -> list[str]:
+    """Apply ``section.key=value`` texts in place; return what was wrong with them."""
+    problems, pairs = [], []
+    for text in overrides:
+        key, separator, value = text.partition("=")
+        section, _, name = key.strip().partition(".")
+        if not separator or not name:
+            problems.append(f'--set "{text}": expected KEY=VALUE, such as drive.velocity="50 mm/s"')
+            continue
+        value = value.strip()
+        if len(value) > 1 and value[0] == value[-1] and value[0] in "\"'":
+            value = value[1:-1]
+        pairs.append((section, name, value))
+    for section, name, value in pairs:
+        if section in CHOICES and name == CHOICES[section][0]:
+            known = embedded and section == "support" and value in SUPPORTS
+            tables[section] = _tables(Scene.table1(value))["support"] if known else {name: value}
+    for section, name, value in pairs:
+        table = tables.setdefault(section, {})
+        if not isinstance(table, dict):
+            continue
+        if section == "drive" and name in ("velocity", "history"):
+            table.pop("history" if name == "velocity" else "velocity", None)
+        try:
+            table[name] = tomllib.loads(f"v = {value}")["v"] if name == "history" else value
+        except tomllib.TOMLDecodeError:
+            table[name] = value
+    return problems
+
+
+def _build(tables: Mapping[str, Any], problems: list[str]) -> Scene:
+    """Make the scene, or raise with every problem found on the way."""
+    problems = list(problems)
+    problems += [
+        f"[{name}]: unknown section; {nearest(name, SECTIONS)}"
+        for name in tables
+        if name not in SECTIONS
+    ]
+    missing = [name for name in absent(SECTIONS, tables) if name not in OPTIONAL]
+    problems += [f"[{name}]: this section is missing" for name in missing]
+    parts = {}
+    for section in SECTIONS:
+        try:
+            if section in tables:
+                parts[section] = _part(section, tables[section])
+        except SceneError as error:
+            problems += error.problems
+    if problems:
+        raise SceneError(problems)
+    return Scene(**parts)
+
+
+def _part(section: str, table: Any) -> Any:
+    """Make one part of a scene from its table."""
+    if not isinstance(table, dict):
+        raise SceneError(
+            [f"[{section}]: expected one table with this name, not {type(table).__name__}"]
+        )
+    if section not in CHOICES:
+        return _make(PLAIN[section], section, table)
+    chooser, models = CHOICES[section]
+    name = table.get(chooser, "parabola" if section == "indenter" else None)
+    if not isinstance(name, str) or name not in models:
+        what = (
+            nearest(name, models)
+            if isinstance(name, str)
+            else f"expected exactly one of: {', '.join(models)}"
+        )
+        raise SceneError(
+            [
+                problem(f"{section}.{chooser}", name, what)
+                if chooser in table
+                else f"{section}.{chooser}: missing; {what}"
+            ]
+        )
+    return _make(
+        models[name],
+        section,
+        {k: v for k, v in table.items() if k != chooser},
+        f'{chooser} = "{name}"',
+    )
+
+
+def _make(cls: Any, section: str, table: Mapping[str, Any], choice: str = "") -> Any:
+    """Construct `cls` from TOML values, in which a bare number is a mistake."""
+    specs = quantities(cls)
+    valid = [*specs, "history"] if cls is Drive else list(specs)
+    of = f" for {choice}" if choice else ""
+    missing = [name for name in absent(valid, table) if name in required(cls)]
+    problems = [
+        f"{section}.{name}: missing{of}; expected {expected(specs[name].unit)}" for name in missing
+    ]
+    values: dict[str, Any] = {}
+    for key, value in table.items():
+        if key not in valid:
+            problems.append(f"{section}.{key}: unknown key{of}; {nearest(key, valid)}")
+            continue
+        try:
+            values[key] = _value(value, specs[key]) if key in specs else _points(value)
+        except ValueError as error:
+            problems.append(problem(f"{section}.{key}", value, str(error)))
+    if problems:
+        raise SceneError(problems)
+    return cls(**values)
+
+
+def _value(value: Any, spec: Quantity) -> float:
+    if spec.unit != "1" and isinstance(value, (int, float)):
+        raise ValueError(f"has no unit; expected {expected(spec.unit)}")
+    return convert(value, spec)
+
+
+def _points(value: Any) -> Any:
+    """Pass the points of a history on to `Drive`, which checks them, if they carry units."""
+    points = value if isinstance(value, list) else []
+    if any(
+        isinstance(item, (int, float))
+        for point in points
+        if isinstance(point, list)
+        for item in point
+    ):
+        raise ValueError(
+            'has numbers without a unit; expected points such as ["50 ms", "100 mm/s"]'
+        )
+    return value

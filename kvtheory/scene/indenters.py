@@ -1,0 +1,174 @@
+"""Shapes of the indenter: the height h(x) of its surface above its lowest point, at x = 0 (Eq. 3).
+
+Every shape has `height` (h, in m) and `slope` (h', dimensionless), each for floats and arrays; its
+`reach`, in m: the surface is defined for |x| < reach; `kinks`, the points where h' jumps or a
+derivative is singular, in m; and `convex`, whether h is known to be convex.
+"""
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+import numpy as np
+
+from kvtheory.scene.fields import quantity, settle
+
+Value = Any
+"""A float or an array of floats, in m or dimensionless."""
+
+
+@dataclass(frozen=True)
+class Parabola:
+    """The paper's cylinder, h = x^2/(2R) (Eq. 3).
+
+    >>> Parabola(radius=0.01).height(0.002)
+    0.0002
+    """
+
+    shape: ClassVar[str] = "parabola"
+    convex: ClassVar[bool] = True
+    reach: ClassVar[float] = math.inf
+    kinks: ClassVar[tuple[float, ...]] = ()
+    radius: float = quantity("m", "R, curvature radius of the indenter (Eq. 3)")
+
+    def __post_init__(self) -> None:
+        settle(self, "indenter")
+
+    def height(self, x: Value) -> Value:
+        """Return h(x)."""
+        return x * (x / (2.0 * self.radius))
+
+    def slope(self, x: Value) -> Value:
+        """Return h'(x)."""
+        return x / self.radius
+
+
+@dataclass(frozen=True)
+class Circle:
+    """A true cylinder, h = R - sqrt(R^2 - x^2), up to |x| = R.
+
+    >>> print(f"{Circle(radius=0.01).height(0.006):.12g}")
+    0.002
+    """
+
+    shape: ClassVar[str] = "circle"
+    convex: ClassVar[bool] = True
+    kinks: ClassVar[tuple[float, ...]] = ()
+    radius: float = quantity("m", "R, curvature radius of the indenter (Eq. 3)")
+
+    def __post_init__(self) -> None:
+        settle(self, "indenter")
+
+    @property
+    def reach(self) -> float:
+        """The radius: the lower half of the cylinder ends there, with a vertical surface."""
+        return self.radius
+
+    def height(self, x: Value) -> Value:
+        """Return h(x) in a form that does not cancel for |x| << R."""
+        return x * (x / (self.radius + self._centre_height(x)))
+
+    def slope(self, x: Value) -> Value:
+        """Return h'(x)."""
+        with np.errstate(divide="ignore"):
+            return x / self._centre_height(x)
+
+    def _centre_height(self, x: Value) -> Value:
+        """Return R - h(x), factored against cancellation for |x| close to R; NaN beyond."""
+        with np.errstate(invalid="ignore"):
+            return np.sqrt((self.radius - x) * (self.radius + x))
+
+
+@dataclass(frozen=True)
+class PowerLaw:
+    """A blunt (n > 2) or pointed (n < 2) indenter, h = |x|^n/(n L^(n-1)), n >= 1.
+
+    With n = 2 it is the parabola of radius L; the slope is 1 at |x| = L for every n.
+
+    >>> float(PowerLaw(length=0.01, exponent=4.0).height(0.01))
+    0.0025
+    """
+
+    shape: ClassVar[str] = "power-law"
+    convex: ClassVar[bool] = True
+    reach: ClassVar[float] = math.inf
+    kinks: ClassVar[tuple[float, ...]] = (0.0,)
+    length: float = quantity("m", "L, where |h'| = 1")
+    exponent: float = quantity("1", "n, at least 1", minimum=1.0, exclusive=False)
+
+    def __post_init__(self) -> None:
+        settle(self, "indenter")
+
+    def height(self, x: Value) -> Value:
+        """Return h(x)."""
+        return x * self.slope(x) / self.exponent
+
+    def slope(self, x: Value) -> Value:
+        """Return h'(x)."""
+        return np.sign(x) * (np.abs(x) / self.length) ** (self.exponent - 1.0)
+
+
+@dataclass(frozen=True)
+class Wedge:
+    """A wedge, h = slope |x|.
+
+    >>> Wedge(inclination=0.1).height(-0.02)
+    0.002
+    """
+
+    shape: ClassVar[str] = "wedge"
+    convex: ClassVar[bool] = True
+    reach: ClassVar[float] = math.inf
+    kinks: ClassVar[tuple[float, ...]] = (0.0,)
+    inclination: float = quantity("1", "slope |h'| of the flanks")
+
+    def __post_init__(self) -> None:
+        settle(self, "indenter")
+
+    def height(self, x: Value) -> Value:
+        """Return h(x)."""
+        return self.inclination * abs(x)
+
+    def slope(self, x: Value) -> Value:
+        """Return h'(x)."""
+        return self.inclination * np.sign(x)
+
+
+@dataclass(frozen=True)
+class Profile:
+    """Any shape, from Python functions of one float: h(x), lowest at h(0) = 0, and h'(x).
+
+    >>> ellipse = Profile(lambda x: 0.001 * (1 - math.sqrt(1 - (x / 0.02) ** 2)),
+    ...                   lambda x: 0.05 * (x / 0.02) / math.sqrt(1 - (x / 0.02) ** 2), reach=0.02)
+    >>> print(f"{ellipse.height(0.012):.6g}")
+    0.0002
+    """
+
+    shape: ClassVar[str] = "callable"
+    convex: ClassVar[bool] = False
+    height_function: Callable[[float], float]
+    slope_function: Callable[[float], float]
+    reach: float = math.inf
+    kinks: tuple[float, ...] = ()
+
+    def height(self, x: Value) -> Value:
+        """Return h(x)."""
+        return _pointwise(self.height_function, x)
+
+    def slope(self, x: Value) -> Value:
+        """Return h'(x)."""
+        return _pointwise(self.slope_function, x)
+
+
+def _pointwise(function: Callable[[float], float], x: Value) -> Value:
+    """Apply a function of one float to a float or to each element of an array."""
+    if isinstance(x, np.ndarray):
+        return np.array([function(float(value)) for value in x.flat], dtype=float).reshape(x.shape)
+    return function(x)
+
+
+Indenter = Parabola | Circle | PowerLaw | Wedge | Profile
+
+SHAPES: dict[str, Any] = {cls.shape: cls for cls in (Parabola, Circle, PowerLaw, Wedge)}
+"""The shapes that a scene file can name."""

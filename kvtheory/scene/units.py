@@ -1,0 +1,137 @@
+"""Quantities with units at the edge of the package: text or pint quantities in, SI floats out.
+
+Numbers are read as exact fractions and rounded once, so ``"5 µm"`` is 5e-06 to the last bit. pint
+is imported only when a unit has to be understood.
+"""
+
+import difflib
+import math
+import re
+from fractions import Fraction
+from functools import cache
+from typing import Any
+
+EXAMPLES = {
+    "m": ("10 mm", "300 µm", "0.01 m"),
+    "s": ("100 ms", "0.1 s", "5 min"),
+    "m/s": ("100 mm/s", "0.1 m/s", "1 km/h"),
+    "m/s^2": ("9.80665 m/s^2", "1620 mm/s^2"),
+    "kg/m": ("1 kg/mm", "1000 kg/m", "10 g/mm"),
+    "N/m": ("10 N/mm", "9.8 kN/m"),
+    "N/m^2": ("30 MN/m^2", "30 MPa", "30 N/mm^2"),
+    "N/m^3": ("10 GN/m^3", "10 N/mm^3", "10 MPa/mm"),
+}
+"""Ways to write a quantity of each SI unit that a scene uses; messages show the first one."""
+
+LONGEST_UNIT = 60
+_NUMBER = re.compile(
+    r"[+-]?(?:(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:e[+-]?[0-9]+)?|inf(?:inity)?|nan)(?![0-9.])", re.I
+)
+# One exponent digit and no tower of powers: "mm^9^9^9" must not keep the reader busy.
+_UNIT = re.compile(r"(?:[a-zµμ_ ]|[*/()]|(?:\^|\*\*)-?[0-9](?![0-9^*])|[²³])+", re.I)
+
+
+def to_si(value: Any, unit: str) -> float:
+    """Return `value` as a float in the SI unit `unit`.
+
+    Parameters
+    ----------
+    value
+        Text with a unit, a pint quantity, or a plain number that is in SI already.
+    unit
+        A key of `EXAMPLES`, or ``"1"`` for a dimensionless number.
+
+    Raises
+    ------
+    ValueError
+        If the text cannot be read or has the wrong dimension; the message says what is expected.
+
+    Examples
+    --------
+    >>> to_si("5 µm", "m")
+    5e-06
+    >>> to_si("10 GN/m^3", "N/m^3")
+    10000000000.0
+    """
+    if isinstance(value, str):
+        return _from_text(value, unit)
+    if hasattr(value, "magnitude") and hasattr(value, "units"):
+        written = f"{value.units:C}".replace("dimensionless", "")
+        return _scaled(float(value.magnitude), written, unit)
+    is_number = isinstance(value, (int, float)) or hasattr(value, "item")
+    if isinstance(value, bool) or not is_number:
+        raise ValueError(f"expected {expected(unit)}")
+    try:
+        return float(value)
+    except (OverflowError, TypeError, ValueError):
+        raise ValueError(f"expected {expected(unit)}") from None
+
+
+def expected(unit: str) -> str:
+    """Say in words what a quantity of `unit` looks like."""
+    if unit == "1":
+        return "a dimensionless number"
+    return f'a quantity in {unit}, such as "{EXAMPLES[unit][0]}"'
+
+
+def _from_text(text: str, unit: str) -> float:
+    if "," in text:
+        raise ValueError(
+            "write the decimal mark as a point, and no thousands separator; "
+            f"expected {expected(unit)}"
+        )
+    number = _NUMBER.match(text.strip())
+    if number is None:
+        raise ValueError(f"is not a number followed by a unit; expected {expected(unit)}")
+    return _scaled(number.group(), text.strip()[number.end() :].strip(), unit)
+
+
+def _scaled(number: str | float, written: str, unit: str) -> float:
+    """Multiply `number` by the unit as `written`; both exactly, then round."""
+    approximate = float(number)
+    if not math.isfinite(approximate):
+        return approximate
+    if unit == "1":
+        if written:
+            raise ValueError(f'has the unit "{written}"; expected {expected(unit)}')
+        return approximate
+    if not written:
+        raise ValueError(f"has no unit; expected {expected(unit)}")
+    factor = _factor(written, unit)
+    # Zero stands for what underflows as well, before a huge power of ten is formed.
+    exact = Fraction(number) * factor if approximate else Fraction(0)
+    try:
+        return float(exact)
+    except OverflowError:
+        return math.copysign(math.inf, approximate)
+
+
+def _factor(written: str, unit: str) -> Fraction:
+    if len(written) > LONGEST_UNIT or not _UNIT.fullmatch(written):
+        raise ValueError(f'"{written}" is not a unit; expected {expected(unit)}')
+    registry = _registry()
+    try:
+        quantity = registry.Quantity(Fraction(1), written)
+        fits = quantity.check(registry.Quantity(Fraction(1), unit).dimensionality)
+        factor = Fraction(quantity.to(unit).magnitude) if fits else None
+    except Exception:  # pint raises many kinds, none of them documented as the only one
+        raise ValueError(
+            f'"{written}" is not a known unit{_nearest(written, unit)}; expected {expected(unit)}'
+        ) from None
+    if factor is None:
+        raise ValueError(f'the unit "{written}" is of another dimension; expected {expected(unit)}')
+    return factor
+
+
+def _nearest(written: str, unit: str) -> str:
+    known = {example.split(" ", 1)[1] for example in EXAMPLES[unit]}
+    by_lower = {name.lower(): name for name in known}
+    match = difflib.get_close_matches(written.lower(), by_lower, n=1, cutoff=0.5)
+    return f', did you mean "{by_lower[match[0]]}"?' if match else ""
+
+
+@cache
+def _registry() -> Any:
+    import pint
+
+    return pint.UnitRegistry(non_int_type=Fraction)

@@ -1,0 +1,249 @@
+"""Scenes: from Python, from files, back to files, and what is refused."""
+
+import re
+import tomllib
+
+import numpy as np
+import pint
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+import kvtheory as kv
+from kvtheory.scene import template
+from kvtheory.scene.numbers import dimensionless_numbers
+from kvtheory.scene.over import values
+
+TABLE_1 = """
+[indenter]
+radius = "10 mm"
+[foundation]
+stiffness = "10 GN/m^3"
+retardation_time = "100 ms"
+[support]
+kind = "dead-weight"
+mass = "1 kg/mm"
+[drive]
+velocity = "100 mm/s"
+[run]
+duration = "200 ms"
+"""
+
+
+def write(tmp_path, text):
+    path = tmp_path / "scene.toml"
+    path.write_text(text, encoding="utf-8")
+    return path
+
+
+def problems(path, overrides=()):
+    with pytest.raises(kv.SceneError) as caught:
+        kv.load_scene(path, overrides)
+    return caught.value.problems
+
+
+def test_the_file_of_table_1_is_the_built_in_scene(tmp_path):
+    assert kv.load_scene(write(tmp_path, TABLE_1)) == kv.load_scene() == kv.Scene()
+
+
+@pytest.mark.parametrize("support", ["fixed", "dead-weight", "suspended"])
+def test_the_template_is_table_1(tmp_path, support):
+    text = template(support)
+    assert kv.load_scene(write(tmp_path, text)) == kv.Scene.table1(support)
+    assert all("#" in line for line in text.splitlines() if "=" in line)
+
+
+POSITIVE = st.floats(1e-300, 1e300)
+INDENTERS = st.one_of(
+    POSITIVE.map(kv.Parabola),
+    POSITIVE.map(kv.Circle),
+    POSITIVE.map(kv.Wedge),
+    st.builds(kv.PowerLaw, POSITIVE, st.floats(1.0, 50.0)),
+)
+SUPPORTS = st.one_of(
+    POSITIVE.map(kv.Fixed),
+    st.builds(kv.DeadWeight, POSITIVE, POSITIVE),
+    st.builds(kv.Suspended, POSITIVE, POSITIVE, POSITIVE),
+)
+FINITE = st.floats(-1e300, 1e300)
+TIMES = st.lists(st.floats(1e-300, 1e300), max_size=4, unique=True).map(lambda t: [0.0, *sorted(t)])
+DRIVES = st.one_of(
+    FINITE.map(kv.Drive),
+    st.builds(lambda times, v: kv.Drive(history=[(t, v) for t in times]), TIMES, FINITE),
+)
+
+
+@given(
+    st.builds(kv.Scene, INDENTERS, st.builds(kv.Foundation, POSITIVE, POSITIVE), SUPPORTS, DRIVES)
+)
+def test_a_scene_comes_back_from_its_file_to_the_last_bit(tmp_path_factory, scene):
+    path = tmp_path_factory.mktemp("scene") / "scene.toml"
+    path.write_text(kv.to_toml(scene), encoding="utf-8")
+    assert kv.load_scene(path) == scene
+
+
+def test_python_functions_do_not_go_into_a_file():
+    flat = kv.Profile(lambda x: x * x, lambda x: 2 * x)
+    with pytest.raises(ValueError, match="Python functions"):
+        kv.to_toml(kv.Scene(indenter=flat))
+
+
+@pytest.mark.parametrize(
+    ("line", "replacement", "words"),
+    [
+        (
+            'radius = "10 mm"',
+            'radius = "1,5 mm"',
+            ["indenter.radius", "1,5 mm", "point", '"10 mm"'],
+        ),
+        ('radius = "10 mm"', "radius = 10", ["indenter.radius = 10", "no unit", "quantity in m"]),
+        ('radius = "10 mm"', 'radius = "10 s"', ["indenter.radius", "another dimension"]),
+        ('radius = "10 mm"', 'radius = "-10 mm"', ["indenter.radius", "above 0"]),
+        ('radius = "10 mm"', 'radius = "0 mm"', ["indenter.radius", "above 0"]),
+        ('radius = "10 mm"', 'radius = "inf mm"', ["indenter.radius", "finite"]),
+        ('radius = "10 mm"', 'radius = "nan mm"', ["indenter.radius", "finite"]),
+        ('radius = "10 mm"', "radius = true", ["indenter.radius", "quantity in m"]),
+        ('radius = "10 mm"', 'radius = ["10 mm"]', ["indenter.radius", "quantity in m"]),
+        ('radius = "10 mm"', 'raduis = "10 mm"', ["indenter.raduis", 'did you mean "radius"']),
+        ('radius = "10 mm"', "", ["indenter.radius", "missing", '"10 mm"']),
+        (
+            'radius = "10 mm"',
+            'shape = "circel"\nradius = "1 m"',
+            ["circel", 'did you mean "circle"'],
+        ),
+        ("[indenter]", "[indentor]", ["[indentor]", 'did you mean "indenter"']),
+        ('kind = "dead-weight"', 'kind = "deadweight"', ['did you mean "dead-weight"']),
+        ('kind = "dead-weight"', "", ["support.kind", "missing"]),
+        (
+            'kind = "dead-weight"',
+            'kind = ["fixed", "dead-weight"]',
+            ["support.kind", "exactly one of"],
+        ),
+        ('mass = "1 kg/mm"', 'mass = "1 kg/mm"\ndepth = "1 mm"', ["support.depth", "dead-weight"]),
+        ('mass = "1 kg/mm"', 'mass = "1 kg"', ["support.mass", "another dimension", "kg/m"]),
+        ("[support]", "[[support]]", ["[support]", "one table"]),
+        ('velocity = "100 mm/s"', 'velocity = "inf m/s"', ["drive.velocity", "finite"]),
+        ('velocity = "100 mm/s"', "", ["drive", "velocity and history"]),
+        ('velocity = "100 mm/s"', "history = []", ["drive.history", "expected points"]),
+        ('velocity = "100 mm/s"', 'history = [["0 s", 3]]', ["drive.history", "without a unit"]),
+        (
+            'velocity = "100 mm/s"',
+            'history = [["1 s", "1 m/s"]]',
+            ["drive.history[0]", "must be 0 s"],
+        ),
+        ('velocity = "100 mm/s"', 'history = [["0 s"]]', ["drive.history[0]", "expected a pair"]),
+        (
+            'velocity = "100 mm/s"',
+            'history = [["0 s", "1 m/s"], ["2 s", "1 m/s"], ["1 s", "1 m/s"]]',
+            ["drive.history[2]", "must not decrease"],
+        ),
+        (
+            'velocity = "100 mm/s"',
+            'history = [["0 s", "1 m/s"], ["0 s", "2 m/s"], ["0 s", "3 m/s"]]',
+            ["drive.history[2]", "at most twice"],
+        ),
+        ('duration = "200 ms"', 'duration = "0 ms"', ["run.duration", "above 0"]),
+        ("[run]", "[run", ["not a TOML file"]),
+    ],
+)
+def test_one_mistake_costs_one_clear_line(tmp_path, line, replacement, words):
+    assert line in TABLE_1
+    path = write(tmp_path, TABLE_1.replace(line, replacement))
+    found = problems(path)
+    hits = [text for text in found if all(word in text for word in words)]
+    assert len(hits) == 1, found
+    assert len(found) == 1, found
+
+
+def test_all_mistakes_are_reported_together(tmp_path):
+    text = TABLE_1.replace('"10 mm"', '"1,5 mm"').replace("mass", "mas").replace('"100 ms"', "3")
+    found = problems(write(tmp_path, text), ["drive.velocity=fast", "nonsense"])
+    assert len(found) == 5
+    for key in ("indenter.radius", "support.mas:", "foundation.retardation_time"):
+        assert any(key in text for text in found)
+    assert any("drive.velocity" in text for text in found)
+    assert any('--set "nonsense"' in text for text in found)
+
+
+def test_a_missing_section_is_named(tmp_path):
+    assert problems(write(tmp_path, "")) == tuple(
+        f"[{name}]: this section is missing"
+        for name in ("indenter", "foundation", "support", "drive")
+    )
+
+
+def test_a_file_that_is_not_text_is_refused(tmp_path):
+    path = tmp_path / "scene.toml"
+    path.write_bytes(b"\xff\xfe\x00")
+    assert "not a TOML file" in problems(path)[0]
+
+
+def test_overrides_replace_values_supports_shapes_and_drives(tmp_path):
+    path = write(tmp_path, TABLE_1)
+    overrides = ["drive.velocity = '50 mm/s'", 'support.mass="2 kg/mm"']
+    scene = kv.load_scene(path, overrides)
+    assert scene.drive.velocity == 0.05
+    assert scene.support == kv.DeadWeight(mass=2000.0)
+    fixed = kv.load_scene(path, ["support.kind=fixed", "support.depth=1 mm"])
+    assert fixed.support == kv.Fixed(depth=0.001)
+    assert kv.load_scene(None, ["support.kind=fixed"]).support == kv.Fixed(depth=3e-4)
+    wedge = kv.load_scene(path, ["indenter.shape=wedge", "indenter.inclination=0.1"])
+    assert wedge.indenter == kv.Wedge(inclination=0.1)
+    history = kv.load_scene(path, ['drive.history=[["0 s", "1 m/s"], ["1 s", "0 m/s"]]'])
+    assert history.drive == kv.Drive(history=((0.0, 1.0), (1.0, 0.0)))
+    assert history.drive.final_velocity == 0.0
+    assert "support.depth" in problems(path, ["support.kind=fixed"])[0]
+
+
+def test_python_takes_text_quantities_and_numbers():
+    registry = pint.UnitRegistry()
+    foundation = kv.Foundation(registry.Quantity(10, "GN/m^3"), "100 ms")
+    assert foundation == kv.Foundation(1e10, 0.1)
+    assert foundation.damping == 1e9
+    with pytest.raises(kv.SceneError) as caught:
+        kv.Foundation(-1.0, "100 mm")
+    assert len(caught.value.problems) == 2
+    with pytest.raises(kv.SceneError, match="velocity and history"):
+        kv.Drive()
+    with pytest.raises(kv.SceneError, match="exponent"):
+        kv.PowerLaw(length="1 mm", exponent=0.5)
+
+
+def test_values_broadcast_and_are_checked():
+    found = values(
+        kv.Scene(), {"drive.velocity": [[0.1], [0.2]], "support.mass": np.array([1, 2, 3])}
+    )
+    assert {array.shape for array in found.values()} == {(2, 3)}
+    assert values(kv.Scene(), {"support.mass": "1 kg/mm"})["support.mass"] == 1000.0
+    millimetres = pint.UnitRegistry().Quantity([1.0, 2.0], "mm")
+    assert values(kv.Scene(), {"indenter.radius": millimetres})["indenter.radius"].tolist() == [
+        0.001,
+        0.002,
+    ]
+    with pytest.raises(kv.SceneError) as caught:
+        values(
+            kv.Scene(), {"drive.velocty": 1.0, "support.mass": [1.0, -1.0], "support.depth": 1.0}
+        )
+    assert len(caught.value.problems) == 3
+    assert 'did you mean "drive.velocity"' in caught.value.problems[0]
+    with pytest.raises(ValueError, match="do not broadcast"):
+        values(kv.Scene(), {"drive.velocity": [1.0, 2.0], "support.mass": [1.0, 2.0, 3.0]})
+
+
+def test_dimensionless_numbers_of_table_1():
+    numbers = dimensionless_numbers(kv.Scene.table1("suspended"))
+    W, R, K, tau = 9806.65, 0.01, 1e10, 0.1
+    depth = (3 * W / (4 * K * np.sqrt(2 * R))) ** (2 / 3)
+    assert numbers["static_depth"] == pytest.approx(depth, rel=1e-14)
+    assert numbers["drive_number"] == pytest.approx(0.1 * tau / np.sqrt(2 * R * depth), rel=1e-14)
+    assert numbers["inertia_number"] == pytest.approx(1000 * depth / (W * tau**2), rel=1e-14)
+    assert numbers["support_number"] == pytest.approx(3e7 * depth / W, rel=1e-14)
+    assert "support_number" not in dimensionless_numbers(kv.Scene.table1("fixed"))
+    with pytest.raises(ValueError, match="parabola"):
+        dimensionless_numbers(kv.Scene(indenter=kv.Circle(radius=0.01)))
+
+
+def test_the_template_is_what_the_design_asks_for():
+    parsed = tomllib.loads(template("suspended"))
+    assert parsed["support"]["kind"] == "suspended"
+    assert re.fullmatch(r"[\d.]+ \S+", parsed["support"]["stiffness"])

@@ -1,0 +1,110 @@
+"""Text with units becomes the right float, or an error that teaches."""
+
+from decimal import Decimal
+from fractions import Fraction
+
+import numpy as np
+import pint
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from kvtheory.scene.units import EXAMPLES, to_si
+
+
+@pytest.mark.parametrize(
+    ("text", "unit", "value"),
+    [
+        ("5 µm", "m", 5e-06),
+        ("5 μm", "m", 5e-06),
+        ("5um", "m", 5e-06),
+        ("300 µm", "m", 3e-4),
+        ("10 mm", "m", 0.01),
+        ("1e-2 m", "m", 0.01),
+        (".5 m", "m", 0.5),
+        ("-100 mm/s", "m/s", -0.1),
+        ("1 km/h", "m/s", 1000 / 3600),
+        ("10 GN/m^3", "N/m^3", 1e10),
+        ("10 GN/m**3", "N/m^3", 1e10),
+        ("10 GN/m³", "N/m^3", 1e10),
+        ("10 MPa/mm", "N/m^3", 1e10),
+        ("10 N/(mm mm^2)", "N/m^3", 1e10),
+        ("1 kg/mm", "kg/m", 1000.0),
+        ("30 MPa", "N/m^2", 3e7),
+        ("100 ms", "s", 0.1),
+        ("9.80665 m/s^2", "m/s^2", 9.80665),
+        ("3", "1", 3.0),
+    ],
+)
+def test_reads_to_the_last_bit(text, unit, value):
+    assert to_si(text, unit) == value
+
+
+@given(st.decimals(allow_nan=False, allow_infinity=False, places=9, min_value=-1e6, max_value=1e6))
+def test_agrees_with_exact_decimals(number):
+    assert to_si(f"{number} µm", "m") == float(Fraction(number) / 10**6)
+    assert to_si(f"{number} GN/m^3", "N/m^3") == float(Fraction(number) * 10**9)
+
+
+@pytest.mark.parametrize(
+    ("text", "unit", "words"),
+    [
+        ("1,5 mm", "m", "decimal mark as a point"),
+        ("1,500 mm", "m", "decimal mark as a point"),
+        ("10", "m", "has no unit"),
+        ("mm", "m", "not a number"),
+        ("", "m", "not a number"),
+        ("1.2.3 mm", "m", "not a number"),
+        ("1 000 mm", "m", "not a unit"),
+        ("0x10 m", "m", "not a unit"),
+        ("5 Nm", "m", "another dimension"),
+        ("5 MM", "m", "another dimension"),
+        ("5 s", "m", "another dimension"),
+        ("5 mm^2", "m", "another dimension"),
+        ("10 gn/m^3", "N/m^3", 'did you mean "GN/m^3"'),
+        ("5 quux", "m", "not a known unit"),
+        ("5 m^99999999", "m", "not a unit"),
+        ("5 mm^9^9^9^9", "m", "not a unit"),
+        ("5 m" + " m" * 100, "m", "not a unit"),
+        ("5 m", "1", "dimensionless"),
+        (True, "m", "expected a quantity in m"),
+        (None, "m", "expected a quantity in m"),
+        ([1.0], "m", "expected a quantity in m"),
+        ({}, "m", "expected a quantity in m"),
+    ],
+)
+def test_refuses_and_says_what_is_expected(text, unit, words):
+    with pytest.raises(ValueError, match="expected") as caught:
+        to_si(text, unit)
+    assert words in str(caught.value)
+    example = "dimensionless number" if unit == "1" else EXAMPLES[unit][0]
+    assert example in str(caught.value)
+
+
+@pytest.mark.parametrize("text", ["1e999999999 m", "1e308 km", "inf m", "nan m"])
+def test_what_is_no_finite_float_stays_so(text):
+    assert not np.isfinite(to_si(text, "m"))
+
+
+def test_what_underflows_is_zero_at_once():
+    assert to_si("1e-999999999 m", "m") == 0.0
+
+
+def test_takes_pint_quantities_and_plain_si_numbers():
+    registry = pint.UnitRegistry()
+    assert to_si(registry.Quantity(5, "µm"), "m") == 5e-06
+    assert to_si(registry.Quantity(10, "GN/m^3"), "N/m^3") == 1e10
+    assert to_si(registry.Quantity(Decimal("0.1"), "kg/mm"), "kg/m") == 100.0
+    assert to_si(registry.Quantity(2.5), "1") == 2.5
+    assert to_si(np.float32(0.5), "m") == 0.5
+    assert to_si(3, "m") == 3.0
+    with pytest.raises(ValueError, match="another dimension"):
+        to_si(registry.Quantity(5, "s"), "m")
+    with pytest.raises(ValueError, match="dimensionless"):
+        to_si(registry.Quantity(5, "s"), "1")
+
+
+@pytest.mark.parametrize("unit", EXAMPLES)
+def test_the_examples_in_the_messages_work(unit):
+    for example in EXAMPLES[unit]:
+        assert to_si(example, unit) > 0
