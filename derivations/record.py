@@ -1,0 +1,59 @@
+"""What a derivation is once every step of it has been checked: LaTeX and words, ready to print.
+
+The engine (`derivations.step`) makes these records and the renderers (`derivations.render`)
+print them; neither knows the other.
+
+Text fields are plain English in which mathematics stands between dollar signs (``$l_r = V\\tau$``);
+LaTeX fields are mathematics alone, without dollar signs and without alignment marks.
+"""
+
+from dataclasses import dataclass
+
+STATUSES = ("definition", "proved", "proved-leading-order", "sampled")
+"""What stands behind an equality, strongest first."""
+
+
+@dataclass(frozen=True)
+class Step:
+    """One checked relation ``left relation right`` and the reason why it holds."""
+
+    left: str
+    relation: str
+    right: str
+    reason: str
+    status: str
+
+    @property
+    def latex(self) -> str:
+        """The relation as one line of LaTeX."""
+        return f"{self.left} {self.relation} {self.right}"
+
+
+@dataclass(frozen=True)
+class Table:
+    """A table of the paper: column heads and rows of cells, both text with ``$...$``."""
+
+    heads: tuple[str, ...]
+    rows: tuple[tuple[str, ...], ...]
+
+
+@dataclass(frozen=True)
+class Derivation:
+    """A numbered equation, a named theorem or a table, with the steps that lead to it."""
+
+    label: str
+    """Unique name, usable in file names and links: ``eq27``, ``F3``, ``table2``."""
+    equation: int | None
+    """The paper's equation number, or None for what the paper does not have."""
+    section: str
+    title: str
+    text: str
+    """What is asserted and under which assumptions, in words."""
+    latex: str
+    """The result, one displayed relation."""
+    status: str
+    """The weakest status among the steps on which the result rests."""
+    steps: tuple[Step, ...] = ()
+    uses: tuple[str, ...] = ()
+    """Labels of the derivations that this one rests on."""
+    table: Table | None = None

@@ -1,0 +1,332 @@
+r"""The engine: a proof is a list of steps, and each step is checked when it is made.
+
+>>> from derivations.symbols import V, l_r, tau
+>>> proof = Proof("eq29", 29, section="Steady sliding", title="Retardation length")
+>>> proof.define(l_r, V * tau, "how far an element travels while it relaxes")
+>>> proof.done(l_r, V * tau).latex
+'l_{\\mathrm{r}} = V \\tau'
+>>> proof.equal(l_r / tau, 2 * V, "wrong")
+Traceback (most recent call last):
+...
+derivations.step.StepError: eq29: l_r/tau = 2*V is not an identity: left - right = -V
+"""
+
+from collections.abc import Iterable
+from typing import TypedDict, Unpack
+
+import sympy as sp
+
+from derivations.algebra import (
+    Interval,
+    UndecidedError,
+    difference,
+    is_continuous,
+    next_order,
+    roots_between,
+    sign_between,
+    value_at,
+)
+from derivations.record import STATUSES, Derivation, Step, Table
+from derivations.sampling import disagreement
+from derivations.symbols import TEX
+
+_SIGNS = {">": {"+"}, ">=": {"+", "+0"}, "<": {"-"}, "<=": {"-", "-0"}}
+_RELATIONS = {">": ">", ">=": r"\ge", "<": "<", "<=": r"\le"}
+
+_finished: dict[str, "Proof"] = {}
+"""The finished proofs by label, for `Proof.recall`."""
+
+
+class StepError(ValueError):
+    """A step that is wrong, or that the engine cannot show to be right."""
+
+
+class Shown(TypedDict, total=False):
+    """LaTeX that replaces SymPy's own for a side of a step."""
+
+    left: str
+    right: str
+
+
+def tex(expr: sp.Expr) -> str:
+    """Print an expression in the notation of the paper."""
+    return str(sp.latex(expr, symbol_names=TEX, fold_frac_powers=True))
+
+
+def established(label: str, lhs: sp.Expr) -> sp.Expr:
+    """Return the last form of `lhs` that the derivation with this label has established exactly."""
+    forms = [right for left, right in _source(label)._exact if left == lhs]
+    if not forms:
+        raise StepError(f"{label} does not establish {lhs}")
+    return forms[-1]
+
+
+def _source(label: str) -> "Proof":
+    if label not in _finished:
+        raise StepError(f"{label} has not been derived yet")
+    return _finished[label]
+
+
+class Proof:
+    """Collect checked steps and end in a `record.Derivation`.
+
+    What is defined or recalled is a rule: later steps are checked with its left side replaced by
+    its right side, until no left side is left. In every step `left` and `right` replace the LaTeX
+    of a side where SymPy's own is clumsy; what is checked is the SymPy expression.
+    """
+
+    def __init__(
+        self,
+        label: str,
+        equation: int | None,
+        *,
+        section: str,
+        title: str,
+        text: str = "",
+        uses: tuple[str, ...] = (),
+    ) -> None:
+        self.label, self.equation = label, equation
+        self._section, self._title, self._text = section, title, text
+        self._uses = list(uses)
+        self._rules: dict[sp.Expr, sp.Expr] = {}
+        self._steps: list[Step] = []
+        self._known: dict[tuple[sp.Expr, sp.Expr], Step] = {}
+        self._exact: dict[tuple[sp.Expr, sp.Expr], Step] = {}
+
+    def define(self, lhs: sp.Expr, rhs: sp.Expr, reason: str = "", **shown: Unpack[Shown]) -> None:
+        """Let the left side stand for the right side."""
+        self._rule(lhs, rhs)
+        self._record(lhs, "=", rhs, reason, "definition", shown)
+
+    def recall(self, label: str, lhs: sp.Expr, rhs: sp.Expr, reason: str = "") -> None:
+        """Use a relation that the derivation with this label has established."""
+        source = _source(label)
+        step = source._exact.get((sp.sympify(lhs), sp.sympify(rhs)))
+        if step is None:
+            raise StepError(f"{self.label}: {label} does not establish {lhs} = {rhs}")
+        self._rule(lhs, rhs)
+        if label not in self._uses:
+            self._uses.append(label)
+        name = source._title if source.equation is None else f"Eq. ({source.equation})"
+        shown: Shown = {"left": step.left, "right": step.right}
+        self._record(lhs, "=", rhs, reason or name, step.status, shown)
+
+    def equal(self, lhs: sp.Expr, rhs: sp.Expr, reason: str, **shown: Unpack[Shown]) -> None:
+        """Prove an identity."""
+        self._vanish(self._resolve(lhs), self._resolve(rhs), f"{lhs} = {rhs}")
+        self._record(lhs, "=", rhs, reason, "proved", shown)
+
+    def integral(
+        self,
+        lhs: sp.Expr,
+        integrand: sp.Expr,
+        over: Interval,
+        antiderivative: sp.Expr,
+        reason: str,
+        *,
+        value: sp.Expr | None = None,
+        **shown: Unpack[Shown],
+    ) -> sp.Expr:
+        """Prove that `lhs`, the integral of `integrand`, has the value that is returned.
+
+        The antiderivative is differentiated; it must be continuous, so that its end values count.
+        `lhs` either was defined as this integral or is named by this step. `value` is the form in
+        which the value is wanted; it is proved to be the difference of the end values.
+        """
+        whole = sp.Integral(integrand, over)
+        variable, low, high = over[0], *(self._resolve(end) for end in over[1:])
+        primitive, inner = self._resolve(antiderivative), self._resolve(integrand)
+        if not is_continuous(primitive, variable):
+            raise StepError(f"{self.label}: {primitive} may not be continuous in {variable}")
+        self._vanish(sp.diff(primitive, variable), inner, f"d/d{variable} of {antiderivative}")
+        found = sp.factor(value_at(primitive, variable, high) - value_at(primitive, variable, low))
+        if lhs in self._rules:
+            self._same_integral(self._rules.pop(lhs), whole)
+        wanted = found if value is None else value
+        self._vanish(self._resolve(wanted), found, f"{whole} = {wanted}")
+        self._rule(lhs, wanted)
+        shown.setdefault("right", tex(wanted) if lhs == whole else f"{tex(whole)} = {tex(wanted)}")
+        self._record(lhs, "=", wanted, reason, "proved", shown)
+        return wanted
+
+    def root(
+        self,
+        expr: sp.Expr,
+        variable: sp.Symbol,
+        value: sp.Expr,
+        reason: str,
+        **shown: Unpack[Shown],
+    ) -> None:
+        """Prove that the expression vanishes where the variable has this value."""
+        at_value = self._resolve(expr).subs(variable, self._resolve(value))
+        self._vanish(at_value, sp.S.Zero, f"root {variable} = {value} of {expr}")
+        self._record(variable, "=", value, reason, "proved", shown)
+
+    def unique_root(
+        self, expr: sp.Expr, over: Interval, reason: str, **shown: Unpack[Shown]
+    ) -> None:
+        """Prove by Sturm's theorem that the polynomial has exactly one root inside the interval."""
+        try:
+            count = roots_between(self._resolve(expr), over)
+        except UndecidedError as error:
+            raise StepError(f"{self.label}: roots of {expr}: {error}") from error
+        if count != 1:
+            raise StepError(f"{self.label}: {expr} has {count} roots inside {over}, not one")
+        self._record(expr, "=", sp.S.Zero, reason, "proved", shown, exact=False)
+
+    def sign(
+        self,
+        expr: sp.Expr,
+        relation: str,
+        bound: sp.Expr | int,
+        over: Interval,
+        reason: str,
+        **shown: Unpack[Shown],
+    ) -> None:
+        """Prove that a rational expression stays on one side of `bound` inside the interval."""
+        claim = f"{expr} {relation} {bound} inside {over}"
+        gap = self._resolve(expr - bound)
+        try:
+            found = sign_between(gap, over)
+        except UndecidedError as error:
+            raise StepError(f"{self.label}: {claim}: {error}; left - right = {gap}") from error
+        if found not in _SIGNS[relation]:
+            raise StepError(f"{self.label}: {claim} is wrong: left - right = {gap} is {found}")
+        self._record(
+            expr,
+            _RELATIONS[relation],
+            sp.sympify(bound),
+            reason,
+            "proved",
+            shown,
+            exact=False,
+        )
+
+    def equivalent(
+        self, nonnegative: sp.Expr, lhs: sp.Expr, rhs: sp.Expr, reason: str, **shown: Unpack[Shown]
+    ) -> None:
+        """Prove that `nonnegative` >= 0 says the same as lhs >= rhs: their ratio is positive."""
+        ratio = sp.cancel(self._resolve(nonnegative) / self._resolve(lhs - rhs))
+        if not ratio.is_positive:
+            raise StepError(
+                f"{self.label}: {lhs} >= {rhs} is not the same as {nonnegative} >= 0: ratio {ratio}"
+            )
+        self._record(lhs, r"\ge", rhs, reason, "proved", shown, exact=False)
+
+    def leading_order(
+        self,
+        expr: sp.Expr,
+        leading: sp.Expr,
+        variable: sp.Symbol,
+        point: sp.Expr | int,
+        reason: str,
+        *,
+        eps: sp.Expr,
+        **shown: Unpack[Shown],
+    ) -> tuple[sp.Expr, sp.Expr]:
+        """Prove expr = leading (1 + c eps**k + higher order) as variable -> point; return (c, k).
+
+        The small quantity `eps` is any positive expression that vanishes there.
+        """
+        claim = f"{expr} ~ {leading} as {variable} -> {point}"
+        ratio = self._resolve(expr) / self._resolve(leading)
+        try:
+            c, k, rest = next_order(ratio, self._resolve(eps), variable, point)
+        except UndecidedError as error:
+            raise StepError(f"{self.label}: {claim}: {error}") from error
+        factor = shown.get("right") or (f"({tex(leading)})" if leading.is_Add else tex(leading))
+        shown["right"] = f"{factor} {_series(c, eps, k, rest)}"
+        self._record(expr, "=", leading, reason, "proved-leading-order", shown, exact=False)
+        return c, k
+
+    def sampled(
+        self,
+        lhs: sp.Expr,
+        rhs: sp.Expr,
+        ranges: Iterable[Interval],
+        reason: str,
+        **shown: Unpack[Shown],
+    ) -> None:
+        """Compare both sides at many random points of the ranges with 50 digits."""
+        found = disagreement(self._resolve(lhs), self._resolve(rhs), ranges)
+        if found:
+            raise StepError(f"{self.label}: {lhs} = {rhs} fails {found}")
+        self._record(lhs, "=", rhs, reason, "sampled", shown)
+
+    def done(self, lhs: sp.Expr, rhs: sp.Expr | int, *, table: Table | None = None) -> Derivation:
+        """End the proof with a relation that one of its steps established."""
+        result = self._known.get((sp.sympify(lhs), sp.sympify(rhs)))
+        if result is None:
+            raise StepError(f"{self.label}: no step established {lhs} and {rhs}")
+        _finished[self.label] = self
+        return Derivation(
+            label=self.label,
+            equation=self.equation,
+            section=self._section,
+            title=self._title,
+            text=self._text,
+            latex=result.latex,
+            status=max((step.status for step in self._steps), key=STATUSES.index),
+            steps=tuple(self._steps),
+            uses=tuple(self._uses),
+            table=table,
+        )
+
+    def _rule(self, lhs: sp.Expr, rhs: sp.Expr) -> None:
+        if lhs in self._rules:
+            raise StepError(f"{self.label}: {lhs} is defined twice")
+        if self._resolve(rhs).has(lhs):
+            raise StepError(f"{self.label}: the definition {lhs} = {rhs} is circular")
+        self._rules[lhs] = sp.sympify(rhs)
+
+    def _resolve(self, expr: sp.Expr | int) -> sp.Expr:
+        """Replace all that was defined or recalled, and carry out the derivatives."""
+        before, after = None, sp.sympify(expr)
+        while after != before:
+            before, after = after, after.subs(self._rules).doit(integrals=False)
+        return after
+
+    def _vanish(self, lhs: sp.Expr, rhs: sp.Expr, claim: str) -> None:
+        rest = difference(lhs, rhs)
+        if rest != 0:
+            raise StepError(f"{self.label}: {claim} is not an identity: left - right = {rest}")
+
+    def _same_integral(self, defined: sp.Expr, evaluated: sp.Integral) -> None:
+        """Prove that the integral by which a symbol was defined is the one that was evaluated."""
+        if not isinstance(defined, sp.Integral) or defined.variables != evaluated.variables:
+            raise StepError(f"{self.label}: {defined} is not the integral {evaluated}")
+        pairs = zip(
+            (defined.function, *defined.limits[0][1:]),
+            (evaluated.function, *evaluated.limits[0][1:]),
+            strict=True,
+        )
+        for one, other in pairs:
+            self._vanish(self._resolve(one), self._resolve(other), f"{defined} = {evaluated}")
+
+    def _record(
+        self,
+        lhs: sp.Expr,
+        relation: str,
+        rhs: sp.Expr,
+        reason: str,
+        status: str,
+        shown: Shown,
+        *,
+        exact: bool = True,
+    ) -> None:
+        """Keep a step; an exact one is an equality that later proofs may use as a rule."""
+        left, right = shown.get("left", tex(lhs)), shown.get("right", tex(rhs))
+        step = Step(left, relation, right, reason, status)
+        key = sp.sympify(lhs), sp.sympify(rhs)
+        self._steps.append(step)
+        self._known[key] = step
+        if exact:
+            self._exact[key] = step
+
+
+def _series(c: sp.Expr, eps: sp.Expr, k: sp.Expr, rest: sp.Expr) -> str:
+    """Print 1 + c eps**k + O(eps**rest)."""
+    term = c * eps**k
+    negative = term.could_extract_minus_sign()
+    signed = f"- {tex(-term)}" if negative else f"+ {tex(term)}"
+    return rf"\left(1 {signed} + O\left({tex(eps**rest)}\right)\right)"

@@ -1,0 +1,131 @@
+r"""The symbols of the paper, with the assumptions under which every step is proved.
+
+Sign convention: the foundation moves through the frame of the indenter with V > 0, so an element
+enters at the leading edge x < 0 and leaves at the trailing edge; a reversed drive mirrors it.
+
+Scaled symbols of steady sliding: ``l`` is l_r/a, ``q`` is x_TE/a, related by l = (1 - q**2)/(2 q).
+"""
+
+import sympy as sp
+
+
+def _positive(names: str) -> tuple[sp.Symbol, ...]:
+    return sp.symbols(names, positive=True)
+
+
+# Scene: indenter, foundation, operation (Table 1) and gravity.
+R, M, K, C, tau, N, V, g = _positive("R M K C tau N V g")
+delta, W, F, mu = _positive("delta W F mu")
+k, c = _positive("k c")
+"""Stiffness and damping of one element per unit width; k = K/N, c = C/N (before Eq. 1)."""
+
+# Lengths of the contact (Eqs. 26-29).
+a, l_r = _positive("a l_r")
+x_le = sp.Symbol("x_LE", negative=True)
+x_te = sp.Symbol("x_TE", nonnegative=True)
+
+# Coordinates.
+t, t_0 = sp.symbols("t t_0", real=True)
+x, z = sp.symbols("x z", real=True)
+
+# Scaled steady sliding.
+q, l = _positive("q l")
+xi = sp.Symbol("xi", real=True)
+Lambda = sp.Symbol("Lambda", positive=True)
+
+# An element of the foundation at x_i(t), and the indenter above it (Eqs. 1-25).
+x_i = sp.Function("x_i", real=True)(t)
+u_i = sp.Function("u_i", real=True)(t)
+delta_t = sp.Function("delta", positive=True)(t)
+z_a = sp.Function("z_A", real=True)(t)
+h = sp.Function("h", real=True)
+f_n, f_c, f_z, f_x, theta = sp.symbols("f_Ni f_Ci f_zi f_xi theta_i", real=True)
+F_z, F_x = sp.symbols("F_z F_x", real=True)
+
+# The contact as a whole.
+p = sp.Symbol("p", real=True)
+V_star = sp.Symbol("V_star", positive=True)
+
+# The theorems: scaled load, friction force and coefficient (F1), pressure (F7, F16), energy (F6).
+w, phi, m, P, P_max, n, eta = _positive("w phi m P P_max n eta")
+F_elastic, F_viscous = _positive("F_elastic F_viscous")
+X, Y, T = _positive("X Y T")
+"""Of a dead weight (F2): the cubes of the scaled velocity and of the scaled friction coefficient, and
+the friction coefficient over its asymptote for low velocity."""
+mu_peak, Lambda_peak, Lambda_fixed, Lambda_weight = _positive(
+    "mu_peak Lambda_peak Lambda_fixed Lambda_weight"
+)
+
+# The balance of forces of a movable indenter, scaled by the static state.
+s, lam, kappa, r = _positive("s lambda kappa r")
+f, f_s, f_ss = _positive("f f_s f_ss")
+G, G_s = sp.symbols("G G_s", real=True)
+
+# Relative errors of the asymptotes, and the parts of which they are made.
+e_l1, e_l2_fixed, e_l2_weight, e_load_low, e_load_high, e_friction_low, e_friction_high = (
+    sp.symbols("e_L1 e_L2 e_L2_weight e_W_low e_W_high e_F_low e_F_high", real=True)
+)
+e_depth_low, e_depth_high, e_load_spring = sp.symbols("e_depth_low e_depth_high e_W", real=True)
+E, S, b, gap = _positive("E S b gap")
+
+# The true circle: (a/R)**2, first-order changes within the contact, coefficients of the corrections.
+eps = sp.Symbol("epsilon", positive=True)
+W_1, F_1 = sp.symbols("W_1 F_1", real=True)
+c_w, c_f, c_mu, c_delta_load, c_mu_load = sp.symbols("c_W c_F c_mu c_delta_W c_mu_W", real=True)
+
+# The transient, scaled by the static state: lengths by a_0, depths by delta_0, forces by W_0 and
+# time by tau. A prime is the derivative with respect to the scaled time.
+a_0, delta_0, W_0, k_s, d = _positive("a_0 delta_0 W_0 k_s d")
+d_s, d_ss, f_normal, f_friction = sp.symbols("d_s d_ss f_normal f_friction", real=True)
+time, earlier, start, last = sp.symbols("s s_1 s_0 sigma", real=True)
+material, left, right = sp.symbols("X ell r", real=True)
+depth = sp.Function("d", positive=True)(time)
+travel = sp.Function("Y", real=True)(time)
+"""How far the foundation has moved: its element X is at xi = X + Y."""
+rho, width, beta = _positive("rho b beta")
+rise, settle, epsilon_c = _positive("A B epsilon_c")
+"""How strongly the normal force depends on the depth and on its rate (F12)."""
+rate = sp.Symbol("sigma", real=True)
+excess = sp.Symbol("n", real=True)
+
+alpha = 2 * sp.sqrt(2) / 3
+"""The coefficient of Eqs. 40-46."""
+
+TEX = {
+    x_le: r"x_{\mathrm{LE}}",
+    x_te: r"x_{\mathrm{TE}}",
+    l_r: r"l_{\mathrm{r}}",
+    xi: r"\xi",
+    f_n: r"f_{\mathrm{N}i}",
+    f_c: r"f_{\mathrm{C}i}",
+    f_z: r"f_{zi}",
+    f_x: r"f_{xi}",
+    V_star: r"V^{*}",
+    phi: r"\varphi",
+    P: r"\hat p",
+    P_max: r"\hat p_{\max}",
+    F_elastic: r"F_{\mathrm{e}}",
+    F_viscous: r"F_{\mathrm{v}}",
+    mu_peak: r"\hat\mu_{\max}",
+    Lambda_peak: r"\Lambda_{\max}",
+    Lambda_fixed: r"\Lambda^{*}_{\mathrm{FI}}",
+    Lambda_weight: r"\Lambda^{*}_{\mathrm{MI}}",
+    eps: r"\varepsilon",
+    f_s: r"f'",
+    f_ss: r"f''",
+    G_s: r"G'",
+    e_l1: r"e_{\mathrm{L1}}",
+    e_l2_fixed: r"e_{\mathrm{L2\text{-}FI}}",
+    e_l2_weight: r"e_{\mathrm{L2\text{-}MI}}",
+    e_load_low: r"e_{W\!,\,V\to0}",
+    e_load_high: r"e_{W\!,\,V\to\infty}",
+    e_friction_low: r"e_{F\!,\,V\to0}",
+    e_friction_high: r"e_{F\!,\,V\to\infty}",
+    e_depth_low: r"e_{\delta,\,V\to0}",
+    e_depth_high: r"e_{\delta,\,V\to\infty}",
+    e_load_spring: r"e_{W}",
+    gap: r"\bar q",
+    c_delta_load: r"c_{\delta,W}",
+    c_mu_load: r"c_{\mu,W}",
+}
+"""How `sympy.latex` prints these symbols where its own choice differs from the paper's."""
