@@ -1,0 +1,35 @@
+"""All derivations, in the order in which the document prints them."""
+
+from functools import cache
+
+from derivations import (
+    asymptote_errors,
+    asymptotics,
+    circle,
+    energy,
+    groups,
+    model,
+    steady,
+    tables,
+    theorems,
+)
+from derivations.record import Derivation
+
+_CHAPTERS = (
+    *(model, steady, asymptotics, tables, groups),
+    *(theorems, energy, asymptote_errors, circle),
+)
+"""Each chapter may recall what the chapters before it have established."""
+
+SECTIONS = tuple(dict.fromkeys(chapter.SECTION for chapter in _CHAPTERS))
+"""The sections of the document, in order."""
+
+
+@cache
+def catalogue() -> tuple[Derivation, ...]:
+    """Derive everything: every step is checked anew, once in the life of the process.
+
+    >>> [derivation.label for derivation in catalogue()][:3]
+    ['eq1', 'eq2', 'eq3']
+    """
+    return tuple(derivation for chapter in _CHAPTERS for derivation in chapter.derive())

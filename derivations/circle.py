@@ -1,0 +1,148 @@
+r"""How wrong the parabola h = x**2/(2 R) is for a true circle h = R - sqrt(R**2 - x**2).
+
+With eps = (a/R)**2, where a = sqrt(2 R delta) belongs to the parabola, each quantity of steady sliding
+is that of the parabola times 1 + c eps + O(eps**2). Shape and edges are analytic in eps, so that the
+coefficients c follow from the first terms of the pressure and of the moving edges.
+"""
+
+from functools import partial
+
+import sympy as sp
+
+from derivations.record import Derivation
+from derivations.step import Proof
+from derivations.symbols import (
+    F_1,
+    W_1,
+    R,
+    a,
+    c_delta_load,
+    c_f,
+    c_mu,
+    c_mu_load,
+    c_w,
+    delta,
+    eps,
+    f,
+    f_s,
+    l,
+    phi,
+    q,
+    s,
+    w,
+    xi,
+)  # fmt: skip
+from derivations.theorems import (
+    FRICTION_COEFFICIENT,
+    FRICTION_FORCE,
+    LOAD,
+    NUMBER,
+    RATIO,
+    UNIT,
+    A,
+    B,
+)
+
+SECTION = "True circle"
+
+CONTACT = (xi, -1, q)
+PARABOLA = 1 - xi**2 - 2 * l * xi
+"""p/(K delta) of the parabola at x = xi a."""
+CORRECTION = -(xi**4) / 4 - l * xi**3
+"""What the fourth-order term of the circle adds to it, per eps."""
+EDGE = sp.Rational(1, 8)
+"""The leading edge of the circle is at xi = -1 + eps/8 + O(eps**2)."""
+
+LOAD_COEFFICIENT = -3 * q * (1 + (1 - q) * (1 - 3 * q * (1 - q))) / (20 * A)
+FORCE_COEFFICIENT = 9 * (1 - q * (1 - q) * (1 + q**2)) / (10 * B)
+LOADED_COEFFICIENT = 3 * (1 + q) * (3 * (1 - q) ** 2 + 2 * q) / (10 * B)
+
+_theorem = partial(Proof, equation=None, section=SECTION)
+
+
+def derive() -> tuple[Derivation, ...]:
+    """Prove the leading corrections for a true circle, at given depth and at given load."""
+    return _shape(), _fixed(), _dead_weight()
+
+
+def _shape() -> Derivation:
+    proof = _theorem(
+        "circle-shape",
+        title="Shape and leading edge of a true circle",
+        text=r"Scaled by $a$ and $\delta$ of the parabola, with $\varepsilon = (a/R)^2 = 2\delta/R$.",
+    )
+    circle = 2 * xi**2 / (1 + sp.sqrt(1 - eps * xi**2))
+    edge = sp.sqrt(1 - eps / 4)
+    proof.define(a, R * sp.sqrt(eps), r"$\varepsilon = (a/R)^2$")
+    proof.define(delta, a**2 / (2 * R), "Eq. (28)")
+    proof.equal((R - sp.sqrt(R**2 - (xi * a) ** 2)) / delta, circle, r"$h/\delta$ of the circle")
+    first = eps * xi**4 / 4
+    proof.leading_order(circle - xi**2, first, eps, 0, "against the parabola", eps=eps)
+    reason = (
+        r"$h = \delta$ where $(R - \delta)^2 = R^2 - x^2$: at $\xi = -\sqrt{1 - \varepsilon/4}$"
+    )
+    proof.equal((R - delta) ** 2, R**2 - (edge * a) ** 2, reason)
+    proof.leading_order(1 - edge, EDGE * eps, eps, 0, "the leading edge recedes by", eps=eps)
+    return proof.done(circle - xi**2, first)
+
+
+def _fixed() -> Derivation:
+    proof = _theorem(
+        "circle-fixed",
+        title="True circle at given depth",
+        text=r"Load, friction force and friction coefficient are those of the parabola times $1 + c_W "
+        r"\varepsilon$, $1 + c_F \varepsilon$ and $1 + c_\mu \varepsilon$, up to $O(\varepsilon^2)$. The "
+        "pressure is zero at the trailing edge, whose shift therefore does not count; at the leading edge "
+        "it is not.",
+        uses=("circle-shape", "F16"),
+    )
+    friction = sp.expand(-(xi**3) * PARABOLA / 2 - xi * CORRECTION)
+    proof.define(l, NUMBER, RATIO)
+    change = -(xi**4) / 4 - l * sp.Derivative(xi**4 / 4, xi)
+    proof.equal(
+        change, CORRECTION, r"$-h - l h'$ of the term that the circle adds, per $\varepsilon$"
+    )
+    proof.root(PARABOLA, xi, q, "no pressure at the trailing edge")
+    proof.sign(
+        sp.diff(PARABOLA, xi).subs(xi, q), "<", 0, UNIT, "a simple zero: the edge is analytic"
+    )
+    leading = PARABOLA.subs(xi, -1)
+    proof.equal(leading, 2 * l, "pressure at the leading edge", left=r"\hat p(-1)")
+    proof.recall("F1", w, LOAD)
+    proof.recall("F1", phi, FRICTION_FORCE)
+    reason = "first-order change inside the contact"
+    proof.integral(W_1, CORRECTION, CONTACT, sp.integrate(CORRECTION, xi), reason)
+    proof.define(c_w, (W_1 - leading * EDGE) / w, "and at the receding leading edge")
+    proof.equal(c_w, LOAD_COEFFICIENT, "load")
+    proof.integral(F_1, friction, CONTACT, sp.integrate(friction, xi), reason)
+    proof.define(c_f, (F_1 - leading * EDGE) / phi, r"and at the edge, where $-h' a/(2\delta) = 1$")
+    proof.equal(c_f, FORCE_COEFFICIENT, "friction force")
+    proof.sign(c_w, "<", 0, UNIT, "the circle carries less")
+    proof.sign(c_f, ">", 0, UNIT, "and resists more")
+    proof.define(c_mu, c_f - c_w, r"$\mu = F/W$, a sum of positive terms")
+    return proof.done(c_mu, c_f - c_w)
+
+
+def _dead_weight() -> Derivation:
+    proof = _theorem(
+        "circle-dead-weight",
+        title="True circle at given load",
+        text=r"With $\varepsilon = (a/R)^2$ of the parabola at the same load and velocity, depth and "
+        r"friction coefficient are those of the parabola times $1 + c_{\delta,W} \varepsilon$ and $1 + "
+        r"c_{\mu,W} \varepsilon$, up to $O(\varepsilon^2)$: the depth gives way until the load is the same.",
+    )
+    loading = 3 / A
+    slipping = q * sp.diff(FRICTION_COEFFICIENT, q) / FRICTION_COEFFICIENT
+    slipping *= NUMBER / (q * sp.diff(NUMBER, q))
+    proof.recall("balance", s * f_s / f, 6 / A)
+    proof.recall("circle-fixed", c_w, LOAD_COEFFICIENT)
+    proof.recall("circle-fixed", c_f, FORCE_COEFFICIENT)
+    proof.recall("circle-fixed", c_mu, c_f - c_w)
+    proof.equal(s * f_s / f / 2, loading, r"$d \ln W/d \ln \delta$ at fixed velocity")
+    proof.define(c_delta_load, -c_w / loading, "depth: the load stays")
+    proof.define(c_mu_load, c_mu + c_delta_load * (1 - slipping) / 2, _CHAIN)
+    proof.equal(c_mu_load, LOADED_COEFFICIENT, "friction coefficient")
+    return proof.done(c_mu_load, LOADED_COEFFICIENT)
+
+
+_CHAIN = r"$\mu = (a/R)\, m(l)$ with $a \propto \sqrt{\delta}$ and $l \propto 1/a$"

@@ -1,0 +1,151 @@
+"""Where the power of the friction force goes: theorem F6, and the identity behind it for any shape."""
+
+from functools import partial
+
+import sympy as sp
+
+from derivations.record import Derivation
+from derivations.step import Proof
+from derivations.symbols import (
+    C,
+    F,
+    F_elastic,
+    F_viscous,
+    K,
+    R,
+    V,
+    a,
+    delta,
+    eta,
+    h,
+    l,
+    l_r,
+    phi,
+    q,
+    x,
+    x_le,
+    x_te,
+)
+from derivations.theorems import FRICTION_FORCE, NUMBER, RATIO, UNIT, B
+
+SECTION = "Energy"
+
+_shape = h(x)
+_slope = sp.Derivative(_shape, x)
+_contact = (x, x_le, x_te)
+_STORED = sp.Integral(-K * (delta - _shape) * _slope, _contact)
+_INSIDE = sp.Integral(K * l_r * _slope**2, _contact)
+_ASSUMPTIONS = (
+    r"Any shape $h$ whose slope may jump, in contact on one interval at whose leading edge $u = \delta - "
+    "h$ vanishes."
+)
+
+_TWO_LOSSES = (
+    r"K \left(\frac{u_{\mathrm{TE}}^2}{2} + l_{\mathrm{r}} "
+    r"\int_{x_{\mathrm{LE}}}^{x_{\mathrm{TE}}} h'(x)^2 \, dx\right), "
+    r"\quad u_{\mathrm{TE}} = \delta - h(x_{\mathrm{TE}})"
+)
+_BEHIND = r"\frac{1}{V} \int_{x_{\mathrm{TE}}}^{\infty} C \dot u^2 \, dx"
+
+_theorem = partial(Proof, equation=None, section=SECTION)
+
+
+def derive() -> tuple[Derivation, ...]:
+    """Prove the energy identity for any shape, then F6 for the parabola."""
+    return _split(), _relaxation(), _any_shape(), _parabola()
+
+
+def _split() -> Derivation:
+    proof = _theorem(
+        "energy-split",
+        title="Friction force: an elastic and a viscous part",
+        text=_ASSUMPTIONS,
+    )
+    whole = sp.Integral(-_slope * (K * (delta - _shape) - C * V * _slope), _contact)
+    proof.define(C, K * l_r / V, "Eqs. (22) and (29)")
+    proof.define(F_elastic, _STORED, "the spring: $K u u'$ with $u = \\delta - h$")
+    proof.define(F_viscous, _INSIDE, r"the damper: $C V h'^2 = C \dot u^2/V$, power lost over V")
+    proof.equal(whole, F_elastic + F_viscous, "the integral of $-h' p$, term by term")
+    proof.define(F, F_elastic + F_viscous, "the friction force")
+    return proof.done(F, F_elastic + F_viscous)
+
+
+def _relaxation() -> Derivation:
+    proof = _theorem(
+        "energy-behind",
+        title="Energy lost behind the contact",
+        text=r"Per distance slid: the surface that leaves the contact with $u = u_{\mathrm{TE}}$ relaxes "
+        r"freely, $u = u_{\mathrm{TE}} e^{-(x - x_{\mathrm{TE}})/l_{\mathrm{r}}}$ (Eqs. 25, 29).",
+        uses=("eq25", "eq29"),
+    )
+    u_te = delta - h(x_te)
+    surface = u_te * sp.exp(-(x - x_te) / l_r)
+    integrand = K * l_r * sp.diff(surface, x) ** 2
+    behind = sp.Integral(integrand, (x, x_te, sp.oo))
+    proof.integral(
+        *(behind, integrand, (x, x_te, sp.oo), -K * surface**2 / 2),
+        r"$C \dot u^2/V$ behind the contact: all that was stored at the trailing edge",
+        value=K * u_te**2 / 2,
+        left=_BEHIND,
+        right=r"\frac{K}{2} u_{\mathrm{TE}}^2",
+    )
+    return proof.done(behind, K * u_te**2 / 2)
+
+
+def _any_shape() -> Derivation:
+    proof = _theorem(
+        "energy-any-shape",
+        title="Friction force of any shape is dissipation",
+        text=_ASSUMPTIONS
+        + " The first term is the power lost in the surface that relaxes behind the "
+        r"contact, the second the power lost inside it, both over $V$.",
+        uses=("energy-behind",),
+    )
+    result = K * (delta - h(x_te)) ** 2 / 2 + _INSIDE
+    difference = K * (delta - h(x_te)) ** 2 / 2 - K * (delta - h(x_le)) ** 2 / 2
+    proof.recall("energy-split", F, F_elastic + F_viscous)
+    proof.recall("energy-split", F_viscous, _INSIDE)
+    # u is continuous and piecewise smooth, so that kinks of the shape change nothing here.
+    elastic = -K * (delta - _shape) * _slope
+    stored = K * (delta - _shape) ** 2 / 2
+    proof.integral(F_elastic, elastic, _contact, stored, "$u u' = (u^2/2)'$", value=difference)
+    proof.define(h(x_le), delta, r"$u(x_{\mathrm{LE}}) = 0$")
+    proof.equal(F, result, "two losses", right=_TWO_LOSSES)
+    return proof.done(F, result)
+
+
+def _parabola() -> Derivation:
+    proof = _theorem(
+        "F6",
+        title="Energy dissipated inside the contact",
+        text=r"The fraction $\eta$ of the power $F V$ that is dissipated inside the contact of a parabola "
+        r"is 1 in both limits and never below 4/5, which it reaches at $l_{\mathrm{r}} = \frac{3}{4} a$.",
+        uses=("energy-any-shape", "F1"),
+    )
+    fraction = 4 * (q**2 - q + 1) / B
+    dissipation = K * l_r * (x / R) ** 2
+    proof.define(l_r, l * a, "the retardation length in half lengths")
+    proof.define(delta, a**2 / (2 * R), "Eq. (28)")
+    proof.define(l, NUMBER, RATIO)
+    proof.recall("F1", phi, FRICTION_FORCE)
+    proof.define(F, K * delta * a**2 / R * phi, "F1")
+    proof.integral(
+        *(F_viscous, dissipation, (x, -a, q * a), K * l_r * x**3 / (3 * R**2)),
+        "inside the contact",
+        value=K * l_r * a**3 * (1 + q**3) / (3 * R**2),
+    )
+    proof.equal(
+        F - F_viscous,
+        K * (delta - (q * a) ** 2 / (2 * R)) ** 2 / 2,
+        r"behind: $K u_{\mathrm{TE}}^2/2$",
+    )
+    proof.define(eta, F_viscous / F, "by definition")
+    proof.equal(eta, fraction, "fraction inside")
+    proof.sign(eta, ">=", sp.Rational(4, 5), UNIT, "never less than four fifths")
+    proof.equal(
+        eta - sp.Rational(4, 5), 4 * (1 - 2 * q) ** 2 / (5 * B), r"least at $q = \frac{1}{2}$"
+    )
+    half = NUMBER.subs(q, sp.Rational(1, 2))
+    proof.equal(half, sp.Rational(3, 4), "the retardation length there", left=r"l(1/2)")
+    proof.equal(1 - eta, 3 * q * (1 - q) / B, "the rest vanishes in both limits")
+    return proof.done(eta, fraction)

@@ -1,0 +1,359 @@
+r"""Steady sliding beyond the paper: exact closed forms, the friction maximum, the balance of forces.
+
+One number fixes the contact: ``q`` = x_TE/a in (0, 1), or l = l_r/a = (1 - q**2)/(2 q). Where several
+forms of a quantity are proved equal, the last one is the form for floating-point numbers: no
+difference of nearly equal numbers, no overflow.
+"""
+
+from functools import partial
+
+import sympy as sp
+
+from derivations.record import Derivation
+from derivations.step import Proof
+from derivations.symbols import (
+    C,
+    F,
+    G,
+    G_s,
+    K,
+    Lambda,
+    Lambda_fixed,
+    Lambda_peak,
+    Lambda_weight,
+    P,
+    P_max,
+    R,
+    T,
+    V,
+    W,
+    X,
+    Y,
+    a,
+    alpha,
+    delta,
+    f,
+    f_s,
+    f_ss,
+    kappa,
+    l,
+    l_r,
+    lam,
+    m,
+    mu,
+    mu_peak,
+    n,
+    p,
+    phi,
+    q,
+    r,
+    s,
+    tau,
+    w,
+    x,
+    xi,
+)  # fmt: skip
+
+SECTION = "Exact steady sliding"
+
+UNIT = (q, 0, 1)
+"""The interval of q: from the fast limit (0) to rest (1)."""
+
+NUMBER = (1 - q**2) / (2 * q)
+"""l as a function of q."""
+
+A = (1 - q) ** 2 + 2
+"""q**2 - 2 q + 3, the quadratic of the load, as a sum of positive terms."""
+
+B = q**2 - q + 4
+"""The quadratic of the friction force."""
+
+LOAD = (1 + q) ** 2 * A / (6 * q)
+FRICTION_FORCE = (1 - q) * (1 + q) ** 2 * B / (12 * q)
+FRICTION_COEFFICIENT = (1 - q) * B / (2 * A)
+STABLE_FRICTION_FORCE = l * (1 + q) * B / 6
+STABLE_FRICTION_COEFFICIENT = l * q * B / ((1 + q) * A)
+SCALED_LOAD = s**2 * (s + r + lam**2 / (r + lam)) / 2
+DRIVE_CUBED = 3 * (1 - q) ** 3 * (1 + q) / (2 * q**2 * A)
+FRICTION_CUBED = 3 * q * (1 - q) ** 3 * B**3 / (2 * (1 + q) ** 2 * A**4)
+PEAK = 2 - sp.sqrt(3)
+
+RATIO = r"$q = x_{\mathrm{TE}}/a$ names the state: $l = l_{\mathrm{r}}/a > 0$ is $0 < q < 1$"
+_theorem = partial(Proof, equation=None, section=SECTION)
+
+
+def derive() -> tuple[Derivation, ...]:
+    """Prove F1, F16, the scaled balance of forces, F2-F5 and F7."""
+    return (
+        *(_rational(), _cancellation(), _peak_pressure()),
+        *(_scaled_load(), _balance()),
+        *(_master_curve(), _peak(), _peak_values(), *_series(), _intersections()),
+    )
+
+
+def _rational() -> Derivation:
+    proof = _theorem(
+        "F1",
+        title="The steady state is rational in one number",
+        text="For a parabola that slides steadily at V > 0, load, friction force and friction "
+        r"coefficient are rational functions of $q = x_{\mathrm{TE}}/a$.",
+        uses=("eq3", "eq22", "eq26", "eq27", "eq28", "eq29"),
+    )
+    pressure = K * (delta - x**2 / (2 * R)) - C * V * sp.Derivative(x**2 / (2 * R), x)
+    contact = (x, -a, q * a)
+    weighted = sp.expand(-x / R * K * (delta - x**2 / (2 * R) - l_r * x / R))
+    proof.define(l_r, l * a, "the retardation length in half lengths")
+    proof.define(delta, a**2 / (2 * R), "Eq. (28)")
+    proof.define(C, K * l_r / V, "Eqs. (22) and (29)")
+    proof.define(l, NUMBER, RATIO)
+    proof.sign(sp.Derivative(NUMBER, q), "<", 0, UNIT, "each $l > 0$ belongs to one $q$")
+    proof.define(p, pressure, r"elastic and viscous: $p = K u + C \dot u$")
+    proof.root(p, x, q * a, "the pressure vanishes at the trailing edge")
+    factored = K * delta * (q - x / a) * (1 + q * x / a) / q
+    proof.equal(p, factored, "so that it is positive between the edges")
+    proof.integral(
+        *(W, K * (delta - x**2 / (2 * R) - l_r * x / R), contact),
+        K * (delta * x - x**3 / (6 * R) - l_r * x**2 / (2 * R)),
+        "load: the integral of the pressure",
+        value=K * delta * a * LOAD,
+    )
+    proof.integral(
+        *(F, weighted, contact, sp.integrate(weighted, x)),
+        "friction force: the integral of $-h' p$",
+        value=K * delta * a * (a / R) * FRICTION_FORCE,
+    )
+    proof.define(mu, F / W, "Eq. (37)")
+    for scaled, ratio, form, name in (
+        (w, W / (K * delta * a), LOAD, "load"),
+        (phi, F * R / (K * delta * a**2), FRICTION_FORCE, "friction force"),
+        (m, mu * R / a, FRICTION_COEFFICIENT, "friction coefficient"),
+    ):
+        proof.define(scaled, ratio, f"scaled {name}")
+        proof.equal(scaled, form, f"{name}: rational")
+    return proof.done(m, FRICTION_COEFFICIENT)
+
+
+def _cancellation() -> Derivation:
+    proof = _theorem(
+        "F16",
+        title="Forms without cancellation",
+        text=r"Eq. (27) as written loses digits for $l_{\mathrm{r}} \gg a$, and $1 - q$ loses them for "
+        r"$l_{\mathrm{r}} \ll a$. The last forms of $q$, $\varphi$, $m$ and $p$ lose none.",
+        uses=("eq27",),
+    )
+    root = sp.sqrt(1 + l**2)
+    proof.define(l, NUMBER, RATIO)
+    proof.equal(root - l, q, "Eq. (27) as it stands")
+    condition = "condition number of this subtraction"
+    proof.equal((root + l) / (root - l), q**-2, condition)
+    proof.leading_order(q**-2, 4 * l**2, q, 0, "which grows without bound", eps=1 / l)
+    proof.equal(q, 1 / (l + root), "the same number without a subtraction")
+    proof.equal((1 - q) * (1 + q), 2 * q * l, "which replaces the difference $1 - q$")
+    proof.recall("F1", w, LOAD)
+    proof.recall("F1", phi, FRICTION_FORCE)
+    proof.equal(phi, STABLE_FRICTION_FORCE, "all terms positive")
+    proof.recall("F1", m, FRICTION_COEFFICIENT)
+    proof.equal(m, STABLE_FRICTION_COEFFICIENT, "all terms positive")
+    proof.define(P, 1 - xi**2 - 2 * l * xi, r"$p/(K\delta)$ at $x = \xi a$")
+    proof.equal(P, (q - xi) * (1 + q * xi) / q, "one difference, exact near the edge")
+    return proof.done(q, 1 / (l + root))
+
+
+def _peak_pressure() -> Derivation:
+    proof = _theorem(
+        "F7",
+        title="Peak pressure",
+        text=r"The peak is inside the contact, at $x = -l_{\mathrm{r}}$, while $l_{\mathrm{r}} < a$, and "
+        r"at the leading edge from $l_{\mathrm{r}} = a$ on.",
+        uses=("F16",),
+    )
+    profile = 1 - xi**2 - 2 * l * xi
+    form = 2 * l + (1 - n) ** 2
+    proof.define(P, profile, r"$p/(K\delta)$ at $x = \xi a$")
+    proof.equal(sp.Derivative(profile, xi), -2 * (xi + l), r"a maximum at $\xi = -l$")
+    proof.equal(profile.subs(xi, -l), 1 + l**2, "inside the contact if $l < 1$", left=r"\hat p(-l)")
+    proof.equal(profile.subs(xi, -1), 2 * l, "the leading edge, else", left=r"\hat p(-1)")
+    proof.define(n, sp.Min(1, l), "where the peak is, in half lengths from the bottom")
+    cases = sp.Piecewise((1 + l**2, l <= 1), (2 * l, True))
+    proof.define(P_max, cases, "the maximum in either case")
+    proof.equal(P_max, form, "both cases in one form")
+    return proof.done(P_max, form)
+
+
+def _scaled_load() -> Derivation:
+    proof = _theorem(
+        "scaled-load",
+        title="Load of an indenter that has been lifted",
+        text=r"In units of the static state, $s = a/a_0 = \sqrt{\delta/\delta_0}$, "
+        r"$\lambda = V\tau/a_0$ and $f = W/W_0$ with $W_0 = \frac{4}{3} K a_0 \delta_0$.",
+        uses=("F16",),
+    )
+    radius = sp.sqrt(s**2 + lam**2)
+    slope = 3 * s * (s + r) / 2
+    proof.define(r, radius, "a shorthand")
+    proof.define(l, lam / s, r"$l = V \tau/a$")
+    proof.define(q, s / (lam + r), "trailing edge")
+    proof.equal(1 / (l + sp.sqrt(1 + l**2)), q, "which is F16 in these units")
+    proof.recall("F1", w, LOAD)
+    proof.define(f, 3 * s**3 * w / 4, r"$W = K \delta a w$")
+    proof.equal(f, SCALED_LOAD, "a sum of positive terms")
+    # Derivatives act on expressions in s and lambda alone, where nothing depends on s unseen.
+    proof.define(
+        *(f_s, sp.Derivative(SCALED_LOAD.subs(r, radius), s), "at fixed velocity"),
+        right=r"\partial f/\partial s",
+    )
+    proof.equal(f_s, slope, "positive: a deeper indenter carries more")
+    proof.define(
+        *(f_ss, sp.Derivative(slope.subs(r, radius), s), "likewise"),
+        right=r"\partial f'/\partial s",
+    )
+    proof.equal(f_ss, 3 * (r + s) ** 2 / (2 * r), "positive")
+    return proof.done(f, SCALED_LOAD)
+
+
+def _balance() -> Derivation:
+    proof = _theorem(
+        "balance",
+        title="Balance of forces of a movable indenter",
+        text=r"On a spring of support number $\kappa$ (none for a dead weight, $\kappa \to \infty$ for a "
+        r"fixed indenter) $G = f + \kappa (s^2 - 1) - 1$ vanishes. $G$ increases from $-(1 + \kappa)$ at "
+        r"$s = 0$ to a positive value at $s = 1$, so that it has one root, and there $s\,G' \ge 2 (1 + "
+        r"\kappa)$: the relative error of $\delta = s^2 \delta_0$ is, to first order, at most that with "
+        "which the two sides of the balance are computed.",
+    )
+    logarithmic = s * f_s / f
+    proof.define(r, sp.sqrt(s**2 + lam**2), "a shorthand")
+    proof.define(lam, s * l, r"$l = V \tau/a$")
+    proof.define(l, NUMBER, RATIO)
+    proof.recall("scaled-load", f, SCALED_LOAD)
+    proof.recall("scaled-load", f_s, 3 * s * (s + r) / 2)
+    proof.equal(logarithmic, 6 / A, "how strongly the load depends on the depth")
+    proof.sign(logarithmic, ">", 2, UNIT, "the damper alone")
+    proof.sign(logarithmic, "<", 3, UNIT, "the spring alone")
+    proof.sign(f / s**3, ">", 1, UNIT, "hence $G > 0$ at $s = 1$")
+    proof.define(G, f + kappa * (s**2 - 1) - 1, "excess of the supporting forces")
+    proof.define(G_s, f_s + 2 * kappa * s, "at fixed velocity", right=r"\partial G/\partial s")
+    conditioning = 2 * (1 + kappa) + 2 * G + (s * f_s - 2 * f)
+    proof.equal(s * G_s, conditioning, "slope of the balance")
+    proof.sign(s * f_s - 2 * f, ">", 0, UNIT, r"hence $s\,G' \ge 2 (1 + \kappa)$ at the root")
+    return proof.done(s * G_s, conditioning)
+
+
+def _master_curve() -> Derivation:
+    proof = _theorem(
+        "F2",
+        title="Master curve of the dead-weight indenter",
+        text=r"With $X = (V\tau)^3 K/(R W)$ and $Y = \mu^3 K R^2/W$, the cubes of the axes of Fig. 6, "
+        r"$X$ falls from $\infty$ to 0 while $q$ goes from 0 to 1: one root $q$ of a quartic gives depth, "
+        r"friction force and friction coefficient. With $T = \mu R K/(C V)$, so that $T^3 = Y/X$, the "
+        "curve is one polynomial relation between $T$ and $X$, of degrees 4 and 3: the resultant.",
+    )
+    quartic = 2 * X * q**2 * A - 3 * (1 - q) ** 3 * (1 + q)
+    relation = sp.resultant(quartic, q * B - T * (1 + q) * A, q)
+    proof.define(l, NUMBER, RATIO)
+    proof.recall("F1", w, LOAD)
+    proof.recall("F1", m, FRICTION_COEFFICIENT)
+    proof.define(V, l * a / tau, "Eq. (29)")
+    proof.define(W, K * delta * a * w, "F1")
+    proof.define(mu, a * m / R, "F1")
+    proof.define(delta, a**2 / (2 * R), "Eq. (28)")
+    proof.define(X, (V * tau) ** 3 * K / (R * W), "cube of the abscissa")
+    proof.equal(X, DRIVE_CUBED, "scaled velocity")
+    proof.sign(sp.Derivative(DRIVE_CUBED, q), "<", 0, UNIT, "strictly decreasing")
+    proof.leading_order(X, 1 / (2 * q**2), q, 0, "the fast limit", eps=q)
+    proof.root(DRIVE_CUBED, q, sp.S.One, "rest")
+    proof.equal(quartic, sp.S.Zero, "the quartic")
+    proof.define(Y, mu**3 * K * R**2 / W, "cube of the ordinate")
+    proof.equal(Y, FRICTION_CUBED, "scaled friction coefficient")
+    proof.define(l_r, l * a, "the retardation length in half lengths")
+    proof.define(T, mu * R / l_r, "over the asymptote of Eq. (42)")
+    proof.equal(T, q * B / ((1 + q) * A), "rational")
+    proof.equal(T**3, Y / X, "the same in the scales of Fig. 6")
+    eliminated = r"\operatorname{Res}_q\left(X - X(q),\, T - T(q)\right)"
+    proof.equal(relation, sp.S.Zero, "$q$ eliminated", left=eliminated)
+    return proof.done(X, DRIVE_CUBED)
+
+
+def _peak() -> Derivation:
+    proof = _theorem(
+        "F3",
+        title="Friction maximum of the dead-weight indenter",
+        text=r"$\mu (K R^2/W)^{1/3}$ has one maximum over all velocities, where the retardation length is "
+        r"$\sqrt{3}$ half lengths of the contact.",
+    )
+    parabola = q**2 - 4 * q + 1
+    rest = 18 * (1 - q) ** 2 * (1 + q**2) * B**2 / ((1 + q) ** 3 * A**5)
+    proof.recall("F2", Y, FRICTION_CUBED)
+    proof.equal(sp.Derivative(FRICTION_CUBED, q), rest * parabola, "slope")
+    proof.sign(rest, ">", 0, UNIT, "the sign is that of the last factor")
+    proof.unique_root(parabola, UNIT, "from + to - with growing $q$")
+    proof.root(parabola, q, PEAK, "friction maximum")
+    return proof.done(q, PEAK)
+
+
+def _peak_values() -> Derivation:
+    proof = _theorem("F3-values", title="Values at the friction maximum")
+    third = sp.cbrt(3 - sp.sqrt(3))
+    proof.recall("F3", q, PEAK)
+    proof.define(l, NUMBER, RATIO)
+    proof.equal(l, sp.sqrt(3), r"$l_{\mathrm{r}} = \sqrt{3}\, a$")
+    proof.recall("F1", m, FRICTION_COEFFICIENT)
+    proof.equal(m, 3 * (sp.sqrt(3) - 1) / 4, r"$\mu R/a$")
+    proof.recall("F2", X, DRIVE_CUBED)
+    proof.define(Lambda_peak, sp.cbrt(X), r"$V \tau (K/(R W))^{1/3}$")
+    proof.equal(Lambda_peak, sp.sqrt(3) / third, "1.60027...")
+    proof.define(mu_peak, m * Lambda_peak / l, r"$\mu (K R^2/W)^{1/3}$")
+    proof.equal(mu_peak, 3 * (sp.sqrt(3) - 1) / (4 * third), "0.507265...")
+    return proof.done(mu_peak, 3 * (sp.sqrt(3) - 1) / (4 * third))
+
+
+def _series() -> tuple[Derivation, ...]:
+    """Prove the first terms of m on both sides; the last one with the order of what is left out."""
+    low, high = l - 3 * l**2 / 4, sp.Rational(2, 3) - 7 / (36 * l)
+    return tuple(_expansion(*case) for case in (
+        ("F4-low", "low", 1, l, (l, low), 9 * l**4 / 16, r"m - l + \frac{3}{4} l^2"),
+        ("F4-high", "high", 0, 1 / l, (sp.Rational(2, 3), high), -1 / (27 * l**2),
+         r"m - \frac{2}{3} + \frac{7}{36 l}"),
+    ))  # fmt: skip
+
+
+def _expansion(
+    label: str,
+    regime: str,
+    end: int,
+    small: sp.Expr,
+    sums: tuple[sp.Expr, ...],
+    last: sp.Expr,
+    shown: str,
+) -> Derivation:
+    proof = _theorem(label, title=f"Friction coefficient at {regime} velocity: series")
+    proof.define(l, NUMBER, RATIO)
+    proof.recall("F1", m, FRICTION_COEFFICIENT)
+    proof.leading_order(m, sums[0], q, end, "the asymptote", eps=small)
+    proof.leading_order(
+        m - sums[1], last, q, end, "what two terms leave out", eps=small, left=shown
+    )
+    return proof.done(m - sums[1], last)
+
+
+def _intersections() -> Derivation:
+    proof = _theorem(
+        "F5",
+        title="Critical velocity and friction maximum",
+        text="The critical velocity is where the two asymptotes of the friction coefficient meet. A "
+        r"dead-weight indenter has its maximum at 1.664 times that velocity.",
+        uses=("eq42", "eq45", "eq46"),
+    )
+    low = C * V / (R * K)
+    fixed, weight = alpha * sp.sqrt(delta / R), alpha * sp.sqrt(W / (R * C * V))
+    proof.define(C, K * tau, "Eq. (22)")
+    proof.equal(low / fixed, V * tau / sp.sqrt(R * delta) / alpha, "fixed indenter: 1 at")
+    proof.define(Lambda_fixed, alpha, r"$V^{*} \tau/\sqrt{R \delta}$")
+    proof.define(V, Lambda * sp.cbrt(R * W / K) / tau, "in units of the dead weight")
+    proof.equal((low / weight) ** 2, Lambda**3 / alpha**2, "dead weight: 1 at")
+    proof.define(Lambda_weight, sp.cbrt(alpha**2), r"$V^{*} \tau (K/(R W))^{1/3}$")
+    proof.root(Lambda**3 / alpha**2 - 1, Lambda, Lambda_weight, "the asymptotes meet")
+    proof.recall("F3-values", Lambda_peak, sp.sqrt(3) / sp.cbrt(3 - sp.sqrt(3)))
+    beyond = (Lambda_peak / Lambda_weight) ** 3
+    proof.equal(beyond, 27 * (1 + sp.sqrt(3)) / 16, "the maximum lies beyond the intersection")
+    return proof.done(beyond, 27 * (1 + sp.sqrt(3)) / 16)

@@ -1,0 +1,212 @@
+"""The catalogue is complete, sound and agrees with independent numerical work."""
+
+import mpmath as mp
+import pytest
+import sympy as sp
+
+from derivations import asymptotics, groups, steady, tables
+from derivations import symbols as s
+from derivations.catalogue import SECTIONS, catalogue
+from derivations.record import STATUSES
+
+DIGITS = 50
+SCENE = {s.R: "0.013", s.K: "2.1e9", s.C: "3.7e8", s.delta: "1.9e-4"}
+
+
+@pytest.fixture(scope="module")
+def by_label():
+    return {derivation.label: derivation for derivation in catalogue()}
+
+
+@pytest.fixture(autouse=True)
+def _fifty_digits():
+    with mp.workdps(DIGITS):
+        yield
+
+
+def test_labels_are_unique_and_every_equation_is_there_once(by_label):
+    assert len(by_label) == len(catalogue())
+    numbered = {d.label: d.equation for d in catalogue() if d.equation is not None}
+    assert numbered == {f"eq{n}": n for n in range(1, 51) if n != 33}
+    assert {"table1", "table2"} <= set(by_label)
+
+
+def test_sections_stand_in_order():
+    seen = list(dict.fromkeys(derivation.section for derivation in catalogue()))
+    assert seen == list(SECTIONS)
+
+
+def test_uses_exist_and_do_not_run_in_circles(by_label):
+    settled: set[str] = set()
+    waiting = dict(by_label)
+    while waiting:
+        ready = [label for label, d in waiting.items() if set(d.uses) <= settled]
+        assert ready, f"circular or missing: { {label: d.uses for label, d in waiting.items()} }"
+        settled.update(ready)
+        for label in ready:
+            del waiting[label]
+
+
+@pytest.mark.parametrize("number", [n for n in range(26, 49) if n != 33])
+def test_steady_sliding_is_proved(by_label, number):
+    derivation = by_label[f"eq{number}"]
+    named = {34, 37}
+    weakest = "definition" if number in named else "proved-leading-order"
+    assert STATUSES.index(derivation.status) <= STATUSES.index(weakest)
+    assert all(step.status != "sampled" for step in derivation.steps)
+    assert (derivation.status == "definition") == (number in named)
+
+
+def test_every_record_has_steps_and_balanced_text(by_label):
+    for derivation in catalogue():
+        assert derivation.latex
+        assert derivation.latex in {step.latex for step in derivation.steps}
+        texts = [derivation.title, derivation.text, *(step.reason for step in derivation.steps)]
+        assert all(text.count("$") % 2 == 0 for text in texts)
+        maths = [derivation.latex, *(step.latex for step in derivation.steps)]
+        assert all(math.count("{") == math.count("}") and "$" not in math for math in maths)
+
+
+class Contact:
+    """Load and friction of steady sliding by quadrature of the elements' law, with 50 digits."""
+
+    def __init__(self, ratio):
+        """Take l_r/a of a scene whose other parameters are fixed."""
+        self.R, self.K, self.C, self.delta = (mp.mpf(SCENE[x]) for x in (s.R, s.K, s.C, s.delta))
+        self.a = mp.sqrt(2 * self.R * self.delta)
+        self.V = ratio * self.a * self.K / self.C
+        self.x_te = mp.findroot(self.pressure, (0, self.a), solver="anderson", tol=1e-90)
+        self.W = mp.quad(self.pressure, [-self.a, self.x_te])
+        self.F = mp.quad(lambda x: -x / self.R * self.pressure(x), [-self.a, self.x_te])
+        self.mu = self.F / self.W
+
+    def pressure(self, x):
+        u, rate = self.delta - x**2 / (2 * self.R), -x / self.R * self.V
+        return self.K * u + self.C * rate
+
+    def value(self, expr):
+        """Evaluate an expression in the quantities of this contact."""
+        names = {
+            s.R: self.R, s.K: self.K, s.C: self.C, s.delta: self.delta, s.V: self.V,
+            s.W: self.W, s.a: self.a, s.q: self.x_te / self.a,
+        }  # fmt: skip
+        point = {symbol: sp.Float(value, DIGITS) for symbol, value in names.items()}
+        return mp.mpf(str(sp.N(sp.sympify(expr).subs(point), DIGITS)))
+
+
+@pytest.mark.parametrize("ratio", ["0.001", "0.4", "1", "4.08", "300"])
+def test_exact_forms_against_quadrature(ratio):
+    contact = Contact(mp.mpf(ratio))
+    for expr, expected in (
+        (steady.load, contact.W),
+        (steady.friction, contact.F),
+        (steady.friction_coefficient, contact.mu),
+        (steady.trailing_edge.subs(s.l_r, contact.value(s.C * s.V / s.K)), contact.x_te),
+    ):
+        assert mp.almosteq(contact.value(expr), expected, rel_eps=mp.mpf("1e-40"))
+
+
+LOW, HIGH = "1e-6", "1e6"
+THREE_HALVES = sp.Rational(3, 2)
+critical = (asymptotics.critical_dead_weight / s.V) ** THREE_HALVES
+low = s.C * s.V / (s.K * s.a)
+ORDERS = [
+    ("x_te", s.a, LOW, low, -1, 1),
+    ("x_te", s.a**2 * s.K / (2 * s.C * s.V), HIGH, 1 / low, "-1/4", 2),
+    ("W", asymptotics.low_load, LOW, low, "3/4", 2),
+    ("F", asymptotics.low_friction, LOW, low, "-3/4", 1),
+    ("mu", asymptotics.low_coefficient, LOW, low, "-3/4", 1),
+    ("W", asymptotics.high_load, HIGH, 1 / low, "2/3", 1),
+    ("F", asymptotics.high_friction, HIGH, 1 / low, "3/8", 1),
+    ("mu", asymptotics.high_coefficient, HIGH, 1 / low, "-7/24", 1),
+    ("mu", asymptotics.high_coefficient_dead_weight, HIGH, critical, "-15/16", 1),
+    ("delta", s.W / (s.C * s.V), HIGH, critical, -1, 1),
+]
+"""Quantity, asymptote, where, small parameter, and what the derivation prints: c and k."""
+
+
+@pytest.mark.parametrize(("name", "leading", "ratio", "small", "c", "k"), ORDERS)
+def test_remainders_have_the_coefficient_and_order_that_are_printed(
+    name, leading, ratio, small, c, k
+):
+    contact = Contact(mp.mpf(ratio))
+    remainder = getattr(contact, name) / contact.value(leading) - 1
+    found = remainder / contact.value(small) ** k
+    assert float(found) == pytest.approx(float(sp.Rational(c)), rel=2e-5)
+
+
+def test_printed_remainders(by_label):
+    printed = {
+        "eq30": r"1 - \frac{l_{\mathrm{r}}}{a}",
+        "eq31": r"1 - \frac{a^{2}}{4 l_{\mathrm{r}}^{2}}",
+        "eq40": r"1 + \frac{3 l_{\mathrm{r}}^{2}}{4 a^{2}}",
+        "eq41": r"1 - \frac{3 l_{\mathrm{r}}}{4 a}",
+        "eq42": r"1 - \frac{3 l_{\mathrm{r}}}{4 a}",
+        "eq43": r"1 + \frac{2 a}{3 l_{\mathrm{r}}}",
+        "eq44": r"1 + \frac{3 a}{8 l_{\mathrm{r}}}",
+        "eq45": r"1 - \frac{7 a}{24 l_{\mathrm{r}}}",
+        "eq46": r"1 - \frac{15 \left(V^{*}\right)^{3/2}}{16 V^{3/2}}",
+        "eq49": r"1 - \frac{\left(V^{*}\right)^{3/2}}{V^{3/2}}",
+    }
+    for label, series in printed.items():
+        assert series in by_label[label].latex
+
+
+def test_asymptotes_meet_at_the_critical_velocities():
+    contact = Contact(mp.mpf("0.7"))
+    for critical_velocity, high in (
+        (asymptotics.critical_fixed, asymptotics.high_coefficient),
+        (asymptotics.critical_dead_weight, asymptotics.high_coefficient_dead_weight),
+    ):
+        contact.V = contact.value(critical_velocity)
+        one, other = contact.value(asymptotics.low_coefficient), contact.value(high)
+        assert mp.almosteq(one, other, rel_eps=mp.mpf("1e-45"))
+
+
+@pytest.mark.parametrize(
+    "products", [groups.fixed_groups, groups.dead_weight_groups, groups.transient_groups]
+)
+def test_groups_do_not_change_with_the_units(products):
+    """Rescale the units of force, of both lengths and of time by unrelated factors."""
+    factors = dict(zip(groups.BASE, (3, 7, 11, 5), strict=True))
+    scaled = {q: q * dimension.subs(factors) for q, dimension in groups.DIMENSIONS.items()}
+    for product in products:
+        ratio = product.subs(scaled, simultaneous=True) / product
+        assert sp.N(ratio, 30) == pytest.approx(1, rel=1e-25)
+
+
+def test_one_group_of_the_operation_but_two_with_one_length():
+    operation = (s.R, s.K, s.tau, s.V, s.delta)
+    matrix = groups.dimension_matrix(operation)
+    assert len(matrix.nullspace()) == 1
+    assert len(groups.isotropic(matrix).nullspace()) == 2
+
+
+def test_table_1_against_floats(by_label):
+    values = {symbol: float(value) for _, symbol, value, _ in by_label["table1"].table.rows}
+    weight, depth = 9806.65, 300.177e-6
+    drive = 0.01 / (2 * 0.01 * 300e-6) ** 0.5
+    q = (1 + drive**2) ** 0.5 - drive
+    expected = {
+        "$R$": 10,
+        "$N$": 200,
+        r"$a$ (28)": (2 * 10 * 0.3) ** 0.5,
+        r"$l_{\mathrm{r}}$ (29)": 100 * 0.1,
+        "$W = M g$": weight / 1000,
+        r"$\delta_0$": depth * 1e6,
+        r"$V \tau (K/R W)^{1/3}$": 0.01 * (1e10 / (0.01 * weight)) ** (1 / 3),
+        r"$\lambda = V \tau/a_0$": 0.01 / (2 * 0.01 * depth) ** 0.5,
+        r"$\epsilon = \delta_0/(g \tau^2)$": 1000 * depth / (weight * 0.1**2),
+        r"$\mu$ (37)": (2 * 10 * 0.3) ** 0.5 / 10
+        * (1 - q) * (q**2 - q + 4) / (2 * (q**2 - 2 * q + 3)),
+    }  # fmt: skip
+    for symbol, value in expected.items():
+        assert values[symbol] == pytest.approx(value, rel=6e-6)
+    static = tables.static_depth.subs(tables.STANDARD)
+    assert 4 / 3 * 1e10 * (0.02 * float(static)) ** 0.5 * float(static) == pytest.approx(weight)
+
+
+def test_table_2_refers_to_the_equations(by_label):
+    rows = by_label["table2"].table.rows
+    numbers = [[cell.split("(")[-1].rstrip(")") for cell in row[1:]] for row in rows]
+    assert numbers == [["47", "48"], ["42", "42"], ["45", "46"]]
