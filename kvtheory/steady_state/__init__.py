@@ -1,0 +1,1 @@
+"""Steady sliding: closed forms, quadrature, asymptotes, and which of them to use."""

@@ -1,0 +1,117 @@
+"""The commands, as a shell runs them."""
+
+import json
+
+import pytest
+from click.testing import CliRunner
+
+import kvtheory as kv
+from kvtheory.cli import main
+from kvtheory.results import STEADY_UNITS
+
+
+def run(*arguments, status=0):
+    result = CliRunner().invoke(main, arguments)
+    assert result.exit_code == status, result.output
+    assert "Traceback" not in result.output
+    return result
+
+
+@pytest.fixture
+def scene_file(tmp_path):
+    path = tmp_path / "scene.toml"
+    path.write_text(run("scene", "--support", "suspended").stdout, encoding="utf-8")
+    return str(path)
+
+
+@pytest.mark.parametrize("command", ["scene", "steady", "asymptotes", "derive"])
+def test_every_command_has_help_with_an_example(command):
+    shown = run(command, "--help").stdout
+    assert f"kvtheory {command}" in shown.split("Example")[1]
+
+
+def test_scene_checks_a_file(scene_file):
+    shown = run("scene", scene_file).stdout
+    assert "suspended support" in shown
+    assert "support_number" in shown
+    record = json.loads(run("scene", scene_file, "--json").stdout)
+    assert record["support_stiffness"] == 3e7
+    assert record["damping"] == 1e9
+    assert record["drive_number"] == pytest.approx(4.0812765)
+
+
+@pytest.mark.parametrize("method", ["exact", "quadrature", "asymptote"])
+def test_steady_prints_one_json_object_in_si(scene_file, method):
+    record = json.loads(run("steady", scene_file, "--json", "--method", method).stdout)
+    state = kv.steady(kv.load_scene(scene_file), method=method)
+    assert record == state.as_dict()
+    assert set(STEADY_UNITS) | {"model", "certificate"} == set(record)
+
+
+def test_steady_prints_a_table_in_the_papers_units():
+    lines = run("steady").stdout.splitlines()
+    depth = next(line for line in lines if line.startswith("depth")).split()
+    assert depth[1:3] == ["0.0896613", "mm"]
+
+
+def test_overrides():
+    record = json.loads(run("steady", "--json", "--set", 'drive.velocity="-50 mm/s"').stdout)
+    assert record["friction_force"] < 0
+    fixed = json.loads(run("steady", "--json", "--set", "support.kind=fixed").stdout)
+    assert fixed["depth"] == 3e-4
+
+
+def test_asymptotes():
+    shown = run("asymptotes", "--tolerance", "0.1").stdout
+    assert "use L2" in shown
+    assert "friction maximum" in shown
+    record = json.loads(run("asymptotes", "--json").stdout)
+    assert record["use"] == "exact"
+    assert record["critical_velocity"] == pytest.approx(0.0205805, rel=1e-5)
+    at_rest = json.loads(run("asymptotes", "--json", "--set", "drive.velocity=0 m/s").stdout)
+    assert at_rest["lines"][3]["value"] is None
+    assert "nan" not in run("asymptotes", "--set", "drive.velocity=0 m/s").stdout
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (["steady", "no-such-file.toml"], ["no-such-file.toml", "does not exist"]),
+        (["steady", "."], ["directory"]),
+        (["steady", "--method", "exat"], ['"exat"', 'did you mean "exact"']),
+        (
+            ["steady", "--set", "drive.velocity=fast"],
+            ["drive.velocity", '"fast"', "quantity in m/s"],
+        ),
+        (["steady", "--set", "drive.velocity=0.1"], ["drive.velocity", "no unit", "100 mm/s"]),
+        (["steady", "--set", "drive.velocity"], ["KEY=VALUE"]),
+        (["steady", "--set", "driv.velocity=1 m/s"], ["[driv]", 'did you mean "drive"']),
+        (["steady", "--set", "support.depth=1 mm"], ["support.depth", "dead-weight"]),
+        (["steady", "--set", "support.kind=floating"], ["support.kind", '"floating"', "fixed"]),
+        (["asymptotes", "--tolerance", "0"], ["tolerance"]),
+        (["asymptotes", "--tolerance", "little"], ["--tolerance", "little"]),
+        (
+            ["steady", "--set", "indenter.shape=circle", "--set", "indenter.radius=0.1 mm"],
+            ["reach"],
+        ),
+        (["scene", "--support", "floating"], ["--support", "floating"]),
+        (["scene", "--support", "fixed", "--json"], ["--support"]),
+        (["stady"], ["stady"]),
+    ],
+)
+def test_bad_input_costs_one_message_and_status_2(arguments, words):
+    result = run(*arguments, status=2)
+    assert result.stdout == ""
+    for word in words:
+        assert word in result.stderr, result.stderr
+
+
+def test_all_mistakes_of_a_scene_are_listed_once(tmp_path):
+    path = tmp_path / "scene.toml"
+    path.write_text(
+        '[indenter]\nradius = 10\n[fundation]\n[support]\nkind = "fixed"\n', encoding="utf-8"
+    )
+    message = run("steady", str(path), status=2).stderr
+    for key in ("indenter.radius", "[fundation]", "support.depth", "[drive]"):
+        assert message.count(key) == 1
+    assert message.startswith("kvtheory: 4 mistakes")

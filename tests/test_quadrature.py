@@ -1,0 +1,374 @@
+import math
+
+import mpmath
+import numpy as np
+import pytest
+from scipy.integrate import quad
+
+from kvtheory.results import STEADY_UNITS
+from kvtheory.scene.indenters import Circle, Parabola, PowerLaw, Profile, Wedge
+from kvtheory.steady_state.contact import QuadratureError
+from kvtheory.steady_state.quadrature import at_depth, at_load
+from tests import reference
+
+K, TAU, DEPTH = 1e10, 0.1, 3e-4
+SCENES = 100
+"""Random scenes for each support."""
+
+
+def scenes(support, count, seed):
+    """Draw R, K, tau, V and the support, over 24 decades of drive number and 18 of everything else."""
+    rng = np.random.default_rng(seed)
+    for _ in range(count):
+        R, stiffness, weight = (10.0 ** rng.uniform(-9, 9, 3)).tolist()
+        tau, number, kappa = (10.0 ** rng.uniform((-6, -12, -6), (6, 12, 6))).tolist()
+        V = rng.choice((-1.0, 1.0)).item() * number / tau * (R * weight / stiffness) ** (1 / 3)
+        static = (9.0 * weight**2 / (32.0 * stiffness**2 * R)) ** (1 / 3)
+        yield (R, stiffness, tau, V, *support(static, weight, kappa))
+
+
+SUPPORTS = {
+    "fixed": (at_depth, reference.at_depth, lambda static, weight, kappa: (static,)),
+    "dead-weight": (at_load, reference.at_load, lambda static, weight, kappa: (weight,)),
+    "suspended": (
+        at_load,
+        reference.at_load,
+        lambda static, weight, kappa: (weight, kappa * weight / static),
+    ),
+}
+
+
+def close(state, truth, rtol=1e-12):
+    """Hold the errors against both the tolerance and the certificate."""
+    for name, value in truth.items():
+        error = float(abs(getattr(state, name) - value))
+        assert error <= rtol * abs(value), name
+        assert error <= state.certificate.relative_error[name] * abs(value), name
+
+
+@pytest.mark.parametrize("support", SUPPORTS)
+def test_parabola_agrees_with_the_rigorous_reference(support):
+    method, truth_of, arguments = SUPPORTS[support]
+    stated = dict.fromkeys(STEADY_UNITS, 0.0)
+    for R, *rest in scenes(arguments, SCENES, seed=len(support)):
+        state, truth = method(Parabola(R), *rest), truth_of(R, *rest)
+        for name in STEADY_UNITS:
+            error = reference.relative_error(getattr(state, name), truth[name])
+            assert error <= 1e-12, name
+            assert error <= state.certificate.relative_error[name], name
+            stated[name] = max(stated[name], state.certificate.relative_error[name])
+    assert max(stated.values()) < 1e-12
+
+
+@pytest.mark.parametrize("number", [1e-12, 1e12])
+@pytest.mark.parametrize("side", [-1.0, 1.0])
+def test_ends_of_the_range(number, side):
+    R, weight = 0.01, 9806.65
+    V = side * number / TAU * (R * weight / K) ** (1 / 3)
+    state, truth = at_load(Parabola(R), K, TAU, V, weight), reference.at_load(R, K, TAU, V, weight)
+    assert all(reference.relative_error(getattr(state, n), truth[n]) < 1e-12 for n in STEADY_UNITS)
+
+
+def test_reference_encloses_its_own_integrals():
+    for R, *rest in scenes(SUPPORTS["fixed"][2], 20, seed=7):
+        rest[2] = abs(rest[2])
+        truth, (load, friction) = reference.at_depth(R, *rest), reference.integrals(R, *rest)
+        assert load.overlaps(truth["load"])
+        assert friction.overlaps(truth["friction_force"])
+        assert load.rel_accuracy_bits() > 100
+        assert friction.rel_accuracy_bits() > 100
+
+
+@pytest.mark.parametrize("V", [0.0, -0.0])
+@pytest.mark.parametrize("spring", [0.0, 3e7])
+def test_rest_is_the_symmetric_elastic_contact(V, spring):
+    state, truth = (
+        at_load(Parabola(0.01), K, TAU, V, 9806.65, spring),
+        reference.at_load(0.01, K, TAU, V, 9806.65, spring),
+    )
+    assert all(reference.relative_error(getattr(state, n), truth[n]) < 1e-14 for n in STEADY_UNITS)
+    assert state.friction_force == 0.0
+    assert state.leading_edge < 0.0
+
+
+@pytest.mark.parametrize("ratio", [1e-9, 0.2, 1.0 - 1e-9, 1.0, 1.0 + 1e-9, 5.0, 1e9])
+def test_wedge(ratio):
+    """Peeling reaches the vertex at l_r = delta/slope, where the closed form changes branch."""
+    s, b = 0.125, DEPTH / 0.125  # powers of two, so that l_r = b is met exactly
+    l_r = ratio * b
+    if ratio < 1.0:
+        edge, inside = b - l_r, l_r * s**2 * (2.0 * b - l_r)
+        load, friction = DEPTH * b + l_r**2 * s / 2.0, inside + (l_r * s) ** 2 / 2.0
+    else:
+        edge, inside = 0.0, l_r * s * DEPTH
+        load, friction = DEPTH * b / 2.0 + l_r * DEPTH, inside + DEPTH**2 / 2.0
+    state = at_depth(Wedge(s), K, 1.0, l_r, DEPTH)
+    truth = {
+        "leading_edge": -b,
+        "load": K * load,
+        "friction_force": K * friction,
+        "friction_coefficient": friction / load,
+        "peak_pressure": K * (DEPTH + l_r * s),
+        "dissipated_in_contact": inside / friction,
+    }
+    assert state.trailing_edge == pytest.approx(edge, rel=1e-14, abs=1e-14 * b)
+    close(state, truth)
+
+
+def mp_parabola_like(height, slope, half_length, l_r, depth):
+    """W/K, F/K and x_TE of a symmetric shape with 40 digits, from the definitions."""
+    h, dh = (lambda x: height(abs(x))), (lambda x: mpmath.sign(x) * slope(abs(x)))
+    a = half_length
+    x_te = mpmath.findroot(
+        lambda x: depth - h(x) - l_r * dh(x), (0, a), solver="bisect", maxsteps=250, verify=False
+    )
+
+    def pressure(x):
+        return depth - h(x) - l_r * dh(x)
+
+    pieces = [-a, 0, x_te]
+    load = mpmath.quad(pressure, pieces)
+    friction = mpmath.quad(lambda x: -dh(x) * pressure(x), pieces)
+    return {
+        "leading_edge": -a,
+        "trailing_edge": x_te,
+        "load": K * load,
+        "friction_force": K * friction,
+        "friction_coefficient": friction / load,
+    }
+
+
+@pytest.mark.parametrize("n", [1.25, 1.5, 3.0, 8.0])
+@pytest.mark.parametrize("l_r", [1e-7, 1e-3, 1.0])
+def test_power_law(n, l_r):
+    L = 0.01
+    with mpmath.workdps(40):
+        length, exponent, depth = mpmath.mpf(L), mpmath.mpf(n), mpmath.mpf(DEPTH)
+        truth = mp_parabola_like(
+            lambda x: x**exponent / (exponent * length ** (exponent - 1)),
+            lambda x: (x / length) ** (exponent - 1),
+            (exponent * depth * length ** (exponent - 1)) ** (1 / exponent),
+            mpmath.mpf(l_r),
+            depth,
+        )
+        close(at_depth(PowerLaw(L, n), K, 1.0, l_r, DEPTH), truth)
+
+
+@pytest.mark.parametrize("fraction", [0.01, 0.5, 0.9])
+@pytest.mark.parametrize("l_r", [1e-6, 0.01, 10.0])
+def test_circle(fraction, l_r):
+    R, depth = 0.01, fraction * 0.01
+    with mpmath.workdps(40):
+        radius, d = mpmath.mpf(R), mpmath.mpf(depth)
+        truth = mp_parabola_like(
+            lambda x: radius - mpmath.sqrt(radius**2 - x**2),
+            lambda x: x / mpmath.sqrt(radius**2 - x**2),
+            mpmath.sqrt(2 * radius * d - d**2),
+            mpmath.mpf(l_r),
+            d,
+        )
+        close(at_depth(Circle(R), K, 1.0, l_r, depth), truth)
+
+
+@pytest.mark.parametrize("q", [0.999, 0.5, 0.01])
+def test_circle_departs_from_the_parabola_with_the_square_of_the_half_length(q):
+    """To leading order in a/R, the circle is the parabola with x^4/(8 R^3) added to it."""
+    l = (1.0 - q * q) / (2.0 * q)
+    w = (1.0 + q) ** 2 * (q * q - 2.0 * q + 3.0) / (6.0 * q)
+    phi = (1.0 - q) * (1.0 + q) ** 2 * (q * q - q + 4.0) / (12.0 * q)
+    expected = {
+        "load": -((1.0 + q**5) / 20.0 + l * q**4 / 4.0) / w,
+        "friction_force": 0.15 * l * (1.0 + q**5) / phi,
+    }
+    slopes = np.array([0.04, 0.02, 0.01])
+    departures = {name: [] for name in expected}
+    for slope in slopes:
+        depth = 0.5 * slope**2  # R = 1
+        circle, parabola = (
+            at_depth(shape(1.0), K, 1.0, l * slope, depth) for shape in (Circle, Parabola)
+        )
+        for name, values in departures.items():
+            values.append(getattr(circle, name) / getattr(parabola, name) - 1.0)
+    for name, values in departures.items():
+        order, _ = np.polyfit(np.log(slopes), np.log(np.abs(values)), 1)
+        assert order == pytest.approx(2.0, abs=2e-3), name
+        assert values[-1] / slopes[-1] ** 2 == pytest.approx(expected[name], rel=1e-3), name
+
+
+@pytest.mark.parametrize("V", [0.0, 0.01, -3.0])
+def test_equal_shapes_have_equal_answers(V):
+    R = 0.01
+    states = [
+        at_load(shape, K, TAU, V, 9806.65, 3e7)
+        for shape in (
+            Parabola(R),
+            PowerLaw(R, 2.0),
+            Profile(lambda x: x * x / (2.0 * R), lambda x: x / R),
+        )
+    ]
+    for name in STEADY_UNITS:
+        values = [getattr(state, name) for state in states]
+        assert values == pytest.approx([values[0]] * 3, rel=2e-14), name
+
+
+def lopsided(sign):
+    """A parabola with a cubic term: blunter on one side than on the other."""
+    c = 40.0 * sign
+    return Profile(lambda x: (50.0 + c * x) * x * x, lambda x: (100.0 + 3.0 * c * x) * x, reach=0.4)
+
+
+@pytest.mark.parametrize("V", [0.0, 1e-4, 0.1, 10.0])
+def test_reversed_drive_is_the_mirror_image(V):
+    forward = at_load(lopsided(1.0), K, TAU, V, 1e6)
+    mirrored = at_load(lopsided(-1.0), K, TAU, -V, 1e6)
+    other_way = at_load(lopsided(1.0), K, TAU, -V, 1e6)
+    for name in STEADY_UNITS:
+        if V == 0.0 and name.endswith("edge"):
+            continue
+        odd = name in {"leading_edge", "trailing_edge", "friction_force", "friction_coefficient"}
+        assert getattr(mirrored, name) == (-1.0 if odd else 1.0) * getattr(forward, name), name
+    if V == 0.0:
+        assert mirrored.leading_edge == pytest.approx(-forward.trailing_edge, rel=1e-14)
+    else:
+        assert abs(other_way.friction_force / forward.friction_force + 1.0) > 1e-6
+
+
+def test_energy_identity_is_the_integral_of_the_friction():
+    for shape, V in ((Parabola(0.01), 0.1), (Circle(0.01), 0.02), (PowerLaw(0.01, 3.0), -0.3)):
+        state = at_depth(shape, K, TAU, V, DEPTH)
+
+        def drag(x, shape=shape, signed_length=V * TAU):
+            slope = shape.slope(x)
+            return -slope * K * (DEPTH - shape.height(x) - signed_length * slope)
+
+        edges = sorted((state.leading_edge, state.trailing_edge))
+        direct, _ = quad(drag, *edges, epsabs=0.0, epsrel=1e-12)
+        assert state.friction_force == pytest.approx(direct, rel=1e-11)
+
+
+def bent(declared):
+    """Flanks that become steeper at |x| = 1 mm."""
+    b = 1e-3
+    return Profile(
+        lambda x: 0.1 * abs(x) + 0.3 * max(abs(x) - b, 0.0),
+        lambda x: math.copysign(0.1 if abs(x) < b else 0.4, x),
+        kinks=(-b, b) if declared else (),
+    )
+
+
+@pytest.mark.parametrize("V", [1e-3, 5e-3, 0.2])
+def test_kinks(V):
+    """The trailing edge lies beyond the kink, on it and before it."""
+    s, t, b, l_r = 0.1, 0.4, 1e-3, V * TAU
+    a = b + (DEPTH - s * b) / t
+    x_te = a - l_r if a - l_r > b else b if DEPTH / s - l_r > b else max(DEPTH / s - l_r, 0.0)
+    h = s * x_te + (t - s) * max(x_te - b, 0.0)
+    u, area = DEPTH - h, (DEPTH + DEPTH - s * b) * b / 2.0 + (DEPTH - s * b) ** 2 / (2.0 * t)
+    inside = t * t * (a - b) + s * s * b + s * s * min(x_te, b) + t * t * max(x_te - b, 0.0)
+    behind = min(x_te, b) * DEPTH - s * min(x_te, b) ** 2 / 2.0
+    if x_te > b:
+        behind += (x_te - b) * (DEPTH - s * b + u) / 2.0
+    state = at_depth(bent(declared=True), K, TAU, V, DEPTH)
+    assert state.leading_edge == pytest.approx(-a, rel=1e-14)
+    assert state.trailing_edge == pytest.approx(x_te, rel=1e-13)
+    assert state.load == pytest.approx(K * (area + behind + l_r * u), rel=1e-13)
+    assert state.friction_force == pytest.approx(K * (u * u / 2.0 + l_r * inside), rel=1e-13)
+    peak = max(DEPTH + l_r * s, DEPTH - s * b + l_r * t)
+    assert state.peak_pressure == pytest.approx(K * peak, rel=1e-12)
+
+
+@pytest.mark.parametrize(("V", "reason"), [(1e-3, "slope"), (1e-2, "pressure"), (0.2, "slope")])
+def test_kink_that_is_not_declared(V, reason):
+    with pytest.raises(QuadratureError, match=f"the {reason}.* jumps .*`kinks`"):
+        at_depth(bent(declared=False), K, TAU, V, DEPTH)
+
+
+def ripple(amplitude, length, radius=0.01):
+    """A parabola with waves on it."""
+    k = 2.0 * math.pi / length
+    return Profile(
+        lambda x: x * x / (2.0 * radius) + amplitude * (1.0 - math.cos(k * x)),
+        lambda x: x / radius + amplitude * k * math.sin(k * x),
+    )
+
+
+def plain(x):
+    return x * x / 0.02
+
+
+FAILURES = {
+    "height is nan": (
+        Profile(lambda x: math.nan if x > 1e-3 else plain(x), lambda x: x / 0.01),
+        0.1,
+        "nan at x = ",
+    ),
+    "slope is nan": (
+        Profile(plain, lambda x: math.nan if 1e-4 < x < 2e-4 else x / 0.01),
+        0.1,
+        "nan at x = ",
+    ),
+    "outside the domain of a function": (
+        Profile(lambda x: 0.01 - math.sqrt(1e-4 - x * x) if x < 1e-3 else math.log(-x), plain),
+        0.1,
+        "shape failed at x",
+    ),
+    "wrong slope": (Profile(plain, lambda x: x / 0.011), 0.1, "not the derivative"),
+    "noise": (
+        Profile(plain, lambda x: x / 0.01 * (1.0 + 1e-6 * math.sin(1e14 * x))),
+        0.1,
+        "quadrature from",
+    ),
+    "contacts side by side": (
+        Profile(lambda x: 1e-3 * math.sin(x / 1e-3) ** 2, lambda x: math.sin(x / 5e-4)),
+        0.1,
+        "more than one contact: the indenter reaches below",
+    ),
+    "lift-off between waves": (ripple(2e-5, 5e-4), 0.1, "before the trailing edge"),
+    "contact after relaxation": (ripple(2e-5, 1e-3), 0.01, "meets the indenter again"),
+    "reach too short": (
+        Profile(plain, lambda x: x / 0.01, reach=1e-3),
+        0.1,
+        "edge lies beyond the indenter's reach",
+    ),
+    "circle too deep": (Circle(2e-4), 0.1, "beyond the indenter's reach"),
+    "circle almost too deep": (Circle(DEPTH * (1.0 + 1e-6)), 0.1, "quadrature from"),
+}
+
+
+@pytest.mark.parametrize("name", FAILURES)
+def test_failure_is_an_error_with_its_reason(name):
+    indenter, V, reason = FAILURES[name]
+    with pytest.raises(QuadratureError, match=reason):
+        at_depth(indenter, K, TAU, V, DEPTH)
+
+
+def test_weight_that_the_reach_cannot_carry():
+    with pytest.raises(QuadratureError, match="static depth lies beyond"):
+        at_load(Circle(1e-3), K, TAU, 0.1, 1e6)
+
+
+@pytest.mark.parametrize(
+    ("changed", "name"),
+    [
+        ({"stiffness": 0.0}, "stiffness"),
+        ({"weight": -1.0}, "weight"),
+        ({"weight": math.nan}, "weight"),
+        ({"spring": -1.0}, "spring"),
+        ({"retardation_time": -1.0}, "retardation_time"),
+        ({"velocity": math.inf}, "velocity"),
+    ],
+)
+def test_bad_input_names_the_argument(changed, name):
+    scene = {"stiffness": K, "retardation_time": TAU, "velocity": 0.1, "weight": 9806.65}
+    with pytest.raises(ValueError, match=f"`{name}`"):
+        at_load(Parabola(0.01), **(scene | changed))
+
+
+def test_springs_join_the_two_limits():
+    soft, stiff = (at_load(Parabola(0.01), K, TAU, 0.1, 9806.65, k) for k in (1e-6, 1e24))
+    free, rest = (at_load(Parabola(0.01), K, TAU, V, 9806.65) for V in (0.1, 0.0))
+    assert soft.depth == pytest.approx(free.depth, rel=1e-12)
+    assert stiff.depth == pytest.approx(rest.depth, rel=1e-12)
+    assert stiff.load == pytest.approx(
+        at_depth(Parabola(0.01), K, TAU, 0.1, rest.depth).load, rel=1e-12
+    )
