@@ -1,0 +1,29 @@
+"""Draw every figure: `python -m figures [-o DIRECTORY]`."""
+
+import argparse
+import time
+from importlib import import_module
+from pathlib import Path
+
+from figures import drawing
+
+FIGURES = ("fig5", "fig6", "table2", "energy_split", "asymptote_error", "circle_error")
+
+
+def main() -> None:
+    """Draw each figure and say how long it took."""
+    parser = argparse.ArgumentParser(prog="python -m figures", description=__doc__)
+    parser.add_argument(
+        "-o", "--output", type=Path, default=drawing.OUTPUT, help="default: %(default)s"
+    )
+    directory = parser.parse_args().output
+    for number, name in enumerate(FIGURES, start=1):
+        start = time.perf_counter()
+        script = import_module(f"figures.{name}")
+        paths = drawing.produce(name, script.compute, script.draw, directory)
+        seconds = time.perf_counter() - start
+        print(f"[{number}/{len(FIGURES)}] {paths[0].with_suffix('')}  {seconds:.1f} s", flush=True)
+
+
+if __name__ == "__main__":
+    main()

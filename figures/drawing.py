@@ -1,0 +1,76 @@
+"""What the figure scripts share: the command line, and saving a picture with its data."""
+
+import argparse
+import csv
+import os
+from collections.abc import Callable, Mapping
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import matplotlib as mpl
+import numpy as np
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+
+from kvtheory.plots import STYLE
+
+Columns = Mapping[str, Any]
+FORMATS = {
+    "svg": {"metadata": {"Date": None}},
+    "pdf": {"metadata": {"CreationDate": None}},
+    "png": {},
+}
+OUTPUT = Path("paper/figures")
+
+
+def figure(width: float, height: float) -> Figure:
+    """Return an empty figure; sizes in inches of the printed page."""
+    drawn = Figure(figsize=(width, height), layout="constrained")
+    FigureCanvasAgg(drawn)
+    return drawn
+
+
+def produce(
+    name: str, compute: Callable[[], Any], draw: Callable[[Any], Figure], directory: Path
+) -> list[Path]:
+    """Compute, draw and save one figure: SVG, PDF and PNG, and the data as CSV."""
+    with mpl.rc_context({**STYLE}):
+        data = compute()
+        drawn = draw(data)
+        directory.mkdir(parents=True, exist_ok=True)
+        paths = [directory / f"{name}.{suffix}" for suffix in FORMATS]
+        for path, options in zip(paths, FORMATS.values(), strict=True):
+            settings: dict[str, Any] = {"format": path.suffix[1:], **options}
+            _replace(path, partial(drawn.savefig, **settings))
+    table = directory / f"{name}.csv"
+    _replace(table, lambda part: _write_csv(part, data.columns))
+    return [*paths, table]
+
+
+def run(name: str, compute: Callable[[], Any], draw: Callable[[Any], Figure]) -> None:
+    """Serve as the command line of one script."""
+    parser = argparse.ArgumentParser(description=f"Draw {name} with its data as CSV.")
+    parser.add_argument(
+        "-o", "--output", type=Path, default=OUTPUT, help="directory (default: %(default)s)"
+    )
+    for path in produce(name, compute, draw, parser.parse_args().output):
+        print(path)
+
+
+def _replace(path: Path, write: Callable[[Path], Any]) -> None:
+    """Write to a temporary name beside `path` and rename, so that no half file is ever seen."""
+    part = path.with_name(f".{path.name}.part")
+    try:
+        write(part)
+        os.replace(part, path)
+    finally:
+        part.unlink(missing_ok=True)
+
+
+def _write_csv(path: Path, columns: Columns) -> None:
+    arrays = [np.asarray(column) for column in columns.values()]
+    with path.open("w", newline="", encoding="utf-8") as file:
+        writer = csv.writer(file)
+        writer.writerow(columns)
+        writer.writerows(zip(*(array.tolist() for array in arrays), strict=True))

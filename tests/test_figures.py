@@ -1,0 +1,125 @@
+"""The figure scripts run, write what they promise, and plot what they computed."""
+
+import csv
+import importlib
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import kvtheory as kv
+from figures import drawing
+from figures.__main__ import FIGURES
+from kvtheory.plots import plot_asymptote_errors, plot_steady
+
+ROOT = Path(__file__).parent.parent
+
+
+@pytest.fixture(scope="module")
+def made(tmp_path_factory):
+    """Every figure, drawn once: its data, its axes and its directory."""
+    directory = tmp_path_factory.mktemp("figures")
+    result = {}
+    for name in FIGURES:
+        script = importlib.import_module(f"figures.{name}")
+        data = script.compute()
+        paths = drawing.produce(name, lambda data=data: data, script.draw, directory)
+        result[name] = data, script.draw(data), paths
+    return result
+
+
+@pytest.mark.parametrize("name", FIGURES)
+def test_each_figure_comes_as_vector_and_png_with_its_data(made, name):
+    data, _, paths = made[name]
+    assert [path.name for path in paths] == [
+        f"{name}.{kind}" for kind in ("svg", "pdf", "png", "csv")
+    ]
+    assert paths[0].read_text(encoding="utf-8").startswith("<?xml")
+    assert paths[1].read_bytes().startswith(b"%PDF")
+    assert paths[2].read_bytes().startswith(b"\x89PNG")
+    with paths[3].open(newline="", encoding="utf-8") as file:
+        head, *rows = csv.reader(file)
+    assert head == list(data.columns)
+    assert len(rows) == len(next(iter(data.columns.values())))
+    assert all(cell not in ("", "nan", "inf") for row in rows for cell in row)
+    assert not list(paths[0].parent.glob(".*"))
+
+
+def test_fig5_shows_exact_lines_under_quadrature_points(made):
+    data, drawn, _ = made["fig5"]
+    assert len(drawn.axes) == 8
+    for key, points in data.points.items():
+        exact = data.curves[key]
+        for name in ("depth", "load", "friction_force", "friction_coefficient"):
+            assert getattr(points, name) == pytest.approx(getattr(exact, name)[::20], rel=1e-12)
+    line = drawn.axes[-1].get_lines()[0]
+    assert np.array_equal(line.get_ydata(), data.curves["dead-weight", 0.01].friction_coefficient)
+
+
+def test_fig6_points_of_random_scenes_fall_on_the_master_curves(made):
+    data, _, _ = made["fig6"]
+    unit = {"indenter.radius": 1.0, "foundation.stiffness": 1.0, "foundation.retardation_time": 1.0}
+    for support, grip in (("fixed", "support.depth"), ("dead-weight", "support.mass")):
+        numbers, points = data.points[support]
+        over = {**unit, grip: 1.0, "drive.velocity": numbers}
+        if support == "dead-weight":
+            over["support.gravity"] = 1.0
+        curve = kv.steady(kv.Scene.table1(support), over=over).friction_coefficient
+        assert points == pytest.approx(curve, rel=1e-12)
+
+
+def test_table2_carries_the_papers_coefficients(made):
+    columns = made["table2"][0].columns
+    alpha, R, K, C, delta, W = 2 * np.sqrt(2) / 3, 0.01, 1e10, 1e9, 3e-4, 9806.65
+    fixed = [alpha * K * np.sqrt(R * delta) / C, C * 1e-3 / (R * K), alpha * np.sqrt(delta / R)]
+    assert columns["fixed"] == pytest.approx(fixed, rel=1e-13)
+    critical = alpha ** (2 / 3) * np.cbrt(R * K**2 * W) / C
+    movable = [critical, C * 1e-3 / (R * K), alpha * np.sqrt(W / (R * C * 1e-3))]
+    assert columns["dead-weight"] == pytest.approx(movable, rel=1e-13)
+
+
+def test_energy_split_has_its_minimum_at_four_fifths(made):
+    data, _, _ = made["energy_split"]
+    assert data.points == pytest.approx(data.exact[::15], rel=1e-12)
+    assert data.exact.min() == pytest.approx(0.8, abs=1e-4)
+
+
+def test_circle_tends_to_the_leading_term_with_the_fourth_power(made):
+    data, _, _ = made["circle_error"]
+    slopes = np.asarray(next(iter(data.columns.values())))
+    small = (slopes > 0.02) & (slopes < 0.2)
+    for measured, leading in zip(data.measured, data.leading, strict=True):
+        rest = np.log(np.abs(measured - leading)[small])
+        order = np.polyfit(np.log(slopes[small]), rest, 1)[0]
+        assert order == pytest.approx(4.0, abs=0.15)
+
+
+def test_plot_functions_return_their_artists(made):
+    ax = made["asymptote_error"][1].axes[0]
+    V = np.array([0.01, 0.1])
+    (line,) = plot_steady(ax, V, kv.steady(over={"drive.velocity": V}), "load")
+    assert line.get_xdata().tolist() == [10.0, 100.0]
+    assert line.get_ydata() == pytest.approx([9.80665, 9.80665])
+    report = kv.asymptotes(over={"drive.velocity": V})
+    artists = plot_asymptote_errors(ax, report, {"L1": {}, "L2": {}})
+    assert len(artists) == 2
+    assert artists[0].get_ydata() == pytest.approx(np.abs(report.lines[0].relative_error))
+
+
+def test_a_script_runs_alone(tmp_path):
+    done = subprocess.run(
+        [sys.executable, "-W", "error", "-m", "figures.table2", "-o", str(tmp_path)],
+        check=True, capture_output=True, text=True, cwd=ROOT,
+    )  # fmt: skip
+    assert str(tmp_path / "table2.png") in done.stdout
+
+
+def test_a_failed_picture_leaves_nothing_behind(tmp_path):
+    def draw(data):
+        raise RuntimeError("no ink")
+
+    with pytest.raises(RuntimeError, match="no ink"):
+        drawing.produce("broken", lambda: None, draw, tmp_path / "out")
+    assert not list(tmp_path.rglob("*.*"))
