@@ -140,5 +140,5 @@ def _double_precision() -> Iterator[None]:
     try:
         with np.errstate(over="raise", invalid="raise", divide="raise"):
             yield
-    except FloatingPointError as error:
+    except (FloatingPointError, OverflowError, ZeroDivisionError) as error:
         raise ValueError(f"the scene leaves the range of double precision: {error}") from None

@@ -270,7 +270,7 @@ def _shown(value: float, unit: str) -> tuple[str, str]:
 
 
 def _text(value: float, unit: str) -> str:
-    return " ".join(_shown(value, unit)).rstrip()
+    return "-" if math.isnan(value) else " ".join(_shown(value, unit)).rstrip()
 
 
 def _range(low: float, high: float) -> str:

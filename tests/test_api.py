@@ -60,6 +60,9 @@ def test_mistakes_are_named():
         kv.steady(over={"drive.velocity": [0.1, np.nan]})
     with pytest.raises(ValueError, match="double precision"):
         kv.steady(over={"support.mass": 1e308, "support.gravity": 1e308})
+    for method in ("exact", "quadrature"):
+        with pytest.raises(ValueError, match="double precision"):
+            kv.steady(over={"drive.velocity": 1e300}, method=method)
     for tolerance in (0.0, -1.0, 2.0, float("nan")):
         with pytest.raises(ValueError, match="tolerance"):
             kv.asymptotes(tolerance=tolerance)
