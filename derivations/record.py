@@ -1,9 +1,9 @@
-"""What a derivation is once every step of it has been checked: LaTeX and words, ready to print.
+r"""What a derivation is once every step of it has been checked: LaTeX and words, ready to print.
 
 The engine (`derivations.step`) makes these records and the renderers (`derivations.render`)
 print them; neither knows the other.
 
-Text fields are plain English in which mathematics stands between dollar signs (``$l_r = V\\tau$``);
+Text fields are plain English in which mathematics stands between dollar signs (``$l_r = V\tau$``);
 LaTeX fields are mathematics alone, without dollar signs and without alignment marks.
 """
 
@@ -22,6 +22,8 @@ class Step:
     right: str
     reason: str
     status: str
+    source: str = ""
+    """Label of the derivation that a recalled step comes from."""
 
     @property
     def latex(self) -> str:

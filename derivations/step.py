@@ -107,9 +107,8 @@ class Proof:
         self._rule(lhs, rhs)
         if label not in self._uses:
             self._uses.append(label)
-        name = source._title if source.equation is None else f"Eq. ({source.equation})"
         shown: Shown = {"left": step.left, "right": step.right}
-        self._record(lhs, "=", rhs, reason or name, step.status, shown)
+        self._record(lhs, "=", rhs, reason, step.status, shown, source=label)
 
     def equal(self, lhs: sp.Expr, rhs: sp.Expr, reason: str, **shown: Unpack[Shown]) -> None:
         """Prove an identity."""
@@ -313,10 +312,11 @@ class Proof:
         shown: Shown,
         *,
         exact: bool = True,
+        source: str = "",
     ) -> None:
         """Keep a step; an exact one is an equality that later proofs may use as a rule."""
         left, right = shown.get("left", tex(lhs)), shown.get("right", tex(rhs))
-        step = Step(left, relation, right, reason, status)
+        step = Step(left, relation, right, reason, status, source)
         key = sp.sympify(lhs), sp.sympify(rhs)
         self._steps.append(step)
         self._known[key] = step

@@ -1,0 +1,223 @@
+"""Derivations as one HTML page: MathML, no script, nothing loaded from elsewhere."""
+
+import re
+from collections.abc import Collection, Iterable, Mapping, Sequence
+from html import escape
+
+from latex2mathml.converter import convert
+
+from derivations.record import Derivation, Table
+from derivations.render import frame
+from derivations.render.pdf import RenderError
+from derivations.render.style import STYLE
+from derivations.render.text import (
+    Given,
+    Line,
+    Piece,
+    blocks,
+    by_section,
+    citation,
+    number,
+    pieces,
+    relations,
+    remark,
+    sentence,
+)
+
+_CORRECTIONS = (
+    (re.compile("<mi>&#x0007E;</mi>"), "<mo>&#x0223C;</mo>"),  # \sim
+    # A browser sets a single letter in italics. Upright are the capital Greek ones and, where the
+    # converter writes a Latin letter as a character reference, that one (\mathrm).
+    (re.compile(r"<mi>(&#x00(?:0[4-7]|39|3A)[0-9A-F];)</mi>"), r'<mi mathvariant="normal">\1</mi>'),
+    (re.compile("<mi>(&#x027F[8-A];)</mi>"), r"<mo>\1</mo>"),  # \iff and its halves
+    (re.compile("<mo>(&#x0221E;)</mo>"), r"<mi>\1</mi>"),  # \infty
+    (re.compile("<mo>(/|&#x0002F;)</mo>"), r'<mo lspace="0" rspace="0">\1</mo>'),
+    # TeX sets a sign after a relation, a fence or a comma tight, and a function name apart.
+    (
+        re.compile(r"(<mo[^>]*>&#x0(?:003[CDE]|226[45]|2192|0028|005B|002C);</mo>)<mo>&#x02212;"),
+        r'\1<mo form="prefix">&#x02212;',
+    ),
+    (
+        re.compile("<m[io]>([a-z]{3,})</m[io]>(?=<mo|<mrow><mrow><mo)"),
+        r'<mo lspace="0.167em" rspace="0">\1</mo>',
+    ),
+    (
+        re.compile("<m[io]>([a-z]{3,})</m[io]>"),
+        r'<mo lspace="0.167em" rspace="0.167em">\1</mo>',
+    ),
+    (re.compile("</mfrac><mfrac>"), '</mfrac><mspace width="0.167em" /><mfrac>'),
+    (re.compile(' xmlns="[^"]*"'), ""),  # HTML needs none
+)
+"""What latex2mathml writes and what it should."""
+
+_PUNCTUATED = re.compile(r"(<math(?:(?!</math>).)*</math>[.,;:)]+)")
+"""A formula and the punctuation that must stay on its line."""
+
+_LOW_FENCES = re.compile(
+    r"\\left([(\[])((?:(?!\\left|\\right|\\frac|\\int|\\sqrt|\\sum).)*)\\right([)\]])"
+)
+"""Fences around nothing tall: a browser puts gaps beside fences that may stretch."""
+
+
+def document(derivations: Sequence[Derivation], command: str = "") -> str:
+    """Return the complete page."""
+    labels = {derivation.label for derivation in derivations}
+    sections = by_section(derivations)
+    body = "\n".join(
+        [
+            _header(labels, command),
+            _contents(sections),
+            "<main>",
+            '<section id="nomenclature"><h2>Nomenclature</h2>',
+            _table(Table(frame.NOMENCLATURE_HEADS, frame.NOMENCLATURE), labels),
+            "</section>",
+            *(
+                _section(index, section, members, derivations)
+                for index, (section, members) in enumerate(sections.items(), start=1)
+            ),
+            "</main>",
+            f'<footer id="source"><h2>Source</h2><p>{escape(frame.SOURCE)} '
+            f'<a href="https://doi.org/{frame.DOI}">doi: {frame.DOI}</a></p></footer>',
+        ]
+    )
+    return (
+        f'<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
+        '<meta name="viewport" content="width=device-width, initial-scale=1">\n'
+        f"<title>{escape(frame.TITLE)}</title>\n<style>\n{STYLE}</style>\n</head>\n"
+        f"<body>\n{body}\n</body>\n</html>\n"
+    )
+
+
+def mathml(latex: str, display: str = "inline") -> str:
+    r"""Return the mathematics as MathML.
+
+    >>> mathml(r"l_{\mathrm{r}}")[:47]
+    '<math display="inline"><mrow><msub><mi>l</mi><m'
+
+    Raises
+    ------
+    RenderError
+        For a macro that the converter does not know; it would print its name.
+    """
+    found = str(convert(_with_low_fences(latex), display=display))
+    unknown = re.search(r"<m[ion]>(\\[^<]*)", found)
+    if unknown:
+        raise RenderError(f"no MathML for the macro {unknown[1]} in {latex}")
+    for wrong, right in _CORRECTIONS:
+        found = wrong.sub(right, found)
+    return found
+
+
+def _with_low_fences(latex: str) -> str:
+    lowered, changes = _LOW_FENCES.subn(r"\1\2\3", latex)
+    return _with_low_fences(lowered) if changes else lowered
+
+
+def _header(labels: Collection[str], command: str) -> str:
+    paragraphs = [f"<p>{_text(paragraph, labels)}</p>" for paragraph in frame.INTRODUCTION]
+    meanings = [
+        f"<dt>{_badge(status)}</dt><dd>{escape(meaning)}</dd>"
+        for status, meaning in frame.VOCABULARY.items()
+    ]
+    made = f"<p>Made by <code>{escape(command)}</code>.</p>" if command else ""
+    return "\n".join(
+        [
+            f"<header><h1>{escape(frame.TITLE)}</h1>",
+            *paragraphs,
+            f'<dl class="vocabulary">{"".join(meanings)}</dl>{made}</header>',
+        ]
+    )
+
+
+def _contents(sections: dict[str, list[Derivation]]) -> str:
+    entries = ['<li><a href="#nomenclature">Nomenclature</a></li>']
+    for index, (section, members) in enumerate(sections.items(), start=1):
+        links = "".join(
+            f'<li><a href="#{each.label}"><span class="number">({number(each.label)})</span> '
+            f"{_text(each.title, ())}</a></li>"
+            for each in members
+        )
+        entries.append(
+            f'<li><a href="#section-{index}">{_text(section, ())}</a><ul>{links}</ul></li>'
+        )
+    entries.append('<li><a href="#source">Source</a></li>')
+    return f'<nav aria-label="Contents"><h2>Contents</h2><ul>{"".join(entries)}</ul></nav>'
+
+
+def _section(
+    index: int, section: str, members: Sequence[Derivation], everything: Sequence[Derivation]
+) -> str:
+    articles = [_article(each, everything) for each in members]
+    heading = f'<section id="section-{index}"><h2>{_text(section, ())}</h2>'
+    return "\n".join([heading, *articles, "</section>"])
+
+
+def _article(derivation: Derivation, everything: Sequence[Derivation]) -> str:
+    labels = {each.label for each in everything}
+    users = [each.label for each in everything if derivation.label in each.uses]
+    parts = [
+        f'<article id="{derivation.label}">',
+        f'<h3><a href="#{derivation.label}">({number(derivation.label)})</a> '
+        f"{_text(derivation.title, ())}</h3>",
+        f"<p>{_text(derivation.text, labels)}</p>" if derivation.text else "",
+        '<ol class="steps">',
+        *(_block(block, labels) for block in blocks(derivation)),
+        "</ol>",
+        _table(derivation.table, labels) if derivation.table else "",
+        _related({"Rests on": derivation.uses, "Used by": users}, labels),
+        "</article>",
+    ]
+    return "\n".join(part for part in parts if part)
+
+
+def _block(block: Given | Line, labels: Collection[str]) -> str:
+    if isinstance(block, Given):
+        return f'<li class="given">{_printed(sentence(block, labels))}</li>'
+    shown = f'<span class="number">({block.tag})</span>' if block.tag else ""
+    chain = "".join(mathml(each, "block") for each in relations(block.step.latex))
+    return (
+        f'<li class="{"result" if block.tag else "step"}">'
+        f'<div class="line"><div class="scroll">{chain}</div>'
+        f'<p class="reason"><span>{_printed(remark(block.step, labels))}</span>'
+        f"{_badge(block.step.status)}</p></div>{shown}</li>"
+    )
+
+
+def _related(related: Mapping[str, Collection[str]], labels: Collection[str]) -> str:
+    lists = [
+        f"<span>{words} {', '.join(_printed([citation(each, labels)]) for each in listed)}</span>"
+        for words, listed in related.items()
+        if listed
+    ]
+    return f'<p class="related">{" ".join(lists)}</p>' if lists else ""
+
+
+def _badge(status: str) -> str:
+    return f'<span class="status {status}">{escape(status)}</span>'
+
+
+def _table(table: Table, labels: Collection[str]) -> str:
+    heads = "".join(f'<th scope="col">{_text(head, labels)}</th>' for head in table.heads)
+    rows = "".join(
+        f"<tr>{''.join(f'<td>{_text(cell, labels)}</td>' for cell in row)}</tr>\n"
+        for row in table.rows
+    )
+    return (
+        f'<div class="scroll"><table><thead><tr>{heads}</tr></thead>\n'
+        f"<tbody>{rows}</tbody></table></div>"
+    )
+
+
+def _text(text: str, labels: Collection[str]) -> str:
+    return _printed(pieces(text, labels))
+
+
+def _printed(content: Iterable[Piece]) -> str:
+    printed = {
+        "words": lambda piece: escape(piece.content),
+        # A browser breaks a line between formulas, never within one.
+        "math": lambda piece: "".join(map(mathml, relations(piece.content))),
+        "link": lambda piece: f'<a href="#{piece.target}">{escape(piece.content)}</a>',
+    }
+    shown = "".join(printed[piece.kind](piece) for piece in content)
+    return _PUNCTUATED.sub(r'<span class="unbroken">\1</span>', shown)

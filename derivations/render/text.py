@@ -1,0 +1,181 @@
+r"""What the LaTeX and the HTML renderers share: how the text and the order of a record are read.
+
+>>> for piece in pieces(r"by Eq. (27), $\mu > 0$", {"eq27"}):
+...     print([piece.kind, piece.content, piece.target])
+['words', 'by Eq. ', '']
+['link', '(27)', 'eq27']
+['words', ', ', '']
+['math', '\\mu > 0', '']
+"""
+
+import re
+from collections.abc import Collection, Iterator, Sequence
+from dataclasses import dataclass
+from itertools import groupby
+
+from derivations.record import Derivation, Step
+
+_REFERENCE = re.compile(r"\((?P<eq>\d+)\)|\bF(?P<F>\d+)\b|\bTable (?P<table>\d+)")
+"""How text names a derivation; the name of the group and the digits make its label."""
+
+_TOKEN = re.compile(
+    r"(?P<open>(?<!\\)\{|\\left(?![a-z]))|(?P<close>(?<!\\)\}|\\right(?![a-z]))"
+    r"|=|<|>|\\(?:le|ge|lt|gt|approx|sim|equiv)(?![a-z])"
+)
+"""What opens a group, what closes it, and a relation."""
+
+_GLYPH = re.compile(r"\\(?!left|right|frac|sqrt|math|text|[,;:! ])[A-Za-z]+|[^\s{}_^\\]")
+_MOST_GLYPHS = 60
+"""A formula of more glyphs would fill a line of text."""
+
+_GROUPS = r"(?:[^{}]|\{(?:[^{}]|\{[^{}]*\})*\})*"
+_TALL = re.compile(rf"\\(?:int|sum|begin)(?![a-z])|\\frac\{{{_GROUPS}(?:\}}\{{{_GROUPS})?\\frac")
+"""An integral, a sum, cases or a fraction in a fraction: too tall for a line of text."""
+
+
+@dataclass(frozen=True)
+class Piece:
+    """A piece of text: words, mathematics, or a link to the derivation `target`."""
+
+    kind: str
+    content: str
+    target: str = ""
+
+
+@dataclass(frozen=True)
+class Line:
+    """A displayed step and its number, which only the result has."""
+
+    step: Step
+    tag: str = ""
+
+
+@dataclass(frozen=True)
+class Given:
+    """Steps in a row that are told in one sentence."""
+
+    steps: tuple[Step, ...]
+
+
+def pieces(text: str, labels: Collection[str]) -> Iterator[Piece]:
+    """Split text into words, mathematics between dollar signs, and links to known labels."""
+    parts = text.split("$")
+    if len(parts) % 2 == 0:
+        raise ValueError(f"a dollar sign without its partner in the text {text!r}")
+    for index, part in enumerate(parts):
+        yield from [Piece("math", part)] if index % 2 else _words(part, labels)
+
+
+def _words(text: str, labels: Collection[str]) -> Iterator[Piece]:
+    start = 0
+    for match in _REFERENCE.finditer(text):
+        label = f"{match.lastgroup}{match[match.lastgroup or 0]}"
+        if label in labels:
+            yield Piece("words", text[start : match.start()])
+            yield Piece("link", match[0], label)
+            start = match.end()
+    if text[start:]:
+        yield Piece("words", text[start:])
+
+
+def by_section(derivations: Sequence[Derivation]) -> dict[str, list[Derivation]]:
+    """Group the derivations by section, in the order in which the sections first appear."""
+    sections: dict[str, list[Derivation]] = {}
+    for derivation in derivations:
+        sections.setdefault(derivation.section, []).append(derivation)
+    return sections
+
+
+def number(label: str) -> str:
+    """Return what stands in parentheses beside a result: 27 for eq27, F3, Table 2 for table2."""
+    return re.sub("^table", "Table ", label.removeprefix("eq"))
+
+
+def relations(latex: str) -> list[str]:
+    r"""Split a chain of relations in front of each, where a line may be broken.
+
+    >>> relations(r"W = \int_{a = 0}^{b} p = \left(b = c\right) \le 1")
+    ['W', '= \\int_{a = 0}^{b} p', '= \\left(b = c\\right)', '\\le 1']
+    """
+    links, start, depth = [], 0, 0
+    for token in _TOKEN.finditer(latex):
+        if token["open"]:
+            depth += 1
+        elif token["close"]:
+            depth -= 1
+        elif depth == 0:
+            links.append(latex[start : token.start()].strip())
+            start = token.start()
+    return [*links, latex[start:].strip()]
+
+
+def blocks(derivation: Derivation) -> Iterator[Given | Line]:
+    """Arrange the steps: what is given in sentences, what is proved and the result in lines.
+
+    Steps recalled from elsewhere and definitions are given; those too big for a sentence stand
+    in a line of their own.
+    """
+    for is_given, group in groupby(_lines(derivation), key=_is_given):
+        if is_given:
+            yield Given(tuple(line.step for line in group))
+        else:
+            yield from group
+
+
+def sentence(given: Given, labels: Collection[str]) -> Iterator[Piece]:
+    """Tell what is given, up to the comma before the line for which it is given.
+
+    A remark that several formulas in a row share stands after the last of them.
+    """
+    remarks = [(step.source, step.reason) for step in given.steps]
+    last = len(given.steps) - 1
+    for index, (step, (source, reason)) in enumerate(zip(given.steps, remarks, strict=True)):
+        yield Piece("words", "With " if index == 0 else " and " if index == last else ", ")
+        yield Piece("math", _conclusion(step))
+        if index < last and remarks[index + 1] == (source, reason):
+            continue
+        if source:
+            yield from (Piece("words", " "), citation(source, labels))
+        if reason:
+            yield from (Piece("words", " ("), *pieces(reason, labels), Piece("words", ")"))
+    yield Piece("words", ",")
+
+
+def remark(step: Step, labels: Collection[str]) -> Iterator[Piece]:
+    """Tell where a displayed step comes from and why it holds."""
+    if step.source:
+        yield from (citation(step.source, labels), Piece("words", " "))
+    yield from pieces(step.reason, labels)
+
+
+def citation(label: str, labels: Collection[str]) -> Piece:
+    """Return the number of a derivation in parentheses, a link where the derivation is printed."""
+    shown = f"({number(label)})"
+    return Piece("link", shown, label) if label in labels else Piece("words", shown)
+
+
+def _is_given(line: Line) -> bool:
+    step = line.step
+    if line.tag or not (step.source or step.status == "definition"):
+        return False
+    latex = _conclusion(step)
+    return not _TALL.search(latex) and len(_GLYPH.findall(latex)) <= _MOST_GLYPHS
+
+
+def _conclusion(step: Step) -> str:
+    """Return the step, without the middle where a chain of equalities is recalled."""
+    links = relations(step.latex)
+    is_chain = all(link.startswith("=") for link in links[1:]) and r"\quad" not in step.latex
+    return f"{links[0]} {links[-1]}" if step.source and is_chain else step.latex
+
+
+def _lines(derivation: Derivation) -> list[Line]:
+    """Return the steps with the number of each, which only the result has.
+
+    The result is the step that reads as it; where none does, a line of its own ends the list.
+    """
+    tag = number(derivation.label)
+    found = [Line(step, tag if step.latex == derivation.latex else "") for step in derivation.steps]
+    if not any(line.tag for line in found):
+        found.append(Line(Step(derivation.latex, "", "", "", derivation.status), tag))
+    return found

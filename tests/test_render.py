@@ -1,0 +1,354 @@
+"""Printing: the files are complete, correct in their format, and fit their page."""
+
+import json
+import os
+import re
+import shutil
+import subprocess
+import xml.etree.ElementTree as ET
+from html.parser import HTMLParser
+from pathlib import Path
+
+import pytest
+
+from derivations.catalogue import catalogue
+from derivations.record import STATUSES, Derivation, Step, Table
+from derivations.render import RenderError, frame, html, latex, latex_engine, pdf, write
+from derivations.render.text import Given, Line, blocks, sentence
+
+SAMPLE = (
+    Derivation(
+        "eq3",
+        3,
+        "Geometry",
+        "Indenter at $x = 0$",
+        "Half of it, 50 % & more: a_b #1 {c} ~ ^ \\ <d> |e|, see Eq. (27) and Eq. (99).",
+        r"h{\left(x \right)} = \frac{x^{2}}{2 R}",
+        "definition",
+        (Step(r"h{\left(x \right)}", "=", r"\frac{x^{2}}{2 R}", "5 % & #1_2", "definition"),),
+    ),
+    Derivation(
+        "eq27",
+        27,
+        "Contact",
+        "Trailing edge",
+        "",
+        r"x = \sqrt{a^{2}}",
+        "sampled",
+        (Step("x", "=", r"\int\limits_{0}^{a} 1\, dt = a", "Eq. (3)", "proved"),),
+        uses=("eq3", "F9"),
+        table=Table(("A & B", "$x$"), (("1 %", r"$\frac{1}{2}$"),)),
+    ),
+)
+
+
+@pytest.fixture(scope="session")
+def everything() -> tuple[Derivation, ...]:
+    return catalogue()
+
+
+@pytest.fixture(scope="session")
+def page(everything) -> str:
+    return html.document(everything, "kvtheory derive")
+
+
+def required(tool: str) -> str:
+    found = shutil.which(tool)
+    if found is None:
+        reason = f"{tool} is not installed"
+        if os.environ.get("CI"):
+            pytest.fail(reason)
+        pytest.skip(reason)
+    return found
+
+
+def overfull(log: str) -> list[float]:
+    return [float(width) for width in re.findall(r"Overfull \\hbox \((\S+?)pt", log)]
+
+
+class Links(HTMLParser):
+    """Collect tags, identifiers and references of a page."""
+
+    def __init__(self, text: str) -> None:
+        super().__init__()
+        self.tags: set[str] = set()
+        self.names: list[str] = []
+        self.targets: list[tuple[str, str]] = []
+        self.feed(text)
+
+    def handle_starttag(self, tag, attrs):
+        self.tags.add(tag)
+        for key, value in attrs:
+            if key == "id":
+                self.names.append(value)
+            if key in {"href", "src", "srcset", "data", "action"}:
+                self.targets.append((tag, value))
+
+
+# The catalogue as input of the renderers
+
+
+def test_labels_are_unique_and_fit_file_names(everything):
+    labels = [each.label for each in everything]
+    assert len(set(labels)) == len(labels)
+    assert all(re.fullmatch(r"[A-Za-z0-9-]+", label) for label in labels)
+
+
+def test_every_status_has_a_meaning():
+    assert tuple(frame.VOCABULARY) == STATUSES
+
+
+# What is given stands in sentences, the rest in lines
+
+
+def told(block) -> str:
+    return "".join(
+        f"${piece.content}$" if piece.kind == "math" else piece.content
+        for piece in sentence(block, {"eq3"})
+    )
+
+
+def test_what_is_given_is_told_in_sentences():
+    steps = (
+        Step("h", "=", r"\frac{x^{2}}{2 R}", "", "definition", "eq3"),
+        Step("W", "=", r"\int_{a = 0}^{b} p\, dx = \frac{K}{2}", "", "proved", "load"),
+        Step("F", "=", "2 K", "", "proved", "load"),
+        Step("x", "=", "a", "the edge", "definition"),
+        Step("p", "=", "1", "proved here", "proved"),
+        Step("q", "=", "1", "", "definition"),
+        Step("m", "=", "F", "the result", "definition"),
+    )
+    found = list(blocks(Derivation("m", None, "S", "T", "", "m = F", "proved", steps)))
+    assert told(found[0]) == (
+        r"With $h = \frac{x^{2}}{2 R}$ (3), $W = \frac{K}{2}$, $F = 2 K$ (load) and "
+        "$x = a$ (the edge),"
+    )
+    assert told(found[2]) == "With $q = 1$,"
+    assert [found[1], found[3]] == [Line(steps[4]), Line(steps[6], "m")]
+    links = [piece.target for piece in sentence(found[0], {"eq3"}) if piece.kind == "link"]
+    assert links == ["eq3"]
+
+
+@pytest.mark.parametrize(
+    ("right", "in_a_sentence"),
+    [
+        (r"\frac{\left(1 - q\right)^{2}}{x_{\mathrm{TE}}} + \sqrt{\frac{1}{2}}", True),
+        (" + ".join("abcdefghijklmnopqrst"), True),
+        (" + ".join("abcdefghijklmnopqrstuvwxyzABCDEFG"), False),
+        (r"\int_{a}^{b} p\, dx", False),
+        (r"\begin{cases} 1 & q \\ 2 & l \end{cases}", False),
+        (r"\frac{1 + \frac{l}{4}}{w}", False),
+        (r"\frac{x_{\mathrm{TE}}}{1 + \frac{l}{4}}", False),
+    ],
+)
+def test_only_what_fits_a_line_of_text_is_told_in_a_sentence(right, in_a_sentence):
+    steps = (Step("y", "=", right, "", "definition"), Step("z", "=", "1", "", "proved"))
+    first, _ = blocks(Derivation("z", None, "S", "T", "", "z = 1", "proved", steps))
+    assert isinstance(first, Given) == in_a_sentence
+
+
+def test_a_recalled_statement_of_two_relations_is_not_cut():
+    step = Step("F", "=", r"K u, \quad u = \delta", "", "proved", "load")
+    given, _ = blocks(Derivation("z", None, "S", "T", "", "z = 1", "proved", (step,)))
+    assert told(given) == r"With $F = K u, \quad u = \delta$ (load),"
+
+
+# JSON
+
+
+def test_json_keeps_the_contract(everything, tmp_path):
+    write(everything, tmp_path, ["json"])
+    entries = json.loads((tmp_path / "derivations.json").read_text(encoding="utf-8"))
+    assert [entry["label"] for entry in entries] == [each.label for each in everything]
+    for entry, each in zip(entries, everything, strict=True):
+        assert entry["status"] in STATUSES
+        assert (entry["equation"], entry["latex"]) == (each.equation, each.latex)
+        assert entry["latex"]
+        assert set(entry) >= {"title", "section", "text", "uses"}
+        assert [step["latex"] for step in entry["steps"]] == [step.latex for step in each.steps]
+        assert all(set(step) == {"latex", "reason", "status", "source"} for step in entry["steps"])
+
+
+# HTML
+
+
+def test_html_is_well_formed_and_complete(page, everything):
+    # A self-closing void element is the only thing in which HTML is not XML here.
+    tree = ET.fromstring(re.sub(r"<meta ([^>]*)>", r"<meta \1/>", page.partition("\n")[2]))
+    assert tree.attrib["lang"] == "en"
+    assert tree.findtext("head/title")
+    assert [each.get("id") for each in tree.iter("article")] == [each.label for each in everything]
+    results = [each.findtext("./span[@class='number']") for each in tree.iter("li")]
+    assert len([text for text in results if text]) == len(everything)
+
+
+def test_html_needs_nothing_from_elsewhere(page):
+    links = Links(page)
+    assert not links.tags & {"script", "link", "img", "iframe", "object", "embed"}
+    assert not re.search(r"url\(|@import", page)
+    outside = {target for tag, target in links.targets if not target.startswith("#")}
+    assert outside == {f"https://doi.org/{frame.DOI}"}
+    assert all(tag == "a" for tag, _ in links.targets)
+
+
+def test_html_links_resolve(page, everything):
+    links = Links(page)
+    inside = {target[1:] for _, target in links.targets if target.startswith("#")}
+    assert len(set(links.names)) == len(links.names)
+    assert inside <= set(links.names)
+    assert inside >= {each.label for each in everything}
+
+
+def test_a_macro_without_mathml_is_an_error():
+    with pytest.raises(RenderError, match=r"\\nosuch"):
+        html.mathml(r"\frac{1}{\nosuch}")
+
+
+def test_mathml_is_upright_where_the_symbol_is():
+    assert html.mathml(r"l_{\mathrm{r}}").count('mathvariant="normal"') == 1
+    assert html.mathml(r"l_{r}").count('mathvariant="normal"') == 0
+    assert "<mo>&#x0223C;</mo>" in html.mathml(r"a \sim b")
+
+
+def test_html_escapes_text_and_links_references():
+    shown = html.document(SAMPLE, "a <b> & c")
+    assert "50 % &amp; more: a_b #1 {c} ~ ^ \\ &lt;d&gt; |e|" in shown
+    assert 'see Eq. <a href="#eq27">(27)</a> and Eq. (99).' in shown
+    assert "<code>a &lt;b&gt; &amp; c</code>" in shown
+    assert 'Rests on <a href="#eq3">(3)</a>, (F9)' in shown
+
+
+def test_html_fits_a_phone(page, tmp_path):
+    chromium = required("chromium")
+    (tmp_path / "page.html").write_text(page, encoding="utf-8")
+    (tmp_path / "phone.html").write_text(
+        '<iframe src="page.html" style="width:360px;height:800px;border:0"></iframe><p></p><script>'
+        "onload = () => { const inner = document.querySelector('iframe').contentDocument;"
+        "document.querySelector('p').textContent = inner.documentElement.clientWidth + ' ' +"
+        "inner.documentElement.scrollWidth + ' ' + inner.querySelectorAll('math').length }</script>"
+    )
+    done = subprocess.run(
+        [
+            chromium,
+            *("--headless", "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run"),
+            *("--disable-background-networking", "--disable-component-update", "--disable-sync"),
+            *("--allow-file-access-from-files", f"--user-data-dir={tmp_path / 'profile'}"),
+            *("--dump-dom", (tmp_path / "phone.html").as_uri()),
+        ],
+        capture_output=True,
+        text=True,
+        timeout=120,
+        check=True,
+    )
+    measured = re.search(r"<p>(\d+) (\d+) (\d+)</p>", done.stdout)
+    assert measured, done.stdout[-500:]
+    client, scroll, formulas = map(int, measured.groups())
+    assert formulas > 100
+    assert scroll <= client <= 360
+
+
+# LaTeX and PDF
+
+
+def test_article_compiles_without_loose_ends(everything):
+    required("pdflatex")
+    made, log = pdf.typeset(latex.article(everything, "kvtheory derive"))
+    assert made.startswith(b"%PDF")
+    assert "undefined" not in log
+    assert "Rerun to get" not in log
+    assert not re.search(r"Token not allowed|multiply.defined|LaTeX Warning", log)
+    assert [width for width in overfull(log) if width > 10] == []
+
+
+def test_article_escapes_text_and_is_reproducible():
+    required("pdflatex")
+    source = latex.article(SAMPLE, "derive --only a_b & 5%")
+    assert r"50 \% \& more: a\_b \#1 \{c\} \textasciitilde{}" in source
+    assert r"\hyperref[eq27]{(27)} and Eq. (99)" in source
+    assert pdf.typeset(source)[0] == pdf.typeset(source)[0]
+
+
+def test_fragments_compile_in_any_amsmath_document(everything, tmp_path):
+    engine = required("pdflatex")
+    write(everything, tmp_path, ["tex"])
+    names = sorted(path.name for path in (tmp_path / "fragments").iterdir())
+    assert names == sorted(f"{each.label}.tex" for each in everything)
+    inputs = "\n".join(rf"\input{{fragments/{name}}}" for name in names)
+    references = " ".join(rf"\eqref{{{each.label}}}" for each in everything)
+    (tmp_path / "own.tex").write_text(
+        rf"\documentclass{{article}}\usepackage{{amsmath}}\begin{{document}}{references}"
+        f"\n{inputs}\n\\end{{document}}\n"
+    )
+    for _ in range(3):  # references lengthen the text, and the pages move once more
+        done = subprocess.run(
+            [engine, "-no-shell-escape", "-interaction=nonstopmode", "-halt-on-error", "own.tex"],
+            cwd=tmp_path,
+            capture_output=True,
+            check=False,
+        )
+        assert done.returncode == 0, done.stdout[-800:]
+    log = (tmp_path / "own.log").read_text(errors="replace")
+    assert not re.search(r"LaTeX Warning", log)
+
+
+def test_a_paper_number_is_its_tag():
+    assert r"\tag{27}\label{eq27}" in latex.fragment(SAMPLE[1])
+
+
+def test_wrong_mathematics_is_an_error_with_the_message_of_the_engine():
+    required("pdflatex")
+    with pytest.raises(RenderError, match="Undefined control sequence"):
+        pdf.typeset(r"\documentclass{article}\begin{document}$\nosuch$\end{document}")
+
+
+def test_no_engine_is_a_clear_error(monkeypatch, tmp_path):
+    monkeypatch.setenv("PATH", str(tmp_path))
+    assert latex_engine() is None
+    with pytest.raises(RenderError, match="install texlive-latex-base or leave pdf out"):
+        write(SAMPLE, tmp_path / "out", ["json", "pdf"])
+    assert not (tmp_path / "out").exists()
+
+
+# Choosing and writing
+
+
+def test_only_the_chosen_are_written(tmp_path):
+    write(SAMPLE, tmp_path, ["tex", "json"], only=["eq27"])
+    entries = json.loads((tmp_path / "derivations.json").read_text())
+    assert [entry["label"] for entry in entries] == ["eq27"]
+    assert [path.name for path in (tmp_path / "fragments").iterdir()] == ["eq27.tex"]
+    assert r"\hyperref[eq3]" not in (tmp_path / "derivations.tex").read_text()
+
+
+@pytest.mark.parametrize(
+    ("formats", "only", "message"),
+    [
+        (["json"], ["eq3", "eq28"], "unknown label 'eq28'; the nearest is 'eq27'"),
+        (["json", "htm"], [], "unknown format 'htm'; the nearest is 'html'"),
+    ],
+)
+def test_unknown_names_are_refused(tmp_path, formats, only, message):
+    with pytest.raises(ValueError, match=re.escape(message)):
+        write(SAMPLE, tmp_path / "out", formats, only)
+    assert not (tmp_path / "out").exists()
+
+
+def test_a_failing_write_leaves_the_old_files(tmp_path, monkeypatch):
+    target = tmp_path / "derivations.json"
+    target.write_text("old")
+
+    def full(self, content):
+        self.touch()
+        raise OSError("no space left on device")
+
+    monkeypatch.setattr(Path, "write_bytes", full)
+    with pytest.raises(OSError, match="no space left"):
+        write(SAMPLE, tmp_path, ["json"])
+    assert [path.name for path in tmp_path.iterdir()] == ["derivations.json"]
+    assert target.read_text() == "old"
+
+
+def test_an_unpaired_dollar_is_an_error():
+    lone = Derivation("eq1", 1, "S", "T", "costs $5", "x = 1", "definition")
+    with pytest.raises(ValueError, match="without its partner"):
+        write([lone], Path("unused"), ["html"])
