@@ -12,12 +12,20 @@ from derivations import (
     steady,
     tables,
     theorems,
+    transient_balance,
+    transient_edges,
+    transient_memory,
+    transient_motion,
+    transient_rates,
+    transient_scaling,
 )
 from derivations.record import Derivation
 
 _CHAPTERS = (
     *(model, steady, asymptotics, tables, groups),
     *(theorems, energy, asymptote_errors, circle),
+    *(transient_scaling, transient_memory, transient_edges),
+    *(transient_motion, transient_rates, transient_balance),
 )
 """Each chapter may recall what the chapters before it have established."""
 

@@ -74,19 +74,18 @@ W_1, F_1 = sp.symbols("W_1 F_1", real=True)
 c_w, c_f, c_mu, c_delta_load, c_mu_load = sp.symbols("c_W c_F c_mu c_delta_W c_mu_W", real=True)
 
 # The transient, scaled by the static state: lengths by a_0, depths by delta_0, forces by W_0 and
-# time by tau. A prime is the derivative with respect to the scaled time.
-a_0, delta_0, W_0, k_s, d = _positive("a_0 delta_0 W_0 k_s d")
+# time by tau. A prime is the derivative with respect to the scaled time s.
+a_0, delta_0, W_0, d = _positive("a_0 delta_0 W_0 d")
 d_s, d_ss, f_normal, f_friction = sp.symbols("d_s d_ss f_normal f_friction", real=True)
-time, earlier, start, last = sp.symbols("s s_1 s_0 sigma", real=True)
-material, left, right = sp.symbols("X ell r", real=True)
-depth = sp.Function("d", positive=True)(time)
-travel = sp.Function("Y", real=True)(time)
-"""How far the foundation has moved: its element X is at xi = X + Y."""
-rho, width, beta = _positive("rho b beta")
-rise, settle, epsilon_c = _positive("A B epsilon_c")
-"""How strongly the normal force depends on the depth and on its rate (F12)."""
-rate = sp.Symbol("sigma", real=True)
-excess = sp.Symbol("n", real=True)
+time, earlier, start, sigma, zeta = sp.symbols("s s_1 s_0 sigma zeta", real=True)
+depth, travel = (sp.Function(name, real=True)(time) for name in "dY")
+"""The depth, and how far the foundation has moved: its element X is at xi = X + Y."""
+material, left, right, mix = sp.symbols("X ell r theta", real=True)
+rho, beta, per_depth, per_rate, eps_critical = _positive("rho beta A B epsilon_c")
+drive_excess = sp.Symbol("n", real=True)
+drift, lift = sp.symbols("lambda_bar d_bar", real=True)
+compression, indenter = (sp.Function(name, real=True) for name in "ug")
+"""The surface of an element, and the indenter above it."""
 
 alpha = 2 * sp.sqrt(2) / 3
 """The coefficient of Eqs. 40-46."""
@@ -125,6 +124,13 @@ TEX = {
     e_depth_high: r"e_{\delta,\,V\to\infty}",
     e_load_spring: r"e_{W}",
     gap: r"\bar q",
+    d_s: "d'",
+    d_ss: "d''",
+    drift: r"\bar\lambda",
+    lift: r"\bar d",
+    eps_critical: r"\varepsilon_{\mathrm{c}}",
+    f_normal: "f_z",
+    f_friction: "f_x",
     c_delta_load: r"c_{\delta,W}",
     c_mu_load: r"c_{\mu,W}",
 }

@@ -22,7 +22,7 @@ SAMPLE = (
         3,
         "Geometry",
         "Indenter at $x = 0$",
-        "Half of it, 50 % & more: a_b #1 {c} ~ ^ \\ <d> |e|, see Eq. (27) and Eq. (99).",
+        'Half of "it", 50 % & more: a_b #1 {c} ~ ^ \\ <d> |e|, see Eq. (27) and Eq. (99).',
         r"h{\left(x \right)} = \frac{x^{2}}{2 R}",
         "definition",
         (Step(r"h{\left(x \right)}", "=", r"\frac{x^{2}}{2 R}", "5 % & #1_2", "definition"),),
@@ -117,13 +117,14 @@ def test_what_is_given_is_told_in_sentences():
         Step("p", "=", "1", "proved here", "proved"),
         Step("q", "=", "1", "", "definition"),
         Step("m", "=", "F", "the result", "definition"),
+        Step("n", "=", "1", "", "definition"),
     )
     found = list(blocks(Derivation("m", None, "S", "T", "", "m = F", "proved", steps)))
     assert told(found[0]) == (
         r"With $h = \frac{x^{2}}{2 R}$ (3), $W = \frac{K}{2}$, $F = 2 K$ (load) and "
         "$x = a$ (the edge),"
     )
-    assert told(found[2]) == "With $q = 1$,"
+    assert [told(found[2]), told(found[4])] == ["With $q = 1$,", "With $n = 1$."]
     assert [found[1], found[3]] == [Line(steps[4]), Line(steps[6], "m")]
     links = [piece.target for piece in sentence(found[0], {"eq3"}) if piece.kind == "link"]
     assert links == ["eq3"]
@@ -263,6 +264,7 @@ def test_article_compiles_without_loose_ends(everything):
 def test_article_escapes_text_and_is_reproducible():
     required("pdflatex")
     source = latex.article(SAMPLE, "derive --only a_b & 5%")
+    assert "Half of ``it''," in source
     assert r"50 \% \& more: a\_b \#1 \{c\} \textasciitilde{}" in source
     assert r"\hyperref[eq27]{(27)} and Eq. (99)" in source
     assert pdf.typeset(source)[0] == pdf.typeset(source)[0]
@@ -318,6 +320,12 @@ def test_only_the_chosen_are_written(tmp_path):
     assert [entry["label"] for entry in entries] == ["eq27"]
     assert [path.name for path in (tmp_path / "fragments").iterdir()] == ["eq27.tex"]
     assert r"\hyperref[eq3]" not in (tmp_path / "derivations.tex").read_text()
+
+
+def test_a_family_is_chosen_by_its_common_name(everything, tmp_path):
+    write(everything, tmp_path, ["json"], only=["F4", "F1"])
+    entries = json.loads((tmp_path / "derivations.json").read_text())
+    assert [entry["label"] for entry in entries] == ["F1", "F4-low", "F4-high"]
 
 
 @pytest.mark.parametrize(

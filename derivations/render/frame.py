@@ -6,8 +6,8 @@ AUTHORS = "Nakano and Kono (2020)"
 
 INTRODUCTION = (
     "A rigid cylinder presses into a row of independent Kelvin–Voigt elements and slides over it. "
-    f"{AUTHORS} state the model and its steady state in numbered equations; here each "
-    "of them is defined or derived, together with further results on the same model, which are "
+    f"{AUTHORS} state the model, its transient and its steady state in numbered equations; here "
+    "each of them is defined or derived, together with further results on the same model, which are "
     "named theorems (F1 and so on). Equation numbers without a letter are those of the paper.",
     "Every line is an equality or an inequality that computer algebra checked when this document "
     "was made; a line that does not hold stops the making. With each line stands its reason and "
@@ -58,6 +58,13 @@ NOMENCLATURE = (
     ("$m$", r"scaled friction coefficient, $\mu R/a$", "1"),
     (r"$\Lambda$", r"scaled velocity of the dead-weight model, $V \tau (K/(R W))^{1/3}$", "1"),
     (r"$\alpha$", r"$2 \sqrt{2}/3$", "1"),
+    (r"$\delta_0$, $a_0$, $W_0$", "static depth, half length and load", "m, m, N/m"),
+    ("$s$", r"scaled time, $t/\tau$", "1"),
+    ("$d$", r"scaled depth, $\delta/\delta_0$", "1"),
+    (r"$\lambda$", r"drive number, $V \tau/a_0$", "1"),
+    (r"$\epsilon$", r"inertia number, $M \delta_0/(W_0 \tau^{2})$", "1"),
+    (r"$\kappa$", r"support number, $k_s \delta_0/W_0$", "1"),
+    ("$f_z$, $f_x$", r"scaled forces, $F_z/W_0$ and $F_x a_0/(W_0 \delta_0)$", "1"),
 )
 
 SOURCE = (

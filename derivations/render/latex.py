@@ -51,10 +51,12 @@ _PREAMBLE = r"""\documentclass[11pt,a4paper]{article}
 \clubpenalty=10000
 \widowpenalty=10000
 \makeatletter
+% Headings run into the text; entries of the contents are ragged, for their columns are narrow.
 \renewcommand{\subsection}{\@startsection{subsection}{2}{0pt}{2ex plus 1ex}{-0.7em}{\bfseries}}
 \renewcommand{\@tocrmarg}{2.5em plus 1fil}
 \newcommand{\numbered}[2]{\phantomsection\def\@currentlabel{#2}\label{#1}(#2)}
-\newcommand{\newline@}{\if@noskipsec\leavevmode\fi \ifhmode\par\nopagebreak\fi}
+% What introduces a line (a heading without text, a sentence) stays on its page.
+\newcommand{\startline}{\if@noskipsec\leavevmode\fi \ifhmode\par\nopagebreak\fi}
 
 % Mathematics on one line or, where it is wider than #1, broken at relations and signs.
 \newcommand{\fit}[2]{%
@@ -73,7 +75,7 @@ _PREAMBLE = r"""\documentclass[11pt,a4paper]{article}
 \newdimen\numbers@
 \newdimen\room
 \newcommand{\checked}[4]{%
-  \newline@
+  \startline
   \sbox{\formula}{$\displaystyle #4$}\sbox{\remark}{\small #3\quad\textit{#2}}\sbox{\number@}{#1}%
   \numbers@=\dimexpr\wd\number@+1em\relax
   \ifdim\numbers@<\usual@ \numbers@=\usual@ \fi

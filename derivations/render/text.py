@@ -18,6 +18,8 @@ from derivations.record import Derivation, Step
 _REFERENCE = re.compile(r"\((?P<eq>\d+)\)|\bF(?P<F>\d+)\b|\bTable (?P<table>\d+)")
 """How text names a derivation; the name of the group and the digits make its label."""
 
+_ONE_EQUATION = re.compile(r"Eq\. \(\d+\)")
+
 _TOKEN = re.compile(
     r"(?P<open>(?<!\\)\{|\\left(?![a-z]))|(?P<close>(?<!\\)\}|\\right(?![a-z]))"
     r"|=|<|>|\\(?:le|ge|lt|gt|approx|sim|equiv)(?![a-z])"
@@ -52,9 +54,10 @@ class Line:
 
 @dataclass(frozen=True)
 class Given:
-    """Steps in a row that are told in one sentence."""
+    """Steps in a row that are told in one sentence, and the mark that ends it."""
 
     steps: tuple[Step, ...]
+    end: str
 
 
 def pieces(text: str, labels: Collection[str]) -> Iterator[Piece]:
@@ -115,15 +118,18 @@ def blocks(derivation: Derivation) -> Iterator[Given | Line]:
     Steps recalled from elsewhere and definitions are given; those too big for a sentence stand
     in a line of their own.
     """
-    for is_given, group in groupby(_lines(derivation), key=_is_given):
+    printed = _lines(derivation)
+    for is_given, group in groupby(printed, key=_is_given):
+        members = list(group)
         if is_given:
-            yield Given(tuple(line.step for line in group))
+            end = "." if members[-1] is printed[-1] else ","
+            yield Given(tuple(line.step for line in members), end)
         else:
-            yield from group
+            yield from members
 
 
 def sentence(given: Given, labels: Collection[str]) -> Iterator[Piece]:
-    """Tell what is given, up to the comma before the line for which it is given.
+    """Tell what is given, for the line that follows.
 
     A remark that several formulas in a row share stands after the last of them.
     """
@@ -137,8 +143,11 @@ def sentence(given: Given, labels: Collection[str]) -> Iterator[Piece]:
         if source:
             yield from (Piece("words", " "), citation(source, labels))
         if reason:
-            yield from (Piece("words", " ("), *pieces(reason, labels), Piece("words", ")"))
-    yield Piece("words", ",")
+            known = (
+                reason.removeprefix("Eq. ") if _ONE_EQUATION.fullmatch(reason) else f"({reason})"
+            )
+            yield from (Piece("words", " "), *pieces(known, labels))
+    yield Piece("words", given.end)
 
 
 def remark(step: Step, labels: Collection[str]) -> Iterator[Piece]:

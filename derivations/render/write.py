@@ -59,7 +59,8 @@ def write(
     formats
         Names of `FORMATS`.
     only
-        Labels of the derivations to print; all where it is empty.
+        Labels of the derivations to print, or of families: F4 is F4-low and F4-high. All where it
+        is empty.
     command
         The command that asks for the files, to be named in the documents.
 
@@ -72,9 +73,10 @@ def write(
     """
     for name in formats:
         _known(name, FORMATS, "format")
+    families = {each.label: {each.label, each.label.split("-")[0]} for each in derivations}
     for label in only:
-        _known(label, [each.label for each in derivations], "label")
-    chosen = [each for each in derivations if not only or each.label in only]
+        _known(label, [*families, *sorted(set().union(*families.values()))], "label")
+    chosen = [each for each in derivations if not only or not families[each.label].isdisjoint(only)]
     files: Files = {}
     for name in formats:
         files |= FORMATS[name](chosen, command)

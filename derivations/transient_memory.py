@@ -1,0 +1,183 @@
+"""What the foundation remembers: theorems F8 and F9, for any drive and any motion of the indenter.
+
+Element X of the foundation is at xi = X + Y(s), with Y' = lambda, where the surface of the indenter is
+at the compression g(X, s) = d - xi**2: negative where it hangs above the undisturbed foundation.
+"""
+
+from functools import partial
+
+import sympy as sp
+
+from derivations.record import Derivation
+from derivations.step import Proof
+from derivations.symbols import (
+    P,
+    compression,
+    d,
+    d_s,
+    depth,
+    earlier,
+    eta,
+    indenter,
+    lam,
+    material,
+    mix,
+    sigma,
+    time,
+    travel,
+    xi,
+    zeta,
+)  # fmt: skip
+from derivations.transient_scaling import PRESSURE
+
+SECTION = "Transient: theorems"
+
+_NOTATION = (
+    r"An element with the material coordinate $X$ is at $\xi = X + Y(s)$ with $Y' = \lambda$, and the "
+    r"indenter there is at $g(X, s) = d - \xi^2$."
+)
+_MAXIMUM = r"\max\left(u_0, \sup_{s_1 \le s} e^{s_1} g(s_1)\right)"
+_h = sp.Symbol("h", positive=True)
+
+OF_TIME = {d: depth, d_s: sp.Derivative(depth, time)}
+"""The depth and its rate as functions of the scaled time."""
+
+_theorem = partial(Proof, equation=None, section=SECTION)
+
+
+def derive() -> tuple[Derivation, ...]:
+    """Prove F8 and F9, with what they mean for a step in time and for landing."""
+    return _memory(), _update(), _interval(), _landing()
+
+
+def _memory() -> Derivation:
+    proof = _theorem("F8", title="Memory in closed form", text=_MEMORY, uses=("scaled-pressure",))
+    u, g = compression, indenter
+    whole = (zeta, earlier, time)
+    integrand = sp.exp(zeta) * (u(zeta) + sp.Derivative(u(zeta), zeta))
+    pushed = sp.Integral(integrand, whole)
+    work = r"\int_{s_1}^{s} e^{\zeta} \hat p(\zeta) \, d\zeta"
+    proof.define(P, u(time) + sp.Derivative(u(time), time), "positive or zero, and zero outside")
+    proof.equal(
+        *(sp.Derivative(sp.exp(time) * u(time), time), sp.exp(time) * P, "it never decreases"),
+        left=r"\frac{d}{ds} \left[e^{s} u(s)\right]",
+        right=r"e^{s} \hat p",
+    )
+    proof.integral(
+        *(pushed, integrand, whole, sp.exp(zeta) * u(zeta), "from one instant to another"),
+        value=sp.exp(time) * u(time) - sp.exp(earlier) * u(earlier),
+        left=work, right=r"e^{s} u(s) - e^{s_1} u(s_1)",
+    )  # fmt: skip
+    proof.equal(
+        sp.exp(time) * u(time) - sp.exp(earlier) * g(earlier),
+        pushed + sp.exp(earlier) * (u(earlier) - g(earlier)),
+        r"no term is negative: $e^{s} u(s) \ge e^{s_1} g(s_1)$ for every $s_1 \le s$",
+        left=r"e^{s} u(s) - e^{s_1} g(s_1)",
+        right=rf"{work} + e^{{s_1}} \left[u(s_1) - g(s_1)\right]",
+    )
+    proof.define(u(sigma), g(sigma), r"the last contact was at $\sigma$")
+    value = sp.exp(sigma - time) * g(sigma)
+    proof.root(
+        *(sp.exp(time) * u(time) - sp.exp(sigma) * u(sigma), u(time), value),
+        r"both terms vanish for $s_1 = \sigma$: the bound is reached",
+        left=r"e^{s} u(s)", right=rf"e^{{\sigma}} g(\sigma) = {_MAXIMUM}",
+    )  # fmt: skip
+    return proof.done(u(time), value)
+
+
+_MEMORY = (
+    _NOTATION
+    + r" Its surface is never above the indenter, $u \ge g$; its pressure $\hat p = u + u'$ is never "
+    r"negative, and zero unless $u = g$. Then, whatever drive and indenter do, $e^{s} u$ is the running "
+    r"maximum of $e^{s} g$ and of $u_0$, the compression at $s = 0$, which an untouched element keeps."
+)
+
+
+def _update() -> Derivation:
+    proof = _theorem("F8-update", title="Memory from one instant to the next", text=_UPDATE,
+                     uses=("F8",))  # fmt: skip
+    u, g = compression, indenter
+    here = depth - (material + travel) ** 2
+    proof.define(xi, material + travel)
+    proof.define(lam, sp.Derivative(travel, time))
+    pressure = PRESSURE.subs(OF_TIME)
+    proof.equal(
+        *(sp.Derivative(sp.exp(time) * here, time), sp.exp(time) * pressure, _RISES),
+        left=r"\frac{d}{ds} \left[e^{s} g(X, s)\right]",
+        right=r"e^{s} \left(d + d' - \xi^2 - 2 \lambda \xi\right)",
+    )
+    after = u(time + _h)
+    decayed, pressed = sp.exp(-_h) * u(time), g(time + _h)
+    larger = decayed + pressed - sp.Min(decayed, pressed)
+    free = sp.exp(time + _h) * after - sp.exp(time) * u(time)
+    proof.root(
+        *(free * (after - pressed), after, larger, "free until then, or in contact: the larger"),
+        right=r"\max\left(g(s + h),\, e^{-h} u(s)\right)",
+    )
+    return proof.done(after, larger)
+
+
+_RISES = r"it rises where contact would give a pressure $\hat p > 0$, and falls elsewhere"
+_UPDATE = (
+    _NOTATION
+    + r" The update needs no flag of contact. It is exact if $e^{s} g$ takes its maximum over the step "
+    "at an end of it, so always where it is monotone. It fails only where, within the step, an "
+    "element could first be pressed and then no longer; there $u$ is too small by at most $h^2/8$ times "
+    r"the greatest $|\hat p + \hat p'|$ of the step."
+)
+
+
+def _margin(position: sp.Expr) -> sp.Expr:
+    """Return e**s g now minus e**s_1 g at an earlier instant, for the element X = position."""
+    now = depth - (position + travel) ** 2
+    return sp.exp(time) * now - sp.exp(earlier) * now.subs(time, earlier)
+
+
+def _interval() -> Derivation:
+    proof = _theorem("F9", title="The contact is one interval", text=_INTERVAL, uses=("F8",))
+    margin = _margin(material)
+    curvature = sp.Derivative(margin, (material, 2))
+    proof.sign(-2 * (eta - 1), "<", 0, (eta, 1, sp.oo), r"time passes: $\eta = e^{s - s_1} > 1$",
+               left=r"-2 (\eta - 1)")  # fmt: skip
+    proof.define(eta, sp.exp(time - earlier), right="e^{s - s_1}")
+    proof.equal(
+        *(curvature, -2 * sp.exp(earlier) * (eta - 1), "concave, for each past instant"),
+        left=r"\frac{d^2}{dX^2} \left[e^{s} g(X, s) - e^{s_1} g(X, s_1)\right]",
+        right=r"-2 e^{s_1} (\eta - 1)",
+    )
+    return proof.done(curvature, -2 * sp.exp(earlier) * (eta - 1))
+
+
+_INTERVAL = (
+    _NOTATION
+    + r" By F8 an element is in contact at $s$ if and only if $e^{s} g(X, s)$ is not less than $e^{s_1} "
+    r"g(X, s_1)$ at each earlier instant, and not less than $u_0$, which is zero or $g(X, 0)$. Each of "
+    "these differences is concave in $X$, so that it is positive or zero on one interval; and "
+    "intervals intersect in an interval, or not at all. This needs the parabola: the curvature of $g$ "
+    "is the same everywhere and always. So the two edges are the whole geometry of the contact, for "
+    r"any drive $\lambda(s)$ and any depth $d(s)$."
+)
+
+
+def _landing() -> Derivation:
+    proof = _theorem(
+        "F9-landing", title="Landing is at one point", text=_LANDING, uses=("F8", "F9")
+    )
+    one, other = sp.symbols("X_1 X_2", real=True)
+    bulge = mix * (1 - mix) * (sp.exp(time) - sp.exp(earlier)) * (one - other) ** 2
+    between = _margin(mix * one + (1 - mix) * other)
+    chord = mix * _margin(one) + (1 - mix) * _margin(other)
+    proof.equal(
+        *(between - chord, bulge, r"positive for $0 < \theta < 1$ and $s_1 < s$"),
+        left=r"D_1(\theta X_1 + (1 - \theta) X_2) - \theta D_1(X_1) - (1 - \theta) D_1(X_2)",
+    )
+    return proof.done(between - chord, bulge)
+
+
+_LANDING = (
+    r"Let $D_1(X) = e^{s} g(X, s) - e^{s_1} g(X, s_1)$ and $D = e^{s} (g - u)$ while the indenter flies "
+    r"since $s_0$. By F8, $D$ is the least of all $D_1$ with $s_1 \le s_0$ and of $e^{s} g - u_0$, so "
+    r"that it bulges above its chords at least by $\theta (1 - \theta) (e^{s} - e^{s_0}) (X_1 - X_2)^2$: "
+    "it is strictly concave. Two points cannot land at once, for $D$ would have been positive between "
+    "them."
+)

@@ -1,0 +1,171 @@
+"""The forces between two edges in closed form, and how they depend on the motion (F11)."""
+
+from functools import partial
+
+import sympy as sp
+
+from derivations.record import Derivation
+from derivations.step import Proof, established, tex
+from derivations.symbols import (
+    E,
+    P,
+    a,
+    b,
+    d,
+    d_s,
+    eta,
+    f_friction,
+    f_normal,
+    lam,
+    left,
+    rho,
+    right,
+    time,
+    xi,
+)  # fmt: skip
+from derivations.transient_edges import TOUCHING_PRESSURE, edge_path
+from derivations.transient_memory import SECTION
+from derivations.transient_scaling import PRESSURE
+
+CONTACT = (xi, left, right)
+_LOAD_SHARE, _FRICTION_SHARE = sp.Rational(3, 4), -sp.Rational(3, 2)
+
+NORMAL_FORCE = _LOAD_SHARE * (
+    (d + d_s) * (right - left) - (right**3 - left**3) / 3 - lam * (right**2 - left**2)
+)
+FRICTION_FORCE = _FRICTION_SHARE * (
+    (d + d_s) * (right**2 - left**2) / 2
+    - (right**4 - left**4) / 4
+    - 2 * lam * (right**3 - left**3) / 3
+)
+PEELING_NORMAL_FORCE = b**2 * (3 * rho - b) / 4
+"""Right edge at r = rho - lambda, left edge at r - b: no difference of nearly equal numbers."""
+PEELING_FRICTION_FORCE = b**2 * (4 * right * (b - 3 * rho) + b * (8 * rho - 3 * b)) / 8
+JACOBIAN = (
+    _LOAD_SHARE * (right + a + lam + d_s / (2 * a)),
+    _LOAD_SHARE * (right + a),
+    _LOAD_SHARE * (a**2 - right**2 + 2 * lam * a + d_s),
+    _LOAD_SHARE * (a**2 - right**2),
+)
+"""Derivatives of both forces with respect to d and d' after a start from rest."""
+
+_theorem = partial(Proof, equation=None, section=SECTION)
+
+
+def derive() -> tuple[Derivation, ...]:
+    """Prove F11."""
+    return _forces(), _peeling_forces(), _derivatives(), _start_from_rest()
+
+
+def _forces() -> Derivation:
+    proof = _theorem("F11", title="Forces between two edges", text=_FORCES, uses=("F9", "F10-peel"))
+    friction = sp.expand(xi * PRESSURE)
+    proof.recall("scaled-pressure", P, PRESSURE)
+    proof.integral(
+        *(f_normal, _LOAD_SHARE * PRESSURE, CONTACT, _LOAD_SHARE * sp.integrate(PRESSURE, xi)),
+        "all pressure is between the edges", value=NORMAL_FORCE, right=_NORMAL,
+    )  # fmt: skip
+    proof.integral(
+        *(f_friction, _FRICTION_SHARE * friction, CONTACT, _FRICTION_SHARE * sp.integrate(friction, xi)),
+        r"weighted with the slope $2 \xi$ of the surface", value=FRICTION_FORCE, right=_FRICTION,
+    )  # fmt: skip
+    return proof.done(f_normal, NORMAL_FORCE)
+
+
+_NORMAL = (
+    r"\frac{3}{4} \int_{\ell}^{r} \hat p \, d\xi = \frac{3}{4} \left[(d + d') (r - \ell) - "
+    r"\frac{r^3 - \ell^3}{3} - \lambda (r^2 - \ell^2)\right]"
+)
+_FRICTION = (
+    r"-\frac{3}{2} \int_{\ell}^{r} \xi \hat p \, d\xi = -\frac{3}{2} \left[(d + d') \frac{r^2 - "
+    r"\ell^2}{2} - \frac{r^4 - \ell^4}{4} - 2 \lambda \frac{r^3 - \ell^3}{3}\right]"
+)
+_FORCES = (
+    r"In units of $W_0$ and $W_0 \delta_0/a_0$, with the edges $\ell < r$ of F10: elements outside "
+    "press on nothing."
+)
+
+
+def _peeling_forces() -> Derivation:
+    proof = _theorem("F11-peel", title="Forces while the right edge peels", text=_PEELS)
+    proof.define(d_s, (right + lam) ** 2 - lam**2 - d, r"no pressure at $r$")
+    proof.define(lam, rho - right)
+    proof.define(left, right - b, "$b$ is the width of the contact")
+    proof.equal(PRESSURE, (right - xi) * (xi - right + 2 * rho), "one difference", left=r"\hat p")
+    proof.recall("F11", f_normal, NORMAL_FORCE)
+    proof.equal(f_normal, PEELING_NORMAL_FORCE, "without differences of powers")
+    proof.recall("F11", f_friction, FRICTION_FORCE)
+    proof.equal(f_friction, PEELING_FRICTION_FORCE, "without differences of powers")
+    both = PEELING_NORMAL_FORCE.subs(b, 2 * rho)
+    proof.equal(both, rho**3, "both edges peel: $b = 2 \\rho$", left=r"f_z(2 \rho)")
+    return proof.done(f_normal, PEELING_NORMAL_FORCE)
+
+
+_PEELS = r"The pressure at the left edge is $b (2 \rho - b)$, so that $b \le 2 \rho$."
+
+
+def _derivatives() -> Derivation:
+    proof = _theorem("F11-derivatives", title="How forces depend on the motion", text=_DEPEND,
+                     uses=("F10-peel", "F11"))  # fmt: skip
+    ends = {end: sp.Function(str(end), real=True)(d, d_s) for end in (right, left)}
+    for variable in (d, d_s):
+        for force, share, weight in ((f_normal, _LOAD_SHARE, 1), (f_friction, _FRICTION_SHARE, xi)):
+            slope = sp.Derivative(established("F11", force).subs(ends), variable)
+            inside = sp.integrate(weight, CONTACT)
+            ahead, behind = (
+                (weight * PRESSURE).subs(xi, end) * sp.Derivative(end, variable)
+                for end in ends.values()
+            )
+            proof.equal(
+                *(slope, share * (inside.subs(ends) + ahead - behind), "the pressure at moving ends"),
+                left=_partial(force, variable), right=_moving_ends(share, inside, force, variable),
+            )  # fmt: skip
+    proof.recall("F10-touch", P, TOUCHING_PRESSURE)
+    motion = 1 / (2 * (xi - E * eta))
+    proof.equal(P * motion, sp.Derivative(edge_path, time), _TOUCHES, left=_AT_TOUCH,
+                right=r"X_{\mathrm{e}}'")  # fmt: skip
+    return proof.done(P * motion, sp.Derivative(edge_path, time))
+
+
+_AT_TOUCH = r"\hat p \, \frac{\partial \xi}{\partial d} = \frac{\hat p}{2 (\xi - E \eta)}"
+_TOUCHES = r"an edge that touches, where $g = u$ holds $\xi$: its velocity through the foundation"
+_DEPEND = (
+    r"At an edge that peels $\hat p$ vanishes and with it the term of that edge. An edge that touches does "
+    r"not depend on $d'$; in $\partial f_z/\partial d$ it leaves its velocity $X_{\mathrm{e}}'$ through "
+    "the foundation."
+)
+
+
+def _partial(force: sp.Expr, variable: sp.Expr) -> str:
+    return rf"\frac{{\partial {tex(force)}}}{{\partial {tex(variable)}}}"
+
+
+def _moving_ends(share: sp.Expr, inside: sp.Expr, force: sp.Expr, variable: sp.Expr) -> str:
+    """Print share * (inside + what the integrand has at the ends, times how they move)."""
+    ends = [
+        rf"{tex(end) if force == f_friction else ''} \hat p({tex(end)}) {_partial(end, variable)}"
+        for end in (right, left)
+    ]
+    return rf"{tex(share)} \left[{tex(inside)} + {ends[0]} - {ends[1]}\right]"
+
+
+def _start_from_rest() -> Derivation:
+    proof = _theorem("F11-start", title="The same after a start from rest", text=_START,
+                     uses=("F11-derivatives",))  # fmt: skip
+    trailing, leading = sp.sqrt(d + d_s + lam**2) - lam, -sp.sqrt(d)
+    proof.define(right, trailing, "peels")
+    proof.define(left, leading, "touches undisturbed ground")
+    proof.define(a, sp.sqrt(d))
+    ends = {right: trailing, left: leading}
+    pairs = [(force, variable) for force in (f_normal, f_friction) for variable in (d, d_s)]
+    for (force, variable), value in zip(pairs, JACOBIAN, strict=True):
+        slope = sp.Derivative(established("F11", force).subs(ends), variable)
+        proof.equal(slope, value, "F11", left=_partial(force, variable))
+    first = sp.Derivative(established("F11", f_normal).subs(ends), d)
+    return proof.done(first, JACOBIAN[0])
+
+
+_START = (
+    "While the drive does not fall off, the right edge peels and the left one finds undisturbed ground: "
+    "the motion is an ordinary differential equation for two numbers, without memory, with this Jacobian."
+)

@@ -1,0 +1,243 @@
+"""Rates of the transient: near the steady state (F12), and without inertia (F13)."""
+
+from functools import partial
+
+import sympy as sp
+
+from derivations import tables
+from derivations.record import Derivation, Table
+from derivations.step import Proof
+from derivations.symbols import (
+    K,
+    M,
+    P,
+    R,
+    V,
+    a,
+    b,
+    beta,
+    d,
+    d_s,
+    drive_excess,
+    eps,
+    eps_critical,
+    f,
+    g,
+    kappa,
+    l,
+    lam,
+    per_depth,
+    per_rate,
+    q,
+    rho,
+    right,
+    sigma,
+    tau,
+    time,
+    w,
+    xi,
+)
+from derivations.theorems import LOAD, NUMBER, UNIT, A
+from derivations.transient_memory import SECTION
+from derivations.transient_motion import JACOBIAN, PEELING_NORMAL_FORCE
+from derivations.transient_scaling import PRESSURE
+
+DAMPING, STIFFNESS = 3 * per_rate / 4, 3 * per_depth / 4 + kappa
+"""How strongly the force on the indenter depends on the rate of the depth, and on the depth."""
+
+_root = sp.sqrt(DAMPING**2 - 4 * eps * STIFFNESS)
+FAST, SLOW = -(DAMPING + _root) / (2 * eps), -2 * STIFFNESS / (DAMPING + _root)
+"""The rates per retardation time, without a difference of nearly equal numbers."""
+
+SLOW_RATE = right**2 + 2 * lam * right - d
+"""d' of the slow manifold."""
+EXCESS = 2 * (1 - beta**3) / (3 * beta**2)
+"""n of the slow manifold, for its width beta."""
+
+_theorem = partial(Proof, equation=None, section=SECTION)
+
+
+def derive() -> tuple[Derivation, ...]:
+    """Prove F12 and F13."""
+    return _rates(), _critical_inertia(), _time_constants(), _standard(), _manifold(), _one_root()
+
+
+def _rates() -> Derivation:
+    proof = _theorem(
+        "F12", title="Rates at the steady state", text=_RATES, uses=("scaled-form", "F11-start")
+    )
+    growth = sp.exp(sigma * time)
+    quadratic = eps * sigma**2 + DAMPING * sigma + STIFFNESS
+    motion = eps * sp.diff(growth, time, 2) + DAMPING * sp.diff(growth, time) + STIFFNESS * growth
+    proof.equal(
+        *(
+            motion,
+            quadratic * growth,
+            r"a small change of the depth in proportion to $e^{\sigma s}$",
+        ),
+        left=r"\left[\varepsilon \frac{d^2}{ds^2} + \frac{3 B}{4} \frac{d}{ds} + \frac{3 A}{4} + "
+        r"\kappa\right] e^{\sigma s}",
+    )
+    proof.root(quadratic, sigma, FAST, "fast", left=r"\sigma_1")
+    proof.root(quadratic, sigma, SLOW, "slow", left=r"\sigma_2")
+    proof.define(d_s, sp.S.Zero, "steady sliding")
+    proof.define(right, a * q, "with its trailing edge")
+    proof.define(lam, a * l)
+    proof.define(l, NUMBER)
+    per_unit = sp.Rational(4, 3)
+    proof.define(per_depth, per_unit * JACOBIAN[0], r"$\frac{4}{3} \partial f_z/\partial d$")
+    proof.equal(per_depth, a * (1 + q) ** 2 / (2 * q), r"which is $\sqrt{a^2 + \lambda^2} + a$")
+    proof.define(per_rate, per_unit * JACOBIAN[1], r"$\frac{4}{3} \partial f_z/\partial d'$")
+    proof.equal(per_rate, a * (1 + q), r"which is $\sqrt{a^2 + \lambda^2} - \lambda + a$")
+    return proof.done(sigma, SLOW)
+
+
+_RATES = (
+    r"Near the steady state, with the half length $a$ and the trailing edge $r$ in units of $a_0$, the "
+    r"change of depth is a sum of $e^{\sigma_1 s}$ and $e^{\sigma_2 s}$."
+)
+
+
+def _steady(proof: Proof) -> None:
+    """Let A, B and lambda be those of steady sliding, by the half length and q."""
+    proof.define(l, NUMBER)
+    proof.recall("F12", lam, a * l)
+    proof.recall("F12", per_depth, a * (1 + q) ** 2 / (2 * q))
+    proof.recall("F12", per_rate, a * (1 + q))
+
+
+def _critical_inertia() -> Derivation:
+    proof = _theorem("F12-boundary", title="Where oscillation begins", text=_BOUNDARY, uses=("F1",))
+    cubed = 27 * q**4 / (64 * (1 + q) ** 2 * A)
+    proof.define(eps_critical, DAMPING**2 / (4 * STIFFNESS))
+    proof.equal(DAMPING**2 - 4 * eps_critical * STIFFNESS, sp.S.Zero, "both rates are equal")
+    _steady(proof)
+    proof.define(kappa, sp.S.Zero, "dead weight")
+    proof.equal(eps_critical, 3 * a * q / 8, "three eighths of the trailing edge $r = a q$")
+    proof.define(a, sp.cbrt(4 / (3 * w)), r"the load $W_0 \frac{3}{4} a^3 w$ is the weight")
+    proof.recall("F1", w, LOAD)
+    proof.equal(eps_critical**3, cubed, "the boundary, in terms of $q$")
+    proof.equal(lam**3, (1 - q) ** 3 * (1 + q) / (q**2 * A), "and the drive number")
+    proof.sign(sp.Derivative(cubed, q), ">", 0, UNIT, r"it falls with growing $\lambda$")
+    rest, fast = sp.Rational(3, 8), 1 / (4 * lam**2)
+    proof.equal(cubed.subs(q, 1), rest**3, "at rest", left=r"\varepsilon_{\mathrm{c}}^3(0)")
+    proof.leading_order(eps_critical**3, fast**3, q, 0, "fast", eps=lam ** -sp.Rational(3, 2))
+    return proof.done(eps_critical, 3 * a * q / 8)
+
+
+_BOUNDARY = (
+    r"The transient is monotone near the steady state for $\varepsilon \le \varepsilon_{\mathrm{c}}$ "
+    r"and oscillates for $\varepsilon > \varepsilon_{\mathrm{c}}$. For a dead weight the boundary in the "
+    r"plane of $\lambda$ and $\varepsilon$ is rational in $q$, up to cube roots."
+)
+
+
+def _time_constants() -> Derivation:
+    proof = _theorem(
+        "F12-time-constants", title="The two time constants", text=_TIMES, uses=("F12",)
+    )
+    _steady(proof)
+    proof.define(kappa, sp.S.Zero, "dead weight")
+    fast, slow = 4 * eps / (3 * a * (1 + q)), 2 * q / (1 + q)
+    proof.leading_order(-1 / FAST, fast, eps, 0, "inertia against damping", eps=eps,
+                        left=r"\frac{T_1}{\tau}")  # fmt: skip
+    proof.leading_order(-1 / SLOW, slow, eps, 0, "damping against stiffness", eps=eps,
+                        left=r"\frac{T_2}{\tau}")  # fmt: skip
+    return proof.done(-1 / SLOW, slow)
+
+
+_TIMES = (
+    r"$T_1 = -\tau/\sigma_1$ and $T_2 = -\tau/\sigma_2$ for small $\varepsilon$: the fast one is due to "
+    "the mass, the slow one is a part of the retardation time, given by the drive alone."
+)
+
+
+def _standard() -> Derivation:
+    proof = _theorem("F12-table1", title="Time constants under standard conditions", text=_STANDARD,
+                     uses=("F12", "F12-boundary", "table1"))  # fmt: skip
+    cubed = ((V * tau) ** 3 * K / (R * M * g)).subs(tables.STANDARD)
+    quartic = sp.numer(sp.together(sp.expand(2 * cubed * q**2 * A - 3 * (1 - q) ** 3 * (1 + q))))
+    proof.unique_root(quartic, UNIT, "F2 with the numbers of Table 1")
+    state = next(root for root in sp.Poly(quartic, q).real_roots() if 0 < root < 1)
+    half = sp.cbrt(4 / (3 * LOAD))
+    inertia = (tables.static_depth / (g * tau**2)).subs(tables.STANDARD)
+    known = {
+        eps: inertia, kappa: 0, lam: half * NUMBER,
+        per_depth: half * (1 + q) ** 2 / (2 * q), per_rate: half * (1 + q),
+    }  # fmt: skip
+    milliseconds = 1000 * tables.STANDARD[tau]
+    rows = (
+        ("Drive number", r"$\lambda$", lam, ""),
+        ("Inertia number", r"$\varepsilon$", eps, ""),
+        ("Boundary of oscillation", r"$\varepsilon_{\mathrm{c}}$", 3 * half * q / 8, ""),
+        ("Trailing edge over half length", "$q$", q, ""),
+        ("Depth over static depth", r"$\delta/\delta_0$", half**2, ""),
+        ("Fast time constant", "$T_1$", -milliseconds / FAST, "ms"),
+        ("Slow time constant", "$T_2$", -milliseconds / SLOW, "ms"),
+    )
+    return proof.done(quartic, 0, table=Table(
+        ("Quantity", "Symbol", "Value", "Unit"),
+        tuple((name, symbol, _four_digits(value.subs(known).subs(q, state)), unit)
+              for name, symbol, value, unit in rows),
+    ))  # fmt: skip
+
+
+def _four_digits(value: sp.Expr) -> str:
+    return f"{float(sp.N(value, 30)):.4g}"
+
+
+_STANDARD = (
+    'The paper reads "1 ms" and "10 ms" from its Fig. 3 for the dead weight. They are the two time '
+    "constants of the steady state, computed here exactly and then rounded to four digits: the fast "
+    r"one is inertia against the damping of the foundation, the slow one damping against stiffness."
+)
+
+
+def _manifold() -> Derivation:
+    proof = _theorem(
+        "F13", title="Slow manifold", text=_MANIFOLD, uses=("scaled-form", "F10-touch")
+    )
+    cubic = 2 * right**3 / 3 + (a + lam) * right**2 + 2 * lam * a * right + lam * a**2 - a**3 / 3
+    proof.recall("scaled-pressure", P, PRESSURE)
+    proof.define(xi, right, "the right edge peels")
+    proof.root(P, d_s, SLOW_RATE, "no pressure there")
+    proof.define(rho, right + lam)
+    proof.define(b, right + a, r"the left edge touches at $-a = -\sqrt{d}$")
+    proof.define(f, PEELING_NORMAL_FORCE, "F11: the force is all that is left of the weight")
+    proof.equal(f, (right + a) ** 2 * (2 * right + 3 * lam - a) / 4, "which is a cubic in $r$")
+    proof.equal(4 * f / 3, cubic, "expanded")
+    return proof.done(d_s, SLOW_RATE)
+
+
+_MANIFOLD = (
+    r"Without inertia the indenter is in balance, $f_z = f$ with $f = 1 - \kappa (d - 1)$: given $d$, "
+    r"this fixes the right edge $r$, and $r$ fixes $d'$. One differential equation of first order is left. "
+    r"It holds where the left edge touches undisturbed ground, $b \le 2 \rho$."
+)
+
+
+def _one_root() -> Derivation:
+    proof = _theorem("F13-root", title="Slow manifold: one root", text=_ROOT, uses=("F13",))
+    unit = sp.cbrt(2 * f)
+    positive = (beta, 0, sp.oo)
+    proof.define(rho, b + lam - a)
+    proof.define(b, unit * beta)
+    proof.define(lam, a + unit * drive_excess)
+    relation = beta**2 * (2 * beta + 3 * drive_excess) / 2
+    proof.equal(PEELING_NORMAL_FORCE / f, relation, r"F11 with $\rho = r + \lambda$ and $r = b - a$",
+                left=r"\frac{f_z}{f}")  # fmt: skip
+    proof.root(relation - 1, drive_excess, EXCESS, r"where $f_z = f$")
+    proof.sign(
+        sp.Derivative(EXCESS, beta), "<", 0, positive, r"each $n$ belongs to one $\beta$ at most"
+    )
+    proof.leading_order(EXCESS, 2 / (3 * beta**2), beta, 0, r"$n \to \infty$", eps=beta)
+    proof.leading_order(
+        EXCESS, -2 * beta / 3, beta, sp.oo, r"$n \to -\infty$: to exactly one", eps=1 / beta
+    )
+    return proof.done(drive_excess, EXCESS)
+
+
+_ROOT = (
+    r"With $b = (2 f)^{1/3} \beta$ and $\lambda - a = (2 f)^{1/3} n$ the cubic has no parameter but $n$: "
+    r"$2 \beta^3 + 3 n \beta^2 = 2$ has exactly one positive root for each $n$."
+)

@@ -1,0 +1,175 @@
+"""Transient sliding: the scaled equations with their three numbers, and the edges that peel (Eq. 33)."""
+
+from functools import partial
+
+import sympy as sp
+
+from derivations.groups import k_s
+from derivations.model import compression_rate, depth_rate, slope
+from derivations.record import Derivation
+from derivations.step import Proof, tex
+from derivations.symbols import (
+    W_0,
+    C,
+    F_z,
+    K,
+    M,
+    P,
+    R,
+    V,
+    a,
+    a_0,
+    d,
+    d_s,
+    d_ss,
+    delta_0,
+    delta_t,
+    eps,
+    f_normal,
+    g,
+    h,
+    kappa,
+    l_r,
+    lam,
+    p,
+    t,
+    tau,
+    u_i,
+    x,
+    x_i,
+    x_te,
+    xi,
+    z_a,
+)  # fmt: skip
+
+SECTION = "Transient sliding"
+
+PRESSURE = d + d_s - xi**2 - 2 * lam * xi
+"""p/(K delta_0) in the contact."""
+
+_half = sp.sqrt(2 * R * delta_t)
+TRAILING = sp.sqrt(a**2 * (1 + tau * depth_rate / delta_t) + l_r**2) - l_r
+"""Eq. 33: the zeros of the pressure."""
+LEADING = -sp.sqrt(a**2 * (1 + tau * depth_rate / delta_t) + l_r**2) - l_r
+
+_RADICAND = r"a^2 \left(1 + \tau \frac{\dot\delta}{\delta}\right) + l_{\mathrm{r}}^2"
+_equation = partial(Proof, section=SECTION)
+
+
+def derive() -> tuple[Derivation, ...]:
+    """Derive the scaled form and Eq. 33."""
+    return *_scaled_form(), _peeling_edges()
+
+
+def _scaled_form() -> tuple[Derivation, ...]:
+    pressure = _equation("scaled-pressure", None, title="Scaled pressure", text=_SCALES)
+    _scale(pressure)
+    pressure.recall("eq22", tau, C / K)
+    pressure.define(slope, x_i / R, "Eq. (3)", left="h'(x_i)", right="x_i/R")
+    pressure.define(h(x_i), x_i**2 / (2 * R), "Eq. (3)", left="h(x_i)", right="x_i^2/(2 R)")
+    pressure.recall("eq6", u_i, -h(x_i) + delta_t)
+    pressure.equal(u_i / delta_0, d - xi**2, "compression under the indenter")
+    pressure.recall("eq7", compression_rate, -slope * V + depth_rate)
+    pressure.define(lam, V * tau / a_0, "drive number")
+    shown = r"\frac{\tau \dot u_i}{\delta_0}"
+    pressure.equal(tau * compression_rate / delta_0, d_s - 2 * lam * xi, "its rate", left=shown)
+    pressure.define(p, K * u_i + C * compression_rate, right=r"K u_i + C \dot u_i")
+    pressure.define(P, p / (K * delta_0))
+    pressure.equal(P, PRESSURE, "scaled pressure")
+    pressure.equal(
+        *(p * a_0 / W_0, sp.Rational(3, 4) * P, "share of the load, for Eq. (14)"),
+        left=r"\frac{p}{W_0} \frac{dx}{d\xi}",
+    )
+    pressure.equal(
+        -slope * p * a_0 / (W_0 * delta_0 / a_0),
+        -sp.Rational(3, 2) * xi * P,
+        r"share of the friction force, in units of $W_0 \delta_0/a_0$",
+        left=r"-\frac{h' p}{W_0 \delta_0/a_0} \frac{dx}{d\xi}",
+    )
+    return pressure.done(P, PRESSURE), _scaled_motion()
+
+
+_SCALES = (
+    r"The unit of lengths along $x$ is $a_0 = \sqrt{2 R \delta_0}$, half the contact at rest, that of "
+    r"depths the static depth $\delta_0$, that of forces the static load $W_0 = \frac{4}{3} K a_0 "
+    r"\delta_0$ and that of time $\tau$; a prime is the derivative with respect to $s = t/\tau$."
+)
+
+
+def _scale(proof: Proof) -> None:
+    """Define the scaled variables."""
+    proof.define(a_0, sp.sqrt(2 * R * delta_0), right=r"\sqrt{2 R \delta_0}")
+    proof.define(W_0, sp.Rational(4, 3) * K * a_0 * delta_0, "the load at rest")
+    proof.define(xi, x_i / a_0, right="x_i/a_0")
+    proof.define(d, delta_t / delta_0, right=r"\delta/\delta_0")
+    proof.define(d_s, tau * depth_rate / delta_0, left="d'", right=r"\tau \dot\delta/\delta_0")
+
+
+def _scaled_motion() -> Derivation:
+    proof = _equation("scaled-form", None, title="Scaled motion of the indenter", text=_SUPPORTS,
+                      uses=("eq14", "eq17", "scaled-pressure"))  # fmt: skip
+    force = F_z - M * g - k_s * (z_a + delta_0)
+    proof.recall("eq18", delta_t, -z_a)
+    proof.define(d, delta_t / delta_0, right=r"\delta/\delta_0")
+    proof.define(d_ss, tau**2 * delta_t.diff(t, 2) / delta_0, right=r"\tau^2 \ddot\delta/\delta_0")
+    proof.define(f_normal, F_z / W_0)
+    proof.define(eps, M * delta_0 / (W_0 * tau**2), "inertia number")
+    proof.define(kappa, k_s * delta_0 / W_0, "support number")
+    proof.define(g, W_0 / M, "the weight is the load at rest")
+    proof.define(
+        *(z_a.diff(t, 2), force / M, "Eq. (17) with the force of the spring"),
+        left=r"M \ddot z_{\mathrm{A}}",
+        right=r"F_z - M g - k_s \left(z_{\mathrm{A}} + \delta_0\right)",
+    )
+    result = 1 - f_normal - kappa * (d - 1)
+    shown = {"left": r"\varepsilon d''", "right": r"1 - f_z - \kappa (d - 1)"}
+    proof.equal(eps * d_ss, result, "scaled motion", **shown)
+    return proof.done(eps * d_ss, result)
+
+
+_SUPPORTS = (
+    r"Three numbers are left: $\lambda = V \tau/a_0$, $\varepsilon = M \delta_0/(W_0 \tau^2)$ and "
+    r"$\kappa = k_s \delta_0/W_0$. A dead weight has $\kappa = 0$; a spring of stiffness $k_s$, relaxed "
+    r"at the static depth, makes the indenter suspended, and $\kappa \to \infty$ holds it at $d = 1$."
+)
+
+
+def _peeling_edges() -> Derivation:
+    proof = _equation("eq33", 33, title="Trailing edge of the movable indenter", text=_PEEL,
+                      uses=("eq6", "eq7"))  # fmt: skip
+    half = K / (2 * R)
+    square = a**2 * (1 + tau * depth_rate / delta_t) + l_r**2
+    proof.recall("eq3", h(x), x**2 / (2 * R))
+    proof.recall("eq22", tau, C / K)
+    proof.recall("eq29", l_r, V * tau)
+    proof.define(a, _half, "now depends on time", right=r"\sqrt{2 R \delta(t)}")
+    proof.define(
+        *(p, K * (delta_t - h(x)) + C * (depth_rate - V * h(x).diff(x)), _KINEMATICS),
+        right=r"K (\delta - h) + C (\dot\delta - V h')",
+    )
+    proof.equal(
+        *(p, half * (square - (x + l_r) ** 2), r"largest at $x = -l_{\mathrm{r}}$"),
+        right=rf"\frac{{K}}{{2 R}} \left[{_RADICAND} - (x + l_{{\mathrm{{r}}}})^2\right]",
+    )
+    proof.equal(
+        *(p, half * (TRAILING - x) * (x - LEADING), "positive exactly between its zeros"),
+        right=r"\frac{K}{2 R} \left(x_{+} - x\right) \left(x - x_{-}\right)",
+    )
+    proof.root(
+        *(p, x, LEADING, "a leading edge that peels, where Eq. (32) does not hold"),
+        left="x_{-}", right=rf"-\sqrt{{{_RADICAND}}} - l_{{\mathrm{{r}}}}",
+    )  # fmt: skip
+    proof.root(
+        *(p, x, TRAILING, "the trailing edge while it peels"),
+        left=rf"x_{{+}} = {tex(x_te)}", right=rf"\sqrt{{{_RADICAND}}} - l_{{\mathrm{{r}}}}",
+    )  # fmt: skip
+    return proof.done(x, TRAILING)
+
+
+_KINEMATICS = r"$K u + C \dot u$ with Eqs. (6) and (7)"
+_PEEL = (
+    "It holds while the edge peels, that is, while elements leave the contact there because their "
+    "pressure vanishes. The paper gives one zero of the pressure; the other is a leading edge that "
+    "peels, as it does when the indenter is lifted faster than the edge finds undisturbed ground. If "
+    "there is no zero, no element can be pressed and the indenter has left the foundation."
+)
