@@ -144,6 +144,8 @@ def test_python_functions_do_not_go_into_a_file():
         ),
         ('duration = "200 ms"', 'duration = "0 ms"', ["run.duration", "above 0"]),
         ("[run]", "[run", ["not a TOML file"]),
+        ('radius = "10 mm"', "radius = 10 mm", ["not a TOML file", "text in quotes"]),
+        ('kind = "dead-weight"', 'Kind = "dead-weight"', ["support.Kind", 'did you mean "kind"']),
     ],
 )
 def test_one_mistake_costs_one_clear_line(tmp_path, line, replacement, words):
@@ -163,6 +165,49 @@ def test_all_mistakes_are_reported_together(tmp_path):
         assert any(key in text for text in found)
     assert any("drive.velocity" in text for text in found)
     assert any('--set "nonsense"' in text for text in found)
+
+
+def test_a_wrong_support_does_not_hide_the_other_mistakes(tmp_path):
+    text = TABLE_1.replace('"dead-weight"', '"deadweight"').replace(
+        'mass = "1 kg/mm"', "mass = 1\nstifness = 2"
+    )
+    found = problems(write(tmp_path, text))
+    assert len(found) == 3
+    assert 'did you mean "dead-weight"' in found[0]
+    assert any("support.mass = 1" in text for text in found)
+    assert any("support.stifness" in text for text in found)
+
+
+def test_a_byte_order_mark_is_no_mistake(tmp_path):
+    path = tmp_path / "scene.toml"
+    path.write_text(TABLE_1, encoding="utf-8-sig")
+    assert kv.load_scene(path) == kv.Scene()
+
+
+def test_what_an_old_section_has_in_common_with_the_new_one_stays(tmp_path):
+    path = write(tmp_path, TABLE_1)
+    assert kv.load_scene(path, ["support.kind=dead-weight"]) == kv.Scene()
+    assert kv.load_scene(path, ["indenter.shape=circle"]).indenter == kv.Circle(radius=0.01)
+    hung = kv.load_scene(path, ["support.kind=suspended", "support.stiffness=1 MPa"])
+    assert hung.support == kv.Suspended(mass=1000.0, stiffness=1e6)
+
+
+def test_parts_of_the_wrong_kind_are_named():
+    with pytest.raises(kv.SceneError) as caught:
+        kv.Scene(indenter="parabola", drive="100 mm/s")
+    assert [text.split(" = ")[0] for text in caught.value.problems] == ["indenter", "drive"]
+    with pytest.raises(ValueError, match='did you mean "fixed"'):
+        kv.Scene.table1("Fixed")
+    for options in (
+        {"reach": float("nan")},
+        {"reach": "10 mm"},
+        {"kinks": (float("nan"),)},
+        {"kinks": 1.0},
+    ):
+        with pytest.raises(kv.SceneError, match=next(iter(options))):
+            kv.Profile(abs, abs, **options)
+    with pytest.raises(kv.SceneError, match="functions"):
+        kv.Profile("x", abs)
 
 
 def test_a_missing_section_is_named(tmp_path):
@@ -239,6 +284,9 @@ def test_dimensionless_numbers_of_table_1():
     assert numbers["inertia_number"] == pytest.approx(1000 * depth / (W * tau**2), rel=1e-14)
     assert numbers["support_number"] == pytest.approx(3e7 * depth / W, rel=1e-14)
     assert "support_number" not in dimensionless_numbers(kv.Scene.table1("fixed"))
+    for extreme in (kv.DeadWeight(1e200), kv.DeadWeight(1e-320)):
+        with pytest.raises(ValueError, match="double precision"):
+            dimensionless_numbers(kv.Scene(support=extreme))
     with pytest.raises(ValueError, match="parabola"):
         dimensionless_numbers(kv.Scene(indenter=kv.Circle(radius=0.01)))
 

@@ -28,6 +28,10 @@ from kvtheory.scene.units import EXAMPLES, to_si
         ("10 GN/m**3", "N/m^3", 1e10),
         ("10 GN/m³", "N/m^3", 1e10),
         ("10 MPa/mm", "N/m^3", 1e10),
+        ("10 N/mm3", "N/m^3", 1e10),
+        ("10 N mm-3", "N/m^3", 1e10),
+        ("10 N·mm^-3", "N/m^3", 1e10),
+        ("10 N / mm ^ 3", "N/m^3", 1e10),
         ("10 N/(mm mm^2)", "N/m^3", 1e10),
         ("1 kg/mm", "kg/m", 1000.0),
         ("30 MPa", "N/m^2", 3e7),
@@ -68,6 +72,8 @@ def test_agrees_with_exact_decimals(number):
         ("5 m" + " m" * 100, "m", "not a unit"),
         ("5 m", "1", "dimensionless"),
         (True, "m", "expected a quantity in m"),
+        (np.bool_(True), "m", "expected a quantity in m"),
+        (np.complex128(1 + 2j), "m", "expected a quantity in m"),
         (None, "m", "expected a quantity in m"),
         ([1.0], "m", "expected a quantity in m"),
         ({}, "m", "expected a quantity in m"),
@@ -98,6 +104,7 @@ def test_takes_pint_quantities_and_plain_si_numbers():
     assert to_si(registry.Quantity(2.5), "1") == 2.5
     assert to_si(np.float32(0.5), "m") == 0.5
     assert to_si(3, "m") == 3.0
+    assert to_si(Decimal("0.1"), "m") == to_si(Fraction(1, 10), "m") == 0.1
     with pytest.raises(ValueError, match="another dimension"):
         to_si(registry.Quantity(5, "s"), "m")
     with pytest.raises(ValueError, match="dimensionless"):

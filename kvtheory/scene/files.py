@@ -9,6 +9,7 @@ from kvtheory.scene.fields import (
     Quantity,
     SceneError,
     absent,
+    closest,
     convert,
     nearest,
     problem,
@@ -35,7 +36,8 @@ def load_scene(path: str | Path | None = None, overrides: Iterable[str] = ()) ->
         The scene file.
     overrides
         Texts ``"section.key=value"`` that replace or add keys. A new ``support.kind`` or
-        ``indenter.shape`` replaces that whole section; without a file it starts from Table 1.
+        ``indenter.shape`` keeps the keys that it has in common with the old one; without a file,
+        Table 1 gives the others.
 
     Raises
     ------
@@ -50,7 +52,8 @@ def load_scene(path: str | Path | None = None, overrides: Iterable[str] = ()) ->
     0.05
     """
     tables = _tables(Scene.table1()) if path is None else _read(Path(path))
-    problems = _override(tables, list(overrides), embedded=path is None)
+    overrides = [overrides] if isinstance(overrides, str) else list(overrides)
+    problems = _override(tables, overrides, embedded=path is None)
     return _build(tables, problems)
 
 
@@ -68,7 +71,7 @@ def template(support: str = "dead-weight") -> str:
     """Return Table 1 as a scene file with a comment on every key."""
     shown = {
         "radius": "10 mm", "stiffness": "10 GN/m^3", "retardation_time": "100 ms",
-        "depth": "300 µm", "mass": "1 kg/mm", "gravity": "9.80665 m/s^2",
+        "depth": "0.3 mm", "mass": "1 kg/mm", "gravity": "9.80665 m/s^2",
         "velocity": "100 mm/s", "duration": "200 ms",
     }  # fmt: skip
     scene = Scene.table1(support)
@@ -126,9 +129,10 @@ def _toml(value: Any) -> str:
 
 def _read(path: Path) -> dict[str, Any]:
     try:
-        return tomllib.loads(path.read_text(encoding="utf-8"))
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
-        raise SceneError([f"{path} is not a TOML file: {error}"]) from None
+        return tomllib.loads(path.read_text(encoding="utf-8-sig"))
+    except ValueError as error:  # of TOML, of the encoding, or an endless integer
+        hint = 'a quantity is text in quotes, such as radius = "10 mm"'
+        raise SceneError([f"{path} is not a TOML file in UTF-8: {error}; {hint}"]) from None
 
 
 def _override(tables: dict[str, Any], overrides: list[str], *, embedded: bool) -> list[str]:
@@ -137,7 +141,7 @@ def _override(tables: dict[str, Any], overrides: list[str], *, embedded: bool) -
     for text in overrides:
         key, separator, value = text.partition("=")
         section, _, name = key.strip().partition(".")
-        if not separator or not name:
+        if not (separator and section and name):
             problems.append(f'--set "{text}": expected KEY=VALUE, such as drive.velocity="50 mm/s"')
             continue
         value = value.strip()
@@ -146,8 +150,7 @@ def _override(tables: dict[str, Any], overrides: list[str], *, embedded: bool) -
         pairs.append((section, name, value))
     for section, name, value in pairs:
         if section in CHOICES and name == CHOICES[section][0]:
-            known = embedded and section == "support" and value in SUPPORTS
-            tables[section] = _tables(Scene.table1(value))["support"] if known else {name: value}
+            tables[section] = _switched(tables.get(section), section, value, embedded)
     for section, name, value in pairs:
         table = tables.setdefault(section, {})
         if not isinstance(table, dict):
@@ -159,6 +162,18 @@ def _override(tables: dict[str, Any], overrides: list[str], *, embedded: bool) -
         except tomllib.TOMLDecodeError:
             table[name] = value
     return problems
+
+
+def _switched(old: Any, section: str, choice: str, embedded: bool) -> dict[str, Any]:
+    """Return a section for another shape or support: what the old one has in common with it stays.
+
+    Table 1 gives both the mass and the depth, so that the built-in scene can switch its support.
+    """
+    chooser, models = CHOICES[section]
+    names = quantities(models[choice]) if choice in models else {}
+    given = _tables(Scene.table1(choice))[section] if embedded and choice in SUPPORTS else {}
+    common = {k: v for k, v in old.items() if k in names} if isinstance(old, dict) else {}
+    return {**given, **common, chooser: choice}
 
 
 def _build(tables: Mapping[str, Any], problems: list[str]) -> Scene:
@@ -192,32 +207,41 @@ def _part(section: str, table: Any) -> Any:
     if section not in CHOICES:
         return _make(PLAIN[section], section, table)
     chooser, models = CHOICES[section]
+    rest = {key: value for key, value in table.items() if key != chooser}
     name = table.get(chooser, "parabola" if section == "indenter" else None)
-    if not isinstance(name, str) or name not in models:
+    if isinstance(name, str) and name in models:
+        return _make(models[name], section, rest, f'{chooser} = "{name}"')
+    problems = []
+    if chooser not in table and absent([chooser], table):
+        problems.append(f"{section}.{chooser}: missing; expected one of: {', '.join(models)}")
+    elif chooser in table:
         what = (
             nearest(name, models)
             if isinstance(name, str)
             else f"expected exactly one of: {', '.join(models)}"
         )
-        raise SceneError(
-            [
-                problem(f"{section}.{chooser}", name, what)
-                if chooser in table
-                else f"{section}.{chooser}: missing; {what}"
-            ]
-        )
-    return _make(
-        models[name],
-        section,
-        {k: v for k, v in table.items() if k != chooser},
-        f'{chooser} = "{name}"',
-    )
+        problems.append(problem(f"{section}.{chooser}", name, what))
+    meant = closest(name, models) if isinstance(name, str) else None
+    valid = [chooser, *dict.fromkeys(key for model in models.values() for key in quantities(model))]
+    if meant is None:
+        problems += [
+            f"{section}.{key}: unknown key; {nearest(key, valid)}"
+            for key in rest
+            if key not in valid
+        ]
+    else:
+        try:
+            _make(models[meant], section, rest, f'{chooser} = "{meant}"')
+        except SceneError as error:
+            problems += error.problems
+    raise SceneError(problems)
 
 
 def _make(cls: Any, section: str, table: Mapping[str, Any], choice: str = "") -> Any:
     """Construct `cls` from TOML values, in which a bare number is a mistake."""
     specs = quantities(cls)
     valid = [*specs, "history"] if cls is Drive else list(specs)
+    known = [CHOICES[section][0], *valid] if section in CHOICES else valid
     of = f" for {choice}" if choice else ""
     missing = [name for name in absent(valid, table) if name in required(cls)]
     problems = [
@@ -226,7 +250,7 @@ def _make(cls: Any, section: str, table: Mapping[str, Any], choice: str = "") ->
     values: dict[str, Any] = {}
     for key, value in table.items():
         if key not in valid:
-            problems.append(f"{section}.{key}: unknown key{of}; {nearest(key, valid)}")
+            problems.append(f"{section}.{key}: unknown key{of}; {nearest(key, known)}")
             continue
         try:
             values[key] = _value(value, specs[key]) if key in specs else _points(value)

@@ -12,7 +12,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from kvtheory.scene.fields import quantity, settle
+from kvtheory.scene.fields import SceneError, problem, quantity, settle
 
 Value = Any
 """A float or an array of floats, in m or dimensionless."""
@@ -152,6 +152,19 @@ class Profile:
     reach: float = math.inf
     kinks: tuple[float, ...] = ()
 
+    def __post_init__(self) -> None:
+        if not (callable(self.height_function) and callable(self.slope_function)):
+            raise SceneError(["indenter: expected functions h(x) and h'(x) of one float"])
+        if not (isinstance(self.reach, (int, float)) and self.reach > 0.0):
+            raise SceneError(
+                [problem("indenter.reach", self.reach, "expected a number above 0, in m")]
+            )
+        if not (isinstance(self.kinks, (tuple, list)) and all(map(_is_finite, self.kinks))):
+            raise SceneError(
+                [problem("indenter.kinks", self.kinks, "expected finite numbers, in m")]
+            )
+        object.__setattr__(self, "kinks", tuple(map(float, self.kinks)))
+
     def height(self, x: Value) -> Value:
         """Return h(x)."""
         return _pointwise(self.height_function, x)
@@ -159,6 +172,10 @@ class Profile:
     def slope(self, x: Value) -> Value:
         """Return h'(x)."""
         return _pointwise(self.slope_function, x)
+
+
+def _is_finite(value: Any) -> bool:
+    return isinstance(value, (int, float)) and math.isfinite(value)
 
 
 def _pointwise(function: Callable[[float], float], x: Value) -> Value:

@@ -13,6 +13,7 @@ from kvtheory.scene.fields import (
     Quantity,
     SceneError,
     convert,
+    nearest,
     problem,
     quantities,
     quantity,
@@ -199,6 +200,22 @@ class Scene:
     drive: Drive = Drive(velocity=0.1)
     run: Run = Run()
 
+    def __post_init__(self) -> None:
+        parts: dict[str, Any] = {
+            "indenter": Indenter, "foundation": Foundation, "support": Support, "drive": Drive, "run": Run,
+        }  # fmt: skip
+        problems = [
+            problem(
+                name,
+                getattr(self, name),
+                f"expected {getattr(kind, '__name__', 'one of ' + str(kind))}",
+            )
+            for name, kind in parts.items()
+            if not isinstance(getattr(self, name), kind)
+        ]
+        if problems:
+            raise SceneError(problems)
+
     @classmethod
     def table1(cls, support: str = "dead-weight") -> "Scene":
         """Return the standard scene of Table 1 with one of its supports.
@@ -206,6 +223,8 @@ class Scene:
         The paper has no suspended indenter; its spring here, 30 MN/m^2, is about as stiff as the
         foundation under the indenter.
         """
+        if support not in TABLE1_SUPPORTS:
+            raise ValueError(f'`support` = "{support}": {nearest(support, TABLE1_SUPPORTS)}')
         return cls(support=TABLE1_SUPPORTS[support])
 
     def values(self) -> Mapping[str, float]:

@@ -41,7 +41,17 @@ def dimensionless_numbers(scene: Scene) -> dict[str, float]:
         raise ValueError(
             f'only a parabola has these numbers, not indenter.shape = "{scene.indenter.shape}"'
         )
-    R, K, tau = scene.indenter.radius, scene.foundation.stiffness, scene.foundation.retardation_time
+    try:
+        numbers = _numbers(scene)
+    except ArithmeticError:
+        numbers = {"": math.inf}
+    if not all(map(math.isfinite, numbers.values())) or numbers["static_half_length"] == 0.0:
+        raise ValueError("the scene leaves the range of double precision: check its values")
+    return numbers
+
+
+def _numbers(scene: Scene) -> dict[str, float]:
+    R, K, tau = scene.indenter.radius, scene.foundation.stiffness, scene.foundation.retardation_time  # type: ignore[union-attr]
     support = scene.support
     if isinstance(support, Fixed):
         a_0 = math.sqrt(2 * R * support.depth)

@@ -7,8 +7,10 @@ is imported only when a unit has to be understood.
 import difflib
 import math
 import re
+from decimal import Decimal
 from fractions import Fraction
 from functools import cache
+from numbers import Real
 from typing import Any
 
 EXAMPLES = {
@@ -58,8 +60,9 @@ def to_si(value: Any, unit: str) -> float:
     if hasattr(value, "magnitude") and hasattr(value, "units"):
         written = f"{value.units:C}".replace("dimensionless", "")
         return _scaled(float(value.magnitude), written, unit)
-    is_number = isinstance(value, (int, float)) or hasattr(value, "item")
-    if isinstance(value, bool) or not is_number:
+    if getattr(value, "shape", None) == ():  # a NumPy scalar
+        value = value.item()
+    if isinstance(value, bool) or not isinstance(value, Real | Decimal):
         raise ValueError(f"expected {expected(unit)}")
     try:
         return float(value)
@@ -107,6 +110,9 @@ def _scaled(number: str | float, written: str, unit: str) -> float:
 
 
 def _factor(written: str, unit: str) -> Fraction:
+    # The usual ways to write a power: mm3, s-1, m ^ 3, N·m.
+    written = re.sub(r"\s*(\^|\*\*)\s*", "^", written.replace("·", "*"))
+    written = re.sub(r"(?<=[^\W\d_])(?=-?[0-9])", "^", written)
     if len(written) > LONGEST_UNIT or not _UNIT.fullmatch(written):
         raise ValueError(f'"{written}" is not a unit; expected {expected(unit)}')
     registry = _registry()

@@ -162,11 +162,11 @@ ROWS = {
     "dead-weight": (L1, L2, DEPTH_LOW, DEPTH_HIGH),
     "suspended": (
         L1,
-        L2,
-        DEPTH_LOW,
-        DEPTH_HIGH,
+        Row("L2", "friction_coefficient", "high", None, "alpha sqrt((M g + k_s delta_0)/(R C V))"),
+        Row("depth, low V", "depth", "low", None, "delta_0 = (3 M g/(4 K sqrt(2 R)))^(2/3)"),
+        Row("depth, high V", "depth", "high", None, "(M g + k_s delta_0)/(C V)"),
         Row("load, low V", "load", "low", None, "M g"),
         Row("load, high V", "load", "high", None, "M g + k_s delta_0"),
     ),
 }
-"""What is listed for each support; W is M g for a dead weight and M g + k_s delta_0 on a spring."""
+"""What is listed for each support; W = M g is the load of a dead weight."""

@@ -36,6 +36,9 @@ GROWTH = 8.0
 """Ratio of successive trial brackets: few trials over many decades, and a narrow bracket."""
 CHECK_SAMPLES = 512
 """Points of each region in which a shape that is not known to be convex is checked."""
+WAVY_PIECES = 64
+"""Parts of each smooth piece of a shape that is not known to be convex: with the nodes of `quad` in
+each, waves and bumps down to 1/500 of the contact are seen."""
 CHECK_MARGIN = 1e-9
 """Share of a region left out at its ends, where kinks may be singular."""
 CHECK_SPAN = 4.0
@@ -131,13 +134,26 @@ class Contact:
 
     @cached_property
     def pieces(self) -> list[tuple[float, float]]:
+        """The contact, cut where the surface is not smooth, and finely where it may be wavy."""
+        cuts = self.smooth_pieces
+        if self.surface.indenter.convex:
+            return cuts
+        return [
+            part
+            for start, end in cuts
+            for part in itertools.pairwise(np.linspace(start, end, WAVY_PIECES + 1).tolist())
+        ]
+
+    @property
+    def smooth_pieces(self) -> list[tuple[float, float]]:
         """The contact, cut where the surface is not smooth."""
         return self._cut(self.x_le, self.trailing[0])
 
     def integral(self, integrand: Callable[[float], float]) -> tuple[float, float]:
         """Integrate over the contact; return the value and the estimate of its error."""
         parts = [integral(integrand, start, end) for start, end in self.pieces]
-        return sum(value for value, _ in parts), sum(error for _, error in parts)
+        # The exactly rounded sum does not depend on the direction of the drive.
+        return math.fsum(value for value, _ in parts), sum(error for _, error in parts)
 
     def _cut(self, start: float, end: float) -> list[tuple[float, float]]:
         points = [start, *(x for x in self.surface.breakpoints if start < x < end), end]
@@ -158,7 +174,7 @@ def check_one_contact(contact: Contact) -> None:
     """Raise unless h' is the derivative of h and the edges enclose the only contact."""
     surface, l_r, (x_te, u_te) = contact.surface, contact.l_r, contact.trailing
     allowed = CHECK_RTOL * contact.depth
-    for start, end in contact.pieces:
+    for start, end in contact.smooth_pieces:
         rise = surface.height(end) - surface.height(start)
         if abs(integral(surface.slope, start, end)[0] - rise) > allowed:
             raise QuadratureError(
@@ -166,6 +182,12 @@ def check_one_contact(contact: Contact) -> None:
                 "or jumps where `kinks` does not say so"
             )
         _check_smooth(surface.slope, _sample(start, end))
+    if surface.height(0.0) != 0.0:
+        raise QuadratureError(f"h(0) = {surface.height(0.0):.6g} m: expected 0, the lowest point")
+    if any(contact.compression(x) > contact.depth + allowed for x in _sample(contact.x_le, x_te)):
+        raise QuadratureError(
+            "h is negative within the contact: expected h(0) = 0, the lowest point"
+        )
     if any(contact.pressure(x) < -allowed for x in _sample(contact.x_le, x_te)):
         raise QuadratureError(
             "more than one contact: the surface leaves the indenter before the trailing edge"
@@ -233,11 +255,16 @@ def integral(integrand: Callable[[float], float], start: float, end: float) -> t
 
 
 def root(rising: Callable[[float], float], guess: float, last: float, what: str) -> float:
-    """Find the root of a rising function on (0, last], bracketing it from the guess."""
+    """Find the root of a rising function on (0, last], bracketing it from the guess.
+
+    `last` is what the indenter's reach permits.
+    """
     low = high = min(guess, 0.5 * last)
     while rising(high) < 0.0:
         if high >= last:
-            raise QuadratureError(f"{what} lies beyond the indenter's reach")
+            raise QuadratureError(
+                f"{what} lies beyond the indenter's reach: it would have to exceed {last:.6g} m"
+            )
         low, high = high, min(GROWTH * high, last)
     while rising(low) > 0.0:
         low, high = low / GROWTH, low

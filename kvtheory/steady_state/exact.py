@@ -12,6 +12,7 @@ d ln f_z/d ln s lies between 2 and 3, so that rounding moves the depth by a few 
 place at most, over any range of velocity.
 """
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -35,6 +36,9 @@ CERTIFICATE = Certificate(
     "difference to ball arithmetic on more than ten thousand scenes over 24 decades of velocity",
     relative_error=dict.fromkeys(STEADY_UNITS, RELATIVE_ERROR),
 )
+
+QUANTITIES = tuple(STEADY_UNITS)
+ZERO_AT_REST = ("retardation_length", "friction_force", "friction_coefficient")
 
 Array = NDArray[np.float64]
 
@@ -165,8 +169,18 @@ def _blockwise(formula: Any, *arguments: ArrayLike) -> SteadyState:
             part = slice(start, start + BLOCK)
             for row, values in zip(result, formula(*(array[part] for array in flat)), strict=True):
                 row[part] = values
+    _check_underflow(result, flat[3])
     quantities: dict[str, Any] = {
         name: row.reshape(shape) if shape else float(row[0])
         for name, row in zip(STEADY_UNITS, result, strict=True)
     }
-    return SteadyState(**quantities, model="exact", certificate=CERTIFICATE)
+    certificate = replace(CERTIFICATE, relative_error=dict(CERTIFICATE.relative_error))
+    return SteadyState(**quantities, model="exact", certificate=certificate)
+
+
+def _check_underflow(result: Array, velocity: Array) -> None:
+    """Raise where digits were lost below the smallest normal number; zero is right only at rest."""
+    lost = np.abs(result) < np.finfo(float).tiny
+    lost[[QUANTITIES.index(name) for name in ZERO_AT_REST]] &= velocity != 0.0
+    if lost.any():
+        raise FloatingPointError(f"underflow in {QUANTITIES[int(lost.any(axis=1).argmax())]}")

@@ -26,6 +26,8 @@ def solve_quadrature(scene: Scene, values: Values) -> SteadyState:
     from kvtheory.steady_state import quadrature  # it imports SciPy, which takes a while
 
     shape = values["drive.velocity"].shape
+    if 0 in shape:
+        return solve_exact(Scene(), dict.fromkeys(Scene().values(), np.empty(shape)))
     states = []
     for index in np.ndindex(shape):
         point = {key: float(array[index]) for key, array in values.items()}
@@ -56,7 +58,7 @@ def solve_asymptote(scene: Scene, values: Values) -> SteadyState:
         "half_length": a,
         "retardation_length": l_r,
         "leading_edge": -side * a,
-        "trailing_edge": side * np.where(slow, a, 0.0),  # Eqs. 38, 39
+        "trailing_edge": side * np.where(slow, a, 0.0) + 0.0,  # Eqs. 38, 39; no negative zero
         "friction_force": side * chosen["friction_force"],
         "friction_coefficient": side * chosen["friction_coefficient"],
         "peak_pressure": pressure * np.where(slow, 1.0, 2 * l_r / a),

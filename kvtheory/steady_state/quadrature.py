@@ -32,7 +32,7 @@ from kvtheory.steady_state.contact import (
     root,
 )
 
-ROUNDING = 4.0 * ROOT_RTOL
+ROUNDING = 6.0 * ROOT_RTOL
 """Rounding of a formula, the shape function included."""
 DEPTH_STEP = 2.0**-20
 """Relative step of depth that measures sensitivities; they are needed to a digit or two."""
