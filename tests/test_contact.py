@@ -1,0 +1,143 @@
+"""The edges and their memory against what every past instant says, one by one."""
+
+import math
+
+import numpy as np
+import pytest
+
+from kvtheory.transients import contact
+from kvtheory.transients.continuum import solve
+from kvtheory.transients.drive import Drive
+from kvtheory.transients.flight import margin
+
+FIXED = math.inf
+
+HISTORIES = {
+    "start": [(0, 4)],
+    "stop": [(0, 4), (0.5, 4), (0.5, 0)],
+    "slow-down": [(0, 4), (0.5, 4), (0.5, 1)],
+    "ramps": [(0, 0), (0.5, 4), (1.5, -4), (2.0, 3)],
+    "reversal": [(0, 4), (0.5, 4), (0.5, -4)],
+    "stop-and-go": [(0, 4), (0.3, 4), (0.3, 0), (0.6, 0), (0.6, 4), (0.9, 4), (0.9, 0.5)],
+}
+SINES = {
+    "oscillation": lambda s: 2 * math.sin(5 * s),
+    "two frequencies": lambda s: 2 * math.sin(5 * s) + 1.5 * math.sin(13.7 * s),
+}
+END = 2.0
+
+
+def drive(name):
+    if name in HISTORIES:
+        return Drive.from_points(HISTORIES[name], END)
+    return Drive.from_callable(SINES[name], END)
+
+
+def ends_of_intervals(motion, given, s, sigma):
+    """The intervals to which the instants `sigma` confine the contact at `s` (theorem F9)."""
+    now = motion.at(s)
+    Y, _, _ = given.at(s)
+    d_0 = np.array([motion.at(t).depth for t in sigma])
+    shift = Y - np.array([given.at(t)[0] for t in sigma])
+    q, m = np.exp(sigma - s), -np.expm1(sigma - s)
+    b, c = q * shift / m, now.depth + q * (now.depth - d_0 + shift**2) / m
+    half = np.sqrt(np.maximum(b * b + c, 0.0))
+    return -b - half, -b + half
+
+
+def edges_by_search(motion, given, s):
+    """The intersection of all those intervals: a search on all the past, refined where it binds."""
+    now = motion.at(s)
+    number = given.at(s)[1]
+    peel = math.sqrt(now.depth + now.rate + number * number)
+    rest = math.sqrt(now.depth)
+    left, right = max(-number - peel, -rest), min(-number + peel, rest)
+    sigma = np.unique(np.concatenate([np.linspace(0, s, 800), s - s * np.geomspace(1e-5, 1, 400)]))
+    sigma = sigma[(sigma >= 0) & (sigma < s * (1 - 1e-6))]
+    for _ in range(5):
+        lower, upper = ends_of_intervals(motion, given, s, sigma)
+        left, right = max(left, lower.max()), min(right, upper.min())
+        binding = {int(lower.argmax()), int(upper.argmin())}
+        sigma = np.concatenate(
+            [
+                np.linspace(sigma[max(k - 1, 0)], sigma[min(k + 1, sigma.size - 1)], 101)
+                for k in binding
+            ]
+        )
+        sigma = np.unique(sigma)
+    return left, right
+
+
+@pytest.mark.parametrize("name", [*HISTORIES, *SINES])
+@pytest.mark.parametrize(("eps", "kappa"), [(1.0, FIXED), (0.04, 0.0), (1.0, 0.5)])
+def test_edges_are_the_intersection_of_all_past_instants(name, eps, kappa):
+    given = drive(name)
+    motion = solve(given, eps, kappa, END)
+    for s in np.random.default_rng(9).uniform(0.01, END, 6):
+        now = motion.at(s)
+        if now.left_state == "free":
+            continue
+        assert (now.left, now.right) == pytest.approx(
+            edges_by_search(motion, given, s), abs=2e-9
+        ), s
+
+
+def test_flight_stays_above_all_that_was_left():
+    given = Drive.constant(7.1, 2.0)
+    motion = solve(given, 0.078, 0.12, 2.0)
+    times = {event.kind: event.s for event in motion.events}
+    assert times["take-off"] < times["landing"]
+    for s in np.linspace(times["take-off"], times["landing"], 9)[1:-1]:
+        Y = given.at(s)[0]
+        sigma = np.linspace(0.0, times["take-off"], 400)
+        past = np.array([(motion.at(t).depth, given.at(t)[0]) for t in sigma])
+        X = np.linspace(-1.2, 1.2, 2001) - Y
+        highest = np.max(
+            np.exp(sigma - s)[:, None] * (past[:, :1] - (X + past[:, 1:]) ** 2), axis=0
+        )
+        assert np.all(motion.at(s).depth - (X + Y) ** 2 < np.maximum(highest, 0.0))
+
+
+def test_fixed_indenter_has_the_edges_of_the_paper():
+    for number in (1e-4, 1.0, 1e4):
+        now = solve(Drive.constant(number, 1.0), 1.0, FIXED, 1.0).at(0.7)
+        assert now.left == pytest.approx(-1.0, rel=1e-14)
+        assert now.right == pytest.approx(1 / (math.sqrt(1 + number * number) + number), rel=1e-13)
+        assert (now.left_state, now.right_state) == ("touching", "peeling")
+
+
+def test_a_reversed_drive_is_the_mirror_image():
+    forward = solve(Drive.from_points(HISTORIES["ramps"], END), 0.04, 0.0, END)
+    mirrored = [(s, -number) for s, number in HISTORIES["ramps"]]
+    backward = solve(Drive.from_points(mirrored, END), 0.04, 0.0, END)
+    for s in np.linspace(0.1, END, 7):
+        a, b = forward.at(s), backward.at(s)
+        assert (a.depth, a.left, a.right) == pytest.approx((b.depth, -b.right, -b.left), abs=1e-9)
+        assert a.friction_force == pytest.approx(-b.friction_force, abs=1e-9)
+
+
+def test_an_edge_at_rest_on_ground_left_by_a_jump_follows_the_quadratic():
+    """After a stop the right edge meets the strip that the start detached, at d = 1."""
+    motion = solve(Drive.from_points([(0, 4), (0.1, 4), (0.1, 0)], END), 1.0, FIXED, END)
+    s, Y = 1.0, 0.4
+    q = math.exp(-s)
+    # g(X, s) = e^-s g(X, 0) with xi = X + Y
+    expected = (-q * Y + math.sqrt(q * q * Y * Y + (1 - q) * (1 - q + q * Y * Y))) / (1 - q)
+    assert motion.at(s).right == pytest.approx(expected, abs=1e-13)
+    X = expected - Y
+    assert margin(X, s, 1.0, Y, 0.0, 1.0, 0.0) == pytest.approx(0.0, abs=1e-14)
+
+
+def test_root_keeps_all_digits_where_the_formula_of_the_paper_cancels():
+    assert contact.root(1.0, 1e9, 1.0)[0] == pytest.approx(5e-10, rel=1e-15)
+    assert contact.root(-1.0, -1e9, 1.0)[0] == pytest.approx(-5e-10, rel=1e-15)
+
+
+def test_forces_are_the_integrals_of_the_pressure():
+    x, w = np.polynomial.legendre.leggauss(4)
+    l, r, d, v, number = -0.7, 0.3, 0.5, -0.2, 1.7
+    xi = 0.5 * (l + r) + 0.5 * (r - l) * x
+    p = contact.pressure(xi, d, v, number)
+    f_z, f_x = contact.forces(l, r, d, v, number)
+    assert f_z == pytest.approx(0.75 * 0.5 * (r - l) * (w @ p), rel=1e-14)
+    assert f_x == pytest.approx(-1.5 * 0.5 * (r - l) * (w @ (xi * p)), rel=1e-14)

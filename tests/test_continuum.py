@@ -1,0 +1,183 @@
+"""The equation of motion: against an independent solution, and by the laws that it must obey."""
+
+import itertools
+import math
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+from kvtheory.transients.continuum import solve
+from kvtheory.transients.drive import Drive
+from kvtheory.transients.integrator import NODES, STAGES, A
+from kvtheory.transients.stepping import TransientError
+from kvtheory.transients.surface import volume
+
+TABLE1 = 4.08085, 0.039446
+"""lambda and eps of Table 1 under dead weight."""
+
+
+def two_states(number, eps, kappa, end):
+    """Start from rest by SciPy: both edges in closed form, Eqs. 32 and 33, no memory."""
+
+    def rates(_, y):
+        d, v = y
+        a, r = math.sqrt(d), -number + math.sqrt(d + v + number * number)
+        f_z = 0.75 * ((d + v) * (r + a) - (r**3 + a**3) / 3 - number * (r * r - a * a))
+        return [v, (1 - f_z - kappa * (d - 1)) / eps]
+
+    return solve_ivp(rates, (0, end), [1, 0], "Radau", rtol=1e-12, atol=1e-13, dense_output=True)
+
+
+def distance(motion, other, end, count=150):
+    """Largest difference of depth and rate, the rate relative to 1 + |d'| as the tolerance is."""
+    times = np.concatenate([np.linspace(0, end, count), end * np.geomspace(1e-7, 1e-2, count)])
+    worst = 0.0
+    for s in times:
+        now, (d, v) = motion.at(s), other(s)
+        worst = max(worst, abs(now.depth - d), abs(now.rate - v) / (1 + abs(v)))
+    return worst
+
+
+@pytest.mark.parametrize("rtol", [1e-6, 1e-8, 1e-10])
+@pytest.mark.parametrize(
+    ("number", "eps", "kappa"),
+    [(*TABLE1, 0.0), (4.0, 1e-4, 0.0), (1.0, 1.0, 0.5), (0.1, 1e-6, 0.0), (4.0, 0.04, 3.0)],
+)
+def test_start_from_rest_agrees_with_scipy(number, eps, kappa, rtol):
+    end = 2.0
+    motion = solve(Drive.constant(number, end), eps, kappa, end, rtol)
+    assert distance(motion, two_states(number, eps, kappa, end).sol, end) <= 2 * rtol
+
+
+def test_error_falls_with_the_order_of_the_polynomial():
+    """The error is proportional to the tolerance, so that the steps must shrink as its eighth root."""
+    number, eps = TABLE1
+    given = Drive.constant(number, 2.0)
+    steps = [solve(given, eps, 0.0, 2.0, rtol).steps for rtol in (1e-8, 1e-10, 1e-12)]
+    ratios = np.array(steps[1:]) / steps[:-1]
+    assert ratios == pytest.approx(100 ** (1 / (STAGES + 1)), rel=0.2)
+
+
+def test_tableau_is_radau_iia():
+    """Stage order: each row integrates all powers below the number of stages; the last, 2 s - 2."""
+    A_, c = np.array(A), np.array(NODES)
+    for k in range(STAGES):
+        assert A_ @ c**k == pytest.approx(c ** (k + 1) / (k + 1), abs=1e-14)
+    for k in range(2 * STAGES - 1):
+        assert A_[-1] @ c**k == pytest.approx(1 / (k + 1), abs=1e-14)
+
+
+SCENES = {
+    "stop": ([(0, 4), (0.5, 4), (0.5, 0)], 0.04, 0.0),
+    "stiff stop": ([(0, 4), (0.5, 4), (0.5, 0)], 1e-5, 0.0),
+    "slow-down": ([(0, 4), (0.5, 4), (1.0, 1)], 0.04, 0.0),
+    "reversal": ([(0, 4), (0.5, 4), (0.5, -4)], 0.04, 0.5),
+    "there and back": ([(0, 0), (0.5, 4), (1.5, -4), (2.0, 3)], 0.2, 0.0),
+    "heavy": ([(0, 0.3), (1.0, 0.3), (1.0, 0)], 300.0, 0.0),
+    "hop": ([(0, 7.1)], 0.078, 0.12),
+    "two hops": ([(0, 2.0), (0.3, 8.0), (0.3, -5), (1.0, 0), (1.0, 9)], 0.2, 0.04),
+}
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_motion_obeys_its_equation_and_converges(name):
+    points, eps, kappa = SCENES[name]
+    end = 2.0
+    given = Drive.from_points(points, end)
+    motion, better = solve(given, eps, kappa, end), solve(given, eps, kappa, end, 1e-11)
+    assert distance(motion, lambda s: better.at(s)[1:3], end) <= 5e-9
+    for s in np.random.default_rng(1).uniform(0, end, 40):
+        now = better.at(s)
+        balance = 1 - now.normal_force - kappa * (now.depth - 1)
+        terms = 1 + abs(eps * now.acceleration)
+        assert abs(eps * now.acceleration - balance) <= 3e-7 * max(terms, eps), s
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_impulse_balances_the_volume_of_the_whole_surface(name):
+    """U = U_0 e^-s + 4/3 int e^(t - s) f_z dt, the surface that relaxes behind the edges included."""
+    points, eps, kappa = SCENES[name]
+    motion = solve(Drive.from_points(points, 2.0), eps, kappa, 2.0)
+    x, w = np.polynomial.legendre.leggauss(12)
+    ends = [*motion.starts, motion.end]
+    U = 4 / 3
+    for a, b in itertools.pairwise(ends):
+        for low, high in ((a, 0.5 * (a + b)), (0.5 * (a + b), b)):
+            share = 0.5 * (1 + x)  # a force may begin as a square root: times are its squares
+            times = low + (high - low) * share**2
+            f_z = [motion.at(s).normal_force for s in times]
+            impulse = (high - low) * (w @ (share * np.exp(times - high) * f_z))
+            U = U * math.exp(low - high) + 4 / 3 * impulse
+            if low == a:  # not where strips are left and edges land: U is the same on both sides
+                assert volume(motion, high) == pytest.approx(U, abs=2e-8), high
+
+
+def test_heights_of_hops_are_ballistic():
+    points, eps, _ = SCENES["hop"]
+    motion = solve(Drive.from_points(points, 2.0), eps, 0.0, 2.0)
+    times = {event.kind: event.s for event in motion.events}
+    start = motion.at(times["take-off"])
+    for s in np.linspace(times["take-off"], times["landing"], 5)[:-1]:
+        t = s - start.s
+        now = motion.at(s)
+        assert now.depth == pytest.approx(
+            start.depth + start.rate * t + t * t / (2 * eps), abs=1e-12
+        )
+        assert now.left_state == "free"
+        assert now.normal_force == 0.0
+
+
+def test_fixed_support_is_the_limit_of_a_stiff_spring():
+    points = SCENES["there and back"][0]
+    given = Drive.from_points(points, 2.0)
+    fixed, stiff = (solve(given, 1e-7, kappa, 2.0) for kappa in (math.inf, 1e6))
+    for s in (0.2, 0.7, 1.3, 1.9):
+        assert stiff.at(s).right == pytest.approx(fixed.at(s).right, abs=1e-5)
+        assert stiff.at(s).friction_force == pytest.approx(fixed.at(s).friction_force, abs=1e-5)
+
+
+def test_at_rest_nothing_happens():
+    motion = solve(Drive.from_points([(0, 0), (1, 0), (1, 4)], 1.5), 0.04, 0.0, 1.5)
+    assert motion.events[0].s == 1.0
+    assert motion.at(0.5)[1:4] == pytest.approx((1, 0, 0), abs=1e-14)
+    assert motion.at(0.5).normal_force == pytest.approx(1, abs=1e-14)
+
+
+def test_cost_does_not_grow_without_inertia():
+    number, _ = TABLE1
+    given = Drive.constant(number, 2.0)
+    evaluations = [solve(given, eps, 0.0, 2.0).evaluations for eps in (1e-2, 1e-4, 1e-6, 1e-8)]
+    assert max(evaluations) <= 3 * evaluations[0]
+
+
+@pytest.mark.parametrize(
+    "change",
+    [{"end": 0.0}, {"end": 3.0}, {"inertia_number": 0.0}, {"support_number": -1.0}, {"rtol": 0.0}],
+)
+def test_what_makes_no_sense_is_refused(change):
+    arguments = {"inertia_number": 0.04, "support_number": 0.0, "end": 2.0} | change
+    with pytest.raises(ValueError, match="`"):
+        solve(Drive.constant(1.0, 2.0), **arguments)
+
+
+def test_a_drive_of_too_many_steps_ends_in_an_error(monkeypatch):
+    monkeypatch.setattr("kvtheory.transients.stepping.STEP_LIMIT", 10)
+    with pytest.raises(TransientError, match=r"more than 10 steps: stopped at s = 0\.\d+"):
+        solve(Drive.constant(4.0, 2.0), 0.04, 0.0, 2.0)
+
+
+def test_drives_represent_functions_to_their_tolerance():
+    given = Drive.from_callable(lambda s: math.exp(-s) * math.sin(9 * s), 4.0, tolerance=1e-10)
+    for s in np.linspace(0, 4, 57):
+        assert given.at(s)[1] == pytest.approx(math.exp(-s) * math.sin(9 * s), abs=2e-10)
+        exact = (9 - math.exp(-s) * (9 * math.cos(9 * s) + math.sin(9 * s))) / 82
+        assert given.at(s)[0] == pytest.approx(exact, abs=1e-9)
+
+
+def test_a_callable_that_jumps_needs_its_breaks():
+    jump = lambda s: 1.0 if s < 0.3 else 2.0  # noqa: E731
+    with pytest.raises(ValueError, match="breaks"):
+        Drive.from_callable(jump, 1.0)
+    given = Drive.from_callable(jump, 1.0, breaks=[0.3])
+    assert [given.at(s)[1] for s in (0.0, 0.3, 1.0)] == pytest.approx([1, 2, 2], abs=1e-12)
