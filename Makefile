@@ -11,6 +11,7 @@ OUT ?= paper
 paper: $(VENV)/.installed
 	$(BIN)/kvtheory steady
 	$(BIN)/kvtheory asymptotes
+	$(BIN)/kvtheory transient
 	$(BIN)/kvtheory derive -o $(OUT)/derivations
 	$(BIN)/python -m figures -o $(OUT)/figures
 	@echo "Done: open $(OUT)/derivations/derivations.html and $(OUT)/figures"

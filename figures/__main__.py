@@ -7,7 +7,10 @@ from pathlib import Path
 
 from figures import drawing
 
-FIGURES = ("fig5", "fig6", "table2", "energy_split", "asymptote_error", "circle_error")
+FIGURES = (
+    *("fig3", "fig4", "fig5", "fig6", "table2"),
+    *("energy_split", "asymptote_error", "circle_error", "phase_portrait", "regime_map"),
+)
 
 
 def main() -> None:

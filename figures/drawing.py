@@ -2,7 +2,6 @@
 
 import argparse
 import csv
-import os
 from collections.abc import Callable, Mapping
 from functools import partial
 from pathlib import Path
@@ -13,6 +12,7 @@ import numpy as np
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
+from kvtheory.export import replace_file
 from kvtheory.plots import STYLE
 
 Columns = Mapping[str, Any]
@@ -42,9 +42,9 @@ def produce(
         paths = [directory / f"{name}.{suffix}" for suffix in FORMATS]
         for path, options in zip(paths, FORMATS.values(), strict=True):
             settings: dict[str, Any] = {"format": path.suffix[1:], **options}
-            _replace(path, partial(drawn.savefig, **settings))
+            replace_file(path, partial(drawn.savefig, **settings))
     table = directory / f"{name}.csv"
-    _replace(table, lambda part: _write_csv(part, data.columns))
+    replace_file(table, lambda part: _write_csv(part, data.columns))
     return [*paths, table]
 
 
@@ -56,16 +56,6 @@ def run(name: str, compute: Callable[[], Any], draw: Callable[[Any], Figure]) ->
     )
     for path in produce(name, compute, draw, parser.parse_args().output):
         print(path)
-
-
-def _replace(path: Path, write: Callable[[Path], Any]) -> None:
-    """Write to a temporary name beside `path` and rename, so that no half file is ever seen."""
-    part = path.with_name(f".{path.name}.part")
-    try:
-        write(part)
-        os.replace(part, path)
-    finally:
-        part.unlink(missing_ok=True)
 
 
 def _write_csv(path: Path, columns: Columns) -> None:

@@ -1,7 +1,7 @@
 """Sliding friction of a rigid indenter on a Kelvin-Voigt foundation: derived, exact, checked."""
 
-from kvtheory.api import asymptotes, steady
-from kvtheory.results import AsymptoteReport, Certificate, SteadyState
+from kvtheory.api import asymptotes, steady, transient
+from kvtheory.results import AsymptoteReport, Certificate, SteadyState, Transient
 from kvtheory.scene import (
     Circle,
     DeadWeight,
@@ -38,9 +38,11 @@ __all__ = [
     "SceneError",
     "SteadyState",
     "Suspended",
+    "Transient",
     "Wedge",
     "asymptotes",
     "load_scene",
     "steady",
     "to_toml",
+    "transient",
 ]

@@ -1,37 +1,28 @@
-"""The command line; each command imports what it needs when it runs."""
+"""The commands; each imports what it needs when it runs."""
 
-import json
 import math
 import os
-import sys
-from collections.abc import Callable, Iterable, Sequence
-from functools import wraps
+from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING
 
 import click
 
-SHOWN_UNITS = {
-    "m": ("mm", 1e3),
-    "N/m": ("N/mm", 1e-3),
-    "Pa": ("MPa", 1e-6),
-    "m/s": ("mm/s", 1e3),
-    "1": ("", 1.0),
-}
-"""Units of the tables for people, as in the paper; JSON and CSV are in SI."""
+from kvtheory.console import (
+    SHOWN_UNITS,
+    Examples,
+    print_json,
+    print_table,
+    scene_command,
+    shown,
+    split,
+    teaching,
+    text,
+    velocity_range,
+)
 
-
-class Examples(click.Command):
-    """A command whose help ends with an example, printed as it stands."""
-
-    def __init__(self, *args: Any, example: str = "", **kwargs: Any) -> None:
-        super().__init__(*args, **kwargs)
-        self.example = example
-
-    def format_epilog(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
-        """Write the example below the options."""
-        with formatter.section("Example"):
-            formatter.write_text(self.example)
+if TYPE_CHECKING:
+    from kvtheory.scene import Scene
 
 
 @click.group(context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100})
@@ -44,43 +35,9 @@ def main() -> None:
     """
 
 
-def _teaching(command: Callable[..., None]) -> Callable[..., None]:
-    """Turn errors about the input into one message and exit status 2."""
-
-    @wraps(command)
-    def run(*args: Any, **kwargs: Any) -> None:
-        try:
-            command(*args, **kwargs)
-        except (ValueError, ArithmeticError, OSError, RuntimeError) as error:
-            lines = str(error).splitlines()
-            head = "error:" if len(lines) == 1 else f"{len(lines)} mistakes:\n "
-            click.echo(f"kvtheory: {head} " + "\n  ".join(lines), err=True)
-            sys.exit(2)
-
-    return run
-
-
-def _scene_command(example: str) -> Callable[[Callable[..., None]], click.Command]:
-    """Declare a command on an optional scene file, with `--set` and `--json`."""
-
-    def decorate(function: Callable[..., None]) -> click.Command:
-        command = _teaching(function)
-        command = click.option(
-            "--json", "as_json", is_flag=True, help="Print one JSON object, in SI units."
-        )(command)
-        command = click.option(
-            "--set", "overrides", multiple=True, metavar="KEY=VALUE",
-            help='Override a key of the scene, such as drive.velocity="50 mm/s"; repeatable.',
-        )(command)  # fmt: skip
-        command = click.argument(
-            "scene", required=False, type=click.Path(exists=True, dir_okay=False)
-        )(command)
-        return main.command(cls=Examples, example=example)(command)
-
-    return decorate
-
-
-@_scene_command("kvtheory scene --support fixed > my-scene.toml && kvtheory scene my-scene.toml")
+@scene_command(
+    main, "kvtheory scene --support fixed > my-scene.toml && kvtheory scene my-scene.toml"
+)
 @click.option(
     "--support",
     type=click.Choice(["fixed", "dead-weight", "suspended"]),
@@ -104,16 +61,16 @@ def scene(scene: str | None, overrides: Sequence[str], as_json: bool, support: s
     quantities = {**quantities_by_name(checked), **numbers}
     if as_json:
         kinds = {"shape": checked.indenter.shape, "support": checked.support.kind}
-        _print_json({**kinds, **quantities})
+        print_json({**kinds, **quantities})
         return
     click.echo(f"Sound: {checked.indenter.shape} indenter, {checked.support.kind} support.\n")
     rows = [(name, f"{value:.6g}") for name, value in quantities.items()]
-    _print_table(("quantity", "value in SI"), rows)
+    print_table(("quantity", "value in SI"), rows)
     if not numbers:
         click.echo("\nThe dimensionless numbers are defined for a parabola only.")
 
 
-@_scene_command('kvtheory steady --set drive.velocity="50 mm/s" --json')
+@scene_command(main, 'kvtheory steady --set drive.velocity="50 mm/s" --json')
 @click.option(
     "--method",
     default=None,
@@ -129,19 +86,20 @@ def steady(scene: str | None, overrides: Sequence[str], as_json: bool, method: s
     checked = load_scene(scene, overrides)
     state = solve(checked, method=method)
     if as_json:
-        _print_json(state.as_dict())
+        print_json(state.as_dict())
         return
+    _note_history(checked)
     errors = state.certificate.relative_error
     rows = [
-        (name, *_shown(getattr(state, name), unit), f"{errors[name]:.1e}")
+        (name, *shown(getattr(state, name), unit), f"{errors[name]:.1e}")
         for name, unit in STEADY_UNITS.items()
     ]
     click.echo(f"Steady sliding, {checked.support.kind} support, model: {state.model}\n")
-    _print_table(("quantity", "value", "unit", "relative error"), rows)
+    print_table(("quantity", "value", "unit", "relative error"), rows)
     click.echo(f"\nErrors are {state.certificate.kind}: {state.certificate.statement}.")
 
 
-@_scene_command("kvtheory asymptotes --tolerance 0.01")
+@scene_command(main, "kvtheory asymptotes --tolerance 0.01")
 @click.option(
     "--tolerance",
     type=float,
@@ -160,32 +118,33 @@ def asymptotes(
     checked = load_scene(scene, overrides)
     report = examine(checked, tolerance=tolerance)
     if as_json:
-        _print_json(report.as_dict())
+        print_json(report.as_dict())
         return
+    _note_history(checked)
     ratio = abs(report.velocity) / report.critical_velocity
     click.echo(
-        f"{checked.support.kind} support, V = {_text(report.velocity, 'm/s')}, critical velocity "
-        f"V* = {_text(report.critical_velocity, 'm/s')}, V/V* = {ratio:.4g}: "
+        f"{checked.support.kind} support, V = {text(report.velocity, 'm/s')}, critical velocity "
+        f"V* = {text(report.critical_velocity, 'm/s')}, V/V* = {ratio:.4g}: "
         f"{report.regime}-velocity regime"
     )
     if not math.isnan(report.peak_velocity):
         click.echo(
             f"friction maximum: mu = {report.peak_friction_coefficient:.6g} "
-            f"at V = {_text(report.peak_velocity, 'm/s')}"
+            f"at V = {text(report.peak_velocity, 'm/s')}"
         )
     advice = "the exact solution" if report.use == "exact" else report.use
     click.echo(f"for the friction coefficient to within {tolerance:g}, use {advice}\n")
     rows = [
         (
             line.name, f"({line.equation})" if line.equation else "", line.formula,
-            _text(line.value, STEADY_UNITS[line.quantity]),
-            _text(line.exact, STEADY_UNITS[line.quantity]),
+            text(line.value, STEADY_UNITS[line.quantity]),
+            text(line.exact, STEADY_UNITS[line.quantity]),
             "-" if math.isnan(line.relative_error) else f"{line.relative_error:+.3g}",
-            _range(line.velocity_min, line.velocity_max),
+            velocity_range(line.velocity_min, line.velocity_max),
         )
         for line in report.lines
     ]  # fmt: skip
-    _print_table(
+    print_table(
         (
             "asymptote",
             "Eq.",
@@ -223,7 +182,7 @@ def asymptotes(
 @click.option(
     "--json", "as_json", is_flag=True, help="Print one JSON object about what was written."
 )
-@_teaching
+@teaching
 def derive(output: Path, formats: str | None, only: str, as_json: bool) -> None:
     """Derive the equations, check every step, and print them as LaTeX, HTML, PDF and JSON."""
     from derivations.catalogue import catalogue
@@ -238,12 +197,12 @@ def derive(output: Path, formats: str | None, only: str, as_json: bool) -> None:
                 err=True,
             )
     derived = catalogue()
-    paths = write(derived, output, _split(formats), _split(only))
+    paths = write(derived, output, split(formats), split(only))
     counts: dict[str, int] = {}
     for derivation in derived:
         counts[derivation.status] = counts.get(derivation.status, 0) + 1
     if as_json:
-        _print_json(
+        print_json(
             {
                 "directory": str(output),
                 "files": [str(path) for path in paths],
@@ -260,34 +219,80 @@ def derive(output: Path, formats: str | None, only: str, as_json: bool) -> None:
         click.echo(f"  {fragments[0].parent}{os.sep} ({len(fragments)} equations for \\input)")
 
 
-def _split(text: str) -> list[str]:
-    return [item.strip() for item in text.split(",") if item.strip()]
+@scene_command(
+    main,
+    'kvtheory transient --at "0 ms,1 ms,10 ms" && kvtheory transient -o run.csv --plot run.png',
+)
+@click.option(
+    "--rtol", type=float, default=1e-6, show_default=True, help="Error allowed in a step."
+)
+@click.option("--at", default=None, metavar='"0 ms,1 ms,..."', help="Times to report.")
+@click.option(
+    "-o",
+    "--output",
+    type=click.Path(path_type=Path),
+    default=None,
+    help="Write FILE.csv or FILE.nc.",
+)
+@click.option(
+    "--plot",
+    type=click.Path(path_type=Path),
+    default=None,
+    help="Draw the series to FILE.png, .svg or .pdf.",
+)
+def transient(
+    scene: str | None,
+    overrides: Sequence[str],
+    as_json: bool,
+    rtol: float,
+    at: str | None,
+    output: Path | None,
+    plot: Path | None,
+) -> None:
+    """Follow the transient of SCENE: depth, forces, edges and events over time."""
+    from kvtheory.api import transient as follow
+    from kvtheory.results import TRANSIENT_UNITS
+    from kvtheory.scene import load_scene
+
+    result = follow(load_scene(scene, overrides), at=None if at is None else split(at), rtol=rtol)
+    if output:
+        from kvtheory.export import save_transient
+
+        save_transient(result, output)
+    if plot:
+        from kvtheory.plots import save_transient_plot
+
+        save_transient_plot(result, plot)
+    if as_json:
+        print_json(result.as_dict())
+        return
+    rows = _chosen_rows(result.time.size) if at is None else range(result.time.size)
+    names = [name for name in TRANSIENT_UNITS if name != "depth_rate"]
+    heads = [f"{name} [{SHOWN_UNITS[TRANSIENT_UNITS[name]][0]}]" for name in names]
+    print_table(
+        heads,
+        [
+            [shown(getattr(result, name)[i], TRANSIENT_UNITS[name])[0] for name in names]
+            for i in rows
+        ],
+    )
+    click.echo("\nevents:")
+    for event in result.events:
+        click.echo(f"  {text(event.time, 's')}: {event.kind}")
+    worst = max(result.certificate.relative_error.values())
+    click.echo(
+        f"\n{result.steps} steps; error estimated at {worst:.1e}: {result.certificate.statement}."
+    )
 
 
-def _shown(value: float, unit: str) -> tuple[str, str]:
-    name, factor = SHOWN_UNITS[unit]
-    return ("-" if math.isnan(value) else f"{value * factor:.6g}"), name
-
-
-def _text(value: float, unit: str) -> str:
-    return "-" if math.isnan(value) else " ".join(_shown(value, unit)).rstrip()
-
-
-def _range(low: float, high: float) -> str:
-    if low == 0.0 and high == float("inf"):
-        return "every V"
-    return f"|V| <= {_text(high, 'm/s')}" if low == 0.0 else f"|V| >= {_text(low, 'm/s')}"
-
-
-def _print_json(result: Any) -> None:
-    click.echo(json.dumps(result, indent=2, ensure_ascii=False, allow_nan=False))
-
-
-def _print_table(heads: Sequence[str], rows: Iterable[Sequence[str]]) -> None:
-    """Print columns as wide as they need to be."""
-    table = [heads, *rows]
-    widths = [max(len(row[i]) for row in table) for i in range(len(heads))]
-    for row in table:
+def _note_history(scene: "Scene") -> None:
+    """Say which velocity of a history counts in steady sliding."""
+    if scene.drive.history is not None:
         click.echo(
-            "  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip()
+            f"The drive has a history; taken at its last velocity, {text(scene.drive.final_velocity, 'm/s')}."
         )
+
+
+def _chosen_rows(count: int, shown_rows: int = 21) -> Sequence[int]:
+    """Return the indices of at most about twenty rows, first and last among them."""
+    return sorted({round(i * (count - 1) / (shown_rows - 1)) for i in range(shown_rows)})

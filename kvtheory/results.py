@@ -2,8 +2,8 @@
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, fields, is_dataclass
-from typing import Any
+from dataclasses import dataclass, field, fields, is_dataclass
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -23,6 +23,19 @@ STEADY_UNITS = {
     "dissipated_in_contact": "1",
 }
 """The quantities of steady sliding and their units, in the order in which they are shown."""
+
+TRANSIENT_UNITS = {
+    "time": "s",
+    "velocity": "m/s",
+    "depth": "m",
+    "depth_rate": "m/s",
+    "normal_force": "N/m",
+    "friction_force": "N/m",
+    "leading_edge": "m",
+    "trailing_edge": "m",
+    "peak_pressure": "Pa",
+}
+"""The quantities of a transient and their units, `time` first."""
 
 
 @dataclass(frozen=True)
@@ -112,16 +125,62 @@ class AsymptoteReport:
         return _record(self)
 
 
+class Event(NamedTuple):
+    """What happened to the contact, and when (in s)."""
+
+    time: float
+    kind: str
+
+
+@dataclass(frozen=True)
+class Transient:
+    """A transient as a time series: arrays in SI over `time`; in flight the edges are NaN.
+
+    `leading_state` and `trailing_state` say whether an edge is ``"peeling"`` (its pressure is zero),
+    ``"touching"`` (it meets the free surface) or ``"free"`` (the indenter flies). At an instant where
+    the drive jumps, values are those just after the jump.
+    """
+
+    time: Value
+    velocity: Value
+    depth: Value
+    depth_rate: Value
+    normal_force: Value
+    friction_force: Value
+    leading_edge: Value
+    trailing_edge: Value
+    peak_pressure: Value
+    leading_state: tuple[str, ...]
+    trailing_state: tuple[str, ...]
+    events: tuple[Event, ...]
+    steps: int
+    evaluations: int
+    model: str
+    certificate: Certificate
+    solution: Any = field(repr=False, compare=False)
+    """The solved motion, from which `pressure` is evaluated."""
+
+    def pressure(self, x: Any, time: float) -> Any:
+        """Return the contact pressure in Pa at the positions `x` (m) and one `time` (s)."""
+        return self.solution.pressure(x, time)
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return plain Python values, ready for JSON: `time` first; what does not exist is None."""
+        return {
+            f.name: _record(getattr(self, f.name)) for f in fields(self) if f.name != "solution"
+        }
+
+
 def _record(result: Any) -> Any:
     """Turn a result, and what it holds, into what `json` writes."""
     if is_dataclass(result):
         return {f.name: _record(getattr(result, f.name)) for f in fields(result)}
     if isinstance(result, Mapping):
         return {key: _record(value) for key, value in result.items()}
-    if isinstance(result, (tuple, list)):
-        return [_record(item) for item in result]
+    if isinstance(result, Event):
+        return result._asdict()
     if isinstance(result, (np.ndarray, np.generic)):
         return _record(result.tolist())
-    if isinstance(result, float) and not math.isfinite(result):
-        return None
-    return result
+    if isinstance(result, (tuple, list)):
+        return [_record(item) for item in result]
+    return None if isinstance(result, float) and not math.isfinite(result) else result

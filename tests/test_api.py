@@ -63,6 +63,21 @@ def test_mistakes_are_named():
     for method in ("exact", "quadrature"):
         with pytest.raises(ValueError, match="double precision"):
             kv.steady(over={"drive.velocity": 1e300}, method=method)
+    with pytest.raises(ValueError, match="double precision: underflow in"):
+        kv.steady(over={"support.mass": 1e-300})
+    for wrong in ("scene.toml", 0.1):
+        with pytest.raises(TypeError, match="load_scene"):
+            kv.steady(wrong)
+
+
+def test_no_scenes_give_no_states():
+    for method in ("exact", "quadrature"):
+        assert kv.steady(over={"drive.velocity": []}, method=method).depth.shape == (0,)
+
+
+def test_results_do_not_share_their_certificates():
+    kv.steady().certificate.relative_error["depth"] = 1.0
+    assert kv.steady().certificate.relative_error["depth"] < 1e-14
     for tolerance in (0.0, -1.0, 2.0, float("nan")):
         with pytest.raises(ValueError, match="tolerance"):
             kv.asymptotes(tolerance=tolerance)

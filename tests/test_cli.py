@@ -24,7 +24,7 @@ def scene_file(tmp_path):
     return str(path)
 
 
-@pytest.mark.parametrize("command", ["scene", "steady", "asymptotes", "derive"])
+@pytest.mark.parametrize("command", ["scene", "steady", "asymptotes", "derive", "transient"])
 def test_every_command_has_help_with_an_example(command):
     shown = run(command, "--help").stdout
     assert f"kvtheory {command}" in shown.split("Example")[1]
@@ -106,6 +106,13 @@ def test_bad_input_costs_one_message_and_status_2(arguments, words):
         assert word in result.stderr, result.stderr
 
 
+def test_a_history_is_mentioned():
+    history = 'drive.history=[["0 s", "1 m/s"], ["1 s", "20 mm/s"]]'
+    for command in ("steady", "asymptotes"):
+        assert "last velocity, 20 mm/s" in run(command, "--set", history).stdout
+        json.loads(run(command, "--json", "--set", history).stdout)
+
+
 def test_all_mistakes_of_a_scene_are_listed_once(tmp_path):
     path = tmp_path / "scene.toml"
     path.write_text(
@@ -115,3 +122,38 @@ def test_all_mistakes_of_a_scene_are_listed_once(tmp_path):
     for key in ("indenter.radius", "[fundation]", "support.depth", "[drive]"):
         assert message.count(key) == 1
     assert message.startswith("kvtheory: 4 mistakes")
+
+
+def test_transient_prints_series_and_writes_files(tmp_path):
+    record = json.loads(run("transient", "--json", "--at", "0 ms, 1 ms,200 ms").stdout)
+    assert record["time"] == [0.0, 0.001, 0.2]
+    assert record["normal_force"] == pytest.approx([35367.19, 12732.9, 9806.65], rel=1e-4)
+    shown = run(
+        "transient", "-o", str(tmp_path / "a.csv"), "--plot", str(tmp_path / "a.png")
+    ).stdout
+    assert "right edge peels" in shown
+    assert "nan" not in shown
+    assert (tmp_path / "a.csv").read_text().startswith("time [s],velocity [m/s],depth [m]")
+    assert (tmp_path / "a.png").read_bytes().startswith(b"\x89PNG")
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (["--at", "1 furlong"], ["at", "1 furlong", "quantity in s"]),
+        (["--at", "5"], ["at", "no unit"]),
+        (["--at", "1 s"], ["after the end", "run.duration"]),
+        (["--rtol", "0"], ["rtol"]),
+        (["-o", "a.xls"], ["a.xls", ".csv"]),
+        (["--plot", "a.doc"], ["a.doc", ".png"]),
+        (["-o", "no/such/place.csv"], ["no/such"]),
+        (["--set", "indenter.shape=wedge", "--set", "indenter.inclination=0.1"], ["parabola only"]),
+    ],
+)
+def test_bad_transient_input(arguments, words, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    result = run("transient", *arguments, status=2)
+    assert result.stdout == ""
+    for word in words:
+        assert word in result.stderr, result.stderr
+    assert not list(tmp_path.iterdir())

@@ -1,0 +1,117 @@
+"""How a start from rest goes, over drive number and inertia number (dead weight).
+
+Each point is a solved transient, classed by what happened; the line is the closed-form boundary of
+oscillation about the steady state (F12), eps = 3 r/8 with r the trailing edge in units of a_0.
+"""
+
+import itertools
+from dataclasses import dataclass
+
+import numpy as np
+from matplotlib.colors import ListedColormap
+from matplotlib.figure import Figure
+
+from figures import drawing
+from kvtheory.plots import BLACK
+from kvtheory.steady_state import closed_forms as cf
+from kvtheory.transients.continuum import Motion, solve
+from kvtheory.transients.drive import Drive
+
+CLASSES = {
+    "monotone": ("#dddddd", "."),
+    "oscillating": ("#88ccee", "o"),
+    "memory": ("#ddcc77", "s"),
+    "take-off": ("#cc6677", "^"),
+}
+"""Each class contains what the ones before it do not: the depth turns, an edge goes back over ground
+that it left, the indenter leaves the foundation. Colours after Tol, safe in colour blindness."""
+
+NUMBERS = np.geomspace(1e-2, 1e2, 33)
+INERTIAS = np.geomspace(1e-4, 1e2, 31)
+RTOL = 1e-6
+TURN = 1e-5
+"""Depth rate, relative to its largest magnitude, above which a rise and fall counts as oscillation."""
+
+
+@dataclass(frozen=True)
+class Data:
+    """Index of the class at each (eps, lambda)."""
+
+    classes: np.ndarray
+    boundary: np.ndarray
+    columns: drawing.Columns
+
+
+def compute() -> Data:
+    """Solve and class every point of the map."""
+    classes = np.array([[_class(number, eps) for number in NUMBERS] for eps in INERTIAS])
+    names = list(CLASSES)
+    grid = [(number, eps) for eps in INERTIAS for number in NUMBERS]
+    columns = {
+        "drive_number [1]": [number for number, _ in grid],
+        "inertia_number [1]": [eps for _, eps in grid],
+        "class": [names[index] for index in classes.reshape(-1)],
+    }
+    q = np.linspace(1e-3, 1 - 1e-6, 4000)
+    s = np.cbrt(4 / (3 * cf.load_factor(q)))
+    boundary = np.array([s * (1 - q * q) / (2 * q), 3 * q * s / 8])
+    return Data(classes, boundary, columns)
+
+
+def draw(data: Data) -> Figure:
+    """Draw the classes as areas and the boundary as a line."""
+    drawn = drawing.figure(5.4, 4.2)
+    ax = drawn.subplots()
+    colours = [colour for colour, _ in CLASSES.values()]
+    ax.pcolormesh(
+        NUMBERS, INERTIAS, data.classes, cmap=ListedColormap(colours), vmin=-0.5, vmax=len(CLASSES) - 0.5,
+        shading="nearest", alpha=0.6, linewidth=0, rasterized=True,
+    )  # fmt: skip
+    for index, (name, (_, marker)) in enumerate(CLASSES.items()):
+        rows, cols = np.nonzero(data.classes == index)
+        if not rows.size:
+            continue
+        ax.plot(
+            NUMBERS[cols],
+            INERTIAS[rows],
+            marker,
+            color=BLACK,
+            markersize=1.6,
+            label=name,
+            linestyle="",
+        )
+    ax.plot(*data.boundary, color=BLACK, label=r"$\epsilon = 3r/8$ (F12)")
+    ax.set(
+        xscale="log", yscale="log", xlabel=r"drive number $\lambda = V\tau/a_0$",
+        ylabel=r"inertia number $\epsilon = M\delta_0/(W_0\tau^2)$", title="start from rest, dead weight",
+        xlim=(NUMBERS[0], NUMBERS[-1]), ylim=(INERTIAS[0], INERTIAS[-1]),
+    )  # fmt: skip
+    ax.grid(False)
+    ax.legend(loc="lower left", frameon=True, markerscale=2.5)
+    return drawn
+
+
+def _class(number: float, eps: float) -> int:
+    """Return the index of the class of one start from rest."""
+    end = 20.0 + 10.0 * float(np.sqrt(eps))
+    motion = solve(Drive.constant(float(number), end), float(eps), 0.0, end, RTOL)
+    kinds = {event.kind for event in motion.events[1:]}
+    if any("take" in kind for kind in kinds):
+        return 3
+    if kinds:
+        return 2
+    return 1 if _turns(motion) else 0
+
+
+def _turns(motion: Motion) -> bool:
+    """Whether the indenter sinks again after it has risen."""
+    starts = np.append(motion.starts, motion.end)
+    times = np.concatenate(
+        [np.linspace(a, b, 4, endpoint=False) for a, b in itertools.pairwise(starts)]
+    )
+    rates = np.array([motion.at(float(s)).rate for s in times])
+    return bool(rates.max() > TURN * np.abs(rates).max())
+
+
+if __name__ == "__main__":
+    drawing.run("regime_map", compute, draw)

@@ -1,0 +1,66 @@
+"""Results as files that others open: CSV with units in the header, NetCDF."""
+
+import csv
+import json
+import os
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from kvtheory.results import TRANSIENT_UNITS, Transient
+
+
+def save_transient(result: Transient, path: Path) -> None:
+    """Write a time series as ``.csv`` (RFC 4180, empty where a value does not exist) or ``.nc``.
+
+    Raises
+    ------
+    ValueError
+        If the suffix is neither, or xarray, which writes NetCDF, is missing.
+    OSError
+        If the file cannot be written.
+    """
+    writers: Mapping[str, Callable[[Transient, Path], None]] = {".csv": _csv, ".nc": _netcdf}
+    if path.suffix not in writers:
+        raise ValueError(f'-o "{path}": expected a name that ends in {" or ".join(writers)}')
+    replace_file(path, lambda part: writers[path.suffix](result, part))
+
+
+def replace_file(path: Path, write: Callable[[Path], Any]) -> None:
+    """Write to a temporary name beside `path` and rename, so that no half file is ever seen."""
+    part = path.with_name(f".{path.stem}.{os.getpid()}.part{path.suffix}")
+    try:
+        write(part)
+        os.replace(part, path)
+    finally:
+        part.unlink(missing_ok=True)
+
+
+def _csv(result: Transient, path: Path) -> None:
+    columns = [np.asarray(getattr(result, name)).tolist() for name in TRANSIENT_UNITS]
+    with path.open("w", newline="", encoding="utf-8") as file:
+        writer = csv.writer(file)
+        writer.writerow(f"{name} [{unit}]" for name, unit in TRANSIENT_UNITS.items())
+        for row in zip(*columns, strict=True):
+            writer.writerow("" if value != value else value for value in row)  # noqa: PLR0124
+
+
+def _netcdf(result: Transient, path: Path) -> None:
+    try:
+        import xarray
+    except ModuleNotFoundError:
+        raise ValueError('NetCDF needs xarray: pip install "kvtheory[data]"') from None
+    columns = {
+        name: ("time", np.asarray(getattr(result, name)), {"units": unit})
+        for name, unit in TRANSIENT_UNITS.items()
+    }
+    time = columns.pop("time")
+    attributes = {
+        "model": result.model,
+        "certificate": result.certificate.statement,
+        "events": json.dumps([event._asdict() for event in result.events]),
+    }
+    data = xarray.Dataset(columns, coords={"time": time}, attrs=attributes)
+    data.to_netcdf(path, engine="scipy")
