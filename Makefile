@@ -17,7 +17,7 @@ paper: $(VENV)/.installed
 	@echo "Done: open $(OUT)/derivations/derivations.html and $(OUT)/figures"
 
 test: $(VENV)/.installed-test
-	$(BIN)/python -m pytest -n auto
+	$(BIN)/python -m pytest -n auto --dist loadscope
 
 lint: $(VENV)/.installed-test
 	$(BIN)/ruff check .
