@@ -96,6 +96,26 @@ def test_circle_tends_to_the_leading_term_with_the_fourth_power(made):
         assert order == pytest.approx(4.0, abs=0.15)
 
 
+def test_the_closed_form_boundary_separates_monotone_from_oscillating(made):
+    data, _, _ = made["regime_map"]
+    columns = {name: np.array(column) for name, column in data.columns.items()}
+    number, eps = columns["drive_number [1]"], columns["inertia_number [1]"]
+    order = np.argsort(data.boundary[0])
+    limit = np.interp(np.log(number), np.log(data.boundary[0][order]), data.boundary[1][order])
+    # Near the boundary a single turn is too small to be seen above the tolerance.
+    assert set(columns["class"][eps < 0.9 * limit]) == {"monotone"}
+    assert set(columns["class"][eps > 1.5 * limit]) == {"oscillating", "take-off"}
+
+
+def test_the_phase_portrait_ends_in_the_steady_state_on_the_slow_manifold(made):
+    data, _, _ = made["phase_portrait"]
+    depth, rate = data.manifold
+    assert np.interp(data.steady_depth, depth, rate) == pytest.approx(0.0, abs=1e-3)
+    for d, v in data.curves.values():
+        assert d[-1] == pytest.approx(data.steady_depth, abs=2e-3)
+        assert v[-1] == pytest.approx(0.0, abs=5e-3)
+
+
 def test_plot_functions_return_their_artists(made):
     ax = made["asymptote_error"][1].axes[0]
     V = np.array([0.01, 0.1])
