@@ -164,6 +164,38 @@ class Transient:
         """Return the contact pressure in Pa at the positions `x` (m) and one `time` (s)."""
         return self.solution.pressure(x, time)
 
+    def surface(self, x: Any, time: float) -> Any:
+        """Return the compression u of the foundation in m at the positions `x` (m) and one `time` (s).
+
+        Under the indenter u = depth - x^2/2R; outside it relaxes from what the indenter left (fact F8).
+
+        Examples
+        --------
+        >>> import kvtheory as kv
+        >>> result = kv.transient(rtol=1e-9)
+        >>> print((result.surface([-3e-3, 0.0, 1e-3], 0.1) * 1e6).round(3))
+        [ 0.    89.738 81.644]
+        """
+        return self.solution.surface(x, time)
+
+    def energy(self, time: Any) -> Any:
+        """Return the energy ledger at the times (s): a `Ledger` of values or arrays in J/m (fact F14).
+
+        The work of the drive, int F_x V dt, and what was stored at rest are spent on the kinetic
+        energy, on the potential energies -M g (delta - delta_0) and k_s (delta - delta_0)^2/2, on what
+        is stored, int K u^2/2 dx, and on what was dissipated, int int C (du/dt)^2 dx dt; the last two
+        under the indenter (`..._contact`) and in the surface that relaxes (`..._surface`). `balance` is
+        what is left over: only the error.
+
+        Examples
+        --------
+        >>> import kvtheory as kv
+        >>> books = kv.transient(rtol=1e-9).energy(0.1)
+        >>> print(f"{books.work:.4f} {books.dissipated_contact:.4f} {books.stored_surface:.4f}")
+        10.3091 7.7910 0.3461
+        """
+        return self.solution.energy(time)
+
     def as_dict(self) -> dict[str, Any]:
         """Return plain Python values, ready for JSON: `time` first; what does not exist is None."""
         return {

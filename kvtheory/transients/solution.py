@@ -3,9 +3,11 @@
 import math
 from dataclasses import dataclass
 from functools import cached_property
+from operator import itemgetter
 from typing import Any
 
 import numpy as np
+from numpy.polynomial import Chebyshev
 from numpy.typing import ArrayLike, NDArray
 
 from kvtheory.results import TRANSIENT_UNITS, Certificate, Event, Transient
@@ -13,6 +15,8 @@ from kvtheory.scene.model import Fixed, Scene
 from kvtheory.scene.numbers import dimensionless_numbers
 from kvtheory.transients.continuum import Motion, solve
 from kvtheory.transients.drive import Drive
+from kvtheory.transients.energy import Ledger, ledger
+from kvtheory.transients.surface import height
 
 Array = NDArray[np.float64]
 
@@ -26,6 +30,13 @@ LOOSEST = 1e-4
 
 SUBDIVISIONS = 4
 """Points shown for each step of the solver, which is long where nothing happens."""
+
+FORCE_DEGREE = 16
+"""Of the polynomial through a force on one step: twice that of the depth, for a force is not one."""
+AFTER_END = 1e-12
+"""Share of the run by which a time may lie after its end, from rounding."""
+SAME_FORCE = 1e-10
+"""Relative; of forces as equal as this, as in steady sliding, the first is the largest."""
 
 
 @dataclass(frozen=True)
@@ -41,6 +52,11 @@ class Scales:
     def friction(self) -> float:
         """W_0 delta_0/a_0, in N/m."""
         return self.load * self.depth / self.length
+
+    @property
+    def energy(self) -> float:
+        """W_0 delta_0, in J/m."""
+        return self.load * self.depth
 
 
 def scales(scene: Scene) -> Scales:
@@ -116,12 +132,69 @@ class Solution:
 
     def pressure(self, x: ArrayLike, time: float) -> Array:
         """Return p in Pa at the positions `x` (m): K (d + d' - xi^2 - 2 lambda xi) in the contact."""
-        s = min(time / self.units.time, self.motion.end)
+        s = self._scaled(time)
         moment, number = self.motion.at(s), self.drive.at(s)[1]
         xi = np.asarray(x, dtype=float) / self.units.length
         p = moment.depth + moment.rate - xi * (xi + 2.0 * number)
         inside = (moment.left <= xi) & (xi <= moment.right)  # false in flight, where both are NaN
         return np.where(inside, np.maximum(p, 0.0), 0.0) * self.stiffness * self.units.depth
+
+    def surface(self, x: ArrayLike, time: float) -> Array:
+        """Return the compression u in m of the foundation at the positions `x` (m)."""
+        xi = np.asarray(x, dtype=float) / self.units.length
+        return height(self.motion, xi, self._scaled(time)) * self.units.depth
+
+    def energy(self, time: ArrayLike) -> Ledger:
+        """Return the energy ledger in J/m at the times (s)."""
+        return ledger(self.motion, self._scaled(time)).scaled(self.units.energy)
+
+    def _scaled(self, time: Any) -> Any:
+        """Return times in units of tau; those after the end by no more than rounding are the end."""
+        s, end = np.asarray(time, dtype=float) / self.units.time, self.motion.end
+        if not np.all((s >= 0.0) & (s <= end * (1.0 + AFTER_END))):
+            raise ValueError(f"`time` must lie in [0, {end * self.units.time!r}] s, got {time!r}")
+        return np.minimum(s, end)[()]
+
+
+def force_maxima(motion: Motion) -> tuple[float, float]:
+    """Return when f_z and |f_x| are largest: the first time of the largest value from s = 0 on.
+
+    It is an end of a step, before or after a jump there, or a stationary point of the polynomial
+    through the force on the step; on steps whose samples come near enough to the largest.
+    """
+    ends = [math.nextafter(s, 0.0) for s in motion.starts[1:]] + [motion.end]
+    steps = np.array([motion.starts, ends]).T
+    parts = np.linspace(0.0, 1.0, SUBDIVISIONS + 1)
+    samples = np.array([[_forces(motion, a + (b - a) * t) for t in parts] for a, b in steps])
+    largest, least = samples.max(axis=1), samples.min(axis=1)
+    enough = (1.0 - SAME_FORCE) * largest.max(axis=0)
+    near = np.any(2.0 * largest - least >= enough, axis=1)
+    times = [s for a, b in steps[near].tolist() for s in (a, *_turns(motion, a, b), b)]
+    forces = np.array([_forces(motion, s) for s in times])
+    first = np.argmax(forces >= (1.0 - SAME_FORCE) * forces.max(axis=0), axis=0)
+    normal, friction = (times[int(k)] for k in first)
+    return normal, friction
+
+
+def _turns(motion: Motion, a: float, b: float) -> list[float]:
+    """Return the times within one step at which a force is stationary.
+
+    The variable x is one in which the square roots that an edge begins or ends with are smooth.
+    """
+    x = 0.5 - 0.5 * np.cos(np.pi * (np.arange(FORCE_DEGREE + 1) + 0.5) / (FORCE_DEGREE + 1))
+    forces = [_forces(motion, a + (b - a) * t * t * (3.0 - 2.0 * t)) for t in x.tolist()]
+    found: list[float] = []
+    for samples in zip(*forces, strict=True):
+        slope = Chebyshev.fit(x, samples, FORCE_DEGREE, [0.0, 1.0]).deriv()
+        roots = np.asarray(slope.roots(), dtype=complex)
+        inside = (roots.imag == 0.0) & (roots.real > 0.0) & (roots.real < 1.0)
+        found += [a + (b - a) * t * t * (3.0 - 2.0 * t) for t in roots.real[inside].tolist()]
+    return sorted(found)
+
+
+def _forces(motion: Motion, s: float) -> tuple[float, float]:
+    now = motion.at(s)
+    return now.normal_force, abs(now.friction_force)
 
 
 def transient(scene: Scene, times: ArrayLike | None, rtol: float) -> Transient:
@@ -140,7 +213,9 @@ def transient(scene: Scene, times: ArrayLike | None, rtol: float) -> Transient:
         "relative to the static depth, half length and load",
         _differences(series, coarse.series(time), units, fine.stiffness),
     )
-    events = tuple(Event(event.s * units.time, event.kind) for event in fine.motion.events)
+    kinds = ("normal force maximum", "friction force maximum")
+    found = [*fine.motion.events, *zip(force_maxima(fine.motion), kinds, strict=True)]
+    events = tuple(Event(s * units.time, kind) for s, kind in sorted(found, key=itemgetter(0)))
     steps, evaluations = fine.motion.steps, fine.motion.evaluations
     return Transient(
         **series, events=events, steps=steps, evaluations=evaluations,

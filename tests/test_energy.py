@@ -1,0 +1,139 @@
+"""The energy ledger: it closes, its entries are what they are called, and steady sliding is F6."""
+
+import math
+
+import numpy as np
+import pytest
+
+import kvtheory as kv
+from kvtheory.transients.continuum import solve
+from kvtheory.transients.drive import Drive
+from kvtheory.transients.energy import ledger
+from kvtheory.transients.solution import force_maxima
+from kvtheory.transients.surface import height
+
+END = 2.0
+STOP_AND_GO = [(0, 4), (0.3, 4), (0.3, 0), (0.6, 0), (0.6, 4), (0.9, 4), (0.9, 0.5)]
+REVERSAL = [(0, 4), (0.5, 4), (0.5, -4)]
+HISTORIES = {
+    "start": ([(0, 4)], 0.003, 0.0),
+    "stiff stop": ([(0, 4), (0.5, 4), (0.5, 0)], 1e-5, 0.0),
+    "slow-down": ([(0, 4), (0.5, 4), (1.0, 1)], 0.04, 0.0),
+    "reversal": (REVERSAL, 0.04, 0.5),
+    "there and back": ([(0, 0), (0.5, 4), (1.5, -4), (2.0, 3)], 0.2, 0.0),
+    "heavy": ([(0, 0.3), (1.0, 0.3), (1.0, 0)], 300.0, 0.0),
+    "hop": ([(0, 7.1)], 0.078, 0.12),
+    "hops": ([(0, 2.0), (0.3, 8.0), (0.3, -5), (1.0, 0), (1.0, 9)], 0.2, 0.04),
+    "stop-and-go": (STOP_AND_GO, 0.04, 0.0),
+    "suspended": (STOP_AND_GO, 1.0, 0.5),
+    "fixed": (STOP_AND_GO, 1.0, math.inf),
+    "fixed reversal": (REVERSAL, 1.0, math.inf),
+}
+
+
+def oscillation(s):
+    return 2 * math.sin(5 * s) + 1.5 * math.sin(13.7 * s)
+
+
+@pytest.mark.parametrize("name", HISTORIES)
+def test_ledger_closes(name):
+    points, eps, kappa = HISTORIES[name]
+    motion = solve(Drive.from_points(points, END), eps, kappa, END, 1e-10)
+    times = np.array([*motion.starts, *np.linspace(0, END, 23)])  # at jumps and landings as well
+    assert np.abs(ledger(motion, times).balance).max() <= 1e-9
+
+
+@pytest.mark.parametrize(("eps", "kappa"), [(0.04, 0.0), (1.0, 0.5), (1.0, math.inf)])
+def test_ledger_closes_in_an_oscillation(eps, kappa):
+    motion = solve(Drive.from_callable(oscillation, END), eps, kappa, END, 1e-10)
+    assert np.abs(ledger(motion, np.linspace(0, END, 41)).balance).max() <= 1e-10
+
+
+@pytest.mark.parametrize("name", ["stiff stop", "reversal", "hops", "fixed reversal"])
+def test_entries_are_the_energies_they_are_called(name):
+    points, eps, kappa = HISTORIES[name]
+    motion = solve(Drive.from_points(points, END), eps, kappa, END, 1e-10)
+    xi = np.linspace(-12, 14, 100_001)
+    for s in (0.35, 0.8, 1.3):
+        books, now = ledger(motion, s), motion.at(s)
+        stored = 0.375 * height(motion, xi, s) ** 2
+        under = (now.left <= xi) & (xi <= now.right)
+        total = np.trapezoid(stored, xi)
+        assert books.stored_contact + books.stored_surface == pytest.approx(total, abs=2e-7)
+        assert books.stored_contact == pytest.approx(np.trapezoid(stored * under, xi), abs=2e-4)
+    if kappa < math.inf:
+        moving = books.kinetic + books.potential_weight + books.potential_spring
+        expected = 0.5 * eps * now.rate**2 + (1 - now.depth) + 0.5 * kappa * (1 - now.depth) ** 2
+        assert moving == pytest.approx(expected, rel=1e-14)
+
+
+def test_behind_the_contact_twice_what_is_stored_is_dissipated():
+    points, eps, kappa = HISTORIES["reversal"]
+    motion = solve(Drive.from_points(points, END), eps, kappa, END, 1e-10)
+    low, high = ledger(motion, 0.9), ledger(motion, 0.9002)
+    rate = (high.dissipated_surface - low.dissipated_surface) / 2e-4
+    assert rate == pytest.approx(low.stored_surface + high.stored_surface, rel=1e-6)
+
+
+@pytest.mark.parametrize("number", [0.1, 0.75, 4.0])
+def test_shares_of_steady_sliding(number):
+    """Fact F6: the share 4 (q^2 - q + 1)/(q^2 - q + 4) is dissipated inside the contact."""
+    motion = solve(Drive.constant(number, 22.0), 1.0, math.inf, 22.0, 1e-10)
+    q = motion.at(1.0).right
+    low, high = ledger(motion, 20.0), ledger(motion, 22.0)
+    work = high.work - low.work
+    inside = (high.dissipated_contact - low.dissipated_contact) / work
+    assert inside == pytest.approx(4 * (q * q - q + 1) / (q * q - q + 4), rel=1e-12)
+    assert inside + (high.dissipated_surface - low.dissipated_surface) / work == pytest.approx(1.0)
+
+
+def test_ledger_in_joules():
+    result = kv.transient(rtol=1e-9)
+    books = result.energy(result.time)
+    F_x, time = result.friction_force, result.time
+    late = time >= 0.05
+    work = books.work[late][-1] - books.work[late][0]
+    assert work == pytest.approx(np.trapezoid(0.1 * F_x[late], time[late]), rel=1e-4)
+    assert books.kinetic == pytest.approx(0.5 * 1000.0 * result.depth_rate**2, abs=1e-15)
+    depth = result.depth - result.depth[0]
+    assert books.potential_weight == pytest.approx(-9806.65 * depth, abs=1e-12)
+    assert np.abs(books.balance).max() <= 1e-8 * books.stored_at_rest[0]
+    with pytest.raises(ValueError, match="`time`"):
+        result.energy([0.1, 0.3])
+
+
+def maxima(scene):
+    events = kv.transient(scene, rtol=1e-10).events
+    assert [event.time for event in events] == sorted(event.time for event in events)
+    kinds = ("normal force maximum", "friction force maximum")
+    return [event.time for kind in kinds for event in events if event.kind == kind]
+
+
+def test_the_largest_forces_of_a_start_are_at_once():
+    for support in ("fixed", "dead-weight", "suspended"):
+        assert maxima(kv.Scene.table1(support)) == [0.0, 0.0]
+
+
+def test_the_largest_friction_before_a_jump():
+    """A fixed indenter: with the velocity the friction rises, then the drive stops or turns."""
+    for last in ("0 m/s", "-50 mm/s"):
+        drive = kv.Drive(history=[("0 s", "0 m/s"), ("50 ms", "0.1 m/s"), ("50 ms", last)])
+        scene = kv.Scene(support=kv.Scene.table1("fixed").support, drive=drive)
+        assert maxima(scene) == pytest.approx([0.05, 0.05], abs=1e-15)
+
+
+def test_the_largest_forces_within_a_step():
+    fixed = solve(Drive.from_callable(lambda s: 2 * math.sin(5 * s), END), 1.0, math.inf, END)
+    assert force_maxima(fixed) == pytest.approx((math.pi / 10,) * 2, abs=1e-11)
+
+
+@pytest.mark.parametrize("name", ["there and back", "hops"])
+def test_forces_are_stationary_at_their_maxima(name):
+    points, eps, kappa = HISTORIES[name]
+    motion = solve(Drive.from_points(points, END), eps, kappa, END, 1e-12)
+    grid = [motion.at(s) for s in np.linspace(0, END, 2001)]
+    for k, s in enumerate(force_maxima(motion)):
+        force = lambda moment, k=k: abs(moment[-2 + k])  # noqa: E731
+        low, at, high = (force(motion.at(s + step)) for step in (-1e-4, 0.0, 1e-4))
+        assert at >= max(map(force, grid))
+        assert abs(high - low) / 2e-4 <= 1e-3 * (2 * at - low - high) / 1e-8

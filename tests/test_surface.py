@@ -1,0 +1,106 @@
+"""The free surface against every instant of the past, and its integrals."""
+
+import math
+
+import numpy as np
+import pytest
+
+import kvtheory as kv
+from kvtheory.transients.continuum import solve
+from kvtheory.transients.drive import Drive
+from kvtheory.transients.surface import height, volume
+
+END = 2.0
+HISTORIES = {
+    "start": ([(0, 4)], 0.04, 0.0),
+    "stop": ([(0, 4), (0.5, 4), (0.5, 0)], 0.04, 0.0),
+    "reversal": ([(0, 4), (0.5, 4), (0.5, -4)], 0.04, 0.5),
+    "stop-and-go": ([(0, 4), (0.3, 4), (0.3, 0), (0.6, 0), (0.6, 4), (0.9, 0.5)], 1.0, 0.5),
+    "ramps": ([(0, 0), (0.5, 4), (1.5, -4), (2.0, 3)], 0.2, 0.0),
+    "hop": ([(0, 7.1)], 0.078, 0.12),
+    "fixed": ([(0, 4), (0.5, 4), (0.5, -4)], 1.0, math.inf),
+}
+
+
+@pytest.fixture(scope="module", params=HISTORIES)
+def solved(request):
+    points, eps, kappa = HISTORIES[request.param]
+    given = Drive.from_points(points, END)
+    return given, solve(given, eps, kappa, END, 1e-10)
+
+
+def highest(motion, given, xi, s):
+    """Fact F8: max(0, largest e^(sigma - s) g(X, sigma)) over the past, each maximum refined."""
+    X = np.asarray(xi) - given.at(s)[0]
+
+    def left(sigma):
+        d = np.vectorize(lambda t: motion.at(t).depth)(sigma)
+        Y = np.vectorize(lambda t: given.at(t)[0])(sigma)
+        return np.exp(sigma - s) * (d - (X + Y) ** 2)
+
+    jumps = [t for t in motion.starts if t <= s]
+    past = [np.clip(t + np.geomspace(1e-7, END, 60), 0.0, s) for t in {*jumps[:1], 0.3, 0.5, 0.6}]
+    sigma = np.unique(np.concatenate([np.linspace(0, s, 500), jumps, *past]))[:, None]
+    top = np.zeros(X.shape)
+    for _ in range(4):
+        values = left(sigma)
+        best = values.argmax(axis=0)
+        sigma = np.broadcast_to(sigma, values.shape)
+        low, high = (
+            np.take_along_axis(sigma, np.clip(best + step, 0, len(sigma) - 1)[None], axis=0)
+            for step in (-1, 1)
+        )
+        top = np.maximum(top, values.max(axis=0))  # it may be at a jump
+        sigma = low + (high - low) * np.linspace(0, 1, 25)[:, None]
+    return top
+
+
+@pytest.mark.parametrize("s", [0.07, 0.55, 1.21, 1.9])
+def test_height_is_the_highest_of_all_past_instants(solved, s):
+    given, motion = solved
+    xi = np.random.default_rng(3).uniform(-4, 6, 40)
+    assert height(motion, xi, s) == pytest.approx(highest(motion, given, xi, s), abs=1e-9)
+
+
+@pytest.mark.parametrize("s", [0.3, 0.55, 0.7, 1.37])
+def test_height_integrates_to_the_volume(solved, s):
+    _, motion = solved
+    xi = np.linspace(-12, 14, 100_001)
+    u = height(motion, xi, s)
+    assert u.min() >= -1e-12
+    assert np.trapezoid(u, xi) == pytest.approx(volume(motion, s), abs=2e-7)
+
+
+def test_surface_is_continuous_at_the_edges(solved):
+    _, motion = solved
+    for s in (0.0, 0.31, 0.5, 1.1, 2.0):
+        now = motion.at(s)
+        if now.left_state == "free":
+            continue
+        for edge in (now.left, now.right):
+            for side in (-1e-12, 0.0, 1e-12):
+                u = height(motion, edge + side, s)
+                assert u == pytest.approx(now.depth - edge * edge, abs=1e-10)
+
+
+def test_under_a_flying_indenter_the_surface_relaxes():
+    points, eps, kappa = HISTORIES["hop"]
+    motion = solve(Drive.from_points(points, END), eps, kappa, END, 1e-10)
+    times = {event.kind: event.s for event in motion.events}
+    a, b = times["take-off"] + 0.01, times["landing"] - 0.01
+    slide = 7.1 * (b - a)
+    xi = np.linspace(-1.0, 3.0, 60)
+    before, after = height(motion, xi, a), height(motion, xi + slide, b)
+    assert before.max() > 0.1
+    assert after == pytest.approx(math.exp(a - b) * before, abs=1e-12)
+
+
+def test_surface_in_metres():
+    result = kv.transient(at=[0.05], rtol=1e-9)
+    x = np.linspace(result.leading_edge[0], result.trailing_edge[0], 7)
+    assert result.surface(x, 0.05) == pytest.approx(result.depth[0] - x**2 / 0.02, abs=1e-12)
+    ahead = result.surface(result.leading_edge[0] - 1e-3, 0.05)
+    assert ahead == 0.0
+    for time in (-1e-3, 0.3, math.nan):
+        with pytest.raises(ValueError, match="`time`"):
+            result.surface(0.0, time)
