@@ -49,7 +49,7 @@ PER_STEP = 4
 RECENT = 1e-9
 """Instants closer than this are left to the limit s' -> s: their differences would be rounding."""
 ROUNDING = 1e-15
-SAFETY = 3.0
+SAFETY = 10.0
 """Edges cross elements at irregular phases, so that one change of refinement can be small by luck."""
 POINTS, WEIGHTS = np.polynomial.legendre.leggauss(3)
 

@@ -53,7 +53,7 @@ class Drive:
             _joined(
                 (a, b, (left, (right - left) / (b - a)))
                 for (a, left), (b, right) in itertools.pairwise(held)
-                if b > a
+                if b - a > 4.0 * math.ulp(b)  # times that differ by rounding are one time: a jump
             )
         )
 
