@@ -444,7 +444,7 @@ def table() -> dict[str, Any]:
     for name, scene in TWO_STATES.items():
         found[name] = entry(scene, "two_states", two_states(scene, 1e-10), two_states(scene, 1e-12))
     for name, scene in HISTORY.items():
-        coarse, fine = history(scene, 1e-11, 0.05), history(scene, 1e-13, 0.025)
+        coarse, fine = history(scene, 1e-12, 0.05), history(scene, 1e-13, 0.025)
         d, error = extrapolated(scene, REFINEMENTS)
         found[name] = entry(scene, "history", coarse, fine) | {
             "elements": {"d": _row(d), "errors": _row(error)}
