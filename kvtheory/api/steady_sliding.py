@@ -1,23 +1,18 @@
-"""What users call: a scene in, a result out, by the method asked for."""
+"""Steady sliding: `steady` and `asymptotes`."""
 
-from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Mapping
 from typing import Any
 
-import numpy as np
-
-from kvtheory.results import AsymptoteReport, SteadyState, Transient
-from kvtheory.scene.fields import SceneError, convert, nearest, problem
+from kvtheory.api.edge import double_precision, scene_of
+from kvtheory.results import AsymptoteReport, SteadyState
+from kvtheory.scene.fields import nearest
 from kvtheory.scene.indenters import Parabola
-from kvtheory.scene.model import TIME, Scene
+from kvtheory.scene.model import Scene
 from kvtheory.scene.over import values
 from kvtheory.steady_state.methods import METHODS
 
 MINIMUM_TOLERANCE = 1e-10
 """Asymptotes that must be closer than this are not told apart from rounding."""
-
-MINIMUM_RTOL, MAXIMUM_RTOL = 1e-12, 1e-2
-"""Beyond these, rounding or the first step would decide."""
 
 
 def steady(
@@ -67,7 +62,7 @@ def steady(
     ----------
     Nakano and Kono (2020), doi:10.3389/fmech.2020.00038, Eqs. 26-49.
     """
-    scene = _scene(scene)
+    scene = scene_of(scene)
     parabolic = isinstance(scene.indenter, Parabola)
     method = method or ("exact" if parabolic else "quadrature")
     if method not in METHODS:
@@ -77,7 +72,7 @@ def steady(
             f'`method` = "{method}" holds for the parabola only, not for indenter.shape = '
             f'"{scene.indenter.shape}"; use method = "quadrature"'
         )
-    with _double_precision():
+    with double_precision():
         return METHODS[method](scene, values(scene, over))
 
 
@@ -121,7 +116,7 @@ def asymptotes(
     ----------
     Nakano and Kono (2020), doi:10.3389/fmech.2020.00038, Eqs. 40-48 and Table 2.
     """
-    scene = _scene(scene)
+    scene = scene_of(scene)
     if not MINIMUM_TOLERANCE <= tolerance <= 1.0:
         raise ValueError(
             f"`tolerance` = {tolerance!r}: expected a number from {MINIMUM_TOLERANCE} to 1"
@@ -133,100 +128,5 @@ def asymptotes(
         )
     from kvtheory.steady_state import regimes  # it imports SciPy, which takes a while
 
-    with _double_precision():
+    with double_precision():
         return regimes.report(scene, values(scene, over), tolerance)
-
-
-def transient(scene: Scene | None = None, *, at: Any = None, rtol: float = 1e-6) -> Transient:
-    """Follow the transient of a scene, exactly: no discretized foundation.
-
-    Parameters
-    ----------
-    scene
-        What is modelled; without it, the paper's Table 1 with a dead weight. The indenter must be
-        a parabola. At t < 0 it rests at its static depth.
-    at
-        Times at which the result is wanted, in s or as text with a unit; without it, the steps of
-        the solver, subdivided.
-    rtol
-        Error allowed in a step, relative to the static state, from 1e-12 to 1e-2.
-
-    Returns
-    -------
-    Transient
-        Arrays over time in SI, the events of the contact, and a certificate whose errors are
-        relative to the static depth, half length and load.
-
-    Raises
-    ------
-    SceneError
-        If a time is wrong; every mistake is listed.
-    ValueError
-        If the indenter is not a parabola, or a time or `rtol` is out of range.
-    ArithmeticError
-        If the motion cannot be followed to its end; the message says when and why.
-
-    Examples
-    --------
-    >>> import kvtheory as kv
-    >>> result = kv.transient(at=["0 ms", "1 ms", "200 ms"])
-    >>> (result.normal_force / 1e3).round(2).tolist()
-    [35.37, 12.73, 9.81]
-    >>> (result.friction_force / 1e3).round(2).tolist()
-    [5.35, 2.35, 0.84]
-
-    References
-    ----------
-    Nakano and Kono (2020), doi:10.3389/fmech.2020.00038, Eqs. 1-33 and Figs. 3, 4.
-    """
-    scene = _scene(scene)
-    if not MINIMUM_RTOL <= rtol <= MAXIMUM_RTOL:
-        raise ValueError(
-            f"`rtol` = {rtol!r}: expected a number from {MINIMUM_RTOL} to {MAXIMUM_RTOL}"
-        )
-    if not isinstance(scene.indenter, Parabola):
-        raise ValueError(
-            "the transient is solved for the parabola only, not for indenter.shape = "
-            f'"{scene.indenter.shape}"'
-        )
-    from kvtheory.transients import solution
-
-    with _double_precision():
-        return solution.transient(scene, None if at is None else _times(scene, at), rtol)
-
-
-def _scene(scene: Scene | None) -> Scene:
-    if scene is not None and not isinstance(scene, Scene):
-        raise TypeError(
-            f"expected a Scene, got {scene!r}; kvtheory.load_scene reads one from a file"
-        )
-    return Scene() if scene is None else scene
-
-
-def _times(scene: Scene, at: Any) -> Any:
-    """Return the times in s, checked against the duration of the run."""
-    problems, times = [], []
-    for value in [at] if isinstance(at, str) or np.ndim(at) == 0 else at:
-        try:
-            times.append(convert(value, TIME))
-            if times[-1] > scene.run.duration:
-                raise ValueError(
-                    f"is after the end of the run, run.duration = {scene.run.duration} s"
-                )
-        except ValueError as error:
-            problems.append(problem("`at`", value, str(error)))
-    if not times and not problems:
-        problems.append('`at` is empty: expected times such as "0 ms,1 ms"')
-    if problems:
-        raise SceneError(problems)
-    return times
-
-
-@contextmanager
-def _double_precision() -> Iterator[None]:
-    """Turn an overflow anywhere in a calculation into an error about the scene."""
-    try:
-        with np.errstate(over="raise", invalid="raise", divide="raise"):
-            yield
-    except (FloatingPointError, OverflowError, ZeroDivisionError) as error:
-        raise ValueError(f"the scene leaves the range of double precision: {error}") from None

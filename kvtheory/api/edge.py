@@ -1,0 +1,48 @@
+"""What the public functions share: checks of their arguments, and of the range of floats."""
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import Any
+
+import numpy as np
+
+from kvtheory.scene.fields import SceneError, convert, problem
+from kvtheory.scene.model import TIME, Scene
+
+
+def scene_of(scene: Scene | None) -> Scene:
+    """Return the scene, or that of Table 1."""
+    if scene is not None and not isinstance(scene, Scene):
+        raise TypeError(
+            f"expected a Scene, got {scene!r}; kvtheory.load_scene reads one from a file"
+        )
+    return Scene() if scene is None else scene
+
+
+def times_of(scene: Scene, at: Any) -> Any:
+    """Return the times in s, checked against the duration of the run."""
+    problems, times = [], []
+    for value in [at] if isinstance(at, str) or np.ndim(at) == 0 else at:
+        try:
+            times.append(convert(value, TIME))
+            if times[-1] > scene.run.duration:
+                raise ValueError(
+                    f"is after the end of the run, run.duration = {scene.run.duration} s"
+                )
+        except ValueError as error:
+            problems.append(problem("`at`", value, str(error)))
+    if not times and not problems:
+        problems.append('`at` is empty: expected times such as "0 ms,1 ms"')
+    if problems:
+        raise SceneError(problems)
+    return times
+
+
+@contextmanager
+def double_precision() -> Iterator[None]:
+    """Turn an overflow anywhere in a calculation into an error about the scene."""
+    try:
+        with np.errstate(over="raise", invalid="raise", divide="raise"):
+            yield
+    except (FloatingPointError, OverflowError, ZeroDivisionError) as error:
+        raise ValueError(f"the scene leaves the range of double precision: {error}") from None

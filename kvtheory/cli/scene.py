@@ -1,0 +1,43 @@
+"""`kvtheory scene`: a template, or a check of a scene file."""
+
+from collections.abc import Sequence
+
+import click
+
+from kvtheory.cli.console import print_json, print_table, scene_command
+from kvtheory.cli.group import main
+
+
+@scene_command(
+    main, "kvtheory scene --support fixed > my-scene.toml && kvtheory scene my-scene.toml"
+)
+@click.option(
+    "--support",
+    type=click.Choice(["fixed", "dead-weight", "suspended"]),
+    default=None,
+    help="Support of the template.",
+)
+def scene(scene: str | None, overrides: Sequence[str], as_json: bool, support: str | None) -> None:
+    """Print a commented scene template, or check SCENE and print its dimensionless numbers."""
+    from kvtheory.scene import Parabola, load_scene, template
+    from kvtheory.scene.numbers import dimensionless_numbers, quantities_by_name
+
+    if support and (scene or overrides or as_json):
+        raise ValueError(
+            "--support chooses the template; it does not go with SCENE, --set or --json"
+        )
+    if not (scene or overrides or as_json):
+        click.echo(template(support or "dead-weight"))
+        return
+    checked = load_scene(scene, overrides)
+    numbers = dimensionless_numbers(checked) if isinstance(checked.indenter, Parabola) else {}
+    quantities = {**quantities_by_name(checked), **numbers}
+    if as_json:
+        kinds = {"shape": checked.indenter.shape, "support": checked.support.kind}
+        print_json({**kinds, **quantities})
+        return
+    click.echo(f"Sound: {checked.indenter.shape} indenter, {checked.support.kind} support.\n")
+    rows = [(name, f"{value:.6g}") for name, value in quantities.items()]
+    print_table(("quantity", "value in SI"), rows)
+    if not numbers:
+        click.echo("\nThe dimensionless numbers are defined for a parabola only.")

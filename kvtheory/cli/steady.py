@@ -1,0 +1,109 @@
+"""`kvtheory steady` and `kvtheory asymptotes`: steady sliding."""
+
+import math
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import click
+
+from kvtheory.cli.console import print_json, print_table, scene_command, shown, text, velocity_range
+from kvtheory.cli.group import main
+
+if TYPE_CHECKING:
+    from kvtheory.scene import Scene
+
+
+@scene_command(main, 'kvtheory steady --set drive.velocity="50 mm/s" --json')
+@click.option(
+    "--method",
+    default=None,
+    metavar="exact|quadrature|asymptote",
+    help="Default: exact, or quadrature for shapes other than the parabola.",
+)
+def steady(scene: str | None, overrides: Sequence[str], as_json: bool, method: str | None) -> None:
+    """Print the state of steady sliding: depth, edges, load, friction, peak pressure."""
+    from kvtheory.api import steady as solve
+    from kvtheory.results import STEADY_UNITS
+    from kvtheory.scene import load_scene
+
+    checked = load_scene(scene, overrides)
+    state = solve(checked, method=method)
+    if as_json:
+        print_json(state.as_dict())
+        return
+    _note_history(checked)
+    errors = state.certificate.relative_error
+    rows = [
+        (name, *shown(getattr(state, name), unit), f"{errors[name]:.1e}")
+        for name, unit in STEADY_UNITS.items()
+    ]
+    click.echo(f"Steady sliding, {checked.support.kind} support, model: {state.model}\n")
+    print_table(("quantity", "value", "unit", "relative error"), rows)
+    click.echo(f"\nErrors are {state.certificate.kind}: {state.certificate.statement}.")
+
+
+@scene_command(main, "kvtheory asymptotes --tolerance 0.01")
+@click.option(
+    "--tolerance",
+    type=float,
+    default=0.05,
+    show_default=True,
+    help="Relative error up to which an asymptote is good.",
+)
+def asymptotes(
+    scene: str | None, overrides: Sequence[str], as_json: bool, tolerance: float
+) -> None:
+    """Say which asymptote holds, how wrong it is, and over which velocities."""
+    from kvtheory.api import asymptotes as examine
+    from kvtheory.results import STEADY_UNITS
+    from kvtheory.scene import load_scene
+
+    checked = load_scene(scene, overrides)
+    report = examine(checked, tolerance=tolerance)
+    if as_json:
+        print_json(report.as_dict())
+        return
+    _note_history(checked)
+    ratio = abs(report.velocity) / report.critical_velocity
+    click.echo(
+        f"{checked.support.kind} support, V = {text(report.velocity, 'm/s')}, critical velocity "
+        f"V* = {text(report.critical_velocity, 'm/s')}, V/V* = {ratio:.4g}: "
+        f"{report.regime}-velocity regime"
+    )
+    if not math.isnan(report.peak_velocity):
+        click.echo(
+            f"friction maximum: mu = {report.peak_friction_coefficient:.6g} "
+            f"at V = {text(report.peak_velocity, 'm/s')}"
+        )
+    advice = "the exact solution" if report.use == "exact" else report.use
+    click.echo(f"for the friction coefficient to within {tolerance:g}, use {advice}\n")
+    rows = [
+        (
+            line.name, f"({line.equation})" if line.equation else "", line.formula,
+            text(line.value, STEADY_UNITS[line.quantity]),
+            text(line.exact, STEADY_UNITS[line.quantity]),
+            "-" if math.isnan(line.relative_error) else f"{line.relative_error:+.3g}",
+            velocity_range(line.velocity_min, line.velocity_max),
+        )
+        for line in report.lines
+    ]  # fmt: skip
+    print_table(
+        (
+            "asymptote",
+            "Eq.",
+            "formula",
+            "value",
+            "exact",
+            "relative error",
+            f"within {tolerance:g} for",
+        ),
+        rows,
+    )
+
+
+def _note_history(scene: "Scene") -> None:
+    """Say which velocity of a history counts in steady sliding."""
+    if scene.drive.history is not None:
+        click.echo(
+            f"The drive has a history; taken at its last velocity, {text(scene.drive.final_velocity, 'm/s')}."
+        )

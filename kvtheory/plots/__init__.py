@@ -1,0 +1,20 @@
+"""Results drawn on matplotlib axes: each function takes axes and a result, and returns the artists."""
+
+from kvtheory.plots.steady import plot_asymptote_errors, plot_steady
+from kvtheory.plots.style import BLACK, BLUE, GREEN, LABELS, PURPLE, RED, STYLE
+from kvtheory.plots.transient import plot_pressure, plot_transient, save_transient_plot
+
+__all__ = [
+    "BLACK",
+    "BLUE",
+    "GREEN",
+    "LABELS",
+    "PURPLE",
+    "RED",
+    "STYLE",
+    "plot_asymptote_errors",
+    "plot_pressure",
+    "plot_steady",
+    "plot_transient",
+    "save_transient_plot",
+]

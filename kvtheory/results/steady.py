@@ -1,0 +1,93 @@
+"""Steady sliding, and which asymptote of it holds."""
+
+from dataclasses import dataclass
+from typing import Any
+
+from kvtheory.results.certificate import Certificate, Value, record
+
+STEADY_UNITS = {
+    "depth": "m",
+    "half_length": "m",
+    "retardation_length": "m",
+    "leading_edge": "m",
+    "trailing_edge": "m",
+    "load": "N/m",
+    "friction_force": "N/m",
+    "friction_coefficient": "1",
+    "peak_pressure": "Pa",
+    "dissipated_in_contact": "1",
+}
+"""The quantities of steady sliding and their units, in the order in which they are shown."""
+
+
+@dataclass(frozen=True)
+class SteadyState:
+    """Steady sliding: each quantity a float, or an array where the input was an array.
+
+    The edges are coordinates in the frame of the indenter, in which the foundation moves through
+    x with the drive velocity: the leading edge is at x < 0 for a positive velocity.
+    """
+
+    depth: Value
+    half_length: Value
+    retardation_length: Value
+    leading_edge: Value
+    trailing_edge: Value
+    load: Value
+    friction_force: Value
+    friction_coefficient: Value
+    peak_pressure: Value
+    dissipated_in_contact: Value
+    model: str
+    certificate: Certificate
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return plain Python values, ready for JSON; what does not exist is None."""
+        return record(self)
+
+
+@dataclass(frozen=True)
+class AsymptoteLine:
+    """One asymptote of a scene: its value, the exact one, and where it is good enough.
+
+    `relative_error` is asymptote/exact - 1; `velocity_min` and `velocity_max` bound the drive
+    velocities |V| in m/s at which its magnitude is within the tolerance of the report. What does
+    not exist (the high asymptote of the depth at V = 0) is NaN.
+    """
+
+    name: str
+    quantity: str
+    regime: str
+    equation: int | None
+    formula: str
+    value: Value
+    exact: Value
+    relative_error: Value
+    velocity_min: Value
+    velocity_max: Value
+
+
+@dataclass(frozen=True)
+class AsymptoteReport:
+    """Which asymptote of the friction coefficient holds.
+
+    `regime` is ``"low"`` or ``"high"`` (V below or above V*); `use` names the asymptote that is
+    within the tolerance, ``"L1"`` or ``"L2"``, or else ``"exact"``.
+    `peak_velocity` and `peak_friction_coefficient` locate the friction maximum of a dead weight
+    (theorem F3); they are NaN for the other supports.
+    """
+
+    velocity: Value
+    critical_velocity: Value
+    peak_velocity: Value
+    peak_friction_coefficient: Value
+    regime: Any
+    use: Any
+    tolerance: float
+    lines: tuple[AsymptoteLine, ...]
+    model: str
+    certificate: Certificate
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return plain Python values, ready for JSON; what does not exist is None."""
+        return record(self)

@@ -1,0 +1,95 @@
+"""A transient as a time series."""
+
+from dataclasses import dataclass, field, fields
+from typing import Any, NamedTuple
+
+from kvtheory.results.certificate import Certificate, Value, record
+
+TRANSIENT_UNITS = {
+    "time": "s",
+    "velocity": "m/s",
+    "depth": "m",
+    "depth_rate": "m/s",
+    "normal_force": "N/m",
+    "friction_force": "N/m",
+    "leading_edge": "m",
+    "trailing_edge": "m",
+    "peak_pressure": "Pa",
+}
+"""The quantities of a transient and their units, `time` first."""
+
+
+class Event(NamedTuple):
+    """What happened to the contact, and when (in s)."""
+
+    time: float
+    kind: str
+
+
+@dataclass(frozen=True)
+class Transient:
+    """A transient as a time series: arrays in SI over `time`; in flight the edges are NaN.
+
+    `leading_state` and `trailing_state` say whether an edge is ``"peeling"`` (its pressure is zero),
+    ``"touching"`` (it meets the free surface) or ``"free"`` (the indenter flies). At an instant where
+    the drive jumps, values are those just after the jump.
+    """
+
+    time: Value
+    velocity: Value
+    depth: Value
+    depth_rate: Value
+    normal_force: Value
+    friction_force: Value
+    leading_edge: Value
+    trailing_edge: Value
+    peak_pressure: Value
+    leading_state: tuple[str, ...]
+    trailing_state: tuple[str, ...]
+    events: tuple[Event, ...]
+    steps: int
+    evaluations: int
+    model: str
+    certificate: Certificate
+    solution: Any = field(repr=False, compare=False)
+    """The solved motion, from which `pressure` is evaluated."""
+
+    def pressure(self, x: Any, time: float) -> Any:
+        """Return the contact pressure in Pa at the positions `x` (m) and one `time` (s)."""
+        return self.solution.pressure(x, time)
+
+    def surface(self, x: Any, time: float) -> Any:
+        """Return the compression u of the foundation in m at the positions `x` (m) and one `time` (s).
+
+        Under the indenter u = depth - x^2/2R; outside it relaxes from what the indenter left (fact F8).
+
+        Examples
+        --------
+        >>> import kvtheory as kv
+        >>> result = kv.transient(rtol=1e-9)
+        >>> print((result.surface([-3e-3, 0.0, 1e-3], 0.1) * 1e6).round(3))
+        [ 0.    89.738 81.644]
+        """
+        return self.solution.surface(x, time)
+
+    def energy(self, time: Any) -> Any:
+        """Return the energy ledger at the times (s): a `Ledger` of values or arrays in J/m (fact F14).
+
+        The work of the drive, int F_x V dt, and what was stored at rest are spent on the kinetic
+        energy, on the potential energies -M g (delta - delta_0) and k_s (delta - delta_0)^2/2, on what
+        is stored, int K u^2/2 dx, and on what was dissipated, int int C (du/dt)^2 dx dt; the last two
+        under the indenter (`..._contact`) and in the surface that relaxes (`..._surface`). `balance` is
+        what is left over: only the error.
+
+        Examples
+        --------
+        >>> import kvtheory as kv
+        >>> books = kv.transient(rtol=1e-9).energy(0.1)
+        >>> print(f"{books.work:.4f} {books.dissipated_contact:.4f} {books.stored_surface:.4f}")
+        10.3091 7.7910 0.3461
+        """
+        return self.solution.energy(time)
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return plain Python values, ready for JSON: `time` first; what does not exist is None."""
+        return {f.name: record(getattr(self, f.name)) for f in fields(self) if f.name != "solution"}
