@@ -9,7 +9,7 @@ import kvtheory as kv
 from kvtheory.transients.continuum import solve
 from kvtheory.transients.drive import Drive
 from kvtheory.transients.energy import ledger
-from kvtheory.transients.solution import force_maxima
+from kvtheory.transients.maxima import force_maxima
 from kvtheory.transients.surface import height
 
 END = 2.0
@@ -47,6 +47,15 @@ def test_ledger_closes(name):
 def test_ledger_closes_in_an_oscillation(eps, kappa):
     motion = solve(Drive.from_callable(oscillation, END), eps, kappa, END, 1e-10)
     assert np.abs(ledger(motion, np.linspace(0, END, 41)).balance).max() <= 1e-10
+
+
+@pytest.mark.parametrize("kappa", [0.0, 0.5, math.inf])
+def test_ledger_closes_on_ramps_of_which_one_step_sweeps_much_ground(kappa):
+    points = [(0, 0), (0.4, 3000), (1.0, -2000), (1.1, -2000), (1.4, 0)]
+    motion = solve(Drive.from_points(points, END), 0.04, kappa, END, 1e-10)
+    books = ledger(motion, [*motion.starts, *np.linspace(0, END, 23)])
+    assert np.abs(books.balance / (1 + np.abs(books.work))).max() <= 1e-9
+    assert books.stored_surface.max() >= 1e-3
 
 
 @pytest.mark.parametrize("name", ["stiff stop", "reversal", "hops", "fixed reversal"])

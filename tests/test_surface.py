@@ -4,10 +4,12 @@ import math
 
 import numpy as np
 import pytest
+from scipy.integrate import quad
 
 import kvtheory as kv
 from kvtheory.transients.continuum import solve
 from kvtheory.transients.drive import Drive
+from kvtheory.transients.quadrature import integrals
 from kvtheory.transients.surface import height, volume
 
 END = 2.0
@@ -69,6 +71,46 @@ def test_height_integrates_to_the_volume(solved, s):
     u = height(motion, xi, s)
     assert u.min() >= -1e-12
     assert np.trapezoid(u, xi) == pytest.approx(volume(motion, s), abs=2e-7)
+
+
+@pytest.mark.parametrize("slope", [3.0, 300.0, 30_000.0])
+def test_volume_behind_a_fixed_indenter_on_a_ramp(slope):
+    """Fact F14, U = (4/3) (e^-s + int e^(t - s) f_z dt), with f_z and both edges in closed form."""
+
+    def f_z(t):
+        number = slope * t
+        r = 1 / (number + math.sqrt(1 + number * number))
+        return 0.75 * ((1 + r) - (1 + r**3) / 3 + number * (1 - r * r))
+
+    motion = solve(Drive.from_points([(0, 0), (END, slope * END)], END), 1.0, math.inf, END, 1e-10)
+    for s in (1e-3, 0.2, 0.7, END):
+        gained, _ = quad(
+            lambda t: math.exp(t - s) * f_z(t),  # noqa: B023
+            *(0, s), epsabs=0, epsrel=1e-13, limit=200, points=[min(1 / slope, 0.5 * s)],
+        )  # fmt: skip
+        assert volume(motion, s) == pytest.approx(4 / 3 * (math.exp(-s) + gained), rel=1e-12)
+
+
+def test_integrals_adapt_to_each_function():
+    """1/((s - c)^2 + w^2) with a peak much narrower than a panel, and ends like square roots."""
+    w, c = np.array([1.0, 1e-2, 1e-4]), np.array([0.3, 1 / 3, 0.9])
+    high = np.array([1.0, 2.0, 3.0])
+    found = integrals(
+        lambda k, s: np.stack(
+            [(w / math.pi)[k, None] / ((s - c[k, None]) ** 2 + w[k, None] ** 2), np.sqrt(s)], -1
+        ),
+        0.0 * high,
+        high,
+    )
+    peaks = (np.arctan((high - c) / w) + np.arctan(c / w)) / math.pi
+    assert found[:, 0] == pytest.approx(peaks, rel=1e-11)
+    assert found[:, 1] == pytest.approx(2 / 3 * high**1.5, rel=1e-13)
+
+
+def test_an_integral_that_does_not_exist_is_an_error():
+    for function in (lambda _, s: s * math.nan, lambda _, s: np.sign(np.sin(1e9 * s))):
+        with pytest.raises(ArithmeticError, match="panels"):
+            integrals(function, np.zeros(3), np.ones(3))
 
 
 def test_surface_is_continuous_at_the_edges(solved):

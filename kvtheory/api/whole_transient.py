@@ -1,5 +1,6 @@
 """The whole transient: `transient`."""
 
+from collections.abc import Callable
 from typing import Any
 
 from kvtheory.api.edge import double_precision, scene_of, times_of
@@ -11,19 +12,28 @@ MINIMUM_RTOL, MAXIMUM_RTOL = 1e-12, 1e-2
 """Beyond these, rounding or the first step would decide."""
 
 
-def transient(scene: Scene | None = None, *, at: Any = None, rtol: float = 1e-6) -> Transient:
+def transient(
+    scene: Scene | None = None,
+    *,
+    at: Any = None,
+    rtol: float = 1e-6,
+    progress: Callable[[float], Any] | None = None,
+) -> Transient:
     """Follow the transient of a scene, exactly: no discretized foundation.
 
     Parameters
     ----------
     scene
         What is modelled; without it, the paper's Table 1 with a dead weight. The indenter must be
-        a parabola. At t < 0 it rests at its static depth.
+        a parabola. At t < 0 it rests at its static depth. A drive that is a function of the time is
+        replaced by polynomials within its own tolerance, which the certificate does not cover.
     at
         Times at which the result is wanted, in s or as text with a unit; without it, the steps of
         the solver, subdivided.
     rtol
         Error allowed in a step, relative to the static state, from 1e-12 to 1e-2.
+    progress
+        Called now and then with the share of the work done, from 0 to 1.
 
     Returns
     -------
@@ -36,7 +46,8 @@ def transient(scene: Scene | None = None, *, at: Any = None, rtol: float = 1e-6)
     SceneError
         If a time is wrong; every mistake is listed.
     ValueError
-        If the indenter is not a parabola, or a time or `rtol` is out of range.
+        If the indenter is not a parabola, a time or `rtol` is out of range, or a function that drives
+        the foundation fails, is not finite, or is not smooth between its breaks.
     ArithmeticError
         If the motion cannot be followed to its end; the message says when and why.
 
@@ -66,4 +77,5 @@ def transient(scene: Scene | None = None, *, at: Any = None, rtol: float = 1e-6)
     from kvtheory.transients import solution
 
     with double_precision():
-        return solution.transient(scene, None if at is None else times_of(scene, at), rtol)
+        times = None if at is None else times_of(scene, at)
+        return solution.transient(scene, times, rtol, progress)

@@ -3,7 +3,9 @@
 import json
 import math
 import sys
-from collections.abc import Callable, Iterable, Sequence
+import time
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import ExitStack, contextmanager
 from functools import wraps
 from typing import Any
 
@@ -18,6 +20,12 @@ SHOWN_UNITS = {
     "1": ("", 1.0),
 }
 """Units of the tables for people, as in the paper; JSON and CSV are in SI."""
+
+
+PATIENCE = 1.0
+"""Seconds before a progress bar is shown."""
+BAR_LENGTH = 1000
+"""Parts in which progress is shown."""
 
 
 class Examples(click.Command):
@@ -73,6 +81,26 @@ def scene_command(
     return decorate
 
 
+@contextmanager
+def progress_bar(label: str) -> Iterator[Callable[[float], None] | None]:
+    """Give a function that shows the share done, if a terminal looks on and the work takes a while."""
+    if not sys.stderr.isatty():
+        yield None
+        return
+    begun, bars = time.monotonic(), ExitStack()
+    shown: list[Any] = []
+
+    def report(share: float) -> None:
+        if not shown and time.monotonic() - begun > PATIENCE:
+            bar = click.progressbar(length=BAR_LENGTH, label=label, file=sys.stderr)
+            shown.append(bars.enter_context(bar))
+        for bar in shown:
+            bar.update(int(share * BAR_LENGTH) - bar.pos)
+
+    with bars:
+        yield report
+
+
 def split(text: str) -> list[str]:
     """Split a comma-separated option."""
     return [item.strip() for item in text.split(",") if item.strip()]
@@ -99,6 +127,26 @@ def velocity_range(low: float, high: float) -> str:
 def print_json(result: Any) -> None:
     """Print the one JSON object of a command."""
     click.echo(json.dumps(result, indent=2, ensure_ascii=False, allow_nan=False))
+
+
+def print_series(result: Any, *, whole: bool) -> None:
+    """Print a time series for people: every row, or about twenty of them with both ends."""
+    from kvtheory.results import TRANSIENT_UNITS
+
+    count, most = result.time.size, 21
+    rows = (
+        range(count)
+        if whole
+        else sorted({round(i * (count - 1) / (most - 1)) for i in range(most)})
+    )
+    names = [name for name in TRANSIENT_UNITS if name != "depth_rate"]
+    print_table(
+        [f"{name} [{SHOWN_UNITS[TRANSIENT_UNITS[name]][0]}]" for name in names],
+        [
+            [shown(getattr(result, name)[i], TRANSIENT_UNITS[name])[0] for name in names]
+            for i in rows
+        ],
+    )
 
 
 def print_table(heads: Sequence[str], rows: Iterable[Sequence[str]]) -> None:

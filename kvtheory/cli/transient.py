@@ -5,15 +5,7 @@ from pathlib import Path
 
 import click
 
-from kvtheory.cli.console import (
-    SHOWN_UNITS,
-    print_json,
-    print_table,
-    scene_command,
-    shown,
-    split,
-    text,
-)
+from kvtheory.cli.console import print_json, print_series, progress_bar, scene_command, split, text
 from kvtheory.cli.group import main
 
 
@@ -49,10 +41,11 @@ def transient(
 ) -> None:
     """Follow the transient of SCENE: depth, forces, edges and events over time."""
     from kvtheory.api import transient as follow
-    from kvtheory.results import TRANSIENT_UNITS
     from kvtheory.scene import load_scene
 
-    result = follow(load_scene(scene, overrides), at=None if at is None else split(at), rtol=rtol)
+    times = None if at is None else split(at)
+    with progress_bar("transient") as progress:
+        result = follow(load_scene(scene, overrides), at=times, rtol=rtol, progress=progress)
     if output:
         from kvtheory.export import save_transient
 
@@ -64,16 +57,7 @@ def transient(
     if as_json:
         print_json(result.as_dict())
         return
-    rows = _chosen_rows(result.time.size) if at is None else range(result.time.size)
-    names = [name for name in TRANSIENT_UNITS if name != "depth_rate"]
-    heads = [f"{name} [{SHOWN_UNITS[TRANSIENT_UNITS[name]][0]}]" for name in names]
-    print_table(
-        heads,
-        [
-            [shown(getattr(result, name)[i], TRANSIENT_UNITS[name])[0] for name in names]
-            for i in rows
-        ],
-    )
+    print_series(result, whole=at is not None)
     click.echo("\nevents:")
     for event in result.events:
         click.echo(f"  {text(event.time, 's')}: {event.kind}")
@@ -81,8 +65,3 @@ def transient(
     click.echo(
         f"\n{result.steps} steps; error estimated at {worst:.1e}: {result.certificate.statement}."
     )
-
-
-def _chosen_rows(count: int, shown_rows: int = 21) -> Sequence[int]:
-    """Return the indices of at most about twenty rows, first and last among them."""
-    return sorted({round(i * (count - 1) / (shown_rows - 1)) for i in range(shown_rows)})

@@ -32,7 +32,8 @@ class Transient:
 
     `leading_state` and `trailing_state` say whether an edge is ``"peeling"`` (its pressure is zero),
     ``"touching"`` (it meets the free surface) or ``"free"`` (the indenter flies). At an instant where
-    the drive jumps, values are those just after the jump.
+    the drive jumps, values are those just after the jump. `compiled` says whether the kernels were
+    compiled (extra ``fast``) or interpreted; the numbers are the same.
     """
 
     time: Value
@@ -49,6 +50,7 @@ class Transient:
     events: tuple[Event, ...]
     steps: int
     evaluations: int
+    compiled: bool
     model: str
     certificate: Certificate
     solution: Any = field(repr=False, compare=False)

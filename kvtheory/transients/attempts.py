@@ -1,137 +1,146 @@
 """A step on trial: its error, and its first event."""
 
 import math
+from typing import Any
 
 from kvtheory.transients import contact as c_
 from kvtheory.transients import history as h_
+from kvtheory.transients import run as r_
 from kvtheory.transients.contact import FREE, TOUCHING
-from kvtheory.transients.drive import Drive, evaluate
+from kvtheory.transients.drive import evaluate
 from kvtheory.transients.flight import summit
 from kvtheory.transients.history import motion
-from kvtheory.transients.integrator import (
-    NODES,
-    PROBES,
-    STAGES,
-    collocate,
-    defect_error,
-    imbalance,
-)
-from kvtheory.transients.sides import SIDES, Sides
+from kvtheory.transients.integrator import collocate, defect_error, imbalance
+from kvtheory.transients.run import SIDES, Run
 
-EVENT_SHARE, EVENT_FLOOR = 1e-2, 1e-12
-"""Share of the tolerance by which a state of an edge must be violated, or rounding would toggle it."""
 EVENT_RESOLUTION = 1e-13
 
+Monitors = tuple[float, float, float, float, float]
+"""What must stay positive: the width (in flight, the gap), state and ground of the left edge, and of
+the right one."""
 
-class Attempts(Sides):
-    """Steps from the present state (s, d, v), on trial.
+NO_EVENT = (math.inf, math.inf, math.inf, math.inf, math.inf)
 
-    `smooth` says whether the motion goes on smoothly from the last record.
+
+def drive_now(run: Run, s: float) -> tuple[float, float, float]:
+    """Return Y, lambda, lambda' of the present piece of the drive."""
+    return evaluate(run.pieces[int(run.now[r_.PIECE])], s)
+
+
+def attempt(run: Run, record: Any) -> tuple[float, float, Monitors]:
+    """Return the error of a step by its tolerance, infinite if it failed, and its first event.
+
+    The event is given by its time, infinite if there is none, and the monitors just after it.
     """
+    now, start, span = run.now, record[h_.START], record[h_.SPAN]
+    if now[r_.FIXED] == 0.0:
+        evaluations = _solve(run, record)
+        now[r_.EVALUATIONS] += evaluations
+        if evaluations == 0:
+            return math.inf, math.inf, NO_EVENT
+    size, before, found_after, found = 0.0, start, start, math.inf
+    for probe in range(len(run.method.probes) + 1):
+        s = start + (run.method.probes[probe] if probe < len(run.method.probes) else 1.0) * span
+        slack, error = _probe(run, record, s, probe)
+        size = max(size, error)
+        if math.isnan(slack):
+            return math.inf, math.inf, NO_EVENT
+        if found == math.inf and slack < 0.0:
+            found_after, found = before, s
+        before = s
+    if found == math.inf:
+        return size, math.inf, NO_EVENT
+    found, violated = _locate(run, record, found_after, found)
+    return size, found, violated
 
-    def __init__(
-        self, drive: Drive, inertia_number: float, support_number: float, rtol: float
-    ) -> None:
-        super().__init__([list(piece) for piece in drive.pieces])
-        self.eps, self.rtol = inertia_number, rtol
-        self.allowed = max(EVENT_SHARE * rtol, EVENT_FLOOR)
-        self.fixed = math.isinf(support_number)
-        self.kappa = 0.0 if self.fixed else support_number
-        self.s, self.d, self.v = 0.0, 1.0, 0.0
-        self.piece, self.smooth, self.evaluations = 0, False, 0
 
-    def drive_at(self, s: float) -> tuple[float, float, float]:
-        """Return Y, lambda, lambda' of the present piece of the drive."""
-        return evaluate(self.pieces[self.piece], s)
+def _solve(run: Run, record: Any) -> int:
+    now, stages = run.now, len(run.method.nodes)
+    guess = run.matrix[stages]
+    for i in range(stages):
+        guess[i] = 0.0
+        if now[r_.SMOOTH] != 0.0:
+            last = run.records[int(now[r_.RECORDS]) - 1]
+            s = now[r_.S] + run.method.nodes[i] * record[h_.SPAN]
+            guess[i] = motion(last, s)[1] - now[r_.V]
+    return collocate(
+        record, now[r_.EPS], now[r_.KAPPA], now[r_.RTOL],
+        run.nodes, run.records, run.pieces, run.method, run.matrix,
+    )  # fmt: skip
 
-    def attempt(self, record: list[float]) -> tuple[float, float | None, tuple[float, ...]]:
-        """Return the error of a step by its tolerance, infinite if it failed, and its first event.
 
-        The event is given by its time and the monitors just after it.
-        """
-        if not self.fixed:
-            guess = [0.0] * STAGES
-            if self.smooth:
-                last = self.records[-1]
-                guess = [motion(last, self.s + c * record[h_.SPAN])[1] - self.v for c in NODES]
-            count = collocate(
-                record,
-                guess,
-                self.eps,
-                self.kappa,
-                self.rtol,
-                self.nodes,
-                self.records,
-                self.pieces,
-            )
-            self.evaluations += count
-            if count == 0:
-                return math.inf, None, ()
-        start, span = record[h_.START], record[h_.SPAN]
-        size, before, found = 0.0, start, None
-        for number, theta in enumerate(PROBES):
-            s = start + theta * span
-            slack, error = self._probe(record, s, number)
-            size = max(size, error)
-            if math.isnan(slack):
-                return math.inf, None, ()
-            if found is None and slack < 0.0:
-                found = before, s
-            before = s
-        if found is None:
-            return size, None, ()
-        return size, *self._locate(record, *found)
+def _probe(run: Run, record: Any, s: float, probe: int) -> tuple[float, float]:
+    """Return the slack of all states at `s`, and the error there by the tolerance."""
+    now = run.now
+    values, F, F_d, F_v, dv = monitors(run, record, s)
+    if now[r_.FIXED] != 0.0 or probe >= len(run.method.probes):
+        return smallest(values), 0.0
+    now[r_.EVALUATIONS] += 1.0
+    scales = run.method.scales[probe]
+    error = defect_error(record[h_.SPAN], now[r_.EPS], F_d, F_v, now[r_.EPS] * dv, F, scales)
+    return smallest(values), error / (now[r_.RTOL] * (1.0 + abs(now[r_.V])))
 
-    def _probe(self, record: list[float], s: float, probe: int) -> tuple[float, float]:
-        """Return the slack of all states at `s`, and the error there by the tolerance."""
-        monitors, F, F_d, F_v, dv = self.monitors(record, s)
-        if self.fixed or probe >= len(PROBES) - 1:
-            return min(monitors), 0.0
-        self.evaluations += 1
-        error = defect_error(record[h_.SPAN], self.eps, F_d, F_v, self.eps * dv, F, probe)
-        return min(monitors), error / (self.rtol * (1.0 + abs(self.v)))
 
-    def monitors(
-        self, record: list[float], s: float
-    ) -> tuple[tuple[float, ...], float, float, float, float]:
-        """Return what must stay positive, and F, dF/dd, dF/dv and v'.
+def smallest(values: Monitors) -> float:
+    """Return the least of the monitors, NaN if the first is."""
+    least = values[0]
+    for value in values:
+        least = min(least, value)
+    return least
 
-        In contact these are the width, and state and ground of each side; in flight, the gap.
-        """
-        d, v, dv = motion(record, s)
-        Y, number, slope = self.drive_at(s)
-        memory = self.nodes, self.records, self.pieces
-        sides = record[h_.LEFT_STATE : h_.LEFT_X]
-        F, F_d, F_v, l, r = imbalance(s, d, v, Y, number, sides, self.kappa, *memory)
-        if sides[0] == FREE:
-            gap = -d if d < 0.0 else -summit(s, d, Y, self.top[0], self.top[1], *memory)[0]
-            return (gap + self.allowed,), F, F_d, F_v, dv
-        instant = d, v, dv, Y, number, slope
-        values = [r - l]
-        for k, xi in enumerate((l, r)):
-            node = self.top[k]
-            if self.state[k] == TOUCHING:
-                node = c_.reached(SIDES[k], node, s, d, Y, self.nodes)
-            values += c_.slack(SIDES[k], self.state[k], self.nodes[node], s, xi, instant)
-        return tuple(value + self.allowed for value in values), F, F_d, F_v, dv
 
-    def _locate(
-        self, record: list[float], low: float, high: float
-    ) -> tuple[float, tuple[float, ...]]:
-        """Return the time of the first violation in (low, high], and the monitors just after it."""
-        violated = self.monitors(record, high)[0]
-        at_low, at_high, turn = math.nan, min(violated), 0
-        while high - low > EVENT_RESOLUTION * (1.0 + abs(high)):
-            turn += 1
-            middle = 0.5 * (low + high)
-            if turn % 3 and not math.isnan(at_low):  # by halves now and then: secants may crawl
-                secant = low + (high - low) * at_low / (at_low - at_high)
-                margin = 0.01 * (high - low)
-                middle = min(max(secant, low + margin), high - margin)
-            monitors = self.monitors(record, middle)[0]
-            value = min(monitors)
-            if value < 0.0:
-                high, at_high, violated = middle, value, monitors
-            else:
-                low, at_low = middle, value
-        return (self.s if low == self.s else high), violated
+def monitors(run: Run, record: Any, s: float) -> tuple[Monitors, float, float, float, float]:
+    """Return what must stay positive, and F, dF/dd, dF/dv and v'."""
+    now, allowed = run.now, run.now[r_.ALLOWED]
+    d, v, dv = motion(record, s)
+    Y, number, slope = drive_now(run, s)
+    sides = record[h_.LEFT_STATE : h_.LEFT_X]
+    F, F_d, F_v, l, r = imbalance(
+        s, d, v, Y, number, sides, now[r_.KAPPA], run.nodes, run.records, run.pieces
+    )
+    if sides[0] == FREE:
+        gap = -d
+        if d >= 0.0:
+            left, right = int(now[r_.TOP]), int(now[r_.TOP + 1])
+            gap = -summit(s, d, Y, left, right, run.nodes, run.records, run.pieces)[0]
+        return (gap + allowed, math.inf, math.inf, math.inf, math.inf), F, F_d, F_v, dv
+    instant = d, v, dv, Y, number, slope
+    left_state, left_ground = _slack(run, 0, s, l, instant)
+    right_state, right_ground = _slack(run, 1, s, r, instant)
+    values = (
+        r - l + allowed,
+        left_state + allowed,
+        left_ground + allowed,
+        right_state + allowed,
+        right_ground + allowed,
+    )
+    return values, F, F_d, F_v, dv
+
+
+def _slack(
+    run: Run, k: int, s: float, xi: float, instant: tuple[float, float, float, float, float, float]
+) -> tuple[float, float]:
+    state, node = run.now[r_.STATE + k], int(run.now[r_.TOP + k])
+    if state == TOUCHING:
+        node = c_.reached(SIDES[k], node, s, instant[0], instant[3], run.nodes)
+    return c_.slack(SIDES[k], state, run.nodes[node], s, xi, instant)
+
+
+def _locate(run: Run, record: Any, low: float, high: float) -> tuple[float, Monitors]:
+    """Return the time of the first violation in (low, high], and the monitors just after it."""
+    violated = monitors(run, record, high)[0]
+    at_low, at_high, turn = math.nan, smallest(violated), 0
+    while high - low > EVENT_RESOLUTION * (1.0 + abs(high)):
+        turn += 1
+        middle = 0.5 * (low + high)
+        if turn % 3 != 0 and not math.isnan(at_low):  # by halves now and then: secants may crawl
+            secant = low + (high - low) * at_low / (at_low - at_high)
+            margin = 0.01 * (high - low)
+            middle = min(max(secant, low + margin), high - margin)
+        values = monitors(run, record, middle)[0]
+        value = smallest(values)
+        if value < 0.0:
+            high, at_high, violated = middle, value, values
+        else:
+            low, at_low = middle, value
+    return (run.now[r_.S] if low == run.now[r_.S] else high), violated

@@ -32,6 +32,7 @@ PEELING, TOUCHING, FREE = 0.0, 1.0, 2.0
 IN_X, IN_S, IN_D, IN_Y = 0, 1, 2, 3
 OUT_X, OUT_S, OUT_D, OUT_Y = 4, 5, 6, 7
 RECORD, BRANCH, NEXT, JOINED = 8, 9, 10, 11
+SIZE = 12
 """Layout of a node: X, sigma, d, Y at its inner end and at its outer end; the record during which it
 was swept, or -1; the sign of the root of p = 0 that swept it; the next node outward; and whether A
 continues smoothly there."""
@@ -128,7 +129,7 @@ def edge(
 def reached(side: float, node: int, s: float, d: float, Y: float, nodes: Rows) -> int:
     """Return the node that an edge has reached, as far as A is smooth from `node` on."""
     row = nodes[node]
-    while row[JOINED] and overrun(side, row, s, d, Y) > 0.0:
+    while row[JOINED] != 0.0 and overrun(side, row, s, d, Y) > 0.0:
         node = int(row[NEXT])
         row = nodes[node]
     return node

@@ -7,19 +7,45 @@ side is smooth; a step that runs over an event is cut there, for its polynomial 
 of the edges that it began with. A fixed indenter, d = 1, needs no equation, only events.
 """
 
-import bisect
-import math
-from collections.abc import Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
-from typing import NamedTuple
+from functools import cached_property
+from typing import Any, NamedTuple
 
-from kvtheory.transients import contact as c_
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from kvtheory.transients import compiled, states, stepping
 from kvtheory.transients import history as h_
+from kvtheory.transients import run as r_
 from kvtheory.transients.contact import FREE, PEELING, TOUCHING
-from kvtheory.transients.drive import Drive, evaluate
-from kvtheory.transients.history import motion
-from kvtheory.transients.integrator import imbalance
-from kvtheory.transients.stepping import Event, Run
+from kvtheory.transients.drive import Drive
+from kvtheory.transients.run import Run, StepControl, begin, with_more_room
+
+STEP_LIMIT = 100_000
+ATTEMPTS = 1000
+"""Between two looks at how far the run has come."""
+
+
+class TransientError(ArithmeticError):
+    """The transient could not be followed further; the message says why and when."""
+
+    def __init__(self, reason: str, s: float, name: str = "s", unit: str = "") -> None:
+        super().__init__(f"{reason} at {name} = {s!r}{unit}")
+        self.reason, self.s = reason, s
+
+
+REASONS = {
+    stepping.STUCK: "the step length went to zero",
+    stepping.INCONSISTENT: "no consistent state of the edges",
+}
+
+
+class Event(NamedTuple):
+    """What happened at the time `s`."""
+
+    s: float
+    kind: str
 
 
 class Moment(NamedTuple):
@@ -42,41 +68,94 @@ STATE_NAMES = {PEELING: "peeling", TOUCHING: "touching", FREE: "free"}
 
 @dataclass(frozen=True)
 class Motion:
-    """A solved transient: evaluate it anywhere in [0, end] with `at`."""
+    """A solved transient: evaluate it anywhere in [0, end] with `at` or `states`.
+
+    `rows` is the finished run, with arrays for rows if its kernels were compiled.
+    """
 
     end: float
-    events: tuple[Event, ...]
-    steps: int
-    rejected: int
-    evaluations: int
     inertia_number: float
     support_number: float
-    pieces: Sequence[Sequence[float]]
-    records: Sequence[Sequence[float]]
-    nodes: Sequence[Sequence[float]]
-    starts: Sequence[float]
+    rows: Run
+    compiled: bool
+
+    @property
+    def steps(self) -> int:
+        """Number of steps taken."""
+        return int(self.rows.now[r_.RECORDS])
+
+    @property
+    def rejected(self) -> int:
+        """Number of steps repeated."""
+        return int(self.rows.now[r_.REJECTED])
+
+    @property
+    def evaluations(self) -> int:
+        """Number of evaluations of the equation of motion."""
+        return int(self.rows.now[r_.EVALUATIONS])
+
+    @cached_property
+    def events(self) -> tuple[Event, ...]:
+        """What happened to the contact, in the order of time."""
+        rows = self.rows.events[: int(self.rows.now[r_.EVENTS])]
+        return tuple(Event(float(s), stepping.KINDS[int(kind)]) for s, kind in rows)
+
+    @cached_property
+    def records(self) -> list[list[float]]:
+        """The polynomials of the steps, as lists."""
+        return _lists(self.rows.records, self.steps)
+
+    @cached_property
+    def nodes(self) -> list[list[float]]:
+        """What the edges left behind, as lists."""
+        return _lists(self.rows.nodes, int(self.rows.now[r_.NODES]))
+
+    @cached_property
+    def pieces(self) -> list[list[float]]:
+        """The pieces of the drive, as lists."""
+        return _lists(self.rows.pieces, len(self.rows.pieces))
+
+    @cached_property
+    def starts(self) -> list[float]:
+        """The times at which the steps begin."""
+        return [float(row[h_.START]) for row in self.rows.records[: self.steps]]
 
     def at(self, s: float) -> Moment:
         """Return the state at `s`; where the drive jumps, just after the jump."""
-        if not 0.0 <= s <= self.end:
+        row = self.states([s])[0].tolist()
+        left, right = row[states.LEFT_STATE], row[states.RIGHT_STATE]
+        return Moment(
+            s, row[states.DEPTH], row[states.RATE], row[states.ACCELERATION],
+            row[states.LEFT], row[states.RIGHT], STATE_NAMES[left], STATE_NAMES[right],
+            row[states.NORMAL_FORCE], row[states.FRICTION_FORCE],
+        )  # fmt: skip
+
+    def states(self, s: ArrayLike) -> NDArray[np.float64]:
+        """Return the states at an array of times: a row for each, laid out as in `states`."""
+        times = np.asarray(s, dtype=float)
+        if not np.all((times >= 0.0) & (times <= self.end)):
             raise ValueError(f"`s` must lie in [0, {self.end!r}], got {s!r}")
-        record = self.records[bisect.bisect_right(self.starts, s) - 1]
-        d, v, dv = motion(record, s)
-        Y, number, _ = evaluate(self.pieces[int(record[h_.PIECE])], s)
-        sides = record[h_.LEFT_STATE : h_.LEFT_X]
-        if s > record[h_.START]:
-            *_, l, r = imbalance(
-                s, d, v, Y, number, sides, 0.0, self.nodes, self.records, self.pieces
-            )
-        else:  # what was left at this very instant confines nothing yet
-            l, r = (X + Y if sides[0] != FREE else math.nan for X in record[h_.LEFT_X : h_.POWERS])
-        f_z, f_x = c_.forces(l, r, d, v, number) if sides[0] != FREE else (0.0, 0.0)
-        names = STATE_NAMES[sides[0]], STATE_NAMES[sides[2]]
-        return Moment(s, d, v, dv, l, r, *names, f_z, f_x)
+        if self.compiled:
+            found = np.empty((times.size, states.SIZE))
+            records = self.rows.records[: self.steps]
+            evaluate = compiled.kernels()[1]
+            evaluate(times, found, self.rows.nodes, records, self.rows.pieces)
+            return found
+        rows = [[0.0] * states.SIZE for _ in range(times.size)]
+        states.states(times.tolist(), rows, self.nodes, self.records, self.pieces)
+        return np.array(rows).reshape(-1, states.SIZE)
 
 
 def solve(
-    drive: Drive, inertia_number: float, support_number: float, end: float, rtol: float = 1e-9
+    drive: Drive,
+    inertia_number: float,
+    support_number: float,
+    end: float,
+    rtol: float = 1e-9,
+    *,
+    fast: bool | None = None,
+    control: StepControl = StepControl(),  # noqa: B008 - immutable
+    progress: Callable[[float], Any] | None = None,
 ) -> Motion:
     """Follow the transient of `drive` from rest until `end`, in scaled form.
 
@@ -92,6 +171,12 @@ def solve(
         Time until which to solve, in units of tau.
     rtol
         Error allowed in a step for d' relative to 1 + |d'|, all along the step.
+    fast
+        Whether the kernels are compiled; by default, if numba is installed.
+    control
+        What sets the steps beside the tolerance.
+    progress
+        Called with the time reached, now and then.
 
     Raises
     ------
@@ -110,18 +195,24 @@ def solve(
         raise ValueError(
             "expected `inertia_number` > 0, `support_number` >= 0, 1e-13 <= `rtol` <= 1e-2"
         )
-    run = Run(drive, float(inertia_number), float(support_number), rtol)
-    run.follow(float(end))
-    return Motion(
-        end,
-        tuple(run.events),
-        len(run.records),
-        run.rejected,
-        run.evaluations,
-        inertia_number,
-        support_number,
-        run.pieces,
-        run.records,
-        run.nodes,
-        [record[h_.START] for record in run.records],
-    )
+    fast = compiled.available() if fast is None else fast
+    numbers = float(inertia_number), float(support_number)
+    run = begin(drive, *numbers, float(end), rtol, control, arrays=fast)
+    walk: Callable[[Run, int], int] = compiled.kernels()[0] if fast else stepping.walk
+    left = STEP_LIMIT
+    while (status := walk(run, min(ATTEMPTS, left))) != stepping.DONE:
+        s = float(run.now[r_.S])
+        if status in REASONS:
+            raise TransientError(REASONS[status], s)
+        if status == stepping.FULL:
+            run = with_more_room(run)
+        left = STEP_LIMIT - int(run.now[r_.RECORDS] + run.now[r_.REJECTED])
+        if left <= 0:
+            raise TransientError(f"more than {STEP_LIMIT} steps", s)
+        if progress is not None:
+            progress(s)
+    return Motion(end, inertia_number, support_number, run, fast)
+
+
+def _lists(rows: Any, count: int) -> list[list[float]]:
+    return [[float(x) for x in row] for row in rows[:count]]

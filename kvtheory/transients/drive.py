@@ -12,6 +12,8 @@ DEGREE = 8
 """Of a piece that represents a callable: a few pieces for a period of a sine, at any tolerance."""
 CHECKS = 2 * DEGREE + 3
 """Points at which a piece is compared with its callable, most of them between the nodes."""
+SHORTEST = 1e-12
+"""Share of the whole drive; a piece that would have to be shorter holds a jump or a kink."""
 PIECE_LIMIT = 100_000
 
 START, END, DISPLACEMENT, POWERS = 0, 1, 2, 3
@@ -92,10 +94,10 @@ class Drive:
                 found.append((a, b, coefficients))
                 continue
             middle = 0.5 * (a + b)
-            if not a < middle < b or len(found) + len(todo) > PIECE_LIMIT:
+            if b - a <= SHORTEST * end or len(found) + len(todo) > PIECE_LIMIT:
                 raise ValueError(
-                    f"`function` is not smooth near s = {middle!r}: give its jumps and kinks as "
-                    "`breaks`, or a larger `tolerance`"
+                    f"`function` is not smooth near {middle!r}: give the times of its jumps and "
+                    "kinks as `breaks`, or a larger `tolerance`"
                 )
             todo += [(middle, b), (a, middle)]
         return cls(_joined(found))

@@ -11,8 +11,6 @@ over xi are polynomials of the edges, what is stored outside is what the memory 
 there, twice that energy is dissipated per unit of time (F14-surface).
 """
 
-import bisect
-import itertools
 import math
 from dataclasses import astuple, dataclass
 from typing import Any
@@ -20,8 +18,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from kvtheory.transients import states
 from kvtheory.transients.continuum import Moment, Motion
-from kvtheory.transients.surface import SHARES, WEIGHTS, Array, kept, present, relaxing
+from kvtheory.transients.quadrature import integrals
+from kvtheory.transients.surface import Array, kept, relaxing
 
 
 @dataclass(frozen=True)
@@ -73,15 +73,16 @@ def ledger(motion: Motion, s: ArrayLike) -> Ledger:
     True
     """
     times, memory = np.asarray(s, dtype=float), kept(motion, 2)
-    starts = [start for start in motion.starts if start <= np.max(times, initial=0.0)]
-    sums = [np.zeros(3)]
-    for a, b in itertools.pairwise(starts):
-        sums.append(sums[-1] + _spent(motion, a, b, memory))
-    rows = []
-    for t in times.reshape(-1).tolist():
-        now, index = motion.at(t), bisect.bisect_right(starts, t) - 1
-        spent = sums[index] + _spent(motion, starts[index], t, memory)
-        rows.append(_entries(motion, now, relaxing(motion, t, 2, memory), spent))
+    flat = times.reshape(-1).tolist()
+    starts = np.array([start for start in motion.starts if start <= max(flat, default=0.0)])
+    index = np.searchsorted(starts, flat, side="right") - 1
+    low, high = np.append(starts[:-1], starts[index]), np.append(starts[1:], flat)
+    parts = integrals(lambda _, t: _powers(motion, t, memory), low, high)
+    steps = starts.size - 1
+    sums = np.concatenate([np.zeros((1, 3)), np.cumsum(parts[:steps], axis=0)])
+    spent = sums[index] + parts[steps:]
+    free = relaxing(motion, flat, 2, memory)
+    rows = [_entries(motion, motion.at(t), *of) for t, *of in zip(flat, free, spent, strict=True)]
     return Ledger(*np.array(rows).reshape(-1, 9).T.reshape(9, *times.shape))
 
 
@@ -102,23 +103,17 @@ def _entries(motion: Motion, now: Moment, free: float, spent: Array) -> list[flo
     ]
 
 
-def _spent(motion: Motion, a: float, b: float, memory: list[tuple[float, float]]) -> Array:
-    """Return the work of the drive and what is dissipated in and behind the contact from `a` to `b`."""
-    powers = [_powers(motion, float(t), memory) for t in a + (b - a) * SHARES]
-    return (b - a) * (WEIGHTS @ np.array(powers))
-
-
-def _powers(
-    motion: Motion, s: float, memory: list[tuple[float, float]]
-) -> tuple[float, float, float]:
-    behind = 0.75 * relaxing(motion, s, 2, memory)
-    now, (_, (_, v, _, _, number, _)) = motion.at(s), present(motion, s)
-    if now.left_state == "free":
-        return 0.0, 0.0, behind
-    l, r = now.left, now.right
+def _powers(motion: Motion, times: Array, memory: list[tuple[float, float]]) -> Array:
+    """Return the power of the drive and what is dissipated in and behind the contact at the times."""
+    flat = times.reshape(-1)
+    found = motion.states(flat).T
+    l, r, v, number = found[[states.LEFT, states.RIGHT, states.RATE, states.NUMBER]]
     thirds = 4.0 / 3.0 * number * number * (r * r + r * l + l * l)
     inside = 0.75 * (r - l) * (v * v - 2.0 * number * v * (r + l) + thirds)
-    return number * now.friction_force, inside, behind
+    behind = 0.75 * relaxing(motion, flat.tolist(), 2, memory)
+    work = number * found[states.FRICTION_FORCE]
+    in_contact = np.where(np.isnan(l), 0.0, inside)  # in flight there are no edges
+    return np.stack([work, in_contact, behind], axis=-1).reshape(*times.shape, 3)
 
 
 def _stored(d: float, l: float, r: float) -> float:

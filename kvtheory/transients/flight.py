@@ -41,12 +41,13 @@ def summit(
 
     The indenter lands when the margin reaches zero.
     """
-    for side, node in ((1.0, right), (-1.0, left)):
+    for side in (1.0, -1.0):
+        node = right if side > 0.0 else left
         row = nodes[node]
         if rise(side, row[IN_X], s, Y, row[IN_S], row[IN_Y]) <= 0.0:
             continue
         while rise(side, row[OUT_X], s, Y, row[OUT_S], row[OUT_Y]) > 0.0:
-            node = int(row[NEXT])  # noqa: PLW2901
+            node = int(row[NEXT])
             row = nodes[node]
         X, sigma, d_0, Y_0 = _peak(side, row, s, Y, records, pieces)
         return margin(X, s, d, Y, sigma, d_0, Y_0), X, side, node, sigma

@@ -5,17 +5,19 @@ a known Jacobian, and eps d'' keeps the form in which eps -> 0 leaves F = 0 at e
 is stiffly accurate (Hairer and Wanner, Solving Ordinary Differential Equations II, sections IV.5, IV.8
 and VI.1).
 
-Why seven stages, of order 13: the error must be small all along the step, for memory is read off it.
-Table 1 at a tolerance of 1e-9, with an error of d' below 1.5e-9 everywhere, takes 320, 107, 57, 31 and
-20 steps and 2883, 1203, 812, 764 and 573 evaluations of F with 3, 4, 5, 7 and 9 stages; beyond seven,
-the linear algebra takes what the evaluations save. SciPy needs for an error of 2e-9 everywhere 870
-evaluations with LSODA, 1800 with BDF, more than 2000 with Radau, and more than 2900 with DOP853, which
-is not for small eps.
+Why so many stages (`STAGES`): the error must be small all along the step, for memory is read off it, and
+a step costs much beside its stages. The start from rest of Table 1 takes, with 3, 4, 5 and 7 stages, at
+an error of the depth of about 1e-4: 17, 13, 11 and 11 steps and 200, 200, 240 and 320 evaluations of F;
+at 1e-7: 95, 31, 22 and 12 steps and 900, 460, 390 and 320 evaluations; at 1e-11: more than 500, 106, 56
+and 28 steps and 4800, 1200, 810 and 640 evaluations. Beyond seven, the linear algebra takes what the
+evaluations save. `python -m figures.benchmark` holds it against SciPy's methods.
 """
 
 import math
 from collections.abc import Sequence
 from fractions import Fraction
+from functools import cache
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.polynomial import Legendre, Polynomial
@@ -25,7 +27,9 @@ from kvtheory.transients.contact import FREE, edge, forces, pressure
 from kvtheory.transients.drive import Piece, evaluate
 from kvtheory.transients.history import Rows
 
-STAGES = 7
+STAGES = ((1e-3, 4), (1e-6, 5), (0.0, 7))
+"""Number of stages for tolerances above each of these: the cheapest, as measured."""
+
 NEWTON_STEPS = 8
 NEWTON_SHARE = 1e-3
 """Of the tolerance, for the last correction; convergence is quadratic, what is left is far below."""
@@ -33,8 +37,8 @@ NEWTON_STALL = 0.5
 """Of the tolerance, for a correction that rounding keeps from becoming smaller."""
 ROUNDING = 1e-15
 """Of F, by its largest derivative: a stiff spring feels the last digit of the depth."""
-PROBES = (0.08, 0.25, 0.55, 1.0)
-"""Where each step is examined: between the stages, where the defect is largest, and at the end."""
+PLACES = (0.08, 0.25, 0.55)
+"""About where each step is examined, besides its end."""
 
 
 def _times(p: list[Fraction], root: Fraction) -> list[Fraction]:
@@ -71,8 +75,15 @@ def _tableau(
     return [float(x) for x in c], A, inverse, powers
 
 
-def _scales(c: list[float]) -> tuple[tuple[float, float, float], ...]:
-    """For each probe but the last: largest |int M|, |M| and |M'| of the step, by |M| at the probe.
+def _probes(c: list[float]) -> list[float]:
+    """Return where each step is examined: where the defect is largest, between the stages."""
+    M = Polynomial.fromroots(c)
+    turns = np.sort(np.real(M.deriv().roots()))
+    return [float(turns[np.argmin(np.abs(turns - place))]) for place in PLACES]
+
+
+def _scales(c: list[float], probes: list[float]) -> list[list[float]]:
+    """For each probe: largest |int M|, |M| and |M'| of the step, by |M| at the probe.
 
     The defect of a smooth step is a multiple of M = prod(theta - c_i).
     """
@@ -80,11 +91,32 @@ def _scales(c: list[float]) -> tuple[tuple[float, float, float], ...]:
     M = Polynomial.fromroots(c)
     inner = theta[theta >= c[0]]
     largest = [np.abs(f).max() for f in (M.integ()(theta), M(inner), M.deriv()(inner))]
-    return tuple(tuple(float(x / abs(M(p))) for x in largest) for p in PROBES[:-1])  # type: ignore[misc]
+    return [[float(x / abs(M(p))) for x in largest] for p in probes]
 
 
-NODES, A, A_INVERSE, TO_POWERS = _tableau(STAGES)
-DEFECT_SCALES = _scales(NODES)
+class Method(NamedTuple):
+    """Nodes c, matrix A, its inverse, the powers of theta from the stages; probes, and their scales."""
+
+    nodes: Any
+    A: Any
+    inverse: Any
+    powers: Any
+    probes: Any
+    scales: Any
+
+
+@cache
+def radau(stages: int, arrays: bool = False) -> Method:
+    """Return the Radau IIA method of so many stages, as lists or arrays."""
+    tableau = _tableau(stages)
+    probes = _probes(tableau[0])
+    parts = (*tableau, probes, _scales(tableau[0], probes))
+    return Method(*(np.array(part) for part in parts)) if arrays else Method(*parts)
+
+
+def stages_for(rtol: float) -> int:
+    """Return the number of stages that is cheapest for a tolerance."""
+    return next(count for above, count in STAGES if rtol > above)
 
 
 def imbalance(
@@ -120,101 +152,110 @@ def imbalance(
 
 
 def collocate(
-    record: list[float],
-    guess: Sequence[float],
+    record: Any,
     eps: float,
     kappa: float,
     tolerance: float,
     nodes: Rows,
     records: Rows,
     pieces: Sequence[Piece],
+    method: Method,
+    matrix: Any,
 ) -> int:
     """Solve for the stages of the step that `record` begins, and write its powers of v.
 
-    `guess` holds v at the stages minus v at the start. Newton's method with the exact Jacobian of all
-    stages; return the number of evaluations of F, or 0 if it does not converge.
+    Of s stages, row s of `matrix` holds a guess of v at the stages minus v at the start; the rest is work
+    space. Newton's method with the exact Jacobian of all stages; return the number of evaluations of
+    F, or 0 if it does not converge.
     """
-    start, span, depth, rate = (
-        record[h_.START],
-        record[h_.SPAN],
-        record[h_.DEPTH],
-        record[h_.POWERS],
-    )
-    piece = pieces[int(record[h_.PIECE])]
+    stages = len(method.nodes)
+    start, span, depth = record[h_.START], record[h_.SPAN], record[h_.DEPTH]
+    rate = record[h_.POWERS]
     sides = record[h_.LEFT_STATE : h_.LEFT_X]
-    times = [start + c * span for c in NODES]
-    drive = [evaluate(piece, s) for s in times]
-    change = list(guess)
-    previous = math.inf
-    matrix = [[0.0] * (STAGES + 1) for _ in NODES]
+    change, places, numbers = matrix[stages], matrix[stages + 1], matrix[stages + 2]
+    for i in range(stages):
+        places[i], numbers[i], _ = evaluate(
+            pieces[int(record[h_.PIECE])], start + span * method.nodes[i]
+        )
+    allowed, previous = tolerance * (1.0 + abs(rate)), math.inf
     for iteration in range(1, NEWTON_STEPS + 1):
-        for i in range(STAGES):
-            a, inverse, row = A[i], A_INVERSE[i], matrix[i]
-            d, inertia = depth + span * NODES[i] * rate, 0.0
-            for j in range(STAGES):
+        for i in range(stages):
+            a, inverse, row = method.A[i], method.inverse[i], matrix[i]
+            d, inertia = depth + span * method.nodes[i] * rate, 0.0
+            for j in range(stages):
                 d += span * a[j] * change[j]
                 inertia += eps * inverse[j] * change[j]
-            Y, number, _ = drive[i]
             F, F_d, F_v, _, _ = imbalance(
-                times[i], d, rate + change[i], Y, number, sides, kappa, nodes, records, pieces
-            )
+                start + span * method.nodes[i], d, rate + change[i], places[i], numbers[i],
+                sides, kappa, nodes, records, pieces,
+            )  # fmt: skip
             if not math.isfinite(F):
                 return 0
-            for j in range(STAGES):
+            for j in range(stages):
                 row[j] = eps * inverse[j] - span * span * F_d * a[j]
             row[i] -= span * F_v
-            row[STAGES] = span * F - inertia
+            row[stages] = span * F - inertia
         largest = eliminate(matrix)
-        for i in range(STAGES):
-            change[i] += matrix[i][STAGES]
-        allowed = tolerance * (1.0 + abs(rate))
+        for i in range(stages):
+            change[i] += matrix[i][stages]
         stalled = 0.5 * previous <= largest <= NEWTON_STALL * allowed
         if largest <= NEWTON_SHARE * allowed or stalled:
-            for k in range(STAGES):
-                record[h_.POWERS + 1 + k] = sum(TO_POWERS[k][j] * change[j] for j in range(STAGES))
-            return iteration * STAGES
+            for k in range(stages):
+                power, powers = 0.0, method.powers[k]
+                for j in range(stages):
+                    power += powers[j] * change[j]
+                record[h_.POWERS + 1 + k] = power
+            return iteration * stages
         if not largest < math.inf:
             return 0
         previous = largest
     return 0
 
 
-def eliminate(matrix: list[list[float]]) -> float:
-    """Solve the augmented system in place, its last column; return the largest solution."""
-    n = len(matrix)
-    for k in range(n):
+def eliminate(matrix: Any) -> float:
+    """Solve the augmented system of all stages in place, its last column; return the largest solution."""
+    stages = len(matrix[0]) - 1
+    for k in range(stages):
         best = k
-        for i in range(k + 1, n):
+        for i in range(k + 1, stages):
             if abs(matrix[i][k]) > abs(matrix[best][k]):
                 best = i
         if not abs(matrix[best][k]) > 0.0:
             return math.inf
-        matrix[k], matrix[best] = matrix[best], matrix[k]
-        pivot = matrix[k]
-        for i in range(k + 1, n):
+        pivot, other = matrix[k], matrix[best]
+        if best != k:
+            for j in range(k, stages + 1):
+                pivot[j], other[j] = other[j], pivot[j]
+        for i in range(k + 1, stages):
             row = matrix[i]
             factor = row[k] / pivot[k]
-            for j in range(k + 1, n + 1):
+            for j in range(k + 1, stages + 1):
                 row[j] -= factor * pivot[j]
     largest = 0.0
-    for k in range(n - 1, -1, -1):
+    for k in range(stages - 1, -1, -1):
         row = matrix[k]
-        for j in range(k + 1, n):
-            row[n] -= row[j] * matrix[j][n]
-        row[n] /= row[k]
-        largest = max(largest, abs(row[n]))
+        for j in range(k + 1, stages):
+            row[stages] -= row[j] * matrix[j][stages]
+        row[stages] /= row[k]
+        largest = max(largest, abs(row[stages]))
     return largest
 
 
 def defect_error(
-    span: float, eps: float, F_d: float, F_v: float, inertia: float, F: float, probe: int
+    span: float,
+    eps: float,
+    F_d: float,
+    F_v: float,
+    inertia: float,
+    F: float,
+    scales: Sequence[float],
 ) -> float:
-    """Estimate the error of v over the step from the defect eps v' - F at one of the `PROBES`.
+    """Estimate the error of v over the step from the defect eps v' - F at one of the probes.
 
     The error e obeys eps e' = F_v e + F_d int e - defect. It is the integral of the defect where
     inertia rules, the defect itself where damping does, its derivative where stiffness does.
     """
-    integral, value, derivative = DEFECT_SCALES[probe]
+    integral, value, derivative = scales[0], scales[1], scales[2]
     defect = max(abs(inertia - F) - ROUNDING * (1.0 - F_d), 0.0)
     resistance = eps / integral - span * F_v / value - span * span * F_d / derivative
     return defect * span / resistance

@@ -1,91 +1,123 @@
-"""Both sides of the contact: state and position of each edge, and the chain of what it left behind."""
+"""Both sides of the contact in a run: what its edges leave behind, take-off and landing."""
 
-from collections.abc import Sequence
+from typing import Any
 
 from kvtheory.transients import contact as c_
-from kvtheory.transients.contact import FREE, TOUCHING, Node
-from kvtheory.transients.drive import Piece
+from kvtheory.transients import run as r_
+from kvtheory.transients.contact import FREE, TOUCHING
 from kvtheory.transients.flight import summit
 from kvtheory.transients.history import instant
+from kvtheory.transients.run import SIDES, Run
 
-SIDES = (-1.0, 1.0)
+
+def set_end(row: Any, end: int, X: float, s: float, d: float, Y: float) -> None:
+    """Set X, sigma, d, Y of the inner end of a node (`end` = IN_X) or of its outer one (OUT_X)."""
+    row[end], row[end + 1], row[end + 2], row[end + 3] = X, s, d, Y
 
 
-class Sides:
-    """The left side and the right side, in this order; at first the stationary contact at d = 1.
+def copy_end(row: Any, end: int, other: Any, other_end: int) -> None:
+    """Set an end of a node to an end of another."""
+    for i in range(4):
+        row[end + i] = other[other_end + i]
 
-    `state` and the material coordinate `X` of each edge, `top` its innermost node among `nodes`, and
-    the motion that swept them, `records` on `pieces` of the drive. `kink` is the time of the last
-    kink or jump of the drive.
+
+def free_row(run: Run) -> int:
+    """Return the index of the row in which the next node is written."""
+    return int(run.now[r_.NODES])
+
+
+def push(run: Run, k: int, record: float, branch: float) -> None:
+    """Put the node whose ends are in the free row on a chain.
+
+    A is smooth across to the next node if one edge swept both, smoothly.
     """
+    row, top = run.nodes[free_row(run)], run.now[r_.TOP + k]
+    below = run.nodes[int(top)]
+    joined = (
+        record >= 0.0
+        and below[c_.RECORD] >= 0.0
+        and row[c_.OUT_S] == below[c_.IN_S]
+        and branch == below[c_.BRANCH]
+        and row[c_.OUT_S] != run.now[r_.KINK]
+    )
+    row[c_.RECORD], row[c_.BRANCH] = record, branch
+    row[c_.NEXT], row[c_.JOINED] = top, 1.0 if joined else 0.0
+    put(run, k)
 
-    def __init__(self, pieces: Sequence[Piece]) -> None:
-        self.pieces = pieces
-        self.records: list[list[float]] = []
-        self.nodes = [c_.undisturbed(side) for side in SIDES]
-        self.state, self.top, self.X = [TOUCHING, TOUCHING], [0, 1], [-1.0, 1.0]
-        self.kink = 0.0
 
-    def push(self, k: int, row: list[float]) -> None:
-        """Put a node on a chain; A is smooth across to the next if one edge swept both, smoothly."""
-        below = self.nodes[self.top[k]]
-        joined = (
-            row[c_.RECORD] >= 0.0
-            and below[c_.RECORD] >= 0.0
-            and row[c_.OUT_S] == below[c_.IN_S]
-            and row[c_.BRANCH] == below[c_.BRANCH]
-            and row[c_.OUT_S] != self.kink
+def put(run: Run, k: int) -> None:
+    """Let the free row be the innermost node of a chain."""
+    now = run.now
+    now[r_.TOP + k] = now[r_.NODES]
+    now[r_.NODES] += 1.0
+
+
+def push_strip(run: Run, k: int, inner: float, outer: float, Y: float) -> None:
+    """Put a strip on a chain that is left as a whole now."""
+    row, s, d = run.nodes[free_row(run)], run.now[r_.S], run.now[r_.D]
+    set_end(row, c_.IN_X, inner, s, d, Y)
+    set_end(row, c_.OUT_X, outer, s, d, Y)
+    push(run, k, -1.0, 0.0)
+
+
+def trim(run: Run, k: int, Y: float) -> None:
+    """Let the chain of a touching side begin at the edge."""
+    now, row = run.now, run.nodes[free_row(run)]
+    old = run.nodes[int(now[r_.TOP + k])]
+    for i in range(c_.SIZE):
+        row[i] = old[i]
+    if row[c_.RECORD] >= 0.0:
+        row[c_.IN_S], row[c_.IN_D], row[c_.IN_Y] = c_.sweep(
+            SIDES[k], old, now[r_.S], now[r_.D], Y, run.records, run.pieces
         )
-        self._put(k, [*row, float(self.top[k]), float(joined)])
-
-    def push_strip(self, k: int, inner: float, outer: float, now: list[float]) -> None:
-        """Put a strip on a chain that is left as a whole `now`, at s, d, Y."""
-        self.push(k, [inner, *now, outer, *now, -1.0, 0.0])
-
-    def trim(self, k: int, s: float, d: float, Y: float) -> None:
-        """Let the chain of a touching side begin at the edge."""
-        row = list(self.nodes[self.top[k]])
-        if row[c_.RECORD] >= 0.0:
-            row[c_.IN_S], row[c_.IN_D], row[c_.IN_Y] = c_.sweep(
-                SIDES[k], row, s, d, Y, self.records, self.pieces
-            )
-        row[c_.IN_X] = self.X[k]
-        self._put(k, row)
-
-    def leave(self, s: float, d: float, Y: float) -> None:
-        """Take off: all ground is memory."""
-        for k in range(2):
-            if self.state[k] == TOUCHING:
-                self.trim(k, s, d, Y)
-        if self.X[0] < self.X[1]:
-            self.push_strip(1, self.X[0], self.X[1], [s, d, Y])
-        self.state = [FREE, FREE]
-
-    def land(self, s: float, d: float, Y: float) -> None:
-        """Touch down: part the chains at the landing point, and let both edges touch."""
-        _, X, side, node, sigma = summit(
-            s, d, Y, self.top[0], self.top[1], self.nodes, self.records, self.pieces
-        )
-        near, far = (1, 0) if side > 0.0 else (0, 1)
-        inner = self.top[near]
-        while inner != node:
-            self.push(far, _reversed(self.nodes[inner]))
-            inner = int(self.nodes[inner][c_.NEXT])
-        row = list(self.nodes[node])
-        d_0, Y_0 = row[c_.IN_D], row[c_.IN_Y]
-        if row[c_.RECORD] >= 0.0:
-            d_0, _, _, Y_0, _, _ = instant(self.records, self.pieces, int(row[c_.RECORD]), sigma)
-        cut = [X, sigma, d_0, Y_0]
-        if row[c_.IN_X] != X:
-            self.push(far, cut + _reversed(row)[4:])
-        self._put(near, cut + row[4:])
-        self.state, self.X = [TOUCHING, TOUCHING], [X, X]
-
-    def _put(self, k: int, row: list[float]) -> None:
-        self.nodes.append(row)
-        self.top[k] = len(self.nodes) - 1
+    row[c_.IN_X] = now[r_.X + k]
+    put(run, k)
 
 
-def _reversed(row: Node) -> list[float]:
-    """Return a node as the other side sees it, without its links."""
-    return [*row[4:8], *row[:4], *row[8:10]]
+def leave(run: Run, Y: float) -> None:
+    """Take off: all ground is memory."""
+    now = run.now
+    for k in range(2):
+        if now[r_.STATE + k] == TOUCHING:
+            trim(run, k, Y)
+    if now[r_.X] < now[r_.X + 1]:
+        push_strip(run, 1, now[r_.X], now[r_.X + 1], Y)
+    now[r_.STATE] = now[r_.STATE + 1] = FREE
+
+
+def land(run: Run, Y: float) -> None:
+    """Touch down: part the chains at the landing point, and let both edges touch."""
+    now = run.now
+    _, X, side, node, sigma = summit(
+        now[r_.S], now[r_.D], Y, int(now[r_.TOP]), int(now[r_.TOP + 1]),
+        run.nodes, run.records, run.pieces,
+    )  # fmt: skip
+    near = 1 if side > 0.0 else 0
+    far = 1 - near
+    inner = int(now[r_.TOP + near])
+    while inner != node:
+        row = run.nodes[inner]
+        push_reversed(run, far, row)
+        inner = int(row[c_.NEXT])
+    old = run.nodes[node]
+    d_0, Y_0 = old[c_.IN_D], old[c_.IN_Y]
+    if old[c_.RECORD] >= 0.0:
+        d_0, _, _, Y_0, _, _ = instant(run.records, run.pieces, int(old[c_.RECORD]), sigma)
+    if old[c_.IN_X] != X:
+        push_reversed(run, far, old)
+        set_end(run.nodes[int(now[r_.TOP + far])], c_.IN_X, X, sigma, d_0, Y_0)
+    row = run.nodes[free_row(run)]
+    for i in range(c_.SIZE):
+        row[i] = old[i]
+    set_end(row, c_.IN_X, X, sigma, d_0, Y_0)
+    put(run, near)
+    for k in range(2):
+        now[r_.STATE + k], now[r_.X + k] = TOUCHING, X
+
+
+def push_reversed(run: Run, k: int, old: Any) -> None:
+    """Put a node on the chain of the other side."""
+    row = run.nodes[free_row(run)]
+    copy_end(row, c_.IN_X, old, c_.OUT_X)
+    copy_end(row, c_.OUT_X, old, c_.IN_X)
+    push(run, k, old[c_.RECORD], old[c_.BRANCH])

@@ -1,223 +1,282 @@
 """The walk from step to step: step lengths, events, and what the edges leave behind."""
 
 import math
-from typing import NamedTuple
+from typing import Any
 
 from kvtheory.transients import contact as c_
-from kvtheory.transients.attempts import Attempts
+from kvtheory.transients import history as h_
+from kvtheory.transients import run as r_
+from kvtheory.transients.attempts import Monitors, attempt, drive_now
 from kvtheory.transients.contact import FREE, PEELING, TOUCHING
 from kvtheory.transients.drive import END as PIECE_END
-from kvtheory.transients.drive import Drive, evaluate
+from kvtheory.transients.drive import START as PIECE_START
+from kvtheory.transients.drive import evaluate
 from kvtheory.transients.history import motion
-from kvtheory.transients.integrator import STAGES
-from kvtheory.transients.sides import SIDES
-
-NAMES = ("left", "right")
+from kvtheory.transients.run import SIDES, Run, has_room
+from kvtheory.transients.sides import (
+    free_row,
+    land,
+    leave,
+    push,
+    push_strip,
+    set_end,
+    trim,
+)
 
 SAFETY = 0.9
-SHRINK, GROW, TINY = 0.2, 5.0, 1e-12
-FIRST_STEP = 0.1
-"""Of the fastest time constant, after a jump; if it is too long it is rejected."""
+SHRINK, TINY = 0.2, 1e-12
 OVERRUN = 1e-4
 """Share of a step that may lie beyond an event: the states of the edges change there, and a step that
 ran farther is repeated with the right length."""
 BRIEF = 1e-10
 """A piece of a step up to an event so close to its start that it needs no repetition."""
-LONGEST = 0.5
-"""In units of tau: what the foundation forgets does not hide between the probes of a step."""
 RELIEF = 0.25
 """How far the ground may slide in a step of the flight above it, in units of a_0."""
 SMOOTH = 1e-9
 """Relative difference of lambda or lambda' at a joint of the drive that is only rounding."""
-STEP_LIMIT = 100_000
 TOGGLE_LIMIT = 12
 """Changes of state at one instant; more than a few would mean that no state is consistent."""
 
+DONE, PAUSED, FULL, STUCK, INCONSISTENT = range(5)
+"""How a walk ended: at the end; after the attempts it was given; without room for another step; with
+a step length of zero; without a consistent state of the edges."""
 
-class TransientError(ArithmeticError):
-    """The transient could not be followed further; the message says when and why."""
+PEELS, TOUCHES, CROSSES, TAKE_OFF, LANDING = 0.0, 2.0, 4.0, 6.0, 7.0
+"""Kinds of events, those of the left edge; the right edge adds 1."""
+KINDS = (
+    "left edge peels",
+    "right edge peels",
+    "left edge touches",
+    "right edge touches",
+    "left edge crosses to older ground",
+    "right edge crosses to older ground",
+    "take-off",
+    "landing",
+)
 
 
-class Event(NamedTuple):
-    """What happened at the time `s`."""
+def walk(run: Run, attempts: int) -> int:
+    """Walk to the end of the run, or for so many attempts at a step; say how it ended."""
+    now = run.now
+    for _ in range(attempts):
+        if now[r_.MET] == 0.0:
+            if not has_room(run):
+                return FULL
+            _meet_drive(run)
+            now[r_.MET] = 1.0
+        until = min(run.pieces[int(now[r_.PIECE])][PIECE_END], now[r_.END])
+        if now[r_.S] >= now[r_.END]:
+            return DONE
+        if now[r_.S] >= until:
+            now[r_.PIECE] += 1.0
+            now[r_.MET] = 0.0
+            continue
+        if not has_room(run):
+            return FULL
+        status = _step(run, until)
+        if status != DONE:
+            return status
+    return PAUSED
 
-    s: float
-    kind: str
+
+def _meet_drive(run: Run) -> None:
+    """Let a jump of lambda detach strips, or turn peeling edges where the pressure rises."""
+    now, index = run.now, int(run.now[r_.PIECE])
+    Y, number, slope = drive_now(run, now[r_.S])
+    last = last_slope = 0.0
+    if index > 0:
+        _, last, last_slope = evaluate(run.pieces[index - 1], now[r_.S])
+    jumps = abs(number - last) > SMOOTH * (1.0 + abs(number))
+    if jumps or abs(slope - last_slope) > SMOOTH * (1.0 + abs(slope)):
+        now[r_.KINK] = now[r_.S]
+    if jumps or index == 0:
+        _restart(run)
+    if now[r_.STATE] != FREE:
+        _detach(run, Y, number)
 
 
-class Run(Attempts):
-    """A transient in progress; `records`, `nodes` and `events` are its outcome."""
+def _detach(run: Run, Y: float, number: float) -> None:
+    now = run.now
+    left, right = now[r_.X], now[r_.X + 1]
+    for k in range(2):
+        side, X = SIDES[k], now[r_.X + k]
+        p = c_.pressure(X + Y, now[r_.D], now[r_.V], number)
+        allowed = now[r_.ALLOWED] * (1.0 + abs(number) + abs(now[r_.V]))
+        if p < -allowed:
+            limit = c_.root(side, number, now[r_.D] + now[r_.V])[0] - Y
+            if k == 0:
+                left = max(limit, X)
+            else:
+                right = min(limit, X)
+        elif p > allowed and now[r_.STATE + k] == PEELING:
+            _turn(run, k)
+    if left >= right:
+        _leave(run, Y)
+        return
+    for k in range(2):
+        X = right if k else left
+        if now[r_.X + k] != X:
+            if now[r_.STATE + k] == TOUCHING:
+                trim(run, k, Y)
+                _note(run, PEELS + k)
+            now[r_.STATE + k] = PEELING
+            push_strip(run, k, X, now[r_.X + k], Y)
+            now[r_.X + k] = X
 
-    def __init__(
-        self, drive: Drive, inertia_number: float, support_number: float, rtol: float
-    ) -> None:
-        super().__init__(drive, inertia_number, support_number, rtol)
-        self.events: list[Event] = []
-        self.rejected = self.toggles = 0
-        self.span = math.inf
 
-    def follow(self, end: float) -> None:
-        """Walk to `end`."""
-        for index, piece in enumerate(self.pieces):
-            if self.s >= end:
-                return
-            self.piece = index
-            self._meet_drive()
-            until = min(piece[PIECE_END], end)
-            while self.s < until:
-                if len(self.records) + self.rejected > STEP_LIMIT:
-                    raise TransientError(f"more than {STEP_LIMIT} steps: stopped at s = {self.s!r}")
-                self._step(until)
+def _restart(run: Run) -> None:
+    """Forget the step length, for v' jumps or is singular here."""
+    now = run.now
+    _, number, _ = drive_now(run, now[r_.S])
+    width = now[r_.X + 1] - now[r_.X] if now[r_.STATE] != FREE else 1.0
+    fast = 1.0
+    if now[r_.FIXED] == 0.0:
+        fast = now[r_.EPS] / (now[r_.EPS] + 0.75 * max(width, 1e-3))
+    now[r_.SPAN], now[r_.SMOOTH] = now[r_.FIRST_STEP] * fast / (1.0 + abs(number)), 0.0
 
-    def _meet_drive(self) -> None:
-        """Let a jump of lambda detach strips, or turn peeling edges where the pressure rises."""
-        Y, number, slope = self.drive_at(self.s)
-        _, last, last_slope = (
-            evaluate(self.pieces[self.piece - 1], self.s) if self.piece else (0.0,) * 3
-        )
-        jumps = abs(number - last) > SMOOTH * (1.0 + abs(number))
-        if jumps or abs(slope - last_slope) > SMOOTH * (1.0 + abs(slope)):
-            self.kink = self.s
-        if jumps or self.piece == 0:
-            self._restart()
-        if self.state[0] == FREE:
-            return
-        new = list(self.X)
-        for k, side in enumerate(SIDES):
-            p = c_.pressure(self.X[k] + Y, self.d, self.v, number)
-            allowed = self.allowed * (1.0 + abs(number) + abs(self.v))
-            if p < -allowed:
-                limit = c_.root(side, number, self.d + self.v)[0] - Y
-                new[k] = side * min(side * limit, side * self.X[k])
-            elif p > allowed and self.state[k] == PEELING:
-                self._turn(k)
-        if new[0] >= new[1]:
-            self._leave(Y)
-            return
+
+def _note(run: Run, kind: float) -> None:
+    event = run.events[int(run.now[r_.EVENTS])]
+    event[0], event[1] = run.now[r_.S], kind
+    run.now[r_.EVENTS] += 1.0
+
+
+def _step(run: Run, until: float) -> int:
+    """Try one step; keep it up to its first event, or try a shorter one next time."""
+    now = run.now
+    span, whole = min(now[r_.SPAN], _longest(run)), until - now[r_.S]
+    share = now[r_.STRAIGHT] if _begins(run) else 1.0
+    if span >= whole:
+        span = share * whole
+    if not now[r_.S] + 0.1 * span > now[r_.S]:
+        return STUCK
+    if whole - span < 0.1 * OVERRUN * span:
+        span = whole
+    record = run.records[int(now[r_.RECORDS])]
+    _begin(run, record, span)
+    size, found, violated = attempt(run, record)
+    until_event = found - now[r_.S]
+    if BRIEF * (1.0 + now[r_.S]) < until_event < span / (1.0 + OVERRUN):
+        now[r_.REJECTED] += 1.0
+        now[r_.SPAN] = share * (1.0 + 0.5 * OVERRUN) * until_event
+        return DONE
+    power = -1.0 / (len(run.method.nodes) + 1)
+    factor = min(now[r_.GROW], max(SHRINK, SAFETY * math.pow(max(size, TINY), power)))
+    if size > 1.0:
+        now[r_.REJECTED] += 1.0
+        now[r_.SPAN] = span * factor
+        return DONE
+    now[r_.SPAN] = max(now[r_.SPAN], span * factor) if factor > 1.0 else span * factor
+    end = until if span == whole else now[r_.S] + span
+    if found < math.inf:
+        end = found
+    if end > now[r_.S]:
+        _commit(run, record, end)
+    if found < math.inf:
+        return _change(run, violated)
+    now[r_.TOGGLES] = 0.0
+    return DONE
+
+
+def _begins(run: Run) -> bool:
+    """Whether the motion went on in another way until now: before an event, or on another piece."""
+    now = run.now
+    at_piece = now[r_.S] == run.pieces[int(now[r_.PIECE])][PIECE_START]
+    return at_piece or now[r_.SMOOTH] == 0.0 or now[r_.TOGGLES] > 0.0
+
+
+def _longest(run: Run) -> float:
+    now = run.now
+    if now[r_.STATE] != FREE:
+        return now[r_.LONGEST]
+    _, number, _ = drive_now(run, now[r_.S])
+    slide = RELIEF / (RELIEF + abs(number))
+    if now[r_.D] >= 0.0:
+        return min(now[r_.LONGEST], slide)
+    return min(now[r_.LONGEST], max(slide, -0.5 * now[r_.D] / (abs(now[r_.V]) + 1e-3)))
+
+
+def _begin(run: Run, record: Any, span: float) -> None:
+    """Begin a record: a step of the length `span`, its powers of v still zero."""
+    now = run.now
+    record[h_.START], record[h_.SPAN] = now[r_.S], span
+    record[h_.DEPTH], record[h_.PIECE] = now[r_.D], now[r_.PIECE]
+    record[h_.LEFT_STATE], record[h_.LEFT_NODE] = now[r_.STATE], now[r_.TOP]
+    record[h_.RIGHT_STATE], record[h_.RIGHT_NODE] = now[r_.STATE + 1], now[r_.TOP + 1]
+    record[h_.LEFT_X], record[h_.RIGHT_X] = now[r_.X], now[r_.X + 1]
+    record[h_.POWERS] = now[r_.V]
+    for i in range(h_.POWERS + 1, len(record)):
+        record[i] = 0.0
+
+
+def _commit(run: Run, record: Any, end: float) -> None:
+    """Keep `record` up to `end`, and what the peeling edges swept meanwhile."""
+    now = run.now
+    Y_0, _, _ = drive_now(run, now[r_.S])
+    d, v, _ = motion(record, end)
+    Y, number, _ = drive_now(run, end)
+    index = now[r_.RECORDS]
+    now[r_.RECORDS] += 1.0
+    if now[r_.STATE] != FREE:
         for k in range(2):
-            if new[k] != self.X[k]:
-                if self.state[k] == TOUCHING:
-                    self.trim(k, self.s, self.d, Y)
-                    self._note(k, "peels")
-                self.state[k] = PEELING
-                self.push_strip(k, new[k], self.X[k], [self.s, self.d, Y])
-                self.X[k] = new[k]
+            xi, _, node = c_.edge(
+                SIDES[k], now[r_.STATE + k], int(now[r_.TOP + k]), end, d, v, Y, number,
+                run.nodes, run.records, run.pieces,
+            )  # fmt: skip
+            if now[r_.STATE + k] == PEELING:
+                row = run.nodes[free_row(run)]
+                set_end(row, c_.IN_X, xi - Y, end, d, Y)
+                set_end(row, c_.OUT_X, now[r_.X + k], now[r_.S], now[r_.D], Y_0)
+                push(run, k, index, SIDES[k])
+            else:
+                now[r_.TOP + k] = float(node)
+            now[r_.X + k] = xi - Y
+    now[r_.S], now[r_.D], now[r_.V], now[r_.SMOOTH] = end, d, v, 1.0
 
-    def _restart(self) -> None:
-        """Forget the step length, for v' jumps or is singular here."""
-        _, number, _ = self.drive_at(self.s)
-        width = self.X[1] - self.X[0] if self.state[0] != FREE else 1.0
-        fast = self.eps / (self.eps + 0.75 * max(width, 1e-3)) if not self.fixed else 1.0
-        self.span, self.smooth = FIRST_STEP * fast / (1.0 + abs(number)), False
 
-    def _note(self, k: int, what: str) -> None:
-        self.events.append(Event(self.s, f"{NAMES[k]} edge {what}"))
-
-    def _step(self, until: float) -> None:
-        """Try one step; keep it up to its first event, or try a shorter one next time."""
-        span = min(self.span, until - self.s, self._longest())
-        if not self.s + 0.1 * span > self.s:
-            raise TransientError(f"the step length went to zero at s = {self.s!r}")
-        if until - self.s - span < 0.1 * OVERRUN * span:
-            span = until - self.s
-        record = [self.s, span, self.d, float(self.piece)]
+def _change(run: Run, violated: Monitors) -> int:
+    """Change the states that the event at the present time violates."""
+    now = run.now
+    now[r_.TOGGLES] += 1.0
+    if now[r_.TOGGLES] > TOGGLE_LIMIT:
+        return INCONSISTENT
+    Y, _, _ = drive_now(run, now[r_.S])
+    if now[r_.STATE] == FREE:
+        land(run, Y)
+        _note(run, LANDING)
+        _restart(run)
+    elif violated[0] < 0.0:
+        _leave(run, Y)
+    else:
         for k in range(2):
-            record += [self.state[k], float(self.top[k])]
-        record += [*self.X, self.v] + [0.0] * STAGES
-        size, found, violated = self.attempt(record)
-        until_event = math.inf if found is None else found - self.s
-        if BRIEF * (1.0 + self.s) < until_event < span / (1.0 + OVERRUN):
-            self.rejected += 1
-            self.span = (1.0 + 0.5 * OVERRUN) * until_event
-            return
-        factor = min(GROW, max(SHRINK, SAFETY * max(size, TINY) ** (-1.0 / (STAGES + 1))))
-        if size > 1.0:
-            self.rejected += 1
-            self.span = span * factor
-            return
-        self.span = max(self.span, span * factor) if factor > 1.0 else span * factor
-        end = until if span == until - self.s else self.s + span
-        if found is not None:
-            end = found
-        if end > self.s:
-            self._commit(record, end)
-        if found is not None:
-            self._change(violated)
-        else:
-            self.toggles = 0
+            state, ground = violated[2 * k + 1], violated[2 * k + 2]
+            if ground < 0.0:
+                now[r_.TOP + k] = run.nodes[int(now[r_.TOP + k])][c_.NEXT]
+                _note(run, CROSSES + k)
+            elif state < 0.0 and now[r_.STATE + k] != FREE:
+                _change_side(run, k, Y)
+    return DONE
 
-    def _longest(self) -> float:
-        if self.state[0] != FREE:
-            return LONGEST
-        _, number, _ = self.drive_at(self.s)
-        slide = RELIEF / (RELIEF + abs(number))
-        if self.d >= 0.0:
-            return min(LONGEST, slide)
-        return min(LONGEST, max(slide, -0.5 * self.d / (abs(self.v) + 1e-3)))
 
-    def _commit(self, record: list[float], end: float) -> None:
-        """Keep `record` up to `end`, and what the peeling edges swept meanwhile."""
-        Y_0, _, _ = self.drive_at(self.s)
-        d, v, _ = motion(record, end)
-        Y, number, _ = self.drive_at(end)
-        index = len(self.records)
-        self.records.append(record)
-        memory = self.nodes, self.records, self.pieces
-        if self.state[0] != FREE:
-            for k, side in enumerate(SIDES):
-                xi, _, node = c_.edge(
-                    side, self.state[k], self.top[k], end, d, v, Y, number, *memory
-                )
-                if self.state[k] == PEELING:
-                    self.push(
-                        k,
-                        [xi - Y, end, d, Y, self.X[k], self.s, self.d, Y_0, float(index), side],
-                    )
-                else:
-                    self.top[k] = node
-                self.X[k] = xi - Y
-        self.s, self.d, self.v, self.smooth = end, d, v, True
+def _change_side(run: Run, k: int, Y: float) -> None:
+    now = run.now
+    if now[r_.STATE + k] == PEELING:
+        _turn(run, k)
+        return
+    if SIDES[k] * (now[r_.X + k] + Y + drive_now(run, now[r_.S])[1]) <= 0.0:
+        _leave(run, Y)  # the pressure fell to zero at the root of the other side
+        return
+    trim(run, k, Y)
+    now[r_.STATE + k] = PEELING
+    _note(run, PEELS + k)
 
-    def _change(self, violated: tuple[float, ...]) -> None:
-        """Change the states that the event at the present time violates."""
-        self.toggles += 1
-        if self.toggles > TOGGLE_LIMIT:
-            raise TransientError(f"no consistent state of the edges at s = {self.s!r}")
-        Y, _, _ = self.drive_at(self.s)
-        if self.state[0] == FREE:
-            self._land(Y)
-        elif violated[0] < 0.0:
-            self._leave(Y)
-        else:
-            for k in range(2):
-                state, ground = violated[2 * k + 1 : 2 * k + 3]
-                if ground < 0.0:
-                    self.top[k] = int(self.nodes[self.top[k]][c_.NEXT])
-                    self._note(k, "crosses to older ground")
-                elif state < 0.0 and self.state[k] != FREE:
-                    self._change_side(k, Y)
 
-    def _change_side(self, k: int, Y: float) -> None:
-        if self.state[k] == PEELING:
-            self._turn(k)
-            return
-        if SIDES[k] * (self.X[k] + Y + self.drive_at(self.s)[1]) <= 0.0:
-            self._leave(Y)  # the pressure fell to zero at the root of the other side
-            return
-        self.trim(k, self.s, self.d, Y)
-        self.state[k] = PEELING
-        self._note(k, "peels")
+def _turn(run: Run, k: int) -> None:
+    run.now[r_.STATE + k] = TOUCHING
+    _note(run, TOUCHES + k)
 
-    def _turn(self, k: int) -> None:
-        self.state[k] = TOUCHING
-        self._note(k, "touches")
 
-    def _leave(self, Y: float) -> None:
-        self.leave(self.s, self.d, Y)
-        self.events.append(Event(self.s, "take-off"))
-        self._restart()
-
-    def _land(self, Y: float) -> None:
-        self.land(self.s, self.d, Y)
-        self.events.append(Event(self.s, "landing"))
-        self._restart()
+def _leave(run: Run, Y: float) -> None:
+    leave(run, Y)
+    _note(run, TAKE_OFF)
+    _restart(run)

@@ -2,34 +2,35 @@
 
 import bisect
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from typing import Any
 
 import numpy as np
+from numpy.polynomial import polynomial
 from numpy.typing import ArrayLike, NDArray
 
 from kvtheory.transients import contact as c_
+from kvtheory.transients import drive as drive_
 from kvtheory.transients import history as h_
+from kvtheory.transients import states
 from kvtheory.transients.continuum import Motion
 from kvtheory.transients.history import instant
+from kvtheory.transients.quadrature import integrals
 from kvtheory.transients.sides import SIDES
 
 Array = NDArray[np.float64]
 
 
-def _shares(points: int) -> tuple[Array, Array]:
-    """Return points in (0, 1) and weights that integrate what ends in square roots at both ends."""
-    x, weights = np.polynomial.legendre.leggauss(points)
-    x = 0.5 * (1.0 + x)
-    return x * x * (3.0 - 2.0 * x), 3.0 * weights * x * (1.0 - x)
-
-
-SHARES, WEIGHTS = _shares(16)
-"""An edge runs into a take-off, and out of a landing, as a square root of the time."""
-
 HALVINGS = 40
 """For the instant at which ground was left; its height is stationary there (p = 0), so that half as
 many digits of the instant as of the height would do."""
+
+LEAST_HALF = 1e-9
+"""Of half the width of the interval in which p > 0, relative to 1 + |lambda|: a smaller one is rounding.
+It is zero where an indenter takes off."""
+
+STRIP = np.polynomial.legendre.leggauss(3)
+"""Exact for u^2 on a strip."""
 
 ROUNDING = 1e-15
 """Of an edge in units of 1 + |Y|, for it is kept as X = xi - Y."""
@@ -40,7 +41,8 @@ def chain(motion: Motion, k: int, s: float) -> Iterator[list[float]]:
 
     The first node begins at the edge: in sigma, X, d and Y.
     """
-    front, node = _front(motion, k, s)
+    now = motion.at(s)
+    front, node = _front(motion, k, s, (now.left, now.right)[k])
     yield from front
     while node >= 0:
         row = list(motion.nodes[node])
@@ -49,8 +51,11 @@ def chain(motion: Motion, k: int, s: float) -> Iterator[list[float]]:
         node = int(row[c_.NEXT])
 
 
-def _front(motion: Motion, k: int, s: float) -> tuple[list[list[float]], int]:
-    """Return the nodes that do not yet, or no longer, exist as a whole, and the first that does."""
+def _front(motion: Motion, k: int, s: float, edge: float) -> tuple[list[list[float]], int]:
+    """Return the nodes that do not yet, or no longer, exist as a whole, and the first that does.
+
+    `edge` is xi of the edge at `s`.
+    """
     index, (d, v, _, Y, number, _) = present(motion, s)
     record, side = motion.records[index], SIDES[k]
     state, top = record[h_.LEFT_STATE + 2 * k], int(record[h_.LEFT_NODE + 2 * k])
@@ -65,8 +70,7 @@ def _front(motion: Motion, k: int, s: float) -> tuple[list[list[float]], int]:
         top = c_.reached(side, top, s, d, Y, motion.nodes)
     row = list(motion.nodes[top])
     if s > record[h_.START]:
-        edges = motion.at(s)
-        X = (edges.left, edges.right)[k] - Y
+        X = edge - Y
     if row[c_.IN_S] == -math.inf:
         return [], top
     if row[c_.RECORD] >= 0.0 and row[c_.IN_S] < s:
@@ -115,45 +119,80 @@ def height(motion: Motion, xi: ArrayLike, s: float) -> Array:
 
 def volume(motion: Motion, s: float) -> float:
     """Return U = int u dxi over the whole surface, of which f_z = 3/4 (U + U') (fact F14)."""
-    now, free = motion.at(s), relaxing(motion, s, 1, kept(motion, 1))
+    now, free = motion.at(s), float(relaxing(motion, [s], 1, kept(motion, 1))[0])
     if now.left_state == "free":
         return free
     l, r = now.left, now.right
     return free + (r - l) * (now.depth - (r * r + r * l + l * l) / 3.0)
 
 
-def relaxing(motion: Motion, s: float, power: int, memory: list[tuple[float, float]]) -> float:
-    """Return the integral of u^`power` outside the contact; `memory` is `kept` for this power."""
-    total = 0.0
-    for k in range(2):
-        front, node = _front(motion, k, s)
-        total += sum(_integral(motion, row, s, power) for row in front)
-        if node >= 0:
-            when, integral = memory[node]
-            total += integral * math.exp(power * (when - s))
+def relaxing(
+    motion: Motion, times: Sequence[float], power: int, memory: list[tuple[float, float]]
+) -> Array:
+    """Return the integral of u^`power` outside the contact at each time; `memory` is `kept` for it."""
+    total = np.zeros(len(times))
+    rows, owners = [], []
+    edges = motion.states(times)[:, [states.LEFT, states.RIGHT]].tolist()
+    for i, s in enumerate(times):
+        for k in range(2):
+            front, node = _front(motion, k, s, edges[i][k])
+            rows += front
+            owners += [i] * len(front)
+            if node >= 0:
+                when, integral = memory[node]
+                total[i] += integral * math.exp(power * (when - s))
+    np.add.at(total, owners, _integrals(motion, rows, np.asarray(times)[owners], power))
     return total
 
 
 def kept(motion: Motion, power: int) -> list[tuple[float, float]]:
     """Return, for each node, when it was complete, and the integral of u^power from there outward."""
+    complete = np.array([max(row[c_.IN_S], row[c_.OUT_S]) for row in motion.nodes])
+    own, touched = np.zeros(complete.size), complete > -math.inf
+    rows = [row for row, one in zip(motion.nodes, touched, strict=True) if one]
+    own[touched] = _integrals(motion, rows, complete[touched], power)
     memory: list[tuple[float, float]] = []
-    for row in motion.nodes:
+    for row, since, integral in zip(motion.nodes, complete.tolist(), own.tolist(), strict=True):
         when, total = memory[int(row[c_.NEXT])] if row[c_.NEXT] >= 0.0 else (-math.inf, 0.0)
-        latest = max(when, row[c_.IN_S], row[c_.OUT_S])
+        latest = max(when, since)
         if latest > -math.inf:
             total *= math.exp(power * (when - latest))
-        if row[c_.IN_S] > -math.inf:
-            total += _integral(motion, row, latest, power)
+            total += integral * math.exp(power * (since - latest))
         memory.append((latest, total))
     return memory
 
 
-def _swept_by(motion: Motion, row: Sequence[float], sigma: Any) -> tuple[Any, tuple[Any, ...]]:
-    """Return xi of the edge that swept a node, and its d, v, v', Y, lambda, lambda' at `sigma`."""
-    moment = instant(motion.records, motion.pieces, int(row[c_.RECORD]), sigma)
-    d, v, _, _, number, _ = moment
-    half = np.sqrt(np.maximum(d + v + number * number, 0.0))
-    return row[c_.BRANCH] * half - number, moment
+def _sweep_of(motion: Motion, rows: Array) -> Callable[[Any, Array], tuple[Array, ...]]:
+    """Return a function of `which` nodes among `rows`, and times sigma of shape (which, points).
+
+    It returns xi, d, Y and dX/dsigma of the edges that swept these nodes.
+    """
+    records = np.array(motion.records)[rows[:, c_.RECORD].astype(int)].T
+    pieces = np.array(motion.pieces)[records[h_.PIECE].astype(int)].T
+    rates, numbers = records[h_.POWERS :], pieces[drive_.POWERS :]
+    depths, slopes = polynomial.polyint(rates), polynomial.polyder(rates)
+    travels, number_slopes = polynomial.polyint(numbers), polynomial.polyder(numbers)
+
+    def at(which: Any, sigma: Array) -> tuple[Array, ...]:
+        def value(coefficients: Array, x: Array) -> Array:
+            return np.asarray(polynomial.polyval(x, coefficients[:, which, None], tensor=False))
+
+        record, piece, branch = (
+            records[:, which, None], pieces[:, which, None], rows[which, c_.BRANCH, None]
+        )  # fmt: skip
+        span, t = record[h_.SPAN], sigma - piece[drive_.START]
+        theta = (sigma - record[h_.START]) / span
+        d = record[h_.DEPTH] + span * value(depths, theta)
+        Y = piece[drive_.DISPLACEMENT] + value(travels, t)
+        v, number = value(rates, theta), value(numbers, t)
+        half = np.sqrt(np.maximum(d + v + number * number, 0.0))
+        half = np.maximum(half, LEAST_HALF * (1.0 + np.abs(number)))
+        near = branch * number > 0.0  # without cancellation
+        xi = branch * np.where(near, (d + v) / (np.abs(number) + half), half - branch * number)
+        rate = v + value(slopes, theta) / span - 2.0 * value(number_slopes, t) * xi
+        return xi, d, Y, rate / (2.0 * branch * half) - number
+
+    return at
 
 
 def _left(motion: Motion, row: list[float], X: Array, s: float) -> Array:
@@ -162,29 +201,45 @@ def _left(motion: Motion, row: list[float], X: Array, s: float) -> Array:
     if row[c_.RECORD] < 0.0:
         return np.exp(inner - s) * (row[c_.IN_D] - (X + row[c_.IN_Y]) ** 2)
     outer, outward = np.full(X.shape, row[c_.OUT_S]), row[c_.OUT_X] - row[c_.IN_X]
+    swept = _sweep_of(motion, np.array([row]))
     for _ in range(HALVINGS):
         sigma = 0.5 * (inner + outer)
-        xi, (_, _, _, Y, _, _) = _swept_by(motion, row, sigma)
-        later = (xi - Y - X) * outward > 0.0
+        xi, _, Y, _ = swept([0], sigma)
+        later = ((xi - Y - X) * outward > 0.0)[0]
         inner, outer = np.where(later, inner, sigma), np.where(later, sigma, outer)
-    _, (d, _, _, Y, _, _) = _swept_by(motion, row, inner)
-    return np.exp(inner - s) * (d - (X + Y) ** 2)
+    _, d, Y, _ = swept([0], inner)
+    return (np.exp(inner - s) * (d - (X + Y) ** 2))[0]
 
 
-def _integral(motion: Motion, row: Sequence[float], s: float, power: int) -> float:
-    """Return the integral of [e^-(s - sigma) g(X, sigma)]^power over X on one node."""
-    inner, d, Y = row[c_.IN_S], row[c_.IN_D], row[c_.IN_Y]
-    outward = row[c_.OUT_X] - row[c_.IN_X]
-    sigma = inner + (row[c_.OUT_S] - inner) * SHARES
-    if row[c_.RECORD] < 0.0:
-        u = math.exp(inner - s) * (d - (row[c_.IN_X] + outward * SHARES + Y) ** 2)
-        return float(WEIGHTS @ u**power) * abs(outward)
-    xi, (d_e, v, dv, _, number, slope) = _swept_by(motion, row, sigma)
-    u = np.exp(sigma - s) * (d_e - xi * xi)
-    with np.errstate(divide="raise", invalid="raise"):
-        rate = c_.pressure_rate(xi, v, dv, number, slope) / (2.0 * (xi + number))
-    whole = abs(float(WEIGHTS @ (u**power * rate)) * (row[c_.OUT_S] - inner))
+def _integrals(motion: Motion, nodes: Sequence[Sequence[float]], s: Array, power: int) -> Array:
+    """Return the integrals of [e^-(s - sigma) g(X, sigma)]^power over X on nodes, each at its time s."""
+    rows = np.array([row[: c_.NEXT] for row in nodes]).reshape(-1, c_.NEXT)
+    found, strip = np.empty(len(rows)), rows[:, c_.RECORD] < 0.0
+    found[strip] = _of_strips(rows[strip], s[strip], power)
+    found[~strip] = _of_sweeps(motion, rows[~strip], s[~strip], power)
+    return found
+
+
+def _of_strips(rows: Array, s: Array, power: int) -> Array:
+    inner, d, Y = rows[:, c_.IN_S, None], rows[:, c_.IN_D, None], rows[:, c_.IN_Y, None]
+    middle = 0.5 * (rows[:, c_.OUT_X] + rows[:, c_.IN_X])
+    half = 0.5 * np.abs(rows[:, c_.OUT_X] - rows[:, c_.IN_X])
+    x, weights = STRIP
+    u = np.exp(inner - s[:, None]) * (d - (middle[:, None] + half[:, None] * x + Y) ** 2)
+    return half * (u**power @ weights)
+
+
+def _of_sweeps(motion: Motion, rows: Array, s: Array, power: int) -> Array:
+    inner, outer = rows[:, c_.IN_S], rows[:, c_.OUT_S]
+    swept = _sweep_of(motion, rows)
+
+    def flux(which: Any, sigma: Array) -> Array:
+        xi, d, _, rate = swept(which, sigma)
+        return (np.exp(sigma - s[which, None]) * (d - xi * xi)) ** power * rate
+
+    whole = np.abs(integrals(flux, inner, outer))
     # sigma follows from an edge that is stationary in it: it may be off by the root of rounding
-    sliver = _swept_by(motion, row, inner)[0] - (row[c_.IN_X] + Y)
-    u_in = math.exp(inner - s) * (d - (row[c_.IN_X] + Y) ** 2)
-    return whole + float(math.copysign(sliver, sliver * outward) * u_in**power)
+    xi = rows[:, c_.IN_X] + rows[:, c_.IN_Y]
+    sliver = swept(slice(None), inner[:, None])[0][:, 0] - xi
+    u_in = np.exp(inner - s) * (rows[:, c_.IN_D] - xi * xi)
+    return whole + np.sign(rows[:, c_.OUT_X] - rows[:, c_.IN_X]) * sliver * u_in**power

@@ -1,0 +1,73 @@
+"""Compiled and interpreted kernels: one source, the same numbers to the last bit."""
+
+import subprocess
+import sys
+import types
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from kvtheory.transients import compiled
+from kvtheory.transients.continuum import solve
+from tests.test_transient_random import random_case
+
+SEEDS = range(500, 600)
+
+
+@pytest.fixture(scope="module", params=[1e-3, 1e-5, 1e-8])
+def both(request):
+    def solved(case, fast):
+        return solve(case.drive, case.eps, case.kappa, case.drive.end, request.param, fast=fast)
+
+    cases = [random_case(seed, 1) for seed in SEEDS]
+    return [(case, solved(case, True), solved(case, False)) for case in cases]
+
+
+def test_the_same_steps_nodes_and_events(both):
+    for _, fast, slow in both:
+        assert (fast.compiled, slow.compiled) == (True, False)
+        assert fast.records == slow.records
+        assert fast.nodes == slow.nodes
+        assert fast.events == slow.events
+        assert (fast.rejected, fast.evaluations) == (slow.rejected, slow.evaluations)
+
+
+def test_the_same_states(both):
+    for case, fast, slow in both:
+        np.testing.assert_array_equal(fast.states(case.times), slow.states(case.times))
+
+
+def test_a_changed_kernel_is_compiled_anew(tmp_path):
+    """The digest of the sources is part of the key under which numba keeps the compiled entries."""
+    source = Path(compiled.MODULES[0].__file__)
+    copy = types.SimpleNamespace(__file__=str(tmp_path / source.name))
+    Path(copy.__file__).write_bytes(source.read_bytes())
+    before = compiled.sources((copy, *compiled.MODULES[1:]))
+    assert before == compiled.sources()
+    Path(copy.__file__).write_bytes(source.read_bytes() + b"\n")
+    assert compiled.sources((copy, *compiled.MODULES[1:])) != before
+
+
+def test_every_kernel_module_that_they_import_is_among_the_sources():
+    """Whatever a kernel module takes from the package is a kernel module too."""
+    kernels = {module.__name__ for module in compiled.MODULES}
+    for module in compiled.MODULES:
+        for thing in vars(module).values():
+            if isinstance(thing, types.ModuleType):
+                home = thing.__name__
+            else:
+                home = getattr(thing, "__module__", None) or ""
+            assert home in kernels or not home.startswith("kvtheory")
+
+
+def test_without_numba_the_kernels_are_interpreted():
+    code = (
+        "import sys; sys.modules['numba'] = None\n"
+        "import importlib.util as util; found = util.find_spec\n"
+        "util.find_spec = lambda name, *a: None if name == 'numba' else found(name, *a)\n"
+        "import kvtheory as kv; result = kv.transient(at=['200 ms'])\n"
+        "print(result.compiled, round(float(result.depth[0]) * 1e6, 3))"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.split() == ["False", "89.661"]
