@@ -55,7 +55,7 @@ EDGE = sp.Rational(1, 8)
 
 LOAD_COEFFICIENT = -3 * q * (1 + (1 - q) * (1 - 3 * q * (1 - q))) / (20 * A)
 FORCE_COEFFICIENT = 9 * (1 - q * (1 - q) * (1 + q**2)) / (10 * B)
-LOADED_COEFFICIENT = 3 * (1 + q) * (3 * (1 - q) ** 2 + 2 * q) / (10 * B)
+LOADED_COEFFICIENT = sp.Rational(3, 10) * ((1 + q) * (3 * (1 - q) ** 2 + 2 * q) / B)
 
 _theorem = partial(Proof, equation=None, section=SECTION)
 
@@ -132,15 +132,17 @@ def _dead_weight() -> Derivation:
         r"c_{\mu,W} \varepsilon$, up to $O(\varepsilon^2)$: the depth gives way until the load is the same.",
     )
     loading = 3 / A
-    slipping = q * sp.diff(FRICTION_COEFFICIENT, q) / FRICTION_COEFFICIENT
-    slipping *= NUMBER / (q * sp.diff(NUMBER, q))
+    slipping = sp.diff(FRICTION_COEFFICIENT, q) / FRICTION_COEFFICIENT * NUMBER / sp.diff(NUMBER, q)
+    slope = q * (1 + q) * ((2 - q) ** 2 + 3) / (A * B)
     proof.recall("balance", s * f_s / f, 6 / A)
     proof.recall("circle-fixed", c_w, LOAD_COEFFICIENT)
     proof.recall("circle-fixed", c_f, FORCE_COEFFICIENT)
     proof.recall("circle-fixed", c_mu, c_f - c_w)
     proof.equal(s * f_s / f / 2, loading, r"$d \ln W/d \ln \delta$ at fixed velocity")
     proof.define(c_delta_load, -c_w / loading, "depth: the load stays")
-    proof.define(c_mu_load, c_mu + c_delta_load * (1 - slipping) / 2, _CHAIN)
+    proof.equal(slipping, slope, "logarithmic slope of $m$", left=r"\frac{l\, m^{\prime}(l)}{m}")
+    chained = r"c_\mu + \frac{c_{\delta,W}}{2} \left(1 - \frac{l\, m^{\prime}(l)}{m}\right)"
+    proof.define(c_mu_load, c_mu + c_delta_load * (1 - slope) / 2, _CHAIN, right=chained)
     proof.equal(c_mu_load, LOADED_COEFFICIENT, "friction coefficient")
     return proof.done(c_mu_load, LOADED_COEFFICIENT)
 

@@ -10,9 +10,9 @@ from pathlib import Path
 
 import sympy as sp
 
-from derivations import asymptote_errors, circle, energy, theorems
+from derivations import asymptote_errors, circle, energy, master_curve, theorems
 from derivations import symbols as sym
-from derivations.step import established
+from derivations.book import established
 from derivations.symbols import l, lam, q, s, xi
 
 TARGET = Path(__file__).parents[1] / "kvtheory" / "steady_state" / "closed_forms.py"
@@ -92,7 +92,7 @@ _BY_SYMBOL = {form.symbol: form for form in FORMS if form.arguments and form.sym
 
 def closed_forms_source() -> str:
     """Return the text of the generated module, after all that it rests on has been proved anew."""
-    for chapter in (theorems, energy, asymptote_errors, circle):
+    for chapter in (theorems, master_curve, energy, asymptote_errors, circle):
         chapter.derive()
     constants = [_constant(form) for form in FORMS if not form.arguments]
     functions = [_function(form) for form in FORMS if form.arguments]

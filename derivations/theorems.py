@@ -1,4 +1,4 @@
-r"""Steady sliding beyond the paper: exact closed forms, the friction maximum, the balance of forces.
+r"""Steady sliding beyond the paper: exact closed forms, the peak pressure, the balance of forces.
 
 One number fixes the contact: ``q`` = x_TE/a in (0, 1), or l = l_r/a = (1 - q**2)/(2 q). Where several
 forms of a quantity are proved equal, the last one is the form for floating-point numbers: no
@@ -17,20 +17,12 @@ from derivations.symbols import (
     G,
     G_s,
     K,
-    Lambda,
-    Lambda_fixed,
-    Lambda_peak,
-    Lambda_weight,
     P,
     P_max,
     R,
-    T,
     V,
     W,
-    X,
-    Y,
     a,
-    alpha,
     delta,
     f,
     f_s,
@@ -41,14 +33,12 @@ from derivations.symbols import (
     lam,
     m,
     mu,
-    mu_peak,
     n,
     p,
     phi,
     q,
     r,
     s,
-    tau,
     w,
     x,
     xi,
@@ -74,21 +64,14 @@ FRICTION_COEFFICIENT = (1 - q) * B / (2 * A)
 STABLE_FRICTION_FORCE = l * (1 + q) * B / 6
 STABLE_FRICTION_COEFFICIENT = l * q * B / ((1 + q) * A)
 SCALED_LOAD = s**2 * (s + r + lam**2 / (r + lam)) / 2
-DRIVE_CUBED = 3 * (1 - q) ** 3 * (1 + q) / (2 * q**2 * A)
-FRICTION_CUBED = 3 * q * (1 - q) ** 3 * B**3 / (2 * (1 + q) ** 2 * A**4)
-PEAK = 2 - sp.sqrt(3)
 
 RATIO = r"$q = x_{\mathrm{TE}}/a$ names the state: $l = l_{\mathrm{r}}/a > 0$ is $0 < q < 1$"
 _theorem = partial(Proof, equation=None, section=SECTION)
 
 
 def derive() -> tuple[Derivation, ...]:
-    """Prove F1, F16, the scaled balance of forces, F2-F5 and F7."""
-    return (
-        *(_rational(), _cancellation(), _peak_pressure()),
-        *(_scaled_load(), _balance()),
-        *(_master_curve(), _peak(), _peak_values(), *_series(), _intersections()),
-    )
+    """Prove F1, F16, F7 and the scaled balance of forces."""
+    return _rational(), _cancellation(), _peak_pressure(), _scaled_load(), _balance()
 
 
 def _rational() -> Derivation:
@@ -237,123 +220,3 @@ def _balance() -> Derivation:
     proof.equal(s * G_s, conditioning, "slope of the balance")
     proof.sign(s * f_s - 2 * f, ">", 0, UNIT, r"hence $s\,G' \ge 2 (1 + \kappa)$ at the root")
     return proof.done(s * G_s, conditioning)
-
-
-def _master_curve() -> Derivation:
-    proof = _theorem(
-        "F2",
-        title="Master curve of the dead-weight indenter",
-        text=r"With $X = (V\tau)^3 K/(R W)$ and $Y = \mu^3 K R^2/W$, the cubes of the axes of Fig. 6, "
-        r"$X$ falls from $\infty$ to 0 while $q$ goes from 0 to 1: one root $q$ of a quartic gives depth, "
-        r"friction force and friction coefficient. With $T = \mu R K/(C V)$, so that $T^3 = Y/X$, the "
-        "curve is one polynomial relation between $T$ and $X$, of degrees 4 and 3: the resultant.",
-    )
-    quartic = 2 * X * q**2 * A - 3 * (1 - q) ** 3 * (1 + q)
-    relation = sp.resultant(quartic, q * B - T * (1 + q) * A, q)
-    proof.define(l, NUMBER, RATIO)
-    proof.recall("F1", w, LOAD)
-    proof.recall("F1", m, FRICTION_COEFFICIENT)
-    proof.define(V, l * a / tau, "Eq. (29)")
-    proof.define(W, K * delta * a * w, "F1")
-    proof.define(mu, a * m / R, "F1")
-    proof.define(delta, a**2 / (2 * R), "Eq. (28)")
-    proof.define(X, (V * tau) ** 3 * K / (R * W), "cube of the abscissa")
-    proof.equal(X, DRIVE_CUBED, "scaled velocity")
-    proof.sign(sp.Derivative(DRIVE_CUBED, q), "<", 0, UNIT, "strictly decreasing")
-    proof.leading_order(X, 1 / (2 * q**2), q, 0, "the fast limit", eps=q)
-    proof.root(DRIVE_CUBED, q, sp.S.One, "rest")
-    proof.equal(quartic, sp.S.Zero, "the quartic")
-    proof.define(Y, mu**3 * K * R**2 / W, "cube of the ordinate")
-    proof.equal(Y, FRICTION_CUBED, "scaled friction coefficient")
-    proof.define(l_r, l * a, "the retardation length in half lengths")
-    proof.define(T, mu * R / l_r, "over the asymptote of Eq. (42)")
-    proof.equal(T, q * B / ((1 + q) * A), "rational")
-    proof.equal(T**3, Y / X, "the same in the scales of Fig. 6")
-    eliminated = r"\operatorname{Res}_q\left(X - X(q),\, T - T(q)\right)"
-    proof.equal(relation, sp.S.Zero, "$q$ eliminated", left=eliminated)
-    return proof.done(X, DRIVE_CUBED)
-
-
-def _peak() -> Derivation:
-    proof = _theorem(
-        "F3",
-        title="Friction maximum of the dead-weight indenter",
-        text=r"$\mu (K R^2/W)^{1/3}$ has one maximum over all velocities, where the retardation length is "
-        r"$\sqrt{3}$ half lengths of the contact.",
-    )
-    parabola = q**2 - 4 * q + 1
-    rest = 18 * (1 - q) ** 2 * (1 + q**2) * B**2 / ((1 + q) ** 3 * A**5)
-    proof.recall("F2", Y, FRICTION_CUBED)
-    proof.equal(sp.Derivative(FRICTION_CUBED, q), rest * parabola, "slope")
-    proof.sign(rest, ">", 0, UNIT, "the sign is that of the last factor")
-    proof.unique_root(parabola, UNIT, "from + to - with growing $q$")
-    proof.root(parabola, q, PEAK, "friction maximum")
-    return proof.done(q, PEAK)
-
-
-def _peak_values() -> Derivation:
-    proof = _theorem("F3-values", title="Values at the friction maximum")
-    third = sp.cbrt(3 - sp.sqrt(3))
-    proof.recall("F3", q, PEAK)
-    proof.define(l, NUMBER, RATIO)
-    proof.equal(l, sp.sqrt(3), r"$l_{\mathrm{r}} = \sqrt{3}\, a$")
-    proof.recall("F1", m, FRICTION_COEFFICIENT)
-    proof.equal(m, 3 * (sp.sqrt(3) - 1) / 4, r"$\mu R/a$")
-    proof.recall("F2", X, DRIVE_CUBED)
-    proof.define(Lambda_peak, sp.cbrt(X), r"$V \tau (K/(R W))^{1/3}$")
-    proof.equal(Lambda_peak, sp.sqrt(3) / third, "1.60027...")
-    proof.define(mu_peak, m * Lambda_peak / l, r"$\mu (K R^2/W)^{1/3}$")
-    proof.equal(mu_peak, 3 * (sp.sqrt(3) - 1) / (4 * third), "0.507265...")
-    return proof.done(mu_peak, 3 * (sp.sqrt(3) - 1) / (4 * third))
-
-
-def _series() -> tuple[Derivation, ...]:
-    """Prove the first terms of m on both sides; the last one with the order of what is left out."""
-    low, high = l - 3 * l**2 / 4, sp.Rational(2, 3) - 7 / (36 * l)
-    return tuple(_expansion(*case) for case in (
-        ("F4-low", "low", 1, l, (l, low), 9 * l**4 / 16, r"m - l + \frac{3}{4} l^2"),
-        ("F4-high", "high", 0, 1 / l, (sp.Rational(2, 3), high), -1 / (27 * l**2),
-         r"m - \frac{2}{3} + \frac{7}{36 l}"),
-    ))  # fmt: skip
-
-
-def _expansion(
-    label: str,
-    regime: str,
-    end: int,
-    small: sp.Expr,
-    sums: tuple[sp.Expr, ...],
-    last: sp.Expr,
-    shown: str,
-) -> Derivation:
-    proof = _theorem(label, title=f"Friction coefficient at {regime} velocity: series")
-    proof.define(l, NUMBER, RATIO)
-    proof.recall("F1", m, FRICTION_COEFFICIENT)
-    proof.leading_order(m, sums[0], q, end, "the asymptote", eps=small)
-    proof.leading_order(
-        m - sums[1], last, q, end, "what two terms leave out", eps=small, left=shown
-    )
-    return proof.done(m - sums[1], last)
-
-
-def _intersections() -> Derivation:
-    proof = _theorem(
-        "F5",
-        title="Critical velocity and friction maximum",
-        text="The critical velocity is where the two asymptotes of the friction coefficient meet. A "
-        r"dead-weight indenter has its maximum at 1.664 times that velocity.",
-        uses=("eq42", "eq45", "eq46"),
-    )
-    low = C * V / (R * K)
-    fixed, weight = alpha * sp.sqrt(delta / R), alpha * sp.sqrt(W / (R * C * V))
-    proof.define(C, K * tau, "Eq. (22)")
-    proof.equal(low / fixed, V * tau / sp.sqrt(R * delta) / alpha, "fixed indenter: 1 at")
-    proof.define(Lambda_fixed, alpha, r"$V^{*} \tau/\sqrt{R \delta}$")
-    proof.define(V, Lambda * sp.cbrt(R * W / K) / tau, "in units of the dead weight")
-    proof.equal((low / weight) ** 2, Lambda**3 / alpha**2, "dead weight: 1 at")
-    proof.define(Lambda_weight, sp.cbrt(alpha**2), r"$V^{*} \tau (K/(R W))^{1/3}$")
-    proof.root(Lambda**3 / alpha**2 - 1, Lambda, Lambda_weight, "the asymptotes meet")
-    proof.recall("F3-values", Lambda_peak, sp.sqrt(3) / sp.cbrt(3 - sp.sqrt(3)))
-    beyond = (Lambda_peak / Lambda_weight) ** 3
-    proof.equal(beyond, 27 * (1 + sp.sqrt(3)) / 16, "the maximum lies beyond the intersection")
-    return proof.done(beyond, 27 * (1 + sp.sqrt(3)) / 16)

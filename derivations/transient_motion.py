@@ -4,8 +4,9 @@ from functools import partial
 
 import sympy as sp
 
+from derivations.book import established
 from derivations.record import Derivation
-from derivations.step import Proof, established, tex
+from derivations.step import Proof, tex
 from derivations.symbols import (
     E,
     P,

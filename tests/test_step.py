@@ -3,7 +3,8 @@
 import pytest
 import sympy as sp
 
-from derivations.step import Proof, StepError, established
+from derivations.book import StepError, established
+from derivations.step import Proof
 
 x = sp.Symbol("x", real=True)
 y, z = sp.symbols("y z", positive=True)

@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from tests import transient_elements
 from tests import transient_reference as ref
 
 TABLE = json.loads(ref.TABLE.read_text())
@@ -115,6 +116,6 @@ def test_closed_form_edges_refuse_a_scene_that_needs_memory():
 
 
 def test_elements_refuse_a_contact_that_outgrows_them(monkeypatch):
-    monkeypatch.setattr(ref, "REACH", 1.0)
+    monkeypatch.setattr(transient_elements, "REACH", 1.0)
     with pytest.raises(ArithmeticError, match="outgrows"):
         ref.elements(SCENES["stop"], 1)

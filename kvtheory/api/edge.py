@@ -6,8 +6,9 @@ from typing import Any
 
 import numpy as np
 
+from kvtheory.scene.drives import TIME
 from kvtheory.scene.fields import SceneError, convert, problem
-from kvtheory.scene.model import TIME, Scene
+from kvtheory.scene.model import Scene
 
 
 def scene_of(scene: Scene | None) -> Scene:

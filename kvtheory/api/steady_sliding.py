@@ -27,7 +27,7 @@ def steady(
     ----------
     scene
         What is modelled; without it, the paper's Table 1 with a dead weight. A drive with a history
-        is taken at its final velocity.
+        is taken at its final velocity; for one that is a function, `over` must give the velocity.
     over
         Values that replace those of the scene, by dotted key as in the scene file, such as
         ``{"drive.velocity": np.geomspace(1e-3, 10)}``: SI numbers, arrays of them, or text with a

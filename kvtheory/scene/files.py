@@ -114,6 +114,8 @@ def _tables(scene: Scene) -> dict[str, dict[str, Any]]:
         raise ValueError(
             "`scene` has an indenter made of Python functions, which a file cannot hold"
         )
+    if scene.drive.function is not None:
+        raise ValueError("`scene` has a drive made of a Python function, which a file cannot hold")
     return tables
 
 

@@ -4,15 +4,13 @@ Every field accepts SI numbers, text with a unit (``"10 mm"``) and pint quantiti
 float afterwards.
 """
 
-import math
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Mapping
+from dataclasses import dataclass
 from typing import Any, ClassVar
 
+from kvtheory.scene.drives import Drive
 from kvtheory.scene.fields import (
-    Quantity,
     SceneError,
-    convert,
     nearest,
     problem,
     quantities,
@@ -91,83 +89,6 @@ class Suspended:
 Support = Fixed | DeadWeight | Suspended
 SUPPORTS: dict[str, Any] = {cls.kind: cls for cls in (Fixed, DeadWeight, Suspended)}
 
-VELOCITY = Quantity(
-    "m/s", "V, drive velocity of the foundation, from rest to this at t = 0", -math.inf, True
-)
-TIME = Quantity("s", "time", 0.0, False)
-
-
-@dataclass(frozen=True)
-class Drive:
-    """The motion of the foundation: one `velocity` from t = 0 on, or a `history`.
-
-    A history holds pairs (time, velocity). It is linear between its points and jumps where a time
-    stands twice; it starts at t = 0 and keeps its last velocity.
-    """
-
-    velocity: float | None = field(default=None, metadata={"quantity": VELOCITY})
-    history: Sequence[tuple[float, float]] | None = None
-
-    def __post_init__(self) -> None:
-        if (self.velocity is None) == (self.history is None):
-            raise SceneError(
-                ['drive: expected one of velocity and history, such as velocity = "100 mm/s"']
-            )
-        if self.velocity is not None:
-            settle(self, "drive")
-        else:
-            object.__setattr__(self, "history", _history(self.history))
-
-    @property
-    def final_velocity(self) -> float:
-        """The velocity that the drive ends with, in m/s."""
-        return self.velocity if self.history is None else self.history[-1][1]  # type: ignore[return-value]
-
-
-def _history(points: Any) -> tuple[tuple[float, float], ...]:
-    """Convert the points of a drive history, or report every one that is wrong."""
-    key = "drive.history"
-    if isinstance(points, str) or not isinstance(points, Sequence) or not points:
-        raise SceneError(
-            [
-                problem(
-                    key,
-                    points,
-                    'expected points such as [["0 ms", "100 mm/s"], ["50 ms", "0 mm/s"]]',
-                )
-            ]
-        )
-    problems, converted = [], []
-    for index, point in enumerate(points):
-        if isinstance(point, str) or not isinstance(point, Sequence) or len(point) != 2:
-            problems.append(
-                problem(f"{key}[{index}]", point, 'expected a pair ["time", "velocity"]')
-            )
-            continue
-        pair = []
-        for value, spec in zip(point, (TIME, VELOCITY), strict=True):
-            try:
-                pair.append(convert(value, spec))
-            except ValueError as error:
-                problems.append(problem(f"{key}[{index}]", value, str(error)))
-        converted.append(tuple(pair))
-    if not problems:
-        times = [time for time, _ in converted]
-        if times[0] != 0.0:
-            problems.append(problem(f"{key}[0]", points[0], "the first time must be 0 s"))
-        problems += [
-            problem(
-                f"{key}[{i}]",
-                points[i],
-                "times must not decrease, and one time may stand at most twice",
-            )
-            for i in range(1, len(times))
-            if times[i] < times[i - 1] or (i > 1 and times[i] == times[i - 2])
-        ]
-    if problems:
-        raise SceneError(problems)
-    return tuple(converted)  # type: ignore[arg-type]
-
 
 @dataclass(frozen=True)
 class Run:
@@ -228,13 +149,18 @@ class Scene:
         return cls(support=TABLE1_SUPPORTS[support])
 
     def values(self) -> Mapping[str, float]:
-        """Return every quantity of the scene in SI by its dotted key, as ``"drive.velocity"``."""
+        """Return every quantity of the scene in SI by its dotted key, as ``"drive.velocity"``.
+
+        A drive that is a function has no velocity to give.
+        """
         parts = {"indenter": self.indenter, "foundation": self.foundation, "support": self.support}
         flat = {
             f"{section}.{name}": getattr(part, name)
             for section, part in parts.items()
             for name in quantities(part)
         }
+        if self.drive.function is not None:
+            return flat
         return {**flat, "drive.velocity": self.drive.final_velocity}
 
 

@@ -24,7 +24,8 @@ def dimensionless_numbers(scene: Scene) -> dict[str, float]:
 
     With the static depth delta_0, half length a_0 = sqrt(2 R delta_0) and load W_0 = (4/3) K a_0
     delta_0: the drive number lambda = V tau/a_0, the inertia number epsilon = M delta_0/(W_0 tau^2)
-    and the support number kappa = k_s delta_0/W_0. A fixed indenter has the first one only.
+    and the support number kappa = k_s delta_0/W_0. A fixed indenter has the first one only, and a drive
+    that is a function has not that one.
 
     Raises
     ------
@@ -66,10 +67,12 @@ def _numbers(scene: Scene) -> dict[str, float]:
             "inertia_number": support.mass * depth / (load * tau**2),
             "support_number": spring * depth / load,
         }
+    drive = scene.drive
+    driven = {"drive_number": drive.final_velocity * tau / a_0} if drive.function is None else {}
     return {
         "static_depth": a_0**2 / (2 * R),
         "static_half_length": a_0,
         "static_load": load,
-        "drive_number": scene.drive.final_velocity * tau / a_0,
+        **driven,
         **inertial,
     }

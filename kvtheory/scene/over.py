@@ -6,8 +6,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from kvtheory.scene.drives import VELOCITY
 from kvtheory.scene.fields import Quantity, SceneError, convert, nearest, problem, quantities
-from kvtheory.scene.model import VELOCITY, Scene
+from kvtheory.scene.model import Scene
 
 Array = NDArray[np.float64]
 
@@ -18,7 +19,8 @@ def values(scene: Scene, over: Mapping[str, Any] | None = None) -> dict[str, Arr
     Raises
     ------
     SceneError
-        Listing every unknown key and every value that is out of range.
+        Listing every unknown key and every value that is out of range; or if the drive is a function
+        and `over` gives no velocity.
     ValueError
         If the arrays do not broadcast.
 
@@ -43,6 +45,8 @@ def values(scene: Scene, over: Mapping[str, Any] | None = None) -> dict[str, Arr
             given[key] = _array(value, specs[key])
         except ValueError as error:
             problems.append(problem(f"`over` {key}", value, str(error)))
+    if "drive.velocity" not in given and not problems:
+        given["drive.velocity"] = scene.drive.final_velocity
     if problems:
         raise SceneError(problems)
     try:

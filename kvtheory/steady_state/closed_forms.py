@@ -154,7 +154,7 @@ def circle_friction_coefficient(q: Value) -> Value:
 
 def circle_friction_coefficient_at_load(q: Value) -> Value:
     """Return c in 1 + c (a/R)^2, likewise, of mu at given load; theorem circle-dead-weight."""
-    return (2 * q + 3 * (1 - q) * (1 - q)) * (3 * q + 3) / (10 * q * q - 10 * q + 40)
+    return 3 * (q + 1) * (2 * q + 3 * (1 - q) * (1 - q)) / (10 * (q * q - q + 4))
 
 
 def circle_depth_at_load(q: Value) -> Value:

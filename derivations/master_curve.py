@@ -1,0 +1,168 @@
+r"""The dead-weight indenter over its velocity: master curve, friction maximum, series, critical velocity.
+
+``q`` = x_TE/a in (0, 1) names the state, as in `derivations.theorems`, whose section this continues.
+"""
+
+from functools import partial
+
+import sympy as sp
+
+from derivations.record import Derivation
+from derivations.step import Proof
+from derivations.symbols import (
+    C,
+    K,
+    Lambda,
+    Lambda_fixed,
+    Lambda_peak,
+    Lambda_weight,
+    R,
+    T,
+    V,
+    W,
+    X,
+    Y,
+    a,
+    alpha,
+    delta,
+    l,
+    l_r,
+    m,
+    mu,
+    mu_peak,
+    q,
+    tau,
+    w,
+)  # fmt: skip
+from derivations.theorems import FRICTION_COEFFICIENT, LOAD, NUMBER, RATIO, SECTION, UNIT, A, B
+
+DRIVE_CUBED = 3 * (1 - q) ** 3 * (1 + q) / (2 * q**2 * A)
+FRICTION_CUBED = 3 * q * (1 - q) ** 3 * B**3 / (2 * (1 + q) ** 2 * A**4)
+PEAK = 2 - sp.sqrt(3)
+
+_theorem = partial(Proof, equation=None, section=SECTION)
+
+
+def derive() -> tuple[Derivation, ...]:
+    """Prove F2 to F5."""
+    return _master_curve(), _peak(), _peak_values(), *_series(), _intersections()
+
+
+def _master_curve() -> Derivation:
+    proof = _theorem(
+        "F2",
+        title="Master curve of the dead-weight indenter",
+        text=r"With $X = (V\tau)^3 K/(R W)$ and $Y = \mu^3 K R^2/W$, the cubes of the axes of Fig. 6, "
+        r"$X$ falls from $\infty$ to 0 while $q$ goes from 0 to 1: one root $q$ of a quartic gives depth, "
+        r"friction force and friction coefficient. With $T = \mu R K/(C V)$, so that $T^3 = Y/X$, the "
+        "curve is one polynomial relation between $T$ and $X$, of degrees 4 and 3: the resultant.",
+    )
+    quartic = 2 * X * q**2 * A - 3 * (1 - q) ** 3 * (1 + q)
+    relation = sp.resultant(quartic, q * B - T * (1 + q) * A, q)
+    proof.define(l, NUMBER, RATIO)
+    proof.recall("F1", w, LOAD)
+    proof.recall("F1", m, FRICTION_COEFFICIENT)
+    proof.define(V, l * a / tau, "Eq. (29)")
+    proof.define(W, K * delta * a * w, "F1")
+    proof.define(mu, a * m / R, "F1")
+    proof.define(delta, a**2 / (2 * R), "Eq. (28)")
+    proof.define(X, (V * tau) ** 3 * K / (R * W), "cube of the abscissa")
+    proof.equal(X, DRIVE_CUBED, "scaled velocity")
+    proof.sign(sp.Derivative(DRIVE_CUBED, q), "<", 0, UNIT, "strictly decreasing")
+    proof.leading_order(X, 1 / (2 * q**2), q, 0, "the fast limit", eps=q)
+    proof.root(DRIVE_CUBED, q, sp.S.One, "rest")
+    proof.equal(quartic, sp.S.Zero, "the quartic")
+    proof.define(Y, mu**3 * K * R**2 / W, "cube of the ordinate")
+    proof.equal(Y, FRICTION_CUBED, "scaled friction coefficient")
+    proof.define(l_r, l * a, "the retardation length in half lengths")
+    proof.define(T, mu * R / l_r, "over the asymptote of Eq. (42)")
+    proof.equal(T, q * B / ((1 + q) * A), "rational")
+    proof.equal(T**3, Y / X, "the same in the scales of Fig. 6")
+    eliminated = r"\operatorname{Res}_q\left(X - X(q),\, T - T(q)\right)"
+    proof.equal(relation, sp.S.Zero, "$q$ eliminated", left=eliminated)
+    return proof.done(X, DRIVE_CUBED)
+
+
+def _peak() -> Derivation:
+    proof = _theorem(
+        "F3",
+        title="Friction maximum of the dead-weight indenter",
+        text=r"$\mu (K R^2/W)^{1/3}$ has one maximum over all velocities, where the retardation length is "
+        r"$\sqrt{3}$ half lengths of the contact.",
+    )
+    parabola = q**2 - 4 * q + 1
+    rest = 18 * (1 - q) ** 2 * (1 + q**2) * B**2 / ((1 + q) ** 3 * A**5)
+    proof.recall("F2", Y, FRICTION_CUBED)
+    proof.equal(sp.Derivative(FRICTION_CUBED, q), rest * parabola, "slope")
+    proof.sign(rest, ">", 0, UNIT, "the sign is that of the last factor")
+    proof.unique_root(parabola, UNIT, "from + to - with growing $q$")
+    proof.root(parabola, q, PEAK, "friction maximum")
+    return proof.done(q, PEAK)
+
+
+def _peak_values() -> Derivation:
+    proof = _theorem("F3-values", title="Values at the friction maximum")
+    third = sp.cbrt(3 - sp.sqrt(3))
+    proof.recall("F3", q, PEAK)
+    proof.define(l, NUMBER, RATIO)
+    proof.equal(l, sp.sqrt(3), r"$l_{\mathrm{r}} = \sqrt{3}\, a$")
+    proof.recall("F1", m, FRICTION_COEFFICIENT)
+    proof.equal(m, 3 * (sp.sqrt(3) - 1) / 4, r"$\mu R/a$")
+    proof.recall("F2", X, DRIVE_CUBED)
+    proof.define(Lambda_peak, sp.cbrt(X), r"$V \tau (K/(R W))^{1/3}$")
+    proof.equal(Lambda_peak, sp.sqrt(3) / third, "1.60027...")
+    proof.define(mu_peak, m * Lambda_peak / l, r"$\mu (K R^2/W)^{1/3}$")
+    proof.equal(mu_peak, 3 * (sp.sqrt(3) - 1) / (4 * third), "0.507265...")
+    return proof.done(mu_peak, 3 * (sp.sqrt(3) - 1) / (4 * third))
+
+
+def _series() -> tuple[Derivation, ...]:
+    """Prove the first terms of m on both sides; the last one with the order of what is left out."""
+    low, high = l - 3 * l**2 / 4, sp.Rational(2, 3) - 7 / (36 * l)
+    return tuple(_expansion(*case) for case in (
+        ("F4-low", "low", 1, l, (l, low), 9 * l**4 / 16, r"m - l + \frac{3}{4} l^2"),
+        ("F4-high", "high", 0, 1 / l, (sp.Rational(2, 3), high), -1 / (27 * l**2),
+         r"m - \frac{2}{3} + \frac{7}{36 l}"),
+    ))  # fmt: skip
+
+
+def _expansion(
+    label: str,
+    regime: str,
+    end: int,
+    small: sp.Expr,
+    sums: tuple[sp.Expr, ...],
+    last: sp.Expr,
+    shown: str,
+) -> Derivation:
+    proof = _theorem(label, title=f"Friction coefficient at {regime} velocity: series")
+    proof.define(l, NUMBER, RATIO)
+    proof.recall("F1", m, FRICTION_COEFFICIENT)
+    proof.leading_order(m, sums[0], q, end, "the asymptote", eps=small)
+    proof.leading_order(
+        m - sums[1], last, q, end, "what two terms leave out", eps=small, left=shown
+    )
+    return proof.done(m - sums[1], last)
+
+
+def _intersections() -> Derivation:
+    proof = _theorem(
+        "F5",
+        title="Critical velocity and friction maximum",
+        text="The critical velocity is where the two asymptotes of the friction coefficient meet. A "
+        r"dead-weight indenter has its maximum at 1.664 times that velocity.",
+        uses=("eq42", "eq45", "eq46"),
+    )
+    low = C * V / (R * K)
+    fixed, weight = alpha * sp.sqrt(delta / R), alpha * sp.sqrt(W / (R * C * V))
+    proof.define(C, K * tau, "Eq. (22)")
+    proof.equal(low / fixed, V * tau / sp.sqrt(R * delta) / alpha, "fixed indenter: 1 at")
+    proof.define(Lambda_fixed, alpha, r"$V^{*} \tau/\sqrt{R \delta}$")
+    proof.define(V, Lambda * sp.cbrt(R * W / K) / tau, "in units of the dead weight")
+    proof.equal((low / weight) ** 2, Lambda**3 / alpha**2, "dead weight: 1 at")
+    proof.define(Lambda_weight, sp.cbrt(alpha**2), r"$V^{*} \tau (K/(R W))^{1/3}$")
+    proof.root(Lambda**3 / alpha**2 - 1, Lambda, Lambda_weight, "the asymptotes meet")
+    proof.recall("F3-values", Lambda_peak, sp.sqrt(3) / sp.cbrt(3 - sp.sqrt(3)))
+    beyond = (Lambda_peak / Lambda_weight) ** 3
+    proof.equal(beyond, 27 * (1 + sp.sqrt(3)) / 16, "the maximum lies beyond the intersection")
+    return proof.done(beyond, 27 * (1 + sp.sqrt(3)) / 16)

@@ -1,0 +1,163 @@
+"""A drive that is a Python function: against histories and closed forms, and what it refuses."""
+
+import math
+
+import numpy as np
+import pytest
+
+import kvtheory as kv
+from kvtheory.scene.numbers import dimensionless_numbers, quantities_by_name
+from kvtheory.scene.over import values
+from kvtheory.transients.solution import scaled_drive, scales
+
+QUANTITIES = (
+    "velocity", "depth", "depth_rate", "normal_force", "friction_force",
+    "leading_edge", "trailing_edge", "peak_pressure",
+)  # fmt: skip
+TIMES = np.linspace(0.0, 0.2, 41)
+
+
+def scene(support="dead-weight", **drive):
+    return kv.Scene(support=kv.Scene.table1(support).support, drive=kv.Drive(**drive))
+
+
+def difference(a, b):
+    """Return the largest difference of any quantity, relative to its largest value if that is not 0."""
+    return max(
+        np.abs(getattr(a, name) - getattr(b, name)).max() / (np.abs(getattr(b, name)).max() or 1.0)
+        for name in QUANTITIES
+    )
+
+
+@pytest.mark.parametrize("support", ["fixed", "dead-weight", "suspended"])
+def test_a_ramp_is_the_ramp(support):
+    points = [("0 s", "0 m/s"), ("50 ms", "0.1 m/s"), ("120 ms", "-20 mm/s")]
+    ramp = kv.transient(scene(support, history=points), at=TIMES, rtol=1e-11)
+    t, V = [0.0, 0.05, 0.12], [0.0, 0.1, -0.02]
+    function = scene(support, function=lambda s: np.interp(s, t, V), breaks=["50 ms", 0.12])
+    found = kv.transient(function, at=TIMES, rtol=1e-11)
+    assert difference(found, ramp) <= 1e-9
+    assert [event.kind for event in found.events] == [event.kind for event in ramp.events]
+
+
+@pytest.mark.parametrize("at_the_jump", [0.1, -0.03])
+def test_a_jump_may_take_either_value_where_it_is(at_the_jump):
+    """A time that is put into units of tau and back need not be the same."""
+    for jump in (0.05, 0.07, 0.1 + 0.2 / 7):
+        points = [(0.0, 0.1), (jump, 0.1), (jump, -0.03)]
+        history = kv.transient(scene(history=points), at=TIMES, rtol=1e-11)
+
+        def V(t, jump=jump):
+            return at_the_jump if t == jump else 0.1 if t < jump else -0.03
+
+        found = kv.transient(scene(function=V, breaks=(jump,)), at=TIMES, rtol=1e-11)
+        assert difference(found, history) <= 1e-9
+
+
+@pytest.mark.parametrize("support", ["fixed", "dead-weight"])
+def test_a_sine_is_the_limit_of_histories(support):
+    """A line through its points is off by h^2/8 of its curvature: twice the points, a quarter."""
+
+    def V(t):
+        return 0.05 * math.sin(60.0 * t)
+
+    found = kv.transient(scene(support, function=V), at=TIMES, rtol=1e-11)
+    errors = []
+    for count in (200, 400):
+        points = [(t, V(t)) for t in np.linspace(0.0, 0.2, count + 1).tolist()]
+        errors.append(
+            difference(found, kv.transient(scene(support, history=points), at=TIMES, rtol=1e-9))
+        )
+    assert errors[0] < 1e-3
+    assert errors[0] / errors[1] == pytest.approx(4.0, rel=0.1)
+
+
+def test_a_fixed_indenter_knows_only_the_present_velocity_of_a_rising_drive():
+    """Eqs. (32) and (33): its edges are -a and sqrt(a^2 + l_r^2) - l_r, whatever went before."""
+    rising = scene("fixed", function=lambda t: 0.05 + 0.1 * t + 2.0 * t**3)
+    found = kv.transient(rising, at=TIMES, rtol=1e-11)
+    V = 0.05 + 0.1 * TIMES + 2.0 * TIMES**3
+    steady = kv.steady(rising, over={"drive.velocity": V})
+    assert found.velocity == pytest.approx(V, rel=1e-12)
+    assert found.normal_force == pytest.approx(steady.load, rel=1e-11)
+    for name in ("friction_force", "leading_edge", "trailing_edge", "peak_pressure"):
+        assert getattr(found, name) == pytest.approx(getattr(steady, name), rel=1e-11), name
+
+
+@pytest.mark.parametrize("tolerance", [1e-3, 1e-6, 1e-9, 1e-12])
+def test_the_tolerance_bounds_the_error_of_the_velocity(tolerance):
+    def V(t):
+        return 0.3 * math.exp(-50.0 * t) * math.sin(300.0 * t)
+
+    given = scene(function=V, tolerance=tolerance)
+    units = scales(given)
+    drive = scaled_drive(given, units)
+    t = np.random.default_rng(1).uniform(0.0, 0.2, 500)
+    found = np.array([drive.at(s)[1] for s in t / units.time]) * units.length / units.time
+    right = np.array([V(s) for s in t])
+    allowed = tolerance * np.maximum(np.abs(right).max(), units.length / units.time)
+    assert np.abs(found - right).max() <= allowed
+    travel = drive.at(0.2 / units.time)[0] * units.length
+    # int of e^(-b t) sin(w t) from 0 to T, with b = 50/s, w = 300/s, T = 0.2 s
+    exact = (
+        0.3 * (300 - math.exp(-10) * (50 * math.sin(60) + 300 * math.cos(60))) / (50**2 + 300**2)
+    )
+    assert abs(travel - exact) <= 0.2 * allowed
+
+
+def test_steady_sliding_needs_a_velocity():
+    sine = scene(function=math.sin)
+    for refused in (kv.steady, kv.asymptotes):
+        with pytest.raises(kv.SceneError, match=r"drive\.function.*velocity or a history"):
+            refused(sine)
+    assert kv.steady(sine, over={"drive.velocity": 0.1}).depth == kv.steady().depth
+    assert "drive.velocity" not in sine.values()
+    assert "drive_number" not in dimensionless_numbers(sine)
+    assert "velocity" not in quantities_by_name(sine)
+    with pytest.raises(kv.SceneError, match="unknown key"):
+        values(sine, {"drive.velocty": 0.1})
+
+
+def test_a_file_cannot_hold_it():
+    with pytest.raises(ValueError, match="drive made of a Python function"):
+        kv.to_toml(scene(function=math.sin))
+
+
+@pytest.mark.parametrize(
+    ("given", "words"),
+    [
+        ({}, ["velocity and history", "function"]),
+        ({"velocity": 0.1, "function": math.sin}, ["one of velocity and history"]),
+        ({"function": 3.0}, ["drive.function = 3.0", "function V(t)"]),
+        ({"velocity": 0.1, "breaks": [0.1]}, ["drive.breaks", "needs a function"]),
+        ({"function": math.sin, "breaks": "soon"}, ["drive.breaks", '"soon"']),
+        ({"function": math.sin, "breaks": [0.1, "5 mm"]}, ["drive.breaks", '"5 mm"']),
+        ({"function": math.sin, "breaks": [-0.1]}, ["drive.breaks = -0.1", "out of range"]),
+        ({"function": math.sin, "tolerance": 0.0}, ["drive.tolerance = 0.0", "1e-13 to 1"]),
+        ({"function": math.sin, "tolerance": "1e-9"}, ["drive.tolerance", "1e-13 to 1"]),
+    ],
+)
+def test_a_wrong_drive_is_named(given, words):
+    with pytest.raises(kv.SceneError) as caught:
+        kv.Drive(**given)
+    assert all(word in str(caught.value) for word in words)
+
+
+@pytest.mark.parametrize(
+    ("function", "words"),
+    [
+        (lambda t: 1.0 / (t - t), ["drive.function", "ZeroDivisionError", "t = ", "division"]),
+        (lambda t: math.nan if t > 0.1 else 1.0, ["drive.function(", "nan", "finite number"]),
+        (lambda t: np.exp(1e6 * t), ["drive.function(", "inf", "finite number"]),
+        (lambda _: "0.1", ['"0.1"', "finite number"]),
+        (lambda _: None, ["None", "finite number"]),
+        (lambda _: [0.1, 0.2], ["[0.1, 0.2]", "finite number"]),
+        (lambda: 0.1, ["drive.function", "TypeError", "positional"]),
+        (lambda t: 0.1 * abs(math.sin(100 * t)), ["not smooth near", "0.031415", "kinks"]),
+        (lambda t: 0.1 if t < 0.0517 else 0.2, ["not smooth near", "0.0517", "`breaks`"]),
+    ],
+)
+def test_what_the_function_does_wrong_is_said(function, words):
+    with pytest.raises(ValueError) as caught:  # noqa: PT011 - the words are checked
+        kv.transient(scene(function=function))
+    assert all(word in str(caught.value) for word in words), str(caught.value)
