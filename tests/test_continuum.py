@@ -160,6 +160,30 @@ def test_cost_does_not_grow_without_inertia():
     assert max(evaluations) <= 3 * evaluations[0]
 
 
+def test_cost_grows_in_proportion_to_the_events_of_the_memory():
+    def cycles(count):
+        points = [(0, 4)]
+        for k in range(count):
+            points += [(k + 0.4, 4), (k + 0.4, -2), (k + 1, -2), (k + 1, 4)]
+        motion = solve(Drive.from_points(points, count), 0.04, 0.0, float(count))
+        begun = sum(event.kind.startswith("memory begins") for event in motion.events)
+        return motion.evaluations, begun
+
+    few, many = cycles(20), cycles(40)
+    assert many[1] == pytest.approx(2 * few[1], rel=0.1)
+    assert many[0] <= 2.2 * few[0]
+
+
+def test_memory_begins_where_an_edge_goes_back_and_ends_where_it_leaves():
+    motion = solve(Drive.from_points([(0, 4), (0.5, 4), (0.5, -4)], 1.5), 0.04, 0.5, 1.5)
+    memory = [(event.kind, event.s) for event in motion.events if "memory" in event.kind]
+    kinds = [kind for kind, _ in memory]
+    assert kinds == ["memory begins at the right edge", "memory ends at the right edge"]
+    begun, ended = (s for _, s in memory)
+    assert motion.at(begun - 1e-9).right_state == "peeling"
+    assert motion.at(0.5 * (begun + ended)).right_state == "touching"
+
+
 @pytest.mark.parametrize(
     "change",
     [{"end": 0.0}, {"end": 3.0}, {"inertia_number": 0.0}, {"support_number": -1.0}, {"rtol": 0.0}],

@@ -7,7 +7,8 @@ side is smooth; a step that runs over an event is cut there, for its polynomial 
 of the edges that it began with. A fixed indenter, d = 1, needs no equation, only events.
 """
 
-from collections.abc import Callable
+import math
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, NamedTuple
@@ -16,6 +17,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from kvtheory.transients import compiled, states, stepping
+from kvtheory.transients import contact as c_
 from kvtheory.transients import history as h_
 from kvtheory.transients import run as r_
 from kvtheory.transients.contact import FREE, PEELING, TOUCHING
@@ -98,7 +100,23 @@ class Motion:
     def events(self) -> tuple[Event, ...]:
         """What happened to the contact, in the order of time."""
         rows = self.rows.events[: int(self.rows.now[r_.EVENTS])]
-        return tuple(Event(float(s), stepping.KINDS[int(kind)]) for s, kind in rows)
+        found = [Event(float(s), stepping.KINDS[int(kind)]) for s, kind in rows]
+        return tuple(sorted([*found, *self._memory()], key=lambda event: event.s))
+
+    def _memory(self) -> Iterator[Event]:
+        """Yield when an edge begins to touch ground that was touched before, and when it ceases to."""
+        for name, state, node in (
+            ("left", h_.LEFT_STATE, h_.LEFT_NODE),
+            ("right", h_.RIGHT_STATE, h_.RIGHT_NODE),
+        ):
+            before = False
+            for record in self.rows.records[: self.steps]:
+                left_at = self.rows.nodes[int(record[node])][c_.IN_S]
+                now = record[state] == TOUCHING and left_at > -math.inf
+                if now != before:
+                    what = "begins" if now else "ends"
+                    yield Event(float(record[h_.START]), f"memory {what} at the {name} edge")
+                before = now
 
     @cached_property
     def records(self) -> list[list[float]]:

@@ -1,7 +1,7 @@
 """When the forces of a solved transient are largest."""
 
 import numpy as np
-from numpy.polynomial import Chebyshev
+from numpy.polynomial import chebyshev
 from numpy.typing import NDArray
 
 from kvtheory.transients import states
@@ -13,6 +13,13 @@ SAMPLES = 5
 """On each step."""
 DEGREE = 16
 """Of the polynomial through a force on one step: twice that of the depth, for a force is not one."""
+NODES = chebyshev.chebpts1(DEGREE + 1)
+TO_SLOPE = (
+    np.linalg.inv(chebyshev.chebvander(NODES, DEGREE)).T @ chebyshev.chebder(np.eye(DEGREE + 1)).T
+)
+"""From the force at the nodes to the Chebyshev coefficients of its slope."""
+GRID, NEWTON_STEPS = np.linspace(-1.0, 1.0, 65), 5
+"""Where the slope changes its sign between two of these points, Newton's method finds its root."""
 SAME_FORCE = 1e-10
 """Relative; of forces as equal as this, as in steady sliding, the first is the largest."""
 
@@ -41,18 +48,26 @@ def force_maxima(motion: Motion) -> tuple[float, float]:
 def _turns(motion: Motion, a: Array, b: Array) -> Array:
     """Return the times within steps from `a` to `b` at which a force is stationary.
 
-    The variable x is one in which the square roots that an edge begins or ends with are smooth.
+    They are the roots of the slope of the polynomial through the force, over a variable x in which the
+    square roots that an edge begins or ends with are smooth.
     """
-    x = 0.5 - 0.5 * np.cos(np.pi * (np.arange(DEGREE + 1) + 0.5) / (DEGREE + 1))
-    forces = _forces(motion, a[:, None] + (b - a)[:, None] * (x * x * (3.0 - 2.0 * x)))
-    found: list[float] = []
-    for start, span, samples in zip(a, b - a, np.moveaxis(forces, 1, 0), strict=True):
-        for force in samples:
-            slope = Chebyshev.fit(x, force, DEGREE, [0.0, 1.0]).deriv()
-            roots = np.asarray(slope.roots(), dtype=complex)
-            t = roots.real[(roots.imag == 0.0) & (roots.real > 0.0) & (roots.real < 1.0)]
-            found += (start + span * t * t * (3.0 - 2.0 * t)).tolist()
-    return np.array(found)
+    forces = _forces(motion, a[:, None] + (b - a)[:, None] * _share(NODES))
+    slopes = (forces.reshape(-1, DEGREE + 1) @ TO_SLOPE).T
+    row, k = np.nonzero(np.diff(np.sign(chebyshev.chebval(GRID, slopes)), axis=1))
+    low, high, slopes = GRID[k], GRID[k + 1], slopes[:, row]
+    curvatures, x = chebyshev.chebder(slopes), 0.5 * (low + high)
+    for _ in range(NEWTON_STEPS if x.size else 0):
+        curvature = chebyshev.chebval(x, curvatures, tensor=False)
+        step = chebyshev.chebval(x, slopes, tensor=False) / np.where(curvature, curvature, np.inf)
+        x = np.clip(x - step, low, high)
+    step = row % a.size
+    return np.asarray(a[step] + (b - a)[step] * _share(x))
+
+
+def _share(x: Array) -> Array:
+    """Return the share of a step at x in [-1, 1]."""
+    y = 0.5 * (1.0 + x)
+    return y * y * (3.0 - 2.0 * y)
 
 
 def _forces(motion: Motion, s: Array) -> Array:
