@@ -4,7 +4,6 @@ Each point is a solved transient, classed by what happened; the line is the clos
 oscillation about the steady state (F12), eps = 3 r/8 with r the trailing edge in units of a_0.
 """
 
-import itertools
 from dataclasses import dataclass
 
 import numpy as np
@@ -16,19 +15,21 @@ from kvtheory.plots import BLACK
 from kvtheory.steady_state import closed_forms as cf
 from kvtheory.transients.continuum import Motion, solve
 from kvtheory.transients.drive import Drive
+from kvtheory.transients.states import RATE
 
 CLASSES = {
-    "monotone": ("#dddddd", "."),
-    "oscillating": ("#88ccee", "o"),
-    "memory": ("#ddcc77", "s"),
-    "take-off": ("#cc6677", "^"),
+    "monotone": "#dddddd",
+    "oscillating": "#88ccee",
+    "memory": "#ddcc77",
+    "take-off": "#cc6677",
 }
 """Each class contains what the ones before it do not: the depth turns, an edge goes back over ground
 that it left, the indenter leaves the foundation. Colours after Tol, safe in colour blindness."""
 
-NUMBERS = np.geomspace(1e-2, 1e2, 33)
-INERTIAS = np.geomspace(1e-4, 1e2, 31)
+NUMBERS = np.geomspace(1e-2, 1e2, 97)
+INERTIAS = np.geomspace(1e-4, 1e2, 91)
 RTOL = 1e-6
+QUARTERS = np.arange(4) / 4
 TURN = 1e-5
 """Depth rate, relative to its largest magnitude, above which a rise and fall counts as oscillation."""
 
@@ -62,24 +63,16 @@ def draw(data: Data) -> Figure:
     """Draw the classes as areas and the boundary as a line."""
     drawn = drawing.figure(5.4, 4.2)
     ax = drawn.subplots()
-    colours = [colour for colour, _ in CLASSES.values()]
+    colours = ListedColormap(list(CLASSES.values()))
     ax.pcolormesh(
-        NUMBERS, INERTIAS, data.classes, cmap=ListedColormap(colours), vmin=-0.5, vmax=len(CLASSES) - 0.5,
+        NUMBERS, INERTIAS, data.classes, cmap=colours, vmin=-0.5, vmax=len(CLASSES) - 0.5,
         shading="nearest", alpha=0.6, linewidth=0, rasterized=True,
     )  # fmt: skip
-    for index, (name, (_, marker)) in enumerate(CLASSES.items()):
-        rows, cols = np.nonzero(data.classes == index)
-        if not rows.size:
-            continue
-        ax.plot(
-            NUMBERS[cols],
-            INERTIAS[rows],
-            marker,
-            color=BLACK,
-            markersize=1.6,
-            label=name,
-            linestyle="",
-        )
+    for index, name in enumerate(CLASSES):
+        rows, columns = np.nonzero(data.classes == index)
+        if rows.size:
+            at = np.median(NUMBERS[columns]), np.median(INERTIAS[rows])
+            ax.text(*at, name, ha="center", va="center")
     ax.plot(*data.boundary, color=BLACK, label=r"$\epsilon = 3r/8$ (F12)")
     ax.set(
         xscale="log", yscale="log", xlabel=r"drive number $\lambda = V\tau/a_0$",
@@ -87,7 +80,7 @@ def draw(data: Data) -> Figure:
         xlim=(NUMBERS[0], NUMBERS[-1]), ylim=(INERTIAS[0], INERTIAS[-1]),
     )  # fmt: skip
     ax.grid(False)
-    ax.legend(loc="lower left", frameon=True, markerscale=2.5)
+    ax.legend(loc="lower left")
     return drawn
 
 
@@ -105,11 +98,9 @@ def _class(number: float, eps: float) -> int:
 
 def _turns(motion: Motion) -> bool:
     """Whether the indenter sinks again after it has risen."""
-    starts = np.append(motion.starts, motion.end)
-    times = np.concatenate(
-        [np.linspace(a, b, 4, endpoint=False) for a, b in itertools.pairwise(starts)]
-    )
-    rates = np.array([motion.at(float(s)).rate for s in times])
+    starts = np.array(motion.starts)
+    spans = np.diff(np.append(starts, motion.end))
+    rates = motion.states((starts[:, None] + spans[:, None] * QUARTERS).reshape(-1))[:, RATE]
     return bool(rates.max() > TURN * np.abs(rates).max())
 
 
