@@ -60,8 +60,8 @@ def _turns(motion: Motion, a: Array, b: Array) -> Array:
         curvature = chebyshev.chebval(x, curvatures, tensor=False)
         step = chebyshev.chebval(x, slopes, tensor=False) / np.where(curvature, curvature, np.inf)
         x = np.clip(x - step, low, high)
-    step = row % a.size
-    return np.asarray(a[step] + (b - a)[step] * _share(x))
+    owner = row % a.size
+    return np.asarray(a[owner] + (b - a)[owner] * _share(x))
 
 
 def _share(x: Array) -> Array:

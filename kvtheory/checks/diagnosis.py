@@ -1,0 +1,62 @@
+"""What is wrong with data that disagree: the fault that explains them best, in words."""
+
+from collections.abc import Sequence
+
+from kvtheory.checks.case import Case
+from kvtheory.checks.faults import FAMILIES, Trial
+from kvtheory.checks.signs import coarse, rattling, seen, unmoved
+from kvtheory.checks.trials import bench
+from kvtheory.results.comparison import Check, Explanation
+
+NAMED = 0.5
+"""Part of the difference that a fault must explain to be named."""
+SHOWN = 4
+"""Explanations that are kept."""
+
+
+def diagnose(case: Case, checks: Sequence[Check]) -> tuple[str, tuple[Explanation, ...]]:
+    """Return the diagnosis in words, and the faults behind it, the best first."""
+    failed = [check for check in checks if check.ok is False]
+    if not failed:
+        made = sum(check.ok is not None for check in checks)
+        return f"All {made} checks that could be made are passed.", ()
+    found = explanations(case)
+    if not any(each.enough for each in found[:1]):
+        found = [*unmoved(case, failed), *found, *coarse(case, failed)]
+    found = sorted([*seen(case, failed), *rattling(case), *found], key=lambda each: -each.rank)
+    named = [each for each in found if each.rank >= NAMED]
+    return _words(failed, named), tuple((named or found)[:SHOWN])
+
+
+def explanations(case: Case) -> list[Explanation]:
+    """Try every fault and order them: those that explain the data first, then by what they leave."""
+    rows = bench(case)
+    start = rows.fit(rows.columns, rows.case.now).score
+    trials: list[Trial] = []
+    for family, good in FAMILIES:
+        trials += family(rows)
+        if any(trial.fit.enough and trial.fit.score <= (1.0 - good) * start for trial in trials):
+            break
+    trials.sort(key=lambda trial: trial.fit.score)
+    found: dict[str, Explanation] = {}
+    for trial in trials:
+        explained = 1.0 - trial.fit.score / start if start else 0.0
+        enough = trial.fit.enough and explained >= NAMED
+        each = Explanation(trial.name, trial.text, explained, enough, trial.factor, explained)
+        found.setdefault(trial.name, each)
+    return [each for each in found.values() if each.rank > 0.0]
+
+
+def _words(failed: Sequence[Check], named: Sequence[Explanation]) -> str:
+    """Say what explains the disagreement, what else would, and which checks failed."""
+    which = "; ".join(f"{check.name} ({check.equation})" for check in failed)
+    if not named:
+        return f"No single known fault explains most of the difference. Failed: {which}."
+    first, *rest = named
+    text = first.text[0].upper() + first.text[1:]
+    if not first.enough:
+        part = "" if first.explained is None else f", which explains {first.explained:.0%} of the difference"
+        text = f"Closest: {first.text}{part}, but not all"
+    equal = [each for each in rest if each.enough and first.enough]
+    also = f" The data do not rule out: {'; '.join(each.text for each in equal)}." if equal else ""
+    return f"{text}.{also} Failed: {which}."

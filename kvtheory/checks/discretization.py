@@ -1,0 +1,78 @@
+"""Checks of elements and steps (F15): the sawtooth, the density, the stability number."""
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from kvtheory.checks.case import COMMON, LARGEST_SAWTOOTH, Case, common_noise
+from kvtheory.checks.making import check, not_made
+from kvtheory.results.comparison import Check
+from kvtheory.scene.model import Fixed
+
+LIMITS = {"paper": 2.785, "rk4": 2.785, "euler": 2.0, "explicit-euler": 2.0}
+"""Largest stable dt C L/M (F15) of explicit schemes by name: where |R(-z)| = 1 on the real axis."""
+UNLIMITED = ("semi-implicit", "exponential", "edge-corrected")
+"""Schemes that are stable at any step."""
+
+
+def sawtooth(case: Case) -> Iterator[Check]:
+    """Noise of the normal force against that of elements entering at the leading edge."""
+    name, equation, columns = "discretization noise", "F15", case.series.columns
+    if "normal_force" not in columns:
+        yield not_made(name, equation, "the data hold no normal force")
+        return
+    W = case.theory.static["static_load"]
+    sigma, b = case.allowance.noise["normal_force"] / W, float(np.median(case.allowance.force)) / W
+    unit = "standard deviation, relative to the load"
+    if not case.resolution.spacing_known:
+        shared = common_noise(case)
+        sound = shared is None or shared < COMMON
+        limit = LARGEST_NOISE_ALLOWED if sound else LARGEST_SAWTOOTH
+        kind = "not that of elements" if sound else "common to both forces, as that of elements"
+        note = (
+            f"{kind}; element density not given, taken for {1e-3 / case.resolution.spacing:.3g} /mm"
+        )
+        yield check(case, name, sigma, case.tolerance * limit, equation, unit, note)
+        return
+    allowed = case.tolerance * (2.0 * float(case.allowance.force.max()) / W + 1e-9)
+    note = f"N = {1e-3 / case.resolution.spacing:.4g} /mm, sawtooth +-{b:.2g} of the load"
+    yield check(case, name, sigma, allowed, equation, unit, note)
+
+
+LARGEST_NOISE_ALLOWED = 0.09
+"""Of the load: a little below where noise ceases to be allowed for."""
+
+
+def elements(case: Case) -> Iterator[Check]:
+    """One element at the leading edge against the load."""
+    name, equation = "elements enough", "F15"
+    if not case.resolution.spacing_known:
+        yield not_made(name, equation, "the element density is not given (--per-length)")
+        return
+    b = float(np.median(case.allowance.force)) / case.theory.static["static_load"]
+    yield check(
+        case,
+        name,
+        b,
+        case.tolerance * LARGEST_SAWTOOTH,
+        equation,
+        "half an element's force, relative to the load",
+    )
+
+
+def stability(case: Case) -> Iterator[Check]:
+    """Compare dt C L/M of an explicit scheme with its limit."""
+    name, equation, scene = "stability number", "F15", case.theory.scene
+    scheme = case.series.scheme or ""
+    if isinstance(scene.support, Fixed):
+        yield not_made(name, equation, "the indenter is fixed")
+    elif not case.resolution.step_known:
+        yield not_made(name, equation, "the time step is not known")
+    elif scheme in UNLIMITED:
+        yield not_made(name, equation, f'the scheme "{scheme}" is stable at any time step')
+    elif scheme not in LIMITS:
+        yield not_made(name, equation, f'no limit is known of the scheme "{scheme}"')
+    else:
+        length = float(np.nanmax(np.abs(case.now["trailing_edge"] - case.now["leading_edge"])))
+        number = case.resolution.time_step * scene.foundation.damping * length / scene.support.mass
+        yield check(case, name, number, LIMITS[scheme], equation, "dt C L/M", f"scheme {scheme}")

@@ -1,0 +1,59 @@
+r"""Time constants of a curve that settles: delta = delta_oo + c exp(-t/T), fitted to the end of it.
+
+Near steady sliding the depth settles with the slow time constant of F12 alone, and what is left of the
+force balance right after a jump decays with the fast one. The same fit is made to theory at the same
+times, so that what the fit itself gets wrong cancels.
+"""
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import minimize_scalar
+
+Array = NDArray[np.float64]
+
+FEWEST = 6
+"""Samples for three unknowns."""
+RANGE = 5.0
+"""Factor up and down from the expected time constant in which to look."""
+
+
+def fit(time: Array, values: Array, expected: float) -> float:
+    """Return T of the best c_0 + c_1 exp(-t/T), for T within a factor of five of the expected one.
+
+    Examples
+    --------
+    >>> t = np.linspace(0.0, 3.0, 50)
+    >>> round(fit(t, 2.0 - 0.5 * np.exp(-t / 0.7), 1.0), 6)
+    0.7
+    """
+    start = time[0]
+
+    def left(log_T: float) -> float:
+        basis = np.stack([np.ones_like(time), np.exp((start - time) / np.exp(log_T))], axis=1)
+        found = np.linalg.lstsq(basis, values, rcond=None)[0]
+        rest = values - basis @ found
+        return float(rest @ rest)
+
+    middle = np.log(expected)
+    spread = np.log(RANGE)
+    found = minimize_scalar(
+        left, bounds=(middle - spread, middle + spread), method="bounded", options={"xatol": 1e-6}
+    )
+    return float(np.exp(found.x))
+
+
+def uncertainty(time: Array, values: Array, T: float, offset: Array, sigma: float) -> float:
+    """Return by how much T may be off, relative to T.
+
+    `offset` bounds a smooth error of the values, `sigma` is the standard deviation of a random one; both
+    go through the linear least squares about the fit.
+    """
+    decay = np.exp((time[0] - time) / T)
+    basis = np.stack([np.ones_like(time), decay], axis=1)
+    amplitude = np.linalg.lstsq(basis, values, rcond=None)[0][1]
+    slope = amplitude * decay * (time - time[0]) / T
+    to_parameter = np.linalg.pinv(np.column_stack([basis, slope]))[2]
+    smooth = abs(float(to_parameter @ offset)) + abs(
+        float(to_parameter @ (offset * (time - time[0]) / (time[-1] - time[0])))
+    )
+    return smooth + 3.0 * sigma * float(np.linalg.norm(to_parameter))

@@ -1,0 +1,93 @@
+"""`kvtheory compare`: a simulation against theory."""
+
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from kvtheory.cli.console import print_json, print_table, scene_command
+from kvtheory.cli.group import main
+
+if TYPE_CHECKING:
+    from kvtheory.results.comparison import Check
+
+DISAGREES = 1
+"""Exit status where a check found disagreement."""
+
+
+@scene_command(main, "kvtheory compare --data mine.csv --per-length '200 /mm' --report mine.html")
+@click.option(
+    "--data",
+    type=click.Path(exists=True, dir_okay=False, path_type=Path),
+    default=None,
+    help="CSV of a simulation: t [ms],z_A [mm],F_z [N/mm],F_x [N/mm],... Default: our own.",
+)
+@click.option(
+    "--per-length", default=None, metavar='"200 /mm"', help="Elements per length of the simulation."
+)
+@click.option("--scheme", default=None, help="Scheme of the simulation, such as paper.")
+@click.option(
+    "--tolerance", type=float, default=1.0, show_default=True,
+    help="Multiplies what theory allows.",
+)  # fmt: skip
+@click.option(
+    "--plot",
+    type=click.Path(path_type=Path),
+    default=None,
+    help="Draw data, theory and checks to FILE.png, .svg or .pdf.",
+)
+@click.option(
+    "--report",
+    type=click.Path(path_type=Path),
+    default=None,
+    help="Write FILE.html, which holds all of it and needs nothing else.",
+)
+def compare(
+    scene: str | None,
+    overrides: Sequence[str],
+    as_json: bool,
+    data: Path | None,
+    per_length: str | None,
+    scheme: str | None,
+    tolerance: float,
+    plot: Path | None,
+    report: Path | None,
+) -> None:
+    """Hold a simulation of SCENE against theory, and say what is wrong with it.
+
+    Exit status: 0 it agrees, 1 it disagrees, 2 bad input.
+    """
+    from kvtheory.api.cross_validation import compare as hold_against
+    from kvtheory.scene import load_scene
+
+    if report and report.suffix != ".html":
+        raise ValueError(f'--report "{report}": expected a name that ends in .html')
+    checked = load_scene(scene, overrides)
+    found = hold_against(checked, data, per_length=per_length, scheme=scheme, tolerance=tolerance)
+    if plot:
+        from kvtheory.plots.comparison import save_comparison_plot
+
+        save_comparison_plot(found, plot)
+    if report:
+        from kvtheory.plots.comparison_report import save_comparison_report
+
+        save_comparison_report(found, checked, report)
+    if as_json:
+        print_json(found.as_dict())
+    else:
+        click.echo(f"{found.source}: {found.verdict} with theory\n")
+        heads = ("check", "measured", "allowed", "", "equation", "what is measured")
+        print_table(heads, [_row(check) for check in found.checks])
+        click.echo(f"\n{found.diagnosis}")
+    if found.verdict == "disagrees":
+        sys.exit(DISAGREES)
+
+
+def _row(check: "Check") -> tuple[str, ...]:
+    if check.ok is None:
+        return check.name, "-", "-", "-", check.equation, check.note
+    note = f"{check.unit}; {check.note}" if check.note else check.unit
+    ok = "ok" if check.ok else "NO"
+    return check.name, f"{check.measured:.3g}", f"{check.allowed:.3g}", ok, check.equation, note

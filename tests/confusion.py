@@ -1,0 +1,185 @@
+"""Which planted fault is named as which: `python -m tests.confusion` prints the table.
+
+Each plant is a run of `tests.faulty_simulator`, changed as its name says, which the theory of the
+unchanged scene is held against.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Any
+
+import kvtheory as kv
+from kvtheory.checks.trials import scaled_scene
+from tests.faulty_simulator import simulate
+
+STOP_AND_GO = [["0 ms", "100 mm/s"], ["50 ms", "100 mm/s"], ["50 ms", "-60 mm/s"], ["100 ms", "-60 mm/s"],
+               ["100 ms", "100 mm/s"]]  # fmt: skip
+SCENES = {
+    "Table 1": kv.Scene(),
+    "fixed": kv.Scene.table1("fixed"),
+    "suspended": kv.Scene.table1("suspended"),
+    "10 mm/s": kv.Scene(drive=kv.Drive(velocity=0.01)),
+    "reversal": kv.Scene(drive=kv.Drive(history=STOP_AND_GO)),
+}
+STEP = 1e-4
+SYMBOLS = {"tau": "foundation.retardation_time", "K": "foundation.stiffness", "R": "indenter.radius",
+           "M": "support.mass", "g": "support.gravity", "V": "drive.velocity"}  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Plant:
+    """A fault: how the data come about, the names that are right for it, and the factor to be found."""
+
+    name: str
+    scene: str
+    data: Callable[[], dict[str, Any]]
+    names: tuple[str, ...]
+    factor: float | None = None
+    known: dict[str, Any] = field(default_factory=dict)
+
+
+def series(scene, changes, **options):
+    """Return a run of the changed scene without its velocity, which a wrong simulator would not know."""
+    for key, factor in changes.items():
+        scene = scaled_scene(scene, key, factor)
+    run = simulate(scene, **{"time_step": STEP, **options})
+    return {name: values for name, values in run.items() if name != "velocity"}
+
+
+def edited(scene, **factors):
+    """Return a sound run with columns multiplied."""
+    run = series(scene, {})
+    return {**run, **{name: factor * run[name] for name, factor in factors.items()}}
+
+
+def shifted(scene, offset):
+    run = series(scene, {})
+    return {**run, "time": run["time"] + offset}
+
+
+def parameters(where):
+    scene = SCENES[where]
+    for symbol, key in SYMBOLS.items():
+        for factor in (0.9, 1.2):
+            if key in scene.values():
+                name = (f"wrong {symbol}",)
+                yield Plant(
+                    f"{symbol} x {factor}",
+                    where,
+                    lambda k=key, f=factor: series(scene, {k: f}),
+                    name,
+                    factor,
+                )
+
+
+def others(where):
+    scene = SCENES[where]
+    yield Plant(
+        "K x 10", where, lambda: series(scene, {"foundation.stiffness": 10.0}), ("wrong K",), 10.0
+    )
+    yield Plant(
+        "sign of friction",
+        where,
+        lambda: edited(scene, friction_force=-1.0),
+        ("sign of friction_force",),
+    )
+    yield Plant(
+        "F_z in N/m for N/mm",
+        where,
+        lambda: edited(scene, normal_force=1e3),
+        ("unit of normal_force",),
+        1e3,
+    )
+    yield Plant(
+        "depth in cm for mm", where, lambda: edited(scene, depth=0.1), ("unit of depth",), 0.1
+    )
+    yield Plant("time in s for ms", where, lambda: edited(scene, time=1e3), ("unit of time",), 1e3)
+    yield Plant("starts 5 ms late", where, lambda: shifted(scene, 5e-3), ("time offset",), 5e-3)
+    yield Plant("starts 2 ms early", where, lambda: shifted(scene, -2e-3), ("time offset",), -2e-3)
+
+
+def rules(where, names):
+    faults = {"pull": "tension allowed at the trailing edge", "stale": "contact lost while rising",
+              "dropped": "contact lost while rising", "frozen": "no relaxation of the free surface",
+              "unrelaxed": "no relaxation of the free surface"}  # fmt: skip
+    for rule in names:
+        yield Plant(
+            f"rule: {rule}",
+            where,
+            lambda r=rule: series(SCENES[where], {}, rule=r),
+            (faults[rule],),
+        )
+
+
+def numerics():
+    """Plants about steps and elements: given what is known of the simulation, and not."""
+    coarse, unstable = ("too few elements",), ("unstable time step",)
+    slow = SCENES["10 mm/s"]
+    yield Plant(
+        "10 elements/mm", "Table 1", lambda: series(SCENES["Table 1"], {}, per_length=10e3), coarse
+    )
+    known = {"per_length": "10 /mm"}
+    yield Plant(
+        "10 elements/mm, known",
+        "Table 1",
+        lambda: series(SCENES["Table 1"], {}, per_length=10e3),
+        coarse,
+        known=known,
+    )
+    run = lambda: series(slow, {}, time_step=None)  # noqa: E731
+    yield Plant("dt = 2 dx/V at 10 mm/s", "10 mm/s", run, unstable)
+    known = {"per_length": "200 /mm", "scheme": "paper"}
+    yield Plant("the same, known", "10 mm/s", run, unstable, known=known)
+
+
+def plants():
+    """Return every plant."""
+    found = [
+        *parameters("Table 1"),
+        *others("Table 1"),
+        *rules("Table 1", ("pull", "stale", "dropped", "unrelaxed")),
+    ]
+    found += [*parameters("reversal"), *rules("reversal", ("pull", "stale", "frozen", "unrelaxed"))]
+    found += [*parameters("suspended"), *rules("suspended", ("pull", "dropped")), *numerics()]
+    return found
+
+
+def quick():
+    """Return one plant of each kind, for the tests."""
+    left_out = {
+        "tau x 0.9",
+        "K x 1.2",
+        "R x 0.9",
+        "M x 0.9",
+        "g x 1.2",
+        "V x 1.2",
+        "time in s for ms",
+    }
+    chosen = [
+        plant
+        for plant in plants()
+        if plant.scene in ("Table 1", "10 mm/s") and plant.name not in left_out
+    ]
+    return chosen + [
+        plant for plant in plants() if (plant.scene, plant.name) == ("reversal", "rule: frozen")
+    ]
+
+
+def main():
+    """Print the confusion table: what was planted, what is named first, and what else is possible."""
+    right = 0
+    for plant in plants():
+        found = kv.compare(SCENES[plant.scene], plant.data(), **plant.known)
+        first, *rest = found.explanations or [None]
+        hit = found.verdict == "disagrees" and first is not None and first.name in plant.names
+        right += hit
+        factor = "" if first is None or first.factor is None else f" {first.factor:.4g}"
+        also = ", ".join(each.name for each in rest if each.enough)
+        name = "nothing" if first is None else f"{first.name}{factor} ({first.rank:.0%})"
+        row = f"{'ok' if hit else 'NO'}  {plant.scene:10s} {plant.name:24s} {found.verdict:9s}"
+        print(f"{row} {name:52s} {also}", flush=True)
+    print(f"{right} of {len(plants())} named first")
+
+
+if __name__ == "__main__":
+    main()

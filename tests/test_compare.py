@@ -1,0 +1,259 @@
+"""Reading anybody's time series, and holding it against theory."""
+
+import json
+from functools import cache
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+
+import kvtheory as kv
+from kvtheory.checks.balance import missing_force, windows
+from kvtheory.checks.columns import SPELLINGS, recognise
+from kvtheory.checks.reading import MOST_ROWS, read
+from kvtheory.checks.relaxation import fit, uncertainty
+from kvtheory.cli import main
+from kvtheory.elements.schemes import SCHEMES
+from tests.faulty_simulator import simulate
+
+HEADS = "t [ms],z_A [mm],F_z [N/mm],F_x [N/mm]"
+SCALED = {"time": 1e3, "depth": -1e3, "normal_force": 1e-3, "friction_force": 1e-3}
+HISTORY = [["0 ms", "100 mm/s"], ["50 ms", "100 mm/s"], ["50 ms", "-60 mm/s"], ["120 ms", "-60 mm/s"],
+           ["120 ms", "0 mm/s"], ["160 ms", "0 mm/s"], ["160 ms", "100 mm/s"]]  # fmt: skip
+RAMP = [["0 ms", "0 mm/s"], ["40 ms", "100 mm/s"], ["80 ms", "20 mm/s"]]
+
+
+def scene(**drive):
+    return kv.Scene(drive=kv.Drive(**drive))
+
+
+SCENES = {
+    "dead-weight": kv.Scene(),
+    "fixed": kv.Scene.table1("fixed"),
+    "suspended": kv.Scene.table1("suspended"),
+    "slow": scene(velocity=0.02),
+    "backward": scene(velocity=-0.1),
+    "history": scene(history=HISTORY),
+    "ramp": scene(history=RAMP),
+    "light": kv.Scene(support=kv.DeadWeight(mass=100.0)),
+    "heavy": kv.Scene(support=kv.DeadWeight(mass=30000.0)),
+}
+
+
+@cache
+def simulated(name):
+    return simulate(SCENES[name], time_step=1e-4 if name in ("history", "ramp") else None)
+
+
+@pytest.fixture(scope="module")
+def sound():
+    return simulate(kv.Scene())
+
+
+def write(path, series, heads=HEADS, scaled=SCALED, separator=","):
+    table = np.array([series[name] * factor for name, factor in scaled.items()]).T
+    rows = [separator.join(f"{value:.8g}" for value in row) for row in table]
+    path.write_text("\n".join(["# my program, version 1", heads, *rows]) + "\n", encoding="utf-8")
+    return path
+
+
+def failed(comparison):
+    return [check.name for check in comparison.checks if check.ok is False]
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_a_sound_simulation_agrees_in_every_scene(name):
+    found = kv.compare(SCENES[name], simulated(name))
+    assert failed(found) == []
+    assert found.verdict == "agrees"
+    assert sum(check.ok is True for check in found.checks) >= 14
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_sub_sampled_uneven_and_noisy_data_agree(name):
+    rng = np.random.default_rng(7)
+    series = simulated(name)
+    size = series["time"].size
+    rows = np.sort(rng.choice(size, min(size, 400), replace=False))
+    kept = {key: series[key][rows] for key in SCALED}
+    noisy = {key: value + 0.01 * np.std(value) * rng.standard_normal(rows.size)
+             for key, value in kept.items() if key != "time"} | {"time": kept["time"]}  # fmt: skip
+    assert failed(kv.compare(SCENES[name], kept)) == []
+    assert failed(kv.compare(SCENES[name], noisy)) == []
+
+
+@pytest.mark.parametrize("scheme", SCHEMES)
+@pytest.mark.parametrize("name", ["dead-weight", "suspended", "history"])
+def test_each_of_our_schemes_agrees(scheme, name):
+    found = kv.compare(SCENES[name], scheme=scheme)
+    assert failed(found) == []
+    assert found.source == scheme
+
+
+def test_theory_agrees_with_itself_far_within_what_is_allowed():
+    found = kv.compare(data=kv.transient(at=np.linspace(0.0, 0.2, 801).tolist(), rtol=1e-9))
+    worst = {check.name: check.measured / check.allowed for check in found.checks if check.ok}
+    curves = [name for name in worst if name.endswith(("RMS", "largest"))]
+    assert len(curves) == 16
+    assert max(worst[name] for name in curves) < 1e-3
+    assert worst["slow time constant"] < 1e-3
+
+
+def test_the_data_need_not_be_thinned_to_be_read(sound):
+    long = {name: np.repeat(values, 3) for name, values in sound.items()}
+    long["time"] = np.linspace(0.0, 0.2, long["time"].size)
+    assert read(long).time.size <= MOST_ROWS
+
+
+def test_tolerance_multiplies_what_is_allowed(sound):
+    one, two = (kv.compare(data=sound, tolerance=factor) for factor in (1.0, 2.0))
+    for a, b in zip(one.checks, two.checks, strict=True):
+        if a.ok is not None and a.name not in ("stability number",):
+            assert b.allowed == pytest.approx(2.0 * a.allowed, rel=0.3)
+    off = {**sound, "depth": 1.004 * sound["depth"]}
+    assert kv.compare(data=off).verdict == "disagrees"
+    assert kv.compare(data=off, tolerance=10.0).verdict == "agrees"
+
+
+def test_columns_that_are_not_there_are_not_passed(sound):
+    found = kv.compare(data={name: sound[name] for name in ("time", "normal_force")})
+    reasons = {check.name: check.note for check in found.checks if check.ok is None}
+    assert reasons["impulse balance"] == "not made: it needs the depth and the normal force"
+    assert reasons["initial rest state"] == "not made: the data hold no depth"
+    assert reasons["elements enough"].startswith("not made: the element density is not given")
+    assert found.as_dict()["checks"][1]["ok"] is None
+
+
+def test_the_balance_finds_a_force_that_is_lacking(sound):
+    support = kv.Scene().support
+    depth = sound["depth"][0]
+    columns = {"depth": sound["depth"], "normal_force": sound["normal_force"] + 200.0}
+    *_, last = windows(sound["time"])
+    for window in (next(windows(sound["time"])), last):
+        lacking = missing_force(window, columns, support, depth)
+        assert lacking == pytest.approx(200.0, abs=40.0)
+    uniform = {"depth": 3e-4 - 1e-3 * sound["time"], "normal_force": np.full(2001, support.weight)}
+    assert missing_force(last, uniform, support, 3e-4) == pytest.approx(0.0, abs=1e-4)
+
+
+def test_a_time_constant_is_fitted_and_its_uncertainty_covers_noise():
+    rng, t = np.random.default_rng(3), np.linspace(0.0, 5.0, 100)
+    exact = 1.0 + 0.4 * np.exp(-t / 1.3)
+    bound = uncertainty(t, exact, 1.3, np.zeros(100), 0.01)
+    fits = [fit(t, exact + 0.01 * rng.standard_normal(100), 1.0) for _ in range(50)]
+    assert fit(t, exact, 1.0) == pytest.approx(1.3, rel=1e-4)
+    assert np.max(np.abs(np.array(fits) / 1.3 - 1.0)) < 1.2 * bound
+    assert bound < 0.2
+
+
+@pytest.mark.parametrize(
+    ("header", "quantity", "factor"),
+    [("t [ms]", "time", 1e-3), ("Time (s)", "time", 1.0), ("z_A [mm]", "depth", -1e-3),
+     ("zA (µm)", "depth", -1e-6), ("delta [m]", "depth", 1.0), ("F_z [N/mm]", "normal_force", 1e3),
+     ("Fz (kN/m)", "normal_force", 1e3), ("$F_{x}$ [N/mm]", "friction_force", 1e3),
+     ("x_TE [mm]", "trailing_edge", 1e-3), ("p_max [MPa]", "peak_pressure", 1e6),
+     ("V [mm/s]", "velocity", 1e-3), ("depth_rate [m/s]", "depth_rate", 1.0)],
+)  # fmt: skip
+def test_columns_are_recognised_by_name_and_unit(header, quantity, factor):
+    column = recognise(header)
+    assert (column.quantity, column.factor) == (quantity, pytest.approx(factor, rel=1e-15))
+
+
+def test_no_spelling_has_two_meanings():
+    spellings = [s.casefold() for names in SPELLINGS.values() for s in names.split(", ")]
+    assert len(spellings) == len(set(spellings))
+
+
+@pytest.mark.parametrize("separator", [",", ";", "\t"])
+def test_separators_and_comments(tmp_path, sound, separator):
+    path = write(tmp_path / "a.csv", sound, HEADS.replace(",", separator), separator=separator)
+    series = read(path)
+    assert series.columns["depth"][0] == pytest.approx(sound["depth"][0], rel=1e-6)
+    assert kv.compare(data=path).verdict == "agrees"
+
+
+def rows(*lines):
+    return "\n".join(lines)
+
+
+GOOD = [f"{k},-0.3,9.8,0" for k in range(12)]
+BAD = {
+    "empty": ("", "holds no header"),
+    "header only": (HEADS, "holds a header and no rows"),
+    "no header": (rows(*GOOD), "line 1 holds numbers"),
+    "short": (rows(HEADS, *GOOD[:5]), "at least 8"),
+    "NaN": (rows(HEADS, *GOOD[:5], "5,nan,9.8,0", *GOOD[6:]), 'column "z_A [mm]": 1 of 12 values'),
+    "empty cell": (rows(HEADS, *GOOD[:5], "5,,9.8,0", *GOOD[6:]), "the first in line 7"),
+    "infinite": (rows(HEADS, *GOOD, "12,inf,9.8,0"), "diverged"),
+    "backward": (rows(HEADS, *GOOD, "3,-0.3,9.8,0"), "the time must increase"),
+    "standing": (rows(HEADS, *["1,-0.3,9.8,0"] * 12), "do not span a transient"),
+    "text": (rows(HEADS, *GOOD, "12,abc,9.8,0"), '"abc" is not a number'),
+    "ragged": (rows(HEADS, *GOOD, "12,-0.3"), "has 2 cells, the header has 4"),
+    "decimal comma": (rows(HEADS.replace(",", ";"), "0;-0,3;9;0"), "write the decimal mark as a point"),
+    "no unit": (rows("t [ms],depth", "0,1"), 'expected "depth [m]"'),
+    "wrong unit": (rows("t [ms],F_z [N]", "0,1"), "of another dimension"),
+    "unknown unit": (rows("t [ms],z_A [furlongz]", "0,1"), '"furlongz" is not a known unit'),
+    "misspelt": (rows("t [ms],Fricton [N/mm]", "0,1"), 'did you mean "friction"'),
+    "twice": (rows("t [ms],depth [m],z_A [mm]", "0,1,1"), "are both the depth"),
+    "no time": (rows("z_A [mm],F_z [N/mm]", *["1,2"] * 9), "no column is the time"),
+    "nothing to judge": (rows("t [ms],V [mm/s]", *["1,2"] * 9), "nothing to judge"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", BAD)
+def test_what_cannot_be_read_costs_one_message_and_writes_nothing(tmp_path, name):
+    text, message = BAD[name]
+    path = tmp_path / "bad.csv"
+    path.write_text(text, encoding="utf-8")
+    outputs = ["--report", str(tmp_path / "r.html"), "--plot", str(tmp_path / "p.png")]
+    given = ["compare", "--data", str(path), *outputs]
+    result = CliRunner().invoke(main, given)
+    assert result.exit_code == 2
+    assert message.replace("diverged", "diverges") in result.stderr
+    assert result.stdout == ""
+    assert [file.name for file in tmp_path.iterdir()] == ["bad.csv"]
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [({"tolerance": 0.0}, "`tolerance`"), ({"tolerance": float("nan")}, "`tolerance`"),
+     ({"per_length": "200 mm"}, "`per_length`"), ({"per_length": -1.0}, "`per_length`"),
+     ({"scene": kv.Scene(indenter=kv.Wedge(inclination=0.1))}, "parabola"),
+     ({"scene": kv.Scene(drive=kv.Drive(function=lambda t: 0.1))}, "drive.function")],
+)  # fmt: skip
+def test_bad_arguments_are_named(sound, options, message):
+    with pytest.raises(ValueError, match=message):
+        kv.compare(**{"data": sound, **options})
+
+
+def test_data_of_another_kind_is_refused():
+    with pytest.raises(TypeError, match="expected a path to a CSV"):
+        kv.compare(data=3.0)
+
+
+def test_the_command(tmp_path, sound):
+    path = write(tmp_path / "mine.csv", {**sound, "friction_force": -sound["friction_force"]})
+    report, plot = tmp_path / "r.html", tmp_path / "p.svg"
+    given = ["compare", "--data", str(path), "--json", "--report", str(report), "--plot", str(plot)]
+    result = CliRunner().invoke(main, given)
+    assert result.exit_code == 1, result.output
+    record = json.loads(result.stdout)
+    assert record["verdict"] == "disagrees"
+    assert {"name", "measured", "allowed", "ok"} <= set(record["checks"][0])
+    assert "wrong sign" in record["diagnosis"]
+    page = report.read_text(encoding="utf-8")
+    assert "wrong sign" in page
+    assert "<svg" in page
+    assert not any(word in page for word in ("<script", "src=", "@import", "<link"))
+    assert plot.read_text(encoding="utf-8").startswith("<?xml")
+    again = CliRunner().invoke(
+        main, ["compare", "--data", str(path), "--set", "drive.velocity=-100 mm/s"]
+    )
+    assert again.exit_code == 0, again.output
+    assert "agrees with theory" in again.stdout
+
+
+def test_help_has_an_example():
+    shown = CliRunner().invoke(main, ["compare", "--help"])
+    assert shown.exit_code == 0
+    assert "kvtheory compare" in shown.stdout.split("Example")[1]

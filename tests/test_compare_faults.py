@@ -1,0 +1,51 @@
+"""Faults planted in a simulator of its own, and whether the diagnosis names them."""
+
+import numpy as np
+import pytest
+
+import kvtheory as kv
+from tests.confusion import SCENES, quick, series
+
+
+@pytest.mark.parametrize("plant", quick(), ids=lambda plant: f"{plant.scene}: {plant.name}")
+def test_each_planted_fault_is_named_and_measured(plant):
+    found = kv.compare(SCENES[plant.scene], plant.data(), **plant.known)
+    assert found.verdict == "disagrees"
+    assert found.explanations[0].name in plant.names, found.diagnosis
+    assert found.explanations[0].text[1:] in found.diagnosis
+    if plant.factor is not None:
+        assert found.explanations[0].factor == pytest.approx(plant.factor, rel=0.02)
+
+
+def test_what_cannot_be_told_apart_is_said():
+    given = kv.Scene.table1("fixed")
+    data = series(given, {"foundation.retardation_time": 1.2})
+    found = kv.compare(
+        given, {name: data[name] for name in ("time", "normal_force", "friction_force")}
+    )
+    equal = {each.name: each.factor for each in found.explanations if each.enough}
+    assert equal["wrong tau"] == pytest.approx(1.2, rel=0.01)
+    assert equal["wrong V"] == pytest.approx(1.2, rel=0.01)
+    assert "do not rule out" in found.diagnosis
+
+
+def test_a_loud_unknown_fault_is_not_explained_away():
+    rng = np.random.default_rng(5)
+    data = series(kv.Scene(), {})
+    walk = np.cumsum(rng.standard_normal(data["time"].size))
+    found = kv.compare(
+        data={**data, "depth": data["depth"] * (1.0 + 0.2 * walk / np.abs(walk).max())}
+    )
+    assert found.verdict == "disagrees"
+    assert not any(each.enough for each in found.explanations)
+
+
+def test_data_that_diverge_are_diagnosed_without_a_warning():
+    time = np.linspace(0.0, 0.2, 400)
+    growth = np.exp(np.minimum(5e3 * time, 600.0)) * (-1.0) ** np.arange(400)
+    found = kv.compare(
+        data={"time": time, "depth": 3e-4 * (1.0 + 1e-9 * growth), "normal_force": 9806.65 + growth}
+    )
+    assert found.verdict == "disagrees"
+    assert found.explanations[0].name == "unstable time step"
+    assert "F15" in found.diagnosis
