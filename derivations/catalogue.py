@@ -6,8 +6,10 @@ from derivations import (
     asymptote_errors,
     asymptotics,
     circle,
+    element_schemes,
     energy,
     groups,
+    master_curve,
     model,
     steady,
     tables,
@@ -23,9 +25,10 @@ from derivations.record import Derivation
 
 _CHAPTERS = (
     *(model, steady, asymptotics, tables, groups),
-    *(theorems, energy, asymptote_errors, circle),
+    *(theorems, master_curve, energy, asymptote_errors, circle),
     *(transient_scaling, transient_memory, transient_edges),
     *(transient_motion, transient_rates, transient_balance),
+    element_schemes,
 )
 """Each chapter may recall what the chapters before it have established."""
 

@@ -9,10 +9,14 @@ from typing import Any
 
 import numpy as np
 
-from kvtheory.results import TRANSIENT_UNITS, Transient
+from kvtheory.results import TRANSIENT_UNITS, Simulation, Solution, Transient
+
+Series = Transient | Simulation | Solution
+SERIES_SUFFIXES = (".csv", ".nc")
+"""Of files that hold a time series."""
 
 
-def save_transient(result: Transient, path: Path) -> None:
+def save_transient(result: Series, path: Path) -> None:
     """Write a time series as ``.csv`` (RFC 4180, empty where a value does not exist) or ``.nc``.
 
     Raises
@@ -22,10 +26,16 @@ def save_transient(result: Transient, path: Path) -> None:
     OSError
         If the file cannot be written.
     """
-    writers: Mapping[str, Callable[[Transient, Path], None]] = {".csv": _csv, ".nc": _netcdf}
-    if path.suffix not in writers:
-        raise ValueError(f'-o "{path}": expected a name that ends in {" or ".join(writers)}')
+    check_series_path(path)
+    writers: Mapping[str, Callable[[Series, Path], None]] = {".csv": _csv, ".nc": _netcdf}
     replace_file(path, lambda part: writers[path.suffix](result, part))
+
+
+def check_series_path(path: Path) -> None:
+    """Raise `ValueError` unless the name ends as that of a time series must."""
+    if path.suffix not in SERIES_SUFFIXES:
+        expected = " or ".join(SERIES_SUFFIXES)
+        raise ValueError(f'-o "{path}": expected a name that ends in {expected}')
 
 
 def replace_file(path: Path, write: Callable[[Path], Any]) -> None:
@@ -38,7 +48,7 @@ def replace_file(path: Path, write: Callable[[Path], Any]) -> None:
         part.unlink(missing_ok=True)
 
 
-def _csv(result: Transient, path: Path) -> None:
+def _csv(result: Series, path: Path) -> None:
     columns = [np.asarray(getattr(result, name)).tolist() for name in TRANSIENT_UNITS]
     with path.open("w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file)
@@ -47,7 +57,7 @@ def _csv(result: Transient, path: Path) -> None:
             writer.writerow("" if value != value else value for value in row)  # noqa: PLR0124
 
 
-def _netcdf(result: Transient, path: Path) -> None:
+def _netcdf(result: Series, path: Path) -> None:
     try:
         import xarray
     except ModuleNotFoundError:
@@ -60,7 +70,8 @@ def _netcdf(result: Transient, path: Path) -> None:
     attributes = {
         "model": result.model,
         "certificate": result.certificate.statement,
-        "events": json.dumps([event._asdict() for event in result.events]),
     }
+    if isinstance(result, Transient):
+        attributes["events"] = json.dumps([event._asdict() for event in result.events])
     data = xarray.Dataset(columns, coords={"time": time}, attrs=attributes)
     data.to_netcdf(path, engine="scipy")

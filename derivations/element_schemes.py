@@ -1,0 +1,309 @@
+"""The discrete simulator: order and stability of its schemes, and what point elements do at an edge (F15).
+
+A contact of length L that does not change within a step makes the motion linear in the depth; it is
+scaled by the static state, with b = (3/4) L/a_0 for its length, h for the time step over tau, and
+z = h b/epsilon = dt C L/M, the stability number.
+"""
+
+from functools import partial
+
+import sympy as sp
+
+from derivations.record import Derivation
+from derivations.step import Proof, tex
+from derivations.symbols import (
+    C,
+    P,
+    V,
+    b,
+    compression,
+    eps,
+    eta,
+    kappa,
+    sigma,
+    time,
+    x,
+    xi,
+    zeta,
+)
+
+SECTION = "Discrete elements"
+
+_h, _z, _y, _slope, _spacing = sp.symbols("h z y m Delta", positive=True)
+_theta = sp.Symbol("theta", positive=True)
+_excess = sp.Symbol("theta_+", nonnegative=True)
+_R, _D, _w = sp.symbols("R D w")
+_share = sp.Symbol("vartheta", positive=True)
+_k1, _k2, _k3, _k4 = sp.symbols("k_1:5")
+_inside, _outside = sp.Symbol("w_1", positive=True), sp.Symbol("w_0", negative=True)
+_rest = sp.symbols("r_1:4", real=True)
+_end, _pressure_rate = sp.symbols("p_e p_s", real=True)
+
+CUBIC = 24 - 12 * _z + 4 * _z**2 - _z**3
+"""Its real root is the stability limit of the classical Runge-Kutta method on the negative axis."""
+RUNGE_KUTTA = 1 - _z + _z**2 / 2 - _z**3 / 6 + _z**4 / 24
+THETA_STEP = (1 - (1 - _theta) * _z) / (1 + _theta * _z)
+FIT = 1 / (1 - sp.exp(-_z)) - 1 / _z
+"""theta of the exponential scheme."""
+WEIGHT = 1 / (1 - sp.exp(-_h))
+"""eta: how strongly the mean force of F8 counts a change of the depth within the step."""
+KINK = _spacing * _inside * _outside / (2 * (_inside - _outside))
+
+_theorem = partial(Proof, equation=None, section=SECTION)
+
+
+def derive() -> tuple[Derivation, ...]:
+    """Prove the limits of the explicit schemes, the stability of the others, orders and edge terms."""
+    return (
+        *(_runge_kutta(), _euler(), _mean_force(), _fitted(), _unconditional()),
+        *(_orders(), _sawtooth(), _kink()),
+    )
+
+
+def _runge_kutta() -> Derivation:
+    proof = _theorem("F15-runge-kutta", title="Stability limit of the paper's scheme", text=_PAPER,
+                     uses=("F12",))  # fmt: skip
+    for stage, at in ((_k1, 0), (_k2, _k1 / 2), (_k3, _k2 / 2), (_k4, _k3)):
+        proof.define(stage, -_z * (1 + at))
+    proof.define(_R, 1 + (_k1 + 2 * _k2 + 2 * _k3 + _k4) / 6, "after one step")
+    proof.equal(_R, RUNGE_KUTTA, "the Taylor series of $e^{-z}$ to the fourth order")
+    proof.equal(1 - _R, _z * CUBIC / 24, r"so that $R \le 1$ as far as the cubic is positive")
+    proof.sign(1 + RUNGE_KUTTA, ">", 0, (_z, 0, sp.oo), "the other bound is never reached",
+               left="1 + R")  # fmt: skip
+    proof.unique_root(CUBIC, (_z, 0, sp.oo), "one limit")
+    stable, unstable = sp.Rational(2785, 1000), sp.Rational(2786, 1000)
+    proof.sign(CUBIC, ">", 0, (_z, 0, stable), r"stable for $z \le 2.785$")
+    proof.sign(CUBIC, "<", 0, (_z, unstable, sp.oo), r"unstable for $z \ge 2.786$")
+    return proof.done(_R, RUNGE_KUTTA)
+
+
+_PAPER = (
+    r"The fast mode of F12, $d'' = -(b/\varepsilon) d'$, is the damping of the mass $M$ by the "
+    r"damping $C L$ of all elements in contact. A step of length $\Delta t$ of the classical "
+    r"Runge-Kutta method multiplies the velocity by $R(z)$, $z = \Delta t\, C L/M$. With $\Delta t = "
+    r"2 \Delta x/V$ the paper's simulation becomes unstable below $V = 2 \Delta x\, C L/(2.785 M)$."
+)
+
+
+def _euler() -> Derivation:
+    proof = _theorem("F15-euler", title="Stability limit of Euler's method", text=_EULER,
+                     uses=("F15-runge-kutta",))  # fmt: skip
+    proof.define(_R, 1 - _z, "after one step")
+    proof.equal(1 - _R**2, _z * (2 - _z), r"positive exactly for $z < 2$")
+    proof.sign(_z * (2 - _z), ">", 0, (_z, 0, 2), "stable")
+    proof.sign(_z * (2 - _z), "<", 0, (_z, 2, sp.oo), "unstable")
+    return proof.done(1 - _R**2, _z * (2 - _z))
+
+
+_EULER = r"The same mode by explicit Euler steps."
+
+
+def _mean_force() -> Derivation:
+    proof = _theorem("element-mean-force", title="Mean force on an element", text=_MEAN,
+                     uses=("F8-update",))  # fmt: skip
+    u = compression
+    over = (zeta, time, time + _h)
+    integrand = sp.exp(zeta) * (u(zeta) + sp.Derivative(u(zeta), zeta))
+    impulse = sp.exp(time + _h) * u(time + _h) - sp.exp(time) * u(time)
+    proof.integral(
+        *(sp.Integral(integrand, over), integrand, over, sp.exp(zeta) * u(zeta)),
+        r"the pressure is $u + u'$, in contact or not", value=impulse,
+        left=r"\int_{s}^{s+h} e^{\zeta} \hat p(\zeta) \, d\zeta",
+    )  # fmt: skip
+    whole = sp.exp(time + _h) - sp.exp(time)
+    proof.integral(
+        *(sp.Integral(sp.exp(zeta), over), sp.exp(zeta), over, sp.exp(zeta)),
+        "the weights", value=whole,
+    )  # fmt: skip
+    mean = (u(time + _h) - sp.exp(-_h) * u(time)) / (1 - sp.exp(-_h))
+    proof.equal(impulse / whole, mean, "their ratio, which is zero for an element left alone")
+    centre = _h * WEIGHT - 1
+    proof.leading_order(
+        *(centre, _h / 2, _h, 0, "where the weights have their centre: second order"), eps=_h,
+        left=r"\frac{\int_0^h \zeta e^{\zeta} d\zeta}{\int_0^h e^{\zeta} d\zeta}",
+    )  # fmt: skip
+    return proof.done(impulse / whole, mean)
+
+
+_MEAN = (
+    r"The memory of F8 gives the pressure on an element, averaged over a step with the weight "
+    r"$e^{s}$, from the compressions at its ends alone. Where F8 is used for the end of the step, it "
+    r"is never negative. It differs from the plain mean by $h^2/12$ times the rate of the pressure."
+)
+
+
+def _fitted() -> Derivation:
+    proof = _theorem("element-fit", title="Exponential fit of the damping", text=_FITTED,
+                     uses=("element-mean-force",))  # fmt: skip
+    proof.equal(
+        *(THETA_STEP.subs(_theta, FIT), sp.exp(-_z), "the exact decay of the velocity"),
+        left=r"\frac{1 - (1 - \theta) z}{1 + \theta z}",
+    )
+    gap = _z * (1 + sp.exp(-_z)) / 2 - (1 - sp.exp(-_z))
+    proof.equal(FIT - sp.Rational(1, 2), gap / (_z * (1 - sp.exp(-_z))), "to compare with 1/2",
+                left=r"\theta - \frac{1}{2}")  # fmt: skip
+    proof.root(gap, _z, sp.S.Zero, "the numerator vanishes at zero")
+    proof.root(sp.Derivative(gap, _z), _z, sp.S.Zero, "and its derivative")
+    proof.equal(sp.Derivative(gap, (_z, 2)), _z * sp.exp(-_z) / 2,
+                r"it is convex: $\theta > \frac{1}{2}$ for $z > 0$")  # fmt: skip
+    proof.leading_order(FIT, sp.Rational(1, 2), _z, 0, "the trapezoidal rule", eps=_z,
+                        left=r"\theta")  # fmt: skip
+    return proof.done(THETA_STEP.subs(_theta, FIT), sp.exp(-_z))
+
+
+_FITTED = (
+    r"The step $v_1 = v_0 - z [(1-\theta) v_0 + \theta v_1]$ multiplies the velocity of the fast mode "
+    r"by $[1 - (1-\theta) z]/(1 + \theta z)$. With $\theta = 1/(1 - e^{-z}) - 1/z$ this is exact, "
+    r"whatever the step; $\theta$ lies between $1/2$ and 1."
+)
+
+
+def _unconditional() -> Derivation:
+    proof = _theorem("element-stability", title="Stability at any step", text=_ALWAYS,
+                     uses=("element-mean-force", "element-fit"))  # fmt: skip
+    second = eps / _h**2 + _theta * (b * eta + kappa * _theta)
+    first = _theta * (b + kappa) + b * eta + kappa * _theta
+    zeroth = b + kappa
+    motion = eps * _D**2 / _h**2 + (1 + _theta * _D) * (b + kappa + (b * eta + kappa * _theta) * _D)
+    proof.equal(
+        motion, second * _D**2 + first * _D + zeroth, "a step multiplies the depth by $1 + D$"
+    )
+    disc = sp.expand(sp.together(motion.subs(_D, 2 * _w / (1 - _w)) * (1 - _w) ** 2).cancel())
+    lead = 4 * eps / _h**2 + b * (2 * _theta - 1) * (2 * eta - 1) + kappa * (2 * _theta - 1) ** 2
+    middle = 2 * (b * (_theta + eta - 1) + kappa * (2 * _theta - 1))
+    proof.equal(
+        *(
+            disc,
+            lead * _w**2 + middle * _w + zeroth,
+            r"with $D = 2 w/(1 - w)$: $|1 + D| < 1$ for $\Re w < 0$",
+        ),
+        left=r"(1 - w)^2 \left[\ldots\right]",
+    )
+    half = sp.Rational(1, 2)
+    proof.sign(1 / (1 - _y) - half, ">", 0, (_y, 0, 1), r"$\eta > \frac{1}{2}$, with $y = e^{-h}$",
+               left=r"\eta - \frac{1}{2}")  # fmt: skip
+    proof.define(_theta, half + _excess, r"$\theta_{+} \ge 0$ by the exponential fit")
+    proof.define(eta, half + xi, r"and $\xi > 0$")
+    proof.equal(lead, 4 * eps / _h**2 + 4 * b * _excess * xi + 4 * kappa * _excess**2, "positive")
+    proof.equal(
+        middle,
+        2 * (b * (_excess + xi) + 2 * kappa * _excess),
+        "positive: no root has $\\Re w \\ge 0$",
+    )
+    return proof.done(motion, second * _D**2 + first * _D + zeroth)
+
+
+_ALWAYS = (
+    r"Both implicit schemes: $\varepsilon (v_1 - v_0)/h = -b\,[d_0 + \eta (d_1 - d_0)] - "
+    r"\kappa\,[(1-\theta) d_0 + \theta d_1]$ with $\eta = 1/(1 - e^{-h})$ from the mean force, and "
+    r"$d_1 - d_0 = h [(1-\theta) v_0 + \theta v_1]$. A quadratic with positive coefficients has its "
+    r"roots in the left half plane: no mode grows, for any step, mass, spring and contact, if $\theta "
+    r"\ge 1/2$."
+)
+
+
+def _orders() -> Derivation:
+    proof = _theorem(
+        "element-orders", title="Order in time", text=_ORDERS, uses=("element-stability",)
+    )
+    growth = sp.exp(sigma * _h) - 1
+    proof.leading_order(growth, sigma * _h, _h, 0, "Taylor", eps=_h, left="D")
+    proof.leading_order(WEIGHT, 1 / _h, _h, 0, "Taylor", eps=_h, left=r"\eta")
+    proof.leading_order(FIT, sp.Rational(1, 2) + _z / 12, _z, 0, r"$z = h b/\varepsilon$", eps=_z,
+                        left=r"\theta")  # fmt: skip
+    D = sigma * _h * (1 + sigma * _h / 2 + (sigma * _h) ** 2 / 6 + _h**3 * _rest[0])
+    weight = (1 + _h / 2 + _h**2 / 12 + _h**3 * _rest[1]) / _h
+    fit = sp.Rational(1, 2) + b * _h / (12 * eps) + _h**3 * _rest[2]
+    known = {_D: D, eta: weight, kappa: -eps * sigma**2 - b * sigma - b}
+    proof.define(_D, D, r"with a bounded $r_1$")
+    proof.define(eta, weight, r"with a bounded $r_2$")
+    proof.define(kappa, known[kappa], "the exact rates")
+    whole = b + kappa + (b * eta + kappa * _theta) * _D
+    motion = eps * _D**2 / _h**2 + (1 + _theta * _D) * whole
+    for theta, order, shown, why in (
+        (sp.S.One, 1, "= 1", "order one"),
+        (fit, 2, r"\,\mathrm{fitted}", "order two, with a bounded $r_3$ in the fit"),
+    ):
+        exact = sp.expand(motion.subs(known).subs(_theta, theta))
+        leading = sp.factor(exact.coeff(_h, order)) * _h**order
+        # A polynomial in h, so that nothing of lower order is left: all of it is in the remainder.
+        remainder = sp.Poly(sp.expand((exact - leading) / _h ** (order + 1)), _h).as_expr()
+        result = leading + _h ** (order + 1) * remainder
+        proof.equal(motion.subs(_theta, theta), result, why, left=rf"r_{{(\theta {shown})}}",
+                    right=rf"{tex(leading)} + O(h^{order + 1})")  # fmt: skip
+    return proof.done(motion.subs(_theta, theta), result)
+
+
+_ORDERS = (
+    r"The exact motion $e^{\sigma s}$, with $\varepsilon \sigma^2 + b \sigma + b + \kappa = 0$, is "
+    r"put into the equation of a step, $\varepsilon D^2/h^2 + (1 + \theta D) [b + \kappa + (b \eta + "
+    r"\kappa \theta) D] = 0$ with $D = e^{\sigma h} - 1$. What is left over, $r$, is of the order of "
+    r"the scheme in $h$."
+)
+
+
+def _sawtooth() -> Derivation:
+    proof = _theorem("F15-sawtooth", title="Noise of elements entering the contact", text=_SAWTOOTH)
+    first = (_share - sp.Rational(1, 2)) * _spacing
+    line = _end + _pressure_rate * x
+    missed = -(_end * first + _pressure_rate * first**2 / 2)
+    proof.integral(
+        *(-sp.Integral(line, (x, 0, first)), -line, (x, 0, first)),
+        -(_end * x + _pressure_rate * x**2 / 2),
+        "what the sum over elements has too much", value=missed,
+        left=r"\Delta \sum_{k \ge 0} p(x_k) - \int p \, dx",
+    )  # fmt: skip
+    largest = _end * _spacing / 2 - _pressure_rate * _spacing**2 / 8
+    proof.equal(missed.subs(_share, 0), largest, r"an element has just come in, $\vartheta = 0$")
+    proof.equal(missed.subs(_share, 1), -_end * _spacing / 2 - _pressure_rate * _spacing**2 / 8,
+                r"the next one is about to, $\vartheta = 1$")  # fmt: skip
+    return proof.done(missed.subs(_share, 0), largest)
+
+
+_SAWTOOTH = (
+    r"The pressure jumps to $p_e$ at the leading edge and changes from there as $p_e + p_s x$; "
+    r"elements are at $x_k = (k + \vartheta) \Delta$, $0 \le \vartheta \le 1$. Each stands for the "
+    r"length $\Delta$ about it, with the exact integral of a straight line, so that the sum begins at "
+    r"$(\vartheta - \frac{1}{2}) \Delta$ instead of 0. As elements come in, the normal force goes up "
+    r"and down by $\pm p_e \Delta/2$, and the friction force by that times $-h'$: first order in the "
+    r"spacing."
+)
+
+
+def _kink() -> Derivation:
+    proof = _theorem("element-kink", title="Part of an element at an edge", text=_KINK,
+                     uses=("F15-sawtooth",))  # fmt: skip
+    line = _outside + (_inside - _outside) * x / _spacing
+    meets = -_outside * _spacing / (_inside - _outside)
+    area = _spacing * _inside**2 / (2 * (_inside - _outside))
+    proof.integral(
+        *(sp.Integral(line, (x, meets, _spacing)), line, (x, meets, _spacing)),
+        _outside * x + (_inside - _outside) * x**2 / (2 * _spacing),
+        "the larger of both surfaces, above the free one", value=area,
+    )  # fmt: skip
+    proof.equal(area - _spacing * _inside / 2, KINK, "without the trapezoid of the elements",
+                left=r"\int \max(w, 0) \, dx - \frac{\Delta w_1}{2}")  # fmt: skip
+    inside, outside = _slope * _spacing * (1 - _share), -_slope * _spacing * _share
+    in_cell = -_slope * _spacing**2 * _share * (1 - _share) / 2
+    proof.define(_inside, inside, r"surfaces at the angle $m$ that meet at $\vartheta \Delta$")
+    proof.define(_outside, outside)
+    proof.equal(KINK, in_cell, "the kink at its place within the element")
+    proof.sign(in_cell + _slope * _spacing**2 / 8, ">=", 0, (_share, 0, 1), "second order in the spacing",
+               left=r"\frac{\Delta w_1 w_0}{2 (w_1 - w_0)} + \frac{m \Delta^2}{8}")  # fmt: skip
+    proof.define(P, C * V * _slope, "the pressure at a leading edge: its elements are met with $m V$",
+                 left="p_e")  # fmt: skip
+    proof.equal(
+        *(C * sp.Derivative(in_cell, _share) * -V / _spacing, P * _spacing * (1 - 2 * _share) / 2,
+          r"as the base moves, $\Delta \dot\vartheta = -V$: the sawtooth of F15"),
+        left=r"C \frac{d}{dt} \left[-\frac{m \Delta^2}{2} \vartheta (1 - \vartheta)\right]",
+    )  # fmt: skip
+    return proof.done(KINK, in_cell)
+
+
+_KINK = (
+    r"Between an element outside, where the indenter is above the free surface by $-w_0 > 0$, and the "
+    r"next one inside, where it is below by $w_1 > 0$, the surface has a kink. The rule of trapezoids "
+    r"takes its chord. The edge-corrected scheme adds the difference to $U = \int u \, dx$, of which "
+    r"the force is $K U + C \dot U$: with it the sawtooth of the forces is gone, and the forces are "
+    r"of second order in the spacing."
+)

@@ -1,0 +1,100 @@
+"""The derivations of the schemes against numbers: the steps themselves, carried out in 30 digits."""
+
+import mpmath as mp
+import numpy as np
+import pytest
+import sympy as sp
+
+from derivations import element_schemes as schemes
+from derivations.catalogue import catalogue
+from kvtheory.elements import schemes as simulator
+
+LABELS = {
+    "F15-runge-kutta", "F15-euler", "F15-sawtooth", "element-mean-force", "element-fit",
+    "element-stability", "element-orders", "element-kink",
+}  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def by_label():
+    return {derivation.label: derivation for derivation in catalogue()}
+
+
+def test_all_are_in_the_document_and_none_is_sampled(by_label):
+    assert set(by_label) >= LABELS
+    assert {by_label[label].status for label in LABELS} <= {"proved", "proved-leading-order"}
+
+
+def test_limit_of_the_papers_scheme():
+    limit = mp.findroot(sp.lambdify(schemes._z, schemes.CUBIC), 2.8)
+    assert mp.nstr(limit, 6) == "2.78529"
+
+
+@pytest.mark.parametrize("name", ["paper", "explicit-euler"])
+def test_stability_polynomials_are_those_of_the_tableaus(name):
+    """One step of v' = -z v by the tableau itself, against the polynomial that the code uses."""
+    *stages, weights = simulator.SCHEMES[name].tableau
+    z, slopes = 1.7, []
+    for _, *a in stages:
+        slopes.append(-z * (1.0 + sum(x * k for x, k in zip(a, slopes, strict=True))))
+    end = 1.0 + sum(w * k for w, k in zip(weights, slopes, strict=True))
+    R = simulator.SCHEMES[name].stability_polynomial
+    assert end == pytest.approx(np.polynomial.polynomial.polyval(-z, R), rel=1e-14)
+
+
+@pytest.mark.parametrize("z", [1e-9, 1e-3, 0.9e-2, 1.1e-2, 0.3, 3.0, 40.0, 1e6])
+def test_exponential_fit_of_the_code_is_the_derived_one(z):
+    with mp.workdps(40):
+        exact = 1 / (1 - mp.exp(-mp.mpf(z))) - 1 / mp.mpf(z)
+        assert simulator.exponential_fit(z) == pytest.approx(float(exact), rel=1e-12)
+    assert 0.5 <= simulator.exponential_fit(z) <= 1.0
+
+
+def step_matrix(epsilon, b, kappa, h, theta):
+    """Return one implicit step of (d, v) by solving its two linear equations."""
+    eta = 1.0 / -np.expm1(-h)
+    # epsilon (v1 - v0)/h = -b (d0 + eta (d1 - d0)) - kappa ((1-theta) d0 + theta d1)
+    # d1 - d0 = h ((1-theta) v0 + theta v1)
+    new = np.array([[b * eta + kappa * theta, epsilon / h], [1.0, -h * theta]])
+    old = np.array(
+        [[b * (eta - 1.0) - kappa * (1.0 - theta), epsilon / h], [1.0, h * (1.0 - theta)]]
+    )
+    return np.linalg.solve(new, old)
+
+
+def test_no_implicit_step_amplifies():
+    rng = np.random.default_rng(4)
+    for _ in range(2000):
+        epsilon, b, kappa, h = 10.0 ** rng.uniform([-6, -2, -3, -4], [3, 1, 3, 3])
+        for theta in (1.0, simulator.exponential_fit(h * b / epsilon)):
+            radius = np.abs(np.linalg.eigvals(step_matrix(epsilon, b, kappa, h, theta))).max()
+            assert radius <= 1.0 + 1e-12
+
+
+@pytest.mark.parametrize(("fitted", "order"), [(False, 1), (True, 2)])
+def test_orders_by_the_eigenvalues_of_a_step(fitted, order):
+    epsilon, b, kappa = 0.2, 0.9, 0.4
+    exact = max(np.roots([epsilon, b, b + kappa]), key=lambda rate: rate.imag)
+    errors = []
+    for h in (0.04, 0.02, 0.01):
+        theta = simulator.exponential_fit(h * b / epsilon) if fitted else 1.0
+        values = np.linalg.eigvals(step_matrix(epsilon, b, kappa, h, theta)).astype(complex)
+        errors.append(min(abs(np.log(values) / h - exact)))
+    assert np.log2(errors[1] / errors[2]) == pytest.approx(order, abs=0.05)
+
+
+def test_sawtooth_and_kink_by_brute_force():
+    """A pressure 3 - 2 x from an edge on, and two straight lines, integrated without the theorems."""
+    dx, share = 0.01, 0.3
+    x = dx * (np.arange(100) + share)
+    end = x[-1] + 0.5 * dx
+    excess = dx * (3.0 - 2.0 * x).sum() - (3.0 * end - end**2)
+    first = (share - 0.5) * dx
+    assert excess == pytest.approx(-(3.0 * first - first**2), rel=1e-9)
+    outside, inside = -0.2, 0.7
+    fine = np.linspace(0.0, dx, 1_000_001)
+    area = np.trapezoid(np.maximum(outside + (inside - outside) * fine / dx, 0.0), fine)
+    kink = schemes.KINK.subs(
+        {schemes._spacing: dx, schemes._inside: inside, schemes._outside: outside}
+    )
+    assert area - 0.5 * dx * inside == pytest.approx(float(kink), rel=1e-9)

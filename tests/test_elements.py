@@ -1,0 +1,363 @@
+"""`kv.elements` and `kvtheory elements`: stability, memory, shapes, symmetry, files and errors."""
+
+import csv
+import json
+import math
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+
+import kvtheory as kv
+from kvtheory.cli import main
+from kvtheory.elements import row, simulation
+from kvtheory.elements.model import Model
+from kvtheory.elements.path import Path
+from kvtheory.elements.row import Row
+from kvtheory.elements.schemes import SCHEMES, Motion
+from kvtheory.elements.stability import contact_lengths, limit_at, stability_limit
+from kvtheory.elements.watch import DivergenceError
+from kvtheory.results import TRANSIENT_UNITS
+
+IMPLICIT = ("semi-implicit", "exponential", "edge-corrected")
+
+
+def sliding(velocity, tau=0.1, support="dead-weight", duration=0.2, **changes):
+    return kv.Scene(
+        foundation=kv.Foundation(1e10, tau),
+        support=kv.Scene.table1(support).support,
+        drive=kv.Drive(velocity),
+        run=kv.Run(duration),
+        **changes,
+    )
+
+
+def run(*arguments, status=0):
+    result = CliRunner().invoke(main, ["elements", *arguments])
+    assert result.exit_code == status, result.output
+    return result
+
+
+# Stability
+
+
+def test_contact_lengths_are_those_of_theory():
+    for V in (0.02, 0.1, -0.1):
+        steady, first = contact_lengths(sliding(V))
+        state = kv.steady(sliding(V))
+        assert steady == pytest.approx(abs(state.trailing_edge - state.leading_edge), rel=2e-3)
+        start = kv.transient(sliding(V), at=0.0)
+        expected = abs(start.trailing_edge - start.leading_edge)[0]
+        assert first == pytest.approx(expected, rel=2e-3)
+
+
+def test_limit_of_the_fast_mode_is_that_of_f15():
+    """Without stiffness dt C L/M = 2.785 and 2; here the stiffness changes them by its share."""
+    scene, length = sliding(0.1), 2e-3
+    model = Model.of(scene)
+    for scheme, number in (("paper", 2.7853), ("explicit-euler", 2.0)):
+        h = limit_at(SCHEMES[scheme], model, length)
+        assert h * model.damping * length / model.mass == pytest.approx(number, rel=0.01)
+
+
+@pytest.mark.parametrize(("tau", "stable", "unstable"), [(0.1, 0.0142, 0.0125), (1.0, 0.1, 0.026)])
+def test_the_papers_scheme_diverges_below_some_velocity(tau, stable, unstable):
+    """F15: the theory gives 13.2 mm/s for tau = 0.1 s, and 29.5 mm/s for tau = 1 s."""
+    for V, factor in ((stable, 1.0), (unstable, -1.0)):
+        scene = sliding(V, tau)
+        steady = limit_at(SCHEMES["paper"], Model.of(scene), contact_lengths(scene)[0])
+        assert factor * (steady - 1e-5 / V) > 0.0
+    kv.elements(sliding(stable, tau, duration=0.5), scheme="paper", certify=False)
+    with pytest.raises(DivergenceError, match=r"diverged at t = .* s, where"):
+        kv.elements(sliding(unstable, tau, duration=0.5), scheme="paper", certify=False)
+
+
+@pytest.mark.parametrize("scheme", ["paper", "explicit-euler"])
+def test_measured_stability_limit_is_the_derived_one(scheme):
+    """From a steady state on: below the limit a run stays there, a little above it does not."""
+    slow = sliding(0.005, duration=0.6)  # there the contact is hardly longer at the start
+    limit = limit_at(SCHEMES[scheme], Model.of(slow), contact_lengths(slow)[0])
+    kv.elements(slow, scheme=scheme, time_step=0.96 * limit, certify=False)
+    with pytest.raises(DivergenceError) as error:
+        kv.elements(slow, scheme=scheme, time_step=1.08 * limit, certify=False)
+    assert "stability number" in str(error.value)
+    assert '"edge-corrected", which is stable at any step' in str(error.value)
+
+
+@pytest.mark.parametrize("scheme", IMPLICIT)
+@pytest.mark.parametrize("mass", [1.0, 1e3, 1e6])
+def test_implicit_schemes_are_stable_at_a_hundred_times_the_limit(scheme, mass):
+    scene = kv.Scene(
+        support=kv.DeadWeight(mass, 9806.65 / mass), drive=kv.Drive(1e-3), run=kv.Run(2.0)
+    )
+    limit = stability_limit(scene, "paper")
+    assert stability_limit(scene, scheme) == math.inf
+    step, end = min(100.0 * limit, 0.05), 2.0 if mass > 1.0 else 0.3
+    steady = kv.steady(scene)
+    end = kv.elements(scene, scheme=scheme, time_step=step, at=[0.1, end], certify=False)
+    assert np.all(np.isfinite(end.depth))
+    if mass < 1e6:  # the heaviest still swings
+        assert end.depth[-1] == pytest.approx(steady.depth, rel=1e-3)
+
+
+def test_a_doubtful_step_is_announced_before_the_run():
+    said = []
+    scene = sliding(0.0125, duration=0.02)
+    result = kv.elements(scene, scheme="paper", certify=False, warn=said.append)
+    assert said == [result.warning]
+    assert "a time step of" in said[0]
+    assert kv.elements(at=0.0).warning == ""
+    assert "elements pass" in kv.elements(at=0.05, time_step=0.025, certify=False).warning
+
+
+# Memory
+
+
+def test_memory_does_not_grow_with_time(monkeypatch):
+    sizes = []
+    move = Row._move
+
+    def recorded(elements, *arguments):
+        move(elements, *arguments)
+        sizes.append(elements.u.size)
+
+    monkeypatch.setattr(Row, "_move", recorded)
+    swing = kv.Drive(function=lambda t: 0.05 + 0.1 * math.cos(50.0 * t))
+    for drive in (kv.Drive(0.1), kv.Drive(-0.1), swing):
+        sizes.clear()
+        scene = kv.Scene(drive=drive, run=kv.Run(3.0))
+        kv.elements(scene, per_length="20 /mm", certify=False)
+        assert len(sizes) > 6
+        assert max(sizes[len(sizes) // 2 :]) <= max(sizes[: len(sizes) // 2])
+        assert max(sizes) < 20.0 * 60  # elements in 60 mm, where the base moves by 150 or 300
+
+
+@pytest.mark.parametrize("back", [-0.1, -0.02])
+def test_what_was_forgotten_did_not_matter(monkeypatch, back):
+    history = [(0.0, 0.1), (0.1, 0.1), (0.1, back), (0.2, back), (0.2, 0.05)]
+    scene = kv.Scene(drive=kv.Drive(history=history), run=kv.Run(0.4))
+    options = {"per_length": "50 /mm", "certify": False}
+    first = kv.elements(scene, **options)
+    monkeypatch.setattr(row, "FORGOTTEN", 1e-100)
+    monkeypatch.setattr(simulation, "KEPT_DEPTH", 100.0)
+    whole = kv.elements(scene, **options)
+    np.testing.assert_allclose(first.depth, whole.depth, rtol=1e-9)
+    np.testing.assert_allclose(first.normal_force, whole.normal_force, rtol=1e-9)
+
+
+def test_an_indenter_that_sinks_deep_is_followed_with_more_room(monkeypatch):
+    options = {"at": [0.05, 0.2], "per_length": "50 /mm", "certify": False}
+    drive = kv.Drive(history=[(0.0, 0.1), (0.05, 0.1), (0.05, 0.0)])
+    before = kv.elements(kv.Scene(drive=drive), **options)
+    monkeypatch.setattr(simulation, "KEPT_DEPTH", 0.5)  # the room of the first attempt
+    assert np.array_equal(kv.elements(kv.Scene(drive=drive), **options).depth, before.depth)
+    monkeypatch.setattr(simulation, "DEEPEST", 0.1)
+    with pytest.raises(DivergenceError, match="times its static depth"):
+        kv.elements(kv.Scene(drive=drive), **options)
+
+
+# Shapes, symmetry, rest
+
+
+@pytest.mark.parametrize("support", ["fixed", "dead-weight", "suspended"])
+@pytest.mark.parametrize(
+    ("shape", "bound"),
+    [
+        (kv.Circle(0.01), 2e-4),
+        (kv.PowerLaw(0.01, 4.0), 1e-3),
+        (kv.PowerLaw(0.01, 1.5), 2e-3),
+        (kv.Wedge(0.1), 1e-2),
+        (kv.Profile(lambda x: 50.0 * x * x, lambda x: 100.0 * x), 2e-4),
+    ],
+)
+def test_other_shapes_end_in_the_steady_state_of_quadrature(shape, bound, support):
+    scene = sliding(0.1, support=support, duration=0.3, indenter=shape)
+    steady = kv.steady(scene, method="quadrature")
+    end = kv.elements(scene, per_length="100 /mm", at=[0.2995, 0.3], certify=False)
+    pairs = (("depth", "depth"), ("normal_force", "load"), ("friction_force", "friction_force"),
+             ("leading_edge", "leading_edge"), ("peak_pressure", "peak_pressure"))  # fmt: skip
+    for column, name in pairs:
+        expected = getattr(steady, name)
+        assert getattr(end, column) == pytest.approx([expected] * 2, rel=bound), column
+    edge = abs(steady.leading_edge)
+    assert end.trailing_edge == pytest.approx([steady.trailing_edge] * 2, abs=3e-3 * edge + 1e-5)
+
+
+@pytest.mark.parametrize("scheme", SCHEMES)
+def test_reversal_of_the_drive_is_the_mirror_image(scheme):
+    history = np.array([(0.0, 0.1), (0.03, 0.1), (0.03, -0.05), (0.1, -0.05)])
+    forth, back = (
+        kv.elements(
+            kv.Scene(drive=kv.Drive(history=(history * [1, sign]).tolist()), run=kv.Run(0.1)),
+            per_length="50 /mm", scheme=scheme, certify=False,
+        )
+        for sign in (1, -1)
+    )  # fmt: skip
+    np.testing.assert_allclose(back.depth, forth.depth, rtol=1e-9)
+    scale = np.abs(forth.friction_force).max()
+    np.testing.assert_allclose(back.friction_force, -forth.friction_force, atol=1e-6 * scale)
+    np.testing.assert_allclose(back.leading_edge, -forth.leading_edge, atol=1e-8)
+
+
+@pytest.mark.parametrize("support", ["fixed", "dead-weight", "suspended"])
+@pytest.mark.parametrize("scheme", [name for name in SCHEMES if name != "paper"])
+def test_rest_stays_rest(support, scheme):
+    scene = sliding(0.0, support=support)
+    result = kv.elements(scene, scheme=scheme, certify=False)
+    assert np.ptp(result.depth) <= 1e-12 * result.depth[0]
+    assert np.all(np.abs(result.friction_force) < 1e-9 * result.normal_force)
+    assert result.normal_force == pytest.approx(
+        kv.transient(scene, at=0.0).normal_force[0], rel=1e-3
+    )
+
+
+def test_a_function_moves_the_base_as_the_same_history_does():
+    ramp = [(0.0, 0.0), (0.05, 0.1), (0.1, 0.1), (0.1, -0.05), (0.2, -0.05)]
+
+    def velocity(t):
+        return 2.0 * t if t < 0.05 else 0.1 if t < 0.1 else -0.05
+
+    drives = kv.Drive(history=ramp), kv.Drive(function=velocity, breaks=(0.05, 0.1))
+    one, other = (
+        kv.elements(kv.Scene(drive=drive), certify=False, at=[0.03, 0.1, 0.17]) for drive in drives
+    )
+    for name in TRANSIENT_UNITS:
+        np.testing.assert_allclose(
+            getattr(one, name), getattr(other, name), rtol=1e-7, err_msg=name
+        )
+
+
+def test_path_of_a_function():
+    path = Path(kv.Drive(function=lambda t: math.cos(7.0 * t)), 3.0)
+    times = np.linspace(0.0, 3.0, 50)
+    found = [path.displacement(float(t)) for t in times]
+    assert found == pytest.approx(np.sin(7.0 * times) / 7.0, abs=1e-9)
+    assert path.extremes(0.0, 3.0) == pytest.approx((-1 / 7, 1 / 7), abs=1e-4)
+    with pytest.raises(ValueError, match="not smooth"):
+        Path(kv.Drive(function=lambda t: float(t > 0.123)), 1.0)
+
+
+def test_momentum_is_balanced_over_every_step():
+    """Eq. 17, by the forces at many instants."""
+    times = np.linspace(0.0, 0.02, 401)
+    result = kv.elements(at=times, certify=False)
+    net = result.normal_force - 1e3 * kv.DeadWeight(1e3).gravity
+    impulse = np.concatenate([[0.0], np.cumsum(0.5 * (net[1:] + net[:-1]) * np.diff(times))])
+    np.testing.assert_allclose(-1e3 * result.depth_rate, impulse, atol=2e-3 * np.abs(impulse).max())
+
+
+def test_steps_that_find_no_element_fly():
+    """In flight the indenter falls freely."""
+    model = Model.of(kv.Scene(), 5e-6)
+    elements = Row(model, Path(kv.Drive(0.1), 1.0))
+    for scheme in SCHEMES.values():
+        new = scheme.step(model, elements, Motion(0.0, -1e-3, 0.0), 1e-4)
+        assert new.rate == pytest.approx(9.80665e-4, rel=1e-9)
+
+
+def test_a_circle_pressed_in_almost_to_its_reach():
+    scene = sliding(0.1, indenter=kv.Circle(0.01), duration=0.02)
+    scene = kv.Scene(scene.indenter, scene.foundation, kv.Fixed(0.0095), scene.drive, scene.run)
+    for scheme in SCHEMES:
+        result = kv.elements(scene, per_length="20 /mm", scheme=scheme, certify=False)
+        assert np.all(np.isfinite(result.friction_force))
+        assert result.leading_edge == pytest.approx(
+            kv.steady(scene, method="quadrature").leading_edge, rel=5e-3
+        )
+
+
+# Use
+
+
+def test_default_rows_and_units():
+    result = kv.elements(per_length=1e5, certify=False)
+    assert result.per_length == pytest.approx(1e5, rel=1e-15)
+    assert result.time[0] == 0.0
+    assert result.time[-1] == 0.2
+    assert 200 <= result.time.size <= 402
+    assert result.element_updates > result.steps > 0
+    assert set(result.as_dict()) >= {*TRANSIENT_UNITS, "scheme", "model", "certificate", "warning"}
+    assert result.as_dict()["certificate"]["relative_error"]["depth"] is None
+
+
+def test_progress_counts_to_the_end():
+    seen = []
+    result = kv.elements(
+        at=[0.01, 0.02], certify=False, progress=lambda n, total: seen.append((n, total))
+    )
+    assert seen[-1] == (result.steps, result.steps)
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        ({"scheme": "papper"}, ['"papper"', 'did you mean "paper"']),
+        ({"per_length": "200"}, ["per_length", "no unit", "/mm"]),
+        ({"per_length": -1.0}, ["per_length", "range"]),
+        ({"per_length": "1 /m"}, ["per_length", "expected"]),
+        ({"per_length": 1e15}, ["per_length", "expected"]),
+        ({"time_step": "0 s"}, ["time_step", "above 0"]),
+        ({"at": "1 s"}, ["at", "run.duration"]),
+        ({"at": "1 m", "time_step": "fast"}, ["at", "time_step"]),
+    ],
+)
+def test_bad_arguments(options, words):
+    with pytest.raises(ValueError, match=words[0]) as error:
+        kv.elements(**options)
+    for word in words:
+        assert word in str(error.value)
+
+
+def test_the_papers_step_needs_motion():
+    with pytest.raises(ValueError, match="infinite for a drive at rest: give a `time_step`"):
+        kv.elements(sliding(0.0), scheme="paper")
+    still = kv.elements(sliding(0.0), scheme="paper", time_step="0.2 ms", certify=False)
+    assert np.ptp(still.depth) <= 1e-12 * still.depth[0]
+
+
+def test_command_prints_and_writes(tmp_path):
+    record = json.loads(run("--json", "--at", "0 ms,1 ms,200 ms").stdout)
+    assert list(record)[: len(TRANSIENT_UNITS)] == list(TRANSIENT_UNITS)
+    assert record["normal_force"] == pytest.approx([35367.19, 12732.9, 9806.65], rel=1e-3)
+    assert (record["model"], record["scheme"]) == ("elements", "edge-corrected")
+    target = tmp_path / "run.csv"
+    shown = run("-o", str(target), "--per-length", "50 /mm").stdout
+    assert "nan" not in shown
+    assert "50 elements per mm" in shown
+    with target.open(newline="") as file:
+        rows = list(csv.reader(file))
+    assert rows[0][:3] == ["time [s]", "velocity [m/s]", "depth [m]"]
+    run("-o", str(tmp_path / "run.nc"), "--per-length", "50 /mm")
+    xarray = pytest.importorskip("xarray")
+    with xarray.open_dataset(tmp_path / "run.nc", engine="scipy") as data:
+        assert data.attrs["model"] == "elements"
+        assert data["depth"].size == len(rows) - 1
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (["--scheme", "euler"], ['"euler"', "explicit-euler"]),
+        (["--per-length", "200 mm"], ["per_length", "1/m"]),
+        (["--time-step", "1"], ["time_step", "no unit"]),
+        (["-o", "run.xls"], ["run.xls", ".csv"]),
+        (["--scheme", "paper", "--set", "drive.velocity=5 mm/s", "-o", "run.csv"],
+         ["warning: the run may diverge", "diverged at t =", "would do"]),
+    ],
+)  # fmt: skip
+def test_bad_input_costs_status_2_and_writes_nothing(arguments, words, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    result = run(*arguments, status=2)
+    assert result.stdout == ""
+    for word in words:
+        assert word in result.stderr, result.stderr
+    assert not list(tmp_path.iterdir())
+
+
+def test_the_package_does_not_hide_the_function():
+    """`kvtheory.elements` is both: the name stands for the function, before and after its first use."""
+    kv.elements(at=0.0, certify=False)
+    assert callable(kv.elements)
+    import kvtheory.elements.schemes  # noqa: F401
+
+    assert callable(kv.elements)

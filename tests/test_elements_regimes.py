@@ -1,0 +1,180 @@
+"""The discrete simulator against theory, in each regime of the transient.
+
+The truth is the frozen table of `tests/transient_reference.py`, computed by methods that share no code
+with the simulator, and `kv.transient`. Scaled scenes are run with R = 1/2, K = tau = delta_0 = 1, so
+that the static half length is 1 and the static load 4/3.
+"""
+
+import json
+import math
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import kvtheory as kv
+
+TABLE = json.loads((Path(__file__).parent / "data" / "transient_reference.json").read_text())
+LOAD = 4.0 / 3.0
+QUANTITIES = {"d": "depth", "v": "depth_rate", "f_z": "normal_force", "f_x": "friction_force"}
+SCALES = {"d": 1.0, "v": 1.0, "f_z": LOAD, "f_x": LOAD, "left": 1.0, "right": 1.0}
+DENSITY = 60.0
+REGIMES = (
+    *("start", "start-heavy", "start-suspended", "start-lambda-100", "stop", "slow-down"),
+    *("stop-and-go", "reversal", "ramp", "oscillation-slow", "oscillation-fast"),
+    *(
+        "suspended-stop",
+        "suspended-reversal",
+        "fixed-stop",
+        "fixed-reversal",
+        "hop",
+        "drop",
+        "bounce",
+    ),
+)
+POINT_SCHEMES = ("paper", "explicit-euler", "semi-implicit", "exponential")
+
+
+def scene(name):
+    entry = TABLE[name]
+    epsilon, drive = entry["epsilon"], entry["drive"]
+    support = kv.Fixed(1.0)
+    if epsilon is not None:
+        mass, gravity = LOAD * epsilon, 1.0 / epsilon
+        support = kv.DeadWeight(mass, gravity)
+        if entry["kappa"]:
+            support = kv.Suspended(mass, entry["kappa"] * LOAD, gravity)
+    if isinstance(drive, dict):
+        mean, amplitude, frequency = drive.values()
+        motion = kv.Drive(function=lambda t: mean + amplitude * math.cos(frequency * t))
+    else:
+        motion = kv.Drive(history=[tuple(point) for point in drive])
+    run = kv.Run(entry["times"][-1])
+    return kv.Scene(kv.Parabola(0.5), kv.Foundation(1.0, 1.0), support, motion, run)
+
+
+def truth(name, quantity):
+    return np.array(TABLE[name]["values"][quantity], dtype=float) * SCALES[quantity]
+
+
+def simulate(name, density=DENSITY, **options):
+    return kv.elements(scene(name), per_length=density, at=TABLE[name]["times"], **options)
+
+
+def differences(name, run):
+    """Return the largest difference of each quantity, with the edges from left to right."""
+    found = {q: getattr(run, column) for q, column in QUANTITIES.items()}
+    found["left"] = np.minimum(run.leading_edge, run.trailing_edge)
+    found["right"] = np.maximum(run.leading_edge, run.trailing_edge)
+    return {q: np.nanmax(np.abs(found[q] - truth(name, q)), initial=0.0) for q in found}
+
+
+def certified(run):
+    """Return the errors that the certificate allows, as absolute errors in the scaled scene."""
+    allowed = run.certificate.relative_error
+    edge = max(allowed["leading_edge"], allowed["trailing_edge"])
+    known = {q: allowed[column] * SCALES[q] for q, column in QUANTITIES.items()}
+    return known | {"left": edge, "right": edge}
+
+
+@pytest.mark.parametrize("name", REGIMES)
+def test_every_regime_agrees_with_theory_and_the_certificate_covers_the_error(name):
+    run = simulate(name)
+    flying = np.isnan(truth(name, "left"))
+    assert np.array_equal(np.isnan(run.leading_edge), flying)
+    assert np.all(run.normal_force[flying] == 0.0)
+    allowed = certified(run)
+    for quantity, difference in differences(name, run).items():
+        assert difference <= allowed[quantity] + 1e-12, quantity
+        largest = max(1.0, np.nanmax(np.abs(truth(name, quantity))))
+        assert difference <= 0.03 * largest, quantity
+    assert run.warning == ""
+
+
+@pytest.mark.parametrize("scheme", POINT_SCHEMES)
+@pytest.mark.parametrize("name", ["start-heavy", "stop-and-go", "oscillation-fast", "hop"])
+def test_the_certificate_covers_the_error_of_every_scheme(scheme, name):
+    run = simulate(name, scheme=scheme, time_step=0.004)
+    allowed = certified(run)
+    for quantity, difference in differences(name, run).items():
+        assert difference <= allowed[quantity], quantity
+
+
+def fitted_order(errors):
+    """Return the slope of log error over log refinement, refined twofold each time."""
+    return -np.polyfit(np.arange(len(errors)), np.log2(errors), 1)[0]
+
+
+@cache
+def while_refining(name, scheme):
+    """Return the differences with 40, 80 and 160 elements in a half length, and steps in proportion."""
+    return [
+        differences(
+            name, simulate(name, 40.0 * k, scheme=scheme, time_step=0.004 / k, certify=False)
+        )
+        for k in (1, 2, 4)
+    ]
+
+
+@pytest.mark.parametrize(
+    ("name", "quantity"),
+    [
+        *(("hop", q) for q in ("d", "v", "f_z", "f_x", "left", "right")),
+        *(("start-heavy", q) for q in ("d", "f_x", "left")),
+        *(("suspended-stop", "d"), ("reversal", "d"), ("oscillation-fast", "f_x")),
+    ],
+)
+def test_edge_corrected_is_of_second_order(name, quantity):
+    order = fitted_order([found[quantity] for found in while_refining(name, "edge-corrected")])
+    assert order == pytest.approx(2.0, abs=0.15)
+
+
+@pytest.mark.parametrize("scheme", POINT_SCHEMES)
+@pytest.mark.parametrize("quantity", ["f_z", "f_x"])
+def test_forces_of_whole_elements_are_of_first_order(scheme, quantity):
+    order = fitted_order([found[quantity] for found in while_refining("hop", scheme)])
+    assert order == pytest.approx(1.0, abs=0.05)
+
+
+@pytest.mark.parametrize(
+    ("scheme", "order"), [("semi-implicit", 1.0), ("explicit-euler", 1.0), ("exponential", 2.0)]
+)
+def test_order_in_time_at_a_fine_spacing(scheme, order):
+    options = {"density": 400.0, "scheme": scheme, "certify": False}
+    errors = [
+        differences("start-heavy", simulate("start-heavy", time_step=h, **options))["v"]
+        for h in (0.1, 0.05, 0.025)
+    ]
+    assert fitted_order(errors) == pytest.approx(order, abs=0.15)
+
+
+def test_whole_elements_carry_a_sawtooth_of_the_edge_pressure():
+    """Theorem F15-sawtooth: +- p_LE dx/2, at instants that see every phase of the elements."""
+    still = kv.Scene.table1("fixed")
+    steady = kv.steady(still)
+    dx, times = 5e-6, np.linspace(0.01, 0.0101, 60)
+    runs = {
+        scheme: kv.elements(still, at=times, scheme=scheme, time_step=2e-6, certify=False)
+        for scheme in ("paper", "exponential", "edge-corrected")
+    }
+    predicted = 0.5 * steady.peak_pressure * dx
+    for scheme in ("paper", "exponential"):
+        excess = runs[scheme].normal_force - steady.load
+        assert excess.max() == pytest.approx(predicted, rel=0.1)
+        assert excess.min() == pytest.approx(-predicted, rel=0.1)
+    corrected = np.abs(runs["edge-corrected"].normal_force - steady.load)
+    assert corrected.max() < 2e-3 * predicted
+
+
+def test_table_1_against_the_continuum():
+    times = [0.0, 1e-4, 1e-3, 5e-3, 0.02, 0.1, 0.2]
+    theory = kv.transient(at=times, rtol=1e-10)
+    run = kv.elements(at=times)
+    scale = {"depth": 1e-5, "depth_rate": 2e-4, "normal_force": 2e-4, "friction_force": 2e-4,
+             "leading_edge": 1e-5, "trailing_edge": 3e-4, "peak_pressure": 1e-4}  # fmt: skip
+    for name, bound in scale.items():
+        expected = getattr(theory, name)
+        difference = np.abs(getattr(run, name) - expected).max() / np.abs(expected).max()
+        assert difference < bound, name
+    np.testing.assert_allclose(run.velocity, theory.velocity, rtol=1e-15)
