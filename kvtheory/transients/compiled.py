@@ -35,9 +35,25 @@ UNCOUNTED: Any = {"_nrt": False}
 """Kernels allocate nothing, so that numba need not count references to rows: it takes half the time."""
 
 
+WORTHWHILE = 4000
+"""Steps that are interpreted before it pays to compile: about a second. To load compiled kernels takes
+half a second, to compile them, once for an installation, a quarter of a minute."""
+
+
+class Tally:
+    """How many steps were interpreted in this process."""
+
+    steps = 0
+
+
 def available() -> bool:
     """Whether numba is installed: the extra `fast`."""
     return find_spec("numba") is not None
+
+
+def worthwhile() -> bool:
+    """Whether the kernels should be compiled from now on: the numbers are the same."""
+    return Tally.steps >= WORTHWHILE and available()
 
 
 def sources(modules: tuple[ModuleType, ...] = MODULES) -> str:
@@ -66,13 +82,17 @@ def kernels() -> tuple[Callable[..., int], Callable[..., None]]:
                 register_jitable(**UNCOUNTED)(function)
     digest = sources()
 
-    @njit(cache=True, nogil=True, **UNCOUNTED)
     def walk(progress: Any, attempts: int) -> int:
         return stepping.walk(progress, attempts) if digest else 0
 
-    @njit(cache=True, nogil=True, **UNCOUNTED)
     def states_at(times: Any, found: Any, nodes: Any, records: Any, pieces: Any) -> None:
         if digest:
             states.states(times, found, nodes, records, pieces)
 
-    return walk, states_at
+    def compiled(entry: Any) -> Any:
+        try:
+            return njit(entry, cache=True, nogil=True, **UNCOUNTED)
+        except RuntimeError:  # no place to keep it: the package and the home are read-only
+            return njit(entry, nogil=True, **UNCOUNTED)
+
+    return compiled(walk), compiled(states_at)

@@ -22,7 +22,7 @@ from kvtheory.transients import history as h_
 from kvtheory.transients import run as r_
 from kvtheory.transients.contact import FREE, PEELING, TOUCHING
 from kvtheory.transients.drive import Drive
-from kvtheory.transients.run import Run, StepControl, begin, with_more_room
+from kvtheory.transients.run import Run, StepControl, as_arrays, begin, with_more_room
 
 STEP_LIMIT = 100_000
 ATTEMPTS = 1000
@@ -190,7 +190,8 @@ def solve(
     rtol
         Error allowed in a step for d' relative to 1 + |d'|, all along the step.
     fast
-        Whether the kernels are compiled; by default, if numba is installed.
+        Whether the kernels are compiled; by default, if numba is installed and enough steps were
+        interpreted for that to pay. The numbers are the same.
     control
         What sets the steps beside the tolerance.
     progress
@@ -213,23 +214,35 @@ def solve(
         raise ValueError(
             "expected `inertia_number` > 0, `support_number` >= 0, 1e-13 <= `rtol` <= 1e-2"
         )
-    fast = compiled.available() if fast is None else fast
     numbers = float(inertia_number), float(support_number)
-    run = begin(drive, *numbers, float(end), rtol, control, arrays=fast)
-    walk: Callable[[Run, int], int] = compiled.kernels()[0] if fast else stepping.walk
-    left = STEP_LIMIT
-    while (status := walk(run, min(ATTEMPTS, left))) != stepping.DONE:
+    arrays = compiled.worthwhile() if fast is None else fast
+    run = begin(drive, *numbers, float(end), rtol, control, arrays=arrays)
+    run, arrays = _followed(run, arrays, fast is None, progress)
+    return Motion(end, inertia_number, support_number, run, arrays)
+
+
+def _followed(
+    run: Run, arrays: bool, may_compile: bool, progress: Callable[[float], Any] | None
+) -> tuple[Run, bool]:
+    """Walk a run to its end; return it, and whether its rows are arrays for compiled kernels."""
+    left, status = STEP_LIMIT, stepping.PAUSED
+    while status != stepping.DONE:
+        if may_compile and not arrays and compiled.worthwhile():
+            run, arrays = as_arrays(run), True
+        walk: Callable[[Run, int], int] = compiled.kernels()[0] if arrays else stepping.walk
+        status = walk(run, min(ATTEMPTS, left))
+        before, left = left, STEP_LIMIT - int(run.now[r_.RECORDS] + run.now[r_.REJECTED])
+        compiled.Tally.steps += 0 if arrays else before - left
         s = float(run.now[r_.S])
         if status in REASONS:
             raise TransientError(REASONS[status], s)
         if status == stepping.FULL:
             run = with_more_room(run)
-        left = STEP_LIMIT - int(run.now[r_.RECORDS] + run.now[r_.REJECTED])
-        if left <= 0:
+        if left <= 0 and status != stepping.DONE:
             raise TransientError(f"more than {STEP_LIMIT} steps", s)
         if progress is not None:
             progress(s)
-    return Motion(end, inertia_number, support_number, run, fast)
+    return run, arrays
 
 
 def _lists(rows: Any, count: int) -> list[list[float]]:
