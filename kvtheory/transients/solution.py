@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from kvtheory.results import Event, Transient
+from kvtheory.results import Certificate, Event, Transient
 from kvtheory.scene.model import Fixed, Scene
 from kvtheory.scene.numbers import dimensionless_numbers
 from kvtheory.transients import states
@@ -181,6 +181,32 @@ def transient(
     progress: Callable[[float], Any] | None = None,
 ) -> Transient:
     """Solve a scene; `kvtheory.transient` documents it."""
+    solution, time, errors = certified(scene, times, rtol, progress)
+    motion = solution.motion
+    found = zip(force_maxima(motion), FORCE_MAXIMA, strict=True)
+    events = sorted([*motion.events, *found], key=itemgetter(0))
+    return Transient(
+        **solution.series(time),
+        events=tuple(Event(s * solution.units.time, kind) for s, kind in events),
+        steps=motion.steps,
+        evaluations=motion.evaluations,
+        compiled=motion.compiled,
+        model="continuum",
+        certificate=errors,
+        solution=solution,
+    )
+
+
+def certified(
+    scene: Scene,
+    times: ArrayLike | None,
+    rtol: float,
+    progress: Callable[[float], Any] | None = None,
+) -> tuple[Solution, Array, Certificate]:
+    """Solve a scene, and with a looser tolerance again; return the times (s) that are judged, too.
+
+    Without `times`, these are the natural ones.
+    """
     units = scales(scene)
     drive = scaled_drive(scene, units)
     rtol = min(rtol, LOOSEST)
@@ -199,18 +225,7 @@ def transient(
         with suppress(TransientError):  # a looser solution may fail where this one did not
             alike = control._replace(stages=stages_for(rtol))
             others.append(solved(part, COARSER * rtol, alike).states(time))
-    found = zip(force_maxima(fine.motion), FORCE_MAXIMA, strict=True)
-    events = sorted([*fine.motion.events, *found], key=itemgetter(0))
-    return Transient(
-        **fine.series(time),
-        events=tuple(Event(s * units.time, kind) for s, kind in events),
-        steps=fine.motion.steps,
-        evaluations=fine.motion.evaluations,
-        compiled=fine.motion.compiled,
-        model="continuum",
-        certificate=certificate(fine.states(time), others, rtol),
-        solution=fine,
-    )
+    return fine, time, certificate(fine.states(time), others, rtol)
 
 
 def _solution(

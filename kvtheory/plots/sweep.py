@@ -1,0 +1,180 @@
+"""Sweeps: a curve, a family of curves, or a map, whichever the dimensions ask for."""
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kvtheory.plots.style import LABELS, STYLE
+from kvtheory.scene.fields import nearest
+from kvtheory.sweeps.result import Sweep
+
+Array = NDArray[np.float64]
+
+MOST_CURVES = 8
+"""Values of the second dimension up to which curves are drawn; beyond, a map is easier to read."""
+DECADES = 1.5
+"""Range of positive values, in powers of ten, from which an axis or a colour is logarithmic."""
+
+SHOWN = {
+    "m": ("mm", 1e3),
+    "s": ("ms", 1e3),
+    "m/s": ("mm/s", 1e3),
+    "N/m": ("N/mm", 1e-3),
+    "Pa": ("MPa", 1e-6),
+    "kg/m": ("kg/mm", 1e-3),
+    "N/m^3": ("N/mm$^3$", 1e-9),
+    "N/m^2": ("MN/m$^2$", 1e-6),
+    "m/s^2": ("m/s$^2$", 1.0),
+}
+"""Units of the axes, as in the paper, and the factors from SI."""
+
+
+class Side(NamedTuple):
+    """A dimension or a quantity as it is drawn."""
+
+    label: str
+    values: Array
+
+
+WORDS = {
+    "foundation.retardation_time": r"retardation time $\tau$",
+    "foundation.stiffness": r"stiffness of the foundation $K$",
+    "indenter.radius": r"radius $R$",
+    "support.mass": r"mass $M$",
+    "support.gravity": r"gravity $g$",
+    "support.stiffness": r"stiffness of the support $k_s$",
+    "run.duration": "duration",
+    "peak_to_steady_friction": "peak friction / steady friction",
+}
+"""Names for what has none in `LABELS`; all others are shown as they are."""
+FIRST = "friction_coefficient"
+"""Drawn where it is there and no quantity is named."""
+
+
+def plot_sweep(ax: Any, result: Sweep, quantity: str | None = None, **style: Any) -> Any:
+    """Draw one quantity of a sweep on `ax`, or on a new figure, and return the axes.
+
+    Along one dimension it is a curve; along two, with at most eight values of one, a family of
+    curves; else a map. Dimensions of a single value are left out. `Sweep.plot` documents the errors.
+    """
+    numeric = [name for name, unit in result.units.items() if unit and name in result.values]
+    name = quantity or (FIRST if FIRST in numeric else next(iter(numeric), ""))
+    if name not in numeric:
+        raise ValueError(f'`quantity` = "{name}": {nearest(name, numeric)}')
+    sides, values = _drawn(result, name)
+    if len(sides) > 2:
+        told = ", ".join(side.label for side in sides)
+        raise ValueError(
+            f"a picture has two dimensions, this sweep has {len(sides)} ({told}): "
+            "choose a part with to_xarray().sel(...)"
+        )
+    if ax is None:
+        from matplotlib.figure import Figure
+
+        ax = Figure(figsize=(5.0, 3.8), layout="constrained").subplots()
+    value = _side(name, result.units[name], values)
+    if len(sides) == 2 and min(side.values.size for side in sides) > MOST_CURVES:
+        _map(ax, sides, value, style)
+    else:
+        _curves(ax, sides, value, style)
+    return ax
+
+
+def check_picture(path: Path) -> None:
+    """Raise `ValueError` unless matplotlib can write a picture with this suffix, `OSError` if not there."""
+    from matplotlib.backend_bases import FigureCanvasBase
+
+    if path.suffix[1:] not in FigureCanvasBase.get_supported_filetypes():
+        raise ValueError(f'--plot "{path}": expected a name that ends in .png, .svg or .pdf')
+    if not path.parent.is_dir():
+        raise OSError(f'--plot "{path}": there is no directory "{path.parent}"')
+
+
+def save_sweep_plot(result: Sweep, path: Path) -> None:
+    """Draw the first quantity of a sweep and write it as the suffix of `path` says."""
+    import matplotlib as mpl
+
+    from kvtheory.export import replace_file
+
+    check_picture(path)
+    with mpl.rc_context({**STYLE}):
+        replace_file(path, plot_sweep(None, result).figure.savefig)
+
+
+def _drawn(result: Sweep, name: str) -> tuple[list[Side], Array]:
+    """Return the dimensions with more than one value, and the values over them."""
+    values = np.asarray(result.values[name])
+    sides = []
+    for axis in result.axes:
+        key, array = next(iter(axis.values.items()))
+        label = _side(key, result.units[key], array)
+        together = ", ".join(other for other in axis.values if other != key)
+        sides.append(
+            label._replace(label=f"{label.label} (with {together})") if together else label
+        )
+    if result.time is not None and values.ndim > len(sides):
+        sides.append(_side("time", "s", result.time))
+    kept = [side for side in sides if side.values.size > 1]
+    return kept, values.reshape([side.values.size for side in kept])
+
+
+def _side(name: str, unit: str, values: Array) -> Side:
+    base = name.rpartition(".")[2]
+    if base in LABELS:
+        label, factor = LABELS[base]
+    else:
+        shown, factor = SHOWN.get(unit, ("", 1.0))
+        words = WORDS.get(name, name.replace(".", ": ").replace("_", " "))
+        label = words + (f" [{shown}]" if shown else "")
+    return Side(label, np.asarray(values, dtype=float) * factor)
+
+
+def _logarithmic(values: Array) -> bool:
+    """Whether finite values are positive and range over decades."""
+    finite = values[np.isfinite(values)]
+    return bool(finite.size and finite.min() > 0.0 and finite.max() >= finite.min() * 10.0**DECADES)
+
+
+def _scale(values: Array) -> str:
+    return "log" if _logarithmic(values) else "linear"
+
+
+def _map(ax: Any, sides: Sequence[Side], value: Side, style: Any) -> None:
+    from matplotlib.colors import LogNorm
+
+    y, x = sides
+    norm = LogNorm() if _logarithmic(value.values) else None
+    settings: dict[str, Any] = {"cmap": "cividis", "shading": "nearest", "rasterized": True}
+    order = np.argsort(y.values), np.argsort(x.values)
+    image = ax.pcolormesh(
+        x.values[order[1]], y.values[order[0]],
+        np.ma.masked_invalid(value.values[np.ix_(*order)]), norm=norm, **{**settings, **style},
+    )  # fmt: skip
+    ax.set(xlabel=x.label, ylabel=y.label, xscale=_scale(x.values), yscale=_scale(y.values))
+    ax.grid(False)
+    ax.figure.colorbar(image, ax=ax, label=value.label)
+
+
+def _curves(ax: Any, sides: Sequence[Side], value: Side, style: Any) -> None:
+    from matplotlib import colormaps
+
+    sides = list(sides) or [Side("point", np.zeros(1))]
+    values = value.values
+    if len(sides) == 2 and sides[0].values.size >= sides[1].values.size:
+        sides, values = sides[::-1], values.T  # the shorter side tells the curves apart
+    x = sides[-1]
+    order = np.argsort(x.values)
+    marker = "o" if x.values.size == 1 else ""
+    rows = values.reshape(-1, x.values.size)
+    names = [None] if len(sides) == 1 else [f"{v:.4g}" for v in sides[0].values]
+    for row, name, shade in zip(rows, names, np.linspace(0.0, 0.85, len(rows)), strict=True):
+        ax.plot(
+            x.values[order], row[order],
+            **{"label": name, "color": colormaps["viridis"](shade), "marker": marker, **style},
+        )  # fmt: skip
+    ax.set(xlabel=x.label, ylabel=value.label, xscale=_scale(x.values), yscale=_scale(values))
+    if len(sides) == 2:
+        ax.legend(title=sides[0].label)

@@ -1,0 +1,210 @@
+"""One block of a sweep: a small task in, numbers out. The only place where scenes are solved.
+
+`compute` is a function of its argument alone, so every executor and every cut into blocks gives the
+same bits; a scene that fails is a missing value with its reason, and its neighbours are not touched.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kvtheory.scene.model import Drive, Scene
+from kvtheory.scene.over import values
+from kvtheory.steady_state.methods import METHODS
+from kvtheory.sweeps.axes import narrowed, values_at
+from kvtheory.sweeps.columns import Column
+from kvtheory.sweeps.plan import Plan
+
+Array = NDArray[np.float64]
+
+FAILS = (ValueError, ArithmeticError, RuntimeError)
+"""What a scene without an answer raises; anything else is a mistake of the program."""
+
+
+@dataclass(frozen=True)
+class Task:
+    """Points `start` to `stop` of a sweep; its plan holds only the values that they need."""
+
+    plan: Plan
+    start: int
+    stop: int
+    moved: int
+
+    @property
+    def points(self) -> int:
+        """How many scenes it holds."""
+        return self.stop - self.start
+
+
+@dataclass(frozen=True)
+class Block:
+    """Results of the points `start` to `stop`: `numbers` has a row for each number of a point.
+
+    `texts` has a list for each column of text; `failures` are pairs of index and reason;
+    `errors` is the certificate: the statements, and the worst relative error of each quantity.
+    """
+
+    start: int
+    stop: int
+    numbers: Array
+    texts: Sequence[Sequence[str]]
+    failures: Sequence[tuple[int, str]]
+    errors: tuple[Sequence[str], Mapping[str, float]]
+
+
+def task(plan: Plan, start: int, stop: int) -> Task:
+    """Return the task for some points of a plan."""
+    axes, moved = narrowed(plan.axes, start, stop)
+    return Task(replace(plan, axes=axes), start, stop, moved)
+
+
+def compute(given: Task) -> Block:
+    """Solve the scenes of a task.
+
+    Examples
+    --------
+    >>> from kvtheory.sweeps.axes import axes_of
+    >>> from kvtheory.sweeps.columns import columns_of
+    >>> axes = axes_of(Scene(), {"drive.velocity": [0.1, 0.2, 0.4]})
+    >>> plan = Plan(Scene(), axes, columns_of("depth", series=False), None, "exact", 1e-6)
+    >>> compute(task(plan, 1, 3)).numbers.round(6).tolist()
+    [[4.7e-05, 2.4e-05]]
+    """
+    plan = given.plan
+    over = values_at(plan.axes, given.start - given.moved, given.stop - given.moved)
+    numbers = np.full((sum(plan.rows(column) for column in plan.numeric), given.points), np.nan)
+    texts = [[""] * given.points for _ in plan.textual]
+    reasons: dict[int, str] = {}
+    statements: set[str] = set()
+    errors: dict[str, float] = {}
+    needed = {column.base for column in plan.columns if column.steady} | plan.compared
+    steady: dict[str, Array] = {}
+    if needed:
+        told, found = _steady(plan, over, sorted(needed), steady, reasons)
+        statements |= told
+        for row, column in _placed(plan):
+            if column.steady:
+                numbers[row] = steady[column.base]
+                errors[column.name] = found.get(column.base, 0.0)
+    if plan.transient:
+        into = numbers, texts, reasons, errors
+        statements |= _transients(given, over, steady, into)
+    for index in reasons:
+        numbers[:, index] = np.nan
+        for text in texts:
+            text[index] = ""
+    failures = [(given.start + index, reasons[index]) for index in sorted(reasons)]
+    return Block(given.start, given.stop, numbers, texts, failures, (sorted(statements), errors))
+
+
+def _placed(plan: Plan) -> list[tuple[int, Column]]:
+    """Return each column of numbers with its first row."""
+    found, row = [], 0
+    for column in plan.numeric:
+        found.append((row, column))
+        row += plan.rows(column)
+    return found
+
+
+def _steady(
+    plan: Plan,
+    over: Mapping[str, Array],
+    names: Sequence[str],
+    found: dict[str, Array],
+    reasons: dict[int, str],
+) -> tuple[set[str], dict[str, float]]:
+    """Find quantities of steady sliding; halve a block that fails until the scene at fault is alone.
+
+    Returns the statements of the certificates and the worst errors.
+    """
+    count = next(iter(over.values())).size
+    over = {key: array for key, array in over.items() if key != "run.duration"}
+    found |= {name: np.full(count, np.nan) for name in names}
+    statements: set[str] = set()
+    errors: dict[str, float] = {}
+    waiting = [(0, count)]
+    while waiting:
+        a, b = waiting.pop()
+        part = {key: array[a:b] for key, array in over.items()}
+        try:
+            with np.errstate(over="raise", invalid="raise", divide="raise"):
+                state = METHODS[plan.method](plan.scene, values(plan.scene, part))
+        except FAILS as error:
+            if b - a > 1:
+                middle = (a + b) // 2
+                waiting += [(middle, b), (a, middle)]
+            else:
+                reasons[a] = reason(error)
+            continue
+        statements.add(state.certificate.statement)
+        for name in names:
+            found[name][a:b] = getattr(state, name)
+            worst(errors, name, state.certificate.relative_error[name])
+    return statements, errors
+
+
+def _transients(
+    given: Task,
+    over: Mapping[str, Array],
+    steady: Mapping[str, Array],
+    into: tuple[Array, Sequence[list[str]], dict[int, str], dict[str, float]],
+) -> set[str]:
+    """Follow the motions one by one; return the statements of the certificates."""
+    from kvtheory.sweeps import measures  # it imports the solver, which takes a while
+
+    plan, (numbers, texts, reasons, errors) = given.plan, into
+    statements: set[str] = set()
+    placed = [(row, column) for row, column in _placed(plan) if not column.steady]
+    bases = {column.base for _, column in placed if column.base} | plan.compared
+    for index in range(given.points):
+        if index in reasons:
+            continue
+        point = {key: float(array[index]) for key, array in over.items()}
+        compared = {name: float(array[index]) for name, array in steady.items()}
+        try:
+            with np.errstate(over="raise", invalid="raise", divide="raise"):
+                scene = at_point(plan.scene, point)
+                answer, certificate = measures.follow(scene, plan, compared)
+        except FAILS as error:
+            reasons[index] = reason(error)
+            continue
+        statements.add(certificate.statement)
+        for name in bases:
+            worst(errors, name, certificate.relative_error[name])
+        for row, column in placed:
+            numbers[row : row + plan.rows(column), index] = answer[column.name]
+        for column, text in zip(plan.textual, texts, strict=True):
+            text[index] = answer[column.name]
+    return statements
+
+
+def at_point(scene: Scene, point: Mapping[str, float]) -> Scene:
+    """Return the scene with some values replaced; a velocity replaces a history.
+
+    >>> at_point(Scene(), {"drive.velocity": 0.5, "support.mass": 10.0}).support.mass
+    10.0
+    """
+    parts: dict[str, Any] = {}
+    for key, value in point.items():
+        section, _, name = key.partition(".")
+        if section == "drive":
+            parts[section] = Drive(velocity=value)
+        else:
+            part = parts.get(section, getattr(scene, section))
+            parts[section] = replace(part, **{name: value})
+    return replace(scene, **parts)
+
+
+def reason(error: Exception) -> str:
+    """Say on one line why a scene has no answer."""
+    range_left = isinstance(error, FloatingPointError | OverflowError | ZeroDivisionError)
+    told = "; ".join(str(error).splitlines()) or type(error).__name__
+    return f"the scene leaves the range of double precision: {told}" if range_left else told
+
+
+def worst(errors: dict[str, float], name: str, error: Any) -> None:
+    """Raise the error of a quantity to the largest seen."""
+    errors[name] = max(errors.get(name, 0.0), float(np.max(error, initial=0.0)))

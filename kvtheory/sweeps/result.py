@@ -1,0 +1,162 @@
+"""Many scenes at once: labelled arrays over the values that were swept."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kvtheory.results.certificate import Certificate, record
+from kvtheory.scene.files import to_toml
+from kvtheory.scene.model import Scene
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Axis:
+    """One dimension of a sweep: the keys that vary along it together, and their values in SI."""
+
+    name: str
+    values: Mapping[str, Array]
+
+    @property
+    def size(self) -> int:
+        """How many points lie along it."""
+        return int(next(iter(self.values.values())).size)
+
+
+@dataclass(frozen=True)
+class Failure:
+    """A scene without an answer: its index in C order, what was swept there, and the reason."""
+
+    index: int
+    point: Mapping[str, float]
+    reason: str
+
+
+@dataclass(frozen=True)
+class Sweep:
+    """Answers over many scenes, as arrays over `axes` in SI; a missing value is NaN.
+
+    `values` maps each quantity to an array with one dimension for each axis, and `time` as the last
+    one for a series; `events` is an array of JSON texts. Where the sweep was written to a file,
+    `path`, the arrays are read from there when they are asked for. `units` covers swept keys and
+    quantities. `failures` lists scenes that failed: all of them, or for a file the first hundred;
+    `failed` counts them all. The errors in the certificate are the worst over the sweep.
+    """
+
+    scene: Scene
+    axes: tuple[Axis, ...]
+    time: Array | None
+    values: Mapping[str, Any]
+    units: Mapping[str, str]
+    points: int
+    failed: int
+    failures: tuple[Failure, ...]
+    certificate: Certificate
+    version: str
+    path: Path | None = None
+    plan: Any = field(default=None, repr=False, compare=False)
+    """What was asked, from which files are written."""
+
+    def __getitem__(self, name: str) -> Any:
+        """Return the array of a swept key or a quantity."""
+        swept = {key: array for axis in self.axes for key, array in axis.values.items()}
+        return swept[name] if name in swept else self.values[name]
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """The lengths of the axes."""
+        return tuple(axis.size for axis in self.axes)
+
+    def to_xarray(self) -> Any:
+        """Return an `xarray.Dataset` with labels, units, and the scene in its attributes.
+
+        Raises
+        ------
+        ValueError
+            If xarray is missing.
+
+        Examples
+        --------
+        >>> import kvtheory as kv
+        >>> data = kv.sweep(over={"drive.velocity": ["1 mm/s", "1 m/s"]}).to_xarray()
+        >>> data["friction_coefficient"].sel({"drive.velocity": 1.0}).round(4).item()
+        0.0294
+        """
+        try:
+            import xarray
+        except ModuleNotFoundError:
+            raise ValueError('this needs xarray: pip install "kvtheory[data]"') from None
+        dims = [axis.name for axis in self.axes]
+        coordinates: dict[str, Any] = {
+            key: (axis.name, array, {"units": self.units[key]})
+            for axis in self.axes
+            for key, array in axis.values.items()
+        }
+        if self.time is not None:
+            coordinates["time"] = ("time", self.time, {"units": "s"})
+        columns = {}
+        for name in self.values:
+            array = np.asarray(self.values[name])
+            own = [*dims, "time"] if array.ndim > len(dims) else dims
+            units = {"units": self.units[name]} if self.units[name] else {}
+            columns[name] = (own, array, units)
+        attributes = {
+            "scene": to_toml(self.scene),
+            "kvtheory_version": self.version,
+            "certificate": self.certificate.statement,
+        }
+        return xarray.Dataset(columns, coordinates, attributes)
+
+    def plot(self, quantity: str | None = None, *, ax: Any = None) -> Any:
+        """Draw a quantity as a curve, a family of curves, or a map.
+
+        Without a name it is the friction coefficient, or else the first quantity.
+
+        Returns the matplotlib axes; without `ax`, on a new figure.
+
+        Raises
+        ------
+        ValueError
+            If the quantity does not exist, is text, or has more than two dimensions.
+
+        Examples
+        --------
+        >>> import kvtheory as kv
+        >>> ax = kv.sweep(over={"drive.velocity": "1 mm/s:10 m/s:9:log"}).plot("friction_coefficient")
+        >>> ax.get_xlabel(), ax.get_xscale()
+        ('drive velocity $V$ [mm/s]', 'log')
+        """
+        from kvtheory.plots.sweep import plot_sweep
+
+        return plot_sweep(ax, self, quantity)
+
+    def save(self, path: str | Path) -> None:
+        """Write to ``.csv`` (one row for each point) or ``.nc`` (needs netCDF4); see `kvtheory.sweep`.
+
+        Raises
+        ------
+        ValueError
+            If the suffix is neither, or netCDF4 is missing.
+        OSError
+            If the file cannot be written.
+        """
+        from kvtheory.sweeps.files import save_sweep
+
+        save_sweep(self, Path(path))
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return plain Python values, ready for JSON; a missing value is None."""
+        swept = {key: array for axis in self.axes for key, array in axis.values.items()}
+        time = {} if self.time is None else {"time": self.time}
+        values = {name: self.values[name] for name in self.values}
+        return record(
+            {
+                **swept, **time, **values, "points": self.points, "failed": self.failed,
+                "failures": self.failures, "certificate": self.certificate,
+            }
+        )  # fmt: skip

@@ -1,0 +1,96 @@
+"""Executors: the caller's, our own of threads or processes, or one made by a named factory."""
+
+import importlib
+import multiprocessing
+import os
+import signal
+import threading
+from collections.abc import Iterator
+from concurrent.futures import Executor, ProcessPoolExecutor, ThreadPoolExecutor
+from contextlib import contextmanager
+
+from kvtheory.scene.fields import nearest
+from kvtheory.sweeps.engine import Workers
+
+AHEAD = 2
+"""Blocks in flight for each worker: one that is computed and one that waits for it."""
+UNKNOWN_WORKERS = 16
+"""Assumed of an executor that does not tell; on a larger cluster say `in_flight`."""
+
+
+@contextmanager
+def own_workers(jobs: int, *, threads: bool) -> Iterator[Workers]:
+    """Provide a pool of `jobs` workers, renewed when it breaks, and shut down at the end."""
+    made: list[Executor] = []
+
+    def workers() -> Executor:
+        if threads:
+            pool: Executor = ThreadPoolExecutor(jobs)
+        else:
+            pool = ProcessPoolExecutor(
+                jobs, multiprocessing.get_context("spawn"), initializer=_follow_parent
+            )
+        made.append(pool)
+        return pool
+
+    try:
+        yield workers
+    finally:
+        for pool in made:
+            pool.shutdown(wait=True, cancel_futures=True)
+
+
+def in_flight_of(executor: Executor | None, jobs: int) -> int:
+    """Return how many blocks to have in flight."""
+    if executor is None:
+        return AHEAD * jobs
+    return AHEAD * int(getattr(executor, "_max_workers", None) or UNKNOWN_WORKERS)
+
+
+def from_factory(text: str, jobs: int | None) -> Executor:
+    """Call the factory ``module:name``, with the number of jobs if one is given.
+
+    Raises
+    ------
+    ValueError
+        If there is no such module or name, or it does not give an executor.
+
+    Examples
+    --------
+    >>> with from_factory("concurrent.futures:ThreadPoolExecutor", 2) as executor:
+    ...     executor.submit(abs, -2).result()
+    2
+    """
+    given = f'--executor "{text}"'
+    name, sign, factory = text.partition(":")
+    if not (name and sign and factory):
+        raise ValueError(
+            f"{given}: expected module:factory, such as concurrent.futures:ThreadPoolExecutor"
+        )
+    try:
+        module = importlib.import_module(name)
+    except ImportError as error:
+        raise ValueError(f"{given}: the module cannot be imported: {error}") from None
+    if not hasattr(module, factory):
+        names = [known for known in dir(module) if not known.startswith("_")]
+        raise ValueError(f"{given}: {nearest(factory, names)}")
+    try:
+        executor = getattr(module, factory)(*([] if jobs is None else [jobs]))
+    except TypeError as error:
+        raise ValueError(f"{given}: the factory cannot be called: {error}") from None
+    if not (hasattr(executor, "submit") and hasattr(executor, "shutdown")):
+        raise ValueError(f"{given}: expected a concurrent.futures.Executor, got {executor!r}")
+    return executor
+
+
+def _follow_parent() -> None:
+    """Leave interrupts to the parent, and end with it, even if it is killed."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    threading.Thread(target=_end_with_parent, daemon=True).start()
+
+
+def _end_with_parent() -> None:
+    parent = multiprocessing.parent_process()
+    if parent is not None:
+        parent.join()
+        os._exit(1)

@@ -1,0 +1,95 @@
+"""Runs sweeps for the tests that disturb them; each tells how many points are kept, as it goes on.
+
+`python -m tests.sweep_driver OUTPUT JOBS [FILE_SIZE_LIMIT]` runs one, by processes if JOBS > 1.
+`... kill OUTPUT` runs it in children that are killed at random moments, until one comes to the end,
+and prints for each what it told first and last, and what was in the work file afterwards.
+"""
+
+import json
+import os
+import random
+import resource
+import signal
+import sqlite3
+import sys
+import time
+from pathlib import Path
+
+import kvtheory as kv
+
+POINTS = 6000
+BLOCK = 20
+SLOW_POINTS = 120
+OVER = {"drive.velocity": f"1 mm/s:10 m/s:{POINTS}:log"}
+MOST_REPORTS, LONGEST_DELAY = 12, 2e-3
+"""A child is killed after so many reports, of the 300 that a whole sweep makes, and so many seconds."""
+
+
+def run(output, **more):
+    return kv.sweep(over=OVER, quantities=["load", "depth"], output=output, block=BLOCK, **more)
+
+
+def run_slowly(output, **more):
+    """Run a sweep that is not done on arrays, for which own workers are processes."""
+    over = {"drive.velocity": f"10 mm/s:1 m/s:{SLOW_POINTS}:log"}
+    return kv.sweep(
+        over=over, quantities="load", method="quadrature", output=output, block=2, **more
+    )
+
+
+def kept(output):
+    """Points in the work file, or None where there is none."""
+    if not Path(f"{output}.part").exists():
+        return None
+    base = sqlite3.connect(f"{output}.part")
+    try:
+        tables = base.execute("SELECT count(*) FROM sqlite_master").fetchone()[0]
+        asked = "SELECT coalesce(sum(stop - start), 0) FROM blocks" if tables else "SELECT 0"
+        return base.execute(asked).fetchone()[0]
+    finally:
+        base.close()
+
+
+def tell(pipe):
+    return lambda done, before, failed, points: os.write(pipe, f"{done}\n".encode())
+
+
+def kill(output):
+    kv.sweep(over={"drive.velocity": "1 mm/s:1 m/s:2"})  # imports once what every child needs
+    chance = random.Random(0)
+    lives = []
+    while True:
+        ours, theirs = os.pipe()
+        child = os.fork()
+        if not child:
+            run(output, progress=tell(theirs))
+            os._exit(0)
+        os.close(theirs)
+        told, reports = b"", chance.randint(1, MOST_REPORTS)
+        while told.count(b"\n") < reports and (more := os.read(ours, 1 << 20)):
+            told += more
+        time.sleep(chance.uniform(0.0, LONGEST_DELAY))
+        os.kill(child, signal.SIGKILL)
+        _, status = os.waitpid(child, 0)
+        while more := os.read(ours, 1 << 20):
+            told += more
+        os.close(ours)
+        counts = [int(line) for line in told.split()] or [POINTS]
+        lives.append((counts[0], counts[-1], kept(output)))
+        if os.waitstatus_to_exitcode(status) == 0:
+            return lives
+
+
+if __name__ == "__main__":
+    if sys.argv[1] == "kill":
+        print(json.dumps(kill(sys.argv[2])))
+        sys.exit()
+    if len(sys.argv) > 3:
+        resource.setrlimit(resource.RLIMIT_FSIZE, (int(sys.argv[3]),) * 2)
+    try:
+        jobs = int(sys.argv[2])
+        (run if jobs == 1 else run_slowly)(Path(sys.argv[1]), jobs=jobs, progress=tell(1))
+    except (OSError, RuntimeError) as error:
+        sys.exit(f"{type(error).__name__}: {error}")
+    except KeyboardInterrupt:
+        sys.exit(130)

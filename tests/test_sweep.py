@@ -1,0 +1,331 @@
+"""Sweeps in memory and in files: what is swept, what is asked, labels, failures, pictures."""
+
+import csv
+import json
+import math
+
+import numpy as np
+import pytest
+
+import kvtheory as kv
+from kvtheory.results import STEADY_UNITS
+from kvtheory.scene.fields import quantities
+from kvtheory.sweeps import engine
+from kvtheory.sweeps.axes import axes_of, narrowed, size, values_at
+from kvtheory.sweeps.netcdf_file import rectangles
+from kvtheory.sweeps.progress import Progress
+
+V, TAU = "drive.velocity", "foundation.retardation_time"
+GRID = {V: "1 mm/s:10 m/s:7:log", TAU: ["10 ms", "1 s"]}
+# The smallest of these velocities underflows in steady sliding; the others do not.
+FAILING = {V: [1e-3, 1e-320, 0.1, 1e300], TAU: [0.1, 1e-300]}
+
+
+def assert_same(a, b):
+    assert a.shape == b.shape
+    assert list(a.values) == list(b.values)
+    for name in a.values:
+        assert np.array_equal(a[name], b[name], equal_nan=a.units[name] != ""), name
+
+
+def test_a_grid_equals_the_steady_states_of_its_points():
+    result = kv.sweep(over=GRID)
+    velocities, times = np.geomspace(1e-3, 10.0, 7), np.array([0.01, 1.0])
+    assert np.array_equal(result[V], velocities)
+    assert np.array_equal(result[TAU], times)
+    whole = kv.steady(over={V: velocities[:, None], TAU: times})
+    for name in STEADY_UNITS:
+        assert np.array_equal(result[name], getattr(whole, name))
+        assert result.units[name] == STEADY_UNITS[name]
+    assert (result.points, result.failed, result.shape) == (14, 0, (7, 2))
+    assert result.certificate.relative_error["depth"] < 1e-14
+
+
+def test_zipped_points_lie_on_the_diagonal():
+    pairs = kv.sweep(
+        over={(V, TAU): ("1 mm/s:1 m/s:4:log", [0.1, 0.2, 0.3, 0.4])}, quantities="load"
+    )
+    grid = kv.sweep(over={V: pairs[V], TAU: pairs[TAU]}, quantities="load")
+    assert np.array_equal(pairs["load"], np.diagonal(grid["load"]))
+    assert [axis.name for axis in pairs.axes] == ["point"]
+
+
+@pytest.mark.parametrize("block", [1, 2, 3, 5, 64])
+@pytest.mark.parametrize("support", ["fixed", "dead-weight", "suspended"])
+def test_every_cut_into_blocks_gives_the_same_bits(block, support):
+    scene = kv.Scene.table1(support)
+    over = {V: np.linspace(-2.0, 2.0, 13), TAU: np.geomspace(1e-3, 10.0, 5)}
+    assert_same(kv.sweep(scene, over=over), kv.sweep(scene, over=over, block=block))
+
+
+@pytest.mark.parametrize("method", ["quadrature", "asymptote"])
+def test_methods_reach_the_points(method):
+    over = {V: [0.01, 1.0]}
+    result = kv.sweep(over=over, quantities="friction_coefficient", method=method)
+    one = kv.steady(over=over, method=method)
+    assert np.array_equal(result["friction_coefficient"], one.friction_coefficient)
+
+
+@pytest.mark.parametrize("block", [1, 3, 8])
+def test_a_scene_that_fails_is_missing_with_its_reason_and_the_others_are_not(block):
+    result = kv.sweep(over=FAILING, block=block)
+    failed = {failure.index for failure in result.failures}
+    assert 0 < len(failed) == result.failed < result.points
+    for failure in result.failures:
+        assert "range of double precision" in failure.reason
+    for index, (i, j) in enumerate(np.ndindex(4, 2)):
+        point = {V: FAILING[V][i], TAU: FAILING[TAU][j]}
+        if index in failed:
+            assert next(f.point for f in result.failures if f.index == index) == point
+            assert np.isnan(result["depth"][i, j])
+            with pytest.raises(ValueError, match="double precision"):
+                kv.steady(over=point)
+        else:
+            assert result["depth"][i, j] == kv.steady(over=point).depth
+
+
+@pytest.mark.parametrize("suffix", [".csv", ".nc"])
+@pytest.mark.parametrize("over", [GRID, FAILING, {(V, TAU): ([0.1, 1.0], [1.0, 2.0])}])
+def test_files_hold_what_memory_holds(tmp_path, suffix, over):
+    path = tmp_path / f"map{suffix}"
+    stored, held = kv.sweep(over=over, output=path, block=3), kv.sweep(over=over)
+    assert_same(stored, held)
+    assert stored.failed == held.failed
+    assert stored.failures == held.failures
+    assert stored.certificate == held.certificate
+    assert [item.name for item in tmp_path.iterdir()] == [path.name]
+    saved = tmp_path / f"saved{suffix}"
+    held.save(saved)
+    assert_same(kv.sweep(over=over, output=saved), held)
+    if suffix == ".csv":
+        assert saved.read_bytes() == path.read_bytes()
+
+
+def test_csv_is_long_with_units_and_says_where_it_comes_from(tmp_path):
+    path = tmp_path / "map.csv"
+    scene = kv.Scene.table1("fixed")
+    result = kv.sweep(scene, over=FAILING, quantities=["load", "depth"], output=path)
+    lines = path.read_text(encoding="utf-8").splitlines()
+    comments = [line for line in lines if line.startswith("#")]
+    assert lines[: len(comments)] == comments
+    assert f"# version: {kv.__version__}" in comments
+    toml = "\n".join(line.removeprefix("#").strip() for line in comments if line.startswith("#   "))
+    assert [line.strip() for line in kv.to_toml(scene).splitlines() if line] == [
+        line for line in toml.splitlines() if line
+    ]
+    assert sum(line.startswith("# failed: point") for line in comments) == result.failed
+    head, *rows = csv.reader(lines[len(comments) :])
+    assert head == [f"{V} [m/s]", f"{TAU} [s]", "load [N/m]", "depth [m]"]
+    assert [float(row[0]) for row in rows] == [v for v in FAILING[V] for _ in range(2)]
+    loads = [math.nan if row[2] == "" else float(row[2]) for row in rows]
+    assert np.array_equal(loads, result["load"].reshape(-1), equal_nan=True)
+
+
+def test_netcdf_is_labelled_and_carries_units_and_scene(tmp_path):
+    import xarray
+
+    path = tmp_path / "map.nc"
+    result = kv.sweep(over=GRID, output=path)
+    with xarray.open_dataset(path) as data:
+        assert data["depth"].dims == (V, TAU)
+        assert data["depth"].attrs["units"] == "m"
+        assert data[V].attrs["units"] == "m/s"
+        assert data.attrs["scene"] == kv.to_toml(kv.Scene())
+        assert data.attrs["kvtheory_version"] == kv.__version__
+        found = data["load"].sel({V: 10.0, TAU: 1.0}).item()
+        assert found == kv.steady(over={V: 10.0, TAU: 1.0}).load
+    labelled = result.to_xarray()
+    assert labelled["load"].sel({V: 10.0, TAU: 1.0}).item() == found
+    assert labelled.attrs["scene"] == data.attrs["scene"]
+
+
+def test_netcdf_lists_failures(tmp_path):
+    import xarray
+
+    path = tmp_path / "map.nc"
+    result = kv.sweep(over=FAILING, output=path, block=2)
+    with xarray.open_dataset(path) as data:
+        assert data["failure_index"].values.tolist() == [f.index for f in result.failures]
+        assert data["failure_reason"].values.tolist() == [f.reason for f in result.failures]
+
+
+def test_a_long_header_fits_into_netcdf(tmp_path):
+    velocities = {V: np.linspace(0.1, 0.2, 3)}
+    at = np.linspace(0.0, 0.2, 20_000)
+    path = tmp_path / "long.nc"
+    kv.sweep(over=velocities, at=at, quantities="depth", output=path)
+    assert kv.sweep(over=velocities, at=at, quantities="depth", output=path)["depth"].shape == (
+        3,
+        20_000,
+    )
+
+
+def test_as_dict_is_json():
+    record = kv.sweep(over=FAILING, quantities="depth").as_dict()
+    text = json.dumps(record, allow_nan=False)
+    assert json.loads(text)["failures"][0]["reason"]
+
+
+@pytest.mark.parametrize(
+    ("over", "words"),
+    [
+        ({}, ["empty", "drive.velocity=1 mm/s"]),
+        ({"drive.velocty": [1.0]}, ["drive.velocty", 'did you mean "drive.velocity"']),
+        ({V: "1 mm/s:10 m/s"}, [V, "START:STOP:COUNT"]),
+        ({V: "1 mm/s:10 m/s:0"}, ["COUNT", "1"]),
+        ({V: "1 mm/s:10 m/s:2.5"}, ["COUNT", "2.5"]),
+        ({V: "1 mm/s:10 m/s:3:lin"}, ["log"]),
+        ({V: "-1 mm/s:10 m/s:3:log"}, ["one sign"]),
+        ({V: "1:10:3"}, [V, "no unit"]),
+        ({V: "1 mm/s:10 kg:3"}, ["another dimension", "m/s"]),
+        ({V: []}, ["empty"]),
+        ({V: [[0.1, 0.2]]}, ["one list"]),
+        ({V: [0.1, math.nan]}, ["out of range"]),
+        ({TAU: np.array([0.1, -1.0])}, [TAU, "out of range", "above 0"]),
+        ({(V, TAU): ([1.0, 2.0], [1.0])}, ["equally many", f"{V} 2", f"{TAU} 1"]),
+        ({(V, TAU): ([1.0],)}, ["a list for each key"]),
+        ({(V, V): ([1.0], [1.0])}, ["swept twice"]),
+        ({V: [0.1], (TAU, V): ([1.0], [1.0])}, ["swept twice"]),
+        ({"support.depth": [1e-3]}, ["support.depth", "support.mass"]),
+    ],
+)
+def test_wrong_axes_are_told(over, words):
+    with pytest.raises(kv.SceneError) as error:
+        kv.sweep(over=over)
+    for word in words:
+        assert word in str(error.value)
+
+
+def test_all_mistakes_are_told_at_once():
+    with pytest.raises(kv.SceneError) as error:
+        kv.sweep(over={"a.b": [1.0], V: "x", TAU: [-1.0]})
+    assert len(error.value.problems) == 3
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        ({"quantities": ["friction_coeficient"]}, ['did you mean "friction_coefficient"']),
+        ({"quantities": []}, ["empty"]),
+        ({"quantities": "depth.mean"}, ["depth.mean", "depth.min"]),
+        ({"method": "exat"}, ["exat", "exact"]),
+        ({"rtol": 0.0}, ["rtol"]),
+        ({"at": ["1 s"], "quantities": "depth"}, ["after the end"]),
+        ({"at": ["1 ms"], "quantities": "load"}, ["no quantity", "series"]),
+        ({"jobs": 0}, ["jobs", "at least 1"]),
+        ({"block": 2.5}, ["block", "whole number"]),
+        ({"executor": 3}, ["executor"]),
+        ({"output": "map.xls"}, ["map.xls", ".csv", ".nc"]),
+    ],
+)
+def test_wrong_arguments_are_told(arguments, words):
+    with pytest.raises(ValueError, match=r".") as error:
+        kv.sweep(over=GRID, **arguments)
+    for word in words:
+        assert word in str(error.value)
+
+
+def test_other_shapes_are_swept_by_quadrature_only():
+    wedge = kv.Scene(indenter=kv.Wedge(inclination=0.1))
+    over = {"indenter.inclination": [0.05, 0.1]}
+    result = kv.sweep(wedge, over=over, quantities="friction_coefficient")
+    assert result["friction_coefficient"][1] == kv.steady(wedge).friction_coefficient
+    with pytest.raises(ValueError, match="parabola only"):
+        kv.sweep(wedge, over=over, quantities="hops")
+    with pytest.raises(ValueError, match="parabola only"):
+        kv.sweep(wedge, over=over, method="exact")
+
+
+def test_what_is_sent_to_a_worker_is_small_and_right():
+    axes = axes_of(kv.Scene(), {V: np.linspace(1.0, 2.0, 50), TAU: np.linspace(1.0, 2.0, 1000)})
+    for start, stop in [(0, 1), (999, 1001), (2500, 2600), (0, 50_000), (49_999, 50_000)]:
+        whole = values_at(axes, start, stop)
+        few, moved = narrowed(axes, start, stop)
+        part = values_at(few, start - moved, stop - moved)
+        assert all(np.array_equal(part[key], whole[key]) for key in whole)
+    few, _ = narrowed(axes, 2500, 2600)
+    assert size(few) == 100
+
+
+def test_remaining_blocks_fill_the_gaps_once():
+    plan_axes = axes_of(kv.Scene(), {V: np.linspace(1.0, 2.0, 100)})
+    from kvtheory.sweeps.columns import columns_of
+    from kvtheory.sweeps.plan import Plan
+
+    plan = Plan(kv.Scene(), plan_axes, columns_of("depth", series=False), None, "exact", 1e-6)
+    done = [(0, 7), (20, 40), (99, 100)]
+    tasks = list(engine.remaining(plan, done, 16))
+    covered = sorted([*done, *((t.start, t.stop) for t in tasks)])
+    assert [start for start, _ in covered] == [0, *(stop for _, stop in covered[:-1])]
+    assert covered[-1][1] == 100
+    assert max(t.points for t in tasks) <= 16
+
+
+@pytest.mark.parametrize("shape", [(12,), (3, 4), (2, 3, 4), (5, 1, 2), (1, 1, 7)])
+def test_rectangles_cover_a_range_once(shape):
+    flat = np.arange(math.prod(shape)).reshape(shape)
+    for start in range(flat.size):
+        for stop in range(start + 1, flat.size + 1):
+            found = np.full(stop - start, -1)
+            for place, part in rectangles(start, stop, shape):
+                assert (found[part] == -1).all()
+                found[part] = flat[place].reshape(-1)
+            assert np.array_equal(found, np.arange(start, stop))
+
+
+def test_progress_writes_lines_to_a_log_and_one_line_to_a_terminal():
+    class Stream:
+        def __init__(self, terminal):
+            self.text, self.terminal = "", terminal
+
+        def isatty(self):
+            return self.terminal
+
+        def write(self, text):
+            self.text += text
+
+        def flush(self):
+            pass
+
+    for terminal in (False, True):
+        stream, now = Stream(terminal), [0.0]
+        progress = Progress(stream, clock=lambda now=now: now[0])
+        for second in range(1, 101):
+            now[0] = float(second)
+            progress(10 * second, 0, 1, 2000)
+        assert progress.finish() == 1000
+        assert "1,000 of 2,000 points (50 %), 10 a second, 100 s left, 1 failed" in stream.text
+        assert stream.text.count("\n") == (1 if terminal else 11)
+        assert stream.text.count("\r") == (101 if terminal else 0)
+
+
+def test_plot_draws_curves_families_and_maps():
+    curve = kv.sweep(over={V: "1 mm/s:10 m/s:9:log"}).plot()
+    (line,) = curve.get_lines()
+    result = kv.sweep(over={V: "1 mm/s:10 m/s:9:log"})
+    assert np.array_equal(line.get_ydata(), result["friction_coefficient"])
+    assert line.get_xdata() == pytest.approx(result[V] * 1e3)
+
+    family = kv.sweep(over={V: "1 mm/s:10 m/s:9:log", TAU: "10 ms,1 s"}).plot("depth")
+    assert len(family.get_lines()) == 2
+    assert [text.get_text() for text in family.get_legend().get_texts()] == ["10", "1000"]
+
+    wide = kv.sweep(over={V: "1 mm/s:10 m/s:12:log", TAU: "10 ms:1 s:9:log"})
+    image = wide.plot("load").collections[0]
+    assert np.array_equal(image.get_array().filled(np.nan), wide["load"] * 1e-3)
+
+    cube = kv.sweep(over={V: [1.0, 2.0], TAU: [1.0, 2.0], "indenter.radius": [0.1, 0.2]})
+    with pytest.raises(ValueError, match="two dimensions"):
+        cube.plot()
+    with pytest.raises(ValueError, match='did you mean "depth"'):
+        wide.plot("dept")
+
+
+def test_every_quantity_of_a_scene_can_be_swept():
+    for scene in map(kv.Scene.table1, ("fixed", "dead-weight", "suspended")):
+        for section in ("indenter", "foundation", "support"):
+            for name in quantities(getattr(scene, section)):
+                key = f"{section}.{name}"
+                value = getattr(getattr(scene, section), name)
+                result = kv.sweep(scene, over={key: [value, 2.0 * value]}, quantities="load")
+                assert result["load"][1] == kv.steady(scene, over={key: 2.0 * value}).load

@@ -1,0 +1,200 @@
+"""`kvtheory sweep`, as a shell runs it."""
+
+import json
+import sys
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+
+import kvtheory as kv
+from kvtheory.cli import main
+
+OVER = [
+    "--over",
+    "drive.velocity=1 mm/s:10 m/s:4:log",
+    "--over",
+    "foundation.retardation_time=10 ms,1 s",
+]
+
+
+THREADS = "concurrent.futures:ThreadPoolExecutor"
+TWICE = ["--over", "drive.velocity=1 m/s", "--over", "drive.velocity=2 m/s"]
+
+
+def run(*arguments, status=0):
+    result = CliRunner().invoke(main, ["sweep", *arguments])
+    assert result.exit_code == status, result.output
+    assert "Traceback" not in result.output
+    return result
+
+
+@pytest.fixture
+def place(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+def test_help_has_an_example():
+    assert "kvtheory sweep" in run("--help").stdout.split("Example")[1]
+
+
+def test_the_file_holds_the_sweep_and_the_same_command_has_nothing_left_to_do(place):
+    first = run(*OVER, "-o", "map.csv", "--plot", "map.png")
+    assert "8 points, 8 of them computed now" in first.stdout
+    assert "8 of 8 points (100 %)" in first.stderr
+    assert (place / "map.png").read_bytes().startswith(b"\x89PNG")
+    lines = (place / "map.csv").read_text().splitlines()
+    rows = [line for line in lines if not line.startswith("#")]
+    assert rows[0].startswith("drive.velocity [m/s],foundation.retardation_time [s],depth [m],")
+    assert len(rows) == 9
+    again = json.loads(run(*OVER, "-o", "map.csv", "--json").stdout)
+    assert (again["points"], again["computed"], again["failed"]) == (8, 0, 0)
+
+
+def test_zipped_points_options_and_scene(place):
+    (place / "scene.toml").write_text(kv.to_toml(kv.Scene.table1("fixed")))
+    run(
+        "scene.toml", "--set", "support.depth=0.1 mm", "-o", "pairs.nc", "--quantity", "load,depth",
+        "--over", "drive.velocity=0.1 m/s,1 m/s & foundation.retardation_time=1 s:2 s:2",
+    )  # fmt: skip
+    result = kv.sweep(
+        kv.Scene(support=kv.Fixed(depth="0.1 mm")), quantities=["load", "depth"], output="pairs.nc",
+        over={("drive.velocity", "foundation.retardation_time"): ([0.1, 1.0], [1.0, 2.0])},
+    )  # fmt: skip
+    assert result.shape == (2,)
+    assert result["depth"].tolist() == [1e-4, 1e-4]
+
+
+@pytest.mark.parametrize(
+    "more",
+    [
+        ["--jobs", "2"],
+        ["--executor", THREADS],
+        ["--block", "3"],
+        ["--executor", THREADS, "--jobs", "1"],
+    ],
+)
+def test_workers_give_the_same_file(place, more):
+    run(*OVER, "-o", "one.csv")
+    run(*OVER, "-o", "two.csv", *more)
+    assert (place / "one.csv").read_bytes() == (place / "two.csv").read_bytes()
+
+
+def test_a_factory_may_lie_in_the_working_directory(place, monkeypatch):
+    (place / "our_cluster.py").write_text(
+        "from concurrent.futures import ThreadPoolExecutor\n"
+        "made = []\n"
+        "def workers():\n"
+        "    made.append(ThreadPoolExecutor(1))\n"
+        "    return made[0]\n"
+    )
+    monkeypatch.setattr(sys, "path", list(sys.path))
+    run(*OVER, "-o", "map.csv", "--executor", "our_cluster:workers")
+    (pool,) = sys.modules["our_cluster"].made
+    with pytest.raises(RuntimeError, match="after shutdown"):
+        pool.submit(abs, -1)  # what the command made, it ends
+
+
+def test_failures_are_counted_and_told(place):
+    result = run("--over", "drive.velocity=1e-318 m/s:1e-310 m/s:7:log", "-o", "map.csv")
+    assert "7 failed" in result.stdout
+    assert "range of double precision" in result.stdout
+    assert "... the others are in map.csv" in result.stdout
+    record = json.loads(
+        run("--over", "drive.velocity=1e-320 m/s", "-o", "one.csv", "--json").stdout
+    )
+    assert record["failures"][0]["point"] == {"drive.velocity": 1e-320}
+    assert record["failures"][0]["index"] == 0
+
+
+def test_transients_by_measures_and_series(place):
+    run(
+        *OVER,
+        "-o",
+        "peaks.csv",
+        "--quantity",
+        "peak_to_steady_friction,hops,events",
+        "--jobs",
+        "2",
+        "--block",
+        "3",
+    )
+    rows = [line for line in (place / "peaks.csv").read_text().splitlines() if line[0] != "#"]
+    assert rows[0].endswith("peak_to_steady_friction [1],hops [1],events")
+    run(*OVER, "-o", "series.csv", "--quantity", "depth", "--at", "0 ms,1 ms,0.2 s")
+    table = np.genfromtxt(place / "series.csv", delimiter=",", skip_header=0, comments="#")[1:]
+    assert table.shape == (24, 4)
+    assert table[:3, 2].tolist() == [0.0, 0.001, 0.2]
+
+
+def test_an_interrupt_is_told_and_the_command_goes_on(place, monkeypatch):
+    from kvtheory.sweeps import engine
+
+    compute, calls = engine.compute, []
+
+    def interrupted(task):
+        calls.append(task)
+        if len(calls) == 3:
+            raise KeyboardInterrupt
+        return compute(task)
+
+    with monkeypatch.context() as patch:
+        patch.setattr(engine, "compute", interrupted)
+        result = run(*OVER, "-o", "map.csv", "--block", "2", status=130)
+    assert '"map.csv" has what was done, and the same command goes on' in result.stderr
+    assert "# unfinished: 4 of 8 points" in (place / "map.csv").read_text()
+    assert "8 points, 4 of them computed now" in run(*OVER, "-o", "map.csv").stdout
+    assert [item.name for item in place.iterdir()] == ["map.csv"]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (["-o", "a.csv"], ["--over"]),
+        (["--over", "drive.velocity=1 m/s"], ["-o"]),
+        (["--over", "drive.velocity", "-o", "a.csv"], ["KEY=VALUES", "drive.velocity=1 mm/s"]),
+        (["--over", "drive.velocity=", "-o", "a.csv"], ["KEY=VALUES"]),
+        ([*TWICE, "-o", "a.csv"], ["swept already"]),
+        (["--over", "drive.velocty=1 m/s", "-o", "a.csv"], ['did you mean "drive.velocity"']),
+        (["--over", "drive.velocity=1,2", "-o", "a.csv"], ["no unit", "100 mm/s"]),
+        (["--over", "drive.velocity=1 mm/s:2 mm/s", "-o", "a.csv"], ["START:STOP:COUNT"]),
+        (["--over", "drive.velocity=1 mm/s:2 mm/s:x", "-o", "a.csv"], ["COUNT", "x"]),
+        (["--over", "drive.velocity=0 mm/s:2 mm/s:3:log", "-o", "a.csv"], ["logarithmic"]),
+        (["--over", "foundation.stiffness=-1 N/m^3", "-o", "a.csv"], ["out of range"]),
+        ([*OVER, "-o", "a.xls"], ["a.xls", ".csv", ".nc"]),
+        ([*OVER, "-o", "no/such/a.csv"], ["no/such"]),
+        ([*OVER, "-o", "a.csv", "--quantity", "friction"], ['"friction"', "did you mean"]),
+        ([*OVER, "-o", "a.csv", "--at", "1 ms", "--quantity", "load"], ["series"]),
+        ([*OVER, "-o", "a.csv", "--at", "1 s", "--quantity", "depth"], ["after the end"]),
+        ([*OVER, "-o", "a.csv", "--jobs", "0"], ["jobs"]),
+        ([*OVER, "-o", "a.csv", "--executor", "dask"], ["--executor", "module:factory"]),
+        ([*OVER, "-o", "a.csv", "--executor", "no_such:thing"], ["no_such", "imported"]),
+        ([*OVER, "-o", "a.csv", "--executor", THREADS[:-8]], ['did you mean "ThreadPoolExecutor"']),
+        ([*OVER, "-o", "a.csv", "--executor", "builtins:list"], ["Executor"]),
+        ([*OVER, "-o", "a.csv", "--plot", "a.doc"], ["a.doc", ".png"]),
+        ([*OVER, "-o", "a.csv", "--plot", "no/a.png"], ["no/a.png"]),
+        ([*OVER, "-o", "a.csv", "--rtol", "1"], ["rtol"]),
+        ([*OVER, "-o", "a.csv", "--method", "exat"], ["exat", 'did you mean "exact"']),
+    ],
+)  # fmt: skip
+def test_bad_input_costs_one_message_and_status_2_and_nothing_is_written(place, arguments, words):
+    result = run(*arguments, status=2)
+    assert result.stdout == ""
+    for word in words:
+        assert word in result.stderr, result.stderr
+    assert not list(place.iterdir())
+
+
+def test_netcdf_without_its_library_is_told(place, monkeypatch):
+    monkeypatch.setitem(sys.modules, "netCDF4", None)
+    assert 'pip install "kvtheory[data]"' in run(*OVER, "-o", "a.nc", status=2).stderr
+    assert not list(place.iterdir())
+
+
+def test_another_sweep_in_the_file_is_told(place):
+    run(*OVER, "-o", "map.csv")
+    before = (place / "map.csv").read_bytes()
+    message = run(*OVER, "--set", "support.mass=2 kg/mm", "-o", "map.csv", status=2).stderr
+    assert "differs in scene" in message
+    assert (place / "map.csv").read_bytes() == before

@@ -1,0 +1,184 @@
+"""The same sweep gives the same bits on every executor, and lost workers cost their blocks only."""
+
+import os
+import signal
+import warnings
+from concurrent.futures import Executor, Future, ProcessPoolExecutor, ThreadPoolExecutor
+from multiprocessing import active_children, get_context
+
+import numpy as np
+import pytest
+
+import kvtheory as kv
+from kvtheory.sweeps.blocks import compute, task
+
+V, TAU = "drive.velocity", "foundation.retardation_time"
+OVER = {V: "10 mm/s:1 m/s:5:log", TAU: ["50 ms", "0.2 s", "1 s"]}
+STEADY = {"quantities": ["depth", "friction_coefficient"], "method": "quadrature"}
+MOTION = {
+    "quantities": [
+        "peak_to_steady_friction",
+        "settling_time",
+        "hops",
+        "events",
+        "depth.end",
+        "depth",
+    ],
+    "at": ["0 ms", "7 ms", "0.2 s"],
+    "rtol": 1e-5,
+}
+KINDS = {"steady": STEADY, "motion": MOTION}
+
+
+def assert_same(a, b):
+    for name in a.values:
+        left, right = a[name], b[name]
+        assert left.dtype == right.dtype
+        assert np.array_equal(left, right, equal_nan=left.dtype == float), name
+    assert a.failures == b.failures
+    assert a.certificate == b.certificate
+
+
+@pytest.fixture(scope="module")
+def here():
+    """Each sweep, done in this thread."""
+    return {kind: kv.sweep(over=OVER, **asked) for kind, asked in KINDS.items()}
+
+
+class Backwards(Executor):
+    """Computes nothing until it must, and then the last block first."""
+
+    def __init__(self):
+        self.waiting, self.most, self.down = [], 0, False
+
+    def submit(self, function, /, *arguments):
+        future = Future()
+        self.waiting.append((future, function, arguments))
+        self.most = max(self.most, len(self.waiting))
+        if len(self.waiting) == 4:
+            self.flush()
+        return future
+
+    def flush(self):
+        while self.waiting:
+            future, function, arguments = self.waiting.pop()
+            future.set_result(function(*arguments))
+
+    def shutdown(self, wait=True, *, cancel_futures=False):
+        self.down = True
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_blocks_in_any_order(here, kind):
+    executor = Backwards()
+    result = kv.sweep(over=OVER, executor=executor, block=2, in_flight=4, **KINDS[kind])
+    assert_same(result, here[kind])
+    assert executor.most == 4
+    assert not executor.down
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_threads(here, kind):
+    with ThreadPoolExecutor(2) as executor:
+        assert_same(kv.sweep(over=OVER, executor=executor, block=4, **KINDS[kind]), here[kind])
+        assert executor.submit(abs, -1).result() == 1  # it was not shut down
+
+
+def test_processes_of_the_caller(here):
+    with ProcessPoolExecutor(2, get_context("spawn")) as executor:
+        for kind, asked in KINDS.items():
+            assert_same(kv.sweep(over=OVER, executor=executor, block=1, **asked), here[kind])
+        assert executor.submit(abs, -1).result() == 1
+
+
+def test_own_processes_survive_a_worker_that_is_killed(here, tmp_path):
+    killed = []
+
+    def kill(done, before, failed, points):
+        if done and not killed:
+            killed.append(active_children()[0].pid)
+            os.kill(killed[0], signal.SIGKILL)
+
+    output = tmp_path / "map.nc"
+    result = kv.sweep(over=OVER, jobs=2, block=1, output=output, progress=kill, **STEADY)
+    assert killed
+    assert_same(result, here["steady"])
+
+
+def test_the_callers_pool_that_breaks_is_told_and_the_file_resumes(here, tmp_path):
+    output = tmp_path / "map.nc"
+    killed = []
+
+    def kill(done, before, failed, points):
+        if done and not killed:
+            killed.append(done)
+            for child in active_children():
+                os.kill(child.pid, signal.SIGKILL)
+
+    arguments = {"over": OVER, "block": 1, "output": output, **STEADY}
+    with (
+        ProcessPoolExecutor(1, get_context("spawn")) as executor,
+        pytest.raises(RuntimeError, match=r"broken|lost"),
+    ):
+        kv.sweep(executor=executor, progress=kill, **arguments)
+    before = []
+    result = kv.sweep(progress=lambda done, earlier, *_: before.append(earlier), **arguments)
+    assert before[0] >= killed[0] > 0
+    assert_same(result, here["steady"])
+
+
+def test_a_block_that_fails_each_time_ends_the_sweep_with_its_reason():
+    class Faulty(Executor):
+        def submit(self, function, /, *arguments):
+            future = Future()
+            future.set_exception(MemoryError("no room"))
+            return future
+
+    with pytest.raises(RuntimeError, match="points 0 to 0 were lost 3 times: MemoryError: no room"):
+        kv.sweep(over=OVER, executor=Faulty(), block=1, in_flight=1)
+
+
+def test_dask_on_a_cluster_of_processes(here, tmp_path):
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # those of the cluster's own start and end
+        from distributed import Client, LocalCluster
+
+        with (
+            LocalCluster(
+                n_workers=2, threads_per_worker=1, processes=True, dashboard_address=None,
+                worker_dashboard_address=None, local_directory=str(tmp_path),
+            ) as cluster,
+            Client(cluster) as client,
+        ):  # fmt: skip
+            executor = client.get_executor(pure=False)
+            for kind, asked in KINDS.items():
+                assert_same(kv.sweep(over=OVER, executor=executor, block=2, **asked), here[kind])
+            pids = set(client.run(os.getpid).values())
+            assert len(pids) == 2
+            assert os.getpid() not in pids
+            killed = []
+
+            def kill(done, before, failed, points):
+                if done and not killed:
+                    killed.append(pids.pop())
+                    os.kill(killed[0], signal.SIGKILL)
+
+            again = kv.sweep(over=OVER, executor=executor, block=1, progress=kill, **STEADY)
+            assert killed
+            assert_same(again, here["steady"])
+            assert client.submit(abs, -1).result() == 1
+
+
+def test_a_task_is_small_and_picklable():
+    import pickle
+
+    from kvtheory.sweeps.axes import axes_of
+    from kvtheory.sweeps.columns import columns_of
+    from kvtheory.sweeps.plan import Plan
+
+    axes = axes_of(kv.Scene(), {V: np.linspace(0.1, 0.2, 1000), TAU: np.linspace(0.1, 0.2, 1000)})
+    plan = Plan(kv.Scene(), axes, columns_of("depth", series=False), None, "exact", 1e-6)
+    given = task(plan, 500_064, 500_128)
+    text = pickle.dumps(given)
+    assert len(text) < 5000
+    assert np.array_equal(compute(pickle.loads(text)).numbers, compute(given).numbers)

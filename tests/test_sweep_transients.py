@@ -1,0 +1,196 @@
+"""Measures of transients in sweeps, held against the transient itself on a dense grid of times."""
+
+import json
+
+import numpy as np
+import pytest
+
+import kvtheory as kv
+from kvtheory.results import TRANSIENT_UNITS
+
+V, TAU, DURATION = "drive.velocity", "foundation.retardation_time", "run.duration"
+DENSE = np.linspace(0.0, 1.0, 20_001)
+
+SCENES = {
+    "spike and rise": kv.Scene(),
+    "fixed": kv.Scene.table1("fixed"),
+    "suspended": kv.Scene.table1("suspended"),
+    "oscillates": kv.Scene(
+        foundation=kv.Foundation(stiffness=1e10, retardation_time=2e-4),
+        drive=kv.Drive(velocity=2.0),
+    ),
+    "hops": kv.Scene(
+        foundation=kv.Foundation(stiffness=1e10, retardation_time=1e-3),
+        drive=kv.Drive(velocity=20.0),
+    ),
+    "stops and returns": kv.Scene(
+        drive=kv.Drive(
+            history=[
+                ["0 s", "0.1 m/s"],
+                ["20 ms", "0.1 m/s"],
+                ["20 ms", "0 m/s"],
+                ["30 ms", "-20 mm/s"],
+            ]
+        )
+    ),
+}
+NAMES = [name for name in TRANSIENT_UNITS if name != "time"]
+MEASURED = [
+    f"{name}.{measure}" for name in NAMES for measure in ("end", "max", "min", "time_of_max")
+]
+
+
+def one(scene, quantities, **more):
+    """A sweep of the scene itself."""
+    over = {DURATION: [scene.run.duration]}
+    result = kv.sweep(scene, over=over, quantities=quantities, **more)
+    assert not result.failures
+    return {name: result[name][0] for name in result.values}
+
+
+@pytest.fixture(scope="module", params=SCENES)
+def case(request):
+    """A scene, its transient on dense times, and its measures."""
+    scene = SCENES[request.param]
+    dense = kv.transient(scene, at=DENSE * scene.run.duration)
+    whole = ["peak_to_steady_friction", "settling_time", "hops", "events"]
+    return request.param, scene, dense, one(scene, [*MEASURED, *whole])
+
+
+def test_measures_are_those_of_the_dense_series(case):
+    _, scene, dense, found = case
+    for name in NAMES:
+        values = getattr(dense, name)
+        spread = np.nanmax(np.abs(values)) + 1e-300
+        assert found[f"{name}.end"] == pytest.approx(values[-1], abs=1e-12 * spread, nan_ok=True)
+        # A grid can miss a sharp peak, but never by being higher.
+        assert found[f"{name}.max"] >= np.nanmax(values) - 1e-9 * spread
+        assert found[f"{name}.min"] <= np.nanmin(values) + 1e-9 * spread
+        at = [0.0, found[f"{name}.time_of_max"]]
+        there = getattr(kv.transient(scene, at=at), name)[1]
+        assert there == pytest.approx(found[f"{name}.max"], abs=1e-9 * spread)
+
+
+def test_at_rest_the_edge_leads_that_led_before():
+    history = [["0 s", "-0.1 m/s"], ["20 ms", "-0.1 m/s"], ["20 ms", "0 m/s"]]
+    scene = kv.Scene(drive=kv.Drive(history=history))
+    dense = kv.transient(scene, at=DENSE * scene.run.duration)
+    asked = ["leading_edge.end", "trailing_edge.end", "leading_edge.max"]
+    found = one(scene, asked)
+    assert found["leading_edge.end"] == pytest.approx(dense.leading_edge[-1], rel=1e-9)
+    assert found["trailing_edge.end"] == pytest.approx(dense.trailing_edge[-1], rel=1e-9)
+    assert dense.leading_edge[-1] > 0.0 > dense.trailing_edge[-1]
+
+
+def test_smooth_extrema_are_no_higher_than_the_dense_series_allows(case):
+    _, _, dense, found = case
+    for name in ("depth",):
+        values = getattr(dense, name)
+        step = np.nanmax(np.abs(np.diff(values)))
+        assert found[f"{name}.max"] <= values.max() + step
+        assert found[f"{name}.min"] >= values.min() - step
+
+
+def test_the_peak_is_that_of_the_located_event(case):
+    _, scene, _, found = case
+    result = kv.transient(scene)
+    when = next(e.time for e in result.events if e.kind == "friction force maximum")
+    at = np.array([when, np.nextafter(when, 0.0)])
+    peak = np.abs(kv.transient(scene, at=np.sort(at)).friction_force).max()
+    steady = abs(kv.steady(scene).friction_force)
+    assert found["peak_to_steady_friction"] == pytest.approx(peak / steady, rel=1e-8)
+
+
+def test_events_and_hops_are_those_of_the_transient(case):
+    name, scene, _, found = case
+    result = kv.transient(scene)
+    events = json.loads(found["events"])
+    assert [event["kind"] for event in events] == [event.kind for event in result.events]
+    assert [event["time"] for event in events] == pytest.approx(
+        [event.time for event in result.events]
+    )
+    assert found["hops"] == sum(event.kind == "take-off" for event in result.events)
+    assert (found["hops"] > 0) == (name in ("hops", "stops and returns"))
+
+
+def test_friction_stays_settled_from_the_settling_time_on(case):
+    _, scene, dense, found = case
+    steady = kv.steady(scene).friction_force
+    off = np.abs(dense.friction_force / steady - 1.0)
+    begin = scene.drive.history[-1][0] if scene.drive.history else 0.0
+    if np.isnan(found["settling_time"]):
+        assert off[-1] > 0.01
+        return
+    settled = dense.time >= begin + found["settling_time"]
+    assert (off[settled] <= 0.01 + 1e-9).all()
+    outside = dense.time[off > 0.01]
+    grid = dense.time[1]
+    assert outside.size == 0 or outside[-1] >= begin + found["settling_time"] - grid - 1e-12
+
+
+def test_some_scenes_settle_and_some_do_not():
+    settled = [one(scene, "settling_time")["settling_time"] for scene in SCENES.values()]
+    assert 0 < np.isnan(settled).sum() < len(settled)
+
+
+def test_series_are_those_of_the_transient():
+    at = ["0 ms", "3 ms", "100 ms"]
+    result = kv.sweep(over={V: [0.05, 0.1]}, at=at)
+    assert result["depth"].shape == (2, 3)
+    for index, velocity in enumerate((0.05, 0.1)):
+        scene = kv.Scene(drive=kv.Drive(velocity=velocity))
+        single = kv.transient(scene, at=at)
+        for name in NAMES:
+            assert result[name][index].tolist() == getattr(single, name).tolist()
+    assert result.to_xarray()["depth"].dims == (V, "time")
+    mixed = kv.sweep(
+        over={V: [0.1]}, at=at, quantities=["depth", "depth.steady", "depth.end", "load"]
+    )
+    assert mixed["depth"].shape == (1, 3)
+    assert mixed["depth.steady"][0] == kv.steady().depth
+    assert mixed["load"].shape == (1,)
+
+
+@pytest.mark.parametrize("suffix", [".csv", ".nc"])
+def test_files_of_transients_hold_what_memory_holds(tmp_path, suffix):
+    asked = {
+        "over": {V: [0.0, 0.05, 1e200], TAU: [0.1, 1.0]},
+        "at": ["0 ms", "3 ms"],
+        "quantities": ["depth", "trailing_edge.max", "events", "load", "peak_to_steady_friction"],
+    }
+    held, stored = kv.sweep(**asked), kv.sweep(output=tmp_path / f"a{suffix}", block=2, **asked)
+    assert held.failed == 2
+    for name in held.values:
+        equal_nan = name != "events"
+        assert np.array_equal(stored[name], held[name], equal_nan=equal_nan), name
+    assert np.isnan(held["peak_to_steady_friction"][0]).all()  # at rest there is no friction
+    assert held["events"][2].tolist() == ["", ""]
+    assert json.loads(held["events"][1, 0])[0]["time"] == 0.0
+
+
+def test_a_motion_that_cannot_be_followed_is_told_and_the_others_are_not_touched():
+    result = kv.sweep(over={V: [0.1, 1e200, 0.2]}, quantities="depth.end")
+    assert [failure.index for failure in result.failures] == [1]
+    assert result.failures[0].reason
+    alone = kv.sweep(over={V: [0.2]}, quantities="depth.end")
+    assert result["depth.end"][2] == alone["depth.end"][0]
+
+
+def test_the_certificate_covers_the_error_of_measures():
+    over = {V: "10 mm/s:1 m/s:5:log"}
+    loose, tight = (
+        kv.sweep(over=over, quantities=["depth.min", "friction_force.end"], rtol=rtol)
+        for rtol in (1e-4, 1e-10)
+    )
+    scale = {"depth": 3.0018e-4, "friction_force": 9806.65 * 3.0018e-4 / 2.4502e-3}
+    for name in loose.values:
+        base = name.partition(".")[0]
+        error = np.abs(loose[name] - tight[name]).max() / scale[base]
+        assert 0.0 < error <= loose.certificate.relative_error[base]
+
+
+def test_a_history_gives_way_to_a_swept_velocity():
+    history = kv.Scene(drive=kv.Drive(history=[["0 s", "1 m/s"], ["1 s", "0.5 m/s"]]))
+    swept = kv.sweep(history, over={V: [0.1]}, quantities="depth.end")
+    plain = kv.sweep(over={V: [0.1]}, quantities="depth.end")
+    assert swept["depth.end"].tolist() == plain["depth.end"].tolist()
