@@ -72,5 +72,6 @@ def _share(x: Array) -> Array:
 
 def _forces(motion: Motion, s: Array) -> Array:
     """Return f_z and |f_x|, each of the shape of `s`."""
-    found = motion.states(s.reshape(-1))[:, [states.NORMAL_FORCE, states.FRICTION_FORCE]]
+    inside = np.minimum(s.reshape(-1), motion.end)  # beyond it by rounding
+    found = motion.states(inside)[:, [states.NORMAL_FORCE, states.FRICTION_FORCE]]
     return np.abs(found.T.reshape(2, *s.shape))

@@ -1,0 +1,265 @@
+"""The rungs of a time series: exact (where nothing moves), slow manifold, continuum, elements."""
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kvtheory.ladder import slow_motion, slow_start
+from kvtheory.ladder.climbing import Answer, Judgement, Request, Rung
+from kvtheory.results import TRANSIENT_UNITS, Certificate, Simulation, SteadyState, Transient
+from kvtheory.scene.indenters import Parabola
+from kvtheory.scene.model import Fixed, Scene
+from kvtheory.scene.numbers import dimensionless_numbers
+
+Array = NDArray[np.float64]
+
+GIVEN = ("time", "velocity")
+"""Known before anything is solved."""
+SOLVED = tuple(name for name in TRANSIENT_UNITS if name not in GIVEN)
+
+OWN_TIMES = 201
+"""Of a series whose times are not given, where the model has no steps of its own."""
+
+LOOSEST, TIGHTEST = 1e-4, 1e-12
+"""Tolerances of a step of the continuum."""
+FIRST = 0.02
+"""Tolerance of its steps at first, in units of that asked for: nineteen certificates in twenty are
+then met at once."""
+NEXT = 0.1
+"""When it is not met, the tolerance of the steps is scaled by what is missing and by this."""
+
+ELEMENTS = 120.0
+"""Elements in the contact at rest, at first."""
+LEAST_FINER, MOST_FINER, SPARE = 2.0, 8.0, 1.3
+"""Then there are so many times more, within these bounds, as second order in their spacing asks for, and
+somewhat more. The work grows as the square."""
+MOST_UPDATES = 5e7
+"""Updates of elements in one run, about a minute and a half."""
+
+BEST_OF_ELEMENTS = 1e-6
+"""With the most work, they come to about this in a start from rest: nothing is run where less is asked."""
+
+RELATIVE_TO = "; relative to the static depth, half length and load"
+
+
+@dataclass(frozen=True)
+class Models:
+    """The public functions that run the models: `kvtheory.steady`, `transient` and `elements`."""
+
+    steady: Callable[..., SteadyState]
+    transient: Callable[..., Transient]
+    elements: Callable[..., Simulation]
+
+
+def rungs(models: Models) -> tuple[Rung, ...]:
+    """Return the rungs in order of cost."""
+
+    def at_once(scene: Scene, request: Request, known: Any) -> Answer:
+        return _at_once(models.steady(scene), scene, request)
+
+    def continuum(scene: Scene, request: Request, known: Any) -> Answer:
+        return _continuum(models.transient, scene, request)
+
+    def elements(scene: Scene, request: Request, known: Any) -> Answer:
+        return _elements(models.elements, scene, request)
+
+    return (
+        Rung("exact", "steady from the first instant: the depth cannot change", _steady, at_once),
+        Rung("slow manifold", "a start from rest, inertia that is soon overcome", _slow, _follow),
+        Rung("continuum", "a parabola", _parabola, continuum),
+        Rung("elements", "none", _anything, elements),
+    )
+
+
+def _parabola(scene: Scene, request: Request) -> Judgement:
+    if isinstance(scene.indenter, Parabola):
+        return Judgement()
+    return Judgement(f'holds for the parabola only, not for "{scene.indenter.shape}"')
+
+
+def _anything(scene: Scene, request: Request) -> Judgement:
+    if request.rtol < BEST_OF_ELEMENTS:
+        return Judgement(error=BEST_OF_ELEMENTS)
+    return Judgement()
+
+
+def _constant_velocity(scene: Scene) -> float | None:
+    """Return the velocity from t = 0 on, if it is one."""
+    if scene.drive.function is not None:
+        return None
+    first, *others = (velocity for _, velocity in scene.drive.points)
+    return first if all(velocity == first for velocity in others) else None
+
+
+def _steady(scene: Scene, request: Request) -> Judgement:
+    """Admit what is steady at once: a fixed indenter (Eqs. 26, 33 with d' = 0), and rest."""
+    reason = _parabola(scene, request).reason
+    velocity = _constant_velocity(scene)
+    if velocity is None:
+        reason = reason or "the drive changes"
+    elif velocity != 0.0 and not isinstance(scene.support, Fixed):
+        reason = reason or "the indenter rises"
+    return Judgement(reason, math.nan if reason else 0.0)
+
+
+def _at_once(state: SteadyState, scene: Scene, request: Request) -> Answer:
+    times = _times(scene, request)
+    constant = {
+        "velocity": scene.drive.final_velocity,
+        "depth": state.depth,
+        "depth_rate": 0.0,
+        "normal_force": state.load,
+        "friction_force": state.friction_force,
+        "leading_edge": state.leading_edge,
+        "trailing_edge": state.trailing_edge,
+        "peak_pressure": state.peak_pressure,
+    }
+    values = {name: np.full(times.size, value) for name, value in constant.items()}
+    scales = _scales(scene)
+    rounding = max(state.certificate.relative_error.values())
+    errors = {name: rounding * abs(constant[name]) / scales[name] for name in SOLVED}
+    statement = state.certificate.statement + RELATIVE_TO
+    certificate = Certificate(state.certificate.kind, statement, errors)
+    return _asked({"time": times, **values}, certificate, request, state)
+
+
+def _slow(scene: Scene, request: Request) -> Judgement:
+    """Judge by scalars: the ratio of the rates, the layer at the first time, the first delay."""
+    reason = _parabola(scene, request).reason
+    velocity = _constant_velocity(scene)
+    if reason or velocity is None or isinstance(scene.support, Fixed):
+        return Judgement(reason or ("the drive changes" if velocity is None else "it cannot rise"))
+    numbers = dimensionless_numbers(scene)
+    given = slow_start.start(
+        abs(numbers["drive_number"]), numbers["inertia_number"], numbers["support_number"]
+    )
+    if given.ratio > slow_motion.LARGEST_RATIO:
+        return Judgement(f"inertia counts: slow over fast rate {given.ratio:.2g}")
+    if given.goes_back:
+        return Judgement("an edge would move back over ground that it left")
+    times = request.times
+    first = 0.0 if times is None else min(times) / scene.foundation.retardation_time
+    moving = [name for name in request.quantities if name not in ("depth", "leading_edge", *GIVEN)]
+    error = float(given.layer(first)) if moving else 0.0
+    fading = math.exp(-first * max(given.relaxation, 1.0))
+    return Judgement(error=max(error, given.least_error * fading), known=given)
+
+
+def _follow(scene: Scene, request: Request, given: slow_start.Start) -> Answer:
+    times, scales = _times(scene, request), _scales(scene)
+    found = slow_motion.follow(given, times / scene.foundation.retardation_time, request.rtol)
+    if found.ratio > slow_motion.LARGEST_RATIO:
+        raise ArithmeticError(f"inertia counts: slow over fast rate {found.ratio:.2g}")
+    velocity = scene.drive.final_velocity
+    side = -1.0 if velocity < 0.0 else 1.0
+    odd = ("friction_force", "leading_edge", "trailing_edge")
+    values = {
+        name: (side if name in odd else 1.0) * scales[name] * found.values[name] for name in SOLVED
+    }
+    errors = {name: float(np.max(found.errors[name])) for name in SOLVED}
+    statement = (
+        f"{slow_motion.SAFETY:g} times what the slow manifold neglects to first order in the inertia "
+        f"number" + RELATIVE_TO
+    )
+    known = {"time": times, "velocity": np.full(times.size, velocity)}
+    return _asked({**known, **values}, Certificate("estimated", statement, errors), request)
+
+
+def _continuum(transient: Callable[..., Transient], scene: Scene, request: Request) -> Answer:
+    """Tighten the steps until the certificate is met, or they can be no tighter."""
+    step = min(max(FIRST * request.rtol, TIGHTEST), LOOSEST)
+    while True:
+        result = transient(scene, at=request.times, rtol=step)
+        answer = _asked(result, result.certificate, request, result)
+        error = max(answer.certificate.relative_error[name] for name in request.quantities)
+        if error <= request.rtol or step <= TIGHTEST or error == math.inf:
+            return answer
+        step = max(step * NEXT * request.rtol / error, TIGHTEST)
+
+
+def _elements(elements: Callable[..., Simulation], scene: Scene, request: Request) -> Answer:
+    """Refine until the certificate is met, or the work would be too much.
+
+    A certificate compares with half as many elements, and both may be too coarse to see what is fast:
+    what a run differs from the coarser one before it counts too, divided by the ratio of their elements.
+    """
+    from kvtheory.elements.model import SAMPLES, Model
+
+    length = SAMPLES * Model.of(scene).spacing
+    count, finer, before = ELEMENTS, math.nan, None
+    while True:
+        result = elements(scene, per_length=count / length, at=request.times)
+        answer = _asked(result, result.certificate, request, result)
+        if before is not None and request.times is not None:
+            answer = _compared(answer, before, finer, _scales_of_elements(scene))
+        error = max(answer.certificate.relative_error[name] for name in request.quantities)
+        enough = error <= request.rtol and before is not None
+        finer = min(max(SPARE * math.sqrt(error / request.rtol), LEAST_FINER), MOST_FINER)
+        if enough or result.element_updates * finer * finer > MOST_UPDATES:
+            return answer
+        count, before = count * finer, answer
+
+
+def _compared(answer: Answer, before: Answer, finer: float, scales: dict[str, float]) -> Answer:
+    """Let the difference to a coarser run count in the errors."""
+    own, errors = answer.certificate, dict(answer.certificate.relative_error)
+    for name in errors.keys() & scales.keys():
+        difference = np.abs(np.asarray(answer.values[name]) - before.values[name])
+        change = float(np.nanmax(difference, initial=0.0)) / scales[name]
+        errors[name] = max(errors[name], change / finer)
+    statement = (
+        own.statement + "; or what the elements before, fewer, differed by, over their ratio"
+    )
+    return answer._replace(certificate=Certificate(own.kind, statement, errors))
+
+
+def _asked(series: Any, certificate: Certificate, request: Request, result: Any = None) -> Answer:
+    """Return the series with NaN for what was not asked for, and the errors of what was."""
+    get = series.__getitem__ if isinstance(series, dict) else lambda name: getattr(series, name)
+    wanted = {*GIVEN, *request.quantities}
+    nothing = np.full(np.size(get("time")), np.nan)
+    values = {name: get(name) if name in wanted else nothing for name in TRANSIENT_UNITS}
+    errors = {
+        name: 0.0 if name in GIVEN else certificate.relative_error[name]
+        for name in TRANSIENT_UNITS
+        if name in wanted
+    }
+    return Answer(values, Certificate(certificate.kind, certificate.statement, errors), result)
+
+
+def _times(scene: Scene, request: Request) -> Array:
+    if request.times is None:
+        return np.linspace(0.0, scene.run.duration, OWN_TIMES)
+    return np.asarray(request.times, dtype=float)
+
+
+def _scales_of_elements(scene: Scene) -> dict[str, float]:
+    """Return the scales for any shape, whose static state is a matter of the elements."""
+    from kvtheory.elements.model import Model
+
+    model = Model.of(scene)
+    return _relative_to(scene, model.half_length, model.depth, model.load)
+
+
+def _scales(scene: Scene) -> dict[str, float]:
+    """Return what the certificate of each quantity is relative to, for a parabola."""
+    numbers = dimensionless_numbers(scene)
+    return _relative_to(
+        scene, numbers["static_half_length"], numbers["static_depth"], numbers["static_load"]
+    )
+
+
+def _relative_to(scene: Scene, a_0: float, delta_0: float, W_0: float) -> dict[str, float]:
+    return {
+        "depth": delta_0,
+        "depth_rate": delta_0 / scene.foundation.retardation_time,
+        "normal_force": W_0,
+        "friction_force": W_0 * delta_0 / a_0,
+        "leading_edge": a_0,
+        "trailing_edge": a_0,
+        "peak_pressure": scene.foundation.stiffness * delta_0,
+    }

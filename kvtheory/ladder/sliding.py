@@ -1,0 +1,67 @@
+"""The rungs of steady sliding: asymptote, exact, quadrature."""
+
+from collections.abc import Callable
+from typing import Any
+
+from kvtheory.ladder import asymptote as asy
+from kvtheory.ladder.climbing import Answer, Judgement, Request, Rung
+from kvtheory.results import Certificate, SteadyState
+from kvtheory.scene.indenters import Parabola
+from kvtheory.scene.model import Scene
+
+Steady = Callable[..., SteadyState]
+"""`kvtheory.steady`."""
+
+BEST = {"exact": 3.6e-15, "quadrature": 1e-14}
+"""No certificate of theirs is below these: nothing is run where less is asked."""
+
+PROVED = (
+    "bounds from the closed forms of the asymptotes' errors (derivations error-L1, error-L2-fixed, "
+    "error-L2-dead-weight and others) and from bounds of the steady half length, relative to the truth"
+)
+
+
+def rungs(steady: Steady) -> tuple[Rung, ...]:
+    """Return the rungs in order of cost; `steady` runs the last two."""
+
+    def by(method: str) -> Callable[[Scene, Request, Any], Answer]:
+        def solve(scene: Scene, request: Request, _: Any) -> Answer:
+            return _picked(steady(scene, method=method), request)
+
+        return solve
+
+    return (
+        Rung("asymptote", "steady sliding of a parabola, V far from V*", _far, _asymptote),
+        Rung("exact", "steady sliding of a parabola", _parabolic, by("exact")),
+        Rung("quadrature", "steady sliding, one contact", _any_shape, by("quadrature")),
+    )
+
+
+def _parabolic(scene: Scene, request: Request) -> Judgement:
+    if not isinstance(scene.indenter, Parabola):
+        return Judgement(f'holds for the parabola only, not for "{scene.indenter.shape}"')
+    return Judgement(error=BEST["exact"])
+
+
+def _any_shape(scene: Scene, request: Request) -> Judgement:
+    return Judgement(error=BEST["quadrature"])
+
+
+def _far(scene: Scene, request: Request) -> Judgement:
+    if not isinstance(scene.indenter, Parabola):
+        return Judgement(f'holds for the parabola only, not for "{scene.indenter.shape}"')
+    choice = asy.choose(asy.enclosure_of(scene), request.quantities, request.rtol)
+    return Judgement(error=choice.error, known=choice)
+
+
+def _asymptote(scene: Scene, request: Request, choice: asy.Choice) -> Answer:
+    errors = dict.fromkeys(request.quantities, choice.error)
+    values = asy.values(scene, choice.regime, request.quantities)
+    return Answer(values, Certificate("proved", PROVED, errors))
+
+
+def _picked(state: SteadyState, request: Request) -> Answer:
+    own = state.certificate
+    errors = {name: own.relative_error[name] for name in request.quantities}
+    values = {name: getattr(state, name) for name in request.quantities}
+    return Answer(values, Certificate(own.kind, own.statement, errors), state)

@@ -1,0 +1,68 @@
+"""What the cheapest model that is enough answered, and how it was found."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+from kvtheory.results.certificate import Certificate, Value, record
+
+
+@dataclass(frozen=True)
+class ClimbStep:
+    """One rung that was tried.
+
+    `assumed` says what the model rests on, `outcome` is ``"used"`` or why it was not, `error` the
+    largest relative error that it may have (NaN where it was not known), `margin` the tolerance over
+    it; `choosing` and `solving` are the seconds spent to judge the model and to run it.
+    """
+
+    rung: str
+    assumed: str
+    outcome: str
+    error: float
+    margin: float
+    choosing: float
+    solving: float
+
+
+@dataclass(frozen=True)
+class Solution:
+    """Values within a tolerance, by the cheapest model that is known to be enough.
+
+    `values` maps the name of each quantity to a float (steady sliding) or to an array (a time series,
+    `time` first); each is also an attribute: ``solution.friction_force``. In a series, what was not
+    asked for is NaN. `certificate` holds the errors of what was asked: relative to the true value, in
+    a series to the static depth, half length and load. `answer` is the result of the model itself,
+    where it has one of its own.
+
+    Examples
+    --------
+    >>> import kvtheory as kv
+    >>> solution = kv.solve(quantity="friction_coefficient", rtol=1e-6)
+    >>> solution.model, round(solution.friction_coefficient, 6)
+    ('exact', 0.085709)
+    """
+
+    values: Mapping[str, Value]
+    rtol: float
+    model: str
+    certificate: Certificate
+    climb: tuple[ClimbStep, ...]
+    answer: Any = field(default=None, repr=False, compare=False)
+
+    def __getattr__(self, name: str) -> Value:
+        if name.startswith("_") or name == "values" or name not in self.values:
+            raise AttributeError(f"a {type(self).__name__} of this request has no `{name}`")
+        return self.values[name]
+
+    @property
+    def choosing_share(self) -> float:
+        """Share of the time that went into the choice, with the rungs that were run in vain."""
+        vain = sum(step.choosing + step.solving for step in self.climb[:-1])
+        last = self.climb[-1]
+        return (vain + last.choosing) / (vain + last.choosing + last.solving)
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return plain Python values, ready for JSON; what does not exist is None."""
+        rest = {"model": self.model, "certificate": self.certificate, "climb": self.climb}
+        return record({**self.values, **rest})

@@ -1,0 +1,288 @@
+"""Random requests to the ladder, and the truth of each by other methods than the one that answered.
+
+Steady sliding of a parabola is enclosed in ball arithmetic; of other shapes, integrated from the
+definitions. A start from rest is solved as two states with SciPy, or, where the slow manifold answered,
+by the continuum with a far smaller tolerance; a drive with memory from the whole past.
+"""
+
+import itertools
+import math
+from contextlib import suppress
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from scipy.integrate import quad
+from scipy.optimize import brentq
+
+import kvtheory as kv
+from kvtheory.ladder import asymptote, slow_motion, slow_start
+from kvtheory.ladder.series import SOLVED
+from kvtheory.results import STEADY_UNITS
+from kvtheory.scene.numbers import dimensionless_numbers
+from tests import reference, transient_closed_form, transient_history
+from tests.transient_scenes import Scene as ScaledScene
+
+TRUER, TRUEST = 1e-2, 1e-4
+"""Tolerance of the truth, in units of that asked for; the latter where the former speaks against us."""
+FAR = 0.999
+"""Within the reach of every shape."""
+LEAST_INERTIA, LONGEST_STEP = 1e-2, 0.02
+"""Of solutions from the whole past."""
+
+
+@dataclass(frozen=True)
+class Case:
+    """A scene and what is asked of it; `scaled` is the drive and numbers of a series."""
+
+    kind: str
+    scene: Any
+    request: dict
+    scaled: ScaledScene | None = None
+
+    @property
+    def names(self):
+        """Return the quantities that are asked for."""
+        asked = self.request.get("quantity")
+        every = tuple(STEADY_UNITS) if self.scaled is None else SOLVED
+        return every if asked is None else (asked,)
+
+
+def steady_case(rng):
+    """Draw a parabola in any units, over eight decades of drive number."""
+    R, K, tau = 10 ** rng.uniform((-4, 6, -4), (0, 11, 2))
+    delta = R * 10 ** rng.uniform(-5, -1)
+    a = math.sqrt(2 * R * delta)
+    weight = 4 / 3 * K * a * delta
+    V = rng.choice((-1, 1)) * 10 ** rng.uniform(-4, 4) * a / tau * (rng.random() > 0.02)
+    support = (
+        kv.Fixed(delta),
+        kv.DeadWeight(mass=weight / 9.8, gravity=9.8),
+        kv.Suspended(mass=weight / 9.8, stiffness=weight / delta * 10 ** rng.uniform(-3, 3), gravity=9.8),
+    )[rng.integers(3)]  # fmt: skip
+    scene = kv.Scene(kv.Parabola(R), kv.Foundation(K, tau), support, kv.Drive(V))
+    return Case("steady", scene, _request(rng, STEADY_UNITS))
+
+
+def shape_case(rng):
+    """Draw another shape under a given depth or load, over four decades of drive number."""
+    shape = (
+        kv.Circle(1.0),
+        kv.Wedge(inclination=float(rng.uniform(0.05, 0.5))),
+        kv.PowerLaw(length=1.0, exponent=float(rng.uniform(1.5, 4.0))),
+    )[rng.integers(3)]
+    V = 10 ** rng.uniform(-2, 2)
+    support = (kv.Fixed(0.01), kv.DeadWeight(mass=1e-3, gravity=1.0))[rng.integers(2)]
+    scene = kv.Scene(shape, kv.Foundation(1.0, 1.0), support, kv.Drive(0.1 * V))
+    names = ("depth", "load", "friction_force", "friction_coefficient")
+    return Case("other shape", scene, _request(rng, names, one=True))
+
+
+def start_case(rng, memory=False):
+    """Draw a start from rest, or a drive that changes once; all scales are 1, but for the sign of V."""
+    eps = 10 ** rng.uniform(-2.5, 1) if memory else 10 ** rng.uniform(-7, 1)
+    kappa = (0.0, 0.0, 10 ** rng.uniform(-2, 1.5), math.inf)[rng.integers(4)]
+    number, side = 10 ** rng.uniform(-2, 1.5), rng.choice((-1.0, 1.0))
+    end = rng.uniform(0.3, 4.0)
+    times = np.sort(end * 10 ** rng.uniform(-2, 0, 5))
+    drive, points = [(0.0, number)], None
+    if memory:
+        change, factor = rng.uniform(0.1, 0.6) * end, rng.choice((0.0, -0.5, 0.3, 2.0))
+        drive = [(0.0, number), (change, number), (change, factor * number)]
+        points = [(s, side * level) for s, level in drive]
+        times = times[np.abs(times - change) > 1e-6]
+        times = np.append(times, end)
+    support = (
+        kv.Fixed(1.0)
+        if math.isinf(kappa)
+        else kv.Suspended(mass=eps, stiffness=kappa, gravity=1 / eps)
+        if kappa
+        else kv.DeadWeight(mass=eps, gravity=1 / eps)
+    )
+    given = kv.Drive(history=points) if memory else kv.Drive(side * number)
+    scene = kv.Scene(kv.Parabola(0.5), kv.Foundation(0.75, 1.0), support, given, kv.Run(end))
+    fixed = math.isinf(kappa)
+    scaled = ScaledScene(drive, None if fixed else eps, tuple(times), 0.0 if fixed else kappa)
+    request = {**_request(rng, SOLVED), "at": times.tolist()}
+    return Case("memory" if memory else "start", scene, request, scaled)
+
+
+def _request(rng, names, one=False):
+    """Ask for one quantity, or one time in four for all, to within 1e-1 to 1e-8."""
+    everything = not one and rng.random() < 0.25
+    asked = None if everything else str(rng.choice(list(names)))
+    return {"quantity": asked, "rtol": float(10 ** rng.uniform(-8, -1))}
+
+
+def true_error(case, values, model, truer=TRUER):
+    """Return the largest error of the values, by the measure of the case, and what tells the truth."""
+    if case.kind == "steady":
+        truth = enclosed(case.scene)
+        errors = [reference.relative_error(values[name], truth[name]) for name in case.names]
+        return max(errors), "ball arithmetic"
+    if case.kind == "other shape":
+        truth = from_definitions(case.scene)
+        return max(abs(values[name] / truth[name] - 1.0) for name in case.names), "definitions"
+    (truth, method), scales = series_truth(case, model, truer), series_scales(case.scene)
+    worst = 0.0
+    for name in case.names:
+        value, right = np.nan_to_num(np.array([values[name], truth[name]]))
+        worst = max(worst, float(np.max(np.abs(value - right))) / scales[name])
+    return worst, method
+
+
+def enclosed(scene):
+    """Return the steady quantities of a parabola in ball arithmetic."""
+    R, f, V = scene.indenter.radius, scene.foundation, scene.drive.velocity
+    given = R, f.stiffness, f.retardation_time, V
+    if isinstance(scene.support, kv.Fixed):
+        return reference.at_depth(*given, scene.support.depth)
+    return reference.at_load(*given, scene.support.weight, getattr(scene.support, "stiffness", 0.0))
+
+
+def from_definitions(scene):
+    """Return steady quantities from p = K (delta - h - l_r h'), W = int p dx and F = -int h' p dx."""
+    h, slope, K = scene.indenter.height, scene.indenter.slope, scene.foundation.stiffness
+    l_r = scene.drive.velocity * scene.foundation.retardation_time
+
+    def integrals(delta):
+        leading = _root(lambda x: delta - h(x), -1.0)
+
+        def pressure(x):
+            return K * (delta - h(x) - l_r * slope(x))
+
+        trailing = _root(pressure, 1.0) if pressure(-leading) < 0 else -leading
+
+        def both(weight):
+            ends = sorted({leading, min(0.0, trailing), trailing})
+            return sum(
+                _integral(lambda x: weight(x) * pressure(x), a, b)
+                for a, b in itertools.pairwise(ends)
+            )
+
+        return both(lambda x: 1.0), both(lambda x: -slope(x))
+
+    support = scene.support
+    if isinstance(support, kv.Fixed):
+        delta = support.depth
+    else:
+        deepest = 0.95 * min(h(-FAR), h(FAR))
+        delta = brentq(
+            lambda d: integrals(d)[0] - support.weight, 1e-9, deepest, xtol=1e-18, rtol=1e-14
+        )
+    load, friction = integrals(delta)
+    return {
+        "depth": delta, "load": load, "friction_force": friction,
+        "friction_coefficient": friction / load,
+    }  # fmt: skip
+
+
+def _root(function, side):
+    """Return the root between the axis and the reach on one side; at a kink on the axis, the axis."""
+    near, far = side * 1e-300, side * FAR
+    if function(near) <= 0.0:
+        return 0.0
+    return brentq(function, near, far, xtol=1e-300, rtol=1e-15)
+
+
+def _integral(function, a, b):
+    """Integrate on [a, b], with both ends as smooth as a square root there."""
+    half = 0.5 * (b - a)
+    value, _ = quad(
+        lambda t: function(a + half * (1 - math.cos(t))) * half * math.sin(t),
+        0, math.pi, epsabs=0, epsrel=1e-12, limit=200,
+    )  # fmt: skip
+    return value
+
+
+def series_truth(case, model, truer=TRUER):
+    """Return a series by a method that shares nothing with the model that answered, and its name.
+
+    Where no such method gets to the end, the continuum with a far smaller tolerance stands in.
+    """
+    scaled, tolerance = case.scaled, max(truer * case.request["rtol"], 1e-12)
+    if model != "slow manifold":
+        try:
+            if case.kind == "start" and scaled.epsilon is not None:
+                with suppress(ValueError):  # it needs memory
+                    return _in_si(
+                        case, transient_closed_form.two_states(scaled, tolerance)
+                    ), "two states"
+            return _in_si(case, remembered(scaled, tolerance)), "whole past"
+        except ArithmeticError:
+            pass
+    found = kv.transient(case.scene, at=case.request["at"], rtol=max(0.1 * tolerance, 1e-12))
+    return {name: getattr(found, name) for name in SOLVED}, "continuum"
+
+
+def remembered(scaled, tolerance):
+    """Solve from the whole past, with an explicit method: not where the inertia is next to nothing."""
+    if scaled.epsilon is not None and scaled.epsilon < LEAST_INERTIA:
+        raise ArithmeticError("too stiff for the solution from the whole past")
+    return transient_history.history(scaled, tolerance, LONGEST_STEP)
+
+
+def _in_si(case, found):
+    """Put the scaled solution for a positive first velocity into the units and signs of the scene."""
+    side = math.copysign(1.0, case.scene.drive.points[0][1])
+    left, right = found["left"], found["right"]
+    numbers = _numbers(case)
+    leads = _leads(case, numbers)
+    d, v = found["d"], found["v"]
+    top = np.clip(-numbers, left, right)
+    p = np.nan_to_num(d + v - top * (top + 2 * numbers))
+    scales = series_scales(case.scene)
+    scaled = {
+        "depth": d, "depth_rate": v, "normal_force": found["f_z"], "friction_force": side * found["f_x"],
+        "leading_edge": side * np.where(leads, left, right),
+        "trailing_edge": side * np.where(leads, right, left),
+        "peak_pressure": np.maximum(p, 0.0),
+    }  # fmt: skip
+    return {name: value * scales[name] for name, value in scaled.items()}
+
+
+def _numbers(case):
+    """Return lambda at the times, in the mirror image that moves forward first."""
+    drive = case.scaled.drive
+    return np.array([[n for s, n in drive if s <= time][-1] for time in case.scaled.times])
+
+
+def _leads(case, numbers):
+    """Whether the left edge leads; at rest, as it did before."""
+    return numbers >= 0.0
+
+
+def series_scales(scene):
+    """Return the static depth, half length and load in the units of each quantity."""
+    n, f = dimensionless_numbers(scene), scene.foundation
+    a, d, W = (n["static_half_length"], n["static_depth"], n["static_load"])
+    return {
+        "depth": d, "depth_rate": d / f.retardation_time, "normal_force": W, "friction_force": W * d / a,
+        "leading_edge": a, "trailing_edge": a, "peak_pressure": f.stiffness * d,
+    }  # fmt: skip
+
+
+def cheaper_would_do(case, model):
+    """Whether a cheaper rung than the one that answered was within the tolerance after all."""
+    if case.kind == "steady" and model != "asymptote":
+        regimes = ("low", "high") if case.scene.drive.velocity else ("low",)
+        return any(
+            true_error(case, asymptote.values(case.scene, regime, case.names), "asymptote")[0]
+            <= case.request["rtol"]
+            for regime in regimes
+        )
+    moving = case.kind == "start" and case.scaled.epsilon is not None
+    if not (moving and model == "continuum"):
+        return False
+    scaled = case.scaled
+    try:
+        given = slow_start.start(scaled.drive[0][1], scaled.epsilon, scaled.kappa)
+        found = slow_motion.follow(given, np.array(scaled.times), case.request["rtol"]).values
+    except ArithmeticError:
+        return False
+    side, scales = math.copysign(1.0, case.scene.drive.velocity), series_scales(case.scene)
+    odd = ("friction_force", "leading_edge", "trailing_edge")
+    values = {
+        name: (side if name in odd else 1.0) * scales[name] * found[name] for name in case.names
+    }
+    return true_error(case, values, "slow manifold")[0] <= case.request["rtol"]

@@ -1,0 +1,153 @@
+"""The ladder on ten thousand random scenes: `python -m tests.ladder_table [COUNT]`.
+
+For each kind of scene and each decade of the tolerance: how often the true error was within it, how often
+the rung was the cheapest that would have passed, and the share of the time that went into the choice.
+"""
+
+import signal
+import sys
+import time
+from collections import Counter, defaultdict
+from contextlib import contextmanager, nullcontext
+from dataclasses import dataclass
+
+import numpy as np
+
+import kvtheory as kv
+from kvtheory.ladder.climbing import ToleranceError
+from tests import ladder_scenes as scenes
+
+KINDS = {
+    "steady": (scenes.steady_case, 0.80),
+    "other shape": (scenes.shape_case, 0.04),
+    "start": (scenes.start_case, 0.14),
+    "memory": (lambda rng: scenes.start_case(rng, memory=True), 0.02),
+}
+"""How scenes of each kind are drawn, and their share."""
+
+
+PATIENCE = 5.0
+"""Seconds for the truth of one scene."""
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What became of one request."""
+
+    kind: str
+    seed: int
+    rtol: float
+    model: str
+    error: float
+    truth: str
+    """What tells the true error."""
+    cheapest: bool
+    choosing: float
+    """Seconds on rungs that were not used, and to judge the one that was."""
+    vain: float
+    """Seconds on rungs that were not used."""
+    wall: float
+
+
+@contextmanager
+def limited():
+    """Give up on an independent truth that takes too long."""
+
+    def too_long(*_):
+        raise ArithmeticError("the truth takes too long")
+
+    before = signal.signal(signal.SIGALRM, too_long)
+    signal.setitimer(signal.ITIMER_REAL, PATIENCE)
+    try:
+        yield
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, 0)
+        signal.signal(signal.SIGALRM, before)
+
+
+def outcome(kind, seed, patience=nullcontext()):  # noqa: B008 - immutable
+    """Solve one random request and hold it against the truth; None where no model would do."""
+    case = KINDS[kind][0](np.random.default_rng(seed))
+    begun = time.perf_counter()
+    try:
+        found = kv.solve(case.scene, **case.request)
+    except ToleranceError:
+        return None
+    wall = time.perf_counter() - begun
+    *vain, last = found.climb
+    lost = sum(step.choosing + step.solving for step in vain)
+    with patience:
+        error, truth = scenes.true_error(case, found.values, found.model)
+        if error > case.request["rtol"]:
+            error, truth = scenes.true_error(case, found.values, found.model, scenes.TRUEST)
+    cheapest = not scenes.cheaper_would_do(case, found.model)
+    return Outcome(
+        kind, seed, case.request["rtol"], found.model, error, truth, cheapest,
+        lost + last.choosing, lost, wall,
+    )  # fmt: skip
+
+
+def measure(count):
+    """Return the outcomes of `count` requests, and those that no model met, by kind and seed."""
+    kv.solve(at=[0.1])  # compiles
+    found, refused, failed = [], [], []
+    for kind, (_, share) in KINDS.items():
+        for seed in range(round(count * share)):
+            try:
+                result = outcome(kind, seed, limited())
+            except (ArithmeticError, ValueError) as error:  # of the truth, which then says nothing
+                failed.append((kind, seed, str(error)))
+                continue
+            (refused.append((kind, seed)) if result is None else found.append(result))
+        print(f"{kind}: done", file=sys.stderr, flush=True)
+    return found, refused, failed
+
+
+def table(found):
+    """Print the outcomes by kind and decade, then by model."""
+    groups = defaultdict(list)
+    for one in found:
+        groups[one.kind, f"1e{int(np.floor(np.log10(one.rtol))) + 1}"].append(one)
+        groups[one.kind, "all"].append(one)
+        groups["all", "all"].append(one)
+    print(f"{'kind':12} {'rtol to':>8} {'scenes':>7} {'within':>8} {'cheapest':>9}  models")
+    for (kind, decade), ones in sorted(groups.items()):
+        models = defaultdict(int)
+        for one in ones:
+            models[one.model] += 1
+        print(
+            f"{kind:12} {decade:>8} {len(ones):7} {np.mean([o.error <= o.rtol for o in ones]):8.2%} "
+            f"{np.mean([o.cheapest for o in ones]):9.1%}  "
+            + ", ".join(f"{name} {n}" for name, n in sorted(models.items()))
+        )
+    print(f"\n{'model':14} {'kind':12} {'wall [ms]':>10} {'choice':>8} {'90 %':>7} {'in vain':>8}")
+    by_model = defaultdict(list)
+    for one in found:
+        by_model[one.model, one.kind].append(one)
+    for (model, kind), ones in sorted(by_model.items()):
+        shares = [one.choosing / one.wall for one in ones]
+        print(
+            f"{model:14} {kind:12} {1e3 * np.median([o.wall for o in ones]):10.3f} "
+            f"{np.median(shares):8.1%} {np.quantile(shares, 0.9):7.1%} "
+            f"{np.median([o.vain / o.wall for o in ones]):8.1%}"
+        )
+    total = sum(one.choosing for one in found) / sum(one.wall for one in found)
+    print(f"choice over the whole time: {total:.1%}")
+
+
+def main():
+    """Measure, and print the table and the exceptions."""
+    found, refused, failed = measure(int(sys.argv[1]) if len(sys.argv) > 1 else 10_000)
+    table(found)
+    counts = Counter((one.kind, one.truth) for one in found)
+    print("\ntruth: " + ", ".join(f"{kind} by {how} {n}" for (kind, how), n in counts.items()))
+    print("\nnot within the tolerance:")
+    for one in found:
+        if not one.error <= one.rtol:
+            print(f"  {one.kind} {one.seed}: {one.model}, error {one.error:.2e} > {one.rtol:.2e}")
+    print(f"no model was known to be enough: {len(refused)} {refused[:20]}")
+    print(f"truth not known: {len(failed)} {failed[:5]}")
+
+
+if __name__ == "__main__":
+    main()

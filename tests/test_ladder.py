@@ -1,0 +1,181 @@
+"""The ladder: what it chooses and why, its bounds, and how it says that nothing is enough."""
+
+import json
+import math
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+
+import kvtheory as kv
+from kvtheory.cli import main
+from kvtheory.ladder import asymptote
+from kvtheory.ladder.climbing import ToleranceError
+from kvtheory.ladder.enclosure import enclose, half_length
+from kvtheory.results import STEADY_UNITS, TRANSIENT_UNITS
+from kvtheory.steady_state.exact import scaled_root
+
+NUMBERS = np.concatenate([[0.0], np.geomspace(1e-9, 1e9, 73)])
+SUPPORT_NUMBERS = (0.0, 1e-3, 1.0, 1e3)
+
+
+@pytest.mark.parametrize("kappa", SUPPORT_NUMBERS)
+def test_the_half_length_is_enclosed(kappa):
+    roots = scaled_root(NUMBERS, np.full_like(NUMBERS, kappa))
+    for number, root in zip(NUMBERS.tolist(), roots.tolist(), strict=True):
+        found = enclose(number, kappa)
+        assert found.low * (1 - 1e-15) <= root <= found.high * (1 + 1e-15)
+        assert found.high / found.low <= 1.05
+        assert half_length(number, kappa) == pytest.approx(root, rel=1e-14)
+
+
+def scaled(number, kappa):
+    """Return a scene in scaled units; an infinite kappa is a fixed indenter."""
+    support = (
+        kv.Fixed(1.0)
+        if math.isinf(kappa)
+        else kv.Suspended(mass=1.0, stiffness=kappa, gravity=1.0)
+        if kappa
+        else kv.DeadWeight(mass=1.0, gravity=1.0)
+    )
+    return kv.Scene(kv.Parabola(0.5), kv.Foundation(0.75, 1.0), support, kv.Drive(number))
+
+
+@pytest.mark.parametrize("kappa", [*SUPPORT_NUMBERS, math.inf])
+def test_each_bound_covers_the_error_of_its_asymptote_and_is_not_far_above(kappa):
+    """Held against the exact solution, which shares no code with the bounds."""
+    far = []
+    for number in NUMBERS.tolist():
+        scene = scaled(number, kappa)
+        exact, bounds = kv.steady(scene), asymptote.enclosure_of(scene)
+        for regime, table in asymptote.ERRORS[math.isinf(kappa)].items():
+            if regime == "high" and number == 0.0:
+                continue
+            values = asymptote.values(scene, regime, tuple(STEADY_UNITS))
+            for name, value in values.items():
+                truth = getattr(exact, name)
+                error = abs(value / truth - 1.0) if truth else abs(value)
+                bound = table[name](bounds) + asymptote.ROUNDING
+                assert error <= bound * (1.0 + 1e-12), (name, regime, number)
+                if 1e-8 < error < 0.3:
+                    far.append(bound / error)
+    assert np.median(far) < 1.2
+    assert np.quantile(far, 0.95) < 2.0
+
+
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+@pytest.mark.parametrize(
+    ("velocity", "rtol", "model"),
+    [(1e-4, 1e-2, "asymptote"), (1e-4, 1e-4, "exact"), (10.0, 1e-2, "asymptote"), (0.1, 0.01, "exact")],
+)  # fmt: skip
+def test_the_cheapest_steady_model_is_chosen(velocity, rtol, model, sign):
+    scene = kv.Scene(drive=kv.Drive(sign * velocity))
+    found = kv.solve(scene, quantity="friction_coefficient", rtol=rtol)
+    truth = kv.steady(scene, method="quadrature").friction_coefficient
+    assert found.model == model
+    assert found.friction_coefficient == pytest.approx(truth, rel=rtol)
+    assert found.certificate.kind == ("proved" if model == "asymptote" else "estimated")
+    assert [step.outcome for step in found.climb][-1] == "used"
+    assert all(step.outcome == "error too large" for step in found.climb[:-1])
+
+
+def test_what_is_asked_for_decides():
+    """A fixed indenter's depth is known at every velocity, its friction is not."""
+    scene = kv.Scene.table1("fixed")
+    assert kv.solve(scene, quantity="depth", rtol=1e-12).model == "asymptote"
+    assert kv.solve(scene, quantity="friction_force", rtol=1e-12).model == "exact"
+    everything = kv.solve(scene)
+    assert list(everything.values) == list(STEADY_UNITS)
+    assert everything.trailing_edge == kv.steady(scene).trailing_edge
+
+
+def test_at_rest_the_asymptote_is_exact():
+    found = kv.solve(kv.Scene(drive=kv.Drive(0.0)), rtol=1e-14)
+    assert found.model == "asymptote"
+    assert found.friction_force == 0.0
+    assert found.depth == pytest.approx(kv.steady(kv.Scene(drive=kv.Drive(0.0))).depth, rel=1e-14)
+
+
+def test_other_shapes_climb_to_the_quadrature():
+    scene = kv.Scene(kv.Wedge(inclination=0.1))
+    found = kv.solve(scene, quantity="load", rtol=1e-8)
+    assert [step.rung for step in found.climb] == ["asymptote", "exact", "quadrature"]
+    assert "parabola only" in found.climb[0].outcome
+    assert found.load == kv.steady(scene).load
+
+
+def test_a_tolerance_that_nothing_meets_says_how_close_it_came():
+    with pytest.raises(
+        ToleranceError, match=r"rtol = 1e-14; try a tolerance from \d.\de-1"
+    ) as error:
+        kv.solve(kv.Scene(kv.Circle(radius="10 mm")), rtol=1e-14)
+    assert "quadrature: error too large" in str(error.value)
+
+
+@pytest.mark.parametrize(
+    ("request_", "message"),
+    [
+        ({"quantity": "frictoin_force"}, "friction_force"),
+        ({"quantity": "depth_rate"}, "of a time series"),
+        ({"quantity": "load", "at": "1 ms"}, "of steady sliding"),
+        ({"quantity": []}, "is empty"),
+        ({"quantity": 5}, "`quantity`"),
+        ({"rtol": 0.0}, "`rtol` = 0.0"),
+        ({"rtol": math.nan}, "`rtol` = nan"),
+        ({"at": "1 s"}, "after the end of the run"),
+    ],
+)
+def test_bad_requests_teach(request_, message):
+    with pytest.raises(ValueError, match=message):
+        kv.solve(**request_)
+
+
+def test_a_drive_that_is_a_function_has_no_steady_sliding():
+    scene = kv.Scene(drive=kv.Drive(function=lambda t: 0.1 * math.sin(60 * t)))
+    with pytest.raises(kv.SceneError, match="a function"):
+        kv.solve(scene)
+    assert kv.solve(scene, at="10 ms", rtol=1e-3).model == "continuum"
+
+
+def command(*arguments):
+    return CliRunner().invoke(main, ["solve", *arguments])
+
+
+def test_the_command_prints_the_contract():
+    shown = command("--quantity", "friction_coefficient", "--rtol", "1e-6", "--json")
+    record = json.loads(shown.stdout)
+    assert list(record) == ["friction_coefficient", "model", "certificate", "climb"]
+    assert record["friction_coefficient"] == kv.steady().friction_coefficient
+    assert [step["rung"] for step in record["climb"]] == ["asymptote", "exact"]
+    series = json.loads(command("--at", "1 ms, 200 ms", "--json").stdout)
+    assert list(series) == [*TRANSIENT_UNITS, "model", "certificate", "climb"]
+    assert series["time"] == [1e-3, 0.2]
+    depth = json.loads(command("--at", "1 ms", "--quantity", "depth", "--json").stdout)
+    assert depth["friction_force"] == [None]
+    assert depth["depth"] == pytest.approx([2.936e-4], rel=1e-3)
+
+
+def test_the_command_explains_the_climb():
+    shown = command("--quantity", "depth", "--explain")
+    assert shown.exit_code == 0
+    for words in (
+        "asymptote",
+        "error too large",
+        "used",
+        "margin",
+        "time to choose",
+        "model: exact",
+    ):
+        assert words in shown.stdout
+
+
+def test_the_command_writes_a_series_and_nothing_else(tmp_path):
+    path = tmp_path / "run.csv"
+    assert command("--rtol", "1e-2", "-o", str(path)).exit_code == 0
+    head, *rows = path.read_text().splitlines()
+    assert head.startswith("time [s],velocity [m/s],depth [m]")
+    assert len(rows) > 20
+    bad = command("--quantity", "depht", "-o", str(tmp_path / "none.csv"))
+    assert bad.exit_code == 2
+    assert "did you mean depth" in bad.stderr or '"depth"' in bad.stderr
+    assert [file.name for file in tmp_path.iterdir()] == ["run.csv"]

@@ -1,0 +1,167 @@
+"""The rungs of a time series: their assumptions, and that each estimate covers what it neglects."""
+
+import math
+
+import numpy as np
+import pytest
+
+import kvtheory as kv
+from kvtheory.ladder import slow_motion, slow_start
+from kvtheory.ladder.climbing import Request
+from kvtheory.ladder.series import SOLVED, Models, rungs
+from kvtheory.transients import slow_manifold
+from kvtheory.transients.continuum import solve
+from kvtheory.transients.drive import Drive
+from tests.ladder_scenes import series_scales
+
+
+def light(number=4.0, eps=1e-6, kappa=0.0, end=3.0):
+    """Return a start from rest in scaled units."""
+    support = (
+        kv.Suspended(mass=eps, stiffness=kappa, gravity=1 / eps)
+        if kappa
+        else kv.DeadWeight(mass=eps, gravity=1 / eps)
+    )
+    drive, run = kv.Drive(number), kv.Run(end)
+    return kv.Scene(kv.Parabola(0.5), kv.Foundation(0.75, 1.0), support, drive, run)
+
+
+@pytest.mark.parametrize(("number", "kappa"), [(0.1, 0.0), (4.0, 0.0), (100.0, 0.0), (2.0, 0.3)])
+def test_the_quadrature_of_the_slow_manifold_agrees_with_its_integration(number, kappa):
+    """Two solvers without common code."""
+    times = np.geomspace(1e-4, 3.0, 30)
+    found = slow_motion.follow(slow_start.start(number, 1e-12, kappa), times, 1e-9)
+    integrated = slow_manifold.solve(number, kappa, 3.0, rtol=1e-9)
+    np.testing.assert_allclose(found.values["depth"], integrated(times), rtol=1e-7)
+    rates = slow_manifold.depth_rate(found.values["depth"], number, kappa)
+    np.testing.assert_allclose(found.values["depth_rate"], rates, atol=1e-9 * number)
+
+
+def random_start(rng):
+    kappa = float(rng.choice([0.0, 10 ** rng.uniform(-2, 1.5)]))
+    number, eps, end = 10 ** rng.uniform(-2, 2), 10 ** rng.uniform(-8, -1), rng.uniform(0.2, 5.0)
+    return number, eps, kappa, np.sort(end * 10 ** rng.uniform(-3, 0, 12))
+
+
+def test_the_estimate_covers_what_the_slow_manifold_neglects():
+    """Against the continuum with a far smaller tolerance, on a hundred starts."""
+    rng, close, tried = np.random.default_rng(5), [], 0
+    for _ in range(160):
+        number, eps, kappa, times = random_start(rng)
+        try:
+            given = slow_start.start(number, eps, kappa)
+            found = slow_motion.follow(given, times, 1e-8)
+        except ArithmeticError:
+            continue
+        if found.ratio > slow_motion.LARGEST_RATIO:
+            continue
+        scene = light(number, eps, kappa, times[-1])
+        truth = kv.transient(scene, at=times, rtol=1e-11)
+        scales = series_scales(scene)
+        for name in SOLVED:
+            error = np.abs(found.values[name] - getattr(truth, name) / scales[name])
+            assert np.all(error <= found.errors[name] + 1e-9), (name, number, eps, kappa)
+        close.append(
+            np.max(np.abs(found.values["depth"] - truth.depth)) / found.errors["depth"].max()
+        )
+        tried += 1
+    assert tried >= 80
+    assert np.median(close) > 0.3
+
+
+def test_the_neglected_inertia_is_of_first_order():
+    times, errors = np.array([0.3, 1.0]), []
+    for eps in (1e-3, 1e-4, 1e-5):
+        given = slow_start.start(4.0, eps, 0.0)
+        slow = slow_motion.follow(given, times, 1e-10).values["depth"]
+        truth = solve(Drive.constant(4.0, 1.0), eps, 0.0, 1.0, 1e-12)
+        errors.append(abs(slow[1] - truth.at(1.0).depth))
+    assert np.diff(np.log10(errors)) == pytest.approx([-1.0, -1.0], abs=0.05)
+
+
+def test_the_slow_manifold_is_used_where_it_is_enough_and_only_there():
+    at = [0.1, 1.0]
+    assert kv.solve(light(), at=at, rtol=1e-3).model == "slow manifold"
+    assert kv.solve(light(), at=at, rtol=1e-8).model == "continuum"
+    assert kv.solve(light(eps=0.1), at=at, rtol=1e-3).model == "continuum"
+    assert kv.solve(light(), at=[0.0, 1.0], rtol=1e-3).model == "continuum"  # the layer
+    assert kv.solve(light(), at=[0.0, 1.0], quantity="depth", rtol=1e-3).model == "slow manifold"
+
+
+def test_ground_that_was_left_needs_the_continuum():
+    """A stiff spring unloads: the trailing edge moves out again, over ground that it left."""
+    found = kv.solve(light(0.35, 1e-7, 24.0), at=[0.5], rtol=1e-2)
+    assert found.model == "continuum"
+    assert "back over ground" in found.climb[1].outcome
+
+
+@pytest.mark.parametrize("support", ["fixed", "dead-weight"])
+@pytest.mark.parametrize("velocity", [-0.1, 0.0, 0.1])
+def test_what_is_steady_at_once_is_the_continuum_too(support, velocity):
+    scene = kv.Scene(
+        support=kv.Scene.table1(support).support, drive=kv.Drive(velocity), run=kv.Run(0.05)
+    )
+    at = [0.0, 0.01, 0.05]
+    found = kv.solve(scene, at=at, rtol=1e-6)
+    assert found.model == ("exact" if support == "fixed" or velocity == 0.0 else "continuum")
+    truth, scales = kv.transient(scene, at=at, rtol=1e-9), series_scales(scene)
+    for name in SOLVED:
+        np.testing.assert_allclose(
+            getattr(found, name),
+            getattr(truth, name),
+            rtol=0,
+            atol=1e-6 * scales[name],
+            err_msg=name,
+        )
+
+
+def test_the_mirror_image():
+    at = [0.1, 1.0]
+    right, left = (kv.solve(light(side * 4.0), at=at, rtol=1e-3) for side in (1, -1))
+    assert right.model == left.model == "slow manifold"
+    for name in SOLVED:
+        odd = name in ("friction_force", "leading_edge", "trailing_edge")
+        np.testing.assert_array_equal(
+            getattr(left, name), (-1 if odd else 1) * getattr(right, name)
+        )
+
+
+def test_a_history_climbs_to_the_continuum_and_what_is_not_asked_for_is_not_given():
+    history = [(0.0, 0.1), (0.05, 0.1), (0.05, 0.0)]
+    scene = kv.Scene(drive=kv.Drive(history=history))
+    found = kv.solve(scene, at=[0.1], quantity=["depth", "friction_force"], rtol=1e-5)
+    assert found.model == "continuum"
+    assert [step.outcome for step in found.climb[:2]] == ["the drive changes"] * 2
+    assert np.isnan(found.normal_force).all()
+    assert set(found.certificate.relative_error) == {"time", "velocity", "depth", "friction_force"}
+    assert max(found.certificate.relative_error.values()) <= 1e-5
+    with pytest.raises(AttributeError, match="no `load`"):
+        found.load  # noqa: B018
+
+
+def test_the_steps_are_tightened_until_the_certificate_is_met():
+    found = kv.solve(at=[1e-3, 0.2], rtol=1e-9)
+    assert found.model == "continuum"
+    assert max(found.certificate.relative_error.values()) <= 1e-9
+
+
+@pytest.mark.parametrize("rtol", [1e-1, 1e-2])
+def test_the_elements_are_as_good_as_they_say(rtol):
+    """The last rung on a parabola, where the continuum tells the truth; fast at first, at 1 ms."""
+    at = [1e-3, 5e-3, 0.05]
+    request = Request(SOLVED, rtol, at, over_time=True)
+    scene = kv.Scene(run=kv.Run(0.05))
+    answer = rungs(Models(kv.steady, kv.transient, kv.elements))[-1].solve(scene, request, None)
+    truth, scales = kv.transient(scene, at=at, rtol=1e-9), series_scales(scene)
+    for name in SOLVED:
+        error = np.max(np.abs(answer.values[name] - getattr(truth, name))) / scales[name]
+        assert error <= answer.certificate.relative_error[name] <= rtol, name
+
+
+def test_other_shapes_climb_to_the_elements():
+    scene = kv.Scene(kv.Wedge(inclination=0.05), run=kv.Run(0.02))
+    found = kv.solve(scene, at=[0.01, 0.02], quantity="depth", rtol=1e-2)
+    assert found.model == "elements"
+    finer = kv.elements(scene, at=[0.01, 0.02], per_length=4.0 * found.answer.per_length)
+    assert found.depth == pytest.approx(finer.depth, rel=1e-2)
+    assert math.isnan(found.climb[-2].error)
