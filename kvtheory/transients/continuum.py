@@ -105,18 +105,17 @@ class Motion:
 
     def _memory(self) -> Iterator[Event]:
         """Yield when an edge begins to touch ground that was touched before, and when it ceases to."""
+        records = np.array(self.rows.records[: self.steps])
+        left_at = np.array(self.rows.nodes)[:, c_.IN_S]
         for name, state, node in (
             ("left", h_.LEFT_STATE, h_.LEFT_NODE),
             ("right", h_.RIGHT_STATE, h_.RIGHT_NODE),
         ):
-            before = False
-            for record in self.rows.records[: self.steps]:
-                left_at = self.rows.nodes[int(record[node])][c_.IN_S]
-                now = record[state] == TOUCHING and left_at > -math.inf
-                if now != before:
-                    what = "begins" if now else "ends"
-                    yield Event(float(record[h_.START]), f"memory {what} at the {name} edge")
-                before = now
+            touched = left_at[records[:, node].astype(int)] > -math.inf
+            remembers = (records[:, state] == TOUCHING) & touched
+            for k in np.flatnonzero(np.diff(remembers, prepend=False)):
+                what = "begins" if remembers[k] else "ends"
+                yield Event(float(records[k, h_.START]), f"memory {what} at the {name} edge")
 
     @cached_property
     def records(self) -> list[list[float]]:
