@@ -13,6 +13,7 @@ paper: $(VENV)/.installed
 	$(BIN)/kvtheory asymptotes
 	$(BIN)/kvtheory transient
 	$(BIN)/kvtheory derive -o $(OUT)/derivations
+	$(BIN)/kvtheory chart failures -o $(OUT)/failures.html
 	$(BIN)/python -m figures -o $(OUT)/figures
 	@echo "Done: open $(OUT)/derivations/derivations.html and $(OUT)/figures"
 
@@ -31,6 +32,8 @@ format: $(VENV)/.installed-test
 
 benchmark: $(VENV)/.installed
 	$(BIN)/python -m figures.benchmark
+	$(BIN)/python -m figures.benchmark_transient
+	$(BIN)/kvtheory chart work-precision --standard all -o $(OUT)/work_precision.png
 
 clean:
 	rm -rf $(VENV) $(OUT) build dist *.egg-info .pytest_cache .mypy_cache .ruff_cache .hypothesis .import_linter_cache
@@ -44,16 +47,16 @@ endif
 
 $(VENV)/.installed: pyproject.toml constraints.txt | $(BIN)/python
 ifdef UV
-	$(UV) pip install --quiet --python $(BIN)/python --constraint constraints.txt --editable .
+	$(UV) pip install --quiet --python $(BIN)/python --constraint constraints.txt --editable '.[fast,data]'
 else
-	$(BIN)/python -m pip install --quiet --constraint constraints.txt --editable .
+	$(BIN)/python -m pip install --quiet --constraint constraints.txt --editable '.[fast,data]'
 endif
 	@touch $@
 
 $(VENV)/.installed-test: $(VENV)/.installed
 ifdef UV
-	$(UV) pip install --quiet --python $(BIN)/python --constraint constraints.txt --editable '.[test]'
+	$(UV) pip install --quiet --python $(BIN)/python --constraint constraints.txt --editable '.[fast,data,test]'
 else
-	$(BIN)/python -m pip install --quiet --constraint constraints.txt --editable '.[test]'
+	$(BIN)/python -m pip install --quiet --constraint constraints.txt --editable '.[fast,data,test]'
 endif
 	@touch $@

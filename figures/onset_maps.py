@@ -121,7 +121,7 @@ def _settling(ax: Any, settling: NDArray[np.float64], style: dict[str, Any]) -> 
         image = ax.pcolormesh(NUMBERS, INERTIAS, shown, **look, **style)
         if values is settling:
             ax.figure.colorbar(image, ax=ax, extend="min")
-    ax.text(0.0115, 0.02, "settled from\nthe start", fontsize=7)
+    ax.text(0.0115, 0.02, "settled\nfrom the\nstart", fontsize=7)
     ax.text(
         0.97,
         0.96,

@@ -1,7 +1,15 @@
 """Sliding friction of a rigid indenter on a Kelvin-Voigt foundation: derived, exact, checked."""
 
-from kvtheory.api import asymptotes, steady, transient
-from kvtheory.results import AsymptoteReport, Certificate, SteadyState, Transient
+from kvtheory.api import asymptotes, compare, elements, solve, steady, sweep, transient
+from kvtheory.results import (
+    AsymptoteReport,
+    Certificate,
+    Comparison,
+    Simulation,
+    Solution,
+    SteadyState,
+    Transient,
+)
 from kvtheory.scene import (
     Circle,
     DeadWeight,
@@ -19,6 +27,7 @@ from kvtheory.scene import (
     load_scene,
     to_toml,
 )
+from kvtheory.sweeps.result import Sweep
 
 __version__ = "0.1.0"
 
@@ -26,6 +35,7 @@ __all__ = [
     "AsymptoteReport",
     "Certificate",
     "Circle",
+    "Comparison",
     "DeadWeight",
     "Drive",
     "Fixed",
@@ -36,13 +46,20 @@ __all__ = [
     "Run",
     "Scene",
     "SceneError",
+    "Simulation",
+    "Solution",
     "SteadyState",
     "Suspended",
+    "Sweep",
     "Transient",
     "Wedge",
     "asymptotes",
+    "compare",
+    "elements",
     "load_scene",
+    "solve",
     "steady",
+    "sweep",
     "to_toml",
     "transient",
 ]

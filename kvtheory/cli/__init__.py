@@ -1,6 +1,6 @@
 """The commands; each imports what it needs when it runs."""
 
-from kvtheory.cli import derive, scene, steady, transient
+from kvtheory.cli import chart, compare, derive, elements, scene, solve, steady, sweep, transient
 from kvtheory.cli.group import main
 
-__all__ = ["derive", "main", "scene", "steady", "transient"]
+__all__ = ["chart", "compare", "derive", "elements", "main", "scene", "solve", "steady", "sweep", "transient"]

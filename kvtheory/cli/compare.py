@@ -9,6 +9,7 @@ import click
 
 from kvtheory.cli.console import print_json, print_table, scene_command
 from kvtheory.cli.group import main
+from kvtheory.cli.outputs import check_output
 
 if TYPE_CHECKING:
     from kvtheory.results.comparison import Check
@@ -62,8 +63,8 @@ def compare(
     from kvtheory.api.cross_validation import compare as hold_against
     from kvtheory.scene import load_scene
 
-    if report and report.suffix != ".html":
-        raise ValueError(f'--report "{report}": expected a name that ends in .html')
+    check_output("--report", report, [".html"])
+    check_output("--plot", plot, [".png", ".svg", ".pdf"])
     checked = load_scene(scene, overrides)
     found = hold_against(checked, data, per_length=per_length, scheme=scheme, tolerance=tolerance)
     if plot:

@@ -10,6 +10,7 @@ import click
 
 from kvtheory.cli.console import print_json, print_series, scene_command, split
 from kvtheory.cli.group import main
+from kvtheory.cli.outputs import check_output
 
 LONG_RUN = 10_000
 """Steps; shorter runs end before a bar could be read."""
@@ -49,11 +50,10 @@ def elements(
 ) -> None:
     """Simulate SCENE by point elements that move with the base: any shape, support and drive."""
     from kvtheory.api import elements as simulate
-    from kvtheory.export import check_series_path, save_transient
+    from kvtheory.export import SERIES_SUFFIXES, save_transient
     from kvtheory.scene import load_scene
 
-    if output:
-        check_series_path(output)  # before a run that may be long
+    check_output("-o", output, SERIES_SUFFIXES)  # before a run that may be long
     with _bar() as progress:
         result = simulate(
             load_scene(scene, overrides),

@@ -18,6 +18,8 @@ CURVES = {
 DOTS = 200
 """More samples than this are drawn as a line."""
 MARKS = {True: ("ok", GREEN), False: ("fails", RED), None: ("not made", "#777777")}
+ROOM = 1.6
+"""Of the band: how far the axis of the residuals goes, for the legend has its place above the band."""
 LONGEST_NOTE = 74
 SIZE = (7.2, 8.6)
 
@@ -41,9 +43,9 @@ def plot_comparison(axes: Sequence[Sequence[Any]], comparison: Comparison) -> li
         label, factor = CURVES[name]
         data, theory = comparison.series[name] * factor, comparison.theory[name] * factor
         style = "." if time.size <= DOTS else "-"
-        artists += over.plot(time, theory, color=BLACK, linewidth=1.0, label="theory")
+        artists += over.plot(time, theory, color=BLACK, linewidth=0.8, label="theory", zorder=3)
         artists += over.plot(
-            time, data, style, color=BLUE, markersize=3, linewidth=1.0, alpha=0.8, label="data"
+            time, data, style, color=BLUE, markersize=4, linewidth=2.5, alpha=0.6, label="data"
         )
         over.set(ylabel=label)
         band = comparison.allowed[name] * abs(factor)
@@ -64,14 +66,14 @@ def plot_comparison(axes: Sequence[Sequence[Any]], comparison: Comparison) -> li
     for ax in axes[len(names) - 1]:
         ax.set(xlabel=r"time $t$ [ms]")
     axes[0][0].legend(loc="best")
-    axes[0][1].legend(loc="best")
+    axes[0][1].legend(loc="upper right", ncols=2, fontsize=8)
     return artists
 
 
 def _limits(residual: Any, band: Any) -> tuple[float, float]:
     """Return limits that show nearly all of the residual, not only its jump."""
     most = float(np.nanquantile(np.abs(residual), 0.98))
-    top = 1.3 * max(most, float(np.median(band)), 1e-300)
+    top = ROOM * max(most, float(np.median(band)), 1e-300)
     return -top, top
 
 

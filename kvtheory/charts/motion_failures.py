@@ -1,0 +1,218 @@
+"""Entries of the atlas about the motion of the indenter.
+
+Scaled scenes are run with R = 1/2, K = tau = delta_0 = 1: the static half length is 1, the static
+load 4/3, and so the unit of both forces is 4/3 N/m.
+"""
+
+import itertools
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.integrate import solve_ivp
+
+from kvtheory.api import elements, transient
+from kvtheory.charts.entry import Entry, Line, Outcome, Picture
+from kvtheory.charts.naive import closed_forms, two_states
+from kvtheory.scene.drives import Drive
+from kvtheory.scene.indenters import Parabola
+from kvtheory.scene.model import DeadWeight, Foundation, Run, Scene
+from kvtheory.scene.numbers import dimensionless_numbers
+from kvtheory.transients import slow_manifold
+
+Array = NDArray[np.float64]
+
+LOAD = 4.0 / 3.0
+RTOL = 1e-9
+FINE = 120.0
+"""Elements per unit length, of a static contact that is 2 long: the second opinion on the right number."""
+NEVER_WRONG = 1e-3
+"""How far continuum and elements may differ, with so many elements, where an edge jumps or lands."""
+
+
+FLIGHTS = "take-off", "landing"
+"""Kinds of events."""
+
+
+def _scaled(points: Sequence[tuple[float, float]], epsilon: float, end: float) -> Scene:
+    """Return a scene with this drive number over s, under a dead weight."""
+    support = DeadWeight(LOAD * epsilon, 1.0 / epsilon)
+    return Scene(Parabola(0.5), Foundation(1.0, 1.0), support, Drive(history=points), Run(end))
+
+
+def _without_past(
+    points: Sequence[tuple[float, float]], epsilon: float, s: Array
+) -> tuple[Array, Array, Array]:
+    """Return d, f_z and f_x by SciPy's Radau on the two states, with the edges of Eqs. 32 and 33."""
+    starts = [*(a for a, _ in points), s[-1]]
+    y, rows = (1.0, 0.0), []
+    for (a, b), (_, number) in zip(itertools.pairwise(starts), points, strict=True):
+        if b == a:
+            continue
+        law = two_states(number, epsilon)
+        run = solve_ivp(law, (a, b), y, "Radau", dense_output=True, rtol=RTOL, atol=1e-2 * RTOL)
+        y = run.y[:, -1]
+        inside = s[(s >= a) & ((s < b) | (b == s[-1]))]
+        rows += [(d, *closed_forms(d, v, number)) for d, v in run.sol(inside).T]
+    d, f_z, f_x = np.array(rows).T
+    return d, f_z, f_x
+
+
+def _leading_edge_peels() -> Outcome:
+    stop, points = 1.0, [(0.0, 4.0), (1.0, 4.0), (1.0, 0.1)]
+    s = np.append(np.linspace(0.5, stop, 101)[:-1], np.linspace(stop, 1.3, 121))
+    scene = _scaled(points, 3.0, 1.3)
+    ours = transient(scene, at=s, rtol=RTOL).normal_force
+    _, naive, _ = _without_past(points, 3.0, s)
+    at = int(np.argmin(naive))
+    right = elements(scene, per_length=FINE, at=[float(s[at])], certify=False)
+    return Outcome(
+        LOAD * float(naive[at]), float(right.normal_force[0]), float(ours[at]),
+        Picture("t/τ", "normal force / weight",
+                (Line("wrong", s, naive), Line("package", s, ours / LOAD))),
+    )  # fmt: skip
+
+
+def _negative_radicand() -> Outcome:
+    points, end = [(0.0, 10.0)], 3.0
+    s = np.linspace(0.0, end, 301)
+    scene = _scaled(points, 0.3, end)
+    ours = transient(scene, at=s, rtol=RTOL)
+    d = _without_past(points, 0.3, s)[0]
+    last = int(np.argmax(np.abs(d - ours.depth)))
+    right = elements(scene, per_length=FINE, at=[float(s[last])], certify=False)
+    return Outcome(
+        float(d[last]), float(right.depth[0]), float(ours.depth[last]),
+        Picture("t/τ", "depth / static depth", (Line("wrong", s, d), Line("package", s, ours.depth))),
+        "kv.transient: "
+        + ", ".join(f"{e.kind} at {e.time:.3f} τ" for e in ours.events if e.kind in FLIGHTS),
+    )  # fmt: skip
+
+
+def _memory_ignored() -> Outcome:
+    after = 0.058
+    scene = Scene(drive=Drive(history=[(0.0, 0.1), (0.05, 0.1), (0.05, 0.0)]), run=Run(0.15))
+    t = np.append(np.linspace(0.02, 0.05, 121)[:-1], np.linspace(0.05, 0.15, 201))
+    t = np.sort(np.append(t, after))
+    numbers = dimensionless_numbers(Scene())
+    tau, number = 0.1, numbers["drive_number"]
+    points = [(0.0, number), (0.5, number), (0.5, 0.0)]
+    friction = numbers["static_load"] * numbers["static_depth"] / numbers["static_half_length"]
+    naive = friction * _without_past(points, numbers["inertia_number"], t / tau)[2]
+    ours = transient(scene, at=t, rtol=RTOL).friction_force
+    at = int(np.searchsorted(t, after))
+    right = elements(scene, at=[after], certify=False)
+    return Outcome(
+        float(naive[at]), float(right.friction_force[0]), float(ours[at]),
+        Picture("t [ms]", "friction force [N/mm]",
+                (Line("wrong", 1e3 * t, 1e-3 * naive), Line("package", 1e3 * t, 1e-3 * ours))),
+    )  # fmt: skip
+
+
+def _slow_manifold() -> Outcome:
+    number, epsilon, end = 4.0812765306, 0.306095740, 4.0
+    s = np.linspace(0.0, end, 241)
+    scene = _scaled([(0.0, number)], epsilon, end)
+    naive = slow_manifold.solve(number, 0.0, end)(s)
+    ours = transient(scene, at=s, rtol=RTOL)
+    at = int(np.argmin(ours.depth))
+    right = elements(scene, per_length=FINE, at=[float(s[at])], certify=False)
+    return Outcome(
+        float(naive[at]), float(right.depth[0]), float(ours.depth[at]),
+        Picture("t/τ", "depth / static depth",
+                (Line("wrong", s, naive), Line("package", s, ours.depth))),
+    )  # fmt: skip
+
+
+def _event_missed() -> Outcome:
+    start, stop, fast = 0.15, 0.1502, 4.0
+    numbers = dimensionless_numbers(Scene())
+    tau, number = 0.1, numbers["drive_number"]
+    unit = numbers["static_load"] * numbers["static_depth"] / numbers["static_half_length"]
+
+    def rate(s: float) -> float:
+        return fast * number if start <= s * tau < stop else number
+
+    run = solve_ivp(
+        two_states(rate, numbers["inertia_number"]), (0.0, 2.0), (1.0, 0.0), "Radau",
+        rtol=1e-6, atol=1e-9, events=lambda s, _: rate(s) - 2.0 * number,
+    )  # fmt: skip
+    t = run.t * tau
+    naive = np.array(
+        [unit * closed_forms(d, v, rate(s))[1] for s, d, v in zip(run.t, *run.y, strict=True)]
+    )
+    V = 0.1
+    history = [(0.0, V), (start, V), (start, fast * V), (stop, fast * V), (stop, V)]
+    scene = Scene(drive=Drive(history=history))
+    times = np.sort([*np.linspace(0.14, 0.17, 301), start, stop])
+    ours = transient(scene, at=times, rtol=RTOL).friction_force
+    # Steady sliding at V until the pulse begins; then the closed forms at the same depth and 4 V.
+    d = transient(at=[start], rtol=RTOL)
+    late = t >= 0.14
+    right = unit * closed_forms(
+        float(d.depth[0]) / numbers["static_depth"],
+        float(d.depth_rate[0]) * tau / numbers["static_depth"], fast * number,
+    )[1]  # fmt: skip
+    return Outcome(
+        float(naive[late].max()), right, float(ours.max()),
+        Picture("t [ms]", "friction force [N/mm]",
+                (Line("wrong", 1e3 * t[late & (t <= 0.17)], 1e-3 * naive[late & (t <= 0.17)]),
+                 Line("package", 1e3 * times, 1e-3 * ours))),
+        f"solve_ivp: status {run.status}, events found: {run.t_events[0].size}",
+    )  # fmt: skip
+
+
+MOTION_FAILURES = (
+    Entry(
+        "leading-edge-peels", "Eq. 32 where the leading edge peels",
+        "A heavy indenter, ε = 3, slows down from λ = 4 to 0.1 while it rises",
+        "Eq. 32 keeps the leading edge at −a. Where the indenter rises faster than the drive brings new "
+        "ground, that edge peels too, at −λ − √(d + d' + λ²): the minus sign of Eq. 33. With Eq. 32 the "
+        "foundation pulls.",
+        "normal force", "N/m", 1.0,
+        "A negative pressure, or a negative normal force, at the leading edge.",
+        "Both edges have two states, peeling and touching; the event between them is located (F10).",
+        NEVER_WRONG, _leading_edge_peels, LOAD,
+    ),
+    Entry(
+        "negative-radicand", "Eq. 33 with a negative radicand",
+        "A start from rest with ε = 0.3 and λ = 10",
+        "Where d + d' + λ² < 0, or the edges pass each other, the indenter has left the foundation. The "
+        "square root gives NaN, or, if it is clipped at zero, a force in flight.",
+        "depth", "δ_0", 1.0,
+        "A warning about an invalid square root; a trailing edge ahead of the leading one.",
+        "Take-off is an event; it flies, the surface relaxes, and it lands on what is left of that.",
+        NEVER_WRONG, _negative_radicand, 1.0,
+    ),
+    Entry(
+        "memory-ignored", "No memory of the ground that was left",
+        "Table 1, stopped after 50 ms; 8 ms later",
+        "Eqs. 32 and 33 know undisturbed ground only. After a stop the contact spreads over the surface that "
+        "was left behind and is still relaxing: without it the residual friction has the wrong sign.",
+        "friction force", "N/m", 1.0,
+        "Friction against the motion that was, after a stop; the impulse balance F_z = K U + C dU/dt fails.",
+        "The two edges remember what they left (F8, F9); elements do so anyway.",
+        1e-2, _memory_ignored,
+    ),
+    Entry(
+        "slow-manifold", "The slow manifold past its range",
+        "Table 1 with a hundred times the mass at the same weight: ε = 0.306",
+        "The slow manifold leaves out inertia (F13). With ε of the order of one the indenter overshoots, and "
+        "hops: nothing of that is slow.",
+        "depth", "δ_0", 1.0,
+        "ε is not small; the discriminant of F12 is negative: the approach to steady sliding oscillates.",
+        "kv.transient keeps the inertia; the slow manifold is a model that one asks for.",
+        NEVER_WRONG, _slow_manifold, 1.0,
+    ),
+    Entry(
+        "event-missed", "An event within a step",
+        "Table 1 with four times the velocity for 0.2 ms at t = 150 ms: Radau, rtol 1e-6, with an event",
+        "Near steady sliding the steps of a stiff solver are many times longer than the pulse: it steps over "
+        "it. An event that looks for a change of sign from step to step sees none, or two.",
+        "largest friction force after 140 ms", "N/mm", 1e-3,
+        "Limit the step (max_step): the result changes although the tolerance did not.",
+        "The drive is given as a history: every kink and jump of it ends a step.",
+        1e-9, _event_missed,
+    ),
+)  # fmt: skip
+"""The entries about the motion."""

@@ -1,0 +1,102 @@
+"""Methods as one would write them at first: the peers of the charts, and the failures of the atlas.
+
+None of them uses the methods of the package. Scaled form: depths by delta_0, time by tau, lengths by
+a_0, forces by W_0 (f_x by W_0 delta_0/a_0).
+"""
+
+import math
+from collections.abc import Callable, Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kvtheory.scene.indenters import Parabola
+from kvtheory.scene.model import Scene
+
+Array = NDArray[np.float64]
+Law = Callable[[float, Any], tuple[float, float]]
+
+
+def closed_forms(d: float, v: float, number: float) -> tuple[float, float]:
+    """Return f_z and f_x with the edges of Eqs. 32 and 33 as they are written, which know no past.
+
+    The radicand of Eq. 33 is taken as zero where it is negative, so that no square root fails.
+
+    Examples
+    --------
+    >>> closed_forms(1.0, 0.0, 0.0)  # at rest: the static load, no friction
+    (1.0, -0.0)
+    """
+    l, r = -math.sqrt(max(d, 0.0)), math.sqrt(max(d + v + number * number, 0.0)) - number
+    mean = d + v
+    l2, r2 = l * l, r * r
+    l3, r3 = l2 * l, r2 * r
+    f_z = 0.75 * (mean * (r - l) - (r3 - l3) / 3.0 - number * (r2 - l2))
+    moment = 0.5 * mean * (r2 - l2) - 0.25 * (r3 * r - l3 * l) - number * (r3 - l3) / 1.5
+    return f_z, -1.5 * moment
+
+
+def two_states(number: float | Callable[[float], float], epsilon: float, kappa: float = 0.0) -> Law:
+    """Return d' and d'' as a function of s and (d, d'): the equation of motion with `closed_forms`.
+
+    Examples
+    --------
+    >>> two_states(0.0, 0.1)(0.0, (1.0, 0.0))
+    (0.0, 0.0)
+    """
+    rate = number if callable(number) else lambda _: number
+
+    def law(s: float, y: Sequence[float]) -> tuple[float, float]:
+        d, v = y
+        return v, (1.0 - closed_forms(d, v, rate(s))[0] - kappa * (d - 1.0)) / epsilon
+
+    return law
+
+
+def stale_elements(scene: Scene, per_length: float) -> tuple[Array, Array]:
+    """Return t (s) and depth (m) by the paper's scheme, with surfaces that stand still within a step.
+
+    In every stage of the Runge-Kutta method an element is taken to be in contact if the indenter is
+    below the surface that the element had at the end of the last step. The indenter must be a parabola
+    under a dead weight, driven with one velocity.
+    """
+    R, K, tau = (
+        _parabola(scene).radius,
+        scene.foundation.stiffness,
+        scene.foundation.retardation_time,
+    )
+    M, W, V = scene.support.mass, scene.support.weight, scene.drive.final_velocity  # type: ignore[union-attr]
+    dx = 1.0 / per_length
+    h = 2.0 * dx / V
+    d, v = (1.5 * R * W / K) ** (2.0 / 3.0) / (2.0 * R), 0.0
+    half = math.ceil(1.5 * math.sqrt(2.0 * R * d) / dx)
+    x = dx * np.arange(-half, half + 1)
+    height, u = x * x / (2.0 * R), np.maximum(d - x * x / (2.0 * R), 0.0)
+
+    def pull(d: float, v: float) -> float:
+        p = K * (d - height) + K * tau * (v - V * x / R)
+        pressed = (d - height >= u) & (p > 0.0)
+        return (W - dx * float(p[pressed].sum())) / M
+
+    time, depth = [0.0], [d]
+    for k in range(round(scene.run.duration / h)):
+        a1 = pull(d, v)
+        a2 = pull(d + 0.5 * h * v, v + 0.5 * h * a1)
+        a3 = pull(d + 0.5 * h * v + 0.25 * h * h * a1, v + 0.5 * h * a2)
+        a4 = pull(d + h * v + 0.5 * h * h * a2, v + h * a3)
+        d, v = d + h * v + h * h * (a1 + a2 + a3) / 6.0, v + h * (a1 + 2 * a2 + 2 * a3 + a4) / 6.0
+        free = np.concatenate([np.zeros(2), u[:-2]]) * math.exp(
+            -h / tau
+        )  # two elements pass in a step
+        p = K * (d - height) + K * tau * (v - V * x / R)
+        u = np.where((d - height >= free) & (p > 0.0), d - height, free)
+        time.append((k + 1) * h)
+        depth.append(d)
+    return np.array(time), np.array(depth)
+
+
+def _parabola(scene: Scene) -> Parabola:
+    if not isinstance(scene.indenter, Parabola):
+        raise ValueError(f'expected a parabola, not indenter.shape = "{scene.indenter.shape}"')
+    return scene.indenter

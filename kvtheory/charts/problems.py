@@ -1,0 +1,285 @@
+"""The scenes of the work-precision charts, and what is right for them, by two independent methods."""
+
+import json
+import math
+from dataclasses import dataclass
+from functools import cached_property
+from importlib.resources import files
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.integrate import solve_ivp
+
+from kvtheory.api import elements
+from kvtheory.charts.naive import closed_forms, two_states
+from kvtheory.scene.drives import Drive
+from kvtheory.scene.indenters import Parabola
+from kvtheory.scene.model import DeadWeight, Fixed, Foundation, Run, Scene
+from kvtheory.scene.numbers import dimensionless_numbers
+from kvtheory.transients import continuum, states
+from kvtheory.transients.drive import Drive as ScaledDrive
+from kvtheory.transients.drive import evaluate
+from kvtheory.transients.solution import Scales, scaled_drive, scales
+
+Array = NDArray[np.float64]
+
+EVENLY, AFTER_JUMP = 41, 9
+"""Instants that are judged: so many over the whole run, and so many soon after each jump."""
+SOON = np.geomspace(1e-4, 5e-2, AFTER_JUMP)
+"""Shares of the run after a jump."""
+APART = 1e-6
+"""Share of the run by which instants are apart at least."""
+REFERENCE_RTOL, INDEPENDENT_RTOL = 1e-12, 1e-10
+NO_MEMORY = 1e-7
+"""Where Radau on the two states agrees so well with the continuum, no memory was needed."""
+DENSITIES = {False: 160.0, True: 60.0}
+"""Elements per half length at rest of the finer reference by elements; for the quick form, fewer."""
+TABLE = "work_precision_reference.json"
+"""Independent solutions of the standard scenes; its generator is among the tests."""
+
+LAMBDA, EPSILON = 4.0812765306, 0.0030609574
+"""Of Table 1."""
+STANDARD: dict[str, tuple[list[tuple[float, float]], float, float]] = {
+    "table-1": ([(0.0, LAMBDA)], EPSILON, 2.0),
+    "low-velocity": ([(0.0, 0.04)], EPSILON, 2.0),
+    "high-velocity": ([(0.0, 40.0)], EPSILON, 0.25),
+    "small-inertia": ([(0.0, LAMBDA)], 1e-5, 2.0),
+    "stop-and-go": (
+        [(0.0, LAMBDA), (0.5, LAMBDA), (0.5, 0.0), (0.7, 0.0), (0.7, LAMBDA)], EPSILON, 1.5,
+    ),
+    "reversal": ([(0.0, LAMBDA), (0.5, LAMBDA), (0.5, -LAMBDA)], EPSILON, 1.5),
+    "hop": ([(0.0, 4.0)], 0.3, 4.0),
+}  # fmt: skip
+"""Drive points (s, lambda), inertia number and end of the standard scenes."""
+
+
+@dataclass(frozen=True)
+class Curves:
+    """Depth and friction force in scaled form at the instants of a problem."""
+
+    depth: Array
+    friction: Array
+
+
+@dataclass(frozen=True)
+class Reference:
+    """What is right; how far two independent methods agree on each error; and which methods these are."""
+
+    curves: Curves
+    agreement: dict[str, float]
+    methods: tuple[str, str]
+
+
+@dataclass(frozen=True)
+class Problem:
+    """A scene as every method takes it: in SI for the elements, scaled for the others."""
+
+    name: str
+    scene: Scene
+    quick: bool = False
+
+    @cached_property
+    def units(self) -> Scales:
+        """The scales of the scaled form."""
+        return scales(self.scene)
+
+    @cached_property
+    def drive(self) -> ScaledDrive:
+        """lambda(s)."""
+        return scaled_drive(self.scene, self.units)
+
+    @property
+    def fixed(self) -> bool:
+        """Whether the indenter cannot move, so that there is no equation of motion."""
+        return isinstance(self.scene.support, Fixed)
+
+    @cached_property
+    def epsilon(self) -> float:
+        """Inertia number; one, which is not used, for a fixed indenter."""
+        return dimensionless_numbers(self.scene).get("inertia_number", 1.0)
+
+    @cached_property
+    def kappa(self) -> float:
+        """Support number."""
+        return math.inf if self.fixed else dimensionless_numbers(self.scene)["support_number"]
+
+    @cached_property
+    def jumps(self) -> list[float]:
+        """Times (s) at which the drive may have a kink or jump, 0 first."""
+        drive, end = self.scene.drive, self.scene.run.duration
+        times = drive.breaks if drive.function else (t for t, _ in drive.points)
+        return sorted({0.0, *(t for t in times if t < end)})
+
+    @cached_property
+    def times(self) -> Array:
+        """Instants (s) that are judged; where the drive jumps, just after the jump."""
+        end = self.scene.run.duration
+        soon = [t + x for t in self.jumps for x in SOON * end if t + x < end]
+        evenly = np.linspace(0.0, end, EVENLY).tolist()
+        apart = [t for t in (*evenly, *soon) if min(abs(t - x) for x in self.jumps) > APART * end]
+        found = np.array(sorted({*apart, *self.jumps}))
+        return found[np.diff(found, prepend=-1.0) > APART * end]
+
+    @cached_property
+    def pieces(self) -> list[tuple[float, float, Any]]:
+        """Start and end in units of tau between jumps, and lambda there: a number, or a function of s."""
+        ends = [*self.jumps, self.scene.run.duration]
+        tau, found = self.units.time, []
+        for a, b in pairwise(ends):
+            inside = [p for p in self.drive.pieces if p[0] < b / tau and p[1] > a / tau]
+            powers = inside[0][3:]
+            constant = len(inside) == 1 and not any(powers[1:])
+            found.append((a / tau, b / tau, powers[0] if constant else _rate(inside)))
+        return found
+
+
+def _rate(pieces: list[tuple[float, ...]]) -> Any:
+    starts = [piece[0] for piece in pieces]
+
+    def number(s: float) -> float:
+        k = max(int(np.searchsorted(starts, s, "right")) - 1, 0)
+        return evaluate(pieces[k], s)[1]
+
+    return number
+
+
+def standard_scene(name: str) -> Scene:
+    """Return a standard scene, in which R = 1/2, K = tau = delta_0 = 1 and so a_0 = 1.
+
+    Examples
+    --------
+    >>> Problem("hop", standard_scene("hop")).epsilon
+    0.3
+    """
+    points, epsilon, end = STANDARD[name]
+    support = DeadWeight(4.0 / 3.0 * epsilon, 1.0 / epsilon)
+    return Scene(Parabola(0.5), Foundation(1.0, 1.0), support, Drive(history=points), Run(end))
+
+
+def errors(found: Curves, right: Curves) -> dict[str, float]:
+    """Return the errors of depth, friction force and its largest value, by their names.
+
+    Depths are relative to the static depth, forces to the largest friction force of the run; L2 is the
+    root of the mean square over the instants.
+
+    Examples
+    --------
+    >>> right = Curves(np.array([1.0, 0.5]), np.array([2.0, 1.0]))
+    >>> errors(Curves(np.array([1.0, 0.4]), np.array([2.2, 1.0])), right)["peak friction"].__round__(6)
+    0.1
+    """
+    largest = float(np.abs(right.friction).max()) or 1.0
+    result = {}
+    for name, difference in (
+        ("depth", np.abs(found.depth - right.depth)),
+        ("friction", np.abs(found.friction - right.friction) / largest),
+    ):
+        result[f"{name}, final"] = float(difference[-1])
+        result[f"{name}, maximum"] = float(difference.max())
+        result[f"{name}, L2"] = float(np.sqrt(np.mean(difference**2)))
+    peaks = [float(np.abs(curves.friction).max()) for curves in (found, right)]
+    result["peak friction"] = abs(peaks[0] - peaks[1]) / largest
+    return result
+
+
+def by_continuum(problem: Problem, rtol: float, **options: Any) -> tuple[Curves, int]:
+    """Return the curves by the package's transient, and its evaluations of the equation of motion."""
+    motion = continuum.solve(
+        problem.drive, problem.epsilon, problem.kappa, problem.drive.end, rtol, **options
+    )
+    s = np.minimum(problem.times / problem.units.time, motion.end)
+    found = motion.states(s).T
+    return Curves(found[states.DEPTH], found[states.FRICTION_FORCE]), motion.evaluations
+
+
+def by_two_states(
+    problem: Problem, method: str, rtol: float, law_of: Any = two_states
+) -> tuple[Curves, int]:
+    """Return the curves by `solve_ivp` on the two states, started anew at each jump, and its evaluations.
+
+    Raises
+    ------
+    ArithmeticError
+        If it does not succeed.
+    """
+    s, y, rows, count = problem.times / problem.units.time, (1.0, 0.0), [], 0
+    for a, b, number in problem.pieces:
+        law = law_of(number, problem.epsilon, problem.kappa)
+        with np.errstate(all="ignore"):
+            try:
+                run = solve_ivp(
+                    law,
+                    (a, b),
+                    y,
+                    method,
+                    rtol=max(rtol, 3e-14),
+                    atol=0.01 * rtol,
+                    dense_output=True,
+                )
+            except (ValueError, OverflowError) as error:  # of numbers that are not finite
+                raise ArithmeticError(str(error)) from None
+        if not run.success:
+            raise ArithmeticError(run.message)
+        y, count = run.y[:, -1], count + run.nfev
+        rows += rows_of(s, a, b, run.sol(s[(s >= a) & (s < b)]), number)
+    rows += rows_of(s, b, math.inf, np.asarray(y)[:, None], number)
+    depth, friction = np.array(rows).T
+    return Curves(depth, friction), count
+
+
+def rows_of(s: Array, a: float, b: float, values: Array, number: Any) -> list[tuple[float, float]]:
+    """Return depth and friction force of two-state values at the instants in [a, b)."""
+    inside = s[(s >= a) & (s < b)]
+    numbers = [number(float(x)) for x in inside] if callable(number) else [number] * inside.size
+    return [
+        (float(d), closed_forms(float(d), float(v), lam)[1])
+        for d, v, lam in zip(*values, numbers, strict=True)
+    ]
+
+
+def by_elements(problem: Problem, per_half_length: float, scheme: str, **options: Any) -> Any:
+    """Return the simulation by elements, so many in a static half length, at the instants."""
+    return elements(
+        problem.scene, per_length=per_half_length / problem.units.length, scheme=scheme,
+        at=problem.times, certify=False, **options,
+    )  # fmt: skip
+
+
+def curves_of(problem: Problem, run: Any) -> Curves:
+    """Return a result in SI in scaled form."""
+    return Curves(run.depth / problem.units.depth, run.friction_force / problem.units.friction)
+
+
+def reference(problem: Problem) -> Reference:
+    """Return the solution by the continuum at a tight tolerance, held against an independent one."""
+    first = by_continuum(problem, REFERENCE_RTOL)[0]
+    other, name = _independent(problem, first)
+    return Reference(first, errors(other, first), ("continuum, rtol 1e-12", name))
+
+
+def _independent(problem: Problem, first: Curves) -> tuple[Curves, str]:
+    stored = json.loads(files("kvtheory.charts").joinpath(TABLE).read_text())
+    if problem.name in stored:
+        known = stored[problem.name]
+        if np.array_equal(known["times"], problem.times):
+            curves = Curves(np.array(known["depth"]), np.array(known["friction"]))
+            return curves, "stored solution, see the tests"
+    if not problem.fixed:
+        try:
+            curves = by_two_states(problem, "Radau", INDEPENDENT_RTOL)[0]
+        except ArithmeticError:
+            curves = Curves(np.full_like(first.depth, math.inf), first.friction)
+        if errors(curves, first)["depth, maximum"] < NO_MEMORY:
+            return curves, "two states by SciPy's Radau, rtol 1e-10"
+    fine = DENSITIES[problem.quick]
+    coarse, better = (
+        curves_of(problem, by_elements(problem, n, "edge-corrected")) for n in (0.5 * fine, fine)
+    )
+    # Of second order: the error of the finer run is a third of the difference.
+    curves = Curves(
+        better.depth + (better.depth - coarse.depth) / 3.0,
+        better.friction + (better.friction - coarse.friction) / 3.0,
+    )
+    return curves, f"elements, {0.5 * fine:g} and {fine:g} in a half length, extrapolated"

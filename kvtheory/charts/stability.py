@@ -1,0 +1,250 @@
+"""Stability maps: where a scheme of the elements is stable, as predicted and as measured.
+
+Predicted (derivations, F15): a step h is stable if |R(σ h)| <= 1 for both rates of the contact,
+M σ^2 + C L σ + K L + k_s = 0, with L of the contact at the static depth, where a start from rest
+begins, and with L in steady sliding. Measured: two runs that differ by a tiny velocity go side by
+side for some steps; the factor by which their difference grows in a step is above 1 if and only if
+the scheme is unstable. No stability theory enters the measurement. Above lambda of some 20 a step near
+the limit passes much of the contact, which the prediction holds fixed: there it is too optimistic.
+"""
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
+from itertools import islice, product
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kvtheory.api import steady as steady_sliding
+from kvtheory.elements.model import Model
+from kvtheory.elements.path import Path
+from kvtheory.elements.row import OutgrownError, Row
+from kvtheory.elements.schemes import SCHEMES, Motion, Scheme
+from kvtheory.elements.simulation import ELEMENTS_PER_STEP
+from kvtheory.elements.stability import contact_lengths, limit_at
+from kvtheory.scene.drives import Drive
+from kvtheory.scene.indenters import Parabola
+from kvtheory.scene.model import DeadWeight, Foundation, Run, Scene
+from kvtheory.scene.numbers import dimensionless_numbers
+
+Array = NDArray[np.float64]
+
+STEPS = 30
+"""Steps over which growth is measured: 2 % a step shows as a factor of 1.8."""
+LATEST = 8
+"""Steps after which growth counts in steady sliding. A run that has blown up may calm down later."""
+NUDGE = 1e-9
+"""Difference of both runs: depths per step. Nothing flips by it, and rounding is far below."""
+BLOWN_UP, DIED_OUT = 1e4, 0.1
+"""Times the difference at first, at which a measurement ends."""
+SWELLING = 1.08
+"""Growth in the first steps that counts as unstable: stable runs come apart by up to 1.06, once."""
+DEEP = 1e6
+"""Times the static depth, to which elements are kept: an unstable indenter may sink."""
+KEPT_ROWS = 100.0
+"""Elements in a static half length where the step is given in units of its limit."""
+PAPERS_DENSITY = 2e5
+"""Elements per metre of the paper (Table 1)."""
+
+VELOCITY_RANGE, TAU_RANGE = (1e-3, 1.0), (3e-3, 3.0)
+NUMBER_RANGE, STEP_RANGE = (0.1, 100.0), (0.2, 5.0)
+"""Ends of the axes of the maps: V in m/s, tau in s, lambda, and the step over its limit."""
+POINTS, QUICK_POINTS = (31, 24), (13, 10)
+"""Of a map; those of schemes that are stable everywhere have half as many each way."""
+
+CLASSES = "stable", "unstable at first", "unstable in steady sliding"
+"""Of a point of a map: the start from rest may be unstable though steady sliding is not."""
+
+
+@dataclass(frozen=True)
+class Map:
+    """One map of one scheme: rows over `y`, columns over `x`.
+
+    `start` and `steady` hold the measured growth per step, from rest and in steady sliding;
+    `predicted_start` and `predicted_steady` the step in units of its predicted limit.
+    """
+
+    scheme: str
+    x: Array
+    y: Array
+    start: Array
+    steady: Array
+    predicted_start: Array
+    predicted_steady: Array
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return plain Python values, ready for JSON."""
+        return {
+            name: value if isinstance(value, str) else value.tolist()
+            for name, value in vars(self).items()
+        }
+
+    @property
+    def classes(self) -> NDArray[np.int64]:
+        """Index of the class of every point, as measured."""
+        at_first = np.where(self.start > SWELLING, 1, 0)
+        return np.where(self.steady > 1.0, 2, at_first)
+
+
+def walk(row: Row, scheme: Scheme, motion: Motion, time_step: float) -> Iterator[Motion]:
+    """Step on and on, with nobody to watch for instability; ends if the indenter sinks too deep."""
+    with np.errstate(all="ignore"):
+        while True:
+            try:
+                motion = scheme.step(row.model, row, motion, time_step)
+            except (OutgrownError, OverflowError, ValueError):  # of a depth that is not a number
+                return
+            yield motion
+
+
+def unwatched(scene: Scene, scheme: str, per_length: float, time_step: float) -> list[Motion]:
+    """Return the steps of a run from rest to the end of the scene, however unstable it is.
+
+    Examples
+    --------
+    >>> steps = unwatched(Scene(), "paper", 4e4, 5e-4)
+    >>> print(len(steps), f"{steps[-1].depth * 1e3:.3f} mm")
+    400 0.091 mm
+    """
+    model, path = Model.of(scene, 1.0 / per_length), Path(scene.drive, scene.run.duration)
+    steps = walk(Row(model, path, DEEP), SCHEMES[scheme], Motion(0.0, model.depth, 0.0), time_step)
+    return list(islice(steps, round(scene.run.duration / time_step)))
+
+
+def growth(
+    scene: Scene, scheme: str, per_length: float, time_step: float, *, steady: bool
+) -> float:
+    """Return the factor per step by which two runs, apart by a tiny velocity, come further apart.
+
+    Above 1 the scheme is unstable, below 1 stable. The indenter is a parabola that is driven with one
+    positive velocity. With `steady` it begins in steady sliding; else it begins at its static depth,
+    where the very first steps count, for the contact soon changes.
+
+    Examples
+    --------
+    >>> slow = Scene(drive=Drive(velocity="10 mm/s"))
+    >>> growth(slow, "paper", 2e5, 1e-3, steady=True) > 1.0
+    True
+    >>> growth(slow, "edge-corrected", 2e5, 1e-3, steady=True) < 1.0
+    True
+    """
+    ways = [_begin(scene, per_length, steady=steady) for _ in range(2)]
+    nudge = NUDGE * ways[0][1].depth / time_step
+    runs = [
+        walk(row, SCHEMES[scheme], replace(motion, rate=more), time_step)
+        for (row, motion), more in zip(ways, (0.0, nudge), strict=True)
+    ]
+    apart: list[float] = []
+    for one, other in islice(zip(*runs, strict=False), STEPS):
+        apart.append(abs(one.rate - other.rate) / nudge)
+        if not apart[-1] < BLOWN_UP or max([1.0, *apart][-LATEST:]) < DIED_OUT:
+            break
+    else:
+        if len(apart) < STEPS:  # it sank too deep
+            apart.append(BLOWN_UP)
+    apart[-1] = min(np.nan_to_num(apart[-1], nan=BLOWN_UP), BLOWN_UP)
+    first = min(LATEST, len(apart)) if steady else 1
+    count = np.arange(first, len(apart) + 1)
+    return float(max(np.array(apart[first - 1 :]) ** (1.0 / count)))
+
+
+def velocity_map(scheme: str, velocities: Array, retardation_times: Array) -> Map:
+    """Return the map over V (m/s) and tau (s), else Table 1, at the paper's step and density.
+
+    Examples
+    --------
+    >>> found = velocity_map("paper", np.array([0.005, 0.1]), np.array([0.1]))
+    >>> [CLASSES[k] for k in found.classes[0]]
+    ['unstable in steady sliding', 'stable']
+    """
+    step = ELEMENTS_PER_STEP / PAPERS_DENSITY
+
+    def point(V: float, tau: float) -> tuple[Scene, float]:
+        foundation = Foundation(Scene().foundation.stiffness, tau)
+        return Scene(foundation=foundation, drive=Drive(velocity=V)), step / V
+
+    return _map(scheme, velocities, retardation_times, point, PAPERS_DENSITY)
+
+
+def step_map(scheme: str, numbers: Array, steps: Array) -> Map:
+    """Return the map over the drive number lambda and the step, in units of the limit of F15.
+
+    That limit is the one of the paper's scheme in steady sliding, or of Euler's method for that; the
+    inertia number is that of Table 1.
+
+    Examples
+    --------
+    >>> found = step_map("explicit-euler", np.array([1.0]), np.array([0.5, 2.0]))
+    >>> [CLASSES[k] for k in found.classes[:, 0]]
+    ['stable', 'unstable in steady sliding']
+    """
+    epsilon = dimensionless_numbers(Scene())["inertia_number"]
+    # R = 1/2, K = tau = delta_0 = 1: the static half length is 1 and the static load 4/3.
+    support = DeadWeight(mass=4.0 / 3.0 * epsilon, gravity=1.0 / epsilon)
+    limited = scheme if SCHEMES[scheme].tableau else "paper"
+
+    def point(number: float, share: float) -> tuple[Scene, float]:
+        scene = Scene(
+            Parabola(0.5), Foundation(1.0, 1.0), support, Drive(velocity=number), Run(1.0)
+        )
+        return scene, share * limit_at(SCHEMES[limited], Model.of(scene), contact_lengths(scene)[0])
+
+    return _map(scheme, numbers, steps, point, KEPT_ROWS)
+
+
+def _map(
+    scheme: str, x: Array, y: Array, point: Callable[[float, float], tuple[Scene, float]],
+    per_length: float,
+) -> Map:  # fmt: skip
+    rows = np.array([[_point(scheme, *point(a, b), per_length) for a in x] for b in y])
+    return Map(scheme, x, y, *(rows[:, :, k] for k in range(4)))
+
+
+def _point(
+    scheme: str, scene: Scene, time_step: float, per_length: float
+) -> tuple[float, float, float, float]:
+    """Return the growth from rest and in steady sliding, and both steps over their limits."""
+    model, (sliding, first) = Model.of(scene), contact_lengths(scene)
+    measured = [
+        growth(scene, scheme, per_length, time_step, steady=steady) for steady in (False, True)
+    ]
+    shares = [time_step / limit_at(SCHEMES[scheme], model, length) for length in (first, sliding)]
+    return measured[0], measured[1], shares[0], shares[1]
+
+
+def _begin(scene: Scene, per_length: float, *, steady: bool) -> tuple[Row, Motion]:
+    """Return the elements and the indenter at rest, or as steady sliding has left them."""
+    model, path = Model.of(scene, 1.0 / per_length), Path(scene.drive, scene.run.duration)
+    row, motion = Row(model, path, DEEP), Motion(0.0, model.depth, 0.0)
+    if not steady:
+        return row, motion
+    state = steady_sliding(scene)
+    under = row.under(0.0, 0.0, state.depth)
+    pressed = (under.x >= state.leading_edge) & (under.x <= state.trailing_edge)
+    left = state.depth - float(model.height(np.array(state.trailing_edge)))
+    behind = np.maximum(under.x - state.trailing_edge, 0.0) / state.retardation_length
+    relaxing = np.where(under.x > state.trailing_edge, left * np.exp(-behind), 0.0)
+    row.settle(under, np.where(pressed, state.depth - under.height, relaxing), pressed)
+    return row, replace(motion, depth=float(state.depth))
+
+
+def stability_maps(
+    *, quick: bool = False, progress: Callable[[float], object] | None = None
+) -> dict[str, list[Map]]:
+    """Return the maps of every scheme: over ``"velocity"`` and tau, and over lambda and the ``"step"``."""
+    kinds = {
+        "velocity": (velocity_map, VELOCITY_RANGE, TAU_RANGE),
+        "step": (step_map, NUMBER_RANGE, STEP_RANGE),
+    }
+    found: dict[str, list[Map]] = {kind: [] for kind in kinds}
+    for done, (kind, name) in enumerate(product(kinds, SCHEMES), 1):
+        make, *ends = kinds[kind]
+        points = QUICK_POINTS if quick else POINTS
+        if not SCHEMES[name].tableau:
+            points = (points[0] + 1) // 2, (points[1] + 1) // 2
+        axes = [np.geomspace(*end, n) for end, n in zip(ends, points, strict=True)]
+        found[kind].append(make(name, *axes))
+        if progress is not None:
+            progress(done / (len(kinds) * len(SCHEMES)))
+    return found

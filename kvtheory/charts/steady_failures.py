@@ -1,0 +1,227 @@
+"""Entries of the atlas about steady sliding."""
+
+import math
+import warnings
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.integrate import quad
+from scipy.optimize import newton
+
+from kvtheory.api import asymptotes, steady
+from kvtheory.charts.entry import Entry, Line, Outcome, Picture
+from kvtheory.scene.drives import Drive
+from kvtheory.scene.indenters import Circle, Parabola
+from kvtheory.scene.model import DeadWeight, Fixed, Scene
+from kvtheory.scene.numbers import dimensionless_numbers
+
+Array = NDArray[np.float64]
+
+FAR = 1e9
+"""l_r/a of the entry on cancellation: Eq. 27 loses twice as many digits as it has decades."""
+SHALLOW = 1e-9
+"""Depth (m) of a contact that a rule of integration over the whole indenter does not see."""
+WANTED_FRICTION = 0.05
+FIRST_GUESS = 0.1
+"""Velocity (m/s) of Table 1, which lies beyond the maximum of the friction coefficient."""
+STEEP = 0.8
+"""a/R of the static contact in the entry on the parabola."""
+
+
+def _cancellation() -> Outcome:
+    fixed = Scene.table1("fixed")
+    delta, R, tau = 3e-4, 0.01, fixed.foundation.retardation_time
+    a = math.sqrt(2.0 * R * delta)
+    ratios = np.geomspace(1e3, FAR, 121)
+    l_r = a * ratios
+    as_written = np.sqrt(a * a + l_r * l_r) - l_r  # Eq. 27
+    ours = steady(fixed, over={"drive.velocity": l_r / tau}).trailing_edge
+    series = a / (2.0 * ratios) * (1.0 - 0.25 / ratios**2 + 0.125 / ratios**4)  # to 1e-19
+    errors = [np.maximum(np.abs(x / series - 1.0), 1e-17) for x in (as_written, ours)]
+    lines = Line("wrong", ratios, errors[0]), Line("package", ratios, errors[1])
+    return Outcome(
+        float(as_written[-1]), float(series[-1]), float(ours[-1]),
+        Picture(r"$l_\mathrm{r}/a$", r"relative error of $x_\mathrm{TE}$", lines, log_x=True, log_y=True),
+    )  # fmt: skip
+
+
+def _asymptote() -> Outcome:
+    table1 = Scene()
+    report = asymptotes(table1)
+    critical = report.critical_velocity
+    V = critical * np.geomspace(1e-2, 1e2, 81)
+    by_integration = steady(over={"drive.velocity": [critical]}, method="quadrature")
+    exact = steady(over={"drive.velocity": V})
+    lines = asymptotes(over={"drive.velocity": V}).lines[:2]
+    nearer = np.minimum(lines[0].value, lines[1].value)
+    at_critical = asymptotes(over={"drive.velocity": [critical]})
+    return Outcome(
+        float(at_critical.lines[0].value[0]),
+        float(by_integration.friction_coefficient[0]),
+        float(steady(over={"drive.velocity": [critical]}).friction_coefficient[0]),
+        Picture("V [mm/s]", "friction coefficient",
+                (Line("wrong", 1e3 * V, nearer), Line("package", 1e3 * V, exact.friction_coefficient)),
+                log_x=True, log_y=True),
+        f'kv.asymptotes: regime "{at_critical.regime[0]}", error of the asymptote '
+        f'{at_critical.lines[0].relative_error[0]:.0%}, use "{at_critical.use[0]}"',
+    )  # fmt: skip
+
+
+def _load_over_the_whole_indenter(depth: float) -> float:
+    """Integrate the pressure of a contact at rest over the whole indenter, as if it had no edges."""
+    R, K = 0.01, 1e10
+    found: float = quad(lambda x: K * max(depth - x * x / (2.0 * R), 0.0), -R, R)[0]
+    return found
+
+
+def _kink() -> Outcome:
+    depths = np.geomspace(1e-10, 1e-3, 85)
+    right = 4.0 / 3.0 * 1e10 * np.sqrt(0.02 * depths) * depths  # Eq. 40, exact at rest
+    naive = np.array([_load_over_the_whole_indenter(float(depth)) for depth in depths])
+    still = Scene(support=Fixed(SHALLOW), drive=Drive(velocity=0.0))
+    ours = [
+        float(steady(still, over={"support.depth": [float(depth)]}, method="quadrature").load[0])
+        for depth in depths[::7]
+    ]
+    return Outcome(
+        _load_over_the_whole_indenter(SHALLOW),
+        4.0 / 3.0 * 1e10 * math.sqrt(0.02 * SHALLOW) * SHALLOW,
+        steady(still, method="quadrature").load,
+        Picture("depth [mm]", "load / exact load",
+                (Line("wrong", 1e3 * depths, naive / right),
+                 Line("package", 1e3 * depths[::7], np.array(ours) / right[::7])), log_x=True),
+    )  # fmt: skip
+
+
+def _no_bracket() -> Outcome:
+    def friction(V: float) -> float:
+        return float(steady(over={"drive.velocity": [V]}).friction_coefficient[0])
+
+    def root(guess: float) -> float:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # of a secant that leaps to 1e50
+            found = newton(
+                lambda V: friction(V) - WANTED_FRICTION, guess, disp=False, full_output=True
+            )
+        return float(found[0]) if found[1].converged else math.nan
+
+    guesses = np.geomspace(1e-3, 1.0, 61)
+    found = np.array([root(float(guess)) for guess in guesses])
+    peak = float(asymptotes().peak_velocity)
+    low, high = 0.0, peak
+    for _ in range(60):  # by halves: mu rises from zero to its maximum there (fact F3)
+        middle = 0.5 * (low + high)
+        low, high = (middle, high) if friction(middle) < WANTED_FRICTION else (low, middle)
+    # F1 and F2 the other way round: the root q of mu^3 K R^2/W = m^3/w, found among all of them.
+    q = _ratio_of_friction(WANTED_FRICTION**3 * 1e10 * 0.01**2 / 9806.65)
+    a = WANTED_FRICTION * 0.01 * 2 * (q * q - 2 * q + 3) / ((1 - q) * (q * q - q + 4))
+    right = a * (1.0 - q * q) / (2.0 * q) / 0.1
+    return Outcome(
+        root(FIRST_GUESS), right, low,
+        Picture("first guess of V [mm/s]", "root V [mm/s]",
+                (Line("wrong", 1e3 * guesses, 1e3 * found),
+                 Line("right", 1e3 * guesses, np.full_like(guesses, 1e3 * right))), log_x=True),
+        f"kv.asymptotes: peak_velocity = {1e3 * peak:.4g} mm/s, peak_friction_coefficient = "
+        f"{asymptotes().peak_friction_coefficient:.4g}",
+    )  # fmt: skip
+
+
+def _ratio_of_friction(cube: float) -> float:
+    """Return the largest q in (0, 1) at which a dead weight has mu^3 K R^2/W = `cube`: the slow branch."""
+    m = np.polynomial.Polynomial([4.0, -5.0, 2.0, -1.0])  # (1 - q)(q^2 - q + 4)
+    n = np.polynomial.Polynomial([3.0, -2.0, 1.0])  # q^2 - 2 q + 3
+    rise = np.polynomial.Polynomial([1.0, 1.0]) ** 2 * n**4  # (1 + q)^2 n^4
+    roots = (m**3 * np.polynomial.Polynomial([0.0, 1.5]) - cube * rise).roots()
+    inside = roots.real[(abs(roots.imag) < 1e-9) & (roots.real > 0.0) & (roots.real < 1.0)]
+    return float(inside.max())
+
+
+def _steep() -> Outcome:
+    R, foundation = 0.01, Scene().foundation
+    weights = foundation.stiffness * np.geomspace(0.05, STEEP, 16) ** 3 * R * R / 1.5
+    scenes = [
+        Scene(shape, foundation, DeadWeight(float(W) / 9.80665), Drive(velocity=0.1))
+        for W in weights for shape in (Parabola(R), Circle(R))
+    ]  # fmt: skip
+    mu = np.array([steady(scene).friction_coefficient for scene in scenes]).reshape(-1, 2)
+    slopes = np.array(
+        [dimensionless_numbers(scene)["static_half_length"] / R for scene in scenes[::2]]
+    )
+    return Outcome(
+        float(mu[-1, 0]), _circle_by_sums(scenes[-1]), float(mu[-1, 1]),
+        Picture(r"static half length $a_0/R$", "friction coefficient",
+                (Line("wrong", slopes, mu[:, 0]), Line("package", slopes, mu[:, 1]))),
+    )  # fmt: skip
+
+
+def _circle_by_sums(scene: Scene) -> float:
+    """Return mu of a circle by sums over 400 000 points: a coarse method that needs no care."""
+    R, K, W = 0.01, 1e10, scene.support.weight  # type: ignore[union-attr]
+    l_r = 0.1 * scene.foundation.retardation_time
+    half = 0.5 * math.pi * (np.arange(400_000) + 0.5) / 400_000
+    theta = np.concatenate([-half[::-1], half])
+    width = R * np.cos(theta) * (half[1] - half[0])
+    height, slope = R * (1.0 - np.cos(theta)), np.tan(theta)
+
+    def pressure(depth: float) -> Array:
+        return K * np.maximum(depth - height - l_r * slope, 0.0) * (height < depth)
+
+    low, high = 0.0, R
+    for _ in range(60):
+        middle = 0.5 * (low + high)
+        low, high = (middle, high) if pressure(middle) @ width < W else (low, middle)
+    return float(-(pressure(low) * slope) @ width / W)
+
+
+STEADY_FAILURES = (
+    Entry(
+        "cancellation", "Eq. 27 as it is written",
+        "Table 1 with the fixed indenter, at V τ = 1e9 a",
+        "x_TE = √(a² + l_r²) − l_r is a small difference of two large numbers: with every decade of l_r/a "
+        "two digits are lost, and beyond 1e8 the trailing edge is exactly zero.",
+        "trailing edge", "nm", 1e9,
+        "The edge moves in steps as V grows; the pressure there is not zero.",
+        "Uses q = 1/(l + √(1 + l²)), proved equal, with no difference in it (F16).",
+        1e-14, _cancellation,
+    ),
+    Entry(
+        "asymptote", "An asymptote near the critical velocity",
+        "Table 1 with V = V*, where both asymptotes meet",
+        "The asymptotes of Table 2 are limits for V far from V*. Just where they meet, and where one might "
+        "look for the largest friction, both are far too large.",
+        "friction coefficient", "", 1.0,
+        "The two asymptotes agree, which is no sign that they are right.",
+        "kv.asymptotes knows the error of each in closed form and says where it is within a tolerance.",
+        1e-11, _asymptote,
+    ),
+    Entry(
+        "kink", "A quadrature over a kink that it does not resolve",
+        "A parabola at rest at a depth of 1 nm: scipy.integrate.quad over the whole indenter, −R to R",
+        "Integrating max(p, 0) leaves it to the rule to find the contact. Of a short contact the nodes see "
+        "nothing, and the rule reports an error of nearly zero with its wrong result.",
+        "load", "mN/m", 1e3,
+        "Halve the interval: the result changes by far more than the error that was reported.",
+        "Finds both edges first, and integrates between them, where the pressure is smooth.",
+        1e-10, _kink,
+    ),
+    Entry(
+        "no-bracket", "A root finder without a bracket",
+        "Table 1, solved for the velocity with μ = 0.05 on the rising branch by a secant from 100 mm/s",
+        "The friction coefficient has a maximum, so that two velocities give the same one. A secant "
+        "ends on the branch where it began, with success; begun near the maximum it leaps to 1e50 m/s.",
+        "velocity", "mm/s", 1e3,
+        "Another first guess gives another root.",
+        "Knows the maximum in closed form (F3): on either side of it μ is monotone: a bracket.",
+        1e-9, _no_bracket,
+    ),
+    Entry(
+        "steep", "A parabola for a cylinder that sinks deep",
+        "A cylinder of R = 10 mm under a dead weight so heavy that a_0 = 0.8 R, V = 100 mm/s",
+        "h = x²/2R stands for a circle while x is far below R. The error grows with (a/R)².",
+        "friction coefficient", "", 1.0,
+        "The slope at the leading edge, a/R, is not small.",
+        'Has the circle itself: indenter.shape = "circle", by quadrature or elements.',
+        1e-4, _steep,
+    ),
+)  # fmt: skip
+"""The entries about steady sliding."""

@@ -1,0 +1,138 @@
+"""`kvtheory chart`: speed against accuracy, where schemes are stable, and how methods fail."""
+
+import os
+from collections.abc import Sequence
+from pathlib import Path
+
+import click
+
+from kvtheory.cli.console import Examples, print_json, print_table, progress_bar, split, teaching
+from kvtheory.cli.group import main
+from kvtheory.cli.outputs import check_output
+
+PICTURES = ".png", ".svg", ".pdf"
+THREADS = "OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"
+"""Set to one before anything numerical is imported, so that times can be compared."""
+
+
+@main.group()
+def chart() -> None:
+    """Chart speed against accuracy, stability, and the ways in which methods fail."""
+
+
+@chart.command(cls=Examples, example="kvtheory chart failures -o failures.html")
+@click.option(
+    "--only", default=None, metavar="KEY,...", help="Entries to compute; default: all of them."
+)
+@click.option(
+    "-o",
+    "--output",
+    type=click.Path(path_type=Path),
+    default=None,
+    help="Write FILE.html, which holds all of it and needs nothing else.",
+)
+@click.option("--json", "as_json", is_flag=True, help="Print one JSON object, in SI units.")
+@teaching
+def failures(only: str | None, output: Path | None, as_json: bool) -> None:
+    """Show how methods fail: wrong numbers, computed beside the right ones."""
+    from kvtheory.charts.failures import ATLAS, findings
+
+    check_output("-o", output, [".html"])
+    keys = split(only) if only else list(ATLAS)
+    found = []
+    with progress_bar("entries") as report:
+        for finding in findings(keys):
+            found.append(finding)
+            if report:
+                report(len(found) / len(keys))
+    if output:
+        from kvtheory.plots.failures import save_failures
+
+        save_failures(found, output)
+    if as_json:
+        print_json({"failures": [finding.as_dict() for finding in found]})
+        return
+    from kvtheory.plots.failures import shown
+
+    heads = ("entry", "quantity", "wrong", "right", "this package")
+    roles = ("wrong", "right", "package")
+    print_table(
+        heads,
+        [(f.entry.key, f.entry.quantity, *(shown(f, role) for role in roles)) for f in found],
+    )
+    for finding in found if only else []:
+        entry = finding.entry
+        click.echo(f"\n{entry.title}. {entry.scene}.\n{entry.why}")
+        click.echo(f"How to notice: {entry.notice}\nThis package: {entry.package}")
+        click.echo(finding.outcome.said, nl=bool(finding.outcome.said))
+    if output:
+        click.echo(f"\n{output}")
+
+
+@chart.command(cls=Examples, example="kvtheory chart stability -o stability.png")
+@click.option(
+    "-o", "--output", type=click.Path(path_type=Path), default=Path("stability.png"),
+    show_default=True, help="Picture; its data go to FILE.json beside it.",
+)  # fmt: skip
+@click.option("--quick", is_flag=True, help="Coarser maps.")
+@teaching
+def stability(output: Path, quick: bool) -> None:
+    """Map where each scheme of the elements is stable: predicted over measured."""
+    from kvtheory.charts.stability import stability_maps
+    from kvtheory.plots.stability import save_stability
+
+    check_output("-o", output, PICTURES)
+    with progress_bar("maps") as report:
+        maps = stability_maps(quick=quick, progress=report)
+    save_stability(maps, output)
+    click.echo(f"{output}\n{output.with_suffix('.json')}")
+
+
+@chart.command(
+    "work-precision",
+    cls=Examples,
+    example="kvtheory chart work-precision my-scene.toml --quick -o speed.png",
+)
+@click.argument("scene", required=False, type=click.Path(exists=True, dir_okay=False))
+@click.option(
+    "--set", "overrides", multiple=True, metavar="KEY=VALUE",
+    help='Override a key of the scene, such as drive.velocity="50 mm/s"; repeatable.',
+)  # fmt: skip
+@click.option(
+    "--standard", default=None, metavar="NAME,...",
+    help="Instead of a scene: table-1, low-velocity, high-velocity, small-inertia, stop-and-go, "
+    "reversal, hop, or all.",
+)  # fmt: skip
+@click.option("--quick", is_flag=True, help="Fewer settings and repeats: some 15 s for a scene.")
+@click.option(
+    "-o", "--output", type=click.Path(path_type=Path), default=Path("work_precision.png"),
+    show_default=True, help="Picture, or a directory for it; its data go to FILE.json beside it.",
+)  # fmt: skip
+@teaching
+def work_precision(
+    scene: str | None, overrides: Sequence[str], standard: str | None, quick: bool, output: Path
+) -> None:
+    """Chart the speed of all methods against their accuracy, on SCENE."""
+    os.environ.update(dict.fromkeys(THREADS, "1"))
+    from kvtheory.charts.collection import chosen, measure
+    from kvtheory.plots.work_precision import default_errors, save_work_precision
+    from kvtheory.scene import load_scene
+
+    if output.is_dir():
+        output /= "work_precision.png"
+    check_output("-o", output, PICTURES)
+    if standard and (scene or overrides):
+        raise ValueError(
+            "--standard stands for scenes of its own: give no SCENE and no --set with it"
+        )
+    jobs = chosen(load_scene(scene, overrides), split(standard) if standard else [], quick=quick)
+    with progress_bar("methods") as report:
+        charts = measure(jobs, quick=quick, progress=report)
+    save_work_precision(charts, output)
+    click.echo(f"{output}\n{output.with_suffix('.json')}")
+    for one in charts:
+        (error,) = default_errors([one])
+        references = " and ".join(one.reference)
+        click.echo(
+            f"{one.name}: {references} agree on {error.split(',')[0]} to {one.floor[error]:.1e}"
+        )

@@ -1,0 +1,136 @@
+"""Work-precision charts: time and work over the achieved error, and a rail for what failed."""
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
+
+from kvtheory.charts.work_precision import REASONS, Chart, Point, Series
+from kvtheory.plots.charts import save_chart
+from kvtheory.plots.style import BLACK, BLUE, GREEN, PURPLE, RED
+
+RESOLVED = 100.0
+"""Times the floor, above which an error is certain; points below it are hollow."""
+LEAST = 1e-17
+"""Errors are drawn as at least this much."""
+GREY, OCHRE, SKY = "#777777", "#b8860b", "#56b4e9"
+LOOKS = {
+    "asymptote": (BLACK, "D"), "slow manifold": (BLACK, "D"),
+    "exact": (BLUE, "o"), "exact, 10 000 at once": (BLUE, "s"), "quadrature": (OCHRE, "o"),
+    "brentq over quad": (RED, "^"),
+    "continuum, compiled": (BLUE, "o"), "continuum, interpreted": (SKY, "o"),
+    "two states, RK45": (RED, "^"), "two states, DOP853": (RED, "v"), "two states, Radau": (OCHRE, "^"),
+    "two states, BDF": (OCHRE, "v"), "two states, LSODA": (PURPLE, "^"), "two states, CVODE": (PURPLE, "v"),
+    "method of lines": (GREY, "x"),
+    "elements, paper": (GREY, "s"), "elements, explicit-euler": (GREY, "D"),
+    "elements, semi-implicit": (GREEN, "s"), "elements, exponential": (GREEN, "D"),
+    "elements, edge-corrected": (GREEN, "o"),
+}  # fmt: skip
+"""Colour and marker of each method."""
+SHORT = {
+    "unstable": "unstable", "not converged": "no conv.", "timed out": "timed out", "refused": "refused",
+    "missed event": "missed event", "wrong but reported success": "wrong, “success”",
+}  # fmt: skip
+"""Reasons on the rail."""
+
+
+def plot_work_precision(
+    ax: Any, rail: Any, chart: Chart, error: str, *, work: bool = False
+) -> list[Any]:
+    """Draw a chart over one of its errors: points on `ax`, failures on `rail`, and return the lines.
+
+    With `work` the ordinate is what was evaluated or updated instead of the time.
+    """
+    floor = chart.floor[error]
+    artists = []
+    for series in chart.series:
+        colour, marker = LOOKS[series.method]
+        good = [p for p in series.points if not p.reason and (p.work > 0 or not work)]
+        x = [max(p.errors[error], floor, LEAST) for p in good]
+        y = [_cost(p, work) for p in good]
+        style = {"color": colour, "marker": marker, "markersize": 4.5, "label": series.method}
+        dashes = ":" if series.kind == "model" else "-"
+        hollow = [
+            "white" if p.errors[error] < RESOLVED * floor or series.kind == "model" else colour
+            for p in good
+        ]
+        artists += ax.plot(x, y, linestyle=dashes, linewidth=1.0, **style, markerfacecolor="none")
+        for p, a, b, face in zip(good, x, y, hollow, strict=True):
+            if not work:
+                ax.plot([a, a], p.quartiles, color=colour, linewidth=0.8)
+            ax.plot(a, b, marker=marker, color=colour, markersize=4.5, markerfacecolor=face)
+        _rail(rail, series, work)
+    if floor > 0.0:
+        ax.axvspan(LEAST, max(floor, LEAST), color="#dddddd", zorder=0)
+    ax.set(xscale="log", yscale="log")
+    ax.invert_xaxis()
+    rail.set(xlim=(-0.6, len(REASONS) - 0.4), xticks=range(len(REASONS)))
+    rail.set_xticklabels([SHORT[reason] for reason in REASONS], rotation=90)
+    rail.tick_params(labelleft=False, left=False)
+    rail.set_facecolor("#faf1ea")
+    return artists
+
+
+def _rail(rail: Any, series: Series, work: bool) -> None:
+    colour, marker = LOOKS[series.method]
+    for point in series.points:
+        cost = _cost(point, work)
+        if point.reason and cost > 0.0:
+            rail.plot(
+                REASONS.index(point.reason), cost, marker=marker, color=colour, markersize=4.5
+            )
+
+
+def _cost(point: Point, work: bool) -> float:
+    return float(point.work) if work else point.seconds
+
+
+def draw_work_precision(charts: Sequence[Chart], errors: Sequence[str]) -> Figure:
+    """Return the picture: a row for each chart, the time on the left and the work on the right."""
+    drawn = Figure(figsize=(11.0, 1.9 + 2.9 * len(charts)), layout="constrained")
+    grid = drawn.subplots(
+        len(charts), 4, width_ratios=(5, 1.3, 5, 1.3), squeeze=False, sharey=False
+    )
+    methods: dict[str, Any] = {}
+    for row, chart, error in zip(grid, charts, errors, strict=True):
+        for (ax, rail), work in ((row[:2], False), (row[2:], True)):
+            rail.sharey(ax)
+            for line in plot_work_precision(ax, rail, chart, error, work=work):
+                methods.setdefault(line.get_label(), line)
+            ax.set(
+                xlabel=f"achieved error of {error}",
+                ylabel="evaluations or element updates" if work else "time [s]",
+            )
+            rail.set_title("failed", fontsize=8)
+        if chart is not charts[-1]:
+            for rail in row[1::2]:
+                rail.tick_params(labelbottom=False)
+        row[0].set_title(f"{chart.name}: time", loc="left")
+        row[2].set_title(f"{chart.name}: work", loc="left")
+    handles = [
+        Line2D([], [], color=LOOKS[name][0], marker=LOOKS[name][1], markersize=4.5,
+               linestyle=line.get_linestyle(), linewidth=1.0, label=name)
+        for name, line in methods.items()
+    ]  # fmt: skip
+    hollow = Line2D([], [], color=BLACK, marker="o", linestyle="", markerfacecolor="white",
+                    label="hollow: model error, or not resolved")  # fmt: skip
+    grey = Patch(facecolor="#dddddd", label="grey: where the two references differ")
+    drawn.legend(handles=[*handles, hollow, grey], loc="outside lower center", ncols=5)
+    return drawn
+
+
+def default_errors(charts: Sequence[Chart]) -> list[str]:
+    """Return the error over which each chart is drawn if none is chosen."""
+    return [
+        "depth, maximum" if "depth, maximum" in chart.floor else "friction coefficient"
+        for chart in charts
+    ]
+
+
+def save_work_precision(charts: Sequence[Chart], path: Path) -> None:
+    """Draw the charts and write them as the suffix of `path` says, with their data as JSON beside."""
+    data = {"charts": [chart.as_dict() for chart in charts]}
+    save_chart(lambda: draw_work_precision(charts, default_errors(charts)), data, path)

@@ -1,0 +1,38 @@
+"""Independent solutions of the standard scenes of the work-precision charts.
+
+`python -m tests.work_precision_reference` writes them with the data of the package, in a minute or two:
+by `transient_history`, or where no memory is needed by `transient_closed_form`; they share no code with
+the package.
+"""
+
+import json
+from pathlib import Path
+
+import kvtheory
+from kvtheory.charts.problems import STANDARD, TABLE, Problem, standard_scene
+from tests.transient_closed_form import two_states
+from tests.transient_history import history
+from tests.transient_scenes import Scene
+
+NO_MEMORY = ("table-1", "low-velocity", "small-inertia")
+PATH = Path(kvtheory.__file__).parent / "charts" / TABLE
+TOLERANCE, LONGEST = 1e-11, 0.05
+
+
+def solve(name: str, tolerance: float = TOLERANCE) -> dict[str, list[float]]:
+    """Return times, depth and friction force of a standard scene."""
+    points, epsilon, _ = STANDARD[name]
+    times = Problem(name, standard_scene(name)).times
+    scene = Scene(points, epsilon, tuple(times.tolist()))
+    found = (
+        two_states(scene, tolerance) if name in NO_MEMORY else history(scene, tolerance, LONGEST)
+    )
+    return {
+        "times": times.tolist(),
+        "depth": found["d"].tolist(),
+        "friction": found["f_x"].tolist(),
+    }
+
+
+if __name__ == "__main__":
+    PATH.write_text(json.dumps({name: solve(name) for name in STANDARD}, indent=1) + "\n")
