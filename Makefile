@@ -47,16 +47,16 @@ endif
 
 $(VENV)/.installed: pyproject.toml constraints.txt | $(BIN)/python
 ifdef UV
-	$(UV) pip install --quiet --python $(BIN)/python --constraint constraints.txt --editable '.[fast,data]'
+	$(UV) pip install --quiet --python $(BIN)/python --constraint constraints.txt --editable '.[fast,data,benchmark]'
 else
-	$(BIN)/python -m pip install --quiet --constraint constraints.txt --editable '.[fast,data]'
+	$(BIN)/python -m pip install --quiet --constraint constraints.txt --editable '.[fast,data,benchmark]'
 endif
 	@touch $@
 
 $(VENV)/.installed-test: $(VENV)/.installed
 ifdef UV
-	$(UV) pip install --quiet --python $(BIN)/python --constraint constraints.txt --editable '.[fast,data,test]'
+	$(UV) pip install --quiet --python $(BIN)/python --constraint constraints.txt --editable '.[fast,data,benchmark,test]'
 else
-	$(BIN)/python -m pip install --quiet --constraint constraints.txt --editable '.[fast,data,test]'
+	$(BIN)/python -m pip install --quiet --constraint constraints.txt --editable '.[fast,data,benchmark,test]'
 endif
 	@touch $@
