@@ -15,6 +15,7 @@ from kvtheory.checks.relaxation import fit, uncertainty
 from kvtheory.cli import main
 from kvtheory.elements.schemes import SCHEMES
 from tests.faulty_simulator import simulate
+from tests.first_order import first_order
 
 HEADS = "t [ms],z_A [mm],F_z [N/mm],F_x [N/mm]"
 SCALED = {"time": 1e3, "depth": -1e3, "normal_force": 1e-3, "friction_force": 1e-3}
@@ -80,6 +81,52 @@ def test_sub_sampled_uneven_and_noisy_data_agree(name):
              for key, value in kept.items() if key != "time"} | {"time": kept["time"]}  # fmt: skip
     assert failed(kv.compare(SCENES[name], kept)) == []
     assert failed(kv.compare(SCENES[name], noisy)) == []
+
+
+UNHURRIED = {
+    "gentle": kv.Scene(drive=kv.Drive(velocity=0.05)),
+    "soft": kv.Scene(
+        kv.Parabola(0.02),
+        kv.Foundation(2e8, 0.02),
+        kv.DeadWeight(40.0),
+        kv.Drive(0.5),
+        kv.Run(0.15),
+    ),
+    "to and fro": scene(history=[(0.0, 0.08), (0.07, 0.08), (0.07, -0.04)]),
+    "stop and go": scene(history=[(0.0, 0.1), (0.06, 0.1), (0.06, 0.0), (0.15, 0.0), (0.15, 0.1)]),
+}
+
+
+@pytest.mark.parametrize("method", ["euler", "semi-implicit"])
+@pytest.mark.parametrize("name", UNHURRIED)
+def test_first_order_simulations_at_the_papers_step_agree(name, method):
+    """Nothing is said of their elements and steps, fewer and of lower order than in the paper."""
+    found = kv.compare(UNHURRIED[name], first_order(UNHURRIED[name], method))
+    assert failed(found) == []
+
+
+def test_our_own_run_that_diverges_disagrees(tmp_path):
+    plot, report = tmp_path / "p.svg", tmp_path / "r.html"
+    for velocity in ("12.5 mm/s", "0.01 mm/s"):
+        result = CliRunner().invoke(
+            main,
+            ["compare", "--scheme", "paper", "--set", f"drive.velocity={velocity}", "--json",
+             "--plot", str(plot), "--report", str(report)],
+        )  # fmt: skip
+        assert result.exit_code == 1, result.output
+        record = json.loads(result.stdout)
+        assert [check["name"] for check in record["checks"]] == ["run to the end"]
+        assert "The time step is unstable (F15): the run diverged at t = " in record["diagnosis"]
+        assert "unstable" in report.read_text(encoding="utf-8")
+
+
+def test_our_own_run_is_judged_at_the_steps_of_its_scheme():
+    """Instants that it has to stop at would shorten the steps, and hide that they are too long."""
+    found = kv.compare(scene(velocity=0.05), scheme="paper")
+    checks = {check.name: check for check in found.checks}
+    length = np.abs(found.theory["trailing_edge"] - found.theory["leading_edge"]).max()
+    assert checks["stability number"].measured == pytest.approx(2e-4 * 1e9 * length / 1e3, rel=1e-3)
+    assert found.verdict == "agrees"
 
 
 @pytest.mark.parametrize("scheme", SCHEMES)
@@ -185,16 +232,18 @@ BAD = {
     "NaN": (rows(HEADS, *GOOD[:5], "5,nan,9.8,0", *GOOD[6:]), 'column "z_A [mm]": 1 of 12 values'),
     "empty cell": (rows(HEADS, *GOOD[:5], "5,,9.8,0", *GOOD[6:]), "the first in line 7"),
     "infinite": (rows(HEADS, *GOOD, "12,inf,9.8,0"), "diverged"),
-    "backward": (rows(HEADS, *GOOD, "3,-0.3,9.8,0"), "the time must increase"),
+    "backward": (rows(HEADS, *GOOD, "3,-0.3,9.8,0"), "must increase, but 0.003 s in line 14 follows 0.011 s"),
     "standing": (rows(HEADS, *["1,-0.3,9.8,0"] * 12), "do not span a transient"),
     "text": (rows(HEADS, *GOOD, "12,abc,9.8,0"), '"abc" is not a number'),
+    "quotation": (rows(HEADS, *GOOD[:5], '"5,-0.3,9.8,0', *GOOD[6:]), "a quotation mark is opened"),
+    "too long": (rows(HEADS, *[f"{k}e300,-0.3,9.8,0" for k in range(12)]), "is the unit of the time right"),
     "ragged": (rows(HEADS, *GOOD, "12,-0.3"), "has 2 cells, the header has 4"),
     "decimal comma": (rows(HEADS.replace(",", ";"), "0;-0,3;9;0"), "write the decimal mark as a point"),
     "no unit": (rows("t [ms],depth", "0,1"), 'expected "depth [m]"'),
     "wrong unit": (rows("t [ms],F_z [N]", "0,1"), "of another dimension"),
     "unknown unit": (rows("t [ms],z_A [furlongz]", "0,1"), '"furlongz" is not a known unit'),
     "misspelt": (rows("t [ms],Fricton [N/mm]", "0,1"), 'did you mean "friction"'),
-    "twice": (rows("t [ms],depth [m],z_A [mm]", "0,1,1"), "are both the depth"),
+    "twice": (rows("t [ms],depth [m],z_A [mm]", "0,1,1"), 'bad.csv: columns "depth [m]" and "z_A [mm]"'),
     "no time": (rows("z_A [mm],F_z [N/mm]", *["1,2"] * 9), "no column is the time"),
     "nothing to judge": (rows("t [ms],V [mm/s]", *["1,2"] * 9), "nothing to judge"),
 }  # fmt: skip
@@ -217,6 +266,7 @@ def test_what_cannot_be_read_costs_one_message_and_writes_nothing(tmp_path, name
 @pytest.mark.parametrize(
     ("options", "message"),
     [({"tolerance": 0.0}, "`tolerance`"), ({"tolerance": float("nan")}, "`tolerance`"),
+     ({"scheme": "papper"}, 'did you mean "paper"'),
      ({"per_length": "200 mm"}, "`per_length`"), ({"per_length": -1.0}, "`per_length`"),
      ({"scene": kv.Scene(indenter=kv.Wedge(inclination=0.1))}, "parabola"),
      ({"scene": kv.Scene(drive=kv.Drive(function=lambda t: 0.1))}, "drive.function")],
@@ -224,6 +274,21 @@ def test_what_cannot_be_read_costs_one_message_and_writes_nothing(tmp_path, name
 def test_bad_arguments_are_named(sound, options, message):
     with pytest.raises(ValueError, match=message):
         kv.compare(**{"data": sound, **options})
+
+
+@pytest.mark.parametrize(
+    ("option", "message"),
+    [(["--plot", "nowhere/p.png"], 'there is no directory "'), (["--plot", "p.xyz"], "ends in"),
+     (["--report", "r.txt"], "ends in .html"), (["--report", "folder.html"], "is a directory")],
+)  # fmt: skip
+def test_outputs_are_checked_before_anything_is_written(tmp_path, monkeypatch, option, message):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "folder.html").mkdir()
+    both = ["--report", "r.html", "--plot", "p.png"]
+    result = CliRunner().invoke(main, ["compare", *both, *option])
+    assert result.exit_code == 2
+    assert message in result.stderr
+    assert [file.name for file in tmp_path.iterdir()] == ["folder.html"]
 
 
 def test_data_of_another_kind_is_refused():
@@ -257,3 +322,15 @@ def test_help_has_an_example():
     shown = CliRunner().invoke(main, ["compare", "--help"])
     assert shown.exit_code == 0
     assert "kvtheory compare" in shown.stdout.split("Example")[1]
+
+
+@pytest.mark.parametrize("digits", [3, 4])
+@pytest.mark.parametrize("name", ["soft", "gentle"])
+def test_data_of_few_digits_agree(tmp_path, name, digits):
+    """The inertia that follows from such a depth is rough, but says nothing against the data."""
+    series = first_order(UNHURRIED[name], "semi-implicit")
+    table = np.array([series[key] * factor for key, factor in SCALED.items()]).T
+    path = tmp_path / "short.csv"
+    cells = [[f"{t:.7g}", *(f"{value:.{digits}g}" for value in rest)] for t, *rest in table]
+    path.write_text("\n".join([HEADS, *map(",".join, cells)]), encoding="utf-8")
+    assert failed(kv.compare(UNHURRIED[name], path)) == []

@@ -49,3 +49,29 @@ def test_data_that_diverge_are_diagnosed_without_a_warning():
     assert found.verdict == "disagrees"
     assert found.explanations[0].name == "unstable time step"
     assert "F15" in found.diagnosis
+
+
+def test_an_indenter_thrown_off_early_is_called_unstable():
+    """Even if it has fallen back far enough by the end, as a large error of one column would not."""
+    slow = kv.Scene(drive=kv.Drive(0.008), run=kv.Run(0.4))
+    data = series(slow, {})
+    flight = np.maximum(data["time"] - 0.02, 0.0)
+    thrown = flight * (1.0 - 0.5 * 9.80665 * flight)
+    found = kv.compare(
+        slow,
+        {**data, "depth": data["depth"] - thrown,
+         "normal_force": np.where(flight > 0.0, 0.0, data["normal_force"])},
+    )  # fmt: skip
+    assert found.verdict == "disagrees"
+    assert found.explanations[0].name == "unstable time step"
+    wrong_unit = kv.compare(slow, {**data, "depth": 100.0 * data["depth"]})
+    assert wrong_unit.explanations[0].name == "unit of depth"
+
+
+def test_of_offsets_that_fit_as_well_the_smallest_is_named():
+    """The force on a fixed indenter never changes after the start."""
+    still = kv.Scene.table1("fixed")
+    data = series(still, {})
+    found = kv.compare(still, {**data, "time": data["time"] - 2e-3})
+    assert found.explanations[0].name == "time offset"
+    assert found.explanations[0].factor == pytest.approx(-2e-3, rel=0.06)

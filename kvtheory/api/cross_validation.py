@@ -1,13 +1,14 @@
 """A simulation held against theory: `compare`."""
 
 import math
+from itertools import pairwise
 from typing import Any
 
 from kvtheory.api.edge import scene_of
 from kvtheory.api.steady_sliding import steady
 from kvtheory.api.whole_transient import transient
 from kvtheory.results.comparison import Comparison
-from kvtheory.scene.fields import Quantity, SceneError, convert, problem
+from kvtheory.scene.fields import Quantity, SceneError, convert, nearest, problem
 from kvtheory.scene.indenters import Parabola
 from kvtheory.scene.model import Scene
 
@@ -15,8 +16,10 @@ EVEN, DENSE = 401, 60
 """Samples of our own simulation: over the run, and more after each change of the drive."""
 SOONEST, SOON = 1e-4, 0.1
 """Of the duration: where the latter begin and end."""
-TICKS = 6
-"""Digits of these times, in units of the duration: closer ones are one."""
+FEWEST = 16
+"""Samples at least, even if the time step has to be shortened for them."""
+KNOWN = ("paper", "rk4", "explicit-euler", "semi-implicit", "exponential", "edge-corrected")
+"""Schemes whose order and stability are known; "rk4" is the paper's with any time step."""
 PER_LENGTH = Quantity("1/m", "N, elements per unit length", 0.0, True)
 
 
@@ -84,11 +87,20 @@ def compare(
     if not (math.isfinite(tolerance) and tolerance > 0.0):
         raise ValueError(f"`tolerance` = {tolerance!r}: expected a positive number")
     density = None if per_length is None else _density(per_length)
+    if scheme is not None and scheme not in KNOWN:
+        raise ValueError(
+            f'`scheme` = "{scheme}": {nearest(str(scheme), KNOWN)}; leave it out if it is another'
+        )
+    from kvtheory.checks.comparing import broken_off
     from kvtheory.checks.comparing import compare as hold_against
     from kvtheory.checks.reading import read
+    from kvtheory.elements.watch import DivergenceError
 
-    series = read(_simulated(scene, per_length, scheme) if data is None else data)
-    return hold_against(scene, series, transient, steady, density, scheme, tolerance)
+    try:
+        found = _simulated(scene, per_length, scheme) if data is None else data
+    except DivergenceError as error:
+        return broken_off(scene, error.rows, str(error), transient, steady, scheme, tolerance)
+    return hold_against(scene, read(found), transient, steady, density, scheme, tolerance)
 
 
 def _density(per_length: Any) -> float:
@@ -104,16 +116,24 @@ def _simulated(scene: Scene, per_length: Any, scheme: str | None) -> Any:
 
     given = {"per_length": per_length, "scheme": scheme}
     chosen = {key: value for key, value in given.items() if value is not None}
-    return elements(scene, at=_times(scene), certify=False, **chosen)
+    step = elements(scene, at=0.0, certify=False, **chosen).time_step  # it has yet to take one
+    return elements(scene, at=_times(scene, step), certify=False, **chosen)
 
 
-def _times(scene: Scene) -> list[float]:
-    """Return the times at which our own simulation is judged: dense after each change of the drive."""
+def _times(scene: Scene, step: float) -> list[float]:
+    """Return the times at which our own simulation is judged: dense after each change of the drive.
+
+    From each change on they are even numbers of steps apart, so that no step is shortened for them.
+    """
     import numpy as np
 
     end = scene.run.duration
-    changes = sorted({time for time, _ in scene.drive.points if time < end})
-    after = [time / end + np.geomspace(SOONEST, SOON, DENSE) for time in changes]
-    ticks = np.unique(np.concatenate([np.linspace(0.0, 1.0, EVEN), *after]).round(TICKS))
-    near = {round(time / end, TICKS): time for time in changes}  # the same time, up to rounding
-    return [near.get(tick, tick * end) for tick in ticks.tolist() if tick <= 1.0]
+    stride = min(2.0 * step, end / FEWEST)
+    changes = [*sorted({time for time, _ in scene.drive.points if time < end}), end]
+    ticks = np.concatenate([[0.0], np.geomspace(SOONEST, SOON, DENSE), np.linspace(0.0, 1.0, EVEN)])
+    times = {end}
+    for start, stop in pairwise(changes):
+        counts = np.unique(np.round(ticks * end / stride))
+        after = start + stride * counts
+        times.update(after[after < stop - 0.5 * stride].tolist())
+    return sorted(times)

@@ -4,7 +4,9 @@ Four things make a difference without a mistake, each from theory or from the da
 
 - an element at an edge counts as a whole or not at all (F15): the normal force is off by up to
   b = p dx/2, p the pressure at that edge, and what follows from b by the linear response of F12;
-- a time step smears the curves: theory within two steps before and after is as good;
+- a time step smears the curves: theory within two steps before and after is as good; and unless the
+  scheme is known to be of higher order, the rate may lag behind the depth by one step, and with it the
+  force by h C L d'', which is the share z = h C L/M of the force that is not balanced;
 - the data are noisy: sigma is measured by their second differences to theory, in which everything
   smooth cancels; it counts up to a limit only;
 - the data are rounded: half their last digit.
@@ -57,7 +59,7 @@ class Resolution:
 class Allowance:
     """By name: theory's `low` and `high` within the smear, `systematic` and random (`noise`) parts.
 
-    `force` is b, in N/m, at each time.
+    `force` is b, in N/m, at each time; `rounding` is the part of `systematic` that the digits leave.
     """
 
     low: Mapping[str, Array]
@@ -65,6 +67,7 @@ class Allowance:
     systematic: Mapping[str, Array]
     noise: Mapping[str, float]
     force: Array
+    rounding: Mapping[str, Array]
 
     def excess(self, name: str, values: Array) -> Array:
         """Return how far values lie outside the band of theory."""
@@ -128,33 +131,68 @@ def allowance(
     force = np.fmax.reduce(
         [edge_force(theory, part, fine.spacing) for part in (now, before, after)]
     )
-    smooth = systematic(theory, now, force, fine)
-    smooth["depth_rate"] = smooth["depth_rate"] + lag(
-        theory, time, high["depth_rate"] - low["depth_rate"]
-    )
-    rounding = {name: half_digit(series.columns[name]) for name in CURVES if name in series.columns}
+    lags = [first_order(theory, part, series, fine) for part in (now, before, after)]
+    share, lagging = np.fmax.reduce([z for z, _ in lags]), np.fmax.reduce([f for _, f in lags])
+    late = lag(theory, now, time, high["depth_rate"] - low["depth_rate"])
+    rest = AN_EIGHTH / LAGGING * late * (share > 0.0)
+    lagging = lagging + theory.scene.foundation.damping * contact_length(now) * rest
+    smooth = systematic(theory, now, (1.0 + share) * force, lagging, fine)
+    smooth["depth_rate"] = smooth["depth_rate"] + late
+    rounding = {name: rounded(series.columns[name]) for name in CURVES if name in series.columns}
     spread = {name: smooth[name] + rounding.get(name, 0.0) for name in CURVES}
     sigma = {name: noise(time, series.columns[name] - now[name]) for name in rounding}
     capped = {name: min(s, LARGEST_NOISE * theory.scales[name]) for name, s in sigma.items()}
-    return now, Allowance(low, high, spread, capped, force)
+    return now, Allowance(low, high, spread, capped, force, rounding)
 
 
-def lag(theory: Theory, time: Array, width: Array) -> Array:
+def lag(theory: Theory, curves: Mapping[str, Array], time: Array, width: Array) -> Array:
     """Return what a scheme of first order still lacks of a fast change of the rate, after its band is over.
 
     Euler's method errs in exp(-t/T) by (h/2T)(t/T) exp(-t/T): an eighth of the width of the band, times
-    t/T, and the rate soon turns, where the band is narrow.
+    t/T, and the rate soon turns, where the band is narrow. T = M/(C L) is that of the contact at the time;
+    (t/T) exp(-t/T) is at most (2/e) exp(-t/2T).
     """
-    if theory.rates is None:
+    support, foundation = theory.scene.support, theory.scene.foundation
+    if isinstance(support, Fixed):
         return np.zeros_like(width)
-    ages = (time - time[0]) / abs(theory.rates.fast)
+    rate = 0.5 * foundation.damping * contact_length(curves) / support.mass
+    ages = np.concatenate([[0.0], np.cumsum(0.5 * (rate[1:] + rate[:-1]) * np.diff(time))])
     with np.errstate(divide="ignore"):
         left = np.maximum.accumulate(np.log(width) + ages) - ages
     return np.asarray(LAGGING * np.exp(left))
 
 
-LAGGING = 0.25
-"""An eighth, for up to two fast time constants before the band of the rate has narrowed."""
+AN_EIGHTH, LAGGING = 0.25 / math.e, 0.25
+"""Of the band, what a lag of first order is, and what is allowed of the rate: more, for what long steps add
+of the next order in h/T."""
+
+
+def contact_length(curves: Mapping[str, Array]) -> Array:
+    """Return the length of the contact in m; zero in flight."""
+    return np.asarray(np.nan_to_num(np.abs(curves["trailing_edge"] - curves["leading_edge"])))
+
+
+def first_order(
+    theory: Theory, curves: Mapping[str, Array], series: Series, fine: Resolution
+) -> tuple[Array, Array]:
+    """Return z = h C L/M and z |M d''|, by which the force may lag in a scheme of first order (Eq. 17).
+
+    An element that enters is answered to within a step by the rate, with the share z of its force.
+    """
+    support, foundation = theory.scene.support, theory.scene.foundation
+    none = np.zeros_like(curves["depth"])
+    if isinstance(support, Fixed) or series.scheme in SECOND_ORDER:
+        return none, none
+    spring = support.stiffness if isinstance(support, Suspended) else 0.0
+    sunk = curves["depth"] - theory.static["static_depth"]
+    net = support.weight - spring * sunk - curves["normal_force"]
+    rate = foundation.damping * contact_length(curves) / support.mass
+    z = np.minimum(fine.time_step * rate, 1.0)
+    return z, z * np.abs(net)
+
+
+SECOND_ORDER = ("paper", "rk4", "exponential", "edge-corrected")
+"""Schemes that are known to be of at least second order in time."""
 
 
 def edge_force(theory: Theory, curves: Mapping[str, Array], spacing: float) -> Array:
@@ -174,9 +212,9 @@ def edge_force(theory: Theory, curves: Mapping[str, Array], spacing: float) -> A
 
 
 def systematic(
-    theory: Theory, curves: Mapping[str, Array], force: Array, fine: Resolution
+    theory: Theory, curves: Mapping[str, Array], force: Array, lagging: Array, fine: Resolution
 ) -> dict[str, Array]:
-    """Return what follows from the force b at the edge, by the linear response of F12.
+    """Return what follows from the force b at the edge, by the linear response of F12, and from a lag.
 
     Leading edge, x^2 = 2 R delta: R/a times the depth; trailing edge, x^2 + 2 l_r x = 2 R (delta +
     tau delta') (Eq. 33): R/(x + l_r) times both; friction: b at x = a, and F_x in proportion to
@@ -196,8 +234,8 @@ def systematic(
         "velocity": np.full_like(force, SAME * theory.scales["velocity"]),
         "depth": depth + SAME * theory.scales["depth"],
         "depth_rate": depth_rate + kick + SAME * theory.scales["depth_rate"],
-        "normal_force": WHOLE_EDGE * force,
-        "friction_force": WHOLE_EDGE * force * a / R + carried,
+        "normal_force": WHOLE_EDGE * force + lagging,
+        "friction_force": (WHOLE_EDGE * force + lagging) * a / R + carried,
         "leading_edge": edge,
         "trailing_edge": edge + np.nan_to_num(R * both / slant),
         "peak_pressure": slope * (edge + dx) + foundation.stiffness * both,
@@ -245,7 +283,28 @@ def noise(time: Array, residual: Array) -> float:
     return float(np.median(scaled)) / NORMAL_MAD if scaled.size else 0.0
 
 
-def half_digit(values: Array) -> float:
-    """Return half the smallest step between values: what rounding to so many digits leaves."""
-    steps = np.diff(np.unique(values[np.isfinite(values)]))
-    return 0.5 * float(steps.min()) if steps.size else 0.0
+def rounded(values: Array) -> Array:
+    """Return what rounding leaves: half the smallest step between values, or half their last digit.
+
+    >>> rounded(np.array([1.23e-4, 4.56e-4, 1.24e-3])).round(9).tolist()
+    [5e-07, 5e-07, 5e-06]
+    """
+    distinct = np.unique(values[np.isfinite(values)])
+    step = float(np.diff(distinct).min()) if distinct.size >= SEVERAL else 0.0
+    on_grid = step > 0.0 and np.abs(distinct / step - np.round(distinct / step)).max() <= ON_GRID
+    half = 0.5 * step if on_grid else 0.0
+    size = 10.0 ** np.floor(np.log10(np.maximum(np.abs(np.nan_to_num(values)), 1e-300)))
+    for digits in FEW_DIGITS:
+        last = size * 10.0 ** (1 - digits)
+        off = np.abs(values / last - np.round(values / last))
+        if np.nanmax(off, initial=0.0) <= SAME:
+            return np.asarray(np.maximum(half, 0.5 * last))
+    return np.full_like(values, half)
+
+
+FEW_DIGITS = (3, 4, 5)
+"""Significant digits to which a column may have been written; more do not matter, and fewer are those of
+exact numbers such as a velocity of 0.1 m/s."""
+SEVERAL = 10
+"""Distinct values whose smallest distance, if all are multiples of it, says how finely they were written."""
+ON_GRID = 1e-3

@@ -22,6 +22,9 @@ SMALLEST = 1e-9
 
 LARGEST_SAWTOOTH = 0.025
 """Of the load: elements so coarse that half of one at the edge matters more do not resolve the contact."""
+IN_STEP = 1.4
+"""Where the density is not known, elements may be so much fewer than assumed, or than their noise shows:
+samples that are nearly in step with the elements that enter see little of the sawtooth."""
 COMMON = 0.5
 """Correlation of the noise of both forces, squared, from which on it is taken for the sawtooth of F15."""
 LOUD = 4.0
@@ -80,12 +83,13 @@ def make_case(theory: Theory, series: Series, per_length: float | None, toleranc
     fine = resolution(theory, series, per_length)
     now, allowed = allowance(theory, series, fine, THEORY_RTOL)
     case = Case(theory, series, fine, now, allowed, tolerance)
-    shared = None if fine.spacing_known else common_noise(case)
-    if shared is None or shared < COMMON:
+    if fine.spacing_known:
         return case
     load, b = theory.static["static_load"], float(np.median(allowed.force))
-    seen = math.sqrt(3.0) * allowed.noise["normal_force"]  # a sawtooth of +-b has sigma = b/sqrt(3)
-    wider = min(seen, LARGEST_SAWTOOTH * load) / b if b else 0.0
+    # A sawtooth of +-b has sigma = b/sqrt(3).
+    common = (common_noise(case) or 0.0) >= COMMON
+    seen = math.sqrt(3.0) * allowed.noise["normal_force"] if common else 0.0
+    wider = min(IN_STEP * max(seen, b), LARGEST_SAWTOOTH * load) / b if b else 0.0
     if wider <= 1.0:
         return case
     fine = replace(fine, spacing=wider * fine.spacing)

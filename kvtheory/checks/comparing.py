@@ -1,6 +1,6 @@
 """Reading, theory, checks and diagnosis put together."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -11,7 +11,8 @@ from kvtheory.checks.diagnosis import diagnose
 from kvtheory.checks.judgements import judge
 from kvtheory.checks.reading import Series
 from kvtheory.checks.theory import Theory
-from kvtheory.results.comparison import Comparison
+from kvtheory.results import TRANSIENT_UNITS
+from kvtheory.results.comparison import Check, Comparison, Explanation
 from kvtheory.scene.model import Scene
 
 
@@ -33,7 +34,13 @@ def compare(
 def _compare(
     theory: Theory, series: Series, per_length: float | None, tolerance: float
 ) -> Comparison:
-    case = make_case(theory, series, per_length, tolerance)
+    try:
+        case = make_case(theory, series, per_length, tolerance)
+    except ArithmeticError as error:
+        raise ArithmeticError(
+            f"{series.source}: the theory cannot be followed to t = {series.time[-1]:.6g} s, where the data "
+            f"end ({error}); is the unit of the time right?"
+        ) from None
     checks = judge(case)
     wrong = [check for check in checks if check.ok is False]
     text, explanations = diagnose(case, checks)
@@ -41,4 +48,34 @@ def _compare(
     return Comparison(
         "disagrees" if wrong else "agrees", checks, text, explanations, series.source, tolerance,
         dict(series.columns), dict(case.now), allowed,
+    )  # fmt: skip
+
+
+def broken_off(
+    scene: Scene,
+    rows: Sequence[Sequence[float]],
+    reason: str,
+    transient: Callable[..., Any],
+    steady: Callable[..., Any],
+    scheme: str | None,
+    tolerance: float,
+) -> Comparison:
+    """Return the verdict on a simulation that diverged: it is not held against theory, for it has no end.
+
+    `rows` are what it found until then, in the order of `TRANSIENT_UNITS`.
+    """
+    series = dict(zip(TRANSIENT_UNITS, np.array(rows).T, strict=True))
+    theory = dict(Theory(scene, transient, steady).at(series["time"]))
+    lacking = 1.0 - float(series["time"][-1]) / scene.run.duration
+    check = Check(
+        "run to the end", lacking, 0.0, False, "F15", "part of the duration that is lacking"
+    )
+    fault = Explanation(
+        "unstable time step", f"the time step is unstable (F15): {reason}", 1.0, True
+    )
+    text = f"{fault.text[0].upper()}{fault.text[1:]}. Failed: {check.name} (F15)."
+    allowed = {name: np.zeros_like(values) for name, values in theory.items()}
+    return Comparison(
+        "disagrees", (check,), text, (fault,), scheme or "our own simulation", tolerance,
+        series, theory, allowed,
     )  # fmt: skip

@@ -55,7 +55,11 @@ def _words(failed: Sequence[Check], named: Sequence[Explanation]) -> str:
     first, *rest = named
     text = first.text[0].upper() + first.text[1:]
     if not first.enough:
-        part = "" if first.explained is None else f", which explains {first.explained:.0%} of the difference"
+        part = (
+            ""
+            if first.explained is None
+            else f", which explains {first.explained:.0%} of the difference"
+        )
         text = f"Closest: {first.text}{part}, but not all"
     equal = [each for each in rest if each.enough and first.enough]
     also = f" The data do not rule out: {'; '.join(each.text for each in equal)}." if equal else ""

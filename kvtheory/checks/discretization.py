@@ -9,7 +9,7 @@ from kvtheory.checks.making import check, not_made
 from kvtheory.results.comparison import Check
 from kvtheory.scene.model import Fixed
 
-LIMITS = {"paper": 2.785, "rk4": 2.785, "euler": 2.0, "explicit-euler": 2.0}
+LIMITS = {"paper": 2.785, "rk4": 2.785, "explicit-euler": 2.0}
 """Largest stable dt C L/M (F15) of explicit schemes by name: where |R(-z)| = 1 on the real axis."""
 UNLIMITED = ("semi-implicit", "exponential", "edge-corrected")
 """Schemes that are stable at any step."""

@@ -74,12 +74,14 @@ WRONG_RULES = {
 }
 """Wrong rules of contact, by their name in `kvtheory.checks.rules`."""
 
-FACTORS = np.geomspace(0.05, 20.0, 19)
-"""Factors of a parameter that are tried first; one of them is 1."""
+FACTORS = np.array([1e-3, 1e-2, *np.geomspace(0.05, 20.0, 19), 1e2, 1e3])
+"""Factors of a parameter that are tried first: near 1, where mistakes are, and wrong units."""
 POWER_OF_TEN = 0.02
 """In the decadic logarithm: nearer to a whole number, a factor is a power of ten."""
 DECADES = (-6, -3, -2, -1, 1, 2, 3)
 """Powers of ten by which the times may be off."""
+NO_SHIFT = 1e-6
+"""Of what is allowed: how much better a shift by the whole duration has to be than none."""
 SHIFTS = np.geomspace(1e-3, 0.5, 13)
 """Of the duration: offsets of the time that are tried first, in both directions."""
 
@@ -207,8 +209,10 @@ def decades(bench: Bench) -> Iterator[Trial]:
 
 def offset(bench: Bench) -> Iterator[Trial]:
     """Shift the times."""
-    grid = np.concatenate([-SHIFTS[::-1], [0.0], SHIFTS]) * float(bench.time[-1] - bench.time[0])
-    _, shift = best(lambda t: _timed(bench, bench.time - t).score, grid)
+    span = float(bench.time[-1] - bench.time[0])
+    grid = span * np.concatenate([-SHIFTS[::-1], [0.0], SHIFTS])
+    # Of shifts that fit as well, such as those of a force that never changes, the smallest counts.
+    _, shift = best(lambda t: _timed(bench, bench.time - t).score + NO_SHIFT * abs(t) / span, grid)
     text = f"the times are off by {shift * 1e3:.4g} ms: in the data the drive starts at that time"
     yield Trial("time offset", text, _timed(bench, bench.time - shift), shift)
 

@@ -94,15 +94,19 @@ def balance(case: Case) -> Iterator[Check]:
         yield not_made(name, equation, "it needs the depth and the normal force")
         return
     depth_0, sigma = static["static_depth"], case.allowance.noise
+    # An error that is even within half a digit has this part of it as its standard deviation.
+    digits = rms(case.allowance.rounding["depth"]) / np.sqrt(3.0)
+    sigma_depth = float(np.hypot(sigma["depth"], digits))
     smear = np.nan_to_num(case.allowance.high["normal_force"] - case.allowance.low["normal_force"])
     worst = (-1.0, 0.0, 1.0, "")
     for window in windows(case.series.time):
         part = slice(window.start, window.stop)
         lacks = abs(missing_force(window, columns, support, depth_0))
         sampled = abs(missing_force(window, case.now, support, depth_0))
-        random = random_part(window, sigma["depth"], sigma["normal_force"], support.mass)
+        random = random_part(window, sigma_depth, sigma["normal_force"], support.mass)
         smooth = float(
-            np.abs(window.force) @ (2.0 * case.allowance.force[part] + 0.5 * smear[part])
+            np.abs(window.force)
+            @ (np.nan_to_num(case.allowance.systematic["normal_force"][part]) + 0.5 * smear[part])
         )
         allowed = case.tolerance * (
             2.0 * sampled

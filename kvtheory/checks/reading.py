@@ -114,7 +114,9 @@ def _from_file(path: Path) -> Series:
         )
     bare = re.sub(r"[\[(].*?[\])]", "", lines[0][1])
     separator = max(SEPARATORS, key=bare.count)
-    rows = csv.reader((line for _, line in lines), delimiter=separator)
+    rows = list(csv.reader((line for _, line in lines), delimiter=separator))
+    if len(rows) != len(lines):
+        raise ValueError(f"{path}: a quotation mark is opened and not closed on the same line")
     table = [
         (number, [cell.strip() for cell in row])
         for (number, _), row in zip(lines, rows, strict=True)
@@ -139,7 +141,8 @@ def _from_table(path: Path, table: Sequence[tuple[int, list[str]]]) -> Series:
         except ValueError as error:
             problems.append(f"{path}: {error}")
             continue
-        problems += _twice(columns[-1].quantity, head, headers)
+        twice = _twice(columns[-1].quantity, head, headers)
+        problems += [f"{path}: {problem}" for problem in twice]
         headers[columns[-1].quantity] = head
     if problems:
         raise ValueError("\n".join(problems))
@@ -236,7 +239,9 @@ def _order(time: Array, lines: Sequence[int] | None) -> Iterable[str]:
     if back.size:
         k = int(back[0]) + 1
         where = f"row {k + 1}" if lines is None else f"line {lines[k]}"
-        return [f"the time must increase, but {time[k]!r} s in {where} follows {time[k - 1]!r} s"]
+        return [
+            f"the time must increase, but {time[k]:.9g} s in {where} follows {time[k - 1]:.9g} s"
+        ]
     if np.count_nonzero(steps) < SHORTEST - 1 or time[-1] <= 0.0:
-        return [f"the times do not span a transient: {time[0]!r} s to {time[-1]!r} s"]
+        return [f"the times do not span a transient: {time[0]:.9g} s to {time[-1]:.9g} s"]
     return []

@@ -131,17 +131,21 @@ def rattling(case: Case) -> Iterator[Explanation]:
 
 
 def grows(case: Case) -> bool:
-    """Whether the difference to theory ends large, and began small."""
+    """Whether the difference to theory becomes large, and began small.
+
+    A depth may come back, for an indenter that was thrown off falls; a force jumps without growing.
+    """
     quarter = max(case.series.time.size // 4, 1)
-    for name in (name for name in ("depth", "normal_force") if name in case.names):
-        off = np.abs(case.residual(name))
-        if off[-quarter:].max() > max(LARGE, MANY * off[:quarter].max()):
-            return True
+    for name, late, early in (("depth", 0, 1), ("normal_force", -quarter, quarter)):
+        if name in case.names:
+            off = np.abs(case.residual(name))
+            if off[late:].max() > max(LARGE, MANY * off[:early].max()):
+                return True
     return False
 
 
 LARGE, MANY = 10.0, 30.0
-"""Of a scale, and of what it was at first: a difference that ends beyond both has grown."""
+"""Of a scale, and of what it was at first: a difference beyond both has grown."""
 
 
 def coarse(case: Case, failed: Sequence[Check]) -> Iterator[Explanation]:

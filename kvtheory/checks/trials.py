@@ -98,7 +98,8 @@ def bench(case: Case) -> Bench:
     )
     thin = replace(
         case, series=series, now={name: case.now[name][rows] for name in CURVES},
-        allowance=Allowance(low, high, smooth, old.noise, old.force[rows]),
+        allowance=Allowance(low, high, smooth, old.noise, old.force[rows],
+                            {name: values[rows] for name, values in old.rounding.items()}),
     )  # fmt: skip
     drive_differs = "velocity" in case.names and bool(
         (case.excess("velocity") > case.most("velocity")).any()

@@ -5,6 +5,7 @@ will bring it there again before it has relaxed; every other element counts as u
 """
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -20,7 +21,9 @@ KEPT_DEPTH = 16.0
 
 
 class OutgrownError(ArithmeticError):
-    """The indenter sank so deep that it may meet elements that were given up."""
+    """The indenter sank so deep that it may meet elements that were given up; `rows` as found so far."""
+
+    rows: Sequence[tuple[float, ...]] = ()
 
 
 @dataclass

@@ -180,29 +180,31 @@ def _balance(scheme: Scheme, model: Model, row: Row, now: Motion, h: float) -> t
     fall = now.depth + _sinking(model, now, h)
     under = row.under(now.time + h, h, max(fall, now.depth))
     meets = under.height + under.free
-    depth = min(now.depth + h * now.rate, fall)
-    length = dx * max(np.count_nonzero(meets <= depth), np.count_nonzero(under.touched))
+    sunk = min(h * now.rate, fall - now.depth)
+    length = dx * max(np.count_nonzero(meets <= now.depth + sunk), np.count_nonzero(under.touched))
     theta = scheme.theta(h * model.damping * length / M)  # type: ignore[misc]
     stiffness = -model.stiffness / math.expm1(-h / model.retardation_time)
     kinks = _Kinks(model, row, now, under, h) if scheme.edges else None
 
-    def velocity(d: float) -> float:
-        return ((d - now.depth) / h - (1.0 - theta) * now.rate) / theta
+    # The unknown is how far it sinks: the depths themselves cancel where the step is short.
+    def velocity(sunk: float) -> float:
+        return (sunk / h - (1.0 - theta) * now.rate) / theta
 
     for _ in range(NEWTON_STEPS):
+        depth = now.depth + sunk
         pressed = depth > meets
         area = dx * float(np.maximum(depth - meets, 0.0).sum())
         width = dx * np.count_nonzero(pressed)
         if kinks is not None:
             more, wider = kinks(depth, pressed)
             area, width = area + more, width + wider
-        mean = (1.0 - theta) * now.depth + theta * depth - model.depth
-        residual = M * (velocity(depth) - now.rate) / h - W + k_s * mean + stiffness * area
+        mean = now.depth - model.depth + theta * sunk
+        residual = M * (velocity(sunk) - now.rate) / h - W + k_s * mean + stiffness * area
         change = residual / (M / (theta * h * h) + theta * k_s + stiffness * width)
-        depth -= change
+        sunk -= change
         if abs(change) <= NEWTON_RTOL * model.depth:
             break
-    return Motion(now.time + h, depth, velocity(depth)), under
+    return Motion(now.time + h, now.depth + sunk, velocity(sunk)), under
 
 
 def _sinking(model: Model, now: Motion, h: float) -> float:

@@ -40,10 +40,17 @@ KNOWN = 0.5
 """Of an element: how well an edge is known after a jump of the drive, which leaves pressure on it."""
 MORE_ROOM = 16.0
 """Ratio of the depths for which elements are kept, from one attempt to the next."""
+MOST_OF_ALL = 1e9
+"""Steps: so many would take days."""
+TOGETHER = 1e-6
+"""Of the time step: instants that are no farther apart share a state. A step so short would change
+it by less than a millionth of what one step does, and times that differ by rounding leave no step at all."""
 DEEPEST = 1e7
 """Times the static depth: no scene sinks deeper."""
 
 Rows = dict[str, Array]
+Leg = tuple[float, float, int]
+"""From one instant to another in so many steps."""
 Progress = Callable[[int, int], None]
 """Called with the steps done and the steps in all."""
 
@@ -71,23 +78,31 @@ def simulate(
     model, path = Model.of(scene, spacing), Path(scene.drive, scene.run.duration)
     h = time_step or default_step(model, path, scheme)
     stops, wanted = _instants(scene, path, h, at)
+    if stops[-1] > MOST_OF_ALL * h:
+        raise ValueError(
+            f"`time_step` = {h:.6g} s: expected at least {stops[-1] / MOST_OF_ALL:.3g} s, so that at most "
+            f"{MOST_OF_ALL:g} steps lead to t = {stops[-1]:.6g} s"
+        )
+    legs = _legs(stops, path.breaks, h)
+    h = max(((stop - start) / count for start, stop, count in legs if count), default=h)
     warning = doubts(scheme, model, path, h)
     if warning and warn is not None:
         warn(warning)
-    rows, steps, updates = _with_room(model, path, scheme, h, stops, wanted, progress)
+    rows, updates = _with_room(model, path, scheme, legs, wanted, progress)
     certificate = Certificate(
         "estimated", "not asked for", dict.fromkeys(TRANSIENT_UNITS, math.inf)
     )
     if certify:
         coarse = Model.of(scene, 2.0 * spacing)
-        best = SCHEMES[DEFAULT]
-        others = [_with_room(coarse, path, best, 2.0 * h, stops, wanted, None)[0]]
+        best, half = SCHEMES[DEFAULT], [(start, stop, count // 2) for start, stop, count in legs]
+        others = [_with_room(coarse, path, best, half, wanted, None)[0]]
         if scheme is not best:
-            others.append(_with_room(model, path, best, h, stops, wanted, None)[0])
+            others.append(_with_room(model, path, best, legs, wanted, None)[0])
         certificate = _certificate(model, path, rows, others)
     return Simulation(
-        **rows, scheme=scheme.name, per_length=1.0 / spacing, time_step=h, steps=steps,
-        element_updates=updates, warning=warning, model="elements", certificate=certificate,
+        **rows, scheme=scheme.name, per_length=1.0 / spacing, time_step=h,
+        steps=sum(count for _, _, count in legs), element_updates=updates, warning=warning,
+        model="elements", certificate=certificate,
     )  # fmt: skip
 
 
@@ -116,63 +131,80 @@ def default_step(model: Model, path: Path, scheme: Scheme) -> float:
 
 def _instants(
     scene: Scene, path: Path, h: float, at: Sequence[float] | None
-) -> tuple[list[float], set[float]]:
-    """Return the instants on which steps end, and those that are reported."""
+) -> tuple[list[float], list[float]]:
+    """Return the instants on which steps end, in order, and those that are reported, as asked for."""
     end = scene.run.duration if at is None else max(at)
     breaks = [t for t in path.breaks if t < end]
     if at is not None:
-        return sorted({*breaks, *at, 0.0, end}), set(at)
+        return sorted({*breaks, *at, 0.0}), list(at)
     stride = h * 2.0 * math.ceil(end / h / ROWS / 2.0)
     regular = [
         start + k * stride
         for start, stop in itertools.pairwise([*breaks, end])
         for k in range(math.ceil((stop - start) / stride * (1.0 - 1e-9)))
     ]
-    return [*regular, end], {*regular, end}
+    return [*regular, end], [*regular, end]
 
 
 def _with_room(
-    model: Model, path: Path, scheme: Scheme, h: float, stops: list[float], wanted: set[float],
+    model: Model, path: Path, scheme: Scheme, legs: list[Leg], wanted: list[float],
     progress: Progress | None,
-) -> tuple[Rows, int, int]:  # fmt: skip
+) -> tuple[Rows, int]:  # fmt: skip
     """Run, and run again with more elements kept, should the indenter sink very deep."""
     kept = KEPT_DEPTH
     while True:
         try:
             row = Row(model, path, kept)
-            return _run(row, scheme, h, stops, wanted, progress)
-        except OutgrownError:
+            return _run(row, scheme, legs, wanted, progress)
+        except OutgrownError as outgrown:
             kept *= MORE_ROOM
             if kept > DEEPEST:
-                raise DivergenceError(
+                h = max((stop - start) / max(count, 1) for start, stop, count in legs)
+                error = DivergenceError(
                     f"the run diverged: the indenter sank to {DEEPEST:g} times its static depth; "
                     f"{stability_text(scheme, model, path, h)}"
-                ) from None
+                )
+                error.rows = outgrown.rows
+                raise error from None
 
 
+@np.errstate(all="ignore")  # the watch judges what comes of it
 def _run(
-    row: Row, scheme: Scheme, h: float, stops: list[float], wanted: set[float],
-    progress: Progress | None,
-) -> tuple[Rows, int, int]:  # fmt: skip
-    model, watch = row.model, Watch(row, scheme)
-    motion, found, done = Motion(0.0, model.depth, 0.0), [], 0
-    counts = [_count(b - a, h) for a, b in itertools.pairwise(stops)]
-    total = sum(counts)
-    with np.errstate(all="ignore"):  # the watch judges what comes of it
-        if stops[0] in wanted:
-            found.append(_report(row, scheme, motion))
-        for (start, stop), count in zip(itertools.pairwise(stops), counts, strict=True):
+    row: Row, scheme: Scheme, legs: list[Leg], wanted: list[float], progress: Progress | None
+) -> tuple[Rows, int]:
+    watch, motion, done = Watch(row, scheme), Motion(0.0, row.model.depth, 0.0), 0
+    total, asked = sum(count for _, _, count in legs), set(wanted)
+    found: dict[float, tuple[float, ...]] = {}
+    try:
+        for start, stop, count in legs:
             for k in range(1, count + 1):
                 time = stop if k == count else start + (stop - start) * k / count
-                motion = replace(scheme.step(model, row, motion, time - motion.time), time=time)
+                motion = replace(scheme.step(row.model, row, motion, time - motion.time), time=time)
                 watch.see(motion, (stop - start) / count)
                 done += 1
                 if progress is not None and (done % PER_NOTICE == 0 or done == total):
                     progress(done, total)
-            if stop in wanted:
-                found.append(_report(row, scheme, motion))
-    columns = np.array(found).T
-    return dict(zip(TRANSIENT_UNITS, columns, strict=True)), done, row.updates
+            if not count and stop in row.path.breaks:
+                motion = replace(motion, time=stop)
+            if stop in asked:
+                found[stop] = _report(row, scheme, motion, stop)
+    except (DivergenceError, OutgrownError) as error:
+        error.rows = tuple(found.values())
+        raise
+    columns = np.array([found[time] for time in wanted]).T
+    return dict(zip(TRANSIENT_UNITS, columns, strict=True)), row.updates
+
+
+def _legs(stops: Sequence[float], breaks: Sequence[float], h: float) -> list[Leg]:
+    """Return for each stop whence the run comes and in how many steps; in none if it is there already."""
+    legs: list[Leg] = []
+    start = 0.0
+    for stop in stops:
+        count = _count(stop - start, h) if stop - start > TOGETHER * h else 0
+        legs.append((start, stop, count))
+        if count or stop in breaks:
+            start = stop
+    return legs
 
 
 def _count(length: float, h: float) -> int:
@@ -180,9 +212,9 @@ def _count(length: float, h: float) -> int:
     return max(2 * math.ceil(0.5 * length / h * (1.0 - 1e-9)), 2)
 
 
-def _report(row: Row, scheme: Scheme, at: Motion) -> tuple[float, ...]:
-    """Return the columns at an instant; where V jumps, just after it."""
-    model, V = row.model, row.path.velocity(at.time)
+def _report(row: Row, scheme: Scheme, at: Motion, time: float) -> tuple[float, ...]:
+    """Return the columns at a time, for which the state `at` stands; where V jumps, just after it."""
+    model, V = row.model, row.path.velocity(time)
     under = row.under(at.time, 0.0, max(at.depth, model.depth))
     p = pressure(model, under, at.depth, at.rate, V)
     pressed = under.touched & (p >= 0.0)
@@ -194,9 +226,9 @@ def _report(row: Row, scheme: Scheme, at: Motion) -> tuple[float, ...]:
         else whole_elements(model, under, p, pressed)
     )
     edges = (contact.left, contact.right)
-    leading, trailing = edges if row.path.forward(at.time) else edges[::-1]
+    leading, trailing = edges if row.path.forward(time) else edges[::-1]
     forces = contact.normal_force, contact.friction_force
-    return at.time, V, at.depth, at.rate, *forces, leading, trailing, contact.peak_pressure
+    return time, V, at.depth, at.rate, *forces, leading, trailing, contact.peak_pressure
 
 
 def _certificate(model: Model, path: Path, rows: Rows, others: Sequence[Rows]) -> Certificate:

@@ -2,6 +2,7 @@
 
 import math
 from collections import deque
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -27,7 +28,12 @@ ELEMENTS = 4.0
 
 
 class DivergenceError(ArithmeticError):
-    """The time step is so long that the run became unstable; the message says when and why."""
+    """The time step is so long that the run became unstable; the message says when and why.
+
+    `rows` holds what was to be reported until then: tuples in the order of `TRANSIENT_UNITS`.
+    """
+
+    rows: Sequence[tuple[float, ...]] = ()
 
 
 def doubts(scheme: Scheme, model: Model, path: Path, h: float) -> str:
