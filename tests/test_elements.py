@@ -10,13 +10,13 @@ from click.testing import CliRunner
 
 import kvtheory as kv
 from kvtheory.cli import main
-from kvtheory.elements import row, simulation
-from kvtheory.elements.model import Model
-from kvtheory.elements.path import Path
-from kvtheory.elements.row import Row
-from kvtheory.elements.schemes import SCHEMES, Motion
-from kvtheory.elements.stability import contact_lengths, limit_at, stability_limit
-from kvtheory.elements.watch import DivergenceError
+from kvtheory.point_elements import row, simulation
+from kvtheory.point_elements.model import Model
+from kvtheory.point_elements.path import Path
+from kvtheory.point_elements.row import Row
+from kvtheory.point_elements.schemes import SCHEMES, Motion
+from kvtheory.point_elements.stability import contact_lengths, limit_at, stability_limit
+from kvtheory.point_elements.watch import DivergenceError
 from kvtheory.results import TRANSIENT_UNITS
 
 IMPLICIT = ("semi-implicit", "exponential", "edge-corrected")
@@ -404,12 +404,3 @@ def test_bad_input_costs_status_2_and_writes_nothing(arguments, words, tmp_path,
     for word in words:
         assert word in result.stderr, result.stderr
     assert not list(tmp_path.iterdir())
-
-
-def test_the_package_does_not_hide_the_function():
-    """`kvtheory.elements` is both: the name stands for the function, before and after its first use."""
-    kv.elements(at=0.0, certify=False)
-    assert callable(kv.elements)
-    import kvtheory.elements.schemes  # noqa: F401
-
-    assert callable(kv.elements)

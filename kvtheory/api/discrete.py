@@ -3,7 +3,6 @@
 from collections.abc import Callable
 from typing import Any
 
-import kvtheory.elements  # noqa: F401  # loaded before its name comes to stand for the function
 from kvtheory.api.edge import double_precision, scene_of, times_of
 from kvtheory.results import Simulation
 from kvtheory.scene.fields import Quantity, SceneError, convert, nearest, problem
@@ -34,7 +33,7 @@ def elements(
     per_length
         Elements per length, 1/dx, in 1/m or as text with a unit.
     scheme
-        How a step is taken: a name in `kvtheory.elements.schemes.SCHEMES`.
+        How a step is taken: a name in `kvtheory.point_elements.schemes.SCHEMES`.
     at
         Times at which the result is wanted, in s or as text with a unit; without it, some 400 over
         the run.
@@ -60,7 +59,7 @@ def elements(
         If a time, the density or the step is wrong; every mistake is listed.
     ValueError
         If the scheme does not exist, or the density or the step does not suit the scene.
-    kvtheory.elements.watch.DivergenceError
+    kvtheory.point_elements.watch.DivergenceError
         If the run becomes unstable; the message says when, why, and which step would do.
 
     Examples
@@ -78,8 +77,8 @@ def elements(
     """
     scene = scene_of(scene)
     # They import SciPy, which takes a while.
-    from kvtheory.elements.schemes import SCHEMES
-    from kvtheory.elements.simulation import simulate
+    from kvtheory.point_elements.schemes import SCHEMES
+    from kvtheory.point_elements.simulation import simulate
 
     if scheme not in SCHEMES:
         raise ValueError(f'`scheme` = "{scheme}": {nearest(str(scheme), SCHEMES)}')

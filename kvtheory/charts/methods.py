@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from kvtheory.charts import problems
 from kvtheory.charts.naive import closed_forms, two_states
 from kvtheory.charts.problems import Curves, Problem
-from kvtheory.elements.schemes import SCHEMES
+from kvtheory.point_elements.schemes import SCHEMES
 from kvtheory.transients import compiled, slow_manifold
 
 Array = NDArray[np.float64]

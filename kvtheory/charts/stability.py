@@ -17,12 +17,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kvtheory.api import steady as steady_sliding
-from kvtheory.elements.model import Model
-from kvtheory.elements.path import Path
-from kvtheory.elements.row import OutgrownError, Row
-from kvtheory.elements.schemes import SCHEMES, Motion, Scheme
-from kvtheory.elements.simulation import ELEMENTS_PER_STEP
-from kvtheory.elements.stability import contact_lengths, limit_at
+from kvtheory.point_elements.model import Model
+from kvtheory.point_elements.path import Path
+from kvtheory.point_elements.row import OutgrownError, Row
+from kvtheory.point_elements.schemes import SCHEMES, Motion, Scheme
+from kvtheory.point_elements.simulation import ELEMENTS_PER_STEP
+from kvtheory.point_elements.stability import contact_lengths, limit_at
 from kvtheory.scene.drives import Drive
 from kvtheory.scene.indenters import Parabola
 from kvtheory.scene.model import DeadWeight, Foundation, Run, Scene

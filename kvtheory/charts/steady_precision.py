@@ -14,7 +14,7 @@ from scipy.optimize import brentq
 from kvtheory.api import elements, steady
 from kvtheory.charts.methods import DENSITIES, Clock
 from kvtheory.charts.work_precision import FULL, Chart, Effort, Point, Series, attempt, repeat
-from kvtheory.elements.schemes import DEFAULT
+from kvtheory.point_elements.schemes import DEFAULT
 from kvtheory.scene.indenters import Parabola
 from kvtheory.scene.model import DeadWeight, Run, Scene
 

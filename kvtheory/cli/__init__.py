@@ -3,4 +3,15 @@
 from kvtheory.cli import chart, compare, derive, elements, scene, solve, steady, sweep, transient
 from kvtheory.cli.group import main
 
-__all__ = ["chart", "compare", "derive", "elements", "main", "scene", "solve", "steady", "sweep", "transient"]
+__all__ = [
+    "chart",
+    "compare",
+    "derive",
+    "elements",
+    "main",
+    "scene",
+    "solve",
+    "steady",
+    "sweep",
+    "transient",
+]

@@ -187,7 +187,7 @@ def _elements(elements: Callable[..., Simulation], scene: Scene, request: Reques
     A certificate compares with half as many elements, and both may be too coarse to see what is fast:
     what a run differs from the coarser one before it counts too, divided by the ratio of their elements.
     """
-    from kvtheory.elements.model import SAMPLES, Model
+    from kvtheory.point_elements.model import SAMPLES, Model
 
     length = SAMPLES * Model.of(scene).spacing
     count, finer, before = ELEMENTS, math.nan, None
@@ -239,7 +239,7 @@ def _times(scene: Scene, request: Request) -> Array:
 
 def _scales_of_elements(scene: Scene) -> dict[str, float]:
     """Return the scales for any shape, whose static state is a matter of the elements."""
-    from kvtheory.elements.model import Model
+    from kvtheory.point_elements.model import Model
 
     model = Model.of(scene)
     return _relative_to(scene, model.half_length, model.depth, model.load)

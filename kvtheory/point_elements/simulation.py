@@ -7,13 +7,13 @@ from dataclasses import replace
 
 import numpy as np
 
-from kvtheory.elements.contact import Contact, parts_of_elements, pressure, whole_elements
-from kvtheory.elements.model import Array, Model, span
-from kvtheory.elements.path import Path
-from kvtheory.elements.row import KEPT_DEPTH, OutgrownError, Row
-from kvtheory.elements.schemes import DEFAULT, SCHEMES, Motion, Scheme
-from kvtheory.elements.stability import lengths, limit_at
-from kvtheory.elements.watch import DivergenceError, Watch, doubts, stability_text
+from kvtheory.point_elements.contact import Contact, parts_of_elements, pressure, whole_elements
+from kvtheory.point_elements.model import Array, Model, span
+from kvtheory.point_elements.path import Path
+from kvtheory.point_elements.row import KEPT_DEPTH, OutgrownError, Row
+from kvtheory.point_elements.schemes import DEFAULT, SCHEMES, Motion, Scheme
+from kvtheory.point_elements.stability import lengths, limit_at
+from kvtheory.point_elements.watch import DivergenceError, Watch, doubts, stability_text
 from kvtheory.results import TRANSIENT_UNITS, Certificate, Simulation
 from kvtheory.scene.model import Scene
 

@@ -11,8 +11,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from kvtheory.elements.model import Array, Model, span
-from kvtheory.elements.path import Path
+from kvtheory.point_elements.model import Array, Model, span
+from kvtheory.point_elements.path import Path
 
 FORGOTTEN = 1e-12
 """A compression that has relaxed to this share counts as none."""

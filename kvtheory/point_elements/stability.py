@@ -10,9 +10,9 @@ import math
 import numpy as np
 from scipy.optimize import brentq
 
-from kvtheory.elements.model import SAMPLES, Model, span
-from kvtheory.elements.path import Path
-from kvtheory.elements.schemes import DEFAULT, SCHEMES, Scheme
+from kvtheory.point_elements.model import SAMPLES, Model, span
+from kvtheory.point_elements.path import Path
+from kvtheory.point_elements.schemes import DEFAULT, SCHEMES, Scheme
 from kvtheory.scene.model import Scene
 
 STEADY_RTOL = 1e-6

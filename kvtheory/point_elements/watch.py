@@ -6,11 +6,11 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from kvtheory.elements.model import Model, span
-from kvtheory.elements.path import Path
-from kvtheory.elements.row import Row
-from kvtheory.elements.schemes import DEFAULT, Motion, Scheme
-from kvtheory.elements.stability import lengths, limit_at
+from kvtheory.point_elements.model import Model, span
+from kvtheory.point_elements.path import Path
+from kvtheory.point_elements.row import Row
+from kvtheory.point_elements.schemes import DEFAULT, Motion, Scheme
+from kvtheory.point_elements.stability import lengths, limit_at
 
 LONGEST_PASS = 0.25
 """Of the static half length, for the elements in a step; with more, some are pressed within a step."""

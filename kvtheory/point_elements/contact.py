@@ -9,8 +9,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from kvtheory.elements.model import Array, Model
-from kvtheory.elements.row import Under
+from kvtheory.point_elements.model import Array, Model
+from kvtheory.point_elements.row import Under
 
 
 @dataclass(frozen=True)

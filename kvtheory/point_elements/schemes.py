@@ -34,9 +34,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from kvtheory.elements.contact import Edges, kink_area, pressure
-from kvtheory.elements.model import Model
-from kvtheory.elements.row import Row, Under
+from kvtheory.point_elements.contact import Edges, kink_area, pressure
+from kvtheory.point_elements.model import Model
+from kvtheory.point_elements.row import Row, Under
 
 NEWTON_STEPS = 60
 """The iteration ends after three or four; a monotone convex function cannot need many more."""
