@@ -8,9 +8,8 @@ import click
 
 from kvtheory.cli.console import Examples, print_json, print_table, progress_bar, split, teaching
 from kvtheory.cli.group import main
-from kvtheory.cli.outputs import check_output
+from kvtheory.cli.outputs import PICTURES, check_output
 
-PICTURES = ".png", ".svg", ".pdf"
 THREADS = "OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"
 """Set to one before anything numerical is imported, so that times can be compared."""
 

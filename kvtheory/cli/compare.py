@@ -9,7 +9,7 @@ import click
 
 from kvtheory.cli.console import print_json, print_table, scene_command
 from kvtheory.cli.group import main
-from kvtheory.cli.outputs import check_output
+from kvtheory.cli.outputs import PICTURES, check_output
 
 if TYPE_CHECKING:
     from kvtheory.results.comparison import Check
@@ -64,7 +64,7 @@ def compare(
     from kvtheory.scene import load_scene
 
     check_output("--report", report, [".html"])
-    check_output("--plot", plot, [".png", ".svg", ".pdf"])
+    check_output("--plot", plot, PICTURES)
     checked = load_scene(scene, overrides)
     found = hold_against(checked, data, per_length=per_length, scheme=scheme, tolerance=tolerance)
     if plot:

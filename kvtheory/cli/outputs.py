@@ -1,7 +1,23 @@
-"""Files that a command is to write, checked before it computes anything."""
+"""Time series that a command is to report and write; its files are checked before it computes anything."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
+from typing import Any
+
+import click
+
+PICTURES = (".png", ".svg", ".pdf")
+
+
+def series_options(command: Callable[..., Any]) -> Callable[..., Any]:
+    """Give a command `--at` for the times of a series, and `-o` for its file."""
+    command = click.option(
+        "-o", "--output", type=click.Path(path_type=Path), default=None,
+        help="Write the series to FILE.csv or FILE.nc.",
+    )(command)  # fmt: skip
+    return click.option("--at", default=None, metavar='"0 ms,1 ms,..."', help="Times to report.")(
+        command
+    )
 
 
 def check_output(option: str, path: Path | None, suffixes: Sequence[str]) -> None:

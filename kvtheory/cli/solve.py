@@ -9,6 +9,7 @@ import click
 
 from kvtheory.cli.console import print_json, print_series, print_table, scene_command, shown, split
 from kvtheory.cli.group import main
+from kvtheory.cli.outputs import check_output, series_options
 
 if TYPE_CHECKING:
     from kvtheory.results.solution import Solution
@@ -27,14 +28,7 @@ if TYPE_CHECKING:
     "--quantity", default=None, metavar="NAME,...", help="What is wanted; default: everything."
 )
 @click.option("--explain", is_flag=True, help="Print which models were tried, and why.")
-@click.option("--at", default=None, metavar='"0 ms,1 ms,..."', help="Times of a series.")
-@click.option(
-    "-o",
-    "--output",
-    type=click.Path(path_type=Path),
-    default=None,
-    help="Write a series to FILE.csv or FILE.nc.",
-)
+@series_options
 def solve(
     scene: str | None,
     overrides: Sequence[str],
@@ -50,8 +44,10 @@ def solve(
     Steady sliding, or with --at or -o the motion from rest over time.
     """
     from kvtheory.api import solve as find
-    from kvtheory.export import save_transient
+    from kvtheory.export import SERIES_SUFFIXES, save_transient
     from kvtheory.scene import load_scene
+
+    check_output("-o", output, SERIES_SUFFIXES)
 
     found = find(
         load_scene(scene, overrides),

@@ -7,6 +7,7 @@ import click
 
 from kvtheory.cli.console import print_json, print_series, progress_bar, scene_command, split, text
 from kvtheory.cli.group import main
+from kvtheory.cli.outputs import PICTURES, check_output, series_options
 
 
 @scene_command(
@@ -16,14 +17,7 @@ from kvtheory.cli.group import main
 @click.option(
     "--rtol", type=float, default=1e-6, show_default=True, help="Error allowed in a step."
 )
-@click.option("--at", default=None, metavar='"0 ms,1 ms,..."', help="Times to report.")
-@click.option(
-    "-o",
-    "--output",
-    type=click.Path(path_type=Path),
-    default=None,
-    help="Write FILE.csv or FILE.nc.",
-)
+@series_options
 @click.option(
     "--plot",
     type=click.Path(path_type=Path),
@@ -41,14 +35,15 @@ def transient(
 ) -> None:
     """Follow the transient of SCENE: depth, forces, edges and events over time."""
     from kvtheory.api import transient as follow
+    from kvtheory.export import SERIES_SUFFIXES, save_transient
     from kvtheory.scene import load_scene
 
+    check_output("-o", output, SERIES_SUFFIXES)  # before a run that may be long
+    check_output("--plot", plot, PICTURES)
     times = None if at is None else split(at)
     with progress_bar("transient") as progress:
         result = follow(load_scene(scene, overrides), at=times, rtol=rtol, progress=progress)
     if output:
-        from kvtheory.export import save_transient
-
         save_transient(result, output)
     if plot:
         from kvtheory.plots import save_transient_plot
