@@ -6,11 +6,18 @@ is stiffly accurate (Hairer and Wanner, Solving Ordinary Differential Equations 
 and VI.1).
 
 Why so many stages (`STAGES`): the error must be small all along the step, for memory is read off it, and
-a step costs much beside its stages. The start from rest of Table 1 takes, with 3, 4, 5 and 7 stages, at
-an error of the depth of about 1e-4: 17, 13, 11 and 11 steps and 200, 200, 240 and 320 evaluations of F;
-at 1e-7: 95, 31, 22 and 12 steps and 900, 460, 390 and 320 evaluations; at 1e-11: more than 500, 106, 56
-and 28 steps and 4800, 1200, 810 and 640 evaluations. Beyond seven, the linear algebra takes what the
-evaluations save. `python -m figures.benchmark` holds it against SciPy's methods.
+a step costs much beside its stages. Steps and evaluations of F that the start from rest of Table 1 takes,
+for an error of the depth of about 1e-4 (seven stages give less than that at any tolerance), 1e-7 and
+1e-11:
+
+    stages   about 1e-4   about 1e-7    about 1e-11
+    3        16, 198      54, 552       548, 4965
+    4        13, 207      30, 445       106, 1181
+    5        11, 253      22, 386       56, 826
+    7        11, 341      11, 341       27, 634
+
+Beyond seven, the linear algebra takes what the evaluations save. `make benchmark` holds it against LSODA,
+`kvtheory chart work-precision` against SciPy's other methods and CVODE.
 """
 
 import math
