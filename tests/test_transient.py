@@ -191,3 +191,11 @@ def test_what_it_does_not_cover_is_refused():
     for rtol in (0.0, 1.0, float("nan"), 1e-20):
         with pytest.raises(ValueError, match="rtol"):
             kv.transient(rtol=rtol)
+
+
+def test_a_run_that_is_too_long_says_how_long_it_is():
+    scene = kv.Scene(foundation=kv.Foundation(1e10, 1e-6), run=kv.Run(0.2))
+    with pytest.raises(
+        ArithmeticError, match=r"in a run of 2e\+05 retardation times, at t = 0\.0\d+ s"
+    ):
+        kv.transient(scene)

@@ -243,7 +243,8 @@ def _solution(
     try:
         motion = solve(drive, eps, kappa, drive.end, rtol, control=control, progress=progress)
     except TransientError as error:
-        raise TransientError(error.reason, error.s * units.time, "t", " s") from None
+        reason = f"{error.reason}, in a run of {drive.end:.4g} retardation times,"
+        raise TransientError(reason, error.s * units.time, "t", " s") from None
     return Solution(motion, drive, units, scene.foundation.stiffness)
 
 
