@@ -83,12 +83,7 @@ def solve(
     over_time = over_time or at is not None
     problems: list[str] = []
     names = _names(quantity, TRANSIENT_UNITS if over_time else STEADY_UNITS, over_time, problems)
-    times = None
-    if at is not None:
-        try:
-            times = times_of(scene, at)
-        except SceneError as error:
-            problems += error.problems
+    times = times_of(scene, at, problems)
     if problems:
         raise SceneError(problems)
     request = Request(names, rtol, times, over_time)

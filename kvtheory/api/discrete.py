@@ -85,12 +85,7 @@ def elements(
     problems: list[str] = []
     density = _checked("`per_length`", per_length, PER_LENGTH, problems)
     step = None if time_step is None else _checked("`time_step`", time_step, TIME_STEP, problems)
-    times = None
-    if at is not None:
-        try:
-            times = times_of(scene, at)
-        except SceneError as error:
-            problems += error.problems
+    times = times_of(scene, at, problems)
     if problems:
         raise SceneError(problems)
     with double_precision():

@@ -20,9 +20,14 @@ def scene_of(scene: Scene | None) -> Scene:
     return Scene() if scene is None else scene
 
 
-def times_of(scene: Scene, at: Any) -> Any:
-    """Return the times in s, checked against the duration of the run."""
-    problems, times = [], []
+def times_of(scene: Scene, at: Any, problems: list[str] | None = None) -> Any:
+    """Return the times in s, checked against the duration of the run; None stays None.
+
+    What is wrong is added to `problems`, if they are collected; else it is raised.
+    """
+    if at is None:
+        return None
+    found, times = [], []
     for value in [at] if isinstance(at, str) or np.ndim(at) == 0 else at:
         try:
             times.append(convert(value, TIME))
@@ -31,11 +36,13 @@ def times_of(scene: Scene, at: Any) -> Any:
                     f"is after the end of the run, run.duration = {scene.run.duration} s"
                 )
         except ValueError as error:
-            problems.append(problem("`at`", value, str(error)))
-    if not times and not problems:
-        problems.append('`at` is empty: expected times such as "0 ms,1 ms"')
-    if problems:
-        raise SceneError(problems)
+            found.append(problem("`at`", value, str(error)))
+    if not times and not found:
+        found.append('`at` is empty: expected times such as "0 ms,1 ms"')
+    if problems is not None:
+        problems += found
+    elif found:
+        raise SceneError(found)
     return times
 
 

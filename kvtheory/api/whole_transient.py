@@ -77,5 +77,4 @@ def transient(
     from kvtheory.transients import solution
 
     with double_precision():
-        times = None if at is None else times_of(scene, at)
-        return solution.transient(scene, times, rtol, progress)
+        return solution.transient(scene, times_of(scene, at), rtol, progress)

@@ -7,20 +7,11 @@ indenter, z_A = -depth (Eq. 18), becomes a depth.
 import re
 from dataclasses import dataclass
 
+from kvtheory.results import TRANSIENT_UNITS
 from kvtheory.scene.fields import closest
 from kvtheory.scene.units import to_si
 
-SI_UNITS = {
-    "time": "s",
-    "velocity": "m/s",
-    "depth": "m",
-    "depth_rate": "m/s",
-    "normal_force": "N/m",
-    "friction_force": "N/m",
-    "leading_edge": "m",
-    "trailing_edge": "m",
-    "peak_pressure": "N/m^2",
-}
+SI_UNITS = {**TRANSIENT_UNITS, "peak_pressure": "N/m^2"}
 """The units of a series as `kvtheory.scene.units` spells them."""
 
 SPELLINGS = {

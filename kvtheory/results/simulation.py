@@ -1,13 +1,13 @@
 """A discrete simulation as a time series."""
 
-from dataclasses import dataclass, fields
-from typing import Any
+from dataclasses import dataclass
 
-from kvtheory.results.certificate import Certificate, Value, record
+from kvtheory.results.certificate import Certificate
+from kvtheory.results.transient import TimeSeries
 
 
 @dataclass(frozen=True)
-class Simulation:
+class Simulation(TimeSeries):
     """A run of the elements as a time series: arrays in SI over `time`; in flight the edges are NaN.
 
     At an instant where the drive jumps, values are those just after the jump. `per_length` is the
@@ -15,15 +15,6 @@ class Simulation:
     an element was moved or pressed; `warning` says what is doubtful about the step, if anything.
     """
 
-    time: Value
-    velocity: Value
-    depth: Value
-    depth_rate: Value
-    normal_force: Value
-    friction_force: Value
-    leading_edge: Value
-    trailing_edge: Value
-    peak_pressure: Value
     scheme: str
     per_length: float
     time_step: float
@@ -32,7 +23,3 @@ class Simulation:
     warning: str
     model: str
     certificate: Certificate
-
-    def as_dict(self) -> dict[str, Any]:
-        """Return plain Python values, ready for JSON: `time` first; what does not exist is None."""
-        return {f.name: record(getattr(self, f.name)) for f in fields(self)}

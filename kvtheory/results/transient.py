@@ -27,14 +27,8 @@ class Event(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Transient:
-    """A transient as a time series: arrays in SI over `time`; in flight the edges are NaN.
-
-    `leading_state` and `trailing_state` say whether an edge is ``"peeling"`` (its pressure is zero),
-    ``"touching"`` (it meets the free surface) or ``"free"`` (the indenter flies). At an instant where
-    the drive jumps, values are those just after the jump. `compiled` says whether the kernels were
-    compiled (extra ``fast``) or interpreted; the numbers are the same.
-    """
+class TimeSeries:
+    """Arrays in SI over `time`, as `TRANSIENT_UNITS` names them; in flight the edges are NaN."""
 
     time: Value
     velocity: Value
@@ -45,6 +39,22 @@ class Transient:
     leading_edge: Value
     trailing_edge: Value
     peak_pressure: Value
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return plain Python values, ready for JSON: `time` first; what does not exist is None."""
+        return {f.name: record(getattr(self, f.name)) for f in fields(self) if f.repr}
+
+
+@dataclass(frozen=True)
+class Transient(TimeSeries):
+    """A transient as a time series: arrays in SI over `time`; in flight the edges are NaN.
+
+    `leading_state` and `trailing_state` say whether an edge is ``"peeling"`` (its pressure is zero),
+    ``"touching"`` (it meets the free surface) or ``"free"`` (the indenter flies). At an instant where
+    the drive jumps, values are those just after the jump. `compiled` says whether the kernels were
+    compiled (extra ``fast``) or interpreted; the numbers are the same.
+    """
+
     leading_state: tuple[str, ...]
     trailing_state: tuple[str, ...]
     events: tuple[Event, ...]
@@ -91,7 +101,3 @@ class Transient:
         10.3091 7.7910 0.3461
         """
         return self.solution.energy(time)
-
-    def as_dict(self) -> dict[str, Any]:
-        """Return plain Python values, ready for JSON: `time` first; what does not exist is None."""
-        return {f.name: record(getattr(self, f.name)) for f in fields(self) if f.name != "solution"}
