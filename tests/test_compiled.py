@@ -8,9 +8,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from kvtheory.transients import compiled, continuum
-from kvtheory.transients.continuum import solve
-from kvtheory.transients.drive import Drive
+from kvtheory.models.continuum import compiled, continuum
+from kvtheory.models.continuum.continuum import solve
+from kvtheory.scene.base_motion import BaseMotion
 from tests.test_transient_random import random_case
 
 SEEDS = range(500, 600)
@@ -42,7 +42,7 @@ def test_the_same_states(both):
 def test_a_run_that_goes_on_compiled_gives_the_same_bits(monkeypatch):
     monkeypatch.setattr(continuum, "ATTEMPTS", 7)
     monkeypatch.setattr(compiled, "WORTHWHILE", compiled.Tally.steps + 20)
-    given = Drive.from_points([(0, 4), (0.5, 4), (0.5, -4)], 1.5)
+    given = BaseMotion.from_points([(0, 4), (0.5, 4), (0.5, -4)], 1.5)
     mixed = solve(given, 0.04, 0.5, 1.5)
     whole = solve(given, 0.04, 0.5, 1.5, fast=False)
     assert mixed.compiled
@@ -53,7 +53,7 @@ def test_a_run_that_goes_on_compiled_gives_the_same_bits(monkeypatch):
 
 def test_few_steps_are_interpreted(monkeypatch):
     monkeypatch.setattr(compiled.Tally, "steps", 0)
-    motion = solve(Drive.constant(4.0, 2.0), 0.04, 0.0, 2.0)
+    motion = solve(BaseMotion.constant(4.0, 2.0), 0.04, 0.0, 2.0)
     assert not motion.compiled
     assert compiled.Tally.steps == motion.steps + motion.rejected
 

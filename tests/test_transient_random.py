@@ -13,11 +13,11 @@ import numpy as np
 import pytest
 
 import kvtheory as kv
-from kvtheory.transients import solution
-from kvtheory.transients.certificates import scaled_quantities
-from kvtheory.transients.continuum import TransientError, solve
-from kvtheory.transients.drive import Drive
-from kvtheory.transients.run import StepControl
+from kvtheory.models.continuum import solution
+from kvtheory.models.continuum.certificates import scaled_quantities
+from kvtheory.models.continuum.continuum import TransientError, solve
+from kvtheory.models.continuum.run import StepControl
+from kvtheory.scene.base_motion import BaseMotion
 
 SEEDS = range(63)
 RTOL, TRUTH = 1e-6, 1e-10
@@ -46,7 +46,7 @@ class Case:
 
     eps: float
     kappa: float
-    drive: Drive
+    drive: BaseMotion
     times: np.ndarray
 
     def scene(self):
@@ -72,11 +72,11 @@ def random_case(seed, sign):
     end = rng.uniform(0.5, 4.0)
     if kind == "oscillation":
         mean, frequency = rng.uniform(-2, 2), 10 ** rng.uniform(-0.5, 1.5)
-        given = Drive.from_callable(lambda s: number * (mean + math.sin(frequency * s)), end)
+        given = BaseMotion.from_function(lambda s: number * (mean + math.sin(frequency * s)), end)
         changes = np.zeros(1)
     else:
         changes, points = random_points(rng, kind, number, end)
-        given = Drive.from_points(points, end)
+        given = BaseMotion.from_points(points, end)
     after = changes[:, None] + (end - changes)[:, None] * 10 ** rng.uniform(
         -6, -1, (changes.size, 4)
     )

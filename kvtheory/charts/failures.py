@@ -6,7 +6,7 @@ from kvtheory.charts.element_failures import ELEMENT_FAILURES
 from kvtheory.charts.entry import Entry, Finding
 from kvtheory.charts.motion_failures import MOTION_FAILURES
 from kvtheory.charts.steady_failures import STEADY_FAILURES
-from kvtheory.scene.fields import nearest
+from kvtheory.scene.quantities import nearest
 
 ATLAS: dict[str, Entry] = {
     entry.key: entry for entry in (*ELEMENT_FAILURES, *MOTION_FAILURES, *STEADY_FAILURES)

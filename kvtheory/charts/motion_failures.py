@@ -14,11 +14,12 @@ from scipy.integrate import solve_ivp
 from kvtheory.api import elements, transient
 from kvtheory.charts.entry import Entry, Line, Outcome, Picture
 from kvtheory.charts.naive import closed_forms, two_states
+from kvtheory.models.slow_manifold.motion import follow
+from kvtheory.models.slow_manifold.start import start
 from kvtheory.scene.drives import Drive
 from kvtheory.scene.indenters import Parabola
 from kvtheory.scene.model import DeadWeight, Foundation, Run, Scene
-from kvtheory.scene.numbers import dimensionless_numbers
-from kvtheory.transients import slow_manifold
+from kvtheory.scene.static_state import StaticState
 
 Array = NDArray[np.float64]
 
@@ -94,11 +95,11 @@ def _memory_ignored() -> Outcome:
     scene = Scene(drive=Drive(history=[(0.0, 0.1), (0.05, 0.1), (0.05, 0.0)]), run=Run(0.15))
     t = np.append(np.linspace(0.02, 0.05, 121)[:-1], np.linspace(0.05, 0.15, 201))
     t = np.sort(np.append(t, after))
-    numbers = dimensionless_numbers(Scene())
-    tau, number = 0.1, numbers["drive_number"]
+    numbers = StaticState.of(Scene())
+    tau, number = 0.1, numbers.drive_number
     points = [(0.0, number), (0.5, number), (0.5, 0.0)]
-    friction = numbers["static_load"] * numbers["static_depth"] / numbers["static_half_length"]
-    naive = friction * _without_past(points, numbers["inertia_number"], t / tau)[2]
+    friction = numbers.load * numbers.depth / numbers.half_length
+    naive = friction * _without_past(points, numbers.inertia_number, t / tau)[2]
     ours = transient(scene, at=t, rtol=RTOL).friction_force
     at = int(np.searchsorted(t, after))
     right = elements(scene, at=[after], certify=False)
@@ -113,7 +114,7 @@ def _slow_manifold() -> Outcome:
     number, epsilon, end = 4.0812765306, 0.306095740, 4.0
     s = np.linspace(0.0, end, 241)
     scene = _scaled([(0.0, number)], epsilon, end)
-    naive = slow_manifold.solve(number, 0.0, end)(s)
+    naive = follow(start(number, epsilon, 0.0), s, RTOL).values["depth"]
     ours = transient(scene, at=s, rtol=RTOL)
     at = int(np.argmin(ours.depth))
     right = elements(scene, per_length=FINE, at=[float(s[at])], certify=False)
@@ -126,15 +127,15 @@ def _slow_manifold() -> Outcome:
 
 def _event_missed() -> Outcome:
     start, stop, fast = 0.15, 0.1502, 4.0
-    numbers = dimensionless_numbers(Scene())
-    tau, number = 0.1, numbers["drive_number"]
-    unit = numbers["static_load"] * numbers["static_depth"] / numbers["static_half_length"]
+    numbers = StaticState.of(Scene())
+    tau, number = 0.1, numbers.drive_number
+    unit = numbers.load * numbers.depth / numbers.half_length
 
     def rate(s: float) -> float:
         return fast * number if start <= s * tau < stop else number
 
     run = solve_ivp(
-        two_states(rate, numbers["inertia_number"]), (0.0, 2.0), (1.0, 0.0), "Radau",
+        two_states(rate, numbers.inertia_number), (0.0, 2.0), (1.0, 0.0), "Radau",
         rtol=1e-6, atol=1e-9, events=lambda s, _: rate(s) - 2.0 * number,
     )  # fmt: skip
     t = run.t * tau
@@ -150,8 +151,8 @@ def _event_missed() -> Outcome:
     d = transient(at=[start], rtol=RTOL)
     late = t >= 0.14
     right = unit * closed_forms(
-        float(d.depth[0]) / numbers["static_depth"],
-        float(d.depth_rate[0]) * tau / numbers["static_depth"], fast * number,
+        float(d.depth[0]) / numbers.depth,
+        float(d.depth_rate[0]) * tau / numbers.depth, fast * number,
     )[1]  # fmt: skip
     return Outcome(
         float(naive[late].max()), right, float(ours.max()),

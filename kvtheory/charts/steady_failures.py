@@ -13,7 +13,7 @@ from kvtheory.charts.entry import Entry, Line, Outcome, Picture
 from kvtheory.scene.drives import Drive
 from kvtheory.scene.indenters import Circle, Parabola
 from kvtheory.scene.model import DeadWeight, Fixed, Scene
-from kvtheory.scene.numbers import dimensionless_numbers
+from kvtheory.scene.static_state import StaticState
 
 Array = NDArray[np.float64]
 
@@ -144,9 +144,7 @@ def _steep() -> Outcome:
         for W in weights for shape in (Parabola(R), Circle(R))
     ]  # fmt: skip
     mu = np.array([steady(scene).friction_coefficient for scene in scenes]).reshape(-1, 2)
-    slopes = np.array(
-        [dimensionless_numbers(scene)["static_half_length"] / R for scene in scenes[::2]]
-    )
+    slopes = np.array([StaticState.of(scene).half_length / R for scene in scenes[::2]])
     return Outcome(
         float(mu[-1, 0]), _circle_by_sums(scenes[-1]), float(mu[-1, 1]),
         Picture(r"static half length $a_0/R$", "friction coefficient",
@@ -156,7 +154,7 @@ def _steep() -> Outcome:
 
 def _circle_by_sums(scene: Scene) -> float:
     """Return mu of a circle by sums over 400 000 points: a coarse method that needs no care."""
-    R, K, W = 0.01, 1e10, scene.support.weight  # type: ignore[union-attr]
+    R, K, W = 0.01, 1e10, scene.support.weight
     l_r = 0.1 * scene.foundation.retardation_time
     half = 0.5 * math.pi * (np.arange(400_000) + 0.5) / 400_000
     theta = np.concatenate([-half[::-1], half])

@@ -85,7 +85,7 @@ def make_case(theory: Theory, series: Series, per_length: float | None, toleranc
     case = Case(theory, series, fine, now, allowed, tolerance)
     if fine.spacing_known:
         return case
-    load, b = theory.static["static_load"], float(np.median(allowed.force))
+    load, b = theory.static.load, float(np.median(allowed.force))
     # A sawtooth of +-b has sigma = b/sqrt(3).
     common = (common_noise(case) or 0.0) >= COMMON
     seen = math.sqrt(3.0) * allowed.noise["normal_force"] if common else 0.0

@@ -14,7 +14,6 @@ from kvtheory.checks.discretization import elements, sawtooth, stability
 from kvtheory.checks.making import check, not_made
 from kvtheory.checks.settling import fast_constant, slow_constant, steady_limit
 from kvtheory.results.comparison import Check
-from kvtheory.scene.model import Fixed
 
 STATES = {"depth": "Eq. 17", "depth_rate": "Eq. 17", "normal_force": "Eq. 14", "friction_force": "Eq. 15",
           "leading_edge": "Eq. 32", "trailing_edge": "Eq. 33", "peak_pressure": "Eq. 12",
@@ -37,9 +36,9 @@ def initial_rest(case: Case) -> Iterator[Check]:
         yield not_made(name, equation, f"the data begin at {time[0] * 1e3:.4g} ms, after the start")
         return
     static = theory.static
-    off = abs(float(columns["depth"][before].mean()) / static["static_depth"] - 1.0)
-    element = 2.0 * case.resolution.spacing / static["static_half_length"]
-    sigma = case.allowance.noise["depth"] / static["static_depth"]
+    off = abs(float(columns["depth"][before].mean()) / static.depth - 1.0)
+    element = 2.0 * case.resolution.spacing / static.half_length
+    sigma = case.allowance.noise["depth"] / static.depth
     random = extreme(int(before.sum())) * sigma / np.sqrt(before.sum())
     allowed = case.tolerance * (element + random) + case.most("depth")[before].max()
     yield check(case, name, off, allowed, equation, "depth, relative to the static depth")
@@ -50,7 +49,7 @@ def jump(case: Case) -> Iterator[Check]:
     name, equation = "jump at t = 0+", "F11"
     time, theory = case.series.time, case.theory
     force = next((n for n in ("normal_force", "friction_force") if n in case.series.columns), None)
-    if 0.0 not in theory.jumps:
+    if 0.0 not in theory.scene.drive.jumps:
         yield not_made(name, equation, "the drive does not jump at t = 0")
         return
     if force is None:
@@ -76,7 +75,7 @@ def sampling(case: Case) -> Iterator[Check]:
     if rates is None:
         yield not_made(name, equation, "a fixed indenter has no transient of its own")
         return
-    slow, start = abs(rates.slow), case.theory.last_change
+    slow, start = abs(rates.slow), case.theory.scene.drive.last_change
     inside = np.count_nonzero((time > start) & (time <= start + TRANSIENT * slow))
     distance = TRANSIENT * slow / max(int(inside), 1)
     yield check(case, name, distance, case.tolerance * slow, equation, "s, mean distance of samples",
@@ -87,13 +86,13 @@ def balance(case: Case) -> Iterator[Check]:
     """M z'' against F_z - W, of the data alone, over windows."""
     name, equation, columns = "impulse balance", "Eq. 17", case.series.columns
     support, static = case.theory.scene.support, case.theory.static
-    if isinstance(support, Fixed):
+    if case.theory.scene.held:
         yield not_made(name, equation, "the indenter is fixed")
         return
     if "depth" not in columns or "normal_force" not in columns:
         yield not_made(name, equation, "it needs the depth and the normal force")
         return
-    depth_0, sigma = static["static_depth"], case.allowance.noise
+    depth_0, sigma = static.depth, case.allowance.noise
     # An error that is even within half a digit has this part of it as its standard deviation.
     digits = rms(case.allowance.rounding["depth"]) / np.sqrt(3.0)
     sigma_depth = float(np.hypot(sigma["depth"], digits))
@@ -124,7 +123,7 @@ def balance(case: Case) -> Iterator[Check]:
     if worst[0] < 0.0:
         yield not_made(name, equation, "too few samples for a window")
         return
-    W = static["static_load"]
+    W = static.load
     unit = "mean force that is lacking, relative to the load"
     yield check(case, name, worst[1] / W, worst[2] / W, equation, unit, worst[3])
 

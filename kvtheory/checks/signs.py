@@ -11,7 +11,6 @@ from kvtheory.checks.case import COMMON, LARGEST_SAWTOOTH, Case, common_noise, m
 from kvtheory.checks.discretization import LIMITS
 from kvtheory.checks.judgements import judge
 from kvtheory.results.comparison import Check, Explanation
-from kvtheory.scene.model import Fixed
 
 COARSER = 2.0
 """Factor by which the spacing is widened, again and again, to find how coarse the data look."""
@@ -60,7 +59,7 @@ def unmoved(case: Case, failed: Sequence[Check]) -> Iterator[Explanation]:
     columns, static = case.series.columns, case.theory.static
     if (
         not any(check.name == "impulse balance" for check in failed)
-        or case.theory.last_change > 0.0
+        or case.theory.scene.drive.last_change > 0.0
     ):
         return
     if case.theory.scene.drive.final_velocity == 0.0:
@@ -70,8 +69,8 @@ def unmoved(case: Case, failed: Sequence[Check]) -> Iterator[Explanation]:
     lift = float(np.polyfit(time, depth, 1)[0])
     expected = contact_force(case, depth, lift)
     given = columns["normal_force"][late]
-    off = float(np.median(np.abs(given - expected))) / static["static_load"]
-    pushed = float(np.median(given)) / static["static_load"] - 1.0
+    off = float(np.median(np.abs(given - expected))) / static.load
+    pushed = float(np.median(given)) / static.load - 1.0
     if pushed > PUSHED and off < FORCE_RIGHT * pushed:
         yield Explanation(
             "contact lost while rising",
@@ -86,13 +85,13 @@ def unmoved(case: Case, failed: Sequence[Check]) -> Iterator[Explanation]:
 def contact_force(case: Case, depth: NDArray[np.float64], rate: float) -> NDArray[np.float64]:
     """Return F_z of the contact at a depth and its rate, after a start from rest (F11), in N/m."""
     scene, static = case.theory.scene, case.theory.static
-    tau, unit = scene.foundation.retardation_time, static["static_depth"]
-    number = abs(scene.drive.final_velocity) * tau / static["static_half_length"]
+    tau, unit = scene.foundation.retardation_time, static.depth
+    number = abs(scene.drive.final_velocity) * tau / static.half_length
     d, v = np.maximum(depth / unit, 0.0), rate * tau / unit
     l, r = -np.sqrt(d), np.sqrt(np.maximum(d + v + number * number, 0.0)) - number
     width = np.maximum(r - l, 0.0)
     f_z = 0.75 * width * (d + v - (r * r + r * l + l * l) / 3.0 - number * (r + l))
-    return np.asarray(static["static_load"] * f_z)
+    return np.asarray(static.load * f_z)
 
 
 FIRST_PART = 0.3
@@ -108,7 +107,7 @@ CERTAIN = 0.9
 def rattling(case: Case) -> Iterator[Explanation]:
     """Say so if the data look like an explicit scheme beyond its stability limit."""
     scene, time = case.theory.scene, case.series.time
-    if isinstance(scene.support, Fixed) or case.resolution.step_known:
+    if scene.held or case.resolution.step_known:
         return
     steps = np.diff(time)
     h = float(steps[steps > 0.0].min())
@@ -153,7 +152,7 @@ def coarse(case: Case, failed: Sequence[Check]) -> Iterator[Explanation]:
     shown = any(check.name.startswith(("normal", "friction", "discretization")) for check in failed)
     if case.resolution.spacing_known or not shown:
         return
-    load, spacing = case.theory.static["static_load"], case.resolution.spacing
+    load, spacing = case.theory.static.load, case.resolution.spacing
     force = float(np.median(case.allowance.force)) / load
     while force < COARSEST:
         spacing, force = COARSER * spacing, COARSER * force

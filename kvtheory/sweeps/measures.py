@@ -13,12 +13,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from kvtheory.models.continuum import states
+from kvtheory.models.continuum.maxima import force_maxima
+from kvtheory.models.continuum.solution import FORCE_MAXIMA, Solution, certified
 from kvtheory.results import Certificate
 from kvtheory.scene.model import Scene
 from kvtheory.sweeps.plan import Plan
-from kvtheory.transients import states
-from kvtheory.transients.maxima import force_maxima
-from kvtheory.transients.solution import FORCE_MAXIMA, Solution, certified
 
 Array = NDArray[np.float64]
 
@@ -153,7 +153,7 @@ def _settling_time(
     scene: Scene, solution: Solution, times: Array, moments: Array, steady: Mapping[str, float]
 ) -> float:
     """Return how long after its last change of the drive the friction stays settled; NaN if never."""
-    friction = steady["friction_force"] / solution.units.friction
+    friction = steady["friction_force"] / solution.units.friction_force
 
     def last_outside(moments: Array) -> int:
         outside = np.abs(moments[ROWS["friction_force"]] - friction) > SETTLED * abs(friction)
@@ -171,8 +171,7 @@ def _settling_time(
         if not 0 <= at < ZOOM - 1:
             break
         a, b = inner[at], inner[at + 1]
-    begin = scene.drive.history[-1][0] if scene.drive.history else 0.0
-    return max(float(b) - begin, 0.0)
+    return max(float(b) - scene.drive.last_change, 0.0)
 
 
 def _hops(scene: Scene, solution: Solution, *_: Any) -> float:
