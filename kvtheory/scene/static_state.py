@@ -75,13 +75,9 @@ class StaticState:
     @property
     def in_range(self) -> bool:
         """Whether every number is one that double precision can hold."""
-        numbers = self.depth, self.half_length, self.load
-        moving = () if self.fixed else (self.inertia_number, self.support_number)
-        return (
-            all(0.0 < n < math.inf for n in numbers)
-            and all(map(math.isfinite, moving))
-            and not (math.isinf(self.drive_number))
-        )
+        held = 0.0 < self.depth < math.inf and 0.0 < self.half_length and 0.0 < self.load < math.inf
+        finite = self.fixed or (self.inertia_number < math.inf and self.support_number < math.inf)
+        return held and finite and not math.isinf(self.drive_number)
 
     @property
     def velocity(self) -> float:

@@ -80,8 +80,8 @@ def _largest(
     table: Mapping[str, Bound], bounds: Enclosure, quantities: tuple[str, ...], enough: float
 ) -> float:
     largest = 0.0
-    for name in quantities:
-        largest = max(largest, table[name](bounds))
+    for bound in dict.fromkeys(table[name] for name in quantities):  # several share one
+        largest = max(largest, bound(bounds))
         if largest > enough:
             break
     return largest
@@ -143,6 +143,10 @@ def _low_coefficient(bounds: Enclosure) -> float:
     return cf.error_l1(bounds.largest, ratio(bounds.largest))
 
 
+def _low_length(bounds: Enclosure) -> float:
+    return 1.0 / bounds.low - 1.0
+
+
 def _low_trailing(bounds: Enclosure) -> float:
     return 1.0 / (bounds.low * ratio(bounds.largest)) - 1.0
 
@@ -178,9 +182,9 @@ def _high_peak(bounds: Enclosure) -> float:
 MOVING: Mapping[str, Mapping[str, Bound]] = {
     "low": {
         "depth": lambda bounds: 1.0 / bounds.low**2 - 1.0,
-        "half_length": lambda bounds: 1.0 / bounds.low - 1.0,
+        "half_length": _low_length,
         "retardation_length": _exactly,
-        "leading_edge": lambda bounds: 1.0 / bounds.low - 1.0,
+        "leading_edge": _low_length,
         "trailing_edge": _low_trailing,
         "load": _low_load,
         "friction_force": _low_friction,
