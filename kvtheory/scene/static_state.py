@@ -75,7 +75,7 @@ class StaticState:
     @property
     def in_range(self) -> bool:
         """Whether every number is one that double precision can hold."""
-        held = 0.0 < self.depth < math.inf and 0.0 < self.half_length and 0.0 < self.load < math.inf
+        held = 0.0 < self.depth < math.inf and self.half_length > 0.0 and 0.0 < self.load < math.inf
         finite = self.fixed or (self.inertia_number < math.inf and self.support_number < math.inf)
         return held and finite and not math.isinf(self.drive_number)
 
