@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import kvtheory as kv
-from kvtheory.models.continuum.solution import scaled_drive
+from kvtheory.models.continuum.solved_scene import scaled_drive
 from kvtheory.scene.broadcasting import values
 from kvtheory.scene.static_state import StaticState
 
