@@ -119,3 +119,39 @@ def test_the_library_speaks_python():
     found = [(name, text) for name, text in texts if spoken.search(text)]
     # A page of the atlas names the command that computes an entry.
     assert [name for name, _ in found] == ["failures.py"], found
+
+
+HEAVY = {"derivations", "matplotlib", "netCDF4", "pint", "scipy", "sympy", "xarray"}
+
+
+@pytest.mark.parametrize(
+    ("command", "allowed"),
+    [("steady", set()), ("transient", set()), ("elements", {"scipy"}), ("asymptotes", {"scipy"})],
+)
+def test_a_command_on_a_scene_in_usual_units_imports_what_it_computes_with(
+    command, allowed, tmp_path
+):
+    path = tmp_path / "scene.toml"
+    path.write_text(kvtheory.scene.template())
+    imported = python(
+        f"import sys\nsys.argv = ['kvtheory', {command!r}, {str(path)!r}, '--json']\n"
+        "from kvtheory.cli import main\n"
+        "try:\n    main()\nexcept SystemExit as end:\n    assert not end.code\n"
+        "print(*(name.split('.')[0] for name in sys.modules), file=sys.stdout)"
+    )
+    assert set(imported.splitlines()[-1].split()) & HEAVY <= allowed
+
+
+def test_the_shortcuts_for_usual_units_are_those_of_the_library_of_units(monkeypatch):
+    from kvtheory.scene import units
+
+    usual = {
+        (written, unit): units._factor(written, unit)
+        for unit in units.USUAL
+        for written in units.USUAL[unit]
+    }
+    units._factor.cache_clear()
+    monkeypatch.setattr(units, "USUAL", {})
+    for (written, unit), factor in usual.items():
+        assert units._factor(written, unit) == factor, (written, unit)
+    units._factor.cache_clear()

@@ -51,8 +51,10 @@ def load_scene(path: str | Path | None = None, overrides: Iterable[str] = ()) ->
     >>> load_scene(overrides=["drive.velocity=50 mm/s"]).drive.velocity
     0.05
     """
-    tables = _tables(Scene.table1()) if path is None else _read(Path(path))
     overrides = [overrides] if isinstance(overrides, str) else list(overrides)
+    if path is None and not overrides:
+        return Scene.table1()
+    tables = _tables(Scene.table1()) if path is None else _read(Path(path))
     problems = _override(tables, overrides, embedded=path is None)
     return _build(tables, problems)
 
