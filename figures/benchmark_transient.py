@@ -20,8 +20,8 @@ import numpy as np
 from scipy.integrate import solve_ivp
 
 from kvtheory.models.continuum import compiled
-from kvtheory.models.continuum.continuum import solve
-from kvtheory.models.continuum.solution import scaled_drive
+from kvtheory.models.continuum.solved_scene import scaled_drive
+from kvtheory.models.continuum.solver import solve
 from kvtheory.scene.model import Scene
 from kvtheory.scene.static_state import StaticState
 

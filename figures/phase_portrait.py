@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 
 import kvtheory as kv
 from figures import drawing
-from kvtheory.models.continuum.continuum import solve
+from kvtheory.models.continuum.solver import solve
 from kvtheory.models.slow_manifold import motion as slow_manifold
 from kvtheory.plots import BLACK, BLUE, GREEN, PURPLE, RED
 from kvtheory.scene.base_motion import BaseMotion

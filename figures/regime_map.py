@@ -11,8 +11,8 @@ from matplotlib.colors import ListedColormap
 from matplotlib.figure import Figure
 
 from figures import drawing
-from kvtheory.models.continuum.continuum import Motion, solve
-from kvtheory.models.continuum.states import RATE
+from kvtheory.models.continuum.evaluation import RATE
+from kvtheory.models.continuum.solver import Trajectory, solve
 from kvtheory.models.steady import closed_forms as cf
 from kvtheory.plots import BLACK
 from kvtheory.scene.base_motion import BaseMotion
@@ -96,7 +96,7 @@ def _class(number: float, eps: float) -> int:
     return 1 if _turns(motion) else 0
 
 
-def _turns(motion: Motion) -> bool:
+def _turns(motion: Trajectory) -> bool:
     """Whether the indenter sinks again after it has risen."""
     starts = np.array(motion.starts)
     spans = np.diff(np.append(starts, motion.end))

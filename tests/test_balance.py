@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 from scipy.integrate import quad_vec
 
-from kvtheory.models.continuum.continuum import solve
 from kvtheory.models.continuum.energy import ledger
+from kvtheory.models.continuum.solver import solve
 from kvtheory.models.continuum.surface import volume
 from tests.test_continuum_reference import TABLE, drive
 from tests.test_transient_random import KNOWN_FAILURES, SEEDS, random_case

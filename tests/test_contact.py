@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from kvtheory.models.continuum import contact
-from kvtheory.models.continuum.continuum import solve
 from kvtheory.models.continuum.flight import margin
+from kvtheory.models.continuum.solver import solve
 from kvtheory.scene.base_motion import BaseMotion
 
 FIXED = math.inf

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from kvtheory.models.continuum.continuum import solve
-from kvtheory.models.continuum.integrator import STAGES, radau
+from kvtheory.models.continuum.radau_iia import STAGES, radau
+from kvtheory.models.continuum.solver import solve
 from kvtheory.models.continuum.surface import volume
 from kvtheory.results.errors import TransientError
 from kvtheory.scene.base_motion import BaseMotion
@@ -196,7 +196,7 @@ def test_what_makes_no_sense_is_refused(change):
 
 
 def test_a_drive_of_too_many_steps_ends_in_an_error(monkeypatch):
-    monkeypatch.setattr("kvtheory.models.continuum.continuum.STEP_LIMIT", 10)
+    monkeypatch.setattr("kvtheory.models.continuum.solver.STEP_LIMIT", 10)
     with pytest.raises(TransientError, match=r"more than 10 steps at s = 0\.\d+"):
         solve(BaseMotion.constant(4.0, 2.0), 0.04, 0.0, 2.0)
 

@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from kvtheory.models.continuum.continuum import solve
+from kvtheory.models.continuum.solver import solve
 from kvtheory.scene.base_motion import BaseMotion
 
 TABLE = json.loads((Path(__file__).parent / "data" / "transient_reference.json").read_text())

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 import kvtheory as kv
-from kvtheory.models.continuum.continuum import solve
 from kvtheory.models.continuum.energy import ledger
 from kvtheory.models.continuum.maxima import force_maxima
+from kvtheory.models.continuum.solver import solve
 from kvtheory.models.continuum.surface import height
 from kvtheory.scene.base_motion import BaseMotion
 

@@ -8,7 +8,7 @@ import pytest
 import kvtheory as kv
 from kvtheory.ladder.climbing import Request
 from kvtheory.ladder.series import SOLVED, Models, rungs
-from kvtheory.models.continuum.continuum import solve
+from kvtheory.models.continuum.solver import solve
 from kvtheory.models.slow_manifold import motion as slow_motion
 from kvtheory.models.slow_manifold import start as slow_start
 from kvtheory.results.table import scales as scales_of

@@ -8,7 +8,7 @@ import pytest
 
 import kvtheory as kv
 from kvtheory.export import save_transient
-from kvtheory.models.continuum.continuum import solve
+from kvtheory.models.continuum.solver import solve
 from kvtheory.results import TRANSIENT_UNITS
 from kvtheory.scene.base_motion import BaseMotion
 from tests import slow_manifold_by_radau as slow_manifold

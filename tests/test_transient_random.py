@@ -13,10 +13,10 @@ import numpy as np
 import pytest
 
 import kvtheory as kv
-from kvtheory.models.continuum import solution
-from kvtheory.models.continuum.certificates import scaled_quantities
-from kvtheory.models.continuum.continuum import solve
+from kvtheory.models.continuum import solved_scene
+from kvtheory.models.continuum.error_estimate import scaled_quantities
 from kvtheory.models.continuum.run import StepControl
+from kvtheory.models.continuum.solver import solve
 from kvtheory.results.errors import TransientError
 from kvtheory.scene.base_motion import BaseMotion
 
@@ -122,7 +122,7 @@ def solved(seed, rtol, sign=1):
 
 def transient_of(case, rtol):
     """Solve a case by the way that users take, but for its drive, which is scaled already."""
-    with patch.object(solution, "scaled_drive", lambda *_: case.drive):
+    with patch.object(solved_scene, "scaled_drive", lambda *_: case.drive):
         return kv.transient(case.scene(), at=case.times, rtol=rtol)
 
 

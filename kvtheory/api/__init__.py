@@ -1,9 +1,10 @@
 """What users call: a scene in, a result out, by the method asked for."""
 
+from kvtheory.api._asymptotes import asymptotes
 from kvtheory.api._compare import compare
 from kvtheory.api._elements import elements
 from kvtheory.api._solve import solve
-from kvtheory.api._steady import asymptotes, steady
+from kvtheory.api._steady import steady
 from kvtheory.api._sweep import sweep
 from kvtheory.api._transient import transient
 

@@ -8,6 +8,7 @@ from kvtheory.api._edge import scene_of
 from kvtheory.api._steady import steady
 from kvtheory.api._transient import transient
 from kvtheory.results.comparison import Comparison
+from kvtheory.results.schemes import SCHEME_ROWS
 from kvtheory.scene.model import Scene
 from kvtheory.scene.quantities import Quantity, SceneError, convert, nearest, problem
 from kvtheory.scene.requirements import require_parabola
@@ -18,8 +19,6 @@ SOONEST, SOON = 1e-4, 0.1
 """Of the duration: where the latter begin and end."""
 FEWEST = 16
 """Samples at least, even if the time step has to be shortened for them."""
-KNOWN = ("paper", "rk4", "explicit-euler", "semi-implicit", "exponential", "edge-corrected")
-"""Schemes whose order and stability are known; "rk4" is the paper's with any time step."""
 PER_LENGTH = Quantity("1/m", "N, elements per unit length", 0.0, True)
 
 
@@ -83,9 +82,9 @@ def compare(
     if not (math.isfinite(tolerance) and tolerance > 0.0):
         raise ValueError(f"`tolerance` = {tolerance!r}: expected a positive number")
     density = None if per_length is None else _density(per_length)
-    if scheme is not None and scheme not in KNOWN:
+    if scheme is not None and scheme not in SCHEME_ROWS:
         raise ValueError(
-            f'`scheme` = "{scheme}": {nearest(str(scheme), KNOWN)}; leave it out if it is another'
+            f'`scheme` = "{scheme}": {nearest(str(scheme), SCHEME_ROWS)}; leave it out if it is another'
         )
     from kvtheory.checks.comparing import broken_off
     from kvtheory.checks.comparing import compare as hold_against

@@ -72,7 +72,7 @@ def transient(
             f"`rtol` = {rtol!r}: expected a number from {MINIMUM_RTOL} to {MAXIMUM_RTOL}"
         )
     require_parabola(scene, "the transient")
-    from kvtheory.models.continuum import solution
+    from kvtheory.models.continuum import solved_scene
 
     with double_precision():
-        return solution.transient(scene, times_of(scene, at), rtol, share_alone(progress))
+        return solved_scene.transient(scene, times_of(scene, at), rtol, share_alone(progress))

@@ -14,8 +14,8 @@ from scipy.integrate import solve_ivp
 
 from kvtheory.api import elements
 from kvtheory.charts.naive import closed_forms, two_states
-from kvtheory.models.continuum import continuum, states
-from kvtheory.models.continuum.solution import scaled_drive
+from kvtheory.models.continuum import evaluation, solver
+from kvtheory.models.continuum.solved_scene import scaled_drive
 from kvtheory.scene.base_motion import BaseMotion, evaluate
 from kvtheory.scene.drives import Drive
 from kvtheory.scene.indenters import Parabola
@@ -183,12 +183,12 @@ def errors(found: Curves, right: Curves) -> dict[str, float]:
 
 def by_continuum(problem: Problem, rtol: float, **options: Any) -> tuple[Curves, int]:
     """Return the curves by the package's transient, and its evaluations of the equation of motion."""
-    motion = continuum.solve(
+    motion = solver.solve(
         problem.drive, problem.epsilon, problem.kappa, problem.drive.end, rtol, **options
     )
     s = np.minimum(problem.times / problem.units.time, motion.end)
     found = motion.states(s).T
-    return Curves(found[states.DEPTH], found[states.FRICTION_FORCE]), motion.evaluations
+    return Curves(found[evaluation.DEPTH], found[evaluation.FRICTION_FORCE]), motion.evaluations
 
 
 def by_two_states(

@@ -21,6 +21,7 @@ from numpy.typing import NDArray
 
 from kvtheory.checks.reading import Series
 from kvtheory.checks.theory import CURVES, Theory
+from kvtheory.results.schemes import SCHEME_ROWS
 
 Array = NDArray[np.float64]
 
@@ -182,7 +183,8 @@ def first_order(
     """
     support, foundation = theory.scene.support, theory.scene.foundation
     none = np.zeros_like(curves["depth"])
-    if theory.scene.held or series.scheme in SECOND_ORDER:
+    scheme = SCHEME_ROWS.get(series.scheme or "")
+    if theory.scene.held or (scheme is not None and scheme.order_in_time > 1):
         return none, none
     spring = support.spring
     sunk = curves["depth"] - theory.static.depth
@@ -190,10 +192,6 @@ def first_order(
     rate = foundation.damping * contact_length(curves) / support.mass
     z = np.minimum(fine.time_step * rate, 1.0)
     return z, z * np.abs(net)
-
-
-SECOND_ORDER = ("paper", "rk4", "exponential", "edge-corrected")
-"""Schemes that are known to be of at least second order in time."""
 
 
 def edge_force(theory: Theory, curves: Mapping[str, Array], spacing: float) -> Array:

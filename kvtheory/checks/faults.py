@@ -13,9 +13,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from kvtheory.checks.fitting import Bench, Curves, Fit, best, scaled_scene
 from kvtheory.checks.rules import RULES, run
 from kvtheory.checks.theory import CURVES
-from kvtheory.checks.trials import Bench, Curves, Fit, best, scaled_scene
 
 Array = NDArray[np.float64]
 

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from kvtheory.checks.allowances import extreme
-from kvtheory.checks.case import Case
+from kvtheory.checks.comparison_case import Case
 from kvtheory.checks.making import check, not_made
 from kvtheory.checks.relaxation import FEWEST, fit, uncertainty
 from kvtheory.results.comparison import Check

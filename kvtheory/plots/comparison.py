@@ -6,7 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from kvtheory.plots.style import BLACK, BLUE, GREEN, RED, STYLE
+from kvtheory.plots.files import save_picture
+from kvtheory.plots.style import BLACK, BLUE, GREEN, RED
 from kvtheory.results import Check, Comparison
 
 CURVES = {
@@ -145,11 +146,4 @@ def save_comparison_plot(comparison: Comparison, path: Path) -> None:
     OSError
         If the file cannot be written.
     """
-    import matplotlib as mpl
-
-    from kvtheory.export import PICTURES, check_path, replace_file
-
-    check_path(path, PICTURES)
-    with mpl.rc_context({**STYLE}):
-        figure = draw_comparison(comparison)
-        replace_file(path, figure.savefig)
+    save_picture(lambda: draw_comparison(comparison), path)

@@ -7,8 +7,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from kvtheory.export import PICTURES, check_path, replace_file
-from kvtheory.plots.style import LABELS, STYLE, with_unit
+from kvtheory.plots.files import save_picture
+from kvtheory.plots.style import LABELS, with_unit
 from kvtheory.results import Sweep
 from kvtheory.scene.quantities import nearest
 from kvtheory.sweeps.plan import Plan
@@ -63,6 +63,36 @@ def plot_sweep(ax: Any, result: Sweep, quantity: str | None = None, **style: Any
     else:
         _curves(ax, sides, value, style)
     return ax
+
+
+def check_drawable(plan: Plan) -> None:
+    """Raise `ValueError` unless `plot_sweep` can draw what a sweep will give."""
+    _chosen([column.name for column in plan.numeric])
+    drawn = [axis.name for axis in plan.axes if axis.size > 1]
+    _refuse_more_than_two([*drawn, *(["time"] * (plan.series and len(plan.times or ()) > 1))])
+
+
+def _chosen(numeric: Sequence[str], quantity: str | None = None) -> str:
+    """Return the quantity to draw: the one that is named, or else the first that suits."""
+    name = quantity or (FIRST if FIRST in numeric else next(iter(numeric), ""))
+    if not numeric:
+        raise ValueError("no quantity of this sweep is a number, so that nothing can be drawn")
+    if name not in numeric:
+        raise ValueError(f'`quantity` = "{name}": {nearest(name, numeric)}')
+    return name
+
+
+def _refuse_more_than_two(dimensions: Sequence[str]) -> None:
+    if len(dimensions) > 2:
+        raise ValueError(
+            f"a picture has two dimensions, this sweep has {len(dimensions)} "
+            f"({', '.join(dimensions)}): choose a part with to_xarray().sel(...)"
+        )
+
+
+def save_sweep_plot(result: Sweep, path: Path) -> None:
+    """Draw the first quantity of a sweep and write it as the suffix of `path` says."""
+    save_picture(lambda: plot_sweep(None, result).figure, path)
 
 
 def check_drawable(plan: Plan) -> None:

@@ -7,7 +7,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from kvtheory.plots.style import BLUE, STYLE
+from kvtheory.plots.files import save_picture
+from kvtheory.plots.style import BLUE
 from kvtheory.results import Transient
 
 TRANSIENT_ROWS = (
@@ -64,13 +65,11 @@ def save_transient_plot(result: Transient, path: Path) -> None:
     OSError
         If the file cannot be written.
     """
-    import matplotlib as mpl
     from matplotlib.figure import Figure
 
-    from kvtheory.export import PICTURES, check_path, replace_file
-
-    check_path(path, PICTURES)
-    with mpl.rc_context({**STYLE}):
+    def draw() -> Figure:
         figure = Figure(figsize=(5.0, 6.4), layout="constrained")
         plot_transient(figure.subplots(4, 1, sharex=True), result, color=BLUE)
-        replace_file(path, figure.savefig)
+        return figure
+
+    save_picture(draw, path)

@@ -13,6 +13,7 @@ from functools import cached_property
 
 import numpy as np
 from numpy.polynomial import Chebyshev, Polynomial
+from numpy.typing import NDArray
 
 DEGREE = 8
 """Of a piece that represents a function: a few pieces for a period of a sine, at any tolerance."""
@@ -136,6 +137,11 @@ class BaseMotion:
     def end(self) -> float:
         """The time at which the last piece ends."""
         return self.pieces[-1][END]
+
+    @cached_property
+    def rows(self) -> NDArray[np.float64]:
+        """The pieces as one array, a row for each."""
+        return np.array(self.pieces)
 
     @cached_property
     def starts(self) -> list[float]:

@@ -55,7 +55,7 @@ class StaticState:
     def at(cls, scene: Scene, depth: float, half_length: float, load: float) -> "StaticState":
         """Return the static state of any shape, whose depth, half length and load are known."""
         tau, support, drive = scene.foundation.retardation_time, scene.support, scene.drive
-        velocity = math.nan if drive.function else drive.final_velocity
+        velocity = drive.final_velocity if drive.ends else math.nan
         return cls(
             depth=depth,
             half_length=half_length,
@@ -75,13 +75,9 @@ class StaticState:
     @property
     def in_range(self) -> bool:
         """Whether every number is one that double precision can hold."""
-        numbers = self.depth, self.half_length, self.load
-        moving = () if self.fixed else (self.inertia_number, self.support_number)
-        return (
-            all(0.0 < n < math.inf for n in numbers)
-            and all(map(math.isfinite, moving))
-            and not (math.isinf(self.drive_number))
-        )
+        held = 0.0 < self.depth < math.inf and self.half_length > 0.0 and 0.0 < self.load < math.inf
+        finite = self.fixed or (self.inertia_number < math.inf and self.support_number < math.inf)
+        return held and finite and not math.isinf(self.drive_number)
 
     @property
     def velocity(self) -> float:

@@ -16,29 +16,29 @@ from types import ModuleType
 from typing import Any
 
 from kvtheory.models.continuum import (
-    attempts,
     contact,
+    dense_output,
+    evaluation,
     flight,
-    history,
-    integrator,
+    memory_chains,
+    radau_iia,
     run,
-    sides,
-    states,
     stepping,
+    trial_step,
 )
 from kvtheory.scene import base_motion
 
 MODULES = (
     base_motion,
-    history,
+    dense_output,
     contact,
     flight,
-    integrator,
+    radau_iia,
     run,
-    sides,
-    attempts,
+    memory_chains,
+    trial_step,
     stepping,
-    states,
+    evaluation,
 )
 """Where the kernels are."""
 
@@ -77,14 +77,13 @@ def sources(modules: tuple[ModuleType, ...] = MODULES) -> str:
 
 @cache
 def kernels() -> tuple[Callable[..., int], Callable[..., None]]:
-    """Return `stepping.walk` and `states.states`, compiled; they run without the interpreter lock.
+    """Return `stepping.walk` and `evaluation.states`, compiled; they run without the interpreter lock.
 
     Raises
     ------
     ModuleNotFoundError
         If numba is not installed.
     """
-    from numba import njit
     from numba.extending import register_jitable
 
     for module in MODULES:
@@ -98,12 +97,28 @@ def kernels() -> tuple[Callable[..., int], Callable[..., None]]:
 
     def states_at(times: Any, found: Any, nodes: Any, records: Any, pieces: Any) -> None:
         if digest:
-            states.states(times, found, nodes, records, pieces)
+            evaluation.states(times, found, nodes, records, pieces)
 
-    def compiled(entry: Any) -> Any:
+    return _kept(walk), _kept(states_at)
+
+
+def _kept(entry: Any) -> Any:
+    """Return an entry that is compiled when it is called, and kept on the disk if there is a place."""
+    from numba import njit
+
+    try:
+        compiled = njit(entry, cache=True, nogil=True, **UNCOUNTED)
+    except RuntimeError:  # no place to keep it: the package and the home are read-only
+        return njit(entry, nogil=True, **UNCOUNTED)
+    kept = compiled._cache
+    load = kept.load_overload
+
+    def load_or_forget(*key: Any) -> Any:
         try:
-            return njit(entry, cache=True, nogil=True, **UNCOUNTED)
-        except RuntimeError:  # no place to keep it: the package and the home are read-only
-            return njit(entry, nogil=True, **UNCOUNTED)
+            return load(*key)
+        except Exception:  # whatever damaged files raise, or those of another version
+            kept.flush()
+            return None
 
-    return compiled(walk), compiled(states_at)
+    kept.load_overload = load_or_forget
+    return compiled

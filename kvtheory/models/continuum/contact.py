@@ -23,7 +23,7 @@ left edge and +1 for the right one.
 import math
 from collections.abc import Sequence
 
-from kvtheory.models.continuum.history import Rows, instant
+from kvtheory.models.continuum.dense_output import Rows, instant
 from kvtheory.scene.base_motion import Piece
 
 PEELING, TOUCHING, FREE = 0.0, 1.0, 2.0

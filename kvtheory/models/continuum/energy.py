@@ -18,9 +18,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from kvtheory.models.continuum import states
-from kvtheory.models.continuum.continuum import Moment, Motion
+from kvtheory.models.continuum import evaluation
 from kvtheory.models.continuum.quadrature import integrals
+from kvtheory.models.continuum.solver import Moment, Trajectory
 from kvtheory.models.continuum.surface import Array, kept, relaxing
 
 
@@ -53,7 +53,7 @@ class Ledger:
         return Ledger(*(unit * entry for entry in astuple(self)))
 
 
-def ledger(motion: Motion, s: ArrayLike) -> Ledger:
+def ledger(motion: Trajectory, s: ArrayLike) -> Ledger:
     """Return the energy ledger at the times `s`; entries have their shape.
 
     Raises
@@ -63,7 +63,7 @@ def ledger(motion: Motion, s: ArrayLike) -> Ledger:
 
     Examples
     --------
-    >>> from kvtheory.models.continuum.continuum import solve
+    >>> from kvtheory.models.continuum.solver import solve
     >>> from kvtheory.scene.base_motion import BaseMotion
     >>> motion = solve(BaseMotion.constant(4.0, end=2.0), 0.04, 0.0, end=2.0)
     >>> books = ledger(motion, 1.0)
@@ -86,7 +86,7 @@ def ledger(motion: Motion, s: ArrayLike) -> Ledger:
     return Ledger(*np.array(rows).reshape(-1, 9).T.reshape(9, *times.shape))
 
 
-def _entries(motion: Motion, now: Moment, free: float, spent: Array) -> list[float]:
+def _entries(motion: Trajectory, now: Moment, free: float, spent: Array) -> list[float]:
     fixed = math.isinf(motion.support_number)
     eps, kappa = (0.0, 0.0) if fixed else (motion.inertia_number, motion.support_number)
     work, in_contact, in_surface = spent.tolist()
@@ -103,15 +103,15 @@ def _entries(motion: Motion, now: Moment, free: float, spent: Array) -> list[flo
     ]
 
 
-def _powers(motion: Motion, times: Array, memory: list[tuple[float, float]]) -> Array:
+def _powers(motion: Trajectory, times: Array, memory: list[tuple[float, float]]) -> Array:
     """Return the power of the drive and what is dissipated in and behind the contact at the times."""
     flat = times.reshape(-1)
     found = motion.states(flat).T
-    l, r, v, number = found[[states.LEFT, states.RIGHT, states.RATE, states.NUMBER]]
+    l, r, v, number = found[[evaluation.LEFT, evaluation.RIGHT, evaluation.RATE, evaluation.NUMBER]]
     thirds = 4.0 / 3.0 * number * number * (r * r + r * l + l * l)
     inside = 0.75 * (r - l) * (v * v - 2.0 * number * v * (r + l) + thirds)
     behind = 0.75 * relaxing(motion, flat.tolist(), 2, memory)
-    work = number * found[states.FRICTION_FORCE]
+    work = number * found[evaluation.FRICTION_FORCE]
     in_contact = np.where(np.isnan(l), 0.0, inside)  # in flight there are no edges
     return np.stack([work, in_contact, behind], axis=-1).reshape(*times.shape, 3)
 

@@ -20,7 +20,7 @@ from kvtheory.models.continuum.contact import (
     RECORD,
     root,
 )
-from kvtheory.models.continuum.history import Rows, instant
+from kvtheory.models.continuum.dense_output import Rows, instant
 from kvtheory.scene.base_motion import Piece
 
 SUMMIT_RTOL = 1e-9

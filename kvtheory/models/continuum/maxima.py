@@ -4,8 +4,8 @@ import numpy as np
 from numpy.polynomial import chebyshev
 from numpy.typing import NDArray
 
-from kvtheory.models.continuum import states
-from kvtheory.models.continuum.continuum import Motion
+from kvtheory.models.continuum import evaluation
+from kvtheory.models.continuum.solver import Trajectory
 
 Array = NDArray[np.float64]
 
@@ -24,7 +24,7 @@ SAME_FORCE = 1e-10
 """Relative; of forces as equal as this, as in steady sliding, the first is the largest."""
 
 
-def force_maxima(motion: Motion) -> tuple[float, float]:
+def force_maxima(motion: Trajectory) -> tuple[float, float]:
     """Return when f_z and |f_x| are largest: the first time of the largest value from s = 0 on.
 
     It is an end of a step, before or after a jump there, or a stationary point of the polynomial
@@ -45,7 +45,7 @@ def force_maxima(motion: Motion) -> tuple[float, float]:
     return normal, friction
 
 
-def _turns(motion: Motion, a: Array, b: Array) -> Array:
+def _turns(motion: Trajectory, a: Array, b: Array) -> Array:
     """Return the times within steps from `a` to `b` at which a force is stationary.
 
     They are the roots of the slope of the polynomial through the force, over a variable x in which the
@@ -70,8 +70,8 @@ def _share(x: Array) -> Array:
     return y * y * (3.0 - 2.0 * y)
 
 
-def _forces(motion: Motion, s: Array) -> Array:
+def _forces(motion: Trajectory, s: Array) -> Array:
     """Return f_z and |f_x|, each of the shape of `s`."""
     inside = np.minimum(s.reshape(-1), motion.end)  # beyond it by rounding
-    found = motion.states(inside)[:, [states.NORMAL_FORCE, states.FRICTION_FORCE]]
+    found = motion.states(inside)[:, [evaluation.NORMAL_FORCE, evaluation.FRICTION_FORCE]]
     return np.abs(found.T.reshape(2, *s.shape))

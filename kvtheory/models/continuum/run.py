@@ -10,25 +10,17 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from kvtheory.models.continuum import contact as c_
-from kvtheory.models.continuum import history as h_
+from kvtheory.models.continuum import dense_output as h_
 from kvtheory.models.continuum.contact import TOUCHING
-from kvtheory.models.continuum.integrator import Method, radau, stages_for
+from kvtheory.models.continuum.radau_iia import Method, radau, stages_for
 from kvtheory.scene.base_motion import BaseMotion
 
-S, D, V, PIECE, MET, SMOOTH, SPAN, KINK, TOGGLES = range(9)
-"""Indices of `now`: time, depth, depth rate, the piece of the drive, whether its beginning was dealt
-with, whether the motion goes on smoothly from the last record, the length of the next step, the last
-kink or jump of the drive, and the changes of state at this instant."""
-STATE, TOP, X = 9, 11, 13
-"""Of each edge, the left one first: its state, its innermost node, its material coordinate."""
-RECORDS, NODES, EVENTS, REJECTED, EVALUATIONS = range(15, 20)
-"""How many there are."""
-EPS, KAPPA, FIXED, RTOL, ALLOWED, END = range(20, 26)
-"""Inertia number, support number, whether the support is fixed, tolerance of a step, how far a state
-of an edge may be violated, and the time at which to stop."""
-FIRST_STEP, LONGEST, GROW, STRAIGHT = range(26, 30)
-"""Step control, see `StepControl`."""
-SIZE = 30
+S, D, V, SPAN, KINK = range(5)
+"""Indices of `now`: time, depth, depth rate, the length of the next step, and the last kink or jump of the
+drive."""
+PIECE, MET, SMOOTH, TOGGLES, RECORDS, NODES, EVENTS, REJECTED, EVALUATIONS = range(9)
+"""Indices of `counts`: the piece of the drive, whether its beginning was dealt with, whether the motion
+goes on smoothly from the last record, the changes of state at this instant; then how many there are."""
 
 SIDES = (-1.0, 1.0)
 
@@ -58,15 +50,42 @@ class StepControl(NamedTuple):
     stages: int | None = None
 
 
-class Run(NamedTuple):
-    """A transient in progress; `records`, `nodes` and `events` are its outcome."""
+class Given(NamedTuple):
+    """What never changes in a run.
 
+    Inertia number, support number, tolerance of a step, how far a state of an edge may be violated, and
+    the time at which to stop; then the step control, see `StepControl`; the drive and the method.
+    """
+
+    eps: float
+    kappa: float
+    fixed: bool
+    rtol: float
+    allowed: float
+    end: float
+    first_step: float
+    longest: float
+    grow: float
+    straight: float
+    pieces: Any
+    method: Method
+
+
+class Run(NamedTuple):
+    """A transient in progress; `records`, `nodes` and `events` are its outcome.
+
+    Of each edge, the left one first, there are its state, its innermost node and its material coordinate.
+    """
+
+    given: Given
     now: Any
+    counts: Any
+    states: Any
+    tops: Any
+    edges: Any
     records: Any
     nodes: Any
     events: Any
-    pieces: Any
-    method: Method
     matrix: Any
 
 
@@ -83,42 +102,46 @@ def begin(
     """Return a run at rest: the stationary contact at d = 1."""
     fixed = math.isinf(support_number)
     stages = control.stages or stages_for(rtol)
-    now = [0.0] * SIZE
-    now[D], now[SPAN] = 1.0, math.inf
-    now[STATE] = now[STATE + 1] = TOUCHING
-    now[TOP + 1] = 1.0
-    now[X], now[X + 1] = SIDES
-    now[NODES] = 2.0
-    now[EPS], now[KAPPA], now[FIXED] = (
+    pieces: Any = drive.rows if arrays else drive.pieces
+    given = Given(
         inertia_number,
         0.0 if fixed else support_number,
-        float(fixed),
+        fixed,
+        rtol,
+        max(EVENT_SHARE * rtol, EVENT_FLOOR),
+        end,
+        *control[:-1],
+        pieces,
+        radau(stages, arrays),
     )
-    now[RTOL], now[ALLOWED], now[END] = rtol, max(EVENT_SHARE * rtol, EVENT_FLOOR), end
-    now[FIRST_STEP:SIZE] = control[:-1]
     rows: Any = _arrays if arrays else _lists
     nodes = rows(3 * ROOM, c_.SIZE)
     for k in range(2):
         nodes[k][:] = c_.undisturbed(SIDES[k])
-    pieces = [list(piece) for piece in drive.pieces]
+    counts = [0] * (EVALUATIONS + 1)
+    counts[NODES] = 2
+    small = [0.0, 1.0, 0.0, math.inf, 0.0], counts, [TOUCHING, TOUCHING], [0, 1], list(SIDES)
+    now, numbers, states, tops, edges = map(np.array, small) if arrays else small
     return Run(
-        np.array(now) if arrays else now,
+        given,
+        now,
+        numbers,
+        states,
+        tops,
+        edges,
         rows(ROOM, h_.POWERS + 1 + stages),
         nodes,
         rows(ROOM, 2),
-        np.array(pieces) if arrays else pieces,
-        radau(stages, arrays),
         rows(stages + 3, stages + 1),
     )
 
 
 def has_room(run: Run) -> bool:
     """Whether one more step surely fits."""
-    now = run.now
     return (
-        now[RECORDS] < len(run.records)
-        and 2.0 * now[NODES] + PER_STEP <= len(run.nodes)
-        and now[EVENTS] + EVENTS_PER_STEP <= len(run.events)
+        run.counts[RECORDS] < len(run.records)
+        and 2 * run.counts[NODES] + PER_STEP <= len(run.nodes)
+        and run.counts[EVENTS] + EVENTS_PER_STEP <= len(run.events)
     )
 
 
@@ -131,9 +154,10 @@ def with_more_room(run: Run) -> Run:
 
 def as_arrays(run: Run) -> Run:
     """Return the run, however far it has come, with arrays for rows."""
-    now, records, nodes, events, pieces = (np.array(rows) for rows in run[:5])
-    method = radau(len(run.method.nodes), True)
-    return Run(now, records, nodes, events, pieces, method, np.array(run.matrix))
+    given = run.given._replace(
+        pieces=np.array(run.given.pieces), method=radau(len(run.given.method.nodes), True)
+    )
+    return Run(given, *map(np.array, run[1:]))
 
 
 def _lists(count: int, size: int) -> list[list[float]]:

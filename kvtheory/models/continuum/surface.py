@@ -10,12 +10,12 @@ from numpy.polynomial import polynomial
 from numpy.typing import ArrayLike, NDArray
 
 from kvtheory.models.continuum import contact as c_
-from kvtheory.models.continuum import history as h_
-from kvtheory.models.continuum import states
-from kvtheory.models.continuum.continuum import Motion
-from kvtheory.models.continuum.history import instant
+from kvtheory.models.continuum import dense_output as h_
+from kvtheory.models.continuum import evaluation
+from kvtheory.models.continuum.dense_output import instant
+from kvtheory.models.continuum.memory_chains import SIDES
 from kvtheory.models.continuum.quadrature import integrals
-from kvtheory.models.continuum.sides import SIDES
+from kvtheory.models.continuum.solver import Trajectory
 from kvtheory.scene import base_motion as drive_
 
 Array = NDArray[np.float64]
@@ -36,7 +36,7 @@ ROUNDING = 1e-15
 """Of an edge in units of 1 + |Y|, for it is kept as X = xi - Y."""
 
 
-def chain(motion: Motion, k: int, s: float) -> Iterator[list[float]]:
+def chain(motion: Trajectory, k: int, s: float) -> Iterator[list[float]]:
     """Yield the nodes of ground that was touched, outward from the left edge (k = 0) or the right.
 
     The first node begins at the edge: in sigma, X, d and Y.
@@ -51,7 +51,7 @@ def chain(motion: Motion, k: int, s: float) -> Iterator[list[float]]:
         node = int(row[c_.NEXT])
 
 
-def _front(motion: Motion, k: int, s: float, edge: float) -> tuple[list[list[float]], int]:
+def _front(motion: Trajectory, k: int, s: float, edge: float) -> tuple[list[list[float]], int]:
     """Return the nodes that do not yet, or no longer, exist as a whole, and the first that does.
 
     `edge` is xi of the edge at `s`.
@@ -82,14 +82,14 @@ def _front(motion: Motion, k: int, s: float, edge: float) -> tuple[list[list[flo
 
 
 def present(
-    motion: Motion, s: float
+    motion: Trajectory, s: float
 ) -> tuple[int, tuple[float, float, float, float, float, float]]:
     """Return the record that holds at `s`, and d, v, v', Y, lambda, lambda' from it."""
     index = bisect.bisect_right(motion.starts, s) - 1
     return index, instant(motion.records, motion.pieces, index, s)
 
 
-def height(motion: Motion, xi: ArrayLike, s: float) -> Array:
+def height(motion: Trajectory, xi: ArrayLike, s: float) -> Array:
     """Return the compression u at the positions `xi`, also where the surface relaxes (fact F8).
 
     Under the indenter u = d - xi^2. Outside u = e^-(s - sigma) g(X, sigma), where sigma is the instant
@@ -98,7 +98,7 @@ def height(motion: Motion, xi: ArrayLike, s: float) -> Array:
 
     Examples
     --------
-    >>> from kvtheory.models.continuum.continuum import solve
+    >>> from kvtheory.models.continuum.solver import solve
     >>> from kvtheory.scene.base_motion import BaseMotion
     >>> motion = solve(BaseMotion.constant(4.0, end=2.0), 0.04, 0.0, end=2.0)
     >>> height(motion, [-1.0, 0.0, 1.0, 3.0], 1.0).round(6)
@@ -117,7 +117,7 @@ def height(motion: Motion, xi: ArrayLike, s: float) -> Array:
     return u
 
 
-def volume(motion: Motion, s: float) -> float:
+def volume(motion: Trajectory, s: float) -> float:
     """Return U = int u dxi over the whole surface, of which f_z = 3/4 (U + U') (fact F14)."""
     now, free = motion.at(s), float(relaxing(motion, [s], 1, kept(motion, 1))[0])
     if now.left_state == "free":
@@ -127,12 +127,12 @@ def volume(motion: Motion, s: float) -> float:
 
 
 def relaxing(
-    motion: Motion, times: Sequence[float], power: int, memory: list[tuple[float, float]]
+    motion: Trajectory, times: Sequence[float], power: int, memory: list[tuple[float, float]]
 ) -> Array:
     """Return the integral of u^`power` outside the contact at each time; `memory` is `kept` for it."""
     total = np.zeros(len(times))
     rows, owners = [], []
-    edges = motion.states(times)[:, [states.LEFT, states.RIGHT]].tolist()
+    edges = motion.states(times)[:, [evaluation.LEFT, evaluation.RIGHT]].tolist()
     for i, s in enumerate(times):
         for k in range(2):
             front, node = _front(motion, k, s, edges[i][k])
@@ -145,7 +145,7 @@ def relaxing(
     return total
 
 
-def kept(motion: Motion, power: int) -> list[tuple[float, float]]:
+def kept(motion: Trajectory, power: int) -> list[tuple[float, float]]:
     """Return, for each node, when it was complete, and the integral of u^power from there outward."""
     complete = np.array([max(row[c_.IN_S], row[c_.OUT_S]) for row in motion.nodes])
     own, touched = np.zeros(complete.size), complete > -math.inf
@@ -162,7 +162,7 @@ def kept(motion: Motion, power: int) -> list[tuple[float, float]]:
     return memory
 
 
-def _sweep_of(motion: Motion, rows: Array) -> Callable[[Any, Array], tuple[Array, ...]]:
+def _sweep_of(motion: Trajectory, rows: Array) -> Callable[[Any, Array], tuple[Array, ...]]:
     """Return a function of `which` nodes among `rows`, and times sigma of shape (which, points).
 
     It returns xi, d, Y and dX/dsigma of the edges that swept these nodes.
@@ -195,7 +195,7 @@ def _sweep_of(motion: Motion, rows: Array) -> Callable[[Any, Array], tuple[Array
     return at
 
 
-def _left(motion: Motion, row: list[float], X: Array, s: float) -> Array:
+def _left(motion: Trajectory, row: list[float], X: Array, s: float) -> Array:
     """Return u at the points `X` of one node."""
     inner: Any = np.full(X.shape, row[c_.IN_S])
     if row[c_.RECORD] < 0.0:
@@ -211,7 +211,7 @@ def _left(motion: Motion, row: list[float], X: Array, s: float) -> Array:
     return (np.exp(inner - s) * (d - (X + Y) ** 2))[0]
 
 
-def _integrals(motion: Motion, nodes: Sequence[Sequence[float]], s: Array, power: int) -> Array:
+def _integrals(motion: Trajectory, nodes: Sequence[Sequence[float]], s: Array, power: int) -> Array:
     """Return the integrals of [e^-(s - sigma) g(X, sigma)]^power over X on nodes, each at its time s."""
     rows = np.array([row[: c_.NEXT] for row in nodes]).reshape(-1, c_.NEXT)
     found, strip = np.empty(len(rows)), rows[:, c_.RECORD] < 0.0
@@ -229,7 +229,7 @@ def _of_strips(rows: Array, s: Array, power: int) -> Array:
     return half * (u**power @ weights)
 
 
-def _of_sweeps(motion: Motion, rows: Array, s: Array, power: int) -> Array:
+def _of_sweeps(motion: Trajectory, rows: Array, s: Array, power: int) -> Array:
     inner, outer = rows[:, c_.IN_S], rows[:, c_.OUT_S]
     swept = _sweep_of(motion, rows)
 

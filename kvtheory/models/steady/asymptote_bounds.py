@@ -80,8 +80,8 @@ def _largest(
     table: Mapping[str, Bound], bounds: Enclosure, quantities: tuple[str, ...], enough: float
 ) -> float:
     largest = 0.0
-    for name in quantities:
-        largest = max(largest, table[name](bounds))
+    for bound in dict.fromkeys(table[name] for name in quantities):  # several share one
+        largest = max(largest, bound(bounds))
         if largest > enough:
             break
     return largest
@@ -94,26 +94,10 @@ def _error(choice: Choice) -> float:
 def values(scene: Scene, regime: str, quantities: tuple[str, ...]) -> dict[str, float]:
     """Return the asymptotes of the quantities, in SI."""
     given = scene.values()
-    limits = asymptotes.limits(given)  # type: ignore[arg-type]  # floats do as well as arrays
-    low = regime == "low"
-    found = asymptotes.low(limits) if low else asymptotes.high(limits)
     side = -1.0 if given["drive.velocity"] < 0.0 else 1.0
-    depth, l_r = float(found["depth"]), float(limits.retardation_length)
-    a = math.sqrt(2.0 * given["indenter.radius"] * depth)
-    pressure = given["foundation.stiffness"] * depth
-    known = {
-        "depth": depth,
-        "half_length": a,
-        "retardation_length": l_r,
-        "leading_edge": -side * a,
-        "trailing_edge": side * a if low else 0.0,  # Eqs. 38, 39
-        "load": float(found["load"]),
-        "friction_force": side * float(found["friction_force"]) + 0.0,  # no negative zero
-        "friction_coefficient": side * float(found["friction_coefficient"]) + 0.0,
-        "peak_pressure": pressure if low else pressure * 2.0 * l_r / a,
-        "dissipated_in_contact": 1.0,
-    }
-    return {name: known[name] for name in quantities}
+    limits = asymptotes.limits(given)  # type: ignore[arg-type]  # floats do as well as arrays
+    found = asymptotes.quantities(limits, regime, side)
+    return {name: float(found[name]) for name in quantities}
 
 
 def _exactly(_: Enclosure) -> float:
@@ -159,6 +143,10 @@ def _low_coefficient(bounds: Enclosure) -> float:
     return cf.error_l1(bounds.largest, ratio(bounds.largest))
 
 
+def _low_length(bounds: Enclosure) -> float:
+    return 1.0 / bounds.low - 1.0
+
+
 def _low_trailing(bounds: Enclosure) -> float:
     return 1.0 / (bounds.low * ratio(bounds.largest)) - 1.0
 
@@ -194,9 +182,9 @@ def _high_peak(bounds: Enclosure) -> float:
 MOVING: Mapping[str, Mapping[str, Bound]] = {
     "low": {
         "depth": lambda bounds: 1.0 / bounds.low**2 - 1.0,
-        "half_length": lambda bounds: 1.0 / bounds.low - 1.0,
+        "half_length": _low_length,
         "retardation_length": _exactly,
-        "leading_edge": lambda bounds: 1.0 / bounds.low - 1.0,
+        "leading_edge": _low_length,
         "trailing_edge": _low_trailing,
         "load": _low_load,
         "friction_force": _low_friction,

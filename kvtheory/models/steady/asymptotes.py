@@ -84,45 +84,89 @@ def high(scene: Limits) -> dict[str, Array]:
     return {"depth": depth, "load": load, "friction_coefficient": mu, "friction_force": load * mu}
 
 
+def quantities(scene: Limits, regime: str, side: Array | float = 1.0) -> dict[str, Array]:
+    """Return the asymptote of every quantity of steady sliding, by `regime`: ``"low"`` or ``"high"``.
+
+    `side` is -1 for a reversed drive. At V = 0 those for high velocity are infinite or zero.
+    """
+    slow = regime == "low"
+    found = low(scene) if slow else high(scene)
+    depth, l_r = found["depth"], scene.retardation_length
+    a = np.sqrt(2.0 * scene.radius * depth)
+    pressure = scene.stiffness * depth
+    return {
+        "depth": depth,
+        "half_length": a,
+        "retardation_length": l_r,
+        "leading_edge": -side * a,
+        "trailing_edge": side * a if slow else 0.0 * a,  # Eqs. 38, 39
+        "load": found["load"],
+        "friction_force": side * found["friction_force"] + 0.0,  # no negative zero
+        "friction_coefficient": side * found["friction_coefficient"] + 0.0,
+        "peak_pressure": pressure if slow else pressure * (2.0 * l_r / a),
+        "dissipated_in_contact": np.ones_like(a),
+    }
+
+
 def low_errors(scene: Limits, state: SteadyState) -> dict[str, Array]:
-    """Return asymptote/exact - 1 of each quantity of `low`, given the exact state."""
+    """Return asymptote/exact - 1 of each quantity for l_r << a, given the exact state."""
     l, q = _ratios(state)
     mu = cf.error_l1(l, q)
     if scene.fixed:
-        return {
-            "depth": np.zeros_like(l),
-            "load": cf.error_load_low(l, q),
-            "friction_coefficient": mu,
-            "friction_force": cf.error_friction_force_low(l, q),
-        }
-    load = scene.static_load / state.load - 1
+        depth = np.zeros_like(l)
+        load, friction = cf.error_load_low(l, q), cf.error_friction_force_low(l, q)
+    else:
+        depth = scene.static_depth / state.depth - 1
+        load = scene.static_load / state.load - 1
+        friction = _compound(load, mu)
+    length = _root(depth)
     return {
-        "depth": scene.static_depth / state.depth - 1,
-        "load": load,
-        "friction_coefficient": mu,
-        "friction_force": _compound(load, mu),
+        **_shared(depth, length, load, friction, mu, q),
+        "trailing_edge": _compound(length, 1 / q - 1),
+        "peak_pressure": _compound(depth, 1 / cf.peak_pressure_factor(l) - 1),
     }
 
 
 def high_errors(scene: Limits, state: SteadyState) -> dict[str, Array]:
-    """Return asymptote/exact - 1 of each quantity of `high`, given the exact state at V > 0."""
+    """Return asymptote/exact - 1 of each quantity for l_r >> a, given the exact state at V > 0."""
     l, q = _ratios(state)
     if scene.fixed:
-        return {
-            "depth": np.zeros_like(l),
-            "load": cf.error_load_high(q),
-            "friction_coefficient": cf.error_l2_fixed(q, l),
-            "friction_force": cf.error_friction_force_high(q),
-        }
-    # The spring has not yet let go of k_s delta: lift_load - W = k_s delta.
-    load = (scene.lift_load - scene.static_load) * (state.depth / scene.static_depth) / state.load
-    mu = _compound(cf.error_l2_dead_weight(l, q), load / (1 + np.sqrt(1 + load)))
+        depth, load = np.zeros_like(l), cf.error_load_high(q)
+        mu, friction = cf.error_l2_fixed(q, l), cf.error_friction_force_high(q)
+    else:
+        # The spring has not yet let go of k_s delta: lift_load - W = k_s delta.
+        load = (
+            (scene.lift_load - scene.static_load) * (state.depth / scene.static_depth) / state.load
+        )
+        depth = _compound(cf.error_depth_high(l, q), load)
+        mu = _compound(cf.error_l2_dead_weight(l, q), _root(load))
+        friction = _compound(load, mu)
+    length = _root(depth)
     return {
-        "depth": _compound(cf.error_depth_high(l, q), load),
-        "load": load,
-        "friction_coefficient": mu,
-        "friction_force": _compound(load, mu),
+        **_shared(depth, length, load, friction, mu, q),
+        "trailing_edge": -np.ones_like(l),  # Eq. 39 is zero
+        "peak_pressure": _compound(length, 2 * l / cf.peak_pressure_factor(l) - 1),
     }
+
+
+def _shared(
+    depth: Array, length: Array, load: Array, friction: Array, mu: Array, q: Array
+) -> dict[str, Array]:
+    return {
+        "depth": depth,
+        "half_length": length,
+        "retardation_length": np.zeros_like(q),
+        "leading_edge": length,
+        "load": load,
+        "friction_force": friction,
+        "friction_coefficient": mu,
+        "dissipated_in_contact": 1 / cf.dissipated_in_contact(q) - 1,
+    }
+
+
+def _root(error: Array) -> Array:
+    """Return the relative error of a square root: sqrt(1 + error) - 1."""
+    return error / (1 + np.sqrt(1 + error))
 
 
 def _ratios(state: SteadyState) -> tuple[Array, Array]:

@@ -9,7 +9,7 @@ import numpy as np
 
 from kvtheory.checks.allowances import extreme
 from kvtheory.checks.balance import missing_force, random_part, windows
-from kvtheory.checks.case import Case, rms
+from kvtheory.checks.comparison_case import Case, rms
 from kvtheory.checks.discretization import elements, sawtooth, stability
 from kvtheory.checks.making import check, not_made
 from kvtheory.checks.settling import fast_constant, slow_constant, steady_limit

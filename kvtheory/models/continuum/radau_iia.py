@@ -29,9 +29,9 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.polynomial import Legendre, Polynomial
 
-from kvtheory.models.continuum import history as h_
+from kvtheory.models.continuum import dense_output as h_
 from kvtheory.models.continuum.contact import FREE, edge, forces, pressure
-from kvtheory.models.continuum.history import Rows
+from kvtheory.models.continuum.dense_output import Rows
 from kvtheory.scene.base_motion import Piece, evaluate
 
 STAGES = ((1e-3, 4), (1e-6, 5), (0.0, 7))

@@ -4,12 +4,12 @@ import math
 from typing import Any
 
 from kvtheory.models.continuum import contact as c_
-from kvtheory.models.continuum import history as h_
+from kvtheory.models.continuum import dense_output as h_
 from kvtheory.models.continuum import run as r_
 from kvtheory.models.continuum.contact import FREE, TOUCHING
+from kvtheory.models.continuum.dense_output import motion
 from kvtheory.models.continuum.flight import summit
-from kvtheory.models.continuum.history import motion
-from kvtheory.models.continuum.integrator import collocate, defect_error, imbalance
+from kvtheory.models.continuum.radau_iia import collocate, defect_error, imbalance
 from kvtheory.models.continuum.run import SIDES, Run
 from kvtheory.scene.base_motion import evaluate
 
@@ -24,7 +24,7 @@ NO_EVENT = (math.inf, math.inf, math.inf, math.inf, math.inf)
 
 def drive_now(run: Run, s: float) -> tuple[float, float, float]:
     """Return Y, lambda, lambda' of the present piece of the drive."""
-    return evaluate(run.pieces[int(run.now[r_.PIECE])], s)
+    return evaluate(run.given.pieces[run.counts[r_.PIECE]], s)
 
 
 def attempt(run: Run, record: Any) -> tuple[float, float, Monitors]:
@@ -32,15 +32,19 @@ def attempt(run: Run, record: Any) -> tuple[float, float, Monitors]:
 
     The event is given by its time, infinite if there is none, and the monitors just after it.
     """
-    now, start, span = run.now, record[h_.START], record[h_.SPAN]
-    if now[r_.FIXED] == 0.0:
+    start, span = record[h_.START], record[h_.SPAN]
+    if not run.given.fixed:
         evaluations = _solve(run, record)
-        now[r_.EVALUATIONS] += evaluations
+        run.counts[r_.EVALUATIONS] += evaluations
         if evaluations == 0:
             return math.inf, math.inf, NO_EVENT
     size, before, found_after, found = 0.0, start, start, math.inf
-    for probe in range(len(run.method.probes) + 1):
-        s = start + (run.method.probes[probe] if probe < len(run.method.probes) else 1.0) * span
+    for probe in range(len(run.given.method.probes) + 1):
+        s = (
+            start
+            + (run.given.method.probes[probe] if probe < len(run.given.method.probes) else 1.0)
+            * span
+        )
         slack, error = _probe(run, record, s, probe)
         size = max(size, error)
         if math.isnan(slack):
@@ -55,17 +59,17 @@ def attempt(run: Run, record: Any) -> tuple[float, float, Monitors]:
 
 
 def _solve(run: Run, record: Any) -> int:
-    now, stages = run.now, len(run.method.nodes)
+    now, stages = run.now, len(run.given.method.nodes)
     guess = run.matrix[stages]
     for i in range(stages):
         guess[i] = 0.0
-        if now[r_.SMOOTH] != 0.0:
-            last = run.records[int(now[r_.RECORDS]) - 1]
-            s = now[r_.S] + run.method.nodes[i] * record[h_.SPAN]
+        if run.counts[r_.SMOOTH] != 0:
+            last = run.records[run.counts[r_.RECORDS] - 1]
+            s = now[r_.S] + run.given.method.nodes[i] * record[h_.SPAN]
             guess[i] = motion(last, s)[1] - now[r_.V]
     return collocate(
-        record, now[r_.EPS], now[r_.KAPPA], now[r_.RTOL],
-        run.nodes, run.records, run.pieces, run.method, run.matrix,
+        record, run.given.eps, run.given.kappa, run.given.rtol,
+        run.nodes, run.records, run.given.pieces, run.given.method, run.matrix,
     )  # fmt: skip
 
 
@@ -73,12 +77,12 @@ def _probe(run: Run, record: Any, s: float, probe: int) -> tuple[float, float]:
     """Return the slack of all states at `s`, and the error there by the tolerance."""
     now = run.now
     values, F, F_d, F_v, dv = monitors(run, record, s)
-    if now[r_.FIXED] != 0.0 or probe >= len(run.method.probes):
+    if run.given.fixed or probe >= len(run.given.method.probes):
         return smallest(values), 0.0
-    now[r_.EVALUATIONS] += 1.0
-    scales = run.method.scales[probe]
-    error = defect_error(record[h_.SPAN], now[r_.EPS], F_d, F_v, now[r_.EPS] * dv, F, scales)
-    return smallest(values), error / (now[r_.RTOL] * (1.0 + abs(now[r_.V])))
+    run.counts[r_.EVALUATIONS] += 1
+    scales = run.given.method.scales[probe]
+    error = defect_error(record[h_.SPAN], run.given.eps, F_d, F_v, run.given.eps * dv, F, scales)
+    return smallest(values), error / (run.given.rtol * (1.0 + abs(now[r_.V])))
 
 
 def smallest(values: Monitors) -> float:
@@ -91,18 +95,18 @@ def smallest(values: Monitors) -> float:
 
 def monitors(run: Run, record: Any, s: float) -> tuple[Monitors, float, float, float, float]:
     """Return what must stay positive, and F, dF/dd, dF/dv and v'."""
-    now, allowed = run.now, run.now[r_.ALLOWED]
+    allowed = run.given.allowed
     d, v, dv = motion(record, s)
     Y, number, slope = drive_now(run, s)
     sides = record[h_.LEFT_STATE : h_.LEFT_X]
     F, F_d, F_v, l, r = imbalance(
-        s, d, v, Y, number, sides, now[r_.KAPPA], run.nodes, run.records, run.pieces
+        s, d, v, Y, number, sides, run.given.kappa, run.nodes, run.records, run.given.pieces
     )
     if sides[0] == FREE:
         gap = -d
         if d >= 0.0:
-            left, right = int(now[r_.TOP]), int(now[r_.TOP + 1])
-            gap = -summit(s, d, Y, left, right, run.nodes, run.records, run.pieces)[0]
+            left, right = run.tops[0], run.tops[1]
+            gap = -summit(s, d, Y, left, right, run.nodes, run.records, run.given.pieces)[0]
         return (gap + allowed, math.inf, math.inf, math.inf, math.inf), F, F_d, F_v, dv
     instant = d, v, dv, Y, number, slope
     left_state, left_ground = _slack(run, 0, s, l, instant)
@@ -120,7 +124,7 @@ def monitors(run: Run, record: Any, s: float) -> tuple[Monitors, float, float, f
 def _slack(
     run: Run, k: int, s: float, xi: float, instant: tuple[float, float, float, float, float, float]
 ) -> tuple[float, float]:
-    state, node = run.now[r_.STATE + k], int(run.now[r_.TOP + k])
+    state, node = run.states[k], run.tops[k]
     if state == TOUCHING:
         node = c_.reached(SIDES[k], node, s, instant[0], instant[3], run.nodes)
     return c_.slack(SIDES[k], state, run.nodes[node], s, xi, instant)

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from scipy.optimize import minimize_scalar
 
 from kvtheory.checks.allowances import Allowance
-from kvtheory.checks.case import Case
+from kvtheory.checks.comparison_case import Case
 from kvtheory.checks.theory import CURVES, Theory
 from kvtheory.scene import Drive, Scene
 

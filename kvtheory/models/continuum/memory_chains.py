@@ -5,8 +5,8 @@ from typing import Any
 from kvtheory.models.continuum import contact as c_
 from kvtheory.models.continuum import run as r_
 from kvtheory.models.continuum.contact import FREE, TOUCHING
+from kvtheory.models.continuum.dense_output import instant
 from kvtheory.models.continuum.flight import summit
-from kvtheory.models.continuum.history import instant
 from kvtheory.models.continuum.run import SIDES, Run
 
 
@@ -23,7 +23,7 @@ def copy_end(row: Any, end: int, other: Any, other_end: int) -> None:
 
 def free_row(run: Run) -> int:
     """Return the index of the row in which the next node is written."""
-    return int(run.now[r_.NODES])
+    return run.counts[r_.NODES]
 
 
 def push(run: Run, k: int, record: float, branch: float) -> None:
@@ -31,7 +31,7 @@ def push(run: Run, k: int, record: float, branch: float) -> None:
 
     A is smooth across to the next node if one edge swept both, smoothly.
     """
-    row, top = run.nodes[free_row(run)], run.now[r_.TOP + k]
+    row, top = run.nodes[free_row(run)], run.tops[k]
     below = run.nodes[int(top)]
     joined = (
         record >= 0.0
@@ -47,9 +47,8 @@ def push(run: Run, k: int, record: float, branch: float) -> None:
 
 def put(run: Run, k: int) -> None:
     """Let the free row be the innermost node of a chain."""
-    now = run.now
-    now[r_.TOP + k] = now[r_.NODES]
-    now[r_.NODES] += 1.0
+    run.tops[k] = run.counts[r_.NODES]
+    run.counts[r_.NODES] += 1
 
 
 def push_strip(run: Run, k: int, inner: float, outer: float, Y: float) -> None:
@@ -63,38 +62,37 @@ def push_strip(run: Run, k: int, inner: float, outer: float, Y: float) -> None:
 def trim(run: Run, k: int, Y: float) -> None:
     """Let the chain of a touching side begin at the edge."""
     now, row = run.now, run.nodes[free_row(run)]
-    old = run.nodes[int(now[r_.TOP + k])]
+    old = run.nodes[run.tops[k]]
     for i in range(c_.SIZE):
         row[i] = old[i]
     if row[c_.RECORD] >= 0.0:
         row[c_.IN_S], row[c_.IN_D], row[c_.IN_Y] = c_.sweep(
-            SIDES[k], old, now[r_.S], now[r_.D], Y, run.records, run.pieces
+            SIDES[k], old, now[r_.S], now[r_.D], Y, run.records, run.given.pieces
         )
-    row[c_.IN_X] = now[r_.X + k]
+    row[c_.IN_X] = run.edges[k]
     put(run, k)
 
 
 def leave(run: Run, Y: float) -> None:
     """Take off: all ground is memory."""
-    now = run.now
     for k in range(2):
-        if now[r_.STATE + k] == TOUCHING:
+        if run.states[k] == TOUCHING:
             trim(run, k, Y)
-    if now[r_.X] < now[r_.X + 1]:
-        push_strip(run, 1, now[r_.X], now[r_.X + 1], Y)
-    now[r_.STATE] = now[r_.STATE + 1] = FREE
+    if run.edges[0] < run.edges[1]:
+        push_strip(run, 1, run.edges[0], run.edges[1], Y)
+    run.states[0] = run.states[1] = FREE
 
 
 def land(run: Run, Y: float) -> None:
     """Touch down: part the chains at the landing point, and let both edges touch."""
     now = run.now
     _, X, side, node, sigma = summit(
-        now[r_.S], now[r_.D], Y, int(now[r_.TOP]), int(now[r_.TOP + 1]),
-        run.nodes, run.records, run.pieces,
+        now[r_.S], now[r_.D], Y, run.tops[0], run.tops[1],
+        run.nodes, run.records, run.given.pieces,
     )  # fmt: skip
     near = 1 if side > 0.0 else 0
     far = 1 - near
-    inner = int(now[r_.TOP + near])
+    inner = run.tops[near]
     while inner != node:
         row = run.nodes[inner]
         push_reversed(run, far, row)
@@ -102,17 +100,17 @@ def land(run: Run, Y: float) -> None:
     old = run.nodes[node]
     d_0, Y_0 = old[c_.IN_D], old[c_.IN_Y]
     if old[c_.RECORD] >= 0.0:
-        d_0, _, _, Y_0, _, _ = instant(run.records, run.pieces, int(old[c_.RECORD]), sigma)
+        d_0, _, _, Y_0, _, _ = instant(run.records, run.given.pieces, int(old[c_.RECORD]), sigma)
     if old[c_.IN_X] != X:
         push_reversed(run, far, old)
-        set_end(run.nodes[int(now[r_.TOP + far])], c_.IN_X, X, sigma, d_0, Y_0)
+        set_end(run.nodes[run.tops[far]], c_.IN_X, X, sigma, d_0, Y_0)
     row = run.nodes[free_row(run)]
     for i in range(c_.SIZE):
         row[i] = old[i]
     set_end(row, c_.IN_X, X, sigma, d_0, Y_0)
     put(run, near)
     for k in range(2):
-        now[r_.STATE + k], now[r_.X + k] = TOUCHING, X
+        run.states[k], run.edges[k] = TOUCHING, X
 
 
 def push_reversed(run: Run, k: int, old: Any) -> None:

@@ -10,13 +10,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from kvtheory.models.continuum import states
-from kvtheory.models.continuum.certificates import COARSER, COMPARISONS, certificate
-from kvtheory.models.continuum.continuum import STATE_NAMES, Motion, solve
+from kvtheory.models.continuum import evaluation
 from kvtheory.models.continuum.energy import Ledger, ledger
-from kvtheory.models.continuum.integrator import stages_for
+from kvtheory.models.continuum.error_estimate import COARSER, COMPARISONS, certificate
 from kvtheory.models.continuum.maxima import force_maxima
+from kvtheory.models.continuum.radau_iia import stages_for
 from kvtheory.models.continuum.run import StepControl
+from kvtheory.models.continuum.solver import STATE_NAMES, Trajectory, solve
 from kvtheory.models.continuum.surface import height
 from kvtheory.results import Certificate, Event, Transient
 from kvtheory.results.errors import TransientError
@@ -45,10 +45,10 @@ def scaled_drive(scene: Scene, units: StaticState) -> BaseMotion:
 
 
 @dataclass(frozen=True)
-class Solution:
+class SolvedScene:
     """A solved motion and its scales; evaluates every quantity of a transient in SI."""
 
-    motion: Motion
+    motion: Trajectory
     drive: BaseMotion
     units: StaticState
 
@@ -63,24 +63,24 @@ class Solution:
     def series(self, time: ArrayLike) -> dict[str, Any]:
         """Return the quantities and states at the given times (s)."""
         found, u = self.states(time), self.units
-        numbers = found[states.NUMBER]
+        numbers = found[evaluation.NUMBER]
         forward = _forward(numbers)
-        left, right = found[states.LEFT], found[states.RIGHT]
+        left, right = found[evaluation.LEFT], found[evaluation.RIGHT]
         names = [
             [STATE_NAMES[state] for state in found[side].tolist()]
-            for side in (states.LEFT_STATE, states.RIGHT_STATE)
+            for side in (evaluation.LEFT_STATE, evaluation.RIGHT_STATE)
         ]
         pairs = list(zip(*names, forward.tolist(), strict=True))
         return {
             "time": np.asarray(time, dtype=float),
             "velocity": numbers * u.velocity,
-            "depth": found[states.DEPTH] * u.depth,
-            "depth_rate": found[states.RATE] * u.depth_rate,
-            "normal_force": found[states.NORMAL_FORCE] * u.load,
-            "friction_force": found[states.FRICTION_FORCE] * u.friction_force,
+            "depth": found[evaluation.DEPTH] * u.depth,
+            "depth_rate": found[evaluation.RATE] * u.depth_rate,
+            "normal_force": found[evaluation.NORMAL_FORCE] * u.load,
+            "friction_force": found[evaluation.FRICTION_FORCE] * u.friction_force,
             "leading_edge": np.where(forward, left, right) * u.half_length,
             "trailing_edge": np.where(forward, right, left) * u.half_length,
-            "peak_pressure": found[states.PEAK_PRESSURE] * u.pressure,
+            "peak_pressure": found[evaluation.PEAK_PRESSURE] * u.pressure,
             "leading_state": tuple(l if leads else r for l, r, leads in pairs),
             "trailing_state": tuple(r if leads else l for l, r, leads in pairs),
         }
@@ -144,7 +144,7 @@ def certified(
     times: ArrayLike | None,
     rtol: float,
     progress: Callable[[float], Any] | None = None,
-) -> tuple[Solution, Array, Certificate]:
+) -> tuple[SolvedScene, Array, Certificate]:
     """Solve a scene, and with a looser tolerance again; return the times (s) that are judged, too.
 
     Without `times`, these are the natural ones.
@@ -153,7 +153,7 @@ def certified(
     drive = scaled_drive(scene, units)
     rtol = min(rtol, LOOSEST)
 
-    def solved(part: int, tolerance: float, control: StepControl) -> Solution:
+    def solved(part: int, tolerance: float, control: StepControl) -> SolvedScene:
         def report(s: float) -> None:
             if progress is not None:
                 progress((part + s / drive.end) / (1 + len(COMPARISONS)))
@@ -177,14 +177,14 @@ def _solution(
     rtol: float,
     control: StepControl,
     progress: Callable[[float], Any],
-) -> Solution:
+) -> SolvedScene:
     numbers = units.inertia_number, units.support_number
     try:
         motion = solve(drive, *numbers, drive.end, rtol, control=control, progress=progress)
     except TransientError as error:
         reason = f"{error.reason}, in a run of {drive.end:.4g} retardation times,"
         raise TransientError(reason, error.s * units.time, "t", " s") from None
-    return Solution(motion, drive, units)
+    return SolvedScene(motion, drive, units)
 
 
 def _forward(numbers: Array) -> NDArray[np.bool_]:

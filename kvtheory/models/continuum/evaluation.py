@@ -5,9 +5,9 @@ from collections.abc import Sequence
 from typing import Any
 
 from kvtheory.models.continuum import contact as c_
-from kvtheory.models.continuum import history as h_
+from kvtheory.models.continuum import dense_output as h_
 from kvtheory.models.continuum.contact import FREE
-from kvtheory.models.continuum.history import Rows, motion
+from kvtheory.models.continuum.dense_output import Rows, motion
 from kvtheory.scene.base_motion import Piece, evaluate
 
 DEPTH, RATE, ACCELERATION, NUMBER, LEFT, RIGHT = range(6)

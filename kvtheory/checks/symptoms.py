@@ -7,10 +7,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kvtheory.checks.allowances import noise
-from kvtheory.checks.case import COMMON, LARGEST_SAWTOOTH, Case, common_noise, make_case
-from kvtheory.checks.discretization import LIMITS
-from kvtheory.checks.judgements import judge
+from kvtheory.checks.checklist import judge
+from kvtheory.checks.comparison_case import COMMON, LARGEST_SAWTOOTH, Case, common_noise, make_case
 from kvtheory.results.comparison import Check, Explanation
+from kvtheory.results.schemes import SCHEME_ROWS
 
 COARSER = 2.0
 """Factor by which the spacing is widened, again and again, to find how coarse the data look."""
@@ -115,8 +115,9 @@ def rattling(case: Case) -> Iterator[Explanation]:
     number = h * scene.foundation.damping * length / scene.support.mass
     loud = noise(time, case.residual("normal_force")) if "normal_force" in case.names else 0.0
     rough = loud > LARGEST_SAWTOOTH and (common_noise(case) or 0.0) > COMMON
-    limit = max(LIMITS.values())
-    if number > min(LIMITS.values()) and rough:
+    limits = [row.stability_limit for row in SCHEME_ROWS.values() if row.stability_limit < np.inf]
+    limit = max(limits)
+    if number > min(limits) and rough:
         text = (
             f"if the data hold every step: dt C L/M = {number:.3g} with their smallest interval of "
             f"{h * 1e3:.3g} ms, while an explicit scheme needs less than {limit:.4g}"

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from kvtheory.models.continuum import states
+from kvtheory.models.continuum import evaluation
 from kvtheory.models.continuum.run import StepControl
 from kvtheory.results import Certificate
 
@@ -59,25 +59,25 @@ EXACT = ("time", "velocity")
 
 def scaled_quantities(found: Array) -> dict[str, Array]:
     """Return the scaled quantities; in flight both edges are at the axis, where no contact is."""
-    edges = np.nan_to_num(found[[states.LEFT, states.RIGHT]])
+    edges = np.nan_to_num(found[[evaluation.LEFT, evaluation.RIGHT]])
     zero = np.zeros(1)
     return {
         "time": zero,
         "velocity": zero,
-        "depth": found[states.DEPTH],
-        "depth_rate": found[states.RATE],
-        "normal_force": found[states.NORMAL_FORCE],
-        "friction_force": found[states.FRICTION_FORCE],
+        "depth": found[evaluation.DEPTH],
+        "depth_rate": found[evaluation.RATE],
+        "normal_force": found[evaluation.NORMAL_FORCE],
+        "friction_force": found[evaluation.FRICTION_FORCE],
         "leading_edge": edges,
         "trailing_edge": edges,
-        "peak_pressure": found[states.PEAK_PRESSURE],
+        "peak_pressure": found[evaluation.PEAK_PRESSURE],
     }
 
 
 def _rounding(found: Array) -> dict[str, float]:
     """Return what rounding of the edges may do to them, and to the forces: the pressure there acts."""
-    edge, pressure = found[states.ROUNDING], found[states.PEAK_PRESSURE]
-    arm = np.nan_to_num(np.maximum(np.abs(found[states.LEFT]), np.abs(found[states.RIGHT])))
+    edge, pressure = found[evaluation.ROUNDING], found[evaluation.PEAK_PRESSURE]
+    arm = np.nan_to_num(np.maximum(np.abs(found[evaluation.LEFT]), np.abs(found[evaluation.RIGHT])))
     largest = [
         np.max(x, initial=0.0) for x in (edge, 0.75 * pressure * edge, 1.5 * arm * pressure * edge)
     ]

@@ -16,9 +16,9 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from kvtheory.models.continuum import compiled, states, stepping
+from kvtheory.models.continuum import compiled, evaluation, stepping
 from kvtheory.models.continuum import contact as c_
-from kvtheory.models.continuum import history as h_
+from kvtheory.models.continuum import dense_output as h_
 from kvtheory.models.continuum import run as r_
 from kvtheory.models.continuum.contact import FREE, PEELING, TOUCHING
 from kvtheory.models.continuum.run import Run, StepControl, as_arrays, begin, with_more_room
@@ -36,7 +36,7 @@ REASONS = {
 }
 
 
-class Event(NamedTuple):
+class ScaledEvent(NamedTuple):
     """What happened at the time `s`."""
 
     s: float
@@ -62,7 +62,7 @@ STATE_NAMES = {PEELING: "peeling", TOUCHING: "touching", FREE: "free"}
 
 
 @dataclass(frozen=True)
-class Motion:
+class Trajectory:
     """A solved transient: evaluate it anywhere in [0, end] with `at` or `states`.
 
     `rows` is the finished run, with arrays for rows if its kernels were compiled.
@@ -77,26 +77,26 @@ class Motion:
     @property
     def steps(self) -> int:
         """Number of steps taken."""
-        return int(self.rows.now[r_.RECORDS])
+        return int(self.rows.counts[r_.RECORDS])
 
     @property
     def rejected(self) -> int:
         """Number of steps repeated."""
-        return int(self.rows.now[r_.REJECTED])
+        return int(self.rows.counts[r_.REJECTED])
 
     @property
     def evaluations(self) -> int:
         """Number of evaluations of the equation of motion."""
-        return int(self.rows.now[r_.EVALUATIONS])
+        return int(self.rows.counts[r_.EVALUATIONS])
 
     @cached_property
-    def events(self) -> tuple[Event, ...]:
+    def events(self) -> tuple[ScaledEvent, ...]:
         """What happened to the contact, in the order of time."""
-        rows = self.rows.events[: int(self.rows.now[r_.EVENTS])]
-        found = [Event(float(s), stepping.KINDS[int(kind)]) for s, kind in rows]
+        rows = self.rows.events[: self.rows.counts[r_.EVENTS]]
+        found = [ScaledEvent(float(s), stepping.KINDS[int(kind)]) for s, kind in rows]
         return tuple(sorted([*found, *self._memory()], key=lambda event: event.s))
 
-    def _memory(self) -> Iterator[Event]:
+    def _memory(self) -> Iterator[ScaledEvent]:
         """Yield when an edge begins to touch ground that was touched before, and when it ceases to."""
         records = np.array(self.rows.records[: self.steps])
         left_at = np.array(self.rows.nodes)[:, c_.IN_S]
@@ -108,7 +108,7 @@ class Motion:
             remembers = (records[:, state] == TOUCHING) & touched
             for k in np.flatnonzero(np.diff(remembers, prepend=False)):
                 what = "begins" if remembers[k] else "ends"
-                yield Event(float(records[k, h_.START]), f"memory {what} at the {name} edge")
+                yield ScaledEvent(float(records[k, h_.START]), f"memory {what} at the {name} edge")
 
     @cached_property
     def records(self) -> list[list[float]]:
@@ -118,12 +118,12 @@ class Motion:
     @cached_property
     def nodes(self) -> list[list[float]]:
         """What the edges left behind, as lists."""
-        return _lists(self.rows.nodes, int(self.rows.now[r_.NODES]))
+        return _lists(self.rows.nodes, self.rows.counts[r_.NODES])
 
     @cached_property
     def pieces(self) -> list[list[float]]:
         """The pieces of the drive, as lists."""
-        return _lists(self.rows.pieces, len(self.rows.pieces))
+        return _lists(self.rows.given.pieces, len(self.rows.given.pieces))
 
     @cached_property
     def starts(self) -> list[float]:
@@ -133,11 +133,11 @@ class Motion:
     def at(self, s: float) -> Moment:
         """Return the state at `s`; where the drive jumps, just after the jump."""
         row = self.states([s])[0].tolist()
-        left, right = row[states.LEFT_STATE], row[states.RIGHT_STATE]
+        left, right = row[evaluation.LEFT_STATE], row[evaluation.RIGHT_STATE]
         return Moment(
-            s, row[states.DEPTH], row[states.RATE], row[states.ACCELERATION],
-            row[states.LEFT], row[states.RIGHT], STATE_NAMES[left], STATE_NAMES[right],
-            row[states.NORMAL_FORCE], row[states.FRICTION_FORCE],
+            s, row[evaluation.DEPTH], row[evaluation.RATE], row[evaluation.ACCELERATION],
+            row[evaluation.LEFT], row[evaluation.RIGHT], STATE_NAMES[left], STATE_NAMES[right],
+            row[evaluation.NORMAL_FORCE], row[evaluation.FRICTION_FORCE],
         )  # fmt: skip
 
     def states(self, s: ArrayLike) -> NDArray[np.float64]:
@@ -146,14 +146,14 @@ class Motion:
         if not np.all((times >= 0.0) & (times <= self.end)):
             raise ValueError(f"`s` must lie in [0, {self.end!r}], got {s!r}")
         if self.compiled:
-            found = np.empty((times.size, states.SIZE))
+            found = np.empty((times.size, evaluation.SIZE))
             records = self.rows.records[: self.steps]
             evaluate = compiled.kernels()[1]
-            evaluate(times, found, self.rows.nodes, records, self.rows.pieces)
+            evaluate(times, found, self.rows.nodes, records, self.rows.given.pieces)
             return found
-        rows = [[0.0] * states.SIZE for _ in range(times.size)]
-        states.states(times.tolist(), rows, self.nodes, self.records, self.pieces)
-        return np.array(rows).reshape(-1, states.SIZE)
+        rows = [[0.0] * evaluation.SIZE for _ in range(times.size)]
+        evaluation.states(times.tolist(), rows, self.nodes, self.records, self.pieces)
+        return np.array(rows).reshape(-1, evaluation.SIZE)
 
 
 def solve(
@@ -166,7 +166,7 @@ def solve(
     fast: bool | None = None,
     control: StepControl = StepControl(),  # noqa: B008 - immutable
     progress: Callable[[float], Any] | None = None,
-) -> Motion:
+) -> Trajectory:
     """Follow the transient of `drive` from rest until `end`, in scaled form.
 
     Parameters
@@ -210,7 +210,7 @@ def solve(
     arrays = compiled.worthwhile() if fast is None else fast
     run = begin(drive, *numbers, float(end), rtol, control, arrays=arrays)
     run, arrays = _followed(run, arrays, fast is None, progress)
-    return Motion(end, inertia_number, support_number, run, arrays)
+    return Trajectory(end, inertia_number, support_number, run, arrays)
 
 
 def _followed(
@@ -223,7 +223,7 @@ def _followed(
             run, arrays = as_arrays(run), True
         walk: Callable[[Run, int], int] = compiled.kernels()[0] if arrays else stepping.walk
         status = walk(run, min(ATTEMPTS, left))
-        before, left = left, STEP_LIMIT - int(run.now[r_.RECORDS] + run.now[r_.REJECTED])
+        before, left = left, STEP_LIMIT - int(run.counts[r_.RECORDS] + run.counts[r_.REJECTED])
         compiled.Tally.steps += 0 if arrays else before - left
         s = float(run.now[r_.S])
         if status in REASONS:
