@@ -61,7 +61,9 @@ def save_transient_plot(result: Transient, path: Path) -> None:
     Raises
     ------
     ValueError
-        If matplotlib does not know the suffix.
+        If the name does not end in .png, .svg or .pdf.
+    OSError
+        If the file cannot be written.
     """
     from matplotlib.figure import Figure
 
