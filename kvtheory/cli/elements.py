@@ -7,7 +7,7 @@ import click
 
 from kvtheory.cli.console import print_json, print_series, progress_bar, scene_command
 from kvtheory.cli.group import main
-from kvtheory.cli.outputs import check_output, series_options
+from kvtheory.cli.outputs import PICTURES, check_output, series_options
 
 
 @scene_command(
@@ -37,13 +37,15 @@ def elements(
     time_step: str | None,
     at: str | None,
     output: Path | None,
+    plot: Path | None,
 ) -> None:
     """Simulate SCENE by point elements that move with the base: any shape, support and drive."""
     from kvtheory.api import elements as simulate
-    from kvtheory.export import SERIES_SUFFIXES, save_transient
+    from kvtheory.export import SERIES_SUFFIXES, save_result
     from kvtheory.scene import load_scene
 
     check_output("-o", output, SERIES_SUFFIXES)  # before a run that may be long
+    check_output("--plot", plot, PICTURES)
     with progress_bar("elements") as progress:
         result = simulate(
             load_scene(scene, overrides),
@@ -55,7 +57,11 @@ def elements(
             warn=lambda text: click.echo(f"kvtheory: warning: {text}", err=True),
         )
     if output:
-        save_transient(result, output)
+        save_result(result, output)
+    if plot:
+        from kvtheory.plots.result import save_plot
+
+        save_plot(result, plot)
     if as_json:
         print_json(result.as_dict())
         return

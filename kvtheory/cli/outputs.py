@@ -12,10 +12,17 @@ import click
 
 from kvtheory.export import PICTURES, check_path
 
-__all__ = ["PICTURES", "check_output", "overwrite_option", "overwriting", "series_options"]
+__all__ = [
+    "PICTURES",
+    "check_output",
+    "overwrite_option",
+    "overwriting",
+    "result_options",
+    "series_options",
+]
 
 BEGINNINGS = {
-    ".csv": (b"time [s],velocity [m/s],",),
+    ".csv": (b"time [s],velocity [m/s],", b"depth [m],half_length [m],"),
     ".nc": (b"CDF\x01", b"CDF\x02"),
     ".png": (b"\x89PNG",),
     ".svg": (b"<?xml", b"<svg"),
@@ -46,17 +53,26 @@ def overwriting() -> bool:
 
 
 def series_options(command: Callable[..., Any]) -> Callable[..., Any]:
-    """Give a command `--at` for the times of a series, and `-o` for its file."""
-    command = click.option(
-        "-o", "--output", type=click.Path(path_type=Path), default=None,
-        help="Write the series to FILE.csv or FILE.nc.",
-    )(overwrite_option(command))  # fmt: skip
+    """Give a command `--at` for the times of a series, `-o` for its file and `--plot`."""
+    command = result_options(command)
     return click.option(
         "--at",
         default=None,
         metavar='"0 ms,1 ms,..."',
         help="Times to report, or START:STOP:COUNT.",
     )(command)
+
+
+def result_options(command: Callable[..., Any]) -> Callable[..., Any]:
+    """Give a command `-o` for the file of its result, and `--plot` for its picture."""
+    command = click.option(
+        "--plot", type=click.Path(path_type=Path), default=None,
+        help="Draw the result to FILE.png, .svg or .pdf.",
+    )(overwrite_option(command))  # fmt: skip
+    return click.option(
+        "-o", "--output", type=click.Path(path_type=Path), default=None,
+        help="Write the result to FILE.csv or FILE.nc.",
+    )(command)  # fmt: skip
 
 
 def check_output(option: str, path: Path | None, suffixes: Sequence[str]) -> None:

@@ -9,7 +9,13 @@ from importlib import import_module
 from typing import Any
 
 ABOVE = {
+    "compared": "kvtheory.export",
+    "dataset": "kvtheory.export",
+    "plot_result": "kvtheory.plots.result",
     "plot_sweep": "kvtheory.plots.sweep",
+    "save_compared": "kvtheory.export",
+    "save_csv": "kvtheory.export",
+    "save_result": "kvtheory.export",
     "save_sweep": "kvtheory.sweeps.files",
 }
 """The functions that methods of results call, and the modules that hold them."""
