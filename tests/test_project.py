@@ -117,8 +117,7 @@ def test_the_library_speaks_python():
             if isinstance(node, ast.Constant) and isinstance(node.value, str)
         ]
     found = [(name, text) for name, text in texts if spoken.search(text)]
-    # A page of the atlas names the command that computes an entry.
-    assert [name for name, _ in found] == ["failures.py"], found
+    assert found == []
 
 
 HEAVY = {"derivations", "matplotlib", "netCDF4", "pint", "scipy", "sympy", "xarray"}

@@ -95,40 +95,6 @@ def save_sweep_plot(result: Sweep, path: Path) -> None:
     save_picture(lambda: plot_sweep(None, result).figure, path)
 
 
-def check_drawable(plan: Plan) -> None:
-    """Raise `ValueError` unless `plot_sweep` can draw what a sweep will give."""
-    _chosen([column.name for column in plan.numeric])
-    drawn = [axis.name for axis in plan.axes if axis.size > 1]
-    _refuse_more_than_two([*drawn, *(["time"] * (plan.series and len(plan.times or ()) > 1))])
-
-
-def _chosen(numeric: Sequence[str], quantity: str | None = None) -> str:
-    """Return the quantity to draw: the one that is named, or else the first that suits."""
-    name = quantity or (FIRST if FIRST in numeric else next(iter(numeric), ""))
-    if not numeric:
-        raise ValueError("no quantity of this sweep is a number, so that nothing can be drawn")
-    if name not in numeric:
-        raise ValueError(f'`quantity` = "{name}": {nearest(name, numeric)}')
-    return name
-
-
-def _refuse_more_than_two(dimensions: Sequence[str]) -> None:
-    if len(dimensions) > 2:
-        raise ValueError(
-            f"a picture has two dimensions, this sweep has {len(dimensions)} "
-            f"({', '.join(dimensions)}): choose a part with to_xarray().sel(...)"
-        )
-
-
-def save_sweep_plot(result: Sweep, path: Path) -> None:
-    """Draw the first quantity of a sweep and write it as the suffix of `path` says."""
-    import matplotlib as mpl
-
-    check_path(path, PICTURES)
-    with mpl.rc_context({**STYLE}):
-        replace_file(path, plot_sweep(None, result).figure.savefig)
-
-
 def _drawn(result: Sweep, name: str) -> tuple[list[Side], Array]:
     """Return the dimensions with more than one value, and the values over them."""
     values = np.asarray(result.values[name])
