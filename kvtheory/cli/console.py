@@ -12,10 +12,10 @@ from typing import Any
 
 import click
 
-from kvtheory.cli.group import leave_quietly
+from kvtheory.cli.group import INTERRUPTED, leave_quietly
 
-BAD_INPUT, FAULTY, INTERRUPTED = 2, 70, 130
-"""Exit status for bad input; for a fault of this program; after Ctrl-C, as shells have it."""
+BAD_INPUT, FAULTY = 2, 70
+"""Exit status for bad input, and for a fault of this program."""
 
 
 class Examples(click.Command):
@@ -44,7 +44,12 @@ def teaching(command: Callable[..., None]) -> Callable[..., None]:
             complain(str(error) or "interrupted", INTERRUPTED)
         except MemoryError as error:
             complain(f"error: out of memory: {error or 'ask for less at a time'}", BAD_INPUT)
-        except (ValueError, ArithmeticError, OSError, RuntimeError) as error:
+        except OSError as error:
+            if error.filename is None and error.errno is not None:
+                leave_quietly(f"the output cannot be written: {error.strerror}")
+            named = f'"{error.filename}": {error.strerror}' if error.filename else str(error)
+            complain(f"error: {in_options(named)}", BAD_INPUT)
+        except (ValueError, ArithmeticError, RuntimeError) as error:
             lines = in_options(str(error)).splitlines() or [type(error).__name__]
             head = "error:" if len(lines) == 1 else f"{len(lines)} mistakes:\n "
             complain(f"{head} " + "\n  ".join(lines), BAD_INPUT)

@@ -2,12 +2,13 @@
 
 import os
 import sys
-from typing import Any
+from typing import Any, NoReturn
 
 import click
 
-BROKEN_PIPE = 141
-"""Exit status where the reader of the output has gone, as shells have it."""
+BAD_OUTPUT, INTERRUPTED, BROKEN_PIPE = 2, 130, 141
+"""Exit status where the output cannot be written; after Ctrl-C and where its reader has gone, as shells
+have it."""
 
 
 class Commands(click.Group):
@@ -15,34 +16,63 @@ class Commands(click.Group):
 
     def main(self, *args: Any, **kwargs: Any) -> Any:
         """Run a command; letters that the console lacks are written as escapes."""
+        run: Any = super().main
+        if not kwargs.pop("standalone_mode", True):
+            return run(*args, standalone_mode=False, **kwargs)
+        output = sys.stdout
         for stream in (sys.stdout, sys.stderr):
             if hasattr(stream, "reconfigure"):
                 stream.reconfigure(errors="backslashreplace")
         try:
-            return super().main(*args, **kwargs)
-        finally:
+            status = run(*args, standalone_mode=False, **kwargs)
             _flush()
+        except click.ClickException as error:
+            error.show()
+            sys.exit(error.exit_code)
+        except click.Abort:
+            sys.exit(INTERRUPTED)
+        except BrokenPipeError:
+            leave_quietly()
+        except OSError as error:  # of standard output: all else is told by the commands
+            leave_quietly(f"the output cannot be written: {error.strerror}")
+        except SystemExit:
+            if sys.stdout is not output:  # click's own way out of a broken pipe has status 1
+                leave_quietly()
+            _flush_quietly()
+            raise
+        sys.exit(status if isinstance(status, int) else 0)
 
 
 def _flush() -> None:
-    """Write what is left; a reader that has gone is no mistake, and nobody is told."""
+    for stream in (sys.stdout, sys.stderr):
+        if stream is not None:
+            stream.flush()
+
+
+def _flush_quietly() -> None:
+    """Write what is left of the output of a command that has told already what went wrong."""
     try:
-        for stream in (sys.stdout, sys.stderr):
-            if stream is not None:
-                stream.flush()
-    except BrokenPipeError:
-        leave_quietly()
+        _flush()
+    except OSError:
+        _silence()
 
 
-def leave_quietly() -> None:
-    """End because the reader of the output has gone; what is still buffered goes nowhere."""
+def _silence() -> None:
+    """Let what is still buffered go nowhere."""
     nowhere = os.open(os.devnull, os.O_WRONLY)
     for stream in (sys.stdout, sys.stderr):
         try:
             os.dup2(nowhere, stream.fileno())
         except (AttributeError, OSError, ValueError):
             continue
-    sys.exit(BROKEN_PIPE)
+
+
+def leave_quietly(message: str = "") -> NoReturn:
+    """End because the output cannot be written: its reader has gone, or the disk is full."""
+    if message:
+        click.echo(f"kvtheory: error: {message}", err=True)
+    _silence()
+    sys.exit(BAD_OUTPUT if message else BROKEN_PIPE)
 
 
 @click.group(

@@ -37,7 +37,7 @@ def write(result: Outcome, path: Path) -> None:
     """Write header and rows; rows of points that were not computed yet are left out."""
     digest = hashlib.sha256()
     with path.open("wb") as file:
-        file.write(f"{MARK}{END}{READ}{END}{DIGEST}".encode())
+        file.write(f"{MARK}{END}{DIGEST}".encode())
         place = file.tell()
         file.write(f"{digest.hexdigest()}{END}".encode())
         for part in _parts(result):
@@ -77,8 +77,8 @@ def _is_json(text: str) -> bool:
         return False
 
 
-def damage(path: Path, plan: Plan) -> str:
-    """Say what a finished file has lost, or nothing."""
+def damage(path: Path, plan: Plan, whole: bool) -> str:
+    """Say what a file has lost since it was written, `whole` or not; or nothing."""
     with path.open("rb") as file:
         told = _told(file)
         table = file.tell()
@@ -90,7 +90,7 @@ def damage(path: Path, plan: Plan) -> str:
         file.seek(table)
         rows = sum(not line.startswith(b"#") and bool(line.strip()) for line in file) - 1
     wanted = plan.points * (len(plan.times or ()) if plan.series else 1)
-    if rows < wanted:
+    if whole and rows < wanted:
         return f"{wanted - rows:,} of its {wanted:,} rows are missing"
     return "it was changed after it was written"
 
@@ -128,7 +128,7 @@ def _comments(result: Outcome) -> list[str]:
     plan, own = result.plan, result.header()
     record = plan.record()
     swept = " x ".join(f"{axis.size} {' & '.join(axis.values)}" for axis in plan.axes)
-    lines = [f"# version: {record['kvtheory']}", f"# over: {swept}"]
+    lines = [READ, f"# version: {record['kvtheory']}", f"# over: {swept}"]
     if result.done < plan.points:
         lines.append(f"# unfinished: {result.done} of {plan.points} points; the command resumes it")
     lines += [f"#   {line}".rstrip() for line in record["scene"].splitlines()]

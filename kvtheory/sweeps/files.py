@@ -58,11 +58,10 @@ def finished(path: Path, plan: Plan) -> bool:
             f'"{path}" holds another sweep: it differs in {", ".join(differing)}; {WAYS_OUT}'
         )
     summary = json.loads(header["summary"])
-    if summary["done"] < summary["points"]:
-        return False
-    if damage := format_of(path).damage(path, plan):
+    whole = bool(summary["done"] == summary["points"])
+    if damage := format_of(path).damage(path, plan, whole):
         raise ValueError(f'"{path}" is this sweep, but {damage}; to compute it anew, {WAYS_OUT}')
-    return True
+    return whole
 
 
 class Stored(Mapping[str, Any]):

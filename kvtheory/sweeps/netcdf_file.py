@@ -75,8 +75,10 @@ def header(path: Path) -> Mapping[str, str] | None:
         return {}
 
 
-def damage(path: Path, plan: Plan) -> str:
-    """Say what a finished file has lost, or nothing."""
+def damage(path: Path, plan: Plan, whole: bool) -> str:
+    """Say what a file has lost since it was written as a `whole`, or nothing."""
+    if not whole:
+        return ""
     with _library().Dataset(path) as data:
         data.set_auto_mask(False)
         for column in plan.columns:
