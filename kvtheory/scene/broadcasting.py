@@ -7,14 +7,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kvtheory.scene.drives import VELOCITY
-from kvtheory.scene.model import Scene
-from kvtheory.scene.quantities import Quantity, SceneError, convert, nearest, problem, quantities
+from kvtheory.scene.model import LAYER, Scene, layer_stiffness
+from kvtheory.scene.quantities import Quantity, SceneError, convert, free, nearest, problem
 
 Array = NDArray[np.float64]
 
 
 def values(scene: Scene, over: Mapping[str, Any] | None = None) -> dict[str, Array]:
     """Return every quantity of the scene by its dotted key, broadcast, with those of `over` put in.
+
+    What follows from others is there too: ``"support.weight"``, and the stiffness of a layer.
 
     Raises
     ------
@@ -32,7 +34,7 @@ def values(scene: Scene, over: Mapping[str, Any] | None = None) -> dict[str, Arr
     specs = {
         f"{section}.{name}": spec
         for section in ("indenter", "foundation", "support")
-        for name, spec in quantities(getattr(scene, section)).items()
+        for name, spec in free(getattr(scene, section)).items()
     }
     specs["drive.velocity"] = VELOCITY
     given: dict[str, Any] = dict(scene.values())
@@ -56,7 +58,22 @@ def values(scene: Scene, over: Mapping[str, Any] | None = None) -> dict[str, Arr
             f"{key} {np.shape(value)}" for key, value in given.items() if np.ndim(value)
         )
         raise ValueError(f"the arrays of `over` do not broadcast: {shapes}") from None
-    return dict(zip(given, (np.asarray(array, dtype=float) for array in arrays), strict=True))
+    found = dict(zip(given, (np.asarray(array, dtype=float) for array in arrays), strict=True))
+    return _with_derived(scene, found, over or {})
+
+
+def _with_derived(
+    scene: Scene, found: dict[str, Array], over: Mapping[str, Any]
+) -> dict[str, Array]:
+    """Put in what follows from other values: the stiffness of a layer, and the weight."""
+    if scene.foundation.modulus is not None and "foundation.stiffness" not in over:
+        layer = (found[f"foundation.{name}"] for name in LAYER)
+        found["foundation.stiffness"] = layer_stiffness(*layer)
+    if "support.load" in found:
+        found["support.weight"] = found["support.load"]
+    elif "support.mass" in found:
+        found["support.weight"] = found["support.mass"] * found["support.gravity"]
+    return found
 
 
 def _array(value: Any, spec: Quantity) -> Array:

@@ -11,7 +11,7 @@ from kvtheory.results.sweep import Axis
 from kvtheory.scene.drives import VELOCITY
 from kvtheory.scene.lists import item_values, items
 from kvtheory.scene.model import Scene
-from kvtheory.scene.quantities import Quantity, SceneError, convert, nearest, problem, quantities
+from kvtheory.scene.quantities import Quantity, SceneError, convert, free, nearest, problem
 
 Array = NDArray[np.float64]
 
@@ -24,7 +24,7 @@ def sweepable(scene: Scene) -> dict[str, Quantity]:
     found = {
         f"{section}.{name}": spec
         for section, part in sections.items()
-        for name, spec in quantities(part).items()
+        for name, spec in free(part).items()
     }
     return {**found, "drive.velocity": VELOCITY}
 

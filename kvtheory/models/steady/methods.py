@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from kvtheory.models.steady import asymptotes, exact
 from kvtheory.results import STEADY_UNITS, Certificate, SteadyState
+from kvtheory.scene.broadcasting import values as broadcast
 from kvtheory.scene.model import Scene
 
 Array = NDArray[np.float64]
@@ -34,7 +35,7 @@ def solve_quadrature(scene: Scene, values: Values) -> SteadyState:
 
     shape = values["drive.velocity"].shape
     if 0 in shape:
-        return solve_exact(Scene(), dict.fromkeys(Scene().values(), np.empty(shape)))
+        return solve_exact(Scene(), broadcast(Scene(), {"drive.velocity": np.empty(shape)}))
     states = []
     for index in np.ndindex(shape):
         point = {key: float(array[index]) for key, array in values.items()}
@@ -85,7 +86,7 @@ def _solve(method: ModuleType, values: Mapping[str, Any], indenter: Any) -> Stea
     )
     if "support.depth" in values:
         return method.at_depth(*first, values["support.depth"])
-    weight = values["support.mass"] * values["support.gravity"]
+    weight = values["support.weight"]
     return method.at_load(*first, weight, values.get("support.stiffness", 0.0))
 
 
