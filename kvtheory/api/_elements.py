@@ -1,6 +1,7 @@
 """The discrete simulator: `elements`."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from typing import Any
 
 from kvtheory.api._edge import double_precision, scene_of, times_of
@@ -92,11 +93,26 @@ def elements(
     times = times_of(scene, at, problems)
     if problems:
         raise SceneError(problems)
-    with double_precision():
+    with double_precision(), _blaming_default(per_length is None):
         return simulate(
             scene, 1.0 / density, SCHEMES[scheme],
             at=times, time_step=step, certify=certify, progress=_in_words(progress), warn=warn,
         )  # fmt: skip
+
+
+@contextmanager
+def _blaming_default(taken: bool) -> Iterator[None]:
+    """Say of a density that does not suit the scene that it was taken by default, if it was."""
+    try:
+        yield
+    except ValueError as error:
+        key, _, hint = str(error).partition(": ")
+        if not taken or not key.startswith("`per_length`"):
+            raise
+        raise ValueError(
+            f"the density taken by default, {DENSITY / 1e3:g} elements per mm, does not suit the size of "
+            f"this scene: give `per_length`, {hint}"
+        ) from None
 
 
 def _in_words(progress: Progress | None) -> Callable[[int, int], None] | None:

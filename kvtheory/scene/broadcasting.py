@@ -41,7 +41,8 @@ def values(scene: Scene, over: Mapping[str, Any] | None = None) -> dict[str, Arr
     problems = []
     for key, value in (over or {}).items():
         if key not in specs:
-            problems.append(f"`over` {key}: unknown key for this scene; {nearest(key, specs)}")
+            told = f"unknown key for this scene; {nearest(key, specs)}"
+            problems.append(problem(f"`over` {key}", value, told))
             continue
         try:
             given[key] = _array(value, specs[key])

@@ -9,6 +9,7 @@ from kvtheory.scene.drive_file import history_from
 from kvtheory.scene.indenters import SHAPES
 from kvtheory.scene.model import SUPPORTS, Drive, Foundation, Run, Scene
 from kvtheory.scene.quantities import (
+    MEANT,
     Quantity,
     SceneError,
     absent,
@@ -21,6 +22,7 @@ from kvtheory.scene.quantities import (
     quantities,
     required,
 )
+from kvtheory.scene.texts import read_text
 from kvtheory.scene.units import expected
 from kvtheory.scene.waveforms import WAVEFORMS
 
@@ -164,10 +166,10 @@ def _toml(value: Any) -> str:
 
 def _read(path: Path) -> dict[str, Any]:
     try:
-        return tomllib.loads(path.read_text(encoding="utf-8-sig"))
+        return tomllib.loads(read_text(path))
     except ValueError as error:  # of TOML, of the encoding, or an endless integer
         hint = 'a quantity is text in quotes, such as radius = "10 mm"'
-        raise SceneError([f"{path} is not a TOML file in UTF-8: {error}; {hint}"]) from None
+        raise SceneError([f"{path} is not a TOML file: {error}; {hint}"]) from None
 
 
 def _override(tables: dict[str, Any], overrides: list[str], *, embedded: bool) -> list[str]:
@@ -276,8 +278,8 @@ def _part(section: str, table: Any) -> Any:
     valid = [chooser, *dict.fromkeys(key for model in models.values() for key in quantities(model))]
     if meant is None:
         problems += [
-            f"{section}.{key}: unknown key; {nearest(key, valid)}"
-            for key in rest
+            problem(f"{section}.{key}", value, f"unknown key; {nearest(key, valid)}")
+            for key, value in rest.items()
             if key not in valid
         ]
     else:
@@ -310,7 +312,8 @@ def _make(cls: Any, section: str, table: Mapping[str, Any], choice: str = "") ->
     values: dict[str, Any] = {}
     for key, value in table.items():
         if key not in valid:
-            problems.append(f"{section}.{key}: unknown key{of}; {nearest(key, known)}")
+            told = f"unknown key{of}; {_elsewhere(section, key) or nearest(key, known)}"
+            problems.append(problem(f"{section}.{key}", value, told))
             continue
         try:
             if cls is Drive and key == "file":
@@ -324,6 +327,17 @@ def _make(cls: Any, section: str, table: Mapping[str, Any], choice: str = "") ->
     if problems:
         raise SceneError(problems)
     return cls(**values)
+
+
+def _elsewhere(section: str, key: str) -> str:
+    """Say which other models of a section have a key of this name, or one that it means."""
+    if section not in CHOICES:
+        return ""
+    chooser, models = CHOICES[section]
+    names = list(dict.fromkeys(name for model in models.values() for name in quantities(model)))
+    meant = key if key in names else MEANT.get(key, "")
+    having = [f'"{name}"' for name, model in models.items() if meant in quantities(model)]
+    return f"{meant} is of {chooser} = {' or '.join(having)}" if having else ""
 
 
 def _value(value: Any, spec: Quantity) -> float:

@@ -173,9 +173,49 @@ def problem(key: str, given: Any, what: str) -> str:
     return f"{key} = {shown}: {what}"
 
 
+MEANT = {
+    **dict.fromkeys(
+        ("E", "young", "youngs_modulus", "elastic_modulus", "shear_modulus"), "modulus"
+    ),
+    **dict.fromkeys(("nu", "ν", "poisson"), "poisson_ratio"),
+    **dict.fromkeys(("h", "height"), "thickness"),
+    **dict.fromkeys(("K", "rigidity", "k_s", "spring"), "stiffness"),
+    **dict.fromkeys(
+        ("tau", "τ", "relaxation_time", "damping", "viscosity", "C"), "retardation_time"
+    ),
+    **dict.fromkeys(("R", "diameter", "curvature"), "radius"),
+    **dict.fromkeys(("V", "v", "speed", "sliding_velocity"), "velocity"),
+    **dict.fromkeys(("W", "weight", "force"), "load"),
+    **dict.fromkeys(("delta", "δ", "indentation", "penetration"), "depth"),
+    **dict.fromkeys(("m", "M", "inertia"), "mass"),
+    **dict.fromkeys(("g", "acceleration"), "gravity"),
+    **dict.fromkeys(("t_end", "end", "length"), "duration"),
+    **dict.fromkeys(("mu", "μ", "µ", "friction"), "friction_coefficient"),
+    **dict.fromkeys(("F", "F_x", "friction_load"), "friction_force"),
+    **dict.fromkeys(("F_z", "contact_force"), "normal_force"),
+    **dict.fromkeys(("a", "contact_length", "half_width"), "half_length"),
+    **dict.fromkeys(("p", "p_max", "pressure", "max_pressure"), "peak_pressure"),
+    **dict.fromkeys(("x_LE", "front"), "leading_edge"),
+    **dict.fromkeys(("x_TE", "rear"), "trailing_edge"),
+    "l_r": "retardation_length",
+}
+"""Names by symbols and by other words, which no likeness of letters would find."""
+
+
 def closest(name: str, valid: Iterable[str]) -> str | None:
-    """Return the one of the `valid` names that was probably meant, if any."""
-    return next(iter(difflib.get_close_matches(name, list(valid), n=1, cutoff=0.5)), None)
+    """Return the one of the `valid` names that was probably meant, if any.
+
+    Symbols and other words count as well, with or without the section before a dot.
+
+    >>> closest("tau", ["radius", "retardation_time"]), closest("support.W", ["support.load"])
+    ('retardation_time', 'support.load')
+    """
+    valid = list(valid)
+    section, dot, last = name.rpartition(".")
+    meant = section + dot + MEANT.get(last, last)
+    if meant in valid:
+        return meant
+    return next(iter(difflib.get_close_matches(name, valid, n=1, cutoff=0.5)), None)
 
 
 def nearest(name: str, valid: Iterable[str]) -> str:

@@ -126,7 +126,8 @@ def narrowed(axes: Sequence[Axis], start: int, stop: int) -> tuple[tuple[Axis, .
 def _known(key: Any, value: Any, specs: Mapping[str, Quantity], seen: set[str]) -> Array:
     """Return the values of one key in SI, or raise `SceneError` with all that is wrong."""
     if key not in specs:
-        raise SceneError([f"`over` {key}: unknown key for this scene; {nearest(str(key), specs)}"])
+        told = f"unknown key for this scene; {nearest(str(key), specs)}"
+        raise SceneError([problem(f"`over` {key}", value, told)])
     if key in seen:
         raise SceneError([f"`over` {key} is swept twice"])
     seen.add(key)
