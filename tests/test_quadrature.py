@@ -7,7 +7,7 @@ from scipy.integrate import quad
 
 from kvtheory.results import STEADY_UNITS
 from kvtheory.scene.indenters import Circle, Parabola, PowerLaw, Profile, Wedge
-from kvtheory.steady_state.contact import QuadratureError
+from kvtheory.steady_state.double_exponential import QuadratureError
 from kvtheory.steady_state.quadrature import at_depth, at_load
 from tests import reference
 
