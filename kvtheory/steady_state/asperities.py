@@ -70,6 +70,10 @@ PEAK_XTOL = 1e-8
 """Tolerance of the place of the peak, over the distance of two samples; its value has the square."""
 MOST_STEPS = 100
 """Trial depths; they are a handful unless a contact begins at the very depth that is sought."""
+ROUNDING = 5e-15
+"""Relative rounding of an edge or of a formula, the shape function included."""
+HALF = 0.5
+"""Share of the depth below which u_TE is better taken from the slope than from the height."""
 SETTLED = 1e-9
 """Last step of the depth, over the depth; the one after it is much smaller."""
 DEEPER = 8.0
@@ -265,8 +269,9 @@ class Contact:
         for begin, end in zip(turns[::2], turns[1::2], strict=False):
             start, _ = self._turn(x, begin, l_r)
             last, smooth = self._turn(x, end, l_r)
-            # Where p = 0, u_TE = l_r h' does not cancel for a small l_r.
-            u_te = l_r * self.surface.slope(last) if smooth else self.gap(last)
+            u_te = self.gap(last)
+            if smooth and u_te < HALF * self.depth:  # p = 0, and l_r h' does not cancel
+                u_te = l_r * self.surface.slope(last)
             x_le, u_le = start, 0.0
             if l_r:
                 left = found[-1] if found else Patch(0.0, start, 0.0, 0.0)
@@ -326,10 +331,14 @@ class Contact:
         return value, error
 
     @property
-    def leverage(self) -> float:
-        """How much more an error of x_LE counts, relatively, than one of the depth."""
-        x_le = self.patches[0].x_le
-        return abs(x_le * self.surface.slope(x_le)) / self.depth
+    def noise(self) -> float:
+        """Relative error of the depth that has the effects of rounding: of edges, of h and of h'."""
+        c = self.cells
+        low = (c.height @ VALUES).min(axis=1) < self.depth
+        edges = [x for patch in self.patches for x in (patch.x_le, patch.x_te)]
+        shift = max(abs(x * self.surface.slope(x)) for x in edges)
+        tail = (c.height_tail + self.l_r * c.slope_tail)[low].max()
+        return ROUNDING + (ROUNDING * shift + float(tail)) / self.depth
 
     def peak(self) -> float:
         """Return the highest p/K, with one-sided values at edges and kinks."""

@@ -18,6 +18,7 @@ for the circle, ln(h + l_r h') is convex in ln x, so that the steps fall towards
 Everything is written in operators that floats and columns, of shape (n, 1), share.
 """
 
+import math
 from collections.abc import Callable
 from typing import NamedTuple
 
@@ -32,6 +33,9 @@ from kvtheory.steady_state.double_exponential import (
     least,
 )
 
+EPS = float(np.finfo(float).eps)
+ULPS = 8.0 * EPS
+"""The least relative step of x."""
 LINEAR = 1e-8
 """Newton's method squares an error: a step of this size leaves less than the rounding."""
 CUBIC = 1e-5
@@ -52,6 +56,10 @@ PEAK_STEPS = 8
 """Secant steps towards the peak: one for a power, more for a circle."""
 TINY = 1e-300
 """Added to what may vanish together with what it divides."""
+
+
+ROUNDING = 5e-15
+"""Relative rounding of an edge or of a formula, the shape function included."""
 
 
 class Contact(NamedTuple):
@@ -75,13 +83,15 @@ class Contact(NamedTuple):
     """d(W/K)/d(delta)."""
 
     @property
-    def leverage(self) -> Value:
-        """How much more an error of x_LE counts, relatively, than one of the depth."""
-        return self.a / (self.a_moves * self.depth)
+    def noise(self) -> Value:
+        """Relative error of the depth that has the effects of rounding: of x_LE, and of u."""
+        return ROUNDING * (1.0 + self.a / (self.a_moves * self.depth))
 
 
 def at_depth(shape: Indenter, l_r: Value, depth: Value) -> Contact:
     """Return the contact at a depth."""
+    if not largest(depth - _deepest(shape)) < 0.0:
+        raise QuadratureError("the leading edge lies beyond the indenter's reach")
     a = _first(shape, depth, depth, lambda x: 1.0)
     return _at_depth(shape, l_r, depth, a, a)
 
@@ -93,7 +103,7 @@ def at_load(shape: Indenter, l_r: Value, load: Value, spring: Value) -> Contact:
     concave, so that W/K is at least half of delta d(W/K)/d(delta). Newton's method in logarithms
     therefore closes in from everywhere; the second derivative of W makes it cubic (Chebyshev).
     """
-    deepest = shape.height(np.nextafter(shape.reach, 0.0))
+    deepest = _deepest(shape)
     x = a = _first(shape, load**0.5, load, lambda x: x + (l_r + spring))  # W/K is about delta (a + l_r)
     depth = shape.height(a)
     for _ in range(MOST_STEPS):
@@ -110,6 +120,11 @@ def at_load(shape: Indenter, l_r: Value, load: Value, spring: Value) -> Contact:
     raise QuadratureError(
         "no depth was found that carries the weight: it lies beyond the indenter's reach"
     )
+
+
+def _deepest(shape: Indenter) -> Value:
+    """Return the depth at which the contact is as wide as the reach."""
+    return math.inf if shape.reach is math.inf else shape.height(shape.reach * (1.0 - EPS))
 
 
 def _first(
@@ -145,7 +160,7 @@ def _half_length(shape: Indenter, depth: Value, a: Value) -> tuple[Value, Value]
         height, slope = shape.height(a), shape.slope(a)
         factor = (depth / height) ** (height / (a * slope))
         a = least(a * factor, 0.5 * (a + shape.reach))
-        if largest(abs(factor - 1.0)) < LINEAR:
+        if largest(abs(depth / height - 1.0)) < LINEAR:
             return a, 1.0 / slope
     raise QuadratureError("the leading edge lies beyond the indenter's reach")
 
@@ -160,14 +175,15 @@ def _trailing(
         rise = x * slope + l_r * _bend(shape, x, slope)
         factor = (depth / total) ** (total / rise)
         moves, x = x / rise, least(x * factor, a)
-        if largest(abs(factor - 1.0)) < LINEAR:
+        if largest(abs(factor - 1.0) + abs(depth / total - 1.0)) < LINEAR:
             return x, moves
     raise QuadratureError("the trailing edge was not found: it is too close to a vertex")
 
 
 def _bend(shape: Indenter, x: Value, slope: Value) -> Value:
     """Return x h''."""
-    return (slope - shape.slope(x * (1.0 - DIFFERENCE))) / DIFFERENCE
+    step = DIFFERENCE * least(x, shape.reach - x) + ULPS * x
+    return x * ((slope - shape.slope(x - step)) / step)
 
 
 def _peak(shape: Indenter, l_r: Value, contact: Contact) -> Value:

@@ -24,10 +24,9 @@ import numpy as np
 from kvtheory.results import Certificate, SteadyState
 from kvtheory.scene.indenters import Indenter
 from kvtheory.steady_state import asperities, contact
+from kvtheory.steady_state.contact import ROUNDING
 from kvtheory.steady_state.double_exponential import QuadratureError, Value, largest
 
-ROUNDING = 5e-15
-"""Relative rounding of an edge or of a formula, the shape function included."""
 CARRIED = 1e-6
 """Relative error of the load carried above which the result is refused."""
 MARGIN = 2.0
@@ -171,8 +170,7 @@ def _state(
 ) -> SteadyState:
     """Give every quantity its unit and sign, and carry the errors of depth and of rounding to it."""
     side = 1.0 - 2.0 * (velocity < 0.0)
-    # An error of x_LE acts as the error of depth that would move the edge by as much.
-    noise = MARGIN * (depth_error + ROUNDING * (1.0 + found.leverage))
+    noise = MARGIN * (depth_error + found.noise)
     values, errors = {}, {}
     for name, (value, own, power) in model.quantities(shape, l_r, found).items():
         if name in FORCES:
