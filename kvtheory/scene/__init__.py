@@ -1,6 +1,5 @@
 """What is modelled: scenes, their files, and units at the edge."""
 
-from kvtheory.scene.fields import SceneError
 from kvtheory.scene.files import load_scene, template, to_toml
 from kvtheory.scene.indenters import Circle, Indenter, Parabola, PowerLaw, Profile, Wedge
 from kvtheory.scene.model import (
@@ -13,6 +12,8 @@ from kvtheory.scene.model import (
     Support,
     Suspended,
 )
+from kvtheory.scene.quantities import SceneError
+from kvtheory.scene.waveforms import Sine, SmoothRamp, Triangle
 
 __all__ = [
     "Circle",
@@ -27,8 +28,11 @@ __all__ = [
     "Run",
     "Scene",
     "SceneError",
+    "Sine",
+    "SmoothRamp",
     "Support",
     "Suspended",
+    "Triangle",
     "Wedge",
     "load_scene",
     "template",

@@ -9,7 +9,7 @@ import math
 import re
 from decimal import Decimal
 from fractions import Fraction
-from functools import cache
+from functools import cache, lru_cache
 from numbers import Real
 from typing import Any
 
@@ -21,6 +21,7 @@ EXAMPLES = {
     "kg/m": ("1 kg/mm", "1000 kg/m", "10 g/mm"),
     "N/m": ("10 N/mm", "9.8 kN/m"),
     "N/m^2": ("30 MN/m^2", "30 MPa", "30 N/mm^2"),
+    "1/s": ("5 Hz", "300 /min", "5 s^-1"),
     "1/m": ("200 /mm", "200 mm^-1", "2e5 /m"),
     "N/m^3": ("10 GN/m^3", "10 N/mm^3", "10 MPa/mm"),
 }
@@ -110,11 +111,12 @@ def _scaled(number: str | float, written: str, unit: str) -> float:
         return math.copysign(math.inf, approximate)
 
 
+@lru_cache(maxsize=1024)
 def _factor(written: str, unit: str) -> Fraction:
     # The usual ways to write a power: mm3, s-1, m ^ 3, N·m.
     written = re.sub(r"\s*(\^|\*\*)\s*", "^", written.replace("·", "*"))
     written = re.sub(r"(?<=[^\W\d_])(?=-?[0-9])", "^", written)
-    written = re.sub(r"^/", "dimensionless/", written)
+    written = re.sub(r"^(1\s*)?/", "dimensionless/", written)
     if len(written) > LONGEST_UNIT or not _UNIT.fullmatch(written):
         raise ValueError(f'"{written}" is not a unit; expected {expected(unit)}')
     registry = _registry()

@@ -1,0 +1,239 @@
+r"""The steady contact of a convex, even shape, for one scene or for columns of scenes.
+
+Geometry, for V > 0 (V < 0 is the mirror image): the foundation moves through x with V. Its surface
+meets the indenter at the leading edge, x_LE < 0, and leaves it at the trailing edge. Between them
+
+    compression   u = delta - h(x)                        (Eq. 35)
+    pressure      p = K (u - l_r h'(x)),  l_r = V tau     (Eqs. 12, 29, 36)
+
+The leading edge is where h = delta on the entering side. The trailing edge is where p falls to zero,
+by a root of h + l_r h' = delta, or by the jump of h' at the vertex of a wedge.
+
+One contact: e^(x/l_r) u rises where p > 0, for its derivative is e^(x/l_r) p/(K l_r); the surface
+that is left behind relaxes as e^(-x/l_r), and is met again only where e^(x/l_r) u exceeds its running
+maximum. As h is convex, log u + x/l_r is concave: there is one maximum, the trailing edge.
+
+Roots are found by Newton's method in ln h against ln x, which is exact for a power. For powers and
+for the circle, ln(h + l_r h') is convex in ln x, so that the steps fall towards the root from above.
+Everything is written in operators that floats and columns, of shape (n, 1), share.
+"""
+
+import math
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+
+from kvtheory.models.steady.double_exponential import (
+    QuadratureError,
+    Value,
+    integral,
+    largest,
+    least,
+)
+from kvtheory.scene.indenters import Indenter
+
+EPS = float(np.finfo(float).eps)
+ULPS = 8.0 * EPS
+"""The least relative step of x."""
+LINEAR = 1e-8
+"""Newton's method squares an error: a step of this size leaves less than the rounding."""
+CUBIC = 1e-5
+"""The same for the depth, whose steps leave a cube of the error."""
+DIFFERENCE = 1e-7
+"""Relative step of x for h'': its error only slows the roots, and changes a peak by its square."""
+GRID = 2.0 ** np.arange(-100, 101)
+"""Half-lengths over the depth that are tried first, so that steep powers do not overflow later."""
+NEAR_REACH = 0.5
+"""Share of the reach at which the search for the half-length starts at most."""
+MOST_STEPS = 200
+"""Steps of a root; they are a handful unless a vertex or the reach of a circle is close."""
+VERTEX = 1e-290
+"""A trailing edge closer to the lowest point than this share of the half-length is at it."""
+FLOOR = 1e-20
+"""Share of the half-length below which the peak is at the lowest point."""
+PEAK_STEPS = 8
+"""Secant steps towards the peak: one for a power, more for a circle."""
+TINY = 1e-300
+"""Added to what may vanish together with what it divides."""
+
+
+ROUNDING = 5e-15
+"""Relative rounding of an edge or of a formula, the shape function included."""
+
+
+class Contact(NamedTuple):
+    """A contact at one depth; forces are over the stiffness."""
+
+    depth: Value
+    a: Value
+    """Half the length of the contact at rest; x_LE = -a."""
+    x: Value
+    """The trailing edge, unless it is at the vertex."""
+    a_moves: Value
+    x_moves: Value
+    """d a/d(delta), d(x_TE)/d(delta)."""
+    rolls: Value
+    """1, or 0 where the pressure jumps through zero at the vertex."""
+    u_te: Value
+    load: Value
+    load_error: Value
+    """Estimate of the relative error of the load at this very depth."""
+    load_slope: Value
+    """d(W/K)/d(delta)."""
+
+    @property
+    def noise(self) -> Value:
+        """Relative error of the depth that has the effects of rounding: of x_LE, and of u."""
+        return ROUNDING * (1.0 + self.a / (self.a_moves * self.depth))
+
+
+def at_depth(shape: Indenter, l_r: Value, depth: Value) -> Contact:
+    """Return the contact at a depth."""
+    if not largest(depth - _deepest(shape)) < 0.0:
+        raise QuadratureError("the leading edge lies beyond the indenter's reach")
+    a = _first(shape, depth, depth, lambda x: 1.0)
+    return _at_depth(shape, l_r, depth, a, a)
+
+
+def at_load(shape: Indenter, l_r: Value, load: Value, spring: Value) -> Contact:
+    """Return the contact where W/K + spring * depth is the load.
+
+    d ln W/d ln delta lies between 1 and 2: above, because W is convex in delta; below, because u is
+    concave, so that W/K is at least half of delta d(W/K)/d(delta). Newton's method in logarithms
+    therefore closes in from everywhere; the second derivative of W makes it cubic (Chebyshev).
+    """
+    deepest = _deepest(shape)
+    x = a = _first(
+        shape, load**0.5, load, lambda x: x + (l_r + spring)
+    )  # W/K is about delta (a + l_r)
+    depth = shape.height(a)
+    for _ in range(MOST_STEPS):
+        contact = _at_depth(shape, l_r, depth, a, x)
+        total, slope = contact.load + spring * depth, contact.load_slope + spring
+        power = depth * slope / total
+        bend = 1.0 - power + depth * (contact.a_moves + contact.x_moves) / slope
+        missing = (load - total) / (0.5 * (load + total))  # nearly the logarithm of the quotient
+        share = 1.0 - 0.5 * missing / (1.0 + missing * missing) * bend / power
+        factor = (load / total) ** (share / power)
+        depth, a, x = least(depth * factor, 0.5 * (depth + deepest)), contact.a, contact.x
+        if largest(abs(factor - 1.0)) < CUBIC:
+            return _at_depth(shape, l_r, depth, a, x)
+    raise QuadratureError(
+        "no depth was found that carries the weight: it lies beyond the indenter's reach"
+    )
+
+
+def _deepest(shape: Indenter) -> Value:
+    """Return the depth at which the contact is as wide as the reach."""
+    return math.inf if shape.reach is math.inf else shape.height(shape.reach * (1.0 - EPS))
+
+
+def _first(shape: Indenter, scale: Value, wanted: Value, width: Callable[[Value], Value]) -> Value:
+    """Return the first of spaced points x where h times a width is as wanted, or the last."""
+    x = least(scale * GRID, NEAR_REACH * shape.reach)
+    first = np.minimum((shape.height(x) * width(x) < wanted).sum(-1), GRID.size - 1)
+    return x[first].item() if x.ndim == 1 else np.take_along_axis(x, first[:, None], -1)
+
+
+def _at_depth(shape: Indenter, l_r: Value, depth: Value, a: Value, x: Value) -> Contact:
+    """Return the contact at a depth, from guesses of a and x."""
+    start = a
+    a, a_moves = _half_length(shape, depth, start)
+    rolls = (l_r * shape.slope(VERTEX * a) < depth) * 1.0
+    x, x_moves = _trailing(shape, l_r * rolls, depth, a, x * (a / start))
+    front, front_error = integral(shape.height, a)
+    rear, rear_error = integral(shape.height, x)
+    # Where p = 0, u_TE = l_r h', which does not cancel for a small l_r.
+    u_te = l_r * rolls * shape.slope(x) + (1.0 - rolls) * depth
+    length = a + rolls * x
+    load = depth * length - front - rolls * rear + l_r * u_te
+    error = (front * front_error + rolls * rear * rear_error) / load
+    return Contact(
+        depth, a, x, a_moves, rolls * x_moves, rolls, u_te, load, error, length + l_r
+    )  # fmt: skip
+
+
+def _half_length(shape: Indenter, depth: Value, a: Value) -> tuple[Value, Value]:
+    """Return a > 0 with h(a) = depth, and d a/d(delta)."""
+    for _ in range(MOST_STEPS):
+        height, slope = shape.height(a), shape.slope(a)
+        factor = (depth / height) ** (height / (a * slope))
+        a = least(a * factor, 0.5 * (a + shape.reach))
+        if largest(abs(depth / height - 1.0)) < LINEAR:
+            return a, 1.0 / slope
+    raise QuadratureError("the leading edge lies beyond the indenter's reach")
+
+
+def _trailing(shape: Indenter, l_r: Value, depth: Value, a: Value, x: Value) -> tuple[Value, Value]:
+    """Return x in (0, a] with h(x) + l_r h'(x) = depth, and d x/d(delta)."""
+    for _ in range(MOST_STEPS):
+        slope = shape.slope(x)
+        total = shape.height(x) + l_r * slope
+        rise = x * slope + l_r * _bend(shape, x, slope)
+        factor = (depth / total) ** (total / rise)
+        moves, x = x / rise, least(x * factor, a)
+        if largest(abs(factor - 1.0) + abs(depth / total - 1.0)) < LINEAR:
+            return x, moves
+    raise QuadratureError("the trailing edge was not found: it is too close to a vertex")
+
+
+def _bend(shape: Indenter, x: Value, slope: Value) -> Value:
+    """Return x h''."""
+    step = DIFFERENCE * least(x, shape.reach - x) + ULPS * x
+    return x * ((slope - shape.slope(x - step)) / step)
+
+
+def _peak(shape: Indenter, l_r: Value, contact: Contact) -> Value:
+    """Return the highest p/K.
+
+    It is on the entering side, at y = -x > 0. There p' = 0 means y = l_r y h''/h', which is constant
+    for a power and rises with y for the circle, or else the peak is at the leading edge. Every value
+    on the way is a pressure of this contact, so that the highest of them is never too high.
+    """
+    found, last = l_r * shape.slope(contact.a), (contact.a, 0.0 * l_r)
+    y = least(l_r, contact.a) + FLOOR * contact.a
+    for _ in range(PEAK_STEPS):
+        slope = shape.slope(y)
+        found = -least(-found, -(contact.depth - shape.height(y) + l_r * slope))
+        to = l_r * _bend(shape, y, slope) / (slope + TINY) + FLOOR * contact.a
+        gain = (to - last[1]) / (y - last[0] + TINY)
+        last = y, to
+        y = least(abs((to - gain * y) / (1.0 - gain)), contact.a)
+    return found
+
+
+def quantities(shape: Indenter, l_r: Value, contact: Contact) -> dict[str, tuple[Value, ...]]:
+    """Return each quantity over the stiffness, its relative error at this depth, and d ln/d ln delta.
+
+    The friction is l_r times the sum of int h'^2 dx and of u_TE^2/(2 l_r).
+    """
+    depth, a, x, a_moves, x_moves, rolls, u_te, load, load_error, load_slope = contact
+    front, front_error = integral(lambda x: shape.slope(x) ** 2, a)
+    rear, rear_error = integral(lambda x: shape.slope(x) ** 2, x)
+    at_a, at_x = shape.slope(a), shape.slope(x)
+    left = rolls * at_x + (1.0 - rolls) * depth / (l_r + rolls)  # u_TE/l_r
+    drag = front + rolls * rear
+    drag_error = (front * front_error + rolls * rear * rear_error) / drag
+    total = drag + 0.5 * u_te * left
+    load_power, friction_power = depth * load_slope / load, depth * (left + at_a) / total
+    drag_power = depth * (at_a + at_x * at_x * x_moves) / drag
+    peak = _peak(shape, l_r, contact)
+    peak_power = depth / peak * -least(-1.0 + 0.0 * l_r, -l_r * _bend(shape, a, at_a) / (a * at_a))
+    edge = depth * a_moves / a
+    return {
+        "depth": (depth, 0.0, 0.0),
+        "half_length": (a, 0.0, edge),
+        "retardation_length": (l_r, 0.0, 0.0),
+        "leading_edge": (-a, 0.0, edge),
+        "trailing_edge": (rolls * x, 0.0, depth * x_moves / x),
+        "load": (load, load_error, load_power),
+        "friction_force": (l_r * total, drag_error, friction_power),
+        "friction_coefficient": (
+            l_r * total / load,
+            load_error + drag_error,
+            friction_power - load_power,
+        ),
+        "peak_pressure": (peak, 0.0, peak_power),
+        "dissipated_in_contact": (drag / total, drag_error, drag_power - friction_power),
+    }

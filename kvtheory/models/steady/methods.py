@@ -1,0 +1,130 @@
+"""The ways to compute steady sliding, and the one place that chooses among them."""
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from copy import copy
+from dataclasses import replace
+from types import ModuleType
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kvtheory.models.steady import asymptotes, exact
+from kvtheory.results import STEADY_UNITS, Certificate, SteadyState
+from kvtheory.scene.model import Scene
+
+Array = NDArray[np.float64]
+Values = Mapping[str, Array]
+
+COLUMN = 512
+"""Scenes that are integrated at once: their nodes then fit into the second cache of a core."""
+PROVED = (
+    "closed forms of the asymptotes' errors (derivations error-L1, error-L2-fixed, error-L2-dead-weight "
+    "and others)"
+)
+ROUNDING = 64 * 2.0**-52
+"""Of an asymptote and of its error, which are of some twenty operations each."""
+
+
+def solve_exact(scene: Scene, values: Values) -> SteadyState:
+    """Evaluate the closed forms on whole arrays."""
+    return _solve(exact, values, values["indenter.radius"])
+
+
+def solve_quadrature(scene: Scene, values: Values) -> SteadyState:
+    """Integrate the pressure of any indenter: in columns if it is convex, else scene by scene.
+
+    A scene that fails fails the call.
+    """
+    shape = values["drive.velocity"].shape
+    if 0 in shape:
+        return solve_exact(Scene(), dict.fromkeys(Scene().values(), np.empty(shape)))
+    if not shape:
+        return _integrated(scene, {key: float(array) for key, array in values.items()})
+    count = math.prod(shape)
+    if scene.indenter.convex:
+        columns = {key: array.reshape(-1, 1) for key, array in values.items()}
+        parts: list[Any] = [slice(start, start + COLUMN) for start in range(0, count, COLUMN)]
+    else:
+        columns = {key: array.ravel() for key, array in values.items()}
+        parts = list(range(count))
+    states = [
+        _integrated(scene, {key: column[part] for key, column in columns.items()}) for part in parts
+    ]
+    return _joined(states, shape)
+
+
+def _integrated(scene: Scene, values: Mapping[str, Any]) -> SteadyState:
+    """Integrate one scene of floats, or a column of scenes."""
+    from kvtheory.models.steady import quadrature  # not needed by the other methods
+
+    # The values have been checked as a whole; a column is no value for the indenter's own check.
+    indenter = copy(scene.indenter)
+    for key, value in values.items():
+        if key.startswith("indenter."):
+            object.__setattr__(indenter, key.removeprefix("indenter."), value)
+    return _solve(quadrature, values, indenter)
+
+
+def solve_asymptote(scene: Scene, values: Values) -> SteadyState:
+    """Evaluate the asymptote of the regime in which each velocity lies, with its error in closed form."""
+    truth = solve_exact(scene, values)
+    limits = asymptotes.limits(values)
+    V, tau = values["drive.velocity"], values["foundation.retardation_time"]
+    slow = np.abs(V) <= asymptotes.critical_velocity(limits, tau)
+    side = np.where(V < 0.0, -1.0, 1.0)
+    with np.errstate(divide="ignore", invalid="ignore"):  # at V = 0 the high one is not chosen
+        low, high = (asymptotes.quantities(limits, regime, side) for regime in ("low", "high"))
+        errors = asymptotes.low_errors(limits, truth), asymptotes.high_errors(limits, truth)
+    found = {name: np.where(slow, low[name], high[name]) for name in STEADY_UNITS}
+    wrong = {name: np.abs(np.where(slow, errors[0][name], errors[1][name])) for name in found}
+    certificate = Certificate(
+        "proved", PROVED, {name: _scalar(error + ROUNDING) for name, error in wrong.items()}
+    )
+    return SteadyState(
+        **{name: _scalar(found[name]) for name in STEADY_UNITS},
+        model="asymptote",
+        certificate=certificate,
+    )
+
+
+METHODS: dict[str, Callable[[Scene, Values], SteadyState]] = {
+    "exact": solve_exact,
+    "quadrature": solve_quadrature,
+    "asymptote": solve_asymptote,
+}
+
+
+def _solve(method: ModuleType, values: Mapping[str, Any], indenter: Any) -> SteadyState:
+    """Call the function of `method` that fits the support; `indenter` is its first argument."""
+    first = (
+        indenter,
+        values["foundation.stiffness"],
+        values["foundation.retardation_time"],
+        values["drive.velocity"],
+    )
+    if "support.depth" in values:
+        return method.at_depth(*first, values["support.depth"])
+    weight = values["support.mass"] * values["support.gravity"]
+    return method.at_load(*first, weight, values.get("support.stiffness", 0.0))
+
+
+def _scalar(array: Array) -> Any:
+    return array if array.ndim else float(array)
+
+
+def _joined(states: Sequence[SteadyState], shape: tuple[int, ...]) -> SteadyState:
+    """Join the states of single scenes or of columns into one of arrays."""
+
+    def joined(parts: Sequence[Mapping[str, Any]]) -> dict[str, Array]:
+        return {
+            name: np.concatenate([np.ravel(part[name]) for part in parts]).reshape(shape)
+            for name in STEADY_UNITS
+        }
+
+    errors = joined([state.certificate.relative_error for state in states])
+    certificate = replace(states[0].certificate, relative_error=errors)
+    return SteadyState(
+        **joined([vars(state) for state in states]), model=states[0].model, certificate=certificate
+    )
