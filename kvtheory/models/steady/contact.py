@@ -199,7 +199,7 @@ def _peak(shape: Indenter, l_r: Value, contact: Contact) -> Value:
         to = l_r * _bend(shape, y, slope) / (slope + TINY) + FLOOR * contact.a
         gain = (to - last[1]) / (y - last[0] + TINY)
         last = y, to
-        y = least(abs((to - gain * y) / (1.0 - gain)), contact.a)
+        y = least(abs((to - gain * y) / (1.0 - gain + TINY)), contact.a)
     return found
 
 

@@ -44,7 +44,7 @@ def solve_quadrature(scene: Scene, values: Values) -> SteadyState:
         return _integrated(scene, {key: float(array) for key, array in values.items()})
     count = math.prod(shape)
     if scene.indenter.convex:
-        columns = {key: array.reshape(-1, 1) for key, array in values.items()}
+        columns: dict[str, Any] = {key: array.reshape(-1, 1) for key, array in values.items()}
         parts: list[Any] = [slice(start, start + COLUMN) for start in range(0, count, COLUMN)]
     else:
         columns = {key: array.ravel() for key, array in values.items()}

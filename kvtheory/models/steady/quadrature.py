@@ -22,6 +22,7 @@ from typing import Any
 import numpy as np
 
 from kvtheory.models.steady import asperities, contact
+from kvtheory.models.steady.cells import Surface
 from kvtheory.models.steady.contact import ROUNDING
 from kvtheory.models.steady.double_exponential import QuadratureError, Value, largest
 from kvtheory.results import Certificate, SteadyState
@@ -156,7 +157,7 @@ def _model(indenter: Indenter, velocity: Value) -> tuple[Any, Any]:
     """Return the shape, and the module that knows its contacts."""
     if indenter.convex:
         return indenter, contact
-    return asperities.Surface(indenter, -1.0 if velocity < 0.0 else 1.0), asperities
+    return Surface(indenter, -1.0 if velocity < 0.0 else 1.0), asperities
 
 
 def _state(
@@ -173,11 +174,8 @@ def _state(
     noise = MARGIN * (depth_error + found.noise)
     values, errors = {}, {}
     for name, (value, own, power) in model.quantities(shape, l_r, found).items():
-        if name in FORCES:
-            value = stiffness * value
-        if name in ODD:
-            value = side * value + 0.0  # no negative zero
-        values[name] = value
+        unit = stiffness if name in FORCES else 1.0
+        values[name] = unit * (side * value + 0.0 if name in ODD else value)  # no negative zero
         errors[name] = own + ROUNDING + noise * abs(power)
     errors["depth"] = depth_error
     return SteadyState(
