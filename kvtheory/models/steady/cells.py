@@ -32,6 +32,8 @@ NOISE = 1e-9
 """The same for a shape whose own rounding is more than that; the certificate says so."""
 HELPS = 0.25
 """What a cut leaves of the last coefficients of a smooth shape, at the most."""
+WIDE = 1e3
+"""Height over the depth above which rounding is not accepted, but cut away."""
 JUMP, NARROW = 1e-3, 1e-9
 """Last coefficients of a slope, over the slope, that only a jump keeps in so narrow a cell."""
 TAIL_MARGIN = 4.0
@@ -153,9 +155,8 @@ class Surface:
             width, slope_tail = end - start, np.abs(slope[:, TAIL:]).sum(axis=1)
             size, worst = np.abs(slope).sum(axis=1), np.maximum(tail, slope_tail * width)
             # Where a cut does not help, the coefficients are the rounding of the shape.
-            noisy = (slope_tail < NOISE * size) & (
-                worst > HELPS * np.broadcast_to(tails, near.shape)[near]
-            )
+            noisy = worst > HELPS * np.broadcast_to(tails, near.shape)[near]
+            noisy &= (slope_tail < NOISE * size) & (values[near].max(axis=1) < WIDE * depth)
             fine = (worst < RESOLVED * depth) | (noisy & (worst < NOISE * depth))
             self._note_jumps(todo[(slope_tail > JUMP * size) & (width < NARROW * self._length)])
             done.append(Cells(start, end, height, slope, tail, slope_tail).only(fine))
@@ -181,11 +182,10 @@ class Surface:
 
     def _check_slope(self, cells: Cells, depth: float) -> None:
         """Raise unless h' is the derivative of h, and h is nowhere negative."""
-        allowed = (
-            CHECK_RTOL * depth + cells.height_tail + cells.slope_tail * (cells.end - cells.start)
-        )
+        width = cells.end - cells.start
+        allowed = CHECK_RTOL * depth + TAIL_MARGIN * (cells.height_tail + cells.slope_tail * width)
         rise = 2.0 * cells.height[:, 1::2].sum(axis=1)
-        if np.any(np.abs(cells.slope[:, 0] * (cells.end - cells.start) - rise) > allowed):
+        if np.any(np.abs(cells.slope[:, 0] * width - rise) > allowed):
             raise QuadratureError(
                 "the slope function is not the derivative of the height function, "
                 "or jumps where `kinks` does not say so"
