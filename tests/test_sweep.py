@@ -230,7 +230,12 @@ def test_other_shapes_are_swept_by_quadrature_only():
     wedge = kv.Scene(indenter=kv.Wedge(inclination=0.1))
     over = {"indenter.inclination": [0.05, 0.1]}
     result = kv.sweep(wedge, over=over, quantities="friction_coefficient")
-    assert result["friction_coefficient"][1] == kv.steady(wedge).friction_coefficient
+    single = kv.steady(wedge).friction_coefficient
+    assert result["friction_coefficient"][1] == pytest.approx(single, rel=1e-14)
+    many = {"drive.velocity": "1 mm/s:10 m/s:40:log"}
+    blocks = [kv.sweep(wedge, over=many, block=block)["load"] for block in (1, 3, 40)]
+    assert np.array_equal(blocks[0], blocks[1])
+    assert np.array_equal(blocks[0], blocks[2])
     with pytest.raises(ValueError, match="parabola only"):
         kv.sweep(wedge, over=over, quantities="hops")
     with pytest.raises(ValueError, match="parabola only"):
