@@ -45,7 +45,7 @@ def test_what_is_no_text_is_told_with_its_name(tmp_path, content):
     [
         ("support.depth=1 mm", ['"1 mm"', 'depth is of kind = "fixed"']),
         ("support.delta=1 mm", ['depth is of kind = "fixed"']),
-        ("support.weight=3 N/mm", ['did you mean "load"']),
+        ("support.weight=3 N/mm", ['did you mean "load"', '"3 N/mm"']),
         ("foundation.E=5 MPa", ['did you mean "modulus"']),
         ("foundation.tau=1 s", ['did you mean "retardation_time"', '"1 s"']),
         ("foundation.height=1 mm", ['did you mean "thickness"']),

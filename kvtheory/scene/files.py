@@ -312,7 +312,8 @@ def _make(cls: Any, section: str, table: Mapping[str, Any], choice: str = "") ->
     values: dict[str, Any] = {}
     for key, value in table.items():
         if key not in valid:
-            told = f"unknown key{of}; {_elsewhere(section, key) or nearest(key, known)}"
+            elsewhere = "" if MEANT.get(key, key) in known else _elsewhere(section, key)
+            told = f"unknown key{of}; {elsewhere or nearest(key, known)}"
             problems.append(problem(f"{section}.{key}", value, told))
             continue
         try:
