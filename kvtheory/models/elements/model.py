@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import brentq
 
+from kvtheory.models.elements.law import KelvinVoigt
 from kvtheory.scene.base_motion import BaseMotion
 from kvtheory.scene.indenters import Indenter
 from kvtheory.scene.model import Scene
@@ -77,6 +78,11 @@ class Model:
         """Return the motion of the base until the end of the run."""
         least = self.half_length / self.retardation_time
         return scene.drive.motion(scene.run.duration, least)
+
+    @property
+    def law(self) -> KelvinVoigt:
+        """How one element answers."""
+        return KelvinVoigt(self.stiffness, self.retardation_time)
 
     @property
     def damping(self) -> float:

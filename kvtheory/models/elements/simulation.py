@@ -158,7 +158,7 @@ def _with_room(
     kept = KEPT_DEPTH
     while True:
         try:
-            row = Row(model, path, kept)
+            row = Row(model, path, kept, relaxes=scheme.rule.relaxes)
             return _run(row, scheme, legs, wanted, progress)
         except OutgrownError as outgrown:
             kept *= MORE_ROOM
@@ -221,7 +221,7 @@ def _report(row: Row, scheme: Scheme, at: Motion, time: float) -> tuple[float, .
     model, V = row.model, row.path.velocity(time)
     under = row.under(at.time, 0.0, max(at.depth, model.depth))
     p = pressure(model, under, at.depth, at.rate, V)
-    pressed = under.touched & (p >= 0.0)
+    pressed = under.touched & (scheme.rule.pulls | (p >= 0.0))
     V_before = row.path.velocity(at.time, before=True)
     p_before = p if V_before == V else pressure(model, under, at.depth, at.rate, V_before)
     contact: Contact = (
