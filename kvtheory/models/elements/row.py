@@ -46,7 +46,7 @@ class Row:
 
     def __init__(self, model: Model, path: BaseMotion, kept_depth: float = KEPT_DEPTH) -> None:
         self.model, self.path = model, path
-        self.memory = -model.retardation_time * math.log(FORGOTTEN)
+        self.memory = -model.relaxation_time * math.log(FORGOTTEN)
         self.deepest = kept_depth * model.depth
         self.reach = span(model.indenter, self.deepest)
         self.first, self.u, self.touched = 0, np.zeros(0), np.zeros(0, dtype=bool)
@@ -71,7 +71,7 @@ class Row:
             self._move(t, low, high)
         place = slice(low - self.first, high - self.first)
         x: Array = self.model.spacing * np.arange(low, high, dtype=np.float64) + Y
-        decay = math.exp(-delay / self.model.retardation_time)
+        decay = math.exp(-delay / self.model.relaxation_time)
         self.updates += high - low
         height = self.model.height(x)
         return Under(place, x, height, decay * self.u[place], self.touched[place])
@@ -80,7 +80,7 @@ class Row:
         self, under: Under, u: Array, touched: NDArray[np.bool_], delay: float = 0.0
     ) -> None:
         """Let `delay` pass: put in what has become of the elements under the indenter."""
-        self.u *= math.exp(-delay / self.model.retardation_time)
+        self.u *= math.exp(-delay / self.model.relaxation_time)
         self.u[under.place] = u
         self.touched[:] = False
         self.touched[under.place] = touched

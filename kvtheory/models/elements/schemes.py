@@ -131,7 +131,9 @@ def _explicit(scheme: Scheme, model: Model, row: Row, now: Motion, h: float) -> 
         at = Motion(now.time + c * h, depth, rate)
         rates.append(rate)
         pulls.append(
-            _meet(model, row, at, now, before=c == 1.0)[0] if math.isfinite(model.mass) else 0.0
+            _meet(model, row, at, now, before=c == 1.0, within=c > 0.0)[0]
+            if math.isfinite(model.mass)
+            else 0.0
         )
     new = Motion(
         now.time + h,
@@ -151,13 +153,16 @@ def _dot(a: Sequence[float], b: Sequence[float]) -> float:
 
 
 def _meet(
-    model: Model, row: Row, at: Motion, now: Motion, *, before: bool
+    model: Model, row: Row, at: Motion, now: Motion, *, before: bool, within: bool = False
 ) -> tuple[float, Under, NDArray[np.bool_]]:
     """Return M δ'', the elements under the indenter, and which of them press (Eqs. 17, 20-25)."""
     under = row.under(at.time, at.time - now.time, max(at.depth, now.depth))
     V = row.path.velocity(at.time, before=before)
     p = pressure(model, under, at.depth, at.rate, V)
-    pressed = (under.touched | (at.depth - under.height > under.free)) & (p >= 0.0)
+    pressed = model.rule.pressed(
+        at.depth - under.height, p, (row.u[under.place], under.free), under.touched,
+        within=within,
+    )  # fmt: skip
     force = model.spacing * float(p[pressed].sum())
     return model.weight - model.spring * (at.depth - model.depth) - force, under, pressed
 
