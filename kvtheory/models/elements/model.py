@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import brentq
 
-from kvtheory.models.elements.law import KelvinVoigt
+from kvtheory.models.elements.contact_rule import RIGHT, ContactRule
 from kvtheory.scene.base_motion import BaseMotion
 from kvtheory.scene.indenters import Indenter
 from kvtheory.scene.model import Scene
@@ -43,6 +43,7 @@ class Model:
     spring: float
     depth: float
     at_rest: Any = None
+    rule: ContactRule = RIGHT
 
     @classmethod
     def of(cls, scene: Scene, spacing: float | None = None) -> "Model":
@@ -80,9 +81,9 @@ class Model:
         return scene.drive.motion(scene.run.duration, least)
 
     @property
-    def law(self) -> KelvinVoigt:
-        """How one element answers."""
-        return KelvinVoigt(self.stiffness, self.retardation_time)
+    def relaxation_time(self) -> float:
+        """In which the free surface decays, in s: τ, or never by a wrong rule."""
+        return self.retardation_time if self.rule.relaxes else math.inf
 
     @property
     def damping(self) -> float:

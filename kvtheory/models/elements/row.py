@@ -44,11 +44,9 @@ class Under:
 class Row:
     """The compressions u of the stored elements, first to last, and which of them are in contact."""
 
-    def __init__(
-        self, model: Model, path: BaseMotion, kept_depth: float = KEPT_DEPTH, *, relaxes: bool = True
-    ) -> None:
-        self.model, self.path, self.relaxes = model, path, relaxes
-        self.memory = -model.retardation_time * math.log(FORGOTTEN) if relaxes else math.inf
+    def __init__(self, model: Model, path: BaseMotion, kept_depth: float = KEPT_DEPTH) -> None:
+        self.model, self.path = model, path
+        self.memory = -model.relaxation_time * math.log(FORGOTTEN)
         self.deepest = kept_depth * model.depth
         self.reach = span(model.indenter, self.deepest)
         self.first, self.u, self.touched = 0, np.zeros(0), np.zeros(0, dtype=bool)
@@ -73,21 +71,19 @@ class Row:
             self._move(t, low, high)
         place = slice(low - self.first, high - self.first)
         x: Array = self.model.spacing * np.arange(low, high, dtype=np.float64) + Y
+        decay = math.exp(-delay / self.model.relaxation_time)
         self.updates += high - low
         height = self.model.height(x)
-        return Under(place, x, height, self._left(self.u[place], delay), self.touched[place])
+        return Under(place, x, height, decay * self.u[place], self.touched[place])
 
     def settle(
         self, under: Under, u: Array, touched: NDArray[np.bool_], delay: float = 0.0
     ) -> None:
         """Let `delay` pass: put in what has become of the elements under the indenter."""
-        self.u = self._left(self.u, delay)
+        self.u *= math.exp(-delay / self.model.relaxation_time)
         self.u[under.place] = u
         self.touched[:] = False
         self.touched[under.place] = touched
-
-    def _left(self, u: Array, delay: float) -> Array:
-        return np.asarray(self.model.law.left(u, delay)) if self.relaxes else u.copy()
 
     def _move(self, t: float, low: int, high: int) -> None:
         """Move the window so that it holds the elements `low` to `high`, and those still of use."""

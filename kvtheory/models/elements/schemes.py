@@ -37,7 +37,6 @@ from numpy.typing import NDArray
 from kvtheory.models.elements.contact import Edges, kink_area, pressure
 from kvtheory.models.elements.model import Model
 from kvtheory.models.elements.row import Row, Under
-from kvtheory.models.elements.rules import RULES, Meeting, Rule
 
 NEWTON_STEPS = 60
 """The iteration ends after three or four; a monotone convex function cannot need many more."""
@@ -76,8 +75,6 @@ class Scheme:
     tableau: tuple[tuple[float, ...], ...] = ()
     theta: Callable[[float], float] | None = None
     edges: bool = False
-    rule: Rule = RULES["right"]
-    linear: bool = False
 
     @property
     def stability_polynomial(self) -> tuple[float, ...]:
@@ -88,8 +85,6 @@ class Scheme:
 
     def step(self, model: Model, row: Row, motion: Motion, h: float) -> Motion:
         """Advance the indenter and the elements by h."""
-        if self.linear:
-            return _linear(self, row, motion, h)
         if self.theta is None:
             return _explicit(self, model, row, motion, h)
         return _implicit(self, model, row, motion, h)
@@ -136,17 +131,19 @@ def _explicit(scheme: Scheme, model: Model, row: Row, now: Motion, h: float) -> 
         at = Motion(now.time + c * h, depth, rate)
         rates.append(rate)
         pulls.append(
-            _pull(scheme.rule, row, at, now, before=c == 1.0)
+            _meet(model, row, at, now, before=c == 1.0, within=c > 0.0)[0]
+            if math.isfinite(model.mass)
+            else 0.0
         )
     new = Motion(
         now.time + h,
         now.depth + h * _dot(weights, rates),
         now.rate + h * _dot(weights, pulls) / model.mass,
     )
-    _keep(scheme.rule, row, new, now)
+    pull, under, pressed = _meet(model, row, new, now, before=True)
+    row.settle(under, np.where(pressed, new.depth - under.height, under.free), pressed, h)
     if math.isinf(model.mass):
         return new
-    pull = _pull(RULES["right"], row, new, new, before=True)
     imbalance = abs(_dot(weights, pulls) - 0.5 * (pulls[0] + pull))
     return replace(new, imbalance=imbalance, force=model.weight + max(abs(pull), abs(pulls[0])))
 
@@ -155,59 +152,19 @@ def _dot(a: Sequence[float], b: Sequence[float]) -> float:
     return sum(x * y for x, y in zip(a, b, strict=True))
 
 
-def ruled(name: str) -> Scheme:
-    """Return a scheme of order one, stable at any step, under a rule of contact from `RULES`.
-
-    The contact is that of the depth which the last rate predicts; the rate is implicit.
-    """
-    return Scheme(f"rule {name}", "contact flags, implicit damping", 1, rule=RULES[name], linear=True)
-
-
-def _linear(scheme: Scheme, row: Row, now: Motion, h: float) -> Motion:
-    """Take a step with the contact of the predicted depth, in which the force is linear in the rate."""
-    model, end, rate = row.model, now.time + h, now.rate
-    M, k_s = model.mass, model.spring
-    if math.isfinite(M):
-        predicted = Motion(end, now.depth + h * rate, rate)
-        met, under = _meeting(row, predicted, now, before=True)
-        share = np.asarray(scheme.rule.press(met), dtype=np.float64)
-        on = np.flatnonzero(share)
-        each = model.spacing * share[on]
-        lift = float(each @ (met.p[on] - model.stiffness * h * rate - model.damping * rate))
-        damping = (model.damping + h * model.stiffness) * float(each.sum())
-        pull = model.weight + k_s * (model.depth - now.depth) - lift
-        rate = (M * rate / h + pull) / (M / h + h * k_s + damping)
-    new = Motion(end, now.depth + h * rate, rate)
-    _keep(scheme.rule, row, new, now)
-    return new
-
-
-def _meeting(row: Row, at: Motion, now: Motion, *, before: bool) -> tuple[Meeting, Under]:
-    """Return the elements under the indenter at a state after `now`, as rules see them, and where."""
+def _meet(
+    model: Model, row: Row, at: Motion, now: Motion, *, before: bool, within: bool = False
+) -> tuple[float, Under, NDArray[np.bool_]]:
+    """Return M δ'', the elements under the indenter, and which of them press (Eqs. 17, 20-25)."""
     under = row.under(at.time, at.time - now.time, max(at.depth, now.depth))
     V = row.path.velocity(at.time, before=before)
-    p = pressure(row.model, under, at.depth, at.rate, V)
-    g = at.depth - under.height
-    return Meeting(g, p, under.free, row.u[under.place], under.touched), under
-
-
-def _pull(rule: Rule, row: Row, at: Motion, now: Motion, *, before: bool) -> float:
-    """Return M δ'' (Eq. 17), nothing for a fixed indenter."""
-    model = row.model
-    if math.isinf(model.mass):
-        return 0.0
-    met, _ = _meeting(row, at, now, before=before)
-    share = np.asarray(rule.press(met), dtype=np.float64)
-    on = np.flatnonzero(share)
-    force = model.spacing * float((share[on] * met.p[on]).sum())
-    return model.weight - model.spring * (at.depth - model.depth) - force
-
-
-def _keep(rule: Rule, row: Row, new: Motion, now: Motion) -> None:
-    """Settle at the end of a step which elements are in contact."""
-    met, under = _meeting(row, new, now, before=True)
-    kept = rule.keep(met)
-    row.settle(under, np.where(kept, met.g, met.free), kept, new.time - now.time)
+    p = pressure(model, under, at.depth, at.rate, V)
+    pressed = model.rule.pressed(
+        at.depth - under.height, p, (row.u[under.place], under.free), under.touched,
+        within=within,
+    )  # fmt: skip
+    force = model.spacing * float(p[pressed].sum())
+    return model.weight - model.spring * (at.depth - model.depth) - force, under, pressed
 
 
 def _implicit(scheme: Scheme, model: Model, row: Row, now: Motion, h: float) -> Motion:

@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from kvtheory.models.elements.contact import Contact, parts_of_elements, pressure, whole_elements
+from kvtheory.models.elements.contact_rule import RIGHT, ContactRule
 from kvtheory.models.elements.model import Array, Model, span
 from kvtheory.models.elements.row import KEPT_DEPTH, OutgrownError, Row
 from kvtheory.models.elements.schemes import DEFAULT, SCHEMES, Motion, Scheme
@@ -64,6 +65,7 @@ def simulate(
     at: Sequence[float] | None,
     time_step: float | None,
     certify: bool,
+    rule: ContactRule = RIGHT,
     progress: Progress | None = None,
     warn: Callable[[str], None] | None = None,
 ) -> Simulation:
@@ -76,7 +78,7 @@ def simulate(
     DivergenceError
         If the run is unstable.
     """
-    model = Model.of(scene, spacing)
+    model = replace(Model.of(scene, spacing), rule=rule)
     path = model.path(scene)
     h = time_step or default_step(model, path, scheme)
     stops, wanted = _instants(scene, path, h, at)
@@ -158,7 +160,7 @@ def _with_room(
     kept = KEPT_DEPTH
     while True:
         try:
-            row = Row(model, path, kept, relaxes=scheme.rule.relaxes)
+            row = Row(model, path, kept)
             return _run(row, scheme, legs, wanted, progress)
         except OutgrownError as outgrown:
             kept *= MORE_ROOM
@@ -184,7 +186,8 @@ def _run(
             for k in range(1, count + 1):
                 time = stop if k == count else start + (stop - start) * k / count
                 motion = replace(scheme.step(row.model, row, motion, time - motion.time), time=time)
-                watch.see(motion, (stop - start) / count)
+                if row.model.rule == RIGHT:
+                    watch.see(motion, (stop - start) / count)
                 done += 1
                 if progress is not None and (done % PER_NOTICE == 0 or done == total):
                     progress(done, total)
@@ -221,7 +224,7 @@ def _report(row: Row, scheme: Scheme, at: Motion, time: float) -> tuple[float, .
     model, V = row.model, row.path.velocity(time)
     under = row.under(at.time, 0.0, max(at.depth, model.depth))
     p = pressure(model, under, at.depth, at.rate, V)
-    pressed = under.touched & (scheme.rule.pulls | (p >= 0.0))
+    pressed = under.touched & ((p >= 0.0) | model.rule.pulls)
     V_before = row.path.velocity(at.time, before=True)
     p_before = p if V_before == V else pressure(model, under, at.depth, at.rate, V_before)
     contact: Contact = (
