@@ -3,7 +3,7 @@
 import csv
 import json
 import os
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -14,6 +14,8 @@ from kvtheory.results import TRANSIENT_UNITS, Simulation, Solution, Transient
 Series = Transient | Simulation | Solution
 SERIES_SUFFIXES = (".csv", ".nc")
 """Of files that hold a time series."""
+PICTURES = (".png", ".svg", ".pdf")
+"""Of files that hold a drawing."""
 
 
 def save_transient(result: Series, path: Path) -> None:
@@ -26,24 +28,51 @@ def save_transient(result: Series, path: Path) -> None:
     OSError
         If the file cannot be written.
     """
-    check_series_path(path)
+    check_path(path, SERIES_SUFFIXES)
     writers: Mapping[str, Callable[[Series, Path], None]] = {".csv": _csv, ".nc": _netcdf}
-    replace_file(path, lambda part: writers[path.suffix](result, part))
+    replace_file(path, lambda part: writers[path.suffix.lower()](result, part))
 
 
-def check_series_path(path: Path) -> None:
-    """Raise `ValueError` unless the name ends as that of a time series must."""
-    if path.suffix not in SERIES_SUFFIXES:
-        expected = " or ".join(SERIES_SUFFIXES)
-        raise ValueError(f'-o "{path}": expected a name that ends in {expected}')
+def check_path(path: Path, suffixes: Sequence[str]) -> None:
+    """Raise unless a file of this name can be written, as far as names and places tell.
+
+    Raises
+    ------
+    ValueError
+        If the name does not end in one of the `suffixes`, in capitals or not.
+    OSError
+        If there is no such directory, or the name is that of a directory.
+
+    Examples
+    --------
+    >>> check_path(Path("a.PDF"), [".png", ".pdf"])
+    >>> check_path(Path("a.txt"), [".png", ".svg", ".pdf"])
+    Traceback (most recent call last):
+    ValueError: "a.txt": expected a name that ends in .png, .svg or .pdf
+    """
+    if path.suffix.lower() not in suffixes:
+        expected = " or ".join(filter(None, (", ".join(suffixes[:-1]), suffixes[-1])))
+        raise ValueError(f'"{path}": expected a name that ends in {expected}')
+    if not path.parent.is_dir():
+        raise OSError(f'"{path}": there is no directory "{path.parent}"')
+    if path.is_dir():
+        raise OSError(f'"{path}" is a directory; expected the name of a file')
 
 
 def replace_file(path: Path, write: Callable[[Path], Any]) -> None:
-    """Write to a temporary name beside `path` and rename, so that no half file is ever seen."""
+    """Write to a temporary name beside `path` and rename, so that no half file is ever seen.
+
+    Raises
+    ------
+    OSError
+        If the file cannot be written; the message names it.
+    """
     part = path.with_name(f".{path.stem}.{os.getpid()}.part{path.suffix}")
     try:
         write(part)
         os.replace(part, path)
+    except OSError as error:
+        raise OSError(f'"{path}" cannot be written: {error.strerror or error}') from error
     finally:
         part.unlink(missing_ok=True)
 

@@ -7,9 +7,10 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from kvtheory.models.continuum.continuum import TransientError, solve
+from kvtheory.models.continuum.continuum import solve
 from kvtheory.models.continuum.integrator import STAGES, radau
 from kvtheory.models.continuum.surface import volume
+from kvtheory.results.errors import TransientError
 from kvtheory.scene.base_motion import BaseMotion
 
 TABLE1 = 4.0812765306, 0.0030609574

@@ -1,11 +1,18 @@
 """The structure of the project: who imports whom, and what an import costs."""
 
+import ast
+import graphlib
+import re
 import subprocess
 import sys
 from importlib.metadata import version
 from pathlib import Path
 
+import grimp
+import pytest
+
 import kvtheory
+from kvtheory.results.above import ABOVE, above
 
 ROOT = Path(__file__).parent.parent
 
@@ -69,3 +76,46 @@ def test_one_version_everywhere():
 def test_public_names_exist():
     for name in kvtheory.__all__:
         assert getattr(kvtheory, name) is not None
+
+
+def test_no_module_imports_itself_by_way_of_others():
+    graph = grimp.build_graph("kvtheory", cache_dir=None)
+    imports = {
+        name: graph.find_modules_directly_imported_by(name) for name in sorted(graph.modules)
+    }
+    try:
+        graphlib.TopologicalSorter(imports).prepare()
+    except graphlib.CycleError as error:
+        pytest.fail(f"a circle of imports: {' <- '.join(error.args[1])}")
+
+
+def test_what_results_offer_from_above_is_there():
+    for name in ABOVE:
+        assert above(name).__name__ == name
+
+
+def test_every_error_of_the_models_is_public():
+    """What is raised on purpose, besides Python's own errors, can be caught by a name of `kvtheory`."""
+    internal = {"OutgrownError", "TimedOutError"}  # always caught inside
+    raised = set()
+    for path in (ROOT / "kvtheory").rglob("*.py"):
+        raised |= set(re.findall(r"^class (\w+Error)\(", path.read_text(), re.MULTILINE))
+    assert raised - internal == {name for name in kvtheory.__all__ if name.endswith("Error")}
+
+
+def test_the_library_speaks_python():
+    """No option of the command line in the strings of what is not the command line."""
+    spoken = re.compile(r"(?<![\w<>-])(--[a-z][a-z-]+|-o)\b")
+    texts = []
+    for path in (ROOT / "kvtheory").rglob("*.py"):
+        if "cli" in path.parts:
+            continue
+        tree = ast.parse(path.read_text())
+        texts += [
+            (path.name, node.value)
+            for node in ast.walk(tree)
+            if isinstance(node, ast.Constant) and isinstance(node.value, str)
+        ]
+    found = [(name, text) for name, text in texts if spoken.search(text)]
+    # A page of the atlas names the command that computes an entry.
+    assert [name for name, _ in found] == ["failures.py"], found

@@ -15,8 +15,9 @@ import pytest
 import kvtheory as kv
 from kvtheory.models.continuum import solution
 from kvtheory.models.continuum.certificates import scaled_quantities
-from kvtheory.models.continuum.continuum import TransientError, solve
+from kvtheory.models.continuum.continuum import solve
 from kvtheory.models.continuum.run import StepControl
+from kvtheory.results.errors import TransientError
 from kvtheory.scene.base_motion import BaseMotion
 
 SEEDS = range(63)

@@ -55,7 +55,7 @@ def solve(
         If a quantity or a time is wrong; every mistake is listed.
     ValueError
         If `rtol` is out of range.
-    kvtheory.ladder.climbing.ToleranceError
+    ToleranceError
         If no model is known to be within the tolerance; the message says how close each came.
 
     Examples

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import click
 
-from kvtheory.cli.console import print_json, print_series, progress_bar, scene_command, split
+from kvtheory.cli.console import print_json, print_series, progress_bar, scene_command
 from kvtheory.cli.group import main
 from kvtheory.cli.outputs import check_output, series_options
 
@@ -15,7 +15,10 @@ from kvtheory.cli.outputs import check_output, series_options
     'kvtheory elements --at "0 ms,1 ms,10 ms" --scheme paper && kvtheory elements -o run.csv',
 )
 @click.option(
-    "--per-length", default="200 /mm", show_default=True, help="Elements per length, 1/dx."
+    "--per-length",
+    default=None,
+    metavar='"200 /mm"',
+    help="Elements per length, 1/dx; default: 200 /mm.",
 )
 @click.option(
     "--scheme",
@@ -29,7 +32,7 @@ def elements(
     scene: str | None,
     overrides: Sequence[str],
     as_json: bool,
-    per_length: str,
+    per_length: str | None,
     scheme: str,
     time_step: str | None,
     at: str | None,
@@ -41,14 +44,14 @@ def elements(
     from kvtheory.scene import load_scene
 
     check_output("-o", output, SERIES_SUFFIXES)  # before a run that may be long
-    with progress_bar("steps") as bar:
+    with progress_bar("elements") as progress:
         result = simulate(
             load_scene(scene, overrides),
             per_length=per_length,
             scheme=scheme,
             time_step=time_step,
-            at=None if at is None else split(at),
-            progress=bar and (lambda done, total: bar(done / total)),
+            at=at,
+            progress=progress,
             warn=lambda text: click.echo(f"kvtheory: warning: {text}", err=True),
         )
     if output:

@@ -52,7 +52,7 @@ def solve(
     found = find(
         load_scene(scene, overrides),
         quantity=None if quantity is None else split(quantity),
-        at=None if at is None else split(at),
+        at=at,
         rtol=rtol,
         over_time=output is not None,
     )

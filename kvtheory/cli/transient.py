@@ -5,7 +5,7 @@ from pathlib import Path
 
 import click
 
-from kvtheory.cli.console import print_json, print_series, progress_bar, scene_command, split, text
+from kvtheory.cli.console import print_json, print_series, progress_bar, scene_command, text
 from kvtheory.cli.group import main
 from kvtheory.cli.outputs import PICTURES, check_output, series_options
 
@@ -40,9 +40,8 @@ def transient(
 
     check_output("-o", output, SERIES_SUFFIXES)  # before a run that may be long
     check_output("--plot", plot, PICTURES)
-    times = None if at is None else split(at)
     with progress_bar("transient") as progress:
-        result = follow(load_scene(scene, overrides), at=times, rtol=rtol, progress=progress)
+        result = follow(load_scene(scene, overrides), at=at, rtol=rtol, progress=progress)
     if output:
         save_transient(result, output)
     if plot:

@@ -91,7 +91,9 @@ def draw_comparison(comparison: Comparison, *, checks: bool = True) -> Any:
     axes = parts[0].subplots(rows, 2, sharex=True, squeeze=False)
     plot_comparison(axes, comparison)
     parts[0].suptitle(
-        f"{Path(comparison.source).name}: {comparison.verdict} with theory", fontsize=10
+        f"{Path(comparison.source).name}: {comparison.verdict} with theory",
+        fontsize=10,
+        parse_math=False,
     )
     axes[0][0].set_title("data over theory", fontsize=9)
     axes[0][1].set_title("data less theory", fontsize=9)
@@ -139,14 +141,15 @@ def save_comparison_plot(comparison: Comparison, path: Path) -> None:
     Raises
     ------
     ValueError
-        If matplotlib does not know the suffix.
+        If the name does not end in .png, .svg or .pdf.
+    OSError
+        If the file cannot be written.
     """
     import matplotlib as mpl
 
-    from kvtheory.export import replace_file
+    from kvtheory.export import PICTURES, check_path, replace_file
 
+    check_path(path, PICTURES)
     with mpl.rc_context({**STYLE}):
         figure = draw_comparison(comparison)
-        if path.suffix[1:] not in figure.canvas.get_supported_filetypes():
-            raise ValueError(f'--plot "{path}": expected a name that ends in .png, .svg or .pdf')
         replace_file(path, figure.savefig)

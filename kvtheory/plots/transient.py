@@ -60,16 +60,17 @@ def save_transient_plot(result: Transient, path: Path) -> None:
     Raises
     ------
     ValueError
-        If matplotlib does not know the suffix.
+        If the name does not end in .png, .svg or .pdf.
+    OSError
+        If the file cannot be written.
     """
     import matplotlib as mpl
     from matplotlib.figure import Figure
 
-    from kvtheory.export import replace_file
+    from kvtheory.export import PICTURES, check_path, replace_file
 
+    check_path(path, PICTURES)
     with mpl.rc_context({**STYLE}):
         figure = Figure(figsize=(5.0, 6.4), layout="constrained")
-        if path.suffix[1:] not in figure.canvas.get_supported_filetypes():
-            raise ValueError(f'--plot "{path}": expected a name that ends in .png, .svg or .pdf')
         plot_transient(figure.subplots(4, 1, sharex=True), result, color=BLUE)
         replace_file(path, figure.savefig)

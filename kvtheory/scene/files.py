@@ -144,7 +144,9 @@ def _override(tables: dict[str, Any], overrides: list[str], *, embedded: bool) -
         key, separator, value = text.partition("=")
         section, _, name = key.strip().partition(".")
         if not (separator and section and name):
-            problems.append(f'--set "{text}": expected KEY=VALUE, such as drive.velocity="50 mm/s"')
+            problems.append(
+                f'`overrides` "{text}": expected KEY=VALUE, such as drive.velocity="50 mm/s"'
+            )
             continue
         value = value.strip()
         if len(value) > 1 and value[0] == value[-1] and value[0] in "\"'":

@@ -12,13 +12,14 @@ from numpy.typing import ArrayLike, NDArray
 
 from kvtheory.models.continuum import states
 from kvtheory.models.continuum.certificates import COARSER, COMPARISONS, certificate
-from kvtheory.models.continuum.continuum import STATE_NAMES, Motion, TransientError, solve
+from kvtheory.models.continuum.continuum import STATE_NAMES, Motion, solve
 from kvtheory.models.continuum.energy import Ledger, ledger
 from kvtheory.models.continuum.integrator import stages_for
 from kvtheory.models.continuum.maxima import force_maxima
 from kvtheory.models.continuum.run import StepControl
 from kvtheory.models.continuum.surface import height
 from kvtheory.results import Certificate, Event, Transient
+from kvtheory.results.errors import TransientError
 from kvtheory.scene.base_motion import BaseMotion
 from kvtheory.scene.model import Scene
 from kvtheory.scene.static_state import StaticState

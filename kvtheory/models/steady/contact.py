@@ -26,6 +26,7 @@ import numpy as np
 from scipy.integrate import quad
 from scipy.optimize import brentq
 
+from kvtheory.results.errors import QuadratureError
 from kvtheory.scene.indenters import Indenter
 
 ROOT_RTOL = 4.0 * float(np.finfo(float).eps)
@@ -48,10 +49,6 @@ CHECK_RTOL = 1e-11
 JUMP_HALVINGS = 40
 JUMP_RATIO = 1e-6
 """A change of slope that keeps this share over so many halvings of its interval is a jump."""
-
-
-class QuadratureError(ArithmeticError):
-    """A quadrature, a root or the assumption of one contact failed; the message says why."""
 
 
 @dataclass(frozen=True)
