@@ -8,9 +8,8 @@ rates σ; for the fast rate, about -C L/M, this is fact F15, h C L/M <= 2.785 or
 import math
 
 import numpy as np
-from scipy.optimize import brentq
 
-from kvtheory.models.elements.model import SAMPLES, Model, span
+from kvtheory.models.elements.model import SAMPLES, Model, root, span
 from kvtheory.models.elements.schemes import DEFAULT, SCHEMES, Scheme
 from kvtheory.scene.base_motion import BaseMotion
 from kvtheory.scene.model import Scene
@@ -68,8 +67,8 @@ def limit_at(scheme: Scheme, model: Model, length: float) -> float:
     R = scheme.stability_polynomial
     if not R or math.isinf(model.mass):
         return math.inf
-    L, M = length, model.mass
-    rates = np.roots([M, model.damping * L, model.stiffness * L + model.spring]).astype(complex)
+    law = model.law
+    rates = np.roots([model.mass, law.damping * length, law.stiffness * length + model.spring])
     return min(_reach(R, complex(rate)) for rate in rates)
 
 
@@ -88,9 +87,8 @@ def _reach(R: tuple[float, ...], rate: complex) -> float:
 def _length(model: Model, depth: float, V: float) -> tuple[float, float]:
     """Return the length of a contact at a depth, and its normal force, both at a steady velocity."""
     x = np.linspace(*span(model.indenter, depth), SAMPLES)
-    p = model.stiffness * (depth - model.height(x)) - model.damping * V * model.slope(x)
-    pressed = p > 0.0
-    step = x[1] - x[0]
+    p = model.law.pressure(depth - model.height(x), -V * model.slope(x))
+    pressed, step = p > 0.0, x[1] - x[0]
     return step * np.count_nonzero(pressed), step * float(p[pressed].sum())
 
 
@@ -106,4 +104,4 @@ def _steady_depth(model: Model, V: float) -> float:
     low = model.depth
     while surplus(low) > 0.0:
         low *= 0.5
-    return low if low == model.depth else float(brentq(surplus, low, 2.0 * low, rtol=STEADY_RTOL))
+    return low if low == model.depth else root(surplus, low, 2.0 * low, STEADY_RTOL)
