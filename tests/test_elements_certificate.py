@@ -67,7 +67,7 @@ def errors(run, theory, scene):
     }
 
 
-@pytest.mark.parametrize("first", range(0, 120, 20))
+@pytest.mark.parametrize("first", range(0, 80, 20))
 def test_the_certificate_covers_the_error_on_random_scenes(first):
     for seed in range(first, first + 20):
         scene, times, density = drawn(seed)
@@ -85,9 +85,7 @@ def test_a_start_so_slow_that_elements_hardly_move_is_certified_too(density, sup
     mass = LOAD * 5.0
     held = kv.Fixed(1.0) if support == "fixed" else kv.DeadWeight(mass, LOAD / mass)
     for V in (0.01, -0.03, 0.06):
-        scene = kv.Scene(
-            kv.Parabola(0.5), kv.Foundation(1.0, 1.0), held, kv.Drive(V), kv.Run(0.5)
-        )
+        scene = kv.Scene(kv.Parabola(0.5), kv.Foundation(1.0, 1.0), held, kv.Drive(V), kv.Run(0.5))
         times = np.linspace(0.0, 0.5, 7)
         run = kv.elements(scene, per_length=density, at=times)
         theory = kv.transient(scene, at=times, rtol=1e-9)
@@ -109,9 +107,7 @@ def test_the_peak_is_that_of_the_pressure_and_not_of_the_nearest_element(per_len
 def test_the_peak_under_a_tip_is_known_to_the_next_element():
     """The pressure jumps there, and no element is where it is highest."""
     for V in (0.02, 0.05):
-        scene = kv.Scene(
-            kv.Wedge(0.1), support=kv.Fixed(3e-4), drive=kv.Drive(V), run=kv.Run(0.05)
-        )
+        scene = kv.Scene(kv.Wedge(0.1), support=kv.Fixed(3e-4), drive=kv.Drive(V), run=kv.Run(0.05))
         peak = kv.steady(scene, method="quadrature").peak_pressure
         run = kv.elements(scene, per_length="21.3 /mm", at=[0.0493, 0.05])
         difference = np.abs(run.peak_pressure - peak).max() / (1e10 * 3e-4)

@@ -21,7 +21,7 @@ from kvtheory.models.elements.model import Model
 from kvtheory.models.elements.row import ElementRow, IndenterState, OutgrownError
 from kvtheory.models.elements.schemes import SCHEMES, Scheme
 from kvtheory.models.elements.simulation import ELEMENTS_PER_STEP
-from kvtheory.models.elements.stability import contact_lengths, limit_at
+from kvtheory.models.elements.stability import lengths, limit_at
 from kvtheory.scene.drives import Drive
 from kvtheory.scene.indenters import Parabola
 from kvtheory.scene.model import DeadWeight, Foundation, Run, Scene
@@ -84,6 +84,19 @@ class Map:
         """Index of the class of every point, as measured."""
         at_first = np.where(self.start > SWELLING, 1, 0)
         return np.where(self.steady > 1.0, 2, at_first)
+
+
+def contact_lengths(scene: Scene) -> tuple[float, float]:
+    """Return the contact lengths (m) that bound the step: in steady sliding, and at the static depth.
+
+    Examples
+    --------
+    >>> steady, first = contact_lengths(Scene())
+    >>> print(f"{steady * 1e3:.3f} {first * 1e3:.3f} mm")
+    1.429 2.747 mm
+    """
+    model = Model.of(scene)
+    return lengths(model, model.path(scene))
 
 
 def walk(

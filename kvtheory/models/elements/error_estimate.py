@@ -11,7 +11,7 @@ from kvtheory.results import TRANSIENT_UNITS, Certificate
 from kvtheory.results.table import scales
 from kvtheory.scene.base_motion import BaseMotion
 
-SAFETY = 3.0
+SAFETY = 4.0
 """Of the estimated errors: a change of the density can be small by luck. With one coarse run a bound was
 exceeded in one of a hundred random scenes, by any factor; two, whose elements are half a spacing apart,
 are seldom lucky at once."""

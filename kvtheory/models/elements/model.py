@@ -48,9 +48,17 @@ class Model:
 
     @classmethod
     def of(
-        cls, scene: Scene, spacing: float | None = None, *, parts: bool = False, shift: float = 0.0
+        cls,
+        scene: Scene,
+        spacing: float | None = None,
+        *,
+        parts: bool = False,
+        shift: float = 0.0,
+        coarser: float = 1.0,
     ) -> "Model":
         """Return the model of a scene; without a spacing, with `SAMPLES` elements in contact at rest.
+
+        The elements are `coarser` times as far apart as the spacing says.
 
         Raises
         ------
@@ -71,7 +79,7 @@ class Model:
                 f"`per_length` = {1 / dx:.6g} 1/m: expected {FEWEST / (high - low):.3g} to "
                 f"{MOST / (high - low):.3g} 1/m, so that {FEWEST} to {MOST} elements carry the indenter"
             )
-        model = replace(model, spacing=dx)
+        model = replace(model, spacing=coarser * dx)
         if not fixed:
             rough = root(lambda d: model.static_load(d) - model.weight, 0.25 * rough, 4.0 * rough)
         model = replace(model, depth=rough)

@@ -7,10 +7,10 @@ from dataclasses import replace
 
 import numpy as np
 
+from kvtheory.models.elements.contact import report
 from kvtheory.models.elements.contact_rule import RIGHT, ContactRule
 from kvtheory.models.elements.error_estimate import COLUMNS, DOUBTS, SHIFTS, UNKNOWN, Rows, estimate
 from kvtheory.models.elements.model import Model
-from kvtheory.models.elements.report import report
 from kvtheory.models.elements.row import KEPT_DEPTH, ElementRow, IndenterState, OutgrownError
 from kvtheory.models.elements.schemes import DEFAULT, SCHEMES, Scheme
 from kvtheory.models.elements.stability import lengths, limit_at
@@ -91,12 +91,12 @@ def simulate(
     if certify:
         best, half = SCHEMES[DEFAULT], [(start, stop, count // 2) for start, stop, count in legs]
 
-        def by_best(spacing: float, legs: list[Leg], shift: float = 0.0) -> Rows:
-            other = Model.of(scene, spacing, parts=True, shift=shift)
+        def by_best(legs: list[Leg], coarser: float = 1.0, shift: float = 0.0) -> Rows:
+            other = Model.of(scene, spacing, parts=True, shift=shift, coarser=coarser)
             return _with_room(other, path, best, legs, wanted, None)[0]
 
-        coarse = [by_best(2.0 * spacing, half, shift) for shift in SHIFTS]
-        fine = None if scheme is best else by_best(spacing, legs)
+        coarse = [by_best(half, 2.0, shift) for shift in SHIFTS]
+        fine = None if scheme is best else by_best(legs)
         certificate = estimate(model, path, rows, coarse, fine)
     for name in DOUBTS:
         del rows[name]

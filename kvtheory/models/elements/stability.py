@@ -10,31 +10,19 @@ import math
 import numpy as np
 
 from kvtheory.models.elements.model import SAMPLES, Model, root, span
-from kvtheory.models.elements.schemes import DEFAULT, SCHEMES, Scheme
+from kvtheory.models.elements.schemes import Scheme
 from kvtheory.scene.base_motion import BaseMotion
-from kvtheory.scene.model import Scene
 
 STEADY_RTOL = 1e-6
 
 
-def contact_lengths(scene: Scene) -> tuple[float, float]:
+def lengths(model: Model, path: BaseMotion) -> tuple[float, float]:
     """Return the contact lengths (m) that bound the step: in steady sliding, and at the static depth.
 
     Each is the longest over the velocities of the drive; between those the velocity is linear, and
-    the length falls with |V|. A drive that passes through rest has the contact at rest among them.
-
-    Examples
-    --------
-    >>> steady, first = contact_lengths(Scene())
-    >>> print(f"{steady * 1e3:.3f} {first * 1e3:.3f} mm")
-    1.429 2.747 mm
+    the length falls with |V|. A drive that passes through rest has the contact at rest among them. A
+    step that is too long for the latter only, at a start, is unstable at first and may recover.
     """
-    model = Model.of(scene)
-    return lengths(model, model.path(scene))
-
-
-def lengths(model: Model, path: BaseMotion) -> tuple[float, float]:
-    """Return the contact lengths of `contact_lengths`."""
     velocities = path.velocities
     if velocities[0] < 0.0 < velocities[-1]:
         velocities = [0.0, *velocities]
@@ -43,23 +31,6 @@ def lengths(model: Model, path: BaseMotion) -> tuple[float, float]:
               max((V for V in velocities if V <= 0.0), default=velocities[0])}  # fmt: skip
     steady = max(_length(model, _steady_depth(model, V), V)[0] for V in chosen)
     return steady, max(_length(model, model.depth, V)[0] for V in chosen)
-
-
-def stability_limit(scene: Scene, scheme: str = DEFAULT) -> float:
-    """Return the largest stable time step of a scheme, in s: infinite if every step is stable.
-
-    The bound holds for the longer of the contacts at the static depth and in steady sliding. A step
-    that is too long for the former only, at a start from rest, is unstable at first and may recover.
-
-    Examples
-    --------
-    >>> print(f"{stability_limit(Scene(), 'paper') * 1e3:.3f} ms")
-    1.018 ms
-    >>> stability_limit(Scene(), "edge-corrected")
-    inf
-    """
-    model = Model.of(scene)
-    return limit_at(SCHEMES[scheme], model, max(contact_lengths(scene)))
 
 
 def limit_at(scheme: Scheme, model: Model, length: float) -> float:
