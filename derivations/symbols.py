@@ -87,6 +87,22 @@ drift, lift = sp.symbols("lambda_bar d_bar", real=True)
 compression, indenter = (sp.Function(name, real=True) for name in "ug")
 """The surface of an element, and the indenter above it."""
 
+# Power law h = |x|**n/(n L**(n - 1)) and wedge h = c |x|; y is |x|/a, Q is q**(n - 1), z is 1 - q**n.
+exponent, excess, L, Q, y, z_peeled = _positive("n nu L Q y z_1")
+"""The exponent n, and n - 1, which is positive for every shape that is no wedge."""
+half_load, w_ahead, w_behind, phi_ahead, phi_behind = _positive(
+    "w_0 w_ahead w_behind phi_ahead phi_behind"
+)
+w_n, phi_n, m_n, eta_n, P_n, l_cross, lam_cross = _positive(
+    "w_n phi_n m_n eta_n P_n l_cross lambda_cross"
+)
+scaled_n, scaled_n_s = _positive("f_n f_n_s")
+slip_n, T_n = sp.symbols("D_n T_n", real=True)
+lost_ahead, lost_behind = _positive("e_ahead e_behind")
+w_wedge, phi_wedge, m_wedge, eta_wedge, near, far = _positive(
+    "w_wedge phi_wedge m_wedge eta_wedge l_1 l_2"
+)
+
 alpha = 2 * sp.sqrt(2) / 3
 """The coefficient of Eqs. 40-46."""
 
