@@ -99,9 +99,19 @@ w_n, phi_n, m_n, eta_n, P_n, l_cross, lam_cross = _positive(
 scaled_n, scaled_n_s = _positive("f_n f_n_s")
 slip_n, T_n = sp.symbols("D_n T_n", real=True)
 lost_ahead, lost_behind = _positive("e_ahead e_behind")
+(e_n_l1, e_n_l2, e_n_load_low, e_n_load_high, e_n_friction_low, e_n_friction_high,
+ e_n_depth_high) = sp.symbols(
+    "e_L1_n e_L2_n e_W_low_n e_W_high_n e_F_low_n e_F_high_n e_depth_high_n", real=True
+)  # fmt: skip
+gap_slope, bend, phi_rise, phi_fall, psi, omega = _positive(
+    "gap_slope bend phi_rise phi_fall psi omega"
+)
 w_wedge, phi_wedge, m_wedge, eta_wedge, near, far = _positive(
     "w_wedge phi_wedge m_wedge eta_wedge l_1 l_2"
 )
+p_le, p_te = sp.symbols("p_LE p_TE", nonnegative=True)
+depth_rate_now, load_excess = sp.symbols("delta_t W_e", real=True)
+s_peeling, s_peeled, inclination = _positive("s_1 s_2 c_1")
 
 alpha = 2 * sp.sqrt(2) / 3
 """The coefficient of Eqs. 40-46."""
