@@ -70,20 +70,25 @@ def _any_shape() -> Derivation:
 
 
 _SHAPE = (
-    r"At every instant of every motion, with $l_{\mathrm{r}} = V \tau$ of that instant. Integrated over the "
-    r"contact, $F_x = l_{\mathrm{r}} \int h'' p \, dx - \frac{1}{2 K} (p_{\mathrm{LE}}^2 - p_{\mathrm{TE}}^2)$."
+    r"At every instant of every motion, with $l_{\mathrm{r}} = V \tau$ of that instant. Integrated "
+    r"over the contact, $F_x = l_{\mathrm{r}} \int h'' p \, dx - \frac{1}{2 K} (p_{\mathrm{LE}}^2 "
+    r"- p_{\mathrm{TE}}^2)$."
 )
 
 
 def _instant() -> Derivation:
-    proof = _theorem("F21", title="Friction force at every instant", text=_INSTANT, uses=("F21-shape",))
+    proof = _theorem(
+        "F21", title="Friction force at every instant", text=_INSTANT, uses=("F21-shape",)
+    )
     whole = l_r / R * F_z - (p_le**2 - p_te**2) / (2 * K)
     load, squares = sp.Integral(_pressure(x), _CONTACT), sp.Symbol("I_p", real=True)
     inner = K * (delta - x**2 / (2 * R)) + C * (depth_rate_now - V * x / R)
     slope = -K / R * (x + l_r)
     proof.define(C, K * tau, "Eq. (22)")
     proof.define(tau, l_r / V, "Eq. (29)")
-    proof.equal(sp.Derivative(inner, x), slope, r"neither $\delta$ nor $\dot\delta$ matters", left="p'")
+    proof.equal(
+        sp.Derivative(inner, x), slope, r"neither $\delta$ nor $\dot\delta$ matters", left="p'"
+    )
     square = sp.Derivative(_pressure(x) ** 2, x)
     proof.integral(squares, square.doit(), _CONTACT, _pressure(x) ** 2, "for a continuous pressure",
                    left=r"\int_{\mathrm{LE}}^{\mathrm{TE}} 2 p\, p' \, dx",
@@ -103,8 +108,8 @@ def _instant() -> Derivation:
 
 
 _INSTANT = (
-    r"For the parabola, for any drive and any motion of the indenter, under any support; LE and TE are the two "
-    "ends of the contact, whichever way they move, and $V$ has its sign."
+    "For the parabola, for any drive and any motion of the indenter, under any support; LE and TE "
+    "are the two ends of the contact, whichever way they move, and $V$ has its sign."
 )
 
 
@@ -162,24 +167,35 @@ def _slow() -> Derivation:
     spring = 2 * K * a**3 / (3 * R)
     proof.equal(2 * alpha * sp.sqrt(R) * K * delta ** sp.Rational(3, 2), spring, "Eq. (40)")
     proof.leading_order(W, spring, l, 0, "the root and the cube are of higher order", eps=l)
-    proof.leading_order(F, l_r / R * spring, l, 0, r"Eq. (41): $l_{\mathrm{r}}/R$ times the load", eps=l)
+    proof.leading_order(
+        F, l_r / R * spring, l, 0, r"Eq. (41): $l_{\mathrm{r}}/R$ times the load", eps=l
+    )
     proof.leading_order(F / W, l_r / R, l, 0, "Eq. (42)", eps=l)
     return proof.done(F / W, l_r / R)
 
 
+_FAST = (
+    r"For $l = l_{\mathrm{r}}/a \to \infty$, where $r^3 - l_{\mathrm{r}}^3 \to \frac{3}{2} a^2 "
+    r"l_{\mathrm{r}}$, so that $W - C V \delta \to \frac{K a^3}{3 R}$: what is left is half of the load "
+    "at rest."
+)
+
+
 def _fast() -> Derivation:
-    proof = _theorem("F21-high", title="High velocity: Eqs. (43) to (46) in four lines",
-                     text=r"For $l = l_{\mathrm{r}}/a \to \infty$, where $r^3 - l_{\mathrm{r}}^3 \to \frac{3}{2} "
-                     r"a^2 l_{\mathrm{r}}$, so that $W - C V \delta \to \frac{K a^3}{3 R}$: what is left is half "
-                     r"of the load at rest.")  # fmt: skip
+    proof = _theorem("F21-high", title="High velocity: Eqs. (43) to (46) in four lines", text=_FAST)
     _recall(proof)
     rest, small = K * a**3 / (3 * R), 1 / l
     proof.define(load_excess, W - C * V * delta, "what the spring carries")
     proof.leading_order(W, C * V * delta, l, sp.oo, "Eq. (43)", eps=small)
     proof.leading_order(load_excess, rest, l, sp.oo, "half the load at rest", eps=small)
-    proof.leading_order(F, l_r / R * rest, l, sp.oo, r"Eq. (44): $l_{\mathrm{r}}/R$ times that", eps=small)
-    proof.leading_order(F / W, 2 * a / (3 * R), l, sp.oo, "Eq. (45); Eq. (46) at a given load", eps=small)
+    proof.leading_order(
+        F, l_r / R * rest, l, sp.oo, r"Eq. (44): $l_{\mathrm{r}}/R$ times that", eps=small
+    )
+    proof.leading_order(
+        F / W, 2 * a / (3 * R), l, sp.oo, "Eq. (45); Eq. (46) at a given load", eps=small
+    )
     half = sp.sqrt(2 * R * W / (C * V))
-    proof.equal(alpha * sp.sqrt(W / (R * C * V)), 2 * half / (3 * R), r"with $a = \sqrt{2 R \delta}$, $\delta = W/(C V)$",
-                left=r"\alpha \sqrt{\frac{W}{R C V}}")  # fmt: skip
+    reason = r"Eq. (46), with $a = \sqrt{2 R \delta}$ and $\delta = W/(C V)$"
+    shown = {"left": r"\alpha \sqrt{\frac{W}{R C V}}"}
+    proof.equal(alpha * sp.sqrt(W / (R * C * V)), 2 * half / (3 * R), reason, **shown)
     return proof.done(F / W, 2 * a / (3 * R))

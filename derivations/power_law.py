@@ -27,13 +27,11 @@ from derivations.symbols import (
     excess,
     exponent,
     l,
-    l_cross,
     l_r,
     lost_ahead,
     lost_behind,
     m_n,
     mu,
-    p,
     phi_ahead,
     phi_behind,
     phi_n,
@@ -71,7 +69,7 @@ def derive() -> tuple[Derivation, ...]:
     """Prove F19 for every exponent n > 1."""
     return (
         *(_pressure(), _edge(), _load(), _friction(), _coefficient()),
-        *(_monotonic(), _peak_pressure(), _energy(), _low(), _high(), _crossing()),
+        *(_peak_pressure(), _energy()),
     )
 
 
@@ -91,8 +89,12 @@ def _pressure() -> Derivation:
     proof.define(l_r, l * a, "the retardation length in half lengths")
     for side, form, where in ((1, AHEAD, "-y a"), (-1, BEHIND, "y a")):
         proof.equal(
-            *((K * (delta - height) + side * C * V * slope) / (K * delta), form, f"at $x = {where}$"),
-            left=rf"\frac{{K (\delta - h) - C V h'}}{{K \delta}}",
+            *(
+                (K * (delta - height) + side * C * V * slope) / (K * delta),
+                form,
+                f"at $x = {where}$",
+            ),
+            left=r"\frac{K (\delta - h) - C V h'}{K \delta}",
         )
     proof.define(P, BEHIND, "behind the tip, with $y = x/a$")
     proof.equal(
@@ -102,13 +104,16 @@ def _pressure() -> Derivation:
 
 
 _PRESSURE = (
-    r"The indenter $h = |x|^n/(n L^{n-1})$ with $n > 1$ has the slope 1 at $x = L$; $n = 2$ is the "
-    r"parabola of radius $L$. Here $l = l_{\mathrm{r}}/a$, and $y = |x|/a$ is the distance from the tip."
+    "The indenter $h = |x|^n/(n L^{n-1})$ with $n > 1$ has the slope 1 at $x = L$; $n = 2$ is the "
+    r"parabola of radius $L$. Here $l = l_{\mathrm{r}}/a$, and $y = |x|/a$ is the distance from "
+    "the tip."
 )
 
 
 def _edge() -> Derivation:
-    proof = _theorem("F19-edge", title="Power law: trailing edge", text=_EDGE, uses=("F19-pressure",))
+    proof = _theorem(
+        "F19-edge", title="Power law: trailing edge", text=_EDGE, uses=("F19-pressure",)
+    )
     proof.define(n, 1 + excess, r"$n > 1$, that is, $\nu > 0$")
     proof.root(BEHIND.subs(y, q), l, NUMBER, "no pressure at the trailing edge, $y = q$")
     proof.equal(
@@ -126,9 +131,10 @@ def _edge() -> Derivation:
 
 
 _EDGE = (
-    r"The pressure falls from the tip to $x = a$, where it is not positive; it vanishes once between, at "
-    r"$x_{\mathrm{TE}} = q a$. In the variable $\ln q$ the equation $(n - 1) \ln q + \ln(q + n l) = 0$ is "
-    "increasing and convex, so that Newton's method descends to its root from every point above."
+    "The pressure falls from the tip to $x = a$, where it is not positive; it vanishes once "
+    r"between, at $x_{\mathrm{TE}} = q a$. In the variable $\ln q$ the equation $(n - 1) \ln q + "
+    r"\ln(q + n l) = 0$ is increasing and convex, so that Newton's method descends to its root "
+    "from every point above."
 )
 
 
@@ -149,7 +155,9 @@ _SUMS = r"With $Q = q^{n-1}$ the forms in $l$, $q$ and $Q$ lose no digits in eit
 
 
 def _friction() -> Derivation:
-    proof = _theorem("F19-friction", title="Power law: friction force", text=_SUMS, uses=("F19-edge",))
+    proof = _theorem(
+        "F19-friction", title="Power law: friction force", text=_SUMS, uses=("F19-edge",)
+    )
     in_q(proof)
     primitive = y**n - y ** (2 * n) / 2
     damper = n**2 * l * y ** (2 * n - 1) / (2 * n - 1)
@@ -186,48 +194,14 @@ _COEFFICIENT = (
 )
 
 
-def _monotonic() -> Derivation:
-    proof = _theorem("F19-monotonic", title="Power law: more speed, more force", text=_MONOTONIC,
-                     uses=("F19-load", "F19-friction"))  # fmt: skip
-    in_q(proof)
-    state = {l: NUMBER, Q: SLOPE_POWER}
-    load, friction = (form.subs(state) for form in (LOAD, FRICTION_FORCE))
-
-    def rate(form: sp.Expr) -> sp.Expr:
-        return sp.diff(form, q) / sp.diff(NUMBER, q)
-
-    load_rate, friction_rate = n * l * Q, n**2 * SQUARES
-    proof.equal(rate(load), load_rate, "the load grows", left=r"\frac{d w_n}{d l}")
-    proof.equal(rate(friction), friction_rate, "and so does friction", left=r"\frac{d \varphi_n}{d l}")
-    rest = n * (1 + q + l * q * Q) / (n + 1)
-    proof.equal(LOAD - l * load_rate, rest, "$w_n/l$ falls: positive",
-                left=r"w_n - l \frac{d w_n}{d l}")  # fmt: skip
-    less = n**2 * l**2 * Q**2 / 2
-    proof.equal(FRICTION_FORCE - l * friction_rate, less, r"$\varphi_n/l$ falls: positive",
-                left=r"\varphi_n - l \frac{d \varphi_n}{d l}")  # fmt: skip
-    z, double = n * l * Q, n + excess
-    growth = excess * (n**2 + excess * (n + 1)) + (n + 1) * double * q**n * (1 + z + z**2)
-    growth += 2 * n**3 * q * (Q**2 + (1 + q * Q**2) * (1 + l * Q))
-    below = 2 * n**2 * (n + 1) * (2 * n - 1)
-    proof.equal(
-        *((friction_rate * LOAD - FRICTION_FORCE * load_rate) / n**2, growth / below,
-          "the friction coefficient grows"),
-        left=r"\frac{w_n^2}{n^2} \frac{d m_n}{d l}",
-    )
-    proof.positive(growth, r"with $\nu = n - 1$, each term")
-    return proof.done(LOAD - l * load_rate, rest)
-
-
-_MONOTONIC = (
-    r"At a given depth load, friction force and friction coefficient grow with the velocity, while "
-    r"$w_n/l$, $\varphi_n/l$ and with them $m_n/l$ fall."
-)
-
-
 def _peak_pressure() -> Derivation:
-    proof = _theorem("F19-peak", title="Power law: peak pressure", text=_PEAK, uses=("F19-pressure",))
+    proof = _theorem(
+        "F19-peak", title="Power law: peak pressure", text=_PEAK, uses=("F19-pressure",)
+    )
     slope = n * y ** (n - 2) * ((n - 1) * l - y)
-    proof.equal(sp.Derivative(AHEAD, y), slope, r"zero at $y = (n - 1) l$", left=r"\frac{d \hat p}{d y}")
+    proof.equal(
+        sp.Derivative(AHEAD, y), slope, r"zero at $y = (n - 1) l$", left=r"\frac{d \hat p}{d y}"
+    )
     inside = 1 + l * ((n - 1) * l) ** (n - 1)
     form = 1 + y ** (n - 1) * (n * l - y)
     proof.equal(AHEAD, form, "the pressure ahead of the tip")
@@ -239,8 +213,8 @@ def _peak_pressure() -> Derivation:
 
 
 _PEAK = (
-    r"The peak is inside the contact, at $x = -(n - 1) l_{\mathrm{r}}$, while that is behind the leading "
-    "edge, and at the leading edge from there on."
+    r"The peak is inside the contact, at $x = -(n - 1) l_{\mathrm{r}}$, while that is behind the "
+    "leading edge, and at the leading edge from there on."
 )
 
 
@@ -262,54 +236,6 @@ def _energy() -> Derivation:
 
 
 _ENERGY = (
-    r"Of the power $F V$ the fraction $\eta$ is dissipated inside the contact, the rest in the surface "
-    "that relaxes behind it. It is 1 in both limits."
+    r"Of the power $F V$ the fraction $\eta$ is dissipated inside the contact, the rest in the "
+    "surface that relaxes behind it. It is 1 in both limits."
 )
-
-
-def _low() -> Derivation:
-    proof = _theorem("F19-low", title="Power law: low velocity", text=_LOW,
-                     uses=("F19-load", "F19-friction"))  # fmt: skip
-    rest = {q: 1, Q: 1, l: 0}
-    ratio = sp.cancel(FRICTION_COEFFICIENT / l)
-    proof.equal(LOAD.subs(rest), 2 * n / (n + 1), "load at rest", left="w_n(0)")
-    proof.equal((FRICTION_FORCE / l).subs(rest), 2 * n**2 / (2 * n - 1), "friction force per $l$",
-                left=r"\frac{\varphi_n}{l}(0)")  # fmt: skip
-    proof.equal(ratio.subs(rest), LOW_SLOPE, "friction coefficient per $l$", left=r"\frac{m_n}{l}(0)")
-    return proof.done(ratio.subs(rest), LOW_SLOPE)
-
-
-_LOW = (
-    r"At rest $q = Q = 1$ and $l = 0$, where the forms are continuous: $W \to \frac{2 n}{n + 1} K \delta "
-    r"a$ and $\mu \to \frac{\delta}{a}\, l\, \frac{n (n + 1)}{2 n - 1}$."
-)
-
-
-def _high() -> Derivation:
-    proof = _theorem("F19-high", title="Power law: high velocity", text=_HIGH,
-                     uses=("F19-load", "F19-friction"))  # fmt: skip
-    proof.define(l, z / (n * Q), "$n l Q = 1 - q^n = z$")
-    fast = {q: 0, Q: 0, z: 1}
-    share = n * ((1 + q) * n * Q / z + 1 + z / n) / (n + 1)
-    damper = n**2 * (SQUARES + z * Q / (2 * n))
-    proof.equal(LOAD / l, share, "load per $l$")
-    proof.equal(FRICTION_FORCE / l, damper, "friction force per $l$")
-    proof.equal(share.subs(fast), sp.S.One, "the damper carries all", left=r"\frac{w_n}{l}(\infty)")
-    limit = damper.subs(fast) / share.subs(fast)
-    proof.equal(limit, HIGH_COEFFICIENT, "friction coefficient", left=r"m_n(\infty)")
-    return proof.done(limit, HIGH_COEFFICIENT)
-
-
-_HIGH = (
-    r"For $l \to \infty$ the edge goes to the tip, $q \to 0$ and $Q \to 0$ with $n l Q \to 1$: $W \to "
-    r"C V \delta$ and $\mu \to \frac{\delta}{a} \frac{n^2}{2 n - 1}$."
-)
-
-
-def _crossing() -> Derivation:
-    proof = _theorem("F19-crossing", title="Power law: crossing of the asymptotes",
-                     text="At a given depth; for $n = 2$ this is Eq. (47).",
-                     uses=("F19-low", "F19-high"))  # fmt: skip
-    proof.root(LOW_SLOPE * l - HIGH_COEFFICIENT, l, n / (n + 1), "the asymptotes meet")
-    proof.define(l_cross, n / (n + 1), r"$V^{*} \tau/a$")
-    return proof.done(l_cross, n / (n + 1))

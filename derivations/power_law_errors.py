@@ -15,9 +15,7 @@ from derivations.power_law import (
     HIGH_COEFFICIENT,
     LOAD,
     LOW_SLOPE,
-    NUMBER,
     SECTION,
-    SLOPE_POWER,
     in_q,
     n,
     z,
@@ -128,14 +126,18 @@ def _peeled() -> Derivation:
                      uses=("F19-edge",))  # fmt: skip
     logarithm = log1p(-z)
     edge, slope = expm1(logarithm / n), expm1((n - 1) * logarithm / n)
-    proof.define(logarithm, sp.log(1 - z), "accurate for small $z$", left=r"\operatorname{log1p}(-z)")
+    proof.define(
+        logarithm, sp.log(1 - z), "accurate for small $z$", left=r"\operatorname{log1p}(-z)"
+    )
     for power in (edge, slope):
         proof.define(power, sp.exp(power.args[0]) - 1, r"accurate for small arguments",
                      left=rf"\operatorname{{expm1}} {_brace(power)}")  # fmt: skip
     in_q(proof)
     proof.define(z, 1 - q**n, "$z = n l Q$")
     proof.define(gap, 1 - q, "the peeled part of the outlet side")
-    proof.equal(gap, -edge, "without a difference", right=rf"-\operatorname{{expm1}} {_brace(edge)}")
+    proof.equal(
+        gap, -edge, "without a difference", right=rf"-\operatorname{{expm1}} {_brace(edge)}"
+    )
     proof.define(gap_slope, 1 - Q, "by how much the slope there is smaller")
     proof.equal(gap_slope, -slope, "without a difference",
                 right=rf"-\operatorname{{expm1}} {_brace(slope)}")  # fmt: skip
@@ -148,8 +150,8 @@ def _brace(power: sp.Expr) -> str:
 
 
 _PEELED = (
-    r"For small $z = n l Q = 1 - q^n$ the differences $1 - q$ and $1 - Q$ follow from $z$ by the functions "
-    r"$\operatorname{log1p}(x) = \ln(1 + x)$ and $\operatorname{expm1}(x) = e^x - 1$."
+    "For small $z = n l Q = 1 - q^n$ the differences $1 - q$ and $1 - Q$ follow from $z$ by the "
+    r"functions $\operatorname{log1p}(x) = \ln(1 + x)$ and $\operatorname{expm1}(x) = e^x - 1$."
 )
 
 
@@ -168,8 +170,8 @@ def _bend() -> Derivation:
 
 
 _BEND = (
-    r"With $\phi_2(x) = (e^x - 1 - x)/x^2 = \sum_k x^k/(k + 2)!$, a sum of positive terms for $x > 0$, and "
-    r"$y = -\ln q$."
+    r"With $\phi_2(x) = (e^x - 1 - x)/x^2 = \sum_k x^k/(k + 2)!$, a sum of positive terms for $x > "
+    r"0$, and $y = -\ln q$."
 )
 
 
@@ -205,10 +207,11 @@ def _monotonic() -> Derivation:
 
 
 _MONOTONIC = (
-    r"At a given depth this is F19-monotonic: $w_n$ and $m_n$ grow with $l$, and $w_n/l$, $\varphi_n/l$ and "
-    r"$m_n/l$ fall. Under a dead weight $d \ln s/d \ln l = -\omega/(n + 1)$ (F19-balance), under a spring "
-    r"between that and 0: the error of the asymptote for low velocity grows with the velocity (for $n > 2$ "
-    r"the spring only takes away from a positive term). The asymptote for high velocity over the exact "
-    r"value is $(W_\infty/W)^{1 - 1/n} (w_n/l)^{1 - 1/n}/m_n$, each factor of which falls. So each "
-    "asymptote is within a tolerance on a half-line of velocities."
+    "At a given depth this is F19-monotonic: $w_n$ and $m_n$ grow with $l$, and $w_n/l$, "
+    r"$\varphi_n/l$ and $m_n/l$ fall. Under a dead weight $d \ln s/d \ln l = -\omega/(n + 1)$ "
+    "(F19-balance), under a spring between that and 0: the error of the asymptote for low "
+    "velocity grows with the velocity (for $n > 2$ the spring only takes away from a positive "
+    r"term). The asymptote for high velocity over the exact value is $(W_\infty/W)^{1 - 1/n} "
+    "(w_n/l)^{1 - 1/n}/m_n$, each factor of which falls. So each asymptote is within a tolerance "
+    "on a half-line of velocities."
 )

@@ -72,7 +72,9 @@ def _scaled_load() -> Derivation:
     proof = _theorem("F19-scaled-load", title="Power law: load of an indenter that has been lifted",
                      text=_SCALED, uses=("F19-edge", "F19-load"))  # fmt: skip
     proof.define(w_n, LOAD, "F19")
-    proof.define(scaled_n, s ** (n + 1) * w_n / AT_REST, r"$W = K \delta a\, w_n$ over its value at rest")
+    proof.define(
+        scaled_n, s ** (n + 1) * w_n / AT_REST, r"$W = K \delta a\, w_n$ over its value at rest"
+    )
     proof.define(lam, s * l, r"$l = V \tau/a$")
     proof.define(r, s * q, r"$x_{\mathrm{TE}}/a_0$")
     proof.define(q, 1 / Q - n * l, "F19-edge")
@@ -81,8 +83,8 @@ def _scaled_load() -> Derivation:
 
 
 _SCALED = (
-    r"In units of the static state, $s = a/a_0$, so that $\delta/\delta_0 = s^n$, with $\lambda = V "
-    r"\tau/a_0$, $r = x_{\mathrm{TE}}/a_0$ and $W_0 = \frac{2 n}{n + 1} K \delta_0 a_0$."
+    r"In units of the static state, $s = a/a_0$, so that $\delta/\delta_0 = s^n$, with $\lambda = "
+    r"V \tau/a_0$, $r = x_{\mathrm{TE}}/a_0$ and $W_0 = \frac{2 n}{n + 1} K \delta_0 a_0$."
 )
 
 
@@ -110,12 +112,12 @@ def _balance() -> Derivation:
 
 
 _BALANCE = (
-    r"On a spring of support number $\kappa$ (none for a dead weight) $G = f_n + \kappa (s^n - 1) - 1$ "
-    r"vanishes. $G$ increases from $-(1 + \kappa)$ at $s = 0$ to $f_n(1) - 1 \ge 0$ at $s = 1$, because "
-    r"the load grows with the velocity; so there is one depth. As $n < d \ln f_n/d \ln s < n + 1$, the "
-    r"relative error of $\delta = s^n \delta_0$ is, to first order, at most that with which the two "
-    r"sides of the balance are computed, and Newton's method in $\ln s$ divides the error by at least "
-    "$n$ from wherever it starts."
+    r"On a spring of support number $\kappa$ (none for a dead weight) $G = f_n + \kappa (s^n - 1) "
+    r"- 1$ vanishes. $G$ increases from $-(1 + \kappa)$ at $s = 0$ to $f_n(1) - 1 \ge 0$ at $s = "
+    r"1$, because the load grows with the velocity; so there is one depth. As $n < d \ln f_n/d \ln "
+    r"s < n + 1$, the relative error of $\delta = s^n \delta_0$ is, to first order, at most that "
+    r"with which the two sides of the balance are computed, and Newton's method in $\ln s$ divides "
+    "the error by at least $n$ from wherever it starts."
 )
 
 
@@ -133,9 +135,9 @@ def _exponents() -> Derivation:
 
 
 _EXPONENTS = (
-    r"With the load held, $\delta \propto V^{-1}$ and $\mu \propto V^{-(1 - 1/n)}$: $V^{-1/2}$ for the "
-    "parabola (Eq. 46), nearly $V^{-1}$ for a flat punch with rounded edges, and no fall at all for $n "
-    r"\to 1$. At low velocity $\mu \propto V$ for every $n$."
+    r"With the load held, $\delta \propto V^{-1}$ and $\mu \propto V^{-(1 - 1/n)}$: $V^{-1/2}$ for "
+    "the parabola (Eq. 46), nearly $V^{-1}$ for a flat punch with rounded edges, and no fall at "
+    r"all for $n \to 1$. At low velocity $\mu \propto V$ for every $n$."
 )
 
 
@@ -144,8 +146,11 @@ def _crossing() -> Derivation:
                      text=_CROSSING, uses=("F19-low", "F19-exponents"))  # fmt: skip
     lifted = AT_REST * (1 + kappa) / lam
     proof.equal(
-        *(AT_REST * K * delta_0 * a_0 * (1 + kappa) / (K * lam * a_0) / delta_0, lifted,
-          r"$\delta/\delta_0$ where $(1 + \kappa) W_0 = C V \delta$"),
+        *(
+            AT_REST * K * delta_0 * a_0 * (1 + kappa) / (K * lam * a_0) / delta_0,
+            lifted,
+            r"$\delta/\delta_0$ where $(1 + \kappa) W_0 = C V \delta$",
+        ),
         left=r"\frac{(1 + \kappa) W_0}{C V \delta_0}",
     )
     ratio = HIGH_COEFFICIENT * lifted ** (1 - 1 / n) / (LOW_SLOPE * lam)
@@ -160,8 +165,8 @@ def _crossing() -> Derivation:
 
 _CROSSING = (
     r"At a given load the asymptotes $\frac{\delta_0}{a_0} \lambda \frac{n (n + 1)}{2 n - 1}$ and "
-    r"$\frac{\delta}{a} \frac{n^2}{2 n - 1}$ meet at one velocity. For $n = 2$ and $\kappa = 0$ this is "
-    "Eq. (48)."
+    r"$\frac{\delta}{a} \frac{n^2}{2 n - 1}$ meet at one velocity. For $n = 2$ and $\kappa = 0$ "
+    "this is Eq. (48)."
 )
 
 
@@ -176,24 +181,36 @@ def _slip() -> Derivation:
     load = AT_REST / s ** (n + 1)
     scaled, power = s ** (n - 1) * friction / load, friction / load ** (2 * n / (n + 1))
     proof.define(w_n, load, r"$s^{n + 1} w_n = \frac{2 n}{n + 1}$")
-    proof.define(m_n, friction / w_n, r"$\mu = (\delta/a)\, m_n$, in units of $\delta_0/a_0$: $s^{n - 1} m_n$")
+    proof.define(
+        m_n,
+        friction / w_n,
+        r"$\mu = (\delta/a)\, m_n$, in units of $\delta_0/a_0$: $s^{n - 1} m_n$",
+    )
     proof.equal(
-        *(_logarithm(scaled), _logarithm(power * AT_REST ** ((n - 1) / (n + 1))),
-          "the friction coefficient at a given load"),
+        *(
+            _logarithm(scaled),
+            _logarithm(power * AT_REST ** ((n - 1) / (n + 1))),
+            "the friction coefficient at a given load",
+        ),
         left=r"\ln \left(s^{n - 1} m_n\right)",
         right=r"\ln \varphi_n - \frac{2 n}{n + 1} \ln w_n + \frac{n - 1}{n + 1} \ln \frac{2 n}{n + 1}",
     )
     rates = (n + 1) * n**2 * SQUARES * LOAD - 2 * n * FRICTION_FORCE * n * l * Q
     slip = n**3 * SLIP / (2 * n - 1)
-    proof.equal(rates, slip, r"its logarithmic slope times $w_n \varphi_n$, by F19-monotonic",
-                left=r"(n + 1) \frac{d \varphi_n}{d l} w_n - 2 n \varphi_n \frac{d w_n}{d l}")
+    proof.equal(
+        rates,
+        slip,
+        r"its logarithmic slope times $w_n \varphi_n$, by F19-monotonic",
+        left=r"(n + 1) \frac{d \varphi_n}{d l} w_n - 2 n \varphi_n \frac{d w_n}{d l}",
+    )
     proof.define(slip_n, SLIP, "what decides its sign")
     return proof.done(slip_n, SLIP)
 
 
 _SLIP = (
-    r"Under a dead weight $\mu$ rises with the velocity where $D_n > 0$ and falls where $D_n < 0$; $l$ "
-    r"grows with the velocity, because $d \ln \lambda/d \ln l = 1 + d \ln s/d \ln l > 1 - \frac{1}{n + 1}$."
+    r"Under a dead weight $\mu$ rises with the velocity where $D_n > 0$ and falls where $D_n < 0$; "
+    r"$l$ grows with the velocity, because $d \ln \lambda/d \ln l = 1 + d \ln s/d \ln l > 1 - "
+    r"\frac{1}{n + 1}$."
 )
 
 
@@ -207,7 +224,8 @@ def _maximum() -> Derivation:
     of_q = form.subs({Q: SLOPE_POWER, z: peeled})
     proof.define(z, peeled, r"$z = n l Q$")
     proof.define(T_n, form, "in this variable")
-    proof.equal(slip_scaled := SLIP * Q / damped, T_n, "the same sign as $D_n$")
+    slip_scaled = SLIP * Q / damped
+    proof.equal(slip_scaled, T_n, "the same sign as $D_n$", left=r"\frac{Q}{1 + q Q^2} D_n")
     rest = excess**2 + n**2 * q * Q**2 + double * q**n * (1 + z + z**2)
     slope = excess * q ** (n - 2) * (q + rest / (n**2 * damped)) + double / n**2 * (
         2 * n * z * Q + 3 * n * z**2 * Q**2 / damped + double * z**3 * Q**3 / damped**2
@@ -221,7 +239,7 @@ def _maximum() -> Derivation:
 
 
 _MAXIMUM = (
-    r"$T_n$ increases strictly with $q$ from a negative to a positive value, so that it has one root: "
-    "for every $n > 1$ the friction coefficient of a dead weight has exactly one maximum over the "
-    "velocity. For $n = 2$ it is that of F3."
+    "$T_n$ increases strictly with $q$ from a negative to a positive value, so that it has one "
+    "root: for every $n > 1$ the friction coefficient of a dead weight has exactly one maximum "
+    "over the velocity. For $n = 2$ it is that of F3."
 )

@@ -90,9 +90,7 @@ compression, indenter = (sp.Function(name, real=True) for name in "ug")
 # Power law h = |x|**n/(n L**(n - 1)) and wedge h = c |x|; y is |x|/a, Q is q**(n - 1), z is 1 - q**n.
 exponent, excess, L, Q, y, z_peeled = _positive("n nu L Q y z_1")
 """The exponent n, and n - 1, which is positive for every shape that is no wedge."""
-half_load, w_ahead, w_behind, phi_ahead, phi_behind = _positive(
-    "w_0 w_ahead w_behind phi_ahead phi_behind"
-)
+w_ahead, w_behind, phi_ahead, phi_behind = _positive("w_ahead w_behind phi_ahead phi_behind")
 w_n, phi_n, m_n, eta_n, P_n, l_cross, lam_cross = _positive(
     "w_n phi_n m_n eta_n P_n l_cross lambda_cross"
 )
@@ -106,11 +104,11 @@ lost_ahead, lost_behind = _positive("e_ahead e_behind")
 gap_slope, bend, phi_rise, phi_fall, psi, omega = _positive(
     "gap_slope bend phi_rise phi_fall psi omega"
 )
-w_wedge, phi_wedge, m_wedge, eta_wedge, near, far = _positive(
-    "w_wedge phi_wedge m_wedge eta_wedge l_1 l_2"
-)
 p_le, p_te = sp.symbols("p_LE p_TE", nonnegative=True)
 depth_rate_now, load_excess = sp.symbols("delta_t W_e", real=True)
+logarithm, slope_rate = (sp.Function(name, real=True) for name in ("psi", "chi"))
+"""ln h' of a shape, and its slope."""
+travelled, ratio_near, ratio_now, ratio_gain = _positive("m rho_1 rho_2 beta_1")
 s_peeling, s_peeled, inclination = _positive("s_1 s_2 c_1")
 
 alpha = 2 * sp.sqrt(2) / 3
@@ -159,5 +157,35 @@ TEX = {
     f_friction: "f_x",
     c_delta_load: r"c_{\delta,W}",
     c_mu_load: r"c_{\mu,W}",
+    excess: r"\nu",
+    l_cross: "l^{*}",
+    lam_cross: r"\lambda^{*}",
+    z_peeled: "z",
+    phi_n: r"\varphi_n",
+    P_n: r"\hat p_{\max,n}",
+    scaled_n_s: "f_n'",
+    gap_slope: r"\bar Q",
+    bend: "b_n",
+    phi_rise: r"\phi_{2,+}",
+    phi_fall: r"\phi_{2,-}",
+    w_ahead: r"w_{\mathrm{a}}",
+    w_behind: r"w_{\mathrm{b}}",
+    phi_ahead: r"\varphi_{\mathrm{a}}",
+    phi_behind: r"\varphi_{\mathrm{b}}",
+    lost_ahead: r"\eta_{\mathrm{a}}",
+    lost_behind: r"\eta_{\mathrm{b}}",
+    e_n_l1: r"e_{\mathrm{L1},n}",
+    e_n_l2: r"e_{\mathrm{L2},n}",
+    e_n_load_low: r"e_{W\!,\,V\to0,n}",
+    e_n_load_high: r"e_{W\!,\,V\to\infty,n}",
+    e_n_friction_low: r"e_{F\!,\,V\to0,n}",
+    e_n_friction_high: r"e_{F\!,\,V\to\infty,n}",
+    e_n_depth_high: r"e_{\delta,\,V\to\infty,n}",
+    p_le: r"p_{\mathrm{LE}}",
+    p_te: r"p_{\mathrm{TE}}",
+    depth_rate_now: r"\dot\delta",
+    load_excess: r"W_{\mathrm{e}}",
+    inclination: "c",
+    ratio_gain: r"\beta",
 }
 """How `sympy.latex` prints these symbols where its own choice differs from the paper's."""

@@ -33,8 +33,6 @@ from derivations.symbols import (
     l_r,
     lam,
     m_n,
-    phi_ahead,
-    phi_behind,
     phi_n,
     q,
     r,
@@ -50,8 +48,8 @@ from derivations.symbols import (
 c = inclination
 PEELING, PEELED = {n: 1, Q: 1, l: 1 - q}, {n: 1, q: 0, Q: 1 / l}
 """The forms of a power law for n = 1: while the edge moves to the tip, and when it is there."""
-SCALED_PEELING = 2 * (1 + kappa - lam**2 / 2) / (
-    kappa + sp.sqrt(kappa**2 + 4 * (1 + kappa - lam**2 / 2))
+SCALED_PEELING = (
+    2 * (1 + kappa - lam**2 / 2) / (kappa + sp.sqrt(kappa**2 + 4 * (1 + kappa - lam**2 / 2)))
 )
 SCALED_PEELED = 2 * (1 + kappa) / (lam + kappa + sp.sqrt((lam + kappa) ** 2 + 2 * (1 + kappa)))
 
@@ -66,23 +64,26 @@ def derive() -> tuple[Derivation, ...]:
 def _edge() -> Derivation:
     proof = _theorem("wedge-edge", title="Wedge: pressure and trailing edge", text=_EDGE,
                      uses=("eq22", "eq29", "pressure"))  # fmt: skip
-    ahead, behind = (
-        (K * (delta - c * y * a) + side * C * V * c) / (K * delta) for side in (1, -1)
-    )
+    ahead, behind = ((K * (delta - c * y * a) + side * C * V * c) / (K * delta) for side in (1, -1))
     proof.define(delta, c * a, r"$h(a) = \delta$: the half length at rest")
     proof.define(C, K * l_r / V, "Eqs. (22) and (29)")
     proof.define(l_r, l * a, "the retardation length in half lengths")
-    proof.equal(ahead, 1 - y + l, "at $x = -y a$, largest at the tip: $1 + l$", left=r"\hat p(-y a)")
+    proof.equal(
+        ahead, 1 - y + l, "at $x = -y a$, largest at the tip: $1 + l$", left=r"\hat p(-y a)"
+    )
     proof.equal(behind, 1 - y - l, "at $x = y a$", left=r"\hat p(y a)")
     proof.define(P, 1 - y - l, "behind the tip")
-    proof.root(P, y, 1 - l, r"the trailing edge if $l < 1$; if not, there is no contact behind the tip")
+    proof.root(
+        P, y, 1 - l, r"the trailing edge if $l < 1$; if not, there is no contact behind the tip"
+    )
     return proof.done(y, 1 - l)
 
 
 _EDGE = (
-    r"The indenter is $h = c\,|x|$, and $l = l_{\mathrm{r}}/a$ with $a = \delta/c$. The pressure jumps by $2 l K "
-    r"\delta$ at the tip. So $q = x_{\mathrm{TE}}/a = \max(0, 1 - l)$; the equation $Q (q + n l) = 1$ of a power law "
-    r"says the same for $n = 1$, with $Q = \min(1, 1/l)$, the limit of $q^{n - 1}$."
+    r"The indenter is $h = c\,|x|$, and $l = l_{\mathrm{r}}/a$ with $a = \delta/c$. The pressure "
+    r"jumps by $2 l K \delta$ at the tip. So $q = x_{\mathrm{TE}}/a = \max(0, 1 - l)$; the "
+    r"equation $Q (q + n l) = 1$ of a power law says the same for $n = 1$, with $Q = \min(1, "
+    "1/l)$, the limit of $q^{n - 1}$."
 )
 _CASES = (
     ("wedge-peeling", "Wedge: slow sliding", r"For $l < 1$, with $q = 1 - l$.", PEELING, q,
@@ -111,7 +112,9 @@ def _forces(label: str, title: str, text: str, state: dict[sp.Symbol, sp.Expr], 
         ("m_n", FRICTION_COEFFICIENT, friction / load),
     ):  # fmt: skip
         form = general.subs(n, 1).subs({Q: state[Q]}).subs(q, edge)
-        proof.equal(form, own, "the form of a power law, for $n = 1$", left=rf"{name}\big|_{{n = 1}}")
+        proof.equal(
+            form, own, "the form of a power law, for $n = 1$", left=rf"{name}\big|_{{n = 1}}"
+        )
     proof.define(eta_n, l * (1 + edge) / phi_n, r"$C V c^2 (x_{\mathrm{TE}} - x_{\mathrm{LE}})/F$")
     general = 2 * (1 + edge * state[Q] ** 2) / (2 * (1 + edge * state[Q] ** 2) + l * state[Q] ** 2)
     proof.equal(eta_n, general, "dissipated inside the contact, as for a power law")
@@ -143,9 +146,9 @@ def _fast() -> Derivation:
 
 
 _FAST = (
-    r"From $l_{\mathrm{r}} = a$ on all contact is on the one flank, so that $\mu = c$ exactly, at any depth and "
-    "under any load: vertical lift does not make the friction of a sharp tip fall, and Eq. (50) needs a "
-    "rounded one."
+    r"From $l_{\mathrm{r}} = a$ on all contact is on the one flank, so that $\mu = c$ exactly, at "
+    "any depth and under any load: vertical lift does not make the friction of a sharp tip fall, "
+    "and Eq. (50) needs a rounded one."
 )
 
 
@@ -175,7 +178,7 @@ def _depth(
 
 
 _WEIGHT = (
-    r"In units of the static state, $W_0 = K \delta_0^2/c$; $\kappa = 0$ is a dead weight. Sliding is slow, $\lambda "
-    r"< s$, if $\frac{3}{2} \lambda^2 + \kappa \lambda < 1 + \kappa$, which is the balance at $s = \lambda$; then "
-    r"$\lambda < 1$. No difference cancels."
+    r"In units of the static state, $W_0 = K \delta_0^2/c$; $\kappa = 0$ is a dead weight. Sliding "
+    r"is slow, $\lambda < s$, if $\frac{3}{2} \lambda^2 + \kappa \lambda < 1 + \kappa$, which is "
+    r"the balance at $s = \lambda$; then $\lambda < 1$. No difference cancels."
 )
