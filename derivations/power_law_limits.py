@@ -54,16 +54,12 @@ def _monotonic() -> Derivation:
     z, double = n * l * Q, n + excess
     growth = excess * (n**2 + excess * (n + 1)) + (n + 1) * double * q**n * (1 + z + z**2)
     growth += 2 * n**3 * q * (Q**2 + (1 + q * Q**2) * (1 + l * Q))
-    below = 2 * n**2 * (n + 1) * (2 * n - 1)
+    gain = friction_rate * LOAD - FRICTION_FORCE * load_rate
     proof.equal(
-        *(
-            (friction_rate * LOAD - FRICTION_FORCE * load_rate) / n**2,
-            growth / below,
-            "the friction coefficient grows",
-        ),
-        left=r"\frac{w_n^2}{n^2} \frac{d m_n}{d l}",
+        *(2 * (n + 1) * (2 * n - 1) * gain, growth, "the friction coefficient grows"),
+        left=r"2 (n + 1) (2 n - 1)\, w_n^2 \frac{d m_n}{d l}",
     )
-    proof.positive(growth, r"with $\nu = n - 1$, each term")
+    proof.positive(growth, r"with $\nu = n - 1$ each term is positive", left=r"\frac{d m_n}{d l}")
     return proof.done(LOAD - l * load_rate, rest)
 
 
