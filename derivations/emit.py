@@ -1,6 +1,6 @@
 """Write the numerical closed forms from the expressions that the derivations have proved.
 
-``python -m derivations.emit`` rewrites `kvtheory/steady_state/closed_forms.py`.
+``python -m derivations.emit`` rewrites `kvtheory/models/steady/closed_forms.py`.
 """
 
 import os
@@ -15,7 +15,7 @@ from derivations import symbols as sym
 from derivations.book import established
 from derivations.symbols import l, lam, q, s, xi
 
-TARGET = Path(__file__).parents[1] / "kvtheory" / "steady_state" / "closed_forms.py"
+TARGET = Path(__file__).parents[1] / "kvtheory" / "models" / "steady" / "closed_forms.py"
 
 DIGITS = 30
 """Constants are rounded once, from this many digits to double precision."""
