@@ -34,7 +34,7 @@ from derivations.symbols import (
     e_n_load_high,
     e_n_load_low,
     excess,
-    gap,
+    gap_edge,
     gap_slope,
     l,
     omega,
@@ -96,7 +96,7 @@ ASYMPTOTES = (
     Asymptote(
         *("friction-low", "friction force at low velocity", e_n_friction_low),
         2 * n * HIGH_COEFFICIENT * l / (n * FRICTION_FORCE),
-        (gap + q * gap_slope * (1 + Q) - (2 * n - 1) * l * Q**2 / 2) / _DAMPER,
+        (gap_edge + q * gap_slope * (1 + Q) - (2 * n - 1) * l * Q**2 / 2) / _DAMPER,
         r"$\frac{2 n - 1}{4}\, l$ at low velocity",
     ),
     Asymptote(
@@ -134,9 +134,9 @@ def _peeled() -> Derivation:
                      left=rf"\operatorname{{expm1}} {_brace(power)}")  # fmt: skip
     in_q(proof)
     proof.define(z, 1 - q**n, "$z = n l Q$")
-    proof.define(gap, 1 - q, "the peeled part of the outlet side")
+    proof.define(gap_edge, 1 - q, "the peeled part of the outlet side")
     proof.equal(
-        gap, -edge, "without a difference", right=rf"-\operatorname{{expm1}} {_brace(edge)}"
+        gap_edge, -edge, "without a difference", right=rf"-\operatorname{{expm1}} {_brace(edge)}"
     )
     proof.define(gap_slope, 1 - Q, "by how much the slope there is smaller")
     proof.equal(gap_slope, -slope, "without a difference",
@@ -183,7 +183,7 @@ def _error(asymptote: Asymptote) -> Derivation:
     )  # fmt: skip
     in_q(proof)
     for symbol, difference, label in (
-        (gap, 1 - q, "F19-peeled"), (gap_slope, 1 - Q, "F19-peeled"), (bend, l - (1 - q), "F19-bend"),
+        (gap_edge, 1 - q, "F19-peeled"), (gap_slope, 1 - Q, "F19-peeled"), (bend, l - (1 - q), "F19-bend"),
     ):  # fmt: skip
         if asymptote.form.has(symbol):
             proof.recall(label, symbol, difference)

@@ -20,7 +20,7 @@ from derivations.power_law import (
 )
 from derivations.record import Derivation
 from derivations.step import Proof
-from derivations.symbols import Q, excess, l, l_cross, q
+from derivations.symbols import Q, excess, l, l_cross, m_high, m_low, q, w_rest
 
 _theorem = partial(Proof, equation=None, section=SECTION)
 
@@ -74,13 +74,13 @@ def _low() -> Derivation:
                      uses=("F19-load", "F19-friction"))  # fmt: skip
     rest = {q: 1, Q: 1, l: 0}
     ratio = sp.cancel(FRICTION_COEFFICIENT / l)
-    proof.equal(LOAD.subs(rest), 2 * n / (n + 1), "load at rest", left="w_n(0)")
+    proof.define(w_rest, LOAD.subs(rest), "load at rest")
+    proof.equal(w_rest, 2 * n / (n + 1), "in units of $K \\delta a$")
     proof.equal((FRICTION_FORCE / l).subs(rest), 2 * n**2 / (2 * n - 1), "friction force per $l$",
                 left=r"\frac{\varphi_n}{l}(0)")  # fmt: skip
-    proof.equal(
-        ratio.subs(rest), LOW_SLOPE, "friction coefficient per $l$", left=r"\frac{m_n}{l}(0)"
-    )
-    return proof.done(ratio.subs(rest), LOW_SLOPE)
+    proof.define(m_low, ratio.subs(rest), "friction coefficient per $l$")
+    proof.equal(m_low, LOW_SLOPE, r"in units of $\delta/a$")
+    return proof.done(m_low, LOW_SLOPE)
 
 
 _LOW = (
@@ -99,9 +99,9 @@ def _high() -> Derivation:
     proof.equal(LOAD / l, share, "load per $l$")
     proof.equal(FRICTION_FORCE / l, damper, "friction force per $l$")
     proof.equal(share.subs(fast), sp.S.One, "the damper carries all", left=r"\frac{w_n}{l}(\infty)")
-    limit = damper.subs(fast) / share.subs(fast)
-    proof.equal(limit, HIGH_COEFFICIENT, "friction coefficient", left=r"m_n(\infty)")
-    return proof.done(limit, HIGH_COEFFICIENT)
+    proof.define(m_high, damper.subs(fast) / share.subs(fast), "friction coefficient")
+    proof.equal(m_high, HIGH_COEFFICIENT, r"in units of $\delta/a$")
+    return proof.done(m_high, HIGH_COEFFICIENT)
 
 
 _HIGH = (

@@ -88,7 +88,7 @@ compression, indenter = (sp.Function(name, real=True) for name in "ug")
 """The surface of an element, and the indenter above it."""
 
 # Power law h = |x|**n/(n L**(n - 1)) and wedge h = c |x|; y is |x|/a, Q is q**(n - 1), z is 1 - q**n.
-exponent, excess, L, Q, y, z_peeled = _positive("n nu L Q y z_1")
+exponent, excess, L, Q, y, z_peeled = _positive("n nu L Q y peeled")
 """The exponent n, and n - 1, which is positive for every shape that is no wedge."""
 w_ahead, w_behind, phi_ahead, phi_behind = _positive("w_ahead w_behind phi_ahead phi_behind")
 w_n, phi_n, m_n, eta_n, P_n, l_cross, lam_cross = _positive(
@@ -101,9 +101,10 @@ lost_ahead, lost_behind = _positive("e_ahead e_behind")
  e_n_depth_high) = sp.symbols(
     "e_L1_n e_L2_n e_W_low_n e_W_high_n e_F_low_n e_F_high_n e_depth_high_n", real=True
 )  # fmt: skip
-gap_slope, bend, phi_rise, phi_fall, psi, omega = _positive(
-    "gap_slope bend phi_rise phi_fall psi omega"
+gap_edge, gap_slope, bend, phi_rise, phi_fall, psi, omega = _positive(
+    "gap_q gap_Q bend phi_rise phi_fall psi omega"
 )
+w_rest, m_low, m_high = _positive("w_rest m_low m_high")
 p_le, p_te = sp.symbols("p_LE p_TE", nonnegative=True)
 depth_rate_now, load_excess = sp.symbols("delta_t W_e", real=True)
 logarithm, slope_rate = (sp.Function(name, real=True) for name in ("psi", "chi"))
@@ -164,7 +165,11 @@ TEX = {
     phi_n: r"\varphi_n",
     P_n: r"\hat p_{\max,n}",
     scaled_n_s: "f_n'",
+    gap_edge: r"\bar q",
     gap_slope: r"\bar Q",
+    w_rest: r"w_{n,0}",
+    m_low: r"m_{n,0}'",
+    m_high: r"m_{n,\infty}",
     bend: "b_n",
     phi_rise: r"\phi_{2,+}",
     phi_fall: r"\phi_{2,-}",
