@@ -105,6 +105,8 @@ gap_edge, gap_slope, bend, phi_rise, phi_fall, psi, omega = _positive(
     "gap_q gap_Q bend phi_rise phi_fall psi omega"
 )
 w_rest, m_low, m_high = _positive("w_rest m_low m_high")
+damped, whole, tip, sharp, blunt = _positive("damped whole tip sharp blunt")
+"""Shorthands of sums in the errors of the asymptotes."""
 p_le, p_te = sp.symbols("p_LE p_TE", nonnegative=True)
 depth_rate_now, load_excess = sp.symbols("delta_t W_e", real=True)
 logarithm, slope_rate = (sp.Function(name, real=True) for name in ("psi", "chi"))
@@ -168,6 +170,11 @@ TEX = {
     gap_edge: r"\bar q",
     gap_slope: r"\bar Q",
     w_rest: r"w_{n,0}",
+    damped: r"D_{\mathrm{d}}",
+    whole: r"D_{\mathrm{w}}",
+    tip: r"D_{\mathrm{t}}",
+    sharp: r"D_{\mathrm{s}}",
+    blunt: r"D_{\mathrm{b}}",
     m_low: r"m_{n,0}'",
     m_high: r"m_{n,\infty}",
     bend: "b_n",
