@@ -211,7 +211,7 @@ def _monotonic() -> Derivation:
     form = rest + (n + excess) * omega / (n + 1)
     proof.define(n, 1 + excess, r"$n > 1$")
     proof.equal(slope, form, r"logarithmic slope of $s^{2 - n}\, l/m_n$, that is, of $L_1/\mu$")
-    proof.positive(form, r"$\omega = d \ln w_n/d \ln l > 0$")
+    proof.holds(form, ">", 0, r"$\omega = d \ln w_n/d \ln l > 0$")
     return proof.done(slope, form)
 
 

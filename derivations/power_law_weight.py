@@ -106,8 +106,8 @@ def _balance() -> Derivation:
     above, below = (1 + q + l * q**n) / whole, (n + 1) * l**2 * Q / whole
     proof.equal(elasticity - n, above, "more than the damper alone")
     proof.equal(n + 1 - elasticity, below, "less than the spring alone")
-    proof.positive(above, "a quotient of positive terms")
-    proof.positive(below, "likewise")
+    proof.holds(above, ">", 0, "a quotient of positive terms")
+    proof.holds(below, ">", 0, "likewise")
     return proof.done(elasticity - n, above)
 
 
@@ -231,7 +231,7 @@ def _maximum() -> Derivation:
         2 * n * z * Q + 3 * n * z**2 * Q**2 / damped + double * z**3 * Q**3 / damped**2
     )
     proof.equal(sp.diff(of_q, q), slope, "slope", left=r"\frac{d T_n}{d q}")
-    proof.positive(slope, r"with $\nu = n - 1$, each term")
+    proof.holds(slope, ">", 0, r"with $\nu = n - 1$, each term")
     proof.equal(form.subs({q: 0, Q: 0, z: 1}), -excess / n**2, "negative in the fast limit",
                 left="T_n(0)")  # fmt: skip
     proof.equal(form.subs({q: 1, Q: 1, z: 0}), 2, "positive at rest", left="T_n(1)")
