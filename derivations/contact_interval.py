@@ -153,8 +153,11 @@ def _circle() -> Derivation:
     slope = y / sp.sqrt(R**2 - y**2)
     form = R**2 * (R**2 - 3 * y**2) / (y**2 * (R**2 - y**2) ** 2)
     curvature = -sp.Derivative(sp.log(y) - sp.log(R**2 - y**2) / 2, (y, 2))
+    proof.where(y < R / sp.sqrt(3), "not on the outer part")
+    proof.where(y < R, "which follows")
     proof.equal(sp.Derivative(R - sp.sqrt(R**2 - y**2), y), slope, "$h'$")
-    proof.equal(curvature, form, r"positive for $y < R/\sqrt{3}$", left=r"-(\ln h')''")
+    proof.equal(curvature, form, "by differentiation", left=r"-(\ln h')''")
+    proof.holds(form, ">", 0, r"$\ln h'$ is concave")
     return proof.done(curvature, form)
 
 

@@ -21,7 +21,7 @@ from derivations.power_law import (
     z,
 )
 from derivations.record import Derivation
-from derivations.step import Proof
+from derivations.step import Proof, tex
 from derivations.symbols import (
     C,
     K,
@@ -98,9 +98,10 @@ def _balance() -> Derivation:
     state = {r: s * q, Q: SLOPE_POWER}
     place = lam / NUMBER
     of_q = SCALED_LOAD.subs(state).subs(s, place)
-    slope = sp.diff(of_q, q) / sp.diff(place, q)
-    proof.equal(slope, SCALED_SLOPE, "positive: a deeper indenter carries more",
-                left=r"\frac{\partial f_n}{\partial s}")  # fmt: skip
+    proof.equal(
+        *(sp.diff(of_q, q), SCALED_SLOPE * sp.diff(place, q), "a deeper indenter carries more"),
+        left=r"\frac{d f_n}{d q}", right=rf"{tex(SCALED_SLOPE)} \frac{{d s}}{{d q}}",
+    )  # fmt: skip
     proof.define(scaled_n_s, SCALED_SLOPE, r"$\partial f_n/\partial s$")
     elasticity, whole = s * scaled_n_s / scaled_n, 1 + q + l + l**2 * Q
     above, below = (1 + q + l * q**n) / whole, (n + 1) * l**2 * Q / whole

@@ -293,7 +293,8 @@ def power_law_error_depth_high(n: Value, l: Value, q: Value, Q: Value) -> Value:
 
 def wedge_scaled_depth_peeling(kappa: Value, lam: Value) -> Value:
     """Return delta/delta_0 of a wedge while lam < s; theorem wedge-weight-peeling."""
-    return (2 * kappa - lam * lam + 2) / (kappa + np.sqrt(kappa * kappa + 4 * kappa - 2 * lam * lam + 4))
+    held = kappa - lam * lam / 2 + 1
+    return 2 * held / (kappa + np.sqrt(4 * held + kappa * kappa))
 
 
 def wedge_scaled_depth_peeled(kappa: Value, lam: Value) -> Value:
