@@ -196,6 +196,6 @@ def _fast() -> Derivation:
     )
     half = sp.sqrt(2 * R * W / (C * V))
     reason = r"Eq. (46), with $a = \sqrt{2 R \delta}$ and $\delta = W/(C V)$"
-    shown = {"left": r"\alpha \sqrt{\frac{W}{R C V}}"}
-    proof.equal(alpha * sp.sqrt(W / (R * C * V)), 2 * half / (3 * R), reason, **shown)
+    asymptote = alpha * sp.sqrt(W / (R * C * V))
+    proof.equal(asymptote, 2 * half / (3 * R), reason, left=r"\alpha \sqrt{\frac{W}{R C V}}")
     return proof.done(F / W, 2 * a / (3 * R))

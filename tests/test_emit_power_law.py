@@ -18,8 +18,8 @@ from derivations import (
 )
 from derivations import symbols as sym
 from derivations.book import established
-from derivations.symbols import l, q
 from derivations.symbols import exponent as n
+from derivations.symbols import l, q
 from kvtheory.models.steady import closed_forms
 from tests import test_emit
 

@@ -121,7 +121,7 @@ def test_the_asymptotes_follow_from_the_two_lines(by_label):
     for printed in (r"\frac{3 l^{2}}{4}", r"\frac{3 l}{4}", r"\frac{2}{3 l}", r"\frac{3}{8 l}",
                     r"\frac{7}{24 l}"):  # fmt: skip
         assert any(printed in latex for latex in remainders), printed
-    assert friction_identity.LOAD == s.K * (s.a**3 + s.r**3 - s.l_r**3) / (3 * s.R)
+    assert s.K * (s.a**3 + s.r**3 - s.l_r**3) / (3 * s.R) == friction_identity.LOAD
 
 
 def two_slopes(x):
