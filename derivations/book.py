@@ -15,13 +15,18 @@ from derivations.conditions import (
     proves_nonnegative,
     proves_positive,
 )
+from derivations.display import Meaning, UnreadableError, names_in, read_chain
 from derivations.premises import Fact, Premise, contradiction, merged, violates, weakest
 from derivations.record import Derivation, Step, Table
 from derivations.rules import HiddenError, resolve
-from derivations.symbols import TEX
+from derivations.symbols import TEX, alpha
 
 _finished: dict[str, "Book"] = {}
 """The finished proofs by label, for `Book.recall`."""
+
+
+NOTATION: dict[str, Meaning] = {r"\alpha": alpha}
+"""Names that every display may use."""
 
 
 class StepError(ValueError):
@@ -73,6 +78,22 @@ def tex_condition(gap: sp.Expr) -> str:
     return f"{tex(gap)} > 0"
 
 
+def evaluated(expr: sp.Expr) -> sp.Expr:
+    """Evaluate the integrals of polynomials, and the derivatives of what they give."""
+    found = expr.replace(
+        lambda node: isinstance(node, sp.Integral) and node.function.is_polynomial(*node.variables),
+        lambda node: node.doit(),
+    )
+    return found.doit(integrals=False) if found != expr else found
+
+
+def tex_case(case: sp.Basic) -> str:
+    """Print a case: an equation, an inequality, or several at once."""
+    if isinstance(case, sp.And):
+        return ", ".join(map(tex_case, sp.ordered(case.args)))
+    return tex(case)
+
+
 def established(label: str, lhs: sp.Expr) -> sp.Expr:
     """Return the last form of `lhs` that the derivation with this label has established exactly."""
     forms = [right for left, right in _source(label)._exact if left == lhs]
@@ -104,10 +125,13 @@ class Book:
         title: str,
         text: str = "",
         uses: tuple[str, ...] = (),
+        notation: Mapping[str, Meaning] | None = None,
     ) -> None:
         self.label, self.equation = label, equation
         self._section, self._title, self._text = section, title, text
         self._uses = list(uses)
+        self.notation = dict(notation or {})
+        """Names that displays may use beside those of the symbols."""
         self._rules: dict[sp.Expr, sp.Expr] = {}
         self._origins: dict[sp.Expr, Fact] = {}
         """For each rule, the fact that it comes from."""
@@ -120,9 +144,10 @@ class Book:
 
     def define(self, lhs: sp.Expr, rhs: sp.Expr, reason: str = "", **shown: Unpack[Shown]) -> None:
         """Let the left side stand for the right side: a name, or a law of the model."""
+        self._displayed(sp.sympify(lhs), sp.sympify(rhs), shown)
         self._rule(lhs, rhs)
         self._imply(sp.sympify(lhs))
-        fact = self._record(lhs, "=", rhs, reason, "definition", shown)
+        fact = self._record(lhs, "=", rhs, reason, "definition", shown, trusted=True)
         self._premise(lhs, rhs, fact)
 
     def where(self, condition: Relational, reason: str = "") -> None:
@@ -315,6 +340,27 @@ class Book:
                 reach.update(*(direct.get(name, ()) for name in tuple(reach)))
         return {name: frozenset(reach) for name, reach in direct.items()}
 
+    def _displayed(self, lhs: sp.Expr, rhs: sp.Expr, shown: Shown) -> None:
+        """Refuse LaTeX that does not say what was checked: it may only rearrange."""
+        used = set(self._used)
+        for side, expr in (("left", lhs), ("right", rhs)):
+            latex = shown.get(side)
+            if latex is None:
+                continue
+            rules = [*self._rules, *self._rules.values()]
+            names = {**names_in(lhs, rhs, *rules, expr, tex_of=TEX), **NOTATION, **self.notation}
+            try:
+                links = read_chain(latex, names)
+            except UnreadableError as error:
+                raise StepError(f"{self.label}: {error}") from error
+            for link in links:
+                if link == expr:
+                    continue
+                read, checked = map(evaluated, map(self._resolve, (link, expr)))
+                if difference(read, checked) != 0:
+                    raise StepError(f"{self.label}: the display {latex} is {link}, not {expr}")
+        self._used = used
+
     def _vanish(self, lhs: sp.Expr, rhs: sp.Expr, claim: str) -> None:
         rest = difference(lhs, rhs)
         if rest != 0:
@@ -333,8 +379,14 @@ class Book:
         over: Interval | None = None,
         premise: Premise | None = None,
         cases: tuple[Relational, ...] = (),
+        trusted: bool = False,
     ) -> Fact:
-        """Keep a step; an exact one is an equality that later proofs may use as a rule."""
+        """Keep a step; an exact one is an equality that later proofs may use as a rule.
+
+        What it shows is read back and compared, unless the display has been checked before.
+        """
+        if not trusted:
+            self._displayed(sp.sympify(lhs), sp.sympify(rhs), shown)
         origins = [self._origins[name] for name in self._rules if name in self._used]
         self._used = set()
         extra = () if premise is None else (premise,)
@@ -343,7 +395,7 @@ class Book:
         conditions = self._conditions if over is None else self._conditions.with_interval(over)
         own = () if over is None else (tex_interval(over),)
         if cases:
-            own = (*own, r"\ \text{or}\ ".join(map(tex, cases)))
+            own = (*own, r"\ \text{or}\ ".join(map(tex_case, cases)))
         domain = tuple(dict.fromkeys((*own, *self._domain)))
         left, right = shown.get("left", tex(lhs)), shown.get("right", tex(rhs))
         step = Step(left, relation, right, reason, worth, domain=", ".join(own))

@@ -46,6 +46,12 @@ def proves_nonnegative(expr: sp.Expr, known: Conditions = NONE) -> bool:
     expr = sp.sympify(expr)
     if expr.is_nonnegative or _sign(expr, known) == 1:
         return True
+    if expr.is_Add or expr.is_Mul:
+        if all(proves_nonnegative(part, known) for part in expr.args):
+            return True
+    elif isinstance(expr, sp.Integral) and len(expr.limits) == 1:
+        _, low, high = expr.limits[0]
+        return proves_nonnegative(expr.function, known) and proves_nonnegative(high - low, known)
     return any(_product_sign(one, strict=False) == 1 for one in _swept(expr, known))
 
 
@@ -74,6 +80,14 @@ def proves_real(expr: sp.Expr, known: Conditions = NONE) -> bool:
 @lru_cache(maxsize=8192)
 def _sign(expr: sp.Expr, known: Conditions) -> int:
     """Return 1 or -1 for an expression of that sign everywhere, and 0 where nothing is proved."""
+    if expr.is_Mul:
+        sign = int(sp.prod([_sign(factor, known) for factor in expr.args]))
+        if sign:
+            return sign
+    if expr.is_Pow and expr.exp.is_Integer:
+        sign = _sign(expr.base, known) ** abs(int(expr.exp))
+        if sign:
+            return sign
     for one in _swept(expr, known):
         if one.is_positive:
             return 1

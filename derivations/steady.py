@@ -77,9 +77,11 @@ def _half_length() -> Derivation:
 
 
 def _retardation_length() -> Derivation:
-    proof = _equation("eq29", 29, title="Retardation length", text=_FREE_SURFACE)
-    proof.define(l_r, V * tau)
     start = u_i.subs(t, t_0)
+    surface = sp.Lambda(x, start * sp.exp((x_te - x) / (V * tau)))
+    proof = _equation("eq29", 29, title="Retardation length", text=_FREE_SURFACE,
+                      notation={"u": surface})  # fmt: skip
+    proof.define(l_r, V * tau)
     decay = start * sp.exp(-(t - t_0) / tau)
     later = {t: t_0 + (x - x_te) / V}
     proof.recall("eq25", u_i, decay, "it has left the trailing edge at $t_0$", at=later)
@@ -114,7 +116,8 @@ _PRESSURE = (
 
 
 def _leading_edge() -> Derivation:
-    proof = _equation("eq26", 26, title="Leading edge", text=_TOUCH)
+    proof = _equation("eq26", 26, title="Leading edge", text=_TOUCH,
+                      notation={"p": sp.Lambda(x, pressure)})  # fmt: skip
     proof.recall("eq28", a, _HALF)
     proof.recall("eq3", h(x), _SHAPE)
     proof.recall("eq22", tau, C / K)
@@ -132,7 +135,8 @@ _TOUCH = "The leading edge is where the undisturbed surface meets the indenter."
 
 
 def _trailing_edge() -> Derivation:
-    proof = _equation("eq27", 27, title="Trailing edge", text=_PEEL)
+    proof = _equation("eq27", 27, title="Trailing edge", text=_PEEL,
+                      notation={"p": sp.Lambda(x, pressure)})  # fmt: skip
     proof.recall("eq28", a, _HALF)
     proof.recall("pressure", p, pressure)
     proof.equal(sp.Derivative(p, (x, 2)), -K / R, "the pressure is concave in $x$", left="p''(x)")
@@ -199,8 +203,10 @@ _EDGES = {
 
 
 def _moving_leading_edge() -> Derivation:
-    proof = _equation("eq32", 32, title="Leading edge of the movable indenter", text=_OUTWARD)
     half = sp.sqrt(2 * R * delta_t)
+    edge = {"a": sp.Lambda(t, half), r"\dot{x}_{\mathrm{LE}}": (-half).diff(t)}
+    proof = _equation("eq32", 32, title="Leading edge of the movable indenter", text=_OUTWARD,
+                      notation=edge)  # fmt: skip
     proof.recall("eq3", h(x), _SHAPE)
     reason = "the undisturbed surface meets the indenter, $h = \\delta(t)$"
     proof.root(delta_t - h(x), x, -half, reason, over=(x, -sp.oo, 0), name=x_le, right="-a(t)")
