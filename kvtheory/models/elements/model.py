@@ -32,6 +32,7 @@ class Model:
     """An indenter (depth δ, mass M) over elements with the spacing dx, all in SI.
 
     `mass` is infinite for a fixed indenter; `depth` is the static depth δ_0; `at_rest` measures errors.
+    `rule` and `start`, the depth at t = 0 relative to δ_0, may be wrong on request.
     """
 
     indenter: Indenter
@@ -44,6 +45,7 @@ class Model:
     depth: float
     at_rest: Any = None
     rule: ContactRule = RIGHT
+    start: float = 1.0
 
     @classmethod
     def of(cls, scene: Scene, spacing: float | None = None) -> "Model":

@@ -66,6 +66,7 @@ def simulate(
     time_step: float | None,
     certify: bool,
     rule: ContactRule = RIGHT,
+    start: float = 1.0,
     progress: Progress | None = None,
     warn: Callable[[str], None] | None = None,
 ) -> Simulation:
@@ -78,7 +79,7 @@ def simulate(
     DivergenceError
         If the run is unstable.
     """
-    model = replace(Model.of(scene, spacing), rule=rule)
+    model = replace(Model.of(scene, spacing), rule=rule, start=start)
     path = model.path(scene)
     h = time_step or default_step(model, path, scheme)
     stops, wanted = _instants(scene, path, h, at)
@@ -178,7 +179,7 @@ def _with_room(
 def _run(
     row: Row, scheme: Scheme, legs: list[Leg], wanted: list[float], progress: Progress | None
 ) -> tuple[Rows, int]:
-    watch, motion, done = Watch(row, scheme), Motion(0.0, row.model.depth, 0.0), 0
+    watch, motion, done = Watch(row, scheme), Motion(0.0, row.model.start * row.model.depth, 0.0), 0
     total, asked = sum(count for _, _, count in legs), set(wanted)
     found: dict[float, tuple[float, ...]] = {}
     try:
