@@ -106,9 +106,8 @@ def rules(where, names):
         yield Plant(
             f"rule: {rule}",
             where,
-            lambda r=rule: series(SCENES[where], {}, rule=r, per_length=500e3),
+            lambda r=rule: series(SCENES[where], {}, rule=r),
             (faults[rule],),
-            known={"per_length": "500 /mm"},
         )
 
 

@@ -60,6 +60,10 @@ SAME = 1e-6
 """Relative: what is given, not computed, agrees to the digits of a file."""
 
 
+EXACT = {"velocity": 3}
+"""Fewest significant digits that speak for rounding: a velocity of 0.1 m/s is exact."""
+
+
 class Resolution(NamedTuple):
     """Spacing of the elements (m) and time step (s), and whether they are known or assumed.
 
@@ -137,7 +141,7 @@ def allowance(
     forces = (1.0 + share) * force, lagging
     smooth = _systematic(theory, now, series.time, forces, late, fine)
     given = {name: series.columns[name] for name in CURVES if name in series.columns}
-    rounding = {name: rounded(values) for name, values in given.items()}
+    rounding = {name: rounded(values, EXACT.get(name, 0)) for name, values in given.items()}
     spread = {name: smooth[name] + rounding.get(name, 0.0) for name in CURVES}
     random = {
         name: np.minimum(

@@ -3,6 +3,7 @@
 `CHECKS` lists them in the order in which they are shown. A check that cannot be made says why.
 """
 
+import math
 from collections.abc import Callable, Iterator
 
 import numpy as np
@@ -73,7 +74,8 @@ def sampling(case: Case) -> Iterator[Check]:
     if rates is None:
         yield not_made(name, equation, "a fixed indenter has no transient of its own")
         return
-    slow, start = abs(rates.slow), case.theory.last_change
+    changed = case.theory.last_change
+    slow, start = abs(rates.slow), changed if math.isfinite(changed) else 0.0
     inside = np.count_nonzero((time > start) & (time <= start + TRANSIENT * slow))
     distance = TRANSIENT * slow / max(int(inside), 1)
     yield case.check(name, distance, case.tolerance * slow, equation, "s, mean distance of samples",

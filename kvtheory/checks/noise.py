@@ -23,8 +23,7 @@ SURE = 4.5
 FEW_DIGITS = (2, 3, 4, 5)
 """Significant digits to which a column may have been written; more do not matter."""
 SEVERAL = 10
-"""Distinct values from which on their digits, or their smallest distance, say how finely they were written;
-fewer may be exact numbers, such as a velocity of 0.1 m/s."""
+"""Distinct values from which on their smallest distance says how finely they were written."""
 ON_GRID = 1e-3
 """Of the smallest distance: how near to its multiples all values have to be."""
 SAME = 1e-6
@@ -78,8 +77,10 @@ def noise(time: Array, residual: Array, curve: Array) -> Array:
     return np.asarray(found)
 
 
-def rounded(values: Array) -> Array:
+def rounded(values: Array, fewest: int = FEW_DIGITS[0]) -> Array:
     """Return what rounding leaves: half the smallest step between values, or half their last digit.
+
+    With fewer digits than `fewest` they are taken for exact.
 
     >>> rounded(np.array([1.23e-4, 4.56e-4, 1.24e-3])).round(9).tolist()
     [5e-07, 5e-07, 5e-06]
@@ -89,7 +90,7 @@ def rounded(values: Array) -> Array:
     on_grid = step > 0.0 and np.abs(distinct / step - np.round(distinct / step)).max() <= ON_GRID
     half = 0.5 * step if on_grid else 0.0
     size = 10.0 ** np.floor(np.log10(np.maximum(np.abs(np.nan_to_num(values)), 1e-300)))
-    for digits in FEW_DIGITS[distinct.size < SEVERAL :]:
+    for digits in (d for d in FEW_DIGITS if d >= fewest):
         last = size * 10.0 ** (1 - digits)
         off = np.abs(values / last - np.round(values / last))
         if np.nanmax(off, initial=0.0) <= SAME:
