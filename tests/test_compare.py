@@ -186,11 +186,12 @@ def test_the_balance_finds_a_force_that_is_lacking(sound):
 def test_a_time_constant_is_fitted_and_its_uncertainty_covers_noise():
     rng, t = np.random.default_rng(3), np.linspace(0.0, 5.0, 100)
     exact = 1.0 + 0.4 * np.exp(-t / 1.3)
-    bound = uncertainty(t, exact, 1.3, np.zeros(100), 0.01)
+    none = np.zeros(100)
+    bound = uncertainty(t, exact, 1.3, none, none, np.full(100, 0.01))
     fits = [fit(t, exact + 0.01 * rng.standard_normal(100), 1.0) for _ in range(50)]
     assert fit(t, exact, 1.0) == pytest.approx(1.3, rel=1e-4)
     assert np.max(np.abs(np.array(fits) / 1.3 - 1.0)) < 1.2 * bound
-    assert bound < 0.2
+    assert bound < 0.3
 
 
 @pytest.mark.parametrize(
@@ -269,7 +270,7 @@ def test_what_cannot_be_read_costs_one_message_and_writes_nothing(tmp_path, name
      ({"scheme": "papper"}, 'did you mean "paper"'),
      ({"per_length": "200 mm"}, "`per_length`"), ({"per_length": -1.0}, "`per_length`"),
      ({"scene": kv.Scene(indenter=kv.Wedge(inclination=0.1))}, "parabola"),
-     ({"scene": kv.Scene(drive=kv.Drive(function=lambda t: 0.1))}, "drive.function")],
+     ({"scene": kv.Scene(drive=kv.Drive(function=lambda t: 1 / 0))}, "drive.function")],
 )  # fmt: skip
 def test_bad_arguments_are_named(sound, options, message):
     with pytest.raises(ValueError, match=message):

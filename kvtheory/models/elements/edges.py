@@ -60,7 +60,7 @@ def kink_area(dx: float, found: Gaps) -> tuple[float, float]:
 
     >>> x = 0.1 * np.arange(-5.0, 6.0) + 0.03
     >>> sums = 0.1 * np.maximum(x, 0.0).sum() - 0.05 * x[-1] - 0.01 / 12.0
-    >>> abs(sums + kink_area(0.1, gaps(x, 5, -1))[0] - 0.5 * x[-1] ** 2) < 1e-15
+    >>> bool(abs(sums + kink_area(0.1, gaps(x, 5, -1))[0] - 0.5 * x[-1] ** 2) < 1e-15)
     True
     """
     outside, slope, curvature = found

@@ -32,6 +32,7 @@ class Model:
 
     `mass` is infinite for a fixed indenter; `depth` is the static depth δ_0; `at_rest` measures errors.
     At t = 0 an element is at x = `shift` dx; `parts` says whether the part of one at each edge counts.
+    `rule` and `start`, the depth at t = 0 relative to δ_0, may be wrong on request.
     """
 
     indenter: Indenter
@@ -45,6 +46,7 @@ class Model:
     shift: float = 0.0
     at_rest: Any = None
     rule: ContactRule = RIGHT
+    start: float = 1.0
 
     @classmethod
     def of(

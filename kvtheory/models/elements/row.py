@@ -67,8 +67,9 @@ class ElementRow:
         self.reach = span(model.indenter, self.deepest)
         self.first, self.u, self.touched = 0, np.zeros(0), np.zeros(0, dtype=bool)
         self.updates = 0
-        rest = self.under(0.0, 0.0, model.depth)
-        self.settle(rest, np.maximum(model.depth - rest.height, 0.0), rest.height <= model.depth)
+        depth = model.start * model.depth
+        rest = self.under(0.0, 0.0, depth)
+        self.settle(rest, np.maximum(depth - rest.height, 0.0), rest.height <= depth)
 
     def under(self, t: float, delay: float, depth: float) -> Under:
         """Return the elements that an indenter of at most this depth can meet at t, and `delay` before.

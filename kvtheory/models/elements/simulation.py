@@ -60,6 +60,7 @@ def simulate(
     time_step: float | None,
     certify: bool,
     rule: ContactRule = RIGHT,
+    start: float = 1.0,
     progress: Progress | None = None,
     warn: Callable[[str], None] | None = None,
 ) -> Simulation:
@@ -72,7 +73,8 @@ def simulate(
     DivergenceError
         If the run is unstable.
     """
-    model = replace(Model.of(scene, spacing, parts=scheme.row.parts_of_elements), rule=rule)
+    model = Model.of(scene, spacing, parts=scheme.row.parts_of_elements)
+    model = replace(model, rule=rule, start=start)
     path = model.path(scene)
     h = time_step or default_step(model, path, scheme)
     stops, wanted = _instants(scene, path, h, at)
@@ -174,7 +176,8 @@ def _with_room(
 def _run(
     row: ElementRow, scheme: Scheme, legs: list[Leg], wanted: list[float], progress: Progress | None
 ) -> tuple[Rows, int]:
-    watch, state, done = Watch(row, scheme), IndenterState(0.0, row.model.depth, 0.0), 0
+    watch, done = Watch(row, scheme), 0
+    state = IndenterState(0.0, row.model.start * row.model.depth, 0.0)
     total, asked = sum(count for _, _, count in legs), set(wanted)
     found: dict[float, tuple[float, ...]] = {}
     try:
