@@ -26,13 +26,13 @@ PER_LENGTH = Quantity("1/m", "N, elements per unit length", 0.0, True)
 
 def _followed(scene: Scene, times: Sequence[float], rtol: float) -> Mapping[str, Any]:
     """Follow a transient without a certificate: theory is wanted at many scenes, none of them shown."""
-    from kvtheory.models.continuum import solution
+    from kvtheory.models.continuum import solved_scene
     from kvtheory.models.continuum.run import StepControl
 
     with double_precision():
         units = StaticState.of(scene)
-        drive = solution.scaled_drive(scene, units)
-        found = solution._solution(scene, units, drive, rtol, StepControl(), lambda _: None)
+        drive = solved_scene.scaled_drive(scene, units)
+        found = solved_scene._solution(scene, units, drive, rtol, StepControl(), lambda _: None)
         return found.series(times)
 
 

@@ -174,7 +174,8 @@ def scaled_scene(scene: Scene, powers: Mapping[str, float], factor: float) -> Sc
 def _faster(drive: Drive, times: float) -> Drive:
     """Return a drive with every velocity multiplied."""
     if drive.function is not None:
-        return replace(drive, function=lambda t: times * drive.called(t))
+        given = {"breaks": drive.breaks, "tolerance": drive.tolerance}
+        return Drive(function=lambda t: times * drive.called(t), **given)
     if drive.history is not None:
         return Drive(history=[(time, times * speed) for time, speed in drive.history])
     return Drive(times * drive.final_velocity)
