@@ -281,7 +281,7 @@ def test_kinks(V):
 
 @pytest.mark.parametrize("V", [1e-3, 1e-2, 0.2])
 def test_kink_that_is_not_declared(V):
-    with pytest.raises(QuadratureError, match="the slope jumps .*`kinks`"):
+    with pytest.raises(QuadratureError, match=r"the slope jumps .*`kinks`"):
         at_depth(bent(declared=False), K, TAU, V, DEPTH)
 
 

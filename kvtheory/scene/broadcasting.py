@@ -1,6 +1,7 @@
 """A scene with arrays in the place of some of its values."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -29,12 +30,7 @@ def values(scene: Scene, over: Mapping[str, Any] | None = None) -> dict[str, Arr
     >>> values(Scene(), {"drive.velocity": ["1 mm/s", "1 m/s"]})["drive.velocity"].tolist()
     [0.001, 1.0]
     """
-    specs = {
-        f"{section}.{name}": spec
-        for section in ("indenter", "foundation", "support")
-        for name, spec in quantities(getattr(scene, section)).items()
-    }
-    specs["drive.velocity"] = VELOCITY
+    specs = _specs(type(scene.indenter), type(scene.foundation), type(scene.support))
     given: dict[str, Any] = dict(scene.values())
     problems = []
     for key, value in (over or {}).items():
@@ -50,13 +46,23 @@ def values(scene: Scene, over: Mapping[str, Any] | None = None) -> dict[str, Arr
     if problems:
         raise SceneError(problems)
     try:
-        arrays = np.broadcast_arrays(*given.values())
+        arrays: Iterable[Any] = given.values()
+        if any(getattr(value, "ndim", 0) for value in arrays):  # else there is nothing to do
+            arrays = np.broadcast_arrays(*arrays)
     except ValueError:
         shapes = ", ".join(
             f"{key} {np.shape(value)}" for key, value in given.items() if np.ndim(value)
         )
         raise ValueError(f"the arrays of `over` do not broadcast: {shapes}") from None
     return dict(zip(given, (np.asarray(array, dtype=float) for array in arrays), strict=True))
+
+
+@cache
+def _specs(*parts: type) -> dict[str, Quantity]:
+    """Return what may be replaced in a scene of such parts, by its dotted key."""
+    named = zip(("indenter", "foundation", "support"), parts, strict=True)
+    own = {f"{name}.{key}": spec for name, part in named for key, spec in quantities(part).items()}
+    return {**own, "drive.velocity": VELOCITY}
 
 
 def _array(value: Any, spec: Quantity) -> Array:

@@ -8,6 +8,7 @@ import difflib
 import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -61,9 +62,17 @@ def quantity(
 
 def quantities(cls: Any) -> dict[str, Quantity]:
     """Return the quantities that a dataclass or its instance declares, by name."""
-    return {
-        f.name: f.metadata["quantity"] for f in dataclasses.fields(cls) if "quantity" in f.metadata
-    }
+    return dict(_declared(cls if isinstance(cls, type) else type(cls)))
+
+
+@cache
+def _declared(cls: type) -> tuple[tuple[str, Quantity], ...]:
+    """Return them once and for all; a dataclass is read field by field, which takes a while."""
+    return tuple(
+        (f.name, f.metadata["quantity"])
+        for f in dataclasses.fields(cls)
+        if "quantity" in f.metadata
+    )
 
 
 def required(cls: Any) -> list[str]:

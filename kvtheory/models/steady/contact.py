@@ -42,8 +42,10 @@ CUBIC = 1e-5
 """The same for the depth, whose steps leave a cube of the error."""
 DIFFERENCE = 1e-7
 """Relative step of x for h'': its error only slows the roots, and changes a peak by its square."""
-GRID = 2.0 ** np.arange(-100, 101)
+GRID = 4.0 ** np.arange(-50, 51)
 """Half-lengths over the depth that are tried first, so that steep powers do not overflow later."""
+FULL = 1.3
+"""W/K is near depth (a FULL + l_r): 4/3 for a parabola, 1 for a wedge, up to 2."""
 NEAR_REACH = 0.5
 """Share of the reach at which the search for the half-length starts at most."""
 MOST_STEPS = 200
@@ -52,6 +54,8 @@ VERTEX = 1e-290
 """A trailing edge closer to the lowest point than this share of the half-length is at it."""
 FLOOR = 1e-20
 """Share of the half-length below which the peak is at the lowest point."""
+PEAK_RTOL = 1e-7
+"""Tolerance of its place: its value has the square."""
 PEAK_STEPS = 8
 """Secant steps towards the peak: one for a power, more for a circle."""
 TINY = 1e-300
@@ -104,10 +108,11 @@ def at_load(shape: Indenter, l_r: Value, load: Value, spring: Value) -> Contact:
     therefore closes in from everywhere; the second derivative of W makes it cubic (Chebyshev).
     """
     deepest = _deepest(shape)
-    x = a = _first(
-        shape, load**0.5, load, lambda x: x + (l_r + spring)
-    )  # W/K is about delta (a + l_r)
-    depth = shape.height(a)
+    extra = l_r + spring
+    x = a = _first(shape, load**0.5, load, lambda x: FULL * x + extra)
+    depth, slope = shape.height(a), shape.slope(a)
+    factor = load / (depth * (FULL * a + extra))  # one step of Newton's method on this estimate
+    depth = depth * factor ** (1.0 / (1.0 + depth / (slope * (a + extra))))
     for _ in range(MOST_STEPS):
         contact = _at_depth(shape, l_r, depth, a, x)
         total, slope = contact.load + spring * depth, contact.load_slope + spring
@@ -132,8 +137,10 @@ def _deepest(shape: Indenter) -> Value:
 def _first(shape: Indenter, scale: Value, wanted: Value, width: Callable[[Value], Value]) -> Value:
     """Return the first of spaced points x where h times a width is as wanted, or the last."""
     x = least(scale * GRID, NEAR_REACH * shape.reach)
-    first = np.minimum((shape.height(x) * width(x) < wanted).sum(-1), GRID.size - 1)
-    return x[first].item() if x.ndim == 1 else np.take_along_axis(x, first[:, None], -1)
+    low = shape.height(x) * width(x) < wanted
+    if x.ndim == 1:
+        return x[min(np.count_nonzero(low), GRID.size - 1)].item()
+    return np.take_along_axis(x, np.minimum(low.sum(-1, keepdims=True), GRID.size - 1), -1)
 
 
 def _at_depth(shape: Indenter, l_r: Value, depth: Value, a: Value, x: Value) -> Contact:
@@ -199,6 +206,8 @@ def _peak(shape: Indenter, l_r: Value, contact: Contact) -> Value:
         to = l_r * _bend(shape, y, slope) / (slope + TINY) + FLOOR * contact.a
         gain = (to - last[1]) / (y - last[0] + TINY)
         last = y, to
+        if largest(abs(least(to, contact.a) / y - 1.0)) < PEAK_RTOL:
+            break
         y = least(abs((to - gain * y) / (1.0 - gain + TINY)), contact.a)
     return found
 
