@@ -149,13 +149,12 @@ def _at_depth(shape: Indenter, l_r: Value, depth: Value, a: Value, x: Value) -> 
     a, a_moves = _half_length(shape, depth, start)
     rolls = (l_r * shape.slope(VERTEX * a) < depth) * 1.0
     x, x_moves = _trailing(shape, l_r * rolls, depth, a, x * (a / start))
-    front, front_error = integral(shape.height, a)
-    rear, rear_error = integral(shape.height, x)
+    below, error = integral(shape.height, (a, x), (a, rolls * x))
     # Where p = 0, u_TE = l_r h', which does not cancel for a small l_r.
     u_te = l_r * rolls * shape.slope(x) + (1.0 - rolls) * depth
     length = a + rolls * x
-    load = depth * length - front - rolls * rear + l_r * u_te
-    error = (front * front_error + rolls * rear * rear_error) / load
+    load = depth * length - below + l_r * u_te
+    error = error * below / load
     return Contact(
         depth, a, x, a_moves, rolls * x_moves, rolls, u_te, load, error, length + l_r
     )  # fmt: skip
@@ -218,12 +217,9 @@ def quantities(shape: Indenter, l_r: Value, contact: Contact) -> dict[str, tuple
     The friction is l_r times the sum of int h'^2 dx and of u_TE^2/(2 l_r).
     """
     depth, a, x, a_moves, x_moves, rolls, u_te, load, load_error, load_slope = contact
-    front, front_error = integral(lambda x: shape.slope(x) ** 2, a)
-    rear, rear_error = integral(lambda x: shape.slope(x) ** 2, x)
+    drag, drag_error = integral(lambda x: shape.slope(x) ** 2, (a, x), (a, rolls * x))
     at_a, at_x = shape.slope(a), shape.slope(x)
     left = rolls * at_x + (1.0 - rolls) * depth / (l_r + rolls)  # u_TE/l_r
-    drag = front + rolls * rear
-    drag_error = (front * front_error + rolls * rear * rear_error) / drag
     total = drag + 0.5 * u_te * left
     load_power, friction_power = depth * load_slope / load, depth * (left + at_a) / total
     drag_power = depth * (at_a + at_x * at_x * x_moves) / drag
