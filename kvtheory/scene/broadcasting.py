@@ -30,7 +30,7 @@ def values(scene: Scene, over: Mapping[str, Any] | None = None) -> dict[str, Arr
     >>> values(Scene(), {"drive.velocity": ["1 mm/s", "1 m/s"]})["drive.velocity"].tolist()
     [0.001, 1.0]
     """
-    specs = _specs(type(scene.indenter), type(scene.foundation), type(scene.support))
+    specs = _specs((type(scene.indenter), type(scene.foundation), type(scene.support)))
     given: dict[str, Any] = dict(scene.values())
     problems = []
     for key, value in (over or {}).items():
@@ -58,7 +58,7 @@ def values(scene: Scene, over: Mapping[str, Any] | None = None) -> dict[str, Arr
 
 
 @cache
-def _specs(*parts: type) -> dict[str, Quantity]:
+def _specs(parts: tuple[type, ...]) -> dict[str, Quantity]:
     """Return what may be replaced in a scene of such parts, by its dotted key."""
     named = zip(("indenter", "foundation", "support"), parts, strict=True)
     own = {f"{name}.{key}": spec for name, part in named for key, spec in quantities(part).items()}

@@ -30,6 +30,8 @@ from kvtheory.models.steady.double_exponential import (
     integral,
     largest,
     least,
+    pick,
+    some,
 )
 from kvtheory.scene.indenters import Indenter
 
@@ -113,6 +115,7 @@ def at_load(shape: Indenter, l_r: Value, load: Value, spring: Value) -> Contact:
     depth, slope = shape.height(a), shape.slope(a)
     factor = load / (depth * (FULL * a + extra))  # one step of Newton's method on this estimate
     depth = depth * factor ** (1.0 / (1.0 + depth / (slope * (a + extra))))
+    active = load > 0.0
     for _ in range(MOST_STEPS):
         contact = _at_depth(shape, l_r, depth, a, x)
         total, slope = contact.load + spring * depth, contact.load_slope + spring
@@ -121,8 +124,10 @@ def at_load(shape: Indenter, l_r: Value, load: Value, spring: Value) -> Contact:
         missing = (load - total) / (0.5 * (load + total))  # nearly the logarithm of the quotient
         share = 1.0 - 0.5 * missing / (1.0 + missing * missing) * bend / power
         factor = (load / total) ** (share / power)
-        depth, a, x = least(depth * factor, 0.5 * (depth + deepest)), contact.a, contact.x
-        if largest(abs(factor - 1.0)) < CUBIC:
+        depth = pick(active, least(depth * factor, 0.5 * (depth + deepest)), depth)
+        a, x = pick(active, contact.a, a), pick(active, contact.x, x)
+        active = active & (abs(factor - 1.0) >= CUBIC)
+        if not some(active):
             return _at_depth(shape, l_r, depth, a, x)
     raise QuadratureError(
         "no depth was found that carries the weight: it lies beyond the indenter's reach"
@@ -136,7 +141,9 @@ def _deepest(shape: Indenter) -> Value:
 
 def _first(shape: Indenter, scale: Value, wanted: Value, width: Callable[[Value], Value]) -> Value:
     """Return the first of spaced points x where h times a width is as wanted, or the last."""
-    x = least(scale * GRID, NEAR_REACH * shape.reach)
+    x = scale * GRID
+    if shape.reach is not math.inf:
+        x = np.minimum(x, NEAR_REACH * shape.reach)
     low = shape.height(x) * width(x) < wanted
     if x.ndim == 1:
         return x[min(np.count_nonzero(low), GRID.size - 1)].item()
@@ -162,24 +169,30 @@ def _at_depth(shape: Indenter, l_r: Value, depth: Value, a: Value, x: Value) -> 
 
 def _half_length(shape: Indenter, depth: Value, a: Value) -> tuple[Value, Value]:
     """Return a > 0 with h(a) = depth, and d a/d(delta)."""
+    active, moves = depth > 0.0, a
     for _ in range(MOST_STEPS):
         height, slope = shape.height(a), shape.slope(a)
         factor = (depth / height) ** (height / (a * slope))
-        a = least(a * factor, 0.5 * (a + shape.reach))
-        if largest(abs(depth / height - 1.0)) < LINEAR:
-            return a, 1.0 / slope
+        moves = pick(active, 1.0 / slope, moves)
+        a = pick(active, least(a * factor, 0.5 * (a + shape.reach)), a)
+        active = active & (abs(depth / height - 1.0) >= LINEAR)
+        if not some(active):
+            return a, moves
     raise QuadratureError("the leading edge lies beyond the indenter's reach")
 
 
 def _trailing(shape: Indenter, l_r: Value, depth: Value, a: Value, x: Value) -> tuple[Value, Value]:
     """Return x in (0, a] with h(x) + l_r h'(x) = depth, and d x/d(delta)."""
+    active, moves = depth > 0.0, x
     for _ in range(MOST_STEPS):
         slope = shape.slope(x)
         total = shape.height(x) + l_r * slope
         rise = x * slope + l_r * _bend(shape, x, slope)
         factor = (depth / total) ** (total / rise)
-        moves, x = x / rise, least(x * factor, a)
-        if largest(abs(factor - 1.0) + abs(depth / total - 1.0)) < LINEAR:
+        moves = pick(active, x / rise, moves)
+        x = pick(active, least(x * factor, a), x)
+        active = active & (abs(factor - 1.0) + abs(depth / total - 1.0) >= LINEAR)
+        if not some(active):
             return x, moves
     raise QuadratureError("the trailing edge was not found: it is too close to a vertex")
 
@@ -198,16 +211,17 @@ def _peak(shape: Indenter, l_r: Value, contact: Contact) -> Value:
     on the way is a pressure of this contact, so that the highest of them is never too high.
     """
     found, last = l_r * shape.slope(contact.a), (contact.a, 0.0 * l_r)
-    y = least(l_r, contact.a) + FLOOR * contact.a
+    y, active = least(l_r, contact.a) + FLOOR * contact.a, l_r >= 0.0
     for _ in range(PEAK_STEPS):
         slope = shape.slope(y)
         found = -least(-found, -(contact.depth - shape.height(y) + l_r * slope))
         to = l_r * _bend(shape, y, slope) / (slope + TINY) + FLOOR * contact.a
         gain = (to - last[1]) / (y - last[0] + TINY)
         last = y, to
-        if largest(abs(least(to, contact.a) / y - 1.0)) < PEAK_RTOL:
+        active = active & (abs(least(to, contact.a) / y - 1.0) >= PEAK_RTOL)
+        if not some(active):
             break
-        y = least(abs((to - gain * y) / (1.0 - gain + TINY)), contact.a)
+        y = pick(active, least(abs((to - gain * y) / (1.0 - gain + TINY)), contact.a), y)
     return found
 
 

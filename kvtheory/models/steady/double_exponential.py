@@ -54,21 +54,27 @@ def integral(
     6 True
     """
     one, two = widths
+    result, accuracy, active = 0.0, 0.0, one >= 0.0
     for nodes, weights in RULES:
         values = function(np.concatenate([end * nodes for end in ends], axis=-1))
-        sums = values.reshape(-1, nodes.size).dot(weights)  # @ takes four times as long for one scene
+        sums = values.reshape(-1, nodes.size).dot(
+            weights
+        )  # @ takes four times as long for one scene
         if values.ndim == 1:
             (left, left_coarse), (right, right_coarse) = sums.tolist()
         else:
-            (left, left_coarse), (right, right_coarse) = sums.reshape(-1, 2, 2, 1).transpose(1, 2, 0, 3)
+            sums = sums.reshape(-1, 2, 2, 1).transpose(1, 2, 0, 3)
+            (left, left_coarse), (right, right_coarse) = sums
         total = one * left + two * right
         apart = one * abs(left - left_coarse) + two * abs(right - right_coarse)
         error = (apart / total) ** 1.5
-        if largest(error) < RTOL:
-            return total, error
-    if not largest(error) < LIMIT:
+        result, accuracy = pick(active, total, result), pick(active, error, accuracy)
+        active = active & (accuracy > RTOL)
+        if not some(active):
+            break
+    if not largest(accuracy) < LIMIT:
         raise QuadratureError("quadrature of the shape fails: the indenter's reach is too close")
-    return total, error
+    return result, accuracy
 
 
 def largest(values: Value) -> float:
@@ -81,3 +87,19 @@ def least(left: Value, right: Value) -> Value:
     if isinstance(left, float) and isinstance(right, float):
         return min(left, right)
     return np.minimum(left, right)
+
+
+def some(condition: Any) -> bool:
+    """Return whether any element is true."""
+    return bool(condition.any()) if isinstance(condition, np.ndarray) else condition
+
+
+def pick(condition: Any, chosen: Value, other: Value) -> Value:
+    """Return one of two values, element by element.
+
+    What has converged stays as it is while the rest of a column goes on, so that no scene depends
+    on the ones beside it.
+    """
+    if isinstance(condition, np.ndarray):
+        return np.where(condition, chosen, other)
+    return chosen if condition else other
