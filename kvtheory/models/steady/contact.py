@@ -174,7 +174,10 @@ def _half_length(shape: Indenter, depth: Value, a: Value) -> tuple[Value, Value]
         height, slope = shape.height(a), shape.slope(a)
         factor = (depth / height) ** (height / (a * slope))
         moves = pick(active, 1.0 / slope, moves)
-        a = pick(active, least(a * factor, 0.5 * (a + shape.reach)), a)
+        new = a * factor
+        if shape.reach is not math.inf:
+            new = least(new, 0.5 * (a + shape.reach))
+        a = pick(active, new, a)
         active = active & (abs(depth / height - 1.0) >= LINEAR)
         if not some(active):
             return a, moves
@@ -199,7 +202,9 @@ def _trailing(shape: Indenter, l_r: Value, depth: Value, a: Value, x: Value) -> 
 
 def _bend(shape: Indenter, x: Value, slope: Value) -> Value:
     """Return x h''."""
-    step = DIFFERENCE * least(x, shape.reach - x) + ULPS * x
+    step = DIFFERENCE * x
+    if shape.reach is not math.inf:
+        step = DIFFERENCE * least(x, shape.reach - x) + ULPS * x
     return x * ((slope - shape.slope(x - step)) / step)
 
 
