@@ -5,10 +5,15 @@ from kvtheory.results import (
     AsymptoteReport,
     Certificate,
     Comparison,
+    DivergenceError,
+    QuadratureError,
     Simulation,
     Solution,
     SteadyState,
+    Sweep,
+    ToleranceError,
     Transient,
+    TransientError,
 )
 from kvtheory.scene import (
     Circle,
@@ -30,7 +35,6 @@ from kvtheory.scene import (
     load_scene,
     to_toml,
 )
-from kvtheory.sweeps.result import Sweep
 
 __version__ = "0.1.0"
 
@@ -40,12 +44,14 @@ __all__ = [
     "Circle",
     "Comparison",
     "DeadWeight",
+    "DivergenceError",
     "Drive",
     "Fixed",
     "Foundation",
     "Parabola",
     "PowerLaw",
     "Profile",
+    "QuadratureError",
     "Run",
     "Scene",
     "SceneError",
@@ -56,7 +62,9 @@ __all__ = [
     "SteadyState",
     "Suspended",
     "Sweep",
+    "ToleranceError",
     "Transient",
+    "TransientError",
     "Triangle",
     "Wedge",
     "asymptotes",

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from kvtheory.models.steady.double_exponential import QuadratureError
 from kvtheory.models.steady.quadrature import at_depth, at_load
+from kvtheory.results.errors import QuadratureError
 from kvtheory.scene.indenters import Parabola, Profile
 
 POINTS = 200_001

@@ -5,9 +5,9 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 
-from kvtheory.models.steady.double_exponential import QuadratureError
 from kvtheory.models.steady.quadrature import at_depth, at_load
 from kvtheory.results import STEADY_UNITS
+from kvtheory.results.errors import QuadratureError
 from kvtheory.scene.indenters import Circle, Parabola, PowerLaw, Profile, Wedge
 from tests import reference
 

@@ -164,7 +164,7 @@ def test_all_mistakes_are_reported_together(tmp_path):
     for key in ("indenter.radius", "support.mas:", "foundation.retardation_time"):
         assert any(key in text for text in found)
     assert any("drive.velocity" in text for text in found)
-    assert any('--set "nonsense"' in text for text in found)
+    assert any('`overrides` "nonsense"' in text for text in found)
 
 
 def test_a_wrong_support_does_not_hide_the_other_mistakes(tmp_path):

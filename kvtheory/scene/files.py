@@ -55,11 +55,13 @@ def load_scene(path: str | Path | None = None, overrides: Iterable[str] = ()) ->
     >>> load_scene(overrides=["drive.velocity=50 mm/s"]).drive.velocity
     0.05
     """
+    overrides = [overrides] if isinstance(overrides, str) else list(overrides)
+    if path is None and not overrides:
+        return Scene.table1()
     tables = _tables(Scene.table1()) if path is None else _read(Path(path))
     drive = tables.get("drive")
     if path is not None and isinstance(drive, dict) and isinstance(drive.get("file"), str):
         drive["file"] = str(Path(path).parent / drive["file"])  # beside the scene
-    overrides = [overrides] if isinstance(overrides, str) else list(overrides)
     problems = _override(tables, overrides, embedded=path is None)
     return _build(tables, problems)
 
@@ -160,7 +162,9 @@ def _override(tables: dict[str, Any], overrides: list[str], *, embedded: bool) -
         key, separator, value = text.partition("=")
         section, _, name = key.strip().partition(".")
         if not (separator and section and name):
-            problems.append(f'--set "{text}": expected KEY=VALUE, such as drive.velocity="50 mm/s"')
+            problems.append(
+                f'`overrides` "{text}": expected KEY=VALUE, such as drive.velocity="50 mm/s"'
+            )
             continue
         value = value.strip()
         if len(value) > 1 and value[0] == value[-1] and value[0] in "\"'":

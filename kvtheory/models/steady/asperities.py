@@ -27,7 +27,7 @@ from scipy.optimize import brentq, minimize_scalar
 
 from kvtheory.models.steady.cells import DENSE, NODES, SQUARED, VALUES, WEIGHTS, Surface
 from kvtheory.models.steady.contact import ROUNDING
-from kvtheory.models.steady.double_exponential import QuadratureError
+from kvtheory.results.errors import QuadratureError
 
 PEAK_BAND = 0.02
 """Local maxima of the sampled pressure that are this close to the highest are searched."""

@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.polynomial import legendre
 
-from kvtheory.models.steady.double_exponential import QuadratureError
+from kvtheory.results.errors import QuadratureError
 from kvtheory.scene.indenters import Indenter
 
 DEGREE = 15

@@ -25,7 +25,6 @@ from typing import NamedTuple
 import numpy as np
 
 from kvtheory.models.steady.double_exponential import (
-    QuadratureError,
     Value,
     integral,
     largest,
@@ -33,6 +32,7 @@ from kvtheory.models.steady.double_exponential import (
     pick,
     some,
 )
+from kvtheory.results.errors import QuadratureError
 from kvtheory.scene.indenters import Indenter
 
 EPS = float(np.finfo(float).eps)

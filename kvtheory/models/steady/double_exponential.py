@@ -8,6 +8,8 @@ from typing import Any
 
 import numpy as np
 
+from kvtheory.results.errors import QuadratureError
+
 Value = Any
 """A float, or a column of them."""
 
@@ -17,10 +19,6 @@ RTOL = 1e-14
 """Estimate above which the next rule is taken."""
 LIMIT = 1e-6
 """Estimate above which the last rule is no answer."""
-
-
-class QuadratureError(ArithmeticError):
-    """A quadrature, a root or the search for contacts failed; the message says why."""
 
 
 def _rule(step: float) -> tuple[Any, Any, Any]:

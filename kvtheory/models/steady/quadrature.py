@@ -25,8 +25,9 @@ import numpy as np
 from kvtheory.models.steady import asperities, contact
 from kvtheory.models.steady.cells import Surface
 from kvtheory.models.steady.contact import ROUNDING
-from kvtheory.models.steady.double_exponential import QuadratureError, Value, largest
+from kvtheory.models.steady.double_exponential import Value, largest
 from kvtheory.results import Certificate, SteadyState
+from kvtheory.results.errors import QuadratureError
 from kvtheory.scene.indenters import Indenter
 
 CARRIED = 1e-6
