@@ -11,7 +11,7 @@ import pytest
 import kvtheory as kv
 from kvtheory.progress import ProgressLine
 from kvtheory.results import STEADY_UNITS
-from kvtheory.scene.quantities import quantities
+from kvtheory.scene.quantities import given
 from kvtheory.sweeps import engine
 from kvtheory.sweeps.axes import axes_of, narrowed, size, values_at
 from kvtheory.sweeps.netcdf_file import rectangles
@@ -357,7 +357,7 @@ def test_plot_draws_curves_families_and_maps():
 def test_every_quantity_of_a_scene_can_be_swept():
     for scene in map(kv.Scene.table1, ("fixed", "dead-weight", "suspended")):
         for section in ("indenter", "foundation", "support"):
-            for name in quantities(getattr(scene, section)):
+            for name in given(getattr(scene, section)):
                 key = f"{section}.{name}"
                 value = getattr(getattr(scene, section), name)
                 result = kv.sweep(scene, over={key: [value, 2.0 * value]}, quantities="load")

@@ -13,6 +13,7 @@ from kvtheory.checks.allowances import Allowance
 from kvtheory.checks.comparison_case import Case
 from kvtheory.checks.theory import CURVES, Theory
 from kvtheory.scene import Drive, Scene
+from kvtheory.scene.quantities import changed
 
 Array = NDArray[np.float64]
 Curves = Mapping[str, Array]
@@ -130,6 +131,6 @@ def scaled_scene(scene: Scene, key: str, factor: float) -> Scene:
     section, name = key.split(".")
     part: Any = getattr(scene, section)
     if isinstance(part, Drive) and part.history is not None:
-        changed = Drive(history=[(time, factor * speed) for time, speed in part.history])
-        return replace(scene, drive=changed)
-    return replace(scene, **{section: replace(part, **{name: factor * getattr(part, name)})})
+        scaled = Drive(history=[(time, factor * speed) for time, speed in part.history])
+        return replace(scene, drive=scaled)
+    return replace(scene, **{section: changed(part, **{name: factor * getattr(part, name)})})

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from kvtheory.models.steady.methods import METHODS
 from kvtheory.scene.broadcasting import values
 from kvtheory.scene.model import Drive, Scene
+from kvtheory.scene.quantities import changed
 from kvtheory.sweeps.axes import narrowed, values_at
 from kvtheory.sweeps.plan import Plan
 
@@ -174,14 +175,16 @@ def at_point(scene: Scene, point: Mapping[str, float]) -> Scene:
     >>> at_point(Scene(), {"drive.velocity": 0.5, "support.mass": 10.0}).support.mass
     10.0
     """
-    parts: dict[str, Any] = {}
+    sections: dict[str, dict[str, float]] = {}
     for key, value in point.items():
         section, _, name = key.partition(".")
-        if section == "drive":
-            parts[section] = Drive(velocity=value)
-        else:
-            part = parts.get(section, getattr(scene, section))
-            parts[section] = replace(part, **{name: value})
+        sections.setdefault(section, {})[name] = value
+    parts: dict[str, Any] = {
+        section: Drive(velocity=values["velocity"])
+        if section == "drive"
+        else changed(getattr(scene, section), **values)
+        for section, values in sections.items()
+    }
     return replace(scene, **parts)
 
 
