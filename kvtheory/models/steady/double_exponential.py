@@ -59,10 +59,10 @@ def integral(
         values = function(ends[0] * to_left + ends[1] * to_right)
         if values.ndim == 1:
             left, left_coarse, right, right_coarse = values.dot(weights).tolist()
-        else:  # row by row, so that no scene depends on the number of others, to the last bit
+        else:  # a product of this form does not depend on the number of rows
             half = values.shape[1] // 2
-            sums = np.vecdot(values.reshape(-1, 2, 1, half), weights[:half, :2].T)
-            (left, left_coarse), (right, right_coarse) = sums.transpose(1, 2, 0)[..., None]
+            sums = values.reshape(-1, half).dot(weights[:half, :2]).reshape(-1, 2, 2, 1)
+            (left, left_coarse), (right, right_coarse) = sums.transpose(1, 2, 0, 3)
         total = one * left + two * right
         apart = one * abs(left - left_coarse) + two * abs(right - right_coarse)
         error = (apart / total) ** 1.5

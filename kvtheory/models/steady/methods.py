@@ -37,7 +37,7 @@ FAMILIES = {
 }
 """By the name of the shape; `kvtheory.scene.requirements` knows the same names."""
 
-COLUMN = 1024
+COLUMN = 256
 """Scenes that are integrated at once: their nodes then fit into the second cache of a core."""
 ROUNDING = 64 * 2.0**-52
 """Of an asymptote and of its error, which are of some twenty operations each."""
