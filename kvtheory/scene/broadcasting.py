@@ -1,6 +1,6 @@
 """A scene with arrays in the place of some of its values."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from typing import Any
 
 import numpy as np
@@ -53,7 +53,9 @@ def values(scene: Scene, over: Mapping[str, Any] | None = None) -> dict[str, Arr
     if problems:
         raise SceneError(problems)
     try:
-        arrays = np.broadcast_arrays(*given.values())
+        arrays: Iterable[Any] = given.values()
+        if any(getattr(value, "ndim", 0) for value in arrays):  # else there is nothing to do
+            arrays = np.broadcast_arrays(*arrays)
     except ValueError:
         shapes = ", ".join(
             f"{key} {np.shape(value)}" for key, value in given.items() if np.ndim(value)

@@ -2,7 +2,6 @@
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from copy import copy
 from dataclasses import replace
 from types import ModuleType
 from typing import Any, NamedTuple
@@ -38,7 +37,7 @@ FAMILIES = {
 }
 """By the name of the shape; `kvtheory.scene.requirements` knows the same names."""
 
-COLUMN = 512
+COLUMN = 256
 """Scenes that are integrated at once: their nodes then fit into the second cache of a core."""
 ROUNDING = 64 * 2.0**-52
 """Of an asymptote and of its error, which are of some twenty operations each."""
@@ -77,11 +76,14 @@ def _integrated(scene: Scene, values: Mapping[str, Any]) -> SteadyState:
     """Integrate one scene of floats, or a column of scenes."""
     from kvtheory.models.steady import quadrature  # not needed by the other methods
 
-    # The values have been checked as a whole; a column is no value for the indenter's own check.
-    indenter = copy(scene.indenter)
-    for key, value in values.items():
-        if key.startswith("indenter."):
-            object.__setattr__(indenter, key.removeprefix("indenter."), value)
+    # Past the indenter's own check: the values have been checked, and columns are no values for it.
+    indenter = object.__new__(type(scene.indenter))
+    own = {
+        key.removeprefix("indenter."): value
+        for key, value in values.items()
+        if key.startswith("indenter.")
+    }
+    vars(indenter).update(vars(scene.indenter) | own)
     return _solve(quadrature, values, indenter)
 
 
