@@ -174,8 +174,11 @@ def scaled_scene(scene: Scene, powers: Mapping[str, float], factor: float) -> Sc
 def _faster(drive: Drive, times: float) -> Drive:
     """Return a drive with every velocity multiplied."""
     if drive.function is not None:
-        given = {"breaks": drive.breaks, "tolerance": drive.tolerance}
-        return Drive(function=lambda t: times * drive.called(t), **given)
+        return Drive(
+            function=lambda t: times * drive.called(t),
+            breaks=drive.breaks,
+            tolerance=drive.tolerance,
+        )
     if drive.history is not None:
         return Drive(history=[(time, times * speed) for time, speed in drive.history])
     return Drive(times * drive.final_velocity)
