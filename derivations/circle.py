@@ -75,6 +75,7 @@ def _shape() -> Derivation:
     edge = sp.sqrt(1 - eps / 4)
     proof.define(a, R * sp.sqrt(eps), r"$\varepsilon = (a/R)^2$")
     proof.define(delta, a**2 / (2 * R), "Eq. (28)")
+    proof.where(eps * xi**2 < 1, "below the sides of the circle")
     proof.equal((R - sp.sqrt(R**2 - (xi * a) ** 2)) / delta, circle, r"$h/\delta$ of the circle")
     first = eps * xi**4 / 4
     proof.leading_order(circle - xi**2, first, eps, 0, "against the parabola", eps=eps)
@@ -102,10 +103,11 @@ def _fixed() -> Derivation:
     proof.equal(
         change, CORRECTION, r"$-h - l h'$ of the term that the circle adds, per $\varepsilon$"
     )
-    proof.root(PARABOLA, xi, q, "no pressure at the trailing edge")
+    proof.root(PARABOLA, xi, q, "no pressure at the trailing edge", over=(xi, 0, sp.oo))
     proof.sign(
         sp.diff(PARABOLA, xi).subs(xi, q), "<", 0, UNIT, "a simple zero: the edge is analytic"
     )
+    proof.notation[r"\hat p"] = sp.Lambda(xi, PARABOLA)
     leading = PARABOLA.subs(xi, -1)
     proof.equal(leading, 2 * l, "pressure at the leading edge", left=r"\hat p(-1)")
     proof.recall("F1", w, LOAD)
@@ -140,9 +142,10 @@ def _dead_weight() -> Derivation:
     proof.recall("circle-fixed", c_mu, c_f - c_w)
     proof.equal(s * f_s / f / 2, loading, r"$d \ln W/d \ln \delta$ at fixed velocity")
     proof.define(c_delta_load, -c_w / loading, "depth: the load stays")
-    proof.equal(slipping, slope, "logarithmic slope of $m$", left=r"\frac{l\, m^{\prime}(l)}{m}")
-    chained = r"c_\mu + \frac{c_{\delta,W}}{2} \left(1 - \frac{l\, m^{\prime}(l)}{m}\right)"
-    proof.define(c_mu_load, c_mu + c_delta_load * (1 - slope) / 2, _CHAIN, right=chained)
+    change = sp.Symbol("m_l", real=True)
+    proof.define(change, slipping, r"$d \ln m/d \ln l$, by $q$")
+    proof.equal(change, slope, "logarithmic slope of $m$")
+    proof.define(c_mu_load, c_mu + c_delta_load * (1 - change) / 2, _CHAIN)
     proof.equal(c_mu_load, LOADED_COEFFICIENT, "friction coefficient")
     return proof.done(c_mu_load, LOADED_COEFFICIENT)
 

@@ -78,8 +78,7 @@ def _master_curve() -> Derivation:
     proof.define(T, mu * R / l_r, "over the asymptote of Eq. (42)")
     proof.equal(T, q * B / ((1 + q) * A), "rational")
     proof.equal(T**3, Y / X, "the same in the scales of Fig. 6")
-    eliminated = r"\operatorname{Res}_q\left(X - X(q),\, T - T(q)\right)"
-    proof.equal(relation, sp.S.Zero, "$q$ eliminated", left=eliminated)
+    proof.equal(relation, sp.S.Zero, "$q$ eliminated: the resultant")
     return proof.done(X, DRIVE_CUBED)
 
 
@@ -96,7 +95,7 @@ def _peak() -> Derivation:
     proof.equal(sp.Derivative(FRICTION_CUBED, q), rest * parabola, "slope")
     proof.sign(rest, ">", 0, UNIT, "the sign is that of the last factor")
     proof.unique_root(parabola, UNIT, "from + to - with growing $q$")
-    proof.root(parabola, q, PEAK, "friction maximum")
+    proof.root(parabola, q, PEAK, "friction maximum", over=UNIT)
     return proof.done(q, PEAK)
 
 

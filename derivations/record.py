@@ -24,6 +24,8 @@ class Step:
     status: str
     source: str = ""
     """Label of the derivation that a recalled step comes from."""
+    domain: str = ""
+    """For which values of its variable a sign or a root was proved, in LaTeX."""
 
     @property
     def latex(self) -> str:
@@ -59,3 +61,7 @@ class Derivation:
     uses: tuple[str, ...] = ()
     """Labels of the derivations that this one rests on."""
     table: Table | None = None
+    domain: tuple[str, ...] = ()
+    """Under which conditions the result holds, beside the assumptions on its symbols, in LaTeX."""
+    premises: tuple[str, ...] = ()
+    """The definitions and laws that the result rests on, those of recalled results included."""

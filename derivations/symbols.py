@@ -26,7 +26,9 @@ x_te = sp.Symbol("x_TE", nonnegative=True)
 
 # Coordinates.
 t, t_0 = sp.symbols("t t_0", real=True)
-x, z = sp.symbols("x z", real=True)
+x = sp.Symbol("x", real=True)
+z = sp.Function("z", real=True)
+"""Height of the surface of the indenter, at x."""
 
 # Scaled steady sliding.
 q, l = _positive("q l")
@@ -47,7 +49,8 @@ p = sp.Symbol("p", real=True)
 V_star = sp.Symbol("V_star", positive=True)
 
 # The theorems: scaled load, friction force and coefficient (F1), pressure (F7, F16), energy (F6).
-w, phi, m, P, P_max, n, eta = _positive("w phi m P P_max n eta")
+w, phi, m, P_max, n, eta = _positive("w phi m P_max n eta")
+P = sp.Symbol("P", real=True)
 F_elastic, F_viscous = _positive("F_elastic F_viscous")
 X, Y, T = _positive("X Y T")
 """Of a dead weight (F2): the cubes of the scaled velocity and of the scaled friction coefficient, and
@@ -57,7 +60,8 @@ mu_peak, Lambda_peak, Lambda_fixed, Lambda_weight = _positive(
 )
 
 # The balance of forces of a movable indenter, scaled by the static state.
-s, lam, kappa, r = _positive("s lambda kappa r")
+s, lam, r = _positive("s lambda r")
+kappa = sp.Symbol("kappa", nonnegative=True)
 f, f_s, f_ss = _positive("f f_s f_ss")
 G, G_s = sp.symbols("G G_s", real=True)
 
@@ -80,17 +84,47 @@ d_s, d_ss, f_normal, f_friction = sp.symbols("d_s d_ss f_normal f_friction", rea
 time, earlier, start, sigma, zeta = sp.symbols("s s_1 s_0 sigma zeta", real=True)
 depth, travel = (sp.Function(name, real=True)(time) for name in "dY")
 """The depth, and how far the foundation has moved: its element X is at xi = X + Y."""
-material, left, right, mix = sp.symbols("X ell r theta", real=True)
+material, left, right = sp.symbols("X ell r", real=True)
+mix = sp.Symbol("theta", positive=True)
 rho, beta, per_depth, per_rate, eps_critical = _positive("rho beta A B epsilon_c")
 drive_excess = sp.Symbol("n", real=True)
 drift, lift = sp.symbols("lambda_bar d_bar", real=True)
 compression, indenter = (sp.Function(name, real=True) for name in "ug")
 """The surface of an element, and the indenter above it."""
 
+# Power law h = |x|**n/(n L**(n - 1)) and wedge h = c |x|; y is |x|/a, Q is q**(n - 1), z is 1 - q**n.
+exponent, excess, L, Q, y, z_peeled = _positive("n nu L Q y peeled")
+"""The exponent n, and n - 1, which is positive for every shape that is no wedge."""
+w_ahead, phi_ahead, lost_ahead = _positive("w_ahead phi_ahead e_ahead")
+w_behind, phi_behind, lost_behind = sp.symbols("w_behind phi_behind e_behind", nonnegative=True)
+w_n, phi_n, m_n, eta_n, P_n, l_cross, lam_cross = _positive(
+    "w_n phi_n m_n eta_n P_n l_cross lambda_cross"
+)
+scaled_n, scaled_n_s = _positive("f_n f_n_s")
+slip_n, T_n = sp.symbols("D_n T_n", real=True)
+(e_n_l1, e_n_l2, e_n_load_low, e_n_load_high, e_n_friction_low, e_n_friction_high,
+ e_n_depth_high) = sp.symbols(
+    "e_L1_n e_L2_n e_W_low_n e_W_high_n e_F_low_n e_F_high_n e_depth_high_n", real=True
+)  # fmt: skip
+gap_edge, gap_slope, bend, phi_rise, phi_fall, psi, omega = _positive(
+    "gap_q gap_Q bend phi_rise phi_fall psi omega"
+)
+w_rest, m_low, m_high = _positive("w_rest m_low m_high")
+damped, whole, tip, sharp, blunt = _positive("damped whole tip sharp blunt")
+"""Shorthands of sums in the errors of the asymptotes."""
+p_le, p_te = sp.symbols("p_LE p_TE", nonnegative=True)
+depth_rate_now, load_excess = sp.symbols("delta_t W_e", real=True)
+logarithm, slope_rate = (sp.Function(name, real=True) for name in ("psi", "chi"))
+"""ln h' of a shape, and its slope."""
+travelled, ratio_near, ratio_now, ratio_gain = _positive("m rho_1 rho_2 beta_1")
+s_peeling, s_peeled, held, inclination = _positive("s_1 s_2 held c_1")
+
 alpha = 2 * sp.sqrt(2) / 3
 """The coefficient of Eqs. 40-46."""
 
 TEX = {
+    sp.Symbol("x_-", real=True): "x_{-}",
+    sp.Symbol("x_TE", real=True): r"x_{\mathrm{TE}}",
     x_le: r"x_{\mathrm{LE}}",
     x_te: r"x_{\mathrm{TE}}",
     l_r: r"l_{\mathrm{r}}",
@@ -133,5 +167,45 @@ TEX = {
     f_friction: "f_x",
     c_delta_load: r"c_{\delta,W}",
     c_mu_load: r"c_{\mu,W}",
+    excess: r"\nu",
+    l_cross: "l^{*}",
+    lam_cross: r"\lambda^{*}",
+    z_peeled: "z",
+    phi_n: r"\varphi_n",
+    P_n: r"\hat p_{\max,n}",
+    scaled_n_s: "f_n'",
+    gap_edge: r"\bar q",
+    gap_slope: r"\bar Q",
+    w_rest: r"w_{n,0}",
+    damped: r"D_{\mathrm{d}}",
+    whole: r"D_{\mathrm{w}}",
+    tip: r"D_{\mathrm{t}}",
+    sharp: r"D_{\mathrm{s}}",
+    blunt: r"D_{\mathrm{b}}",
+    m_low: r"m_{n,0}'",
+    m_high: r"m_{n,\infty}",
+    bend: "b_n",
+    phi_rise: r"\phi_{2,+}",
+    phi_fall: r"\phi_{2,-}",
+    w_ahead: r"w_{\mathrm{a}}",
+    w_behind: r"w_{\mathrm{b}}",
+    phi_ahead: r"\varphi_{\mathrm{a}}",
+    phi_behind: r"\varphi_{\mathrm{b}}",
+    lost_ahead: r"\eta_{\mathrm{a}}",
+    lost_behind: r"\eta_{\mathrm{b}}",
+    e_n_l1: r"e_{\mathrm{L1},n}",
+    e_n_l2: r"e_{\mathrm{L2},n}",
+    e_n_load_low: r"e_{W\!,\,V\to0,n}",
+    e_n_load_high: r"e_{W\!,\,V\to\infty,n}",
+    e_n_friction_low: r"e_{F\!,\,V\to0,n}",
+    e_n_friction_high: r"e_{F\!,\,V\to\infty,n}",
+    e_n_depth_high: r"e_{\delta,\,V\to\infty,n}",
+    p_le: r"p_{\mathrm{LE}}",
+    p_te: r"p_{\mathrm{TE}}",
+    depth_rate_now: r"\dot\delta",
+    load_excess: r"W_{\mathrm{e}}",
+    inclination: "c",
+    held: r"\bar w",
+    ratio_gain: r"\beta",
 }
 """How `sympy.latex` prints these symbols where its own choice differs from the paper's."""

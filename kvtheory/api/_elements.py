@@ -45,7 +45,8 @@ def elements(
         The longest step, in s or as text with a unit; without it 2 dx/V, as in the paper, and less
         where the scheme needs it (but never for the scheme ``"paper"``).
     certify
-        Whether to estimate the error, by a second run with half as many elements and steps.
+        Whether to estimate the error, by two more runs with half as many elements and steps; without,
+        the certificate is of the kind "none" and holds no errors.
     progress
         Called as in `transient`, with the steps done as words.
     warn
@@ -54,8 +55,8 @@ def elements(
     Returns
     -------
     Simulation
-        Arrays over time in SI and a certificate whose errors are relative to the static depth, half
-        length and load. `warning` is not empty where the step is doubtful.
+        Arrays over time in SI and a certificate whose statement says what its errors are relative to,
+        such as the static depth. `warning` is not empty where the step is doubtful.
 
     Raises
     ------

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     "--method",
     default=None,
     metavar="exact|quadrature|asymptote",
-    help="Default: exact, or quadrature for shapes other than the parabola.",
+    help="Default: exact for parabola, power law and wedge, quadrature for other shapes.",
 )
 @result_options
 def steady(

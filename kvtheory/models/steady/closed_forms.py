@@ -2,7 +2,9 @@
 
 Each function is the form for floating-point numbers of an expression proved in `derivations`, with
 l = l_r/a >= 0 (retardation length over half length) and q = x_TE/a in (0, 1] (trailing edge over half
-length). Floats and arrays alike; an asymptote for high velocity has no error at l = 0.
+length); for a power law h = |x|^n/(n L^(n-1)) with Q = q^(n-1), and for the wedge, which is n = 1, with
+q = max(0, 1 - l) and Q = 1/(q + l). Floats and arrays alike; an asymptote for high velocity has no error
+at l = 0.
 """
 
 from typing import TypeVar
@@ -161,3 +163,146 @@ def circle_depth_at_load(q: Value) -> Value:
     """Return c in 1 + c (a/R)^2, likewise, of delta at given load; theorem circle-dead-weight."""
     c_W = circle_load(q)
     return -c_W * ((1 - q) * (1 - q) / 3 + 2 / 3)
+
+
+def power_law_load(n: Value, l: Value, q: Value, Q: Value) -> Value:
+    """Return w = W/(K delta a); theorem F19-load."""
+    return n * (Q * l * l + l + q + 1) / (n + 1)
+
+
+def power_law_friction_force(n: Value, l: Value, q: Value, Q: Value) -> Value:
+    """Return phi = F/(K delta^2); theorem F19-friction."""
+    return l * n * n * (Q * Q * l / 2 + (Q * Q * q + 1) / (2 * n - 1))
+
+
+def power_law_friction_coefficient(n: Value, l: Value, q: Value, Q: Value) -> Value:
+    """Return m = mu a/delta; theorem F19."""
+    return (
+        l * n * (n + 1) * (Q * Q * l / 2 + (Q * Q * q + 1) / (2 * n - 1)) / (Q * l * l + l + q + 1)
+    )
+
+
+def power_law_peak_pressure(n: Value, l: Value) -> Value:
+    """Return the maximum of p/(K delta); theorem F19-peak."""
+    y = np.minimum(1, l * (n - 1))
+    return y ** (n - 1) * (l * n - y) + 1
+
+
+def power_law_dissipated_in_contact(n: Value, l: Value, q: Value, Q: Value) -> Value:
+    """Return the part of F V dissipated in the contact; theorem F19-energy."""
+    return (2 * Q * Q * q + 2) / (Q * Q * l * (2 * n - 1) + 2 * Q * Q * q + 2)
+
+
+def power_law_static_load(n: Value) -> Value:
+    """Return w at rest; theorem F19-low."""
+    return 2 * n / (n + 1)
+
+
+def power_law_low(n: Value) -> Value:
+    """Return m/l for l -> 0; theorem F19-low."""
+    return n * (n + 1) / (2 * n - 1)
+
+
+def power_law_high(n: Value) -> Value:
+    """Return m for l -> oo; theorem F19-high."""
+    return n * n / (2 * n - 1)
+
+
+def power_law_crossing(n: Value) -> Value:
+    """Return l where the asymptotes of mu meet; theorem F19-crossing."""
+    return n / (n + 1)
+
+
+def power_law_crossing_at_load(n: Value, kappa: Value) -> Value:
+    """Return V tau/a_0 where they meet, at a load; theorem F19-crossing-weight."""
+    return 2 ** ((n - 1) / (2 * n - 1)) * n * (kappa + 1) ** ((n - 1) / (2 * n - 1)) / (n + 1)
+
+
+def power_law_scaled_load(n: Value, s: Value, r: Value, lam: Value) -> Value:
+    """Return f = W/W_0 at s = a/a_0, r = x_TE/a_0, lam = V tau/a_0; theorem F19-scaled-load."""
+    return s**n * (lam * lam / (lam * n + r) + lam + r + s) / 2
+
+
+def power_law_scaled_load_slope(n: Value, s: Value, r: Value, lam: Value) -> Value:
+    """Return df/ds at fixed lam; theorem F19-balance."""
+    return s ** (n - 1) * (n + 1) * (lam + r + s) / 2
+
+
+def power_law_friction_rise(n: Value, l: Value, q: Value, Q: Value) -> Value:
+    """Return what has the sign of dmu/dV under a dead weight; theorem F19-slip."""
+    return -Q * Q * Q * l * l * l * n * (2 * n - 1) + (Q * Q * q + 1) * (
+        -Q * l * l * (2 * n - 1) + l + q + 1
+    )
+
+
+def power_law_peeled(n: Value, peeled: Value) -> Value:
+    """Return 1 - q from z = n l Q; theorem F19-peeled."""
+    return -np.expm1(np.log1p(-peeled) / n)
+
+
+def power_law_slope_drop(n: Value, peeled: Value) -> Value:
+    """Return 1 - Q from z = n l Q; theorem F19-peeled."""
+    return -np.expm1((n - 1) * np.log1p(-peeled) / n)
+
+
+def power_law_bend(n: Value, y: Value, phi_rise: Value, phi_fall: Value) -> Value:
+    """Return l - (1 - q) from y = -ln q, phi_2((n - 1) y) and phi_2(-y); theorem F19-bend."""
+    return y * y * (n - 1) * (phi_fall + phi_rise * (n - 1)) / n
+
+
+def power_law_error_l1(n: Value, l: Value, q: Value, Q: Value, gap_Q: Value) -> Value:
+    """Return L1/mu - 1; theorem F19-error-L1."""
+    damped = Q * Q * l * (2 * n - 1) / 2 + Q * Q * q + 1
+    return (-Q * Q * l * (2 * n - 1) / 2 + Q * l * l + gap_Q * q * (Q + 1) + l) / damped
+
+
+def power_law_error_l2(n: Value, l: Value, q: Value, Q: Value) -> Value:
+    """Return L2/mu - 1, fixed depth; theorem F19-error-L2."""
+    blunt = (n - 1) * (2 * n * n + q * (Q + n) * (2 * n + 2) - 1) / (2 * n * n * (n + 1))
+    damped = Q * Q * l * (2 * n - 1) / 2 + Q * Q * q + 1
+    sharp = Q * q * q * (Q + 2 * n / (n + 1)) / (2 * n * n)
+    return (blunt + sharp) / (damped * l)
+
+
+def power_law_error_load_low(l: Value, q: Value, Q: Value, bend: Value) -> Value:
+    """Return load for l -> 0 over W, - 1; theorem F19-error-load-low."""
+    whole = Q * l * l + l + q + 1
+    return (-Q * l * l - bend) / whole
+
+
+def power_law_error_load_high(n: Value, l: Value, q: Value, Q: Value) -> Value:
+    """Return C V delta over W, - 1; theorem F19-error-load-high."""
+    tip = n * n + q * (Q * q + n * n - 1)
+    whole = Q * l * l + l + q + 1
+    return -tip / (n * n * whole)
+
+
+def power_law_error_friction_low(
+    n: Value, l: Value, q: Value, Q: Value, gap_q: Value, gap_Q: Value
+) -> Value:
+    """Return friction force for l -> 0 over F, - 1; theorem F19-error-friction-low."""
+    damped = Q * Q * l * (2 * n - 1) / 2 + Q * Q * q + 1
+    return (-Q * Q * l * (2 * n - 1) / 2 + gap_Q * q * (Q + 1) + gap_q) / damped
+
+
+def power_law_error_friction_high(n: Value, l: Value, q: Value, Q: Value) -> Value:
+    """Return friction force for l -> oo over F, - 1; theorem F19-error-friction-high."""
+    damped = Q * Q * l * (2 * n - 1) / 2 + Q * Q * q + 1
+    return (-Q * Q * l * (2 * n - 1) / 2 - Q * Q * q) / damped
+
+
+def power_law_error_depth_high(n: Value, l: Value, q: Value, Q: Value) -> Value:
+    """Return W/(C V) over delta, - 1, dead weight; theorem F19-error-depth-high."""
+    tip = n * n + q * (Q * q + n * n - 1)
+    return tip / (l * n * (n + 1))
+
+
+def wedge_scaled_depth_peeling(kappa: Value, lam: Value) -> Value:
+    """Return delta/delta_0 of a wedge while lam < s; theorem wedge-weight-peeling."""
+    held = kappa - lam * lam / 2 + 1
+    return 2 * held / (kappa + np.sqrt(4 * held + kappa * kappa))
+
+
+def wedge_scaled_depth_peeled(kappa: Value, lam: Value) -> Value:
+    """Return delta/delta_0 of a wedge from lam = s on; theorem wedge-weight-peeled."""
+    return (2 * kappa + 2) / (kappa + lam + np.sqrt(2 * kappa + (kappa + lam) * (kappa + lam) + 2))
