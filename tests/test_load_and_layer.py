@@ -202,3 +202,24 @@ def test_files_that_lack_or_contradict_are_told_all_at_once(tmp_path):
     for key in ("foundation.poisson_ratio", "foundation.retardation_time", "support.mass"):
         assert told.count(f"{key}: missing") == 1
     assert "or support.load" in told
+
+
+@pytest.mark.parametrize(
+    "indenter",
+    [kv.Parabola(0.01), kv.Circle(0.01), kv.Wedge(0.05), kv.PowerLaw(0.01, 3.0)],
+    ids=lambda shape: shape.shape,
+)
+@pytest.mark.parametrize("kind", KINDS)
+def test_every_shape_and_method_carries_the_load_of_a_load(indenter, kind):
+    by_load = replace(scene(kind, load=1000.0 * G), indenter=indenter)
+    by_mass = replace(scene(kind, mass=1000.0), indenter=indenter)
+    for method in ("exact", "quadrature", "asymptote"):
+        try:
+            wanted = kv.steady(by_mass, method=method)
+        except ValueError:
+            continue  # the method is not for this shape
+        assert kv.steady(by_load, method=method) == wanted
+    asked = {"quantity": "friction_coefficient", "rtol": 1e-3}
+    assert kv.solve(by_load, **asked).friction_coefficient == pytest.approx(
+        kv.solve(by_mass, **asked).friction_coefficient, rel=1e-14
+    )

@@ -235,6 +235,8 @@ class Scene:
     def values(self) -> Mapping[str, float]:
         """Return every quantity of the scene in SI by its dotted key, as ``"drive.velocity"``.
 
+        What follows from others is there too: the ``"support.weight"``, and the stiffness of a layer.
+
         A drive that is a function has no velocity to give.
         """
         parts = {"indenter": self.indenter, "foundation": self.foundation, "support": self.support}
@@ -244,6 +246,8 @@ class Scene:
             for name in quantities(part)
             if getattr(part, name) is not None
         }
+        if not self.held:
+            flat["support.weight"] = self.support.weight
         if not self.drive.ends:
             return flat
         return {**flat, "drive.velocity": self.drive.final_velocity}
