@@ -13,7 +13,7 @@ REACH = 1.5
 HALVINGS = 32
 
 
-def run(scene, velocity, end, *, points=500, steps=4000, plant="", value=0.0):
+def run(scene, velocity, end, *, points=500, steps=2000, plant="", value=0.0):
     """Return a time series in SI; `points` lie in the static half length, `velocity` is V(t)."""
     R, K, tau = scene.indenter.radius, scene.foundation.stiffness, scene.foundation.retardation_time
     held = scene.support.kind == "fixed"

@@ -2,6 +2,7 @@
 
 import json
 import math
+import os
 import sys
 import time
 from collections.abc import Callable, Iterable, Iterator, Sequence
@@ -15,6 +16,8 @@ PATIENCE = 1.0
 """Seconds before a progress bar is shown."""
 BAR_LENGTH = 1000
 """Parts in which progress is shown."""
+INTERRUPTED, READER_GONE = 130, 141
+"""Exit statuses, as shells have them for the signals: 1 is for a check that found disagreement alone."""
 
 
 class Examples(click.Command):
@@ -38,11 +41,16 @@ def teaching(command: Callable[..., None]) -> Callable[..., None]:
         try:
             command(*args, **kwargs)
         except BrokenPipeError:
-            raise  # the reader of the output has gone; click ends quietly
+            # Nor may what is still to be written fail when the interpreter ends.
+            os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+            sys.exit(READER_GONE)
+        except KeyboardInterrupt:
+            sys.exit(INTERRUPTED)
         except (ValueError, ArithmeticError, OSError, RuntimeError) as error:
             lines = str(error).splitlines()
             head = "error:" if len(lines) == 1 else f"{len(lines)} mistakes:\n "
-            click.echo(f"kvtheory: {head} " + "\n  ".join(lines), err=True)
+            if sys.stderr is not None:  # it may be closed
+                click.echo(f"kvtheory: {head} " + "\n  ".join(lines), err=True)
             sys.exit(2)
 
     return run
