@@ -13,7 +13,7 @@ REACH = 1.5
 HALVINGS = 32
 
 
-def run(scene, velocity, end, *, points=500, steps=4000, plant="", value=0.0):
+def run(scene, velocity, end, *, points=500, steps=2000, plant="", value=0.0):
     """Return a time series in SI; `points` lie in the static half length, `velocity` is V(t)."""
     R, K, tau = scene.indenter.radius, scene.foundation.stiffness, scene.foundation.retardation_time
     held = scene.support.kind == "fixed"
@@ -67,7 +67,7 @@ def run(scene, velocity, end, *, points=500, steps=4000, plant="", value=0.0):
         ends = (x[on[0]], x[on[-1]]) if on.size else (math.nan, math.nan)
         arm = value if plant == "lever arm" else 0.0
         F_x = -dx * ((x - arm) * p).sum() / R
-        edges = ends if V[k] >= 0 else ends[::-1]
+        edges = ends if V[max(k - 1, 0)] >= 0 else ends[::-1]  # of the step that ends here
         rows.append((t[k], depth, rate, dx * p.sum(), F_x, *edges, p.max()))
     names = ("time", "depth", "depth_rate", "normal_force", "friction_force", "leading_edge",
              "trailing_edge", "peak_pressure")  # fmt: skip

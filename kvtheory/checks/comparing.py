@@ -46,6 +46,8 @@ def _compare(
         case = make_case(theory, series, per_length, tolerance, LARGEST_SAWTOOTH)
         checks = judge(case)
     text, explanations = diagnose(case, checks)
+    if series.ignored:
+        text += f" Columns that were not used: {', '.join(series.ignored)}."
     allowed = {name: case.most(name) * case.theory.scales[name] for name in case.names}
     return Comparison(
         verdict(checks), checks, text, explanations, series.source, tolerance,
