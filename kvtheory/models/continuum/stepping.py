@@ -30,6 +30,8 @@ OVERRUN = 1e-4
 ran farther is repeated with the right length."""
 BRIEF = 1e-10
 """A piece of a step up to an event so close to its start that it needs no repetition."""
+REMAINDER = 1.1
+"""Of what the step before left of its own way: a way no longer than this is taken whole."""
 RELIEF = 0.25
 """How far the ground may slide in a step of the flight above it, in units of a_0."""
 SMOOTH = 1e-9
@@ -93,6 +95,20 @@ def _meet_drive(run: Run) -> None:
         _restart(run)
     if run.states[0] != FREE:
         _detach(run, Y, number)
+    if run.counts[r_.SMOOTH] != 0:
+        _meet_kink(run, Y, number, slope)
+
+
+def _meet_kink(run: Run, Y: float, number: float, slope: float) -> None:
+    """Let a peeling edge touch where a new slope of lambda lets the pressure rise, however briefly."""
+    now, allowed = run.now, run.given.allowed
+    dv = motion(run.records[run.counts[r_.RECORDS] - 1], now[r_.S])[2]
+    instant = now[r_.D], now[r_.V], dv, Y, number, slope
+    for k in range(2):
+        if run.states[k] == PEELING:
+            row, xi = run.nodes[run.tops[k]], run.edges[k] + Y
+            if c_.slack(SIDES[k], PEELING, row, now[r_.S], xi, instant)[0] < -allowed:
+                _turn(run, k)
 
 
 def _detach(run: Run, Y: float, number: float) -> None:
@@ -145,9 +161,8 @@ def _step(run: Run, until: float) -> int:
     """Try one step; keep it up to its first event, or try a shorter one next time."""
     now = run.now
     span, whole = min(now[r_.SPAN], _longest(run)), until - now[r_.S]
-    share = run.given.straight if _begins(run) else 1.0
     if span >= whole:
-        span = share * whole
+        span = _share(run, whole) * whole
     if not now[r_.S] + 0.1 * span > now[r_.S]:
         return STUCK
     if whole - span < 0.1 * OVERRUN * span:
@@ -158,7 +173,7 @@ def _step(run: Run, until: float) -> int:
     until_event = found - now[r_.S]
     if BRIEF * (1.0 + now[r_.S]) < until_event < span / (1.0 + OVERRUN):
         run.counts[r_.REJECTED] += 1
-        now[r_.SPAN] = share * (1.0 + 0.5 * OVERRUN) * until_event
+        now[r_.SPAN] = _share(run, until_event) * (1.0 + 0.5 * OVERRUN) * until_event
         return DONE
     power = -1.0 / (len(run.given.method.nodes) + 1)
     factor = min(run.given.grow, max(SHRINK, SAFETY * math.pow(max(size, TINY), power)))
@@ -178,11 +193,18 @@ def _step(run: Run, until: float) -> int:
     return DONE
 
 
-def _begins(run: Run) -> bool:
-    """Whether the motion went on in another way until now: before an event, or on another piece."""
-    now = run.now
+def _share(run: Run, way: float) -> float:
+    """Return the share of the way to an event, or to the end of a piece, that a step takes at most.
+
+    Not all of it if the motion began anew, by an event or on another piece, or if the way is long.
+    """
+    now, straight = run.now, run.given.straight
     at_piece = now[r_.S] == run.given.pieces[run.counts[r_.PIECE]][PIECE_START]
-    return at_piece or run.counts[r_.SMOOTH] == 0 or run.counts[r_.TOGGLES] > 0
+    if not at_piece and run.counts[r_.SMOOTH] != 0 and run.counts[r_.TOGGLES] == 0:
+        left = (1.0 - straight) * run.records[run.counts[r_.RECORDS] - 1][h_.SPAN]
+        if straight * way <= REMAINDER * left:
+            return 1.0
+    return straight
 
 
 def _longest(run: Run) -> float:
