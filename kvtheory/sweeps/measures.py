@@ -14,8 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kvtheory.models.continuum import evaluation
-from kvtheory.models.continuum.maxima import force_maxima
-from kvtheory.models.continuum.solved_scene import FORCE_MAXIMA, SolvedScene, certified
+from kvtheory.models.continuum.solved_scene import FORCE_MAXIMA, SolvedScene, certified, force_maxima
 from kvtheory.results import Certificate
 from kvtheory.scene.model import Scene
 from kvtheory.sweeps.plan import Plan

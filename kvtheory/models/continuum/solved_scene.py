@@ -3,20 +3,30 @@
 from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass
-from functools import cached_property
 from operator import itemgetter
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from kvtheory.models.continuum import evaluation
+from kvtheory.models.continuum import evaluation, maxima
 from kvtheory.models.continuum.energy import Ledger, ledger
-from kvtheory.models.continuum.error_estimate import COARSER, COMPARISONS, certificate
-from kvtheory.models.continuum.maxima import force_maxima
-from kvtheory.models.continuum.radau_iia import stages_for
+from kvtheory.models.continuum.error_estimate import (
+    COMPARISON,
+    NOT_ASKED,
+    TIGHTER,
+    TIGHTEST,
+    certificate,
+    unknown,
+)
 from kvtheory.models.continuum.run import StepControl
-from kvtheory.models.continuum.solver import STATE_NAMES, Trajectory, TransientError, solve
+from kvtheory.models.continuum.solver import (
+    STATE_NAMES,
+    STEP_LIMIT,
+    Trajectory,
+    TransientError,
+    solve,
+)
 from kvtheory.models.continuum.surface import height
 from kvtheory.results import Certificate, Event, Transient
 from kvtheory.scene.base_motion import BaseMotion
@@ -27,9 +37,6 @@ Array = NDArray[np.float64]
 
 LOOSEST = 1e-4
 """Looser tolerances save no more steps."""
-
-SUBDIVISIONS = 4
-"""Points shown for each step of the solver, which is long where nothing happens."""
 
 AFTER_END = 1e-12
 """Share of the run by which a time may lie after its end, from rounding."""
@@ -51,13 +58,10 @@ class SolvedScene:
     drive: BaseMotion
     units: StaticState
 
-    @cached_property
+    @property
     def natural_times(self) -> Array:
         """Times (s) at which the series shows all that happens: the solver's steps, subdivided."""
-        ends = np.append(np.array(self.motion.starts), self.motion.end)
-        parts = np.arange(SUBDIVISIONS) / SUBDIVISIONS
-        inner = (ends[:-1, None] + np.diff(ends)[:, None] * parts).reshape(-1)
-        return np.unique(np.append(inner, self.motion.end)) * self.units.time
+        return self.motion.natural * self.units.time
 
     def series(self, time: ArrayLike) -> dict[str, Any]:
         """Return the quantities and states at the given times (s)."""
@@ -86,8 +90,11 @@ class SolvedScene:
 
     def states(self, time: ArrayLike) -> Array:
         """Return the scaled states at the times (s): a row for each quantity of `states`."""
-        s = np.asarray(time, dtype=float) / self.units.time
-        return self.motion.states(np.minimum(s, self.motion.end)).T
+        return self.motion.states(self.scaled(time)).T
+
+    def scaled(self, time: ArrayLike) -> Array:
+        """Return times in units of tau; the last one may be after the end, by rounding."""
+        return np.minimum(np.asarray(time, dtype=float) / self.units.time, self.motion.end)
 
     def pressure(self, x: ArrayLike, time: float) -> Array:
         """Return p in Pa at the positions `x` (m): K (d + d' - xi^2 - 2 lambda xi) in the contact."""
@@ -120,9 +127,14 @@ def transient(
     times: ArrayLike | None,
     rtol: float,
     progress: Callable[[float], Any] | None = None,
+    *,
+    certify: bool = True,
+    max_steps: int = STEP_LIMIT,
 ) -> Transient:
     """Solve a scene; `kvtheory.transient` documents it."""
-    solution, time, errors = certified(scene, times, rtol, progress)
+    solution, time, errors = certified(
+        scene, times, rtol, progress, certify=certify, max_steps=max_steps
+    )
     motion = solution.motion
     found = zip(force_maxima(motion), FORCE_MAXIMA, strict=True)
     events = sorted([*motion.events, *found], key=itemgetter(0))
@@ -138,13 +150,23 @@ def transient(
     )
 
 
+def force_maxima(motion: Trajectory) -> tuple[float, float]:
+    """Return when f_z and |f_x| are largest: the first time of the largest value from s = 0 on."""
+    columns = evaluation.NORMAL_FORCE, evaluation.FRICTION_FORCE
+    normal, friction = (motion.largest(column, maxima.MAGNITUDE)[0] for column in columns)
+    return normal, friction
+
+
 def certified(
     scene: Scene,
     times: ArrayLike | None,
     rtol: float,
     progress: Callable[[float], Any] | None = None,
+    *,
+    certify: bool = True,
+    max_steps: int = STEP_LIMIT,
 ) -> tuple[SolvedScene, Array, Certificate]:
-    """Solve a scene, and with a looser tolerance again; return the times (s) that are judged, too.
+    """Solve a scene, and with a tighter tolerance again; return the times (s) that are judged, too.
 
     Without `times`, these are the natural ones.
     """
@@ -155,18 +177,20 @@ def certified(
     def solved(part: int, tolerance: float, control: StepControl) -> SolvedScene:
         def report(s: float) -> None:
             if progress is not None:
-                progress((part + s / drive.end) / (1 + len(COMPARISONS)))
+                progress((part + s / drive.end) / (1 + certify))
 
-        return _solution(scene, units, drive, tolerance, control, report)
+        return _solution(scene, units, drive, tolerance, control, report, max_steps)
 
     fine = solved(0, rtol, StepControl())
     time = fine.natural_times if times is None else np.asarray(times, dtype=float).reshape(-1)
-    others = []
-    for part, control in enumerate(COMPARISONS, 1):
-        with suppress(TransientError):  # a looser solution may fail where this one did not
-            alike = control._replace(stages=stages_for(rtol))
-            others.append(solved(part, COARSER * rtol, alike).states(time))
-    return fine, time, certificate(fine.states(time), others, rtol)
+    if not certify:
+        return fine, time, unknown(NOT_ASKED)
+    other = None
+    with suppress(TransientError):  # a tighter solution may fail where this one did not
+        other = solved(1, max(rtol / TIGHTER, TIGHTEST), COMPARISON).motion
+    motion = fine.motion
+    s = motion.natural if times is None else fine.scaled(time)
+    return fine, time, certificate(motion, other, s, motion.rows_at(s), rtol)
 
 
 def _solution(
@@ -176,10 +200,19 @@ def _solution(
     rtol: float,
     control: StepControl,
     progress: Callable[[float], Any],
+    max_steps: int,
 ) -> SolvedScene:
     numbers = units.inertia_number, units.support_number
     try:
-        motion = solve(drive, *numbers, drive.end, rtol, control=control, progress=progress)
+        motion = solve(
+            drive,
+            *numbers,
+            drive.end,
+            rtol,
+            control=control,
+            progress=progress,
+            max_steps=max_steps,
+        )
     except TransientError as error:
         reason = f"{error.reason}, in a run of {drive.end:.4g} retardation times,"
         raise TransientError(reason, error.s * units.time, "t", " s") from None
