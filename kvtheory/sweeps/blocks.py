@@ -152,33 +152,32 @@ def _transients(
     steady: Mapping[str, Array],
     into: tuple[Array, Sequence[list[str]], dict[int, str], dict[str, float]],
 ) -> set[str]:
-    """Follow the motions one by one; return the statements of the certificates."""
+    """Follow the motions; return the statements of the certificates."""
     from kvtheory.sweeps import measures  # it imports the solver, which takes a while
 
     plan, (numbers, texts, reasons, errors) = given.plan, into
-    statements: set[str] = set()
-    placed = [(row, column) for row, column in _placed(plan) if not column.steady]
-    bases = {column.base for _, column in placed if column.base} | plan.compared
+    scenes: dict[int, Scene] = {}
     for index in range(given.points):
         if index in reasons:
             continue
         point = {key: float(array[index]) for key, array in over.items()}
-        compared = {name: float(array[index]) for name, array in steady.items()}
         try:
-            with np.errstate(over="raise", invalid="raise", divide="raise"):
-                scene = at_point(plan.scene, point)
-                answer, certificate = measures.follow(scene, plan, compared)
+            scenes[index] = at_point(plan.scene, point)
         except FAILS as error:
             reasons[index] = reason(error)
-            continue
-        statements.add(certificate.statement)
-        for name in bases:
-            worst(errors, name, certificate.relative_error[name])
-        for row, column in placed:
-            numbers[row : row + plan.rows(column), index] = answer[column.name]
-        for column, text in zip(plan.textual, texts, strict=True):
-            text[index] = answer[column.name]
-    return statements
+    friction = steady.get("friction_force", np.full(given.points, np.nan))
+    with np.errstate(over="raise", invalid="raise", divide="raise"):
+        found = measures.measure(plan, scenes, friction, FAILS)
+    reasons.update((index, reason(error)) for index, error in found.reasons.items())
+    placed = [(row, column) for row, column in _placed(plan) if not column.steady]
+    kept = [index for index in scenes if index not in reasons]
+    for name in {column.base for _, column in placed if column.base} | plan.compared:
+        worst(errors, name, found.errors[name][kept])
+    for row, column in placed:
+        numbers[row : row + plan.rows(column)] = found.values[column.name].T
+    for column, text in zip(plan.textual, texts, strict=True):
+        text[:] = found.texts[column.name]
+    return found.statements
 
 
 def at_point(scene: Scene, point: Mapping[str, float]) -> Scene:

@@ -16,6 +16,7 @@ from types import ModuleType
 from typing import Any, NamedTuple
 
 from kvtheory.models.continuum import (
+    bulk,
     contact,
     dense_output,
     deviation,
@@ -43,6 +44,7 @@ MODULES = (
     evaluation,
     maxima,
     deviation,
+    bulk,
 )
 """Where the kernels are."""
 
@@ -87,6 +89,7 @@ class Kernels(NamedTuple):
     deviations: Callable[..., None]
     sample: Callable[..., int]
     largest: Callable[..., tuple[float, float]]
+    follow: Callable[..., None]
 
 
 @cache
@@ -127,7 +130,13 @@ def kernels() -> Kernels:
             return maxima.largest(progress, times, found, count, column, sense, row)
         return 0.0, 0.0
 
-    return Kernels(*map(_kept, (walk, states, deviations, sample, largest)))
+    def follow(
+        scenes: Any, fine: Any, other: Any, asked: Any, room: Any, found: Any, steps: int
+    ) -> None:
+        if digest:
+            bulk.follow(scenes, fine, other, asked, room, found, steps)
+
+    return Kernels(*map(_kept, (walk, states, deviations, sample, largest, follow)))
 
 
 def _kept(entry: Any) -> Any:

@@ -1,6 +1,7 @@
 """How wrong a transient may be: measured against a solution with a tighter tolerance and other steps."""
 
 import math
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -44,7 +45,8 @@ def certificate(
     natural = fine.natural
     whole = fine.deviations(other, natural, fine.rows_at(natural))
     here = whole if times is natural else fine.deviations(other, times, found)
-    return Certificate("estimated", STATEMENT, errors(here, whole, rtol, fine.fixed))
+    told = errors(here, whole, rtol, fine.fixed)
+    return Certificate("estimated", STATEMENT, {k: float(error) for k, error in told.items()})
 
 
 def unknown(why: str) -> Certificate:
@@ -58,15 +60,16 @@ EXACT = ("time", "velocity")
 """Quantities that are given, not solved for."""
 
 
-def errors(here: list[float], whole: list[float], rtol: float, fixed: bool) -> dict[str, float]:
+def errors(here: Any, whole: Any, rtol: float, fixed: bool) -> dict[str, Any]:
     """Return the error of each quantity from the deviations at some times, and those over the whole run.
 
     The surface is the largest of what the depths of the past left: it is no more wrong than the depth
     has ever been (fact F8). The pressure inside the contact is wrong as the depth and its rate are.
+    Deviations may be arrays of those of many scenes.
     """
 
-    def error(deviation: float, rounding: float = 0.0) -> float:
-        return max(MARGIN * deviation, FLOOR * rtol) + rounding
+    def error(deviation: Any, rounding: Any = 0.0) -> Any:
+        return np.maximum(MARGIN * deviation, FLOOR * rtol) + rounding
 
     moves = 0.0 if fixed else 1.0
     edges = error(here[d_.EDGES], here[d_.EDGE_ROUNDING])

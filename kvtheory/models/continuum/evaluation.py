@@ -18,6 +18,9 @@ SIZE = 12
 """Layout of a state, in scaled form; edges are NaN in flight. `ROUNDING` is how far rounding may have
 moved an edge: much, on ground that was left only just before."""
 
+SUBDIVISIONS = 4
+"""Points shown for each step, which is long where nothing happens."""
+
 UNIT = 4e-16
 """Rounding of d and Y, relative to 1 + |Y|."""
 
@@ -30,6 +33,13 @@ def states(times: Any, found: Any, run: Run) -> None:
     for i in range(len(times)):
         index = record_at(times[i], run.records, run.counts[r_.RECORDS])
         state_at(times[i], index, found[i], run.nodes, run.records, run.given.pieces)
+
+
+def natural_step(run: Run, index: int) -> tuple[float, float]:
+    """Return when a step begins, and when the next one does."""
+    last = index + 1 == run.counts[r_.RECORDS]
+    end = run.now[r_.S] if last else run.records[index + 1][h_.START]
+    return run.records[index][h_.START], end
 
 
 def record_at(s: float, records: Rows, count: int) -> int:

@@ -7,7 +7,6 @@ is looked for is then narrowed down between two samples.
 import math
 from typing import Any
 
-from kvtheory.models.continuum import dense_output as h_
 from kvtheory.models.continuum import evaluation as e_
 from kvtheory.models.continuum import run as r_
 from kvtheory.models.continuum.run import Run
@@ -98,6 +97,17 @@ def settled(
     return inside
 
 
+def last(found: Any, count: int, row: Any) -> None:
+    """Write the last state, and behind it the leading and the trailing edge."""
+    leads = True
+    for i in range(count):
+        leads = leads_at(found[i], leads)
+    for k in range(e_.SIZE):
+        row[k] = found[count - 1][k]
+    for column in (LEADING_EDGE, TRAILING_EDGE):
+        row[column] = measured(row, column, LARGEST, leads)
+
+
 def leads_at(row: Any, leads: bool) -> bool:
     """Whether the left edge leads; at rest, as it did before."""
     return leads if row[e_.NUMBER] == 0.0 else row[e_.NUMBER] > 0.0
@@ -115,10 +125,8 @@ def measured(row: Any, column: int, sense: int, leads: bool) -> float:
 
 def _step(run: Run, index: int) -> tuple[float, float]:
     """Return when a step begins, and the last instant that belongs to it."""
-    end = run.now[r_.S]
-    if index + 1 < run.counts[r_.RECORDS]:
-        end = run.records[index + 1][h_.START] * JUST_BEFORE
-    return run.records[index][h_.START], end
+    start, end = e_.natural_step(run, index)
+    return start, end if index + 1 == run.counts[r_.RECORDS] else end * JUST_BEFORE
 
 
 def _state(run: Run, index: int, s: float, row: Any) -> None:

@@ -63,11 +63,18 @@ class SolvedScene:
         """Times (s) at which the series shows all that happens: the solver's steps, subdivided."""
         return self.motion.natural * self.units.time
 
+    @property
+    def events(self) -> tuple[Event, ...]:
+        """What happened to the contact, and when the forces are largest, in the order of time (s)."""
+        found = zip(force_maxima(self.motion), FORCE_MAXIMA, strict=True)
+        events = sorted([*self.motion.events, *found], key=itemgetter(0))
+        return tuple(Event(s * self.units.time, kind) for s, kind in events)
+
     def series(self, time: ArrayLike) -> dict[str, Any]:
         """Return the quantities and states at the given times (s)."""
         found, u = self.states(time), self.units
         numbers = found[evaluation.NUMBER]
-        forward = _forward(numbers)
+        forward = left_leads(numbers)
         left, right = found[evaluation.LEFT], found[evaluation.RIGHT]
         names = [
             [STATE_NAMES[state] for state in found[side].tolist()]
@@ -136,11 +143,9 @@ def transient(
         scene, times, rtol, progress, certify=certify, max_steps=max_steps
     )
     motion = solution.motion
-    found = zip(force_maxima(motion), FORCE_MAXIMA, strict=True)
-    events = sorted([*motion.events, *found], key=itemgetter(0))
     return Transient(
         **solution.series(time),
-        events=tuple(Event(s * solution.units.time, kind) for s, kind in events),
+        events=solution.events,
         steps=motion.steps,
         evaluations=motion.evaluations,
         compiled=motion.compiled,
@@ -219,8 +224,8 @@ def _solution(
     return SolvedScene(motion, drive, units)
 
 
-def _forward(numbers: Array) -> NDArray[np.bool_]:
-    """Whether the left edge leads; at rest, as it did before."""
-    moving = np.where(numbers == 0.0, np.nan, numbers)
-    known = np.maximum.accumulate(np.where(np.isnan(moving), 0, np.arange(numbers.size)))
-    return ~(numbers[known] < 0.0)
+def left_leads(numbers: Array) -> NDArray[np.bool_]:
+    """Whether the left edge leads, over times along the last axis; at rest, as it did before."""
+    count = numbers.shape[-1]
+    known = np.maximum.accumulate(np.where(numbers == 0.0, 0, np.arange(count)), axis=-1)
+    return ~(np.take_along_axis(numbers, known, axis=-1) < 0.0)

@@ -25,8 +25,6 @@ from kvtheory.models.continuum.run import Run, StepControl, as_arrays, begin, wi
 from kvtheory.scene.base_motion import BaseMotion
 
 STEP_LIMIT = 100_000
-SUBDIVISIONS = 4
-"""Points shown for each step, which is long where nothing happens."""
 ATTEMPTS = 1000
 """Between two looks at how far the run has come."""
 
@@ -143,7 +141,7 @@ class Trajectory:
     def natural(self) -> NDArray[np.float64]:
         """Times that show all that happens: those of the steps, subdivided."""
         ends = np.append(np.array(self.starts), self.end)
-        parts = np.arange(SUBDIVISIONS) / SUBDIVISIONS
+        parts = np.arange(evaluation.SUBDIVISIONS) / evaluation.SUBDIVISIONS
         inner = (ends[:-1, None] + np.diff(ends)[:, None] * parts).reshape(-1)
         return np.unique(np.append(inner, self.end))
 
@@ -205,6 +203,17 @@ class Trajectory:
         largest = compiled.kernels().largest if self.compiled else maxima.largest
         s, value = largest(self.rows, *self.samples, column, sense, self._room(1)[0])
         return float(s), float(value)
+
+    def settled(self, force: float, share: float) -> float:
+        """Return since when the friction force is settled, see `maxima`."""
+        return float(maxima.settled(self.rows, *self.samples, force, share, self._room(1)[0]))
+
+    @property
+    def last(self) -> list[float]:
+        """The state at the end, with the leading and the trailing edge behind it."""
+        row = [0.0] * (evaluation.SIZE + 2)
+        maxima.last(*self.samples[1:], row)
+        return row
 
     def _room(self, count: int) -> Any:
         size = evaluation.SIZE
