@@ -174,10 +174,10 @@ COLUMNS = {
 }
 
 
-def hops(case):
+def flies(case):
     """Whether the indenter flies."""
     motion = solve(
-        case.drive, case.eps, case.kappa, case.drive.end, 1e-3, fast=compiled.available()
+        case.drive, case.eps, case.kappa, case.drive.end, 1e-4, fast=compiled.available()
     )
     return any(event.kind == "take-off" for event in motion.events)
 
@@ -188,7 +188,7 @@ def scenes_of_which_a_third_hop():
     flying, resting, seeds = [], [], itertools.count(3000)
     while len(flying) < 333:
         case = random_case(next(seeds), 1)
-        (flying if hops(case) else resting).append(case)
+        (flying if flies(case) else resting).append(case)
     return flying + resting[:667]
 
 

@@ -35,6 +35,10 @@ class Quantity:
 
     def admits(self, value: ArrayLike) -> bool:
         """Whether every `value` (in SI) is finite and in range."""
+        if isinstance(value, float):
+            return math.isfinite(value) and (
+                value > self.minimum or (value == self.minimum and not self.exclusive)
+            )
         value = np.asarray(value)
         above = value > self.minimum if self.exclusive else value >= self.minimum
         return bool(np.all(np.isfinite(value) & above))
