@@ -13,7 +13,6 @@ from kvtheory.results.schemes import SCHEME_ROWS
 from kvtheory.scene.model import Scene
 from kvtheory.scene.quantities import Quantity, SceneError, convert, nearest, problem
 from kvtheory.scene.requirements import require_parabola
-from kvtheory.scene.static_state import StaticState
 
 EVEN, DENSE = 401, 60
 """Samples of our own simulation: over the run, and more after each change of the drive."""
@@ -27,13 +26,9 @@ PER_LENGTH = Quantity("1/m", "N, elements per unit length", 0.0, True)
 def _followed(scene: Scene, times: Sequence[float], rtol: float) -> Mapping[str, Any]:
     """Follow a transient without a certificate: theory is wanted at many scenes, none of them shown."""
     from kvtheory.models.continuum import solved_scene
-    from kvtheory.models.continuum.run import StepControl
 
     with double_precision():
-        units = StaticState.of(scene)
-        drive = solved_scene.scaled_drive(scene, units)
-        found = solved_scene._solution(scene, units, drive, rtol, StepControl(), lambda _: None)
-        return found.series(times)
+        return solved_scene.certified(scene, times, rtol, certify=False)[0].series(times)
 
 
 def _mistaken(
