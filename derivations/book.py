@@ -215,6 +215,26 @@ class Book:
             premises=tuple(dict.fromkeys(each.latex for each in result.premises)),
         )
 
+    def pair(
+        self, one: tuple[sp.Expr, sp.Expr], other: tuple[sp.Expr, sp.Expr], reason: str
+    ) -> Derivation:
+        """End the proof with two relations that its steps established, side by side."""
+        facts = [self._known.get((sp.sympify(lhs), sp.sympify(rhs))) for lhs, rhs in (one, other)]
+        if None in facts:
+            raise StepError(f"{self.label}: no step established {one} and {other}")
+        left, right = (
+            r"\left(" + r",\ ".join(getattr(fact.step, side) for fact in facts if fact) + r"\right)"
+            for side in ("left", "right")
+        )
+        status = weakest(fact.step.status for fact in facts if fact)
+        step = Step(left, "=", right, reason, status)
+        premises = merged(fact.premises for fact in facts if fact)
+        domain = tuple(dict.fromkeys(each for fact in facts if fact for each in fact.domain))
+        key = sp.Tuple(one[0], other[0]), sp.Tuple(one[1], other[1])
+        self._steps.append(step)
+        self._known[key] = Fact(step, premises, self._conditions, domain)
+        return self.done(*key)
+
     def _status(self) -> str:
         """Return the weakest status of the steps; what rests on a sampled proof is sampled."""
         used = (_finished[label]._status() for label in self._uses if label in _finished)
@@ -280,7 +300,7 @@ class Book:
     def _consistent(self, lhs: sp.Expr, rhs: sp.Expr, label: str) -> None:
         """Refuse premises that cannot hold together."""
         everything = merged(fact.premises for fact in self._origins.values())
-        found = contradiction(everything)
+        found = contradiction(everything, self._origins[lhs].premises)
         for condition in self._conditions.positive:
             if proves_nonnegative(-self._resolve(condition)):
                 found = f"{condition} is not positive, as the domain demands"
@@ -340,7 +360,7 @@ class Book:
                 reach.update(*(direct.get(name, ()) for name in tuple(reach)))
         return {name: frozenset(reach) for name, reach in direct.items()}
 
-    def _displayed(self, lhs: sp.Expr, rhs: sp.Expr, shown: Shown) -> None:
+    def _displayed(self, lhs: sp.Expr, rhs: sp.Expr, shown: Shown, *known: sp.Expr) -> None:
         """Refuse LaTeX that does not say what was checked: it may only rearrange."""
         used = set(self._used)
         for side, expr in (("left", lhs), ("right", rhs)):
@@ -348,7 +368,7 @@ class Book:
             if latex is None:
                 continue
             rules = [*self._rules, *self._rules.values()]
-            names = {**names_in(lhs, rhs, *rules, expr, tex_of=TEX), **NOTATION, **self.notation}
+            names = {**names_in(lhs, rhs, *rules, *known, tex_of=TEX), **NOTATION, **self.notation}
             try:
                 links = read_chain(latex, names)
             except UnreadableError as error:

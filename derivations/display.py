@@ -278,7 +278,7 @@ class _Reader:
             call = meaning
         if not primes:
             return call
-        if not call.args or len(call.args) > 1 and str(call.args[-1]) not in _TIME:
+        if not call.args or (len(call.args) > 1 and str(call.args[-1]) not in _TIME):
             raise self._unknown()
         return sp.Derivative(call, (call.args[-1], primes))
 

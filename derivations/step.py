@@ -126,7 +126,7 @@ class Proof(Book):
         self._vanish(self._resolve(wanted), found, f"{whole} = {wanted}")
         premise = None if lhs == whole else Premise(lhs, whole, f"{tex(lhs)} = {tex(whole)}")
         self._rule(lhs, wanted)
-        self._displayed(lhs, sp.sympify(wanted), shown)
+        self._displayed(lhs, sp.sympify(wanted), shown, whole, variable)
         shown.setdefault("right", tex(wanted) if lhs == whole else f"{tex(whole)} = {tex(wanted)}")
         self._origins[lhs] = self._record(
             *(lhs, "=", wanted, reason, "proved", shown), premise=premise, trusted=True
@@ -166,7 +166,10 @@ class Proof(Book):
             raise StepError(f"{self.label}: {claim}: {error}") from error
         condition = sp.sympify(expr).subs(variable, called)
         premise = Premise(condition, sp.S.Zero, f"{tex(condition)} = 0")
-        self._record(called, "=", value, reason, "proved", shown, over=over, premise=premise)
+        fact = self._record(called, "=", value, reason, "proved", shown, over=over, premise=premise)
+        if called != variable:
+            self._rule(called, value)
+            self._origins[called] = fact
 
     def unique_root(
         self, expr: sp.Expr, over: Interval, reason: str, **shown: Unpack[Shown]
@@ -177,6 +180,7 @@ class Proof(Book):
         """
         self._interval(over)
         whole = self._resolve_free(expr, over[0])
+        self._possible(over)
         try:
             count, odd = roots_between(whole, over)
             poles, _ = roots_between(sp.fraction(sp.together(whole))[1], over)
@@ -201,6 +205,7 @@ class Proof(Book):
         claim = f"{expr} {relation} {bound} inside {over}"
         self._interval(over)
         gap = self._resolve_free(expr - bound, over[0])
+        self._possible(over)
         try:
             found = sign_between(gap, over)
         except UndecidedError as error:
@@ -278,7 +283,9 @@ class Proof(Book):
         self._vanish(self._resolve(reached), sp.S.Zero, f"{claim}, reached at {variable} = {at}")
         conditions = (sp.And(*given, evaluate=False),) if given else ()
         self._record(
-            *(value, "=", Greatest(expr, variable), reason, "proved", shown), exact=False, cases=conditions
+            *(value, "=", Greatest(expr, variable), reason, "proved", shown),
+            exact=False,
+            cases=conditions,
         )
 
     def equivalent(
@@ -318,7 +325,9 @@ class Proof(Book):
         self._displayed(expr, leading, shown)
         factor = shown.get("right") or (f"({tex(leading)})" if leading.is_Add else tex(leading))
         shown["right"] = f"{factor} {_series(c, eps, k, rest)}"
-        self._record(expr, "=", leading, reason, "proved-leading-order", shown, exact=False, trusted=True)
+        self._record(
+            expr, "=", leading, reason, "proved-leading-order", shown, exact=False, trusted=True
+        )
         return c, k
 
     def sampled(
@@ -370,8 +379,6 @@ class Proof(Book):
         ):
             raise StepError(f"{self.label}: {over} is not an interval between two known numbers")
         self._reaches(variable, low, high)
-        if numbers:
-            self._possible(over)
 
     def _reaches(self, variable: sp.Symbol, low: sp.Expr, high: sp.Expr) -> None:
         """Refuse an interval that leaves the values that its variable may have."""
@@ -384,7 +391,7 @@ class Proof(Book):
     def _possible(self, over: Interval) -> None:
         """Refuse an interval in which a name or a condition cannot be what it is said to be."""
         named = [
-            (name, self._resolve(rhs)) for name, rhs in self._rules.items()
+            (name, self._resolve(name)) for name in tuple(self._used)
             if (name.is_positive or name.is_negative) and name.is_Symbol
         ]  # fmt: skip
         demanded = [value if name.is_positive else -value for name, value in named]

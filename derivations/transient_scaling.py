@@ -7,7 +7,7 @@ import sympy as sp
 from derivations.groups import k_s
 from derivations.model import compression_rate, depth_rate, slope
 from derivations.record import Derivation
-from derivations.step import Proof, tex
+from derivations.step import Proof
 from derivations.symbols import (
     W_0,
     C,
@@ -37,7 +37,6 @@ from derivations.symbols import (
     u_i,
     x,
     x_i,
-    x_te,
     xi,
     z_a,
 )  # fmt: skip
@@ -79,7 +78,11 @@ def _scaled_form() -> tuple[Derivation, ...]:
     pressure.define(P, p / (K * delta_0))
     pressure.equal(P, PRESSURE, "scaled pressure")
     pressure.equal(
-        *(p * a_0 / W_0, sp.Rational(3, 4) * P, r"share of the load, for Eq. (14), with $dx = a_0 d\xi$"),
+        *(
+            p * a_0 / W_0,
+            sp.Rational(3, 4) * P,
+            r"share of the load, for Eq. (14), with $dx = a_0 d\xi$",
+        ),
     )
     pressure.equal(
         -slope * p * a_0 / (W_0 * delta_0 / a_0),
