@@ -46,11 +46,11 @@ def tex(expr: sp.Expr) -> str:
 
 
 def tex_interval(over: Interval) -> str:
-    """Print for which values of a variable a step holds.
+    r"""Print for which values of a variable a step holds.
 
     >>> x = sp.Symbol("x", real=True)
     >>> [tex_interval((x, *ends)) for ends in ((0, 1), (0, sp.oo), (-sp.oo, 2), (-sp.oo, sp.oo))]
-    ['0 < x < 1', 'x > 0', 'x < 2', 'x \\\\in \\\\mathbb{R}']
+    ['0 < x < 1', 'x > 0', 'x < 2', 'x \\in \\mathbb{R}']
     """
     variable, low, high = tex(over[0]), sp.sympify(over[1]), sp.sympify(over[2])
     if low == -sp.oo and high == sp.oo:
@@ -135,7 +135,8 @@ class Book:
         self._rules: dict[sp.Expr, sp.Expr] = {}
         self._origins: dict[sp.Expr, Fact] = {}
         """For each rule, the fact that it comes from."""
-        self._conditions, self._domain = Conditions(), ()
+        self._conditions = Conditions()
+        self._domain: tuple[str, ...] = ()
         self._used: set[sp.Expr] = set()
         """The rules that the step in hand has used."""
         self._steps: list[Step] = []
@@ -215,6 +216,26 @@ class Book:
             premises=tuple(dict.fromkeys(each.latex for each in result.premises)),
         )
 
+    def pair(
+        self, one: tuple[sp.Expr, sp.Expr], other: tuple[sp.Expr, sp.Expr], reason: str
+    ) -> Derivation:
+        """End the proof with two relations that its steps established, side by side."""
+        facts = [self._known.get((sp.sympify(lhs), sp.sympify(rhs))) for lhs, rhs in (one, other)]
+        if None in facts:
+            raise StepError(f"{self.label}: no step established {one} and {other}")
+        left, right = (
+            r"\left(" + r",\ ".join(getattr(fact.step, side) for fact in facts if fact) + r"\right)"
+            for side in ("left", "right")
+        )
+        status = weakest(fact.step.status for fact in facts if fact)
+        step = Step(left, "=", right, reason, status)
+        premises = merged(fact.premises for fact in facts if fact)
+        domain = tuple(dict.fromkeys(each for fact in facts if fact for each in fact.domain))
+        key = sp.Tuple(one[0], other[0]), sp.Tuple(one[1], other[1])
+        self._steps.append(step)
+        self._known[key] = Fact(step, premises, self._conditions, domain)
+        return self.done(*key)
+
     def _status(self) -> str:
         """Return the weakest status of the steps; what rests on a sampled proof is sampled."""
         used = (_finished[label]._status() for label in self._uses if label in _finished)
@@ -280,7 +301,7 @@ class Book:
     def _consistent(self, lhs: sp.Expr, rhs: sp.Expr, label: str) -> None:
         """Refuse premises that cannot hold together."""
         everything = merged(fact.premises for fact in self._origins.values())
-        found = contradiction(everything)
+        found = contradiction(everything, self._origins[lhs].premises)
         for condition in self._conditions.positive:
             if proves_nonnegative(-self._resolve(condition)):
                 found = f"{condition} is not positive, as the domain demands"
@@ -340,15 +361,15 @@ class Book:
                 reach.update(*(direct.get(name, ()) for name in tuple(reach)))
         return {name: frozenset(reach) for name, reach in direct.items()}
 
-    def _displayed(self, lhs: sp.Expr, rhs: sp.Expr, shown: Shown) -> None:
+    def _displayed(self, lhs: sp.Expr, rhs: sp.Expr, shown: Shown, *known: sp.Expr) -> None:
         """Refuse LaTeX that does not say what was checked: it may only rearrange."""
         used = set(self._used)
         for side, expr in (("left", lhs), ("right", rhs)):
-            latex = shown.get(side)
-            if latex is None:
+            if side not in shown:
                 continue
+            latex = str(dict(shown)[side])
             rules = [*self._rules, *self._rules.values()]
-            names = {**names_in(lhs, rhs, *rules, expr, tex_of=TEX), **NOTATION, **self.notation}
+            names = {**names_in(lhs, rhs, *rules, *known, tex_of=TEX), **NOTATION, **self.notation}
             try:
                 links = read_chain(latex, names)
             except UnreadableError as error:

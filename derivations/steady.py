@@ -4,6 +4,7 @@ from functools import partial
 
 import sympy as sp
 
+from derivations.book import Shown
 from derivations.model import compression_rate, depth_rate, slope
 from derivations.record import Derivation
 from derivations.step import Proof
@@ -86,7 +87,7 @@ def _retardation_length() -> Derivation:
     later = {t: t_0 + (x - x_te) / V}
     proof.recall("eq25", u_i, decay, "it has left the trailing edge at $t_0$", at=later)
     result = start * sp.exp(-(x - x_te) / l_r)
-    shown = {
+    shown: Shown = {
         "left": "u(x)",
         "right": r"u(x_{\mathrm{TE}}) \exp\left(-\frac{x - x_{\mathrm{TE}}}{l_{\mathrm{r}}}\right)",
     }
@@ -175,26 +176,35 @@ _RATIONAL = (
 )
 
 
-def _limit(equation: int, slow: bool, who: str) -> Derivation:
-    proof = _equation(f"eq{equation}", equation, title=f"Edges at {who}", text=_EDGES[slow])
+def _limit(equation: int, slow: bool, steady: bool, who: str) -> Derivation:
+    proof = _equation(
+        f"eq{equation}", equation, title=f"Edges at {who}", text=_EDGES[slow] + _EITHER * steady
+    )
     proof.recall("eq26", x_le, -a)
     proof.recall("scaling", x_te, a * q)
     proof.recall("scaling", l_r, a * l)
     proof.recall("scaling", l, number)
+    small = l_r / a
+    if steady:
+        proof.recall("scaling", V, K * l_r / C)
+        small = C * V / (K * a)
+    limit = a if slow else a**2 / (2 * l_r)
     if slow:
-        limit = a
-        proof.leading_order(x_te, a, q, 1, "$q \\to 1$: hardly any peeling", eps=l_r / a)
+        proof.leading_order(x_te, limit, q, 1, "$q \\to 1$: hardly any peeling", eps=small)
     else:
-        limit = a**2 / (2 * l_r)
-        proof.leading_order(x_te, limit, q, 0, "$q \\to 0$: complete peeling", eps=a / l_r)
-    return proof.done(x_te, limit)
+        proof.leading_order(x_te, limit, q, 0, "$q \\to 0$: complete peeling", eps=1 / small)
+    return proof.pair((x_le, -a), (x_te, limit), "both edges")
 
 
 _LIMITS = (
-    (30, True, "low velocity, fixed indenter"),
-    (31, False, "high velocity, fixed indenter"),
-    (38, True, "low velocity, steady sliding"),
-    (39, False, "high velocity, steady sliding"),
+    (30, True, False, "low velocity, fixed indenter"),
+    (31, False, False, "high velocity, fixed indenter"),
+    (38, True, True, "low velocity, steady sliding"),
+    (39, False, True, "high velocity, steady sliding"),
+)
+_EITHER = (
+    r" By Eqs. (34) to (36) this holds for either indenter, with the depth at which it slides; "
+    r"$l_{\mathrm{r}}/a = C V/(K a)$."
 )
 _EDGES = {
     True: r"For $l_{\mathrm{r}} \ll a$ the edges tend to $(-a, a)$.",
@@ -234,7 +244,7 @@ def _steadiness() -> list[Derivation]:
     pressed = _equation("eq35", 35, title="Compression in steady sliding")
     pressed.recall("eq6", u_i, -h(x_i) + delta_t)
     pressed.define(delta_t, delta, "constant, by Eq. (34)", left=r"\delta(t)")
-    shown = {"left": "u_i(t)", "right": r"-h(x_i) + \delta"}
+    shown: Shown = {"left": "u_i(t)", "right": r"-h(x_i) + \delta"}
     pressed.equal(u_i, -h(x_i) + delta, "Eq. (6) becomes Eq. (4)", **shown)
     found.append(pressed.done(u_i, -h(x_i) + delta))
 

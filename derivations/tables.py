@@ -4,8 +4,8 @@ import sympy as sp
 
 from derivations import asymptotics as asy
 from derivations import steady
-from derivations.record import Derivation, Table
 from derivations.book import Shown
+from derivations.record import Derivation, Table
 from derivations.step import Proof
 from derivations.symbols import C, K, M, N, R, V, V_star, W, a, delta, delta_0, g, q, tau
 
@@ -112,9 +112,14 @@ def _velocity_dependences() -> Derivation:
     for high, critical, shown in cases:
         at_critical = sp.UnevaluatedExpr(low.subs(V, critical))
         value = high.subs(V, critical)
-        proof.notation |= {"V^{*}": critical, "C": C, r"\mu": sp.Lambda(V_star, low.subs(V, V_star))}
-        shown = shown.replace("C V", "C V^{*}")
-        proof.equal(at_critical, value, meets, left=r"\mu(V^{*})", right=shown)
+        proof.notation |= {
+            "V^{*}": critical,
+            "C": C,
+            r"\mu": sp.Lambda(V_star, low.subs(V, V_star)),
+        }
+        proof.equal(
+            at_critical, value, meets, left=r"\mu(V^{*})", right=shown.replace("C V", "C V^{*}")
+        )
     slow = r"$\mu = \frac{C V}{R K}$ (42)"
     rows = (
         (

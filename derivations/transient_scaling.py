@@ -4,10 +4,11 @@ from functools import partial
 
 import sympy as sp
 
+from derivations.book import Shown
 from derivations.groups import k_s
 from derivations.model import compression_rate, depth_rate, slope
 from derivations.record import Derivation
-from derivations.step import Proof, tex
+from derivations.step import Proof
 from derivations.symbols import (
     W_0,
     C,
@@ -37,7 +38,6 @@ from derivations.symbols import (
     u_i,
     x,
     x_i,
-    x_te,
     xi,
     z_a,
 )  # fmt: skip
@@ -79,7 +79,11 @@ def _scaled_form() -> tuple[Derivation, ...]:
     pressure.define(P, p / (K * delta_0))
     pressure.equal(P, PRESSURE, "scaled pressure")
     pressure.equal(
-        *(p * a_0 / W_0, sp.Rational(3, 4) * P, r"share of the load, for Eq. (14), with $dx = a_0 d\xi$"),
+        *(
+            p * a_0 / W_0,
+            sp.Rational(3, 4) * P,
+            r"share of the load, for Eq. (14), with $dx = a_0 d\xi$",
+        ),
     )
     pressure.equal(
         -slope * p * a_0 / (W_0 * delta_0 / a_0),
@@ -121,7 +125,7 @@ def _scaled_motion() -> Derivation:
         left=r"\ddot z_{\mathrm{A}}",
     )
     result = 1 - f_normal - kappa * (d - 1)
-    shown = {"left": r"\varepsilon d''", "right": r"1 - f_z - \kappa (d - 1)"}
+    shown: Shown = {"left": r"\varepsilon d''", "right": r"1 - f_z - \kappa (d - 1)"}
     proof.equal(eps * d_ss, result, "scaled motion", **shown)
     return proof.done(eps * d_ss, result)
 
