@@ -212,7 +212,9 @@ def _dead_weight() -> Derivation:
     _recall(proof, squared)
     proof.equal((1 + e_l2_weight) ** 2, squared, r"the square of $L_2/\mu$")
     slope = sp.Derivative(squared.subs(_IN_Q), q)
-    proof.sign(slope, ">", 0, UNIT, "monotonic", left=rf"\frac{{d}}{{dq}} (1 + {tex(e_l2_weight)})^2")
+    proof.sign(
+        slope, ">", 0, UNIT, "monotonic", left=rf"\frac{{d}}{{dq}} (1 + {tex(e_l2_weight)})^2"
+    )
     proof.sign((1 + 2 / (3 * l)) ** 4 - squared, ">", 0, UNIT, "bound at every velocity")
     proof.leading_order(squared - 1, 5 / (4 * l), q, 0, r"hence $e \sim 5/(8 l)$", eps=1 / l)
     return proof.done(e_l2_weight, form)

@@ -237,7 +237,9 @@ def _routh(proof: Proof) -> None:
     parts = sp.re(value), sp.im(value)
     shown = leads[0] * (real**2 - imaginary**2) + leads[1] * real + leads[2]
     slope = 2 * leads[0] * real + leads[1]
-    proof.equal(parts[1], imaginary * slope, r"imaginary part of $c_2 w^2 + c_1 w + c_0$ at $w = x + i y$")
+    proof.equal(
+        parts[1], imaginary * slope, r"imaginary part of $c_2 w^2 + c_1 w + c_0$ at $w = x + i y$"
+    )
     proof.holds(slope, ">", 0, r"so for $x \ge 0$ it vanishes for $y = 0$ only")
     proof.equal(parts[0], shown, "real part")
     proof.holds(shown.subs(imaginary, 0), ">", 0, "which is positive there: no root has $x \\ge 0$")
@@ -262,8 +264,11 @@ def _orders() -> Derivation:
     whole = b + kappa + (b * eta + kappa * _theta) * _D
     motion = eps * _D**2 / _h**2 + (1 + _theta * _D) * whole
     first = -_h * sigma * (b * sigma + b + 2 * eps * sigma**2) / 2
-    second = -(_h**2) * sigma / (12 * eps) * (
-        b**2 * sigma + b**2 + 3 * b * eps * sigma**2 - b * eps + 2 * eps**2 * sigma**3
+    second = (
+        -(_h**2)
+        * sigma
+        / (12 * eps)
+        * (b**2 * sigma + b**2 + 3 * b * eps * sigma**2 - b * eps + 2 * eps**2 * sigma**3)
     )
     for theta, leading, why in (
         (sp.S.One, first, r"order one, $\theta = 1$"),
@@ -328,7 +333,9 @@ def _kink() -> Derivation:
     proof.equal(KINK, in_cell, "the kink at its place within the element")
     proof.sign(in_cell + _slope * _spacing**2 / 8, ">=", 0, (_share, 0, 1), "second order in the spacing",
                left=r"\frac{\Delta w_1 w_0}{2 (w_1 - w_0)} + \frac{m \Delta^2}{8}")  # fmt: skip
-    proof.define(_end, C * V * _slope, "the pressure at a leading edge: its elements are met with $m V$")
+    proof.define(
+        _end, C * V * _slope, "the pressure at a leading edge: its elements are met with $m V$"
+    )
     proof.equal(
         *(C * sp.Derivative(in_cell, _share) * -V / _spacing, _end * _spacing * (1 - 2 * _share) / 2,
           r"as the base moves, $\Delta \dot\vartheta = -V$: the sawtooth of F15"),

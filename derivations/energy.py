@@ -114,7 +114,8 @@ def _any_shape() -> Derivation:
     proof.define(h(x_le), delta, r"$u(x_{\mathrm{LE}}) = 0$")
     proof.notation[r"u_{\mathrm{TE}}"] = delta - h(x_te)
     proof.equal(
-        *(F, result, r"two losses, $u_{\mathrm{TE}} = \delta - h(x_{\mathrm{TE}})$"), right=_TWO_LOSSES
+        *(F, result, r"two losses, $u_{\mathrm{TE}} = \delta - h(x_{\mathrm{TE}})$"),
+        right=_TWO_LOSSES,
     )
     return proof.done(F, result)
 

@@ -128,7 +128,11 @@ def _groups(
     exponents = [sp.Matrix([power[quantity] for quantity in quantities]) for power in powers]
     n, m = len(quantities), len(groups)
     for found, expected, reason in (
-        (n - Rank(matrix), m, "the matrix $D$ of dimensions, one row for each of $N$, $X$, $Z$, $T$"),
+        (
+            n - Rank(matrix),
+            m,
+            "the matrix $D$ of dimensions, one row for each of $N$, $X$, $Z$, $T$",
+        ),
         (Rank(sp.Matrix.hstack(*exponents)), m, _INDEPENDENT),
         (Rank(sp.Matrix.hstack(*exponents, *free)), m, _COMPLETE),
         (n - Rank(isotropic(matrix)), m + 1, _ISOTROPIC),

@@ -278,7 +278,9 @@ class Proof(Book):
         self._vanish(self._resolve(reached), sp.S.Zero, f"{claim}, reached at {variable} = {at}")
         conditions = (sp.And(*given, evaluate=False),) if given else ()
         self._record(
-            *(value, "=", Greatest(expr, variable), reason, "proved", shown), exact=False, cases=conditions
+            *(value, "=", Greatest(expr, variable), reason, "proved", shown),
+            exact=False,
+            cases=conditions,
         )
 
     def equivalent(
@@ -318,7 +320,9 @@ class Proof(Book):
         self._displayed(expr, leading, shown)
         factor = shown.get("right") or (f"({tex(leading)})" if leading.is_Add else tex(leading))
         shown["right"] = f"{factor} {_series(c, eps, k, rest)}"
-        self._record(expr, "=", leading, reason, "proved-leading-order", shown, exact=False, trusted=True)
+        self._record(
+            expr, "=", leading, reason, "proved-leading-order", shown, exact=False, trusted=True
+        )
         return c, k
 
     def sampled(

@@ -112,7 +112,11 @@ def _velocity_dependences() -> Derivation:
     for high, critical, shown in cases:
         at_critical = sp.UnevaluatedExpr(low.subs(V, critical))
         value = high.subs(V, critical)
-        proof.notation |= {"V^{*}": critical, "C": C, r"\mu": sp.Lambda(V_star, low.subs(V, V_star))}
+        proof.notation |= {
+            "V^{*}": critical,
+            "C": C,
+            r"\mu": sp.Lambda(V_star, low.subs(V, V_star)),
+        }
         shown = shown.replace("C V", "C V^{*}")
         proof.equal(at_critical, value, meets, left=r"\mu(V^{*})", right=shown)
     slow = r"$\mu = \frac{C V}{R K}$ (42)"

@@ -69,7 +69,12 @@ def _peeling() -> Derivation:
         position = sign * radius - sp.Derivative(travel, time) - travel
         loss = sp.diff(pressure, time).subs(material, position)
         moving = sign * radius - sp.Derivative(travel, time)
-        proof.notation |= {edge: sp.Lambda(time, moving), r"\hat p": pressure, "Y": travel, "X": material}
+        proof.notation |= {
+            edge: sp.Lambda(time, moving),
+            r"\hat p": pressure,
+            "Y": travel,
+            "X": material,
+        }
         proof.notation |= {r"\rho": radius, r"\lambda": sp.Derivative(travel, time)}
         side = (xi, -sp.oo, -lam) if sign < 0 else (xi, -lam, sp.oo)
         called = left if sign < 0 else right

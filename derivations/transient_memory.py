@@ -121,7 +121,9 @@ def _update() -> Derivation:
     impulse = sp.Symbol("J", nonnegative=True)
     larger = sp.Max(sp.exp(-_h) * u(time), g(time + _h))
     proof.notation["g"] = g
-    proof.define(g(time + _h), after - clearance, r"the indenter is never below the surface, $c \ge 0$")
+    proof.define(
+        g(time + _h), after - clearance, r"the indenter is never below the surface, $c \ge 0$"
+    )
     proof.define(
         *(u(time), sp.exp(_h) * after - sp.exp(-time) * impulse),
         r"F8 over one step: $J = \int e^{\zeta} \hat p \, d\zeta \ge 0$",

@@ -79,7 +79,11 @@ def _scaled_form() -> tuple[Derivation, ...]:
     pressure.define(P, p / (K * delta_0))
     pressure.equal(P, PRESSURE, "scaled pressure")
     pressure.equal(
-        *(p * a_0 / W_0, sp.Rational(3, 4) * P, r"share of the load, for Eq. (14), with $dx = a_0 d\xi$"),
+        *(
+            p * a_0 / W_0,
+            sp.Rational(3, 4) * P,
+            r"share of the load, for Eq. (14), with $dx = a_0 d\xi$",
+        ),
     )
     pressure.equal(
         -slope * p * a_0 / (W_0 * delta_0 / a_0),
