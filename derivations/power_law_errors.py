@@ -132,6 +132,9 @@ def _peeled() -> Derivation:
                      uses=("F19-edge",))  # fmt: skip
     logarithm = log1p(-z)
     edge, slope = expm1(logarithm / n), expm1((n - 1) * logarithm / n)
+    proof.notation[r"\operatorname{log1p}(-z)"] = logarithm
+    for power in (edge, slope):
+        proof.notation[rf"\operatorname{{expm1}} {_brace(power)}"] = power
     proof.define(
         logarithm, sp.log(1 - z), "accurate for small $z$", left=r"\operatorname{log1p}(-z)"
     )
