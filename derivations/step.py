@@ -308,11 +308,13 @@ class Proof(Guarded):
         reason: str,
         *,
         eps: sp.Expr,
+        short: bool = False,
         **shown: Unpack[Shown],
     ) -> tuple[sp.Expr, sp.Expr]:
         """Prove expr = leading (1 + c eps**k + higher order) as variable -> point; return (c, k).
 
-        The small quantity `eps` is any positive expression that vanishes there.
+        The small quantity `eps` is any positive expression that vanishes there. In `short` the printed
+        remainder is O(eps**k), without its coefficient.
         """
         claim = f"{expr} ~ {leading} as {variable} -> {point}"
         parts = [self._resolve_free(part, variable) for part in (expr, leading, eps)]
@@ -322,7 +324,8 @@ class Proof(Guarded):
             raise StepError(f"{self.label}: {claim}: {error}") from error
         self._displayed(expr, leading, shown)
         factor = shown.get("right") or (f"({tex(leading)})" if leading.is_Add else tex(leading))
-        shown["right"] = f"{factor} {_series(c, eps, k, rest)}"
+        remainder = rf"\left(1 + O\left({tex(eps**k)}\right)\right)"
+        shown["right"] = f"{factor} {remainder if short else _series(c, eps, k, rest)}"
         self._record(
             expr, "=", leading, reason, "proved-leading-order", shown, exact=False, trusted=True
         )
