@@ -7,10 +7,28 @@ Text fields are plain English in which mathematics stands between dollar signs (
 LaTeX fields are mathematics alone, without dollar signs and without alignment marks.
 """
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+import sympy as sp
 
 STATUSES = ("definition", "proved", "proved-leading-order", "sampled")
 """What stands behind an equality, strongest first."""
+
+
+@dataclass(frozen=True)
+class Claim:
+    """What was asked of a check, in SymPy: enough to compute with it, and to ask it again elsewhere."""
+
+    check: str
+    """Name of the check: define, recall, equal, integral, root and so on."""
+    lhs: sp.Expr
+    rhs: sp.Expr
+    arguments: Mapping[str, Any]
+    """All that the check was given, by name, but for words and LaTeX."""
+    rules: Mapping[sp.Expr, sp.Expr]
+    """What stood for what when the check was asked."""
 
 
 @dataclass(frozen=True)
@@ -24,6 +42,7 @@ class Step:
     status: str
     source: str = ""
     """Label of the derivation that a recalled step comes from."""
+    claim: Claim | None = field(default=None, compare=False, repr=False)
 
     @property
     def latex(self) -> str:

@@ -25,7 +25,7 @@ from derivations.algebra import (
     sign_between,
     value_at,
 )
-from derivations.book import Book, Shown, StepError, tex
+from derivations.book import Book, Shown, StepError, asked, tex
 from derivations.sampling import disagreement
 
 _SIGNS = {">": {"+"}, ">=": {"+", "+0"}, "<": {"-"}, "<=": {"-", "-0"}}
@@ -39,11 +39,13 @@ class Proof(Book):
     checked is the SymPy expression.
     """
 
+    @asked
     def equal(self, lhs: sp.Expr, rhs: sp.Expr, reason: str, **shown: Unpack[Shown]) -> None:
         """Prove an identity."""
         self._vanish(self._resolve(lhs), self._resolve(rhs), f"{lhs} = {rhs}")
         self._record(lhs, "=", rhs, reason, "proved", shown)
 
+    @asked
     def integral(
         self,
         lhs: sp.Expr,
@@ -77,6 +79,7 @@ class Proof(Book):
         self._record(lhs, "=", wanted, reason, "proved", shown)
         return wanted
 
+    @asked
     def root(
         self,
         expr: sp.Expr,
@@ -90,6 +93,7 @@ class Proof(Book):
         self._vanish(at_value, sp.S.Zero, f"root {variable} = {value} of {expr}")
         self._record(variable, "=", value, reason, "proved", shown)
 
+    @asked
     def unique_root(
         self, expr: sp.Expr, over: Interval, reason: str, **shown: Unpack[Shown]
     ) -> None:
@@ -102,6 +106,7 @@ class Proof(Book):
             raise StepError(f"{self.label}: {expr} has {count} roots inside {over}, not one")
         self._record(expr, "=", sp.S.Zero, reason, "proved", shown, exact=False)
 
+    @asked
     def sign(
         self,
         expr: sp.Expr,
@@ -130,6 +135,7 @@ class Proof(Book):
             exact=False,
         )
 
+    @asked
     def equivalent(
         self, nonnegative: sp.Expr, lhs: sp.Expr, rhs: sp.Expr, reason: str, **shown: Unpack[Shown]
     ) -> None:
@@ -141,6 +147,7 @@ class Proof(Book):
             )
         self._record(lhs, r"\ge", rhs, reason, "proved", shown, exact=False)
 
+    @asked
     def leading_order(
         self,
         expr: sp.Expr,
@@ -167,6 +174,7 @@ class Proof(Book):
         self._record(expr, "=", leading, reason, "proved-leading-order", shown, exact=False)
         return c, k
 
+    @asked
     def sampled(
         self,
         lhs: sp.Expr,

@@ -2,7 +2,7 @@
 
 import json
 from collections.abc import Sequence
-from dataclasses import asdict
+from dataclasses import asdict, fields
 from typing import Any
 
 from derivations.record import Derivation
@@ -14,6 +14,8 @@ def document(derivations: Sequence[Derivation]) -> str:
 
 
 def _plain(derivation: Derivation) -> dict[str, Any]:
+    record = {field.name: getattr(derivation, field.name) for field in fields(derivation)}
+    table = asdict(derivation.table) if derivation.table else None
     steps = [
         {
             "latex": step.latex,
@@ -23,4 +25,4 @@ def _plain(derivation: Derivation) -> dict[str, Any]:
         }
         for step in derivation.steps
     ]
-    return {**asdict(derivation), "steps": steps}
+    return {**record, "table": table, "steps": steps}
