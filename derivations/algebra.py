@@ -64,12 +64,16 @@ def sign_between(expr: sp.Expr, over: Interval) -> str:
     variable must have a known sign.
     """
     variable, inside = over[0], _inside(*map(sp.sympify, over[1:]))
-    numerator, denominator = sp.fraction(sp.factor(sp.together(normalise(expr))))
+    expr = normalise(expr)
+    assumed = _within_assumptions(*map(sp.sympify, over))
+    if assumed and _signed(expr):
+        return "+" if expr.is_positive else "-"
+    numerator, denominator = sp.fraction(sp.factor(sp.together(expr)))
     sign, touches = 1, ""
     for part in (numerator, denominator):
         constant, factors = sp.factor_list(part)
         for base, power in [(constant, 1), *factors]:
-            if variable not in base.free_symbols:
+            if variable not in base.free_symbols or (assumed and _signed(base)):
                 if not (base.is_positive or base.is_negative):
                     raise UndecidedError(f"the sign of {base} is not known")
                 sign *= int(sp.sign(base)) ** power
@@ -80,6 +84,17 @@ def sign_between(expr: sp.Expr, over: Interval) -> str:
             else:
                 sign *= int(sp.sign(base.subs(variable, inside))) ** power
     return ("+" if sign > 0 else "-") + touches
+
+
+def _signed(expr: sp.Expr) -> bool:
+    """Tell whether the assumptions on the symbols alone give the expression a sign."""
+    return bool(expr.is_positive or expr.is_negative)
+
+
+def _within_assumptions(variable: sp.Symbol, low: sp.Expr, high: sp.Expr) -> bool:
+    """Tell whether the variable has the sign that is assumed of it all over the interval."""
+    above = low >= 0 if variable.is_nonnegative else True
+    return bool(above and (high <= 0 if variable.is_nonpositive else True))
 
 
 def _univariate(expr: sp.Expr, variable: sp.Symbol) -> sp.Poly:

@@ -58,7 +58,7 @@ def closure(labels: Iterable[str], uses: Mapping[str, Iterable[str]]) -> set[str
         label = waiting.pop()
         if label not in found:
             found.add(label)
-            waiting.extend(uses[label])
+            waiting.extend(uses.get(label, ()))
     return found
 
 

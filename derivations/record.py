@@ -59,6 +59,23 @@ class Table:
 
 
 @dataclass(frozen=True)
+class Calculation:
+    """A closed form with the numbers of a scene put in, as one calculates by hand."""
+
+    symbol: str
+    formula: str
+    substituted: str
+    """The formula with a quantity and its unit for each symbol; empty where it has none."""
+    shown: str
+    """The value in LaTeX, rounded, with its unit."""
+    value: float
+    """In SI."""
+    unit: str
+    note: str = ""
+    """What the number is worth, in words: of an asymptote, the next order."""
+
+
+@dataclass(frozen=True)
 class Derivation:
     """A numbered equation, a named theorem or a table, with the steps that lead to it."""
 
@@ -78,3 +95,5 @@ class Derivation:
     uses: tuple[str, ...] = ()
     """Labels of the derivations that this one rests on."""
     table: Table | None = None
+    numbers: tuple[Calculation, ...] = ()
+    """The closed forms of this derivation with the numbers of a scene."""

@@ -204,7 +204,7 @@ class Proof(Book):
 
 def _series(c: sp.Expr, eps: sp.Expr, k: sp.Expr, rest: sp.Expr) -> str:
     """Print 1 + c eps**k + O(eps**rest)."""
-    term = c * eps**k
+    term = (sp.factor(c) if c.free_symbols else c) * eps**k
     negative = term.could_extract_minus_sign()
     signed = f"- {tex(-term)}" if negative else f"+ {tex(term)}"
     return rf"\left(1 {signed} + O\left({tex(eps**rest)}\right)\right)"

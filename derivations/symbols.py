@@ -87,6 +87,11 @@ drift, lift = sp.symbols("lambda_bar d_bar", real=True)
 compression, indenter = (sp.Function(name, real=True) for name in "ug")
 """The surface of an element, and the indenter above it."""
 
+# An indenter of any shape: the distance from its lowest line, and what each side of it contributes.
+distance, W_ahead, W_behind, F_ahead = _positive("x_abs W_ahead W_behind F_ahead")
+F_behind = sp.Symbol("F_behind", real=True)
+q_root = sp.Symbol("q_root", positive=True)
+
 alpha = 2 * sp.sqrt(2) / 3
 """The coefficient of Eqs. 40-46."""
 
@@ -129,6 +134,12 @@ TEX = {
     drift: r"\bar\lambda",
     lift: r"\bar d",
     eps_critical: r"\varepsilon_{\mathrm{c}}",
+    distance: "|x|",
+    q_root: r"\tilde q",
+    W_ahead: "W_{-}",
+    W_behind: "W_{+}",
+    F_ahead: "F_{-}",
+    F_behind: "F_{+}",
     f_normal: "f_z",
     f_friction: "f_x",
     c_delta_load: r"c_{\delta,W}",

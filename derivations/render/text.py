@@ -13,9 +13,9 @@ from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import groupby
 
-from derivations.record import Derivation, Step
+from derivations.record import Calculation, Derivation, Step
 
-_REFERENCE = re.compile(r"\((?P<eq>\d+)\)|\bF(?P<F>\d+)\b|\bTable (?P<table>\d+)")
+_REFERENCE = re.compile(r"\((?P<eq>\d+)\)|\bF(?P<F>\d+(?:-[a-z0-9]+)*)\b|\bTable (?P<table>\d+)")
 """How text names a derivation; the name of the group and the digits make its label."""
 
 _ONE_EQUATION = re.compile(r"Eq\. \(\d+\)")
@@ -92,6 +92,22 @@ def by_section(derivations: Sequence[Derivation]) -> dict[str, list[Derivation]]
 def number(label: str) -> str:
     """Return what stands in parentheses beside a result: 27 for eq27, F3, Table 2 for table2."""
     return re.sub("^table", "Table ", label.removeprefix("eq"))
+
+
+def reference(label: str) -> str:
+    """Return what a person calls a derivation, in a form that `pieces` makes a link of.
+
+    >>> [reference(label) for label in ("eq27", "F3", "table2", "scaling")]
+    ['Eq. (27)', 'F3', 'Table 2', 'scaling']
+    """
+    shown = number(label)
+    return f"Eq. ({shown})" if shown.isdigit() else shown
+
+
+def calculation(numbers: Calculation) -> str:
+    """Return a calculation as a chain of equalities."""
+    parts = [numbers.symbol, numbers.formula, numbers.substituted, numbers.shown]
+    return " = ".join(part for part in dict.fromkeys(parts) if part)
 
 
 def relations(latex: str) -> list[str]:

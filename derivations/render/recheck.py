@@ -1,0 +1,168 @@
+"""Check the steps of a derivation again, with nothing but SymPy.
+
+This is a second opinion: it shares no code with the engine that proved the steps. An identity is decided
+by algebra where that is quick, else at random points with 50 digits; so are signs and limits.
+"""
+
+import random
+from functools import reduce
+from typing import Any
+
+import sympy as sp
+from sympy.core.function import AppliedUndef
+
+Expr = Any
+Over = tuple[Any, Any, Any]
+"""A SymPy expression; a variable with its bounds."""
+
+POINTS, DIGITS, CLOSE = 12, 50, sp.Float("1e-35")
+DISTANCES = [sp.Rational(1, 10**6), sp.Rational(1, 10**9)]
+"""From the point of a limit: the remainder must fall by more than half from one to the next."""
+
+
+class Steps:
+    """The steps of one derivation; what is given is put into all that follows."""
+
+    def __init__(self, label: str) -> None:
+        self.label, self.draw = label, random.Random(2020)
+        self.rules: dict[Expr, Expr] = {}
+
+    def given(self, lhs: Expr, rhs: Expr) -> None:
+        """Let the left side stand for the right side."""
+        self.rules[sp.sympify(lhs)] = sp.sympify(rhs)
+
+    def equal(self, lhs: Expr, rhs: Expr) -> None:
+        """Check that both sides are the same."""
+        self._zero(self._put(lhs) - self._put(rhs), f"{lhs} = {rhs}")
+
+    def integral(
+        self,
+        lhs: Expr,
+        integrand: Expr,
+        over: Over,
+        antiderivative: Expr,
+        value: Expr | None = None,
+    ) -> None:
+        """Check an antiderivative, and the difference of its values at the bounds."""
+        variable, low, high = over[0], self._put(over[1]), self._put(over[2])
+        primitive, inner = self._put(antiderivative), self._put(integrand)
+        self._zero(sp.diff(primitive, variable) - inner, f"the derivative of {antiderivative}")
+        ends = [
+            primitive.subs(variable, end) if end.is_finite else sp.limit(primitive, variable, end)
+            for end in (low, high)
+        ]
+        value = ends[1] - ends[0] if value is None else sp.sympify(value)
+        self._zero(ends[1] - ends[0] - self._put(value), f"{lhs} = {value}")
+        self.rules[sp.sympify(lhs)] = value
+
+    def root(self, expr: Expr, variable: Expr, value: Expr) -> None:
+        """Check that the expression vanishes there."""
+        there = self._put(expr).subs(variable, self._put(value))
+        self._zero(there, f"{expr} = 0 at {variable} = {value}")
+
+    def unique_root(self, expr: Expr, over: Over) -> None:
+        """Check that the polynomial has one root between the bounds."""
+        variable, low, high = over
+        poly = sp.Poly(sp.fraction(sp.together(self._put(expr)))[0], variable)
+        inside = [
+            root
+            for root in sp.Poly(poly.sqf_part(), variable).nroots(n=30, maxsteps=200)
+            if abs(sp.im(root)) < sp.Float("1e-20") and low < sp.re(root) < high
+        ]
+        self._report(len(inside) == 1, f"{expr} has one root in {over[1:]}", "roots with 30 digits")
+
+    def sign(self, expr: Expr, relation: str, bound: Expr, over: Over) -> None:
+        """Check that the expression stays on its side of the bound."""
+        gap = self._put(expr) - self._put(bound)
+        signs = {
+            ">": lambda v: v > 0,
+            ">=": lambda v: v >= 0,
+            "<": lambda v: v < 0,
+            "<=": lambda v: v <= 0,
+        }
+        holds = all(
+            signs[relation](self._value(gap, {over[0]: self._inside(*over[1:])}))
+            for _ in range(POINTS)
+        )
+        self._report(holds, f"{expr} {relation} {bound} in {over[1:]}", f"{POINTS} points")
+
+    def equivalent(self, nonnegative: Expr, lhs: Expr, rhs: Expr) -> None:
+        """Check that the first one has the sign of the difference of the others."""
+        ratio = sp.cancel(self._put(nonnegative) / (self._put(lhs) - self._put(rhs)))
+        positive = ratio.is_positive or all(self._value(ratio, {}) > 0 for _ in range(POINTS))
+        self._report(bool(positive), f"{lhs} >= {rhs}", "a positive ratio")
+
+    def leading_order(
+        self, expr: Expr, leading: Expr, variable: Expr, point: Expr, eps: Expr
+    ) -> None:
+        """Check that the ratio of both tends to one."""
+        point = sp.sympify(point)
+        ratio = self._put(expr) / self._put(leading) - 1
+        others = {s: self._inside(0, 1) for s in ratio.free_symbols - {variable}}
+        gaps = []
+        for distance in DISTANCES:
+            near = (
+                1 / distance if point is sp.oo else point + (distance if point == 0 else -distance)
+            )
+            gaps.append(abs(self._value(ratio, {**others, variable: near})))
+        falls = gaps[1] < gaps[0] / 2 or gaps[1] == 0
+        self._report(
+            falls, f"{expr} ~ {leading} as {variable} -> {point}", f"off by {float(gaps[1]):.1e}"
+        )
+
+    def sampled(self, lhs: Expr, rhs: Expr, ranges: tuple[Over, ...]) -> None:
+        """Compare both sides at random points."""
+        for _ in range(POINTS):
+            point = {symbol: self._inside(low, high) for symbol, low, high in ranges}
+            left, right = (self._value(self._put(side), point) for side in (lhs, rhs))
+            close = abs(left - right) <= CLOSE * max(abs(left), abs(right))
+            self._report(close, f"{lhs} = {rhs}", "", quiet=True)
+        self._report(True, f"{lhs} = {rhs}", f"{POINTS} points")
+
+    def _put(self, expr: Expr) -> Expr:
+        before, after = None, sp.sympify(expr)
+        while after != before:
+            before, after = after, after.subs(self.rules).doit(integrals=False)
+        return after
+
+    def _zero(self, expr: Expr, claim: str) -> None:
+        masked = _without_functions(expr)
+        if masked == 0 or sp.expand(sp.fraction(sp.together(masked))[0]) == 0:
+            self._report(True, claim, "algebra")
+        elif masked.has(sp.Integral, sp.Sum):
+            self._report(sp.simplify(expr) == 0, claim, "algebra")
+        else:
+            terms = sp.Add.make_args(masked)
+            holds = True
+            for _ in range(POINTS):
+                point = {s: self._inside(0, 3, s) for s in masked.free_symbols}
+                values = [self._value(term, point) for term in terms]
+                holds = holds and abs(sum(values)) <= CLOSE * max(map(abs, values))
+            self._report(holds, claim, f"{POINTS} points")
+
+    def _value(self, expr: Expr, point: dict[Expr, Expr]) -> Expr:
+        point = {s: point.get(s, self._inside(0, 3, s)) for s in expr.free_symbols}
+        return sp.sympify(expr).subs(point).evalf(DIGITS)
+
+    def _inside(self, low: Expr, high: Expr, symbol: Expr | None = None) -> Expr:
+        low, high = map(sp.sympify, (low, high))
+        share = sp.Rational(self.draw.randrange(1, 10**9), 10**9)
+        sign = -1 if symbol is not None and symbol.is_negative else 1
+        if low.is_finite and high.is_finite:
+            return sign * (low + (high - low) * share)
+        far = (1 - share) / share  # from 0 to infinity
+        return low + far if low.is_finite else (high - far if high.is_finite else far - 1 / far)
+
+    def _report(self, holds: bool, claim: str, how: str, *, quiet: bool = False) -> None:
+        if not holds:
+            raise AssertionError(f"{self.label}: {claim} does not hold")
+        if not quiet:
+            print(f"{self.label}: {claim}   [{how}]")
+
+
+def _without_functions(expr: Expr) -> Expr:
+    """Let unknown functions and their derivatives be numbers, for an identity in them."""
+    for kind in (sp.Subs, sp.Derivative, AppliedUndef):
+        parts = sorted(expr.atoms(kind), key=sp.count_ops, reverse=True)
+        expr = reduce(lambda e, part: e.xreplace({part: sp.Dummy(real=True)}), parts, expr)
+    return expr
