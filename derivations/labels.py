@@ -46,20 +46,23 @@ def find(names: Iterable[str], contents: Collection[str]) -> list[str]:
     return [label for label in contents if label in wanted]
 
 
-def closure(labels: Iterable[str], uses: Mapping[str, Iterable[str]]) -> set[str]:
-    """Return the labels with all that they rest on, however far back.
+def closure(labels: Iterable[str], uses: Mapping[str, Iterable[str]]) -> list[str]:
+    """Return the labels with all that they rest on, however far back; what is used comes first.
 
-    >>> sorted(closure(["eq27"], {"eq27": ["eq28", "eq3"], "eq28": ["eq3"], "eq3": [], "F1": []}))
-    ['eq27', 'eq28', 'eq3']
+    >>> closure(["F1", "eq27"], {"eq27": ["eq28", "eq3"], "eq28": ["eq3"], "eq3": [], "F1": []})
+    ['F1', 'eq3', 'eq28', 'eq27']
     """
-    found: set[str] = set()
-    waiting = list(labels)
-    while waiting:
-        label = waiting.pop()
+    found: dict[str, None] = {}
+
+    def add(label: str) -> None:
         if label not in found:
-            found.add(label)
-            waiting.extend(uses.get(label, ()))
-    return found
+            for premise in uses.get(label, ()):
+                add(premise)
+            found[label] = None
+
+    for label in labels:
+        add(label)
+    return list(found)
 
 
 def unknown(name: str, valid: Collection[str], kind: str) -> str:

@@ -16,7 +16,7 @@ class Symbol:
     meaning: str
     unit: str
     source: str = ""
-    """Label of the derivation that defines or derives it; none for what a scene gives."""
+    """Label of the derivation that defines or derives it, or what else it is; none for what a scene gives."""
 
 
 SYMBOLS = tuple(
@@ -32,11 +32,11 @@ SYMBOLS = tuple(
         ("c", "damping of one element per unit width, $C/N$", "N s/m²", "eq22"),
         ("V", "drive velocity", "m/s"),
         ("g", "gravity", "m/s²"),
-        ("t", "time", "s"),
+        ("t", "time", "s", "coordinate"),
         ("t_0", "time at which an element leaves the indenter", "s", "eq25"),
-        ("x", "coordinate along the foundation", "m"),
-        ("z", "coordinate across the foundation", "m"),
-        ("i", "number of an element", "1"),
+        ("x", "coordinate along the foundation", "m", "coordinate"),
+        ("z", "coordinate across the foundation", "m", "coordinate"),
+        ("i", "number of an element", "1", "counter"),
         ("h", "shape function of the indenter", "m", "eq3"),
         ("x_i", "position of an element", "m", "eq4"),
         ("u_i", "compression of an element", "m", "eq4"),

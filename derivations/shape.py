@@ -334,7 +334,7 @@ _IMPLICIT_A = (
     r"Here the closed form ends: the half length $a$ is the root of $h(a) = \delta$, one because $h$ "
     r"rises. In what follows $a$ is given and $\delta$ follows from it; the leading edge is at $x = -a$."
 )
-_SHARP = "The tip is sharp: this holds while the edge is behind it; at higher velocity the contact ends at it."
+_SHARP = "The tip is sharp: this holds while the edge is behind it, beyond, the contact ends there."
 _SIDES = r"From both sides of the lowest line, with $q = x_{\mathrm{TE}}/a$."
 _LOW = r"For $l_{\mathrm{r}} \ll a$, that is $q \to 1$."
 _HIGH = r"For $l_{\mathrm{r}} \gg a$, that is $q \to 0$."

@@ -3,13 +3,14 @@ r"""The shape of an indenter from the text that a person types; nothing of the t
 >>> read_shape("c*x^4").rise
 c*x_abs**4
 >>> read_shape("|x|**1.5/b + x**2/(2*R)").rise
-x_abs**2/(2*R) + x_abs**(3/2)/b
+x_abs**(3/2)/b + x_abs**2/(2*R)
 >>> read_shape("c*x**3")
 Traceback (most recent call last):
 ValueError: the shape "c*x**3" is not even: write abs(x) or |x| where x has an odd power
 """
 
 import ast
+import math
 import re
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -114,7 +115,7 @@ def _expression(node: ast.expr, text: str) -> sp.Expr:
     """Build the formula from what is allowed, and refuse all else."""
     found = None
     match node:
-        case ast.Constant(value=int() | float() as number) if not isinstance(number, bool):
+        case ast.Constant(value=int() | float() as number) if _plain(number):
             found = sp.Rational(str(number))
         case ast.Name(id=name):
             found = _X if name == "x" else _parameter(name, text)
@@ -132,6 +133,10 @@ def _expression(node: ast.expr, text: str) -> sp.Expr:
         f'the shape "{text}": {ast.unparse(node)!r} is not read; expected numbers, names, x, abs(x), '
         "+, -, *, / and powers"
     )
+
+
+def _plain(number: float) -> bool:
+    return not isinstance(number, bool) and math.isfinite(number)
 
 
 def _parameter(name: str, text: str) -> sp.Symbol:

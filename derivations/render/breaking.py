@@ -16,6 +16,9 @@ EM = {"relation": 1.4, "sign": 1.25, "letter": 0.58, "digit": 0.5, "fence": 0.5,
 SCRIPT = 0.72
 """Size of an index or exponent against the text."""
 
+SHORT, INDENT = 0.3, 2.0
+"""A left side that takes no more than this share of the line stays in it; indentation in em."""
+
 _TOKEN = re.compile(
     r"(?P<frac>\\frac)(?![A-Za-z])|(?P<begin>\\begin\{[a-z*]+\})|(?P<end>\\end\{[a-z*]+\})"
     r"|(?P<relation>[=<>]|\\(?:le|ge|lt|gt|to|sim|approx|equiv|iff)(?![a-z]))|(?P<sign>[+-]|\\cdot)"
@@ -76,21 +79,21 @@ def _group(text: str) -> tuple[str, str]:
 
 
 def lines(latex: str, most: float) -> list[str]:
-    """Return the formula in one line, or in several with the marks of `split` before each relation."""
+    """Return the formula in one line, or in several with the marks of `split` for their alignment.
+
+    Relations stand below each other where the left side is short, else they are set in.
+    """
     if width(latex) <= most:
         return [latex]
-    links = relations(latex)
-    broken = []
-    for index, link in enumerate(links):
-        first = index == 0
-        pieces = _terms(link, most - (0 if first else 3))
-        head = pieces[0] if first else f"&{pieces[0]}"
-        broken += [head, *(rf"&\quad {piece}" for piece in pieces[1:])]
-    if len(links) > 1:  # the left side and the first relation share a line where they fit
-        joined = f"{broken[0]} {broken[1]}"
-        if not broken[1].startswith(r"&\quad") and width(links[0]) <= most / 2:
-            return [joined, *broken[2:]]
-    return [line if "&" in line else f"&{line}" for line in broken]
+    left, *links = relations(latex)
+    beside = bool(links) and width(left) <= SHORT * most
+    room = most - (width(left) if beside else INDENT) - INDENT
+    rows = [] if beside else [f"&{term}" for term in _terms(left, most)]
+    for link in links:
+        first, *rest = _terms(link, room)
+        rows += [rf"&{'' if beside else chr(92) + 'quad '}{first}"]
+        rows += [rf"&\qquad {term}" for term in rest]
+    return [f"{left} {rows[0]}", *rows[1:]] if beside else rows
 
 
 def _terms(link: str, most: float) -> list[str]:

@@ -9,7 +9,7 @@ from derivations.record import Derivation, Step, Table
 from derivations.render.atoms import atoms, replaced
 from derivations.render.domain import domain
 from derivations.render.frame import TITLE
-from derivations.render.text import reference
+from derivations.render.text import conclusion, reference
 
 
 @dataclass(frozen=True)
@@ -39,10 +39,11 @@ class Edition:
     def table(self, symbols: Collection[Symbol] | None = None) -> Table:
         """Return the nomenclature, or the rows of some symbols, with the values of the scene."""
         heads = (*HEADS, "Value") if self.values else HEADS
-        return Table(heads, tuple(self._row(each) for each in symbols or self.nomenclature))
+        rows = self.nomenclature if symbols is None else symbols
+        return Table(heads, tuple(self._row(each) for each in rows))
 
     def _row(self, symbol: Symbol) -> tuple[str, ...]:
-        source = reference(symbol.source) if symbol.source else "given"
+        source = reference(symbol.source) if symbol.source else "scene"
         row = (f"${symbol.latex}$", symbol.meaning, symbol.unit, source)
         value = self.values.get(symbol.latex)
         return (*row, f"${value}$" if value else "") if self.values else row
@@ -70,16 +71,17 @@ def edition(
     scene: str = "",
     symbols: Sequence[Symbol] = (),
 ) -> Edition:
-    """Choose derivations, with all that they rest on if asked, and write them in other letters.
+    """Choose derivations, after all that they rest on if asked, and write them in other letters.
 
     `notation` gives new LaTeX by the LaTeX of a symbol of the nomenclature, as `notation.read_notation`
     returns it. `symbols` are rows of the nomenclature that come before those of the same symbol.
     """
     uses = {each.label: each.uses for each in derivations}
-    labels: Collection[str] = find(only, uses) if only else uses
+    by_label = {each.label: each for each in derivations}
+    labels = find(only, by_label) if only else list(by_label)
     if with_premises:
-        labels = closure(labels, uses)
-    chosen = tuple(each for each in derivations if each.label in labels)
+        labels = [label for label in closure(labels, uses) if label in by_label]
+    chosen = tuple(by_label[label] for label in labels)
     shown = {symbol for each in chosen for symbol in symbols_of(each)}
     own = {symbol.latex for symbol in symbols}
     rows = (*(row for row in SYMBOLS if row.latex not in own), *symbols)
@@ -94,7 +96,7 @@ def edition(
 
 def symbols_of(derivation: Derivation, *, words: bool = True) -> dict[str, None]:
     """Return the symbols of a derivation in the order in which they first appear."""
-    formulas = [derivation.latex, *(step.latex for step in derivation.steps)]
+    formulas = [derivation.latex, *(conclusion(step) for step in derivation.steps)]
     if words:
         cells = [cell for row in derivation.table.rows for cell in row] if derivation.table else []
         texts = [derivation.title, derivation.text, *cells]

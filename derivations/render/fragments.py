@@ -5,6 +5,7 @@ A fragment has no number of its own: the document counts it, and refers to it by
 
 from collections.abc import Collection
 
+from derivations.contents import CONTENTS
 from derivations.record import Derivation, Table
 from derivations.render import frame
 from derivations.render.breaking import lines
@@ -37,7 +38,7 @@ def equation(derivation: Derivation) -> str:
 
 def with_steps(derivation: Derivation, edition: Edition) -> str:
     """Return the result with its steps, the meaning of its symbols and its domain."""
-    labels = set(derivation.uses) | {derivation.label}
+    labels = CONTENTS.keys() | edition.labels
     parts = [
         f"% {_comment(derivation)}",
         f"% rests on: {', '.join(derivation.uses) or 'nothing else'}",
@@ -58,18 +59,16 @@ def with_steps(derivation: Derivation, edition: Edition) -> str:
 
 
 def _where(table: Table, labels: Collection[str]) -> list[str]:
-    """Return the list of symbols; a bare document has no other column of text than `p`."""
+    """Return the list of symbols with meaning, unit, where from and, if there is one, value."""
     if not table.rows:
         return []
-    columns = "l" * (len(table.heads) - 2)
-    rows = [
-        " & ".join(words(cell, labels, _reference) for cell in row) + r" \\" for row in table.rows
-    ]
-    return [
-        rf"\par where\par\nobreak{{\small\begin{{tabular}}{{@{{}}lp{{0.42\linewidth}}{columns}@{{}}}}",
-        *rows,
-        r"\end{tabular}\par}",
-    ]
+    items = []
+    for symbol, meaning, unit, source, *value in table.rows:
+        shown = "".join(f", {each}" for each in value if each)
+        text = f"{meaning} [{unit}], {source}{shown}"
+        items.append(rf"\item[{symbol}] {words(text, labels, _reference)}")
+    start = r"\begin{description}\itemsep=0pt\parsep=0pt"
+    return [r"\par where", start, *items, r"\end{description}"]
 
 
 def _comment(derivation: Derivation) -> str:
@@ -81,7 +80,7 @@ def _display(latex: str, label: str = "") -> str:
     star = "" if label else "*"
     broken = lines(latex, LINE if label else LINE + 4)
     body = broken[0]
-    if len(broken) > 1:
+    if "&" in body:
         rows = " \\\\\n    ".join(broken)
         body = f"\\begin{{split}}\n    {rows}\n  \\end{{split}}"
     mark = rf"\label{{{label}}}" if label else ""

@@ -14,38 +14,12 @@ from sympy.printing.str import StrPrinter
 from derivations.record import Claim, Derivation, Step
 from derivations.render import frame, recheck
 from derivations.render.edition import Edition
-from derivations.render.text import number
+from derivations.render.text import calculation, number
 
-_IMPORTED = [
-    "Derivative",
-    "Function",
-    "Integral",
-    "Max",
-    "Min",
-    "Piecewise",
-    "S",
-    "Subs",
-    "Symbol",
-    "Sum",
-    "acos",
-    "asin",
-    "atan",
-    "cos",
-    "cosh",
-    "exp",
-    "log",
-    "oo",
-    "pi",
-    "sin",
-    "sinh",
-    "sqrt",
-    "tan",
-    "tanh",
-    "Abs",
-    "Heaviside",
-    "E",
-    "I",
-]
+_IMPORTED = (
+    "Abs, Derivative, E, Function, Heaviside, I, IndexedBase, Integral, Max, Min, Piecewise, S, Subs, Sum, "
+    "Symbol, acos, asin, atan, cos, cosh, exp, log, oo, pi, sin, sinh, sqrt, tan, tanh"
+)
 _GIVEN = {"define", "recall"}
 
 
@@ -78,7 +52,7 @@ def document(edition: Edition) -> str:
         _markdown("\n\n".join(head)),
         _code(Path(recheck.__file__).read_text(encoding="utf-8")),
     ]
-    cells.append(_code(f"from sympy import {', '.join(_IMPORTED)}"))
+    cells.append(_code(f"from sympy import {_IMPORTED}"))
     for derivation in edition.derivations:
         cells += [_markdown(_words(derivation)), _code(_steps(derivation))]
     for index, cell in enumerate(cells):
@@ -110,6 +84,9 @@ def _words(derivation: Derivation) -> str:
         source = f" ({number(step.source)})" if step.source else ""
         reason = f" — {step.reason}" if step.reason else ""
         lines.append(f"- ${step.latex}${source}{reason}")
+    if derivation.numbers:
+        lines += ["", frame.WITH_NUMBERS, ""]
+        lines += [f"- ${calculation(each)}$ {each.note}".rstrip() for each in derivation.numbers]
     return "\n\n".join(line for line in lines[:2] if line) + "\n\n" + "\n".join(lines[2:])
 
 
@@ -164,7 +141,7 @@ def _names(steps: Iterable[Step]) -> dict[Any, str]:
             for value in (step.claim.lhs, step.claim.rhs, *step.claim.arguments.values()):
                 for part in sorted(_parts(value), key=str):
                     if part not in names:
-                        names[part] = _free(str(part), {*names.values(), *_IMPORTED})
+                        names[part] = _free(str(part), {*names.values(), *_IMPORTED.split(", ")})
     return names
 
 

@@ -153,7 +153,7 @@ def sentence(given: Given, labels: Collection[str]) -> Iterator[Piece]:
     last = len(given.steps) - 1
     for index, (step, (source, reason)) in enumerate(zip(given.steps, remarks, strict=True)):
         yield Piece("words", "With " if index == 0 else " and " if index == last else ", ")
-        yield Piece("math", _conclusion(step))
+        yield Piece("math", conclusion(step))
         if index < last and remarks[index + 1] == (source, reason):
             continue
         if source:
@@ -183,11 +183,11 @@ def _is_given(line: Line) -> bool:
     step = line.step
     if line.tag or not (step.source or step.status == "definition"):
         return False
-    latex = _conclusion(step)
+    latex = conclusion(step)
     return not _TALL.search(latex) and len(_GLYPH.findall(latex)) <= _MOST_GLYPHS
 
 
-def _conclusion(step: Step) -> str:
+def conclusion(step: Step) -> str:
     """Return the step, without the middle where a chain of equalities is recalled."""
     links = relations(step.latex)
     is_chain = all(link.startswith("=") for link in links[1:]) and r"\quad" not in step.latex
