@@ -166,7 +166,8 @@ def is_continuous(expr: sp.Expr, variable: sp.Symbol) -> bool:
     if expr.is_Pow:
         base, exponent = expr.as_base_exp()
         harmless = exponent.is_positive or base.is_positive
-        return bool(harmless and is_continuous(base, variable) and exponent.is_number)
+        fixed = variable not in exponent.free_symbols
+        return bool(harmless and is_continuous(base, variable) and fixed)
     if isinstance(expr, sp.log):
         return bool(expr.args[0].is_positive and is_continuous(expr.args[0], variable))
     allowed = expr.is_Add or expr.is_Mul or isinstance(expr, (*_CONTINUOUS, AppliedUndef))

@@ -8,11 +8,17 @@ from derivations import (
     asymptote_errors,
     asymptotics,
     circle,
+    contact_interval,
     element_schemes,
     energy,
+    friction_identity,
     groups,
     master_curve,
     model,
+    power_law,
+    power_law_errors,
+    power_law_limits,
+    power_law_weight,
     steady,
     tables,
     theorems,
@@ -22,13 +28,15 @@ from derivations import (
     transient_motion,
     transient_rates,
     transient_scaling,
+    wedge,
 )
 from derivations.record import Derivation
 
 _CHAPTERS = (
-    *(model, steady, asymptotics, tables, groups),
+    *(model, steady, friction_identity, asymptotics, tables, groups),
     *(theorems, master_curve, energy, asymptote_errors, circle),
-    *(transient_scaling, transient_memory, transient_edges),
+    *(power_law, power_law_limits, power_law_weight, power_law_errors, wedge),
+    *(transient_scaling, transient_memory, contact_interval, transient_edges),
     *(transient_motion, transient_rates, transient_balance),
     element_schemes,
 )

@@ -153,9 +153,9 @@ _INTERVAL = (
     + r" By F8 an element is in contact at $s$ if and only if $e^{s} g(X, s)$ is not less than $e^{s_1} "
     r"g(X, s_1)$ at each earlier instant, and not less than $u_0$, which is zero or $g(X, 0)$. Each of "
     "these differences is concave in $X$, so that it is positive or zero on one interval; and "
-    "intervals intersect in an interval, or not at all. This needs the parabola: the curvature of $g$ "
-    "is the same everywhere and always. So the two edges are the whole geometry of the contact, for "
-    r"any drive $\lambda(s)$ and any depth $d(s)$."
+    "intervals intersect in an interval, or not at all. So the two edges are the whole geometry of the "
+    r"contact, for any drive $\lambda(s)$ and any depth $d(s)$. That the differences are concave needs the "
+    "parabola, whose curvature is the same everywhere; that the contact is one interval does not."
 )
 
 

@@ -19,19 +19,19 @@ os.environ.setdefault("OMP_NUM_THREADS", "1")
 import numpy as np
 from scipy.integrate import solve_ivp
 
+from kvtheory.models.continuum import compiled
+from kvtheory.models.continuum.solved_scene import scaled_drive
+from kvtheory.models.continuum.solver import solve
 from kvtheory.scene.model import Scene
-from kvtheory.scene.numbers import dimensionless_numbers
-from kvtheory.transients import compiled
-from kvtheory.transients.continuum import solve
-from kvtheory.transients.solution import scaled_drive, scales
+from kvtheory.scene.static_state import StaticState
 
 REPEATS = 15
 TOLERANCES = tuple(10.0**-k for k in range(2, 13))
 TARGETS = tuple(10.0**-k for k in range(4, 10))
 
 SCENE = Scene()
-DRIVE = scaled_drive(SCENE, scales(SCENE))
-EPS, END, NUMBER = dimensionless_numbers(SCENE)["inertia_number"], DRIVE.end, DRIVE.at(0.0)[1]
+DRIVE = scaled_drive(SCENE, StaticState.of(SCENE))
+EPS, END, NUMBER = StaticState.of(SCENE).inertia_number, DRIVE.end, DRIVE.at(0.0)[1]
 TIMES = np.linspace(0.0, END, 401)
 
 

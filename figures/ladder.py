@@ -17,7 +17,8 @@ from numpy.typing import NDArray
 
 import kvtheory as kv
 from figures import drawing
-from kvtheory.ladder import slow_motion, slow_start
+from kvtheory.models.slow_manifold import motion as slow_motion
+from kvtheory.models.slow_manifold import start as slow_start
 from kvtheory.plots import BLACK
 
 Array = NDArray[np.float64]

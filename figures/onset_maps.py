@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 import kvtheory as kv
 from figures import drawing
-from kvtheory.scene.numbers import dimensionless_numbers
+from kvtheory.scene.static_state import StaticState
 
 NUMBERS = np.geomspace(1e-2, 1e2, 33)
 INERTIAS = np.geomspace(1e-4, 1e1, 31)
@@ -45,15 +45,15 @@ class Data:
 def compute() -> Data:
     """Follow the motion at every point of the map."""
     scene = kv.Scene()
-    own = dimensionless_numbers(scene)
-    tau, load = scene.foundation.retardation_time, own["static_load"]
-    mass = INERTIAS * load * tau**2 / own["static_depth"]
+    own = StaticState.of(scene)
+    tau, load = scene.foundation.retardation_time, own.load
+    mass = INERTIAS * load * tau**2 / own.depth
     axis = ("support.mass", "support.gravity", "run.duration")
     result = kv.sweep(
         scene,
         over={
             axis: (mass, load / mass, tau * (LATEST + PERIODS * np.sqrt(INERTIAS))),
-            "drive.velocity": NUMBERS * own["static_half_length"] / tau,
+            "drive.velocity": NUMBERS * own.half_length / tau,
         },
         quantities=["peak_to_steady_friction", "settling_time", "hops"],
         rtol=RTOL,

@@ -12,16 +12,16 @@ from matplotlib.figure import Figure
 
 import kvtheory as kv
 from figures import drawing
+from kvtheory.models.continuum.solver import solve
+from kvtheory.models.slow_manifold import motion as slow_manifold
 from kvtheory.plots import BLACK, BLUE, GREEN, PURPLE, RED
-from kvtheory.scene.numbers import dimensionless_numbers
-from kvtheory.transients import slow_manifold
-from kvtheory.transients.continuum import solve
-from kvtheory.transients.drive import Drive
+from kvtheory.scene.base_motion import BaseMotion
+from kvtheory.scene.static_state import StaticState
 
-TABLE_1 = dimensionless_numbers(kv.Scene.table1())
+TABLE_1 = StaticState.of(kv.Scene.table1())
 STYLES: dict[float, dict[str, Any]] = {
     3e-4: {"color": BLUE, "linestyle": "-"},
-    TABLE_1["inertia_number"]: {"color": RED, "linestyle": "--"},
+    TABLE_1.inertia_number: {"color": RED, "linestyle": "--"},
     3e-2: {"color": GREEN, "linestyle": "-."},
     3e-1: {"color": PURPLE, "linestyle": ":"},
 }
@@ -40,18 +40,18 @@ class Data:
 
 def compute() -> Data:
     """Solve a start from rest for each inertia number."""
-    number = TABLE_1["drive_number"]
+    number = TABLE_1.drive_number
     times = np.concatenate([[0.0], np.geomspace(1e-6, END, POINTS)])
     curves: dict[float, tuple[np.ndarray, np.ndarray]] = {}
     rows: dict[str, list[Any]] = {"inertia_number [1]": [], "s [1]": [], "d [1]": [], "d' [1]": []}
     for eps in STYLES:
-        motion = solve(Drive.constant(number, END), eps, 0.0, END, RTOL)
+        motion = solve(BaseMotion.constant(number, END), eps, 0.0, END, RTOL)
         moments = [motion.at(float(s)) for s in times]
         curves[eps] = np.array([m.depth for m in moments]), np.array([m.rate for m in moments])
         for name, column in zip(rows, ([eps] * times.size, times, *curves[eps]), strict=True):
             rows[name] += np.asarray(column).tolist()
     steady = kv.steady()
-    steady_depth = float(steady.depth / TABLE_1["static_depth"])
+    steady_depth = float(steady.depth / TABLE_1.depth)
     depth = np.linspace(0.5 * steady_depth, 1.05, 400)
     manifold = depth, slow_manifold.depth_rate(depth, number)
     return Data(curves, manifold, steady_depth, rows)
@@ -63,16 +63,14 @@ def draw(data: Data) -> Figure:
     ax = drawn.subplots()
     ax.plot(*data.manifold, color=BLACK, linewidth=4, alpha=0.25, label="slow manifold (F13)")
     for eps, style in STYLES.items():
-        name = rf"$\epsilon = {eps:.3g}$" + (
-            " (Table 1)" if eps == TABLE_1["inertia_number"] else ""
-        )
+        name = rf"$\epsilon = {eps:.3g}$" + (" (Table 1)" if eps == TABLE_1.inertia_number else "")
         ax.plot(*data.curves[eps], label=name, **style)
     ax.plot(data.steady_depth, 0.0, "D", color=BLACK, label="steady state")
     ax.plot(1.0, 0.0, "o", color=BLACK, fillstyle="none", label="start")
     ax.set(
         xlabel=r"depth $d = \delta/\delta_0$",
         ylabel=r"depth rate $d' = \tau\dot\delta/\delta_0$",
-        title=rf"start from rest at $\lambda = {TABLE_1['drive_number']:.3g}$",
+        title=rf"start from rest at $\lambda = {TABLE_1.drive_number:.3g}$",
     )
     ax.legend(loc="lower left")
     return drawn

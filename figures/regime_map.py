@@ -11,11 +11,11 @@ from matplotlib.colors import ListedColormap
 from matplotlib.figure import Figure
 
 from figures import drawing
+from kvtheory.models.continuum.evaluation import RATE
+from kvtheory.models.continuum.solver import Trajectory, solve
+from kvtheory.models.steady import closed_forms as cf
 from kvtheory.plots import BLACK
-from kvtheory.steady_state import closed_forms as cf
-from kvtheory.transients.continuum import Motion, solve
-from kvtheory.transients.drive import Drive
-from kvtheory.transients.states import RATE
+from kvtheory.scene.base_motion import BaseMotion
 
 CLASSES = {
     "monotone": "#dddddd",
@@ -87,7 +87,7 @@ def draw(data: Data) -> Figure:
 def _class(number: float, eps: float) -> int:
     """Return the index of the class of one start from rest."""
     end = 20.0 + 10.0 * float(np.sqrt(eps))
-    motion = solve(Drive.constant(float(number), end), float(eps), 0.0, end, RTOL)
+    motion = solve(BaseMotion.constant(float(number), end), float(eps), 0.0, end, RTOL)
     kinds = {event.kind for event in motion.events[1:]}
     if any("take" in kind for kind in kinds):
         return 3
@@ -96,7 +96,7 @@ def _class(number: float, eps: float) -> int:
     return 1 if _turns(motion) else 0
 
 
-def _turns(motion: Motion) -> bool:
+def _turns(motion: Trajectory) -> bool:
     """Whether the indenter sinks again after it has risen."""
     starts = np.array(motion.starts)
     spans = np.diff(np.append(starts, motion.end))

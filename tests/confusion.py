@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 import kvtheory as kv
-from kvtheory.checks.trials import scaled_scene
+from kvtheory.checks.fitting import scaled_scene
 from tests.faulty_simulator import simulate
 
 STOP_AND_GO = [["0 ms", "100 mm/s"], ["50 ms", "100 mm/s"], ["50 ms", "-60 mm/s"], ["100 ms", "-60 mm/s"],

@@ -16,10 +16,13 @@ from scipy.integrate import quad
 from scipy.optimize import brentq
 
 import kvtheory as kv
-from kvtheory.ladder import asymptote, slow_motion, slow_start
 from kvtheory.ladder.series import SOLVED
+from kvtheory.models.slow_manifold import motion as slow_motion
+from kvtheory.models.slow_manifold import start as slow_start
+from kvtheory.models.steady import asymptote_bounds as asymptote
 from kvtheory.results import STEADY_UNITS
-from kvtheory.scene.numbers import dimensionless_numbers
+from kvtheory.results.table import scales
+from kvtheory.scene.static_state import StaticState
 from tests import reference, transient_closed_form, transient_history
 from tests.transient_scenes import Scene as ScaledScene
 
@@ -123,11 +126,11 @@ def true_error(case, values, model, truer=TRUER):
     if case.kind == "other shape":
         truth = from_definitions(case.scene)
         return max(abs(values[name] / truth[name] - 1.0) for name in case.names), "definitions"
-    (truth, method), scales = series_truth(case, model, truer), series_scales(case.scene)
+    (truth, method), measures = series_truth(case, model, truer), scales(StaticState.of(case.scene))
     worst = 0.0
     for name in case.names:
         value, right = np.nan_to_num(np.array([values[name], truth[name]]))
-        worst = max(worst, float(np.max(np.abs(value - right))) / scales[name])
+        worst = max(worst, float(np.max(np.abs(value - right))) / measures[name])
     return worst, method
 
 
@@ -231,14 +234,14 @@ def _in_si(case, found):
     d, v = found["d"], found["v"]
     top = np.clip(-numbers, left, right)
     p = np.nan_to_num(d + v - top * (top + 2 * numbers))
-    scales = series_scales(case.scene)
+    measures = scales(StaticState.of(case.scene))
     scaled = {
         "depth": d, "depth_rate": v, "normal_force": found["f_z"], "friction_force": side * found["f_x"],
         "leading_edge": side * np.where(leads, left, right),
         "trailing_edge": side * np.where(leads, right, left),
         "peak_pressure": np.maximum(p, 0.0),
     }  # fmt: skip
-    return {name: value * scales[name] for name, value in scaled.items()}
+    return {name: value * measures[name] for name, value in scaled.items()}
 
 
 def _numbers(case):
@@ -250,16 +253,6 @@ def _numbers(case):
 def _leads(case, numbers):
     """Whether the left edge leads; at rest, as it did before."""
     return numbers >= 0.0
-
-
-def series_scales(scene):
-    """Return the static depth, half length and load in the units of each quantity."""
-    n, f = dimensionless_numbers(scene), scene.foundation
-    a, d, W = (n["static_half_length"], n["static_depth"], n["static_load"])
-    return {
-        "depth": d, "depth_rate": d / f.retardation_time, "normal_force": W, "friction_force": W * d / a,
-        "leading_edge": a, "trailing_edge": a, "peak_pressure": f.stiffness * d,
-    }  # fmt: skip
 
 
 def cheaper_would_do(case, model):
@@ -280,9 +273,12 @@ def cheaper_would_do(case, model):
         found = slow_motion.follow(given, np.array(scaled.times), case.request["rtol"]).values
     except ArithmeticError:
         return False
-    side, scales = math.copysign(1.0, case.scene.drive.velocity), series_scales(case.scene)
+    side, measures = (
+        math.copysign(1.0, case.scene.drive.velocity),
+        scales(StaticState.of(case.scene)),
+    )
     odd = ("friction_force", "leading_edge", "trailing_edge")
     values = {
-        name: (side if name in odd else 1.0) * scales[name] * found[name] for name in case.names
+        name: (side if name in odd else 1.0) * measures[name] * found[name] for name in case.names
     }
     return true_error(case, values, "slow manifold")[0] <= case.request["rtol"]

@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 from scipy.integrate import quad_vec
 
-from kvtheory.transients.continuum import solve
-from kvtheory.transients.energy import ledger
-from kvtheory.transients.surface import volume
+from kvtheory.models.continuum.energy import ledger
+from kvtheory.models.continuum.solver import solve
+from kvtheory.models.continuum.surface import volume
 from tests.test_continuum_reference import TABLE, drive
 from tests.test_transient_random import KNOWN_FAILURES, SEEDS, random_case
 

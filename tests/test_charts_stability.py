@@ -10,11 +10,11 @@ import kvtheory as kv
 from kvtheory.charts import stability
 from kvtheory.charts.stability import CLASSES, growth, step_map, unwatched, velocity_map
 from kvtheory.cli import main
+from kvtheory.models.elements.model import Model
+from kvtheory.models.elements.schemes import SCHEMES
+from kvtheory.models.elements.stability import contact_lengths, limit_at
+from kvtheory.models.elements.watch import DivergenceError
 from kvtheory.plots.stability import draw_stability
-from kvtheory.point_elements.model import Model
-from kvtheory.point_elements.schemes import SCHEMES
-from kvtheory.point_elements.stability import contact_lengths, limit_at
-from kvtheory.point_elements.watch import DivergenceError
 
 EXPLICIT = [name for name, scheme in SCHEMES.items() if scheme.tableau]
 IMPLICIT = [name for name, scheme in SCHEMES.items() if not scheme.tableau]

@@ -13,7 +13,7 @@ from kvtheory.checks.columns import SPELLINGS, recognise
 from kvtheory.checks.reading import MOST_ROWS, read
 from kvtheory.checks.relaxation import fit, uncertainty
 from kvtheory.cli import main
-from kvtheory.point_elements.schemes import SCHEMES
+from kvtheory.models.elements.schemes import SCHEMES
 from tests.faulty_simulator import simulate
 from tests.first_order import first_order
 

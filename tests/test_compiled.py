@@ -8,9 +8,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from kvtheory.transients import compiled, continuum
-from kvtheory.transients.continuum import solve
-from kvtheory.transients.drive import Drive
+from kvtheory.models.continuum import compiled, solver
+from kvtheory.models.continuum.solver import solve
+from kvtheory.scene.base_motion import BaseMotion
 from tests.test_transient_random import random_case
 
 SEEDS = range(500, 600)
@@ -40,9 +40,9 @@ def test_the_same_states(both):
 
 
 def test_a_run_that_goes_on_compiled_gives_the_same_bits(monkeypatch):
-    monkeypatch.setattr(continuum, "ATTEMPTS", 7)
+    monkeypatch.setattr(solver, "ATTEMPTS", 7)
     monkeypatch.setattr(compiled, "WORTHWHILE", compiled.Tally.steps + 20)
-    given = Drive.from_points([(0, 4), (0.5, 4), (0.5, -4)], 1.5)
+    given = BaseMotion.from_points([(0, 4), (0.5, 4), (0.5, -4)], 1.5)
     mixed = solve(given, 0.04, 0.5, 1.5)
     whole = solve(given, 0.04, 0.5, 1.5, fast=False)
     assert mixed.compiled
@@ -53,7 +53,7 @@ def test_a_run_that_goes_on_compiled_gives_the_same_bits(monkeypatch):
 
 def test_few_steps_are_interpreted(monkeypatch):
     monkeypatch.setattr(compiled.Tally, "steps", 0)
-    motion = solve(Drive.constant(4.0, 2.0), 0.04, 0.0, 2.0)
+    motion = solve(BaseMotion.constant(4.0, 2.0), 0.04, 0.0, 2.0)
     assert not motion.compiled
     assert compiled.Tally.steps == motion.steps + motion.rejected
 
@@ -91,3 +91,22 @@ def test_without_numba_the_kernels_are_interpreted():
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.split() == ["False", "89.661"]
+
+
+@pytest.mark.parametrize("left", [b"", b"\x80damaged", None])
+def test_damaged_files_of_kernels_are_replaced(tmp_path, monkeypatch, left):
+    """Emptied, overwritten or cut in half: the entry is compiled anew, and kept again."""
+    monkeypatch.setattr("numba.config.CACHE_DIR", str(tmp_path))
+
+    def entry(x):
+        return 2.0 * x
+
+    assert compiled._kept(entry)(1.5) == 3.0
+    kept = [path for path in tmp_path.rglob("*") if path.is_file()]
+    assert kept
+    for path in kept:
+        path.write_bytes(path.read_bytes()[: path.stat().st_size // 2] if left is None else left)
+    assert compiled._kept(entry)(1.5) == 3.0
+    again = compiled._kept(entry)
+    assert again(1.5) == 3.0
+    assert sum(again.stats.cache_hits.values()) == 1

@@ -5,10 +5,10 @@ import math
 import numpy as np
 import pytest
 
-from kvtheory.transients import contact
-from kvtheory.transients.continuum import solve
-from kvtheory.transients.drive import Drive
-from kvtheory.transients.flight import margin
+from kvtheory.models.continuum import contact
+from kvtheory.models.continuum.flight import margin
+from kvtheory.models.continuum.solver import solve
+from kvtheory.scene.base_motion import BaseMotion
 
 FIXED = math.inf
 
@@ -29,8 +29,8 @@ END = 2.0
 
 def drive(name):
     if name in HISTORIES:
-        return Drive.from_points(HISTORIES[name], END)
-    return Drive.from_callable(SINES[name], END)
+        return BaseMotion.from_points(HISTORIES[name], END)
+    return BaseMotion.from_function(SINES[name], END)
 
 
 def ends_of_intervals(motion, given, s, sigma):
@@ -83,7 +83,7 @@ def test_edges_are_the_intersection_of_all_past_instants(name, eps, kappa):
 
 
 def test_flight_stays_above_all_that_was_left():
-    given = Drive.constant(7.1, 2.0)
+    given = BaseMotion.constant(7.1, 2.0)
     motion = solve(given, 0.078, 0.12, 2.0)
     times = {event.kind: event.s for event in motion.events}
     assert times["take-off"] < times["landing"]
@@ -100,16 +100,16 @@ def test_flight_stays_above_all_that_was_left():
 
 def test_fixed_indenter_has_the_edges_of_the_paper():
     for number in (1e-4, 1.0, 1e4):
-        now = solve(Drive.constant(number, 1.0), 1.0, FIXED, 1.0).at(0.7)
+        now = solve(BaseMotion.constant(number, 1.0), 1.0, FIXED, 1.0).at(0.7)
         assert now.left == pytest.approx(-1.0, rel=1e-14)
         assert now.right == pytest.approx(1 / (math.sqrt(1 + number * number) + number), rel=1e-13)
         assert (now.left_state, now.right_state) == ("touching", "peeling")
 
 
 def test_a_reversed_drive_is_the_mirror_image():
-    forward = solve(Drive.from_points(HISTORIES["ramps"], END), 0.04, 0.0, END)
+    forward = solve(BaseMotion.from_points(HISTORIES["ramps"], END), 0.04, 0.0, END)
     mirrored = [(s, -number) for s, number in HISTORIES["ramps"]]
-    backward = solve(Drive.from_points(mirrored, END), 0.04, 0.0, END)
+    backward = solve(BaseMotion.from_points(mirrored, END), 0.04, 0.0, END)
     for s in np.linspace(0.1, END, 7):
         a, b = forward.at(s), backward.at(s)
         assert (a.depth, a.left, a.right) == pytest.approx((b.depth, -b.right, -b.left), abs=1e-9)
@@ -118,7 +118,7 @@ def test_a_reversed_drive_is_the_mirror_image():
 
 def test_an_edge_at_rest_on_ground_left_by_a_jump_follows_the_quadratic():
     """After a stop the right edge meets the strip that the start detached, at d = 1."""
-    motion = solve(Drive.from_points([(0, 4), (0.1, 4), (0.1, 0)], END), 1.0, FIXED, END)
+    motion = solve(BaseMotion.from_points([(0, 4), (0.1, 4), (0.1, 0)], END), 1.0, FIXED, END)
     s, Y = 1.0, 0.4
     q = math.exp(-s)
     # g(X, s) = e^-s g(X, 0) with xi = X + Y

@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from kvtheory.transients.continuum import TransientError, solve
-from kvtheory.transients.drive import Drive
-from kvtheory.transients.integrator import STAGES, radau
-from kvtheory.transients.surface import volume
+from kvtheory.models.continuum.radau_iia import STAGES, radau
+from kvtheory.models.continuum.solver import TransientError, solve
+from kvtheory.models.continuum.surface import volume
+from kvtheory.scene.base_motion import BaseMotion
 
 TABLE1 = 4.0812765306, 0.0030609574
 """lambda and eps of Table 1 under dead weight."""
@@ -45,14 +45,14 @@ def distance(motion, other, end, count=150):
 )
 def test_start_from_rest_agrees_with_scipy(number, eps, kappa, rtol):
     end = 2.0
-    motion = solve(Drive.constant(number, end), eps, kappa, end, rtol)
+    motion = solve(BaseMotion.constant(number, end), eps, kappa, end, rtol)
     assert distance(motion, two_states(number, eps, kappa, end).sol, end) <= 2 * rtol
 
 
 def test_error_falls_with_the_order_of_the_polynomial():
     """The error is proportional to the tolerance, so that the steps must shrink as its eighth root."""
     number, eps = TABLE1
-    given = Drive.constant(number, 2.0)
+    given = BaseMotion.constant(number, 2.0)
     steps = [solve(given, eps, 0.0, 2.0, rtol).steps for rtol in (1e-8, 1e-10, 1e-12)]
     ratios = np.array(steps[1:]) / steps[:-1]
     assert ratios == pytest.approx(100 ** (1 / 8), rel=0.2)
@@ -73,7 +73,7 @@ def test_tableau_is_radau_iia(stages):
 @pytest.mark.parametrize("rtol", [1e-2, 1e-3, 1e-4, 1e-5])
 def test_loose_tolerances_are_met_too(rtol):
     number, eps = TABLE1
-    motion = solve(Drive.constant(number, 2.0), eps, 0.0, 2.0, rtol)
+    motion = solve(BaseMotion.constant(number, 2.0), eps, 0.0, 2.0, rtol)
     assert distance(motion, two_states(number, eps, 0.0, 2.0).sol, 2.0) <= 4 * rtol
 
 
@@ -93,7 +93,7 @@ SCENES = {
 def test_motion_obeys_its_equation_and_converges(name):
     points, eps, kappa = SCENES[name]
     end = 2.0
-    given = Drive.from_points(points, end)
+    given = BaseMotion.from_points(points, end)
     motion, better = solve(given, eps, kappa, end), solve(given, eps, kappa, end, 1e-11)
     assert distance(motion, lambda s: better.at(s)[1:3], end) <= 5e-9
     for s in np.random.default_rng(1).uniform(0, end, 40):
@@ -107,7 +107,7 @@ def test_motion_obeys_its_equation_and_converges(name):
 def test_impulse_balances_the_volume_of_the_whole_surface(name):
     """U = U_0 e^-s + 4/3 int e^(t - s) f_z dt, the surface that relaxes behind the edges included."""
     points, eps, kappa = SCENES[name]
-    motion = solve(Drive.from_points(points, 2.0), eps, kappa, 2.0)
+    motion = solve(BaseMotion.from_points(points, 2.0), eps, kappa, 2.0)
     x, w = np.polynomial.legendre.leggauss(12)
     ends = [*motion.starts, motion.end]
     U = 4 / 3
@@ -124,7 +124,7 @@ def test_impulse_balances_the_volume_of_the_whole_surface(name):
 
 def test_heights_of_hops_are_ballistic():
     points, eps, _ = SCENES["hop"]
-    motion = solve(Drive.from_points(points, 2.0), eps, 0.0, 2.0)
+    motion = solve(BaseMotion.from_points(points, 2.0), eps, 0.0, 2.0)
     times = {event.kind: event.s for event in motion.events}
     start = motion.at(times["take-off"])
     for s in np.linspace(times["take-off"], times["landing"], 5)[:-1]:
@@ -139,7 +139,7 @@ def test_heights_of_hops_are_ballistic():
 
 def test_fixed_support_is_the_limit_of_a_stiff_spring():
     points = SCENES["there and back"][0]
-    given = Drive.from_points(points, 2.0)
+    given = BaseMotion.from_points(points, 2.0)
     fixed, stiff = (solve(given, 1e-7, kappa, 2.0) for kappa in (math.inf, 1e6))
     for s in (0.2, 0.7, 1.3, 1.9):
         assert stiff.at(s).right == pytest.approx(fixed.at(s).right, abs=1e-5)
@@ -147,7 +147,7 @@ def test_fixed_support_is_the_limit_of_a_stiff_spring():
 
 
 def test_at_rest_nothing_happens():
-    motion = solve(Drive.from_points([(0, 0), (1, 0), (1, 4)], 1.5), 0.04, 0.0, 1.5)
+    motion = solve(BaseMotion.from_points([(0, 0), (1, 0), (1, 4)], 1.5), 0.04, 0.0, 1.5)
     assert motion.events[0].s == 1.0
     assert motion.at(0.5)[1:4] == pytest.approx((1, 0, 0), abs=1e-14)
     assert motion.at(0.5).normal_force == pytest.approx(1, abs=1e-14)
@@ -155,7 +155,7 @@ def test_at_rest_nothing_happens():
 
 def test_cost_does_not_grow_without_inertia():
     number, _ = TABLE1
-    given = Drive.constant(number, 2.0)
+    given = BaseMotion.constant(number, 2.0)
     evaluations = [solve(given, eps, 0.0, 2.0).evaluations for eps in (1e-2, 1e-4, 1e-6, 1e-8)]
     assert max(evaluations) <= 3 * evaluations[0]
 
@@ -165,7 +165,7 @@ def test_cost_grows_in_proportion_to_the_events_of_the_memory():
         points = [(0, 4)]
         for k in range(count):
             points += [(k + 0.4, 4), (k + 0.4, -2), (k + 1, -2), (k + 1, 4)]
-        motion = solve(Drive.from_points(points, count), 0.04, 0.0, float(count))
+        motion = solve(BaseMotion.from_points(points, count), 0.04, 0.0, float(count))
         begun = sum(event.kind.startswith("memory begins") for event in motion.events)
         return motion.evaluations, begun
 
@@ -175,7 +175,7 @@ def test_cost_grows_in_proportion_to_the_events_of_the_memory():
 
 
 def test_memory_begins_where_an_edge_goes_back_and_ends_where_it_leaves():
-    motion = solve(Drive.from_points([(0, 4), (0.5, 4), (0.5, -4)], 1.5), 0.04, 0.5, 1.5)
+    motion = solve(BaseMotion.from_points([(0, 4), (0.5, 4), (0.5, -4)], 1.5), 0.04, 0.5, 1.5)
     memory = [(event.kind, event.s) for event in motion.events if "memory" in event.kind]
     kinds = [kind for kind, _ in memory]
     assert kinds == ["memory begins at the right edge", "memory ends at the right edge"]
@@ -191,17 +191,17 @@ def test_memory_begins_where_an_edge_goes_back_and_ends_where_it_leaves():
 def test_what_makes_no_sense_is_refused(change):
     arguments = {"inertia_number": 0.04, "support_number": 0.0, "end": 2.0} | change
     with pytest.raises(ValueError, match="`"):
-        solve(Drive.constant(1.0, 2.0), **arguments)
+        solve(BaseMotion.constant(1.0, 2.0), **arguments)
 
 
 def test_a_drive_of_too_many_steps_ends_in_an_error(monkeypatch):
-    monkeypatch.setattr("kvtheory.transients.continuum.STEP_LIMIT", 10)
+    monkeypatch.setattr("kvtheory.models.continuum.solver.STEP_LIMIT", 10)
     with pytest.raises(TransientError, match=r"more than 10 steps at s = 0\.\d+"):
-        solve(Drive.constant(4.0, 2.0), 0.04, 0.0, 2.0)
+        solve(BaseMotion.constant(4.0, 2.0), 0.04, 0.0, 2.0)
 
 
 def test_drives_represent_functions_to_their_tolerance():
-    given = Drive.from_callable(lambda s: math.exp(-s) * math.sin(9 * s), 4.0, tolerance=1e-10)
+    given = BaseMotion.from_function(lambda s: math.exp(-s) * math.sin(9 * s), 4.0, tolerance=1e-10)
     for s in np.linspace(0, 4, 57):
         assert given.at(s)[1] == pytest.approx(math.exp(-s) * math.sin(9 * s), abs=2e-10)
         exact = (9 - math.exp(-s) * (9 * math.cos(9 * s) + math.sin(9 * s))) / 82
@@ -211,6 +211,6 @@ def test_drives_represent_functions_to_their_tolerance():
 def test_a_callable_that_jumps_needs_its_breaks():
     jump = lambda s: 1.0 if s < 0.3 else 2.0  # noqa: E731
     with pytest.raises(ValueError, match="breaks"):
-        Drive.from_callable(jump, 1.0)
-    given = Drive.from_callable(jump, 1.0, breaks=[0.3])
+        BaseMotion.from_function(jump, 1.0)
+    given = BaseMotion.from_function(jump, 1.0, breaks=[0.3])
     assert [given.at(s)[1] for s in (0.0, 0.3, 1.0)] == pytest.approx([1, 2, 2], abs=1e-12)

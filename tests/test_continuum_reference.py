@@ -11,8 +11,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from kvtheory.transients.continuum import solve
-from kvtheory.transients.drive import Drive
+from kvtheory.models.continuum.solver import solve
+from kvtheory.scene.base_motion import BaseMotion
 
 TABLE = json.loads((Path(__file__).parent / "data" / "transient_reference.json").read_text())
 RTOL, ALLOWED = 1e-9, 1e-8
@@ -30,9 +30,9 @@ NAMES = {
 
 def drive(found, end):
     if isinstance(found, list):
-        return Drive.from_points(found, end)
+        return BaseMotion.from_points(found, end)
     mean, amplitude, frequency = (found[k] for k in ("mean", "amplitude", "frequency"))
-    return Drive.from_callable(lambda s: mean + amplitude * math.cos(frequency * s), end)
+    return BaseMotion.from_function(lambda s: mean + amplitude * math.cos(frequency * s), end)
 
 
 @pytest.mark.parametrize("name", TABLE)

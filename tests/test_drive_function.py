@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 import kvtheory as kv
-from kvtheory.scene.numbers import dimensionless_numbers, quantities_by_name
-from kvtheory.scene.over import values
-from kvtheory.transients.solution import scaled_drive, scales
+from kvtheory.models.continuum.solved_scene import scaled_drive
+from kvtheory.scene.broadcasting import values
+from kvtheory.scene.static_state import StaticState
 
 QUANTITIES = (
     "velocity", "depth", "depth_rate", "normal_force", "friction_force",
@@ -90,14 +90,14 @@ def test_the_tolerance_bounds_the_error_of_the_velocity(tolerance):
         return 0.3 * math.exp(-50.0 * t) * math.sin(300.0 * t)
 
     given = scene(function=V, tolerance=tolerance)
-    units = scales(given)
+    units = StaticState.of(given)
     drive = scaled_drive(given, units)
     t = np.random.default_rng(1).uniform(0.0, 0.2, 500)
-    found = np.array([drive.at(s)[1] for s in t / units.time]) * units.length / units.time
+    found = np.array([drive.at(s)[1] for s in t / units.time]) * units.velocity
     right = np.array([V(s) for s in t])
-    allowed = tolerance * np.maximum(np.abs(right).max(), units.length / units.time)
+    allowed = tolerance * np.maximum(np.abs(right).max(), units.velocity)
     assert np.abs(found - right).max() <= allowed
-    travel = drive.at(0.2 / units.time)[0] * units.length
+    travel = drive.at(0.2 / units.time)[0] * units.half_length
     # int of e^(-b t) sin(w t) from 0 to T, with b = 50/s, w = 300/s, T = 0.2 s
     exact = (
         0.3 * (300 - math.exp(-10) * (50 * math.sin(60) + 300 * math.cos(60))) / (50**2 + 300**2)
@@ -112,8 +112,7 @@ def test_steady_sliding_needs_a_velocity():
             refused(sine)
     assert kv.steady(sine, over={"drive.velocity": 0.1}).depth == kv.steady().depth
     assert "drive.velocity" not in sine.values()
-    assert "drive_number" not in dimensionless_numbers(sine)
-    assert "velocity" not in quantities_by_name(sine)
+    assert "drive_number" not in StaticState.of(sine).named()
     with pytest.raises(kv.SceneError, match="unknown key"):
         values(sine, {"drive.velocty": 0.1})
 

@@ -7,7 +7,7 @@ import sympy as sp
 
 from derivations import element_schemes as schemes
 from derivations.catalogue import catalogue
-from kvtheory.point_elements import schemes as simulator
+from kvtheory.models.elements import schemes as simulator
 
 LABELS = {
     "F15-runge-kutta", "F15-euler", "F15-sawtooth", "element-mean-force", "element-fit",

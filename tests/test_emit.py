@@ -11,7 +11,7 @@ import sympy as sp
 
 from derivations import emit
 from derivations.symbols import l, lam, q, s, xi
-from kvtheory.steady_state import closed_forms
+from kvtheory.models.steady import closed_forms
 from tests.test_theorems import exact
 
 ULPS = 8

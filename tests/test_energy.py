@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 
 import kvtheory as kv
-from kvtheory.transients.continuum import solve
-from kvtheory.transients.drive import Drive
-from kvtheory.transients.energy import ledger
-from kvtheory.transients.maxima import force_maxima
-from kvtheory.transients.surface import height
+from kvtheory.models.continuum.energy import ledger
+from kvtheory.models.continuum.maxima import force_maxima
+from kvtheory.models.continuum.solver import solve
+from kvtheory.models.continuum.surface import height
+from kvtheory.scene.base_motion import BaseMotion
 
 END = 2.0
 STOP_AND_GO = [(0, 4), (0.3, 4), (0.3, 0), (0.6, 0), (0.6, 4), (0.9, 4), (0.9, 0.5)]
@@ -38,21 +38,21 @@ def oscillation(s):
 @pytest.mark.parametrize("name", HISTORIES)
 def test_ledger_closes(name):
     points, eps, kappa = HISTORIES[name]
-    motion = solve(Drive.from_points(points, END), eps, kappa, END, 1e-10)
+    motion = solve(BaseMotion.from_points(points, END), eps, kappa, END, 1e-10)
     times = np.array([*motion.starts, *np.linspace(0, END, 23)])  # at jumps and landings as well
     assert np.abs(ledger(motion, times).balance).max() <= 1e-9
 
 
 @pytest.mark.parametrize(("eps", "kappa"), [(0.04, 0.0), (1.0, 0.5), (1.0, math.inf)])
 def test_ledger_closes_in_an_oscillation(eps, kappa):
-    motion = solve(Drive.from_callable(oscillation, END), eps, kappa, END, 1e-10)
+    motion = solve(BaseMotion.from_function(oscillation, END), eps, kappa, END, 1e-10)
     assert np.abs(ledger(motion, np.linspace(0, END, 41)).balance).max() <= 1e-10
 
 
 @pytest.mark.parametrize("kappa", [0.0, 0.5, math.inf])
 def test_ledger_closes_on_ramps_of_which_one_step_sweeps_much_ground(kappa):
     points = [(0, 0), (0.4, 3000), (1.0, -2000), (1.1, -2000), (1.4, 0)]
-    motion = solve(Drive.from_points(points, END), 0.04, kappa, END, 1e-10)
+    motion = solve(BaseMotion.from_points(points, END), 0.04, kappa, END, 1e-10)
     books = ledger(motion, [*motion.starts, *np.linspace(0, END, 23)])
     assert np.abs(books.balance / (1 + np.abs(books.work))).max() <= 1e-9
     assert books.stored_surface.max() >= 1e-3
@@ -61,7 +61,7 @@ def test_ledger_closes_on_ramps_of_which_one_step_sweeps_much_ground(kappa):
 @pytest.mark.parametrize("name", ["stiff stop", "reversal", "hops", "fixed reversal"])
 def test_entries_are_the_energies_they_are_called(name):
     points, eps, kappa = HISTORIES[name]
-    motion = solve(Drive.from_points(points, END), eps, kappa, END, 1e-10)
+    motion = solve(BaseMotion.from_points(points, END), eps, kappa, END, 1e-10)
     xi = np.linspace(-12, 14, 100_001)
     for s in (0.35, 0.8, 1.3):
         books, now = ledger(motion, s), motion.at(s)
@@ -78,7 +78,7 @@ def test_entries_are_the_energies_they_are_called(name):
 
 def test_behind_the_contact_twice_what_is_stored_is_dissipated():
     points, eps, kappa = HISTORIES["reversal"]
-    motion = solve(Drive.from_points(points, END), eps, kappa, END, 1e-10)
+    motion = solve(BaseMotion.from_points(points, END), eps, kappa, END, 1e-10)
     low, high = ledger(motion, 0.9), ledger(motion, 0.9002)
     rate = (high.dissipated_surface - low.dissipated_surface) / 2e-4
     assert rate == pytest.approx(low.stored_surface + high.stored_surface, rel=1e-6)
@@ -87,7 +87,7 @@ def test_behind_the_contact_twice_what_is_stored_is_dissipated():
 @pytest.mark.parametrize("number", [0.1, 0.75, 4.0])
 def test_shares_of_steady_sliding(number):
     """Fact F6: the share 4 (q^2 - q + 1)/(q^2 - q + 4) is dissipated inside the contact."""
-    motion = solve(Drive.constant(number, 22.0), 1.0, math.inf, 22.0, 1e-10)
+    motion = solve(BaseMotion.constant(number, 22.0), 1.0, math.inf, 22.0, 1e-10)
     q = motion.at(1.0).right
     low, high = ledger(motion, 20.0), ledger(motion, 22.0)
     work = high.work - low.work
@@ -132,14 +132,14 @@ def test_the_largest_friction_before_a_jump():
 
 
 def test_the_largest_forces_within_a_step():
-    fixed = solve(Drive.from_callable(lambda s: 2 * math.sin(5 * s), END), 1.0, math.inf, END)
+    fixed = solve(BaseMotion.from_function(lambda s: 2 * math.sin(5 * s), END), 1.0, math.inf, END)
     assert force_maxima(fixed) == pytest.approx((math.pi / 10,) * 2, abs=1e-11)
 
 
 @pytest.mark.parametrize("name", ["there and back", "hops"])
 def test_forces_are_stationary_at_their_maxima(name):
     points, eps, kappa = HISTORIES[name]
-    motion = solve(Drive.from_points(points, END), eps, kappa, END, 1e-12)
+    motion = solve(BaseMotion.from_points(points, END), eps, kappa, END, 1e-12)
     grid = [motion.at(s) for s in np.linspace(0, END, 2001)]
     for k, s in enumerate(force_maxima(motion)):
         force = lambda moment, k=k: abs(moment[-2 + k])  # noqa: E731
@@ -150,6 +150,6 @@ def test_forces_are_stationary_at_their_maxima(name):
 
 def test_the_maxima_lie_within_the_run():
     """The ends of steps, put together again from their parts, may lie beyond the run by rounding."""
-    given = Drive.constant(2.9076177602310533, 0.48166010429977285)
+    given = BaseMotion.constant(2.9076177602310533, 0.48166010429977285)
     motion = solve(given, 2.0784278908362998e-05, 0.0, given.end, 9.170774506742931e-05)
     assert force_maxima(motion) == (0.0, 0.0)

@@ -5,8 +5,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from kvtheory.models.steady import exact
 from kvtheory.results import STEADY_UNITS
-from kvtheory.steady_state import exact
 from tests import reference
 
 EPS = np.finfo(float).eps

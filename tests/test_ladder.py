@@ -9,11 +9,12 @@ from click.testing import CliRunner
 
 import kvtheory as kv
 from kvtheory.cli import main
-from kvtheory.ladder import asymptote
 from kvtheory.ladder.climbing import ToleranceError
-from kvtheory.ladder.enclosure import enclose, half_length
+from kvtheory.models.slow_manifold.start import half_length
+from kvtheory.models.steady import asymptote_bounds as asymptote
+from kvtheory.models.steady.enclosure import enclose
+from kvtheory.models.steady.exact import scaled_root
 from kvtheory.results import STEADY_UNITS, TRANSIENT_UNITS
-from kvtheory.steady_state.exact import scaled_root
 
 NUMBERS = np.concatenate([[0.0], np.geomspace(1e-9, 1e9, 73)])
 SUPPORT_NUMBERS = (0.0, 1e-3, 1.0, 1e3)

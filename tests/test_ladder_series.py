@@ -6,13 +6,15 @@ import numpy as np
 import pytest
 
 import kvtheory as kv
-from kvtheory.ladder import slow_motion, slow_start
 from kvtheory.ladder.climbing import Request
 from kvtheory.ladder.series import SOLVED, Models, rungs
-from kvtheory.transients import slow_manifold
-from kvtheory.transients.continuum import solve
-from kvtheory.transients.drive import Drive
-from tests.ladder_scenes import series_scales
+from kvtheory.models.continuum.solver import solve
+from kvtheory.models.slow_manifold import motion as slow_motion
+from kvtheory.models.slow_manifold import start as slow_start
+from kvtheory.results.table import scales as scales_of
+from kvtheory.scene.base_motion import BaseMotion
+from kvtheory.scene.static_state import StaticState
+from tests import slow_manifold_by_radau as slow_manifold
 
 
 def light(number=4.0, eps=1e-6, kappa=0.0, end=3.0):
@@ -57,7 +59,7 @@ def test_the_estimate_covers_what_the_slow_manifold_neglects():
             continue
         scene = light(number, eps, kappa, times[-1])
         truth = kv.transient(scene, at=times, rtol=1e-11)
-        scales = series_scales(scene)
+        scales = scales_of(StaticState.of(scene))
         for name in SOLVED:
             error = np.abs(found.values[name] - getattr(truth, name) / scales[name])
             assert np.all(error <= found.errors[name] + 1e-9), (name, number, eps, kappa)
@@ -74,7 +76,7 @@ def test_the_neglected_inertia_is_of_first_order():
     for eps in (1e-3, 1e-4, 1e-5):
         given = slow_start.start(4.0, eps, 0.0)
         slow = slow_motion.follow(given, times, 1e-10).values["depth"]
-        truth = solve(Drive.constant(4.0, 1.0), eps, 0.0, 1.0, 1e-12)
+        truth = solve(BaseMotion.constant(4.0, 1.0), eps, 0.0, 1.0, 1e-12)
         errors.append(abs(slow[1] - truth.at(1.0).depth))
     assert np.diff(np.log10(errors)) == pytest.approx([-1.0, -1.0], abs=0.05)
 
@@ -104,7 +106,7 @@ def test_what_is_steady_at_once_is_the_continuum_too(support, velocity):
     at = [0.0, 0.01, 0.05]
     found = kv.solve(scene, at=at, rtol=1e-6)
     assert found.model == ("exact" if support == "fixed" or velocity == 0.0 else "continuum")
-    truth, scales = kv.transient(scene, at=at, rtol=1e-9), series_scales(scene)
+    truth, scales = kv.transient(scene, at=at, rtol=1e-9), scales_of(StaticState.of(scene))
     for name in SOLVED:
         np.testing.assert_allclose(
             getattr(found, name),
@@ -152,7 +154,7 @@ def test_the_elements_are_as_good_as_they_say(rtol):
     request = Request(SOLVED, rtol, at, over_time=True)
     scene = kv.Scene(run=kv.Run(0.05))
     answer = rungs(Models(kv.steady, kv.transient, kv.elements))[-1].solve(scene, request, None)
-    truth, scales = kv.transient(scene, at=at, rtol=1e-9), series_scales(scene)
+    truth, scales = kv.transient(scene, at=at, rtol=1e-9), scales_of(StaticState.of(scene))
     for name in SOLVED:
         error = np.max(np.abs(answer.values[name] - getattr(truth, name))) / scales[name]
         assert error <= answer.certificate.relative_error[name] <= rtol, name

@@ -5,10 +5,10 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 
+from kvtheory.models.steady.contact import QuadratureError
+from kvtheory.models.steady.quadrature import at_depth, at_load
 from kvtheory.results import STEADY_UNITS
 from kvtheory.scene.indenters import Circle, Parabola, PowerLaw, Profile, Wedge
-from kvtheory.steady_state.contact import QuadratureError
-from kvtheory.steady_state.quadrature import at_depth, at_load
 from tests import reference
 
 K, TAU, DEPTH = 1e10, 0.1, 3e-4

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from flint import arb, ctx, fmpq_poly, fmpz
 
-from kvtheory.steady_state import closed_forms as cf
-from kvtheory.steady_state import exact
+from kvtheory.models.steady import closed_forms as cf
+from kvtheory.models.steady import exact
 from tests import reference
 
 BITS = 300

@@ -11,8 +11,8 @@ from hypothesis import strategies as st
 
 import kvtheory as kv
 from kvtheory.scene import template
-from kvtheory.scene.numbers import dimensionless_numbers
-from kvtheory.scene.over import values
+from kvtheory.scene.broadcasting import values
+from kvtheory.scene.static_state import StaticState
 
 TABLE_1 = """
 [indenter]
@@ -276,19 +276,19 @@ def test_values_broadcast_and_are_checked():
 
 
 def test_dimensionless_numbers_of_table_1():
-    numbers = dimensionless_numbers(kv.Scene.table1("suspended"))
+    numbers = StaticState.of(kv.Scene.table1("suspended"))
     W, R, K, tau = 9806.65, 0.01, 1e10, 0.1
     depth = (3 * W / (4 * K * np.sqrt(2 * R))) ** (2 / 3)
-    assert numbers["static_depth"] == pytest.approx(depth, rel=1e-14)
-    assert numbers["drive_number"] == pytest.approx(0.1 * tau / np.sqrt(2 * R * depth), rel=1e-14)
-    assert numbers["inertia_number"] == pytest.approx(1000 * depth / (W * tau**2), rel=1e-14)
-    assert numbers["support_number"] == pytest.approx(3e7 * depth / W, rel=1e-14)
-    assert "support_number" not in dimensionless_numbers(kv.Scene.table1("fixed"))
+    assert numbers.depth == pytest.approx(depth, rel=1e-14)
+    assert numbers.drive_number == pytest.approx(0.1 * tau / np.sqrt(2 * R * depth), rel=1e-14)
+    assert numbers.inertia_number == pytest.approx(1000 * depth / (W * tau**2), rel=1e-14)
+    assert numbers.support_number == pytest.approx(3e7 * depth / W, rel=1e-14)
+    assert "support_number" not in StaticState.of(kv.Scene.table1("fixed")).named()
     for extreme in (kv.DeadWeight(1e200), kv.DeadWeight(1e-320)):
         with pytest.raises(ValueError, match="double precision"):
-            dimensionless_numbers(kv.Scene(support=extreme))
+            StaticState.of(kv.Scene(support=extreme))
     with pytest.raises(ValueError, match="parabola"):
-        dimensionless_numbers(kv.Scene(indenter=kv.Circle(radius=0.01)))
+        StaticState.of(kv.Scene(indenter=kv.Circle(radius=0.01)))
 
 
 def test_the_template_is_what_the_design_asks_for():

@@ -7,10 +7,10 @@ import pytest
 from scipy.integrate import quad
 
 import kvtheory as kv
-from kvtheory.transients.continuum import solve
-from kvtheory.transients.drive import Drive
-from kvtheory.transients.quadrature import integrals
-from kvtheory.transients.surface import height, volume
+from kvtheory.models.continuum.quadrature import integrals
+from kvtheory.models.continuum.solver import solve
+from kvtheory.models.continuum.surface import height, volume
+from kvtheory.scene.base_motion import BaseMotion
 
 END = 2.0
 HISTORIES = {
@@ -27,7 +27,7 @@ HISTORIES = {
 @pytest.fixture(scope="module", params=HISTORIES)
 def solved(request):
     points, eps, kappa = HISTORIES[request.param]
-    given = Drive.from_points(points, END)
+    given = BaseMotion.from_points(points, END)
     return given, solve(given, eps, kappa, END, 1e-10)
 
 
@@ -82,7 +82,9 @@ def test_volume_behind_a_fixed_indenter_on_a_ramp(slope):
         r = 1 / (number + math.sqrt(1 + number * number))
         return 0.75 * ((1 + r) - (1 + r**3) / 3 + number * (1 - r * r))
 
-    motion = solve(Drive.from_points([(0, 0), (END, slope * END)], END), 1.0, math.inf, END, 1e-10)
+    motion = solve(
+        BaseMotion.from_points([(0, 0), (END, slope * END)], END), 1.0, math.inf, END, 1e-10
+    )
     for s in (1e-3, 0.2, 0.7, END):
         gained, _ = quad(
             lambda t: math.exp(t - s) * f_z(t),  # noqa: B023
@@ -127,7 +129,7 @@ def test_surface_is_continuous_at_the_edges(solved):
 
 def test_under_a_flying_indenter_the_surface_relaxes():
     points, eps, kappa = HISTORIES["hop"]
-    motion = solve(Drive.from_points(points, END), eps, kappa, END, 1e-10)
+    motion = solve(BaseMotion.from_points(points, END), eps, kappa, END, 1e-10)
     times = {event.kind: event.s for event in motion.events}
     a, b = times["take-off"] + 0.01, times["landing"] - 0.01
     slide = 7.1 * (b - a)

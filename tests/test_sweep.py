@@ -9,7 +9,7 @@ import pytest
 
 import kvtheory as kv
 from kvtheory.results import STEADY_UNITS
-from kvtheory.scene.fields import quantities
+from kvtheory.scene.quantities import quantities
 from kvtheory.sweeps import engine
 from kvtheory.sweeps.axes import axes_of, narrowed, size, values_at
 from kvtheory.sweeps.netcdf_file import rectangles

@@ -5,7 +5,7 @@ import pytest
 
 import kvtheory as kv
 from figures import onset_maps
-from kvtheory.scene.numbers import dimensionless_numbers
+from kvtheory.scene.static_state import StaticState
 
 
 @pytest.fixture(scope="module")
@@ -15,10 +15,10 @@ def data():
 
 def test_the_peak_is_that_of_the_fixed_indenter_and_no_inertia_changes_it(data):
     scene = kv.Scene()
-    own = dimensionless_numbers(scene)
-    velocity = onset_maps.NUMBERS * own["static_half_length"] / scene.foundation.retardation_time
+    own = StaticState.of(scene)
+    velocity = onset_maps.NUMBERS * own.half_length / scene.foundation.retardation_time
     over = {"drive.velocity": velocity}
-    at_depth = kv.Scene(support=kv.Fixed(depth=own["static_depth"]))
+    at_depth = kv.Scene(support=kv.Fixed(depth=own.depth))
     peak = kv.steady(at_depth, over=over).friction_force
     ratio = peak / kv.steady(scene, over=over).friction_force
     assert data.ratio == pytest.approx(np.tile(ratio, (onset_maps.INERTIAS.size, 1)), rel=1e-9)

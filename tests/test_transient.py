@@ -8,10 +8,10 @@ import pytest
 
 import kvtheory as kv
 from kvtheory.export import save_transient
+from kvtheory.models.continuum.solver import solve
 from kvtheory.results import TRANSIENT_UNITS
-from kvtheory.transients import slow_manifold
-from kvtheory.transients.continuum import solve
-from kvtheory.transients.drive import Drive
+from kvtheory.scene.base_motion import BaseMotion
+from tests import slow_manifold_by_radau as slow_manifold
 
 HALF = 0.5
 SUPPORTS = ("fixed", "dead-weight", "suspended")
@@ -113,7 +113,7 @@ def test_no_inertia_is_the_slow_manifold():
     depth = slow_manifold.solve(number, 0.0, end)
     differences = []
     for eps in (1e-4, 1e-5):
-        motion = solve(Drive.constant(number, end), eps, 0.0, end, 1e-10)
+        motion = solve(BaseMotion.constant(number, end), eps, 0.0, end, 1e-10)
         differences.append(
             max(abs(motion.at(s).depth - depth(s)) for s in np.linspace(0.1, end, 30))
         )

@@ -13,11 +13,11 @@ import numpy as np
 import pytest
 
 import kvtheory as kv
-from kvtheory.transients import solution
-from kvtheory.transients.certificates import scaled_quantities
-from kvtheory.transients.continuum import TransientError, solve
-from kvtheory.transients.drive import Drive
-from kvtheory.transients.run import StepControl
+from kvtheory.models.continuum import solved_scene
+from kvtheory.models.continuum.error_estimate import scaled_quantities
+from kvtheory.models.continuum.run import StepControl
+from kvtheory.models.continuum.solver import TransientError, solve
+from kvtheory.scene.base_motion import BaseMotion
 
 SEEDS = range(63)
 RTOL, TRUTH = 1e-6, 1e-10
@@ -46,7 +46,7 @@ class Case:
 
     eps: float
     kappa: float
-    drive: Drive
+    drive: BaseMotion
     times: np.ndarray
 
     def scene(self):
@@ -72,11 +72,11 @@ def random_case(seed, sign):
     end = rng.uniform(0.5, 4.0)
     if kind == "oscillation":
         mean, frequency = rng.uniform(-2, 2), 10 ** rng.uniform(-0.5, 1.5)
-        given = Drive.from_callable(lambda s: number * (mean + math.sin(frequency * s)), end)
+        given = BaseMotion.from_function(lambda s: number * (mean + math.sin(frequency * s)), end)
         changes = np.zeros(1)
     else:
         changes, points = random_points(rng, kind, number, end)
-        given = Drive.from_points(points, end)
+        given = BaseMotion.from_points(points, end)
     after = changes[:, None] + (end - changes)[:, None] * 10 ** rng.uniform(
         -6, -1, (changes.size, 4)
     )
@@ -121,7 +121,7 @@ def solved(seed, rtol, sign=1):
 
 def transient_of(case, rtol):
     """Solve a case by the way that users take, but for its drive, which is scaled already."""
-    with patch.object(solution, "scaled_drive", lambda *_: case.drive):
+    with patch.object(solved_scene, "scaled_drive", lambda *_: case.drive):
         return kv.transient(case.scene(), at=case.times, rtol=rtol)
 
 

@@ -118,6 +118,7 @@ _PARAMETERS: dict[str, tuple[str, ...]] = {
     "root": ("expr", "variable", "value"),
     "unique_root": ("expr", "over"),
     "sign": ("expr", "relation", "bound", "over"),
+    "positive": ("expr",),
     "equivalent": ("nonnegative", "lhs", "rhs"),
     "leading_order": ("expr", "leading", "variable", "point", "eps"),
     "sampled": ("lhs", "rhs", "ranges"),

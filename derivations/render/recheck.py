@@ -46,7 +46,8 @@ class Steps:
         """Check an antiderivative, and the difference of its values at the bounds."""
         variable, low, high = over[0], self._put(over[1]), self._put(over[2])
         primitive, inner = self._put(antiderivative), self._put(integrand)
-        self._zero(sp.diff(primitive, variable) - inner, f"the derivative of {antiderivative}")
+        slope = sp.diff(primitive, variable)
+        self._zero(slope - inner, f"the derivative of {antiderivative}", quiet=True)
         ends = [
             primitive.subs(variable, end) if end.is_finite else sp.limit(primitive, variable, end)
             for end in (low, high)
@@ -85,6 +86,11 @@ class Steps:
             for _ in range(POINTS)
         )
         self._report(holds, f"{expr} {relation} {bound} in {over[1:]}", f"{POINTS} points")
+
+    def positive(self, expr: Expr) -> None:
+        """Check that the expression is positive for all admissible symbols."""
+        holds = all(self._value(sp.sympify(expr), {}) > 0 for _ in range(POINTS))
+        self._report(holds, f"{expr} > 0", f"{POINTS} points")
 
     def equivalent(self, nonnegative: Expr, lhs: Expr, rhs: Expr) -> None:
         """Check that the first one has the sign of the difference of the others."""
@@ -125,12 +131,12 @@ class Steps:
             before, after = after, after.subs(self.rules).doit(integrals=False)
         return after
 
-    def _zero(self, expr: Expr, claim: str) -> None:
+    def _zero(self, expr: Expr, claim: str, *, quiet: bool = False) -> None:
         masked = _without_functions(expr)
         if masked == 0 or sp.expand(sp.fraction(sp.together(masked))[0]) == 0:
-            self._report(True, claim, "algebra")
+            self._report(True, claim, "algebra", quiet=quiet)
         elif masked.has(sp.Integral, sp.Sum):
-            self._report(sp.simplify(expr) == 0, claim, "algebra")
+            self._report(sp.simplify(expr) == 0, claim, "algebra", quiet=quiet)
         else:
             terms = sp.Add.make_args(masked)
             holds = True
@@ -138,7 +144,7 @@ class Steps:
                 point = {s: self._inside(0, 3, s) for s in masked.free_symbols}
                 values = [self._value(term, point) for term in terms]
                 holds = holds and abs(sum(values)) <= CLOSE * max(map(abs, values))
-            self._report(holds, claim, f"{POINTS} points")
+            self._report(holds, claim, f"{POINTS} points", quiet=quiet)
 
     def _value(self, expr: Expr, point: dict[Expr, Expr]) -> Expr:
         point = {s: point.get(s, self._inside(0, 3, s)) for s in expr.free_symbols}

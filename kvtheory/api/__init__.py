@@ -1,10 +1,11 @@
 """What users call: a scene in, a result out, by the method asked for."""
 
-from kvtheory.api.cheapest import solve
-from kvtheory.api.cross_validation import compare
-from kvtheory.api.discrete import elements
-from kvtheory.api.many_scenes import sweep
-from kvtheory.api.steady_sliding import asymptotes, steady
-from kvtheory.api.whole_transient import transient
+from kvtheory.api._asymptotes import asymptotes
+from kvtheory.api._compare import compare
+from kvtheory.api._elements import elements
+from kvtheory.api._solve import solve
+from kvtheory.api._steady import steady
+from kvtheory.api._sweep import sweep
+from kvtheory.api._transient import transient
 
 __all__ = ["asymptotes", "compare", "elements", "solve", "steady", "sweep", "transient"]

@@ -6,9 +6,9 @@ from kvtheory.charts.problems import STANDARD, Problem, standard_scene
 from kvtheory.charts.steady_precision import VELOCITIES, steady_chart, suits
 from kvtheory.charts.work_precision import FULL, QUICK, Chart, Effort, transient_chart
 from kvtheory.scene.drives import Drive
-from kvtheory.scene.fields import nearest
-from kvtheory.scene.indenters import Parabola
 from kvtheory.scene.model import Scene
+from kvtheory.scene.quantities import nearest
+from kvtheory.scene.requirements import require_parabola
 
 Job = Callable[[Effort, Callable[[float], object]], Chart]
 """Makes one chart."""
@@ -28,11 +28,7 @@ def chosen(scene: Scene, standard: Sequence[str], *, quick: bool) -> list[Job]:
     for name in standard:
         if name not in (*STANDARD, ALL):
             raise ValueError(f'--standard "{name}": {nearest(name, (*STANDARD, ALL))}')
-    if not isinstance(scene.indenter, Parabola):
-        raise ValueError(
-            "the chart needs the transient theory, which holds for the parabola only, not for "
-            f'indenter.shape = "{scene.indenter.shape}"'
-        )
+    require_parabola(scene, "the chart of transients")
     if not standard:
         return [*_steady(scene, "this scene"), _transient(Problem("this scene", scene, quick))]
     names = list(STANDARD) if ALL in standard else standard

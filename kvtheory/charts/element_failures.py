@@ -5,10 +5,10 @@ from typing import Any
 import numpy as np
 
 from kvtheory.api import elements, steady, transient
-from kvtheory.charts.entry import Entry, Line, Outcome, Picture
+from kvtheory.charts.entry import Line, Outcome, Picture
 from kvtheory.charts.naive import closed_forms, stale_elements
 from kvtheory.charts.stability import PAPERS_DENSITY, unwatched
-from kvtheory.point_elements.watch import DivergenceError
+from kvtheory.models.elements.watch import DivergenceError
 from kvtheory.results import Simulation
 from kvtheory.scene.drives import Drive
 from kvtheory.scene.model import Run, Scene
@@ -112,57 +112,11 @@ def _stale_surface() -> Outcome:
     )  # fmt: skip
 
 
-ELEMENT_FAILURES = (
-    Entry(
-        "instability", "The paper's time step at a low velocity",
-        "Table 1 at V = 10 mm/s instead of 100 mm/s; Runge-Kutta, Δt = 2 Δx/V",
-        "The damping C L of all elements in contact acts on the mass M. Runge-Kutta steps are stable up to "
-        "Δt C L/M = 2.785 (F15), and Δt grows as V falls: with the paper's own parameters the run diverges "
-        "below 13 mm/s.",
-        "depth after 100 ms", "mm", 1e3,
-        "The forces alternate from step to step; half the step gives another result.",
-        "Says the limit before the run and stops when it diverges; its own schemes are stable at any step.",
-        1e-3, _instability,
-    ),
-    Entry(
-        "sawtooth", "The sawtooth of elements that enter the contact",
-        "Table 1 with the fixed indenter and 20 elements per mm",
-        "At the leading edge the pressure jumps to p_LE. An element that enters adds p_LE Δx to the force at "
-        "once: a sawtooth of ± p_LE Δx/2 on forces that should not change at all (F15).",
-        "peak to peak of the normal force", "N/mm", 1e-3,
-        "Its frequency is V/Δx, its height proportional to Δx.",
-        'The scheme "edge-corrected" counts the part of an element at each edge.',
-        1e-3, _sawtooth, 35e3,
-    ),
-    Entry(
-        "grid-resonance", "Grid resonance between elements and steps",
-        "The same, reported once for every 2.02 elements that pass",
-        "A step that is nearly a whole number of elements sees them in nearly the same phase again: the "
-        "sawtooth becomes a slow oscillation that looks like physics, or with Δt = 2 Δx/V a constant error.",
-        "peak to peak of the normal force", "N/mm", 1e-3,
-        "Change the step by a percent: the period of the oscillation changes by a factor.",
-        'The scheme "edge-corrected" has no sawtooth that could resonate.',
-        1e-3, _resonance, 35e3,
-    ),
-    Entry(
-        "step-at-rest", "Δt = 2 Δx/V at V = 0",
-        "Table 1 with a drive that rises from 0 to 100 mm/s within 20 ms",
-        "The paper's time step is infinite as long as the base is at rest. A simulation that takes it ends "
-        "with its first step, or never takes one.",
-        "friction force at 20 ms", "N/mm", 1e-3,
-        "The number of steps is zero, or the time infinite or not a number.",
-        "Takes the fastest velocity of the drive and no more than τ/100; refuses where that does not help.",
-        1e-3, _step_at_rest,
-    ),
-    Entry(
-        "stale-surface", "Surfaces that stand still within a step",
-        "Table 1; Runge-Kutta stages that ask whether the indenter is below the surface of the last step",
-        "Where the indenter rises, all of the contact relaxes with it. A stage that compares with the "
-        "surface at the beginning of the step finds no contact, and drops the force.",
-        "depth after 200 ms", "mm", 1e3,
-        "The depth in steady sliding depends on the time step, and does not balance the weight.",
-        "Lets each surface relax within the stage, or uses its exact memory (F8).",
-        1e-3, _stale_surface,
-    ),
-)  # fmt: skip
+ELEMENT_FAILURES = {
+    "instability": _instability,
+    "sawtooth": _sawtooth,
+    "grid-resonance": _resonance,
+    "step-at-rest": _step_at_rest,
+    "stale-surface": _stale_surface,
+}
 """The entries about elements."""

@@ -1,16 +1,18 @@
 """The atlas of failures: one entry for each way in which a method fails, computed when it is asked for."""
 
+import tomllib
 from collections.abc import Iterator, Sequence
+from importlib.resources import files
 
 from kvtheory.charts.element_failures import ELEMENT_FAILURES
 from kvtheory.charts.entry import Entry, Finding
 from kvtheory.charts.motion_failures import MOTION_FAILURES
 from kvtheory.charts.steady_failures import STEADY_FAILURES
-from kvtheory.scene.fields import nearest
+from kvtheory.scene.quantities import nearest
 
-ATLAS: dict[str, Entry] = {
-    entry.key: entry for entry in (*ELEMENT_FAILURES, *MOTION_FAILURES, *STEADY_FAILURES)
-}
+MEASURES = {**ELEMENT_FAILURES, **MOTION_FAILURES, **STEADY_FAILURES}
+WORDS = tomllib.loads(files("kvtheory.charts").joinpath("atlas.toml").read_text(encoding="utf-8"))
+ATLAS = {key: Entry(key=key, measure=MEASURES[key], **words) for key, words in WORDS.items()}
 """The entries by their keys."""
 
 

@@ -13,10 +13,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kvtheory.charts import problems
-from kvtheory.charts.naive import closed_forms, two_states
+from kvtheory.charts.naive import two_states
 from kvtheory.charts.problems import Curves, Problem
-from kvtheory.point_elements.schemes import SCHEMES
-from kvtheory.transients import compiled, slow_manifold
+from kvtheory.models.continuum import compiled
+from kvtheory.models.elements.schemes import SCHEMES
+from kvtheory.models.slow_manifold.motion import follow
+from kvtheory.models.slow_manifold.start import start
 
 Array = NDArray[np.float64]
 
@@ -155,13 +157,9 @@ _CVODE = Method("two states, CVODE", "rtol", LOOSE_TOLERANCES, "evaluations", _c
 def _slow_manifold(problem: Problem, rtol: float, clock: Clock) -> tuple[Curves, int]:
     del clock  # it takes a millisecond
     number = problem.pieces[0][2]
-    depth = slow_manifold.solve(number, problem.kappa, problem.drive.end, rtol)
-    d = depth(problem.times / problem.units.time)
-    rates = slow_manifold.depth_rate(d, number, problem.kappa)
-    friction = [
-        closed_forms(*pair, number)[1] for pair in zip(d.tolist(), rates.tolist(), strict=True)
-    ]
-    return Curves(d, np.array(friction)), 0
+    given = start(number, problem.epsilon, problem.kappa)
+    found = follow(given, problem.times / problem.units.time, rtol).values
+    return Curves(found["depth"], found["friction_force"]), 0
 
 
 def _elements(scheme: str) -> Method:

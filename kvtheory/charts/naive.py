@@ -11,7 +11,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from kvtheory.scene.indenters import Parabola
 from kvtheory.scene.model import Scene
 
 Array = NDArray[np.float64]
@@ -62,11 +61,11 @@ def stale_elements(scene: Scene, per_length: float) -> tuple[Array, Array]:
     under a dead weight, driven with one velocity.
     """
     R, K, tau = (
-        _parabola(scene).radius,
+        scene.indenter.radius,  # type: ignore[union-attr]
         scene.foundation.stiffness,
         scene.foundation.retardation_time,
     )
-    M, W, V = scene.support.mass, scene.support.weight, scene.drive.final_velocity  # type: ignore[union-attr]
+    M, W, V = scene.support.mass, scene.support.weight, scene.drive.final_velocity
     dx = 1.0 / per_length
     h = 2.0 * dx / V
     d, v = (1.5 * R * W / K) ** (2.0 / 3.0) / (2.0 * R), 0.0
@@ -94,9 +93,3 @@ def stale_elements(scene: Scene, per_length: float) -> tuple[Array, Array]:
         time.append((k + 1) * h)
         depth.append(d)
     return np.array(time), np.array(depth)
-
-
-def _parabola(scene: Scene) -> Parabola:
-    if not isinstance(scene.indenter, Parabola):
-        raise ValueError(f'expected a parabola, not indenter.shape = "{scene.indenter.shape}"')
-    return scene.indenter

@@ -14,14 +14,13 @@ from scipy.integrate import solve_ivp
 
 from kvtheory.api import elements
 from kvtheory.charts.naive import closed_forms, two_states
+from kvtheory.models.continuum import evaluation, solver
+from kvtheory.models.continuum.solved_scene import scaled_drive
+from kvtheory.scene.base_motion import BaseMotion, evaluate
 from kvtheory.scene.drives import Drive
 from kvtheory.scene.indenters import Parabola
-from kvtheory.scene.model import DeadWeight, Fixed, Foundation, Run, Scene
-from kvtheory.scene.numbers import dimensionless_numbers
-from kvtheory.transients import continuum, states
-from kvtheory.transients.drive import Drive as ScaledDrive
-from kvtheory.transients.drive import evaluate
-from kvtheory.transients.solution import Scales, scaled_drive, scales
+from kvtheory.scene.model import DeadWeight, Foundation, Run, Scene
+from kvtheory.scene.static_state import StaticState
 
 Array = NDArray[np.float64]
 
@@ -81,36 +80,34 @@ class Problem:
     quick: bool = False
 
     @cached_property
-    def units(self) -> Scales:
-        """The scales of the scaled form."""
-        return scales(self.scene)
+    def units(self) -> StaticState:
+        """The scene at rest, which measures the scaled form."""
+        return StaticState.of(self.scene)
 
     @cached_property
-    def drive(self) -> ScaledDrive:
+    def drive(self) -> BaseMotion:
         """lambda(s)."""
         return scaled_drive(self.scene, self.units)
 
     @property
     def fixed(self) -> bool:
         """Whether the indenter cannot move, so that there is no equation of motion."""
-        return isinstance(self.scene.support, Fixed)
+        return self.scene.held
 
     @cached_property
     def epsilon(self) -> float:
-        """Inertia number; one, which is not used, for a fixed indenter."""
-        return dimensionless_numbers(self.scene).get("inertia_number", 1.0)
+        """Inertia number."""
+        return self.units.inertia_number
 
     @cached_property
     def kappa(self) -> float:
         """Support number."""
-        return math.inf if self.fixed else dimensionless_numbers(self.scene)["support_number"]
+        return self.units.support_number
 
     @cached_property
     def jumps(self) -> list[float]:
         """Times (s) at which the drive may have a kink or jump, 0 first."""
-        drive, end = self.scene.drive, self.scene.run.duration
-        times = drive.breaks if drive.function else (t for t, _ in drive.points)
-        return sorted({0.0, *(t for t in times if t < end)})
+        return [t for t in self.scene.drive.changes if t < self.scene.run.duration]
 
     @cached_property
     def times(self) -> Array:
@@ -186,12 +183,12 @@ def errors(found: Curves, right: Curves) -> dict[str, float]:
 
 def by_continuum(problem: Problem, rtol: float, **options: Any) -> tuple[Curves, int]:
     """Return the curves by the package's transient, and its evaluations of the equation of motion."""
-    motion = continuum.solve(
+    motion = solver.solve(
         problem.drive, problem.epsilon, problem.kappa, problem.drive.end, rtol, **options
     )
     s = np.minimum(problem.times / problem.units.time, motion.end)
     found = motion.states(s).T
-    return Curves(found[states.DEPTH], found[states.FRICTION_FORCE]), motion.evaluations
+    return Curves(found[evaluation.DEPTH], found[evaluation.FRICTION_FORCE]), motion.evaluations
 
 
 def by_two_states(
@@ -242,14 +239,16 @@ def rows_of(s: Array, a: float, b: float, values: Array, number: Any) -> list[tu
 def by_elements(problem: Problem, per_half_length: float, scheme: str, **options: Any) -> Any:
     """Return the simulation by elements, so many in a static half length, at the instants."""
     return elements(
-        problem.scene, per_length=per_half_length / problem.units.length, scheme=scheme,
+        problem.scene, per_length=per_half_length / problem.units.half_length, scheme=scheme,
         at=problem.times, certify=False, **options,
     )  # fmt: skip
 
 
 def curves_of(problem: Problem, run: Any) -> Curves:
     """Return a result in SI in scaled form."""
-    return Curves(run.depth / problem.units.depth, run.friction_force / problem.units.friction)
+    return Curves(
+        run.depth / problem.units.depth, run.friction_force / problem.units.friction_force
+    )
 
 
 def reference(problem: Problem) -> Reference:

@@ -17,16 +17,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kvtheory.api import steady as steady_sliding
-from kvtheory.point_elements.model import Model
-from kvtheory.point_elements.path import Path
-from kvtheory.point_elements.row import OutgrownError, Row
-from kvtheory.point_elements.schemes import SCHEMES, Motion, Scheme
-from kvtheory.point_elements.simulation import ELEMENTS_PER_STEP
-from kvtheory.point_elements.stability import contact_lengths, limit_at
+from kvtheory.models.elements.model import Model
+from kvtheory.models.elements.row import OutgrownError, Row
+from kvtheory.models.elements.schemes import SCHEMES, Motion, Scheme
+from kvtheory.models.elements.simulation import ELEMENTS_PER_STEP
+from kvtheory.models.elements.stability import contact_lengths, limit_at
 from kvtheory.scene.drives import Drive
 from kvtheory.scene.indenters import Parabola
 from kvtheory.scene.model import DeadWeight, Foundation, Run, Scene
-from kvtheory.scene.numbers import dimensionless_numbers
+from kvtheory.scene.static_state import StaticState
 
 Array = NDArray[np.float64]
 
@@ -107,7 +106,8 @@ def unwatched(scene: Scene, scheme: str, per_length: float, time_step: float) ->
     >>> print(len(steps), f"{steps[-1].depth * 1e3:.3f} mm")
     400 0.091 mm
     """
-    model, path = Model.of(scene, 1.0 / per_length), Path(scene.drive, scene.run.duration)
+    model = Model.of(scene, 1.0 / per_length)
+    path = model.path(scene)
     steps = walk(Row(model, path, DEEP), SCHEMES[scheme], Motion(0.0, model.depth, 0.0), time_step)
     return list(islice(steps, round(scene.run.duration / time_step)))
 
@@ -179,7 +179,7 @@ def step_map(scheme: str, numbers: Array, steps: Array) -> Map:
     >>> [CLASSES[k] for k in found.classes[:, 0]]
     ['stable', 'unstable in steady sliding']
     """
-    epsilon = dimensionless_numbers(Scene())["inertia_number"]
+    epsilon = StaticState.of(Scene()).inertia_number
     # R = 1/2, K = tau = delta_0 = 1: the static half length is 1 and the static load 4/3.
     support = DeadWeight(mass=4.0 / 3.0 * epsilon, gravity=1.0 / epsilon)
     limited = scheme if SCHEMES[scheme].tableau else "paper"
@@ -215,7 +215,8 @@ def _point(
 
 def _begin(scene: Scene, per_length: float, *, steady: bool) -> tuple[Row, Motion]:
     """Return the elements and the indenter at rest, or as steady sliding has left them."""
-    model, path = Model.of(scene, 1.0 / per_length), Path(scene.drive, scene.run.duration)
+    model = Model.of(scene, 1.0 / per_length)
+    path = model.path(scene)
     row, motion = Row(model, path, DEEP), Motion(0.0, model.depth, 0.0)
     if not steady:
         return row, motion

@@ -9,11 +9,11 @@ from scipy.integrate import quad
 from scipy.optimize import newton
 
 from kvtheory.api import asymptotes, steady
-from kvtheory.charts.entry import Entry, Line, Outcome, Picture
+from kvtheory.charts.entry import Line, Outcome, Picture
 from kvtheory.scene.drives import Drive
 from kvtheory.scene.indenters import Circle, Parabola
 from kvtheory.scene.model import DeadWeight, Fixed, Scene
-from kvtheory.scene.numbers import dimensionless_numbers
+from kvtheory.scene.static_state import StaticState
 
 Array = NDArray[np.float64]
 
@@ -144,9 +144,7 @@ def _steep() -> Outcome:
         for W in weights for shape in (Parabola(R), Circle(R))
     ]  # fmt: skip
     mu = np.array([steady(scene).friction_coefficient for scene in scenes]).reshape(-1, 2)
-    slopes = np.array(
-        [dimensionless_numbers(scene)["static_half_length"] / R for scene in scenes[::2]]
-    )
+    slopes = np.array([StaticState.of(scene).half_length / R for scene in scenes[::2]])
     return Outcome(
         float(mu[-1, 0]), _circle_by_sums(scenes[-1]), float(mu[-1, 1]),
         Picture(r"static half length $a_0/R$", "friction coefficient",
@@ -156,7 +154,7 @@ def _steep() -> Outcome:
 
 def _circle_by_sums(scene: Scene) -> float:
     """Return mu of a circle by sums over 400 000 points: a coarse method that needs no care."""
-    R, K, W = 0.01, 1e10, scene.support.weight  # type: ignore[union-attr]
+    R, K, W = 0.01, 1e10, scene.support.weight
     l_r = 0.1 * scene.foundation.retardation_time
     half = 0.5 * math.pi * (np.arange(400_000) + 0.5) / 400_000
     theta = np.concatenate([-half[::-1], half])
@@ -173,55 +171,11 @@ def _circle_by_sums(scene: Scene) -> float:
     return float(-(pressure(low) * slope) @ width / W)
 
 
-STEADY_FAILURES = (
-    Entry(
-        "cancellation", "Eq. 27 as it is written",
-        "Table 1 with the fixed indenter, at V τ = 1e9 a",
-        "x_TE = √(a² + l_r²) − l_r is a small difference of two large numbers: with every decade of l_r/a "
-        "two digits are lost, and beyond 1e8 the trailing edge is exactly zero.",
-        "trailing edge", "nm", 1e9,
-        "The edge moves in steps as V grows; the pressure there is not zero.",
-        "Uses q = 1/(l + √(1 + l²)), proved equal, with no difference in it (F16).",
-        1e-14, _cancellation,
-    ),
-    Entry(
-        "asymptote", "An asymptote near the critical velocity",
-        "Table 1 with V = V*, where both asymptotes meet",
-        "The asymptotes of Table 2 are limits for V far from V*. Just where they meet, and where one might "
-        "look for the largest friction, both are far too large.",
-        "friction coefficient", "", 1.0,
-        "The two asymptotes agree, which is no sign that they are right.",
-        "kv.asymptotes knows the error of each in closed form and says where it is within a tolerance.",
-        1e-11, _asymptote,
-    ),
-    Entry(
-        "kink", "A quadrature over a kink that it does not resolve",
-        "A parabola at rest at a depth of 1 nm: scipy.integrate.quad over the whole indenter, −R to R",
-        "Integrating max(p, 0) leaves it to the rule to find the contact. Of a short contact the nodes see "
-        "nothing, and the rule reports an error of nearly zero with its wrong result.",
-        "load", "mN/m", 1e3,
-        "Halve the interval: the result changes by far more than the error that was reported.",
-        "Finds both edges first, and integrates between them, where the pressure is smooth.",
-        1e-10, _kink,
-    ),
-    Entry(
-        "no-bracket", "A root finder without a bracket",
-        "Table 1, solved for the velocity with μ = 0.05 on the rising branch by a secant from 100 mm/s",
-        "The friction coefficient has a maximum, so that two velocities give the same one. A secant "
-        "ends on the branch where it began, with success; begun near the maximum it leaps to 1e50 m/s.",
-        "velocity", "mm/s", 1e3,
-        "Another first guess gives another root.",
-        "Knows the maximum in closed form (F3): on either side of it μ is monotone: a bracket.",
-        1e-9, _no_bracket,
-    ),
-    Entry(
-        "steep", "A parabola for a cylinder that sinks deep",
-        "A cylinder of R = 10 mm under a dead weight so heavy that a_0 = 0.8 R, V = 100 mm/s",
-        "h = x²/2R stands for a circle while x is far below R. The error grows with (a/R)².",
-        "friction coefficient", "", 1.0,
-        "The slope at the leading edge, a/R, is not small.",
-        'Has the circle itself: indenter.shape = "circle", by quadrature or elements.',
-        1e-4, _steep,
-    ),
-)  # fmt: skip
+STEADY_FAILURES = {
+    "cancellation": _cancellation,
+    "asymptote": _asymptote,
+    "kink": _kink,
+    "no-bracket": _no_bracket,
+    "steep": _steep,
+}
 """The entries about steady sliding."""

@@ -14,9 +14,9 @@ from scipy.optimize import brentq
 from kvtheory.api import elements, steady
 from kvtheory.charts.methods import DENSITIES, Clock
 from kvtheory.charts.work_precision import FULL, Chart, Effort, Point, Series, attempt, repeat
-from kvtheory.point_elements.schemes import DEFAULT
-from kvtheory.scene.indenters import Parabola
-from kvtheory.scene.model import DeadWeight, Run, Scene
+from kvtheory.models.elements.schemes import DEFAULT
+from kvtheory.scene.model import Run, Scene
+from kvtheory.scene.requirements import lacks_parabola
 
 DIGITS = 40
 """Of the reference solutions, at least; they are computed with decimals, three times as many."""
@@ -39,8 +39,8 @@ Solve = Callable[[float, Clock], tuple[float, float, int]]
 def suits(scene: Scene) -> bool:
     """Whether a scene has this chart: a parabola under a dead weight with a constant velocity above 0."""
     return (
-        isinstance(scene.indenter, Parabola)
-        and isinstance(scene.support, DeadWeight)
+        not lacks_parabola(scene)
+        and scene.support.spring == 0.0
         and scene.drive.velocity is not None
         and scene.drive.velocity > 0.0
     )
@@ -141,7 +141,7 @@ def _by_elements(scene: Scene, density: float, clock: Clock) -> tuple[float, flo
     tau = scene.foundation.retardation_time
     A = math.hypot(state.half_length, state.retardation_length) + state.half_length
     slow = tau * (state.trailing_edge + state.half_length) / A
-    fast = 2.0 * scene.support.mass / (scene.foundation.damping * 2.0 * state.half_length)  # type: ignore[union-attr]
+    fast = 2.0 * scene.support.mass / (scene.foundation.damping * 2.0 * state.half_length)
     run = replace(scene, run=Run(TIME_CONSTANTS * (slow + fast)))
     rest = steady(replace(scene, drive=replace(scene.drive, velocity=0.0)))
     found = elements(

@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 
 from kvtheory.checks.reading import Series
 from kvtheory.checks.theory import CURVES, Theory
-from kvtheory.scene.model import Fixed, Suspended
+from kvtheory.results.schemes import SCHEME_ROWS
 
 Array = NDArray[np.float64]
 
@@ -87,9 +87,9 @@ def extreme(count: int) -> float:
 def resolution(theory: Theory, series: Series, per_length: float | None) -> Resolution:
     """Return the spacing and the step, known or else those of the paper for this scene."""
     given = per_length or series.per_length
-    half = theory.static["static_half_length"]
+    half = theory.static.half_length
     spacing = 1.0 / (given or min(max(STANDARD, FEWEST_ASSUMED / half), MOST_ASSUMED / half))
-    speed, span = abs(theory.top_velocity), float(series.time[-1] - series.time[0])
+    speed, span = theory.top_speed, float(series.time[-1] - series.time[0])
     step = 2.0 * spacing / speed if speed else span / MOST_STEPS
     if series.time_step is not None:
         return Resolution(spacing, float(series.time_step), bool(given), True)
@@ -112,7 +112,9 @@ def allowance(
     """Return theory at the times of the series, and by how much the series may differ from it."""
     time, smear = series.time, STEPS_SMEARED * fine.time_step
     count = time.size
-    jumps = np.array([(np.nextafter(t, -1.0), t) for t in theory.jumps if t < time[-1]]).reshape(-1)
+    jumps = np.array(
+        [(np.nextafter(t, -1.0), t) for t in theory.scene.drive.jumps if t < time[-1]]
+    ).reshape(-1)
     curves = theory.at(np.concatenate([time, time - smear, time + smear, jumps]), rtol)
     now, before, after = (
         {name: curves[name][k * count : (k + 1) * count] for name in CURVES} for k in range(3)
@@ -153,7 +155,7 @@ def lag(theory: Theory, curves: Mapping[str, Array], time: Array, width: Array) 
     (t/T) exp(-t/T) is at most (2/e) exp(-t/2T).
     """
     support, foundation = theory.scene.support, theory.scene.foundation
-    if isinstance(support, Fixed):
+    if theory.scene.held:
         return np.zeros_like(width)
     rate = 0.5 * foundation.damping * contact_length(curves) / support.mass
     ages = np.concatenate([[0.0], np.cumsum(0.5 * (rate[1:] + rate[:-1]) * np.diff(time))])
@@ -181,18 +183,15 @@ def first_order(
     """
     support, foundation = theory.scene.support, theory.scene.foundation
     none = np.zeros_like(curves["depth"])
-    if isinstance(support, Fixed) or series.scheme in SECOND_ORDER:
+    scheme = SCHEME_ROWS.get(series.scheme or "")
+    if theory.scene.held or (scheme is not None and scheme.order_in_time > 1):
         return none, none
-    spring = support.stiffness if isinstance(support, Suspended) else 0.0
-    sunk = curves["depth"] - theory.static["static_depth"]
+    spring = support.spring
+    sunk = curves["depth"] - theory.static.depth
     net = support.weight - spring * sunk - curves["normal_force"]
     rate = foundation.damping * contact_length(curves) / support.mass
     z = np.minimum(fine.time_step * rate, 1.0)
     return z, z * np.abs(net)
-
-
-SECOND_ORDER = ("paper", "rk4", "exponential", "edge-corrected")
-"""Schemes that are known to be of at least second order in time."""
 
 
 def edge_force(theory: Theory, curves: Mapping[str, Array], spacing: float) -> Array:
@@ -208,7 +207,7 @@ def edge_force(theory: Theory, curves: Mapping[str, Array], spacing: float) -> A
         rate = curves["depth_rate"] - x / R * curves["velocity"]
         pressures.append(K * (curves["depth"] - x * x / (2.0 * R)) + foundation.damping * rate)
     p = np.nan_to_num(np.fmax(np.maximum(pressures[0], 0.0), pressures[1]), nan=0.0)
-    return 0.5 * p * spacing + K * spacing**2 * theory.static["static_half_length"] / R
+    return 0.5 * p * spacing + K * spacing**2 * theory.static.half_length / R
 
 
 def systematic(
@@ -222,7 +221,7 @@ def systematic(
     """
     foundation, dx = theory.scene.foundation, fine.spacing
     R, tau = theory.scene.indenter.radius, foundation.retardation_time  # type: ignore[union-attr]
-    a = np.sqrt(2.0 * R * np.maximum(curves["depth"], SHALLOWEST * theory.static["static_depth"]))
+    a = np.sqrt(2.0 * R * np.maximum(curves["depth"], SHALLOWEST * theory.static.depth))
     l_r = curves["velocity"] * tau
     depth, depth_rate, kick = response(theory, force, a, np.abs(l_r), fine.time_step)
     both = depth + tau * depth_rate
@@ -247,11 +246,11 @@ def response(
 ) -> tuple[Array, Array, Array]:
     """Return by how much b moves the depth, b/(K A + k_s), its rate, b/(C a), and b h/M in a step."""
     support, foundation = theory.scene.support, theory.scene.foundation
-    if isinstance(support, Fixed) or theory.rates is None:
+    if theory.scene.held or theory.rates is None:
         none = np.zeros_like(force)
         return none, none, none
     worst = np.maximum.accumulate(force)
-    spring = support.stiffness if isinstance(support, Suspended) else 0.0
+    spring = support.spring
     depth = worst / (foundation.stiffness * (np.hypot(a, l_r) + a) + spring)
     swing = SWING if theory.rates.oscillates else 1.0
     return swing * depth, worst / (foundation.damping * a), worst * step / support.mass

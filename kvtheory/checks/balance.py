@@ -14,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from kvtheory.scene.model import DeadWeight, Suspended
+from kvtheory.scene.model import Support
 
 Array = NDArray[np.float64]
 
@@ -62,12 +62,12 @@ def windows(time: Array) -> Iterator[Window]:
 
 
 def missing_force(
-    window: Window, columns: Mapping[str, Array], support: DeadWeight | Suspended, depth_0: float
+    window: Window, columns: Mapping[str, Array], support: Support, depth_0: float
 ) -> float:
     """Return the mean force in N/m that the balance lacks in a window."""
     part = slice(window.start, window.stop)
     depth = columns["depth"][part] - depth_0
-    spring = support.stiffness if isinstance(support, Suspended) else 0.0
+    spring = support.spring
     force = support.weight - columns["normal_force"][part] - spring * depth
     gained = support.mass * float(window.inertia @ depth)
     return (gained - float(window.force @ force)) / window.impulse

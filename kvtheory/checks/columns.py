@@ -8,7 +8,7 @@ import re
 from dataclasses import dataclass
 
 from kvtheory.results import TRANSIENT_UNITS
-from kvtheory.scene.fields import closest
+from kvtheory.scene.quantities import closest
 from kvtheory.scene.units import to_si
 
 SI_UNITS = {**TRANSIENT_UNITS, "peak_pressure": "N/m^2"}

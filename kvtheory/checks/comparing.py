@@ -6,9 +6,9 @@ from typing import Any
 
 import numpy as np
 
-from kvtheory.checks.case import make_case
+from kvtheory.checks.checklist import judge
+from kvtheory.checks.comparison_case import make_case
 from kvtheory.checks.diagnosis import diagnose
-from kvtheory.checks.judgements import judge
 from kvtheory.checks.reading import Series
 from kvtheory.checks.theory import Theory
 from kvtheory.results import TRANSIENT_UNITS

@@ -2,10 +2,10 @@
 
 from collections.abc import Sequence
 
-from kvtheory.checks.case import Case
+from kvtheory.checks.comparison_case import Case
 from kvtheory.checks.faults import FAMILIES, Trial
-from kvtheory.checks.signs import coarse, rattling, seen, unmoved
-from kvtheory.checks.trials import bench
+from kvtheory.checks.fitting import bench
+from kvtheory.checks.symptoms import coarse, rattling, seen, unmoved
 from kvtheory.results.comparison import Check, Explanation
 
 NAMED = 0.5

@@ -1,18 +1,14 @@
 """Checks of elements and steps (F15): the sawtooth, the density, the stability number."""
 
+import math
 from collections.abc import Iterator
 
 import numpy as np
 
-from kvtheory.checks.case import COMMON, LARGEST_SAWTOOTH, Case, common_noise
+from kvtheory.checks.comparison_case import COMMON, LARGEST_SAWTOOTH, Case, common_noise
 from kvtheory.checks.making import check, not_made
 from kvtheory.results.comparison import Check
-from kvtheory.scene.model import Fixed
-
-LIMITS = {"paper": 2.785, "rk4": 2.785, "explicit-euler": 2.0}
-"""Largest stable dt C L/M (F15) of explicit schemes by name: where |R(-z)| = 1 on the real axis."""
-UNLIMITED = ("semi-implicit", "exponential", "edge-corrected")
-"""Schemes that are stable at any step."""
+from kvtheory.results.schemes import SCHEME_ROWS
 
 
 def sawtooth(case: Case) -> Iterator[Check]:
@@ -21,7 +17,7 @@ def sawtooth(case: Case) -> Iterator[Check]:
     if "normal_force" not in columns:
         yield not_made(name, equation, "the data hold no normal force")
         return
-    W = case.theory.static["static_load"]
+    W = case.theory.static.load
     sigma, b = case.allowance.noise["normal_force"] / W, float(np.median(case.allowance.force)) / W
     unit = "standard deviation, relative to the load"
     if not case.resolution.spacing_known:
@@ -49,7 +45,7 @@ def elements(case: Case) -> Iterator[Check]:
     if not case.resolution.spacing_known:
         yield not_made(name, equation, "the element density is not given (--per-length)")
         return
-    b = float(np.median(case.allowance.force)) / case.theory.static["static_load"]
+    b = float(np.median(case.allowance.force)) / case.theory.static.load
     yield check(
         case,
         name,
@@ -64,15 +60,16 @@ def stability(case: Case) -> Iterator[Check]:
     """Compare dt C L/M of an explicit scheme with its limit."""
     name, equation, scene = "stability number", "F15", case.theory.scene
     scheme = case.series.scheme or ""
-    if isinstance(scene.support, Fixed):
+    limit = SCHEME_ROWS[scheme].stability_limit if scheme in SCHEME_ROWS else math.nan
+    if scene.held:
         yield not_made(name, equation, "the indenter is fixed")
     elif not case.resolution.step_known:
         yield not_made(name, equation, "the time step is not known")
-    elif scheme in UNLIMITED:
+    elif math.isinf(limit):
         yield not_made(name, equation, f'the scheme "{scheme}" is stable at any time step')
-    elif scheme not in LIMITS:
+    elif math.isnan(limit):
         yield not_made(name, equation, f'no limit is known of the scheme "{scheme}"')
     else:
         length = float(np.nanmax(np.abs(case.now["trailing_edge"] - case.now["leading_edge"])))
         number = case.resolution.time_step * scene.foundation.damping * length / scene.support.mass
-        yield check(case, name, number, LIMITS[scheme], equation, "dt C L/M", f"scheme {scheme}")
+        yield check(case, name, number, limit, equation, "dt C L/M", f"scheme {scheme}")

@@ -13,10 +13,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from kvtheory.checks.fitting import Bench, Curves, Fit, best, scaled_scene
 from kvtheory.checks.rules import RULES, run
 from kvtheory.checks.theory import CURVES
-from kvtheory.checks.trials import Bench, Curves, Fit, best, scaled_scene
-from kvtheory.scene.model import Fixed
 
 Array = NDArray[np.float64]
 
@@ -226,13 +225,13 @@ def rules(bench: Bench) -> Iterator[Trial]:
     """Break the rules of contact."""
     theory = bench.theory
     scene, static, tau = theory.scene, theory.static, theory.scene.foundation.retardation_time
-    half, end = static["static_half_length"], max(float(bench.time[-1]), 1e-12) / tau
+    half, end = static.half_length, max(float(bench.time[-1]), 1e-12) / tau
 
     def drive(s: Array) -> Array:
         return np.asarray(theory.at(s * tau)["velocity"] * tau / half)
 
-    fixed = isinstance(scene.support, Fixed)
-    epsilon, kappa = (None, 0.0) if fixed else (static["inertia_number"], static["support_number"])
+    epsilon = None if scene.held else static.inertia_number
+    kappa = 0.0 if scene.held else static.support_number
     s, right = run(RULES["right"], drive, epsilon, kappa, end)
     for rule, (name, text) in WRONG_RULES.items():
         _, wrong = run(RULES[rule], drive, epsilon, kappa, end)

@@ -1,6 +1,6 @@
 """A check, made or not."""
 
-from kvtheory.checks.case import Case
+from kvtheory.checks.comparison_case import Case
 from kvtheory.results.comparison import Check
 
 

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from kvtheory.checks.allowances import extreme
-from kvtheory.checks.case import Case
+from kvtheory.checks.comparison_case import Case
 from kvtheory.checks.making import check, not_made
 from kvtheory.checks.relaxation import FEWEST, fit, uncertainty
 from kvtheory.results.comparison import Check
@@ -30,7 +30,7 @@ def slow_constant(case: Case) -> Iterator[Check]:
         return
     steady = case.theory.steady_state.depth
     off = np.abs(case.now["depth"] / steady - 1.0)
-    late = np.flatnonzero((off > NEAR) | (time < case.theory.last_change))
+    late = np.flatnonzero((off > NEAR) | (time < case.theory.scene.drive.last_change))
     part = slice(int(late[-1]) + 1 if late.size else 0, None)
     use = np.flatnonzero(off[part] > FAR) + part.start
     if use.size < FEWEST:
@@ -53,7 +53,7 @@ def fast_constant(case: Case) -> Iterator[Check]:
         rates is None
         or rates.oscillates
         or "normal_force" not in columns
-        or 0.0 not in case.theory.jumps
+        or 0.0 not in case.theory.scene.drive.jumps
     ):
         why = (
             "a fixed indenter has none" if rates is None else "there is no such decay in this scene"
@@ -101,11 +101,15 @@ def steady_limit(case: Case) -> Iterator[Check]:
     name, equation = "steady limit", "F1"
     theory, time = case.theory, case.series.time
     if theory.rates is None:
-        memory = 0.0 if theory.last_change == 0.0 else theory.scene.foundation.retardation_time
+        memory = (
+            0.0
+            if theory.scene.drive.last_change == 0.0
+            else theory.scene.foundation.retardation_time
+        )
         slow = memory
     else:
         slow = 1.0 / (1.0 / theory.rates.slow).real
-    settled = theory.last_change + SETTLED * slow
+    settled = theory.scene.drive.last_change + SETTLED * slow
     late = time > max(settled, 0.75 * time[-1])
     if late.sum() < 3:
         yield not_made(

@@ -8,14 +8,14 @@ import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
-from itertools import pairwise
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from kvtheory.scene.model import Fixed, Scene, Suspended
-from kvtheory.scene.numbers import dimensionless_numbers
+from kvtheory.results.table import scales
+from kvtheory.scene.model import Scene
+from kvtheory.scene.static_state import StaticState
 
 Array = NDArray[np.float64]
 Curves = Mapping[str, Array]
@@ -24,6 +24,10 @@ CURVES = (
     *("velocity", "depth", "depth_rate", "normal_force", "friction_force"),
     *("leading_edge", "trailing_edge", "peak_pressure"),
 )
+
+
+NO_VELOCITY = 1e-9
+"""In units of a_0/tau: a slower drive does not move."""
 
 
 @dataclass(frozen=True)
@@ -54,43 +58,21 @@ class Theory:
     steady: Callable[..., Any]
 
     @cached_property
-    def static(self) -> Mapping[str, float]:
-        """Depth, half length and load at rest, and the numbers of the scene, in SI."""
-        return dimensionless_numbers(self.scene)
+    def static(self) -> StaticState:
+        """The scene at rest, and its numbers."""
+        return StaticState.of(self.scene)
 
     @cached_property
     def scales(self) -> Mapping[str, float]:
         """What a difference is compared with: the static state, and its products."""
-        depth, half = self.static["static_depth"], self.static["static_half_length"]
-        load, tau = self.static["static_load"], self.scene.foundation.retardation_time
-        return {
-            "velocity": max(abs(self.top_velocity), half / tau * 1e-9),
-            "depth": depth,
-            "depth_rate": depth / tau,
-            "normal_force": load,
-            "friction_force": load * depth / half,
-            "leading_edge": half,
-            "trailing_edge": half,
-            "peak_pressure": self.scene.foundation.stiffness * depth,
-        }
+        slowest = NO_VELOCITY * self.static.velocity
+        return {**scales(self.static), "velocity": max(self.top_speed, slowest)}
 
-    @property
-    def top_velocity(self) -> float:
-        """The velocity of the largest magnitude in the drive, in m/s."""
-        return max((velocity for _, velocity in self.scene.drive.points), key=abs)
-
-    @property
-    def jumps(self) -> tuple[float, ...]:
-        """The times in s at which the drive jumps."""
-        points = self.scene.drive.points
-        first = (0.0,) if points[0][1] != 0.0 else ()
-        times = [time for time, _ in points]
-        return (*first, *(b for a, b in pairwise(times) if a == b))
-
-    @property
-    def last_change(self) -> float:
-        """The time in s after which the drive keeps its velocity."""
-        return self.scene.drive.points[-1][0]
+    @cached_property
+    def top_speed(self) -> float:
+        """The largest |V| of the drive, in m/s."""
+        drive, end = self.scene.drive, self.scene.run.duration
+        return drive.motion(end, self.static.velocity).highest_speed
 
     @cached_property
     def steady_state(self) -> Any:
@@ -101,7 +83,7 @@ class Theory:
     def rates(self) -> Rates | None:
         """The rates at the steady state; None if the indenter cannot move."""
         support, foundation = self.scene.support, self.scene.foundation
-        if isinstance(support, Fixed):
+        if self.scene.held:
             return None
         state = self.steady_state
         a, l_r = (
@@ -109,7 +91,7 @@ class Theory:
             abs(self.scene.drive.final_velocity) * foundation.retardation_time,
         )
         x_te = a * a / (l_r + math.hypot(a, l_r))
-        spring = support.stiffness if isinstance(support, Suspended) else 0.0
+        spring = support.spring
         stiffness = foundation.stiffness * (math.hypot(a, l_r) + a) + spring
         damping = foundation.damping * (x_te + a)
         root = complex(damping * damping - 4.0 * support.mass * stiffness) ** 0.5
@@ -132,12 +114,12 @@ class Theory:
     @cached_property
     def rest(self) -> Mapping[str, float]:
         """The state before t = 0."""
-        depth, half = self.static["static_depth"], self.static["static_half_length"]
+        depth, half = self.static.depth, self.static.half_length
         return {
             "velocity": 0.0,
             "depth": depth,
             "depth_rate": 0.0,
-            "normal_force": self.static["static_load"],
+            "normal_force": self.static.load,
             "friction_force": 0.0,
             "leading_edge": -half,
             "trailing_edge": half,

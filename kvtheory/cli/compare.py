@@ -60,7 +60,7 @@ def compare(
 
     Exit status: 0 it agrees, 1 it disagrees, 2 bad input.
     """
-    from kvtheory.api.cross_validation import compare as hold_against
+    from kvtheory.api._compare import compare as hold_against
     from kvtheory.scene import load_scene
 
     check_output("--report", report, [".html"])

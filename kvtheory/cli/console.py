@@ -11,17 +11,6 @@ from typing import Any
 
 import click
 
-SHOWN_UNITS = {
-    "s": ("ms", 1e3),
-    "m": ("mm", 1e3),
-    "N/m": ("N/mm", 1e-3),
-    "Pa": ("MPa", 1e-6),
-    "m/s": ("mm/s", 1e3),
-    "1": ("", 1.0),
-}
-"""Units of the tables for people, as in the paper; JSON and CSV are in SI."""
-
-
 PATIENCE = 1.0
 """Seconds before a progress bar is shown."""
 BAR_LENGTH = 1000
@@ -108,6 +97,8 @@ def split(text: str) -> list[str]:
 
 def shown(value: float, unit: str) -> tuple[str, str]:
     """Return an SI value as text in the unit of the tables, and that unit."""
+    from kvtheory.results import SHOWN_UNITS
+
     name, factor = SHOWN_UNITS[unit]
     return ("-" if math.isnan(value) else f"{value * factor:.6g}"), name
 
@@ -131,7 +122,7 @@ def print_json(result: Any) -> None:
 
 def print_series(result: Any, *, whole: bool) -> None:
     """Print a time series for people: every row, or about twenty of them with both ends."""
-    from kvtheory.results import TRANSIENT_UNITS
+    from kvtheory.results import SHOWN_UNITS, TRANSIENT_UNITS
 
     count, most = result.time.size, 21
     rows = (

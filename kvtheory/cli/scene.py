@@ -1,11 +1,15 @@
 """`kvtheory scene`: a template, or a check of a scene file."""
 
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 import click
 
 from kvtheory.cli.console import print_json, print_table, scene_command
 from kvtheory.cli.group import main
+
+if TYPE_CHECKING:
+    from kvtheory.scene import Scene
 
 
 @scene_command(
@@ -19,8 +23,9 @@ from kvtheory.cli.group import main
 )
 def scene(scene: str | None, overrides: Sequence[str], as_json: bool, support: str | None) -> None:
     """Print a commented scene template, or check SCENE and print its dimensionless numbers."""
-    from kvtheory.scene import Parabola, load_scene, template
-    from kvtheory.scene.numbers import dimensionless_numbers, quantities_by_name
+    from kvtheory.scene import load_scene, template
+    from kvtheory.scene.requirements import lacks_parabola
+    from kvtheory.scene.static_state import StaticState
 
     if support and (scene or overrides or as_json):
         raise ValueError(
@@ -30,8 +35,8 @@ def scene(scene: str | None, overrides: Sequence[str], as_json: bool, support: s
         click.echo(template(support or "dead-weight"))
         return
     checked = load_scene(scene, overrides)
-    numbers = dimensionless_numbers(checked) if isinstance(checked.indenter, Parabola) else {}
-    quantities = {**quantities_by_name(checked), **numbers}
+    numbers = {} if lacks_parabola(checked) else StaticState.of(checked).named()
+    quantities = {**_by_plain_name(checked), **numbers}
     if as_json:
         kinds = {"shape": checked.indenter.shape, "support": checked.support.kind}
         print_json({**kinds, **quantities})
@@ -41,3 +46,13 @@ def scene(scene: str | None, overrides: Sequence[str], as_json: bool, support: s
     print_table(("quantity", "value in SI"), rows)
     if not numbers:
         click.echo("\nThe dimensionless numbers are defined for a parabola only.")
+
+
+def _by_plain_name(scene: "Scene") -> dict[str, float]:
+    """Return the quantities of a scene in SI, the spring of the support as `support_stiffness`."""
+    values = scene.values()
+    named = {
+        key.replace(".", "_") if key == "support.stiffness" else key.split(".")[1]: value
+        for key, value in values.items()
+    }
+    return {**named, "damping": scene.foundation.damping}

@@ -8,12 +8,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from kvtheory.ladder import slow_motion, slow_start
 from kvtheory.ladder.climbing import Answer, Judgement, Request, Rung
+from kvtheory.models.slow_manifold import motion as slow_motion
+from kvtheory.models.slow_manifold import start as slow_start
 from kvtheory.results import TRANSIENT_UNITS, Certificate, Simulation, SteadyState, Transient
-from kvtheory.scene.indenters import Parabola
-from kvtheory.scene.model import Fixed, Scene
-from kvtheory.scene.numbers import dimensionless_numbers
+from kvtheory.results.table import scales
+from kvtheory.scene.model import Scene
+from kvtheory.scene.requirements import lacks_parabola
+from kvtheory.scene.static_state import StaticState
 
 Array = NDArray[np.float64]
 
@@ -76,9 +78,7 @@ def rungs(models: Models) -> tuple[Rung, ...]:
 
 
 def _parabola(scene: Scene, request: Request) -> Judgement:
-    if isinstance(scene.indenter, Parabola):
-        return Judgement()
-    return Judgement(f'holds for the parabola only, not for "{scene.indenter.shape}"')
+    return Judgement(lacks_parabola(scene))
 
 
 def _anything(scene: Scene, request: Request) -> Judgement:
@@ -87,21 +87,12 @@ def _anything(scene: Scene, request: Request) -> Judgement:
     return Judgement()
 
 
-def _constant_velocity(scene: Scene) -> float | None:
-    """Return the velocity from t = 0 on, if it is one."""
-    if scene.drive.function is not None:
-        return None
-    first, *others = (velocity for _, velocity in scene.drive.points)
-    return first if all(velocity == first for velocity in others) else None
-
-
 def _steady(scene: Scene, request: Request) -> Judgement:
     """Admit what is steady at once: a fixed indenter (Eqs. 26, 33 with d' = 0), and rest."""
-    reason = _parabola(scene, request).reason
-    velocity = _constant_velocity(scene)
-    if velocity is None:
+    reason = lacks_parabola(scene)
+    if not scene.drive.constant:
         reason = reason or "the drive changes"
-    elif velocity != 0.0 and not isinstance(scene.support, Fixed):
+    elif scene.drive.final_velocity != 0.0 and not scene.held:
         reason = reason or "the indenter rises"
     return Judgement(reason, math.nan if reason else 0.0)
 
@@ -119,9 +110,9 @@ def _at_once(state: SteadyState, scene: Scene, request: Request) -> Answer:
         "peak_pressure": state.peak_pressure,
     }
     values = {name: np.full(times.size, value) for name, value in constant.items()}
-    scales = _scales(scene)
+    measures = scales(StaticState.of(scene))
     rounding = max(state.certificate.relative_error.values())
-    errors = {name: rounding * abs(constant[name]) / scales[name] for name in SOLVED}
+    errors = {name: rounding * abs(constant[name]) / measures[name] for name in SOLVED}
     statement = state.certificate.statement + RELATIVE_TO
     certificate = Certificate(state.certificate.kind, statement, errors)
     return _asked({"time": times, **values}, certificate, request, state)
@@ -129,13 +120,14 @@ def _at_once(state: SteadyState, scene: Scene, request: Request) -> Answer:
 
 def _slow(scene: Scene, request: Request) -> Judgement:
     """Judge by scalars: the ratio of the rates, the layer at the first time, the first delay."""
-    reason = _parabola(scene, request).reason
-    velocity = _constant_velocity(scene)
-    if reason or velocity is None or isinstance(scene.support, Fixed):
-        return Judgement(reason or ("the drive changes" if velocity is None else "it cannot rise"))
-    numbers = dimensionless_numbers(scene)
+    reason = lacks_parabola(scene)
+    if reason or not scene.drive.constant or scene.held:
+        return Judgement(
+            reason or ("it cannot rise" if scene.drive.constant else "the drive changes")
+        )
+    at_rest = StaticState.of(scene)
     given = slow_start.start(
-        abs(numbers["drive_number"]), numbers["inertia_number"], numbers["support_number"]
+        abs(at_rest.drive_number), at_rest.inertia_number, at_rest.support_number
     )
     if given.ratio > slow_motion.LARGEST_RATIO:
         return Judgement(f"inertia counts: slow over fast rate {given.ratio:.2g}")
@@ -150,7 +142,7 @@ def _slow(scene: Scene, request: Request) -> Judgement:
 
 
 def _follow(scene: Scene, request: Request, given: slow_start.Start) -> Answer:
-    times, scales = _times(scene, request), _scales(scene)
+    times, measures = _times(scene, request), scales(StaticState.of(scene))
     found = slow_motion.follow(given, times / scene.foundation.retardation_time, request.rtol)
     if found.ratio > slow_motion.LARGEST_RATIO:
         raise ArithmeticError(f"inertia counts: slow over fast rate {found.ratio:.2g}")
@@ -158,7 +150,8 @@ def _follow(scene: Scene, request: Request, given: slow_start.Start) -> Answer:
     side = -1.0 if velocity < 0.0 else 1.0
     odd = ("friction_force", "leading_edge", "trailing_edge")
     values = {
-        name: (side if name in odd else 1.0) * scales[name] * found.values[name] for name in SOLVED
+        name: (side if name in odd else 1.0) * measures[name] * found.values[name]
+        for name in SOLVED
     }
     errors = {name: float(np.max(found.errors[name])) for name in SOLVED}
     statement = (
@@ -187,7 +180,7 @@ def _elements(elements: Callable[..., Simulation], scene: Scene, request: Reques
     A certificate compares with half as many elements, and both may be too coarse to see what is fast:
     what a run differs from the coarser one before it counts too, divided by the ratio of their elements.
     """
-    from kvtheory.point_elements.model import SAMPLES, Model
+    from kvtheory.models.elements.model import SAMPLES, Model
 
     length = SAMPLES * Model.of(scene).spacing
     count, finer, before = ELEMENTS, math.nan, None
@@ -195,7 +188,7 @@ def _elements(elements: Callable[..., Simulation], scene: Scene, request: Reques
         result = elements(scene, per_length=count / length, at=request.times)
         answer = _asked(result, result.certificate, request, result)
         if before is not None and request.times is not None:
-            answer = _compared(answer, before, finer, _scales_of_elements(scene))
+            answer = _compared(answer, before, finer, scales(Model.of(scene).at_rest))
         error = max(answer.certificate.relative_error[name] for name in request.quantities)
         enough = error <= request.rtol and before is not None
         finer = min(max(SPARE * math.sqrt(error / request.rtol), LEAST_FINER), MOST_FINER)
@@ -235,31 +228,3 @@ def _times(scene: Scene, request: Request) -> Array:
     if request.times is None:
         return np.linspace(0.0, scene.run.duration, OWN_TIMES)
     return np.asarray(request.times, dtype=float)
-
-
-def _scales_of_elements(scene: Scene) -> dict[str, float]:
-    """Return the scales for any shape, whose static state is a matter of the elements."""
-    from kvtheory.point_elements.model import Model
-
-    model = Model.of(scene)
-    return _relative_to(scene, model.half_length, model.depth, model.load)
-
-
-def _scales(scene: Scene) -> dict[str, float]:
-    """Return what the certificate of each quantity is relative to, for a parabola."""
-    numbers = dimensionless_numbers(scene)
-    return _relative_to(
-        scene, numbers["static_half_length"], numbers["static_depth"], numbers["static_load"]
-    )
-
-
-def _relative_to(scene: Scene, a_0: float, delta_0: float, W_0: float) -> dict[str, float]:
-    return {
-        "depth": delta_0,
-        "depth_rate": delta_0 / scene.foundation.retardation_time,
-        "normal_force": W_0,
-        "friction_force": W_0 * delta_0 / a_0,
-        "leading_edge": a_0,
-        "trailing_edge": a_0,
-        "peak_pressure": scene.foundation.stiffness * delta_0,
-    }

@@ -3,11 +3,11 @@
 from collections.abc import Callable
 from typing import Any
 
-from kvtheory.ladder import asymptote as asy
 from kvtheory.ladder.climbing import Answer, Judgement, Request, Rung
+from kvtheory.models.steady import asymptote_bounds as asy
 from kvtheory.results import Certificate, SteadyState
-from kvtheory.scene.indenters import Parabola
 from kvtheory.scene.model import Scene
+from kvtheory.scene.requirements import lacks_parabola
 
 Steady = Callable[..., SteadyState]
 """`kvtheory.steady`."""
@@ -38,9 +38,7 @@ def rungs(steady: Steady) -> tuple[Rung, ...]:
 
 
 def _parabolic(scene: Scene, request: Request) -> Judgement:
-    if not isinstance(scene.indenter, Parabola):
-        return Judgement(f'holds for the parabola only, not for "{scene.indenter.shape}"')
-    return Judgement(error=BEST["exact"])
+    return Judgement(lacks_parabola(scene), BEST["exact"])
 
 
 def _any_shape(scene: Scene, request: Request) -> Judgement:
@@ -48,8 +46,8 @@ def _any_shape(scene: Scene, request: Request) -> Judgement:
 
 
 def _far(scene: Scene, request: Request) -> Judgement:
-    if not isinstance(scene.indenter, Parabola):
-        return Judgement(f'holds for the parabola only, not for "{scene.indenter.shape}"')
+    if lacking := lacks_parabola(scene):
+        return Judgement(lacking)
     choice = asy.choose(asy.enclosure_of(scene), request.quantities, request.rtol)
     return Judgement(error=choice.error, known=choice)
 

@@ -6,7 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from kvtheory.plots.style import BLACK, BLUE, GREEN, RED, STYLE
+from kvtheory.plots.files import save_picture
+from kvtheory.plots.style import BLACK, BLUE, GREEN, RED
 from kvtheory.results import Check, Comparison
 
 CURVES = {
@@ -141,12 +142,4 @@ def save_comparison_plot(comparison: Comparison, path: Path) -> None:
     ValueError
         If matplotlib does not know the suffix.
     """
-    import matplotlib as mpl
-
-    from kvtheory.export import replace_file
-
-    with mpl.rc_context({**STYLE}):
-        figure = draw_comparison(comparison)
-        if path.suffix[1:] not in figure.canvas.get_supported_filetypes():
-            raise ValueError(f'--plot "{path}": expected a name that ends in .png, .svg or .pdf')
-        replace_file(path, figure.savefig)
+    save_picture(lambda: draw_comparison(comparison), path)

@@ -1,6 +1,5 @@
 """The atlas of failures as one HTML file: an entry, its numbers and its picture; nothing is loaded."""
 
-import io
 import math
 import re
 from collections.abc import Sequence
@@ -9,7 +8,8 @@ from pathlib import Path
 from typing import Any
 
 from kvtheory.charts.entry import Finding, Picture
-from kvtheory.plots.style import BLACK, BLUE, RED, STYLE
+from kvtheory.plots.files import inline, save_page, template
+from kvtheory.plots.style import BLACK, BLUE, RED
 
 LOOKS: dict[str, dict[str, Any]] = {
     "wrong": {"color": RED, "linestyle": "-", "label": "as written"},
@@ -19,77 +19,10 @@ LOOKS: dict[str, dict[str, Any]] = {
 """How each role is drawn; on the page the numbers have the same colours."""
 SIZE = 4.6, 2.7
 
-_PAGE = """<!DOCTYPE html>
-<html lang="en">
-<head>
-<meta charset="utf-8">
-<meta name="viewport" content="width=device-width, initial-scale=1">
-<title>Where methods fail</title>
-<style>
-body {{ font: 16px/1.5 system-ui, sans-serif; color: #222;
-  margin: 2rem auto; max-width: 66rem; padding: 0 1rem; }}
-h1 {{ font-size: 1.7rem; margin-bottom: .3rem; }}
-h2 {{ font-size: 1.2rem; margin: 0 0 .3rem; }}
-sub {{ font-size: .7em; line-height: 0; }}
-nav {{ columns: 17rem; margin: 1.5rem 0; }}
-nav a {{ display: block; color: #0072b2; text-decoration: none; padding: .1rem 0; }}
-nav a:hover {{ text-decoration: underline; }}
-article {{ border-top: 1px solid #ddd; padding: 1.8rem 0 .8rem; display: grid; gap: 0 2rem;
-  grid-template-columns: minmax(0, 1fr) minmax(0, 1fr); align-items: start; }}
-article > * {{ min-width: 0; }}
-.scene, .note {{ color: #555; }}
-.scene {{ margin: 0 0 .6rem; }}
-dl {{ margin: .8rem 0; }}
-dt {{ font-weight: 600; font-size: .85rem; color: #555; margin-top: .5rem; }} dd {{ margin: 0; }}
-.numbers {{ display: flex; gap: .5rem; margin: 0 0 .6rem; }}
-.numbers div {{ flex: 1; border-top: .25rem solid; padding: .4rem .1rem 0; min-width: 0; }}
-.numbers span {{ display: block; font-size: .8rem; color: #555; }}
-.numbers b {{ font-size: 1rem; font-variant-numeric: tabular-nums; }}
-.wrong {{ border-color: #d55e00 !important; }}
-.right {{ border-color: #000 !important; }}
-.package {{ border-color: #0072b2 !important; }}
-svg {{ width: 100%; height: auto; display: block; }}
-.said {{ background: #f6f6f6; padding: .6rem .8rem; font: .85rem/1.45 ui-monospace, monospace;
-  overflow-wrap: anywhere; grid-column: 1 / -1; margin: .6rem 0; }}
-code {{ font-size: .85em; background: #f6f6f6; padding: .1rem .3rem; }}
-@media (max-width: 46rem) {{ article {{ display: block; }} }}
-@media print {{ body {{ margin: 0; font-size: 10pt; }} article {{ break-inside: avoid; }} }}
-</style>
-</head>
-<body>
-<h1>Where methods fail</h1>
-<p class="note">Each entry is a scene in which a method that looks right gives a wrong number, computed
-anew for this page beside the right number and that of this package. The right number is a formula, or
-comes from a method that shares no code with the one that is shown for the package.</p>
-<nav>
-{contents}
-</nav>
-{articles}
-<p class="note">After Nakano and Kono (2020), doi:10.3389/fmech.2020.00038; the equation numbers are
-theirs, facts F are those of the derivations. Made by kvtheory.</p>
-</body>
-</html>
-"""
-_ARTICLE = """<article id="{key}">
-<div>
-<h2>{title}</h2>
-<p class="scene">{scene}</p>
-<div class="numbers">{numbers}</div>
-<dl><dt>Why</dt><dd>{why}</dd>
-<dt>How to notice</dt><dd>{notice}</dd>
-<dt>What this package does</dt><dd>{package}</dd></dl>
-</div>
-<figure style="margin:0">{picture}
-<figcaption class="note"><code>kvtheory chart failures --only {key}</code></figcaption></figure>
-{said}</article>"""
-
 
 def save_failures(findings: Sequence[Finding], path: Path) -> None:
     """Write entries of the atlas as one self-contained HTML file."""
-    from kvtheory.export import replace_file
-
-    page = failures_page(findings)
-    replace_file(path, lambda part: part.write_text(page, encoding="utf-8"))
+    save_page(failures_page(findings), path)
 
 
 def failures_page(findings: Sequence[Finding]) -> str:
@@ -97,7 +30,8 @@ def failures_page(findings: Sequence[Finding]) -> str:
     contents = "\n".join(
         f'<a href="#{found.entry.key}">{escape(found.entry.title)}</a>' for found in findings
     )
-    return _PAGE.format(contents=contents, articles="\n".join(map(_article, findings)))
+    articles = "\n".join(map(_article, findings))
+    return template("failures.html").format(contents=contents, articles=articles)
 
 
 def shown(found: Finding, role: str) -> str:
@@ -135,23 +69,20 @@ def _article(found: Finding) -> str:
         for name in ("key", "title", "scene", "why", "notice", "package")
     }
     texts["scene"] += f". Asked for: {entry.quantity}."
-    return _ARTICLE.format(numbers=numbers, picture=_svg(found), said=said, **texts)
+    article = template("failure.html").strip()
+    return article.format(numbers=numbers, picture=_svg(found), said=said, **texts)
 
 
 def _svg(found: Finding) -> str:
-    import matplotlib as mpl
     from matplotlib.figure import Figure
 
-    with mpl.rc_context({**STYLE}):
+    def draw() -> Figure:
         figure = Figure(figsize=SIZE, layout="constrained")
         plot_failure(figure.subplots(), found.outcome.picture)
-        text = io.StringIO()
-        figure.savefig(text, format="svg", metadata={"Date": None})
-    drawn = text.getvalue()
+        return figure
+
     # So that no two pictures of the page share an id.
-    return re.sub(
-        r'(\bid="|href="#|url\(#)', rf"\g<1>{found.entry.key}-", drawn[drawn.index("<svg") :]
-    )
+    return re.sub(r'(\bid="|href="#|url\(#)', rf"\g<1>{found.entry.key}-", inline(draw))
 
 
 def _text(words: str) -> str:

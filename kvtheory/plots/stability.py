@@ -14,7 +14,7 @@ from kvtheory.charts.stability import CLASSES, Map
 from kvtheory.plots.charts import save_chart
 from kvtheory.plots.style import BLACK, BLUE
 from kvtheory.scene.model import Scene
-from kvtheory.scene.numbers import dimensionless_numbers
+from kvtheory.scene.static_state import StaticState
 
 COLOURS = "#eef3f7", "#f6c9a3", "#d55e00"
 """Of the classes."""
@@ -62,9 +62,7 @@ def draw_stability(velocity_maps: Sequence[Map], step_maps: Sequence[Map]) -> Fi
         ax.set(title=SHORT[found.scheme], xlabel=r"drive velocity $V$ [mm/s]")
     for ax, found in zip(rows[1], step_maps, strict=True):
         plot_stability(ax, found)
-        ax.axvline(
-            dimensionless_numbers(Scene())["drive_number"], color=BLUE, linewidth=0.9, alpha=0.7
-        )
+        ax.axvline(StaticState.of(Scene()).drive_number, color=BLUE, linewidth=0.9, alpha=0.7)
         ax.set(xlabel=r"drive number $\lambda$")
     rows[0][0].set_ylabel(r"retardation time $\tau$ [s]")
     rows[1][0].set_ylabel(r"step $\Delta t$ / limit")

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kvtheory.plots.style import LABELS, STYLE
-from kvtheory.scene.fields import nearest
+from kvtheory.scene.quantities import nearest
 from kvtheory.sweeps.result import Sweep
 
 Array = NDArray[np.float64]

@@ -7,7 +7,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from kvtheory.plots.style import BLUE, STYLE
+from kvtheory.plots.files import save_picture
+from kvtheory.plots.style import BLUE
 from kvtheory.results import Transient
 
 TRANSIENT_ROWS = (
@@ -62,14 +63,11 @@ def save_transient_plot(result: Transient, path: Path) -> None:
     ValueError
         If matplotlib does not know the suffix.
     """
-    import matplotlib as mpl
     from matplotlib.figure import Figure
 
-    from kvtheory.export import replace_file
-
-    with mpl.rc_context({**STYLE}):
+    def draw() -> Figure:
         figure = Figure(figsize=(5.0, 6.4), layout="constrained")
-        if path.suffix[1:] not in figure.canvas.get_supported_filetypes():
-            raise ValueError(f'--plot "{path}": expected a name that ends in .png, .svg or .pdf')
         plot_transient(figure.subplots(4, 1, sharex=True), result, color=BLUE)
-        replace_file(path, figure.savefig)
+        return figure
+
+    save_picture(draw, path)

@@ -5,20 +5,6 @@ from typing import Any
 
 from kvtheory.results.certificate import Certificate, Value, record
 
-STEADY_UNITS = {
-    "depth": "m",
-    "half_length": "m",
-    "retardation_length": "m",
-    "leading_edge": "m",
-    "trailing_edge": "m",
-    "load": "N/m",
-    "friction_force": "N/m",
-    "friction_coefficient": "1",
-    "peak_pressure": "Pa",
-    "dissipated_in_contact": "1",
-}
-"""The quantities of steady sliding and their units, in the order in which they are shown."""
-
 
 @dataclass(frozen=True)
 class SteadyState:

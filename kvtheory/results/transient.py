@@ -5,19 +5,6 @@ from typing import Any, NamedTuple
 
 from kvtheory.results.certificate import Certificate, Value, record
 
-TRANSIENT_UNITS = {
-    "time": "s",
-    "velocity": "m/s",
-    "depth": "m",
-    "depth_rate": "m/s",
-    "normal_force": "N/m",
-    "friction_force": "N/m",
-    "leading_edge": "m",
-    "trailing_edge": "m",
-    "peak_pressure": "Pa",
-}
-"""The quantities of a transient and their units, `time` first."""
-
 
 class Event(NamedTuple):
     """What happened to the contact, and when (in s)."""

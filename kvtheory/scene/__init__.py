@@ -1,6 +1,5 @@
 """What is modelled: scenes, their files, and units at the edge."""
 
-from kvtheory.scene.fields import SceneError
 from kvtheory.scene.files import load_scene, template, to_toml
 from kvtheory.scene.indenters import Circle, Indenter, Parabola, PowerLaw, Profile, Wedge
 from kvtheory.scene.model import (
@@ -13,6 +12,7 @@ from kvtheory.scene.model import (
     Support,
     Suspended,
 )
+from kvtheory.scene.quantities import SceneError
 
 __all__ = [
     "Circle",

@@ -3,11 +3,14 @@
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
 
-from kvtheory.scene.fields import Quantity, SceneError, convert, problem, settle
+from kvtheory.scene.base_motion import BaseMotion
+from kvtheory.scene.quantities import Quantity, SceneError, convert, problem, settle
 
 VELOCITY = Quantity(
     "m/s", "V, drive velocity of the foundation, from rest to this at t = 0", -math.inf, True
@@ -17,6 +20,8 @@ TIME = Quantity("s", "time", 0.0, False)
 
 LEAST_TOLERANCE = 1e-13
 """Of a drive that is a function: polynomials are not closer to it than rounding."""
+ON_LINE = 4.0 * 2.0**-52
+"""Of the velocity: a point of a history as near to the line between its neighbours says nothing."""
 
 
 @dataclass(frozen=True)
@@ -58,14 +63,22 @@ class Drive:
             object.__setattr__(self, "history", _history(self.history))
         object.__setattr__(self, "breaks", _breaks(self))
 
-    @property
+    @cached_property
     def points(self) -> tuple[tuple[float, float], ...]:
-        """The points (time, velocity) of a history, or the one point of a velocity; see `history`.
+        """The points (time, velocity) that matter, in SI.
+
+        A velocity has one; of a history, those are left out that lie on the line between their
+        neighbours, or repeat the last velocity.
 
         Raises
         ------
         SceneError
             If the drive is a function.
+
+        Examples
+        --------
+        >>> Drive(history=[(0.0, 0.1), (1.0, 0.1), (1.0, 0.2), (2.0, 0.2)]).points
+        ((0.0, 0.1), (1.0, 0.1), (1.0, 0.2))
         """
         if self.function is not None:
             raise SceneError(
@@ -74,12 +87,58 @@ class Drive:
                     "velocity or a history here"
                 ]
             )
-        return ((0.0, self.velocity),) if self.history is None else tuple(self.history)  # type: ignore[return-value]
+        if self.history is None:
+            return ((0.0, self.velocity),)  # type: ignore[return-value]
+        return _without_redundant(self.history)
 
     @property
     def final_velocity(self) -> float:
         """The velocity that the drive ends with, in m/s; a function has none, and raises SceneError."""
         return self.points[-1][1]
+
+    @property
+    def constant(self) -> bool:
+        """Whether the velocity is one and the same from t = 0 on; that of a function is taken to vary."""
+        return self.function is None and len(self.points) == 1
+
+    @property
+    def jumps(self) -> tuple[float, ...]:
+        """The times in s at which the velocity jumps, t = 0 among them; of a function, they are `breaks`."""
+        points = self.points
+        first = (0.0,) if points[0][1] != 0.0 else ()
+        return (*first, *(b for (a, _), (b, _) in pairwise(points) if a == b))
+
+    @property
+    def changes(self) -> tuple[float, ...]:
+        """The times in s at which the velocity jumps or has a kink, in order, t = 0 among them."""
+        times = self.breaks if self.function is not None else (time for time, _ in self.points)
+        return tuple(sorted({0.0, *times}))
+
+    @property
+    def last_change(self) -> float:
+        """The time in s after which the velocity stays the same; a function has none, and raises."""
+        return self.points[-1][0]
+
+    def motion(self, end: float, least: float) -> BaseMotion:
+        """Return V(t) and Y(t) up to the time `end` (s), as polynomials.
+
+        Parameters
+        ----------
+        end
+            Until when; a history that is longer is given whole.
+        least
+            A speed in m/s below which a function need not be followed relative to its own value: a_0/tau.
+
+        Raises
+        ------
+        ValueError
+            If a function is not smooth between its breaks, or not finite.
+        """
+        if self.function is None:
+            return BaseMotion.from_points(self.points, end)
+        return BaseMotion.from_function(
+            self.called, end, tolerance=0.5 * self.tolerance, breaks=self.breaks, least=least
+        )
 
     def called(self, time: float) -> float:
         """Return what `function` gives at `time` (s), in m/s.
@@ -105,6 +164,31 @@ class Drive:
                 problem(f"drive.function({time!r})", given, "expected a finite number, in m/s")
             )
         return value
+
+
+def _without_redundant(
+    history: Sequence[tuple[float, float]],
+) -> tuple[tuple[float, float], ...]:
+    """Leave out the points of a history that change nothing."""
+    if len(history) > 1 and history[1][0] == history[0][0]:
+        history = history[1:]  # a jump at t = 0 is one from rest
+    kept = [history[0]]
+    for (time, velocity), (later, next_velocity) in pairwise(history[1:]):
+        before, last = kept[-1]
+        if (time, velocity) == kept[-1]:
+            continue
+        size = ON_LINE * max(abs(last), abs(velocity), abs(next_velocity))
+        if later > before:
+            share = (time - before) / (later - before)
+            straight = before < time < later or last == velocity == next_velocity
+            if straight and abs(last + share * (next_velocity - last) - velocity) <= size:
+                continue
+        kept.append((time, velocity))
+    if len(history) > 1:
+        kept.append(history[-1])
+    while len(kept) > 1 and kept[-1][1] == kept[-2][1]:
+        kept.pop()
+    return tuple(kept)
 
 
 def _breaks(drive: Drive) -> tuple[float, ...]:

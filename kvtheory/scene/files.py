@@ -5,7 +5,9 @@ from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
-from kvtheory.scene.fields import (
+from kvtheory.scene.indenters import SHAPES
+from kvtheory.scene.model import SUPPORTS, Drive, Foundation, Run, Scene
+from kvtheory.scene.quantities import (
     Quantity,
     SceneError,
     absent,
@@ -16,8 +18,6 @@ from kvtheory.scene.fields import (
     quantities,
     required,
 )
-from kvtheory.scene.indenters import SHAPES
-from kvtheory.scene.model import SUPPORTS, Drive, Foundation, Run, Scene
 from kvtheory.scene.units import expected
 
 SECTIONS = ("indenter", "foundation", "support", "drive", "run")

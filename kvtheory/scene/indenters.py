@@ -12,7 +12,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from kvtheory.scene.fields import SceneError, problem, quantity, settle
+from kvtheory.scene.quantities import SceneError, problem, quantity, settle
 
 Value = Any
 """A float or an array of floats, in m or dimensionless."""

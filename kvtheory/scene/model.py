@@ -4,12 +4,14 @@ Every field accepts SI numbers, text with a unit (``"10 mm"``) and pint quantiti
 float afterwards.
 """
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
 from kvtheory.scene.drives import Drive
-from kvtheory.scene.fields import (
+from kvtheory.scene.indenters import Indenter, Parabola
+from kvtheory.scene.quantities import (
     SceneError,
     nearest,
     problem,
@@ -17,7 +19,6 @@ from kvtheory.scene.fields import (
     quantity,
     settle,
 )
-from kvtheory.scene.indenters import Indenter, Parabola
 
 STANDARD_GRAVITY = 9.80665
 
@@ -45,6 +46,9 @@ class Fixed:
     """The indenter cannot move (the paper's FI model): a constant depth is given."""
 
     kind: ClassVar[str] = "fixed"
+    mass: ClassVar[float] = math.inf
+    weight: ClassVar[float] = 0.0
+    spring: ClassVar[float] = math.inf
     depth: float = quantity("m", "delta, indentation depth, held constant")
 
     def __post_init__(self) -> None:
@@ -56,6 +60,8 @@ class DeadWeight:
     """The indenter moves freely up and down under its weight (the paper's MI model, Eq. 17)."""
 
     kind: ClassVar[str] = "dead-weight"
+    spring: ClassVar[float] = 0.0
+    depth: ClassVar[None] = None
     mass: float = quantity("kg/m", "M, mass of the indenter per unit width")
     gravity: float = quantity("m/s^2", "g, gravity", default=STANDARD_GRAVITY)
 
@@ -73,6 +79,7 @@ class Suspended:
     """A dead weight on a spring that is relaxed at the static depth."""
 
     kind: ClassVar[str] = "suspended"
+    depth: ClassVar[None] = None
     mass: float = quantity("kg/m", "M, mass of the indenter per unit width")
     stiffness: float = quantity("N/m^2", "k_s, stiffness of the suspension per unit width")
     gravity: float = quantity("m/s^2", "g, gravity", default=STANDARD_GRAVITY)
@@ -85,8 +92,15 @@ class Suspended:
         """M g, in N/m."""
         return self.mass * self.gravity
 
+    @property
+    def spring(self) -> float:
+        """k_s, in N/m^2."""
+        return self.stiffness
+
 
 Support = Fixed | DeadWeight | Suspended
+"""Each answers for `mass` (kg/m), `weight` (N/m) and `spring` (N/m^2) that act on its motion, and for the
+`depth` (m) at which it is held: mass and spring of a fixed one are infinite, a moving one has no depth."""
 SUPPORTS: dict[str, Any] = {cls.kind: cls for cls in (Fixed, DeadWeight, Suspended)}
 
 
@@ -136,6 +150,11 @@ class Scene:
         ]
         if problems:
             raise SceneError(problems)
+
+    @property
+    def held(self) -> bool:
+        """Whether the support holds the indenter at its depth, so that it cannot move."""
+        return math.isinf(self.support.spring)
 
     @classmethod
     def table1(cls, support: str = "dead-weight") -> "Scene":

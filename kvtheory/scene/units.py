@@ -9,7 +9,7 @@ import math
 import re
 from decimal import Decimal
 from fractions import Fraction
-from functools import cache
+from functools import cache, lru_cache
 from numbers import Real
 from typing import Any
 
@@ -110,6 +110,7 @@ def _scaled(number: str | float, written: str, unit: str) -> float:
         return math.copysign(math.inf, approximate)
 
 
+@lru_cache(maxsize=1024)
 def _factor(written: str, unit: str) -> Fraction:
     # The usual ways to write a power: mm3, s-1, m ^ 3, N·m.
     written = re.sub(r"\s*(\^|\*\*)\s*", "^", written.replace("·", "*"))

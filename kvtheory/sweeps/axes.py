@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kvtheory.scene.drives import VELOCITY
-from kvtheory.scene.fields import Quantity, SceneError, convert, nearest, problem, quantities
 from kvtheory.scene.model import Scene
+from kvtheory.scene.quantities import Quantity, SceneError, convert, nearest, problem, quantities
 from kvtheory.sweeps.result import Axis
 
 Array = NDArray[np.float64]

@@ -11,9 +11,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from kvtheory.models.steady.methods import METHODS
+from kvtheory.scene.broadcasting import values
 from kvtheory.scene.model import Drive, Scene
-from kvtheory.scene.over import values
-from kvtheory.steady_state.methods import METHODS
 from kvtheory.sweeps.axes import narrowed, values_at
 from kvtheory.sweeps.columns import Column
 from kvtheory.sweeps.plan import Plan

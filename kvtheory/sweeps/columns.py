@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from kvtheory.results import STEADY_UNITS, TRANSIENT_UNITS
-from kvtheory.scene.fields import SceneError, nearest, problem
+from kvtheory.scene.quantities import SceneError, nearest, problem
 
 SERIES = {name: unit for name, unit in TRANSIENT_UNITS.items() if name != "time"}
 """What a transient is asked for, by its measures or on a grid of times."""

@@ -13,12 +13,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from kvtheory.models.continuum import evaluation
+from kvtheory.models.continuum.maxima import force_maxima
+from kvtheory.models.continuum.solved_scene import FORCE_MAXIMA, SolvedScene, certified
 from kvtheory.results import Certificate
 from kvtheory.scene.model import Scene
 from kvtheory.sweeps.plan import Plan
-from kvtheory.transients import states
-from kvtheory.transients.maxima import force_maxima
-from kvtheory.transients.solution import FORCE_MAXIMA, Solution, certified
 
 Array = NDArray[np.float64]
 
@@ -30,11 +30,11 @@ rounding."""
 SAME = 1e-10
 """Relative; of values as equal as this, as in steady sliding, the first is the largest."""
 ROWS = {
-    "depth": states.DEPTH,
-    "depth_rate": states.RATE,
-    "normal_force": states.NORMAL_FORCE,
-    "friction_force": states.FRICTION_FORCE,
-    "peak_pressure": states.PEAK_PRESSURE,
+    "depth": evaluation.DEPTH,
+    "depth_rate": evaluation.RATE,
+    "normal_force": evaluation.NORMAL_FORCE,
+    "friction_force": evaluation.FRICTION_FORCE,
+    "peak_pressure": evaluation.PEAK_PRESSURE,
 }
 """Rows of the scaled states that are a quantity but for its unit."""
 EDGES = ("leading_edge", "trailing_edge")
@@ -80,10 +80,10 @@ def follow(
 
 
 def largest(
-    solution: Solution,
+    solution: SolvedScene,
     times: Array,
     moments: Array,
-    quantity: Callable[[Solution, Array, Array], Array],
+    quantity: Callable[[SolvedScene, Array, Array], Array],
 ) -> float:
     """Return when a quantity is largest, the first time of it, in s; NaN if it never exists.
 
@@ -111,7 +111,7 @@ def _first_of_largest(values: Array) -> int:
 
 
 def _scaled(
-    name: str, sense: Callable[[Array], Array], solution: Solution, times: Array, moments: Array
+    name: str, sense: Callable[[Array], Array], solution: SolvedScene, times: Array, moments: Array
 ) -> Array:
     """Return a quantity, or a positive multiple of it, which is enough to find where it is largest."""
     if name in ROWS:
@@ -119,18 +119,18 @@ def _scaled(
     return sense(_series(solution, name, times))
 
 
-def _series(solution: Solution, name: str, times: Array) -> Array:
+def _series(solution: SolvedScene, name: str, times: Array) -> Array:
     """Return a quantity in SI, with the history before: at rest, it tells which edge leads."""
     before = solution.natural_times
     before = before[before < times[0]] if name in EDGES else before[:0]
     return np.asarray(solution.series(np.append(before, times))[name])[before.size :]
 
 
-def _value(solution: Solution, name: str, time: float) -> float:
+def _value(solution: SolvedScene, name: str, time: float) -> float:
     return float(_series(solution, name, np.array([time]))[0])
 
 
-def _times(solution: Solution) -> Array:
+def _times(solution: SolvedScene) -> Array:
     """Return dense times in s over the steps of the solver, with those just before each step ends."""
     motion = solution.motion
     starts = np.array(motion.starts)
@@ -141,7 +141,7 @@ def _times(solution: Solution) -> Array:
 
 
 def _peak_to_steady(
-    scene: Scene, solution: Solution, times: Array, moments: Array, steady: Mapping[str, float]
+    scene: Scene, solution: SolvedScene, times: Array, moments: Array, steady: Mapping[str, float]
 ) -> float:
     """Return max |F_x| over |steady F_x|; NaN at rest."""
     friction = abs(steady["friction_force"])
@@ -150,10 +150,10 @@ def _peak_to_steady(
 
 
 def _settling_time(
-    scene: Scene, solution: Solution, times: Array, moments: Array, steady: Mapping[str, float]
+    scene: Scene, solution: SolvedScene, times: Array, moments: Array, steady: Mapping[str, float]
 ) -> float:
     """Return how long after its last change of the drive the friction stays settled; NaN if never."""
-    friction = steady["friction_force"] / solution.units.friction
+    friction = steady["friction_force"] / solution.units.friction_force
 
     def last_outside(moments: Array) -> int:
         outside = np.abs(moments[ROWS["friction_force"]] - friction) > SETTLED * abs(friction)
@@ -171,16 +171,15 @@ def _settling_time(
         if not 0 <= at < ZOOM - 1:
             break
         a, b = inner[at], inner[at + 1]
-    begin = scene.drive.history[-1][0] if scene.drive.history else 0.0
-    return max(float(b) - begin, 0.0)
+    return max(float(b) - scene.drive.last_change, 0.0)
 
 
-def _hops(scene: Scene, solution: Solution, *_: Any) -> float:
+def _hops(scene: Scene, solution: SolvedScene, *_: Any) -> float:
     """Return how often the indenter takes off."""
     return float(sum(event.kind == "take-off" for event in solution.motion.events))
 
 
-def _events(scene: Scene, solution: Solution, *_: Any) -> str:
+def _events(scene: Scene, solution: SolvedScene, *_: Any) -> str:
     """Return the events as JSON, with times in s; the maxima of the forces among them."""
     maxima = zip(force_maxima(solution.motion), FORCE_MAXIMA, strict=True)
     events = sorted([*((e.s, e.kind) for e in solution.motion.events), *maxima], key=lambda e: e[0])

@@ -9,7 +9,7 @@ from collections.abc import Iterator
 from concurrent.futures import Executor, ProcessPoolExecutor, ThreadPoolExecutor
 from contextlib import contextmanager
 
-from kvtheory.scene.fields import nearest
+from kvtheory.scene.quantities import nearest
 from kvtheory.sweeps.engine import Workers
 
 AHEAD = 2

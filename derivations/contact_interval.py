@@ -1,0 +1,226 @@
+r"""For which shapes the contact is one interval, whatever the motion: F9 beyond the parabola.
+
+Let h be even, convex, h' > 0 for x > 0. The contact is one interval for every drive and every motion of
+the indenter if ln h' is concave for x > 0, and for no other shape: a wedge of two slopes shows how.
+"""
+
+from functools import partial
+
+import sympy as sp
+
+from derivations.record import Derivation
+from derivations.step import Proof, tex
+from derivations.symbols import (
+    E,
+    L,
+    R,
+    earlier,
+    excess,
+    inclination,
+    logarithm,
+    ratio_gain,
+    ratio_near,
+    ratio_now,
+    slope_rate,
+    time,
+    travelled,
+    y,
+    zeta,
+)  # fmt: skip
+from derivations.transient_memory import SECTION
+
+m = travelled
+_theorem = partial(Proof, equation=None, section=SECTION)
+
+
+def derive() -> tuple[Derivation, ...]:
+    """Prove F9 for every shape with ln h' concave, the converse, and the counterexample."""
+    return (
+        _condition(),
+        _interval(),
+        *(_shape(*case) for case in _SHAPES),
+        _circle(),
+        _converse(),
+        _two_slopes(),
+    )
+
+
+def _slope(place: sp.Expr) -> sp.Expr:
+    """Return h' at a positive place, as exp(ln h')."""
+    return sp.exp(logarithm(place))
+
+
+def _height(place: sp.Expr) -> sp.Expr:
+    """Return h at a positive place, the integral of h'."""
+    return sp.Integral(_slope(zeta), (zeta, 0, place))
+
+
+def _condition() -> Derivation:
+    proof = _theorem(
+        "F9-difference", title="Contact against one past instant", text=_NOTATION, uses=("F8",)
+    )
+    h = sp.Function("h", real=True)
+    now, then = sp.symbols("d d_1", real=True)
+    place = sp.Symbol("xi", real=True)
+    margin = sp.exp(time) * (now - h(place)) - sp.exp(earlier) * (then - h(place - m))
+    form = sp.exp(time) * ((now - E * then) + (-h(place) + E * h(place - m)))
+    proof.define(E, sp.exp(earlier - time), "less than 1", right="e^{-(s - s_1)}")
+    proof.equal(
+        margin,
+        form,
+        "a constant, and a function of the place alone",
+        left="D_1",
+        right=r"e^{s} \left[(d - E d_1) + f(\xi)\right], \quad f(\xi) = E h(\xi - m) - h(\xi)",
+    )
+    return proof.done(margin, form)
+
+
+_NOTATION = (
+    r"An element is now at $\xi$, where the indenter is at $d - h(\xi)$; at $s_1 < s$ it was at "
+    r"$\xi - m$, and the indenter at $d_1 - h(\xi - m)$. Lengths, depths and $h$ are scaled as "
+    r"they may be. By F8 the element is in contact if and only if $D_1 \ge 0$ for every past "
+    r"instant and $e^{s} (d - h) \ge u_0$, which is zero or the same difference for $s_1 = 0$; and "
+    r"$d \ge h(\xi)$ on one interval, because $h$ is even and convex."
+)
+
+
+def _interval() -> Derivation:
+    proof = _theorem("F9-shapes", title="The contact is one interval, for many shapes", text=_INTERVAL,
+                     uses=("F8", "F9-difference"))  # fmt: skip
+    ahead = -_height(y) + E * _height(y + m)
+    between = -_height(y) + E * _height(m - y)
+    behind = -_height(y) + E * _height(y - m)
+    ratio = sp.exp(logarithm(y + m) - logarithm(y))
+    turning = _slope(y) * (1 - E * ratio)
+    proof.equal(-sp.diff(ahead, y), turning, r"ahead of the tip, with $\rho = h'(y + m)/h'(y)$",
+                left=r"f'(-y)", right=r"h'(y) \left[1 - E \rho(y)\right]")  # fmt: skip
+    falling = _slope(y) + E * _slope(m - y)
+    proof.equal(-sp.diff(between, y), falling, r"at $0 < \xi = y < m$", left="-f'(y)",
+                right="h'(y) + E h'(m - y)")  # fmt: skip
+    proof.positive(falling, "so that $f$ falls there", left="h'(y) + E h'(m - y)")
+    convex = (1 - E) * _slope(y) + E * (_slope(y) - _slope(y - m))
+    proof.equal(-sp.diff(behind, y), convex, r"at $\xi = y > m$: the first term is positive, the second not "
+                "negative, because $h'$ does not fall", left="-f'(y)",
+                right=r"(1 - E) h'(y) + E \left[h'(y) - h'(y - m)\right]")  # fmt: skip
+    gain = sp.Symbol("J", real=True)
+    rate = sp.Derivative(slope_rate(zeta), zeta)
+    proof.integral(
+        *(gain, rate, (zeta, y, y + m), slope_rate(zeta)),
+        r"with $\chi = (\ln h')'$: not positive, because $\ln h'$ is concave",
+        left=r"\frac{d}{d y} \ln \rho(y) = \int_{y}^{y + m} \chi'(\zeta) \, d\zeta",
+        right=r"\chi(y + m) - \chi(y)",
+    )  # fmt: skip
+    return proof.done(-sp.diff(ahead, y), turning)
+
+
+_INTERVAL = (
+    r"Let $h$ be even and convex, $h' > 0$ and $\ln h'$ concave for $x > 0$. Let $m \ge 0$; a way "
+    r"back is the mirror image. From the tip on $f$ falls. Ahead of it, $\rho$ does not grow with "
+    r"$y$: going towards the tip $1 - E \rho$ can change its sign once only, from + to $-$. So $f$ "
+    r"rises to one place and falls beyond it, $D_1 \ge 0$ on one interval for each past instant, "
+    "and intervals intersect in an interval, or not at all: two edges are the whole geometry of "
+    "the contact. What no machine has checked here: that a function which first rises and then "
+    "falls is at or above a given value on an interval; that an integral of what is not positive "
+    r"is not positive; and that where $h'$ or $\chi$ has a kink, concavity itself, $\rho(y_2) \le "
+    r"\rho(y_1)$ for $y_2 > y_1$, takes the place of the integral."
+)
+
+
+_SHAPES = (
+    ("power", "every power law", r"$h = |x|^n/(n L^{n-1})$ with $n = 1 + \nu > 1$, the parabola among them.",
+     (y / L) ** excess, excess / y**2),
+    ("catenary", "a catenary", r"$h = L (\cosh(x/L) - 1)$.", sp.sinh(y / L),
+     1 / (L**2 * sp.sinh(y / L) ** 2)),
+    ("wedge", "the wedge",
+     r"$h = c\,|x|$: $\ln h'$ is constant, which concavity includes. That $h'$ jumps at the tip "
+     "changes nothing: $f$ rises, or falls, on either side as before.", inclination, sp.S.Zero),
+)  # fmt: skip
+
+
+def _shape(label: str, name: str, text: str, slope: sp.Expr, form: sp.Expr) -> Derivation:
+    title = f"The contact is one interval: {name}"
+    proof = _theorem(f"F9-{label}", title=title, text=text, uses=("F9-shapes",))
+    curvature = -sp.Derivative(sp.log(slope), (y, 2))
+    proof.equal(curvature, form, f"with $h' = {tex(slope)}$", left=r"-(\ln h')''")
+    if form != 0:
+        proof.positive(form, r"$\ln h'$ is concave")
+    return proof.done(curvature, form)
+
+
+def _circle() -> Derivation:
+    proof = _theorem("F9-circle", title="The contact is one interval: a circle", text=_CIRCLE,
+                     uses=("F9-shapes",))  # fmt: skip
+    slope = y / sp.sqrt(R**2 - y**2)
+    form = R**2 * (R**2 - 3 * y**2) / (y**2 * (R**2 - y**2) ** 2)
+    curvature = -sp.Derivative(sp.log(y) - sp.log(R**2 - y**2) / 2, (y, 2))
+    proof.equal(sp.Derivative(R - sp.sqrt(R**2 - y**2), y), slope, "$h'$")
+    proof.equal(curvature, form, r"positive for $y < R/\sqrt{3}$", left=r"-(\ln h')''")
+    return proof.done(curvature, form)
+
+
+_CIRCLE = (
+    r"$h = R - \sqrt{R^2 - x^2}$ meets the condition for $|x| < R/\sqrt{3}$: the theorem holds as "
+    "long as no element is touched farther out, that is, up to a depth of $0.18 R$."
+)
+
+
+def _converse() -> Derivation:
+    proof = _theorem("F9-converse", title="No other shape has one contact always", text=_CONVERSE,
+                     uses=("F9-shapes",))  # fmt: skip
+    middle = 2 / (ratio_near + ratio_now)
+    proof.define(
+        ratio_now, ratio_near + ratio_gain, r"$\rho(y_2) > \rho(y_1)$ for some $y_2 > y_1$ and $m$"
+    )
+    proof.define(E, middle, "a time that has passed; less than 1, because $h'$ does not fall")
+    for sign, ratio, name, what in (
+        (1, ratio_near, "y_1", r"$f$ rises at $-y_1$"),
+        (-1, ratio_now, "y_2", r"it falls at $-y_2$, farther out"),
+    ):  # fmt: skip
+        form = ratio_gain / (2 * ratio_near + ratio_gain)
+        proof.equal(sign * (1 - E * ratio), form, what,
+                    left=rf"{'-' if sign < 0 else ''}\left[1 - E \rho({name})\right]")  # fmt: skip
+    proof.positive(form, "so that between them $f$ has a valley")
+    return proof.done(E, middle)
+
+
+_CONVERSE = (
+    r"If $\ln h'$ is not concave, some $\rho(y_2) = h'(y_2 + m)/h'(y_2)$ is greater than "
+    r"$\rho(y_1)$ with $y_1 < y_2$. Let the indenter rest at a depth $d_1$, be lifted, be moved by "
+    "$m$ while $e^{s}$ grows to $1/E$, and be set down at once to $d = E d_1 - k$. Elements are "
+    r"in contact where $f \ge k$ and $d \ge h$. With $k$ between the bottom of the valley and its "
+    "lower rim, and $d_1$ so great that all of them were pressed, the contact is in two parts, on "
+    "both sides of the valley."
+)
+
+
+def _two_slopes() -> Derivation:
+    proof = _theorem("F9-two-slopes", title="Two contacts: a wedge of two slopes", text=_TWO_SLOPES,
+                     uses=("F8", "F9-converse"))  # fmt: skip
+    half = sp.Rational(1, 2)
+
+    def height(place: sp.Expr) -> sp.Expr:
+        return sp.Abs(place) + 3 * sp.Max(0, sp.Abs(place) - 1)
+
+    def lead(place: sp.Expr) -> sp.Expr:
+        """Return how far the indenter is below the surface that has relaxed since."""
+        return (sp.Rational(15, 8) - height(place)) - half * (4 - height(place - half))
+
+    for place, value, what in (
+        (-1, "3/8", "in contact"), (-half, "-1/8", "free: the surface is still lower"),
+        (0, "1/8", "in contact again"),
+        ("-19/16", 0, "the edges of the one contact"), ("-5/8", 0, "likewise"),
+        ("-1/4", 0, "the edges of the other"), ("1/12", 0, "likewise"),
+    ):  # fmt: skip
+        where, found = sp.Rational(place), sp.Rational(value)
+        proof.equal(lead(where), found, what, left=rf"(g - u)\big|_{{\xi = {sp.latex(where)}}}")
+    return proof.done(lead(-half), -sp.Rational(1, 8))
+
+
+_TWO_SLOPES = (
+    r"The wedge $h = |x| + 3 \max(0, |x| - 1)$ is even and convex, but $\ln h'$ jumps up at $|x| = "
+    r"1$. It rests at the depth 4, is lifted, moved by $m = \frac{1}{2}$ during $s = \ln 2$, and "
+    r"set down at once to $\frac{15}{8}$. By F8 the surface at $\xi$ is then at $u = \frac{1}{2} "
+    r"\left[4 - h(\xi - \frac{1}{2})\right]$, and the indenter at $g = \frac{15}{8} - h(\xi)$: the "
+    r"contact is $[-\frac{19}{16}, -\frac{5}{8}]$ and $[-\frac{1}{4}, \frac{1}{12}]$. (While it is "
+    "being set down the indenter has pressed no element farther than in the end.)"
+)

@@ -1,0 +1,201 @@
+r"""Friction without integrals (F21): the friction force from the load and the pressure at the edges.
+
+In the contact of a parabola the pressure has the slope -(K/R)(x + l_r), at every instant of every motion.
+So x p is a multiple of p and a derivative of p**2, and the friction force needs no integral of its own.
+"""
+
+from functools import partial
+
+import sympy as sp
+
+from derivations import steady
+from derivations.record import Derivation
+from derivations.step import Proof
+from derivations.symbols import (
+    C,
+    F,
+    F_x,
+    F_z,
+    K,
+    R,
+    V,
+    W,
+    a,
+    alpha,
+    delta,
+    depth_rate_now,
+    h,
+    l,
+    l_r,
+    load_excess,
+    mu,
+    p_le,
+    p_te,
+    q,
+    r,
+    tau,
+    x,
+    x_le,
+    x_te,
+)  # fmt: skip
+
+SECTION = "Friction without integrals"
+
+LOAD = K * (a**3 + r**3 - l_r**3) / (3 * R)
+"""W, with r = sqrt(a**2 + l_r**2) = x_TE + l_r."""
+FRICTION = l_r * (W - C * V * delta) / R
+
+_pressure = sp.Function("p", real=True)
+_CONTACT = (x, x_le, x_te)
+_theorem = partial(Proof, equation=None, section=SECTION)
+
+
+def derive() -> tuple[Derivation, ...]:
+    """Prove F21 and let Eqs. 40 to 46 follow from it."""
+    return _any_shape(), _instant(), _load(), _steady(), _slow(), _fast()
+
+
+def _any_shape() -> Derivation:
+    proof = _theorem("F21-shape", title="Friction force of any smooth shape", text=_SHAPE)
+    inner = K * (delta - h(x)) + C * (depth_rate_now - V * sp.Derivative(h(x), x))
+    bending = C * V * sp.Derivative(h(x), (x, 2))
+    proof.define(_pressure(x), inner, "Eqs. (6), (7) and (12) for a dense row",
+                 right=r"K (\delta - h) + C (\dot\delta - V h')")  # fmt: skip
+    proof.define(l_r, C * V / K, "Eqs. (22) and (29)")
+    work = -sp.Derivative(h(x), x) * _pressure(x)
+    result = sp.Derivative(_pressure(x) ** 2, x) / (2 * K) + bending / K * _pressure(x)
+    proof.equal(work, result, "the integrand of Eq. (15)", left="-h' p",
+                right=r"\frac{1}{2 K} \frac{d}{d x} p^2 + l_{\mathrm{r}} h'' p")  # fmt: skip
+    return proof.done(work, result)
+
+
+_SHAPE = (
+    r"At every instant of every motion, with $l_{\mathrm{r}} = V \tau$ of that instant. Integrated "
+    r"over the contact, $F_x = l_{\mathrm{r}} \int h'' p \, dx - \frac{1}{2 K} (p_{\mathrm{LE}}^2 "
+    r"- p_{\mathrm{TE}}^2)$."
+)
+
+
+def _instant() -> Derivation:
+    proof = _theorem(
+        "F21", title="Friction force at every instant", text=_INSTANT, uses=("F21-shape",)
+    )
+    whole = l_r / R * F_z - (p_le**2 - p_te**2) / (2 * K)
+    load, squares = sp.Integral(_pressure(x), _CONTACT), sp.Symbol("I_p", real=True)
+    inner = K * (delta - x**2 / (2 * R)) + C * (depth_rate_now - V * x / R)
+    slope = -K / R * (x + l_r)
+    proof.define(C, K * tau, "Eq. (22)")
+    proof.define(tau, l_r / V, "Eq. (29)")
+    proof.equal(
+        sp.Derivative(inner, x), slope, r"neither $\delta$ nor $\dot\delta$ matters", left="p'"
+    )
+    square = sp.Derivative(_pressure(x) ** 2, x)
+    proof.integral(squares, square.doit(), _CONTACT, _pressure(x) ** 2, "for a continuous pressure",
+                   left=r"\int_{\mathrm{LE}}^{\mathrm{TE}} 2 p\, p' \, dx",
+                   right=r"p_{\mathrm{TE}}^2 - p_{\mathrm{LE}}^2")  # fmt: skip
+    proof.equal(
+        *(-x / R * _pressure(x), slope * _pressure(x) / K + l_r / R * _pressure(x),
+          "the integrand of Eq. (15)"),
+        left=r"-\frac{x}{R}\, p", right=r"\frac{p\, p'}{K} + \frac{l_{\mathrm{r}}}{R}\, p",
+    )  # fmt: skip
+    proof.define(F_z, load, "Eq. (14)", right=r"\int p \, dx")
+    proof.define(_pressure(x_le), p_le, "at the leading edge")
+    proof.define(_pressure(x_te), p_te, "at the trailing edge")
+    proof.define(F_x, squares / (2 * K) + l_r / R * load, "integrated, term by term",
+                 right=r"\frac{1}{K} \int p\, p' \, dx + \frac{l_{\mathrm{r}}}{R} \int p \, dx")  # fmt: skip
+    proof.equal(F_x, whole, "friction without an integral")
+    return proof.done(F_x, whole)
+
+
+_INSTANT = (
+    "For the parabola, for any drive and any motion of the indenter, under any support; LE and TE "
+    "are the two ends of the contact, whichever way they move, and $V$ has its sign."
+)
+
+
+def _load() -> Derivation:
+    proof = _theorem("F21-load", title="Load of steady sliding in one line", text=_LOAD)
+    proof.define(delta, a**2 / (2 * R), "Eq. (28)")
+    proof.define(r, sp.sqrt(a**2 + l_r**2), r"$x_{\mathrm{TE}} = r - l_{\mathrm{r}}$, Eq. (27)")
+    centred = K / (2 * R) * (r**2 - (x + l_r) ** 2)
+    proof.equal(steady.pressure, centred, "the pressure of steady sliding", left="p")
+    primitive = K / (2 * R) * ((a**2 + l_r**2) * x - (x + l_r) ** 3 / 3)
+    proof.integral(W, centred, (x, -a, r - l_r), primitive, "Eq. (14)", value=LOAD)
+    return proof.done(W, LOAD)
+
+
+_LOAD = r"With $r = \sqrt{a^2 + l_{\mathrm{r}}^2}$."
+
+
+def _steady() -> Derivation:
+    proof = _theorem("F21-steady", title="Friction force of steady sliding in one line", text=_STEADY,
+                     uses=("pressure", "eq26", "eq27"))  # fmt: skip
+    proof.define(F, l_r / R * W - (p_le**2 - p_te**2) / (2 * K), "F21 with $F_z = W$, $F_x = F$")
+    proof.define(p_te, sp.S.Zero, "Eq. (27)")
+    proof.define(p_le, steady.pressure.subs(x, -a), "Eq. (26)")
+    proof.define(delta, a**2 / (2 * R), "Eq. (28)")
+    proof.define(C, K * l_r / V, "Eqs. (22) and (29)")
+    proof.equal(p_le, K * l_r * a / R, "at the leading edge only the damper works")
+    proof.equal(F, FRICTION, "the whole of friction")
+    proof.define(mu, F / W, "Eq. (37)")
+    proof.equal(mu, l_r / R * (1 - C * V * delta / W), "Eq. (42), and what it leaves out")
+    proof.recall("F21-load", W, LOAD)
+    proof.define(r, a * (q + l), "Eq. (27)")
+    proof.define(l_r, a * l, "scaled")
+    proof.recall("scaling", l, steady.number)
+    exact = steady.friction.subs(delta, a**2 / (2 * R))
+    proof.equal(F, exact, "the same as by the integral of Eq. (15)")
+    return proof.done(F, FRICTION)
+
+
+_STEADY = r"With F21-load, $W = \frac{K}{3 R} (a^3 + r^3 - l_{\mathrm{r}}^3)$, this is all of steady sliding."
+
+
+def _recall(proof: Proof) -> None:
+    proof.recall("F21-load", W, LOAD)
+    proof.recall("F21-steady", F, FRICTION)
+    proof.define(C, K * l_r / V, "Eqs. (22) and (29)")
+    proof.define(delta, a**2 / (2 * R), "Eq. (28)")
+    proof.define(r, sp.sqrt(a**2 + l_r**2))
+    proof.define(l_r, a * l, "scaled")
+
+
+def _slow() -> Derivation:
+    proof = _theorem("F21-low", title="Low velocity: Eqs. (40) to (42) in three lines",
+                     text=r"For $l = l_{\mathrm{r}}/a \to 0$; $\alpha = 2 \sqrt{2}/3$.")  # fmt: skip
+    _recall(proof)
+    spring = 2 * K * a**3 / (3 * R)
+    proof.equal(2 * alpha * sp.sqrt(R) * K * delta ** sp.Rational(3, 2), spring, "Eq. (40)")
+    proof.leading_order(W, spring, l, 0, "the root and the cube are of higher order", eps=l)
+    proof.leading_order(
+        F, l_r / R * spring, l, 0, r"Eq. (41): $l_{\mathrm{r}}/R$ times the load", eps=l
+    )
+    proof.leading_order(F / W, l_r / R, l, 0, "Eq. (42)", eps=l)
+    return proof.done(F / W, l_r / R)
+
+
+_FAST = (
+    r"For $l = l_{\mathrm{r}}/a \to \infty$, where $r^3 - l_{\mathrm{r}}^3 \to \frac{3}{2} a^2 "
+    r"l_{\mathrm{r}}$, so that $W - C V \delta \to \frac{K a^3}{3 R}$: what is left is half of the load "
+    "at rest."
+)
+
+
+def _fast() -> Derivation:
+    proof = _theorem("F21-high", title="High velocity: Eqs. (43) to (46) in four lines", text=_FAST)
+    _recall(proof)
+    rest, small = K * a**3 / (3 * R), 1 / l
+    proof.define(load_excess, W - C * V * delta, "what the spring carries")
+    proof.leading_order(W, C * V * delta, l, sp.oo, "Eq. (43)", eps=small)
+    proof.leading_order(load_excess, rest, l, sp.oo, "half the load at rest", eps=small)
+    proof.leading_order(
+        F, l_r / R * rest, l, sp.oo, r"Eq. (44): $l_{\mathrm{r}}/R$ times that", eps=small
+    )
+    proof.leading_order(
+        F / W, 2 * a / (3 * R), l, sp.oo, "Eq. (45); Eq. (46) at a given load", eps=small
+    )
+    half = sp.sqrt(2 * R * W / (C * V))
+    reason = r"Eq. (46), with $a = \sqrt{2 R \delta}$ and $\delta = W/(C V)$"
+    shown = {"left": r"\alpha \sqrt{\frac{W}{R C V}}"}
+    proof.equal(alpha * sp.sqrt(W / (R * C * V)), 2 * half / (3 * R), reason, **shown)
+    return proof.done(F / W, 2 * a / (3 * R))

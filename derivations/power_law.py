@@ -1,0 +1,241 @@
+r"""Steady sliding of a power law h = |x|**n/(n L**(n - 1)), n > 1: theorem F19.
+
+One number fixes the contact: q = x_TE/a, or l = l_r/a = (1 - q**n)/(n q**(n - 1)). With Q = q**(n - 1)
+load, friction force and the rest are sums of positive terms in l, q and Q, which neither cancel nor
+overflow. They hold for n = 1 as well, the wedge, where q = max(0, 1 - l); `derivations.wedge` proves it.
+"""
+
+from functools import partial
+
+import sympy as sp
+
+from derivations.record import Derivation
+from derivations.step import Proof
+from derivations.symbols import (
+    C,
+    F,
+    K,
+    L,
+    P,
+    P_n,
+    Q,
+    V,
+    W,
+    a,
+    delta,
+    eta_n,
+    excess,
+    exponent,
+    l,
+    l_r,
+    lost_ahead,
+    lost_behind,
+    m_n,
+    mu,
+    phi_ahead,
+    phi_behind,
+    phi_n,
+    q,
+    w_ahead,
+    w_behind,
+    w_n,
+    y,
+    z_peeled,
+)  # fmt: skip
+
+SECTION = "Power law and wedge"
+
+n, z = exponent, z_peeled
+NUMBER = (1 - q**n) / (n * q ** (n - 1))
+"""l as a function of q."""
+SLOPE_POWER = q ** (n - 1)
+"""Q as a function of q."""
+AHEAD, BEHIND = (1 - y**n + side * n * l * y ** (n - 1) for side in (1, -1))
+"""p/(K delta) at x = -y a and at x = y a."""
+SQUARES = (1 + q * Q**2) / (2 * n - 1)
+"""The integral of (|x|/a)**(2 n - 2) over the contact: the damper's part of the friction force."""
+LOAD = n * (1 + q + l + l**2 * Q) / (n + 1)
+FRICTION_FORCE = n**2 * l * (SQUARES + l * Q**2 / 2)
+FRICTION_COEFFICIENT = n * (n + 1) * l * (SQUARES + l * Q**2 / 2) / (1 + q + l + l**2 * Q)
+LOW_SLOPE = n * (n + 1) / (2 * n - 1)
+"""m/l at rest."""
+HIGH_COEFFICIENT = n**2 / (2 * n - 1)
+"""m for l -> oo."""
+
+_theorem = partial(Proof, equation=None, section=SECTION)
+
+
+def derive() -> tuple[Derivation, ...]:
+    """Prove F19 for every exponent n > 1."""
+    return (
+        *(_pressure(), _edge(), _load(), _friction(), _coefficient()),
+        *(_peak_pressure(), _energy()),
+    )
+
+
+def in_q(proof: Proof) -> None:
+    """Let l and Q be functions of q and n = 1 + nu."""
+    proof.define(n, 1 + excess, r"$n > 1$, that is, $\nu > 0$")
+    proof.define(l, NUMBER, r"$q = x_{\mathrm{TE}}/a$ names the state")
+    proof.define(Q, SLOPE_POWER, "the slope at the trailing edge over that at $x = a$")
+
+
+def _pressure() -> Derivation:
+    proof = _theorem("F19-pressure", title="Power law: pressure", text=_PRESSURE,
+                     uses=("eq22", "eq29", "pressure"))  # fmt: skip
+    height, slope = (y * a) ** n / (n * L ** (n - 1)), (y * a / L) ** (n - 1)
+    proof.define(delta, a**n / (n * L ** (n - 1)), r"$h(a) = \delta$: the half length at rest")
+    proof.define(C, K * l_r / V, "Eqs. (22) and (29)")
+    proof.define(l_r, l * a, "the retardation length in half lengths")
+    for side, form, where in ((1, AHEAD, "-y a"), (-1, BEHIND, "y a")):
+        proof.equal(
+            *(
+                (K * (delta - height) + side * C * V * slope) / (K * delta),
+                form,
+                f"at $x = {where}$",
+            ),
+            left=r"\frac{K (\delta - h) - C V h'}{K \delta}",
+        )
+    proof.define(P, BEHIND, "behind the tip, with $y = x/a$")
+    proof.equal(
+        sp.Derivative(BEHIND, y), -n * y ** (n - 2) * (y + (n - 1) * l), "falling behind the tip"
+    )
+    return proof.done(P, BEHIND)
+
+
+_PRESSURE = (
+    "The indenter $h = |x|^n/(n L^{n-1})$ with $n > 1$ has the slope 1 at $x = L$; $n = 2$ is the "
+    r"parabola of radius $L$. Here $l = l_{\mathrm{r}}/a$, and $y = |x|/a$ is the distance from "
+    "the tip."
+)
+
+
+def _edge() -> Derivation:
+    proof = _theorem(
+        "F19-edge", title="Power law: trailing edge", text=_EDGE, uses=("F19-pressure",)
+    )
+    proof.define(n, 1 + excess, r"$n > 1$, that is, $\nu > 0$")
+    proof.root(BEHIND.subs(y, q), l, NUMBER, "no pressure at the trailing edge, $y = q$")
+    proof.equal(
+        *(sp.diff(NUMBER, q), -(n - 1 + q**n) / (n * q**n), "slope"),
+        left=r"\frac{d l}{d q}",
+    )
+    proof.positive((excess + q**n) / (n * q**n), r"$l$ falls strictly: each $l > 0$ has one $q$")
+    proof.equal(NUMBER.subs(q, 1), sp.S.Zero, r"at rest, and $l \to \infty$ for $q \to 0$",
+                left="l(1)")  # fmt: skip
+    proof.define(l, NUMBER, "the same as a rule")
+    proof.define(Q, SLOPE_POWER, "the slope at the trailing edge over that at $x = a$")
+    proof.equal(n * l * Q, 1 - q**n, "which replaces the difference $1 - q^n$")
+    proof.equal(1 / (q + n * l), Q, "one equation for $q$, without a difference")
+    return proof.done(1 / (q + n * l), Q)
+
+
+_EDGE = (
+    "The pressure falls from the tip to $x = a$, where it is not positive; it vanishes once "
+    r"between, at $x_{\mathrm{TE}} = q a$. In the variable $\ln q$ the equation $(n - 1) \ln q + "
+    r"\ln(q + n l) = 0$ is increasing and convex, so that Newton's method descends to its root "
+    "from every point above."
+)
+
+
+def _load() -> Derivation:
+    proof = _theorem("F19-load", title="Power law: load", text=_SUMS, uses=("F19-edge",))
+    in_q(proof)
+    primitive = y - y ** (n + 1) / (n + 1)
+    proof.integral(w_ahead, AHEAD, (y, 0, 1), primitive + l * y**n, "ahead of the tip")
+    proof.integral(w_behind, BEHIND, (y, 0, q), primitive - l * y**n, "behind it")
+    proof.define(w_n, w_ahead + w_behind, r"$W/(K \delta a)$")
+    explicit = n / (n + 1) + q - q ** (n + 1) / (n + 1) + (1 - q**n) ** 2 / (n * q ** (n - 1))
+    proof.equal(w_n, explicit, "as a function of $q$")
+    proof.equal(w_n, LOAD, "a sum of positive terms")
+    return proof.done(w_n, LOAD)
+
+
+_SUMS = r"With $Q = q^{n-1}$ the forms in $l$, $q$ and $Q$ lose no digits in either limit."
+
+
+def _friction() -> Derivation:
+    proof = _theorem(
+        "F19-friction", title="Power law: friction force", text=_SUMS, uses=("F19-edge",)
+    )
+    in_q(proof)
+    primitive = y**n - y ** (2 * n) / 2
+    damper = n**2 * l * y ** (2 * n - 1) / (2 * n - 1)
+    for name, pressure, side, end in (
+        (phi_ahead, AHEAD, 1, sp.S.One), (phi_behind, BEHIND, -1, q),
+    ):  # fmt: skip
+        integrand = sp.expand(n * y ** (n - 1) * pressure)
+        where = "pushed back ahead of the tip" if side == 1 else "and forward behind it"
+        proof.integral(name, integrand, (y, 0, end), primitive + side * damper, where)
+    proof.define(phi_n, phi_ahead - phi_behind, r"$F/(K \delta^2)$")
+    explicit = (1 - q**n) ** 2 / 2
+    explicit += n * (1 - q**n) * (1 + q ** (2 * n - 1)) / ((2 * n - 1) * q ** (n - 1))
+    proof.equal(phi_n, explicit, "as a function of $q$")
+    proof.equal(phi_n, FRICTION_FORCE, "a sum of positive terms")
+    return proof.done(phi_n, FRICTION_FORCE)
+
+
+def _coefficient() -> Derivation:
+    proof = _theorem("F19", title="Power law: friction coefficient", text=_COEFFICIENT)
+    proof.recall("F19-load", w_n, LOAD)
+    proof.recall("F19-friction", phi_n, FRICTION_FORCE)
+    proof.define(F, K * delta**2 * phi_n, "friction force")
+    proof.define(W, K * delta * a * w_n, "load")
+    proof.define(mu, F / W, "Eq. (37)")
+    proof.define(m_n, mu * a / delta, r"$\mu$ in units of $\delta/a$")
+    proof.equal(m_n, phi_n / w_n, "the same")
+    proof.equal(m_n, FRICTION_COEFFICIENT, "a quotient of positive terms")
+    return proof.done(m_n, FRICTION_COEFFICIENT)
+
+
+_COEFFICIENT = (
+    r"For $h = |x|^n/(n L^{n-1})$, $n > 1$, with $q = x_{\mathrm{TE}}/a$, $Q = q^{n-1}$ and $l = "
+    r"l_{\mathrm{r}}/a = (1 - q^n)/(n Q)$. For $n = 2$ this is F1."
+)
+
+
+def _peak_pressure() -> Derivation:
+    proof = _theorem(
+        "F19-peak", title="Power law: peak pressure", text=_PEAK, uses=("F19-pressure",)
+    )
+    slope = n * y ** (n - 2) * ((n - 1) * l - y)
+    proof.equal(
+        sp.Derivative(AHEAD, y), slope, r"zero at $y = (n - 1) l$", left=r"\frac{d \hat p}{d y}"
+    )
+    inside = 1 + l * ((n - 1) * l) ** (n - 1)
+    form = 1 + y ** (n - 1) * (n * l - y)
+    proof.equal(AHEAD, form, "the pressure ahead of the tip")
+    proof.equal(form.subs(y, (n - 1) * l), inside, "inside the contact", left=r"\hat p")
+    proof.equal(form.subs(y, 1), n * l, "at the leading edge", left=r"\hat p")
+    proof.define(y, sp.Min(1, (n - 1) * l), "where the peak is")
+    proof.define(P_n, form, "both cases in one form")
+    return proof.done(P_n, form)
+
+
+_PEAK = (
+    r"The peak is inside the contact, at $x = -(n - 1) l_{\mathrm{r}}$, while that is behind the "
+    "leading edge, and at the leading edge from there on."
+)
+
+
+def _energy() -> Derivation:
+    proof = _theorem("F19-energy", title="Power law: energy dissipated inside the contact",
+                     text=_ENERGY, uses=("energy-any-shape",))  # fmt: skip
+    inside = lost_ahead, lost_behind
+    proof.define(n, 1 + excess, r"$n > 1$")
+    proof.define(Q, SLOPE_POWER)
+    density, primitive = n**2 * l * y ** (2 * n - 2), n**2 * l * y ** (2 * n - 1) / (2 * n - 1)
+    for name, end, where in zip(inside, (1, q), ("ahead of the tip", "behind it"), strict=True):
+        proof.integral(name, density, (y, 0, end), primitive, where, left=r"\frac{1}{K \delta^2} "
+                       r"\int K l_{\mathrm{r}} h'^2 \, dx")  # fmt: skip
+    form = 2 * (1 + q * Q**2) / (2 * (1 + q * Q**2) + (2 * n - 1) * l * Q**2)
+    proof.define(eta_n, (lost_ahead + lost_behind) / phi_n, "by definition")
+    proof.recall("F19-friction", phi_n, FRICTION_FORCE)
+    proof.equal(eta_n, form, "fraction inside")
+    return proof.done(eta_n, form)
+
+
+_ENERGY = (
+    r"Of the power $F V$ the fraction $\eta$ is dissipated inside the contact, the rest in the "
+    "surface that relaxes behind it. It is 1 in both limits."
+)

@@ -1,0 +1,217 @@
+r"""How wrong the asymptotes of a power law are: exact relative errors, stable in both limits (F19).
+
+Every error is asymptote/exact - 1 in terms of l, q and Q. What vanishes at rest is carried by the peeled
+parts 1 - q and 1 - Q and by the bend l - (1 - q), which have forms without a difference.
+"""
+
+from dataclasses import dataclass
+from functools import partial
+
+import sympy as sp
+from sympy.codegen.cfunctions import expm1, log1p
+
+from derivations.power_law import (
+    FRICTION_FORCE,
+    HIGH_COEFFICIENT,
+    LOAD,
+    LOW_SLOPE,
+    SECTION,
+    in_q,
+    n,
+    z,
+)
+from derivations.power_law_weight import AT_REST
+from derivations.record import Derivation
+from derivations.step import Proof, tex
+from derivations.symbols import (
+    Q,
+    bend,
+    e_n_depth_high,
+    e_n_friction_high,
+    e_n_friction_low,
+    e_n_l1,
+    e_n_l2,
+    e_n_load_high,
+    e_n_load_low,
+    excess,
+    gap_edge,
+    gap_slope,
+    l,
+    omega,
+    phi_fall,
+    phi_rise,
+    psi,
+    q,
+    y,
+)  # fmt: skip
+
+_DAMPER = 1 + q * Q**2 + (2 * n - 1) * l * Q**2 / 2
+"""(2 n - 1) phi_n/(n**2 l)."""
+_WHOLE = 1 + q + l + l**2 * Q
+"""(n + 1) w_n/n."""
+_TIP = n**2 + q * (n**2 - 1 + q * Q)
+"""n (n + 1) (w_n - l): what the spring carries."""
+_FAST = (n - 1) * (2 * n**2 - 1 + 2 * n * (n + 1) * q) / (2 * n**2 * (n + 1))
+_SLOW = q * Q * (2 * n * q / (n + 1) + 2 * (n - 1) + q * Q) / (2 * n**2)
+
+
+@dataclass(frozen=True)
+class Asymptote:
+    """An asymptote over the exact value, and the form of its error."""
+
+    label: str
+    title: str
+    symbol: sp.Symbol
+    ratio: sp.Expr
+    form: sp.Expr
+    limit: str
+    """What it tends to, in words."""
+
+
+ASYMPTOTES = (
+    Asymptote(
+        *("L1", "friction coefficient at low velocity", e_n_l1),
+        LOW_SLOPE * l * LOAD / FRICTION_FORCE,
+        (q * gap_slope * (1 + Q) + l + l**2 * Q - (2 * n - 1) * l * Q**2 / 2) / _DAMPER,
+        r"$\frac{2 n - 1}{4}\, l$ at low velocity",
+    ),
+    Asymptote(
+        *("L2", "friction coefficient at high velocity", e_n_l2),
+        HIGH_COEFFICIENT * LOAD / FRICTION_FORCE,
+        (_FAST + _SLOW) / (l * _DAMPER),
+        r"$\frac{(n - 1)(2 n^2 - 1)}{2 n^2 (n + 1)}\, l^{-1}$ at high velocity; no term is negative",
+    ),
+    Asymptote(
+        *("load-low", "load at low velocity", e_n_load_low),
+        AT_REST / LOAD,
+        -(l**2 * Q + bend) / _WHOLE,
+        r"$-\frac{n + 1}{4}\, l^2$ at low velocity",
+    ),
+    Asymptote(
+        *("load-high", "load at high velocity", e_n_load_high),
+        l / LOAD,
+        -_TIP / (n**2 * _WHOLE),
+        r"$-\frac{n}{n + 1}\, l^{-1}$ at high velocity",
+    ),
+    Asymptote(
+        *("friction-low", "friction force at low velocity", e_n_friction_low),
+        2 * n * HIGH_COEFFICIENT * l / (n * FRICTION_FORCE),
+        (gap_edge + q * gap_slope * (1 + Q) - (2 * n - 1) * l * Q**2 / 2) / _DAMPER,
+        r"$\frac{2 n - 1}{4}\, l$ at low velocity",
+    ),
+    Asymptote(
+        *("friction-high", "friction force at high velocity", e_n_friction_high),
+        HIGH_COEFFICIENT * l / FRICTION_FORCE,
+        -(q * Q**2 + (2 * n - 1) * l * Q**2 / 2) / _DAMPER,
+        r"$-\frac{2 n - 1}{2 n^2}\, l^{-1}$ at high velocity",
+    ),
+    Asymptote(
+        *("depth-high", "depth at high velocity, dead weight", e_n_depth_high),
+        LOAD / l,
+        _TIP / (n * (n + 1) * l),
+        r"$\frac{n}{n + 1}\, l^{-1}$ at high velocity",
+    ),
+)
+
+_theorem = partial(Proof, equation=None, section=SECTION)
+
+
+def derive() -> tuple[Derivation, ...]:
+    """Prove the errors of the asymptotes of a power law, and that they are monotonic."""
+    return (_peeled(), _bend(), *map(_error, ASYMPTOTES), _monotonic())
+
+
+def _peeled() -> Derivation:
+    proof = _theorem("F19-peeled", title="Power law: what has peeled", text=_PEELED,
+                     uses=("F19-edge",))  # fmt: skip
+    logarithm = log1p(-z)
+    edge, slope = expm1(logarithm / n), expm1((n - 1) * logarithm / n)
+    proof.define(
+        logarithm, sp.log(1 - z), "accurate for small $z$", left=r"\operatorname{log1p}(-z)"
+    )
+    for power in (edge, slope):
+        proof.define(power, sp.exp(power.args[0]) - 1, r"accurate for small arguments",
+                     left=rf"\operatorname{{expm1}} {_brace(power)}")  # fmt: skip
+    in_q(proof)
+    proof.define(z, 1 - q**n, "$z = n l Q$")
+    proof.define(gap_edge, 1 - q, "the peeled part of the outlet side")
+    proof.equal(
+        gap_edge, -edge, "without a difference", right=rf"-\operatorname{{expm1}} {_brace(edge)}"
+    )
+    proof.define(gap_slope, 1 - Q, "by how much the slope there is smaller")
+    proof.equal(gap_slope, -slope, "without a difference",
+                right=rf"-\operatorname{{expm1}} {_brace(slope)}")  # fmt: skip
+    return proof.done(gap_slope, -slope)
+
+
+def _brace(power: sp.Expr) -> str:
+    shown = tex(power.args[0].subs(log1p(-z), sp.Symbol("LOG")))
+    return r"\left(" + shown.replace("LOG", r"\operatorname{log1p}(-z)") + r"\right)"
+
+
+_PEELED = (
+    "For small $z = n l Q = 1 - q^n$ the differences $1 - q$ and $1 - Q$ follow from $z$ by the "
+    r"functions $\operatorname{log1p}(x) = \ln(1 + x)$ and $\operatorname{expm1}(x) = e^x - 1$."
+)
+
+
+def _bend() -> Derivation:
+    proof = _theorem("F19-bend", title="Power law: how far the edge is from a line", text=_BEND,
+                     uses=("F19-edge",))  # fmt: skip
+    form = (n - 1) * y**2 * ((n - 1) * phi_rise + phi_fall) / n
+    in_q(proof)
+    proof.define(q, sp.exp(-y), r"$y = -\ln q$")
+    proof.define(phi_rise, (sp.exp((n - 1) * y) - 1 - (n - 1) * y) / ((n - 1) * y) ** 2,
+                 r"$\phi_2((n - 1) y)$")  # fmt: skip
+    proof.define(phi_fall, (sp.exp(-y) - 1 + y) / y**2, r"$\phi_2(-y)$")
+    proof.define(bend, l - (1 - q), "how far $1 - q$ lags behind $l$")
+    proof.equal(bend, form, "without a difference")
+    return proof.done(bend, form)
+
+
+_BEND = (
+    r"With $\phi_2(x) = (e^x - 1 - x)/x^2 = \sum_k x^k/(k + 2)!$, a sum of positive terms for $x > "
+    r"0$, and $y = -\ln q$."
+)
+
+
+def _error(asymptote: Asymptote) -> Derivation:
+    proof = _theorem(
+        f"F19-error-{asymptote.label}", title=f"Power law: error of the {asymptote.title}",
+        text=f"The asymptote over the exact value is 1 plus this error, which tends to {asymptote.limit}.",
+        uses=("F19-load", "F19-friction"),
+    )  # fmt: skip
+    in_q(proof)
+    for symbol, difference, label in (
+        (gap_edge, 1 - q, "F19-peeled"), (gap_slope, 1 - Q, "F19-peeled"), (bend, l - (1 - q), "F19-bend"),
+    ):  # fmt: skip
+        if asymptote.form.has(symbol):
+            proof.recall(label, symbol, difference)
+    proof.define(asymptote.symbol, asymptote.ratio - 1, "asymptote over exact value")
+    proof.equal(asymptote.symbol, asymptote.form, "in this form exact also where it is small")
+    return proof.done(asymptote.symbol, asymptote.form)
+
+
+def _monotonic() -> Derivation:
+    proof = _theorem("F19-error-monotonic", title="Power law: the errors are monotonic", text=_MONOTONIC,
+                     uses=("F19-monotonic", "F19-balance"))  # fmt: skip
+    rest = sp.Symbol("varrho", positive=True)
+    proof.define(psi, 1 - rest, r"$d \ln \varphi_n/d \ln l < 1$, because $\varphi_n/l$ falls")
+    sinking = -omega / (n + 1)
+    whole = (2 - n) * sinking + 1 - (psi - omega)
+    form = rest + (n + excess) * omega / (n + 1)
+    proof.define(n, 1 + excess, r"$n > 1$")
+    proof.equal(whole, form, r"logarithmic slope of $s^{2 - n}\, l/m_n$, that is, of $L_1/\mu$")
+    proof.positive(form, r"$\omega = d \ln w_n/d \ln l > 0$")
+    return proof.done(whole, form)
+
+
+_MONOTONIC = (
+    "At a given depth this is F19-monotonic: $w_n$ and $m_n$ grow with $l$, and $w_n/l$, "
+    r"$\varphi_n/l$ and $m_n/l$ fall. Under a dead weight $d \ln s/d \ln l = -\omega/(n + 1)$ "
+    "(F19-balance), under a spring between that and 0: the error of the asymptote for low "
+    "velocity grows with the velocity (for $n > 2$ the spring only takes away from a positive "
+    r"term). The asymptote for high velocity over the exact value is $(W_\infty/W)^{1 - 1/n} "
+    "(w_n/l)^{1 - 1/n}/m_n$, each factor of which falls. So each asymptote is within a tolerance "
+    "on a half-line of velocities."
+)

@@ -1,0 +1,245 @@
+r"""A power law under a weight: balance of forces, exponents, and the one friction maximum (F19).
+
+In units of the static state: s = a/a_0, delta/delta_0 = s**n, lambda = V tau/a_0, f = W/W_0.
+"""
+
+from functools import partial
+
+import sympy as sp
+
+from derivations.power_law import (
+    FRICTION_FORCE,
+    HIGH_COEFFICIENT,
+    LOAD,
+    LOW_SLOPE,
+    NUMBER,
+    SECTION,
+    SLOPE_POWER,
+    SQUARES,
+    in_q,
+    n,
+    z,
+)
+from derivations.record import Derivation
+from derivations.step import Proof
+from derivations.symbols import (
+    C,
+    K,
+    L,
+    Q,
+    T_n,
+    V,
+    W,
+    a,
+    a_0,
+    delta,
+    delta_0,
+    excess,
+    kappa,
+    l,
+    lam,
+    lam_cross,
+    m_n,
+    mu,
+    q,
+    r,
+    s,
+    scaled_n,
+    scaled_n_s,
+    slip_n,
+    w_n,
+)  # fmt: skip
+
+SCALED_LOAD = s**n * (s + r + lam + lam**2 / (r + n * lam)) / 2
+SCALED_SLOPE = (n + 1) * s ** (n - 1) * (s + r + lam) / 2
+AT_REST = 2 * n / (n + 1)
+"""w_n of a contact at rest."""
+_SHARE = (n - 1) / (2 * n - 1)
+CROSSING = n * 2**_SHARE * (1 + kappa) ** _SHARE / (n + 1)
+_DAMPED = 1 + q * Q**2
+SLIP = _DAMPED * (1 + q + l - (2 * n - 1) * l**2 * Q) - n * (2 * n - 1) * l**3 * Q**3
+"""Has the sign of d mu/dV at a given load."""
+
+_theorem = partial(Proof, equation=None, section=SECTION)
+
+
+def derive() -> tuple[Derivation, ...]:
+    """Prove what a weight makes of F19."""
+    return _scaled_load(), _balance(), _exponents(), _crossing(), _slip(), _maximum()
+
+
+def _scaled_load() -> Derivation:
+    proof = _theorem("F19-scaled-load", title="Power law: load of an indenter that has been lifted",
+                     text=_SCALED, uses=("F19-edge", "F19-load"))  # fmt: skip
+    proof.define(w_n, LOAD, "F19")
+    proof.define(
+        scaled_n, s ** (n + 1) * w_n / AT_REST, r"$W = K \delta a\, w_n$ over its value at rest"
+    )
+    proof.define(lam, s * l, r"$l = V \tau/a$")
+    proof.define(r, s * q, r"$x_{\mathrm{TE}}/a_0$")
+    proof.define(q, 1 / Q - n * l, "F19-edge")
+    proof.equal(scaled_n, SCALED_LOAD, "a sum of positive terms")
+    return proof.done(scaled_n, SCALED_LOAD)
+
+
+_SCALED = (
+    r"In units of the static state, $s = a/a_0$, so that $\delta/\delta_0 = s^n$, with $\lambda = "
+    r"V \tau/a_0$, $r = x_{\mathrm{TE}}/a_0$ and $W_0 = \frac{2 n}{n + 1} K \delta_0 a_0$."
+)
+
+
+def _balance() -> Derivation:
+    proof = _theorem("F19-balance", title="Power law: one depth for a weight", text=_BALANCE,
+                     uses=("F19-scaled-load", "F19-monotonic"))  # fmt: skip
+    in_q(proof)
+    proof.define(s, lam / NUMBER, r"at fixed velocity, $\lambda$ constant")
+    proof.define(r, s * q, r"$x_{\mathrm{TE}}/a_0$")
+    proof.define(scaled_n, SCALED_LOAD, "F19-scaled-load")
+    state = {r: s * q, Q: SLOPE_POWER}
+    place = lam / NUMBER
+    of_q = SCALED_LOAD.subs(state).subs(s, place)
+    slope = sp.diff(of_q, q) / sp.diff(place, q)
+    proof.equal(slope, SCALED_SLOPE, "positive: a deeper indenter carries more",
+                left=r"\frac{\partial f_n}{\partial s}")  # fmt: skip
+    proof.define(scaled_n_s, SCALED_SLOPE, r"$\partial f_n/\partial s$")
+    elasticity, whole = s * scaled_n_s / scaled_n, 1 + q + l + l**2 * Q
+    above, below = (1 + q + l * q**n) / whole, (n + 1) * l**2 * Q / whole
+    proof.equal(elasticity - n, above, "more than the damper alone")
+    proof.equal(n + 1 - elasticity, below, "less than the spring alone")
+    proof.positive(above, "a quotient of positive terms")
+    proof.positive(below, "likewise")
+    return proof.done(elasticity - n, above)
+
+
+_BALANCE = (
+    r"On a spring of support number $\kappa$ (none for a dead weight) $G = f_n + \kappa (s^n - 1) "
+    r"- 1$ vanishes. $G$ increases from $-(1 + \kappa)$ at $s = 0$ to $f_n(1) - 1 \ge 0$ at $s = "
+    r"1$, because the load grows with the velocity; so there is one depth. As $n < d \ln f_n/d \ln "
+    r"s < n + 1$, the relative error of $\delta = s^n \delta_0$ is, to first order, at most that "
+    r"with which the two sides of the balance are computed, and Newton's method in $\ln s$ divides "
+    "the error by at least $n$ from wherever it starts."
+)
+
+
+def _exponents() -> Derivation:
+    proof = _theorem("F19-exponents", title="Power law: dead weight at high velocity", text=_EXPONENTS,
+                     uses=("F19-high", "F19-balance"))  # fmt: skip
+    power = 1 - 1 / n
+    proof.define(delta, W / (C * V), r"F19-high, $W = C V \delta$")
+    proof.define(a, (n * L ** (n - 1) * delta) ** (1 / n), r"$h(a) = \delta$")
+    proof.define(mu, HIGH_COEFFICIENT * delta / a, "F19-high")
+    result = HIGH_COEFFICIENT * n ** (-1 / n) * (W / (C * V * L)) ** power
+    shown = r"\frac{n^{2 - 1/n}}{2 n - 1} \left(\frac{W}{C V L}\right)^{1 - 1/n}"
+    proof.equal(mu, result, "falls as a power of the velocity", right=shown)
+    return proof.done(mu, result)
+
+
+_EXPONENTS = (
+    r"With the load held, $\delta \propto V^{-1}$ and $\mu \propto V^{-(1 - 1/n)}$: $V^{-1/2}$ for "
+    "the parabola (Eq. 46), nearly $V^{-1}$ for a flat punch with rounded edges, and no fall at "
+    r"all for $n \to 1$. At low velocity $\mu \propto V$ for every $n$."
+)
+
+
+def _crossing() -> Derivation:
+    proof = _theorem("F19-crossing-weight", title="Power law: crossing of the asymptotes at a load",
+                     text=_CROSSING, uses=("F19-low", "F19-exponents"))  # fmt: skip
+    lifted = AT_REST * (1 + kappa) / lam
+    proof.equal(
+        *(
+            AT_REST * K * delta_0 * a_0 * (1 + kappa) / (K * lam * a_0) / delta_0,
+            lifted,
+            r"$\delta/\delta_0$ where $(1 + \kappa) W_0 = C V \delta$",
+        ),
+        left=r"\frac{(1 + \kappa) W_0}{C V \delta_0}",
+    )
+    ratio = HIGH_COEFFICIENT * lifted ** (1 - 1 / n) / (LOW_SLOPE * lam)
+    proof.define(n, 1 + excess, r"$n > 1$, that is, $\nu > 0$")
+    proof.equal(
+        *(n * _logarithm(ratio), (2 * n - 1) * _logarithm(CROSSING / lam), "high over low asymptote"),
+        left=r"n \ln \frac{L_2}{L_1}", right=r"(2 n - 1) \ln \frac{\lambda^{*}}{\lambda}",
+    )  # fmt: skip
+    proof.define(lam_cross, CROSSING, r"where it is 1: $V^{*} \tau/a_0$")
+    return proof.done(lam_cross, CROSSING)
+
+
+_CROSSING = (
+    r"At a given load the asymptotes $\frac{\delta_0}{a_0} \lambda \frac{n (n + 1)}{2 n - 1}$ and "
+    r"$\frac{\delta}{a} \frac{n^2}{2 n - 1}$ meet at one velocity. For $n = 2$ and $\kappa = 0$ "
+    "this is Eq. (48)."
+)
+
+
+def _logarithm(expr: sp.Expr) -> sp.Expr:
+    return sp.expand_log(sp.log(expr.subs(n, 1 + excess)))
+
+
+def _slip() -> Derivation:
+    proof = _theorem("F19-slip", title="Power law: friction over velocity at a load", text=_SLIP,
+                     uses=("F19-balance",))  # fmt: skip
+    friction = sp.Symbol("varphi_n", positive=True)
+    load = AT_REST / s ** (n + 1)
+    scaled, power = s ** (n - 1) * friction / load, friction / load ** (2 * n / (n + 1))
+    proof.define(w_n, load, r"$s^{n + 1} w_n = \frac{2 n}{n + 1}$")
+    proof.define(
+        m_n,
+        friction / w_n,
+        r"$\mu = (\delta/a)\, m_n$, in units of $\delta_0/a_0$: $s^{n - 1} m_n$",
+    )
+    proof.equal(
+        *(
+            _logarithm(scaled),
+            _logarithm(power * AT_REST ** ((n - 1) / (n + 1))),
+            "the friction coefficient at a given load",
+        ),
+        left=r"\ln \left(s^{n - 1} m_n\right)",
+        right=r"\ln \varphi_n - \frac{2 n}{n + 1} \ln w_n + \frac{n - 1}{n + 1} \ln \frac{2 n}{n + 1}",
+    )
+    rates = (n + 1) * n**2 * SQUARES * LOAD - 2 * n * FRICTION_FORCE * n * l * Q
+    slip = n**3 * SLIP / (2 * n - 1)
+    proof.equal(
+        rates,
+        slip,
+        r"its logarithmic slope times $w_n \varphi_n$, by F19-monotonic",
+        left=r"(n + 1) \frac{d \varphi_n}{d l} w_n - 2 n \varphi_n \frac{d w_n}{d l}",
+    )
+    proof.define(slip_n, SLIP, "what decides its sign")
+    return proof.done(slip_n, SLIP)
+
+
+_SLIP = (
+    r"Under a dead weight $\mu$ rises with the velocity where $D_n > 0$ and falls where $D_n < 0$; "
+    r"$l$ grows with the velocity, because $d \ln \lambda/d \ln l = 1 + d \ln s/d \ln l > 1 - "
+    r"\frac{1}{n + 1}$."
+)
+
+
+def _maximum() -> Derivation:
+    proof = _theorem("F19-maximum", title="Power law: one friction maximum under a dead weight",
+                     text=_MAXIMUM, uses=("F19-slip",))  # fmt: skip
+    in_q(proof)
+    peeled = 1 - q**n
+    damped, double = 1 + q * Q**2, n + excess
+    form = Q * (1 + q) + z / n - (2 * n - 1) * (z**2 + z**3 * Q / damped) / n**2
+    of_q = form.subs({Q: SLOPE_POWER, z: peeled})
+    proof.define(z, peeled, r"$z = n l Q$")
+    proof.define(T_n, form, "in this variable")
+    slip_scaled = SLIP * Q / damped
+    proof.equal(slip_scaled, T_n, "the same sign as $D_n$", left=r"\frac{Q}{1 + q Q^2} D_n")
+    rest = excess**2 + n**2 * q * Q**2 + double * q**n * (1 + z + z**2)
+    slope = excess * q ** (n - 2) * (q + rest / (n**2 * damped)) + double / n**2 * (
+        2 * n * z * Q + 3 * n * z**2 * Q**2 / damped + double * z**3 * Q**3 / damped**2
+    )
+    proof.equal(sp.diff(of_q, q), slope, "slope", left=r"\frac{d T_n}{d q}")
+    proof.positive(slope, r"with $\nu = n - 1$, each term")
+    proof.equal(form.subs({q: 0, Q: 0, z: 1}), -excess / n**2, "negative in the fast limit",
+                left="T_n(0)")  # fmt: skip
+    proof.equal(form.subs({q: 1, Q: 1, z: 0}), 2, "positive at rest", left="T_n(1)")
+    return proof.done(slip_scaled, T_n)
+
+
+_MAXIMUM = (
+    "$T_n$ increases strictly with $q$ from a negative to a positive value, so that it has one "
+    "root: for every $n > 1$ the friction coefficient of a dead weight has exactly one maximum "
+    "over the velocity. For $n = 2$ it is that of F3."
+)

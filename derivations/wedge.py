@@ -1,0 +1,184 @@
+r"""Steady sliding of a wedge h = c |x|: theorem F19 for n = 1, where everything is closed.
+
+While l = l_r/a < 1 the trailing edge is at a - l_r behind the tip; from l = 1 on it stays at the tip,
+and the friction coefficient is the slope c of the wedge.
+"""
+
+from functools import partial
+
+import sympy as sp
+
+from derivations.power_law import (
+    FRICTION_COEFFICIENT,
+    FRICTION_FORCE,
+    LOAD,
+    SECTION,
+    n,
+)
+from derivations.power_law_weight import SCALED_LOAD
+from derivations.record import Derivation
+from derivations.step import Proof
+from derivations.symbols import (
+    C,
+    K,
+    P,
+    Q,
+    V,
+    a,
+    delta,
+    eta_n,
+    inclination,
+    kappa,
+    l,
+    l_r,
+    lam,
+    m_n,
+    phi_n,
+    q,
+    r,
+    s,
+    s_peeled,
+    s_peeling,
+    w_ahead,
+    w_behind,
+    w_n,
+    y,
+)  # fmt: skip
+
+c = inclination
+PEELING, PEELED = {n: 1, Q: 1, l: 1 - q}, {n: 1, q: 0, Q: 1 / l}
+"""The forms of a power law for n = 1: while the edge moves to the tip, and when it is there."""
+SCALED_PEELING = (
+    2 * (1 + kappa - lam**2 / 2) / (kappa + sp.sqrt(kappa**2 + 4 * (1 + kappa - lam**2 / 2)))
+)
+SCALED_PEELED = 2 * (1 + kappa) / (lam + kappa + sp.sqrt((lam + kappa) ** 2 + 2 * (1 + kappa)))
+
+_theorem = partial(Proof, equation=None, section=SECTION)
+
+
+def derive() -> tuple[Derivation, ...]:
+    """Prove F19 for the wedge."""
+    return _edge(), *(_forces(*case) for case in _CASES), _slow(), _fast(), *_weight()
+
+
+def _edge() -> Derivation:
+    proof = _theorem("wedge-edge", title="Wedge: pressure and trailing edge", text=_EDGE,
+                     uses=("eq22", "eq29", "pressure"))  # fmt: skip
+    ahead, behind = ((K * (delta - c * y * a) + side * C * V * c) / (K * delta) for side in (1, -1))
+    proof.define(delta, c * a, r"$h(a) = \delta$: the half length at rest")
+    proof.define(C, K * l_r / V, "Eqs. (22) and (29)")
+    proof.define(l_r, l * a, "the retardation length in half lengths")
+    proof.equal(
+        ahead, 1 - y + l, "at $x = -y a$, largest at the tip: $1 + l$", left=r"\hat p(-y a)"
+    )
+    proof.equal(behind, 1 - y - l, "at $x = y a$", left=r"\hat p(y a)")
+    proof.define(P, 1 - y - l, "behind the tip")
+    proof.root(
+        P, y, 1 - l, r"the trailing edge if $l < 1$; if not, there is no contact behind the tip"
+    )
+    return proof.done(y, 1 - l)
+
+
+_EDGE = (
+    r"The indenter is $h = c\,|x|$, and $l = l_{\mathrm{r}}/a$ with $a = \delta/c$. The pressure "
+    r"jumps by $2 l K \delta$ at the tip. So $q = x_{\mathrm{TE}}/a = \max(0, 1 - l)$; the "
+    r"equation $Q (q + n l) = 1$ of a power law says the same for $n = 1$, with $Q = \min(1, "
+    "1/l)$, the limit of $q^{n - 1}$."
+)
+_CASES = (
+    ("wedge-peeling", "Wedge: slow sliding", r"For $l < 1$, with $q = 1 - l$.", PEELING, q,
+     1 + l**2 / 2, 2 * l - l**2 / 2),
+    ("wedge-peeled", "Wedge: fast sliding", r"For $l \ge 1$: the contact ends at the tip.", PEELED,
+     sp.S.Zero, l + sp.Rational(1, 2), l + sp.Rational(1, 2)),
+)  # fmt: skip
+
+
+def _forces(label: str, title: str, text: str, state: dict[sp.Symbol, sp.Expr], edge: sp.Expr,
+            load: sp.Expr, friction: sp.Expr) -> Derivation:  # fmt: skip
+    proof = _theorem(label, title=title, text=text, uses=("wedge-edge", "F19"))
+    if edge != 0:
+        proof.define(q, 1 - l, "wedge-edge")
+    ahead, behind = (y - y**2 / 2 + side * l * y for side in (1, -1))
+    proof.integral(w_ahead, 1 - y + l, (y, 0, 1), ahead, "ahead of the tip")
+    proof.integral(w_behind, 1 - y - l, (y, 0, edge), behind, "behind it")
+    proof.define(w_n, w_ahead + w_behind, r"$W/(K \delta a)$")
+    proof.equal(w_n, load, "load")
+    proof.define(phi_n, w_ahead - w_behind, r"$F/(K \delta^2)$, where $-h' = \pm c$")
+    proof.equal(phi_n, friction, "friction force")
+    proof.define(m_n, phi_n / w_n, r"$\mu/c$")
+    proof.equal(m_n, friction / load, "friction coefficient")
+    for name, general, own in (
+        ("w_n", LOAD, load), (r"\varphi_n", FRICTION_FORCE, friction),
+        ("m_n", FRICTION_COEFFICIENT, friction / load),
+    ):  # fmt: skip
+        form = general.subs(n, 1).subs({Q: state[Q]}).subs(q, edge)
+        proof.equal(
+            form, own, "the form of a power law, for $n = 1$", left=rf"{name}\big|_{{n = 1}}"
+        )
+    proof.define(eta_n, l * (1 + edge) / phi_n, r"$C V c^2 (x_{\mathrm{TE}} - x_{\mathrm{LE}})/F$")
+    general = 2 * (1 + edge * state[Q] ** 2) / (2 * (1 + edge * state[Q] ** 2) + l * state[Q] ** 2)
+    proof.equal(eta_n, general, "dissipated inside the contact, as for a power law")
+    return proof.done(m_n, friction / load)
+
+
+def _slow() -> Derivation:
+    proof = _theorem("wedge-low", title="Wedge: low velocity", text=_LOW, uses=("wedge-peeling",))
+    coefficient = (2 * l - l**2 / 2) / (1 + l**2 / 2)
+    proof.leading_order(coefficient, 2 * l, l, 0, "the asymptote", eps=l)
+    proof.root(2 * l - 1, l, sp.Rational(1, 2), r"it meets the other, $\mu = c$")
+    slope = 4 * (1 - l) * (2 + l) / (2 + l**2) ** 2
+    proof.equal(sp.diff(coefficient, l), slope, r"$\mu$ grows until $l = 1$",
+                left=r"\frac{1}{c} \frac{d \mu}{d l}")  # fmt: skip
+    proof.sign(slope, ">", 0, (l, 0, 1), "strictly")
+    return proof.done(coefficient, 2 * l)
+
+
+_LOW = r"For $l \to 0$, in units of $c$; the error of the asymptote is $l/4$ at first order."
+
+
+def _fast() -> Derivation:
+    proof = _theorem("wedge", title="Wedge: friction equals the slope", text=_FAST)
+    proof.recall("wedge-peeled", w_n, l + sp.Rational(1, 2))
+    proof.recall("wedge-peeled", phi_n, l + sp.Rational(1, 2))
+    proof.define(m_n, phi_n / w_n, r"$\mu/c$")
+    proof.equal(m_n, sp.S.One, r"$\mu = c$")
+    return proof.done(m_n, sp.S.One)
+
+
+_FAST = (
+    r"From $l_{\mathrm{r}} = a$ on all contact is on the one flank, so that $\mu = c$ exactly, at "
+    "any depth and under any load: vertical lift does not make the friction of a sharp tip fall, "
+    "and Eq. (50) needs a rounded one."
+)
+
+
+def _weight() -> tuple[Derivation, ...]:
+    return tuple(_depth(*case) for case in (
+        ("wedge-weight-peeling", "slow sliding", {r: s - lam}, s_peeling, SCALED_PEELING,
+         s**2 + lam**2 / 2 + kappa * (s - 1) - 1),
+        ("wedge-weight-peeled", "fast sliding", {r: 0}, s_peeled, SCALED_PEELED,
+         s**2 / 2 + lam * s + kappa * (s - 1) - 1),
+    ))  # fmt: skip
+
+
+def _depth(
+    label: str, regime: str, edge: dict[sp.Symbol, sp.Expr], name: sp.Symbol, root: sp.Expr,
+    balance: sp.Expr,
+) -> Derivation:  # fmt: skip
+    proof = _theorem(label, title=f"Wedge: depth at a load, {regime}", text=_WEIGHT,
+                     uses=("F19-balance", "wedge-edge"))  # fmt: skip
+    load = SCALED_LOAD.subs(n, 1).subs(edge)
+    proof.equal(load + kappa * (s - 1) - 1, balance, "the balance of forces", left="G")
+    switch = 3 * lam**2 / 2 + kappa * lam - (1 + kappa)
+    proof.equal(balance.subs(s, lam), switch, r"which is negative if $s > \lambda$",
+                left=r"G\big|_{s = \lambda}")  # fmt: skip
+    proof.root(balance, s, root, "its positive root")
+    proof.define(name, root, r"$\delta/\delta_0 = s$")
+    return proof.done(name, root)
+
+
+_WEIGHT = (
+    r"In units of the static state, $W_0 = K \delta_0^2/c$; $\kappa = 0$ is a dead weight. Sliding "
+    r"is slow, $\lambda < s$, if $\frac{3}{2} \lambda^2 + \kappa \lambda < 1 + \kappa$, which is "
+    r"the balance at $s = \lambda$; then $\lambda < 1$. No difference cancels."
+)

@@ -1,0 +1,65 @@
+"""Which asymptote holds, and how wrong it is: `asymptotes`."""
+
+from collections.abc import Mapping
+from typing import Any
+
+from kvtheory.api._edge import double_precision, scene_of
+from kvtheory.results import AsymptoteReport
+from kvtheory.scene.broadcasting import values
+from kvtheory.scene.model import Scene
+from kvtheory.scene.requirements import require_parabola
+
+MINIMUM_TOLERANCE = 1e-10
+"""Asymptotes that must be closer than this are not told apart from rounding."""
+
+
+def asymptotes(
+    scene: Scene | None = None,
+    *,
+    over: Mapping[str, Any] | None = None,
+    tolerance: float = 0.05,
+) -> AsymptoteReport:
+    """Say which asymptote holds for a scene, how wrong it is, and over which velocities.
+
+    Parameters
+    ----------
+    scene, over
+        As in `steady`; the indenter must be a parabola.
+    tolerance
+        Relative error up to which an asymptote counts as good, from 1e-10 to 1.
+
+    Returns
+    -------
+    AsymptoteReport
+        The critical velocity V* (theorem F5), the regime, and a line for each asymptote: its value,
+        the exact value, the relative error and the velocities where that is within the tolerance.
+
+    Raises
+    ------
+    SceneError, ValueError
+        As in `steady`, or if the tolerance is out of range.
+
+    Examples
+    --------
+    >>> import kvtheory as kv
+    >>> report = kv.asymptotes(over={"drive.velocity": "1 mm/s"})
+    >>> report.regime, report.use
+    ('low', 'L1')
+    >>> l1 = report.lines[0]
+    >>> print(f"{l1.value:.6f} {l1.exact:.6f} {l1.relative_error:.4f} {l1.velocity_max:.6f} m/s")
+    0.010000 0.009694 0.0315 0.001559 m/s
+
+    References
+    ----------
+    Nakano and Kono (2020), doi:10.3389/fmech.2020.00038, Eqs. 40-48 and Table 2.
+    """
+    scene = scene_of(scene)
+    if not MINIMUM_TOLERANCE <= tolerance <= 1.0:
+        raise ValueError(
+            f"`tolerance` = {tolerance!r}: expected a number from {MINIMUM_TOLERANCE} to 1"
+        )
+    require_parabola(scene, "the theory of asymptotes")
+    from kvtheory.models.steady import regimes  # it imports SciPy, which takes a while
+
+    with double_precision():
+        return regimes.report(scene, values(scene, over), tolerance)

@@ -1,0 +1,134 @@
+"""A simulation held against theory: `compare`."""
+
+import math
+from itertools import pairwise
+from typing import Any
+
+from kvtheory.api._edge import scene_of
+from kvtheory.api._steady import steady
+from kvtheory.api._transient import transient
+from kvtheory.results.comparison import Comparison
+from kvtheory.results.schemes import SCHEME_ROWS
+from kvtheory.scene.model import Scene
+from kvtheory.scene.quantities import Quantity, SceneError, convert, nearest, problem
+from kvtheory.scene.requirements import require_parabola
+
+EVEN, DENSE = 401, 60
+"""Samples of our own simulation: over the run, and more after each change of the drive."""
+SOONEST, SOON = 1e-4, 0.1
+"""Of the duration: where the latter begin and end."""
+FEWEST = 16
+"""Samples at least, even if the time step has to be shortened for them."""
+PER_LENGTH = Quantity("1/m", "N, elements per unit length", 0.0, True)
+
+
+def compare(
+    scene: Scene | None = None,
+    data: Any = None,
+    *,
+    per_length: Any = None,
+    scheme: str | None = None,
+    tolerance: float = 1.0,
+) -> Comparison:
+    """Hold a simulation against theory, across the whole transient, and say what is wrong with it.
+
+    Parameters
+    ----------
+    scene
+        What is modelled; without it, the paper's Table 1 with a dead weight. The indenter must be a
+        parabola, and the drive a velocity or a history.
+    data
+        A path to a CSV with named columns and bracketed units (``t [ms], z_A [mm], F_z [N/mm]``), a
+        result with the names of `kvtheory.transient`, or a mapping of arrays (by those names in SI,
+        or with a bracketed unit). Without it, `kvtheory.elements` simulates the scene.
+    per_length
+        Elements per unit length of the simulation, in 1/m or as text such as ``"200 /mm"``, if known.
+    scheme
+        Its scheme, if known: ``"paper"`` fixes the time step at 2 dx/V.
+    tolerance
+        Multiplies what theory allows.
+
+    Returns
+    -------
+    Comparison
+        The verdict, each check with what was measured and what is allowed, and a diagnosis in words.
+
+    Raises
+    ------
+    ValueError
+        If the data cannot be read, saying what is wrong with them, or an argument is out of range.
+    TypeError
+        If `data` is nothing that can hold a series.
+    ArithmeticError
+        If the theory cannot be followed to the end of the data.
+
+    Examples
+    --------
+    >>> import kvtheory as kv
+    >>> sound = kv.transient(at=[i * 1e-3 for i in range(200)])
+    >>> kv.compare(data=sound).verdict
+    'agrees'
+    >>> wrong = {"time": sound.time, "depth": sound.depth, "friction_force": -sound.friction_force}
+    >>> found = kv.compare(data=wrong)
+    >>> found.verdict, found.explanations[0].name
+    ('disagrees', 'sign of friction_force')
+
+    References
+    ----------
+    Nakano and Kono (2020), doi:10.3389/fmech.2020.00038; facts F8-F15 of the derivations.
+    """
+    scene = scene_of(scene)
+    require_parabola(scene, "the theory of the transient")
+    if not (math.isfinite(tolerance) and tolerance > 0.0):
+        raise ValueError(f"`tolerance` = {tolerance!r}: expected a positive number")
+    density = None if per_length is None else _density(per_length)
+    if scheme is not None and scheme not in SCHEME_ROWS:
+        raise ValueError(
+            f'`scheme` = "{scheme}": {nearest(str(scheme), SCHEME_ROWS)}; leave it out if it is another'
+        )
+    from kvtheory.checks.comparing import broken_off
+    from kvtheory.checks.comparing import compare as hold_against
+    from kvtheory.checks.reading import read
+    from kvtheory.models.elements.watch import DivergenceError
+
+    try:
+        found = _simulated(scene, per_length, scheme) if data is None else data
+    except DivergenceError as error:
+        return broken_off(scene, error.rows, str(error), transient, steady, scheme, tolerance)
+    return hold_against(scene, read(found), transient, steady, density, scheme, tolerance)
+
+
+def _density(per_length: Any) -> float:
+    try:
+        return convert(per_length, PER_LENGTH)
+    except ValueError as error:
+        raise SceneError([problem("`per_length`", per_length, str(error))]) from None
+
+
+def _simulated(scene: Scene, per_length: Any, scheme: str | None) -> Any:
+    """Simulate the scene by our own elements."""
+    from kvtheory.api._elements import elements
+
+    given = {"per_length": per_length, "scheme": scheme}
+    chosen = {key: value for key, value in given.items() if value is not None}
+    step = elements(scene, at=0.0, certify=False, **chosen).time_step  # it has yet to take one
+    return elements(scene, at=_times(scene, step), certify=False, **chosen)
+
+
+def _times(scene: Scene, step: float) -> list[float]:
+    """Return the times at which our own simulation is judged: dense after each change of the drive.
+
+    From each change on they are even numbers of steps apart, so that no step is shortened for them.
+    """
+    import numpy as np
+
+    end = scene.run.duration
+    stride = min(2.0 * step, end / FEWEST)
+    changes = [*(time for time in scene.drive.changes if time < end), end]
+    ticks = np.concatenate([[0.0], np.geomspace(SOONEST, SOON, DENSE), np.linspace(0.0, 1.0, EVEN)])
+    times = {end}
+    for start, stop in pairwise(changes):
+        counts = np.unique(np.round(ticks * end / stride))
+        after = start + stride * counts
+        times.update(after[after < stop - 0.5 * stride].tolist())
+    return sorted(times)

@@ -1,0 +1,56 @@
+"""What the public functions share: checks of their arguments, and of the range of floats."""
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import Any
+
+import numpy as np
+
+from kvtheory.scene.drives import TIME
+from kvtheory.scene.model import Scene
+from kvtheory.scene.quantities import SceneError, convert, problem
+
+
+def scene_of(scene: Scene | None) -> Scene:
+    """Return the scene, or that of Table 1."""
+    if scene is not None and not isinstance(scene, Scene):
+        raise TypeError(
+            f"expected a Scene, got {scene!r}; kvtheory.load_scene reads one from a file"
+        )
+    return Scene() if scene is None else scene
+
+
+def times_of(scene: Scene, at: Any, problems: list[str] | None = None) -> Any:
+    """Return the times in s, checked against the duration of the run; None stays None.
+
+    What is wrong is added to `problems`, if they are collected; else it is raised.
+    """
+    if at is None:
+        return None
+    found, times = [], []
+    for value in [at] if isinstance(at, str) or np.ndim(at) == 0 else at:
+        try:
+            times.append(convert(value, TIME))
+            if times[-1] > scene.run.duration:
+                raise ValueError(
+                    f"is after the end of the run, run.duration = {scene.run.duration} s"
+                )
+        except ValueError as error:
+            found.append(problem("`at`", value, str(error)))
+    if not times and not found:
+        found.append('`at` is empty: expected times such as "0 ms,1 ms"')
+    if problems is not None:
+        problems += found
+    elif found:
+        raise SceneError(found)
+    return times
+
+
+@contextmanager
+def double_precision() -> Iterator[None]:
+    """Turn an overflow anywhere in a calculation into an error about the scene."""
+    try:
+        with np.errstate(over="raise", invalid="raise", divide="raise"):
+            yield
+    except (FloatingPointError, OverflowError, ZeroDivisionError) as error:
+        raise ValueError(f"the scene leaves the range of double precision: {error}") from None

@@ -1,0 +1,118 @@
+"""The cheapest model that is enough: `solve`."""
+
+from collections.abc import Mapping
+from typing import Any
+
+from kvtheory.api._edge import double_precision, scene_of, times_of
+from kvtheory.api._elements import elements
+from kvtheory.api._steady import steady
+from kvtheory.api._transient import transient
+from kvtheory.ladder import series, sliding
+from kvtheory.ladder.climbing import Request, climb
+from kvtheory.results import STEADY_UNITS, TRANSIENT_UNITS, Solution
+from kvtheory.scene.model import Scene
+from kvtheory.scene.quantities import SceneError, nearest, problem
+
+MINIMUM_RTOL, MAXIMUM_RTOL = 1e-14, 1.0
+"""Below, rounding decides; above, any number would do."""
+
+
+def solve(
+    scene: Scene | None = None,
+    *,
+    quantity: Any = None,
+    at: Any = None,
+    rtol: float = 1e-3,
+    over_time: bool = False,
+) -> Solution:
+    """Answer with the cheapest model that is known to be within a tolerance, and say how it was found.
+
+    Parameters
+    ----------
+    scene
+        What is modelled; without it, the paper's Table 1 with a dead weight.
+    quantity
+        Name of what is wanted, or a list of names: of steady sliding as in `SteadyState`, or of a series
+        as in `Transient`; without it, all of them.
+    at
+        Times of a series, in s or as text with a unit; without it, steady sliding is asked for, of a
+        drive with a history that at its final velocity.
+    rtol
+        Largest error allowed, from 1e-14 to 1: of steady sliding relative to the true value; of a series
+        relative to the static depth, half length and load (the static state), as in `transient`.
+    over_time
+        Ask for a series also without `at`, at times of the model's own.
+
+    Returns
+    -------
+    Solution
+        The values, the model, its certificate and the climb: asymptote, exact, quadrature for steady
+        sliding; exact (where nothing moves), slow manifold, continuum, elements for a series.
+
+    Raises
+    ------
+    SceneError
+        If a quantity or a time is wrong; every mistake is listed.
+    ValueError
+        If `rtol` is out of range.
+    kvtheory.ladder.climbing.ToleranceError
+        If no model is known to be within the tolerance; the message says how close each came.
+
+    Examples
+    --------
+    >>> import kvtheory as kv
+    >>> scene = kv.Scene(drive=kv.Drive(velocity="1 mm/s"))
+    >>> for rtol in (0.1, 1e-3):
+    ...     found = kv.solve(scene, quantity="friction_coefficient", rtol=rtol)
+    ...     print(found.model, found.certificate.kind, round(found.friction_coefficient, 4))
+    asymptote proved 0.01
+    exact estimated 0.0097
+    >>> series = kv.solve(at=["1 ms", "200 ms"], rtol=1e-4)
+    >>> series.model, (series.friction_force / 1e3).round(2).tolist()
+    ('continuum', [2.35, 0.84])
+
+    References
+    ----------
+    Nakano and Kono (2020), doi:10.3389/fmech.2020.00038; facts F1-F13 of the derivations.
+    """
+    scene = scene_of(scene)
+    if not MINIMUM_RTOL <= rtol <= MAXIMUM_RTOL:
+        raise ValueError(
+            f"`rtol` = {rtol!r}: expected a number from {MINIMUM_RTOL} to {MAXIMUM_RTOL}"
+        )
+    over_time = over_time or at is not None
+    problems: list[str] = []
+    names = _names(quantity, TRANSIENT_UNITS if over_time else STEADY_UNITS, over_time, problems)
+    times = times_of(scene, at, problems)
+    if problems:
+        raise SceneError(problems)
+    request = Request(names, rtol, times, over_time)
+    if not over_time:
+        scene.drive.points  # noqa: B018  # a drive that is a function has no steady sliding: it raises
+        rungs = sliding.rungs(steady)
+    else:
+        rungs = series.rungs(series.Models(steady, transient, elements))
+    with double_precision():
+        return climb(scene, request, rungs)
+
+
+def _names(
+    quantity: Any, units: Mapping[str, str], over_time: bool, problems: list[str]
+) -> tuple[str, ...]:
+    """Return the names of what is asked for, and note what is wrong with them."""
+    if quantity is None:
+        return tuple(units)
+    names = list(quantity) if isinstance(quantity, (list, tuple)) else [quantity]
+    if not names:
+        problems.append("`quantity` is empty: expected a name such as friction_force")
+    other = STEADY_UNITS if over_time else TRANSIENT_UNITS
+    for name in names:
+        if name in units:
+            continue
+        if name in other:
+            hint = "leave out the times" if over_time else 'give the times, such as at="1 ms"'
+            what = f"is of {'steady sliding' if over_time else 'a time series'}; {hint}"
+        else:
+            what = nearest(str(name), units)
+        problems.append(problem("`quantity`", name, what))
+    return tuple(dict.fromkeys(names))

@@ -1,0 +1,76 @@
+"""Steady sliding: `steady`."""
+
+from collections.abc import Mapping
+from typing import Any
+
+from kvtheory.api._edge import double_precision, scene_of
+from kvtheory.models.steady.methods import METHODS
+from kvtheory.results import SteadyState
+from kvtheory.scene.broadcasting import values
+from kvtheory.scene.model import Scene
+from kvtheory.scene.quantities import nearest
+from kvtheory.scene.requirements import lacks_parabola
+
+
+def steady(
+    scene: Scene | None = None,
+    *,
+    over: Mapping[str, Any] | None = None,
+    method: str | None = None,
+) -> SteadyState:
+    """Return the state of steady sliding.
+
+    Parameters
+    ----------
+    scene
+        What is modelled; without it, the paper's Table 1 with a dead weight. A drive with a history
+        is taken at its final velocity; for one that is a function, `over` must give the velocity.
+    over
+        Values that replace those of the scene, by dotted key as in the scene file, such as
+        ``{"drive.velocity": np.geomspace(1e-3, 10)}``: SI numbers, arrays of them, or text with a
+        unit. Arrays broadcast against each other.
+    method
+        ``"exact"`` (parabola; the default for it), ``"quadrature"`` (any shape; the default for the
+        others) or ``"asymptote"`` (parabola; the one of the regime in which the velocity lies).
+
+    Returns
+    -------
+    SteadyState
+        Floats, or arrays of the broadcast shape, in SI units, with a certificate.
+
+    Raises
+    ------
+    SceneError
+        If a value or a key of `over` is wrong; every mistake is listed.
+    ValueError
+        If the method does not exist or does not cover the shape of the indenter.
+    kvtheory.models.steady.quadrature.QuadratureError
+        If a quadrature or a root finder does not reach its tolerance.
+
+    Examples
+    --------
+    >>> import kvtheory as kv
+    >>> print(f"{kv.steady().friction_coefficient:.6f}")
+    0.085709
+    >>> kv.steady(over={"drive.velocity": [0.0, 0.1, -0.1]}).friction_force.round(3).tolist()
+    [0.0, 840.521, -840.521]
+
+    References
+    ----------
+    Nakano and Kono (2020), doi:10.3389/fmech.2020.00038, Eqs. 26-49.
+    """
+    scene = scene_of(scene)
+    chosen = method_for(scene, method)
+    with double_precision():
+        return METHODS[chosen](scene, values(scene, over))
+
+
+def method_for(scene: Scene, method: str | None) -> str:
+    """Return the method of steady sliding that is asked for, or else the one that suits the shape."""
+    lacking = lacks_parabola(scene)
+    method = method or ("quadrature" if lacking else "exact")
+    if method not in METHODS:
+        raise ValueError(f'`method` = "{method}": {nearest(method, METHODS)}')
+    if method != "quadrature" and lacking:
+        raise ValueError(f'`method` = "{method}" {lacking}; use method = "quadrature"')
+    return method

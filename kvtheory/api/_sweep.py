@@ -1,0 +1,142 @@
+"""Many scenes at once: `sweep`."""
+
+from collections.abc import Callable, Mapping, Sequence
+from concurrent.futures import Executor
+from pathlib import Path
+from typing import Any
+
+from kvtheory.api._edge import scene_of, times_of
+from kvtheory.api._steady import method_for
+from kvtheory.api._transient import MAXIMUM_RTOL, MINIMUM_RTOL
+from kvtheory.scene.model import Scene
+from kvtheory.scene.requirements import require_parabola
+from kvtheory.sweeps.result import Sweep
+
+
+def sweep(
+    scene: Scene | None = None,
+    *,
+    over: Mapping[Any, Any],
+    quantities: Sequence[str] | str | None = None,
+    at: Any = None,
+    method: str | None = None,
+    rtol: float = 1e-6,
+    executor: Executor | None = None,
+    jobs: int = 1,
+    in_flight: int | None = None,
+    block: int | None = None,
+    output: str | Path | None = None,
+    progress: Callable[[int, int, int, int], None] | None = None,
+) -> Sweep:
+    """Solve a scene for many values of some of its quantities.
+
+    A scene that fails is a missing value with its reason in `Sweep.failures`; the sweep goes on.
+    The numbers are the same to the last bit for every executor and every size of block.
+
+    Parameters
+    ----------
+    scene
+        What is modelled; without it, the paper's Table 1 with a dead weight.
+    over
+        Maps a dotted key to its values: an array in SI, a list such as ``["10 ms", "1 s"]``, or a text
+        ``"1 mm/s:10 m/s:200:log"``. Each key is an axis, and the sweep is over all combinations. A
+        tuple of keys with a tuple of lists is one axis on which these values vary together. A
+        ``drive.velocity`` replaces a history.
+    quantities
+        Steady quantities by name (the default is all of them). Of a transient: ``NAME.end``,
+        ``NAME.max``, ``NAME.min`` and ``NAME.time_of_max``, with NAME as in `Transient`;
+        ``peak_to_steady_friction``, the largest |F_x| over the steady one; ``settling_time``, after
+        which F_x stays within 1 % of the steady one; ``hops``, how often the indenter takes off;
+        ``events``, as JSON. With `at`, NAME is the series; ``NAME.steady`` is the steady value always.
+    at
+        Times of the series, in s or as text with a unit.
+    method, rtol
+        As in `steady` and `transient`.
+    executor
+        Any `concurrent.futures.Executor`, also of Dask (``Client.get_executor(pure=False)``) or MPI.
+        It is not shut down.
+    jobs
+        Without `executor`, the number of own workers: threads or spawned processes, whichever is
+        faster. A script that asks for more than one needs the usual ``if __name__ == "__main__"``.
+    in_flight
+        Blocks given out at a time; default two for each worker. It bounds the memory.
+    block
+        Points in a block.
+    output
+        A file ``.csv`` or ``.nc``. Blocks are kept beside it, in ``FILE.part``, as they come, so that the
+        same call resumes a sweep that was killed. An interrupt leaves the file with what there is.
+    progress
+        Called with the points done, those done by an earlier run, the points that failed in this
+        run, and all points; `kvtheory.sweeps.progress.Progress` writes them to standard error.
+
+    Returns
+    -------
+    Sweep
+        Labelled arrays in SI. With `output`, they are read from the file when asked for.
+
+    Raises
+    ------
+    SceneError
+        If a key, value, quantity or time is wrong; every mistake is listed.
+    ValueError
+        If another argument is wrong, or `output` holds anything else than this sweep.
+    OSError
+        If a file cannot be written; what was kept stays, and the same call resumes.
+    RuntimeError
+        If the executor breaks, or loses a block again and again.
+
+    Examples
+    --------
+    >>> import kvtheory as kv
+    >>> over = {"drive.velocity": "1 mm/s:10 m/s:3:log", "foundation.retardation_time": ["0.1 s", "1 s"]}
+    >>> result = kv.sweep(over=over, quantities="friction_coefficient")
+    >>> result["friction_coefficient"].round(4).tolist()
+    [[0.0097, 0.0713], [0.0857, 0.0294], [0.0093, 0.003]]
+    """
+    from kvtheory.sweeps import session
+    from kvtheory.sweeps.plan import Plan  # what it needs takes a while to import
+
+    plan = _plan(Plan, scene_of(scene), over, quantities, at, method, rtol)
+    for name, number in (("jobs", jobs), ("in_flight", in_flight), ("block", block)):
+        if number is not None and (type(number) is not int or number < 1):
+            raise ValueError(f"`{name}` = {number!r}: expected a whole number of at least 1")
+    if executor is not None and not callable(getattr(executor, "submit", None)):
+        raise ValueError(f"`executor` = {executor!r}: expected a concurrent.futures.Executor")
+    walk = session.walker(plan, executor, jobs, in_flight, block, progress)
+    if output is None:
+        return session.in_memory(plan, walk)
+    return session.into_file(plan, walk, Path(output))
+
+
+def _plan(
+    make: Callable[..., Any],
+    scene: Scene,
+    over: Mapping[Any, Any],
+    quantities: Sequence[str] | str | None,
+    at: Any,
+    method: str | None,
+    rtol: float,
+) -> Any:
+    """Check what is asked as a whole, and return the plan."""
+    from kvtheory.sweeps.axes import axes_of
+    from kvtheory.sweeps.columns import columns_of
+
+    method = method_for(scene, method)
+    times = None if at is None else tuple(times_of(scene, at))
+    plan = make(
+        scene,
+        axes_of(scene, over),
+        columns_of(quantities, series=at is not None),
+        times,
+        method,
+        rtol,
+    )
+    if plan.transient:
+        require_parabola(scene, "the transient")
+    if not MINIMUM_RTOL <= rtol <= MAXIMUM_RTOL:
+        raise ValueError(
+            f"`rtol` = {rtol!r}: expected a number from {MINIMUM_RTOL} to {MAXIMUM_RTOL}"
+        )
+    if at is not None and not plan.series:
+        raise ValueError("`at` gives the times of series, but no quantity asked for is a series")
+    return plan

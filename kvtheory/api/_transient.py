@@ -1,0 +1,76 @@
+"""The whole transient: `transient`."""
+
+from collections.abc import Callable
+from typing import Any
+
+from kvtheory.api._edge import double_precision, scene_of, times_of
+from kvtheory.results import Transient
+from kvtheory.scene.model import Scene
+from kvtheory.scene.requirements import require_parabola
+
+MINIMUM_RTOL, MAXIMUM_RTOL = 1e-12, 1e-2
+"""Beyond these, rounding or the first step would decide."""
+
+
+def transient(
+    scene: Scene | None = None,
+    *,
+    at: Any = None,
+    rtol: float = 1e-6,
+    progress: Callable[[float], Any] | None = None,
+) -> Transient:
+    """Follow the transient of a scene, exactly: no discretized foundation.
+
+    Parameters
+    ----------
+    scene
+        What is modelled; without it, the paper's Table 1 with a dead weight. The indenter must be
+        a parabola. At t < 0 it rests at its static depth. A drive that is a function of the time is
+        replaced by polynomials within its own tolerance, which the certificate does not cover.
+    at
+        Times at which the result is wanted, in s or as text with a unit; without it, the steps of
+        the solver, subdivided.
+    rtol
+        Error allowed in a step, relative to the static state, from 1e-12 to 1e-2.
+    progress
+        Called now and then with the share of the work done, from 0 to 1.
+
+    Returns
+    -------
+    Transient
+        Arrays over time in SI, the events of the contact, and a certificate whose errors are
+        relative to the static depth, half length and load.
+
+    Raises
+    ------
+    SceneError
+        If a time is wrong; every mistake is listed.
+    ValueError
+        If the indenter is not a parabola, a time or `rtol` is out of range, or a function that drives
+        the foundation fails, is not finite, or is not smooth between its breaks.
+    ArithmeticError
+        If the motion cannot be followed to its end; the message says when and why.
+
+    Examples
+    --------
+    >>> import kvtheory as kv
+    >>> result = kv.transient(at=["0 ms", "1 ms", "200 ms"])
+    >>> (result.normal_force / 1e3).round(2).tolist()
+    [35.37, 12.73, 9.81]
+    >>> (result.friction_force / 1e3).round(2).tolist()
+    [5.35, 2.35, 0.84]
+
+    References
+    ----------
+    Nakano and Kono (2020), doi:10.3389/fmech.2020.00038, Eqs. 1-33 and Figs. 3, 4.
+    """
+    scene = scene_of(scene)
+    if not MINIMUM_RTOL <= rtol <= MAXIMUM_RTOL:
+        raise ValueError(
+            f"`rtol` = {rtol!r}: expected a number from {MINIMUM_RTOL} to {MAXIMUM_RTOL}"
+        )
+    require_parabola(scene, "the transient")
+    from kvtheory.models.continuum import solved_scene
+
+    with double_precision():
+        return solved_scene.transient(scene, times_of(scene, at), rtol, progress)

@@ -1,0 +1,178 @@
+"""Faults that show by themselves: in a failed check, in the noise, in a motion that ignores its forces."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kvtheory.checks.allowances import noise
+from kvtheory.checks.checklist import judge
+from kvtheory.checks.comparison_case import COMMON, LARGEST_SAWTOOTH, Case, common_noise, make_case
+from kvtheory.results.comparison import Check, Explanation
+from kvtheory.results.schemes import SCHEME_ROWS
+
+COARSER = 2.0
+"""Factor by which the spacing is widened, again and again, to find how coarse the data look."""
+COARSEST = 0.1
+"""Of the load: the force of half an element beyond which data are not called coarse, but wrong."""
+LIKELY, POSSIBLE = 0.8, 0.55
+"""Explained part given to what is seen but cannot be tried: a step, and a spacing, that are not known."""
+
+
+def seen(case: Case, failed: Sequence[Check]) -> Iterator[Explanation]:
+    """Return what a failed check says by itself."""
+    by_name = {check.name: check for check in failed}
+    if "stability number" in by_name:
+        number = by_name["stability number"]
+        yield Explanation(
+            "unstable time step",
+            f"the time step is unstable (F15): dt C L/M = {number.measured:.3g}, above "
+            f"{number.allowed:.4g}; take dt below {case.resolution.time_step / ratio(number) * 1e3:.3g} ms",
+            1.0, True,
+        )  # fmt: skip
+    if "elements enough" in by_name:
+        density = 1e-3 / case.resolution.spacing
+        coarse_by = by_name["elements enough"]
+        yield Explanation(
+            "too few elements",
+            f"too few elements (F15): one that enters at the leading edge changes the normal force by "
+            f"{2.0 * (coarse_by.measured or 0.0):.2g} of the load; take {density * ratio(coarse_by):.3g} /mm "
+            f"or more rather than {density:.4g} /mm",
+            1.0, True,
+        )  # fmt: skip
+    if "sampling" in by_name and len(by_name) == 1:
+        yield Explanation("sampling", "the data are sampled too coarsely to show the transient; nothing else "
+                          "speaks against them", 1.0, True)  # fmt: skip
+
+
+def ratio(check: Check) -> float:
+    """Return measured/allowed."""
+    return (check.measured or 0.0) / (check.allowed or 1.0)
+
+
+def unmoved(case: Case, failed: Sequence[Check]) -> Iterator[Explanation]:
+    """Say so if the forces are right for the motion (F11), but do not move the indenter (Eq. 17).
+
+    The excess of F_z over the load is then lost from the equation of motion while the indenter rises.
+    """
+    columns, static = case.series.columns, case.theory.static
+    if (
+        not any(check.name == "impulse balance" for check in failed)
+        or case.theory.scene.drive.last_change > 0.0
+    ):
+        return
+    if case.theory.scene.drive.final_velocity == 0.0:
+        return
+    late = case.series.time > FIRST_PART * case.series.time[-1]
+    depth, time = columns["depth"][late], case.series.time[late]
+    lift = float(np.polyfit(time, depth, 1)[0])
+    expected = contact_force(case, depth, lift)
+    given = columns["normal_force"][late]
+    off = float(np.median(np.abs(given - expected))) / static.load
+    pushed = float(np.median(given)) / static.load - 1.0
+    if pushed > PUSHED and off < FORCE_RIGHT * pushed:
+        yield Explanation(
+            "contact lost while rising",
+            f"F_z is that of the contact at the depth and rate of the data (F11), but stays {pushed:.2g} "
+            "loads above the weight without lifting the indenter as Eq. 17 demands: contact is lost from "
+            "the equation of motion while the indenter rises, as where an element counts as free once the "
+            "indenter is above the surface of the last step (Eqs. 24 and 25, F8)",
+            CERTAIN, True,
+        )  # fmt: skip
+
+
+def contact_force(case: Case, depth: NDArray[np.float64], rate: float) -> NDArray[np.float64]:
+    """Return F_z of the contact at a depth and its rate, after a start from rest (F11), in N/m."""
+    scene, static = case.theory.scene, case.theory.static
+    tau, unit = scene.foundation.retardation_time, static.depth
+    number = abs(scene.drive.final_velocity) * tau / static.half_length
+    d, v = np.maximum(depth / unit, 0.0), rate * tau / unit
+    l, r = -np.sqrt(d), np.sqrt(np.maximum(d + v + number * number, 0.0)) - number
+    width = np.maximum(r - l, 0.0)
+    f_z = 0.75 * width * (d + v - (r * r + r * l + l * l) / 3.0 - number * (r + l))
+    return np.asarray(static.load * f_z)
+
+
+FIRST_PART = 0.3
+"""Of the data: left out where the rate of the depth is taken as the mean of the rest."""
+PUSHED = 0.2
+"""Of the load: an excess of F_z that would have to move the indenter."""
+FORCE_RIGHT = 0.25
+"""Of that excess: a smaller difference between F_z and the contact's force leaves the motion to blame."""
+CERTAIN = 0.9
+"""Explained part given to it."""
+
+
+def rattling(case: Case) -> Iterator[Explanation]:
+    """Say so if the data look like an explicit scheme beyond its stability limit."""
+    scene, time = case.theory.scene, case.series.time
+    if scene.held or case.resolution.step_known:
+        return
+    steps = np.diff(time)
+    h = float(steps[steps > 0.0].min())
+    length = float(np.nanmax(np.abs(case.now["trailing_edge"] - case.now["leading_edge"])))
+    number = h * scene.foundation.damping * length / scene.support.mass
+    loud = noise(time, case.residual("normal_force")) if "normal_force" in case.names else 0.0
+    rough = loud > LARGEST_SAWTOOTH and (common_noise(case) or 0.0) > COMMON
+    limits = [row.stability_limit for row in SCHEME_ROWS.values() if row.stability_limit < np.inf]
+    limit = max(limits)
+    if number > min(limits) and rough:
+        text = (
+            f"if the data hold every step: dt C L/M = {number:.3g} with their smallest interval of "
+            f"{h * 1e3:.3g} ms, while an explicit scheme needs less than {limit:.4g}"
+        )
+    elif grows(case):
+        text = f"for the data grow beyond all bounds: an explicit scheme needs dt C L/M below {limit:.4g}"
+    else:
+        return
+    name = "unstable time step"
+    yield Explanation(name, f"the time step is unstable (F15), {text}", LIKELY, True)
+
+
+def grows(case: Case) -> bool:
+    """Whether the difference to theory becomes large, and began small.
+
+    A depth may come back, for an indenter that was thrown off falls; a force jumps without growing.
+    """
+    quarter = max(case.series.time.size // 4, 1)
+    for name, late, early in (("depth", 0, 1), ("normal_force", -quarter, quarter)):
+        if name in case.names:
+            off = np.abs(case.residual(name))
+            if off[late:].max() > max(LARGE, MANY * off[:early].max()):
+                return True
+    return False
+
+
+LARGE, MANY = 10.0, 30.0
+"""Of a scale, and of what it was at first: a difference beyond both has grown."""
+
+
+def coarse(case: Case, failed: Sequence[Check]) -> Iterator[Explanation]:
+    """Say so if the data are as theory allows for fewer elements than assumed, and the forces show it."""
+    shown = any(check.name.startswith(("normal", "friction", "discretization")) for check in failed)
+    if case.resolution.spacing_known or not shown:
+        return
+    load, spacing = case.theory.static.load, case.resolution.spacing
+    force = float(np.median(case.allowance.force)) / load
+    while force < COARSEST:
+        spacing, force = COARSER * spacing, COARSER * force
+        wider = make_case(case.theory, case.series, 1.0 / spacing, case.tolerance)
+        wider = replace(wider, resolution=replace(wider.resolution, spacing_known=False))
+        if all(
+            check.ok is not False or check.name == "discretization noise" for check in judge(wider)
+        ):
+            note = common_noise(case)
+            shared = (
+                ""
+                if note is None or note < COMMON
+                else ", and their noise is common to both forces as that of elements"
+            )
+            yield Explanation(
+                "too few elements",
+                f"too few elements (F15): the differences are as those of about {1e-3 / spacing:.3g} /mm, "
+                f"where {1e-3 / case.resolution.spacing:.3g} /mm are assumed{shared}; if so few are meant, "
+                "say so with --per-length",
+                POSSIBLE, True,
+            )  # fmt: skip
+            return

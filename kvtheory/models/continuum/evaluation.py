@@ -1,0 +1,68 @@
+"""The state at any time of a motion that was followed: depth, edges and forces."""
+
+import math
+from collections.abc import Sequence
+from typing import Any
+
+from kvtheory.models.continuum import contact as c_
+from kvtheory.models.continuum import dense_output as h_
+from kvtheory.models.continuum.contact import FREE
+from kvtheory.models.continuum.dense_output import Rows, motion
+from kvtheory.scene.base_motion import Piece, evaluate
+
+DEPTH, RATE, ACCELERATION, NUMBER, LEFT, RIGHT = range(6)
+LEFT_STATE, RIGHT_STATE, NORMAL_FORCE, FRICTION_FORCE, PEAK_PRESSURE, ROUNDING = range(6, 12)
+SIZE = 12
+"""Layout of a state, in scaled form; edges are NaN in flight. `ROUNDING` is how far rounding may have
+moved an edge: much, on ground that was left only just before."""
+
+UNIT = 4e-16
+"""Rounding of d and Y, relative to 1 + |Y|."""
+
+
+def states(times: Any, found: Any, nodes: Rows, records: Rows, pieces: Sequence[Piece]) -> None:
+    """Write the state at each of the `times` into a row of `found`.
+
+    Where the drive jumps, it is the state just after the jump.
+    """
+    for i in range(len(times)):
+        state_at(times[i], record_at(times[i], records), found[i], nodes, records, pieces)
+
+
+def record_at(s: float, records: Rows) -> int:
+    """Return the index of the last record that begins at `s` or before."""
+    low, high = 0, len(records)
+    while high - low > 1:
+        middle = (low + high) // 2
+        if records[middle][h_.START] <= s:
+            low = middle
+        else:
+            high = middle
+    return low
+
+
+def state_at(
+    s: float, index: int, found: Any, nodes: Rows, records: Rows, pieces: Sequence[Piece]
+) -> None:
+    """Write the state at `s`, within the record `index`."""
+    record = records[index]
+    d, v, dv = motion(record, s)
+    Y, number, _ = evaluate(pieces[int(record[h_.PIECE])], s)
+    sides = record[h_.LEFT_STATE : h_.LEFT_X]
+    l = r = math.nan
+    f_z = f_x = p = rounding = 0.0
+    if sides[0] != FREE:
+        # what was left at this very instant confines nothing yet
+        l, r = record[h_.LEFT_X] + Y, record[h_.RIGHT_X] + Y
+        if s > record[h_.START]:
+            past = nodes, records, pieces
+            l, l_d, _ = c_.edge(-1.0, sides[0], int(sides[1]), s, d, v, Y, number, *past)
+            r, r_d, _ = c_.edge(1.0, sides[2], int(sides[3]), s, d, v, Y, number, *past)
+            rounding = UNIT * (1.0 + abs(Y)) * max(abs(l_d), abs(r_d))
+        f_z, f_x = c_.forces(l, r, d, v, number)
+        p = max(c_.pressure(min(max(-number, l), r), d, v, number), 0.0)
+    found[DEPTH], found[RATE], found[ACCELERATION], found[NUMBER] = d, v, dv, number
+    found[LEFT], found[RIGHT] = l, r
+    found[LEFT_STATE], found[RIGHT_STATE] = sides[0], sides[2]
+    found[NORMAL_FORCE], found[FRICTION_FORCE] = f_z, f_x
+    found[PEAK_PRESSURE], found[ROUNDING] = p, rounding

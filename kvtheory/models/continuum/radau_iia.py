@@ -1,0 +1,268 @@
+r"""One step of the equation of motion, eps v' = F(s, d, v), d' = v, by a Radau IIA method.
+
+The stages are collocation points, so that the step is one polynomial of v over the whole step. F has
+a known Jacobian, and eps d'' keeps the form in which eps -> 0 leaves F = 0 at every stage: the method
+is stiffly accurate (Hairer and Wanner, Solving Ordinary Differential Equations II, sections IV.5, IV.8
+and VI.1).
+
+Why so many stages (`STAGES`): the error must be small all along the step, for memory is read off it, and
+a step costs much beside its stages. Steps and evaluations of F that the start from rest of Table 1 takes,
+for an error of the depth of about 1e-4 (seven stages give less than that at any tolerance), 1e-7 and
+1e-11:
+
+    stages   about 1e-4   about 1e-7    about 1e-11
+    3        16, 198      54, 552       548, 4965
+    4        13, 207      30, 445       106, 1181
+    5        11, 253      22, 386       56, 826
+    7        11, 341      11, 341       27, 634
+
+Beyond seven, the linear algebra takes what the evaluations save. `make benchmark` holds it against LSODA,
+`kvtheory chart work-precision` against SciPy's other methods and CVODE.
+"""
+
+import math
+from collections.abc import Sequence
+from fractions import Fraction
+from functools import cache
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.polynomial import Legendre, Polynomial
+
+from kvtheory.models.continuum import dense_output as h_
+from kvtheory.models.continuum.contact import FREE, edge, forces, pressure
+from kvtheory.models.continuum.dense_output import Rows
+from kvtheory.scene.base_motion import Piece, evaluate
+
+STAGES = ((1e-3, 4), (1e-6, 5), (0.0, 7))
+"""Number of stages for tolerances above each of these: the cheapest, as measured."""
+
+NEWTON_STEPS = 8
+NEWTON_SHARE = 1e-3
+"""Of the tolerance, for the last correction; convergence is quadratic, what is left is far below."""
+NEWTON_STALL = 0.5
+"""Of the tolerance, for a correction that rounding keeps from becoming smaller."""
+ROUNDING = 1e-15
+"""Of F, by its largest derivative: a stiff spring feels the last digit of the depth."""
+PLACES = (0.08, 0.25, 0.55)
+"""About where each step is examined, besides its end."""
+
+
+def _times(p: list[Fraction], root: Fraction) -> list[Fraction]:
+    """Return the coefficients of p(theta) (theta - root), lowest first."""
+    return [
+        low - root * high for low, high in zip([Fraction(0), *p], [*p, Fraction(0)], strict=True)
+    ]
+
+
+def _tableau(
+    stages: int,
+) -> tuple[list[float], list[list[float]], list[list[float]], list[list[float]]]:
+    """Return nodes c, matrix A, its inverse, and the powers of theta of v from V_j - v_0.
+
+    In rational arithmetic, for the inverses are badly conditioned. L_j are the Lagrange polynomials of
+    the nodes: A_ij is the integral of L_j, its inverse the derivative of theta L_j/c_j.
+    """
+    radau = Legendre.basis(stages) - Legendre.basis(stages - 1)
+    roots = np.sort(np.real(radau.roots()))
+    roots[:-1] -= radau(roots[:-1]) / radau.deriv()(roots[:-1])
+    c = [*(Fraction(x) for x in (0.5 * (1.0 + roots[:-1])).tolist()), Fraction(1)]
+    A = [[0.0] * stages for _ in c]
+    inverse = [[0.0] * stages for _ in c]
+    powers = [[0.0] * stages for _ in c]
+    for j, at in enumerate(c):
+        lagrange = [Fraction(1)]
+        for other in c[:j] + c[j + 1 :]:
+            lagrange = [x / (at - other) for x in _times(lagrange, other)]
+        for i, theta in enumerate(c):
+            A[i][j] = float(sum(x * theta ** (k + 1) / (k + 1) for k, x in enumerate(lagrange)))
+            slope = sum(x * (k + 1) * theta**k for k, x in enumerate(lagrange))
+            inverse[i][j] = float(slope / at)
+            powers[i][j] = float(lagrange[i] / at)
+    return [float(x) for x in c], A, inverse, powers
+
+
+def _probes(c: list[float]) -> list[float]:
+    """Return where each step is examined: where the defect is largest, between the stages."""
+    M = Polynomial.fromroots(c)
+    turns = np.sort(np.real(M.deriv().roots()))
+    return [float(turns[np.argmin(np.abs(turns - place))]) for place in PLACES]
+
+
+def _scales(c: list[float], probes: list[float]) -> list[list[float]]:
+    """For each probe: largest |int M|, |M| and |M'| of the step, by |M| at the probe.
+
+    The defect of a smooth step is a multiple of M = prod(theta - c_i).
+    """
+    theta = np.linspace(0.0, 1.0, 401)
+    M = Polynomial.fromroots(c)
+    inner = theta[theta >= c[0]]
+    largest = [np.abs(f).max() for f in (M.integ()(theta), M(inner), M.deriv()(inner))]
+    return [[float(x / abs(M(p))) for x in largest] for p in probes]
+
+
+class Method(NamedTuple):
+    """Nodes c, matrix A, its inverse, the powers of theta from the stages; probes, and their scales."""
+
+    nodes: Any
+    A: Any
+    inverse: Any
+    powers: Any
+    probes: Any
+    scales: Any
+
+
+@cache
+def radau(stages: int, arrays: bool = False) -> Method:
+    """Return the Radau IIA method of so many stages, as lists or arrays."""
+    tableau = _tableau(stages)
+    probes = _probes(tableau[0])
+    parts = (*tableau, probes, _scales(tableau[0], probes))
+    return Method(*(np.array(part) for part in parts)) if arrays else Method(*parts)
+
+
+def stages_for(rtol: float) -> int:
+    """Return the number of stages that is cheapest for a tolerance."""
+    return next(count for above, count in STAGES if rtol > above)
+
+
+def imbalance(
+    s: float,
+    d: float,
+    v: float,
+    Y: float,
+    number: float,
+    sides: Sequence[float],
+    kappa: float,
+    nodes: Rows,
+    records: Rows,
+    pieces: Sequence[Piece],
+) -> tuple[float, float, float, float, float]:
+    """Return F = 1 - f_z - kappa (d - 1), dF/dd, dF/dv, and both edges.
+
+    `sides` holds state and node of the left edge, then of the right one. The pressure vanishes at a
+    peeling edge and does not move a touching one, so that dF/dv is only the width.
+    """
+    F, F_d, F_v = 1.0 - kappa * (d - 1.0), -kappa, 0.0
+    if sides[0] == FREE:
+        return F, F_d, F_v, math.nan, math.nan
+    l, l_d, _ = edge(-1.0, sides[0], int(sides[1]), s, d, v, Y, number, nodes, records, pieces)
+    r, r_d, _ = edge(1.0, sides[2], int(sides[3]), s, d, v, Y, number, nodes, records, pieces)
+    if l < r:
+        f_z, _ = forces(l, r, d, v, number)
+        F -= f_z
+        F_v = -0.75 * (r - l)
+        F_d -= 0.75 * (r - l + pressure(r, d, v, number) * r_d - pressure(l, d, v, number) * l_d)
+    elif not l >= r:
+        F = math.nan
+    return F, F_d, F_v, l, r
+
+
+def collocate(
+    record: Any,
+    eps: float,
+    kappa: float,
+    tolerance: float,
+    nodes: Rows,
+    records: Rows,
+    pieces: Sequence[Piece],
+    method: Method,
+    matrix: Any,
+) -> int:
+    """Solve for the stages of the step that `record` begins, and write its powers of v.
+
+    Of s stages, row s of `matrix` holds a guess of v at the stages minus v at the start; the rest is work
+    space. Newton's method with the exact Jacobian of all stages; return the number of evaluations of
+    F, or 0 if it does not converge.
+    """
+    stages = len(method.nodes)
+    start, span, depth = record[h_.START], record[h_.SPAN], record[h_.DEPTH]
+    rate = record[h_.POWERS]
+    sides = record[h_.LEFT_STATE : h_.LEFT_X]
+    change, places, numbers = matrix[stages], matrix[stages + 1], matrix[stages + 2]
+    for i in range(stages):
+        places[i], numbers[i], _ = evaluate(
+            pieces[int(record[h_.PIECE])], start + span * method.nodes[i]
+        )
+    allowed, previous = tolerance * (1.0 + abs(rate)), math.inf
+    for iteration in range(1, NEWTON_STEPS + 1):
+        for i in range(stages):
+            a, inverse, row = method.A[i], method.inverse[i], matrix[i]
+            d, inertia = depth + span * method.nodes[i] * rate, 0.0
+            for j in range(stages):
+                d += span * a[j] * change[j]
+                inertia += eps * inverse[j] * change[j]
+            F, F_d, F_v, _, _ = imbalance(
+                start + span * method.nodes[i], d, rate + change[i], places[i], numbers[i],
+                sides, kappa, nodes, records, pieces,
+            )  # fmt: skip
+            if not math.isfinite(F):
+                return 0
+            for j in range(stages):
+                row[j] = eps * inverse[j] - span * span * F_d * a[j]
+            row[i] -= span * F_v
+            row[stages] = span * F - inertia
+        largest = eliminate(matrix)
+        for i in range(stages):
+            change[i] += matrix[i][stages]
+        stalled = 0.5 * previous <= largest <= NEWTON_STALL * allowed
+        if largest <= NEWTON_SHARE * allowed or stalled:
+            for k in range(stages):
+                power, powers = 0.0, method.powers[k]
+                for j in range(stages):
+                    power += powers[j] * change[j]
+                record[h_.POWERS + 1 + k] = power
+            return iteration * stages
+        if not largest < math.inf:
+            return 0
+        previous = largest
+    return 0
+
+
+def eliminate(matrix: Any) -> float:
+    """Solve the augmented system of all stages in place, its last column; return the largest solution."""
+    stages = len(matrix[0]) - 1
+    for k in range(stages):
+        best = k
+        for i in range(k + 1, stages):
+            if abs(matrix[i][k]) > abs(matrix[best][k]):
+                best = i
+        if not abs(matrix[best][k]) > 0.0:
+            return math.inf
+        pivot, other = matrix[k], matrix[best]
+        if best != k:
+            for j in range(k, stages + 1):
+                pivot[j], other[j] = other[j], pivot[j]
+        for i in range(k + 1, stages):
+            row = matrix[i]
+            factor = row[k] / pivot[k]
+            for j in range(k + 1, stages + 1):
+                row[j] -= factor * pivot[j]
+    largest = 0.0
+    for k in range(stages - 1, -1, -1):
+        row = matrix[k]
+        for j in range(k + 1, stages):
+            row[stages] -= row[j] * matrix[j][stages]
+        row[stages] /= row[k]
+        largest = max(largest, abs(row[stages]))
+    return largest
+
+
+def defect_error(
+    span: float,
+    eps: float,
+    F_d: float,
+    F_v: float,
+    inertia: float,
+    F: float,
+    scales: Sequence[float],
+) -> float:
+    """Estimate the error of v over the step from the defect eps v' - F at one of the probes.
+
+    The error e obeys eps e' = F_v e + F_d int e - defect. It is the integral of the defect where
+    inertia rules, the defect itself where damping does, its derivative where stiffness does.
+    """
+    integral, value, derivative = scales[0], scales[1], scales[2]
+    defect = max(abs(inertia - F) - ROUNDING * (1.0 - F_d), 0.0)
+    resistance = eps / integral - span * F_v / value - span * span * F_d / derivative
+    return defect * span / resistance

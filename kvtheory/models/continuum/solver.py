@@ -1,0 +1,248 @@
+r"""The whole transient without discretizing the foundation: one equation of motion, two edges.
+
+    eps d'' = 1 - f_z - kappa (d - 1),    d(0) = 1, d'(0) = 0, at rest for s < 0
+
+with f_z in closed form in d, d', lambda and the two edges (fact F11). Between events the right-hand
+side is smooth; a step that runs over an event is cut there, for its polynomial continues the states
+of the edges that it began with. A fixed indenter, d = 1, needs no equation, only events.
+"""
+
+import math
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from kvtheory.models.continuum import compiled, evaluation, stepping
+from kvtheory.models.continuum import contact as c_
+from kvtheory.models.continuum import dense_output as h_
+from kvtheory.models.continuum import run as r_
+from kvtheory.models.continuum.contact import FREE, PEELING, TOUCHING
+from kvtheory.models.continuum.run import Run, StepControl, as_arrays, begin, with_more_room
+from kvtheory.scene.base_motion import BaseMotion
+
+STEP_LIMIT = 100_000
+ATTEMPTS = 1000
+"""Between two looks at how far the run has come."""
+
+
+class TransientError(ArithmeticError):
+    """The transient could not be followed further; the message says why and when."""
+
+    def __init__(self, reason: str, s: float, name: str = "s", unit: str = "") -> None:
+        super().__init__(f"{reason} at {name} = {s!r}{unit}")
+        self.reason, self.s = reason, s
+
+
+REASONS = {
+    stepping.STUCK: "the step length went to zero",
+    stepping.INCONSISTENT: "no consistent state of the edges",
+}
+
+
+class ScaledEvent(NamedTuple):
+    """What happened at the time `s`."""
+
+    s: float
+    kind: str
+
+
+class Moment(NamedTuple):
+    """State at one time in scaled form; edges are NaN and states ``"free"`` in flight."""
+
+    s: float
+    depth: float
+    rate: float
+    acceleration: float
+    left: float
+    right: float
+    left_state: str
+    right_state: str
+    normal_force: float
+    friction_force: float
+
+
+STATE_NAMES = {PEELING: "peeling", TOUCHING: "touching", FREE: "free"}
+
+
+@dataclass(frozen=True)
+class Trajectory:
+    """A solved transient: evaluate it anywhere in [0, end] with `at` or `states`.
+
+    `rows` is the finished run, with arrays for rows if its kernels were compiled.
+    """
+
+    end: float
+    inertia_number: float
+    support_number: float
+    rows: Run
+    compiled: bool
+
+    @property
+    def steps(self) -> int:
+        """Number of steps taken."""
+        return int(self.rows.counts[r_.RECORDS])
+
+    @property
+    def rejected(self) -> int:
+        """Number of steps repeated."""
+        return int(self.rows.counts[r_.REJECTED])
+
+    @property
+    def evaluations(self) -> int:
+        """Number of evaluations of the equation of motion."""
+        return int(self.rows.counts[r_.EVALUATIONS])
+
+    @cached_property
+    def events(self) -> tuple[ScaledEvent, ...]:
+        """What happened to the contact, in the order of time."""
+        rows = self.rows.events[: self.rows.counts[r_.EVENTS]]
+        found = [ScaledEvent(float(s), stepping.KINDS[int(kind)]) for s, kind in rows]
+        return tuple(sorted([*found, *self._memory()], key=lambda event: event.s))
+
+    def _memory(self) -> Iterator[ScaledEvent]:
+        """Yield when an edge begins to touch ground that was touched before, and when it ceases to."""
+        records = np.array(self.rows.records[: self.steps])
+        left_at = np.array(self.rows.nodes)[:, c_.IN_S]
+        for name, state, node in (
+            ("left", h_.LEFT_STATE, h_.LEFT_NODE),
+            ("right", h_.RIGHT_STATE, h_.RIGHT_NODE),
+        ):
+            touched = left_at[records[:, node].astype(int)] > -math.inf
+            remembers = (records[:, state] == TOUCHING) & touched
+            for k in np.flatnonzero(np.diff(remembers, prepend=False)):
+                what = "begins" if remembers[k] else "ends"
+                yield ScaledEvent(float(records[k, h_.START]), f"memory {what} at the {name} edge")
+
+    @cached_property
+    def records(self) -> list[list[float]]:
+        """The polynomials of the steps, as lists."""
+        return _lists(self.rows.records, self.steps)
+
+    @cached_property
+    def nodes(self) -> list[list[float]]:
+        """What the edges left behind, as lists."""
+        return _lists(self.rows.nodes, self.rows.counts[r_.NODES])
+
+    @cached_property
+    def pieces(self) -> list[list[float]]:
+        """The pieces of the drive, as lists."""
+        return _lists(self.rows.given.pieces, len(self.rows.given.pieces))
+
+    @cached_property
+    def starts(self) -> list[float]:
+        """The times at which the steps begin."""
+        return [float(row[h_.START]) for row in self.rows.records[: self.steps]]
+
+    def at(self, s: float) -> Moment:
+        """Return the state at `s`; where the drive jumps, just after the jump."""
+        row = self.states([s])[0].tolist()
+        left, right = row[evaluation.LEFT_STATE], row[evaluation.RIGHT_STATE]
+        return Moment(
+            s, row[evaluation.DEPTH], row[evaluation.RATE], row[evaluation.ACCELERATION],
+            row[evaluation.LEFT], row[evaluation.RIGHT], STATE_NAMES[left], STATE_NAMES[right],
+            row[evaluation.NORMAL_FORCE], row[evaluation.FRICTION_FORCE],
+        )  # fmt: skip
+
+    def states(self, s: ArrayLike) -> NDArray[np.float64]:
+        """Return the states at an array of times: a row for each, laid out as in `states`."""
+        times = np.asarray(s, dtype=float)
+        if not np.all((times >= 0.0) & (times <= self.end)):
+            raise ValueError(f"`s` must lie in [0, {self.end!r}], got {s!r}")
+        if self.compiled:
+            found = np.empty((times.size, evaluation.SIZE))
+            records = self.rows.records[: self.steps]
+            evaluate = compiled.kernels()[1]
+            evaluate(times, found, self.rows.nodes, records, self.rows.given.pieces)
+            return found
+        rows = [[0.0] * evaluation.SIZE for _ in range(times.size)]
+        evaluation.states(times.tolist(), rows, self.nodes, self.records, self.pieces)
+        return np.array(rows).reshape(-1, evaluation.SIZE)
+
+
+def solve(
+    drive: BaseMotion,
+    inertia_number: float,
+    support_number: float,
+    end: float,
+    rtol: float = 1e-9,
+    *,
+    fast: bool | None = None,
+    control: StepControl = StepControl(),  # noqa: B008 - immutable
+    progress: Callable[[float], Any] | None = None,
+) -> Trajectory:
+    """Follow the transient of `drive` from rest until `end`, in scaled form.
+
+    Parameters
+    ----------
+    drive
+        The drive number lambda(s); it must reach `end`.
+    inertia_number
+        eps > 0; not used if the support is fixed.
+    support_number
+        kappa >= 0; infinity is the fixed indenter, d = 1.
+    end
+        Time until which to solve, in units of tau.
+    rtol
+        Error allowed in a step for d' relative to 1 + |d'|, all along the step.
+    fast
+        Whether the kernels are compiled; by default, if numba is installed and enough steps were
+        interpreted for that to pay. The numbers are the same.
+    control
+        What sets the steps beside the tolerance.
+    progress
+        Called with the time reached, now and then.
+
+    Raises
+    ------
+    TransientError
+        If a step cannot be made, or too many would be needed.
+
+    Examples
+    --------
+    >>> motion = solve(BaseMotion.constant(4.0, end=2.0), 0.04, 0.0, end=2.0)
+    >>> print(f"{motion.at(2.0).depth:.6f}")
+    0.303968
+    """
+    if not 0.0 < end <= drive.end:
+        raise ValueError(f"`end` must be positive and within the drive, got {end!r}")
+    if not (inertia_number > 0.0 and support_number >= 0.0 and 1e-13 <= rtol <= 1e-2):
+        raise ValueError(
+            "expected `inertia_number` > 0, `support_number` >= 0, 1e-13 <= `rtol` <= 1e-2"
+        )
+    numbers = float(inertia_number), float(support_number)
+    arrays = compiled.worthwhile() if fast is None else fast
+    run = begin(drive, *numbers, float(end), rtol, control, arrays=arrays)
+    run, arrays = _followed(run, arrays, fast is None, progress)
+    return Trajectory(end, inertia_number, support_number, run, arrays)
+
+
+def _followed(
+    run: Run, arrays: bool, may_compile: bool, progress: Callable[[float], Any] | None
+) -> tuple[Run, bool]:
+    """Walk a run to its end; return it, and whether its rows are arrays for compiled kernels."""
+    left, status = STEP_LIMIT, stepping.PAUSED
+    while status != stepping.DONE:
+        if may_compile and not arrays and compiled.worthwhile():
+            run, arrays = as_arrays(run), True
+        walk: Callable[[Run, int], int] = compiled.kernels()[0] if arrays else stepping.walk
+        status = walk(run, min(ATTEMPTS, left))
+        before, left = left, STEP_LIMIT - int(run.counts[r_.RECORDS] + run.counts[r_.REJECTED])
+        compiled.Tally.steps += 0 if arrays else before - left
+        s = float(run.now[r_.S])
+        if status in REASONS:
+            raise TransientError(REASONS[status], s)
+        if status == stepping.FULL:
+            run = with_more_room(run)
+        if left <= 0 and status != stepping.DONE:
+            raise TransientError(f"more than {STEP_LIMIT} steps", s)
+        if progress is not None:
+            progress(s)
+    return run, arrays
+
+
+def _lists(rows: Any, count: int) -> list[list[float]]:
+    return [[float(x) for x in row] for row in rows[:count]]

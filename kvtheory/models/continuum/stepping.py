@@ -1,0 +1,282 @@
+"""The walk from step to step: step lengths, events, and what the edges leave behind."""
+
+import math
+from typing import Any
+
+from kvtheory.models.continuum import contact as c_
+from kvtheory.models.continuum import dense_output as h_
+from kvtheory.models.continuum import run as r_
+from kvtheory.models.continuum.contact import FREE, PEELING, TOUCHING
+from kvtheory.models.continuum.dense_output import motion
+from kvtheory.models.continuum.memory_chains import (
+    free_row,
+    land,
+    leave,
+    push,
+    push_strip,
+    set_end,
+    trim,
+)
+from kvtheory.models.continuum.run import SIDES, Run, has_room
+from kvtheory.models.continuum.trial_step import Monitors, attempt, drive_now
+from kvtheory.scene.base_motion import END as PIECE_END
+from kvtheory.scene.base_motion import START as PIECE_START
+from kvtheory.scene.base_motion import evaluate
+
+SAFETY = 0.9
+SHRINK, TINY = 0.2, 1e-12
+OVERRUN = 1e-4
+"""Share of a step that may lie beyond an event: the states of the edges change there, and a step that
+ran farther is repeated with the right length."""
+BRIEF = 1e-10
+"""A piece of a step up to an event so close to its start that it needs no repetition."""
+RELIEF = 0.25
+"""How far the ground may slide in a step of the flight above it, in units of a_0."""
+SMOOTH = 1e-9
+"""Relative difference of lambda or lambda' at a joint of the drive that is only rounding."""
+TOGGLE_LIMIT = 12
+"""Changes of state at one instant; more than a few would mean that no state is consistent."""
+
+DONE, PAUSED, FULL, STUCK, INCONSISTENT = range(5)
+"""How a walk ended: at the end; after the attempts it was given; without room for another step; with
+a step length of zero; without a consistent state of the edges."""
+
+PEELS, TOUCHES, CROSSES, TAKE_OFF, LANDING = 0.0, 2.0, 4.0, 6.0, 7.0
+"""Kinds of events, those of the left edge; the right edge adds 1."""
+KINDS = (
+    "left edge peels",
+    "right edge peels",
+    "left edge touches",
+    "right edge touches",
+    "left edge crosses to older ground",
+    "right edge crosses to older ground",
+    "take-off",
+    "landing",
+)
+
+
+def walk(run: Run, attempts: int) -> int:
+    """Walk to the end of the run, or for so many attempts at a step; say how it ended."""
+    now = run.now
+    for _ in range(attempts):
+        if run.counts[r_.MET] == 0:
+            if not has_room(run):
+                return FULL
+            _meet_drive(run)
+            run.counts[r_.MET] = 1
+        until = min(run.given.pieces[run.counts[r_.PIECE]][PIECE_END], run.given.end)
+        if now[r_.S] >= run.given.end:
+            return DONE
+        if now[r_.S] >= until:
+            run.counts[r_.PIECE] += 1
+            run.counts[r_.MET] = 0
+            continue
+        if not has_room(run):
+            return FULL
+        status = _step(run, until)
+        if status != DONE:
+            return status
+    return PAUSED
+
+
+def _meet_drive(run: Run) -> None:
+    """Let a jump of lambda detach strips, or turn peeling edges where the pressure rises."""
+    now, index = run.now, run.counts[r_.PIECE]
+    Y, number, slope = drive_now(run, now[r_.S])
+    last = last_slope = 0.0
+    if index > 0:
+        _, last, last_slope = evaluate(run.given.pieces[index - 1], now[r_.S])
+    jumps = abs(number - last) > SMOOTH * (1.0 + abs(number))
+    if jumps or abs(slope - last_slope) > SMOOTH * (1.0 + abs(slope)):
+        now[r_.KINK] = now[r_.S]
+    if jumps or index == 0:
+        _restart(run)
+    if run.states[0] != FREE:
+        _detach(run, Y, number)
+
+
+def _detach(run: Run, Y: float, number: float) -> None:
+    now = run.now
+    left, right = run.edges[0], run.edges[1]
+    for k in range(2):
+        side, X = SIDES[k], run.edges[k]
+        p = c_.pressure(X + Y, now[r_.D], now[r_.V], number)
+        allowed = run.given.allowed * (1.0 + abs(number) + abs(now[r_.V]))
+        if p < -allowed:
+            limit = c_.root(side, number, now[r_.D] + now[r_.V])[0] - Y
+            if k == 0:
+                left = max(limit, X)
+            else:
+                right = min(limit, X)
+        elif p > allowed and run.states[k] == PEELING:
+            _turn(run, k)
+    if left >= right:
+        _leave(run, Y)
+        return
+    for k in range(2):
+        X = right if k else left
+        if run.edges[k] != X:
+            if run.states[k] == TOUCHING:
+                trim(run, k, Y)
+                _note(run, PEELS + k)
+            run.states[k] = PEELING
+            push_strip(run, k, X, run.edges[k], Y)
+            run.edges[k] = X
+
+
+def _restart(run: Run) -> None:
+    """Forget the step length, for v' jumps or is singular here."""
+    now = run.now
+    _, number, _ = drive_now(run, now[r_.S])
+    width = run.edges[1] - run.edges[0] if run.states[0] != FREE else 1.0
+    fast = 1.0
+    if not run.given.fixed:
+        fast = run.given.eps / (run.given.eps + 0.75 * max(width, 1e-3))
+    now[r_.SPAN], run.counts[r_.SMOOTH] = run.given.first_step * fast / (1.0 + abs(number)), 0
+
+
+def _note(run: Run, kind: float) -> None:
+    event = run.events[run.counts[r_.EVENTS]]
+    event[0], event[1] = run.now[r_.S], kind
+    run.counts[r_.EVENTS] += 1
+
+
+def _step(run: Run, until: float) -> int:
+    """Try one step; keep it up to its first event, or try a shorter one next time."""
+    now = run.now
+    span, whole = min(now[r_.SPAN], _longest(run)), until - now[r_.S]
+    share = run.given.straight if _begins(run) else 1.0
+    if span >= whole:
+        span = share * whole
+    if not now[r_.S] + 0.1 * span > now[r_.S]:
+        return STUCK
+    if whole - span < 0.1 * OVERRUN * span:
+        span = whole
+    record = run.records[run.counts[r_.RECORDS]]
+    _begin(run, record, span)
+    size, found, violated = attempt(run, record)
+    until_event = found - now[r_.S]
+    if BRIEF * (1.0 + now[r_.S]) < until_event < span / (1.0 + OVERRUN):
+        run.counts[r_.REJECTED] += 1
+        now[r_.SPAN] = share * (1.0 + 0.5 * OVERRUN) * until_event
+        return DONE
+    power = -1.0 / (len(run.given.method.nodes) + 1)
+    factor = min(run.given.grow, max(SHRINK, SAFETY * math.pow(max(size, TINY), power)))
+    if size > 1.0:
+        run.counts[r_.REJECTED] += 1
+        now[r_.SPAN] = span * factor
+        return DONE
+    now[r_.SPAN] = max(now[r_.SPAN], span * factor) if factor > 1.0 else span * factor
+    end = until if span == whole else now[r_.S] + span
+    if found < math.inf:
+        end = found
+    if end > now[r_.S]:
+        _commit(run, record, end)
+    if found < math.inf:
+        return _change(run, violated)
+    run.counts[r_.TOGGLES] = 0
+    return DONE
+
+
+def _begins(run: Run) -> bool:
+    """Whether the motion went on in another way until now: before an event, or on another piece."""
+    now = run.now
+    at_piece = now[r_.S] == run.given.pieces[run.counts[r_.PIECE]][PIECE_START]
+    return at_piece or run.counts[r_.SMOOTH] == 0 or run.counts[r_.TOGGLES] > 0
+
+
+def _longest(run: Run) -> float:
+    now = run.now
+    if run.states[0] != FREE:
+        return run.given.longest
+    _, number, _ = drive_now(run, now[r_.S])
+    slide = RELIEF / (RELIEF + abs(number))
+    if now[r_.D] >= 0.0:
+        return min(run.given.longest, slide)
+    return min(run.given.longest, max(slide, -0.5 * now[r_.D] / (abs(now[r_.V]) + 1e-3)))
+
+
+def _begin(run: Run, record: Any, span: float) -> None:
+    """Begin a record: a step of the length `span`, its powers of v still zero."""
+    now = run.now
+    record[h_.START], record[h_.SPAN] = now[r_.S], span
+    record[h_.DEPTH], record[h_.PIECE] = now[r_.D], run.counts[r_.PIECE]
+    record[h_.LEFT_STATE], record[h_.LEFT_NODE] = run.states[0], run.tops[0]
+    record[h_.RIGHT_STATE], record[h_.RIGHT_NODE] = run.states[1], run.tops[1]
+    record[h_.LEFT_X], record[h_.RIGHT_X] = run.edges[0], run.edges[1]
+    record[h_.POWERS] = now[r_.V]
+    for i in range(h_.POWERS + 1, len(record)):
+        record[i] = 0.0
+
+
+def _commit(run: Run, record: Any, end: float) -> None:
+    """Keep `record` up to `end`, and what the peeling edges swept meanwhile."""
+    now = run.now
+    Y_0, _, _ = drive_now(run, now[r_.S])
+    d, v, _ = motion(record, end)
+    Y, number, _ = drive_now(run, end)
+    index = run.counts[r_.RECORDS]
+    run.counts[r_.RECORDS] += 1
+    if run.states[0] != FREE:
+        for k in range(2):
+            xi, _, node = c_.edge(
+                SIDES[k], run.states[k], run.tops[k], end, d, v, Y, number,
+                run.nodes, run.records, run.given.pieces,
+            )  # fmt: skip
+            if run.states[k] == PEELING:
+                row = run.nodes[free_row(run)]
+                set_end(row, c_.IN_X, xi - Y, end, d, Y)
+                set_end(row, c_.OUT_X, run.edges[k], now[r_.S], now[r_.D], Y_0)
+                push(run, k, index, SIDES[k])
+            else:
+                run.tops[k] = node
+            run.edges[k] = xi - Y
+    now[r_.S], now[r_.D], now[r_.V], run.counts[r_.SMOOTH] = end, d, v, 1
+
+
+def _change(run: Run, violated: Monitors) -> int:
+    """Change the states that the event at the present time violates."""
+    now = run.now
+    run.counts[r_.TOGGLES] += 1
+    if run.counts[r_.TOGGLES] > TOGGLE_LIMIT:
+        return INCONSISTENT
+    Y, _, _ = drive_now(run, now[r_.S])
+    if run.states[0] == FREE:
+        land(run, Y)
+        _note(run, LANDING)
+        _restart(run)
+    elif violated[0] < 0.0:
+        _leave(run, Y)
+    else:
+        for k in range(2):
+            state, ground = violated[2 * k + 1], violated[2 * k + 2]
+            if ground < 0.0:
+                run.tops[k] = int(run.nodes[run.tops[k]][c_.NEXT])
+                _note(run, CROSSES + k)
+            elif state < 0.0 and run.states[k] != FREE:
+                _change_side(run, k, Y)
+    return DONE
+
+
+def _change_side(run: Run, k: int, Y: float) -> None:
+    now = run.now
+    if run.states[k] == PEELING:
+        _turn(run, k)
+        return
+    if SIDES[k] * (run.edges[k] + Y + drive_now(run, now[r_.S])[1]) <= 0.0:
+        _leave(run, Y)  # the pressure fell to zero at the root of the other side
+        return
+    trim(run, k, Y)
+    run.states[k] = PEELING
+    _note(run, PEELS + k)
+
+
+def _turn(run: Run, k: int) -> None:
+    run.states[k] = TOUCHING
+    _note(run, TOUCHES + k)
+
+
+def _leave(run: Run, Y: float) -> None:
+    leave(run, Y)
+    _note(run, TAKE_OFF)
+    _restart(run)

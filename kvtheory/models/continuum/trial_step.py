@@ -1,0 +1,150 @@
+"""A step on trial: its error, and its first event."""
+
+import math
+from typing import Any
+
+from kvtheory.models.continuum import contact as c_
+from kvtheory.models.continuum import dense_output as h_
+from kvtheory.models.continuum import run as r_
+from kvtheory.models.continuum.contact import FREE, TOUCHING
+from kvtheory.models.continuum.dense_output import motion
+from kvtheory.models.continuum.flight import summit
+from kvtheory.models.continuum.radau_iia import collocate, defect_error, imbalance
+from kvtheory.models.continuum.run import SIDES, Run
+from kvtheory.scene.base_motion import evaluate
+
+EVENT_RESOLUTION = 1e-13
+
+Monitors = tuple[float, float, float, float, float]
+"""What must stay positive: the width (in flight, the gap), state and ground of the left edge, and of
+the right one."""
+
+NO_EVENT = (math.inf, math.inf, math.inf, math.inf, math.inf)
+
+
+def drive_now(run: Run, s: float) -> tuple[float, float, float]:
+    """Return Y, lambda, lambda' of the present piece of the drive."""
+    return evaluate(run.given.pieces[run.counts[r_.PIECE]], s)
+
+
+def attempt(run: Run, record: Any) -> tuple[float, float, Monitors]:
+    """Return the error of a step by its tolerance, infinite if it failed, and its first event.
+
+    The event is given by its time, infinite if there is none, and the monitors just after it.
+    """
+    start, span = record[h_.START], record[h_.SPAN]
+    if not run.given.fixed:
+        evaluations = _solve(run, record)
+        run.counts[r_.EVALUATIONS] += evaluations
+        if evaluations == 0:
+            return math.inf, math.inf, NO_EVENT
+    size, before, found_after, found = 0.0, start, start, math.inf
+    for probe in range(len(run.given.method.probes) + 1):
+        s = (
+            start
+            + (run.given.method.probes[probe] if probe < len(run.given.method.probes) else 1.0)
+            * span
+        )
+        slack, error = _probe(run, record, s, probe)
+        size = max(size, error)
+        if math.isnan(slack):
+            return math.inf, math.inf, NO_EVENT
+        if found == math.inf and slack < 0.0:
+            found_after, found = before, s
+        before = s
+    if found == math.inf:
+        return size, math.inf, NO_EVENT
+    found, violated = _locate(run, record, found_after, found)
+    return size, found, violated
+
+
+def _solve(run: Run, record: Any) -> int:
+    now, stages = run.now, len(run.given.method.nodes)
+    guess = run.matrix[stages]
+    for i in range(stages):
+        guess[i] = 0.0
+        if run.counts[r_.SMOOTH] != 0:
+            last = run.records[run.counts[r_.RECORDS] - 1]
+            s = now[r_.S] + run.given.method.nodes[i] * record[h_.SPAN]
+            guess[i] = motion(last, s)[1] - now[r_.V]
+    return collocate(
+        record, run.given.eps, run.given.kappa, run.given.rtol,
+        run.nodes, run.records, run.given.pieces, run.given.method, run.matrix,
+    )  # fmt: skip
+
+
+def _probe(run: Run, record: Any, s: float, probe: int) -> tuple[float, float]:
+    """Return the slack of all states at `s`, and the error there by the tolerance."""
+    now = run.now
+    values, F, F_d, F_v, dv = monitors(run, record, s)
+    if run.given.fixed or probe >= len(run.given.method.probes):
+        return smallest(values), 0.0
+    run.counts[r_.EVALUATIONS] += 1
+    scales = run.given.method.scales[probe]
+    error = defect_error(record[h_.SPAN], run.given.eps, F_d, F_v, run.given.eps * dv, F, scales)
+    return smallest(values), error / (run.given.rtol * (1.0 + abs(now[r_.V])))
+
+
+def smallest(values: Monitors) -> float:
+    """Return the least of the monitors, NaN if the first is."""
+    least = values[0]
+    for value in values:
+        least = min(least, value)
+    return least
+
+
+def monitors(run: Run, record: Any, s: float) -> tuple[Monitors, float, float, float, float]:
+    """Return what must stay positive, and F, dF/dd, dF/dv and v'."""
+    allowed = run.given.allowed
+    d, v, dv = motion(record, s)
+    Y, number, slope = drive_now(run, s)
+    sides = record[h_.LEFT_STATE : h_.LEFT_X]
+    F, F_d, F_v, l, r = imbalance(
+        s, d, v, Y, number, sides, run.given.kappa, run.nodes, run.records, run.given.pieces
+    )
+    if sides[0] == FREE:
+        gap = -d
+        if d >= 0.0:
+            left, right = run.tops[0], run.tops[1]
+            gap = -summit(s, d, Y, left, right, run.nodes, run.records, run.given.pieces)[0]
+        return (gap + allowed, math.inf, math.inf, math.inf, math.inf), F, F_d, F_v, dv
+    instant = d, v, dv, Y, number, slope
+    left_state, left_ground = _slack(run, 0, s, l, instant)
+    right_state, right_ground = _slack(run, 1, s, r, instant)
+    values = (
+        r - l + allowed,
+        left_state + allowed,
+        left_ground + allowed,
+        right_state + allowed,
+        right_ground + allowed,
+    )
+    return values, F, F_d, F_v, dv
+
+
+def _slack(
+    run: Run, k: int, s: float, xi: float, instant: tuple[float, float, float, float, float, float]
+) -> tuple[float, float]:
+    state, node = run.states[k], run.tops[k]
+    if state == TOUCHING:
+        node = c_.reached(SIDES[k], node, s, instant[0], instant[3], run.nodes)
+    return c_.slack(SIDES[k], state, run.nodes[node], s, xi, instant)
+
+
+def _locate(run: Run, record: Any, low: float, high: float) -> tuple[float, Monitors]:
+    """Return the time of the first violation in (low, high], and the monitors just after it."""
+    violated = monitors(run, record, high)[0]
+    at_low, at_high, turn = math.nan, smallest(violated), 0
+    while high - low > EVENT_RESOLUTION * (1.0 + abs(high)):
+        turn += 1
+        middle = 0.5 * (low + high)
+        if turn % 3 != 0 and not math.isnan(at_low):  # by halves now and then: secants may crawl
+            secant = low + (high - low) * at_low / (at_low - at_high)
+            margin = 0.01 * (high - low)
+            middle = min(max(secant, low + margin), high - margin)
+        values = monitors(run, record, middle)[0]
+        value = smallest(values)
+        if value < 0.0:
+            high, at_high, violated = middle, value, values
+        else:
+            low, at_low = middle, value
+    return (run.now[r_.S] if low == run.now[r_.S] else high), violated

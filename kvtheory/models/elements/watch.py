@@ -1,0 +1,115 @@
+"""Doubts about a time step before a run, and a watch for the signs of instability during it."""
+
+import math
+from collections import deque
+from collections.abc import Sequence
+
+import numpy as np
+
+from kvtheory.models.elements.model import Model, span
+from kvtheory.models.elements.row import Row
+from kvtheory.models.elements.schemes import DEFAULT, Motion, Scheme
+from kvtheory.models.elements.stability import lengths, limit_at
+from kvtheory.scene.base_motion import BaseMotion
+
+LONGEST_PASS = 0.25
+"""Of the static half length, for the elements in a step; with more, some are pressed within a step."""
+ADVISED = 0.9
+"""Of the stability limit, for the step that is advised."""
+RISE = 5.0
+"""An indenter that leaves so many times faster than the foundation can throw it has diverged."""
+WINDOW = 40
+"""Steps over which the balance of forces is judged: a sudden change of the drive upsets only a few."""
+IMBALANCE = 0.05
+"""Of the forces: a mean imbalance that a stable run stays below, besides that of single elements."""
+
+ELEMENTS = 4.0
+"""Elements whose coming and going may upset the balance in a stable run, of all in contact at rest."""
+
+
+class DivergenceError(ArithmeticError):
+    """The time step is so long that the run became unstable; the message says when and why.
+
+    `rows` holds what was to be reported until then: tuples in the order of `TRANSIENT_UNITS`.
+    """
+
+    rows: Sequence[tuple[float, ...]] = ()
+
+
+def doubts(scheme: Scheme, model: Model, path: BaseMotion, h: float) -> str:
+    """Return what is doubtful about a time step before the run begins, or nothing."""
+    if math.isfinite(model.mass) and h > limit_at(scheme, model, max(lengths(model, path))):
+        return f"the run may diverge: {stability_text(scheme, model, path, h)}"
+    passed = h * path.highest_speed / model.half_length
+    if passed > LONGEST_PASS:
+        return (
+            f"the time step, {h * 1e3:.4g} ms, is long: elements pass {passed:.2g} half lengths of the "
+            f"contact in it; {LONGEST_PASS * h / passed * 1e3:.3g} ms would do"
+        )
+    return ""
+
+
+def stability_text(scheme: Scheme, model: Model, path: BaseMotion, h: float) -> str:
+    """Say how a step compares with the largest stable one, and what would do."""
+    length = max(lengths(model, path))
+    limit = limit_at(scheme, model, length)
+    if math.isinf(limit):
+        return f"its time step is {h * 1e3:.4g} ms"
+    number = h * model.damping * length / model.mass
+    return (
+        f"its time step, {h * 1e3:.4g} ms, has the stability number dt C L/M = {number:.3g} for a contact "
+        f'of L = {length * 1e3:.4g} mm, where the scheme "{scheme.name}" is stable up to '
+        f"dt = {limit * 1e3:.4g} ms; a time step of {ADVISED * limit * 1e3:.3g} ms would do, or the scheme "
+        f'"{DEFAULT}", which is stable at any step'
+    )
+
+
+class Watch:
+    """Stops a run that has become unstable.
+
+    No element pulls, p >= 0, so that an indenter in contact rises at most with g/τ - V h'; beyond that
+    it has left the foundation, and only a spring can lift it faster. But an unstable step does not
+    always throw it off: when the contact gives way, the oscillation may settle at some amplitude, or
+    on a wrong state at rest, with forces that do not balance the motion. So the balance over each
+    step, M δ'' = W - k_s (δ - δ_0) - F_z, is checked too.
+    """
+
+    def __init__(self, row: Row, scheme: Scheme) -> None:
+        model = row.model
+        self._row, self._scheme = row, scheme
+        ends = np.array(span(model.indenter, model.depth))
+        thrown = (
+            model.depth / model.retardation_time
+            + row.path.highest_speed * float(abs(model.slope(ends)).max())
+            + model.depth * math.sqrt(model.spring / model.mass)
+        )
+        self._limit = -RISE * thrown if math.isfinite(model.mass) else -math.inf
+        self._allowed = IMBALANCE + ELEMENTS * model.spacing / (2.0 * model.half_length)
+        self._balances: deque[tuple[float, float]] = deque(maxlen=WINDOW)
+
+    def see(self, motion: Motion, h: float) -> None:
+        """Judge a step.
+
+        Raises
+        ------
+        DivergenceError
+            If it shows that the run is unstable.
+        """
+        if not motion.rate >= self._limit:  # NaN is not above it either
+            self._stop(
+                f"where the indenter is thrown upward with {-motion.rate:.3g} m/s", motion, h
+            )
+        if not self._scheme.tableau:
+            return
+        self._balances.append((motion.imbalance, motion.force))
+        imbalance, force = map(sum, zip(*self._balances, strict=True))
+        if len(self._balances) == WINDOW and imbalance > self._allowed * force:
+            share = imbalance / force
+            self._stop(f"where the forces fail to balance the motion by {share:.0%}", motion, h)
+
+    def _stop(self, sign: str, motion: Motion, h: float) -> None:
+        row = self._row
+        raise DivergenceError(
+            f"the run diverged at t = {motion.time:.6g} s, {sign}: "
+            f"{stability_text(self._scheme, row.model, row.path, h)}"
+        )

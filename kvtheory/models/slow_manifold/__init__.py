@@ -1,0 +1,1 @@
+"""The slow manifold: a start from rest without inertia."""

@@ -1,0 +1,254 @@
+r"""The slow manifold as a time series, with an estimate of what it neglects (fact F13).
+
+For eps -> 0 the forces balance at every instant, f_z = f with f = 1 - kappa (d - 1). With the leading edge
+on undisturbed ground, l = -a, a = sqrt(d), and a peeling trailing edge r, the contact length b = r + a
+is the one positive root of b^2 (2 b + 3 (lambda - a)) = 4 f, and p(r) = 0 gives
+d' = G(d) = r^2 + 2 lambda r - d. One number moves.
+
+As d falls from 1 to its steady value, s = int dd/G: no step is taken. The substitution
+a = a_oo + (1 - a_oo) e^-u makes the integrand smooth and bounded, and one Chebyshev series gives s(u)
+for the whole run.
+
+What is neglected, to first order in eps: with the slopes f_v = (3/4) b and f_d of the force,
+
+    d' - G = -eps G' G/f_v                  on the way, as eps d'' = -f_v (d' - G),
+    d' - G = -G(1) e^(-f_v s/eps)           after the start, where d' = 0,
+    d error = eps |G| |int (f_d + kappa)/f_v^2 ds - j|,    1/f_v(d' = 0) <= j <= 1/f_v(d' = G),
+
+the last of which is a delay: the error of d obeys e' = G' e + ..., as G itself does.
+"""
+
+import math
+from dataclasses import dataclass
+from functools import cache
+
+import numpy as np
+from numpy.polynomial import chebyshev
+from numpy.typing import NDArray
+
+from kvtheory.models.slow_manifold.start import Start, depth_slope, outruns
+
+Array = NDArray[np.float64]
+
+DEGREES = (24, 48, 96)
+"""Of the Chebyshev series, tried in turn; 24 do down to 1e-5, 48 at 1e-8, at any velocity."""
+SETTLED = 1e-2
+"""Share of the tolerance within which the path comes to the steady depth before its end."""
+RESOLVED = 1e-2
+"""Share of the tolerance that the tail of the series may take."""
+INVERSIONS = 12
+"""Newton steps from times to u; four were the most that four hundred random starts took."""
+LARGEST_RATIO = 0.1
+"""Slow over fast rate, above which first order in eps says little."""
+SAFETY = 1.5
+"""Of the first-order estimates; it also covers the second order at the largest ratio."""
+NEWTON_STEPS = 60
+"""For the contact length: from above, Newton's method falls on the root in less than ten."""
+CLOSE = 1e-7
+"""A Newton step after which the next is rounding."""
+INVERTED = 1e-7
+"""A step in u after which the next is rounding."""
+
+
+@dataclass(frozen=True)
+class SlowMotion:
+    """Scaled quantities at the times asked for, and an estimate of the error of each (not signed)."""
+
+    values: dict[str, Array]
+    errors: dict[str, Array]
+    ratio: float
+    """The largest ratio of slow to fast rate on the way."""
+
+
+def follow(given: Start, s: Array, tolerance: float) -> SlowMotion:
+    """Return the slow motion at the times `s` (in units of tau), for lambda > 0.
+
+    Raises
+    ------
+    ArithmeticError
+        If the path is not resolved, or an edge would move back over ground that it left.
+
+    Examples
+    --------
+    >>> from kvtheory.models.slow_manifold.start import start
+    >>> found = follow(start(4.0, 1e-4, 0.0), np.array([0.0, 5.0]), 1e-6)
+    >>> print(found.values["depth"].round(6))
+    [1.       0.303964]
+    """
+    path = _path(given, tolerance)
+    u = path.when(s)
+    moved = np.where(s >= path.length, 0.0, (1.0 - given.steady) * np.exp(-u))
+    a, b, v, stiff, slope = _manifold(given, moved)
+    values = _values(given, a, b, v)
+    delay = path.delay(u)
+    least, most = 1.0 / given.stiffest, 1.0 / given.stiff
+    apart = np.maximum(np.abs(delay - least), np.abs(delay - most))
+    late = given.eps * (apart + path.ratio * (delay + most)) + path.error
+    depth = SAFETY * np.abs(v) * late + tolerance * SETTLED
+    falling = -(slope + given.kappa) / stiff  # G'
+    own = SAFETY * given.eps * np.abs(v) * -falling / stiff
+    errors = _errors(given, values, a, b, falling, depth, own, given.layer(s))
+    return SlowMotion(values, errors, path.ratio)
+
+
+def depth_rate(depth: Array, number: float, support_number: float = 0.0) -> Array:
+    """Return d' on the slow manifold at scaled depths.
+
+    Examples
+    --------
+    >>> depth_rate(np.array([1.0]), 0.0).tolist()
+    [0.0]
+    """
+    a = np.sqrt(depth)
+    r = _widths(a, number, support_number) - a
+    return np.asarray(r * (r + 2.0 * number) - depth)
+
+
+def _manifold(given: Start, moved: Array) -> tuple[Array, Array, Array, Array, Array]:
+    """Return a, b, d' = G, f_v and f_d where a is by `moved` above its steady value.
+
+    Both b and G are taken as differences to steady sliding, so that they keep their digits near it.
+    """
+    number, kappa, a_0 = given.number, given.kappa, given.steady
+    r_0 = a_0 * a_0 / (math.hypot(a_0, number) + number)
+    b_0 = a_0 + r_0
+    a = a_0 + moved
+    grown = _widths(a, number, kappa) - b_0
+    fallen = moved * (2.0 * a_0 + moved)  # a^2 - a_0^2
+    for _ in range(2):
+        b = b_0 + grown
+        residual = (
+            grown * (2.0 * (b * b + b * b_0 + b_0 * b_0) + 3.0 * (number - a_0) * (b + b_0))
+            - 3.0 * b * b * moved + 4.0 * kappa * fallen
+        )  # fmt: skip
+        grown = grown - residual / (6.0 * b * (b + number - a))
+    b = b_0 + grown
+    turned = grown - moved  # r - r_0
+    v = turned * (2.0 * (r_0 + number) + turned) - fallen
+    return a, b, v, 0.75 * b, depth_slope(a, b, v, number)
+
+
+def _widths(a: Array, number: float, kappa: float) -> Array:
+    """Return the root b of b^2 (2 b + 3 (lambda - a)) = 4 f, by Newton's method from above."""
+    f, n = 1.0 - kappa * (a * a - 1.0), number - a
+    cubic = np.cbrt(2.0 * f)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        b = np.where(n > 0.0, np.minimum(cubic, np.sqrt(4.0 * f / (3.0 * n))), cubic - 1.5 * n)
+    for _ in range(NEWTON_STEPS):
+        step = (b * b * (2.0 * b + 3.0 * n) - 4.0 * f) / (6.0 * b * (b + n))
+        b = b - step
+        if np.max(np.abs(step) / b) <= CLOSE:
+            return b
+    raise ArithmeticError("the contact length on the slow manifold did not converge")
+
+
+@dataclass(frozen=True)
+class _Path:
+    """ds/du, s(u) and int (f_d + kappa)/f_v^2 ds as Chebyshev series on [0, `end`]."""
+
+    end: float
+    pace: Array
+    times: Array
+    delays: Array
+    length: float
+    ratio: float
+    error: float
+
+    def when(self, s: Array) -> Array:
+        """Return u at the times `s`, at most `end`."""
+        nodes = np.linspace(0.0, self.end, self.times.size)
+        u = np.interp(s, self._series(self.times, nodes), nodes)
+        for _ in range(INVERSIONS):
+            basis = _basis(2.0 * u / self.end - 1.0, self.times.size)
+            step = (basis @ self.times - s) / (basis[:, :-1] @ self.pace)
+            u = np.minimum(np.maximum(u - step, 0.0), self.end)
+            if np.all((np.abs(step) <= INVERTED) | (s >= self.length)):
+                return u
+        raise ArithmeticError("the times on the slow manifold could not be inverted")
+
+    def delay(self, u: Array) -> Array:
+        """Return the integral that delays the motion, in units of eps."""
+        return self._series(self.delays, u)
+
+    def _series(self, coefficients: Array, u: Array) -> Array:
+        return _basis(2.0 * u / self.end - 1.0, coefficients.size) @ coefficients
+
+
+def _basis(x: Array, count: int) -> Array:
+    """Return the Chebyshev polynomials at x in [-1, 1], a column for each."""
+    return np.cos(np.arccos(np.minimum(np.maximum(x, -1.0), 1.0))[:, None] * np.arange(count))
+
+
+@cache
+def _transform(degree: int) -> tuple[Array, Array, Array]:
+    """Return the Chebyshev nodes, and matrices from values there to coefficients and to their integral."""
+    x = chebyshev.chebpts1(degree + 1)
+    matrix = _basis(x, degree + 1).T * (2.0 / (degree + 1))
+    matrix[0] *= 0.5
+    return x, matrix, np.asarray(chebyshev.chebint(matrix, lbnd=-1.0), dtype=np.float64)
+
+
+def _path(given: Start, tolerance: float) -> _Path:
+    """Integrate ds and the delay from the start to the steady depth."""
+    gap = 1.0 - given.steady
+    end = math.log(max(gap / (SETTLED * tolerance), math.e))
+    for degree in DEGREES:
+        x, transform, integral = _transform(degree)
+        moved = gap * np.exp(-0.5 * end * (x + 1.0))
+        a, b, v, stiff, slope = _manifold(given, moved)
+        if np.any(v >= 0.0):
+            raise ArithmeticError("the depth does not fall on the slow manifold")
+        pull = (slope + given.kappa) / (stiff * stiff)
+        outrun = outruns(a, b, v, -pull * stiff, given.number)
+        if np.any(outrun > 0.0) or np.any(v + 2.0 * given.number * a < 0.0):
+            raise ArithmeticError("an edge would move back over ground that it left")
+        pace = 2.0 * a * moved / -v  # ds/du
+        series = transform @ pace
+        tail = 0.5 * end * float(np.sum(np.abs(series[-3:])))
+        if tail * abs(given.rate) <= RESOLVED * tolerance:
+            times, delays = 0.5 * end * (integral @ np.array([pace, pace * pull]).T).T
+            ratio = given.eps * float(np.max(pull))
+            return _Path(end, series, times, delays, float(times.sum()), ratio, tail)
+    raise ArithmeticError("the slow manifold is not resolved")
+
+
+def _values(given: Start, a: Array, b: Array, v: Array) -> dict[str, Array]:
+    """Return the scaled quantities; f_x is the peeling form of F11."""
+    r, number = b - a, given.number
+    rho = r + number
+    return {
+        "depth": a * a,
+        "depth_rate": v,
+        "normal_force": 1.0 - given.kappa * (a * a - 1.0),
+        "friction_force": 0.125 * b * b * (4.0 * r * (b - 3.0 * rho) + b * (8.0 * rho - 3.0 * b)),
+        "leading_edge": -a,
+        "trailing_edge": r,
+        "peak_pressure": np.where(number < a, a * a + v + number**2, v + 2.0 * number * a),
+    }
+
+
+def _errors(
+    given: Start, values: dict[str, Array], a: Array, b: Array, falling: Array,
+    depth: Array, own: Array, layer: Array,
+) -> dict[str, Array]:  # fmt: skip
+    """Carry the errors to each quantity by its slopes in d and d' (F11-derivatives).
+
+    d' - G is `own` on the way and `layer` after the start, and an error of d adds `falling`, G', times it
+    to d'. In the layer the slopes of the forces at d' = 0 are the largest.
+    """
+    r, number = values["trailing_edge"], given.number
+    arm = a * a - r * r
+    p_left = values["depth_rate"] + 2.0 * number * a
+    inside = number < a
+    edge = np.abs(1.0 + falling) * depth + own + layer
+    peak = np.where(inside, np.abs(1.0 + falling), np.abs(falling + number / a)) * depth
+    return {
+        "depth": depth,
+        "depth_rate": np.abs(falling) * depth + own + layer,
+        "normal_force": given.kappa * depth + 0.75 * b * own + given.stiffest * layer,
+        "friction_force": 0.75
+        * (np.abs(arm * (1.0 + falling) + p_left) * depth + np.abs(arm) * own + layer),
+        "leading_edge": depth / (2.0 * a),
+        "trailing_edge": edge / (2.0 * (r + number)),
+        "peak_pressure": peak + own + layer,
+    }

@@ -1,0 +1,118 @@
+"""Which asymptote holds for a scene, how wrong it is, and over which velocities."""
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import elementwise
+
+from kvtheory.models.steady import asymptotes as asy
+from kvtheory.models.steady import closed_forms as cf
+from kvtheory.models.steady.methods import solve_exact
+from kvtheory.results import AsymptoteLine, AsymptoteReport, Certificate
+from kvtheory.scene.model import Scene
+
+Array = NDArray[np.float64]
+Values = Mapping[str, Array]
+
+DECADES = 30.0
+"""How far from the critical velocity, in powers of ten, the range of an asymptote is looked for."""
+
+CERTIFICATE = Certificate(
+    kind="proved",
+    statement="the relative errors are closed forms (derivations error-L1, error-L2-fixed, "
+    "error-L2-dead-weight and others), monotonic in V, evaluated to about 1e-14",
+    relative_error={},
+)
+
+
+def report(scene: Scene, values: Values, tolerance: float) -> AsymptoteReport:
+    """Make the report of `kvtheory.asymptotes`, which documents it."""
+    rows = asy.ROWS[scene.support.kind]
+    V, tau = values["drive.velocity"], values["foundation.retardation_time"]
+    limits = asy.limits(values)
+    critical = asy.critical_velocity(limits, tau)
+    errors = _errors(scene, values)
+    truth = solve_exact(scene, values)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        approximations = {"low": asy.low(limits), "high": asy.high(limits)}
+    side = np.where(V < 0.0, -1.0, 1.0)
+    lines = []
+    for row in rows:
+        signed = side if row.quantity.startswith("friction") else 1.0
+        error = errors[row.regime][row.quantity]
+        edge = _range_edge(scene, values, critical, row, tolerance)
+        lines.append(
+            AsymptoteLine(
+                row.name, row.quantity, row.regime, row.equation, row.formula,
+                value=_finite(signed * approximations[row.regime][row.quantity]),
+                exact=getattr(truth, row.quantity),
+                relative_error=_finite(error),
+                velocity_min=_plain(edge if row.regime == "high" else np.zeros_like(edge)),
+                velocity_max=_plain(edge if row.regime == "low" else np.full_like(edge, np.inf)),
+            )
+        )  # fmt: skip
+    peak_velocity, peak_friction = _peak(scene, limits, tau)
+    l1, l2 = (np.abs(line.relative_error) <= tolerance for line in lines[:2])
+    return AsymptoteReport(
+        velocity=_plain(V),
+        critical_velocity=_plain(critical),
+        peak_velocity=_plain(peak_velocity),
+        peak_friction_coefficient=_plain(peak_friction),
+        regime=_text(np.where(np.abs(V) <= critical, "low", "high")),
+        use=_text(np.where(l1, "L1", np.where(l2, "L2", "exact"))),
+        tolerance=tolerance,
+        lines=tuple(lines),
+        model="asymptote",
+        certificate=CERTIFICATE,
+    )
+
+
+def _errors(scene: Scene, values: Values) -> dict[str, dict[str, Array]]:
+    state, limits = solve_exact(scene, values), asy.limits(values)
+    with np.errstate(divide="ignore", invalid="ignore"):  # no high asymptote at V = 0
+        return {"low": asy.low_errors(limits, state), "high": asy.high_errors(limits, state)}
+
+
+def _range_edge(
+    scene: Scene, values: Values, critical: Array, row: asy.Row, tolerance: float
+) -> Array:
+    """Return the velocity at which the error of an asymptote passes the tolerance.
+
+    The error is monotonic in V: a sign change within `DECADES` of V* is the edge; without one the
+    asymptote is good at every velocity (a dead weight's load, say).
+    """
+    keys = list(values)
+
+    def excess(decades: Array, *arrays: Array) -> Array:
+        point = dict(zip(keys, arrays[:-1], strict=True))
+        point["drive.velocity"] = arrays[-1] * 10.0**decades
+        return np.abs(_errors(scene, point)[row.regime][row.quantity]) - tolerance
+
+    args = (*values.values(), critical)
+    bracket = (np.full_like(critical, -DECADES), np.full_like(critical, DECADES))
+    found = elementwise.find_root(excess, bracket, args=args)
+    everywhere = np.inf if row.regime == "low" else 0.0
+    return np.where(found.success, critical * 10.0**found.x, everywhere)
+
+
+def _peak(scene: Scene, limits: asy.Limits, tau: Array) -> tuple[Array, Array]:
+    """Return velocity and friction coefficient at the maximum of a dead weight (theorem F3)."""
+    if scene.support.kind != "dead-weight":
+        nothing = np.full_like(limits.radius, np.nan)
+        return nothing, nothing
+    length = np.cbrt(limits.radius * (limits.static_load / limits.stiffness))  # (R W/K)^(1/3)
+    return cf.PEAK_DRIVE_NUMBER * length / tau, cf.PEAK_FRICTION * length / limits.radius
+
+
+def _finite(array: Array) -> Any:
+    return _plain(np.where(np.isfinite(array), array, np.nan))
+
+
+def _plain(array: Array) -> Any:
+    return array if array.ndim else float(array)
+
+
+def _text(array: Any) -> Any:
+    return array if array.ndim else str(array)

@@ -1,0 +1,80 @@
+"""What each quantity of a result is: one table, which everything that names or shows one reads."""
+
+from typing import NamedTuple
+
+from kvtheory.scene.static_state import StaticState
+
+
+class Row(NamedTuple):
+    """A quantity: its name, symbol (TeX), SI unit and words.
+
+    `scale` names the attribute of `kvtheory.scene.static_state.StaticState` that measures it in a series.
+    """
+
+    name: str
+    symbol: str
+    unit: str
+    words: str
+    scale: str
+
+
+_ALL = (
+    Row("time", "t", "s", "time", "time"),
+    Row("velocity", "V", "m/s", "drive velocity", "velocity"),
+    Row("depth", r"\delta", "m", "depth", "depth"),
+    Row("depth_rate", r"\dot\delta", "m/s", "rate of the depth", "depth_rate"),
+    Row("half_length", "a", "m", "half length of the stationary contact", "half_length"),
+    Row("retardation_length", r"l_\mathrm{r}", "m", "retardation length", "half_length"),
+    Row("normal_force", "F_z", "N/m", "normal force", "load"),
+    Row("load", "W", "N/m", "load", "load"),
+    Row("friction_force", "F", "N/m", "friction force", "friction_force"),
+    Row("friction_coefficient", r"\mu", "1", "friction coefficient", ""),
+    Row("leading_edge", r"x_\mathrm{LE}", "m", "leading edge", "half_length"),
+    Row("trailing_edge", r"x_\mathrm{TE}", "m", "trailing edge", "half_length"),
+    Row("peak_pressure", r"p_\mathrm{max}", "Pa", "peak pressure", "pressure"),
+    Row("dissipated_in_contact", "", "1", "share dissipated in the contact", ""),
+)
+QUANTITIES = {row.name: row for row in _ALL}
+"""The quantities by name."""
+
+STEADY_UNITS = {
+    name: QUANTITIES[name].unit
+    for name in (
+        "depth", "half_length", "retardation_length", "leading_edge", "trailing_edge", "load",
+        "friction_force", "friction_coefficient", "peak_pressure", "dissipated_in_contact",
+    )
+}  # fmt: skip
+"""The quantities of steady sliding and their units, in the order in which they are shown."""
+
+TRANSIENT_UNITS = {
+    name: QUANTITIES[name].unit
+    for name in (
+        "time", "velocity", "depth", "depth_rate", "normal_force", "friction_force",
+        "leading_edge", "trailing_edge", "peak_pressure",
+    )
+}  # fmt: skip
+"""The quantities of a time series and their units, `time` first."""
+
+SHOWN_UNITS = {
+    "1": ("", 1.0),
+    "s": ("ms", 1e3),
+    "m": ("mm", 1e3),
+    "m/s": ("mm/s", 1e3),
+    "m/s^2": ("m/s^2", 1.0),
+    "N/m": ("N/mm", 1e-3),
+    "N/m^2": ("MN/m^2", 1e-6),
+    "N/m^3": ("N/mm^3", 1e-9),
+    "Pa": ("MPa", 1e-6),
+    "kg/m": ("kg/mm", 1e-3),
+}
+"""For people, each SI unit as the paper has it, and the factor to it; JSON and CSV are in SI."""
+
+
+def scales(at_rest: StaticState) -> dict[str, float]:
+    """Return what measures each quantity of a series: the static state and its products, in SI.
+
+    >>> from kvtheory.scene import Scene
+    >>> round(scales(StaticState.of(Scene()))["normal_force"], 2)
+    9806.65
+    """
+    return {name: getattr(at_rest, QUANTITIES[name].scale) for name in TRANSIENT_UNITS}

@@ -1,0 +1,264 @@
+"""How the base moves: its velocity V(t) as a piecewise polynomial, and the exact integral Y(t).
+
+Every model takes V and Y from here; the times and lengths may be in SI or scaled. At a jump the value
+just after it counts.
+"""
+
+import itertools
+import math
+from bisect import bisect_right
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.polynomial import Chebyshev, Polynomial
+from numpy.typing import NDArray
+
+DEGREE = 8
+"""Of a piece that represents a function: a few pieces for a period of a sine, at any tolerance."""
+CHECKS = 2 * DEGREE + 3
+"""Points at which a piece is compared with its function, most of them between the nodes."""
+SHORTEST = 1e-12
+"""Share of the whole motion; a piece that would have to be shorter holds a jump or a kink."""
+PIECE_LIMIT = 100_000
+
+SAME_TIME = 4.0
+"""Units in the last place by which times differ from rounding: they are one time."""
+
+START, END, DISPLACEMENT, POWERS = 0, 1, 2, 3
+"""Layout of a piece: its times, Y at its start, then the coefficients of V in t - start."""
+
+Piece = Sequence[float]
+
+
+@dataclass(frozen=True)
+class BaseMotion:
+    """V(t) of pieces that follow each other; V may jump between them.
+
+    Each piece is (start, end, Y(start), c_0, c_1, ...), V = sum c_k (t - start)^k, all of one length.
+    The last piece may have no length: it then says how the base moves just after a jump at the end.
+    `changes` are the times at which V may jump or have a kink. Before t = 0 the base rests.
+    """
+
+    pieces: tuple[tuple[float, ...], ...]
+    changes: tuple[float, ...] = (0.0,)
+
+    @classmethod
+    def constant(cls, velocity: float, end: float) -> "BaseMotion":
+        """Return the start from rest: V = `velocity` from t = 0 to `end`."""
+        return cls.from_points([(0.0, velocity)], end)
+
+    @classmethod
+    def from_points(cls, points: Sequence[tuple[float, float]], end: float) -> "BaseMotion":
+        """Return the motion that is linear between `points` (t, V), with a jump where t repeats.
+
+        It keeps its last velocity until `end`.
+
+        Examples
+        --------
+        >>> motion = BaseMotion.from_points([(0.0, 0.0), (1.0, 2.0), (1.0, -1.0)], end=3.0)
+        >>> [motion.at(t)[:2] for t in (0.5, 1.0, 3.0)]
+        [(0.25, 1.0), (1.0, -1.0), (-1.0, -1.0)]
+        """
+        found = [
+            (a, b, (left, (right - left) / (b - a)))
+            for (a, left), (b, right) in itertools.pairwise(points)
+            if b - a > SAME_TIME * math.ulp(b)
+        ]
+        last, velocity = points[-1]
+        found.append((last, max(float(end), last), (velocity, 0.0)))
+        return cls(_joined(found), tuple(start for start, _, _ in found))
+
+    @classmethod
+    def from_function(
+        cls,
+        function: Callable[[float], float],
+        end: float,
+        *,
+        tolerance: float = 1e-12,
+        breaks: Sequence[float] = (),
+        least: float = 1.0,
+    ) -> "BaseMotion":
+        """Return a motion within `tolerance` x max(`least`, |V|) of `function` on [0, `end`].
+
+        Pieces are Chebyshev interpolants, halved until they agree with the function at points
+        between their nodes. `breaks` are the times at which the function jumps or has kinks.
+
+        Raises
+        ------
+        ValueError
+            If so many halvings are needed that the function must jump elsewhere than at `breaks`.
+
+        Examples
+        --------
+        >>> motion = BaseMotion.from_function(math.sin, end=6.0)
+        >>> abs(motion.at(5.0)[0] - (1.0 - math.cos(5.0))) < 1e-12
+        True
+        """
+        inner = sorted(t for t in breaks if 0.0 < t < end)
+        todo = list(itertools.pairwise([0.0, *inner, end]))[::-1]
+        found: list[tuple[float, float, tuple[float, ...]]] = []
+
+        def value(t: float) -> float:
+            return function(_beside(t, breaks))
+
+        while todo:
+            a, b = todo.pop()
+            coefficients, error = _fit(value, a, b, least)
+            if error <= tolerance:
+                # The very value of the function, so that what is at rest stays so.
+                found.append((a, b, (value(a), *coefficients[1:])))
+                continue
+            middle = 0.5 * (a + b)
+            if b - a <= SHORTEST * end or len(found) + len(todo) > PIECE_LIMIT:
+                raise ValueError(
+                    f"drive.function is not smooth near t = {middle!r} s: give the times of its jumps "
+                    "and kinks as `breaks`, or a larger `tolerance`"
+                )
+            todo += [(middle, b), (a, middle)]
+        return cls(_joined(found), (0.0, *inner))
+
+    def scaled(self, time: float, length: float) -> "BaseMotion":
+        """Return the motion in units of `time` and `length`."""
+        return BaseMotion(
+            tuple(
+                (
+                    *(t / time for t in piece[:DISPLACEMENT]),
+                    piece[DISPLACEMENT] / length,
+                    *(c * time ** (k + 1) / length for k, c in enumerate(piece[POWERS:])),
+                )
+                for piece in self.pieces
+            ),
+            tuple(t / time for t in self.changes),
+        )
+
+    @property
+    def end(self) -> float:
+        """The time at which the last piece ends."""
+        return self.pieces[-1][END]
+
+    @cached_property
+    def rows(self) -> NDArray[np.float64]:
+        """The pieces as one array, a row for each."""
+        return np.array(self.pieces)
+
+    @cached_property
+    def starts(self) -> list[float]:
+        """The times at which the pieces begin."""
+        return [piece[START] for piece in self.pieces]
+
+    def at(self, t: float) -> tuple[float, float, float]:
+        """Return Y, V and V' at `t`; where V jumps, just after the jump."""
+        return evaluate(self._piece(t), t)
+
+    def velocity(self, t: float, *, before: bool = False) -> float:
+        """Return V; at a jump just after it, or just before it."""
+        return evaluate(self._piece(t - SAME_TIME * math.ulp(t) if before else t), t)[1]
+
+    def displacement(self, t: float) -> float:
+        """Return Y."""
+        return evaluate(self._piece(t), t)[0]
+
+    def forward(self, t: float) -> bool:
+        """Whether the base moves, or moved last, with V >= 0."""
+        for piece in reversed(self.pieces[: bisect_right(self.starts, t)]):
+            V = evaluate(piece, t)[1] or piece[POWERS]
+            if V:
+                return V > 0.0
+            t = piece[START]
+        return True
+
+    def extremes(self, start: float, end: float) -> tuple[float, float]:
+        """Return the smallest and the largest Y between two times.
+
+        >>> BaseMotion.from_points([(0.0, 0.0), (1.0, 2.0), (1.0, -1.0)], 3.0).extremes(0.0, 3.0)
+        (-1.0, 1.0)
+        """
+        times, places = self._turns
+        first, last = np.searchsorted(times, [start, end])
+        found = [self.displacement(start), self.displacement(end), *places[first:last]]
+        return float(min(found)), float(max(found))
+
+    @cached_property
+    def velocities(self) -> list[float]:
+        """Velocities of the motion in order: at both ends of each piece, and between if it is curved."""
+        found: set[float] = set()
+        for piece in self.pieces:
+            count = 2 if len(piece) <= POWERS + 2 else CHECKS
+            times = np.linspace(piece[START], piece[END], count).tolist()
+            found.update(evaluate(piece, t)[1] for t in times)
+        return sorted(found)
+
+    @property
+    def highest_speed(self) -> float:
+        """The largest |V|."""
+        return max(map(abs, self.velocities))
+
+    @cached_property
+    def _turns(self) -> tuple[list[float], list[float]]:
+        """Times and places at which Y may turn: the ends of the pieces, and where V is zero."""
+        times = {piece[at] for piece in self.pieces for at in (START, END)}
+        for piece in self.pieces:
+            times.update(t for t in _zeros(piece) if piece[START] < t < piece[END])
+        ordered = sorted(times)
+        return ordered, [self.displacement(t) for t in ordered]
+
+    def _piece(self, t: float) -> Piece:
+        return self.pieces[max(bisect_right(self.starts, t) - 1, 0)]
+
+
+def evaluate(piece: Piece, t: float) -> tuple[float, float, float]:
+    """Return Y, V and V' of one piece at `t`."""
+    after = t - piece[START]
+    displacement = velocity = slope = 0.0
+    for k in range(len(piece) - 1, POWERS - 1, -1):
+        slope = slope * after + velocity
+        velocity = velocity * after + piece[k]
+        displacement = displacement * after + piece[k] / (k - POWERS + 1)
+    return piece[DISPLACEMENT] + displacement * after, velocity, slope
+
+
+def _zeros(piece: Piece) -> list[float]:
+    """Return the times at which the polynomial of a piece is zero, outside the piece too."""
+    c_0, c_1, *higher = piece[POWERS:]
+    if not any(higher):
+        return [piece[START] - c_0 / c_1] if c_1 else []
+    roots = Polynomial(piece[POWERS:]).roots()
+    return [piece[START] + float(root.real) for root in roots]
+
+
+def _beside(t: float, breaks: Iterable[float]) -> float:
+    """Return `t`, or where that is a break but for rounding, a time that is beyond doubt on its side."""
+    near = next((b for b in breaks if abs(t - b) <= SAME_TIME * math.ulp(b)), None)
+    return t if near is None else near + math.copysign(SAME_TIME * math.ulp(near), t - near)
+
+
+def _fit(
+    function: Callable[[float], float], a: float, b: float, least: float
+) -> tuple[tuple[float, ...], float]:
+    """Interpolate on [a, b]; return powers of t - a, and the error relative to max(`least`, |V|)."""
+    open_end = math.nextafter(b, a)  # at a jump the value before it counts
+    fit = Chebyshev.interpolate(
+        lambda t: np.array([function(min(float(x), open_end)) for x in t]), DEGREE, [a, b]
+    )
+    coefficients = fit.convert(kind=Polynomial, domain=[a, a + 2.0], window=[0.0, 2.0]).coef
+    t = np.linspace(a, open_end, CHECKS)
+    values = np.array([function(float(x)) for x in t])
+    error = np.abs(Polynomial(coefficients)(t - a) - values).max()
+    padded = np.zeros(DEGREE + 1)
+    padded[: coefficients.size] = coefficients
+    return tuple(padded.tolist()), float(error / max(least, np.abs(values).max()))
+
+
+def _joined(
+    found: Iterable[tuple[float, float, tuple[float, ...]]],
+) -> tuple[tuple[float, ...], ...]:
+    """Give each piece (a, b, coefficients) the displacement at which the one before it ends."""
+    pieces: list[tuple[float, ...]] = []
+    displacement = 0.0
+    for a, b, coefficients in found:
+        piece = (a, b, displacement, *coefficients)
+        displacement = evaluate(piece, b)[0]
+        pieces.append(piece)
+    return tuple(pieces)

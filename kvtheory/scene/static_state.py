@@ -1,0 +1,122 @@
+"""The scene at rest, and the dimensionless numbers that govern its motion."""
+
+import math
+from dataclasses import asdict, dataclass
+
+from kvtheory.scene.model import Scene
+from kvtheory.scene.requirements import require_parabola
+
+
+@dataclass(frozen=True)
+class StaticState:
+    """The indenter at rest, in SI, and the numbers of its motion: what errors are relative to.
+
+    With the static depth delta_0, half length a_0 = sqrt(2 R delta_0) and load W_0 = (4/3) K a_0
+    delta_0: the drive number lambda = V tau/a_0 at the last velocity (NaN if the drive is a function),
+    the inertia number epsilon = M delta_0/(W_0 tau^2) and the support number kappa = k_s delta_0/W_0,
+    both infinite for a fixed indenter. The other attributes are the products that measure a quantity.
+
+    Examples
+    --------
+    >>> at_rest = StaticState.of(Scene())
+    >>> round(at_rest.drive_number, 5), round(at_rest.inertia_number, 5), at_rest.support_number
+    (4.08128, 0.00306, 0.0)
+    """
+
+    depth: float
+    half_length: float
+    load: float
+    drive_number: float
+    inertia_number: float
+    support_number: float
+    time: float
+    stiffness: float
+
+    @classmethod
+    def of(cls, scene: Scene) -> "StaticState":
+        """Return the static state of a scene.
+
+        Raises
+        ------
+        ValueError
+            If the indenter is not a parabola, for which alone these numbers suffice, or if the scene
+            leaves the range of double precision.
+        """
+        require_parabola(scene, "the static state in closed form")
+        try:
+            found = _parabolic(scene)
+        except ArithmeticError:
+            found = None
+        if found is None or not found.in_range:
+            raise ValueError("the scene leaves the range of double precision: check its values")
+        return found
+
+    @classmethod
+    def at(cls, scene: Scene, depth: float, half_length: float, load: float) -> "StaticState":
+        """Return the static state of any shape, whose depth, half length and load are known."""
+        tau, support, drive = scene.foundation.retardation_time, scene.support, scene.drive
+        velocity = math.nan if drive.function else drive.final_velocity
+        return cls(
+            depth=depth,
+            half_length=half_length,
+            load=load,
+            drive_number=velocity * tau / half_length,
+            inertia_number=support.mass * depth / (load * tau**2),
+            support_number=support.spring * depth / load,
+            time=tau,
+            stiffness=scene.foundation.stiffness,
+        )
+
+    @property
+    def fixed(self) -> bool:
+        """Whether the indenter cannot move."""
+        return math.isinf(self.support_number)
+
+    @property
+    def in_range(self) -> bool:
+        """Whether every number is one that double precision can hold."""
+        held = 0.0 < self.depth < math.inf and self.half_length > 0.0 and 0.0 < self.load < math.inf
+        finite = self.fixed or (self.inertia_number < math.inf and self.support_number < math.inf)
+        return held and finite and not math.isinf(self.drive_number)
+
+    @property
+    def velocity(self) -> float:
+        """a_0/tau, in m/s."""
+        return self.half_length / self.time
+
+    @property
+    def depth_rate(self) -> float:
+        """delta_0/tau, in m/s."""
+        return self.depth / self.time
+
+    @property
+    def friction_force(self) -> float:
+        """W_0 delta_0/a_0, in N/m."""
+        return self.load * self.depth / self.half_length
+
+    @property
+    def pressure(self) -> float:
+        """K delta_0, in Pa."""
+        return self.stiffness * self.depth
+
+    @property
+    def energy(self) -> float:
+        """W_0 delta_0, in J/m."""
+        return self.load * self.depth
+
+    def named(self) -> dict[str, float]:
+        """Return what exists by plain names, as ``"static_depth"`` and ``"drive_number"``."""
+        found = asdict(self)
+        names = {name: f"static_{name}" for name in ("depth", "half_length", "load")}
+        numbers = ("drive_number", "inertia_number", "support_number")
+        shown = {names[name]: found[name] for name in names}
+        return shown | {name: found[name] for name in numbers if math.isfinite(found[name])}
+
+
+def _parabolic(scene: Scene) -> StaticState:
+    R, K, support = scene.indenter.radius, scene.foundation.stiffness, scene.support  # type: ignore[union-attr]
+    if support.depth is not None:
+        a_0 = math.sqrt(2 * R * support.depth)
+        return StaticState.at(scene, support.depth, a_0, 4 / 3 * K * a_0 * support.depth)
+    a_0 = (1.5 * R * support.weight / K) ** (1 / 3)
+    return StaticState.at(scene, a_0**2 / (2 * R), a_0, support.weight)

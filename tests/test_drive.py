@@ -1,0 +1,140 @@
+"""What follows from a drive alone; points of a history that say nothing change nothing anywhere."""
+
+import math
+
+import numpy as np
+import pytest
+
+import kvtheory as kv
+from kvtheory.scene.base_motion import BaseMotion
+
+PLAIN = {
+    "start": [(0.0, 0.1)],
+    "stop and go": [(0.0, 0.1), (0.05, 0.1), (0.05, 0.0), (0.1, 0.0), (0.1, 0.08)],
+    "ramp": [(0.0, 0.0), (0.04, 0.12), (0.09, 0.02)],
+}
+REDUNDANT = {
+    "start": [(0.0, 0.0), (0.0, 0.1), (0.0625, 0.1), (0.0625, 0.1), (0.25, 0.1)],
+    "stop and go": [
+        (0.0, 0.1), (0.025, 0.1), (0.05, 0.1), (0.05, 0.0), (0.07, 0.0), (0.1, 0.0), (0.1, 0.08),
+        (0.15, 0.08), (0.45, 0.08),
+    ],
+    "ramp": [(0.0, 0.0), (0.02, 0.06), (0.04, 0.12), (0.065, 0.07), (0.09, 0.02), (0.34, 0.02)],
+}  # fmt: skip
+TIMES = np.linspace(0.0, 0.2, 41)
+
+
+@pytest.fixture(params=PLAIN)
+def pair(request):
+    """The same drive with and without redundant points."""
+    points = PLAIN[request.param], REDUNDANT[request.param]
+    return tuple(kv.Scene(drive=kv.Drive(history=history)) for history in points)
+
+
+def same(a, b):
+    for name in kv.results.TRANSIENT_UNITS:
+        np.testing.assert_allclose(getattr(a, name), getattr(b, name), rtol=1e-12, atol=1e-12)
+
+
+def test_redundant_points_do_not_change_the_drive(pair):
+    plain, redundant = (scene.drive for scene in pair)
+    assert redundant.last_change == plain.last_change
+    assert redundant.jumps == plain.jumps
+    assert redundant.changes == plain.changes
+    assert redundant.constant == plain.constant
+    assert redundant.final_velocity == plain.final_velocity
+    assert redundant.history != plain.history  # what was given is kept, for a file
+
+
+def test_redundant_points_do_not_change_a_motion(pair):
+    plain, redundant = pair
+    same(kv.transient(plain, at=TIMES), kv.transient(redundant, at=TIMES))
+    same(*(kv.elements(scene, at=TIMES, per_length="50 /mm", certify=False) for scene in pair))
+
+
+def test_redundant_points_do_not_change_what_is_said_of_a_motion(pair):
+    plain, redundant = pair
+    asked = {"quantities": ["settling_time", "peak_to_steady_friction"]}
+    over = {"run.duration": ["0.5 s"]}
+    measured = [kv.sweep(scene, over=over, **asked) for scene in pair]
+    for name in asked["quantities"]:
+        assert measured[0][name] == pytest.approx(measured[1][name], rel=1e-9)
+    checks = [
+        {
+            check.name: check.ok
+            for check in kv.compare(scene, data=kv.transient(scene, at=TIMES)).checks
+        }
+        for scene in pair
+    ]
+    assert checks[0] == checks[1]
+    request = {"at": TIMES[1:].tolist(), "rtol": 1e-2}
+    assert kv.solve(plain, **request).model == kv.solve(redundant, **request).model
+
+
+def test_a_held_velocity_leaves_the_settling_time_alone():
+    over = {"run.duration": ["1 s"]}
+    found = [
+        float(
+            kv.sweep(kv.Scene(drive=drive), over=over, quantities="settling_time")["settling_time"][
+                0
+            ]
+        )
+        for drive in (kv.Drive(0.1), kv.Drive(history=[(0.0, 0.1), (0.25, 0.1)]))
+    ]
+    assert found[0] == pytest.approx(found[1], rel=1e-12)
+    assert found[0] > 0.01
+
+
+@pytest.mark.parametrize(
+    ("history", "points"),
+    [
+        ([(0.0, 0.0)], [(0.0, 0.0)]),
+        ([(0.0, 0.0), (1.0, 0.0)], [(0.0, 0.0)]),
+        ([(0.0, 0.0), (1.0, 0.0), (1.0, 0.0), (2.0, 1.0)], [(0.0, 0.0), (1.0, 0.0), (2.0, 1.0)]),
+        ([(0.0, 1.0), (0.0, 1.0), (1.0, 2.0)], [(0.0, 1.0), (1.0, 2.0)]),
+        ([(0.0, 1.0), (1.0, 1.0), (1.0, 2.0), (2.0, 2.0)], [(0.0, 1.0), (1.0, 1.0), (1.0, 2.0)]),
+        ([(0.0, 0.1), (0.1, 0.2), (0.2, 0.3), (0.3, 0.4)], [(0.0, 0.1), (0.3, 0.4)]),
+        ([(0.0, 0.0), (1.0, 1.0), (2.0, 0.0)], [(0.0, 0.0), (1.0, 1.0), (2.0, 0.0)]),
+    ],
+)
+def test_the_points_that_matter(history, points):
+    assert kv.Drive(history=history).points == tuple(points)
+
+
+def test_random_points_inside_a_history_are_found_redundant():
+    rng = np.random.default_rng(3)
+    for _ in range(50):
+        times = np.concatenate([[0.0], np.cumsum(rng.uniform(0.01, 1.0, 6))])
+        velocities = rng.normal(size=7)
+        plain = list(zip(times.tolist(), velocities.tolist(), strict=True))
+        extra = rng.uniform(0.0, times[-1], 10)
+        between = zip(extra.tolist(), np.interp(extra, times, velocities).tolist(), strict=True)
+        drive = kv.Drive(history=sorted([*plain, *between]))
+        assert len(drive.points) == len(plain)
+
+
+def test_the_motion_of_a_drive_is_its_integral():
+    points = [(0.0, 0.0), (1.0, 2.0), (1.0, -1.0), (3.0, 1.0)]
+    motion = BaseMotion.from_points(points, 5.0)
+    assert motion.changes == (0.0, 1.0, 3.0)
+    assert motion.at(1.0) == (1.0, -1.0, 1.0)
+    assert motion.velocity(1.0, before=True) == 2.0
+    assert motion.displacement(5.0) == pytest.approx(3.0, rel=1e-15)
+    assert motion.extremes(1.0, 3.0) == pytest.approx((0.5, 1.0), rel=1e-15)
+    assert motion.highest_speed == 2.0
+    assert [motion.forward(t) for t in (0.5, 1.5, 2.0, 2.5)] == [True, False, False, True]
+    scaled = motion.scaled(2.0, 0.5)
+    for t in (0.3, 1.0, 1.7, 4.0):
+        Y, V, slope = motion.at(t)
+        assert scaled.at(t / 2.0) == pytest.approx((Y / 0.5, V * 4.0, slope * 8.0), rel=1e-14)
+
+
+def test_a_jump_at_the_very_end_counts():
+    motion = kv.Drive(history=[(0.0, 0.1), (1.0, 0.1), (1.0, 0.3)]).motion(1.0, least=0.1)
+    assert motion.velocity(1.0) == 0.3
+    assert motion.velocity(1.0, before=True) == 0.1
+
+
+def test_the_speed_of_a_function_is_found_between_its_ends():
+    motion = kv.Drive(function=lambda t: math.sin(math.pi * t)).motion(1.0, least=1.0)
+    assert motion.highest_speed == pytest.approx(1.0, rel=1e-3)
