@@ -20,6 +20,7 @@ _IMPORTED = (
     "Abs, Derivative, E, Function, Heaviside, I, IndexedBase, Integral, Max, Min, Piecewise, S, Subs, Sum, "
     "Symbol, acos, asin, atan, cos, cosh, exp, log, oo, pi, sin, sinh, sqrt, tan, tanh"
 )
+_ALSO = "from sympy.codegen.cfunctions import expm1, log1p"
 _GIVEN = {"define", "recall"}
 
 
@@ -52,7 +53,7 @@ def document(edition: Edition) -> str:
         _markdown("\n\n".join(head)),
         _code(Path(recheck.__file__).read_text(encoding="utf-8")),
     ]
-    cells.append(_code(f"from sympy import {_IMPORTED}"))
+    cells.append(_code(f"from sympy import {_IMPORTED}\n{_ALSO}"))
     for derivation in edition.derivations:
         cells += [_markdown(_words(derivation)), _code(_steps(derivation))]
     for index, cell in enumerate(cells):

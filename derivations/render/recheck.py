@@ -133,7 +133,9 @@ class Steps:
 
     def _zero(self, expr: Expr, claim: str, *, quiet: bool = False) -> None:
         masked = _without_functions(expr)
-        if masked == 0 or sp.expand(sp.fraction(sp.together(masked))[0]) == 0:
+        if masked == 0 or (
+            not _has_powers(masked) and sp.expand(sp.fraction(sp.together(masked))[0]) == 0
+        ):
             self._report(True, claim, "algebra", quiet=quiet)
         elif masked.has(sp.Integral, sp.Sum):
             self._report(sp.simplify(expr) == 0, claim, "algebra", quiet=quiet)
@@ -152,7 +154,7 @@ class Steps:
 
     def _inside(self, low: Expr, high: Expr, symbol: Expr | None = None) -> Expr:
         low, high = map(sp.sympify, (low, high))
-        share = sp.Rational(self.draw.randrange(1, 10**9), 10**9)
+        share = sp.Float(self.draw.randrange(1, 10**9), 2 * DIGITS) / 10**9
         sign = -1 if symbol is not None and symbol.is_negative else 1
         if low.is_finite and high.is_finite:
             return sign * (low + (high - low) * share)
@@ -164,6 +166,11 @@ class Steps:
             raise AssertionError(f"{self.label}: {claim} does not hold")
         if not quiet:
             print(f"{self.label}: {claim}   [{how}]")
+
+
+def _has_powers(expr: Expr) -> bool:
+    """Tell whether an exponent is a symbol; algebra takes long over these."""
+    return any(power.exp.free_symbols for power in expr.atoms(sp.Pow))
 
 
 def _without_functions(expr: Expr) -> Expr:
