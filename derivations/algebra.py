@@ -6,15 +6,20 @@ Nothing here is numerical. A function that cannot decide raises `UndecidedError`
 import sympy as sp
 from sympy.core.function import AppliedUndef
 
-Interval = tuple[sp.Symbol, sp.Expr | int, sp.Expr | int]
-"""A variable with its lower and upper bound, as SymPy writes it."""
+from derivations.conditions import (
+    Conditions,
+    Interval,
+    proves_nonnegative,
+    proves_nonzero,
+    proves_positive,
+)
 
 
 class UndecidedError(ArithmeticError):
     """The algebra could neither prove nor refute what was asked."""
 
 
-_CONTINUOUS = (sp.exp, sp.sin, sp.cos, sp.sinh, sp.cosh, sp.tanh, sp.atan, sp.asin, sp.acos, sp.Abs)
+_CONTINUOUS = (sp.exp, sp.sin, sp.cos, sp.sinh, sp.cosh, sp.tanh, sp.atan, sp.Abs)
 """Functions without jumps or poles where they are real."""
 
 
@@ -46,15 +51,49 @@ def difference(left: sp.Expr, right: sp.Expr) -> sp.Expr:
     return rest if rest == 0 else sp.simplify(rest / denominator)
 
 
-def roots_between(expr: sp.Expr, over: Interval) -> int:
-    """Count the distinct real zeros of a rational expression inside the open interval, by Sturm."""
-    variable, low, high = over[0], *map(sp.sympify, over[1:])
-    square_free = _univariate(sp.fraction(sp.cancel(normalise(expr)))[0], variable).sqf_part()
+def roots_between(expr: sp.Expr, over: Interval) -> tuple[int, int]:
+    """Count the zeros of a rational expression inside the open interval: all, and those of odd order.
+
+    By Sturm's theorem; where an end is an irrational number, by isolating the roots.
+    """
+    variable, low, high = over[0], *map(_number, over[1:])
+    numerator = sp.fraction(sp.cancel(normalise(expr)))[0]
+    _, factors = _univariate(numerator, variable).sqf_list()
+    counts = [(_count(factor, low, high), power) for factor, power in factors]
+    return sum(n for n, _ in counts), sum(n for n, power in counts if power % 2)
+
+
+def _number(end: sp.Expr | int) -> sp.Expr:
+    """Return the end of an interval, which must be a number or infinite."""
+    end = sp.sympify(end)
+    if end in (sp.oo, -sp.oo) or (end.is_number and end.is_real and end.is_algebraic):
+        return end
+    raise UndecidedError(f"the end {end} of the interval is not a known algebraic number")
+
+
+def _count(factor: sp.Poly, low: sp.Expr, high: sp.Expr) -> int:
+    """Count the roots of a square-free polynomial between two numbers, the ends excluded."""
+    if not all(end.is_Rational or end.is_infinite for end in (low, high)):
+        return sum(_less(low, root) and _less(root, high) for root in factor.real_roots())
     for end in (low, high):
-        if end.is_finite and square_free.eval(end) == 0:
-            square_free = square_free.quo(sp.Poly(variable - end, variable))
+        if end.is_finite and factor.eval(end) == 0:
+            factor = factor.quo(sp.Poly(factor.gen - end, factor.gen))
     below, above = (end if end.is_finite else None for end in (low, high))
-    return int(square_free.count_roots(below, above))
+    return int(factor.count_roots(below, above)) if factor.degree() > 0 else 0
+
+
+def _less(one: sp.Expr, other: sp.Expr) -> bool:
+    """Compare two real algebraic numbers, exactly."""
+    if one == -sp.oo or other == sp.oo:
+        return one != other
+    if one == sp.oo or other == -sp.oo:
+        return False
+    variable = sp.Dummy()
+    if sp.minimal_polynomial(one, variable) == sp.minimal_polynomial(other, variable):
+        digits = 60  # far more than the distance of two roots of the small polynomials here
+        if abs(sp.N(one, digits) - sp.N(other, digits)) < sp.Float(10, digits) ** -40:
+            return False
+    return bool(sp.N(one, 60) < sp.N(other, 60))
 
 
 def sign_between(expr: sp.Expr, over: Interval) -> str:
@@ -63,38 +102,23 @@ def sign_between(expr: sp.Expr, over: Interval) -> str:
     A trailing 0 says that it also vanishes somewhere inside. Factors that do not contain the
     variable must have a known sign.
     """
-    variable, inside = over[0], _inside(*map(sp.sympify, over[1:]))
-    expr = normalise(expr)
-    assumed = _within_assumptions(*map(sp.sympify, over))
-    if assumed and _signed(expr):
-        return "+" if expr.is_positive else "-"
-    numerator, denominator = sp.fraction(sp.factor(sp.together(expr)))
+    variable, inside = over[0], _inside(*map(_number, over[1:]))
+    numerator, denominator = sp.fraction(sp.factor(sp.together(normalise(expr))))
     sign, touches = 1, ""
     for part in (numerator, denominator):
         constant, factors = sp.factor_list(part)
         for base, power in [(constant, 1), *factors]:
-            if variable not in base.free_symbols or (assumed and _signed(base)):
+            if variable not in base.free_symbols:
                 if not (base.is_positive or base.is_negative):
                     raise UndecidedError(f"the sign of {base} is not known")
                 sign *= int(sp.sign(base)) ** power
-            elif roots_between(base, over):
+            elif roots_between(base, over)[0]:
                 if part is denominator or power % 2:
                     raise UndecidedError(f"{base} vanishes inside the interval")
                 touches = "0"
             else:
                 sign *= int(sp.sign(base.subs(variable, inside))) ** power
     return ("+" if sign > 0 else "-") + touches
-
-
-def _signed(expr: sp.Expr) -> bool:
-    """Tell whether the assumptions on the symbols alone give the expression a sign."""
-    return bool(expr.is_positive or expr.is_negative)
-
-
-def _within_assumptions(variable: sp.Symbol, low: sp.Expr, high: sp.Expr) -> bool:
-    """Tell whether the variable has the sign that is assumed of it all over the interval."""
-    above = low >= 0 if variable.is_nonnegative else True
-    return bool(above and (high <= 0 if variable.is_nonpositive else True))
 
 
 def _univariate(expr: sp.Expr, variable: sp.Symbol) -> sp.Poly:
@@ -121,12 +145,22 @@ def leading_term(
     h is ``variable`` at 0, ``1/variable`` at infinity and ``point - variable`` elsewhere.
     """
     h = sp.Symbol("h", positive=True)
-    near = {sp.S.Zero: h, sp.oo: 1 / h}.get(sp.sympify(point), point - h)
-    local = sp.together(normalise(sp.together(expr.subs(variable, near))))
+    local = near(expr, variable, point, h)
     if local == 0:
         raise UndecidedError("the expression is identically zero, it has no leading term")
-    coefficient, exponent = sp.cancel(local).leadterm(h)
+    try:
+        coefficient, exponent = local.leadterm(h)
+    except (ValueError, NotImplementedError) as error:
+        raise UndecidedError(f"{local} has no leading power of {h}") from error
     return sp.radsimp(coefficient), exponent, h
+
+
+def near(expr: sp.Expr, variable: sp.Symbol, point: sp.Expr | int, h: sp.Symbol) -> sp.Expr:
+    """Write the expression in the distance h > 0 from the point."""
+    if not sp.sympify(point).is_finite and point != sp.oo:
+        raise UndecidedError(f"series are taken at a finite point or at infinity, not at {point}")
+    place = {sp.S.Zero: h, sp.oo: 1 / h}.get(sp.sympify(point), point - h)
+    return sp.cancel(sp.together(normalise(sp.together(expr.subs(variable, place)))))
 
 
 def next_order(
@@ -134,19 +168,23 @@ def next_order(
 ) -> tuple[sp.Expr, sp.Expr, sp.Expr]:
     """Return (c, k, r) with ratio = 1 + c eps**k + O(eps**r) as variable -> point.
 
-    The small quantity must be positive near the point and vanish there.
+    The small quantity must be positive near the point and vanish there. The ratio must have a series
+    in whole powers of the distance: then the power after the last one that is written bounds the rest.
     """
     exact = sp.cancel(normalise(sp.together(ratio)))
     first, zero, h = leading_term(exact, variable, point)
     if difference(first * h**zero, sp.S.One) != 0:
         raise UndecidedError(f"left/right does not tend to 1 but behaves as {first * h**zero}")
+    local = near(exact, variable, point, h)
+    if not local.is_meromorphic(h, 0) or local.has(sp.Abs, sp.Piecewise, sp.Min, sp.Max):
+        raise UndecidedError(f"{local} has no series in whole powers of {h}")
     next_c, next_k, _ = leading_term(exact - 1, variable, point)
     eps_c, eps_k, _ = leading_term(eps, variable, point)
     if not (eps_c.is_positive and eps_k.is_positive):
         raise UndecidedError(f"{eps} is not a small positive quantity")
     k = next_k / eps_k
     c = sp.radsimp(next_c / eps_c**k)
-    if h in c.free_symbols:
+    if h in c.free_symbols or not next_k.is_Integer:
         raise UndecidedError(f"no power of {eps} follows, but {c}")
     return c, k, (next_k + 1) / eps_k
 
@@ -156,19 +194,48 @@ def value_at(expr: sp.Expr, variable: sp.Symbol, end: sp.Expr) -> sp.Expr:
     return expr.subs(variable, end) if end.is_finite else sp.limit(expr, variable, end)
 
 
-def is_continuous(expr: sp.Expr, variable: sp.Symbol) -> bool:
-    """Tell whether the expression is built so that it has no jump or pole in the variable.
+def is_continuous(expr: sp.Expr, over: Interval, known: Conditions) -> bool:
+    """Tell whether the expression is real, without a jump or a pole, from end to end of the interval.
 
     An undefined function stands for any continuous one.
     """
+    variable = over[0]
     if variable not in expr.free_symbols or expr == variable:
         return True
+    inside = known.with_interval(over)
     if expr.is_Pow:
         base, exponent = expr.as_base_exp()
-        harmless = exponent.is_positive or base.is_positive
-        fixed = variable not in exponent.free_symbols
-        return bool(harmless and is_continuous(base, variable) and fixed)
+        if base == sp.E:
+            return is_continuous(exponent, over, known)
+        if exponent.has(variable) or not is_continuous(base, over, known):
+            return False
+        if exponent.is_integer:
+            return bool(exponent.is_positive or _nowhere_zero(base, over, inside))
+        real = _nowhere_zero(base, over, inside, positive=True)
+        return bool(real or (exponent.is_positive and _never_negative(base, over, inside)))
     if isinstance(expr, sp.log):
-        return bool(expr.args[0].is_positive and is_continuous(expr.args[0], variable))
-    allowed = expr.is_Add or expr.is_Mul or isinstance(expr, (*_CONTINUOUS, AppliedUndef))
-    return bool(allowed and all(is_continuous(arg, variable) for arg in expr.args))
+        arg = expr.args[0]
+        return is_continuous(arg, over, known) and _nowhere_zero(arg, over, inside, positive=True)
+    if isinstance(expr, (sp.asin, sp.acos)):
+        arg = expr.args[0]
+        return is_continuous(arg, over, known) and _never_negative(1 - arg**2, over, inside)
+    allowed = (
+        expr.is_Add or expr.is_Mul or isinstance(expr, (*_CONTINUOUS, AppliedUndef, sp.Derivative))
+    )
+    return bool(allowed and all(is_continuous(arg, over, known) for arg in expr.args))
+
+
+def _nowhere_zero(
+    expr: sp.Expr, over: Interval, known: Conditions, *, positive: bool = False
+) -> bool:
+    """Tell whether an expression has no zero in an interval with its ends."""
+    proves = proves_positive if positive else proves_nonzero
+    ends = [end for end in map(sp.sympify, over[1:]) if end.is_finite]
+    return proves(expr, known) and all(proves(expr.subs(over[0], end), known) for end in ends)
+
+
+def _never_negative(expr: sp.Expr, over: Interval, known: Conditions) -> bool:
+    """Tell whether an expression is not negative in an interval with its ends."""
+    ends = [end for end in map(sp.sympify, over[1:]) if end.is_finite]
+    inside = proves_nonnegative(expr, known)
+    return inside and all(proves_nonnegative(expr.subs(over[0], end), known) for end in ends)

@@ -1,14 +1,25 @@
 """The book of a proof: what it has defined, recalled and established, and what it ends in."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
 from functools import wraps
 from inspect import signature
 from typing import Any, ParamSpec, TypedDict, TypeVar, Unpack, cast
 
 import sympy as sp
+from sympy.core.relational import Relational
 
 from derivations.algebra import difference
-from derivations.record import STATUSES, Claim, Derivation, Step, Table
+from derivations.conditions import (
+    Conditions,
+    Interval,
+    open_factors,
+    proves_nonnegative,
+    proves_positive,
+)
+from derivations.premises import Fact, Premise, contradiction, merged, violates, weakest
+from derivations.record import Claim, Derivation, Step, Table
+from derivations.rules import HiddenError, resolve
 from derivations.symbols import TEX
 
 _P = ParamSpec("_P")
@@ -50,6 +61,39 @@ def tex(expr: sp.Expr) -> str:
     return str(sp.latex(expr, symbol_names=TEX, fold_frac_powers=True))
 
 
+def tex_interval(over: Interval) -> str:
+    """Print for which values of a variable a step holds.
+
+    >>> x = sp.Symbol("x", real=True)
+    >>> [tex_interval((x, *ends)) for ends in ((0, 1), (0, sp.oo), (-sp.oo, 2), (-sp.oo, sp.oo))]
+    ['0 < x < 1', 'x > 0', 'x < 2', 'x \\\\in \\\\mathbb{R}']
+    """
+    variable, low, high = tex(over[0]), sp.sympify(over[1]), sp.sympify(over[2])
+    if low == -sp.oo and high == sp.oo:
+        return rf"{variable} \in \mathbb{{R}}"
+    if high == sp.oo:
+        return f"{variable} > {tex(low)}"
+    if low == -sp.oo:
+        return f"{variable} < {tex(high)}"
+    return f"{tex(low)} < {variable} < {tex(high)}"
+
+
+def tex_condition(gap: sp.Expr) -> str:
+    """Print that an expression is positive.
+
+    >>> x, y = sp.symbols("x y")
+    >>> [tex_condition(gap) for gap in (1 - x, x - y, x * y - 1)]
+    ['x < 1', 'x > y', 'x y - 1 > 0']
+    """
+    for symbol in sorted(gap.free_symbols, key=str):
+        rest = sp.expand(gap - symbol), sp.expand(gap + symbol)
+        if not rest[1].has(symbol):
+            return f"{tex(symbol)} < {tex(rest[1])}"
+        if not rest[0].has(symbol) and rest[0] != 0:
+            return f"{tex(symbol)} > {tex(-rest[0])}"
+    return f"{tex(gap)} > 0"
+
+
 def established(label: str, lhs: sp.Expr) -> sp.Expr:
     """Return the last form of `lhs` that the derivation with this label has established exactly."""
     forms = [right for left, right in _source(label)._exact if left == lhs]
@@ -68,7 +112,8 @@ class Book:
     """Definitions, relations of other proofs, and the steps made so far; `step.Proof` checks them.
 
     What is defined or recalled is a rule: later steps are checked with its left side replaced by
-    its right side, until no left side is left.
+    its right side, until no left side is left. Each fact keeps the premises that its check has used,
+    those of recalled facts among them, and the conditions under which it holds.
     """
 
     def __init__(
@@ -85,30 +130,73 @@ class Book:
         self._section, self._title, self._text = section, title, text
         self._uses, self._declared = list(uses), uses
         self._rules: dict[sp.Expr, sp.Expr] = {}
-        self._steps: list[Step] = []
+        self._origins: dict[sp.Expr, Fact] = {}
+        """For each rule, the fact that it comes from."""
+        self._conditions, self._domain = Conditions(), ()
+        self._used: set[sp.Expr] = set()
+        """The rules that the step in hand has used."""
         self._needed: set[sp.Expr] = set()
-        self._known: dict[tuple[sp.Expr, sp.Expr], Step] = {}
-        self._exact: dict[tuple[sp.Expr, sp.Expr], Step] = {}
+        """The rules that any step has used."""
         self._asked: tuple[str, dict[str, Any], dict[sp.Expr, sp.Expr]] = ("", {}, {})
+        self._steps: list[Step] = []
+        self._known: dict[tuple[sp.Expr, sp.Expr], Fact] = {}
+        self._exact: dict[tuple[sp.Expr, sp.Expr], Fact] = {}
 
     @asked
     def define(self, lhs: sp.Expr, rhs: sp.Expr, reason: str = "", **shown: Unpack[Shown]) -> None:
-        """Let the left side stand for the right side."""
+        """Let the left side stand for the right side: a name, or a law of the model."""
         self._rule(lhs, rhs)
-        self._record(lhs, "=", rhs, reason, "definition", shown)
+        self._imply(sp.sympify(lhs))
+        fact = self._record(lhs, "=", rhs, reason, "definition", shown)
+        self._premise(lhs, rhs, fact)
 
     @asked
-    def recall(self, label: str, lhs: sp.Expr, rhs: sp.Expr, reason: str = "") -> None:
-        """Use a relation that the derivation with this label has established."""
-        source = _source(label)
-        step = source._exact.get((sp.sympify(lhs), sp.sympify(rhs)))
-        if step is None:
+    def where(self, condition: Relational, reason: str = "") -> None:
+        """Restrict what follows to where an inequality holds: part of the domain of the result."""
+        if not isinstance(condition, sp.StrictGreaterThan | sp.StrictLessThan):
+            raise StepError(f"{self.label}: {condition} is no strict inequality that can be false")
+        raw = condition.gts - condition.lts
+        gap = self._resolve(raw)
+        if proves_positive(-gap, self._conditions) or gap.is_nonpositive:
+            raise StepError(f"{self.label}: {condition} contradicts what is given")
+        sign = ">" if isinstance(condition, sp.StrictGreaterThan) else "<"
+        latex = f"{tex(condition.lhs)} {sign} {tex(condition.rhs)}"
+        for form in (gap, raw):
+            self._demand(form, latex)
+        claim = self._claim(condition.lhs, condition.rhs)
+        sides = tex(condition.lhs), sign, tex(condition.rhs)
+        self._steps.append(Step(*sides, reason, "definition", claim=claim))
+
+    @asked
+    def recall(
+        self,
+        label: str,
+        lhs: sp.Expr,
+        rhs: sp.Expr,
+        reason: str = "",
+        *,
+        at: Mapping[sp.Symbol, sp.Expr] | None = None,
+    ) -> None:
+        """Use a relation that the derivation with this label has established.
+
+        Its premises and its domain come with it. With `at` it is used at one place: variables on
+        which no premise depends get these values.
+        """
+        fact = _source(label)._exact.get((sp.sympify(lhs), sp.sympify(rhs)))
+        if fact is None:
             raise StepError(f"{self.label}: {label} does not establish {lhs} = {rhs}")
+        step = fact.step
+        shown: Shown = {"left": step.left, "right": step.right}
+        if at:
+            lhs, rhs, fact = self._placed(fact, lhs, rhs, at)
+            shown = {}
         self._rule(lhs, rhs)
         if label not in self._uses:
             self._uses.append(label)
-        shown: Shown = {"left": step.left, "right": step.right}
-        self._record(lhs, "=", rhs, reason, step.status, shown, source=label)
+        self._carry(fact)
+        self._origins[lhs] = fact
+        self._consistent(lhs, rhs, label)
+        self._write(lhs, "=", rhs, reason, step.status, shown, source=label, fact=fact)
 
     def done(self, lhs: sp.Expr, rhs: sp.Expr | int, *, table: Table | None = None) -> Derivation:
         """End the proof with a relation that one of its steps established."""
@@ -124,12 +212,18 @@ class Book:
             section=self._section,
             title=self._title,
             text=self._text,
-            latex=result.latex,
-            status=max((step.status for step in steps), key=STATUSES.index),
+            latex=result.step.latex,
+            status=self._status(),
             steps=steps,
             uses=tuple(label for label in self._uses if label in cited),
             table=table,
+            domain=result.domain,
+            premises=tuple(dict.fromkeys(each.latex for each in result.premises)),
         )
+
+    def _claim(self, lhs: sp.Expr, rhs: sp.Expr) -> Claim:
+        check, arguments, rules = self._asked
+        return Claim(check, sp.sympify(lhs), sp.sympify(rhs), arguments, rules)
 
     def _stated(self) -> tuple[Step, ...]:
         """Return the steps without the premises of which no check made use."""
@@ -138,7 +232,7 @@ class Book:
             before = len(needed)
             forms = [rhs for lhs, rhs in self._rules.items() if lhs in needed]
             needed |= {lhs for lhs in self._rules if any(form.has(lhs) for form in forms)}
-        asked = [
+        checked = [
             sp.sympify(argument)
             for step in self._steps
             if step.claim and not step.source
@@ -147,7 +241,7 @@ class Book:
         ]
 
         def used(claim: Claim) -> bool:
-            return claim.lhs in needed or any(form.has(claim.rhs) for form in asked)
+            return claim.lhs in needed or any(form.has(claim.rhs) for form in checked)
 
         return tuple(
             step
@@ -155,20 +249,130 @@ class Book:
             if not step.source or step.claim is None or used(step.claim)
         )
 
+    def _status(self) -> str:
+        """Return the weakest status of the steps; what rests on a sampled proof is sampled."""
+        used = (_finished[label]._status() for label in self._uses if label in _finished)
+        sampled = ["sampled" for status in used if status == "sampled"]
+        return weakest([*(step.status for step in self._steps), *sampled])
+
     def _rule(self, lhs: sp.Expr, rhs: sp.Expr) -> None:
+        lhs, rhs = sp.sympify(lhs), sp.sympify(rhs)
         if lhs in self._rules:
             raise StepError(f"{self.label}: {lhs} is defined twice")
-        if self._resolve(rhs).has(lhs):
+        value = self._resolve(rhs)
+        if value.has(lhs):
             raise StepError(f"{self.label}: the definition {lhs} = {rhs} is circular")
-        self._rules[lhs] = sp.sympify(rhs)
+        was = self._resolve(lhs)
+        if violates(was, value):
+            raise StepError(f"{self.label}: {lhs} = {rhs} contradicts the assumptions on {lhs}")
+        self._rules[lhs] = rhs
+
+    @contextmanager
+    def _case(self, case: Relational | sp.logic.boolalg.BooleanTrue) -> Iterator[None]:
+        """Let an equality for a name, or a strict inequality, hold for a while."""
+        kept = self._rules.copy(), self._origins.copy(), self._conditions
+        if isinstance(case, sp.Eq):
+            premise = Premise(case.lhs, case.rhs, tex(case))
+            self._rule(case.lhs, case.rhs)
+            self._origins[case.lhs] = Fact(Step("", "", "", "", "definition"), (premise,))
+            self._consistent(case.lhs, case.rhs, "")
+        elif isinstance(case, sp.StrictGreaterThan | sp.StrictLessThan):
+            gap = case.gts - case.lts
+            positive = (*self._conditions.positive, self._resolve(gap), gap)
+            self._conditions = Conditions(self._conditions.intervals, positive)
+        elif case != sp.true:
+            raise StepError(f"{self.label}: {case} is no equality and no strict inequality")
+        try:
+            yield
+        finally:
+            self._rules, self._origins, self._conditions = kept
+            self._used &= self._rules.keys()
+
+    def _imply(self, name: sp.Expr) -> None:
+        """Take over, as part of the domain, what the sign of a name says about its value."""
+        if not (name.is_Symbol and (name.is_positive or name.is_negative)):
+            return
+        value = self._resolve(self._rules[name])
+        value = value if name.is_positive else -value
+        for gap in open_factors(value, self._conditions):
+            self._demand(gap, tex_condition(gap))
+
+    def _demand(self, gap: sp.Expr, latex: str) -> None:
+        """Let an expression be positive from here on."""
+        known = self._conditions
+        if gap not in known.positive:
+            self._conditions = Conditions(known.intervals, (*known.positive, gap))
+            self._domain = tuple(dict.fromkeys((*self._domain, latex)))
+
+    def _premise(self, lhs: sp.Expr, rhs: sp.Expr, fact: Fact) -> None:
+        """Keep a definition as a premise of every step that will use it."""
+        premise = Premise(sp.sympify(lhs), sp.sympify(rhs), fact.step.latex)
+        self._origins[lhs] = Fact(fact.step, (premise,), fact.conditions, fact.domain)
+        self._exact[premise.lhs, premise.rhs] = self._origins[lhs]
+        self._consistent(lhs, rhs, "")
+
+    def _consistent(self, lhs: sp.Expr, rhs: sp.Expr, label: str) -> None:
+        """Refuse premises that cannot hold together."""
+        everything = merged(fact.premises for fact in self._origins.values())
+        found = contradiction(everything)
+        for condition in self._conditions.positive:
+            if proves_nonnegative(-self._resolve(condition)):
+                found = f"{condition} is not positive, as the domain demands"
+        if found:
+            origin = f" of {label}" if label else ""
+            raise StepError(f"{self.label}: with {lhs} = {rhs}{origin}: {found}")
+
+    def _placed(
+        self, fact: Fact, lhs: sp.Expr, rhs: sp.Expr, at: Mapping[sp.Symbol, sp.Expr]
+    ) -> tuple[sp.Expr, sp.Expr, Fact]:
+        """Return the fact at one place."""
+        for variable, value in at.items():
+            if any(premise.lhs == variable for premise in fact.premises):
+                raise StepError(f"{self.label}: {variable} is not free in {lhs} = {rhs}")
+            if violates(variable, sp.sympify(value)):
+                raise StepError(f"{self.label}: {variable} cannot be {value}")
+        lhs, rhs = (sp.sympify(side).subs(at).doit() for side in (lhs, rhs))
+        premises = tuple(
+            Premise(one, other, f"{tex(one)} = {tex(other)}")
+            if (one, other) != (each.lhs, each.rhs) else each
+            for each in fact.premises
+            for one, other in [(each.lhs.subs(at).doit(), each.rhs.subs(at).doit())]
+        )  # fmt: skip
+        conditions = Conditions(
+            fact.conditions.intervals, tuple(each.subs(at) for each in fact.conditions.positive)
+        )
+        return lhs, rhs, Fact(fact.step, premises, conditions, fact.domain)
+
+    def _carry(self, fact: Fact) -> None:
+        """Take over the domain of a recalled fact."""
+        known = self._conditions
+        for over in fact.conditions.intervals:
+            if over not in known.intervals:
+                known = known.with_interval(over)
+        more = tuple(each for each in fact.conditions.positive if each not in known.positive)
+        self._conditions = Conditions(known.intervals, (*known.positive, *more))
+        self._domain = tuple(dict.fromkeys((*self._domain, *fact.domain)))
 
     def _resolve(self, expr: sp.Expr | int) -> sp.Expr:
         """Replace all that was defined or recalled, and carry out the derivatives."""
-        before, after = None, sp.sympify(expr)
-        while after != before:
-            self._needed |= {lhs for lhs in self._rules if after.has(lhs)}
-            before, after = after, after.subs(self._rules).doit(integrals=False)
-        return after
+        try:
+            found, used = resolve(expr, self._rules, self._hidden())
+        except HiddenError as error:
+            raise StepError(f"{self.label}: {error}") from error
+        self._used |= used
+        return found
+
+    def _hidden(self) -> dict[sp.Expr, frozenset[sp.Expr]]:
+        """Return on what names depend by the premises of recalled facts, where no rule says it."""
+        direct: dict[sp.Expr, set[sp.Expr]] = {}
+        for fact in self._origins.values():
+            for premise in fact.premises:
+                if premise.lhs not in self._rules and premise.lhs.is_Symbol:
+                    direct.setdefault(premise.lhs, set()).update(premise.rhs.free_symbols)
+        for _ in direct:
+            for reach in direct.values():
+                reach.update(*(direct.get(name, ()) for name in tuple(reach)))
+        return {name: frozenset(reach) for name, reach in direct.items()}
 
     def _vanish(self, lhs: sp.Expr, rhs: sp.Expr, claim: str) -> None:
         rest = difference(lhs, rhs)
@@ -185,15 +389,45 @@ class Book:
         shown: Shown,
         *,
         exact: bool = True,
-        source: str = "",
-    ) -> None:
+        over: Interval | None = None,
+        premise: Premise | None = None,
+        cases: tuple[Relational, ...] = (),
+    ) -> Fact:
         """Keep a step; an exact one is an equality that later proofs may use as a rule."""
+        origins = [self._origins[name] for name in self._rules if name in self._used]
+        self._needed |= self._used
+        self._used = set()
+        extra = () if premise is None else (premise,)
+        premises = merged([*(fact.premises for fact in origins), extra])
+        worth = weakest([status, *(fact.step.status for fact in origins if status != "definition")])
+        conditions = self._conditions if over is None else self._conditions.with_interval(over)
+        own = () if over is None else (tex_interval(over),)
+        if cases:
+            own = (*own, r"\ \text{or}\ ".join(map(tex, cases)))
+        domain = tuple(dict.fromkeys((*own, *self._domain)))
         left, right = shown.get("left", tex(lhs)), shown.get("right", tex(rhs))
+        claim = self._claim(lhs, rhs)
+        step = Step(left, relation, right, reason, worth, domain=", ".join(own), claim=claim)
+        fact = Fact(step, premises, conditions, domain)
         key = sp.sympify(lhs), sp.sympify(rhs)
-        check, arguments, rules = self._asked
-        claim = Claim(check, *key, arguments, rules)
-        step = Step(left, relation, right, reason, status, source, claim)
         self._steps.append(step)
-        self._known[key] = step
+        self._known[key] = fact
         if exact:
-            self._exact[key] = step
+            self._exact[key] = fact
+        return fact
+
+    def _write(
+        self, lhs: sp.Expr, relation: str, rhs: sp.Expr, reason: str, status: str, shown: Shown,
+        *, source: str, fact: Fact,
+    ) -> None:  # fmt: skip
+        """Keep a step of another proof."""
+        self._needed |= self._used
+        self._used = set()
+        left, right = shown.get("left", tex(lhs)), shown.get("right", tex(rhs))
+        claim = self._claim(lhs, rhs)
+        step = Step(left, relation, right, reason, status, source, fact.step.domain, claim)
+        key = sp.sympify(lhs), sp.sympify(rhs)
+        self._steps.append(step)
+        placed = Fact(step, fact.premises, fact.conditions, fact.domain)
+        self._known[key] = self._exact[key] = placed
+        self._origins[lhs] = placed

@@ -75,6 +75,7 @@ def _shape() -> Derivation:
     edge = sp.sqrt(1 - eps / 4)
     proof.define(a, R * sp.sqrt(eps), r"$\varepsilon = (a/R)^2$")
     proof.define(delta, a**2 / (2 * R), "Eq. (28)")
+    proof.where(eps * xi**2 < 1, "below the sides of the circle")
     proof.equal((R - sp.sqrt(R**2 - (xi * a) ** 2)) / delta, circle, r"$h/\delta$ of the circle")
     first = eps * xi**4 / 4
     proof.leading_order(circle - xi**2, first, eps, 0, "against the parabola", eps=eps)
@@ -102,7 +103,7 @@ def _fixed() -> Derivation:
     proof.equal(
         change, CORRECTION, r"$-h - l h'$ of the term that the circle adds, per $\varepsilon$"
     )
-    proof.root(PARABOLA, xi, q, "no pressure at the trailing edge")
+    proof.root(PARABOLA, xi, q, "no pressure at the trailing edge", over=(xi, 0, sp.oo))
     proof.sign(
         sp.diff(PARABOLA, xi).subs(xi, q), "<", 0, UNIT, "a simple zero: the edge is analytic"
     )

@@ -142,8 +142,9 @@ def _fitted() -> Derivation:
     gap = _z * (1 + sp.exp(-_z)) / 2 - (1 - sp.exp(-_z))
     proof.equal(FIT - sp.Rational(1, 2), gap / (_z * (1 - sp.exp(-_z))), "to compare with 1/2",
                 left=r"\theta - \frac{1}{2}")  # fmt: skip
-    proof.root(gap, _z, sp.S.Zero, "the numerator vanishes at zero")
-    proof.root(sp.Derivative(gap, _z), _z, sp.S.Zero, "and its derivative")
+    at_rest = sp.Subs(gap, _z, 0)
+    proof.equal(at_rest, sp.S.Zero, "the numerator vanishes at zero")
+    proof.equal(sp.Subs(sp.Derivative(gap, _z), _z, 0), sp.S.Zero, "and its derivative")
     proof.equal(sp.Derivative(gap, (_z, 2)), _z * sp.exp(-_z) / 2,
                 r"it is convex: $\theta > \frac{1}{2}$ for $z > 0$")  # fmt: skip
     proof.leading_order(FIT, sp.Rational(1, 2), _z, 0, "the trapezoidal rule", eps=_z,

@@ -96,7 +96,7 @@ def _peak() -> Derivation:
     proof.equal(sp.Derivative(FRICTION_CUBED, q), rest * parabola, "slope")
     proof.sign(rest, ">", 0, UNIT, "the sign is that of the last factor")
     proof.unique_root(parabola, UNIT, "from + to - with growing $q$")
-    proof.root(parabola, q, PEAK, "friction maximum")
+    proof.root(parabola, q, PEAK, "friction maximum", over=UNIT)
     return proof.done(q, PEAK)
 
 

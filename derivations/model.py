@@ -54,14 +54,14 @@ def derive() -> tuple[Derivation, ...]:
 
 def _surface() -> list[Derivation]:
     fixed = _equation("eq1", 1, title="Surface of the fixed indenter")
-    fixed.define(z, h(x) - delta, "the depth is held", right=r"h(x) - \delta")
+    fixed.define(z(x), h(x) - delta, "the depth is held", right=r"h(x) - \delta")
     moving = _equation("eq2", 2, title="Surface of the movable indenter")
-    moving.define(z, h(x) - delta_t, "the depth changes", right=r"h(x) - \delta(t)")
+    moving.define(z(x), h(x) - delta_t, "the depth changes", right=r"h(x) - \delta(t)")
     shape = _equation("eq3", 3, title="Shape of the indenter")
     shape.define(h(x), x**2 / (2 * R), "a cylinder of radius $R$ near its lowest line", left="h(x)")
     return [
-        fixed.done(z, h(x) - delta),
-        moving.done(z, h(x) - delta_t),
+        fixed.done(z(x), h(x) - delta),
+        moving.done(z(x), h(x) - delta_t),
         shape.done(h(x), x**2 / (2 * R)),
     ]
 
@@ -77,9 +77,8 @@ def _kinematics() -> list[Derivation]:
         compression = -h(x_i) + depth
         shown = {"left": "u_i(t)", "right": f"-h(x_i) + {depth_tex}"}
         pressed = _equation(f"eq{number}", number, title=f"Compression under the {kind} indenter")
-        pressed.recall(surface, z, h(x) - depth)
-        pressed.define(x, x_i, "the element is at $x_i$", left="x", right="x_i(t)")
-        pressed.define(u_i, -z, "the free surface of the foundation is $z = 0$")
+        pressed.recall(surface, z(x), h(x) - depth, "where the element is", at={x: x_i})
+        pressed.define(u_i, -z(x_i), "the free surface of the foundation is $z = 0$")
         pressed.equal(u_i, compression, "the surface of the indenter", **shown)
         found.append(pressed.done(u_i, compression))
 
@@ -111,6 +110,7 @@ def _forces() -> list[Derivation]:
     ]
     normal = _equation("eq11", 11, title="Normal force on an element")
     normal.recall("eq8", force, f_n * sp.cos(theta))
+    normal.where(sp.cos(theta) > 0, "the surface is not vertical")
     normal.equal(
         f_n,
         force / sp.cos(theta),
@@ -125,6 +125,7 @@ def _forces() -> list[Derivation]:
 
     along = _equation("eq13", 13, title="Horizontal force on the indenter")
     along.recall("eq10", slope, -sp.tan(theta))
+    along.where(sp.cos(theta) > 0, "the surface is not vertical")
     along.define(f_x, f_n * sp.sin(theta), "the reaction has this horizontal component")
     along.define(f_z, f_n * sp.cos(theta), "and this vertical one")
     along.recall("eq9", f_c, f_n * sp.sin(theta))
@@ -161,10 +162,10 @@ def _indenter() -> list[Derivation]:
     found += [held.done(z_a, -delta), motion.done(inertia, F_z - M * g)]
 
     depth = _equation("eq18", 18, title="Depth of the movable indenter")
-    depth.recall("eq2", z, h(x) - delta_t)
-    depth.recall("eq3", h(x), x**2 / (2 * R))
-    depth.define(x, sp.S.Zero, "the lowest point A")
-    depth.define(z_a, z, "its height", left=r"z_{\mathrm{A}}(t)")
+    lowest = {x: sp.S.Zero}
+    depth.recall("eq2", z(x), h(x) - delta_t, "the lowest point A", at=lowest)
+    depth.recall("eq3", h(x), x**2 / (2 * R), at=lowest)
+    depth.define(z_a, z(0), "its height", left=r"z_{\mathrm{A}}(t)")
     depth.equal(delta_t, -z_a, "$h(0) = 0$", left=r"\delta(t)", right=r"-z_{\mathrm{A}}(t)")
     found.append(depth.done(delta_t, -z_a))
 

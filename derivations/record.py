@@ -42,6 +42,8 @@ class Step:
     status: str
     source: str = ""
     """Label of the derivation that a recalled step comes from."""
+    domain: str = ""
+    """For which values of its variable a sign or a root was proved, in LaTeX."""
     claim: Claim | None = field(default=None, compare=False, repr=False)
 
     @property
@@ -97,3 +99,7 @@ class Derivation:
     table: Table | None = None
     numbers: tuple[Calculation, ...] = ()
     """The closed forms of this derivation with the numbers of a scene."""
+    domain: tuple[str, ...] = ()
+    """Under which conditions the result holds, beside the assumptions on its symbols, in LaTeX."""
+    premises: tuple[str, ...] = ()
+    """The definitions and laws that the result rests on, those of recalled results included."""

@@ -69,9 +69,10 @@ def derive() -> tuple[Derivation, ...]:
 def _half_length() -> Derivation:
     proof = _equation("eq28", 28, title="Half length of the stationary contact")
     proof.recall("eq3", h(x), _SHAPE)
-    proof.define(x, a, "the edge of a contact at rest")
-    reason = "the undisturbed surface meets the indenter: $h(a) = \\delta$"
-    proof.root(h(x) - delta, a, _HALF, reason, right=r"\sqrt{2 R \delta}")
+    reason = "at the edge of a contact at rest $h(a) = \\delta$"
+    proof.root(
+        *(h(x) - delta, x, _HALF, reason), over=(x, 0, sp.oo), name=a, right=r"\sqrt{2 R \delta}"
+    )
     return proof.done(a, _HALF)
 
 
@@ -80,14 +81,14 @@ def _retardation_length() -> Derivation:
     proof.define(l_r, V * tau)
     start = u_i.subs(t, t_0)
     decay = start * sp.exp(-(t - t_0) / tau)
-    proof.recall("eq25", u_i, decay)
-    proof.define(t, t_0 + (x - x_te) / V, "it has left the trailing edge at $t_0$")
+    later = {t: t_0 + (x - x_te) / V}
+    proof.recall("eq25", u_i, decay, "it has left the trailing edge at $t_0$", at=later)
     result = start * sp.exp(-(x - x_te) / l_r)
     shown = {
         "left": "u(x)",
         "right": r"u(x_{\mathrm{TE}}) \exp\left(-\frac{x - x_{\mathrm{TE}}}{l_{\mathrm{r}}}\right)",
     }
-    proof.equal(decay, result, r"$l_{\mathrm{r}}$ is its e-folding length", **shown)
+    proof.equal(u_i.subs(later), result, r"$l_{\mathrm{r}}$ is its e-folding length", **shown)
     return proof.done(l_r, V * tau)
 
 
@@ -118,8 +119,7 @@ def _leading_edge() -> Derivation:
     proof.recall("eq3", h(x), _SHAPE)
     proof.recall("eq22", tau, C / K)
     proof.recall("eq29", l_r, V * tau)
-    proof.define(x, x_le, "at the leading edge")
-    proof.root(delta - h(x), x_le, -a, "$h = \\delta$ with $x < 0$")
+    proof.root(*(delta - h(x), x, -a, "$h = \\delta$ with $x < 0$"), over=(x, -sp.oo, 0), name=x_le)
     at_edge = pressure.subs(x, -a)
     proof.equal(at_edge, C * V * a / R, "positive, so the contact begins", left="p(-a)")
     s = sp.Symbol("s", positive=True)
@@ -139,8 +139,8 @@ def _trailing_edge() -> Derivation:
     ahead = pressure.subs(x, -a)
     proof.equal(ahead, K * l_r * a / R, "positive at the leading edge", left="p(-a)")
     proof.equal(pressure.subs(x, a), -K * l_r * a / R, "negative at $x = a$", left="p(a)")
-    proof.define(x, x_te, "so it vanishes exactly once in between, at the trailing edge")
-    proof.root(p, x_te, trailing_edge, "the positive root of $p = 0$",
+    proof.root(p, x, trailing_edge, "so it vanishes exactly once between them, at the trailing edge",
+               over=(x, -a, sp.oo), name=x_te,
                right=r"\sqrt{a^2 + l_{\mathrm{r}}^2} - l_{\mathrm{r}}")  # fmt: skip
     return proof.done(x_te, trailing_edge)
 
@@ -202,9 +202,8 @@ def _moving_leading_edge() -> Derivation:
     proof = _equation("eq32", 32, title="Leading edge of the movable indenter", text=_OUTWARD)
     half = sp.sqrt(2 * R * delta_t)
     proof.recall("eq3", h(x), _SHAPE)
-    proof.define(x, x_le, "at the leading edge")
     reason = "the undisturbed surface meets the indenter, $h = \\delta(t)$"
-    proof.root(delta_t - h(x), x_le, -half, reason, right="-a(t)")
+    proof.root(delta_t - h(x), x, -half, reason, over=(x, -sp.oo, 0), name=x_le, right="-a(t)")
     proof.equal(
         C * (half * V / R + depth_rate),
         C * half / R * (V - (-half).diff(t)),

@@ -15,18 +15,30 @@ from collections.abc import Iterable
 from typing import Unpack
 
 import sympy as sp
+from sympy.core.relational import Relational
 
 from derivations.algebra import (
-    Interval,
     UndecidedError,
+    difference,
     is_continuous,
     next_order,
+    normalise,
     roots_between,
     sign_between,
     value_at,
 )
 from derivations.book import Book, Shown, StepError, asked, tex
-from derivations.sampling import disagreement
+from derivations.conditions import (
+    Interval,
+    demands,
+    fails_inside,
+    proves_nonnegative,
+    proves_nonzero,
+    proves_positive,
+)
+from derivations.premises import Premise, fixed_value, violates
+from derivations.roots import domain_of, only_root
+from derivations.sampling import disagreement, refutation
 
 _SIGNS = {">": {"+"}, ">=": {"+", "+0"}, "<": {"-"}, "<=": {"-", "-0"}}
 _RELATIONS = {">": ">", ">=": r"\ge", "<": "<", "<=": r"\le"}
@@ -40,10 +52,32 @@ class Proof(Book):
     """
 
     @asked
-    def equal(self, lhs: sp.Expr, rhs: sp.Expr, reason: str, **shown: Unpack[Shown]) -> None:
-        """Prove an identity."""
-        self._vanish(self._resolve(lhs), self._resolve(rhs), f"{lhs} = {rhs}")
-        self._record(lhs, "=", rhs, reason, "proved", shown)
+    def equal(
+        self,
+        lhs: sp.Expr,
+        rhs: sp.Expr,
+        reason: str,
+        *,
+        cases: tuple[Relational, ...] = (),
+        **shown: Unpack[Shown],
+    ) -> None:
+        """Prove an identity: wherever one side is defined, so is the other, and they are equal.
+
+        With `cases` it is proved in each of them, and they are its domain: one of them must hold.
+        """
+        for case in cases or (sp.true,):
+            with self._case(case):
+                self._identical(lhs, rhs)
+        self._record(lhs, "=", rhs, reason, "proved", shown, exact=not cases, cases=cases)
+
+    def _identical(self, lhs: sp.Expr, rhs: sp.Expr) -> None:
+        claim = f"{lhs} = {rhs}"
+        left, right = self._resolve(lhs), self._resolve(rhs)
+        self._vanish(left, right, claim)
+        self._equally_defined((lhs, left), (rhs, right), claim)
+        found = refutation(left, right)
+        if found:
+            raise StepError(f"{self.label}: {claim} fails {found}")
 
     @asked
     def integral(
@@ -59,52 +93,92 @@ class Proof(Book):
     ) -> sp.Expr:
         """Prove that `lhs`, the integral of `integrand`, has the value that is returned.
 
-        The antiderivative is differentiated; it must be continuous, so that its end values count.
-        `lhs` either was defined as this integral or is named by this step. `value` is the form in
-        which the value is wanted; it is proved to be the difference of the end values.
+        The antiderivative is differentiated; it must be real and continuous from end to end, so that
+        its end values count. `lhs` either was defined as this integral or is named by this step.
+        `value` is the form in which the value is wanted; it is proved to be the difference of the end
+        values.
         """
         whole = sp.Integral(integrand, over)
         variable, low, high = over[0], *(self._resolve(end) for end in over[1:])
-        primitive, inner = self._resolve(antiderivative), self._resolve(integrand)
-        if not is_continuous(primitive, variable):
+        self._free(variable)
+        written = self._resolve(whole)
+        inner = written.function if isinstance(written, sp.Integral) else self._resolve(integrand)
+        primitive = self._resolve(antiderivative)
+        self._reaches(variable, low, high)
+        if not is_continuous(primitive, (variable, low, high), self._conditions):
             raise StepError(f"{self.label}: {primitive} may not be continuous in {variable}")
         self._vanish(sp.diff(primitive, variable), inner, f"d/d{variable} of {antiderivative}")
         found = sp.factor(value_at(primitive, variable, high) - value_at(primitive, variable, low))
+        if found.has(sp.oo, sp.zoo, sp.nan) or found.is_real is False:
+            raise StepError(f"{self.label}: {whole} has no finite real value but {found}")
         if lhs in self._rules:
             self._same_integral(self._rules.pop(lhs), whole)
         wanted = found if value is None else value
         self._vanish(self._resolve(wanted), found, f"{whole} = {wanted}")
+        premise = None if lhs == whole else Premise(lhs, whole, f"{tex(lhs)} = {tex(whole)}")
         self._rule(lhs, wanted)
         shown.setdefault("right", tex(wanted) if lhs == whole else f"{tex(whole)} = {tex(wanted)}")
-        self._record(lhs, "=", wanted, reason, "proved", shown)
+        self._origins[lhs] = self._record(
+            lhs, "=", wanted, reason, "proved", shown, premise=premise
+        )
         return wanted
 
     @asked
     def root(
         self,
         expr: sp.Expr,
-        variable: sp.Symbol,
+        variable: sp.Expr,
         value: sp.Expr,
         reason: str,
+        *,
+        over: Interval | None = None,
+        name: sp.Symbol | None = None,
         **shown: Unpack[Shown],
     ) -> None:
-        """Prove that the expression vanishes where the variable has this value."""
-        at_value = self._resolve(expr).subs(variable, self._resolve(value))
-        self._vanish(at_value, sp.S.Zero, f"root {variable} = {value} of {expr}")
-        self._record(variable, "=", value, reason, "proved", shown)
+        """Prove that the expression vanishes where the variable has this value, and nowhere else.
+
+        Nowhere else in the interval or, without one, among the values that the assumptions on the
+        variable allow. `name` is what the root is called, if not by the variable itself.
+        """
+        found = self._resolve(value)
+        whole = self._resolve_free(expr, variable)
+        claim = f"root {variable} = {value} of {expr}"
+        if over is not None:
+            self._interval(over, symbolic=True)
+            over = (over[0], *(self._resolve(end) for end in over[1:]))
+        called = variable if name is None else name
+        if violates(called, found):
+            raise StepError(f"{self.label}: {claim}: {called} cannot have this value")
+        if called != variable and not domain_of(called, None).holds(found, self._conditions):
+            raise StepError(f"{self.label}: {claim}: {called} is not known to reach this value")
+        try:
+            only_root(whole, variable, found, domain_of(variable, over), self._conditions)
+        except (UndecidedError, sp.PolynomialError) as error:
+            raise StepError(f"{self.label}: {claim}: {error}") from error
+        condition = sp.sympify(expr).subs(variable, called)
+        premise = Premise(condition, sp.S.Zero, f"{tex(condition)} = 0")
+        self._record(called, "=", value, reason, "proved", shown, over=over, premise=premise)
 
     @asked
     def unique_root(
         self, expr: sp.Expr, over: Interval, reason: str, **shown: Unpack[Shown]
     ) -> None:
-        """Prove by Sturm's theorem that the polynomial has exactly one root inside the interval."""
+        """Prove by Sturm's theorem that a polynomial changes its sign exactly once in the interval.
+
+        That it has one root there, and that it is a simple one (or of odd order).
+        """
+        self._interval(over)
+        whole = self._resolve_free(expr, over[0])
         try:
-            count = roots_between(self._resolve(expr), over)
+            count, odd = roots_between(whole, over)
+            poles, _ = roots_between(sp.fraction(sp.together(whole))[1], over)
         except UndecidedError as error:
             raise StepError(f"{self.label}: roots of {expr}: {error}") from error
         if count != 1:
             raise StepError(f"{self.label}: {expr} has {count} roots inside {over}, not one")
-        self._record(expr, "=", sp.S.Zero, reason, "proved", shown, exact=False)
+        if odd != 1 or poles:
+            raise StepError(f"{self.label}: {expr} does not change its sign at its root in {over}")
+        self._record(expr, "=", sp.S.Zero, reason, "proved", shown, exact=False, over=over)
 
     @asked
     def sign(
@@ -118,22 +192,58 @@ class Proof(Book):
     ) -> None:
         """Prove that a rational expression stays on one side of `bound` inside the interval."""
         claim = f"{expr} {relation} {bound} inside {over}"
-        gap = self._resolve(expr - bound)
+        self._interval(over)
+        gap = self._resolve_free(expr - bound, over[0])
         try:
             found = sign_between(gap, over)
         except UndecidedError as error:
             raise StepError(f"{self.label}: {claim}: {error}; left - right = {gap}") from error
         if found not in _SIGNS[relation]:
             raise StepError(f"{self.label}: {claim} is wrong: left - right = {gap} is {found}")
+        for base in self._undefined(sp.sympify(expr - bound), gap):
+            if not proves_nonzero(base, self._conditions.with_interval(over)):
+                raise StepError(f"{self.label}: {claim}: {base} may vanish")
+        shown_bound = sp.sympify(bound)
         self._record(
-            expr,
-            _RELATIONS[relation],
-            sp.sympify(bound),
-            reason,
-            "proved",
-            shown,
+            *(expr, _RELATIONS[relation], shown_bound, reason, "proved", shown),
             exact=False,
+            over=over,
         )
+
+    @asked
+    def holds(
+        self,
+        lhs: sp.Expr,
+        relation: str,
+        rhs: sp.Expr | int,
+        reason: str,
+        *,
+        cases: tuple[Relational, ...] = (),
+        **shown: Unpack[Shown],
+    ) -> None:
+        """Prove an inequality from the assumptions on its symbols and from `where` alone.
+
+        With `cases` it is proved in each of them, and they are its domain: one of them must hold.
+        """
+        for case in cases or (sp.true,):
+            with self._case(case):
+                self._holds(sp.sympify(lhs - rhs), relation, f"{lhs} {relation} {rhs}")
+        shown_rhs = sp.sympify(rhs)
+        self._record(
+            *(lhs, _RELATIONS[relation], shown_rhs, reason, "proved", shown),
+            exact=False,
+            cases=cases,
+        )
+
+    def _holds(self, raw: sp.Expr, relation: str, claim: str) -> None:
+        gap = self._resolve(raw)
+        proves = proves_positive if relation in "<>" else proves_nonnegative
+        for base in self._undefined(raw, gap):
+            if not proves_nonzero(base, self._conditions):
+                raise StepError(f"{self.label}: {claim}: {base} may vanish")
+        sign = 1 if ">" in relation else -1
+        if not any(proves(sign * form, self._conditions) for form in (gap, raw)):
+            raise StepError(f"{self.label}: {claim} is not proved: left - right = {gap}")
 
     @asked
     def positive(self, expr: sp.Expr, reason: str, **shown: Unpack[Shown]) -> None:
@@ -150,11 +260,13 @@ class Proof(Book):
         self, nonnegative: sp.Expr, lhs: sp.Expr, rhs: sp.Expr, reason: str, **shown: Unpack[Shown]
     ) -> None:
         """Prove that `nonnegative` >= 0 says the same as lhs >= rhs: their ratio is positive."""
-        ratio = sp.cancel(self._resolve(nonnegative) / self._resolve(lhs - rhs))
-        if not ratio.is_positive:
+        top, gap = self._resolve(nonnegative), self._resolve(lhs - rhs)
+        ratio = sp.cancel(top / gap)
+        if not ratio.is_positive or difference(top, ratio * gap) != 0:
             raise StepError(
                 f"{self.label}: {lhs} >= {rhs} is not the same as {nonnegative} >= 0: ratio {ratio}"
             )
+        self._equally_defined((nonnegative, top), (lhs - rhs, gap), f"{lhs} >= {rhs}")
         self._record(lhs, r"\ge", rhs, reason, "proved", shown, exact=False)
 
     @asked
@@ -174,10 +286,10 @@ class Proof(Book):
         The small quantity `eps` is any positive expression that vanishes there.
         """
         claim = f"{expr} ~ {leading} as {variable} -> {point}"
-        ratio = self._resolve(expr) / self._resolve(leading)
+        parts = [self._resolve_free(part, variable) for part in (expr, leading, eps)]
         try:
-            c, k, rest = next_order(ratio, self._resolve(eps), variable, point)
-        except UndecidedError as error:
+            c, k, rest = next_order(parts[0] / parts[1], parts[2], variable, point)
+        except (UndecidedError, sp.PolynomialError) as error:
             raise StepError(f"{self.label}: {claim}: {error}") from error
         factor = shown.get("right") or (f"({tex(leading)})" if leading.is_Add else tex(leading))
         shown["right"] = f"{factor} {_series(c, eps, k, rest)}"
@@ -199,6 +311,93 @@ class Proof(Book):
             raise StepError(f"{self.label}: {lhs} = {rhs} fails {found}")
         self._record(lhs, "=", rhs, reason, "sampled", shown)
 
+    def _free(self, variable: sp.Expr) -> None:
+        """Refuse a variable that has been given a value: it cannot sweep over an interval."""
+        if variable in self._rules:
+            raise StepError(f"{self.label}: {variable} is {self._rules[variable]} here, not free")
+
+    def _resolve_free(self, expr: sp.Expr, variable: sp.Expr) -> sp.Expr:
+        """Resolve what is looked at as a function of a variable that no premise has fixed."""
+        if variable.is_Symbol:
+            self._free(variable)
+        before = set(self._used)
+        found = self._resolve(expr)
+        for name in self._used - before:
+            fixed = fixed_value(variable, self._origins[name].premises)
+            if fixed is not None:
+                raise StepError(f"{self.label}: {variable} is {fixed} by a premise of {name}")
+        hidden = self._hidden()
+        for name in found.free_symbols & hidden.keys():
+            if variable in hidden[name]:
+                raise StepError(f"{self.label}: {name} depends on {variable}, which {found} hides")
+        return found
+
+    def _interval(self, over: Interval, *, symbolic: bool = False) -> None:
+        """Refuse an interval that is empty, or that leaves what its variable or a name may be."""
+        variable, low, high = over[0], *map(sp.sympify, over[1:])
+        self._free(variable)
+        if not variable.is_extended_real or variable.is_integer:
+            raise StepError(f"{self.label}: {variable} does not run through an interval of reals")
+        numbers = low.is_number and high.is_number
+        if (
+            not (low < high)
+            if numbers and low.is_extended_real and high.is_extended_real
+            else (not symbolic or numbers)
+        ):
+            raise StepError(f"{self.label}: {over} is not an interval between two known numbers")
+        self._reaches(variable, low, high)
+        if numbers:
+            self._possible(over)
+
+    def _reaches(self, variable: sp.Symbol, low: sp.Expr, high: sp.Expr) -> None:
+        """Refuse an interval that leaves the values that its variable may have."""
+        below = low if variable.is_nonnegative else -high if variable.is_nonpositive else None
+        ends = [end for end in (low, high) if end.is_finite is not False]
+        beyond = any(violates(sp.Dummy(real=variable.is_real), end) for end in ends)
+        if beyond or (below is not None and not proves_nonnegative(below, self._conditions)):
+            raise StepError(f"{self.label}: {variable} cannot reach from {low} to {high}")
+
+    def _possible(self, over: Interval) -> None:
+        """Refuse an interval in which a name or a condition cannot be what it is said to be."""
+        named = [
+            (name, self._resolve(rhs)) for name, rhs in self._rules.items()
+            if (name.is_positive or name.is_negative) and name.is_Symbol
+        ]  # fmt: skip
+        demanded = [value if name.is_positive else -value for name, value in named]
+        for value in (*demanded, *self._conditions.positive):
+            if value.free_symbols == {over[0]} and fails_inside(value, over):
+                raise StepError(f"{self.label}: inside {over}, {value} is not positive as assumed")
+
+    def _undefined(self, raw: sp.Expr, resolved: sp.Expr) -> set[sp.Expr]:
+        """Return what stands under a fraction bar in one form or the other."""
+        found = {self._resolve(base) for base in demands(raw)[0]} | demands(resolved)[0]
+        return {base for base in found if not base.is_nonzero}
+
+    def _equally_defined(
+        self, left: tuple[sp.Expr, sp.Expr], right: tuple[sp.Expr, sp.Expr], claim: str
+    ) -> None:
+        """Refuse an equality of which one side is not defined or not real where the other is."""
+        for kind, proves, why in (
+            (0, proves_nonzero, "may vanish"),
+            (1, proves_nonnegative, "may be negative"),
+        ):
+            sides = []
+            for raw, resolved in (left, right):
+                named = {base: self._resolve(base) for base in demands(sp.sympify(raw))[kind]}
+                settled = {
+                    written for base, written in named.items() if proves(base, self._conditions)
+                }
+                bases = {*named.values(), *demands(resolved)[kind]} - settled
+                open_ones = {
+                    base for base in map(normalise, bases) if not proves(base, self._conditions)
+                }
+                sides.append(open_ones if kind else set().union(*map(_parts, open_ones)))
+            for base in sides[0] ^ sides[1]:
+                if not proves(base, self._conditions):
+                    raise StepError(
+                        f"{self.label}: {claim}: {base} {why}, on one side only; say where it does not"
+                    )
+
     def _same_integral(self, defined: sp.Expr, evaluated: sp.Integral) -> None:
         """Prove that the integral by which a symbol was defined is the one that was evaluated."""
         if not isinstance(defined, sp.Integral) or defined.variables != evaluated.variables:
@@ -210,6 +409,15 @@ class Proof(Book):
         )
         for one, other in pairs:
             self._vanish(self._resolve(one), self._resolve(other), f"{defined} = {evaluated}")
+
+
+def _parts(base: sp.Expr) -> set[sp.Expr]:
+    """Return the factors of an expression that may vanish."""
+    found = set()
+    for part in sp.fraction(sp.together(base)):
+        _, factors = sp.factor_list(part)
+        found |= {factor for factor, _ in factors if not factor.is_nonzero}
+    return found
 
 
 def _series(c: sp.Expr, eps: sp.Expr, k: sp.Expr, rest: sp.Expr) -> str:

@@ -26,7 +26,9 @@ x_te = sp.Symbol("x_TE", nonnegative=True)
 
 # Coordinates.
 t, t_0 = sp.symbols("t t_0", real=True)
-x, z = sp.symbols("x z", real=True)
+x = sp.Symbol("x", real=True)
+z = sp.Function("z", real=True)
+"""Height of the surface of the indenter, at x."""
 
 # Scaled steady sliding.
 q, l = _positive("q l")
@@ -47,7 +49,8 @@ p = sp.Symbol("p", real=True)
 V_star = sp.Symbol("V_star", positive=True)
 
 # The theorems: scaled load, friction force and coefficient (F1), pressure (F7, F16), energy (F6).
-w, phi, m, P, P_max, n, eta = _positive("w phi m P P_max n eta")
+w, phi, m, P_max, n, eta = _positive("w phi m P_max n eta")
+P = sp.Symbol("P", real=True)
 F_elastic, F_viscous = _positive("F_elastic F_viscous")
 X, Y, T = _positive("X Y T")
 """Of a dead weight (F2): the cubes of the scaled velocity and of the scaled friction coefficient, and
@@ -57,7 +60,8 @@ mu_peak, Lambda_peak, Lambda_fixed, Lambda_weight = _positive(
 )
 
 # The balance of forces of a movable indenter, scaled by the static state.
-s, lam, kappa, r = _positive("s lambda kappa r")
+s, lam, r = _positive("s lambda r")
+kappa = sp.Symbol("kappa", nonnegative=True)
 f, f_s, f_ss = _positive("f f_s f_ss")
 G, G_s = sp.symbols("G G_s", real=True)
 

@@ -91,7 +91,8 @@ def _rational() -> Derivation:
     proof.define(l, NUMBER, RATIO)
     proof.sign(sp.Derivative(NUMBER, q), "<", 0, UNIT, "each $l > 0$ belongs to one $q$")
     proof.define(p, pressure, r"elastic and viscous: $p = K u + C \dot u$")
-    proof.root(p, x, q * a, "the pressure vanishes at the trailing edge")
+    positive = (x, 0, sp.oo)
+    proof.root(p, x, q * a, "the pressure vanishes at the trailing edge", over=positive)
     factored = K * delta * (q - x / a) * (1 + q * x / a) / q
     proof.equal(p, factored, "so that it is positive between the edges")
     proof.integral(

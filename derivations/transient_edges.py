@@ -20,9 +20,11 @@ from derivations.symbols import (
     drift,
     eta,
     lam,
+    left,
     lift,
     material,
     rho,
+    right,
     sigma,
     start,
     time,
@@ -62,16 +64,19 @@ def _peeling() -> Derivation:
     proof.equal(P, rho**2 - (xi + lam) ** 2, r"largest, $\rho^2$, at $\xi = -\lambda$")
     pressure = PRESSURE.subs(_MOVING).subs(xi, material + travel)
     radius = sp.sqrt(RADICAND).subs(_MOVING)
+    proof.where(sp.Gt(radius**2, 0), "else no element can be pressed")
     for sign, name, edge in ((-1, "left", r"\ell"), (1, "right", "r")):
         position = sign * radius - sp.Derivative(travel, time) - travel
         loss = sp.diff(pressure, time).subs(material, position)
-        proof.root(P, xi, sign * rho - lam, f"{name} edge", left=edge)
+        side = (xi, -sp.oo, -lam) if sign < 0 else (xi, -lam, sp.oo)
+        called = left if sign < 0 else right
+        proof.root(P, xi, sign * rho - lam, f"{name} edge", over=side, name=called)
         proof.equal(
             *(loss, 2 * sign * radius * sp.Derivative(position, time), _LEAVES),
             left=rf"\left.\frac{{d\hat p}}{{ds}}\right|_{{X = {edge} - Y}}",
             right=rf"{2 * sign} \rho \left({edge}' - \lambda\right)",
         )
-    return proof.done(xi, rho - lam)
+    return proof.done(right, rho - lam)
 
 
 _LEAVES = "the element there loses its pressure while the edge moves inward"
@@ -83,8 +88,10 @@ _PEEL = (
 
 def _touching() -> Derivation:
     proof = _theorem("F10-touch", title="Edges that touch", text=_TOUCH, uses=("F8", "F9", "eq32"))
-    proof.root(d - xi**2, xi, -sp.sqrt(d), "left edge on undisturbed ground", left=r"\ell")
-    proof.root(d - xi**2, xi, sp.sqrt(d), "right edge on undisturbed ground", left="r")
+    for sign, called, words in ((-1, left, "left"), (1, right, "right")):
+        side = (xi, -sp.oo, 0) if sign < 0 else (xi, 0, sp.oo)
+        ground = f"{words} edge on undisturbed ground"
+        proof.root(d - xi**2, xi, sign * sp.sqrt(d), ground, over=side, name=called)
     now = depth - (material + travel) ** 2
     meeting = sp.exp(time) * now - sp.exp(sigma) * now.subs(time, sigma)
     condition = r"\left[e^{s} g(X, s) - e^{\sigma} g(X, \sigma)\right]"
@@ -137,10 +144,14 @@ def _at_once() -> Derivation:
     )
     proof.define(lift, (d - E * _d_0) / (1 - E), "$d$ now, $d_0$ then")
     proof.define(drift, _moved / (1 - E), "$m = Y(s) - Y(s_0)$")
-    proof.root(left_then, xi, LEFT_AT_ONCE, "left edge", left=r"\ell")
-    proof.root(left_then, xi, RIGHT_AT_ONCE, "right edge", left="r")
-    proof.equal(RIGHT_AT_ONCE, quotient, r"without a difference where $\bar\lambda > 0$")
-    return proof.done(xi, RIGHT_AT_ONCE)
+    middle = -E * drift
+    proof.where(E < 1, "time has passed")
+    proof.where(sp.Gt(lift + E * drift**2, 0), "else the indenter is above all of this ground")
+    proof.root(left_then, xi, LEFT_AT_ONCE, "left edge", over=(xi, -sp.oo, middle), name=left)
+    proof.root(left_then, xi, RIGHT_AT_ONCE, "right edge", over=(xi, middle, sp.oo), name=right)
+    proof.where(drift > 0, "the foundation has moved on")
+    proof.equal(RIGHT_AT_ONCE, quotient, "without a difference")
+    return proof.done(right, RIGHT_AT_ONCE)
 
 
 _INSTANT = (
@@ -202,7 +213,8 @@ def _turning() -> Derivation:
     )  # fmt: skip
     at_root = sp.diff(value, sigma).subs(sigma, -_h / 2)
     proof.equal(at_root, 3 * rho * c * _h**2 / 2, "not zero: a simple root", left=_SLOPE)
-    proof.root(value, sigma, -_h / 2, "left as long before the turn as half the time since")
+    proof.root(value, sigma, -_h / 2, "left as long before the turn as half the time since",
+               over=(sigma, -sp.oo, _h))  # fmt: skip
     edge, quarter = peel.subs(zeta, -_h / 2), peel.subs(zeta, _h) / 4
     proof.equal(edge, quarter, r"$X = c \sigma^2/2$", left=r"X_{\mathrm{e}}(h)",
                 right=r"\frac{1}{4} \frac{c h^2}{2}")  # fmt: skip

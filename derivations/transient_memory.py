@@ -106,14 +106,18 @@ def _update() -> Derivation:
         left=r"\frac{d}{ds} \left[e^{s} g(X, s)\right]",
         right=r"e^{s} \left(d + d' - \xi^2 - 2 \lambda \xi\right)",
     )
-    after = u(time + _h)
-    decayed, pressed = sp.exp(-_h) * u(time), g(time + _h)
-    larger = decayed + pressed - sp.Min(decayed, pressed)
-    free = sp.exp(time + _h) * after - sp.exp(time) * u(time)
-    proof.root(
-        *(free * (after - pressed), after, larger, "free until then, or in contact: the larger"),
-        right=r"\max\left(g(s + h),\, e^{-h} u(s)\right)",
+    after, clearance = u(time + _h), sp.Symbol("c", nonnegative=True)
+    impulse = sp.Symbol("J", nonnegative=True)
+    larger = sp.Max(sp.exp(-_h) * u(time), g(time + _h))
+    proof.define(
+        g(time + _h), after - clearance, r"the indenter is never below the surface, $c \ge 0$"
     )
+    proof.define(
+        *(u(time), sp.exp(_h) * after - sp.exp(-time) * impulse),
+        r"F8 over one step: $J = \int e^{\zeta} \hat p \, d\zeta \ge 0$",
+    )
+    either = (sp.Eq(impulse, 0), sp.Eq(clearance, 0))
+    proof.equal(after, larger, "free until then, or in contact at the end", cases=either)
     return proof.done(after, larger)
 
 

@@ -122,6 +122,7 @@ def _derivatives() -> Derivation:
                 left=_partial(force, variable), right=_moving_ends(share, inside, force, variable),
             )  # fmt: skip
     proof.recall("F10-touch", P, TOUCHING_PRESSURE)
+    proof.where(sp.Gt(xi, E * eta), "a right edge; a left one mirrors it")
     motion = 1 / (2 * (xi - E * eta))
     proof.equal(P * motion, sp.Derivative(edge_path, time), _TOUCHES, left=_AT_TOUCH,
                 right=r"X_{\mathrm{e}}'")  # fmt: skip
@@ -154,6 +155,7 @@ def _start_from_rest() -> Derivation:
     proof = _theorem("F11-start", title="The same after a start from rest", text=_START,
                      uses=("F11-derivatives",))  # fmt: skip
     trailing, leading = sp.sqrt(d + d_s + lam**2) - lam, -sp.sqrt(d)
+    proof.where(sp.Gt(d + d_s + lam**2, 0), "the indenter is on the foundation")
     proof.define(right, trailing, "peels")
     proof.define(left, leading, "touches undisturbed ground")
     proof.define(a, sp.sqrt(d))

@@ -78,8 +78,10 @@ def _rates() -> Derivation:
         left=r"\left[\varepsilon \frac{d^2}{ds^2} + \frac{3 B}{4} \frac{d}{ds} + \frac{3 A}{4} + "
         r"\kappa\right] e^{\sigma s}",
     )
-    proof.root(quadratic, sigma, FAST, "fast", left=r"\sigma_1")
-    proof.root(quadratic, sigma, SLOW, "slow", left=r"\sigma_2")
+    proof.where(sp.Gt(DAMPING**2, 4 * eps * STIFFNESS), "no oscillation")
+    middle = -DAMPING / (2 * eps)
+    proof.root(quadratic, sigma, FAST, "fast", over=(sigma, -sp.oo, middle), left=r"\sigma_1")
+    proof.root(quadratic, sigma, SLOW, "slow", over=(sigma, middle, sp.oo), left=r"\sigma_2")
     proof.define(d_s, sp.S.Zero, "steady sliding")
     proof.define(right, a * q, "with its trailing edge")
     proof.define(lam, a * l)

@@ -151,16 +151,17 @@ def _peeling_edges() -> Derivation:
         *(p, half * (square - (x + l_r) ** 2), r"largest at $x = -l_{\mathrm{r}}$"),
         right=rf"\frac{{K}}{{2 R}} \left[{_RADICAND} - (x + l_{{\mathrm{{r}}}})^2\right]",
     )
+    proof.where(sp.Gt(square, 0), "else no element can be pressed")
     proof.equal(
         *(p, half * (TRAILING - x) * (x - LEADING), "positive exactly between its zeros"),
         right=r"\frac{K}{2 R} \left(x_{+} - x\right) \left(x - x_{-}\right)",
     )
     proof.root(
         *(p, x, LEADING, "a leading edge that peels, where Eq. (32) does not hold"),
-        left="x_{-}", right=rf"-\sqrt{{{_RADICAND}}} - l_{{\mathrm{{r}}}}",
+        over=(x, -sp.oo, -l_r), left="x_{-}", right=rf"-\sqrt{{{_RADICAND}}} - l_{{\mathrm{{r}}}}",
     )  # fmt: skip
     proof.root(
-        *(p, x, TRAILING, "the trailing edge while it peels"),
+        *(p, x, TRAILING, "the trailing edge while it peels"), over=(x, -l_r, sp.oo),
         left=rf"x_{{+}} = {tex(x_te)}", right=rf"\sqrt{{{_RADICAND}}} - l_{{\mathrm{{r}}}}",
     )  # fmt: skip
     return proof.done(x, TRAILING)

@@ -177,7 +177,12 @@ def test_json_keeps_the_contract(everything, tmp_path):
         assert entry["latex"]
         assert set(entry) >= {"title", "section", "text", "uses"}
         assert [step["latex"] for step in entry["steps"]] == [step.latex for step in each.steps]
-        assert all(set(step) == {"latex", "reason", "status", "source"} for step in entry["steps"])
+        assert all(
+            set(step) == {"latex", "reason", "status", "source", "domain"}
+            for step in entry["steps"]
+        )
+        assert entry["domain"] == list(each.domain)
+        assert entry["premises"] == list(each.premises)
 
 
 # HTML

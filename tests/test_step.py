@@ -23,7 +23,6 @@ def proof():
         (1 / (sp.sqrt(1 + y) + sp.sqrt(y)), sp.sqrt(1 + y) - sp.sqrt(y)),
         (sp.sqrt(5 + 2 * sp.sqrt(6)), sp.sqrt(2) + sp.sqrt(3)),
         (sp.Derivative(sp.exp(-x / y), x), -sp.exp(-x / y) / y),
-        (sp.tan(x) * sp.cos(x), sp.sin(x)),
         (sp.sqrt(1 + (1 - y**2) ** 2 / (4 * y**2)), (1 + y**2) / (2 * y)),
     ],
 )
@@ -107,9 +106,13 @@ def test_integral_to_infinity(proof):
 
 
 def test_root(proof):
-    proof.root(x**2 + 2 * y * x - 1, x, sp.sqrt(1 + y**2) - y, "quadratic formula")
+    positive = (x, 0, sp.oo)
+    quadratic = x**2 + 2 * y * x - 1
+    proof.root(quadratic, x, sp.sqrt(1 + y**2) - y, "quadratic formula", over=positive)
     with pytest.raises(StepError, match="left - right = "):
-        proof.root(x**2 + 2 * y * x - 1, x, sp.sqrt(1 + y**2) + y, "wrong sign")
+        proof.root(quadratic, x, sp.sqrt(1 + y**2) + y, "wrong sign", over=positive)
+    with pytest.raises(StepError, match="other roots"):
+        proof.root(quadratic, x, sp.sqrt(1 + y**2) - y, "one of two")
 
 
 def test_unique_root(proof):

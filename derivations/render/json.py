@@ -26,6 +26,7 @@ def _plain(derivation: Derivation) -> dict[str, Any]:
             "reason": step.reason,
             "status": step.status,
             "source": step.source,
+            "domain": step.domain,
         }
         for step in derivation.steps
     ]

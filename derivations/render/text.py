@@ -154,6 +154,8 @@ def sentence(given: Given, labels: Collection[str]) -> Iterator[Piece]:
     for index, (step, (source, reason)) in enumerate(zip(given.steps, remarks, strict=True)):
         yield Piece("words", "With " if index == 0 else " and " if index == last else ", ")
         yield Piece("math", conclusion(step))
+        if step.domain:
+            yield from (Piece("words", " for "), Piece("math", step.domain))
         if index < last and remarks[index + 1] == (source, reason):
             continue
         if source:
@@ -167,10 +169,12 @@ def sentence(given: Given, labels: Collection[str]) -> Iterator[Piece]:
 
 
 def remark(step: Step, labels: Collection[str]) -> Iterator[Piece]:
-    """Tell where a displayed step comes from and why it holds."""
+    """Tell where a displayed step comes from, why it holds, and in which domain."""
     if step.source:
         yield from (citation(step.source, labels), Piece("words", " "))
     yield from pieces(step.reason, labels)
+    if step.domain:
+        yield from (Piece("words", " (for "), Piece("math", step.domain), Piece("words", ")"))
 
 
 def citation(label: str, labels: Collection[str]) -> Piece:

@@ -1,0 +1,280 @@
+r"""Under which conditions a step holds: intervals and inequalities, and what they prove.
+
+Everything here is conservative: a function returns True only for what is proved, and where it cannot
+prove anything it returns False.
+
+>>> x = sp.Symbol("x", real=True)
+>>> proves_positive(1 - x**2, Conditions(intervals=((x, 0, 1),)))
+True
+>>> proves_positive(1 - x**2)
+False
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import lru_cache
+
+import sympy as sp
+
+Interval = tuple[sp.Symbol, sp.Expr | int, sp.Expr | int]
+"""A variable with its lower and upper bound, as SymPy writes it; the ends do not belong to it."""
+
+
+@dataclass(frozen=True)
+class Conditions:
+    """What may be used beside the assumptions on the symbols."""
+
+    intervals: tuple[Interval, ...] = ()
+    positive: tuple[sp.Expr, ...] = ()
+    """Expressions that are taken to be positive."""
+
+    def with_interval(self, over: Interval) -> "Conditions":
+        """Return these conditions, with one variable inside an interval as well."""
+        return Conditions((*self.intervals, over), self.positive)
+
+
+NONE = Conditions()
+
+
+def proves_positive(expr: sp.Expr, known: Conditions = NONE) -> bool:
+    """Tell whether the expression is positive wherever the conditions hold."""
+    return _sign(sp.sympify(expr), known) == 1
+
+
+def proves_nonnegative(expr: sp.Expr, known: Conditions = NONE) -> bool:
+    """Tell whether the expression is never negative where the conditions hold."""
+    expr = sp.sympify(expr)
+    if expr.is_nonnegative or _sign(expr, known) == 1:
+        return True
+    return any(_product_sign(one, strict=False) == 1 for one in _swept(expr, known))
+
+
+def proves_nonzero(expr: sp.Expr, known: Conditions = NONE) -> bool:
+    """Tell whether the expression has no zero where the conditions hold."""
+    expr = sp.sympify(expr)
+    return expr.is_nonzero is True or _sign(expr, known) != 0
+
+
+def proves_real(expr: sp.Expr, known: Conditions = NONE) -> bool:
+    """Tell whether the expression is real and finite wherever the conditions hold."""
+    if expr.is_real:
+        return True
+    if isinstance(expr, sp.Derivative):
+        return proves_real(expr.expr, known)
+    if expr.is_Pow:
+        base, exponent = expr.args
+        if not (exponent.is_Rational and proves_real(base, known)):
+            return False
+        if exponent.is_negative and not proves_nonzero(base, known):
+            return False
+        return bool(exponent.is_Integer or proves_nonnegative(base, known))
+    return bool((expr.is_Add or expr.is_Mul) and all(proves_real(arg, known) for arg in expr.args))
+
+
+@lru_cache(maxsize=8192)
+def _sign(expr: sp.Expr, known: Conditions) -> int:
+    """Return 1 or -1 for an expression of that sign everywhere, and 0 where nothing is proved."""
+    for one in _swept(expr, known):
+        if one.is_positive:
+            return 1
+        if one.is_negative:
+            return -1
+        if sign := _product_sign(one, strict=True):
+            return sign
+    return _sign_by_roots(expr, known)
+
+
+def _swept(expr: sp.Expr, known: Conditions) -> Iterator[sp.Expr]:
+    """Yield the expression, and in variables that sweep over what the conditions allow."""
+    yield expr
+    for variable, low, high in known.intervals:
+        low, high = sp.sympify(low), sp.sympify(high)
+        step = sp.Dummy("step", positive=True)
+        if not expr.has(variable) or not (low.is_finite or high.is_finite):
+            continue
+        if low.is_finite and high.is_finite:
+            value = (low + high * step) / (1 + step)
+        else:
+            value = low + step if low.is_finite else high - step
+        expr = expr.subs(variable, value)
+        yield expr
+    for positive in known.positive:
+        yield from _named(expr, positive)
+    for rest in (known.positive[::-1], known.positive):
+        solved = expr
+        while rest:
+            solved, rest = _solved(solved, rest[0], rest[1:])
+            yield solved
+
+
+def _named(expr: sp.Expr, positive: sp.Expr) -> Iterator[sp.Expr]:
+    """Yield the expression with a name for something positive that it contains as it stands."""
+    name = sp.Dummy("positive", positive=True)
+    top, bottom = sp.fraction(sp.together(expr))
+    for form in (sp.expand(top) / sp.expand(bottom), sp.factor(expr), expr):
+        changed = form.subs(positive, name)
+        changed = changed.subs(sp.expand(positive), name).subs(sp.expand(-positive), -name)
+        if changed != form:
+            yield changed
+
+
+def _solved(
+    expr: sp.Expr, positive: sp.Expr, rest: tuple[sp.Expr, ...]
+) -> tuple[sp.Expr, tuple[sp.Expr, ...]]:
+    """Put in for one of its symbols what it is in terms of something positive."""
+    name = sp.Dummy("positive", positive=True)
+    # A symbol of known sign would lose it.
+    order = sorted(
+        positive.free_symbols & expr.free_symbols,
+        key=lambda each: (bool(each.is_positive), str(each)),
+    )
+    for symbol in order:
+        slope = sp.diff(positive, symbol)
+        if not slope.has(symbol) and slope.is_nonzero:
+            value = (name - sp.expand(positive - slope * symbol)) / slope
+            return expr.subs(symbol, value), tuple(each.subs(symbol, value) for each in rest)
+    return expr, rest
+
+
+def _product_sign(expr: sp.Expr, *, strict: bool) -> int:
+    """Return the sign of a product from that of its factors, 0 where one of them is not known.
+
+    If it need not be strict, factors may vanish, and 1 and -1 are "not negative", "not positive".
+    """
+    sign = 1
+    for part in sp.fraction(sp.together(expr)):
+        for factor in sp.Mul.make_args(sp.factor(part)):
+            base, power = factor.as_base_exp()
+            even = bool(power.is_Integer and power % 2 == 0)
+            base = base if power.is_Integer else factor
+            one = _factor_sign(base, strict=strict)
+            if one:
+                sign *= 1 if even else one
+            elif not (even and base.is_real and (base.is_nonzero or not strict)):
+                return 0
+    return sign
+
+
+def _factor_sign(factor: sp.Expr, *, strict: bool) -> int:
+    expanded = sp.expand(factor)
+    for one in (factor, expanded):
+        if one.is_positive or (one.is_nonnegative and not strict):
+            return 1
+        if one.is_negative or (one.is_nonpositive and not strict):
+            return -1
+    if not expanded.is_Add:
+        return 0
+    if _outweighs(expanded):
+        return 1
+    if _outweighs(-expanded):
+        return -1
+    if len(expanded.free_symbols) == 1 and expanded.is_polynomial():
+        return _sign_by_roots(expanded, NONE)
+    return 0
+
+
+def _outweighs(total: sp.Expr) -> bool:
+    """Tell whether each negative term of a sum has a positive one of its own that is larger.
+
+    Roots are compared by their squares, exponentials by their exponents.
+    """
+    terms = sp.Add.make_args(sp.expand(total))
+    plus = [term for term in terms if term.is_positive]
+    minus = [-term for term in terms if term.is_negative]
+    if len(plus) + len(minus) < len(terms) or not minus:
+        return False
+    for small in minus:
+        for large in plus:
+            by_square = sp.expand(large**2 - small**2)
+            by_exponent = sp.expand(sp.expand_log(sp.log(large) - sp.log(small)))
+            if by_square.is_positive or by_exponent.is_positive:
+                plus.remove(large)
+                break
+        else:
+            rest = sp.expand(sum(plus) ** 2 - sum(minus) ** 2)
+            return len(minus) == 1 and bool(rest.is_positive)
+    return True
+
+
+def _sign_by_roots(expr: sp.Expr, known: Conditions) -> int:
+    """Decide a rational function of one variable by Sturm's theorem."""
+    from derivations.algebra import UndecidedError, sign_between
+
+    if len(expr.free_symbols) != 1:
+        return 0
+    (variable,) = expr.free_symbols
+    if not variable.is_extended_real:
+        return 0
+    low = 0 if variable.is_nonnegative else -sp.oo
+    high = 0 if variable.is_nonpositive else sp.oo
+    given = [over for over in known.intervals if over[0] == variable]
+    try:
+        found = sign_between(expr, given[-1] if given else (variable, low, high))
+    except (UndecidedError, sp.PolynomialError):
+        return 0
+    return {"+": 1, "-": -1}.get(found, 0)
+
+
+def fails_inside(expr: sp.Expr, over: Interval) -> bool:
+    """Tell whether an expression that should be positive in an interval is not, or may not be.
+
+    A rational function is decided; of others some values are looked at.
+    """
+    if proves_nonnegative(expr, NONE.with_interval(over)):
+        return False
+    variable, low, high = over[0], *map(sp.sympify, over[1:])
+    if expr.is_rational_function(variable):
+        return True
+    (swept,) = [one for one in _swept(variable, NONE.with_interval(over))][1:] or [variable]
+    steps = [sp.Rational(2) ** k for k in (-20, -6, -2, 0, 2, 6, 20)]
+    places = [swept.subs(dict.fromkeys(swept.free_symbols, place)) for place in steps]
+    return any(sp.N(expr.subs(variable, place)) < 0 for place in places)
+
+
+def open_factors(expr: sp.Expr, known: Conditions) -> list[sp.Expr]:
+    """Return what must be positive for an expression to be so, as far as it is not proved.
+
+    One factor of unknown sign, what stands under a root, or the expression itself.
+
+    >>> q = sp.Symbol("q", positive=True)
+    >>> open_factors((1 - q**2) / (2 * q), NONE)
+    [1 - q]
+    """
+    if proves_positive(expr, known):
+        return []
+    if expr.is_Pow and expr.exp.is_Rational and not expr.exp.is_Integer:
+        return open_factors(expr.base, known)
+    if expr.has(sp.Derivative, sp.Integral, sp.Piecewise) or not expr.free_symbols:
+        return [expr]
+    sign, unknown = 1, []
+    for part in sp.fraction(sp.together(expr)):
+        for factor in sp.Mul.make_args(sp.factor(part)):
+            if proves_positive(-factor, known):
+                sign = -sign
+            elif not proves_positive(factor, known):
+                unknown.append(factor)
+    if len(unknown) != 1 or unknown[0].is_Pow:
+        return [expr]
+    return [sp.expand(sign * unknown[0])]
+
+
+def demands(expr: sp.Expr) -> tuple[set[sp.Expr], set[sp.Expr]]:
+    """Collect what must not vanish, and what must not be negative, where the expression is real."""
+    nonzero, nonnegative = set(), set()
+    for node in sp.preorder_traversal(expr):
+        if isinstance(node, sp.Pow):
+            base, exponent = node.args
+            if not exponent.is_nonnegative:
+                nonzero.add(base)
+            if not exponent.is_integer:
+                nonnegative.add(base)
+        elif isinstance(node, sp.log):
+            nonzero.add(node.args[0])
+            nonnegative.add(node.args[0])
+        elif isinstance(node, (sp.asin, sp.acos)):
+            nonnegative.add(1 - node.args[0] ** 2)
+        elif isinstance(node, (sp.tan, sp.sec)):
+            nonzero.add(sp.cos(node.args[0]))
+        elif isinstance(node, (sp.cot, sp.csc)):
+            nonzero.add(sp.sin(node.args[0]))
+    return nonzero, nonnegative
