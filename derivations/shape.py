@@ -93,9 +93,9 @@ class _Chapter:
     def __init__(self, shape: Shape) -> None:
         self.shape, self.rise = shape, shape.rise
         self.slope = sp.diff(self.rise, distance)
-        self.trailing = q * a
-        self.q = q_root**shape.root_order if shape.root_order > 1 else q
-        self.variable = q_root if shape.root_order > 1 else q
+        order = shape.root_order
+        self.variable = q_root if order > 1 else q
+        self.trailing = self.variable**order * a
         self.blunt = min(shape.powers) > 1
 
     def derive(self) -> Iterator[Derivation]:
@@ -120,13 +120,10 @@ class _Chapter:
         proof = self._proof("rise", "Shape", _SHAPE)
         proof.define(h(x), self.rise, "the surface of the indenter", left="h")
         try:
-            proof.sign(
-                self.slope, ">", 0, (distance, 0, sp.oo), "it rises on both sides", left="h'"
-            )
+            _signed(proof, self.slope, ">", "it rises on both sides", "h'")
             curvature = sp.diff(self.slope, distance)
             if curvature != 0:
-                over = (distance, 0, sp.oo)
-                proof.sign(curvature, ">=", 0, over, "it is convex", left="h''")
+                _signed(proof, curvature, ">=", "it is convex", "h''")
         except StepError as error:
             raise ValueError(
                 f'the shape "{self.shape.text}" cannot be shown to rise and to be convex for x > 0, '
@@ -168,11 +165,19 @@ class _Chapter:
         proof.recall("shape-pressure", p, K * (delta - self.rise - l_r * self.slope))
         proof.define(delta, depth, "the leading edge")
         fall = -K * (self.slope + l_r * sp.diff(self.slope, distance))
-        proof.equal(sp.Derivative(p, distance), fall, "its slope", left="p'(|x|)")
-        proof.sign(fall, "<", 0, (distance, 0, sp.oo), "the pressure has one zero", left="p'(|x|)")
+        proof.equal(sp.Derivative(p, distance), fall, _FALLS, left="p'(|x|)")
         if closed is not None:
+            if not self.blunt:
+                proof.where(sp.Lt(l_r, a), "the edge is behind the tip")
             proof.root(p, distance, closed, "the positive root of $p = 0$", left=tex(x_te))
-        proof.define(distance, place, r"there $|x| = x_{\mathrm{TE}} = q a$")
+        proof.define(
+            distance,
+            place,
+            r"there $|x| = x_{\mathrm{TE}} = q a$"
+            if self.variable == q
+            else r"$|x| = x_{\mathrm{TE}}$, with a root of $x_{\mathrm{TE}}/a$",
+        )
+        proof.where(sp.Lt(self.variable, 1), "the surface peels")
         proof.root(p, l_r, number, "the pressure vanishes at the trailing edge")
         return proof.done(l_r, number)
 
@@ -246,8 +251,6 @@ class _Chapter:
         proof = self._proof(label, title, text)
         self._recall_forces(proof)
         proof.recall("shape-trailing", l_r, self._number())
-        if self.q != q:
-            proof.define(q, self.q, "so that all powers are whole")
         proof.define(mu, F / W, "Eq. (37)")
         ratio = sp.factor(sp.simplify(forces[1] / forces[0]))
         for force, leading in ((W, forces[0]), (F, forces[1]), (mu, ratio)):
@@ -285,6 +288,14 @@ class _Chapter:
         return proof.done(mu, last)
 
 
+def _signed(proof: Proof, form: sp.Expr, relation: str, reason: str, left: str) -> None:
+    """Prove a sign for |x| > 0 by that of every term or, where a term has the other one, by Sturm."""
+    try:
+        proof.holds(form, relation, 0, reason, left=left)
+    except StepError:
+        proof.sign(form, relation, 0, (distance, 0, sp.oo), reason, left=left)
+
+
 def _primitive(term: sp.Expr) -> sp.Expr:
     coefficient, rest = term.as_independent(distance, as_Add=False)
     power = rest.as_base_exp()[1] if rest != 1 else sp.S.Zero
@@ -299,8 +310,13 @@ def _integral(form: sp.Expr) -> sp.Expr:
 def _tidy(form: sp.Expr) -> sp.Expr:
     """Return the product of factors, with 1 - q rather than q - 1, which is negative."""
     product = sp.factor(sp.powsimp(sp.expand(form)))
-    factors = [-1 if each == q - 1 else each for each in sp.Mul.make_args(product)]
-    return sp.Mul(*factors) * (1 - q) if q - 1 in sp.Mul.make_args(product) else product
+    factors = sp.Mul.make_args(product)
+    for variable in (q, q_root):
+        if variable - 1 in factors:
+            return sp.Mul(*(-1 if each == variable - 1 else each for each in factors)) * (
+                1 - variable
+            )
+    return product
 
 
 def _power_root(shape: Shape, level: sp.Expr) -> sp.Expr | None:
@@ -328,6 +344,7 @@ def _trailing_text(closed: bool, blunt: bool) -> str:
     return form if blunt else f"{form} {_SHARP}"
 
 
+_FALLS = "negative, as $h' > 0$ and $h'' \\ge 0$: the pressure has one zero"
 _SHAPE = r"In terms of the distance $|x|$ from the lowest line; a prime is the derivative with respect to it."
 _EXPLICIT_A = r"The half length $a$ of the contact at rest; the leading edge is at $x = -a$."
 _IMPLICIT_A = (
