@@ -97,7 +97,7 @@ def _interval() -> Derivation:
     falling = _slope(y) + E * _slope(m - y)
     proof.equal(-sp.diff(between, y), falling, r"at $0 < \xi = y < m$", left="-f'(y)",
                 right="h'(y) + E h'(m - y)")  # fmt: skip
-    proof.positive(falling, "so that $f$ falls there", left="h'(y) + E h'(m - y)")
+    proof.holds(falling, ">", 0, "so that $f$ falls there", left="h'(y) + E h'(m - y)")
     convex = (1 - E) * _slope(y) + E * (_slope(y) - _slope(y - m))
     proof.equal(-sp.diff(behind, y), convex, r"at $\xi = y > m$: the first term is positive, the second not "
                 "negative, because $h'$ does not fall", left="-f'(y)",
@@ -143,7 +143,7 @@ def _shape(label: str, name: str, text: str, slope: sp.Expr, form: sp.Expr) -> D
     curvature = -sp.Derivative(sp.log(slope), (y, 2))
     proof.equal(curvature, form, f"with $h' = {tex(slope)}$", left=r"-(\ln h')''")
     if form != 0:
-        proof.positive(form, r"$\ln h'$ is concave")
+        proof.holds(form, ">", 0, r"$\ln h'$ is concave")
     return proof.done(curvature, form)
 
 
@@ -153,8 +153,11 @@ def _circle() -> Derivation:
     slope = y / sp.sqrt(R**2 - y**2)
     form = R**2 * (R**2 - 3 * y**2) / (y**2 * (R**2 - y**2) ** 2)
     curvature = -sp.Derivative(sp.log(y) - sp.log(R**2 - y**2) / 2, (y, 2))
+    proof.where(y < R / sp.sqrt(3), "not on the outer part")
+    proof.where(y < R, "which follows")
     proof.equal(sp.Derivative(R - sp.sqrt(R**2 - y**2), y), slope, "$h'$")
-    proof.equal(curvature, form, r"positive for $y < R/\sqrt{3}$", left=r"-(\ln h')''")
+    proof.equal(curvature, form, "by differentiation", left=r"-(\ln h')''")
+    proof.holds(form, ">", 0, r"$\ln h'$ is concave")
     return proof.done(curvature, form)
 
 
@@ -179,7 +182,7 @@ def _converse() -> Derivation:
         form = ratio_gain / (2 * ratio_near + ratio_gain)
         proof.equal(sign * (1 - E * ratio), form, what,
                     left=rf"{'-' if sign < 0 else ''}\left[1 - E \rho({name})\right]")  # fmt: skip
-    proof.positive(form, "so that between them $f$ has a valley")
+    proof.holds(form, ">", 0, "so that between them $f$ has a valley")
     return proof.done(E, middle)
 
 

@@ -64,7 +64,7 @@ class Form:
     meaning: str
 
 
-FORMS = (
+FORMS: tuple[Form, ...] = (
     Form("ALPHA", "F5", sym.Lambda_fixed, (), "V tau/sqrt(R delta) at the critical velocity, fixed depth"),
     Form("CRITICAL_DRIVE_NUMBER", "F5", sym.Lambda_weight, (), "V tau (K/(R W))^(1/3) there, dead weight"),
     Form("PEAK_TRAILING_EDGE_RATIO", "F3", q, (), "q at the friction maximum of a dead weight"),
@@ -132,9 +132,9 @@ FORMS += (
          "load for l -> 0 over W, - 1"),
     Form("power_law_error_load_high", "F19-error-load-high", sym.e_n_load_high, POWER_LAW,
          "C V delta over W, - 1"),
-    Form("power_law_error_friction_force_low", "F19-error-friction-low", sym.e_n_friction_low,
+    Form("power_law_error_friction_low", "F19-error-friction-low", sym.e_n_friction_low,
          (*POWER_LAW, sym.gap_edge, sym.gap_slope), "friction force for l -> 0 over F, - 1"),
-    Form("power_law_error_friction_force_high", "F19-error-friction-high", sym.e_n_friction_high,
+    Form("power_law_error_friction_high", "F19-error-friction-high", sym.e_n_friction_high,
          POWER_LAW, "friction force for l -> oo over F, - 1"),
     Form("power_law_error_depth_high", "F19-error-depth-high", sym.e_n_depth_high, POWER_LAW,
          "W/(C V) over delta, - 1, dead weight"),

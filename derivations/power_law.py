@@ -115,15 +115,16 @@ def _edge() -> Derivation:
         "F19-edge", title="Power law: trailing edge", text=_EDGE, uses=("F19-pressure",)
     )
     proof.define(n, 1 + excess, r"$n > 1$, that is, $\nu > 0$")
-    proof.root(BEHIND.subs(y, q), l, NUMBER, "no pressure at the trailing edge, $y = q$")
+    proof.define(l, NUMBER, "what $l$ is for an edge at $y = q$")
+    proof.equal(BEHIND.subs(y, q), sp.S.Zero, "no pressure there", left=r"\hat p(q a)")
     proof.equal(
         *(sp.diff(NUMBER, q), -(n - 1 + q**n) / (n * q**n), "slope"),
         left=r"\frac{d l}{d q}",
     )
-    proof.positive((excess + q**n) / (n * q**n), r"$l$ falls strictly: each $l > 0$ has one $q$")
+    falling = (excess + q**n) / (n * q**n)
+    proof.holds(falling, ">", 0, r"$l$ falls strictly: each $l > 0$ has one $q$")
     proof.equal(NUMBER.subs(q, 1), sp.S.Zero, r"at rest, and $l \to \infty$ for $q \to 0$",
                 left="l(1)")  # fmt: skip
-    proof.define(l, NUMBER, "the same as a rule")
     proof.define(Q, SLOPE_POWER, "the slope at the trailing edge over that at $x = a$")
     proof.equal(n * l * Q, 1 - q**n, "which replaces the difference $1 - q^n$")
     proof.equal(1 / (q + n * l), Q, "one equation for $q$, without a difference")

@@ -26,6 +26,8 @@ from derivations.step import Proof, tex
 from derivations.symbols import (
     Q,
     bend,
+    blunt,
+    damped,
     e_n_depth_high,
     e_n_friction_high,
     e_n_friction_low,
@@ -42,17 +44,21 @@ from derivations.symbols import (
     phi_rise,
     psi,
     q,
+    sharp,
+    tip,
+    whole,
     y,
 )  # fmt: skip
 
-_DAMPER = 1 + q * Q**2 + (2 * n - 1) * l * Q**2 / 2
-"""(2 n - 1) phi_n/(n**2 l)."""
-_WHOLE = 1 + q + l + l**2 * Q
-"""(n + 1) w_n/n."""
-_TIP = n**2 + q * (n**2 - 1 + q * Q)
-"""n (n + 1) (w_n - l): what the spring carries."""
-_FAST = (n - 1) * (2 * n**2 - 1 + 2 * n * (n + 1) * q) / (2 * n**2 * (n + 1))
-_SLOW = q * Q * (2 * n * q / (n + 1) + 2 * (n - 1) + q * Q) / (2 * n**2)
+_SHORT = {
+    damped: 1 + q * Q**2 + (2 * n - 1) * l * Q**2 / 2,
+    whole: 1 + q + l + l**2 * Q,
+    tip: n**2 + q * (n**2 - 1 + q * Q),
+    blunt: (n - 1) * (2 * n**2 - 1 + 2 * n * (n + 1) * q) / (2 * n**2 * (n + 1)),
+    sharp: q * Q * (2 * n * q / (n + 1) + 2 * (n - 1) + q * Q) / (2 * n**2),
+}
+"""Shorthands: (2 n - 1) phi_n/(n**2 l), (n + 1) w_n/n, n (n + 1) (w_n - l), and the two parts of the
+error for high velocity, of which a wedge has the second only."""
 
 
 @dataclass(frozen=True)
@@ -72,43 +78,43 @@ ASYMPTOTES = (
     Asymptote(
         *("L1", "friction coefficient at low velocity", e_n_l1),
         LOW_SLOPE * l * LOAD / FRICTION_FORCE,
-        (q * gap_slope * (1 + Q) + l + l**2 * Q - (2 * n - 1) * l * Q**2 / 2) / _DAMPER,
+        (q * gap_slope * (1 + Q) + l + l**2 * Q - (2 * n - 1) * l * Q**2 / 2) / damped,
         r"$\frac{2 n - 1}{4}\, l$ at low velocity",
     ),
     Asymptote(
         *("L2", "friction coefficient at high velocity", e_n_l2),
         HIGH_COEFFICIENT * LOAD / FRICTION_FORCE,
-        (_FAST + _SLOW) / (l * _DAMPER),
+        (blunt + sharp) / (l * damped),
         r"$\frac{(n - 1)(2 n^2 - 1)}{2 n^2 (n + 1)}\, l^{-1}$ at high velocity; no term is negative",
     ),
     Asymptote(
         *("load-low", "load at low velocity", e_n_load_low),
         AT_REST / LOAD,
-        -(l**2 * Q + bend) / _WHOLE,
+        -(l**2 * Q + bend) / whole,
         r"$-\frac{n + 1}{4}\, l^2$ at low velocity",
     ),
     Asymptote(
         *("load-high", "load at high velocity", e_n_load_high),
         l / LOAD,
-        -_TIP / (n**2 * _WHOLE),
+        -tip / (n**2 * whole),
         r"$-\frac{n}{n + 1}\, l^{-1}$ at high velocity",
     ),
     Asymptote(
         *("friction-low", "friction force at low velocity", e_n_friction_low),
         2 * n * HIGH_COEFFICIENT * l / (n * FRICTION_FORCE),
-        (gap_edge + q * gap_slope * (1 + Q) - (2 * n - 1) * l * Q**2 / 2) / _DAMPER,
+        (gap_edge + q * gap_slope * (1 + Q) - (2 * n - 1) * l * Q**2 / 2) / damped,
         r"$\frac{2 n - 1}{4}\, l$ at low velocity",
     ),
     Asymptote(
         *("friction-high", "friction force at high velocity", e_n_friction_high),
         HIGH_COEFFICIENT * l / FRICTION_FORCE,
-        -(q * Q**2 + (2 * n - 1) * l * Q**2 / 2) / _DAMPER,
+        -(q * Q**2 + (2 * n - 1) * l * Q**2 / 2) / damped,
         r"$-\frac{2 n - 1}{2 n^2}\, l^{-1}$ at high velocity",
     ),
     Asymptote(
         *("depth-high", "depth at high velocity, dead weight", e_n_depth_high),
         LOAD / l,
-        _TIP / (n * (n + 1) * l),
+        tip / (n * (n + 1) * l),
         r"$\frac{n}{n + 1}\, l^{-1}$ at high velocity",
     ),
 )
@@ -187,6 +193,9 @@ def _error(asymptote: Asymptote) -> Derivation:
     ):  # fmt: skip
         if asymptote.form.has(symbol):
             proof.recall(label, symbol, difference)
+    for symbol, sum_of in _SHORT.items():
+        if asymptote.form.has(symbol):
+            proof.define(symbol, sum_of, "a shorthand")
     proof.define(asymptote.symbol, asymptote.ratio - 1, "asymptote over exact value")
     proof.equal(asymptote.symbol, asymptote.form, "in this form exact also where it is small")
     return proof.done(asymptote.symbol, asymptote.form)
@@ -198,12 +207,12 @@ def _monotonic() -> Derivation:
     rest = sp.Symbol("varrho", positive=True)
     proof.define(psi, 1 - rest, r"$d \ln \varphi_n/d \ln l < 1$, because $\varphi_n/l$ falls")
     sinking = -omega / (n + 1)
-    whole = (2 - n) * sinking + 1 - (psi - omega)
+    slope = (2 - n) * sinking + 1 - (psi - omega)
     form = rest + (n + excess) * omega / (n + 1)
     proof.define(n, 1 + excess, r"$n > 1$")
-    proof.equal(whole, form, r"logarithmic slope of $s^{2 - n}\, l/m_n$, that is, of $L_1/\mu$")
-    proof.positive(form, r"$\omega = d \ln w_n/d \ln l > 0$")
-    return proof.done(whole, form)
+    proof.equal(slope, form, r"logarithmic slope of $s^{2 - n}\, l/m_n$, that is, of $L_1/\mu$")
+    proof.holds(form, ">", 0, r"$\omega = d \ln w_n/d \ln l > 0$")
+    return proof.done(slope, form)
 
 
 _MONOTONIC = (

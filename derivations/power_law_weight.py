@@ -21,7 +21,7 @@ from derivations.power_law import (
     z,
 )
 from derivations.record import Derivation
-from derivations.step import Proof
+from derivations.step import Proof, tex
 from derivations.symbols import (
     C,
     K,
@@ -98,16 +98,17 @@ def _balance() -> Derivation:
     state = {r: s * q, Q: SLOPE_POWER}
     place = lam / NUMBER
     of_q = SCALED_LOAD.subs(state).subs(s, place)
-    slope = sp.diff(of_q, q) / sp.diff(place, q)
-    proof.equal(slope, SCALED_SLOPE, "positive: a deeper indenter carries more",
-                left=r"\frac{\partial f_n}{\partial s}")  # fmt: skip
+    proof.equal(
+        *(sp.diff(of_q, q), SCALED_SLOPE * sp.diff(place, q), "a deeper indenter carries more"),
+        left=r"\frac{d f_n}{d q}", right=rf"{tex(SCALED_SLOPE)} \frac{{d s}}{{d q}}",
+    )  # fmt: skip
     proof.define(scaled_n_s, SCALED_SLOPE, r"$\partial f_n/\partial s$")
     elasticity, whole = s * scaled_n_s / scaled_n, 1 + q + l + l**2 * Q
     above, below = (1 + q + l * q**n) / whole, (n + 1) * l**2 * Q / whole
     proof.equal(elasticity - n, above, "more than the damper alone")
     proof.equal(n + 1 - elasticity, below, "less than the spring alone")
-    proof.positive(above, "a quotient of positive terms")
-    proof.positive(below, "likewise")
+    proof.holds(above, ">", 0, "a quotient of positive terms")
+    proof.holds(below, ">", 0, "likewise")
     return proof.done(elasticity - n, above)
 
 
@@ -231,7 +232,7 @@ def _maximum() -> Derivation:
         2 * n * z * Q + 3 * n * z**2 * Q**2 / damped + double * z**3 * Q**3 / damped**2
     )
     proof.equal(sp.diff(of_q, q), slope, "slope", left=r"\frac{d T_n}{d q}")
-    proof.positive(slope, r"with $\nu = n - 1$, each term")
+    proof.holds(slope, ">", 0, r"with $\nu = n - 1$, each term")
     proof.equal(form.subs({q: 0, Q: 0, z: 1}), -excess / n**2, "negative in the fast limit",
                 left="T_n(0)")  # fmt: skip
     proof.equal(form.subs({q: 1, Q: 1, z: 0}), 2, "positive at rest", left="T_n(1)")

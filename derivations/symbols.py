@@ -99,13 +99,13 @@ q_root = sp.Symbol("q_root", positive=True)
 # Power law h = |x|**n/(n L**(n - 1)) and wedge h = c |x|; y is |x|/a, Q is q**(n - 1), z is 1 - q**n.
 exponent, excess, L, Q, y, z_peeled = _positive("n nu L Q y peeled")
 """The exponent n, and n - 1, which is positive for every shape that is no wedge."""
-w_ahead, w_behind, phi_ahead, phi_behind = _positive("w_ahead w_behind phi_ahead phi_behind")
+w_ahead, phi_ahead, lost_ahead = _positive("w_ahead phi_ahead e_ahead")
+w_behind, phi_behind, lost_behind = sp.symbols("w_behind phi_behind e_behind", nonnegative=True)
 w_n, phi_n, m_n, eta_n, P_n, l_cross, lam_cross = _positive(
     "w_n phi_n m_n eta_n P_n l_cross lambda_cross"
 )
 scaled_n, scaled_n_s = _positive("f_n f_n_s")
 slip_n, T_n = sp.symbols("D_n T_n", real=True)
-lost_ahead, lost_behind = _positive("e_ahead e_behind")
 (e_n_l1, e_n_l2, e_n_load_low, e_n_load_high, e_n_friction_low, e_n_friction_high,
  e_n_depth_high) = sp.symbols(
     "e_L1_n e_L2_n e_W_low_n e_W_high_n e_F_low_n e_F_high_n e_depth_high_n", real=True
@@ -114,12 +114,14 @@ gap_edge, gap_slope, bend, phi_rise, phi_fall, psi, omega = _positive(
     "gap_q gap_Q bend phi_rise phi_fall psi omega"
 )
 w_rest, m_low, m_high = _positive("w_rest m_low m_high")
+damped, whole, tip, sharp, blunt = _positive("damped whole tip sharp blunt")
+"""Shorthands of sums in the errors of the asymptotes."""
 p_le, p_te = sp.symbols("p_LE p_TE", nonnegative=True)
 depth_rate_now, load_excess = sp.symbols("delta_t W_e", real=True)
 logarithm, slope_rate = (sp.Function(name, real=True) for name in ("psi", "chi"))
 """ln h' of a shape, and its slope."""
 travelled, ratio_near, ratio_now, ratio_gain = _positive("m rho_1 rho_2 beta_1")
-s_peeling, s_peeled, inclination = _positive("s_1 s_2 c_1")
+s_peeling, s_peeled, held, inclination = _positive("s_1 s_2 held c_1")
 
 alpha = 2 * sp.sqrt(2) / 3
 """The coefficient of Eqs. 40-46."""
@@ -183,6 +185,11 @@ TEX = {
     gap_edge: r"\bar q",
     gap_slope: r"\bar Q",
     w_rest: r"w_{n,0}",
+    damped: r"D_{\mathrm{d}}",
+    whole: r"D_{\mathrm{w}}",
+    tip: r"D_{\mathrm{t}}",
+    sharp: r"D_{\mathrm{s}}",
+    blunt: r"D_{\mathrm{b}}",
     m_low: r"m_{n,0}'",
     m_high: r"m_{n,\infty}",
     bend: "b_n",
@@ -206,6 +213,7 @@ TEX = {
     depth_rate_now: r"\dot\delta",
     load_excess: r"W_{\mathrm{e}}",
     inclination: "c",
+    held: r"\bar w",
     ratio_gain: r"\beta",
 }
 """How `sympy.latex` prints these symbols where its own choice differs from the paper's."""

@@ -27,6 +27,7 @@ from derivations.symbols import (
     a,
     delta,
     eta_n,
+    held,
     inclination,
     kappa,
     l,
@@ -48,9 +49,7 @@ from derivations.symbols import (
 c = inclination
 PEELING, PEELED = {n: 1, Q: 1, l: 1 - q}, {n: 1, q: 0, Q: 1 / l}
 """The forms of a power law for n = 1: while the edge moves to the tip, and when it is there."""
-SCALED_PEELING = (
-    2 * (1 + kappa - lam**2 / 2) / (kappa + sp.sqrt(kappa**2 + 4 * (1 + kappa - lam**2 / 2)))
-)
+SCALED_PEELING = 2 * held / (kappa + sp.sqrt(kappa**2 + 4 * held))
 SCALED_PEELED = 2 * (1 + kappa) / (lam + kappa + sp.sqrt((lam + kappa) ** 2 + 2 * (1 + kappa)))
 
 _theorem = partial(Proof, equation=None, section=SECTION)
@@ -73,9 +72,8 @@ def _edge() -> Derivation:
     )
     proof.equal(behind, 1 - y - l, "at $x = y a$", left=r"\hat p(y a)")
     proof.define(P, 1 - y - l, "behind the tip")
-    proof.root(
-        P, y, 1 - l, r"the trailing edge if $l < 1$; if not, there is no contact behind the tip"
-    )
+    proof.where(l < 1, "otherwise there is no contact behind the tip")
+    proof.root(P, y, 1 - l, "the trailing edge")
     return proof.done(y, 1 - l)
 
 
@@ -155,9 +153,9 @@ _FAST = (
 def _weight() -> tuple[Derivation, ...]:
     return tuple(_depth(*case) for case in (
         ("wedge-weight-peeling", "slow sliding", {r: s - lam}, s_peeling, SCALED_PEELING,
-         s**2 + lam**2 / 2 + kappa * (s - 1) - 1),
+         s**2 + kappa * s - held),
         ("wedge-weight-peeled", "fast sliding", {r: 0}, s_peeled, SCALED_PEELED,
-         s**2 / 2 + lam * s + kappa * (s - 1) - 1),
+         s**2 / 2 + (lam + kappa) * s - (1 + kappa)),
     ))  # fmt: skip
 
 
@@ -167,13 +165,14 @@ def _depth(
 ) -> Derivation:  # fmt: skip
     proof = _theorem(label, title=f"Wedge: depth at a load, {regime}", text=_WEIGHT,
                      uses=("F19-balance", "wedge-edge"))  # fmt: skip
+    proof.root(balance, s, root, "its one positive root, without a difference", name=name)
+    if name == s_peeling:
+        proof.define(held, 1 + kappa - lam**2 / 2, r"positive, because $\lambda < 1$")
     load = SCALED_LOAD.subs(n, 1).subs(edge)
     proof.equal(load + kappa * (s - 1) - 1, balance, "the balance of forces", left="G")
     switch = 3 * lam**2 / 2 + kappa * lam - (1 + kappa)
     proof.equal(balance.subs(s, lam), switch, r"which is negative if $s > \lambda$",
                 left=r"G\big|_{s = \lambda}")  # fmt: skip
-    proof.root(balance, s, root, "its positive root")
-    proof.define(name, root, r"$\delta/\delta_0 = s$")
     return proof.done(name, root)
 
 

@@ -7,7 +7,7 @@ from kvtheory.api._edge import double_precision, scene_of
 from kvtheory.results import AsymptoteReport
 from kvtheory.scene.broadcasting import values
 from kvtheory.scene.model import Scene
-from kvtheory.scene.requirements import require_parabola
+from kvtheory.scene.requirements import require_closed_form
 
 MINIMUM_TOLERANCE = 1e-10
 """Asymptotes that must be closer than this are not told apart from rounding."""
@@ -24,15 +24,16 @@ def asymptotes(
     Parameters
     ----------
     scene, over
-        As in `steady`; the indenter must be a parabola.
+        As in `steady`; the indenter must be a parabola, a power law or a wedge.
     tolerance
         Relative error up to which an asymptote counts as good, from 1e-10 to 1.
 
     Returns
     -------
     AsymptoteReport
-        The critical velocity V* (theorem F5), the regime, and a line for each asymptote: its value,
-        the exact value, the relative error and the velocities where that is within the tolerance.
+        The critical velocity V* (theorem F5, F19-crossing), the regime, and a line for each asymptote:
+        its value, the exact value, the relative error and the velocities where that is within the
+        tolerance. A dead weight has its friction maximum too, unless the indenter is a wedge.
 
     Raises
     ------
@@ -58,7 +59,7 @@ def asymptotes(
         raise ValueError(
             f"`tolerance` = {tolerance!r}: expected a number from {MINIMUM_TOLERANCE} to 1"
         )
-    require_parabola(scene, "the theory of asymptotes")
+    require_closed_form(scene, "the theory of asymptotes")
     from kvtheory.models.steady import regimes  # it imports SciPy, which takes a while
 
     with double_precision():

@@ -9,7 +9,7 @@ from kvtheory.results import SteadyState
 from kvtheory.scene.broadcasting import values
 from kvtheory.scene.model import Scene
 from kvtheory.scene.quantities import nearest
-from kvtheory.scene.requirements import lacks_parabola
+from kvtheory.scene.requirements import lacks_closed_form
 
 
 def steady(
@@ -30,8 +30,9 @@ def steady(
         ``{"drive.velocity": np.geomspace(1e-3, 10)}``: SI numbers, arrays of them, or text with a
         unit. Arrays broadcast against each other.
     method
-        ``"exact"`` (parabola; the default for it), ``"quadrature"`` (any shape; the default for the
-        others) or ``"asymptote"`` (parabola; the one of the regime in which the velocity lies).
+        ``"exact"`` (parabola, power law, wedge; the default for them), ``"quadrature"`` (any shape; the
+        default for the others) or ``"asymptote"`` (of the regime in which the velocity lies; for the
+        same shapes as ``"exact"``).
 
     Returns
     -------
@@ -67,7 +68,7 @@ def steady(
 
 def method_for(scene: Scene, method: str | None) -> str:
     """Return the method of steady sliding that is asked for, or else the one that suits the shape."""
-    lacking = lacks_parabola(scene)
+    lacking = lacks_closed_form(scene)
     method = method or ("quadrature" if lacking else "exact")
     if method not in METHODS:
         raise ValueError(f'`method` = "{method}": {nearest(method, METHODS)}')

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     "--method",
     default=None,
     metavar="exact|quadrature|asymptote",
-    help="Default: exact, or quadrature for shapes other than the parabola.",
+    help="Default: exact for parabola, power law and wedge, quadrature for other shapes.",
 )
 def steady(scene: str | None, overrides: Sequence[str], as_json: bool, method: str | None) -> None:
     """Print the state of steady sliding: depth, edges, load, friction, peak pressure."""

@@ -1,6 +1,6 @@
 """What a method needs of a scene: one predicate and one wording for each need."""
 
-from kvtheory.scene.indenters import Parabola
+from kvtheory.scene.indenters import Parabola, PowerLaw, Wedge
 from kvtheory.scene.model import Scene
 
 
@@ -13,6 +13,30 @@ def lacks_parabola(scene: Scene) -> str:
     if isinstance(scene.indenter, Parabola):
         return ""
     return f'holds for the parabola only, not for indenter.shape = "{scene.indenter.shape}"'
+
+
+CLOSED_FORMS = (Parabola, PowerLaw, Wedge)
+"""Shapes whose steady sliding is in closed form, with one scalar root at most."""
+
+
+def lacks_closed_form(scene: Scene) -> str:
+    """Say why a method that needs closed forms does not hold for a scene; nothing if it does.
+
+    >>> lacks_closed_form(Scene())
+    ''
+    """
+    if isinstance(scene.indenter, CLOSED_FORMS):
+        return ""
+    return (
+        "holds for the parabola, the power law and the wedge only, not for indenter.shape = "
+        f'"{scene.indenter.shape}"'
+    )
+
+
+def require_closed_form(scene: Scene, what: str) -> None:
+    """Raise `ValueError` if the shape has no closed forms; `what` needs them."""
+    if lacking := lacks_closed_form(scene):
+        raise ValueError(f"{what} {lacking}")
 
 
 def require_parabola(scene: Scene, what: str) -> None:

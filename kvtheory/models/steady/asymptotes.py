@@ -17,6 +17,9 @@ from kvtheory.results import SteadyState
 
 Array = NDArray[np.float64]
 
+PROVED = "error-L1, error-L2-fixed, error-L2-dead-weight and others"
+"""The derivations of the errors."""
+
 
 @dataclass(frozen=True)
 class Limits:
@@ -60,6 +63,13 @@ def critical_velocity(scene: Limits, retardation_time: Array) -> Array:
         return cf.ALPHA * np.sqrt(scene.radius * scene.static_depth) / retardation_time
     length = np.cbrt(scene.radius * (scene.lift_load / scene.stiffness))
     return cf.CRITICAL_DRIVE_NUMBER * length / retardation_time
+
+
+def peak(scene: Limits, retardation_time: Array) -> tuple[Array, Array]:
+    """Return velocity and friction coefficient at the maximum of a dead weight (theorem F3)."""
+    length = np.cbrt(scene.radius * (scene.static_load / scene.stiffness))  # (R W/K)^(1/3)
+    velocity = cf.PEAK_DRIVE_NUMBER * length / retardation_time
+    return velocity, cf.PEAK_FRICTION * length / scene.radius
 
 
 def low(scene: Limits) -> dict[str, Array]:

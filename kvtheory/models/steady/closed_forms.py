@@ -248,42 +248,53 @@ def power_law_bend(n: Value, y: Value, phi_rise: Value, phi_fall: Value) -> Valu
 
 def power_law_error_l1(n: Value, l: Value, q: Value, Q: Value, gap_Q: Value) -> Value:
     """Return L1/mu - 1; theorem F19-error-L1."""
-    return (-Q * Q * l * (2 * n - 1) / 2 + Q * l * l + gap_Q * q * (Q + 1) + l) / (Q * Q * l * (2 * n - 1) / 2 + Q * Q * q + 1)
+    damped = Q * Q * l * (2 * n - 1) / 2 + Q * Q * q + 1
+    return (-Q * Q * l * (2 * n - 1) / 2 + Q * l * l + gap_Q * q * (Q + 1) + l) / damped
 
 
 def power_law_error_l2(n: Value, l: Value, q: Value, Q: Value) -> Value:
     """Return L2/mu - 1, fixed depth; theorem F19-error-L2."""
-    return (Q * q * (Q * q + 2 * n * q / (n + 1) + 2 * n - 2) / (2 * n * n) + (n - 1) * (2 * n * n + 2 * n * q * (n + 1) - 1) / (2 * n * n * (n + 1))) / (l * (Q * Q * l * (2 * n - 1) / 2 + Q * Q * q + 1))
+    blunt = (n - 1) * (2 * n * n + 2 * n * q * (n + 1) - 1) / (2 * n * n * (n + 1))
+    damped = Q * Q * l * (2 * n - 1) / 2 + Q * Q * q + 1
+    sharp = Q * q * (Q * q + 2 * n * q / (n + 1) + 2 * n - 2) / (2 * n * n)
+    return (blunt + sharp) / (damped * l)
 
 
 def power_law_error_load_low(l: Value, q: Value, Q: Value, bend: Value) -> Value:
     """Return load for l -> 0 over W, - 1; theorem F19-error-load-low."""
-    return (-Q * l * l - bend) / (Q * l * l + l + q + 1)
+    whole = Q * l * l + l + q + 1
+    return (-Q * l * l - bend) / whole
 
 
 def power_law_error_load_high(n: Value, l: Value, q: Value, Q: Value) -> Value:
     """Return C V delta over W, - 1; theorem F19-error-load-high."""
-    return (-n * n - q * (Q * q + n * n - 1)) / (n * n * (Q * l * l + l + q + 1))
+    tip = n * n + q * (Q * q + n * n - 1)
+    whole = Q * l * l + l + q + 1
+    return -tip / (n * n * whole)
 
 
-def power_law_error_friction_force_low(n: Value, l: Value, q: Value, Q: Value, gap_q: Value, gap_Q: Value) -> Value:
+def power_law_error_friction_low(n: Value, l: Value, q: Value, Q: Value, gap_q: Value, gap_Q: Value) -> Value:
     """Return friction force for l -> 0 over F, - 1; theorem F19-error-friction-low."""
-    return (-Q * Q * l * (2 * n - 1) / 2 + gap_Q * q * (Q + 1) + gap_q) / (Q * Q * l * (2 * n - 1) / 2 + Q * Q * q + 1)
+    damped = Q * Q * l * (2 * n - 1) / 2 + Q * Q * q + 1
+    return (-Q * Q * l * (2 * n - 1) / 2 + gap_Q * q * (Q + 1) + gap_q) / damped
 
 
-def power_law_error_friction_force_high(n: Value, l: Value, q: Value, Q: Value) -> Value:
+def power_law_error_friction_high(n: Value, l: Value, q: Value, Q: Value) -> Value:
     """Return friction force for l -> oo over F, - 1; theorem F19-error-friction-high."""
-    return (-Q * Q * l * (2 * n - 1) / 2 - Q * Q * q) / (Q * Q * l * (2 * n - 1) / 2 + Q * Q * q + 1)
+    damped = Q * Q * l * (2 * n - 1) / 2 + Q * Q * q + 1
+    return (-Q * Q * l * (2 * n - 1) / 2 - Q * Q * q) / damped
 
 
 def power_law_error_depth_high(n: Value, l: Value, q: Value, Q: Value) -> Value:
     """Return W/(C V) over delta, - 1, dead weight; theorem F19-error-depth-high."""
-    return (n * n + q * (Q * q + n * n - 1)) / (l * n * (n + 1))
+    tip = n * n + q * (Q * q + n * n - 1)
+    return tip / (l * n * (n + 1))
 
 
 def wedge_scaled_depth_peeling(kappa: Value, lam: Value) -> Value:
     """Return delta/delta_0 of a wedge while lam < s; theorem wedge-weight-peeling."""
-    return (2 * kappa - lam * lam + 2) / (kappa + np.sqrt(kappa * kappa + 4 * kappa - 2 * lam * lam + 4))
+    held = kappa - lam * lam / 2 + 1
+    return 2 * held / (kappa + np.sqrt(4 * held + kappa * kappa))
 
 
 def wedge_scaled_depth_peeled(kappa: Value, lam: Value) -> Value:

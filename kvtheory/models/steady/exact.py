@@ -12,20 +12,15 @@ d ln f_z/d ln s lies between 2 and 3, so that rounding moves the depth by a few 
 place at most, over any range of velocity.
 """
 
-from dataclasses import replace
-from typing import Any
-
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from kvtheory.models.steady import closed_forms as cf
+from kvtheory.models.steady.blockwise import evaluate
 from kvtheory.results import STEADY_UNITS, Certificate, SteadyState
 
 HALLEY_STEPS = 2
 """The first guess is within 3 % of the root; cubic convergence gives 1e-5, then all digits."""
-
-BLOCK = 16384
-"""Scenes treated at a time: the intermediate arrays of a block stay in the processor's cache."""
 
 RELATIVE_ERROR = 16 * float(np.finfo(float).eps)
 """3.6e-15, twice the worst that the comparison with more than 50 digits has shown."""
@@ -36,9 +31,6 @@ CERTIFICATE = Certificate(
     "difference to ball arithmetic on more than ten thousand scenes over 24 decades of velocity",
     relative_error=dict.fromkeys(STEADY_UNITS, RELATIVE_ERROR),
 )
-
-QUANTITIES = tuple(STEADY_UNITS)
-ZERO_AT_REST = ("retardation_length", "friction_force", "friction_coefficient")
 
 Array = NDArray[np.float64]
 
@@ -74,7 +66,8 @@ def at_depth(
     >>> print(f"{state.load:.6g} {state.friction_force:.6g} {state.trailing_edge:.6g}")
     35344.6 5344.58 0.00029563
     """
-    return _blockwise(_contact, radius, stiffness, retardation_time, velocity, depth)
+    given = radius, stiffness, retardation_time, velocity, depth
+    return evaluate(_contact, given, velocity, CERTIFICATE)
 
 
 def at_load(
@@ -107,7 +100,8 @@ def at_load(
     >>> print(f"{1e3 * state.depth:.6f} mm, mu = {state.friction_coefficient:.6f}")
     0.089661 mm, mu = 0.085709
     """
-    return _blockwise(_balance, radius, stiffness, retardation_time, velocity, weight, spring)
+    given = radius, stiffness, retardation_time, velocity, weight, spring
+    return evaluate(_balance, given, velocity, CERTIFICATE)
 
 
 def scaled_root(drive_number: Array, support_number: Array) -> Array:
@@ -156,31 +150,3 @@ def _contact(R: Array, K: Array, tau: Array, V: Array, delta: Array) -> tuple[Ar
         pressure * cf.peak_pressure_factor(l),
         cf.dissipated_in_contact(q),
     )
-
-
-def _blockwise(formula: Any, *arguments: ArrayLike) -> SteadyState:
-    """Evaluate `formula` on the broadcast arguments, block by block."""
-    arrays = np.broadcast_arrays(*(np.asarray(argument, dtype=float) for argument in arguments))
-    shape, size = arrays[0].shape, arrays[0].size
-    flat = [array.reshape(-1) for array in arrays]
-    result = np.empty((len(STEADY_UNITS), size))
-    with np.errstate(over="raise", divide="raise", invalid="raise", under="ignore"):
-        for start in range(0, size, BLOCK):
-            part = slice(start, start + BLOCK)
-            for row, values in zip(result, formula(*(array[part] for array in flat)), strict=True):
-                row[part] = values
-    _check_underflow(result, flat[3])
-    quantities: dict[str, Any] = {
-        name: row.reshape(shape) if shape else float(row[0])
-        for name, row in zip(STEADY_UNITS, result, strict=True)
-    }
-    certificate = replace(CERTIFICATE, relative_error=dict(CERTIFICATE.relative_error))
-    return SteadyState(**quantities, model="exact", certificate=certificate)
-
-
-def _check_underflow(result: Array, velocity: Array) -> None:
-    """Raise where digits were lost below the smallest normal number; zero is right only at rest."""
-    lost = np.abs(result) < np.finfo(float).tiny
-    lost[[QUANTITIES.index(name) for name in ZERO_AT_REST]] &= velocity != 0.0
-    if lost.any():
-        raise FloatingPointError(f"underflow in {QUANTITIES[int(lost.any(axis=1).argmax())]}")

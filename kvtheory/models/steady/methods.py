@@ -3,29 +3,46 @@
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from types import ModuleType
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from kvtheory.models.steady import asymptotes, exact
+from kvtheory.models.steady import asymptotes, exact, power_law, power_law_asymptotes
+from kvtheory.models.steady.power_law_contact import shape_of
 from kvtheory.results import STEADY_UNITS, Certificate, SteadyState
 from kvtheory.scene.model import Scene
 
 Array = NDArray[np.float64]
 Values = Mapping[str, Array]
 
-PROVED = (
-    "closed forms of the asymptotes' errors (derivations error-L1, error-L2-fixed, error-L2-dead-weight "
-    "and others)"
-)
+
+class Family(NamedTuple):
+    """Shapes whose steady sliding is in closed form."""
+
+    exact: ModuleType
+    asymptotes: Any
+    """A module with the names of `kvtheory.models.steady.asymptotes`."""
+    parameters: Callable[[Values], tuple[Array, ...]]
+    """What the functions of `exact` take first."""
+
+
+_POWER_LAW = Family(power_law, power_law_asymptotes, shape_of)
+FAMILIES = {
+    "parabola": Family(exact, asymptotes, lambda values: (values["indenter.radius"],)),
+    "power-law": _POWER_LAW,
+    "wedge": _POWER_LAW,
+}
+"""By the name of the shape; `kvtheory.scene.requirements` knows the same names."""
+
 ROUNDING = 64 * 2.0**-52
 """Of an asymptote and of its error, which are of some twenty operations each."""
 
 
 def solve_exact(scene: Scene, values: Values) -> SteadyState:
     """Evaluate the closed forms on whole arrays."""
-    return _solve(exact, values, values["indenter.radius"])
+    family = FAMILIES[scene.indenter.shape]
+    return _solve(family.exact, values, *family.parameters(values))
 
 
 def solve_quadrature(scene: Scene, values: Values) -> SteadyState:
@@ -49,6 +66,7 @@ def solve_quadrature(scene: Scene, values: Values) -> SteadyState:
 def solve_asymptote(scene: Scene, values: Values) -> SteadyState:
     """Evaluate the asymptote of the regime in which each velocity lies, with its error in closed form."""
     truth = solve_exact(scene, values)
+    asymptotes = FAMILIES[scene.indenter.shape].asymptotes
     limits = asymptotes.limits(values)
     V, tau = values["drive.velocity"], values["foundation.retardation_time"]
     slow = np.abs(V) <= asymptotes.critical_velocity(limits, tau)
@@ -58,9 +76,9 @@ def solve_asymptote(scene: Scene, values: Values) -> SteadyState:
         errors = asymptotes.low_errors(limits, truth), asymptotes.high_errors(limits, truth)
     found = {name: np.where(slow, low[name], high[name]) for name in STEADY_UNITS}
     wrong = {name: np.abs(np.where(slow, errors[0][name], errors[1][name])) for name in found}
-    certificate = Certificate(
-        "proved", PROVED, {name: _scalar(error + ROUNDING) for name, error in wrong.items()}
-    )
+    statement = f"closed forms of the asymptotes' errors (derivations {asymptotes.PROVED})"
+    errors_of = {name: _scalar(error + ROUNDING * (1.0 + error)) for name, error in wrong.items()}
+    certificate = Certificate("proved", statement, errors_of)
     return SteadyState(
         **{name: _scalar(found[name]) for name in STEADY_UNITS},
         model="asymptote",
@@ -75,10 +93,10 @@ METHODS: dict[str, Callable[[Scene, Values], SteadyState]] = {
 }
 
 
-def _solve(method: ModuleType, values: Mapping[str, Any], indenter: Any) -> SteadyState:
-    """Call the function of `method` that fits the support; `indenter` is its first argument."""
+def _solve(method: ModuleType, values: Mapping[str, Any], *indenter: Any) -> SteadyState:
+    """Call the function of `method` that fits the support; `indenter` are its first arguments."""
     first = (
-        indenter,
+        *indenter,
         values["foundation.stiffness"],
         values["foundation.retardation_time"],
         values["drive.velocity"],

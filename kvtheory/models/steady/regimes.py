@@ -7,9 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import elementwise
 
-from kvtheory.models.steady import asymptotes as asy
-from kvtheory.models.steady import closed_forms as cf
-from kvtheory.models.steady.methods import solve_exact
+from kvtheory.models.steady.asymptotes import Row
+from kvtheory.models.steady.methods import FAMILIES, solve_exact
 from kvtheory.results import AsymptoteLine, AsymptoteReport, Certificate
 from kvtheory.scene.model import Scene
 
@@ -19,16 +18,12 @@ Values = Mapping[str, Array]
 DECADES = 30.0
 """How far from the critical velocity, in powers of ten, the range of an asymptote is looked for."""
 
-CERTIFICATE = Certificate(
-    kind="proved",
-    statement="the relative errors are closed forms (derivations error-L1, error-L2-fixed, "
-    "error-L2-dead-weight and others), monotonic in V, evaluated to about 1e-14",
-    relative_error={},
-)
+STATEMENT = "the relative errors are closed forms (derivations {}), monotonic in V, evaluated to about 1e-14"
 
 
 def report(scene: Scene, values: Values, tolerance: float) -> AsymptoteReport:
     """Make the report of `kvtheory.asymptotes`, which documents it."""
+    asy = FAMILIES[scene.indenter.shape].asymptotes
     rows = asy.ROWS[scene.support.kind]
     V, tau = values["drive.velocity"], values["foundation.retardation_time"]
     limits = asy.limits(values)
@@ -53,7 +48,9 @@ def report(scene: Scene, values: Values, tolerance: float) -> AsymptoteReport:
                 velocity_max=_plain(edge if row.regime == "low" else np.full_like(edge, np.inf)),
             )
         )  # fmt: skip
-    peak_velocity, peak_friction = _peak(scene, limits, tau)
+    nothing = np.full_like(critical, np.nan)
+    dead = scene.support.kind == "dead-weight"
+    peak_velocity, peak_friction = asy.peak(limits, tau) if dead else (nothing, nothing)
     l1, l2 = (np.abs(line.relative_error) <= tolerance for line in lines[:2])
     return AsymptoteReport(
         velocity=_plain(V),
@@ -65,19 +62,18 @@ def report(scene: Scene, values: Values, tolerance: float) -> AsymptoteReport:
         tolerance=tolerance,
         lines=tuple(lines),
         model="asymptote",
-        certificate=CERTIFICATE,
+        certificate=Certificate("proved", STATEMENT.format(asy.PROVED), {}),
     )
 
 
 def _errors(scene: Scene, values: Values) -> dict[str, dict[str, Array]]:
+    asy = FAMILIES[scene.indenter.shape].asymptotes
     state, limits = solve_exact(scene, values), asy.limits(values)
     with np.errstate(divide="ignore", invalid="ignore"):  # no high asymptote at V = 0
         return {"low": asy.low_errors(limits, state), "high": asy.high_errors(limits, state)}
 
 
-def _range_edge(
-    scene: Scene, values: Values, critical: Array, row: asy.Row, tolerance: float
-) -> Array:
+def _range_edge(scene: Scene, values: Values, critical: Array, row: Row, tolerance: float) -> Array:
     """Return the velocity at which the error of an asymptote passes the tolerance.
 
     The error is monotonic in V: a sign change within `DECADES` of V* is the edge; without one the
@@ -95,15 +91,6 @@ def _range_edge(
     found = elementwise.find_root(excess, bracket, args=args)
     everywhere = np.inf if row.regime == "low" else 0.0
     return np.where(found.success, critical * 10.0**found.x, everywhere)
-
-
-def _peak(scene: Scene, limits: asy.Limits, tau: Array) -> tuple[Array, Array]:
-    """Return velocity and friction coefficient at the maximum of a dead weight (theorem F3)."""
-    if scene.support.kind != "dead-weight":
-        nothing = np.full_like(limits.radius, np.nan)
-        return nothing, nothing
-    length = np.cbrt(limits.radius * (limits.static_load / limits.stiffness))  # (R W/K)^(1/3)
-    return cf.PEAK_DRIVE_NUMBER * length / tau, cf.PEAK_FRICTION * length / limits.radius
 
 
 def _finite(array: Array) -> Any:

@@ -1,0 +1,65 @@
+"""A formula of steady sliding on whole arrays: broadcast, block by block, with its certificate."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from kvtheory.results import STEADY_UNITS, Certificate, SteadyState
+
+BLOCK = 16384
+"""Scenes treated at a time: the intermediate arrays of a block stay in the processor's cache."""
+
+QUANTITIES = tuple(STEADY_UNITS)
+ZERO_AT_REST = ("retardation_length", "friction_force", "friction_coefficient")
+
+Array = NDArray[np.float64]
+
+
+def evaluate(
+    formula: Callable[..., tuple[Array, ...]],
+    arguments: Sequence[ArrayLike],
+    velocity: ArrayLike,
+    certificate: Certificate,
+    own_errors: tuple[str, ...] = (),
+) -> SteadyState:
+    """Return the steady state that `formula` gives for the broadcast arguments.
+
+    The formula returns the quantities in the order of `STEADY_UNITS` and then the relative errors
+    of those in `own_errors`, which replace what the certificate says of them.
+
+    Raises
+    ------
+    FloatingPointError
+        If a value leaves the range of double precision. One with an error of its own may become
+        zero: that error says so.
+    """
+    arrays = np.broadcast_arrays(
+        *(np.asarray(argument, dtype=float) for argument in (*arguments, velocity))
+    )
+    shape, size = arrays[0].shape, arrays[0].size
+    flat = [array.reshape(-1) for array in arrays]
+    result = np.empty((len(QUANTITIES) + len(own_errors), size))
+    with np.errstate(over="raise", divide="raise", invalid="raise", under="ignore"):
+        for start in range(0, size, BLOCK):
+            part = slice(start, start + BLOCK)
+            values = formula(*(array[part] for array in flat[:-1]))
+            for row, found in zip(result, values, strict=True):
+                row[part] = found
+    _check_underflow(result[: len(QUANTITIES)], flat[-1], own_errors)
+    rows = [row.reshape(shape) if shape else float(row[0]) for row in result]
+    quantities: dict[str, Any] = dict(zip(QUANTITIES, rows, strict=False))
+    own_rows = dict(zip(own_errors, rows[len(QUANTITIES) :], strict=True))
+    own = replace(certificate, relative_error={**certificate.relative_error, **own_rows})
+    return SteadyState(**quantities, model="exact", certificate=own)
+
+
+def _check_underflow(result: Array, velocity: Array, own_errors: tuple[str, ...]) -> None:
+    """Raise where digits were lost below the smallest normal number; zero is right only at rest."""
+    lost = np.abs(result) < np.finfo(float).tiny
+    lost[[QUANTITIES.index(name) for name in ZERO_AT_REST]] &= velocity != 0.0
+    lost[[QUANTITIES.index(name) for name in own_errors]] = False
+    if lost.any():
+        raise FloatingPointError(f"underflow in {QUANTITIES[int(lost.any(axis=1).argmax())]}")

@@ -1,0 +1,90 @@
+r"""The contact of a power law: its shape, its trailing edge, and roots of real degree.
+
+With c = n l the trailing edge q = x_TE/a is the root of q^n + c q^(n-1) = 1 (derivation "F19-edge"), in
+ln q the root of the increasing and convex function
+
+    G(t) = (n - 1) t + ln(e^t + c),
+
+so that Newton's method descends to it from q = min(1, c^(-1/(n-1))), where G >= 0. G''/(2 G') <= 1/2:
+the error e of ln q becomes at most e^2/2. The last step multiplies q, which keeps its digits.
+"""
+
+from collections.abc import Mapping
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+MOST_STEPS = 80
+"""Far more than are needed: about seven, and ln(1/(n - 1)) more where n is close to 1."""
+LAST_STEP = 1e-8
+"""After a step as small as this the error, its square, is below rounding."""
+LAST_RESIDUAL = 8 * 2.0**-52
+"""Rounding of the residual: nothing is gained below it."""
+
+
+def shape_of(values: Mapping[str, Array]) -> tuple[Array, Array, Array]:
+    """Return slope, L and n of h = slope |x|^n/(n L^(n-1)), given the values of a scene by dotted key.
+
+    >>> [float(value) for value in shape_of({"indenter.inclination": np.array(0.1)})]
+    [0.1, 1.0, 1.0]
+    """
+    if "indenter.inclination" in values:
+        slope = values["indenter.inclination"]
+        return slope, np.ones_like(slope), np.ones_like(slope)
+    length = values["indenter.length"]
+    return np.ones_like(length), length, values["indenter.exponent"]
+
+
+def trailing_edge(exponent: Array, number: Array) -> tuple[Array, Array]:
+    """Return q = x_TE/a and Q = q^(n-1) for n >= 1 and l = l_r/a >= 0.
+
+    For n = 1, the wedge, q = max(0, 1 - l) and Q is its limit, min(1, 1/l). Where q is below the range
+    of double precision it is 0, and Q is right all the same.
+
+    Examples
+    --------
+    >>> q, Q = trailing_edge(np.array([2.0, 1.0, 1.0]), np.array([0.75, 0.25, 4.0]))
+    >>> q.round(12).tolist(), Q.round(12).tolist()
+    ([0.5, 0.75, 0.0], [0.5, 1.0, 0.25])
+    """
+    c, m = exponent * number, exponent - 1.0
+    with np.errstate(divide="ignore", over="ignore", invalid="ignore"):
+        start = np.where(c > 1.0, c ** (-1.0 / m), 1.0)
+        q = _descend(np.where(m > 0.0, start, 0.0), c, m)
+        q = np.where(m > 0.0, q, np.maximum(0.0, 1.0 - number))
+        return q, 1.0 / (q + c)
+
+
+def _descend(q: Array, c: Array, m: Array) -> Array:
+    positive = q >= np.finfo(float).tiny  # below, the digits are lost already
+    q = np.where(positive, q, 0.0)
+    for _ in range(MOST_STEPS):
+        residual = np.where(positive, np.log(q**m * (q + c)), 0.0)
+        step = np.where(positive, residual / (m + q / (q + c)), 0.0)
+        q = q * np.exp(-step)
+        if np.all((np.abs(step) <= LAST_STEP) | (np.abs(residual) <= LAST_RESIDUAL)):
+            break
+    return q
+
+
+def edge_sensitivity(exponent: Array, number: Array, q: Array, Q: Array) -> Array:
+    """Return -d ln q/d ln l, by which the relative error of l is multiplied in q.
+
+    It is below 1/(n - 1); for a wedge it is l/q.
+    """
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return exponent * number * Q / ((exponent - 1.0) + q * Q)
+
+
+def root(base: Array, degree: Array) -> Array:
+    """Return base^(1/degree), with a Newton step against the rounding of 1/degree.
+
+    Examples
+    --------
+    >>> float(root(np.array(1000.0), np.array(3.0)))
+    10.0
+    """
+    found = base ** (1.0 / degree)
+    return found * (1.0 - (found**degree / base - 1.0) / degree)
