@@ -59,7 +59,9 @@ def _monotonic() -> Derivation:
         *(2 * (n + 1) * (2 * n - 1) * gain, growth, "the friction coefficient grows"),
         left=r"2 (n + 1) (2 n - 1)\, w_n^2 \frac{d m_n}{d l}",
     )
-    proof.holds(growth, ">", 0, r"with $\nu = n - 1$ each term is positive", left=r"\frac{d m_n}{d l}")
+    proof.holds(
+        growth, ">", 0, r"with $\nu = n - 1$ each term is positive", left=r"\frac{d m_n}{d l}"
+    )
     return proof.done(LOAD - l * load_rate, rest)
 
 

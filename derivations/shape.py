@@ -56,7 +56,10 @@ def derive_shape(text: str) -> tuple[Derivation, ...]:
     """
     shape = read_shape(text)
     premises = [each for each in steady_premises() if each.label in PREMISES]
-    return (*premises, *_Chapter(shape).derive())
+    try:
+        return (*premises, *_Chapter(shape).derive())
+    except StepError as error:
+        raise ValueError(f'the shape "{text}": a step is not shown: {error}') from error
 
 
 def steady_premises() -> tuple[Derivation, ...]:
@@ -170,15 +173,9 @@ class _Chapter:
             if not self.blunt:
                 proof.where(sp.Lt(l_r, a), "the edge is behind the tip")
             proof.root(p, distance, closed, "the positive root of $p = 0$", left=tex(x_te))
-        proof.define(
-            distance,
-            place,
-            r"there $|x| = x_{\mathrm{TE}} = q a$"
-            if self.variable == q
-            else r"$|x| = x_{\mathrm{TE}}$, with a root of $x_{\mathrm{TE}}/a$",
-        )
-        proof.where(sp.Lt(self.variable, 1), "the surface peels")
-        proof.root(p, l_r, number, "the pressure vanishes at the trailing edge")
+        proof.define(l_r, number, r"what it is for an edge at $x_{\mathrm{TE}} = q a$")
+        zero = (K * (delta - self.rise - l_r * self.slope)).subs(distance, place)
+        proof.equal(zero, sp.S.Zero, "no pressure there", left=r"p(x_{\mathrm{TE}})")
         return proof.done(l_r, number)
 
     def _number(self) -> sp.Expr:

@@ -246,16 +246,6 @@ class Proof(Book):
             raise StepError(f"{self.label}: {claim} is not proved: left - right = {gap}")
 
     @asked
-    def positive(self, expr: sp.Expr, reason: str, **shown: Unpack[Shown]) -> None:
-        """Prove that an expression is positive because its symbols are: a sum of positive terms.
-
-        The symbols stand for themselves here, so that powers with a symbol as exponent are decided.
-        """
-        if not sp.sympify(expr).is_positive:
-            raise StepError(f"{self.label}: {expr} is not built of positive terms alone")
-        self._record(expr, ">", sp.S.Zero, reason, "proved", shown, exact=False)
-
-    @asked
     def equivalent(
         self, nonnegative: sp.Expr, lhs: sp.Expr, rhs: sp.Expr, reason: str, **shown: Unpack[Shown]
     ) -> None:

@@ -17,7 +17,8 @@ from derivations.render.edition import Edition
 from derivations.render.text import calculation, number
 
 _IMPORTED = (
-    "Abs, Derivative, E, Function, Heaviside, I, IndexedBase, Integral, Max, Min, Piecewise, S, Subs, Sum, "
+    "Abs, Derivative, E, Eq, "
+    "Function, Heaviside, I, IndexedBase, Integral, Max, Min, Piecewise, S, Subs, Sum, "
     "Symbol, acos, asin, atan, cos, cosh, exp, log, oo, pi, sin, sinh, sqrt, tan, tanh"
 )
 _ALSO = "from sympy.codegen.cfunctions import expm1, log1p"
@@ -114,12 +115,13 @@ def _call(step: Step, claim: Claim, code: _Code) -> list[str]:
 _PARAMETERS: dict[str, tuple[str, ...]] = {
     "define": ("lhs", "rhs"),
     "recall": ("lhs", "rhs"),
-    "equal": ("lhs", "rhs"),
+    "equal": ("lhs", "rhs", "cases"),
     "integral": ("lhs", "integrand", "over", "antiderivative", "value"),
     "root": ("expr", "variable", "value"),
     "unique_root": ("expr", "over"),
     "sign": ("expr", "relation", "bound", "over"),
-    "positive": ("expr",),
+    "where": ("condition",),
+    "holds": ("lhs", "relation", "rhs", "cases"),
     "equivalent": ("nonnegative", "lhs", "rhs"),
     "leading_order": ("expr", "leading", "variable", "point", "eps"),
     "sampled": ("lhs", "rhs", "ranges"),

@@ -5,6 +5,8 @@ by algebra where that is quick, else at random points with 50 digits; so are sig
 """
 
 import random
+from collections.abc import Iterator
+from contextlib import contextmanager
 from functools import reduce
 from typing import Any
 
@@ -15,9 +17,17 @@ Expr = Any
 Over = tuple[Any, Any, Any]
 """A SymPy expression; a variable with its bounds."""
 
-POINTS, DIGITS, CLOSE = 12, 50, sp.Float("1e-35")
+POINTS, TRIES, DIGITS, CLOSE = 12, 500, 50, sp.Float("1e-35")
 DISTANCES = [sp.Rational(1, 10**6), sp.Rational(1, 10**9)]
 """From the point of a limit: the remainder must fall by more than half from one to the next."""
+
+
+_SIGNS = {
+    ">": lambda value: value > 0,
+    ">=": lambda value: value >= 0,
+    "<": lambda value: value < 0,
+    "<=": lambda value: value <= 0,
+}
 
 
 class Steps:
@@ -26,14 +36,31 @@ class Steps:
     def __init__(self, label: str) -> None:
         self.label, self.draw = label, random.Random(2020)
         self.rules: dict[Expr, Expr] = {}
+        self.conditions: list[Expr] = []
 
     def given(self, lhs: Expr, rhs: Expr) -> None:
         """Let the left side stand for the right side."""
         self.rules[sp.sympify(lhs)] = sp.sympify(rhs)
 
-    def equal(self, lhs: Expr, rhs: Expr) -> None:
-        """Check that both sides are the same."""
-        self._zero(self._put(lhs) - self._put(rhs), f"{lhs} = {rhs}")
+    def where(self, condition: Expr) -> None:
+        """Let an inequality hold at all points that are drawn from here on."""
+        self.conditions.append(condition)
+
+    def equal(self, lhs: Expr, rhs: Expr, cases: tuple[Expr, ...] = ()) -> None:
+        """Check that both sides are the same, in each of the cases if there are some."""
+        for case in cases or (sp.true,):
+            with self._case(case):
+                self._zero(self._put(lhs) - self._put(rhs), f"{lhs} = {rhs}", quiet=True)
+        self._report(True, f"{lhs} = {rhs}", "a difference of zero")
+
+    def holds(self, lhs: Expr, relation: str, rhs: Expr, cases: tuple[Expr, ...] = ()) -> None:
+        """Check an inequality at admissible points."""
+        for case in cases or (sp.true,):
+            with self._case(case):
+                forms = self._put(lhs) - self._put(rhs), sp.sympify(lhs) - rhs
+                fine = any(self._all(relation, form) for form in forms)
+            self._report(fine, f"{lhs} {relation} {rhs}", "", quiet=True)
+        self._report(True, f"{lhs} {relation} {rhs}", f"{POINTS} points")
 
     def integral(
         self,
@@ -75,27 +102,16 @@ class Steps:
     def sign(self, expr: Expr, relation: str, bound: Expr, over: Over) -> None:
         """Check that the expression stays on its side of the bound."""
         gap = self._put(expr) - self._put(bound)
-        signs = {
-            ">": lambda v: v > 0,
-            ">=": lambda v: v >= 0,
-            "<": lambda v: v < 0,
-            "<=": lambda v: v <= 0,
-        }
-        holds = all(
-            signs[relation](self._value(gap, {over[0]: self._inside(*over[1:])}))
-            for _ in range(POINTS)
-        )
+        points = ({over[0]: self._inside(*over[1:])} for _ in range(POINTS))
+        holds = all(_SIGNS[relation](self._value(gap, self._point(gap, at))) for at in points)
         self._report(holds, f"{expr} {relation} {bound} in {over[1:]}", f"{POINTS} points")
-
-    def positive(self, expr: Expr) -> None:
-        """Check that the expression is positive for all admissible symbols."""
-        holds = all(self._value(sp.sympify(expr), {}) > 0 for _ in range(POINTS))
-        self._report(holds, f"{expr} > 0", f"{POINTS} points")
 
     def equivalent(self, nonnegative: Expr, lhs: Expr, rhs: Expr) -> None:
         """Check that the first one has the sign of the difference of the others."""
         ratio = sp.cancel(self._put(nonnegative) / (self._put(lhs) - self._put(rhs)))
-        positive = ratio.is_positive or all(self._value(ratio, {}) > 0 for _ in range(POINTS))
+        positive = ratio.is_positive or all(
+            self._value(ratio, self._point(ratio)) > 0 for _ in range(POINTS)
+        )
         self._report(bool(positive), f"{lhs} >= {rhs}", "a positive ratio")
 
     def leading_order(
@@ -143,14 +159,39 @@ class Steps:
             terms = sp.Add.make_args(masked)
             holds = True
             for _ in range(POINTS):
-                point = {s: self._inside(0, 3, s) for s in masked.free_symbols}
+                point = self._point(masked)
                 values = [self._value(term, point) for term in terms]
                 holds = holds and abs(sum(values)) <= CLOSE * max(map(abs, values))
             self._report(holds, claim, f"{POINTS} points", quiet=quiet)
 
+    def _all(self, relation: str, gap: Expr) -> bool:
+        points = (self._point(gap) for _ in range(POINTS))
+        return all(_SIGNS[relation](self._value(gap, point)) for point in points)
+
+    @contextmanager
+    def _case(self, case: Expr) -> Iterator[None]:
+        """Let an equality or an inequality hold for a while."""
+        kept = dict(self.rules), list(self.conditions)
+        if isinstance(case, sp.Eq):
+            self.rules[case.lhs] = case.rhs
+        elif case != sp.true:
+            self.conditions.append(case)
+        yield
+        self.rules, self.conditions = kept
+
+    def _point(self, expr: Expr, fixed: dict[Expr, Expr] | None = None) -> dict[Expr, Expr]:
+        """Draw values for all symbols until the conditions hold."""
+        gaps = [self._put(condition.gts - condition.lts) for condition in self.conditions]
+        wanted = expr.free_symbols | set().union(*(gap.free_symbols for gap in gaps))
+        for _ in range(TRIES):
+            point = {s: self._inside(0, 3, s) for s in wanted} | (fixed or {})
+            if all(self._value(gap, point) > 0 for gap in gaps if not gap.atoms(AppliedUndef)):
+                return point
+        raise AssertionError(f"{self.label}: no point satisfies {self.conditions}")
+
     def _value(self, expr: Expr, point: dict[Expr, Expr]) -> Expr:
-        point = {s: point.get(s, self._inside(0, 3, s)) for s in expr.free_symbols}
-        return sp.sympify(expr).subs(point).evalf(DIGITS)
+        drawn = {s: point[s] if s in point else self._inside(0, 3, s) for s in expr.free_symbols}
+        return sp.sympify(expr).subs(drawn).evalf(DIGITS)
 
     def _inside(self, low: Expr, high: Expr, symbol: Expr | None = None) -> Expr:
         low, high = map(sp.sympify, (low, high))
