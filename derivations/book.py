@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
+from dataclasses import replace
 from functools import wraps
 from inspect import signature
 from typing import Any, ParamSpec, TypedDict, TypeVar, Unpack, cast
@@ -17,6 +18,7 @@ from derivations.conditions import (
     proves_nonnegative,
     proves_positive,
 )
+from derivations.letters import letters, printed, told
 from derivations.premises import Fact, Premise, contradiction, merged, violates, weakest
 from derivations.record import Claim, Derivation, Step, Table
 from derivations.rules import HiddenError, resolve
@@ -58,7 +60,7 @@ def asked(check: Callable[_P, _Value]) -> Callable[_P, _Value]:
 
 def tex(expr: sp.Expr) -> str:
     """Print an expression in the notation of the paper."""
-    return str(sp.latex(expr, symbol_names=TEX, fold_frac_powers=True))
+    return str(sp.latex(expr, symbol_names=TEX, fold_frac_powers=True, diff_operator="rd"))
 
 
 def tex_interval(over: Interval) -> str:
@@ -100,6 +102,13 @@ def established(label: str, lhs: sp.Expr) -> sp.Expr:
     if not forms:
         raise StepError(f"{label} does not establish {lhs}")
     return forms[-1]
+
+
+def _table(table: Table | None, new: Mapping[str, str]) -> Table | None:
+    if table is None:
+        return None
+    heads = tuple(told(head, new) for head in table.heads)
+    return Table(heads, tuple(tuple(told(cell, new) for cell in row) for row in table.rows))
 
 
 def _source(label: str) -> "Book":
@@ -205,20 +214,21 @@ class Book:
             raise StepError(f"{self.label}: no step established {lhs} and {rhs}")
         _finished[self.label] = self
         steps = self._stated()
+        new = letters(self.label, self._section)
         cited = {step.source for step in steps} | set(self._declared)
         return Derivation(
             label=self.label,
             equation=self.equation,
             section=self._section,
-            title=self._title,
-            text=self._text,
-            latex=result.step.latex,
+            title=told(self._title, new),
+            text=told(self._text, new),
+            latex=printed(result.step.latex, new),
             status=self._status(),
-            steps=steps,
+            steps=tuple(self._lettered(step) for step in steps),
             uses=tuple(label for label in self._uses if label in cited),
-            table=table,
-            domain=result.domain,
-            premises=tuple(dict.fromkeys(each.latex for each in result.premises)),
+            table=_table(table, new),
+            domain=tuple(printed(each, new) for each in result.domain),
+            premises=tuple(dict.fromkeys(printed(each.latex, new) for each in result.premises)),
         )
 
     def _claim(self, lhs: sp.Expr, rhs: sp.Expr) -> Claim:
@@ -247,6 +257,18 @@ class Book:
             step
             for step in self._steps
             if not step.source or step.claim is None or used(step.claim)
+        )
+
+    def _lettered(self, step: Step) -> Step:
+        """Return the step in the letters that this document prints; a recalled one in its source's."""
+        origin = _finished[step.source] if step.source in _finished else self
+        new, own = letters(origin.label, origin._section), letters(self.label, self._section)
+        return replace(
+            step,
+            left=printed(step.left, new),
+            right=printed(step.right, new),
+            domain=printed(step.domain, new),
+            reason=told(step.reason, own),
         )
 
     def _status(self) -> str:

@@ -15,10 +15,10 @@ import sympy as sp
 from sympy.core.function import AppliedUndef
 
 from derivations import symbols as sym
+from derivations.atoms import atoms, replaced
 from derivations.book import established, tex
 from derivations.nomenclature import BY_LATEX
 from derivations.record import Calculation, Claim, Derivation, Step
-from derivations.render.atoms import atoms, replaced
 from derivations.render.text import relations
 
 Numbers = dict[sp.Symbol, sp.Expr]

@@ -3,10 +3,10 @@
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
+from derivations.atoms import atoms, replaced
 from derivations.labels import closure, find
 from derivations.nomenclature import HEADS, SYMBOLS, Symbol
 from derivations.record import Derivation, Step, Table
-from derivations.render.atoms import atoms, replaced
 from derivations.render.domain import domain
 from derivations.render.frame import TITLE
 from derivations.render.text import conclusion, reference

@@ -4,9 +4,9 @@ import re
 import tomllib
 from pathlib import Path
 
+from derivations.atoms import atoms
 from derivations.labels import unknown
 from derivations.nomenclature import SYMBOLS
-from derivations.render.atoms import atoms
 
 
 def plain(latex: str) -> str:

@@ -15,7 +15,7 @@ _GREEK = (
     r"|tau|upsilon|phi|chi|psi|omega|Gamma|Delta|Theta|Lambda|Xi|Pi|Sigma|Phi|Psi|Omega|ell)(?![A-Za-z])"
 )
 _BRACES = r"\{(?:[^{}]|\{(?:[^{}]|\{[^{}]*\})*\})*\}"
-_LETTER = rf"(?:{_GREEK}|[A-Za-z])"
+_LETTER = rf"(?:\\Delta [stx](?![A-Za-z_'])|\\math(?:sf|bf)\{{[A-Za-z]\}}|{_GREEK}|[A-Za-z])"
 _TOKEN = re.compile(
     rf"\\(?:mathrm|operatorname|text|textrm|begin|end|phantom)\*?{_BRACES}"
     rf"|(?P<dots>\\d*dot\s*)?(?P<accent>\\(?:bar|hat|tilde)\s*)?"
@@ -44,14 +44,15 @@ def atoms(latex: str) -> Iterator[Atom]:
         if letter := token["letter"]:
             accent = f"{token['accent'].strip()} " if token["accent"] else ""
             star = "^{*}" if token["star"] or token["late"] else ""
-            symbol = f"{accent}{letter.strip('{}')}{star}{_index(token['index'] or '')}"
+            bare = letter if letter.startswith(r"\math") else letter.strip("{}")
+            symbol = f"{accent}{bare}{star}{_index(token['index'] or '')}"
             dots = (token["dots"] or "").strip()
             yield Atom(symbol, dots, token["primes"], *token.span())
 
 
 def _index(index: str) -> str:
-    """Write one character without braces."""
-    return re.sub(r"_\{(.)\}", r"_\1", index)
+    """Write one character or command without braces."""
+    return re.sub(rf"_\{{({_LETTER}|[0-9])\}}$", r"_\1", index)
 
 
 def replaced(latex: str, new: Callable[[str], str | None]) -> str:
