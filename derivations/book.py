@@ -261,7 +261,7 @@ class Book:
 
     def _lettered(self, step: Step) -> Step:
         """Return the step in the letters that this document prints; a recalled one in its source's."""
-        origin = _finished[step.source] if step.source in _finished else self
+        origin = _finished.get(step.source, self)
         new, own = letters(origin.label, origin._section), letters(self.label, self._section)
         return replace(
             step,

@@ -17,6 +17,7 @@ from sympy.core.function import AppliedUndef
 from derivations import symbols as sym
 from derivations.atoms import atoms, replaced
 from derivations.book import established, tex
+from derivations.letters import letters
 from derivations.nomenclature import BY_LATEX
 from derivations.record import Calculation, Claim, Derivation, Step
 from derivations.render.text import relations
@@ -87,10 +88,14 @@ def shown_quantities(quantities: Mapping[str, float]) -> dict[str, str]:
     return _listed(known_quantities(quantities))
 
 
+def _latex(symbol: sp.Symbol) -> str:
+    return next((atom.symbol for atom in atoms(tex(symbol))), "")
+
+
 def _listed(known: Numbers) -> dict[str, str]:
     values = {}
     for symbol, value in known.items():
-        latex = next((atom.symbol for atom in atoms(tex(symbol))), "")
+        latex = _latex(symbol)
         if latex in BY_LATEX:
             values[latex] = shown(float(value), BY_LATEX[latex].unit)
     return values
@@ -103,7 +108,8 @@ def _calculations(derivation: Derivation, given: Numbers) -> tuple[Calculation, 
     quantity of the scene speaks of another state, of which only the scene's constants are known;
     where it does so in an equation of its own, its symbols are not those of the scene.
     """
-    known, found = dict(given), {}
+    own = letters(derivation.label, derivation.section)  # here these stand for something else
+    known, found = {symbol: given[symbol] for symbol in given if _latex(symbol) not in own}, {}
     for step in derivation.steps:
         claim = step.claim
         if claim is None or step.relation != "=" or claim.check not in (*_CHECKS, "recall"):

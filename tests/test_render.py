@@ -11,7 +11,10 @@ from pathlib import Path
 
 import pytest
 
+from derivations.atoms import atoms
 from derivations.catalogue import catalogue
+from derivations.letters import letters
+from derivations.nomenclature import SYMBOLS
 from derivations.record import STATUSES, Derivation, Step, Table
 from derivations.render import (
     RenderError,
@@ -24,6 +27,7 @@ from derivations.render import (
     pdf,
     write,
 )
+from derivations.render.edition import symbols_of
 from derivations.render.text import Given, Line, blocks, sentence
 
 SAMPLE = (
@@ -106,6 +110,37 @@ def test_labels_are_unique_and_fit_file_names(everything):
 
 def test_every_status_has_a_meaning():
     assert tuple(frame.VOCABULARY) == STATUSES
+
+
+# The nomenclature
+
+
+def test_each_symbol_of_the_document_is_in_the_nomenclature_with_a_unit(everything):
+    listed = {symbol.latex: symbol for symbol in SYMBOLS}
+    missing = {
+        (symbol, each.label)
+        for each in everything
+        for symbol in symbols_of(each)
+        if symbol not in listed
+    }
+    assert missing == set()
+    assert all(symbol.meaning and symbol.unit for symbol in SYMBOLS)
+
+
+def test_the_nomenclature_gives_each_symbol_one_meaning(everything):
+    letters = [symbol.latex for symbol in SYMBOLS]
+    assert len(set(letters)) == len(letters)
+    assert [next(atoms(letter)).symbol for letter in letters] == letters
+    shown = {symbol for each in everything for symbol in symbols_of(each)}
+    assert set(letters) <= shown
+    words = {"", "coordinate", "counter", "constant", "sign", "dimension"}
+    assert {symbol.source for symbol in SYMBOLS} <= {each.label for each in everything} | words
+
+
+def test_no_letter_is_renamed_to_one_that_its_chapter_uses_otherwise(everything):
+    for each in everything:
+        new = letters(each.label, each.section)
+        assert len(set(new.values())) == len(new), each.label
 
 
 # What is given stands in sentences, the rest in lines

@@ -124,7 +124,7 @@ def _quantities(path: str | None, overrides: Sequence[str]) -> tuple[dict[str, f
     """Return the quantities of a scene and of its steady state by the names of `derivations.symbols`."""
     from kvtheory.api import steady
     from kvtheory.scene import Parabola, load_scene
-    from kvtheory.scene.numbers import dimensionless_numbers
+    from kvtheory.scene.static_state import StaticState
 
     scene = load_scene(path, overrides)
     if not isinstance(scene.indenter, Parabola):
@@ -136,7 +136,7 @@ def _quantities(path: str | None, overrides: Sequence[str]) -> tuple[dict[str, f
         raise ValueError(
             "--numbers: drive.velocity is 0; the closed forms are of an indenter that slides"
         )
-    state, numbers = steady(scene), dimensionless_numbers(scene)
+    state, at_rest = steady(scene), StaticState.of(scene)
     quantities = {
         "R": scene.indenter.radius,
         "K": scene.foundation.stiffness,
@@ -147,17 +147,16 @@ def _quantities(path: str | None, overrides: Sequence[str]) -> tuple[dict[str, f
         "W": float(state.load),
         "F": abs(float(state.friction_force)),
         "mu": abs(float(state.friction_coefficient)),
-        "delta_0": numbers["static_depth"],
-        "a_0": numbers["static_half_length"],
-        "W_0": numbers["static_load"],
-        "lambda": abs(numbers["drive_number"]),
+        "delta_0": at_rest.depth,
+        "a_0": at_rest.half_length,
+        "W_0": at_rest.load,
+        "lambda": abs(at_rest.drive_number),
     }
     for key, name in {"mass": "M", "gravity": "g", "stiffness": "k_s"}.items():
         if f"support.{key}" in scene.values():
             quantities[name] = scene.values()[f"support.{key}"]
-    for key, name in {"inertia_number": "epsilon", "support_number": "kappa"}.items():
-        if key in numbers:
-            quantities[name] = numbers[key]
+    if not at_rest.fixed:
+        quantities |= {"epsilon": at_rest.inertia_number, "kappa": at_rest.support_number}
     where = Path(path).name if path else "Table 1"
     return quantities, f"{where} ({scene.support.kind} support)"
 
