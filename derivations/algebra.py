@@ -30,11 +30,24 @@ def normalise(expr: sp.Expr) -> sp.Expr:
     assumptions on the symbols allow it.
     """
     expr = expr.replace(sp.tan, lambda angle: sp.sin(angle) / sp.cos(angle))
+    if expr.has(sp.Max):
+        expr = expr.replace(_is_of_two, _by_distance)
     expr = expr.replace(sp.Min, lambda *args: sp.Min(*args).rewrite(sp.Piecewise))
     return expr.replace(
         lambda e: e.is_Pow and e.exp.is_Rational and not e.exp.is_Integer,
         lambda e: sp.expand_power_base(sp.factor(sp.together(e.base)) ** e.exp),
     )
+
+
+def _is_of_two(expr: sp.Expr) -> bool:
+    return isinstance(expr, (sp.Max, sp.Min)) and len(expr.args) == 2
+
+
+def _by_distance(expr: sp.Expr) -> sp.Expr:
+    """Write the larger or smaller of two by how far they are apart."""
+    one, other = expr.args
+    sign = 1 if isinstance(expr, sp.Max) else -1
+    return (one + other + sign * sp.Abs(one - other)) / 2
 
 
 def difference(left: sp.Expr, right: sp.Expr) -> sp.Expr:
@@ -150,7 +163,7 @@ def leading_term(
         raise UndecidedError("the expression is identically zero, it has no leading term")
     try:
         coefficient, exponent = local.leadterm(h)
-    except (ValueError, NotImplementedError) as error:
+    except (ValueError, NotImplementedError, sp.PoleError) as error:
         raise UndecidedError(f"{local} has no leading power of {h}") from error
     return sp.radsimp(coefficient), exponent, h
 
@@ -176,6 +189,9 @@ def next_order(
     if difference(first * h**zero, sp.S.One) != 0:
         raise UndecidedError(f"left/right does not tend to 1 but behaves as {first * h**zero}")
     local = near(exact, variable, point, h)
+    # An absolute value has two series, one for each side of the point.
+    if not variable.is_positive and ratio.has(sp.Abs, sp.sign, sp.Piecewise, sp.Min, sp.Max):
+        raise UndecidedError(f"{ratio} may have another series on the other side")
     if not local.is_meromorphic(h, 0) or local.has(sp.Abs, sp.Piecewise, sp.Min, sp.Max):
         raise UndecidedError(f"{local} has no series in whole powers of {h}")
     next_c, next_k, _ = leading_term(exact - 1, variable, point)

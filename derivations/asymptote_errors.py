@@ -202,20 +202,26 @@ def _dead_weight() -> Derivation:
     form = e_l2_fixed + S * (1 + e_l2_fixed)
     squared = w / l * (2 / (3 * m)) ** 2
     root = sp.sqrt(1 + e_depth_high)
-    proof.define(S, root - 1, "half the error of the depth, at first order")
-    proof.equal(S, e_depth_high / (1 + root), "without a difference")
-    proof.define(e_l2_weight, sp.sqrt(1 + e_depth_high) * (1 + e_l2_fixed) - 1, "both errors")
-    proof.equal(e_l2_weight, form, "a sum of positive terms")
     for error in ASYMPTOTES:
         if error.symbol in (e_depth_high, e_l2_fixed):
-            proof.recall(error.label, error.symbol, error.stable)
+            proof.recall(error.label, error.symbol, error.ratio - 1)
+    proof.define(e_l2_weight, 2 / (3 * m) * sp.sqrt(w / l) - 1, _OVER_EXACT)
+    proof.equal(e_l2_weight, root * (1 + e_l2_fixed) - 1, "both errors")
+    proof.define(S, root - 1, "half the error of the depth, at first order")
+    proof.equal(S, e_depth_high / (1 + root), "without a difference")
+    proof.equal(e_l2_weight, form, "a sum of positive terms")
     _recall(proof, squared)
     proof.equal((1 + e_l2_weight) ** 2, squared, r"the square of $L_2/\mu$")
     slope = sp.Derivative(squared.subs(_IN_Q), q)
-    proof.sign(slope, ">", 0, UNIT, "monotonic", left=r"\frac{d}{dq} (1 + e)^2")
+    proof.sign(
+        slope, ">", 0, UNIT, "monotonic", left=rf"\frac{{d}}{{dq}} (1 + {tex(e_l2_weight)})^2"
+    )
     proof.sign((1 + 2 / (3 * l)) ** 4 - squared, ">", 0, UNIT, "bound at every velocity")
     proof.leading_order(squared - 1, 5 / (4 * l), q, 0, r"hence $e \sim 5/(8 l)$", eps=1 / l)
     return proof.done(e_l2_weight, form)
+
+
+_OVER_EXACT = r"$\alpha \sqrt{W/(R C V)}$ over $\mu$, with $W = K \delta a w$ and $\mu = a m/R$"
 
 
 def _suspended() -> Derivation:

@@ -94,7 +94,8 @@ def _estimate(
     leading: sp.Expr, shown: str,
 ) -> Derivation:  # fmt: skip
     """Evaluate the integral of the paper, and compare it with the exact force."""
-    proof = _equation(f"eq{number}", number, title=title, text=_TEXT)
+    proof = _equation(f"eq{number}", number, title=title, text=_TEXT,
+                      notation={"u": _compression, r"\dot{u}": _rate})  # fmt: skip
     proof.recall("eq3", h(x), _SHAPE)
     _recall_exact(proof)
     end = a if low else sp.S.Zero

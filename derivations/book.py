@@ -18,17 +18,22 @@ from derivations.conditions import (
     proves_nonnegative,
     proves_positive,
 )
+from derivations.display import Meaning, UnreadableError, names_in, read_chain
 from derivations.letters import letters, printed, told
 from derivations.premises import Fact, Premise, contradiction, merged, violates, weakest
 from derivations.record import Claim, Derivation, Step, Table
 from derivations.rules import HiddenError, resolve
-from derivations.symbols import TEX
+from derivations.symbols import TEX, alpha
 
 _P = ParamSpec("_P")
 _Value = TypeVar("_Value")
 
 _finished: dict[str, "Book"] = {}
 """The finished proofs by label, for `Book.recall`."""
+
+
+NOTATION: dict[str, Meaning] = {r"\alpha": alpha}
+"""Names that every display may use."""
 
 
 class StepError(ValueError):
@@ -60,7 +65,7 @@ def asked(check: Callable[_P, _Value]) -> Callable[_P, _Value]:
 
 def tex(expr: sp.Expr) -> str:
     """Print an expression in the notation of the paper."""
-    return str(sp.latex(expr, symbol_names=TEX, fold_frac_powers=True, diff_operator="rd"))
+    return str(sp.latex(expr, symbol_names=TEX, fold_frac_powers=True))
 
 
 def tex_interval(over: Interval) -> str:
@@ -94,6 +99,22 @@ def tex_condition(gap: sp.Expr) -> str:
         if not rest[0].has(symbol) and rest[0] != 0:
             return f"{tex(symbol)} > {tex(-rest[0])}"
     return f"{tex(gap)} > 0"
+
+
+def evaluated(expr: sp.Expr) -> sp.Expr:
+    """Evaluate the integrals of polynomials, and the derivatives of what they give."""
+    found = expr.replace(
+        lambda node: isinstance(node, sp.Integral) and node.function.is_polynomial(*node.variables),
+        lambda node: node.doit(),
+    )
+    return found.doit(integrals=False) if found != expr else found
+
+
+def tex_case(case: sp.Basic) -> str:
+    """Print a case: an equation, an inequality, or several at once."""
+    if isinstance(case, sp.And):
+        return ", ".join(map(tex_case, sp.ordered(case.args)))
+    return tex(case)
 
 
 def established(label: str, lhs: sp.Expr) -> sp.Expr:
@@ -134,10 +155,13 @@ class Book:
         title: str,
         text: str = "",
         uses: tuple[str, ...] = (),
+        notation: Mapping[str, Meaning] | None = None,
     ) -> None:
         self.label, self.equation = label, equation
         self._section, self._title, self._text = section, title, text
         self._uses, self._declared = list(uses), uses
+        self.notation = dict(notation or {})
+        """Names that displays may use beside those of the symbols."""
         self._rules: dict[sp.Expr, sp.Expr] = {}
         self._origins: dict[sp.Expr, Fact] = {}
         """For each rule, the fact that it comes from."""
@@ -154,9 +178,10 @@ class Book:
     @asked
     def define(self, lhs: sp.Expr, rhs: sp.Expr, reason: str = "", **shown: Unpack[Shown]) -> None:
         """Let the left side stand for the right side: a name, or a law of the model."""
+        self._displayed(sp.sympify(lhs), sp.sympify(rhs), shown)
         self._rule(lhs, rhs)
         self._imply(sp.sympify(lhs))
-        fact = self._record(lhs, "=", rhs, reason, "definition", shown)
+        fact = self._record(lhs, "=", rhs, reason, "definition", shown, trusted=True)
         self._premise(lhs, rhs, fact)
 
     @asked
@@ -271,6 +296,26 @@ class Book:
             reason=told(step.reason, own),
         )
 
+    def pair(
+        self, one: tuple[sp.Expr, sp.Expr], other: tuple[sp.Expr, sp.Expr], reason: str
+    ) -> Derivation:
+        """End the proof with two relations that its steps established, side by side."""
+        facts = [self._known.get((sp.sympify(lhs), sp.sympify(rhs))) for lhs, rhs in (one, other)]
+        if None in facts:
+            raise StepError(f"{self.label}: no step established {one} and {other}")
+        left, right = (
+            r"\left(" + r",\ ".join(getattr(fact.step, side) for fact in facts if fact) + r"\right)"
+            for side in ("left", "right")
+        )
+        status = weakest(fact.step.status for fact in facts if fact)
+        step = Step(left, "=", right, reason, status)
+        premises = merged(fact.premises for fact in facts if fact)
+        domain = tuple(dict.fromkeys(each for fact in facts if fact for each in fact.domain))
+        key = sp.Tuple(one[0], other[0]), sp.Tuple(one[1], other[1])
+        self._steps.append(step)
+        self._known[key] = Fact(step, premises, self._conditions, domain)
+        return self.done(*key)
+
     def _status(self) -> str:
         """Return the weakest status of the steps; what rests on a sampled proof is sampled."""
         used = (_finished[label]._status() for label in self._uses if label in _finished)
@@ -336,7 +381,7 @@ class Book:
     def _consistent(self, lhs: sp.Expr, rhs: sp.Expr, label: str) -> None:
         """Refuse premises that cannot hold together."""
         everything = merged(fact.premises for fact in self._origins.values())
-        found = contradiction(everything)
+        found = contradiction(everything, self._origins[lhs].premises)
         for condition in self._conditions.positive:
             if proves_nonnegative(-self._resolve(condition)):
                 found = f"{condition} is not positive, as the domain demands"
@@ -396,6 +441,27 @@ class Book:
                 reach.update(*(direct.get(name, ()) for name in tuple(reach)))
         return {name: frozenset(reach) for name, reach in direct.items()}
 
+    def _displayed(self, lhs: sp.Expr, rhs: sp.Expr, shown: Shown, *known: sp.Expr) -> None:
+        """Refuse LaTeX that does not say what was checked: it may only rearrange."""
+        used = set(self._used)
+        for side, expr in (("left", lhs), ("right", rhs)):
+            latex = shown.get(side)
+            if latex is None:
+                continue
+            rules = [*self._rules, *self._rules.values()]
+            names = {**names_in(lhs, rhs, *rules, *known, tex_of=TEX), **NOTATION, **self.notation}
+            try:
+                links = read_chain(latex, names)
+            except UnreadableError as error:
+                raise StepError(f"{self.label}: {error}") from error
+            for link in links:
+                if link == expr:
+                    continue
+                read, checked = map(evaluated, map(self._resolve, (link, expr)))
+                if difference(read, checked) != 0:
+                    raise StepError(f"{self.label}: the display {latex} is {link}, not {expr}")
+        self._used = used
+
     def _vanish(self, lhs: sp.Expr, rhs: sp.Expr, claim: str) -> None:
         rest = difference(lhs, rhs)
         if rest != 0:
@@ -414,8 +480,14 @@ class Book:
         over: Interval | None = None,
         premise: Premise | None = None,
         cases: tuple[Relational, ...] = (),
+        trusted: bool = False,
     ) -> Fact:
-        """Keep a step; an exact one is an equality that later proofs may use as a rule."""
+        """Keep a step; an exact one is an equality that later proofs may use as a rule.
+
+        What it shows is read back and compared, unless the display has been checked before.
+        """
+        if not trusted:
+            self._displayed(sp.sympify(lhs), sp.sympify(rhs), shown)
         origins = [self._origins[name] for name in self._rules if name in self._used]
         self._needed |= self._used
         self._used = set()
@@ -425,7 +497,7 @@ class Book:
         conditions = self._conditions if over is None else self._conditions.with_interval(over)
         own = () if over is None else (tex_interval(over),)
         if cases:
-            own = (*own, r"\ \text{or}\ ".join(map(tex, cases)))
+            own = (*own, r"\ \text{or}\ ".join(map(tex_case, cases)))
         domain = tuple(dict.fromkeys((*own, *self._domain)))
         left, right = shown.get("left", tex(lhs)), shown.get("right", tex(rhs))
         claim = self._claim(lhs, rhs)

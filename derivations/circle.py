@@ -50,6 +50,7 @@ PARABOLA = 1 - xi**2 - 2 * l * xi
 """p/(K delta) of the parabola at x = xi a."""
 CORRECTION = -(xi**4) / 4 - l * xi**3
 """What the fourth-order term of the circle adds to it, per eps."""
+_shift = sp.Symbol("t", real=True)
 EDGE = sp.Rational(1, 8)
 """The leading edge of the circle is at xi = -1 + eps/8 + O(eps**2)."""
 
@@ -97,7 +98,6 @@ def _fixed() -> Derivation:
         "it is not.",
         uses=("circle-shape", "F16"),
     )
-    friction = sp.expand(-(xi**3) * PARABOLA / 2 - xi * CORRECTION)
     proof.define(l, NUMBER, RATIO)
     change = -(xi**4) / 4 - l * sp.Derivative(xi**4 / 4, xi)
     proof.equal(
@@ -107,21 +107,34 @@ def _fixed() -> Derivation:
     proof.sign(
         sp.diff(PARABOLA, xi).subs(xi, q), "<", 0, UNIT, "a simple zero: the edge is analytic"
     )
+    proof.notation[r"\hat p"] = sp.Lambda(xi, PARABOLA)
     leading = PARABOLA.subs(xi, -1)
     proof.equal(leading, 2 * l, "pressure at the leading edge", left=r"\hat p(-1)")
     proof.recall("F1", w, LOAD)
     proof.recall("F1", phi, FRICTION_FORCE)
-    reason = "first-order change inside the contact"
-    proof.integral(W_1, CORRECTION, CONTACT, sp.integrate(CORRECTION, xi), reason)
-    proof.define(c_w, (W_1 - leading * EDGE) / w, "and at the receding leading edge")
-    proof.equal(c_w, LOAD_COEFFICIENT, "load")
-    proof.integral(F_1, friction, CONTACT, sp.integrate(friction, xi), reason)
-    proof.define(c_f, (F_1 - leading * EDGE) / phi, r"and at the edge, where $-h' a/(2\delta) = 1$")
-    proof.equal(c_f, FORCE_COEFFICIENT, "friction force")
+    moved = (xi, -1 + EDGE * eps, q + _shift * eps)
+    slope = xi + eps * xi**3 / 2
+    for total, weight, scale, coefficient, value, name in (
+        (W_1, 1, w, c_w, LOAD_COEFFICIENT, "load"),
+        (F_1, -slope, phi, c_f, FORCE_COEFFICIENT, "friction force"),
+    ):
+        density = sp.expand(weight * (PARABOLA + eps * CORRECTION))
+        proof.integral(total, density, moved, sp.integrate(density, xi), _MOVED)
+        per_eps = sp.Subs(sp.Derivative(total / scale, eps), eps, 0)
+        proof.define(
+            coefficient, per_eps, r"the change per $\varepsilon$, over that of the parabola"
+        )
+        proof.equal(coefficient, value, f"{name}: the shift $t$ of the trailing edge drops out")
     proof.sign(c_w, "<", 0, UNIT, "the circle carries less")
     proof.sign(c_f, ">", 0, UNIT, "and resists more")
     proof.define(c_mu, c_f - c_w, r"$\mu = F/W$, a sum of positive terms")
     return proof.done(c_mu, c_f - c_w)
+
+
+_MOVED = (
+    r"between the edges of the circle, of which the trailing one is at $q + t \varepsilon$; terms of "
+    r"order $\varepsilon^2$ are left out in the pressure and in the edges"
+)
 
 
 def _dead_weight() -> Derivation:
@@ -141,9 +154,10 @@ def _dead_weight() -> Derivation:
     proof.recall("circle-fixed", c_mu, c_f - c_w)
     proof.equal(s * f_s / f / 2, loading, r"$d \ln W/d \ln \delta$ at fixed velocity")
     proof.define(c_delta_load, -c_w / loading, "depth: the load stays")
-    proof.equal(slipping, slope, "logarithmic slope of $m$", left=r"\frac{l\, m^{\prime}(l)}{m}")
-    chained = r"c_\mu + \frac{c_{\delta,W}}{2} \left(1 - \frac{l\, m^{\prime}(l)}{m}\right)"
-    proof.define(c_mu_load, c_mu + c_delta_load * (1 - slope) / 2, _CHAIN, right=chained)
+    change = sp.Symbol("m_l", real=True)
+    proof.define(change, slipping, r"$d \ln m/d \ln l$, by $q$")
+    proof.equal(change, slope, "logarithmic slope of $m$")
+    proof.define(c_mu_load, c_mu + c_delta_load * (1 - change) / 2, _CHAIN)
     proof.equal(c_mu_load, LOADED_COEFFICIENT, "friction coefficient")
     return proof.done(c_mu_load, LOADED_COEFFICIENT)
 

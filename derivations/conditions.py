@@ -46,6 +46,12 @@ def proves_nonnegative(expr: sp.Expr, known: Conditions = NONE) -> bool:
     expr = sp.sympify(expr)
     if expr.is_nonnegative or _sign(expr, known) == 1:
         return True
+    if expr.is_Add or expr.is_Mul:
+        if all(proves_nonnegative(part, known) for part in expr.args):
+            return True
+    elif isinstance(expr, sp.Integral) and len(expr.limits) == 1:
+        _, low, high = expr.limits[0]
+        return proves_nonnegative(expr.function, known) and proves_nonnegative(high - low, known)
     return any(_product_sign(one, strict=False) == 1 for one in _swept(expr, known))
 
 
@@ -74,6 +80,16 @@ def proves_real(expr: sp.Expr, known: Conditions = NONE) -> bool:
 @lru_cache(maxsize=8192)
 def _sign(expr: sp.Expr, known: Conditions) -> int:
     """Return 1 or -1 for an expression of that sign everywhere, and 0 where nothing is proved."""
+    if expr.is_positive or expr.is_negative:
+        return 1 if expr.is_positive else -1
+    if expr.is_Mul:
+        sign = int(sp.prod([_sign(factor, known) for factor in expr.args]))
+        if sign:
+            return sign
+    if expr.is_Pow and expr.exp.is_Integer:
+        sign = _sign(expr.base, known) ** abs(int(expr.exp))
+        if sign:
+            return sign
     for one in _swept(expr, known):
         if one.is_positive:
             return 1
@@ -99,7 +115,8 @@ def _swept(expr: sp.Expr, known: Conditions) -> Iterator[sp.Expr]:
         expr = expr.subs(variable, value)
         yield expr
     for positive in known.positive:
-        yield from _named(expr, positive)
+        if positive.free_symbols <= expr.free_symbols:
+            yield from _named(expr, positive)
     for rest in (known.positive[::-1], known.positive):
         solved = expr
         while rest:
@@ -240,7 +257,7 @@ def open_factors(expr: sp.Expr, known: Conditions) -> list[sp.Expr]:
     >>> open_factors((1 - q**2) / (2 * q), NONE)
     [1 - q]
     """
-    if proves_positive(expr, known):
+    if expr.is_positive:
         return []
     if expr.is_Pow and expr.exp.is_Rational and not expr.exp.is_Integer:
         return open_factors(expr.base, known)
@@ -253,8 +270,10 @@ def open_factors(expr: sp.Expr, known: Conditions) -> list[sp.Expr]:
                 sign = -sign
             elif not proves_positive(factor, known):
                 unknown.append(factor)
+    if not unknown and sign > 0:
+        return []
     if len(unknown) != 1 or unknown[0].is_Pow:
-        return [expr]
+        return [] if proves_positive(expr, known) else [expr]
     return [sp.expand(sign * unknown[0])]
 
 

@@ -10,10 +10,9 @@ from functools import partial
 import sympy as sp
 
 from derivations.record import Derivation
-from derivations.step import Proof, tex
+from derivations.step import Proof
 from derivations.symbols import (
     C,
-    P,
     V,
     b,
     compression,
@@ -23,7 +22,6 @@ from derivations.symbols import (
     sigma,
     time,
     x,
-    xi,
     zeta,
 )
 
@@ -32,11 +30,13 @@ SECTION = "Discrete elements"
 _h, _z, _y, _slope, _spacing = sp.symbols("h z y m Delta", positive=True)
 _theta = sp.Symbol("theta", positive=True)
 _excess = sp.Symbol("theta_+", nonnegative=True)
+_beyond = sp.Symbol("eta_+", positive=True)
 _R, _D, _w = sp.symbols("R D w")
 _share = sp.Symbol("vartheta", positive=True)
 _k1, _k2, _k3, _k4 = sp.symbols("k_1:5")
 _inside, _outside = sp.Symbol("w_1", positive=True), sp.Symbol("w_0", negative=True)
 _rest = sp.symbols("r_1:4", real=True)
+_surplus = sp.Symbol("f_Delta", real=True)
 _end, _pressure_rate = sp.symbols("p_e p_s", real=True)
 
 CUBIC = 24 - 12 * _z + 4 * _z**2 - _z**3
@@ -103,8 +103,10 @@ def _mean_force() -> Derivation:
                      uses=("F8-update",))  # fmt: skip
     u = compression
     over = (zeta, time, time + _h)
-    integrand = sp.exp(zeta) * (u(zeta) + sp.Derivative(u(zeta), zeta))
+    push = u(zeta) + sp.Derivative(u(zeta), zeta)
+    integrand = sp.exp(zeta) * push
     impulse = sp.exp(time + _h) * u(time + _h) - sp.exp(time) * u(time)
+    proof.notation[r"\hat p"] = sp.Lambda(zeta, push)
     proof.integral(
         *(sp.Integral(integrand, over), integrand, over, sp.exp(zeta) * u(zeta)),
         r"the pressure is $u + u'$, in contact or not", value=impulse,
@@ -117,12 +119,40 @@ def _mean_force() -> Derivation:
     )  # fmt: skip
     mean = (u(time + _h) - sp.exp(-_h) * u(time)) / (1 - sp.exp(-_h))
     proof.equal(impulse / whole, mean, "their ratio, which is zero for an element left alone")
-    centre = _h * WEIGHT - 1
-    proof.leading_order(
-        *(centre, _h / 2, _h, 0, "where the weights have their centre: second order"), eps=_h,
-        left=r"\frac{\int_0^h \zeta e^{\zeta} d\zeta}{\int_0^h e^{\zeta} d\zeta}",
-    )  # fmt: skip
+    _centre(proof)
     return proof.done(impulse / whole, mean)
+
+
+def _centre(proof: Proof) -> None:
+    """Prove where the weights have their centre, and so what a pressure that changes does to the mean."""
+    over = (zeta, 0, _h)
+    first = zeta * sp.exp(zeta)
+    weights = sp.exp(_h) - 1
+    moment = 1 + (_h - 1) * sp.exp(_h)
+    proof.integral(
+        *(sp.Integral(first, over), first, over, (zeta - 1) * sp.exp(zeta)),
+        "the moment of the weights", value=moment,
+    )  # fmt: skip
+    centre = _h * WEIGHT - 1
+    proof.equal(moment / weights, centre, "where the weights have their centre")
+    proof.leading_order(
+        *(centre - _h / 2, _h**2 / 12, _h, 0, "that far behind the middle of the step"), eps=_h
+    )
+    line = _end + _pressure_rate * zeta
+    proof.integral(
+        *(sp.Integral(line, over), line, over, _end * zeta + _pressure_rate * zeta**2 / 2),
+        "a pressure that changes steadily", value=_h * (_end + _pressure_rate * _h / 2),
+    )  # fmt: skip
+    weighted = sp.exp(zeta) * line
+    proof.integral(
+        *(sp.Integral(weighted, over), weighted, over),
+        sp.exp(zeta) * (line - _pressure_rate), "and with the weights",
+        value=weights * (_end + _pressure_rate * centre),
+    )  # fmt: skip
+    proof.leading_order(
+        *((_end + _pressure_rate * centre) - (_end + _pressure_rate * _h / 2),),
+        *(_pressure_rate * _h**2 / 12, _h, 0, "the difference of the two means"), eps=_h,
+    )  # fmt: skip
 
 
 _MEAN = (
@@ -135,6 +165,7 @@ _MEAN = (
 def _fitted() -> Derivation:
     proof = _theorem("element-fit", title="Exponential fit of the damping", text=_FITTED,
                      uses=("element-mean-force",))  # fmt: skip
+    proof.notation[r"\theta"] = FIT
     proof.equal(
         *(THETA_STEP.subs(_theta, FIT), sp.exp(-_z), "the exact decay of the velocity"),
         left=r"\frac{1 - (1 - \theta) z}{1 + \theta z}",
@@ -169,28 +200,21 @@ def _unconditional() -> Derivation:
     proof.equal(
         motion, second * _D**2 + first * _D + zeroth, "a step multiplies the depth by $1 + D$"
     )
-    disc = sp.expand(sp.together(motion.subs(_D, 2 * _w / (1 - _w)) * (1 - _w) ** 2).cancel())
     lead = 4 * eps / _h**2 + b * (2 * _theta - 1) * (2 * eta - 1) + kappa * (2 * _theta - 1) ** 2
     middle = 2 * (b * (_theta + eta - 1) + kappa * (2 * _theta - 1))
     proof.equal(
-        *(
-            disc,
-            lead * _w**2 + middle * _w + zeroth,
-            r"with $D = 2 w/(1 - w)$: $|1 + D| < 1$ for $\Re w < 0$",
-        ),
-        left=r"(1 - w)^2 \left[\ldots\right]",
-    )
+        sp.Subs(motion, _D, 2 * _w / (1 - _w)),
+        (lead * _w**2 + middle * _w + zeroth) / (1 - _w) ** 2,
+        "the outside of the unit circle becomes a half plane",
+    )  # fmt: skip
     half = sp.Rational(1, 2)
-    proof.sign(1 / (1 - _y) - half, ">", 0, (_y, 0, 1), r"$\eta > \frac{1}{2}$, with $y = e^{-h}$",
-               left=r"\eta - \frac{1}{2}")  # fmt: skip
+    proof.sign(1 / (1 - _y) - half, ">", 0, (_y, 0, 1), r"$\eta > \frac{1}{2}$, with $y = e^{-h}$")
     proof.define(_theta, half + _excess, r"$\theta_{+} \ge 0$ by the exponential fit")
-    proof.define(eta, half + xi, r"and $\xi > 0$")
-    proof.equal(lead, 4 * eps / _h**2 + 4 * b * _excess * xi + 4 * kappa * _excess**2, "positive")
-    proof.equal(
-        middle,
-        2 * (b * (_excess + xi) + 2 * kappa * _excess),
-        "positive: no root has $\\Re w \\ge 0$",
-    )
+    proof.define(eta, half + _beyond, r"and $\eta_{+} > 0$")
+    proof.holds(lead, ">", 0, "the coefficient of $w^2$")
+    proof.holds(middle, ">", 0, "that of $w$, or the mode is undamped")
+    proof.holds(zeroth, ">", 0, "and the last one")
+    _routh(proof)
     return proof.done(motion, second * _D**2 + first * _D + zeroth)
 
 
@@ -203,11 +227,29 @@ _ALWAYS = (
 )
 
 
+def _routh(proof: Proof) -> None:
+    """Prove that a quadratic with positive coefficients has no root in the right half plane."""
+    leads = sp.symbols("c_2 c_1 c_0", positive=True)
+    real, imaginary = sp.Symbol("x", nonnegative=True), sp.Symbol("y", real=True)
+    place = real + sp.I * imaginary
+    value = sp.expand(leads[0] * place**2 + leads[1] * place + leads[2])
+    parts = sp.re(value), sp.im(value)
+    shown = leads[0] * (real**2 - imaginary**2) + leads[1] * real + leads[2]
+    slope = 2 * leads[0] * real + leads[1]
+    proof.equal(
+        parts[1], imaginary * slope, r"imaginary part of $c_2 w^2 + c_1 w + c_0$ at $w = x + i y$"
+    )
+    proof.holds(slope, ">", 0, r"so for $x \ge 0$ it vanishes for $y = 0$ only")
+    proof.equal(parts[0], shown, "real part")
+    proof.holds(shown.subs(imaginary, 0), ">", 0, "which is positive there: no root has $x \\ge 0$")
+
+
 def _orders() -> Derivation:
     proof = _theorem(
         "element-orders", title="Order in time", text=_ORDERS, uses=("element-stability",)
     )
     growth = sp.exp(sigma * _h) - 1
+    proof.notation |= {"D": growth, r"\eta": WEIGHT, r"\theta": FIT}
     proof.leading_order(growth, sigma * _h, _h, 0, "Taylor", eps=_h, left="D")
     proof.leading_order(WEIGHT, 1 / _h, _h, 0, "Taylor", eps=_h, left=r"\eta")
     proof.leading_order(FIT, sp.Rational(1, 2) + _z / 12, _z, 0, r"$z = h b/\varepsilon$", eps=_z,
@@ -215,24 +257,24 @@ def _orders() -> Derivation:
     D = sigma * _h * (1 + sigma * _h / 2 + (sigma * _h) ** 2 / 6 + _h**3 * _rest[0])
     weight = (1 + _h / 2 + _h**2 / 12 + _h**3 * _rest[1]) / _h
     fit = sp.Rational(1, 2) + b * _h / (12 * eps) + _h**3 * _rest[2]
-    known = {_D: D, eta: weight, kappa: -eps * sigma**2 - b * sigma - b}
     proof.define(_D, D, r"with a bounded $r_1$")
     proof.define(eta, weight, r"with a bounded $r_2$")
-    proof.define(kappa, known[kappa], "the exact rates")
+    proof.define(kappa, -eps * sigma**2 - b * sigma - b, "the exact rates")
     whole = b + kappa + (b * eta + kappa * _theta) * _D
     motion = eps * _D**2 / _h**2 + (1 + _theta * _D) * whole
-    for theta, order, shown, why in (
-        (sp.S.One, 1, "= 1", "order one"),
-        (fit, 2, r"\,\mathrm{fitted}", "order two, with a bounded $r_3$ in the fit"),
+    first = -_h * sigma * (b * sigma + b + 2 * eps * sigma**2) / 2
+    second = (
+        -(_h**2)
+        * sigma
+        / (12 * eps)
+        * (b**2 * sigma + b**2 + 3 * b * eps * sigma**2 - b * eps + 2 * eps**2 * sigma**3)
+    )
+    for theta, leading, why in (
+        (sp.S.One, first, r"order one, $\theta = 1$"),
+        (fit, second, r"order two, fitted $\theta$ with a bounded $r_3$"),
     ):
-        exact = sp.expand(motion.subs(known).subs(_theta, theta))
-        leading = sp.factor(exact.coeff(_h, order)) * _h**order
-        # A polynomial in h, so that nothing of lower order is left: all of it is in the remainder.
-        remainder = sp.Poly(sp.expand((exact - leading) / _h ** (order + 1)), _h).as_expr()
-        result = leading + _h ** (order + 1) * remainder
-        proof.equal(motion.subs(_theta, theta), result, why, left=rf"r_{{(\theta {shown})}}",
-                    right=rf"{tex(leading)} + O(h^{order + 1})")  # fmt: skip
-    return proof.done(motion.subs(_theta, theta), result)
+        proof.leading_order(motion.subs(_theta, theta), leading, _h, 0, why, eps=_h)
+    return proof.done(motion.subs(_theta, fit), second)
 
 
 _ORDERS = (
@@ -249,16 +291,15 @@ def _sawtooth() -> Derivation:
     line = _end + _pressure_rate * x
     missed = -(_end * first + _pressure_rate * first**2 / 2)
     proof.integral(
-        *(-sp.Integral(line, (x, 0, first)), -line, (x, 0, first)),
-        -(_end * x + _pressure_rate * x**2 / 2),
+        *(_surplus, line, (x, first, 0), _end * x + _pressure_rate * x**2 / 2),
         "what the sum over elements has too much", value=missed,
-        left=r"\Delta \sum_{k \ge 0} p(x_k) - \int p \, dx",
     )  # fmt: skip
     largest = _end * _spacing / 2 - _pressure_rate * _spacing**2 / 8
-    proof.equal(missed.subs(_share, 0), largest, r"an element has just come in, $\vartheta = 0$")
-    proof.equal(missed.subs(_share, 1), -_end * _spacing / 2 - _pressure_rate * _spacing**2 / 8,
+    just_in, about_to = (sp.Subs(missed, _share, place) for place in (0, 1))
+    proof.equal(just_in, largest, r"an element has just come in, $\vartheta = 0$")
+    proof.equal(about_to, -_end * _spacing / 2 - _pressure_rate * _spacing**2 / 8,
                 r"the next one is about to, $\vartheta = 1$")  # fmt: skip
-    return proof.done(missed.subs(_share, 0), largest)
+    return proof.done(just_in, largest)
 
 
 _SAWTOOTH = (
@@ -282,8 +323,8 @@ def _kink() -> Derivation:
         _outside * x + (_inside - _outside) * x**2 / (2 * _spacing),
         "the larger of both surfaces, above the free one", value=area,
     )  # fmt: skip
-    proof.equal(area - _spacing * _inside / 2, KINK, "without the trapezoid of the elements",
-                left=r"\int \max(w, 0) \, dx - \frac{\Delta w_1}{2}")  # fmt: skip
+    trapezoid = _spacing * _inside / 2
+    proof.equal(area - trapezoid, KINK, r"without the trapezoid of the elements, $\Delta w_1/2$")
     inside, outside = _slope * _spacing * (1 - _share), -_slope * _spacing * _share
     in_cell = -_slope * _spacing**2 * _share * (1 - _share) / 2
     proof.define(_inside, inside, r"surfaces at the angle $m$ that meet at $\vartheta \Delta$")
@@ -291,12 +332,12 @@ def _kink() -> Derivation:
     proof.equal(KINK, in_cell, "the kink at its place within the element")
     proof.sign(in_cell + _slope * _spacing**2 / 8, ">=", 0, (_share, 0, 1), "second order in the spacing",
                left=r"\frac{\Delta w_1 w_0}{2 (w_1 - w_0)} + \frac{m \Delta^2}{8}")  # fmt: skip
-    proof.define(P, C * V * _slope, "the pressure at a leading edge: its elements are met with $m V$",
-                 left="p_e")  # fmt: skip
+    proof.define(
+        _end, C * V * _slope, "the pressure at a leading edge: its elements are met with $m V$"
+    )
     proof.equal(
-        *(C * sp.Derivative(in_cell, _share) * -V / _spacing, P * _spacing * (1 - 2 * _share) / 2,
+        *(C * sp.Derivative(in_cell, _share) * -V / _spacing, _end * _spacing * (1 - 2 * _share) / 2,
           r"as the base moves, $\Delta \dot\vartheta = -V$: the sawtooth of F15"),
-        left=r"C \frac{d}{dt} \left[-\frac{m \Delta^2}{2} \vartheta (1 - \vartheta)\right]",
     )  # fmt: skip
     return proof.done(KINK, in_cell)
 

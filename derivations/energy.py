@@ -42,10 +42,9 @@ _ASSUMPTIONS = (
 
 _TWO_LOSSES = (
     r"K \left(\frac{u_{\mathrm{TE}}^2}{2} + l_{\mathrm{r}} "
-    r"\int_{x_{\mathrm{LE}}}^{x_{\mathrm{TE}}} h'(x)^2 \, dx\right), "
-    r"\quad u_{\mathrm{TE}} = \delta - h(x_{\mathrm{TE}})"
+    r"\int_{x_{\mathrm{LE}}}^{x_{\mathrm{TE}}} h'(x)^2 \, dx\right)"
 )
-_BEHIND = r"\frac{1}{V} \int_{x_{\mathrm{TE}}}^{\infty} C \dot u^2 \, dx"
+_BEHIND = r"\frac{1}{V} \int_{x_{\mathrm{TE}}}^{\infty} C \dot{u}^2 \, dx"
 
 _theorem = partial(Proof, equation=None, section=SECTION)
 
@@ -64,7 +63,7 @@ def _split() -> Derivation:
     whole = sp.Integral(-_slope * (K * (delta - _shape) - C * V * _slope), _contact)
     proof.define(C, K * l_r / V, "Eqs. (22) and (29)")
     proof.define(F_elastic, _STORED, "the spring: $K u u'$ with $u = \\delta - h$")
-    proof.define(F_viscous, _INSIDE, r"the damper: $C V h'^2 = C \dot u^2/V$, power lost over V")
+    proof.define(F_viscous, _INSIDE, r"the damper: $C V h'^2 = C \dot{u}^2/V$, power lost over V")
     proof.equal(whole, F_elastic + F_viscous, "the integral of $-h' p$, term by term")
     proof.define(F, F_elastic + F_viscous, "the friction force")
     return proof.done(F, F_elastic + F_viscous)
@@ -80,11 +79,14 @@ def _relaxation() -> Derivation:
     )
     u_te = delta - h(x_te)
     surface = u_te * sp.exp(-(x - x_te) / l_r)
+    proof.notation |= {
+        "V": V, "C": K * l_r / V, r"\dot{u}": V * sp.diff(surface, x), r"u_{\mathrm{TE}}": u_te,
+    }  # fmt: skip
     integrand = K * l_r * sp.diff(surface, x) ** 2
     behind = sp.Integral(integrand, (x, x_te, sp.oo))
     proof.integral(
         *(behind, integrand, (x, x_te, sp.oo), -K * surface**2 / 2),
-        r"$C \dot u^2/V$ behind the contact: all that was stored at the trailing edge",
+        r"$C \dot{u}^2/V$ behind the contact: all that was stored at the trailing edge",
         value=K * u_te**2 / 2,
         left=_BEHIND,
         right=r"\frac{K}{2} u_{\mathrm{TE}}^2",
@@ -110,7 +112,11 @@ def _any_shape() -> Derivation:
     stored = K * (delta - _shape) ** 2 / 2
     proof.integral(F_elastic, elastic, _contact, stored, "$u u' = (u^2/2)'$", value=difference)
     proof.define(h(x_le), delta, r"$u(x_{\mathrm{LE}}) = 0$")
-    proof.equal(F, result, "two losses", right=_TWO_LOSSES)
+    proof.notation[r"u_{\mathrm{TE}}"] = delta - h(x_te)
+    proof.equal(
+        *(F, result, r"two losses, $u_{\mathrm{TE}} = \delta - h(x_{\mathrm{TE}})$"),
+        right=_TWO_LOSSES,
+    )
     return proof.done(F, result)
 
 
@@ -146,6 +152,7 @@ def _parabola() -> Derivation:
         eta - sp.Rational(4, 5), 4 * (1 - 2 * q) ** 2 / (5 * B), r"least at $q = \frac{1}{2}$"
     )
     half = NUMBER.subs(q, sp.Rational(1, 2))
-    proof.equal(half, sp.Rational(3, 4), "the retardation length there", left=r"l(1/2)")
+    proof.notation["l"] = sp.Lambda(q, NUMBER)
+    proof.equal(half, sp.Rational(3, 4), "the retardation length there", left="l(1/2)")
     proof.equal(1 - eta, 3 * q * (1 - q) / B, "the rest vanishes in both limits")
     return proof.done(eta, fraction)

@@ -8,8 +8,10 @@ The base dimensions are force per unit width N, horizontal length X, vertical le
 """
 
 import sympy as sp
+from sympy.printing.latex import LatexPrinter
 
 from derivations.record import Derivation
+from derivations.rules import Computed
 from derivations.step import Proof, tex
 from derivations.symbols import K, M, R, V, W, delta, mu, tau
 
@@ -45,6 +47,21 @@ transient_groups = (
     M * delta / (W * tau**2),
     k_s * delta / W,
 )
+
+
+class Rank(Computed):
+    """The rank of a matrix, printed with the matrix."""
+
+    def __new__(cls, matrix: sp.Matrix) -> "Rank":
+        """Keep the matrix as it is."""
+        return sp.Expr.__new__(cls, sp.ImmutableMatrix(matrix))
+
+    def doit(self, **_: object) -> sp.Integer:
+        """Return the number."""
+        return sp.Integer(self.args[0].rank())
+
+    def _latex(self, printer: LatexPrinter) -> str:
+        return rf"\mathrm{{rank}} {printer._print(self.args[0])}"
 
 
 def derive() -> tuple[Derivation, ...]:
@@ -109,13 +126,16 @@ def _groups(
     free = matrix.nullspace()
     powers = [group.as_powers_dict() for group in groups]
     exponents = [sp.Matrix([power[quantity] for quantity in quantities]) for power in powers]
-    single = len(isotropic(matrix).nullspace())
-    rank, n, m = r"\mathrm{rank}\,", len(quantities), len(groups)
-    for left, found, expected, reason in (
-        (f"{n} - {rank} D", len(free), m, "the matrix $D$ of dimensions"),
-        (f"{rank} E", sp.Matrix.hstack(*exponents).rank(), m, _INDEPENDENT),
-        (rf"{rank} (E, \ker D)", sp.Matrix.hstack(*exponents, *free).rank(), m, _COMPLETE),
-        (f"{n} - {rank} D_{{X = Z}}", single, m + 1, _ISOTROPIC),
+    n, m = len(quantities), len(groups)
+    for found, expected, reason in (
+        (
+            n - Rank(matrix),
+            m,
+            "the matrix $D$ of dimensions, one row for each of $N$, $X$, $Z$, $T$",
+        ),
+        (Rank(sp.Matrix.hstack(*exponents)), m, _INDEPENDENT),
+        (Rank(sp.Matrix.hstack(*exponents, *free)), m, _COMPLETE),
+        (n - Rank(isotropic(matrix)), m + 1, _ISOTROPIC),
     ):
-        proof.equal(sp.Integer(found), sp.Integer(expected), reason, left=left)
+        proof.equal(found, sp.Integer(expected), reason)
     return proof.done(groups[0], 1)

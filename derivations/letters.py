@@ -77,6 +77,7 @@ BY_LABEL: dict[str, dict[str, str]] = {
 _DIFFERENTIAL = re.compile(
     r"(?<![A-Za-z\\])d(?=[A-Za-z](?![A-Za-z])|\\(?:xi|zeta|sigma|ell)(?![a-z]))"
 )
+_SPACED = re.compile(r"\\frac\{d((?:\^\{\d+\})?)\}\{d (?=[A-Za-z\\])")
 _OPERATOR = re.compile(r"\\frac\{d((?:\^\{?\d\}?)?)\}(?=\{\\mathrm\{d\})")
 
 
@@ -96,7 +97,8 @@ def letters(label: str, section: str) -> Mapping[str, str]:
 
 def printed(latex: str, new: Mapping[str, str]) -> str:
     """Write mathematics in other letters, with upright differentials."""
-    upright = _OPERATOR.sub(r"\\frac{\\mathrm{d}\1}", _DIFFERENTIAL.sub(r"\\mathrm{d}", latex))
+    spaced = _SPACED.sub(r"\\frac{\\mathrm{d}\1}{\\mathrm{d} ", latex)
+    upright = _OPERATOR.sub(r"\\frac{\\mathrm{d}\1}", _DIFFERENTIAL.sub(r"\\mathrm{d}", spaced))
     return replaced(upright, new.get)
 
 

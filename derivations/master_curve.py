@@ -78,8 +78,7 @@ def _master_curve() -> Derivation:
     proof.define(T, mu * R / l_r, "over the asymptote of Eq. (42)")
     proof.equal(T, q * B / ((1 + q) * A), "rational")
     proof.equal(T**3, Y / X, "the same in the scales of Fig. 6")
-    eliminated = r"\operatorname{Res}_q\left(X - X(q),\, T - T(q)\right)"
-    proof.equal(relation, sp.S.Zero, "$q$ eliminated", left=eliminated)
+    proof.equal(relation, sp.S.Zero, "$q$ eliminated: the resultant")
     return proof.done(X, DRIVE_CUBED)
 
 
@@ -157,11 +156,14 @@ def _intersections() -> Derivation:
     fixed, weight = alpha * sp.sqrt(delta / R), alpha * sp.sqrt(W / (R * C * V))
     proof.define(C, K * tau, "Eq. (22)")
     proof.equal(low / fixed, V * tau / sp.sqrt(R * delta) / alpha, "fixed indenter: 1 at")
-    proof.define(Lambda_fixed, alpha, r"$V^{*} \tau/\sqrt{R \delta}$")
+    proof.root(Lambda / alpha - 1, Lambda, alpha, r"$V^{*} \tau/\sqrt{R \delta}$", name=Lambda_fixed,
+               right=r"\alpha")  # fmt: skip
     proof.define(V, Lambda * sp.cbrt(R * W / K) / tau, "in units of the dead weight")
     proof.equal((low / weight) ** 2, Lambda**3 / alpha**2, "dead weight: 1 at")
-    proof.define(Lambda_weight, sp.cbrt(alpha**2), r"$V^{*} \tau (K/(R W))^{1/3}$")
-    proof.root(Lambda**3 / alpha**2 - 1, Lambda, Lambda_weight, "the asymptotes meet")
+    proof.root(
+        *(Lambda**3 / alpha**2 - 1, Lambda, sp.cbrt(alpha**2), r"$V^{*} \tau (K/(R W))^{1/3}$"),
+        name=Lambda_weight, right=r"\alpha^{2/3}",
+    )  # fmt: skip
     proof.recall("F3-values", Lambda_peak, sp.sqrt(3) / sp.cbrt(3 - sp.sqrt(3)))
     beyond = (Lambda_peak / Lambda_weight) ** 3
     proof.equal(beyond, 27 * (1 + sp.sqrt(3)) / 16, "the maximum lies beyond the intersection")

@@ -102,11 +102,13 @@ def _forces() -> list[Derivation]:
     across = _equation("eq9", 9, title="Horizontal balance of an element")
     across.define(f_c, f_n * sp.sin(theta), "the tip of the element has no mass")
     angle = _equation("eq10", 10, title="Inclination of the surface", text=_ANGLE)
-    angle.define(slope, -sp.tan(theta), left=r"\tan\theta_i", right=f"-{_SLOPE}")
+    angle.define(sp.tan(theta), -slope, left=r"\tan\theta_i", right=f"-{_SLOPE}")
+    angle.where(sp.cos(theta) > 0, "the surface is not vertical")
+    angle.equal(slope, -sp.tan(theta), "the same", left=_SLOPE)
     found = [
         vertical.done(force, f_n * sp.cos(theta)),
         across.done(f_c, f_n * sp.sin(theta)),
-        angle.done(slope, -sp.tan(theta)),
+        angle.done(sp.tan(theta), -slope),
     ]
     normal = _equation("eq11", 11, title="Normal force on an element")
     normal.recall("eq8", force, f_n * sp.cos(theta))
@@ -125,7 +127,6 @@ def _forces() -> list[Derivation]:
 
     along = _equation("eq13", 13, title="Horizontal force on the indenter")
     along.recall("eq10", slope, -sp.tan(theta))
-    along.where(sp.cos(theta) > 0, "the surface is not vertical")
     along.define(f_x, f_n * sp.sin(theta), "the reaction has this horizontal component")
     along.define(f_z, f_n * sp.cos(theta), "and this vertical one")
     along.recall("eq9", f_c, f_n * sp.sin(theta))
@@ -145,11 +146,11 @@ _ANGLE = r"The inclination is within $-\pi/2 < \theta_i < \pi/2$, so $\cos\theta
 def _indenter() -> list[Derivation]:
     found = []
     i = sp.Symbol("i", integer=True)
-    sums = ((14, F_z, "f_z", "f_{zi}", "vertical"), (15, F_x, "f_x", "f_{xi}", "horizontal"))
-    for number, total, name, shown, direction in sums:
+    sums = ((14, F_z, "f_z", "vertical"), (15, F_x, "f_x", "horizontal"))
+    for number, total, name, direction in sums:
         whole = sp.Sum(sp.IndexedBase(name)[i], (i, 1, sp.oo))
         force = _equation(f"eq{number}", number, title=f"Total {direction} force")
-        force.define(total, whole, "all elements act on the indenter", right=rf"\sum_i {shown}")
+        force.define(total, whole, "all elements act on the indenter")
         found.append(force.done(total, whole))
 
     held = _equation("eq16", 16, title="Position of the fixed indenter")

@@ -49,19 +49,24 @@ def merged(groups: Iterable[Iterable[Premise]]) -> tuple[Premise, ...]:
 
 
 @lru_cache(maxsize=4096)
-def contradiction(premises: tuple[Premise, ...]) -> str:
-    """Describe a premise that cannot hold together with the others; empty if none is found.
+def contradiction(premises: tuple[Premise, ...], new: tuple[Premise, ...]) -> str:
+    """Describe a premise that cannot hold together with new ones; empty if none is found.
 
     Each premise is looked at with the others put into it. Laws that are no mere names are solved
     together as polynomials.
     """
     for premise in premises:
+        said = premise.lhs.free_symbols | premise.rhs.free_symbols
+        if premise not in new and not any(
+            each.lhs in said or each.lhs == premise.lhs for each in new
+        ):
+            continue
+        if not _touches(premise, premises):
+            continue
         others: dict[sp.Expr, sp.Expr] = {}
         for other in premises:
             if other != premise and is_name(other.lhs):
                 others.setdefault(other.lhs, other.rhs)
-        if not _touches(premise, premises):
-            continue
         rest = premise.lhs - premise.rhs
         for _ in range(_DEPTH):
             if never_zero(rest):
@@ -72,7 +77,7 @@ def contradiction(premises: tuple[Premise, ...]) -> str:
     return _as_polynomials([each for each in premises if not is_name(each.lhs)])
 
 
-_DEPTH, _TOO_LONG = 4, 60
+_DEPTH, _TOO_LONG = 3, 40
 """How often premises are put into each other, and the operations beyond which this is given up:
 definitions that name each other in turn make expressions grow."""
 
@@ -85,6 +90,7 @@ def _touches(premise: Premise, premises: Iterable[Premise]) -> bool:
     )
 
 
+@lru_cache(maxsize=8192)
 def never_zero(expr: sp.Expr) -> bool:
     """Tell whether the assumptions on the symbols exclude that the expression vanishes."""
     if expr.is_zero is False:

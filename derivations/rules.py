@@ -14,6 +14,10 @@ Dependences = Mapping[sp.Expr, frozenset[sp.Expr]]
 """What a name depends on by premises that are no rules here: its value must not be differentiated."""
 
 
+class Computed(sp.Expr):
+    """An expression that is printed as it stands and evaluated by `doit` in a check."""
+
+
 class HiddenError(ValueError):
     """A derivative or an integral of what depends on the variable in a way that is not written out."""
 
@@ -32,7 +36,7 @@ def resolve(
     before, after = None, sp.sympify(expr)
     while after != before:
         before, after = after, rewriter.rewrite(after)
-        if after.has(sp.Derivative, sp.Subs):
+        if after.has(sp.Derivative, sp.Subs, Computed):
             after = after.doit(integrals=False, sums=False)
     return after, frozenset(rewriter.used)
 
@@ -68,6 +72,9 @@ class _Rewriter:
             return self._derivative(expr)
         if isinstance(expr, (sp.Integral, sp.Sum)):
             return self._bound(expr)
+        if isinstance(expr, sp.Subs):
+            inner = self._without(expr.variables).rewrite(expr.expr)
+            return sp.Subs(inner, expr.variables, [self.rewrite(place) for place in expr.point])
         parts = [self.rewrite(part) for part in expr.args]
         new = expr.func(*parts) if parts != list(expr.args) else expr
         for lhs, rhs in self._compound.items():

@@ -77,9 +77,11 @@ def _half_length() -> Derivation:
 
 
 def _retardation_length() -> Derivation:
-    proof = _equation("eq29", 29, title="Retardation length", text=_FREE_SURFACE)
-    proof.define(l_r, V * tau)
     start = u_i.subs(t, t_0)
+    surface = sp.Lambda(x, start * sp.exp((x_te - x) / (V * tau)))
+    proof = _equation("eq29", 29, title="Retardation length", text=_FREE_SURFACE,
+                      notation={"u": surface})  # fmt: skip
+    proof.define(l_r, V * tau)
     decay = start * sp.exp(-(t - t_0) / tau)
     later = {t: t_0 + (x - x_te) / V}
     proof.recall("eq25", u_i, decay, "it has left the trailing edge at $t_0$", at=later)
@@ -114,7 +116,8 @@ _PRESSURE = (
 
 
 def _leading_edge() -> Derivation:
-    proof = _equation("eq26", 26, title="Leading edge", text=_TOUCH)
+    proof = _equation("eq26", 26, title="Leading edge", text=_TOUCH,
+                      notation={"p": sp.Lambda(x, pressure)})  # fmt: skip
     proof.recall("eq28", a, _HALF)
     proof.recall("eq3", h(x), _SHAPE)
     proof.recall("eq22", tau, C / K)
@@ -132,7 +135,8 @@ _TOUCH = "The leading edge is where the undisturbed surface meets the indenter."
 
 
 def _trailing_edge() -> Derivation:
-    proof = _equation("eq27", 27, title="Trailing edge", text=_PEEL)
+    proof = _equation("eq27", 27, title="Trailing edge", text=_PEEL,
+                      notation={"p": sp.Lambda(x, pressure)})  # fmt: skip
     proof.recall("eq28", a, _HALF)
     proof.recall("pressure", p, pressure)
     proof.equal(sp.Derivative(p, (x, 2)), -K / R, "the pressure is concave in $x$", left="p''(x)")
@@ -171,26 +175,35 @@ _RATIONAL = (
 )
 
 
-def _limit(equation: int, slow: bool, who: str) -> Derivation:
-    proof = _equation(f"eq{equation}", equation, title=f"Edges at {who}", text=_EDGES[slow])
+def _limit(equation: int, slow: bool, steady: bool, who: str) -> Derivation:
+    proof = _equation(
+        f"eq{equation}", equation, title=f"Edges at {who}", text=_EDGES[slow] + _EITHER * steady
+    )
     proof.recall("eq26", x_le, -a)
     proof.recall("scaling", x_te, a * q)
     proof.recall("scaling", l_r, a * l)
     proof.recall("scaling", l, number)
+    small = l_r / a
+    if steady:
+        proof.recall("scaling", V, K * l_r / C)
+        small = C * V / (K * a)
+    limit = a if slow else a**2 / (2 * l_r)
     if slow:
-        limit = a
-        proof.leading_order(x_te, a, q, 1, "$q \\to 1$: hardly any peeling", eps=l_r / a)
+        proof.leading_order(x_te, limit, q, 1, "$q \\to 1$: hardly any peeling", eps=small)
     else:
-        limit = a**2 / (2 * l_r)
-        proof.leading_order(x_te, limit, q, 0, "$q \\to 0$: complete peeling", eps=a / l_r)
-    return proof.done(x_te, limit)
+        proof.leading_order(x_te, limit, q, 0, "$q \\to 0$: complete peeling", eps=1 / small)
+    return proof.pair((x_le, -a), (x_te, limit), "both edges")
 
 
 _LIMITS = (
-    (30, True, "low velocity, fixed indenter"),
-    (31, False, "high velocity, fixed indenter"),
-    (38, True, "low velocity, steady sliding"),
-    (39, False, "high velocity, steady sliding"),
+    (30, True, False, "low velocity, fixed indenter"),
+    (31, False, False, "high velocity, fixed indenter"),
+    (38, True, True, "low velocity, steady sliding"),
+    (39, False, True, "high velocity, steady sliding"),
+)
+_EITHER = (
+    r" By Eqs. (34) to (36) this holds for either indenter, with the depth at which it slides; "
+    r"$l_{\mathrm{r}}/a = C V/(K a)$."
 )
 _EDGES = {
     True: r"For $l_{\mathrm{r}} \ll a$ the edges tend to $(-a, a)$.",
@@ -199,8 +212,10 @@ _EDGES = {
 
 
 def _moving_leading_edge() -> Derivation:
-    proof = _equation("eq32", 32, title="Leading edge of the movable indenter", text=_OUTWARD)
     half = sp.sqrt(2 * R * delta_t)
+    edge = {"a": sp.Lambda(t, half), r"\dot{x}_{\mathrm{LE}}": (-half).diff(t)}
+    proof = _equation("eq32", 32, title="Leading edge of the movable indenter", text=_OUTWARD,
+                      notation=edge)  # fmt: skip
     proof.recall("eq3", h(x), _SHAPE)
     reason = "the undisturbed surface meets the indenter, $h = \\delta(t)$"
     proof.root(delta_t - h(x), x, -half, reason, over=(x, -sp.oo, 0), name=x_le, right="-a(t)")

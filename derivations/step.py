@@ -12,10 +12,12 @@ derivations.book.StepError: eq29: l_r/tau = 2*V is not an identity: left - right
 """
 
 from collections.abc import Iterable
+from contextlib import ExitStack
 from typing import Unpack
 
 import sympy as sp
 from sympy.core.relational import Relational
+from sympy.printing.latex import LatexPrinter
 
 from derivations.algebra import (
     UndecidedError,
@@ -42,6 +44,14 @@ from derivations.sampling import disagreement, refutation
 
 _SIGNS = {">": {"+"}, ">=": {"+", "+0"}, "<": {"-"}, "<=": {"-", "-0"}}
 _RELATIONS = {">": ">", ">=": r"\ge", "<": "<", "<=": r"\le"}
+
+
+class Greatest(sp.Expr):
+    """The greatest value of an expression over a variable, in print."""
+
+    def _latex(self, printer: LatexPrinter) -> str:
+        expr, variable = self.args
+        return rf"\max_{{{printer._print(variable)}}} \left[{printer._print(expr)}\right]"
 
 
 class Proof(Book):
@@ -107,7 +117,8 @@ class Proof(Book):
         self._reaches(variable, low, high)
         if not is_continuous(primitive, (variable, low, high), self._conditions):
             raise StepError(f"{self.label}: {primitive} may not be continuous in {variable}")
-        self._vanish(sp.diff(primitive, variable), inner, f"d/d{variable} of {antiderivative}")
+        slope = self._resolve(sp.Derivative(antiderivative, variable))
+        self._vanish(slope, inner, f"d/d{variable} of {antiderivative}")
         found = sp.factor(value_at(primitive, variable, high) - value_at(primitive, variable, low))
         if found.has(sp.oo, sp.zoo, sp.nan) or found.is_real is False:
             raise StepError(f"{self.label}: {whole} has no finite real value but {found}")
@@ -117,9 +128,10 @@ class Proof(Book):
         self._vanish(self._resolve(wanted), found, f"{whole} = {wanted}")
         premise = None if lhs == whole else Premise(lhs, whole, f"{tex(lhs)} = {tex(whole)}")
         self._rule(lhs, wanted)
+        self._displayed(lhs, sp.sympify(wanted), shown, whole, variable)
         shown.setdefault("right", tex(wanted) if lhs == whole else f"{tex(whole)} = {tex(wanted)}")
         self._origins[lhs] = self._record(
-            lhs, "=", wanted, reason, "proved", shown, premise=premise
+            *(lhs, "=", wanted, reason, "proved", shown), premise=premise, trusted=True
         )
         return wanted
 
@@ -157,7 +169,10 @@ class Proof(Book):
             raise StepError(f"{self.label}: {claim}: {error}") from error
         condition = sp.sympify(expr).subs(variable, called)
         premise = Premise(condition, sp.S.Zero, f"{tex(condition)} = 0")
-        self._record(called, "=", value, reason, "proved", shown, over=over, premise=premise)
+        fact = self._record(called, "=", value, reason, "proved", shown, over=over, premise=premise)
+        if called != variable:
+            self._rule(called, value)
+            self._origins[called] = fact
 
     @asked
     def unique_root(
@@ -169,6 +184,7 @@ class Proof(Book):
         """
         self._interval(over)
         whole = self._resolve_free(expr, over[0])
+        self._possible(over)
         try:
             count, odd = roots_between(whole, over)
             poles, _ = roots_between(sp.fraction(sp.together(whole))[1], over)
@@ -194,6 +210,7 @@ class Proof(Book):
         claim = f"{expr} {relation} {bound} inside {over}"
         self._interval(over)
         gap = self._resolve_free(expr - bound, over[0])
+        self._possible(over)
         try:
             found = sign_between(gap, over)
         except UndecidedError as error:
@@ -246,6 +263,39 @@ class Proof(Book):
             raise StepError(f"{self.label}: {claim} is not proved: left - right = {gap}")
 
     @asked
+    def greatest(
+        self,
+        value: sp.Expr,
+        expr: sp.Expr,
+        place: tuple[sp.Symbol, sp.Expr],
+        reason: str,
+        *,
+        surplus: sp.Expr,
+        given: tuple[Relational, ...] = (),
+        **shown: Unpack[Shown],
+    ) -> None:
+        """Prove that `value` is the greatest value of `expr`, and where it is reached.
+
+        `place` is the variable with its value there; `surplus` a form of the difference that is never
+        negative, under the strict inequalities that are given.
+        """
+        variable, at = place
+        claim = f"{value} is the greatest {expr}"
+        with ExitStack() as stack:
+            for condition in given:
+                stack.enter_context(self._case(condition))
+            self._identical(value - expr, surplus)
+            self._holds(sp.sympify(surplus), ">=", claim)
+        reached = sp.sympify(surplus).subs(variable, at)
+        self._vanish(self._resolve(reached), sp.S.Zero, f"{claim}, reached at {variable} = {at}")
+        conditions = (sp.And(*given, evaluate=False),) if given else ()
+        self._record(
+            *(value, "=", Greatest(expr, variable), reason, "proved", shown),
+            exact=False,
+            cases=conditions,
+        )
+
+    @asked
     def equivalent(
         self, nonnegative: sp.Expr, lhs: sp.Expr, rhs: sp.Expr, reason: str, **shown: Unpack[Shown]
     ) -> None:
@@ -281,9 +331,12 @@ class Proof(Book):
             c, k, rest = next_order(parts[0] / parts[1], parts[2], variable, point)
         except (UndecidedError, sp.PolynomialError) as error:
             raise StepError(f"{self.label}: {claim}: {error}") from error
+        self._displayed(expr, leading, shown)
         factor = shown.get("right") or (f"({tex(leading)})" if leading.is_Add else tex(leading))
         shown["right"] = f"{factor} {_series(c, eps, k, rest)}"
-        self._record(expr, "=", leading, reason, "proved-leading-order", shown, exact=False)
+        self._record(
+            expr, "=", leading, reason, "proved-leading-order", shown, exact=False, trusted=True
+        )
         return c, k
 
     @asked
@@ -336,8 +389,6 @@ class Proof(Book):
         ):
             raise StepError(f"{self.label}: {over} is not an interval between two known numbers")
         self._reaches(variable, low, high)
-        if numbers:
-            self._possible(over)
 
     def _reaches(self, variable: sp.Symbol, low: sp.Expr, high: sp.Expr) -> None:
         """Refuse an interval that leaves the values that its variable may have."""
@@ -350,7 +401,7 @@ class Proof(Book):
     def _possible(self, over: Interval) -> None:
         """Refuse an interval in which a name or a condition cannot be what it is said to be."""
         named = [
-            (name, self._resolve(rhs)) for name, rhs in self._rules.items()
+            (name, self._resolve(name)) for name in tuple(self._used)
             if (name.is_positive or name.is_negative) and name.is_Symbol
         ]  # fmt: skip
         demanded = [value if name.is_positive else -value for name, value in named]

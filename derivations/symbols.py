@@ -84,7 +84,8 @@ d_s, d_ss, f_normal, f_friction = sp.symbols("d_s d_ss f_normal f_friction", rea
 time, earlier, start, sigma, zeta = sp.symbols("s s_1 s_0 sigma zeta", real=True)
 depth, travel = (sp.Function(name, real=True)(time) for name in "dY")
 """The depth, and how far the foundation has moved: its element X is at xi = X + Y."""
-material, left, right, mix = sp.symbols("X ell r theta", real=True)
+material, left, right = sp.symbols("X ell r", real=True)
+mix = sp.Symbol("theta", positive=True)
 rho, beta, per_depth, per_rate, eps_critical = _positive("rho beta A B epsilon_c")
 drive_excess = sp.Symbol("n", real=True)
 drift, lift = sp.symbols("lambda_bar d_bar", real=True)
@@ -127,6 +128,8 @@ alpha = 2 * sp.sqrt(2) / 3
 """The coefficient of Eqs. 40-46."""
 
 TEX = {
+    sp.Symbol("x_-", real=True): "x_{-}",
+    sp.Symbol("x_TE", real=True): r"x_{\mathrm{TE}}",
     x_le: r"x_{\mathrm{LE}}",
     x_te: r"x_{\mathrm{TE}}",
     l_r: r"l_{\mathrm{r}}",

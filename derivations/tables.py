@@ -4,9 +4,10 @@ import sympy as sp
 
 from derivations import asymptotics as asy
 from derivations import steady
+from derivations.book import Shown
 from derivations.record import Derivation, Table
 from derivations.step import Proof
-from derivations.symbols import K, M, N, R, V, W, a, delta, g, q, tau
+from derivations.symbols import C, K, M, N, R, V, V_star, W, a, delta, delta_0, g, q, tau
 
 SECTION = "Tables"
 
@@ -76,17 +77,17 @@ def _standard_values() -> Derivation:
     proof.define(q, sp.S.One, "at rest the contact is symmetric")
     proof.equal(W, 4 * _third * K * a * delta, "the load at rest")
     reason = r"this load is the weight, $\frac{4}{3} K a_0 \delta_0 = M g$"
-    shown = {
-        "left": r"\delta_0",
+    shown: Shown = {
         "right": r"\left(\frac{3 M g}{4 K \sqrt{2 R}}\right)^{2/3}",
     }
-    proof.root(4 * _third * K * a * delta - M * g, delta, static_depth, reason, **shown)
+    carried = 4 * _third * K * a * delta - M * g
+    proof.root(carried, delta, static_depth, reason, name=delta_0, **shown)
     rows = tuple(
         (name, symbol, _six_digits(value, unit), unit_name)
         for name, symbol, value, unit, unit_name in (*_GIVEN, *_DERIVED)
     )
     table = Table(("Quantity", "Symbol", "Value", "Unit"), rows)
-    return proof.done(delta, static_depth, table=table)
+    return proof.done(delta_0, static_depth, table=table)
 
 
 _TEXT = (
@@ -111,8 +112,13 @@ def _velocity_dependences() -> Derivation:
     for high, critical, shown in cases:
         at_critical = sp.UnevaluatedExpr(low.subs(V, critical))
         value = high.subs(V, critical)
-        name = {"left": r"\mu(V^{*})", "right": shown.replace("C V", "C V^{*}")}
-        proof.equal(at_critical, value, meets, **name)
+        proof.notation |= {
+            "V^{*}": critical,
+            "C": C,
+            r"\mu": sp.Lambda(V_star, low.subs(V, V_star)),
+        }
+        shown = shown.replace("C V", "C V^{*}")
+        proof.equal(at_critical, value, meets, left=r"\mu(V^{*})", right=shown)
     slow = r"$\mu = \frac{C V}{R K}$ (42)"
     rows = (
         (

@@ -63,6 +63,8 @@ FRICTION_FORCE = (1 - q) * (1 + q) ** 2 * B / (12 * q)
 FRICTION_COEFFICIENT = (1 - q) * B / (2 * A)
 STABLE_FRICTION_FORCE = l * (1 + q) * B / 6
 STABLE_FRICTION_COEFFICIENT = l * q * B / ((1 + q) * A)
+PROFILE = 1 - xi**2 - 2 * l * xi
+"""p/(K delta) at x = xi a."""
 SCALED_LOAD = s**2 * (s + r + lam**2 / (r + lam)) / 2
 
 RATIO = r"$q = x_{\mathrm{TE}}/a$ names the state: $l = l_{\mathrm{r}}/a > 0$ is $0 < q < 1$"
@@ -150,17 +152,22 @@ def _peak_pressure() -> Derivation:
         text=r"The peak is inside the contact, at $x = -l_{\mathrm{r}}$, while $l_{\mathrm{r}} < a$, and "
         r"at the leading edge from $l_{\mathrm{r}} = a$ on.",
         uses=("F16",),
+        notation={r"\hat p": sp.Lambda(xi, PROFILE)},
     )
-    profile = 1 - xi**2 - 2 * l * xi
+    profile = PROFILE
     form = 2 * l + (1 - n) ** 2
     proof.define(P, profile, r"$p/(K\delta)$ at $x = \xi a$")
-    proof.equal(sp.Derivative(profile, xi), -2 * (xi + l), r"a maximum at $\xi = -l$")
-    proof.equal(profile.subs(xi, -l), 1 + l**2, "inside the contact if $l < 1$", left=r"\hat p(-l)")
-    proof.equal(profile.subs(xi, -1), 2 * l, "the leading edge, else", left=r"\hat p(-1)")
+    proof.greatest(
+        *(1 + l**2, profile, (xi, -l), r"at $\xi = -l$, inside the contact if $l < 1$"),
+        surplus=(xi + l) ** 2, left=r"\hat p(-l)",
+    )  # fmt: skip
+    proof.greatest(
+        *(2 * l, profile, (xi, -1), "at the leading edge, else"),
+        surplus=(1 + xi) * (xi - 1 + 2 * l), given=(xi > -1, l > 1), left=r"\hat p(-1)",
+    )  # fmt: skip
     proof.define(n, sp.Min(1, l), "where the peak is, in half lengths from the bottom")
-    cases = sp.Piecewise((1 + l**2, l <= 1), (2 * l, True))
-    proof.define(P_max, cases, "the maximum in either case")
-    proof.equal(P_max, form, "both cases in one form")
+    proof.define(P_max, form, "its height in one form")
+    proof.equal(sp.Piecewise((1 + l**2, l <= 1), (2 * l, True)), form, "for both cases")
     return proof.done(P_max, form)
 
 
@@ -182,14 +189,15 @@ def _scaled_load() -> Derivation:
     proof.define(f, 3 * s**3 * w / 4, r"$W = K \delta a w$")
     proof.equal(f, SCALED_LOAD, "a sum of positive terms")
     # Derivatives act on expressions in s and lambda alone, where nothing depends on s unseen.
+    proof.notation |= {"f": SCALED_LOAD.subs(r, radius), "f'": slope.subs(r, radius)}
     proof.define(
         *(f_s, sp.Derivative(SCALED_LOAD.subs(r, radius), s), "at fixed velocity"),
-        right=r"\partial f/\partial s",
+        right=r"\frac{\partial f}{\partial s}",
     )
     proof.equal(f_s, slope, "positive: a deeper indenter carries more")
     proof.define(
         *(f_ss, sp.Derivative(slope.subs(r, radius), s), "likewise"),
-        right=r"\partial f'/\partial s",
+        right=r"\frac{\partial f'}{\partial s}",
     )
     proof.equal(f_ss, 3 * (r + s) ** 2 / (2 * r), "positive")
     return proof.done(f, SCALED_LOAD)
@@ -216,7 +224,7 @@ def _balance() -> Derivation:
     proof.sign(logarithmic, "<", 3, UNIT, "the spring alone")
     proof.sign(f / s**3, ">", 1, UNIT, "hence $G > 0$ at $s = 1$")
     proof.define(G, f + kappa * (s**2 - 1) - 1, "excess of the supporting forces")
-    proof.define(G_s, f_s + 2 * kappa * s, "at fixed velocity", right=r"\partial G/\partial s")
+    proof.define(G_s, f_s + 2 * kappa * s, r"$\partial G/\partial s$ at fixed velocity")
     conditioning = 2 * (1 + kappa) + 2 * G + (s * f_s - 2 * f)
     proof.equal(s * G_s, conditioning, "slope of the balance")
     proof.sign(s * f_s - 2 * f, ">", 0, UNIT, r"hence $s\,G' \ge 2 (1 + \kappa)$ at the root")

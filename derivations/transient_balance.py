@@ -46,6 +46,7 @@ def derive() -> tuple[Derivation, ...]:
 def _momentum() -> Derivation:
     proof = _theorem("F14", title="Balance of momentum", text=_MOMENTUM, uses=("F8", "scaled-form"))
     total = sp.Integral(_u, ELEMENTS)
+    proof.notation |= {r"\int": sp.Tuple(*ELEMENTS), "U": sp.Lambda(time, total), "u": _u}
     force = _share * (total + sp.Derivative(total, time))
     pushed = _share * sp.Integral(_u + _u_s, ELEMENTS)
     proof.define(f_normal, pushed, r"$\hat p$ is zero outside the contact",
@@ -55,7 +56,7 @@ def _momentum() -> Derivation:
     )
     proof.define(
         *(sp.Derivative(depth, (time, 2)), (1 - f_normal - kappa * (depth - 1)) / eps, "scaled motion"),
-        left=r"\varepsilon d''", right=r"1 - f_z - \kappa (d - 1)",
+        left="d''", right=r"\frac{1 - f_z - \kappa (d - 1)}{\varepsilon}",
     )  # fmt: skip
     change = sp.Derivative(eps * _speed + _share * total, time)
     impulse = 1 - kappa * (depth - 1) - _share * total
@@ -80,6 +81,7 @@ def _power() -> Derivation:
     density = sp.expand(_share * PRESSURE * rate)
     proof.recall("F11", f_normal, NORMAL_FORCE)
     proof.recall("F11", f_friction, FRICTION_FORCE)
+    proof.notation |= {r"\hat p": PRESSURE, "u'": rate}
     proof.equal(PRESSURE, d - xi**2 + rate, r"$u + u'$ in the contact", left=r"\hat p")
     whole = sp.Integral(density, CONTACT)
     proof.integral(
@@ -101,9 +103,10 @@ def _energy() -> Derivation:
     lost = _share * sp.Integral(_u_s**2, ELEMENTS)
     given = _share * sp.Integral((_u + _u_s) * _u_s, ELEMENTS)
     moving = eps * _speed**2 / 2 - depth + kappa * (depth - 1) ** 2 / 2
+    proof.notation |= {r"\int": sp.Tuple(*ELEMENTS), "u": _u, r"\hat p": _u + _u_s}
     proof.define(
         *(sp.Derivative(depth, (time, 2)), (1 - f_normal - kappa * (depth - 1)) / eps, "scaled motion"),
-        left=r"\varepsilon d''", right=r"1 - f_z - \kappa (d - 1)",
+        left="d''", right=r"\frac{1 - f_z - \kappa (d - 1)}{\varepsilon}",
     )  # fmt: skip
     proof.equal(
         *(sp.Derivative(moving, time), -_speed * f_normal, "kinetic energy, weight and spring"),
@@ -164,13 +167,17 @@ def _surface() -> Derivation:
         for end in (right, left)
     )
     change = sp.Derivative(stored.subs(moving), time)
+    free = {name: sp.Lambda(xi, each.subs(moving)) for name, each in (("u", height), ("u'", rate))}
+    proof.notation |= {r"\ell": moving[left], "r": moving[right], "d": depth, **free}
+    proof.notation[r"\lambda"] = moving[lam]
     parts = (exchange + at_right - at_left).subs(moving)
     proof.equal(
         *(change, parts, "elements enter and leave at the edges"),
         left=r"\frac{d}{ds} \frac{3}{8} \int_{\ell}^{r} u^2 \, d\xi",
-        right=r"\frac{3}{4} \int_{\ell}^{r} u u' \, d\xi + \frac{3}{8} \left[u^2(r) (r' - \lambda) - "
-        r"u^2(\ell) (\ell' - \lambda)\right]",
+        right=r"\frac{3}{4} \int_{\ell}^{r} u u' \, d\xi + \frac{3}{8} \left[u(r)^2 (r' - \lambda) - "
+        r"u(\ell)^2 (\ell' - \lambda)\right]",
     )
+    proof.notation |= {"u": _u, "u'": _u_s}
     proof.define(_u_s, -_u, "outside there is no pressure", left="u'", right="-u")
     loss = -2 * (_share / 2 * _u**2)
     proof.equal(sp.Derivative(_share / 2 * _u**2, time), loss, "twice what is stored, per $\\tau$",

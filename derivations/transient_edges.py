@@ -9,7 +9,7 @@ from functools import partial
 import sympy as sp
 
 from derivations.record import Derivation
-from derivations.step import Proof, tex
+from derivations.step import Proof
 from derivations.symbols import (
     E,
     P,
@@ -32,7 +32,7 @@ from derivations.symbols import (
     xi,
     zeta,
 )  # fmt: skip
-from derivations.transient_memory import OF_TIME, SECTION
+from derivations.transient_memory import OF_TIME, SECTION, SURFACE
 from derivations.transient_scaling import PRESSURE
 
 RADICAND = d + d_s + lam**2
@@ -49,7 +49,7 @@ edge_path = sp.Function("X_e", real=True)(time)
 """The element at an edge of the contact."""
 TOUCHING_PRESSURE = 2 * (xi - E * eta) * sp.Derivative(edge_path, time)
 """p/(K delta_0) at an edge that touches."""
-_theorem = partial(Proof, equation=None, section=SECTION)
+_theorem = partial(Proof, equation=None, section=SECTION, notation={"g": SURFACE})
 
 
 def derive() -> tuple[Derivation, ...]:
@@ -68,6 +68,14 @@ def _peeling() -> Derivation:
     for sign, name, edge in ((-1, "left", r"\ell"), (1, "right", "r")):
         position = sign * radius - sp.Derivative(travel, time) - travel
         loss = sp.diff(pressure, time).subs(material, position)
+        moving = sign * radius - sp.Derivative(travel, time)
+        proof.notation |= {
+            edge: sp.Lambda(time, moving),
+            r"\hat p": pressure,
+            "Y": travel,
+            "X": material,
+        }
+        proof.notation |= {r"\rho": radius, r"\lambda": sp.Derivative(travel, time)}
         side = (xi, -sp.oo, -lam) if sign < 0 else (xi, -lam, sp.oo)
         called = left if sign < 0 else right
         proof.root(P, xi, sign * rho - lam, f"{name} edge", over=side, name=called)
@@ -93,6 +101,7 @@ def _touching() -> Derivation:
         ground = f"{words} edge on undisturbed ground"
         proof.root(d - xi**2, xi, sign * sp.sqrt(d), ground, over=side, name=called)
     now = depth - (material + travel) ** 2
+    proof.notation |= {r"\hat p": PRESSURE.subs(_MOVING)}
     meeting = sp.exp(time) * now - sp.exp(sigma) * now.subs(time, sigma)
     condition = r"\left[e^{s} g(X, s) - e^{\sigma} g(X, \sigma)\right]"
     along = -2 * sp.exp(time) * (xi - E * eta)
@@ -110,6 +119,7 @@ def _touching() -> Derivation:
     )  # fmt: skip
     speed = sp.Derivative(edge_path, time)
     reason = r"the edge $X_{\mathrm{e}}(s)$ keeps both at zero"
+    proof.notation[r"X_{\mathrm{e}}"] = edge_path
     proof.root(sp.exp(time) * P + along * speed, P, TOUCHING_PRESSURE, reason, right=_SPEED)
     return proof.done(P, TOUCHING_PRESSURE)
 
@@ -138,7 +148,7 @@ def _at_once() -> Derivation:
     proof.integral(
         *(sp.Integral(growth, whole), growth, whole, sp.exp(zeta) * inner),
         r"hence $\bar d$ is the mean of $d + d'$ since $s_0$, weighted with $e^{\zeta}$",
-        left=r"\int_{s_0}^{s} e^{\zeta} \left(d + d'\right) d\zeta",
+        left=r"\int_{s_0}^{s} e^{\zeta} \left(d(\zeta) + d'(\zeta)\right) d\zeta",
         right=r"e^{s} d(s) - e^{s_0} d(s_0)",
         value=sp.exp(time) * depth - sp.exp(start) * depth.subs(time, start),
     )
@@ -175,7 +185,7 @@ def _gradually() -> Derivation:
     proof.define(E, sp.exp(sigma - time))
     proof.define(
         *(sp.Derivative(was_depth, sigma), peeling, r"no pressure there at $\sigma$"),
-        left=r"d'(\sigma)", right=r"\eta^2 + 2 \lambda(\sigma) \eta - d(\sigma)",
+        left=r"d'(\sigma)", right=r"\eta^2 + 2 Y'(\sigma) \eta - d(\sigma)",
     )  # fmt: skip
     proof.equal(
         *(sp.Derivative(meeting, sigma), slope, "slope of this equation"),
@@ -204,24 +214,19 @@ def _turning() -> Derivation:
     total = sp.Integral(lost, (zeta, sigma, _h))
     value = rho * c * (_h - sigma) ** 2 * (2 * sigma + _h) / 3
     reason = r"pressure since $\sigma$ on the element $X = c \sigma^2/2$, to leading order"
-    shown = (
-        r"-2 \rho \int_{\sigma}^{h} \left(\frac{c \sigma^2}{2} - \frac{c \zeta^2}{2}\right) d\zeta"
-    )
     proof.integral(
-        *(total, lost, (zeta, sigma, _h), sp.integrate(lost, zeta), reason),
-        value=value, left=shown, right=tex(value),
+        *(total, lost, (zeta, sigma, _h), sp.integrate(lost, zeta), reason), value=value,
     )  # fmt: skip
-    at_root = sp.diff(value, sigma).subs(sigma, -_h / 2)
-    proof.equal(at_root, 3 * rho * c * _h**2 / 2, "not zero: a simple root", left=_SLOPE)
     proof.root(value, sigma, -_h / 2, "left as long before the turn as half the time since",
                over=(sigma, -sp.oo, _h))  # fmt: skip
-    edge, quarter = peel.subs(zeta, -_h / 2), peel.subs(zeta, _h) / 4
-    proof.equal(edge, quarter, r"$X = c \sigma^2/2$", left=r"X_{\mathrm{e}}(h)",
+    at_root = sp.Subs(sp.Derivative(value, sigma), sigma, -_h / 2)
+    proof.equal(at_root, 3 * rho * c * _h**2 / 2, "not zero: a simple root")
+    quarter = peel.subs(zeta, _h) / 4
+    proof.equal(sp.Subs(peel, zeta, -_h / 2), quarter, r"where the edge is: $X = c \sigma^2/2$",
                 right=r"\frac{1}{4} \frac{c h^2}{2}")  # fmt: skip
-    return proof.done(edge, quarter)
+    return proof.done(sp.Subs(peel, zeta, -_h / 2), quarter)
 
 
-_SLOPE = r"\left.\frac{d}{d\sigma} \int_{\sigma}^{h}\right|_{\sigma = -h/2}"
 _TURN = (
     r"Let a right edge that peels stop moving inward at $s_0$. The zero of the pressure turns there: "
     r"counted from its turn it is at $X = c \zeta^2/2$ with $c > 0$, at the time $s_0 + \zeta$. The edge "

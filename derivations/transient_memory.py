@@ -11,7 +11,6 @@ import sympy as sp
 from derivations.record import Derivation
 from derivations.step import Proof
 from derivations.symbols import (
-    P,
     compression,
     d,
     d_s,
@@ -36,8 +35,14 @@ _NOTATION = (
     r"An element with the material coordinate $X$ is at $\xi = X + Y(s)$ with $Y' = \lambda$, and the "
     r"indenter there is at $g(X, s) = d - \xi^2$."
 )
-_MAXIMUM = r"\max\left(u_0, \sup_{s_1 \le s} e^{s_1} g(s_1)\right)"
 _h = sp.Symbol("h", positive=True)
+PUSH = sp.Function("p", nonnegative=True)
+"""The pressure on an element, p/(K delta_0), as a function of time."""
+_clear = sp.Function("c", nonnegative=True)
+"""How far the indenter is above the surface of an element."""
+_HEIGHT = depth - (material + travel) ** 2
+SURFACE = sp.Lambda((material, time), _HEIGHT)
+"""g(X, s), the surface of the indenter above an element."""
 
 OF_TIME = {d: depth, d_s: sp.Derivative(depth, time)}
 """The depth and its rate as functions of the scaled time."""
@@ -51,64 +56,70 @@ def derive() -> tuple[Derivation, ...]:
 
 
 def _memory() -> Derivation:
-    proof = _theorem("F8", title="Memory in closed form", text=_MEMORY, uses=("scaled-pressure",))
+    proof = _theorem("F8", title="Memory in closed form", text=_MEMORY, uses=("scaled-pressure",),
+                     notation={r"\hat p": PUSH})  # fmt: skip
     u, g = compression, indenter
     whole = (zeta, earlier, time)
-    integrand = sp.exp(zeta) * (u(zeta) + sp.Derivative(u(zeta), zeta))
-    pushed = sp.Integral(integrand, whole)
-    work = r"\int_{s_1}^{s} e^{\zeta} \hat p(\zeta) \, d\zeta"
-    proof.define(P, u(time) + sp.Derivative(u(time), time), "positive or zero, and zero outside")
-    proof.equal(
-        *(sp.Derivative(sp.exp(time) * u(time), time), sp.exp(time) * P, "it never decreases"),
-        left=r"\frac{d}{ds} \left[e^{s} u(s)\right]",
-        right=r"e^{s} \hat p",
-    )
+    pushed = sp.Integral(sp.exp(zeta) * PUSH(zeta), whole)
+    kept = sp.exp(time) * u(time)
+    proof.define(
+        *(sp.Derivative(u(zeta), zeta), PUSH(zeta) - u(zeta), r"$\hat p = u + u'$, never negative"),
+        right=r"\hat p(\zeta) - u(\zeta)",
+    )  # fmt: skip
     proof.integral(
-        *(pushed, integrand, whole, sp.exp(zeta) * u(zeta), "from one instant to another"),
-        value=sp.exp(time) * u(time) - sp.exp(earlier) * u(earlier),
-        left=work, right=r"e^{s} u(s) - e^{s_1} u(s_1)",
+        *(pushed, sp.exp(zeta) * PUSH(zeta), whole, sp.exp(zeta) * u(zeta)),
+        r"$\frac{d}{ds} \left[e^{s} u\right] = e^{s} \hat p$: what is kept, $e^{s} u$, never decreases",
+        value=kept - sp.exp(earlier) * u(earlier),
+        left=r"\int_{s_1}^{s} e^{\zeta} \hat p(\zeta) \, d\zeta",
+        right=r"e^{s} u(s) - e^{s_1} u(s_1)",
     )  # fmt: skip
-    proof.equal(
-        sp.exp(time) * u(time) - sp.exp(earlier) * g(earlier),
-        pushed + sp.exp(earlier) * (u(earlier) - g(earlier)),
-        r"no term is negative: $e^{s} u(s) \ge e^{s_1} g(s_1)$ for every $s_1 \le s$",
-        left=r"e^{s} u(s) - e^{s_1} g(s_1)",
-        right=rf"{work} + e^{{s_1}} \left[u(s_1) - g(s_1)\right]",
-    )
-    proof.define(u(sigma), g(sigma), r"the last contact was at $\sigma$")
+    proof.define(g(earlier), u(earlier) - _clear(earlier), r"the clearance $c$ is never negative")
+    at_last = {earlier: sigma}
+    proof.define(pushed.subs(at_last), sp.S.Zero, r"nothing has pressed since $\sigma$, the last contact",
+                 left=r"\int_{\sigma}^{s} e^{\zeta} \hat p(\zeta) \, d\zeta")  # fmt: skip
+    proof.define(_clear(sigma), sp.S.Zero, "where the element met the indenter")
+    proof.where(sp.Gt(time, earlier), "any earlier instant")
+    proof.greatest(
+        *(kept, sp.exp(earlier) * g(earlier), (earlier, sigma), _BOUND),
+        surplus=pushed + sp.exp(earlier) * _clear(earlier), left="e^{s} u(s)",
+    )  # fmt: skip
     value = sp.exp(sigma - time) * g(sigma)
-    proof.root(
-        *(sp.exp(time) * u(time) - sp.exp(sigma) * u(sigma), u(time), value),
-        r"both terms vanish for $s_1 = \sigma$: the bound is reached",
-        left=r"e^{s} u(s)", right=rf"e^{{\sigma}} g(\sigma) = {_MAXIMUM}",
-    )  # fmt: skip
+    proof.define(u(sigma), g(sigma), r"$c(\sigma) = 0$")
+    since = kept - sp.exp(sigma) * u(sigma)
+    proof.root(*(since, u(time), value, r"the free element since $\sigma$"),
+               right=r"e^{\sigma - s} g(\sigma)")  # fmt: skip
     return proof.done(u(time), value)
 
 
+_BOUND = (
+    r"the difference is $\int_{s_1}^{s} e^{\zeta} \hat p \, d\zeta + e^{s_1} c(s_1) \ge 0$, and zero for "
+    r"$s_1 = \sigma$: the least upper bound is attained"
+)
 _MEMORY = (
     _NOTATION
     + r" Its surface is never above the indenter, $u \ge g$; its pressure $\hat p = u + u'$ is never "
     r"negative, and zero unless $u = g$. Then, whatever drive and indenter do, $e^{s} u$ is the running "
-    r"maximum of $e^{s} g$ and of $u_0$, the compression at $s = 0$, which an untouched element keeps."
+    r"maximum of $e^{s} g$. The start counts as a contact with $u_0$, the compression at $s = 0$: an "
+    r"element that has not been touched since keeps $e^{s} u = u_0$, though $u$ itself decays."
 )
 
 
 def _update() -> Derivation:
     proof = _theorem("F8-update", title="Memory from one instant to the next", text=_UPDATE,
-                     uses=("F8",))  # fmt: skip
+                     uses=("F8",), notation={"g": SURFACE, r"\hat p": PUSH})  # fmt: skip
     u, g = compression, indenter
-    here = depth - (material + travel) ** 2
     proof.define(xi, material + travel)
     proof.define(lam, sp.Derivative(travel, time))
     pressure = PRESSURE.subs(OF_TIME)
     proof.equal(
-        *(sp.Derivative(sp.exp(time) * here, time), sp.exp(time) * pressure, _RISES),
+        *(sp.Derivative(sp.exp(time) * _HEIGHT, time), sp.exp(time) * pressure, _RISES),
         left=r"\frac{d}{ds} \left[e^{s} g(X, s)\right]",
         right=r"e^{s} \left(d + d' - \xi^2 - 2 \lambda \xi\right)",
     )
     after, clearance = u(time + _h), sp.Symbol("c", nonnegative=True)
     impulse = sp.Symbol("J", nonnegative=True)
     larger = sp.Max(sp.exp(-_h) * u(time), g(time + _h))
+    proof.notation["g"] = g
     proof.define(
         g(time + _h), after - clearance, r"the indenter is never below the surface, $c \ge 0$"
     )
@@ -117,7 +128,10 @@ def _update() -> Derivation:
         r"F8 over one step: $J = \int e^{\zeta} \hat p \, d\zeta \ge 0$",
     )
     either = (sp.Eq(impulse, 0), sp.Eq(clearance, 0))
-    proof.equal(after, larger, "free until then, or in contact at the end", cases=either)
+    proof.equal(
+        *(after, larger, "free until then, or in contact at the end"), cases=either,
+        right=r"\max\left(g(s + h),\, e^{-h} u(s)\right)",
+    )  # fmt: skip
     return proof.done(after, larger)
 
 
@@ -137,8 +151,15 @@ def _margin(position: sp.Expr) -> sp.Expr:
     return sp.exp(time) * now - sp.exp(earlier) * now.subs(time, earlier)
 
 
+_one, _other = sp.symbols("X_1 X_2", real=True)
+_BULGE = mix * (1 - mix) * (sp.exp(time) - sp.exp(earlier)) * (_one - _other) ** 2
+_MARGIN = sp.Lambda(material, _margin(material))
+"""e**s g now minus e**s_1 g at an earlier instant, as a function of the element."""
+
+
 def _interval() -> Derivation:
-    proof = _theorem("F9", title="The contact is one interval", text=_INTERVAL, uses=("F8",))
+    proof = _theorem("F9", title="The contact is one interval", text=_INTERVAL, uses=("F8",),
+                     notation={"g": SURFACE, "D_1": _MARGIN})  # fmt: skip
     margin = _margin(material)
     curvature = sp.Derivative(margin, (material, 2))
     proof.sign(-2 * (eta - 1), "<", 0, (eta, 1, sp.oo), r"time passes: $\eta = e^{s - s_1} > 1$",
@@ -149,9 +170,18 @@ def _interval() -> Derivation:
         left=r"\frac{d^2}{dX^2} \left[e^{s} g(X, s) - e^{s_1} g(X, s_1)\right]",
         right=r"-2 e^{s_1} (\eta - 1)",
     )
+    _between(proof)
+    first, second = sp.symbols("D_1 D_2", nonnegative=True)
+    proof.where(sp.Gt(time, earlier), "any earlier instant")
+    proof.where(mix < 1, "between two elements in contact")
+    proof.holds(mix * first + (1 - mix) * second + _BULGE, ">=", 0, _CONVEX)
     return proof.done(curvature, -2 * sp.exp(earlier) * (eta - 1))
 
 
+_CONVEX = (
+    "so where a difference is positive or zero for two elements, it is so for all between them, for "
+    "each past instant and hence for all of them: the contact has no gap"
+)
 _INTERVAL = (
     _NOTATION
     + r" By F8 an element is in contact at $s$ if and only if $e^{s} g(X, s)$ is not less than $e^{s_1} "
@@ -163,19 +193,25 @@ _INTERVAL = (
 )
 
 
-def _landing() -> Derivation:
-    proof = _theorem(
-        "F9-landing", title="Landing is at one point", text=_LANDING, uses=("F8", "F9")
-    )
-    one, other = sp.symbols("X_1 X_2", real=True)
-    bulge = mix * (1 - mix) * (sp.exp(time) - sp.exp(earlier)) * (one - other) ** 2
-    between = _margin(mix * one + (1 - mix) * other)
-    chord = mix * _margin(one) + (1 - mix) * _margin(other)
+def _between(proof: Proof) -> None:
+    """Prove how far a difference bulges above its chord."""
+    between = _margin(mix * _one + (1 - mix) * _other)
+    chord = mix * _margin(_one) + (1 - mix) * _margin(_other)
     proof.equal(
-        *(between - chord, bulge, r"positive for $0 < \theta < 1$ and $s_1 < s$"),
+        *(between - chord, _BULGE, "how far it bulges above its chord"),
         left=r"D_1(\theta X_1 + (1 - \theta) X_2) - \theta D_1(X_1) - (1 - \theta) D_1(X_2)",
     )
-    return proof.done(between - chord, bulge)
+
+
+def _landing() -> Derivation:
+    proof = _theorem("F9-landing", title="Landing is at one point", text=_LANDING,
+                     uses=("F8", "F9"), notation={"D_1": _MARGIN})  # fmt: skip
+    _between(proof)
+    proof.where(sp.Gt(time, earlier), "any earlier instant")
+    proof.where(mix < 1, "between two elements")
+    proof.where(sp.Gt(_one, _other), "that are not the same")
+    proof.holds(_BULGE, ">", 0, "if both landed at once, the elements between would have before")
+    return proof.done(_BULGE, 0)
 
 
 _LANDING = (

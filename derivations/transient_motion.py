@@ -74,11 +74,11 @@ def _forces() -> Derivation:
 
 
 _NORMAL = (
-    r"\frac{3}{4} \int_{\ell}^{r} \hat p \, d\xi = \frac{3}{4} \left[(d + d') (r - \ell) - "
+    r"\frac{3}{4} \left[(d + d') (r - \ell) - "
     r"\frac{r^3 - \ell^3}{3} - \lambda (r^2 - \ell^2)\right]"
 )
 _FRICTION = (
-    r"-\frac{3}{2} \int_{\ell}^{r} \xi \hat p \, d\xi = -\frac{3}{2} \left[(d + d') \frac{r^2 - "
+    r"-\frac{3}{2} \left[(d + d') \frac{r^2 - "
     r"\ell^2}{2} - \frac{r^4 - \ell^4}{4} - 2 \lambda \frac{r^3 - \ell^3}{3}\right]"
 )
 _FORCES = (
@@ -92,6 +92,7 @@ def _peeling_forces() -> Derivation:
     proof.define(d_s, (right + lam) ** 2 - lam**2 - d, r"no pressure at $r$")
     proof.define(lam, rho - right)
     proof.define(left, right - b, "$b$ is the width of the contact")
+    proof.notation |= {r"\hat p": PRESSURE, "f_z": sp.Lambda(b, PEELING_NORMAL_FORCE)}
     proof.equal(PRESSURE, (right - xi) * (xi - right + 2 * rho), "one difference", left=r"\hat p")
     proof.recall("F11", f_normal, NORMAL_FORCE)
     proof.equal(f_normal, PEELING_NORMAL_FORCE, "without differences of powers")
@@ -109,6 +110,9 @@ def _derivatives() -> Derivation:
     proof = _theorem("F11-derivatives", title="How forces depend on the motion", text=_DEPEND,
                      uses=("F10-peel", "F11"))  # fmt: skip
     ends = {end: sp.Function(str(end), real=True)(d, d_s) for end in (right, left)}
+    named = {"f_z": f_normal, "f_x": f_friction}
+    proof.notation |= {name: established("F11", each).subs(ends) for name, each in named.items()}
+    proof.notation |= {r"\hat p": sp.Lambda(xi, PRESSURE), r"\ell": ends[left], "r": ends[right]}
     for variable in (d, d_s):
         for force, share, weight in ((f_normal, _LOAD_SHARE, 1), (f_friction, _FRICTION_SHARE, xi)):
             slope = sp.Derivative(established("F11", force).subs(ends), variable)
@@ -124,12 +128,13 @@ def _derivatives() -> Derivation:
     proof.recall("F10-touch", P, TOUCHING_PRESSURE)
     proof.where(sp.Gt(xi, E * eta), "a right edge; a left one mirrors it")
     motion = 1 / (2 * (xi - E * eta))
+    proof.notation |= {r"\hat p": P, r"X_{\mathrm{e}}": edge_path}
     proof.equal(P * motion, sp.Derivative(edge_path, time), _TOUCHES, left=_AT_TOUCH,
                 right=r"X_{\mathrm{e}}'")  # fmt: skip
     return proof.done(P * motion, sp.Derivative(edge_path, time))
 
 
-_AT_TOUCH = r"\hat p \, \frac{\partial \xi}{\partial d} = \frac{\hat p}{2 (\xi - E \eta)}"
+_AT_TOUCH = r"\frac{\hat p}{2 (\xi - E \eta)}"
 _TOUCHES = r"an edge that touches, where $g = u$ holds $\xi$: its velocity through the foundation"
 _DEPEND = (
     r"At an edge that peels $\hat p$ vanishes and with it the term of that edge. An edge that touches does "
@@ -160,6 +165,8 @@ def _start_from_rest() -> Derivation:
     proof.define(left, leading, "touches undisturbed ground")
     proof.define(a, sp.sqrt(d))
     ends = {right: trailing, left: leading}
+    named = {"f_z": f_normal, "f_x": f_friction}
+    proof.notation |= {name: established("F11", each).subs(ends) for name, each in named.items()}
     pairs = [(force, variable) for force in (f_normal, f_friction) for variable in (d, d_s)]
     for (force, variable), value in zip(pairs, JACOBIAN, strict=True):
         slope = sp.Derivative(established("F11", force).subs(ends), variable)

@@ -49,6 +49,9 @@ _root = sp.sqrt(DAMPING**2 - 4 * eps * STIFFNESS)
 FAST, SLOW = -(DAMPING + _root) / (2 * eps), -2 * STIFFNESS / (DAMPING + _root)
 """The rates per retardation time, without a difference of nearly equal numbers."""
 
+_first, _second = sp.symbols("sigma_1 sigma_2", real=True)
+_times = sp.symbols("T_1 T_2", positive=True)
+
 SLOW_RATE = right**2 + 2 * lam * right - d
 """d' of the slow manifold."""
 EXCESS = 2 * (1 - beta**3) / (3 * beta**2)
@@ -75,13 +78,13 @@ def _rates() -> Derivation:
             quadratic * growth,
             r"a small change of the depth in proportion to $e^{\sigma s}$",
         ),
-        left=r"\left[\varepsilon \frac{d^2}{ds^2} + \frac{3 B}{4} \frac{d}{ds} + \frac{3 A}{4} + "
-        r"\kappa\right] e^{\sigma s}",
+        left=r"\varepsilon \frac{d^2}{ds^2} e^{\sigma s} + \frac{3 B}{4} \frac{d}{ds} e^{\sigma s} + "
+        r"\left(\frac{3 A}{4} + \kappa\right) e^{\sigma s}",
     )
     proof.where(sp.Gt(DAMPING**2, 4 * eps * STIFFNESS), "no oscillation")
     middle = -DAMPING / (2 * eps)
-    proof.root(quadratic, sigma, FAST, "fast", over=(sigma, -sp.oo, middle), left=r"\sigma_1")
-    proof.root(quadratic, sigma, SLOW, "slow", over=(sigma, middle, sp.oo), left=r"\sigma_2")
+    proof.root(quadratic, sigma, FAST, "fast", over=(sigma, -sp.oo, middle), name=_first)
+    proof.root(quadratic, sigma, SLOW, "slow", over=(sigma, middle, sp.oo), name=_second)
     proof.define(d_s, sp.S.Zero, "steady sliding")
     proof.define(right, a * q, "with its trailing edge")
     proof.define(lam, a * l)
@@ -91,7 +94,7 @@ def _rates() -> Derivation:
     proof.equal(per_depth, a * (1 + q) ** 2 / (2 * q), r"which is $\sqrt{a^2 + \lambda^2} + a$")
     proof.define(per_rate, per_unit * JACOBIAN[1], r"$\frac{4}{3} \partial f_z/\partial d'$")
     proof.equal(per_rate, a * (1 + q), r"which is $\sqrt{a^2 + \lambda^2} - \lambda + a$")
-    return proof.done(sigma, SLOW)
+    return proof.done(_second, SLOW)
 
 
 _RATES = (
@@ -122,7 +125,7 @@ def _critical_inertia() -> Derivation:
     proof.equal(lam**3, (1 - q) ** 3 * (1 + q) / (q**2 * A), "and the drive number")
     proof.sign(sp.Derivative(cubed, q), ">", 0, UNIT, r"it falls with growing $\lambda$")
     rest, fast = sp.Rational(3, 8), 1 / (4 * lam**2)
-    proof.equal(cubed.subs(q, 1), rest**3, "at rest", left=r"\varepsilon_{\mathrm{c}}^3(0)")
+    proof.equal(sp.Subs(cubed, q, 1), rest**3, "at rest")
     proof.leading_order(eps_critical**3, fast**3, q, 0, "fast", eps=lam ** -sp.Rational(3, 2))
     return proof.done(eps_critical, 3 * a * q / 8)
 
@@ -141,11 +144,11 @@ def _time_constants() -> Derivation:
     _steady(proof)
     proof.define(kappa, sp.S.Zero, "dead weight")
     fast, slow = 4 * eps / (3 * a * (1 + q)), 2 * q / (1 + q)
-    proof.leading_order(-1 / FAST, fast, eps, 0, "inertia against damping", eps=eps,
-                        left=r"\frac{T_1}{\tau}")  # fmt: skip
-    proof.leading_order(-1 / SLOW, slow, eps, 0, "damping against stiffness", eps=eps,
-                        left=r"\frac{T_2}{\tau}")  # fmt: skip
-    return proof.done(-1 / SLOW, slow)
+    for name, rate in zip(_times, (FAST, SLOW), strict=True):
+        proof.define(name, -tau / rate, "F12")
+    proof.leading_order(_times[0] / tau, fast, eps, 0, "inertia against damping", eps=eps)
+    proof.leading_order(_times[1] / tau, slow, eps, 0, "damping against stiffness", eps=eps)
+    return proof.done(_times[1] / tau, slow)
 
 
 _TIMES = (
@@ -226,6 +229,7 @@ def _one_root() -> Derivation:
     proof.define(b, unit * beta)
     proof.define(lam, a + unit * drive_excess)
     relation = beta**2 * (2 * beta + 3 * drive_excess) / 2
+    proof.notation["f_z"] = PEELING_NORMAL_FORCE
     proof.equal(PEELING_NORMAL_FORCE / f, relation, r"F11 with $\rho = r + \lambda$ and $r = b - a$",
                 left=r"\frac{f_z}{f}")  # fmt: skip
     proof.root(relation - 1, drive_excess, EXCESS, r"where $f_z = f$")

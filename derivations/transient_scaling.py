@@ -7,7 +7,7 @@ import sympy as sp
 from derivations.groups import k_s
 from derivations.model import compression_rate, depth_rate, slope
 from derivations.record import Derivation
-from derivations.step import Proof, tex
+from derivations.step import Proof
 from derivations.symbols import (
     W_0,
     C,
@@ -37,7 +37,6 @@ from derivations.symbols import (
     u_i,
     x,
     x_i,
-    x_te,
     xi,
     z_a,
 )  # fmt: skip
@@ -48,6 +47,8 @@ PRESSURE = d + d_s - xi**2 - 2 * lam * xi
 """p/(K delta_0) in the contact."""
 
 _half = sp.sqrt(2 * R * delta_t)
+_x_minus, _x_plus = sp.symbols("x_- x_TE", real=True)
+"""Zeros of the pressure; x_TE may be negative under an indenter that moves."""
 TRAILING = sp.sqrt(a**2 * (1 + tau * depth_rate / delta_t) + l_r**2) - l_r
 """Eq. 33: the zeros of the pressure."""
 LEADING = -sp.sqrt(a**2 * (1 + tau * depth_rate / delta_t) + l_r**2) - l_r
@@ -77,14 +78,16 @@ def _scaled_form() -> tuple[Derivation, ...]:
     pressure.define(P, p / (K * delta_0))
     pressure.equal(P, PRESSURE, "scaled pressure")
     pressure.equal(
-        *(p * a_0 / W_0, sp.Rational(3, 4) * P, "share of the load, for Eq. (14)"),
-        left=r"\frac{p}{W_0} \frac{dx}{d\xi}",
+        *(
+            p * a_0 / W_0,
+            sp.Rational(3, 4) * P,
+            r"share of the load, for Eq. (14), with $dx = a_0 d\xi$",
+        ),
     )
     pressure.equal(
         -slope * p * a_0 / (W_0 * delta_0 / a_0),
         -sp.Rational(3, 2) * xi * P,
         r"share of the friction force, in units of $W_0 \delta_0/a_0$",
-        left=r"-\frac{h' p}{W_0 \delta_0/a_0} \frac{dx}{d\xi}",
     )
     return pressure.done(P, PRESSURE), _scaled_motion()
 
@@ -118,8 +121,7 @@ def _scaled_motion() -> Derivation:
     proof.define(g, W_0 / M, "the weight is the load at rest")
     proof.define(
         *(z_a.diff(t, 2), force / M, "Eq. (17) with the force of the spring"),
-        left=r"M \ddot z_{\mathrm{A}}",
-        right=r"F_z - M g - k_s \left(z_{\mathrm{A}} + \delta_0\right)",
+        left=r"\ddot z_{\mathrm{A}}",
     )
     result = 1 - f_normal - kappa * (d - 1)
     shown = {"left": r"\varepsilon d''", "right": r"1 - f_z - \kappa (d - 1)"}
@@ -151,20 +153,21 @@ def _peeling_edges() -> Derivation:
         *(p, half * (square - (x + l_r) ** 2), r"largest at $x = -l_{\mathrm{r}}$"),
         right=rf"\frac{{K}}{{2 R}} \left[{_RADICAND} - (x + l_{{\mathrm{{r}}}})^2\right]",
     )
+    proof.notation |= {"x_{-}": LEADING, r"x_{\mathrm{TE}}": TRAILING}
     proof.where(sp.Gt(square, 0), "else no element can be pressed")
     proof.equal(
         *(p, half * (TRAILING - x) * (x - LEADING), "positive exactly between its zeros"),
-        right=r"\frac{K}{2 R} \left(x_{+} - x\right) \left(x - x_{-}\right)",
+        right=r"\frac{K}{2 R} \left(x_{\mathrm{TE}} - x\right) \left(x - x_{-}\right)",
     )
     proof.root(
         *(p, x, LEADING, "a leading edge that peels, where Eq. (32) does not hold"),
-        over=(x, -sp.oo, -l_r), left="x_{-}", right=rf"-\sqrt{{{_RADICAND}}} - l_{{\mathrm{{r}}}}",
+        over=(x, -sp.oo, -l_r), name=_x_minus, right=rf"-\sqrt{{{_RADICAND}}} - l_{{\mathrm{{r}}}}",
     )  # fmt: skip
     proof.root(
         *(p, x, TRAILING, "the trailing edge while it peels"), over=(x, -l_r, sp.oo),
-        left=rf"x_{{+}} = {tex(x_te)}", right=rf"\sqrt{{{_RADICAND}}} - l_{{\mathrm{{r}}}}",
+        name=_x_plus, right=rf"\sqrt{{{_RADICAND}}} - l_{{\mathrm{{r}}}}",
     )  # fmt: skip
-    return proof.done(x, TRAILING)
+    return proof.done(_x_plus, TRAILING)
 
 
 _KINEMATICS = r"$K u + C \dot u$ with Eqs. (6) and (7)"

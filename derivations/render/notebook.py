@@ -122,6 +122,7 @@ _PARAMETERS: dict[str, tuple[str, ...]] = {
     "sign": ("expr", "relation", "bound", "over"),
     "where": ("condition",),
     "holds": ("lhs", "relation", "rhs", "cases"),
+    "greatest": ("value", "expr", "place", "surplus", "given"),
     "equivalent": ("nonnegative", "lhs", "rhs"),
     "leading_order": ("expr", "leading", "variable", "point", "eps"),
     "sampled": ("lhs", "rhs", "ranges"),

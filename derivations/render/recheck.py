@@ -106,6 +106,18 @@ class Steps:
         holds = all(_SIGNS[relation](self._value(gap, self._point(gap, at))) for at in points)
         self._report(holds, f"{expr} {relation} {bound} in {over[1:]}", f"{POINTS} points")
 
+    def greatest(
+        self, value: Expr, expr: Expr, place: Over, surplus: Expr, given: tuple[Expr, ...] = ()
+    ) -> None:
+        """Check that the value is nowhere exceeded, and that it is reached at the place."""
+        kept = list(self.conditions)
+        self.conditions += given
+        gap = self._put(value) - self._put(expr)
+        self._zero(gap - self._put(surplus), f"{value} - {expr} = {surplus}", quiet=True)
+        self._report(self._all(">=", gap), f"{value} >= {expr}", "", quiet=True)
+        self.conditions = kept
+        self._zero(self._put(sp.sympify(surplus).subs(*place)), f"{value} is the greatest {expr}")
+
     def equivalent(self, nonnegative: Expr, lhs: Expr, rhs: Expr) -> None:
         """Check that the first one has the sign of the difference of the others."""
         ratio = sp.cancel(self._put(nonnegative) / (self._put(lhs) - self._put(rhs)))
