@@ -6,7 +6,7 @@ BIN := $(VENV)/bin
 UV := $(shell command -v uv 2>/dev/null)
 OUT ?= paper
 
-.PHONY: paper test lint format benchmark clean
+.PHONY: paper test test-lowest lint format benchmark clean
 
 paper: $(VENV)/.installed
 	$(BIN)/kvtheory steady
@@ -19,6 +19,15 @@ paper: $(VENV)/.installed
 
 test: $(VENV)/.installed-test
 	$(BIN)/python -m pytest -n auto --dist loadscope
+
+# What depends on NumPy, SciPy, SymPy and the others at run time, with the oldest of them.
+LOWEST := .venv-lowest
+LOWEST_TESTS := test_api test_asymptotes test_exact test_quadrature test_transient test_drive_function \
+	test_elements test_compare test_sweep test_cli test_scene test_units test_emit test_presented
+
+test-lowest: $(LOWEST)/.installed
+	$(LOWEST)/bin/python -m pytest -n auto --dist loadscope -W "ignore:numpy.ndarray size changed" \
+		$(LOWEST_TESTS:%=tests/%.py)
 
 lint: $(VENV)/.installed-test
 	$(BIN)/ruff check .
@@ -36,7 +45,7 @@ benchmark: $(VENV)/.installed
 	$(BIN)/kvtheory chart work-precision --standard all -o $(OUT)/work_precision.png
 
 clean:
-	rm -rf $(VENV) $(OUT) build dist *.egg-info .pytest_cache .mypy_cache .ruff_cache .hypothesis .import_linter_cache
+	rm -rf $(VENV) $(LOWEST) $(OUT) build dist *.egg-info .pytest_cache .mypy_cache .ruff_cache .hypothesis .import_linter_cache
 
 $(BIN)/python:
 ifdef UV
@@ -59,4 +68,9 @@ ifdef UV
 else
 	$(BIN)/python -m pip install --quiet --constraint constraints.txt --editable '.[fast,data,benchmark,test]'
 endif
+	@touch $@
+
+$(LOWEST)/.installed: pyproject.toml constraints-lowest.txt
+	$(PYTHON) -m venv $(LOWEST)
+	$(LOWEST)/bin/python -m pip install --quiet --constraint constraints-lowest.txt --editable '.[fast,data,test]'
 	@touch $@

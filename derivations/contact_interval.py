@@ -64,13 +64,14 @@ def _condition() -> Derivation:
     place = sp.Symbol("xi", real=True)
     margin = sp.exp(time) * (now - h(place)) - sp.exp(earlier) * (then - h(place - m))
     form = sp.exp(time) * ((now - E * then) + (-h(place) + E * h(place - m)))
+    proof.notation |= {"D_1": margin, "f": sp.Lambda(place, E * h(place - m) - h(place))}
     proof.define(E, sp.exp(earlier - time), "less than 1", right="e^{-(s - s_1)}")
     proof.equal(
         margin,
         form,
-        "a constant, and a function of the place alone",
+        r"a constant, and $f(\xi) = E h(\xi - m) - h(\xi)$",
         left="D_1",
-        right=r"e^{s} \left[(d - E d_1) + f(\xi)\right], \quad f(\xi) = E h(\xi - m) - h(\xi)",
+        right=r"e^{s} \left[(d - E d_1) + f(\xi)\right]",
     )
     return proof.done(margin, form)
 
@@ -92,12 +93,17 @@ def _interval() -> Derivation:
     behind = -_height(y) + E * _height(y - m)
     ratio = sp.exp(logarithm(y + m) - logarithm(y))
     turning = _slope(y) * (1 - E * ratio)
+    proof.notation |= {
+        "h'(y)": _slope(y), "h'(m - y)": _slope(m - y), "h'(y - m)": _slope(y - m),
+        r"\rho(y)": ratio, "f'(-y)": -sp.diff(ahead, y), "f'(y)": sp.diff(between, y),
+    }  # fmt: skip
     proof.equal(-sp.diff(ahead, y), turning, r"ahead of the tip, with $\rho = h'(y + m)/h'(y)$",
                 left=r"f'(-y)", right=r"h'(y) \left[1 - E \rho(y)\right]")  # fmt: skip
     falling = _slope(y) + E * _slope(m - y)
     proof.equal(-sp.diff(between, y), falling, r"at $0 < \xi = y < m$", left="-f'(y)",
                 right="h'(y) + E h'(m - y)")  # fmt: skip
     proof.holds(falling, ">", 0, "so that $f$ falls there", left="h'(y) + E h'(m - y)")
+    proof.notation["f'(y)"] = sp.diff(behind, y)
     convex = (1 - E) * _slope(y) + E * (_slope(y) - _slope(y - m))
     proof.equal(-sp.diff(behind, y), convex, r"at $\xi = y > m$: the first term is positive, the second not "
                 "negative, because $h'$ does not fall", left="-f'(y)",
@@ -106,9 +112,7 @@ def _interval() -> Derivation:
     rate = sp.Derivative(slope_rate(zeta), zeta)
     proof.integral(
         *(gain, rate, (zeta, y, y + m), slope_rate(zeta)),
-        r"with $\chi = (\ln h')'$: not positive, because $\ln h'$ is concave",
-        left=r"\frac{d}{d y} \ln \rho(y) = \int_{y}^{y + m} \chi'(\zeta) \, d\zeta",
-        right=r"\chi(y + m) - \chi(y)",
+        r"$J$ is the slope of $\ln \rho$, with $\chi = (\ln h')'$: not positive, as $\ln h'$ is concave",
     )  # fmt: skip
     return proof.done(-sp.diff(ahead, y), turning)
 
@@ -141,6 +145,7 @@ def _shape(label: str, name: str, text: str, slope: sp.Expr, form: sp.Expr) -> D
     title = f"The contact is one interval: {name}"
     proof = _theorem(f"F9-{label}", title=title, text=text, uses=("F9-shapes",))
     curvature = -sp.Derivative(sp.log(slope), (y, 2))
+    proof.notation[r"(\ln h')''"] = -curvature
     proof.equal(curvature, form, f"with $h' = {tex(slope)}$", left=r"-(\ln h')''")
     if form != 0:
         proof.holds(form, ">", 0, r"$\ln h'$ is concave")
@@ -156,6 +161,7 @@ def _circle() -> Derivation:
     proof.where(y < R / sp.sqrt(3), "not on the outer part")
     proof.where(y < R, "which follows")
     proof.equal(sp.Derivative(R - sp.sqrt(R**2 - y**2), y), slope, "$h'$")
+    proof.notation[r"(\ln h')''"] = -curvature
     proof.equal(curvature, form, "by differentiation", left=r"-(\ln h')''")
     proof.holds(form, ">", 0, r"$\ln h'$ is concave")
     return proof.done(curvature, form)
@@ -171,6 +177,7 @@ def _converse() -> Derivation:
     proof = _theorem("F9-converse", title="No other shape has one contact always", text=_CONVERSE,
                      uses=("F9-shapes",))  # fmt: skip
     middle = 2 / (ratio_near + ratio_now)
+    proof.notation |= {r"\rho(y_1)": ratio_near, r"\rho(y_2)": ratio_now}
     proof.define(
         ratio_now, ratio_near + ratio_gain, r"$\rho(y_2) > \rho(y_1)$ for some $y_2 > y_1$ and $m$"
     )
@@ -208,6 +215,8 @@ def _two_slopes() -> Derivation:
         """Return how far the indenter is below the surface that has relaxed since."""
         return (sp.Rational(15, 8) - height(place)) - half * (4 - height(place - half))
 
+    spot = sp.Symbol("xi", real=True)
+    proof.notation["D"] = sp.Lambda(spot, lead(spot))
     for place, value, what in (
         (-1, "3/8", "in contact"), (-half, "-1/8", "free: the surface is still lower"),
         (0, "1/8", "in contact again"),
@@ -215,7 +224,7 @@ def _two_slopes() -> Derivation:
         ("-1/4", 0, "the edges of the other"), ("1/12", 0, "likewise"),
     ):  # fmt: skip
         where, found = sp.Rational(place), sp.Rational(value)
-        proof.equal(lead(where), found, what, left=rf"(g - u)\big|_{{\xi = {sp.latex(where)}}}")
+        proof.equal(lead(where), found, what, left=rf"D({sp.latex(where)})")
     return proof.done(lead(-half), -sp.Rational(1, 8))
 
 

@@ -86,23 +86,20 @@ def _instant() -> Derivation:
     slope = -K / R * (x + l_r)
     proof.define(C, K * tau, "Eq. (22)")
     proof.define(tau, l_r / V, "Eq. (29)")
-    proof.equal(
-        sp.Derivative(inner, x), slope, r"neither $\delta$ nor $\dot\delta$ matters", left="p'"
-    )
+    proof.notation["p"] = sp.Lambda(x, inner)
+    reason = r"neither $\delta$ nor $\dot\delta$ matters"
+    proof.equal(sp.Derivative(inner, x), slope, reason, left="p'")
+    del proof.notation["p"]
     square = sp.Derivative(_pressure(x) ** 2, x)
-    proof.integral(squares, square.doit(), _CONTACT, _pressure(x) ** 2, "for a continuous pressure",
-                   left=r"\int_{\mathrm{LE}}^{\mathrm{TE}} 2 p\, p' \, dx",
-                   right=r"p_{\mathrm{TE}}^2 - p_{\mathrm{LE}}^2")  # fmt: skip
+    proof.integral(squares, square.doit(), _CONTACT, _pressure(x) ** 2, "for a continuous pressure")
     proof.equal(
         *(-x / R * _pressure(x), slope * _pressure(x) / K + l_r / R * _pressure(x),
-          "the integrand of Eq. (15)"),
-        left=r"-\frac{x}{R}\, p", right=r"\frac{p\, p'}{K} + \frac{l_{\mathrm{r}}}{R}\, p",
+          r"the integrand of Eq. (15); the first term is $p\, p'/K$"),
     )  # fmt: skip
-    proof.define(F_z, load, "Eq. (14)", right=r"\int p \, dx")
+    proof.define(F_z, load, "Eq. (14)")
     proof.define(_pressure(x_le), p_le, "at the leading edge")
     proof.define(_pressure(x_te), p_te, "at the trailing edge")
-    proof.define(F_x, squares / (2 * K) + l_r / R * load, "integrated, term by term",
-                 right=r"\frac{1}{K} \int p\, p' \, dx + \frac{l_{\mathrm{r}}}{R} \int p \, dx")  # fmt: skip
+    proof.define(F_x, squares / (2 * K) + l_r / R * load, "integrated, term by term")  # fmt: skip
     proof.equal(F_x, whole, "friction without an integral")
     return proof.done(F_x, whole)
 
@@ -118,7 +115,7 @@ def _load() -> Derivation:
     proof.define(delta, a**2 / (2 * R), "Eq. (28)")
     proof.define(r, sp.sqrt(a**2 + l_r**2), r"$x_{\mathrm{TE}} = r - l_{\mathrm{r}}$, Eq. (27)")
     centred = K / (2 * R) * (r**2 - (x + l_r) ** 2)
-    proof.equal(steady.pressure, centred, "the pressure of steady sliding", left="p")
+    proof.equal(steady.pressure, centred, "the pressure of steady sliding")
     primitive = K / (2 * R) * ((a**2 + l_r**2) * x - (x + l_r) ** 3 / 3)
     proof.integral(W, centred, (x, -a, r - l_r), primitive, "Eq. (14)", value=LOAD)
     return proof.done(W, LOAD)
@@ -196,6 +193,7 @@ def _fast() -> Derivation:
     )
     half = sp.sqrt(2 * R * W / (C * V))
     reason = r"Eq. (46), with $a = \sqrt{2 R \delta}$ and $\delta = W/(C V)$"
-    shown = {"left": r"\alpha \sqrt{\frac{W}{R C V}}"}
-    proof.equal(alpha * sp.sqrt(W / (R * C * V)), 2 * half / (3 * R), reason, **shown)
+    proof.notation[r"\alpha"] = alpha
+    asymptote = alpha * sp.sqrt(W / (R * C * V))
+    proof.equal(asymptote, 2 * half / (3 * R), reason, left=r"\alpha \sqrt{\frac{W}{R C V}}")
     return proof.done(F / W, 2 * a / (3 * R))

@@ -88,6 +88,7 @@ def _pressure() -> Derivation:
     proof.define(C, K * l_r / V, "Eqs. (22) and (29)")
     proof.define(l_r, l * a, "the retardation length in half lengths")
     for side, form, where in ((1, AHEAD, "-y a"), (-1, BEHIND, "y a")):
+        proof.notation |= {"h": height, "h'": -side * slope, "C": C, "V": V, "K": K}
         proof.equal(
             *(
                 (K * (delta - height) + side * C * V * slope) / (K * delta),
@@ -116,7 +117,8 @@ def _edge() -> Derivation:
     )
     proof.define(n, 1 + excess, r"$n > 1$, that is, $\nu > 0$")
     proof.define(l, NUMBER, "what $l$ is for an edge at $y = q$")
-    proof.equal(BEHIND.subs(y, q), sp.S.Zero, "no pressure there", left=r"\hat p(q a)")
+    proof.notation |= {r"\hat p": sp.Lambda(y, BEHIND), "l": sp.Lambda(q, NUMBER)}
+    proof.equal(BEHIND.subs(y, q), sp.S.Zero, "no pressure there", left=r"\hat p(q)")
     proof.equal(
         *(sp.diff(NUMBER, q), -(n - 1 + q**n) / (n * q**n), "slope"),
         left=r"\frac{d l}{d q}",
@@ -125,6 +127,7 @@ def _edge() -> Derivation:
     proof.holds(falling, ">", 0, r"$l$ falls strictly: each $l > 0$ has one $q$")
     proof.equal(NUMBER.subs(q, 1), sp.S.Zero, r"at rest, and $l \to \infty$ for $q \to 0$",
                 left="l(1)")  # fmt: skip
+    del proof.notation["l"]
     proof.define(Q, SLOPE_POWER, "the slope at the trailing edge over that at $x = a$")
     proof.equal(n * l * Q, 1 - q**n, "which replaces the difference $1 - q^n$")
     proof.equal(1 / (q + n * l), Q, "one equation for $q$, without a difference")
@@ -200,14 +203,16 @@ def _peak_pressure() -> Derivation:
         "F19-peak", title="Power law: peak pressure", text=_PEAK, uses=("F19-pressure",)
     )
     slope = n * y ** (n - 2) * ((n - 1) * l - y)
+    proof.notation[r"\hat p"] = sp.Lambda(y, AHEAD)
     proof.equal(
         sp.Derivative(AHEAD, y), slope, r"zero at $y = (n - 1) l$", left=r"\frac{d \hat p}{d y}"
     )
     inside = 1 + l * ((n - 1) * l) ** (n - 1)
     form = 1 + y ** (n - 1) * (n * l - y)
     proof.equal(AHEAD, form, "the pressure ahead of the tip")
-    proof.equal(form.subs(y, (n - 1) * l), inside, "inside the contact", left=r"\hat p")
-    proof.equal(form.subs(y, 1), n * l, "at the leading edge", left=r"\hat p")
+    proof.notation[r"\hat p"] = sp.Lambda(y, form)
+    proof.equal(form.subs(y, (n - 1) * l), inside, "inside the contact", left=r"\hat p((n - 1) l)")
+    proof.equal(form.subs(y, 1), n * l, "at the leading edge", left=r"\hat p(1)")
     proof.define(y, sp.Min(1, (n - 1) * l), "where the peak is")
     proof.define(P_n, form, "both cases in one form")
     return proof.done(P_n, form)
@@ -226,9 +231,10 @@ def _energy() -> Derivation:
     proof.define(n, 1 + excess, r"$n > 1$")
     proof.define(Q, SLOPE_POWER)
     density, primitive = n**2 * l * y ** (2 * n - 2), n**2 * l * y ** (2 * n - 1) / (2 * n - 1)
-    for name, end, where in zip(inside, (1, q), ("ahead of the tip", "behind it"), strict=True):
-        proof.integral(name, density, (y, 0, end), primitive, where, left=r"\frac{1}{K \delta^2} "
-                       r"\int K l_{\mathrm{r}} h'^2 \, dx")  # fmt: skip
+    for name, end, where in zip(
+        inside, (1, q), (r"$K l_{\mathrm{r}} h'^2$, ahead of the tip", "behind it"), strict=True
+    ):
+        proof.integral(name, density, (y, 0, end), primitive, where)  # fmt: skip
     form = 2 * (1 + q * Q**2) / (2 * (1 + q * Q**2) + (2 * n - 1) * l * Q**2)
     proof.define(eta_n, (lost_ahead + lost_behind) / phi_n, "by definition")
     proof.recall("F19-friction", phi_n, FRICTION_FORCE)

@@ -54,8 +54,8 @@ _SHORT = {
     damped: 1 + q * Q**2 + (2 * n - 1) * l * Q**2 / 2,
     whole: 1 + q + l + l**2 * Q,
     tip: n**2 + q * (n**2 - 1 + q * Q),
-    blunt: (n - 1) * (2 * n**2 - 1 + 2 * n * (n + 1) * q) / (2 * n**2 * (n + 1)),
-    sharp: q * Q * (2 * n * q / (n + 1) + 2 * (n - 1) + q * Q) / (2 * n**2),
+    blunt: (n - 1) * (2 * n**2 - 1 + 2 * (n + 1) * q * (n + Q)) / (2 * n**2 * (n + 1)),
+    sharp: q**2 * Q * (2 * n / (n + 1) + Q) / (2 * n**2),
 }
 """Shorthands: (2 n - 1) phi_n/(n**2 l), (n + 1) w_n/n, n (n + 1) (w_n - l), and the two parts of the
 error for high velocity, of which a wedge has the second only."""
@@ -132,6 +132,9 @@ def _peeled() -> Derivation:
                      uses=("F19-edge",))  # fmt: skip
     logarithm = log1p(-z)
     edge, slope = expm1(logarithm / n), expm1((n - 1) * logarithm / n)
+    proof.notation[r"\operatorname{log1p}(-z)"] = logarithm
+    for power in (edge, slope):
+        proof.notation[rf"\operatorname{{expm1}} {_brace(power)}"] = power
     proof.define(
         logarithm, sp.log(1 - z), "accurate for small $z$", left=r"\operatorname{log1p}(-z)"
     )

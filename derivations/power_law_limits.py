@@ -40,34 +40,32 @@ def _monotonic() -> Derivation:
     def rate(form: sp.Expr) -> sp.Expr:
         return sp.diff(form, q) / sp.diff(NUMBER, q)
 
+    proof.notation |= {"w_n": load, r"\varphi_n": friction}
+    proof.notation |= {"w_n'": rate(load), r"\varphi_n'": rate(friction)}
     load_rate, friction_rate = n * l * Q, n**2 * SQUARES
-    proof.equal(rate(load), load_rate, "the load grows", left=r"\frac{d w_n}{d l}")
-    proof.equal(
-        rate(friction), friction_rate, "and so does friction", left=r"\frac{d \varphi_n}{d l}"
-    )
+    proof.equal(rate(load), load_rate, "the load grows", left="w_n'")
+    proof.equal(rate(friction), friction_rate, "and so does friction", left=r"\varphi_n'")
     rest = n * (1 + q + l * q * Q) / (n + 1)
     proof.equal(LOAD - l * load_rate, rest, "$w_n/l$ falls: positive",
-                left=r"w_n - l \frac{d w_n}{d l}")  # fmt: skip
+                left="w_n - l w_n'")  # fmt: skip
     less = n**2 * l**2 * Q**2 / 2
     proof.equal(FRICTION_FORCE - l * friction_rate, less, r"$\varphi_n/l$ falls: positive",
-                left=r"\varphi_n - l \frac{d \varphi_n}{d l}")  # fmt: skip
+                left=r"\varphi_n - l \varphi_n'")  # fmt: skip
     z, double = n * l * Q, n + excess
     growth = excess * (n**2 + excess * (n + 1)) + (n + 1) * double * q**n * (1 + z + z**2)
     growth += 2 * n**3 * q * (Q**2 + (1 + q * Q**2) * (1 + l * Q))
     gain = friction_rate * LOAD - FRICTION_FORCE * load_rate
     proof.equal(
         *(2 * (n + 1) * (2 * n - 1) * gain, growth, "the friction coefficient grows"),
-        left=r"2 (n + 1) (2 n - 1)\, w_n^2 \frac{d m_n}{d l}",
+        left=r"2 (n + 1) (2 n - 1) (w_n \varphi_n' - \varphi_n w_n')",
     )
-    proof.holds(
-        growth, ">", 0, r"with $\nu = n - 1$ each term is positive", left=r"\frac{d m_n}{d l}"
-    )
+    proof.holds(growth, ">", 0, r"with $\nu = n - 1$ each term is positive")
     return proof.done(LOAD - l * load_rate, rest)
 
 
 _MONOTONIC = (
     r"At a given depth load, friction force and friction coefficient grow with the velocity, while "
-    r"$w_n/l$, $\varphi_n/l$ and with them $m_n/l$ fall."
+    r"$w_n/l$, $\varphi_n/l$ and with them $m_n/l$ fall. A prime is the derivative with respect to $l$."
 )
 
 
@@ -78,8 +76,6 @@ def _low() -> Derivation:
     ratio = sp.cancel(FRICTION_COEFFICIENT / l)
     proof.define(w_rest, LOAD.subs(rest), "load at rest")
     proof.equal(w_rest, 2 * n / (n + 1), "in units of $K \\delta a$")
-    proof.equal((FRICTION_FORCE / l).subs(rest), 2 * n**2 / (2 * n - 1), "friction force per $l$",
-                left=r"\frac{\varphi_n}{l}(0)")  # fmt: skip
     proof.define(m_low, ratio.subs(rest), "friction coefficient per $l$")
     proof.equal(m_low, LOW_SLOPE, r"in units of $\delta/a$")
     return proof.done(m_low, LOW_SLOPE)
@@ -100,7 +96,7 @@ def _high() -> Derivation:
     damper = n**2 * (SQUARES + z * Q / (2 * n))
     proof.equal(LOAD / l, share, "load per $l$")
     proof.equal(FRICTION_FORCE / l, damper, "friction force per $l$")
-    proof.equal(share.subs(fast), sp.S.One, "the damper carries all", left=r"\frac{w_n}{l}(\infty)")
+    proof.equal(share.subs(fast), sp.S.One, "the damper carries all")
     proof.define(m_high, damper.subs(fast) / share.subs(fast), "friction coefficient")
     proof.equal(m_high, HIGH_COEFFICIENT, r"in units of $\delta/a$")
     return proof.done(m_high, HIGH_COEFFICIENT)

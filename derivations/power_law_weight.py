@@ -65,7 +65,7 @@ _theorem = partial(Proof, equation=None, section=SECTION)
 
 def derive() -> tuple[Derivation, ...]:
     """Prove what a weight makes of F19."""
-    return _scaled_load(), _balance(), _exponents(), _crossing(), _slip(), _maximum()
+    return _scaled_load(), _balance(), _exponents(), _crossing(), _at_load(), _slip(), _maximum()
 
 
 def _scaled_load() -> Derivation:
@@ -98,9 +98,10 @@ def _balance() -> Derivation:
     state = {r: s * q, Q: SLOPE_POWER}
     place = lam / NUMBER
     of_q = SCALED_LOAD.subs(state).subs(s, place)
+    proof.notation |= {"f_n'": sp.diff(of_q, q), "s'": sp.diff(place, q)}
     proof.equal(
         *(sp.diff(of_q, q), SCALED_SLOPE * sp.diff(place, q), "a deeper indenter carries more"),
-        left=r"\frac{d f_n}{d q}", right=rf"{tex(SCALED_SLOPE)} \frac{{d s}}{{d q}}",
+        left="f_n'", right=rf"\left[{tex(SCALED_SLOPE)}\right] s'",
     )  # fmt: skip
     proof.define(scaled_n_s, SCALED_SLOPE, r"$\partial f_n/\partial s$")
     elasticity, whole = s * scaled_n_s / scaled_n, 1 + q + l + l**2 * Q
@@ -146,19 +147,29 @@ def _crossing() -> Derivation:
     proof = _theorem("F19-crossing-weight", title="Power law: crossing of the asymptotes at a load",
                      text=_CROSSING, uses=("F19-low", "F19-exponents"))  # fmt: skip
     lifted = AT_REST * (1 + kappa) / lam
+    proof.notation |= {
+        "W_0": AT_REST * K * delta_0 * a_0,
+        "K": K,
+        r"\delta_0": delta_0,
+        r"l_{\mathrm{r}}": lam * a_0,
+    }
     proof.equal(
         *(
             AT_REST * K * delta_0 * a_0 * (1 + kappa) / (K * lam * a_0) / delta_0,
             lifted,
             r"$\delta/\delta_0$ where $(1 + \kappa) W_0 = C V \delta$",
         ),
-        left=r"\frac{(1 + \kappa) W_0}{C V \delta_0}",
+        left=r"\frac{(1 + \kappa) W_0}{K l_{\mathrm{r}} \delta_0}",
     )
     ratio = HIGH_COEFFICIENT * lifted ** (1 - 1 / n) / (LOW_SLOPE * lam)
     proof.define(n, 1 + excess, r"$n > 1$, that is, $\nu > 0$")
+    proof.notation |= {
+        r"\ln (L_2/L_1)": _logarithm(ratio),
+        r"\ln (\lambda^{*}/\lambda)": _logarithm(CROSSING / lam),
+    }
     proof.equal(
         *(n * _logarithm(ratio), (2 * n - 1) * _logarithm(CROSSING / lam), "high over low asymptote"),
-        left=r"n \ln \frac{L_2}{L_1}", right=r"(2 n - 1) \ln \frac{\lambda^{*}}{\lambda}",
+        left=r"n \ln (L_2/L_1)", right=r"(2 n - 1) \ln (\lambda^{*}/\lambda)",
     )  # fmt: skip
     proof.define(lam_cross, CROSSING, r"where it is 1: $V^{*} \tau/a_0$")
     return proof.done(lam_cross, CROSSING)
@@ -175,8 +186,9 @@ def _logarithm(expr: sp.Expr) -> sp.Expr:
     return sp.expand_log(sp.log(expr.subs(n, 1 + excess)))
 
 
-def _slip() -> Derivation:
-    proof = _theorem("F19-slip", title="Power law: friction over velocity at a load", text=_SLIP,
+def _at_load() -> Derivation:
+    proof = _theorem("F19-at-load", title="Power law: friction coefficient at a load",
+                     text="Under a dead weight, in units of the static state.",
                      uses=("F19-balance",))  # fmt: skip
     friction = sp.Symbol("varphi_n", positive=True)
     load = AT_REST / s ** (n + 1)
@@ -187,22 +199,35 @@ def _slip() -> Derivation:
         friction / w_n,
         r"$\mu = (\delta/a)\, m_n$, in units of $\delta_0/a_0$: $s^{n - 1} m_n$",
     )
+    proof.notation |= {
+        r"\ln (s^{n - 1} m_n)": _logarithm(scaled), r"\ln \varphi_n": sp.log(friction),
+        r"\ln w_n": _logarithm(load), r"\ln w_{n,0}": _logarithm(AT_REST), "n": 1 + excess,
+    }  # fmt: skip
     proof.equal(
         *(
             _logarithm(scaled),
             _logarithm(power * AT_REST ** ((n - 1) / (n + 1))),
             "the friction coefficient at a given load",
         ),
-        left=r"\ln \left(s^{n - 1} m_n\right)",
-        right=r"\ln \varphi_n - \frac{2 n}{n + 1} \ln w_n + \frac{n - 1}{n + 1} \ln \frac{2 n}{n + 1}",
+        left=r"\ln (s^{n - 1} m_n)",
+        right=r"\ln \varphi_n - \frac{2 n}{n + 1} \ln w_n + \frac{n - 1}{n + 1} \ln w_{n,0}",
     )
+    return proof.done(w_n, load)
+
+
+def _slip() -> Derivation:
+    proof = _theorem("F19-slip", title="Power law: friction over velocity at a load", text=_SLIP,
+                     uses=("F19-at-load", "F19-monotonic"))  # fmt: skip
+    proof.notation |= {
+        "w_n": LOAD, "w_n'": n * l * Q, r"\varphi_n": FRICTION_FORCE, r"\varphi_n'": n**2 * SQUARES,
+    }  # fmt: skip
     rates = (n + 1) * n**2 * SQUARES * LOAD - 2 * n * FRICTION_FORCE * n * l * Q
     slip = n**3 * SLIP / (2 * n - 1)
     proof.equal(
         rates,
         slip,
         r"its logarithmic slope times $w_n \varphi_n$, by F19-monotonic",
-        left=r"(n + 1) \frac{d \varphi_n}{d l} w_n - 2 n \varphi_n \frac{d w_n}{d l}",
+        left=r"(n + 1) w_n \varphi_n' - 2 n \varphi_n w_n'",
     )
     proof.define(slip_n, SLIP, "what decides its sign")
     return proof.done(slip_n, SLIP)
@@ -226,6 +251,7 @@ def _maximum() -> Derivation:
     proof.define(z, peeled, r"$z = n l Q$")
     proof.define(T_n, form, "in this variable")
     slip_scaled = SLIP * Q / damped
+    proof.notation |= {"D_n": SLIP, "T_n": sp.Lambda(q, of_q)}
     proof.equal(slip_scaled, T_n, "the same sign as $D_n$", left=r"\frac{Q}{1 + q Q^2} D_n")
     rest = excess**2 + n**2 * q * Q**2 + double * q**n * (1 + z + z**2)
     slope = excess * q ** (n - 2) * (q + rest / (n**2 * damped)) + double / n**2 * (
@@ -234,8 +260,8 @@ def _maximum() -> Derivation:
     proof.equal(sp.diff(of_q, q), slope, "slope", left=r"\frac{d T_n}{d q}")
     proof.holds(slope, ">", 0, r"with $\nu = n - 1$, each term")
     proof.equal(form.subs({q: 0, Q: 0, z: 1}), -excess / n**2, "negative in the fast limit",
-                left="T_n(0)")  # fmt: skip
-    proof.equal(form.subs({q: 1, Q: 1, z: 0}), 2, "positive at rest", left="T_n(1)")
+                )  # fmt: skip
+    proof.equal(form.subs({q: 1, Q: 1, z: 0}), 2, "positive at rest")
     return proof.done(slip_scaled, T_n)
 
 

@@ -67,6 +67,7 @@ def _edge() -> Derivation:
     proof.define(delta, c * a, r"$h(a) = \delta$: the half length at rest")
     proof.define(C, K * l_r / V, "Eqs. (22) and (29)")
     proof.define(l_r, l * a, "the retardation length in half lengths")
+    proof.notation |= {r"\hat p(-y a)": ahead, r"\hat p(y a)": behind}
     proof.equal(
         ahead, 1 - y + l, "at $x = -y a$, largest at the tip: $1 + l$", left=r"\hat p(-y a)"
     )
@@ -110,9 +111,7 @@ def _forces(label: str, title: str, text: str, state: dict[sp.Symbol, sp.Expr], 
         ("m_n", FRICTION_COEFFICIENT, friction / load),
     ):  # fmt: skip
         form = general.subs(n, 1).subs({Q: state[Q]}).subs(q, edge)
-        proof.equal(
-            form, own, "the form of a power law, for $n = 1$", left=rf"{name}\big|_{{n = 1}}"
-        )
+        proof.equal(form, own, f"${name}$ of a power law, for $n = 1$")
     proof.define(eta_n, l * (1 + edge) / phi_n, r"$C V c^2 (x_{\mathrm{TE}} - x_{\mathrm{LE}})/F$")
     general = 2 * (1 + edge * state[Q] ** 2) / (2 * (1 + edge * state[Q] ** 2) + l * state[Q] ** 2)
     proof.equal(eta_n, general, "dissipated inside the contact, as for a power law")
@@ -124,9 +123,10 @@ def _slow() -> Derivation:
     coefficient = (2 * l - l**2 / 2) / (1 + l**2 / 2)
     proof.leading_order(coefficient, 2 * l, l, 0, "the asymptote", eps=l)
     proof.root(2 * l - 1, l, sp.Rational(1, 2), r"it meets the other, $\mu = c$")
+    proof.notation["m_n'"] = sp.diff(coefficient, l)
     slope = 4 * (1 - l) * (2 + l) / (2 + l**2) ** 2
     proof.equal(sp.diff(coefficient, l), slope, r"$\mu$ grows until $l = 1$",
-                left=r"\frac{1}{c} \frac{d \mu}{d l}")  # fmt: skip
+                left="m_n'")  # fmt: skip
     proof.sign(slope, ">", 0, (l, 0, 1), "strictly")
     return proof.done(coefficient, 2 * l)
 
@@ -169,10 +169,11 @@ def _depth(
     if name == s_peeling:
         proof.define(held, 1 + kappa - lam**2 / 2, r"positive, because $\lambda < 1$")
     load = SCALED_LOAD.subs(n, 1).subs(edge)
+    proof.notation["G"] = sp.Lambda(s, load + kappa * (s - 1) - 1)
     proof.equal(load + kappa * (s - 1) - 1, balance, "the balance of forces", left="G")
     switch = 3 * lam**2 / 2 + kappa * lam - (1 + kappa)
     proof.equal(balance.subs(s, lam), switch, r"which is negative if $s > \lambda$",
-                left=r"G\big|_{s = \lambda}")  # fmt: skip
+                left=r"G(\lambda)")  # fmt: skip
     return proof.done(name, root)
 
 

@@ -3,21 +3,24 @@
 import csv
 import json
 import os
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from kvtheory.results import TRANSIENT_UNITS, Simulation, Solution, Transient
+from kvtheory.results import STEADY_UNITS, TRANSIENT_UNITS, Comparison, Transient
 
-Series = Transient | Simulation | Solution
 SERIES_SUFFIXES = (".csv", ".nc")
 """Of files that hold a time series."""
+PICTURES = (".png", ".svg", ".pdf")
+"""Of files that hold a drawing."""
 
 
-def save_transient(result: Series, path: Path) -> None:
-    """Write a time series as ``.csv`` (RFC 4180, empty where a value does not exist) or ``.nc``.
+def save_result(result: Any, path: Path) -> None:
+    """Write a time series or steady sliding as ``.csv`` or ``.nc``, by the suffix of `path`.
+
+    A CSV is one as in RFC 4180, empty where a value does not exist.
 
     Raises
     ------
@@ -26,52 +29,133 @@ def save_transient(result: Series, path: Path) -> None:
     OSError
         If the file cannot be written.
     """
-    check_series_path(path)
-    writers: Mapping[str, Callable[[Series, Path], None]] = {".csv": _csv, ".nc": _netcdf}
-    replace_file(path, lambda part: writers[path.suffix](result, part))
+    check_path(path, SERIES_SUFFIXES)
+    if path.suffix.lower() == ".csv":
+        save_csv(result, path)
+        return
+    data = dataset(result)
+    replace_file(path, lambda part: data.to_netcdf(part, engine="scipy"))
 
 
-def check_series_path(path: Path) -> None:
-    """Raise `ValueError` unless the name ends as that of a time series must."""
-    if path.suffix not in SERIES_SUFFIXES:
-        expected = " or ".join(SERIES_SUFFIXES)
-        raise ValueError(f'-o "{path}": expected a name that ends in {expected}')
+def save_csv(result: Any, path: Path) -> None:
+    """Write one row for each time, or for each state, with units in the header."""
+    units = _units(result)
+    _write_columns(
+        path, {f"{name} [{unit}]": getattr(result, name) for name, unit in units.items()}
+    )
+
+
+def save_compared(comparison: Comparison, path: Path) -> None:
+    """Write data, theory and what is allowed between them, with units in the header."""
+    columns = {"time [s]": comparison.series["time"]}
+    for name in comparison.allowed:
+        for kind in COMPARED:
+            columns[f"{name}, {kind} [{TRANSIENT_UNITS[name]}]"] = _compared(comparison, kind)[name]
+    _write_columns(path, columns)
+
+
+def compared(comparison: Comparison) -> Any:
+    """Return a comparison as an `xarray.Dataset` with units."""
+    data = {
+        f"{name}, {kind}": (
+            ("time",),
+            _compared(comparison, kind)[name],
+            {"units": TRANSIENT_UNITS[name]},
+        )
+        for name in comparison.allowed
+        for kind in COMPARED
+    }
+    attributes = {"verdict": comparison.verdict, "diagnosis": comparison.diagnosis}
+    return _xarray().Dataset(data, {"time": comparison.series["time"]}, attributes)
+
+
+COMPARED = ("data", "theory", "allowed")
+"""What a comparison holds of each curve."""
+
+
+def _compared(comparison: Comparison, kind: str) -> Mapping[str, Any]:
+    held: Mapping[str, Any] = getattr(comparison, {"data": "series"}.get(kind, kind))
+    return held
+
+
+def _write_columns(path: Path, columns: Mapping[str, Any]) -> None:
+    def write(part: Path) -> None:
+        with part.open("w", newline="", encoding="utf-8") as file:
+            writer = csv.writer(file)
+            writer.writerow(columns)
+            for row in zip(*(np.ravel(c).tolist() for c in columns.values()), strict=True):
+                writer.writerow("" if value != value else value for value in row)  # noqa: PLR0124
+
+    replace_file(path, write)
+
+
+def _xarray() -> Any:
+    try:
+        import xarray
+    except ModuleNotFoundError:
+        raise ValueError('this needs xarray: pip install "kvtheory[data]"') from None
+    return xarray
+
+
+def dataset(result: Any) -> Any:
+    """Return a result as an `xarray.Dataset` with units, model, certificate and events."""
+    units = _units(result)
+    over = "time" in units
+    dims = ("time",) if over else tuple(f"dim_{i}" for i in range(np.ndim(result.depth)))
+    columns = {
+        name: (dims, np.asarray(getattr(result, name)), {"units": unit})
+        for name, unit in units.items()
+    }
+    coordinates = {"time": columns.pop("time")} if over else {}
+    attributes = {"model": result.model, "certificate": result.certificate.statement}
+    if isinstance(result, Transient):
+        attributes["events"] = json.dumps([event._asdict() for event in result.events])
+    return _xarray().Dataset(columns, coordinates, attributes)
+
+
+def _units(result: Any) -> Mapping[str, str]:
+    return TRANSIENT_UNITS if hasattr(result, "time") else STEADY_UNITS
+
+
+def check_path(path: Path, suffixes: Sequence[str]) -> None:
+    """Raise unless a file of this name can be written, as far as names and places tell.
+
+    Raises
+    ------
+    ValueError
+        If the name does not end in one of the `suffixes`, in capitals or not.
+    OSError
+        If there is no such directory, or the name is that of a directory.
+
+    Examples
+    --------
+    >>> check_path(Path("a.PDF"), [".png", ".pdf"])
+    >>> check_path(Path("a.txt"), [".png", ".svg", ".pdf"])
+    Traceback (most recent call last):
+    ValueError: "a.txt": expected a name that ends in .png, .svg or .pdf
+    """
+    if path.suffix.lower() not in suffixes:
+        expected = " or ".join(filter(None, (", ".join(suffixes[:-1]), suffixes[-1])))
+        raise ValueError(f'"{path}": expected a name that ends in {expected}')
+    if not path.parent.is_dir():
+        raise OSError(f'"{path}": there is no directory "{path.parent}"')
+    if path.is_dir():
+        raise OSError(f'"{path}" is a directory; expected the name of a file')
 
 
 def replace_file(path: Path, write: Callable[[Path], Any]) -> None:
-    """Write to a temporary name beside `path` and rename, so that no half file is ever seen."""
+    """Write to a temporary name beside `path` and rename, so that no half file is ever seen.
+
+    Raises
+    ------
+    OSError
+        If the file cannot be written; the message names it.
+    """
     part = path.with_name(f".{path.stem}.{os.getpid()}.part{path.suffix}")
     try:
         write(part)
         os.replace(part, path)
+    except OSError as error:
+        raise OSError(f'"{path}" cannot be written: {error.strerror or error}') from error
     finally:
         part.unlink(missing_ok=True)
-
-
-def _csv(result: Series, path: Path) -> None:
-    columns = [np.asarray(getattr(result, name)).tolist() for name in TRANSIENT_UNITS]
-    with path.open("w", newline="", encoding="utf-8") as file:
-        writer = csv.writer(file)
-        writer.writerow(f"{name} [{unit}]" for name, unit in TRANSIENT_UNITS.items())
-        for row in zip(*columns, strict=True):
-            writer.writerow("" if value != value else value for value in row)  # noqa: PLR0124
-
-
-def _netcdf(result: Series, path: Path) -> None:
-    try:
-        import xarray
-    except ModuleNotFoundError:
-        raise ValueError('NetCDF needs xarray: pip install "kvtheory[data]"') from None
-    columns = {
-        name: ("time", np.asarray(getattr(result, name)), {"units": unit})
-        for name, unit in TRANSIENT_UNITS.items()
-    }
-    time = columns.pop("time")
-    attributes = {
-        "model": result.model,
-        "certificate": result.certificate.statement,
-    }
-    if isinstance(result, Transient):
-        attributes["events"] = json.dumps([event._asdict() for event in result.events])
-    data = xarray.Dataset(columns, coords={"time": time}, attrs=attributes)
-    data.to_netcdf(path, engine="scipy")

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 import kvtheory as kv
-from kvtheory.ladder.climbing import ToleranceError
+from kvtheory.results.errors import ToleranceError
 from tests import ladder_scenes as scenes
 
 KINDS = {

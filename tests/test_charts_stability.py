@@ -13,8 +13,8 @@ from kvtheory.cli import main
 from kvtheory.models.elements.model import Model
 from kvtheory.models.elements.schemes import SCHEMES
 from kvtheory.models.elements.stability import contact_lengths, limit_at
-from kvtheory.models.elements.watch import DivergenceError
 from kvtheory.plots.stability import draw_stability
+from kvtheory.results.errors import DivergenceError
 
 EXPLICIT = [name for name, scheme in SCHEMES.items() if scheme.tableau]
 IMPLICIT = [name for name, scheme in SCHEMES.items() if not scheme.tableau]

@@ -8,8 +8,9 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from kvtheory.models.continuum.radau_iia import STAGES, radau
-from kvtheory.models.continuum.solver import TransientError, solve
+from kvtheory.models.continuum.solver import solve
 from kvtheory.models.continuum.surface import volume
+from kvtheory.results.errors import TransientError
 from kvtheory.scene.base_motion import BaseMotion
 
 TABLE1 = 4.0812765306, 0.0030609574

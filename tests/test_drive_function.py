@@ -125,8 +125,8 @@ def test_a_file_cannot_hold_it():
 @pytest.mark.parametrize(
     ("given", "words"),
     [
-        ({}, ["velocity and history", "function"]),
-        ({"velocity": 0.1, "function": math.sin}, ["one of velocity and history"]),
+        ({}, ["velocity, history and waveform", "function"]),
+        ({"velocity": 0.1, "function": math.sin}, ["one of velocity, history"]),
         ({"function": 3.0}, ["drive.function = 3.0", "function V(t)"]),
         ({"velocity": 0.1, "breaks": [0.1]}, ["drive.breaks", "needs a function"]),
         ({"function": math.sin, "breaks": "soon"}, ["drive.breaks", '"soon"']),

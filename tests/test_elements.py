@@ -15,8 +15,8 @@ from kvtheory.models.elements.model import Model
 from kvtheory.models.elements.row import Row
 from kvtheory.models.elements.schemes import SCHEMES, Motion
 from kvtheory.models.elements.stability import contact_lengths, limit_at, stability_limit
-from kvtheory.models.elements.watch import DivergenceError
 from kvtheory.results import TRANSIENT_UNITS
+from kvtheory.results.errors import DivergenceError
 
 IMPLICIT = ("semi-implicit", "exponential", "edge-corrected")
 

@@ -5,9 +5,9 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 
-from kvtheory.models.steady.contact import QuadratureError
 from kvtheory.models.steady.quadrature import at_depth, at_load
 from kvtheory.results import STEADY_UNITS
+from kvtheory.results.errors import QuadratureError
 from kvtheory.scene.indenters import Circle, Parabola, PowerLaw, Profile, Wedge
 from tests import reference
 
@@ -226,7 +226,9 @@ def test_reversed_drive_is_the_mirror_image(V):
         if V == 0.0 and name.endswith("edge"):
             continue
         odd = name in {"leading_edge", "trailing_edge", "friction_force", "friction_coefficient"}
-        assert getattr(mirrored, name) == (-1.0 if odd else 1.0) * getattr(forward, name), name
+        expected = (-1.0 if odd else 1.0) * getattr(forward, name)
+        # At rest both are integrated in the same direction, and sums are rounded in another order.
+        assert getattr(mirrored, name) == pytest.approx(expected, rel=0.0 if V else 1e-14), name
     if V == 0.0:
         assert mirrored.leading_edge == pytest.approx(-forward.trailing_edge, rel=1e-14)
     else:
@@ -277,9 +279,9 @@ def test_kinks(V):
     assert state.peak_pressure == pytest.approx(K * peak, rel=1e-12)
 
 
-@pytest.mark.parametrize(("V", "reason"), [(1e-3, "slope"), (1e-2, "pressure"), (0.2, "slope")])
-def test_kink_that_is_not_declared(V, reason):
-    with pytest.raises(QuadratureError, match=f"the {reason}.* jumps .*`kinks`"):
+@pytest.mark.parametrize("V", [1e-3, 1e-2, 0.2])
+def test_kink_that_is_not_declared(V):
+    with pytest.raises(QuadratureError, match=r"the slope jumps .*`kinks`"):
         at_depth(bent(declared=False), K, TAU, V, DEPTH)
 
 
@@ -316,22 +318,25 @@ FAILURES = {
     "noise": (
         Profile(plain, lambda x: x / 0.01 * (1.0 + 1e-6 * math.sin(1e14 * x))),
         0.1,
-        "quadrature from",
+        "not smooth",
     ),
-    "contacts side by side": (
+    "contacts without an end": (
         Profile(lambda x: 1e-3 * math.sin(x / 1e-3) ** 2, lambda x: math.sin(x / 5e-4)),
         0.1,
-        "more than one contact: the indenter reaches below",
+        "too many places",
     ),
-    "lift-off between waves": (ripple(2e-5, 5e-4), 0.1, "before the trailing edge"),
-    "contact after relaxation": (ripple(2e-5, 1e-3), 0.01, "meets the indenter again"),
+    "flat": (
+        Profile(lambda x: 1e-4 * math.tanh(x * x), lambda x: 2e-4 * x / math.cosh(x * x) ** 2),
+        0.1,
+        "does not rise|failed at",
+    ),
     "reach too short": (
         Profile(plain, lambda x: x / 0.01, reach=1e-3),
         0.1,
-        "edge lies beyond the indenter's reach",
+        "contact lies beyond the indenter's reach",
     ),
     "circle too deep": (Circle(2e-4), 0.1, "beyond the indenter's reach"),
-    "circle almost too deep": (Circle(DEPTH * (1.0 + 1e-6)), 0.1, "quadrature from"),
+    "circle almost too deep": (Circle(DEPTH * (1.0 + 1e-9)), 0.1, "reach"),
 }
 
 
@@ -343,7 +348,7 @@ def test_failure_is_an_error_with_its_reason(name):
 
 
 def test_weight_that_the_reach_cannot_carry():
-    with pytest.raises(QuadratureError, match="static depth lies beyond"):
+    with pytest.raises(QuadratureError, match="beyond the indenter's reach"):
         at_load(Circle(1e-3), K, TAU, 0.1, 1e6)
 
 
@@ -403,3 +408,114 @@ def test_a_profile_has_its_lowest_point_at_the_origin():
     ):
         with pytest.raises(QuadratureError, match="lowest point"):
             at_depth(Profile(height, slope), 1e10, 0.1, 0.01, 3e-4)
+
+
+SHAPES = [
+    Parabola(0.01),
+    Circle(0.01),
+    Wedge(0.1),
+    *(PowerLaw(0.01, n) for n in (1.0, 1.01, 1.25, 2.0, 3.5, 20.0)),
+]
+NAMED = [f"{shape.shape} {getattr(shape, 'exponent', '')}".strip() for shape in SHAPES]
+
+
+@pytest.mark.parametrize("shape", SHAPES, ids=NAMED)
+def test_convex_shapes_are_even(shape):
+    """The half-length of one side stands for both."""
+    for x in (1e-9, 1e-5, 3e-3):
+        assert shape.height(-x) == shape.height(x)
+        assert shape.slope(-x) == -shape.slope(x)
+
+
+@pytest.mark.parametrize("shape", SHAPES, ids=NAMED)
+@pytest.mark.parametrize("side", [-1.0, 1.0])
+def test_the_depth_under_a_load_carries_it(shape, side):
+    """Over twenty decades of l_r, without a spring and with one."""
+    # At rest a circle cannot carry what it carries at the highest velocities.
+    V = side * np.geomspace(1.3e-11, 1e-2 if shape.reach < math.inf else 1e9, 41)[:, None]
+    one = np.ones_like(V)
+    depth = 1e-4 * one
+    carried = at_depth(shape, K * one, TAU * one, V, depth)
+    free = at_load(shape, K * one, TAU * one, V, carried.load, 0.0 * one)
+    error = carried.certificate.relative_error["load"] + free.certificate.relative_error["depth"]
+    assert np.all(np.abs(free.depth / depth - 1.0) <= error)
+    rest = at_load(shape, K * one, TAU * one, 0.0 * V, carried.load, 0.0 * one)
+    spring = carried.load / rest.depth
+    held = at_load(shape, K * one, TAU * one, V, carried.load, spring)
+    assert held.load == pytest.approx(carried.load + spring * (rest.depth - held.depth), rel=1e-12)
+    for state in (carried, free, held):
+        errors = state.certificate.relative_error
+        assert max(np.max(error) for error in errors.values()) < 1e-11
+
+
+@pytest.mark.parametrize("shape", SHAPES, ids=NAMED)
+def test_a_column_of_scenes_is_as_good_as_each_scene(shape):
+    V = np.array([0.0, -0.0, 1e-9, -3e-3, 0.02, 0.1, -7.0, 1e6])[:, None]
+    one = np.ones_like(V)
+    weight = one * np.geomspace(1.0, 1e4, V.size)[:, None]
+    column = at_load(shape, K * one, TAU * one, V, weight, 3e7 * one)
+    for i in range(V.size):
+        single = at_load(shape, K, TAU, V[i, 0].item(), weight[i, 0].item(), 3e7)
+        for name in STEADY_UNITS:
+            value = getattr(single, name)
+            allowed = single.certificate.relative_error[name]
+            assert isinstance(value, float), name
+            assert abs(getattr(column, name)[i, 0] - value) <= allowed * abs(value), name
+
+
+def ratio_of(n, ratio):
+    """Solve (1 - q^n)/(n q^(n-1)) = l_r/a for q, by halves of its logarithm."""
+    low, high = -400 / (n - 1), mpmath.mpf(0)
+    for _ in range(260):
+        t = (low + high) / 2
+        falls = 1 - mpmath.exp(n * t) < n * ratio * mpmath.exp((n - 1) * t)
+        low, high = (low, t) if falls else (t, high)
+    return mpmath.exp(low)
+
+
+POWERS = [1.0, 1.1, 1.5, 2.0, 4.0, 12.0]
+
+
+@pytest.mark.parametrize("n", POWERS)
+def test_power_laws_agree_with_their_closed_form(n):
+    """Fact F19, h = c |x|^n with q = x_TE/a, over ten decades of drive number on either side."""
+    rng = np.random.default_rng(int(100 * n))
+    for _ in range(40):
+        L, depth, l = 10.0 ** rng.uniform((-6, -6, -10), (3, 0, 10))
+        depth *= L
+        with mpmath.workdps(60):
+            m, d, scale = mpmath.mpf(n), mpmath.mpf(float(depth)), mpmath.mpf(float(L))
+            a = (m * d * scale ** (m - 1)) ** (1 / m)
+            l_r = float(l) * float(a)
+            ratio = mpmath.mpf(l_r) / a
+            if n == 1.0:
+                q = max(1 - ratio, mpmath.mpf(0))
+                w = 1 + ratio**2 / 2 if q else mpmath.mpf(1) / 2 + ratio
+                f = 2 * ratio - ratio**2 / 2 if q else mpmath.mpf(1) / 2 + ratio
+            else:
+                q = ratio_of(m, ratio)
+                rest = 1 - q**m
+                w = m / (m + 1) + q - q ** (m + 1) / (m + 1) + rest**2 / (m * q ** (m - 1))
+                f = rest**2 / 2
+                f += m * rest * (1 + q ** (2 * m - 1)) / ((2 * m - 1) * q ** (m - 1))
+            truth = {
+                "half_length": a,
+                "leading_edge": -a,
+                "trailing_edge": a * q,
+                "load": K * d * a * w,
+                "friction_force": K * d * d * f,
+                "friction_coefficient": d * f / (a * w),
+            }
+            state = at_depth(PowerLaw(float(L), n), K, 1.0, l_r, float(depth))
+            for name, value in truth.items():
+                error = abs(getattr(state, name) - value)
+                allowed = state.certificate.relative_error[name]
+                assert error <= allowed * abs(value), (name, l)
+                assert allowed < 1e-12, (name, l)
+
+
+def test_one_scene_of_a_column_that_fails_fails_all():
+    depth = np.array([[1e-4], [2e-2], [1e-4]])
+    one = np.ones_like(depth)
+    with pytest.raises(QuadratureError, match="reach"):
+        at_depth(Circle(0.01), K * one, TAU * one, 0.1 * one, depth)

@@ -123,7 +123,7 @@ def test_python_functions_do_not_go_into_a_file():
         ('mass = "1 kg/mm"', 'mass = "1 kg"', ["support.mass", "another dimension", "kg/m"]),
         ("[support]", "[[support]]", ["[support]", "one table"]),
         ('velocity = "100 mm/s"', 'velocity = "inf m/s"', ["drive.velocity", "finite"]),
-        ('velocity = "100 mm/s"', "", ["drive", "velocity and history"]),
+        ('velocity = "100 mm/s"', "", ["drive", "velocity, history and waveform"]),
         ('velocity = "100 mm/s"', "history = []", ["drive.history", "expected points"]),
         ('velocity = "100 mm/s"', 'history = [["0 s", 3]]', ["drive.history", "without a unit"]),
         (
@@ -164,7 +164,7 @@ def test_all_mistakes_are_reported_together(tmp_path):
     for key in ("indenter.radius", "support.mas:", "foundation.retardation_time"):
         assert any(key in text for text in found)
     assert any("drive.velocity" in text for text in found)
-    assert any('--set "nonsense"' in text for text in found)
+    assert any('`overrides` "nonsense"' in text for text in found)
 
 
 def test_a_wrong_support_does_not_hide_the_other_mistakes(tmp_path):
@@ -248,7 +248,7 @@ def test_python_takes_text_quantities_and_numbers():
     with pytest.raises(kv.SceneError) as caught:
         kv.Foundation(-1.0, "100 mm")
     assert len(caught.value.problems) == 2
-    with pytest.raises(kv.SceneError, match="velocity and history"):
+    with pytest.raises(kv.SceneError, match="velocity, history and waveform"):
         kv.Drive()
     with pytest.raises(kv.SceneError, match="exponent"):
         kv.PowerLaw(length="1 mm", exponent=0.5)

@@ -1,6 +1,7 @@
 """Sweeps in memory and in files: what is swept, what is asked, labels, failures, pictures."""
 
 import csv
+import io
 import json
 import math
 
@@ -8,12 +9,12 @@ import numpy as np
 import pytest
 
 import kvtheory as kv
+from kvtheory.progress import ProgressLine
 from kvtheory.results import STEADY_UNITS
 from kvtheory.scene.quantities import quantities
 from kvtheory.sweeps import engine
 from kvtheory.sweeps.axes import axes_of, narrowed, size, values_at
 from kvtheory.sweeps.netcdf_file import rectangles
-from kvtheory.sweeps.progress import Progress
 
 V, TAU = "drive.velocity", "foundation.retardation_time"
 GRID = {V: "1 mm/s:10 m/s:7:log", TAU: ["10 ms", "1 s"]}
@@ -169,7 +170,7 @@ def test_as_dict_is_json():
 @pytest.mark.parametrize(
     ("over", "words"),
     [
-        ({}, ["empty", "drive.velocity=1 mm/s"]),
+        ({}, ["empty", '{"drive.velocity": "1 mm/s:10 m/s:200:log"}']),
         ({"drive.velocty": [1.0]}, ["drive.velocty", 'did you mean "drive.velocity"']),
         ({V: "1 mm/s:10 m/s"}, [V, "START:STOP:COUNT"]),
         ({V: "1 mm/s:10 m/s:0"}, ["COUNT", "1"]),
@@ -229,7 +230,12 @@ def test_other_shapes_are_swept_by_quadrature_only():
     wedge = kv.Scene(indenter=kv.Wedge(inclination=0.1))
     over = {"indenter.inclination": [0.05, 0.1]}
     result = kv.sweep(wedge, over=over, quantities="friction_coefficient")
-    assert result["friction_coefficient"][1] == kv.steady(wedge).friction_coefficient
+    single = kv.steady(wedge).friction_coefficient
+    assert result["friction_coefficient"][1] == pytest.approx(single, rel=1e-14)
+    many = {"drive.velocity": "1 mm/s:10 m/s:40:log"}
+    blocks = [kv.sweep(wedge, over=many, block=block)["load"] for block in (1, 3, 40)]
+    assert np.array_equal(blocks[0], blocks[1])
+    assert np.array_equal(blocks[0], blocks[2])
     with pytest.raises(ValueError, match="parabola only"):
         kv.sweep(wedge, over=over, quantities="hops")
     with pytest.raises(ValueError, match="parabola only"):
@@ -289,14 +295,41 @@ def test_progress_writes_lines_to_a_log_and_one_line_to_a_terminal():
 
     for terminal in (False, True):
         stream, now = Stream(terminal), [0.0]
-        progress = Progress(stream, clock=lambda now=now: now[0])
+        progress = ProgressLine("sweep", stream, clock=lambda now=now: now[0])
         for second in range(1, 101):
             now[0] = float(second)
-            progress(10 * second, 0, 1, 2000)
-        assert progress.finish() == 1000
-        assert "1,000 of 2,000 points (50 %), 10 a second, 100 s left, 1 failed" in stream.text
-        assert stream.text.count("\n") == (1 if terminal else 11)
-        assert stream.text.count("\r") == (101 if terminal else 0)
+            progress(second / 200, f"{10 * second} of 2000 points")
+        progress.finish()
+        assert "sweep: 50 %, 100 s left, 1000 of 2000 points" in stream.text
+        assert stream.text.count("\n") == (1 if terminal else 10)
+        assert stream.text.count("\r") == (100 if terminal else 0)
+
+
+def test_progress_is_silent_where_nothing_takes_long():
+    stream = io.StringIO()
+    progress = ProgressLine("sweep", stream)
+    kv.sweep(over=GRID, progress=progress)
+    progress.finish()
+    assert stream.getvalue() == ""
+
+
+def test_one_signature_of_progress():
+    """Every public function that takes a while tells the share done, never falling, and words."""
+    calls = {
+        "sweep": lambda told: kv.sweep(over=FAILING, block=2, progress=told),
+        "transient": lambda told: kv.transient(progress=told),
+        "elements": lambda told: kv.elements(per_length="50 /mm", progress=told),
+    }
+    for name, call in calls.items():
+        told = []
+        call(lambda share, words, told=told: told.append((share, words)))
+        shares = [share for share, _ in told]
+        assert shares == sorted(shares), name
+        assert 0.0 <= shares[0] <= shares[-1] <= 1.0, name
+        assert all(isinstance(words, str) for _, words in told), name
+        if name == "sweep":
+            assert told[-1][1].startswith("8 of 8 points, ")
+            assert told[-1][1].endswith(" a second, 3 failed")
 
 
 def test_plot_draws_curves_families_and_maps():

@@ -42,7 +42,7 @@ def test_help_has_an_example():
 def test_the_file_holds_the_sweep_and_the_same_command_has_nothing_left_to_do(place):
     first = run(*OVER, "-o", "map.csv", "--plot", "map.png")
     assert "8 points, 8 of them computed now" in first.stdout
-    assert "8 of 8 points (100 %)" in first.stderr
+    assert first.stderr == ""  # what takes no second needs no progress
     assert (place / "map.png").read_bytes().startswith(b"\x89PNG")
     lines = (place / "map.csv").read_text().splitlines()
     rows = [line for line in lines if not line.startswith("#")]

@@ -11,6 +11,7 @@ import pytest
 
 import kvtheory as kv
 from kvtheory.sweeps.blocks import compute, task
+from tests.sweep_driver import done_of
 
 V, TAU = "drive.velocity", "foundation.retardation_time"
 OVER = {V: "10 mm/s:1 m/s:5:log", TAU: ["50 ms", "0.2 s", "1 s"]}
@@ -94,8 +95,8 @@ def test_processes_of_the_caller(here):
 def test_own_processes_survive_a_worker_that_is_killed(here, tmp_path):
     killed = []
 
-    def kill(done, before, failed, points):
-        if done and not killed:
+    def kill(share, words):
+        if share and not killed:
             killed.append(active_children()[0].pid)
             os.kill(killed[0], signal.SIGKILL)
 
@@ -109,9 +110,9 @@ def test_the_callers_pool_that_breaks_is_told_and_the_file_resumes(here, tmp_pat
     output = tmp_path / "map.nc"
     killed = []
 
-    def kill(done, before, failed, points):
-        if done and not killed:
-            killed.append(done)
+    def kill(share, words):
+        if share and not killed:
+            killed.append(done_of(words))
             for child in active_children():
                 os.kill(child.pid, signal.SIGKILL)
 
@@ -122,7 +123,7 @@ def test_the_callers_pool_that_breaks_is_told_and_the_file_resumes(here, tmp_pat
     ):
         kv.sweep(executor=executor, progress=kill, **arguments)
     before = []
-    result = kv.sweep(progress=lambda done, earlier, *_: before.append(earlier), **arguments)
+    result = kv.sweep(progress=lambda share, words: before.append(done_of(words)), **arguments)
     assert before[0] >= killed[0] > 0
     assert_same(result, here["steady"])
 
@@ -158,8 +159,8 @@ def test_dask_on_a_cluster_of_processes(here, tmp_path):
             assert os.getpid() not in pids
             killed = []
 
-            def kill(done, before, failed, points):
-                if done and not killed:
+            def kill(share, words):
+                if share and not killed:
                     killed.append(pids.pop())
                     os.kill(killed[0], signal.SIGKILL)
 
@@ -181,4 +182,6 @@ def test_a_task_is_small_and_picklable():
     given = task(plan, 500_064, 500_128)
     text = pickle.dumps(given)
     assert len(text) < 5000
-    assert np.array_equal(compute(pickle.loads(text)).numbers, compute(given).numbers)
+    assert np.array_equal(
+        compute(pickle.loads(text)).values["depth"], compute(given).values["depth"]
+    )

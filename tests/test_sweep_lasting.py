@@ -13,7 +13,16 @@ import psutil
 import pytest
 
 import kvtheory as kv
-from tests.sweep_driver import BLOCK, OVER, POINTS, SLOW_POINTS, kept, run, run_slowly
+from tests.sweep_driver import (
+    BLOCK,
+    OVER,
+    POINTS,
+    SLOW_POINTS,
+    done_of,
+    kept,
+    run,
+    run_slowly,
+)
 
 ROOT = Path(__file__).parent.parent
 V = "drive.velocity"
@@ -85,7 +94,7 @@ def test_an_interrupt_leaves_a_file_with_what_there_is_and_the_rest_follows(tmp_
     assert f"# unfinished: {len(rows)} of {POINTS} points" in text
     assert set(rows) < set(whole.decode().splitlines())
     before = []
-    run(output, progress=lambda done, earlier, failed, points: before.append(earlier))
+    run(output, progress=lambda share, words: before.append(done_of(words)))
     assert before[0] == len(rows)
     assert output.read_bytes() == whole
 
@@ -95,8 +104,8 @@ def test_an_interrupted_netcdf_holds_nan_where_nothing_is_yet(tmp_path):
 
     output = tmp_path / "map.nc"
 
-    def interrupt(done, before, failed, points):
-        if done >= 2 * BLOCK:
+    def interrupt(share, words):
+        if done_of(words) >= 2 * BLOCK:
             raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):
@@ -167,8 +176,8 @@ def test_another_version_is_refused(tmp_path, monkeypatch):
 def test_an_unfinished_work_file_of_another_sweep_is_refused(tmp_path):
     output = tmp_path / "map.csv"
 
-    def stop(done, before, failed, points):
-        if done:
+    def stop(share, words):
+        if share:
             raise OSError("enough")
 
     with pytest.raises(OSError, match="enough"):
@@ -215,7 +224,7 @@ def test_the_same_sweep_cannot_run_twice_at_a_time(tmp_path):
     output = tmp_path / "map.csv"
     told = []
 
-    def second(done, before, failed, points):
+    def second(share, words):
         if not told:
             with pytest.raises(OSError, match="in use") as error:
                 run(output)

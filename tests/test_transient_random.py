@@ -16,7 +16,8 @@ import kvtheory as kv
 from kvtheory.models.continuum import solved_scene
 from kvtheory.models.continuum.error_estimate import scaled_quantities
 from kvtheory.models.continuum.run import StepControl
-from kvtheory.models.continuum.solver import TransientError, solve
+from kvtheory.models.continuum.solver import solve
+from kvtheory.results.errors import TransientError
 from kvtheory.scene.base_motion import BaseMotion
 
 SEEDS = range(63)

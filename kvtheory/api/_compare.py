@@ -89,7 +89,7 @@ def compare(
     from kvtheory.checks.comparing import broken_off
     from kvtheory.checks.comparing import compare as hold_against
     from kvtheory.checks.reading import read
-    from kvtheory.models.elements.watch import DivergenceError
+    from kvtheory.results.errors import DivergenceError
 
     try:
         found = _simulated(scene, per_length, scheme) if data is None else data

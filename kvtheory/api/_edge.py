@@ -1,12 +1,14 @@
 """What the public functions share: checks of their arguments, and of the range of floats."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import Any
 
 import numpy as np
 
+from kvtheory.progress import Progress
 from kvtheory.scene.drives import TIME
+from kvtheory.scene.lists import item_values, items
 from kvtheory.scene.model import Scene
 from kvtheory.scene.quantities import SceneError, convert, problem
 
@@ -27,14 +29,20 @@ def times_of(scene: Scene, at: Any, problems: list[str] | None = None) -> Any:
     """
     if at is None:
         return None
-    found, times = [], []
-    for value in [at] if isinstance(at, str) or np.ndim(at) == 0 else at:
+    found: list[str] = []
+    times: list[float] = []
+    given = [at] if isinstance(at, str) or np.ndim(at) == 0 else at
+    for value in (
+        part for one in given for part in (items(one) if isinstance(one, str) else [one])
+    ):
         try:
-            times.append(convert(value, TIME))
-            if times[-1] > scene.run.duration:
+            text = isinstance(value, str)
+            several = item_values(value, TIME).tolist() if text else [convert(value, TIME)]
+            if max(several) > scene.run.duration:
                 raise ValueError(
                     f"is after the end of the run, run.duration = {scene.run.duration} s"
                 )
+            times += several
         except ValueError as error:
             found.append(problem("`at`", value, str(error)))
     if not times and not found:
@@ -44,6 +52,11 @@ def times_of(scene: Scene, at: Any, problems: list[str] | None = None) -> Any:
     elif found:
         raise SceneError(found)
     return times
+
+
+def share_alone(progress: Progress | None) -> Callable[[float], object] | None:
+    """Return what a model calls that tells the share of its work alone."""
+    return progress and (lambda share: progress(share, ""))
 
 
 @contextmanager

@@ -4,23 +4,26 @@ from collections.abc import Callable
 from typing import Any
 
 from kvtheory.api._edge import double_precision, scene_of, times_of
+from kvtheory.progress import Progress
 from kvtheory.results import Simulation
 from kvtheory.scene.model import Scene
 from kvtheory.scene.quantities import Quantity, SceneError, convert, nearest, problem
 
 PER_LENGTH = Quantity("1/m", "elements per length", 0.0, True)
+DENSITY = 200e3
+"""Elements per metre, as in the paper."""
 TIME_STEP = Quantity("s", "time step", 0.0, True)
 
 
 def elements(
     scene: Scene | None = None,
     *,
-    per_length: Any = "200 /mm",
+    per_length: Any = None,
     scheme: str = "edge-corrected",
     at: Any = None,
     time_step: Any = None,
     certify: bool = True,
-    progress: Callable[[int, int], None] | None = None,
+    progress: Progress | None = None,
     warn: Callable[[str], None] | None = None,
 ) -> Simulation:
     """Simulate a scene by point elements that move with the base: any shape, support and drive.
@@ -31,7 +34,7 @@ def elements(
         What is modelled; without it, the paper's Table 1 with a dead weight. At t < 0 the indenter
         rests at its static depth.
     per_length
-        Elements per length, 1/dx, in 1/m or as text with a unit.
+        Elements per length, 1/dx, in 1/m or as text with a unit; without it 200 in a millimetre.
     scheme
         How a step is taken: a name in `kvtheory.models.elements.schemes.SCHEMES`.
     at
@@ -43,7 +46,7 @@ def elements(
     certify
         Whether to estimate the error, by a second run with half as many elements and steps.
     progress
-        Called with the number of steps done and of all steps, while the run goes on.
+        Called as in `transient`, with the steps done as words.
     warn
         Called with `warning`, if there is one, before the run begins.
 
@@ -59,7 +62,7 @@ def elements(
         If a time, the density or the step is wrong; every mistake is listed.
     ValueError
         If the scheme does not exist, or the density or the step does not suit the scene.
-    kvtheory.models.elements.watch.DivergenceError
+    DivergenceError
         If the run becomes unstable; the message says when, why, and which step would do.
 
     Examples
@@ -83,7 +86,8 @@ def elements(
     if scheme not in SCHEMES:
         raise ValueError(f'`scheme` = "{scheme}": {nearest(str(scheme), SCHEMES)}')
     problems: list[str] = []
-    density = _checked("`per_length`", per_length, PER_LENGTH, problems)
+    given = DENSITY if per_length is None else per_length
+    density = _checked("`per_length`", given, PER_LENGTH, problems)
     step = None if time_step is None else _checked("`time_step`", time_step, TIME_STEP, problems)
     times = times_of(scene, at, problems)
     if problems:
@@ -91,8 +95,19 @@ def elements(
     with double_precision():
         return simulate(
             scene, 1.0 / density, SCHEMES[scheme],
-            at=times, time_step=step, certify=certify, progress=progress, warn=warn,
+            at=times, time_step=step, certify=certify, progress=_in_words(progress), warn=warn,
         )  # fmt: skip
+
+
+def _in_words(progress: Progress | None) -> Callable[[int, int], None] | None:
+    """Return what the simulation calls with the steps done and all steps."""
+    if progress is None:
+        return None
+
+    def steps(done: int, total: int) -> None:
+        progress(done / total, f"{done:,} of {total:,} steps")
+
+    return steps
 
 
 def _checked(key: str, value: Any, spec: Quantity, problems: list[str]) -> float:

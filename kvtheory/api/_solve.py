@@ -55,7 +55,7 @@ def solve(
         If a quantity or a time is wrong; every mistake is listed.
     ValueError
         If `rtol` is out of range.
-    kvtheory.ladder.climbing.ToleranceError
+    ToleranceError
         If no model is known to be within the tolerance; the message says how close each came.
 
     Examples
@@ -88,7 +88,7 @@ def solve(
         raise SceneError(problems)
     request = Request(names, rtol, times, over_time)
     if not over_time:
-        scene.drive.points  # noqa: B018  # a drive that is a function has no steady sliding: it raises
+        scene.drive.final_velocity  # noqa: B018  # it raises if the drive has none
         rungs = sliding.rungs(steady)
     else:
         rungs = series.rungs(series.Models(steady, transient, elements))

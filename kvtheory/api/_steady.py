@@ -45,7 +45,7 @@ def steady(
         If a value or a key of `over` is wrong; every mistake is listed.
     ValueError
         If the method does not exist or does not cover the shape of the indenter.
-    kvtheory.models.steady.quadrature.QuadratureError
+    QuadratureError
         If a quadrature or a root finder does not reach its tolerance.
 
     Examples

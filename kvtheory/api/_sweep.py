@@ -1,16 +1,20 @@
 """Many scenes at once: `sweep`."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from concurrent.futures import Executor
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from kvtheory.api._edge import scene_of, times_of
 from kvtheory.api._steady import method_for
 from kvtheory.api._transient import MAXIMUM_RTOL, MINIMUM_RTOL
+from kvtheory.progress import Progress
+from kvtheory.results import Sweep
 from kvtheory.scene.model import Scene
 from kvtheory.scene.requirements import require_parabola
-from kvtheory.sweeps.result import Sweep
+
+if TYPE_CHECKING:
+    from kvtheory.sweeps.plan import Plan
 
 
 def sweep(
@@ -26,7 +30,8 @@ def sweep(
     in_flight: int | None = None,
     block: int | None = None,
     output: str | Path | None = None,
-    progress: Callable[[int, int, int, int], None] | None = None,
+    overwrite: bool = False,
+    progress: Progress | None = None,
 ) -> Sweep:
     """Solve a scene for many values of some of its quantities.
 
@@ -65,9 +70,11 @@ def sweep(
     output
         A file ``.csv`` or ``.nc``. Blocks are kept beside it, in ``FILE.part``, as they come, so that the
         same call resumes a sweep that was killed. An interrupt leaves the file with what there is.
+    overwrite
+        Write over whatever `output` and its unfinished work hold, also over this very sweep, which is
+        then computed anew. Without it, anything else than this sweep is left as it is.
     progress
-        Called with the points done, those done by an earlier run, the points that failed in this
-        run, and all points; `kvtheory.sweeps.progress.Progress` writes them to standard error.
+        Called as in `transient`, with the points done, their rate and the failed ones as words.
 
     Returns
     -------
@@ -79,7 +86,8 @@ def sweep(
     SceneError
         If a key, value, quantity or time is wrong; every mistake is listed.
     ValueError
-        If another argument is wrong, or `output` holds anything else than this sweep.
+        If another argument is wrong, or `output` holds anything else than this sweep, or a sweep that
+        lost rows or was changed since it was written; or if memory or disk cannot hold the answer.
     OSError
         If a file cannot be written; what was kept stays, and the same call resumes.
     RuntimeError
@@ -93,44 +101,43 @@ def sweep(
     >>> result["friction_coefficient"].round(4).tolist()
     [[0.0097, 0.0713], [0.0857, 0.0294], [0.0093, 0.003]]
     """
-    from kvtheory.sweeps import session
-    from kvtheory.sweeps.plan import Plan  # what it needs takes a while to import
+    from kvtheory.sweeps import session  # what it needs takes a while to import
+    from kvtheory.sweeps.size import refuse_what_cannot_fit
 
-    plan = _plan(Plan, scene_of(scene), over, quantities, at, method, rtol)
+    plan = plan_of(scene, over=over, quantities=quantities, at=at, method=method, rtol=rtol)
     for name, number in (("jobs", jobs), ("in_flight", in_flight), ("block", block)):
         if number is not None and (type(number) is not int or number < 1):
             raise ValueError(f"`{name}` = {number!r}: expected a whole number of at least 1")
-    if executor is not None and not callable(getattr(executor, "submit", None)):
+    executes = callable(getattr(executor, "submit", None)) and not isinstance(executor, type)
+    if executor is not None and not executes:
         raise ValueError(f"`executor` = {executor!r}: expected a concurrent.futures.Executor")
+    path = None if output is None else Path(output)
+    refuse_what_cannot_fit(plan, path, jobs)
     walk = session.walker(plan, executor, jobs, in_flight, block, progress)
-    if output is None:
+    if path is None:
         return session.in_memory(plan, walk)
-    return session.into_file(plan, walk, Path(output))
+    return session.into_file(plan, walk, path, overwrite=overwrite)
 
 
-def _plan(
-    make: Callable[..., Any],
-    scene: Scene,
+def plan_of(
+    scene: Scene | None,
+    *,
     over: Mapping[Any, Any],
     quantities: Sequence[str] | str | None,
     at: Any,
     method: str | None,
     rtol: float,
-) -> Any:
-    """Check what is asked as a whole, and return the plan."""
+) -> "Plan":
+    """Check what is asked of `sweep` as a whole, and return the plan."""
     from kvtheory.sweeps.axes import axes_of
     from kvtheory.sweeps.columns import columns_of
+    from kvtheory.sweeps.plan import Plan
 
+    scene = scene_of(scene)
     method = method_for(scene, method)
     times = None if at is None else tuple(times_of(scene, at))
-    plan = make(
-        scene,
-        axes_of(scene, over),
-        columns_of(quantities, series=at is not None),
-        times,
-        method,
-        rtol,
-    )
+    columns = columns_of(quantities, series=at is not None)
+    plan = Plan(scene, axes_of(scene, over), columns, times, method, rtol)
     if plan.transient:
         require_parabola(scene, "the transient")
     if not MINIMUM_RTOL <= rtol <= MAXIMUM_RTOL:

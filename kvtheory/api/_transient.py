@@ -1,9 +1,9 @@
 """The whole transient: `transient`."""
 
-from collections.abc import Callable
 from typing import Any
 
-from kvtheory.api._edge import double_precision, scene_of, times_of
+from kvtheory.api._edge import double_precision, scene_of, share_alone, times_of
+from kvtheory.progress import Progress
 from kvtheory.results import Transient
 from kvtheory.scene.model import Scene
 from kvtheory.scene.requirements import require_parabola
@@ -17,7 +17,7 @@ def transient(
     *,
     at: Any = None,
     rtol: float = 1e-6,
-    progress: Callable[[float], Any] | None = None,
+    progress: Progress | None = None,
 ) -> Transient:
     """Follow the transient of a scene, exactly: no discretized foundation.
 
@@ -28,12 +28,14 @@ def transient(
         a parabola. At t < 0 it rests at its static depth. A drive that is a function of the time is
         replaced by polynomials within its own tolerance, which the certificate does not cover.
     at
-        Times at which the result is wanted, in s or as text with a unit; without it, the steps of
+        Times at which the result is wanted, in s or as text with a unit, such as ``"0 ms, 1 ms"`` or
+        ``"0 ms:200 ms:201"`` (START:STOP:COUNT, both ends included); without it, the steps of
         the solver, subdivided.
     rtol
         Error allowed in a step, relative to the static state, from 1e-12 to 1e-2.
     progress
-        Called now and then with the share of the work done, from 0 to 1.
+        Called now and then with the share of the work done, from 0 to 1, and a text, as every public
+        function calls it: `kvtheory.progress.ProgressLine` shows both on standard error.
 
     Returns
     -------
@@ -73,4 +75,4 @@ def transient(
     from kvtheory.models.continuum import solved_scene
 
     with double_precision():
-        return solved_scene.transient(scene, times_of(scene, at), rtol, progress)
+        return solved_scene.transient(scene, times_of(scene, at), rtol, share_alone(progress))

@@ -27,7 +27,7 @@ def chosen(scene: Scene, standard: Sequence[str], *, quick: bool) -> list[Job]:
     """
     for name in standard:
         if name not in (*STANDARD, ALL):
-            raise ValueError(f'--standard "{name}": {nearest(name, (*STANDARD, ALL))}')
+            raise ValueError(f'`standard` "{name}": {nearest(name, (*STANDARD, ALL))}')
     require_parabola(scene, "the chart of transients")
     if not standard:
         return [*_steady(scene, "this scene"), _transient(Problem("this scene", scene, quick))]

@@ -8,8 +8,8 @@ from kvtheory.api import elements, steady, transient
 from kvtheory.charts.entry import Line, Outcome, Picture
 from kvtheory.charts.naive import closed_forms, stale_elements
 from kvtheory.charts.stability import PAPERS_DENSITY, unwatched
-from kvtheory.models.elements.watch import DivergenceError
 from kvtheory.results import Simulation
+from kvtheory.results.errors import DivergenceError
 from kvtheory.scene.drives import Drive
 from kvtheory.scene.model import Run, Scene
 

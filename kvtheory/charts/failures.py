@@ -34,5 +34,5 @@ def findings(only: Sequence[str] = ()) -> Iterator[Finding]:
     """
     for key in only:
         if key not in ATLAS:
-            raise ValueError(f'--only "{key}": {nearest(key, ATLAS)}')
+            raise ValueError(f'`only` "{key}": {nearest(key, ATLAS)}')
     return (Finding(ATLAS[key], ATLAS[key].measure()) for key in only or ATLAS)

@@ -17,7 +17,7 @@ import numpy as np
 
 from kvtheory.charts.methods import Clock, Method, TimedOutError, transient_methods
 from kvtheory.charts.problems import Problem, Reference, errors, reference
-from kvtheory.models.elements.watch import DivergenceError
+from kvtheory.results.errors import DivergenceError
 
 WRONG = 1e-3
 """Error of a curve at which a run that reported success is wrong, if it is also far beyond its tolerance."""

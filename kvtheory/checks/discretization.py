@@ -43,7 +43,7 @@ def elements(case: Case) -> Iterator[Check]:
     """One element at the leading edge against the load."""
     name, equation = "elements enough", "F15"
     if not case.resolution.spacing_known:
-        yield not_made(name, equation, "the element density is not given (--per-length)")
+        yield not_made(name, equation, "the element density is not given (`per_length`)")
         return
     b = float(np.median(case.allowance.force)) / case.theory.static.load
     yield check(

@@ -172,7 +172,7 @@ def coarse(case: Case, failed: Sequence[Check]) -> Iterator[Explanation]:
                 "too few elements",
                 f"too few elements (F15): the differences are as those of about {1e-3 / spacing:.3g} /mm, "
                 f"where {1e-3 / case.resolution.spacing:.3g} /mm are assumed{shared}; if so few are meant, "
-                "say so with --per-length",
+                "say so with `per_length`",
                 POSSIBLE, True,
             )  # fmt: skip
             return

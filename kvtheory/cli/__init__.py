@@ -1,10 +1,22 @@
 """The commands; each imports what it needs when it runs."""
 
-from kvtheory.cli import chart, compare, derive, elements, scene, solve, steady, sweep, transient
+from kvtheory.cli import (
+    chart,
+    cite,
+    compare,
+    derive,
+    elements,
+    scene,
+    solve,
+    steady,
+    sweep,
+    transient,
+)
 from kvtheory.cli.group import main
 
 __all__ = [
     "chart",
+    "cite",
     "compare",
     "derive",
     "elements",

@@ -8,10 +8,16 @@ import click
 
 from kvtheory.cli.console import Examples, print_json, print_table, progress_bar, split, teaching
 from kvtheory.cli.group import main
-from kvtheory.cli.outputs import PICTURES, check_output
+from kvtheory.cli.outputs import PICTURES, check_output, overwrite_option
 
 THREADS = "OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"
 """Set to one before anything numerical is imported, so that times can be compared."""
+
+
+def check_chart(output: Path) -> None:
+    """Raise unless a picture and the data beside it can be written."""
+    check_output("-o", output, PICTURES)
+    check_output("-o", output.with_suffix(".json"), [".json"])
 
 
 @main.group()
@@ -31,6 +37,7 @@ def chart() -> None:
     help="Write FILE.html, which holds all of it and needs nothing else.",
 )
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON object, in SI units.")
+@overwrite_option
 @teaching
 def failures(only: str | None, output: Path | None, as_json: bool) -> None:
     """Show how methods fail: wrong numbers, computed beside the right ones."""
@@ -42,8 +49,7 @@ def failures(only: str | None, output: Path | None, as_json: bool) -> None:
     with progress_bar("entries") as report:
         for finding in findings(keys):
             found.append(finding)
-            if report:
-                report(len(found) / len(keys))
+            report(len(found) / len(keys), f"{len(found)} of {len(keys)}")
     if output:
         from kvtheory.plots.failures import save_failures
 
@@ -74,13 +80,14 @@ def failures(only: str | None, output: Path | None, as_json: bool) -> None:
     show_default=True, help="Picture; its data go to FILE.json beside it.",
 )  # fmt: skip
 @click.option("--quick", is_flag=True, help="Coarser maps.")
+@overwrite_option
 @teaching
 def stability(output: Path, quick: bool) -> None:
     """Map where each scheme of the elements is stable: predicted over measured."""
     from kvtheory.charts.stability import stability_maps
     from kvtheory.plots.stability import save_stability
 
-    check_output("-o", output, PICTURES)
+    check_chart(output)
     with progress_bar("maps") as report:
         maps = stability_maps(quick=quick, progress=report)
     save_stability(maps, output)
@@ -107,6 +114,7 @@ def stability(output: Path, quick: bool) -> None:
     "-o", "--output", type=click.Path(path_type=Path), default=Path("work_precision.png"),
     show_default=True, help="Picture, or a directory for it; its data go to FILE.json beside it.",
 )  # fmt: skip
+@overwrite_option
 @teaching
 def work_precision(
     scene: str | None, overrides: Sequence[str], standard: str | None, quick: bool, output: Path
@@ -119,7 +127,7 @@ def work_precision(
 
     if output.is_dir():
         output /= "work_precision.png"
-    check_output("-o", output, PICTURES)
+    check_chart(output)
     if standard and (scene or overrides):
         raise ValueError(
             "--standard stands for scenes of its own: give no SCENE and no --set with it"

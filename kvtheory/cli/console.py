@@ -2,19 +2,20 @@
 
 import json
 import math
+import re
 import sys
-import time
+import traceback
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from contextlib import ExitStack, contextmanager
+from contextlib import contextmanager
 from functools import wraps
 from typing import Any
 
 import click
 
-PATIENCE = 1.0
-"""Seconds before a progress bar is shown."""
-BAR_LENGTH = 1000
-"""Parts in which progress is shown."""
+from kvtheory.cli.group import INTERRUPTED, leave_quietly
+
+BAD_INPUT, FAULTY = 2, 70
+"""Exit status for bad input, and for a fault of this program."""
 
 
 class Examples(click.Command):
@@ -31,21 +32,49 @@ class Examples(click.Command):
 
 
 def teaching(command: Callable[..., None]) -> Callable[..., None]:
-    """Turn errors about the input into one message and exit status 2."""
+    """Turn errors about the input into one message and exit status 2, which is never 1."""
 
     @wraps(command)
     def run(*args: Any, **kwargs: Any) -> None:
         try:
             command(*args, **kwargs)
         except BrokenPipeError:
-            raise  # the reader of the output has gone; click ends quietly
-        except (ValueError, ArithmeticError, OSError, RuntimeError) as error:
-            lines = str(error).splitlines()
+            leave_quietly()
+        except KeyboardInterrupt as error:
+            complain(str(error) or "interrupted", INTERRUPTED)
+        except MemoryError as error:
+            complain(f"error: out of memory: {error or 'ask for less at a time'}", BAD_INPUT)
+        except OSError as error:
+            if error.filename is None and error.errno is not None:
+                leave_quietly(f"the output cannot be written: {error.strerror}")
+            named = f'"{error.filename}": {error.strerror}' if error.filename else str(error)
+            complain(f"error: {in_options(named)}", BAD_INPUT)
+        except (ValueError, ArithmeticError, RuntimeError) as error:
+            lines = in_options(str(error)).splitlines() or [type(error).__name__]
             head = "error:" if len(lines) == 1 else f"{len(lines)} mistakes:\n "
-            click.echo(f"kvtheory: {head} " + "\n  ".join(lines), err=True)
-            sys.exit(2)
+            complain(f"{head} " + "\n  ".join(lines), BAD_INPUT)
+        except Exception:
+            complain(f"this is a fault of the program:\n{traceback.format_exc()}", FAULTY)
 
     return run
+
+
+def complain(message: str, status: int) -> None:
+    """Write a message to standard error, and end."""
+    click.echo(f"kvtheory: {message}", err=True)
+    sys.exit(status)
+
+
+def in_options(message: str) -> str:
+    """Name the options of this command where the library names the arguments of a function.
+
+    >>> with click.Context(click.Command("a", params=[click.Option(["--per-length"])])):
+    ...     in_options("`per_length` = 3: expected a quantity in 1/m; see `h`")
+    '--per-length = 3: expected a quantity in 1/m; see `h`'
+    """
+    context = click.get_current_context(silent=True)
+    named = {p.name: p.opts[0] for p in context.command.params} if context else {}
+    return re.sub(r"`(\w+)`", lambda found: named.get(found[1], found[0]), message)
 
 
 def scene_command(
@@ -71,23 +100,15 @@ def scene_command(
 
 
 @contextmanager
-def progress_bar(label: str) -> Iterator[Callable[[float], None] | None]:
-    """Give a function that shows the share done, if a terminal looks on and the work takes a while."""
-    if not sys.stderr.isatty():
-        yield None
-        return
-    begun, bars = time.monotonic(), ExitStack()
-    shown: list[Any] = []
+def progress_bar(label: str) -> Iterator[Callable[..., None]]:
+    """Give a function that shows the share done, and words if it is given any, once work takes a while."""
+    from kvtheory.progress import ProgressLine
 
-    def report(share: float) -> None:
-        if not shown and time.monotonic() - begun > PATIENCE:
-            bar = click.progressbar(length=BAR_LENGTH, label=label, file=sys.stderr)
-            shown.append(bars.enter_context(bar))
-        for bar in shown:
-            bar.update(int(share * BAR_LENGTH) - bar.pos)
-
-    with bars:
-        yield report
+    line = ProgressLine(label)
+    try:
+        yield line
+    finally:
+        line.finish()
 
 
 def split(text: str) -> list[str]:
@@ -117,7 +138,8 @@ def velocity_range(low: float, high: float) -> str:
 
 def print_json(result: Any) -> None:
     """Print the one JSON object of a command."""
-    click.echo(json.dumps(result, indent=2, ensure_ascii=False, allow_nan=False))
+    plain = "utf" not in (getattr(sys.stdout, "encoding", None) or "").lower()
+    click.echo(json.dumps(result, indent=2, ensure_ascii=plain, allow_nan=False))
 
 
 def print_series(result: Any, *, whole: bool) -> None:

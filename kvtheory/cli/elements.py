@@ -5,9 +5,9 @@ from pathlib import Path
 
 import click
 
-from kvtheory.cli.console import print_json, print_series, progress_bar, scene_command, split
+from kvtheory.cli.console import print_json, print_series, progress_bar, scene_command
 from kvtheory.cli.group import main
-from kvtheory.cli.outputs import check_output, series_options
+from kvtheory.cli.outputs import PICTURES, check_output, series_options
 
 
 @scene_command(
@@ -15,7 +15,10 @@ from kvtheory.cli.outputs import check_output, series_options
     'kvtheory elements --at "0 ms,1 ms,10 ms" --scheme paper && kvtheory elements -o run.csv',
 )
 @click.option(
-    "--per-length", default="200 /mm", show_default=True, help="Elements per length, 1/dx."
+    "--per-length",
+    default=None,
+    metavar='"200 /mm"',
+    help="Elements per length, 1/dx; default: 200 /mm.",
 )
 @click.option(
     "--scheme",
@@ -29,30 +32,36 @@ def elements(
     scene: str | None,
     overrides: Sequence[str],
     as_json: bool,
-    per_length: str,
+    per_length: str | None,
     scheme: str,
     time_step: str | None,
     at: str | None,
     output: Path | None,
+    plot: Path | None,
 ) -> None:
     """Simulate SCENE by point elements that move with the base: any shape, support and drive."""
     from kvtheory.api import elements as simulate
-    from kvtheory.export import SERIES_SUFFIXES, save_transient
+    from kvtheory.export import SERIES_SUFFIXES, save_result
     from kvtheory.scene import load_scene
 
     check_output("-o", output, SERIES_SUFFIXES)  # before a run that may be long
-    with progress_bar("steps") as bar:
+    check_output("--plot", plot, PICTURES)
+    with progress_bar("elements") as progress:
         result = simulate(
             load_scene(scene, overrides),
             per_length=per_length,
             scheme=scheme,
             time_step=time_step,
-            at=None if at is None else split(at),
-            progress=bar and (lambda done, total: bar(done / total)),
+            at=at,
+            progress=progress,
             warn=lambda text: click.echo(f"kvtheory: warning: {text}", err=True),
         )
     if output:
-        save_transient(result, output)
+        save_result(result, output)
+    if plot:
+        from kvtheory.plots.result import save_plot
+
+        save_plot(result, plot)
     if as_json:
         print_json(result.as_dict())
         return

@@ -44,7 +44,7 @@ def solve(
     Steady sliding, or with --at or -o the motion from rest over time.
     """
     from kvtheory.api import solve as find
-    from kvtheory.export import SERIES_SUFFIXES, save_transient
+    from kvtheory.export import SERIES_SUFFIXES, save_result
     from kvtheory.scene import load_scene
 
     check_output("-o", output, SERIES_SUFFIXES)
@@ -52,12 +52,12 @@ def solve(
     found = find(
         load_scene(scene, overrides),
         quantity=None if quantity is None else split(quantity),
-        at=None if at is None else split(at),
+        at=at,
         rtol=rtol,
         over_time=output is not None,
     )
     if output:
-        save_transient(found, output)
+        save_result(found, output)
     if as_json:
         print_json(found.as_dict())
         return

@@ -2,12 +2,14 @@
 
 import math
 from collections.abc import Sequence
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
 
 from kvtheory.cli.console import print_json, print_table, scene_command, shown, text, velocity_range
 from kvtheory.cli.group import main
+from kvtheory.cli.outputs import PICTURES, check_output, result_options
 
 if TYPE_CHECKING:
     from kvtheory.scene import Scene
@@ -20,14 +22,27 @@ if TYPE_CHECKING:
     metavar="exact|quadrature|asymptote",
     help="Default: exact for parabola, power law and wedge, quadrature for other shapes.",
 )
-def steady(scene: str | None, overrides: Sequence[str], as_json: bool, method: str | None) -> None:
+@result_options
+def steady(
+    scene: str | None, overrides: Sequence[str], as_json: bool, method: str | None,
+    output: Path | None, plot: Path | None,
+) -> None:  # fmt: skip
     """Print the state of steady sliding: depth, edges, load, friction, peak pressure."""
     from kvtheory.api import steady as solve
+    from kvtheory.export import SERIES_SUFFIXES, save_result
     from kvtheory.results import STEADY_UNITS
     from kvtheory.scene import load_scene
 
+    check_output("-o", output, SERIES_SUFFIXES)
+    check_output("--plot", plot, PICTURES)
     checked = load_scene(scene, overrides)
     state = solve(checked, method=method)
+    if output:
+        save_result(state, output)
+    if plot:
+        from kvtheory.plots.result import save_plot
+
+        save_plot(state, plot)
     if as_json:
         print_json(state.as_dict())
         return

@@ -2,24 +2,28 @@
 
 import sys
 import time
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from contextlib import ExitStack
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
 
-from kvtheory.cli.console import print_json, scene_command, split
+from kvtheory.cli.console import print_json, progress_bar, scene_command, split
 from kvtheory.cli.group import main
+from kvtheory.cli.outputs import (
+    PICTURES,
+    check_not_an_input,
+    check_output,
+    overwrite_option,
+    overwriting,
+)
 
 if TYPE_CHECKING:
-    from kvtheory.scene import Scene
-    from kvtheory.sweeps.progress import Progress
-    from kvtheory.sweeps.result import Sweep
+    from kvtheory.results import Sweep
 
-INTERRUPTED = 130
-"""Exit status after Ctrl-C, as shells have it."""
 SHOWN_FAILURES = 5
+EXAMPLE = '"drive.velocity=1 mm/s:10 m/s:200:log" or "foundation.retardation_time=10 ms,1 s"'
 
 
 @scene_command(
@@ -28,7 +32,7 @@ SHOWN_FAILURES = 5
     '--over "foundation.retardation_time=10 ms,100 ms,1 s" -o map.csv',
 )
 @click.option(
-    "--over", "overs", multiple=True, required=True, metavar="KEY=VALUES",
+    "--over", multiple=True, required=True, metavar="KEY=VALUES",
     help="Sweep a key over START:STOP:COUNT[:log] or V1,V2,...; repeatable, for all combinations. "
     "KEY=VALUES & KEY=VALUES in one option vary together.",
 )  # fmt: skip
@@ -42,7 +46,10 @@ SHOWN_FAILURES = 5
     ".end, .time_of_max), peak_to_steady_friction, settling_time, hops, events.",
 )  # fmt: skip
 @click.option(
-    "--at", default=None, metavar='"0 ms,1 ms,..."', help="Times of series of a transient."
+    "--at",
+    default=None,
+    metavar='"0 ms,1 ms,..."',
+    help="Times of series of a transient, or START:STOP:COUNT.",
 )
 @click.option(
     "--rtol", type=float, default=1e-6, show_default=True, help="Error allowed in a step."
@@ -50,10 +57,11 @@ SHOWN_FAILURES = 5
 @click.option("--method", default=None, metavar="exact|quadrature|asymptote", help="As in steady.")
 @click.option("--jobs", type=click.IntRange(1), default=None, help="Workers; default: 1.")
 @click.option(
-    "--executor", "factory", default=None, metavar="MODULE:FACTORY",
+    "--executor", default=None, metavar="MODULE:FACTORY",
     help="Gives a concurrent.futures.Executor; called with the number of jobs, if that is given.",
 )  # fmt: skip
 @click.option("--block", type=click.IntRange(1), default=None, help="Scenes in a block.")
+@overwrite_option
 @click.option(
     "--plot", type=click.Path(path_type=Path), default=None,
     help="Draw the first quantity to FILE.png, .svg or .pdf.",
@@ -62,63 +70,91 @@ def sweep(
     scene: str | None,
     overrides: Sequence[str],
     as_json: bool,
-    overs: Sequence[str],
+    over: Sequence[str],
     output: Path,
     quantities: Sequence[str],
     at: str | None,
     rtol: float,
     method: str | None,
     jobs: int | None,
-    factory: str | None,
+    executor: str | None,
     block: int | None,
     plot: Path | None,
 ) -> None:
     """Solve SCENE for many values of its quantities, into a file that survives and resumes."""
-    from kvtheory.scene import load_scene
-    from kvtheory.sweeps.axes import read_over
-    from kvtheory.sweeps.progress import Progress
-
-    checked, over = load_scene(scene, overrides), read_over(overs)
-    if plot:
-        from kvtheory.plots.sweep import check_picture, save_sweep_plot
-
-        check_picture(plot)
-    progress, began = Progress(), time.perf_counter()
-    with ExitStack() as stack:
-        result = _run(
-            checked, over=over, quantities=[n for text in quantities for n in split(text)] or None,
-            at=None if at is None else split(at), method=method, rtol=rtol, jobs=jobs or 1, block=block,
-            executor=stack.enter_context(_executor(factory, jobs)) if factory else None,
-            output=output, progress=progress,
-        )  # fmt: skip
-    seconds = time.perf_counter() - began
-    computed = progress.finish()
-    if plot:
-        save_sweep_plot(result, plot)
-    _tell(result, computed, seconds, as_json)
-
-
-def _run(scene: "Scene", *, output: Path, progress: "Progress", **asked: Any) -> "Sweep":
-    """Run the sweep; an interrupt ends the command, and says that the file can be gone on with."""
     from kvtheory.api import sweep as run
+    from kvtheory.api._sweep import plan_of
+    from kvtheory.scene import load_scene
+    from kvtheory.sweeps.size import announcement
 
-    try:
-        return run(scene, output=output, progress=progress, **asked)
-    except KeyboardInterrupt:
-        progress.finish()
-        told = f'interrupted; "{output}" has what was done, and the same command goes on'
-        click.echo(f"kvtheory: {told}", err=True)
-        sys.exit(INTERRUPTED)
+    check_not_an_input("-o", output)
+    check_output("--plot", plot, PICTURES)
+    what: dict[str, Any] = {
+        "scene": load_scene(scene, overrides), "over": read_over(over), "at": at,
+        "quantities": [n for t in quantities for n in split(t)] or None,
+        "method": method, "rtol": rtol,
+    }  # fmt: skip
+    plan = plan_of(**what)
+    if plot:
+        from kvtheory.plots.sweep import check_drawable
+
+        check_drawable(plan)
+    if large := announcement(plan, output, jobs or 1):
+        click.echo(f"kvtheory: {large}", err=True)
+    began = time.perf_counter()
+    with ExitStack() as stack:
+        progress = stack.enter_context(progress_bar("sweep"))
+        try:
+            result = run(
+                **what, jobs=jobs or 1, block=block, output=output, overwrite=overwriting(),
+                executor=stack.enter_context(_executor(executor, jobs)) if executor else None,
+                progress=progress,
+            )  # fmt: skip
+        except KeyboardInterrupt:
+            told = f'interrupted; "{output}" has what was done, and the same command goes on'
+            raise KeyboardInterrupt(told) from None
+    seconds = time.perf_counter() - began
+    if plot:
+        from kvtheory.plots import save_sweep_plot
+
+        save_sweep_plot(result, plot)
+    _tell(result, seconds, as_json)
+
+
+def read_over(texts: Iterable[str]) -> dict[Any, Any]:
+    """Turn ``KEY=VALUES`` texts into `over`; ``KEY=VALUES & KEY=VALUES`` in one text are zipped.
+
+    >>> read_over(["drive.velocity=1 mm/s,2 mm/s & support.mass=1 kg/m:2 kg/m:2"])
+    {('drive.velocity', 'support.mass'): ('1 mm/s,2 mm/s', '1 kg/m:2 kg/m:2')}
+    """
+    from kvtheory.scene import SceneError
+
+    over: dict[Any, Any] = {}
+    problems = []
+    for text in texts:
+        pairs = [part.partition("=") for part in text.split("&")]
+        if not all(key.strip() and sign and value.strip() for key, sign, value in pairs):
+            problems.append(f'--over "{text}": expected KEY=VALUES, such as {EXAMPLE}')
+            continue
+        keys = tuple(key.strip() for key, _, _ in pairs)
+        values = tuple(value.strip() for _, _, value in pairs)
+        if keys in over or keys[0] in over:
+            problems.append(f'--over "{text}": {keys[0]} is swept already')
+            continue
+        over |= {keys: values} if len(keys) > 1 else {keys[0]: values[0]}
+    if problems:
+        raise SceneError(problems)
+    return over
 
 
 def _executor(factory: str, jobs: int | None) -> Any:
-    from kvtheory.sweeps.workers import from_factory
+    from kvtheory.cli.executors import from_factory
 
     sys.path.insert(0, "")  # a module in the working directory, as `python -m` finds it
     return from_factory(factory, jobs)
 
 
-def _tell(result: "Sweep", computed: int, seconds: float, as_json: bool) -> None:
+def _tell(result: "Sweep", seconds: float, as_json: bool) -> None:
     """Print the summary."""
     from kvtheory.results import record
 
@@ -127,7 +163,7 @@ def _tell(result: "Sweep", computed: int, seconds: float, as_json: bool) -> None
             {
                 "file": str(result.path),
                 "points": result.points,
-                "computed": computed,
+                "computed": result.computed,
                 "failed": result.failed,
                 "failures": record(result.failures),
                 "seconds": seconds,
@@ -135,7 +171,7 @@ def _tell(result: "Sweep", computed: int, seconds: float, as_json: bool) -> None
         )
         return
     click.echo(
-        f"{result.path}: {result.points:,} points, {computed:,} of them computed now in "
+        f"{result.path}: {result.points:,} points, {result.computed:,} of them computed now in "
         f"{seconds:.3g} s, {result.failed:,} failed."
     )
     for failure in result.failures[:SHOWN_FAILURES]:

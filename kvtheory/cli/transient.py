@@ -5,7 +5,7 @@ from pathlib import Path
 
 import click
 
-from kvtheory.cli.console import print_json, print_series, progress_bar, scene_command, split, text
+from kvtheory.cli.console import print_json, print_series, progress_bar, scene_command, text
 from kvtheory.cli.group import main
 from kvtheory.cli.outputs import PICTURES, check_output, series_options
 
@@ -18,12 +18,6 @@ from kvtheory.cli.outputs import PICTURES, check_output, series_options
     "--rtol", type=float, default=1e-6, show_default=True, help="Error allowed in a step."
 )
 @series_options
-@click.option(
-    "--plot",
-    type=click.Path(path_type=Path),
-    default=None,
-    help="Draw the series to FILE.png, .svg or .pdf.",
-)
 def transient(
     scene: str | None,
     overrides: Sequence[str],
@@ -35,20 +29,19 @@ def transient(
 ) -> None:
     """Follow the transient of SCENE: depth, forces, edges and events over time."""
     from kvtheory.api import transient as follow
-    from kvtheory.export import SERIES_SUFFIXES, save_transient
+    from kvtheory.export import SERIES_SUFFIXES, save_result
     from kvtheory.scene import load_scene
 
     check_output("-o", output, SERIES_SUFFIXES)  # before a run that may be long
     check_output("--plot", plot, PICTURES)
-    times = None if at is None else split(at)
     with progress_bar("transient") as progress:
-        result = follow(load_scene(scene, overrides), at=times, rtol=rtol, progress=progress)
+        result = follow(load_scene(scene, overrides), at=at, rtol=rtol, progress=progress)
     if output:
-        save_transient(result, output)
+        save_result(result, output)
     if plot:
-        from kvtheory.plots import save_transient_plot
+        from kvtheory.plots.result import save_plot
 
-        save_transient_plot(result, plot)
+        save_plot(result, plot)
     if as_json:
         print_json(result.as_dict())
         return

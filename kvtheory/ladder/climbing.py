@@ -8,11 +8,8 @@ from typing import Any, NamedTuple
 
 from kvtheory.results import Certificate, ClimbStep, Solution
 from kvtheory.results.certificate import Value
+from kvtheory.results.errors import ToleranceError
 from kvtheory.scene.model import Scene
-
-
-class ToleranceError(ArithmeticError):
-    """No model is known to be within the tolerance; the message says how far each came."""
 
 
 @dataclass(frozen=True)

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -12,6 +12,7 @@ from kvtheory.ladder.climbing import Answer, Judgement, Request, Rung
 from kvtheory.models.slow_manifold import motion as slow_motion
 from kvtheory.models.slow_manifold import start as slow_start
 from kvtheory.results import TRANSIENT_UNITS, Certificate, Simulation, SteadyState, Transient
+from kvtheory.results.certificate import AT_REST
 from kvtheory.results.table import scales
 from kvtheory.scene.model import Scene
 from kvtheory.scene.requirements import lacks_parabola
@@ -44,8 +45,6 @@ MOST_UPDATES = 5e7
 
 BEST_OF_ELEMENTS = 1e-6
 """With the most work, they come to about this in a start from rest: nothing is run where less is asked."""
-
-RELATIVE_TO = "; relative to the static depth, half length and load"
 
 
 @dataclass(frozen=True)
@@ -113,8 +112,8 @@ def _at_once(state: SteadyState, scene: Scene, request: Request) -> Answer:
     measures = scales(StaticState.of(scene))
     rounding = max(state.certificate.relative_error.values())
     errors = {name: rounding * abs(constant[name]) / measures[name] for name in SOLVED}
-    statement = state.certificate.statement + RELATIVE_TO
-    certificate = Certificate(state.certificate.kind, statement, errors)
+    own = state.certificate
+    certificate = Certificate(own.kind, own.statement, errors, AT_REST)
     return _asked({"time": times, **values}, certificate, request, state)
 
 
@@ -156,10 +155,12 @@ def _follow(scene: Scene, request: Request, given: slow_start.Start) -> Answer:
     errors = {name: float(np.max(found.errors[name])) for name in SOLVED}
     statement = (
         f"{slow_motion.SAFETY:g} times what the slow manifold neglects to first order in the inertia "
-        f"number" + RELATIVE_TO
+        "number"
     )
     known = {"time": times, "velocity": np.full(times.size, velocity)}
-    return _asked({**known, **values}, Certificate("estimated", statement, errors), request)
+    return _asked(
+        {**known, **values}, Certificate("estimated", statement, errors, AT_REST), request
+    )
 
 
 def _continuum(transient: Callable[..., Transient], scene: Scene, request: Request) -> Answer:
@@ -207,7 +208,7 @@ def _compared(answer: Answer, before: Answer, finer: float, scales: dict[str, fl
     statement = (
         own.statement + "; or what the elements before, fewer, differed by, over their ratio"
     )
-    return answer._replace(certificate=Certificate(own.kind, statement, errors))
+    return answer._replace(certificate=Certificate(own.kind, statement, errors, AT_REST))
 
 
 def _asked(series: Any, certificate: Certificate, request: Request, result: Any = None) -> Answer:
@@ -221,7 +222,7 @@ def _asked(series: Any, certificate: Certificate, request: Request, result: Any 
         for name in TRANSIENT_UNITS
         if name in wanted
     }
-    return Answer(values, Certificate(certificate.kind, certificate.statement, errors), result)
+    return Answer(values, replace(certificate, relative_error=errors), result)
 
 
 def _times(scene: Scene, request: Request) -> Array:

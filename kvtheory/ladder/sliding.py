@@ -1,6 +1,7 @@
 """The rungs of steady sliding: asymptote, exact, quadrature."""
 
 from collections.abc import Callable
+from dataclasses import replace
 from typing import Any
 
 from kvtheory.ladder.climbing import Answer, Judgement, Request, Rung
@@ -63,4 +64,4 @@ def _picked(state: SteadyState, request: Request) -> Answer:
     own = state.certificate
     errors = {name: own.relative_error[name] for name in request.quantities}
     values = {name: getattr(state, name) for name in request.quantities}
-    return Answer(values, Certificate(own.kind, own.statement, errors), state)
+    return Answer(values, replace(own, relative_error=errors), state)

@@ -92,7 +92,9 @@ def draw_comparison(comparison: Comparison, *, checks: bool = True) -> Any:
     axes = parts[0].subplots(rows, 2, sharex=True, squeeze=False)
     plot_comparison(axes, comparison)
     parts[0].suptitle(
-        f"{Path(comparison.source).name}: {comparison.verdict} with theory", fontsize=10
+        f"{Path(comparison.source).name}: {comparison.verdict} with theory",
+        fontsize=10,
+        parse_math=False,
     )
     axes[0][0].set_title("data over theory", fontsize=9)
     axes[0][1].set_title("data less theory", fontsize=9)
@@ -140,6 +142,8 @@ def save_comparison_plot(comparison: Comparison, path: Path) -> None:
     Raises
     ------
     ValueError
-        If matplotlib does not know the suffix.
+        If the name does not end in .png, .svg or .pdf.
+    OSError
+        If the file cannot be written.
     """
     save_picture(lambda: draw_comparison(comparison), path)

@@ -6,18 +6,8 @@ from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
-from kvtheory.export import replace_file
+from kvtheory.export import PICTURES, check_path, replace_file
 from kvtheory.plots.style import STYLE
-
-
-def check_picture(path: Path) -> None:
-    """Raise `ValueError` unless matplotlib can write a picture with this suffix, `OSError` if not there."""
-    from matplotlib.backend_bases import FigureCanvasBase
-
-    if path.suffix[1:] not in FigureCanvasBase.get_supported_filetypes():
-        raise ValueError(f'"{path}": expected a name that ends in .png, .svg or .pdf')
-    if not path.parent.is_dir():
-        raise OSError(f'"{path}": there is no directory "{path.parent}"')
 
 
 def save_picture(draw: Callable[[], Any], path: Path) -> None:
@@ -26,11 +16,11 @@ def save_picture(draw: Callable[[], Any], path: Path) -> None:
     Raises
     ------
     ValueError, OSError
-        If matplotlib does not know the suffix, or there is no such directory.
+        If the name does not end in .png, .svg or .pdf, or the file cannot be written.
     """
     import matplotlib as mpl
 
-    check_picture(path)
+    check_path(path, PICTURES)
     with mpl.rc_context({**STYLE}):
         replace_file(path, draw().savefig)
 

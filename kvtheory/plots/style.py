@@ -1,6 +1,9 @@
 """Colours, sizes and axis labels of every picture."""
 
+import re
 from typing import Any
+
+from kvtheory.results import QUANTITIES, SHOWN_UNITS
 
 BLACK, BLUE, RED, GREEN, PURPLE = "#000000", "#0072b2", "#d55e00", "#009e73", "#aa4499"
 """Colours that stay apart in colour blindness (after Okabe and Ito); lines differ in dashes too."""
@@ -26,11 +29,20 @@ STYLE: Any = {
 }
 """For `matplotlib.rc_context`."""
 
+
+def with_unit(words: str, unit: str) -> tuple[str, float]:
+    """Return an axis label with the unit that people read, and the factor to it from the SI unit.
+
+    >>> with_unit("stiffness $K$", "N/m^3")
+    ('stiffness $K$ [N/mm$^3$]', 1e-09)
+    """
+    shown, factor = SHOWN_UNITS.get(unit, ("", 1.0))
+    powers = re.sub(r"\^([0-9])", r"$^\1$", shown)
+    return words + (f" [{powers}]" if shown else ""), factor
+
+
 LABELS = {
-    "velocity": (r"drive velocity $V$ [mm/s]", 1e3),
-    "depth": (r"depth $\delta$ [mm]", 1e3),
-    "load": (r"load $W$ [N/mm]", 1e-3),
-    "friction_force": (r"friction force $F$ [N/mm]", 1e-3),
-    "friction_coefficient": (r"friction coefficient $\mu$", 1.0),
+    row.name: with_unit(f"{row.words} ${row.symbol}$" if row.symbol else row.words, row.unit)
+    for row in QUANTITIES.values()
 }
-"""Axis label of a quantity, in the paper's units, and the factor from SI."""
+"""Axis label of each quantity of a result, in the paper's units, and the factor from SI."""

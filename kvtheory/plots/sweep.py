@@ -7,9 +7,11 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from kvtheory.plots.style import LABELS, STYLE
+from kvtheory.plots.files import save_picture
+from kvtheory.plots.style import LABELS, with_unit
+from kvtheory.results import Sweep
 from kvtheory.scene.quantities import nearest
-from kvtheory.sweeps.result import Sweep
+from kvtheory.sweeps.plan import Plan
 
 Array = NDArray[np.float64]
 
@@ -17,19 +19,6 @@ MOST_CURVES = 8
 """Values of the second dimension up to which curves are drawn; beyond, a map is easier to read."""
 DECADES = 1.5
 """Range of positive values, in powers of ten, from which an axis or a colour is logarithmic."""
-
-SHOWN = {
-    "m": ("mm", 1e3),
-    "s": ("ms", 1e3),
-    "m/s": ("mm/s", 1e3),
-    "N/m": ("N/mm", 1e-3),
-    "Pa": ("MPa", 1e-6),
-    "kg/m": ("kg/mm", 1e-3),
-    "N/m^3": ("N/mm$^3$", 1e-9),
-    "N/m^2": ("MN/m$^2$", 1e-6),
-    "m/s^2": ("m/s$^2$", 1.0),
-}
-"""Units of the axes, as in the paper, and the factors from SI."""
 
 
 class Side(NamedTuple):
@@ -61,16 +50,9 @@ def plot_sweep(ax: Any, result: Sweep, quantity: str | None = None, **style: Any
     curves; else a map. Dimensions of a single value are left out. `Sweep.plot` documents the errors.
     """
     numeric = [name for name, unit in result.units.items() if unit and name in result.values]
-    name = quantity or (FIRST if FIRST in numeric else next(iter(numeric), ""))
-    if name not in numeric:
-        raise ValueError(f'`quantity` = "{name}": {nearest(name, numeric)}')
+    name = _chosen(numeric, quantity)
     sides, values = _drawn(result, name)
-    if len(sides) > 2:
-        told = ", ".join(side.label for side in sides)
-        raise ValueError(
-            f"a picture has two dimensions, this sweep has {len(sides)} ({told}): "
-            "choose a part with to_xarray().sel(...)"
-        )
+    _refuse_more_than_two([side.label for side in sides])
     if ax is None:
         from matplotlib.figure import Figure
 
@@ -83,25 +65,34 @@ def plot_sweep(ax: Any, result: Sweep, quantity: str | None = None, **style: Any
     return ax
 
 
-def check_picture(path: Path) -> None:
-    """Raise `ValueError` unless matplotlib can write a picture with this suffix, `OSError` if not there."""
-    from matplotlib.backend_bases import FigureCanvasBase
+def check_drawable(plan: Plan) -> None:
+    """Raise `ValueError` unless `plot_sweep` can draw what a sweep will give."""
+    _chosen([column.name for column in plan.numeric])
+    drawn = [axis.name for axis in plan.axes if axis.size > 1]
+    _refuse_more_than_two([*drawn, *(["time"] * (plan.series and len(plan.times or ()) > 1))])
 
-    if path.suffix[1:] not in FigureCanvasBase.get_supported_filetypes():
-        raise ValueError(f'--plot "{path}": expected a name that ends in .png, .svg or .pdf')
-    if not path.parent.is_dir():
-        raise OSError(f'--plot "{path}": there is no directory "{path.parent}"')
+
+def _chosen(numeric: Sequence[str], quantity: str | None = None) -> str:
+    """Return the quantity to draw: the one that is named, or else the first that suits."""
+    name = quantity or (FIRST if FIRST in numeric else next(iter(numeric), ""))
+    if not numeric:
+        raise ValueError("no quantity of this sweep is a number, so that nothing can be drawn")
+    if name not in numeric:
+        raise ValueError(f'`quantity` = "{name}": {nearest(name, numeric)}')
+    return name
+
+
+def _refuse_more_than_two(dimensions: Sequence[str]) -> None:
+    if len(dimensions) > 2:
+        raise ValueError(
+            f"a picture has two dimensions, this sweep has {len(dimensions)} "
+            f"({', '.join(dimensions)}): choose a part with to_xarray().sel(...)"
+        )
 
 
 def save_sweep_plot(result: Sweep, path: Path) -> None:
     """Draw the first quantity of a sweep and write it as the suffix of `path` says."""
-    import matplotlib as mpl
-
-    from kvtheory.export import replace_file
-
-    check_picture(path)
-    with mpl.rc_context({**STYLE}):
-        replace_file(path, plot_sweep(None, result).figure.savefig)
+    save_picture(lambda: plot_sweep(None, result).figure, path)
 
 
 def _drawn(result: Sweep, name: str) -> tuple[list[Side], Array]:
@@ -126,9 +117,7 @@ def _side(name: str, unit: str, values: Array) -> Side:
     if base in LABELS:
         label, factor = LABELS[base]
     else:
-        shown, factor = SHOWN.get(unit, ("", 1.0))
-        words = WORDS.get(name, name.replace(".", ": ").replace("_", " "))
-        label = words + (f" [{shown}]" if shown else "")
+        label, factor = with_unit(WORDS.get(name, name.replace(".", ": ").replace("_", " ")), unit)
     return Side(label, np.asarray(values, dtype=float) * factor)
 
 

@@ -1,15 +1,15 @@
 """Transients, as in Figs. 3 and 4 of the paper."""
 
+import math
 from collections.abc import Sequence
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from kvtheory.plots.files import save_picture
 from kvtheory.plots.style import BLUE
 from kvtheory.results import Transient
+from kvtheory.results.transient import TimeSeries
 
 TRANSIENT_ROWS = (
     ("velocity", r"$V$ [mm/s]", 1e3),
@@ -20,7 +20,7 @@ TRANSIENT_ROWS = (
 """The rows of Fig. 3 of the paper: quantity, axis label, factor from SI."""
 
 
-def plot_transient(axes: Sequence[Any], result: Transient, **style: Any) -> list[Any]:
+def plot_transient(axes: Sequence[Any], result: TimeSeries, **style: Any) -> list[Any]:
     """Draw velocity, position, normal and friction force over time on four axes, as in Fig. 3.
 
     The rest before t = 0 is drawn too, for a twentieth of the time shown: V and F_x are zero there.
@@ -28,7 +28,7 @@ def plot_transient(axes: Sequence[Any], result: Transient, **style: Any) -> list
     time = np.asarray(result.time) * 1e3
     before = np.array([-0.05 * time[-1], 0.0])
     rest = {"velocity": 0.0, "friction_force": 0.0, "depth": result.depth[0]}
-    rest["normal_force"] = result.solution.units.load
+    rest["normal_force"] = result.solution.units.load if isinstance(result, Transient) else math.nan
     artists = []
     for ax, (name, label, factor) in zip(axes, TRANSIENT_ROWS, strict=True):
         values = np.concatenate([[rest[name]] * 2, getattr(result, name)]) * factor
@@ -53,21 +53,3 @@ def plot_pressure(ax: Any, result: Transient, positions: ArrayLike, times: Array
         ax.plot(edges, np.asarray(result.time) * 1e3, color=BLUE, linestyle=dashes, label=name)
     ax.set(xlabel=r"position $x$ [mm]", ylabel=r"time $t$ [ms]")
     return image
-
-
-def save_transient_plot(result: Transient, path: Path) -> None:
-    """Draw a transient as in Fig. 3 and write it as the suffix of `path` says.
-
-    Raises
-    ------
-    ValueError
-        If matplotlib does not know the suffix.
-    """
-    from matplotlib.figure import Figure
-
-    def draw() -> Figure:
-        figure = Figure(figsize=(5.0, 6.4), layout="constrained")
-        plot_transient(figure.subplots(4, 1, sharex=True), result, color=BLUE)
-        return figure
-
-    save_picture(draw, path)

@@ -2,9 +2,16 @@
 
 from kvtheory.results.certificate import Certificate, record
 from kvtheory.results.comparison import Check, Comparison, Explanation
+from kvtheory.results.errors import (
+    DivergenceError,
+    QuadratureError,
+    ToleranceError,
+    TransientError,
+)
 from kvtheory.results.simulation import Simulation
 from kvtheory.results.solution import ClimbStep, Solution
 from kvtheory.results.steady import AsymptoteLine, AsymptoteReport, SteadyState
+from kvtheory.results.sweep import Axis, Failure, Sweep
 from kvtheory.results.table import QUANTITIES, SHOWN_UNITS, STEADY_UNITS, TRANSIENT_UNITS
 from kvtheory.results.transient import Event, Transient
 
@@ -15,15 +22,22 @@ __all__ = [
     "TRANSIENT_UNITS",
     "AsymptoteLine",
     "AsymptoteReport",
+    "Axis",
     "Certificate",
     "Check",
     "ClimbStep",
     "Comparison",
+    "DivergenceError",
     "Event",
     "Explanation",
+    "Failure",
+    "QuadratureError",
     "Simulation",
     "Solution",
     "SteadyState",
+    "Sweep",
+    "ToleranceError",
     "Transient",
+    "TransientError",
     "record",
 ]

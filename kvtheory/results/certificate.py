@@ -11,18 +11,26 @@ Value = Any
 """A float, or an array of floats where the input held arrays."""
 
 
+THE_TRUTH = "the true value"
+AT_REST = "the static depth, half length and load"
+"""What errors are relative to."""
+
+
 @dataclass(frozen=True)
 class Certificate:
     """How wrong a result may be, and what stands behind that.
 
     `kind` is ``"proved"`` (a bound derived in `derivations`) or ``"estimated"`` (measured by the
     tests, or by the method itself); `statement` says it in words; `relative_error` maps the name of
-    a quantity to a bound of |computed - true| / |true|.
+    a quantity to a bound of |computed - true| over what `relative_to` names: `THE_TRUTH` itself in
+    steady sliding, and in a time series, which may pass through zero, `AT_REST`: the state before the
+    motion, by whose products `kvtheory.results.table.scales` measures each quantity.
     """
 
     kind: str
     statement: str
     relative_error: Mapping[str, Value]
+    relative_to: str = THE_TRUTH
 
 
 def record(result: Any) -> Any:

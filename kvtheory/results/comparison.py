@@ -1,8 +1,11 @@
 """A time series held against theory."""
 
 from dataclasses import dataclass, field, fields
+from html import escape
+from pathlib import Path
 from typing import Any
 
+from kvtheory.results.above import above
 from kvtheory.results.certificate import record
 
 
@@ -42,7 +45,13 @@ class Explanation:
     explained: float | None = None
 
 
-@dataclass(frozen=True)
+MOST_SHOWN = 6
+"""Failed checks in the text of a comparison."""
+MARKS = {True: "ok", False: "NO", None: "not made"}
+HEADS = "check", "measured", "allowed", "", "equation", "what is measured"
+
+
+@dataclass(frozen=True, repr=False)
 class Comparison:
     """Whether a time series agrees with theory, check by check, and if not, why.
 
@@ -62,6 +71,46 @@ class Comparison:
     """The theory at the times of the data."""
     allowed: Any = field(repr=False, compare=False)
     """By how much the data may differ, by name, at the times of the data."""
+
+    def __repr__(self) -> str:
+        """Say the verdict, the diagnosis, and what failed."""
+        failed = [check for check in self.checks if check.ok is False]
+        rows = [f"{c.name}: {c.measured:.3g}, allowed {c.allowed:.3g}" for c in failed[:MOST_SHOWN]]
+        more = [f"and {len(failed) - MOST_SHOWN} more"] if len(failed) > MOST_SHOWN else []
+        told = f"Comparison of {self.source}: {self.verdict}"
+        return "\n".join([told, self.diagnosis, *rows, *more])
+
+    def _repr_html_(self) -> str:
+        """Return a table of the checks for notebooks."""
+        rows = "".join(
+            f"<tr><td>{escape(c.name)}</td><td>{'-' if c.ok is None else f'{c.measured:.3g}'}</td>"
+            f"<td>{'-' if c.ok is None else f'{c.allowed:.3g}'}</td><td>{MARKS[c.ok]}</td>"
+            f"<td>{escape(c.equation)}</td><td>{escape('; '.join(filter(None, (c.unit, c.note))))}</td></tr>"
+            for c in self.checks
+        )
+        heads = "".join(f"<th>{head}</th>" for head in HEADS)
+        return (
+            f"<table><caption>{escape(self.source)}: {self.verdict}. {escape(self.diagnosis)}</caption>"
+            f"<thead><tr>{heads}</tr></thead><tbody>{rows}</tbody></table>"
+        )
+
+    def to_xarray(self) -> Any:
+        """Return data, theory and what is allowed between them as an `xarray.Dataset` over time.
+
+        Raises
+        ------
+        ValueError
+            If xarray is missing.
+        """
+        return above("compared")(self)
+
+    def to_csv(self, path: str | Path) -> None:
+        """Write data, theory and what is allowed between them, with units in the header, in SI."""
+        above("save_compared")(self, Path(path))
+
+    def plot(self) -> Any:
+        """Draw data over theory, what is left, and the checks, and return the figure."""
+        return above("plot_result")(self)
 
     def as_dict(self) -> dict[str, Any]:
         """Return plain Python values, ready for JSON, without the series."""

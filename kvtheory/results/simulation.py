@@ -6,7 +6,7 @@ from kvtheory.results.certificate import Certificate
 from kvtheory.results.transient import TimeSeries
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Simulation(TimeSeries):
     """A run of the elements as a time series: arrays in SI over `time`; in flight the edges are NaN.
 

@@ -4,10 +4,11 @@ from dataclasses import dataclass
 from typing import Any
 
 from kvtheory.results.certificate import Certificate, Value, record
+from kvtheory.results.presented import Presented
 
 
-@dataclass(frozen=True)
-class SteadyState:
+@dataclass(frozen=True, repr=False)
+class SteadyState(Presented):
     """Steady sliding: each quantity a float, or an array where the input was an array.
 
     The edges are coordinates in the frame of the indenter, in which the foundation moves through

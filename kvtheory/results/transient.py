@@ -4,6 +4,7 @@ from dataclasses import dataclass, field, fields
 from typing import Any, NamedTuple
 
 from kvtheory.results.certificate import Certificate, Value, record
+from kvtheory.results.presented import Presented
 
 
 class Event(NamedTuple):
@@ -13,8 +14,8 @@ class Event(NamedTuple):
     kind: str
 
 
-@dataclass(frozen=True)
-class TimeSeries:
+@dataclass(frozen=True, repr=False)
+class TimeSeries(Presented):
     """Arrays in SI over `time`, as `TRANSIENT_UNITS` names them; in flight the edges are NaN."""
 
     time: Value
@@ -27,12 +28,17 @@ class TimeSeries:
     trailing_edge: Value
     peak_pressure: Value
 
+    @property
+    def _title(self) -> str:
+        end, count = float(self.time[-1]) if len(self.time) else 0.0, len(self.time)
+        return f"{super()._title}, {count} times up to {end * 1e3:.4g} ms"
+
     def as_dict(self) -> dict[str, Any]:
         """Return plain Python values, ready for JSON: `time` first; what does not exist is None."""
         return {f.name: record(getattr(self, f.name)) for f in fields(self) if f.repr}
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Transient(TimeSeries):
     """A transient as a time series: arrays in SI over `time`; in flight the edges are NaN.
 

@@ -13,6 +13,7 @@ from kvtheory.scene.model import (
     Suspended,
 )
 from kvtheory.scene.quantities import SceneError
+from kvtheory.scene.waveforms import Sine, SmoothRamp, Triangle
 
 __all__ = [
     "Circle",
@@ -27,8 +28,11 @@ __all__ = [
     "Run",
     "Scene",
     "SceneError",
+    "Sine",
+    "SmoothRamp",
     "Support",
     "Suspended",
+    "Triangle",
     "Wedge",
     "load_scene",
     "template",

@@ -11,6 +11,7 @@ import numpy as np
 
 from kvtheory.scene.base_motion import BaseMotion
 from kvtheory.scene.quantities import Quantity, SceneError, convert, problem, settle
+from kvtheory.scene.waveforms import AT_LAST, Sine, SmoothRamp, Triangle
 
 VELOCITY = Quantity(
     "m/s", "V, drive velocity of the foundation, from rest to this at t = 0", -math.inf, True
@@ -26,10 +27,12 @@ ON_LINE = 4.0 * 2.0**-52
 
 @dataclass(frozen=True)
 class Drive:
-    """The motion of the foundation: one `velocity` from t = 0 on, a `history`, or a `function`.
+    """The motion of the foundation: a `velocity` from t = 0 on, a `history`, `waveform` or `function`.
 
     A history holds pairs (time, velocity). It is linear between its points and jumps where a time
     stands twice; it starts at t = 0 and keeps its last velocity.
+
+    A `waveform` swings or rises smoothly: `Sine`, `Triangle` or `SmoothRamp`.
 
     A function V(t), from Python only, gives m/s at the time in s, smoothly but at the `breaks`: the
     times at which it jumps or has a kink. The transient replaces it by polynomials, with an error of at
@@ -41,22 +44,36 @@ class Drive:
     0.1
     >>> Drive(function=lambda t: 0.1 * math.sin(50.0 * t)).called(0.01)
     0.0479425538604203
+    >>> Drive(waveform=SmoothRamp(velocity="0.1 m/s", rise_time="10 ms")).final_velocity
+    0.1
     """
 
     velocity: float | None = field(default=None, metadata={"quantity": VELOCITY})
     history: Sequence[tuple[float, float]] | None = None
     function: Callable[[float], float] | None = None
+    waveform: Sine | Triangle | SmoothRamp | None = None
     breaks: Sequence[float] = ()
     tolerance: float = 1e-12
 
     def __post_init__(self) -> None:
-        if sum(given is not None for given in (self.velocity, self.history, self.function)) != 1:
+        ways = self.velocity, self.history, self.function, self.waveform
+        if sum(given is not None for given in ways) != 1:
             raise SceneError(
                 [
-                    'drive: expected one of velocity and history, such as velocity = "100 mm/s"; '
-                    "or, in Python, a function"
+                    "drive: expected one of velocity, history and waveform, such as "
+                    'velocity = "100 mm/s"; or, in Python, a function'
                 ]
             )
+        if not isinstance(self.waveform, Sine | Triangle | SmoothRamp | None):
+            raise SceneError(
+                [
+                    problem(
+                        "drive.waveform", self.waveform, "expected a Sine, Triangle or SmoothRamp"
+                    )
+                ]
+            )
+        if self.waveform is not None:
+            object.__setattr__(self, "function", self.waveform)
         if self.velocity is not None:
             settle(self, "drive")
         elif self.history is not None:
@@ -83,8 +100,8 @@ class Drive:
         if self.function is not None:
             raise SceneError(
                 [
-                    "drive.function: a function V(t) moves the foundation in a transient only; give a "
-                    "velocity or a history here"
+                    f"drive.{self._way}: it moves the foundation in a transient only; give a velocity or "
+                    "a history here"
                 ]
             )
         if self.history is None:
@@ -94,7 +111,18 @@ class Drive:
     @property
     def final_velocity(self) -> float:
         """The velocity that the drive ends with, in m/s; a function has none, and raises SceneError."""
+        if self.waveform is not None and self.waveform.final_velocity is not None:
+            return self.waveform.final_velocity
         return self.points[-1][1]
+
+    @property
+    def _way(self) -> str:
+        return "function" if self.waveform is None else "waveform"
+
+    @property
+    def ends(self) -> bool:
+        """Whether the drive ends with one velocity."""
+        return self.function is None or getattr(self.waveform, "final_velocity", None) is not None
 
     @property
     def constant(self) -> bool:
@@ -117,6 +145,8 @@ class Drive:
     @property
     def last_change(self) -> float:
         """The time in s after which the velocity stays the same; a function has none, and raises."""
+        if isinstance(self.waveform, SmoothRamp):
+            return AT_LAST * self.waveform.rise_time
         return self.points[-1][0]
 
     def motion(self, end: float, least: float) -> BaseMotion:
@@ -136,6 +166,8 @@ class Drive:
         """
         if self.function is None:
             return BaseMotion.from_points(self.points, end)
+        if isinstance(self.waveform, Triangle):
+            return BaseMotion.from_points(self.waveform.points(end), end)
         return BaseMotion.from_function(
             self.called, end, tolerance=0.5 * self.tolerance, breaks=self.breaks, least=least
         )
@@ -218,6 +250,8 @@ def _breaks(drive: Drive) -> tuple[float, ...]:
 def _history(points: Any) -> tuple[tuple[float, float], ...]:
     """Convert the points of a drive history, or report every one that is wrong."""
     key = "drive.history"
+    if isinstance(points, np.ndarray):
+        points = points.tolist()
     if isinstance(points, str) or not isinstance(points, Sequence) or not points:
         raise SceneError(
             [

@@ -5,6 +5,7 @@ from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
+from kvtheory.scene.drive_file import history_from
 from kvtheory.scene.indenters import SHAPES
 from kvtheory.scene.model import SUPPORTS, Drive, Foundation, Run, Scene
 from kvtheory.scene.quantities import (
@@ -19,10 +20,13 @@ from kvtheory.scene.quantities import (
     required,
 )
 from kvtheory.scene.units import expected
+from kvtheory.scene.waveforms import WAVEFORMS
 
 SECTIONS = ("indenter", "foundation", "support", "drive", "run")
 CHOICES = {"indenter": ("shape", SHAPES), "support": ("kind", SUPPORTS)}
 """Sections in which one key chooses the model; the other keys depend on it."""
+DRIVES = ("velocity", "history", "waveform", "file")
+"""Ways to drive, of which a scene has one."""
 PLAIN = {"foundation": Foundation, "drive": Drive, "run": Run}
 OPTIONAL = {"run"}
 
@@ -51,8 +55,13 @@ def load_scene(path: str | Path | None = None, overrides: Iterable[str] = ()) ->
     >>> load_scene(overrides=["drive.velocity=50 mm/s"]).drive.velocity
     0.05
     """
-    tables = _tables(Scene.table1()) if path is None else _read(Path(path))
     overrides = [overrides] if isinstance(overrides, str) else list(overrides)
+    if path is None and not overrides:
+        return Scene.table1()
+    tables = _tables(Scene.table1()) if path is None else _read(Path(path))
+    drive = tables.get("drive")
+    if path is not None and isinstance(drive, dict) and isinstance(drive.get("file"), str):
+        drive["file"] = str(Path(path).parent / drive["file"])  # beside the scene
     problems = _override(tables, overrides, embedded=path is None)
     return _build(tables, problems)
 
@@ -91,6 +100,9 @@ def template(support: str = "dead-weight") -> str:
             lines += [
                 "# or a history, linear between its points, a jump where a time stands twice:",
                 '# history = [["0 ms", "100 mm/s"], ["50 ms", "100 mm/s"], ["50 ms", "0 mm/s"]]',
+                '# or from a table: file = "drive.csv", whose first line is t [ms],V [mm/s]',
+                '# or: waveform = "sine" or "triangle" with amplitude, frequency and mean,',
+                '#     waveform = "smooth-ramp" with velocity and rise_time',
             ]
         lines.append("")
     return "\n".join(lines)
@@ -114,7 +126,13 @@ def _tables(scene: Scene) -> dict[str, dict[str, Any]]:
         raise ValueError(
             "`scene` has an indenter made of Python functions, which a file cannot hold"
         )
-    if scene.drive.function is not None:
+    waveform = scene.drive.waveform
+    if waveform is not None:
+        given = {
+            name: _text(getattr(waveform, name), q.unit) for name, q in quantities(waveform).items()
+        }
+        tables["drive"] = {"waveform": waveform.waveform, **given}
+    elif scene.drive.function is not None:
         raise ValueError("`scene` has a drive made of a Python function, which a file cannot hold")
     return tables
 
@@ -144,7 +162,9 @@ def _override(tables: dict[str, Any], overrides: list[str], *, embedded: bool) -
         key, separator, value = text.partition("=")
         section, _, name = key.strip().partition(".")
         if not (separator and section and name):
-            problems.append(f'--set "{text}": expected KEY=VALUE, such as drive.velocity="50 mm/s"')
+            problems.append(
+                f'`overrides` "{text}": expected KEY=VALUE, such as drive.velocity="50 mm/s"'
+            )
             continue
         value = value.strip()
         if len(value) > 1 and value[0] == value[-1] and value[0] in "\"'":
@@ -157,13 +177,20 @@ def _override(tables: dict[str, Any], overrides: list[str], *, embedded: bool) -
         table = tables.setdefault(section, {})
         if not isinstance(table, dict):
             continue
-        if section == "drive" and name in ("velocity", "history"):
-            table.pop("history" if name == "velocity" else "velocity", None)
+        if section == "drive" and name not in table:
+            _change_drive(table, name)
         try:
             table[name] = tomllib.loads(f"v = {value}")["v"] if name == "history" else value
         except tomllib.TOMLDecodeError:
             table[name] = value
     return problems
+
+
+def _change_drive(table: dict[str, Any], name: str) -> None:
+    """Take out of a drive what does not go with a new key: the ways to drive exclude each other."""
+    own = quantities(WAVEFORMS[table["waveform"]]) if table.get("waveform") in WAVEFORMS else ()
+    if name in DRIVES and name not in own:
+        table.clear()
 
 
 def _switched(old: Any, section: str, choice: str, embedded: bool) -> dict[str, Any]:
@@ -206,6 +233,8 @@ def _part(section: str, table: Any) -> Any:
         raise SceneError(
             [f"[{section}]: expected one table with this name, not {type(table).__name__}"]
         )
+    if section == "drive" and "waveform" in table:
+        return _waveform(table)
     if section not in CHOICES:
         return _make(PLAIN[section], section, table)
     chooser, models = CHOICES[section]
@@ -239,10 +268,19 @@ def _part(section: str, table: Any) -> Any:
     raise SceneError(problems)
 
 
+def _waveform(table: Mapping[str, Any]) -> Drive:
+    """Make a drive that swings or rises smoothly."""
+    name = table["waveform"]
+    rest = {key: value for key, value in table.items() if key != "waveform"}
+    if not (isinstance(name, str) and name in WAVEFORMS):
+        raise SceneError([problem("drive.waveform", name, nearest(str(name), WAVEFORMS))])
+    return Drive(waveform=_make(WAVEFORMS[name], "drive", rest, f'waveform = "{name}"'))
+
+
 def _make(cls: Any, section: str, table: Mapping[str, Any], choice: str = "") -> Any:
     """Construct `cls` from TOML values, in which a bare number is a mistake."""
     specs = quantities(cls)
-    valid = [*specs, "history"] if cls is Drive else list(specs)
+    valid = [*specs, *(way for way in DRIVES if way not in specs)] if cls is Drive else list(specs)
     known = [CHOICES[section][0], *valid] if section in CHOICES else valid
     of = f" for {choice}" if choice else ""
     missing = [name for name in absent(valid, table) if name in required(cls)]
@@ -255,7 +293,12 @@ def _make(cls: Any, section: str, table: Mapping[str, Any], choice: str = "") ->
             problems.append(f"{section}.{key}: unknown key{of}; {nearest(key, known)}")
             continue
         try:
-            values[key] = _value(value, specs[key]) if key in specs else _points(value)
+            if cls is Drive and key == "file":
+                values["history"] = history_from(Path(str(value)))
+            else:
+                values[key] = _value(value, specs[key]) if key in specs else _points(value)
+        except SceneError as error:
+            problems += error.problems
         except ValueError as error:
             problems.append(problem(f"{section}.{key}", value, str(error)))
     if problems:

@@ -178,7 +178,7 @@ class Scene:
             for section, part in parts.items()
             for name in quantities(part)
         }
-        if self.drive.function is not None:
+        if not self.drive.ends:
             return flat
         return {**flat, "drive.velocity": self.drive.final_velocity}
 

@@ -55,7 +55,7 @@ class StaticState:
     def at(cls, scene: Scene, depth: float, half_length: float, load: float) -> "StaticState":
         """Return the static state of any shape, whose depth, half length and load are known."""
         tau, support, drive = scene.foundation.retardation_time, scene.support, scene.drive
-        velocity = math.nan if drive.function else drive.final_velocity
+        velocity = drive.final_velocity if drive.ends else math.nan
         return cls(
             depth=depth,
             half_length=half_length,

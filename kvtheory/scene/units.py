@@ -1,7 +1,7 @@
 """Quantities with units at the edge of the package: text or pint quantities in, SI floats out.
 
 Numbers are read as exact fractions and rounded once, so ``"5 µm"`` is 5e-06 to the last bit. pint
-is imported only when a unit has to be understood.
+is imported only when a unit has to be understood that is not among the usual ones.
 """
 
 import difflib
@@ -21,10 +21,41 @@ EXAMPLES = {
     "kg/m": ("1 kg/mm", "1000 kg/m", "10 g/mm"),
     "N/m": ("10 N/mm", "9.8 kN/m"),
     "N/m^2": ("30 MN/m^2", "30 MPa", "30 N/mm^2"),
+    "1/s": ("5 Hz", "300 /min", "5 s^-1"),
     "1/m": ("200 /mm", "200 mm^-1", "2e5 /m"),
     "N/m^3": ("10 GN/m^3", "10 N/mm^3", "10 MPa/mm"),
 }
 """Ways to write a quantity of each SI unit that a scene uses; messages show the first one."""
+
+_METRES = {"km": 3, "m": 0, "cm": -2, "mm": -3, "um": -6, "µm": -6, "μm": -6, "nm": -9}
+_SECONDS = {"s": 0, "ms": -3, "us": -6, "µs": -6, "μs": -6}
+_NEWTONS = {"GN": 9, "MN": 6, "kN": 3, "N": 0, "mN": -3}
+_KILOGRAMS = {"kg": 0, "g": -3}
+_PASCALS = {"GPa": 9, "MPa": 6, "kPa": 3, "Pa": 0}
+
+
+def _ratios(above: dict[str, int], below: dict[str, int], power: int) -> dict[str, int]:
+    written = f"^{power}" if power > 1 else ""
+    return {
+        f"{upper}/{lower}{written}": m - power * n
+        for upper, m in above.items()
+        for lower, n in below.items()
+    }
+
+
+USUAL = {
+    "m": _METRES,
+    "s": _SECONDS,
+    "m/s": _ratios(_METRES, _SECONDS, 1),
+    "m/s^2": _ratios(_METRES, _SECONDS, 2),
+    "kg/m": _ratios(_KILOGRAMS, _METRES, 1),
+    "N/m": _ratios(_NEWTONS, _METRES, 1),
+    "N/m^2": _ratios(_NEWTONS, _METRES, 2) | _PASCALS,
+    "N/m^3": _ratios(_NEWTONS, _METRES, 3),
+    "1/m": _ratios({"": 0}, _METRES, 1),
+}
+"""The usual ways to write each unit, and the power of ten to SI: for them pint, which takes longer to
+import than most answers take to find, is not needed."""
 
 LONGEST_UNIT = 60
 _NUMBER = re.compile(
@@ -112,10 +143,12 @@ def _scaled(number: str | float, written: str, unit: str) -> float:
 
 @lru_cache(maxsize=1024)
 def _factor(written: str, unit: str) -> Fraction:
+    if written in USUAL.get(unit, ()):
+        return Fraction(10) ** USUAL[unit][written]
     # The usual ways to write a power: mm3, s-1, m ^ 3, N·m.
     written = re.sub(r"\s*(\^|\*\*)\s*", "^", written.replace("·", "*"))
     written = re.sub(r"(?<=[^\W\d_])(?=-?[0-9])", "^", written)
-    written = re.sub(r"^/", "dimensionless/", written)
+    written = re.sub(r"^(1\s*)?/", "dimensionless/", written)
     if len(written) > LONGEST_UNIT or not _UNIT.fullmatch(written):
         raise ValueError(f'"{written}" is not a unit; expected {expected(unit)}')
     registry = _registry()

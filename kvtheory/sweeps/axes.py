@@ -1,24 +1,21 @@
 """What is swept: grids, lists, ranges and zipped points, read and checked, as axes."""
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from kvtheory.results.sweep import Axis
 from kvtheory.scene.drives import VELOCITY
+from kvtheory.scene.lists import item_values, items
 from kvtheory.scene.model import Scene
 from kvtheory.scene.quantities import Quantity, SceneError, convert, nearest, problem, quantities
-from kvtheory.sweeps.result import Axis
 
 Array = NDArray[np.float64]
 
-RANGE = "START:STOP:COUNT or START:STOP:COUNT:log"
-EXAMPLE = '"drive.velocity=1 mm/s:10 m/s:200:log" or "foundation.retardation_time=10 ms,1 s"'
-
-MOST_ON_AN_AXIS = 10**8
-"""Values on one axis, which are held in memory; more than this is a slip of the finger."""
+EXAMPLE = '{"drive.velocity": "1 mm/s:10 m/s:200:log"}'
 
 
 def sweepable(scene: Scene) -> dict[str, Quantity]:
@@ -88,30 +85,6 @@ def axes_of(scene: Scene, over: Mapping[Any, Any]) -> tuple[Axis, ...]:
     )
 
 
-def read_over(texts: Iterable[str]) -> dict[Any, Any]:
-    """Turn ``KEY=VALUES`` texts into `over`; ``KEY=VALUES & KEY=VALUES`` in one text are zipped.
-
-    >>> read_over(["drive.velocity=1 mm/s,2 mm/s & support.mass=1 kg/m:2 kg/m:2"])
-    {('drive.velocity', 'support.mass'): ('1 mm/s,2 mm/s', '1 kg/m:2 kg/m:2')}
-    """
-    over: dict[Any, Any] = {}
-    problems = []
-    for text in texts:
-        pairs = [part.partition("=") for part in text.split("&")]
-        if not all(key.strip() and sign and value.strip() for key, sign, value in pairs):
-            problems.append(f'--over "{text}": expected KEY=VALUES, such as {EXAMPLE}')
-            continue
-        keys = tuple(key.strip() for key, _, _ in pairs)
-        values = tuple(value.strip() for _, _, value in pairs)
-        if keys in over or keys[0] in over:
-            problems.append(f'--over "{text}": {keys[0]} is swept already')
-            continue
-        over |= {keys: values} if len(keys) > 1 else {keys[0]: values[0]}
-    if problems:
-        raise SceneError(problems)
-    return over
-
-
 def size(axes: Sequence[Axis]) -> int:
     """Return the number of points."""
     return math.prod(axis.size for axis in axes)
@@ -164,10 +137,8 @@ def _known(key: Any, value: Any, specs: Mapping[str, Quantity], seen: set[str]) 
 
 
 def _values(value: Any, spec: Quantity) -> Array:
-    if isinstance(value, str) and ":" in value:
-        return _range(value, spec)
-    if isinstance(value, str):
-        value = [item.strip() for item in value.split(",")]
+    if isinstance(value, str) and items(value):
+        return np.concatenate([item_values(item, spec) for item in items(value)])
     magnitude = getattr(value, "magnitude", value)
     if np.ndim(magnitude) > 1:
         raise ValueError("expected one list; give pairs as a tuple of keys with a list for each")
@@ -179,27 +150,8 @@ def _values(value: Any, spec: Quantity) -> Array:
         bare = np.atleast_1d(magnitude)
         array = np.array([convert(item * value.units, spec) for item in bare])
     else:
-        items = [value] if np.ndim(value) == 0 else list(value)
-        array = np.array([convert(item, spec) for item in items])
+        single = [value] if np.ndim(value) == 0 else list(value)
+        array = np.array([convert(item, spec) for item in single])
     if array.size == 0:
         raise ValueError("is empty; expected at least one value")
-    return array
-
-
-def _range(text: str, spec: Quantity) -> Array:
-    parts = [part.strip() for part in text.split(":")]
-    if len(parts) not in (3, 4) or (len(parts) == 4 and parts[3] != "log"):
-        raise ValueError(f"expected {RANGE}, such as {EXAMPLE}")
-    start, stop = (convert(part, spec) for part in parts[:2])
-    if not parts[2].isdecimal() or not 1 <= int(parts[2]) <= MOST_ON_AN_AXIS:
-        raise ValueError(
-            f"COUNT must be a whole number from 1 to {MOST_ON_AN_AXIS}; got {parts[2]}"
-        )
-    count = int(parts[2])
-    if len(parts) == 4 and min(start, stop) <= 0.0 <= max(start, stop):
-        raise ValueError("a logarithmic range needs START and STOP of one sign, neither zero")
-    with np.errstate(over="ignore", invalid="ignore"):
-        array = (np.linspace if len(parts) == 3 else np.geomspace)(start, stop, count)
-    if not spec.admits(array):
-        raise ValueError("the range leaves that of double precision")
     return array

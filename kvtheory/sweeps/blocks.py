@@ -15,7 +15,6 @@ from kvtheory.models.steady.methods import METHODS
 from kvtheory.scene.broadcasting import values
 from kvtheory.scene.model import Drive, Scene
 from kvtheory.sweeps.axes import narrowed, values_at
-from kvtheory.sweeps.columns import Column
 from kvtheory.sweeps.plan import Plan
 
 Array = NDArray[np.float64]
@@ -41,16 +40,15 @@ class Task:
 
 @dataclass(frozen=True)
 class Block:
-    """Results of the points `start` to `stop`: `numbers` has a row for each number of a point.
+    """Results of the points `start` to `stop`: an array over them for each column, see `Plan.blank`.
 
-    `texts` has a list for each column of text; `failures` are pairs of index and reason;
-    `errors` is the certificate: the statements, and the worst relative error of each quantity.
+    `failures` are pairs of index and reason; `errors` is the certificate: the statements, and the
+    worst relative error of each quantity.
     """
 
     start: int
     stop: int
-    numbers: Array
-    texts: Sequence[Sequence[str]]
+    values: Mapping[str, NDArray[Any]]
     failures: Sequence[tuple[int, str]]
     errors: tuple[Sequence[str], Mapping[str, float]]
 
@@ -70,43 +68,31 @@ def compute(given: Task) -> Block:
     >>> from kvtheory.sweeps.columns import columns_of
     >>> axes = axes_of(Scene(), {"drive.velocity": [0.1, 0.2, 0.4]})
     >>> plan = Plan(Scene(), axes, columns_of("depth", series=False), None, "exact", 1e-6)
-    >>> compute(task(plan, 1, 3)).numbers.round(6).tolist()
-    [[4.7e-05, 2.4e-05]]
+    >>> compute(task(plan, 1, 3)).values["depth"].round(6).tolist()
+    [4.7e-05, 2.4e-05]
     """
     plan = given.plan
     over = values_at(plan.axes, given.start - given.moved, given.stop - given.moved)
-    numbers = np.full((sum(plan.rows(column) for column in plan.numeric), given.points), np.nan)
-    texts = [[""] * given.points for _ in plan.textual]
+    found = plan.blank(given.points)
     reasons: dict[int, str] = {}
     statements: set[str] = set()
     errors: dict[str, float] = {}
     needed = {column.base for column in plan.columns if column.steady} | plan.compared
     steady: dict[str, Array] = {}
     if needed:
-        told, found = _steady(plan, over, sorted(needed), steady, reasons)
+        told, worst_of = _steady(plan, over, sorted(needed), steady, reasons)
         statements |= told
-        for row, column in _placed(plan):
+        for column in plan.columns:
             if column.steady:
-                numbers[row] = steady[column.base]
-                errors[column.name] = found.get(column.base, 0.0)
+                found[column.name] = steady[column.base]
+                errors[column.name] = worst_of.get(column.base, 0.0)
     if plan.transient:
-        into = numbers, texts, reasons, errors
-        statements |= _transients(given, over, steady, into)
-    for index in reasons:
-        numbers[:, index] = np.nan
-        for text in texts:
-            text[index] = ""
+        statements |= _transients(given, over, steady, (found, reasons, errors))
+    blank = plan.blank(1)
+    for name, array in found.items():
+        array[list(reasons)] = blank[name][0]
     failures = [(given.start + index, reasons[index]) for index in sorted(reasons)]
-    return Block(given.start, given.stop, numbers, texts, failures, (sorted(statements), errors))
-
-
-def _placed(plan: Plan) -> list[tuple[int, Column]]:
-    """Return each column of numbers with its first row."""
-    found, row = [], 0
-    for column in plan.numeric:
-        found.append((row, column))
-        row += plan.rows(column)
-    return found
+    return Block(given.start, given.stop, found, failures, (sorted(statements), errors))
 
 
 def _steady(
@@ -150,15 +136,18 @@ def _transients(
     given: Task,
     over: Mapping[str, Array],
     steady: Mapping[str, Array],
-    into: tuple[Array, Sequence[list[str]], dict[int, str], dict[str, float]],
+    into: tuple[Mapping[str, NDArray[Any]], dict[int, str], dict[str, float]],
 ) -> set[str]:
-    """Follow the motions one by one; return the statements of the certificates."""
+    """Follow the motions one by one; return the statements of the certificates.
+
+    `into` is filled: the arrays of the columns, the reasons of failures, and the worst errors.
+    """
     from kvtheory.sweeps import measures  # it imports the solver, which takes a while
 
-    plan, (numbers, texts, reasons, errors) = given.plan, into
+    plan, (found, reasons, errors) = given.plan, into
     statements: set[str] = set()
-    placed = [(row, column) for row, column in _placed(plan) if not column.steady]
-    bases = {column.base for _, column in placed if column.base} | plan.compared
+    columns = [column for column in plan.columns if not column.steady]
+    bases = {column.base for column in columns if column.base} | plan.compared
     for index in range(given.points):
         if index in reasons:
             continue
@@ -174,10 +163,8 @@ def _transients(
         statements.add(certificate.statement)
         for name in bases:
             worst(errors, name, certificate.relative_error[name])
-        for row, column in placed:
-            numbers[row : row + plan.rows(column), index] = answer[column.name]
-        for column, text in zip(plan.textual, texts, strict=True):
-            text[index] = answer[column.name]
+        for column in columns:
+            found[column.name][index] = answer[column.name]
     return statements
 
 

@@ -1,10 +1,15 @@
-"""Sweeps as CSV (RFC 4180) in long form: one row for each point, or each point and time."""
+"""Sweeps as CSV (RFC 4180) in long form: one row for each point, or each point and time.
+
+What the file is stands above the table in lines that begin with ``#``; the first of them say how to
+read it, and the SHA-256 of all that follows, by which a file that lost something is known.
+"""
 
 import csv
+import hashlib
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any, BinaryIO
 
 import numpy as np
 import orjson
@@ -12,32 +17,46 @@ from numpy.typing import NDArray
 
 from kvtheory.sweeps.axes import values_at
 from kvtheory.sweeps.blocks import Block
+from kvtheory.sweeps.outcome import Outcome
 from kvtheory.sweeps.plan import Plan
-
-if TYPE_CHECKING:
-    from kvtheory.sweeps.files import Outcome
 
 END = "\r\n"
 MARK = "# kvtheory sweep"
 """The first line of every such file."""
+READ = "# to read the table: pandas.read_csv(FILE, comment='#')"
+DIGEST = "# sha256 of what follows: "
+PART = 2**20
+"""Bytes read at a time."""
 
 
 def check() -> None:
     """Nothing is needed but what the package comes with."""
 
 
-def write(result: "Outcome", path: Path) -> None:
+def write(result: Outcome, path: Path) -> None:
     """Write header and rows; rows of points that were not computed yet are left out."""
+    digest = hashlib.sha256()
     with path.open("wb") as file:
-        for line in _comments(result):
-            file.write(f"{line}{END}".encode())
-        file.write((",".join(_heads(result.plan)) + END).encode())
-        for block in result.blocks():
-            file.write(_rows(result.plan, block))
+        file.write(f"{MARK}{END}{DIGEST}".encode())
+        place = file.tell()
+        file.write(f"{digest.hexdigest()}{END}".encode())
+        for part in _parts(result):
+            digest.update(part)
+            file.write(part)
+        file.seek(place)
+        file.write(digest.hexdigest().encode())
+
+
+def _parts(result: Outcome) -> Iterator[bytes]:
+    """Yield what stands below the digest."""
+    lines = [*_comments(result), ",".join(_heads(result.plan)), ""]
+    yield END.join(lines).encode()
+    for block in result.blocks():
+        yield _rows(result.plan, block)
 
 
 def header(path: Path) -> Mapping[str, str] | None:
-    """Return what a file says about itself, or None if it is not such a file."""
+    """Return what a file says about itself; nothing if that is damaged, None if it is no such file."""
     found = {}
     with path.open(encoding="utf-8", errors="replace", newline="") as file:
         if file.readline().rstrip() != MARK:
@@ -48,7 +67,42 @@ def header(path: Path) -> Mapping[str, str] | None:
             key, _, text = line[1:].strip().partition(": ")
             if key in ("record", "summary"):
                 found[key] = text
-    return found if len(found) == 2 else None
+    return found if len(found) == 2 and _is_json(found["summary"]) else {}
+
+
+def _is_json(text: str) -> bool:
+    try:
+        return bool(json.loads(text))
+    except ValueError:
+        return False
+
+
+def damage(path: Path, plan: Plan, whole: bool) -> str:
+    """Say what a file has lost since it was written, `whole` or not; or nothing."""
+    with path.open("rb") as file:
+        told = _told(file)
+        table = file.tell()
+        digest = hashlib.sha256()
+        while part := file.read(PART):
+            digest.update(part)
+        if digest.hexdigest() == told:
+            return ""
+        file.seek(table)
+        rows = sum(not line.startswith(b"#") and bool(line.strip()) for line in file) - 1
+    wanted = plan.points * (len(plan.times or ()) if plan.series else 1)
+    if whole and rows < wanted:
+        return f"{wanted - rows:,} of its {wanted:,} rows are missing"
+    return "it was changed after it was written"
+
+
+def _told(file: BinaryIO) -> str:
+    """Return the digest that a file tells, and stand below it."""
+    for line in iter(file.readline, b""):
+        if line.startswith(DIGEST.encode()):
+            return line.decode(errors="replace").rpartition(": ")[2].strip()
+        if not line.startswith(b"#"):
+            break
+    return ""
 
 
 def values(path: Path, plan: Plan, name: str) -> dict[str, Any]:
@@ -70,11 +124,11 @@ def values(path: Path, plan: Plan, name: str) -> dict[str, Any]:
     return found
 
 
-def _comments(result: "Outcome") -> list[str]:
+def _comments(result: Outcome) -> list[str]:
     plan, own = result.plan, result.header()
     record = plan.record()
     swept = " x ".join(f"{axis.size} {' & '.join(axis.values)}" for axis in plan.axes)
-    lines = [MARK, f"# version: {record['kvtheory']}", f"# over: {swept}"]
+    lines = [READ, f"# version: {record['kvtheory']}", f"# over: {swept}"]
     if result.done < plan.points:
         lines.append(f"# unfinished: {result.done} of {plan.points} points; the command resumes it")
     lines += [f"#   {line}".rstrip() for line in record["scene"].splitlines()]
@@ -104,15 +158,16 @@ def _rows(plan: Plan, block: Block) -> bytes:
     times = len(plan.times or ()) if plan.series else 1
     time = [np.tile(plan.times or (), block.stop - block.start)] if plan.series else []
     table = np.column_stack(
-        [*(np.repeat(key, times) for key in keys), *time, *_long(plan, block.numbers, times)]
+        [*(np.repeat(key, times) for key in keys), *time, *_long(plan, block, times)]
     )
     printed = orjson.dumps(np.ascontiguousarray(table), option=orjson.OPT_SERIALIZE_NUMPY)
     text = printed[2:-2]
     if not np.isfinite(table).all():
         text = text.replace(b"null", b"")
-    if not block.texts:
+    texts = [block.values[column.name] for column in plan.textual]
+    if not texts:
         return text.replace(b"],[", END.encode()) + END.encode()
-    quoted = [_quoted(block.texts, i // times) for i in range(table.shape[0])]
+    quoted = [_quoted(texts, i // times) for i in range(table.shape[0])]
     lines = text.split(b"],[")
     return b"".join(
         b"%s,%s%s" % (line, more.encode(), END.encode())
@@ -120,18 +175,11 @@ def _rows(plan: Plan, block: Block) -> bytes:
     )
 
 
-def _long(plan: Plan, numbers: NDArray[np.float64], times: int) -> list[NDArray[np.float64]]:
-    """Return each column with a value for each point and time."""
-    found, row = [], 0
-    for column in plan.numeric:
-        rows = plan.rows(column)
-        part = numbers[row : row + rows]
-        found.append(
-            part.T.reshape(-1) if column.measure == "series" else np.repeat(part[0], times)
-        )
-        row += rows
-    return found
+def _long(plan: Plan, block: Block, times: int) -> list[NDArray[np.float64]]:
+    """Return each column of numbers with a value for each point and time."""
+    arrays = [block.values[column.name] for column in plan.numeric]
+    return [a.reshape(-1) if a.ndim > 1 else np.repeat(a, times) for a in arrays]
 
 
-def _quoted(texts: Sequence[Sequence[str]], index: int) -> str:
+def _quoted(texts: list[NDArray[Any]], index: int) -> str:
     return ",".join('"' + column[index].replace('"', '""') + '"' for column in texts)

@@ -8,11 +8,14 @@ from functools import cached_property
 from importlib.metadata import version
 from typing import Any
 
+import numpy as np
+from numpy.typing import NDArray
+
+from kvtheory.results.sweep import Axis
 from kvtheory.scene.files import to_toml
 from kvtheory.scene.model import Scene
 from kvtheory.sweeps.axes import size, sweepable
 from kvtheory.sweeps.columns import Column
-from kvtheory.sweeps.result import Axis
 
 
 @dataclass(frozen=True)
@@ -62,9 +65,18 @@ class Plan:
         """Whether any column has one value for each time."""
         return any(column.measure == "series" for column in self.columns)
 
-    def rows(self, column: Column) -> int:
-        """Return how many numbers a column holds for each point."""
-        return len(self.times or ()) if column.measure == "series" else 1
+    def shape(self, column: Column) -> tuple[int, ...]:
+        """Return the shape of what a column holds for each point: of its times, or of one value."""
+        return (len(self.times or ()),) if column.measure == "series" else ()
+
+    def blank(self, points: int) -> dict[str, NDArray[Any]]:
+        """Return an array for each column, first over `points`, without values: NaN or no text."""
+        return {
+            c.name: np.full(
+                (points, *self.shape(c)), "" if c.text else np.nan, object if c.text else float
+            )
+            for c in self.columns
+        }
 
     @property
     def units(self) -> Mapping[str, str]:

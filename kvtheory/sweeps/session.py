@@ -6,49 +6,52 @@ from contextlib import nullcontext
 from functools import partial
 from glob import escape
 from pathlib import Path
+from time import monotonic
 
+from kvtheory.progress import Progress
+from kvtheory.results.sweep import Sweep
 from kvtheory.sweeps import engine, files
 from kvtheory.sweeps.blocks import Block
+from kvtheory.sweeps.outcome import FAILURES_LISTED, outcome
 from kvtheory.sweeps.plan import Plan
-from kvtheory.sweeps.result import Sweep
 from kvtheory.sweeps.store import Memory, Store, WorkFile
 from kvtheory.sweeps.workers import in_flight_of, own_workers
-
-Report = Callable[[int, int, int, int], None]
 
 WORK = ".part"
 """What the name of a work file adds to that of the result."""
 
 
-def in_memory(plan: Plan, walk: Callable[[Store], None]) -> Sweep:
+def in_memory(plan: Plan, walk: Callable[[Store], int]) -> Sweep:
     """Run a sweep and return its arrays."""
     store = Memory(plan)
     walk(store)
-    return files.from_memory(files.outcome(plan, store.blocks))
+    return files.from_memory(outcome(plan, store.blocks))
 
 
-def into_file(plan: Plan, walk: Callable[[Store], None], path: Path) -> Sweep:
+def into_file(
+    plan: Plan, walk: Callable[[Store], int], path: Path, *, overwrite: bool = False
+) -> Sweep:
     """Run a sweep into a file, or resume it; an interrupt leaves a file with what there is."""
     files.check(path)
     work = path.with_name(path.name + WORK)
-    if files.finished(path, plan):
+    if not overwrite and files.finished(path, plan):
         if work.exists():  # of a run that was killed just before it removed this
             WorkFile(work, plan).remove()
         return files.from_file(path, plan)
-    store = WorkFile(work, plan)
+    store = WorkFile(work, plan, anew=overwrite)
     try:
         for litter in path.parent.glob(f".{escape(path.stem)}.*.part{path.suffix}"):
             litter.unlink()  # of a run that was killed while it wrote the result
         try:
-            walk(store)
+            computed = walk(store)
         except KeyboardInterrupt:
-            files.write(files.outcome(plan, store.blocks, files.FAILURES_LISTED), path)
+            files.write(outcome(plan, store.blocks, FAILURES_LISTED), path)
             raise
-        files.write(files.outcome(plan, store.blocks, files.FAILURES_LISTED), path)
+        files.write(outcome(plan, store.blocks, FAILURES_LISTED), path)
     finally:
         store.close()
     store.remove()
-    return files.from_file(path, plan)
+    return files.from_file(path, plan, computed)
 
 
 def walker(
@@ -57,30 +60,32 @@ def walker(
     jobs: int,
     in_flight: int | None,
     block: int | None,
-    report: Report | None,
-) -> Callable[[Store], None]:
-    """Return what fills a store with the blocks that it lacks."""
+    report: Progress | None,
+) -> Callable[[Store], int]:
+    """Return what fills a store with the blocks that it lacks, and counts the points of these."""
 
-    def walk(store: Store) -> None:
+    def walk(store: Store) -> int:
         done = store.done()
-        before = sum(stop - start for start, stop in done)
-        counts = {"done": before, "failed": 0}
+        before, began = sum(stop - start for start, stop in done), monotonic()
+        computed = failed = 0
 
         def show() -> None:
             if report:
-                report(counts["done"], before, counts["failed"], plan.points)
+                share = (before + computed) / plan.points
+                report(share, told(plan, before, computed, failed, monotonic() - began))
 
         def keep(result: Block) -> None:
+            nonlocal computed, failed
             store.keep(result)
-            counts["done"] += result.stop - result.start
-            counts["failed"] += len(result.failures)
+            computed += result.stop - result.start
+            failed += len(result.failures)
             show()
 
         show()
         tasks = engine.remaining(plan, done, block)
         if executor is None and jobs == 1:
             engine.run_here(tasks, keep)
-            return
+            return computed
         flying = in_flight or in_flight_of(executor, jobs)
         pool = (
             own_workers(jobs, threads=plan.vectorised)
@@ -89,8 +94,18 @@ def walker(
         )
         with pool as workers:
             engine.run_by(workers, tasks, keep, flying, show)
+        return computed
 
     return walk
+
+
+def told(plan: Plan, before: int, computed: int, failed: int, seconds: float) -> str:
+    """Say how far a sweep is; `before` counts the points of an earlier run, which the rate leaves out."""
+    text = f"{before + computed:,} of {plan.points:,} points"
+    rate = computed / seconds if seconds > 0.0 else 0.0
+    if rate > 0.0:
+        text += f", {rate:,.0f} a second" if rate >= 10.0 else f", {rate:.2g} a second"
+    return text + (f", {failed:,} failed" if failed else "")
 
 
 def _same(executor: Executor) -> Executor:

@@ -5,6 +5,7 @@ that after `kill -9` at any moment, or a full disk, every block that was kept is
 """
 
 import json
+import math
 import sqlite3
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -44,9 +45,7 @@ class Memory:
     """Blocks put together in arrays, for a sweep without a file."""
 
     def __init__(self, plan: Plan) -> None:
-        rows = sum(plan.rows(column) for column in plan.numeric)
-        self._numbers = np.full((rows, plan.points), np.nan)
-        self._texts = [[""] * plan.points for _ in plan.textual]
+        self._points, self._values = plan.points, plan.blank(plan.points)
         self._failures: list[tuple[int, str]] = []
         self._statements: set[str] = set()
         self._errors: dict[str, float] = {}
@@ -59,9 +58,8 @@ class Memory:
     def keep(self, block: Block) -> None:
         """Keep a block."""
         part = slice(block.start, block.stop)
-        self._numbers[:, part] = block.numbers
-        for whole, texts in zip(self._texts, block.texts, strict=True):
-            whole[part] = texts
+        for name, whole in self._values.items():
+            whole[part] = block.values[name]
         self._failures += block.failures
         self._statements |= set(block.errors[0])
         for name, error in block.errors[1].items():
@@ -71,12 +69,13 @@ class Memory:
     def blocks(self, *, numbers: bool = True) -> Iterator[Block]:
         """Yield one block that holds everything."""
         errors = sorted(self._statements), self._errors
-        count = self._numbers.shape[1]
-        yield Block(0, count, self._numbers, self._texts, sorted(self._failures), errors)
+        yield Block(0, self._points, self._values, sorted(self._failures), errors)
 
 
 class WorkFile:
     """Blocks in an SQLite file, which one process at a time may have open.
+
+    With `anew`, what another sweep left in it is forgotten.
 
     Raises
     ------
@@ -86,21 +85,20 @@ class WorkFile:
         If it cannot be opened or written, or is in use.
     """
 
-    def __init__(self, path: Path, plan: Plan) -> None:
-        self.path = path
-        self._rows = sum(plan.rows(column) for column in plan.numeric)
+    def __init__(self, path: Path, plan: Plan, *, anew: bool = False) -> None:
+        self.path, self._plan = path, plan
         existed = path.exists()
         with _told(path):
             self._base = sqlite3.connect(path, isolation_level=None, timeout=0.0)
         try:
-            self._open(plan)
+            self._open(plan, anew)
         except BaseException:
             self._base.close()
             if not existed:
                 self.remove()
             raise
 
-    def _open(self, plan: Plan) -> None:
+    def _open(self, plan: Plan, anew: bool) -> None:
         with _told(self.path):
             self._base.execute(f"PRAGMA page_size={PAGE}")
             self._base.execute("PRAGMA locking_mode=EXCLUSIVE")
@@ -118,8 +116,12 @@ class WorkFile:
             if not tables:
                 self._create(plan)
             (found,) = self._base.execute("SELECT record FROM sweep").fetchone()
+            differing = differences(found, plan)
+            if differing and anew:
+                self._base.execute("DELETE FROM blocks")
+                self._base.execute("UPDATE sweep SET record = ?", (json.dumps(plan.record()),))
             self._base.execute("COMMIT")
-        if differing := differences(found, plan):
+        if differing and not anew:
             raise ValueError(
                 f'"{self.path}" is the unfinished work of another sweep: it differs in '
                 f"{', '.join(differing)}; finish that one, remove the file, or choose another name"
@@ -140,8 +142,12 @@ class WorkFile:
 
     def keep(self, block: Block) -> None:
         """Keep a block; it is safe when this returns."""
-        told = json.dumps([block.texts, block.failures, block.errors])
-        numbers = np.ascontiguousarray(block.numbers, dtype="<f8").data
+        texts = [block.values[column.name].tolist() for column in self._plan.textual]
+        told = json.dumps([texts, block.failures, block.errors])
+        numbers = b"".join(
+            np.ascontiguousarray(block.values[column.name], dtype="<f8").tobytes()
+            for column in self._plan.numeric
+        )
         with _told(self.path):
             self._base.execute(
                 "INSERT INTO blocks VALUES (?, ?, ?, ?)", (block.start, block.stop, told, numbers)
@@ -155,10 +161,21 @@ class WorkFile:
                 f"SELECT start, stop, told, {what} FROM blocks ORDER BY start"
             ):
                 texts, failures, errors = json.loads(told)
-                array = np.frombuffer(blob, dtype="<f8")
-                array = array.reshape(self._rows, -1) if numbers else array
+                values = self._values(stop - start, blob, texts) if numbers else {}
                 pairs = [(index, reason) for index, reason in failures]
-                yield Block(start, stop, array, texts, pairs, (errors[0], errors[1]))
+                yield Block(start, stop, values, pairs, (errors[0], errors[1]))
+
+    def _values(self, points: int, blob: bytes, texts: list[list[str]]) -> dict[str, Any]:
+        """Cut what was kept of a block into its columns."""
+        flat, at = np.frombuffer(blob, dtype="<f8"), 0
+        named = zip(self._plan.textual, texts, strict=True)
+        found = {column.name: np.array(text, dtype=object) for column, text in named}
+        for column in self._plan.numeric:
+            shape = (points, *self._plan.shape(column))
+            end = at + math.prod(shape)
+            found[column.name] = flat[at:end].reshape(shape)
+            at = end
+        return found
 
     def close(self) -> None:
         """Let go of the file; what it keeps can be resumed."""

@@ -1,6 +1,5 @@
-"""Executors: the caller's, our own of threads or processes, or one made by a named factory."""
+"""Executors: the caller's, or our own of threads or processes."""
 
-import importlib
 import multiprocessing
 import os
 import signal
@@ -9,7 +8,6 @@ from collections.abc import Iterator
 from concurrent.futures import Executor, ProcessPoolExecutor, ThreadPoolExecutor
 from contextlib import contextmanager
 
-from kvtheory.scene.quantities import nearest
 from kvtheory.sweeps.engine import Workers
 
 AHEAD = 2
@@ -45,42 +43,6 @@ def in_flight_of(executor: Executor | None, jobs: int) -> int:
     if executor is None:
         return AHEAD * jobs
     return AHEAD * int(getattr(executor, "_max_workers", None) or UNKNOWN_WORKERS)
-
-
-def from_factory(text: str, jobs: int | None) -> Executor:
-    """Call the factory ``module:name``, with the number of jobs if one is given.
-
-    Raises
-    ------
-    ValueError
-        If there is no such module or name, or it does not give an executor.
-
-    Examples
-    --------
-    >>> with from_factory("concurrent.futures:ThreadPoolExecutor", 2) as executor:
-    ...     executor.submit(abs, -2).result()
-    2
-    """
-    given = f'--executor "{text}"'
-    name, sign, factory = text.partition(":")
-    if not (name and sign and factory):
-        raise ValueError(
-            f"{given}: expected module:factory, such as concurrent.futures:ThreadPoolExecutor"
-        )
-    try:
-        module = importlib.import_module(name)
-    except ImportError as error:
-        raise ValueError(f"{given}: the module cannot be imported: {error}") from None
-    if not hasattr(module, factory):
-        names = [known for known in dir(module) if not known.startswith("_")]
-        raise ValueError(f"{given}: {nearest(factory, names)}")
-    try:
-        executor = getattr(module, factory)(*([] if jobs is None else [jobs]))
-    except TypeError as error:
-        raise ValueError(f"{given}: the factory cannot be called: {error}") from None
-    if not (hasattr(executor, "submit") and hasattr(executor, "shutdown")):
-        raise ValueError(f"{given}: expected a concurrent.futures.Executor, got {executor!r}")
-    return executor
 
 
 def _follow_parent() -> None:

@@ -16,9 +16,10 @@ from kvtheory.models.continuum.error_estimate import COARSER, COMPARISONS, certi
 from kvtheory.models.continuum.maxima import force_maxima
 from kvtheory.models.continuum.radau_iia import stages_for
 from kvtheory.models.continuum.run import StepControl
-from kvtheory.models.continuum.solver import STATE_NAMES, Trajectory, TransientError, solve
+from kvtheory.models.continuum.solver import STATE_NAMES, Trajectory, solve
 from kvtheory.models.continuum.surface import height
 from kvtheory.results import Certificate, Event, Transient
+from kvtheory.results.errors import TransientError
 from kvtheory.scene.base_motion import BaseMotion
 from kvtheory.scene.model import Scene
 from kvtheory.scene.static_state import StaticState

@@ -22,19 +22,12 @@ from kvtheory.models.continuum import dense_output as h_
 from kvtheory.models.continuum import run as r_
 from kvtheory.models.continuum.contact import FREE, PEELING, TOUCHING
 from kvtheory.models.continuum.run import Run, StepControl, as_arrays, begin, with_more_room
+from kvtheory.results.errors import TransientError
 from kvtheory.scene.base_motion import BaseMotion
 
 STEP_LIMIT = 100_000
 ATTEMPTS = 1000
 """Between two looks at how far the run has come."""
-
-
-class TransientError(ArithmeticError):
-    """The transient could not be followed further; the message says why and when."""
-
-    def __init__(self, reason: str, s: float, name: str = "s", unit: str = "") -> None:
-        super().__init__(f"{reason} at {name} = {s!r}{unit}")
-        self.reason, self.s = reason, s
 
 
 REASONS = {

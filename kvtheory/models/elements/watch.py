@@ -2,7 +2,6 @@
 
 import math
 from collections import deque
-from collections.abc import Sequence
 
 import numpy as np
 
@@ -10,6 +9,7 @@ from kvtheory.models.elements.model import Model, span
 from kvtheory.models.elements.row import Row
 from kvtheory.models.elements.schemes import DEFAULT, Motion, Scheme
 from kvtheory.models.elements.stability import lengths, limit_at
+from kvtheory.results.errors import DivergenceError
 from kvtheory.scene.base_motion import BaseMotion
 
 LONGEST_PASS = 0.25
@@ -25,15 +25,6 @@ IMBALANCE = 0.05
 
 ELEMENTS = 4.0
 """Elements whose coming and going may upset the balance in a stable run, of all in contact at rest."""
-
-
-class DivergenceError(ArithmeticError):
-    """The time step is so long that the run became unstable; the message says when and why.
-
-    `rows` holds what was to be reported until then: tuples in the order of `TRANSIENT_UNITS`.
-    """
-
-    rows: Sequence[tuple[float, ...]] = ()
 
 
 def doubts(scheme: Scheme, model: Model, path: BaseMotion, h: float) -> str:

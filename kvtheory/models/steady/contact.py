@@ -1,4 +1,4 @@
-r"""One steady contact of an indenter of any shape: its edges, and integrals over it.
+r"""The steady contact of a convex, even shape, for one scene or for columns of scenes.
 
 Geometry, for V > 0 (V < 0 is the mirror image): the foundation moves through x with V. Its surface
 meets the indenter at the leading edge, x_LE < 0, and leaves it at the trailing edge. Between them
@@ -7,277 +7,233 @@ meets the indenter at the leading edge, x_LE < 0, and leaves it at the trailing 
     pressure      p = K (u - l_r h'(x)),  l_r = V tau     (Eqs. 12, 29, 36)
 
 The leading edge is where h = delta on the entering side. The trailing edge is where p falls to zero,
-by a root, or by a jump of h' as at the vertex of a wedge.
+by a root of h + l_r h' = delta, or by the jump of h' at the vertex of a wedge.
 
 One contact: e^(x/l_r) u rises where p > 0, for its derivative is e^(x/l_r) p/(K l_r); the surface
 that is left behind relaxes as e^(-x/l_r), and is met again only where e^(x/l_r) u exceeds its running
-maximum. If h is convex, u is concave and log u + x/l_r too: there is one maximum, the trailing edge.
-Shapes that are not known to be convex are checked on a fine sample of points.
+maximum. As h is convex, log u + x/l_r is concave: there is one maximum, the trailing edge.
+
+Roots are found by Newton's method in ln h against ln x, which is exact for a power. For powers and
+for the circle, ln(h + l_r h') is convex in ln x, so that the steps fall towards the root from above.
+Everything is written in operators that floats and columns, of shape (n, 1), share.
 """
 
-import itertools
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
-from functools import cached_property
-from typing import Any
+from typing import NamedTuple
 
 import numpy as np
-from scipy.integrate import quad
-from scipy.optimize import brentq
 
+from kvtheory.models.steady.double_exponential import (
+    Value,
+    integral,
+    largest,
+    least,
+)
+from kvtheory.results.errors import QuadratureError
 from kvtheory.scene.indenters import Indenter
 
-ROOT_RTOL = 4.0 * float(np.finfo(float).eps)
-"""The smallest tolerance that `brentq` accepts."""
-QUADRATURE_RTOL = 1e-13
-"""A digit above the rounding floor of `quad`, 1.1e-14."""
-GROWTH = 8.0
-"""Ratio of successive trial brackets: few trials over many decades, and a narrow bracket."""
-CHECK_SAMPLES = 512
-"""Points of each region in which a shape that is not known to be convex is checked."""
-WAVY_PIECES = 64
-"""Parts of each smooth piece of a shape that is not known to be convex: with the nodes of `quad` in
-each, waves and bumps down to 1/500 of the contact are seen."""
-CHECK_MARGIN = 1e-9
-"""Share of a region left out at its ends, where kinks may be singular."""
-CHECK_SPAN = 4.0
-"""How far ahead of the contact and behind it that check goes, in contact lengths."""
-CHECK_RTOL = 1e-11
-"""Discrepancy that a check allows, relative to the depth; more would hide from the certificate."""
-JUMP_HALVINGS = 40
-JUMP_RATIO = 1e-6
-"""A change of slope that keeps this share over so many halvings of its interval is a jump."""
+EPS = float(np.finfo(float).eps)
+ULPS = 8.0 * EPS
+"""The least relative step of x."""
+LINEAR = 1e-8
+"""Newton's method squares an error: a step of this size leaves less than the rounding."""
+CUBIC = 1e-5
+"""The same for the depth, whose steps leave a cube of the error."""
+DIFFERENCE = 1e-7
+"""Relative step of x for h'': its error only slows the roots, and changes a peak by its square."""
+GRID = 2.0 ** np.arange(-100, 101)
+"""Half-lengths over the depth that are tried first, so that steep powers do not overflow later."""
+NEAR_REACH = 0.5
+"""Share of the reach at which the search for the half-length starts at most."""
+MOST_STEPS = 200
+"""Steps of a root; they are a handful unless a vertex or the reach of a circle is close."""
+VERTEX = 1e-290
+"""A trailing edge closer to the lowest point than this share of the half-length is at it."""
+FLOOR = 1e-20
+"""Share of the half-length below which the peak is at the lowest point."""
+PEAK_STEPS = 8
+"""Secant steps towards the peak: one for a power, more for a circle."""
+TINY = 1e-300
+"""Added to what may vanish together with what it divides."""
 
 
-class QuadratureError(ArithmeticError):
-    """A quadrature, a root or the assumption of one contact failed; the message says why."""
+ROUNDING = 5e-15
+"""Relative rounding of an edge or of a formula, the shape function included."""
 
 
-@dataclass(frozen=True)
-class Surface:
-    """The surface of the indenter, mirrored (`side` = -1) for a drive in the negative direction."""
+class Contact(NamedTuple):
+    """A contact at one depth; forces are over the stiffness."""
 
-    indenter: Indenter
-    side: float
-
-    def height(self, x: float) -> float:
-        """Return h, or raise where it is not a number."""
-        return self._value(self.indenter.height, x)
-
-    def slope(self, x: float) -> float:
-        """Return h', or raise where it is not a number."""
-        return self.side * self._value(self.indenter.slope, x)
-
-    @property
-    def breakpoints(self) -> list[float]:
-        """The points between which the surface is smooth; the lowest point always counts as one."""
-        return sorted({0.0, *(self.side * kink for kink in self.indenter.kinks)})
-
-    @property
-    def end(self) -> float:
-        """The largest |x| at which the surface can be evaluated."""
-        return math.nextafter(self.indenter.reach, 0.0)
-
-    def _value(self, function: Callable[[float], Any], x: float) -> float:
-        x = self.side * x
-        try:
-            value = float(function(x))
-        except (ArithmeticError, ValueError) as error:
-            raise QuadratureError(
-                f"the indenter's shape failed at x = {x:.6g} m: {error}"
-            ) from error
-        if not math.isfinite(value):
-            raise QuadratureError(f"the indenter's shape is {value} at x = {x:.6g} m")
-        return value
-
-
-@dataclass(frozen=True)
-class Contact:
-    """The contact at one depth and retardation length."""
-
-    surface: Surface
-    l_r: float
-    depth: float
-
-    def compression(self, x: float) -> float:
-        """Return u (Eq. 35)."""
-        return self.depth - self.surface.height(x)
-
-    def pressure(self, x: float) -> float:
-        """Return p/K."""
-        return self.compression(x) - self.l_r * self.surface.slope(x)
-
-    @cached_property
-    def x_le(self) -> float:
-        """The leading edge."""
-        return -root(
-            lambda x: -self.compression(-x), self.depth, self.surface.end, "the leading edge"
-        )
-
-    @cached_property
-    def x_static(self) -> float:
-        """The edge on the leaving side when nothing moves."""
-        return root(lambda x: -self.compression(x), self.depth, self.surface.end, "the static edge")
-
-    @cached_property
-    def trailing(self) -> tuple[float, float]:
-        """The trailing edge, x_TE and u_TE."""
-        for start, end in self._cut(0.0, self.x_static):
-            first, last = math.nextafter(start, end), math.nextafter(end, start)
-            if self.pressure(first) <= 0.0:
-                return start, self.compression(start)
-            if self.pressure(last) <= 0.0:
-                return self._released(brent(self.pressure, first, last))
-        # Only rounding leaves a pressure at the static edge, where u = 0 and h' >= 0.
-        return self._released(self.x_static)
-
-    @cached_property
-    def pieces(self) -> list[tuple[float, float]]:
-        """The contact, cut where the surface is not smooth, and finely where it may be wavy."""
-        cuts = self.smooth_pieces
-        if self.surface.indenter.convex:
-            return cuts
-        return [
-            part
-            for start, end in cuts
-            for part in itertools.pairwise(np.linspace(start, end, WAVY_PIECES + 1).tolist())
-        ]
+    depth: Value
+    a: Value
+    """Half the length of the contact at rest; x_LE = -a."""
+    x: Value
+    """The trailing edge, unless it is at the vertex."""
+    a_moves: Value
+    x_moves: Value
+    """d a/d(delta), d(x_TE)/d(delta)."""
+    rolls: Value
+    """1, or 0 where the pressure jumps through zero at the vertex."""
+    u_te: Value
+    load: Value
+    load_error: Value
+    """Estimate of the relative error of the load at this very depth."""
+    load_slope: Value
+    """d(W/K)/d(delta)."""
 
     @property
-    def smooth_pieces(self) -> list[tuple[float, float]]:
-        """The contact, cut where the surface is not smooth."""
-        return self._cut(self.x_le, self.trailing[0])
-
-    def integral(self, integrand: Callable[[float], float]) -> tuple[float, float]:
-        """Integrate over the contact; return the value and the estimate of its error."""
-        parts = [integral(integrand, start, end) for start, end in self.pieces]
-        # The exactly rounded sum does not depend on the direction of the drive.
-        return math.fsum(value for value, _ in parts), sum(error for _, error in parts)
-
-    def _cut(self, start: float, end: float) -> list[tuple[float, float]]:
-        points = [start, *(x for x in self.surface.breakpoints if start < x < end), end]
-        return list(itertools.pairwise(points))
-
-    def _released(self, x_te: float) -> tuple[float, float]:
-        """Return x_TE and u_TE = l_r h', which does not cancel for small l_r, where p = 0."""
-        u_te = self.l_r * self.surface.slope(x_te)
-        if abs(self.compression(x_te) - u_te) > CHECK_RTOL * self.depth:
-            raise QuadratureError(
-                f"the pressure jumps through zero near x = {self.surface.side * x_te:.6g} m, "
-                "where `kinks` does not say that the slope jumps"
-            )
-        return x_te, u_te
+    def noise(self) -> Value:
+        """Relative error of the depth that has the effects of rounding: of x_LE, and of u."""
+        return ROUNDING * (1.0 + self.a / (self.a_moves * self.depth))
 
 
-def check_one_contact(contact: Contact) -> None:
-    """Raise unless h' is the derivative of h and the edges enclose the only contact."""
-    surface, l_r, (x_te, u_te) = contact.surface, contact.l_r, contact.trailing
-    allowed = CHECK_RTOL * contact.depth
-    for start, end in contact.smooth_pieces:
-        rise = surface.height(end) - surface.height(start)
-        if abs(integral(surface.slope, start, end)[0] - rise) > allowed:
-            raise QuadratureError(
-                "the slope function is not the derivative of the height function, "
-                "or jumps where `kinks` does not say so"
-            )
-        _check_smooth(surface.slope, _sample(start, end))
-    if surface.height(0.0) != 0.0:
-        raise QuadratureError(f"h(0) = {surface.height(0.0):.6g} m: expected 0, the lowest point")
-    if any(contact.compression(x) > contact.depth + allowed for x in _sample(contact.x_le, x_te)):
-        raise QuadratureError(
-            "h is negative within the contact: expected h(0) = 0, the lowest point"
-        )
-    if any(contact.pressure(x) < -allowed for x in _sample(contact.x_le, x_te)):
-        raise QuadratureError(
-            "more than one contact: the surface leaves the indenter before the trailing edge"
-        )
-    if l_r and any(
-        contact.compression(x) > u_te * math.exp((x_te - x) / l_r) + allowed
-        for x in _sample(x_te, contact.x_static)
-    ):
-        raise QuadratureError(
-            "more than one contact: the relaxing surface meets the indenter again"
-        )
-    span = CHECK_SPAN * (contact.x_static - contact.x_le)
-    ahead = _sample(max(contact.x_le - span, -surface.end), contact.x_le)
-    behind = _sample(contact.x_static, min(contact.x_static + span, surface.end))
-    if any(contact.compression(x) > allowed for x in ahead + behind):
-        raise QuadratureError(
-            "more than one contact: the indenter reaches below the foundation's level elsewhere"
-        )
+def at_depth(shape: Indenter, l_r: Value, depth: Value) -> Contact:
+    """Return the contact at a depth."""
+    if not largest(depth - _deepest(shape)) < 0.0:
+        raise QuadratureError("the leading edge lies beyond the indenter's reach")
+    a = _first(shape, depth, depth, lambda x: 1.0)
+    return _at_depth(shape, l_r, depth, a, a)
 
 
-def _sample(start: float, end: float) -> list[float]:
-    """Return points of an interval, its very ends excepted."""
-    margin = CHECK_MARGIN * (end - start)
-    return np.linspace(start + margin, end - margin, CHECK_SAMPLES).tolist()
+def at_load(shape: Indenter, l_r: Value, load: Value, spring: Value) -> Contact:
+    """Return the contact where W/K + spring * depth is the load.
 
-
-def _check_smooth(slope: Callable[[float], float], points: list[float]) -> None:
-    """Raise if the largest change of slope between neighbouring points is a jump."""
-    ends = [(x, slope(x)) for x in points]
-    left, right = max(itertools.pairwise(ends), key=lambda pair: abs(pair[1][1] - pair[0][1]))
-    change = abs(right[1] - left[1])
-    for _ in range(JUMP_HALVINGS):
-        x = 0.5 * (left[0] + right[0])
-        middle = (x, slope(x))
-        if abs(middle[1] - left[1]) > abs(right[1] - middle[1]):
-            right = middle
-        else:
-            left = middle
-    if abs(right[1] - left[1]) > JUMP_RATIO * change:
-        raise QuadratureError(
-            f"the slope jumps by {right[1] - left[1]:.3g} near x = {left[0]:.6g} m "
-            "of the contact, where `kinks` does not say so"
-        )
-
-
-def integral(integrand: Callable[[float], float], start: float, end: float) -> tuple[float, float]:
-    """Integrate a smooth function; return the value and the estimate of its error.
-
-    x = start + width t^2 (3 - 2 t) flattens the ends, where the slope may be singular.
+    d ln W/d ln delta lies between 1 and 2: above, because W is convex in delta; below, because u is
+    concave, so that W/K is at least half of delta d(W/K)/d(delta). Newton's method in logarithms
+    therefore closes in from everywhere; the second derivative of W makes it cubic (Chebyshev).
     """
-    width = end - start
-    value, error, *report = quad(
-        lambda t: integrand(start + width * (t * t * (3.0 - 2.0 * t))) * (6.0 * t * (1.0 - t)),
-        0.0,
-        1.0,
-        epsabs=0.0,
-        epsrel=QUADRATURE_RTOL,
-        limit=200,
-        full_output=1,
+    deepest = _deepest(shape)
+    x = a = _first(
+        shape, load**0.5, load, lambda x: x + (l_r + spring)
+    )  # W/K is about delta (a + l_r)
+    depth = shape.height(a)
+    for _ in range(MOST_STEPS):
+        contact = _at_depth(shape, l_r, depth, a, x)
+        total, slope = contact.load + spring * depth, contact.load_slope + spring
+        power = depth * slope / total
+        bend = 1.0 - power + depth * (contact.a_moves + contact.x_moves) / slope
+        missing = (load - total) / (0.5 * (load + total))  # nearly the logarithm of the quotient
+        share = 1.0 - 0.5 * missing / (1.0 + missing * missing) * bend / power
+        factor = (load / total) ** (share / power)
+        depth, a, x = least(depth * factor, 0.5 * (depth + deepest)), contact.a, contact.x
+        if largest(abs(factor - 1.0)) < CUBIC:
+            return _at_depth(shape, l_r, depth, a, x)
+    raise QuadratureError(
+        "no depth was found that carries the weight: it lies beyond the indenter's reach"
     )
-    if len(report) > 1:  # quad adds a message when it failed
-        reason = " ".join(str(report[1]).split())
-        raise QuadratureError(f"quadrature from {start:.6g} m to {end:.6g} m: {reason}")
-    return width * value, width * error
 
 
-def root(rising: Callable[[float], float], guess: float, last: float, what: str) -> float:
-    """Find the root of a rising function on (0, last], bracketing it from the guess.
+def _deepest(shape: Indenter) -> Value:
+    """Return the depth at which the contact is as wide as the reach."""
+    return math.inf if shape.reach is math.inf else shape.height(shape.reach * (1.0 - EPS))
 
-    `last` is what the indenter's reach permits.
+
+def _first(shape: Indenter, scale: Value, wanted: Value, width: Callable[[Value], Value]) -> Value:
+    """Return the first of spaced points x where h times a width is as wanted, or the last."""
+    x = least(scale * GRID, NEAR_REACH * shape.reach)
+    first = np.minimum((shape.height(x) * width(x) < wanted).sum(-1), GRID.size - 1)
+    return x[first].item() if x.ndim == 1 else np.take_along_axis(x, first[:, None], -1)
+
+
+def _at_depth(shape: Indenter, l_r: Value, depth: Value, a: Value, x: Value) -> Contact:
+    """Return the contact at a depth, from guesses of a and x."""
+    start = a
+    a, a_moves = _half_length(shape, depth, start)
+    rolls = (l_r * shape.slope(VERTEX * a) < depth) * 1.0
+    x, x_moves = _trailing(shape, l_r * rolls, depth, a, x * (a / start))
+    front, front_error = integral(shape.height, a)
+    rear, rear_error = integral(shape.height, x)
+    # Where p = 0, u_TE = l_r h', which does not cancel for a small l_r.
+    u_te = l_r * rolls * shape.slope(x) + (1.0 - rolls) * depth
+    length = a + rolls * x
+    load = depth * length - front - rolls * rear + l_r * u_te
+    error = (front * front_error + rolls * rear * rear_error) / load
+    return Contact(
+        depth, a, x, a_moves, rolls * x_moves, rolls, u_te, load, error, length + l_r
+    )  # fmt: skip
+
+
+def _half_length(shape: Indenter, depth: Value, a: Value) -> tuple[Value, Value]:
+    """Return a > 0 with h(a) = depth, and d a/d(delta)."""
+    for _ in range(MOST_STEPS):
+        height, slope = shape.height(a), shape.slope(a)
+        factor = (depth / height) ** (height / (a * slope))
+        a = least(a * factor, 0.5 * (a + shape.reach))
+        if largest(abs(depth / height - 1.0)) < LINEAR:
+            return a, 1.0 / slope
+    raise QuadratureError("the leading edge lies beyond the indenter's reach")
+
+
+def _trailing(shape: Indenter, l_r: Value, depth: Value, a: Value, x: Value) -> tuple[Value, Value]:
+    """Return x in (0, a] with h(x) + l_r h'(x) = depth, and d x/d(delta)."""
+    for _ in range(MOST_STEPS):
+        slope = shape.slope(x)
+        total = shape.height(x) + l_r * slope
+        rise = x * slope + l_r * _bend(shape, x, slope)
+        factor = (depth / total) ** (total / rise)
+        moves, x = x / rise, least(x * factor, a)
+        if largest(abs(factor - 1.0) + abs(depth / total - 1.0)) < LINEAR:
+            return x, moves
+    raise QuadratureError("the trailing edge was not found: it is too close to a vertex")
+
+
+def _bend(shape: Indenter, x: Value, slope: Value) -> Value:
+    """Return x h''."""
+    step = DIFFERENCE * least(x, shape.reach - x) + ULPS * x
+    return x * ((slope - shape.slope(x - step)) / step)
+
+
+def _peak(shape: Indenter, l_r: Value, contact: Contact) -> Value:
+    """Return the highest p/K.
+
+    It is on the entering side, at y = -x > 0. There p' = 0 means y = l_r y h''/h', which is constant
+    for a power and rises with y for the circle, or else the peak is at the leading edge. Every value
+    on the way is a pressure of this contact, so that the highest of them is never too high.
     """
-    low = high = min(guess, 0.5 * last)
-    while rising(high) < 0.0:
-        if high >= last:
-            raise QuadratureError(
-                f"{what} lies beyond the indenter's reach: it would have to exceed {last:.6g} m"
-            )
-        low, high = high, min(GROWTH * high, last)
-    while rising(low) > 0.0:
-        low, high = low / GROWTH, low
-        if low == 0.0:
-            raise QuadratureError(f"{what} is too close to zero")
-    return brent(rising, low, high)
+    found, last = l_r * shape.slope(contact.a), (contact.a, 0.0 * l_r)
+    y = least(l_r, contact.a) + FLOOR * contact.a
+    for _ in range(PEAK_STEPS):
+        slope = shape.slope(y)
+        found = -least(-found, -(contact.depth - shape.height(y) + l_r * slope))
+        to = l_r * _bend(shape, y, slope) / (slope + TINY) + FLOOR * contact.a
+        gain = (to - last[1]) / (y - last[0] + TINY)
+        last = y, to
+        y = least(abs((to - gain * y) / (1.0 - gain + TINY)), contact.a)
+    return found
 
 
-def brent(function: Callable[[float], float], low: float, high: float) -> float:
-    """Find a root between points where the signs differ, to the last digits, however close to zero."""
-    found, report = brentq(
-        function, low, high, xtol=5e-324, rtol=ROOT_RTOL, maxiter=2000, full_output=True, disp=False
-    )
-    if not report.converged:
-        raise QuadratureError(f"the root between {low:.6g} and {high:.6g}: {report.flag}")
-    return float(found)
+def quantities(shape: Indenter, l_r: Value, contact: Contact) -> dict[str, tuple[Value, ...]]:
+    """Return each quantity over the stiffness, its relative error at this depth, and d ln/d ln delta.
+
+    The friction is l_r times the sum of int h'^2 dx and of u_TE^2/(2 l_r).
+    """
+    depth, a, x, a_moves, x_moves, rolls, u_te, load, load_error, load_slope = contact
+    front, front_error = integral(lambda x: shape.slope(x) ** 2, a)
+    rear, rear_error = integral(lambda x: shape.slope(x) ** 2, x)
+    at_a, at_x = shape.slope(a), shape.slope(x)
+    left = rolls * at_x + (1.0 - rolls) * depth / (l_r + rolls)  # u_TE/l_r
+    drag = front + rolls * rear
+    drag_error = (front * front_error + rolls * rear * rear_error) / drag
+    total = drag + 0.5 * u_te * left
+    load_power, friction_power = depth * load_slope / load, depth * (left + at_a) / total
+    drag_power = depth * (at_a + at_x * at_x * x_moves) / drag
+    peak = _peak(shape, l_r, contact)
+    peak_power = depth / peak * -least(-1.0 + 0.0 * l_r, -l_r * _bend(shape, a, at_a) / (a * at_a))
+    edge = depth * a_moves / a
+    return {
+        "depth": (depth, 0.0, 0.0),
+        "half_length": (a, 0.0, edge),
+        "retardation_length": (l_r, 0.0, 0.0),
+        "leading_edge": (-a, 0.0, edge),
+        "trailing_edge": (rolls * x, 0.0, depth * x_moves / x),
+        "load": (load, load_error, load_power),
+        "friction_force": (l_r * total, drag_error, friction_power),
+        "friction_coefficient": (
+            l_r * total / load,
+            load_error + drag_error,
+            friction_power - load_power,
+        ),
+        "peak_pressure": (peak, 0.0, peak_power),
+        "dissipated_in_contact": (drag / total, drag_error, drag_power - friction_power),
+    }

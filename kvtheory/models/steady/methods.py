@@ -1,6 +1,8 @@
 """The ways to compute steady sliding, and the one place that chooses among them."""
 
+import math
 from collections.abc import Callable, Mapping, Sequence
+from copy import copy
 from dataclasses import replace
 from types import ModuleType
 from typing import Any, NamedTuple
@@ -35,6 +37,8 @@ FAMILIES = {
 }
 """By the name of the shape; `kvtheory.scene.requirements` knows the same names."""
 
+COLUMN = 512
+"""Scenes that are integrated at once: their nodes then fit into the second cache of a core."""
 ROUNDING = 64 * 2.0**-52
 """Of an asymptote and of its error, which are of some twenty operations each."""
 
@@ -46,21 +50,38 @@ def solve_exact(scene: Scene, values: Values) -> SteadyState:
 
 
 def solve_quadrature(scene: Scene, values: Values) -> SteadyState:
-    """Integrate the pressure of any indenter, point by point."""
-    from kvtheory.models.steady import quadrature  # it imports SciPy, which takes a while
+    """Integrate the pressure of any indenter: in columns if it is convex, else scene by scene.
 
+    A scene that fails fails the call.
+    """
     shape = values["drive.velocity"].shape
     if 0 in shape:
         return solve_exact(Scene(), dict.fromkeys(Scene().values(), np.empty(shape)))
-    states = []
-    for index in np.ndindex(shape):
-        point = {key: float(array[index]) for key, array in values.items()}
-        own = {
-            key.split(".")[1]: value for key, value in point.items() if key.startswith("indenter.")
-        }
-        indenter: Any = scene.indenter
-        states.append(_solve(quadrature, point, replace(indenter, **own)))
-    return _stack(states, shape) if shape else states[0]
+    if not shape:
+        return _integrated(scene, {key: float(array) for key, array in values.items()})
+    count = math.prod(shape)
+    if scene.indenter.convex:
+        columns: dict[str, Any] = {key: array.reshape(-1, 1) for key, array in values.items()}
+        parts: list[Any] = [slice(start, start + COLUMN) for start in range(0, count, COLUMN)]
+    else:
+        columns = {key: array.ravel() for key, array in values.items()}
+        parts = list(range(count))
+    states = [
+        _integrated(scene, {key: column[part] for key, column in columns.items()}) for part in parts
+    ]
+    return _joined(states, shape)
+
+
+def _integrated(scene: Scene, values: Mapping[str, Any]) -> SteadyState:
+    """Integrate one scene of floats, or a column of scenes."""
+    from kvtheory.models.steady import quadrature  # not needed by the other methods
+
+    # The values have been checked as a whole; a column is no value for the indenter's own check.
+    indenter = copy(scene.indenter)
+    for key, value in values.items():
+        if key.startswith("indenter."):
+            object.__setattr__(indenter, key.removeprefix("indenter."), value)
+    return _solve(quadrature, values, indenter)
 
 
 def solve_asymptote(scene: Scene, values: Values) -> SteadyState:
@@ -111,15 +132,17 @@ def _scalar(array: Array) -> Any:
     return array if array.ndim else float(array)
 
 
-def _stack(states: Sequence[SteadyState], shape: tuple[int, ...]) -> SteadyState:
-    """Join the states of single points into one of arrays."""
+def _joined(states: Sequence[SteadyState], shape: tuple[int, ...]) -> SteadyState:
+    """Join the states of single scenes or of columns into one of arrays."""
 
-    def joined(pick: Callable[[SteadyState, str], Any]) -> dict[str, Array]:
+    def joined(parts: Sequence[Mapping[str, Any]]) -> dict[str, Array]:
         return {
-            name: np.array([pick(state, name) for state in states]).reshape(shape)
+            name: np.concatenate([np.ravel(part[name]) for part in parts]).reshape(shape)
             for name in STEADY_UNITS
         }
 
-    errors = joined(lambda state, name: state.certificate.relative_error[name])
+    errors = joined([state.certificate.relative_error for state in states])
     certificate = replace(states[0].certificate, relative_error=errors)
-    return SteadyState(**joined(getattr), model=states[0].model, certificate=certificate)
+    return SteadyState(
+        **joined([vars(state) for state in states]), model=states[0].model, certificate=certificate
+    )

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from kvtheory.results.above import above
 from kvtheory.results.certificate import Certificate, record
 from kvtheory.scene.files import to_toml
 from kvtheory.scene.model import Scene
@@ -44,7 +45,8 @@ class Sweep:
     `values` maps each quantity to an array with one dimension for each axis, and `time` as the last
     one for a series; `events` is an array of JSON texts. Where the sweep was written to a file,
     `path`, the arrays are read from there when they are asked for. `units` covers swept keys and
-    quantities. `failures` lists scenes that failed: all of them, or for a file the first hundred;
+    quantities. `computed` counts the points that this call solved; the others a file held already.
+    `failures` lists scenes that failed: all of them, or for a file the first hundred;
     `failed` counts them all. The errors in the certificate are the worst over the sweep.
     """
 
@@ -54,6 +56,7 @@ class Sweep:
     values: Mapping[str, Any]
     units: Mapping[str, str]
     points: int
+    computed: int
     failed: int
     failures: tuple[Failure, ...]
     certificate: Certificate
@@ -131,9 +134,7 @@ class Sweep:
         >>> ax.get_xlabel(), ax.get_xscale()
         ('drive velocity $V$ [mm/s]', 'log')
         """
-        from kvtheory.plots.sweep import plot_sweep
-
-        return plot_sweep(ax, self, quantity)
+        return above("plot_sweep")(ax, self, quantity)
 
     def save(self, path: str | Path) -> None:
         """Write to ``.csv`` (one row for each point) or ``.nc`` (needs netCDF4); see `kvtheory.sweep`.
@@ -145,9 +146,7 @@ class Sweep:
         OSError
             If the file cannot be written.
         """
-        from kvtheory.sweeps.files import save_sweep
-
-        save_sweep(self, Path(path))
+        above("save_sweep")(self, Path(path))
 
     def as_dict(self) -> dict[str, Any]:
         """Return plain Python values, ready for JSON; a missing value is None."""

@@ -1,0 +1,289 @@
+r"""The steady contacts of an indenter of any shape: where they are, and what they carry.
+
+In steady sliding the surface of the foundation is (fact F8, with x = V t along the base)
+
+    u(x) = max(0, sup over x' <= x of g(x') e^(-(x - x')/l_r)),   g = delta - h,
+
+so that u e^(x/l_r) is the running maximum of g e^(x/l_r), which rises where p/K = g - l_r h' > 0. Each
+rise that exceeds the maximum so far is a contact: it ends where the rise ends (p = 0), and begins
+where the rise crosses the surface that the contact before it has left behind, or the level of the
+foundation. From p = K (u + l_r u') and p = 0 elsewhere,
+
+    W = K sum (int u dx + l_r (u_TE - u_LE)),
+    F = K sum ((u_TE^2 - u_LE^2)/2 + l_r int h'^2 dx),      dW/d(delta) = K int du/d(delta) dx,
+
+where du/d(delta) is 1 in contact and decays as e^(-x/l_r) behind it. As a supremum of what is linear in
+the depth, u is convex in it, and so is W, which vanishes with it: d ln W/d ln delta >= 1, and every
+load is carried at one depth only.
+"""
+
+import itertools
+import math
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+import numpy as np
+from scipy.optimize import brentq, minimize_scalar
+
+from kvtheory.models.steady.cells import DENSE, NODES, SQUARED, VALUES, WEIGHTS, Surface
+from kvtheory.models.steady.contact import ROUNDING
+from kvtheory.results.errors import QuadratureError
+
+PEAK_BAND = 0.02
+"""Local maxima of the sampled pressure that are this close to the highest are searched."""
+PEAK_XTOL = 1e-8
+"""Tolerance of the place of the peak, over the distance of two samples; its value has the square."""
+MOST_STEPS = 100
+"""Trial depths; they are a handful unless a contact begins at the very depth that is sought."""
+HALF = 0.5
+"""Share of the depth below which u_TE is better taken from the slope than from the height."""
+SETTLED = 1e-9
+"""Last step of the depth, over the depth; the one after it is much smaller."""
+DEEPER = 8.0
+"""A depth without an answer is divided by this, if none is known to be too shallow."""
+SHALLOWEST = 1e-12
+"""Share of the first trial depth below which no answer is sought any more."""
+DEPTH_STEP = 2.0**-20
+"""Relative step of the depth for derivatives, which are needed to a digit or two."""
+ROOT_RTOL = 4.0 * float(np.finfo(float).eps)
+"""The smallest tolerance that `brentq` accepts."""
+
+
+class Patch(NamedTuple):
+    """One contact: its edges, and u at them."""
+
+    x_le: float
+    x_te: float
+    u_le: float
+    u_te: float
+
+
+class Contact:
+    """All contacts at one depth; forces are over the stiffness."""
+
+    def __init__(self, surface: Surface, l_r: float, depth: float) -> None:
+        self.surface, self.l_r, self.depth = surface, l_r, depth
+        self.cells = surface.cells(depth)
+        self.patches = self.patches_at(l_r)
+        for x in surface.jumps:
+            if surface.height(x) < depth:
+                raise QuadratureError(
+                    f"the slope jumps near x = {surface.side * x:.6g} m of the contact, "
+                    "where `kinks` does not say so"
+                )
+        ends = [patch.x_le for patch in self.patches[1:]] + [math.inf]
+        self.load = self.load_error = self.load_slope = 0.0
+        for patch, end in zip(self.patches, ends, strict=True):
+            length = patch.x_te - patch.x_le
+            below, error = self.integral(patch, surface.height, 1)
+            self.load += depth * length - below + l_r * (patch.u_te - patch.u_le)
+            self.load_error += error
+            behind = -math.expm1((patch.x_te - end) / l_r) if l_r else 0.0
+            self.load_slope += length + l_r * behind
+        self.load_error /= self.load
+
+    def gap(self, x: float) -> float:
+        """Return g."""
+        return self.depth - self.surface.height(x)
+
+    def pressure(self, x: float, l_r: float) -> float:
+        """Return p/K where there is contact."""
+        return self.gap(x) - (l_r * self.surface.slope(x) if l_r else 0.0)
+
+    def patches_at(self, l_r: float) -> list[Patch]:
+        """Return the contacts at a retardation length."""
+        x, g, p = self._sampled(l_r)
+        if max(g[0], g[-1]) >= 0.0:
+            raise QuadratureError(
+                f"the contact lies beyond the indenter's reach, or beyond {x[-1]:.6g} m"
+            )
+        found: list[Patch] = []
+        turns = np.flatnonzero((p[1:] > 0.0) != (p[:-1] > 0.0)).tolist()
+        turns = [-1, *turns] if p[0] > 0.0 else turns
+        for begin, end in zip(turns[::2], turns[1::2], strict=False):
+            start, _ = self._turn(x, begin, l_r)
+            last, smooth = self._turn(x, end, l_r)
+            u_te = self.gap(last)
+            if smooth and u_te < HALF * self.depth:  # p = 0, and l_r h' does not cancel
+                u_te = l_r * self.surface.slope(last)
+            x_le, u_le = start, 0.0
+            if l_r:
+                left = found[-1] if found else Patch(0.0, start, 0.0, 0.0)
+
+                def level(y: Any, left: Patch = left) -> Any:
+                    """Return what the contact before has left behind."""
+                    return left.u_te * np.exp((left.x_te - y) / l_r)
+
+                if u_te <= level(last):
+                    continue
+                inside = slice(begin + 1, end + 1)
+                highest = np.argmax(g[inside] - level(x[inside]))
+                x_le = _root(lambda y: self.gap(y) - level(y), start, float(x[inside][highest]))
+                u_le = float(level(x_le))
+            found.append(Patch(x_le, last, u_le, u_te))
+        return found
+
+    def _sampled(self, l_r: float) -> tuple[Any, Any, Any]:
+        """Return points in order, with g and p/K there from the series; cells keep both their ends."""
+        c = self.cells
+        x = 0.5 * (c.start + c.end)[:, None] + 0.5 * (c.end - c.start)[:, None] * DENSE
+        x[:, 0], x[:, -1] = c.start, c.end
+        g = self.depth - c.height @ VALUES
+        p = g - l_r * (c.slope @ VALUES)
+        # Two roots may hide between samples: there the parabola through three of them crosses zero.
+        left, middle, right = p[:, :-2], p[:, 1:-1], p[:, 2:]
+        bend, tilt = left - 2.0 * middle + right, 0.5 * (right - left)
+        shift, vertex = -tilt / bend, middle - 0.5 * tilt * tilt / bend
+        hidden = (abs(shift) < 1.0) & (vertex * middle <= 0.0)
+        hidden &= (left * middle > 0.0) & (right * middle > 0.0)
+        for row, column in np.argwhere(hidden).tolist():
+            step = (c.end[row] - c.start[row]) / (DENSE.size - 1)
+            at, point = (row, column + 1), x[row, column + 1] + shift[row, column] * step
+            x[at], g[at], p[at] = point, self.gap(point), self.pressure(point, l_r)
+        return x.ravel(), g.ravel(), p.ravel()
+
+    def _turn(self, x: Any, index: int, l_r: float) -> tuple[float, bool]:
+        """Return where p changes its sign after a sample, and whether by a root."""
+        if index < 0 or index % DENSE.size == DENSE.size - 1:
+            return float(x[max(index, 0)]), False
+        return _root(lambda y: self.pressure(y, l_r), float(x[index]), float(x[index + 1])), True
+
+    def integral(
+        self, patch: Patch, function: Callable[[float], float], power: int
+    ) -> tuple[float, float]:
+        """Integrate h or h'^2 over a contact; return also an estimate of the error."""
+        c, value, error = self.cells, 0.0, 0.0
+        series, tail = (c.height, c.height_tail) if power == 1 else (c.slope, c.slope_tail)
+        for i in np.flatnonzero((c.end > patch.x_le) & (c.start < patch.x_te)).tolist():
+            start, end = max(c.start[i], patch.x_le), min(c.end[i], patch.x_te)
+            if end - start == c.end[i] - c.start[i]:
+                mean = series[i, 0] if power == 1 else series[i] ** 2 @ SQUARED
+            else:
+                x = 0.5 * (start + end) + 0.5 * (end - start) * NODES
+                mean = 0.5 * (
+                    WEIGHTS @ np.array([function(point) ** power for point in x.tolist()])
+                )
+            value += (end - start) * mean
+            error += (end - start) * tail[i] * power * math.sqrt(abs(mean)) ** (power - 1)
+        return value, error
+
+    @property
+    def noise(self) -> float:
+        """Relative error of the depth that has the effects of rounding: of edges, of h and of h'."""
+        c = self.cells
+        low = (c.height @ VALUES).min(axis=1) < self.depth
+        edges = [x for patch in self.patches for x in (patch.x_le, patch.x_te)]
+        shift = max(abs(x * self.surface.slope(x)) for x in edges)
+        tail = (c.height_tail + self.l_r * c.slope_tail)[low].max()
+        return ROUNDING + (ROUNDING * shift + float(tail)) / self.depth
+
+    def peak(self) -> float:
+        """Return the highest p/K, with one-sided values at edges and kinks."""
+        x, _, p = self._sampled(self.l_r)
+        inside = [(x >= patch.x_le) & (x <= patch.x_te) for patch in self.patches]
+        highest = max(self.pressure(patch.x_le, self.l_r) for patch in self.patches)
+        highest = max(highest, p[np.any(inside, axis=0)].max(initial=0.0))
+        intervals = set()
+        for patch, samples in zip(self.patches, inside, strict=True):
+            for i in np.flatnonzero(samples & (p > (1.0 - PEAK_BAND) * highest)).tolist():
+                points = x[max(i - 1, 0) : i + 2].clip(patch.x_le, patch.x_te).tolist()
+                if p[i] >= max(p[i - 1 : i + 2]):
+                    intervals |= set(itertools.pairwise(points))
+        for start, end in intervals:
+            if start < end:
+                found = minimize_scalar(
+                    lambda y: -self.pressure(y, self.l_r),
+                    bounds=(start, end),
+                    method="bounded",
+                    options={"xatol": PEAK_XTOL * (end - start)},
+                )
+                highest = max(highest, -float(found.fun))
+        return float(highest)
+
+
+def _root(function: Callable[[float], float], low: float, high: float) -> float:
+    """Return a root between two points; one of them, if only rounding keeps the signs equal."""
+    left, right = function(low), function(high)
+    if left * right >= 0.0:
+        return low if abs(left) < abs(right) else high
+    return float(brentq(function, low, high, xtol=5e-324, rtol=ROOT_RTOL, maxiter=2000))
+
+
+def at_depth(surface: Surface, l_r: float, depth: float) -> Contact:
+    """Return the contacts at a depth."""
+    return Contact(surface, l_r, depth)
+
+
+def at_load(surface: Surface, l_r: float, load: float, spring: float) -> Contact:
+    """Return the contacts where W/K + spring * depth is the load.
+
+    Newton's method in logarithms, kept between the depths that carry too little and too much.
+    """
+    x = surface.first(lambda x, height: height * (x + l_r + spring) >= load)
+    depth = start = min(surface.height(-x), surface.height(x)) or load / x
+    low, high = 0.0, math.inf
+    failure = QuadratureError("no depth was found that carries the weight")
+    for _ in range(MOST_STEPS):
+        try:
+            contact = Contact(surface, l_r, depth)
+        except QuadratureError as error:  # perhaps only because this is too deep
+            failure, high, step = error, depth, math.inf
+            if high < SHALLOWEST * start:
+                break
+        else:
+            total = contact.load + spring * depth
+            low, high = (depth, high) if total < load else (low, depth)
+            step = depth * (load / total) ** (total / (depth * (contact.load_slope + spring)))
+            if abs(step / depth - 1.0) < SETTLED:
+                return Contact(surface, l_r, step)
+        depth = step if low < step < high else math.sqrt(low * high) or high / DEEPER
+    raise failure
+
+
+def quantities(surface: Surface, l_r: float, contact: Contact) -> dict[str, tuple[float, ...]]:
+    """Return each quantity over the stiffness, its relative error at this depth, and d ln/d ln delta.
+
+    The edges are those of all contacts together; the half-length is that of all contacts at rest.
+    """
+    values, errors = _values(contact)
+    nearby, _ = _values(Contact(surface, l_r, contact.depth * (1.0 - DEPTH_STEP)))
+    return {
+        name: (
+            value,
+            errors.get(name, 0.0),
+            (1.0 - nearby[name] / value) / DEPTH_STEP if value else 0.0,
+        )
+        for name, value in values.items()
+    }
+
+
+def _values(contact: Contact) -> tuple[dict[str, float], dict[str, float]]:
+    """Return each quantity over the stiffness, and the errors of those that are integrals."""
+    l_r, patches = contact.l_r, contact.patches
+    drag = drag_error = left = 0.0
+    for patch in patches:
+        value, error = contact.integral(patch, contact.surface.slope, 2)
+        drag, drag_error = drag + value, drag_error + error
+        left += 0.5 * (patch.u_te**2 - patch.u_le**2)
+    friction = left + l_r * drag
+    rest = contact.patches_at(0.0)
+    values = {
+        "depth": contact.depth,
+        "half_length": 0.5 * (rest[-1].x_te - rest[0].x_le),
+        "retardation_length": l_r,
+        "leading_edge": patches[0].x_le,
+        "trailing_edge": patches[-1].x_te,
+        "load": contact.load,
+        "friction_force": friction,
+        "friction_coefficient": friction / contact.load,
+        "peak_pressure": contact.peak(),
+        "dissipated_in_contact": l_r * drag / friction if friction else 1.0,
+    }
+    own = drag_error / drag
+    errors = {
+        "load": contact.load_error,
+        "friction_force": own,
+        "friction_coefficient": own + contact.load_error,
+        "dissipated_in_contact": own,
+    }
+    return values, errors

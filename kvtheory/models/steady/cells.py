@@ -1,0 +1,194 @@
+"""A shape of any kind as a series in cells: where it may touch, and how well that is known.
+
+The shape is cut into cells, until it lies above the depth in a cell or is resolved there: the last
+coefficients of the Legendre series of h and h' are rounding. What is narrower than the nodes of the
+first cells, 1/100 of its distance from the lowest point, can hide between them.
+"""
+
+import itertools
+import math
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.polynomial import legendre
+
+from kvtheory.results.errors import QuadratureError
+from kvtheory.scene.indenters import Indenter
+
+DEGREE = 15
+"""Of the series in a cell; with 16 nodes."""
+NODES, WEIGHTS = legendre.leggauss(DEGREE + 1)
+SERIES = legendre.legvander(NODES, DEGREE).T * WEIGHTS * (np.arange(DEGREE + 1)[:, None] + 0.5)
+"""Takes values at the nodes to coefficients."""
+DENSE = np.linspace(-1.0, 1.0, 33)
+"""Where the series is looked at; a resolved cell holds hardly more than half a wave."""
+VALUES = legendre.legvander(DENSE, DEGREE).T
+TAIL = 13
+"""First of the coefficients that tell how well a cell is resolved."""
+RESOLVED = 1e-13
+"""Last coefficients over the depth: what is resolved."""
+NOISE = 1e-9
+"""The same for a shape whose own rounding is more than that; the certificate says so."""
+HELPS = 0.25
+"""What a cut leaves of the last coefficients of a smooth shape, at the most."""
+WIDE = 1e3
+"""Height over the depth above which rounding is not accepted, but cut away."""
+JUMP, NARROW = 1e-3, 1e-9
+"""Last coefficients of a slope, over the slope, that only a jump keeps in so narrow a cell."""
+TAIL_MARGIN = 4.0
+"""What a series may miss, over its last coefficients, in a cell that is not resolved."""
+FAR_ABOVE = 1e9
+"""Height over the depth from which a cell is not looked at any closer."""
+PARTS = 8
+"""Cells of each octave of x at first: with their nodes, dips of 1/100 of their distance are seen."""
+OCTAVES = 20
+"""How far a shape without a reach is looked at, beyond the contact: a million times its length."""
+MOST_CELLS = 2**14
+"""A shape that needs more is not smooth."""
+AHEAD = 4.0
+"""Cells are made for a depth that much larger, and serve down to that depth over `AHEAD`."""
+CHECK_RTOL = 1e-11
+"""Discrepancy between h and h' that a check allows, relative to the depth."""
+SQUARED = 1.0 / (2.0 * np.arange(DEGREE + 1) + 1.0)
+"""The mean of the square of each Legendre polynomial."""
+
+
+class Cells(NamedTuple):
+    """Intervals of x in which h may be low, with the series of h and h' in each; one row for each."""
+
+    start: Any
+    end: Any
+    height: Any
+    slope: Any
+    height_tail: Any
+    slope_tail: Any
+
+    def only(self, rows: Any) -> "Cells":
+        """Return some of the rows, or all of them in another order."""
+        return Cells(*(part[rows] for part in self))
+
+
+class Surface:
+    """The surface of an indenter, mirrored (`side` = -1) for a drive in the negative direction."""
+
+    def __init__(self, indenter: Indenter, side: float) -> None:
+        self.indenter, self.side = indenter, side
+        self.end = math.nextafter(indenter.reach, 0.0)
+        self.kinks = sorted({0.0, *(side * kink for kink in indenter.kinks)})
+        self.jumps: list[float] = []
+        self._cells: tuple[float, Cells] | None = None
+        self._length = 0.0
+        if self.height(0.0) != 0.0:
+            raise QuadratureError(f"h(0) = {self.height(0.0):.6g} m: expected 0, the lowest point")
+
+    def height(self, x: float) -> float:
+        """Return h, or raise where it is not a number."""
+        return self._value(self.indenter.height, x)
+
+    def slope(self, x: float) -> float:
+        """Return h', or raise where it is not a number."""
+        return self.side * self._value(self.indenter.slope, x)
+
+    def _value(self, function: Callable[[float], Any], x: float) -> float:
+        x = self.side * x
+        try:
+            value = float(function(x))
+        except OverflowError:
+            return math.inf
+        except (ArithmeticError, ValueError) as error:
+            raise QuadratureError(
+                f"the indenter's shape failed at x = {x:.6g} m ({error}); "
+                "`reach` says up to where it is defined"
+            ) from error
+        if math.isnan(value):
+            raise QuadratureError(f"the indenter's shape is nan at x = {x:.6g} m")
+        return value
+
+    def first(self, enough: Callable[[float, float], bool]) -> float:
+        """Return the first power of two at which the higher of both sides is enough, or the reach."""
+        for x in (2.0 ** np.arange(-200, 201)).tolist():
+            if x >= self.end:
+                break
+            if enough(x, max(self.height(-x), self.height(x))):
+                return float(x)
+        return self.end
+
+    def cells(self, depth: float) -> Cells:
+        """Return the cells in which h may be below a depth; they serve for others near it."""
+        if self._cells is None or not self._cells[0] / AHEAD**2 <= depth <= self._cells[0]:
+            self._cells = AHEAD * depth, self._resolved(AHEAD * depth)
+        return self._cells[1]
+
+    def _grid(self, depth: float) -> Any:
+        """Return intervals out to the reach, narrow where the contact is, cut at the kinks."""
+        self._length = self.first(lambda _, height: height >= depth)
+        if self._length == math.nextafter(math.inf, 0.0):
+            raise QuadratureError(f"the indenter does not rise to {depth:.6g} m anywhere")
+        octaves = [0.0, *(self._length * 2.0 ** np.arange(OCTAVES + 1))]
+        side = np.concatenate(
+            [np.linspace(*ends, PARTS + 1) for ends in itertools.pairwise(octaves)]
+        )
+        side = np.append(side[side < self.end], min(self.end, octaves[-1]))
+        kinks = [kink for kink in self.kinks if abs(kink) < side[-1]]
+        cuts = np.unique(np.concatenate((-side, side, kinks)))
+        return np.column_stack((cuts[:-1], cuts[1:]))
+
+    def _series(self, function: Callable[[float], float], cells: Any) -> tuple[Any, Any]:
+        """Return the values of a function at the nodes of each cell, and their coefficients."""
+        x = cells.mean(axis=1)[:, None] + 0.5 * np.diff(cells) * NODES
+        values = np.array([function(point) for point in x.ravel().tolist()]).reshape(x.shape)
+        return values, values @ SERIES.T
+
+    def _resolved(self, depth: float) -> Cells:
+        """Cut the cells in which h may be below the depth until h and h' are resolved in each."""
+        todo, tails, done = self._grid(depth / AHEAD), np.array(math.inf), []
+        count = len(todo)
+        while todo.size:
+            values, height = self._series(self.height, todo)
+            tail = np.abs(height[:, TAIL:]).sum(axis=1)
+            low = (height @ VALUES).min(axis=1) - TAIL_MARGIN * tail
+            near = ~((low > depth) | (values.min(axis=1) > FAR_ABOVE * depth))
+            todo, height, tail = todo[near], height[near], tail[near]
+            _, slope = self._series(self.slope, todo)
+            start, end = todo.T
+            width, slope_tail = end - start, np.abs(slope[:, TAIL:]).sum(axis=1)
+            size, worst = np.abs(slope).sum(axis=1), np.maximum(tail, slope_tail * width)
+            # Where a cut does not help, the coefficients are the rounding of the shape.
+            noisy = worst > HELPS * np.broadcast_to(tails, near.shape)[near]
+            noisy &= (slope_tail < NOISE * size) & (values[near].max(axis=1) < WIDE * depth)
+            fine = (worst < RESOLVED * depth) | (noisy & (worst < NOISE * depth))
+            self._note_jumps(todo[(slope_tail > JUMP * size) & (width < NARROW * self._length)])
+            done.append(Cells(start, end, height, slope, tail, slope_tail).only(fine))
+            start, end, middle = start[~fine], end[~fine], todo[~fine].mean(axis=1)
+            count += middle.size
+            if count > MOST_CELLS or np.any((middle == start) | (middle == end)):
+                raise QuadratureError(
+                    f"near x = {self.side * middle[0]:.6g} m the shape is not smooth, or there are too "
+                    "many places to look at; `reach` says where it ends"
+                )
+            todo = np.column_stack((start, middle, middle, end)).reshape(-1, 2)
+            tails = np.repeat(worst[~fine], 2)
+        rows = [np.concatenate(parts) for parts in zip(*done, strict=True)]
+        cells = Cells(*rows).only(np.argsort(rows[0]))
+        self._check_slope(cells, depth)
+        return cells
+
+    def _note_jumps(self, cells: Any) -> None:
+        """Remember where the slope jumps in a cell without a kink that was declared."""
+        for start, end in cells.tolist():
+            if end < self.end and not any(start <= kink <= end for kink in self.kinks):
+                self.jumps.append(end)
+
+    def _check_slope(self, cells: Cells, depth: float) -> None:
+        """Raise unless h' is the derivative of h, and h is nowhere negative."""
+        width = cells.end - cells.start
+        allowed = CHECK_RTOL * depth + TAIL_MARGIN * (cells.height_tail + cells.slope_tail * width)
+        rise = 2.0 * cells.height[:, 1::2].sum(axis=1)
+        if np.any(np.abs(cells.slope[:, 0] * width - rise) > allowed):
+            raise QuadratureError(
+                "the slope function is not the derivative of the height function, "
+                "or jumps where `kinks` does not say so"
+            )
+        if np.any((cells.height @ VALUES).min(axis=1) < -allowed):
+            raise QuadratureError("h is negative somewhere: expected h(0) = 0, the lowest point")

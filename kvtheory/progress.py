@@ -1,0 +1,100 @@
+"""How far some work is: what the public functions call on the way, and a line that shows it."""
+
+import io
+import shutil
+import sys
+import time
+from collections.abc import Callable
+from typing import TextIO
+
+Progress = Callable[[float, str], object]
+"""Called now and then with the share of the work done, from 0 to 1, and words such as
+``"600 of 1,000 points"``; the words may be empty."""
+
+PATIENCE = 1.0
+"""Seconds before anything is shown."""
+ON_TERMINAL, IN_LOG = 0.2, 10.0
+"""Seconds between two reports."""
+SETTLING = 0.5
+"""Seconds before the time left is worth telling."""
+
+
+class ProgressLine:
+    """Shows progress on a stream, standard error by default: one line on a terminal, lines in a log.
+
+    Examples
+    --------
+    >>> seconds = iter([0.0, 0.0, 20.0])
+    >>> line = ProgressLine("sweep", stream=sys.stdout, clock=lambda: next(seconds))
+    >>> line(0.2, "200 of 1,000 points")
+    >>> line(0.6, "600 of 1,000 points")
+    sweep: 60 %, 20 s left, 600 of 1,000 points
+    """
+
+    def __init__(
+        self,
+        label: str,
+        stream: TextIO | None = None,
+        clock: Callable[[], float] = time.monotonic,
+    ) -> None:
+        self._label, self._clock = label, clock
+        self._stream = stream or sys.stderr or io.StringIO()  # standard error may be closed
+        self._terminal = self._stream.isatty()
+        self._due = clock() + (PATIENCE if self._terminal else IN_LOG)
+        self._first: tuple[float, float] | None = None
+        self._last: tuple[float, str] | None = None
+        self._width = 0
+        self._stale = False
+
+    def __call__(self, share: float, words: str = "") -> None:
+        """Report, unless the last report is recent."""
+        now = self._clock()
+        self._first = self._first or (share, now)
+        self._last, self._stale = (share, words), True
+        if now >= self._due:
+            self._due = now + (ON_TERMINAL if self._terminal else IN_LOG)
+            self._write(now)
+
+    def finish(self) -> None:
+        """End the line on a terminal, and report for the last time, if anything was shown."""
+        if not self._width:
+            return
+        if self._stale:
+            self._write(self._clock())
+        if self._terminal:
+            self._stream.write("\n")
+            self._stream.flush()
+
+    def _write(self, now: float) -> None:
+        if self._last is None or self._first is None:
+            return
+        share, words = self._last
+        done, seconds = share - self._first[0], now - self._first[1]
+        text = f"{self._label}: {int(100 * share)} %"
+        if done > 0.0 and share < 1.0 and seconds > SETTLING:
+            text += f", {duration((1.0 - share) * seconds / done)} left"
+        text += f", {words}" if words else ""
+        if self._terminal:
+            text = text[: shutil.get_terminal_size().columns - 1]
+            self._stream.write("\r" + text.ljust(self._width))
+        else:
+            self._stream.write(text + "\n")
+        self._width, self._stale = len(text), False
+        self._stream.flush()
+
+
+def duration(seconds: float) -> str:
+    """Say how long something takes, to a digit or two.
+
+    >>> [duration(s) for s in (8.2, 300.0, 9000.0, 1e6, 1e10)]
+    ['8 s', '5 min', '2 h 30 min', '11 days', '317 years']
+    """
+    whole = round(seconds)
+    minutes, hours, days = whole // 60, whole // 3600, whole // 86400
+    if whole < 120:
+        return f"{whole} s"
+    if minutes < 120:
+        return f"{minutes} min"
+    if hours < 48:
+        return f"{hours} h {minutes % 60} min"
+    return f"{days} days" if days < 730 else f"{days // 365:,} years"

@@ -1,0 +1,31 @@
+"""What can go wrong beyond the input: one error for each kind of failure, with the message in it.
+
+A wrong scene is a `kvtheory.scene.SceneError`, which lists every mistake.
+"""
+
+from collections.abc import Sequence
+
+
+class TransientError(ArithmeticError):
+    """The transient could not be followed further; the message says why and when."""
+
+    def __init__(self, reason: str, s: float, name: str = "s", unit: str = "") -> None:
+        super().__init__(f"{reason} at {name} = {s!r}{unit}")
+        self.reason, self.s = reason, s
+
+
+class DivergenceError(ArithmeticError):
+    """The time step is so long that the run became unstable; the message says when and why.
+
+    `rows` holds what was to be reported until then: tuples in the order of `TRANSIENT_UNITS`.
+    """
+
+    rows: Sequence[tuple[float, ...]] = ()
+
+
+class QuadratureError(ArithmeticError):
+    """A quadrature, a root or the assumption of one contact failed; the message says why."""
+
+
+class ToleranceError(ArithmeticError):
+    """No model is known to be within the tolerance; the message says how far each came."""

@@ -1,0 +1,96 @@
+"""Drives with a shape: velocities V(t) that a scene file can name, each a function of the time in s."""
+
+import math
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+from kvtheory.scene.quantities import quantity, settle
+
+AT_LAST = 20.0
+"""Rise times after which tanh is 1 to the last digit."""
+
+
+@dataclass(frozen=True)
+class Sine:
+    """V = mean + amplitude sin(2 pi frequency t), in m/s.
+
+    >>> round(Sine(amplitude="100 mm/s", frequency="5 Hz")(0.05), 12)
+    0.1
+    """
+
+    waveform: ClassVar[str] = "sine"
+    final_velocity: ClassVar[None] = None
+    amplitude: float = quantity("m/s", "largest velocity less the mean")
+    frequency: float = quantity("1/s", "cycles per time")
+    mean: float = quantity("m/s", "mean velocity", minimum=-math.inf, default=0.0)
+
+    def __post_init__(self) -> None:
+        settle(self, "drive")
+
+    def __call__(self, t: float) -> float:
+        """Return V."""
+        return self.mean + self.amplitude * math.sin(2.0 * math.pi * self.frequency * t)
+
+
+@dataclass(frozen=True)
+class Triangle:
+    """V rises and falls in straight lines between mean + amplitude and mean - amplitude, from the mean.
+
+    >>> wave = Triangle(amplitude=0.1, frequency=5.0)
+    >>> [round(wave(t), 12) for t in (0.025, 0.05, 0.1, 0.15)]
+    [0.05, 0.1, 0.0, -0.1]
+    """
+
+    waveform: ClassVar[str] = "triangle"
+    final_velocity: ClassVar[None] = None
+    amplitude: float = quantity("m/s", "largest velocity less the mean")
+    frequency: float = quantity("1/s", "cycles per time")
+    mean: float = quantity("m/s", "mean velocity", minimum=-math.inf, default=0.0)
+
+    def __post_init__(self) -> None:
+        settle(self, "drive")
+
+    def __call__(self, t: float) -> float:
+        """Return V."""
+        quarters = 4.0 * self.frequency * t
+        nearest = 2.0 * round(0.5 * quarters)  # where it crosses the mean
+        sign = -1.0 if round(0.5 * quarters) % 2 else 1.0
+        return self.mean + sign * self.amplitude * (quarters - nearest)
+
+    def points(self, end: float) -> list[tuple[float, float]]:
+        """Return the corners (t, V) up to the first one at or after `end`, between which it is linear."""
+        found, k = [(0.0, self.mean)], 0
+        while found[-1][0] < end:
+            height = self.amplitude * (-1.0 if k % 2 else 1.0)
+            found.append(((2 * k + 1) / (4.0 * self.frequency), self.mean + height))
+            k += 1
+        return found
+
+
+@dataclass(frozen=True)
+class SmoothRamp:
+    """V = velocity tanh(t/rise_time): from rest to a velocity without a kink but at the start.
+
+    >>> round(SmoothRamp(velocity=0.1, rise_time="10 ms")(0.01), 6)
+    0.076159
+    """
+
+    waveform: ClassVar[str] = "smooth-ramp"
+    velocity: float = quantity("m/s", "velocity at last", minimum=-math.inf)
+    rise_time: float = quantity("s", "time in which it comes to tanh 1 = 76 % of it")
+
+    def __post_init__(self) -> None:
+        settle(self, "drive")
+
+    @property
+    def final_velocity(self) -> float:
+        """The velocity at last."""
+        return self.velocity
+
+    def __call__(self, t: float) -> float:
+        """Return V."""
+        return self.velocity * math.tanh(t / self.rise_time)
+
+
+WAVEFORMS: dict[str, Any] = {cls.waveform: cls for cls in (Sine, Triangle, SmoothRamp)}
+"""The waveforms that a scene file can name."""

@@ -1,0 +1,204 @@
+"""Shapes that touch in several places, against a fine grid with exact memory."""
+
+import math
+
+import numpy as np
+import pytest
+from scipy.optimize import brentq
+
+from kvtheory.models.steady.double_exponential import QuadratureError
+from kvtheory.models.steady.quadrature import at_depth, at_load
+from kvtheory.scene.indenters import Parabola, Profile
+
+POINTS = 200_001
+
+
+def on_a_grid(profile, side, l_r, depth, half_width, points=POINTS):
+    """W/K, F/K, edges and peak p/K by u <- max(g, u e^(-dx/l_r)), from the definitions."""
+    x = np.linspace(-half_width, half_width, points)
+    dx = x[1] - x[0]
+    g = depth - profile.height(side * x)
+    if l_r == 0.0:
+        u = np.maximum(g, 0.0)
+    else:
+        raised = np.where(g > 0.0, np.log(np.maximum(g, 1e-300)) + x / l_r, -np.inf)
+        u = np.exp(np.maximum.accumulate(raised) - x / l_r)
+    touching = (u > 0.0) & (u <= g * (1.0 + 1e-12))
+    pressure = np.where(touching, g - l_r * side * profile.slope(side * x), 0.0)
+    load = np.trapezoid(u, x) + l_r * u[-1]  # the surface relaxes to zero beyond the grid
+    friction = l_r * np.sum(np.diff(u) ** 2) / dx + 0.5 * u[-1] ** 2
+    edges = x[touching][[0, -1]]
+    return np.array([load, friction, *edges, pressure.max()])
+
+
+def held_against_a_grid(profile, l_r, depth, half_width, side=1.0):
+    """Compare at a depth, as far as two grids agree with each other; return the state."""
+    state = at_depth(profile, 1.0, 1.0, side * l_r, depth)
+    grids = [on_a_grid(profile, side, l_r, depth, half_width, n) for n in (POINTS // 4, POINTS)]
+    load, friction, x_le, x_te, peak = grids[1]
+    apart = np.abs(grids[1] - grids[0])
+    dx = 2.0 * half_width / (POINTS - 1)
+    assert state.load == pytest.approx(load, abs=2.0 * apart[0] + 1e-7 * load)
+    assert side * state.friction_force == pytest.approx(
+        friction, abs=2.0 * apart[1] + 1e-3 * friction
+    )
+    assert side * state.leading_edge == pytest.approx(x_le, abs=2.0 * dx)
+    assert side * state.trailing_edge == pytest.approx(x_te, abs=2.0 * dx)
+    assert state.peak_pressure == pytest.approx(peak, abs=2.0 * apart[4] + 1e-2 * peak)
+    return state
+
+
+class Waves(Profile):
+    """x^2/(2R) and cosines, placed with the lowest point of their sum at zero; takes arrays too."""
+
+    def __init__(self, radius, amplitudes, lengths, phases):
+        numbers = (2.0 * np.pi / np.asarray(lengths)).tolist()
+        terms = list(zip(np.asarray(amplitudes).tolist(), numbers, phases, strict=True))
+
+        def raw(x):
+            return x * x / (2.0 * radius) + sum(a * np.cos(k * x + c) for a, k, c in terms)
+
+        def tilt(x):
+            return x / radius - sum(a * k * np.sin(k * x + c) for a, k, c in terms)
+
+        self_width = math.sqrt(4.0 * radius * sum(a for a, _, _ in terms)) + 1e-6
+        x = np.linspace(-self_width, self_width, 200_001)
+        lowest = x[np.argmin(raw(x))]
+        step = x[1] - x[0]
+        origin = brentq(tilt, lowest - step, lowest + step, xtol=1e-18) if terms else 0.0
+        level = raw(origin)
+        super().__init__(lambda x: raw(x + origin) - level, lambda x: tilt(x + origin))
+        object.__setattr__(self, "roughness", sum(a for a, _, _ in terms))
+        object.__setattr__(self, "radius", radius)
+
+    def height(self, x):
+        return self.height_function(x)
+
+    def slope(self, x):
+        return self.slope_function(x)
+
+    def width(self, depth):
+        """Half of a width that holds every contact."""
+        return 1.5 * math.sqrt(2.0 * self.radius * (depth + 2.0 * self.roughness))
+
+
+def random_waves(seed):
+    """A rough parabola over decades of radius, waves, depth and retardation length."""
+    rng = np.random.default_rng(seed)
+    count = int(rng.integers(1, 6))
+    amplitudes = 10.0 ** rng.uniform(-7.0, -5.0, count)
+    lengths = 10.0 ** rng.uniform(-4.3, -2.5, count)
+    radius = 10.0 ** rng.uniform(-3.0, 0.0)
+    profile = Waves(radius, amplitudes, lengths, rng.uniform(0.0, 6.28, count).tolist())
+    depth = profile.roughness * 10.0 ** rng.uniform(-1.0, 1.0)
+    l_r = 0.0 if seed % 5 == 0 else 10.0 ** rng.uniform(-5.0, -1.0)
+    return profile, l_r, depth, (1.0 if seed % 2 or not l_r else -1.0)
+
+
+@pytest.mark.parametrize("seed", range(15))
+def test_random_rough_profiles(seed):
+    profile, l_r, depth, side = random_waves(seed)
+    state = held_against_a_grid(profile, l_r, depth, profile.width(depth), side)
+    back = at_load(profile, 1.0, 1.0, side * l_r, state.load)
+    error = state.certificate.relative_error["load"] + back.certificate.relative_error["depth"]
+    assert abs(back.depth / depth - 1.0) <= error
+    assert back.certificate.relative_error["depth"] < 1e-9
+
+
+def wavy():
+    """1e-5 (x/1e-3)^2 + 1e-6 (1 - cos(6 pi x/1e-3)): a wave every third of a millimetre."""
+    return Waves(0.05, [1e-6], [1e-3 / 3.0], [math.pi])
+
+
+@pytest.mark.parametrize("velocity", [0.0, 1e-6, -1e-3, 0.02])
+def test_the_load_carried_is_the_load_asked_for(velocity):
+    """Among the weights are those at which a contact more has just begun."""
+    profile, l_r = wavy(), abs(velocity) * 0.1
+    for weight in [5.656373927816772, *np.geomspace(0.5, 50.0, 12).tolist()]:
+        state = at_load(profile, 1e10, 0.1, velocity, weight)
+        assert state.load == pytest.approx(weight, rel=1e-9)
+        load, *_ = on_a_grid(profile, 1.0, l_r, state.depth, profile.width(state.depth))
+        assert load == pytest.approx(weight / 1e10, rel=1e-5)
+
+
+def test_the_static_depth_of_a_spring_counts_every_contact():
+    state, rest = (at_load(wavy(), 1e10, 0.1, V, 6.0, k) for V, k in ((0.02, 3e6), (0.0, 0.0)))
+    assert state.load == pytest.approx(6.0 + 3e6 * (rest.depth - state.depth), rel=1e-10)
+    assert state.depth == pytest.approx(5.315e-7, rel=1e-4)
+    load, *_ = on_a_grid(wavy(), 1.0, 2e-3, state.depth, wavy().width(state.depth))
+    assert load == pytest.approx(state.load / 1e10, rel=1e-5)
+
+
+def pair(distance, lift, radius=0.01):
+    """Two parabolas of the same radius, one of them lifted."""
+
+    def second(x):
+        return (x - distance) ** 2 / (2.0 * radius) + lift < x * x / (2.0 * radius)
+
+    return Profile(
+        lambda x: (x - distance * second(x)) ** 2 / (2.0 * radius) + lift * second(x),
+        lambda x: (x - distance * second(x)) / radius,
+    )
+
+
+@pytest.mark.parametrize("distance", [5e-3, 0.07, 1.0, 10.0, 300.0])
+@pytest.mark.parametrize("side", [-1.0, 1.0])
+def test_far_asperities_touch_as_if_they_were_alone(distance, side):
+    """No memory is left over a distance of many retardation lengths."""
+    l_r, depth, lift = 1e-4, 1e-4, 5e-5
+    both = at_depth(pair(side * distance, lift), 1.0, 1.0, l_r, depth)
+    alone = [at_depth(Parabola(0.01), 1.0, 1.0, l_r, d) for d in (depth, depth - lift)]
+    for name in ("load", "friction_force"):
+        total = sum(getattr(state, name) for state in alone)
+        error = both.certificate.relative_error[name]
+        assert abs(getattr(both, name) / total - 1.0) <= error + 1e-14
+        assert error < 1e-6
+    assert both.peak_pressure == pytest.approx(alone[0].peak_pressure, rel=1e-9)
+
+
+@pytest.mark.parametrize("l_r", [1e-5, 1e-3, 3e-3, 0.1])
+@pytest.mark.parametrize("lift", [-0.0, 5e-5, 9.9e-5])
+@pytest.mark.parametrize("distance", [3.5e-3, -3.5e-3])
+def test_an_asperity_in_the_wake_of_another(l_r, lift, distance):
+    held_against_a_grid(pair(distance, lift), l_r, 1e-4, 6e-3)
+
+
+@pytest.mark.parametrize("l_r", [0.0, 1e-4, 1e-2])
+def test_a_step(l_r):
+    """A smooth step up, 20 um wide, within the contact and outside of it."""
+    for place in (-1.2e-3, 5e-4, 1e-3):
+
+        def height(x, place=place):
+            t = math.tanh((x - place) / 1e-5) + math.tanh(place / 1e-5)
+            return x * x / 0.02 + math.copysign(2e-5, place) * t
+
+        def slope(x, place=place):
+            return (
+                x / 0.01
+                + math.copysign(2.0, place) / math.cosh(min(abs(x - place) / 1e-5, 300.0)) ** 2
+            )
+
+        held_against_a_grid(Profile(height, slope), l_r, 1e-4, 3e-3)
+
+
+@pytest.mark.parametrize(
+    ("amplitude", "length", "velocity"), [(2e-5, 5e-4, 0.1), (2e-5, 1e-3, 0.01), (2e-5, 1e-3, 0.0)]
+)
+def test_waves_that_lift_off_and_touch_again(amplitude, length, velocity):
+    profile = Waves(0.01, [amplitude], [length], [math.pi])
+    held_against_a_grid(profile, 0.1 * velocity, 3e-4, profile.width(3e-4))
+
+
+def test_the_load_is_convex_in_the_depth():
+    """What makes the depth at a load unique, whatever the shape."""
+    profile, l_r, *_ = random_waves(3)
+    depths = profile.roughness * np.linspace(0.1, 3.0, 15)
+    loads = [at_depth(profile, 1.0, 1.0, l_r, depth).load for depth in depths.tolist()]
+    assert np.all(np.diff(loads, 2) > -1e-10 * loads[-1])
+
+
+def test_a_weight_beyond_the_reach_is_an_error():
+    short = Profile(lambda x: x * x / 0.02, lambda x: x / 0.01, reach=1e-3)
+    assert at_load(short, 1e10, 0.1, 0.1, 300.0).load == pytest.approx(300.0, rel=1e-12)
+    with pytest.raises(QuadratureError, match="reach"):
+        at_load(short, 1e10, 0.1, 0.1, 1e4)

@@ -1,0 +1,127 @@
+"""How results show themselves: text, tables for notebooks, pictures and files."""
+
+import csv
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+
+import kvtheory as kv
+from kvtheory.cli import main
+from kvtheory.results import STEADY_UNITS, TRANSIENT_UNITS
+
+V = {"drive.velocity": np.geomspace(1e-3, 1.0, 7)}
+RESULTS = {
+    "one state": kv.steady,
+    "many states": lambda: kv.steady(over=V),
+    "transient": lambda: kv.transient(at=["0 ms", "1 ms", "200 ms"]),
+    "simulation": lambda: kv.elements(at=["0 ms", "1 ms"], certify=False),
+}
+
+
+@pytest.fixture(params=RESULTS)
+def result(request):
+    return RESULTS[request.param]()
+
+
+def test_text_is_short_and_names_quantities_model_and_error(result):
+    lines = repr(result).splitlines()
+    assert len(lines) <= 10
+    assert max(map(len, lines)) <= 110
+    assert result.model in lines[0]
+    assert result.certificate.relative_to in lines[-1]
+    assert "friction_force" in repr(result)
+
+
+def test_a_notebook_shows_a_table_with_units_and_certificate(result):
+    html = result._repr_html_()
+    units = TRANSIENT_UNITS if hasattr(result, "time") else STEADY_UNITS
+    assert html.count("<tr>") == 1 + len(units)
+    assert all(f"<td>{name}</td>" in html for name in units)
+    assert "N/mm" in html
+    assert result.certificate.statement.split(",")[0][:30] in html.replace("&quot;", '"')
+
+
+@pytest.mark.parametrize("suffix", [".csv", ".nc"])
+def test_files_hold_what_the_result_holds(result, tmp_path, suffix):
+    path = tmp_path / f"result{suffix}"
+    result.save(path)
+    units = TRANSIENT_UNITS if hasattr(result, "time") else STEADY_UNITS
+    if suffix == ".csv":
+        with path.open(newline="") as file:
+            head, *rows = list(csv.reader(file))
+        assert head == [f"{name} [{unit}]" for name, unit in units.items()]
+        columns = np.array(rows, dtype=float).T
+        for name, column in zip(units, columns, strict=True):
+            assert np.array_equal(column, np.ravel(getattr(result, name)))
+        result.to_csv(tmp_path / "again.csv")
+        assert (tmp_path / "again.csv").read_text() == path.read_text()
+        return
+    data = result.to_xarray()
+    for name, unit in units.items():
+        assert np.array_equal(data[name], getattr(result, name))
+        assert name == "time" or data[name].attrs["units"] == unit
+
+
+def test_another_suffix_is_refused(result, tmp_path):
+    with pytest.raises(ValueError, match=r"\.csv or \.nc"):
+        result.save(tmp_path / "result.xlsx")
+    assert not list(tmp_path.iterdir())
+
+
+def test_a_series_is_drawn_as_in_figure_3():
+    figure = kv.elements(at=["0 ms", "1 ms", "2 ms"], certify=False).plot()
+    assert len(figure.axes) == 4
+    assert figure.axes[1].lines[0].get_ydata()[-1] < 0.0  # z_A in mm
+
+
+def test_steady_sliding_is_drawn_as_a_curve_or_as_its_pressure():
+    state = kv.steady(over=V)
+    (line,) = state.plot().axes[0].lines
+    assert line.get_ydata() == pytest.approx(state.friction_coefficient)
+    for velocity in ("50 mm/s", "-50 mm/s", "1 mm/s"):
+        single = kv.steady(over={"drive.velocity": velocity})
+        x, p = single.plot().axes[0].lines[0].get_data()
+        assert p.max() == pytest.approx(single.peak_pressure / 1e6, rel=1e-3)
+        assert sorted((x[0], x[-1])) == pytest.approx(
+            sorted((single.leading_edge * 1e3, single.trailing_edge * 1e3))
+        )
+        at_trailing = p[np.argmin(np.abs(x - single.trailing_edge * 1e3))]
+        assert abs(at_trailing) < 1e-9 * p.max()
+    with pytest.raises(ValueError, match="parabola only"):
+        kv.steady(kv.Scene(indenter=kv.Wedge(0.1))).plot()
+
+
+def test_a_comparison_shows_itself(tmp_path):
+    right = kv.transient(at=np.linspace(0, 0.2, 200))
+    wrong = {"time": right.time, "depth": 1.5 * right.depth, "friction_force": right.friction_force}
+    for data in (right, wrong):
+        found = kv.compare(data=data)
+        lines = repr(found).splitlines()
+        assert len(lines) <= 10
+        assert found.verdict in lines[0]
+        assert found.diagnosis == lines[1]
+        assert found._repr_html_().count("<tr>") == 1 + len(found.checks)
+        assert found.plot() is not None
+        held = found.to_xarray()
+        assert np.array_equal(held["depth, data"], data["depth"] if data is wrong else data.depth)
+        found.to_csv(tmp_path / "compared.csv")
+        head, *rows = (tmp_path / "compared.csv").read_text().splitlines()
+        assert head.startswith('time [s],"')
+        assert '"depth, theory [m]"' in head
+        assert len(rows) == 200
+
+
+def test_commands_write_and_draw(tmp_path):
+    for command in ("steady", "transient", "elements"):
+        csv_file, picture = tmp_path / f"{command}.csv", tmp_path / f"{command}.png"
+        done = CliRunner().invoke(main, [command, "-o", str(csv_file), "--plot", str(picture)])
+        assert done.exit_code == 0, done.output
+        assert csv_file.stat().st_size > 100
+        assert picture.read_bytes().startswith(b"\x89PNG")
+        again = CliRunner().invoke(main, [command, "-o", str(csv_file)])
+        assert again.exit_code == 0
+    (tmp_path / "notes.csv").write_text("not ours\n")
+    refused = CliRunner().invoke(main, ["steady", "-o", str(tmp_path / "notes.csv")])
+    assert refused.exit_code == 2
+    assert (tmp_path / "notes.csv").read_text() == "not ours\n"

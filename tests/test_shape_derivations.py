@@ -1,0 +1,198 @@
+"""What is derived for other shapes, held against numbers from elsewhere: integrals, roots, brute force."""
+
+import mpmath as mp
+import numpy as np
+import pytest
+import sympy as sp
+
+from derivations import contact_interval, friction_identity, power_law, power_law_weight, wedge
+from derivations import symbols as s
+from derivations.catalogue import catalogue
+
+
+@pytest.fixture(scope="module")
+def by_label():
+    return {derivation.label: derivation for derivation in catalogue()}
+
+
+@pytest.fixture(autouse=True)
+def _fifty_digits():
+    with mp.workdps(50):
+        yield
+
+
+class Contact:
+    """A power law on a foundation of stiffness 1, by quadrature of the elements' law."""
+
+    def __init__(self, exponent, number):
+        self.n, self.l = mp.mpf(exponent), mp.mpf(number)
+        low, high = mp.mpf(0), mp.mpf(1)
+        for _ in range(200):
+            middle = (low + high) / 2
+            low, high = (middle, high) if self.pressure(middle) > 0 else (low, middle)
+        self.q = low
+        pieces = [-1, 0, self.q]
+        self.load = mp.quad(self.pressure, pieces)
+        self.friction = mp.quad(lambda x: -self.slope(x) * self.pressure(x), pieces)
+        self.lost = self.l * mp.quad(lambda x: self.slope(x) ** 2, pieces)
+
+    def slope(self, x):
+        """The slope of h, in units of delta/a."""
+        return mp.sign(x) * self.n * abs(x) ** (self.n - 1)
+
+    def pressure(self, x):
+        return 1 - abs(x) ** self.n - self.l * self.slope(x)
+
+    def value(self, expr):
+        point = {s.exponent: self.n, s.l: self.l, s.q: self.q, s.Q: self.q ** (self.n - 1)}
+        return mp.mpf(str(sp.N(expr.subs({k: sp.Float(v, 50) for k, v in point.items()}), 50)))
+
+
+@pytest.mark.parametrize("exponent", ["1.5", "2", "3.7", "9"])
+@pytest.mark.parametrize("number", ["0.001", "0.6", "40"])
+def test_the_forms_of_a_power_law_are_those_of_quadrature(exponent, number):
+    contact = Contact(exponent, number)
+    inside = (1 + s.q * s.Q**2) * s.exponent**2 * s.l / (2 * s.exponent - 1)
+    for expr, truth in (
+        (power_law.NUMBER, contact.l),
+        (power_law.LOAD, contact.load),
+        (power_law.FRICTION_FORCE, contact.friction),
+        (power_law.FRICTION_COEFFICIENT, contact.friction / contact.load),
+        (inside, contact.lost),
+    ):
+        assert mp.almosteq(contact.value(expr), truth, rel_eps=mp.mpf("1e-25"))
+
+
+@pytest.mark.parametrize("exponent", ["1.2", "2", "5"])
+def test_friction_rises_under_a_weight_where_the_derivation_says(exponent):
+    def friction(number):
+        contact = Contact(exponent, number)
+        n = contact.n
+        size = (2 * n / (n + 1) / contact.load) ** (1 / (n + 1))
+        return size ** (n - 1) * contact.friction / contact.load, contact
+
+    for number in ("0.5", "0.9", "1.2", "1.7", "2.5", "9"):
+        step = mp.mpf("1e-12")
+        (low, _), (high, contact) = (
+            friction(mp.mpf(number) * (1 + side * step)) for side in (-1, 1)
+        )
+        assert mp.sign(high - low) == mp.sign(contact.value(power_law_weight.SLIP))
+
+
+@pytest.mark.parametrize(("support", "drive"), [(0, "0.3"), (2, "0.7"), (0, "4"), (5, "40")])
+def test_the_depth_of_a_wedge_balances_its_weight(support, drive):
+    lam, kappa = mp.mpf(drive), mp.mpf(support)
+    peeling = 1.5 * lam**2 + kappa * lam < 1 + kappa
+    form = wedge.SCALED_PEELING if peeling else wedge.SCALED_PEELED
+    held = {s.held: 1 + s.kappa - s.lam**2 / 2}
+    depth = mp.mpf(
+        str(sp.N(form.subs(held).subs({s.lam: sp.Float(drive, 50), s.kappa: support}), 50))
+    )
+    number = lam / depth
+    assert (number < 1) == peeling
+    load = 1 + number**2 / 2 if number < 1 else number + mp.mpf(1) / 2
+    assert abs(depth**2 * load + kappa * (depth - 1) - 1) < mp.mpf("1e-40") * (1 + kappa)
+
+
+def test_friction_needs_no_integral_at_any_instant():
+    """F21 for pressures in the middle of a motion: any V, depth and rate of depth, any ends."""
+    rng = np.random.default_rng(21)
+    R, K, tau = map(mp.mpf, ("0.013", "2.1e9", "0.17"))
+    for _ in range(20):
+        V, rate = (mp.mpf(float(x)) for x in rng.normal(size=2) * [0.1, 1e-3])
+        depth, left, right = (
+            mp.mpf("2e-4"),
+            *(mp.mpf(float(x)) for x in rng.uniform(-2e-3, 2e-3, 2)),
+        )
+
+        def pressure(x, V=V, rate=rate, depth=depth):
+            return K * (depth - x**2 / (2 * R)) + K * tau * (rate - V * x / R)
+
+        normal = mp.quad(pressure, [left, right])
+        along = mp.quad(lambda x: -x / R * pressure(x), [left, right])
+        squares = pressure(left) ** 2 - pressure(right) ** 2
+        assert mp.almosteq(along, V * tau / R * normal - squares / (2 * K), rel_eps=mp.mpf("1e-30"))
+
+
+def test_the_asymptotes_follow_from_the_two_lines(by_label):
+    low, high = by_label["F21-low"], by_label["F21-high"]
+    assert low.status == high.status == "proved-leading-order"
+    remainders = [step.latex for step in (*low.steps, *high.steps)]
+    for printed in (r"\frac{3 l^{2}}{4}", r"\frac{3 l}{4}", r"\frac{2}{3 l}", r"\frac{3}{8 l}",
+                    r"\frac{7}{24 l}"):  # fmt: skip
+        assert any(printed in latex for latex in remainders), printed
+    assert s.K * (s.a**3 + s.r**3 - s.l_r**3) / (3 * s.R) == friction_identity.LOAD
+
+
+def two_slopes(x):
+    return np.abs(x) + 3 * np.maximum(0, np.abs(x) - 1)
+
+
+def pressed(height, motion, steps, ground):
+    """Follow all elements by F8: u <- max(g, u e^-ds); return which touch at the end."""
+    (depth, place), *rest = [motion(step / steps) for step in range(steps + 1)]
+    u = np.maximum(0.0, depth - height(ground + place))
+    for depth, place in rest:
+        g = depth - height(ground + place)
+        u = np.maximum(g, u * np.exp(-motion.duration / steps))
+    return g >= u - 1e-12
+
+
+class LiftAndShift:
+    """Rest, lift, move, set down, as in the derivation; the base moves by `shift` meanwhile."""
+
+    def __init__(self, first, last, shift, duration):
+        self.first, self.last, self.shift, self.duration = first, last, shift, duration
+
+    def __call__(self, t):
+        depth = self.first if t == 0 else self.last if t == 1 else -100.0
+        return depth, self.shift * t
+
+
+def intervals(touching):
+    """Count the runs of elements that touch."""
+    edges = np.flatnonzero(np.diff(np.concatenate(([False], touching, [False])).astype(int)))
+    return edges.reshape(-1, 2)
+
+
+def test_the_wedge_of_two_slopes_has_two_contacts():
+    ground = np.linspace(-4.0, 4.0, 96001)
+    motion = LiftAndShift(4.0, 15 / 8, 0.5, np.log(2.0))
+    parts = intervals(pressed(two_slopes, motion, 50, ground))
+    assert len(parts) == 2
+    place = ground + 0.5
+    ends = [place[[first, last - 1]] for first, last in parts]
+    assert np.allclose(ends, [[-19 / 16, -5 / 8], [-1 / 4, 1 / 12]], atol=2e-4)
+
+
+SHAPES = {
+    "power 1.2": lambda x: np.abs(x) ** 1.2,
+    "power 1.5": lambda x: np.abs(x) ** 1.5,
+    "power 4": lambda x: x**4,
+    "power 9": lambda x: np.abs(x) ** 9,
+    "wedge": np.abs,
+    "catenary": lambda x: np.cosh(x) - 1,
+}
+
+
+@pytest.mark.parametrize("name", SHAPES)
+def test_other_shapes_have_one_contact_in_any_motion(name):
+    """Random walks of depth and place, with flights; every instant is looked at."""
+    height, rng = SHAPES[name], np.random.default_rng(len(name))
+    ground = np.linspace(-6.0, 6.0, 6001)
+    for _ in range(12):
+        depth, place = 1.0, 0.0
+        u = np.maximum(0.0, depth - height(ground))
+        for _ in range(60):
+            place += rng.normal() * 0.3
+            depth = rng.uniform(-0.5, 1.5) if rng.random() < 0.3 else depth + rng.normal() * 0.05
+            g = depth - height(ground + place)
+            u = np.maximum(g, u * np.exp(-rng.exponential(0.3)))
+            assert len(intervals((g >= u) & (g > 0))) <= 1
+
+
+def test_the_shapes_that_are_named_are_proved(by_label):
+    names = {"F9-shapes", "F9-power", "F9-wedge", "F9-catenary", "F9-circle", "F9-converse"}
+    assert names <= set(by_label)
+    assert {by_label[name].status for name in names} == {"proved"}
+    assert "F9-two-slopes" in {each.label for each in contact_interval.derive()}

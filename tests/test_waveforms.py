@@ -1,0 +1,113 @@
+"""Drives with a shape and drives from a table: what they are, and what is said of mistakes."""
+
+import math
+
+import numpy as np
+import pytest
+
+import kvtheory as kv
+from kvtheory.scene.waveforms import AT_LAST
+
+WAVES = {
+    "sine": kv.Sine(amplitude="80 mm/s", frequency="7 Hz", mean="10 mm/s"),
+    "triangle": kv.Triangle(amplitude="80 mm/s", frequency="7 Hz", mean="-5 mm/s"),
+    "smooth-ramp": kv.SmoothRamp(velocity="-60 mm/s", rise_time="13 ms"),
+}
+TIMES = np.linspace(0.0, 0.2, 57)
+
+
+@pytest.mark.parametrize("name", WAVES)
+def test_a_waveform_is_followed_and_comes_back_from_its_file(name, tmp_path):
+    wave = WAVES[name]
+    scene = kv.Scene(drive=kv.Drive(waveform=wave))
+    found = kv.transient(scene, at=TIMES, rtol=1e-9)
+    assert found.velocity == pytest.approx([wave(t) for t in TIMES], abs=1e-10)
+    path = tmp_path / "scene.toml"
+    path.write_text(kv.to_toml(scene))
+    assert kv.load_scene(path) == scene
+    bumpy = kv.elements(scene, at=TIMES, per_length="100 /mm", certify=False)
+    assert bumpy.velocity == pytest.approx(found.velocity, abs=1e-8)
+    assert bumpy.depth == pytest.approx(found.depth, abs=2e-3 * found.depth[0])
+
+
+def test_a_triangle_is_its_history():
+    wave = kv.Triangle(amplitude=0.1, frequency=5.0, mean=0.02)
+    corners = wave.points(0.2)
+    assert corners[-1][0] >= 0.2
+    t = np.linspace(0.0, 0.2, 333)
+    assert [wave(x) for x in t] == pytest.approx(np.interp(t, *np.array(corners).T), abs=1e-14)
+    plain = kv.transient(kv.Scene(drive=kv.Drive(history=corners)), at=TIMES)
+    shaped = kv.transient(kv.Scene(drive=kv.Drive(waveform=wave)), at=TIMES)
+    assert np.array_equal(plain.depth, shaped.depth)
+
+
+def test_what_ends_with_a_velocity_slides_steadily_at_last():
+    ramp = kv.Scene(drive=kv.Drive(waveform=WAVES["smooth-ramp"]))
+    steady = kv.Scene(drive=kv.Drive(velocity="-60 mm/s"))
+    assert kv.steady(ramp).depth == kv.steady(steady).depth
+    last = ramp.drive.last_change
+    assert math.tanh(AT_LAST) == 1.0
+    assert WAVES["smooth-ramp"](last) == -0.06
+    for name in ("sine", "triangle"):
+        with pytest.raises(kv.SceneError, match=r"drive\.waveform.*velocity or a history"):
+            kv.steady(kv.Scene(drive=kv.Drive(waveform=WAVES[name])))
+
+
+@pytest.mark.parametrize("separator", [",", ";", "\t"])
+def test_a_table_is_a_history(tmp_path, separator):
+    (tmp_path / "drive.csv").write_text(
+        f"t [ms]{separator}V [mm/s]\n# a remark\n0{separator}0\n\n20{separator}90\n20{separator}-10\n"
+    )
+    scene = tmp_path / "scene.toml"
+    scene.write_text(kv.to_toml(kv.Scene()).replace('velocity = "0.1 m/s"', 'file = "drive.csv"'))
+    points = np.array(kv.load_scene(scene).drive.history)
+    assert points == pytest.approx(np.array([(0.0, 0.0), (0.02, 0.09), (0.02, -0.01)]))
+    assert np.array_equal(np.array(kv.Drive(history=points).history), points)
+
+
+@pytest.mark.parametrize(
+    ("overrides", "words"),
+    [
+        (["drive.waveform=sinus"], ['drive.waveform = "sinus"', 'did you mean "sine"']),
+        (["drive.waveform=sine", "drive.amplitude=1 mm/s"], ["drive.frequency: missing", "5 Hz"]),
+        (["drive.waveform=sine", "drive.amplitud=1 mm/s"], ["drive.amplitud", '"amplitude"']),
+        (["drive.waveform=triangle", "drive.amplitude=1 mm"], ["drive.amplitude", "m/s"]),
+        (["drive.file=none.csv"], ["drive.file", "none.csv", "cannot be read"]),
+    ],
+)
+def test_mistakes_are_named(overrides, words):
+    with pytest.raises(kv.SceneError) as caught:
+        kv.load_scene(overrides=overrides)
+    assert all(word in str(caught.value) for word in words), str(caught.value)
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["", "0,1\n", "t [ms],V [mm]\n0,1\n", "t [ms],V [mm/s]\n0,fast\n", "t [ms],V [mm/s]\n0\n"],
+)
+def test_a_table_that_is_none_is_refused_in_one_line(tmp_path, text):
+    path = tmp_path / "drive.csv"
+    path.write_text(text)
+    with pytest.raises(kv.SceneError) as caught:
+        kv.load_scene(overrides=[f"drive.file={path}"])
+    (line,) = caught.value.problems
+    assert "drive.file" in line or "drive.history" in line
+
+
+def test_another_way_to_drive_replaces_the_one_before():
+    wave = ["drive.waveform=sine", "drive.amplitude=1 mm/s", "drive.frequency=2 Hz"]
+    assert kv.load_scene(overrides=wave).drive.velocity is None
+    assert kv.load_scene(overrides=[*wave, "drive.velocity=5 mm/s"]).drive.velocity == 0.005
+
+
+def test_ways_exclude_each_other():
+    with pytest.raises(kv.SceneError, match="one of velocity, history and waveform"):
+        kv.Drive(velocity=0.1, waveform=WAVES["sine"])
+    with pytest.raises(kv.SceneError, match="expected a Sine"):
+        kv.Drive(waveform=math.sin)
+
+
+def test_a_long_history_is_read_in_time_that_grows_with_it():
+    """Units are looked up once, not once for each point."""
+    points = [[f"{i} ms", f"{i % 7} mm/s"] for i in range(20_000)]
+    assert len(kv.Drive(history=points).history) == len(points)
