@@ -66,6 +66,8 @@ def replaced(latex: str, new: Callable[[str], str | None]) -> str:
         other = new(atom.symbol)
         if other is not None:
             dotted = f"{atom.dots}{{{other}}}" if atom.dots else other
+            script = latex[: atom.start].endswith(("_", "^")) and len(other) > 1
+            dotted = f"{{{dotted}}}" if script else dotted
             before = latex[done : atom.start]
             # A command must not run into the letter after it, nor a number into another.
             apart = " " if re.match("[A-Za-z]", latex[atom.end : atom.end + 1]) else ""

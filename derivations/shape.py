@@ -35,7 +35,6 @@ from derivations.symbols import (
     q_root,
     tau,
     x,
-    x_te,
 )  # fmt: skip
 
 PREMISES = ("eq22", "eq29")
@@ -76,9 +75,9 @@ def symbols(text: str) -> tuple[Symbol, ...]:
         Symbol(tex(each), "parameter of the shape", _unit(shape, each)) for each in shape.parameters
     ]
     for force, unit, name in (("W", "N/m", "load"), ("F", "N/m", "friction force")):
-        for sign, side in (("-", "ahead of"), ("+", "behind")):
+        for sign, side in (("a", "ahead of"), ("b", "behind")):
             meaning = f"part of the {name} that is carried {side} the lowest line"
-            rows.append(Symbol(f"{force}_{sign}", meaning, unit))
+            rows.append(Symbol(rf"{force}_{{\mathrm{{{sign}}}}}", meaning, unit))
     return tuple(rows)
 
 
@@ -121,12 +120,16 @@ class _Chapter:
 
     def _rise(self) -> Derivation:
         proof = self._proof("rise", "Shape", _SHAPE)
-        proof.define(h(x), self.rise, "the surface of the indenter", left="h")
+        proof.define(
+            h(x),
+            self.rise,
+            "the surface of the indenter",
+        )
         try:
-            _signed(proof, self.slope, ">", "it rises on both sides", "h'")
+            _signed(proof, self.slope, ">", "it rises on both sides: its slope")
             curvature = sp.diff(self.slope, distance)
             if curvature != 0:
-                _signed(proof, curvature, ">=", "it is convex", "h''")
+                _signed(proof, curvature, ">=", "it is convex: its second derivative")
         except StepError as error:
             raise ValueError(
                 f'the shape "{self.shape.text}" cannot be shown to rise and to be convex for x > 0, '
@@ -154,8 +157,7 @@ class _Chapter:
         proof.recall("eq22", tau, C / K)
         proof.recall("eq29", l_r, V * tau)
         whole = K * (delta - self.rise) - C * V * self.slope
-        proof.define(p, whole, r"$K u + C \dot u$ with $u = \delta - h$ and $\dot u = -V h'$",
-                     right=r"K \left(\delta - h\right) - C V h'")  # fmt: skip
+        proof.define(p, whole, r"$K u + C \dot u$ with $u = \delta - h$ and $\dot u = -V h'$",)  # fmt: skip
         proof.equal(p, form, r"$C V = K l_{\mathrm{r}}$; ahead of it $h'$ has the other sign")
         return proof.done(p, form)
 
@@ -168,14 +170,14 @@ class _Chapter:
         proof.recall("shape-pressure", p, K * (delta - self.rise - l_r * self.slope))
         proof.define(delta, depth, "the leading edge")
         fall = -K * (self.slope + l_r * sp.diff(self.slope, distance))
-        proof.equal(sp.Derivative(p, distance), fall, _FALLS, left="p'(|x|)")
+        proof.equal(sp.Derivative(p, distance), fall, _FALLS)
         if closed is not None:
             if not self.blunt:
                 proof.where(sp.Lt(l_r, a), "the edge is behind the tip")
-            proof.root(p, distance, closed, "the positive root of $p = 0$", left=tex(x_te))
+            proof.root(p, distance, closed, "the positive root of $p = 0$")
         proof.define(l_r, number, r"what it is for an edge at $x_{\mathrm{TE}} = q a$")
         zero = (K * (delta - self.rise - l_r * self.slope)).subs(distance, place)
-        proof.equal(zero, sp.S.Zero, "no pressure there", left=r"p(x_{\mathrm{TE}})")
+        proof.equal(zero, sp.S.Zero, "no pressure there")
         return proof.done(l_r, number)
 
     def _number(self) -> sp.Expr:
@@ -261,8 +263,7 @@ class _Chapter:
         proof.define(delta, depth, "the leading edge")
         limit = depth / tip
         proof.equal(depth - limit * tip, sp.S.Zero,
-                    rf"no pressure just behind the tip from $l_{{\mathrm{{r}}}} = {tex(limit)}$ on",
-                    left=r"\delta - l_{\mathrm{r}} h'(0)")  # fmt: skip
+                    rf"no pressure just behind the tip from $l_{{\mathrm{{r}}}} = {tex(limit)}$ on")  # fmt: skip
         load, friction = K * (a * depth - area + l_r * depth), K * (depth**2 / 2 + l_r * squares)
         for force, weight, value in ((W, sp.S.One, load), (F, self.slope, friction)):
             inner = sp.expand(weight * K * (delta - self.rise + l_r * self.slope))
@@ -285,12 +286,12 @@ class _Chapter:
         return proof.done(mu, last)
 
 
-def _signed(proof: Proof, form: sp.Expr, relation: str, reason: str, left: str) -> None:
+def _signed(proof: Proof, form: sp.Expr, relation: str, reason: str) -> None:
     """Prove a sign for |x| > 0 by that of every term or, where a term has the other one, by Sturm."""
     try:
-        proof.holds(form, relation, 0, reason, left=left)
+        proof.holds(form, relation, 0, reason)
     except StepError:
-        proof.sign(form, relation, 0, (distance, 0, sp.oo), reason, left=left)
+        proof.sign(form, relation, 0, (distance, 0, sp.oo), reason)
 
 
 def _primitive(term: sp.Expr) -> sp.Expr:
@@ -342,7 +343,7 @@ def _trailing_text(closed: bool, blunt: bool) -> str:
 
 
 _FALLS = "negative, as $h' > 0$ and $h'' \\ge 0$: the pressure has one zero"
-_SHAPE = r"In terms of the distance $|x|$ from the lowest line; a prime is the derivative with respect to it."
+_SHAPE = r"In terms of the distance $\bar x = |x|$ from the lowest line; a prime is the derivative with respect to it."
 _EXPLICIT_A = r"The half length $a$ of the contact at rest; the leading edge is at $x = -a$."
 _IMPLICIT_A = (
     r"Here the closed form ends: the half length $a$ is the root of $h(a) = \delta$, one because $h$ "
