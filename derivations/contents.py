@@ -110,6 +110,7 @@ CONTENTS = {
     "F19-balance": "Power law: one depth for a weight",
     "F19-exponents": "Power law: dead weight at high velocity",
     "F19-crossing-weight": "Power law: crossing of the asymptotes at a load",
+    "F19-at-load": "Power law: friction coefficient at a load",
     "F19-slip": "Power law: friction over velocity at a load",
     "F19-maximum": "Power law: one friction maximum under a dead weight",
     "F19-peeled": "Power law: what has peeled",

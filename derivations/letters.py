@@ -25,7 +25,7 @@ _SHAPES = {
 BY_SECTION: dict[str, dict[str, str]] = {
     "Dimensionless groups": {
         **{letter: rf"\mathsf{{{letter}}}" for letter in "NXZT"},
-        "D": r"\mathbf{D}", "D_{X = Z}": r"\mathbf{D}_{\mathsf{X} = \mathsf{Z}}", "E": r"\mathbf{E}",
+        "D": r"\mathbf{D}", "E": r"\mathbf{E}",
         r"\epsilon": r"\varepsilon",
     },
     "Tables": {r"\epsilon": r"\varepsilon"},
@@ -35,16 +35,16 @@ BY_SECTION: dict[str, dict[str, str]] = {
         "c": r"\hat c", "k": r"\bar k",
     },
     "True circle": _CIRCLE,
-    "Transient sliding": {r"\hat p": r"\bar p"},
+    "Transient sliding": {r"\hat p": r"\bar p", "z_A": r"z_{\mathrm{A}}"},
     "Transient: theorems": {
         r"\hat p": r"\bar p", "a": r"\hat a", "u": r"\bar u", "u_0": r"\bar u_0", "g": r"\bar g",
     },
     "Discrete elements": {
         r"\hat p": r"\bar p", "u": r"\bar u", "L": r"\ell_{\mathrm{c}}", "R": r"\hat R", "z": r"\hat z",
-        "y": r"\bar y", r"\Delta": r"\Delta x", r"\eta": r"\hat\eta", r"\xi": r"\hat\xi",
+        "y": r"\bar y", r"\Delta": r"\Delta x", r"\eta": r"\hat\eta",
         "D": r"\hat D", "b": r"b_{\mathrm{e}}", "k": "j", "m": r"m_{\mathrm{k}}", **_STEP,
         **{f"r{end}": rf"\hat\varrho{end}"
-           for end in ("", "_1", "_2", "_3", r"_{(\theta = 1)}", r"_{(\theta \,\mathrm{fitted})}")},
+           for end in ("", "_1", "_2", "_3")},
         **{f"w{end}": rf"\hat w{end}" for end in ("", "_0", "_1")},
     },
 }  # fmt: skip
@@ -70,7 +70,14 @@ BY_LABEL: dict[str, dict[str, str]] = {
     "F14-surface": {"E": r"E_{\mathrm{s}}"},
     "F15-runge-kutta": {"u": "u"},
     "element-kink": {"u": "u", r"\hat p": r"\bar p"},
-    "element-stability": {"w": r"\varpi"},
+    "element-stability": {
+        "w": r"\varpi",
+        "c": "c_1",
+        "x": r"\tilde x",
+        "y": r"\tilde y",
+        r"\eta_{+}": r"\hat\eta_{+}",
+    },
+    "F15-sawtooth": {"h": "h"},
 }
 """Beside these, by label or by the first part of one; they come before those of the section."""
 

@@ -93,7 +93,14 @@ def lines(latex: str, most: float) -> list[str]:
         first, *rest = _terms(link, room)
         rows += [rf"&{'' if beside else chr(92) + 'quad '}{first}"]
         rows += [rf"&\qquad {term}" for term in rest]
-    return [f"{left} {rows[0]}", *rows[1:]] if beside else rows
+    broken = [f"{left} {rows[0]}", *rows[1:]] if beside else rows
+    return broken if all(map(_balanced, broken)) else [latex]
+
+
+def _balanced(row: str) -> bool:
+    r"""Tell whether a row closes the braces and fences that it opens."""
+    fences = [match[1] for match in _FENCED.finditer(row)]
+    return row.count("{") == row.count("}") and fences.count("left") == fences.count("right")
 
 
 def _terms(link: str, most: float) -> list[str]:

@@ -8,7 +8,7 @@ from collections.abc import Collection
 from derivations.contents import CONTENTS
 from derivations.record import Derivation, Table
 from derivations.render import frame
-from derivations.render.breaking import lines
+from derivations.render.breaking import lines, width
 from derivations.render.edition import Edition
 from derivations.render.latex_words import escape, printed, words
 from derivations.render.text import (
@@ -24,6 +24,9 @@ from derivations.render.text import (
 
 LINE = 27.0
 """Width of a numbered formula in em: what a line of 345 pt, that of `article`, leaves in 10 pt."""
+
+SIZES = ((1.0, ""), (1.1, "small"), (1.22, "footnotesize"), (9.0, "scriptsize"))
+"""What cannot be broken is set smaller: by width in lines, the size."""
 
 _REFER = (
     r"\providecommand{\derivationref}[2]{\ifcsname r@#1\endcsname\ref{#1}\else#2\fi}"
@@ -83,8 +86,11 @@ def _display(latex: str, label: str = "") -> str:
     if "&" in body:
         rows = " \\\\\n    ".join(broken)
         body = f"\\begin{{split}}\n    {rows}\n  \\end{{split}}"
+    wide = max(map(width, broken)) / (LINE if label else LINE + 4)
+    size = next((name for most, name in SIZES if wide <= most), SIZES[-1][1])
     mark = rf"\label{{{label}}}" if label else ""
-    return f"\\begin{{equation{star}}}{mark}\n  {body}\n\\end{{equation{star}}}\n"
+    shown = f"\\begin{{equation{star}}}{mark}\n  {body}\n\\end{{equation{star}}}\n"
+    return f"\\begingroup\\{size}\n{shown}\\endgroup\n" if size else shown
 
 
 def _block(block: Given | Line, label: str, labels: Collection[str]) -> str:
