@@ -59,7 +59,7 @@ def numbers(rise, forms, point):
     )
 
 
-POINT = {s.K: "3.1", s.a: "0.7", s.q: "0.37", s.C: "1", s.V: "1"}
+POINT = {s.K: "3.1", s.a: "0.7", s.q: "0.36", s.q_root: "0.6", s.C: "1", s.V: "1"}
 
 
 @pytest.mark.parametrize(

@@ -22,7 +22,7 @@ from derivations.render.text import (
 
 _GAP = 0.03
 """Between the columns of a table, as a share of the line."""
-_WIDTHS = {4: (0.12, 0.52, 0.11, 0.14), 5: (0.1, 0.41, 0.11, 0.12, 0.14)}
+_WIDTHS = {4: (0.11, 0.46, 0.12, 0.22), 5: (0.1, 0.35, 0.11, 0.18, 0.14)}
 """Of the columns of the nomenclature, by their number."""
 
 _PREAMBLE = r"""\documentclass[11pt,a4paper]{article}
