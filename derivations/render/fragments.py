@@ -25,7 +25,7 @@ from derivations.render.text import (
 LINE = 27.0
 """Width of a numbered formula in em: what a line of 345 pt, that of `article`, leaves in 10 pt."""
 
-SIZES = ((1.0, ""), (1.1, "small"), (1.22, "footnotesize"), (9.0, "scriptsize"))
+SIZES = ((1.0, ""), (1.05, "small"), (1.15, "footnotesize"), (1.4, "scriptsize"), (9.0, "tiny"))
 """What cannot be broken is set smaller: by width in lines, the size."""
 
 _REFER = (
