@@ -218,27 +218,32 @@ def is_continuous(expr: sp.Expr, over: Interval, known: Conditions) -> bool:
     variable = over[0]
     if variable not in expr.free_symbols or expr == variable:
         return True
-    inside = known.with_interval(over)
     if expr.is_Pow:
-        base, exponent = expr.as_base_exp()
-        if base == sp.E:
-            return is_continuous(exponent, over, known)
-        if exponent.has(variable) or not is_continuous(base, over, known):
-            return False
-        if exponent.is_integer:
-            return bool(exponent.is_positive or _nowhere_zero(base, over, inside))
-        real = _nowhere_zero(base, over, inside, positive=True)
-        return bool(real or (exponent.is_positive and _never_negative(base, over, inside)))
-    if isinstance(expr, sp.log):
-        arg = expr.args[0]
-        return is_continuous(arg, over, known) and _nowhere_zero(arg, over, inside, positive=True)
-    if isinstance(expr, (sp.asin, sp.acos)):
-        arg = expr.args[0]
-        return is_continuous(arg, over, known) and _never_negative(1 - arg**2, over, inside)
-    allowed = (
-        expr.is_Add or expr.is_Mul or isinstance(expr, (*_CONTINUOUS, AppliedUndef, sp.Derivative))
-    )
+        return _is_continuous_power(expr, over, known)
+    if isinstance(expr, (sp.log, sp.asin, sp.acos)):
+        (argument,) = expr.args
+        inside = known.with_interval(over)
+        if isinstance(expr, sp.log):
+            real = _nowhere_zero(argument, over, inside, positive=True)
+        else:
+            real = _never_negative(1 - argument**2, over, inside)
+        return real and is_continuous(argument, over, known)
+    allowed = expr.is_Add or expr.is_Mul
+    allowed = allowed or isinstance(expr, (*_CONTINUOUS, AppliedUndef, sp.Derivative))
     return bool(allowed and all(is_continuous(arg, over, known) for arg in expr.args))
+
+
+def _is_continuous_power(expr: sp.Pow, over: Interval, known: Conditions) -> bool:
+    base, exponent = expr.as_base_exp()
+    if base == sp.E:
+        return is_continuous(exponent, over, known)
+    if exponent.has(over[0]) or not is_continuous(base, over, known):
+        return False
+    inside = known.with_interval(over)
+    if exponent.is_integer:
+        return bool(exponent.is_positive or _nowhere_zero(base, over, inside))
+    real = _nowhere_zero(base, over, inside, positive=True)
+    return bool(real or (exponent.is_positive and _never_negative(base, over, inside)))
 
 
 def _nowhere_zero(

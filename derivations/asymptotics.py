@@ -9,6 +9,7 @@ from functools import partial
 import sympy as sp
 
 from derivations import steady
+from derivations.book import Shown
 from derivations.record import Derivation
 from derivations.step import Proof
 from derivations.symbols import (
@@ -102,7 +103,7 @@ def _estimate(
     inner = sp.expand(integrand.subs(h(x), _SHAPE).doit())
     paper = sp.Integral(integrand, (x, -a, end))
     reason = r"the integral of the paper, with $u = \delta - h$ and $\dot{u} = -h' V$"
-    sides = {"left": _INTEGRANDS[number], "right": shown}
+    sides: Shown = {"left": _INTEGRANDS[number], "right": shown}
     proof.integral(
         paper, integrand, (x, -a, end), _primitive(inner), reason, value=leading, **sides
     )
@@ -141,7 +142,7 @@ def _coefficient(number: int, title: str, text: str = "") -> Proof:
 def _low_coefficient() -> Derivation:
     proof = _coefficient(42, "Friction coefficient at low velocity", _BOTH)
     ratio = low_friction / low_load
-    shown = {"left": rf"\frac{{{LOW_FRICTION}}}{{{LOW_LOAD}}}"}
+    shown: Shown = {"left": rf"\frac{{{LOW_FRICTION}}}{{{LOW_LOAD}}}"}
     proof.equal(sp.UnevaluatedExpr(ratio), low_coefficient, "Eqs. (40) and (41)", **shown)
     proof.leading_order(mu, low_coefficient, *_low, "exact $F/W$", eps=l_r / a)
     return proof.done(mu, low_coefficient)
@@ -156,7 +157,7 @@ _BOTH = (
 def _high_coefficient() -> Derivation:
     proof = _coefficient(45, "Friction coefficient at high velocity, fixed indenter")
     ratio = high_friction / high_load
-    shown = {"left": rf"\frac{{{HIGH_FRICTION}}}{{C V \delta}}", "right": HIGH_FIXED}
+    shown: Shown = {"left": rf"\frac{{{HIGH_FRICTION}}}{{C V \delta}}", "right": HIGH_FIXED}
     proof.equal(sp.UnevaluatedExpr(ratio), high_coefficient, "Eqs. (43) and (44)", **shown)
     proof.leading_order(mu, high_coefficient, *_high, "exact $F/W$", eps=a / l_r, right=HIGH_FIXED)
     return proof.done(mu, high_coefficient)

@@ -69,11 +69,11 @@ def tex(expr: sp.Expr) -> str:
 
 
 def tex_interval(over: Interval) -> str:
-    """Print for which values of a variable a step holds.
+    r"""Print for which values of a variable a step holds.
 
     >>> x = sp.Symbol("x", real=True)
     >>> [tex_interval((x, *ends)) for ends in ((0, 1), (0, sp.oo), (-sp.oo, 2), (-sp.oo, sp.oo))]
-    ['0 < x < 1', 'x > 0', 'x < 2', 'x \\\\in \\\\mathbb{R}']
+    ['0 < x < 1', 'x > 0', 'x < 2', 'x \\in \\mathbb{R}']
     """
     variable, low, high = tex(over[0]), sp.sympify(over[1]), sp.sympify(over[2])
     if low == -sp.oo and high == sp.oo:
@@ -165,7 +165,8 @@ class Book:
         self._rules: dict[sp.Expr, sp.Expr] = {}
         self._origins: dict[sp.Expr, Fact] = {}
         """For each rule, the fact that it comes from."""
-        self._conditions, self._domain = Conditions(), ()
+        self._conditions = Conditions()
+        self._domain: tuple[str, ...] = ()
         self._used: set[sp.Expr] = set()
         """The rules that the step in hand has used."""
         self._needed: set[sp.Expr] = set()
@@ -445,9 +446,9 @@ class Book:
         """Refuse LaTeX that does not say what was checked: it may only rearrange."""
         used = set(self._used)
         for side, expr in (("left", lhs), ("right", rhs)):
-            latex = shown.get(side)
-            if latex is None:
+            if side not in shown:
                 continue
+            latex = str(dict(shown)[side])
             rules = [*self._rules, *self._rules.values()]
             names = {**names_in(lhs, rhs, *rules, *known, tex_of=TEX), **NOTATION, **self.notation}
             try:

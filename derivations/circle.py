@@ -119,7 +119,9 @@ def _fixed() -> Derivation:
         (F_1, -slope, phi, c_f, FORCE_COEFFICIENT, "friction force"),
     ):
         density = sp.expand(weight * (PARABOLA + eps * CORRECTION))
-        proof.integral(total, density, moved, sp.integrate(density, xi), _MOVED)
+        primitive = sp.integrate(density, xi)
+        low, high = (sp.Subs(primitive, xi, end) for end in moved[1:])
+        proof.integral(total, density, moved, primitive, _MOVED, value=high - low)
         per_eps = sp.Subs(sp.Derivative(total / scale, eps), eps, 0)
         proof.define(
             coefficient, per_eps, r"the change per $\varepsilon$, over that of the parabola"

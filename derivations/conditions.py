@@ -82,29 +82,29 @@ def _sign(expr: sp.Expr, known: Conditions) -> int:
     """Return 1 or -1 for an expression of that sign everywhere, and 0 where nothing is proved."""
     if expr.is_positive or expr.is_negative:
         return 1 if expr.is_positive else -1
+    sign = 0
     if expr.is_Mul:
         sign = int(sp.prod([_sign(factor, known) for factor in expr.args]))
-        if sign:
-            return sign
-    if expr.is_Pow and expr.exp.is_Integer:
+    elif expr.is_Pow and expr.exp.is_Integer:
         sign = _sign(expr.base, known) ** abs(int(expr.exp))
-        if sign:
-            return sign
-    for one in _swept(expr, known):
-        if one.is_positive:
-            return 1
-        if one.is_negative:
-            return -1
-        if sign := _product_sign(one, strict=True):
-            return sign
-    return _sign_by_roots(expr, known)
+    if sign:
+        return sign
+    found = (_known_sign(one) or _product_sign(one, strict=True) for one in _swept(expr, known))
+    return next((sign for sign in found if sign), 0) or _sign_by_roots(expr, known)
+
+
+def _known_sign(expr: sp.Expr, *, strict: bool = True) -> int:
+    """Return what the assumptions on the symbols say at once."""
+    if expr.is_positive or (expr.is_nonnegative and not strict):
+        return 1
+    return -1 if expr.is_negative or (expr.is_nonpositive and not strict) else 0
 
 
 def _swept(expr: sp.Expr, known: Conditions) -> Iterator[sp.Expr]:
     """Yield the expression, and in variables that sweep over what the conditions allow."""
     yield expr
-    for variable, low, high in known.intervals:
-        low, high = sp.sympify(low), sp.sympify(high)
+    for variable, *ends in known.intervals:
+        low, high = map(sp.sympify, ends)
         step = sp.Dummy("step", positive=True)
         if not expr.has(variable) or not (low.is_finite or high.is_finite):
             continue
@@ -117,8 +117,8 @@ def _swept(expr: sp.Expr, known: Conditions) -> Iterator[sp.Expr]:
     for positive in known.positive:
         if positive.free_symbols <= expr.free_symbols:
             yield from _named(expr, positive)
-    for rest in (known.positive[::-1], known.positive):
-        solved = expr
+    for order in (known.positive[::-1], known.positive):
+        solved, rest = expr, order
         while rest:
             solved, rest = _solved(solved, rest[0], rest[1:])
             yield solved
@@ -174,20 +174,15 @@ def _product_sign(expr: sp.Expr, *, strict: bool) -> int:
 
 def _factor_sign(factor: sp.Expr, *, strict: bool) -> int:
     expanded = sp.expand(factor)
-    for one in (factor, expanded):
-        if one.is_positive or (one.is_nonnegative and not strict):
-            return 1
-        if one.is_negative or (one.is_nonpositive and not strict):
-            return -1
-    if not expanded.is_Add:
-        return 0
+    sign = _known_sign(factor, strict=strict) or _known_sign(expanded, strict=strict)
+    if sign or not expanded.is_Add:
+        return sign
     if _outweighs(expanded):
         return 1
     if _outweighs(-expanded):
         return -1
-    if len(expanded.free_symbols) == 1 and expanded.is_polynomial():
-        return _sign_by_roots(expanded, NONE)
-    return 0
+    univariate = len(expanded.free_symbols) == 1 and expanded.is_polynomial()
+    return _sign_by_roots(expanded, NONE) if univariate else 0
 
 
 def _outweighs(total: sp.Expr) -> bool:
@@ -239,10 +234,10 @@ def fails_inside(expr: sp.Expr, over: Interval) -> bool:
     """
     if proves_nonnegative(expr, NONE.with_interval(over)):
         return False
-    variable, low, high = over[0], *map(sp.sympify, over[1:])
+    variable = over[0]
     if expr.is_rational_function(variable):
         return True
-    (swept,) = [one for one in _swept(variable, NONE.with_interval(over))][1:] or [variable]
+    (swept,) = list(_swept(variable, NONE.with_interval(over)))[1:] or [variable]
     steps = [sp.Rational(2) ** k for k in (-20, -6, -2, 0, 2, 6, 20)]
     places = [swept.subs(dict.fromkeys(swept.free_symbols, place)) for place in steps]
     return any(sp.N(expr.subs(variable, place)) < 0 for place in places)

@@ -10,12 +10,14 @@ roots, functions, derivatives, integrals and values at a point. What it does not
 
 import re
 from collections.abc import Mapping
+from typing import Any
 
 import sympy as sp
 from sympy.core.function import AppliedUndef, UndefinedFunction
 
-Meaning = sp.Expr | UndefinedFunction | sp.Lambda | sp.Tuple
-"""A name stands for an expression, for a function, or for an expression as a function of variables."""
+Meaning = Any
+"""A name stands for an expression, a function (`UndefinedFunction`), or an expression as a function of
+variables (`Lambda`); under the name \\\\int for the variable and ends of an integral without ends."""
 
 
 class UnreadableError(ValueError):
@@ -96,6 +98,13 @@ def _tokens(latex: str) -> list[str]:
     return found
 
 
+_COMMANDS = {
+    r"\frac": "_fraction", r"\int": "_integral", r"\sqrt": "_root", r"\dot": "_dotted",
+    r"\ddot": "_dotted", "{": "_braced", ".": "_value_at",
+}  # fmt: skip
+"""What reads the mathematics that begins with a token."""
+
+
 class _Reader:
     """A position in a list of tokens, read by recursive descent."""
 
@@ -166,50 +175,37 @@ class _Reader:
 
     def _base(self) -> sp.Expr:
         token = self._next()
-        if token == r"\frac":
-            return self._fraction()
-        if token == r"\int":
-            return self._integral()
-        if self._is_name():
+        if self._named() is not None:
             return self._name()
+        if token in _COMMANDS:
+            return getattr(self, _COMMANDS[token])()
         if token in ("(", "["):
-            self.place += 1
-            found = self._sum()
-            self._expect(_OPEN[token])
-            return found
-        if token == "{":
-            return self._braced()
+            return self._closed(token)
         self.place += 1
-        if token == ".":
-            return self._value_at()
-        if token and token[0].isdigit():
+        if token[:1].isdigit():
             return sp.Rational(token)
         if token == "e" and self._take("^"):
             return sp.exp(self._braced())
-        if token == r"\sqrt":
-            order = self._bracketed() if self._next() == "[" else sp.Integer(2)
-            return self._braced() ** (1 / order)
         if token in _FUNCTIONS:
             return _FUNCTIONS[token](*self._arguments())
-        if token in (r"\dot", r"\ddot"):
-            return self._dotted(1 if token == r"\dot" else 2)
-        if token == "|":
-            found = self._sum()
-            self._expect("|")
-            return sp.Abs(found)
         self.place -= 1
         raise self._unknown()
+
+    def _closed(self, opening: str) -> sp.Expr:
+        self._expect(opening)
+        found = self._sum()
+        self._expect(_OPEN[opening])
+        return found
+
+    def _root(self) -> sp.Expr:
+        self._expect(r"\sqrt")
+        order = self._closed("[") if self._next() == "[" else sp.Integer(2)
+        return self._braced() ** (1 / order)
 
     def _braced(self) -> sp.Expr:
         self._expect("{")
         found = self._sum()
         self._expect("}")
-        return found
-
-    def _bracketed(self) -> sp.Expr:
-        self._expect("[")
-        found = self._sum()
-        self._expect("]")
         return found
 
     def _arguments(self) -> list[sp.Expr]:
@@ -229,9 +225,6 @@ class _Reader:
         if braced:
             self._expect("}")
         return found
-
-    def _is_name(self) -> bool:
-        return self._named() is not None
 
     def _named(self) -> tuple[int, Meaning] | None:
         """Return the longest name that stands here, and how many tokens it has."""
@@ -282,8 +275,10 @@ class _Reader:
             raise self._unknown()
         return sp.Derivative(call, (call.args[-1], primes))
 
-    def _dotted(self, order: int) -> sp.Expr:
+    def _dotted(self) -> sp.Expr:
         """Read what is under dots; a subscript beside them belongs to the name under them."""
+        order = 2 if self._next() == r"\ddot" else 1
+        self.place += 1
         self._expect("{")
         inside = self._until_closed()
         if self._take("_"):
@@ -334,7 +329,12 @@ class _Reader:
             if not (self._take("{") and self._take(letter)):
                 continue
             order = self._braced() if self._take("^") else sp.S.One
-            if not (self._take("}") and self._take("{") and self._take(letter) and self._is_name()):
+            if not (
+                self._take("}")
+                and self._take("{")
+                and self._take(letter)
+                and self._named() is not None
+            ):
                 continue
             variable = self._name()
             if self._take("^") and self._braced() != order:
@@ -387,7 +387,8 @@ class _Reader:
         return self._braced()
 
     def _value_at(self) -> sp.Expr:
-        r"""Read the rest of \left. f \right|_{x = a}."""
+        r"""Read \left. f \right|_{x = a}."""
+        self._expect(".")
         inner = self._sum()
         self._expect("|")
         self._expect("_")

@@ -202,18 +202,21 @@ def _unconditional() -> Derivation:
     )
     lead = 4 * eps / _h**2 + b * (2 * _theta - 1) * (2 * eta - 1) + kappa * (2 * _theta - 1) ** 2
     middle = 2 * (b * (_theta + eta - 1) + kappa * (2 * _theta - 1))
+    proof.notation |= {"m": sp.Lambda(_D, motion), "c_2": lead, "c_1": middle, "c_0": zeroth}
     proof.equal(
         sp.Subs(motion, _D, 2 * _w / (1 - _w)),
         (lead * _w**2 + middle * _w + zeroth) / (1 - _w) ** 2,
-        "the outside of the unit circle becomes a half plane",
+        r"with $m(D)$ the equation of a step: the outside of the unit circle becomes a half plane",
+        left=r"m\left(\frac{2 w}{1 - w}\right)",
+        right=r"\frac{c_2 w^2 + c_1 w + c_0}{(1 - w)^2}",
     )  # fmt: skip
     half = sp.Rational(1, 2)
     proof.sign(1 / (1 - _y) - half, ">", 0, (_y, 0, 1), r"$\eta > \frac{1}{2}$, with $y = e^{-h}$")
     proof.define(_theta, half + _excess, r"$\theta_{+} \ge 0$ by the exponential fit")
     proof.define(eta, half + _beyond, r"and $\eta_{+} > 0$")
-    proof.holds(lead, ">", 0, "the coefficient of $w^2$")
-    proof.holds(middle, ">", 0, "that of $w$, or the mode is undamped")
-    proof.holds(zeroth, ">", 0, "and the last one")
+    proof.holds(lead, ">", 0, "the coefficient $c_2$")
+    proof.holds(middle, ">", 0, "$c_1$")
+    proof.holds(zeroth, ">", 0, "and $c_0$")
     _routh(proof)
     return proof.done(motion, second * _D**2 + first * _D + zeroth)
 
@@ -273,10 +276,13 @@ def _orders() -> Derivation:
         (sp.S.One, first, r"order one, $\theta = 1$"),
         (fit, second, r"order two, fitted $\theta$ with a bounded $r_3$"),
     ):
-        proof.leading_order(motion.subs(_theta, theta), leading, _h, 0, why, eps=_h)
+        proof.notation |= {"D": _D, r"\eta": eta, r"\theta": theta}
+        left = motion.subs(_theta, theta)
+        proof.leading_order(left, leading, _h, 0, why, eps=_h, short=True, left=_RESIDUAL)
     return proof.done(motion.subs(_theta, fit), second)
 
 
+_RESIDUAL = r"\frac{\varepsilon D^2}{h^2} + (1 + \theta D) \left[b + \kappa + (b \eta + \kappa \theta) D\right]"
 _ORDERS = (
     r"The exact motion $e^{\sigma s}$, with $\varepsilon \sigma^2 + b \sigma + b + \kappa = 0$, is "
     r"put into the equation of a step, $\varepsilon D^2/h^2 + (1 + \theta D) [b + \kappa + (b \eta + "

@@ -4,6 +4,7 @@ from functools import partial
 
 import sympy as sp
 
+from derivations.book import Shown
 from derivations.record import Derivation
 from derivations.step import Proof
 from derivations.symbols import (
@@ -75,7 +76,7 @@ def _kinematics() -> list[Derivation]:
     )
     for kind, depth, depth_tex, surface, number in cases:
         compression = -h(x_i) + depth
-        shown = {"left": "u_i(t)", "right": f"-h(x_i) + {depth_tex}"}
+        shown: Shown = {"left": "u_i(t)", "right": f"-h(x_i) + {depth_tex}"}
         pressed = _equation(f"eq{number}", number, title=f"Compression under the {kind} indenter")
         pressed.recall(surface, z(x), h(x) - depth, "where the element is", at={x: x_i})
         pressed.define(u_i, -z(x_i), "the free surface of the foundation is $z = 0$")
@@ -172,7 +173,7 @@ def _indenter() -> list[Derivation]:
 
     rate = _equation("eq19", 19, title="Rate of the depth")
     rate.recall("eq18", delta_t, -z_a)
-    sides = {"left": r"\dot{\delta}(t)", "right": r"-\dot{z}_{\mathrm{A}}(t)"}
+    sides: Shown = {"left": r"\dot{\delta}(t)", "right": r"-\dot{z}_{\mathrm{A}}(t)"}
     rate.equal(depth_rate, -z_a.diff(t), "derivative with respect to time", **sides)
     return [*found, rate.done(depth_rate, -z_a.diff(t))]
 
@@ -213,7 +214,7 @@ def _separation() -> list[Derivation]:
         if more:
             stay.recall("eq19", depth_rate, -z_a.diff(t))
         reason = r"the foundation can only push: $f_{zi} \ge 0$, divided by $k > 0$"
-        shown = {"left": "u_i", "right": rf"{_SLOPE} V \tau{more}"}
+        shown: Shown = {"left": "u_i", "right": rf"{_SLOPE} V \tau{more}"}
         stay.equivalent(f_z, u_i, bound, reason, **shown)
         found.append(stay.done(u_i, bound))
 

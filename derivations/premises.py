@@ -6,7 +6,7 @@ from functools import lru_cache
 
 import sympy as sp
 
-from derivations.conditions import Conditions
+from derivations.conditions import NONE, Conditions
 from derivations.record import STATUSES, Step
 from derivations.rules import is_name
 
@@ -33,7 +33,7 @@ class Fact:
 
     step: Step
     premises: tuple[Premise, ...] = ()
-    conditions: Conditions = Conditions()
+    conditions: Conditions = NONE
     domain: tuple[str, ...] = ()
     """The conditions in print."""
 

@@ -1,6 +1,7 @@
-"""Is a value the only root of an expression within the domain of the variable?"""
+"""Whether a value is the only root of an expression within the domain of the variable."""
 
 from dataclasses import dataclass
+from itertools import pairwise
 
 import sympy as sp
 
@@ -101,12 +102,7 @@ def _without_roots(
 def _alone(poly: sp.Poly, x: sp.Symbol, value: sp.Expr, domain: Domain, known: Conditions) -> bool:
     """Tell whether a polynomial is proved to have no second root in the domain."""
     if all(coefficient.is_Rational for coefficient in poly.all_coeffs()):
-        try:
-            inside = roots_between(poly.as_expr(), (x, domain.low, domain.high))[0]
-        except UndecidedError:
-            return False
-        ends = ((domain.low, domain.low_included), (domain.high, domain.high_included))
-        return inside + sum(included and poly.eval(end) == 0 for end, included in ends) == 1
+        return _alone_by_sturm(poly, x, domain)
     if poly.degree() == 2:
         lead, middle, _ = poly.all_coeffs()
         other = sp.cancel(-middle / lead) - value
@@ -115,12 +111,22 @@ def _alone(poly: sp.Poly, x: sp.Symbol, value: sp.Expr, domain: Domain, known: C
     quotient = _quotient(poly, value)
     if quotient.degree() == 0:
         return proves_nonzero(quotient.as_expr(), known)
-    if domain.low.is_zero and domain.high == sp.oo and _one_change_of_sign(poly, known):
-        return True
-    for factor, _ in sp.factor_list(quotient.as_expr())[1]:
-        if factor.has(x) and not _elsewhere(sp.Poly(factor, x), x, value, domain, known):
-            return False
-    return True
+    half_line = domain.low.is_zero and domain.high == sp.oo
+    return bool(half_line and _one_change_of_sign(poly, known)) or all(
+        _elsewhere(sp.Poly(factor, x), x, value, domain, known)
+        for factor, _ in sp.factor_list(quotient.as_expr())[1]
+        if factor.has(x)
+    )
+
+
+def _alone_by_sturm(poly: sp.Poly, x: sp.Symbol, domain: Domain) -> bool:
+    """Count the roots of a polynomial with rational coefficients."""
+    try:
+        inside = roots_between(poly.as_expr(), (x, domain.low, domain.high))[0]
+    except UndecidedError:
+        return False
+    ends = ((domain.low, domain.low_included), (domain.high, domain.high_included))
+    return inside + sum(included and poly.eval(end) == 0 for end, included in ends) == 1
 
 
 def _quotient(poly: sp.Poly, value: sp.Expr) -> sp.Poly:
@@ -155,4 +161,4 @@ def _one_change_of_sign(poly: sp.Poly, known: Conditions) -> bool:
             signs.append(-1)
         else:
             return False
-    return sum(one != other for one, other in zip(signs, signs[1:], strict=False)) == 1
+    return sum(one != other for one, other in pairwise(signs)) == 1

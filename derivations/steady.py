@@ -4,6 +4,7 @@ from functools import partial
 
 import sympy as sp
 
+from derivations.book import Shown
 from derivations.model import compression_rate, depth_rate, slope
 from derivations.record import Derivation
 from derivations.step import Proof
@@ -86,7 +87,7 @@ def _retardation_length() -> Derivation:
     later = {t: t_0 + (x - x_te) / V}
     proof.recall("eq25", u_i, decay, "it has left the trailing edge at $t_0$", at=later)
     result = start * sp.exp(-(x - x_te) / l_r)
-    shown = {
+    shown: Shown = {
         "left": "u(x)",
         "right": r"u(x_{\mathrm{TE}}) \exp\left(-\frac{x - x_{\mathrm{TE}}}{l_{\mathrm{r}}}\right)",
     }
@@ -243,7 +244,7 @@ def _steadiness() -> list[Derivation]:
     pressed = _equation("eq35", 35, title="Compression in steady sliding")
     pressed.recall("eq6", u_i, -h(x_i) + delta_t)
     pressed.define(delta_t, delta, "constant, by Eq. (34)", left=r"\delta(t)")
-    shown = {"left": "u_i(t)", "right": r"-h(x_i) + \delta"}
+    shown: Shown = {"left": "u_i(t)", "right": r"-h(x_i) + \delta"}
     pressed.equal(u_i, -h(x_i) + delta, "Eq. (6) becomes Eq. (4)", **shown)
     found.append(pressed.done(u_i, -h(x_i) + delta))
 

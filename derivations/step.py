@@ -24,21 +24,19 @@ from derivations.algebra import (
     difference,
     is_continuous,
     next_order,
-    normalise,
     roots_between,
     sign_between,
     value_at,
 )
-from derivations.book import Book, Shown, StepError, asked, tex
+from derivations.book import Shown, StepError, asked, tex
 from derivations.conditions import (
     Interval,
-    demands,
-    fails_inside,
     proves_nonnegative,
     proves_nonzero,
     proves_positive,
 )
-from derivations.premises import Premise, fixed_value, violates
+from derivations.guards import Guarded
+from derivations.premises import Premise, violates
 from derivations.roots import domain_of, only_root
 from derivations.sampling import disagreement, refutation
 
@@ -54,7 +52,7 @@ class Greatest(sp.Expr):
         return rf"\max_{{{printer._print(variable)}}} \left[{printer._print(expr)}\right]"
 
 
-class Proof(Book):
+class Proof(Guarded):
     """Collect checked steps and end in a `record.Derivation`.
 
     In every step `left` and `right` replace the LaTeX of a side where SymPy's own is clumsy; what is
@@ -319,11 +317,13 @@ class Proof(Book):
         reason: str,
         *,
         eps: sp.Expr,
+        short: bool = False,
         **shown: Unpack[Shown],
     ) -> tuple[sp.Expr, sp.Expr]:
         """Prove expr = leading (1 + c eps**k + higher order) as variable -> point; return (c, k).
 
-        The small quantity `eps` is any positive expression that vanishes there.
+        The small quantity `eps` is any positive expression that vanishes there. In `short` the printed
+        remainder is O(eps**k), without its coefficient.
         """
         claim = f"{expr} ~ {leading} as {variable} -> {point}"
         parts = [self._resolve_free(part, variable) for part in (expr, leading, eps)]
@@ -333,7 +333,8 @@ class Proof(Book):
             raise StepError(f"{self.label}: {claim}: {error}") from error
         self._displayed(expr, leading, shown)
         factor = shown.get("right") or (f"({tex(leading)})" if leading.is_Add else tex(leading))
-        shown["right"] = f"{factor} {_series(c, eps, k, rest)}"
+        remainder = rf"\left(1 + O\left({tex(eps**k)}\right)\right)"
+        shown["right"] = f"{factor} {remainder if short else _series(c, eps, k, rest)}"
         self._record(
             expr, "=", leading, reason, "proved-leading-order", shown, exact=False, trusted=True
         )
@@ -354,91 +355,6 @@ class Proof(Book):
             raise StepError(f"{self.label}: {lhs} = {rhs} fails {found}")
         self._record(lhs, "=", rhs, reason, "sampled", shown)
 
-    def _free(self, variable: sp.Expr) -> None:
-        """Refuse a variable that has been given a value: it cannot sweep over an interval."""
-        if variable in self._rules:
-            raise StepError(f"{self.label}: {variable} is {self._rules[variable]} here, not free")
-
-    def _resolve_free(self, expr: sp.Expr, variable: sp.Expr) -> sp.Expr:
-        """Resolve what is looked at as a function of a variable that no premise has fixed."""
-        if variable.is_Symbol:
-            self._free(variable)
-        before = set(self._used)
-        found = self._resolve(expr)
-        for name in self._used - before:
-            fixed = fixed_value(variable, self._origins[name].premises)
-            if fixed is not None:
-                raise StepError(f"{self.label}: {variable} is {fixed} by a premise of {name}")
-        hidden = self._hidden()
-        for name in found.free_symbols & hidden.keys():
-            if variable in hidden[name]:
-                raise StepError(f"{self.label}: {name} depends on {variable}, which {found} hides")
-        return found
-
-    def _interval(self, over: Interval, *, symbolic: bool = False) -> None:
-        """Refuse an interval that is empty, or that leaves what its variable or a name may be."""
-        variable, low, high = over[0], *map(sp.sympify, over[1:])
-        self._free(variable)
-        if not variable.is_extended_real or variable.is_integer:
-            raise StepError(f"{self.label}: {variable} does not run through an interval of reals")
-        numbers = low.is_number and high.is_number
-        if (
-            not (low < high)
-            if numbers and low.is_extended_real and high.is_extended_real
-            else (not symbolic or numbers)
-        ):
-            raise StepError(f"{self.label}: {over} is not an interval between two known numbers")
-        self._reaches(variable, low, high)
-
-    def _reaches(self, variable: sp.Symbol, low: sp.Expr, high: sp.Expr) -> None:
-        """Refuse an interval that leaves the values that its variable may have."""
-        below = low if variable.is_nonnegative else -high if variable.is_nonpositive else None
-        ends = [end for end in (low, high) if end.is_finite is not False]
-        beyond = any(violates(sp.Dummy(real=variable.is_real), end) for end in ends)
-        if beyond or (below is not None and not proves_nonnegative(below, self._conditions)):
-            raise StepError(f"{self.label}: {variable} cannot reach from {low} to {high}")
-
-    def _possible(self, over: Interval) -> None:
-        """Refuse an interval in which a name or a condition cannot be what it is said to be."""
-        named = [
-            (name, self._resolve(name)) for name in tuple(self._used)
-            if (name.is_positive or name.is_negative) and name.is_Symbol
-        ]  # fmt: skip
-        demanded = [value if name.is_positive else -value for name, value in named]
-        for value in (*demanded, *self._conditions.positive):
-            if value.free_symbols == {over[0]} and fails_inside(value, over):
-                raise StepError(f"{self.label}: inside {over}, {value} is not positive as assumed")
-
-    def _undefined(self, raw: sp.Expr, resolved: sp.Expr) -> set[sp.Expr]:
-        """Return what stands under a fraction bar in one form or the other."""
-        found = {self._resolve(base) for base in demands(raw)[0]} | demands(resolved)[0]
-        return {base for base in found if not base.is_nonzero}
-
-    def _equally_defined(
-        self, left: tuple[sp.Expr, sp.Expr], right: tuple[sp.Expr, sp.Expr], claim: str
-    ) -> None:
-        """Refuse an equality of which one side is not defined or not real where the other is."""
-        for kind, proves, why in (
-            (0, proves_nonzero, "may vanish"),
-            (1, proves_nonnegative, "may be negative"),
-        ):
-            sides = []
-            for raw, resolved in (left, right):
-                named = {base: self._resolve(base) for base in demands(sp.sympify(raw))[kind]}
-                settled = {
-                    written for base, written in named.items() if proves(base, self._conditions)
-                }
-                bases = {*named.values(), *demands(resolved)[kind]} - settled
-                open_ones = {
-                    base for base in map(normalise, bases) if not proves(base, self._conditions)
-                }
-                sides.append(open_ones if kind else set().union(*map(_parts, open_ones)))
-            for base in sides[0] ^ sides[1]:
-                if not proves(base, self._conditions):
-                    raise StepError(
-                        f"{self.label}: {claim}: {base} {why}, on one side only; say where it does not"
-                    )
-
     def _same_integral(self, defined: sp.Expr, evaluated: sp.Integral) -> None:
         """Prove that the integral by which a symbol was defined is the one that was evaluated."""
         if not isinstance(defined, sp.Integral) or defined.variables != evaluated.variables:
@@ -450,15 +366,6 @@ class Proof(Book):
         )
         for one, other in pairs:
             self._vanish(self._resolve(one), self._resolve(other), f"{defined} = {evaluated}")
-
-
-def _parts(base: sp.Expr) -> set[sp.Expr]:
-    """Return the factors of an expression that may vanish."""
-    found = set()
-    for part in sp.fraction(sp.together(base)):
-        _, factors = sp.factor_list(part)
-        found |= {factor for factor, _ in factors if not factor.is_nonzero}
-    return found
 
 
 def _series(c: sp.Expr, eps: sp.Expr, k: sp.Expr, rest: sp.Expr) -> str:

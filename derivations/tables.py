@@ -117,8 +117,9 @@ def _velocity_dependences() -> Derivation:
             "C": C,
             r"\mu": sp.Lambda(V_star, low.subs(V, V_star)),
         }
-        shown = shown.replace("C V", "C V^{*}")
-        proof.equal(at_critical, value, meets, left=r"\mu(V^{*})", right=shown)
+        proof.equal(
+            at_critical, value, meets, left=r"\mu(V^{*})", right=shown.replace("C V", "C V^{*}")
+        )
     slow = r"$\mu = \frac{C V}{R K}$ (42)"
     rows = (
         (

@@ -4,6 +4,7 @@ from functools import partial
 
 import sympy as sp
 
+from derivations.book import Shown
 from derivations.groups import k_s
 from derivations.model import compression_rate, depth_rate, slope
 from derivations.record import Derivation
@@ -124,7 +125,7 @@ def _scaled_motion() -> Derivation:
         left=r"\ddot z_{\mathrm{A}}",
     )
     result = 1 - f_normal - kappa * (d - 1)
-    shown = {"left": r"\varepsilon d''", "right": r"1 - f_z - \kappa (d - 1)"}
+    shown: Shown = {"left": r"\varepsilon d''", "right": r"1 - f_z - \kappa (d - 1)"}
     proof.equal(eps * d_ss, result, "scaled motion", **shown)
     return proof.done(eps * d_ss, result)
 

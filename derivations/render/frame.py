@@ -13,6 +13,10 @@ INTRODUCTION = (
     "was made; a line that does not hold stops the making. With each line stands its reason and "
     "what the check was worth; the sentence before it tells what is given: definitions, and what "
     "was established elsewhere, by its number. A result is worth as much as its weakest line.",
+    "A check establishes the formula of its line, on the domain that is given with it, from the "
+    "definitions and results that are named; what is printed was read back and compared with what was "
+    "checked. The words beside a line say what the formula means for the contact: that a law of the "
+    "model is the right one, and that lines together prove what a title says, rests on them.",
 )
 
 VOCABULARY = {
