@@ -42,6 +42,7 @@ format: $(VENV)/.installed-test
 benchmark: $(VENV)/.installed
 	$(BIN)/python -m figures.benchmark
 	$(BIN)/python -m figures.benchmark_transient
+	$(BIN)/python -m figures.benchmark_calls
 	$(BIN)/kvtheory chart work-precision --standard all -o $(OUT)/work_precision.png
 
 clean:

@@ -41,7 +41,7 @@ class Plant:
 def series(scene, changes, **options):
     """Return a run of the changed scene without its velocity, which a wrong simulator would not know."""
     for key, factor in changes.items():
-        scene = scaled_scene(scene, key, factor)
+        scene = scaled_scene(scene, {key: 1.0}, factor)
     run = simulate(scene, **{"time_step": STEP, **options})
     return {name: values for name, values in run.items() if name != "velocity"}
 

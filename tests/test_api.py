@@ -20,15 +20,15 @@ def test_exact_and_quadrature_agree(support):
 
 
 def test_other_shapes_are_integrated_by_default():
-    scene = kv.Scene(indenter=kv.Wedge(inclination=0.1))
+    scene = kv.Scene(indenter=kv.Circle(radius=0.01))
     assert kv.steady(scene).model == "quadrature"
-    swept = kv.steady(scene, over={"indenter.inclination": [0.1, 0.2], "drive.velocity": 0.01})
+    swept = kv.steady(scene, over={"indenter.radius": [0.01, 0.02], "drive.velocity": 0.01})
     assert swept.depth.shape == (2,)
     assert swept.certificate.relative_error["depth"].shape == (2,)
     for method in ("exact", "asymptote"):
-        with pytest.raises(ValueError, match=r'parabola only.*"wedge"'):
+        with pytest.raises(ValueError, match=r'the wedge only.*"circle"'):
             kv.steady(scene, method=method)
-    with pytest.raises(ValueError, match="parabola only"):
+    with pytest.raises(ValueError, match="the wedge only"):
         kv.asymptotes(scene)
 
 

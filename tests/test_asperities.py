@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from kvtheory.models.steady.double_exponential import QuadratureError
 from kvtheory.models.steady.quadrature import at_depth, at_load
-from kvtheory.scene.indenters import Parabola, Profile
+from kvtheory.results import STEADY_UNITS
+from kvtheory.results.errors import QuadratureError
+from kvtheory.scene.indenters import Circle, Parabola, PowerLaw, Profile
 
 POINTS = 200_001
 
@@ -195,6 +196,23 @@ def test_the_load_is_convex_in_the_depth():
     depths = profile.roughness * np.linspace(0.1, 3.0, 15)
     loads = [at_depth(profile, 1.0, 1.0, l_r, depth).load for depth in depths.tolist()]
     assert np.all(np.diff(loads, 2) > -1e-10 * loads[-1])
+
+
+@pytest.mark.parametrize(
+    "shape", [Parabola(1.0), Circle(1.0), PowerLaw(1.0, 1.28), PowerLaw(1.0, 3.3)], ids=str
+)
+@pytest.mark.parametrize("l_r", [0.0, 1e-9, 1e-4, 0.6, 100.0])
+def test_a_profile_of_a_named_shape_is_that_shape(shape, l_r):
+    """Two ways without common code; for n = 1.28 the trailing edge is close to the kink."""
+    profile = Profile(
+        lambda x: float(shape.height(x)), lambda x: float(shape.slope(x)), shape.reach, (0.0,)
+    )
+    for depth in (2e-9, 1e-5, 0.05):
+        named, general = (at_depth(s, 1.0, 1.0, l_r, depth) for s in (shape, profile))
+        for name in STEADY_UNITS:
+            value = getattr(named, name)
+            errors = (state.certificate.relative_error[name] for state in (named, general))
+            assert abs(getattr(general, name) - value) <= sum(errors) * abs(value), name
 
 
 def test_a_weight_beyond_the_reach_is_an_error():

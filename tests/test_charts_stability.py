@@ -8,11 +8,18 @@ from click.testing import CliRunner
 
 import kvtheory as kv
 from kvtheory.charts import stability
-from kvtheory.charts.stability import CLASSES, growth, step_map, unwatched, velocity_map
+from kvtheory.charts.stability import (
+    CLASSES,
+    contact_lengths,
+    growth,
+    step_map,
+    unwatched,
+    velocity_map,
+)
 from kvtheory.cli import main
 from kvtheory.models.elements.model import Model
 from kvtheory.models.elements.schemes import SCHEMES
-from kvtheory.models.elements.stability import contact_lengths, limit_at
+from kvtheory.models.elements.stability import limit_at
 from kvtheory.plots.stability import draw_stability
 from kvtheory.results.errors import DivergenceError
 

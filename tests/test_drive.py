@@ -138,3 +138,18 @@ def test_a_jump_at_the_very_end_counts():
 def test_the_speed_of_a_function_is_found_between_its_ends():
     motion = kv.Drive(function=lambda t: math.sin(math.pi * t)).motion(1.0, least=1.0)
     assert motion.highest_speed == pytest.approx(1.0, rel=1e-3)
+
+
+def test_the_edge_leads_that_led_before_whatever_instants_are_asked_for():
+    drive = kv.Drive(history=[(0.0, -0.1), (0.05, -0.1), (0.05, 0.0)])
+    late = [0.06, 0.08]
+    scene = kv.Scene(drive=drive)
+    whole = kv.transient(scene, at=[0.0, 0.02, *late])
+    alone = kv.transient(scene, at=late)
+    swept = kv.sweep(scene, over={"run.duration": [0.2]}, at=late, quantities=["leading_edge"])
+    assert alone.leading_edge.tolist() == whole.leading_edge[2:].tolist()
+    assert alone.trailing_edge.tolist() == whole.trailing_edge[2:].tolist()
+    assert swept["leading_edge"][0].tolist() == alone.leading_edge.tolist()
+    assert alone.leading_edge[0] > 0.0  # the base moved backward
+    simulated = kv.elements(scene, at=late, certify=False)
+    assert np.sign(simulated.leading_edge).tolist() == np.sign(alone.leading_edge).tolist()

@@ -160,3 +160,16 @@ def test_what_the_function_does_wrong_is_said(function, words):
     with pytest.raises(ValueError) as caught:  # noqa: PT011 - the words are checked
         kv.transient(scene(function=function))
     assert all(word in str(caught.value) for word in words), str(caught.value)
+
+
+def test_a_function_that_is_too_fast_is_refused_early():
+    calls = []
+
+    def fast(t):
+        calls.append(t)
+        return 0.1 * math.sin(1e6 * t)
+
+    scene = kv.Scene(drive=kv.Drive(function=fast), run=kv.Run(10.0))
+    with pytest.raises(ValueError, match="changes too fast"):
+        kv.transient(scene)
+    assert len(calls) < 100_000

@@ -108,12 +108,12 @@ def fitted_order(errors):
 
 @cache
 def while_refining(name, scheme):
-    """Return the differences with 40, 80 and 160 elements in a half length, and steps in proportion."""
+    """Return the differences with 40 to 320 elements in a half length, and steps in proportion."""
     return [
         differences(
             name, simulate(name, 40.0 * k, scheme=scheme, time_step=0.004 / k, certify=False)
         )
-        for k in (1, 2, 4)
+        for k in (1, 2, 4, 8)
     ]
 
 

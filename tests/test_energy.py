@@ -7,7 +7,7 @@ import pytest
 
 import kvtheory as kv
 from kvtheory.models.continuum.energy import ledger
-from kvtheory.models.continuum.maxima import force_maxima
+from kvtheory.models.continuum.solved_scene import force_maxima
 from kvtheory.models.continuum.solver import solve
 from kvtheory.models.continuum.surface import height
 from kvtheory.scene.base_motion import BaseMotion

@@ -473,6 +473,25 @@ def ratio_of(n, ratio):
     return mpmath.exp(low)
 
 
+@pytest.mark.parametrize("shape", SHAPES, ids=NAMED)
+def test_no_scene_depends_on_those_beside_it(shape):
+    rng = np.random.default_rng(1)
+    V, weight = 10.0 ** rng.uniform(-6, 0, (60, 1)), 10.0 ** rng.uniform(0, 3, (60, 1))
+    one = np.ones_like(V)
+
+    def solved(part):
+        fixed = (K * one[part], TAU * one[part])
+        return at_load(shape, *fixed, V[part], weight[part], 3e7 * one[part])
+
+    whole = solved(slice(0, 60))
+    for size in (1, 7, 30):
+        for start in range(0, 60, size):
+            part = slice(start, start + size)
+            cut = solved(part)
+            for name in STEADY_UNITS:
+                assert np.array_equal(getattr(cut, name), getattr(whole, name)[part]), name
+
+
 POWERS = [1.0, 1.1, 1.5, 2.0, 4.0, 12.0]
 
 

@@ -11,7 +11,7 @@ import pytest
 import kvtheory as kv
 from kvtheory.progress import ProgressLine
 from kvtheory.results import STEADY_UNITS
-from kvtheory.scene.quantities import quantities
+from kvtheory.scene.quantities import given
 from kvtheory.sweeps import engine
 from kvtheory.sweeps.axes import axes_of, narrowed, size, values_at
 from kvtheory.sweeps.netcdf_file import rectangles
@@ -226,20 +226,23 @@ def test_wrong_arguments_are_told(arguments, words):
         assert word in str(error.value)
 
 
-def test_other_shapes_are_swept_by_quadrature_only():
+def test_other_shapes_are_swept_by_what_suits_them():
     wedge = kv.Scene(indenter=kv.Wedge(inclination=0.1))
     over = {"indenter.inclination": [0.05, 0.1]}
-    result = kv.sweep(wedge, over=over, quantities="friction_coefficient")
-    single = kv.steady(wedge).friction_coefficient
-    assert result["friction_coefficient"][1] == pytest.approx(single, rel=1e-14)
-    many = {"drive.velocity": "1 mm/s:10 m/s:40:log"}
-    blocks = [kv.sweep(wedge, over=many, block=block)["load"] for block in (1, 3, 40)]
-    assert np.array_equal(blocks[0], blocks[1])
-    assert np.array_equal(blocks[0], blocks[2])
+    many = {V: "1 mm/s:10 m/s:40:log"}
+    for method in ("exact", "quadrature"):
+        result = kv.sweep(wedge, over=over, quantities="friction_coefficient", method=method)
+        single = kv.steady(wedge, method=method).friction_coefficient
+        assert result["friction_coefficient"][1] == pytest.approx(single, rel=1e-14)
+        blocks = [
+            kv.sweep(wedge, over=many, block=block, method=method)["load"] for block in (1, 3, 40)
+        ]
+        assert np.array_equal(blocks[0], blocks[1])
+        assert np.array_equal(blocks[0], blocks[2])
     with pytest.raises(ValueError, match="parabola only"):
         kv.sweep(wedge, over=over, quantities="hops")
-    with pytest.raises(ValueError, match="parabola only"):
-        kv.sweep(wedge, over=over, method="exact")
+    with pytest.raises(ValueError, match="circle"):
+        kv.sweep(kv.Scene(indenter=kv.Circle(radius=0.01)), over=many, method="exact")
 
 
 def test_what_is_sent_to_a_worker_is_small_and_right():
@@ -357,7 +360,7 @@ def test_plot_draws_curves_families_and_maps():
 def test_every_quantity_of_a_scene_can_be_swept():
     for scene in map(kv.Scene.table1, ("fixed", "dead-weight", "suspended")):
         for section in ("indenter", "foundation", "support"):
-            for name in quantities(getattr(scene, section)):
+            for name in given(getattr(scene, section)):
                 key = f"{section}.{name}"
                 value = getattr(getattr(scene, section), name)
                 result = kv.sweep(scene, over={key: [value, 2.0 * value]}, quantities="load")

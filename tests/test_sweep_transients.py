@@ -195,3 +195,25 @@ def test_a_history_gives_way_to_a_swept_velocity():
     swept = kv.sweep(history, over={V: [0.1]}, quantities="depth.end")
     plain = kv.sweep(over={V: [0.1]}, quantities="depth.end")
     assert swept["depth.end"].tolist() == plain["depth.end"].tolist()
+
+
+def test_many_scenes_in_one_call_have_the_bits_of_single_ones(monkeypatch):
+    """Followed by the compiled kernel of a block, or one by one."""
+    from kvtheory.models.continuum import compiled
+    from kvtheory.sweeps import measures
+
+    if not compiled.available():
+        pytest.skip("needs numba")
+    asked = {
+        "over": {V: "10 mm/s:5 m/s:12:log", TAU: [1e-3, 0.1, 1.0]},
+        "at": ["0 ms", "3 ms", "200 ms"],
+        "quantities": [*NAMES, *MEASURED, "peak_to_steady_friction", "settling_time", "hops"],
+    }
+    monkeypatch.setattr(compiled, "WORTHWHILE", 1)
+    together = kv.sweep(**asked)
+    monkeypatch.setattr(measures._Block, "_together", lambda self: None)
+    alone = kv.sweep(**asked)
+    assert together["hops"].max() > 0
+    for name in alone.values:
+        assert np.array_equal(together[name], alone[name], equal_nan=True), name
+    assert dict(together.certificate.relative_error) == dict(alone.certificate.relative_error)

@@ -2,6 +2,7 @@
 
 import csv
 import json
+import math
 
 import numpy as np
 import pytest
@@ -194,8 +195,54 @@ def test_what_it_does_not_cover_is_refused():
 
 
 def test_a_run_that_is_too_long_says_how_long_it_is():
-    scene = kv.Scene(foundation=kv.Foundation(1e10, 1e-6), run=kv.Run(0.2))
+    stops = [[0.01 * (k // 2), 0.1 * (k // 2 % 2)] for k in range(1, 4000)]
+    scene = kv.Scene(drive=kv.Drive(history=[[0.0, 0.0], *stops]), run=kv.Run(20.0))
     with pytest.raises(
-        ArithmeticError, match=r"in a run of 2e\+05 retardation times, at t = 0\.0\d+ s"
+        ArithmeticError, match=r"`max_steps`.*in a run of 200 retardation times, at t = \d.*s"
     ):
-        kv.transient(scene)
+        kv.transient(scene, max_steps=500)
+    assert kv.transient(scene, max_steps=200_000, certify=False, at=[20.0]).steps > 500
+
+
+def test_a_million_seconds_of_steady_sliding_are_few_steps():
+    result = kv.transient(kv.Scene(run=kv.Run(1e6)), at=[0.0, 1e3, 1e6])
+    assert result.steps < 200
+    assert result.depth[1:] == pytest.approx(kv.steady().depth, rel=1e-6)
+    back = [[0, 0.1], [1e5, 0.1], [1e5, -0.1]]
+    turned = kv.transient(kv.Scene(drive=kv.Drive(history=back), run=kv.Run(2e5)), at=[1e5, 2e5])
+    assert turned.depth[1] == pytest.approx(kv.steady().depth, rel=1e-6)
+    assert turned.depth[0] == pytest.approx(kv.steady().depth, rel=1e-6)
+
+
+def test_without_a_certificate_nothing_is_known_and_the_numbers_are_the_same():
+    plain, certified = kv.transient(certify=False), kv.transient()
+    assert plain.depth.tolist() == certified.depth.tolist()
+    assert plain.certificate.relative_error["depth"] == math.inf
+    assert "not known" in plain.certificate.statement
+
+
+@pytest.mark.parametrize("velocity", [0.5, 1.0, 3.0])
+def test_a_jump_of_the_contact_is_compared_with_the_jump(velocity):
+    """At its own instants a motion that hops is as well known as between them."""
+    scene = kv.Scene(drive=kv.Drive(velocity=velocity))
+    result = kv.transient(scene)
+    errors, unit = result.certificate.relative_error, result.solution.units.pressure
+    assert any(event.kind == "landing" for event in result.events)
+    assert errors["peak_pressure"] < 1e-2 * result.peak_pressure.max() / unit
+    assert {"pressure", "surface", "jump_time"} < set(errors)
+
+
+@pytest.mark.parametrize("rtol", [1e-6, 1e-7, 1e-9, 1e-11])
+@pytest.mark.parametrize(
+    "history",
+    [[[0, 35], [0.5, 61], [1, -47]], [[0, 35], [1, 35], [1, 61], [2, 61], [2, -47]]],
+)
+def test_a_light_indenter_far_away_keeps_a_consistent_contact(history, rtol):
+    """Where the base has moved by millions of half lengths, rounding of places must not toggle edges."""
+    scene = kv.Scene(
+        kv.Parabola(49e-6), kv.Foundation(8.7e9, 9.8), kv.DeadWeight(2.4), kv.Drive(history=history),
+        kv.Run(10.0),
+    )  # fmt: skip
+    result = kv.transient(scene, rtol=rtol, at=[1.0, 5.0, 10.0])
+    assert np.isfinite(result.depth).all()
+    assert np.isfinite(max(result.certificate.relative_error.values()))

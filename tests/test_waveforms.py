@@ -1,5 +1,6 @@
 """Drives with a shape and drives from a table: what they are, and what is said of mistakes."""
 
+import dataclasses
 import math
 
 import numpy as np
@@ -111,3 +112,8 @@ def test_a_long_history_is_read_in_time_that_grows_with_it():
     """Units are looked up once, not once for each point."""
     points = [[f"{i} ms", f"{i % 7} mm/s"] for i in range(20_000)]
     assert len(kv.Drive(history=points).history) == len(points)
+
+
+def test_a_waveform_survives_a_copy():
+    drive = kv.Drive(waveform=WAVES["sine"])
+    assert dataclasses.replace(drive, tolerance=1e-9).waveform == drive.waveform

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -19,7 +20,13 @@ def scene_of(scene: Scene | None) -> Scene:
         raise TypeError(
             f"expected a Scene, got {scene!r}; kvtheory.load_scene reads one from a file"
         )
-    return Scene() if scene is None else scene
+    return _table1() if scene is None else scene
+
+
+@cache
+def _table1() -> Scene:
+    """Return the default scene, made once: it is frozen, and to make it takes a while."""
+    return Scene()
 
 
 def times_of(scene: Scene, at: Any, problems: list[str] | None = None) -> Any:

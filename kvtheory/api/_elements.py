@@ -1,6 +1,7 @@
 """The discrete simulator: `elements`."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from typing import Any
 
 from kvtheory.api._edge import double_precision, scene_of, times_of
@@ -44,7 +45,8 @@ def elements(
         The longest step, in s or as text with a unit; without it 2 dx/V, as in the paper, and less
         where the scheme needs it (but never for the scheme ``"paper"``).
     certify
-        Whether to estimate the error, by a second run with half as many elements and steps.
+        Whether to estimate the error, by two more runs with half as many elements and steps; without,
+        the certificate is of the kind "none" and holds no errors.
     progress
         Called as in `transient`, with the steps done as words.
     warn
@@ -53,8 +55,8 @@ def elements(
     Returns
     -------
     Simulation
-        Arrays over time in SI and a certificate whose errors are relative to the static depth, half
-        length and load. `warning` is not empty where the step is doubtful.
+        Arrays over time in SI and a certificate whose statement says what its errors are relative to,
+        such as the static depth. `warning` is not empty where the step is doubtful.
 
     Raises
     ------
@@ -92,11 +94,26 @@ def elements(
     times = times_of(scene, at, problems)
     if problems:
         raise SceneError(problems)
-    with double_precision():
+    with double_precision(), _blaming_default(per_length is None):
         return simulate(
             scene, 1.0 / density, SCHEMES[scheme],
             at=times, time_step=step, certify=certify, progress=_in_words(progress), warn=warn,
         )  # fmt: skip
+
+
+@contextmanager
+def _blaming_default(taken: bool) -> Iterator[None]:
+    """Say of a density that does not suit the scene that it was taken by default, if it was."""
+    try:
+        yield
+    except ValueError as error:
+        key, _, hint = str(error).partition(": ")
+        if not taken or not key.startswith("`per_length`"):
+            raise
+        raise ValueError(
+            f"the density taken by default, {DENSITY / 1e3:g} elements per mm, does not suit the size of "
+            f"this scene: give `per_length`, {hint}"
+        ) from None
 
 
 def _in_words(progress: Progress | None) -> Callable[[int, int], None] | None:

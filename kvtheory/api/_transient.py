@@ -17,6 +17,8 @@ def transient(
     *,
     at: Any = None,
     rtol: float = 1e-6,
+    certify: bool = True,
+    max_steps: int = 100_000,
     progress: Progress | None = None,
 ) -> Transient:
     """Follow the transient of a scene, exactly: no discretized foundation.
@@ -33,6 +35,12 @@ def transient(
         the solver, subdivided.
     rtol
         Error allowed in a step, relative to the static state, from 1e-12 to 1e-2.
+    certify
+        Whether to estimate the error, by a second run with a tighter tolerance; without it the
+        certificate says that nothing is known.
+    max_steps
+        Steps after which to give up. Long runs and histories of many points need as many as their drive
+        has changes, and two for each retardation time.
     progress
         Called now and then with the share of the work done, from 0 to 1, and a text, as every public
         function calls it: `kvtheory.progress.ProgressLine` shows both on standard error.
@@ -67,6 +75,8 @@ def transient(
     Nakano and Kono (2020), doi:10.3389/fmech.2020.00038, Eqs. 1-33 and Figs. 3, 4.
     """
     scene = scene_of(scene)
+    if max_steps < 1:
+        raise ValueError(f"`max_steps` = {max_steps!r}: expected a positive number")
     if not MINIMUM_RTOL <= rtol <= MAXIMUM_RTOL:
         raise ValueError(
             f"`rtol` = {rtol!r}: expected a number from {MINIMUM_RTOL} to {MAXIMUM_RTOL}"
@@ -75,4 +85,11 @@ def transient(
     from kvtheory.models.continuum import solved_scene
 
     with double_precision():
-        return solved_scene.transient(scene, times_of(scene, at), rtol, share_alone(progress))
+        return solved_scene.transient(
+            scene,
+            times_of(scene, at),
+            rtol,
+            share_alone(progress),
+            certify=certify,
+            max_steps=max_steps,
+        )

@@ -9,7 +9,7 @@ the limit passes much of the contact, which the prediction holds fixed: there it
 """
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from itertools import islice, product
 from typing import Any
 
@@ -18,10 +18,10 @@ from numpy.typing import NDArray
 
 from kvtheory.api import steady as steady_sliding
 from kvtheory.models.elements.model import Model
-from kvtheory.models.elements.row import OutgrownError, Row
-from kvtheory.models.elements.schemes import SCHEMES, Motion, Scheme
+from kvtheory.models.elements.row import ElementRow, IndenterState, OutgrownError
+from kvtheory.models.elements.schemes import SCHEMES, Scheme
 from kvtheory.models.elements.simulation import ELEMENTS_PER_STEP
-from kvtheory.models.elements.stability import contact_lengths, limit_at
+from kvtheory.models.elements.stability import lengths, limit_at
 from kvtheory.scene.drives import Drive
 from kvtheory.scene.indenters import Parabola
 from kvtheory.scene.model import DeadWeight, Foundation, Run, Scene
@@ -86,18 +86,35 @@ class Map:
         return np.where(self.steady > 1.0, 2, at_first)
 
 
-def walk(row: Row, scheme: Scheme, motion: Motion, time_step: float) -> Iterator[Motion]:
+def contact_lengths(scene: Scene) -> tuple[float, float]:
+    """Return the contact lengths (m) that bound the step: in steady sliding, and at the static depth.
+
+    Examples
+    --------
+    >>> steady, first = contact_lengths(Scene())
+    >>> print(f"{steady * 1e3:.3f} {first * 1e3:.3f} mm")
+    1.429 2.747 mm
+    """
+    model = Model.of(scene)
+    return lengths(model, model.path(scene))
+
+
+def walk(
+    row: ElementRow, scheme: Scheme, state: IndenterState, time_step: float
+) -> Iterator[IndenterState]:
     """Step on and on, with nobody to watch for instability; ends if the indenter sinks too deep."""
     with np.errstate(all="ignore"):
         while True:
             try:
-                motion = scheme.step(row.model, row, motion, time_step)
+                state = scheme.step(row, state, time_step)
             except (OutgrownError, OverflowError, ValueError):  # of a depth that is not a number
                 return
-            yield motion
+            yield state
 
 
-def unwatched(scene: Scene, scheme: str, per_length: float, time_step: float) -> list[Motion]:
+def unwatched(
+    scene: Scene, scheme: str, per_length: float, time_step: float
+) -> list[IndenterState]:
     """Return the steps of a run from rest to the end of the scene, however unstable it is.
 
     Examples
@@ -106,9 +123,7 @@ def unwatched(scene: Scene, scheme: str, per_length: float, time_step: float) ->
     >>> print(len(steps), f"{steps[-1].depth * 1e3:.3f} mm")
     400 0.091 mm
     """
-    model = Model.of(scene, 1.0 / per_length)
-    path = model.path(scene)
-    steps = walk(Row(model, path, DEEP), SCHEMES[scheme], Motion(0.0, model.depth, 0.0), time_step)
+    steps = walk(*_begin(scene, scheme, per_length), time_step)
     return list(islice(steps, round(scene.run.duration / time_step)))
 
 
@@ -129,11 +144,11 @@ def growth(
     >>> growth(slow, "edge-corrected", 2e5, 1e-3, steady=True) < 1.0
     True
     """
-    ways = [_begin(scene, per_length, steady=steady) for _ in range(2)]
-    nudge = NUDGE * ways[0][1].depth / time_step
+    ways = [_begin(scene, scheme, per_length, steady=steady) for _ in range(2)]
+    nudge = NUDGE * ways[0][2].depth / time_step
     runs = [
-        walk(row, SCHEMES[scheme], replace(motion, rate=more), time_step)
-        for (row, motion), more in zip(ways, (0.0, nudge), strict=True)
+        walk(row, how, state._replace(rate=more), time_step)
+        for (row, how, state), more in zip(ways, (0.0, nudge), strict=True)
     ]
     apart: list[float] = []
     for one, other in islice(zip(*runs, strict=False), STEPS):
@@ -213,13 +228,16 @@ def _point(
     return measured[0], measured[1], shares[0], shares[1]
 
 
-def _begin(scene: Scene, per_length: float, *, steady: bool) -> tuple[Row, Motion]:
-    """Return the elements and the indenter at rest, or as steady sliding has left them."""
-    model = Model.of(scene, 1.0 / per_length)
-    path = model.path(scene)
-    row, motion = Row(model, path, DEEP), Motion(0.0, model.depth, 0.0)
+def _begin(
+    scene: Scene, name: str, per_length: float, *, steady: bool = False
+) -> tuple[ElementRow, Scheme, IndenterState]:
+    """Return the elements, the scheme and the indenter at rest, or as steady sliding has left them."""
+    scheme = SCHEMES[name]
+    model = Model.of(scene, 1.0 / per_length, parts=scheme.row.parts_of_elements)
+    row = ElementRow(model, model.path(scene), DEEP)
+    start = IndenterState(0.0, model.depth, 0.0)
     if not steady:
-        return row, motion
+        return row, scheme, start
     state = steady_sliding(scene)
     under = row.under(0.0, 0.0, state.depth)
     pressed = (under.x >= state.leading_edge) & (under.x <= state.trailing_edge)
@@ -227,7 +245,7 @@ def _begin(scene: Scene, per_length: float, *, steady: bool) -> tuple[Row, Motio
     behind = np.maximum(under.x - state.trailing_edge, 0.0) / state.retardation_length
     relaxing = np.where(under.x > state.trailing_edge, left * np.exp(-behind), 0.0)
     row.settle(under, np.where(pressed, state.depth - under.height, relaxing), pressed)
-    return row, replace(motion, depth=float(state.depth))
+    return row, scheme, start._replace(depth=float(state.depth))
 
 
 def stability_maps(

@@ -73,8 +73,8 @@ def missing_force(
     return (gained - float(window.force @ force)) / window.impulse
 
 
-def random_part(window: Window, sigma_depth: float, sigma_force: float, mass: float) -> float:
+def random_part(window: Window, sigma_depth: Array, sigma_force: Array, mass: float) -> float:
     """Return the standard error of `missing_force` from noise in the depth and the force."""
-    inertia = mass * sigma_depth * float(np.linalg.norm(window.inertia))
-    force = sigma_force * float(np.linalg.norm(window.force))
+    inertia = mass * float(np.linalg.norm(sigma_depth * window.inertia))
+    force = float(np.linalg.norm(sigma_force * window.force))
     return float(np.hypot(inertia, force)) / window.impulse

@@ -3,15 +3,15 @@
 `CHECKS` lists them in the order in which they are shown. A check that cannot be made says why.
 """
 
+import math
 from collections.abc import Callable, Iterator
 
 import numpy as np
 
-from kvtheory.checks.allowances import extreme
 from kvtheory.checks.balance import missing_force, random_part, windows
-from kvtheory.checks.comparison_case import Case, rms
+from kvtheory.checks.comparison_case import Case, not_made, rms
 from kvtheory.checks.discretization import elements, sawtooth, stability
-from kvtheory.checks.making import check, not_made
+from kvtheory.checks.noise import SURE, extreme
 from kvtheory.checks.settling import fast_constant, slow_constant, steady_limit
 from kvtheory.results.comparison import Check
 
@@ -37,11 +37,10 @@ def initial_rest(case: Case) -> Iterator[Check]:
         return
     static = theory.static
     off = abs(float(columns["depth"][before].mean()) / static.depth - 1.0)
-    element = 2.0 * case.resolution.spacing / static.half_length
-    sigma = case.allowance.noise["depth"] / static.depth
-    random = extreme(int(before.sum())) * sigma / np.sqrt(before.sum())
-    allowed = case.tolerance * (element + random) + case.most("depth")[before].max()
-    yield check(case, name, off, allowed, equation, "depth, relative to the static depth")
+    sigma = float(case.allowance.noise["depth"][before].max()) / static.depth
+    random = SURE * sigma / np.sqrt(before.sum())
+    allowed = case.tolerance * random + case.most("depth")[before].max()
+    yield case.check(name, off, allowed, equation, "depth, relative to the static depth")
 
 
 def jump(case: Case) -> Iterator[Check]:
@@ -49,7 +48,7 @@ def jump(case: Case) -> Iterator[Check]:
     name, equation = "jump at t = 0+", "F11"
     time, theory = case.series.time, case.theory
     force = next((n for n in ("normal_force", "friction_force") if n in case.series.columns), None)
-    if 0.0 not in theory.scene.drive.jumps:
+    if 0.0 not in theory.jumps:
         yield not_made(name, equation, "the drive does not jump at t = 0")
         return
     if force is None:
@@ -65,7 +64,7 @@ def jump(case: Case) -> Iterator[Check]:
     k = max((first, after), key=lambda row: excess[row] / most[row])
     note = f"{force} at {time[k] * 1e3:.4g} ms"
     unit = f"distance from theory, relative to {theory.scales[force] / 1e3:.4g} N/mm"
-    yield check(case, name, excess[k], most[k], equation, unit, note)
+    yield case.check(name, excess[k], most[k], equation, unit, note)
 
 
 def sampling(case: Case) -> Iterator[Check]:
@@ -75,10 +74,11 @@ def sampling(case: Case) -> Iterator[Check]:
     if rates is None:
         yield not_made(name, equation, "a fixed indenter has no transient of its own")
         return
-    slow, start = abs(rates.slow), case.theory.scene.drive.last_change
+    changed = case.theory.last_change
+    slow, start = abs(rates.slow), changed if math.isfinite(changed) else 0.0
     inside = np.count_nonzero((time > start) & (time <= start + TRANSIENT * slow))
     distance = TRANSIENT * slow / max(int(inside), 1)
-    yield check(case, name, distance, case.tolerance * slow, equation, "s, mean distance of samples",
+    yield case.check(name, distance, case.tolerance * slow, equation, "s, mean distance of samples",
                 f"{inside} samples within {TRANSIENT:g} slow time constants")  # fmt: skip
 
 
@@ -92,40 +92,33 @@ def balance(case: Case) -> Iterator[Check]:
     if "depth" not in columns or "normal_force" not in columns:
         yield not_made(name, equation, "it needs the depth and the normal force")
         return
-    depth_0, sigma = static.depth, case.allowance.noise
-    # An error that is even within half a digit has this part of it as its standard deviation.
-    digits = rms(case.allowance.rounding["depth"]) / np.sqrt(3.0)
-    sigma_depth = float(np.hypot(sigma["depth"], digits))
+    depth_0, sigma, digits = static.depth, case.allowance.noise, case.allowance.rounding["depth"]
     smear = np.nan_to_num(case.allowance.high["normal_force"] - case.allowance.low["normal_force"])
-    worst = (-1.0, 0.0, 1.0, "")
+    found = []
     for window in windows(case.series.time):
         part = slice(window.start, window.stop)
         lacks = abs(missing_force(window, columns, support, depth_0))
         sampled = abs(missing_force(window, case.now, support, depth_0))
-        random = random_part(window, sigma_depth, sigma["normal_force"], support.mass)
+        random = random_part(
+            window, sigma["depth"][part], sigma["normal_force"][part], support.mass
+        )
         smooth = float(
             np.abs(window.force)
             @ (np.nan_to_num(case.allowance.systematic["normal_force"][part]) + 0.5 * smear[part])
+            + support.mass * np.abs(window.inertia) @ digits[part]
         )
         allowed = case.tolerance * (
-            2.0 * sampled
-            + smooth / window.impulse
-            + (extreme(case.series.time.size) + 1.0) * random
+            2.0 * sampled + smooth / window.impulse + extreme(case.series.time.size) * random
         )
-        if lacks / allowed > worst[0]:
-            span = case.series.time[[window.start, window.stop - 1]] * 1e3
-            worst = (
-                lacks / allowed,
-                lacks,
-                allowed,
-                f"worst from {span[0]:.4g} to {span[1]:.4g} ms",
-            )
-    if worst[0] < 0.0:
+        span = case.series.time[[window.start, window.stop - 1]] * 1e3
+        found.append((lacks, allowed, f"worst from {span[0]:.4g} to {span[1]:.4g} ms"))
+    if not found:
         yield not_made(name, equation, "too few samples for a window")
         return
     W = static.load
     unit = "mean force that is lacking, relative to the load"
-    yield check(case, name, worst[1] / W, worst[2] / W, equation, unit, worst[3])
+    lacks, allowed, note = max(found, key=lambda each: each[0] / each[1])
+    yield case.check(name, lacks / W, allowed / W, equation, unit, note)
 
 
 def curves(case: Case) -> Iterator[Check]:
@@ -141,8 +134,8 @@ def curves(case: Case) -> Iterator[Check]:
             note += f", first disagreement at {time[wrong[0]]:.4g} ms"
         unit = "relative to the static state"
         title = name.replace("_", " ")
-        yield check(case, f"{title}, largest", excess[k], most[k], STATES[name], unit, note)
-        yield check(case, f"{title}, RMS", rms(excess), case.together[name], STATES[name], unit)
+        yield case.check(f"{title}, largest", excess[k], most[k], STATES[name], unit, note)
+        yield case.check(f"{title}, RMS", rms(excess), case.together(name), STATES[name], unit)
 
 
 CHECKS: tuple[Callable[[Case], Iterator[Check]], ...] = (

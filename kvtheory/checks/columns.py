@@ -1,35 +1,44 @@
 """The columns of a time series by name and bracketed unit, as people write them.
 
-``t [ms]``, ``Time (s)``, ``z_A [mm]``, ``F_z [N/mm]``, ``depth [m]`` are recognised; a height of the
-indenter, z_A = -depth (Eq. 18), becomes a depth.
+``t [ms]``, ``Time (s)``, ``t/ms``, ``z_A [mm]``, ``F_z in N/mm``, ``Zeit [ms]`` are recognised; a height of
+the indenter, z_A = -depth (Eq. 18), becomes a depth.
 """
 
 import re
 from dataclasses import dataclass
+from difflib import get_close_matches
 
 from kvtheory.results import TRANSIENT_UNITS
-from kvtheory.scene.quantities import closest
 from kvtheory.scene.units import to_si
 
 SI_UNITS = {**TRANSIENT_UNITS, "peak_pressure": "N/m^2"}
 """The units of a series as `kvtheory.scene.units` spells them."""
 
 SPELLINGS = {
-    "time": "time, t",
-    "velocity": "velocity, V, drive velocity, v_drive, sliding velocity",
-    "depth": "depth, delta, δ, indentation, indentation depth, penetration",
-    "-depth": "z_A, z, position, indenter position, height",
+    "time": "time, t, Zeit",
+    "velocity": "velocity, V, drive velocity, v_drive, sliding velocity, Geschwindigkeit",
+    "depth": "depth, delta, δ, indentation, indentation depth, penetration, Tiefe, Eindringtiefe",
+    "-depth": "z_A, z, position, indenter position, height, Höhe, Hoehe, Lage",
     "depth_rate": "depth_rate, delta_dot, ddelta/dt, depth velocity",
     "-depth_rate": "v_z, vz_A, dz_A/dt, z_A_dot, vertical velocity",
-    "normal_force": "normal_force, F_z, F_n, normal load, vertical force",
-    "friction_force": "friction_force, F_x, F_t, F, friction, tangential force, horizontal force",
-    "leading_edge": "leading_edge, x_LE",
-    "trailing_edge": "trailing_edge, x_TE",
-    "peak_pressure": "peak_pressure, p_max, maximum pressure, pressure maximum",
+    "normal_force": "normal_force, F_z, F_n, normal load, vertical force, Normalkraft, Vertikalkraft",
+    "friction_force": "friction_force, F_x, F_t, F, friction, tangential force, horizontal force, "
+    "Reibkraft, Reibungskraft, Tangentialkraft",
+    "leading_edge": "leading_edge, x_LE, Vorderkante",
+    "trailing_edge": "trailing_edge, x_TE, Hinterkante",
+    "peak_pressure": "peak_pressure, p_max, maximum pressure, pressure maximum, Druckmaximum, Maximaldruck",
 }
 """How each quantity may be named; a minus sign marks those that point the other way."""
 
-_HEAD = re.compile(r"^(?P<name>.*?)\s*(?:\[(?P<square>[^\]]*)\]|\((?P<round>.*)\))\s*$")
+MISSPELT = 0.8
+"""Likeness of a name to a known one from which on it is taken for misspelt, and not for something else."""
+_HEADS = (
+    re.compile(r"^(?P<name>.*?)\s*\[(?P<unit>[^\]]*)\]$"),
+    re.compile(r"^(?P<name>.*?)\s*\((?P<unit>.*)\)$"),
+    re.compile(r"^(?P<name>.*?)\s+in\s+(?P<unit>.+)$"),
+    re.compile(r"^(?P<name>[^/]*?)\s*/\s*(?P<unit>.+)$"),
+)
+"""A name and a unit: in brackets, after "in", or, as ISO 80000 has it, after a stroke."""
 
 
 @dataclass(frozen=True)
@@ -54,8 +63,8 @@ KNOWN = {
 SHOWN = "time, depth (or z_A), normal_force, friction_force, leading_edge, trailing_edge"
 
 
-def recognise(header: str) -> Column:
-    """Return what a column holds.
+def recognise(header: str) -> Column | None:
+    """Return what a column holds; None if its name is of no quantity, nor nearly.
 
     Raises
     ------
@@ -67,14 +76,15 @@ def recognise(header: str) -> Column:
     >>> recognise("z_A [mm]")
     Column(header='z_A [mm]', quantity='depth', factor=-0.001)
     """
-    match = _HEAD.match(header.strip())
-    name = match["name"] if match else header.strip()
+    name, unit = _parts(header.strip())
     quantity = KNOWN.get(_plain(name))
     if quantity is None:
-        raise ValueError(f'column "{header}": unknown name{_suggestion(name)}')
+        hint = _suggestion(name)
+        if not hint:
+            return None
+        raise ValueError(f'column "{header}": unknown name{hint}')
     sign, quantity = (-1.0, quantity[1:]) if quantity[0] == "-" else (1.0, quantity)
     si = SI_UNITS[quantity]
-    unit = "" if match is None else (match["square"] or match["round"] or "").strip()
     if not unit:
         raise ValueError(f'column "{header}": has no unit; expected "{name} [{si}]" or the like')
     try:
@@ -83,10 +93,26 @@ def recognise(header: str) -> Column:
         raise ValueError(f'column "{header}": the unit {error}') from None
 
 
+def _parts(header: str) -> tuple[str, str]:
+    """Return the name and the unit of a column; "dz_A/dt" is a name, "t/ms" is both.
+
+    >>> _parts("t/ms"), _parts("F_z (N/mm)"), _parts("z_A")
+    (('t', 'ms'), ('F_z', 'N/mm'), ('z_A', ''))
+    """
+    if _plain(header) in KNOWN:
+        return header, ""
+    for pattern in _HEADS:
+        if match := pattern.match(header):
+            return match["name"].rstrip(" /"), match["unit"].strip(" ()[]")
+    return header, ""
+
+
 def _suggestion(name: str) -> str:
-    """Say which known name is nearest, and which there are."""
+    """Say which known name is nearest, if one is near, and which there are."""
     spellings = {_plain(s): s for names in SPELLINGS.values() for s in names.split(", ")}
-    match = closest(_plain(name), spellings)
-    hint = f', did you mean "{spellings[match]}"?' if match else ""
+    near = get_close_matches(_plain(name), spellings, n=1, cutoff=MISSPELT)
+    if not near:
+        return ""
     known = "; ".join(f"{q.lstrip('-')}: {names}" for q, names in SPELLINGS.items())
-    return f"{hint}; known names are {known}; remove a column that is something else"
+    hint = f', did you mean "{spellings[near[0]]}"?'
+    return f"{hint}; known names are {known}; rename a column that is something else"

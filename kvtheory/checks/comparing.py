@@ -1,16 +1,16 @@
 """Reading, theory, checks and diagnosis put together."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 
 from kvtheory.checks.checklist import judge
-from kvtheory.checks.comparison_case import make_case
-from kvtheory.checks.diagnosis import diagnose
+from kvtheory.checks.comparison_case import COARSEST, LARGEST_SAWTOOTH, make_case
+from kvtheory.checks.diagnosis import diagnose, verdict
+from kvtheory.checks.discretization import COARSE
 from kvtheory.checks.reading import Series
-from kvtheory.checks.theory import Theory
+from kvtheory.checks.theory import Methods, Theory
 from kvtheory.results import TRANSIENT_UNITS
 from kvtheory.results.comparison import Check, Comparison, Explanation
 from kvtheory.scene.model import Scene
@@ -19,8 +19,7 @@ from kvtheory.scene.model import Scene
 def compare(
     scene: Scene,
     series: Series,
-    transient: Callable[..., Any],
-    steady: Callable[..., Any],
+    methods: Methods,
     per_length: float | None,
     scheme: str | None,
     tolerance: float,
@@ -28,25 +27,30 @@ def compare(
     """Hold a series against theory; `kvtheory.compare` documents it."""
     series = replace(series, scheme=scheme or series.scheme)
     with np.errstate(over="ignore", invalid="ignore"):  # data that diverge overflow when squared
-        return _compare(Theory(scene, transient, steady), series, per_length, tolerance)
+        return _compare(Theory(scene, methods), series, per_length, tolerance)
 
 
 def _compare(
     theory: Theory, series: Series, per_length: float | None, tolerance: float
 ) -> Comparison:
     try:
-        case = make_case(theory, series, per_length, tolerance)
+        case = make_case(theory, series, per_length, tolerance, COARSEST)
     except ArithmeticError as error:
         raise ArithmeticError(
             f"{series.source}: the theory cannot be followed to t = {series.time[-1]:.6g} s, where the data "
             f"end ({error}); is the unit of the time right?"
         ) from None
     checks = judge(case)
-    wrong = [check for check in checks if check.ok is False]
+    others = {check.name for check in checks if check.ok is False} - {COARSE}
+    if others and case.resolution.spacing_read:  # a large noise is then not that of elements alone
+        case = make_case(theory, series, per_length, tolerance, LARGEST_SAWTOOTH)
+        checks = judge(case)
     text, explanations = diagnose(case, checks)
+    if series.ignored:
+        text += f" Columns that were not used: {', '.join(series.ignored)}."
     allowed = {name: case.most(name) * case.theory.scales[name] for name in case.names}
     return Comparison(
-        "disagrees" if wrong else "agrees", checks, text, explanations, series.source, tolerance,
+        verdict(checks), checks, text, explanations, series.source, tolerance,
         dict(series.columns), dict(case.now), allowed,
     )  # fmt: skip
 
@@ -55,8 +59,7 @@ def broken_off(
     scene: Scene,
     rows: Sequence[Sequence[float]],
     reason: str,
-    transient: Callable[..., Any],
-    steady: Callable[..., Any],
+    methods: Methods,
     scheme: str | None,
     tolerance: float,
 ) -> Comparison:
@@ -65,14 +68,12 @@ def broken_off(
     `rows` are what it found until then, in the order of `TRANSIENT_UNITS`.
     """
     series = dict(zip(TRANSIENT_UNITS, np.array(rows).T, strict=True))
-    theory = dict(Theory(scene, transient, steady).at(series["time"]))
+    theory = dict(Theory(scene, methods).at(series["time"]))
     lacking = 1.0 - float(series["time"][-1]) / scene.run.duration
-    check = Check(
-        "run to the end", lacking, 0.0, False, "F15", "part of the duration that is lacking"
-    )
-    fault = Explanation(
-        "unstable time step", f"the time step is unstable (F15): {reason}", 1.0, True
-    )
+    unit = "part of the duration that is lacking"
+    check = Check("run to the end", lacking, 0.0, False, "F15", unit)
+    name = "unstable time step"
+    fault = Explanation(name, f"the time step is unstable (F15): {reason}", 1.0, True)
     text = f"{fault.text[0].upper()}{fault.text[1:]}. Failed: {check.name} (F15)."
     allowed = {name: np.zeros_like(values) for name, values in theory.items()}
     return Comparison(

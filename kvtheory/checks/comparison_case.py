@@ -1,16 +1,17 @@
 """A series beside theory: all that the checks and the diagnosis look at."""
 
 import math
-from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
-from kvtheory.checks.allowances import Allowance, Resolution, allowance, extreme, resolution
+from kvtheory.checks.allowances import Allowance, Resolution, allowance, resolution
+from kvtheory.checks.noise import SURE, gaps
 from kvtheory.checks.reading import Series
-from kvtheory.checks.theory import CURVES, Theory
+from kvtheory.checks.theory import CURVES, Curves, Theory
+from kvtheory.results.comparison import Check
 
 Array = NDArray[np.float64]
 
@@ -18,13 +19,20 @@ THEORY_RTOL = 1e-7
 """Tolerance of the theory: its error is far below every allowance."""
 SMALLEST = 1e-9
 """Of a scale: below this, theory and data are not told apart."""
-
-
 LARGEST_SAWTOOTH = 0.025
 """Of the load: elements so coarse that half of one at the edge matters more do not resolve the contact."""
-IN_STEP = 1.4
-"""Where the density is not known, elements may be so much fewer than assumed, or than their noise shows:
-samples that are nearly in step with the elements that enter see little of the sawtooth."""
+COARSEST = 0.1
+"""Of the load: data whose half element is more are not called coarse, but wrong."""
+SOME, IN_STEP = 1.4, 1.75
+"""Elements may be so much fewer than assumed, or than their noise shows where it is even; and where it is
+not, for samples that are nearly in step with the elements that enter see little of the sawtooth."""
+USUAL, LARGE, OFTEN = 0.43, 1.08, 0.95
+"""Of b: median and 95th percentile of the gaps of a sawtooth of +-b that is sampled at random."""
+EVEN = 0.6
+"""Of what these say of each other: with less, a part of the samples is in step."""
+FINEST = 0.1
+"""Of the spacing assumed: a smaller sawtooth is that of samples all in step, and of the digits if these leave
+out as much."""
 COMMON = 0.5
 """Correlation of the noise of both forces, squared, from which on it is taken for the sawtooth of F15."""
 LOUD = 4.0
@@ -38,7 +46,7 @@ class Case:
     theory: Theory
     series: Series
     resolution: Resolution
-    now: Mapping[str, Array]
+    now: Curves
     allowance: Allowance
     tolerance: float
 
@@ -46,6 +54,13 @@ class Case:
     def names(self) -> tuple[str, ...]:
         """The curves that the series holds."""
         return tuple(name for name in CURVES if name in self.series.columns)
+
+    def rows(self, rows: Array) -> "Case":
+        """Return the case of some of its rows."""
+        columns = {name: values[rows] for name, values in self.series.columns.items()}
+        now = {name: values[rows] for name, values in self.now.items()}
+        series, allowed = replace(self.series, columns=columns), self.allowance.rows(rows)
+        return replace(self, series=series, now=now, allowance=allowed)
 
     def residual(self, name: str) -> Array:
         """Return data less theory, relative to the scale of the curve."""
@@ -62,39 +77,65 @@ class Case:
         values = np.nan_to_num(self.allowance.most(name), nan=0.0) / scale
         return np.asarray(self.tolerance * (values + SMALLEST))
 
+    def together(self, name: str) -> float:
+        """Return what the root mean square of a curve may be, relative to the scale."""
+        scale = self.theory.scales[name]
+        smooth = rms(self.allowance.systematic[name]) / scale
+        sigma = rms(self.allowance.noise[name]) / scale
+        random = sigma * (1.0 + SURE * math.sqrt(2.0 / self.series.time.size))
+        return self.tolerance * (smooth + random + SMALLEST)
+
     @cached_property
-    def together(self) -> Mapping[str, float]:
-        """What the root mean square of each curve may be, relative to the scale."""
-        found = {}
-        for name in self.names:
-            smooth = np.nan_to_num(self.allowance.systematic[name]) / self.theory.scales[name]
-            sigma = self.allowance.noise[name] / self.theory.scales[name]
-            count = max(smooth.size, 1)
-            random = sigma * (1.0 + extreme(count) / np.sqrt(2.0 * count))
-            found[name] = self.tolerance * (float(np.sqrt(np.mean(smooth**2))) + random + SMALLEST)
-        return found
+    def random_force(self) -> float:
+        """Standard deviation of the noise of the normal force, in N/m: the median over time."""
+        return float(np.median(self.allowance.noise["normal_force"]))
+
+    def check(
+        self, name: str, measured: float, allowed: float, equation: str, unit: str, note: str = ""
+    ) -> Check:
+        """Return a check that was made; `allowed` includes the tolerance."""
+        ok = bool(measured <= allowed)
+        return Check(name, float(measured), float(allowed), ok, equation, unit, note)
 
 
-def make_case(theory: Theory, series: Series, per_length: float | None, tolerance: float) -> Case:
+def not_made(name: str, equation: str, why: str) -> Check:
+    """Return a check that could not be made."""
+    return Check(name, None, None, None, equation, "", f"not made: {why}")
+
+
+def make_case(
+    theory: Theory, series: Series, per_length: float | None, tolerance: float, coarsest: float
+) -> Case:
     """Hold a series against theory.
 
-    Where the element density is not known, and the noise is that of elements, it is estimated from that.
+    Where the element density is not known, and the noise is that of elements, it is estimated from that:
+    up to a force of half an element of `coarsest`, relative to the load.
     """
     fine = resolution(theory, series, per_length)
-    now, allowed = allowance(theory, series, fine, THEORY_RTOL)
-    case = Case(theory, series, fine, now, allowed, tolerance)
+    case = Case(theory, series, fine, *allowance(theory, series, fine, THEORY_RTOL), tolerance)
     if fine.spacing_known:
         return case
-    load, b = theory.static.load, float(np.median(allowed.force))
-    # A sawtooth of +-b has sigma = b/sqrt(3).
-    common = (common_noise(case) or 0.0) >= COMMON
-    seen = math.sqrt(3.0) * allowed.noise["normal_force"] if common else 0.0
-    wider = min(IN_STEP * max(seen, b), LARGEST_SAWTOOTH * load) / b if b else 0.0
-    if wider <= 1.0:
-        return case
-    fine = replace(fine, spacing=wider * fine.spacing)
-    now, allowed = allowance(theory, series, fine, THEORY_RTOL)
-    return Case(theory, series, fine, now, allowed, tolerance)
+    largest = coarsest * theory.static.load / float(np.median(case.allowance.force))
+    seen = _coarser(case) if (common_noise(case) or 0.0) >= COMMON else SOME
+    wider = min(seen, max(largest, SOME))
+    fine = fine._replace(spacing=wider * fine.spacing, spacing_read=wider != SOME)
+    return Case(theory, series, fine, *allowance(theory, series, fine, THEORY_RTOL), tolerance)
+
+
+def _coarser(case: Case) -> float:
+    """Return how much wider the spacing is than assumed, by the sawtooth of +-b in the normal force (F15).
+
+    A sawtooth of which samples in step with the elements show little says nothing against as many as are
+    assumed, nor does none.
+    """
+    force = "normal_force"
+    gap, rows = gaps(case.series.time, case.series.columns[force] - case.now[force])
+    b, digits = case.allowance.force[rows], case.allowance.rounding[force][rows]
+    usual, large = np.quantile(gap[b > 0.0] / b[b > 0.0], [0.5, OFTEN])
+    usual, large = float(usual) / USUAL, float(large) / LARGE
+    shown = float(np.median(digits)) <= FINEST * float(np.median(b))
+    even = shown and FINEST <= EVEN * large <= usual
+    return SOME * max(usual, large) if even else max(IN_STEP * large, SOME)
 
 
 def common_noise(case: Case) -> float | None:

@@ -12,14 +12,29 @@ NAMED = 0.5
 """Part of the difference that a fault must explain to be named."""
 SHOWN = 4
 """Explanations that are kept."""
+SAMPLING = "sampling"
+"""The check whose failure alone says nothing against the data."""
+
+
+def verdict(checks: Sequence[Check]) -> str:
+    """Return whether the data agree; where they are only sampled too coarsely, that cannot be told."""
+    failed = [check.name for check in checks if check.ok is False]
+    if not failed:
+        return "agrees"
+    return "cannot tell" if failed == [SAMPLING] else "disagrees"
 
 
 def diagnose(case: Case, checks: Sequence[Check]) -> tuple[str, tuple[Explanation, ...]]:
     """Return the diagnosis in words, and the faults behind it, the best first."""
     failed = [check for check in checks if check.ok is False]
-    if not failed:
-        made = sum(check.ok is not None for check in checks)
+    made = sum(check.ok is not None for check in checks)
+    if verdict(checks) == "agrees":
         return f"All {made} checks that could be made are passed.", ()
+    if verdict(checks) == "cannot tell":
+        return (
+            "The data are sampled too coarsely to show the transient; nothing else speaks against them, "
+            f"and the other {made - 1} checks that could be made are passed."
+        ), ()
     found = explanations(case)
     if not any(each.enough for each in found[:1]):
         found = [*unmoved(case, failed), *found, *coarse(case, failed)]
@@ -31,17 +46,18 @@ def diagnose(case: Case, checks: Sequence[Check]) -> tuple[str, tuple[Explanatio
 def explanations(case: Case) -> list[Explanation]:
     """Try every fault and order them: those that explain the data first, then by what they leave."""
     rows = bench(case)
-    start = rows.fit(rows.columns, rows.case.now).score
+    start = rows.fit(rows.columns, rows.now).score
     trials: list[Trial] = []
     for family, good in FAMILIES:
         trials += family(rows)
-        if any(trial.fit.enough and trial.fit.score <= (1.0 - good) * start for trial in trials):
+        fits = [trial.fitted.fit for trial in trials]
+        if any(fit.enough and fit.score <= (1.0 - good) * start for fit in fits):
             break
-    trials.sort(key=lambda trial: trial.fit.score)
+    trials.sort(key=lambda trial: trial.fitted.fit.score)
     found: dict[str, Explanation] = {}
     for trial in trials:
-        explained = 1.0 - trial.fit.score / start if start else 0.0
-        enough = trial.fit.enough and explained >= NAMED
+        explained = 1.0 - trial.fitted.fit.score / start if start else 0.0
+        enough = trial.fitted.fit.enough and explained >= NAMED
         each = Explanation(trial.name, trial.text, explained, enough, trial.factor, explained)
         found.setdefault(trial.name, each)
     return [each for each in found.values() if each.rank > 0.0]

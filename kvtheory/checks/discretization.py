@@ -5,10 +5,20 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from kvtheory.checks.comparison_case import COMMON, LARGEST_SAWTOOTH, Case, common_noise
-from kvtheory.checks.making import check, not_made
+from kvtheory.checks.comparison_case import (
+    COARSEST,
+    COMMON,
+    IN_STEP,
+    LARGEST_SAWTOOTH,
+    Case,
+    common_noise,
+    not_made,
+)
 from kvtheory.results.comparison import Check
 from kvtheory.results.schemes import SCHEME_ROWS
+
+COARSE = "elements enough"
+"""The check of the density."""
 
 
 def sawtooth(case: Case) -> Iterator[Check]:
@@ -18,21 +28,20 @@ def sawtooth(case: Case) -> Iterator[Check]:
         yield not_made(name, equation, "the data hold no normal force")
         return
     W = case.theory.static.load
-    sigma, b = case.allowance.noise["normal_force"] / W, float(np.median(case.allowance.force)) / W
+    sigma, b = case.random_force / W, float(np.median(case.allowance.force)) / W
     unit = "standard deviation, relative to the load"
     if not case.resolution.spacing_known:
         shared = common_noise(case)
         sound = shared is None or shared < COMMON
-        limit = LARGEST_NOISE_ALLOWED if sound else LARGEST_SAWTOOTH
+        limit = LARGEST_NOISE_ALLOWED if sound else COARSEST
         kind = "not that of elements" if sound else "common to both forces, as that of elements"
-        note = (
-            f"{kind}; element density not given, taken for {1e-3 / case.resolution.spacing:.3g} /mm"
-        )
-        yield check(case, name, sigma, case.tolerance * limit, equation, unit, note)
+        how = "read from them" if case.resolution.spacing_read else "assumed"
+        note = f"{kind}; {1e-3 / case.resolution.spacing:.3g} elements per mm, {how}"
+        yield case.check(name, sigma, case.tolerance * limit, equation, unit, note)
         return
     allowed = case.tolerance * (2.0 * float(case.allowance.force.max()) / W + 1e-9)
     note = f"N = {1e-3 / case.resolution.spacing:.4g} /mm, sawtooth +-{b:.2g} of the load"
-    yield check(case, name, sigma, allowed, equation, unit, note)
+    yield case.check(name, sigma, allowed, equation, unit, note)
 
 
 LARGEST_NOISE_ALLOWED = 0.09
@@ -41,19 +50,21 @@ LARGEST_NOISE_ALLOWED = 0.09
 
 def elements(case: Case) -> Iterator[Check]:
     """One element at the leading edge against the load."""
-    name, equation = "elements enough", "F15"
-    if not case.resolution.spacing_known:
-        yield not_made(name, equation, "the element density is not given (`per_length`)")
+    name, equation = COARSE, "F15"
+    known, read = case.resolution.spacing_known, case.resolution.spacing_read
+    if not known and not read:
+        why = "the element density is not given (per_length), nor can it be read from the forces"
+        yield not_made(name, equation, why)
         return
     b = float(np.median(case.allowance.force)) / case.theory.static.load
-    yield check(
-        case,
-        name,
-        b,
-        case.tolerance * LARGEST_SAWTOOTH,
-        equation,
-        "half an element's force, relative to the load",
+    b /= 1.0 if known else IN_STEP
+    note = (
+        ""
+        if known
+        else f"about {1e-3 * IN_STEP / case.resolution.spacing:.2g} /mm, read from the sawtooth"
     )
+    unit = "half an element's force, relative to the load"
+    yield case.check(name, b, case.tolerance * LARGEST_SAWTOOTH, equation, unit, note)
 
 
 def stability(case: Case) -> Iterator[Check]:
@@ -72,4 +83,4 @@ def stability(case: Case) -> Iterator[Check]:
     else:
         length = float(np.nanmax(np.abs(case.now["trailing_edge"] - case.now["leading_edge"])))
         number = case.resolution.time_step * scene.foundation.damping * length / scene.support.mass
-        yield check(case, name, number, limit, equation, "dt C L/M", f"scheme {scheme}")
+        yield case.check(name, number, limit, equation, "dt C L/M", f"scheme {scheme}")

@@ -1,44 +1,47 @@
 """The faults that the diagnosis knows, as data: what to vary, and what to say when it fits.
 
 A fault is a parameter of the scene that the data were not made with, a column that has to be undone
-(its sign, its unit), times that are off, or a wrong rule of contact.
+(its sign, its unit, the point that a force acts about), times that are off, a wrong start or a wrong rule
+of contact.
 """
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
-from functools import partial
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from kvtheory.checks.fitting import Bench, Curves, Fit, best, scaled_scene
-from kvtheory.checks.rules import RULES, run
-from kvtheory.checks.theory import CURVES
+from kvtheory.checks.fitting import NO_FIT, Bench, Fitted, Pair, scaled_scene
+from kvtheory.checks.theory import CURVES, Curves
+from kvtheory.results.schemes import RK4_LIMIT
 
 Array = NDArray[np.float64]
 
 
 class Parameter(NamedTuple):
-    """A quantity of a scene: key, symbol, and the unit in which it is shown."""
+    """A quantity of a scene: its symbol, the keys that it scales with their powers, how it is shown."""
 
-    key: str
     symbol: str
+    powers: Mapping[str, float]
     unit: str
     per_si: float
+    words: str = ""
 
 
 PARAMETERS = (
-    Parameter("foundation.retardation_time", "tau", "ms", 1e3),
-    Parameter("foundation.stiffness", "K", "GN/m^3", 1e-9),
-    Parameter("indenter.radius", "R", "mm", 1e3),
-    Parameter("support.mass", "M", "kg/mm", 1e-3),
-    Parameter("support.gravity", "g", "m/s^2", 1.0),
-    Parameter("support.stiffness", "k_s", "MN/m^2", 1e-6),
-    Parameter("support.depth", "delta", "mm", 1e3),
-    Parameter("drive.velocity", "V", "mm/s", 1e3),
-)
+    Parameter("tau", {"foundation.retardation_time": 1.0}, "ms", 1e3),
+    Parameter("K", {"foundation.stiffness": 1.0}, "GN/m^3", 1e-9),
+    Parameter("R", {"indenter.radius": 1.0}, "mm", 1e3),
+    Parameter("M", {"support.mass": 1.0}, "kg/mm", 1e-3),
+    Parameter("g", {"support.gravity": 1.0}, "m/s^2", 1.0),
+    Parameter("inertia", {"support.mass": 1.0, "support.gravity": -1.0}, "kg/mm", 1e-3,
+              " in M z'' alone (Eq. 17), the weight being right"),
+    Parameter("k_s", {"support.stiffness": 1.0}, "MN/m^2", 1e-6),
+    Parameter("delta", {"support.depth": 1.0}, "mm", 1e3),
+    Parameter("V", {"drive.velocity": 1.0}, "mm/s", 1e3),
+)  # fmt: skip
 """What may be wrong in a scene; those that the scene has not are passed over."""
 
 GROUPS = {
@@ -46,82 +49,106 @@ GROUPS = {
     "both forces": ("normal_force", "friction_force"),
     "both edges": ("leading_edge", "trailing_edge"),
     "the lengths": ("depth", "leading_edge", "trailing_edge"),
-}  # fmt: skip
+}
 """Columns that may share a wrong sign, unit or scale."""
 
-WRONG_RULES = {
-    "tension": (
-        "tension allowed at the trailing edge",
-        "the foundation is not let go where it would pull (no peeling): an element must detach where its "
-        "pressure vanishes (Eqs. 23, 24 and 33)",
-    ),
-    "stale": (
-        "contact lost while rising",
-        "elements lose contact where the indenter rises, for the surface of the last step is taken for the "
-        "present one: a free surface relaxes within the step too (Eqs. 20 and 25, F8)",
-    ),
-    "unrelaxed": (
-        "no relaxation of the free surface",
-        "the free surface does not relax, so that the contact ends where the indenter recedes from it: it "
-        "decays as exp(-t/tau) (Eqs. 20 and 25, F8)",
-    ),
-    "frozen": (
-        "no relaxation of the free surface",
-        "the free surface does not relax where the indenter comes back to it: it decays as exp(-t/tau) "
-        "(Eqs. 20 and 25, F8)",
-    ),
-}
-"""Wrong rules of contact, by their name in `kvtheory.checks.rules`."""
 
-FACTORS = np.array([1e-3, 1e-2, *np.geomspace(0.05, 20.0, 19), 1e2, 1e3])
-"""Factors of a parameter that are tried first: near 1, where mistakes are, and wrong units."""
+class Mistake(NamedTuple):
+    """What a simulator does wrong, by name as `Methods.elements` knows it, and what to say.
+
+    `comes_back` says that it shows only where the indenter comes back over ground that it left.
+    """
+
+    name: str
+    text: str
+    does: Mapping[str, Any]
+    comes_back: bool = False
+
+
+UNRELAXED = "no relaxation of the free surface"
+MISTAKES = (
+    Mistake("tension allowed at the trailing edge",
+            "the foundation is not let go where it would pull (no peeling): an element must detach where "
+            "its pressure vanishes (Eqs. 23, 24 and 33)", {"pulls": True}),
+    Mistake("contact lost while rising",
+            "elements lose contact where the indenter rises, for the surface of the last step is taken for "
+            "the present one: a free surface relaxes within the step too (Eqs. 20 and 25, F8)",
+            {"flags": False, "stale": True}),
+    Mistake(UNRELAXED,
+            "the free surface does not relax, so that the contact ends where the indenter recedes from it: "
+            "it decays as exp(-t/tau) (Eqs. 20 and 25, F8)", {"flags": False, "relaxes": False}),
+    Mistake(UNRELAXED,
+            "the free surface does not relax where the indenter comes back to it: it decays as exp(-t/tau) "
+            "(Eqs. 20 and 25, F8)", {"relaxes": False}, comes_back=True),
+    Mistake("undeformed at the start",
+            "at t = 0 the indenter touches an undeformed foundation, where theory has it at rest at its "
+            "static depth (Eq. 40)", {"start": 0.0}),
+)  # fmt: skip
+
+FACTORS = (1.0, 0.5, 2.0, 0.1, 10.0, 1e-3, 1e3)
+"""Factors of a parameter from which the fit may start: near 1, where mistakes are, and wrong units."""
 POWER_OF_TEN = 0.02
 """In the decadic logarithm: nearer to a whole number, a factor is a power of ten."""
 DECADES = (-6, -3, -2, -1, 1, 2, 3)
 """Powers of ten by which the times may be off."""
-NO_SHIFT = 1e-6
-"""Of what is allowed: how much better a shift by the whole duration has to be than none."""
-SHIFTS = np.geomspace(1e-3, 0.5, 13)
-"""Of the duration: offsets of the time that are tried first, in both directions."""
-
+SHIFTS = (0.002, 0.005, 0.012, 0.03, 0.08, 0.2, 0.5)
+"""Of the span of the data: offsets of the time from which the fit may start, in both directions."""
+HUNDREDTH = 0.01
+"""Of the span: the unit in which an offset of the time is fitted."""
+ONSET = 0.1
+"""Of the range of the normal force: where it has changed by as much, the drive has started."""
+MORE = 0.05
+"""By which the initial depth is changed to see what it does."""
+PER_HALF_LENGTH = 250.0
+"""Elements in the static half length of a simulation with a mistake: its difference to one without is wanted,
+in which most of their coarseness cancels."""
+LONGEST_RUN = 1500
+"""Steps of such a simulation; what it does later is taken to stay the same."""
+STABLE = 0.5
+"""Of the largest stable step of the paper's scheme."""
+PASSED = 1.618
+"""Elements that pass in a step: about as in the paper, but never in step with those that enter."""
 
 Family = Callable[[Bench], Iterator["Trial"]]
 
 
 @dataclass(frozen=True)
 class Trial:
-    """A fault tried: how it fits, what was fitted, and what to say."""
+    """A fault tried: how it fits, what to say, and the factor or shift that was found."""
 
     name: str
     text: str
-    fit: Fit
+    fitted: Fitted
     factor: float | None = None
 
 
 def parameters(bench: Bench) -> Iterator[Trial]:
-    """Vary each parameter of the scene, and the direction of the drive."""
-    scene, values = bench.theory.scene, dict(bench.theory.scene.values())
+    """Fit each parameter of the scene, and try the direction of the drive."""
+    scene, values = bench.case.theory.scene, dict(bench.case.theory.scene.values())
+    values.setdefault("drive.velocity", bench.case.theory.final_velocity)
 
-    def fitted(key: str, factor: float) -> Fit:
-        curves = bench.solved(scaled_scene(scene, key, factor))
-        return Fit(math.inf, False) if curves is None else bench.fit(bench.columns, curves)
+    def scaled(powers: Mapping[str, float], factor: float) -> Pair | None:
+        curves = bench.solved(scaled_scene(scene, powers, factor))
+        return None if curves is None else (bench.columns, curves)
 
-    for key, symbol, unit, per_si in PARAMETERS:
-        if key not in values or values[key] == 0.0:
+    for symbol, powers, unit, per_si, words in PARAMETERS:
+        key = next(iter(powers))
+        if not all(values.get(name) for name in powers):
             continue
-        factor = _best_factor(partial(fitted, key))
+        found = bench.fitted(lambda x, p=powers: scaled(p, math.exp(x)), np.log(FACTORS).tolist())  # type: ignore[misc]
+        factor = math.exp(found.value)
         old, new = values[key] * per_si, factor * values[key] * per_si
-        text = f"the data fit {symbol} = {new:.4g} {unit} rather than {old:.4g} {unit}, {factor:.4g} times"
-        yield Trial(f"wrong {symbol}", text + ten(factor), fitted(key, factor), factor)
-    backward = fitted("drive.velocity", -1.0)
+        size = f"{new:.4g} {unit} rather than {old:.4g} {unit}"
+        text = f"the data fit {symbol} = {size}, {factor:.4g} times{words}{_ten(factor)}"
+        yield Trial(f"wrong {symbol}", text, found, factor)
+    backward = scaled({"drive.velocity": 1.0}, -1.0)
     text = "the base moves in the other direction: x and V have the other sign"
-    yield Trial("direction of the drive", text, backward, -1.0)
+    yield Trial("direction of the drive", text, _judged(bench, backward), -1.0)
 
 
-def _best_factor(fitted: Callable[[float], Fit]) -> float:
-    """Return the factor that fits best."""
-    _, log = best(lambda x: fitted(math.exp(x)).score, np.log(FACTORS))
-    return math.exp(log)
+def _judged(bench: Bench, pair: Pair | None) -> Fitted:
+    """Judge a fault without an unknown."""
+    return NO_FIT if pair is None else Fitted(bench.fit(*pair))
 
 
 def undone(bench: Bench) -> Iterator[Trial]:
@@ -130,13 +157,29 @@ def undone(bench: Bench) -> Iterator[Trial]:
 
 
 def scales(bench: Bench) -> Iterator[Trial]:
-    """Multiply columns by what fits best."""
-    return (trial for trial in _columns(bench) if trial.name.startswith(SCALE))
+    """Multiply columns by what fits best, and shift the point that the friction force acts about."""
+    yield from (trial for trial in _columns(bench) if trial.name.startswith(SCALE))
+    if "friction_force" not in bench.names:
+        return
+    theory = bench.case.theory
+    half, R = theory.static.half_length, theory.scene.indenter.radius  # type: ignore[union-attr]
+    F_z = bench.columns.get("normal_force", bench.now["normal_force"])
+
+    def about(x: float) -> Pair:
+        shifted = bench.columns["friction_force"] - x * half / R * F_z
+        return {**bench.columns, "friction_force": shifted}, bench.now
+
+    found = bench.fitted(about, [0.0])
+    arm = found.value * half
+    text = (
+        f"friction force: its lever arm is off by {arm * 1e3:.3g} mm, F_x being the moment of the pressure "
+        "about another point than the lowest of the indenter (Eqs. 13 and 15)"
+    )
+    yield Trial("lever arm of friction_force", text, found, arm)
 
 
 def _columns(bench: Bench) -> Iterator[Trial]:
     """Multiply columns by what fits best, and exchange the edges."""
-    curves = bench.case.now
     for title, group in GROUPS.items():
         if not all(name in bench.names for name in group):
             continue
@@ -147,26 +190,17 @@ def _columns(bench: Bench) -> Iterator[Trial]:
         whole = abs(math.log10(abs(factor)) - decades) < POWER_OF_TEN
         exact = math.copysign(10.0**decades, factor) if whole else factor
         changed = {**bench.columns, **{name: exact * bench.columns[name] for name in group}}
-        fit, names = bench.fit(changed, curves), title.replace("_", " ")
+        found, names = Fitted(bench.fit(changed, bench.now)), title.replace("_", " ")
         if whole and decades == 0 and exact < 0.0:
-            yield Trial(
-                f"sign of {title}", f"{names}: has the wrong sign{SIGNS.get(title, '')}", fit, exact
-            )
+            text = f"{names}: has the wrong sign{SIGNS.get(title, '')}"
+            yield Trial(f"sign of {title}", text, found, exact)
         elif whole and decades:
             sign = "" if exact > 0.0 else " and has the wrong sign"
-            yield Trial(
-                f"unit of {title}",
-                f"{names}: off by a power of ten, 10^{-decades}{sign}; check the unit",
-                fit,
-                1.0 / exact,
-            )
+            text = f"{names}: off by a power of ten, 10^{-decades}{sign}; check the unit"
+            yield Trial(f"unit of {title}", text, found, 1.0 / exact)
         elif not whole:
-            yield Trial(
-                f"{SCALE} of {title}",
-                f"{names}: {1.0 / exact:.4g} times theory, while the rest agrees",
-                fit,
-                1.0 / exact,
-            )
+            text = f"{names}: {1.0 / exact:.4g} times theory, while the rest agrees"
+            yield Trial(f"{SCALE} of {title}", text, found, 1.0 / exact)
     if all(name in bench.names for name in GROUPS["both edges"]):
         first, last = (bench.columns[name] for name in GROUPS["both edges"])
         swapped = {**bench.columns, "leading_edge": last, "trailing_edge": first}
@@ -174,7 +208,7 @@ def _columns(bench: Bench) -> Iterator[Trial]:
             "leading and trailing edge are exchanged: the leading edge is where the foundation enters, at "
             "x < 0 for V > 0"
         )
-        yield Trial("edges exchanged", text, bench.fit(swapped, curves))
+        yield Trial("edges exchanged", text, Fitted(bench.fit(swapped, bench.now)))
 
 
 SCALE = "scale"
@@ -191,8 +225,8 @@ def _least_squares(bench: Bench, group: tuple[str, ...]) -> float:
     """Return the factor by which columns fit theory best, by their allowances."""
     top = bottom = 0.0
     for name in group:
-        most = bench.case.most(name) * bench.theory.scales[name]
-        data, theory = bench.columns[name] / most, bench.case.now[name] / most
+        most = bench.case.most(name) * bench.case.theory.scales[name]
+        data, theory = bench.columns[name] / most, bench.now[name] / most
         known = np.isfinite(data) & np.isfinite(theory)
         top += float(data[known] @ theory[known])
         bottom += float(data[known] @ data[known])
@@ -203,58 +237,87 @@ def decades(bench: Bench) -> Iterator[Trial]:
     """Multiply the times by powers of ten."""
     for power in DECADES:
         text = f"time: off by a power of ten, 10^{-power}; check the unit"
-        yield Trial("unit of time", text, _timed(bench, bench.time * 10.0**power), 10.0**-power)
+        pair = _timed(bench, bench.time * 10.0**power)
+        yield Trial("unit of time", text, _judged(bench, pair), 10.0**-power)
 
 
 def offset(bench: Bench) -> Iterator[Trial]:
-    """Shift the times."""
-    span = float(bench.time[-1] - bench.time[0])
-    grid = span * np.concatenate([-SHIFTS[::-1], [0.0], SHIFTS])
-    # Of shifts that fit as well, such as those of a force that never changes, the smallest counts.
-    _, shift = best(lambda t: _timed(bench, bench.time - t).score + NO_SHIFT * abs(t) / span, grid)
-    text = f"the times are off by {shift * 1e3:.4g} ms: in the data the drive starts at that time"
-    yield Trial("time offset", text, _timed(bench, bench.time - shift), shift)
+    """Shift the times: from none, from the start of the data, and from where the force changes first."""
+    unit = HUNDREDTH * float(bench.time[-1] - bench.time[0])
+    known = [0.0, float(bench.time[0]), _onset(bench)]
+    starts = [*(t / unit for t in known), *(s / HUNDREDTH for p in SHIFTS for s in (p, -p))]
+    found = bench.fitted(lambda x: _timed(bench, bench.time - x * unit), starts)
+    shift = found.value * unit
+    text = f"the times are off by {shift * 1e3:.6g} ms: in the data the drive starts at that time"
+    yield Trial("time offset", text, found, shift)
 
 
-def _timed(bench: Bench, moments: Array) -> Fit:
-    curves = bench.solved(bench.theory.scene, moments)
-    return Fit(math.inf, False) if curves is None else bench.fit(bench.columns, curves)
+def _onset(bench: Bench) -> float:
+    """Return when a force of the data changes first, in s."""
+    name = next(
+        name for name in ("normal_force", "friction_force", "depth") if name in bench.columns
+    )
+    change = np.abs(bench.columns[name] - bench.columns[name][0])
+    return float(bench.time[np.argmax(change >= ONSET * np.nanmax(change))])
 
 
-def rules(bench: Bench) -> Iterator[Trial]:
-    """Break the rules of contact."""
-    theory = bench.theory
-    scene, static, tau = theory.scene, theory.static, theory.scene.foundation.retardation_time
-    half, end = static.half_length, max(float(bench.time[-1]), 1e-12) / tau
-
-    def drive(s: Array) -> Array:
-        return np.asarray(theory.at(s * tau)["velocity"] * tau / half)
-
-    epsilon = None if scene.held else static.inertia_number
-    kappa = 0.0 if scene.held else static.support_number
-    s, right = run(RULES["right"], drive, epsilon, kappa, end)
-    for rule, (name, text) in WRONG_RULES.items():
-        _, wrong = run(RULES[rule], drive, epsilon, kappa, end)
-        curves = _shifted(bench, s * tau, {key: wrong[key] - right[key] for key in wrong})
-        yield Trial(name, text, bench.fit(bench.columns, curves))
+def _timed(bench: Bench, moments: Array) -> Pair | None:
+    curves = bench.solved(bench.case.theory.scene, moments)
+    return None if curves is None else (bench.columns, curves)
 
 
-def _shifted(bench: Bench, time: Array, change: dict[str, Array]) -> Curves:
-    """Return theory plus the change that a rule makes, in SI."""
-    forward = bench.case.now["velocity"][-1] >= 0.0
-    first, last = ("left", "right") if forward else ("right", "left")
-    names = {"depth": "depth", "depth_rate": "depth_rate", "normal_force": "normal_force",
-             "friction_force": "friction_force", "leading_edge": first, "trailing_edge": last}  # fmt: skip
-    curves = dict(bench.case.now)
-    for name, key in names.items():
-        added = np.interp(bench.time, time, np.nan_to_num(change[key]))
-        curves[name] = (
-            curves[name] + np.where(bench.time < 0.0, 0.0, added) * bench.theory.scales[name]
-        )
-    return curves
+def mistakes(bench: Bench) -> Iterator[Trial]:
+    """Let a simulator make a mistake, and add to theory what that changes."""
+    right = _simulated(bench, {})
+    if right is None:
+        return
+    theory = bench.case.theory
+    for name, text, does, comes_back in MISTAKES:
+        if comes_back and theory.scene.drive.constant:
+            continue
+        wrong = _simulated(bench, does)
+        pair = None if wrong is None else (bench.columns, _changed(bench, right, wrong, 1.0))
+        yield Trial(name, text, _judged(bench, pair))
+    deeper = None if theory.scene.held else _simulated(bench, {"start": 1.0 + MORE})
+    if deeper is None:
+        return
+    found = bench.fitted(lambda x: (bench.columns, _changed(bench, right, deeper, x / MORE)), [0.0])
+    text = (
+        f"the depth at t = 0 is {1.0 + found.value:.4g} times the static depth, at which theory has the "
+        "indenter at rest (Eq. 40)"
+    )
+    yield Trial("wrong initial depth", text, found, 1.0 + found.value)
 
 
-def ten(factor: float) -> str:
+def _simulated(bench: Bench, does: Mapping[str, Any]) -> Curves | None:
+    """Return the curves of elements that make a mistake, at the times of the rows."""
+    theory = bench.case.theory
+    scene, half = theory.scene, theory.static.half_length
+    spacing, speed = half / PER_HALF_LENGTH, theory.motion.highest_speed
+    step = PASSED * spacing / speed if speed else math.inf
+    if not scene.held:
+        contact = 2.0 * half * scene.foundation.damping
+        step = min(step, STABLE * RK4_LIMIT * scene.support.mass / contact)
+    times = np.clip(bench.time, 0.0, LONGEST_RUN * step)
+    unique, index = np.unique(times, return_inverse=True)
+    try:
+        found = theory.methods.elements(scene, spacing, step, unique.tolist(), does)
+    except (ValueError, ArithmeticError):
+        return None
+    return {name: np.asarray(found[name])[index] for name in CURVES}
+
+
+def _changed(bench: Bench, right: Curves, wrong: Curves, share: float) -> Curves:
+    """Return theory plus a share of the change that a mistake makes."""
+    moving = bench.time >= 0.0
+    return {
+        name: bench.now[name]
+        + share * np.where(moving, np.nan_to_num(wrong[name] - right[name]), 0.0)
+        for name in CURVES
+    }
+
+
+def _ten(factor: float) -> str:
     """Say so if a factor is a power of ten."""
     power = math.log10(abs(factor))
     near = round(power)
@@ -262,8 +325,7 @@ def ten(factor: float) -> str:
 
 
 FAMILIES: tuple[tuple[Family, float], ...] = (
-    (undone, 0.5), (decades, 0.5), (offset, 0.97), (parameters, 0.97), (scales, 0.97),
-    (rules, 1.0),
+    (undone, 0.5), (decades, 0.5), (offset, 0.97), (parameters, 0.97), (scales, 0.97), (mistakes, 1.0),
 )  # fmt: skip
 """The families in the order in which they are tried, and the part of the difference that one of their faults
 must explain for nothing else to be looked for: a sign or a unit is not fitted, so that little is enough."""

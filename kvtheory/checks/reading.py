@@ -1,5 +1,6 @@
 """A time series from anybody's program: a CSV, a result with our names, or a mapping of arrays."""
 
+import codecs
 import csv
 import re
 from collections.abc import Iterable, Mapping, Sequence
@@ -11,7 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from kvtheory.checks.columns import SHOWN, SI_UNITS, recognise
+from kvtheory.checks.columns import SHOWN, SI_UNITS, Column, recognise
 
 Array = NDArray[np.float64]
 
@@ -24,6 +25,10 @@ MAY_BE_ABSENT = ("leading_edge", "trailing_edge", "peak_pressure")
 JUDGED = ("depth", "normal_force", "friction_force")
 """One of these there must be."""
 SEPARATORS = "\t;,"
+SEPARATED = re.compile(r"^\s*\"?sep=(.)\"?\s*$", re.IGNORECASE)
+"""The line by which a spreadsheet is told the separator."""
+LONGEST_SHOWN = 40
+"""Characters of a cell in a message."""
 
 
 @dataclass(frozen=True)
@@ -35,6 +40,8 @@ class Series:
     per_length: float | None = None
     time_step: float | None = None
     scheme: str | None = None
+    ignored: tuple[str, ...] = ()
+    """Columns of no known name."""
 
     @property
     def time(self) -> Array:
@@ -79,111 +86,156 @@ def read(data: Any) -> Series:
 
 
 def _from_mapping(data: Mapping[str, Any]) -> Series:
-    """Read arrays by our names, in SI, or by names with bracketed units."""
-    columns: dict[str, Array] = {}
-    headers: dict[str, str] = {}
-    problems: list[str] = []
-    for key, values in data.items():
+    """Read arrays by our names, in SI, or by names with units."""
+    heads = [f"{key} [{SI_UNITS[key]}]" if key in SI_UNITS else str(key) for key in data]
+    arrays, problems = [], []
+    for values in data.values():
         try:
-            column = recognise(f"{key} [{SI_UNITS[key]}]" if key in SI_UNITS else str(key))
-            array = np.asarray(values, dtype=float)
+            arrays.append(np.asarray(values, dtype=float))
         except (TypeError, ValueError) as error:
             problems.append(f"`data`: {error}")
-            continue
-        problems += _twice(column.quantity, column.header, headers)
-        columns[column.quantity], headers[column.quantity] = column.factor * array, str(key)
+    columns, found = _recognised(heads)
+    problems += [f"`data`: {problem}" for problem in found]
     if problems:
         raise ValueError("\n".join(problems))
-    return _checked(columns, headers, "arrays")
+    return _named(columns, heads, arrays, "arrays")
+
+
+def _recognised(heads: Sequence[str]) -> tuple[list[Column | None], list[str]]:
+    """Return what the columns hold, None for those of no known name, and what is wrong with them."""
+    columns: list[Column | None] = []
+    problems: list[str] = []
+    seen: dict[str, str] = {}
+    for head in heads:
+        try:
+            column = recognise(head)
+        except ValueError as error:
+            problems.append(str(error))
+            continue
+        columns.append(column)
+        if column is not None and column.quantity in seen:
+            both = f'columns "{seen[column.quantity]}" and "{head}"'
+            problems.append(f"{both} are both the {column.quantity}; keep one of them")
+        if column is not None:
+            seen[column.quantity] = head
+    return columns, problems
+
+
+def _named(
+    columns: Sequence[Column | None],
+    heads: Sequence[str],
+    arrays: Iterable[Array],
+    source: str,
+    lines: Sequence[int] | None = None,
+) -> Series:
+    """Return the series of the columns that are known, and name the others."""
+    pairs = [(c, array) for c, array in zip(columns, arrays, strict=True) if c is not None]
+    ignored = tuple(head for head, column in zip(heads, columns, strict=True) if column is None)
+    if not pairs:
+        raise ValueError(f"{source}: no column is known: {', '.join(heads)}; expected {SHOWN}")
+    values = {column.quantity: column.factor * array for column, array in pairs}
+    headers = {column.quantity: column.header for column, _ in pairs}
+    return _checked(values, headers, source, lines=lines, ignored=ignored)
 
 
 def _from_file(path: Path) -> Series:
     """Read a CSV: ``#`` begins a comment, then a header with names and units, then numbers."""
-    try:
-        text = path.read_text(encoding="utf-8-sig")
-    except UnicodeDecodeError:
-        raise ValueError(f"{path}: not a text file in UTF-8; expected a CSV") from None
     lines = [
         (number, line)
-        for number, line in enumerate(text.splitlines(), start=1)
+        for number, line in enumerate(_text(path).splitlines(), start=1)
         if line.strip(" \t\r;,") and not line.lstrip().startswith("#")
     ]
+    separator = None
+    if lines and (match := SEPARATED.match(lines[0][1])):  # as spreadsheets write it
+        separator, lines = match[1], lines[1:]
     if not lines:
         raise ValueError(
             f"{path}: holds no header and no rows; expected a line such as t [ms],z_A [mm]"
         )
     bare = re.sub(r"[\[(].*?[\])]", "", lines[0][1])
-    separator = max(SEPARATORS, key=bare.count)
-    rows = list(csv.reader((line for _, line in lines), delimiter=separator))
+    separator = separator or max(SEPARATORS, key=bare.count)
+    try:
+        rows = list(csv.reader((line for _, line in lines), delimiter=separator))
+    except csv.Error as error:
+        raise ValueError(f"{path}: not a table of numbers: {error}") from None
     if len(rows) != len(lines):
         raise ValueError(f"{path}: a quotation mark is opened and not closed on the same line")
+    decimal = "," if separator != "," else "."
     table = [
         (number, [cell.strip() for cell in row])
         for (number, _), row in zip(lines, rows, strict=True)
     ]
-    return _from_table(path, table)
+    return _from_table(path, table, decimal)
 
 
-def _from_table(path: Path, table: Sequence[tuple[int, list[str]]]) -> Series:
+def _text(path: Path) -> str:
+    """Return the text of a file in UTF-8, UTF-16, or what Windows writes in the West."""
+    content = path.read_bytes()
+    marked = content.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE))
+    for encoding in ("utf-16",) if marked else ("utf-8-sig", "cp1252"):
+        try:
+            text = content.decode(encoding)
+        except UnicodeDecodeError:
+            continue
+        if "\0" not in text:
+            return text
+    raise ValueError(f"{path}: not a text file in UTF-8 or UTF-16; expected a CSV")
+
+
+def _from_table(path: Path, table: Sequence[tuple[int, list[str]]], decimal: str) -> Series:
     number, heads = table[0]
-    if all(_number(cell) is not None for cell in heads if cell):
+    if all(_number(cell, decimal) is not None for cell in heads if cell):
         raise ValueError(
             f"{path}: line {number} holds numbers where the names and units of the columns are expected, "
             "such as t [ms],z_A [mm],F_z [N/mm],F_x [N/mm]"
         )
     while heads and not heads[-1]:
         heads = heads[:-1]
-    columns, problems = [], []
-    headers: dict[str, str] = {}
-    for head in heads:
-        try:
-            columns.append(recognise(head))
-        except ValueError as error:
-            problems.append(f"{path}: {error}")
-            continue
-        twice = _twice(columns[-1].quantity, head, headers)
-        problems += [f"{path}: {problem}" for problem in twice]
-        headers[columns[-1].quantity] = head
+    columns, problems = _recognised(heads)
     if problems:
-        raise ValueError("\n".join(problems))
+        raise ValueError("\n".join(f"{path}: {problem}" for problem in problems))
     if len(table) == 1:
         raise ValueError(f"{path}: holds a header and no rows")
-    values = [_row(path, line, cells, heads) for line, cells in table[1:]]
+    used = [column is not None for column in columns]
+    values = [_row(path, line, cells, heads, used, decimal) for line, cells in table[1:]]
     arrays = np.array(values, dtype=float).T
-    found = {c.quantity: c.factor * array for c, array in zip(columns, arrays, strict=True)}
-    lines = [line for line, _ in table[1:]]
-    return _checked(found, headers, str(path), lines=lines)
+    return _named(columns, heads, arrays, str(path), [line for line, _ in table[1:]])
 
 
-def _row(path: Path, line: int, cells: list[str], heads: Sequence[str]) -> list[float]:
-    """Return the numbers of one line; an empty cell is NaN."""
+def _row(
+    path: Path,
+    line: int,
+    cells: list[str],
+    heads: Sequence[str],
+    used: Sequence[bool],
+    decimal: str,
+) -> list[float]:
+    """Return the numbers of one line; an empty cell, or one of a column that is not used, is NaN."""
     while len(cells) > len(heads) and not cells[-1]:
         cells = cells[:-1]
     if len(cells) != len(heads):
         raise ValueError(f"{path}: line {line} has {len(cells)} cells, the header has {len(heads)}")
     numbers = []
-    for cell, head in zip(cells, heads, strict=True):
-        number = np.nan if not cell else _number(cell)
+    for cell, head, wanted in zip(cells, heads, used, strict=True):
+        number = _number(cell, decimal) if cell and wanted else np.nan
         if number is None:
             hint = "; write the decimal mark as a point" if "," in cell else ""
+            shown = cell if len(cell) <= LONGEST_SHOWN else f"{cell[:LONGEST_SHOWN]}..."
             raise ValueError(
-                f'{path}: line {line}, column "{head}": "{cell}" is not a number{hint}'
+                f'{path}: line {line}, column "{head}": "{shown}" is not a number{hint}'
             )
         numbers.append(number)
     return numbers
 
 
-def _number(cell: str) -> float | None:
+def _number(cell: str, decimal: str) -> float | None:
+    """Return a number; a decimal comma is read where commas separate nothing."""
+    if decimal == "," and cell.count(",") == 1 and "." not in cell:
+        cell = cell.replace(",", ".")
     try:
         return float(cell) if "_" not in cell else None
     except ValueError:
         return None
-
-
-def _twice(quantity: str, header: str, seen: Mapping[str, str]) -> list[str]:
-    if quantity not in seen:
-        return []
-    return [f'columns "{seen[quantity]}" and "{header}" are both the {quantity}; keep one of them']
 
 
 def _checked(

@@ -9,6 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import minimize_scalar
 
+from kvtheory.checks.noise import SURE
+
 Array = NDArray[np.float64]
 
 FEWEST = 6
@@ -42,18 +44,19 @@ def fit(time: Array, values: Array, expected: float) -> float:
     return float(np.exp(found.x))
 
 
-def uncertainty(time: Array, values: Array, T: float, offset: Array, sigma: float) -> float:
+def uncertainty(
+    time: Array, values: Array, T: float, offset: Array, digits: Array, sigma: Array
+) -> float:
     """Return by how much T may be off, relative to T.
 
-    `offset` bounds a smooth error of the values, `sigma` is the standard deviation of a random one; both
-    go through the linear least squares about the fit.
+    `offset` bounds a smooth error of the values, `digits` one of any sign at each of them, and `sigma` are
+    the standard deviations of a random one; all go through the linear least squares about the fit.
     """
-    decay = np.exp((time[0] - time) / T)
+    age = time - time[0]
+    decay = np.exp(-age / T)
     basis = np.stack([np.ones_like(time), decay], axis=1)
     amplitude = np.linalg.lstsq(basis, values, rcond=None)[0][1]
-    slope = amplitude * decay * (time - time[0]) / T
-    to_parameter = np.linalg.pinv(np.column_stack([basis, slope]))[2]
-    smooth = abs(float(to_parameter @ offset)) + abs(
-        float(to_parameter @ (offset * (time - time[0]) / (time[-1] - time[0])))
-    )
-    return smooth + 3.0 * sigma * float(np.linalg.norm(to_parameter))
+    to_parameter = np.linalg.pinv(np.column_stack([basis, amplitude * decay * age / T]))[2]
+    smooth = abs(to_parameter @ offset) + abs(to_parameter @ (offset * age / age[-1]))
+    rough = np.abs(to_parameter) @ digits + SURE * np.linalg.norm(sigma * to_parameter)
+    return float(smooth + rough)

@@ -1,14 +1,17 @@
 """Checks of how the data settle: the two time constants of F12, and the steady limit."""
 
+import math
 from collections.abc import Iterator
 
 import numpy as np
+from numpy.typing import NDArray
 
-from kvtheory.checks.allowances import extreme
-from kvtheory.checks.comparison_case import Case
-from kvtheory.checks.making import check, not_made
+from kvtheory.checks.comparison_case import SMALLEST, Case, not_made, rms
+from kvtheory.checks.noise import SURE
 from kvtheory.checks.relaxation import FEWEST, fit, uncertainty
 from kvtheory.results.comparison import Check
+
+Array = NDArray[np.float64]
 
 SETTLED = 7.0
 """Slow time constants after the last change of the drive: e^-7 is below a thousandth."""
@@ -16,126 +19,97 @@ NEAR, FAR = 0.3, 1e-3
 """Of the steady depth: the slow time constant is fitted while the depth is this far from it."""
 FAST_SPAN = 4.0
 """Fast time constants after the start within which the fast one is fitted."""
+LAST_PART, FEWEST_LATE = 0.75, 3
+"""Of the data: the mean of the rest is taken for the limit, if it has so many samples."""
 FITTED = 0.5
 """A time constant that the data fix no better than this, relative, is not judged."""
 
 
 def slow_constant(case: Case) -> Iterator[Check]:
     """Fit the slow time constant to the depth as it settles."""
-    name, equation = "slow time constant", "F12"
-    rates, columns, time = case.theory.rates, case.series.columns, case.series.time
-    if rates is None or rates.oscillates or "depth" not in columns:
-        why = "a fixed indenter has none" if rates is None else "the indenter oscillates"
-        yield not_made(name, equation, why if "depth" in columns else "the data hold no depth")
+    name, rates = "slow time constant", case.theory.rates
+    why = _why_not(case, "depth")
+    if why or rates is None:
+        yield not_made(name, "F12", why)
         return
-    steady = case.theory.steady_state.depth
-    off = np.abs(case.now["depth"] / steady - 1.0)
-    late = np.flatnonzero((off > NEAR) | (time < case.theory.scene.drive.last_change))
-    part = slice(int(late[-1]) + 1 if late.size else 0, None)
-    use = np.flatnonzero(off[part] > FAR) + part.start
-    if use.size < FEWEST:
-        yield not_made(name, equation, "too few samples while the depth settles")
-        return
-    slow = rates.slow.real
-    t, sigma = time[use], case.allowance.noise["depth"]
-    theory_fit = fit(t, case.now["depth"][use], slow)
-    data_fit = fit(t, columns["depth"][use], slow)
-    offset = np.nan_to_num(case.allowance.systematic["depth"][use])
-    allowed = uncertainty(t, case.now["depth"][use], theory_fit, offset, sigma)
-    yield fitted(case, name, data_fit, theory_fit, slow, allowed)
+    off = np.abs(case.now["depth"] / case.theory.steady_state.depth - 1.0)
+    late = np.flatnonzero((off > NEAR) | (case.series.time < case.theory.last_change))
+    start = int(late[-1]) + 1 if late.size else 0
+    use = np.flatnonzero(off[start:] > FAR) + start
+    yield _fitted(case, name, "depth", use, rates.slow.real)
 
 
 def fast_constant(case: Case) -> Iterator[Check]:
     """Fit the fast time constant to the normal force after the start."""
-    name, equation = "fast time constant", "F12"
-    rates, columns, time = case.theory.rates, case.series.columns, case.series.time
-    if (
-        rates is None
-        or rates.oscillates
-        or "normal_force" not in columns
-        or 0.0 not in case.theory.scene.drive.jumps
-    ):
-        why = (
-            "a fixed indenter has none" if rates is None else "there is no such decay in this scene"
-        )
-        yield not_made(
-            name, equation, why if "normal_force" in columns else "the data hold no normal force"
-        )
+    name, rates, time = "fast time constant", case.theory.rates, case.series.time
+    why = _why_not(case, "normal_force")
+    if not why and 0.0 not in case.theory.jumps:
+        why = "there is no such decay in this scene"
+    if why or rates is None:
+        yield not_made(name, "F12", why)
         return
-    fast = rates.fast.real
-    use = np.flatnonzero((time > 0.0) & (time < FAST_SPAN * fast))
+    use = np.flatnonzero((time > 0.0) & (time < FAST_SPAN * rates.fast.real))
+    yield _fitted(case, name, "normal_force", use, rates.fast.real)
+
+
+def _why_not(case: Case, curve: str) -> str:
+    """Say why a curve has no time constants to fit; nothing if it has."""
+    if curve not in case.series.columns:
+        return f"the data hold no {curve.replace('_', ' ')}"
+    if case.theory.rates is None:
+        return "a fixed indenter has none"
+    return "the indenter oscillates" if case.theory.rates.oscillates else ""
+
+
+def _fitted(case: Case, name: str, curve: str, use: NDArray[np.intp], exact: float) -> Check:
+    """Fit a time constant to rows of a curve, of data and of theory, unless the data do not fix it."""
     if use.size < FEWEST:
-        yield not_made(
-            name,
-            equation,
-            f"fewer than {FEWEST} samples within {FAST_SPAN * fast * 1e3:.3g} ms of the start",
-        )
-        return
-    t, sigma = time[use], case.allowance.noise["normal_force"]
-    theory_fit = fit(t, case.now["normal_force"][use], fast)
-    data_fit = fit(t, columns["normal_force"][use], fast)
-    band = case.allowance.high["normal_force"] - case.allowance.low["normal_force"]
-    offset = (case.allowance.systematic["normal_force"] + 0.5 * band)[use]
-    allowed = uncertainty(t, case.now["normal_force"][use], theory_fit, offset, sigma)
-    yield fitted(case, name, data_fit, theory_fit, fast, allowed)
-
-
-def fitted(
-    case: Case, name: str, data: float, theory: float, exact: float, allowed: float
-) -> Check:
-    """Return the check of a fitted time constant, or why it is not made."""
-    if not allowed < FITTED:
+        return not_made(name, "F12", f"fewer than {FEWEST} samples while the {curve} settles")
+    t, allowed = case.series.time[use], case.allowance
+    theory, data = (fit(t, c[curve][use], exact) for c in (case.now, case.series.columns))
+    offset = np.nan_to_num(
+        allowed.systematic[curve] - allowed.rounding[curve]
+        + 0.5 * (allowed.high[curve] - allowed.low[curve])
+    )[use]  # fmt: skip
+    errors = offset, allowed.rounding[curve][use], allowed.noise[curve][use]
+    most = uncertainty(t, case.now[curve][use], theory, *errors)
+    if not most < FITTED:
         return not_made(name, "F12", "the data do not fix it")
     note = (
         f"{data * 1e3:.4g} ms from the data, {theory * 1e3:.4g} ms from theory by the same fit, "
         f"F12: {exact * 1e3:.4g} ms"
     )
-    off = abs(data / theory - 1.0)
-    return check(
-        case, name, off, case.tolerance * allowed, "F12", "relative difference of the fits", note
-    )
+    off, unit = abs(data / theory - 1.0), "relative difference of the fits"
+    return case.check(name, off, case.tolerance * most, "F12", unit, note)
 
 
 def steady_limit(case: Case) -> Iterator[Check]:
     """Compare the end of the data with exact steady sliding."""
     name, equation = "steady limit", "F1"
-    theory, time = case.theory, case.series.time
-    if theory.rates is None:
-        memory = (
-            0.0
-            if theory.scene.drive.last_change == 0.0
-            else theory.scene.foundation.retardation_time
-        )
-        slow = memory
-    else:
+    theory, time, columns = case.theory, case.series.time, case.series.columns
+    if math.isinf(theory.last_change):
+        yield not_made(name, equation, "the drive is a function, which need not settle")
+        return
+    if theory.rates is not None:
         slow = 1.0 / (1.0 / theory.rates.slow).real
-    settled = theory.scene.drive.last_change + SETTLED * slow
-    late = time > max(settled, 0.75 * time[-1])
-    if late.sum() < 3:
-        yield not_made(
-            name,
-            equation,
-            f"the data end before {settled * 1e3:.4g} ms, when the transient is over",
-        )
+    else:
+        slow = theory.scene.foundation.retardation_time if theory.last_change else 0.0
+    settled = theory.last_change + SETTLED * slow
+    late = time > max(settled, LAST_PART * time[-1])
+    if late.sum() < FEWEST_LATE:
+        why = f"the data end before {settled * 1e3:.4g} ms, when the transient is over"
+        yield not_made(name, equation, why)
         return
     exact = {"depth": theory.steady_state.depth, "normal_force": theory.steady_state.load,
              "friction_force": theory.steady_state.friction_force}  # fmt: skip
-    worst = (-1.0, 0.0, 0.0, "")
-    for curve in (name for name in exact if name in case.series.columns):
-        scale = theory.scales[curve]
-        mean = float(case.series.columns[curve][late].mean())
+    found = []
+    for curve in (name for name in exact if name in columns):
+        scale, mean = theory.scales[curve], float(columns[curve][late].mean())
         left = abs(float(case.now[curve][late].mean()) - exact[curve])
-        random = case.allowance.noise[curve] / np.sqrt(late.sum())
+        random = rms(case.allowance.noise[curve][late]) / math.sqrt(late.sum())
         smooth = float(case.allowance.systematic[curve][late].max())
-        allowed = (
-            case.tolerance * (smooth + left + extreme(int(late.sum())) * random) / scale + 1e-9
-        )
-        off = abs(mean - exact[curve]) / scale
-        if off / allowed > worst[0]:
-            worst = (
-                off / allowed,
-                off,
-                allowed,
-                f"{curve} {mean:.6g}, exact {exact[curve]:.6g} in SI",
-            )
-    yield check(case, name, worst[1], worst[2], equation, "relative to the static state", worst[3])
+        allowed = case.tolerance * ((smooth + left + SURE * random) / scale + SMALLEST)
+        note = f"{curve} {mean:.6g}, exact {exact[curve]:.6g} in SI"
+        found.append((abs(mean - exact[curve]) / scale, allowed, note))
+    off, allowed, note = max(found, key=lambda each: each[0] / each[1])
+    yield case.check(name, off, allowed, equation, "relative to the static state", note)

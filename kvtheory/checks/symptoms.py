@@ -6,18 +6,26 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from kvtheory.checks.allowances import noise
 from kvtheory.checks.checklist import judge
-from kvtheory.checks.comparison_case import COMMON, LARGEST_SAWTOOTH, Case, common_noise, make_case
+from kvtheory.checks.comparison_case import (
+    COARSEST,
+    COMMON,
+    IN_STEP,
+    LARGEST_SAWTOOTH,
+    Case,
+    common_noise,
+    make_case,
+)
+from kvtheory.checks.discretization import COARSE
+from kvtheory.checks.noise import noise
 from kvtheory.results.comparison import Check, Explanation
 from kvtheory.results.schemes import SCHEME_ROWS
 
 COARSER = 2.0
 """Factor by which the spacing is widened, again and again, to find how coarse the data look."""
-COARSEST = 0.1
-"""Of the load: the force of half an element beyond which data are not called coarse, but wrong."""
-LIKELY, POSSIBLE = 0.8, 0.55
-"""Explained part given to what is seen but cannot be tried: a step, and a spacing, that are not known."""
+LIKELY, READ, POSSIBLE = 0.8, 0.75, 0.55
+"""Explained part given to what is seen but cannot be tried: a step that is not known, a spacing that is read
+from the sawtooth, and one that is not known."""
 
 
 def seen(case: Case, failed: Sequence[Check]) -> Iterator[Explanation]:
@@ -31,19 +39,18 @@ def seen(case: Case, failed: Sequence[Check]) -> Iterator[Explanation]:
             f"{number.allowed:.4g}; take dt below {case.resolution.time_step / ratio(number) * 1e3:.3g} ms",
             1.0, True,
         )  # fmt: skip
-    if "elements enough" in by_name:
-        density = 1e-3 / case.resolution.spacing
-        coarse_by = by_name["elements enough"]
+    if COARSE in by_name:
+        density = (
+            1e-3 / case.resolution.spacing * (1.0 if case.resolution.spacing_known else IN_STEP)
+        )
+        coarse_by = by_name[COARSE]
         yield Explanation(
             "too few elements",
             f"too few elements (F15): one that enters at the leading edge changes the normal force by "
-            f"{2.0 * (coarse_by.measured or 0.0):.2g} of the load; take {density * ratio(coarse_by):.3g} /mm "
-            f"or more rather than {density:.4g} /mm",
-            1.0, True,
+            f"{2.0 * (coarse_by.measured or 0.0):.2g} of the load; take {density * ratio(coarse_by):.2g} /mm "
+            f"or more rather than {density:.3g} /mm",
+            1.0 if case.resolution.spacing_known else READ, True,
         )  # fmt: skip
-    if "sampling" in by_name and len(by_name) == 1:
-        yield Explanation("sampling", "the data are sampled too coarsely to show the transient; nothing else "
-                          "speaks against them", 1.0, True)  # fmt: skip
 
 
 def ratio(check: Check) -> float:
@@ -59,10 +66,10 @@ def unmoved(case: Case, failed: Sequence[Check]) -> Iterator[Explanation]:
     columns, static = case.series.columns, case.theory.static
     if (
         not any(check.name == "impulse balance" for check in failed)
-        or case.theory.scene.drive.last_change > 0.0
+        or case.theory.last_change > 0.0
     ):
         return
-    if case.theory.scene.drive.final_velocity == 0.0:
+    if case.theory.final_velocity == 0.0:
         return
     late = case.series.time > FIRST_PART * case.series.time[-1]
     depth, time = columns["depth"][late], case.series.time[late]
@@ -86,7 +93,7 @@ def contact_force(case: Case, depth: NDArray[np.float64], rate: float) -> NDArra
     """Return F_z of the contact at a depth and its rate, after a start from rest (F11), in N/m."""
     scene, static = case.theory.scene, case.theory.static
     tau, unit = scene.foundation.retardation_time, static.depth
-    number = abs(scene.drive.final_velocity) * tau / static.half_length
+    number = abs(case.theory.final_velocity) * tau / static.half_length
     d, v = np.maximum(depth / unit, 0.0), rate * tau / unit
     l, r = -np.sqrt(d), np.sqrt(np.maximum(d + v + number * number, 0.0)) - number
     width = np.maximum(r - l, 0.0)
@@ -113,7 +120,12 @@ def rattling(case: Case) -> Iterator[Explanation]:
     h = float(steps[steps > 0.0].min())
     length = float(np.nanmax(np.abs(case.now["trailing_edge"] - case.now["leading_edge"])))
     number = h * scene.foundation.damping * length / scene.support.mass
-    loud = noise(time, case.residual("normal_force")) if "normal_force" in case.names else 0.0
+    force = "normal_force"  # its noise is not capped here
+    loud = (
+        np.median(noise(time, case.residual(force), case.now[force]))
+        if force in case.names
+        else 0.0
+    )
     rough = loud > LARGEST_SAWTOOTH and (common_noise(case) or 0.0) > COMMON
     limits = [row.stability_limit for row in SCHEME_ROWS.values() if row.stability_limit < np.inf]
     limit = max(limits)
@@ -157,8 +169,8 @@ def coarse(case: Case, failed: Sequence[Check]) -> Iterator[Explanation]:
     force = float(np.median(case.allowance.force)) / load
     while force < COARSEST:
         spacing, force = COARSER * spacing, COARSER * force
-        wider = make_case(case.theory, case.series, 1.0 / spacing, case.tolerance)
-        wider = replace(wider, resolution=replace(wider.resolution, spacing_known=False))
+        wider = make_case(case.theory, case.series, 1.0 / spacing, case.tolerance, COARSEST)
+        wider = replace(wider, resolution=wider.resolution._replace(spacing_known=False))
         if all(
             check.ok is not False or check.name == "discretization noise" for check in judge(wider)
         ):

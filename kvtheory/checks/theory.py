@@ -1,19 +1,20 @@
 """What theory says at the times of a series, the rest before t = 0 included.
 
-The transient and the steady state come in as functions, so that this package holds two things against
-each other without being a part of either.
+What solves a scene comes in as functions, so that this package holds two things against each other
+without being a part of either.
 """
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from kvtheory.results.table import scales
+from kvtheory.scene import Drive
 from kvtheory.scene.model import Scene
 from kvtheory.scene.static_state import StaticState
 
@@ -24,24 +25,29 @@ CURVES = (
     *("velocity", "depth", "depth_rate", "normal_force", "friction_force"),
     *("leading_edge", "trailing_edge", "peak_pressure"),
 )
-
-
 NO_VELOCITY = 1e-9
 """In units of a_0/tau: a slower drive does not move."""
 
 
+class Methods(NamedTuple):
+    """What solves a scene.
+
+    `transient` returns the curves of theory by name, for a scene, times (s, increasing) and a tolerance;
+    `steady` its exact steady sliding; `elements` the curves of a simulation, for a scene, spacing (m),
+    time step (s), times, and what it is to do wrong by name.
+    """
+
+    transient: Callable[[Scene, Sequence[float], float], Mapping[str, Any]]
+    steady: Callable[[Scene], Any]
+    elements: Callable[..., Mapping[str, Any]]
+
+
 @dataclass(frozen=True)
 class Rates:
-    """The two rates of F12 near steady sliding, as times in s; they are complex if it oscillates.
-
-    `stiffness` is dF_z/d(depth) with the spring, K A + k_s, and `damping` is dF_z/d(rate), C B, with
-    A = sqrt(a^2 + l_r^2) + a and B = x_TE + a.
-    """
+    """The two time constants of F12 near steady sliding, in s; they are complex if it oscillates."""
 
     fast: complex
     slow: complex
-    stiffness: float
-    damping: float
 
     @property
     def oscillates(self) -> bool:
@@ -51,11 +57,10 @@ class Rates:
 
 @dataclass(frozen=True)
 class Theory:
-    """A scene and the methods that solve it: `transient` and `steady` as users call them."""
+    """A scene and the methods that solve it."""
 
     scene: Scene
-    transient: Callable[..., Any]
-    steady: Callable[..., Any]
+    methods: Methods
 
     @cached_property
     def static(self) -> StaticState:
@@ -66,62 +71,73 @@ class Theory:
     def scales(self) -> Mapping[str, float]:
         """What a difference is compared with: the static state, and its products."""
         slowest = NO_VELOCITY * self.static.velocity
-        return {**scales(self.static), "velocity": max(self.top_speed, slowest)}
+        return {**scales(self.static), "velocity": max(self.motion.highest_speed, slowest)}
 
     @cached_property
-    def top_speed(self) -> float:
-        """The largest |V| of the drive, in m/s."""
-        drive, end = self.scene.drive, self.scene.run.duration
-        return drive.motion(end, self.static.velocity).highest_speed
+    def motion(self) -> Any:
+        """V(t) and Y(t) until the end of the run."""
+        return self.scene.drive.motion(self.scene.run.duration, self.static.velocity)
+
+    @cached_property
+    def last_change(self) -> float:
+        """The time in s after which the drive keeps its velocity; infinite if it is a function."""
+        drive = self.scene.drive
+        return math.inf if drive.function else drive.last_change
+
+    @cached_property
+    def jumps(self) -> tuple[float, ...]:
+        """The times in s at which the velocity may jump, t = 0 among them unless it starts at rest."""
+        drive = self.scene.drive
+        if drive.function is None:
+            return drive.jumps
+        first = (0.0,) if self.motion.velocity(0.0) else ()
+        return (*first, *(time for time in drive.breaks if time > 0.0))
+
+    @cached_property
+    def final_velocity(self) -> float:
+        """The velocity in m/s at the end of the run."""
+        return float(self.motion.velocity(self.motion.end))
 
     @cached_property
     def steady_state(self) -> Any:
         """Steady sliding at the last velocity."""
-        return self.steady(self.scene)
+        return self.methods.steady(replace(self.scene, drive=Drive(self.final_velocity)))
 
     @cached_property
     def rates(self) -> Rates | None:
-        """The rates at the steady state; None if the indenter cannot move."""
+        """The time constants at the steady state; None if the indenter cannot move.
+
+        With A = sqrt(a^2 + l_r^2) + a and B = x_TE + a, M s^2 + C B s + K A + k_s = 0 (F12).
+        """
         support, foundation = self.scene.support, self.scene.foundation
         if self.scene.held:
             return None
-        state = self.steady_state
-        a, l_r = (
-            state.half_length,
-            abs(self.scene.drive.final_velocity) * foundation.retardation_time,
-        )
+        a, l_r = self.steady_state.half_length, self.steady_state.retardation_length
         x_te = a * a / (l_r + math.hypot(a, l_r))
-        spring = support.spring
-        stiffness = foundation.stiffness * (math.hypot(a, l_r) + a) + spring
+        stiffness = foundation.stiffness * (math.hypot(a, l_r) + a) + support.spring
         damping = foundation.damping * (x_te + a)
         root = complex(damping * damping - 4.0 * support.mass * stiffness) ** 0.5
-        return Rates(2.0 * support.mass / (damping + root), (damping + root) / (2.0 * stiffness),
-                     stiffness, damping)  # fmt: skip
+        return Rates(2.0 * support.mass / (damping + root), (damping + root) / (2.0 * stiffness))
 
     def at(self, times: Array, rtol: float = 1e-6) -> dict[str, Array]:
         """Return the curves at `times` (s): at rest before t = 0, just after a jump of the drive."""
-        moving = np.maximum(times, 0.0)
-        unique, index = np.unique(moving, return_inverse=True)
+        unique, index = np.unique(np.maximum(times, 0.0), return_inverse=True)
         end = float(unique[-1]) or self.scene.run.duration
         scene = replace(self.scene, run=replace(self.scene.run, duration=end))
-        result = self.transient(scene, at=unique.tolist(), rtol=rtol)
+        found = self.methods.transient(scene, unique.tolist(), rtol)
         rest = self.rest
         return {
-            name: np.where(times < 0.0, rest[name], np.asarray(getattr(result, name))[index])
+            name: np.where(times < 0.0, rest[name], np.asarray(found[name])[index])
             for name in CURVES
         }
 
     @cached_property
     def rest(self) -> Mapping[str, float]:
         """The state before t = 0."""
-        depth, half = self.static.depth, self.static.half_length
+        at_rest = self.static
+        moving = dict.fromkeys(("velocity", "depth_rate", "friction_force"), 0.0)
+        edges = {"leading_edge": -at_rest.half_length, "trailing_edge": at_rest.half_length}
         return {
-            "velocity": 0.0,
-            "depth": depth,
-            "depth_rate": 0.0,
-            "normal_force": self.static.load,
-            "friction_force": 0.0,
-            "leading_edge": -half,
-            "trailing_edge": half,
-            "peak_pressure": self.scene.foundation.stiffness * depth,
-        }
+            **moving, **edges, "depth": at_rest.depth, "normal_force": at_rest.load,
+            "peak_pressure": at_rest.pressure,
+        }  # fmt: skip

@@ -58,7 +58,7 @@ def compare(
 ) -> None:
     """Hold a simulation of SCENE against theory, and say what is wrong with it.
 
-    Exit status: 0 it agrees, 1 it disagrees, 2 bad input.
+    Exit status: 0 it agrees, or is sampled too coarsely to tell; 1 it disagrees; 2 bad input.
     """
     from kvtheory.api._compare import compare as hold_against
     from kvtheory.scene import load_scene
@@ -78,7 +78,8 @@ def compare(
     if as_json:
         print_json(found.as_dict())
     else:
-        click.echo(f"{found.source}: {found.verdict} with theory\n")
+        tells = "cannot tell" if found.verdict == "cannot tell" else f"{found.verdict} with theory"
+        click.echo(f"{found.source}: {tells}\n")
         heads = ("check", "measured", "allowed", "", "equation", "what is measured")
         print_table(heads, [_row(check) for check in found.checks])
         click.echo(f"\n{found.diagnosis}")

@@ -37,7 +37,7 @@ def from_factory(text: str, jobs: int | None) -> Executor:
         executor = getattr(module, factory)(*([] if jobs is None else [jobs]))
     except (Exception, SystemExit) as error:
         raise ValueError(f"{given}: the factory cannot be called: {_told(error)}") from None
-    if not isinstance(executor, Executor):
+    if not isinstance(executor, Executor) or type(executor) is Executor:
         raise ValueError(f"{given}: expected a concurrent.futures.Executor, got {executor!r}")
     return executor
 

@@ -9,7 +9,7 @@ import click
 
 from kvtheory.cli.console import print_json, print_series, print_table, scene_command, shown, split
 from kvtheory.cli.group import main
-from kvtheory.cli.outputs import check_output, series_options
+from kvtheory.cli.outputs import PICTURES, check_output, series_options
 
 if TYPE_CHECKING:
     from kvtheory.results.solution import Solution
@@ -38,32 +38,37 @@ def solve(
     explain: bool,
     at: str | None,
     output: Path | None,
+    plot: Path | None,
 ) -> None:
     """Solve SCENE by the cheapest model that is known to be within the tolerance.
 
-    Steady sliding, or with --at or -o the motion from rest over time.
+    Steady sliding, or with --at, -o or --plot the motion from rest over time.
     """
     from kvtheory.api import solve as find
     from kvtheory.export import SERIES_SUFFIXES, save_result
     from kvtheory.scene import load_scene
 
     check_output("-o", output, SERIES_SUFFIXES)
-
+    check_output("--plot", plot, PICTURES)
     found = find(
         load_scene(scene, overrides),
         quantity=None if quantity is None else split(quantity),
         at=at,
         rtol=rtol,
-        over_time=output is not None,
+        over_time=bool(output or plot),
     )
     if output:
         save_result(found, output)
+    if plot:
+        from kvtheory.plots.result import save_plot
+
+        save_plot(found, plot)
     if as_json:
         print_json(found.as_dict())
         return
     if explain:
         _explain(found)
-    if at is not None or output:
+    if at is not None or output or plot:
         print_series(found, whole=at is not None)
     else:
         _print_steady(found)

@@ -34,7 +34,7 @@ def rungs(steady: Steady) -> tuple[Rung, ...]:
     return (
         Rung("asymptote", "steady sliding of a parabola, V far from V*", _far, _asymptote),
         Rung("exact", "steady sliding of a parabola, power law or wedge", _closed, by("exact")),
-        Rung("quadrature", "steady sliding, one contact", _any_shape, by("quadrature")),
+        Rung("quadrature", "steady sliding of any shape", _any_shape, by("quadrature")),
     )
 
 

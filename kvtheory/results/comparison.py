@@ -55,8 +55,9 @@ HEADS = "check", "measured", "allowed", "", "equation", "what is measured"
 class Comparison:
     """Whether a time series agrees with theory, check by check, and if not, why.
 
-    `verdict` is ``"agrees"`` or ``"disagrees"``: the latter if one of the checks that could be made
-    failed. `diagnosis` says it in words; `explanations` are the faults behind it, the best first.
+    `verdict` is ``"agrees"``, ``"disagrees"`` if one of the checks that could be made failed, or
+    ``"cannot tell"`` if it was that of the sampling alone. `diagnosis` says it in words; `explanations`
+    are the faults behind it, the best first.
     """
 
     verdict: str

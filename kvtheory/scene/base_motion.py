@@ -22,6 +22,9 @@ CHECKS = 2 * DEGREE + 3
 SHORTEST = 1e-12
 """Share of the whole motion; a piece that would have to be shorter holds a jump or a kink."""
 PIECE_LIMIT = 100_000
+EARLY, LOOKS, WIDER = 500, 16, 4.0
+"""After so many pieces that would take too many to the end, a function is looked at in so many places: if
+pieces this much wider nowhere do, it is refused."""
 
 SAME_TIME = 4.0
 """Units in the last place by which times differ from rounding: they are one time."""
@@ -109,6 +112,8 @@ class BaseMotion:
             if error <= tolerance:
                 # The very value of the function, so that what is at rest stays so.
                 found.append((a, b, (value(a), *coefficients[1:])))
+                if len(found) == EARLY:
+                    _refuse_if_too_fast(value, b, end, b - a, tolerance, least)
                 continue
             middle = 0.5 * (a + b)
             if b - a <= SHORTEST * end or len(found) + len(todo) > PIECE_LIMIT:
@@ -249,6 +254,25 @@ def _fit(
     padded = np.zeros(DEGREE + 1)
     padded[: coefficients.size] = coefficients
     return tuple(padded.tolist()), float(error / max(least, np.abs(values).max()))
+
+
+def _refuse_if_too_fast(
+    function: Callable[[float], float],
+    start: float,
+    end: float,
+    width: float,
+    tolerance: float,
+    least: float,
+) -> None:
+    """Raise an error if pieces as short as `width` would be needed everywhere, and are too many."""
+    if end - start <= PIECE_LIMIT * width:
+        return
+    places = np.linspace(start, end - WIDER * width, LOOKS).tolist()
+    if all(_fit(function, t, t + WIDER * width, least)[1] > tolerance for t in places):
+        raise ValueError(
+            f"drive.function changes too fast: it would take polynomials as short as {width:.2g} s, and "
+            f"more than {PIECE_LIMIT} of them until {end:.6g} s; give a shorter run or a larger `tolerance`"
+        )
 
 
 def _joined(

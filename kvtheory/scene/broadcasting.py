@@ -1,20 +1,22 @@
 """A scene with arrays in the place of some of its values."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from kvtheory.scene.drives import VELOCITY
-from kvtheory.scene.model import Scene
-from kvtheory.scene.quantities import Quantity, SceneError, convert, nearest, problem, quantities
+from kvtheory.scene.model import LAYER, Scene, layer_stiffness
+from kvtheory.scene.quantities import Quantity, SceneError, convert, free, nearest, problem
 
 Array = NDArray[np.float64]
 
 
 def values(scene: Scene, over: Mapping[str, Any] | None = None) -> dict[str, Array]:
     """Return every quantity of the scene by its dotted key, broadcast, with those of `over` put in.
+
+    What follows from others is there too: ``"support.weight"``, and the stiffness of a layer.
 
     Raises
     ------
@@ -32,14 +34,15 @@ def values(scene: Scene, over: Mapping[str, Any] | None = None) -> dict[str, Arr
     specs = {
         f"{section}.{name}": spec
         for section in ("indenter", "foundation", "support")
-        for name, spec in quantities(getattr(scene, section)).items()
+        for name, spec in free(getattr(scene, section)).items()
     }
     specs["drive.velocity"] = VELOCITY
     given: dict[str, Any] = dict(scene.values())
     problems = []
     for key, value in (over or {}).items():
         if key not in specs:
-            problems.append(f"`over` {key}: unknown key for this scene; {nearest(key, specs)}")
+            told = f"unknown key for this scene; {nearest(key, specs)}"
+            problems.append(problem(f"`over` {key}", value, told))
             continue
         try:
             given[key] = _array(value, specs[key])
@@ -50,13 +53,30 @@ def values(scene: Scene, over: Mapping[str, Any] | None = None) -> dict[str, Arr
     if problems:
         raise SceneError(problems)
     try:
-        arrays = np.broadcast_arrays(*given.values())
+        arrays: Iterable[Any] = given.values()
+        if any(getattr(value, "ndim", 0) for value in arrays):  # else there is nothing to do
+            arrays = np.broadcast_arrays(*arrays)
     except ValueError:
         shapes = ", ".join(
             f"{key} {np.shape(value)}" for key, value in given.items() if np.ndim(value)
         )
         raise ValueError(f"the arrays of `over` do not broadcast: {shapes}") from None
-    return dict(zip(given, (np.asarray(array, dtype=float) for array in arrays), strict=True))
+    found = dict(zip(given, (np.asarray(array, dtype=float) for array in arrays), strict=True))
+    return _with_derived(scene, found, over or {})
+
+
+def _with_derived(
+    scene: Scene, found: dict[str, Array], over: Mapping[str, Any]
+) -> dict[str, Array]:
+    """Put in what follows from other values: the stiffness of a layer, and the weight."""
+    if scene.foundation.modulus is not None and "foundation.stiffness" not in over:
+        layer = (found[f"foundation.{name}"] for name in LAYER)
+        found["foundation.stiffness"] = layer_stiffness(*layer)
+    if "support.load" in found:
+        found["support.weight"] = found["support.load"]
+    elif "support.mass" in found:
+        found["support.weight"] = found["support.mass"] * found["support.gravity"]
+    return found
 
 
 def _array(value: Any, spec: Quantity) -> Array:

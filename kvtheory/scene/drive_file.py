@@ -5,6 +5,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from kvtheory.scene.quantities import SceneError, problem
+from kvtheory.scene.texts import read_text
 from kvtheory.scene.units import to_si
 
 KEY = "drive.file"
@@ -21,9 +22,9 @@ def history_from(path: Path) -> list[tuple[float, float]]:
         If the file cannot be read, saying in which line.
     """
     try:
-        text = path.read_text(encoding="utf-8-sig")
+        text = read_text(path)
     except (OSError, UnicodeDecodeError) as error:
-        reason = getattr(error, "strerror", None) or "it is not text in UTF-8"
+        reason = getattr(error, "strerror", None) or "it is not text"
         raise SceneError([problem(KEY, str(path), f"cannot be read: {reason}")]) from None
     lines = [line for line in text.splitlines() if line.strip() and not line.startswith("#")]
     separator = max(SEPARATORS, key=(lines or [""])[0].count)

@@ -56,7 +56,8 @@ class Drive:
     tolerance: float = 1e-12
 
     def __post_init__(self) -> None:
-        ways = self.velocity, self.history, self.function, self.waveform
+        function = None if self.function is self.waveform else self.function  # of a copy
+        ways = self.velocity, self.history, function, self.waveform
         if sum(given is not None for given in ways) != 1:
             raise SceneError(
                 [

@@ -9,16 +9,20 @@ from kvtheory.scene.drive_file import history_from
 from kvtheory.scene.indenters import SHAPES
 from kvtheory.scene.model import SUPPORTS, Drive, Foundation, Run, Scene
 from kvtheory.scene.quantities import (
+    MEANT,
     Quantity,
     SceneError,
     absent,
     closest,
     convert,
+    given,
+    missing,
     nearest,
     problem,
     quantities,
     required,
 )
+from kvtheory.scene.texts import read_text
 from kvtheory.scene.units import expected
 from kvtheory.scene.waveforms import WAVEFORMS
 
@@ -29,6 +33,19 @@ DRIVES = ("velocity", "history", "waveform", "file")
 """Ways to drive, of which a scene has one."""
 PLAIN = {"foundation": Foundation, "drive": Drive, "run": Run}
 OPTIONAL = {"run"}
+NOTES = {
+    "support": [
+        "# or, instead of mass times gravity, a load; the mass is then inertia alone (load/gravity):",
+        '# load = "9.80665 N/mm"',
+    ],
+    "foundation": [
+        "# or, instead of the stiffness, a thin layer bonded to a rigid base:",
+        '# modulus = "5 MPa"',
+        '# thickness = "2 mm"',
+        "# poisson_ratio = 0.45",
+    ],
+}
+"""What the template says about keys that can be given instead of others."""
 
 
 def load_scene(path: str | Path | None = None, overrides: Iterable[str] = ()) -> Scene:
@@ -93,9 +110,10 @@ def template(support: str = "dead-weight") -> str:
             lines.append(
                 f'{key} = "{getattr(type(part), key)}"{" " * 12}# or one of: {", ".join(models)}'
             )
-        for name, spec in quantities(part).items():
+        for name, spec in given(part).items():
             value = "30 MN/m^2" if spec.unit == "N/m^2" else shown[name]
             lines.append(f'{name} = "{value}"'.ljust(36) + f"# {spec.doc}")
+        lines += NOTES.get(section, ()) if support != "fixed" or section != "support" else ()
         if section == "drive":
             lines += [
                 "# or a history, linear between its points, a jump where a time stands twice:",
@@ -116,9 +134,8 @@ def _tables(scene: Scene) -> dict[str, dict[str, Any]]:
         table: dict[str, Any] = {}
         if section in CHOICES:
             table[CHOICES[section][0]] = getattr(type(part), CHOICES[section][0])
-        for name, spec in quantities(part).items():
-            if getattr(part, name) is not None:
-                table[name] = _text(getattr(part, name), spec.unit)
+        for name, spec in given(part).items():
+            table[name] = _text(getattr(part, name), spec.unit)
         if section == "drive" and part.history is not None:
             table["history"] = [[_text(t, "s"), _text(v, "m/s")] for t, v in part.history]
         tables[section] = table
@@ -128,10 +145,10 @@ def _tables(scene: Scene) -> dict[str, dict[str, Any]]:
         )
     waveform = scene.drive.waveform
     if waveform is not None:
-        given = {
+        own = {
             name: _text(getattr(waveform, name), q.unit) for name, q in quantities(waveform).items()
         }
-        tables["drive"] = {"waveform": waveform.waveform, **given}
+        tables["drive"] = {"waveform": waveform.waveform, **own}
     elif scene.drive.function is not None:
         raise ValueError("`scene` has a drive made of a Python function, which a file cannot hold")
     return tables
@@ -149,10 +166,10 @@ def _toml(value: Any) -> str:
 
 def _read(path: Path) -> dict[str, Any]:
     try:
-        return tomllib.loads(path.read_text(encoding="utf-8-sig"))
+        return tomllib.loads(read_text(path))
     except ValueError as error:  # of TOML, of the encoding, or an endless integer
         hint = 'a quantity is text in quotes, such as radius = "10 mm"'
-        raise SceneError([f"{path} is not a TOML file in UTF-8: {error}; {hint}"]) from None
+        raise SceneError([f"{path} is not a TOML file: {error}; {hint}"]) from None
 
 
 def _override(tables: dict[str, Any], overrides: list[str], *, embedded: bool) -> list[str]:
@@ -170,6 +187,7 @@ def _override(tables: dict[str, Any], overrides: list[str], *, embedded: bool) -
         if len(value) > 1 and value[0] == value[-1] and value[0] in "\"'":
             value = value[1:-1]
         pairs.append((section, name, value))
+    keys = {(section, name) for section, name, _ in pairs}
     for section, name, value in pairs:
         if section in CHOICES and name == CHOICES[section][0]:
             tables[section] = _switched(tables.get(section), section, value, embedded)
@@ -179,6 +197,10 @@ def _override(tables: dict[str, Any], overrides: list[str], *, embedded: bool) -
             continue
         if section == "drive" and name not in table:
             _change_drive(table, name)
+        if section == "foundation" and name in (specs := quantities(Foundation)):
+            for other in specs[name].excludes:
+                if (section, other) not in keys:
+                    table.pop(other, None)
         try:
             table[name] = tomllib.loads(f"v = {value}")["v"] if name == "history" else value
         except tomllib.TOMLDecodeError:
@@ -200,9 +222,9 @@ def _switched(old: Any, section: str, choice: str, embedded: bool) -> dict[str, 
     """
     chooser, models = CHOICES[section]
     names = quantities(models[choice]) if choice in models else {}
-    given = _tables(Scene.table1(choice))[section] if embedded and choice in SUPPORTS else {}
+    built_in = _tables(Scene.table1(choice))[section] if embedded and choice in SUPPORTS else {}
     common = {k: v for k, v in old.items() if k in names} if isinstance(old, dict) else {}
-    return {**given, **common, chooser: choice}
+    return {**built_in, **common, chooser: choice}
 
 
 def _build(tables: Mapping[str, Any], problems: list[str]) -> Scene:
@@ -256,8 +278,8 @@ def _part(section: str, table: Any) -> Any:
     valid = [chooser, *dict.fromkeys(key for model in models.values() for key in quantities(model))]
     if meant is None:
         problems += [
-            f"{section}.{key}: unknown key; {nearest(key, valid)}"
-            for key in rest
+            problem(f"{section}.{key}", value, f"unknown key; {nearest(key, valid)}")
+            for key, value in rest.items()
             if key not in valid
         ]
     else:
@@ -283,14 +305,16 @@ def _make(cls: Any, section: str, table: Mapping[str, Any], choice: str = "") ->
     valid = [*specs, *(way for way in DRIVES if way not in specs)] if cls is Drive else list(specs)
     known = [CHOICES[section][0], *valid] if section in CHOICES else valid
     of = f" for {choice}" if choice else ""
-    missing = [name for name in absent(valid, table) if name in required(cls)]
+    needed = required(cls, table)
     problems = [
-        f"{section}.{name}: missing{of}; expected {expected(specs[name].unit)}" for name in missing
+        missing(section, name, specs[name], of) for name in absent(valid, table) if name in needed
     ]
     values: dict[str, Any] = {}
     for key, value in table.items():
         if key not in valid:
-            problems.append(f"{section}.{key}: unknown key{of}; {nearest(key, known)}")
+            elsewhere = "" if MEANT.get(key, key) in known else _elsewhere(section, key)
+            told = f"unknown key{of}; {elsewhere or nearest(key, known)}"
+            problems.append(problem(f"{section}.{key}", value, told))
             continue
         try:
             if cls is Drive and key == "file":
@@ -304,6 +328,17 @@ def _make(cls: Any, section: str, table: Mapping[str, Any], choice: str = "") ->
     if problems:
         raise SceneError(problems)
     return cls(**values)
+
+
+def _elsewhere(section: str, key: str) -> str:
+    """Say which other models of a section have a key of this name, or one that it means."""
+    if section not in CHOICES:
+        return ""
+    chooser, models = CHOICES[section]
+    names = list(dict.fromkeys(name for model in models.values() for name in quantities(model)))
+    meant = key if key in names else MEANT.get(key, "")
+    having = [f'"{name}"' for name, model in models.items() if meant in quantities(model)]
+    return f"{meant} is of {chooser} = {' or '.join(having)}" if having else ""
 
 
 def _value(value: Any, spec: Quantity) -> float:

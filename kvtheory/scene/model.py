@@ -13,6 +13,7 @@ from kvtheory.scene.drives import Drive
 from kvtheory.scene.indenters import Indenter, Parabola
 from kvtheory.scene.quantities import (
     SceneError,
+    derive,
     nearest,
     problem,
     quantities,
@@ -21,19 +22,67 @@ from kvtheory.scene.quantities import (
 )
 
 STANDARD_GRAVITY = 9.80665
+LOAD = "W, load per unit width instead of mass times gravity; the mass is then inertia alone"
+
+
+LAYER = ("modulus", "thickness", "poisson_ratio")
+
+
+def layer_stiffness(modulus: Any, thickness: Any, poisson_ratio: Any) -> Any:
+    """Return K = E (1 - nu) / ((1 + nu) (1 - 2 nu) h) of a thin layer bonded to a rigid base, in N/m^3.
+
+    A layer of modulus E (Pa) and thickness h (m) under an indenter can only be squeezed, not sheared
+    away, where h is small against the half length a of the contact: K is its confined modulus over its
+    thickness. What is left out is of the order of h/a, and grows without bound towards nu = 1/2, where
+    a layer yields by flowing aside instead: (h/a)^2 must be small against 1 - 2 nu as well.
+
+    Numbers or arrays; Johnson, Contact Mechanics (1985), section 5.8.
+
+    >>> round(layer_stiffness(5e6, 2e-3, 0.45) / 1e9, 4)
+    9.4828
+    """
+    return (
+        modulus * (1 - poisson_ratio) / ((1 + poisson_ratio) * (1 - 2 * poisson_ratio)) / thickness
+    )
 
 
 @dataclass(frozen=True)
 class Foundation:
-    """Independent Kelvin-Voigt elements: stiffness K and damping C = K tau, both per unit area."""
+    """Independent Kelvin-Voigt elements: stiffness K and damping C = K tau, both per unit area.
 
-    stiffness: float = quantity("N/m^3", "K, stiffness of the foundation per unit area")
+    A thin bonded layer is given by `modulus`, `thickness` and `poisson_ratio` instead of `stiffness`,
+    which then follows from them; see `layer_stiffness` for where that holds.
+
+    >>> layer = Foundation(modulus="5 MPa", thickness="2 mm", poisson_ratio=0.45, retardation_time=0.1)
+    >>> round(layer.stiffness / 1e9, 4)
+    9.4828
+    """
+
+    stiffness: float = quantity(
+        "N/m^3", "K, stiffness of the foundation per unit area",
+        default=None, needed=True, instead="modulus", excludes=LAYER,
+    )  # fmt: skip
     retardation_time: float = quantity(
-        "s", "tau = C/K, retardation time of the foundation (Eq. 22)"
+        "s", "tau = C/K, retardation time of the foundation (Eq. 22)", default=None, needed=True
     )
+    modulus: float | None = quantity(
+        "N/m^2", "E, Young's modulus of a thin bonded layer, in the place of the stiffness",
+        default=None, beside=("thickness", "poisson_ratio"), excludes=("stiffness",),
+    )  # fmt: skip
+    thickness: float | None = quantity(
+        "m", "h, thickness of the layer, small against the contact",
+        default=None, beside=("modulus", "poisson_ratio"), excludes=("stiffness",),
+    )  # fmt: skip
+    poisson_ratio: float | None = quantity(
+        "1", "nu, Poisson's ratio of the layer", default=None, exclusive=False, below=0.5,
+        beside=("modulus", "thickness"), excludes=("stiffness",),
+    )  # fmt: skip
 
     def __post_init__(self) -> None:
         settle(self, "foundation")
+        if self.modulus is not None:
+            stiffness = layer_stiffness(self.modulus, self.thickness, self.poisson_ratio)
+            derive(self, "foundation", "stiffness", stiffness, "the layer")
 
     @property
     def damping(self) -> float:
@@ -55,42 +104,58 @@ class Fixed:
         settle(self, "support")
 
 
+MASS: dict[str, Any] = {"default": None, "needed": True, "instead": "load"}
+
+
+class _Loaded:
+    """What carries a load: its weight, or a load that is given beside or instead of its mass."""
+
+    mass: float
+    gravity: float
+    load: float | None
+
+    def __post_init__(self) -> None:
+        settle(self, "support")
+        if self.load is not None and self.mass is None:
+            mass = self.load / self.gravity
+            derive(self, "support", "mass", mass, "support.load/support.gravity")
+
+    @property
+    def weight(self) -> float:
+        """W, in N/m: the load, or else M g."""
+        return self.mass * self.gravity if self.load is None else self.load
+
+
 @dataclass(frozen=True)
-class DeadWeight:
-    """The indenter moves freely up and down under its weight (the paper's MI model, Eq. 17)."""
+class DeadWeight(_Loaded):
+    """The indenter moves freely up and down under its weight (the paper's MI model, Eq. 17).
+
+    A `load` stands for the weight; the mass is then that of inertia alone, load/gravity if not given.
+
+    >>> DeadWeight(load="3 N/mm").mass, DeadWeight(mass="1 kg/mm", load="3 N/mm").weight
+    (305.9148638933785, 3000.0)
+    """
 
     kind: ClassVar[str] = "dead-weight"
     spring: ClassVar[float] = 0.0
     depth: ClassVar[None] = None
-    mass: float = quantity("kg/m", "M, mass of the indenter per unit width")
+    mass: float = quantity("kg/m", "M, mass of the indenter per unit width", **MASS)
     gravity: float = quantity("m/s^2", "g, gravity", default=STANDARD_GRAVITY)
-
-    def __post_init__(self) -> None:
-        settle(self, "support")
-
-    @property
-    def weight(self) -> float:
-        """M g, in N/m."""
-        return self.mass * self.gravity
+    load: float | None = quantity("N/m", LOAD, default=None)
 
 
 @dataclass(frozen=True)
-class Suspended:
-    """A dead weight on a spring that is relaxed at the static depth."""
+class Suspended(_Loaded):
+    """A dead weight on a spring that is relaxed at the static depth; `load` is as for a dead weight."""
 
     kind: ClassVar[str] = "suspended"
     depth: ClassVar[None] = None
-    mass: float = quantity("kg/m", "M, mass of the indenter per unit width")
-    stiffness: float = quantity("N/m^2", "k_s, stiffness of the suspension per unit width")
+    mass: float = quantity("kg/m", "M, mass of the indenter per unit width", **MASS)
+    stiffness: float = quantity(
+        "N/m^2", "k_s, stiffness of the suspension per unit width", default=None, needed=True
+    )
     gravity: float = quantity("m/s^2", "g, gravity", default=STANDARD_GRAVITY)
-
-    def __post_init__(self) -> None:
-        settle(self, "support")
-
-    @property
-    def weight(self) -> float:
-        """M g, in N/m."""
-        return self.mass * self.gravity
+    load: float | None = quantity("N/m", LOAD, default=None)
 
     @property
     def spring(self) -> float:
@@ -170,6 +235,8 @@ class Scene:
     def values(self) -> Mapping[str, float]:
         """Return every quantity of the scene in SI by its dotted key, as ``"drive.velocity"``.
 
+        What follows from others is there too: the ``"support.weight"``, and the stiffness of a layer.
+
         A drive that is a function has no velocity to give.
         """
         parts = {"indenter": self.indenter, "foundation": self.foundation, "support": self.support}
@@ -177,7 +244,10 @@ class Scene:
             f"{section}.{name}": getattr(part, name)
             for section, part in parts.items()
             for name in quantities(part)
+            if getattr(part, name) is not None
         }
+        if not self.held:
+            flat["support.weight"] = self.support.weight
         if not self.drive.ends:
             return flat
         return {**flat, "drive.velocity": self.drive.final_velocity}

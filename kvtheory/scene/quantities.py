@@ -8,6 +8,7 @@ import difflib
 import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -24,27 +25,46 @@ class SceneError(ValueError):
         super().__init__("\n".join(self.problems))
 
 
+class Derived(float):
+    """A quantity that follows from others: where these are replaced, it is found anew."""
+
+
 @dataclass(frozen=True)
 class Quantity:
-    """What a field of a scene may hold."""
+    """What a field of a scene may hold: a value from `minimum`, or above it, to less than `below`.
+
+    `needed` says that it must be given, unless the one named by `instead` is; `beside` names those that
+    it must be given with, and `excludes` those that it cannot be given with.
+    """
 
     unit: str
     doc: str
     minimum: float
     exclusive: bool
+    below: float = math.inf
+    needed: bool = False
+    instead: str = ""
+    beside: tuple[str, ...] = ()
+    excludes: tuple[str, ...] = ()
 
     def admits(self, value: ArrayLike) -> bool:
         """Whether every `value` (in SI) is finite and in range."""
+        if isinstance(value, float):  # the most frequent, and NumPy takes ten times as long for it
+            return math.isfinite(value) and (
+                value > self.minimum if self.exclusive else value >= self.minimum
+            )
         value = np.asarray(value)
         above = value > self.minimum if self.exclusive else value >= self.minimum
-        return bool(np.all(np.isfinite(value) & above))
+        return bool(np.all(np.isfinite(value) & above & (value < self.below)))
 
     @property
     def range(self) -> str:
         """The range in words."""
         if self.minimum == -math.inf:
             return "a finite value"
-        return f"a finite value {'above' if self.exclusive else 'of at least'} {self.minimum:g}"
+        below = f" and below {self.below:g}" if math.isfinite(self.below) else ""
+        above = "above" if self.exclusive else "of at least"
+        return f"a finite value {above} {self.minimum:g}{below}"
 
 
 def quantity(
@@ -54,25 +74,69 @@ def quantity(
     minimum: float = 0.0,
     exclusive: bool = True,
     default: Any = dataclasses.MISSING,
+    **more: Any,
 ) -> Any:
-    """Declare a dataclass field that holds a quantity in the SI unit `unit`."""
-    return field(default=default, metadata={"quantity": Quantity(unit, doc, minimum, exclusive)})
+    """Declare a dataclass field that holds a quantity in the SI unit `unit`; see `Quantity`."""
+    spec = Quantity(unit, doc, minimum, exclusive, **more)
+    return field(default=default, metadata={"quantity": spec})
 
 
 def quantities(cls: Any) -> dict[str, Quantity]:
     """Return the quantities that a dataclass or its instance declares, by name."""
+    return dict(_declared(cls if isinstance(cls, type) else type(cls)))
+
+
+@cache
+def _declared(cls: type) -> tuple[tuple[str, Quantity], ...]:
+    """Return them once and for all; a dataclass is read field by field, which takes a while."""
+    return tuple(
+        (f.name, f.metadata["quantity"])
+        for f in dataclasses.fields(cls)
+        if "quantity" in f.metadata
+    )
+
+
+def given(instance: Any) -> dict[str, Quantity]:
+    """Return the quantities that an instance was given: that are there, and do not follow from others."""
     return {
-        f.name: f.metadata["quantity"] for f in dataclasses.fields(cls) if "quantity" in f.metadata
+        name: spec
+        for name, spec in quantities(instance).items()
+        if not isinstance(getattr(instance, name), Derived | None)
     }
 
 
-def required(cls: Any) -> list[str]:
-    """Return the names of the quantities without a default."""
-    return [
-        f.name
-        for f in dataclasses.fields(cls)
-        if "quantity" in f.metadata and f.default is dataclasses.MISSING
-    ]
+def free(instance: Any) -> dict[str, Quantity]:
+    """Return the quantities that can be replaced by other values, one by one."""
+    return {
+        name: spec
+        for name, spec in quantities(instance).items()
+        if getattr(instance, name) is not None or not spec.beside
+    }
+
+
+def changed(instance: Any, **values: float) -> Any:
+    """Return a copy with some quantities replaced; what these exclude is left out."""
+    specs = quantities(instance)
+    dropped = {other: None for name in values for other in specs[name].excludes}
+    return dataclasses.replace(instance, **{**dropped, **values})
+
+
+def required(cls: Any, names: Iterable[str] = ()) -> list[str]:
+    """Return the quantities that must be given where those of the `names` are."""
+    names, found = set(names), []
+    for f in dataclasses.fields(cls):
+        spec = f.metadata.get("quantity")
+        if spec and f.name not in names and (f.default is dataclasses.MISSING or spec.needed):
+            found += [f.name] * (spec.instead not in names)
+        elif spec and f.name not in names and set(spec.beside) & names:
+            found.append(f.name)
+    return found
+
+
+def missing(section: str, name: str, spec: Quantity, of: str = "") -> str:
+    """Say that a quantity is missing, and what may be given in its place."""
+    instead = f"; or {section}.{spec.instead}" if spec.instead else ""
+    return f"{section}.{name}: missing{of}; expected {expected(spec.unit)}{instead}"
 
 
 def convert(value: Any, spec: Quantity) -> float:
@@ -84,16 +148,34 @@ def convert(value: Any, spec: Quantity) -> float:
 
 
 def settle(instance: Any, section: str) -> None:
-    """Convert and check every quantity of a frozen dataclass; for use in ``__post_init__``."""
-    problems = []
-    for name, spec in quantities(instance).items():
-        given = getattr(instance, name)
+    """Convert and check every quantity of a frozen dataclass; for use in ``__post_init__``.
+
+    A quantity that followed from others is taken out, to be found anew.
+    """
+    specs = quantities(instance)
+    values = {name: getattr(instance, name) for name in specs}
+    values = {name: None if isinstance(v, Derived) else v for name, v in values.items()}
+    here = [name for name, value in values.items() if value is not None]
+    problems = [missing(section, name, specs[name]) for name in required(type(instance), here)]
+    for name, value in values.items():
         try:
-            object.__setattr__(instance, name, convert(given, spec))
+            number = None if value is None else convert(value, specs[name])
+            object.__setattr__(instance, name, number)
         except ValueError as error:
-            problems.append(problem(f"{section}.{name}", given, str(error)))
+            problems.append(problem(f"{section}.{name}", value, str(error)))
+    for name in here:
+        for other in (other for other in specs[name].excludes if other in here):
+            told = f"cannot be given beside {section}.{other}"
+            problems.append(problem(f"{section}.{name}", values[name], told))
     if problems:
         raise SceneError(problems)
+
+
+def derive(instance: Any, section: str, name: str, value: float, of: str) -> None:
+    """Put in a quantity that follows from others; for use in ``__post_init__`` after `settle`."""
+    if not quantities(instance)[name].admits(value):
+        raise SceneError([f"{section}.{name} = {value:g} follows from {of}, and is out of range"])
+    object.__setattr__(instance, name, Derived(value))
 
 
 def problem(key: str, given: Any, what: str) -> str:
@@ -104,9 +186,49 @@ def problem(key: str, given: Any, what: str) -> str:
     return f"{key} = {shown}: {what}"
 
 
+MEANT = {
+    **dict.fromkeys(
+        ("E", "young", "youngs_modulus", "elastic_modulus", "shear_modulus"), "modulus"
+    ),
+    **dict.fromkeys(("nu", "ν", "poisson"), "poisson_ratio"),
+    **dict.fromkeys(("h", "height"), "thickness"),
+    **dict.fromkeys(("K", "rigidity", "k_s", "spring"), "stiffness"),
+    **dict.fromkeys(
+        ("tau", "τ", "relaxation_time", "damping", "viscosity", "C"), "retardation_time"
+    ),
+    **dict.fromkeys(("R", "diameter", "curvature"), "radius"),
+    **dict.fromkeys(("V", "v", "speed", "sliding_velocity"), "velocity"),
+    **dict.fromkeys(("W", "weight", "force"), "load"),
+    **dict.fromkeys(("delta", "δ", "indentation", "penetration"), "depth"),
+    **dict.fromkeys(("m", "M", "inertia"), "mass"),
+    **dict.fromkeys(("g", "acceleration"), "gravity"),
+    **dict.fromkeys(("t_end", "end", "length"), "duration"),
+    **dict.fromkeys(("mu", "μ", "µ", "friction"), "friction_coefficient"),
+    **dict.fromkeys(("F", "F_x", "friction_load"), "friction_force"),
+    **dict.fromkeys(("F_z", "contact_force"), "normal_force"),
+    **dict.fromkeys(("a", "contact_length", "half_width"), "half_length"),
+    **dict.fromkeys(("p", "p_max", "pressure", "max_pressure"), "peak_pressure"),
+    **dict.fromkeys(("x_LE", "front"), "leading_edge"),
+    **dict.fromkeys(("x_TE", "rear"), "trailing_edge"),
+    "l_r": "retardation_length",
+}
+"""Names by symbols and by other words, which no likeness of letters would find."""
+
+
 def closest(name: str, valid: Iterable[str]) -> str | None:
-    """Return the one of the `valid` names that was probably meant, if any."""
-    return next(iter(difflib.get_close_matches(name, list(valid), n=1, cutoff=0.5)), None)
+    """Return the one of the `valid` names that was probably meant, if any.
+
+    Symbols and other words count as well, with or without the section before a dot.
+
+    >>> closest("tau", ["radius", "retardation_time"]), closest("support.W", ["support.load"])
+    ('retardation_time', 'support.load')
+    """
+    valid = list(valid)
+    section, dot, last = name.rpartition(".")
+    meant = section + dot + MEANT.get(last, last)
+    if meant in valid:
+        return meant
+    return next(iter(difflib.get_close_matches(name, valid, n=1, cutoff=0.5)), None)
 
 
 def nearest(name: str, valid: Iterable[str]) -> str:

@@ -11,7 +11,7 @@ from kvtheory.results.sweep import Axis
 from kvtheory.scene.drives import VELOCITY
 from kvtheory.scene.lists import item_values, items
 from kvtheory.scene.model import Scene
-from kvtheory.scene.quantities import Quantity, SceneError, convert, nearest, problem, quantities
+from kvtheory.scene.quantities import Quantity, SceneError, convert, free, nearest, problem
 
 Array = NDArray[np.float64]
 
@@ -24,7 +24,7 @@ def sweepable(scene: Scene) -> dict[str, Quantity]:
     found = {
         f"{section}.{name}": spec
         for section, part in sections.items()
-        for name, spec in quantities(part).items()
+        for name, spec in free(part).items()
     }
     return {**found, "drive.velocity": VELOCITY}
 
@@ -126,7 +126,8 @@ def narrowed(axes: Sequence[Axis], start: int, stop: int) -> tuple[tuple[Axis, .
 def _known(key: Any, value: Any, specs: Mapping[str, Quantity], seen: set[str]) -> Array:
     """Return the values of one key in SI, or raise `SceneError` with all that is wrong."""
     if key not in specs:
-        raise SceneError([f"`over` {key}: unknown key for this scene; {nearest(str(key), specs)}"])
+        told = f"unknown key for this scene; {nearest(str(key), specs)}"
+        raise SceneError([problem(f"`over` {key}", value, told)])
     if key in seen:
         raise SceneError([f"`over` {key} is swept twice"])
     seen.add(key)

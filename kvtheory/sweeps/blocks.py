@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from kvtheory.models.steady.methods import METHODS
 from kvtheory.scene.broadcasting import values
 from kvtheory.scene.model import Drive, Scene
+from kvtheory.scene.quantities import changed
 from kvtheory.sweeps.axes import narrowed, values_at
 from kvtheory.sweeps.plan import Plan
 
@@ -138,34 +139,34 @@ def _transients(
     steady: Mapping[str, Array],
     into: tuple[Mapping[str, NDArray[Any]], dict[int, str], dict[str, float]],
 ) -> set[str]:
-    """Follow the motions one by one; return the statements of the certificates.
+    """Follow the motions; return the statements of the certificates.
 
     `into` is filled: the arrays of the columns, the reasons of failures, and the worst errors.
     """
     from kvtheory.sweeps import measures  # it imports the solver, which takes a while
 
-    plan, (found, reasons, errors) = given.plan, into
-    statements: set[str] = set()
-    columns = [column for column in plan.columns if not column.steady]
-    bases = {column.base for column in columns if column.base} | plan.compared
+    plan, (arrays, reasons, errors) = given.plan, into
+    scenes: dict[int, Scene] = {}
     for index in range(given.points):
         if index in reasons:
             continue
         point = {key: float(array[index]) for key, array in over.items()}
-        compared = {name: float(array[index]) for name, array in steady.items()}
         try:
-            with np.errstate(over="raise", invalid="raise", divide="raise"):
-                scene = at_point(plan.scene, point)
-                answer, certificate = measures.follow(scene, plan, compared)
+            scenes[index] = at_point(plan.scene, point)
         except FAILS as error:
             reasons[index] = reason(error)
-            continue
-        statements.add(certificate.statement)
-        for name in bases:
-            worst(errors, name, certificate.relative_error[name])
-        for column in columns:
-            found[column.name][index] = answer[column.name]
-    return statements
+    friction = steady.get("friction_force", np.full(given.points, np.nan))
+    with np.errstate(over="raise", invalid="raise", divide="raise"):
+        found = measures.measure(plan, scenes, friction, FAILS)
+    reasons.update((index, reason(error)) for index, error in found.reasons.items())
+    columns = [column for column in plan.columns if not column.steady]
+    kept = [index for index in scenes if index not in reasons]
+    for name in {column.base for column in columns if column.base} | plan.compared:
+        worst(errors, name, found.errors[name][kept])
+    for column in columns:
+        values = found.texts if column.text else found.values
+        arrays[column.name][:] = values[column.name]
+    return found.statements
 
 
 def at_point(scene: Scene, point: Mapping[str, float]) -> Scene:
@@ -174,14 +175,16 @@ def at_point(scene: Scene, point: Mapping[str, float]) -> Scene:
     >>> at_point(Scene(), {"drive.velocity": 0.5, "support.mass": 10.0}).support.mass
     10.0
     """
-    parts: dict[str, Any] = {}
+    sections: dict[str, dict[str, float]] = {}
     for key, value in point.items():
         section, _, name = key.partition(".")
-        if section == "drive":
-            parts[section] = Drive(velocity=value)
-        else:
-            part = parts.get(section, getattr(scene, section))
-            parts[section] = replace(part, **{name: value})
+        sections.setdefault(section, {})[name] = value
+    parts: dict[str, Any] = {
+        section: Drive(velocity=values["velocity"])
+        if section == "drive"
+        else changed(getattr(scene, section), **values)
+        for section, values in sections.items()
+    }
     return replace(scene, **parts)
 
 

@@ -17,8 +17,10 @@ from kvtheory.sweeps.plan import Plan
 
 VECTORISED_BLOCK = 65536
 """Steady states in a block: 5 MB of results in 20 ms; half as many cost a third of the speed."""
+QUADRATURE_BLOCK = 512
+"""Scenes integrated in a block: as many as go through one column of nodes; 64 cost half the speed."""
 SINGLE_BLOCK = 64
-"""Scenes solved one by one in a block: about 0.1 s, of which passing it on takes a percent."""
+"""Motions followed in a block: about 0.1 s, of which passing it on takes a percent."""
 
 TRIES = 3
 """Times that a block is given out; a worker may die under it, but not every time."""
@@ -39,7 +41,8 @@ def remaining(plan: Plan, done: list[tuple[int, int]], block: int | None = None)
 
     Edges of blocks lie on multiples of `block`, but for those that earlier runs left.
     """
-    size = block or (VECTORISED_BLOCK if plan.vectorised else SINGLE_BLOCK)
+    usual = SINGLE_BLOCK if plan.transient else QUADRATURE_BLOCK
+    size = block or (VECTORISED_BLOCK if plan.vectorised else usual)
     at = 0
     for start, stop in [*done, (plan.points, plan.points)]:
         while at < start:

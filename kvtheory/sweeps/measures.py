@@ -1,195 +1,289 @@
-"""What a sweep keeps of one transient: maxima, the time to settle, hops. The only place that solves one.
+"""What a sweep keeps of transients: series, maxima, the time to settle, hops, events, of many scenes at once.
 
-A motion is sampled densely, for it is smooth between the steps of the solver and known everywhere;
-what is looked for is then narrowed down between two samples.
+The compiled kernel measures all scenes of a block in one call. Those that it leaves, and all of them where
+nothing is compiled or events are asked for, are followed one by one, into the same arrays.
 """
 
 import json
-import math
-from collections.abc import Callable, Mapping
-from functools import partial
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from kvtheory.models.continuum import evaluation
-from kvtheory.models.continuum.maxima import force_maxima
-from kvtheory.models.continuum.solved_scene import FORCE_MAXIMA, SolvedScene, certified
-from kvtheory.results import Certificate
+from kvtheory.models.continuum import bulk, compiled, deviation, maxima
+from kvtheory.models.continuum import error_estimate as estimate
+from kvtheory.models.continuum import evaluation as e_
+from kvtheory.models.continuum.run import ROOM, Run, StepControl, begin, with_more_room
+from kvtheory.models.continuum.solved_scene import (
+    LOOSEST,
+    certified,
+    left_leads,
+    scaled_drive,
+)
+from kvtheory.models.continuum.solver import STEP_LIMIT
+from kvtheory.models.continuum.stepping import DONE
+from kvtheory.results.table import QUANTITIES
+from kvtheory.scene.base_motion import BaseMotion
 from kvtheory.scene.model import Scene
+from kvtheory.scene.static_state import StaticState
+from kvtheory.sweeps.columns import Column
 from kvtheory.sweeps.plan import Plan
 
 Array = NDArray[np.float64]
 
-SAMPLES = 12
-"""For each step of the solver, on which the depth is a polynomial of degree 8."""
-ZOOM, ZOOMS = 33, 5
-"""Samples between two others, and how often: within 16^-4 of a sample a maximum differs by less than
-rounding."""
-SAME = 1e-10
-"""Relative; of values as equal as this, as in steady sliding, the first is the largest."""
-ROWS = {
-    "depth": evaluation.DEPTH,
-    "depth_rate": evaluation.RATE,
-    "normal_force": evaluation.NORMAL_FORCE,
-    "friction_force": evaluation.FRICTION_FORCE,
-    "peak_pressure": evaluation.PEAK_PRESSURE,
+COLUMNS = {
+    "velocity": e_.NUMBER,
+    "depth": e_.DEPTH,
+    "depth_rate": e_.RATE,
+    "normal_force": e_.NORMAL_FORCE,
+    "friction_force": e_.FRICTION_FORCE,
+    "peak_pressure": e_.PEAK_PRESSURE,
+    "leading_edge": maxima.LEADING_EDGE,
+    "trailing_edge": maxima.TRAILING_EDGE,
 }
-"""Rows of the scaled states that are a quantity but for its unit."""
-EDGES = ("leading_edge", "trailing_edge")
+"""Columns of the states."""
+SENSES = {"max": maxima.LARGEST, "time_of_max": maxima.LARGEST, "min": maxima.SMALLEST}
+PEAK = e_.FRICTION_FORCE, maxima.MAGNITUDE
 SETTLED = 0.01
 """Share of the steady friction force within which the motion counts as settled."""
+STEPS = 40
+"""That a certified scene takes, about: so many of them are worth to compile."""
+DOUBLINGS = 2
+"""Of the room of a single motion: few scenes then need more, and are followed alone."""
 
 
-def follow(
-    scene: Scene, plan: Plan, steady: Mapping[str, float]
-) -> tuple[dict[str, Any], Certificate]:
-    """Solve one scene; return the columns of the plan that are of the transient, and the errors.
+@dataclass(frozen=True)
+class Measured:
+    """Values of each column, in the order of the scenes; texts; why a scene has none; and the errors."""
 
-    The certificate is of the series; that of a maximum is the one of the quantity itself.
+    values: Mapping[str, Any]
+    texts: Mapping[str, Sequence[str]]
+    reasons: Mapping[int, Exception]
+    statements: set[str]
+    errors: Mapping[str, Array]
 
-    Raises
-    ------
-    ValueError, ArithmeticError
-        If the motion cannot be followed.
+
+def measure(
+    plan: Plan, scenes: Mapping[int, Scene], friction: Array, fails: tuple[type[Exception], ...]
+) -> Measured:
+    """Follow scenes, by their index in a block; return the columns of the plan that are of transients.
+
+    Parameters
+    ----------
+    plan
+        What is asked.
+    scenes
+        The scenes by index; they differ in values, not in the kinds of their parts.
+    friction
+        The steady friction force in N/m at each index of the block, where it is asked for.
+    fails
+        The exceptions that mean that a scene has no answer.
+
+    Returns
+    -------
+    Measured
+        With rows for all indices of the block. The errors are those of the series; a maximum has that
+        of the quantity itself.
     """
-    solution, _, errors = certified(scene, None, plan.rtol)
-    times = _times(solution)
-    first = solution.states(times)
-    found: dict[str, Any] = {}
-    series: dict[str, Any] = {}
-    if plan.times is not None:
-        if max(plan.times) > scene.run.duration:
-            raise ValueError(f"a time of `at` is after the end of the run, {scene.run.duration} s")
-        series = solution.series(np.array(plan.times))
-    for column in plan.columns:
-        name, measure = column.base, column.measure
-        if measure == "series":
-            found[column.name] = series[name]
-        elif measure in WHOLE:
-            found[column.name] = WHOLE[measure](scene, solution, times, first, steady)
-        elif measure == "end":
-            found[column.name] = _value(solution, name, times[-1])
-        elif measure != "steady":
-            sense = np.negative if measure == "min" else np.positive
-            time = largest(solution, times, first, partial(_scaled, name, sense))
-            wanted = measure == "time_of_max" or math.isnan(time)
-            found[column.name] = time if wanted else _value(solution, name, time)
-    return found, errors
+    block = _Block(plan, len(friction), fails)
+    for index, scene in scenes.items():
+        block.add(index, scene, friction[index])
+    block.follow()
+    return block.measured()
 
 
-def largest(
-    solution: SolvedScene,
-    times: Array,
-    moments: Array,
-    quantity: Callable[[SolvedScene, Array, Array], Array],
-) -> float:
-    """Return when a quantity is largest, the first time of it, in s; NaN if it never exists.
+class _Block:
+    """A block of scenes on its way: what is asked, and arrays with a row for each index."""
 
-    `quantity` takes a solution, times and the states there.
-    """
-    values = quantity(solution, times, moments)
-    if np.isnan(values).all():
-        return math.nan
-    ends = times[[0, -1]]
-    for zoom in range(ZOOMS):
-        best = _first_of_largest(values)
-        if zoom > 1 and times[best] in ends:
-            break  # the motion begins or ends with it
-        # Two to each side, for one of them may be the same time but for rounding.
-        a, b = times[max(best - 2, 0)], times[min(best + 2, times.size - 1)]
-        # The best sample stays among the samples: what lies beside a jump is not lost.
-        times = np.sort(np.append(np.linspace(a, b, ZOOM), times[best]))
-        values = quantity(solution, times, solution.states(times))
-    return float(times[_first_of_largest(values)])
+    def __init__(self, plan: Plan, size: int, fails: tuple[type[Exception], ...]) -> None:
+        self.plan, self.fails = plan, fails
+        wanted = {(COLUMNS[c.base], SENSES[c.measure]) for c in plan.columns if c.measure in SENSES}
+        if any(c.measure == "peak_to_steady_friction" for c in plan.columns):
+            wanted.add(PEAK)
+        self.wanted, times = sorted(wanted), len(plan.times or ())
+        self.scenes: dict[int, tuple[Scene, StaticState, BaseMotion]] = {}
+        self.friction = np.full(size, np.nan)
+        self.reasons: dict[int, Exception] = {}
+        self.statements: set[str] = set()
+        self.texts = [""] * size
+        self.errors = {name: np.zeros(size) for name in estimate.unknown("").relative_error}
+        self.found = bulk.Found(
+            status=np.full(size, -1),
+            other=np.full(size, -1),
+            deviations=np.zeros((size, deviation.SIZE)),
+            largest=np.full((size, len(self.wanted), 2), np.nan),
+            states=np.full((size, times, e_.SIZE), np.nan),
+            settled=np.full(size, np.nan),
+            take_offs=np.zeros(size, dtype=np.int64),
+            last=np.full((size, e_.SIZE + 2), np.nan),
+        )
+
+    def add(self, index: int, scene: Scene, friction: float) -> None:
+        """Add a scene, or the reason why it cannot be followed."""
+        try:
+            if max(self.plan.times or (0.0,)) > scene.run.duration:
+                late = f"a time of `at` is after the end of the run, {scene.run.duration} s"
+                raise ValueError(late)
+            units = StaticState.of(scene)
+            self.scenes[index] = scene, units, scaled_drive(scene, units)
+            self.friction[index] = friction / units.friction_force
+        except self.fails as error:
+            self.reasons[index] = error
+
+    def follow(self) -> None:
+        """Follow the scenes, as many as possible in one call."""
+        worthwhile = compiled.worthwhile() or STEPS * len(self.scenes) >= compiled.WORTHWHILE
+        if self.scenes and not self.plan.textual and worthwhile and compiled.available():
+            self._together()
+        for index in self.scenes:
+            if not (self.found.status[index] == self.found.other[index] == DONE):
+                try:
+                    self._alone(index)
+                except self.fails as error:
+                    self.reasons[index] = error
+
+    def _together(self) -> None:
+        indices = list(self.scenes)
+        units, drives = [self.scenes[i][1] for i in indices], [self.scenes[i][2] for i in indices]
+        fine, other = self._room(drives[0], units[0])
+        records = ROOM * 2**DOUBLINGS
+        at = np.array(self.plan.times or (), dtype=float)
+        ends = np.array([drive.end for drive in drives])
+        times = np.minimum(at / np.array([[u.time] for u in units]), ends[:, None])
+        scenes = bulk.Scenes(
+            np.array([float(u.inertia_number) for u in units]),
+            np.array([0.0 if u.fixed else float(u.support_number) for u in units]),
+            ends,
+            self.friction[indices],
+            np.cumsum([0, *(len(drive.pieces) for drive in drives)]),
+            np.concatenate([drive.rows for drive in drives]),
+        )
+        columns = np.array(self.wanted, dtype=np.int64).reshape(-1, 2).T.copy()
+        asked = bulk.Asked(columns[0], columns[1], times, SETTLED)
+        samples = (maxima.SAMPLES + 1) * records
+        room = bulk.Room(
+            np.zeros(samples),
+            np.zeros((samples, e_.SIZE)),
+            np.zeros(samples),
+            np.zeros((samples, e_.SIZE)),
+            np.zeros((2, e_.SIZE)),
+        )
+        found = bulk.Found(*(array[indices] for array in self.found))
+        compiled.kernels().follow(scenes, fine, other, asked, room, found, STEP_LIMIT)
+        for whole, part in zip(self.found, found, strict=True):
+            whole[indices] = part
+        told = found.deviations.T
+        errors = estimate.errors(told, told, fine.given.rtol, fine.given.fixed)
+        for name, error in errors.items():
+            self.errors[name][indices] = error
+        self.statements.add(estimate.STATEMENT)
+
+    def _room(self, drive: BaseMotion, units: StaticState) -> list[Run]:
+        rtol, runs = min(self.plan.rtol, LOOSEST), []
+        for tolerance, control in (
+            (rtol, StepControl()),
+            (max(rtol / estimate.TIGHTER, estimate.TIGHTEST), estimate.COMPARISON),
+        ):
+            numbers = units.inertia_number, units.support_number
+            run = begin(drive, *numbers, drive.end, tolerance, control, arrays=True)
+            for _ in range(DOUBLINGS):
+                run = with_more_room(run)
+            runs.append(run)
+        return runs
+
+    def _alone(self, index: int) -> None:
+        scene, _, _ = self.scenes[index]
+        solution, _, errors = certified(scene, None, self.plan.rtol)
+        motion, found = solution.motion, self.found
+        for name, error in errors.relative_error.items():
+            self.errors[name][index] = error
+        for k, (column, sense) in enumerate(self.wanted):
+            found.largest[index, k] = motion.largest(column, sense)
+        found.settled[index] = motion.settled(self.friction[index], SETTLED)
+        if self.plan.times:
+            found.states[index] = solution.states(self.plan.times).T
+        found.last[index] = motion.last
+        found.take_offs[index] = sum(event.kind == "take-off" for event in motion.events)
+        if self.plan.textual:
+            self.texts[index] = json.dumps([event._asdict() for event in solution.events])
+        self.statements.add(errors.statement)
+
+    def measured(self) -> Measured:
+        """Return what was found, in SI."""
+        values = {
+            column.name: _VALUES[column.measure](self, column)
+            for column in self.plan.columns
+            if column.measure in _VALUES
+        }
+        texts = {column.name: self.texts for column in self.plan.textual}
+        return Measured(values, texts, self.reasons, self.statements, self.errors)
+
+    def scales(self, name: str) -> Array:
+        """Return what measures a quantity of each scene, by the name of the scale or of the quantity."""
+        scale = QUANTITIES[name].scale if name in QUANTITIES else name
+        scales = np.full(len(self.friction), np.nan)
+        for index, (_, units, _) in self.scenes.items():
+            scales[index] = getattr(units, scale)
+        return scales
 
 
-def _first_of_largest(values: Array) -> int:
-    top = float(np.nanmax(values))
-    return int(np.argmax(values >= top - SAME * abs(top)))
+def _series(block: _Block, column: Column) -> Array:
+    """Return a quantity at the times: a row for each scene."""
+    found, name = block.found.states, column.base
+    if COLUMNS[name] < e_.SIZE:
+        row = found[..., COLUMNS[name]]
+    else:
+        times, leads = np.array(block.plan.times), found[..., e_.NUMBER] >= 0.0
+        for index, (_, units, drive) in block.scenes.items():
+            leads[index] = left_leads(found[index, :, e_.NUMBER], drive, times / units.time)
+        left = leads == (name == "leading_edge")
+        row = np.where(left, found[..., e_.LEFT], found[..., e_.RIGHT])
+    return row * block.scales(name)[:, None]
 
 
-def _scaled(
-    name: str, sense: Callable[[Array], Array], solution: SolvedScene, times: Array, moments: Array
-) -> Array:
-    """Return a quantity, or a positive multiple of it, which is enough to find where it is largest."""
-    if name in ROWS:
-        return sense(moments[ROWS[name]])
-    return sense(_series(solution, name, times))
+def _end(block: _Block, column: Column) -> Array:
+    return block.found.last[:, COLUMNS[column.base]] * block.scales(column.base)
 
 
-def _series(solution: SolvedScene, name: str, times: Array) -> Array:
-    """Return a quantity in SI, with the history before: at rest, it tells which edge leads."""
-    before = solution.natural_times
-    before = before[before < times[0]] if name in EDGES else before[:0]
-    return np.asarray(solution.series(np.append(before, times))[name])[before.size :]
+def _largest(block: _Block, column: Column) -> Array:
+    key = COLUMNS[column.base], SENSES[column.measure]
+    return block.found.largest[:, block.wanted.index(key), 1] * block.scales(column.base)
 
 
-def _value(solution: SolvedScene, name: str, time: float) -> float:
-    return float(_series(solution, name, np.array([time]))[0])
+def _time_of_max(block: _Block, column: Column) -> Array:
+    key = COLUMNS[column.base], SENSES[column.measure]
+    return block.found.largest[:, block.wanted.index(key), 0] * block.scales("time")
 
 
-def _times(solution: SolvedScene) -> Array:
-    """Return dense times in s over the steps of the solver, with those just before each step ends."""
-    motion = solution.motion
-    starts = np.array(motion.starts)
-    ends = np.append(np.nextafter(starts[1:], 0.0), motion.end)
-    parts = np.linspace(0.0, 1.0, SAMPLES + 1)
-    scaled = starts[:, None] + (ends - starts)[:, None] * parts
-    return np.unique(np.minimum(scaled, motion.end)) * solution.units.time
-
-
-def _peak_to_steady(
-    scene: Scene, solution: SolvedScene, times: Array, moments: Array, steady: Mapping[str, float]
-) -> float:
+def _peak_to_steady(block: _Block, _: Column) -> Array:
     """Return max |F_x| over |steady F_x|; NaN at rest."""
-    friction = abs(steady["friction_force"])
-    time = largest(solution, times, moments, partial(_scaled, "friction_force", np.abs))
-    return abs(_value(solution, "friction_force", time)) / friction if friction else math.nan
+    peak, steady = block.found.largest[:, block.wanted.index(PEAK), 1], np.abs(block.friction)
+    return peak / np.where(steady == 0.0, np.nan, steady)
 
 
-def _settling_time(
-    scene: Scene, solution: SolvedScene, times: Array, moments: Array, steady: Mapping[str, float]
-) -> float:
+def _settling_time(block: _Block, column: Column) -> Array:
     """Return how long after its last change of the drive the friction stays settled; NaN if never."""
-    friction = steady["friction_force"] / solution.units.friction_force
-
-    def last_outside(moments: Array) -> int:
-        outside = np.abs(moments[ROWS["friction_force"]] - friction) > SETTLED * abs(friction)
-        return int(outside.size - 1 - np.argmax(outside[::-1])) if outside.any() else -1
-
-    at = last_outside(moments)
-    if friction == 0.0 or at == times.size - 1:
-        return math.nan
-    if at < 0:
-        return 0.0
-    a, b = times[at], times[at + 1]
-    for _ in range(ZOOMS):
-        inner = np.linspace(a, b, ZOOM)
-        at = last_outside(solution.states(inner))
-        if not 0 <= at < ZOOM - 1:
-            break
-        a, b = inner[at], inner[at + 1]
-    return max(float(b) - scene.drive.last_change, 0.0)
+    changes = np.zeros(len(block.friction))
+    for index, (scene, _, _) in block.scenes.items():
+        changes[index] = scene.drive.last_change
+    return np.maximum(block.found.settled * block.scales("time") - changes, 0.0)
 
 
-def _hops(scene: Scene, solution: SolvedScene, *_: Any) -> float:
+def _hops(block: _Block, _: Column) -> Array:
     """Return how often the indenter takes off."""
-    return float(sum(event.kind == "take-off" for event in solution.motion.events))
+    return block.found.take_offs.astype(float)
 
 
-def _events(scene: Scene, solution: SolvedScene, *_: Any) -> str:
-    """Return the events as JSON, with times in s; the maxima of the forces among them."""
-    maxima = zip(force_maxima(solution.motion), FORCE_MAXIMA, strict=True)
-    events = sorted([*((e.s, e.kind) for e in solution.motion.events), *maxima], key=lambda e: e[0])
-    return json.dumps([{"time": s * solution.units.time, "kind": kind} for s, kind in events])
-
-
-WHOLE: Mapping[str, Callable[..., Any]] = {
+_VALUES: Mapping[str, Callable[[_Block, Column], Array]] = {
+    "series": _series,
+    "end": _end,
+    "max": _largest,
+    "min": _largest,
+    "time_of_max": _time_of_max,
     "peak_to_steady_friction": _peak_to_steady,
     "settling_time": _settling_time,
     "hops": _hops,
-    "events": _events,
 }
-"""Single values of a whole transient; their units are in `columns.WHOLE`."""
+"""Values of the columns, by their measure; the units of single ones are in `columns.WHOLE`."""

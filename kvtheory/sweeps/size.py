@@ -8,8 +8,8 @@ from pathlib import Path
 from kvtheory.progress import duration
 from kvtheory.sweeps.plan import Plan
 
-ON_ARRAYS, BY_QUADRATURE, IN_MOTION = 1e6, 400.0, 1000.0
-"""Scenes that a core solves in a second, to a factor of three: as measured for Table 1."""
+ON_ARRAYS, BY_QUADRATURE, IN_MOTION = 1e6, 1e5, 1e3
+"""Scenes that a core solves in a second, to a factor of some three: as measured for Table 1."""
 NUMBER, DIGITS = 8, 21
 """Bytes of a number, and of its decimals with a comma or an end of line."""
 TOLD = 10.0

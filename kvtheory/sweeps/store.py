@@ -200,3 +200,5 @@ def _told(path: Path) -> Any:
         if code in (sqlite3.SQLITE_BUSY, sqlite3.SQLITE_LOCKED):
             raise OSError(f'"{path}" is in use: the same sweep is running') from None
         raise OSError(f'"{path}" cannot be written or read: {error}') from None
+    except json.JSONDecodeError as error:
+        raise OSError(f'"{path}" is damaged, remove it: {error}') from None

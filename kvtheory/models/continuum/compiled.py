@@ -1,6 +1,6 @@
 """The kernels, compiled by numba from the very source that is also interpreted.
 
-Nothing here computes. Numba is told that the functions of the kernel modules may be compiled; the two
+Nothing here computes. Numba is told that the functions of the kernel modules may be compiled; the
 entries below call them, and only these entries are cached. Numba would not notice that a function in
 another file has changed, so the entries close over a digest of all kernel sources, which is part of the
 key of the cache: after any change they are compiled anew.
@@ -13,13 +13,16 @@ from functools import cache
 from importlib.util import find_spec
 from pathlib import Path
 from types import ModuleType
-from typing import Any
+from typing import Any, NamedTuple
 
 from kvtheory.models.continuum import (
+    bulk,
     contact,
     dense_output,
+    deviation,
     evaluation,
     flight,
+    maxima,
     memory_chains,
     radau_iia,
     run,
@@ -39,6 +42,9 @@ MODULES = (
     trial_step,
     stepping,
     evaluation,
+    maxima,
+    deviation,
+    bulk,
 )
 """Where the kernels are."""
 
@@ -75,9 +81,20 @@ def sources(modules: tuple[ModuleType, ...] = MODULES) -> str:
     return digest.hexdigest()
 
 
+class Kernels(NamedTuple):
+    """The compiled entries, named as the functions that they call; they run without the interpreter lock."""
+
+    walk: Callable[..., int]
+    states: Callable[..., None]
+    deviations: Callable[..., None]
+    sample: Callable[..., int]
+    largest: Callable[..., tuple[float, float]]
+    follow: Callable[..., None]
+
+
 @cache
-def kernels() -> tuple[Callable[..., int], Callable[..., None]]:
-    """Return `stepping.walk` and `evaluation.states`, compiled; they run without the interpreter lock.
+def kernels() -> Kernels:
+    """Return the compiled entries.
 
     Raises
     ------
@@ -95,11 +112,31 @@ def kernels() -> tuple[Callable[..., int], Callable[..., None]]:
     def walk(progress: Any, attempts: int) -> int:
         return stepping.walk(progress, attempts) if digest else 0
 
-    def states_at(times: Any, found: Any, nodes: Any, records: Any, pieces: Any) -> None:
+    def states(times: Any, found: Any, progress: Any) -> None:
         if digest:
-            evaluation.states(times, found, nodes, records, pieces)
+            evaluation.states(times, found, progress)
 
-    return _kept(walk), _kept(states_at)
+    def deviations(times: Any, found: Any, fine: Any, other: Any, rows: Any, worst: Any) -> None:
+        if digest:
+            deviation.deviations(times, found, fine, other, rows, worst)
+
+    def sample(progress: Any, times: Any, found: Any) -> int:
+        return maxima.sample(progress, times, found) if digest else 0
+
+    def largest(
+        progress: Any, times: Any, found: Any, count: int, column: int, sense: int, row: Any
+    ) -> tuple[float, float]:
+        if digest:
+            return maxima.largest(progress, times, found, count, column, sense, row)
+        return 0.0, 0.0
+
+    def follow(
+        scenes: Any, fine: Any, other: Any, asked: Any, room: Any, found: Any, steps: int
+    ) -> None:
+        if digest:
+            bulk.follow(scenes, fine, other, asked, room, found, steps)
+
+    return Kernels(*map(_kept, (walk, states, deviations, sample, largest, follow)))
 
 
 def _kept(entry: Any) -> Any:

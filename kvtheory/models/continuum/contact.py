@@ -22,6 +22,7 @@ left edge and +1 for the right one.
 
 import math
 from collections.abc import Sequence
+from typing import Any
 
 from kvtheory.models.continuum.dense_output import Rows, instant
 from kvtheory.scene.base_motion import Piece
@@ -53,9 +54,12 @@ ROUNDING = 1e-15
 Node = Sequence[float]
 
 
-def undisturbed(side: float) -> list[float]:
-    """Return the node of ground that was never touched."""
-    return [0.0, -math.inf, 0.0, 0.0, side * FAR, -math.inf, 0.0, 0.0, -1.0, 0.0, -1.0, 0.0]
+def undisturbed(side: float, row: Any) -> None:
+    """Write the node of ground that was never touched."""
+    for i in range(SIZE):
+        row[i] = 0.0
+    row[IN_S] = row[OUT_S] = -math.inf
+    row[OUT_X], row[RECORD], row[NEXT] = side * FAR, -1.0, -1.0
 
 
 def root(side: float, b: float, c: float) -> tuple[float, float]:

@@ -1,90 +1,90 @@
-"""How wrong a transient may be: measured against solutions with a looser tolerance and other steps."""
+"""How wrong a transient may be: measured against a solution with a tighter tolerance and other steps."""
 
-from collections.abc import Sequence
+import math
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from kvtheory.models.continuum import evaluation
+from kvtheory.models.continuum import deviation as d_
 from kvtheory.models.continuum.run import StepControl
+from kvtheory.models.continuum.solver import Trajectory
 from kvtheory.results import Certificate
 
 Array = NDArray[np.float64]
 
-COARSER = 10.0
-"""The tolerance of the solutions that this one is compared with is so many times larger ..."""
-COMPARISONS = (
-    StepControl(),
-    StepControl(first_step=0.17, longest=0.3, grow=6.0, straight=0.5),
-)
-"""... and one of them also takes other steps where the tolerance does not set them: after a jump, before
-an event, on the pieces of the drive."""
-MARGIN = 8.0
-"""The largest difference is multiplied by this, in case those solutions are hardly worse."""
-FLOOR = 1e-4
+TIGHTER = 100.0
+"""The tolerance of the solution that this one is compared with is so many times smaller; less, and in
+three of a thousand scenes it would be no better ..."""
+TIGHTEST = 1e-13
+COMPARISON = StepControl(first_step=0.17, longest=0.3, grow=6.0, straight=0.85)
+"""... and it takes other steps where the tolerance does not set them: after a jump, on the pieces of the
+drive, and before an event, where a last short step takes in what is singular at a take-off."""
+MARGIN = 10.0
+"""The difference is multiplied by this: in one of a thousand scenes with hops it is so many times smaller
+than the error."""
+FLOOR = 1e-2
 """In units of the tolerance: what lies below it is luck."""
 
 STATEMENT = (
-    f"{MARGIN:g} times the largest difference to solutions with {COARSER:g} times the tolerance, one of "
-    "them with other steps, and what rounding may do; relative to the static depth, half length and load"
+    f"{MARGIN:g} times the difference to a solution with {1 / TIGHTER:g} times the tolerance and other "
+    "steps, and what rounding may do; relative to the static depth, half length and load. A jump, as at a "
+    "landing, is compared with the jump, and `jump_time` says how far its time may be off, relative to the "
+    "retardation time; `pressure` is that inside the contact, `surface` that of the whole foundation"
 )
-NOTHING = "not known: the solutions with a looser tolerance could not be followed to the end"
+NOTHING = "not known: the solution with a tighter tolerance could not be followed to the end"
+NOT_ASKED = "not known: not asked for"
 
 
-def certificate(found: Array, others: Sequence[Array], rtol: float) -> Certificate:
-    """Return the certificate of the states `found`: rows of `states`, a column for each time."""
-    if not others:
-        return Certificate("estimated", NOTHING, dict.fromkeys(scaled_quantities(found), np.inf))
-    values, compared = scaled_quantities(found), [scaled_quantities(other) for other in others]
-    differences = {
-        name: max(float(np.max(np.abs(value - other[name]), initial=0.0)) for other in compared)
-        for name, value in values.items()
-    }
-    rounding = _rounding(found)
-    return Certificate(
-        "estimated",
-        STATEMENT,
-        {
-            name: max(MARGIN * difference, FLOOR * rtol) + rounding.get(name, 0.0)
-            if name not in EXACT
-            else 0.0
-            for name, difference in differences.items()
-        },
-    )
+def certificate(
+    fine: Trajectory, other: Trajectory | None, times: Array, found: Array, rtol: float
+) -> Certificate:
+    """Return the certificate of the states `found` at the scaled `times`."""
+    if other is None:
+        return unknown(NOTHING)
+    natural = fine.natural
+    whole = fine.deviations(other, natural, fine.rows_at(natural))
+    here = whole if times is natural else fine.deviations(other, times, found)
+    told = errors(here, whole, rtol, fine.fixed)
+    return Certificate("estimated", STATEMENT, {k: float(error) for k, error in told.items()})
+
+
+def unknown(why: str) -> Certificate:
+    """Return the certificate of a transient of whose error nothing is known."""
+    names = errors([0.0] * d_.SIZE, [0.0] * d_.SIZE, 1.0, False)
+    given = dict.fromkeys(EXACT, 0.0)
+    return Certificate("estimated", why, dict.fromkeys(names, math.inf) | given)
 
 
 EXACT = ("time", "velocity")
 """Quantities that are given, not solved for."""
 
 
-def scaled_quantities(found: Array) -> dict[str, Array]:
-    """Return the scaled quantities; in flight both edges are at the axis, where no contact is."""
-    edges = np.nan_to_num(found[[evaluation.LEFT, evaluation.RIGHT]])
-    zero = np.zeros(1)
+def errors(here: Any, whole: Any, rtol: float, fixed: bool) -> dict[str, Any]:
+    """Return the error of each quantity from the deviations at some times, and those over the whole run.
+
+    The surface is the largest of what the depths of the past left: it is no more wrong than the depth
+    has ever been (fact F8). The pressure inside the contact is wrong as the depth and its rate are.
+    Deviations may be arrays of those of many scenes.
+    """
+
+    def error(deviation: Any, rounding: Any = 0.0) -> Any:
+        return np.maximum(MARGIN * deviation, FLOOR * rtol) + rounding
+
+    moves = 0.0 if fixed else 1.0
+    edges = error(here[d_.EDGES], here[d_.EDGE_ROUNDING])
+    depth = moves * error(whole[d_.DEPTH])
     return {
-        "time": zero,
-        "velocity": zero,
-        "depth": found[evaluation.DEPTH],
-        "depth_rate": found[evaluation.RATE],
-        "normal_force": found[evaluation.NORMAL_FORCE],
-        "friction_force": found[evaluation.FRICTION_FORCE],
+        "time": 0.0,
+        "velocity": 0.0,
+        "depth": moves * error(here[d_.DEPTH]),
+        "depth_rate": moves * error(here[d_.RATE]),
+        "normal_force": error(here[d_.NORMAL_FORCE], here[d_.NORMAL_ROUNDING]),
+        "friction_force": error(here[d_.FRICTION_FORCE], here[d_.FRICTION_ROUNDING]),
         "leading_edge": edges,
         "trailing_edge": edges,
-        "peak_pressure": found[evaluation.PEAK_PRESSURE],
-    }
-
-
-def _rounding(found: Array) -> dict[str, float]:
-    """Return what rounding of the edges may do to them, and to the forces: the pressure there acts."""
-    edge, pressure = found[evaluation.ROUNDING], found[evaluation.PEAK_PRESSURE]
-    arm = np.nan_to_num(np.maximum(np.abs(found[evaluation.LEFT]), np.abs(found[evaluation.RIGHT])))
-    largest = [
-        np.max(x, initial=0.0) for x in (edge, 0.75 * pressure * edge, 1.5 * arm * pressure * edge)
-    ]
-    at_edge, normal, friction = map(float, largest)
-    return {
-        "leading_edge": at_edge,
-        "trailing_edge": at_edge,
-        "normal_force": normal,
-        "friction_force": friction,
+        "peak_pressure": error(here[d_.PEAK_PRESSURE]),
+        "pressure": depth + moves * error(whole[d_.RATE]),
+        "surface": depth,
+        "jump_time": moves * error(whole[d_.HOPS]),
     }

@@ -6,8 +6,10 @@ from typing import Any
 
 from kvtheory.models.continuum import contact as c_
 from kvtheory.models.continuum import dense_output as h_
+from kvtheory.models.continuum import run as r_
 from kvtheory.models.continuum.contact import FREE
 from kvtheory.models.continuum.dense_output import Rows, motion
+from kvtheory.models.continuum.run import Run
 from kvtheory.scene.base_motion import Piece, evaluate
 
 DEPTH, RATE, ACCELERATION, NUMBER, LEFT, RIGHT = range(6)
@@ -16,22 +18,33 @@ SIZE = 12
 """Layout of a state, in scaled form; edges are NaN in flight. `ROUNDING` is how far rounding may have
 moved an edge: much, on ground that was left only just before."""
 
+SUBDIVISIONS = 4
+"""Points shown for each step, which is long where nothing happens."""
+
 UNIT = 4e-16
 """Rounding of d and Y, relative to 1 + |Y|."""
 
 
-def states(times: Any, found: Any, nodes: Rows, records: Rows, pieces: Sequence[Piece]) -> None:
+def states(times: Any, found: Any, run: Run) -> None:
     """Write the state at each of the `times` into a row of `found`.
 
     Where the drive jumps, it is the state just after the jump.
     """
     for i in range(len(times)):
-        state_at(times[i], record_at(times[i], records), found[i], nodes, records, pieces)
+        index = record_at(times[i], run.records, run.counts[r_.RECORDS])
+        state_at(times[i], index, found[i], run.nodes, run.records, run.given.pieces)
 
 
-def record_at(s: float, records: Rows) -> int:
-    """Return the index of the last record that begins at `s` or before."""
-    low, high = 0, len(records)
+def natural_step(run: Run, index: int) -> tuple[float, float]:
+    """Return when a step begins, and when the next one does."""
+    last = index + 1 == run.counts[r_.RECORDS]
+    end = run.now[r_.S] if last else run.records[index + 1][h_.START]
+    return run.records[index][h_.START], end
+
+
+def record_at(s: float, records: Rows, count: int) -> int:
+    """Return the index of the last of `count` records that begins at `s` or before."""
+    low, high = 0, count
     while high - low > 1:
         middle = (low + high) // 2
         if records[middle][h_.START] <= s:

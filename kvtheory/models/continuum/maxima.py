@@ -1,77 +1,191 @@
-"""When the forces of a solved transient are largest."""
+"""When a quantity of a solved transient is largest, and when its friction settles.
 
-import numpy as np
-from numpy.polynomial import chebyshev
-from numpy.typing import NDArray
+A motion is sampled densely, for it is smooth between the steps of the solver and known everywhere; what
+is looked for is then narrowed down between two samples.
+"""
 
-from kvtheory.models.continuum import evaluation
-from kvtheory.models.continuum.solver import Trajectory
+import math
+from typing import Any
 
-Array = NDArray[np.float64]
+from kvtheory.models.continuum import evaluation as e_
+from kvtheory.models.continuum import run as r_
+from kvtheory.models.continuum.run import Run
 
-SAMPLES = 5
-"""On each step."""
-DEGREE = 16
-"""Of the polynomial through a force on one step: twice that of the depth, for a force is not one."""
-NODES = chebyshev.chebpts1(DEGREE + 1)
-TO_SLOPE = (
-    np.linalg.inv(chebyshev.chebvander(NODES, DEGREE)).T @ chebyshev.chebder(np.eye(DEGREE + 1)).T
-)
-"""From the force at the nodes to the Chebyshev coefficients of its slope."""
-GRID, NEWTON_STEPS = np.linspace(-1.0, 1.0, 65), 5
-"""Where the slope changes its sign between two of these points, Newton's method finds its root."""
-SAME_FORCE = 1e-10
-"""Relative; of forces as equal as this, as in steady sliding, the first is the largest."""
+SAMPLES = 12
+"""Parts of each step, on which the depth is a polynomial of degree 8."""
+JUST_BEFORE = 1.0 - 2.0**-53
+"""Times this factor, a number is the one before it."""
+SAME = 1e-10
+"""Relative; of values as equal as this, as in steady sliding, the first is the largest."""
+GOLDEN, SECTIONS = 0.6180339887498949, 18
+"""Of an interval, so often: down to a thousandth of a step; then Newton's method on central differences."""
+NEWTON_STEPS, DIFFERENCE = 3, 1e-3
+"""The difference is this share of a step: its fourth power, and rounding over it, are both small."""
+BISECTIONS = 60
+LEADING_EDGE, TRAILING_EDGE = e_.SIZE, e_.SIZE + 1
+"""Columns beyond those of a state: which edge leads depends on the drive."""
+LARGEST, SMALLEST, MAGNITUDE = 1, -1, 0
+"""In which sense a quantity is to be large."""
 
 
-def force_maxima(motion: Trajectory) -> tuple[float, float]:
-    """Return when f_z and |f_x| are largest: the first time of the largest value from s = 0 on.
+def sample(run: Run, times: Any, found: Any) -> int:
+    """Write times and states: those of `SAMPLES` parts of each step, the last one just before its end."""
+    count = 0
+    for index in range(run.counts[r_.RECORDS]):
+        start, end = _step(run, index)
+        for k in range(SAMPLES + 1):
+            times[count] = end if k == SAMPLES else start + (end - start) * (k / SAMPLES)
+            _state(run, index, times[count], found[count])
+            count += 1
+    return count
 
-    It is an end of a step, before or after a jump there, or a stationary point of the polynomial
-    through the force on the step; on steps whose samples come near enough to the largest.
+
+def largest(
+    run: Run, times: Any, found: Any, count: int, column: int, sense: int, row: Any
+) -> tuple[float, float]:
+    """Return when a quantity is largest in a `sense`, and its value; NaN if it never exists.
+
+    `times` and `found` hold the `count` samples, `row` is room for a state. All samples are candidates,
+    and what lies beside each one that might be topped between it and its neighbours.
     """
-    starts = np.array(motion.starts)
-    ends = np.append(np.nextafter(starts[1:], 0.0), motion.end)
-    parts = np.linspace(0.0, 1.0, SAMPLES)
-    samples = _forces(motion, starts[:, None] + (ends - starts)[:, None] * parts)
-    largest, least = samples.max(axis=2), samples.min(axis=2)
-    enough = (1.0 - SAME_FORCE) * largest.max(axis=1, keepdims=True)
-    near = np.any(2.0 * largest - least >= enough, axis=0)
-    found = _turns(motion, starts[near], ends[near])
-    times = np.sort(np.concatenate([starts[near], found, ends[near]]))
-    forces = _forces(motion, times)
-    first = np.argmax(forces >= (1.0 - SAME_FORCE) * forces.max(axis=1, keepdims=True), axis=1)
-    normal, friction = times[first].tolist()
-    return normal, friction
+    top, best_s, best, leads = -math.inf, math.nan, math.nan, True
+    for i in range(count):
+        leads = leads_at(found[i], leads)
+        value = measured(found[i], column, sense, leads)
+        top = max(top, value)
+    highest, leads = top, True
+    for i in range(count):
+        leads = leads_at(found[i], leads)
+        value = measured(found[i], column, sense, leads)
+        if not highest - SAME * abs(highest) <= value + _rise(found, i, column, sense, leads):
+            continue
+        for k in range(3):
+            s, there = times[i], value
+            if k != 1:
+                if not 0 <= i % (SAMPLES + 1) + k - 1 <= SAMPLES or not highest > -math.inf:
+                    continue
+                neighbour = measured(found[i + k - 1], column, sense, leads)
+                if abs(value - neighbour) <= SAME * abs(value):
+                    continue
+                near, far = times[min(i, i + k - 1)], times[max(i, i + k - 1)]
+                s, there = _narrowed(run, i // (SAMPLES + 1), near, far, column, sense, leads, row)
+            top = max(top, there)
+            if not best >= top - SAME * abs(top) and there >= top - SAME * abs(top):
+                best_s, best = s, there
+    return best_s, best * (sense if sense != MAGNITUDE else 1)
 
 
-def _turns(motion: Trajectory, a: Array, b: Array) -> Array:
-    """Return the times within steps from `a` to `b` at which a force is stationary.
-
-    They are the roots of the slope of the polynomial through the force, over a variable x in which the
-    square roots that an edge begins or ends with are smooth.
-    """
-    forces = _forces(motion, a[:, None] + (b - a)[:, None] * _share(NODES))
-    slopes = (forces.reshape(-1, DEGREE + 1) @ TO_SLOPE).T
-    row, k = np.nonzero(np.diff(np.sign(chebyshev.chebval(GRID, slopes)), axis=1))
-    low, high, slopes = GRID[k], GRID[k + 1], slopes[:, row]
-    curvatures, x = chebyshev.chebder(slopes), 0.5 * (low + high)
-    for _ in range(NEWTON_STEPS if x.size else 0):
-        curvature = chebyshev.chebval(x, curvatures, tensor=False)
-        step = chebyshev.chebval(x, slopes, tensor=False) / np.where(curvature, curvature, np.inf)
-        x = np.clip(x - step, low, high)
-    owner = row % a.size
-    return np.asarray(a[owner] + (b - a)[owner] * _share(x))
-
-
-def _share(x: Array) -> Array:
-    """Return the share of a step at x in [-1, 1]."""
-    y = 0.5 * (1.0 + x)
-    return y * y * (3.0 - 2.0 * y)
+def settled(
+    run: Run, times: Any, found: Any, count: int, force: float, share: float, row: Any
+) -> float:
+    """Return since when the friction force is within a share of `force` for good; NaN if it is not."""
+    at = count - 1
+    while at >= 0 and not abs(found[at][e_.FRICTION_FORCE] - force) > share * abs(force):
+        at -= 1
+    if force == 0.0 or at == count - 1:
+        return math.nan
+    if at < 0:
+        return 0.0
+    outside, inside = times[at], times[at + 1]
+    for _ in range(BISECTIONS):
+        middle = 0.5 * (outside + inside)
+        _state(run, at // (SAMPLES + 1), middle, row)
+        if abs(row[e_.FRICTION_FORCE] - force) > share * abs(force):
+            outside = middle
+        else:
+            inside = middle
+    return inside
 
 
-def _forces(motion: Trajectory, s: Array) -> Array:
-    """Return f_z and |f_x|, each of the shape of `s`."""
-    inside = np.minimum(s.reshape(-1), motion.end)  # beyond it by rounding
-    found = motion.states(inside)[:, [evaluation.NORMAL_FORCE, evaluation.FRICTION_FORCE]]
-    return np.abs(found.T.reshape(2, *s.shape))
+def last(found: Any, count: int, row: Any) -> None:
+    """Write the last state, and behind it the leading and the trailing edge."""
+    leads = True
+    for i in range(count):
+        leads = leads_at(found[i], leads)
+    for k in range(e_.SIZE):
+        row[k] = found[count - 1][k]
+    for column in (LEADING_EDGE, TRAILING_EDGE):
+        row[column] = measured(row, column, LARGEST, leads)
+
+
+def leads_at(row: Any, leads: bool) -> bool:
+    """Whether the left edge leads; at rest, as it did before."""
+    return leads if row[e_.NUMBER] == 0.0 else row[e_.NUMBER] > 0.0
+
+
+def measured(row: Any, column: int, sense: int, leads: bool) -> float:
+    """Return what is to be large, from a state."""
+    if column >= LEADING_EDGE:
+        left = leads_at(row, leads) == (column == LEADING_EDGE)
+        value = row[e_.LEFT] if left else row[e_.RIGHT]
+    else:
+        value = row[column]
+    return abs(value) if sense == MAGNITUDE else sense * value
+
+
+def _step(run: Run, index: int) -> tuple[float, float]:
+    """Return when a step begins, and the last instant that belongs to it."""
+    start, end = e_.natural_step(run, index)
+    return start, end if index + 1 == run.counts[r_.RECORDS] else end * JUST_BEFORE
+
+
+def _state(run: Run, index: int, s: float, row: Any) -> None:
+    e_.state_at(s, index, row, run.nodes, run.records, run.given.pieces)
+
+
+def _rise(found: Any, i: int, column: int, sense: int, leads: bool) -> float:
+    """Return how far a sample stands out from its neighbours in the step; less is missed beside it."""
+    value, rise = measured(found[i], column, sense, leads), 0.0
+    for k in (-1, 1):
+        if 0 <= i % (SAMPLES + 1) + k <= SAMPLES:
+            over = value - measured(found[i + k], column, sense, leads)
+            if over < -SAME * abs(value):
+                return 0.0
+            rise = max(rise, over)
+    return rise
+
+
+def _narrowed(
+    run: Run, index: int, a: float, b: float, column: int, sense: int, leads: bool, row: Any
+) -> tuple[float, float]:
+    """Return where a quantity is largest on [a, b], within one step, and the value."""
+    start, end = _step(run, index)
+
+    low, high = b - GOLDEN * (b - a), a + GOLDEN * (b - a)
+    at_low = _at(run, index, low, column, sense, leads, row)
+    at_high = _at(run, index, high, column, sense, leads, row)
+    for _ in range(SECTIONS):
+        if at_low >= at_high:
+            b, high, at_high = high, low, at_low
+            low = b - GOLDEN * (b - a)
+            at_low = _at(run, index, low, column, sense, leads, row)
+        else:
+            a, low, at_low = low, high, at_high
+            high = a + GOLDEN * (b - a)
+            at_high = _at(run, index, high, column, sense, leads, row)
+    s, best = (low, at_low) if at_low >= at_high else (high, at_high)
+    h = DIFFERENCE * (end - start)
+    for _ in range(NEWTON_STEPS):
+        if not start <= s - 2.0 * h < s + 2.0 * h <= end:
+            return s, best
+        left, right = (
+            _at(run, index, s - h, column, sense, leads, row),
+            _at(run, index, s + h, column, sense, leads, row),
+        )
+        far = _at(run, index, s + 2.0 * h, column, sense, leads, row) - _at(
+            run, index, s - 2.0 * h, column, sense, leads, row
+        )
+        curvature = (left - 2.0 * best + right) / h
+        if not curvature < 0.0:
+            return s, best
+        moved = s - (8.0 * (right - left) - far) / (12.0 * curvature)
+        there = _at(run, index, min(max(moved, start), end), column, sense, leads, row)
+        if not (start <= moved <= end and there >= best - SAME * abs(best)):
+            return s, best
+        s, best = moved, there
+    return s, best
+
+
+def _at(run: Run, index: int, s: float, column: int, sense: int, leads: bool, row: Any) -> float:
+    _state(run, index, s, row)
+    return measured(row, column, sense, leads)

@@ -115,25 +115,34 @@ def begin(
         radau(stages, arrays),
     )
     rows: Any = _arrays if arrays else _lists
-    nodes = rows(3 * ROOM, c_.SIZE)
-    for k in range(2):
-        nodes[k][:] = c_.undisturbed(SIDES[k])
-    counts = [0] * (EVALUATIONS + 1)
-    counts[NODES] = 2
-    small = [0.0, 1.0, 0.0, math.inf, 0.0], counts, [TOUCHING, TOUCHING], [0, 1], list(SIDES)
-    now, numbers, states, tops, edges = map(np.array, small) if arrays else small
-    return Run(
+    small = [0.0] * 5, [0] * 9, [0.0] * 2, [0] * 2, [0.0] * 2
+    now, counts, states, tops, edges = map(np.array, small) if arrays else small
+    run = Run(
         given,
         now,
-        numbers,
+        counts,
         states,
         tops,
         edges,
         rows(ROOM, h_.POWERS + 1 + stages),
-        nodes,
+        rows(3 * ROOM, c_.SIZE),
         rows(ROOM, 2),
         rows(stages + 3, stages + 1),
     )
+    rest(run)
+    return run
+
+
+def rest(run: Run) -> None:
+    """Put a run at rest at its beginning."""
+    for i in range(len(run.counts)):
+        run.counts[i] = 0
+    run.counts[NODES] = 2
+    now = run.now
+    now[S], now[D], now[V], now[SPAN], now[KINK] = 0.0, 1.0, 0.0, math.inf, 0.0
+    for k in range(2):
+        run.states[k], run.tops[k], run.edges[k] = TOUCHING, k, SIDES[k]
+        c_.undisturbed(SIDES[k], run.nodes[k])
 
 
 def has_room(run: Run) -> bool:

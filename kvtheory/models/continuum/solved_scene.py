@@ -3,20 +3,24 @@
 from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass
-from functools import cached_property
 from operator import itemgetter
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from kvtheory.models.continuum import evaluation
+from kvtheory.models.continuum import evaluation, maxima
 from kvtheory.models.continuum.energy import Ledger, ledger
-from kvtheory.models.continuum.error_estimate import COARSER, COMPARISONS, certificate
-from kvtheory.models.continuum.maxima import force_maxima
-from kvtheory.models.continuum.radau_iia import stages_for
+from kvtheory.models.continuum.error_estimate import (
+    COMPARISON,
+    NOT_ASKED,
+    TIGHTER,
+    TIGHTEST,
+    certificate,
+    unknown,
+)
 from kvtheory.models.continuum.run import StepControl
-from kvtheory.models.continuum.solver import STATE_NAMES, Trajectory, solve
+from kvtheory.models.continuum.solver import STATE_NAMES, STEP_LIMIT, Trajectory, solve
 from kvtheory.models.continuum.surface import height
 from kvtheory.results import Certificate, Event, Transient
 from kvtheory.results.errors import TransientError
@@ -28,9 +32,6 @@ Array = NDArray[np.float64]
 
 LOOSEST = 1e-4
 """Looser tolerances save no more steps."""
-
-SUBDIVISIONS = 4
-"""Points shown for each step of the solver, which is long where nothing happens."""
 
 AFTER_END = 1e-12
 """Share of the run by which a time may lie after its end, from rounding."""
@@ -52,19 +53,23 @@ class SolvedScene:
     drive: BaseMotion
     units: StaticState
 
-    @cached_property
+    @property
     def natural_times(self) -> Array:
         """Times (s) at which the series shows all that happens: the solver's steps, subdivided."""
-        ends = np.append(np.array(self.motion.starts), self.motion.end)
-        parts = np.arange(SUBDIVISIONS) / SUBDIVISIONS
-        inner = (ends[:-1, None] + np.diff(ends)[:, None] * parts).reshape(-1)
-        return np.unique(np.append(inner, self.motion.end)) * self.units.time
+        return self.motion.natural * self.units.time
+
+    @property
+    def events(self) -> tuple[Event, ...]:
+        """What happened to the contact, and when the forces are largest, in the order of time (s)."""
+        found = zip(force_maxima(self.motion), FORCE_MAXIMA, strict=True)
+        events = sorted([*self.motion.events, *found], key=itemgetter(0))
+        return tuple(Event(s * self.units.time, kind) for s, kind in events)
 
     def series(self, time: ArrayLike) -> dict[str, Any]:
         """Return the quantities and states at the given times (s)."""
         found, u = self.states(time), self.units
         numbers = found[evaluation.NUMBER]
-        forward = _forward(numbers)
+        forward = left_leads(numbers, self.drive, self.scaled(time))
         left, right = found[evaluation.LEFT], found[evaluation.RIGHT]
         names = [
             [STATE_NAMES[state] for state in found[side].tolist()]
@@ -87,8 +92,11 @@ class SolvedScene:
 
     def states(self, time: ArrayLike) -> Array:
         """Return the scaled states at the times (s): a row for each quantity of `states`."""
-        s = np.asarray(time, dtype=float) / self.units.time
-        return self.motion.states(np.minimum(s, self.motion.end)).T
+        return self.motion.states(self.scaled(time)).T
+
+    def scaled(self, time: ArrayLike) -> Array:
+        """Return times in units of tau; the last one may be after the end, by rounding."""
+        return np.minimum(np.asarray(time, dtype=float) / self.units.time, self.motion.end)
 
     def pressure(self, x: ArrayLike, time: float) -> Array:
         """Return p in Pa at the positions `x` (m): K (d + d' - xi^2 - 2 lambda xi) in the contact."""
@@ -121,15 +129,18 @@ def transient(
     times: ArrayLike | None,
     rtol: float,
     progress: Callable[[float], Any] | None = None,
+    *,
+    certify: bool = True,
+    max_steps: int = STEP_LIMIT,
 ) -> Transient:
     """Solve a scene; `kvtheory.transient` documents it."""
-    solution, time, errors = certified(scene, times, rtol, progress)
+    solution, time, errors = certified(
+        scene, times, rtol, progress, certify=certify, max_steps=max_steps
+    )
     motion = solution.motion
-    found = zip(force_maxima(motion), FORCE_MAXIMA, strict=True)
-    events = sorted([*motion.events, *found], key=itemgetter(0))
     return Transient(
         **solution.series(time),
-        events=tuple(Event(s * solution.units.time, kind) for s, kind in events),
+        events=solution.events,
         steps=motion.steps,
         evaluations=motion.evaluations,
         compiled=motion.compiled,
@@ -139,13 +150,23 @@ def transient(
     )
 
 
+def force_maxima(motion: Trajectory) -> tuple[float, float]:
+    """Return when f_z and |f_x| are largest: the first time of the largest value from s = 0 on."""
+    columns = evaluation.NORMAL_FORCE, evaluation.FRICTION_FORCE
+    normal, friction = (motion.largest(column, maxima.MAGNITUDE)[0] for column in columns)
+    return normal, friction
+
+
 def certified(
     scene: Scene,
     times: ArrayLike | None,
     rtol: float,
     progress: Callable[[float], Any] | None = None,
+    *,
+    certify: bool = True,
+    max_steps: int = STEP_LIMIT,
 ) -> tuple[SolvedScene, Array, Certificate]:
-    """Solve a scene, and with a looser tolerance again; return the times (s) that are judged, too.
+    """Solve a scene, and with a tighter tolerance again; return the times (s) that are judged, too.
 
     Without `times`, these are the natural ones.
     """
@@ -156,18 +177,20 @@ def certified(
     def solved(part: int, tolerance: float, control: StepControl) -> SolvedScene:
         def report(s: float) -> None:
             if progress is not None:
-                progress((part + s / drive.end) / (1 + len(COMPARISONS)))
+                progress((part + s / drive.end) / (1 + certify))
 
-        return _solution(scene, units, drive, tolerance, control, report)
+        return _solution(scene, units, drive, tolerance, control, report, max_steps)
 
     fine = solved(0, rtol, StepControl())
     time = fine.natural_times if times is None else np.asarray(times, dtype=float).reshape(-1)
-    others = []
-    for part, control in enumerate(COMPARISONS, 1):
-        with suppress(TransientError):  # a looser solution may fail where this one did not
-            alike = control._replace(stages=stages_for(rtol))
-            others.append(solved(part, COARSER * rtol, alike).states(time))
-    return fine, time, certificate(fine.states(time), others, rtol)
+    if not certify:
+        return fine, time, unknown(NOT_ASKED)
+    other = None
+    with suppress(TransientError):  # a tighter solution may fail where this one did not
+        other = solved(1, max(rtol / TIGHTER, TIGHTEST), COMPARISON).motion
+    motion = fine.motion
+    s = motion.natural if times is None else fine.scaled(time)
+    return fine, time, certificate(motion, other, s, motion.rows_at(s), rtol)
 
 
 def _solution(
@@ -177,18 +200,28 @@ def _solution(
     rtol: float,
     control: StepControl,
     progress: Callable[[float], Any],
+    max_steps: int,
 ) -> SolvedScene:
     numbers = units.inertia_number, units.support_number
     try:
-        motion = solve(drive, *numbers, drive.end, rtol, control=control, progress=progress)
+        motion = solve(
+            drive,
+            *numbers,
+            drive.end,
+            rtol,
+            control=control,
+            progress=progress,
+            max_steps=max_steps,
+        )
     except TransientError as error:
         reason = f"{error.reason}, in a run of {drive.end:.4g} retardation times,"
         raise TransientError(reason, error.s * units.time, "t", " s") from None
     return SolvedScene(motion, drive, units)
 
 
-def _forward(numbers: Array) -> NDArray[np.bool_]:
-    """Whether the left edge leads; at rest, as it did before."""
-    moving = np.where(numbers == 0.0, np.nan, numbers)
-    known = np.maximum.accumulate(np.where(np.isnan(moving), 0, np.arange(numbers.size)))
-    return ~(numbers[known] < 0.0)
+def left_leads(numbers: Array, drive: BaseMotion, s: Array) -> NDArray[np.bool_]:
+    """Whether the left edge leads, by the drive numbers at the times `s`; at rest, as it did before."""
+    leads = numbers >= 0.0
+    for k in np.flatnonzero(numbers == 0.0):
+        leads[k] = drive.forward(float(s[k]))
+    return leads

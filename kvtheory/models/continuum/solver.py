@@ -9,14 +9,14 @@ of the edges that it began with. A fixed indenter, d = 1, needs no equation, onl
 
 import math
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from kvtheory.models.continuum import compiled, evaluation, stepping
+from kvtheory.models.continuum import compiled, deviation, evaluation, maxima, stepping
 from kvtheory.models.continuum import contact as c_
 from kvtheory.models.continuum import dense_output as h_
 from kvtheory.models.continuum import run as r_
@@ -130,6 +130,19 @@ class Trajectory:
         """The times at which the steps begin."""
         return [float(row[h_.START]) for row in self.rows.records[: self.steps]]
 
+    @cached_property
+    def natural(self) -> NDArray[np.float64]:
+        """Times that show all that happens: those of the steps, subdivided."""
+        ends = np.append(np.array(self.starts), self.end)
+        parts = np.arange(evaluation.SUBDIVISIONS) / evaluation.SUBDIVISIONS
+        inner = (ends[:-1, None] + np.diff(ends)[:, None] * parts).reshape(-1)
+        return np.unique(np.append(inner, self.end))
+
+    @property
+    def fixed(self) -> bool:
+        """Whether the indenter cannot move."""
+        return bool(self.rows.given.fixed)
+
     def at(self, s: float) -> Moment:
         """Return the state at `s`; where the drive jumps, just after the jump."""
         row = self.states([s])[0].tolist()
@@ -145,15 +158,59 @@ class Trajectory:
         times = np.asarray(s, dtype=float)
         if not np.all((times >= 0.0) & (times <= self.end)):
             raise ValueError(f"`s` must lie in [0, {self.end!r}], got {s!r}")
-        if self.compiled:
-            found = np.empty((times.size, evaluation.SIZE))
-            records = self.rows.records[: self.steps]
-            evaluate = compiled.kernels()[1]
-            evaluate(times, found, self.rows.nodes, records, self.rows.given.pieces)
-            return found
-        rows = [[0.0] * evaluation.SIZE for _ in range(times.size)]
-        evaluation.states(times.tolist(), rows, self.nodes, self.records, self.pieces)
-        return np.array(rows).reshape(-1, evaluation.SIZE)
+        return np.array(self.rows_at(times)).reshape(-1, evaluation.SIZE)
+
+    def rows_at(self, times: NDArray[np.float64]) -> Any:
+        """Return the states at times within the motion, as rows for the kernels."""
+        found = self._room(times.size)
+        states = compiled.kernels().states if self.compiled else evaluation.states
+        states(times if self.compiled else times.tolist(), found, self.rows)
+        return found
+
+    def deviations(
+        self, other: "Trajectory", times: NDArray[np.float64], found: Any
+    ) -> list[float]:
+        """Return how far another solution is from the states `found` at `times`, see `deviation`."""
+        if self.compiled != other.compiled:
+            one, two = (replace(m, rows=as_arrays(m.rows), compiled=True) for m in (self, other))
+            return one.deviations(two, times, np.array(found))
+        order = np.argsort(times, kind="stable")
+        ordered = found[order] if self.compiled else [found[i] for i in order]
+        times = times[order] if self.compiled else times[order].tolist()
+        deviations = compiled.kernels().deviations if self.compiled else deviation.deviations
+        worst = np.zeros(deviation.SIZE) if self.compiled else [0.0] * deviation.SIZE
+        deviations(times, ordered, self.rows, other.rows, self._room(2), worst)
+        return [float(x) for x in worst]
+
+    @cached_property
+    def samples(self) -> tuple[Any, Any, int]:
+        """Dense times and the states there, and how many they are, see `maxima`."""
+        count = (maxima.SAMPLES + 1) * self.steps
+        times: Any = np.zeros(count) if self.compiled else [0.0] * count
+        found = self._room(count)
+        sample = compiled.kernels().sample if self.compiled else maxima.sample
+        return times, found, sample(self.rows, times, found)
+
+    def largest(self, column: int, sense: int = maxima.LARGEST) -> tuple[float, float]:
+        """Return when a column of the states is largest, and its value, see `maxima`."""
+        largest = compiled.kernels().largest if self.compiled else maxima.largest
+        s, value = largest(self.rows, *self.samples, column, sense, self._room(1)[0])
+        return float(s), float(value)
+
+    def settled(self, force: float, share: float) -> float:
+        """Return since when the friction force is settled, see `maxima`."""
+        return float(maxima.settled(self.rows, *self.samples, force, share, self._room(1)[0]))
+
+    @property
+    def last(self) -> list[float]:
+        """The state at the end, with the leading and the trailing edge behind it."""
+        row = [0.0] * (evaluation.SIZE + 2)
+        maxima.last(*self.samples[1:], row)
+        return row
+
+    def _room(self, count: int) -> Any:
+        size = evaluation.SIZE
+        return np.empty((count, size)) if self.compiled else [[0.0] * size for _ in range(count)]
 
 
 def solve(
@@ -166,6 +223,7 @@ def solve(
     fast: bool | None = None,
     control: StepControl = StepControl(),  # noqa: B008 - immutable
     progress: Callable[[float], Any] | None = None,
+    max_steps: int = STEP_LIMIT,
 ) -> Trajectory:
     """Follow the transient of `drive` from rest until `end`, in scaled form.
 
@@ -188,6 +246,8 @@ def solve(
         What sets the steps beside the tolerance.
     progress
         Called with the time reached, now and then.
+    max_steps
+        Steps after which to give up; those that are repeated count, too.
 
     Raises
     ------
@@ -209,21 +269,25 @@ def solve(
     numbers = float(inertia_number), float(support_number)
     arrays = compiled.worthwhile() if fast is None else fast
     run = begin(drive, *numbers, float(end), rtol, control, arrays=arrays)
-    run, arrays = _followed(run, arrays, fast is None, progress)
+    run, arrays = _followed(run, arrays, fast is None, progress, max_steps)
     return Trajectory(end, inertia_number, support_number, run, arrays)
 
 
 def _followed(
-    run: Run, arrays: bool, may_compile: bool, progress: Callable[[float], Any] | None
+    run: Run,
+    arrays: bool,
+    may_compile: bool,
+    progress: Callable[[float], Any] | None,
+    limit: int,
 ) -> tuple[Run, bool]:
     """Walk a run to its end; return it, and whether its rows are arrays for compiled kernels."""
-    left, status = STEP_LIMIT, stepping.PAUSED
+    left, status = limit, stepping.PAUSED
     while status != stepping.DONE:
         if may_compile and not arrays and compiled.worthwhile():
             run, arrays = as_arrays(run), True
-        walk: Callable[[Run, int], int] = compiled.kernels()[0] if arrays else stepping.walk
+        walk: Callable[[Run, int], int] = compiled.kernels().walk if arrays else stepping.walk
         status = walk(run, min(ATTEMPTS, left))
-        before, left = left, STEP_LIMIT - int(run.counts[r_.RECORDS] + run.counts[r_.REJECTED])
+        before, left = left, limit - int(run.counts[r_.RECORDS] + run.counts[r_.REJECTED])
         compiled.Tally.steps += 0 if arrays else before - left
         s = float(run.now[r_.S])
         if status in REASONS:
@@ -231,7 +295,7 @@ def _followed(
         if status == stepping.FULL:
             run = with_more_room(run)
         if left <= 0 and status != stepping.DONE:
-            raise TransientError(f"more than {STEP_LIMIT} steps", s)
+            raise TransientError(f"more than {limit} steps (`max_steps`)", s)
         if progress is not None:
             progress(s)
     return run, arrays

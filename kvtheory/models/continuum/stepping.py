@@ -20,16 +20,24 @@ from kvtheory.models.continuum.memory_chains import (
 from kvtheory.models.continuum.run import SIDES, Run, has_room
 from kvtheory.models.continuum.trial_step import Monitors, attempt, drive_now
 from kvtheory.scene.base_motion import END as PIECE_END
+from kvtheory.scene.base_motion import POWERS as PIECE_POWERS
 from kvtheory.scene.base_motion import START as PIECE_START
 from kvtheory.scene.base_motion import evaluate
 
 SAFETY = 0.9
+SHORTEST = 1e-14
+"""First step after a jump, relative to 1 + s: a shorter one would be lost in the rounding of the time."""
 SHRINK, TINY = 0.2, 1e-12
 OVERRUN = 1e-4
 """Share of a step that may lie beyond an event: the states of the edges change there, and a step that
 ran farther is repeated with the right length."""
 BRIEF = 1e-10
 """A piece of a step up to an event so close to its start that it needs no repetition."""
+REMAINDER = 1.1
+"""Of what the step before left of its own way: a way no longer than this is taken whole."""
+FORGOTTEN, QUIET = 40.0, 1e-3
+"""After so many retardation times the foundation has forgotten, to the last digit, what was before; a depth
+rate below this share of the tolerance is none."""
 RELIEF = 0.25
 """How far the ground may slide in a step of the flight above it, in units of a_0."""
 SMOOTH = 1e-9
@@ -93,6 +101,23 @@ def _meet_drive(run: Run) -> None:
         _restart(run)
     if run.states[0] != FREE:
         _detach(run, Y, number)
+    if run.counts[r_.SMOOTH] != 0:
+        _meet_kink(run, Y, number, slope)
+
+
+def _meet_kink(run: Run, Y: float, number: float, slope: float) -> None:
+    """Let a peeling edge touch where a new slope of lambda lets the pressure rise, however briefly.
+
+    The second derivative of the depth is known as well as the tolerance says.
+    """
+    now = run.now
+    dv = motion(run.records[run.counts[r_.RECORDS] - 1], now[r_.S])[2]
+    instant = now[r_.D], now[r_.V], dv, Y, number, slope
+    for k in range(2):
+        if run.states[k] == PEELING:
+            row, xi = run.nodes[run.tops[k]], run.edges[k] + Y
+            if c_.slack(SIDES[k], PEELING, row, now[r_.S], xi, instant)[0] < -run.given.rtol:
+                _turn(run, k)
 
 
 def _detach(run: Run, Y: float, number: float) -> None:
@@ -132,7 +157,8 @@ def _restart(run: Run) -> None:
     fast = 1.0
     if not run.given.fixed:
         fast = run.given.eps / (run.given.eps + 0.75 * max(width, 1e-3))
-    now[r_.SPAN], run.counts[r_.SMOOTH] = run.given.first_step * fast / (1.0 + abs(number)), 0
+    span = run.given.first_step * fast / (1.0 + abs(number))
+    now[r_.SPAN], run.counts[r_.SMOOTH] = max(span, SHORTEST * (1.0 + now[r_.S])), 0
 
 
 def _note(run: Run, kind: float) -> None:
@@ -145,9 +171,8 @@ def _step(run: Run, until: float) -> int:
     """Try one step; keep it up to its first event, or try a shorter one next time."""
     now = run.now
     span, whole = min(now[r_.SPAN], _longest(run)), until - now[r_.S]
-    share = run.given.straight if _begins(run) else 1.0
     if span >= whole:
-        span = share * whole
+        span = _share(run, whole) * whole
     if not now[r_.S] + 0.1 * span > now[r_.S]:
         return STUCK
     if whole - span < 0.1 * OVERRUN * span:
@@ -158,7 +183,7 @@ def _step(run: Run, until: float) -> int:
     until_event = found - now[r_.S]
     if BRIEF * (1.0 + now[r_.S]) < until_event < span / (1.0 + OVERRUN):
         run.counts[r_.REJECTED] += 1
-        now[r_.SPAN] = share * (1.0 + 0.5 * OVERRUN) * until_event
+        now[r_.SPAN] = _share(run, until_event) * (1.0 + 0.5 * OVERRUN) * until_event
         return DONE
     power = -1.0 / (len(run.given.method.nodes) + 1)
     factor = min(run.given.grow, max(SHRINK, SAFETY * math.pow(max(size, TINY), power)))
@@ -178,22 +203,46 @@ def _step(run: Run, until: float) -> int:
     return DONE
 
 
-def _begins(run: Run) -> bool:
-    """Whether the motion went on in another way until now: before an event, or on another piece."""
-    now = run.now
+def _share(run: Run, way: float) -> float:
+    """Return the share of the way to an event, or to the end of a piece, that a step takes at most.
+
+    Not all of it if the motion began anew, by an event or on another piece, or if the way is long.
+    """
+    now, straight = run.now, run.given.straight
     at_piece = now[r_.S] == run.given.pieces[run.counts[r_.PIECE]][PIECE_START]
-    return at_piece or run.counts[r_.SMOOTH] == 0 or run.counts[r_.TOGGLES] > 0
+    if not at_piece and run.counts[r_.SMOOTH] != 0 and run.counts[r_.TOGGLES] == 0:
+        left = (1.0 - straight) * run.records[run.counts[r_.RECORDS] - 1][h_.SPAN]
+        if straight * way <= REMAINDER * left:
+            return 1.0
+    return straight
 
 
 def _longest(run: Run) -> float:
     now = run.now
     if run.states[0] != FREE:
-        return run.given.longest
+        return math.inf if _quiet(run) else run.given.longest
     _, number, _ = drive_now(run, now[r_.S])
     slide = RELIEF / (RELIEF + abs(number))
     if now[r_.D] >= 0.0:
         return min(run.given.longest, slide)
     return min(run.given.longest, max(slide, -0.5 * now[r_.D] / (abs(now[r_.V]) + 1e-3)))
+
+
+def _quiet(run: Run) -> bool:
+    """Whether nothing happens any more: steady sliding or rest, over ground that has been forgotten."""
+    counts, piece = run.counts, run.given.pieces[run.counts[r_.PIECE]]
+    changed = max(piece[PIECE_START], 0.0)
+    if counts[r_.EVENTS] > 0:
+        changed = max(changed, run.events[counts[r_.EVENTS] - 1][0])
+    if counts[r_.SMOOTH] == 0 or run.now[r_.S] - changed < FORGOTTEN:
+        return False
+    slope = rate = 0.0
+    for k in range(PIECE_POWERS + 1, len(piece)):
+        slope = max(slope, abs(piece[k]))
+    record = run.records[counts[r_.RECORDS] - 1]
+    for k in range(h_.POWERS, len(record)):
+        rate = max(rate, abs(record[k]))
+    return slope == 0.0 and rate <= QUIET * run.given.rtol
 
 
 def _begin(run: Run, record: Any, span: float) -> None:

@@ -14,6 +14,8 @@ from kvtheory.models.continuum.run import SIDES, Run
 from kvtheory.scene.base_motion import evaluate
 
 EVENT_RESOLUTION = 1e-13
+ROUNDING = 1e-15
+"""Of an edge, whose material coordinate is xi - Y, relative to Y and to what a rounded time does to it."""
 
 Monitors = tuple[float, float, float, float, float]
 """What must stay positive: the width (in flight, the gap), state and ground of the left edge, and of
@@ -95,9 +97,9 @@ def smallest(values: Monitors) -> float:
 
 def monitors(run: Run, record: Any, s: float) -> tuple[Monitors, float, float, float, float]:
     """Return what must stay positive, and F, dF/dd, dF/dv and v'."""
-    allowed = run.given.allowed
     d, v, dv = motion(record, s)
     Y, number, slope = drive_now(run, s)
+    allowed = run.given.allowed + ROUNDING * (abs(Y) + s * (abs(number) + abs(v)))
     sides = record[h_.LEFT_STATE : h_.LEFT_X]
     F, F_d, F_v, l, r = imbalance(
         s, d, v, Y, number, sides, run.given.kappa, run.nodes, run.records, run.given.pieces

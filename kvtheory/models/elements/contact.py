@@ -1,96 +1,77 @@
 """Forces and edges at one instant, by whole elements or with a part of one at each edge.
 
-The pressure under the indenter is p = K g + C g', with g = δ - h(x) and g' = δ' - V h'(x) (Eqs. 6, 7,
-12); an element is in contact if the indenter touches its surface and p >= 0 (Eq. 24).
+An element is in contact if the indenter touches its surface and its pressure p >= 0 (Eq. 24).
 """
 
-from dataclasses import dataclass
+import math
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from kvtheory.models.elements.model import Array, Model
-from kvtheory.models.elements.row import Under
+from kvtheory.models.elements.edges import edges_of, gaps, straight, touching
+from kvtheory.models.elements.law import Array
+from kvtheory.models.elements.model import Model
+from kvtheory.models.elements.row import ElementRow, IndenterState, Under
 
 
-@dataclass(frozen=True)
-class Contact:
-    """What the elements do to the indenter: forces in N/m, edges in m (NaN in flight), pressure in Pa."""
+class ContactSums(NamedTuple):
+    """What the elements do to the indenter: forces in N/m, edges in m (NaN in flight), pressure in Pa.
+
+    The last two say by how much the pressure differs between the elements beside its peak: inside the
+    contact, where that matters, or at its edge.
+    """
 
     normal_force: float
     friction_force: float
     left: float
     right: float
     peak_pressure: float
+    peak_doubt: float = 0.0
+    edge_doubt: float = 0.0
 
 
-FLIGHT = Contact(0.0, 0.0, np.nan, np.nan, 0.0)
+FLIGHT = ContactSums(0.0, 0.0, math.nan, math.nan, 0.0)
+
+
+def report(row: ElementRow, at: IndenterState, time: float) -> tuple[float, ...]:
+    """Return the columns at a time, for which the state `at` stands; where V jumps, just after it.
+
+    They are in the order of `error_estimate.COLUMNS`.
+    """
+    model, V = row.model, row.path.velocity(time)
+    under = row.under(at.time, 0.0, max(at.depth, model.depth))
+    p = pressure(model, under, at.depth, at.rate, V)
+    pressed = under.touched & (model.rule.pulls | (p >= 0.0))
+    V_before = row.path.velocity(at.time, before=True)
+    p_before = p if V_before == V else pressure(model, under, at.depth, at.rate, V_before)
+    found = (
+        parts_of_elements(model, under, p, p_before, pressed, at.depth)
+        if model.parts
+        else whole_elements(model, under, p, pressed)
+    )
+    edges = found[2:4] if row.path.forward(time) else found[3:1:-1]
+    return time, V, at.depth, at.rate, *found[:2], *edges, *found[4:]
 
 
 def pressure(model: Model, under: Under, depth: float, rate: float, V: float) -> Array:
-    """Return K g + C g' at the elements under the indenter."""
-    g_rate = rate - V * model.slope(under.x)
-    with np.errstate(invalid="ignore"):
-        return model.stiffness * (depth - under.height) + model.damping * g_rate
+    """Return p of the elements under the indenter: g = δ - h(x), g' = δ' - V h'(x) (Eqs. 6, 7, 12)."""
+    return model.law.pressure(depth - under.height, rate - V * model.slope(under.x))
 
 
-def whole_elements(model: Model, under: Under, p: Array, pressed: NDArray[np.bool_]) -> Contact:
+def whole_elements(model: Model, under: Under, p: Array, pressed: NDArray[np.bool_]) -> ContactSums:
     """Sum over whole elements, as in the paper (Eqs. 12-15)."""
     inside = np.flatnonzero(pressed)
     if inside.size == 0:
         return FLIGHT
     dx, x, p = model.spacing, under.x[inside], p[inside]
-    return Contact(
-        dx * float(p.sum()),
-        -dx * float(model.slope(x) @ p),
-        float(x[0]) - 0.5 * dx,
-        float(x[-1]) + 0.5 * dx,
-        float(p.max()),
-    )
-
-
-@dataclass(frozen=True)
-class Edges:
-    """Where contact ends, from left to right: the last element inside, and which way outside is."""
-
-    inner: NDArray[np.intp]
-    outward: NDArray[np.intp]
-
-    @classmethod
-    def of(cls, pressed: NDArray[np.bool_]) -> "Edges":
-        """Return the edges of one or more intervals of contact."""
-        before = np.flatnonzero(pressed[1:] != pressed[:-1])
-        leaves = pressed[before]
-        return cls(np.where(leaves, before, before + 1), np.where(leaves, 1, -1))
-
-    @property
-    def free(self) -> NDArray[np.intp]:
-        """The first element outside."""
-        return self.inner + self.outward
-
-    def gaps(self, model: Model, depth: float, x: Array, surface: Array) -> tuple[Array, ...]:
-        """Return w, w', w'' for w = g - u, the overlap, at `free` inward, in units of the spacing.
-
-        They are those of the parabola through the three nearest elements outside, where w < 0: on free
-        ground w falls to the edge in a straight line, and where contact peeled off, as a square.
-        """
-        outside = self.free[None, :] + np.arange(3)[:, None] * self.outward
-        w, far, farthest = depth - model.height(x[outside]) - surface[outside]
-        with np.errstate(invalid="ignore"):
-            return w, 1.5 * w - 2.0 * far + 0.5 * farthest, w - 2.0 * far + farthest
-
-
-def touching(gaps: tuple[Array, ...]) -> Array:
-    """Return how far inward of `free` the surfaces meet, w = 0, from 0 to 1 element."""
-    w, slope, curvature = gaps
-    with np.errstate(invalid="ignore", divide="ignore"):
-        root = np.sqrt(np.maximum(slope * slope - 2.0 * w * curvature, 0.0))
-        return np.clip(np.nan_to_num(-2.0 * w / (slope + root), nan=1.0), 0.0, 1.0)
+    force, push = dx * float(p.sum()), -dx * float(model.slope(x) @ p)
+    return ContactSums(force, push, x[0] - 0.5 * dx, x[-1] + 0.5 * dx, float(p.max()))
 
 
 def parts_of_elements(
     model: Model, under: Under, p: Array, p_before: Array, pressed: NDArray[np.bool_], depth: float
-) -> Contact:
+) -> ContactSums:
     """Sum by trapezoids up to the very edges.
 
     An edge peels where p falls to zero, between two elements by a straight line, and touches where
@@ -100,42 +81,48 @@ def parts_of_elements(
     inside = np.flatnonzero(pressed)
     if inside.size == 0:
         return FLIGHT
-    edges, dx = Edges.of(pressed), model.spacing
-    p_free, p_in = p[edges.free], p[edges.inner]
-    apart = 1.0 - touching(edges.gaps(model, depth, under.x, under.free))
-    touch = np.where(under.touched[edges.free], 1.0, apart)
-    now, before = _peeling(p, edges), _peeling(p_before, edges)
-    share = np.fmin(np.where(np.isnan(before), touch, before), np.nan_to_num(now, nan=1.0))
-    peels = now <= share
-    x = under.x[edges.inner] + share * dx * edges.outward
-    with np.errstate(invalid="ignore"):
-        p_edge = np.where(peels, 0.0, p_in + share * (p_free - p_in))
-    push = -model.slope(under.x) * np.where(pressed, p, 0.0)
-    push_edge = -model.slope(x) * p_edge
-
-    def total(values: Array, ends: Array) -> float:
-        last = values[edges.inner]
-        return dx * float(values[inside].sum() + 0.5 * (share * (last + ends) - last).sum())
-
-    peak = max(float(p[inside].max()), float(p_edge.max()))
-    return Contact(total(p, p_edge), total(push, push_edge), float(x[0]), float(x[-1]), peak)
-
-
-def _peeling(p: Array, edges: Edges) -> Array:
-    """Return how far outward of `inner` the pressure vanishes, from 0 to 1 element; NaN if it does not."""
-    inside, outside = np.maximum(p[edges.inner], 0.0), p[edges.free]
-    return np.where(outside < 0.0, inside / np.where(outside < 0.0, inside - outside, 1.0), np.nan)
+    dx, overlap, slope = model.spacing, depth - under.height - under.free, model.slope(under.x)
+    force, push = float(p[inside].sum()), -float(slope[inside] @ p[inside])
+    reach, places, at_edges = {}, [], []
+    for inner, outward in edges_of(pressed):
+        outer = inner + outward
+        p_in, p_out = p.item(inner), p.item(outer)
+        now, before = _peeling(p_in, p_out), _peeling(p_before.item(inner), p_before.item(outer))
+        free = gaps(overlap, inner, outward)
+        if before == math.inf or straight(free):
+            before = 1.0 if under.touched[outer] else 1.0 - touching(free)
+        share = min(before, now, 1.0)
+        x = under.x.item(inner) + share * dx * outward
+        p_edge = 0.0 if now <= share else p_in + share * (p_out - p_in)
+        force += 0.5 * (share * (p_in + p_edge) - p_in)
+        ends = slope.item(inner) * p_in, float(model.slope(x)) * p_edge
+        push -= 0.5 * (share * (ends[0] + ends[1]) - ends[0])
+        reach[inner, outward] = share
+        places.append(x)
+        at_edges.append((p_edge, 0.0, abs(p_in - p_out)))
+    peak = max(_peak(model, p, int(inside[p[inside].argmax()]), reach), *at_edges)
+    return ContactSums(dx * force, dx * push, places[0], places[-1], *peak)
 
 
-def kink_area(model: Model, gaps: tuple[Array, ...]) -> tuple[Array, Array]:
-    """Return what trapezoids leave out of the area of u at each edge (below zero), and d/dδ of it.
+def _peeling(inside: float, outside: float) -> float:
+    """Return how far outward of the last element the pressure vanishes; infinite if it does not."""
+    return max(inside, 0.0) / (max(inside, 0.0) - outside) if outside < 0.0 else math.inf
 
-    Between `free` and the next element inside, u is the larger of two nearly straight lines, which
-    cross where w = 0; the trapezoid takes the chord (theorem `element-kink`).
+
+def _peak(
+    model: Model, p: Array, k: int, reach: dict[tuple[int, int], float]
+) -> tuple[float, float, float]:
+    """Return the peak near element k, of the parabola through three, and both doubts.
+
+    A shape with kinks has no such parabola: there the peak is known to the next element.
     """
-    outside, slope, curvature = gaps
-    within = outside + slope + 0.5 * curvature
-    fits = (within > 0.0) & (outside < 0.0) & np.isfinite(outside)
-    outside, within = np.where(fits, outside, -1.0), np.where(fits, within, 0.0)
-    width, half = within - outside, 0.5 * model.spacing * fits
-    return half * within * outside / width, half * (within + outside) / width
+    before, here, after = (p.item(i) for i in (k - 1, k, k + 1))
+    if model.indenter.kinks:
+        return here, min(abs(here - before), abs(here - after)), 0.0
+    bend = 2.0 * here - before - after
+    if not (here >= before > -math.inf and here >= after > -math.inf and bend > 0.0):
+        return here, 0.0, 0.0
+    ahead = 0.5 * (after - before) / bend
+    if abs(ahead) > reach.get((k, 1 if ahead > 0.0 else -1), 1.0):
+        return here, 0.0, 0.0
+    return here + 0.25 * (after - before) * ahead, 0.0, 0.0

@@ -1,20 +1,20 @@
 """The scene as the simulator sees it: plain numbers in SI, and an indenter as arrays."""
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
-from scipy.optimize import brentq
 
+from kvtheory.models.elements.contact_rule import RIGHT, ContactRule
+from kvtheory.models.elements.edges import edges_of, gaps, kink_area
+from kvtheory.models.elements.law import Array, KelvinVoigt
 from kvtheory.scene.base_motion import BaseMotion
 from kvtheory.scene.indenters import Indenter
 from kvtheory.scene.model import Scene
 from kvtheory.scene.static_state import StaticState
-
-Array = NDArray[np.float64]
 
 LEVEL = 1.1
 """Ratio of the depths for which the span of the indenter is kept: a tenth more elements than needed."""
@@ -31,57 +31,66 @@ class Model:
     """An indenter (depth δ, mass M) over elements with the spacing dx, all in SI.
 
     `mass` is infinite for a fixed indenter; `depth` is the static depth δ_0; `at_rest` measures errors.
+    At t = 0 an element is at x = `shift` dx; `parts` says whether the part of one at each edge counts.
+    `rule` and `start`, the depth at t = 0 relative to δ_0, may be wrong on request.
     """
 
     indenter: Indenter
-    stiffness: float
-    retardation_time: float
+    law: KelvinVoigt
     spacing: float
     mass: float
     weight: float
     spring: float
     depth: float
+    parts: bool = False
+    shift: float = 0.0
     at_rest: Any = None
+    rule: ContactRule = RIGHT
+    start: float = 1.0
 
     @classmethod
-    def of(cls, scene: Scene, spacing: float | None = None) -> "Model":
+    def of(
+        cls,
+        scene: Scene,
+        spacing: float | None = None,
+        *,
+        parts: bool = False,
+        shift: float = 0.0,
+        coarser: float = 1.0,
+    ) -> "Model":
         """Return the model of a scene; without a spacing, with `SAMPLES` elements in contact at rest.
+
+        The elements are `coarser` times as far apart as the spacing says.
 
         Raises
         ------
         ValueError
             If there are too few or too many elements in the contact.
         """
-        support, foundation = scene.support, scene.foundation
-        fixed = scene.held
+        support, foundation, fixed = scene.support, scene.foundation, scene.held
+        law = KelvinVoigt(foundation.stiffness, foundation.retardation_time)
         model = cls(
-            scene.indenter, foundation.stiffness, foundation.retardation_time, spacing or 1.0,
-            support.mass, support.weight, 0.0 if fixed else support.spring, support.depth or 1.0,
+            scene.indenter, law, 1.0, support.mass, support.weight,
+            0.0 if fixed else support.spring, support.depth or 1.0, parts, shift,
         )  # fmt: skip
         rough = model.depth if fixed else model._rough_depth()
         low, high = span(model.indenter, rough)
-        if spacing is None:
-            spacing = (high - low) / SAMPLES
-            model = replace(model, spacing=spacing)
-        if not FEWEST <= (high - low) / spacing <= MOST:
+        dx = spacing or (high - low) / SAMPLES
+        if not FEWEST <= (high - low) / dx <= MOST:
             raise ValueError(
-                f"`per_length` = {1 / spacing:.6g} 1/m: expected {FEWEST / (high - low):.3g} to "
+                f"`per_length` = {1 / dx:.6g} 1/m: expected {FEWEST / (high - low):.3g} to "
                 f"{MOST / (high - low):.3g} 1/m, so that {FEWEST} to {MOST} elements carry the indenter"
             )
-        depth = rough if fixed else model._static_depth(rough)
-        model = replace(model, depth=depth)
-        at_rest = StaticState.at(scene, depth, model.half_length, model.static_load(depth))
+        model = replace(model, spacing=coarser * dx)
+        if not fixed:
+            rough = root(lambda d: model.static_load(d) - model.weight, 0.25 * rough, 4.0 * rough)
+        model = replace(model, depth=rough)
+        at_rest = StaticState.at(scene, rough, model.half_length, model.static_load(rough))
         return replace(model, at_rest=at_rest)
 
     def path(self, scene: Scene) -> BaseMotion:
         """Return the motion of the base until the end of the run."""
-        least = self.half_length / self.retardation_time
-        return scene.drive.motion(scene.run.duration, least)
-
-    @property
-    def damping(self) -> float:
-        """C = K τ, in N s/m^3."""
-        return self.stiffness * self.retardation_time
+        return scene.drive.motion(scene.run.duration, self.half_length / self.law.retardation_time)
 
     @property
     def half_length(self) -> float:
@@ -89,19 +98,18 @@ class Model:
         low, high = span(self.indenter, self.depth)
         return 0.5 * (high - low)
 
-    def height(self, x: Array) -> Array:
+    def height(self, x: Any) -> Any:
         """Return h(x), infinite where the indenter has no surface."""
-        if math.isinf(self.indenter.reach):
-            return np.asarray(self.indenter.height(x))
-        inside = np.abs(x) < self.indenter.reach
-        return np.where(inside, self.indenter.height(np.where(inside, x, 0.0)), math.inf)
+        return self._within_reach(self.indenter.height, x, math.inf)
 
-    def slope(self, x: Array) -> Array:
+    def slope(self, x: Any) -> Any:
         """Return h'(x), zero where the indenter has no surface."""
-        if math.isinf(self.indenter.reach):
-            return np.asarray(self.indenter.slope(x))
-        inside = np.abs(x) < self.indenter.reach
-        return np.where(inside, self.indenter.slope(np.where(inside, x, 0.0)), 0.0)
+        return self._within_reach(self.indenter.slope, x, 0.0)
+
+    def places(self, low: int, high: int, Y: float = 0.0) -> Array:
+        """Return x of the elements `low` to `high` when the base has moved by Y."""
+        x: Array = self.spacing * (np.arange(low, high, dtype=np.float64) + self.shift) + Y
+        return x
 
     def under(self, Y: float, depth: float) -> tuple[int, int]:
         """Return the range of elements, with some to spare at each end, that can be met at this depth."""
@@ -111,34 +119,49 @@ class Model:
         return math.floor((low - Y) / dx) - SPARE, math.ceil((high - Y) / dx) + SPARE + 1
 
     def static_load(self, depth: float) -> float:
-        """Return K times the sum of max(δ - h, 0) dx over the elements at rest."""
-        first, last = (round(end / self.spacing) for end in span(self.indenter, depth))
-        x: Array = self.spacing * np.arange(first - 1, last + 2, dtype=np.float64)
-        g = np.maximum(depth - self.height(x), 0.0)
-        return self.stiffness * self.spacing * float(g.sum())
+        """Return K times the area of max(δ - h, 0), as the elements at rest carry it."""
+        low, high = (round(end / self.spacing) for end in span(self.indenter, depth))
+        overlap = depth - self.height(self.places(low - SPARE, high + SPARE + 1))
+        pressed = overlap > 0.0
+        area = self.spacing * float(overlap[pressed].sum())
+        if self.parts:
+            ends = edges_of(pressed)
+            area += sum(kink_area(self.spacing, gaps(overlap, *edge))[0] for edge in ends)
+        return self.law.stiffness * area
 
     def _rough_depth(self) -> float:
         """Return a depth at which a continuous foundation carries the weight to within a thousandth."""
 
         def surplus(depth: float) -> float:
-            low, high = span(self.indenter, depth)
-            x: Array = np.linspace(low, high, SAMPLES, dtype=np.float64)
-            area = float(np.trapezoid(depth - self.height(x), x))
-            return self.stiffness * area / self.weight - 1.0
+            x = np.linspace(*span(self.indenter, depth), SAMPLES)
+            g = depth - self.height(x)
+            return self.law.stiffness * float(x[1] - x[0]) * float(g.sum()) / self.weight - 1.0
 
         depth = 1.0
         while surplus(depth) < 0.0:
             depth *= 2.0
         while surplus(0.5 * depth) > 0.0:
             depth *= 0.5
-        return float(brentq(surplus, 0.5 * depth, depth, rtol=1e-12, xtol=1e-300))
+        return root(surplus, 0.5 * depth, depth, 1e-9)
 
-    def _static_depth(self, rough: float) -> float:
-        """Return the depth at which the elements at rest carry the weight."""
-        return float(
-            brentq(lambda depth: self.static_load(depth) - self.weight, 0.25 * rough, 4.0 * rough,
-                   rtol=1e-15, xtol=1e-300)
-        )  # fmt: skip
+    def _within_reach(self, function: Callable[[Any], Any], x: Any, beyond: float) -> Any:
+        if math.isinf(self.indenter.reach):
+            return function(x)
+        inside = np.abs(x) < self.indenter.reach
+        return np.where(inside, function(np.where(inside, x, 0.0)), beyond)
+
+
+def root(function: Callable[[float], float], low: float, high: float, rtol: float = 0.0) -> float:
+    """Return where an increasing function becomes positive: to the last digit, or to within `rtol`.
+
+    SciPy's would be faster, but takes longer to import than most runs.
+
+    >>> root(lambda x: x * x - 2.0, 1.0, 2.0)
+    1.4142135623730951
+    """
+    while low < (middle := 0.5 * (low + high)) < high and high - low > rtol * high:
+        low, high = (low, middle) if function(middle) > 0.0 else (middle, high)
+    return high
 
 
 @lru_cache(maxsize=512)
@@ -161,11 +184,7 @@ def _extent(indenter: Indenter, depth: float, side: float) -> float:
         if x == end:
             return end
         x = min(2.0 * x, end)
-    low = x
+    low = 0.5 * x
     while indenter.height(side * low) > depth:
         low *= 0.5
-    if low == x:
-        return x
-    return float(
-        brentq(lambda y: float(indenter.height(side * y)) - depth, low, x, rtol=1e-15, xtol=1e-300)
-    )
+    return root(lambda y: float(indenter.height(side * y)) - depth, low, min(2.0 * low, x))

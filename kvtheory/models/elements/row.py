@@ -1,17 +1,18 @@
 """The elements that matter: a window on an endless row that moves with the base.
 
-Element i sits at x_i = i dx + Y(t). It is stored while it is near the indenter, or while the drive
-will bring it there again before it has relaxed; every other element counts as undisturbed.
+Element i sits at x_i = (i + shift) dx + Y(t). It is stored while it is near the indenter, or while the
+drive will bring it there again before it has relaxed; every other element counts as undisturbed.
 """
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from kvtheory.models.elements.model import Array, Model, span
+from kvtheory.models.elements.law import Array
+from kvtheory.models.elements.model import Model, span
 from kvtheory.scene.base_motion import BaseMotion
 
 FORGOTTEN = 1e-12
@@ -26,33 +27,49 @@ class OutgrownError(ArithmeticError):
     rows: Sequence[tuple[float, ...]] = ()
 
 
-@dataclass
-class Under:
+class IndenterState(NamedTuple):
+    """Time (s), depth (m) and its rate (m/s); after an explicit step, two forces to judge it by.
+
+    `imbalance` says by how much M δ'' over the step differs from the mean of the forces at its ends, and
+    `force` is the larger of these and the weight (N/m).
+    """
+
+    time: float
+    depth: float
+    rate: float
+    imbalance: float = 0.0
+    force: float = 0.0
+
+
+class Under(NamedTuple):
     """The elements under the indenter at one instant: a view into the row.
 
-    `free` is the compression that each has if the indenter leaves it alone until then, `touched`
-    whether it was in contact at the start of the step.
+    `surface` is the compression that each had at the start of the step, `free` the one that it has now
+    if the indenter leaves it alone, `touched` whether it was in contact at the start.
     """
 
     place: slice
     x: Array
     height: Array
+    surface: Array
     free: Array
     touched: NDArray[np.bool_]
 
 
-class Row:
+class ElementRow:
     """The compressions u of the stored elements, first to last, and which of them are in contact."""
 
     def __init__(self, model: Model, path: BaseMotion, kept_depth: float = KEPT_DEPTH) -> None:
         self.model, self.path = model, path
-        self.memory = -model.retardation_time * math.log(FORGOTTEN)
+        tau = model.law.retardation_time if model.rule.relaxes else math.inf
+        self.memory = -tau * math.log(FORGOTTEN)
         self.deepest = kept_depth * model.depth
         self.reach = span(model.indenter, self.deepest)
         self.first, self.u, self.touched = 0, np.zeros(0), np.zeros(0, dtype=bool)
         self.updates = 0
-        rest = self.under(0.0, 0.0, model.depth)
-        self.settle(rest, np.maximum(model.depth - rest.height, 0.0), rest.height <= model.depth)
+        depth = model.start * model.depth
+        rest = self.under(0.0, 0.0, depth)
+        self.settle(rest, np.maximum(depth - rest.height, 0.0), rest.height <= depth)
 
     def under(self, t: float, delay: float, depth: float) -> Under:
         """Return the elements that an indenter of at most this depth can meet at t, and `delay` before.
@@ -64,26 +81,31 @@ class Row:
         """
         if not depth < self.deepest:
             raise OutgrownError
-        Y, Y_now = self.path.displacement(t), self.path.displacement(t - delay)
-        low = self.model.under(max(Y, Y_now), depth)[0]
-        high = self.model.under(min(Y, Y_now), depth)[1]
+        Y = before = self.path.displacement(t)
+        if delay:
+            before = self.path.displacement(t - delay)
+        low = self.model.under(max(Y, before), depth)[0]
+        high = self.model.under(min(Y, before), depth)[1]
         if low < self.first or high > self.first + self.u.size:
             self._move(t, low, high)
-        place = slice(low - self.first, high - self.first)
-        x: Array = self.model.spacing * np.arange(low, high, dtype=np.float64) + Y
-        decay = math.exp(-delay / self.model.retardation_time)
         self.updates += high - low
-        height = self.model.height(x)
-        return Under(place, x, height, decay * self.u[place], self.touched[place])
+        place = slice(low - self.first, high - self.first)
+        x, u = self.model.places(low, high, Y), self.u[place]
+        return Under(
+            place, x, self.model.height(x), u, self._left(u, delay), self.touched[place]
+        )  # fmt: skip
 
     def settle(
         self, under: Under, u: Array, touched: NDArray[np.bool_], delay: float = 0.0
     ) -> None:
         """Let `delay` pass: put in what has become of the elements under the indenter."""
-        self.u *= math.exp(-delay / self.model.retardation_time)
+        self.u = self._left(self.u, delay)
         self.u[under.place] = u
         self.touched[:] = False
         self.touched[under.place] = touched
+
+    def _left(self, u: Array, delay: float) -> Array:
+        return np.asarray(self.model.law.left(u, delay)) if self.model.rule.relaxes else u.copy()
 
     def _move(self, t: float, low: int, high: int) -> None:
         """Move the window so that it holds the elements `low` to `high`, and those still of use."""

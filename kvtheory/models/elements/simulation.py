@@ -7,14 +7,16 @@ from dataclasses import replace
 
 import numpy as np
 
-from kvtheory.models.elements.contact import Contact, parts_of_elements, pressure, whole_elements
-from kvtheory.models.elements.model import Array, Model, span
-from kvtheory.models.elements.row import KEPT_DEPTH, OutgrownError, Row
-from kvtheory.models.elements.schemes import DEFAULT, SCHEMES, Motion, Scheme
+from kvtheory.models.elements.contact import report
+from kvtheory.models.elements.contact_rule import RIGHT, ContactRule
+from kvtheory.models.elements.error_estimate import COLUMNS, DOUBTS, SHIFTS, UNKNOWN, Rows, estimate
+from kvtheory.models.elements.model import Model
+from kvtheory.models.elements.row import KEPT_DEPTH, ElementRow, IndenterState, OutgrownError
+from kvtheory.models.elements.schemes import DEFAULT, SCHEMES, Scheme
 from kvtheory.models.elements.stability import lengths, limit_at
-from kvtheory.models.elements.watch import DivergenceError, Watch, doubts, stability_text
-from kvtheory.results import TRANSIENT_UNITS, Certificate, Simulation
-from kvtheory.results.table import scales
+from kvtheory.models.elements.watch import Watch, doubts, stability_text
+from kvtheory.results import Simulation
+from kvtheory.results.errors import DivergenceError
 from kvtheory.scene.base_motion import BaseMotion
 from kvtheory.scene.model import Scene
 
@@ -33,12 +35,6 @@ PER_NOTICE = 500
 """Steps from one notice of the progress to the next: a few a second."""
 ROWS = 400
 """Instants reported where none are asked for, at most about so many."""
-SAFETY = 4.0
-"""Of the estimated errors: one change of the density can be small by luck. Over the regimes of the
-tests at 15 densities, from 13 to 130 elements in a half length, none of 1620 differences to theory was
-larger than estimated; with 2 it was one in forty."""
-KNOWN = 0.5
-"""Of an element: how well an edge is known after a jump of the drive, which leaves pressure on it."""
 MORE_ROOM = 16.0
 """Ratio of the depths for which elements are kept, from one attempt to the next."""
 MOST_OF_ALL = 1e9
@@ -49,7 +45,6 @@ it by less than a millionth of what one step does, and times that differ by roun
 DEEPEST = 1e7
 """Times the static depth: no scene sinks deeper."""
 
-Rows = dict[str, Array]
 Leg = tuple[float, float, int]
 """From one instant to another in so many steps."""
 Progress = Callable[[int, int], None]
@@ -64,6 +59,8 @@ def simulate(
     at: Sequence[float] | None,
     time_step: float | None,
     certify: bool,
+    rule: ContactRule = RIGHT,
+    start: float = 1.0,
     progress: Progress | None = None,
     warn: Callable[[str], None] | None = None,
 ) -> Simulation:
@@ -76,7 +73,8 @@ def simulate(
     DivergenceError
         If the run is unstable.
     """
-    model = Model.of(scene, spacing)
+    model = Model.of(scene, spacing, parts=scheme.row.parts_of_elements)
+    model = replace(model, rule=rule, start=start)
     path = model.path(scene)
     h = time_step or default_step(model, path, scheme)
     stops, wanted = _instants(scene, path, h, at)
@@ -91,18 +89,21 @@ def simulate(
     if warning and warn is not None:
         warn(warning)
     rows, updates = _with_room(model, path, scheme, legs, wanted, progress)
-    certificate = Certificate(
-        "estimated", "not asked for", dict.fromkeys(TRANSIENT_UNITS, math.inf)
-    )
+    certificate = UNKNOWN
     if certify:
-        coarse = Model.of(scene, 2.0 * spacing)
         best, half = SCHEMES[DEFAULT], [(start, stop, count // 2) for start, stop, count in legs]
-        others = [_with_room(coarse, path, best, half, wanted, None)[0]]
-        if scheme is not best:
-            others.append(_with_room(model, path, best, legs, wanted, None)[0])
-        certificate = _certificate(model, path, rows, others)
+
+        def by_best(legs: list[Leg], coarser: float = 1.0, shift: float = 0.0) -> Rows:
+            other = Model.of(scene, spacing, parts=True, shift=shift, coarser=coarser)
+            return _with_room(other, path, best, legs, wanted, None)[0]
+
+        coarse = [by_best(half, 2.0, shift) for shift in SHIFTS]
+        fine = None if scheme is best else by_best(legs)
+        certificate = estimate(model, path, rows, coarse, fine)
+    for name in DOUBTS:
+        del rows[name]
     return Simulation(
-        **rows, scheme=scheme.name, per_length=1.0 / spacing, time_step=h,
+        **rows, scheme=scheme.row.name, per_length=1.0 / spacing, time_step=h,
         steps=sum(count for _, _, count in legs), element_updates=updates, warning=warning,
         model="elements", certificate=certificate,
     )  # fmt: skip
@@ -119,16 +120,16 @@ def default_step(model: Model, path: BaseMotion, scheme: Scheme) -> float:
     passing = (
         ELEMENTS_PER_STEP * model.spacing / path.highest_speed if path.highest_speed else math.inf
     )
-    if scheme.name == "paper":
+    if scheme.row.papers_step:
         if math.isinf(passing):
             raise ValueError(
                 "the paper's time step 2 dx/V is infinite for a drive at rest: give a `time_step`, "
-                f'such as "{0.01 * model.retardation_time * 1e3:.4g} ms", or `scheme` = "{DEFAULT}"'
+                f'such as "{0.01 * model.law.retardation_time * 1e3:.4g} ms", or `scheme` = "{DEFAULT}"'
             )
         return passing
-    stiffness = 2.0 * model.half_length * model.stiffness + model.spring
+    stiffness = 2.0 * model.half_length * model.law.stiffness + model.spring
     period = 2.0 * math.pi * math.sqrt(model.mass / stiffness)
-    resolved = min(model.retardation_time / PER_RELAXATION, period / PER_OSCILLATION)
+    resolved = min(model.law.retardation_time / PER_RELAXATION, period / PER_OSCILLATION)
     stable = limit_at(scheme, model, max(lengths(model, path)))
     return min(passing, max(resolved, path.end / MOST_STEPS), STABLE_SHARE * stable)
 
@@ -158,8 +159,7 @@ def _with_room(
     kept = KEPT_DEPTH
     while True:
         try:
-            row = Row(model, path, kept)
-            return _run(row, scheme, legs, wanted, progress)
+            return _run(ElementRow(model, path, kept), scheme, legs, wanted, progress)
         except OutgrownError as outgrown:
             kept *= MORE_ROOM
             if kept > DEEPEST:
@@ -174,29 +174,31 @@ def _with_room(
 
 @np.errstate(all="ignore")  # the watch judges what comes of it
 def _run(
-    row: Row, scheme: Scheme, legs: list[Leg], wanted: list[float], progress: Progress | None
+    row: ElementRow, scheme: Scheme, legs: list[Leg], wanted: list[float], progress: Progress | None
 ) -> tuple[Rows, int]:
-    watch, motion, done = Watch(row, scheme), Motion(0.0, row.model.depth, 0.0), 0
+    watch, done = Watch(row, scheme), 0
+    state = IndenterState(0.0, row.model.start * row.model.depth, 0.0)
     total, asked = sum(count for _, _, count in legs), set(wanted)
     found: dict[float, tuple[float, ...]] = {}
     try:
         for start, stop, count in legs:
             for k in range(1, count + 1):
                 time = stop if k == count else start + (stop - start) * k / count
-                motion = replace(scheme.step(row.model, row, motion, time - motion.time), time=time)
-                watch.see(motion, (stop - start) / count)
+                state = scheme.step(row, state, time - state.time)._replace(time=time)
+                if row.model.rule == RIGHT:
+                    watch.see(state, (stop - start) / count)
                 done += 1
                 if progress is not None and (done % PER_NOTICE == 0 or done == total):
                     progress(done, total)
             if not count and stop in row.path.changes:
-                motion = replace(motion, time=stop)
+                state = state._replace(time=stop)
             if stop in asked:
-                found[stop] = _report(row, scheme, motion, stop)
+                found[stop] = report(row, state, stop)
     except (DivergenceError, OutgrownError) as error:
-        error.rows = tuple(found.values())
+        error.rows = tuple(row[: -len(DOUBTS)] for row in found.values())
         raise
     columns = np.array([found[time] for time in wanted]).T
-    return dict(zip(TRANSIENT_UNITS, columns, strict=True)), row.updates
+    return dict(zip(COLUMNS, columns, strict=True)), row.updates
 
 
 def _legs(stops: Sequence[float], breaks: Sequence[float], h: float) -> list[Leg]:
@@ -214,56 +216,3 @@ def _legs(stops: Sequence[float], breaks: Sequence[float], h: float) -> list[Leg
 def _count(length: float, h: float) -> int:
     """Return an even number of steps of at most h, so that half as many fit too."""
     return max(2 * math.ceil(0.5 * length / h * (1.0 - 1e-9)), 2)
-
-
-def _report(row: Row, scheme: Scheme, at: Motion, time: float) -> tuple[float, ...]:
-    """Return the columns at a time, for which the state `at` stands; where V jumps, just after it."""
-    model, V = row.model, row.path.velocity(time)
-    under = row.under(at.time, 0.0, max(at.depth, model.depth))
-    p = pressure(model, under, at.depth, at.rate, V)
-    pressed = under.touched & (p >= 0.0)
-    V_before = row.path.velocity(at.time, before=True)
-    p_before = p if V_before == V else pressure(model, under, at.depth, at.rate, V_before)
-    contact: Contact = (
-        parts_of_elements(model, under, p, p_before, pressed, at.depth)
-        if scheme.edges
-        else whole_elements(model, under, p, pressed)
-    )
-    edges = (contact.left, contact.right)
-    leading, trailing = edges if row.path.forward(time) else edges[::-1]
-    forces = contact.normal_force, contact.friction_force
-    return time, V, at.depth, at.rate, *forces, leading, trailing, contact.peak_pressure
-
-
-def _certificate(model: Model, path: BaseMotion, rows: Rows, others: Sequence[Rows]) -> Certificate:
-    """Compare with other runs; where an edge exists in one of them only, it is not compared.
-
-    Let the error of this run be e and that of the best scheme at this density c, at half of it 4 c: the
-    sum of both differences, |e - 4 c| + |e - c|, is at least 3/4 |e|. For the best scheme it is 3 |e|.
-    """
-    scale = scales(model.at_rest)
-    differences = {
-        name: sum(
-            float(np.nanmax(np.abs(rows[name] - other[name]), initial=0.0)) for other in others
-        )
-        for name in TRANSIENT_UNITS
-    }
-    if len(path.changes) > 1:
-        known = KNOWN * model.spacing
-        pressure_there = float(rows["peak_pressure"].max())
-        differences["leading_edge"] += known
-        differences["trailing_edge"] += known
-        differences["normal_force"] += known * pressure_there
-        differences["friction_force"] += known * pressure_there * _steepest(model)
-    runs = "half as many elements and steps" + (", and as many" if len(others) > 1 else "")
-    return Certificate(
-        "estimated",
-        f'{SAFETY:g} times the largest difference to the scheme "{DEFAULT}" with {runs}, relative to the '
-        "static depth, half length and load",
-        {name: SAFETY * difference / scale[name] for name, difference in differences.items()},
-    )
-
-
-def _steepest(model: Model) -> float:
-    """Return the largest |h'| at the ends of the contact at rest."""
-    return float(abs(model.slope(np.array(span(model.indenter, model.depth)))).max())

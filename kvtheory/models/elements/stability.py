@@ -8,34 +8,21 @@ rates σ; for the fast rate, about -C L/M, this is fact F15, h C L/M <= 2.785 or
 import math
 
 import numpy as np
-from scipy.optimize import brentq
 
-from kvtheory.models.elements.model import SAMPLES, Model, span
-from kvtheory.models.elements.schemes import DEFAULT, SCHEMES, Scheme
+from kvtheory.models.elements.model import SAMPLES, Model, root, span
+from kvtheory.models.elements.schemes import Scheme
 from kvtheory.scene.base_motion import BaseMotion
-from kvtheory.scene.model import Scene
 
 STEADY_RTOL = 1e-6
 
 
-def contact_lengths(scene: Scene) -> tuple[float, float]:
+def lengths(model: Model, path: BaseMotion) -> tuple[float, float]:
     """Return the contact lengths (m) that bound the step: in steady sliding, and at the static depth.
 
     Each is the longest over the velocities of the drive; between those the velocity is linear, and
-    the length falls with |V|. A drive that passes through rest has the contact at rest among them.
-
-    Examples
-    --------
-    >>> steady, first = contact_lengths(Scene())
-    >>> print(f"{steady * 1e3:.3f} {first * 1e3:.3f} mm")
-    1.429 2.747 mm
+    the length falls with |V|. A drive that passes through rest has the contact at rest among them. A
+    step that is too long for the latter only, at a start, is unstable at first and may recover.
     """
-    model = Model.of(scene)
-    return lengths(model, model.path(scene))
-
-
-def lengths(model: Model, path: BaseMotion) -> tuple[float, float]:
-    """Return the contact lengths of `contact_lengths`."""
     velocities = path.velocities
     if velocities[0] < 0.0 < velocities[-1]:
         velocities = [0.0, *velocities]
@@ -46,30 +33,13 @@ def lengths(model: Model, path: BaseMotion) -> tuple[float, float]:
     return steady, max(_length(model, model.depth, V)[0] for V in chosen)
 
 
-def stability_limit(scene: Scene, scheme: str = DEFAULT) -> float:
-    """Return the largest stable time step of a scheme, in s: infinite if every step is stable.
-
-    The bound holds for the longer of the contacts at the static depth and in steady sliding. A step
-    that is too long for the former only, at a start from rest, is unstable at first and may recover.
-
-    Examples
-    --------
-    >>> print(f"{stability_limit(Scene(), 'paper') * 1e3:.3f} ms")
-    1.018 ms
-    >>> stability_limit(Scene(), "edge-corrected")
-    inf
-    """
-    model = Model.of(scene)
-    return limit_at(SCHEMES[scheme], model, max(contact_lengths(scene)))
-
-
 def limit_at(scheme: Scheme, model: Model, length: float) -> float:
     """Return the largest stable step for a contact of this length, in s."""
     R = scheme.stability_polynomial
     if not R or math.isinf(model.mass):
         return math.inf
-    L, M = length, model.mass
-    rates = np.roots([M, model.damping * L, model.stiffness * L + model.spring]).astype(complex)
+    law = model.law
+    rates = np.roots([model.mass, law.damping * length, law.stiffness * length + model.spring])
     return min(_reach(R, complex(rate)) for rate in rates)
 
 
@@ -88,9 +58,8 @@ def _reach(R: tuple[float, ...], rate: complex) -> float:
 def _length(model: Model, depth: float, V: float) -> tuple[float, float]:
     """Return the length of a contact at a depth, and its normal force, both at a steady velocity."""
     x = np.linspace(*span(model.indenter, depth), SAMPLES)
-    p = model.stiffness * (depth - model.height(x)) - model.damping * V * model.slope(x)
-    pressed = p > 0.0
-    step = x[1] - x[0]
+    p = model.law.pressure(depth - model.height(x), -V * model.slope(x))
+    pressed, step = p > 0.0, x[1] - x[0]
     return step * np.count_nonzero(pressed), step * float(p[pressed].sum())
 
 
@@ -106,4 +75,4 @@ def _steady_depth(model: Model, V: float) -> float:
     low = model.depth
     while surplus(low) > 0.0:
         low *= 0.5
-    return low if low == model.depth else float(brentq(surplus, low, 2.0 * low, rtol=STEADY_RTOL))
+    return low if low == model.depth else root(surplus, low, 2.0 * low, STEADY_RTOL)

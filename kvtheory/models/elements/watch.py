@@ -6,8 +6,8 @@ from collections import deque
 import numpy as np
 
 from kvtheory.models.elements.model import Model, span
-from kvtheory.models.elements.row import Row
-from kvtheory.models.elements.schemes import DEFAULT, Motion, Scheme
+from kvtheory.models.elements.row import ElementRow, IndenterState
+from kvtheory.models.elements.schemes import DEFAULT, Scheme
 from kvtheory.models.elements.stability import lengths, limit_at
 from kvtheory.results.errors import DivergenceError
 from kvtheory.scene.base_motion import BaseMotion
@@ -46,10 +46,10 @@ def stability_text(scheme: Scheme, model: Model, path: BaseMotion, h: float) -> 
     limit = limit_at(scheme, model, length)
     if math.isinf(limit):
         return f"its time step is {h * 1e3:.4g} ms"
-    number = h * model.damping * length / model.mass
+    number = h * model.law.damping * length / model.mass
     return (
         f"its time step, {h * 1e3:.4g} ms, has the stability number dt C L/M = {number:.3g} for a contact "
-        f'of L = {length * 1e3:.4g} mm, where the scheme "{scheme.name}" is stable up to '
+        f'of L = {length * 1e3:.4g} mm, where the scheme "{scheme.row.name}" is stable up to '
         f"dt = {limit * 1e3:.4g} ms; a time step of {ADVISED * limit * 1e3:.3g} ms would do, or the scheme "
         f'"{DEFAULT}", which is stable at any step'
     )
@@ -65,12 +65,12 @@ class Watch:
     step, M δ'' = W - k_s (δ - δ_0) - F_z, is checked too.
     """
 
-    def __init__(self, row: Row, scheme: Scheme) -> None:
+    def __init__(self, row: ElementRow, scheme: Scheme) -> None:
         model = row.model
         self._row, self._scheme = row, scheme
         ends = np.array(span(model.indenter, model.depth))
         thrown = (
-            model.depth / model.retardation_time
+            model.depth / model.law.retardation_time
             + row.path.highest_speed * float(abs(model.slope(ends)).max())
             + model.depth * math.sqrt(model.spring / model.mass)
         )
@@ -78,7 +78,7 @@ class Watch:
         self._allowed = IMBALANCE + ELEMENTS * model.spacing / (2.0 * model.half_length)
         self._balances: deque[tuple[float, float]] = deque(maxlen=WINDOW)
 
-    def see(self, motion: Motion, h: float) -> None:
+    def see(self, motion: IndenterState, h: float) -> None:
         """Judge a step.
 
         Raises
@@ -98,7 +98,7 @@ class Watch:
             share = imbalance / force
             self._stop(f"where the forces fail to balance the motion by {share:.0%}", motion, h)
 
-    def _stop(self, sign: str, motion: Motion, h: float) -> None:
+    def _stop(self, sign: str, motion: IndenterState, h: float) -> None:
         row = self._row
         raise DivergenceError(
             f"the run diverged at t = {motion.time:.6g} s, {sign}: "

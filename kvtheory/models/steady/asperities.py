@@ -144,9 +144,14 @@ class Contact:
 
     def _turn(self, x: Any, index: int, l_r: float) -> tuple[float, bool]:
         """Return where p changes its sign after a sample, and whether by a root."""
-        if index < 0 or index % DENSE.size == DENSE.size - 1:
-            return float(x[max(index, 0)]), False
-        return _root(lambda y: self.pressure(y, l_r), float(x[index]), float(x[index + 1])), True
+        start, end = float(x[max(index, 0)]), float(x[min(index + 1, x.size - 1)])
+        if index < 0 or (end > start and index % DENSE.size == DENSE.size - 1):
+            return start, False
+        if end == start:  # two cells meet: a jump, unless the root is close behind
+            start, end = math.nextafter(start, math.inf), float(x[index + 2])
+            if (self.pressure(start, l_r) > 0.0) == (self.pressure(end, l_r) > 0.0):
+                return float(x[index]), False
+        return _root(lambda y: self.pressure(y, l_r), start, end), True
 
     def integral(
         self, patch: Patch, function: Callable[[float], float], power: int
@@ -174,7 +179,9 @@ class Contact:
         low = (c.height @ VALUES).min(axis=1) < self.depth
         edges = [x for patch in self.patches for x in (patch.x_le, patch.x_te)]
         shift = max(abs(x * self.surface.slope(x)) for x in edges)
-        tail = (c.height_tail + self.l_r * c.slope_tail)[low].max()
+        # The slope counts where the pressure falls to zero.
+        ends = [(c.start <= patch.x_te) & (patch.x_te <= c.end) for patch in self.patches]
+        tail = c.height_tail[low].max() + self.l_r * c.slope_tail[np.any(ends, axis=0)].max()
         return ROUNDING + (ROUNDING * shift + float(tail)) / self.depth
 
     def peak(self) -> float:

@@ -46,7 +46,7 @@ def limits(values: Mapping[str, Array]) -> Limits:
         depth = values["support.depth"]
         load = 2 * cf.ALPHA * np.sqrt(R * depth) * K * depth  # Eq. 40
         return Limits(R, K, l_r, depth, load, load, fixed=True)
-    weight = values["support.mass"] * values["support.gravity"]
+    weight = values["support.weight"]
     a_0 = np.cbrt(1.5 * R * (weight / K))
     delta_0 = a_0 * (a_0 / (2 * R))
     lift = weight + values.get("support.stiffness", 0.0) * delta_0

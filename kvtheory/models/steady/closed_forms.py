@@ -177,9 +177,7 @@ def power_law_friction_force(n: Value, l: Value, q: Value, Q: Value) -> Value:
 
 def power_law_friction_coefficient(n: Value, l: Value, q: Value, Q: Value) -> Value:
     """Return m = mu a/delta; theorem F19."""
-    return (
-        l * n * (n + 1) * (Q * Q * l / 2 + (Q * Q * q + 1) / (2 * n - 1)) / (Q * l * l + l + q + 1)
-    )
+    return l * n * (n + 1) * (Q * Q * l / 2 + (Q * Q * q + 1) / (2 * n - 1)) / (Q * l * l + l + q + 1)
 
 
 def power_law_peak_pressure(n: Value, l: Value) -> Value:
@@ -220,7 +218,7 @@ def power_law_crossing_at_load(n: Value, kappa: Value) -> Value:
 
 def power_law_scaled_load(n: Value, s: Value, r: Value, lam: Value) -> Value:
     """Return f = W/W_0 at s = a/a_0, r = x_TE/a_0, lam = V tau/a_0; theorem F19-scaled-load."""
-    return s**n * (lam * lam / (lam * n + r) + lam + r + s) / 2
+    return s ** n * (lam * lam / (lam * n + r) + lam + r + s) / 2
 
 
 def power_law_scaled_load_slope(n: Value, s: Value, r: Value, lam: Value) -> Value:
@@ -230,9 +228,7 @@ def power_law_scaled_load_slope(n: Value, s: Value, r: Value, lam: Value) -> Val
 
 def power_law_friction_rise(n: Value, l: Value, q: Value, Q: Value) -> Value:
     """Return what has the sign of dmu/dV under a dead weight; theorem F19-slip."""
-    return -Q * Q * Q * l * l * l * n * (2 * n - 1) + (Q * Q * q + 1) * (
-        -Q * l * l * (2 * n - 1) + l + q + 1
-    )
+    return -Q * Q * Q * l * l * l * n * (2 * n - 1) + (Q * Q * q + 1) * (-Q * l * l * (2 * n - 1) + l + q + 1)
 
 
 def power_law_peeled(n: Value, peeled: Value) -> Value:
@@ -277,9 +273,7 @@ def power_law_error_load_high(n: Value, l: Value, q: Value, Q: Value) -> Value:
     return -tip / (n * n * whole)
 
 
-def power_law_error_friction_low(
-    n: Value, l: Value, q: Value, Q: Value, gap_q: Value, gap_Q: Value
-) -> Value:
+def power_law_error_friction_low(n: Value, l: Value, q: Value, Q: Value, gap_q: Value, gap_Q: Value) -> Value:
     """Return friction force for l -> 0 over F, - 1; theorem F19-error-friction-low."""
     damped = Q * Q * l * (2 * n - 1) / 2 + Q * Q * q + 1
     return (-Q * Q * l * (2 * n - 1) / 2 + gap_Q * q * (Q + 1) + gap_q) / damped

@@ -29,6 +29,8 @@ from kvtheory.models.steady.double_exponential import (
     integral,
     largest,
     least,
+    pick,
+    some,
 )
 from kvtheory.results.errors import QuadratureError
 from kvtheory.scene.indenters import Indenter
@@ -42,8 +44,10 @@ CUBIC = 1e-5
 """The same for the depth, whose steps leave a cube of the error."""
 DIFFERENCE = 1e-7
 """Relative step of x for h'': its error only slows the roots, and changes a peak by its square."""
-GRID = 2.0 ** np.arange(-100, 101)
+GRID = 4.0 ** np.arange(-50, 51)
 """Half-lengths over the depth that are tried first, so that steep powers do not overflow later."""
+FULL = 1.3
+"""W/K is near depth (a FULL + l_r): 4/3 for a parabola, 1 for a wedge, up to 2."""
 NEAR_REACH = 0.5
 """Share of the reach at which the search for the half-length starts at most."""
 MOST_STEPS = 200
@@ -52,6 +56,8 @@ VERTEX = 1e-290
 """A trailing edge closer to the lowest point than this share of the half-length is at it."""
 FLOOR = 1e-20
 """Share of the half-length below which the peak is at the lowest point."""
+PEAK_RTOL = 1e-7
+"""Tolerance of its place: its value has the square."""
 PEAK_STEPS = 8
 """Secant steps towards the peak: one for a power, more for a circle."""
 TINY = 1e-300
@@ -104,10 +110,12 @@ def at_load(shape: Indenter, l_r: Value, load: Value, spring: Value) -> Contact:
     therefore closes in from everywhere; the second derivative of W makes it cubic (Chebyshev).
     """
     deepest = _deepest(shape)
-    x = a = _first(
-        shape, load**0.5, load, lambda x: x + (l_r + spring)
-    )  # W/K is about delta (a + l_r)
-    depth = shape.height(a)
+    extra = l_r + spring
+    x = a = _first(shape, load**0.5, load, lambda x: FULL * x + extra)
+    depth, slope = shape.height(a), shape.slope(a)
+    factor = load / (depth * (FULL * a + extra))  # one step of Newton's method on this estimate
+    depth = depth * factor ** (1.0 / (1.0 + depth / (slope * (a + extra))))
+    active = load > 0.0
     for _ in range(MOST_STEPS):
         contact = _at_depth(shape, l_r, depth, a, x)
         total, slope = contact.load + spring * depth, contact.load_slope + spring
@@ -116,8 +124,10 @@ def at_load(shape: Indenter, l_r: Value, load: Value, spring: Value) -> Contact:
         missing = (load - total) / (0.5 * (load + total))  # nearly the logarithm of the quotient
         share = 1.0 - 0.5 * missing / (1.0 + missing * missing) * bend / power
         factor = (load / total) ** (share / power)
-        depth, a, x = least(depth * factor, 0.5 * (depth + deepest)), contact.a, contact.x
-        if largest(abs(factor - 1.0)) < CUBIC:
+        depth = pick(active, least(depth * factor, 0.5 * (depth + deepest)), depth)
+        a, x = pick(active, contact.a, a), pick(active, contact.x, x)
+        active = active & (abs(factor - 1.0) >= CUBIC)
+        if not some(active):
             return _at_depth(shape, l_r, depth, a, x)
     raise QuadratureError(
         "no depth was found that carries the weight: it lies beyond the indenter's reach"
@@ -131,9 +141,13 @@ def _deepest(shape: Indenter) -> Value:
 
 def _first(shape: Indenter, scale: Value, wanted: Value, width: Callable[[Value], Value]) -> Value:
     """Return the first of spaced points x where h times a width is as wanted, or the last."""
-    x = least(scale * GRID, NEAR_REACH * shape.reach)
-    first = np.minimum((shape.height(x) * width(x) < wanted).sum(-1), GRID.size - 1)
-    return x[first].item() if x.ndim == 1 else np.take_along_axis(x, first[:, None], -1)
+    x = scale * GRID
+    if shape.reach is not math.inf:
+        x = np.minimum(x, NEAR_REACH * shape.reach)
+    low = shape.height(x) * width(x) < wanted
+    if x.ndim == 1:
+        return x[min(np.count_nonzero(low), GRID.size - 1)].item()
+    return np.take_along_axis(x, np.minimum(low.sum(-1, keepdims=True), GRID.size - 1), -1)
 
 
 def _at_depth(shape: Indenter, l_r: Value, depth: Value, a: Value, x: Value) -> Contact:
@@ -142,13 +156,12 @@ def _at_depth(shape: Indenter, l_r: Value, depth: Value, a: Value, x: Value) -> 
     a, a_moves = _half_length(shape, depth, start)
     rolls = (l_r * shape.slope(VERTEX * a) < depth) * 1.0
     x, x_moves = _trailing(shape, l_r * rolls, depth, a, x * (a / start))
-    front, front_error = integral(shape.height, a)
-    rear, rear_error = integral(shape.height, x)
+    below, error = integral(shape.height, (a, x), (a, rolls * x))
     # Where p = 0, u_TE = l_r h', which does not cancel for a small l_r.
     u_te = l_r * rolls * shape.slope(x) + (1.0 - rolls) * depth
     length = a + rolls * x
-    load = depth * length - front - rolls * rear + l_r * u_te
-    error = (front * front_error + rolls * rear * rear_error) / load
+    load = depth * length - below + l_r * u_te
+    error = error * below / load
     return Contact(
         depth, a, x, a_moves, rolls * x_moves, rolls, u_te, load, error, length + l_r
     )  # fmt: skip
@@ -156,31 +169,42 @@ def _at_depth(shape: Indenter, l_r: Value, depth: Value, a: Value, x: Value) -> 
 
 def _half_length(shape: Indenter, depth: Value, a: Value) -> tuple[Value, Value]:
     """Return a > 0 with h(a) = depth, and d a/d(delta)."""
+    active, moves = depth > 0.0, a
     for _ in range(MOST_STEPS):
         height, slope = shape.height(a), shape.slope(a)
         factor = (depth / height) ** (height / (a * slope))
-        a = least(a * factor, 0.5 * (a + shape.reach))
-        if largest(abs(depth / height - 1.0)) < LINEAR:
-            return a, 1.0 / slope
+        moves = pick(active, 1.0 / slope, moves)
+        new = a * factor
+        if shape.reach is not math.inf:
+            new = least(new, 0.5 * (a + shape.reach))
+        a = pick(active, new, a)
+        active = active & (abs(depth / height - 1.0) >= LINEAR)
+        if not some(active):
+            return a, moves
     raise QuadratureError("the leading edge lies beyond the indenter's reach")
 
 
 def _trailing(shape: Indenter, l_r: Value, depth: Value, a: Value, x: Value) -> tuple[Value, Value]:
     """Return x in (0, a] with h(x) + l_r h'(x) = depth, and d x/d(delta)."""
+    active, moves = depth > 0.0, x
     for _ in range(MOST_STEPS):
         slope = shape.slope(x)
         total = shape.height(x) + l_r * slope
         rise = x * slope + l_r * _bend(shape, x, slope)
         factor = (depth / total) ** (total / rise)
-        moves, x = x / rise, least(x * factor, a)
-        if largest(abs(factor - 1.0) + abs(depth / total - 1.0)) < LINEAR:
+        moves = pick(active, x / rise, moves)
+        x = pick(active, least(x * factor, a), x)
+        active = active & (abs(factor - 1.0) + abs(depth / total - 1.0) >= LINEAR)
+        if not some(active):
             return x, moves
     raise QuadratureError("the trailing edge was not found: it is too close to a vertex")
 
 
 def _bend(shape: Indenter, x: Value, slope: Value) -> Value:
     """Return x h''."""
-    step = DIFFERENCE * least(x, shape.reach - x) + ULPS * x
+    step = DIFFERENCE * x
+    if shape.reach is not math.inf:
+        step = DIFFERENCE * least(x, shape.reach - x) + ULPS * x
     return x * ((slope - shape.slope(x - step)) / step)
 
 
@@ -192,14 +216,17 @@ def _peak(shape: Indenter, l_r: Value, contact: Contact) -> Value:
     on the way is a pressure of this contact, so that the highest of them is never too high.
     """
     found, last = l_r * shape.slope(contact.a), (contact.a, 0.0 * l_r)
-    y = least(l_r, contact.a) + FLOOR * contact.a
+    y, active = least(l_r, contact.a) + FLOOR * contact.a, l_r >= 0.0
     for _ in range(PEAK_STEPS):
         slope = shape.slope(y)
         found = -least(-found, -(contact.depth - shape.height(y) + l_r * slope))
         to = l_r * _bend(shape, y, slope) / (slope + TINY) + FLOOR * contact.a
         gain = (to - last[1]) / (y - last[0] + TINY)
         last = y, to
-        y = least(abs((to - gain * y) / (1.0 - gain + TINY)), contact.a)
+        active = active & (abs(least(to, contact.a) / y - 1.0) >= PEAK_RTOL)
+        if not some(active):
+            break
+        y = pick(active, least(abs((to - gain * y) / (1.0 - gain + TINY)), contact.a), y)
     return found
 
 
@@ -209,12 +236,9 @@ def quantities(shape: Indenter, l_r: Value, contact: Contact) -> dict[str, tuple
     The friction is l_r times the sum of int h'^2 dx and of u_TE^2/(2 l_r).
     """
     depth, a, x, a_moves, x_moves, rolls, u_te, load, load_error, load_slope = contact
-    front, front_error = integral(lambda x: shape.slope(x) ** 2, a)
-    rear, rear_error = integral(lambda x: shape.slope(x) ** 2, x)
+    drag, drag_error = integral(lambda x: shape.slope(x) ** 2, (a, x), (a, rolls * x))
     at_a, at_x = shape.slope(a), shape.slope(x)
     left = rolls * at_x + (1.0 - rolls) * depth / (l_r + rolls)  # u_TE/l_r
-    drag = front + rolls * rear
-    drag_error = (front * front_error + rolls * rear * rear_error) / drag
     total = drag + 0.5 * u_te * left
     load_power, friction_power = depth * load_slope / load, depth * (left + at_a) / total
     drag_power = depth * (at_a + at_x * at_x * x_moves) / drag

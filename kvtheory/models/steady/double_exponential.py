@@ -1,4 +1,4 @@
-"""Integrals from a point to an edge by the double-exponential rule, for floats and for columns.
+"""Integrals from the lowest point to both edges by the double-exponential rule, for floats and for columns.
 
 A float is one scene; a column, of shape (n, 1), is n of them, and stands beside nodes along a row.
 """
@@ -21,9 +21,10 @@ LIMIT = 1e-6
 """Estimate above which the last rule is no answer."""
 
 
-def _rule(step: float) -> tuple[Any, Any]:
-    """Return nodes on (0, 1), and the weights of two rules: of this step, and of twice that.
+def _rule(step: float) -> tuple[Any, Any, Any]:
+    """Return nodes from 0 to 1 on the left, beside zeros; the same on the right; and weights.
 
+    The four columns of weights are of this step and of twice that, on the left and on the right.
     Takahasi and Mori (1974), doi:10.2977/prims/1195192451: singular ends do not matter.
     """
     count = 2 * int(0.5 * LAST / step)
@@ -32,31 +33,46 @@ def _rule(step: float) -> tuple[Any, Any]:
     nodes = 1.0 / (1.0 + decay)
     fine = step * np.pi * np.cosh(t) * nodes * decay / (1.0 + decay)
     coarse = np.where(np.arange(t.size) % 2 == 0, 2.0 * fine, 0.0)
-    return nodes, np.column_stack((fine, coarse))
+    left, right = np.kron(np.eye(2), nodes)
+    return left, right, np.kron(np.eye(2), np.column_stack((fine, coarse)))
 
 
 RULES = tuple(_rule(COARSEST / 2**level) for level in range(LEVELS))
 
 
-def integral(function: Callable[[Any], Any], end: Value) -> tuple[Value, Value]:
-    """Integrate a positive function from 0 to `end`; return also an estimate of the relative error.
+def integral(
+    function: Callable[[Any], Any], ends: tuple[Value, Value], widths: tuple[Value, Value]
+) -> tuple[Value, Value]:
+    """Add the means of a positive function from 0 to either end, times the widths.
 
-    Halving the step squares the relative error of the trapezoidal rule for an analytic integrand
-    (Trefethen and Weideman 2014, doi:10.1137/130932132); the power 3/2 leaves a margin.
+    Return also an estimate of the relative error: halving the step squares that of the trapezoidal
+    rule for an analytic integrand (Trefethen and Weideman 2014, doi:10.1137/130932132); the power
+    3/2 leaves a margin.
 
-    >>> value, error = integral(lambda x: x**0.5, 4.0)
+    >>> value, error = integral(lambda x: x**0.5, (4.0, 1.0), (4.0, 1.0))
     >>> print(f"{value:.14g}", error < 1e-14)
-    5.3333333333333 True
+    6 True
     """
-    for nodes, weights in RULES:
-        sums = function(end * nodes) @ weights
-        fine, coarse = sums.tolist() if sums.ndim == 1 else (sums[:, :1], sums[:, 1:])
-        error = abs(1.0 - coarse / fine) ** 1.5
-        if largest(error) < RTOL:
-            return end * fine, error
-    if not largest(error) < LIMIT:
+    one, two = widths
+    result, accuracy, active = 0.0, 0.0, one >= 0.0
+    for to_left, to_right, weights in RULES:
+        values = function(ends[0] * to_left + ends[1] * to_right)
+        if values.ndim == 1:
+            left, left_coarse, right, right_coarse = values.dot(weights).tolist()
+        else:  # a product of this form does not depend on the number of rows
+            half = values.shape[1] // 2
+            sums = values.reshape(-1, half).dot(weights[:half, :2]).reshape(-1, 2, 2, 1)
+            (left, left_coarse), (right, right_coarse) = sums.transpose(1, 2, 0, 3)
+        total = one * left + two * right
+        apart = one * abs(left - left_coarse) + two * abs(right - right_coarse)
+        error = (apart / total) ** 1.5
+        result, accuracy = pick(active, total, result), pick(active, error, accuracy)
+        active = active & (accuracy > RTOL)
+        if not some(active):
+            break
+    if not largest(accuracy) < LIMIT:
         raise QuadratureError("quadrature of the shape fails: the indenter's reach is too close")
-    return end * fine, error
+    return result, accuracy
 
 
 def largest(values: Value) -> float:
@@ -69,3 +85,19 @@ def least(left: Value, right: Value) -> Value:
     if isinstance(left, float) and isinstance(right, float):
         return min(left, right)
     return np.minimum(left, right)
+
+
+def some(condition: Any) -> bool:
+    """Return whether any element is true."""
+    return bool(condition.any()) if isinstance(condition, np.ndarray) else condition
+
+
+def pick(condition: Any, chosen: Value, other: Value) -> Value:
+    """Return one of two values, element by element.
+
+    What has converged stays as it is while the rest of a column goes on, so that no scene depends
+    on the ones beside it.
+    """
+    if isinstance(condition, np.ndarray):
+        return np.where(condition, chosen, other)
+    return chosen if condition else other

@@ -2,7 +2,6 @@
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from copy import copy
 from dataclasses import replace
 from types import ModuleType
 from typing import Any, NamedTuple
@@ -13,6 +12,7 @@ from numpy.typing import NDArray
 from kvtheory.models.steady import asymptotes, exact, power_law, power_law_asymptotes
 from kvtheory.models.steady.power_law_contact import shape_of
 from kvtheory.results import STEADY_UNITS, Certificate, SteadyState
+from kvtheory.scene.broadcasting import values as broadcast
 from kvtheory.scene.model import Scene
 
 Array = NDArray[np.float64]
@@ -37,7 +37,7 @@ FAMILIES = {
 }
 """By the name of the shape; `kvtheory.scene.requirements` knows the same names."""
 
-COLUMN = 512
+COLUMN = 256
 """Scenes that are integrated at once: their nodes then fit into the second cache of a core."""
 ROUNDING = 64 * 2.0**-52
 """Of an asymptote and of its error, which are of some twenty operations each."""
@@ -56,7 +56,7 @@ def solve_quadrature(scene: Scene, values: Values) -> SteadyState:
     """
     shape = values["drive.velocity"].shape
     if 0 in shape:
-        return solve_exact(Scene(), dict.fromkeys(Scene().values(), np.empty(shape)))
+        return solve_exact(Scene(), broadcast(Scene(), {"drive.velocity": np.empty(shape)}))
     if not shape:
         return _integrated(scene, {key: float(array) for key, array in values.items()})
     count = math.prod(shape)
@@ -76,11 +76,14 @@ def _integrated(scene: Scene, values: Mapping[str, Any]) -> SteadyState:
     """Integrate one scene of floats, or a column of scenes."""
     from kvtheory.models.steady import quadrature  # not needed by the other methods
 
-    # The values have been checked as a whole; a column is no value for the indenter's own check.
-    indenter = copy(scene.indenter)
-    for key, value in values.items():
-        if key.startswith("indenter."):
-            object.__setattr__(indenter, key.removeprefix("indenter."), value)
+    # Past the indenter's own check: the values have been checked, and columns are no values for it.
+    indenter = object.__new__(type(scene.indenter))
+    own = {
+        key.removeprefix("indenter."): value
+        for key, value in values.items()
+        if key.startswith("indenter.")
+    }
+    vars(indenter).update(vars(scene.indenter) | own)
     return _solve(quadrature, values, indenter)
 
 
@@ -124,7 +127,7 @@ def _solve(method: ModuleType, values: Mapping[str, Any], *indenter: Any) -> Ste
     )
     if "support.depth" in values:
         return method.at_depth(*first, values["support.depth"])
-    weight = values["support.mass"] * values["support.gravity"]
+    weight = values["support.weight"]
     return method.at_load(*first, weight, values.get("support.stiffness", 0.0))
 
 

@@ -124,15 +124,17 @@ def scaled_root(exponent: Array, drive_number: Array, support_number: Array) -> 
     n, lam, kappa = exponent, drive_number, support_number
     whole = 1.0 + kappa
     s = (whole / (kappa + np.hypot(1.0, lam / cf.power_law_static_load(n)))) ** (1.0 / n)
+    depth, active = s, np.full(s.shape, True)
     for _ in range(MOST_STEPS):
         q, _Q = trailing_edge(n, lam / s)
         power = s**n
         total = cf.power_law_scaled_load(n, s, s * q, lam) + kappa * power
         slope = s * cf.power_law_scaled_load_slope(n, s, s * q, lam) + n * kappa * power
         step = np.log(total / whole) * (total / slope)
-        depth = power * (whole / total) * np.exp((slope / total - n) * step)
-        s = s * np.exp(-step)
-        if np.all(np.abs(step) <= LAST_STEP):
+        better = power * (whole / total) * np.exp((slope / total - n) * step)
+        depth, s = np.where(active, better, depth), np.where(active, s * np.exp(-step), s)
+        active &= np.abs(step) > LAST_STEP
+        if not active.any():
             break
     wedge = _wedge_root(lam, kappa)
     return np.where(n > 1.0, s, wedge), np.where(n > 1.0, depth, wedge)

@@ -66,7 +66,7 @@ def limits(values: Mapping[str, Array]) -> Limits:
         a = L * root(n * depth / (slope * L), n)
         load = K * depth * a * cf.power_law_static_load(n)
         return Limits(slope, L, n, K, l_r, depth, a, load, load, fixed=True)
-    weight = values["support.mass"] * values["support.gravity"]
+    weight = values["support.weight"]
     a_0 = L * root((n + 1.0) * (weight / K) / (2.0 * slope * L * L), n + 1.0)
     delta_0 = weight / (K * a_0 * cf.power_law_static_load(n))
     lift = weight + values.get("support.stiffness", 0.0) * delta_0

@@ -58,13 +58,15 @@ def trailing_edge(exponent: Array, number: Array) -> tuple[Array, Array]:
 
 
 def _descend(q: Array, c: Array, m: Array) -> Array:
-    positive = q >= np.finfo(float).tiny  # below, the digits are lost already
-    q = np.where(positive, q, 0.0)
+    active = q >= np.finfo(float).tiny  # below, the digits are lost already
+    q = np.where(active, q, 0.0)
     for _ in range(MOST_STEPS):
-        residual = np.where(positive, np.log(q**m * (q + c)), 0.0)
-        step = np.where(positive, residual / (m + q / (q + c)), 0.0)
+        residual = np.log(q**m * (q + c))
+        step = np.where(active, residual / (m + q / (q + c)), 0.0)
         q = q * np.exp(-step)
-        if np.all((np.abs(step) <= LAST_STEP) | (np.abs(residual) <= LAST_RESIDUAL)):
+        # Each goes on for itself, so that it does not matter what is computed together.
+        active &= (np.abs(step) > LAST_STEP) & (np.abs(residual) > LAST_RESIDUAL)
+        if not active.any():
             break
     return q
 

@@ -1,6 +1,7 @@
 r"""Steady sliding of an indenter of any shape, by quadrature and root finding.
 
-Integrated over the contact (see `kvtheory.models.steady.contact` for the geometry),
+Integrated over the contact (see `kvtheory.models.steady.contact` for its geometry, and
+`kvtheory.models.steady.asperities` for shapes that may touch in several places),
 
     W = int p dx = K (int u dx + l_r u_TE),
     F = int -h' p dx = K (u_TE^2/2 + l_r int h'^2 dx),
@@ -38,6 +39,11 @@ STATEMENT = (
     "error estimates of the quadratures and tolerances of the roots, carried to each quantity by its "
     "derivative to the depth; for shapes computed to a few units in the last place"
 )
+OF_ANY_SHAPE = (
+    f"{STATEMENT}, smooth between the kinks that they name, without details that are narrower than "
+    "1/100 of the contact or of their distance from the lowest point, or a million times its length "
+    "away; all contacts are summed"
+)
 ODD = {"leading_edge", "trailing_edge", "friction_force", "friction_coefficient"}
 """Quantities that change their sign with the velocity."""
 FORCES = {"load", "friction_force", "peak_pressure"}
@@ -65,7 +71,9 @@ def at_depth(
     Raises
     ------
     QuadratureError
-        If a quadrature or a root fails, or the contact goes beyond the indenter's reach.
+        If a quadrature or a root fails, the contact goes beyond the indenter's reach, or a callable
+        shape is not smooth where it touches. Such a shape may touch in several places: they are
+        summed, and the edges and the half-length are the outermost.
 
     Examples
     --------
@@ -179,6 +187,7 @@ def _state(
         values[name] = unit * (side * value + 0.0 if name in ODD else value)  # no negative zero
         errors[name] = own + ROUNDING + noise * abs(power)
     errors["depth"] = depth_error
+    statement = STATEMENT if model is contact else OF_ANY_SHAPE
     return SteadyState(
-        **values, model="quadrature", certificate=Certificate("estimated", STATEMENT, errors)
+        **values, model="quadrature", certificate=Certificate("estimated", statement, errors)
     )

@@ -1,0 +1,112 @@
+"""What is random in a curve, and what its digits leave out: both from the data alone."""
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+NORMAL_MAD = 0.6745
+"""Median of the magnitude of a normal variate of variance one."""
+FEWEST = 5
+"""Values from whose neighbours noise can be told."""
+MIXES = (0.0, 0.5, 0.9, 0.99, 0.999)
+"""Parts of the noise that may be in proportion to the value, the rest being the same everywhere."""
+RARE = 2.0
+"""Beyond sqrt(2 ln n) standard deviations, where the largest of n normal errors is expected: so many more
+make a false alarm in one of twenty checks rarer than one in a thousand."""
+FROM_FEW = 2.0
+"""A standard deviation from n values is known to this many 1/sqrt(n) at worst, relative."""
+SURE = 4.5
+"""Standard deviations that one number does not exceed, hardly ever."""
+FEW_DIGITS = (2, 3, 4, 5)
+"""Significant digits to which a column may have been written; more do not matter."""
+SEVERAL = 10
+"""Distinct values from which on their smallest distance says how finely they were written."""
+ON_GRID = 1e-3
+"""Of the smallest distance: how near to its multiples all values have to be."""
+SAME = 1e-6
+"""Of the last digit: so near to it is on it."""
+REPEATED = 0.1
+"""Of the rows: where as many have the time of the row before them, times are rounded."""
+
+
+def extreme(count: int) -> float:
+    """Return a multiple of sigma that the largest of so many normal errors does not exceed, hardly ever."""
+    n = max(count, 2)
+    return (math.sqrt(2.0 * math.log(n)) + RARE) * (1.0 + FROM_FEW / math.sqrt(n))
+
+
+def gaps(time: Array, residual: Array) -> tuple[Array, NDArray[np.intp]]:
+    """Return how far values are from the line between their neighbours, and which values these are.
+
+    For white noise this has the variance sigma^2 (1 + w^2 + (1 - w)^2), w the weight of the earlier
+    neighbour; it is scaled to sigma^2, and its magnitude returned.
+    """
+    known = np.flatnonzero(np.isfinite(residual))
+    t, r = time[known], residual[known]
+    span = t[2:] - t[:-2] if t.size >= FEWEST else np.zeros(0)
+    use = np.flatnonzero(span > 0.0)
+    w = (t[2:] - t[1:-1])[use] / span[use] if use.size else span
+    gap = np.abs(r[1:-1][use] - w * r[:-2][use] - (1.0 - w) * r[2:][use])
+    return gap / np.sqrt(1.0 + w * w + (1.0 - w) ** 2), known[use + 1]
+
+
+def noise(time: Array, residual: Array, curve: Array) -> Array:
+    """Return sigma of the random part of a residual for each value, from its differences to its neighbours.
+
+    The median of magnitudes is robust against jumps. Of sigmas that are the same everywhere, in proportion
+    to the curve, or mixed, the likeliest counts, by the law of Laplace.
+    """
+    gap, rows = gaps(time, residual)
+    size = np.nan_to_num(np.abs(curve))
+    if not rows.size or not size.any():
+        return np.zeros_like(residual)
+    size = size / math.sqrt(float(np.mean(size * size)))
+    likeliest, found = math.inf, np.zeros_like(residual)
+    for mix in MIXES:
+        shape = np.hypot(1.0 - mix, mix * size)
+        inner = shape[rows]
+        sigma = float(np.median(gap / inner)) / NORMAL_MAD
+        if sigma == 0.0:
+            continue
+        unlikely = float(np.sum(np.log(sigma * inner) + gap / (sigma * inner)))
+        if unlikely < likeliest:
+            likeliest, found = unlikely, sigma * shape
+    return np.asarray(found)
+
+
+def rounded(values: Array, fewest: int = FEW_DIGITS[0]) -> Array:
+    """Return what rounding leaves: half the smallest step between values, or half their last digit.
+
+    With fewer digits than `fewest` they are taken for exact.
+
+    >>> rounded(np.array([1.23e-4, 4.56e-4, 1.24e-3])).round(9).tolist()
+    [5e-07, 5e-07, 5e-06]
+    """
+    distinct = np.unique(values[np.isfinite(values)])
+    step = float(np.diff(distinct).min()) if distinct.size >= SEVERAL else 0.0
+    on_grid = step > 0.0 and np.abs(distinct / step - np.round(distinct / step)).max() <= ON_GRID
+    half = 0.5 * step if on_grid else 0.0
+    size = 10.0 ** np.floor(np.log10(np.maximum(np.abs(np.nan_to_num(values)), 1e-300)))
+    for digits in (d for d in FEW_DIGITS if d >= fewest):
+        last = size * 10.0 ** (1 - digits)
+        off = np.abs(values / last - np.round(values / last))
+        if np.nanmax(off, initial=0.0) <= SAME:
+            return np.asarray(np.maximum(half, 0.5 * last))
+    return np.full_like(values, half)
+
+
+def unsure(time: Array) -> Array:
+    """Return how far each time may be off, in s, where so many are repeated that they must be rounded.
+
+    >>> unsure(np.array([0.0, 0.1, 0.1, 0.1, 0.2])).tolist()
+    [0.1, 0.1, 0.1, 0.1, 0.1]
+    """
+    distinct = np.unique(time)
+    if distinct.size < 2 or time.size - distinct.size < REPEATED * time.size:
+        return np.zeros_like(time)
+    gaps = np.diff(distinct)
+    nearest = np.fmax(np.append(gaps, 0.0), np.append(0.0, gaps))
+    return np.asarray(nearest[np.searchsorted(distinct, time)])

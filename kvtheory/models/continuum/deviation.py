@@ -1,0 +1,97 @@
+"""How far two solutions of one transient are from each other: what its error is estimated from.
+
+Take-offs and landings are jumps in time: of the edges, and of the peak pressure. Two solutions find them
+at slightly different times; at instants between these, one has jumped and the other has not. There the
+other solution counts as far from its own jump as the instant is from the first one's.
+"""
+
+import math
+from typing import Any
+
+from kvtheory.models.continuum import evaluation as e_
+from kvtheory.models.continuum import run as r_
+from kvtheory.models.continuum.run import Run
+from kvtheory.models.continuum.stepping import TAKE_OFF
+
+DEPTH, RATE, NORMAL_FORCE, FRICTION_FORCE, EDGES, PEAK_PRESSURE, HOPS = range(7)
+"""Layout of the deviations: of the quantities in scaled form, and of the times of take-offs and landings."""
+EDGE_ROUNDING, NORMAL_ROUNDING, FRICTION_ROUNDING = range(7, 10)
+"""What rounding of the edges may do to them, and to the forces, for the pressure there acts."""
+SIZE = 10
+
+
+def deviations(times: Any, found: Any, fine: Run, other: Run, rows: Any, worst: Any) -> None:
+    """Raise the deviations `worst` to those of `other` from the states `found` of `fine`.
+
+    The `times` are in order, or not before the first of them that is after a hop; `rows` is room for two
+    states. Where the solutions do not hop equally often, nothing is known about them, and a quantity may
+    be wrong by what it changes.
+    """
+    alike = hops(fine) == hops(other)
+    last_f, last_o, next_f, next_o = -1, -1, next_hop(fine, 0), next_hop(other, 0)
+    for i in range(len(times)):
+        s = times[i]
+        while alike and next_f >= 0 and fine.events[next_f][0] <= s:
+            last_f, last_o = next_f, next_o
+            next_f, next_o = next_hop(fine, next_f + 1), next_hop(other, next_o + 1)
+        _state(other, s, rows[0])
+        shifted = 0
+        if alike:
+            for f, o in ((last_f, last_o), (next_f, next_o)):
+                if f < 0:
+                    continue
+                here, there = fine.events[f][0], other.events[o][0]
+                worst[HOPS] = max(worst[HOPS], abs(there - here))
+                if abs(s - here) <= abs(there - here):
+                    _state(other, min(max(there + (s - here), 0.0), other.now[r_.S]), rows[1])
+                    shifted = 1
+        _raise(worst, found[i], rows[0], rows[shifted])
+        if not alike:
+            _raise(worst, found[i], found[0], found[0])
+
+
+def hops(run: Run) -> int:
+    """Return how many take-offs and landings there are."""
+    count = 0
+    for i in range(run.counts[r_.EVENTS]):
+        if run.events[i][1] >= TAKE_OFF:
+            count += 1
+    return count
+
+
+def next_hop(run: Run, index: int) -> int:
+    """Return the index of the next take-off or landing from the event `index` on; -1 if there is none."""
+    for i in range(index, run.counts[r_.EVENTS]):
+        if run.events[i][1] >= TAKE_OFF:
+            return i
+    return -1
+
+
+def _state(run: Run, s: float, row: Any) -> None:
+    index = e_.record_at(s, run.records, run.counts[r_.RECORDS])
+    e_.state_at(s, index, row, run.nodes, run.records, run.given.pieces)
+
+
+def _raise(worst: Any, row: Any, one: Any, two: Any) -> None:
+    """Raise the deviations to those of `row` from the nearer of two other states, in each quantity."""
+    for k, i in (
+        (DEPTH, e_.DEPTH),
+        (RATE, e_.RATE),
+        (NORMAL_FORCE, e_.NORMAL_FORCE),
+        (FRICTION_FORCE, e_.FRICTION_FORCE),
+        (EDGES, e_.LEFT),
+        (EDGES, e_.RIGHT),
+        (PEAK_PRESSURE, e_.PEAK_PRESSURE),
+    ):
+        value = _known(row[i])
+        worst[k] = max(worst[k], min(abs(value - _known(one[i])), abs(value - _known(two[i]))))
+    rounding, pressure = row[e_.ROUNDING], row[e_.PEAK_PRESSURE]
+    arm = max(abs(_known(row[e_.LEFT])), abs(_known(row[e_.RIGHT])))
+    worst[EDGE_ROUNDING] = max(worst[EDGE_ROUNDING], rounding)
+    worst[NORMAL_ROUNDING] = max(worst[NORMAL_ROUNDING], 0.75 * pressure * rounding)
+    worst[FRICTION_ROUNDING] = max(worst[FRICTION_ROUNDING], 1.5 * arm * pressure * rounding)
+
+
+def _known(value: float) -> float:
+    """Return zero for an edge in flight: both are at the axis, where no contact is."""
+    return 0.0 if math.isnan(value) else value

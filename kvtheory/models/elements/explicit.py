@@ -1,0 +1,59 @@
+"""Explicit schemes: Runge-Kutta methods on F_z = dx Σ (K g + C g'), with the paper's rules of contact.
+
+An element in contact detaches where its pressure would be negative, relaxes as e^(-t/τ), and is in
+contact again where the indenter meets it (Eqs. 20-25). The schemes are stable up to dt C L/M = 2.785
+(the paper's) or 2 (Euler), L the length of the contact.
+"""
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kvtheory.models.elements.contact import pressure
+from kvtheory.models.elements.row import ElementRow, IndenterState, Under
+
+Tableau = tuple[tuple[float, ...], ...]
+"""(c, a_1, a_2, …) for each stage, and then the weights."""
+
+
+def explicit_step(
+    row: ElementRow, now: IndenterState, h: float, *, tableau: Tableau
+) -> IndenterState:
+    """Take a step of Runge-Kutta; which elements are in contact is settled at its end."""
+    *stages, weights = tableau
+    M, rates, pulls = row.model.mass, list[float](), list[float]()
+    for c, *a in stages:
+        depth, rate = now.depth + h * _dot(a, rates), now.rate + h * _dot(a, pulls) / M
+        at = IndenterState(now.time + c * h, depth, rate)
+        rates.append(rate)
+        pulls.append(
+            _meet(row, at, now, before=c == 1.0, within=c > 0.0)[0] if math.isfinite(M) else 0.0
+        )
+    depth, rate = now.depth + h * _dot(weights, rates), now.rate + h * _dot(weights, pulls) / M
+    new = IndenterState(now.time + h, depth, rate)
+    pull, under, pressed = _meet(row, new, now, before=True)
+    row.settle(under, np.where(pressed, depth - under.height, under.free), pressed, h)
+    if math.isinf(M):
+        return new
+    imbalance = abs(_dot(weights, pulls) - 0.5 * (pulls[0] + pull))
+    force = row.model.weight + max(abs(pull), abs(pulls[0]))
+    return new._replace(imbalance=imbalance, force=force)
+
+
+def _dot(a: Sequence[float], b: Sequence[float]) -> float:
+    return sum(x * y for x, y in zip(a, b, strict=True))
+
+
+def _meet(
+    row: ElementRow, at: IndenterState, now: IndenterState, *, before: bool, within: bool = False
+) -> tuple[float, Under, NDArray[np.bool_]]:
+    """Return M δ'', the elements under the indenter, and which of them press (Eqs. 17, 20-25)."""
+    model, under = row.model, row.under(at.time, at.time - now.time, max(at.depth, now.depth))
+    p = pressure(model, under, at.depth, at.rate, row.path.velocity(at.time, before=before))
+    pressed = model.rule.pressed(
+        at.depth - under.height, p, (under.surface, under.free), under.touched, within=within
+    )
+    force = model.spacing * float(p[pressed].sum())
+    return model.weight - model.spring * (at.depth - model.depth) - force, under, pressed

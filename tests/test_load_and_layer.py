@@ -1,0 +1,225 @@
+"""A load instead of a weight, and a thin layer instead of a stiffness: one scene in other words."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import kvtheory as kv
+from kvtheory.results import TRANSIENT_UNITS
+from kvtheory.scene import template
+from kvtheory.scene.model import layer_stiffness
+from kvtheory.scene.quantities import changed
+
+G = 9.80665
+SUPPORTS = {"dead-weight": {}, "suspended": {"stiffness": 3e7}}
+KINDS = {"dead-weight": kv.DeadWeight, "suspended": kv.Suspended}
+LAYER = kv.Foundation(modulus="5 MPa", thickness="2 mm", poisson_ratio=0.45, retardation_time=0.1)
+
+
+def scene(kind, **support):
+    return kv.Scene(support=KINDS[kind](**SUPPORTS[kind], **support))
+
+
+def assert_same_motion(a, b):
+    for name in TRANSIENT_UNITS:
+        assert np.array_equal(getattr(a, name), getattr(b, name), equal_nan=True), name
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_a_load_alone_is_the_weight_of_its_mass(kind):
+    by_load, by_mass = scene(kind, load=1000.0 * G), scene(kind, mass=1000.0)
+    assert by_load.support.mass == 1000.0
+    assert kv.steady(by_load) == kv.steady(by_mass)
+    assert_same_motion(kv.transient(by_load), kv.transient(by_mass))
+
+
+@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("solver", [kv.transient, kv.elements])
+def test_with_a_load_the_mass_is_inertia_alone(kind, solver):
+    """M and W are independent: gravity chosen for the same pair gives the same motion."""
+    mass, load = 40.0, 3000.0
+    at = "0 ms:20 ms:5"
+    by_load = solver(scene(kind, mass=mass, load=load), at=at)
+    by_gravity = solver(scene(kind, mass=mass, gravity=load / mass), at=at)
+    assert_same_motion(by_load, by_gravity)
+    assert kv.steady(scene(kind, mass=mass, load=load)).load == kv.steady(
+        scene(kind, mass=1e3 * mass, load=load)
+    ).load  # fmt: skip
+
+
+def test_a_load_can_be_swept_and_the_mass_follows_only_where_it_was_not_given():
+    loads = np.array([1e3, 5e3, 2e4])
+    over = {"support.load": loads}
+    follows, stays = kv.Scene(support=kv.DeadWeight(load=1.0)), kv.Scene()
+    steady = kv.steady(follows, over=over)
+    assert steady.load == pytest.approx(loads, rel=1e-14)
+    for base in (follows, stays):
+        swept = kv.sweep(base, over=over, quantities=["load", "depth.min", "load.steady"])
+        assert swept["load"] == pytest.approx(loads, rel=1e-14)
+        for load, least in zip(loads, swept["depth.min"], strict=True):
+            mass = load / G if base is follows else 1000.0
+            alone = kv.sweep(
+                kv.Scene(support=kv.DeadWeight(mass=mass, load=load)),
+                over={"drive.velocity": [0.1]}, quantities="depth.min",
+            )  # fmt: skip
+            assert least == pytest.approx(alone["depth.min"][0], rel=1e-9)
+    inertia = kv.sweep(follows, over={"support.mass": [1.0, 1e3]}, quantities=["load", "depth.min"])
+    assert inertia["load"].tolist() == pytest.approx([1.0, 1.0])
+    assert inertia["depth.min"][0] != inertia["depth.min"][1]
+
+
+def test_the_layer_is_its_confined_modulus_over_its_thickness():
+    E, nu, h = 5e6, 0.3, 2e-3
+    lame, shear = E * nu / ((1 + nu) * (1 - 2 * nu)), E / (2 * (1 + nu))
+    assert layer_stiffness(E, h, nu) == pytest.approx((lame + 2 * shear) / h, rel=1e-14)
+    assert layer_stiffness(E, h, 0.0) == E / h
+    assert LAYER.stiffness == layer_stiffness(5e6, 2e-3, 0.45)
+
+
+def test_a_layer_is_the_foundation_of_its_stiffness_in_every_function():
+    by_layer = kv.Scene(foundation=LAYER)
+    plain = kv.Scene(foundation=kv.Foundation(float(LAYER.stiffness), 0.1))
+    assert kv.steady(by_layer) == kv.steady(plain)
+    assert kv.steady(by_layer, method="quadrature") == kv.steady(plain, method="quadrature")
+    assert kv.asymptotes(by_layer).critical_velocity == kv.asymptotes(plain).critical_velocity
+    assert_same_motion(kv.transient(by_layer), kv.transient(plain))
+    assert kv.compare(by_layer, per_length="50 /mm").verdict == "agrees"
+
+
+def test_a_layer_is_swept_by_its_own_keys_or_gives_way_to_a_stiffness():
+    by_layer = kv.Scene(foundation=LAYER)
+    thickness = np.array([1e-3, 2e-3, 4e-3])
+    over = {"foundation.thickness": thickness, "foundation.modulus": [5e6, 6e6, 7e6]}
+    zipped = {tuple(over): tuple(over.values())}
+    steady = kv.steady(by_layer, over=over)
+    swept = kv.sweep(by_layer, over=zipped, quantities=["depth", "depth.end"])
+    assert np.array_equal(swept["depth"], steady.depth)
+    for h, E, last in zip(thickness, over["foundation.modulus"], swept["depth.end"], strict=True):
+        K = layer_stiffness(E, h, 0.45)
+        alone = kv.transient(kv.Scene(foundation=kv.Foundation(K, 0.1)), at=0.2)
+        assert last == pytest.approx(alone.depth[0], rel=1e-12)
+    over = {"foundation.stiffness": [1e9, 1e10]}
+    assert np.array_equal(kv.steady(by_layer, over=over).depth, kv.steady(over=over).depth)
+    swept = kv.sweep(by_layer, over=over, quantities="depth.end")
+    assert swept.failed == 0
+    with pytest.raises(kv.SceneError, match=r"foundation\.thickness = .*: unknown key"):
+        kv.sweep(over={"foundation.thickness": [1e-3]})
+
+
+@pytest.mark.parametrize(
+    "scene",
+    [
+        kv.Scene(support=kv.DeadWeight(load=3e3)),
+        kv.Scene(support=kv.DeadWeight(mass=2.0, load=3e3)),
+        kv.Scene(support=kv.Suspended(load=3e3, stiffness=1e6, gravity=1.6)),
+        kv.Scene(foundation=LAYER),
+    ],
+)
+def test_files_hold_what_was_given(tmp_path, scene):
+    path = tmp_path / "scene.toml"
+    path.write_text(kv.to_toml(scene))
+    read = kv.load_scene(path)
+    assert read == scene
+    assert kv.to_toml(read) == kv.to_toml(scene)
+    assert ("mass" in path.read_text()) == (scene.support.load is None or scene.support.mass == 2.0)
+    assert changed(read.support, gravity=1.0).weight == changed(scene.support, gravity=1.0).weight
+
+
+def test_the_template_tells_of_both():
+    for support in KINDS:
+        text = template(support)
+        told = text.replace('# load = "', 'load = "').replace("# modulus", "modulus")
+        told = told.replace("# thickness", "thickness").replace("# poisson", "poisson")
+        told = "\n".join(
+            line for line in told.splitlines()
+            if not line.startswith(("mass", 'stiffness = "10 GN'))
+        )  # fmt: skip
+        assert told != text
+        import tomllib
+
+        tables = tomllib.loads(told)
+        assert tables["support"]["load"] == "9.80665 N/mm"
+        assert tables["foundation"]["poisson_ratio"] == 0.45
+
+
+def test_overrides_exchange_a_stiffness_for_a_layer_and_back(tmp_path):
+    layer = [
+        "foundation.modulus=5 MPa",
+        "foundation.thickness=2 mm",
+        "foundation.poisson_ratio=0.45",
+    ]
+    read = kv.load_scene(overrides=layer)
+    assert read.foundation == replace(LAYER)
+    path = tmp_path / "layer.toml"
+    path.write_text(kv.to_toml(read))
+    assert kv.load_scene(path, ["foundation.stiffness=1 GN/m^3"]).foundation.stiffness == 1e9
+    assert kv.load_scene(overrides=["support.load=3 N/mm"]).support.weight == 3000.0
+
+
+@pytest.mark.parametrize(
+    ("make", "words"),
+    [
+        (kv.DeadWeight, ["support.mass: missing", "or support.load"]),
+        (lambda: kv.DeadWeight(load="-3 N/mm"), ["support.load", "above 0"]),
+        (lambda: kv.DeadWeight(load="3 kg"), ["support.load", "another dimension", "N/m"]),
+        (lambda: kv.DeadWeight(load=1e300, gravity=1e-300), ["follows from support.load"]),
+        (lambda: kv.Suspended(load=1.0), ["support.stiffness: missing"]),
+        (lambda: kv.Foundation(1e9), ["retardation_time: missing"]),
+        (lambda: kv.Foundation(retardation_time=1.0), ["stiffness: missing", "foundation.modulus"]),
+        (
+            lambda: kv.Foundation(modulus=1e6, retardation_time=1.0),
+            ["foundation.thickness: missing", "foundation.poisson_ratio: missing"],
+        ),
+        (
+            lambda: kv.Foundation(1e9, 1.0, thickness=1e-3),
+            ["foundation.modulus: missing", "cannot be given beside foundation.thickness"],
+        ),
+        (
+            lambda: kv.Foundation(
+                modulus=1e6, thickness=1e-3, poisson_ratio=0.5, retardation_time=1.0
+            ),
+            ["foundation.poisson_ratio", "at least 0 and below 0.5"],
+        ),
+    ],
+)  # fmt: skip
+def test_what_is_missing_or_contradicts_is_told(make, words):
+    with pytest.raises(kv.SceneError) as error:
+        make()
+    for word in words:
+        assert word in str(error.value)
+
+
+def test_files_that_lack_or_contradict_are_told_all_at_once(tmp_path):
+    path = tmp_path / "scene.toml"
+    path.write_text(
+        '[indenter]\nradius = "10 mm"\n[foundation]\nmodulus = "5 MPa"\nthickness = "2 mm"\n'
+        '[support]\nkind = "dead-weight"\ngravity = "1 m/s^2"\n[drive]\nvelocity = "1 m/s"\n'
+    )
+    with pytest.raises(kv.SceneError) as error:
+        kv.load_scene(path)
+    told = str(error.value)
+    for key in ("foundation.poisson_ratio", "foundation.retardation_time", "support.mass"):
+        assert told.count(f"{key}: missing") == 1
+    assert "or support.load" in told
+
+
+@pytest.mark.parametrize(
+    "indenter",
+    [kv.Parabola(0.01), kv.Circle(0.01), kv.Wedge(0.05), kv.PowerLaw(0.01, 3.0)],
+    ids=lambda shape: shape.shape,
+)
+@pytest.mark.parametrize("kind", KINDS)
+def test_every_shape_and_method_carries_the_load_of_a_load(indenter, kind):
+    by_load = replace(scene(kind, load=1000.0 * G), indenter=indenter)
+    by_mass = replace(scene(kind, mass=1000.0), indenter=indenter)
+    for method in ("exact", "quadrature", "asymptote"):
+        try:
+            wanted = kv.steady(by_mass, method=method)
+        except ValueError:
+            continue  # the method is not for this shape
+        assert kv.steady(by_load, method=method) == wanted
+    asked = {"quantity": "friction_coefficient", "rtol": 1e-3}
+    assert kv.solve(by_load, **asked).friction_coefficient == pytest.approx(
+        kv.solve(by_mass, **asked).friction_coefficient, rel=1e-14
+    )
