@@ -1,8 +1,11 @@
 """The book of a proof: what it has defined, recalled and established, and what it ends in."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
-from typing import TypedDict, Unpack
+from dataclasses import replace
+from functools import wraps
+from inspect import signature
+from typing import Any, ParamSpec, TypedDict, TypeVar, Unpack, cast
 
 import sympy as sp
 from sympy.core.relational import Relational
@@ -16,10 +19,14 @@ from derivations.conditions import (
     proves_positive,
 )
 from derivations.display import Meaning, UnreadableError, names_in, read_chain
+from derivations.letters import letters, printed, told
 from derivations.premises import Fact, Premise, contradiction, merged, violates, weakest
-from derivations.record import Derivation, Step, Table
+from derivations.record import Claim, Derivation, Step, Table
 from derivations.rules import HiddenError, resolve
 from derivations.symbols import TEX, alpha
+
+_P = ParamSpec("_P")
+_Value = TypeVar("_Value")
 
 _finished: dict[str, "Book"] = {}
 """The finished proofs by label, for `Book.recall`."""
@@ -38,6 +45,22 @@ class Shown(TypedDict, total=False):
 
     left: str
     right: str
+
+
+def asked(check: Callable[_P, _Value]) -> Callable[_P, _Value]:
+    """Let a check keep what it was asked with the step that it records."""
+    form = signature(check)
+
+    @wraps(check)
+    def run(*args: _P.args, **kwargs: _P.kwargs) -> _Value:
+        given = form.bind(*args, **kwargs).arguments
+        book = cast("Book", given.pop("self"))
+        words = {"reason", "shown"}
+        arguments = {name: value for name, value in given.items() if name not in words}
+        book._asked = check.__name__, arguments, dict(book._rules)
+        return check(*args, **kwargs)
+
+    return run
 
 
 def tex(expr: sp.Expr) -> str:
@@ -102,6 +125,13 @@ def established(label: str, lhs: sp.Expr) -> sp.Expr:
     return forms[-1]
 
 
+def _table(table: Table | None, new: Mapping[str, str]) -> Table | None:
+    if table is None:
+        return None
+    heads = tuple(told(head, new) for head in table.heads)
+    return Table(heads, tuple(tuple(told(cell, new) for cell in row) for row in table.rows))
+
+
 def _source(label: str) -> "Book":
     if label not in _finished:
         raise StepError(f"{label} has not been derived yet")
@@ -129,7 +159,7 @@ class Book:
     ) -> None:
         self.label, self.equation = label, equation
         self._section, self._title, self._text = section, title, text
-        self._uses = list(uses)
+        self._uses, self._declared = list(uses), uses
         self.notation = dict(notation or {})
         """Names that displays may use beside those of the symbols."""
         self._rules: dict[sp.Expr, sp.Expr] = {}
@@ -139,10 +169,14 @@ class Book:
         self._domain: tuple[str, ...] = ()
         self._used: set[sp.Expr] = set()
         """The rules that the step in hand has used."""
+        self._needed: set[sp.Expr] = set()
+        """The rules that any step has used."""
+        self._asked: tuple[str, dict[str, Any], dict[sp.Expr, sp.Expr]] = ("", {}, {})
         self._steps: list[Step] = []
         self._known: dict[tuple[sp.Expr, sp.Expr], Fact] = {}
         self._exact: dict[tuple[sp.Expr, sp.Expr], Fact] = {}
 
+    @asked
     def define(self, lhs: sp.Expr, rhs: sp.Expr, reason: str = "", **shown: Unpack[Shown]) -> None:
         """Let the left side stand for the right side: a name, or a law of the model."""
         self._displayed(sp.sympify(lhs), sp.sympify(rhs), shown)
@@ -151,6 +185,7 @@ class Book:
         fact = self._record(lhs, "=", rhs, reason, "definition", shown, trusted=True)
         self._premise(lhs, rhs, fact)
 
+    @asked
     def where(self, condition: Relational, reason: str = "") -> None:
         """Restrict what follows to where an inequality holds: part of the domain of the result."""
         if not isinstance(condition, sp.StrictGreaterThan | sp.StrictLessThan):
@@ -163,8 +198,11 @@ class Book:
         latex = f"{tex(condition.lhs)} {sign} {tex(condition.rhs)}"
         for form in (gap, raw):
             self._demand(form, latex)
-        self._steps.append(Step(tex(condition.lhs), sign, tex(condition.rhs), reason, "definition"))
+        claim = self._claim(condition.lhs, condition.rhs)
+        sides = tex(condition.lhs), sign, tex(condition.rhs)
+        self._steps.append(Step(*sides, reason, "definition", claim=claim))
 
+    @asked
     def recall(
         self,
         label: str,
@@ -201,19 +239,62 @@ class Book:
         if result is None:
             raise StepError(f"{self.label}: no step established {lhs} and {rhs}")
         _finished[self.label] = self
+        steps = self._stated()
+        new = letters(self.label, self._section)
+        cited = {step.source for step in steps} | set(self._declared)
         return Derivation(
             label=self.label,
             equation=self.equation,
             section=self._section,
-            title=self._title,
-            text=self._text,
-            latex=result.step.latex,
+            title=told(self._title, new),
+            text=told(self._text, new),
+            latex=printed(result.step.latex, new),
             status=self._status(),
-            steps=tuple(self._steps),
-            uses=tuple(self._uses),
-            table=table,
-            domain=result.domain,
-            premises=tuple(dict.fromkeys(each.latex for each in result.premises)),
+            steps=tuple(self._lettered(step) for step in steps),
+            uses=tuple(label for label in self._uses if label in cited),
+            table=_table(table, new),
+            domain=tuple(printed(each, new) for each in result.domain),
+            premises=tuple(dict.fromkeys(printed(each.latex, new) for each in result.premises)),
+        )
+
+    def _claim(self, lhs: sp.Expr, rhs: sp.Expr) -> Claim:
+        check, arguments, rules = self._asked
+        return Claim(check, sp.sympify(lhs), sp.sympify(rhs), arguments, rules)
+
+    def _stated(self) -> tuple[Step, ...]:
+        """Return the steps without the premises of which no check made use."""
+        needed, before = set(self._needed), -1
+        while len(needed) > before:
+            before = len(needed)
+            forms = [rhs for lhs, rhs in self._rules.items() if lhs in needed]
+            needed |= {lhs for lhs in self._rules if any(form.has(lhs) for form in forms)}
+        checked = [
+            sp.sympify(argument)
+            for step in self._steps
+            if step.claim and not step.source
+            for argument in step.claim.arguments.values()
+            if isinstance(argument, sp.Basic)
+        ]
+
+        def used(claim: Claim) -> bool:
+            return claim.lhs in needed or any(form.has(claim.rhs) for form in checked)
+
+        return tuple(
+            step
+            for step in self._steps
+            if not step.source or step.claim is None or used(step.claim)
+        )
+
+    def _lettered(self, step: Step) -> Step:
+        """Return the step in the letters that this document prints; a recalled one in its source's."""
+        origin = _finished.get(step.source, self)
+        new, own = letters(origin.label, origin._section), letters(self.label, self._section)
+        return replace(
+            step,
+            left=printed(step.left, new),
+            right=printed(step.right, new),
+            domain=printed(step.domain, new),
+            reason=told(step.reason, own),
         )
 
     def pair(
@@ -409,6 +490,7 @@ class Book:
         if not trusted:
             self._displayed(sp.sympify(lhs), sp.sympify(rhs), shown)
         origins = [self._origins[name] for name in self._rules if name in self._used]
+        self._needed |= self._used
         self._used = set()
         extra = () if premise is None else (premise,)
         premises = merged([*(fact.premises for fact in origins), extra])
@@ -419,7 +501,8 @@ class Book:
             own = (*own, r"\ \text{or}\ ".join(map(tex_case, cases)))
         domain = tuple(dict.fromkeys((*own, *self._domain)))
         left, right = shown.get("left", tex(lhs)), shown.get("right", tex(rhs))
-        step = Step(left, relation, right, reason, worth, domain=", ".join(own))
+        claim = self._claim(lhs, rhs)
+        step = Step(left, relation, right, reason, worth, domain=", ".join(own), claim=claim)
         fact = Fact(step, premises, conditions, domain)
         key = sp.sympify(lhs), sp.sympify(rhs)
         self._steps.append(step)
@@ -433,9 +516,11 @@ class Book:
         *, source: str, fact: Fact,
     ) -> None:  # fmt: skip
         """Keep a step of another proof."""
+        self._needed |= self._used
         self._used = set()
         left, right = shown.get("left", tex(lhs)), shown.get("right", tex(rhs))
-        step = Step(left, relation, right, reason, status, source, fact.step.domain)
+        claim = self._claim(lhs, rhs)
+        step = Step(left, relation, right, reason, status, source, fact.step.domain, claim)
         key = sp.sympify(lhs), sp.sympify(rhs)
         self._steps.append(step)
         placed = Fact(step, fact.premises, fact.conditions, fact.domain)

@@ -1,6 +1,8 @@
 """All derivations, in the order in which the document prints them."""
 
+from collections.abc import Callable, Collection
 from functools import cache
+from types import ModuleType
 
 from derivations import (
     asymptote_errors,
@@ -45,10 +47,26 @@ SECTIONS = tuple(dict.fromkeys(chapter.SECTION for chapter in _CHAPTERS))
 
 
 @cache
-def catalogue() -> tuple[Derivation, ...]:
-    """Derive everything: every step is checked anew, once in the life of the process.
+def _chapter(chapter: ModuleType) -> tuple[Derivation, ...]:
+    derived: tuple[Derivation, ...] = chapter.derive()
+    return derived
 
-    >>> [derivation.label for derivation in catalogue()][:3]
+
+def catalogue(
+    until: Collection[str] = (), report: Callable[[float], None] | None = None
+) -> tuple[Derivation, ...]:
+    """Derive everything, or the chapters up to the last of the labels `until`.
+
+    Every step is checked anew, once in the life of the process. `report` is told the share done.
+
+    >>> [derivation.label for derivation in catalogue(until=["eq3"])][:3]
     ['eq1', 'eq2', 'eq3']
     """
-    return tuple(derivation for chapter in _CHAPTERS for derivation in chapter.derive())
+    derived: list[Derivation] = []
+    for done, chapter in enumerate(_CHAPTERS, start=1):
+        derived += _chapter(chapter)
+        if report is not None:
+            report(done / len(_CHAPTERS))
+        if until and set(until) <= {derivation.label for derivation in derived}:
+            break
+    return tuple(derived)

@@ -7,10 +7,28 @@ Text fields are plain English in which mathematics stands between dollar signs (
 LaTeX fields are mathematics alone, without dollar signs and without alignment marks.
 """
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+import sympy as sp
 
 STATUSES = ("definition", "proved", "proved-leading-order", "sampled")
 """What stands behind an equality, strongest first."""
+
+
+@dataclass(frozen=True)
+class Claim:
+    """What was asked of a check, in SymPy: enough to compute with it, and to ask it again elsewhere."""
+
+    check: str
+    """Name of the check: define, recall, equal, integral, root and so on."""
+    lhs: sp.Expr
+    rhs: sp.Expr
+    arguments: Mapping[str, Any]
+    """All that the check was given, by name, but for words and LaTeX."""
+    rules: Mapping[sp.Expr, sp.Expr]
+    """What stood for what when the check was asked."""
 
 
 @dataclass(frozen=True)
@@ -26,6 +44,7 @@ class Step:
     """Label of the derivation that a recalled step comes from."""
     domain: str = ""
     """For which values of its variable a sign or a root was proved, in LaTeX."""
+    claim: Claim | None = field(default=None, compare=False, repr=False)
 
     @property
     def latex(self) -> str:
@@ -39,6 +58,23 @@ class Table:
 
     heads: tuple[str, ...]
     rows: tuple[tuple[str, ...], ...]
+
+
+@dataclass(frozen=True)
+class Calculation:
+    """A closed form with the numbers of a scene put in, as one calculates by hand."""
+
+    symbol: str
+    formula: str
+    substituted: str
+    """The formula with a quantity and its unit for each symbol; empty where it has none."""
+    shown: str
+    """The value in LaTeX, rounded, with its unit."""
+    value: float
+    """In SI."""
+    unit: str
+    note: str = ""
+    """What the number is worth, in words: of an asymptote, the next order."""
 
 
 @dataclass(frozen=True)
@@ -61,6 +97,8 @@ class Derivation:
     uses: tuple[str, ...] = ()
     """Labels of the derivations that this one rests on."""
     table: Table | None = None
+    numbers: tuple[Calculation, ...] = ()
+    """The closed forms of this derivation with the numbers of a scene."""
     domain: tuple[str, ...] = ()
     """Under which conditions the result holds, beside the assumptions on its symbols, in LaTeX."""
     premises: tuple[str, ...] = ()

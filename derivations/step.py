@@ -28,7 +28,7 @@ from derivations.algebra import (
     sign_between,
     value_at,
 )
-from derivations.book import Shown, StepError, tex
+from derivations.book import Shown, StepError, asked, tex
 from derivations.conditions import (
     Interval,
     proves_nonnegative,
@@ -59,6 +59,7 @@ class Proof(Guarded):
     checked is the SymPy expression.
     """
 
+    @asked
     def equal(
         self,
         lhs: sp.Expr,
@@ -86,6 +87,7 @@ class Proof(Guarded):
         if found:
             raise StepError(f"{self.label}: {claim} fails {found}")
 
+    @asked
     def integral(
         self,
         lhs: sp.Expr,
@@ -131,6 +133,7 @@ class Proof(Guarded):
         )
         return wanted
 
+    @asked
     def root(
         self,
         expr: sp.Expr,
@@ -169,6 +172,7 @@ class Proof(Guarded):
             self._rule(called, value)
             self._origins[called] = fact
 
+    @asked
     def unique_root(
         self, expr: sp.Expr, over: Interval, reason: str, **shown: Unpack[Shown]
     ) -> None:
@@ -190,6 +194,7 @@ class Proof(Guarded):
             raise StepError(f"{self.label}: {expr} does not change its sign at its root in {over}")
         self._record(expr, "=", sp.S.Zero, reason, "proved", shown, exact=False, over=over)
 
+    @asked
     def sign(
         self,
         expr: sp.Expr,
@@ -220,6 +225,7 @@ class Proof(Guarded):
             over=over,
         )
 
+    @asked
     def holds(
         self,
         lhs: sp.Expr,
@@ -254,6 +260,7 @@ class Proof(Guarded):
         if not any(proves(sign * form, self._conditions) for form in (gap, raw)):
             raise StepError(f"{self.label}: {claim} is not proved: left - right = {gap}")
 
+    @asked
     def greatest(
         self,
         value: sp.Expr,
@@ -286,6 +293,7 @@ class Proof(Guarded):
             cases=conditions,
         )
 
+    @asked
     def equivalent(
         self, nonnegative: sp.Expr, lhs: sp.Expr, rhs: sp.Expr, reason: str, **shown: Unpack[Shown]
     ) -> None:
@@ -299,6 +307,7 @@ class Proof(Guarded):
         self._equally_defined((nonnegative, top), (lhs - rhs, gap), f"{lhs} >= {rhs}")
         self._record(lhs, r"\ge", rhs, reason, "proved", shown, exact=False)
 
+    @asked
     def leading_order(
         self,
         expr: sp.Expr,
@@ -331,6 +340,7 @@ class Proof(Guarded):
         )
         return c, k
 
+    @asked
     def sampled(
         self,
         lhs: sp.Expr,
@@ -360,7 +370,7 @@ class Proof(Guarded):
 
 def _series(c: sp.Expr, eps: sp.Expr, k: sp.Expr, rest: sp.Expr) -> str:
     """Print 1 + c eps**k + O(eps**rest)."""
-    term = c * eps**k
+    term = (sp.factor(c) if c.free_symbols else c) * eps**k
     negative = term.could_extract_minus_sign()
     signed = f"- {tex(-term)}" if negative else f"+ {tex(term)}"
     return rf"\left(1 {signed} + O\left({tex(eps**rest)}\right)\right)"

@@ -92,6 +92,11 @@ drift, lift = sp.symbols("lambda_bar d_bar", real=True)
 compression, indenter = (sp.Function(name, real=True) for name in "ug")
 """The surface of an element, and the indenter above it."""
 
+# An indenter of any shape: the distance from its lowest line, and what each side of it contributes.
+distance, W_ahead, W_behind, F_ahead = _positive("x_abs W_ahead W_behind F_ahead")
+F_behind = sp.Symbol("F_behind", real=True)
+q_root = sp.Symbol("q_root", positive=True)
+
 # Power law h = |x|**n/(n L**(n - 1)) and wedge h = c |x|; y is |x|/a, Q is q**(n - 1), z is 1 - q**n.
 exponent, excess, L, Q, y, z_peeled = _positive("n nu L Q y peeled")
 """The exponent n, and n - 1, which is positive for every shape that is no wedge."""
@@ -163,6 +168,12 @@ TEX = {
     drift: r"\bar\lambda",
     lift: r"\bar d",
     eps_critical: r"\varepsilon_{\mathrm{c}}",
+    distance: r"\bar x",
+    q_root: r"\hat q",
+    W_ahead: r"W_{\mathrm{a}}",
+    W_behind: r"W_{\mathrm{b}}",
+    F_ahead: r"F_{\mathrm{a}}",
+    F_behind: r"F_{\mathrm{b}}",
     f_normal: "f_z",
     f_friction: "f_x",
     c_delta_load: r"c_{\delta,W}",

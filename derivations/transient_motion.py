@@ -63,7 +63,7 @@ def _forces() -> Derivation:
     friction = sp.expand(xi * PRESSURE)
     proof.recall("scaled-pressure", P, PRESSURE)
     proof.integral(
-        *(f_normal, _LOAD_SHARE * PRESSURE, CONTACT, _LOAD_SHARE * sp.integrate(PRESSURE, xi)),
+        *(f_normal, _LOAD_SHARE * P, CONTACT, _LOAD_SHARE * sp.integrate(PRESSURE, xi)),
         "all pressure is between the edges", value=NORMAL_FORCE, right=_NORMAL,
     )  # fmt: skip
     proof.integral(

@@ -11,9 +11,23 @@ from pathlib import Path
 
 import pytest
 
+from derivations.atoms import atoms
 from derivations.catalogue import catalogue
+from derivations.letters import letters
+from derivations.nomenclature import SYMBOLS
 from derivations.record import STATUSES, Derivation, Step, Table
-from derivations.render import RenderError, frame, html, latex, latex_engine, pdf, write
+from derivations.render import (
+    RenderError,
+    edition,
+    fragments,
+    frame,
+    html,
+    latex,
+    latex_engine,
+    pdf,
+    write,
+)
+from derivations.render.edition import symbols_of
 from derivations.render.text import Given, Line, blocks, sentence
 
 SAMPLE = (
@@ -49,7 +63,7 @@ def everything() -> tuple[Derivation, ...]:
 
 @pytest.fixture(scope="session")
 def page(everything) -> str:
-    return html.document(everything, "kvtheory derive")
+    return html.document(edition(everything, command="kvtheory derive"))
 
 
 def required(tool: str) -> str:
@@ -96,6 +110,37 @@ def test_labels_are_unique_and_fit_file_names(everything):
 
 def test_every_status_has_a_meaning():
     assert tuple(frame.VOCABULARY) == STATUSES
+
+
+# The nomenclature
+
+
+def test_each_symbol_of_the_document_is_in_the_nomenclature_with_a_unit(everything):
+    listed = {symbol.latex: symbol for symbol in SYMBOLS}
+    missing = {
+        (symbol, each.label)
+        for each in everything
+        for symbol in symbols_of(each)
+        if symbol not in listed
+    }
+    assert missing == set()
+    assert all(symbol.meaning and symbol.unit for symbol in SYMBOLS)
+
+
+def test_the_nomenclature_gives_each_symbol_one_meaning(everything):
+    letters = [symbol.latex for symbol in SYMBOLS]
+    assert len(set(letters)) == len(letters)
+    assert [next(atoms(letter)).symbol for letter in letters] == letters
+    shown = {symbol for each in everything for symbol in symbols_of(each)}
+    assert set(letters) <= shown
+    words = {"", "coordinate", "counter", "constant", "sign", "dimension"}
+    assert {symbol.source for symbol in SYMBOLS} <= {each.label for each in everything} | words
+
+
+def test_no_letter_is_renamed_to_one_that_its_chapter_uses_otherwise(everything):
+    for each in everything:
+        new = letters(each.label, each.section)
+        assert len(set(new.values())) == len(new), each.label
 
 
 # What is given stands in sentences, the rest in lines
@@ -217,7 +262,7 @@ def test_mathml_is_upright_where_the_symbol_is():
 
 
 def test_html_escapes_text_and_links_references():
-    shown = html.document(SAMPLE, "a <b> & c")
+    shown = html.document(edition(SAMPLE, command="a <b> & c"))
     assert "50 % &amp; more: a_b #1 {c} ~ ^ \\ &lt;d&gt; |e|" in shown
     assert 'see Eq. <a href="#eq27">(27)</a> and Eq. (99).' in shown
     assert "<code>a &lt;b&gt; &amp; c</code>" in shown
@@ -258,7 +303,7 @@ def test_html_fits_a_phone(page, tmp_path):
 
 def test_article_compiles_without_loose_ends(everything):
     required("pdflatex")
-    made, log = pdf.typeset(latex.article(everything, "kvtheory derive"))
+    made, log = pdf.typeset(latex.article(edition(everything, command="kvtheory derive")))
     assert made.startswith(b"%PDF")
     assert "undefined" not in log
     assert "Rerun to get" not in log
@@ -268,38 +313,68 @@ def test_article_compiles_without_loose_ends(everything):
 
 def test_article_escapes_text_and_is_reproducible():
     required("pdflatex")
-    source = latex.article(SAMPLE, "derive --only a_b & 5%")
+    source = latex.article(edition(SAMPLE, command="derive --only a_b & 5%"))
     assert "Half of ``it''," in source
     assert r"50 \% \& more: a\_b \#1 \{c\} \textasciitilde{}" in source
     assert r"\hyperref[eq27]{(27)} and Eq. (99)" in source
     assert pdf.typeset(source)[0] == pdf.typeset(source)[0]
 
 
-def test_fragments_compile_in_any_amsmath_document(everything, tmp_path):
+def compiled(directory: Path, names: list[str], references: str = "") -> str:
+    """Return the log of a bare document of these fragments."""
     engine = required("pdflatex")
-    write(everything, tmp_path, ["tex"])
-    names = sorted(path.name for path in (tmp_path / "fragments").iterdir())
-    assert names == sorted(f"{each.label}.tex" for each in everything)
     inputs = "\n".join(rf"\input{{fragments/{name}}}" for name in names)
-    references = " ".join(rf"\eqref{{{each.label}}}" for each in everything)
-    (tmp_path / "own.tex").write_text(
+    (directory / "own.tex").write_text(
         rf"\documentclass{{article}}\usepackage{{amsmath}}\begin{{document}}{references}"
         f"\n{inputs}\n\\end{{document}}\n"
     )
     for _ in range(3):  # references lengthen the text, and the pages move once more
         done = subprocess.run(
             [engine, "-no-shell-escape", "-interaction=nonstopmode", "-halt-on-error", "own.tex"],
-            cwd=tmp_path,
+            cwd=directory,
             capture_output=True,
             check=False,
         )
         assert done.returncode == 0, done.stdout[-800:]
-    log = (tmp_path / "own.log").read_text(errors="replace")
+    return (directory / "own.log").read_text(errors="replace")
+
+
+@pytest.mark.parametrize("kind", ["", "-steps"])
+def test_fragments_compile_in_a_bare_document_without_an_overfull_box(everything, tmp_path, kind):
+    write(everything, tmp_path, ["tex"])
+    names = [f"{each.label}{kind}.tex" for each in everything]
+    written = {path.name for path in (tmp_path / "fragments").iterdir()}
+    assert written == {f"{each.label}{end}.tex" for each in everything for end in ("", "-steps")}
+    log = compiled(tmp_path, names, " ".join(rf"\eqref{{{each.label}}}" for each in everything))
     assert not re.search(r"LaTeX Warning", log)
+    assert overfull(log) == []
 
 
-def test_a_paper_number_is_its_tag():
-    assert r"\tag{27}\label{eq27}" in latex.fragment(SAMPLE[1])
+def test_a_fragment_stands_alone(everything, tmp_path):
+    write(everything, tmp_path, ["tex"], only=["eq46"])
+    log = compiled(tmp_path, ["eq46-steps.tex"])
+    assert not re.search(r"LaTeX Warning|undefined", log)
+
+
+def test_the_document_counts_the_equations_of_a_fragment(everything):
+    printing = edition(everything)
+    for each in everything:
+        for text in (fragments.equation(each), fragments.with_steps(each, printing)):
+            assert r"\tag" not in text
+            assert text.count(rf"\label{{{each.label}}}") == 1
+
+
+def test_a_fragment_names_what_the_document_has_not(everything):
+    text = fragments.with_steps(everything[26], edition(everything))
+    assert r"\derivationref{eq28}{28 of Nakano and Kono}" in text
+    assert not re.search(r"(?<![\w}])\(\d+\)", text)
+
+
+def test_fragments_say_what_the_symbols_are_and_where_the_result_holds(everything):
+    found = next(each for each in everything if each.label == "eq27")
+    text = fragments.with_steps(found, edition(everything))
+    assert r"\item[$l_{\mathrm{r}}$] retardation length, $V \tau$ [m]," in text
+    assert "It holds for $" in text
 
 
 def test_wrong_mathematics_is_an_error_with_the_message_of_the_engine():
@@ -323,7 +398,8 @@ def test_only_the_chosen_are_written(tmp_path):
     write(SAMPLE, tmp_path, ["tex", "json"], only=["eq27"])
     entries = json.loads((tmp_path / "derivations.json").read_text())
     assert [entry["label"] for entry in entries] == ["eq27"]
-    assert [path.name for path in (tmp_path / "fragments").iterdir()] == ["eq27.tex"]
+    names = {path.name for path in (tmp_path / "fragments").iterdir()}
+    assert names == {"eq27.tex", "eq27-steps.tex"}
     assert r"\hyperref[eq3]" not in (tmp_path / "derivations.tex").read_text()
 
 
@@ -331,6 +407,15 @@ def test_a_family_is_chosen_by_its_common_name(everything, tmp_path):
     write(everything, tmp_path, ["json"], only=["F4", "F1"])
     entries = json.loads((tmp_path / "derivations.json").read_text())
     assert [entry["label"] for entry in entries] == ["F1", "F4-low", "F4-high"]
+
+
+def test_the_closure_has_all_that_a_result_rests_on_in_order(everything, tmp_path):
+    chosen = edition(everything, ["eq46"], with_premises=True).derivations
+    labels = [each.label for each in chosen]
+    assert labels[-1] == "eq46"
+    assert {"eq3", "eq28", "load", "friction"} <= set(labels)
+    for place, each in enumerate(chosen):
+        assert set(each.uses) <= set(labels[:place])
 
 
 @pytest.mark.parametrize(

@@ -1,6 +1,17 @@
-"""Derivations printed as LaTeX, HTML, PDF and JSON."""
+"""Derivations printed as LaTeX, HTML, PDF, JSON, Markdown, a notebook and BibTeX."""
 
+from derivations.render.edition import Edition, edition
 from derivations.render.pdf import RenderError, latex_engine
-from derivations.render.write import FORMATS, write
+from derivations.render.write import FORMATS, check_directory, check_formats, write, write_edition
 
-__all__ = ["FORMATS", "RenderError", "latex_engine", "write"]
+__all__ = [
+    "FORMATS",
+    "Edition",
+    "RenderError",
+    "check_directory",
+    "check_formats",
+    "edition",
+    "latex_engine",
+    "write",
+    "write_edition",
+]

@@ -6,8 +6,9 @@ from html import escape
 
 from latex2mathml.converter import convert
 
-from derivations.record import Derivation, Table
+from derivations.record import Calculation, Derivation, Table
 from derivations.render import frame
+from derivations.render.edition import Edition
 from derivations.render.pdf import RenderError
 from derivations.render.style import STYLE
 from derivations.render.text import (
@@ -16,6 +17,7 @@ from derivations.render.text import (
     Piece,
     blocks,
     by_section,
+    calculation,
     citation,
     number,
     pieces,
@@ -59,17 +61,18 @@ _LOW_FENCES = re.compile(
 """Fences around nothing tall: a browser puts gaps beside fences that may stretch."""
 
 
-def document(derivations: Sequence[Derivation], command: str = "") -> str:
+def document(edition: Edition) -> str:
     """Return the complete page."""
-    labels = {derivation.label for derivation in derivations}
+    derivations, labels = edition.derivations, edition.labels
     sections = by_section(derivations)
     body = "\n".join(
         [
-            _header(labels, command),
+            _header(edition),
             _contents(sections),
             "<main>",
             '<section id="nomenclature"><h2>Nomenclature</h2>',
-            _table(Table(frame.NOMENCLATURE_HEADS, frame.NOMENCLATURE), labels),
+            f"<p>{_text(frame.MARKS, labels)}</p>",
+            _table(edition.table(), labels),
             "</section>",
             *(
                 _section(index, section, members, derivations)
@@ -83,7 +86,7 @@ def document(derivations: Sequence[Derivation], command: str = "") -> str:
     return (
         f'<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
         '<meta name="viewport" content="width=device-width, initial-scale=1">\n'
-        f"<title>{escape(frame.TITLE)}</title>\n<style>\n{STYLE}</style>\n</head>\n"
+        f"<title>{escape(edition.title)}</title>\n<style>\n{STYLE}</style>\n</head>\n"
         f"<body>\n{body}\n</body>\n</html>\n"
     )
 
@@ -113,18 +116,20 @@ def _with_low_fences(latex: str) -> str:
     return _with_low_fences(lowered) if changes else lowered
 
 
-def _header(labels: Collection[str], command: str) -> str:
-    paragraphs = [f"<p>{_text(paragraph, labels)}</p>" for paragraph in frame.INTRODUCTION]
+def _header(edition: Edition) -> str:
+    told = [*frame.INTRODUCTION, *([frame.numbers_of(edition.scene)] if edition.scene else [])]
+    paragraphs = [f"<p>{_text(paragraph, edition.labels)}</p>" for paragraph in told]
     meanings = [
         f"<dt>{_badge(status)}</dt><dd>{escape(meaning)}</dd>"
         for status, meaning in frame.VOCABULARY.items()
     ]
-    made = f"<p>Made by <code>{escape(command)}</code>.</p>" if command else ""
+    version = f"kvtheory {edition.version}".strip()
+    made = f"<p>Made by {escape(version)}: <code>{escape(edition.command)}</code></p>"
     return "\n".join(
         [
-            f"<header><h1>{escape(frame.TITLE)}</h1>",
+            f"<header><h1>{escape(edition.title)}</h1>",
             *paragraphs,
-            f'<dl class="vocabulary">{"".join(meanings)}</dl>{made}</header>',
+            f'<dl class="vocabulary">{"".join(meanings)}</dl>{made if edition.command else ""}</header>',
         ]
     )
 
@@ -163,6 +168,7 @@ def _article(derivation: Derivation, everything: Sequence[Derivation]) -> str:
         '<ol class="steps">',
         *(_block(block, labels) for block in blocks(derivation)),
         "</ol>",
+        _numbers(derivation.numbers, labels),
         _table(derivation.table, labels) if derivation.table else "",
         _related({"Rests on": derivation.uses, "Used by": users}, labels),
         "</article>",
@@ -181,6 +187,17 @@ def _block(block: Given | Line, labels: Collection[str]) -> str:
         f'<p class="reason"><span>{_printed(remark(block.step, labels))}</span>'
         f"{_badge(block.step.status)}</p></div>{shown}</li>"
     )
+
+
+def _numbers(numbers: Sequence[Calculation], labels: Collection[str]) -> str:
+    """Return the closed forms with the numbers of a scene."""
+    lines = "".join(
+        f'<li class="step"><div class="line"><div class="scroll">'
+        f"{''.join(mathml(link, 'block') for link in relations(calculation(each)))}</div>"
+        f'<p class="reason"><span>{_text(each.note, labels)}</span></p></div></li>'
+        for each in numbers
+    )
+    return f'<p>{frame.WITH_NUMBERS}</p><ol class="steps numbers">{lines}</ol>' if lines else ""
 
 
 def _related(related: Mapping[str, Collection[str]], labels: Collection[str]) -> str:

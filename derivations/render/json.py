@@ -1,19 +1,25 @@
 """Derivations as JSON."""
 
 import json
-from collections.abc import Sequence
-from dataclasses import asdict
+from dataclasses import asdict, fields
 from typing import Any
 
 from derivations.record import Derivation
+from derivations.render.edition import Edition
 
 
-def document(derivations: Sequence[Derivation]) -> str:
+def document(edition: Edition) -> str:
     """Return a JSON list with one object per derivation."""
-    return json.dumps([_plain(each) for each in derivations], ensure_ascii=False, indent=1) + "\n"
+    return (
+        json.dumps([_plain(each) for each in edition.derivations], ensure_ascii=False, indent=1)
+        + "\n"
+    )
 
 
 def _plain(derivation: Derivation) -> dict[str, Any]:
+    record = {field.name: getattr(derivation, field.name) for field in fields(derivation)}
+    table = asdict(derivation.table) if derivation.table else None
+    numbers = [asdict(each) for each in derivation.numbers]
     steps = [
         {
             "latex": step.latex,
@@ -24,4 +30,4 @@ def _plain(derivation: Derivation) -> dict[str, Any]:
         }
         for step in derivation.steps
     ]
-    return {**asdict(derivation), "steps": steps}
+    return {**record, "table": table, "steps": steps, "numbers": numbers}

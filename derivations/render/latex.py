@@ -1,16 +1,18 @@
-"""Derivations as a LaTeX article that needs no more than texlive-latex-base, and as fragments."""
+"""Derivations as a LaTeX article that needs no more than texlive-latex-base."""
 
 import re
-from collections.abc import Collection, Iterable, Sequence
+from collections.abc import Collection, Sequence
 
-from derivations.record import Derivation, Table
+from derivations.record import Calculation, Derivation, Table
 from derivations.render import frame
+from derivations.render.edition import Edition
+from derivations.render.latex_words import escape, printed, words
 from derivations.render.text import (
     Given,
     Line,
-    Piece,
     blocks,
     by_section,
+    calculation,
     citation,
     number,
     pieces,
@@ -18,25 +20,14 @@ from derivations.render.text import (
     sentence,
 )
 
-_ESCAPES = {
-    **{char: rf"\{char}" for char in "#$%&_{}"},
-    "\\": r"\textbackslash{}",
-    "^": r"\textasciicircum{}",
-    "~": r"\textasciitilde{}",
-    # OT1 fonts have other glyphs in these places.
-    "<": r"\textless{}",
-    ">": r"\textgreater{}",
-    "|": r"\textbar{}",
-    "²": r"\textsuperscript{2}",
-    "³": r"\textsuperscript{3}",
-}
-
 _GAP = 0.03
 """Between the columns of a table, as a share of the line."""
+_WIDTHS = {4: (0.11, 0.46, 0.12, 0.22), 5: (0.1, 0.35, 0.11, 0.18, 0.14)}
+"""Of the columns of the nomenclature, by their number."""
 
 _PREAMBLE = r"""\documentclass[11pt,a4paper]{article}
 \usepackage[margin=25mm]{geometry}
-\usepackage{amsmath,amssymb,array,multicol}
+\usepackage{amsmath,amssymb,array,longtable,multicol}
 \usepackage[hidelinks]{hyperref}
 \setcounter{secnumdepth}{1}
 \setcounter{tocdepth}{2}
@@ -91,31 +82,41 @@ _PREAMBLE = r"""\documentclass[11pt,a4paper]{article}
 """
 
 
-def article(derivations: Sequence[Derivation], command: str = "") -> str:
+def article(edition: Edition) -> str:
     """Return the complete article."""
-    labels = {derivation.label for derivation in derivations}
-    introduction = [_text(paragraph, labels) for paragraph in frame.INTRODUCTION]
-    if command:
-        introduction.append(rf"Made by \texttt{{{_escape(command)}}}.")
+    labels, table = edition.labels, edition.table()
+    introduction = [words(paragraph, labels) for paragraph in frame.INTRODUCTION]
+    if edition.command:
+        version = escape(f"kvtheory {edition.version}".strip())
+        introduction.append(rf"Made by {version}: \texttt{{{escape(edition.command)}}}")
+    if edition.scene:
+        introduction.append(words(frame.numbers_of(edition.scene), labels))
     body = [
         _PREAMBLE,
-        rf"\hypersetup{{pdftitle={{{_escape(frame.TITLE)}}}}}",
+        rf"\hypersetup{{pdftitle={{{escape(edition.title)}}}}}",
         r"\begin{document}",
-        rf"\begin{{center}}\LARGE {_escape(frame.TITLE)}\end{{center}}",
+        rf"\begin{{center}}\LARGE {escape(edition.title)}\end{{center}}",
         r"\begin{abstract}\noindent",
         "\n\n".join(introduction).replace(frame.AUTHORS, rf"{frame.AUTHORS}~\cite{{paper}}"),
         r"\end{abstract}",
         _vocabulary(),
-        r"\columnsep=2em\begin{multicols}{2}\small\parskip=0pt\tableofcontents\end{multicols}",
-        r"\section*{Nomenclature}\addcontentsline{toc}{section}{Nomenclature}",
-        _tabular(Table(frame.NOMENCLATURE_HEADS, frame.NOMENCLATURE), labels, (0.2, 0.6, 0.14)),
     ]
-    for section, members in by_section(derivations).items():
+    if len(edition.derivations) > 1:
+        contents = (
+            r"\columnsep=2em\begin{multicols}{2}\small\parskip=0pt\tableofcontents\end{multicols}"
+        )
+        body.append(contents)
+    body += [
+        r"\section*{Nomenclature}\addcontentsline{toc}{section}{Nomenclature}",
+        words(frame.MARKS, labels),
+        tabular(table, labels, _WIDTHS[len(table.heads)], environment="longtable"),
+    ]
+    for section, members in by_section(edition.derivations).items():
         body.append(rf"\section{{{_heading(section)}}}")
         body.extend(_derivation(member, labels) for member in members)
     body += [
         r"\begin{thebibliography}{1}",
-        rf"\bibitem{{paper}} {_escape(frame.SOURCE)}",
+        rf"\bibitem{{paper}} {escape(frame.SOURCE)}",
         rf"\href{{https://doi.org/{frame.DOI}}}{{doi:\,{frame.DOI}}}",
         r"\end{thebibliography}",
         r"\end{document}",
@@ -123,69 +124,78 @@ def article(derivations: Sequence[Derivation], command: str = "") -> str:
     return "\n".join(body) + "\n"
 
 
-def fragment(derivation: Derivation) -> str:
-    r"""Return the result as an equation to `\input` in any document that loads amsmath."""
-    comment = f"{derivation.label}: {derivation.title} [{derivation.status}]"
-    return (
-        f"% {comment}\n\\begin{{equation}}\n  {derivation.latex}\n"
-        f"  \\tag{{{number(derivation.label)}}}\\label{{{derivation.label}}}\n\\end{{equation}}\n"
-    )
-
-
 def _derivation(derivation: Derivation, labels: Collection[str]) -> str:
     shown = f"({number(derivation.label)}) {_heading(derivation.title)}"
     parts = [
         rf"\subsection[{{{shown}}}]{{{shown}}}",
-        _text(derivation.text, labels),
+        words(derivation.text, labels),
         *(_block(block, derivation.label, labels) for block in blocks(derivation)),
     ]
     if derivation.table:
         columns = len(derivation.table.heads)
         width = (1 - _GAP * (columns - 1)) / columns
-        parts.append(_tabular(derivation.table, labels, [width] * columns))
+        parts.append(tabular(derivation.table, labels, [width] * columns))
+    parts += _numbers(derivation.numbers, labels)
     cited = {step.source for step in derivation.steps}
     further = [citation(label, labels) for label in derivation.uses if label not in cited]
     if further:
-        links = ", ".join(_printed([each]) for each in further)
+        links = ", ".join(printed([each]) for each in further)
         parts.append(rf"\nopagebreak{{\small Also used: {links}.\par}}")
     return "\n".join(part for part in parts if part)
 
 
 def _block(block: Given | Line, label: str, labels: Collection[str]) -> str:
     if isinstance(block, Given):
-        return _printed(sentence(block, labels))
-    step, tag = block.step, _escape(block.tag)
+        return printed(sentence(block, labels))
+    step, tag = block.step, escape(block.tag)
     numbered = rf"\numbered{{{label}}}{{{tag}}}" if tag else ""
     return (
-        rf"\checked{{{numbered}}}{{{_escape(step.status)}}}"
-        rf"{{{_printed(remark(step, labels))}}}{{{step.latex}}}"
+        rf"\checked{{{numbered}}}{{{escape(step.status)}}}"
+        rf"{{{printed(remark(step, labels))}}}{{{step.latex}}}"
     )
 
 
 def _vocabulary() -> str:
     items = [
-        rf"\item[{_escape(status)}] {_escape(meaning)};"
+        rf"\item[{escape(status)}] {escape(meaning)};"
         for status, meaning in frame.VOCABULARY.items()
     ]
     items[-1] = items[-1][:-1] + "."
     return "\n".join([r"\begin{description}\itemsep=0pt", *items, r"\end{description}"])
 
 
-def _tabular(table: Table, labels: Collection[str], widths: Sequence[float]) -> str:
+def _numbers(numbers: Sequence[Calculation], labels: Collection[str]) -> list[str]:
+    """Return the closed forms with the numbers of a scene."""
+    if not numbers:
+        return []
+    lines = [
+        rf"\checked{{}}{{}}{{{words(each.note, labels)}}}{{{calculation(each)}}}"
+        for each in numbers
+    ]
+    return [words(frame.WITH_NUMBERS, labels), *lines]
+
+
+def tabular(
+    table: Table,
+    labels: Collection[str],
+    widths: Sequence[float],
+    environment: str = "tabular",
+) -> str:
     """Return a table with columns of these shares of the line, rows as high as fractions need."""
-    stretch = 2.4 if any(r"\frac" in cell for row in table.rows for cell in row) else 1.3
+    stretch = 2.4 if any(r"\frac" in cell for row in table.rows for cell in row[:1]) else 1.3
     columns = rf"@{{\hspace{{{_GAP}\linewidth}}}}".join(
         rf">{{\raggedright\arraybackslash}}p{{{width:.4f}\linewidth}}" for width in widths
     )
-    rows = [" & ".join(_text(cell, labels) for cell in row) + r" \\" for row in table.rows]
-    heads = " & ".join(rf"\textbf{{{_text(head, labels)}}}" for head in table.heads)
+    rows = [" & ".join(words(cell, labels) for cell in row) + r" \\" for row in table.rows]
+    heads = " & ".join(rf"\textbf{{{words(head, labels)}}}" for head in table.heads)
+    repeat = r"\endhead" if environment == "longtable" else ""
     return "\n".join(
         [
             rf"\par{{\small\renewcommand{{\arraystretch}}{{{stretch}}}\everymath{{\displaystyle}}",
-            rf"\begin{{tabular}}{{@{{}}{columns}@{{}}}}",
-            rf"\hline {heads} \\ \hline",
+            rf"\begin{{{environment}}}{{@{{}}{columns}@{{}}}}",
+            rf"\hline {heads} \\ \hline{repeat}",
             *rows,
-            r"\hline\end{tabular}\par}",
+            rf"\hline\end{{{environment}}}\par}}",
         ]
     )
 
@@ -193,24 +203,6 @@ def _tabular(table: Table, labels: Collection[str], widths: Sequence[float]) -> 
 def _heading(text: str) -> str:
     """Return text for a heading, with words alone for the bookmark where it has mathematics."""
     if "$" not in text:
-        return _text(text, ())
-    words = "".join(re.sub(r"[\\{}^_]", "", piece.content) for piece in pieces(text, ()))
-    return rf"\texorpdfstring{{{_text(text, ())}}}{{{_escape(words)}}}"
-
-
-def _text(text: str, labels: Collection[str]) -> str:
-    return _printed(pieces(text, labels))
-
-
-def _printed(content: Iterable[Piece]) -> str:
-    printed = {
-        "words": lambda piece: _escape(piece.content),
-        "math": lambda piece: f"${piece.content}$",
-        "link": lambda piece: rf"\hyperref[{piece.target}]{{{_escape(piece.content)}}}",
-    }
-    return "".join(printed[piece.kind](piece) for piece in content)
-
-
-def _escape(words: str) -> str:
-    escaped = "".join(_ESCAPES.get(char, char) for char in words)
-    return re.sub('"([^"]*)"', r"``\1''", escaped)
+        return words(text, ())
+    bare = "".join(re.sub(r"[\\{}^_]", "", piece.content) for piece in pieces(text, ()))
+    return rf"\texorpdfstring{{{words(text, ())}}}{{{escape(bare)}}}"

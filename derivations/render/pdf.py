@@ -22,6 +22,17 @@ def latex_engine() -> str | None:
     return shutil.which(_ENGINE)
 
 
+def require_engine() -> str:
+    """Return the path of the LaTeX engine, or raise `RenderError` where there is none."""
+    engine = latex_engine()
+    if engine is None:
+        raise RenderError(
+            f"no LaTeX engine ({_ENGINE}) on PATH; install texlive-latex-base "
+            "or leave pdf out of --format"
+        )
+    return engine
+
+
 def typeset(source: str) -> tuple[bytes, str]:
     """Return the PDF of a LaTeX document and the log of the last run.
 
@@ -30,12 +41,7 @@ def typeset(source: str) -> tuple[bytes, str]:
     RenderError
         Where no LaTeX engine is found, or the engine reports an error.
     """
-    engine = latex_engine()
-    if engine is None:
-        raise RenderError(
-            f"no LaTeX engine ({_ENGINE}) on PATH; install texlive-latex-base "
-            "or leave pdf out of --format"
-        )
+    engine = require_engine()
     with TemporaryDirectory() as name:
         directory = Path(name)
         (directory / f"{_JOB}.tex").write_text(source, encoding="utf-8")

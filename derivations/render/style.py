@@ -4,13 +4,13 @@ STYLE = """\
 :root {
   color-scheme: light dark;
   --paper: #fdfdfb; --ink: #1c1c1a; --faint: #5d5d57; --rule: #d9d8d0; --link: #0b4f8a;
-  --result: #f1f4ee;
+  --result: #f1f4ee; --shade: #0004;
   --definition: #5d5d57; --proved: #1d6b34; --leading: #7a5200; --sampled: #a3261b;
 }
 @media (prefers-color-scheme: dark) {
   :root {
     --paper: #161715; --ink: #e4e3dc; --faint: #a5a49b; --rule: #3b3c37; --link: #8dbdee;
-    --result: #20241f;
+    --result: #20241f; --shade: #fff5;
     --definition: #a5a49b; --proved: #7fcf97; --leading: #e0b25c; --sampled: #f2948a;
   }
 }
@@ -47,7 +47,7 @@ article:target > h3 { text-decoration: underline 2px; text-underline-offset: 0.2
 .steps { list-style: none; margin: 0.8rem 0; padding: 0 0 0 0.9rem;
   border-left: 2px solid var(--rule); }
 .steps li { padding: 0.15rem 0 0.15rem 0.3rem; }
-.steps li.result { background: var(--result); margin-left: -0.9rem; padding-left: 1.2rem;
+.steps li.result { --paper: var(--result); background: var(--result); margin-left: -0.9rem; padding-left: 1.2rem;
   display: grid; grid-template-columns: minmax(0, 1fr) auto; align-items: last baseline; }
 .steps li.step { padding-right: 3rem; }
 .steps .number { min-width: 3rem; padding: 0 0.3rem 0 0.6rem; text-align: right;
@@ -61,7 +61,12 @@ article:target > h3 { text-decoration: underline 2px; text-underline-offset: 0.2
 .status.proved { color: var(--proved); }
 .status.proved-leading-order { color: var(--leading); border-style: dashed; }
 .status.sampled { color: var(--sampled); border-style: dotted; }
-.scroll { overflow-x: auto; padding: 0.45rem 0; }
+/* A shade at the side says that there is more to scroll to; at an end its cover hides it. */
+.scroll { overflow-x: auto; padding: 0.45rem 0; background:
+  linear-gradient(to right, var(--paper) 40%, transparent) left / 2rem 100% no-repeat local,
+  linear-gradient(to left, var(--paper) 40%, transparent) right / 2rem 100% no-repeat local,
+  linear-gradient(to right, var(--shade), transparent) left / 0.6rem 100% no-repeat scroll,
+  linear-gradient(to left, var(--shade), transparent) right / 0.6rem 100% no-repeat scroll; }
 .line .scroll { flex: 1000 0 auto; max-width: 100%; display: flex; flex-wrap: wrap;
   align-items: baseline; row-gap: 0.4rem; padding-left: 1.5rem; }
 .line .scroll math { flex: none; width: max-content; margin: 0; }
@@ -93,6 +98,6 @@ footer { font-size: 0.95rem; }
   .related { break-before: avoid; }
   .steps li, tr, .line { break-inside: avoid; }
   .steps li.result { outline: 0.5pt solid var(--rule); }
-  .scroll, article > p, .given { overflow: visible; }
+  .scroll, article > p, .given { overflow: visible; background: none; }
 }
 """

@@ -13,9 +13,9 @@ from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import groupby
 
-from derivations.record import Derivation, Step
+from derivations.record import Calculation, Derivation, Step
 
-_REFERENCE = re.compile(r"\((?P<eq>\d+)\)|\bF(?P<F>\d+)\b|\bTable (?P<table>\d+)")
+_REFERENCE = re.compile(r"\((?P<eq>\d+)\)|\bF(?P<F>\d+(?:-[a-z0-9]+)*)\b|\bTable (?P<table>\d+)")
 """How text names a derivation; the name of the group and the digits make its label."""
 
 _ONE_EQUATION = re.compile(r"Eq\. \(\d+\)")
@@ -94,6 +94,22 @@ def number(label: str) -> str:
     return re.sub("^table", "Table ", label.removeprefix("eq"))
 
 
+def reference(label: str) -> str:
+    """Return what a person calls a derivation, in a form that `pieces` makes a link of.
+
+    >>> [reference(label) for label in ("eq27", "F3", "table2", "scaling")]
+    ['Eq. (27)', 'F3', 'Table 2', 'scaling']
+    """
+    shown = number(label)
+    return f"Eq. ({shown})" if shown.isdigit() else shown
+
+
+def calculation(numbers: Calculation) -> str:
+    """Return a calculation as a chain of equalities."""
+    parts = [numbers.symbol, numbers.formula, numbers.substituted, numbers.shown]
+    return " = ".join(part for part in dict.fromkeys(parts) if part)
+
+
 def relations(latex: str) -> list[str]:
     r"""Split a chain of relations in front of each, where a line may be broken.
 
@@ -137,7 +153,7 @@ def sentence(given: Given, labels: Collection[str]) -> Iterator[Piece]:
     last = len(given.steps) - 1
     for index, (step, (source, reason)) in enumerate(zip(given.steps, remarks, strict=True)):
         yield Piece("words", "With " if index == 0 else " and " if index == last else ", ")
-        yield Piece("math", _conclusion(step))
+        yield Piece("math", conclusion(step))
         if step.domain:
             yield from (Piece("words", " for "), Piece("math", step.domain))
         if index < last and remarks[index + 1] == (source, reason):
@@ -171,11 +187,11 @@ def _is_given(line: Line) -> bool:
     step = line.step
     if line.tag or not (step.source or step.status == "definition"):
         return False
-    latex = _conclusion(step)
+    latex = conclusion(step)
     return not _TALL.search(latex) and len(_GLYPH.findall(latex)) <= _MOST_GLYPHS
 
 
-def _conclusion(step: Step) -> str:
+def conclusion(step: Step) -> str:
     """Return the step, without the middle where a chain of equalities is recalled."""
     links = relations(step.latex)
     is_chain = all(link.startswith("=") for link in links[1:]) and r"\quad" not in step.latex

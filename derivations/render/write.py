@@ -1,41 +1,47 @@
 """Write derivations to files, all or none."""
 
-import difflib
 import os
-from collections.abc import Callable, Collection, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
+from tempfile import TemporaryFile
 
+from derivations.labels import unknown
 from derivations.record import Derivation
-from derivations.render import html, json, latex, pdf
+from derivations.render import bibliography, fragments, html, json, latex, markdown, notebook, pdf
+from derivations.render.edition import Edition, edition
 
 Files = dict[str, bytes]
 """What a format makes: contents by file name, relative to the directory."""
 
 
-def _tex(derivations: Sequence[Derivation], command: str) -> Files:
-    fragments = {
-        f"fragments/{each.label}.tex": latex.fragment(each).encode() for each in derivations
+def _tex(edition: Edition) -> Files:
+    alone = {
+        f"fragments/{each.label}.tex": fragments.equation(each) for each in edition.derivations
     }
-    return {"derivations.tex": latex.article(derivations, command).encode(), **fragments}
+    whole = {
+        f"fragments/{each.label}-steps.tex": fragments.with_steps(each, edition)
+        for each in edition.derivations
+    }
+    files = {"derivations.tex": latex.article(edition), **alone, **whole}
+    return {name: text.encode() for name, text in files.items()}
 
 
-def _html(derivations: Sequence[Derivation], command: str) -> Files:
-    return {"derivations.html": html.document(derivations, command).encode()}
+def _pdf(edition: Edition) -> Files:
+    return {"derivations.pdf": pdf.typeset(latex.article(edition))[0]}
 
 
-def _pdf(derivations: Sequence[Derivation], command: str) -> Files:
-    return {"derivations.pdf": pdf.typeset(latex.article(derivations, command))[0]}
+def _one(name: str, document: Callable[[Edition], str]) -> Callable[[Edition], Files]:
+    return lambda edition: {name: document(edition).encode()}
 
 
-def _json(derivations: Sequence[Derivation], command: str) -> Files:
-    return {"derivations.json": json.document(derivations).encode()}
-
-
-FORMATS: Mapping[str, Callable[[Sequence[Derivation], str], Files]] = {
+FORMATS: Mapping[str, Callable[[Edition], Files]] = {
     "tex": _tex,
-    "html": _html,
+    "html": _one("derivations.html", html.document),
     "pdf": _pdf,
-    "json": _json,
+    "json": _one("derivations.json", json.document),
+    "md": _one("derivations.md", markdown.document),
+    "ipynb": _one("derivations.ipynb", notebook.document),
+    "bib": _one("derivations.bib", bibliography.document),
 }
 
 
@@ -59,8 +65,7 @@ def write(
     formats
         Names of `FORMATS`.
     only
-        Labels of the derivations to print, or of families: F4 is F4-low and F4-high. All where it
-        is empty.
+        What `labels.find` understands; all where it is empty.
     command
         The command that asks for the files, to be named in the documents.
 
@@ -71,23 +76,50 @@ def write(
     RenderError
         Where a format cannot be made.
     """
-    for name in formats:
-        _known(name, FORMATS, "format")
-    families = {each.label: {each.label, each.label.split("-")[0]} for each in derivations}
-    for label in only:
-        _known(label, [*families, *sorted(set().union(*families.values()))], "label")
-    chosen = [each for each in derivations if not only or not families[each.label].isdisjoint(only)]
+    check_formats(formats)
+    return write_edition(edition(derivations, only, command=command), directory, formats)
+
+
+def write_edition(
+    edition: Edition,
+    directory: Path,
+    formats: Iterable[str],
+    report: Callable[[float], None] | None = None,
+) -> list[Path]:
+    """Write one printing in each of the formats; `report` is told the share done."""
     files: Files = {}
-    for name in formats:
-        files |= FORMATS[name](chosen, command)
+    wanted = list(formats)
+    for done, name in enumerate(wanted, start=1):
+        files |= FORMATS[name](edition)
+        if report is not None:
+            report(done / len(wanted))
     return _place({Path(directory) / name: content for name, content in files.items()})
 
 
-def _known(name: str, valid: Collection[str], kind: str) -> None:
-    if name not in valid:
-        nearest = difflib.get_close_matches(name, valid, n=1, cutoff=0)
-        hint = f"; the nearest is {nearest[0]!r}" if nearest else ""
-        raise ValueError(f"unknown {kind} {name!r}{hint}")
+def check_formats(formats: Sequence[str]) -> None:
+    """Raise for no format, an unknown one, or one that this machine cannot make."""
+    if not formats:
+        raise ValueError(f"no format: expected some of {','.join(FORMATS)}")
+    mistakes = [unknown(name, FORMATS, "format") for name in formats if name not in FORMATS]
+    if mistakes:
+        raise ValueError("\n".join(mistakes))
+    if "pdf" in formats:
+        pdf.require_engine()
+
+
+def check_directory(directory: Path) -> None:
+    """Raise unless files can be written there; leave nothing behind."""
+    missing = [path for path in (directory, *directory.parents) if not path.exists()]
+    try:
+        directory.mkdir(parents=True, exist_ok=True)
+        with TemporaryFile(dir=directory):
+            pass
+    except OSError as error:
+        raise ValueError(f"cannot write to {str(directory)!r}: {error.strerror}") from error
+    finally:
+        for path in missing:
+            if path.is_dir() and not any(path.iterdir()):
+                path.rmdir()
 
 
 def _place(files: Mapping[Path, bytes]) -> list[Path]:

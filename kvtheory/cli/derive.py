@@ -1,65 +1,230 @@
 """`kvtheory derive`: the derivations, checked and printed."""
 
 import os
+import shlex
+from collections import Counter
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass, field
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import click
 
-from kvtheory.cli.console import Examples, print_json, split, teaching
+from kvtheory.cli.console import Examples, print_json, print_table, progress_bar, split, teaching
 from kvtheory.cli.group import main
+
+if TYPE_CHECKING:
+    from derivations.record import Derivation
+    from derivations.render import Edition
+
+DERIVING = 0.7
+"""Share of the work that is deriving; the rest is printing."""
 
 
 @main.command(
-    cls=Examples, example="kvtheory derive -o derivations-out --format tex,html --only eq27,F3"
+    cls=Examples, example="kvtheory derive -o my-thesis --format tex --only eq27,F3 --closure"
 )
+@click.argument("scene", required=False, type=click.Path(exists=True, dir_okay=False))
 @click.option(
-    "-o",
-    "--output",
-    type=click.Path(file_okay=False, path_type=Path),
-    default=Path("paper/derivations"),
-    show_default=True,
-    help="Directory to write to.",
-)
+    "-o", "--output", type=click.Path(file_okay=False, path_type=Path),
+    default=Path("paper/derivations"), show_default=True, help="Directory to write to.",
+)  # fmt: skip
 @click.option(
-    "--format",
-    "formats",
-    default=None,
-    metavar="tex,html,pdf,json",
+    "--format", "formats", default=None, metavar="tex,html,pdf,json,md,ipynb,bib",
     help="Default: all; pdf where a LaTeX engine is found.",
-)
+)  # fmt: skip
 @click.option(
-    "--only", default="", metavar="eq27,F3,...", help="Labels of the derivations to print."
-)
+    "--only", default="", metavar="eq27,F3,...",
+    help="Labels of the derivations to print; 27, eq. 27 and f3 will do.",
+)  # fmt: skip
+@click.option("--closure", is_flag=True, help="Add all that these rest on, in order.")
+@click.option("--numbers", is_flag=True, help="Put the quantities of SCENE into the closed forms.")
+@click.option(
+    "--shape", default=None, metavar='"c*x**4"',
+    help="Derive steady sliding for this surface of the indenter instead.",
+)  # fmt: skip
+@click.option(
+    "--notation", type=click.Path(exists=True, dir_okay=False, path_type=Path), default=None,
+    metavar="FILE.toml", help='Your letters, as in l_r = "\\\\ell"; applied everywhere.',
+)  # fmt: skip
+@click.option(
+    "--set", "overrides", multiple=True, metavar="KEY=VALUE",
+    help="Override a key of the scene; repeatable.",
+)  # fmt: skip
+@click.option("--list", "listing", is_flag=True, help="List the labels, one line each, and stop.")
 @click.option(
     "--json", "as_json", is_flag=True, help="Print one JSON object about what was written."
 )
 @teaching
-def derive(output: Path, formats: str | None, only: str, as_json: bool) -> None:
-    """Derive the equations, check every step, and print them as LaTeX, HTML, PDF and JSON."""
-    from derivations.catalogue import catalogue
-    from derivations.render import latex_engine, write
+def derive(
+    scene: str | None, output: Path, formats: str | None, only: str, closure: bool, numbers: bool,
+    shape: str | None, notation: Path | None, overrides: Sequence[str], listing: bool, as_json: bool,
+) -> None:  # fmt: skip
+    """Derive the equations, check every step, and print them: LaTeX, HTML, PDF, notebook and more."""
+    from derivations.contents import CONTENTS
+    from derivations.labels import find
+    from derivations.render import check_directory, write_edition
+    from derivations.render.notation import read_notation
 
-    if formats is None:
-        formats = "tex,html,pdf,json"
-        if latex_engine() is None:
-            formats = "tex,html,json"
-            click.echo(
-                "kvtheory: no LaTeX engine (pdflatex) found, so no PDF; the rest is written",
-                err=True,
-            )
-    derived = catalogue()
-    paths = write(derived, output, split(formats), split(only))
-    counts: dict[str, int] = {}
-    for derivation in derived:
-        counts[derivation.status] = counts.get(derivation.status, 0) + 1
-    if as_json:
-        print_json(
-            {
-                "directory": str(output),
-                "files": [str(path) for path in paths],
-                "derivations": counts,
-            }
+    if listing:
+        _print_labels(CONTENTS, as_json)
+        return
+    _check_options(scene, only, numbers, shape, overrides)
+    wanted = _formats(formats)
+    labels = find(split(only), CONTENTS)
+    request = Request(labels, closure, shape, read_notation(notation) if notation else {})
+    if numbers:
+        request.quantities, request.scene = _quantities(scene, overrides)
+    check_directory(output)
+    with progress_bar("deriving") as report:
+        edition = _edition(request, _part(report, 0.0, DERIVING))
+        paths = write_edition(edition, output, wanted, _part(report, DERIVING, 1.0))
+    _report(edition.derivations, output, paths, as_json)
+
+
+@dataclass
+class Request:
+    """What is to be derived, and how it is to be written."""
+
+    labels: list[str]
+    closure: bool
+    shape: str | None
+    notation: dict[str, str]
+    quantities: dict[str, float] = field(default_factory=dict)
+    scene: str = ""
+
+
+def _check_options(
+    scene: str | None, only: str, numbers: bool, shape: str | None, overrides: Sequence[str]
+) -> None:
+    if (scene or overrides) and not numbers:
+        raise ValueError("SCENE and --set go with --numbers, which puts their quantities in")
+    if shape is not None and (only or numbers):
+        raise ValueError(
+            "--shape derives a chapter of its own; it does not go with --only or --numbers"
         )
+
+
+def _formats(formats: str | None) -> list[str]:
+    from derivations.render import FORMATS, check_formats, latex_engine
+
+    if formats is not None:
+        wanted = split(formats)
+        check_formats(wanted)
+        return wanted
+    if latex_engine():
+        return list(FORMATS)
+    click.echo(
+        "kvtheory: no LaTeX engine (pdflatex) found, so no PDF; the rest is written", err=True
+    )
+    return [name for name in FORMATS if name != "pdf"]
+
+
+def _quantities(path: str | None, overrides: Sequence[str]) -> tuple[dict[str, float], str]:
+    """Return the quantities of a scene and of its steady state by the names of `derivations.symbols`."""
+    from kvtheory.api import steady
+    from kvtheory.scene import Parabola, load_scene
+    from kvtheory.scene.static_state import StaticState
+
+    scene = load_scene(path, overrides)
+    if not isinstance(scene.indenter, Parabola):
+        raise ValueError(
+            f'--numbers: the closed forms are of a parabola, not of a "{scene.indenter.shape}"'
+        )
+    velocity = abs(scene.drive.final_velocity)
+    if velocity == 0.0:
+        raise ValueError(
+            "--numbers: drive.velocity is 0; the closed forms are of an indenter that slides"
+        )
+    state, at_rest = steady(scene), StaticState.of(scene)
+    quantities = {
+        "R": scene.indenter.radius,
+        "K": scene.foundation.stiffness,
+        "tau": scene.foundation.retardation_time,
+        "C": scene.foundation.damping,
+        "V": velocity,
+        "delta": float(state.depth),
+        "W": float(state.load),
+        "F": abs(float(state.friction_force)),
+        "mu": abs(float(state.friction_coefficient)),
+        "delta_0": at_rest.depth,
+        "a_0": at_rest.half_length,
+        "W_0": at_rest.load,
+        "lambda": abs(at_rest.drive_number),
+    }
+    for key, name in {"mass": "M", "gravity": "g", "stiffness": "k_s"}.items():
+        if f"support.{key}" in scene.values():
+            quantities[name] = scene.values()[f"support.{key}"]
+    if not at_rest.fixed:
+        quantities |= {"epsilon": at_rest.inertia_number, "kappa": at_rest.support_number}
+    where = Path(path).name if path else "Table 1"
+    return quantities, f"{where} ({scene.support.kind} support)"
+
+
+def _edition(request: Request, report: Callable[[float], None] | None) -> "Edition":
+    """Derive what was asked for."""
+    from derivations.calculation import FOLLOWING, shown_quantities, with_numbers
+    from derivations.catalogue import catalogue
+    from derivations.render import edition
+    from derivations.shape import derive_shape, symbols, title
+    from kvtheory import __version__
+
+    about: dict[str, Any] = {
+        "command": _command(request),
+        "version": __version__,
+        "notation": request.notation,
+    }
+    if request.shape is not None:
+        chapter = derive_shape(request.shape)
+        own = symbols(request.shape)
+        return edition(chapter, **about, title=title(request.shape), symbols=own)
+    needed = {*request.labels, *(label for label, _ in FOLLOWING)} if request.labels else ()
+    derived: Iterable[Derivation] = catalogue(needed, report)
+    if request.quantities:
+        derived = with_numbers(derived, request.quantities)
+        about |= {"values": shown_quantities(request.quantities), "scene": request.scene}
+    return edition(tuple(derived), request.labels, with_premises=request.closure, **about)
+
+
+def _command(request: Request) -> str:
+    """Return the command that makes the same content again, wherever it is written."""
+    context = click.get_current_context()
+    given = {
+        name: value for name, value in context.params.items()
+        if value and name not in {"output", "formats", "as_json"}
+    }  # fmt: skip
+    options = {option.name: option for option in context.command.params}
+    words = [context.command_path]
+    for name, value in given.items():
+        flag = options[name].opts[-1] if name != "scene" else ""
+        values = list(value) if isinstance(value, tuple) else [value]
+        for each in values:
+            words += [word for word in (flag, "" if each is True else str(each)) if word]
+    return " ".join([words[0], shlex.join(words[1:])]).strip()
+
+
+def _part(
+    report: Callable[[float], None] | None, start: float, end: float
+) -> Callable[[float], None] | None:
+    """Let a part of the work report its own share."""
+    return None if report is None else lambda share: report(start + (end - start) * share)
+
+
+def _print_labels(contents: dict[str, str], as_json: bool) -> None:
+    if as_json:
+        print_json([{"label": label, "title": title} for label, title in contents.items()])
+        return
+    print_table(("label", "title"), contents.items())
+
+
+def _report(
+    derived: Sequence["Derivation"], output: Path, paths: Sequence[Path], as_json: bool
+) -> None:
+    """Say what was derived and what was written."""
+    counts = dict(Counter(each.status for each in derived))
+    if as_json:
+        files = [str(path) for path in paths]
+        print_json({"directory": str(output), "files": files, "derivations": counts})
         return
     click.echo("Derived and checked: " + ", ".join(f"{n} {status}" for status, n in counts.items()))
     for path in paths:
@@ -67,4 +232,6 @@ def derive(output: Path, formats: str | None, only: str, as_json: bool) -> None:
             click.echo(f"  {path}")
     fragments = [path for path in paths if path.parent != output]
     if fragments:
-        click.echo(f"  {fragments[0].parent}{os.sep} ({len(fragments)} equations for \\input)")
+        click.echo(
+            f"  {fragments[0].parent}{os.sep} ({len(derived)} equations for \\input, alone and with steps)"
+        )

@@ -1,0 +1,115 @@
+r"""The letters in which the document prints, so that each means one thing throughout.
+
+A derivation is written in the letters that suit it best; where two chapters use one letter for two
+things, one of them prints another. A renaming of symbols keeps every equality that was checked.
+
+>>> printed(r"\frac{d}{ds} u + \int g \, dX", letters("F8", "Transient: theorems"))
+'\\frac{\\mathrm{d}}{\\mathrm{d}s} \\bar u + \\int \\bar g \\, \\mathrm{d}X'
+"""
+
+import re
+from collections.abc import Mapping
+from functools import cache
+
+from derivations.atoms import replaced
+
+_CIRCLE = {r"\varepsilon": r"\gamma", r"\xi": r"\hat x"}
+_LIFTED = {"s": r"\hat a", "f": r"\hat f", "r": r"\hat r"}
+_STEP = {"h": r"\Delta s"}
+_PASSED = {r"\sigma": r"\bar\sigma", r"\eta": r"\bar\eta", "m": r"\bar m"}
+_SHAPES = {
+    **_PASSED, r"\theta": r"\bar\theta", "f": r"\bar f", "y": r"\hat y",
+    "y_1": r"\hat y_1", "y_2": r"\hat y_2", "d_1": r"\bar d_1", "k": r"\bar k", "c": r"\hat c",
+}  # fmt: skip
+
+BY_SECTION: dict[str, dict[str, str]] = {
+    "Dimensionless groups": {
+        **{letter: rf"\mathsf{{{letter}}}" for letter in "NXZT"},
+        "D": r"\mathbf{D}", "E": r"\mathbf{E}",
+        r"\epsilon": r"\varepsilon",
+    },
+    "Tables": {r"\epsilon": r"\varepsilon"},
+    "Friction without integrals": {"r": r"\bar r"},
+    "Power law and wedge": {
+        "s": r"\hat a", "s_1": r"\hat a_1", "s_2": r"\hat a_2", "r": r"\hat r", "z": r"\bar z",
+        "c": r"\hat c", "k": r"\bar k",
+    },
+    "True circle": _CIRCLE,
+    "Transient sliding": {r"\hat p": r"\bar p", "z_A": r"z_{\mathrm{A}}"},
+    "Transient: theorems": {
+        r"\hat p": r"\bar p", "a": r"\hat a", "u": r"\bar u", "u_0": r"\bar u_0", "g": r"\bar g",
+    },
+    "Discrete elements": {
+        r"\hat p": r"\bar p", "u": r"\bar u", "L": r"\ell_{\mathrm{c}}", "R": r"\hat R", "z": r"\hat z",
+        "y": r"\bar y", r"\Delta": r"\Delta x", r"\eta": r"\hat\eta",
+        "D": r"\hat D", "b": r"b_{\mathrm{e}}", "k": "j", "m": r"m_{\mathrm{k}}", **_STEP,
+        **{f"r{end}": rf"\hat\varrho{end}"
+           for end in ("", "_1", "_2", "_3")},
+        **{f"w{end}": rf"\hat w{end}" for end in ("", "_0", "_1")},
+    },
+}  # fmt: skip
+"""By section: the letter as it is written, and as it is printed."""
+
+BY_LABEL: dict[str, dict[str, str]] = {
+    "eq26": {"s": r"\bar s"},
+    "F2": {letter: rf"\hat {letter}" for letter in "XYT"},
+    "F3": {letter: rf"\hat {letter}" for letter in "XYT"},
+    "F7": {"n": r"\hat n", r"\xi": r"\hat x"},
+    "F16": {r"\xi": r"\hat x"},
+    "scaled-load": _LIFTED,
+    "balance": _LIFTED,
+    "error-load-suspended": _LIFTED,
+    "error-depth-low": {"b": r"b_\delta", "E": r"E_\delta"},
+    "circle-dead-weight": {**_LIFTED, "m": "m"},
+    "F8": {**_STEP, **_PASSED, "c": r"\bar c"},
+    "F9": _SHAPES,
+    "F10": {**_STEP, **_PASSED, "c": r"c_{\mathrm{t}}", "X_e": r"X_{\mathrm{e}}"},
+    "F11": _PASSED,
+    "F13": {"f": r"f_{\mathrm{b}}"},
+    "F13-root": {"f": r"f_{\mathrm{b}}", "n": r"\bar n", r"\beta": r"\bar b"},
+    "F14-surface": {"E": r"E_{\mathrm{s}}"},
+    "F15-runge-kutta": {"u": "u"},
+    "element-kink": {"u": "u", r"\hat p": r"\bar p"},
+    "element-stability": {
+        "w": r"\varpi",
+        "c": "c_1",
+        "x": r"\tilde x",
+        "y": r"\tilde y",
+        r"\eta_{+}": r"\hat\eta_{+}",
+    },
+    "F15-sawtooth": {"h": "h"},
+}
+"""Beside these, by label or by the first part of one; they come before those of the section."""
+
+_DIFFERENTIAL = re.compile(
+    r"(?<![A-Za-z\\])d(?=[A-Za-z](?![A-Za-z])|\\(?:xi|zeta|sigma|ell)(?![a-z]))"
+)
+_SPACED = re.compile(r"\\frac\{d((?:\^\{\d+\})?)\}\{d (?=[A-Za-z\\])")
+_OPERATOR = re.compile(r"\\frac\{d((?:\^\{?\d\}?)?)\}(?=\{\\mathrm\{d\})")
+
+
+@cache
+def _merged(label: str, section: str) -> Mapping[str, str]:
+    family = label.split("-", maxsplit=1)[0]
+    return {
+        **BY_SECTION.get(section, {}),
+        **(BY_LABEL[label] if label in BY_LABEL else BY_LABEL.get(family, {})),
+    }
+
+
+def letters(label: str, section: str) -> Mapping[str, str]:
+    """Return the letters that a derivation prints for those that it is written in."""
+    return _merged(label, section)
+
+
+def printed(latex: str, new: Mapping[str, str]) -> str:
+    """Write mathematics in other letters, with upright differentials."""
+    spaced = _SPACED.sub(r"\\frac{\\mathrm{d}\1}{\\mathrm{d} ", latex)
+    upright = _OPERATOR.sub(r"\\frac{\\mathrm{d}\1}", _DIFFERENTIAL.sub(r"\\mathrm{d}", spaced))
+    return replaced(upright, new.get)
+
+
+def told(text: str, new: Mapping[str, str]) -> str:
+    """Write text in which mathematics stands between dollar signs in other letters."""
+    parts = text.split("$")
+    return "$".join(printed(part, new) if i % 2 else part for i, part in enumerate(parts))

@@ -1,0 +1,110 @@
+r"""Equations to `\input` in any document that loads amsmath: alone, or with all that they need.
+
+A fragment has no number of its own: the document counts it, and refers to it by its label.
+"""
+
+from collections.abc import Collection
+
+from derivations.contents import CONTENTS
+from derivations.record import Derivation, Table
+from derivations.render import frame
+from derivations.render.breaking import lines, width
+from derivations.render.edition import Edition
+from derivations.render.latex_words import escape, printed, words
+from derivations.render.text import (
+    Given,
+    Line,
+    Piece,
+    blocks,
+    calculation,
+    number,
+    remark,
+    sentence,
+)
+
+LINE = 27.0
+"""Width of a numbered formula in em: what a line of 345 pt, that of `article`, leaves in 10 pt."""
+
+SIZES = ((1.0, ""), (1.05, "small"), (1.15, "footnotesize"), (1.4, "scriptsize"), (9.0, "tiny"))
+"""What cannot be broken is set smaller: by width in lines, the size."""
+
+_REFER = (
+    r"\providecommand{\derivationref}[2]{\ifcsname r@#1\endcsname\ref{#1}\else#2\fi}"
+    " % the number in this document or, if it is not there, the name\n"
+)
+
+
+def equation(derivation: Derivation) -> str:
+    """Return the result alone."""
+    return f"% {_comment(derivation)}\n{_display(derivation.latex, derivation.label)}"
+
+
+def with_steps(derivation: Derivation, edition: Edition) -> str:
+    """Return the result with its steps, the meaning of its symbols and its domain."""
+    labels = CONTENTS.keys() | edition.labels
+    parts = [
+        f"% {_comment(derivation)}",
+        f"% rests on: {', '.join(derivation.uses) or 'nothing else'}",
+        _REFER + r"\begingroup\emergencystretch=6em\raggedright",
+        rf"\paragraph{{{words(derivation.title, ())}.}}",
+        words(derivation.text, labels, _reference),
+        *(_block(block, derivation.label, labels) for block in blocks(derivation)),
+    ]
+    parts += _where(edition.table(edition.symbols(derivation)), labels)
+    if holds := edition.domain(derivation):
+        parts.append(rf"\par\smallskip {words(holds, labels, _reference)}")
+    if derivation.numbers:
+        parts.append(rf"\par {frame.WITH_NUMBERS}")
+        for each in derivation.numbers:
+            note = rf"\par\nopagebreak ({words(each.note, ())})" if each.note else ""
+            parts.append(_display(calculation(each)) + note)
+    return "\n".join(part for part in [*parts, r"\par\endgroup"] if part) + "\n"
+
+
+def _where(table: Table, labels: Collection[str]) -> list[str]:
+    """Return the list of symbols with meaning, unit, where from and, if there is one, value."""
+    if not table.rows:
+        return []
+    items = []
+    for symbol, meaning, unit, source, *value in table.rows:
+        shown = "".join(f", {each}" for each in value if each)
+        text = f"{meaning} [{unit}], {source}{shown}"
+        items.append(rf"\item[{symbol}] {words(text, labels, _reference)}")
+    start = r"\begin{description}\itemsep=0pt\parsep=0pt"
+    return [r"\par where", start, *items, r"\end{description}"]
+
+
+def _comment(derivation: Derivation) -> str:
+    return f"{derivation.label}: {derivation.title} [{derivation.status}]"
+
+
+def _display(latex: str, label: str = "") -> str:
+    """Return a displayed formula, broken where it is wide, with its label if it is numbered."""
+    star = "" if label else "*"
+    broken = lines(latex, LINE if label else LINE + 4)
+    body = broken[0]
+    if "&" in body:
+        rows = " \\\\\n    ".join(broken)
+        body = f"\\begin{{split}}\n    {rows}\n  \\end{{split}}"
+    wide = max(map(width, broken)) / (LINE if label else LINE + 4)
+    size = next((name for most, name in SIZES if wide <= most), SIZES[-1][1])
+    mark = rf"\label{{{label}}}" if label else ""
+    shown = f"\\begin{{equation{star}}}{mark}\n  {body}\n\\end{{equation{star}}}\n"
+    return f"\\begingroup\\{size}\n{shown}\\endgroup\n" if size else shown
+
+
+def _block(block: Given | Line, label: str, labels: Collection[str]) -> str:
+    if isinstance(block, Given):
+        return printed(sentence(block, labels), _reference)
+    reason = printed(remark(block.step, labels), _reference)
+    told = rf"\par {reason[:1].upper()}{reason[1:]}:\nopagebreak" if reason else ""
+    return told + "\n" + _display(block.step.latex, label if block.tag else "").rstrip()
+
+
+def _reference(piece: Piece) -> str:
+    """Print a reference that is a number where the document has it, and a name where it has not."""
+    label = piece.target
+    name = number(label)
+    name = f"{escape(name)} of Nakano and Kono" if name.isdigit() else escape(name)
+    shown = rf"\derivationref{{{label}}}{{{name}}}"
+    return f"({shown})" if piece.content.startswith("(") else shown

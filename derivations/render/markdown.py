@@ -1,0 +1,83 @@
+"""Derivations as MyST Markdown: formulas between double dollars, with labels to refer to."""
+
+from collections.abc import Collection, Iterable
+
+from derivations.record import Derivation, Table
+from derivations.render import frame
+from derivations.render.edition import Edition
+from derivations.render.text import (
+    Given,
+    Line,
+    Piece,
+    blocks,
+    by_section,
+    calculation,
+    citation,
+    pieces,
+    remark,
+    sentence,
+)
+
+
+def document(edition: Edition) -> str:
+    """Return the page, for Sphinx or Jupyter Book with the extensions `dollarmath` and `amsmath`."""
+    labels = edition.labels
+    told = [*frame.INTRODUCTION, *([frame.numbers_of(edition.scene)] if edition.scene else [])]
+    parts = [f"# {edition.title}", *(_text(paragraph, labels) for paragraph in told)]
+    parts += [f"*{status}*: {meaning}" for status, meaning in frame.VOCABULARY.items()]
+    if edition.command:
+        parts.append(f"Made by {f'kvtheory {edition.version}'.strip()}: `{edition.command}`")
+    parts += ["## Nomenclature", _text(frame.MARKS, labels), _table(edition.table(), labels)]
+    for section, members in by_section(edition.derivations).items():
+        parts.append(f"## {_text(section, ())}")
+        parts += [_derivation(member, edition) for member in members]
+    parts += ["## Source", f"{frame.SOURCE} <https://doi.org/{frame.DOI}>"]
+    return "\n\n".join(parts) + "\n"
+
+
+def _derivation(derivation: Derivation, edition: Edition) -> str:
+    labels = edition.labels
+    parts = [f"### {_text(derivation.title, ())}", _text(derivation.text, labels)]
+    parts += [_block(block, derivation.label, labels) for block in blocks(derivation)]
+    if derivation.table:
+        parts.append(_table(derivation.table, labels))
+    parts.append(edition.domain(derivation))
+    if derivation.numbers:
+        parts.append(frame.WITH_NUMBERS)
+        for each in derivation.numbers:
+            parts += [f"$$\n{calculation(each)}\n$$", _text(each.note, labels)]
+    if derivation.uses:
+        uses = ", ".join(_printed([citation(label, labels)]) for label in derivation.uses)
+        parts.append(f"Rests on {uses}.")
+    return "\n\n".join(part for part in parts if part)
+
+
+def _block(block: Given | Line, label: str, labels: Collection[str]) -> str:
+    if isinstance(block, Given):
+        return _printed(sentence(block, labels))
+    mark = f" ({label})" if block.tag else ""
+    reason = _printed(remark(block.step, labels))
+    worth = f"{reason} — *{block.step.status}*" if reason else f"*{block.step.status}*"
+    return f"$$\n{block.step.latex}\n$${mark}\n\n{worth}"
+
+
+def _table(table: Table, labels: Collection[str]) -> str:
+    rows = [table.heads, ("---",) * len(table.heads), *table.rows]
+    return "\n".join(f"| {' | '.join(_text(cell, labels) for cell in row)} |" for row in rows)
+
+
+def _text(text: str, labels: Collection[str]) -> str:
+    return _printed(pieces(text, labels))
+
+
+def _printed(content: Iterable[Piece]) -> str:
+    write = {
+        "words": lambda piece: _escape(piece.content),
+        "math": lambda piece: f"${piece.content}$",
+        "link": lambda piece: f"[{_escape(piece.content)}](#{piece.target})",
+    }
+    return "".join(write[piece.kind](piece) for piece in content)
+
+
+def _escape(words: str) -> str:
+    return "".join(f"\\{char}" if char in "\\`*_#<>|[]$" else char for char in words)

@@ -1,0 +1,66 @@
+"""Other people's letters: a map from the symbols of the nomenclature to LaTeX."""
+
+import re
+import tomllib
+from pathlib import Path
+
+from derivations.atoms import atoms
+from derivations.labels import unknown
+from derivations.nomenclature import SYMBOLS
+
+
+def plain(latex: str) -> str:
+    r"""Return the name of a symbol as one types it.
+
+    >>> [plain(latex) for latex in (r"x_{\mathrm{TE}}", r"\delta_0", r"V^{*}", r"\hat p")]
+    ['x_TE', 'delta_0', 'V*', 'hat p']
+    """
+    return re.sub(r"\\mathrm|\\text|[\\{}^]", "", latex)
+
+
+def read_notation(path: Path) -> dict[str, str]:
+    r"""Read a TOML file of lines like ``l_r = "\\ell"`` and return new LaTeX by the LaTeX of a symbol.
+
+    Raises
+    ------
+    ValueError
+        For a file that is not TOML, an unknown symbol, a letter that is not one symbol, and two
+        meanings for one letter; all mistakes at once, one a line.
+    """
+    try:
+        wanted = tomllib.loads(path.read_text(encoding="utf-8"))
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+        raise ValueError(f"--notation {path}: not TOML: {error}") from error
+    names = {plain(symbol.latex): symbol.latex for symbol in SYMBOLS}
+    mistakes = [unknown(name, names, "symbol") for name in wanted if name not in names]
+    letters = {names[name]: letter for name, letter in wanted.items() if name in names}
+    for symbol, letter in letters.items():
+        mistakes += _mistakes(symbol, letter)
+    valid = {symbol: letter for symbol, letter in letters.items() if isinstance(letter, str)}
+    mistakes += _clashes(valid)
+    if mistakes:
+        raise ValueError("\n".join(f"--notation {path}: {each}" for each in mistakes))
+    return valid
+
+
+def _mistakes(symbol: str, letter: object) -> list[str]:
+    if not isinstance(letter, str):
+        return [f'{plain(symbol)} = {letter!r}: expected text, as in {plain(symbol)} = "b"']
+    found = list(atoms(letter))
+    if [(atom.start, atom.end) for atom in found] != [(0, len(letter))] or found[0].primes:
+        return [f"{plain(symbol)} = {letter!r}: expected one symbol in LaTeX, such as \\ell or b_0"]
+    return []
+
+
+def _clashes(letters: dict[str, str]) -> list[str]:
+    """Say which letters would have two meanings."""
+    meaning = {symbol.latex: symbol.latex for symbol in SYMBOLS if symbol.latex not in letters}
+    found = []
+    for symbol, letter in letters.items():
+        for atom in atoms(letter):
+            other = meaning.setdefault(atom.symbol, symbol)
+            if other != symbol:
+                found.append(
+                    f"{plain(symbol)} = {letter!r}: that letter already stands for {plain(other)}"
+                )
+    return found

@@ -1,0 +1,125 @@
+"""A shape of one's own: derived as the paper's parabola is, and refused where it cannot be."""
+
+import mpmath as mp
+import pytest
+import sympy as sp
+
+from derivations import steady
+from derivations import symbols as s
+from derivations.book import established
+from derivations.shape import derive_shape
+from derivations.shape_text import read_shape
+
+DIGITS = 30
+
+
+@pytest.fixture(autouse=True)
+def _digits():
+    with mp.workdps(DIGITS):
+        yield
+
+
+def results(text):
+    found = {each.label: each for each in derive_shape(text)}
+    return found, {
+        name: established(f"shape-{name}", symbol)
+        for name, symbol in (
+            ("trailing", s.l_r),
+            ("load", s.W),
+            ("friction", s.F),
+            ("coefficient", s.mu),
+        )
+    }
+
+
+def numbers(rise, forms, point):
+    """Return l_r, W and F of the closed forms, and W and F by quadrature of the elements' law."""
+    values = {symbol: sp.Rational(value) for symbol, value in point.items()}
+    closed = {name: mp.mpf(sp.N(form.subs(values).subs(values), DIGITS)) for name, form in forms.items()
+              if name == "trailing"}  # fmt: skip
+    l_r = closed["trailing"]
+    values[s.l_r] = sp.Float(str(l_r), DIGITS)
+    h = sp.lambdify(s.distance, rise.subs(values), "mpmath")
+    slope = sp.lambdify(s.distance, sp.diff(rise, s.distance).subs(values), "mpmath")
+    K, a, b = (mp.mpf(sp.N(values[x], DIGITS)) for x in (s.K, s.a, s.q))
+    depth = h(a)
+
+    def force(weight):
+        ahead = mp.quad(lambda x: weight(x, 1) * K * (depth - h(x) + l_r * slope(x)), [0, a])
+        return ahead + mp.quad(
+            lambda x: weight(x, -1) * K * (depth - h(x) - l_r * slope(x)), [0, a * b]
+        )
+
+    load = force(lambda x, side: mp.mpf(1))
+    friction = force(lambda x, side: side * slope(x))
+    return (
+        load,
+        friction,
+        [mp.mpf(sp.N(forms[name].subs(values), DIGITS)) for name in ("load", "friction")],
+    )
+
+
+POINT = {s.K: "3.1", s.a: "0.7", s.q: "0.36", s.q_root: "0.6", s.C: "1", s.V: "1"}
+
+
+@pytest.mark.parametrize(
+    "text", ["c*x**4", "c*abs(x)", "x**2/(2*R)", "2*x^2 + c*x^4", "c*|x|**1.5", "0.3*abs(x) + x**2"]
+)
+def test_load_and_friction_are_the_integrals_of_the_pressure(text):
+    found, forms = results(text)
+    point = {**POINT, **dict.fromkeys(read_shape(text).parameters, "1.3")}
+    load, friction, closed = numbers(read_shape(text).rise, forms, point)
+    assert closed == [pytest.approx(load, rel=1e-20), pytest.approx(friction, rel=1e-20)]
+    assert all(
+        each.status in {"definition", "proved", "proved-leading-order"} for each in found.values()
+    )
+
+
+def test_the_parabola_is_the_one_of_the_paper():
+    _, forms = results("x**2/(2*R)")
+    depth = s.a**2 / (2 * s.R)
+    for name, known in (("load", steady.load), ("friction", steady.friction)):
+        assert sp.simplify(forms[name] - known.subs(s.delta, depth)) == 0
+    assert sp.simplify(forms["coefficient"] - steady.friction_coefficient) == 0
+
+
+@pytest.mark.parametrize("n", [2, 3, 4, 6])
+def test_the_limits_of_a_power_are_the_known_ones(n):
+    found, _ = results(f"c*abs(x)**{n}")
+    slope = sp.Symbol("c", positive=True) * s.a ** (n - 1)
+    low, high = (found[f"shape-{name}"].steps[-1].claim.rhs for name in ("low", "high"))
+    assert sp.simplify(low - slope * s.l_r / s.a * n * sp.Rational(n + 1, 2 * n - 1)) == 0
+    assert sp.simplify(high - slope * sp.Rational(n**2, 2 * n - 1)) == 0
+
+
+def test_a_wedge_ends_at_its_tip_with_the_slope_as_friction_coefficient():
+    found, _ = results("c*|x|")
+    assert found["shape-tip"].latex == r"\mu = c"
+    assert "shape-high" not in found
+
+
+def test_it_says_where_closed_forms_end():
+    quartic = {each.label: each.text for each in derive_shape("c*x**4")}
+    assert "closed form ends" in quartic["shape-trailing"]
+    assert "closed form ends" not in quartic["shape-leading"]
+    assert (
+        "closed form ends"
+        in {e.label: e.text for e in derive_shape("x**2 + x**4")}["shape-leading"]
+    )
+    parabola = {each.label: each.text for each in derive_shape("b*x**2")}
+    assert "has a closed form" in parabola["shape-trailing"]
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "", "x", "c*x", "x**3", "c", "c*x**4 + 1", "abs(x)**0.5", "x**2 - x**4", "-x**2", "x**n", "1/x**2",
+        "x**13", "x**2/0", "sin(x)", "x.real", "x[0]", "lambda: 1", "__import__('os').system('true')",
+        "abs(x, x)", "abs(x)(x)", "f'{x}'", "x if x else x", "(x for x in x)", "a*x**2", "K*x**2", "x**2;x",
+        "True*x**2", "9**9**9*x**2", "x**2" + " " * 300, "'x'", "x**2 == 1", "x := 1", "1e999*x**2",
+        "x**2**9",
+    ],
+)  # fmt: skip
+def test_what_is_no_shape_is_refused(text):
+    with pytest.raises(ValueError, match="shape"):
+        derive_shape(text)
