@@ -325,7 +325,7 @@ def _ten(factor: float) -> str:
 
 
 FAMILIES: tuple[tuple[Family, float], ...] = (
-    (undone, 0.5), (decades, 0.5), (offset, 0.97), (parameters, 0.97), (scales, 0.97), (mistakes, 1.0),
+    (undone, 0.5), (decades, 0.5), (offset, 0.97), (parameters, 0.9), (scales, 0.97), (mistakes, 1.0),
 )  # fmt: skip
 """The families in the order in which they are tried, and the part of the difference that one of their faults
 must explain for nothing else to be looked for: a sign or a unit is not fitted, so that little is enough."""
