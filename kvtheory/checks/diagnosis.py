@@ -14,7 +14,7 @@ FAMILIES: tuple[tuple[Callable[[Bench], Iterator[Trial]], float], ...] = (
 )  # fmt: skip
 """The families in the order in which they are tried, and the part of the difference that one of their faults
 must explain for nothing else to be looked for: a sign or a unit is not fitted, so that little is enough."""
-NAMED = 0.5
+NAMED = 0.4
 """Part of the difference that a fault must explain to be named."""
 SHOWN = 4
 """Explanations that are kept."""

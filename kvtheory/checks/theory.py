@@ -27,6 +27,8 @@ CURVES = (
 )
 FOR_GOOD = 40.0
 """Time constants after which what is left of a change is below rounding."""
+FOREVER = 1e9
+"""Retardation times: no series is so long."""
 NO_VELOCITY = 1e-9
 """In units of a_0/tau: a slower drive does not move."""
 
@@ -137,6 +139,8 @@ class Theory:
     def _settled(self, end: float) -> float:
         """Return a time in s after which nothing changes, or `end` if that is sooner."""
         slow = self.scene.foundation.retardation_time
+        if end > FOREVER * slow:
+            raise ArithmeticError(f"that is after {end / slow:.3g} retardation times")
         if end <= self.last_change + FOR_GOOD * slow:
             return end
         if self.rates is not None:
