@@ -256,8 +256,9 @@ def test_few_rows_cannot_tell(tmp_path, sound):
     found = kv.compare(data=few)
     assert (found.verdict, found.explanations) == ("cannot tell", ())
     path = write(tmp_path / "few.csv", few)
-    result = CliRunner().invoke(main, ["compare", "--data", str(path), "--json"])
-    assert result.exit_code == 0
+    report = ["--report", str(tmp_path / "r.html")]
+    result = CliRunner().invoke(main, ["compare", "--data", str(path), "--json", *report])
+    assert result.exit_code == 0, result.output
     assert json.loads(result.stdout)["verdict"] == "cannot tell"
 
 

@@ -34,7 +34,7 @@ pre {{ background: #f6f6f6; padding: .8rem 1rem; overflow-x: auto; }}
 </head>
 <body>
 <h1>{title}</h1>
-<p class="verdict"><strong>The data {verdict} with theory.</strong> {diagnosis}</p>
+<p class="verdict"><strong>{sentence}</strong> {diagnosis}</p>
 {explanations}
 <h2>Data over theory</h2>
 {picture}
@@ -55,7 +55,16 @@ theirs, facts F are those of the derivations. Made by kvtheory.</p>
 </body>
 </html>
 """
-_COLOURS = {"agrees": ("#00674b", "#e8f5f0"), "disagrees": ("#b34700", "#fdf0e7")}
+_COLOURS = {
+    "agrees": ("#00674b", "#e8f5f0"),
+    "disagrees": ("#b34700", "#fdf0e7"),
+    "cannot tell": ("#5c5c5c", "#f2f2f2"),
+}
+_SENTENCES = {
+    "agrees": "The data agree with theory.",
+    "disagrees": "The data disagree with theory.",
+    "cannot tell": "Whether the data agree with theory cannot be told.",
+}
 _MARKS = {True: ("yes", "✓"), False: ("no", "✗ fails"), None: ("none", "not made")}
 
 
@@ -75,7 +84,7 @@ def comparison_report(comparison: Comparison, scene: Scene) -> str:
     )
     return _PAGE.format(
         title=f"{escape(Path(comparison.source).name)} against theory",
-        verdict=comparison.verdict.removesuffix("s"),
+        sentence=_SENTENCES[comparison.verdict],
         diagnosis=escape(comparison.diagnosis),
         explanations=_explanations(comparison),
         picture=_picture(comparison),
