@@ -137,7 +137,7 @@ def plants():
     found = [
         *parameters("Table 1"),
         *others("Table 1"),
-        *rules("Table 1", ("pull", "stale", "dropped", "unrelaxed")),
+        *rules("Table 1", ("pull", "dropped", "unrelaxed")),
     ]
     found += [*parameters("reversal"), *rules("reversal", ("pull", "stale", "frozen", "unrelaxed"))]
     found += [*parameters("suspended"), *rules("suspended", ("pull", "dropped")), *numerics()]
@@ -160,9 +160,9 @@ def quick():
         for plant in plants()
         if plant.scene in ("Table 1", "10 mm/s") and plant.name not in left_out
     ]
-    return chosen + [
-        plant for plant in plants() if (plant.scene, plant.name) == ("reversal", "rule: frozen")
-    ]
+    # Where the base keeps its velocity, stale contacts do less than the elements at an edge.
+    there = [("reversal", "rule: frozen"), ("reversal", "rule: stale")]
+    return chosen + [plant for plant in plants() if (plant.scene, plant.name) in there]
 
 
 def main():

@@ -16,6 +16,7 @@ from kvtheory.checks.reading import MOST_ROWS, read
 from kvtheory.checks.relaxation import fit, uncertainty
 from kvtheory.cli import main
 from kvtheory.models.elements.schemes import SCHEMES
+from kvtheory.results.schemes import SCHEME_ROWS
 from tests.blind_trial import SCENES as BLIND
 from tests.blind_trial import disturbed
 from tests.faulty_simulator import simulate
@@ -255,8 +256,9 @@ def test_few_rows_cannot_tell(tmp_path, sound):
     found = kv.compare(data=few)
     assert (found.verdict, found.explanations) == ("cannot tell", ())
     path = write(tmp_path / "few.csv", few)
-    result = CliRunner().invoke(main, ["compare", "--data", str(path), "--json"])
-    assert result.exit_code == 0
+    report = ["--report", str(tmp_path / "r.html")]
+    result = CliRunner().invoke(main, ["compare", "--data", str(path), "--json", *report])
+    assert result.exit_code == 0, result.output
     assert json.loads(result.stdout)["verdict"] == "cannot tell"
 
 
@@ -397,3 +399,16 @@ def test_data_of_few_digits_agree(tmp_path, name, digits):
     cells = [[f"{t:.7g}", *(f"{value:.{digits}g}" for value in rest)] for t, *rest in table]
     path.write_text("\n".join([HEADS, *map(",".join, cells)]), encoding="utf-8")
     assert failed(kv.compare(UNHURRIED[name], path)) == []
+
+
+def test_the_table_of_schemes_says_what_their_polynomials_do():
+    assert set(SCHEMES) <= set(SCHEME_ROWS)
+    for name, scheme in SCHEMES.items():
+        row, R = SCHEME_ROWS[name], np.array(scheme.stability_polynomial)
+        assert (row.order, row.parts_of_elements) == (scheme.order, scheme.edges)
+        if R.size:
+            assert abs(np.polynomial.polynomial.polyval(-row.stability_limit, R)) == pytest.approx(
+                1
+            )
+        else:
+            assert np.isinf(row.stability_limit)

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 import kvtheory as kv
+from tests.blind_trial import simulated
 from tests.confusion import SCENES, quick, series
 
 
@@ -15,6 +16,34 @@ def test_each_planted_fault_is_named_and_measured(plant):
     assert found.explanations[0].text[1:] in found.diagnosis
     if plant.factor is not None:
         assert found.explanations[0].factor == pytest.approx(plant.factor, rel=0.02)
+
+
+BLIND = {
+    "missing inertia": ({"plant": "no inertia"}, "wrong inertia"),
+    "too deep at first": ({"plant": "initial depth", "value": 1.05}, "wrong initial depth"),
+    "undeformed at first": ({"plant": "undeformed"}, "undeformed at the start"),
+    "lever arm": ({"plant": "lever arm", "value": 2e-4}, "lever arm of friction_force"),
+    "radius, depth kept": ({"plant": "radius at the right depth", "value": 1.05}, "wrong R"),
+    "1 % of K": ({"key": "foundation.stiffness", "factor": 1.01}, "wrong K"),
+    "1 % of tau": ({"key": "foundation.retardation_time", "factor": 0.99}, "wrong tau"),
+}
+
+
+@pytest.mark.parametrize("title", BLIND)
+def test_faults_of_a_simulator_written_without_looking_are_named(title):
+    """All of them: `python -m tests.blind_trial`."""
+    options, name = BLIND[title]
+    found = kv.compare(data=simulated("Table 1", **options))
+    assert found.verdict == "disagrees"
+    assert found.explanations[0].name == name, found.diagnosis
+
+
+@pytest.mark.parametrize("late", [1000.0, -0.5e-3])
+def test_an_offset_of_any_size_is_named(late):
+    data = series(kv.Scene(), {})
+    found = kv.compare(data={**data, "time": data["time"] + late})
+    assert found.explanations[0].name == "time offset"
+    assert found.explanations[0].factor == pytest.approx(late, rel=1e-3)
 
 
 def test_what_cannot_be_told_apart_is_said():

@@ -1,14 +1,20 @@
 """What is wrong with data that disagree: the fault that explains them best, in words."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Iterator, Sequence
 
 from kvtheory.checks.comparison_case import Case
-from kvtheory.checks.faults import FAMILIES, Trial
-from kvtheory.checks.fitting import bench
+from kvtheory.checks.faults import Trial, decades, offset, parameters, scales, undone
+from kvtheory.checks.fitting import Bench, bench
+from kvtheory.checks.mistakes import mistakes
 from kvtheory.checks.symptoms import coarse, rattling, seen, unmoved
 from kvtheory.results.comparison import Check, Explanation
 
-NAMED = 0.5
+FAMILIES: tuple[tuple[Callable[[Bench], Iterator[Trial]], float], ...] = (
+    (undone, 0.5), (decades, 0.5), (offset, 0.97), (parameters, 0.9), (scales, 0.97), (mistakes, 1.0),
+)  # fmt: skip
+"""The families in the order in which they are tried, and the part of the difference that one of their faults
+must explain for nothing else to be looked for: a sign or a unit is not fitted, so that little is enough."""
+NAMED = 0.4
 """Part of the difference that a fault must explain to be named."""
 SHOWN = 4
 """Explanations that are kept."""

@@ -25,6 +25,10 @@ CURVES = (
     *("velocity", "depth", "depth_rate", "normal_force", "friction_force"),
     *("leading_edge", "trailing_edge", "peak_pressure"),
 )
+FOR_GOOD = 40.0
+"""Time constants after which what is left of a change is below rounding."""
+FOREVER = 1e9
+"""Retardation times: no series is so long."""
 NO_VELOCITY = 1e-9
 """In units of a_0/tau: a slower drive does not move."""
 
@@ -121,7 +125,8 @@ class Theory:
 
     def at(self, times: Array, rtol: float = 1e-6) -> dict[str, Array]:
         """Return the curves at `times` (s): at rest before t = 0, just after a jump of the drive."""
-        unique, index = np.unique(np.maximum(times, 0.0), return_inverse=True)
+        moving = np.clip(times, 0.0, self._settled(float(times.max())))
+        unique, index = np.unique(moving, return_inverse=True)
         end = float(unique[-1]) or self.scene.run.duration
         scene = replace(self.scene, run=replace(self.scene.run, duration=end))
         found = self.methods.transient(scene, unique.tolist(), rtol)
@@ -130,6 +135,17 @@ class Theory:
             name: np.where(times < 0.0, rest[name], np.asarray(found[name])[index])
             for name in CURVES
         }
+
+    def _settled(self, end: float) -> float:
+        """Return a time in s after which nothing changes, or `end` if that is sooner."""
+        slow = self.scene.foundation.retardation_time
+        if end > FOREVER * slow:
+            raise ArithmeticError(f"that is after {end / slow:.3g} retardation times")
+        if end <= self.last_change + FOR_GOOD * slow:
+            return end
+        if self.rates is not None:
+            slow = max(slow, 1.0 / (1.0 / self.rates.slow).real)
+        return min(end, self.last_change + FOR_GOOD * slow)
 
     @cached_property
     def rest(self) -> Mapping[str, float]:

@@ -91,11 +91,8 @@ def draw_comparison(comparison: Comparison, *, checks: bool = True) -> Any:
     parts: Any = figure.subfigures(2, 1, height_ratios=[height, table]) if checks else [figure]
     axes = parts[0].subplots(rows, 2, sharex=True, squeeze=False)
     plot_comparison(axes, comparison)
-    parts[0].suptitle(
-        f"{Path(comparison.source).name}: {comparison.verdict} with theory",
-        fontsize=10,
-        parse_math=False,
-    )
+    title = f"{Path(comparison.source).name}: {comparison.verdict}"
+    parts[0].suptitle(title, fontsize=10, parse_math=False)
     axes[0][0].set_title("data over theory", fontsize=9)
     axes[0][1].set_title("data less theory", fontsize=9)
     if checks:

@@ -9,7 +9,16 @@ from kvtheory.results import Check, Comparison
 from kvtheory.results.comparison import Explanation
 from kvtheory.scene import Scene, to_toml
 
-_COLOURS = {"agrees": ("#00674b", "#e8f5f0"), "disagrees": ("#b34700", "#fdf0e7")}
+_COLOURS = {
+    "agrees": ("#00674b", "#e8f5f0"),
+    "disagrees": ("#b34700", "#fdf0e7"),
+    "cannot tell": ("#5c5c5c", "#f2f2f2"),
+}
+_SENTENCES = {
+    "agrees": "The data agree with theory.",
+    "disagrees": "The data disagree with theory.",
+    "cannot tell": "Whether the data agree with theory cannot be told.",
+}
 _MARKS = {True: ("yes", "✓"), False: ("no", "✗ fails"), None: ("none", "not made")}
 
 
@@ -26,7 +35,7 @@ def comparison_report(comparison: Comparison, scene: Scene) -> str:
     )
     return template("comparison.html").format(
         title=f"{escape(Path(comparison.source).name)} against theory",
-        verdict=comparison.verdict.removesuffix("s"),
+        sentence=_SENTENCES[comparison.verdict],
         diagnosis=escape(comparison.diagnosis),
         explanations=_explanations(comparison),
         picture=inline(lambda: draw_comparison(comparison, checks=False)),

@@ -11,7 +11,7 @@ class SchemeRow(NamedTuple):
     """What is known of a scheme.
 
     `order_in_time` is that of the motion of the indenter between two elements; `order` that of the depth
-    while spacing and step are refined together, one where forces are summed over whole elements.
+    while spacing and step are refined together; forces summed over whole elements are of order one.
     `stability_limit` is the largest stable h C L/M, L the length of the contact: where |R(-z)| = 1, R the
     stability polynomial (F15); infinite if every step is stable. `parts_of_elements` says whether the
     part of an element at each edge counts. `papers_step` says whether h = 2 dx/V, as in the paper.
@@ -36,7 +36,7 @@ _ROWS = (
     SchemeRow("explicit-euler", "Euler's method with the paper's contact rules", 1, 1, 2.0),
     SchemeRow("semi-implicit", "exact memory (F8), implicit damping, order 1", 1, 1, math.inf),
     SchemeRow("exponential", "exact memory (F8), exponentially fitted damping, order 2 in time",
-              2, 1, math.inf),
+              2, 2, math.inf),
     SchemeRow("edge-corrected", "the exponential scheme with part of an element at each edge, order 2",
               2, 2, math.inf, parts_of_elements=True),
 )  # fmt: skip
