@@ -282,7 +282,9 @@ def _orders() -> Derivation:
     return proof.done(motion.subs(_theta, fit), second)
 
 
-_RESIDUAL = r"\frac{\varepsilon D^2}{h^2} + (1 + \theta D) [b + \kappa + (b \eta + \kappa \theta) D]"
+_RESIDUAL = (
+    r"\frac{\varepsilon D^2}{h^2} + (1 + \theta D) [b + \kappa + (b \eta + \kappa \theta) D]"
+)
 _ORDERS = (
     r"The exact motion $e^{\sigma s}$, with $\varepsilon \sigma^2 + b \sigma + b + \kappa = 0$, is "
     r"put into the equation of a step, $\varepsilon D^2/h^2 + (1 + \theta D) [b + \kappa + (b \eta + "
