@@ -91,7 +91,7 @@ def test_asymptotes():
         (["asymptotes", "--tolerance", "0"], ["tolerance"]),
         (["asymptotes", "--tolerance", "little"], ["--tolerance", "little"]),
         (
-            ["steady", "--set", "indenter.shape=circle", "--set", "indenter.radius=0.1 mm"],
+            ["steady", "--set", "indenter.shape=circle", "--set", "indenter.radius=0.01 mm"],
             ["reach"],
         ),
         (["scene", "--support", "floating"], ["--support", "floating"]),

@@ -196,7 +196,7 @@ def test_table_1_against_floats(by_label):
         r"$\delta_0$": depth * 1e6,
         r"$V \tau (K/R W)^{1/3}$": 0.01 * (1e10 / (0.01 * weight)) ** (1 / 3),
         r"$\lambda = V \tau/a_0$": 0.01 / (2 * 0.01 * depth) ** 0.5,
-        r"$\epsilon = \delta_0/(g \tau^2)$": 1000 * depth / (weight * 0.1**2),
+        r"$\varepsilon = \delta_0/(g \tau^2)$": 1000 * depth / (weight * 0.1**2),
         r"$\mu$ (37)": (2 * 10 * 0.3) ** 0.5 / 10
         * (1 - q) * (q**2 - q + 4) / (2 * (q**2 - 2 * q + 3)),
     }  # fmt: skip

@@ -50,12 +50,11 @@ class Quantity:
     def admits(self, value: ArrayLike) -> bool:
         """Whether every `value` (in SI) is finite and in range."""
         if isinstance(value, float):  # the most frequent, and NumPy takes ten times as long for it
-            return math.isfinite(value) and (
-                value > self.minimum if self.exclusive else value >= self.minimum
-            )
-        value = np.asarray(value)
-        above = value > self.minimum if self.exclusive else value >= self.minimum
-        return bool(np.all(np.isfinite(value) & above & (value < self.below)))
+            above = value > self.minimum if self.exclusive else value >= self.minimum
+            return above and math.isfinite(value) and value < self.below
+        array = np.asarray(value)
+        inside = array > self.minimum if self.exclusive else array >= self.minimum
+        return bool(np.all(np.isfinite(array) & inside & (array < self.below)))
 
     @property
     def range(self) -> str:
