@@ -18,7 +18,7 @@ from derivations.render.text import calculation, number
 
 _IMPORTED = (
     "Abs, Derivative, E, Eq, "
-    "Function, Heaviside, I, IndexedBase, Integral, Max, Min, Piecewise, S, Subs, Sum, "
+    "Function, Heaviside, I, IndexedBase, Integral, Matrix, Max, Min, Piecewise, S, Subs, Sum, "
     "Symbol, acos, asin, atan, cos, cosh, exp, log, oo, pi, sin, sinh, sqrt, tan, tanh"
 )
 _ALSO = "from sympy.codegen.cfunctions import expm1, log1p"
@@ -43,6 +43,9 @@ class _Code(StrPrinter):
     def _print_Function(self, expr: sp.Function) -> str:  # noqa: N802
         arguments = self.stringify(expr.args, ", ")
         return f"{self._names.get(expr.func, expr.func.__name__)}({arguments})"
+
+    def _print_Rank(self, expr: sp.Expr) -> str:  # noqa: N802
+        return f"S({self._print(expr.args[0])}.rank())"
 
 
 def document(edition: Edition) -> str:
