@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from kvtheory.models.steady import exact
+from kvtheory.models.steady import blockwise, exact
 from kvtheory.results import STEADY_UNITS
 from tests import reference
 
@@ -133,7 +133,7 @@ def test_a_suspension_joins_dead_weight_and_fixed():
 def test_arrays_broadcast_and_do_not_depend_on_the_blocks(monkeypatch):
     V, tau = np.geomspace(1e-3, 1e1, 7)[:, None], np.array([0.01, 0.1, 1.0])
     whole = exact.at_load(0.01, 1e10, tau, V, 9806.65)
-    monkeypatch.setattr(exact, "BLOCK", 2)
+    monkeypatch.setattr(blockwise, "BLOCK", 2)
     blocks = exact.at_load(0.01, 1e10, tau, V, 9806.65)
     single = exact.at_load(0.01, 1e10, 0.1, float(V[3, 0]), 9806.65)
     for name in STEADY_UNITS:

@@ -95,7 +95,7 @@ def values(scene: Scene, regime: str, quantities: tuple[str, ...]) -> dict[str, 
     """Return the asymptotes of the quantities, in SI."""
     given = scene.values()
     side = -1.0 if given["drive.velocity"] < 0.0 else 1.0
-    limits = asymptotes.limits(given)  # type: ignore[arg-type]  # floats do as well as arrays
+    limits = asymptotes.limits(given)
     found = asymptotes.quantities(limits, regime, side)
     return {name: float(found[name]) for name in quantities}
 

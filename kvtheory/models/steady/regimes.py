@@ -7,8 +7,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import elementwise
 
+from kvtheory.models.steady import asymptotes
 from kvtheory.models.steady.asymptotes import Row
-from kvtheory.models.steady.methods import FAMILIES, solve_exact
+from kvtheory.models.steady.methods import plain, solve_exact
 from kvtheory.results import AsymptoteLine, AsymptoteReport, Certificate
 from kvtheory.scene.model import Scene
 
@@ -23,54 +24,43 @@ STATEMENT = "the relative errors are closed forms (derivations {}), monotonic in
 
 def report(scene: Scene, values: Values, tolerance: float) -> AsymptoteReport:
     """Make the report of `kvtheory.asymptotes`, which documents it."""
-    asy = FAMILIES[scene.indenter.shape].asymptotes
-    rows = asy.ROWS[scene.support.kind]
     V, tau = values["drive.velocity"], values["foundation.retardation_time"]
-    limits = asy.limits(values)
-    critical = asy.critical_velocity(limits, tau)
-    errors = _errors(scene, values)
-    truth = solve_exact(scene, values)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        approximations = {"low": asy.low(limits), "high": asy.high(limits)}
-    side = np.where(V < 0.0, -1.0, 1.0)
+    limits = asymptotes.limits(values)
+    critical = asymptotes.critical_velocity(limits, tau)
+    truth, side = solve_exact(scene, values), np.where(V < 0.0, -1.0, 1.0)
+    with np.errstate(divide="ignore", invalid="ignore"):  # no high asymptote at V = 0
+        found = {name: asymptotes.quantities(limits, name, side) for name in ("low", "high")}
+        errors = {name: asymptotes.errors(limits, name, truth) for name in found}
     lines = []
-    for row in rows:
-        signed = side if row.quantity.startswith("friction") else 1.0
+    for row in asymptotes.rows(scene.indenter.shape, scene.support.kind):
         error = errors[row.regime][row.quantity]
         edge = _range_edge(scene, values, critical, row, tolerance)
         lines.append(
             AsymptoteLine(
-                row.name, row.quantity, row.regime, row.equation, row.formula,
-                value=_finite(signed * approximations[row.regime][row.quantity]),
+                *row,
+                value=_finite(found[row.regime][row.quantity]),
                 exact=getattr(truth, row.quantity),
                 relative_error=_finite(error),
-                velocity_min=_plain(edge if row.regime == "high" else np.zeros_like(edge)),
-                velocity_max=_plain(edge if row.regime == "low" else np.full_like(edge, np.inf)),
+                velocity_min=plain(edge if row.regime == "high" else np.zeros_like(edge)),
+                velocity_max=plain(edge if row.regime == "low" else np.full_like(edge, np.inf)),
             )
-        )  # fmt: skip
+        )
     nothing = np.full_like(critical, np.nan)
     dead = scene.support.kind == "dead-weight"
-    peak_velocity, peak_friction = asy.peak(limits, tau) if dead else (nothing, nothing)
+    peak_velocity, peak_friction = asymptotes.peak(limits, tau) if dead else (nothing, nothing)
     l1, l2 = (np.abs(line.relative_error) <= tolerance for line in lines[:2])
     return AsymptoteReport(
-        velocity=_plain(V),
-        critical_velocity=_plain(critical),
-        peak_velocity=_plain(peak_velocity),
-        peak_friction_coefficient=_plain(peak_friction),
-        regime=_text(np.where(np.abs(V) <= critical, "low", "high")),
-        use=_text(np.where(l1, "L1", np.where(l2, "L2", "exact"))),
+        velocity=plain(V),
+        critical_velocity=plain(critical),
+        peak_velocity=plain(peak_velocity),
+        peak_friction_coefficient=plain(peak_friction),
+        regime=plain(np.where(np.abs(V) <= critical, "low", "high")),
+        use=plain(np.where(l1, "L1", np.where(l2, "L2", "exact"))),
         tolerance=tolerance,
         lines=tuple(lines),
         model="asymptote",
-        certificate=Certificate("proved", STATEMENT.format(asy.PROVED), {}),
+        certificate=Certificate("proved", STATEMENT.format(asymptotes.PROVED), {}),
     )
-
-
-def _errors(scene: Scene, values: Values) -> dict[str, dict[str, Array]]:
-    asy = FAMILIES[scene.indenter.shape].asymptotes
-    state, limits = solve_exact(scene, values), asy.limits(values)
-    with np.errstate(divide="ignore", invalid="ignore"):  # no high asymptote at V = 0
-        return {"low": asy.low_errors(limits, state), "high": asy.high_errors(limits, state)}
 
 
 def _range_edge(scene: Scene, values: Values, critical: Array, row: Row, tolerance: float) -> Array:
@@ -84,7 +74,10 @@ def _range_edge(scene: Scene, values: Values, critical: Array, row: Row, toleran
     def excess(decades: Array, *arrays: Array) -> Array:
         point = dict(zip(keys, arrays[:-1], strict=True))
         point["drive.velocity"] = arrays[-1] * 10.0**decades
-        return np.abs(_errors(scene, point)[row.regime][row.quantity]) - tolerance
+        truth, limits = solve_exact(scene, point), asymptotes.limits(point)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            found = asymptotes.errors(limits, row.regime, truth)
+        return np.abs(found[row.quantity]) - tolerance
 
     args = (*values.values(), critical)
     bracket = (np.full_like(critical, -DECADES), np.full_like(critical, DECADES))
@@ -94,12 +87,4 @@ def _range_edge(scene: Scene, values: Values, critical: Array, row: Row, toleran
 
 
 def _finite(array: Array) -> Any:
-    return _plain(np.where(np.isfinite(array), array, np.nan))
-
-
-def _plain(array: Array) -> Any:
-    return array if array.ndim else float(array)
-
-
-def _text(array: Any) -> Any:
-    return array if array.ndim else str(array)
+    return plain(np.where(np.isfinite(array), array, np.nan))
