@@ -68,12 +68,10 @@ def _integrated(scene: Scene, values: Mapping[str, Any]) -> SteadyState:
 
     # Past the indenter's own check: the values have been checked, and columns are no values for it.
     indenter = object.__new__(type(scene.indenter))
-    own = {
-        key.removeprefix("indenter."): value
-        for key, value in values.items()
-        if key.startswith("indenter.")
-    }
-    vars(indenter).update(vars(scene.indenter) | own)
+    vars(indenter).update(vars(scene.indenter))
+    for key, value in values.items():
+        if key.startswith("indenter."):
+            vars(indenter)[key.removeprefix("indenter.")] = value
     return _solve(quadrature, values, indenter)
 
 
@@ -125,14 +123,16 @@ def plain(array: Any) -> Any:
 def _joined(states: Sequence[SteadyState], shape: tuple[int, ...]) -> SteadyState:
     """Join the states of single scenes or of columns into one of arrays."""
 
-    def joined(parts: Sequence[Mapping[str, Any]]) -> dict[str, Array]:
+    def joined(parts: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
         return {
             name: np.concatenate([np.ravel(part[name]) for part in parts]).reshape(shape)
             for name in STEADY_UNITS
         }
 
+    own = states[0].certificate
     errors = joined([state.certificate.relative_error for state in states])
-    certificate = replace(states[0].certificate, relative_error=errors)
-    return SteadyState(
-        **joined([vars(state) for state in states]), model=states[0].model, certificate=certificate
+    return replace(
+        states[0],
+        **joined([vars(state) for state in states]),
+        certificate=replace(own, relative_error=errors),
     )

@@ -1,14 +1,13 @@
 """Which asymptote holds for a scene, how wrong it is, and over which velocities."""
 
 from collections.abc import Mapping
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import elementwise
 
 from kvtheory.models.steady import asymptotes
-from kvtheory.models.steady.asymptotes import Row
 from kvtheory.models.steady.methods import plain, solve_exact
 from kvtheory.results import AsymptoteLine, AsymptoteReport, Certificate
 from kvtheory.scene.model import Scene
@@ -22,6 +21,95 @@ DECADES = 30.0
 STATEMENT = "the relative errors are closed forms (derivations {}), monotonic in V, evaluated to about 1e-14"
 
 
+LISTED = {
+    "fixed": ("friction_coefficient", "load", "friction_force"),
+    "dead-weight": ("friction_coefficient", "depth"),
+    "suspended": ("friction_coefficient", "depth", "load"),
+}
+"""What is listed for each support, each at low and then at high velocity."""
+EQUATIONS = {
+    "fixed": (42, 45, 40, 43, 41, 44),
+    "dead-weight": (42, 46, None, 49),
+    "suspended": (42, None, None, None, None, None),
+}
+"""The paper's numbers of them."""
+OF_PARABOLA = {
+    "fixed": (
+        "C V/(R K)",
+        "alpha sqrt(delta/R)",
+        "2 alpha R^(1/2) K delta^(3/2)",
+        "C V delta",
+        "2 alpha R^(-1/2) C V delta^(3/2)",
+        "alpha R^(-1/2) C V delta^(3/2)",
+    ),
+    "dead-weight": (
+        "C V/(R K)",
+        "alpha sqrt(W/(R C V))",
+        "delta_0 = (3 W/(4 K sqrt(2 R)))^(2/3)",
+        "W/(C V)",
+    ),
+    "suspended": (
+        "C V/(R K)",
+        "alpha sqrt((M g + k_s delta_0)/(R C V))",
+        "delta_0 = (3 M g/(4 K sqrt(2 R)))^(2/3)",
+        "(M g + k_s delta_0)/(C V)",
+        "M g",
+        "M g + k_s delta_0",
+    ),
+}
+OF_POWER_LAW = {
+    "fixed": (
+        "n (n+1)/(2n-1) delta C V/(K a^2)",
+        "n^2/(2n-1) delta/a",
+        "2n/(n+1) K delta a",
+        "C V delta",
+        "2n^2/(2n-1) C V delta^2/a",
+        "n^2/(2n-1) C V delta^2/a",
+    ),
+    "dead-weight": (
+        "n (n+1)/(2n-1) delta_0 C V/(K a_0^2)",
+        "n^2/(2n-1) delta/a, delta = W/(C V)",
+        "delta_0 = (n+1)/(2n) W/(K a_0)",
+        "W/(C V)",
+    ),
+    "suspended": (
+        "n (n+1)/(2n-1) delta_0 C V/(K a_0^2)",
+        "n^2/(2n-1) delta/a, delta as below",
+        "delta_0 = (n+1)/(2n) M g/(K a_0)",
+        *OF_PARABOLA["suspended"][3:],
+    ),
+}
+"""Their formulas; n = 1 for a wedge, W = M g is the load of a dead weight."""
+
+
+class Row(NamedTuple):
+    """One asymptote of one quantity, as it is listed for a support."""
+
+    name: str
+    quantity: str
+    regime: str
+    equation: int | None
+    formula: str
+
+
+def rows(shape: str, support: str) -> list[Row]:
+    """Return what is listed for a shape and a support, the friction coefficient first.
+
+    >>> rows("parabola", "dead-weight")[3]
+    Row(name='depth, high V', quantity='depth', regime='high', equation=49, formula='W/(C V)')
+    """
+    places = [(quantity, regime) for quantity in LISTED[support] for regime in ("low", "high")]
+    names = ["L1", "L2"]
+    names += [f"{name.removesuffix('_force')}, {regime} V" for name, regime in places[2:]]
+    parabola = shape == "parabola"
+    formulas = (OF_PARABOLA if parabola else OF_POWER_LAW)[support]
+    equations = EQUATIONS[support] if parabola else [None] * len(formulas)
+    return [
+        Row(name, *place, equation, formula)
+        for name, place, equation, formula in zip(names, places, equations, formulas, strict=True)
+    ]
+
+
 def report(scene: Scene, values: Values, tolerance: float) -> AsymptoteReport:
     """Make the report of `kvtheory.asymptotes`, which documents it."""
     V, tau = values["drive.velocity"], values["foundation.retardation_time"]
@@ -32,7 +120,7 @@ def report(scene: Scene, values: Values, tolerance: float) -> AsymptoteReport:
         found = {name: asymptotes.quantities(limits, name, side) for name in ("low", "high")}
         errors = {name: asymptotes.errors(limits, name, truth) for name in found}
     lines = []
-    for row in asymptotes.rows(scene.indenter.shape, scene.support.kind):
+    for row in rows(scene.indenter.shape, scene.support.kind):
         error = errors[row.regime][row.quantity]
         edge = _range_edge(scene, values, critical, row, tolerance)
         lines.append(
