@@ -11,7 +11,7 @@ import kvtheory as kv
 from kvtheory.cli import main
 from kvtheory.models.slow_manifold.start import half_length
 from kvtheory.models.steady import asymptote_bounds as asymptote
-from kvtheory.models.steady.enclosure import enclose
+from kvtheory.models.steady.asymptote_bounds import enclose
 from kvtheory.models.steady.exact import scaled_root
 from kvtheory.results import STEADY_UNITS, TRANSIENT_UNITS
 from kvtheory.results.errors import ToleranceError

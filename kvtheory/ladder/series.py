@@ -3,6 +3,7 @@
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -58,21 +59,12 @@ class Models:
 
 def rungs(models: Models) -> tuple[Rung, ...]:
     """Return the rungs in order of cost."""
-
-    def at_once(scene: Scene, request: Request, known: Any) -> Answer:
-        return _at_once(models.steady(scene), scene, request)
-
-    def continuum(scene: Scene, request: Request, known: Any) -> Answer:
-        return _continuum(models.transient, scene, request)
-
-    def elements(scene: Scene, request: Request, known: Any) -> Answer:
-        return _elements(models.elements, scene, request)
-
+    at_once = partial(_at_once, models.steady)
     return (
         Rung("exact", "steady from the first instant: the depth cannot change", _steady, at_once),
         Rung("slow manifold", "a start from rest, inertia that is soon overcome", _slow, _follow),
-        Rung("continuum", "a parabola", _parabola, continuum),
-        Rung("elements", "none", _anything, elements),
+        Rung("continuum", "a parabola", _parabola, partial(_continuum, models.transient)),
+        Rung("elements", "none", _anything, partial(_elements, models.elements)),
     )
 
 
@@ -81,9 +73,7 @@ def _parabola(scene: Scene, request: Request) -> Judgement:
 
 
 def _anything(scene: Scene, request: Request) -> Judgement:
-    if request.rtol < BEST_OF_ELEMENTS:
-        return Judgement(error=BEST_OF_ELEMENTS)
-    return Judgement()
+    return Judgement(error=BEST_OF_ELEMENTS if request.rtol < BEST_OF_ELEMENTS else math.nan)
 
 
 def _steady(scene: Scene, request: Request) -> Judgement:
@@ -96,8 +86,8 @@ def _steady(scene: Scene, request: Request) -> Judgement:
     return Judgement(reason, math.nan if reason else 0.0)
 
 
-def _at_once(state: SteadyState, scene: Scene, request: Request) -> Answer:
-    times = _times(scene, request)
+def _at_once(steady: Callable[..., SteadyState], scene: Scene, request: Request, _: Any) -> Answer:
+    state, times = steady(scene), _times(scene, request)
     constant = {
         "velocity": scene.drive.final_velocity,
         "depth": state.depth,
@@ -163,7 +153,9 @@ def _follow(scene: Scene, request: Request, given: slow_start.Start) -> Answer:
     )
 
 
-def _continuum(transient: Callable[..., Transient], scene: Scene, request: Request) -> Answer:
+def _continuum(
+    transient: Callable[..., Transient], scene: Scene, request: Request, _: Any
+) -> Answer:
     """Tighten the steps until the certificate is met, or they can be no tighter."""
     step = min(max(FIRST * request.rtol, TIGHTEST), LOOSEST)
     while True:
@@ -175,7 +167,9 @@ def _continuum(transient: Callable[..., Transient], scene: Scene, request: Reque
         step = max(step * NEXT * request.rtol / error, TIGHTEST)
 
 
-def _elements(elements: Callable[..., Simulation], scene: Scene, request: Request) -> Answer:
+def _elements(
+    elements: Callable[..., Simulation], scene: Scene, request: Request, _: Any
+) -> Answer:
     """Refine until the certificate is met, or the work would be too much.
 
     A certificate compares with half as many elements, and both may be too coarse to see what is fast:

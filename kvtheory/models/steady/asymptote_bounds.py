@@ -2,20 +2,26 @@ r"""The first rung: the paper's asymptotes, where a bound of their error allows 
 
 The error of each asymptote is a closed form in l = l_r/a and q = x_TE/a that is monotonic in l
 (derivations "error-..."). For a fixed indenter l is known and the error exact; an indenter that can move
-has its l within bounds that need no root (`kvtheory.models.steady.enclosure`), at the worse end of which the
-error is taken. In units of the static state, with s = a/a_0 and 1 + e the asymptote over the truth:
+has its l within bounds that need no root, at the worse end of which the error is taken. With s = a/a_0,
+lambda = V tau/a_0 and r = sqrt(lambda^2 + s^2) the load is f = s^2 g(s) in units of the static one (theorem
+"scaled-load"), g = (lambda^2/(lambda + r) + r + s)/2, and the balance of forces f + kappa (s^2 - 1) = 1 says
+
+    s = T(s),    T(s)^2 = (1 + kappa)/(g(s) + kappa).
+
+g grows with s, for d(lambda^2/(lambda + r) + r)/dr = 1 - lambda^2/(lambda + r)^2 > 0, and so T falls: it
+sends an upper bound of the root to a lower one and back. g > (3/4) lambda gives the first.
+In units of the static state, with 1 + e the asymptote over the truth:
 
     low V:   depth s^-2, half length s^-1, trailing edge 1/(s q), peak pressure 1/(s^2 + lambda^2)
     high V:  depth (g(s) + kappa)/(3/4 lambda), load (1 + kappa)/(1 + kappa - kappa s^2)
 """
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from typing import NamedTuple
 
 from kvtheory.models.steady import asymptotes
 from kvtheory.models.steady import closed_forms as cf
-from kvtheory.models.steady.enclosure import FIXED, Enclosure, enclose, load_over_square
 from kvtheory.scene.model import Scene
 from kvtheory.scene.static_state import StaticState
 
@@ -29,7 +35,67 @@ LOW_UP_TO, HIGH_FROM = 2.0, 0.5
 """Drive numbers, the first in units of 1 + kappa, beyond which what an asymptote alone gives has an error
 of the order of one: it is not looked at."""
 
+
+class Enclosure(NamedTuple):
+    """lambda, kappa, and bounds of s = a/a_0; kappa is infinite and s = 1 for a fixed indenter."""
+
+    number: float
+    support_number: float
+    low: float
+    high: float
+
+    @property
+    def least(self) -> float:
+        """The least l = l_r/a."""
+        return self.number / self.high
+
+    @property
+    def largest(self) -> float:
+        """The largest l = l_r/a."""
+        return self.number / self.low
+
+    @property
+    def q_least(self) -> float:
+        """The least q = x_TE/a."""
+        return 1.0 / (self.largest + math.hypot(1.0, self.largest))  # Eq. 27
+
+    @property
+    def q_largest(self) -> float:
+        """The largest q = x_TE/a."""
+        return 1.0 / (self.least + math.hypot(1.0, self.least))
+
+
 Bound = Callable[[Enclosure], float]
+
+
+def _load_over_square(s: float, number: float) -> float:
+    """Return g = f/s^2, f the load in units of the static one."""
+    r = math.hypot(number, s)
+    return 0.5 * (number * number / (number + r) + r + s)
+
+
+def enclose(number: float, support_number: float) -> Enclosure:
+    """Return bounds of a/a_0 in steady sliding of an indenter that can move.
+
+    Parameters
+    ----------
+    number, support_number
+        lambda >= 0 and kappa >= 0.
+
+    Examples
+    --------
+    >>> found = enclose(4.0, 0.0)
+    >>> print(f"{found.low:.5f} to {found.high:.5f}")
+    0.55133 to 0.55138
+    """
+    kappa = support_number
+
+    def image(s: float) -> float:
+        return math.sqrt((1.0 + kappa) / (_load_over_square(s, number) + kappa))
+
+    first = math.sqrt((1.0 + kappa) / max(0.75 * number + kappa, 1.0 + kappa))
+    high = min(first, image(image(first)))  # at low velocity this halves the width
+    return Enclosure(number, kappa, image(high), high)
 
 
 class Choice(NamedTuple):
@@ -39,17 +105,12 @@ class Choice(NamedTuple):
     error: float
 
 
-def ratio(l: float) -> float:
-    """Return q = x_TE/a for l = l_r/a (Eq. 27)."""
-    return 1.0 / (l + math.hypot(1.0, l))
-
-
 def enclosure_of(scene: Scene) -> Enclosure:
     """Return the bounds of s for a scene with a parabola; a fixed indenter has s = 1."""
     at_rest = StaticState.of(scene)
     number = abs(at_rest.drive_number)
     if at_rest.fixed:
-        return Enclosure(number, math.inf, FIXED, FIXED)
+        return Enclosure(number, math.inf, 1.0, 1.0)
     return enclose(number, at_rest.support_number)
 
 
@@ -66,165 +127,113 @@ def choose(bounds: Enclosure, quantities: tuple[str, ...], enough: float = math.
     """
     fixed = math.isinf(bounds.support_number)
     yielding = 1.0 if fixed else 1.0 + bounds.support_number
-    tried = (("low", bounds.number <= LOW_UP_TO * yielding), ("high", bounds.number >= HIGH_FROM))
-    tables = ERRORS[fixed]
-    choices = [
-        Choice(regime, _largest(tables[regime], bounds, quantities, enough) + ROUNDING)
-        for regime, near in tried
-        if near
-    ]
-    return min(choices, key=_error)
-
-
-def _largest(
-    table: Mapping[str, Bound], bounds: Enclosure, quantities: tuple[str, ...], enough: float
-) -> float:
-    largest = 0.0
-    for bound in dict.fromkeys(table[name] for name in quantities):  # several share one
-        largest = max(largest, bound(bounds))
-        if largest > enough:
-            break
-    return largest
-
-
-def _error(choice: Choice) -> float:
-    return choice.error
+    tried = {"low": bounds.number <= LOW_UP_TO * yielding, "high": bounds.number >= HIGH_FROM}
+    choices = []
+    for regime in (name for name, near in tried.items() if near):
+        table, largest = ERRORS[fixed][regime], 0.0
+        for bound in dict.fromkeys(table[name] for name in quantities):  # several share one
+            largest = max(largest, bound(bounds))
+            if largest > enough:
+                break
+        choices.append(Choice(regime, largest + ROUNDING))
+    return min(choices, key=lambda choice: choice.error)
 
 
 def values(scene: Scene, regime: str, quantities: tuple[str, ...]) -> dict[str, float]:
     """Return the asymptotes of the quantities, in SI."""
     given = scene.values()
     side = -1.0 if given["drive.velocity"] < 0.0 else 1.0
-    limits = asymptotes.limits(given)  # type: ignore[arg-type]  # floats do as well as arrays
+    limits = asymptotes.limits(given)
     found = asymptotes.quantities(limits, regime, side)
     return {name: float(found[name]) for name in quantities}
 
 
-def _exactly(_: Enclosure) -> float:
-    return 0.0
-
-
-def _never(_: Enclosure) -> float:
-    return math.inf
-
-
-def _dissipated(bounds: Enclosure) -> float:
+def _dissipated(b: Enclosure) -> float:
     """1/(fraction) - 1 = (3/4) t/(1 - t), t = q (1 - q), which is largest at q = 1/2 (theorem F6)."""
-    nearest = min(max(0.5, ratio(bounds.largest)), ratio(bounds.least))
+    nearest = min(max(0.5, b.q_least), b.q_largest)
     t = nearest * (1.0 - nearest)
     return 0.75 * t / (1.0 - t)
 
 
-def _fixed(form: Callable[[float, float], float]) -> Bound:
-    """Return the exact error of a fixed indenter, a function of l and q."""
-    return lambda bounds: abs(form(bounds.number, ratio(bounds.number)))
-
-
-def _peak_low(bounds: Enclosure) -> float:
+def _low_peak(b: Enclosure) -> float:
     """1/(s^2 + lambda^2) while the peak is inside the contact, 1/(2 lambda s) from then on (F7)."""
-    peaks = [
-        s * s + bounds.number**2 if bounds.number < s else 2.0 * bounds.number * s
-        for s in (bounds.low, bounds.high)
-    ]
+    peaks = [s * s + b.number**2 if b.number < s else 2.0 * b.number * s for s in (b.low, b.high)]
     return max(abs(1.0 / peak - 1.0) for peak in peaks)
 
 
-def _low_load(bounds: Enclosure) -> float:
-    lifted = bounds.support_number * (1.0 - bounds.low**2 + UNIT)
+def _low_length(b: Enclosure) -> float:
+    return 1.0 / b.low - 1.0
+
+
+def _low_load(b: Enclosure) -> float:
+    lifted = b.support_number * (1.0 - b.low**2 + UNIT)
     return lifted / (1.0 + lifted)
 
 
-def _low_friction(bounds: Enclosure) -> float:
-    """Bound the product: the errors of load and coefficient have opposite signs."""
-    return max(_low_load(bounds), _low_coefficient(bounds))
+def _low_coefficient(b: Enclosure) -> float:
+    return cf.error_l1(b.largest, b.q_least)
 
 
-def _low_coefficient(bounds: Enclosure) -> float:
-    return cf.error_l1(bounds.largest, ratio(bounds.largest))
+def _high_depth(b: Enclosure) -> float:
+    if math.isinf(b.support_number):
+        return 0.0
+    return (_load_over_square(b.high, b.number) + b.support_number) / (0.75 * b.number) - 1.0
 
 
-def _low_length(bounds: Enclosure) -> float:
-    return 1.0 / bounds.low - 1.0
+def _high_length(b: Enclosure) -> float:
+    return math.sqrt(1.0 + _high_depth(b)) - 1.0
 
 
-def _low_trailing(bounds: Enclosure) -> float:
-    return 1.0 / (bounds.low * ratio(bounds.largest)) - 1.0
+def _high_load(b: Enclosure) -> float:
+    held = b.support_number * b.high**2
+    return held / (1.0 + b.support_number - held)
 
 
-def _high_depth(bounds: Enclosure) -> float:
-    gap = load_over_square(bounds.high, bounds.number) + bounds.support_number
-    return gap / (0.75 * bounds.number) - 1.0
+def _high_coefficient(b: Enclosure) -> float:
+    at_depth = cf.error_l2_fixed(b.q_largest, b.least)
+    return at_depth + _high_length(b) * (1.0 + at_depth)
 
 
-def _high_length(bounds: Enclosure) -> float:
-    return math.sqrt(1.0 + _high_depth(bounds)) - 1.0
-
-
-def _high_load(bounds: Enclosure) -> float:
-    held = bounds.support_number * bounds.high**2
-    return held / (1.0 + bounds.support_number - held)
-
-
-def _high_coefficient(bounds: Enclosure) -> float:
-    at_depth = cf.error_l2_fixed(ratio(bounds.least), bounds.least)
-    return (1.0 + at_depth) * math.sqrt(1.0 + _high_depth(bounds)) - 1.0
-
-
-def _high_friction(bounds: Enclosure) -> float:
-    return (1.0 + _high_load(bounds)) * (1.0 + _high_coefficient(bounds)) - 1.0
-
-
-def _high_peak(bounds: Enclosure) -> float:
-    """Exact in the depth once the peak is at the leading edge, l >= 1 (F7)."""
-    return _high_length(bounds) if bounds.least >= 1.0 else math.inf
-
-
-MOVING: Mapping[str, Mapping[str, Bound]] = {
+MOVING: dict[str, dict[str, Bound]] = {
     "low": {
-        "depth": lambda bounds: 1.0 / bounds.low**2 - 1.0,
+        "depth": lambda b: 1.0 / b.low**2 - 1.0,
         "half_length": _low_length,
-        "retardation_length": _exactly,
+        "retardation_length": lambda b: 0.0,
         "leading_edge": _low_length,
-        "trailing_edge": _low_trailing,
+        "trailing_edge": lambda b: 1.0 / (b.low * b.q_least) - 1.0,
         "load": _low_load,
-        "friction_force": _low_friction,
+        # Of the product: the errors of load and coefficient have opposite signs.
+        "friction_force": lambda b: max(_low_load(b), _low_coefficient(b)),
         "friction_coefficient": _low_coefficient,
-        "peak_pressure": _peak_low,
+        "peak_pressure": _low_peak,
         "dissipated_in_contact": _dissipated,
     },
     "high": {
         "depth": _high_depth,
         "half_length": _high_length,
-        "retardation_length": _exactly,
+        "retardation_length": lambda b: 0.0,
         "leading_edge": _high_length,
-        "trailing_edge": _never,  # Eq. 39 is zero
+        "trailing_edge": lambda b: math.inf,  # Eq. 39 is zero
         "load": _high_load,
-        "friction_force": _high_friction,
+        "friction_force": lambda b: (1.0 + _high_load(b)) * (1.0 + _high_coefficient(b)) - 1.0,
         "friction_coefficient": _high_coefficient,
-        "peak_pressure": _high_peak,
+        # Exact in the depth once the peak is at the leading edge, l >= 1 (F7).
+        "peak_pressure": lambda b: _high_length(b) if b.least >= 1.0 else math.inf,
         "dissipated_in_contact": _dissipated,
     },
 }
-_GIVEN = dict.fromkeys(("depth", "half_length", "retardation_length", "leading_edge"), _exactly)
-HELD: Mapping[str, Mapping[str, Bound]] = {
+HELD: dict[str, dict[str, Bound]] = {
     "low": {
-        **_GIVEN,
-        "trailing_edge": _low_trailing,
-        "load": _fixed(cf.error_load_low),
-        "friction_force": _fixed(cf.error_friction_force_low),
-        "friction_coefficient": _low_coefficient,
-        "peak_pressure": _peak_low,
-        "dissipated_in_contact": _dissipated,
+        **MOVING["low"],
+        "load": lambda b: abs(cf.error_load_low(b.largest, b.q_least)),
+        "friction_force": lambda b: abs(cf.error_friction_force_low(b.largest, b.q_least)),
     },
     "high": {
-        **_GIVEN,
-        "trailing_edge": _never,
-        "load": _fixed(lambda _, q: cf.error_load_high(q)),
-        "friction_force": _fixed(lambda _, q: cf.error_friction_force_high(q)),
-        "friction_coefficient": _fixed(lambda l, q: cf.error_l2_fixed(q, l)),
-        "peak_pressure": lambda bounds: 0.0 if bounds.number >= 1.0 else math.inf,
-        "dissipated_in_contact": _dissipated,
+        **MOVING["high"],
+        "load": lambda b: abs(cf.error_load_high(b.q_least)),
+        "friction_force": lambda b: abs(cf.error_friction_force_high(b.q_least)),
     },
 }
+"""For a fixed indenter the errors of its forces are known exactly, and its depth has none."""
 ERRORS = {False: MOVING, True: HELD}
 """Bounds of |asymptote/truth - 1| by regime and quantity; the key says whether the indenter is fixed."""

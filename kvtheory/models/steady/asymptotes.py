@@ -1,108 +1,127 @@
-r"""Steady sliding far from the critical velocity: the paper's asymptotes (Eqs. 40-49).
+r"""The asymptotes of steady sliding of h = slope |x|^n/(n L^(n-1)): parabola, power law and wedge.
 
-For l_r << a nothing peels and the foundation is a spring; for l_r >> a the outlet side has
-peeled completely and the foundation is a damper. The relative error of each asymptote is known
-exactly as a function of l = l_r/a and q = x_TE/a (derivations "error-..."); it falls monotonically
-towards its limit, so that "within a tolerance" is a half-line of velocities.
+For l_r << a nothing peels and the foundation is a spring, mu -> (delta/a) l n (n + 1)/(2 n - 1); for
+l_r >> a the outlet side has peeled completely and it is a damper, W -> C V delta and
+mu -> (delta/a) n^2/(2 n - 1) (derivations "F19-low" and "F19-high"). With n = 2 these are the paper's
+(Eqs. 38-49). The relative errors are closed forms in l = l_r/a and q = x_TE/a that fall monotonically
+towards either limit (derivations "F19-error-..."): "within a tolerance" is a half-line of velocities.
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from kvtheory.models.steady import closed_forms as cf
+from kvtheory.models.steady.power_law_contact import root, shape_of, trailing_edge
 from kvtheory.results import SteadyState
 
-Array = NDArray[np.float64]
+Value = Any
+"""An array, or a float."""
 
-PROVED = "error-L1, error-L2-fixed, error-L2-dead-weight and others"
+PROVED = "F19-error-L1, F19-error-L2, F19-error-monotonic and others"
 """The derivations of the errors."""
 
+SMALL = 0.5
+"""Up to this z = n l Q the peeled parts follow from z, beyond from q and Q themselves."""
+TERMS = tuple(1.0 / float(np.prod(np.arange(1, k + 3))) for k in range(16))
+"""Coefficients of phi_2(x) = sum x^k/(k + 2)!; for |x| <= ln 2 the next is below rounding."""
+PEAK_BRACKET = 0.5, 4.0
+"""The maximum of a dead weight is at l between 1 (n -> 1) and 2 (n -> oo)."""
 
-@dataclass(frozen=True)
-class Limits:
+
+class Limits(NamedTuple):
     """What the asymptotes take of a scene, in SI, all of one shape, with V >= 0.
 
-    `static_depth` and `static_load` belong to V = 0. `lift_load` is the load for V -> oo: under a
-    spring the indenter is lifted by its whole static depth, W -> M g + k_s delta_0.
+    `static_depth`, `static_half_length` and `static_load` belong to V = 0. `lift_load` is the load for
+    V -> oo: under a spring the indenter is lifted by its whole static depth, W -> M g + k_s delta_0.
     """
 
-    radius: Array
-    stiffness: Array
-    retardation_length: Array
-    static_depth: Array
-    static_load: Array
-    lift_load: Array
+    slope: Value
+    length: Value
+    exponent: Value
+    stiffness: Value
+    retardation_length: Value
+    static_depth: Value
+    static_half_length: Value
+    static_load: Value
+    lift_load: Value
     fixed: bool
 
 
-def limits(values: Mapping[str, Array]) -> Limits:
+def limits(values: Mapping[str, Value]) -> Limits:
     """Collect the limits of a scene, given its values by dotted key."""
-    R, K = values["indenter.radius"], values["foundation.stiffness"]
+    slope, L, n = shape = shape_of(values)
+    K = values["foundation.stiffness"]
     l_r = np.abs(values["drive.velocity"]) * values["foundation.retardation_time"]
     if "support.depth" in values:
         depth = values["support.depth"]
-        load = 2 * cf.ALPHA * np.sqrt(R * depth) * K * depth  # Eq. 40
-        return Limits(R, K, l_r, depth, load, load, fixed=True)
+        a = _half_length(*shape, depth)
+        load = K * depth * a * cf.power_law_static_load(n)  # Eq. 40
+        return Limits(*shape, K, l_r, depth, a, load, load, fixed=True)
     weight = values["support.weight"]
-    a_0 = np.cbrt(1.5 * R * (weight / K))
-    delta_0 = a_0 * (a_0 / (2 * R))
+    a_0 = L * root((n + 1.0) * (weight / K) / (2.0 * slope * L * L), n + 1.0)
+    delta_0 = weight / (K * a_0 * cf.power_law_static_load(n))
     lift = weight + values.get("support.stiffness", 0.0) * delta_0
-    return Limits(R, K, l_r, delta_0, weight, lift, fixed=False)
+    return Limits(*shape, K, l_r, delta_0, a_0, weight, lift, fixed=False)
 
 
-def critical_velocity(scene: Limits, retardation_time: Array) -> Array:
-    """Return V*, where the two asymptotes of the friction coefficient meet, exactly (theorem F5).
+def _half_length(slope: Value, length: Value, exponent: Value, depth: Value) -> Value:
+    return length * root(exponent * depth / (slope * length), exponent)
 
-    V* = alpha K sqrt(R delta)/C for a fixed indenter, alpha^(2/3) (R K^2 W)^(1/3)/C otherwise, with
-    alpha = 2 sqrt(2)/3 (Eqs. 47, 48 with their coefficients).
+
+def critical_velocity(scene: Limits, retardation_time: Value) -> Value:
+    """Return V*, where the two asymptotes of the friction coefficient meet, exactly.
+
+    V* tau = a n/(n + 1) for a fixed indenter, a_0 2^((n-1)/(2n-1)) n/(n + 1) for a dead weight
+    (derivations "F19-crossing" and "F19-crossing-weight"; Eqs. 47, 48 with their coefficients).
     """
+    n, a_0 = scene.exponent, scene.static_half_length
     if scene.fixed:
-        return cf.ALPHA * np.sqrt(scene.radius * scene.static_depth) / retardation_time
-    length = np.cbrt(scene.radius * (scene.lift_load / scene.stiffness))
-    return cf.CRITICAL_DRIVE_NUMBER * length / retardation_time
+        return a_0 * cf.power_law_crossing(n) / retardation_time
+    kappa = scene.lift_load / scene.static_load - 1.0
+    return a_0 * cf.power_law_crossing_at_load(n, kappa) / retardation_time
 
 
-def peak(scene: Limits, retardation_time: Array) -> tuple[Array, Array]:
-    """Return velocity and friction coefficient at the maximum of a dead weight (theorem F3)."""
-    length = np.cbrt(scene.radius * (scene.static_load / scene.stiffness))  # (R W/K)^(1/3)
-    velocity = cf.PEAK_DRIVE_NUMBER * length / retardation_time
-    return velocity, cf.PEAK_FRICTION * length / scene.radius
+def peak(scene: Limits, retardation_time: Value) -> tuple[Value, Value]:
+    """Return velocity and friction coefficient at the one maximum of a dead weight.
+
+    A wedge has none: from l_r = a on its friction coefficient is its slope. The values are NaN.
+    """
+    from scipy.optimize import elementwise  # it takes a while to import
+
+    n = scene.exponent + 0.0 * scene.static_depth
+
+    def rise(l: Value, n: Value) -> Value:
+        return cf.power_law_friction_rise(n, l, *trailing_edge(n, l))
+
+    ends = tuple(np.full_like(n, end) for end in PEAK_BRACKET)
+    l = np.where(n > 1.0, elementwise.find_root(rise, ends, args=(n,)).x, np.nan)
+    q, Q = trailing_edge(n, l)
+    ratio = cf.power_law_static_load(n) / cf.power_law_load(n, l, q, Q)
+    s = ratio ** (1.0 / (n + 1.0))  # s^(n+1) w = w at rest
+    velocity = l * s * scene.static_half_length / retardation_time
+    slope = scene.static_depth / scene.static_half_length * s ** (n - 1.0)
+    return velocity, slope * cf.power_law_friction_coefficient(n, l, q, Q)
 
 
-def low(scene: Limits) -> dict[str, Array]:
-    """Return the asymptotes for l_r << a: Eqs. 38, 40-42."""
-    mu = scene.retardation_length / scene.radius  # Eq. 42: C V/(R K)
-    return {
-        "depth": scene.static_depth,
-        "load": scene.static_load,
-        "friction_coefficient": mu,
-        "friction_force": scene.static_load * mu,  # Eq. 41 where the load is Eq. 40
-    }
-
-
-def high(scene: Limits) -> dict[str, Array]:
-    """Return the asymptotes for l_r >> a: Eqs. 39, 43-46, 49; infinite or zero at V = 0."""
-    viscous = scene.stiffness * scene.retardation_length  # C V
-    if scene.fixed:
-        depth, load = scene.static_depth, viscous * scene.static_depth  # Eq. 43
-    else:
-        depth, load = scene.lift_load / viscous, scene.lift_load  # Eq. 49
-    mu = cf.ALPHA * np.sqrt(depth / scene.radius)  # Eqs. 45, 46
-    return {"depth": depth, "load": load, "friction_coefficient": mu, "friction_force": load * mu}
-
-
-def quantities(scene: Limits, regime: str, side: Array | float = 1.0) -> dict[str, Array]:
+def quantities(scene: Limits, regime: str, side: Value = 1.0) -> dict[str, Value]:
     """Return the asymptote of every quantity of steady sliding, by `regime`: ``"low"`` or ``"high"``.
 
     `side` is -1 for a reversed drive. At V = 0 those for high velocity are infinite or zero.
     """
-    slow = regime == "low"
-    found = low(scene) if slow else high(scene)
-    depth, l_r = found["depth"], scene.retardation_length
-    a = np.sqrt(2.0 * scene.radius * depth)
+    n, l_r, slow = scene.exponent, scene.retardation_length, regime == "low"
+    viscous = scene.stiffness * l_r  # C V
+    if slow:
+        depth, load, a = scene.static_depth, scene.static_load, scene.static_half_length
+        mu = depth / a * (l_r / a) * cf.power_law_low(n)  # Eq. 42
+    else:
+        if scene.fixed:
+            depth, load = scene.static_depth, viscous * scene.static_depth  # Eq. 43
+        else:
+            depth, load = scene.lift_load / viscous, scene.lift_load  # Eq. 49
+        a = _half_length(scene.slope, scene.length, n, depth)
+        mu = depth / a * cf.power_law_high(n)  # Eqs. 45, 46
     pressure = scene.stiffness * depth
     return {
         "depth": depth,
@@ -110,117 +129,98 @@ def quantities(scene: Limits, regime: str, side: Array | float = 1.0) -> dict[st
         "retardation_length": l_r,
         "leading_edge": -side * a,
         "trailing_edge": side * a if slow else 0.0 * a,  # Eqs. 38, 39
-        "load": found["load"],
-        "friction_force": side * found["friction_force"] + 0.0,  # no negative zero
-        "friction_coefficient": side * found["friction_coefficient"] + 0.0,
-        "peak_pressure": pressure if slow else pressure * (2.0 * l_r / a),
+        "load": load,
+        "friction_force": side * (load * mu) + 0.0,  # no negative zero
+        "friction_coefficient": side * mu + 0.0,
+        "peak_pressure": pressure if slow else pressure * (n * l_r / a),
         "dissipated_in_contact": np.ones_like(a),
     }
 
 
-def low_errors(scene: Limits, state: SteadyState) -> dict[str, Array]:
-    """Return asymptote/exact - 1 of each quantity for l_r << a, given the exact state."""
-    l, q = _ratios(state)
-    mu = cf.error_l1(l, q)
+def errors(scene: Limits, regime: str, state: SteadyState) -> dict[str, Value]:
+    """Return asymptote/exact - 1 of each quantity, given the exact state; V > 0 if `regime` is high."""
+    n, half = scene.exponent, np.asarray(state.half_length)
+    l, q = state.retardation_length / half, np.abs(state.trailing_edge) / half
+    contact = n, l, q, 1.0 / (q + n * l)
+    found = (_low_errors if regime == "low" else _high_errors)(scene, state, *contact)
+    if not scene.fixed:
+        found["friction_force"] = _compound(found["load"], found["friction_coefficient"])
+    return {
+        **found,
+        "retardation_length": np.zeros_like(l),
+        "leading_edge": found["half_length"],
+        "dissipated_in_contact": 1 / cf.power_law_dissipated_in_contact(*contact) - 1,
+    }
+
+
+def _low_errors(
+    scene: Limits, state: SteadyState, n: Value, l: Value, q: Value, Q: Value
+) -> dict[str, Value]:
+    peeled, drop, bend = _peeled(n, l, q, Q)
+    mu, friction = cf.power_law_error_l1(n, l, q, Q, drop), None
     if scene.fixed:
-        depth = np.zeros_like(l)
-        load, friction = cf.error_load_low(l, q), cf.error_friction_force_low(l, q)
+        depth, load = np.zeros_like(l), cf.power_law_error_load_low(l, q, Q, bend)
+        friction = cf.power_law_error_friction_low(n, l, q, Q, peeled, drop)
     else:
         depth = scene.static_depth / state.depth - 1
         load = scene.static_load / state.load - 1
-        friction = _compound(load, mu)
-    length = _root(depth)
-    return {
-        **_shared(depth, length, load, friction, mu, q),
-        "trailing_edge": _compound(length, 1 / q - 1),
-        "peak_pressure": _compound(depth, 1 / cf.peak_pressure_factor(l) - 1),
-    }
-
-
-def high_errors(scene: Limits, state: SteadyState) -> dict[str, Array]:
-    """Return asymptote/exact - 1 of each quantity for l_r >> a, given the exact state at V > 0."""
-    l, q = _ratios(state)
-    if scene.fixed:
-        depth, load = np.zeros_like(l), cf.error_load_high(q)
-        mu, friction = cf.error_l2_fixed(q, l), cf.error_friction_force_high(q)
-    else:
-        # The spring has not yet let go of k_s delta: lift_load - W = k_s delta.
-        load = (
-            (scene.lift_load - scene.static_load) * (state.depth / scene.static_depth) / state.load
-        )
-        depth = _compound(cf.error_depth_high(l, q), load)
-        mu = _compound(cf.error_l2_dead_weight(l, q), _root(load))
-        friction = _compound(load, mu)
-    length = _root(depth)
-    return {
-        **_shared(depth, length, load, friction, mu, q),
-        "trailing_edge": -np.ones_like(l),  # Eq. 39 is zero
-        "peak_pressure": _compound(length, 2 * l / cf.peak_pressure_factor(l) - 1),
-    }
-
-
-def _shared(
-    depth: Array, length: Array, load: Array, friction: Array, mu: Array, q: Array
-) -> dict[str, Array]:
+        mu = _compound(mu, _power(depth, 1.0 - 2.0 / n))
+    length = _power(depth, 1.0 / n)
     return {
         "depth": depth,
         "half_length": length,
-        "retardation_length": np.zeros_like(q),
-        "leading_edge": length,
+        "trailing_edge": _compound(length, peeled / q),
         "load": load,
         "friction_force": friction,
         "friction_coefficient": mu,
-        "dissipated_in_contact": 1 / cf.dissipated_in_contact(q) - 1,
+        "peak_pressure": _compound(depth, 1 / cf.power_law_peak_pressure(n, l) - 1),
     }
 
 
-def _root(error: Array) -> Array:
-    """Return the relative error of a square root: sqrt(1 + error) - 1."""
-    return error / (1 + np.sqrt(1 + error))
+def _high_errors(
+    scene: Limits, state: SteadyState, n: Value, l: Value, q: Value, Q: Value
+) -> dict[str, Value]:
+    mu, friction = cf.power_law_error_l2(n, l, q, Q), None
+    if scene.fixed:
+        depth, load = np.zeros_like(l), cf.power_law_error_load_high(n, l, q, Q)
+        friction = cf.power_law_error_friction_high(n, l, q, Q)
+    else:
+        # The spring has not yet let go of k_s delta: lift_load - W = k_s delta.
+        lifted = state.depth / scene.static_depth
+        load = (scene.lift_load - scene.static_load) * lifted / state.load
+        depth = _compound(cf.power_law_error_depth_high(n, l, q, Q), load)
+        mu = _compound(mu, _power(depth, 1.0 - 1.0 / n))
+    peak = n * l / cf.power_law_peak_pressure(n, l) - 1
+    return {
+        "depth": depth,
+        "half_length": _power(depth, 1.0 / n),
+        # The asymptote is the tip, where that of a wedge is from l = 1 on.
+        "trailing_edge": np.where((q == 0.0) & (n == 1.0), 0.0, -1.0),
+        "load": load,
+        "friction_force": friction,
+        "friction_coefficient": mu,
+        "peak_pressure": _compound(_power(depth, 1.0 - 1.0 / n), peak),
+    }
 
 
-def _ratios(state: SteadyState) -> tuple[Array, Array]:
-    half = np.asarray(state.half_length)
-    return state.retardation_length / half, np.abs(state.trailing_edge) / half
+def _peeled(n: Value, l: Value, q: Value, Q: Value) -> tuple[Value, Value, Value]:
+    """Return 1 - q, 1 - Q and l - (1 - q) without a difference where they are small."""
+    small = n * l * Q <= SMALL
+    z = np.where(small, n * l * Q, 0.0)
+    y = -np.log1p(-z) / n
+    rise, fall = (np.polyval(TERMS[::-1], x) for x in ((n - 1.0) * y, -y))
+    return (
+        np.where(small, cf.power_law_peeled(n, z), 1.0 - q),
+        np.where(small, cf.power_law_slope_drop(n, z), 1.0 - Q),
+        np.where(small, cf.power_law_bend(n, y, rise, fall), l - (1.0 - q)),
+    )
 
 
-def _compound(first: Array, second: Array) -> Array:
+def _power(error: Value, power: Value) -> Value:
+    """Return the relative error of a power: (1 + error)^power - 1."""
+    return np.expm1(power * np.log1p(error))
+
+
+def _compound(first: Value, second: Value) -> Value:
     """Return the relative error of a product: (1 + first)(1 + second) - 1."""
     return first + second + first * second
-
-
-@dataclass(frozen=True)
-class Row:
-    """One asymptote of one quantity, as it is listed for a support."""
-
-    name: str
-    quantity: str
-    regime: str
-    equation: int | None
-    formula: str
-
-
-L1 = Row("L1", "friction_coefficient", "low", 42, "C V/(R K)")
-L2 = Row("L2", "friction_coefficient", "high", 46, "alpha sqrt(W/(R C V))")
-DEPTH_LOW = Row("depth, low V", "depth", "low", None, "delta_0 = (3 W/(4 K sqrt(2 R)))^(2/3)")
-DEPTH_HIGH = Row("depth, high V", "depth", "high", 49, "W/(C V)")
-ROWS = {
-    "fixed": (
-        L1,
-        Row("L2", "friction_coefficient", "high", 45, "alpha sqrt(delta/R)"),
-        Row("load, low V", "load", "low", 40, "2 alpha R^(1/2) K delta^(3/2)"),
-        Row("load, high V", "load", "high", 43, "C V delta"),
-        Row("friction, low V", "friction_force", "low", 41, "2 alpha R^(-1/2) C V delta^(3/2)"),
-        Row("friction, high V", "friction_force", "high", 44, "alpha R^(-1/2) C V delta^(3/2)"),
-    ),
-    "dead-weight": (L1, L2, DEPTH_LOW, DEPTH_HIGH),
-    "suspended": (
-        L1,
-        Row("L2", "friction_coefficient", "high", None, "alpha sqrt((M g + k_s delta_0)/(R C V))"),
-        Row("depth, low V", "depth", "low", None, "delta_0 = (3 M g/(4 K sqrt(2 R)))^(2/3)"),
-        Row("depth, high V", "depth", "high", None, "(M g + k_s delta_0)/(C V)"),
-        Row("load, low V", "load", "low", None, "M g"),
-        Row("load, high V", "load", "high", None, "M g + k_s delta_0"),
-    ),
-}
-"""What is listed for each support; W = M g is the load of a dead weight."""

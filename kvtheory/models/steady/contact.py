@@ -37,17 +37,17 @@ from kvtheory.scene.indenters import Indenter
 
 EPS = float(np.finfo(float).eps)
 ULPS = 8.0 * EPS
-"""The least relative step of x."""
+"""The least relative step of x, and of the depth."""
 LINEAR = 1e-8
 """Newton's method squares an error: a step of this size leaves less than the rounding."""
 CUBIC = 1e-5
 """The same for the depth, whose steps leave a cube of the error."""
 DIFFERENCE = 1e-7
 """Relative step of x for h'': its error only slows the roots, and changes a peak by its square."""
-GRID = 4.0 ** np.arange(-50, 51)
-"""Half-lengths over the depth that are tried first, so that steep powers do not overflow later."""
-FULL = 1.3
-"""W/K is near depth (a FULL + l_r): 4/3 for a parabola, 1 for a wedge, up to 2."""
+STRIDES = tuple(4.0 ** (2**power) for power in range(6, -1, -1))
+"""By which a half-length far below the depth is widened at first, as far as it stays too short."""
+CLOSER = 3
+"""Newton steps on the load of a parabola as blunt as the shape, for the first depth."""
 NEAR_REACH = 0.5
 """Share of the reach at which the search for the half-length starts at most."""
 MOST_STEPS = 200
@@ -109,13 +109,17 @@ def at_load(shape: Indenter, l_r: Value, load: Value, spring: Value) -> Contact:
     concave, so that W/K is at least half of delta d(W/K)/d(delta). Newton's method in logarithms
     therefore closes in from everywhere; the second derivative of W makes it cubic (Chebyshev).
     """
-    deepest = _deepest(shape)
-    extra = l_r + spring
-    x = a = _first(shape, load**0.5, load, lambda x: FULL * x + extra)
-    depth, slope = shape.height(a), shape.slope(a)
-    factor = load / (depth * (FULL * a + extra))  # one step of Newton's method on this estimate
-    depth = depth * factor ** (1.0 / (1.0 + depth / (slope * (a + extra))))
-    active = load > 0.0
+    deepest, extra = _deepest(shape), l_r + spring
+    a = _first(shape, load**0.5, load, lambda x: x + extra)
+    for _ in range(CLOSER):
+        depth, slope = shape.height(a), shape.slope(a)
+        beyond = l_r + abs(a + 1j * l_r)
+        x = a * (a / beyond)
+        width = (a + x + l_r + l_r * (l_r / beyond)) / 1.5 + spring
+        power = a * slope * (a + x + extra) / (depth * width)
+        a = _within(shape, a, (load / (depth * width)) ** (1.0 / power))
+    depth = shape.height(a)
+    active, step = load > 0.0, math.inf
     for _ in range(MOST_STEPS):
         contact = _at_depth(shape, l_r, depth, a, x)
         total, slope = contact.load + spring * depth, contact.load_slope + spring
@@ -124,11 +128,12 @@ def at_load(shape: Indenter, l_r: Value, load: Value, spring: Value) -> Contact:
         missing = (load - total) / (0.5 * (load + total))  # nearly the logarithm of the quotient
         share = 1.0 - 0.5 * missing / (1.0 + missing * missing) * bend / power
         factor = (load / total) ** (share / power)
+        step, last = abs(factor - 1.0), step
+        active = active & (last >= CUBIC) & (step >= ULPS)
+        if not some(active):
+            return contact  # what has settled before was evaluated again from the same guesses
         depth = pick(active, least(depth * factor, 0.5 * (depth + deepest)), depth)
         a, x = pick(active, contact.a, a), pick(active, contact.x, x)
-        active = active & (abs(factor - 1.0) >= CUBIC)
-        if not some(active):
-            return _at_depth(shape, l_r, depth, a, x)
     raise QuadratureError(
         "no depth was found that carries the weight: it lies beyond the indenter's reach"
     )
@@ -141,13 +146,17 @@ def _deepest(shape: Indenter) -> Value:
 
 def _first(shape: Indenter, scale: Value, wanted: Value, width: Callable[[Value], Value]) -> Value:
     """Return the first of spaced points x where h times a width is as wanted, or the last."""
-    x = scale * GRID
-    if shape.reach is not math.inf:
-        x = np.minimum(x, NEAR_REACH * shape.reach)
-    low = shape.height(x) * width(x) < wanted
-    if x.ndim == 1:
-        return x[min(np.count_nonzero(low), GRID.size - 1)].item()
-    return np.take_along_axis(x, np.minimum(low.sum(-1, keepdims=True), GRID.size - 1), -1)
+    most = NEAR_REACH * shape.reach
+    x = least(scale / STRIDES[0], most)
+    for stride in STRIDES:
+        wider = least(x * stride, most)
+        x = pick(shape.height(wider) * width(wider) < wanted, wider, x)
+    return least(x * STRIDES[-1], most)
+
+
+def _within(shape: Indenter, a: Value, factor: Value) -> Value:
+    """Return a half-length times a factor, at most halfway to the reach."""
+    return least(a * factor, 0.5 * (a + shape.reach))
 
 
 def _at_depth(shape: Indenter, l_r: Value, depth: Value, a: Value, x: Value) -> Contact:
@@ -156,7 +165,7 @@ def _at_depth(shape: Indenter, l_r: Value, depth: Value, a: Value, x: Value) -> 
     a, a_moves = _half_length(shape, depth, start)
     rolls = (l_r * shape.slope(VERTEX * a) < depth) * 1.0
     x, x_moves = _trailing(shape, l_r * rolls, depth, a, x * (a / start))
-    below, error = integral(shape.height, (a, x), (a, rolls * x))
+    below, error = integral(shape.height, (a, x), (a, rolls * x), not shape.kinks)
     # Where p = 0, u_TE = l_r h', which does not cancel for a small l_r.
     u_te = l_r * rolls * shape.slope(x) + (1.0 - rolls) * depth
     length = a + rolls * x
@@ -174,10 +183,7 @@ def _half_length(shape: Indenter, depth: Value, a: Value) -> tuple[Value, Value]
         height, slope = shape.height(a), shape.slope(a)
         factor = (depth / height) ** (height / (a * slope))
         moves = pick(active, 1.0 / slope, moves)
-        new = a * factor
-        if shape.reach is not math.inf:
-            new = least(new, 0.5 * (a + shape.reach))
-        a = pick(active, new, a)
+        a = pick(active, _within(shape, a, factor), a)
         active = active & (abs(depth / height - 1.0) >= LINEAR)
         if not some(active):
             return a, moves
@@ -236,7 +242,9 @@ def quantities(shape: Indenter, l_r: Value, contact: Contact) -> dict[str, tuple
     The friction is l_r times the sum of int h'^2 dx and of u_TE^2/(2 l_r).
     """
     depth, a, x, a_moves, x_moves, rolls, u_te, load, load_error, load_slope = contact
-    drag, drag_error = integral(lambda x: shape.slope(x) ** 2, (a, x), (a, rolls * x))
+    drag, drag_error = integral(
+        lambda x: shape.slope(x) ** 2, (a, x), (a, rolls * x), not shape.kinks
+    )
     at_a, at_x = shape.slope(a), shape.slope(x)
     left = rolls * at_x + (1.0 - rolls) * depth / (l_r + rolls)  # u_TE/l_r
     total = drag + 0.5 * u_te * left

@@ -80,19 +80,8 @@ def at_load(
 ) -> SteadyState:
     """Return the steady state under a weight (the paper's MI model), on a spring or without.
 
-    Parameters
-    ----------
-    radius, stiffness, retardation_time, velocity
-        As in `at_depth`.
-    weight
-        M g in N/m.
-    spring
-        Stiffness of the suspension in N/m^2, relaxed at the static depth; 0 is a dead weight.
-
-    Returns
-    -------
-    SteadyState
-        As in `at_depth`.
+    The weight M g is in N/m, the stiffness of the suspension in N/m^2: it is relaxed at the static depth,
+    and 0 for a dead weight. The other arguments, and the state, are as in `at_depth`.
 
     Examples
     --------

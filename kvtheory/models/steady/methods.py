@@ -4,12 +4,12 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from types import ModuleType
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from kvtheory.models.steady import asymptotes, exact, power_law, power_law_asymptotes
+from kvtheory.models.steady import asymptotes, exact, power_law
 from kvtheory.models.steady.power_law_contact import shape_of
 from kvtheory.results import STEADY_UNITS, Certificate, SteadyState
 from kvtheory.scene.broadcasting import values as broadcast
@@ -19,23 +19,13 @@ Array = NDArray[np.float64]
 Values = Mapping[str, Array]
 
 
-class Family(NamedTuple):
-    """Shapes whose steady sliding is in closed form."""
-
-    exact: ModuleType
-    asymptotes: Any
-    """A module with the names of `kvtheory.models.steady.asymptotes`."""
-    parameters: Callable[[Values], tuple[Array, ...]]
-    """What the functions of `exact` take first."""
-
-
-_POWER_LAW = Family(power_law, power_law_asymptotes, shape_of)
-FAMILIES = {
-    "parabola": Family(exact, asymptotes, lambda values: (values["indenter.radius"],)),
-    "power-law": _POWER_LAW,
-    "wedge": _POWER_LAW,
+FAMILIES: dict[str, tuple[ModuleType, Callable[[Values], tuple[Array, ...]]]] = {
+    "parabola": (exact, lambda values: (values["indenter.radius"],)),
+    "power-law": (power_law, shape_of),
+    "wedge": (power_law, shape_of),
 }
-"""By the name of the shape; `kvtheory.scene.requirements` knows the same names."""
+"""By the name of the shape, its closed forms and what they take first; `kvtheory.scene.requirements`
+knows the same names."""
 
 COLUMN = 256
 """Scenes that are integrated at once: their nodes then fit into the second cache of a core."""
@@ -45,8 +35,8 @@ ROUNDING = 64 * 2.0**-52
 
 def solve_exact(scene: Scene, values: Values) -> SteadyState:
     """Evaluate the closed forms on whole arrays."""
-    family = FAMILIES[scene.indenter.shape]
-    return _solve(family.exact, values, *family.parameters(values))
+    method, parameters = FAMILIES[scene.indenter.shape]
+    return _solve(method, values, *parameters(values))
 
 
 def solve_quadrature(scene: Scene, values: Values) -> SteadyState:
@@ -78,36 +68,30 @@ def _integrated(scene: Scene, values: Mapping[str, Any]) -> SteadyState:
 
     # Past the indenter's own check: the values have been checked, and columns are no values for it.
     indenter = object.__new__(type(scene.indenter))
-    own = {
-        key.removeprefix("indenter."): value
-        for key, value in values.items()
-        if key.startswith("indenter.")
-    }
-    vars(indenter).update(vars(scene.indenter) | own)
+    vars(indenter).update(vars(scene.indenter))
+    for key, value in values.items():
+        if key.startswith("indenter."):
+            vars(indenter)[key.removeprefix("indenter.")] = value
     return _solve(quadrature, values, indenter)
 
 
 def solve_asymptote(scene: Scene, values: Values) -> SteadyState:
     """Evaluate the asymptote of the regime in which each velocity lies, with its error in closed form."""
-    truth = solve_exact(scene, values)
-    asymptotes = FAMILIES[scene.indenter.shape].asymptotes
-    limits = asymptotes.limits(values)
+    truth, limits = solve_exact(scene, values), asymptotes.limits(values)
     V, tau = values["drive.velocity"], values["foundation.retardation_time"]
     slow = np.abs(V) <= asymptotes.critical_velocity(limits, tau)
     side = np.where(V < 0.0, -1.0, 1.0)
     with np.errstate(divide="ignore", invalid="ignore"):  # at V = 0 the high one is not chosen
         low, high = (asymptotes.quantities(limits, regime, side) for regime in ("low", "high"))
-        errors = asymptotes.low_errors(limits, truth), asymptotes.high_errors(limits, truth)
-    found = {name: np.where(slow, low[name], high[name]) for name in STEADY_UNITS}
-    wrong = {name: np.abs(np.where(slow, errors[0][name], errors[1][name])) for name in found}
-    statement = f"closed forms of the asymptotes' errors (derivations {asymptotes.PROVED})"
-    errors_of = {name: _scalar(error + ROUNDING * (1.0 + error)) for name, error in wrong.items()}
-    certificate = Certificate("proved", statement, errors_of)
-    return SteadyState(
-        **{name: _scalar(found[name]) for name in STEADY_UNITS},
-        model="asymptote",
-        certificate=certificate,
+        lows, highs = (asymptotes.errors(limits, regime, truth) for regime in ("low", "high"))
+    found = {name: plain(np.where(slow, low[name], high[name])) for name in STEADY_UNITS}
+    wrong = {name: np.abs(np.where(slow, lows[name], highs[name])) for name in STEADY_UNITS}
+    certificate = Certificate(
+        "proved",
+        f"closed forms of the asymptotes' errors (derivations {asymptotes.PROVED})",
+        {name: plain(error + ROUNDING * (1.0 + error)) for name, error in wrong.items()},
     )
+    return SteadyState(**found, model="asymptote", certificate=certificate)
 
 
 METHODS: dict[str, Callable[[Scene, Values], SteadyState]] = {
@@ -131,21 +115,24 @@ def _solve(method: ModuleType, values: Mapping[str, Any], *indenter: Any) -> Ste
     return method.at_load(*first, weight, values.get("support.stiffness", 0.0))
 
 
-def _scalar(array: Array) -> Any:
-    return array if array.ndim else float(array)
+def plain(array: Any) -> Any:
+    """Return what has no dimensions as a plain value."""
+    return array if array.ndim else array.item()
 
 
 def _joined(states: Sequence[SteadyState], shape: tuple[int, ...]) -> SteadyState:
     """Join the states of single scenes or of columns into one of arrays."""
 
-    def joined(parts: Sequence[Mapping[str, Any]]) -> dict[str, Array]:
+    def joined(parts: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
         return {
             name: np.concatenate([np.ravel(part[name]) for part in parts]).reshape(shape)
             for name in STEADY_UNITS
         }
 
+    own = states[0].certificate
     errors = joined([state.certificate.relative_error for state in states])
-    certificate = replace(states[0].certificate, relative_error=errors)
-    return SteadyState(
-        **joined([vars(state) for state in states]), model=states[0].model, certificate=certificate
+    return replace(
+        states[0],
+        **joined([vars(state) for state in states]),
+        certificate=replace(own, relative_error=errors),
     )

@@ -88,21 +88,9 @@ def at_load(
     weight: ArrayLike,
     spring: ArrayLike = 0.0,
 ) -> SteadyState:
-    """Return the steady state under a weight, on a spring or without.
+    """Return the steady state under a weight in N/m, on a spring in N/m^2 or without.
 
-    Parameters
-    ----------
-    slope, length, exponent, stiffness, retardation_time, velocity
-        As in `at_depth`.
-    weight
-        M g in N/m.
-    spring
-        Stiffness of the suspension in N/m^2, relaxed at the static depth; 0 is a dead weight.
-
-    Returns
-    -------
-    SteadyState
-        As in `at_depth`.
+    The other arguments, and the state, are as in `at_depth`; a spring is relaxed at the static depth.
 
     Examples
     --------

@@ -10,6 +10,7 @@ the error e of ln q becomes at most e^2/2. The last step multiplies q, which kee
 """
 
 from collections.abc import Mapping
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,17 +25,17 @@ LAST_RESIDUAL = 8 * 2.0**-52
 """Rounding of the residual: nothing is gained below it."""
 
 
-def shape_of(values: Mapping[str, Array]) -> tuple[Array, Array, Array]:
+def shape_of(values: Mapping[str, Any]) -> tuple[Any, Any, Any]:
     """Return slope, L and n of h = slope |x|^n/(n L^(n-1)), given the values of a scene by dotted key.
 
-    >>> [float(value) for value in shape_of({"indenter.inclination": np.array(0.1)})]
-    [0.1, 1.0, 1.0]
+    >>> shape_of({"indenter.inclination": 0.1})
+    (0.1, 1.0, 1.0)
     """
     if "indenter.inclination" in values:
-        slope = values["indenter.inclination"]
-        return slope, np.ones_like(slope), np.ones_like(slope)
-    length = values["indenter.length"]
-    return np.ones_like(length), length, values["indenter.exponent"]
+        return values["indenter.inclination"], 1.0, 1.0
+    if "indenter.radius" in values:
+        return 1.0, values["indenter.radius"], 2.0
+    return 1.0, values["indenter.length"], values["indenter.exponent"]
 
 
 def trailing_edge(exponent: Array, number: Array) -> tuple[Array, Array]:

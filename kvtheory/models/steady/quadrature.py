@@ -100,24 +100,9 @@ def at_load(
 ) -> SteadyState:
     """Return the steady state under a weight (the paper's MI model), on a spring or without.
 
-    Parameters
-    ----------
-    indenter, stiffness, retardation_time, velocity
-        As in `at_depth`.
-    weight
-        M g in N/m.
-    spring
-        Stiffness of the suspension in N/m^2, relaxed at the static depth; 0 is a dead weight.
-
-    Returns
-    -------
-    SteadyState
-        As in `at_depth`.
-
-    Raises
-    ------
-    QuadratureError
-        As in `at_depth`, or if no depth within the indenter's reach carries the weight.
+    The weight M g is in N/m, the stiffness of the suspension in N/m^2: it is relaxed at the static depth,
+    and 0 for a dead weight. The other arguments, the state and the errors are as in `at_depth`; it is an
+    error, too, if no depth within the indenter's reach carries the weight.
 
     Examples
     --------
@@ -183,9 +168,12 @@ def _state(
     noise = MARGIN * (depth_error + found.noise)
     values, errors = {}, {}
     for name, (value, own, power) in model.quantities(shape, l_r, found).items():
-        unit = stiffness if name in FORCES else 1.0
-        values[name] = unit * (side * value + 0.0 if name in ODD else value)  # no negative zero
+        values[name] = value
         errors[name] = own + ROUNDING + noise * abs(power)
+    for name in ODD:
+        values[name] = side * values[name] + 0.0  # no negative zero
+    for name in FORCES:
+        values[name] = stiffness * values[name]
     errors["depth"] = depth_error
     statement = STATEMENT if model is contact else OF_ANY_SHAPE
     return SteadyState(

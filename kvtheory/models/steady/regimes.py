@@ -1,14 +1,14 @@
 """Which asymptote holds for a scene, how wrong it is, and over which velocities."""
 
 from collections.abc import Mapping
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import elementwise
 
-from kvtheory.models.steady.asymptotes import Row
-from kvtheory.models.steady.methods import FAMILIES, solve_exact
+from kvtheory.models.steady import asymptotes
+from kvtheory.models.steady.methods import plain, solve_exact
 from kvtheory.results import AsymptoteLine, AsymptoteReport, Certificate
 from kvtheory.scene.model import Scene
 
@@ -21,56 +21,134 @@ DECADES = 30.0
 STATEMENT = "the relative errors are closed forms (derivations {}), monotonic in V, evaluated to about 1e-14"
 
 
+LISTED = {
+    "fixed": ("friction_coefficient", "load", "friction_force"),
+    "dead-weight": ("friction_coefficient", "depth"),
+    "suspended": ("friction_coefficient", "depth", "load"),
+}
+"""What is listed for each support, each at low and then at high velocity."""
+EQUATIONS = {
+    "fixed": (42, 45, 40, 43, 41, 44),
+    "dead-weight": (42, 46, None, 49),
+    "suspended": (42, None, None, None, None, None),
+}
+"""The paper's numbers of them."""
+OF_PARABOLA = {
+    "fixed": (
+        "C V/(R K)",
+        "alpha sqrt(delta/R)",
+        "2 alpha R^(1/2) K delta^(3/2)",
+        "C V delta",
+        "2 alpha R^(-1/2) C V delta^(3/2)",
+        "alpha R^(-1/2) C V delta^(3/2)",
+    ),
+    "dead-weight": (
+        "C V/(R K)",
+        "alpha sqrt(W/(R C V))",
+        "delta_0 = (3 W/(4 K sqrt(2 R)))^(2/3)",
+        "W/(C V)",
+    ),
+    "suspended": (
+        "C V/(R K)",
+        "alpha sqrt((M g + k_s delta_0)/(R C V))",
+        "delta_0 = (3 M g/(4 K sqrt(2 R)))^(2/3)",
+        "(M g + k_s delta_0)/(C V)",
+        "M g",
+        "M g + k_s delta_0",
+    ),
+}
+OF_POWER_LAW = {
+    "fixed": (
+        "n (n+1)/(2n-1) delta C V/(K a^2)",
+        "n^2/(2n-1) delta/a",
+        "2n/(n+1) K delta a",
+        "C V delta",
+        "2n^2/(2n-1) C V delta^2/a",
+        "n^2/(2n-1) C V delta^2/a",
+    ),
+    "dead-weight": (
+        "n (n+1)/(2n-1) delta_0 C V/(K a_0^2)",
+        "n^2/(2n-1) delta/a, delta = W/(C V)",
+        "delta_0 = (n+1)/(2n) W/(K a_0)",
+        "W/(C V)",
+    ),
+    "suspended": (
+        "n (n+1)/(2n-1) delta_0 C V/(K a_0^2)",
+        "n^2/(2n-1) delta/a, delta as below",
+        "delta_0 = (n+1)/(2n) M g/(K a_0)",
+        *OF_PARABOLA["suspended"][3:],
+    ),
+}
+"""Their formulas; n = 1 for a wedge, W = M g is the load of a dead weight."""
+
+
+class Row(NamedTuple):
+    """One asymptote of one quantity, as it is listed for a support."""
+
+    name: str
+    quantity: str
+    regime: str
+    equation: int | None
+    formula: str
+
+
+def rows(shape: str, support: str) -> list[Row]:
+    """Return what is listed for a shape and a support, the friction coefficient first.
+
+    >>> rows("parabola", "dead-weight")[3]
+    Row(name='depth, high V', quantity='depth', regime='high', equation=49, formula='W/(C V)')
+    """
+    places = [(quantity, regime) for quantity in LISTED[support] for regime in ("low", "high")]
+    names = ["L1", "L2"]
+    names += [f"{name.removesuffix('_force')}, {regime} V" for name, regime in places[2:]]
+    parabola = shape == "parabola"
+    formulas = (OF_PARABOLA if parabola else OF_POWER_LAW)[support]
+    equations = EQUATIONS[support] if parabola else [None] * len(formulas)
+    return [
+        Row(name, *place, equation, formula)
+        for name, place, equation, formula in zip(names, places, equations, formulas, strict=True)
+    ]
+
+
 def report(scene: Scene, values: Values, tolerance: float) -> AsymptoteReport:
     """Make the report of `kvtheory.asymptotes`, which documents it."""
-    asy = FAMILIES[scene.indenter.shape].asymptotes
-    rows = asy.ROWS[scene.support.kind]
     V, tau = values["drive.velocity"], values["foundation.retardation_time"]
-    limits = asy.limits(values)
-    critical = asy.critical_velocity(limits, tau)
-    errors = _errors(scene, values)
-    truth = solve_exact(scene, values)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        approximations = {"low": asy.low(limits), "high": asy.high(limits)}
-    side = np.where(V < 0.0, -1.0, 1.0)
+    limits = asymptotes.limits(values)
+    critical = asymptotes.critical_velocity(limits, tau)
+    truth, side = solve_exact(scene, values), np.where(V < 0.0, -1.0, 1.0)
+    with np.errstate(divide="ignore", invalid="ignore"):  # no high asymptote at V = 0
+        found = {name: asymptotes.quantities(limits, name, side) for name in ("low", "high")}
+        errors = {name: asymptotes.errors(limits, name, truth) for name in found}
     lines = []
-    for row in rows:
-        signed = side if row.quantity.startswith("friction") else 1.0
+    for row in rows(scene.indenter.shape, scene.support.kind):
         error = errors[row.regime][row.quantity]
         edge = _range_edge(scene, values, critical, row, tolerance)
         lines.append(
             AsymptoteLine(
-                row.name, row.quantity, row.regime, row.equation, row.formula,
-                value=_finite(signed * approximations[row.regime][row.quantity]),
+                *row,
+                value=_finite(found[row.regime][row.quantity]),
                 exact=getattr(truth, row.quantity),
                 relative_error=_finite(error),
-                velocity_min=_plain(edge if row.regime == "high" else np.zeros_like(edge)),
-                velocity_max=_plain(edge if row.regime == "low" else np.full_like(edge, np.inf)),
+                velocity_min=plain(edge if row.regime == "high" else np.zeros_like(edge)),
+                velocity_max=plain(edge if row.regime == "low" else np.full_like(edge, np.inf)),
             )
-        )  # fmt: skip
+        )
     nothing = np.full_like(critical, np.nan)
     dead = scene.support.kind == "dead-weight"
-    peak_velocity, peak_friction = asy.peak(limits, tau) if dead else (nothing, nothing)
+    peak_velocity, peak_friction = asymptotes.peak(limits, tau) if dead else (nothing, nothing)
     l1, l2 = (np.abs(line.relative_error) <= tolerance for line in lines[:2])
     return AsymptoteReport(
-        velocity=_plain(V),
-        critical_velocity=_plain(critical),
-        peak_velocity=_plain(peak_velocity),
-        peak_friction_coefficient=_plain(peak_friction),
-        regime=_text(np.where(np.abs(V) <= critical, "low", "high")),
-        use=_text(np.where(l1, "L1", np.where(l2, "L2", "exact"))),
+        velocity=plain(V),
+        critical_velocity=plain(critical),
+        peak_velocity=plain(peak_velocity),
+        peak_friction_coefficient=plain(peak_friction),
+        regime=plain(np.where(np.abs(V) <= critical, "low", "high")),
+        use=plain(np.where(l1, "L1", np.where(l2, "L2", "exact"))),
         tolerance=tolerance,
         lines=tuple(lines),
         model="asymptote",
-        certificate=Certificate("proved", STATEMENT.format(asy.PROVED), {}),
+        certificate=Certificate("proved", STATEMENT.format(asymptotes.PROVED), {}),
     )
-
-
-def _errors(scene: Scene, values: Values) -> dict[str, dict[str, Array]]:
-    asy = FAMILIES[scene.indenter.shape].asymptotes
-    state, limits = solve_exact(scene, values), asy.limits(values)
-    with np.errstate(divide="ignore", invalid="ignore"):  # no high asymptote at V = 0
-        return {"low": asy.low_errors(limits, state), "high": asy.high_errors(limits, state)}
 
 
 def _range_edge(scene: Scene, values: Values, critical: Array, row: Row, tolerance: float) -> Array:
@@ -84,7 +162,10 @@ def _range_edge(scene: Scene, values: Values, critical: Array, row: Row, toleran
     def excess(decades: Array, *arrays: Array) -> Array:
         point = dict(zip(keys, arrays[:-1], strict=True))
         point["drive.velocity"] = arrays[-1] * 10.0**decades
-        return np.abs(_errors(scene, point)[row.regime][row.quantity]) - tolerance
+        truth, limits = solve_exact(scene, point), asymptotes.limits(point)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            found = asymptotes.errors(limits, row.regime, truth)
+        return np.abs(found[row.quantity]) - tolerance
 
     args = (*values.values(), critical)
     bracket = (np.full_like(critical, -DECADES), np.full_like(critical, DECADES))
@@ -94,12 +175,4 @@ def _range_edge(scene: Scene, values: Values, critical: Array, row: Row, toleran
 
 
 def _finite(array: Array) -> Any:
-    return _plain(np.where(np.isfinite(array), array, np.nan))
-
-
-def _plain(array: Array) -> Any:
-    return array if array.ndim else float(array)
-
-
-def _text(array: Any) -> Any:
-    return array if array.ndim else str(array)
+    return plain(np.where(np.isfinite(array), array, np.nan))
