@@ -17,6 +17,7 @@ from kvtheory.models.elements.row import ElementRow, IndenterState
 from kvtheory.models.elements.schemes import SCHEMES
 from kvtheory.models.elements.stability import limit_at
 from kvtheory.results import TRANSIENT_UNITS
+from kvtheory.results.certificate import AT_REST
 from kvtheory.results.errors import DivergenceError
 
 IMPLICIT = ("semi-implicit", "exponential", "edge-corrected")
@@ -331,6 +332,7 @@ def test_default_rows_and_units():
     assert set(result.as_dict()) >= {*TRANSIENT_UNITS, "scheme", "model", "certificate", "warning"}
     assert result.as_dict()["certificate"] == {
         "kind": "none", "statement": "no error was estimated, since certify=False", "relative_error": {},
+        "relative_to": AT_REST,
     }  # fmt: skip
 
 

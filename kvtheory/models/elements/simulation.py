@@ -8,13 +8,12 @@ from dataclasses import replace
 import numpy as np
 
 from kvtheory.models.elements.contact import report
-from kvtheory.models.elements.contact_rule import RIGHT, ContactRule
 from kvtheory.models.elements.error_estimate import COLUMNS, DOUBTS, SHIFTS, UNKNOWN, Rows, estimate
+from kvtheory.models.elements.law import RIGHT, ContactRule
 from kvtheory.models.elements.model import Model
 from kvtheory.models.elements.row import KEPT_DEPTH, ElementRow, IndenterState, OutgrownError
 from kvtheory.models.elements.schemes import DEFAULT, SCHEMES, Scheme
-from kvtheory.models.elements.stability import lengths, limit_at
-from kvtheory.models.elements.watch import Watch, doubts, stability_text
+from kvtheory.models.elements.stability import Watch, doubts, lengths, limit_at, stability_text
 from kvtheory.results import Simulation
 from kvtheory.results.errors import DivergenceError
 from kvtheory.scene.base_motion import BaseMotion
@@ -52,18 +51,11 @@ Progress = Callable[[int, int], None]
 
 
 def simulate(
-    scene: Scene,
-    spacing: float,
-    scheme: Scheme,
-    *,
-    at: Sequence[float] | None,
-    time_step: float | None,
-    certify: bool,
-    rule: ContactRule = RIGHT,
-    start: float = 1.0,
-    progress: Progress | None = None,
-    warn: Callable[[str], None] | None = None,
-) -> Simulation:
+    scene: Scene, spacing: float, scheme: Scheme, *,
+    at: Sequence[float] | None, time_step: float | None, certify: bool,
+    rule: ContactRule = RIGHT, start: float = 1.0,
+    progress: Progress | None = None, warn: Callable[[str], None] | None = None,
+) -> Simulation:  # fmt: skip
     """Return the time series of a scene, with elements at this spacing (m).
 
     Raises
@@ -206,13 +198,10 @@ def _legs(stops: Sequence[float], breaks: Sequence[float], h: float) -> list[Leg
     legs: list[Leg] = []
     start = 0.0
     for stop in stops:
-        count = _count(stop - start, h) if stop - start > TOGETHER * h else 0
+        # An even number of steps of at most h, so that half as many fit too.
+        count = max(2 * math.ceil(0.5 * (stop - start) / h * (1.0 - 1e-9)), 2)
+        count = count if stop - start > TOGETHER * h else 0
         legs.append((start, stop, count))
         if count or stop in breaks:
             start = stop
     return legs
-
-
-def _count(length: float, h: float) -> int:
-    """Return an even number of steps of at most h, so that half as many fit too."""
-    return max(2 * math.ceil(0.5 * length / h * (1.0 - 1e-9)), 2)
