@@ -68,7 +68,7 @@ def simulate(
     model = Model.of(scene, spacing, parts=scheme.row.parts_of_elements)
     model = replace(model, rule=rule, start=start)
     path = model.path(scene)
-    h = time_step or default_step(model, path, scheme)
+    h = time_step or _default_step(model, path, scheme)
     stops, wanted = _instants(scene, path, h, at)
     if stops[-1] > MOST_OF_ALL * h:
         raise ValueError(
@@ -101,17 +101,10 @@ def simulate(
     )  # fmt: skip
 
 
-def default_step(model: Model, path: BaseMotion, scheme: Scheme) -> float:
-    """Return the time step of a scheme where none is given, in s.
-
-    Raises
-    ------
-    ValueError
-        If it is the paper's, 2 dx/V, and the base never moves.
-    """
-    passing = (
-        ELEMENTS_PER_STEP * model.spacing / path.highest_speed if path.highest_speed else math.inf
-    )
+def _default_step(model: Model, path: BaseMotion, scheme: Scheme) -> float:
+    """Return the time step of a scheme where none is given, in s."""
+    fastest = path.highest_speed
+    passing = ELEMENTS_PER_STEP * model.spacing / fastest if fastest else math.inf
     if scheme.row.papers_step:
         if math.isinf(passing):
             raise ValueError(
