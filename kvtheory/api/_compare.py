@@ -35,7 +35,7 @@ def _mistaken(
     scene: Scene, spacing: float, time_step: float, times: Sequence[float], does: Mapping[str, Any]
 ) -> Mapping[str, Any]:
     """Simulate a scene by the paper's scheme with a mistake in the rule of contact, or at the start."""
-    from kvtheory.models.elements.contact_rule import ContactRule
+    from kvtheory.models.elements.law import ContactRule
     from kvtheory.models.elements.schemes import SCHEMES
     from kvtheory.models.elements.simulation import simulate
 

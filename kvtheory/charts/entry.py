@@ -2,12 +2,13 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import Any, Literal, get_args
 
 import numpy as np
 from numpy.typing import NDArray
 
 Role = Literal["wrong", "right", "package"]
+Curve = tuple[NDArray[np.floating[Any]], NDArray[np.floating[Any]]]
 
 
 @dataclass(frozen=True)
@@ -28,6 +29,11 @@ class Picture:
     lines: tuple[Line, ...]
     log_x: bool = False
     log_y: bool = False
+
+    @classmethod
+    def of(cls, x: str, y: str, wrong: Curve, package: Curve, **logarithmic: bool) -> "Picture":
+        """Return the picture of what is wrong, and of what the package gives, each as x and y."""
+        return cls(x, y, (Line("wrong", *wrong), Line("package", *package)), **logarithmic)
 
 
 @dataclass(frozen=True)
@@ -80,18 +86,12 @@ class Finding:
 
     def as_dict(self) -> dict[str, Any]:
         """Return plain Python values, ready for JSON; what does not exist is None."""
-        entry, outcome = self.entry, self.outcome
-        texts = {name: getattr(entry, name) for name in TEXTS}
-        numbers = {name: _plain(getattr(outcome, name)) for name in ("wrong", "right", "package")}
+        numbers = {role: getattr(self.outcome, role) for role in get_args(Role)}
         return {
-            **texts,
-            **{f"{name}_value": value for name, value in numbers.items()},
-            "said": outcome.said,
+            **{name: getattr(self.entry, name) for name in TEXTS},
+            **{f"{role}_value": x if np.isfinite(x) else None for role, x in numbers.items()},
+            "said": self.outcome.said,
         }
 
 
 TEXTS = "key", "title", "scene", "why", "quantity", "notice", "package"
-
-
-def _plain(value: float) -> float | None:
-    return float(value) if np.isfinite(value) else None

@@ -4,15 +4,17 @@ import tomllib
 from collections.abc import Iterator, Sequence
 from importlib.resources import files
 
-from kvtheory.charts.element_failures import ELEMENT_FAILURES
+from kvtheory.charts import element_failures, motion_failures, steady_failures
 from kvtheory.charts.entry import Entry, Finding
-from kvtheory.charts.motion_failures import MOTION_FAILURES
-from kvtheory.charts.steady_failures import STEADY_FAILURES
 from kvtheory.scene.quantities import nearest
 
-MEASURES = {**ELEMENT_FAILURES, **MOTION_FAILURES, **STEADY_FAILURES}
+MEASURES = {**vars(element_failures), **vars(motion_failures), **vars(steady_failures)}
+"""Each entry is computed by the function of its name."""
 WORDS = tomllib.loads(files("kvtheory.charts").joinpath("atlas.toml").read_text(encoding="utf-8"))
-ATLAS = {key: Entry(key=key, measure=MEASURES[key], **words) for key, words in WORDS.items()}
+ATLAS = {
+    key: Entry(key=key, measure=MEASURES["_" + key.replace("-", "_")], **words)
+    for key, words in WORDS.items()
+}
 """The entries by their keys."""
 
 

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kvtheory.charts import problems
-from kvtheory.charts.naive import two_states
+from kvtheory.charts.naive import Law, two_states
 from kvtheory.charts.problems import Curves, Problem
 from kvtheory.models.continuum import compiled
 from kvtheory.models.elements.schemes import SCHEMES
@@ -82,7 +82,7 @@ class Method:
     work: Literal["evaluations", "element updates"]
     solve: Solve
     kind: Literal["numerical", "model"] = "numerical"
-    suits: Callable[[Problem], bool] = lambda problem: not problem.fixed
+    suits: Callable[[Problem], bool] = lambda problem: not problem.scene.held
 
 
 def transient_methods() -> dict[str, Method]:
@@ -95,11 +95,11 @@ def transient_methods() -> dict[str, Method]:
     """
     found = [
         Method("slow manifold", "rtol", TOLERANCES[:9:2], "evaluations", _slow_manifold, "model",
-               lambda problem: len(problem.pieces) == 1 and not problem.fixed
+               lambda problem: len(problem.pieces) == 1 and not problem.scene.held
                and not callable(problem.pieces[0][2]) and problem.pieces[0][2] > 0.0),
         *(_continuum(fast) for fast in ((False, True) if compiled.available() else (False,))),
-        *(_solve_ivp(name) for name in ("RK45", "DOP853", "Radau", "BDF", "LSODA")),
-        *([_CVODE] if find_spec("sksundae") else []),
+        *(_two_states(name) for name in ("RK45", "DOP853", "Radau", "BDF", "LSODA")),
+        *([_two_states("CVODE", _piece_by_cvode)] if find_spec("sksundae") else []),
         Method("method of lines", "elements", LINES_DENSITIES, "element updates", _lines),
         *(_elements(name) for name in SCHEMES),
     ]  # fmt: skip
@@ -114,44 +114,34 @@ def _continuum(fast: bool) -> Method:
     return Method(name, "rtol", TOLERANCES, "evaluations", solve, suits=lambda _: True)
 
 
-def _solve_ivp(method: str) -> Method:
+def _two_states(
+    name: str, piece: Callable[..., tuple[Array, int]] = problems.piece_by_scipy
+) -> Method:
     def solve(problem: Problem, rtol: float, clock: Clock) -> tuple[Curves, int]:
-        return problems.by_two_states(
-            problem, method, rtol, lambda *numbers: clock.watched(two_states(*numbers))
-        )
+        def law_of(*numbers: Any) -> Law:
+            return clock.watched(two_states(*numbers))
 
-    return Method(f"two states, {method}", "rtol", LOOSE_TOLERANCES, "evaluations", solve)
+        return problems.by_two_states(problem, name, rtol, law_of, piece)
+
+    return Method(f"two states, {name}", "rtol", LOOSE_TOLERANCES, "evaluations", solve)
 
 
-def _cvode(problem: Problem, rtol: float, clock: Clock) -> tuple[Curves, int]:
+def _piece_by_cvode(
+    law: Law, ends: tuple[float, float], y: Array, s: Array, _: str, rtol: float
+) -> tuple[Array, int]:
     for name in SUNDIALS_LOGS:  # its status says the same
         os.environ.setdefault(name, os.devnull)
     from sksundae.cvode import CVODE
 
-    s, y, rows, count = problem.times / problem.units.time, np.array([1.0, 0.0]), [], 0
-    for a, b, number in problem.pieces:
-        law = clock.watched(two_states(number, problem.epsilon, problem.kappa))
-        inside = s[(s >= a) & (s < b)]
-        wanted = np.unique([a, *inside, b])
-        with redirect_stdout(None), redirect_stderr(None):
-            run = CVODE(_in_place(law), method="BDF", rtol=rtol, atol=0.01 * rtol).solve(wanted, y)
-        if not run.success:
-            raise ArithmeticError(run.message)
-        y, count = run.y[-1].copy(), count + run.nfev
-        rows += problems.rows_of(s, a, b, run.y[np.searchsorted(wanted, inside)].T, number)
-    rows += problems.rows_of(s, b, math.inf, y[:, None], number)
-    depth, friction = np.array(rows).T
-    return Curves(depth, friction), count
-
-
-def _in_place(law: Callable[..., Any]) -> Callable[[float, Array, Array], None]:
     def rhs(t: float, y: Array, out: Array) -> None:
         out[:] = law(t, y)
 
-    return rhs
-
-
-_CVODE = Method("two states, CVODE", "rtol", LOOSE_TOLERANCES, "evaluations", _cvode)
+    wanted = np.unique([*ends, *s])
+    with redirect_stdout(None), redirect_stderr(None):
+        run = CVODE(rhs, method="BDF", rtol=rtol, atol=0.01 * rtol).solve(wanted, y)
+    if not run.success:
+        raise ArithmeticError(run.message)
+    return run.y[np.searchsorted(wanted, [*s, ends[1]])].T, run.nfev
 
 
 def _slow_manifold(problem: Problem, rtol: float, clock: Clock) -> tuple[Curves, int]:
@@ -164,19 +154,10 @@ def _slow_manifold(problem: Problem, rtol: float, clock: Clock) -> tuple[Curves,
 
 def _elements(scheme: str) -> Method:
     def solve(problem: Problem, density: float, clock: Clock) -> tuple[Curves, int]:
-        run = problems.by_elements(
-            problem, density, scheme, progress=lambda done, whole: clock.check()
-        )
-        return problems.curves_of(problem, run), run.element_updates
+        return problems.by_elements(problem, density, scheme, progress=clock.check)
 
-    return Method(
-        f"elements, {scheme}",
-        "elements per a_0",
-        DENSITIES,
-        "element updates",
-        solve,
-        suits=lambda _: True,
-    )
+    name, knob = f"elements, {scheme}", "elements per a_0"
+    return Method(name, knob, DENSITIES, "element updates", solve, suits=lambda _: True)
 
 
 def _lines(problem: Problem, density: float, clock: Clock) -> tuple[Curves, int]:
@@ -185,12 +166,8 @@ def _lines(problem: Problem, density: float, clock: Clock) -> tuple[Curves, int]
 
     s, dx = problem.times / problem.units.time, 1.0 / density
     places = [problem.drive.at(float(t))[0] for t in np.linspace(0.0, problem.drive.end, 201)]
-    X = (
-        np.arange(
-            math.floor((-REACH - max(places)) / dx), math.ceil((REACH - min(places)) / dx) + 1
-        )
-        * dx
-    )
+    first, last = math.floor((-REACH - max(places)) / dx), math.ceil((REACH - min(places)) / dx)
+    X = dx * np.arange(first, last + 1)
     epsilon, kappa = problem.epsilon, problem.kappa
     y, rows, updates = np.array([1.0, 0.0, *np.maximum(1.0 - X * X, 0.0)]), [], 0
 
@@ -215,9 +192,8 @@ def _lines(problem: Problem, density: float, clock: Clock) -> tuple[Curves, int]
         if not run.success:
             raise ArithmeticError(run.message)
         y, updates = run.y[:, -1], updates + run.nfev * X.size
-        last = run.t.size if b == problem.drive.end else run.t.size - 1
-        for t, state in zip(run.t[:last], run.y.T[:last], strict=True):
+        kept = run.t.size if b == problem.drive.end else run.t.size - 1
+        for t, state in zip(run.t[:kept], run.y.T[:kept], strict=True):
             xi, _, p = pressed(float(t), state)
             rows.append((state[0], -1.5 * dx * float(xi @ p)))
-    depth, friction = np.array(rows).T
-    return Curves(depth, friction), updates
+    return Curves(*np.array(rows).T), updates

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 
 from kvtheory.api import elements, transient
-from kvtheory.charts.entry import Line, Outcome, Picture
+from kvtheory.charts.entry import Outcome, Picture
 from kvtheory.charts.naive import closed_forms, two_states
 from kvtheory.models.slow_manifold.motion import follow
 from kvtheory.models.slow_manifold.start import start
@@ -42,9 +42,8 @@ def _without_past(
     points: Sequence[tuple[float, float]], epsilon: float, s: Array
 ) -> tuple[Array, Array, Array]:
     """Return d, f_z and f_x by SciPy's Radau on the two states, with the edges of Eqs. 32 and 33."""
-    starts = [*(a for a, _ in points), s[-1]]
     y, rows = (1.0, 0.0), []
-    for (a, b), (_, number) in zip(itertools.pairwise(starts), points, strict=True):
+    for (a, number), (b, _) in itertools.pairwise([*points, (s[-1], 0.0)]):
         if b == a:
             continue
         law = two_states(number, epsilon)
@@ -66,8 +65,7 @@ def _leading_edge_peels() -> Outcome:
     right = elements(scene, per_length=FINE, at=[float(s[at])], certify=False)
     return Outcome(
         LOAD * float(naive[at]), float(right.normal_force[0]), float(ours[at]),
-        Picture("t/τ", "normal force / weight",
-                (Line("wrong", s, naive), Line("package", s, ours / LOAD))),
+        Picture.of("t/τ", "normal force / weight", (s, naive), (s, ours / LOAD)),
     )  # fmt: skip
 
 
@@ -81,7 +79,7 @@ def _negative_radicand() -> Outcome:
     right = elements(scene, per_length=FINE, at=[float(s[last])], certify=False)
     return Outcome(
         float(d[last]), float(right.depth[0]), float(ours.depth[last]),
-        Picture("t/τ", "depth / static depth", (Line("wrong", s, d), Line("package", s, ours.depth))),
+        Picture.of("t/τ", "depth / static depth", (s, d), (s, ours.depth)),
         "kv.transient: "
         + ", ".join(f"{e.kind} at {e.time:.3f} τ" for e in ours.events if e.kind in FLIGHTS),
     )  # fmt: skip
@@ -102,8 +100,7 @@ def _memory_ignored() -> Outcome:
     right = elements(scene, at=[after], certify=False)
     return Outcome(
         float(naive[at]), float(right.friction_force[0]), float(ours[at]),
-        Picture("t [ms]", "friction force [N/mm]",
-                (Line("wrong", 1e3 * t, 1e-3 * naive), Line("package", 1e3 * t, 1e-3 * ours))),
+        Picture.of("t [ms]", "friction force [N/mm]", (1e3 * t, 1e-3 * naive), (1e3 * t, 1e-3 * ours)),
     )  # fmt: skip
 
 
@@ -117,8 +114,7 @@ def _slow_manifold() -> Outcome:
     right = elements(scene, per_length=FINE, at=[float(s[at])], certify=False)
     return Outcome(
         float(naive[at]), float(right.depth[0]), float(ours.depth[at]),
-        Picture("t/τ", "depth / static depth",
-                (Line("wrong", s, naive), Line("package", s, ours.depth))),
+        Picture.of("t/τ", "depth / static depth", (s, naive), (s, ours.depth)),
     )  # fmt: skip
 
 
@@ -147,24 +143,14 @@ def _event_missed() -> Outcome:
     # Steady sliding at V until the pulse begins; then the closed forms at the same depth and 4 V.
     d = transient(at=[start], rtol=RTOL)
     late = t >= 0.14
+    drawn = late & (t <= 0.17)
     right = unit * closed_forms(
         float(d.depth[0]) / numbers.depth,
         float(d.depth_rate[0]) * tau / numbers.depth, fast * number,
     )[1]  # fmt: skip
     return Outcome(
         float(naive[late].max()), right, float(ours.max()),
-        Picture("t [ms]", "friction force [N/mm]",
-                (Line("wrong", 1e3 * t[late & (t <= 0.17)], 1e-3 * naive[late & (t <= 0.17)]),
-                 Line("package", 1e3 * times, 1e-3 * ours))),
+        Picture.of("t [ms]", "friction force [N/mm]",
+                   (1e3 * t[drawn], 1e-3 * naive[drawn]), (1e3 * times, 1e-3 * ours)),
         f"solve_ivp: status {run.status}, events found: {run.t_events[0].size}",
     )  # fmt: skip
-
-
-MOTION_FAILURES = {
-    "leading-edge-peels": _leading_edge_peels,
-    "negative-radicand": _negative_radicand,
-    "memory-ignored": _memory_ignored,
-    "slow-manifold": _slow_manifold,
-    "event-missed": _event_missed,
-}
-"""The entries about the motion."""

@@ -60,11 +60,8 @@ def stale_elements(scene: Scene, per_length: float) -> tuple[Array, Array]:
     below the surface that the element had at the end of the last step. The indenter must be a parabola
     under a dead weight, driven with one velocity.
     """
-    R, K, tau = (
-        scene.indenter.radius,  # type: ignore[union-attr]
-        scene.foundation.stiffness,
-        scene.foundation.retardation_time,
-    )
+    R: float = scene.indenter.radius  # type: ignore[union-attr]
+    K, tau = scene.foundation.stiffness, scene.foundation.retardation_time
     M, W, V = scene.support.mass, scene.support.weight, scene.drive.final_velocity
     dx = 1.0 / per_length
     h = 2.0 * dx / V
@@ -73,10 +70,12 @@ def stale_elements(scene: Scene, per_length: float) -> tuple[Array, Array]:
     x = dx * np.arange(-half, half + 1)
     height, u = x * x / (2.0 * R), np.maximum(d - x * x / (2.0 * R), 0.0)
 
-    def pull(d: float, v: float) -> float:
+    def pressure(d: float, v: float, surface: Array) -> Array:
         p = K * (d - height) + K * tau * (v - V * x / R)
-        pressed = (d - height >= u) & (p > 0.0)
-        return (W - dx * float(p[pressed].sum())) / M
+        return np.where((d - height >= surface) & (p > 0.0), p, 0.0)
+
+    def pull(d: float, v: float) -> float:
+        return (W - dx * float(pressure(d, v, u).sum())) / M
 
     time, depth = [0.0], [d]
     for k in range(round(scene.run.duration / h)):
@@ -85,11 +84,9 @@ def stale_elements(scene: Scene, per_length: float) -> tuple[Array, Array]:
         a3 = pull(d + 0.5 * h * v + 0.25 * h * h * a1, v + 0.5 * h * a2)
         a4 = pull(d + h * v + 0.5 * h * h * a2, v + h * a3)
         d, v = d + h * v + h * h * (a1 + a2 + a3) / 6.0, v + h * (a1 + 2 * a2 + 2 * a3 + a4) / 6.0
-        free = np.concatenate([np.zeros(2), u[:-2]]) * math.exp(
-            -h / tau
-        )  # two elements pass in a step
-        p = K * (d - height) + K * tau * (v - V * x / R)
-        u = np.where((d - height >= free) & (p > 0.0), d - height, free)
+        # Two elements pass in a step.
+        free = np.concatenate([np.zeros(2), u[:-2]]) * math.exp(-h / tau)
+        u = np.where(pressure(d, v, free) > 0.0, d - height, free)
         time.append((k + 1) * h)
         depth.append(d)
     return np.array(time), np.array(depth)

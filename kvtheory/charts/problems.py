@@ -2,18 +2,19 @@
 
 import json
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 from importlib.resources import files
 from itertools import pairwise
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 
 from kvtheory.api import elements
-from kvtheory.charts.naive import closed_forms, two_states
+from kvtheory.charts.naive import Law, closed_forms, two_states
 from kvtheory.models.continuum import evaluation, solver
 from kvtheory.models.continuum.solved_scene import scaled_drive
 from kvtheory.scene.base_motion import BaseMotion, evaluate
@@ -54,8 +55,7 @@ STANDARD: dict[str, tuple[list[tuple[float, float]], float, float]] = {
 """Drive points (s, lambda), inertia number and end of the standard scenes."""
 
 
-@dataclass(frozen=True)
-class Curves:
+class Curves(NamedTuple):
     """Depth and friction force in scaled form at the instants of a problem."""
 
     depth: Array
@@ -88,11 +88,6 @@ class Problem:
     def drive(self) -> BaseMotion:
         """lambda(s)."""
         return scaled_drive(self.scene, self.units)
-
-    @property
-    def fixed(self) -> bool:
-        """Whether the indenter cannot move, so that there is no equation of motion."""
-        return self.scene.held
 
     @cached_property
     def epsilon(self) -> float:
@@ -167,18 +162,15 @@ def errors(found: Curves, right: Curves) -> dict[str, float]:
     >>> errors(Curves(np.array([1.0, 0.4]), np.array([2.2, 1.0])), right)["peak friction"].__round__(6)
     0.1
     """
-    largest = float(np.abs(right.friction).max()) or 1.0
+    peaks = [float(np.abs(curves.friction).max()) for curves in (found, right)]
+    largest = peaks[1] or 1.0
     result = {}
-    for name, difference in (
-        ("depth", np.abs(found.depth - right.depth)),
-        ("friction", np.abs(found.friction - right.friction) / largest),
-    ):
+    for name, one, other, unit in zip(Curves._fields, found, right, (1.0, largest), strict=True):
+        difference = np.abs(one - other) / unit
         result[f"{name}, final"] = float(difference[-1])
         result[f"{name}, maximum"] = float(difference.max())
         result[f"{name}, L2"] = float(np.sqrt(np.mean(difference**2)))
-    peaks = [float(np.abs(curves.friction).max()) for curves in (found, right)]
-    result["peak friction"] = abs(peaks[0] - peaks[1]) / largest
-    return result
+    return {**result, "peak friction": abs(peaks[0] - peaks[1]) / largest}
 
 
 def by_continuum(problem: Problem, rtol: float, **options: Any) -> tuple[Curves, int]:
@@ -191,64 +183,56 @@ def by_continuum(problem: Problem, rtol: float, **options: Any) -> tuple[Curves,
     return Curves(found[evaluation.DEPTH], found[evaluation.FRICTION_FORCE]), motion.evaluations
 
 
-def by_two_states(
-    problem: Problem, method: str, rtol: float, law_of: Any = two_states
-) -> tuple[Curves, int]:
-    """Return the curves by `solve_ivp` on the two states, started anew at each jump, and its evaluations.
+def piece_by_scipy(
+    law: Law, ends: tuple[float, float], y: Array, s: Array, method: str, rtol: float
+) -> tuple[Array, int]:
+    """Return the two states at the instants and at the end of a piece by `solve_ivp`, and its evaluations.
 
     Raises
     ------
     ArithmeticError
         If it does not succeed.
     """
-    s, y, rows, count = problem.times / problem.units.time, (1.0, 0.0), [], 0
+    tolerances = {"rtol": max(rtol, 3e-14), "atol": 0.01 * rtol}
+    with np.errstate(all="ignore"):
+        try:
+            run = solve_ivp(law, ends, y, method, dense_output=True, **tolerances)
+        except (ValueError, OverflowError) as error:  # of numbers that are not finite
+            raise ArithmeticError(str(error)) from None
+    if not run.success:
+        raise ArithmeticError(run.message)
+    return np.column_stack([run.sol(s), run.y[:, -1]]), run.nfev
+
+
+def by_two_states(
+    problem: Problem, method: str, rtol: float, law_of: Callable[..., Law] = two_states,
+    piece: Callable[..., tuple[Array, int]] = piece_by_scipy,
+) -> tuple[Curves, int]:  # fmt: skip
+    """Return the curves by the two states, started anew at each jump, and the evaluations."""
+    times, y, rows, count = problem.times / problem.units.time, np.array([1.0, 0.0]), [], 0
     for a, b, number in problem.pieces:
-        law = law_of(number, problem.epsilon, problem.kappa)
-        with np.errstate(all="ignore"):
-            try:
-                run = solve_ivp(
-                    law,
-                    (a, b),
-                    y,
-                    method,
-                    rtol=max(rtol, 3e-14),
-                    atol=0.01 * rtol,
-                    dense_output=True,
-                )
-            except (ValueError, OverflowError) as error:  # of numbers that are not finite
-                raise ArithmeticError(str(error)) from None
-        if not run.success:
-            raise ArithmeticError(run.message)
-        y, count = run.y[:, -1], count + run.nfev
-        rows += rows_of(s, a, b, run.sol(s[(s >= a) & (s < b)]), number)
-    rows += rows_of(s, b, math.inf, np.asarray(y)[:, None], number)
-    depth, friction = np.array(rows).T
-    return Curves(depth, friction), count
+        law, s = law_of(number, problem.epsilon, problem.kappa), times[(times >= a) & (times < b)]
+        values, more = piece(law, (a, b), y, s, method, rtol)
+        y, count = values[:, -1], count + more
+        if b == problem.pieces[-1][1]:
+            s = times[times >= a]
+        for x, d, v in zip(s, *values[:, : s.size], strict=True):
+            rate = number(float(x)) if callable(number) else number
+            rows.append((d, closed_forms(float(d), float(v), rate)[1]))
+    return Curves(*np.array(rows).T), count
 
 
-def rows_of(s: Array, a: float, b: float, values: Array, number: Any) -> list[tuple[float, float]]:
-    """Return depth and friction force of two-state values at the instants in [a, b)."""
-    inside = s[(s >= a) & (s < b)]
-    numbers = [number(float(x)) for x in inside] if callable(number) else [number] * inside.size
-    return [
-        (float(d), closed_forms(float(d), float(v), lam)[1])
-        for d, v, lam in zip(*values, numbers, strict=True)
-    ]
-
-
-def by_elements(problem: Problem, per_half_length: float, scheme: str, **options: Any) -> Any:
-    """Return the simulation by elements, so many in a static half length, at the instants."""
-    return elements(
-        problem.scene, per_length=per_half_length / problem.units.half_length, scheme=scheme,
+def by_elements(
+    problem: Problem, per_half_length: float, scheme: str, **options: Any
+) -> tuple[Curves, int]:
+    """Return the curves by elements, so many in a static half length, and how often they were updated."""
+    units = problem.units
+    run = elements(
+        problem.scene, per_length=per_half_length / units.half_length, scheme=scheme,
         at=problem.times, certify=False, **options,
     )  # fmt: skip
-
-
-def curves_of(problem: Problem, run: Any) -> Curves:
-    """Return a result in SI in scaled form."""
-    return Curves(
-        run.depth / problem.units.depth, run.friction_force / problem.units.friction_force
-    )
+    scaled = Curves(run.depth / units.depth, run.friction_force / units.friction_force)
+    return scaled, run.element_updates
 
 
 def reference(problem: Problem) -> Reference:
@@ -265,7 +249,7 @@ def _independent(problem: Problem, first: Curves) -> tuple[Curves, str]:
         if np.array_equal(known["times"], problem.times):
             curves = Curves(np.array(known["depth"]), np.array(known["friction"]))
             return curves, "stored solution, see the tests"
-    if not problem.fixed:
+    if not problem.scene.held:  # else there is no equation of motion
         try:
             curves = by_two_states(problem, "Radau", INDEPENDENT_RTOL)[0]
         except ArithmeticError:
@@ -273,12 +257,7 @@ def _independent(problem: Problem, first: Curves) -> tuple[Curves, str]:
         if errors(curves, first)["depth, maximum"] < NO_MEMORY:
             return curves, "two states by SciPy's Radau, rtol 1e-10"
     fine = DENSITIES[problem.quick]
-    coarse, better = (
-        curves_of(problem, by_elements(problem, n, "edge-corrected")) for n in (0.5 * fine, fine)
-    )
+    coarse, better = (by_elements(problem, n, "edge-corrected")[0] for n in (0.5 * fine, fine))
     # Of second order: the error of the finer run is a third of the difference.
-    curves = Curves(
-        better.depth + (better.depth - coarse.depth) / 3.0,
-        better.friction + (better.friction - coarse.friction) / 3.0,
-    )
+    curves = Curves(*(b + (b - a) / 3.0 for a, b in zip(coarse, better, strict=True)))
     return curves, f"elements, {0.5 * fine:g} and {fine:g} in a half length, extrapolated"

@@ -11,7 +11,6 @@ the limit passes much of the contact, which the prediction holds fixed: there it
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from itertools import islice, product
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -72,18 +71,10 @@ class Map:
     predicted_start: Array
     predicted_steady: Array
 
-    def as_dict(self) -> dict[str, Any]:
-        """Return plain Python values, ready for JSON."""
-        return {
-            name: value if isinstance(value, str) else value.tolist()
-            for name, value in vars(self).items()
-        }
-
     @property
     def classes(self) -> NDArray[np.int64]:
         """Index of the class of every point, as measured."""
-        at_first = np.where(self.start > SWELLING, 1, 0)
-        return np.where(self.steady > 1.0, 2, at_first)
+        return np.where(self.steady > 1.0, 2, (self.start > SWELLING).astype(np.int64))
 
 
 def contact_lengths(scene: Scene) -> tuple[float, float]:
@@ -212,20 +203,17 @@ def _map(
     scheme: str, x: Array, y: Array, point: Callable[[float, float], tuple[Scene, float]],
     per_length: float,
 ) -> Map:  # fmt: skip
-    rows = np.array([[_point(scheme, *point(a, b), per_length) for a in x] for b in y])
-    return Map(scheme, x, y, *(rows[:, :, k] for k in range(4)))
+    """Return growth from rest and in steady sliding, and the steps over their limits, at every point."""
 
+    def measured(scene: Scene, time_step: float) -> list[float]:
+        model, (sliding, first) = Model.of(scene), contact_lengths(scene)
+        limits = [limit_at(SCHEMES[scheme], model, length) for length in (first, sliding)]
+        ways = False, True
+        found = [growth(scene, scheme, per_length, time_step, steady=steady) for steady in ways]
+        return [*found, *(time_step / limit for limit in limits)]
 
-def _point(
-    scheme: str, scene: Scene, time_step: float, per_length: float
-) -> tuple[float, float, float, float]:
-    """Return the growth from rest and in steady sliding, and both steps over their limits."""
-    model, (sliding, first) = Model.of(scene), contact_lengths(scene)
-    measured = [
-        growth(scene, scheme, per_length, time_step, steady=steady) for steady in (False, True)
-    ]
-    shares = [time_step / limit_at(SCHEMES[scheme], model, length) for length in (first, sliding)]
-    return measured[0], measured[1], shares[0], shares[1]
+    rows = np.array([[measured(*point(a, b)) for a in x] for b in y])
+    return Map(scheme, x, y, *np.moveaxis(rows, -1, 0))
 
 
 def _begin(
@@ -249,7 +237,7 @@ def _begin(
 
 
 def stability_maps(
-    *, quick: bool = False, progress: Callable[[float], object] | None = None
+    *, quick: bool = False, progress: Callable[[float], object] = lambda _: None
 ) -> dict[str, list[Map]]:
     """Return the maps of every scheme: over ``"velocity"`` and tau, and over lambda and the ``"step"``."""
     kinds = {
@@ -264,6 +252,5 @@ def stability_maps(
             points = (points[0] + 1) // 2, (points[1] + 1) // 2
         axes = [np.geomspace(*end, n) for end, n in zip(ends, points, strict=True)]
         found[kind].append(make(name, *axes))
-        if progress is not None:
-            progress(done / (len(kinds) * len(SCHEMES)))
+        progress(done / (len(kinds) * len(SCHEMES)))
     return found

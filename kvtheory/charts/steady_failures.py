@@ -6,7 +6,7 @@ import warnings
 import numpy as np
 from numpy.typing import NDArray
 from scipy.integrate import quad
-from scipy.optimize import newton
+from scipy.optimize import brentq, newton
 
 from kvtheory.api import asymptotes, steady
 from kvtheory.charts.entry import Line, Outcome, Picture
@@ -38,17 +38,17 @@ def _cancellation() -> Outcome:
     ours = steady(fixed, over={"drive.velocity": l_r / tau}).trailing_edge
     series = a / (2.0 * ratios) * (1.0 - 0.25 / ratios**2 + 0.125 / ratios**4)  # to 1e-19
     errors = [np.maximum(np.abs(x / series - 1.0), 1e-17) for x in (as_written, ours)]
-    lines = Line("wrong", ratios, errors[0]), Line("package", ratios, errors[1])
+    labels = r"$l_\mathrm{r}/a$", r"relative error of $x_\mathrm{TE}$"
+    curves = ((ratios, error) for error in errors)
     return Outcome(
         float(as_written[-1]), float(series[-1]), float(ours[-1]),
-        Picture(r"$l_\mathrm{r}/a$", r"relative error of $x_\mathrm{TE}$", lines, log_x=True, log_y=True),
+        Picture.of(*labels, *curves, log_x=True, log_y=True),
     )  # fmt: skip
 
 
 def _asymptote() -> Outcome:
     table1 = Scene()
-    report = asymptotes(table1)
-    critical = report.critical_velocity
+    critical = asymptotes(table1).critical_velocity
     V = critical * np.geomspace(1e-2, 1e2, 81)
     by_integration = steady(over={"drive.velocity": [critical]}, method="quadrature")
     exact = steady(over={"drive.velocity": V})
@@ -59,9 +59,8 @@ def _asymptote() -> Outcome:
         float(at_critical.lines[0].value[0]),
         float(by_integration.friction_coefficient[0]),
         float(steady(over={"drive.velocity": [critical]}).friction_coefficient[0]),
-        Picture("V [mm/s]", "friction coefficient",
-                (Line("wrong", 1e3 * V, nearer), Line("package", 1e3 * V, exact.friction_coefficient)),
-                log_x=True, log_y=True),
+        Picture.of("V [mm/s]", "friction coefficient", (1e3 * V, nearer),
+                   (1e3 * V, exact.friction_coefficient), log_x=True, log_y=True),
         f'kv.asymptotes: regime "{at_critical.regime[0]}", error of the asymptote '
         f'{at_critical.lines[0].relative_error[0]:.0%}, use "{at_critical.use[0]}"',
     )  # fmt: skip
@@ -87,9 +86,8 @@ def _kink() -> Outcome:
         _load_over_the_whole_indenter(SHALLOW),
         4.0 / 3.0 * 1e10 * math.sqrt(0.02 * SHALLOW) * SHALLOW,
         steady(still, method="quadrature").load,
-        Picture("depth [mm]", "load / exact load",
-                (Line("wrong", 1e3 * depths, naive / right),
-                 Line("package", 1e3 * depths[::7], np.array(ours) / right[::7])), log_x=True),
+        Picture.of("depth [mm]", "load / exact load", (1e3 * depths, naive / right),
+                   (1e3 * depths[::7], np.array(ours) / right[::7]), log_x=True),
     )  # fmt: skip
 
 
@@ -108,16 +106,14 @@ def _no_bracket() -> Outcome:
     guesses = np.geomspace(1e-3, 1.0, 61)
     found = np.array([root(float(guess)) for guess in guesses])
     peak = float(asymptotes().peak_velocity)
-    low, high = 0.0, peak
-    for _ in range(60):  # by halves: mu rises from zero to its maximum there (fact F3)
-        middle = 0.5 * (low + high)
-        low, high = (middle, high) if friction(middle) < WANTED_FRICTION else (low, middle)
+    # mu rises from zero to its maximum there (fact F3).
+    ours = brentq(lambda V: friction(V) - WANTED_FRICTION, 0.0, peak, xtol=1e-18, rtol=1e-15)
     # F1 and F2 the other way round: the root q of mu^3 K R^2/W = m^3/w, found among all of them.
     q = _ratio_of_friction(WANTED_FRICTION**3 * 1e10 * 0.01**2 / 9806.65)
     a = WANTED_FRICTION * 0.01 * 2 * (q * q - 2 * q + 3) / ((1 - q) * (q * q - q + 4))
     right = a * (1.0 - q * q) / (2.0 * q) / 0.1
     return Outcome(
-        root(FIRST_GUESS), right, low,
+        root(FIRST_GUESS), right, ours,
         Picture("first guess of V [mm/s]", "root V [mm/s]",
                 (Line("wrong", 1e3 * guesses, 1e3 * found),
                  Line("right", 1e3 * guesses, np.full_like(guesses, 1e3 * right))), log_x=True),
@@ -147,8 +143,8 @@ def _steep() -> Outcome:
     slopes = np.array([StaticState.of(scene).half_length / R for scene in scenes[::2]])
     return Outcome(
         float(mu[-1, 0]), _circle_by_sums(scenes[-1]), float(mu[-1, 1]),
-        Picture(r"static half length $a_0/R$", "friction coefficient",
-                (Line("wrong", slopes, mu[:, 0]), Line("package", slopes, mu[:, 1]))),
+        Picture.of(r"static half length $a_0/R$", "friction coefficient",
+                   (slopes, mu[:, 0]), (slopes, mu[:, 1])),
     )  # fmt: skip
 
 
@@ -164,18 +160,5 @@ def _circle_by_sums(scene: Scene) -> float:
     def pressure(depth: float) -> Array:
         return K * np.maximum(depth - height - l_r * slope, 0.0) * (height < depth)
 
-    low, high = 0.0, R
-    for _ in range(60):
-        middle = 0.5 * (low + high)
-        low, high = (middle, high) if pressure(middle) @ width < W else (low, middle)
-    return float(-(pressure(low) * slope) @ width / W)
-
-
-STEADY_FAILURES = {
-    "cancellation": _cancellation,
-    "asymptote": _asymptote,
-    "kink": _kink,
-    "no-bracket": _no_bracket,
-    "steep": _steep,
-}
-"""The entries about steady sliding."""
+    depth = brentq(lambda d: pressure(d) @ width - W, 0.0, R, xtol=1e-18, rtol=1e-15)
+    return float(-(pressure(depth) * slope) @ width / W)

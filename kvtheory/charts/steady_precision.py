@@ -2,10 +2,10 @@
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from decimal import Decimal, localcontext
 from functools import partial
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from scipy.integrate import quad
@@ -46,8 +46,7 @@ def suits(scene: Scene) -> bool:
     )
 
 
-@dataclass(frozen=True)
-class Numbers:
+class Numbers(NamedTuple):
     """R, K, l_r = V tau and W of a scene, in SI."""
 
     R: float
@@ -67,7 +66,7 @@ def by_simpson(numbers: Numbers) -> tuple[Decimal, Decimal]:
 
     Its integrals are those of polynomials of degree two and three, for which Simpson's rule is exact.
     """
-    R, K, l_r, W = (Decimal(x) for x in (numbers.R, numbers.K, numbers.l_r, numbers.W))
+    R, K, l_r, W = map(Decimal, numbers)
 
     def forces(delta: Decimal) -> tuple[Decimal, Decimal]:
         a = (2 * R * delta).sqrt()
@@ -80,34 +79,40 @@ def by_simpson(numbers: Numbers) -> tuple[Decimal, Decimal]:
 
     with localcontext() as context:
         context.prec = 3 * DIGITS
-        low, high = Decimal(0), Decimal(1)
+        high = Decimal(1)
         while forces(high)[0] < W:
             high *= 2
-        for _ in range(4 * DIGITS + 80):
-            middle = (low + high) / 2
-            low, high = (middle, high) if forces(middle)[0] < W else (low, middle)
-        return +low, forces(low)[1] / W
+        depth = _by_halves(lambda delta: forces(delta)[0] < W, high)
+        return depth, forces(depth)[1] / W
 
 
 def by_ratio(numbers: Numbers) -> tuple[Decimal, Decimal]:
     """Return depth and friction coefficient with 40 digits, from the root q of theorem F2."""
-    R, K, l_r, W = (Decimal(x) for x in (numbers.R, numbers.K, numbers.l_r, numbers.W))
+    R, K, l_r, W = map(Decimal, numbers)
     with localcontext() as context:
         context.prec = 3 * DIGITS
         cube = l_r**3 * K / (R * W)
-        low, high = Decimal(0), Decimal(1)  # the right-hand side of F2 falls from infinity to 0
-        for _ in range(4 * DIGITS + 80):
-            q = (low + high) / 2
-            more = 3 * (1 - q) ** 3 * (1 + q) > 2 * cube * q * q * (q * q - 2 * q + 3)
-            low, high = (q, high) if more else (low, q)
+        q = _by_halves(  # the right-hand side of F2 falls from infinity to 0
+            lambda q: 3 * (1 - q) ** 3 * (1 + q) > 2 * cube * q * q * (q * q - 2 * q + 3),
+            Decimal(1),
+        )
         a = 2 * q * l_r / (1 - q * q)
         m = (1 - q) * (q * q - q + 4) / (2 * (q * q - 2 * q + 3))
         return a * a / (2 * R), a / R * m
 
 
+def _by_halves(below: Callable[[Decimal], bool], high: Decimal) -> Decimal:
+    """Return the place between 0 and `high` where `below` ends."""
+    low = Decimal(0)
+    for _ in range(4 * DIGITS + 80):
+        middle = (low + high) / 2
+        low, high = (middle, high) if below(middle) else (low, middle)
+    return low
+
+
 def brentq_over_quad(numbers: Numbers, tolerance: float) -> tuple[float, float, int]:
     """Return depth and friction coefficient as a user would compute them, and the evaluations."""
-    R, K, l_r, W = numbers.R, numbers.K, numbers.l_r, numbers.W
+    R, K, l_r, W = numbers
     count = 0
 
     def force(lever: Callable[[float], float], delta: float) -> float:
@@ -160,7 +165,7 @@ def _by_elements(scene: Scene, density: float, clock: Clock) -> tuple[float, flo
 
 def steady_chart(
     scene: Scene, name: str, *, effort: Effort = FULL,
-    progress: Callable[[float], object] | None = None,
+    progress: Callable[[float], object] = lambda _: None,
 ) -> Chart:  # fmt: skip
     """Measure every method of steady sliding on a scene that `suits`.
 
@@ -191,8 +196,7 @@ def steady_chart(
         series.first = attempt(series.points, partial(_solve, solve, right), effort)
         good = [point for point in series.points if point.errors]
         jobs += [(point, partial(solve, point.knob, Clock())) for point in good]
-        if progress is not None:
-            progress(done / (len(solvers) + 1))
+        progress(done / (len(solvers) + 1))
     repeat(jobs, effort)
     for series, _, count in solvers:
         for point in series.points:

@@ -9,7 +9,7 @@ import random
 import time
 from collections.abc import Callable, Iterable
 from contextlib import suppress
-from dataclasses import asdict, dataclass, field
+from dataclasses import dataclass, field
 from functools import partial
 from typing import Any
 
@@ -17,6 +17,7 @@ import numpy as np
 
 from kvtheory.charts.methods import Clock, Method, TimedOutError, transient_methods
 from kvtheory.charts.problems import Problem, Reference, errors, reference
+from kvtheory.results.certificate import record
 from kvtheory.results.errors import DivergenceError
 
 WRONG = 1e-3
@@ -27,6 +28,13 @@ JUDGED = "depth, maximum", "friction, maximum"
 """Errors by which a run is called wrong."""
 REASONS = ("unstable", "not converged", "timed out", "refused", "missed event",
            "wrong but reported success")  # fmt: skip
+REASON_OF: dict[type[BaseException], str] = {
+    TimedOutError: "timed out",
+    DivergenceError: "unstable",
+    ArithmeticError: "not converged",
+    ValueError: "refused",
+}
+"""Why a run failed, by its exception."""
 
 
 @dataclass(frozen=True)
@@ -90,21 +98,17 @@ class Chart:
 
     def as_dict(self) -> dict[str, Any]:
         """Return plain Python values, ready for JSON; infinite errors are None."""
-        found = asdict(self)
+        found: dict[str, Any] = record(self)
         for series, plain in zip(self.series, found["series"], strict=True):
             for point, row in zip(series.points, plain["points"], strict=True):
-                row["seconds"], row["quartiles"] = point.seconds, list(point.quartiles)
-                row["errors"] = {k: v if np.isfinite(v) else None for k, v in point.errors.items()}
+                row.update(seconds=point.seconds, quartiles=list(point.quartiles))
         return found
 
 
 def transient_chart(
-    problem: Problem,
-    *,
-    methods: Iterable[Method] | None = None,
-    effort: Effort = FULL,
-    progress: Callable[[float], object] | None = None,
-) -> Chart:
+    problem: Problem, *, methods: Iterable[Method] | None = None, effort: Effort = FULL,
+    progress: Callable[[float], object] = lambda _: None,
+) -> Chart:  # fmt: skip
     """Measure every method that suits the problem.
 
     Examples
@@ -117,24 +121,17 @@ def transient_chart(
     """
     right = reference(problem)
     chosen = [m for m in (methods or transient_methods().values()) if m.suits(problem)]
-    series = []
+    series: list[Series] = []
+    jobs: list[tuple[Point, Callable[[], Any]]] = []
     for done, method in enumerate(chosen, 1):
         points = [Point(value) for value in method.values[:: effort.every]]
         first = attempt(points, partial(_solve, problem, method, right), effort)
         series.append(Series(method.name, method.kind, method.knob, method.work, points, first))
-        if progress is not None:
-            progress(0.7 * done / len(chosen))
-    jobs = [
-        (method, point)
-        for method, one in zip(chosen, series, strict=True)
-        for point in one.points if not point.reason or point.errors
-    ]  # fmt: skip
-    repeat(
-        [(point, partial(method.solve, problem, point.knob, Clock())) for method, point in jobs],
-        effort,
-    )
-    if progress is not None:
-        progress(1.0)
+        good = [point for point in points if not point.reason or point.errors]
+        jobs += [(point, partial(method.solve, problem, point.knob, Clock())) for point in good]
+        progress(0.7 * done / len(chosen))
+    repeat(jobs, effort)
+    progress(1.0)
     return Chart(problem.name, series, right.agreement, right.methods)
 
 
@@ -175,14 +172,9 @@ def attempt(points: list[Point], solve: Callable[[Point, Clock], object], effort
         try:
             with np.errstate(all="ignore"):
                 solve(point, clock)
-        except TimedOutError:
-            point.reason = "timed out"
-        except DivergenceError as error:
-            point.reason, point.message = "unstable", str(error)
-        except ArithmeticError as error:
-            point.reason, point.message = "not converged", str(error)
-        except ValueError as error:
-            point.reason, point.message = "refused", str(error)
+        except tuple(REASON_OF) as error:
+            point.reason = next(REASON_OF[kind] for kind in type(error).mro() if kind in REASON_OF)
+            point.message = str(error)
         point.first = time.perf_counter() - clock.began
     return seconds
 

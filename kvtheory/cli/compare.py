@@ -68,11 +68,11 @@ def compare(
     checked = load_scene(scene, overrides)
     found = hold_against(checked, data, per_length=per_length, scheme=scheme, tolerance=tolerance)
     if plot:
-        from kvtheory.plots.comparison import save_comparison_plot
+        from kvtheory.plots.result import save_plot
 
-        save_comparison_plot(found, plot)
+        save_plot(found, plot)
     if report:
-        from kvtheory.plots.comparison_report import save_comparison_report
+        from kvtheory.plots.comparison import save_comparison_report
 
         save_comparison_report(found, checked, report)
     if as_json:

@@ -115,9 +115,9 @@ def sweep(
             raise KeyboardInterrupt(told) from None
     seconds = time.perf_counter() - began
     if plot:
-        from kvtheory.plots import save_sweep_plot
+        from kvtheory.plots.result import save_plot
 
-        save_sweep_plot(result, plot)
+        save_plot(result, plot)
     _tell(result, seconds, as_json)
 
 

@@ -1,28 +1,34 @@
-"""A simulation held against theory: data over theory, what is left, and the checks."""
+"""A simulation held against theory: data over theory, what is left, the checks, and all on one page."""
 
 from collections.abc import Sequence
+from html import escape
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from kvtheory.plots.files import save_picture
-from kvtheory.plots.style import BLACK, BLUE, GREEN, RED
+from kvtheory.plots.files import inline, save_page, template
+from kvtheory.plots.style import BLACK, BLUE, GREEN, RED, TRANSIENT_ROWS
 from kvtheory.results import Check, Comparison
+from kvtheory.results.comparison import Explanation
+from kvtheory.scene import Scene, to_toml
 
-CURVES = {
-    "depth": (r"$z_\mathrm{A}$ [mm]", -1e3),
-    "normal_force": (r"$F_z$ [N/mm]", 1e-3),
-    "friction_force": (r"$F_x$ [N/mm]", 1e-3),
-}
+CURVES = {name: (label, factor) for name, label, factor in TRANSIENT_ROWS if name != "velocity"}
 """What is drawn, if the data hold it: axis label, factor from SI."""
 DOTS = 200
 """More samples than this are drawn as a line."""
 MARKS = {True: ("ok", GREEN), False: ("fails", RED), None: ("not made", "#777777")}
+HTML_MARKS = {True: ("yes", "✓"), False: ("no", "✗ fails"), None: ("none", "not made")}
+HTML_VERDICTS = {
+    "agrees": ("#00674b", "#e8f5f0", "The data agree with theory."),
+    "disagrees": ("#b34700", "#fdf0e7", "The data disagree with theory."),
+    "cannot tell": ("#5c5c5c", "#f2f2f2", "Whether the data agree with theory cannot be told."),
+}
+"""Colours of text and ground, and the verdict in a sentence."""
 ROOM = 1.6
 """Of the band: how far the axis of the residuals goes, for the legend has its place above the band."""
 LONGEST_NOTE = 74
-SIZE = (7.2, 8.6)
+WIDTH = 7.2
 
 
 def plot_comparison(axes: Sequence[Sequence[Any]], comparison: Comparison) -> list[Any]:
@@ -51,16 +57,14 @@ def plot_comparison(axes: Sequence[Sequence[Any]], comparison: Comparison) -> li
         over.set(ylabel=label)
         band = comparison.allowed[name] * abs(factor)
         rest.fill_between(time, -band, band, color=GREEN, alpha=0.2, linewidth=0, label="allowed")
+        left = data - theory
         artists += rest.plot(
-            time,
-            data - theory,
-            style,
-            color=BLUE,
-            markersize=3,
-            linewidth=0.8,
-            label="data - theory",
+            time, left, style, color=BLUE, markersize=3, linewidth=0.8, label="data - theory"
         )
-        rest.set_ylim(_limits(data - theory, band))
+        # Limits that show nearly all of the residual, not only its jump.
+        most = float(np.nanquantile(np.abs(left), 0.98))
+        top = ROOM * max(most, float(np.median(band)), 1e-300)
+        rest.set_ylim(-top, top)
     for row in axes[len(names) :]:
         for ax in row:
             ax.set_axis_off()
@@ -71,13 +75,6 @@ def plot_comparison(axes: Sequence[Sequence[Any]], comparison: Comparison) -> li
     return artists
 
 
-def _limits(residual: Any, band: Any) -> tuple[float, float]:
-    """Return limits that show nearly all of the residual, not only its jump."""
-    most = float(np.nanquantile(np.abs(residual), 0.98))
-    top = ROOM * max(most, float(np.median(band)), 1e-300)
-    return -top, top
-
-
 def draw_comparison(comparison: Comparison, *, checks: bool = True) -> Any:
     """Return a figure of the curves and, unless left out, the list of checks below them."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
@@ -86,7 +83,7 @@ def draw_comparison(comparison: Comparison, *, checks: bool = True) -> Any:
     rows = sum(name in comparison.series for name in CURVES)
     height = 1.9 * rows
     table = 0.17 * (len(comparison.checks) + 3) if checks else 0.0
-    figure = Figure(figsize=(SIZE[0], height + table + 0.4), layout="constrained")
+    figure = Figure(figsize=(WIDTH, height + table + 0.4), layout="constrained")
     FigureCanvasAgg(figure)
     parts: Any = figure.subfigures(2, 1, height_ratios=[height, table]) if checks else [figure]
     axes = parts[0].subplots(rows, 2, sharex=True, squeeze=False)
@@ -105,42 +102,71 @@ def _list(part: Any, checks: Sequence[Check]) -> None:
     ax = part.subplots()
     ax.set_axis_off()
     ax.set(xlim=(0, 1), ylim=(len(checks) + 0.5, -1.0))
-    columns = (
-        (0.0, "check"),
-        (0.25, "measured"),
-        (0.355, "allowed"),
-        (0.455, ""),
-        (0.54, "equation, note"),
-    )
-    for x, head in columns:
+    columns = {
+        0.0: "check", 0.25: "measured", 0.355: "allowed", 0.455: "", 0.54: "equation, note",
+    }  # fmt: skip
+    for x, head in columns.items():
         ax.text(x, -0.6, head, fontsize=7, fontweight="bold", va="center")
     for row, check in enumerate(checks):
         mark, colour = MARKS[check.ok]
-        numbers = (
-            ("", "") if check.ok is None else (f"{check.measured:.2e}", f"{check.allowed:.2e}")
-        )
+        values = () if check.ok is None else (check.measured, check.allowed)
+        numbers = [f"{value:.2e}" for value in values] or ["", ""]
         note = f"{check.equation}; {check.note}" if check.note else check.equation
         short = note if len(note) <= LONGEST_NOTE else note[: LONGEST_NOTE - 3] + "..."
         cells = (check.name, *numbers, mark, short)
-        for (x, _), cell in zip(columns, cells, strict=True):
-            ax.text(
-                x,
-                row + 0.4,
-                cell,
-                fontsize=6.5,
-                va="center",
-                color=colour if cell == mark else BLACK,
-            )
+        for x, cell in zip(columns, cells, strict=True):
+            shade = colour if cell == mark else BLACK
+            ax.text(x, row + 0.4, cell, fontsize=6.5, va="center", color=shade)
 
 
-def save_comparison_plot(comparison: Comparison, path: Path) -> None:
-    """Draw a comparison and write it as the suffix of `path` says.
+def save_comparison_report(comparison: Comparison, scene: Scene, path: Path) -> None:
+    """Write a comparison as one self-contained HTML file."""
+    save_page(comparison_report(comparison, scene), path)
 
-    Raises
-    ------
-    ValueError
-        If the name does not end in .png, .svg or .pdf.
-    OSError
-        If the file cannot be written.
-    """
-    save_picture(lambda: draw_comparison(comparison), path)
+
+def comparison_report(comparison: Comparison, scene: Scene) -> str:
+    """Return a comparison as the text of one HTML page, with its picture as inline SVG."""
+    colour, tint, sentence = HTML_VERDICTS[comparison.verdict]
+    factor = (
+        "" if comparison.tolerance == 1.0 else f", times the tolerance {comparison.tolerance:g}"
+    )
+    return template("comparison.html").format(
+        title=f"{escape(Path(comparison.source).name)} against theory",
+        sentence=sentence,
+        diagnosis=escape(comparison.diagnosis),
+        explanations=_explanations(comparison),
+        picture=inline(lambda: draw_comparison(comparison, checks=False)),
+        checks="\n".join(_row(check) for check in comparison.checks),
+        scene=escape(to_toml(scene).strip()),
+        colour=colour, tint=tint, tolerance=factor,
+    )  # fmt: skip
+
+
+def _part(each: Explanation) -> str:
+    return "a sign of it" if each.explained is None else f"{each.explained:.1%}"
+
+
+def _explanations(comparison: Comparison) -> str:
+    if not comparison.explanations:
+        return ""
+    rows = "\n".join(
+        f'<tr><td>{escape(each.name)}</td><td class="number">{_part(each)}</td>'
+        f"<td>{'yes' if each.enough else 'no'}</td><td>{escape(each.text)}</td></tr>"
+        for each in comparison.explanations
+    )
+    heads = "<th>fault</th><th>explains</th><th>enough</th><th>in words</th>"
+    return (
+        "<h2>What would explain it</h2>\n"
+        f'<div class="wide"><table><thead><tr>{heads}</tr></thead><tbody>\n{rows}\n</tbody></table></div>'
+    )
+
+
+def _row(check: Check) -> str:
+    kind, mark = HTML_MARKS[check.ok]
+    numbers = ["" if value is None else f"{value:.3g}" for value in (check.measured, check.allowed)]
+    cells = "".join(f'<td class="number">{number}</td>' for number in numbers)
+    what = "; ".join(filter(None, (check.unit, check.note)))
+    return (
+        f'<tr><td>{escape(check.name)}</td>{cells}<td class="{kind}">{mark}</td>'
+        f"<td>{escape(check.equation)}</td><td>{escape(what)}</td></tr>"
+    )

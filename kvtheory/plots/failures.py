@@ -7,7 +7,7 @@ from html import escape
 from pathlib import Path
 from typing import Any
 
-from kvtheory.charts.entry import Finding, Picture
+from kvtheory.charts.entry import TEXTS, Finding, Picture
 from kvtheory.plots.files import inline, save_page, template
 from kvtheory.plots.style import BLACK, BLUE, RED
 
@@ -47,28 +47,20 @@ def plot_failure(ax: Any, picture: Picture) -> list[Any]:
     artists = [
         ax.plot(line.x, line.y, **LOOKS[line.role])[0] for line in picture.lines if line.x.size
     ]
-    ax.set(xlabel=picture.x, ylabel=picture.y)
-    if picture.log_x:
-        ax.set_xscale("log")
-    if picture.log_y:
-        ax.set_yscale("log")
+    x, y = ("log" if logarithmic else "linear" for logarithmic in (picture.log_x, picture.log_y))
+    ax.set(xlabel=picture.x, ylabel=picture.y, xscale=x, yscale=y)
     ax.legend(loc="best")
     return artists
 
 
 def _article(found: Finding) -> str:
     entry = found.entry
-    heads = {"wrong": "as written", "right": "right", "package": "this package"}
     numbers = "".join(
-        f'<div class="{role}"><span>{head}</span><b>{_text(shown(found, role))}</b></div>'
-        for role, head in heads.items()
+        f'<div class="{role}"><span>{look["label"]}</span><b>{_text(shown(found, role))}</b></div>'
+        for role, look in LOOKS.items()
     )
     said = f'<p class="said">{escape(found.outcome.said)}</p>\n' if found.outcome.said else ""
-    texts = {
-        name: _text(getattr(entry, name))
-        for name in ("key", "title", "scene", "why", "notice", "package")
-    }
-    texts["scene"] += f". Asked for: {entry.quantity}."
+    texts = {name: _text(getattr(entry, name)) for name in TEXTS}
     article = template("failure.html").strip()
     return article.format(numbers=numbers, picture=_svg(found), said=said, **texts)
 

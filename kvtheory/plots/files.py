@@ -1,13 +1,20 @@
-"""Pictures and pages as files: pictures by their suffix, pages of HTML that hold all they need."""
+"""Files: pictures by their suffix, charts with their data beside, pages of HTML that hold all they need."""
 
 import io
-from collections.abc import Callable
+import json
+import os
+import platform
+from collections.abc import Callable, Mapping
+from importlib import metadata
 from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
 from kvtheory.export import PICTURES, check_path, replace_file
 from kvtheory.plots.style import STYLE
+
+PACKAGES = "kvtheory", "numpy", "scipy", "numba", "scikit-sundae"
+"""Whose versions stand beside a chart."""
 
 
 def save_picture(draw: Callable[[], Any], path: Path) -> None:
@@ -23,6 +30,46 @@ def save_picture(draw: Callable[[], Any], path: Path) -> None:
     check_path(path, PICTURES)
     with mpl.rc_context({**STYLE}):
         replace_file(path, draw().savefig)
+
+
+def save_chart(draw: Callable[[], Any], data: Mapping[str, Any], path: Path) -> None:
+    """Draw and write a picture, and as JSON beside it what was drawn, with machine and versions."""
+    text = json.dumps({"environment": environment(), **data}, indent=1, allow_nan=False)
+    save_picture(draw, path)
+    save_page(text + "\n", path.with_suffix(".json"))
+
+
+def environment() -> dict[str, str | int]:
+    """Return machine, processors, and versions; a package that is not installed is ``"-"``.
+
+    >>> sorted(environment())[:3]
+    ['kvtheory', 'machine', 'numba']
+    """
+    return {
+        "machine": platform.machine(),
+        "system": platform.system(),
+        "processor": _processor(),
+        "processors": os.cpu_count() or 1,
+        "python": platform.python_version(),
+        **{name: _version(name) for name in PACKAGES},
+    }
+
+
+def _version(name: str) -> str:
+    try:
+        return metadata.version(name)
+    except metadata.PackageNotFoundError:
+        return "-"
+
+
+def _processor() -> str:
+    """Return the name of the processor, where the system tells it."""
+    try:
+        lines = Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines()
+    except OSError:
+        lines = []
+    names = (line.partition(":")[2].strip() for line in lines if line.startswith("model name"))
+    return next(names, platform.processor())
 
 
 def inline(draw: Callable[[], Any]) -> str:
@@ -42,5 +89,5 @@ def template(name: str) -> str:
 
 
 def save_page(text: str, path: Path) -> None:
-    """Write a page of HTML."""
+    """Write a page of HTML, or any text."""
     replace_file(path, lambda part: part.write_text(text, encoding="utf-8"))

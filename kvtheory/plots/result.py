@@ -1,16 +1,20 @@
-"""Any result as a picture: what `plot` of a result and the option of a command draw."""
+"""Results of a scene as pictures: those of the paper, and what `plot` of a result draws."""
 
+import math
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 from scipy.integrate import simpson
 
 from kvtheory.plots.comparison import draw_comparison
 from kvtheory.plots.files import save_picture
-from kvtheory.plots.style import BLUE, LABELS
-from kvtheory.plots.transient import TRANSIENT_ROWS, plot_transient
-from kvtheory.results import Comparison, SteadyState
+from kvtheory.plots.style import BLUE, LABELS, TRANSIENT_ROWS
+from kvtheory.plots.sweep import plot_sweep
+from kvtheory.results import AsymptoteReport, Comparison, SteadyState, Sweep, Transient
+from kvtheory.results.transient import TimeSeries
 
 SERIES, STEADY = (5.0, 6.4), (5.0, 3.4)
 """Sizes of the pictures, in inches."""
@@ -20,10 +24,74 @@ NOT_ITS_LOAD = 1e-6
 """A pressure whose integral, by Simpson's rule, is as far from the load is not that of a parabola."""
 
 
+def plot_steady(
+    ax: Any, velocity: ArrayLike, state: SteadyState, quantity: str, **style: Any
+) -> list[Any]:
+    """Draw a quantity of steady sliding over the drive velocity (m/s), on logarithmic axes.
+
+    >>> import kvtheory as kv
+    >>> from matplotlib.figure import Figure
+    >>> V = [0.01, 0.1, 1.0]
+    >>> (line,) = plot_steady(Figure().subplots(), V, kv.steady(over={"drive.velocity": V}), "depth")
+    >>> line.get_ydata().round(4).tolist()
+    [0.2814, 0.0897, 0.0098]
+    """
+    (x_label, x_factor), (y_label, y_factor) = LABELS["velocity"], LABELS[quantity]
+    x, y = np.asarray(velocity) * x_factor, np.asarray(getattr(state, quantity)) * y_factor
+    ax.set(xlabel=x_label, ylabel=y_label, xscale="log", yscale="log")
+    artists: list[Any] = ax.plot(x, y, **style)
+    return artists
+
+
+def plot_asymptote_errors(ax: Any, report: AsymptoteReport, styles: Mapping[str, Any]) -> list[Any]:
+    """Draw |asymptote/exact - 1| over V/V* for each line of the report that `styles` names."""
+    ratio = np.abs(report.velocity) / report.critical_velocity
+    artists = []
+    for line in report.lines:
+        if line.name in styles:
+            artists += ax.plot(ratio, np.abs(line.relative_error), **styles[line.name])
+    ax.set(xlabel=r"$V/V^*$", ylabel="relative error of the asymptote", xscale="log", yscale="log")
+    return artists
+
+
+def plot_transient(axes: Sequence[Any], result: TimeSeries, **style: Any) -> list[Any]:
+    """Draw velocity, position, normal and friction force over time on four axes, as in Fig. 3.
+
+    The rest before t = 0 is drawn too, for a twentieth of the time shown: V and F_x are zero there.
+    """
+    time = np.asarray(result.time) * 1e3
+    before = np.array([-0.05 * time[-1], 0.0])
+    rest = {"velocity": 0.0, "friction_force": 0.0, "depth": result.depth[0]}
+    rest["normal_force"] = result.solution.units.load if isinstance(result, Transient) else math.nan
+    artists = []
+    for ax, (name, label, factor) in zip(axes, TRANSIENT_ROWS, strict=True):
+        values = np.concatenate([[rest[name]] * 2, getattr(result, name)]) * factor
+        artists += ax.plot(np.concatenate([before, time]), values, **style)
+        ax.set(ylabel=label)
+    axes[-1].set(xlabel=r"time $t$ [ms]")
+    return artists
+
+
+def plot_pressure(ax: Any, result: Transient, positions: ArrayLike, times: ArrayLike) -> Any:
+    """Shade the contact pressure over position (m) and time (s), with both edges, as in Fig. 4."""
+    x, t = np.asarray(positions), np.asarray(times)
+    p = np.array([result.pressure(x, float(time)) for time in t])
+    settings: Any = {"cmap": "Reds", "shading": "gouraud", "rasterized": True}
+    image = ax.pcolormesh(x * 1e3, t * 1e3, p / 1e6, **settings)
+    time = np.asarray(result.time) * 1e3
+    for edge, dashes in (("leading", "-"), ("trailing", "--")):
+        x_edge = np.asarray(getattr(result, f"{edge}_edge")) * 1e3
+        ax.plot(x_edge, time, color=BLUE, linestyle=dashes, label=f"{edge} edge")
+    ax.set(xlabel=r"position $x$ [mm]", ylabel=r"time $t$ [ms]")
+    return image
+
+
 def plot_result(result: Any, axes: Any = None, **style: Any) -> Any:
-    """Draw a time series, steady sliding or a comparison, and return the figure."""
+    """Draw a time series, steady sliding, a comparison or a sweep, and return the figure."""
     if isinstance(result, Comparison):
         return draw_comparison(result)
+    if isinstance(result, Sweep):
+        return plot_sweep(axes, result, **style).figure
     steady = isinstance(result, SteadyState)
     if axes is None:
         from matplotlib.figure import Figure
@@ -43,10 +111,9 @@ def plot_result(result: Any, axes: Any = None, **style: Any) -> Any:
 
 def _over_velocity(ax: Any, state: SteadyState, style: dict[str, Any]) -> None:
     """Draw the friction coefficient over the retardation length."""
-    (x_label, x_factor), (y_label, y_factor) = (
-        LABELS[name] for name in ("retardation_length", "friction_coefficient")
-    )
-    x, y = np.ravel(state.retardation_length), np.ravel(state.friction_coefficient)
+    names = "retardation_length", "friction_coefficient"
+    (x_label, x_factor), (y_label, y_factor) = (LABELS[name] for name in names)
+    x, y = (np.ravel(getattr(state, name)) for name in names)
     order = np.argsort(x)
     ax.plot(x[order] * x_factor, y[order] * y_factor, **style)
     scale = "log" if x.min() > 0.0 and y.min() > 0.0 else "linear"

@@ -11,25 +11,25 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from kvtheory.charts.stability import CLASSES, Map
-from kvtheory.plots.charts import save_chart
+from kvtheory.plots.files import save_chart
 from kvtheory.plots.style import BLACK, BLUE
+from kvtheory.results.certificate import record
 from kvtheory.scene.model import Scene
 from kvtheory.scene.static_state import StaticState
 
 COLOURS = "#eef3f7", "#f6c9a3", "#d55e00"
 """Of the classes."""
-BOUNDARIES: dict[str, tuple[str, Any]] = {
-    "start": ("predicted_start", ":"),
-    "steady sliding": ("predicted_steady", "-"),
-}
+BOUNDARIES: tuple[tuple[str, str, Any], ...] = (
+    ("start", "predicted_start", ":"),
+    ("steady sliding", "predicted_steady", "-"),
+)
+"""Name, values and dashes of the boundaries that are predicted."""
 PAPERS_TAUS = 1e-2, 0.1, 1.0
 """Retardation times (s) of Fig. 5 of the paper."""
 TABLE1 = 0.1, 0.1
 """V (m/s) and tau (s) of Table 1."""
-SHORT = {
-    "paper": "paper (Runge-Kutta)", "explicit-euler": "explicit Euler", "semi-implicit": "semi-implicit",
-    "exponential": "exponential", "edge-corrected": "edge-corrected",
-}  # fmt: skip
+TITLES = {"paper": "paper (Runge-Kutta)", "explicit-euler": "explicit Euler"}
+"""Of the schemes whose name alone would not do."""
 
 
 def plot_stability(ax: Any, found: Map, factors: tuple[float, float] = (1.0, 1.0)) -> Any:
@@ -39,12 +39,11 @@ def plot_stability(ax: Any, found: Map, factors: tuple[float, float] = (1.0, 1.0
         x, y, found.classes, cmap=ListedColormap(COLOURS), shading="nearest", rasterized=True,
         norm=BoundaryNorm(np.arange(len(CLASSES) + 1) - 0.5, len(CLASSES)),
     )  # fmt: skip
-    for name, dashes in BOUNDARIES.values():
+    for _, name, dashes in BOUNDARIES:
         predicted = getattr(found, name)
         if predicted.min() < 1.0 < predicted.max():
-            ax.contour(
-                x, y, np.log(predicted), [0.0], colors=BLACK, linestyles=dashes, linewidths=1.1
-            )
+            look: Any = {"colors": BLACK, "linestyles": dashes, "linewidths": 1.1}
+            ax.contour(x, y, np.log(predicted), [0.0], **look)
     ax.set(xscale="log", yscale="log", xlim=(x[0], x[-1]), ylim=(y[0], y[-1]))
     ax.grid(False)
     return image
@@ -59,7 +58,7 @@ def draw_stability(velocity_maps: Sequence[Map], step_maps: Sequence[Map]) -> Fi
         for tau in PAPERS_TAUS:
             ax.axhline(tau, color=BLUE, linewidth=0.9, alpha=0.7)
         ax.plot(1e3 * TABLE1[0], TABLE1[1], "*", color=BLUE, markersize=10, markeredgecolor="white")
-        ax.set(title=SHORT[found.scheme], xlabel=r"drive velocity $V$ [mm/s]")
+        ax.set(title=TITLES.get(found.scheme, found.scheme), xlabel=r"drive velocity $V$ [mm/s]")
     for ax, found in zip(rows[1], step_maps, strict=True):
         plot_stability(ax, found)
         ax.axvline(StaticState.of(Scene()).drive_number, color=BLUE, linewidth=0.9, alpha=0.7)
@@ -77,16 +76,15 @@ def _legend() -> list[Any]:
     ]
     predicted = [
         Line2D([], [], color=BLACK, linestyle=dashes, label=f"predicted boundary, {name}")
-        for name, (_, dashes) in BOUNDARIES.items()
+        for name, _, dashes in BOUNDARIES
     ]
-    papers = Line2D(
-        [], [], color=BLUE, linewidth=0.9, label=r"$\tau$ of Fig. 5, $\lambda$ of Table 1"
-    )
+    words = r"$\tau$ of Fig. 5, $\lambda$ of Table 1"
+    papers = Line2D([], [], color=BLUE, linewidth=0.9, label=words)
     star = Line2D([], [], color=BLUE, marker="*", linestyle="", markersize=9, label="Table 1")
     return [*measured, star, *predicted, papers]
 
 
 def save_stability(maps: Mapping[str, Sequence[Map]], path: Path) -> None:
     """Draw the maps and write them as the suffix of `path` says, with their data as JSON beside."""
-    data = {kind: [found.as_dict() for found in several] for kind, several in maps.items()}
-    save_chart(lambda: draw_stability(maps["velocity"], maps["step"]), {"maps": data}, path)
+    data = {"maps": record(maps)}
+    save_chart(lambda: draw_stability(maps["velocity"], maps["step"]), data, path)

@@ -30,6 +30,15 @@ STYLE: Any = {
 """For `matplotlib.rc_context`."""
 
 
+TRANSIENT_ROWS = (
+    ("velocity", r"$V$ [mm/s]", 1e3),
+    ("depth", r"$z_\mathrm{A}$ [mm]", -1e3),
+    ("normal_force", r"$F_z$ [N/mm]", 1e-3),
+    ("friction_force", r"$F_x$ [N/mm]", 1e-3),
+)
+"""The rows of Fig. 3 of the paper: quantity, axis label, factor from SI."""
+
+
 def with_unit(words: str, unit: str) -> tuple[str, float]:
     """Return an axis label with the unit that people read, and the factor to it from the SI unit.
 

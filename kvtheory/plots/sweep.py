@@ -1,13 +1,11 @@
 """Sweeps: a curve, a family of curves, or a map, whichever the dimensions ask for."""
 
 from collections.abc import Sequence
-from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from kvtheory.plots.files import save_picture
 from kvtheory.plots.style import LABELS, with_unit
 from kvtheory.results import Sweep
 from kvtheory.scene.quantities import nearest
@@ -90,22 +88,15 @@ def _refuse_more_than_two(dimensions: Sequence[str]) -> None:
         )
 
 
-def save_sweep_plot(result: Sweep, path: Path) -> None:
-    """Draw the first quantity of a sweep and write it as the suffix of `path` says."""
-    save_picture(lambda: plot_sweep(None, result).figure, path)
-
-
 def _drawn(result: Sweep, name: str) -> tuple[list[Side], Array]:
     """Return the dimensions with more than one value, and the values over them."""
     values = np.asarray(result.values[name])
     sides = []
     for axis in result.axes:
         key, array = next(iter(axis.values.items()))
-        label = _side(key, result.units[key], array)
+        side = _side(key, result.units[key], array)
         together = ", ".join(other for other in axis.values if other != key)
-        sides.append(
-            label._replace(label=f"{label.label} (with {together})") if together else label
-        )
+        sides.append(Side(f"{side.label} (with {together})", side.values) if together else side)
     if result.time is not None and values.ndim > len(sides):
         sides.append(_side("time", "s", result.time))
     kept = [side for side in sides if side.values.size > 1]
@@ -121,27 +112,22 @@ def _side(name: str, unit: str, values: Array) -> Side:
     return Side(label, np.asarray(values, dtype=float) * factor)
 
 
-def _logarithmic(values: Array) -> bool:
-    """Whether finite values are positive and range over decades."""
-    finite = values[np.isfinite(values)]
-    return bool(finite.size and finite.min() > 0.0 and finite.max() >= finite.min() * 10.0**DECADES)
-
-
 def _scale(values: Array) -> str:
-    return "log" if _logarithmic(values) else "linear"
+    """Return ``"log"`` for finite values that are positive and range over decades."""
+    finite = values[np.isfinite(values)]
+    low, high = finite.min(initial=np.inf), finite.max(initial=0.0)
+    return "log" if 0.0 < low * 10.0**DECADES <= high else "linear"
 
 
 def _map(ax: Any, sides: Sequence[Side], value: Side, style: Any) -> None:
     from matplotlib.colors import LogNorm
 
     y, x = sides
-    norm = LogNorm() if _logarithmic(value.values) else None
-    settings: dict[str, Any] = {"cmap": "cividis", "shading": "nearest", "rasterized": True}
-    order = np.argsort(y.values), np.argsort(x.values)
-    image = ax.pcolormesh(
-        x.values[order[1]], y.values[order[0]],
-        np.ma.masked_invalid(value.values[np.ix_(*order)]), norm=norm, **{**settings, **style},
-    )  # fmt: skip
+    norm = LogNorm() if _scale(value.values) == "log" else None
+    settings = {"cmap": "cividis", "norm": norm, "shading": "nearest", "rasterized": True, **style}
+    down, along = np.argsort(y.values), np.argsort(x.values)
+    shown = np.ma.masked_invalid(value.values[np.ix_(down, along)])
+    image = ax.pcolormesh(x.values[along], y.values[down], shown, **settings)
     ax.set(xlabel=x.label, ylabel=y.label, xscale=_scale(x.values), yscale=_scale(y.values))
     ax.grid(False)
     ax.figure.colorbar(image, ax=ax, label=value.label)
@@ -160,10 +146,8 @@ def _curves(ax: Any, sides: Sequence[Side], value: Side, style: Any) -> None:
     rows = values.reshape(-1, x.values.size)
     names = [None] if len(sides) == 1 else [f"{v:.4g}" for v in sides[0].values]
     for row, name, shade in zip(rows, names, np.linspace(0.0, 0.85, len(rows)), strict=True):
-        ax.plot(
-            x.values[order], row[order],
-            **{"label": name, "color": colormaps["viridis"](shade), "marker": marker, **style},
-        )  # fmt: skip
+        look = {"label": name, "color": colormaps["viridis"](shade), "marker": marker, **style}
+        ax.plot(x.values[order], row[order], **look)
     ax.set(xlabel=x.label, ylabel=value.label, xscale=_scale(x.values), yscale=_scale(values))
     if len(sides) == 2:
         ax.legend(title=sides[0].label)

@@ -8,8 +8,8 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
-from kvtheory.charts.work_precision import REASONS, Chart, Point, Series
-from kvtheory.plots.charts import save_chart
+from kvtheory.charts.work_precision import REASONS, Chart, Point
+from kvtheory.plots.files import save_chart
 from kvtheory.plots.style import BLACK, BLUE, GREEN, PURPLE, RED
 
 RESOLVED = 100.0
@@ -30,11 +30,8 @@ LOOKS = {
     "elements, edge-corrected": (GREEN, "o"),
 }  # fmt: skip
 """Colour and marker of each method."""
-SHORT = {
-    "unstable": "unstable", "not converged": "no conv.", "timed out": "timed out", "refused": "refused",
-    "missed event": "missed event", "wrong but reported success": "wrong, “success”",
-}  # fmt: skip
-"""Reasons on the rail."""
+SHORT = {"not converged": "no conv.", "wrong but reported success": "wrong, “success”"}
+"""Reasons that are too long for the rail."""
 
 
 def plot_work_precision(
@@ -62,26 +59,19 @@ def plot_work_precision(
             if not work:
                 ax.plot([a, a], p.quartiles, color=colour, linewidth=0.8)
             ax.plot(a, b, marker=marker, color=colour, markersize=4.5, markerfacecolor=face)
-        _rail(rail, series, work)
+        for p in series.points:
+            if p.reason and _cost(p, work) > 0.0:
+                place = REASONS.index(p.reason)
+                rail.plot(place, _cost(p, work), marker=marker, color=colour, markersize=4.5)
     if floor > 0.0:
         ax.axvspan(LEAST, max(floor, LEAST), color="#dddddd", zorder=0)
     ax.set(xscale="log", yscale="log")
     ax.invert_xaxis()
     rail.set(xlim=(-0.6, len(REASONS) - 0.4), xticks=range(len(REASONS)))
-    rail.set_xticklabels([SHORT[reason] for reason in REASONS], rotation=90)
+    rail.set_xticklabels([SHORT.get(reason, reason) for reason in REASONS], rotation=90)
     rail.tick_params(labelleft=False, left=False)
     rail.set_facecolor("#faf1ea")
     return artists
-
-
-def _rail(rail: Any, series: Series, work: bool) -> None:
-    colour, marker = LOOKS[series.method]
-    for point in series.points:
-        cost = _cost(point, work)
-        if point.reason and cost > 0.0:
-            rail.plot(
-                REASONS.index(point.reason), cost, marker=marker, color=colour, markersize=4.5
-            )
 
 
 def _cost(point: Point, work: bool) -> float:
@@ -91,19 +81,15 @@ def _cost(point: Point, work: bool) -> float:
 def draw_work_precision(charts: Sequence[Chart], errors: Sequence[str]) -> Figure:
     """Return the picture: a row for each chart, the time on the left and the work on the right."""
     drawn = Figure(figsize=(11.0, 1.9 + 2.9 * len(charts)), layout="constrained")
-    grid = drawn.subplots(
-        len(charts), 4, width_ratios=(5, 1.3, 5, 1.3), squeeze=False, sharey=False
-    )
+    grid = drawn.subplots(len(charts), 4, width_ratios=(5, 1.3, 5, 1.3), squeeze=False)
     methods: dict[str, Any] = {}
     for row, chart, error in zip(grid, charts, errors, strict=True):
         for (ax, rail), work in ((row[:2], False), (row[2:], True)):
             rail.sharey(ax)
             for line in plot_work_precision(ax, rail, chart, error, work=work):
                 methods.setdefault(line.get_label(), line)
-            ax.set(
-                xlabel=f"achieved error of {error}",
-                ylabel="evaluations or element updates" if work else "time [s]",
-            )
+            ordinate = "evaluations or element updates" if work else "time [s]"
+            ax.set(xlabel=f"achieved error of {error}", ylabel=ordinate)
             rail.set_title("failed", fontsize=8)
         if chart is not charts[-1]:
             for rail in row[1::2]:
@@ -124,10 +110,8 @@ def draw_work_precision(charts: Sequence[Chart], errors: Sequence[str]) -> Figur
 
 def default_errors(charts: Sequence[Chart]) -> list[str]:
     """Return the error over which each chart is drawn if none is chosen."""
-    return [
-        "depth, maximum" if "depth, maximum" in chart.floor else "friction coefficient"
-        for chart in charts
-    ]
+    first, other = "depth, maximum", "friction coefficient"
+    return [first if first in chart.floor else other for chart in charts]
 
 
 def save_work_precision(charts: Sequence[Chart], path: Path) -> None:

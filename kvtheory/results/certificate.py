@@ -20,8 +20,9 @@ AT_REST = "the static depth, half length and load"
 class Certificate:
     """How wrong a result may be, and what stands behind that.
 
-    `kind` is ``"proved"`` (a bound derived in `derivations`) or ``"estimated"`` (measured by the
-    tests, or by the method itself); `statement` says it in words; `relative_error` maps the name of
+    `kind` is ``"proved"`` (a bound derived in `derivations`), ``"estimated"`` (measured by the tests,
+    or by the method itself) or ``"none"`` (nobody asked for one, and `relative_error` is empty);
+    `statement` says it in words; `relative_error` maps the name of
     a quantity to a bound of |computed - true| over what `relative_to` names: `THE_TRUTH` itself in
     steady sliding, and in a time series, which may pass through zero, `AT_REST`: the state before the
     motion, by whose products `kvtheory.results.table.scales` measures each quantity.

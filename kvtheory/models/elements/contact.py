@@ -45,11 +45,12 @@ def report(row: ElementRow, at: IndenterState, time: float) -> tuple[float, ...]
     pressed = under.touched & (model.rule.pulls | (p >= 0.0))
     V_before = row.path.velocity(at.time, before=True)
     p_before = p if V_before == V else pressure(model, under, at.depth, at.rate, V_before)
-    found = (
-        parts_of_elements(model, under, p, p_before, pressed, at.depth)
-        if model.parts
-        else whole_elements(model, under, p, pressed)
-    )
+    if not pressed.any():
+        found = FLIGHT
+    elif model.parts:
+        found = _parts_of_elements(model, under, p, p_before, pressed, at.depth)
+    else:
+        found = _whole_elements(model, under, p, pressed)
     edges = found[2:4] if row.path.forward(time) else found[3:1:-1]
     return time, V, at.depth, at.rate, *found[:2], *edges, *found[4:]
 
@@ -59,17 +60,17 @@ def pressure(model: Model, under: Under, depth: float, rate: float, V: float) ->
     return model.law.pressure(depth - under.height, rate - V * model.slope(under.x))
 
 
-def whole_elements(model: Model, under: Under, p: Array, pressed: NDArray[np.bool_]) -> ContactSums:
+def _whole_elements(
+    model: Model, under: Under, p: Array, pressed: NDArray[np.bool_]
+) -> ContactSums:
     """Sum over whole elements, as in the paper (Eqs. 12-15)."""
     inside = np.flatnonzero(pressed)
-    if inside.size == 0:
-        return FLIGHT
     dx, x, p = model.spacing, under.x[inside], p[inside]
     force, push = dx * float(p.sum()), -dx * float(model.slope(x) @ p)
     return ContactSums(force, push, x[0] - 0.5 * dx, x[-1] + 0.5 * dx, float(p.max()))
 
 
-def parts_of_elements(
+def _parts_of_elements(
     model: Model, under: Under, p: Array, p_before: Array, pressed: NDArray[np.bool_], depth: float
 ) -> ContactSums:
     """Sum by trapezoids up to the very edges.
@@ -79,8 +80,6 @@ def parts_of_elements(
     `p_before`, is still where it was, or has gone further in.
     """
     inside = np.flatnonzero(pressed)
-    if inside.size == 0:
-        return FLIGHT
     dx, overlap, slope = model.spacing, depth - under.height - under.free, model.slope(under.x)
     force, push = float(p[inside].sum()), -float(slope[inside] @ p[inside])
     reach, places, at_edges = {}, [], []

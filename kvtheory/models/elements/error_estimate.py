@@ -8,6 +8,7 @@ from kvtheory.models.elements.law import Array
 from kvtheory.models.elements.model import Model, span
 from kvtheory.models.elements.schemes import DEFAULT
 from kvtheory.results import TRANSIENT_UNITS, Certificate
+from kvtheory.results.certificate import AT_REST
 from kvtheory.results.table import scales
 from kvtheory.scene.base_motion import BaseMotion
 
@@ -27,7 +28,7 @@ RELATIVE_TO = (
     "of the scene at rest: depth relative to δ_0, its rate to δ_0/τ, edges to a_0, normal force to W_0, "
     "friction force to W_0 δ_0/a_0, pressure to K δ_0"
 )
-UNKNOWN = Certificate("none", "no error was estimated, since certify=False", {})
+UNKNOWN = Certificate("none", "no error was estimated, since certify=False", {}, AT_REST)
 
 Rows = dict[str, Array]
 DOUBTS = ("peak_doubt", "edge_doubt")
@@ -49,24 +50,24 @@ def estimate(
         + (0.0 if fine is None else _apart(rows, fine, name))
         for name in TRANSIENT_UNITS
     }
-    differences["peak_pressure"] += float(rows["peak_doubt"].max())
-    unknown = KINKED * model.spacing if model.indenter.kinks else 0.0
-    differences["leading_edge"] += unknown
-    differences["trailing_edge"] += unknown
-    if len(path.changes) > 1:
-        known, highest = KNOWN * model.spacing, float(rows["peak_pressure"].max())
-        steepest = float(abs(model.slope(np.array(span(model.indenter, model.depth)))).max())
-        differences["leading_edge"] += known
-        differences["trailing_edge"] += known
-        differences["normal_force"] += known * highest
-        differences["friction_force"] += known * highest * steepest
-        differences["peak_pressure"] += KNOWN * float(rows["edge_doubt"].max())
+    jump = KNOWN if len(path.changes) > 1 else 0.0
+    edge = (jump + (KINKED if model.indenter.kinks else 0.0)) * model.spacing
+    force = jump * model.spacing * float(rows["peak_pressure"].max())
+    steepest = float(abs(model.slope(np.array(span(model.indenter, model.depth)))).max())
+    differences["leading_edge"] += edge
+    differences["trailing_edge"] += edge
+    differences["normal_force"] += force
+    differences["friction_force"] += force * steepest
+    differences["peak_pressure"] += float(
+        rows["peak_doubt"].max() + jump * rows["edge_doubt"].max()
+    )
     scale = scales(model.at_rest)
     runs = "half as many elements and steps" + ("" if fine is None else ", and as many")
     return Certificate(
         "estimated",
         f'{SAFETY:g} times the largest difference to the scheme "{DEFAULT}" with {runs}, {RELATIVE_TO}',
         {name: max(SAFETY * d / scale[name], ROUNDING) for name, d in differences.items()},
+        AT_REST,
     )
 
 

@@ -46,11 +46,6 @@ def exponential_fit(z: float) -> float:
     return 0.5 + z / 12.0 - z * z * z / 720.0 if z < SMALL else -1.0 / math.expm1(-z) - 1.0 / z
 
 
-def backward(_: float) -> float:
-    """Return θ = 1."""
-    return 1.0
-
-
 def implicit_step(
     row: ElementRow, now: IndenterState, h: float, *, theta: Callable[[float], float]
 ) -> IndenterState:
@@ -134,9 +129,7 @@ class _Kinks:
             # Decided once, so that Newton's method cannot go to and fro.
             if side not in self.counts:
                 outer = [inner + side for inner, _ in here]
-                self.counts[side] = any(
-                    overlap[k] - self.before[k] >= self.least for k in outer
-                )  # fmt: skip
+                self.counts[side] = bool(np.any((overlap - self.before)[outer] >= self.least))
             if self.counts[side]:
                 found = [kink_area(self.dx, gaps(overlap, *edge)) for edge in here]
                 area += sum(kink for kink, _ in found) - self.relaxed[side]

@@ -18,9 +18,7 @@ Tableau = tuple[tuple[float, ...], ...]
 """(c, a_1, a_2, …) for each stage, and then the weights."""
 
 
-def explicit_step(
-    row: ElementRow, now: IndenterState, h: float, *, tableau: Tableau
-) -> IndenterState:
+def explicit_step(row: ElementRow, now: IndenterState, h: float, tableau: Tableau) -> IndenterState:
     """Take a step of Runge-Kutta; which elements are in contact is settled at its end."""
     *stages, weights = tableau
     M, rates, pulls = row.model.mass, list[float](), list[float]()

@@ -8,9 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from kvtheory.models.elements.contact_rule import RIGHT, ContactRule
 from kvtheory.models.elements.edges import edges_of, gaps, kink_area
-from kvtheory.models.elements.law import Array, KelvinVoigt
+from kvtheory.models.elements.law import RIGHT, Array, ContactRule, KelvinVoigt
 from kvtheory.scene.base_motion import BaseMotion
 from kvtheory.scene.indenters import Indenter
 from kvtheory.scene.model import Scene
@@ -50,14 +49,9 @@ class Model:
 
     @classmethod
     def of(
-        cls,
-        scene: Scene,
-        spacing: float | None = None,
-        *,
-        parts: bool = False,
-        shift: float = 0.0,
-        coarser: float = 1.0,
-    ) -> "Model":
+        cls, scene: Scene, spacing: float | None = None, *,
+        parts: bool = False, shift: float = 0.0, coarser: float = 1.0,
+    ) -> "Model":  # fmt: skip
         """Return the model of a scene; without a spacing, with `SAMPLES` elements in contact at rest.
 
         The elements are `coarser` times as far apart as the spacing says.
@@ -70,10 +64,10 @@ class Model:
         support, foundation, fixed = scene.support, scene.foundation, scene.held
         law = KelvinVoigt(foundation.stiffness, foundation.retardation_time)
         model = cls(
-            scene.indenter, law, 1.0, support.mass, support.weight,
-            0.0 if fixed else support.spring, support.depth or 1.0, parts, shift,
+            scene.indenter, law, 1.0, support.mass, support.weight, 0.0,
+            support.depth or 1.0, parts, shift,
         )  # fmt: skip
-        rough = model.depth if fixed else model._rough_depth()
+        rough = model.depth if fixed else model.sliding_depth(0.0)
         low, high = span(model.indenter, rough)
         dx = spacing or (high - low) / SAMPLES
         if not FEWEST <= (high - low) / dx <= MOST:
@@ -81,11 +75,10 @@ class Model:
                 f"`per_length` = {1 / dx:.6g} 1/m: expected {FEWEST / (high - low):.3g} to "
                 f"{MOST / (high - low):.3g} 1/m, so that {FEWEST} to {MOST} elements carry the indenter"
             )
-        model = replace(model, spacing=coarser * dx)
-        if not fixed:
-            rough = root(lambda d: model.static_load(d) - model.weight, 0.25 * rough, 4.0 * rough)
-        model = replace(model, depth=rough)
-        at_rest = StaticState.at(scene, rough, model.half_length, model.static_load(rough))
+        model = replace(model, spacing=coarser * dx, spring=0.0 if fixed else support.spring)
+        depth = rough if fixed else root(lambda d: model.static_load(d) - model.weight, rough)
+        model = replace(model, depth=depth)
+        at_rest = StaticState.at(scene, depth, model.half_length, model.static_load(depth))
         return replace(model, at_rest=at_rest)
 
     def path(self, scene: Scene) -> BaseMotion:
@@ -129,20 +122,21 @@ class Model:
             area += sum(kink_area(self.spacing, gaps(overlap, *edge))[0] for edge in ends)
         return self.law.stiffness * area
 
-    def _rough_depth(self) -> float:
-        """Return a depth at which a continuous foundation carries the weight to within a thousandth."""
+    def sliding(self, depth: float, V: float) -> tuple[float, float]:
+        """Return length and normal force of a contact that slides steadily on a continuous foundation."""
+        x = np.linspace(*span(self.indenter, depth), SAMPLES)
+        p = self.law.pressure(depth - self.height(x), -V * self.slope(x))
+        pressed, step = p > 0.0, x[1] - x[0]
+        return step * np.count_nonzero(pressed), step * float(p[pressed].sum())
+
+    def sliding_depth(self, V: float) -> float:
+        """Return the depth at which that contact carries the load, to within a thousandth."""
 
         def surplus(depth: float) -> float:
-            x = np.linspace(*span(self.indenter, depth), SAMPLES)
-            g = depth - self.height(x)
-            return self.law.stiffness * float(x[1] - x[0]) * float(g.sum()) / self.weight - 1.0
+            force = self.sliding(depth, V)[1] + self.spring * (depth - self.depth)
+            return force / self.weight - 1.0
 
-        depth = 1.0
-        while surplus(depth) < 0.0:
-            depth *= 2.0
-        while surplus(0.5 * depth) > 0.0:
-            depth *= 0.5
-        return root(surplus, 0.5 * depth, depth, 1e-9)
+        return root(surplus, self.depth, 1e-9)
 
     def _within_reach(self, function: Callable[[Any], Any], x: Any, beyond: float) -> Any:
         if math.isinf(self.indenter.reach):
@@ -151,14 +145,19 @@ class Model:
         return np.where(inside, function(np.where(inside, x, 0.0)), beyond)
 
 
-def root(function: Callable[[float], float], low: float, high: float, rtol: float = 0.0) -> float:
-    """Return where an increasing function becomes positive: to the last digit, or to within `rtol`.
+def root(function: Callable[[float], float], guess: float, rtol: float = 0.0) -> float:
+    """Return where an increasing function of x > 0 becomes positive: to the last digit, or to `rtol`.
 
     SciPy's would be faster, but takes longer to import than most runs.
 
-    >>> root(lambda x: x * x - 2.0, 1.0, 2.0)
+    >>> root(lambda x: x * x - 2.0, 1.0)
     1.4142135623730951
     """
+    low = high = guess
+    while function(high) < 0.0:
+        low, high = high, 2.0 * high
+    while function(low) > 0.0:
+        low *= 0.5
     while low < (middle := 0.5 * (low + high)) < high and high - low > rtol * high:
         low, high = (low, middle) if function(middle) > 0.0 else (middle, high)
     return high
@@ -179,12 +178,6 @@ def span(indenter: Indenter, depth: float) -> tuple[float, float]:
 
 def _extent(indenter: Indenter, depth: float, side: float) -> float:
     end = math.nextafter(indenter.reach, 0.0)
-    x = min(depth, end)
-    while indenter.height(side * x) < depth:
-        if x == end:
-            return end
-        x = min(2.0 * x, end)
-    low = 0.5 * x
-    while indenter.height(side * low) > depth:
-        low *= 0.5
-    return root(lambda y: float(indenter.height(side * y)) - depth, low, min(2.0 * low, x))
+    if math.isfinite(indenter.reach) and indenter.height(side * end) < depth:
+        return end
+    return root(lambda x: float(indenter.height(side * min(x, end))) - depth, min(depth, end))

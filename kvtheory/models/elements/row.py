@@ -81,9 +81,8 @@ class ElementRow:
         """
         if not depth < self.deepest:
             raise OutgrownError
-        Y = before = self.path.displacement(t)
-        if delay:
-            before = self.path.displacement(t - delay)
+        Y = self.path.displacement(t)
+        before = self.path.displacement(t - delay) if delay else Y
         low = self.model.under(max(Y, before), depth)[0]
         high = self.model.under(min(Y, before), depth)[1]
         if low < self.first or high > self.first + self.u.size:
@@ -91,9 +90,8 @@ class ElementRow:
         self.updates += high - low
         place = slice(low - self.first, high - self.first)
         x, u = self.model.places(low, high, Y), self.u[place]
-        return Under(
-            place, x, self.model.height(x), u, self._left(u, delay), self.touched[place]
-        )  # fmt: skip
+        height, free = self.model.height(x), self._left(u, delay)
+        return Under(place, x, height, u, free, self.touched[place])
 
     def settle(
         self, under: Under, u: Array, touched: NDArray[np.bool_], delay: float = 0.0

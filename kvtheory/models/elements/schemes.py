@@ -9,7 +9,7 @@ from collections.abc import Callable
 from functools import partial
 from typing import NamedTuple
 
-from kvtheory.models.elements.exact_memory import backward, exponential_fit, implicit_step
+from kvtheory.models.elements.exact_memory import exponential_fit, implicit_step
 from kvtheory.models.elements.explicit import Tableau, explicit_step
 from kvtheory.models.elements.row import ElementRow, IndenterState
 from kvtheory.results.schemes import SCHEME_ROWS, SchemeRow
@@ -33,22 +33,19 @@ class Scheme(NamedTuple):
         return tuple(1.0 / math.factorial(k) for k in range(len(self.tableau)))
 
 
-def _explicit(name: str, *tableau: tuple[float, ...]) -> Scheme:
-    step = partial(explicit_step, tableau=tableau)
-    return Scheme(SCHEME_ROWS[name], step, tableau)
-
-
-def _implicit(name: str, theta: Callable[[float], float]) -> Scheme:
-    return Scheme(SCHEME_ROWS[name], partial(implicit_step, theta=theta))
-
-
-_ALL = (
-    _explicit("paper", (0.0,), (0.5, 0.5), (0.5, 0.0, 0.5), (1.0, 0.0, 0.0, 1.0),
-              (1 / 6, 1 / 3, 1 / 3, 1 / 6)),
-    _explicit("explicit-euler", (0.0,), (1.0,)),
-    _implicit("semi-implicit", backward),
-    _implicit("exponential", exponential_fit),
-    _implicit("edge-corrected", exponential_fit),
-)  # fmt: skip
-SCHEMES = {scheme.row.name: scheme for scheme in _ALL}
+_TABLEAUX: dict[str, Tableau] = {
+    "paper": ((0.0,), (0.5, 0.5), (0.5, 0.0, 0.5), (1.0, 0.0, 0.0, 1.0), (1 / 6, 1 / 3, 1 / 3, 1 / 6)),
+    "explicit-euler": ((0.0,), (1.0,)),
+}  # fmt: skip
+_THETAS: dict[str, Callable[[float], float]] = {
+    "semi-implicit": lambda _: 1.0,  # that of the backward Euler method
+    "exponential": exponential_fit,
+    "edge-corrected": exponential_fit,
+}
+SCHEMES = {
+    **{name: Scheme(SCHEME_ROWS[name], partial(explicit_step, tableau=tableau), tableau)
+       for name, tableau in _TABLEAUX.items()},
+    **{name: Scheme(SCHEME_ROWS[name], partial(implicit_step, theta=theta))
+       for name, theta in _THETAS.items()},
+}  # fmt: skip
 """The schemes by name."""

@@ -8,13 +8,12 @@ from dataclasses import replace
 import numpy as np
 
 from kvtheory.models.elements.contact import report
-from kvtheory.models.elements.contact_rule import RIGHT, ContactRule
 from kvtheory.models.elements.error_estimate import COLUMNS, DOUBTS, SHIFTS, UNKNOWN, Rows, estimate
+from kvtheory.models.elements.law import RIGHT, ContactRule
 from kvtheory.models.elements.model import Model
 from kvtheory.models.elements.row import KEPT_DEPTH, ElementRow, IndenterState, OutgrownError
 from kvtheory.models.elements.schemes import DEFAULT, SCHEMES, Scheme
-from kvtheory.models.elements.stability import lengths, limit_at
-from kvtheory.models.elements.watch import Watch, doubts, stability_text
+from kvtheory.models.elements.stability import Watch, doubts, lengths, limit_at, stability_text
 from kvtheory.results import Simulation
 from kvtheory.results.errors import DivergenceError
 from kvtheory.scene.base_motion import BaseMotion
@@ -52,18 +51,11 @@ Progress = Callable[[int, int], None]
 
 
 def simulate(
-    scene: Scene,
-    spacing: float,
-    scheme: Scheme,
-    *,
-    at: Sequence[float] | None,
-    time_step: float | None,
-    certify: bool,
-    rule: ContactRule = RIGHT,
-    start: float = 1.0,
-    progress: Progress | None = None,
-    warn: Callable[[str], None] | None = None,
-) -> Simulation:
+    scene: Scene, spacing: float, scheme: Scheme, *,
+    at: Sequence[float] | None, time_step: float | None, certify: bool,
+    rule: ContactRule = RIGHT, start: float = 1.0,
+    progress: Progress | None = None, warn: Callable[[str], None] | None = None,
+) -> Simulation:  # fmt: skip
     """Return the time series of a scene, with elements at this spacing (m).
 
     Raises
@@ -76,7 +68,7 @@ def simulate(
     model = Model.of(scene, spacing, parts=scheme.row.parts_of_elements)
     model = replace(model, rule=rule, start=start)
     path = model.path(scene)
-    h = time_step or default_step(model, path, scheme)
+    h = time_step or _default_step(model, path, scheme)
     stops, wanted = _instants(scene, path, h, at)
     if stops[-1] > MOST_OF_ALL * h:
         raise ValueError(
@@ -109,17 +101,10 @@ def simulate(
     )  # fmt: skip
 
 
-def default_step(model: Model, path: BaseMotion, scheme: Scheme) -> float:
-    """Return the time step of a scheme where none is given, in s.
-
-    Raises
-    ------
-    ValueError
-        If it is the paper's, 2 dx/V, and the base never moves.
-    """
-    passing = (
-        ELEMENTS_PER_STEP * model.spacing / path.highest_speed if path.highest_speed else math.inf
-    )
+def _default_step(model: Model, path: BaseMotion, scheme: Scheme) -> float:
+    """Return the time step of a scheme where none is given, in s."""
+    fastest = path.highest_speed
+    passing = ELEMENTS_PER_STEP * model.spacing / fastest if fastest else math.inf
     if scheme.row.papers_step:
         if math.isinf(passing):
             raise ValueError(
@@ -206,13 +191,10 @@ def _legs(stops: Sequence[float], breaks: Sequence[float], h: float) -> list[Leg
     legs: list[Leg] = []
     start = 0.0
     for stop in stops:
-        count = _count(stop - start, h) if stop - start > TOGETHER * h else 0
+        # An even number of steps of at most h, so that half as many fit too.
+        count = max(2 * math.ceil(0.5 * (stop - start) / h * (1.0 - 1e-9)), 2)
+        count = count if stop - start > TOGETHER * h else 0
         legs.append((start, stop, count))
         if count or stop in breaks:
             start = stop
     return legs
-
-
-def _count(length: float, h: float) -> int:
-    """Return an even number of steps of at most h, so that half as many fit too."""
-    return max(2 * math.ceil(0.5 * length / h * (1.0 - 1e-9)), 2)
