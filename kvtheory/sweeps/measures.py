@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from kvtheory.models.continuum import bulk, compiled, deviation, maxima
 from kvtheory.models.continuum import error_estimate as estimate
 from kvtheory.models.continuum import evaluation as e_
-from kvtheory.models.continuum.run import ROOM, Run, StepControl, begin, with_more_room
+from kvtheory.models.continuum.run import ROOM, Run, StepControl, as_arrays, begin, with_more_room
 from kvtheory.models.continuum.solved_scene import (
     LOOSEST,
     certified,
@@ -186,8 +186,8 @@ class _Block:
             (rtol, StepControl()),
             (max(rtol / estimate.TIGHTER, estimate.TIGHTEST), estimate.COMPARISON),
         ):
-            numbers = units.inertia_number, units.support_number
-            run = begin(drive, *numbers, drive.end, tolerance, control, arrays=True)
+            numbers = float(units.inertia_number), float(units.support_number)
+            run = as_arrays(begin(drive, numbers, drive.end, tolerance, control))
             for _ in range(DOUBLINGS):
                 run = with_more_room(run)
             runs.append(run)

@@ -35,7 +35,7 @@ def sample(run: Run, times: Any, found: Any) -> int:
         start, end = _step(run, index)
         for k in range(SAMPLES + 1):
             times[count] = end if k == SAMPLES else start + (end - start) * (k / SAMPLES)
-            _state(run, index, times[count], found[count])
+            e_.state_at(run, index, times[count], found[count])
             count += 1
     return count
 
@@ -89,7 +89,7 @@ def settled(
     outside, inside = times[at], times[at + 1]
     for _ in range(BISECTIONS):
         middle = 0.5 * (outside + inside)
-        _state(run, at // (SAMPLES + 1), middle, row)
+        e_.state_at(run, at // (SAMPLES + 1), middle, row)
         if abs(row[e_.FRICTION_FORCE] - force) > share * abs(force):
             outside = middle
         else:
@@ -127,10 +127,6 @@ def _step(run: Run, index: int) -> tuple[float, float]:
     """Return when a step begins, and the last instant that belongs to it."""
     start, end = e_.natural_step(run, index)
     return start, end if index + 1 == run.counts[r_.RECORDS] else end * JUST_BEFORE
-
-
-def _state(run: Run, index: int, s: float, row: Any) -> None:
-    e_.state_at(s, index, row, run.nodes, run.records, run.given.pieces)
 
 
 def _rise(found: Any, i: int, column: int, sense: int, leads: bool) -> float:
@@ -187,5 +183,5 @@ def _narrowed(
 
 
 def _at(run: Run, index: int, s: float, column: int, sense: int, leads: bool, row: Any) -> float:
-    _state(run, index, s, row)
+    e_.state_at(run, index, s, row)
     return measured(row, column, sense, leads)

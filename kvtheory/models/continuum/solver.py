@@ -123,7 +123,7 @@ class Trajectory:
     @cached_property
     def pieces(self) -> list[list[float]]:
         """The pieces of the drive, as lists."""
-        return _lists(self.rows.given.pieces, len(self.rows.given.pieces))
+        return _lists(self.rows.pieces, len(self.rows.pieces))
 
     @cached_property
     def starts(self) -> list[float]:
@@ -268,7 +268,8 @@ def solve(
         )
     numbers = float(inertia_number), float(support_number)
     arrays = compiled.worthwhile() if fast is None else fast
-    run = begin(drive, *numbers, float(end), rtol, control, arrays=arrays)
+    run = begin(drive, numbers, float(end), rtol, control)
+    run = as_arrays(run) if arrays else run
     run, arrays = _followed(run, arrays, fast is None, progress, max_steps)
     return Trajectory(end, inertia_number, support_number, run, arrays)
 

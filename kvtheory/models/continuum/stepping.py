@@ -72,7 +72,7 @@ def walk(run: Run, attempts: int) -> int:
                 return FULL
             _meet_drive(run)
             run.counts[r_.MET] = 1
-        until = min(run.given.pieces[run.counts[r_.PIECE]][PIECE_END], run.given.end)
+        until = min(run.pieces[run.counts[r_.PIECE]][PIECE_END], run.given.end)
         if now[r_.S] >= run.given.end:
             return DONE
         if now[r_.S] >= until:
@@ -93,7 +93,7 @@ def _meet_drive(run: Run) -> None:
     Y, number, slope = drive_now(run, now[r_.S])
     last = last_slope = 0.0
     if index > 0:
-        _, last, last_slope = evaluate(run.given.pieces[index - 1], now[r_.S])
+        _, last, last_slope = evaluate(run.pieces[index - 1], now[r_.S])
     jumps = abs(number - last) > SMOOTH * (1.0 + abs(number))
     if jumps or abs(slope - last_slope) > SMOOTH * (1.0 + abs(slope)):
         now[r_.KINK] = now[r_.S]
@@ -157,7 +157,7 @@ def _restart(run: Run) -> None:
     fast = 1.0
     if not run.given.fixed:
         fast = run.given.eps / (run.given.eps + 0.75 * max(width, 1e-3))
-    span = run.given.first_step * fast / (1.0 + abs(number))
+    span = run.given.control.first_step * fast / (1.0 + abs(number))
     now[r_.SPAN], run.counts[r_.SMOOTH] = max(span, SHORTEST * (1.0 + now[r_.S])), 0
 
 
@@ -186,7 +186,7 @@ def _step(run: Run, until: float) -> int:
         now[r_.SPAN] = _share(run, until_event) * (1.0 + 0.5 * OVERRUN) * until_event
         return DONE
     power = -1.0 / (len(run.given.method.nodes) + 1)
-    factor = min(run.given.grow, max(SHRINK, SAFETY * math.pow(max(size, TINY), power)))
+    factor = min(run.given.control.grow, max(SHRINK, SAFETY * math.pow(max(size, TINY), power)))
     if size > 1.0:
         run.counts[r_.REJECTED] += 1
         now[r_.SPAN] = span * factor
@@ -208,8 +208,8 @@ def _share(run: Run, way: float) -> float:
 
     Not all of it if the motion began anew, by an event or on another piece, or if the way is long.
     """
-    now, straight = run.now, run.given.straight
-    at_piece = now[r_.S] == run.given.pieces[run.counts[r_.PIECE]][PIECE_START]
+    now, straight = run.now, run.given.control.straight
+    at_piece = now[r_.S] == run.pieces[run.counts[r_.PIECE]][PIECE_START]
     if not at_piece and run.counts[r_.SMOOTH] != 0 and run.counts[r_.TOGGLES] == 0:
         left = (1.0 - straight) * run.records[run.counts[r_.RECORDS] - 1][h_.SPAN]
         if straight * way <= REMAINDER * left:
@@ -220,17 +220,17 @@ def _share(run: Run, way: float) -> float:
 def _longest(run: Run) -> float:
     now = run.now
     if run.states[0] != FREE:
-        return math.inf if _quiet(run) else run.given.longest
+        return math.inf if _quiet(run) else run.given.control.longest
     _, number, _ = drive_now(run, now[r_.S])
     slide = RELIEF / (RELIEF + abs(number))
     if now[r_.D] >= 0.0:
-        return min(run.given.longest, slide)
-    return min(run.given.longest, max(slide, -0.5 * now[r_.D] / (abs(now[r_.V]) + 1e-3)))
+        return min(run.given.control.longest, slide)
+    return min(run.given.control.longest, max(slide, -0.5 * now[r_.D] / (abs(now[r_.V]) + 1e-3)))
 
 
 def _quiet(run: Run) -> bool:
     """Whether nothing happens any more: steady sliding or rest, over ground that has been forgotten."""
-    counts, piece = run.counts, run.given.pieces[run.counts[r_.PIECE]]
+    counts, piece = run.counts, run.pieces[run.counts[r_.PIECE]]
     changed = max(piece[PIECE_START], 0.0)
     if counts[r_.EVENTS] > 0:
         changed = max(changed, run.events[counts[r_.EVENTS] - 1][0])
@@ -262,16 +262,13 @@ def _commit(run: Run, record: Any, end: float) -> None:
     """Keep `record` up to `end`, and what the peeling edges swept meanwhile."""
     now = run.now
     Y_0, _, _ = drive_now(run, now[r_.S])
-    d, v, _ = motion(record, end)
-    Y, number, _ = drive_now(run, end)
+    then = motion(record, end) + drive_now(run, end)
+    d, v, _, Y, _, _ = then
     index = run.counts[r_.RECORDS]
     run.counts[r_.RECORDS] += 1
     if run.states[0] != FREE:
         for k in range(2):
-            xi, _, node = c_.edge(
-                SIDES[k], run.states[k], run.tops[k], end, d, v, Y, number,
-                run.nodes, run.records, run.given.pieces,
-            )  # fmt: skip
+            xi, _, node = c_.edge(run, SIDES[k], run.states[k], run.tops[k], end, then)
             if run.states[k] == PEELING:
                 row = run.nodes[free_row(run)]
                 set_end(row, c_.IN_X, xi - Y, end, d, Y)

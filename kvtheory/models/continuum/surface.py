@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from kvtheory.models.continuum import contact as c_
 from kvtheory.models.continuum import dense_output as h_
 from kvtheory.models.continuum import evaluation
-from kvtheory.models.continuum.dense_output import instant
+from kvtheory.models.continuum.dense_output import Instant, instant
 from kvtheory.models.continuum.memory_chains import SIDES
 from kvtheory.models.continuum.quadrature import integrals
 from kvtheory.models.continuum.solver import Trajectory
@@ -63,30 +63,26 @@ def _front(motion: Trajectory, k: int, s: float, edge: float) -> tuple[list[list
     if state == c_.FREE or (state == c_.PEELING and s == record[h_.START]):
         return [], top
     if state == c_.PEELING:
-        then = instant(motion.records, motion.pieces, index, record[h_.START])
+        then = instant(motion, index, record[h_.START])
         now = [c_.root(side, number, d + v)[0] - Y, s, d, Y]
         return [[*now, X, record[h_.START], then[0], then[3], float(index), side]], top
     if motion.nodes[top][c_.IN_S] < s:  # else it was left just now
-        top = c_.reached(side, top, s, d, Y, motion.nodes)
+        top = c_.reached(motion, side, top, s, d, Y)
     row = list(motion.nodes[top])
     if s > record[h_.START]:
         X = edge - Y
     if row[c_.IN_S] == -math.inf:
         return [], top
     if row[c_.RECORD] >= 0.0 and row[c_.IN_S] < s:
-        row[c_.IN_S], row[c_.IN_D], row[c_.IN_Y] = c_.sweep(
-            side, row, s, d, Y, motion.records, motion.pieces
-        )
+        row[c_.IN_S], row[c_.IN_D], row[c_.IN_Y] = c_.sweep(motion, side, row, s, d, Y)
     row[c_.IN_X] = X
     return [row], int(row[c_.NEXT])
 
 
-def present(
-    motion: Trajectory, s: float
-) -> tuple[int, tuple[float, float, float, float, float, float]]:
+def present(motion: Trajectory, s: float) -> tuple[int, Instant]:
     """Return the record that holds at `s`, and d, v, v', Y, lambda, lambda' from it."""
     index = bisect.bisect_right(motion.starts, s) - 1
-    return index, instant(motion.records, motion.pieces, index, s)
+    return index, instant(motion, index, s)
 
 
 def height(motion: Trajectory, xi: ArrayLike, s: float) -> Array:
