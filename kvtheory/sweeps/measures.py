@@ -171,7 +171,7 @@ class _Block:
             np.zeros((2, e_.SIZE)),
         )
         found = bulk.Found(*(array[indices] for array in self.found))
-        compiled.kernels().follow(scenes, fine, other, asked, room, found, STEP_LIMIT)
+        compiled.kernel(bulk.follow)(scenes, fine, other, asked, room, found, STEP_LIMIT)
         for whole, part in zip(self.found, found, strict=True):
             whole[indices] = part
         told = found.deviations.T

@@ -45,7 +45,7 @@ def certificate(
     natural = fine.natural
     whole = fine.deviations(other, natural, fine.rows_at(natural))
     here = whole if times is natural else fine.deviations(other, times, found)
-    told = errors(here, whole, rtol, fine.fixed)
+    told = errors(here, whole, rtol, fine.rows.given.fixed)
     return Certificate("estimated", STATEMENT, {k: float(error) for k, error in told.items()})
 
 

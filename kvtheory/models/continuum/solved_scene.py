@@ -101,9 +101,9 @@ class SolvedScene:
     def pressure(self, x: ArrayLike, time: float) -> Array:
         """Return p in Pa at the positions `x` (m): K (d + d' - xi^2 - 2 lambda xi) in the contact."""
         s = self._scaled(time)
-        moment, number = self.motion.at(s), self.drive.at(s)[1]
+        moment = self.motion.at(s)
         xi = np.asarray(x, dtype=float) / self.units.half_length
-        p = moment.depth + moment.rate - xi * (xi + 2.0 * number)
+        p = moment.depth + moment.rate - xi * (xi + 2.0 * moment.number)
         inside = (moment.left <= xi) & (xi <= moment.right)  # false in flight, where both are NaN
         return np.where(inside, np.maximum(p, 0.0), 0.0) * self.units.pressure
 
