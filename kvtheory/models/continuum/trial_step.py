@@ -29,12 +29,13 @@ def drive_now(run: Run, s: float) -> tuple[float, float, float]:
     return evaluate(run.pieces[run.counts[r_.PIECE]], s)
 
 
-def attempt(run: Run, record: Any) -> tuple[float, float, Monitors]:
+def attempt(run: Run, record: Any, span: float) -> tuple[float, float, Monitors]:
     """Return the error of a step by its tolerance, infinite if it failed, and its first event.
 
     The event is given by its time, infinite if there is none, and the monitors just after it.
     """
-    start, span = record[h_.START], record[h_.SPAN]
+    _begin(run, record, span)
+    start = run.now[r_.S]
     if not run.given.fixed:
         evaluations = _solve(run, record)
         run.counts[r_.EVALUATIONS] += evaluations
@@ -55,6 +56,19 @@ def attempt(run: Run, record: Any) -> tuple[float, float, Monitors]:
         return size, math.inf, NO_EVENT
     found, violated = _locate(run, record, found_after, found)
     return size, found, violated
+
+
+def _begin(run: Run, record: Any, span: float) -> None:
+    """Begin a record: a step of the length `span`, its powers of v still zero."""
+    now = run.now
+    record[h_.START], record[h_.SPAN] = now[r_.S], span
+    record[h_.DEPTH], record[h_.PIECE] = now[r_.D], run.counts[r_.PIECE]
+    record[h_.LEFT_STATE], record[h_.LEFT_NODE] = run.states[0], run.tops[0]
+    record[h_.RIGHT_STATE], record[h_.RIGHT_NODE] = run.states[1], run.tops[1]
+    record[h_.LEFT_X], record[h_.RIGHT_X] = run.edges[0], run.edges[1]
+    record[h_.POWERS] = now[r_.V]
+    for i in range(h_.POWERS + 1, len(record)):
+        record[i] = 0.0
 
 
 def _solve(run: Run, record: Any) -> int:
