@@ -66,22 +66,10 @@ def measure(
 ) -> Measured:
     """Follow scenes, by their index in a block; return the columns of the plan that are of transients.
 
-    Parameters
-    ----------
-    plan
-        What is asked.
-    scenes
-        The scenes by index; they differ in values, not in the kinds of their parts.
-    friction
-        The steady friction force in N/m at each index of the block, where it is asked for.
-    fails
-        The exceptions that mean that a scene has no answer.
-
-    Returns
-    -------
-    Measured
-        With rows for all indices of the block. The errors are those of the series; a maximum has that
-        of the quantity itself.
+    The scenes differ in values, not in the kinds of their parts. `friction` is the steady friction force
+    in N/m at each index of the block, where it is asked for; `fails` are the exceptions that mean that a
+    scene has no answer. What is returned has rows for all indices. The errors are those of the series;
+    a maximum has that of the quantity itself.
     """
     block = _Block(plan, len(friction), fails)
     for index, scene in scenes.items():

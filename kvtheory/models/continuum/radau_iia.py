@@ -48,16 +48,10 @@ PLACES = (0.08, 0.25, 0.55)
 """About where each step is examined, besides its end."""
 
 
-def _times(p: list[Fraction], root: Fraction) -> list[Fraction]:
-    """Return the coefficients of p(theta) (theta - root), lowest first."""
-    return [
-        low - root * high for low, high in zip([Fraction(0), *p], [*p, Fraction(0)], strict=True)
-    ]
+Matrix = list[list[float]]
 
 
-def _tableau(
-    stages: int,
-) -> tuple[list[float], list[list[float]], list[list[float]], list[list[float]]]:
+def _tableau(stages: int) -> tuple[list[float], Matrix, Matrix, Matrix]:
     """Return nodes c, matrix A, its inverse, and the powers of theta of v from V_j - v_0.
 
     In rational arithmetic, for the inverses are badly conditioned. L_j are the Lagrange polynomials of
@@ -67,13 +61,11 @@ def _tableau(
     roots = np.sort(np.real(radau.roots()))
     roots[:-1] -= radau(roots[:-1]) / radau.deriv()(roots[:-1])
     c = [*(Fraction(x) for x in (0.5 * (1.0 + roots[:-1])).tolist()), Fraction(1)]
-    A = [[0.0] * stages for _ in c]
-    inverse = [[0.0] * stages for _ in c]
-    powers = [[0.0] * stages for _ in c]
+    A, inverse, powers = ([[0.0] * stages for _ in c] for _ in range(3))
     for j, at in enumerate(c):
-        lagrange = [Fraction(1)]
+        lagrange = np.array([Fraction(1)])
         for other in c[:j] + c[j + 1 :]:
-            lagrange = [x / (at - other) for x in _times(lagrange, other)]
+            lagrange = np.convolve(lagrange, [-other, Fraction(1)]) / (at - other)
         for i, theta in enumerate(c):
             A[i][j] = float(sum(x * theta ** (k + 1) / (k + 1) for k, x in enumerate(lagrange)))
             slope = sum(x * (k + 1) * theta**k for k, x in enumerate(lagrange))

@@ -104,17 +104,13 @@ class Trajectory:
 
     def _memory(self) -> Iterator[ScaledEvent]:
         """Yield when an edge begins to touch ground that was touched before, and when it ceases to."""
-        records = np.array(self.rows.records[: self.steps])
-        left_at = np.array(self.rows.nodes)[:, c_.IN_S]
-        for name, state, node in (
-            ("left", h_.LEFT_STATE, h_.LEFT_NODE),
-            ("right", h_.RIGHT_STATE, h_.RIGHT_NODE),
-        ):
-            touched = left_at[records[:, node].astype(int)] > -math.inf
-            remembers = (records[:, state] == TOUCHING) & touched
-            for k in np.flatnonzero(np.diff(remembers, prepend=False)):
-                what = "begins" if remembers[k] else "ends"
-                yield ScaledEvent(float(records[k, h_.START]), f"memory {what} at the {name} edge")
+        records, left_at = np.array(self.records), np.array(self.nodes)[:, c_.IN_S]
+        for k, name in enumerate(("left", "right")):
+            state, node = records[:, [h_.LEFT_STATE + 2 * k, h_.LEFT_NODE + 2 * k]].T
+            remembers = (state == TOUCHING) & (left_at[node.astype(int)] > -math.inf)
+            for at in np.flatnonzero(np.diff(remembers, prepend=False)):
+                what = "begins" if remembers[at] else "ends"
+                yield ScaledEvent(float(records[at, h_.START]), f"memory {what} at the {name} edge")
 
     @cached_property
     def records(self) -> list[list[float]]:

@@ -1,6 +1,5 @@
 """The surface of the foundation at any time: under the indenter, and where it relaxes (fact F8)."""
 
-import bisect
 import math
 from collections.abc import Callable, Iterator, Sequence
 from typing import Any
@@ -12,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 from kvtheory.models.continuum import contact as c_
 from kvtheory.models.continuum import dense_output as h_
 from kvtheory.models.continuum import evaluation
-from kvtheory.models.continuum.dense_output import Instant, instant
+from kvtheory.models.continuum.dense_output import instant
 from kvtheory.models.continuum.memory_chains import SIDES
 from kvtheory.models.continuum.quadrature import integrals
 from kvtheory.models.continuum.solver import Trajectory
@@ -36,13 +35,9 @@ ROUNDING = 1e-15
 """Of an edge in units of 1 + |Y|, for it is kept as X = xi - Y."""
 
 
-def chain(motion: Trajectory, k: int, s: float) -> Iterator[list[float]]:
-    """Yield the nodes of ground that was touched, outward from the left edge (k = 0) or the right.
-
-    The first node begins at the edge: in sigma, X, d and Y.
-    """
-    now = motion.at(s)
-    front, node = _front(motion, k, s, (now.left, now.right)[k])
+def _chain(motion: Trajectory, k: int, s: float, edge: float) -> Iterator[list[float]]:
+    """Yield the nodes of ground that was touched, outward from an edge, where the first one begins."""
+    front, node = _front(motion, k, s, edge)
     yield from front
     while node >= 0:
         row = list(motion.nodes[node])
@@ -56,7 +51,8 @@ def _front(motion: Trajectory, k: int, s: float, edge: float) -> tuple[list[list
 
     `edge` is xi of the edge at `s`.
     """
-    index, (d, v, _, Y, number, _) = present(motion, s)
+    index = evaluation.record_at(motion.rows, s)
+    d, v, _, Y, number, _ = instant(motion, index, s)
     record, side = motion.records[index], SIDES[k]
     state, top = record[h_.LEFT_STATE + 2 * k], int(record[h_.LEFT_NODE + 2 * k])
     X = record[h_.LEFT_X + k]
@@ -79,12 +75,6 @@ def _front(motion: Trajectory, k: int, s: float, edge: float) -> tuple[list[list
     return [row], int(row[c_.NEXT])
 
 
-def present(motion: Trajectory, s: float) -> tuple[int, Instant]:
-    """Return the record that holds at `s`, and d, v, v', Y, lambda, lambda' from it."""
-    index = bisect.bisect_right(motion.starts, s) - 1
-    return index, instant(motion, index, s)
-
-
 def height(motion: Trajectory, xi: ArrayLike, s: float) -> Array:
     """Return the compression u at the positions `xi`, also where the surface relaxes (fact F8).
 
@@ -100,13 +90,13 @@ def height(motion: Trajectory, xi: ArrayLike, s: float) -> Array:
     >>> height(motion, [-1.0, 0.0, 1.0, 3.0], 1.0).round(6)
     array([0.      , 0.307843, 0.23703 , 0.23551 ])
     """
-    now, (_, (*_, Y, _, _)) = motion.at(s), present(motion, s)
+    now, Y = motion.at(s), instant(motion, evaluation.record_at(motion.rows, s), s)[3]
     xi = np.asarray(xi, dtype=float)
     X, slack = xi - Y, ROUNDING * (1.0 + abs(Y))
     inside = (now.left - slack <= xi) & (xi <= now.right + slack)  # false in flight: edges are NaN
     u = np.where(inside, now.depth - xi * xi, 0.0)
-    for k in range(2):
-        for row in chain(motion, k, s):
+    for k, edge in enumerate((now.left, now.right)):
+        for row in _chain(motion, k, s, edge):
             here = (X - row[c_.IN_X]) * (X - row[c_.OUT_X]) <= 0.0
             if here.any():
                 u[here] = np.maximum(u[here], _left(motion, row, X[here], s))
