@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from kvtheory.models.continuum import contact
-from kvtheory.models.continuum.flight import margin
+from kvtheory.models.continuum.memory_chains import margin
 from kvtheory.models.continuum.solver import solve
 from kvtheory.scene.base_motion import BaseMotion
 

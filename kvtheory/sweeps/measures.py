@@ -15,15 +15,11 @@ from numpy.typing import NDArray
 from kvtheory.models.continuum import bulk, compiled, deviation, maxima
 from kvtheory.models.continuum import error_estimate as estimate
 from kvtheory.models.continuum import evaluation as e_
-from kvtheory.models.continuum.run import ROOM, Run, StepControl, begin, with_more_room
-from kvtheory.models.continuum.solved_scene import (
-    LOOSEST,
-    certified,
-    left_leads,
-    scaled_drive,
-)
+from kvtheory.models.continuum.run import ROOM, Run, as_arrays, begin, with_more_room
+from kvtheory.models.continuum.solved_scene import certified, left_leads, scaled_drive
 from kvtheory.models.continuum.solver import STEP_LIMIT
 from kvtheory.models.continuum.stepping import DONE
+from kvtheory.results.certificate import AT_REST
 from kvtheory.results.table import QUANTITIES
 from kvtheory.scene.base_motion import BaseMotion
 from kvtheory.scene.model import Scene
@@ -70,22 +66,10 @@ def measure(
 ) -> Measured:
     """Follow scenes, by their index in a block; return the columns of the plan that are of transients.
 
-    Parameters
-    ----------
-    plan
-        What is asked.
-    scenes
-        The scenes by index; they differ in values, not in the kinds of their parts.
-    friction
-        The steady friction force in N/m at each index of the block, where it is asked for.
-    fails
-        The exceptions that mean that a scene has no answer.
-
-    Returns
-    -------
-    Measured
-        With rows for all indices of the block. The errors are those of the series; a maximum has that
-        of the quantity itself.
+    The scenes differ in values, not in the kinds of their parts. `friction` is the steady friction force
+    in N/m at each index of the block, where it is asked for; `fails` are the exceptions that mean that a
+    scene has no answer. What is returned has rows for all indices. The errors are those of the series;
+    a maximum has that of the quantity itself.
     """
     block = _Block(plan, len(friction), fails)
     for index, scene in scenes.items():
@@ -148,7 +132,6 @@ class _Block:
         indices = list(self.scenes)
         units, drives = [self.scenes[i][1] for i in indices], [self.scenes[i][2] for i in indices]
         fine, other = self._room(drives[0], units[0])
-        records = ROOM * 2**DOUBLINGS
         at = np.array(self.plan.times or (), dtype=float)
         ends = np.array([drive.end for drive in drives])
         times = np.minimum(at / np.array([[u.time] for u in units]), ends[:, None])
@@ -162,32 +145,24 @@ class _Block:
         )
         columns = np.array(self.wanted, dtype=np.int64).reshape(-1, 2).T.copy()
         asked = bulk.Asked(columns[0], columns[1], times, SETTLED)
-        samples = (maxima.SAMPLES + 1) * records
-        room = bulk.Room(
-            np.zeros(samples),
-            np.zeros((samples, e_.SIZE)),
-            np.zeros(samples),
-            np.zeros((samples, e_.SIZE)),
-            np.zeros((2, e_.SIZE)),
-        )
+        samples = (maxima.SAMPLES + 1) * ROOM * 2**DOUBLINGS
+        one, two = (np.zeros((samples, e_.SIZE)) for _ in range(2))
+        rows = np.zeros((2, e_.SIZE))
+        room = bulk.Room(np.zeros(samples), one, np.zeros(samples), two, rows)
         found = bulk.Found(*(array[indices] for array in self.found))
-        compiled.kernels().follow(scenes, fine, other, asked, room, found, STEP_LIMIT)
+        compiled.kernel(bulk.follow)(scenes, fine, other, asked, room, found, STEP_LIMIT)
         for whole, part in zip(self.found, found, strict=True):
             whole[indices] = part
         told = found.deviations.T
         errors = estimate.errors(told, told, fine.given.rtol, fine.given.fixed)
         for name, error in errors.items():
             self.errors[name][indices] = error
-        self.statements.add(estimate.STATEMENT)
+        self.statements.add(_relative(estimate.STATEMENT))
 
     def _room(self, drive: BaseMotion, units: StaticState) -> list[Run]:
-        rtol, runs = min(self.plan.rtol, LOOSEST), []
-        for tolerance, control in (
-            (rtol, StepControl()),
-            (max(rtol / estimate.TIGHTER, estimate.TIGHTEST), estimate.COMPARISON),
-        ):
-            numbers = units.inertia_number, units.support_number
-            run = begin(drive, *numbers, drive.end, tolerance, control, arrays=True)
+        runs, numbers = [], (float(units.inertia_number), float(units.support_number))
+        for tolerance, control in estimate.methods(self.plan.rtol):
+            run = as_arrays(begin(drive, numbers, drive.end, tolerance, control))
             for _ in range(DOUBLINGS):
                 run = with_more_room(run)
             runs.append(run)
@@ -208,7 +183,7 @@ class _Block:
         found.take_offs[index] = sum(event.kind == "take-off" for event in motion.events)
         if self.plan.textual:
             self.texts[index] = json.dumps([event._asdict() for event in solution.events])
-        self.statements.add(errors.statement)
+        self.statements.add(_relative(errors.statement))
 
     def measured(self) -> Measured:
         """Return what was found, in SI."""
@@ -243,18 +218,13 @@ def _series(block: _Block, column: Column) -> Array:
     return row * block.scales(name)[:, None]
 
 
-def _end(block: _Block, column: Column) -> Array:
-    return block.found.last[:, COLUMNS[column.base]] * block.scales(column.base)
-
-
 def _largest(block: _Block, column: Column) -> Array:
+    """Return a largest or smallest value, or its time."""
     key = COLUMNS[column.base], SENSES[column.measure]
-    return block.found.largest[:, block.wanted.index(key), 1] * block.scales(column.base)
-
-
-def _time_of_max(block: _Block, column: Column) -> Array:
-    key = COLUMNS[column.base], SENSES[column.measure]
-    return block.found.largest[:, block.wanted.index(key), 0] * block.scales("time")
+    times, values = np.moveaxis(block.found.largest[:, block.wanted.index(key)], -1, 0)
+    if column.measure == "time_of_max":
+        return times * block.scales("time")
+    return values * block.scales(column.base)
 
 
 def _peak_to_steady(block: _Block, _: Column) -> Array:
@@ -271,19 +241,19 @@ def _settling_time(block: _Block, column: Column) -> Array:
     return np.maximum(block.found.settled * block.scales("time") - changes, 0.0)
 
 
-def _hops(block: _Block, _: Column) -> Array:
-    """Return how often the indenter takes off."""
-    return block.found.take_offs.astype(float)
+def _relative(statement: str) -> str:
+    """Return a statement on errors for a table that holds values of other models, too."""
+    return f"{statement}; relative to {AT_REST}"
 
 
 _VALUES: Mapping[str, Callable[[_Block, Column], Array]] = {
     "series": _series,
-    "end": _end,
+    "end": lambda block, of: block.found.last[:, COLUMNS[of.base]] * block.scales(of.base),
     "max": _largest,
     "min": _largest,
-    "time_of_max": _time_of_max,
+    "time_of_max": _largest,
     "peak_to_steady_friction": _peak_to_steady,
     "settling_time": _settling_time,
-    "hops": _hops,
+    "hops": lambda block, _: block.found.take_offs.astype(float),
 }
 """Values of the columns, by their measure; the units of single ones are in `columns.WHOLE`."""

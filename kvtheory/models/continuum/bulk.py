@@ -85,11 +85,11 @@ def follow(
 def _begun(run: Run, scenes: Scenes, i: int) -> Run:
     g, pieces = run.given, scenes.pieces[scenes.first[i] : scenes.first[i + 1]]
     given = Given(
-        scenes.eps[i], scenes.kappa[i], g.fixed, g.rtol, g.allowed, scenes.end[i],
-        g.first_step, g.longest, g.grow, g.straight, pieces, g.method,
+        scenes.eps[i], scenes.kappa[i], scenes.end[i],
+        g.fixed, g.rtol, g.allowed, g.control, g.method,
     )  # fmt: skip
     begun = Run(
-        given, run.now, run.counts, run.states, run.tops, run.edges,
+        given, pieces, run.now, run.counts, run.states, run.tops, run.edges,
         run.records, run.nodes, run.events, run.matrix,
     )  # fmt: skip
     rest(begun)

@@ -1,9 +1,9 @@
 """The kernels, compiled by numba from the very source that is also interpreted.
 
-Nothing here computes. Numba is told that the functions of the kernel modules may be compiled; the
-entries below call them, and only these entries are cached. Numba would not notice that a function in
-another file has changed, so the entries close over a digest of all kernel sources, which is part of the
-key of the cache: after any change they are compiled anew.
+Nothing here computes. Numba is told that the functions of the kernel modules may be compiled; entries
+call them, and only these entries are cached. Numba would not notice that a function in another file
+has changed, so the entries are named by a digest of all kernel sources: after any change they are
+compiled anew.
 """
 
 import hashlib
@@ -13,7 +13,9 @@ from functools import cache
 from importlib.util import find_spec
 from pathlib import Path
 from types import ModuleType
-from typing import Any, NamedTuple
+from typing import Any
+
+import numpy as np
 
 from kvtheory.models.continuum import (
     bulk,
@@ -21,7 +23,6 @@ from kvtheory.models.continuum import (
     dense_output,
     deviation,
     evaluation,
-    flight,
     maxima,
     memory_chains,
     radau_iia,
@@ -35,7 +36,6 @@ MODULES = (
     base_motion,
     dense_output,
     contact,
-    flight,
     radau_iia,
     run,
     memory_chains,
@@ -81,62 +81,43 @@ def sources(modules: tuple[ModuleType, ...] = MODULES) -> str:
     return digest.hexdigest()
 
 
-class Kernels(NamedTuple):
-    """The compiled entries, named as the functions that they call; they run without the interpreter lock."""
+def in_use(run: Any) -> bool:
+    """Whether a run has arrays for rows, as compiled kernels want them."""
+    return isinstance(run.records, np.ndarray)
 
-    walk: Callable[..., int]
-    states: Callable[..., None]
-    deviations: Callable[..., None]
-    sample: Callable[..., int]
-    largest: Callable[..., tuple[float, float]]
-    follow: Callable[..., None]
+
+def chosen(function: Callable[..., Any], run: Any) -> Any:
+    """Return a function of the kernels, compiled if they are in use."""
+    return kernel(function) if in_use(run) else function
 
 
 @cache
-def kernels() -> Kernels:
-    """Return the compiled entries.
+def kernel(function: Callable[..., Any]) -> Any:
+    """Return a function of the kernels, compiled; it runs without the interpreter lock.
 
     Raises
     ------
     ModuleNotFoundError
         If numba is not installed.
     """
+    _register()
+
+    def entry(*given: Any) -> Any:
+        return function(*given)
+
+    entry.__qualname__ = f"{function.__name__}_{sources()}"
+    return _kept(entry)
+
+
+@cache
+def _register() -> None:
+    """Tell numba that the functions of the kernel modules may be compiled."""
     from numba.extending import register_jitable
 
     for module in MODULES:
         for function in vars(module).values():
             if inspect.isfunction(function) and function.__module__ == module.__name__:
                 register_jitable(**UNCOUNTED)(function)
-    digest = sources()
-
-    def walk(progress: Any, attempts: int) -> int:
-        return stepping.walk(progress, attempts) if digest else 0
-
-    def states(times: Any, found: Any, progress: Any) -> None:
-        if digest:
-            evaluation.states(times, found, progress)
-
-    def deviations(times: Any, found: Any, fine: Any, other: Any, rows: Any, worst: Any) -> None:
-        if digest:
-            deviation.deviations(times, found, fine, other, rows, worst)
-
-    def sample(progress: Any, times: Any, found: Any) -> int:
-        return maxima.sample(progress, times, found) if digest else 0
-
-    def largest(
-        progress: Any, times: Any, found: Any, count: int, column: int, sense: int, row: Any
-    ) -> tuple[float, float]:
-        if digest:
-            return maxima.largest(progress, times, found, count, column, sense, row)
-        return 0.0, 0.0
-
-    def follow(
-        scenes: Any, fine: Any, other: Any, asked: Any, room: Any, found: Any, steps: int
-    ) -> None:
-        if digest:
-            bulk.follow(scenes, fine, other, asked, room, found, steps)
-
-    return Kernels(*map(_kept, (walk, states, deviations, sample, largest, follow)))
 
 
 def _kept(entry: Any) -> Any:

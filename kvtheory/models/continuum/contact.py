@@ -24,8 +24,7 @@ import math
 from collections.abc import Sequence
 from typing import Any
 
-from kvtheory.models.continuum.dense_output import Rows, instant
-from kvtheory.scene.base_motion import Piece
+from kvtheory.models.continuum.dense_output import Instant, Past, instant
 
 PEELING, TOUCHING, FREE = 0.0, 1.0, 2.0
 """States of an edge; both are free while the indenter flies."""
@@ -104,38 +103,28 @@ def forces(l: float, r: float, d: float, v: float, number: float) -> tuple[float
 
 
 def edge(
-    side: float,
-    state: float,
-    node: int,
-    s: float,
-    d: float,
-    v: float,
-    Y: float,
-    number: float,
-    nodes: Rows,
-    records: Rows,
-    pieces: Sequence[Piece],
+    run: Past, side: float, state: float, node: int, s: float, now: Instant
 ) -> tuple[float, float, int]:
     """Return xi of an edge, d(xi)/dd for the force (a peeling edge adds none), and its node."""
+    d, v, _, Y, number, _ = now
     if state == PEELING:
         return root(side, number, d + v)[0], 0.0, node
-    node = reached(side, node, s, d, Y, nodes)
-    row = nodes[node]
+    node = reached(run, side, node, s, d, Y)
+    row = run.nodes[node]
+    s_0, d_0, Y_0 = row[IN_S], row[IN_D], row[IN_Y]
     if row[RECORD] >= 0.0:
-        s_0, d_0, Y_0 = sweep(side, row, s, d, Y, records, pieces)
-    else:
-        s_0, d_0, Y_0 = row[IN_S], row[IN_D], row[IN_Y]
+        s_0, d_0, Y_0 = sweep(run, side, row, s, d, Y)
     b, c, m = secant(s, d, Y, s_0, d_0, Y_0)
     xi, half = root(side, b, c)
     return xi, side / (2.0 * m * max(half, 1e-300)), node
 
 
-def reached(side: float, node: int, s: float, d: float, Y: float, nodes: Rows) -> int:
+def reached(run: Past, side: float, node: int, s: float, d: float, Y: float) -> int:
     """Return the node that an edge has reached, as far as A is smooth from `node` on."""
-    row = nodes[node]
+    row = run.nodes[node]
     while row[JOINED] != 0.0 and overrun(side, row, s, d, Y) > 0.0:
         node = int(row[NEXT])
-        row = nodes[node]
+        row = run.nodes[node]
     return node
 
 
@@ -146,13 +135,7 @@ def overrun(side: float, row: Node, s: float, d: float, Y: float) -> float:
 
 
 def sweep(
-    side: float,
-    row: Node,
-    s: float,
-    d: float,
-    Y: float,
-    records: Rows,
-    pieces: Sequence[Piece],
+    run: Past, side: float, row: Node, s: float, d: float, Y: float
 ) -> tuple[float, float, float]:
     """Return sigma, d, Y of the instant at which the ground at the edge was left.
 
@@ -167,7 +150,7 @@ def sweep(
     share = -ahead / (abs(row[OUT_X] - row[IN_X]) or math.inf)
     sigma = outer + min(share, FARTHEST_GUESS) * (inner - outer)
     for _ in range(SWEEP_STEPS):
-        d_0, v_0, dv_0, Y_0, number, slope = instant(records, pieces, int(row[RECORD]), sigma)
+        d_0, v_0, dv_0, Y_0, number, slope = instant(run, int(row[RECORD]), sigma)
         b, c, m = secant(s, d, Y, sigma, d_0, Y_0)
         xi, half = root(side, b, c)
         left_at, half_0 = root(row[BRANCH], number, d_0 + v_0)
@@ -195,20 +178,15 @@ def sweep(
 
 
 def slack(
-    side: float,
-    state: float,
-    row: Node,
-    s: float,
-    xi: float,
-    motion: tuple[float, float, float, float, float, float],
+    side: float, state: float, row: Node, s: float, xi: float, now: Instant
 ) -> tuple[float, float]:
     """Return two numbers that are positive as long as an edge may keep its state and its node.
 
     A peeling edge moves inward through the material; at a touching edge the pressure is positive
     and the ground is that of its node. Both are relative to their terms, and as much larger as rounding
-    may make them smaller. `motion` is d, v, v', Y, lambda, lambda'.
+    may make them smaller.
     """
-    d, v, dv, Y, number, slope = motion
+    d, v, dv, Y, number, slope = now
     if state == PEELING:
         terms = 1.0 + abs(v) + abs(dv) + number * number + abs(slope * xi)
         return -pressure_rate(xi, v, dv, number, slope) / terms, math.inf

@@ -6,8 +6,9 @@ and compiled.
 """
 
 from collections.abc import Sequence
+from typing import Any
 
-from kvtheory.scene.base_motion import Piece, evaluate
+from kvtheory.scene.base_motion import evaluate
 
 START, SPAN, DEPTH, PIECE = 0, 1, 2, 3
 LEFT_STATE, LEFT_NODE, RIGHT_STATE, RIGHT_NODE = 4, 5, 6, 7
@@ -16,7 +17,11 @@ POWERS = 10
 """Layout of a record: times, depth at its start, drive piece, state and node of both sides, both edges
 at its start, then v."""
 
-Rows = Sequence[Sequence[float]]
+Past = Any
+"""A run in progress or done: here its `records`, its `nodes` and the `pieces` of its drive are read."""
+
+Instant = tuple[float, float, float, float, float, float]
+"""d, v, v', Y, lambda, lambda' at one time."""
 
 
 def motion(record: Sequence[float], s: float) -> tuple[float, float, float]:
@@ -31,11 +36,7 @@ def motion(record: Sequence[float], s: float) -> tuple[float, float, float]:
     return record[DEPTH] + depth * theta * span, rate, slope / span
 
 
-def instant(
-    records: Rows, pieces: Sequence[Piece], index: int, s: float
-) -> tuple[float, float, float, float, float, float]:
-    """Return d, v, v', Y, lambda, lambda' at `s` from the record `index`."""
-    record = records[index]
-    d, v, dv = motion(record, s)
-    Y, number, slope = evaluate(pieces[int(record[PIECE])], s)
-    return d, v, dv, Y, number, slope
+def instant(run: Past, index: int, s: float) -> Instant:
+    """Return the motion at `s` from the record `index`."""
+    record = run.records[index]
+    return motion(record, s) + evaluate(run.pieces[int(record[PIECE])], s)

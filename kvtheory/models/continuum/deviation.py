@@ -34,7 +34,7 @@ def deviations(times: Any, found: Any, fine: Run, other: Run, rows: Any, worst: 
         while alike and next_f >= 0 and fine.events[next_f][0] <= s:
             last_f, last_o = next_f, next_o
             next_f, next_o = next_hop(fine, next_f + 1), next_hop(other, next_o + 1)
-        _state(other, s, rows[0])
+        e_.state_at(other, e_.record_at(other, s), s, rows[0])
         shifted = 0
         if alike:
             for f, o in ((last_f, last_o), (next_f, next_o)):
@@ -43,7 +43,8 @@ def deviations(times: Any, found: Any, fine: Run, other: Run, rows: Any, worst: 
                 here, there = fine.events[f][0], other.events[o][0]
                 worst[HOPS] = max(worst[HOPS], abs(there - here))
                 if abs(s - here) <= abs(there - here):
-                    _state(other, min(max(there + (s - here), 0.0), other.now[r_.S]), rows[1])
+                    then = min(max(there + (s - here), 0.0), other.now[r_.S])
+                    e_.state_at(other, e_.record_at(other, then), then, rows[1])
                     shifted = 1
         _raise(worst, found[i], rows[0], rows[shifted])
         if not alike:
@@ -65,11 +66,6 @@ def next_hop(run: Run, index: int) -> int:
         if run.events[i][1] >= TAKE_OFF:
             return i
     return -1
-
-
-def _state(run: Run, s: float, row: Any) -> None:
-    index = e_.record_at(s, run.records, run.counts[r_.RECORDS])
-    e_.state_at(s, index, row, run.nodes, run.records, run.given.pieces)
 
 
 def _raise(worst: Any, row: Any, one: Any, two: Any) -> None:

@@ -11,7 +11,6 @@ over xi are polynomials of the edges, what is stored outside is what the memory 
 there, twice that energy is dissipated per unit of time (F14-surface).
 """
 
-import math
 from dataclasses import astuple, dataclass
 from typing import Any
 
@@ -87,8 +86,8 @@ def ledger(motion: Trajectory, s: ArrayLike) -> Ledger:
 
 
 def _entries(motion: Trajectory, now: Moment, free: float, spent: Array) -> list[float]:
-    fixed = math.isinf(motion.support_number)
-    eps, kappa = (0.0, 0.0) if fixed else (motion.inertia_number, motion.support_number)
+    given = motion.rows.given
+    eps, kappa = 0.0 if given.fixed else given.eps, given.kappa
     work, in_contact, in_surface = spent.tolist()
     return [
         _stored(1.0, -1.0, 1.0),

@@ -9,10 +9,12 @@ from numpy.typing import NDArray
 from kvtheory.models.continuum import deviation as d_
 from kvtheory.models.continuum.run import StepControl
 from kvtheory.models.continuum.solver import Trajectory
-from kvtheory.results import Certificate
+from kvtheory.results.certificate import AT_REST, Certificate
 
 Array = NDArray[np.float64]
 
+LOOSEST = 1e-4
+"""Looser tolerances save no more steps."""
 TIGHTER = 100.0
 """The tolerance of the solution that this one is compared with is so many times smaller; less, and in
 three of a thousand scenes it would be no better ..."""
@@ -28,32 +30,38 @@ FLOOR = 1e-2
 
 STATEMENT = (
     f"{MARGIN:g} times the difference to a solution with {1 / TIGHTER:g} times the tolerance and other "
-    "steps, and what rounding may do; relative to the static depth, half length and load. A jump, as at a "
-    "landing, is compared with the jump, and `jump_time` says how far its time may be off, relative to the "
-    "retardation time; `pressure` is that inside the contact, `surface` that of the whole foundation"
+    "steps, and what rounding may do. A jump, as at a landing, is compared with the jump, and `jump_time` "
+    "says how far its time may be off, relative to the retardation time; `pressure` is that inside the "
+    "contact, `surface` that of the whole foundation"
 )
 NOTHING = "not known: the solution with a tighter tolerance could not be followed to the end"
 NOT_ASKED = "not known: not asked for"
 
 
-def certificate(
-    fine: Trajectory, other: Trajectory | None, times: Array, found: Array, rtol: float
-) -> Certificate:
-    """Return the certificate of the states `found` at the scaled `times`."""
+def methods(rtol: float) -> tuple[tuple[float, StepControl], tuple[float, StepControl]]:
+    """Return the tolerance and the steps of a solution, and those of the one it is compared with."""
+    rtol = min(rtol, LOOSEST)
+    return (rtol, StepControl()), (max(rtol / TIGHTER, TIGHTEST), COMPARISON)
+
+
+def certificate(fine: Trajectory, other: Trajectory | None, times: Array) -> Certificate:
+    """Return the certificate of the states at the scaled `times`."""
     if other is None:
         return unknown(NOTHING)
-    natural = fine.natural
+    natural, given = fine.natural, fine.rows.given
     whole = fine.deviations(other, natural, fine.rows_at(natural))
-    here = whole if times is natural else fine.deviations(other, times, found)
-    told = errors(here, whole, rtol, fine.fixed)
-    return Certificate("estimated", STATEMENT, {k: float(error) for k, error in told.items()})
+    here = whole if times is natural else fine.deviations(other, times, fine.rows_at(times))
+    told = errors(here, whole, given.rtol, given.fixed)
+    return Certificate(
+        "estimated", STATEMENT, {k: float(error) for k, error in told.items()}, AT_REST
+    )
 
 
 def unknown(why: str) -> Certificate:
     """Return the certificate of a transient of whose error nothing is known."""
     names = errors([0.0] * d_.SIZE, [0.0] * d_.SIZE, 1.0, False)
     given = dict.fromkeys(EXACT, 0.0)
-    return Certificate("estimated", why, dict.fromkeys(names, math.inf) | given)
+    return Certificate("estimated", why, dict.fromkeys(names, math.inf) | given, AT_REST)
 
 
 EXACT = ("time", "velocity")

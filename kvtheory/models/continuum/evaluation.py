@@ -1,16 +1,14 @@
 """The state at any time of a motion that was followed: depth, edges and forces."""
 
 import math
-from collections.abc import Sequence
 from typing import Any
 
 from kvtheory.models.continuum import contact as c_
 from kvtheory.models.continuum import dense_output as h_
 from kvtheory.models.continuum import run as r_
 from kvtheory.models.continuum.contact import FREE
-from kvtheory.models.continuum.dense_output import Rows, motion
+from kvtheory.models.continuum.dense_output import instant
 from kvtheory.models.continuum.run import Run
-from kvtheory.scene.base_motion import Piece, evaluate
 
 DEPTH, RATE, ACCELERATION, NUMBER, LEFT, RIGHT = range(6)
 LEFT_STATE, RIGHT_STATE, NORMAL_FORCE, FRICTION_FORCE, PEAK_PRESSURE, ROUNDING = range(6, 12)
@@ -31,8 +29,7 @@ def states(times: Any, found: Any, run: Run) -> None:
     Where the drive jumps, it is the state just after the jump.
     """
     for i in range(len(times)):
-        index = record_at(times[i], run.records, run.counts[r_.RECORDS])
-        state_at(times[i], index, found[i], run.nodes, run.records, run.given.pieces)
+        state_at(run, record_at(run, times[i]), times[i], found[i])
 
 
 def natural_step(run: Run, index: int) -> tuple[float, float]:
@@ -42,9 +39,9 @@ def natural_step(run: Run, index: int) -> tuple[float, float]:
     return run.records[index][h_.START], end
 
 
-def record_at(s: float, records: Rows, count: int) -> int:
-    """Return the index of the last of `count` records that begins at `s` or before."""
-    low, high = 0, count
+def record_at(run: Run, s: float) -> int:
+    """Return the index of the last record that begins at `s` or before."""
+    low, high, records = 0, run.counts[r_.RECORDS], run.records
     while high - low > 1:
         middle = (low + high) // 2
         if records[middle][h_.START] <= s:
@@ -54,13 +51,10 @@ def record_at(s: float, records: Rows, count: int) -> int:
     return low
 
 
-def state_at(
-    s: float, index: int, found: Any, nodes: Rows, records: Rows, pieces: Sequence[Piece]
-) -> None:
+def state_at(run: Run, index: int, s: float, found: Any) -> None:
     """Write the state at `s`, within the record `index`."""
-    record = records[index]
-    d, v, dv = motion(record, s)
-    Y, number, _ = evaluate(pieces[int(record[h_.PIECE])], s)
+    record, now = run.records[index], instant(run, index, s)
+    d, v, dv, Y, number, _ = now
     sides = record[h_.LEFT_STATE : h_.LEFT_X]
     l = r = math.nan
     f_z = f_x = p = rounding = 0.0
@@ -68,9 +62,8 @@ def state_at(
         # what was left at this very instant confines nothing yet
         l, r = record[h_.LEFT_X] + Y, record[h_.RIGHT_X] + Y
         if s > record[h_.START]:
-            past = nodes, records, pieces
-            l, l_d, _ = c_.edge(-1.0, sides[0], int(sides[1]), s, d, v, Y, number, *past)
-            r, r_d, _ = c_.edge(1.0, sides[2], int(sides[3]), s, d, v, Y, number, *past)
+            l, l_d, _ = c_.edge(run, -1.0, sides[0], int(sides[1]), s, now)
+            r, r_d, _ = c_.edge(run, 1.0, sides[2], int(sides[3]), s, now)
             rounding = UNIT * (1.0 + abs(Y)) * max(abs(l_d), abs(r_d))
         f_z, f_x = c_.forces(l, r, d, v, number)
         p = max(c_.pressure(min(max(-number, l), r), d, v, number), 0.0)

@@ -26,6 +26,8 @@ LEADING_EDGE, TRAILING_EDGE = e_.SIZE, e_.SIZE + 1
 """Columns beyond those of a state: which edge leads depends on the drive."""
 LARGEST, SMALLEST, MAGNITUDE = 1, -1, 0
 """In which sense a quantity is to be large."""
+What = tuple[int, int, bool]
+"""Which column, in which sense, and whether the left edge leads, or led before a rest."""
 
 
 def sample(run: Run, times: Any, found: Any) -> int:
@@ -35,7 +37,7 @@ def sample(run: Run, times: Any, found: Any) -> int:
         start, end = _step(run, index)
         for k in range(SAMPLES + 1):
             times[count] = end if k == SAMPLES else start + (end - start) * (k / SAMPLES)
-            _state(run, index, times[count], found[count])
+            e_.state_at(run, index, times[count], found[count])
             count += 1
     return count
 
@@ -51,24 +53,24 @@ def largest(
     top, best_s, best, leads = -math.inf, math.nan, math.nan, True
     for i in range(count):
         leads = leads_at(found[i], leads)
-        value = measured(found[i], column, sense, leads)
-        top = max(top, value)
+        top = max(top, measured(found[i], (column, sense, leads)))
     highest, leads = top, True
     for i in range(count):
         leads = leads_at(found[i], leads)
-        value = measured(found[i], column, sense, leads)
-        if not highest - SAME * abs(highest) <= value + _rise(found, i, column, sense, leads):
+        what = column, sense, leads
+        value = measured(found[i], what)
+        if not highest - SAME * abs(highest) <= value + _rise(found, i, what):
             continue
         for k in range(3):
             s, there = times[i], value
             if k != 1:
                 if not 0 <= i % (SAMPLES + 1) + k - 1 <= SAMPLES or not highest > -math.inf:
                     continue
-                neighbour = measured(found[i + k - 1], column, sense, leads)
+                neighbour = measured(found[i + k - 1], what)
                 if abs(value - neighbour) <= SAME * abs(value):
                     continue
                 near, far = times[min(i, i + k - 1)], times[max(i, i + k - 1)]
-                s, there = _narrowed(run, i // (SAMPLES + 1), near, far, column, sense, leads, row)
+                s, there = _narrowed(run, i // (SAMPLES + 1), near, far, what, row)
             top = max(top, there)
             if not best >= top - SAME * abs(top) and there >= top - SAME * abs(top):
                 best_s, best = s, there
@@ -89,7 +91,7 @@ def settled(
     outside, inside = times[at], times[at + 1]
     for _ in range(BISECTIONS):
         middle = 0.5 * (outside + inside)
-        _state(run, at // (SAMPLES + 1), middle, row)
+        e_.state_at(run, at // (SAMPLES + 1), middle, row)
         if abs(row[e_.FRICTION_FORCE] - force) > share * abs(force):
             outside = middle
         else:
@@ -105,7 +107,7 @@ def last(found: Any, count: int, row: Any) -> None:
     for k in range(e_.SIZE):
         row[k] = found[count - 1][k]
     for column in (LEADING_EDGE, TRAILING_EDGE):
-        row[column] = measured(row, column, LARGEST, leads)
+        row[column] = measured(row, (column, LARGEST, leads))
 
 
 def leads_at(row: Any, leads: bool) -> bool:
@@ -113,8 +115,9 @@ def leads_at(row: Any, leads: bool) -> bool:
     return leads if row[e_.NUMBER] == 0.0 else row[e_.NUMBER] > 0.0
 
 
-def measured(row: Any, column: int, sense: int, leads: bool) -> float:
+def measured(row: Any, what: What) -> float:
     """Return what is to be large, from a state."""
+    column, sense, leads = what
     if column >= LEADING_EDGE:
         left = leads_at(row, leads) == (column == LEADING_EDGE)
         value = row[e_.LEFT] if left else row[e_.RIGHT]
@@ -129,16 +132,12 @@ def _step(run: Run, index: int) -> tuple[float, float]:
     return start, end if index + 1 == run.counts[r_.RECORDS] else end * JUST_BEFORE
 
 
-def _state(run: Run, index: int, s: float, row: Any) -> None:
-    e_.state_at(s, index, row, run.nodes, run.records, run.given.pieces)
-
-
-def _rise(found: Any, i: int, column: int, sense: int, leads: bool) -> float:
+def _rise(found: Any, i: int, what: What) -> float:
     """Return how far a sample stands out from its neighbours in the step; less is missed beside it."""
-    value, rise = measured(found[i], column, sense, leads), 0.0
+    value, rise = measured(found[i], what), 0.0
     for k in (-1, 1):
         if 0 <= i % (SAMPLES + 1) + k <= SAMPLES:
-            over = value - measured(found[i + k], column, sense, leads)
+            over = value - measured(found[i + k], what)
             if over < -SAME * abs(value):
                 return 0.0
             rise = max(rise, over)
@@ -146,46 +145,39 @@ def _rise(found: Any, i: int, column: int, sense: int, leads: bool) -> float:
 
 
 def _narrowed(
-    run: Run, index: int, a: float, b: float, column: int, sense: int, leads: bool, row: Any
+    run: Run, index: int, a: float, b: float, what: What, row: Any
 ) -> tuple[float, float]:
     """Return where a quantity is largest on [a, b], within one step, and the value."""
     start, end = _step(run, index)
-
     low, high = b - GOLDEN * (b - a), a + GOLDEN * (b - a)
-    at_low = _at(run, index, low, column, sense, leads, row)
-    at_high = _at(run, index, high, column, sense, leads, row)
+    at_low, at_high = _at(run, index, low, what, row), _at(run, index, high, what, row)
     for _ in range(SECTIONS):
         if at_low >= at_high:
             b, high, at_high = high, low, at_low
             low = b - GOLDEN * (b - a)
-            at_low = _at(run, index, low, column, sense, leads, row)
+            at_low = _at(run, index, low, what, row)
         else:
             a, low, at_low = low, high, at_high
             high = a + GOLDEN * (b - a)
-            at_high = _at(run, index, high, column, sense, leads, row)
+            at_high = _at(run, index, high, what, row)
     s, best = (low, at_low) if at_low >= at_high else (high, at_high)
     h = DIFFERENCE * (end - start)
     for _ in range(NEWTON_STEPS):
         if not start <= s - 2.0 * h < s + 2.0 * h <= end:
-            return s, best
-        left, right = (
-            _at(run, index, s - h, column, sense, leads, row),
-            _at(run, index, s + h, column, sense, leads, row),
-        )
-        far = _at(run, index, s + 2.0 * h, column, sense, leads, row) - _at(
-            run, index, s - 2.0 * h, column, sense, leads, row
-        )
+            break
+        left, right = _at(run, index, s - h, what, row), _at(run, index, s + h, what, row)
+        far = _at(run, index, s + 2.0 * h, what, row) - _at(run, index, s - 2.0 * h, what, row)
         curvature = (left - 2.0 * best + right) / h
         if not curvature < 0.0:
-            return s, best
+            break
         moved = s - (8.0 * (right - left) - far) / (12.0 * curvature)
-        there = _at(run, index, min(max(moved, start), end), column, sense, leads, row)
+        there = _at(run, index, min(max(moved, start), end), what, row)
         if not (start <= moved <= end and there >= best - SAME * abs(best)):
-            return s, best
+            break
         s, best = moved, there
     return s, best
 
 
-def _at(run: Run, index: int, s: float, column: int, sense: int, leads: bool, row: Any) -> float:
-    _state(run, index, s, row)
-    return measured(row, column, sense, leads)
+def _at(run: Run, index: int, s: float, what: What, row: Any) -> float:
+    e_.state_at(run, index, s, row)
+    return measured(row, what)

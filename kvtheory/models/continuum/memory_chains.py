@@ -1,13 +1,16 @@
-"""Both sides of the contact in a run: what its edges leave behind, take-off and landing."""
+"""Both sides of the contact in a run: what its edges leave behind, take-off, flight and landing."""
 
+import math
 from typing import Any
 
 from kvtheory.models.continuum import contact as c_
 from kvtheory.models.continuum import run as r_
 from kvtheory.models.continuum.contact import FREE, TOUCHING
 from kvtheory.models.continuum.dense_output import instant
-from kvtheory.models.continuum.flight import summit
 from kvtheory.models.continuum.run import SIDES, Run
+
+SUMMIT_RTOL = 1e-9
+"""For sigma; the margin is stationary there, so that its error is of the order of the square."""
 
 
 def set_end(row: Any, end: int, X: float, s: float, d: float, Y: float) -> None:
@@ -67,7 +70,7 @@ def trim(run: Run, k: int, Y: float) -> None:
         row[i] = old[i]
     if row[c_.RECORD] >= 0.0:
         row[c_.IN_S], row[c_.IN_D], row[c_.IN_Y] = c_.sweep(
-            SIDES[k], old, now[r_.S], now[r_.D], Y, run.records, run.given.pieces
+            run, SIDES[k], old, now[r_.S], now[r_.D], Y
         )
     row[c_.IN_X] = run.edges[k]
     put(run, k)
@@ -86,10 +89,7 @@ def leave(run: Run, Y: float) -> None:
 def land(run: Run, Y: float) -> None:
     """Touch down: part the chains at the landing point, and let both edges touch."""
     now = run.now
-    _, X, side, node, sigma = summit(
-        now[r_.S], now[r_.D], Y, run.tops[0], run.tops[1],
-        run.nodes, run.records, run.given.pieces,
-    )  # fmt: skip
+    _, X, side, node, sigma = summit(run, now[r_.S], now[r_.D], Y)
     near = 1 if side > 0.0 else 0
     far = 1 - near
     inner = run.tops[near]
@@ -100,7 +100,7 @@ def land(run: Run, Y: float) -> None:
     old = run.nodes[node]
     d_0, Y_0 = old[c_.IN_D], old[c_.IN_Y]
     if old[c_.RECORD] >= 0.0:
-        d_0, _, _, Y_0, _, _ = instant(run.records, run.given.pieces, int(old[c_.RECORD]), sigma)
+        d_0, _, _, Y_0, _, _ = instant(run, int(old[c_.RECORD]), sigma)
     if old[c_.IN_X] != X:
         push_reversed(run, far, old)
         set_end(run.nodes[run.tops[far]], c_.IN_X, X, sigma, d_0, Y_0)
@@ -119,3 +119,57 @@ def push_reversed(run: Run, k: int, old: Any) -> None:
     copy_end(row, c_.IN_X, old, c_.OUT_X)
     copy_end(row, c_.OUT_X, old, c_.IN_X)
     push(run, k, old[c_.RECORD], old[c_.BRANCH])
+
+
+def summit(run: Run, s: float, d: float, Y: float) -> tuple[float, float, float, int, float]:
+    """Return the largest margin, its X, side and node, and the sigma at which X was left.
+
+    The indenter lands when the margin reaches zero. The margin e^-s (e^s g - A) is concave in X, for A
+    is a supremum of functions with the same curvature at earlier, smaller weights; so its largest value
+    is found by walking outward while it rises.
+    """
+    for side in (1.0, -1.0):
+        node = run.tops[1 if side > 0.0 else 0]
+        row = run.nodes[node]
+        if rise(side, row[c_.IN_X], s, Y, row[c_.IN_S], row[c_.IN_Y]) <= 0.0:
+            continue
+        while rise(side, row[c_.OUT_X], s, Y, row[c_.OUT_S], row[c_.OUT_Y]) > 0.0:
+            node = int(row[c_.NEXT])
+            row = run.nodes[node]
+        X, sigma, d_0, Y_0 = _peak(run, side, row, s, Y)
+        return margin(X, s, d, Y, sigma, d_0, Y_0), X, side, node, sigma
+    right = run.tops[1]
+    row = run.nodes[right]
+    value = margin(row[c_.IN_X], s, d, Y, row[c_.IN_S], row[c_.IN_D], row[c_.IN_Y])
+    return value, row[c_.IN_X], 1.0, right, row[c_.IN_S]
+
+
+def margin(X: float, s: float, d: float, Y: float, s_0: float, d_0: float, Y_0: float) -> float:
+    """Return g(X, s) - e^-(s - s_0) g(X, s_0)."""
+    xi, xi_0 = X + Y, X + Y_0
+    return d - xi * xi - math.exp(s_0 - s) * (d_0 - xi_0 * xi_0)
+
+
+def rise(side: float, X: float, s: float, Y: float, s_0: float, Y_0: float) -> float:
+    """Return half the outward slope of the margin over X."""
+    return -side * (X + Y - math.exp(s_0 - s) * (X + Y_0))
+
+
+def _peak(run: Run, side: float, row: Any, s: float, Y: float) -> tuple[float, float, float, float]:
+    """Return X, sigma, d, Y of the largest margin on one node, whose outer end it does not exceed."""
+    inner, outer = row[c_.IN_S], row[c_.OUT_S]
+    if rise(side, row[c_.IN_X], s, Y, inner, row[c_.IN_Y]) <= 0.0:
+        return row[c_.IN_X], inner, row[c_.IN_D], row[c_.IN_Y]
+    if row[c_.RECORD] < 0.0:
+        q = math.exp(inner - s)
+        return (q * row[c_.IN_Y] - Y) / -math.expm1(inner - s), inner, row[c_.IN_D], row[c_.IN_Y]
+    while True:
+        sigma = 0.5 * (inner + outer)
+        d_0, v_0, _, Y_0, number, _ = instant(run, int(row[c_.RECORD]), sigma)
+        X = c_.root(row[c_.BRANCH], number, d_0 + v_0)[0] - Y_0
+        if abs(inner - outer) <= SUMMIT_RTOL * (s - sigma) or sigma in (inner, outer):
+            return X, sigma, d_0, Y_0
+        if rise(side, X, s, Y, sigma, Y_0) > 0.0:
+            inner = sigma
+        else:
+            outer = sigma

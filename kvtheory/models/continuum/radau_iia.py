@@ -31,8 +31,8 @@ from numpy.polynomial import Legendre, Polynomial
 
 from kvtheory.models.continuum import dense_output as h_
 from kvtheory.models.continuum.contact import FREE, edge, forces, pressure
-from kvtheory.models.continuum.dense_output import Rows
-from kvtheory.scene.base_motion import Piece, evaluate
+from kvtheory.models.continuum.dense_output import Instant, Past
+from kvtheory.scene.base_motion import evaluate
 
 STAGES = ((1e-3, 4), (1e-6, 5), (0.0, 7))
 """Number of stages for tolerances above each of these: the cheapest, as measured."""
@@ -48,16 +48,10 @@ PLACES = (0.08, 0.25, 0.55)
 """About where each step is examined, besides its end."""
 
 
-def _times(p: list[Fraction], root: Fraction) -> list[Fraction]:
-    """Return the coefficients of p(theta) (theta - root), lowest first."""
-    return [
-        low - root * high for low, high in zip([Fraction(0), *p], [*p, Fraction(0)], strict=True)
-    ]
+Matrix = list[list[float]]
 
 
-def _tableau(
-    stages: int,
-) -> tuple[list[float], list[list[float]], list[list[float]], list[list[float]]]:
+def _tableau(stages: int) -> tuple[list[float], Matrix, Matrix, Matrix]:
     """Return nodes c, matrix A, its inverse, and the powers of theta of v from V_j - v_0.
 
     In rational arithmetic, for the inverses are badly conditioned. L_j are the Lagrange polynomials of
@@ -67,13 +61,11 @@ def _tableau(
     roots = np.sort(np.real(radau.roots()))
     roots[:-1] -= radau(roots[:-1]) / radau.deriv()(roots[:-1])
     c = [*(Fraction(x) for x in (0.5 * (1.0 + roots[:-1])).tolist()), Fraction(1)]
-    A = [[0.0] * stages for _ in c]
-    inverse = [[0.0] * stages for _ in c]
-    powers = [[0.0] * stages for _ in c]
+    A, inverse, powers = ([[0.0] * stages for _ in c] for _ in range(3))
     for j, at in enumerate(c):
-        lagrange = [Fraction(1)]
+        lagrange = np.array([Fraction(1)])
         for other in c[:j] + c[j + 1 :]:
-            lagrange = [x / (at - other) for x in _times(lagrange, other)]
+            lagrange = np.convolve(lagrange, [-other, Fraction(1)]) / (at - other)
         for i, theta in enumerate(c):
             A[i][j] = float(sum(x * theta ** (k + 1) / (k + 1) for k, x in enumerate(lagrange)))
             slope = sum(x * (k + 1) * theta**k for k, x in enumerate(lagrange))
@@ -113,12 +105,11 @@ class Method(NamedTuple):
 
 
 @cache
-def radau(stages: int, arrays: bool = False) -> Method:
-    """Return the Radau IIA method of so many stages, as lists or arrays."""
+def radau(stages: int) -> Method:
+    """Return the Radau IIA method of so many stages."""
     tableau = _tableau(stages)
     probes = _probes(tableau[0])
-    parts = (*tableau, probes, _scales(tableau[0], probes))
-    return Method(*(np.array(part) for part in parts)) if arrays else Method(*parts)
+    return Method(*tableau, probes, _scales(tableau[0], probes))
 
 
 def stages_for(rtol: float) -> int:
@@ -127,64 +118,46 @@ def stages_for(rtol: float) -> int:
 
 
 def imbalance(
-    s: float,
-    d: float,
-    v: float,
-    Y: float,
-    number: float,
-    sides: Sequence[float],
-    kappa: float,
-    nodes: Rows,
-    records: Rows,
-    pieces: Sequence[Piece],
+    run: Past, sides: Sequence[float], s: float, now: Instant
 ) -> tuple[float, float, float, float, float]:
     """Return F = 1 - f_z - kappa (d - 1), dF/dd, dF/dv, and both edges.
 
     `sides` holds state and node of the left edge, then of the right one. The pressure vanishes at a
     peeling edge and does not move a touching one, so that dF/dv is only the width.
     """
+    d, v, kappa = now[0], now[1], run.given.kappa
     F, F_d, F_v = 1.0 - kappa * (d - 1.0), -kappa, 0.0
     if sides[0] == FREE:
         return F, F_d, F_v, math.nan, math.nan
-    l, l_d, _ = edge(-1.0, sides[0], int(sides[1]), s, d, v, Y, number, nodes, records, pieces)
-    r, r_d, _ = edge(1.0, sides[2], int(sides[3]), s, d, v, Y, number, nodes, records, pieces)
+    l, l_d, _ = edge(run, -1.0, sides[0], int(sides[1]), s, now)
+    r, r_d, _ = edge(run, 1.0, sides[2], int(sides[3]), s, now)
     if l < r:
-        f_z, _ = forces(l, r, d, v, number)
+        f_z, _ = forces(l, r, d, v, now[4])
         F -= f_z
         F_v = -0.75 * (r - l)
-        F_d -= 0.75 * (r - l + pressure(r, d, v, number) * r_d - pressure(l, d, v, number) * l_d)
+        F_d -= 0.75 * (r - l + pressure(r, d, v, now[4]) * r_d - pressure(l, d, v, now[4]) * l_d)
     elif not l >= r:
         F = math.nan
     return F, F_d, F_v, l, r
 
 
-def collocate(
-    record: Any,
-    eps: float,
-    kappa: float,
-    tolerance: float,
-    nodes: Rows,
-    records: Rows,
-    pieces: Sequence[Piece],
-    method: Method,
-    matrix: Any,
-) -> int:
+def collocate(run: Past, record: Any) -> int:
     """Solve for the stages of the step that `record` begins, and write its powers of v.
 
     Of s stages, row s of `matrix` holds a guess of v at the stages minus v at the start; the rest is work
     space. Newton's method with the exact Jacobian of all stages; return the number of evaluations of
     F, or 0 if it does not converge.
     """
+    eps, method, matrix = run.given.eps, run.given.method, run.matrix
     stages = len(method.nodes)
     start, span, depth = record[h_.START], record[h_.SPAN], record[h_.DEPTH]
     rate = record[h_.POWERS]
     sides = record[h_.LEFT_STATE : h_.LEFT_X]
     change, places, numbers = matrix[stages], matrix[stages + 1], matrix[stages + 2]
     for i in range(stages):
-        places[i], numbers[i], _ = evaluate(
-            pieces[int(record[h_.PIECE])], start + span * method.nodes[i]
-        )
-    allowed, previous = tolerance * (1.0 + abs(rate)), math.inf
+        s = start + span * method.nodes[i]
+        places[i], numbers[i], _ = evaluate(run.pieces[int(record[h_.PIECE])], s)
+    allowed, previous = run.given.rtol * (1.0 + abs(rate)), math.inf
     for iteration in range(1, NEWTON_STEPS + 1):
         for i in range(stages):
             a, inverse, row = method.A[i], method.inverse[i], matrix[i]
@@ -192,10 +165,8 @@ def collocate(
             for j in range(stages):
                 d += span * a[j] * change[j]
                 inertia += eps * inverse[j] * change[j]
-            F, F_d, F_v, _, _ = imbalance(
-                start + span * method.nodes[i], d, rate + change[i], places[i], numbers[i],
-                sides, kappa, nodes, records, pieces,
-            )  # fmt: skip
+            now = d, rate + change[i], 0.0, places[i], numbers[i], 0.0
+            F, F_d, F_v, _, _ = imbalance(run, sides, start + span * method.nodes[i], now)
             if not math.isfinite(F):
                 return 0
             for j in range(stages):
@@ -249,13 +220,7 @@ def eliminate(matrix: Any) -> float:
 
 
 def defect_error(
-    span: float,
-    eps: float,
-    F_d: float,
-    F_v: float,
-    inertia: float,
-    F: float,
-    scales: Sequence[float],
+    span: float, eps: float, dv: float, F: float, F_d: float, F_v: float, scales: Sequence[float]
 ) -> float:
     """Estimate the error of v over the step from the defect eps v' - F at one of the probes.
 
@@ -263,6 +228,6 @@ def defect_error(
     inertia rules, the defect itself where damping does, its derivative where stiffness does.
     """
     integral, value, derivative = scales[0], scales[1], scales[2]
-    defect = max(abs(inertia - F) - ROUNDING * (1.0 - F_d), 0.0)
+    defect = max(abs(eps * dv - F) - ROUNDING * (1.0 - F_d), 0.0)
     resistance = eps / integral - span * F_v / value - span * span * F_d / derivative
     return defect * span / resistance

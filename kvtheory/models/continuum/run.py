@@ -40,34 +40,30 @@ class StepControl(NamedTuple):
     rejected. `longest` is in units of tau: what the foundation forgets does not hide between the
     probes of a step. A step grows by no more than `grow`; the first step after an event, or on a piece
     of the drive, takes at most `straight` of the way to the next event or the end of the piece.
-    `stages` of the Radau IIA method are as many as is cheapest for the tolerance, unless they are given.
+    `stages` of the Radau IIA method, if they are zero, are as many as is cheapest for the tolerance.
     """
 
     first_step: float = 0.3
     longest: float = 0.5
     grow: float = 10.0
     straight: float = 1.0
-    stages: int | None = None
+    stages: int = 0
 
 
 class Given(NamedTuple):
-    """What never changes in a run.
+    """What never changes in a run, beside the drive.
 
-    Inertia number, support number, tolerance of a step, how far a state of an edge may be violated, and
-    the time at which to stop; then the step control, see `StepControl`; the drive and the method.
+    Inertia number, support number, the time at which to stop; whether the indenter is fixed, tolerance
+    of a step, how far a state of an edge may be violated.
     """
 
     eps: float
     kappa: float
+    end: float
     fixed: bool
     rtol: float
     allowed: float
-    end: float
-    first_step: float
-    longest: float
-    grow: float
-    straight: float
-    pieces: Any
+    control: StepControl
     method: Method
 
 
@@ -78,6 +74,7 @@ class Run(NamedTuple):
     """
 
     given: Given
+    pieces: Any
     now: Any
     counts: Any
     states: Any
@@ -90,45 +87,20 @@ class Run(NamedTuple):
 
 
 def begin(
-    drive: BaseMotion,
-    inertia_number: float,
-    support_number: float,
-    end: float,
-    rtol: float,
-    control: StepControl,
-    *,
-    arrays: bool = False,
+    drive: BaseMotion, numbers: tuple[float, float], end: float, rtol: float, control: StepControl
 ) -> Run:
-    """Return a run at rest: the stationary contact at d = 1."""
-    fixed = math.isinf(support_number)
-    stages = control.stages or stages_for(rtol)
-    pieces: Any = drive.rows if arrays else drive.pieces
+    """Return a run at rest: the stationary contact at d = 1; `numbers` are eps and kappa."""
+    eps, kappa = numbers
+    fixed, stages = math.isinf(kappa), control.stages or stages_for(rtol)
+    allowed = max(EVENT_SHARE * rtol, EVENT_FLOOR)
     given = Given(
-        inertia_number,
-        0.0 if fixed else support_number,
-        fixed,
-        rtol,
-        max(EVENT_SHARE * rtol, EVENT_FLOOR),
-        end,
-        *control[:-1],
-        pieces,
-        radau(stages, arrays),
-    )
-    rows: Any = _arrays if arrays else _lists
+        eps, 0.0 if fixed else kappa, end, fixed, rtol, allowed, control, radau(stages)
+    )  # fmt: skip
     small = [0.0] * 5, [0] * 9, [0.0] * 2, [0] * 2, [0.0] * 2
-    now, counts, states, tops, edges = map(np.array, small) if arrays else small
-    run = Run(
-        given,
-        now,
-        counts,
-        states,
-        tops,
-        edges,
-        rows(ROOM, h_.POWERS + 1 + stages),
-        rows(3 * ROOM, c_.SIZE),
-        rows(ROOM, 2),
-        rows(stages + 3, stages + 1),
-    )
+    sizes = (
+        (ROOM, h_.POWERS + 1 + stages), (3 * ROOM, c_.SIZE), (ROOM, 2), (stages + 3, stages + 1)
+    )  # fmt: skip
+    run = Run(given, drive.pieces, *small, *(_lists(*size) for size in sizes))
     rest(run)
     return run
 
@@ -163,18 +135,12 @@ def with_more_room(run: Run) -> Run:
 
 def as_arrays(run: Run) -> Run:
     """Return the run, however far it has come, with arrays for rows."""
-    given = run.given._replace(
-        pieces=np.array(run.given.pieces), method=radau(len(run.given.method.nodes), True)
-    )
+    given = run.given._replace(method=Method(*map(np.array, run.given.method)))
     return Run(given, *map(np.array, run[1:]))
 
 
 def _lists(count: int, size: int) -> list[list[float]]:
     return [[0.0] * size for _ in range(count)]
-
-
-def _arrays(count: int, size: int) -> Any:
-    return np.zeros((count, size))
 
 
 def _doubled(rows: Any) -> Any:

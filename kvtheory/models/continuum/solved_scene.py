@@ -11,14 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from kvtheory.models.continuum import evaluation, maxima
 from kvtheory.models.continuum.energy import Ledger, ledger
-from kvtheory.models.continuum.error_estimate import (
-    COMPARISON,
-    NOT_ASKED,
-    TIGHTER,
-    TIGHTEST,
-    certificate,
-    unknown,
-)
+from kvtheory.models.continuum.error_estimate import NOT_ASKED, certificate, methods, unknown
 from kvtheory.models.continuum.run import StepControl
 from kvtheory.models.continuum.solver import STATE_NAMES, STEP_LIMIT, Trajectory, solve
 from kvtheory.models.continuum.surface import height
@@ -29,9 +22,6 @@ from kvtheory.scene.model import Scene
 from kvtheory.scene.static_state import StaticState
 
 Array = NDArray[np.float64]
-
-LOOSEST = 1e-4
-"""Looser tolerances save no more steps."""
 
 AFTER_END = 1e-12
 """Share of the run by which a time may lie after its end, from rounding."""
@@ -94,29 +84,25 @@ class SolvedScene:
         """Return the scaled states at the times (s): a row for each quantity of `states`."""
         return self.motion.states(self.scaled(time)).T
 
-    def scaled(self, time: ArrayLike) -> Array:
-        """Return times in units of tau; the last one may be after the end, by rounding."""
-        return np.minimum(np.asarray(time, dtype=float) / self.units.time, self.motion.end)
-
     def pressure(self, x: ArrayLike, time: float) -> Array:
         """Return p in Pa at the positions `x` (m): K (d + d' - xi^2 - 2 lambda xi) in the contact."""
-        s = self._scaled(time)
-        moment, number = self.motion.at(s), self.drive.at(s)[1]
+        s = self.scaled(time)
+        moment = self.motion.at(s)
         xi = np.asarray(x, dtype=float) / self.units.half_length
-        p = moment.depth + moment.rate - xi * (xi + 2.0 * number)
+        p = moment.depth + moment.rate - xi * (xi + 2.0 * moment.number)
         inside = (moment.left <= xi) & (xi <= moment.right)  # false in flight, where both are NaN
         return np.where(inside, np.maximum(p, 0.0), 0.0) * self.units.pressure
 
     def surface(self, x: ArrayLike, time: float) -> Array:
         """Return the compression u in m of the foundation at the positions `x` (m)."""
         xi = np.asarray(x, dtype=float) / self.units.half_length
-        return height(self.motion, xi, self._scaled(time)) * self.units.depth
+        return height(self.motion, xi, self.scaled(time)) * self.units.depth
 
     def energy(self, time: ArrayLike) -> Ledger:
         """Return the energy ledger in J/m at the times (s)."""
-        return ledger(self.motion, self._scaled(time)).scaled(self.units.energy)
+        return ledger(self.motion, self.scaled(time)).scaled(self.units.energy)
 
-    def _scaled(self, time: Any) -> Any:
+    def scaled(self, time: Any) -> Any:
         """Return times in units of tau; those after the end by no more than rounding are the end."""
         s, end = np.asarray(time, dtype=float) / self.units.time, self.motion.end
         if not np.all((s >= 0.0) & (s <= end * (1.0 + AFTER_END))):
@@ -172,51 +158,31 @@ def certified(
     """
     units = StaticState.of(scene)
     drive = scaled_drive(scene, units)
-    rtol = min(rtol, LOOSEST)
+    first, second = methods(rtol)
 
-    def solved(part: int, tolerance: float, control: StepControl) -> SolvedScene:
+    def solved(part: int, tolerance: float, control: StepControl) -> Trajectory:
         def report(s: float) -> None:
             if progress is not None:
                 progress((part + s / drive.end) / (1 + certify))
 
-        return _solution(scene, units, drive, tolerance, control, report, max_steps)
+        return solve(
+            drive, units.inertia_number, units.support_number, drive.end, tolerance,
+            control=control, progress=report, max_steps=max_steps,
+        )  # fmt: skip
 
-    fine = solved(0, rtol, StepControl())
+    try:
+        fine = SolvedScene(solved(0, *first), drive, units)
+    except TransientError as error:
+        reason = f"{error.reason}, in a run of {drive.end:.4g} retardation times,"
+        raise TransientError(reason, error.s * units.time, "t", " s") from None
     time = fine.natural_times if times is None else np.asarray(times, dtype=float).reshape(-1)
     if not certify:
         return fine, time, unknown(NOT_ASKED)
     other = None
     with suppress(TransientError):  # a tighter solution may fail where this one did not
-        other = solved(1, max(rtol / TIGHTER, TIGHTEST), COMPARISON).motion
-    motion = fine.motion
-    s = motion.natural if times is None else fine.scaled(time)
-    return fine, time, certificate(motion, other, s, motion.rows_at(s), rtol)
-
-
-def _solution(
-    scene: Scene,
-    units: StaticState,
-    drive: BaseMotion,
-    rtol: float,
-    control: StepControl,
-    progress: Callable[[float], Any],
-    max_steps: int,
-) -> SolvedScene:
-    numbers = units.inertia_number, units.support_number
-    try:
-        motion = solve(
-            drive,
-            *numbers,
-            drive.end,
-            rtol,
-            control=control,
-            progress=progress,
-            max_steps=max_steps,
-        )
-    except TransientError as error:
-        reason = f"{error.reason}, in a run of {drive.end:.4g} retardation times,"
-        raise TransientError(reason, error.s * units.time, "t", " s") from None
-    return SolvedScene(motion, drive, units)
+        other = solved(1, *second)
+    s = fine.motion.natural if times is None else fine.scaled(time)
+    return fine, time, certificate(fine.motion, other, s)
 
 
 def left_leads(numbers: Array, drive: BaseMotion, s: Array) -> NDArray[np.bool_]:

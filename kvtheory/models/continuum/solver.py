@@ -9,7 +9,7 @@ of the edges that it began with. A fixed indenter, d = 1, needs no equation, onl
 
 import math
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, NamedTuple
 
@@ -46,10 +46,10 @@ class ScaledEvent(NamedTuple):
 class Moment(NamedTuple):
     """State at one time in scaled form; edges are NaN and states ``"free"`` in flight."""
 
-    s: float
     depth: float
     rate: float
     acceleration: float
+    number: float
     left: float
     right: float
     left_state: str
@@ -68,11 +68,17 @@ class Trajectory:
     `rows` is the finished run, with arrays for rows if its kernels were compiled.
     """
 
-    end: float
-    inertia_number: float
-    support_number: float
     rows: Run
-    compiled: bool
+
+    @property
+    def end(self) -> float:
+        """The time at which the motion ends."""
+        return float(self.rows.given.end)
+
+    @property
+    def compiled(self) -> bool:
+        """Whether the kernels were compiled, at last."""
+        return compiled.in_use(self.rows)
 
     @property
     def steps(self) -> int:
@@ -98,37 +104,33 @@ class Trajectory:
 
     def _memory(self) -> Iterator[ScaledEvent]:
         """Yield when an edge begins to touch ground that was touched before, and when it ceases to."""
-        records = np.array(self.rows.records[: self.steps])
-        left_at = np.array(self.rows.nodes)[:, c_.IN_S]
-        for name, state, node in (
-            ("left", h_.LEFT_STATE, h_.LEFT_NODE),
-            ("right", h_.RIGHT_STATE, h_.RIGHT_NODE),
-        ):
-            touched = left_at[records[:, node].astype(int)] > -math.inf
-            remembers = (records[:, state] == TOUCHING) & touched
-            for k in np.flatnonzero(np.diff(remembers, prepend=False)):
-                what = "begins" if remembers[k] else "ends"
-                yield ScaledEvent(float(records[k, h_.START]), f"memory {what} at the {name} edge")
+        records, left_at = np.array(self.records), np.array(self.nodes)[:, c_.IN_S]
+        for k, name in enumerate(("left", "right")):
+            state, node = records[:, [h_.LEFT_STATE + 2 * k, h_.LEFT_NODE + 2 * k]].T
+            remembers = (state == TOUCHING) & (left_at[node.astype(int)] > -math.inf)
+            for at in np.flatnonzero(np.diff(remembers, prepend=False)):
+                what = "begins" if remembers[at] else "ends"
+                yield ScaledEvent(float(records[at, h_.START]), f"memory {what} at the {name} edge")
 
     @cached_property
     def records(self) -> list[list[float]]:
         """The polynomials of the steps, as lists."""
-        return _lists(self.rows.records, self.steps)
+        return np.array(self.rows.records[: self.steps]).tolist()
 
     @cached_property
     def nodes(self) -> list[list[float]]:
         """What the edges left behind, as lists."""
-        return _lists(self.rows.nodes, self.rows.counts[r_.NODES])
+        return np.array(self.rows.nodes[: self.rows.counts[r_.NODES]]).tolist()
 
     @cached_property
     def pieces(self) -> list[list[float]]:
         """The pieces of the drive, as lists."""
-        return _lists(self.rows.given.pieces, len(self.rows.given.pieces))
+        return np.array(self.rows.pieces).tolist()
 
     @cached_property
     def starts(self) -> list[float]:
         """The times at which the steps begin."""
-        return [float(row[h_.START]) for row in self.rows.records[: self.steps]]
+        return [row[h_.START] for row in self.records]
 
     @cached_property
     def natural(self) -> NDArray[np.float64]:
@@ -138,20 +140,12 @@ class Trajectory:
         inner = (ends[:-1, None] + np.diff(ends)[:, None] * parts).reshape(-1)
         return np.unique(np.append(inner, self.end))
 
-    @property
-    def fixed(self) -> bool:
-        """Whether the indenter cannot move."""
-        return bool(self.rows.given.fixed)
-
     def at(self, s: float) -> Moment:
         """Return the state at `s`; where the drive jumps, just after the jump."""
         row = self.states([s])[0].tolist()
-        left, right = row[evaluation.LEFT_STATE], row[evaluation.RIGHT_STATE]
-        return Moment(
-            s, row[evaluation.DEPTH], row[evaluation.RATE], row[evaluation.ACCELERATION],
-            row[evaluation.LEFT], row[evaluation.RIGHT], STATE_NAMES[left], STATE_NAMES[right],
-            row[evaluation.NORMAL_FORCE], row[evaluation.FRICTION_FORCE],
-        )  # fmt: skip
+        for side in (evaluation.LEFT_STATE, evaluation.RIGHT_STATE):
+            row[side] = STATE_NAMES[row[side]]
+        return Moment(*row[: evaluation.PEAK_PRESSURE])
 
     def states(self, s: ArrayLike) -> NDArray[np.float64]:
         """Return the states at an array of times: a row for each, laid out as in `states`."""
@@ -162,9 +156,8 @@ class Trajectory:
 
     def rows_at(self, times: NDArray[np.float64]) -> Any:
         """Return the states at times within the motion, as rows for the kernels."""
-        found = self._room(times.size)
-        states = compiled.kernels().states if self.compiled else evaluation.states
-        states(times if self.compiled else times.tolist(), found, self.rows)
+        found = self._rows(np.empty((times.size, evaluation.SIZE)))
+        self._kernel(evaluation.states)(self._rows(times), found, self.rows)
         return found
 
     def deviations(
@@ -172,34 +165,33 @@ class Trajectory:
     ) -> list[float]:
         """Return how far another solution is from the states `found` at `times`, see `deviation`."""
         if self.compiled != other.compiled:
-            one, two = (replace(m, rows=as_arrays(m.rows), compiled=True) for m in (self, other))
-            return one.deviations(two, times, np.array(found))
+            one, two = (Trajectory(as_arrays(motion.rows)) for motion in (self, other))
+            return one.deviations(two, times, found)
         order = np.argsort(times, kind="stable")
-        ordered = found[order] if self.compiled else [found[i] for i in order]
-        times = times[order] if self.compiled else times[order].tolist()
-        deviations = compiled.kernels().deviations if self.compiled else deviation.deviations
-        worst = np.zeros(deviation.SIZE) if self.compiled else [0.0] * deviation.SIZE
-        deviations(times, ordered, self.rows, other.rows, self._room(2), worst)
+        times, ordered = self._rows(times[order]), self._rows(np.array(found)[order])
+        worst, room = (
+            self._rows(np.zeros(size)) for size in (deviation.SIZE, (2, evaluation.SIZE))
+        )
+        self._kernel(deviation.deviations)(times, ordered, self.rows, other.rows, room, worst)
         return [float(x) for x in worst]
 
     @cached_property
     def samples(self) -> tuple[Any, Any, int]:
         """Dense times and the states there, and how many they are, see `maxima`."""
         count = (maxima.SAMPLES + 1) * self.steps
-        times: Any = np.zeros(count) if self.compiled else [0.0] * count
-        found = self._room(count)
-        sample = compiled.kernels().sample if self.compiled else maxima.sample
-        return times, found, sample(self.rows, times, found)
+        times, found = (self._rows(np.empty(size)) for size in (count, (count, evaluation.SIZE)))
+        return times, found, self._kernel(maxima.sample)(self.rows, times, found)
 
     def largest(self, column: int, sense: int = maxima.LARGEST) -> tuple[float, float]:
         """Return when a column of the states is largest, and its value, see `maxima`."""
-        largest = compiled.kernels().largest if self.compiled else maxima.largest
-        s, value = largest(self.rows, *self.samples, column, sense, self._room(1)[0])
+        room = self._rows(np.empty(evaluation.SIZE))
+        s, value = self._kernel(maxima.largest)(self.rows, *self.samples, column, sense, room)
         return float(s), float(value)
 
     def settled(self, force: float, share: float) -> float:
         """Return since when the friction force is settled, see `maxima`."""
-        return float(maxima.settled(self.rows, *self.samples, force, share, self._room(1)[0]))
+        room = [0.0] * evaluation.SIZE
+        return float(maxima.settled(self.rows, *self.samples, force, share, room))
 
     @property
     def last(self) -> list[float]:
@@ -208,9 +200,11 @@ class Trajectory:
         maxima.last(*self.samples[1:], row)
         return row
 
-    def _room(self, count: int) -> Any:
-        size = evaluation.SIZE
-        return np.empty((count, size)) if self.compiled else [[0.0] * size for _ in range(count)]
+    def _kernel(self, function: Callable[..., Any]) -> Any:
+        return compiled.chosen(function, self.rows)
+
+    def _rows(self, array: NDArray[np.float64]) -> Any:
+        return array if self.compiled else array.tolist()
 
 
 def solve(
@@ -266,40 +260,21 @@ def solve(
         raise ValueError(
             "expected `inertia_number` > 0, `support_number` >= 0, 1e-13 <= `rtol` <= 1e-2"
         )
-    numbers = float(inertia_number), float(support_number)
-    arrays = compiled.worthwhile() if fast is None else fast
-    run = begin(drive, *numbers, float(end), rtol, control, arrays=arrays)
-    run, arrays = _followed(run, arrays, fast is None, progress, max_steps)
-    return Trajectory(end, inertia_number, support_number, run, arrays)
-
-
-def _followed(
-    run: Run,
-    arrays: bool,
-    may_compile: bool,
-    progress: Callable[[float], Any] | None,
-    limit: int,
-) -> tuple[Run, bool]:
-    """Walk a run to its end; return it, and whether its rows are arrays for compiled kernels."""
-    left, status = limit, stepping.PAUSED
+    run = begin(drive, (float(inertia_number), float(support_number)), float(end), rtol, control)
+    left, status = max_steps, stepping.PAUSED
     while status != stepping.DONE:
-        if may_compile and not arrays and compiled.worthwhile():
-            run, arrays = as_arrays(run), True
-        walk: Callable[[Run, int], int] = compiled.kernels().walk if arrays else stepping.walk
-        status = walk(run, min(ATTEMPTS, left))
-        before, left = left, limit - int(run.counts[r_.RECORDS] + run.counts[r_.REJECTED])
-        compiled.Tally.steps += 0 if arrays else before - left
+        if not compiled.in_use(run) and (compiled.worthwhile() if fast is None else fast):
+            run = as_arrays(run)
+        status = compiled.chosen(stepping.walk, run)(run, min(ATTEMPTS, left))
+        before, left = left, max_steps - int(run.counts[r_.RECORDS] + run.counts[r_.REJECTED])
+        compiled.Tally.steps += 0 if compiled.in_use(run) else before - left
         s = float(run.now[r_.S])
         if status in REASONS:
             raise TransientError(REASONS[status], s)
         if status == stepping.FULL:
             run = with_more_room(run)
         if left <= 0 and status != stepping.DONE:
-            raise TransientError(f"more than {limit} steps (`max_steps`)", s)
+            raise TransientError(f"more than {max_steps} steps (`max_steps`)", s)
         if progress is not None:
             progress(s)
-    return run, arrays
-
-
-def _lists(rows: Any, count: int) -> list[list[float]]:
-    return [[float(x) for x in row] for row in rows[:count]]
+    return Trajectory(run)

@@ -5,24 +5,13 @@ from typing import Any
 
 from kvtheory.models.continuum import contact as c_
 from kvtheory.models.continuum import dense_output as h_
+from kvtheory.models.continuum import memory_chains as m_
 from kvtheory.models.continuum import run as r_
 from kvtheory.models.continuum.contact import FREE, PEELING, TOUCHING
 from kvtheory.models.continuum.dense_output import motion
-from kvtheory.models.continuum.memory_chains import (
-    free_row,
-    land,
-    leave,
-    push,
-    push_strip,
-    set_end,
-    trim,
-)
 from kvtheory.models.continuum.run import SIDES, Run, has_room
 from kvtheory.models.continuum.trial_step import Monitors, attempt, drive_now
-from kvtheory.scene.base_motion import END as PIECE_END
-from kvtheory.scene.base_motion import POWERS as PIECE_POWERS
-from kvtheory.scene.base_motion import START as PIECE_START
-from kvtheory.scene.base_motion import evaluate
+from kvtheory.scene import base_motion as b_
 
 SAFETY = 0.9
 SHORTEST = 1e-14
@@ -51,13 +40,9 @@ a step length of zero; without a consistent state of the edges."""
 
 PEELS, TOUCHES, CROSSES, TAKE_OFF, LANDING = 0.0, 2.0, 4.0, 6.0, 7.0
 """Kinds of events, those of the left edge; the right edge adds 1."""
+CHANGES = "peels", "touches", "crosses to older ground"
 KINDS = (
-    "left edge peels",
-    "right edge peels",
-    "left edge touches",
-    "right edge touches",
-    "left edge crosses to older ground",
-    "right edge crosses to older ground",
+    *(f"{side} edge {what}" for what in CHANGES for side in ("left", "right")),
     "take-off",
     "landing",
 )
@@ -72,7 +57,7 @@ def walk(run: Run, attempts: int) -> int:
                 return FULL
             _meet_drive(run)
             run.counts[r_.MET] = 1
-        until = min(run.given.pieces[run.counts[r_.PIECE]][PIECE_END], run.given.end)
+        until = min(run.pieces[run.counts[r_.PIECE]][b_.END], run.given.end)
         if now[r_.S] >= run.given.end:
             return DONE
         if now[r_.S] >= until:
@@ -93,7 +78,7 @@ def _meet_drive(run: Run) -> None:
     Y, number, slope = drive_now(run, now[r_.S])
     last = last_slope = 0.0
     if index > 0:
-        _, last, last_slope = evaluate(run.given.pieces[index - 1], now[r_.S])
+        _, last, last_slope = b_.evaluate(run.pieces[index - 1], now[r_.S])
     jumps = abs(number - last) > SMOOTH * (1.0 + abs(number))
     if jumps or abs(slope - last_slope) > SMOOTH * (1.0 + abs(slope)):
         now[r_.KINK] = now[r_.S]
@@ -138,14 +123,13 @@ def _detach(run: Run, Y: float, number: float) -> None:
     if left >= right:
         _leave(run, Y)
         return
-    for k in range(2):
-        X = right if k else left
+    for k, X in enumerate((left, right)):
         if run.edges[k] != X:
             if run.states[k] == TOUCHING:
-                trim(run, k, Y)
+                m_.trim(run, k, Y)
                 _note(run, PEELS + k)
             run.states[k] = PEELING
-            push_strip(run, k, X, run.edges[k], Y)
+            m_.push_strip(run, k, X, run.edges[k], Y)
             run.edges[k] = X
 
 
@@ -157,7 +141,7 @@ def _restart(run: Run) -> None:
     fast = 1.0
     if not run.given.fixed:
         fast = run.given.eps / (run.given.eps + 0.75 * max(width, 1e-3))
-    span = run.given.first_step * fast / (1.0 + abs(number))
+    span = run.given.control.first_step * fast / (1.0 + abs(number))
     now[r_.SPAN], run.counts[r_.SMOOTH] = max(span, SHORTEST * (1.0 + now[r_.S])), 0
 
 
@@ -178,15 +162,14 @@ def _step(run: Run, until: float) -> int:
     if whole - span < 0.1 * OVERRUN * span:
         span = whole
     record = run.records[run.counts[r_.RECORDS]]
-    _begin(run, record, span)
-    size, found, violated = attempt(run, record)
+    size, found, violated = attempt(run, record, span)
     until_event = found - now[r_.S]
     if BRIEF * (1.0 + now[r_.S]) < until_event < span / (1.0 + OVERRUN):
         run.counts[r_.REJECTED] += 1
         now[r_.SPAN] = _share(run, until_event) * (1.0 + 0.5 * OVERRUN) * until_event
         return DONE
     power = -1.0 / (len(run.given.method.nodes) + 1)
-    factor = min(run.given.grow, max(SHRINK, SAFETY * math.pow(max(size, TINY), power)))
+    factor = min(run.given.control.grow, max(SHRINK, SAFETY * math.pow(max(size, TINY), power)))
     if size > 1.0:
         run.counts[r_.REJECTED] += 1
         now[r_.SPAN] = span * factor
@@ -208,8 +191,8 @@ def _share(run: Run, way: float) -> float:
 
     Not all of it if the motion began anew, by an event or on another piece, or if the way is long.
     """
-    now, straight = run.now, run.given.straight
-    at_piece = now[r_.S] == run.given.pieces[run.counts[r_.PIECE]][PIECE_START]
+    now, straight = run.now, run.given.control.straight
+    at_piece = now[r_.S] == run.pieces[run.counts[r_.PIECE]][b_.START]
     if not at_piece and run.counts[r_.SMOOTH] != 0 and run.counts[r_.TOGGLES] == 0:
         left = (1.0 - straight) * run.records[run.counts[r_.RECORDS] - 1][h_.SPAN]
         if straight * way <= REMAINDER * left:
@@ -218,65 +201,49 @@ def _share(run: Run, way: float) -> float:
 
 
 def _longest(run: Run) -> float:
-    now = run.now
+    now, longest = run.now, run.given.control.longest
     if run.states[0] != FREE:
-        return math.inf if _quiet(run) else run.given.longest
-    _, number, _ = drive_now(run, now[r_.S])
-    slide = RELIEF / (RELIEF + abs(number))
-    if now[r_.D] >= 0.0:
-        return min(run.given.longest, slide)
-    return min(run.given.longest, max(slide, -0.5 * now[r_.D] / (abs(now[r_.V]) + 1e-3)))
+        return math.inf if _quiet(run) else longest
+    slide = RELIEF / (RELIEF + abs(drive_now(run, now[r_.S])[1]))
+    if now[r_.D] < 0.0:
+        slide = max(slide, -0.5 * now[r_.D] / (abs(now[r_.V]) + 1e-3))
+    return min(longest, slide)
 
 
 def _quiet(run: Run) -> bool:
     """Whether nothing happens any more: steady sliding or rest, over ground that has been forgotten."""
-    counts, piece = run.counts, run.given.pieces[run.counts[r_.PIECE]]
-    changed = max(piece[PIECE_START], 0.0)
+    counts, piece = run.counts, run.pieces[run.counts[r_.PIECE]]
+    changed = max(piece[b_.START], 0.0)
     if counts[r_.EVENTS] > 0:
         changed = max(changed, run.events[counts[r_.EVENTS] - 1][0])
     if counts[r_.SMOOTH] == 0 or run.now[r_.S] - changed < FORGOTTEN:
         return False
-    slope = rate = 0.0
-    for k in range(PIECE_POWERS + 1, len(piece)):
-        slope = max(slope, abs(piece[k]))
+    for k in range(b_.POWERS + 1, len(piece)):
+        if piece[k] != 0.0:
+            return False
     record = run.records[counts[r_.RECORDS] - 1]
+    rate = 0.0
     for k in range(h_.POWERS, len(record)):
         rate = max(rate, abs(record[k]))
-    return slope == 0.0 and rate <= QUIET * run.given.rtol
-
-
-def _begin(run: Run, record: Any, span: float) -> None:
-    """Begin a record: a step of the length `span`, its powers of v still zero."""
-    now = run.now
-    record[h_.START], record[h_.SPAN] = now[r_.S], span
-    record[h_.DEPTH], record[h_.PIECE] = now[r_.D], run.counts[r_.PIECE]
-    record[h_.LEFT_STATE], record[h_.LEFT_NODE] = run.states[0], run.tops[0]
-    record[h_.RIGHT_STATE], record[h_.RIGHT_NODE] = run.states[1], run.tops[1]
-    record[h_.LEFT_X], record[h_.RIGHT_X] = run.edges[0], run.edges[1]
-    record[h_.POWERS] = now[r_.V]
-    for i in range(h_.POWERS + 1, len(record)):
-        record[i] = 0.0
+    return rate <= QUIET * run.given.rtol
 
 
 def _commit(run: Run, record: Any, end: float) -> None:
     """Keep `record` up to `end`, and what the peeling edges swept meanwhile."""
     now = run.now
     Y_0, _, _ = drive_now(run, now[r_.S])
-    d, v, _ = motion(record, end)
-    Y, number, _ = drive_now(run, end)
+    then = motion(record, end) + drive_now(run, end)
+    d, v, _, Y, _, _ = then
     index = run.counts[r_.RECORDS]
     run.counts[r_.RECORDS] += 1
     if run.states[0] != FREE:
         for k in range(2):
-            xi, _, node = c_.edge(
-                SIDES[k], run.states[k], run.tops[k], end, d, v, Y, number,
-                run.nodes, run.records, run.given.pieces,
-            )  # fmt: skip
+            xi, _, node = c_.edge(run, SIDES[k], run.states[k], run.tops[k], end, then)
             if run.states[k] == PEELING:
-                row = run.nodes[free_row(run)]
-                set_end(row, c_.IN_X, xi - Y, end, d, Y)
-                set_end(row, c_.OUT_X, run.edges[k], now[r_.S], now[r_.D], Y_0)
-                push(run, k, index, SIDES[k])
+                row = run.nodes[m_.free_row(run)]
+                m_.set_end(row, c_.IN_X, xi - Y, end, d, Y)
+                m_.set_end(row, c_.OUT_X, run.edges[k], now[r_.S], now[r_.D], Y_0)
+                m_.push(run, k, index, SIDES[k])
             else:
                 run.tops[k] = node
             run.edges[k] = xi - Y
@@ -291,7 +258,7 @@ def _change(run: Run, violated: Monitors) -> int:
         return INCONSISTENT
     Y, _, _ = drive_now(run, now[r_.S])
     if run.states[0] == FREE:
-        land(run, Y)
+        m_.land(run, Y)
         _note(run, LANDING)
         _restart(run)
     elif violated[0] < 0.0:
@@ -315,7 +282,7 @@ def _change_side(run: Run, k: int, Y: float) -> None:
     if SIDES[k] * (run.edges[k] + Y + drive_now(run, now[r_.S])[1]) <= 0.0:
         _leave(run, Y)  # the pressure fell to zero at the root of the other side
         return
-    trim(run, k, Y)
+    m_.trim(run, k, Y)
     run.states[k] = PEELING
     _note(run, PEELS + k)
 
@@ -326,6 +293,6 @@ def _turn(run: Run, k: int) -> None:
 
 
 def _leave(run: Run, Y: float) -> None:
-    leave(run, Y)
+    m_.leave(run, Y)
     _note(run, TAKE_OFF)
     _restart(run)

@@ -1,6 +1,5 @@
 """The surface of the foundation at any time: under the indenter, and where it relaxes (fact F8)."""
 
-import bisect
 import math
 from collections.abc import Callable, Iterator, Sequence
 from typing import Any
@@ -36,13 +35,9 @@ ROUNDING = 1e-15
 """Of an edge in units of 1 + |Y|, for it is kept as X = xi - Y."""
 
 
-def chain(motion: Trajectory, k: int, s: float) -> Iterator[list[float]]:
-    """Yield the nodes of ground that was touched, outward from the left edge (k = 0) or the right.
-
-    The first node begins at the edge: in sigma, X, d and Y.
-    """
-    now = motion.at(s)
-    front, node = _front(motion, k, s, (now.left, now.right)[k])
+def _chain(motion: Trajectory, k: int, s: float, edge: float) -> Iterator[list[float]]:
+    """Yield the nodes of ground that was touched, outward from an edge, where the first one begins."""
+    front, node = _front(motion, k, s, edge)
     yield from front
     while node >= 0:
         row = list(motion.nodes[node])
@@ -56,37 +51,28 @@ def _front(motion: Trajectory, k: int, s: float, edge: float) -> tuple[list[list
 
     `edge` is xi of the edge at `s`.
     """
-    index, (d, v, _, Y, number, _) = present(motion, s)
+    index = evaluation.record_at(motion.rows, s)
+    d, v, _, Y, number, _ = instant(motion, index, s)
     record, side = motion.records[index], SIDES[k]
     state, top = record[h_.LEFT_STATE + 2 * k], int(record[h_.LEFT_NODE + 2 * k])
     X = record[h_.LEFT_X + k]
     if state == c_.FREE or (state == c_.PEELING and s == record[h_.START]):
         return [], top
     if state == c_.PEELING:
-        then = instant(motion.records, motion.pieces, index, record[h_.START])
+        then = instant(motion, index, record[h_.START])
         now = [c_.root(side, number, d + v)[0] - Y, s, d, Y]
         return [[*now, X, record[h_.START], then[0], then[3], float(index), side]], top
     if motion.nodes[top][c_.IN_S] < s:  # else it was left just now
-        top = c_.reached(side, top, s, d, Y, motion.nodes)
+        top = c_.reached(motion, side, top, s, d, Y)
     row = list(motion.nodes[top])
     if s > record[h_.START]:
         X = edge - Y
     if row[c_.IN_S] == -math.inf:
         return [], top
     if row[c_.RECORD] >= 0.0 and row[c_.IN_S] < s:
-        row[c_.IN_S], row[c_.IN_D], row[c_.IN_Y] = c_.sweep(
-            side, row, s, d, Y, motion.records, motion.pieces
-        )
+        row[c_.IN_S], row[c_.IN_D], row[c_.IN_Y] = c_.sweep(motion, side, row, s, d, Y)
     row[c_.IN_X] = X
     return [row], int(row[c_.NEXT])
-
-
-def present(
-    motion: Trajectory, s: float
-) -> tuple[int, tuple[float, float, float, float, float, float]]:
-    """Return the record that holds at `s`, and d, v, v', Y, lambda, lambda' from it."""
-    index = bisect.bisect_right(motion.starts, s) - 1
-    return index, instant(motion.records, motion.pieces, index, s)
 
 
 def height(motion: Trajectory, xi: ArrayLike, s: float) -> Array:
@@ -104,13 +90,13 @@ def height(motion: Trajectory, xi: ArrayLike, s: float) -> Array:
     >>> height(motion, [-1.0, 0.0, 1.0, 3.0], 1.0).round(6)
     array([0.      , 0.307843, 0.23703 , 0.23551 ])
     """
-    now, (_, (*_, Y, _, _)) = motion.at(s), present(motion, s)
+    now, Y = motion.at(s), instant(motion, evaluation.record_at(motion.rows, s), s)[3]
     xi = np.asarray(xi, dtype=float)
     X, slack = xi - Y, ROUNDING * (1.0 + abs(Y))
     inside = (now.left - slack <= xi) & (xi <= now.right + slack)  # false in flight: edges are NaN
     u = np.where(inside, now.depth - xi * xi, 0.0)
-    for k in range(2):
-        for row in chain(motion, k, s):
+    for k, edge in enumerate((now.left, now.right)):
+        for row in _chain(motion, k, s, edge):
             here = (X - row[c_.IN_X]) * (X - row[c_.OUT_X]) <= 0.0
             if here.any():
                 u[here] = np.maximum(u[here], _left(motion, row, X[here], s))

@@ -7,8 +7,8 @@ from kvtheory.models.continuum import contact as c_
 from kvtheory.models.continuum import dense_output as h_
 from kvtheory.models.continuum import run as r_
 from kvtheory.models.continuum.contact import FREE, TOUCHING
-from kvtheory.models.continuum.dense_output import motion
-from kvtheory.models.continuum.flight import summit
+from kvtheory.models.continuum.dense_output import Instant, motion
+from kvtheory.models.continuum.memory_chains import summit
 from kvtheory.models.continuum.radau_iia import collocate, defect_error, imbalance
 from kvtheory.models.continuum.run import SIDES, Run
 from kvtheory.scene.base_motion import evaluate
@@ -26,27 +26,25 @@ NO_EVENT = (math.inf, math.inf, math.inf, math.inf, math.inf)
 
 def drive_now(run: Run, s: float) -> tuple[float, float, float]:
     """Return Y, lambda, lambda' of the present piece of the drive."""
-    return evaluate(run.given.pieces[run.counts[r_.PIECE]], s)
+    return evaluate(run.pieces[run.counts[r_.PIECE]], s)
 
 
-def attempt(run: Run, record: Any) -> tuple[float, float, Monitors]:
+def attempt(run: Run, record: Any, span: float) -> tuple[float, float, Monitors]:
     """Return the error of a step by its tolerance, infinite if it failed, and its first event.
 
     The event is given by its time, infinite if there is none, and the monitors just after it.
     """
-    start, span = record[h_.START], record[h_.SPAN]
+    _begin(run, record, span)
+    start = run.now[r_.S]
     if not run.given.fixed:
         evaluations = _solve(run, record)
         run.counts[r_.EVALUATIONS] += evaluations
         if evaluations == 0:
             return math.inf, math.inf, NO_EVENT
     size, before, found_after, found = 0.0, start, start, math.inf
-    for probe in range(len(run.given.method.probes) + 1):
-        s = (
-            start
-            + (run.given.method.probes[probe] if probe < len(run.given.method.probes) else 1.0)
-            * span
-        )
+    probes = run.given.method.probes
+    for probe in range(len(probes) + 1):
+        s = start + (probes[probe] if probe < len(probes) else 1.0) * span
         slack, error = _probe(run, record, s, probe)
         size = max(size, error)
         if math.isnan(slack):
@@ -60,6 +58,19 @@ def attempt(run: Run, record: Any) -> tuple[float, float, Monitors]:
     return size, found, violated
 
 
+def _begin(run: Run, record: Any, span: float) -> None:
+    """Begin a record: a step of the length `span`, its powers of v still zero."""
+    now = run.now
+    record[h_.START], record[h_.SPAN] = now[r_.S], span
+    record[h_.DEPTH], record[h_.PIECE] = now[r_.D], run.counts[r_.PIECE]
+    record[h_.LEFT_STATE], record[h_.LEFT_NODE] = run.states[0], run.tops[0]
+    record[h_.RIGHT_STATE], record[h_.RIGHT_NODE] = run.states[1], run.tops[1]
+    record[h_.LEFT_X], record[h_.RIGHT_X] = run.edges[0], run.edges[1]
+    record[h_.POWERS] = now[r_.V]
+    for i in range(h_.POWERS + 1, len(record)):
+        record[i] = 0.0
+
+
 def _solve(run: Run, record: Any) -> int:
     now, stages = run.now, len(run.given.method.nodes)
     guess = run.matrix[stages]
@@ -69,22 +80,18 @@ def _solve(run: Run, record: Any) -> int:
             last = run.records[run.counts[r_.RECORDS] - 1]
             s = now[r_.S] + run.given.method.nodes[i] * record[h_.SPAN]
             guess[i] = motion(last, s)[1] - now[r_.V]
-    return collocate(
-        record, run.given.eps, run.given.kappa, run.given.rtol,
-        run.nodes, run.records, run.given.pieces, run.given.method, run.matrix,
-    )  # fmt: skip
+    return collocate(run, record)
 
 
 def _probe(run: Run, record: Any, s: float, probe: int) -> tuple[float, float]:
     """Return the slack of all states at `s`, and the error there by the tolerance."""
-    now = run.now
     values, F, F_d, F_v, dv = monitors(run, record, s)
     if run.given.fixed or probe >= len(run.given.method.probes):
         return smallest(values), 0.0
     run.counts[r_.EVALUATIONS] += 1
     scales = run.given.method.scales[probe]
-    error = defect_error(record[h_.SPAN], run.given.eps, F_d, F_v, run.given.eps * dv, F, scales)
-    return smallest(values), error / (run.given.rtol * (1.0 + abs(now[r_.V])))
+    error = defect_error(record[h_.SPAN], run.given.eps, dv, F, F_d, F_v, scales)
+    return smallest(values), error / (run.given.rtol * (1.0 + abs(run.now[r_.V])))
 
 
 def smallest(values: Monitors) -> float:
@@ -97,22 +104,16 @@ def smallest(values: Monitors) -> float:
 
 def monitors(run: Run, record: Any, s: float) -> tuple[Monitors, float, float, float, float]:
     """Return what must stay positive, and F, dF/dd, dF/dv and v'."""
-    d, v, dv = motion(record, s)
-    Y, number, slope = drive_now(run, s)
+    now = motion(record, s) + drive_now(run, s)
+    d, v, dv, Y, number, _ = now
     allowed = run.given.allowed + ROUNDING * (abs(Y) + s * (abs(number) + abs(v)))
     sides = record[h_.LEFT_STATE : h_.LEFT_X]
-    F, F_d, F_v, l, r = imbalance(
-        s, d, v, Y, number, sides, run.given.kappa, run.nodes, run.records, run.given.pieces
-    )
+    F, F_d, F_v, l, r = imbalance(run, sides, s, now)
     if sides[0] == FREE:
-        gap = -d
-        if d >= 0.0:
-            left, right = run.tops[0], run.tops[1]
-            gap = -summit(s, d, Y, left, right, run.nodes, run.records, run.given.pieces)[0]
+        gap = -d if d < 0.0 else -summit(run, s, d, Y)[0]
         return (gap + allowed, math.inf, math.inf, math.inf, math.inf), F, F_d, F_v, dv
-    instant = d, v, dv, Y, number, slope
-    left_state, left_ground = _slack(run, 0, s, l, instant)
-    right_state, right_ground = _slack(run, 1, s, r, instant)
+    left_state, left_ground = _slack(run, 0, s, l, now)
+    right_state, right_ground = _slack(run, 1, s, r, now)
     values = (
         r - l + allowed,
         left_state + allowed,
@@ -123,13 +124,11 @@ def monitors(run: Run, record: Any, s: float) -> tuple[Monitors, float, float, f
     return values, F, F_d, F_v, dv
 
 
-def _slack(
-    run: Run, k: int, s: float, xi: float, instant: tuple[float, float, float, float, float, float]
-) -> tuple[float, float]:
+def _slack(run: Run, k: int, s: float, xi: float, now: Instant) -> tuple[float, float]:
     state, node = run.states[k], run.tops[k]
     if state == TOUCHING:
-        node = c_.reached(SIDES[k], node, s, instant[0], instant[3], run.nodes)
-    return c_.slack(SIDES[k], state, run.nodes[node], s, xi, instant)
+        node = c_.reached(run, SIDES[k], node, s, now[0], now[3])
+    return c_.slack(SIDES[k], state, run.nodes[node], s, xi, now)
 
 
 def _locate(run: Run, record: Any, low: float, high: float) -> tuple[float, Monitors]:
