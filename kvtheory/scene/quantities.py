@@ -52,7 +52,7 @@ class Quantity:
         """Whether every `value` (in SI) is finite and in range."""
         if isinstance(value, float):  # the most frequent, and NumPy takes ten times as long for it
             above = value > self.minimum if self.exclusive else value >= self.minimum
-            return math.isfinite(value) and above
+            return math.isfinite(value) and above and value < self.below
         value = np.asarray(value)
         above = value > self.minimum if self.exclusive else value >= self.minimum
         return bool(np.all(np.isfinite(value) & above & (value < self.below)))
