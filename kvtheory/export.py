@@ -3,7 +3,7 @@
 import csv
 import json
 import os
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -47,35 +47,26 @@ def save_csv(result: Any, path: Path) -> None:
 
 def save_compared(comparison: Comparison, path: Path) -> None:
     """Write data, theory and what is allowed between them, with units in the header."""
-    columns = {"time [s]": comparison.series["time"]}
-    for name in comparison.allowed:
-        for kind in COMPARED:
-            columns[f"{name}, {kind} [{TRANSIENT_UNITS[name]}]"] = _compared(comparison, kind)[name]
-    _write_columns(path, columns)
+    curves = {f"{name}, {kind} [{unit}]": curve for name, kind, unit, curve in _curves(comparison)}
+    _write_columns(path, {"time [s]": comparison.series["time"], **curves})
 
 
 def compared(comparison: Comparison) -> Any:
     """Return a comparison as an `xarray.Dataset` with units."""
     data = {
-        f"{name}, {kind}": (
-            ("time",),
-            _compared(comparison, kind)[name],
-            {"units": TRANSIENT_UNITS[name]},
-        )
-        for name in comparison.allowed
-        for kind in COMPARED
+        f"{name}, {kind}": (("time",), curve, {"units": unit})
+        for name, kind, unit, curve in _curves(comparison)
     }
     attributes = {"verdict": comparison.verdict, "diagnosis": comparison.diagnosis}
     return _xarray().Dataset(data, {"time": comparison.series["time"]}, attributes)
 
 
-COMPARED = ("data", "theory", "allowed")
-"""What a comparison holds of each curve."""
-
-
-def _compared(comparison: Comparison, kind: str) -> Mapping[str, Any]:
-    held: Mapping[str, Any] = getattr(comparison, {"data": "series"}.get(kind, kind))
-    return held
+def _curves(comparison: Comparison) -> Iterator[tuple[str, str, str, Any]]:
+    """Yield name, kind, unit and values of all that a comparison holds."""
+    held = {"data": "series", "theory": "theory", "allowed": "allowed"}
+    for name in comparison.allowed:
+        for kind, attribute in held.items():
+            yield name, kind, TRANSIENT_UNITS[name], getattr(comparison, attribute)[name]
 
 
 def _write_columns(path: Path, columns: Mapping[str, Any]) -> None:

@@ -83,8 +83,10 @@ class Steps:
         self._zero(ends[1] - ends[0] - self._put(value), f"{lhs} = {value}")
         self.rules[sp.sympify(lhs)] = value
 
-    def root(self, expr: Expr, variable: Expr, value: Expr) -> None:
-        """Check that the expression vanishes there."""
+    def root(self, expr: Expr, variable: Expr, value: Expr, name: Expr | None = None) -> None:
+        """Check that the expression vanishes there; the root may have a name of its own."""
+        if name is not None:
+            self.given(name, value)
         there = self._put(expr).subs(variable, self._put(value))
         self._zero(there, f"{expr} = 0 at {variable} = {value}")
 

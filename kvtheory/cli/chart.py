@@ -6,9 +6,18 @@ from pathlib import Path
 
 import click
 
-from kvtheory.cli.console import Examples, print_json, print_table, progress_bar, split, teaching
+from kvtheory.cli.console import (
+    Examples,
+    json_option,
+    print_json,
+    print_table,
+    progress_bar,
+    scene_options,
+    split,
+    teaching,
+)
 from kvtheory.cli.group import main
-from kvtheory.cli.outputs import PICTURES, check_output, overwrite_option
+from kvtheory.cli.outputs import PICTURES, check_output, overwrite_option, path_option
 
 THREADS = "OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"
 """Set to one before anything numerical is imported, so that times can be compared."""
@@ -26,17 +35,11 @@ def chart() -> None:
 
 
 @chart.command(cls=Examples, example="kvtheory chart failures -o failures.html")
-@click.option(
-    "--only", default=None, metavar="KEY,...", help="Entries to compute; default: all of them."
+@click.option("--only", metavar="KEY,...", help="Entries to compute; default: all of them.")
+@path_option(
+    "-o", "--output", help="Write FILE.html, which holds all of it and needs nothing else."
 )
-@click.option(
-    "-o",
-    "--output",
-    type=click.Path(path_type=Path),
-    default=None,
-    help="Write FILE.html, which holds all of it and needs nothing else.",
-)
-@click.option("--json", "as_json", is_flag=True, help="Print one JSON object, in SI units.")
+@json_option
 @overwrite_option
 @teaching
 def failures(only: str | None, output: Path | None, as_json: bool) -> None:
@@ -59,10 +62,9 @@ def failures(only: str | None, output: Path | None, as_json: bool) -> None:
         return
     from kvtheory.plots.failures import shown
 
-    heads = ("entry", "quantity", "wrong", "right", "this package")
     roles = ("wrong", "right", "package")
     print_table(
-        heads,
+        ("entry", "quantity", "wrong", "right", "this package"),
         [(f.entry.key, f.entry.quantity, *(shown(f, role) for role in roles)) for f in found],
     )
     for finding in found if only else []:
@@ -75,9 +77,9 @@ def failures(only: str | None, output: Path | None, as_json: bool) -> None:
 
 
 @chart.command(cls=Examples, example="kvtheory chart stability -o stability.png")
-@click.option(
-    "-o", "--output", type=click.Path(path_type=Path), default=Path("stability.png"),
-    show_default=True, help="Picture; its data go to FILE.json beside it.",
+@path_option(
+    "-o", "--output", default=Path("stability.png"), show_default=True,
+    help="Picture; its data go to FILE.json beside it.",
 )  # fmt: skip
 @click.option("--quick", is_flag=True, help="Coarser maps.")
 @overwrite_option
@@ -99,20 +101,16 @@ def stability(output: Path, quick: bool) -> None:
     cls=Examples,
     example="kvtheory chart work-precision my-scene.toml --quick -o speed.png",
 )
-@click.argument("scene", required=False, type=click.Path(exists=True, dir_okay=False))
+@scene_options
 @click.option(
-    "--set", "overrides", multiple=True, metavar="KEY=VALUE",
-    help='Override a key of the scene, such as drive.velocity="50 mm/s"; repeatable.',
-)  # fmt: skip
-@click.option(
-    "--standard", default=None, metavar="NAME,...",
+    "--standard", metavar="NAME,...",
     help="Instead of a scene: table-1, low-velocity, high-velocity, small-inertia, stop-and-go, "
     "reversal, hop, or all.",
 )  # fmt: skip
 @click.option("--quick", is_flag=True, help="Fewer settings and repeats: some 15 s for a scene.")
-@click.option(
-    "-o", "--output", type=click.Path(path_type=Path), default=Path("work_precision.png"),
-    show_default=True, help="Picture, or a directory for it; its data go to FILE.json beside it.",
+@path_option(
+    "-o", "--output", default=Path("work_precision.png"), show_default=True,
+    help="Picture, or a directory for it; its data go to FILE.json beside it.",
 )  # fmt: skip
 @overwrite_option
 @teaching
@@ -139,7 +137,5 @@ def work_precision(
     click.echo(f"{output}\n{output.with_suffix('.json')}")
     for one in charts:
         (error,) = default_errors([one])
-        references = " and ".join(one.reference)
-        click.echo(
-            f"{one.name}: {references} agree on {error.split(',')[0]} to {one.floor[error]:.1e}"
-        )
+        references, what = " and ".join(one.reference), error.split(",")[0]
+        click.echo(f"{one.name}: {references} agree on {what} to {one.floor[error]:.1e}")

@@ -83,20 +83,25 @@ def scene_command(
     """Declare a command on an optional scene file, with `--set` and `--json`."""
 
     def decorate(function: Callable[..., None]) -> click.Command:
-        command = teaching(function)
-        command = click.option(
-            "--json", "as_json", is_flag=True, help="Print one JSON object, in SI units."
-        )(command)
-        command = click.option(
-            "--set", "overrides", multiple=True, metavar="KEY=VALUE",
-            help='Override a key of the scene, such as drive.velocity="50 mm/s"; repeatable.',
-        )(command)  # fmt: skip
-        command = click.argument(
-            "scene", required=False, type=click.Path(exists=True, dir_okay=False)
-        )(command)
+        command = scene_options(json_option(teaching(function)))
         return group.command(cls=Examples, example=example)(command)
 
     return decorate
+
+
+def scene_options(command: Callable[..., Any]) -> Callable[..., Any]:
+    """Give a command an optional scene file, and `--set`."""
+    command = click.option(
+        "--set", "overrides", multiple=True, metavar="KEY=VALUE",
+        help='Override a key of the scene, such as drive.velocity="50 mm/s"; repeatable.',
+    )(command)  # fmt: skip
+    path = click.Path(exists=True, dir_okay=False)
+    return click.argument("scene", required=False, type=path)(command)
+
+
+json_option = click.option(
+    "--json", "as_json", is_flag=True, help="Print one JSON object, in SI units."
+)
 
 
 @contextmanager
@@ -146,18 +151,25 @@ def print_series(result: Any, *, whole: bool) -> None:
     """Print a time series for people: every row, or about twenty of them with both ends."""
     from kvtheory.results import SHOWN_UNITS, TRANSIENT_UNITS
 
-    count, most = result.time.size, 21
-    rows = (
-        range(count)
-        if whole
-        else sorted({round(i * (count - 1) / (most - 1)) for i in range(most)})
-    )
-    names = [name for name in TRANSIENT_UNITS if name != "depth_rate"]
+    last = result.time.size - 1
+    rows = range(last + 1) if whole else sorted({round(i * last / 20) for i in range(21)})
+    units = {name: unit for name, unit in TRANSIENT_UNITS.items() if name != "depth_rate"}
     print_table(
-        [f"{name} [{SHOWN_UNITS[TRANSIENT_UNITS[name]][0]}]" for name in names],
+        [f"{name} [{SHOWN_UNITS[unit][0]}]" for name, unit in units.items()],
+        [[shown(getattr(result, name)[i], unit)[0] for name, unit in units.items()] for i in rows],
+    )
+
+
+def print_steady(result: Any, names: Iterable[str]) -> None:
+    """Print some quantities of steady sliding with their errors."""
+    from kvtheory.results import STEADY_UNITS
+
+    errors = result.certificate.relative_error
+    print_table(
+        ("quantity", "value", "unit", "relative error"),
         [
-            [shown(getattr(result, name)[i], TRANSIENT_UNITS[name])[0] for name in names]
-            for i in rows
+            (name, *shown(getattr(result, name), STEADY_UNITS[name]), f"{errors[name]:.1e}")
+            for name in names
         ],
     )
 
@@ -167,6 +179,4 @@ def print_table(heads: Sequence[str], rows: Iterable[Sequence[str]]) -> None:
     table = [heads, *rows]
     widths = [max(len(row[i]) for row in table) for i in range(len(heads))]
     for row in table:
-        click.echo(
-            "  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip()
-        )
+        click.echo("  ".join(map(str.ljust, row, widths)).rstrip())

@@ -2,12 +2,13 @@
 
 from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 
 import click
 
-from kvtheory.cli.console import print_json, print_series, progress_bar, scene_command
+from kvtheory.cli.console import print_series, progress_bar, scene_command
 from kvtheory.cli.group import main
-from kvtheory.cli.outputs import PICTURES, check_output, series_options
+from kvtheory.cli.outputs import check_results, deliver, series_options
 
 
 @scene_command(
@@ -15,57 +16,33 @@ from kvtheory.cli.outputs import PICTURES, check_output, series_options
     'kvtheory elements --at "0 ms,1 ms,10 ms" --scheme paper && kvtheory elements -o run.csv',
 )
 @click.option(
-    "--per-length",
-    default=None,
-    metavar='"200 /mm"',
-    help="Elements per length, 1/dx; default: 200 /mm.",
+    "--per-length", metavar='"200 /mm"', help="Elements per length, 1/dx; default: 200 /mm."
 )
 @click.option(
-    "--scheme",
-    default="edge-corrected",
-    show_default=True,
+    "--scheme", default="edge-corrected", show_default=True,
     help="paper, explicit-euler, semi-implicit, exponential or edge-corrected.",
-)
-@click.option("--time-step", default=None, metavar='"10 us"', help="Default: 2 dx/V or less.")
+)  # fmt: skip
+@click.option("--time-step", metavar='"10 us"', help="Default: 2 dx/V or less.")
 @series_options
 def elements(
-    scene: str | None,
-    overrides: Sequence[str],
-    as_json: bool,
-    per_length: str | None,
-    scheme: str,
-    time_step: str | None,
-    at: str | None,
-    output: Path | None,
-    plot: Path | None,
-) -> None:
+    scene: str | None, overrides: Sequence[str], as_json: bool,
+    output: Path | None, plot: Path | None, **how: Any,
+) -> None:  # fmt: skip
     """Simulate SCENE by point elements that move with the base: any shape, support and drive."""
     from kvtheory.api import elements as simulate
-    from kvtheory.export import SERIES_SUFFIXES, save_result
     from kvtheory.scene import load_scene
 
-    check_output("-o", output, SERIES_SUFFIXES)  # before a run that may be long
-    check_output("--plot", plot, PICTURES)
+    check_results(output, plot)
     with progress_bar("elements") as progress:
         result = simulate(
             load_scene(scene, overrides),
-            per_length=per_length,
-            scheme=scheme,
-            time_step=time_step,
-            at=at,
+            **how,
             progress=progress,
             warn=lambda text: click.echo(f"kvtheory: warning: {text}", err=True),
         )
-    if output:
-        save_result(result, output)
-    if plot:
-        from kvtheory.plots.result import save_plot
-
-        save_plot(result, plot)
-    if as_json:
-        print_json(result.as_dict())
+    if deliver(result, output, plot, as_json=as_json):
         return
-    print_series(result, whole=at is not None)
+    print_series(result, whole=how["at"] is not None)
     worst = max(result.certificate.relative_error.values())
     click.echo(
         f"\n{result.scheme}, {result.per_length / 1e3:g} elements per mm, {result.steps} steps of at most "

@@ -10,16 +10,10 @@ from typing import Any
 
 import click
 
-from kvtheory.export import PICTURES, check_path
+from kvtheory.cli.console import print_json
+from kvtheory.export import PICTURES, SERIES_SUFFIXES, check_path, save_result
 
-__all__ = [
-    "PICTURES",
-    "check_output",
-    "overwrite_option",
-    "overwriting",
-    "result_options",
-    "series_options",
-]
+__all__ = ["PICTURES", "check_output"]
 
 BEGINNINGS = {
     ".csv": (b"time [s],velocity [m/s],", b"depth [m],half_length [m],"),
@@ -54,25 +48,40 @@ def overwriting() -> bool:
 
 def series_options(command: Callable[..., Any]) -> Callable[..., Any]:
     """Give a command `--at` for the times of a series, `-o` for its file and `--plot`."""
-    command = result_options(command)
     return click.option(
-        "--at",
-        default=None,
-        metavar='"0 ms,1 ms,..."',
-        help="Times to report, or START:STOP:COUNT.",
-    )(command)
+        "--at", metavar='"0 ms,1 ms,..."', help="Times to report, or START:STOP:COUNT."
+    )(result_options(command))
 
 
 def result_options(command: Callable[..., Any]) -> Callable[..., Any]:
     """Give a command `-o` for the file of its result, and `--plot` for its picture."""
-    command = click.option(
-        "--plot", type=click.Path(path_type=Path), default=None,
-        help="Draw the result to FILE.png, .svg or .pdf.",
-    )(overwrite_option(command))  # fmt: skip
-    return click.option(
-        "-o", "--output", type=click.Path(path_type=Path), default=None,
-        help="Write the result to FILE.csv or FILE.nc.",
-    )(command)  # fmt: skip
+    plot = path_option("--plot", help="Draw the result to FILE.png, .svg or .pdf.")
+    output = path_option("-o", "--output", help="Write the result to FILE.csv or FILE.nc.")
+    return output(plot(overwrite_option(command)))
+
+
+def path_option(*names: str, **how: Any) -> Callable[..., Any]:
+    """Return an option that takes the name of a file to write."""
+    return click.option(*names, type=click.Path(path_type=Path), **how)
+
+
+def check_results(output: Path | None, plot: Path | None) -> None:
+    """Raise unless the files of `result_options` can be written: before a run that may be long."""
+    check_output("-o", output, SERIES_SUFFIXES)
+    check_output("--plot", plot, PICTURES)
+
+
+def deliver(result: Any, output: Path | None, plot: Path | None, *, as_json: bool) -> bool:
+    """Write a result to the files of `result_options`, or as JSON; return whether that is all."""
+    if output:
+        save_result(result, output)
+    if plot:
+        from kvtheory.plots.result import save_plot
+
+        save_plot(result, plot)
+    if as_json:
+        print_json(result.as_dict())
+    return as_json
 
 
 def check_output(option: str, path: Path | None, suffixes: Sequence[str]) -> None:

@@ -1,26 +1,20 @@
 """`kvtheory scene`: a template, or a check of a scene file."""
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
 import click
 
 from kvtheory.cli.console import print_json, print_table, scene_command
 from kvtheory.cli.group import main
 
-if TYPE_CHECKING:
-    from kvtheory.scene import Scene
-
 
 @scene_command(
     main, "kvtheory scene --support fixed > my-scene.toml && kvtheory scene my-scene.toml"
 )
 @click.option(
-    "--support",
-    type=click.Choice(["fixed", "dead-weight", "suspended"]),
-    default=None,
+    "--support", type=click.Choice(["fixed", "dead-weight", "suspended"]),
     help="Support of the template.",
-)
+)  # fmt: skip
 def scene(scene: str | None, overrides: Sequence[str], as_json: bool, support: str | None) -> None:
     """Print a commented scene template, or check SCENE and print its dimensionless numbers."""
     from kvtheory.scene import load_scene, template
@@ -36,7 +30,11 @@ def scene(scene: str | None, overrides: Sequence[str], as_json: bool, support: s
         return
     checked = load_scene(scene, overrides)
     numbers = {} if lacks_parabola(checked) else StaticState.of(checked).named()
-    quantities = {**_by_plain_name(checked), **numbers}
+    named = {
+        key.replace(".", "_") if key == "support.stiffness" else key.split(".")[1]: value
+        for key, value in checked.values().items()
+    }
+    quantities = {**named, "damping": checked.foundation.damping, **numbers}
     if as_json:
         kinds = {"shape": checked.indenter.shape, "support": checked.support.kind}
         print_json({**kinds, **quantities})
@@ -46,13 +44,3 @@ def scene(scene: str | None, overrides: Sequence[str], as_json: bool, support: s
     print_table(("quantity", "value in SI"), rows)
     if not numbers:
         click.echo("\nThe dimensionless numbers are defined for a parabola only.")
-
-
-def _by_plain_name(scene: "Scene") -> dict[str, float]:
-    """Return the quantities of a scene in SI, the spring of the support as `support_stiffness`."""
-    values = scene.values()
-    named = {
-        key.replace(".", "_") if key == "support.stiffness" else key.split(".")[1]: value
-        for key, value in values.items()
-    }
-    return {**named, "damping": scene.foundation.damping}

@@ -7,9 +7,16 @@ from typing import TYPE_CHECKING
 
 import click
 
-from kvtheory.cli.console import print_json, print_table, scene_command, shown, text, velocity_range
+from kvtheory.cli.console import (
+    print_json,
+    print_steady,
+    print_table,
+    scene_command,
+    text,
+    velocity_range,
+)
 from kvtheory.cli.group import main
-from kvtheory.cli.outputs import PICTURES, check_output, result_options
+from kvtheory.cli.outputs import check_results, deliver, result_options
 
 if TYPE_CHECKING:
     from kvtheory.scene import Scene
@@ -17,11 +24,9 @@ if TYPE_CHECKING:
 
 @scene_command(main, 'kvtheory steady --set drive.velocity="50 mm/s" --json')
 @click.option(
-    "--method",
-    default=None,
-    metavar="exact|quadrature|asymptote",
+    "--method", metavar="exact|quadrature|asymptote",
     help="Default: exact for parabola, power law and wedge, quadrature for other shapes.",
-)
+)  # fmt: skip
 @result_options
 def steady(
     scene: str | None, overrides: Sequence[str], as_json: bool, method: str | None,
@@ -29,42 +34,25 @@ def steady(
 ) -> None:  # fmt: skip
     """Print the state of steady sliding: depth, edges, load, friction, peak pressure."""
     from kvtheory.api import steady as solve
-    from kvtheory.export import SERIES_SUFFIXES, save_result
     from kvtheory.results import STEADY_UNITS
     from kvtheory.scene import load_scene
 
-    check_output("-o", output, SERIES_SUFFIXES)
-    check_output("--plot", plot, PICTURES)
+    check_results(output, plot)
     checked = load_scene(scene, overrides)
     state = solve(checked, method=method)
-    if output:
-        save_result(state, output)
-    if plot:
-        from kvtheory.plots.result import save_plot
-
-        save_plot(state, plot)
-    if as_json:
-        print_json(state.as_dict())
+    if deliver(state, output, plot, as_json=as_json):
         return
     _note_history(checked)
-    errors = state.certificate.relative_error
-    rows = [
-        (name, *shown(getattr(state, name), unit), f"{errors[name]:.1e}")
-        for name, unit in STEADY_UNITS.items()
-    ]
     click.echo(f"Steady sliding, {checked.support.kind} support, model: {state.model}\n")
-    print_table(("quantity", "value", "unit", "relative error"), rows)
+    print_steady(state, STEADY_UNITS)
     click.echo(f"\nErrors are {state.certificate.kind}: {state.certificate.statement}.")
 
 
 @scene_command(main, "kvtheory asymptotes --tolerance 0.01")
 @click.option(
-    "--tolerance",
-    type=float,
-    default=0.05,
-    show_default=True,
+    "--tolerance", type=float, default=0.05, show_default=True,
     help="Relative error up to which an asymptote is good.",
-)
+)  # fmt: skip
 def asymptotes(
     scene: str | None, overrides: Sequence[str], as_json: bool, tolerance: float
 ) -> None:
@@ -92,33 +80,26 @@ def asymptotes(
         )
     advice = "the exact solution" if report.use == "exact" else report.use
     click.echo(f"for the friction coefficient to within {tolerance:g}, use {advice}\n")
-    rows = [
-        (
-            line.name, f"({line.equation})" if line.equation else "", line.formula,
-            text(line.value, STEADY_UNITS[line.quantity]),
-            text(line.exact, STEADY_UNITS[line.quantity]),
-            "-" if math.isnan(line.relative_error) else f"{line.relative_error:+.3g}",
-            velocity_range(line.velocity_min, line.velocity_max),
-        )
-        for line in report.lines
-    ]  # fmt: skip
     print_table(
         (
-            "asymptote",
-            "Eq.",
-            "formula",
-            "value",
-            "exact",
-            "relative error",
+            "asymptote", "Eq.", "formula", "value", "exact", "relative error",
             f"within {tolerance:g} for",
         ),
-        rows,
-    )
+        [
+            (
+                line.name, f"({line.equation})" if line.equation else "", line.formula,
+                text(line.value, STEADY_UNITS[line.quantity]),
+                text(line.exact, STEADY_UNITS[line.quantity]),
+                "-" if math.isnan(line.relative_error) else f"{line.relative_error:+.3g}",
+                velocity_range(line.velocity_min, line.velocity_max),
+            )
+            for line in report.lines
+        ],
+    )  # fmt: skip
 
 
 def _note_history(scene: "Scene") -> None:
     """Say which velocity of a history counts in steady sliding."""
     if scene.drive.history is not None:
-        click.echo(
-            f"The drive has a history; taken at its last velocity, {text(scene.drive.final_velocity, 'm/s')}."
-        )
+        velocity = text(scene.drive.final_velocity, "m/s")
+        click.echo(f"The drive has a history; taken at its last velocity, {velocity}.")

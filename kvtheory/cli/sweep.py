@@ -1,8 +1,10 @@
 """`kvtheory sweep`: many scenes into one file."""
 
+import importlib
 import sys
 import time
 from collections.abc import Iterable, Sequence
+from concurrent.futures import Executor
 from contextlib import ExitStack
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -17,6 +19,7 @@ from kvtheory.cli.outputs import (
     check_output,
     overwrite_option,
     overwriting,
+    path_option,
 )
 
 if TYPE_CHECKING:
@@ -36,8 +39,8 @@ EXAMPLE = '"drive.velocity=1 mm/s:10 m/s:200:log" or "foundation.retardation_tim
     help="Sweep a key over START:STOP:COUNT[:log] or V1,V2,...; repeatable, for all combinations. "
     "KEY=VALUES & KEY=VALUES in one option vary together.",
 )  # fmt: skip
-@click.option(
-    "-o", "--output", type=click.Path(path_type=Path), required=True,
+@path_option(
+    "-o", "--output", required=True,
     help="FILE.csv or FILE.nc; FILE.part keeps what is done, until all is. The same command resumes.",
 )  # fmt: skip
 @click.option(
@@ -46,41 +49,25 @@ EXAMPLE = '"drive.velocity=1 mm/s:10 m/s:200:log" or "foundation.retardation_tim
     ".end, .time_of_max), peak_to_steady_friction, settling_time, hops, events.",
 )  # fmt: skip
 @click.option(
-    "--at",
-    default=None,
-    metavar='"0 ms,1 ms,..."',
-    help="Times of series of a transient, or START:STOP:COUNT.",
+    "--at", metavar='"0 ms,1 ms,..."', help="Times of series of a transient, or START:STOP:COUNT."
 )
 @click.option(
     "--rtol", type=float, default=1e-6, show_default=True, help="Error allowed in a step."
 )
-@click.option("--method", default=None, metavar="exact|quadrature|asymptote", help="As in steady.")
-@click.option("--jobs", type=click.IntRange(1), default=None, help="Workers; default: 1.")
+@click.option("--method", metavar="exact|quadrature|asymptote", help="As in steady.")
+@click.option("--jobs", type=click.IntRange(1), help="Workers; default: 1.")
 @click.option(
-    "--executor", default=None, metavar="MODULE:FACTORY",
+    "--executor", metavar="MODULE:FACTORY",
     help="Gives a concurrent.futures.Executor; called with the number of jobs, if that is given.",
 )  # fmt: skip
-@click.option("--block", type=click.IntRange(1), default=None, help="Scenes in a block.")
+@click.option("--block", type=click.IntRange(1), help="Scenes in a block.")
 @overwrite_option
-@click.option(
-    "--plot", type=click.Path(path_type=Path), default=None,
-    help="Draw the first quantity to FILE.png, .svg or .pdf.",
-)  # fmt: skip
+@path_option("--plot", help="Draw the first quantity to FILE.png, .svg or .pdf.")
 def sweep(
-    scene: str | None,
-    overrides: Sequence[str],
-    as_json: bool,
-    over: Sequence[str],
-    output: Path,
-    quantities: Sequence[str],
-    at: str | None,
-    rtol: float,
-    method: str | None,
-    jobs: int | None,
-    executor: str | None,
-    block: int | None,
-    plot: Path | None,
-) -> None:
+    scene: str | None, overrides: Sequence[str], as_json: bool, over: Sequence[str],
+    output: Path, quantities: Sequence[str], jobs: int | None, executor: str | None,
+    block: int | None, plot: Path | None, **how: Any,
+) -> None:  # fmt: skip
     """Solve SCENE for many values of its quantities, into a file that survives and resumes."""
     from kvtheory.api import sweep as run
     from kvtheory.api._sweep import plan_of
@@ -89,10 +76,10 @@ def sweep(
 
     check_not_an_input("-o", output)
     check_output("--plot", plot, PICTURES)
+    names = [name for text in quantities for name in split(text)]
     what: dict[str, Any] = {
-        "scene": load_scene(scene, overrides), "over": read_over(over), "at": at,
-        "quantities": [n for t in quantities for n in split(t)] or None,
-        "method": method, "rtol": rtol,
+        "scene": load_scene(scene, overrides), "over": read_over(over), "quantities": names or None,
+        **how,
     }  # fmt: skip
     plan = plan_of(**what)
     if plot:
@@ -107,7 +94,7 @@ def sweep(
         try:
             result = run(
                 **what, jobs=jobs or 1, block=block, output=output, overwrite=overwriting(),
-                executor=stack.enter_context(_executor(executor, jobs)) if executor else None,
+                executor=stack.enter_context(from_factory(executor, jobs)) if executor else None,
                 progress=progress,
             )  # fmt: skip
         except KeyboardInterrupt:
@@ -147,11 +134,42 @@ def read_over(texts: Iterable[str]) -> dict[Any, Any]:
     return over
 
 
-def _executor(factory: str, jobs: int | None) -> Any:
-    from kvtheory.cli.executors import from_factory
+def from_factory(text: str, jobs: int | None) -> Executor:
+    """Call the factory ``module:name`` of executors, with the number of jobs if one is given.
 
+    Examples
+    --------
+    >>> with from_factory("concurrent.futures:ThreadPoolExecutor", 2) as executor:
+    ...     executor.submit(abs, -2).result()
+    2
+    """
+    from kvtheory.scene.quantities import nearest
+
+    given = f'--executor "{text}"'
+    name, sign, factory = text.partition(":")
+    if not (name and sign and factory):
+        raise ValueError(
+            f"{given}: expected module:factory, such as concurrent.futures:ThreadPoolExecutor"
+        )
     sys.path.insert(0, "")  # a module in the working directory, as `python -m` finds it
-    return from_factory(factory, jobs)
+    try:
+        module = importlib.import_module(name)
+    except (Exception, SystemExit) as error:  # whatever the module does when it is run
+        raise ValueError(f"{given}: the module cannot be imported: {_told(error)}") from None
+    if not hasattr(module, factory):
+        names = [known for known in dir(module) if not known.startswith("_")]
+        raise ValueError(f"{given}: {nearest(factory, names)}")
+    try:
+        executor = getattr(module, factory)(*([] if jobs is None else [jobs]))
+    except (Exception, SystemExit) as error:
+        raise ValueError(f"{given}: the factory cannot be called: {_told(error)}") from None
+    if not isinstance(executor, Executor) or type(executor) is Executor:
+        raise ValueError(f"{given}: expected a concurrent.futures.Executor, got {executor!r}")
+    return executor
+
+
+def _told(error: BaseException) -> str:
+    return f"{type(error).__name__}: {error}"
 
 
 def _tell(result: "Sweep", seconds: float, as_json: bool) -> None:
@@ -159,16 +177,9 @@ def _tell(result: "Sweep", seconds: float, as_json: bool) -> None:
     from kvtheory.results import record
 
     if as_json:
-        print_json(
-            {
-                "file": str(result.path),
-                "points": result.points,
-                "computed": result.computed,
-                "failed": result.failed,
-                "failures": record(result.failures),
-                "seconds": seconds,
-            }
-        )
+        counts = {name: getattr(result, name) for name in ("points", "computed", "failed")}
+        failures = record(result.failures)
+        print_json({"file": str(result.path), **counts, "failures": failures, "seconds": seconds})
         return
     click.echo(
         f"{result.path}: {result.points:,} points, {result.computed:,} of them computed now in "

@@ -5,9 +5,9 @@ from pathlib import Path
 
 import click
 
-from kvtheory.cli.console import print_json, print_series, progress_bar, scene_command, text
+from kvtheory.cli.console import print_series, progress_bar, scene_command, text
 from kvtheory.cli.group import main
-from kvtheory.cli.outputs import PICTURES, check_output, series_options
+from kvtheory.cli.outputs import check_results, deliver, series_options
 
 
 @scene_command(
@@ -19,31 +19,17 @@ from kvtheory.cli.outputs import PICTURES, check_output, series_options
 )
 @series_options
 def transient(
-    scene: str | None,
-    overrides: Sequence[str],
-    as_json: bool,
-    rtol: float,
-    at: str | None,
-    output: Path | None,
-    plot: Path | None,
-) -> None:
+    scene: str | None, overrides: Sequence[str], as_json: bool, rtol: float, at: str | None,
+    output: Path | None, plot: Path | None,
+) -> None:  # fmt: skip
     """Follow the transient of SCENE: depth, forces, edges and events over time."""
     from kvtheory.api import transient as follow
-    from kvtheory.export import SERIES_SUFFIXES, save_result
     from kvtheory.scene import load_scene
 
-    check_output("-o", output, SERIES_SUFFIXES)  # before a run that may be long
-    check_output("--plot", plot, PICTURES)
+    check_results(output, plot)
     with progress_bar("transient") as progress:
         result = follow(load_scene(scene, overrides), at=at, rtol=rtol, progress=progress)
-    if output:
-        save_result(result, output)
-    if plot:
-        from kvtheory.plots.result import save_plot
-
-        save_plot(result, plot)
-    if as_json:
-        print_json(result.as_dict())
+    if deliver(result, output, plot, as_json=as_json):
         return
     print_series(result, whole=at is not None)
     click.echo("\nevents:")

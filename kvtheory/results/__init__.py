@@ -8,12 +8,11 @@ from kvtheory.results.errors import (
     ToleranceError,
     TransientError,
 )
-from kvtheory.results.simulation import Simulation
 from kvtheory.results.solution import ClimbStep, Solution
 from kvtheory.results.steady import AsymptoteLine, AsymptoteReport, SteadyState
 from kvtheory.results.sweep import Axis, Failure, Sweep
 from kvtheory.results.table import QUANTITIES, SHOWN_UNITS, STEADY_UNITS, TRANSIENT_UNITS
-from kvtheory.results.transient import Event, Transient
+from kvtheory.results.transient import Event, Simulation, Transient
 
 __all__ = [
     "QUANTITIES",

@@ -1,12 +1,12 @@
 """A time series held against theory."""
 
 from dataclasses import dataclass, field, fields
-from html import escape
 from pathlib import Path
 from typing import Any
 
 from kvtheory.results.above import above
 from kvtheory.results.certificate import record
+from kvtheory.results.presented import html_table
 
 
 @dataclass(frozen=True)
@@ -83,17 +83,14 @@ class Comparison:
 
     def _repr_html_(self) -> str:
         """Return a table of the checks for notebooks."""
-        rows = "".join(
-            f"<tr><td>{escape(c.name)}</td><td>{'-' if c.ok is None else f'{c.measured:.3g}'}</td>"
-            f"<td>{'-' if c.ok is None else f'{c.allowed:.3g}'}</td><td>{MARKS[c.ok]}</td>"
-            f"<td>{escape(c.equation)}</td><td>{escape('; '.join(filter(None, (c.unit, c.note))))}</td></tr>"
+        rows = [
+            (
+                c.name, *("-" if c.ok is None else f"{x:.3g}" for x in (c.measured, c.allowed)),
+                MARKS[c.ok], c.equation, "; ".join(filter(None, (c.unit, c.note))),
+            )
             for c in self.checks
-        )
-        heads = "".join(f"<th>{head}</th>" for head in HEADS)
-        return (
-            f"<table><caption>{escape(self.source)}: {self.verdict}. {escape(self.diagnosis)}</caption>"
-            f"<thead><tr>{heads}</tr></thead><tbody>{rows}</tbody></table>"
-        )
+        ]  # fmt: skip
+        return html_table(f"{self.source}: {self.verdict}. {self.diagnosis}", HEADS, rows)
 
     def to_xarray(self) -> Any:
         """Return data, theory and what is allowed between them as an `xarray.Dataset` over time.

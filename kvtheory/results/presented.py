@@ -1,6 +1,6 @@
 """How a result shows itself: a few lines of text, a table in a notebook, a picture, a file."""
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from html import escape
 from pathlib import Path
 from typing import Any
@@ -58,16 +58,8 @@ class Presented:
     def _repr_html_(self) -> str:
         """Return a table for notebooks, with units and certificate."""
         heads = ("quantity", "value", "unit", f"error, relative to {self.certificate.relative_to}")
-        rows = "".join(
-            "<tr>" + "".join(f"<td>{escape(cell)}</td>" for cell in row) + "</tr>"
-            for row in self._shown()
-        )
-        return (
-            f"<table><caption>{escape(self._title)}</caption>"
-            f"<thead><tr>{''.join(f'<th>{escape(head)}</th>' for head in heads)}</tr></thead>"
-            f"<tbody>{rows}</tbody></table>"
-            f"<p>Errors are {escape(self.certificate.kind)}: {escape(self.certificate.statement)}.</p>"
-        )
+        told = f"Errors are {self.certificate.kind}: {self.certificate.statement}."
+        return f"{html_table(self._title, heads, self._shown())}<p>{escape(told)}</p>"
 
     def plot(self, *, ax: Any = None, **style: Any) -> Any:
         """Draw the result and return the figure; `ax` is an axes or several, else they are new.
@@ -102,6 +94,18 @@ class Presented:
             If the file cannot be written.
         """
         above("save_result")(self, Path(path))
+
+
+def html_table(caption: str, heads: Iterable[str], rows: Iterable[Iterable[str]]) -> str:
+    """Return a table of texts in HTML."""
+    head = "".join(f"<th>{escape(text)}</th>" for text in heads)
+    body = "".join(
+        "<tr>" + "".join(f"<td>{escape(cell)}</td>" for cell in row) + "</tr>" for row in rows
+    )
+    return (
+        f"<table><caption>{escape(caption)}</caption>"
+        f"<thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>"
+    )
 
 
 def _range(value: Any, factor: float) -> str:

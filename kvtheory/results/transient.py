@@ -1,4 +1,4 @@
-"""A transient as a time series."""
+"""Motions as time series: a transient, and a simulation by elements."""
 
 from dataclasses import dataclass, field, fields
 from typing import Any, NamedTuple
@@ -94,3 +94,22 @@ class Transient(TimeSeries):
         10.3091 7.7910 0.3461
         """
         return self.solution.energy(time)
+
+
+@dataclass(frozen=True, repr=False)
+class Simulation(TimeSeries):
+    """A run of the elements as a time series: arrays in SI over `time`; in flight the edges are NaN.
+
+    At an instant where the drive jumps, values are those just after the jump. `per_length` is the
+    number of elements per length (1/m), `time_step` the longest step (s), `element_updates` how often
+    an element was moved or pressed; `warning` says what is doubtful about the step, if anything.
+    """
+
+    scheme: str
+    per_length: float
+    time_step: float
+    steps: int
+    element_updates: int
+    warning: str
+    model: str
+    certificate: Certificate

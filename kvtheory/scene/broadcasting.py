@@ -8,9 +8,27 @@ from numpy.typing import NDArray
 
 from kvtheory.scene.drives import VELOCITY
 from kvtheory.scene.model import LAYER, Scene, layer_stiffness
-from kvtheory.scene.quantities import Quantity, SceneError, convert, free, nearest, problem
+from kvtheory.scene.quantities import (
+    Quantity,
+    SceneError,
+    collecting,
+    convert,
+    free,
+    nearest,
+    problem,
+)
 
 Array = NDArray[np.float64]
+
+
+def replaceable(scene: Scene, *more: str) -> dict[str, Quantity]:
+    """Return the keys of a scene whose values can be replaced, of `more` sections too."""
+    found = {
+        f"{section}.{name}": spec
+        for section in ("indenter", "foundation", "support", *more)
+        for name, spec in free(getattr(scene, section)).items()
+    }
+    return {**found, "drive.velocity": VELOCITY}
 
 
 def values(scene: Scene, over: Mapping[str, Any] | None = None) -> dict[str, Array]:
@@ -31,23 +49,16 @@ def values(scene: Scene, over: Mapping[str, Any] | None = None) -> dict[str, Arr
     >>> values(Scene(), {"drive.velocity": ["1 mm/s", "1 m/s"]})["drive.velocity"].tolist()
     [0.001, 1.0]
     """
-    specs = {
-        f"{section}.{name}": spec
-        for section in ("indenter", "foundation", "support")
-        for name, spec in free(getattr(scene, section)).items()
-    }
-    specs["drive.velocity"] = VELOCITY
+    specs = replaceable(scene)
     given: dict[str, Any] = dict(scene.values())
-    problems = []
+    problems: list[str] = []
     for key, value in (over or {}).items():
         if key not in specs:
             told = f"unknown key for this scene; {nearest(key, specs)}"
             problems.append(problem(f"`over` {key}", value, told))
             continue
-        try:
-            given[key] = _array(value, specs[key])
-        except ValueError as error:
-            problems.append(problem(f"`over` {key}", value, str(error)))
+        with collecting(problems, f"`over` {key}", value):
+            given[key] = array_of(value, specs[key])
     if "drive.velocity" not in given and not problems:
         given["drive.velocity"] = scene.drive.final_velocity
     if problems:
@@ -62,14 +73,7 @@ def values(scene: Scene, over: Mapping[str, Any] | None = None) -> dict[str, Arr
         )
         raise ValueError(f"the arrays of `over` do not broadcast: {shapes}") from None
     found = dict(zip(given, (np.asarray(array, dtype=float) for array in arrays), strict=True))
-    return _with_derived(scene, found, over or {})
-
-
-def _with_derived(
-    scene: Scene, found: dict[str, Array], over: Mapping[str, Any]
-) -> dict[str, Array]:
-    """Put in what follows from other values: the stiffness of a layer, and the weight."""
-    if scene.foundation.modulus is not None and "foundation.stiffness" not in over:
+    if scene.foundation.modulus is not None and "foundation.stiffness" not in (over or ()):
         layer = (found[f"foundation.{name}"] for name in LAYER)
         found["foundation.stiffness"] = layer_stiffness(*layer)
     if "support.load" in found:
@@ -79,17 +83,18 @@ def _with_derived(
     return found
 
 
-def _array(value: Any, spec: Quantity) -> Array:
+def array_of(value: Any, spec: Quantity) -> Array:
     """Return `value` in SI, checked element by element."""
-    if np.ndim(getattr(value, "magnitude", value)) == 0:
+    bare = getattr(value, "magnitude", value)
+    if np.ndim(bare) == 0:
         return np.asarray(convert(value, spec))
     if isinstance(value, np.ndarray) and value.dtype.kind in "fiu":
         array = value.astype(float)
         if not spec.admits(array):
             raise ValueError(f"is out of range; expected {spec.range} in {spec.unit} throughout")
         return array
-    bare = getattr(value, "magnitude", value)
-    items = list(np.asarray(bare, dtype=object).reshape(-1))
+    flat = bare if np.ndim(bare) == 1 else np.asarray(bare, dtype=object).reshape(-1)
+    items = list(flat)
     if bare is not value:
         items = [item * value.units for item in items]
     return np.array([convert(item, spec) for item in items]).reshape(np.shape(bare))

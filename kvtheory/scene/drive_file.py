@@ -4,7 +4,7 @@ import csv
 from collections.abc import Sequence
 from pathlib import Path
 
-from kvtheory.scene.quantities import SceneError, problem
+from kvtheory.scene.quantities import mistake
 from kvtheory.scene.texts import read_text
 from kvtheory.scene.units import to_si
 
@@ -25,7 +25,7 @@ def history_from(path: Path) -> list[tuple[float, float]]:
         text = read_text(path)
     except (OSError, UnicodeDecodeError) as error:
         reason = getattr(error, "strerror", None) or "it is not text"
-        raise SceneError([problem(KEY, str(path), f"cannot be read: {reason}")]) from None
+        raise mistake(KEY, str(path), f"cannot be read: {reason}") from None
     lines = [line for line in text.splitlines() if line.strip() and not line.startswith("#")]
     separator = max(SEPARATORS, key=(lines or [""])[0].count)
     rows = list(csv.reader(lines, delimiter=separator))
@@ -35,7 +35,7 @@ def history_from(path: Path) -> list[tuple[float, float]]:
             for head, unit in zip(rows[0][:2], ("s", "m/s"), strict=True)
         ]
     except (IndexError, ValueError) as error:
-        raise SceneError([problem(KEY, str(path), f"expected {HEAD} ({error})")]) from None
+        raise mistake(KEY, str(path), f"expected {HEAD} ({error})") from None
     return [_point(path, number, row, factors) for number, row in enumerate(rows[1:], start=2)]
 
 
@@ -45,7 +45,5 @@ def _point(
     try:
         t, V = (float(cell) * factor for cell, factor in zip(row, factors, strict=True))
     except ValueError as error:
-        raise SceneError(
-            [problem(KEY, str(path), f"row {number}: {error}; expected {HEAD}")]
-        ) from None
+        raise mistake(KEY, str(path), f"row {number}: {error}; expected {HEAD}") from None
     return t, V

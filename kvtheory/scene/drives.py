@@ -10,7 +10,15 @@ from typing import Any
 import numpy as np
 
 from kvtheory.scene.base_motion import BaseMotion
-from kvtheory.scene.quantities import Quantity, SceneError, convert, problem, settle
+from kvtheory.scene.quantities import (
+    Quantity,
+    SceneError,
+    collecting,
+    convert,
+    mistake,
+    problem,
+    settle,
+)
 from kvtheory.scene.waveforms import AT_LAST, Sine, SmoothRamp, Triangle
 
 VELOCITY = Quantity(
@@ -59,20 +67,11 @@ class Drive:
         function = None if self.function is self.waveform else self.function  # of a copy
         ways = self.velocity, self.history, function, self.waveform
         if sum(given is not None for given in ways) != 1:
-            raise SceneError(
-                [
-                    "drive: expected one of velocity, history and waveform, such as "
-                    'velocity = "100 mm/s"; or, in Python, a function'
-                ]
-            )
+            told = "drive: expected one of velocity, history and waveform, such as "
+            raise SceneError([told + 'velocity = "100 mm/s"; or, in Python, a function'])
         if not isinstance(self.waveform, Sine | Triangle | SmoothRamp | None):
-            raise SceneError(
-                [
-                    problem(
-                        "drive.waveform", self.waveform, "expected a Sine, Triangle or SmoothRamp"
-                    )
-                ]
-            )
+            told = "expected a Sine, Triangle or SmoothRamp"
+            raise mistake("drive.waveform", self.waveform, told)
         if self.waveform is not None:
             object.__setattr__(self, "function", self.waveform)
         if self.velocity is not None:
@@ -99,12 +98,9 @@ class Drive:
         ((0.0, 0.1), (1.0, 0.1), (1.0, 0.2))
         """
         if self.function is not None:
-            raise SceneError(
-                [
-                    f"drive.{self._way}: it moves the foundation in a transient only; give a velocity or "
-                    "a history here"
-                ]
-            )
+            way = "function" if self.waveform is None else "waveform"
+            told = "it moves the foundation in a transient only; give a velocity or a history here"
+            raise SceneError([f"drive.{way}: {told}"])
         if self.history is None:
             return ((0.0, self.velocity),)  # type: ignore[return-value]
         return _without_redundant(self.history)
@@ -112,13 +108,8 @@ class Drive:
     @property
     def final_velocity(self) -> float:
         """The velocity that the drive ends with, in m/s; a function has none, and raises SceneError."""
-        if self.waveform is not None and self.waveform.final_velocity is not None:
-            return self.waveform.final_velocity
-        return self.points[-1][1]
-
-    @property
-    def _way(self) -> str:
-        return "function" if self.waveform is None else "waveform"
+        last = getattr(self.waveform, "final_velocity", None)
+        return self.points[-1][1] if last is None else float(last)
 
     @property
     def ends(self) -> bool:
@@ -226,7 +217,8 @@ def _without_redundant(
 
 def _breaks(drive: Drive) -> tuple[float, ...]:
     """Return the breaks in s and in order, or report everything about a function that is wrong."""
-    problems, times = [], []
+    problems: list[str] = []
+    times: list[float] = []
     if drive.function is None:
         if not (isinstance(drive.breaks, tuple) and drive.breaks == ()):
             problems.append(problem("drive.breaks", drive.breaks, "needs a function"))
@@ -234,10 +226,8 @@ def _breaks(drive: Drive) -> tuple[float, ...]:
         problems.append(problem("drive.function", drive.function, "expected a function V(t)"))
     several = isinstance(drive.breaks, (Sequence, np.ndarray)) and not isinstance(drive.breaks, str)
     for time in drive.breaks if several else [drive.breaks]:
-        try:
+        with collecting(problems, "drive.breaks", time):
             times.append(convert(time, TIME))
-        except ValueError as error:
-            problems.append(problem("drive.breaks", time, str(error)))
     tolerance = drive.tolerance
     if not (isinstance(tolerance, (int, float)) and LEAST_TOLERANCE <= tolerance <= 1.0):
         problems.append(
@@ -254,39 +244,27 @@ def _history(points: Any) -> tuple[tuple[float, float], ...]:
     if isinstance(points, np.ndarray):
         points = points.tolist()
     if isinstance(points, str) or not isinstance(points, Sequence) or not points:
-        raise SceneError(
-            [
-                problem(
-                    key,
-                    points,
-                    'expected points such as [["0 ms", "100 mm/s"], ["50 ms", "0 mm/s"]]',
-                )
-            ]
-        )
-    problems, converted = [], []
+        told = 'expected points such as [["0 ms", "100 mm/s"], ["50 ms", "0 mm/s"]]'
+        raise mistake(key, points, told)
+    problems: list[str] = []
+    converted = []
     for index, point in enumerate(points):
         if isinstance(point, str) or not isinstance(point, Sequence) or len(point) != 2:
-            problems.append(
-                problem(f"{key}[{index}]", point, 'expected a pair ["time", "velocity"]')
-            )
+            told = 'expected a pair ["time", "velocity"]'
+            problems.append(problem(f"{key}[{index}]", point, told))
             continue
         pair = []
         for value, spec in zip(point, (TIME, VELOCITY), strict=True):
-            try:
+            with collecting(problems, f"{key}[{index}]", value):
                 pair.append(convert(value, spec))
-            except ValueError as error:
-                problems.append(problem(f"{key}[{index}]", value, str(error)))
         converted.append(tuple(pair))
     if not problems:
         times = [time for time, _ in converted]
         if times[0] != 0.0:
             problems.append(problem(f"{key}[0]", points[0], "the first time must be 0 s"))
+        told = "times must not decrease, and one time may stand at most twice"
         problems += [
-            problem(
-                f"{key}[{i}]",
-                points[i],
-                "times must not decrease, and one time may stand at most twice",
-            )
+            problem(f"{key}[{i}]", points[i], told)
             for i in range(1, len(times))
             if times[i] < times[i - 1] or (i > 1 and times[i] == times[i - 2])
         ]

@@ -14,9 +14,11 @@ from kvtheory.scene.quantities import (
     SceneError,
     absent,
     closest,
+    collecting,
     convert,
     given,
     missing,
+    mistake,
     nearest,
     problem,
     quantities,
@@ -238,12 +240,9 @@ def _build(tables: Mapping[str, Any], problems: list[str]) -> Scene:
     missing = [name for name in absent(SECTIONS, tables) if name not in OPTIONAL]
     problems += [f"[{name}]: this section is missing" for name in missing]
     parts = {}
-    for section in SECTIONS:
-        try:
-            if section in tables:
-                parts[section] = _part(section, tables[section])
-        except SceneError as error:
-            problems += error.problems
+    for section in (name for name in SECTIONS if name in tables):
+        with collecting(problems, section, tables[section]):
+            parts[section] = _part(section, tables[section])
     if problems:
         raise SceneError(problems)
     return Scene(**parts)
@@ -252,9 +251,8 @@ def _build(tables: Mapping[str, Any], problems: list[str]) -> Scene:
 def _part(section: str, table: Any) -> Any:
     """Make one part of a scene from its table."""
     if not isinstance(table, dict):
-        raise SceneError(
-            [f"[{section}]: expected one table with this name, not {type(table).__name__}"]
-        )
+        told = f"expected one table with this name, not {type(table).__name__}"
+        raise SceneError([f"[{section}]: {told}"])
     if section == "drive" and "waveform" in table:
         return _waveform(table)
     if section not in CHOICES:
@@ -268,11 +266,8 @@ def _part(section: str, table: Any) -> Any:
     if chooser not in table and absent([chooser], table):
         problems.append(f"{section}.{chooser}: missing; expected one of: {', '.join(models)}")
     elif chooser in table:
-        what = (
-            nearest(name, models)
-            if isinstance(name, str)
-            else f"expected exactly one of: {', '.join(models)}"
-        )
+        one = f"expected exactly one of: {', '.join(models)}"
+        what = nearest(name, models) if isinstance(name, str) else one
         problems.append(problem(f"{section}.{chooser}", name, what))
     meant = closest(name, models) if isinstance(name, str) else None
     valid = [chooser, *dict.fromkeys(key for model in models.values() for key in quantities(model))]
@@ -283,10 +278,8 @@ def _part(section: str, table: Any) -> Any:
             if key not in valid
         ]
     else:
-        try:
+        with collecting(problems, section, table):
             _make(models[meant], section, rest, f'{chooser} = "{meant}"')
-        except SceneError as error:
-            problems += error.problems
     raise SceneError(problems)
 
 
@@ -295,7 +288,7 @@ def _waveform(table: Mapping[str, Any]) -> Drive:
     name = table["waveform"]
     rest = {key: value for key, value in table.items() if key != "waveform"}
     if not (isinstance(name, str) and name in WAVEFORMS):
-        raise SceneError([problem("drive.waveform", name, nearest(str(name), WAVEFORMS))])
+        raise mistake("drive.waveform", name, nearest(str(name), WAVEFORMS))
     return Drive(waveform=_make(WAVEFORMS[name], "drive", rest, f'waveform = "{name}"'))
 
 
@@ -316,15 +309,11 @@ def _make(cls: Any, section: str, table: Mapping[str, Any], choice: str = "") ->
             told = f"unknown key{of}; {elsewhere or nearest(key, known)}"
             problems.append(problem(f"{section}.{key}", value, told))
             continue
-        try:
+        with collecting(problems, f"{section}.{key}", value):
             if cls is Drive and key == "file":
                 values["history"] = history_from(Path(str(value)))
             else:
                 values[key] = _value(value, specs[key]) if key in specs else _points(value)
-        except SceneError as error:
-            problems += error.problems
-        except ValueError as error:
-            problems.append(problem(f"{section}.{key}", value, str(error)))
     if problems:
         raise SceneError(problems)
     return cls(**values)
@@ -350,12 +339,8 @@ def _value(value: Any, spec: Quantity) -> float:
 def _points(value: Any) -> Any:
     """Pass the points of a history on to `Drive`, which checks them, if they carry units."""
     points = value if isinstance(value, list) else []
-    if any(
-        isinstance(item, (int, float))
-        for point in points
-        if isinstance(point, list)
-        for item in point
-    ):
+    items = (item for point in points if isinstance(point, list) for item in point)
+    if any(isinstance(item, (int, float)) for item in items):
         raise ValueError(
             'has numbers without a unit; expected points such as ["50 ms", "100 mm/s"]'
         )

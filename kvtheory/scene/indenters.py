@@ -12,14 +12,23 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from kvtheory.scene.quantities import SceneError, problem, quantity, settle
+from kvtheory.scene.quantities import SceneError, mistake, quantity, settle
 
 Value = Any
 """A float or an array of floats, in m or dimensionless."""
 
 
+class _Shape:
+    """What the shapes that a scene file can name share."""
+
+    convex: ClassVar[bool] = True
+
+    def __post_init__(self) -> None:
+        settle(self, "indenter")
+
+
 @dataclass(frozen=True)
-class Parabola:
+class Parabola(_Shape):
     """The paper's cylinder, h = x^2/(2R) (Eq. 3).
 
     >>> Parabola(radius=0.01).height(0.002)
@@ -27,13 +36,9 @@ class Parabola:
     """
 
     shape: ClassVar[str] = "parabola"
-    convex: ClassVar[bool] = True
     reach: ClassVar[float] = math.inf
     kinks: ClassVar[tuple[float, ...]] = ()
     radius: float = quantity("m", "R, curvature radius of the indenter (Eq. 3)")
-
-    def __post_init__(self) -> None:
-        settle(self, "indenter")
 
     def height(self, x: Value) -> Value:
         """Return h(x)."""
@@ -45,7 +50,7 @@ class Parabola:
 
 
 @dataclass(frozen=True)
-class Circle:
+class Circle(_Shape):
     """A true cylinder, h = R - sqrt(R^2 - x^2), up to |x| = R.
 
     >>> print(f"{Circle(radius=0.01).height(0.006):.12g}")
@@ -53,12 +58,8 @@ class Circle:
     """
 
     shape: ClassVar[str] = "circle"
-    convex: ClassVar[bool] = True
     kinks: ClassVar[tuple[float, ...]] = ()
     radius: float = quantity("m", "R, curvature radius of the indenter (Eq. 3)")
-
-    def __post_init__(self) -> None:
-        settle(self, "indenter")
 
     @property
     def reach(self) -> float:
@@ -81,7 +82,7 @@ class Circle:
 
 
 @dataclass(frozen=True)
-class PowerLaw:
+class PowerLaw(_Shape):
     """A blunt (n > 2) or pointed (n < 2) indenter, h = |x|^n/(n L^(n-1)), n >= 1.
 
     With n = 2 it is the parabola of radius L; the slope is 1 at |x| = L for every n.
@@ -91,14 +92,10 @@ class PowerLaw:
     """
 
     shape: ClassVar[str] = "power-law"
-    convex: ClassVar[bool] = True
     reach: ClassVar[float] = math.inf
     kinks: ClassVar[tuple[float, ...]] = (0.0,)
     length: float = quantity("m", "L, where |h'| = 1")
     exponent: float = quantity("1", "n, at least 1", minimum=1.0, exclusive=False)
-
-    def __post_init__(self) -> None:
-        settle(self, "indenter")
 
     def height(self, x: Value) -> Value:
         """Return h(x)."""
@@ -110,7 +107,7 @@ class PowerLaw:
 
 
 @dataclass(frozen=True)
-class Wedge:
+class Wedge(_Shape):
     """A wedge, h = slope |x|.
 
     >>> Wedge(inclination=0.1).height(-0.02)
@@ -118,13 +115,9 @@ class Wedge:
     """
 
     shape: ClassVar[str] = "wedge"
-    convex: ClassVar[bool] = True
     reach: ClassVar[float] = math.inf
     kinks: ClassVar[tuple[float, ...]] = (0.0,)
     inclination: float = quantity("1", "slope |h'| of the flanks")
-
-    def __post_init__(self) -> None:
-        settle(self, "indenter")
 
     def height(self, x: Value) -> Value:
         """Return h(x)."""
@@ -156,13 +149,9 @@ class Profile:
         if not (callable(self.height_function) and callable(self.slope_function)):
             raise SceneError(["indenter: expected functions h(x) and h'(x) of one float"])
         if not (isinstance(self.reach, (int, float)) and self.reach > 0.0):
-            raise SceneError(
-                [problem("indenter.reach", self.reach, "expected a number above 0, in m")]
-            )
+            raise mistake("indenter.reach", self.reach, "expected a number above 0, in m")
         if not (isinstance(self.kinks, (tuple, list)) and all(map(_is_finite, self.kinks))):
-            raise SceneError(
-                [problem("indenter.kinks", self.kinks, "expected finite numbers, in m")]
-            )
+            raise mistake("indenter.kinks", self.kinks, "expected finite numbers, in m")
         object.__setattr__(self, "kinks", tuple(map(float, self.kinks)))
 
     def height(self, x: Value) -> Value:

@@ -204,12 +204,9 @@ class Scene:
         parts: dict[str, Any] = {
             "indenter": Indenter, "foundation": Foundation, "support": Support, "drive": Drive, "run": Run,
         }  # fmt: skip
+        told = {name: getattr(kind, "__name__", f"one of {kind}") for name, kind in parts.items()}
         problems = [
-            problem(
-                name,
-                getattr(self, name),
-                f"expected {getattr(kind, '__name__', 'one of ' + str(kind))}",
-            )
+            problem(name, getattr(self, name), f"expected {told[name]}")
             for name, kind in parts.items()
             if not isinstance(getattr(self, name), kind)
         ]

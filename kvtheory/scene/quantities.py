@@ -6,7 +6,8 @@ The reader of scene files, the template, the writer and the constructors work fr
 import dataclasses
 import difflib
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from functools import cache
 from typing import Any
@@ -51,10 +52,10 @@ class Quantity:
         """Whether every `value` (in SI) is finite and in range."""
         if isinstance(value, float):  # the most frequent, and NumPy takes ten times as long for it
             above = value > self.minimum if self.exclusive else value >= self.minimum
-            return above and math.isfinite(value) and value < self.below
-        array = np.asarray(value)
-        inside = array > self.minimum if self.exclusive else array >= self.minimum
-        return bool(np.all(np.isfinite(array) & inside & (array < self.below)))
+            return math.isfinite(value) and above and value < self.below
+        value = np.asarray(value)
+        above = value > self.minimum if self.exclusive else value >= self.minimum
+        return bool(np.all(np.isfinite(value) & above & (value < self.below)))
 
     @property
     def range(self) -> str:
@@ -185,31 +186,47 @@ def problem(key: str, given: Any, what: str) -> str:
     return f"{key} = {shown}: {what}"
 
 
+def mistake(key: str, given: Any, what: str) -> SceneError:
+    """Return the error about one mistake alone."""
+    return SceneError([problem(key, given, what)])
+
+
+@contextmanager
+def collecting(problems: list[str], key: str, given: Any) -> Iterator[None]:
+    """Add what is wrong with a value that was given to `problems`, instead of raising it."""
+    try:
+        yield
+    except SceneError as error:
+        problems += error.problems
+    except ValueError as error:
+        problems.append(problem(key, given, str(error)))
+
+
 MEANT = {
-    **dict.fromkeys(
-        ("E", "young", "youngs_modulus", "elastic_modulus", "shear_modulus"), "modulus"
-    ),
-    **dict.fromkeys(("nu", "ν", "poisson"), "poisson_ratio"),
-    **dict.fromkeys(("h", "height"), "thickness"),
-    **dict.fromkeys(("K", "rigidity", "k_s", "spring"), "stiffness"),
-    **dict.fromkeys(
-        ("tau", "τ", "relaxation_time", "damping", "viscosity", "C"), "retardation_time"
-    ),
-    **dict.fromkeys(("R", "diameter", "curvature"), "radius"),
-    **dict.fromkeys(("V", "v", "speed", "sliding_velocity"), "velocity"),
-    **dict.fromkeys(("W", "weight", "force"), "load"),
-    **dict.fromkeys(("delta", "δ", "indentation", "penetration"), "depth"),
-    **dict.fromkeys(("m", "M", "inertia"), "mass"),
-    **dict.fromkeys(("g", "acceleration"), "gravity"),
-    **dict.fromkeys(("t_end", "end", "length"), "duration"),
-    **dict.fromkeys(("mu", "μ", "µ", "friction"), "friction_coefficient"),
-    **dict.fromkeys(("F", "F_x", "friction_load"), "friction_force"),
-    **dict.fromkeys(("F_z", "contact_force"), "normal_force"),
-    **dict.fromkeys(("a", "contact_length", "half_width"), "half_length"),
-    **dict.fromkeys(("p", "p_max", "pressure", "max_pressure"), "peak_pressure"),
-    **dict.fromkeys(("x_LE", "front"), "leading_edge"),
-    **dict.fromkeys(("x_TE", "rear"), "trailing_edge"),
-    "l_r": "retardation_length",
+    symbol: name
+    for name, symbols in {
+        "modulus": "E young youngs_modulus elastic_modulus shear_modulus",
+        "poisson_ratio": "nu ν poisson",
+        "thickness": "h height",
+        "stiffness": "K rigidity k_s spring",
+        "retardation_time": "tau τ relaxation_time damping viscosity C",
+        "radius": "R diameter curvature",
+        "velocity": "V v speed sliding_velocity",
+        "load": "W weight force",
+        "depth": "delta δ indentation penetration",
+        "mass": "m M inertia",
+        "gravity": "g acceleration",
+        "duration": "t_end end length",
+        "friction_coefficient": "mu μ µ friction",
+        "friction_force": "F F_x friction_load",
+        "normal_force": "F_z contact_force",
+        "half_length": "a contact_length half_width",
+        "peak_pressure": "p p_max pressure max_pressure",
+        "leading_edge": "x_LE front",
+        "trailing_edge": "x_TE rear",
+        "retardation_length": "l_r",
+    }.items()
+    for symbol in symbols.split()
 }
 """Names by symbols and by other words, which no likeness of letters would find."""
 

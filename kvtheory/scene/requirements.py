@@ -3,6 +3,9 @@
 from kvtheory.scene.indenters import Parabola, PowerLaw, Wedge
 from kvtheory.scene.model import Scene
 
+CLOSED_FORMS = (Parabola, PowerLaw, Wedge)
+"""Shapes whose steady sliding is in closed form, with one scalar root at most."""
+
 
 def lacks_parabola(scene: Scene) -> str:
     """Say why a method that needs a parabola does not hold for a scene; nothing if it does.
@@ -10,13 +13,7 @@ def lacks_parabola(scene: Scene) -> str:
     >>> lacks_parabola(Scene())
     ''
     """
-    if isinstance(scene.indenter, Parabola):
-        return ""
-    return f'holds for the parabola only, not for indenter.shape = "{scene.indenter.shape}"'
-
-
-CLOSED_FORMS = (Parabola, PowerLaw, Wedge)
-"""Shapes whose steady sliding is in closed form, with one scalar root at most."""
+    return _lacks(scene, (Parabola,), "the parabola")
 
 
 def lacks_closed_form(scene: Scene) -> str:
@@ -25,12 +22,13 @@ def lacks_closed_form(scene: Scene) -> str:
     >>> lacks_closed_form(Scene())
     ''
     """
-    if isinstance(scene.indenter, CLOSED_FORMS):
+    return _lacks(scene, CLOSED_FORMS, "the parabola, the power law and the wedge")
+
+
+def _lacks(scene: Scene, shapes: tuple[type, ...], named: str) -> str:
+    if isinstance(scene.indenter, shapes):
         return ""
-    return (
-        "holds for the parabola, the power law and the wedge only, not for indenter.shape = "
-        f'"{scene.indenter.shape}"'
-    )
+    return f'holds for {named} only, not for indenter.shape = "{scene.indenter.shape}"'
 
 
 def require_closed_form(scene: Scene, what: str) -> None:

@@ -10,8 +10,22 @@ AT_LAST = 20.0
 """Rise times after which tanh is 1 to the last digit."""
 
 
+class _Waveform:
+    final_velocity: ClassVar[float | None] = None
+
+    def __post_init__(self) -> None:
+        settle(self, "drive")
+
+
 @dataclass(frozen=True)
-class Sine:
+class _Swing(_Waveform):
+    amplitude: float = quantity("m/s", "largest velocity less the mean")
+    frequency: float = quantity("1/s", "cycles per time")
+    mean: float = quantity("m/s", "mean velocity", minimum=-math.inf, default=0.0)
+
+
+@dataclass(frozen=True)
+class Sine(_Swing):
     """V = mean + amplitude sin(2 pi frequency t), in m/s.
 
     >>> round(Sine(amplitude="100 mm/s", frequency="5 Hz")(0.05), 12)
@@ -19,13 +33,6 @@ class Sine:
     """
 
     waveform: ClassVar[str] = "sine"
-    final_velocity: ClassVar[None] = None
-    amplitude: float = quantity("m/s", "largest velocity less the mean")
-    frequency: float = quantity("1/s", "cycles per time")
-    mean: float = quantity("m/s", "mean velocity", minimum=-math.inf, default=0.0)
-
-    def __post_init__(self) -> None:
-        settle(self, "drive")
 
     def __call__(self, t: float) -> float:
         """Return V."""
@@ -33,7 +40,7 @@ class Sine:
 
 
 @dataclass(frozen=True)
-class Triangle:
+class Triangle(_Swing):
     """V rises and falls in straight lines between mean + amplitude and mean - amplitude, from the mean.
 
     >>> wave = Triangle(amplitude=0.1, frequency=5.0)
@@ -42,13 +49,6 @@ class Triangle:
     """
 
     waveform: ClassVar[str] = "triangle"
-    final_velocity: ClassVar[None] = None
-    amplitude: float = quantity("m/s", "largest velocity less the mean")
-    frequency: float = quantity("1/s", "cycles per time")
-    mean: float = quantity("m/s", "mean velocity", minimum=-math.inf, default=0.0)
-
-    def __post_init__(self) -> None:
-        settle(self, "drive")
 
     def __call__(self, t: float) -> float:
         """Return V."""
@@ -68,7 +68,7 @@ class Triangle:
 
 
 @dataclass(frozen=True)
-class SmoothRamp:
+class SmoothRamp(_Waveform):
     """V = velocity tanh(t/rise_time): from rest to a velocity without a kink but at the start.
 
     >>> round(SmoothRamp(velocity=0.1, rise_time="10 ms")(0.01), 6)
@@ -79,11 +79,8 @@ class SmoothRamp:
     velocity: float = quantity("m/s", "velocity at last", minimum=-math.inf)
     rise_time: float = quantity("s", "time in which it comes to tanh 1 = 76 % of it")
 
-    def __post_init__(self) -> None:
-        settle(self, "drive")
-
     @property
-    def final_velocity(self) -> float:
+    def final_velocity(self) -> float:  # type: ignore[override]
         """The velocity at last."""
         return self.velocity
 
