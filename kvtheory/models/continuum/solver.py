@@ -46,6 +46,7 @@ class ScaledEvent(NamedTuple):
 class Moment(NamedTuple):
     """State at one time in scaled form; edges are NaN and states ``"free"`` in flight."""
 
+    s: float
     depth: float
     rate: float
     acceleration: float
@@ -145,7 +146,7 @@ class Trajectory:
         row = self.states([s])[0].tolist()
         for side in (evaluation.LEFT_STATE, evaluation.RIGHT_STATE):
             row[side] = STATE_NAMES[row[side]]
-        return Moment(*row[: evaluation.PEAK_PRESSURE])
+        return Moment(s, *row[: evaluation.PEAK_PRESSURE])
 
     def states(self, s: ArrayLike) -> NDArray[np.float64]:
         """Return the states at an array of times: a row for each, laid out as in `states`."""
