@@ -117,7 +117,7 @@ _PARAMETERS: dict[str, tuple[str, ...]] = {
     "recall": ("lhs", "rhs"),
     "equal": ("lhs", "rhs", "cases"),
     "integral": ("lhs", "integrand", "over", "antiderivative", "value"),
-    "root": ("expr", "variable", "value"),
+    "root": ("expr", "variable", "value", "name"),
     "unique_root": ("expr", "over"),
     "sign": ("expr", "relation", "bound", "over"),
     "where": ("condition",),

@@ -83,10 +83,12 @@ class Steps:
         self._zero(ends[1] - ends[0] - self._put(value), f"{lhs} = {value}")
         self.rules[sp.sympify(lhs)] = value
 
-    def root(self, expr: Expr, variable: Expr, value: Expr) -> None:
-        """Check that the expression vanishes there."""
+    def root(self, expr: Expr, variable: Expr, value: Expr, name: Expr | None = None) -> None:
+        """Check that the expression vanishes there; the root may have a name of its own."""
         there = self._put(expr).subs(variable, self._put(value))
         self._zero(there, f"{expr} = 0 at {variable} = {value}")
+        if name is not None:
+            self.rules[name] = sp.sympify(value)
 
     def unique_root(self, expr: Expr, over: Over) -> None:
         """Check that the polynomial has one root between the bounds."""
@@ -156,8 +158,19 @@ class Steps:
     def _put(self, expr: Expr) -> Expr:
         before, after = None, sp.sympify(expr)
         while after != before:
-            before, after = after, after.subs(self.rules).doit(integrals=False)
+            before, after = after, self._elsewhere(after.subs(self.rules)).doit(integrals=False)
         return after
+
+    def _elsewhere(self, expr: Expr) -> Expr:
+        """Put in a function that is given at one variable where it stands at another."""
+        for lhs, rhs in self.rules.items():
+            if isinstance(lhs, AppliedUndef) and all(part.is_Symbol for part in lhs.args):
+                calls = [c for c in expr.atoms(AppliedUndef) if c.func == lhs.func and c != lhs]
+                if not rhs.has(lhs.func):
+                    for call in calls:
+                        at = dict(zip(lhs.args, call.args, strict=True))
+                        expr = expr.subs(call, rhs.subs(at, simultaneous=True))
+        return expr
 
     def _zero(self, expr: Expr, claim: str, *, quiet: bool = False) -> None:
         masked = _without_functions(expr)
