@@ -343,7 +343,9 @@ def _trailing_text(closed: bool, blunt: bool) -> str:
 
 
 _FALLS = "negative, as $h' > 0$ and $h'' \\ge 0$: the pressure has one zero"
-_SHAPE = r"In terms of the distance $\bar x = |x|$ from the lowest line; a prime is the derivative with respect to it."
+_SHAPE = (
+    r"In terms of the distance $\bar x = |x|$ from the lowest line, by which primes differentiate."
+)
 _EXPLICIT_A = r"The half length $a$ of the contact at rest; the leading edge is at $x = -a$."
 _IMPLICIT_A = (
     r"Here the closed form ends: the half length $a$ is the root of $h(a) = \delta$, one because $h$ "

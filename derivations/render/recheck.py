@@ -158,19 +158,8 @@ class Steps:
     def _put(self, expr: Expr) -> Expr:
         before, after = None, sp.sympify(expr)
         while after != before:
-            before, after = after, self._elsewhere(after.subs(self.rules)).doit(integrals=False)
+            before, after = after, after.subs(self.rules).doit(integrals=False)
         return after
-
-    def _elsewhere(self, expr: Expr) -> Expr:
-        """Put in a function that is given at one variable where it stands at another."""
-        for lhs, rhs in self.rules.items():
-            if isinstance(lhs, AppliedUndef) and all(part.is_Symbol for part in lhs.args):
-                calls = [c for c in expr.atoms(AppliedUndef) if c.func == lhs.func and c != lhs]
-                if not rhs.has(lhs.func):
-                    for call in calls:
-                        at = dict(zip(lhs.args, call.args, strict=True))
-                        expr = expr.subs(call, rhs.subs(at, simultaneous=True))
-        return expr
 
     def _zero(self, expr: Expr, claim: str, *, quiet: bool = False) -> None:
         masked = _without_functions(expr)
@@ -232,6 +221,11 @@ class Steps:
             raise AssertionError(f"{self.label}: {claim} does not hold")
         if not quiet:
             print(f"{self.label}: {claim}   [{how}]")
+
+
+def Rank(matrix: Expr) -> Expr:  # noqa: N802
+    """Return the rank of a matrix of numbers."""
+    return sp.Integer(matrix.rank())
 
 
 def _has_powers(expr: Expr) -> bool:
