@@ -263,7 +263,7 @@ class _Chapter:
         proof.define(delta, depth, "the leading edge")
         limit = depth / tip
         proof.equal(depth - limit * tip, sp.S.Zero,
-                    rf"no pressure just behind the tip from $l_{{\mathrm{{r}}}} = {tex(limit)}$ on")  # fmt: skip
+                    rf"no pressure behind the tip from $l_{{\mathrm{{r}}}} = {tex(limit)}$ on")  # fmt: skip
         load, friction = K * (a * depth - area + l_r * depth), K * (depth**2 / 2 + l_r * squares)
         for force, weight, value in ((W, sp.S.One, load), (F, self.slope, friction)):
             inner = sp.expand(weight * K * (delta - self.rise + l_r * self.slope))

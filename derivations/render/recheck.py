@@ -73,7 +73,7 @@ class Steps:
         """Check an antiderivative, and the difference of its values at the bounds."""
         variable, low, high = over[0], self._put(over[1]), self._put(over[2])
         primitive, inner = self._put(antiderivative), self._put(integrand)
-        slope = sp.diff(primitive, variable)
+        slope = self._put(sp.diff(primitive, variable))
         self._zero(slope - inner, f"the derivative of {antiderivative}", quiet=True)
         ends = [
             primitive.subs(variable, end) if end.is_finite else sp.limit(primitive, variable, end)
