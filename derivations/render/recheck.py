@@ -158,7 +158,10 @@ class Steps:
     def _put(self, expr: Expr) -> Expr:
         before, after = None, sp.sympify(expr)
         while after != before:
-            before, after = after, after.subs(self.rules).doit(integrals=False)
+            before, named = after, None
+            while after != named:  # a derivative acts on what its names stand for
+                named, after = after, after.subs(self.rules)
+            after = after.doit(integrals=False)
         return after
 
     def _zero(self, expr: Expr, claim: str, *, quiet: bool = False) -> None:
