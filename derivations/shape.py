@@ -262,8 +262,8 @@ class _Chapter:
         proof = self._proof("tip", "High velocity: the contact ends at the tip", _TIP)
         proof.define(delta, depth, "the leading edge")
         limit = depth / tip
-        bare = rf"no pressure just behind the tip from $l_{{\mathrm{{r}}}} = {tex(limit)}$ on"
-        proof.equal(depth - limit * tip, sp.S.Zero, bare)
+        proof.equal(depth - limit * tip, sp.S.Zero,
+                    rf"no pressure behind the tip from $l_{{\mathrm{{r}}}} = {tex(limit)}$ on")  # fmt: skip
         load, friction = K * (a * depth - area + l_r * depth), K * (depth**2 / 2 + l_r * squares)
         for force, weight, value in ((W, sp.S.One, load), (F, self.slope, friction)):
             inner = sp.expand(weight * K * (delta - self.rise + l_r * self.slope))
@@ -344,8 +344,7 @@ def _trailing_text(closed: bool, blunt: bool) -> str:
 
 _FALLS = "negative, as $h' > 0$ and $h'' \\ge 0$: the pressure has one zero"
 _SHAPE = (
-    r"In terms of the distance $\bar x = |x|$ from the lowest line; "
-    "a prime is the derivative with respect to it."
+    r"In terms of the distance $\bar x = |x|$ from the lowest line, by which primes differentiate."
 )
 _EXPLICIT_A = r"The half length $a$ of the contact at rest; the leading edge is at $x = -a$."
 _IMPLICIT_A = (

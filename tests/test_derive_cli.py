@@ -155,12 +155,12 @@ def test_numbers_stand_in_every_format_that_carries_text(tmp_path):
 
 def test_letters_are_applied_everywhere(tmp_path):
     mine = tmp_path / "mine.toml"
-    mine.write_text('l_r = "\\\\ell_0"\na = "\\\\ell_1"\n')
+    mine.write_text('l_r = "\\\\ell_0"\na = "H"\n')
     run("--only", "27,28,29", "--notation", str(mine), "--format", "tex,html,md,ipynb,json",
         "-o", str(tmp_path))  # fmt: skip
     found = entries(tmp_path)
     assert found["eq29"]["latex"] == r"\ell_0 = V \tau"
-    assert found["eq28"]["latex"] == r"\ell_1 = \sqrt{2 R \delta}"
+    assert found["eq28"]["latex"] == r"H = \sqrt{2 R \delta}"
     for path in (p for p in tmp_path.rglob("*") if p.suffix in {".tex", ".md", ".json"}):
         assert r"l_{\mathrm{r}}" not in path.read_text(encoding="utf-8"), path
 

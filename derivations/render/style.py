@@ -48,8 +48,8 @@ article:target > h3 { text-decoration: underline 2px; text-underline-offset: 0.2
   border-left: 2px solid var(--rule); }
 .steps li { padding: 0.15rem 0 0.15rem 0.3rem; }
 .steps li.result { --paper: var(--result); background: var(--result); margin-left: -0.9rem;
-  padding-left: 1.2rem;
-  display: grid; grid-template-columns: minmax(0, 1fr) auto; align-items: last baseline; }
+  padding-left: 1.2rem; display: grid; grid-template-columns: minmax(0, 1fr) auto;
+  align-items: last baseline; }
 .steps li.step { padding-right: 3rem; }
 .steps .number { min-width: 3rem; padding: 0 0.3rem 0 0.6rem; text-align: right;
   font-variant-numeric: tabular-nums; }
