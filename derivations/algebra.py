@@ -15,6 +15,7 @@ from derivations.conditions import (
     proves_nonzero,
     proves_positive,
 )
+from derivations.identity import vanishes
 
 
 class UndecidedError(ArithmeticError):
@@ -57,9 +58,12 @@ def _by_distance(expr: sp.Expr) -> sp.Expr:
 def difference(left: sp.Expr, right: sp.Expr) -> sp.Expr:
     """Return left - right in a form that is literally 0 when it is identically zero.
 
-    The numerator over the common denominator is expanded, with every root an algebraic generator;
-    a number is decided by its minimal polynomial, and only what is left goes to `sympy.simplify`.
+    What is a fraction of symbols, roots and powers is decided in a ring of polynomials. Else the
+    numerator over the common denominator is expanded, with every root an algebraic generator; a
+    number is decided by its minimal polynomial, and only what is left goes to `sympy.simplify`.
     """
+    if left == right or vanishes(left - right):
+        return sp.S.Zero
     numerator, denominator = sp.fraction(sp.together(normalise(left - right)))
     rest = sp.expand(normalise(numerator))
     if rest != 0 and not rest.free_symbols and rest.is_algebraic:
