@@ -69,7 +69,7 @@ def difference(left: sp.Expr, right: sp.Expr) -> sp.Expr:
     if rest != 0 and not rest.free_symbols and rest.is_algebraic:
         variable = sp.Dummy()
         rest = rest if sp.minimal_polynomial(rest, variable) != variable else sp.S.Zero
-    return rest if rest == 0 else sp.simplify(rest / denominator)
+    return sp.S.Zero if vanishes(rest) else sp.simplify(rest / denominator)
 
 
 def roots_between(expr: sp.Expr, over: Interval) -> tuple[int, int]:
@@ -233,7 +233,7 @@ def next_order(
     in whole powers of the distance: then the power after the last one that is written bounds the rest.
     """
     h = sp.Symbol("h", positive=True)
-    local = near(_reduced(ratio), variable, point, h)
+    local = near(ratio if _is_rational(ratio) else _reduced(ratio), variable, point, h)
     first, zero = _leading(local, h)
     if difference(first * h**zero, sp.S.One) != 0:
         raise UndecidedError(f"left/right does not tend to 1 but behaves as {first * h**zero}")

@@ -41,13 +41,27 @@ def vanishes(expr: sp.Expr) -> bool:
 def _power(expr: sp.Expr) -> tuple[_Key, int, int]:
     """Return g, k, m with expr = g**k b**m, where b is the base of the generator g."""
     base, exponent = expr.as_base_exp()
-    number, rest = exponent.as_coeff_Mul()
-    if not number.is_Rational or abs(number.p) > _LARGEST:
+    if exponent.is_Rational:
+        if abs(exponent) > _LARGEST:
+            return (expr, sp.S.One), 1, 0
+        key = base, sp.Rational(1, exponent.q)
+        return (key, int(exponent), 0) if exponent.q == 1 else (key, *_split(exponent))
+    whole, rest = exponent.as_coeff_Add()
+    number, rest = rest.as_coeff_Mul()
+    if not (whole.is_Integer and number.is_Rational) or max(abs(whole), abs(number.p)) > _LARGEST:
         return (expr, sp.S.One), 1, 0
-    part = rest / number.q
-    if rest != 1 or number.q == 1:
-        return (base, part), int(number.p), 0
-    return (base, part), int(number.p % number.q), int(number.p // number.q)
+    return (_lowest_terms(base), rest / number.q), int(number.p), int(whole)
+
+
+def _split(exponent: sp.Rational) -> tuple[int, int]:
+    """Return k, m with k/q + m = exponent, 0 < k < q."""
+    return int(exponent.p % exponent.q), int(exponent.p // exponent.q)
+
+
+@lru_cache(maxsize=1024)
+def _lowest_terms(base: sp.Expr) -> sp.Expr:
+    """Write equal bases alike, so that their powers are one generator."""
+    return sp.cancel(base) if base.is_Add or base.is_Mul else base
 
 
 def _whole(expr: sp.Expr) -> bool:
@@ -64,11 +78,15 @@ def _collect(expr: sp.Expr, keys: dict[_Key, None]) -> None:
     elif _whole(expr):
         _collect(expr.base, keys)
     else:
-        key = _power(expr)[0]
-        if key not in keys:
-            keys[key] = None
-            if key[1].is_Rational and key[1] != 1:
-                _collect(key[0], keys)
+        key, _, whole = _power(expr)
+        known = key in keys
+        keys[key] = None
+        if whole or (not known and _is_root(key)):
+            _collect(key[0], keys)
+
+
+def _is_root(key: _Key) -> bool:
+    return bool(key[1].is_Rational and key[1] != 1)
 
 
 class _Polynomials:
@@ -78,8 +96,7 @@ class _Polynomials:
         self._ring, *places = ring([f"g{place}" for place in range(len(keys))], sp.QQ)
         self._places = dict(zip(keys, places, strict=True))
         # A root in a root comes after the one that contains it.
-        roots = [key for key in keys if key[1].is_Rational and key[1] != 1]
-        self._roots = sorted(roots, key=lambda key: -key[0].count_ops())
+        self._roots = sorted(filter(_is_root, keys), key=lambda key: -key[0].count_ops())
 
     def fraction(self, expr: sp.Expr) -> tuple[PolyElement, PolyElement]:
         """Return numerator and denominator."""
