@@ -3,6 +3,8 @@
 Nothing here is numerical. A function that cannot decide raises `UndecidedError`; it never guesses.
 """
 
+from functools import lru_cache
+
 import sympy as sp
 from sympy.core.function import AppliedUndef
 
@@ -13,6 +15,7 @@ from derivations.conditions import (
     proves_nonzero,
     proves_positive,
 )
+from derivations.identity import vanishes
 
 
 class UndecidedError(ArithmeticError):
@@ -23,6 +26,7 @@ _CONTINUOUS = (sp.exp, sp.sin, sp.cos, sp.sinh, sp.cosh, sp.tanh, sp.atan, sp.Ab
 """Functions without jumps or poles where they are real."""
 
 
+@lru_cache(maxsize=4096)
 def normalise(expr: sp.Expr) -> sp.Expr:
     """Write tangents as quotients, minima by cases, and factor what stands under roots.
 
@@ -50,18 +54,22 @@ def _by_distance(expr: sp.Expr) -> sp.Expr:
     return (one + other + sign * sp.Abs(one - other)) / 2
 
 
+@lru_cache(maxsize=4096)
 def difference(left: sp.Expr, right: sp.Expr) -> sp.Expr:
     """Return left - right in a form that is literally 0 when it is identically zero.
 
-    The numerator over the common denominator is expanded, with every root an algebraic generator;
-    a number is decided by its minimal polynomial, and only what is left goes to `sympy.simplify`.
+    What is a fraction of symbols, roots and powers is decided in a ring of polynomials. Else the
+    numerator over the common denominator is expanded, with every root an algebraic generator; a
+    number is decided by its minimal polynomial, and only what is left goes to `sympy.simplify`.
     """
+    if left == right or vanishes(left - right):
+        return sp.S.Zero
     numerator, denominator = sp.fraction(sp.together(normalise(left - right)))
     rest = sp.expand(normalise(numerator))
     if rest != 0 and not rest.free_symbols and rest.is_algebraic:
         variable = sp.Dummy()
         rest = rest if sp.minimal_polynomial(rest, variable) != variable else sp.S.Zero
-    return rest if rest == 0 else sp.simplify(rest / denominator)
+    return sp.S.Zero if vanishes(rest) else sp.simplify(rest / denominator)
 
 
 def roots_between(expr: sp.Expr, over: Interval) -> tuple[int, int]:
@@ -158,14 +166,34 @@ def leading_term(
     h is ``variable`` at 0, ``1/variable`` at infinity and ``point - variable`` elsewhere.
     """
     h = sp.Symbol("h", positive=True)
-    local = near(expr, variable, point, h)
+    return *_leading(near(expr, variable, point, h), h), h
+
+
+def _leading(local: sp.Expr, h: sp.Symbol) -> tuple[sp.Expr, sp.Expr]:
+    """Return (c, k) with local = c h**k + higher order."""
     if local == 0:
         raise UndecidedError("the expression is identically zero, it has no leading term")
+    found = _lowest_powers(local, h)
+    if found:
+        return found
     try:
         coefficient, exponent = local.leadterm(h)
     except (ValueError, NotImplementedError, sp.PoleError) as error:
         raise UndecidedError(f"{local} has no leading power of {h}") from error
-    return sp.radsimp(coefficient), exponent, h
+    return sp.radsimp(coefficient), exponent
+
+
+def _lowest_powers(local: sp.Expr, h: sp.Symbol) -> tuple[sp.Expr, sp.Expr] | None:
+    """Read the leading term of a rational function off; None for any other expression."""
+    if not _is_rational(local):
+        return None
+    (top, one), (bottom, other) = (
+        (polynomial.coeff_monomial(h**power), power)
+        for part in sp.fraction(local)
+        for polynomial in [sp.Poly(part, h)]
+        for (power,) in [min(polynomial.monoms())]
+    )
+    return sp.cancel(top / bottom), sp.Integer(one - other)
 
 
 def near(expr: sp.Expr, variable: sp.Symbol, point: sp.Expr | int, h: sp.Symbol) -> sp.Expr:
@@ -173,7 +201,27 @@ def near(expr: sp.Expr, variable: sp.Symbol, point: sp.Expr | int, h: sp.Symbol)
     if not sp.sympify(point).is_finite and point != sp.oo:
         raise UndecidedError(f"series are taken at a finite point or at infinity, not at {point}")
     place = {sp.S.Zero: h, sp.oo: 1 / h}.get(sp.sympify(point), point - h)
-    return sp.cancel(sp.together(normalise(sp.together(expr.subs(variable, place)))))
+    return _reduced(expr.subs(variable, place))
+
+
+def _reduced(expr: sp.Expr) -> sp.Expr:
+    """Write as one fraction without a common factor."""
+    return sp.cancel(expr if _is_rational(expr) else sp.together(normalise(sp.together(expr))))
+
+
+def _is_rational(expr: sp.Expr) -> bool:
+    """Tell whether only rational numbers and whole powers of symbols are in the expression.
+
+    Then a coefficient that vanishes is literally 0 once it has been expanded.
+    """
+    return all(
+        node.is_Symbol
+        or node.is_Rational
+        or node.is_Add
+        or node.is_Mul
+        or (node.is_Pow and node.exp.is_Integer)
+        for node in sp.preorder_traversal(expr)
+    )
 
 
 def next_order(
@@ -184,17 +232,18 @@ def next_order(
     The small quantity must be positive near the point and vanish there. The ratio must have a series
     in whole powers of the distance: then the power after the last one that is written bounds the rest.
     """
-    exact = sp.cancel(normalise(sp.together(ratio)))
-    first, zero, h = leading_term(exact, variable, point)
+    h = sp.Symbol("h", positive=True)
+    local = near(ratio if _is_rational(ratio) else _reduced(ratio), variable, point, h)
+    first, zero = _leading(local, h)
     if difference(first * h**zero, sp.S.One) != 0:
         raise UndecidedError(f"left/right does not tend to 1 but behaves as {first * h**zero}")
-    local = near(exact, variable, point, h)
     # An absolute value has two series, one for each side of the point.
     if not variable.is_positive and ratio.has(sp.Abs, sp.sign, sp.Piecewise, sp.Min, sp.Max):
         raise UndecidedError(f"{ratio} may have another series on the other side")
-    if not local.is_meromorphic(h, 0) or local.has(sp.Abs, sp.Piecewise, sp.Min, sp.Max):
+    regular = _is_rational(local) or local.is_meromorphic(h, 0)
+    if not regular or local.has(sp.Abs, sp.Piecewise, sp.Min, sp.Max):
         raise UndecidedError(f"{local} has no series in whole powers of {h}")
-    next_c, next_k, _ = leading_term(exact - 1, variable, point)
+    next_c, next_k = _leading(_reduced(local - 1), h)
     eps_c, eps_k, _ = leading_term(eps, variable, point)
     if not (eps_c.is_positive and eps_k.is_positive):
         raise UndecidedError(f"{eps} is not a small positive quantity")

@@ -384,7 +384,8 @@ class Book:
         everything = merged(fact.premises for fact in self._origins.values())
         found = contradiction(everything, self._origins[lhs].premises)
         for condition in self._conditions.positive:
-            if proves_nonnegative(-self._resolve(condition)):
+            gap = self._resolve(condition)
+            if not gap.is_positive and proves_nonnegative(-gap):
                 found = f"{condition} is not positive, as the domain demands"
         if found:
             origin = f" of {label}" if label else ""

@@ -10,7 +10,7 @@ True
 False
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from functools import lru_cache
 
@@ -43,7 +43,11 @@ def proves_positive(expr: sp.Expr, known: Conditions = NONE) -> bool:
 
 def proves_nonnegative(expr: sp.Expr, known: Conditions = NONE) -> bool:
     """Tell whether the expression is never negative where the conditions hold."""
-    expr = sp.sympify(expr)
+    return _is_nonnegative(sp.sympify(expr), known)
+
+
+@lru_cache(maxsize=8192)
+def _is_nonnegative(expr: sp.Expr, known: Conditions) -> bool:
     if expr.is_nonnegative or _sign(expr, known) == 1:
         return True
     if expr.is_Add or expr.is_Mul:
@@ -101,11 +105,32 @@ def _known_sign(expr: sp.Expr, *, strict: bool = True) -> int:
 
 
 def _swept(expr: sp.Expr, known: Conditions) -> Iterator[sp.Expr]:
-    """Yield the expression, and in variables that sweep over what the conditions allow."""
+    """Yield the expression, and in variables that sweep over what the conditions allow, each once."""
+    return _once(_forms(expr, known))
+
+
+def _once(forms: Iterable[sp.Expr]) -> Iterator[sp.Expr]:
+    seen: set[sp.Expr] = set()
+    for form in forms:
+        if form not in seen:
+            seen.add(form)
+            yield form
+
+
+@lru_cache(maxsize=1024)
+def _name(place: int) -> sp.Dummy:
+    """Return a positive variable for one place among the conditions, the same whenever it is asked.
+
+    A new one each time would hide from every cache that the question has been answered before.
+    """
+    return sp.Dummy(f"positive_{place}", positive=True)
+
+
+def _forms(expr: sp.Expr, known: Conditions) -> Iterator[sp.Expr]:
     yield expr
-    for variable, *ends in known.intervals:
+    for place, (variable, *ends) in enumerate(known.intervals):
         low, high = map(sp.sympify, ends)
-        step = sp.Dummy("step", positive=True)
+        step = _name(place)
         if not expr.has(variable) or not (low.is_finite or high.is_finite):
             continue
         if low.is_finite and high.is_finite:
@@ -114,19 +139,19 @@ def _swept(expr: sp.Expr, known: Conditions) -> Iterator[sp.Expr]:
             value = low + step if low.is_finite else high - step
         expr = expr.subs(variable, value)
         yield expr
-    for positive in known.positive:
+    for place, positive in enumerate(known.positive, len(known.intervals)):
         if positive.free_symbols <= expr.free_symbols:
-            yield from _named(expr, positive)
+            yield from _named(expr, positive, _name(place))
     for order in (known.positive[::-1], known.positive):
         solved, rest = expr, order
         while rest:
-            solved, rest = _solved(solved, rest[0], rest[1:])
+            name = _name(len(known.intervals) + len(rest))
+            solved, rest = _solved(solved, rest[0], rest[1:], name)
             yield solved
 
 
-def _named(expr: sp.Expr, positive: sp.Expr) -> Iterator[sp.Expr]:
+def _named(expr: sp.Expr, positive: sp.Expr, name: sp.Dummy) -> Iterator[sp.Expr]:
     """Yield the expression with a name for something positive that it contains as it stands."""
-    name = sp.Dummy("positive", positive=True)
     top, bottom = sp.fraction(sp.together(expr))
     for form in (sp.expand(top) / sp.expand(bottom), sp.factor(expr), expr):
         changed = form.subs(positive, name)
@@ -136,10 +161,9 @@ def _named(expr: sp.Expr, positive: sp.Expr) -> Iterator[sp.Expr]:
 
 
 def _solved(
-    expr: sp.Expr, positive: sp.Expr, rest: tuple[sp.Expr, ...]
+    expr: sp.Expr, positive: sp.Expr, rest: tuple[sp.Expr, ...], name: sp.Dummy
 ) -> tuple[sp.Expr, tuple[sp.Expr, ...]]:
     """Put in for one of its symbols what it is in terms of something positive."""
-    name = sp.Dummy("positive", positive=True)
     # A symbol of known sign would lose it.
     order = sorted(
         positive.free_symbols & expr.free_symbols,
@@ -153,25 +177,41 @@ def _solved(
     return expr, rest
 
 
+@lru_cache(maxsize=8192)
+def _factors(expr: sp.Expr) -> tuple[sp.Expr, ...]:
+    """Return the factors of the numerator and of the denominator."""
+    parts = sp.fraction(sp.together(expr))
+    return tuple(factor for part in parts for factor in sp.Mul.make_args(_factored(part)))
+
+
+def _factored(expr: sp.Expr) -> sp.Expr:
+    """Factor what is not simple already."""
+    if expr.is_Atom:
+        return expr
+    # Sums of positive terms need no factors: their sign is known as they stand.
+    return expr if expr.is_positive else sp.factor(expr)
+
+
+@lru_cache(maxsize=8192)
 def _product_sign(expr: sp.Expr, *, strict: bool) -> int:
     """Return the sign of a product from that of its factors, 0 where one of them is not known.
 
     If it need not be strict, factors may vanish, and 1 and -1 are "not negative", "not positive".
     """
     sign = 1
-    for part in sp.fraction(sp.together(expr)):
-        for factor in sp.Mul.make_args(sp.factor(part)):
-            base, power = factor.as_base_exp()
-            even = bool(power.is_Integer and power % 2 == 0)
-            base = base if power.is_Integer else factor
-            one = _factor_sign(base, strict=strict)
-            if one:
-                sign *= 1 if even else one
-            elif not (even and base.is_real and (base.is_nonzero or not strict)):
-                return 0
+    for factor in _factors(expr):
+        base, power = factor.as_base_exp()
+        even = bool(power.is_Integer and power % 2 == 0)
+        base = base if power.is_Integer else factor
+        one = _factor_sign(base, strict=strict)
+        if one:
+            sign *= 1 if even else one
+        elif not (even and base.is_real and (base.is_nonzero or not strict)):
+            return 0
     return sign
 
 
+@lru_cache(maxsize=8192)
 def _factor_sign(factor: sp.Expr, *, strict: bool) -> int:
     expanded = sp.expand(factor)
     sign = _known_sign(factor, strict=strict) or _known_sign(expanded, strict=strict)
@@ -261,9 +301,9 @@ def open_factors(expr: sp.Expr, known: Conditions) -> list[sp.Expr]:
     sign, unknown = 1, []
     for part in sp.fraction(sp.together(expr)):
         for factor in sp.Mul.make_args(sp.factor(part)):
-            if proves_positive(-factor, known):
-                sign = -sign
-            elif not proves_positive(factor, known):
+            found = _sign(factor, known)
+            sign *= found or 1
+            if not found:
                 unknown.append(factor)
     if not unknown and sign > 0:
         return []

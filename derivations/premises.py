@@ -115,17 +115,18 @@ def _as_polynomials(laws: list[Premise]) -> str:
     return ""
 
 
+_KINDS = ("positive", "negative", "nonnegative", "nonzero", "real", "integer", "finite")
+"""What may be assumed on a symbol and asked of a value."""
+
+
+@lru_cache(maxsize=4096)
 def violates(symbol: sp.Expr, value: sp.Expr) -> bool:
     """Tell whether a value is known to lie outside of what a symbol may be."""
     if value.has(sp.nan, sp.zoo):
         return True
-    wanted = (
-        (symbol.is_positive, value.is_positive), (symbol.is_negative, value.is_negative),
-        (symbol.is_nonnegative, value.is_nonnegative), (symbol.is_nonzero, value.is_nonzero),
-        (symbol.is_real, value.is_real), (symbol.is_integer, value.is_integer),
-        (symbol.is_finite, value.is_finite),
-    )  # fmt: skip
-    if any(asked and known is False for asked, known in wanted):
+    if any(
+        getattr(symbol, f"is_{kind}") and getattr(value, f"is_{kind}") is False for kind in _KINDS
+    ):
         return True
     if value.is_number and symbol.is_real and value.is_real is None:
         return abs(sp.im(value).evalf(20)) > sp.Float("1e-15")
