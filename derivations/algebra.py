@@ -8,14 +8,14 @@ from functools import lru_cache
 import sympy as sp
 from sympy.core.function import AppliedUndef
 
-from derivations.conditions import (
+from .conditions import (
     Conditions,
     Interval,
     proves_nonnegative,
     proves_nonzero,
     proves_positive,
 )
-from derivations.identity import vanishes
+from .identity import vanishes
 
 
 class UndecidedError(ArithmeticError):

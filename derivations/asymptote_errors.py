@@ -9,9 +9,9 @@ from dataclasses import dataclass
 
 import sympy as sp
 
-from derivations.record import Derivation
-from derivations.step import Proof, tex
-from derivations.symbols import (
+from .record import Derivation
+from .step import Proof, tex
+from .symbols import (
     E,
     S,
     b,
@@ -35,7 +35,7 @@ from derivations.symbols import (
     s,
     w,
 )
-from derivations.theorems import (
+from .theorems import (
     FRICTION_COEFFICIENT,
     FRICTION_FORCE,
     LOAD,

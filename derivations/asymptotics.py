@@ -8,11 +8,11 @@ from functools import partial
 
 import sympy as sp
 
-from derivations import steady
-from derivations.book import Shown
-from derivations.record import Derivation
-from derivations.step import Proof
-from derivations.symbols import (
+from . import steady
+from .book import Shown
+from .record import Derivation
+from .step import Proof
+from .symbols import (
     C,
     F,
     K,

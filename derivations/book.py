@@ -10,20 +10,20 @@ from typing import Any, ParamSpec, TypedDict, TypeVar, Unpack, cast
 import sympy as sp
 from sympy.core.relational import Relational
 
-from derivations.algebra import difference
-from derivations.conditions import (
+from .algebra import difference
+from .conditions import (
     Conditions,
     Interval,
     open_factors,
     proves_nonnegative,
     proves_positive,
 )
-from derivations.display import Meaning, UnreadableError, names_in, read_chain
-from derivations.letters import letters, printed, told
-from derivations.premises import Fact, Premise, contradiction, merged, violates, weakest
-from derivations.record import Claim, Derivation, Step, Table
-from derivations.rules import HiddenError, resolve
-from derivations.symbols import TEX, alpha
+from .display import Meaning, UnreadableError, names_in, read_chain
+from .letters import letters, printed, told
+from .premises import Fact, Premise, contradiction, merged, violates, weakest
+from .record import Claim, Derivation, Step, Table
+from .rules import HiddenError, resolve
+from .symbols import TEX, alpha
 
 _P = ParamSpec("_P")
 _Value = TypeVar("_Value")

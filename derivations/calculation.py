@@ -14,13 +14,13 @@ from dataclasses import replace
 import sympy as sp
 from sympy.core.function import AppliedUndef
 
-from derivations import symbols as sym
-from derivations.atoms import atoms, replaced
-from derivations.book import established, tex
-from derivations.letters import letters
-from derivations.nomenclature import BY_LATEX
-from derivations.record import Calculation, Claim, Derivation, Step
-from derivations.render.text import relations
+from . import symbols as sym
+from .atoms import atoms, replaced
+from .book import established, tex
+from .letters import letters
+from .nomenclature import BY_LATEX
+from .record import Calculation, Claim, Derivation, Step
+from .render.text import relations
 
 Numbers = dict[sp.Symbol, sp.Expr]
 

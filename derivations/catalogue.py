@@ -4,7 +4,7 @@ from collections.abc import Callable, Collection
 from functools import cache
 from types import ModuleType
 
-from derivations import (
+from . import (
     asymptote_errors,
     asymptotics,
     circle,
@@ -30,7 +30,7 @@ from derivations import (
     transient_scaling,
     wedge,
 )
-from derivations.record import Derivation
+from .record import Derivation
 
 _CHAPTERS = (
     *(model, steady, friction_identity, asymptotics, tables, groups),

@@ -9,9 +9,9 @@ from functools import partial
 
 import sympy as sp
 
-from derivations.record import Derivation
-from derivations.step import Proof
-from derivations.symbols import (
+from .record import Derivation
+from .step import Proof
+from .symbols import (
     F_1,
     W_1,
     R,
@@ -32,7 +32,7 @@ from derivations.symbols import (
     w,
     xi,
 )  # fmt: skip
-from derivations.theorems import (
+from .theorems import (
     FRICTION_COEFFICIENT,
     FRICTION_FORCE,
     LOAD,

@@ -250,7 +250,7 @@ def _outweighs(total: sp.Expr) -> bool:
 
 def _sign_by_roots(expr: sp.Expr, known: Conditions) -> int:
     """Decide a rational function of one variable by Sturm's theorem."""
-    from derivations.algebra import UndecidedError, sign_between
+    from .algebra import UndecidedError, sign_between
 
     if len(expr.free_symbols) != 1:
         return 0

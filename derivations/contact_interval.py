@@ -8,9 +8,9 @@ from functools import partial
 
 import sympy as sp
 
-from derivations.record import Derivation
-from derivations.step import Proof, tex
-from derivations.symbols import (
+from .record import Derivation
+from .step import Proof, tex
+from .symbols import (
     E,
     L,
     R,
@@ -27,7 +27,7 @@ from derivations.symbols import (
     y,
     zeta,
 )  # fmt: skip
-from derivations.transient_memory import SECTION
+from .transient_memory import SECTION
 
 m = travelled
 _theorem = partial(Proof, equation=None, section=SECTION)

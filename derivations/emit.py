@@ -11,7 +11,7 @@ from pathlib import Path
 import sympy as sp
 from sympy.codegen.cfunctions import expm1, log1p
 
-from derivations import (
+from . import (
     asymptote_errors,
     circle,
     energy,
@@ -23,11 +23,11 @@ from derivations import (
     theorems,
     wedge,
 )
-from derivations import symbols as sym
-from derivations.book import established
-from derivations.symbols import Q, kappa, l, lam, q, r, s, xi, y
-from derivations.symbols import exponent as n
-from derivations.symbols import z_peeled as z
+from . import symbols as sym
+from .book import established
+from .symbols import Q, kappa, l, lam, q, r, s, xi, y
+from .symbols import exponent as n
+from .symbols import z_peeled as z
 
 TARGET = Path(__file__).parents[1] / "kvtheory" / "models" / "steady" / "closed_forms.py"
 

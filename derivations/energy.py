@@ -4,9 +4,9 @@ from functools import partial
 
 import sympy as sp
 
-from derivations.record import Derivation
-from derivations.step import Proof
-from derivations.symbols import (
+from .record import Derivation
+from .step import Proof
+from .symbols import (
     C,
     F,
     F_elastic,
@@ -26,7 +26,7 @@ from derivations.symbols import (
     x_le,
     x_te,
 )
-from derivations.theorems import FRICTION_FORCE, NUMBER, RATIO, UNIT, B
+from .theorems import FRICTION_FORCE, NUMBER, RATIO, UNIT, B
 
 SECTION = "Energy"
 

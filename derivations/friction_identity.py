@@ -8,10 +8,10 @@ from functools import partial
 
 import sympy as sp
 
-from derivations import steady
-from derivations.record import Derivation
-from derivations.step import Proof
-from derivations.symbols import (
+from . import steady
+from .record import Derivation
+from .step import Proof
+from .symbols import (
     C,
     F,
     F_x,

@@ -10,10 +10,10 @@ The base dimensions are force per unit width N, horizontal length X, vertical le
 import sympy as sp
 from sympy.printing.latex import LatexPrinter
 
-from derivations.record import Derivation
-from derivations.rules import Computed
-from derivations.step import Proof, tex
-from derivations.symbols import K, M, R, V, W, delta, mu, tau
+from .record import Derivation
+from .rules import Computed
+from .step import Proof, tex
+from .symbols import K, M, R, V, W, delta, mu, tau
 
 SECTION = "Dimensionless groups"
 

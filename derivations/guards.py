@@ -2,16 +2,16 @@
 
 import sympy as sp
 
-from derivations.algebra import normalise
-from derivations.book import Book, StepError
-from derivations.conditions import (
+from .algebra import normalise
+from .book import Book, StepError
+from .conditions import (
     Interval,
     demands,
     fails_inside,
     proves_nonnegative,
     proves_nonzero,
 )
-from derivations.premises import fixed_value, violates
+from .premises import fixed_value, violates
 
 
 class Guarded(Book):

@@ -83,7 +83,7 @@ def _members(name: str, contents: Collection[str]) -> set[str]:
 
 def write_contents() -> None:
     """Derive everything and replace the table of contents."""
-    from derivations.catalogue import catalogue
+    from .catalogue import catalogue
 
     rows = "".join(f'    "{each.label}": {_quoted(each.title)},\n' for each in catalogue())
     text = (

@@ -11,7 +11,7 @@ import re
 from collections.abc import Mapping
 from functools import cache
 
-from derivations.atoms import replaced
+from .atoms import replaced
 
 _CIRCLE = {r"\varepsilon": r"\gamma", r"\xi": r"\hat x"}
 _LIFTED = {"s": r"\hat a", "f": r"\hat f", "r": r"\hat r"}

@@ -7,9 +7,9 @@ from functools import partial
 
 import sympy as sp
 
-from derivations.record import Derivation
-from derivations.step import Proof
-from derivations.symbols import (
+from .record import Derivation
+from .step import Proof
+from .symbols import (
     C,
     K,
     Lambda,
@@ -34,7 +34,7 @@ from derivations.symbols import (
     tau,
     w,
 )  # fmt: skip
-from derivations.theorems import FRICTION_COEFFICIENT, LOAD, NUMBER, RATIO, SECTION, UNIT, A, B
+from .theorems import FRICTION_COEFFICIENT, LOAD, NUMBER, RATIO, SECTION, UNIT, A, B
 
 DRIVE_CUBED = 3 * (1 - q) ** 3 * (1 + q) / (2 * q**2 * A)
 FRICTION_CUBED = 3 * q * (1 - q) ** 3 * B**3 / (2 * (1 + q) ** 2 * A**4)

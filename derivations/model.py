@@ -4,10 +4,10 @@ from functools import partial
 
 import sympy as sp
 
-from derivations.book import Shown
-from derivations.record import Derivation
-from derivations.step import Proof
-from derivations.symbols import (
+from .book import Shown
+from .record import Derivation
+from .step import Proof
+from .symbols import (
     C,
     F_x,
     F_z,

@@ -10,7 +10,7 @@ from functools import partial
 import sympy as sp
 from sympy.codegen.cfunctions import expm1, log1p
 
-from derivations.power_law import (
+from .power_law import (
     FRICTION_FORCE,
     HIGH_COEFFICIENT,
     LOAD,
@@ -20,10 +20,10 @@ from derivations.power_law import (
     n,
     z,
 )
-from derivations.power_law_weight import AT_REST
-from derivations.record import Derivation
-from derivations.step import Proof, tex
-from derivations.symbols import (
+from .power_law_weight import AT_REST
+from .record import Derivation
+from .step import Proof, tex
+from .symbols import (
     Q,
     bend,
     blunt,

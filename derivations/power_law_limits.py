@@ -4,7 +4,7 @@ from functools import partial
 
 import sympy as sp
 
-from derivations.power_law import (
+from .power_law import (
     FRICTION_COEFFICIENT,
     FRICTION_FORCE,
     HIGH_COEFFICIENT,
@@ -18,9 +18,9 @@ from derivations.power_law import (
     n,
     z,
 )
-from derivations.record import Derivation
-from derivations.step import Proof
-from derivations.symbols import Q, excess, l, l_cross, m_high, m_low, q, w_rest
+from .record import Derivation
+from .step import Proof
+from .symbols import Q, excess, l, l_cross, m_high, m_low, q, w_rest
 
 _theorem = partial(Proof, equation=None, section=SECTION)
 

@@ -7,7 +7,7 @@ from functools import partial
 
 import sympy as sp
 
-from derivations.power_law import (
+from .power_law import (
     FRICTION_FORCE,
     HIGH_COEFFICIENT,
     LOAD,
@@ -20,9 +20,9 @@ from derivations.power_law import (
     n,
     z,
 )
-from derivations.record import Derivation
-from derivations.step import Proof, tex
-from derivations.symbols import (
+from .record import Derivation
+from .step import Proof, tex
+from .symbols import (
     C,
     K,
     L,

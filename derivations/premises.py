@@ -6,9 +6,9 @@ from functools import lru_cache
 
 import sympy as sp
 
-from derivations.conditions import NONE, Conditions
-from derivations.record import STATUSES, Step
-from derivations.rules import is_name
+from .conditions import NONE, Conditions
+from .record import STATUSES, Step
+from .rules import is_name
 
 
 @dataclass(frozen=True)

@@ -5,8 +5,8 @@ from itertools import pairwise
 
 import sympy as sp
 
-from derivations.algebra import UndecidedError, difference, normalise, roots_between
-from derivations.conditions import (
+from .algebra import UndecidedError, difference, normalise, roots_between
+from .conditions import (
     Conditions,
     Interval,
     proves_nonnegative,

@@ -7,7 +7,7 @@ import mpmath
 import sympy as sp
 from sympy.core.function import AppliedUndef
 
-from derivations.algebra import Interval
+from .algebra import Interval
 
 SAMPLES, DIGITS, AGREEMENT, SEED = 64, 50, sp.Rational(1, 10**40), 2020
 """Number of points, digits, allowed relative difference, seed."""

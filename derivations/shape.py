@@ -9,12 +9,12 @@ from collections.abc import Iterator
 
 import sympy as sp
 
-from derivations.book import tex
-from derivations.nomenclature import Symbol
-from derivations.record import Derivation
-from derivations.shape_text import Shape, read_shape
-from derivations.step import Proof, StepError
-from derivations.symbols import (
+from .book import tex
+from .nomenclature import Symbol
+from .record import Derivation
+from .shape_text import Shape, read_shape
+from .step import Proof, StepError
+from .symbols import (
     C,
     F,
     F_ahead,
@@ -63,7 +63,7 @@ def derive_shape(text: str) -> tuple[Derivation, ...]:
 
 def steady_premises() -> tuple[Derivation, ...]:
     """Derive what the chapter recalls."""
-    from derivations.catalogue import catalogue
+    from .catalogue import catalogue
 
     return catalogue(PREMISES)
 
@@ -221,7 +221,7 @@ class _Chapter:
         return proof.done(mu, result)
 
     def _recall_forces(self, proof: Proof) -> None:
-        from derivations.book import established
+        from .book import established
 
         for label, force in (("load", W), ("friction", F)):
             proof.recall(f"shape-{label}", force, established(f"shape-{label}", force))

@@ -17,7 +17,7 @@ from dataclasses import dataclass
 
 import sympy as sp
 
-from derivations.symbols import distance
+from .symbols import distance
 
 LONGEST, MOST_TERMS, HIGHEST = 200, 6, 12
 """Characters of a shape, terms of its sum, and its highest power."""

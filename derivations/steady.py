@@ -4,11 +4,11 @@ from functools import partial
 
 import sympy as sp
 
-from derivations.book import Shown
-from derivations.model import compression_rate, depth_rate, slope
-from derivations.record import Derivation
-from derivations.step import Proof
-from derivations.symbols import (
+from .book import Shown
+from .model import compression_rate, depth_rate, slope
+from .record import Derivation
+from .step import Proof
+from .symbols import (
     C,
     F,
     K,

@@ -1,6 +1,6 @@
 r"""The engine: a proof is a list of steps, and each step is checked when it is made.
 
->>> from derivations.symbols import V, l_r, tau
+>>> from .symbols import V, l_r, tau
 >>> proof = Proof("eq29", 29, section="Steady sliding", title="Retardation length")
 >>> proof.define(l_r, V * tau, "how far an element travels while it relaxes")
 >>> proof.done(l_r, V * tau).latex
@@ -19,7 +19,7 @@ import sympy as sp
 from sympy.core.relational import Relational
 from sympy.printing.latex import LatexPrinter
 
-from derivations.algebra import (
+from .algebra import (
     UndecidedError,
     difference,
     is_continuous,
@@ -28,17 +28,17 @@ from derivations.algebra import (
     sign_between,
     value_at,
 )
-from derivations.book import Shown, StepError, asked, tex
-from derivations.conditions import (
+from .book import Shown, StepError, asked, tex
+from .conditions import (
     Interval,
     proves_nonnegative,
     proves_nonzero,
     proves_positive,
 )
-from derivations.guards import Guarded
-from derivations.premises import Premise, violates
-from derivations.roots import domain_of, only_root
-from derivations.sampling import disagreement, refutation
+from .guards import Guarded
+from .premises import Premise, violates
+from .roots import domain_of, only_root
+from .sampling import disagreement, refutation
 
 _SIGNS = {">": {"+"}, ">=": {"+", "+0"}, "<": {"-"}, "<=": {"-", "-0"}}
 _RELATIONS = {">": ">", ">=": r"\ge", "<": "<", "<=": r"\le"}

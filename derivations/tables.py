@@ -2,12 +2,12 @@
 
 import sympy as sp
 
-from derivations import asymptotics as asy
-from derivations import steady
-from derivations.book import Shown
-from derivations.record import Derivation, Table
-from derivations.step import Proof
-from derivations.symbols import C, K, M, N, R, V, V_star, W, a, delta, delta_0, g, q, tau
+from . import asymptotics as asy
+from . import steady
+from .book import Shown
+from .record import Derivation, Table
+from .step import Proof
+from .symbols import C, K, M, N, R, V, V_star, W, a, delta, delta_0, g, q, tau
 
 SECTION = "Tables"
 

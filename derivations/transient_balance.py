@@ -4,9 +4,9 @@ from functools import partial
 
 import sympy as sp
 
-from derivations.record import Derivation
-from derivations.step import Proof
-from derivations.symbols import (
+from .record import Derivation
+from .step import Proof
+from .symbols import (
     compression,
     d,
     d_s,
@@ -23,9 +23,9 @@ from derivations.symbols import (
     travel,
     xi,
 )  # fmt: skip
-from derivations.transient_memory import OF_TIME, SECTION
-from derivations.transient_motion import CONTACT, FRICTION_FORCE, NORMAL_FORCE
-from derivations.transient_scaling import PRESSURE
+from .transient_memory import OF_TIME, SECTION
+from .transient_motion import CONTACT, FRICTION_FORCE, NORMAL_FORCE
+from .transient_scaling import PRESSURE
 
 _first, _last = sp.symbols("X_1 X_2", real=True)
 ELEMENTS = (material, _first, _last)

@@ -8,9 +8,9 @@ from functools import partial
 
 import sympy as sp
 
-from derivations.record import Derivation
-from derivations.step import Proof
-from derivations.symbols import (
+from .record import Derivation
+from .step import Proof
+from .symbols import (
     E,
     P,
     c,
@@ -32,8 +32,8 @@ from derivations.symbols import (
     xi,
     zeta,
 )  # fmt: skip
-from derivations.transient_memory import OF_TIME, SECTION, SURFACE
-from derivations.transient_scaling import PRESSURE
+from .transient_memory import OF_TIME, SECTION, SURFACE
+from .transient_scaling import PRESSURE
 
 RADICAND = d + d_s + lam**2
 """rho**2 of the edges that peel."""

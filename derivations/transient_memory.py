@@ -8,9 +8,9 @@ from functools import partial
 
 import sympy as sp
 
-from derivations.record import Derivation
-from derivations.step import Proof
-from derivations.symbols import (
+from .record import Derivation
+from .step import Proof
+from .symbols import (
     compression,
     d,
     d_s,
@@ -27,7 +27,7 @@ from derivations.symbols import (
     xi,
     zeta,
 )  # fmt: skip
-from derivations.transient_scaling import PRESSURE
+from .transient_scaling import PRESSURE
 
 SECTION = "Transient: theorems"
 

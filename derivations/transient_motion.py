@@ -4,10 +4,10 @@ from functools import partial
 
 import sympy as sp
 
-from derivations.book import established
-from derivations.record import Derivation
-from derivations.step import Proof, tex
-from derivations.symbols import (
+from .book import established
+from .record import Derivation
+from .step import Proof, tex
+from .symbols import (
     E,
     P,
     a,
@@ -24,9 +24,9 @@ from derivations.symbols import (
     time,
     xi,
 )  # fmt: skip
-from derivations.transient_edges import TOUCHING_PRESSURE, edge_path
-from derivations.transient_memory import SECTION
-from derivations.transient_scaling import PRESSURE
+from .transient_edges import TOUCHING_PRESSURE, edge_path
+from .transient_memory import SECTION
+from .transient_scaling import PRESSURE
 
 CONTACT = (xi, left, right)
 _LOAD_SHARE, _FRICTION_SHARE = sp.Rational(3, 4), -sp.Rational(3, 2)

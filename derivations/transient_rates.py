@@ -4,10 +4,10 @@ from functools import partial
 
 import sympy as sp
 
-from derivations import tables
-from derivations.record import Derivation, Table
-from derivations.step import Proof
-from derivations.symbols import (
+from . import tables
+from .record import Derivation, Table
+from .step import Proof
+from .symbols import (
     K,
     M,
     P,
@@ -37,10 +37,10 @@ from derivations.symbols import (
     w,
     xi,
 )
-from derivations.theorems import LOAD, NUMBER, UNIT, A
-from derivations.transient_memory import SECTION
-from derivations.transient_motion import JACOBIAN, PEELING_NORMAL_FORCE
-from derivations.transient_scaling import PRESSURE
+from .theorems import LOAD, NUMBER, UNIT, A
+from .transient_memory import SECTION
+from .transient_motion import JACOBIAN, PEELING_NORMAL_FORCE
+from .transient_scaling import PRESSURE
 
 DAMPING, STIFFNESS = 3 * per_rate / 4, 3 * per_depth / 4 + kappa
 """How strongly the force on the indenter depends on the rate of the depth, and on the depth."""

@@ -4,12 +4,12 @@ from functools import partial
 
 import sympy as sp
 
-from derivations.book import Shown
-from derivations.groups import k_s
-from derivations.model import compression_rate, depth_rate, slope
-from derivations.record import Derivation
-from derivations.step import Proof
-from derivations.symbols import (
+from .book import Shown
+from .groups import k_s
+from .model import compression_rate, depth_rate, slope
+from .record import Derivation
+from .step import Proof
+from .symbols import (
     W_0,
     C,
     F_z,

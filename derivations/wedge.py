@@ -8,17 +8,17 @@ from functools import partial
 
 import sympy as sp
 
-from derivations.power_law import (
+from .power_law import (
     FRICTION_COEFFICIENT,
     FRICTION_FORCE,
     LOAD,
     SECTION,
     n,
 )
-from derivations.power_law_weight import SCALED_LOAD
-from derivations.record import Derivation
-from derivations.step import Proof
-from derivations.symbols import (
+from .power_law_weight import SCALED_LOAD
+from .record import Derivation
+from .step import Proof
+from .symbols import (
     C,
     K,
     P,

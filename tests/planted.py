@@ -5,8 +5,7 @@ statement past the engine, and as an author would who has a right one.
 """
 
 import sympy as sp
-
-from derivations.step import Proof
+from kvtheory.derivations.step import Proof
 
 x, u = sp.symbols("x u", real=True)
 y, z, a, b = sp.symbols("y z a b", positive=True)

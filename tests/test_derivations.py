@@ -3,11 +3,10 @@
 import mpmath as mp
 import pytest
 import sympy as sp
-
-from derivations import asymptotics, groups, steady, tables
-from derivations import symbols as s
-from derivations.catalogue import SECTIONS, catalogue
-from derivations.record import STATUSES
+from kvtheory.derivations import asymptotics, groups, steady, tables
+from kvtheory.derivations import symbols as s
+from kvtheory.derivations.catalogue import SECTIONS, catalogue
+from kvtheory.derivations.record import STATUSES
 
 DIGITS = 50
 SCENE = {s.R: "0.013", s.K: "2.1e9", s.C: "3.7e8", s.delta: "1.9e-4"}

@@ -4,11 +4,11 @@ import json
 
 import pytest
 from click.testing import CliRunner
+from kvtheory.derivations import catalogue as chapters
+from kvtheory.derivations.catalogue import catalogue
+from kvtheory.derivations.contents import CONTENTS
+from kvtheory.derivations.labels import find
 
-from derivations import catalogue as chapters
-from derivations.catalogue import catalogue
-from derivations.contents import CONTENTS
-from derivations.labels import find
 from kvtheory.cli import main
 
 

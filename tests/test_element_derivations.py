@@ -4,9 +4,9 @@ import mpmath as mp
 import numpy as np
 import pytest
 import sympy as sp
+from kvtheory.derivations import element_schemes as schemes
+from kvtheory.derivations.catalogue import catalogue
 
-from derivations import element_schemes as schemes
-from derivations.catalogue import catalogue
 from kvtheory.models.elements import schemes as simulator
 
 LABELS = {

@@ -8,10 +8,10 @@ import mpmath as mp
 import numpy as np
 import pytest
 import sympy as sp
+from kvtheory.derivations import emit
+from kvtheory.derivations import symbols as sym
+from kvtheory.derivations.symbols import l, lam, q, s, xi
 
-from derivations import emit
-from derivations import symbols as sym
-from derivations.symbols import l, lam, q, s, xi
 from kvtheory.models.steady import closed_forms
 from tests.test_theorems import exact
 

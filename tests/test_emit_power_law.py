@@ -7,8 +7,7 @@ import mpmath as mp
 import numpy as np
 import pytest
 import sympy as sp
-
-from derivations import (
+from kvtheory.derivations import (
     emit,
     power_law,
     power_law_errors,
@@ -16,10 +15,11 @@ from derivations import (
     power_law_weight,
     wedge,
 )
-from derivations import symbols as sym
-from derivations.book import established
-from derivations.symbols import exponent as n
-from derivations.symbols import l, q
+from kvtheory.derivations import symbols as sym
+from kvtheory.derivations.book import established
+from kvtheory.derivations.symbols import exponent as n
+from kvtheory.derivations.symbols import l, q
+
 from kvtheory.models.steady import closed_forms
 from tests import test_emit
 

@@ -6,11 +6,10 @@ from contextlib import redirect_stdout
 from dataclasses import replace
 
 import pytest
-
-from derivations.catalogue import catalogue
-from derivations.render import edition, notebook
-from derivations.render.recheck import Steps
-from derivations.symbols import a, l_r, q
+from kvtheory.derivations.catalogue import catalogue
+from kvtheory.derivations.render import edition, notebook
+from kvtheory.derivations.render.recheck import Steps
+from kvtheory.derivations.symbols import a, l_r, q
 
 
 def executed(derivations):

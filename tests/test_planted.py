@@ -2,9 +2,9 @@
 
 import pytest
 import sympy as sp
+from kvtheory.derivations.book import StepError
+from kvtheory.derivations.step import Proof
 
-from derivations.book import StepError
-from derivations.step import Proof
 from tests import planted
 
 

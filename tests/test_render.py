@@ -10,13 +10,12 @@ from html.parser import HTMLParser
 from pathlib import Path
 
 import pytest
-
-from derivations.atoms import atoms
-from derivations.catalogue import catalogue
-from derivations.letters import letters
-from derivations.nomenclature import SYMBOLS
-from derivations.record import STATUSES, Derivation, Step, Table
-from derivations.render import (
+from kvtheory.derivations.atoms import atoms
+from kvtheory.derivations.catalogue import catalogue
+from kvtheory.derivations.letters import letters
+from kvtheory.derivations.nomenclature import SYMBOLS
+from kvtheory.derivations.record import STATUSES, Derivation, Step, Table
+from kvtheory.derivations.render import (
     RenderError,
     edition,
     fragments,
@@ -27,8 +26,8 @@ from derivations.render import (
     pdf,
     write,
 )
-from derivations.render.edition import symbols_of
-from derivations.render.text import Given, Line, blocks, sentence
+from kvtheory.derivations.render.edition import symbols_of
+from kvtheory.derivations.render.text import Given, Line, blocks, sentence
 
 SAMPLE = (
     Derivation(

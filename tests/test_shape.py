@@ -3,12 +3,11 @@
 import mpmath as mp
 import pytest
 import sympy as sp
-
-from derivations import steady
-from derivations import symbols as s
-from derivations.book import established
-from derivations.shape import derive_shape
-from derivations.shape_text import read_shape
+from kvtheory.derivations import steady
+from kvtheory.derivations import symbols as s
+from kvtheory.derivations.book import established
+from kvtheory.derivations.shape import derive_shape
+from kvtheory.derivations.shape_text import read_shape
 
 DIGITS = 30
 

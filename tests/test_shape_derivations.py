@@ -4,10 +4,15 @@ import mpmath as mp
 import numpy as np
 import pytest
 import sympy as sp
-
-from derivations import contact_interval, friction_identity, power_law, power_law_weight, wedge
-from derivations import symbols as s
-from derivations.catalogue import catalogue
+from kvtheory.derivations import (
+    contact_interval,
+    friction_identity,
+    power_law,
+    power_law_weight,
+    wedge,
+)
+from kvtheory.derivations import symbols as s
+from kvtheory.derivations.catalogue import catalogue
 
 
 @pytest.fixture(scope="module")

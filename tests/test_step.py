@@ -2,9 +2,8 @@
 
 import pytest
 import sympy as sp
-
-from derivations.book import StepError, established
-from derivations.step import Proof
+from kvtheory.derivations.book import StepError, established
+from kvtheory.derivations.step import Proof
 
 x = sp.Symbol("x", real=True)
 y, z = sp.symbols("y z", positive=True)

@@ -8,11 +8,10 @@ from dataclasses import replace
 import mpmath as mp
 import pytest
 import sympy as sp
-
-from derivations import asymptote_errors, circle, emit, energy, master_curve, theorems
-from derivations import symbols as sym
-from derivations.book import StepError, established
-from derivations.symbols import kappa, l, lam, q, s, xi
+from kvtheory.derivations import asymptote_errors, circle, emit, energy, master_curve, theorems
+from kvtheory.derivations import symbols as sym
+from kvtheory.derivations.book import StepError, established
+from kvtheory.derivations.symbols import kappa, l, lam, q, s, xi
 
 CHAPTERS = (theorems, master_curve, energy, asymptote_errors, circle)
 OWNER = {form.symbol: form.label for form in emit.FORMS}

@@ -4,11 +4,10 @@ import mpmath as mp
 import numpy as np
 import pytest
 import sympy as sp
-
-from derivations import symbols as s
-from derivations import transient_edges, transient_motion
-from derivations.catalogue import catalogue
-from derivations.transient_scaling import LEADING, PRESSURE, SECTION, TRAILING
+from kvtheory.derivations import symbols as s
+from kvtheory.derivations import transient_edges, transient_motion
+from kvtheory.derivations.catalogue import catalogue
+from kvtheory.derivations.transient_scaling import LEADING, PRESSURE, SECTION, TRAILING
 
 DIGITS = 50
 CLOSE = mp.mpf("1e-40")

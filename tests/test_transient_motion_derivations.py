@@ -3,10 +3,10 @@
 import mpmath as mp
 import numpy as np
 import pytest
+from kvtheory.derivations import symbols as s
+from kvtheory.derivations import theorems, transient_motion, transient_rates
+from kvtheory.derivations.catalogue import catalogue
 
-from derivations import symbols as s
-from derivations import theorems, transient_motion, transient_rates
-from derivations.catalogue import catalogue
 from tests.test_transient_derivations import CLOSE, DIGITS, close, value
 
 

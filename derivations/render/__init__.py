@@ -1,8 +1,8 @@
 """Derivations printed as LaTeX, HTML, PDF, JSON, Markdown, a notebook and BibTeX."""
 
-from derivations.render.edition import Edition, edition
-from derivations.render.pdf import RenderError, latex_engine
-from derivations.render.write import FORMATS, check_directory, check_formats, write, write_edition
+from .edition import Edition, edition
+from .pdf import RenderError, latex_engine
+from .write import FORMATS, check_directory, check_formats, write, write_edition
 
 __all__ = [
     "FORMATS",

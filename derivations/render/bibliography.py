@@ -1,7 +1,7 @@
 """What to cite: the paper, and the derivations with the version that made them, as BibTeX."""
 
-from derivations.render import frame
-from derivations.render.edition import Edition
+from . import frame
+from .edition import Edition
 
 _PAPER = rf"""@article{{NakanoKono2020,
   author  = {{Nakano, Ken and Kono, Masaharu}},

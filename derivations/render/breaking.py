@@ -9,7 +9,7 @@ r"""Formulas wider than a line, broken as a person would: at relations, then at 
 import re
 from itertools import pairwise
 
-from derivations.render.text import relations
+from .text import relations
 
 EM = {"relation": 1.4, "sign": 1.25, "letter": 0.58, "digit": 0.5, "fence": 0.5, "operator": 0.9}
 """Widths in em, relations and signs with the space about them, a little more than they measure."""

@@ -4,8 +4,8 @@ from collections.abc import Iterator
 
 import sympy as sp
 
-from derivations.book import tex
-from derivations.record import Claim, Derivation
+from ..book import tex
+from ..record import Claim, Derivation
 
 _SIGNS = (("is_positive", "> 0"), ("is_nonnegative", r"\ge 0"), ("is_negative", "< 0"))
 

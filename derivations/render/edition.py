@@ -3,13 +3,13 @@
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
-from derivations.atoms import atoms, replaced
-from derivations.labels import closure, find
-from derivations.nomenclature import HEADS, SYMBOLS, Symbol
-from derivations.record import Derivation, Step, Table
-from derivations.render.domain import domain
-from derivations.render.frame import TITLE
-from derivations.render.text import conclusion, reference
+from ..atoms import atoms, replaced
+from ..labels import closure, find
+from ..nomenclature import HEADS, SYMBOLS, Symbol
+from ..record import Derivation, Step, Table
+from .domain import domain
+from .frame import TITLE
+from .text import conclusion, reference
 
 
 @dataclass(frozen=True)

@@ -5,13 +5,13 @@ A fragment has no number of its own: the document counts it, and refers to it by
 
 from collections.abc import Collection
 
-from derivations.contents import CONTENTS
-from derivations.record import Derivation, Table
-from derivations.render import frame
-from derivations.render.breaking import lines, width
-from derivations.render.edition import Edition
-from derivations.render.latex_words import escape, printed, words
-from derivations.render.text import (
+from ..contents import CONTENTS
+from ..record import Derivation, Table
+from . import frame
+from .breaking import lines, width
+from .edition import Edition
+from .latex_words import escape, printed, words
+from .text import (
     Given,
     Line,
     Piece,

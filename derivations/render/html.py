@@ -6,12 +6,12 @@ from html import escape
 
 from latex2mathml.converter import convert
 
-from derivations.record import Calculation, Derivation, Table
-from derivations.render import frame
-from derivations.render.edition import Edition
-from derivations.render.pdf import RenderError
-from derivations.render.style import STYLE
-from derivations.render.text import (
+from ..record import Calculation, Derivation, Table
+from . import frame
+from .edition import Edition
+from .pdf import RenderError
+from .style import STYLE
+from .text import (
     Given,
     Line,
     Piece,

@@ -4,8 +4,8 @@ import json
 from dataclasses import asdict, fields
 from typing import Any
 
-from derivations.record import Derivation
-from derivations.render.edition import Edition
+from ..record import Derivation
+from .edition import Edition
 
 
 def document(edition: Edition) -> str:

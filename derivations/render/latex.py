@@ -3,11 +3,11 @@
 import re
 from collections.abc import Collection, Sequence
 
-from derivations.record import Calculation, Derivation, Table
-from derivations.render import frame
-from derivations.render.edition import Edition
-from derivations.render.latex_words import escape, printed, words
-from derivations.render.text import (
+from ..record import Calculation, Derivation, Table
+from . import frame
+from .edition import Edition
+from .latex_words import escape, printed, words
+from .text import (
     Given,
     Line,
     blocks,

@@ -3,7 +3,7 @@
 import re
 from collections.abc import Callable, Collection, Iterable
 
-from derivations.render.text import Piece, pieces
+from .text import Piece, pieces
 
 _ESCAPES = {
     **{char: rf"\{char}" for char in "#$%&_{}"},

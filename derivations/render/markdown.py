@@ -2,10 +2,10 @@
 
 from collections.abc import Collection, Iterable
 
-from derivations.record import Derivation, Table
-from derivations.render import frame
-from derivations.render.edition import Edition
-from derivations.render.text import (
+from ..record import Derivation, Table
+from . import frame
+from .edition import Edition
+from .text import (
     Given,
     Line,
     Piece,

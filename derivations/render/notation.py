@@ -4,9 +4,9 @@ import re
 import tomllib
 from pathlib import Path
 
-from derivations.atoms import atoms
-from derivations.labels import unknown
-from derivations.nomenclature import SYMBOLS
+from ..atoms import atoms
+from ..labels import unknown
+from ..nomenclature import SYMBOLS
 
 
 def plain(latex: str) -> str:

@@ -11,10 +11,10 @@ import sympy as sp
 from sympy.core.function import AppliedUndef, UndefinedFunction
 from sympy.printing.str import StrPrinter
 
-from derivations.record import Claim, Derivation, Step
-from derivations.render import frame, recheck
-from derivations.render.edition import Edition
-from derivations.render.text import calculation, number
+from ..record import Claim, Derivation, Step
+from . import frame, recheck
+from .edition import Edition
+from .text import calculation, number
 
 _IMPORTED = (
     "Abs, Derivative, E, Eq, "

@@ -5,10 +5,10 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
 from tempfile import TemporaryFile
 
-from derivations.labels import unknown
-from derivations.record import Derivation
-from derivations.render import bibliography, fragments, html, json, latex, markdown, notebook, pdf
-from derivations.render.edition import Edition, edition
+from ..labels import unknown
+from ..record import Derivation
+from . import bibliography, fragments, html, json, latex, markdown, notebook, pdf
+from .edition import Edition, edition
 
 Files = dict[str, bytes]
 """What a format makes: contents by file name, relative to the directory."""

@@ -14,8 +14,8 @@ from kvtheory.cli.console import Examples, print_json, print_table, progress_bar
 from kvtheory.cli.group import main
 
 if TYPE_CHECKING:
-    from derivations.record import Derivation
-    from derivations.render import Edition
+    from kvtheory.derivations.record import Derivation
+    from kvtheory.derivations.render import Edition
 
 DERIVING = 0.7
 """Share of the work that is deriving; the rest is printing."""
@@ -61,10 +61,10 @@ def derive(
     shape: str | None, notation: Path | None, overrides: Sequence[str], listing: bool, as_json: bool,
 ) -> None:  # fmt: skip
     """Derive the equations, check every step, and print them: LaTeX, HTML, PDF, notebook and more."""
-    from derivations.contents import CONTENTS
-    from derivations.labels import find
-    from derivations.render import check_directory, write_edition
-    from derivations.render.notation import read_notation
+    from kvtheory.derivations.contents import CONTENTS
+    from kvtheory.derivations.labels import find
+    from kvtheory.derivations.render import check_directory, write_edition
+    from kvtheory.derivations.render.notation import read_notation
 
     if listing:
         _print_labels(CONTENTS, as_json)
@@ -106,7 +106,7 @@ def _check_options(
 
 
 def _formats(formats: str | None) -> list[str]:
-    from derivations.render import FORMATS, check_formats, latex_engine
+    from kvtheory.derivations.render import FORMATS, check_formats, latex_engine
 
     if formats is not None:
         wanted = split(formats)
@@ -163,11 +163,11 @@ def _quantities(path: str | None, overrides: Sequence[str]) -> tuple[dict[str, f
 
 def _edition(request: Request, report: Callable[[float], None] | None) -> "Edition":
     """Derive what was asked for."""
-    from derivations.calculation import FOLLOWING, shown_quantities, with_numbers
-    from derivations.catalogue import catalogue
-    from derivations.render import edition
-    from derivations.shape import derive_shape, symbols, title
     from kvtheory import __version__
+    from kvtheory.derivations.calculation import FOLLOWING, shown_quantities, with_numbers
+    from kvtheory.derivations.catalogue import catalogue
+    from kvtheory.derivations.render import edition
+    from kvtheory.derivations.shape import derive_shape, symbols, title
 
     about: dict[str, Any] = {
         "command": _command(request),
