@@ -2,8 +2,7 @@
 
 import pytest
 import sympy as sp
-
-from derivations.identity import vanishes
+from kvtheory.derivations.identity import vanishes
 
 x, y, n = sp.symbols("x y n", positive=True)
 _ROOT = sp.sqrt(1 + x)
