@@ -111,7 +111,7 @@ def test_only_what_is_needed_is_derived(monkeypatch, tmp_path):
 
     monkeypatch.setattr(chapters, "_chapter", count)
     run("--only", "27", "--format", "json", "-o", str(tmp_path))
-    assert derived == ["derivations.model", "derivations.steady"]
+    assert derived == ["kvtheory.derivations.model", "kvtheory.derivations.steady"]
 
 
 # Closure, numbers, letters
