@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from kvtheory.models.continuum import bulk, compiled, deviation, maxima
 from kvtheory.models.continuum import error_estimate as estimate
 from kvtheory.models.continuum import evaluation as e_
-from kvtheory.models.continuum.run import ROOM, Run, as_arrays, begin, with_more_room
+from kvtheory.models.continuum.run import ROOM, Run, begin, with_more_room
 from kvtheory.models.continuum.solved_scene import certified, left_leads, scaled_drive
 from kvtheory.models.continuum.solver import STEP_LIMIT
 from kvtheory.models.continuum.stepping import DONE
@@ -162,7 +162,7 @@ class _Block:
     def _room(self, drive: BaseMotion, units: StaticState) -> list[Run]:
         runs, numbers = [], (float(units.inertia_number), float(units.support_number))
         for tolerance, control in estimate.methods(self.plan.rtol):
-            run = as_arrays(begin(drive, numbers, drive.end, tolerance, control))
+            run = begin(drive, numbers, drive.end, tolerance, control, arrays=True)
             for _ in range(DOUBLINGS):
                 run = with_more_room(run)
             runs.append(run)

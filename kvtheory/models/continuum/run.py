@@ -5,6 +5,7 @@ walk stops before the room runs out.
 """
 
 import math
+from functools import cache
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -87,20 +88,32 @@ class Run(NamedTuple):
 
 
 def begin(
-    drive: BaseMotion, numbers: tuple[float, float], end: float, rtol: float, control: StepControl
+    drive: BaseMotion,
+    numbers: tuple[float, float],
+    end: float,
+    rtol: float,
+    control: StepControl,
+    *,
+    arrays: bool = False,
 ) -> Run:
-    """Return a run at rest: the stationary contact at d = 1; `numbers` are eps and kappa."""
+    """Return a run at rest: the stationary contact at d = 1; `numbers` are eps and kappa.
+
+    Its rows are lists, or arrays for compiled kernels.
+    """
     eps, kappa = numbers
     fixed, stages = math.isinf(kappa), control.stages or stages_for(rtol)
     allowed = max(EVENT_SHARE * rtol, EVENT_FLOOR)
-    given = Given(
-        eps, 0.0 if fixed else kappa, end, fixed, rtol, allowed, control, radau(stages)
-    )  # fmt: skip
-    small = [0.0] * 5, [0] * 9, [0.0] * 2, [0] * 2, [0.0] * 2
+    method = _arrays_of(stages) if arrays else radau(stages)
+    given = Given(eps, 0.0 if fixed else kappa, end, fixed, rtol, allowed, control, method)
+    small: Any = [0.0] * 5, [0] * 9, [0.0] * 2, [0] * 2, [0.0] * 2
     sizes = (
         (ROOM, h_.POWERS + 1 + stages), (3 * ROOM, c_.SIZE), (ROOM, 2), (stages + 3, stages + 1)
     )  # fmt: skip
-    run = Run(given, drive.pieces, *small, *(_lists(*size) for size in sizes))
+    if arrays:
+        large: Any = map(np.zeros, sizes)
+        run = Run(given, np.array(drive.pieces), *map(np.array, small), *large)
+    else:
+        run = Run(given, drive.pieces, *small, *(_lists(*size) for size in sizes))
     rest(run)
     return run
 
@@ -135,8 +148,13 @@ def with_more_room(run: Run) -> Run:
 
 def as_arrays(run: Run) -> Run:
     """Return the run, however far it has come, with arrays for rows."""
-    given = run.given._replace(method=Method(*map(np.array, run.given.method)))
+    given = run.given._replace(method=_arrays_of(len(run.given.method.nodes)))
     return Run(given, *map(np.array, run[1:]))
+
+
+@cache
+def _arrays_of(stages: int) -> Method:
+    return Method(*map(np.array, radau(stages)))
 
 
 def _lists(count: int, size: int) -> list[list[float]]:

@@ -261,7 +261,9 @@ def solve(
         raise ValueError(
             "expected `inertia_number` > 0, `support_number` >= 0, 1e-13 <= `rtol` <= 1e-2"
         )
-    run = begin(drive, (float(inertia_number), float(support_number)), float(end), rtol, control)
+    numbers = float(inertia_number), float(support_number)
+    arrays = compiled.worthwhile() if fast is None else fast
+    run = begin(drive, numbers, float(end), rtol, control, arrays=arrays)
     left, status = max_steps, stepping.PAUSED
     while status != stepping.DONE:
         if not compiled.in_use(run) and (compiled.worthwhile() if fast is None else fast):
