@@ -117,3 +117,44 @@ def test_a_long_history_is_read_in_time_that_grows_with_it():
 def test_a_waveform_survives_a_copy():
     drive = kv.Drive(waveform=WAVES["sine"])
     assert dataclasses.replace(drive, tolerance=1e-9).waveform == drive.waveform
+
+
+@pytest.mark.parametrize("name", ["sine", "triangle"])
+def test_what_changes_too_often_is_refused_by_its_name(name):
+    wave = dataclasses.replace(WAVES[name], frequency=1e9)
+    with pytest.raises(kv.SceneError, match=f'drive.waveform = "{name}": it changes too fast'):
+        kv.transient(kv.Scene(drive=kv.Drive(waveform=wave)))
+
+
+@pytest.mark.parametrize(
+    ("text", "encoding"),
+    [
+        ("t [ms];V [mm/s]\n0;0\n10,5;7,5\n", "cp1252"),
+        ("sep=;\nZeit (ms);Geschwindigkeit (mm/s);Kommentar\n0;0;a\n10,5;7,5;größer\n", "cp1252"),
+        ("V/(mm/s)\tt/ms\n0\t0\n7.5\t10.5\n", "utf-16"),
+        ("time [s],velocity [m/s],depth [m]\n0,0,\n0.0105,0.0075,1e-4\n", "utf-8-sig"),
+    ],
+)
+def test_a_drive_is_read_from_any_table(tmp_path, text, encoding):
+    path = tmp_path / "drive.CSV"
+    path.write_text(text, encoding=encoding)
+    found = kv.load_scene(overrides=[f"drive.file={path}"]).drive.history
+    assert np.array(found) == pytest.approx(np.array([(0.0, 0.0), (0.0105, 0.0075)]))
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        (b"t [ms],V [mm/s]\n0," + b"1" * 200_000 + b"\n", "field larger than field limit"),
+        (bytes(range(256)), "not a text file"),
+        (b"t [ms],x [mm]\n0,1\n", "no column is named v or velocity"),
+        (b"t [ms],V [mm/s],v [m/s]\n0,1,1\n", "more than one column"),
+        (b't [ms],V [mm/s]\n0,"1\n1,1\n', "quotation mark"),
+        (b"t [ms],V [mm/s]\n0,\n1,1\n", "drive.history"),
+    ],
+)
+def test_a_table_that_is_damaged_is_named_as_what_it_is(tmp_path, text, words):
+    path = tmp_path / "drive.csv"
+    path.write_bytes(text)
+    with pytest.raises(kv.SceneError, match=words):
+        kv.load_scene(overrides=[f"drive.file={path}"])

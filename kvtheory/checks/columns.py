@@ -4,11 +4,11 @@
 the indenter, z_A = -depth (Eq. 18), becomes a depth.
 """
 
-import re
 from dataclasses import dataclass
 from difflib import get_close_matches
 
 from kvtheory.results import TRANSIENT_UNITS
+from kvtheory.scene.tables import parts, plain
 from kvtheory.scene.units import to_si
 
 SI_UNITS = {**TRANSIENT_UNITS, "peak_pressure": "N/m^2"}
@@ -32,13 +32,6 @@ SPELLINGS = {
 
 MISSPELT = 0.8
 """Likeness of a name to a known one from which on it is taken for misspelt, and not for something else."""
-_HEADS = (
-    re.compile(r"^(?P<name>.*?)\s*\[(?P<unit>[^\]]*)\]$"),
-    re.compile(r"^(?P<name>.*?)\s*\((?P<unit>.*)\)$"),
-    re.compile(r"^(?P<name>.*?)\s+in\s+(?P<unit>.+)$"),
-    re.compile(r"^(?P<name>[^/]*?)\s*/\s*(?P<unit>.+)$"),
-)
-"""A name and a unit: in brackets, after "in", or, as ISO 80000 has it, after a stroke."""
 
 
 @dataclass(frozen=True)
@@ -50,13 +43,8 @@ class Column:
     factor: float
 
 
-def _plain(name: str) -> str:
-    """Return a name without what people write differently: case, spaces, underlines, TeX."""
-    return re.sub(r"[\s_{}$\\^-]", "", name).casefold()
-
-
 KNOWN = {
-    _plain(spelling): quantity
+    plain(spelling): quantity
     for quantity, spellings in SPELLINGS.items()
     for spelling in spellings.split(", ")
 }
@@ -76,8 +64,9 @@ def recognise(header: str) -> Column | None:
     >>> recognise("z_A [mm]")
     Column(header='z_A [mm]', quantity='depth', factor=-0.001)
     """
-    name, unit = _parts(header.strip())
-    quantity = KNOWN.get(_plain(name))
+    header = header.strip()
+    name, unit = (header, "") if plain(header) in KNOWN else parts(header)  # "dz_A/dt" is a name
+    quantity = KNOWN.get(plain(name))
     if quantity is None:
         hint = _suggestion(name)
         if not hint:
@@ -93,24 +82,10 @@ def recognise(header: str) -> Column | None:
         raise ValueError(f'column "{header}": the unit {error}') from None
 
 
-def _parts(header: str) -> tuple[str, str]:
-    """Return the name and the unit of a column; "dz_A/dt" is a name, "t/ms" is both.
-
-    >>> _parts("t/ms"), _parts("F_z (N/mm)"), _parts("z_A")
-    (('t', 'ms'), ('F_z', 'N/mm'), ('z_A', ''))
-    """
-    if _plain(header) in KNOWN:
-        return header, ""
-    for pattern in _HEADS:
-        if match := pattern.match(header):
-            return match["name"].rstrip(" /"), match["unit"].strip(" ()[]")
-    return header, ""
-
-
 def _suggestion(name: str) -> str:
     """Say which known name is nearest, if one is near, and which there are."""
-    spellings = {_plain(s): s for names in SPELLINGS.values() for s in names.split(", ")}
-    near = get_close_matches(_plain(name), spellings, n=1, cutoff=MISSPELT)
+    spellings = {plain(s): s for names in SPELLINGS.values() for s in names.split(", ")}
+    near = get_close_matches(plain(name), spellings, n=1, cutoff=MISSPELT)
     if not near:
         return ""
     known = "; ".join(f"{q.lstrip('-')}: {names}" for q, names in SPELLINGS.items())

@@ -1,8 +1,5 @@
 """A time series from anybody's program: a CSV, a result with our names, or a mapping of arrays."""
 
-import codecs
-import csv
-import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from os import PathLike
@@ -13,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kvtheory.checks.columns import SHOWN, SI_UNITS, Column, recognise
+from kvtheory.scene.tables import numbers, read_table
 
 Array = NDArray[np.float64]
 
@@ -24,11 +22,6 @@ MAY_BE_ABSENT = ("leading_edge", "trailing_edge", "peak_pressure")
 """What does not exist in flight, so that some of its cells may be empty or NaN."""
 JUDGED = ("depth", "normal_force", "friction_force")
 """One of these there must be."""
-SEPARATORS = "\t;,"
-SEPARATED = re.compile(r"^\s*\"?sep=(.)\"?\s*$", re.IGNORECASE)
-"""The line by which a spreadsheet is told the separator."""
-LONGEST_SHOWN = 40
-"""Characters of a cell in a message."""
 
 
 @dataclass(frozen=True)
@@ -140,102 +133,16 @@ def _named(
 
 def _from_file(path: Path) -> Series:
     """Read a CSV: ``#`` begins a comment, then a header with names and units, then numbers."""
-    lines = [
-        (number, line)
-        for number, line in enumerate(_text(path).splitlines(), start=1)
-        if line.strip(" \t\r;,") and not line.lstrip().startswith("#")
-    ]
-    separator = None
-    if lines and (match := SEPARATED.match(lines[0][1])):  # as spreadsheets write it
-        separator, lines = match[1], lines[1:]
-    if not lines:
-        raise ValueError(
-            f"{path}: holds no header and no rows; expected a line such as t [ms],z_A [mm]"
-        )
-    bare = re.sub(r"[\[(].*?[\])]", "", lines[0][1])
-    separator = separator or max(SEPARATORS, key=bare.count)
-    try:
-        rows = list(csv.reader((line for _, line in lines), delimiter=separator))
-    except csv.Error as error:
-        raise ValueError(f"{path}: not a table of numbers: {error}") from None
-    if len(rows) != len(lines):
-        raise ValueError(f"{path}: a quotation mark is opened and not closed on the same line")
-    decimal = "," if separator != "," else "."
-    table = [
-        (number, [cell.strip() for cell in row])
-        for (number, _), row in zip(lines, rows, strict=True)
-    ]
-    return _from_table(path, table, decimal)
-
-
-def _text(path: Path) -> str:
-    """Return the text of a file in UTF-8, UTF-16, or what Windows writes in the West."""
-    content = path.read_bytes()
-    marked = content.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE))
-    for encoding in ("utf-16",) if marked else ("utf-8-sig", "cp1252"):
-        try:
-            text = content.decode(encoding)
-        except UnicodeDecodeError:
-            continue
-        if "\0" not in text:
-            return text
-    raise ValueError(f"{path}: not a text file in UTF-8 or UTF-16; expected a CSV")
-
-
-def _from_table(path: Path, table: Sequence[tuple[int, list[str]]], decimal: str) -> Series:
-    number, heads = table[0]
-    if all(_number(cell, decimal) is not None for cell in heads if cell):
-        raise ValueError(
-            f"{path}: line {number} holds numbers where the names and units of the columns are expected, "
-            "such as t [ms],z_A [mm],F_z [N/mm],F_x [N/mm]"
-        )
-    while heads and not heads[-1]:
-        heads = heads[:-1]
-    columns, problems = _recognised(heads)
+    table = read_table(path)
+    columns, problems = _recognised(table.heads)
     if problems:
         raise ValueError("\n".join(f"{path}: {problem}" for problem in problems))
-    if len(table) == 1:
+    if not table.rows:
         raise ValueError(f"{path}: holds a header and no rows")
     used = [column is not None for column in columns]
-    values = [_row(path, line, cells, heads, used, decimal) for line, cells in table[1:]]
+    values = [numbers(path, table, line, cells, used) for line, cells in table.rows]
     arrays = np.array(values, dtype=float).T
-    return _named(columns, heads, arrays, str(path), [line for line, _ in table[1:]])
-
-
-def _row(
-    path: Path,
-    line: int,
-    cells: list[str],
-    heads: Sequence[str],
-    used: Sequence[bool],
-    decimal: str,
-) -> list[float]:
-    """Return the numbers of one line; an empty cell, or one of a column that is not used, is NaN."""
-    while len(cells) > len(heads) and not cells[-1]:
-        cells = cells[:-1]
-    if len(cells) != len(heads):
-        raise ValueError(f"{path}: line {line} has {len(cells)} cells, the header has {len(heads)}")
-    numbers = []
-    for cell, head, wanted in zip(cells, heads, used, strict=True):
-        number = _number(cell, decimal) if cell and wanted else np.nan
-        if number is None:
-            hint = "; write the decimal mark as a point" if "," in cell else ""
-            shown = cell if len(cell) <= LONGEST_SHOWN else f"{cell[:LONGEST_SHOWN]}..."
-            raise ValueError(
-                f'{path}: line {line}, column "{head}": "{shown}" is not a number{hint}'
-            )
-        numbers.append(number)
-    return numbers
-
-
-def _number(cell: str, decimal: str) -> float | None:
-    """Return a number; a decimal comma is read where commas separate nothing."""
-    if decimal == "," and cell.count(",") == 1 and "." not in cell:
-        cell = cell.replace(",", ".")
-    try:
-        return float(cell) if "_" not in cell else None
-    except ValueError:
-        return None
+    return _named(columns, table.heads, arrays, str(path), [line for line, _ in table.rows])
 
 
 def _checked(

@@ -1,20 +1,22 @@
 """A drive from a CSV of times and velocities."""
 
-import csv
-from collections.abc import Sequence
 from pathlib import Path
 
 from kvtheory.scene.quantities import mistake
-from kvtheory.scene.texts import read_text
+from kvtheory.scene.tables import numbers, parts, plain, read_table
 from kvtheory.scene.units import to_si
 
 KEY = "drive.file"
-HEAD = 'a first line "t [ms],V [mm/s]", and then two numbers in each line'
-SEPARATORS = ",;\t"
+EXPECTED = 'expected a first line such as "t [ms],V [mm/s]", and then numbers'
+NAMES = {
+    "s": ("t", "time", "zeit"),
+    "m/s": ("v", "velocity", "speed", "drivevelocity", "vdrive", "geschwindigkeit"),
+}
+"""How the columns of the times and of the velocities may be named, by their units."""
 
 
 def history_from(path: Path) -> list[tuple[float, float]]:
-    """Return the points (t, V) in SI of a CSV whose head names the units of both columns.
+    """Return the points (t, V) in SI of a CSV whose head names the units; other columns are ignored.
 
     Raises
     ------
@@ -22,28 +24,22 @@ def history_from(path: Path) -> list[tuple[float, float]]:
         If the file cannot be read, saying in which line.
     """
     try:
-        text = read_text(path)
-    except (OSError, UnicodeDecodeError) as error:
-        reason = getattr(error, "strerror", None) or "it is not text"
-        raise mistake(KEY, str(path), f"cannot be read: {reason}") from None
-    lines = [line for line in text.splitlines() if line.strip() and not line.startswith("#")]
-    separator = max(SEPARATORS, key=(lines or [""])[0].count)
-    rows = list(csv.reader(lines, delimiter=separator))
-    try:
-        factors = [
-            to_si(f"1 {head.partition('[')[2].rstrip('] ')}", unit)
-            for head, unit in zip(rows[0][:2], ("s", "m/s"), strict=True)
-        ]
-    except (IndexError, ValueError) as error:
-        raise mistake(KEY, str(path), f"expected {HEAD} ({error})") from None
-    return [_point(path, number, row, factors) for number, row in enumerate(rows[1:], start=2)]
-
-
-def _point(
-    path: Path, number: int, row: Sequence[str], factors: Sequence[float]
-) -> tuple[float, float]:
-    try:
-        t, V = (float(cell) * factor for cell, factor in zip(row, factors, strict=True))
+        table = read_table(path)
+        heads = [parts(head) for head in table.heads]
+        at, factors = [], []
+        for unit, names in NAMES.items():
+            found = [i for i, (name, _) in enumerate(heads) if plain(name) in names]
+            if len(found) != 1:
+                told = "no column" if not found else "more than one column"
+                raise ValueError(f"{told} is named {' or '.join(names[:2])}")
+            at += found
+            factors.append(to_si(f"1 {heads[found[0]][1]}", unit))
+        used = [i in at for i in range(len(heads))]
+        rows = [numbers(path, table, line, cells, used) for line, cells in table.rows]
+    except OSError as error:
+        raise mistake(KEY, str(path), f"cannot be read: {error.strerror}") from None
     except ValueError as error:
-        raise mistake(KEY, str(path), f"row {number}: {error}; expected {HEAD}") from None
-    return t, V
+        told = str(error).removeprefix(f"{path}: ")
+        raise mistake(KEY, str(path), f"{told}; {EXPECTED}") from None
+    (t, V), (of_t, of_V) = at, factors
+    return [(row[t] * of_t, row[V] * of_V) for row in rows]
