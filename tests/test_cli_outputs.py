@@ -25,6 +25,10 @@ COMMANDS = {
     "sweep -o a.csv": ["sweep", *OVER, "-o", "a.csv"],
     "sweep -o a.nc": ["sweep", *OVER, "-o", "a.nc"],
     "sweep --plot a.pdf": ["sweep", *OVER, "-o", "b.csv", "--plot", "a.pdf"],
+    "compare --report a.html": ["compare", "--data", "../data.csv", "--report", "a.html"],
+    "compare --plot a.png": ["compare", "--data", "../data.csv", "--plot", "a.png"],
+    "derive into derivations.md": ["derive", "-o", ".", "--only", "eq27", "--format", "md"],
+    "derive into derivations.tex": ["derive", "-o", ".", "--only", "eq27", "--format", "tex"],
     "failures -o a.html": ["chart", "failures", "--only", "cancellation", "-o", "a.html"],
 }
 
@@ -37,8 +41,11 @@ def run(*arguments, status=0):
 
 @pytest.fixture
 def place(tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    return tmp_path
+    (tmp_path / "here").mkdir()
+    monkeypatch.chdir(tmp_path / "here")
+    times = [0.002 * i for i in range(101)]
+    kv.transient(at=times, certify=False).to_csv(tmp_path / "data.csv")
+    return tmp_path / "here"
 
 
 @pytest.mark.parametrize("name", COMMANDS)
@@ -81,6 +88,15 @@ def test_what_is_read_is_never_written_over(place, arguments, more):
     before = scene.read_bytes()
     assert "is what this command reads" in run(*arguments, *more, status=2).stderr
     assert scene.read_bytes() == before
+
+
+@pytest.mark.parametrize("more", [[], ["--overwrite"]])
+def test_the_table_of_a_drive_is_read_too(place, more):
+    table = place / "in.csv"
+    table.write_text("t [ms],V [mm/s]\n0,10\n5,20\n")
+    arguments = ["transient", "--set", "drive.file=in.csv", "-o", "in.csv", *more]
+    assert "is what this command reads" in run(*arguments, status=2).stderr
+    assert table.read_text().startswith("t [ms],V")
 
 
 def test_a_picture_that_cannot_be_drawn_is_refused_before_the_sweep(place):

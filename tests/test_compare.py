@@ -412,3 +412,9 @@ def test_the_table_of_schemes_says_what_their_polynomials_do():
             )
         else:
             assert np.isinf(row.stability_limit)
+
+
+def test_a_run_too_long_for_our_own_simulation_is_refused_before_it():
+    scene = kv.load_scene(overrides=["run.duration=1e6 s"])
+    with pytest.raises(ValueError, match=r"run\.duration = 1000000\.0 s is too long"):
+        kv.compare(scene)

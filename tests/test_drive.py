@@ -1,6 +1,8 @@
 """What follows from a drive alone; points of a history that say nothing change nothing anywhere."""
 
+import itertools
 import math
+import pickle
 
 import numpy as np
 import pytest
@@ -153,3 +155,38 @@ def test_the_edge_leads_that_led_before_whatever_instants_are_asked_for():
     assert alone.leading_edge[0] > 0.0  # the base moved backward
     simulated = kv.elements(scene, at=late, certify=False)
     assert np.sign(simulated.leading_edge).tolist() == np.sign(alone.leading_edge).tolist()
+
+
+def test_times_that_go_back_by_rounding_are_one_time():
+    points = [(0.0, 0.0)]
+    for i in range(1000):
+        points += [(i * 0.1, 0.1), (i * 0.1 + 0.1, 0.1)]
+    assert any(late[0] < early[0] for early, late in itertools.pairwise(points))
+    times = [time for time, _ in kv.Drive(history=points).history]
+    assert times == sorted(times)
+    with pytest.raises(kv.SceneError, match="must not decrease"):
+        kv.Drive(history=[(0.0, 0.0), (1.0, 0.1), (1.0 - 1e-14, 0.2)])
+
+
+def test_of_many_mistakes_the_first_are_told_and_the_others_counted():
+    with pytest.raises(kv.SceneError) as caught:
+        kv.Drive(history=[(0.0, 0.0), *[("soon", 0.1)] * 1000])
+    assert len(caught.value.problems) == 1000
+    assert str(caught.value).count("\n") == caught.value.SHOWN
+    assert str(caught.value).endswith("and 980 more mistakes")
+    assert pickle.loads(pickle.dumps(caught.value)).problems == caught.value.problems
+
+
+def test_the_limit_of_steps_grows_with_the_drive():
+    """What the drive asks for is no reason to give up; what nobody asked for is."""
+    scene = kv.Scene(
+        drive=kv.Drive(history=[(0.001 * i, 0.1 + 0.01 * (i % 2)) for i in range(201)])
+    )
+    needed = kv.transient(scene, at=[0.2]).steps
+    assert needed >= 200
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("kvtheory.models.continuum.solved_scene.STEP_LIMIT", 1)
+        certificate = kv.transient(scene, at=[0.2]).certificate
+        assert max(certificate.relative_error.values()) < 1e-3  # the second run came to the end too
+    with pytest.raises(ArithmeticError, match="more than 100 steps"):
+        kv.transient(scene, at=[0.2], max_steps=100)

@@ -318,10 +318,14 @@ def test_progress_is_silent_where_nothing_takes_long():
 
 def test_one_signature_of_progress():
     """Every public function that takes a while tells the share done, never falling, and words."""
+    faster = kv.transient(kv.Scene(drive=kv.Drive("0.11 m/s")), at=np.linspace(0.0, 0.2, 101))
     calls = {
         "sweep": lambda told: kv.sweep(over=FAILING, block=2, progress=told),
         "transient": lambda told: kv.transient(progress=told),
         "elements": lambda told: kv.elements(per_length="50 /mm", progress=told),
+        "compare our own": lambda told: kv.compare(per_length="10 /mm", progress=told),
+        "solve": lambda told: kv.solve(at=["1 ms", "200 ms"], rtol=1e-4, progress=told),
+        "compare": lambda told: kv.compare(data=faster, progress=told),
     }
     for name, call in calls.items():
         told = []

@@ -8,6 +8,7 @@ from typing import Any
 from kvtheory.api._edge import double_precision, scene_of
 from kvtheory.api._steady import steady
 from kvtheory.checks.theory import Methods
+from kvtheory.progress import Progress
 from kvtheory.results.comparison import Comparison
 from kvtheory.results.schemes import SCHEME_ROWS
 from kvtheory.scene.model import Scene
@@ -18,6 +19,8 @@ EVEN, DENSE = 401, 60
 """Samples of our own simulation: over the run, and more after each change of the drive."""
 SOONEST, SOON = 1e-4, 0.1
 """Of the duration: where the latter begin and end."""
+MOST_STEPS = 1e8
+"""Of our own simulation: an hour or two."""
 FEWEST = 16
 """Samples at least, even if the time step has to be shortened for them."""
 PER_LENGTH = Quantity("1/m", "N, elements per unit length", 0.0, True)
@@ -58,6 +61,7 @@ def compare(
     per_length: Any = None,
     scheme: str | None = None,
     tolerance: float = 1.0,
+    progress: Progress | None = None,
 ) -> Comparison:
     """Hold a simulation against theory, across the whole transient, and say what is wrong with it.
 
@@ -76,6 +80,9 @@ def compare(
         Its scheme, if known: ``"paper"`` fixes the time step at 2 dx/V.
     tolerance
         Multiplies what theory allows.
+    progress
+        Called as in `transient`: through our own simulation, if there are no data, and then through the
+        faults that are tried.
 
     Returns
     -------
@@ -120,11 +127,18 @@ def compare(
     from kvtheory.checks.reading import read
     from kvtheory.results.errors import DivergenceError
 
+    told = progress or METHODS.tell
+    own = 0.5 if data is None else 0.0
+    methods = METHODS._replace(tell=lambda share, words: told(own + (1.0 - own) * share, words))
     try:
-        found = _simulated(scene, per_length, scheme) if data is None else data
+        found = data
+        if data is None:
+            found = _simulated(
+                scene, per_length, scheme, lambda share, words: told(own * share, words)
+            )
     except DivergenceError as error:
-        return broken_off(scene, error.rows, str(error), METHODS, scheme, tolerance)
-    return hold_against(scene, read(found), METHODS, density, scheme, tolerance)
+        return broken_off(scene, error.rows, str(error), methods, scheme, tolerance)
+    return hold_against(scene, read(found), methods, density, scheme, tolerance)
 
 
 def _density(per_length: Any) -> float:
@@ -134,14 +148,20 @@ def _density(per_length: Any) -> float:
         raise SceneError([problem("`per_length`", per_length, str(error))]) from None
 
 
-def _simulated(scene: Scene, per_length: Any, scheme: str | None) -> Any:
+def _simulated(scene: Scene, per_length: Any, scheme: str | None, progress: Progress) -> Any:
     """Simulate the scene by our own elements."""
     from kvtheory.api._elements import elements
 
     given = {"per_length": per_length, "scheme": scheme}
     chosen = {key: value for key, value in given.items() if value is not None}
     step = elements(scene, at=0.0, certify=False, **chosen).time_step  # it has yet to take one
-    return elements(scene, at=_times(scene, step), certify=False, **chosen)
+    if scene.run.duration > MOST_STEPS * step:
+        raise ValueError(
+            f"run.duration = {scene.run.duration!r} s is too long for our own simulation, by steps of "
+            f"{step:.3g} s: give a shorter one, or `data`"
+        )
+    times = _times(scene, step)
+    return elements(scene, at=times, certify=False, progress=progress, **chosen)
 
 
 def _times(scene: Scene, step: float) -> list[float]:

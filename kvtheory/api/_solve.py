@@ -1,6 +1,7 @@
 """The cheapest model that is enough: `solve`."""
 
 from collections.abc import Mapping
+from functools import partial
 from typing import Any
 
 from kvtheory.api._edge import double_precision, scene_of, times_of
@@ -9,6 +10,7 @@ from kvtheory.api._steady import steady
 from kvtheory.api._transient import transient
 from kvtheory.ladder import series, sliding
 from kvtheory.ladder.climbing import Request, climb
+from kvtheory.progress import Progress
 from kvtheory.results import STEADY_UNITS, TRANSIENT_UNITS, Solution
 from kvtheory.scene.model import Scene
 from kvtheory.scene.quantities import SceneError, nearest, problem
@@ -24,6 +26,7 @@ def solve(
     at: Any = None,
     rtol: float = 1e-3,
     over_time: bool = False,
+    progress: Progress | None = None,
 ) -> Solution:
     """Answer with the cheapest model that is known to be within a tolerance, and say how it was found.
 
@@ -42,6 +45,8 @@ def solve(
         relative to the static depth, half length and load (the static state), as in `transient`.
     over_time
         Ask for a series also without `at`, at times of the model's own.
+    progress
+        Called as in `transient`, by each run of a model over time from 0 to 1.
 
     Returns
     -------
@@ -91,7 +96,11 @@ def solve(
         scene.drive.final_velocity  # noqa: B018  # it raises if the drive has none
         rungs = sliding.rungs(steady)
     else:
-        rungs = series.rungs(series.Models(steady, transient, elements))
+        follow, simulate = (
+            partial(transient, progress=progress),
+            partial(elements, progress=progress),
+        )
+        rungs = series.rungs(series.Models(steady, follow, simulate))
     with double_precision():
         return climb(scene, request, rungs)
 

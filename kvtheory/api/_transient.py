@@ -18,7 +18,7 @@ def transient(
     at: Any = None,
     rtol: float = 1e-6,
     certify: bool = True,
-    max_steps: int = 100_000,
+    max_steps: int | None = None,
     progress: Progress | None = None,
 ) -> Transient:
     """Follow the transient of a scene, exactly: no discretized foundation.
@@ -39,8 +39,7 @@ def transient(
         Whether to estimate the error, by a second run with a tighter tolerance; without it the
         certificate says that nothing is known.
     max_steps
-        Steps after which to give up. Long runs and histories of many points need as many as their drive
-        has changes, and two for each retardation time.
+        Steps after which to give up; without it, 100,000 and 100 for each piece of the drive.
     progress
         Called now and then with the share of the work done, from 0 to 1, and a text, as every public
         function calls it: `kvtheory.progress.ProgressLine` shows both on standard error.
@@ -75,7 +74,7 @@ def transient(
     Nakano and Kono (2020), doi:10.3389/fmech.2020.00038, Eqs. 1-33 and Figs. 3, 4.
     """
     scene = scene_of(scene)
-    if max_steps < 1:
+    if max_steps is not None and max_steps < 1:
         raise ValueError(f"`max_steps` = {max_steps!r}: expected a positive number")
     if not MINIMUM_RTOL <= rtol <= MAXIMUM_RTOL:
         raise ValueError(

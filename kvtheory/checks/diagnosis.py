@@ -54,8 +54,10 @@ def explanations(case: Case) -> list[Explanation]:
     rows = bench(case)
     start = rows.fit(rows.columns, rows.now).score
     trials: list[Trial] = []
-    for family, good in FAMILIES:
-        trials += family(rows)
+    for number, (family, good) in enumerate(FAMILIES):
+        for trial in family(rows):
+            trials.append(trial)
+            case.theory.methods.tell(number / len(FAMILIES), f"{len(trials)} faults tried")
         fits = [trial.fitted.fit for trial in trials]
         if any(fit.enough and fit.score <= (1.0 - good) * start for fit in fits):
             break

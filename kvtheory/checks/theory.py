@@ -38,12 +38,14 @@ class Methods(NamedTuple):
 
     `transient` returns the curves of theory by name, for a scene, times (s, increasing) and a tolerance;
     `steady` its exact steady sliding; `elements` the curves of a simulation, for a scene, spacing (m),
-    time step (s), times, and what it is to do wrong by name.
+    time step (s), times, and what it is to do wrong by name. `tell` is told the share of the work done, and
+    words.
     """
 
     transient: Callable[[Scene, Sequence[float], float], Mapping[str, Any]]
     steady: Callable[[Scene], Any]
     elements: Callable[..., Mapping[str, Any]]
+    tell: Callable[[float, str], object] = lambda _share, _words: None
 
 
 @dataclass(frozen=True)

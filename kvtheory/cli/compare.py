@@ -3,13 +3,13 @@
 import sys
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
-from kvtheory.cli.console import print_json, print_table, scene_command
+from kvtheory.cli.console import print_json, print_table, progress_bar, scene_command
 from kvtheory.cli.group import main
-from kvtheory.cli.outputs import PICTURES, check_output
+from kvtheory.cli.outputs import PICTURES, check_output, overwrite_option, path_option
 
 if TYPE_CHECKING:
     from kvtheory.results.comparison import Check
@@ -33,28 +33,17 @@ DISAGREES = 1
     "--tolerance", type=float, default=1.0, show_default=True,
     help="Multiplies what theory allows.",
 )  # fmt: skip
-@click.option(
-    "--plot",
-    type=click.Path(path_type=Path),
-    default=None,
-    help="Draw data, theory and checks to FILE.png, .svg or .pdf.",
-)
-@click.option(
-    "--report",
-    type=click.Path(path_type=Path),
-    default=None,
-    help="Write FILE.html, which holds all of it and needs nothing else.",
-)
+@path_option("--plot", help="Draw data, theory and checks to FILE.png, .svg or .pdf.")
+@path_option("--report", help="Write FILE.html, which holds all of it and needs nothing else.")
+@overwrite_option
 def compare(
     scene: str | None,
     overrides: Sequence[str],
     as_json: bool,
     data: Path | None,
-    per_length: str | None,
-    scheme: str | None,
-    tolerance: float,
     plot: Path | None,
     report: Path | None,
+    **how: Any,
 ) -> None:
     """Hold a simulation of SCENE against theory, and say what is wrong with it.
 
@@ -66,7 +55,8 @@ def compare(
     check_output("--report", report, [".html"])
     check_output("--plot", plot, PICTURES)
     checked = load_scene(scene, overrides)
-    found = hold_against(checked, data, per_length=per_length, scheme=scheme, tolerance=tolerance)
+    with progress_bar("compare") as progress:
+        found = hold_against(checked, data, **how, progress=progress)
     if plot:
         from kvtheory.plots.result import save_plot
 

@@ -43,7 +43,7 @@ def teaching(command: Callable[..., None]) -> Callable[..., None]:
         except KeyboardInterrupt as error:
             complain(str(error) or "interrupted", INTERRUPTED)
         except MemoryError as error:
-            complain(f"error: out of memory: {error or 'ask for less at a time'}", BAD_INPUT)
+            complain(f"error: out of memory: {str(error) or 'ask for less at a time'}", BAD_INPUT)
         except OSError as error:
             if error.filename is None and error.errno is not None:
                 leave_quietly(f"the output cannot be written: {error.strerror}")
@@ -51,7 +51,8 @@ def teaching(command: Callable[..., None]) -> Callable[..., None]:
             complain(f"error: {in_options(named)}", BAD_INPUT)
         except (ValueError, ArithmeticError, RuntimeError) as error:
             lines = in_options(str(error)).splitlines() or [type(error).__name__]
-            head = "error:" if len(lines) == 1 else f"{len(lines)} mistakes:\n "
+            count = len(getattr(error, "problems", lines))
+            head = "error:" if count == 1 else f"{count:,} mistakes:\n "
             complain(f"{head} " + "\n  ".join(lines), BAD_INPUT)
         except Exception:
             complain(f"this is a fault of the program:\n{traceback.format_exc()}", FAULTY)

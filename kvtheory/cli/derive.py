@@ -12,6 +12,7 @@ import click
 
 from kvtheory.cli.console import Examples, print_json, print_table, progress_bar, split, teaching
 from kvtheory.cli.group import main
+from kvtheory.cli.outputs import check_output, overwrite_option
 
 if TYPE_CHECKING:
     from kvtheory.derivations.record import Derivation
@@ -55,6 +56,7 @@ DERIVING = 0.7
 @click.option(
     "--json", "as_json", is_flag=True, help="Print one JSON object about what was written."
 )
+@overwrite_option
 @teaching
 def derive(
     scene: str | None, output: Path, formats: str | None, only: str, closure: bool, numbers: bool,
@@ -76,6 +78,8 @@ def derive(
     if numbers:
         request.quantities, request.scene = _quantities(scene, overrides)
     check_directory(output)
+    for name in wanted if output.is_dir() else ():
+        check_output("-o", output / f"derivations.{name}", [f".{name}"])
     with progress_bar("deriving") as report:
         edition = _edition(request, _part(report, 0.0, DERIVING))
         paths = write_edition(edition, output, wanted, _part(report, DERIVING, 1.0))

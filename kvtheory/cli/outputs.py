@@ -22,7 +22,11 @@ BEGINNINGS = {
     ".svg": (b"<?xml", b"<svg"),
     ".pdf": (b"%PDF",),
     ".html": (b"<!DOCTYPE html", b"<!doctype html"),
-    ".json": (b'{\n "environment"',),
+    ".json": (b'{\n "environment"', b'[\n {\n  "label": '),
+    ".tex": (b"\\documentclass[11pt,a4paper]{article}\n\\usepackage[margin=25mm]{geometry}",),
+    ".md": (b"# Sliding friction on a Kelvin", b"# Steady sliding of an indenter of the shape"),
+    ".ipynb": (b'{\n "cells": ',),
+    ".bib": (b"@article{NakanoKono2020,",),
 }
 """How files begin that commands write; those of sweeps are told apart by the sweep itself."""
 OVERWRITE = "kvtheory.overwrite"
@@ -109,21 +113,27 @@ def check_output(option: str, path: Path | None, suffixes: Sequence[str]) -> Non
 
 
 def check_not_an_input(option: str, path: Path) -> None:
-    """Raise `ValueError` if the running command reads this file, or writes it under another option."""
+    """Raise `ValueError` if the running command reads this file, be it for the drive of its scene."""
     context = click.get_current_context(silent=True)
     if context is None or not path.exists():
         return
-    for parameter in context.command.params:
-        given = context.params.get(parameter.name or "")
-        read = isinstance(parameter.type, click.Path) and parameter.type.exists
-        if read and given and path.samefile(str(given)):
-            raise ValueError(
-                f'{option} "{path}" is what this command reads; choose another name for what it writes'
-            )
+    read = [
+        context.params.get(parameter.name or "")
+        for parameter in context.command.params
+        if isinstance(parameter.type, click.Path) and parameter.type.exists
+    ]
+    if "overrides" in context.params:
+        from kvtheory.scene.files import drive_file
+
+        read.append(drive_file(context.params.get("scene"), context.params["overrides"]))
+    if any(given and Path(given).exists() and path.samefile(given) for given in read):
+        raise ValueError(
+            f'{option} "{path}" is what this command reads; choose another name for what it writes'
+        )
 
 
 def _is_ours(path: Path) -> bool:
     """Whether a file begins as those do that commands write; an empty one holds nothing to lose."""
     with path.open("rb") as file:
-        start = file.read(64)
+        start = file.read(128)
     return not start or start.startswith(BEGINNINGS.get(path.suffix.lower(), (b"",)))

@@ -7,7 +7,14 @@ from typing import TYPE_CHECKING
 
 import click
 
-from kvtheory.cli.console import print_series, print_steady, print_table, scene_command, split
+from kvtheory.cli.console import (
+    print_series,
+    print_steady,
+    print_table,
+    progress_bar,
+    scene_command,
+    split,
+)
 from kvtheory.cli.group import main
 from kvtheory.cli.outputs import check_results, deliver, series_options
 
@@ -41,7 +48,10 @@ def solve(
     check_results(output, plot)
     names = None if quantity is None else split(quantity)
     checked, over_time = load_scene(scene, overrides), bool(output or plot)
-    found = find(checked, quantity=names, at=at, rtol=rtol, over_time=over_time)
+    with progress_bar("solve") as progress:
+        found = find(
+            checked, quantity=names, at=at, rtol=rtol, over_time=over_time, progress=progress
+        )
     if deliver(found, output, plot, as_json=as_json):
         return
     if explain:

@@ -17,10 +17,14 @@ from kvtheory.cli.outputs import check_results, deliver, series_options
 @click.option(
     "--rtol", type=float, default=1e-6, show_default=True, help="Error allowed in a step."
 )
+@click.option(
+    "--max-steps", type=click.IntRange(1),
+    help="Steps after which to give up; default: 100,000 and 100 for each piece of the drive.",
+)  # fmt: skip
 @series_options
 def transient(
-    scene: str | None, overrides: Sequence[str], as_json: bool, rtol: float, at: str | None,
-    output: Path | None, plot: Path | None,
+    scene: str | None, overrides: Sequence[str], as_json: bool, rtol: float,
+    max_steps: int | None, at: str | None, output: Path | None, plot: Path | None,
 ) -> None:  # fmt: skip
     """Follow the transient of SCENE: depth, forces, edges and events over time."""
     from kvtheory.api import transient as follow
@@ -28,7 +32,8 @@ def transient(
 
     check_results(output, plot)
     with progress_bar("transient") as progress:
-        result = follow(load_scene(scene, overrides), at=at, rtol=rtol, progress=progress)
+        checked = load_scene(scene, overrides)
+        result = follow(checked, at=at, rtol=rtol, max_steps=max_steps, progress=progress)
     if deliver(result, output, plot, as_json=as_json):
         return
     print_series(result, whole=at is not None)

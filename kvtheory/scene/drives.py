@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from kvtheory.scene.base_motion import BaseMotion
+from kvtheory.scene.base_motion import SAME_TIME, BaseMotion
 from kvtheory.scene.quantities import (
     Quantity,
     SceneError,
@@ -154,15 +154,21 @@ class Drive:
         Raises
         ------
         ValueError
-            If a function is not smooth between its breaks, or not finite.
+            If a function is not smooth between its breaks, or not finite, or changes too often.
         """
         if self.function is None:
             return BaseMotion.from_points(self.points, end)
-        if isinstance(self.waveform, Triangle):
-            return BaseMotion.from_points(self.waveform.points(end), end)
-        return BaseMotion.from_function(
-            self.called, end, tolerance=0.5 * self.tolerance, breaks=self.breaks, least=least
-        )
+        try:
+            if isinstance(self.waveform, Triangle):
+                return BaseMotion.from_points(self.waveform.points(end), end)
+            return BaseMotion.from_function(
+                self.called, end, tolerance=0.5 * self.tolerance, breaks=self.breaks, least=least
+            )
+        except ValueError:
+            if self.waveform is None:
+                raise
+            told = f"it changes too fast to be followed until {end:.6g} s; give a shorter run"
+            raise mistake("drive.waveform", self.waveform.waveform, told) from None
 
     def called(self, time: float) -> float:
         """Return what `function` gives at `time` (s), in m/s.
@@ -260,6 +266,9 @@ def _history(points: Any) -> tuple[tuple[float, float], ...]:
         converted.append(tuple(pair))
     if not problems:
         times = [time for time, _ in converted]
+        for i, (before, time) in enumerate(pairwise(times), start=1):
+            if 0.0 < before - time <= SAME_TIME * math.ulp(before):
+                times[i] = before  # the same but for rounding, as in i * 0.1 + 0.1
         if times[0] != 0.0:
             problems.append(problem(f"{key}[0]", points[0], "the first time must be 0 s"))
         told = "times must not decrease, and one time may stand at most twice"
@@ -270,4 +279,4 @@ def _history(points: Any) -> tuple[tuple[float, float], ...]:
         ]
     if problems:
         raise SceneError(problems)
-    return tuple(converted)  # type: ignore[arg-type]
+    return tuple(zip(times, (velocity for _, velocity in converted), strict=True))

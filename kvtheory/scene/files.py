@@ -77,12 +77,22 @@ def load_scene(path: str | Path | None = None, overrides: Iterable[str] = ()) ->
     overrides = [overrides] if isinstance(overrides, str) else list(overrides)
     if path is None and not overrides:
         return Scene.table1()
+    return _build(*_overridden(path, overrides))
+
+
+def drive_file(path: str | Path | None, overrides: Iterable[str]) -> str:
+    """Return the name of the table that drives a scene, or nothing; it is read with the scene."""
+    drive = _overridden(path, list(overrides))[0].get("drive")
+    return str(drive.get("file", "")) if isinstance(drive, dict) else ""
+
+
+def _overridden(path: str | Path | None, overrides: list[str]) -> tuple[dict[str, Any], list[str]]:
+    """Return the tables of a scene file, or of Table 1, and what is wrong with the overrides."""
     tables = _tables(Scene.table1()) if path is None else _read(Path(path))
     drive = tables.get("drive")
     if path is not None and isinstance(drive, dict) and isinstance(drive.get("file"), str):
         drive["file"] = str(Path(path).parent / drive["file"])  # beside the scene
-    problems = _override(tables, overrides, embedded=path is None)
-    return _build(tables, problems)
+    return tables, _override(tables, overrides, embedded=path is None)
 
 
 def to_toml(scene: Scene) -> str:

@@ -10,7 +10,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from functools import cache
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -19,11 +19,18 @@ from kvtheory.scene.units import expected, to_si
 
 
 class SceneError(ValueError):
-    """One or more mistakes in a scene, all of them listed in `problems`."""
+    """One or more mistakes in a scene, all of them listed in `problems`, and the first ones in its text."""
+
+    SHOWN: ClassVar[int] = 20
 
     def __init__(self, problems: Sequence[str]) -> None:
         self.problems = tuple(problems)
-        super().__init__("\n".join(self.problems))
+        more = len(self.problems) - self.SHOWN
+        told = [f"and {more:,} more mistakes"] if more > 0 else []
+        super().__init__("\n".join([*self.problems[: self.SHOWN], *told]))
+
+    def __reduce__(self) -> Any:  # from a worker of a sweep
+        return type(self), (self.problems,)
 
 
 class Derived(float):

@@ -8,6 +8,7 @@ from kvtheory.scene.quantities import quantity, settle
 
 AT_LAST = 20.0
 """Rise times after which tanh is 1 to the last digit."""
+MOST_CORNERS = 100_000
 
 
 class _Waveform:
@@ -58,7 +59,15 @@ class Triangle(_Swing):
         return self.mean + sign * self.amplitude * (quarters - nearest)
 
     def points(self, end: float) -> list[tuple[float, float]]:
-        """Return the corners (t, V) up to the first one at or after `end`, between which it is linear."""
+        """Return the corners (t, V) up to the first one at or after `end`, between which it is linear.
+
+        Raises
+        ------
+        ValueError
+            If they are more than `MOST_CORNERS`.
+        """
+        if 2.0 * self.frequency * end > MOST_CORNERS:
+            raise ValueError(f"more than {MOST_CORNERS} corners until {end!r} s")
         found, k = [(0.0, self.mean)], 0
         while found[-1][0] < end:
             height = self.amplitude * (-1.0 if k % 2 else 1.0)

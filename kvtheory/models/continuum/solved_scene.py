@@ -25,6 +25,8 @@ Array = NDArray[np.float64]
 
 AFTER_END = 1e-12
 """Share of the run by which a time may lie after its end, from rounding."""
+STEPS_A_PIECE = 100
+"""More than a piece of a drive takes: a stop takes 25."""
 FORCE_MAXIMA = "normal force maximum", "friction force maximum"
 """Kinds of events."""
 
@@ -117,7 +119,7 @@ def transient(
     progress: Callable[[float], Any] | None = None,
     *,
     certify: bool = True,
-    max_steps: int = STEP_LIMIT,
+    max_steps: int | None = None,
 ) -> Transient:
     """Solve a scene; `kvtheory.transient` documents it."""
     solution, time, errors = certified(
@@ -150,7 +152,7 @@ def certified(
     progress: Callable[[float], Any] | None = None,
     *,
     certify: bool = True,
-    max_steps: int = STEP_LIMIT,
+    max_steps: int | None = None,
 ) -> tuple[SolvedScene, Array, Certificate]:
     """Solve a scene, and with a tighter tolerance again; return the times (s) that are judged, too.
 
@@ -158,6 +160,7 @@ def certified(
     """
     units = StaticState.of(scene)
     drive = scaled_drive(scene, units)
+    limit = max_steps or STEP_LIMIT + STEPS_A_PIECE * len(drive.pieces)
     first, second = methods(rtol)
 
     def solved(part: int, tolerance: float, control: StepControl) -> Trajectory:
@@ -167,7 +170,7 @@ def certified(
 
         return solve(
             drive, units.inertia_number, units.support_number, drive.end, tolerance,
-            control=control, progress=report, max_steps=max_steps,
+            control=control, progress=report, max_steps=limit,
         )  # fmt: skip
 
     try:
