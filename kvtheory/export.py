@@ -92,7 +92,8 @@ def dataset(result: Any) -> Any:
     """Return a result as an `xarray.Dataset` with units, model, certificate and events."""
     units = _units(result)
     over = "time" in units
-    dims = ("time",) if over else tuple(f"dim_{i}" for i in range(np.ndim(result.depth)))
+    shape = np.shape(next(getattr(result, name) for name in units))
+    dims = ("time",) if over else tuple(f"dim_{i}" for i in range(len(shape)))
     columns = {
         name: (dims, np.asarray(getattr(result, name)), {"units": unit})
         for name, unit in units.items()
@@ -105,7 +106,8 @@ def dataset(result: Any) -> Any:
 
 
 def _units(result: Any) -> Mapping[str, str]:
-    return TRANSIENT_UNITS if hasattr(result, "time") else STEADY_UNITS
+    units = TRANSIENT_UNITS if hasattr(result, "time") else STEADY_UNITS
+    return {name: unit for name, unit in units.items() if hasattr(result, name)}
 
 
 def check_path(path: Path, suffixes: Sequence[str]) -> None:
@@ -114,7 +116,7 @@ def check_path(path: Path, suffixes: Sequence[str]) -> None:
     Raises
     ------
     ValueError
-        If the name does not end in one of the `suffixes`, in capitals or not.
+        If the name does not end in one of the `suffixes`, in capitals or not, or xarray is missing.
     OSError
         If there is no such directory, or the name is that of a directory.
 
@@ -128,6 +130,8 @@ def check_path(path: Path, suffixes: Sequence[str]) -> None:
     if path.suffix.lower() not in suffixes:
         expected = " or ".join(filter(None, (", ".join(suffixes[:-1]), suffixes[-1])))
         raise ValueError(f'"{path}": expected a name that ends in {expected}')
+    if path.suffix.lower() == ".nc":
+        _xarray()
     if not path.parent.is_dir():
         raise OSError(f'"{path}": there is no directory "{path.parent}"')
     if path.is_dir():

@@ -167,3 +167,23 @@ def test_times_are_lists_and_ranges():
     for wrong in ("0 ms:1 s:5", "0 ms:1 ms", "1 ms:2 ms:0", "0:1:2", "1 ms:2 kg:3", ""):
         with pytest.raises(kv.SceneError, match="`at`"):
             kv.transient(at=wrong)
+
+
+@pytest.mark.parametrize(
+    ("name", "key"),
+    [
+        ("tau", "foundation.retardation_time"), ("E", "foundation.modulus"), ("V", "drive.velocity"),
+        ("R", "indenter.radius"), ("mass", "support.mass"), ("load", "support.load"),
+        ("duration", "run.duration"), ("depth", "support.depth"),
+    ],
+)  # fmt: skip
+def test_names_without_their_section_are_answered_with_the_key(name, key):
+    with pytest.raises(kv.SceneError, match=f'did you mean "{key}"'):
+        kv.load_scene(overrides=[f"{name}=3"])
+
+
+@pytest.mark.parametrize("command", [kv.transient, lambda s: kv.sweep(
+    s, over={"drive.velocity": [0.1]}, quantities=["hops"])])  # fmt: skip
+def test_what_needs_a_parabola_says_what_does_not(command):
+    with pytest.raises(ValueError, match=r"`elements`, or `solve` with `at`, follows any shape"):
+        command(kv.Scene(indenter=kv.Wedge(0.1)))

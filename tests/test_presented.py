@@ -15,6 +15,8 @@ RESULTS = {
     "one state": kv.steady,
     "many states": lambda: kv.steady(over=V),
     "transient": lambda: kv.transient(at=["0 ms", "1 ms", "200 ms"]),
+    "solution": kv.solve,
+    "solution over time": lambda: kv.solve(at=["0 ms", "1 ms"], rtol=1e-2),
     "simulation": lambda: kv.elements(at=["0 ms", "1 ms"], certify=False),
 }
 

@@ -92,7 +92,7 @@ def plot_result(result: Any, axes: Any = None, **style: Any) -> Any:
         return draw_comparison(result)
     if isinstance(result, Sweep):
         return plot_sweep(axes, result, **style).figure
-    steady = isinstance(result, SteadyState)
+    steady = not hasattr(result, "time")
     if axes is None:
         from matplotlib.figure import Figure
 

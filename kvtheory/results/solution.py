@@ -5,6 +5,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from kvtheory.results.certificate import Certificate, Value, record
+from kvtheory.results.presented import Presented
 
 
 @dataclass(frozen=True)
@@ -25,8 +26,8 @@ class ClimbStep:
     solving: float
 
 
-@dataclass(frozen=True)
-class Solution:
+@dataclass(frozen=True, repr=False)
+class Solution(Presented):
     """Values within a tolerance, by the cheapest model that is known to be enough.
 
     `values` maps the name of each quantity to a float (steady sliding) or to an array (a time series,

@@ -191,8 +191,10 @@ def _override(tables: dict[str, Any], overrides: list[str], *, embedded: bool) -
         key, separator, value = text.partition("=")
         section, _, name = key.strip().partition(".")
         if not (separator and section and name):
+            near = closest(key.strip(), _keys())
+            hint = f'did you mean "{near}"? ' if near else ""
             problems.append(
-                f'`overrides` "{text}": expected KEY=VALUE, such as drive.velocity="50 mm/s"'
+                f'`overrides` "{text}": {hint}expected KEY=VALUE, such as drive.velocity="50 mm/s"'
             )
             continue
         value = value.strip()
@@ -218,6 +220,13 @@ def _override(tables: dict[str, Any], overrides: list[str], *, embedded: bool) -
         except tomllib.TOMLDecodeError:
             table[name] = value
     return problems
+
+
+def _keys() -> list[str]:
+    """Return the keys of all sections, whatever their models."""
+    models = {name: tuple(known.values()) for name, (_, known) in CHOICES.items()}
+    models |= {name: (cls,) for name, cls in PLAIN.items()}
+    return [f"{name}.{key}" for name in SECTIONS for cls in models[name] for key in quantities(cls)]
 
 
 def _change_drive(table: dict[str, Any], name: str) -> None:

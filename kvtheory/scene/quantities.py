@@ -245,12 +245,16 @@ def closest(name: str, valid: Iterable[str]) -> str | None:
 
     >>> closest("tau", ["radius", "retardation_time"]), closest("support.W", ["support.load"])
     ('retardation_time', 'support.load')
+    >>> closest("V", ["support.load", "drive.velocity"])
+    'drive.velocity'
     """
     valid = list(valid)
     section, dot, last = name.rpartition(".")
     meant = section + dot + MEANT.get(last, last)
     if meant in valid:
         return meant
+    if not dot and (ends := [each for each in valid if each.endswith(f".{meant}")]):
+        return ends[0]
     return next(iter(difflib.get_close_matches(name, valid, n=1, cutoff=0.5)), None)
 
 

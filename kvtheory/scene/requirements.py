@@ -40,4 +40,4 @@ def require_closed_form(scene: Scene, what: str) -> None:
 def require_parabola(scene: Scene, what: str) -> None:
     """Raise `ValueError` if the indenter is not a parabola; `what` needs it."""
     if lacking := lacks_parabola(scene):
-        raise ValueError(f"{what} {lacking}")
+        raise ValueError(f"{what} {lacking}; `elements`, or `solve` with `at`, follows any shape")
