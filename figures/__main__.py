@@ -1,8 +1,10 @@
 """Draw every figure: `python -m figures [-o DIRECTORY]`."""
 
 import argparse
+import sys
 import time
 from importlib import import_module
+from importlib.util import find_spec
 from pathlib import Path
 
 from figures import drawing
@@ -13,6 +15,11 @@ FIGURES = (
     *("onset_maps", "ladder", "stability_map", "work_precision"),
 )
 
+INTERPRETED = (
+    "numba is not installed, so that transients are interpreted: regime_map and onset_maps take several "
+    'minutes, not seconds; in the checkout, pip install ".[fast]" installs it'
+)
+
 
 def main() -> None:
     """Draw each figure and say how long it took."""
@@ -21,6 +28,8 @@ def main() -> None:
         "-o", "--output", type=Path, default=drawing.OUTPUT, help="default: %(default)s"
     )
     directory = parser.parse_args().output
+    if find_spec("numba") is None:
+        print(INTERPRETED, file=sys.stderr, flush=True)
     for number, name in enumerate(FIGURES, start=1):
         start = time.perf_counter()
         script = import_module(f"figures.{name}")

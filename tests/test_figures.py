@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 import kvtheory as kv
+from figures import __main__ as every
 from figures import drawing
 from figures.__main__ import FIGURES
 from kvtheory.plots import plot_asymptote_errors, plot_steady
@@ -134,6 +135,15 @@ def test_a_script_runs_alone(tmp_path):
         check=True, capture_output=True, text=True, cwd=ROOT,
     )  # fmt: skip
     assert str(tmp_path / "table2.png") in done.stdout
+
+
+@pytest.mark.parametrize("missing", [True, False])
+def test_where_numba_is_missing_it_is_said_before_the_wait(monkeypatch, capsys, missing):
+    monkeypatch.setattr(every, "FIGURES", ())
+    monkeypatch.setattr(every, "find_spec", lambda _: None if missing else object())
+    monkeypatch.setattr(sys, "argv", ["figures"])
+    every.main()
+    assert ("several minutes" in " ".join(capsys.readouterr().err.split())) is missing
 
 
 def test_a_failed_picture_leaves_nothing_behind(tmp_path):

@@ -185,6 +185,10 @@ def _tell(result: "Sweep", seconds: float, as_json: bool) -> None:
         f"{result.path}: {result.points:,} points, {result.computed:,} of them computed now in "
         f"{seconds:.3g} s, {result.failed:,} failed."
     )
+    if result.path and result.path.suffix.lower() == ".csv":
+        click.echo(
+            'Lines above the table say what it is: pandas.read_csv(FILE, comment="#") reads it.'
+        )
     for failure in result.failures[:SHOWN_FAILURES]:
         point = ", ".join(f"{key} = {value:.6g}" for key, value in failure.point.items())
         click.echo(f"  {point}: {failure.reason}")
