@@ -208,8 +208,7 @@ def test_the_estimate_covers_the_error_of_a_thousand_scenes(rtol):
             ended += 1
             continue
         motion, stated = result.solution.motion, result.certificate.relative_error
-        here = motion.deviations(truth, case.times, motion.rows_at(case.times))
-        whole = motion.deviations(truth, motion.natural, motion.rows_at(motion.natural))
+        here, whole = motion.deviations(truth, case.times), motion.deviations(truth)
         errors = {name: here[column] for name, column in COLUMNS.items()} | {
             "surface": whole[deviation.DEPTH], "jump_time": whole[deviation.HOPS],
         }  # fmt: skip

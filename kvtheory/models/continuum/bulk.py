@@ -76,7 +76,7 @@ def follow(
             continue
         found.other[i] = walk(two, steps)
         if found.other[i] == DONE:
-            count = _natural(one, room.natural, room.states)
+            count = e_.natural(one, room.natural, room.states)
             times, states = room.natural[:count], room.states[:count]
             d_.deviations(times, states, one, two, room.rows, found.deviations[i])
         _measure(one, i, scenes.friction[i], asked, room, found)
@@ -94,20 +94,6 @@ def _begun(run: Run, scenes: Scenes, i: int) -> Run:
     )  # fmt: skip
     rest(begun)
     return begun
-
-
-def _natural(run: Run, times: Any, states: Any) -> int:
-    """Write the natural times of a motion, and the states there."""
-    count = 0
-    for index in range(run.counts[r_.RECORDS]):
-        start, end = e_.natural_step(run, index)
-        for k in range(e_.SUBDIVISIONS):
-            times[count] = start + (end - start) * (k / e_.SUBDIVISIONS)
-            count += 1
-    times[count] = run.now[r_.S]
-    count += 1
-    e_.states(times[:count], states, run)
-    return count
 
 
 def _measure(run: Run, i: int, friction: float, asked: Asked, room: Room, found: Found) -> None:

@@ -44,13 +44,12 @@ def methods(rtol: float) -> tuple[tuple[float, StepControl], tuple[float, StepCo
     return (rtol, StepControl()), (max(rtol / TIGHTER, TIGHTEST), COMPARISON)
 
 
-def certificate(fine: Trajectory, other: Trajectory | None, times: Array) -> Certificate:
-    """Return the certificate of the states at the scaled `times`."""
+def certificate(fine: Trajectory, other: Trajectory | None, times: Array | None) -> Certificate:
+    """Return the certificate of the states at the scaled `times`, by default the natural ones."""
     if other is None:
         return unknown(NOTHING)
-    natural, given = fine.natural, fine.rows.given
-    whole = fine.deviations(other, natural, fine.rows_at(natural))
-    here = whole if times is natural else fine.deviations(other, times, fine.rows_at(times))
+    given, whole = fine.rows.given, fine.deviations(other)
+    here = whole if times is None else fine.deviations(other, times)
     told = errors(here, whole, given.rtol, given.fixed)
     return Certificate(
         "estimated", STATEMENT, {k: float(error) for k, error in told.items()}, AT_REST
@@ -75,24 +74,21 @@ def errors(here: Any, whole: Any, rtol: float, fixed: bool) -> dict[str, Any]:
     has ever been (fact F8). The pressure inside the contact is wrong as the depth and its rate are.
     Deviations may be arrays of those of many scenes.
     """
-
-    def error(deviation: Any, rounding: Any = 0.0) -> Any:
-        return np.maximum(MARGIN * deviation, FLOOR * rtol) + rounding
-
     moves = 0.0 if fixed else 1.0
-    edges = error(here[d_.EDGES], here[d_.EDGE_ROUNDING])
-    depth = moves * error(whole[d_.DEPTH])
+    at_times, ever = (np.maximum(MARGIN * np.asarray(of), FLOOR * rtol) for of in (here, whole))
+    edges = at_times[d_.EDGES] + here[d_.EDGE_ROUNDING]
+    depth = moves * ever[d_.DEPTH]
     return {
         "time": 0.0,
         "velocity": 0.0,
-        "depth": moves * error(here[d_.DEPTH]),
-        "depth_rate": moves * error(here[d_.RATE]),
-        "normal_force": error(here[d_.NORMAL_FORCE], here[d_.NORMAL_ROUNDING]),
-        "friction_force": error(here[d_.FRICTION_FORCE], here[d_.FRICTION_ROUNDING]),
+        "depth": moves * at_times[d_.DEPTH],
+        "depth_rate": moves * at_times[d_.RATE],
+        "normal_force": at_times[d_.NORMAL_FORCE] + here[d_.NORMAL_ROUNDING],
+        "friction_force": at_times[d_.FRICTION_FORCE] + here[d_.FRICTION_ROUNDING],
         "leading_edge": edges,
         "trailing_edge": edges,
-        "peak_pressure": error(here[d_.PEAK_PRESSURE]),
-        "pressure": depth + moves * error(whole[d_.RATE]),
+        "peak_pressure": at_times[d_.PEAK_PRESSURE],
+        "pressure": depth + moves * ever[d_.RATE],
         "surface": depth,
-        "jump_time": moves * error(whole[d_.HOPS]),
+        "jump_time": moves * ever[d_.HOPS],
     }

@@ -32,6 +32,22 @@ def states(times: Any, found: Any, run: Run) -> None:
         state_at(run, record_at(run, times[i]), times[i], found[i])
 
 
+def natural(run: Run, times: Any, found: Any) -> int:
+    """Write the times that show all that happens, the steps subdivided, and the states there."""
+    count, index = 0, 0
+    for index in range(run.counts[r_.RECORDS]):
+        start, end = natural_step(run, index)
+        for k in range(SUBDIVISIONS):
+            s = start + (end - start) * (k / SUBDIVISIONS)
+            if s < end and (count == 0 or s > times[count - 1]):
+                times[count] = s
+                state_at(run, index, s, found[count])
+                count += 1
+    times[count] = run.now[r_.S]
+    state_at(run, index, times[count], found[count])
+    return count + 1
+
+
 def natural_step(run: Run, index: int) -> tuple[float, float]:
     """Return when a step begins, and when the next one does."""
     last = index + 1 == run.counts[r_.RECORDS]

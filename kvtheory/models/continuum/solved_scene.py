@@ -59,15 +59,12 @@ class SolvedScene:
 
     def series(self, time: ArrayLike) -> dict[str, Any]:
         """Return the quantities and states at the given times (s)."""
-        found, u = self.states(time), self.units
+        s, u = self.scaled(time), self.units
+        found = self.motion.states(s).T
         numbers = found[evaluation.NUMBER]
-        forward = left_leads(numbers, self.drive, self.scaled(time))
+        forward = left_leads(numbers, self.drive, s)
         left, right = found[evaluation.LEFT], found[evaluation.RIGHT]
-        names = [
-            [STATE_NAMES[state] for state in found[side].tolist()]
-            for side in (evaluation.LEFT_STATE, evaluation.RIGHT_STATE)
-        ]
-        pairs = list(zip(*names, forward.tolist(), strict=True))
+        states = found[evaluation.LEFT_STATE], found[evaluation.RIGHT_STATE]
         return {
             "time": np.asarray(time, dtype=float),
             "velocity": numbers * u.velocity,
@@ -78,8 +75,8 @@ class SolvedScene:
             "leading_edge": np.where(forward, left, right) * u.half_length,
             "trailing_edge": np.where(forward, right, left) * u.half_length,
             "peak_pressure": found[evaluation.PEAK_PRESSURE] * u.pressure,
-            "leading_state": tuple(l if leads else r for l, r, leads in pairs),
-            "trailing_state": tuple(r if leads else l for l, r, leads in pairs),
+            "leading_state": _named(np.where(forward, *states)),
+            "trailing_state": _named(np.where(forward, *states[::-1])),
         }
 
     def states(self, time: ArrayLike) -> Array:
@@ -184,8 +181,12 @@ def certified(
     other = None
     with suppress(TransientError):  # a tighter solution may fail where this one did not
         other = solved(1, *second)
-    s = fine.motion.natural if times is None else fine.scaled(time)
+    s = None if times is None else fine.scaled(time)
     return fine, time, certificate(fine.motion, other, s)
+
+
+def _named(states: Array) -> tuple[str, ...]:
+    return tuple([STATE_NAMES[state] for state in states.tolist()])
 
 
 def left_leads(numbers: Array, drive: BaseMotion, s: Array) -> NDArray[np.bool_]:

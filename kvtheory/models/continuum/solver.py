@@ -105,13 +105,15 @@ class Trajectory:
 
     def _memory(self) -> Iterator[ScaledEvent]:
         """Yield when an edge begins to touch ground that was touched before, and when it ceases to."""
-        records, left_at = np.array(self.records), np.array(self.nodes)[:, c_.IN_S]
-        for k, name in enumerate(("left", "right")):
-            state, node = records[:, [h_.LEFT_STATE + 2 * k, h_.LEFT_NODE + 2 * k]].T
-            remembers = (state == TOUCHING) & (left_at[node.astype(int)] > -math.inf)
-            for at in np.flatnonzero(np.diff(remembers, prepend=False)):
-                what = "begins" if remembers[at] else "ends"
-                yield ScaledEvent(float(records[at, h_.START]), f"memory {what} at the {name} edge")
+        records, left_at = np.array(self.rows.records), np.array(self.rows.nodes)[:, c_.IN_S]
+        sides = records[: self.steps, h_.LEFT_STATE : h_.LEFT_X]
+        nodes = sides[:, 1::2].astype(int)
+        remembers = (sides[:, ::2] == TOUCHING) & (left_at[nodes] > -math.inf)
+        before = np.zeros_like(remembers)
+        before[1:] = remembers[:-1]
+        for at, k in np.argwhere(remembers != before).tolist():
+            what, name = "begins" if remembers[at, k] else "ends", ("left", "right")[k]
+            yield ScaledEvent(float(records[at, h_.START]), f"memory {what} at the {name} edge")
 
     @cached_property
     def records(self) -> list[list[float]]:
@@ -133,13 +135,18 @@ class Trajectory:
         """The times at which the steps begin."""
         return [row[h_.START] for row in self.records]
 
-    @cached_property
+    @property
     def natural(self) -> NDArray[np.float64]:
         """Times that show all that happens: those of the steps, subdivided."""
-        ends = np.append(np.array(self.starts), self.end)
-        parts = np.arange(evaluation.SUBDIVISIONS) / evaluation.SUBDIVISIONS
-        inner = (ends[:-1, None] + np.diff(ends)[:, None] * parts).reshape(-1)
-        return np.unique(np.append(inner, self.end))
+        return np.asarray(self._natural[0])
+
+    @cached_property
+    def _natural(self) -> tuple[Any, Any]:
+        """The natural times, and the states there, as rows for the kernels."""
+        count = evaluation.SUBDIVISIONS * self.steps + 1
+        times, found = self._room(count)
+        count = self._kernel(evaluation.natural)(self.rows, times, found)
+        return times[:count], found[:count]
 
     def at(self, s: float) -> Moment:
         """Return the state at `s`; where the drive jumps, just after the jump."""
@@ -153,34 +160,39 @@ class Trajectory:
         times = np.asarray(s, dtype=float)
         if not np.all((times >= 0.0) & (times <= self.end)):
             raise ValueError(f"`s` must lie in [0, {self.end!r}], got {s!r}")
-        return np.array(self.rows_at(times)).reshape(-1, evaluation.SIZE)
+        return np.array(self._states(self._rows(times))).reshape(-1, evaluation.SIZE)
 
-    def rows_at(self, times: NDArray[np.float64]) -> Any:
-        """Return the states at times within the motion, as rows for the kernels."""
-        found = self._rows(np.empty((times.size, evaluation.SIZE)))
-        self._kernel(evaluation.states)(self._rows(times), found, self.rows)
+    def _states(self, times: Any) -> Any:
+        found = self._rows(np.empty((len(times), evaluation.SIZE)))
+        self._kernel(evaluation.states)(times, found, self.rows)
         return found
 
     def deviations(
-        self, other: "Trajectory", times: NDArray[np.float64], found: Any
+        self, other: "Trajectory", times: NDArray[np.float64] | None = None
     ) -> list[float]:
-        """Return how far another solution is from the states `found` at `times`, see `deviation`."""
+        """Return how far another solution is from this one at the natural `times`, or others.
+
+        See `deviation`.
+        """
         if self.compiled != other.compiled:
             one, two = (Trajectory(as_arrays(motion.rows)) for motion in (self, other))
-            return one.deviations(two, times, found)
-        order = np.argsort(times, kind="stable")
-        times, ordered = self._rows(times[order]), self._rows(np.array(found)[order])
+            return one.deviations(two, times)
+        if times is None:
+            at, found = self._natural
+        else:
+            at = self._rows(np.sort(times))
+            found = self._states(at)
         worst, room = (
             self._rows(np.zeros(size)) for size in (deviation.SIZE, (2, evaluation.SIZE))
         )
-        self._kernel(deviation.deviations)(times, ordered, self.rows, other.rows, room, worst)
+        self._kernel(deviation.deviations)(at, found, self.rows, other.rows, room, worst)
         return [float(x) for x in worst]
 
     @cached_property
     def samples(self) -> tuple[Any, Any, int]:
         """Dense times and the states there, and how many they are, see `maxima`."""
         count = (maxima.SAMPLES + 1) * self.steps
-        times, found = (self._rows(np.empty(size)) for size in (count, (count, evaluation.SIZE)))
+        times, found = self._room(count)
         return times, found, self._kernel(maxima.sample)(self.rows, times, found)
 
     def largest(self, column: int, sense: int = maxima.LARGEST) -> tuple[float, float]:
@@ -203,6 +215,10 @@ class Trajectory:
 
     def _kernel(self, function: Callable[..., Any]) -> Any:
         return compiled.chosen(function, self.rows)
+
+    def _room(self, count: int) -> tuple[Any, Any]:
+        """Return room for times, and for the states there."""
+        return self._rows(np.empty(count)), self._rows(np.empty((count, evaluation.SIZE)))
 
     def _rows(self, array: NDArray[np.float64]) -> Any:
         return array if self.compiled else array.tolist()
