@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 import kvtheory as kv
+from kvtheory.checks.fitting import uncertainty
 from tests.blind_trial import simulated
 from tests.confusion import SCENES, quick, series
 
@@ -55,7 +56,31 @@ def test_what_cannot_be_told_apart_is_said():
     equal = {each.name: each.factor for each in found.explanations if each.enough}
     assert equal["wrong tau"] == pytest.approx(1.2, rel=0.01)
     assert equal["wrong V"] == pytest.approx(1.2, rel=0.01)
-    assert "do not rule out" in found.diagnosis
+    assert found.explanations[0].alike == ("V",)
+    assert "tau and V cannot be told apart by these data" in found.diagnosis
+
+
+@pytest.mark.parametrize(
+    ("factor", "per_length", "alike"),
+    [(1.2, None, ("g",)), (1.2, "20000 /mm", ()), (3.0, None, ())],
+)
+def test_mass_and_gravity_are_told_apart_by_fine_data_or_by_a_large_fault(
+    factor, per_length, alike
+):
+    """They differ in the first milliseconds alone, where inertia counts."""
+    times = np.unique([*np.linspace(0.0, 0.01, 300), *np.linspace(0.0, 0.2, 300)])
+    heavy = kv.Scene(support=kv.DeadWeight(mass=1e3 * factor))
+    found = kv.compare(data=kv.transient(heavy, at=times, rtol=1e-9), per_length=per_length)
+    assert found.explanations[0].name == "wrong M"
+    assert found.explanations[0].alike == alike
+    assert ("M and g cannot be told apart by these data" in found.diagnosis) == bool(alike)
+
+
+def test_the_uncertainty_is_the_covariance_of_a_fit_of_both():
+    slopes = np.random.default_rng(3).normal(size=(50, 2))
+    expected = 50 * np.linalg.inv(slopes.T @ slopes)[0, 0]
+    assert uncertainty(*slopes.T) ** 2 == pytest.approx(expected, rel=1e-12)
+    assert uncertainty(slopes[:, 0], 2.0 * slopes[:, 0]) > 1e6
 
 
 def test_a_loud_unknown_fault_is_not_explained_away():

@@ -3,7 +3,7 @@
 from collections.abc import Callable, Iterator, Sequence
 
 from kvtheory.checks.comparison_case import Case
-from kvtheory.checks.faults import Trial, decades, offset, parameters, scales, undone
+from kvtheory.checks.faults import WRONG, Trial, decades, offset, parameters, scales, undone
 from kvtheory.checks.fitting import Bench, bench
 from kvtheory.checks.mistakes import mistakes
 from kvtheory.checks.symptoms import coarse, rattling, seen, unmoved
@@ -66,7 +66,9 @@ def explanations(case: Case) -> list[Explanation]:
     for trial in trials:
         explained = 1.0 - trial.fitted.fit.score / start if start else 0.0
         enough = trial.fitted.fit.enough and explained >= NAMED
-        each = Explanation(trial.name, trial.text, explained, enough, trial.factor, explained)
+        each = Explanation(
+            trial.name, trial.text, explained, enough, trial.factor, explained, trial.alike
+        )
         found.setdefault(trial.name, each)
     return [each for each in found.values() if each.rank > 0.0]
 
@@ -85,6 +87,13 @@ def _words(failed: Sequence[Check], named: Sequence[Explanation]) -> str:
             else f", which explains {first.explained:.0%} of the difference"
         )
         text = f"Closest: {first.text}{part}, but not all"
-    equal = [each for each in rest if each.enough and first.enough]
+    equal = [
+        e
+        for e in rest
+        if e.enough and first.enough and e.name.removeprefix(WRONG) not in first.alike
+    ]
     also = f" The data do not rule out: {'; '.join(each.text for each in equal)}." if equal else ""
+    if first.alike:
+        together = f"{first.name.removeprefix(WRONG)} and {' or '.join(first.alike)}"
+        also = f" {together} cannot be told apart by these data.{also}"
     return f"{text}.{also} Failed: {which}."

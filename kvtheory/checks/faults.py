@@ -6,13 +6,21 @@ A fault is a parameter of the scene that the data were not made with, a column t
 
 import math
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from kvtheory.checks.fitting import NO_FIT, Bench, Fitted, Pair, scaled_scene
+from kvtheory.checks.fitting import (
+    NO_FIT,
+    STEP,
+    Bench,
+    Fitted,
+    Pair,
+    scaled_scene,
+    uncertainty,
+)
 from kvtheory.checks.theory import CURVES
 
 Array = NDArray[np.float64]
@@ -42,6 +50,8 @@ PARAMETERS = (
 )  # fmt: skip
 """What may be wrong in a scene; those that the scene has not are passed over."""
 
+WRONG = "wrong "
+"""How the names of faults begin that are a parameter."""
 GROUPS = {
     **{name: (name,) for name in CURVES if name != "velocity"},
     "both forces": ("normal_force", "friction_force"),
@@ -67,12 +77,16 @@ ONSET = 0.1
 
 @dataclass(frozen=True)
 class Trial:
-    """A fault tried: how it fits, what to say, and the factor or shift that was found."""
+    """A fault tried: how it fits, what to say, and the factor or shift that was found.
+
+    `alike` are the parameters that the data do not tell from the one that it names.
+    """
 
     name: str
     text: str
     fitted: Fitted
     factor: float | None = None
+    alike: tuple[str, ...] = ()
 
 
 def parameters(bench: Bench) -> Iterator[Trial]:
@@ -84,19 +98,45 @@ def parameters(bench: Bench) -> Iterator[Trial]:
         curves = bench.solved(scaled_scene(scene, powers, factor))
         return None if curves is None else (bench.columns, curves)
 
-    for symbol, powers, unit, per_si, words in PARAMETERS:
+    there = [each for each in PARAMETERS if all(values.get(name) for name in each.powers)]
+    trials: list[Trial] = []
+    for symbol, powers, unit, per_si, words in there:
         key = next(iter(powers))
-        if not all(values.get(name) for name in powers):
-            continue
         found = bench.fitted(lambda x, p=powers: scaled(p, math.exp(x)), np.log(FACTORS).tolist())  # type: ignore[misc]
         factor = math.exp(found.value)
         old, new = values[key] * per_si, factor * values[key] * per_si
         size = f"{new:.4g} {unit} rather than {old:.4g} {unit}"
         text = f"the data fit {symbol} = {size}, {factor:.4g} times{words}{_ten(factor)}"
-        yield Trial(f"wrong {symbol}", text, found, factor)
+        trials.append(Trial(f"{WRONG}{symbol}", text, found, factor))
+    best = min(range(len(there)), key=lambda k: trials[k].fitted.fit.score)
+    if trials[best].fitted.fit.enough:
+        trials[best] = replace(
+            trials[best], alike=_alike(bench, there, best, trials[best].fitted.value)
+        )
+    yield from trials
     backward = scaled({"drive.velocity": 1.0}, -1.0)
     text = "the base moves in the other direction: x and V have the other sign"
     yield Trial("direction of the drive", text, judged(bench, backward), -1.0)
+
+
+def _alike(bench: Bench, there: list[Parameter], best: int, value: float) -> tuple[str, ...]:
+    """Return the parameters that the data do not tell from the best one, whose logarithm is off by `value`.
+
+    With such a one free beside it, the fit leaves that logarithm uncertain by more than it is off: the
+    data do not need it. The slopes are those of theory at the best fit.
+    """
+    scene = scaled_scene(bench.case.theory.scene, there[best].powers, math.exp(value))
+    here, slopes = bench.solved(scene), []
+    for parameter in there:
+        curves = bench.solved(scaled_scene(scene, parameter.powers, math.exp(STEP)))
+        if here is None or curves is None:
+            return ()
+        slopes.append(bench.effect(curves, here) / STEP)
+    return tuple(
+        other.symbol
+        for k, other in enumerate(there)
+        if k != best and uncertainty(slopes[best], slopes[k]) >= abs(value)
+    )
 
 
 def judged(bench: Bench, pair: Pair | None) -> Fitted:

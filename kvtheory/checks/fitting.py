@@ -1,7 +1,7 @@
 """How well a changed theory, or changed data, fits, and what has to be changed by how much.
 
 The unknown of a fault is fitted by nonlinear least squares on the differences in units of what is allowed
-for them; the covariance of the fit says how well the data fix it.
+for them; the covariance of a fit of two unknowns says whether the data tell them apart.
 """
 
 import math
@@ -48,11 +48,10 @@ class Fit(NamedTuple):
 
 
 class Fitted(NamedTuple):
-    """A fault fitted: its unknown and its standard deviation where what is allowed counts as one."""
+    """A fault fitted, and its unknown."""
 
     fit: Fit
     value: float = 0.0
-    uncertainty: float = 0.0
 
 
 NO_FIT = Fitted(Fit(math.inf, False))
@@ -125,10 +124,16 @@ class Bench:
         )  # fmt: skip
         value = float(found.x[0])
         pair = made[value] if value in made else make(value)
-        if pair is None:
-            return NO_FIT
-        weight = float(found.jac[:, 0] @ found.jac[:, 0])
-        return Fitted(self.fit(*pair), value, weight**-0.5 if weight else math.inf)
+        return NO_FIT if pair is None else Fitted(self.fit(*pair), value)
+
+    def effect(self, one: Curves, other: Curves) -> Array:
+        """Return how far two theories are from each other, in units of what data may be off."""
+        allowed, found = self.case.allowance, []
+        for name in self.names:
+            band = np.nan_to_num(allowed.high[name] - allowed.low[name])
+            most = self.case.most(name) * self.case.theory.scales[name]
+            found.append(np.nan_to_num(one[name] - other[name]) / (most + band))
+        return np.concatenate(found)
 
     def solved(self, scene: Scene, times: Array | None = None) -> Curves | None:
         """Return the theory of another scene at the times of the rows, or None where it has none."""
@@ -137,6 +142,21 @@ class Bench:
             return theory.at(self.time if times is None else times, TRIAL_RTOL)
         except (ValueError, ArithmeticError):
             return None
+
+
+def uncertainty(slope: Array, other: Array) -> float:
+    """Return the standard deviation of an unknown while another is free too, by the slopes of n values.
+
+    It is the root of the first entry of n (J^T J)^-1, and infinite if the matrix is singular. The slopes
+    are in units of what is allowed: that bounds what is off in all values together, so that many of them
+    know no more than one; hence the n.
+
+    >>> uncertainty(np.array([1.0, 1.0]), np.array([0.0, 2.0]))
+    1.4142135623730951
+    """
+    across = float(slope @ other)
+    left = float(slope @ slope) - (across * across / float(other @ other) if across else 0.0)
+    return math.sqrt(slope.size / left) if left > 0.0 else math.inf
 
 
 def bench(case: Case) -> Bench:

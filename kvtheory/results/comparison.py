@@ -34,7 +34,8 @@ class Explanation:
     `rank` orders them, from 0 to 1. For a fault that was tried on theory it is `explained`, the part of
     the difference (root mean square, relative to what is allowed) that goes away with it; for one that is
     read off signs in the data, it is how telling the sign is taken to be, and `explained` is None.
-    `enough` says whether what remains is allowed; `factor` is what was fitted, if anything.
+    `enough` says whether what remains is allowed; `factor` is what was fitted, if anything. `alike` are
+    the parameters that the data cannot tell from the one that this fault names.
     """
 
     name: str
@@ -43,6 +44,7 @@ class Explanation:
     enough: bool
     factor: float | None = None
     explained: float | None = None
+    alike: tuple[str, ...] = ()
 
 
 MOST_SHOWN = 6
