@@ -18,6 +18,8 @@ In units of the static state, with 1 + e the asymptote over the truth:
 
 import math
 from collections.abc import Callable
+from functools import cache
+from itertools import compress
 from typing import NamedTuple
 
 from kvtheory.models.steady import asymptotes
@@ -127,16 +129,24 @@ def choose(bounds: Enclosure, quantities: tuple[str, ...], enough: float = math.
     """
     fixed = math.isinf(bounds.support_number)
     yielding = 1.0 if fixed else 1.0 + bounds.support_number
-    tried = {"low": bounds.number <= LOW_UP_TO * yielding, "high": bounds.number >= HIGH_FROM}
-    choices = []
-    for regime in (name for name, near in tried.items() if near):
-        table, largest = ERRORS[fixed][regime], 0.0
-        for bound in dict.fromkeys(table[name] for name in quantities):  # several share one
+    near = bounds.number <= LOW_UP_TO * yielding, bounds.number >= HIGH_FROM
+    best = Choice("", math.inf)
+    for regime in compress(("low", "high"), near):
+        largest = 0.0
+        for bound in _distinct(fixed, regime, quantities):
             largest = max(largest, bound(bounds))
             if largest > enough:
                 break
-        choices.append(Choice(regime, largest + ROUNDING))
-    return min(choices, key=lambda choice: choice.error)
+        if not best.regime or largest + ROUNDING < best.error:
+            best = Choice(regime, largest + ROUNDING)
+    return best
+
+
+@cache
+def _distinct(fixed: bool, regime: str, quantities: tuple[str, ...]) -> tuple[Bound, ...]:
+    """Return the bounds of the quantities, of which several share one."""
+    table = ERRORS[fixed][regime]
+    return tuple(dict.fromkeys(bound for name in quantities for bound in table[name]))
 
 
 def values(scene: Scene, regime: str, quantities: tuple[str, ...]) -> dict[str, float]:
@@ -157,8 +167,11 @@ def _dissipated(b: Enclosure) -> float:
 
 def _low_peak(b: Enclosure) -> float:
     """1/(s^2 + lambda^2) while the peak is inside the contact, 1/(2 lambda s) from then on (F7)."""
-    peaks = [s * s + b.number**2 if b.number < s else 2.0 * b.number * s for s in (b.low, b.high)]
-    return max(abs(1.0 / peak - 1.0) for peak in peaks)
+    return max(abs(1.0 / _peak(b.low, b.number) - 1.0), abs(1.0 / _peak(b.high, b.number) - 1.0))
+
+
+def _peak(s: float, number: float) -> float:
+    return s * s + number * number if number < s else 2.0 * number * s
 
 
 def _low_length(b: Enclosure) -> float:
@@ -194,46 +207,49 @@ def _high_coefficient(b: Enclosure) -> float:
     return at_depth + _high_length(b) * (1.0 + at_depth)
 
 
-MOVING: dict[str, dict[str, Bound]] = {
+MOVING: dict[str, dict[str, tuple[Bound, ...]]] = {
     "low": {
-        "depth": lambda b: 1.0 / b.low**2 - 1.0,
-        "half_length": _low_length,
-        "retardation_length": lambda b: 0.0,
-        "leading_edge": _low_length,
-        "trailing_edge": lambda b: 1.0 / (b.low * b.q_least) - 1.0,
-        "load": _low_load,
+        "depth": (lambda b: 1.0 / b.low**2 - 1.0,),
+        "half_length": (_low_length,),
+        "retardation_length": (),
+        "leading_edge": (_low_length,),
+        "trailing_edge": (lambda b: 1.0 / (b.low * b.q_least) - 1.0,),
+        "load": (_low_load,),
         # Of the product: the errors of load and coefficient have opposite signs.
-        "friction_force": lambda b: max(_low_load(b), _low_coefficient(b)),
-        "friction_coefficient": _low_coefficient,
-        "peak_pressure": _low_peak,
-        "dissipated_in_contact": _dissipated,
+        "friction_force": (_low_load, _low_coefficient),
+        "friction_coefficient": (_low_coefficient,),
+        "peak_pressure": (_low_peak,),
+        "dissipated_in_contact": (_dissipated,),
     },
     "high": {
-        "depth": _high_depth,
-        "half_length": _high_length,
-        "retardation_length": lambda b: 0.0,
-        "leading_edge": _high_length,
-        "trailing_edge": lambda b: math.inf,  # Eq. 39 is zero
-        "load": _high_load,
-        "friction_force": lambda b: (1.0 + _high_load(b)) * (1.0 + _high_coefficient(b)) - 1.0,
-        "friction_coefficient": _high_coefficient,
+        "depth": (_high_depth,),
+        "half_length": (_high_length,),
+        "retardation_length": (),
+        "leading_edge": (_high_length,),
+        "trailing_edge": (lambda b: math.inf,),  # Eq. 39 is zero
+        "load": (_high_load,),
+        "friction_force": (lambda b: (1.0 + _high_load(b)) * (1.0 + _high_coefficient(b)) - 1.0,),
+        "friction_coefficient": (_high_coefficient,),
         # Exact in the depth once the peak is at the leading edge, l >= 1 (F7).
-        "peak_pressure": lambda b: _high_length(b) if b.least >= 1.0 else math.inf,
-        "dissipated_in_contact": _dissipated,
+        "peak_pressure": (lambda b: _high_length(b) if b.least >= 1.0 else math.inf,),
+        "dissipated_in_contact": (_dissipated,),
     },
 }
-HELD: dict[str, dict[str, Bound]] = {
+HELD: dict[str, dict[str, tuple[Bound, ...]]] = {
     "low": {
         **MOVING["low"],
-        "load": lambda b: abs(cf.error_load_low(b.largest, b.q_least)),
-        "friction_force": lambda b: abs(cf.error_friction_force_low(b.largest, b.q_least)),
+        "load": (lambda b: abs(cf.error_load_low(b.largest, b.q_least)),),
+        "friction_force": (lambda b: abs(cf.error_friction_force_low(b.largest, b.q_least)),),
     },
     "high": {
         **MOVING["high"],
-        "load": lambda b: abs(cf.error_load_high(b.q_least)),
-        "friction_force": lambda b: abs(cf.error_friction_force_high(b.q_least)),
+        "load": (lambda b: abs(cf.error_load_high(b.q_least)),),
+        "friction_force": (lambda b: abs(cf.error_friction_force_high(b.q_least)),),
     },
 }
 """For a fixed indenter the errors of its forces are known exactly, and its depth has none."""
 ERRORS = {False: MOVING, True: HELD}
-"""Bounds of |asymptote/truth - 1| by regime and quantity; the key says whether the indenter is fixed."""
+"""Bounds of |asymptote/truth - 1| by regime and quantity, of which the largest counts.
+
+The key says whether the indenter is fixed.
+"""
