@@ -1,13 +1,12 @@
 """What the public functions share: checks of their arguments, and of the range of floats."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
 from functools import cache
 from typing import Any
 
 import numpy as np
 
-from kvtheory.progress import Progress
 from kvtheory.scene.drives import TIME
 from kvtheory.scene.lists import item_values, items
 from kvtheory.scene.model import Scene
@@ -59,11 +58,6 @@ def times_of(scene: Scene, at: Any, problems: list[str] | None = None) -> Any:
     elif found:
         raise SceneError(found)
     return times
-
-
-def share_alone(progress: Progress | None) -> Callable[[float], object] | None:
-    """Return what a model calls that tells the share of its work alone."""
-    return progress and (lambda share: progress(share, ""))
 
 
 @contextmanager

@@ -97,7 +97,7 @@ def elements(
     with double_precision(), _blaming_default(per_length is None):
         return simulate(
             scene, 1.0 / density, SCHEMES[scheme],
-            at=times, time_step=step, certify=certify, progress=_in_words(progress), warn=warn,
+            at=times, time_step=step, certify=certify, progress=progress, warn=warn,
         )  # fmt: skip
 
 
@@ -114,17 +114,6 @@ def _blaming_default(taken: bool) -> Iterator[None]:
             f"the density taken by default, {DENSITY / 1e3:g} elements per mm, does not suit the size of "
             f"this scene: give `per_length`, {hint}"
         ) from None
-
-
-def _in_words(progress: Progress | None) -> Callable[[int, int], None] | None:
-    """Return what the simulation calls with the steps done and all steps."""
-    if progress is None:
-        return None
-
-    def steps(done: int, total: int) -> None:
-        progress(done / total, f"{done:,} of {total:,} steps")
-
-    return steps
 
 
 def _checked(key: str, value: Any, spec: Quantity, problems: list[str]) -> float:

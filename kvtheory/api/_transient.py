@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from kvtheory.api._edge import double_precision, scene_of, share_alone, times_of
+from kvtheory.api._edge import double_precision, scene_of, times_of
 from kvtheory.progress import Progress
 from kvtheory.results import Transient
 from kvtheory.scene.model import Scene
@@ -88,7 +88,7 @@ def transient(
             scene,
             times_of(scene, at),
             rtol,
-            share_alone(progress),
+            progress,
             certify=certify,
             max_steps=max_steps,
         )

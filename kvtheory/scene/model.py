@@ -204,12 +204,11 @@ class Scene:
         parts: dict[str, Any] = {
             "indenter": Indenter, "foundation": Foundation, "support": Support, "drive": Drive, "run": Run,
         }  # fmt: skip
-        told = {name: getattr(kind, "__name__", f"one of {kind}") for name, kind in parts.items()}
-        problems = [
-            problem(name, getattr(self, name), f"expected {told[name]}")
-            for name, kind in parts.items()
-            if not isinstance(getattr(self, name), kind)
-        ]
+        problems = []
+        for name, kind in parts.items():
+            if not isinstance(getattr(self, name), kind):
+                told = getattr(kind, "__name__", f"one of {kind}")
+                problems.append(problem(name, getattr(self, name), f"expected {told}"))
         if problems:
             raise SceneError(problems)
 

@@ -1,6 +1,5 @@
 """The transient of a scene in SI: the scaled solution of `continuum`, put back into units."""
 
-from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass
 from operator import itemgetter
@@ -15,6 +14,7 @@ from kvtheory.models.continuum.error_estimate import NOT_ASKED, certificate, met
 from kvtheory.models.continuum.run import StepControl
 from kvtheory.models.continuum.solver import STATE_NAMES, STEP_LIMIT, Trajectory, solve
 from kvtheory.models.continuum.surface import height
+from kvtheory.progress import Progress
 from kvtheory.results import Certificate, Event, Transient
 from kvtheory.results.errors import TransientError
 from kvtheory.scene.base_motion import BaseMotion
@@ -113,7 +113,7 @@ def transient(
     scene: Scene,
     times: ArrayLike | None,
     rtol: float,
-    progress: Callable[[float], Any] | None = None,
+    progress: Progress | None = None,
     *,
     certify: bool = True,
     max_steps: int | None = None,
@@ -146,7 +146,7 @@ def certified(
     scene: Scene,
     times: ArrayLike | None,
     rtol: float,
-    progress: Callable[[float], Any] | None = None,
+    progress: Progress | None = None,
     *,
     certify: bool = True,
     max_steps: int | None = None,
@@ -163,7 +163,7 @@ def certified(
     def solved(part: int, tolerance: float, control: StepControl) -> Trajectory:
         def report(s: float) -> None:
             if progress is not None:
-                progress((part + s / drive.end) / (1 + certify))
+                progress((part + s / drive.end) / (1 + certify), "")
 
         return solve(
             drive, units.inertia_number, units.support_number, drive.end, tolerance,

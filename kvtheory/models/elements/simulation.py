@@ -14,6 +14,7 @@ from kvtheory.models.elements.model import Model
 from kvtheory.models.elements.row import KEPT_DEPTH, ElementRow, IndenterState, OutgrownError
 from kvtheory.models.elements.schemes import DEFAULT, SCHEMES, Scheme
 from kvtheory.models.elements.stability import Watch, doubts, lengths, limit_at, stability_text
+from kvtheory.progress import Progress
 from kvtheory.results import Simulation
 from kvtheory.results.errors import DivergenceError
 from kvtheory.scene.base_motion import BaseMotion
@@ -46,8 +47,6 @@ DEEPEST = 1e7
 
 Leg = tuple[float, float, int]
 """From one instant to another in so many steps."""
-Progress = Callable[[int, int], None]
-"""Called with the steps done and the steps in all."""
 
 
 def simulate(
@@ -174,7 +173,7 @@ def _run(
                     watch.see(state, (stop - start) / count)
                 done += 1
                 if progress is not None and (done % PER_NOTICE == 0 or done == total):
-                    progress(done, total)
+                    progress(done / total, f"{done:,} of {total:,} steps")
             if not count and stop in row.path.changes:
                 state = state._replace(time=stop)
             if stop in asked:
