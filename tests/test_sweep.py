@@ -14,7 +14,9 @@ from kvtheory.results import STEADY_UNITS
 from kvtheory.scene.quantities import given
 from kvtheory.sweeps import engine
 from kvtheory.sweeps.axes import axes_of, narrowed, size, values_at
+from kvtheory.sweeps.columns import columns_of
 from kvtheory.sweeps.netcdf_file import rectangles
+from kvtheory.sweeps.plan import Plan
 
 V, TAU = "drive.velocity", "foundation.retardation_time"
 GRID = {V: "1 mm/s:10 m/s:7:log", TAU: ["10 ms", "1 s"]}
@@ -256,11 +258,23 @@ def test_what_is_sent_to_a_worker_is_small_and_right():
     assert size(few) == 100
 
 
+@pytest.mark.parametrize("points", [3, 200, 5_000, 100_000])
+@pytest.mark.parametrize("numba", [True, False])
+def test_motions_are_shared_among_workers_and_in_large_blocks_only_if_compiled(
+    points, numba, monkeypatch
+):
+    monkeypatch.setattr(engine, "find_spec", lambda name: numba or None)
+    axes = axes_of(kv.Scene(), {V: np.geomspace(1e-3, 1.0, points)})
+    plan = Plan(kv.Scene(), axes, columns_of("hops", series=True), None, "exact", 1e-6)
+    sizes = [task.points for task in engine.remaining(plan, [])]
+    most = engine.COMPILED_BLOCK if numba else engine.SINGLE_BLOCK
+    assert sum(sizes) == points
+    assert max(sizes) <= most
+    assert len(sizes) >= min(engine.LEAST_BLOCKS, points // engine.SINGLE_BLOCK)
+
+
 def test_remaining_blocks_fill_the_gaps_once():
     plan_axes = axes_of(kv.Scene(), {V: np.linspace(1.0, 2.0, 100)})
-    from kvtheory.sweeps.columns import columns_of
-    from kvtheory.sweeps.plan import Plan
-
     plan = Plan(kv.Scene(), plan_axes, columns_of("depth", series=False), None, "exact", 1e-6)
     done = [(0, 7), (20, 40), (99, 100)]
     tasks = list(engine.remaining(plan, done, 16))

@@ -11,6 +11,7 @@ from concurrent.futures import (
     wait,
 )
 from concurrent.futures.process import BrokenProcessPool
+from importlib.util import find_spec
 
 from kvtheory.sweeps.blocks import Block, Task, compute, task
 from kvtheory.sweeps.plan import Plan
@@ -19,8 +20,11 @@ VECTORISED_BLOCK = 65536
 """Steady states in a block: 5 MB of results in 20 ms; half as many cost a third of the speed."""
 QUADRATURE_BLOCK = 512
 """Scenes integrated in a block: as many as go through one column of nodes; 64 cost half the speed."""
-SINGLE_BLOCK = 64
-"""Motions followed in a block: about 0.1 s, of which passing it on takes a percent."""
+SINGLE_BLOCK, COMPILED_BLOCK = 64, 512
+"""Motions followed in a block, one by one or in one call: about 0.1 s to 1 s, of which passing it on takes a
+percent."""
+LEAST_BLOCKS = 16
+"""Of a sweep of motions, so that a few workers share even a small one."""
 
 TRIES = 3
 """Times that a block is given out; a worker may die under it, but not every time."""
@@ -41,7 +45,7 @@ def remaining(plan: Plan, done: list[tuple[int, int]], block: int | None = None)
 
     Edges of blocks lie on multiples of `block`, but for those that earlier runs left.
     """
-    usual = SINGLE_BLOCK if plan.transient else QUADRATURE_BLOCK
+    usual = _motions(plan) if plan.transient else QUADRATURE_BLOCK
     size = block or (VECTORISED_BLOCK if plan.vectorised else usual)
     at = 0
     for start, stop in [*done, (plan.points, plan.points)]:
@@ -50,6 +54,13 @@ def remaining(plan: Plan, done: list[tuple[int, int]], block: int | None = None)
             yield task(plan, at, end)
             at = end
         at = max(at, stop)
+
+
+def _motions(plan: Plan) -> int:
+    """Return how many motions are followed in a block."""
+    together = find_spec("numba") is not None and not plan.textual
+    most = COMPILED_BLOCK if together else SINGLE_BLOCK
+    return min(most, max(SINGLE_BLOCK, plan.points // LEAST_BLOCKS))
 
 
 def run_here(tasks: Iterator[Task], keep: Callable[[Block], None]) -> None:
