@@ -190,3 +190,18 @@ def test_the_limit_of_steps_grows_with_the_drive():
         assert max(certificate.relative_error.values()) < 1e-3  # the second run came to the end too
     with pytest.raises(ArithmeticError, match="more than 100 steps"):
         kv.transient(scene, at=[0.2], max_steps=100)
+
+
+def test_a_function_may_jump_at_its_breaks_and_at_the_start_unless_it_starts_at_rest():
+    assert kv.Drive(function=math.cos, breaks=[0.0, 0.5]).jumps == (0.0, 0.5)
+    assert kv.Drive(function=math.sin, breaks=[0.0, 0.5]).jumps == (0.5,)
+
+
+def test_a_faster_drive_has_every_velocity_multiplied_whatever_it_is():
+    for drive in (
+        kv.Drive(0.1),
+        kv.Drive(history=[(0.0, 0.1), (0.1, -0.2)]),
+        kv.Drive(function=math.cos),
+    ):
+        motion, faster = (each.motion(0.1, 1.0) for each in (drive, drive.faster(3.0)))
+        assert faster.velocity(0.05) == pytest.approx(3.0 * motion.velocity(0.05), rel=1e-12)

@@ -156,7 +156,9 @@ def allowance(
 def _bands(theory: Theory, time: Array, step: float, rtol: float) -> tuple[Curves, ...]:
     """Return theory now, at both ends of the smear, and its least and largest within it."""
     smear, count = STEPS_SMEARED * step + unsure(time), time.size
-    jumps = np.array([(np.nextafter(t, -1.0), t) for t in theory.jumps if t < time[-1]]).reshape(-1)
+    jumps = np.array(
+        [(np.nextafter(t, -1.0), t) for t in theory.scene.drive.jumps if t < time[-1]]
+    ).reshape(-1)
     curves = theory.at(np.concatenate([time, time - smear, time + smear, jumps]), rtol)
     now, before, after = (
         {name: curves[name][k * count : (k + 1) * count] for name in CURVES} for k in range(3)

@@ -48,7 +48,7 @@ def jump(case: Case) -> Iterator[Check]:
     name, equation = "jump at t = 0+", "F11"
     time, theory = case.series.time, case.theory
     force = next((n for n in ("normal_force", "friction_force") if n in case.series.columns), None)
-    if 0.0 not in theory.jumps:
+    if 0.0 not in theory.scene.drive.jumps:
         yield not_made(name, equation, "the drive does not jump at t = 0")
         return
     if force is None:

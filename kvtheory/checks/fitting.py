@@ -184,21 +184,8 @@ def scaled_scene(scene: Scene, powers: Mapping[str, float], factor: float) -> Sc
         part: Any = getattr(scene, section)
         times = factor**power
         if isinstance(part, Drive):
-            part = _faster(part, times)
+            part = part.faster(times)
         else:
             part = changed(part, **{name: times * getattr(part, name)})
         scene = replace(scene, **{section: part})
     return scene
-
-
-def _faster(drive: Drive, times: float) -> Drive:
-    """Return a drive with every velocity multiplied."""
-    if drive.function is not None:
-        return Drive(
-            function=lambda t: times * drive.called(t),
-            breaks=drive.breaks,
-            tolerance=drive.tolerance,
-        )
-    if drive.history is not None:
-        return Drive(history=[(time, times * speed) for time, speed in drive.history])
-    return Drive(times * drive.final_velocity)

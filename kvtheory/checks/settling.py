@@ -43,7 +43,7 @@ def fast_constant(case: Case) -> Iterator[Check]:
     """Fit the fast time constant to the normal force after the start."""
     name, rates, time = "fast time constant", case.theory.rates, case.series.time
     why = _why_not(case, "normal_force")
-    if not why and 0.0 not in case.theory.jumps:
+    if not why and 0.0 not in case.theory.scene.drive.jumps:
         why = "there is no such decay in this scene"
     if why or rates is None:
         yield not_made(name, "F12", why)

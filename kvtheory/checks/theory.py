@@ -91,15 +91,6 @@ class Theory:
         return math.inf if drive.function else drive.last_change
 
     @cached_property
-    def jumps(self) -> tuple[float, ...]:
-        """The times in s at which the velocity may jump, t = 0 among them unless it starts at rest."""
-        drive = self.scene.drive
-        if drive.function is None:
-            return drive.jumps
-        first = (0.0,) if self.motion.velocity(0.0) else ()
-        return (*first, *(time for time in drive.breaks if time > 0.0))
-
-    @cached_property
     def final_velocity(self) -> float:
         """The velocity in m/s at the end of the run."""
         return float(self.motion.velocity(self.motion.end))

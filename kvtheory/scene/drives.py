@@ -123,7 +123,13 @@ class Drive:
 
     @property
     def jumps(self) -> tuple[float, ...]:
-        """The times in s at which the velocity jumps, t = 0 among them; of a function, they are `breaks`."""
+        """The times in s at which the velocity may jump, t = 0 among them unless it starts at rest.
+
+        Those of a function are its `breaks`.
+        """
+        if self.function is not None:
+            first = (0.0,) if self.called(0.0) else ()
+            return (*first, *(time for time in self.breaks if time > 0.0))
         points = self.points
         first = (0.0,) if points[0][1] != 0.0 else ()
         return (*first, *(b for (a, _), (b, _) in pairwise(points) if a == b))
@@ -140,6 +146,22 @@ class Drive:
         if isinstance(self.waveform, SmoothRamp):
             return AT_LAST * self.waveform.rise_time
         return self.points[-1][0]
+
+    def faster(self, times: float) -> "Drive":
+        """Return the drive with every velocity multiplied.
+
+        >>> Drive(history=[(0.0, 0.1), (1.0, -0.2)]).faster(2.0).points
+        ((0.0, 0.2), (1.0, -0.4))
+        """
+        if self.function is not None:
+            return Drive(
+                function=lambda t: times * self.called(t),
+                breaks=self.breaks,
+                tolerance=self.tolerance,
+            )
+        if self.history is not None:
+            return Drive(history=[(time, times * speed) for time, speed in self.history])
+        return Drive(times * self.final_velocity)
 
     def motion(self, end: float, least: float) -> BaseMotion:
         """Return V(t) and Y(t) up to the time `end` (s), as polynomials.
