@@ -262,7 +262,7 @@ def value_at(expr: sp.Expr, variable: sp.Symbol, end: sp.Expr) -> sp.Expr:
 def is_continuous(expr: sp.Expr, over: Interval, known: Conditions) -> bool:
     """Tell whether the expression is real, without a jump or a pole, from end to end of the interval.
 
-    An undefined function stands for any continuous one.
+    An undefined function stands for any that is as smooth as its derivatives ask.
     """
     variable = over[0]
     if variable not in expr.free_symbols or expr == variable:
@@ -277,8 +277,10 @@ def is_continuous(expr: sp.Expr, over: Interval, known: Conditions) -> bool:
         else:
             real = _never_negative(1 - argument**2, over, inside)
         return real and is_continuous(argument, over, known)
+    if isinstance(expr, sp.Derivative) and isinstance(expr.expr, AppliedUndef):
+        return is_continuous(expr.expr, over, known)
     allowed = expr.is_Add or expr.is_Mul
-    allowed = allowed or isinstance(expr, (*_CONTINUOUS, AppliedUndef, sp.Derivative))
+    allowed = allowed or isinstance(expr, (*_CONTINUOUS, AppliedUndef))
     return bool(allowed and all(is_continuous(arg, over, known) for arg in expr.args))
 
 

@@ -9,6 +9,7 @@ from . import (
     asymptotics,
     circle,
     contact_interval,
+    element_edges,
     element_schemes,
     energy,
     friction_identity,
@@ -38,7 +39,7 @@ _CHAPTERS = (
     *(power_law, power_law_limits, power_law_weight, power_law_errors, wedge),
     *(transient_scaling, transient_memory, contact_interval, transient_edges),
     *(transient_motion, transient_rates, transient_balance),
-    element_schemes,
+    *(element_schemes, element_edges),
 )
 """Each chapter may recall what the chapters before it have established."""
 

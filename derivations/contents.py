@@ -171,5 +171,7 @@ CONTENTS = {
     "element-stability": "Stability at any step",
     "element-orders": "Order in time",
     "F15-sawtooth": "Noise of elements entering the contact",
+    "element-trapezoids": "Trapezoids between elements",
     "element-kink": "Part of an element at an edge",
+    "element-bent": "What the part of an element leaves out",
 }

@@ -1,4 +1,4 @@
-"""The discrete simulator: order and stability of its schemes, and what point elements do at an edge (F15).
+"""The discrete simulator: order and stability of its schemes (F15).
 
 A contact of length L that does not change within a step makes the motion linear in the depth; it is
 scaled by the static state, with b = (3/4) L/a_0 for its length, h for the time step over tau, and
@@ -11,32 +11,17 @@ import sympy as sp
 
 from .record import Derivation
 from .step import Proof
-from .symbols import (
-    C,
-    V,
-    b,
-    compression,
-    eps,
-    eta,
-    kappa,
-    sigma,
-    time,
-    x,
-    zeta,
-)
+from .symbols import b, compression, eps, eta, kappa, sigma, time, zeta
 
 SECTION = "Discrete elements"
 
-_h, _z, _y, _slope, _spacing = sp.symbols("h z y m Delta", positive=True)
+_h, _z, _y = sp.symbols("h z y", positive=True)
 _theta = sp.Symbol("theta", positive=True)
 _excess = sp.Symbol("theta_+", nonnegative=True)
 _beyond = sp.Symbol("eta_+", positive=True)
 _R, _D, _w = sp.symbols("R D w")
-_share = sp.Symbol("vartheta", positive=True)
 _k1, _k2, _k3, _k4 = sp.symbols("k_1:5")
-_inside, _outside = sp.Symbol("w_1", positive=True), sp.Symbol("w_0", negative=True)
 _rest = sp.symbols("r_1:4", real=True)
-_surplus = sp.Symbol("f_Delta", real=True)
 _end, _pressure_rate = sp.symbols("p_e p_s", real=True)
 
 CUBIC = 24 - 12 * _z + 4 * _z**2 - _z**3
@@ -47,16 +32,15 @@ FIT = 1 / (1 - sp.exp(-_z)) - 1 / _z
 """theta of the exponential scheme."""
 WEIGHT = 1 / (1 - sp.exp(-_h))
 """eta: how strongly the mean force of F8 counts a change of the depth within the step."""
-KINK = _spacing * _inside * _outside / (2 * (_inside - _outside))
 
 _theorem = partial(Proof, equation=None, section=SECTION)
 
 
 def derive() -> tuple[Derivation, ...]:
-    """Prove the limits of the explicit schemes, the stability of the others, orders and edge terms."""
+    """Prove the limits of the explicit schemes, the stability of the others, and orders."""
     return (
         *(_runge_kutta(), _euler(), _mean_force(), _fitted(), _unconditional()),
-        *(_orders(), _sawtooth(), _kink()),
+        _orders(),
     )
 
 
@@ -239,9 +223,13 @@ def _routh(proof: Proof) -> None:
     parts = sp.re(value), sp.im(value)
     shown = leads[0] * (real**2 - imaginary**2) + leads[1] * real + leads[2]
     slope = 2 * leads[0] * real + leads[1]
+    factor = (1 + _w) / (1 - _w)
+    proof.equal(1 + 2 * _w / (1 - _w), factor, r"$1 + D$, the factor of a step")
     proof.equal(
-        parts[1], imaginary * slope, r"imaginary part of $c_2 w^2 + c_1 w + c_0$ at $w = x + i y$"
+        *((1 + real) ** 2 - (1 - real) ** 2, 4 * real),
+        r"$|1 + w|^2 - |1 - w|^2$ at $w = x + i y$: a mode grows only if $x > 0$",
     )
+    proof.equal(parts[1], imaginary * slope, r"imaginary part of $c_2 w^2 + c_1 w + c_0$ there")
     proof.holds(slope, ">", 0, r"so for $x \ge 0$ it vanishes for $y = 0$ only")
     proof.equal(parts[0], shown, "real part")
     proof.holds(shown.subs(imaginary, 0), ">", 0, "which is positive there: no root has $x \\ge 0$")
@@ -290,70 +278,4 @@ _ORDERS = (
     r"put into the equation of a step, $\varepsilon D^2/h^2 + (1 + \theta D) [b + \kappa + (b \eta + "
     r"\kappa \theta) D] = 0$ with $D = e^{\sigma h} - 1$. What is left over, $r$, is of the order of "
     r"the scheme in $h$."
-)
-
-
-def _sawtooth() -> Derivation:
-    proof = _theorem("F15-sawtooth", title="Noise of elements entering the contact", text=_SAWTOOTH)
-    first = (_share - sp.Rational(1, 2)) * _spacing
-    line = _end + _pressure_rate * x
-    missed = -(_end * first + _pressure_rate * first**2 / 2)
-    proof.integral(
-        *(_surplus, line, (x, first, 0), _end * x + _pressure_rate * x**2 / 2),
-        "what the sum over elements has too much", value=missed,
-    )  # fmt: skip
-    largest = _end * _spacing / 2 - _pressure_rate * _spacing**2 / 8
-    just_in, about_to = (sp.Subs(missed, _share, place) for place in (0, 1))
-    proof.equal(just_in, largest, r"an element has just come in, $\vartheta = 0$")
-    proof.equal(about_to, -_end * _spacing / 2 - _pressure_rate * _spacing**2 / 8,
-                r"the next one is about to, $\vartheta = 1$")  # fmt: skip
-    return proof.done(just_in, largest)
-
-
-_SAWTOOTH = (
-    r"The pressure jumps to $p_e$ at the leading edge and changes from there as $p_e + p_s x$; "
-    r"elements are at $x_k = (k + \vartheta) \Delta$, $0 \le \vartheta \le 1$. Each stands for the "
-    r"length $\Delta$ about it, with the exact integral of a straight line, so that the sum begins at "
-    r"$(\vartheta - \frac{1}{2}) \Delta$ instead of 0. As elements come in, the normal force goes up "
-    r"and down by $\pm p_e \Delta/2$, and the friction force by that times $-h'$: first order in the "
-    r"spacing."
-)
-
-
-def _kink() -> Derivation:
-    proof = _theorem("element-kink", title="Part of an element at an edge", text=_KINK,
-                     uses=("F15-sawtooth",))  # fmt: skip
-    line = _outside + (_inside - _outside) * x / _spacing
-    meets = -_outside * _spacing / (_inside - _outside)
-    area = _spacing * _inside**2 / (2 * (_inside - _outside))
-    proof.integral(
-        *(sp.Integral(line, (x, meets, _spacing)), line, (x, meets, _spacing)),
-        _outside * x + (_inside - _outside) * x**2 / (2 * _spacing),
-        "the larger of both surfaces, above the free one", value=area,
-    )  # fmt: skip
-    trapezoid = _spacing * _inside / 2
-    proof.equal(area - trapezoid, KINK, r"without the trapezoid of the elements, $\Delta w_1/2$")
-    inside, outside = _slope * _spacing * (1 - _share), -_slope * _spacing * _share
-    in_cell = -_slope * _spacing**2 * _share * (1 - _share) / 2
-    proof.define(_inside, inside, r"surfaces at the angle $m$ that meet at $\vartheta \Delta$")
-    proof.define(_outside, outside)
-    proof.equal(KINK, in_cell, "the kink at its place within the element")
-    proof.sign(in_cell + _slope * _spacing**2 / 8, ">=", 0, (_share, 0, 1), "second order in the spacing",
-               left=r"\frac{\Delta w_1 w_0}{2 (w_1 - w_0)} + \frac{m \Delta^2}{8}")  # fmt: skip
-    proof.define(
-        _end, C * V * _slope, "the pressure at a leading edge: its elements are met with $m V$"
-    )
-    proof.equal(
-        *(C * sp.Derivative(in_cell, _share) * -V / _spacing, _end * _spacing * (1 - 2 * _share) / 2,
-          r"as the base moves, $\Delta \dot\vartheta = -V$: the sawtooth of F15"),
-    )  # fmt: skip
-    return proof.done(KINK, in_cell)
-
-
-_KINK = (
-    r"Between an element outside, where the indenter is above the free surface by $-w_0 > 0$, and the "
-    r"next one inside, where it is below by $w_1 > 0$, the surface has a kink. The rule of trapezoids "
-    r"takes its chord. The edge-corrected scheme adds the difference to $U = \int u \, dx$, of which "
-    r"the force is $K U + C \dot U$: with it the sawtooth of the forces is gone, and the forces are "
-    r"of second order in the spacing."
 )

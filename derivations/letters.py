@@ -45,7 +45,7 @@ BY_SECTION: dict[str, dict[str, str]] = {
         "D": r"\hat D", "b": r"b_{\mathrm{e}}", "k": "j", "m": r"m_{\mathrm{k}}", **_STEP,
         **{f"r{end}": rf"\hat\varrho{end}"
            for end in ("", "_1", "_2", "_3")},
-        **{f"w{end}": rf"\hat w{end}" for end in ("", "_0", "_1")},
+        **{f"w{end}": rf"\hat w{end}" for end in ("", "_0", "_1", "_2")},
     },
 }  # fmt: skip
 """By section: the letter as it is written, and as it is printed."""
@@ -70,6 +70,7 @@ BY_LABEL: dict[str, dict[str, str]] = {
     "F14-surface": {"E": r"E_{\mathrm{s}}"},
     "F15-runge-kutta": {"u": "u"},
     "element-kink": {"u": "u", r"\hat p": r"\bar p"},
+    "element-trapezoids": {"u": "u"},
     "element-stability": {
         "w": r"\varpi",
         "c": "c_1",

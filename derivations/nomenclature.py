@@ -530,6 +530,8 @@ SYMBOLS = tuple(
             "m",
             "element-kink",
         ),
+        (r"\hat w", "indenter below the free surface, along an element", "m", "element-bent"),
+        (r"\hat w_2", r"second derivative of $\hat w$", "1/m", "element-bent"),
         ("e", "base of natural logarithms", "1", "constant"),
         (r"\pi", "ratio of a circle", "1", "constant"),
         ("O", "order of a remainder", "that of its argument", "sign"),

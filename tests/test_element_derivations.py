@@ -4,14 +4,17 @@ import mpmath as mp
 import numpy as np
 import pytest
 import sympy as sp
+from kvtheory.derivations import element_edges as edges
 from kvtheory.derivations import element_schemes as schemes
 from kvtheory.derivations.catalogue import catalogue
 
 from kvtheory.models.elements import schemes as simulator
+from kvtheory.models.elements.edges import kink_area
 
 LABELS = {
     "F15-runge-kutta", "F15-euler", "F15-sawtooth", "element-mean-force", "element-fit",
     "element-stability", "element-orders", "element-kink",
+    "element-trapezoids", "element-bent",
 }  # fmt: skip
 
 
@@ -94,7 +97,32 @@ def test_sawtooth_and_kink_by_brute_force():
     outside, inside = -0.2, 0.7
     fine = np.linspace(0.0, dx, 1_000_001)
     area = np.trapezoid(np.maximum(outside + (inside - outside) * fine / dx, 0.0), fine)
-    kink = schemes.KINK.subs(
-        {schemes._spacing: dx, schemes._inside: inside, schemes._outside: outside}
-    )
+    kink = edges.KINK.subs({edges._spacing: dx, edges._inside: inside, edges._outside: outside})
     assert area - 0.5 * dx * inside == pytest.approx(float(kink), rel=1e-9)
+
+
+@pytest.mark.parametrize(("outside", "inside"), [(-0.2, 0.7), (-1e-9, 0.3), (-0.8, 1e-6)])
+def test_correction_of_the_code_is_the_derived_one(outside, inside):
+    places = {edges._spacing: 0.02, edges._inside: inside, edges._outside: outside}
+    correction = edges.KINK + edges.END
+    area, rate = kink_area(0.02, (outside, inside - outside, 0.0))
+    assert area == pytest.approx(float(correction.subs(places)), rel=1e-12)
+    # With the depth the overlap rises by the same everywhere.
+    rises = sp.diff(correction, edges._inside) + sp.diff(correction, edges._outside)
+    assert rate == pytest.approx(float(rises.subs(places)), rel=1e-12)
+
+
+def test_correction_leaves_out_what_the_derivation_says(by_label):
+    """A bent overlap, summed by the code's own rule and integrated by a formula."""
+    dx, share, m, bend = 0.01, 0.3, 0.4, 5.0
+    overlap = lambda x: m * (x - share * dx) + 0.5 * bend * (x - share * dx) ** 2  # noqa: E731
+    nodes = dx * np.arange(1, 40)
+    y = nodes[-1] - share * dx
+    area = m * y**2 / 2 + bend * y**3 / 6
+    sums = dx * overlap(nodes).sum() - dx * overlap(nodes[-1]) / 2
+    sums -= dx**2 / 12 * (m + bend * y)
+    step = by_label["element-bent"].steps[-1].claim
+    places = {edges._spacing: dx, edges._share: share, edges._slope: m, edges._bend: bend}
+    left = float(step.rhs.subs(places))
+    added, _ = kink_area(dx, (overlap(0.0), overlap(dx) - overlap(0.0), 0.0))
+    assert area - sums - added == pytest.approx(left, rel=1e-6)
