@@ -483,6 +483,7 @@ class Book:
         premise: Premise | None = None,
         cases: tuple[Relational, ...] = (),
         trusted: bool = False,
+        bound: bool = False,
     ) -> Fact:
         """Keep a step; an exact one is an equality that later proofs may use as a rule.
 
@@ -496,11 +497,12 @@ class Book:
         extra = () if premise is None else (premise,)
         premises = merged([*(fact.premises for fact in origins), extra])
         worth = weakest([status, *(fact.step.status for fact in origins if status != "definition")])
-        conditions = self._conditions if over is None else self._conditions.with_interval(over)
+        free = over is None or bound
+        conditions = self._conditions if free else self._conditions.with_interval(over)
         own = () if over is None else (tex_interval(over),)
         if cases:
             own = (*own, r"\ \text{or}\ ".join(map(tex_case, cases)))
-        domain = tuple(dict.fromkeys((*own, *self._domain)))
+        domain = tuple(dict.fromkeys((*(() if bound else own), *self._domain)))
         left, right = shown.get("left", tex(lhs)), shown.get("right", tex(rhs))
         claim = self._claim(lhs, rhs)
         step = Step(left, relation, right, reason, worth, domain=", ".join(own), claim=claim)

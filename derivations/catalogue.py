@@ -16,6 +16,7 @@ from . import (
     groups,
     master_curve,
     model,
+    one_contact,
     power_law,
     power_law_errors,
     power_law_limits,
@@ -34,7 +35,7 @@ from . import (
 from .record import Derivation
 
 _CHAPTERS = (
-    *(model, steady, friction_identity, asymptotics, tables, groups),
+    *(model, steady, one_contact, friction_identity, asymptotics, tables, groups),
     *(theorems, master_curve, energy, asymptote_errors, circle),
     *(power_law, power_law_limits, power_law_weight, power_law_errors, wedge),
     *(transient_scaling, transient_memory, contact_interval, transient_edges),

@@ -64,6 +64,7 @@ CONTENTS = {
     "eq50": "Friction vanishes at high velocity, dead weight",
     "table1": "Standard parameter values",
     "table2": "Velocity dependences of the friction coefficient",
+    "groups-lengths": "Two lengths",
     "groups-fixed": "Groups: fixed indenter",
     "groups-dead-weight": "Groups: dead weight",
     "groups-transient": "Groups: transient",

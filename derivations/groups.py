@@ -1,8 +1,8 @@
 r"""Dimensionless groups by the null space of the matrix of dimensions.
 
-Lengths along x and along z are independent dimensions: the foundation has no shear stiffness, so
-nothing in the model adds or compares a horizontal length and a vertical one. With that, steady
-sliding has one group; with one isotropic length it would have two.
+Lengths along x and along z are independent dimensions: the model keeps its form when they change by
+factors of their own (groups-lengths). With that, steady sliding has one group; with one isotropic length
+it would have two.
 
 The base dimensions are force per unit width N, horizontal length X, vertical length Z and time T.
 """
@@ -13,7 +13,7 @@ from sympy.printing.latex import LatexPrinter
 from .record import Derivation
 from .rules import Computed
 from .step import Proof, tex
-from .symbols import K, M, R, V, W, delta, mu, tau
+from .symbols import K, M, R, V, W, delta, depth_rate_now, mu, tau, x
 
 SECTION = "Dimensionless groups"
 
@@ -70,6 +70,7 @@ def derive() -> tuple[Derivation, ...]:
     dead_weight = (R, K, tau, V, W, mu)
     transient = (R, tau, V, delta, M, W, k_s)
     return (
+        _lengths(),
         _groups("fixed", "fixed indenter", fixed, fixed_groups, _STEADY, _FIXED),
         _groups("dead-weight", "dead weight", dead_weight, dead_weight_groups, _STEADY, _DEAD),
         _groups("transient", "transient", transient, transient_groups, _TRANSIENT, _SCALED),
@@ -107,6 +108,61 @@ def isotropic(matrix: sp.Matrix) -> sp.Matrix:
     """Return the matrix that results when both lengths count as one dimension."""
     force, along, up, time = (matrix.row(i) for i in range(len(BASE)))
     return sp.Matrix.vstack(force, along + up, time)
+
+
+def _lengths() -> Derivation:
+    """Prove that the model keeps its form when both lengths change by factors of their own."""
+    proof = Proof("groups-lengths", None, section=SECTION, title="Two lengths", text=_LENGTHS,
+                  uses=("eq3", "eq7", "eq12"))  # fmt: skip
+    units = DIMENSIONS | {depth_rate_now: _Z / _T, x: _X}
+    sag = x**2 / (2 * R)
+    pressure = K * (delta - sag) + K * tau * (depth_rate_now - V * x / R)
+    given: dict[str, list[sp.Symbol]] = {}
+    for name, law in (("h", sag), ("p", pressure)):
+        given[name] = [each for each in units if law.has(each)]
+        proof.notation[name] = sp.Lambda(tuple(given[name]), law)
+    found = []
+    for name, law, unit, reason in (
+        ("h", sag, _Z, "the shape, Eq. (3)"),
+        ("h'", sp.Derivative(sag, x), _Z / _X, "its slope, by which a load becomes friction"),
+        ("p", pressure, _N / _X, "the pressure, Eqs. (6), (7) and (12)"),
+    ):
+        arguments = given[name[0]]
+        changed = [each * units[each] for each in arguments]
+        found.append((sp.Subs(law, arguments, changed), unit * law))
+        proof.equal(
+            *(*found[-1], reason), left=_called(name, changed),
+            right=f"{tex(unit)} {_called(name, arguments)}",
+        )  # fmt: skip
+    _circle(proof)
+    return proof.done(*found[-1])
+
+
+def _called(name: str, arguments: list[sp.Expr]) -> str:
+    return rf"{name}\left({', '.join(map(tex, arguments))}\right)"
+
+
+def _circle(proof: Proof) -> None:
+    """Prove that a circle, whose slope is not small, allows one length only."""
+    term = x**4 / (8 * R**3)
+    circle = R - sp.sqrt(R**2 - x**2)
+    proof.leading_order(
+        circle - x**2 / (2 * R), term, x, 0, "what a circle has beyond it", eps=x**2
+    )
+    factor = _Z**3 / _X**2
+    places = {R: R * DIMENSIONS[R], x: x * _X}
+    proof.equal(sp.Subs(term, list(places), list(places.values())), factor * term,
+                "changes by another factor than $Z$")  # fmt: skip
+    proof.root(factor - _Z, _Z, _X, "but if both lengths change alike")
+
+
+_LENGTHS = (
+    r"Let lengths along the foundation change by a factor $X$, those across it by $Z$, forces by $N$ and "
+    r"times by $T$, and every quantity by its dimension: $R$ by $X^2/Z$, $K$ by $N/(X Z)$, and so on. "
+    r"Shape and pressure keep their form, whatever the factors, and with them load and friction force, "
+    r"integrals over $x$ of $p$ and $-h' p$. So $X$ and $Z$ count as two dimensions. It is the small slope "
+    r"that allows it: the shape is a parabola, and $-h'$ stands for the inclination; a circle does not."
+)
 
 
 def _groups(

@@ -52,6 +52,7 @@ BY_SECTION: dict[str, dict[str, str]] = {
 
 BY_LABEL: dict[str, dict[str, str]] = {
     "eq26": {"s": r"\bar s"},
+    "one-contact": {"y": r"x_{\mathrm{b}}"},
     "F2": {letter: rf"\hat {letter}" for letter in "XYT"},
     "F3": {letter: rf"\hat {letter}" for letter in "XYT"},
     "F7": {"n": r"\hat n", r"\xi": r"\hat x"},

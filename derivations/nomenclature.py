@@ -56,6 +56,7 @@ SYMBOLS = tuple(
         (r"l_{\mathrm{r}}", r"retardation length, $V \tau$", "m", "eq29"),
         (r"x_{\mathrm{LE}}", "leading edge of the contact", "m", "eq26"),
         (r"x_{\mathrm{TE}}", "trailing edge of the contact", "m", "eq27"),
+        (r"x_{\mathrm{b}}", "distance behind the trailing edge", "m", "one-contact"),
         ("x_{-}", "smaller zero of the pressure", "m", "eq33"),
         ("p", "contact pressure", "Pa", "pressure"),
         (r"p_{\mathrm{LE}}", "pressure at the leading edge", "Pa", "F21-shape"),

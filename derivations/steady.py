@@ -4,7 +4,6 @@ from functools import partial
 
 import sympy as sp
 
-from .book import Shown
 from .model import compression_rate, depth_rate, slope
 from .record import Derivation
 from .step import Proof
@@ -37,6 +36,7 @@ from .symbols import (
 
 SECTION = "Steady sliding"
 
+half_length = sp.sqrt(2 * R * delta)
 trailing_edge = sp.sqrt(a**2 + l_r**2) - l_r
 pressure = K * (delta - x**2 / (2 * R) - l_r * x / R)
 number = (1 - q**2) / (2 * q)
@@ -48,7 +48,6 @@ drive_cubed = 3 * (1 - q) ** 3 * (1 + q) / (2 * q**2 * (q**2 - 2 * q + 3))
 """Lambda**3 of the dead-weight indenter."""
 
 _SHAPE = x**2 / (2 * R)
-_HALF = sp.sqrt(2 * R * delta)
 _equation = partial(Proof, section=SECTION)
 
 
@@ -72,9 +71,13 @@ def _half_length() -> Derivation:
     proof.recall("eq3", h(x), _SHAPE)
     reason = "at the edge of a contact at rest $h(a) = \\delta$"
     proof.root(
-        *(h(x) - delta, x, _HALF, reason), over=(x, 0, sp.oo), name=a, right=r"\sqrt{2 R \delta}"
+        *(h(x) - delta, x, half_length, reason),
+        over=(x, 0, sp.oo),
+        name=a,
+        right=r"\sqrt{2 R \delta}",
     )
-    return proof.done(a, _HALF)
+    proof.equal(delta, a**2 / (2 * R), "solved for the depth")
+    return proof.done(a, half_length)
 
 
 def _retardation_length() -> Derivation:
@@ -87,11 +90,11 @@ def _retardation_length() -> Derivation:
     later = {t: t_0 + (x - x_te) / V}
     proof.recall("eq25", u_i, decay, "it has left the trailing edge at $t_0$", at=later)
     result = start * sp.exp(-(x - x_te) / l_r)
-    shown: Shown = {
-        "left": "u(x)",
-        "right": r"u(x_{\mathrm{TE}}) \exp\left(-\frac{x - x_{\mathrm{TE}}}{l_{\mathrm{r}}}\right)",
-    }
-    proof.equal(u_i.subs(later), result, r"$l_{\mathrm{r}}$ is its e-folding length", **shown)
+    shown = r"u(x_{\mathrm{TE}}) \exp\left(-\frac{x - x_{\mathrm{TE}}}{l_{\mathrm{r}}}\right)"
+    reason = r"$l_{\mathrm{r}}$ is its e-folding length"
+    proof.equal(u_i.subs(later), result, reason, left="u(x)", right=shown)
+    proof.recall("eq22", tau, C / K)
+    proof.equal(C, K * l_r / V, "with Eq. (22), solved for the damping")
     return proof.done(l_r, V * tau)
 
 
@@ -119,7 +122,7 @@ _PRESSURE = (
 def _leading_edge() -> Derivation:
     proof = _equation("eq26", 26, title="Leading edge", text=_TOUCH,
                       notation={"p": sp.Lambda(x, pressure)})  # fmt: skip
-    proof.recall("eq28", a, _HALF)
+    proof.recall("eq28", a, half_length)
     proof.recall("eq3", h(x), _SHAPE)
     proof.recall("eq22", tau, C / K)
     proof.recall("eq29", l_r, V * tau)
@@ -138,7 +141,7 @@ _TOUCH = "The leading edge is where the undisturbed surface meets the indenter."
 def _trailing_edge() -> Derivation:
     proof = _equation("eq27", 27, title="Trailing edge", text=_PEEL,
                       notation={"p": sp.Lambda(x, pressure)})  # fmt: skip
-    proof.recall("eq28", a, _HALF)
+    proof.recall("eq28", a, half_length)
     proof.recall("pressure", p, pressure)
     proof.equal(sp.Derivative(p, (x, 2)), -K / R, "the pressure is concave in $x$", left="p''(x)")
     ahead = pressure.subs(x, -a)
@@ -181,9 +184,7 @@ def _limit(equation: int, slow: bool, steady: bool, who: str) -> Derivation:
         f"eq{equation}", equation, title=f"Edges at {who}", text=_EDGES[slow] + _EITHER * steady
     )
     proof.recall("eq26", x_le, -a)
-    proof.recall("scaling", x_te, a * q)
-    proof.recall("scaling", l_r, a * l)
-    proof.recall("scaling", l, number)
+    _recall_scaled(proof)
     small = l_r / a
     if steady:
         proof.recall("scaling", V, K * l_r / C)
@@ -244,26 +245,29 @@ def _steadiness() -> list[Derivation]:
     pressed = _equation("eq35", 35, title="Compression in steady sliding")
     pressed.recall("eq6", u_i, -h(x_i) + delta_t)
     pressed.define(delta_t, delta, "constant, by Eq. (34)", left=r"\delta(t)")
-    shown: Shown = {"left": "u_i(t)", "right": r"-h(x_i) + \delta"}
-    pressed.equal(u_i, -h(x_i) + delta, "Eq. (6) becomes Eq. (4)", **shown)
+    pressed.equal(u_i, -h(x_i) + delta, "Eq. (6) becomes Eq. (4)", left="u_i(t)",
+                  right=r"-h(x_i) + \delta")  # fmt: skip
     found.append(pressed.done(u_i, -h(x_i) + delta))
 
     rate = _equation("eq36", 36, title="Compression rate in steady sliding")
     rate.recall("eq7", compression_rate, -slope * V + depth_rate)
     rate.recall("eq34", depth_rate, sp.S.Zero)
-    shown = {"left": r"\dot{u}_i(t)", "right": "-h'(x_i) V"}
-    rate.equal(compression_rate, -slope * V, "Eq. (7) becomes Eq. (5)", **shown)
+    rate.equal(compression_rate, -slope * V, "Eq. (7) becomes Eq. (5)", left=r"\dot{u}_i(t)",
+               right="-h'(x_i) V")  # fmt: skip
     return [*found, rate.done(compression_rate, -slope * V)]
 
 
 def _recall_contact(proof: Proof) -> None:
     """Let edges and pressure be rational in q."""
-    proof.recall("eq28", a, _HALF)
+    proof.recall("eq28", a, half_length)
     proof.recall("eq26", x_le, -a)
     proof.recall("pressure", p, pressure)
-    proof.recall("scaling", x_te, a * q)
-    proof.recall("scaling", l_r, a * l)
-    proof.recall("scaling", l, number)
+    _recall_scaled(proof)
+
+
+def _recall_scaled(proof: Proof) -> None:
+    for lhs, rhs in ((x_te, a * q), (l_r, a * l), (l, number)):
+        proof.recall("scaling", lhs, rhs)
 
 
 def _forces() -> list[Derivation]:
@@ -291,7 +295,7 @@ def _forces() -> list[Derivation]:
 def _dead_weight() -> Derivation:
     proof = _equation("drive", None, title="Drive number of the dead-weight indenter")
     for label, lhs, rhs in (
-        ("eq28", a, _HALF),
+        ("eq28", a, half_length),
         ("eq22", tau, C / K),
         ("load", W, load),
         ("scaling", V, K * l_r / C),

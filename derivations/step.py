@@ -167,7 +167,9 @@ class Proof(Guarded):
             raise StepError(f"{self.label}: {claim}: {error}") from error
         condition = sp.sympify(expr).subs(variable, called)
         premise = Premise(condition, sp.S.Zero, f"{tex(condition)} = 0")
-        fact = self._record(called, "=", value, reason, "proved", shown, over=over, premise=premise)
+        # The variable of a root with a name of its own is bound: its interval restricts nothing else.
+        fact = self._record(called, "=", value, reason, "proved", shown, over=over, premise=premise,
+                            bound=called != variable)  # fmt: skip
         if called != variable:
             self._rule(called, value)
             self._origins[called] = fact

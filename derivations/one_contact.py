@@ -1,0 +1,41 @@
+"""That no second contact exists behind the trailing edge of steady sliding (Eq. 27)."""
+
+import sympy as sp
+
+from .record import Derivation
+from .steady import SECTION, half_length, trailing_edge
+from .step import Proof
+from .symbols import R, a, delta, l_r, x_te
+
+
+def derive() -> tuple[Derivation, ...]:
+    """Prove that indenter and free surface part."""
+    return (_one_contact(),)
+
+
+def _one_contact() -> Derivation:
+    proof = Proof("one-contact", None, section=SECTION, title="No second contact", text=_ONE,
+                  uses=("eq25", "eq29"))  # fmt: skip
+    proof.recall("eq28", a, half_length)
+    proof.recall("eq27", x_te, trailing_edge)
+    y, part = sp.symbols("y zeta", positive=True)
+    indenter, left = delta - (x_te + y) ** 2 / (2 * R), l_r * x_te / R
+    proof.equal(delta - x_te**2 / (2 * R), left, "the compression at the trailing edge")
+    proof.equal(indenter, left * (1 - y / l_r) - y**2 / (2 * R),
+                r"the indenter behind it, at $x = x_{\mathrm{TE}} + y$")  # fmt: skip
+    over = (part, 0, y / l_r)
+    above = sp.Integral(1 - sp.exp(-part), over)
+    proof.integral(above, 1 - sp.exp(-part), over, part + sp.exp(-part),
+                   "an exponential above its tangent", value=sp.exp(-y / l_r) - 1 + y / l_r)  # fmt: skip
+    gap = left * sp.exp(-y / l_r) - indenter
+    proof.equal(
+        gap, y**2 / (2 * R) + left * above, "how far the free surface is below the indenter"
+    )
+    proof.holds(y**2 / (2 * R) + left * above, ">=", y**2 / (2 * R), "never again in touch")
+    return proof.done(gap, y**2 / (2 * R) + left * above)
+
+
+_ONE = (
+    r"Behind the trailing edge the surface relaxes by Eqs. (25) and (29), and the indenter rises as a "
+    r"parabola. Both leave the edge with one slope, and from there on they part."
+)
