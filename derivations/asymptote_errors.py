@@ -136,7 +136,7 @@ def _start(label: str, title: str, text: str, *uses: str) -> Proof:
 
 def _recall(proof: Proof, ratio: sp.Expr) -> None:
     """Recall of theorem F1 what the ratio is made of."""
-    proof.define(l, NUMBER, RATIO)
+    proof.recall("scaling", l, NUMBER, RATIO)
     for symbol, form in _F1.items():
         if ratio.has(symbol):
             proof.recall("F1", symbol, form)

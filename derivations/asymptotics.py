@@ -1,14 +1,14 @@
 """The asymptotes of low and high velocity with their next order, and where they meet (Eqs. 40-50).
 
 The paper estimates load and friction by integrals over the limiting contact. Each of them is
-evaluated here as it stands, and then compared with the exact load and friction of `steady`.
+evaluated here as it stands, and then compared with the exact load, and the friction force of F21.
 """
 
 from functools import partial
 
 import sympy as sp
 
-from . import steady
+from . import friction_identity, steady
 from .book import Shown
 from .record import Derivation
 from .step import Proof
@@ -26,6 +26,7 @@ from .symbols import (
     h,
     l,
     l_r,
+    load_excess,
     mu,
     q,
     x,
@@ -108,8 +109,17 @@ def _estimate(
         paper, integrand, (x, -a, end), _primitive(inner), reason, value=leading, **sides
     )
     point, small = (_low, l_r / a) if low else (_high, a / l_r)
+    if force == F:
+        spring = low_load if low else low_load / 2
+        reason = "what the spring carries: all of the load at rest" if low else _HALF
+        proof.define(load_excess, W - C * V * delta, "F21 wants the load without the damper's part")
+        proof.leading_order(load_excess, spring, *point, reason, eps=small)
+        proof.equal(leading, l_r / R * spring, r"$l_{\mathrm{r}}/R$ times that", left=shown)
     proof.leading_order(force, leading, *point, "the exact force", eps=small, right=shown)
     return proof.done(force, leading)
+
+
+_HALF = "what the spring carries: half of the load at rest"
 
 
 def _primitive(polynomial: sp.Expr) -> sp.Expr:
@@ -127,7 +137,7 @@ def _recall_exact(proof: Proof) -> None:
         ("scaling", l_r, a * l),
         ("scaling", V, K * l_r / C),
         ("load", W, steady.load),
-        ("friction", F, steady.friction),
+        ("F21-steady", F, friction_identity.FRICTION),
     ):
         proof.recall(label, lhs, rhs)
 

@@ -497,8 +497,9 @@ class Book:
         extra = () if premise is None else (premise,)
         premises = merged([*(fact.premises for fact in origins), extra])
         worth = weakest([status, *(fact.step.status for fact in origins if status != "definition")])
-        free = over is None or bound
-        conditions = self._conditions if free else self._conditions.with_interval(over)
+        conditions = self._conditions
+        if over is not None and not bound:
+            conditions = conditions.with_interval(over)
         own = () if over is None else (tex_interval(over),)
         if cases:
             own = (*own, r"\ \text{or}\ ".join(map(tex_case, cases)))

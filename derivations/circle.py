@@ -75,7 +75,7 @@ def _shape() -> Derivation:
     circle = 2 * xi**2 / (1 + sp.sqrt(1 - eps * xi**2))
     edge = sp.sqrt(1 - eps / 4)
     proof.define(a, R * sp.sqrt(eps), r"$\varepsilon = (a/R)^2$")
-    proof.define(delta, a**2 / (2 * R), "Eq. (28)")
+    proof.recall("eq28", delta, a**2 / (2 * R))
     proof.where(eps * xi**2 < 1, "below the sides of the circle")
     proof.equal((R - sp.sqrt(R**2 - (xi * a) ** 2)) / delta, circle, r"$h/\delta$ of the circle")
     first = eps * xi**4 / 4
@@ -98,7 +98,7 @@ def _fixed() -> Derivation:
         "it is not.",
         uses=("circle-shape", "F16"),
     )
-    proof.define(l, NUMBER, RATIO)
+    proof.recall("scaling", l, NUMBER, RATIO)
     change = -(xi**4) / 4 - l * sp.Derivative(xi**4 / 4, xi)
     proof.equal(
         change, CORRECTION, r"$-h - l h'$ of the term that the circle adds, per $\varepsilon$"

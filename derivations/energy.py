@@ -61,7 +61,7 @@ def _split() -> Derivation:
         text=_ASSUMPTIONS,
     )
     whole = sp.Integral(-_slope * (K * (delta - _shape) - C * V * _slope), _contact)
-    proof.define(C, K * l_r / V, "Eqs. (22) and (29)")
+    proof.recall("eq29", C, K * l_r / V)
     proof.define(F_elastic, _STORED, "the spring: $K u u'$ with $u = \\delta - h$")
     proof.define(F_viscous, _INSIDE, r"the damper: $C V h'^2 = C \dot{u}^2/V$, power lost over V")
     proof.equal(whole, F_elastic + F_viscous, "the integral of $-h' p$, term by term")
@@ -131,10 +131,10 @@ def _parabola() -> Derivation:
     fraction = 4 * (q**2 - q + 1) / B
     dissipation = K * l_r * (x / R) ** 2
     proof.define(l_r, l * a, "the retardation length in half lengths")
-    proof.define(delta, a**2 / (2 * R), "Eq. (28)")
-    proof.define(l, NUMBER, RATIO)
+    proof.recall("eq28", delta, a**2 / (2 * R))
+    proof.recall("scaling", l, NUMBER, RATIO)
     proof.recall("F1", phi, FRICTION_FORCE)
-    proof.define(F, K * delta * a**2 / R * phi, "F1")
+    proof.recall("F1", F, K * delta * a**2 / R * phi)
     proof.integral(
         *(F_viscous, dissipation, (x, -a, q * a), K * l_r * x**3 / (3 * R**2)),
         "inside the contact",

@@ -21,19 +21,16 @@ from .symbols import (
     V,
     W,
     a,
-    alpha,
     delta,
     depth_rate_now,
     h,
     l,
     l_r,
-    load_excess,
     mu,
     p_le,
     p_te,
     q,
     r,
-    tau,
     x,
     x_le,
     x_te,
@@ -51,8 +48,8 @@ _theorem = partial(Proof, equation=None, section=SECTION)
 
 
 def derive() -> tuple[Derivation, ...]:
-    """Prove F21 and let Eqs. 40 to 46 follow from it."""
-    return _any_shape(), _instant(), _load(), _steady(), _slow(), _fast()
+    """Prove F21; Eqs. 41 to 46 follow from it in `asymptotics`."""
+    return _any_shape(), _instant(), _load(), _steady()
 
 
 def _any_shape() -> Derivation:
@@ -84,8 +81,7 @@ def _instant() -> Derivation:
     load, squares = sp.Integral(_pressure(x), _CONTACT), sp.Symbol("I_p", real=True)
     inner = K * (delta - x**2 / (2 * R)) + C * (depth_rate_now - V * x / R)
     slope = -K / R * (x + l_r)
-    proof.define(C, K * tau, "Eq. (22)")
-    proof.define(tau, l_r / V, "Eq. (29)")
+    proof.recall("eq29", C, K * l_r / V)
     proof.notation["p"] = sp.Lambda(x, inner)
     reason = r"neither $\delta$ nor $\dot\delta$ matters"
     proof.equal(sp.Derivative(inner, x), slope, reason, left="p'")
@@ -112,7 +108,7 @@ _INSTANT = (
 
 def _load() -> Derivation:
     proof = _theorem("F21-load", title="Load of steady sliding in one line", text=_LOAD)
-    proof.define(delta, a**2 / (2 * R), "Eq. (28)")
+    proof.recall("eq28", delta, a**2 / (2 * R))
     proof.define(r, sp.sqrt(a**2 + l_r**2), r"$x_{\mathrm{TE}} = r - l_{\mathrm{r}}$, Eq. (27)")
     centred = K / (2 * R) * (r**2 - (x + l_r) ** 2)
     proof.equal(steady.pressure, centred, "the pressure of steady sliding")
@@ -127,73 +123,26 @@ _LOAD = r"With $r = \sqrt{a^2 + l_{\mathrm{r}}^2}$."
 def _steady() -> Derivation:
     proof = _theorem("F21-steady", title="Friction force of steady sliding in one line", text=_STEADY,
                      uses=("pressure", "eq26", "eq27"))  # fmt: skip
-    proof.define(F, l_r / R * W - (p_le**2 - p_te**2) / (2 * K), "F21 with $F_z = W$, $F_x = F$")
-    proof.define(p_te, sp.S.Zero, "Eq. (27)")
-    proof.define(p_le, steady.pressure.subs(x, -a), "Eq. (26)")
-    proof.define(delta, a**2 / (2 * R), "Eq. (28)")
-    proof.define(C, K * l_r / V, "Eqs. (22) and (29)")
+    proof.recall("F21", F_x, l_r / R * F_z - (p_le**2 - p_te**2) / (2 * K))
+    proof.recall("eq26", x_le, -a)
+    proof.recall("eq28", delta, a**2 / (2 * R))
+    proof.recall("eq29", C, K * l_r / V)
+    for lhs, rhs in ((x_te, a * q), (l_r, a * l), (l, steady.number)):
+        proof.recall("scaling", lhs, rhs)
+    for edge, place in ((p_te, x_te), (p_le, x_le)):
+        proof.define(edge, steady.pressure.subs(x, place), "the pressure of steady sliding")
+    proof.equal(p_te, sp.S.Zero, "none at the trailing edge")
     proof.equal(p_le, K * l_r * a / R, "at the leading edge only the damper works")
-    proof.equal(F, FRICTION, "the whole of friction")
-    proof.define(mu, F / W, "Eq. (37)")
-    proof.equal(mu, l_r / R * (1 - C * V * delta / W), "Eq. (42), and what it leaves out")
     proof.recall("F21-load", W, LOAD)
-    proof.define(r, a * (q + l), "Eq. (27)")
-    proof.define(l_r, a * l, "scaled")
-    proof.recall("scaling", l, steady.number)
+    proof.define(r, sp.sqrt(a**2 + l_r**2))
+    proof.define(F_z, W, "in steady sliding")
+    proof.define(F, F_x, "likewise")
+    proof.equal(F, FRICTION, "the whole of friction")
+    proof.recall("eq37", mu, F / W)
+    proof.equal(mu, l_r / R * (1 - C * V * delta / W), "Eq. (42), and what it leaves out")
     exact = steady.friction.subs(delta, a**2 / (2 * R))
     proof.equal(F, exact, "the same as by the integral of Eq. (15)")
     return proof.done(F, FRICTION)
 
 
 _STEADY = r"With F21-load, $W = \frac{K}{3 R} (a^3 + r^3 - l_{\mathrm{r}}^3)$, this is all of steady sliding."
-
-
-def _recall(proof: Proof) -> None:
-    proof.recall("F21-load", W, LOAD)
-    proof.recall("F21-steady", F, FRICTION)
-    proof.define(C, K * l_r / V, "Eqs. (22) and (29)")
-    proof.define(delta, a**2 / (2 * R), "Eq. (28)")
-    proof.define(r, sp.sqrt(a**2 + l_r**2))
-    proof.define(l_r, a * l, "scaled")
-
-
-def _slow() -> Derivation:
-    proof = _theorem("F21-low", title="Low velocity: Eqs. (40) to (42) in three lines",
-                     text=r"For $l = l_{\mathrm{r}}/a \to 0$; $\alpha = 2 \sqrt{2}/3$.")  # fmt: skip
-    _recall(proof)
-    spring = 2 * K * a**3 / (3 * R)
-    proof.equal(2 * alpha * sp.sqrt(R) * K * delta ** sp.Rational(3, 2), spring, "Eq. (40)")
-    proof.leading_order(W, spring, l, 0, "the root and the cube are of higher order", eps=l)
-    proof.leading_order(
-        F, l_r / R * spring, l, 0, r"Eq. (41): $l_{\mathrm{r}}/R$ times the load", eps=l
-    )
-    proof.leading_order(F / W, l_r / R, l, 0, "Eq. (42)", eps=l)
-    return proof.done(F / W, l_r / R)
-
-
-_FAST = (
-    r"For $l = l_{\mathrm{r}}/a \to \infty$, where $r^3 - l_{\mathrm{r}}^3 \to \frac{3}{2} a^2 "
-    r"l_{\mathrm{r}}$, so that $W - C V \delta \to \frac{K a^3}{3 R}$: what is left is half of the load "
-    "at rest."
-)
-
-
-def _fast() -> Derivation:
-    proof = _theorem("F21-high", title="High velocity: Eqs. (43) to (46) in four lines", text=_FAST)
-    _recall(proof)
-    rest, small = K * a**3 / (3 * R), 1 / l
-    proof.define(load_excess, W - C * V * delta, "what the spring carries")
-    proof.leading_order(W, C * V * delta, l, sp.oo, "Eq. (43)", eps=small)
-    proof.leading_order(load_excess, rest, l, sp.oo, "half the load at rest", eps=small)
-    proof.leading_order(
-        F, l_r / R * rest, l, sp.oo, r"Eq. (44): $l_{\mathrm{r}}/R$ times that", eps=small
-    )
-    proof.leading_order(
-        F / W, 2 * a / (3 * R), l, sp.oo, "Eq. (45); Eq. (46) at a given load", eps=small
-    )
-    half = sp.sqrt(2 * R * W / (C * V))
-    reason = r"Eq. (46), with $a = \sqrt{2 R \delta}$ and $\delta = W/(C V)$"
-    proof.notation[r"\alpha"] = alpha
-    asymptote = alpha * sp.sqrt(W / (R * C * V))
-    proof.equal(asymptote, 2 * half / (3 * R), reason, left=r"\alpha \sqrt{\frac{W}{R C V}}")
-    return proof.done(F / W, 2 * a / (3 * R))

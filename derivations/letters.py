@@ -32,7 +32,7 @@ BY_SECTION: dict[str, dict[str, str]] = {
     "Friction without integrals": {"r": r"\bar r"},
     "Power law and wedge": {
         "s": r"\hat a", "s_1": r"\hat a_1", "s_2": r"\hat a_2", "r": r"\hat r", "z": r"\bar z",
-        "c": r"\hat c", "k": r"\bar k",
+        "c": r"\hat c", "k": "j",
     },
     "True circle": _CIRCLE,
     "Transient sliding": {r"\hat p": r"\bar p", "z_A": r"z_{\mathrm{A}}"},

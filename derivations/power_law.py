@@ -85,7 +85,7 @@ def _pressure() -> Derivation:
                      uses=("eq22", "eq29", "pressure"))  # fmt: skip
     height, slope = (y * a) ** n / (n * L ** (n - 1)), (y * a / L) ** (n - 1)
     proof.define(delta, a**n / (n * L ** (n - 1)), r"$h(a) = \delta$: the half length at rest")
-    proof.define(C, K * l_r / V, "Eqs. (22) and (29)")
+    proof.recall("eq29", C, K * l_r / V)
     proof.define(l_r, l * a, "the retardation length in half lengths")
     for side, form, where in ((1, AHEAD, "-y a"), (-1, BEHIND, "y a")):
         proof.notation |= {"h": height, "h'": -side * slope, "C": C, "V": V, "K": K}
@@ -185,7 +185,7 @@ def _coefficient() -> Derivation:
     proof.recall("F19-friction", phi_n, FRICTION_FORCE)
     proof.define(F, K * delta**2 * phi_n, "friction force")
     proof.define(W, K * delta * a * w_n, "load")
-    proof.define(mu, F / W, "Eq. (37)")
+    proof.recall("eq37", mu, F / W)
     proof.define(m_n, mu * a / delta, r"$\mu$ in units of $\delta/a$")
     proof.equal(m_n, phi_n / w_n, "the same")
     proof.equal(m_n, FRICTION_COEFFICIENT, "a quotient of positive terms")

@@ -71,7 +71,7 @@ def derive() -> tuple[Derivation, ...]:
 def _scaled_load() -> Derivation:
     proof = _theorem("F19-scaled-load", title="Power law: load of an indenter that has been lifted",
                      text=_SCALED, uses=("F19-edge", "F19-load"))  # fmt: skip
-    proof.define(w_n, LOAD, "F19")
+    proof.recall("F19-load", w_n, LOAD)
     proof.define(
         scaled_n, s ** (n + 1) * w_n / AT_REST, r"$W = K \delta a\, w_n$ over its value at rest"
     )
@@ -94,7 +94,7 @@ def _balance() -> Derivation:
     in_q(proof)
     proof.define(s, lam / NUMBER, r"at fixed velocity, $\lambda$ constant")
     proof.define(r, s * q, r"$x_{\mathrm{TE}}/a_0$")
-    proof.define(scaled_n, SCALED_LOAD, "F19-scaled-load")
+    proof.recall("F19-scaled-load", scaled_n, SCALED_LOAD)
     state = {r: s * q, Q: SLOPE_POWER}
     place = lam / NUMBER
     of_q = SCALED_LOAD.subs(state).subs(s, place)

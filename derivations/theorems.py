@@ -9,10 +9,10 @@ from functools import partial
 
 import sympy as sp
 
+from . import steady
 from .record import Derivation
 from .step import Proof
 from .symbols import (
-    C,
     F,
     G,
     G_s,
@@ -20,7 +20,6 @@ from .symbols import (
     P,
     P_max,
     R,
-    V,
     W,
     a,
     delta,
@@ -84,38 +83,26 @@ def _rational() -> Derivation:
         r"coefficient are rational functions of $q = x_{\mathrm{TE}}/a$.",
         uses=("eq3", "eq22", "eq26", "eq27", "eq28", "eq29"),
     )
-    pressure = K * (delta - x**2 / (2 * R)) - C * V * sp.Derivative(x**2 / (2 * R), x)
-    contact = (x, -a, q * a)
-    weighted = sp.expand(-x / R * K * (delta - x**2 / (2 * R) - l_r * x / R))
-    proof.define(l_r, l * a, "the retardation length in half lengths")
-    proof.define(delta, a**2 / (2 * R), "Eq. (28)")
-    proof.define(C, K * l_r / V, "Eqs. (22) and (29)")
-    proof.define(l, NUMBER, RATIO)
+    proof.recall("scaling", l_r, a * l)
+    proof.recall("eq28", delta, a**2 / (2 * R))
+    proof.recall("scaling", l, NUMBER, RATIO)
     proof.sign(sp.Derivative(NUMBER, q), "<", 0, UNIT, "each $l > 0$ belongs to one $q$")
-    proof.define(p, pressure, r"elastic and viscous: $p = K u + C \dot u$")
+    proof.recall("pressure", p, steady.pressure)
     positive = (x, 0, sp.oo)
     proof.root(p, x, q * a, "the pressure vanishes at the trailing edge", over=positive)
     factored = K * delta * (q - x / a) * (1 + q * x / a) / q
     proof.equal(p, factored, "so that it is positive between the edges")
-    proof.integral(
-        *(W, K * (delta - x**2 / (2 * R) - l_r * x / R), contact),
-        K * (delta * x - x**3 / (6 * R) - l_r * x**2 / (2 * R)),
-        "load: the integral of the pressure",
-        value=K * delta * a * LOAD,
-    )
-    proof.integral(
-        *(F, weighted, contact, sp.integrate(weighted, x)),
-        "friction force: the integral of $-h' p$",
-        value=K * delta * a * (a / R) * FRICTION_FORCE,
-    )
-    proof.define(mu, F / W, "Eq. (37)")
-    for scaled, ratio, form, name in (
-        (w, W / (K * delta * a), LOAD, "load"),
-        (phi, F * R / (K * delta * a**2), FRICTION_FORCE, "friction force"),
-        (m, mu * R / a, FRICTION_COEFFICIENT, "friction coefficient"),
+    proof.recall("load", W, steady.load)
+    proof.recall("friction", F, steady.friction)
+    proof.recall("eq37", mu, F / W)
+    for scaled, whole, unit, form, name in (
+        (w, W, K * delta * a, LOAD, "load"),
+        (phi, F, K * delta * a**2 / R, FRICTION_FORCE, "friction force"),
+        (m, mu, a / R, FRICTION_COEFFICIENT, "friction coefficient"),
     ):
-        proof.define(scaled, ratio, f"scaled {name}")
+        proof.define(scaled, whole / unit, f"scaled {name}")
         proof.equal(scaled, form, f"{name}: rational")
+        proof.equal(whole, scaled * unit, "and back")
     return proof.done(m, FRICTION_COEFFICIENT)
 
 
@@ -128,7 +115,7 @@ def _cancellation() -> Derivation:
         uses=("eq27",),
     )
     root = sp.sqrt(1 + l**2)
-    proof.define(l, NUMBER, RATIO)
+    proof.recall("scaling", l, NUMBER, RATIO)
     proof.equal(root - l, q, "Eq. (27) as it stands")
     condition = "condition number of this subtraction"
     proof.equal((root + l) / (root - l), q**-2, condition)
@@ -216,7 +203,7 @@ def _balance() -> Derivation:
     logarithmic = s * f_s / f
     proof.define(r, sp.sqrt(s**2 + lam**2), "a shorthand")
     proof.define(lam, s * l, r"$l = V \tau/a$")
-    proof.define(l, NUMBER, RATIO)
+    proof.recall("scaling", l, NUMBER, RATIO)
     proof.recall("scaled-load", f, SCALED_LOAD)
     proof.recall("scaled-load", f_s, 3 * s * (s + r) / 2)
     proof.equal(logarithmic, 6 / A, "how strongly the load depends on the depth")

@@ -65,7 +65,7 @@ def _edge() -> Derivation:
                      uses=("eq22", "eq29", "pressure"))  # fmt: skip
     ahead, behind = ((K * (delta - c * y * a) + side * C * V * c) / (K * delta) for side in (1, -1))
     proof.define(delta, c * a, r"$h(a) = \delta$: the half length at rest")
-    proof.define(C, K * l_r / V, "Eqs. (22) and (29)")
+    proof.recall("eq29", C, K * l_r / V)
     proof.define(l_r, l * a, "the retardation length in half lengths")
     proof.notation |= {r"\hat p(-y a)": ahead, r"\hat p(y a)": behind}
     proof.equal(

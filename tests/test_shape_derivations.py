@@ -120,12 +120,9 @@ def test_friction_needs_no_integral_at_any_instant():
 
 
 def test_the_asymptotes_follow_from_the_two_lines(by_label):
-    low, high = by_label["F21-low"], by_label["F21-high"]
-    assert low.status == high.status == "proved-leading-order"
-    remainders = [step.latex for step in (*low.steps, *high.steps)]
-    for printed in (r"\frac{3 l^{2}}{4}", r"\frac{3 l}{4}", r"\frac{2}{3 l}", r"\frac{3}{8 l}",
-                    r"\frac{7}{24 l}"):  # fmt: skip
-        assert any(printed in latex for latex in remainders), printed
+    for label in ("eq41", "eq42", "eq44", "eq45", "eq46"):
+        assert by_label[label].status == "proved-leading-order"
+        assert "F21-steady" in by_label[label].uses
     assert s.K * (s.a**3 + s.r**3 - s.l_r**3) / (3 * s.R) == friction_identity.LOAD
 
 
