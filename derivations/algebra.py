@@ -233,7 +233,7 @@ def next_order(
     in whole powers of the distance: then the power after the last one that is written bounds the rest.
     """
     h = sp.Symbol("h", positive=True)
-    local = near(ratio if _is_rational(ratio) else _reduced(ratio), variable, point, h)
+    local = near(ratio, variable, point, h)
     first, zero = _leading(local, h)
     if difference(first * h**zero, sp.S.One) != 0:
         raise UndecidedError(f"left/right does not tend to 1 but behaves as {first * h**zero}")
@@ -243,7 +243,9 @@ def next_order(
     regular = _is_rational(local) or local.is_meromorphic(h, 0)
     if not regular or local.has(sp.Abs, sp.Piecewise, sp.Min, sp.Max):
         raise UndecidedError(f"{local} has no series in whole powers of {h}")
-    next_c, next_k = _leading(_reduced(local - 1), h)
+    top, bottom = sp.fraction(local)
+    rest = sp.expand(top - bottom) / bottom if _is_rational(local) else _reduced(local - 1)
+    next_c, next_k = _leading(rest, h)
     eps_c, eps_k, _ = leading_term(eps, variable, point)
     if not (eps_c.is_positive and eps_k.is_positive):
         raise UndecidedError(f"{eps} is not a small positive quantity")
@@ -256,7 +258,12 @@ def next_order(
 
 def value_at(expr: sp.Expr, variable: sp.Symbol, end: sp.Expr) -> sp.Expr:
     """Return the value at the end of an interval, which may be infinite."""
-    return expr.subs(variable, end) if end.is_finite else sp.limit(expr, variable, end)
+    if end.is_finite:
+        return expr.subs(variable, end)
+    try:
+        return sp.limit(expr, variable, end)
+    except NotImplementedError as error:
+        raise UndecidedError(f"{expr} has no known limit: {error}") from error
 
 
 def is_continuous(expr: sp.Expr, over: Interval, known: Conditions) -> bool:

@@ -8,12 +8,14 @@ from inspect import signature
 from typing import Any, ParamSpec, TypedDict, TypeVar, Unpack, cast
 
 import sympy as sp
+from sympy.core.function import AppliedUndef
 from sympy.core.relational import Relational
 
 from .algebra import difference
 from .conditions import (
     Conditions,
     Interval,
+    demands,
     open_factors,
     proves_nonnegative,
     proves_positive,
@@ -22,7 +24,7 @@ from .display import Meaning, UnreadableError, names_in, read_chain
 from .letters import letters, printed, told
 from .premises import Fact, Premise, contradiction, merged, violates, weakest
 from .record import Claim, Derivation, Step, Table
-from .rules import HiddenError, resolve
+from .rules import HiddenError, is_name, resolve
 from .symbols import TEX, alpha
 
 _P = ParamSpec("_P")
@@ -357,12 +359,19 @@ class Book:
             self._used &= self._rules.keys()
 
     def _imply(self, name: sp.Expr) -> None:
-        """Take over, as part of the domain, what the sign of a name says about its value."""
-        if not (name.is_Symbol and (name.is_positive or name.is_negative)):
+        """Take over, as part of the domain, what the assumptions on a name say about its value."""
+        if not (name.is_Symbol or isinstance(name, AppliedUndef)):
             return
         value = self._resolve(self._rules[name])
-        value = value if name.is_positive else -value
-        for gap in open_factors(value, self._conditions):
+        if name.is_integer and not value.is_integer:
+            raise StepError(f"{self.label}: {name} is an integer, but {value} may be none")
+        roots = sorted(demands(value)[1], key=str) if name.is_real else []
+        gaps = [base for base in roots if not proves_nonnegative(base, self._conditions)]
+        if name.is_nonnegative or name.is_nonpositive:
+            signed = value if name.is_nonnegative else -value
+            strict = name.is_nonzero or not proves_nonnegative(signed, self._conditions)
+            gaps += open_factors(signed, self._conditions) if strict else []
+        for gap in gaps:
             self._demand(gap, tex_condition(gap))
 
     def _demand(self, gap: sp.Expr, latex: str) -> None:
@@ -396,7 +405,11 @@ class Book:
     ) -> tuple[sp.Expr, sp.Expr, Fact]:
         """Return the fact at one place."""
         for variable, value in at.items():
-            if any(premise.lhs == variable for premise in fact.premises):
+            # A law of functions holds at every place; any other equation fixes what is in it.
+            laws = (each.lhs for each in fact.premises if not is_name(each.lhs))
+            fixed = [each for each in laws if not each.has(AppliedUndef)]
+            laid_down = {variable} & {lhs, *(each.lhs for each in fact.premises)}
+            if laid_down or any(each.has(variable) for each in fixed):
                 raise StepError(f"{self.label}: {variable} is not free in {lhs} = {rhs}")
             if violates(variable, sp.sympify(value)):
                 raise StepError(f"{self.label}: {variable} cannot be {value}")

@@ -264,7 +264,10 @@ def _sign_by_roots(expr: sp.Expr, known: Conditions) -> int:
         found = sign_between(expr, given[-1] if given else (variable, low, high))
     except (UndecidedError, sp.PolynomialError):
         return 0
-    return {"+": 1, "-": -1}.get(found, 0)
+    sign = {"+": 1, "-": -1}.get(found, 0)
+    # The interval is open, but a variable that may be zero reaches its end.
+    closed = not given and 0 in (low, high) and not variable.is_nonzero
+    return 0 if closed and _known_sign(sign * expr.subs(variable, 0)) != 1 else sign
 
 
 def fails_inside(expr: sp.Expr, over: Interval) -> bool:

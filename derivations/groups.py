@@ -117,29 +117,24 @@ def _lengths() -> Derivation:
     units = DIMENSIONS | {depth_rate_now: _Z / _T, x: _X}
     sag = x**2 / (2 * R)
     pressure = K * (delta - sag) + K * tau * (depth_rate_now - V * x / R)
-    given: dict[str, list[sp.Symbol]] = {}
-    for name, law in (("h", sag), ("p", pressure)):
-        given[name] = [each for each in units if law.has(each)]
-        proof.notation[name] = sp.Lambda(tuple(given[name]), law)
-    found = []
     for name, law, unit, reason in (
         ("h", sag, _Z, "the shape, Eq. (3)"),
         ("h'", sp.Derivative(sag, x), _Z / _X, "its slope, by which a load becomes friction"),
-        ("p", pressure, _N / _X, "the pressure, Eqs. (6), (7) and (12)"),
     ):
-        arguments = given[name[0]]
-        changed = [each * units[each] for each in arguments]
-        found.append((sp.Subs(law, arguments, changed), unit * law))
+        proof.notation["h"] = sp.Lambda((R, x), sag)
         proof.equal(
-            *(*found[-1], reason), left=_called(name, changed),
-            right=f"{tex(unit)} {_called(name, arguments)}",
+            *(sp.Subs(law, (R, x), (R * units[R], x * units[x])), unit * law, reason),
+            left=rf"{name}\left(\frac{{X^2}}{{Z}} R, X x\right)", right=rf"{tex(unit)} {name}(R, x)",
         )  # fmt: skip
+    proof.notation |= {"h": sag, "h'": sp.diff(sag, x)}
+    given = [each for each in units if pressure.has(each)]
+    changed = sp.Subs(pressure, given, [each * units[each] for each in given])
+    proof.equal(
+        *(changed, _N / _X * pressure, "the pressure, Eqs. (6), (7) and (12)"),
+        left=_CHANGED, right=r"\frac{N}{X} [K (\delta - h) + K \tau (\dot\delta - V h')]",
+    )  # fmt: skip
     _circle(proof)
-    return proof.done(*found[-1])
-
-
-def _called(name: str, arguments: list[sp.Expr]) -> str:
-    return rf"{name}\left({', '.join(map(tex, arguments))}\right)"
+    return proof.done(changed, _N / _X * pressure)
 
 
 def _circle(proof: Proof) -> None:
@@ -156,6 +151,10 @@ def _circle(proof: Proof) -> None:
     proof.root(factor - _Z, _Z, _X, "but if both lengths change alike")
 
 
+_CHANGED = (
+    r"\frac{N}{X Z} K (Z \delta - Z h) + \frac{N}{X Z} K T \tau \left(\frac{Z}{T} \dot\delta - "
+    r"\frac{X}{T} V \frac{Z}{X} h'\right)"
+)
 _LENGTHS = (
     r"Let lengths along the foundation change by a factor $X$, those across it by $Z$, forces by $N$ and "
     r"times by $T$, and every quantity by its dimension: $R$ by $X^2/Z$, $K$ by $N/(X Z)$, and so on. "

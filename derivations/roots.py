@@ -77,7 +77,8 @@ def only_root(
     rest = difference(numerator.subs(x, value), sp.S.Zero)
     if rest != 0:
         raise UndecidedError(f"it is no root: left - right = {rest}")
-    if difference(denominator.subs(x, value), sp.S.Zero) == 0:
+    bottom = denominator.subs(x, value)
+    if not proves_nonzero(bottom, known) and difference(bottom, sp.S.Zero) == 0:
         raise UndecidedError(f"{expr} is not defined there")
     numerator, x, value, domain = _without_roots(sp.expand(numerator), x, value, domain)
     if not numerator.is_polynomial(x):
@@ -106,7 +107,7 @@ def _alone(poly: sp.Poly, x: sp.Symbol, value: sp.Expr, domain: Domain, known: C
     if poly.degree() == 2:
         lead, middle, _ = poly.all_coeffs()
         other = sp.cancel(-middle / lead) - value
-        excluded = difference(other, value) == 0 or domain.excludes(other, known)
+        excluded = domain.excludes(other, known) or difference(other, value) == 0
         return excluded and proves_nonzero(lead, known)
     quotient = _quotient(poly, value)
     if quotient.degree() == 0:
@@ -148,7 +149,7 @@ def _elsewhere(
     if not proves_nonzero(slope, known):
         return False
     other = sp.radsimp(-constant / slope) if constant.has(sp.Pow) else sp.cancel(-constant / slope)
-    return difference(other, value) == 0 or domain.excludes(other, known)
+    return domain.excludes(other, known) or difference(other, value) == 0
 
 
 def _one_change_of_sign(poly: sp.Poly, known: Conditions) -> bool:

@@ -23,6 +23,7 @@ from .algebra import (
     UndecidedError,
     difference,
     is_continuous,
+    leading_term,
     next_order,
     roots_between,
     sign_between,
@@ -31,6 +32,7 @@ from .algebra import (
 from .book import Shown, StepError, asked, tex
 from .conditions import (
     Interval,
+    demands,
     proves_nonnegative,
     proves_nonzero,
     proves_positive,
@@ -117,15 +119,19 @@ class Proof(Guarded):
             raise StepError(f"{self.label}: {primitive} may not be continuous in {variable}")
         slope = self._resolve(sp.Derivative(antiderivative, variable))
         self._vanish(slope, inner, f"d/d{variable} of {antiderivative}")
-        found = sp.factor(value_at(primitive, variable, high) - value_at(primitive, variable, low))
+        try:
+            found = value_at(primitive, variable, high) - value_at(primitive, variable, low)
+        except UndecidedError as error:
+            raise StepError(f"{self.label}: {whole}: {error}") from error
         if found.has(sp.oo, sp.zoo, sp.nan) or found.is_real is False:
             raise StepError(f"{self.label}: {whole} has no finite real value but {found}")
         if lhs in self._rules:
             self._same_integral(self._rules.pop(lhs), whole)
-        wanted = found if value is None else value
+        wanted = sp.factor(found) if value is None else value
         self._vanish(self._resolve(wanted), found, f"{whole} = {wanted}")
         premise = None if lhs == whole else Premise(lhs, whole, f"{tex(lhs)} = {tex(whole)}")
         self._rule(lhs, wanted)
+        self._imply(lhs)
         self._displayed(lhs, sp.sympify(wanted), shown, whole, variable)
         shown.setdefault("right", tex(wanted) if lhs == whole else f"{tex(whole)} = {tex(wanted)}")
         self._origins[lhs] = self._record(
@@ -324,19 +330,33 @@ class Proof(Guarded):
     ) -> tuple[sp.Expr, sp.Expr]:
         """Prove expr = leading (1 + c eps**k + higher order) as variable -> point; return (c, k).
 
-        The small quantity `eps` is any positive expression that vanishes there. In `short` the printed
-        remainder is O(eps**k), without its coefficient.
+        The small quantity `eps` is any positive expression that vanishes there. In `short`, where it is
+        the variable itself and the point 0, the remainder is printed as a term of its own, which holds
+        where the leading term vanishes too.
         """
         claim = f"{expr} ~ {leading} as {variable} -> {point}"
         parts = [self._resolve_free(part, variable) for part in (expr, leading, eps)]
+        if short and not (eps == variable and point == 0):
+            raise StepError(
+                f"{self.label}: {claim}: a remainder of its own needs eps = {variable} -> 0"
+            )
         try:
             c, k, rest = next_order(parts[0] / parts[1], parts[2], variable, point)
         except (UndecidedError, sp.PolynomialError) as error:
             raise StepError(f"{self.label}: {claim}: {error}") from error
+        # Of a sum the next term must be finite; of a product, its share of the leading one.
+        for base in demands(sp.cancel(c * parts[1]) if short else c)[0] - {parts[2], variable}:
+            if not proves_nonzero(base, self._conditions):
+                raise StepError(
+                    f"{self.label}: {claim}: {base} may vanish, and with it the leading term"
+                )
         self._displayed(expr, leading, shown)
         factor = shown.get("right") or (f"({tex(leading)})" if leading.is_Add else tex(leading))
-        remainder = rf"\left(1 + O\left({tex(eps**k)}\right)\right)"
-        shown["right"] = f"{factor} {remainder if short else _series(c, eps, k, rest)}"
+        if short:
+            _, order, _ = leading_term(parts[1], variable, point)
+            shown["right"] = rf"{factor} + O\left({tex(variable ** (order + k))}\right)"
+        else:
+            shown["right"] = f"{factor} {_series(c, eps, k, rest)}"
         self._record(
             expr, "=", leading, reason, "proved-leading-order", shown, exact=False, trusted=True
         )

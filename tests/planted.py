@@ -129,7 +129,33 @@ def _holds(expr, relation="≥"):
 
 parabola = h**2 - 4 * h + 1
 
+m = sp.Symbol("m", nonnegative=True)
+g = sp.Function("g", positive=True)
+
+
+def _placed_root(p):
+    source = Proof("two", None, section="Trial", title="A root")
+    source.root(x**2 - 4, x, sp.Integer(2), "the positive one", over=(x, 0, sp.oo))
+    source.done(x, sp.Integer(2))
+    p.recall("two", x, sp.Integer(2), at={x: u})
+
+
 FALSE = {
+    # what a referee got past an earlier engine
+    "root for another letter": _placed_root,
+    "leading term that may vanish": _order((a - 1) * h + h**2, (a - 1) * h),
+    "leading term of unknown sign": _order(x * h + h**2, x * h),
+    "crossover of a parameter": _order(1 / (m + h), 1 / m),
+    "root of what may be zero": _order(sp.sqrt(m + h), sp.sqrt(m)),
+    "positive where it may be zero": _holds(m, ">"),
+    "inverse of what may be zero": _holds(1 / m, ">"),
+    "square of what may be zero": _holds(m**2 + m, ">"),
+    "integer that is half of one": lambda p: p.define(n, x / 2),
+    "integer that is a real number": lambda p: p.define(n, u),
+    "decay of unknown sign": _integral(sp.exp(-x * h), (h, 0, sp.oo), -sp.exp(-x * h) / x),
+    "remainder in another variable": lambda p: p.leading_order(
+        h + h**2, h, h, 0, "short", eps=2 * h, short=True
+    ),
     # orders
     "half power hides in the remainder": _order(1 + h + h ** sp.Rational(3, 2), 1),
     "quarter power hides in the remainder": _order(1 + h + h ** sp.Rational(5, 4), 1),
@@ -283,6 +309,15 @@ FALSE = {
 }  # fmt: skip
 
 TRUE = {
+    "parameter that cannot vanish": _order(sp.sqrt(a**2 + h), a),
+    "sum of what may be zero and what not": _holds(m**2 + a, ">"),
+    "order of a sum that may begin later": lambda p: p.leading_order(
+        (a - 1) * h + h**2, (a - 1) * h, h, 0, "a remainder of its own", eps=h, short=True
+    ),
+    "name that may be zero": lambda p: p.define(m, x**2),
+    "smooth function by parts": _integral(
+        x * sp.Derivative(f(x), (x, 2)), (x, 0, y), x * sp.Derivative(f(x), x) - f(x)
+    ),
     # orders
     "geometric series": _order(1 / (1 - h), 1),
     "Taylor of a root": _order(sp.sqrt(1 + h), 1),

@@ -60,3 +60,36 @@ def test_a_sampled_step_stays_sampled_when_it_is_recalled_twice():
     by_words = Proof("by-words", None, section="Trial", title="By words", uses=("second",))
     by_words.equal(x + x, 2 * x, "sum")
     assert by_words.done(x + x, 2 * x).status == "sampled"
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "domain"),
+    [
+        (planted.m, planted.x, "x > 0"),
+        (planted.u, sp.sqrt(planted.x), "x > 0"),
+        (planted.u, sp.log(planted.x), "x > 0"),
+        (planted.g(planted.u), planted.x, "x > 0"),
+        (sp.Symbol("q", negative=True), planted.x - 1, "x < 1"),
+    ],
+)
+def test_what_is_assumed_of_a_name_becomes_the_domain_of_its_value(proof, name, value, domain):
+    proof.define(name, value)
+    assert proof.equal(name, value, "by definition") is None
+    assert proof.done(name, value).domain == (domain,)
+
+
+def test_the_name_of_an_integral_restricts_it_too(proof):
+    a, b, x, y = planted.a, planted.b, planted.x, planted.y
+    proof.integral(y, x, (x, -a, b), x**2 / 2, "an area")
+    assert proof.done(y, sp.factor((b**2 - a**2) / 2)).domain == ("a < b",)
+
+
+def test_the_interval_of_a_named_root_restricts_nothing_else():
+    a, x, y = planted.a, planted.x, planted.y
+    source = Proof("edge", None, section="Trial", title="Edge")
+    source.root(x**2 - y, x, sp.sqrt(y), "the edge", over=(x, 0, sp.oo), name=a)
+    assert source.done(a, sp.sqrt(y)).domain == ()
+    later = Proof("later", None, section="Trial", title="Later")
+    later.recall("edge", a, sp.sqrt(y))
+    with pytest.raises(StepError):
+        later.holds(x, ">", 0, "x is any place here")
