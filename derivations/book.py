@@ -365,7 +365,11 @@ class Book:
         value = self._resolve(self._rules[name])
         if name.is_integer and not value.is_integer:
             raise StepError(f"{self.label}: {name} is an integer, but {value} may be none")
-        roots = sorted(demands(value)[1], key=str) if name.is_real else []
+        raw = demands(self._rules[name])[1]
+        settled = {
+            self._resolve(base) for base in raw if proves_nonnegative(base, self._conditions)
+        }
+        roots = sorted(demands(value)[1] - settled, key=str) if name.is_real else []
         gaps = [base for base in roots if not proves_nonnegative(base, self._conditions)]
         if name.is_nonnegative or name.is_nonpositive:
             signed = value if name.is_nonnegative else -value
