@@ -8,7 +8,7 @@ import pytest
 import kvtheory as kv
 from kvtheory.results import TRANSIENT_UNITS
 from kvtheory.scene import template
-from kvtheory.scene.model import layer_stiffness
+from kvtheory.scene.foundations import layer_stiffness
 from kvtheory.scene.quantities import changed
 
 G = 9.80665

@@ -7,7 +7,7 @@ from kvtheory.api._edge import double_precision, scene_of
 from kvtheory.results import AsymptoteReport
 from kvtheory.scene.broadcasting import values
 from kvtheory.scene.model import Scene
-from kvtheory.scene.requirements import require_closed_form
+from kvtheory.scene.requirements import lacks_asymptotes, require
 
 MINIMUM_TOLERANCE = 1e-10
 """Asymptotes that must be closer than this are not told apart from rounding."""
@@ -59,7 +59,7 @@ def asymptotes(
         raise ValueError(
             f"`tolerance` = {tolerance!r}: expected a number from {MINIMUM_TOLERANCE} to 1"
         )
-    require_closed_form(scene, "the theory of asymptotes")
+    require(lacks_asymptotes, scene, "the theory of asymptotes")
     from kvtheory.models.steady import regimes  # it imports SciPy, which takes a while
 
     with double_precision():

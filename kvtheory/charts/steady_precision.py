@@ -16,7 +16,7 @@ from kvtheory.charts.methods import DENSITIES, Clock
 from kvtheory.charts.work_precision import FULL, Chart, Effort, Point, Series, attempt, repeat
 from kvtheory.models.elements.schemes import DEFAULT
 from kvtheory.scene.model import Run, Scene
-from kvtheory.scene.requirements import lacks_parabola
+from kvtheory.scene.requirements import lacks_paper_model
 
 DIGITS = 40
 """Of the reference solutions, at least; they are computed with decimals, three times as many."""
@@ -39,7 +39,7 @@ Solve = Callable[[float, Clock], tuple[float, float, int]]
 def suits(scene: Scene) -> bool:
     """Whether a scene has this chart: a parabola under a dead weight with a constant velocity above 0."""
     return (
-        not lacks_parabola(scene)
+        not lacks_paper_model(scene)
         and scene.support.spring == 0.0
         and scene.drive.velocity is not None
         and scene.drive.velocity > 0.0

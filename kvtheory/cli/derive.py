@@ -127,14 +127,12 @@ def _formats(formats: str | None) -> list[str]:
 def _quantities(path: str | None, overrides: Sequence[str]) -> tuple[dict[str, float], str]:
     """Return the quantities of a scene and of its steady state by the names of `derivations.symbols`."""
     from kvtheory.api import steady
-    from kvtheory.scene import Parabola, load_scene
+    from kvtheory.scene import load_scene
+    from kvtheory.scene.requirements import lacks_paper_model, require
     from kvtheory.scene.static_state import StaticState
 
     scene = load_scene(path, overrides)
-    if not isinstance(scene.indenter, Parabola):
-        raise ValueError(
-            f'--numbers: the closed forms are of a parabola, not of a "{scene.indenter.shape}"'
-        )
+    require(lacks_paper_model, scene, "--numbers")
     velocity = abs(scene.drive.final_velocity)
     if velocity == 0.0:
         raise ValueError(
@@ -142,7 +140,7 @@ def _quantities(path: str | None, overrides: Sequence[str]) -> tuple[dict[str, f
         )
     state, at_rest = steady(scene), StaticState.of(scene)
     quantities = {
-        "R": scene.indenter.radius,
+        "R": scene.values()["indenter.radius"],
         "K": scene.foundation.stiffness,
         "tau": scene.foundation.retardation_time,
         "C": scene.foundation.damping,

@@ -1,5 +1,6 @@
 """`kvtheory scene`: a template, or a check of a scene file."""
 
+import math
 from collections.abc import Sequence
 
 import click
@@ -31,15 +32,21 @@ def scene(scene: str | None, overrides: Sequence[str], as_json: bool, support: s
     checked = load_scene(scene, overrides)
     numbers = {} if lacks_parabola(checked) else StaticState.of(checked).named()
     named = {
-        key.replace(".", "_") if key == "support.stiffness" else key.split(".")[1]: value
+        key.replace(".", "_") if key == "support.stiffness" else key.split(".", 1)[1]: value
         for key, value in checked.values().items()
     }
-    quantities = {**named, "damping": checked.foundation.damping, **numbers}
+    damping = {"damping": checked.foundation.damping}
+    quantities = {**named, **(damping if math.isfinite(damping["damping"]) else {}), **numbers}
     if as_json:
-        kinds = {"shape": checked.indenter.shape, "support": checked.support.kind}
-        print_json({**kinds, **quantities})
+        kinds = checked.indenter.shape, checked.foundation.kind, checked.support.kind
+        print_json(
+            {**dict(zip(("shape", "foundation", "support"), kinds, strict=True)), **quantities}
+        )
         return
-    click.echo(f"Sound: {checked.indenter.shape} indenter, {checked.support.kind} support.\n")
+    click.echo(
+        f"Sound: {checked.indenter.shape} indenter, {checked.foundation.kind} foundation, "
+        f"{checked.support.kind} support.\n"
+    )
     rows = [(name, f"{value:.6g}") for name, value in quantities.items()]
     print_table(("quantity", "value in SI"), rows)
     if not numbers:

@@ -8,7 +8,7 @@ from kvtheory.ladder.climbing import Answer, Judgement, Request, Rung
 from kvtheory.models.steady import asymptote_bounds as asy
 from kvtheory.results import Certificate, SteadyState
 from kvtheory.scene.model import Scene
-from kvtheory.scene.requirements import lacks_closed_form, lacks_parabola
+from kvtheory.scene.requirements import lacks_closed_form, lacks_paper_model, lacks_parabola
 
 Steady = Callable[..., SteadyState]
 """`kvtheory.steady`."""
@@ -48,7 +48,7 @@ def _any_shape(scene: Scene, request: Request) -> Judgement:
 
 
 def _far(scene: Scene, request: Request) -> Judgement:
-    if lacking := lacks_parabola(scene):
+    if lacking := lacks_paper_model(scene):
         return Judgement(lacking)
     choice = asy.choose(asy.enclosure_of(scene), request.quantities, request.rtol)
     return Judgement(error=choice.error, known=choice)

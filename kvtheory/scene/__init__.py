@@ -1,12 +1,12 @@
 """What is modelled: scenes, their files, and units at the edge."""
 
 from kvtheory.scene.files import load_scene, template, to_toml
+from kvtheory.scene.foundations import Foundation, FractionalKelvinVoigt, GeneralizedMaxwell
 from kvtheory.scene.indenters import Circle, Indenter, Parabola, PowerLaw, Profile, Wedge
 from kvtheory.scene.model import (
     DeadWeight,
     Drive,
     Fixed,
-    Foundation,
     Run,
     Scene,
     Support,
@@ -21,6 +21,8 @@ __all__ = [
     "Drive",
     "Fixed",
     "Foundation",
+    "FractionalKelvinVoigt",
+    "GeneralizedMaxwell",
     "Indenter",
     "Parabola",
     "PowerLaw",

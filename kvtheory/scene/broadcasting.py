@@ -7,7 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kvtheory.scene.drives import VELOCITY
-from kvtheory.scene.model import LAYER, Scene, layer_stiffness
+from kvtheory.scene.foundations import LAYER, layer_stiffness
+from kvtheory.scene.model import Scene
 from kvtheory.scene.quantities import (
     Quantity,
     SceneError,
@@ -21,12 +22,12 @@ from kvtheory.scene.quantities import (
 Array = NDArray[np.float64]
 
 
-def replaceable(scene: Scene, *more: str) -> dict[str, Quantity]:
-    """Return the keys of a scene whose values can be replaced, of `more` sections too."""
+def replaceable(scene: Scene) -> dict[str, Quantity]:
+    """Return the keys of a scene whose values can be replaced."""
     found = {
         f"{section}.{name}": spec
-        for section in ("indenter", "foundation", "support", *more)
-        for name, spec in free(getattr(scene, section)).items()
+        for section, part in scene.parts().items()
+        for name, spec in free(part).items()
     }
     return {**found, "drive.velocity": VELOCITY}
 

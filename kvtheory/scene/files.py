@@ -6,8 +6,9 @@ from pathlib import Path
 from typing import Any
 
 from kvtheory.scene.drive_file import history_from
+from kvtheory.scene.foundations import FOUNDATIONS, PAIRS, Foundation, GeneralizedMaxwell, arms_of
 from kvtheory.scene.indenters import SHAPES
-from kvtheory.scene.model import SUPPORTS, Drive, Foundation, Run, Scene
+from kvtheory.scene.model import SUPPORTS, Drive, Run, Scene
 from kvtheory.scene.quantities import (
     MEANT,
     Quantity,
@@ -29,11 +30,19 @@ from kvtheory.scene.units import expected
 from kvtheory.scene.waveforms import WAVEFORMS
 
 SECTIONS = ("indenter", "foundation", "support", "drive", "run")
-CHOICES = {"indenter": ("shape", SHAPES), "support": ("kind", SUPPORTS)}
+CHOICES = {
+    "indenter": ("shape", SHAPES),
+    "foundation": ("kind", FOUNDATIONS),
+    "support": ("kind", SUPPORTS),
+}
 """Sections in which one key chooses the model; the other keys depend on it."""
+DEFAULTS = {"indenter": "parabola", "foundation": "kelvin-voigt"}
+LISTS = {("foundation", "arms"), ("drive", "history")}
+"""Keys whose values are lists of pairs."""
+POINTS = 'points such as ["50 ms", "100 mm/s"]'
 DRIVES = ("velocity", "history", "waveform", "file")
 """Ways to drive, of which a scene has one."""
-PLAIN = {"foundation": Foundation, "drive": Drive, "run": Run}
+PLAIN = {"drive": Drive, "run": Run}
 OPTIONAL = {"run"}
 NOTES = {
     "support": [
@@ -45,6 +54,10 @@ NOTES = {
         '# modulus = "5 MPa"',
         '# thickness = "2 mm"',
         "# poisson_ratio = 0.45",
+        "# or another foundation:",
+        '# kind = "generalized-maxwell" with arms = [["30 GN/m^3", "10 ms"], ["5 GN/m^3", "1 s"]]',
+        "#     instead of the retardation time: stiffness and relaxation time of each arm",
+        '# kind = "fractional-kelvin-voigt" with order = 0.5',
     ],
 }
 """What the template says about keys that can be given instead of others."""
@@ -150,6 +163,11 @@ def _tables(scene: Scene) -> dict[str, dict[str, Any]]:
             table[name] = _text(getattr(part, name), spec.unit)
         if section == "drive" and part.history is not None:
             table["history"] = [[_text(t, "s"), _text(v, "m/s")] for t, v in part.history]
+        if section == "foundation" and part.arms:
+            table["arms"] = [
+                [_text(arm.stiffness, "N/m^3"), _text(arm.relaxation_time, "s")]
+                for arm in part.arms
+            ]
         tables[section] = table
     if tables["indenter"]["shape"] not in SHAPES:
         raise ValueError(
@@ -216,7 +234,8 @@ def _override(tables: dict[str, Any], overrides: list[str], *, embedded: bool) -
                 if (section, other) not in keys:
                     table.pop(other, None)
         try:
-            table[name] = tomllib.loads(f"v = {value}")["v"] if name == "history" else value
+            listed = (section, name) in LISTS
+            table[name] = tomllib.loads(f"v = {value}")["v"] if listed else value
         except tomllib.TOMLDecodeError:
             table[name] = value
     return problems
@@ -242,7 +261,8 @@ def _switched(old: Any, section: str, choice: str, embedded: bool) -> dict[str, 
     Table 1 gives both the mass and the depth, so that the built-in scene can switch its support.
     """
     chooser, models = CHOICES[section]
-    names = quantities(models[choice]) if choice in models else {}
+    meant = closest(choice, models)
+    names = _keys(models[meant]) if meant else ()
     built_in = _tables(Scene.table1(choice))[section] if embedded and choice in SUPPORTS else {}
     common = {k: v for k, v in old.items() if k in names} if isinstance(old, dict) else {}
     return {**built_in, **common, chooser: choice}
@@ -278,7 +298,7 @@ def _part(section: str, table: Any) -> Any:
         return _make(PLAIN[section], section, table)
     chooser, models = CHOICES[section]
     rest = {key: value for key, value in table.items() if key != chooser}
-    name = table.get(chooser, "parabola" if section == "indenter" else None)
+    name = table.get(chooser, DEFAULTS.get(section))
     if isinstance(name, str) and name in models:
         return _make(models[name], section, rest, f'{chooser} = "{name}"')
     problems = []
@@ -289,7 +309,7 @@ def _part(section: str, table: Any) -> Any:
         what = nearest(name, models) if isinstance(name, str) else one
         problems.append(problem(f"{section}.{chooser}", name, what))
     meant = closest(name, models) if isinstance(name, str) else None
-    valid = [chooser, *dict.fromkeys(key for model in models.values() for key in quantities(model))]
+    valid = [chooser, *dict.fromkeys(key for model in models.values() for key in _keys(model))]
     if meant is None:
         problems += [
             problem(f"{section}.{key}", value, f"unknown key; {nearest(key, valid)}")
@@ -313,14 +333,15 @@ def _waveform(table: Mapping[str, Any]) -> Drive:
 
 def _make(cls: Any, section: str, table: Mapping[str, Any], choice: str = "") -> Any:
     """Construct `cls` from TOML values, in which a bare number is a mistake."""
-    specs = quantities(cls)
-    valid = [*specs, *(way for way in DRIVES if way not in specs)] if cls is Drive else list(specs)
+    specs, valid = quantities(cls), _keys(cls)
     known = [CHOICES[section][0], *valid] if section in CHOICES else valid
     of = f" for {choice}" if choice else ""
     needed = required(cls, table)
     problems = [
         missing(section, name, specs[name], of) for name in absent(valid, table) if name in needed
     ]
+    if "arms" in absent(valid, table):
+        problems.append(f"{section}.arms: missing{of}; expected {PAIRS}")
     values: dict[str, Any] = {}
     for key, value in table.items():
         if key not in valid:
@@ -331,8 +352,10 @@ def _make(cls: Any, section: str, table: Mapping[str, Any], choice: str = "") ->
         with collecting(problems, f"{section}.{key}", value):
             if cls is Drive and key == "file":
                 values["history"] = history_from(Path(str(value)))
+            elif key == "arms":
+                values["arms"] = arms_of(_pairs(value, PAIRS))
             else:
-                values[key] = _value(value, specs[key]) if key in specs else _points(value)
+                values[key] = _value(value, specs[key]) if key in specs else _pairs(value, POINTS)
     if problems:
         raise SceneError(problems)
     return cls(**values)
@@ -343,9 +366,9 @@ def _elsewhere(section: str, key: str) -> str:
     if section not in CHOICES:
         return ""
     chooser, models = CHOICES[section]
-    names = list(dict.fromkeys(name for model in models.values() for name in quantities(model)))
+    names = {name for model in models.values() for name in _keys(model)}
     meant = key if key in names else MEANT.get(key, "")
-    having = [f'"{name}"' for name, model in models.items() if meant in quantities(model)]
+    having = [f'"{name}"' for name, model in models.items() if meant in _keys(model)]
     return f"{meant} is of {chooser} = {' or '.join(having)}" if having else ""
 
 
@@ -355,12 +378,16 @@ def _value(value: Any, spec: Quantity) -> float:
     return convert(value, spec)
 
 
-def _points(value: Any) -> Any:
-    """Pass the points of a history on to `Drive`, which checks them, if they carry units."""
-    points = value if isinstance(value, list) else []
-    items = (item for point in points if isinstance(point, list) for item in point)
+def _pairs(value: Any, told: str) -> Any:
+    """Pass a list of pairs on to those who check it, if all of them carry units."""
+    pairs = value if isinstance(value, list) else []
+    items = (item for pair in pairs if isinstance(pair, list) for item in pair)
     if any(isinstance(item, (int, float)) for item in items):
-        raise ValueError(
-            'has numbers without a unit; expected points such as ["50 ms", "100 mm/s"]'
-        )
+        raise ValueError(f"has numbers without a unit; expected {told}")
     return value
+
+
+def _keys(cls: Any) -> list[str]:
+    """Return the keys of a model: its quantities, and the lists of pairs that it takes."""
+    lists = DRIVES if cls is Drive else ("arms",) if cls is GeneralizedMaxwell else ()
+    return list(dict.fromkeys((*quantities(cls), *lists)))

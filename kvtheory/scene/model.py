@@ -1,4 +1,4 @@
-"""What is modelled: an indenter on a Kelvin-Voigt foundation, its support and its drive.
+"""What is modelled: an indenter on a viscoelastic foundation, its support and its drive.
 
 Every field accepts SI numbers, text with a unit (``"10 mm"``) and pint quantities, and holds an SI
 float afterwards.
@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from typing import Any, ClassVar
 
 from kvtheory.scene.drives import Drive
+from kvtheory.scene.foundations import AnyFoundation, Foundation
 from kvtheory.scene.indenters import Indenter, Parabola
 from kvtheory.scene.quantities import (
     SceneError,
@@ -23,71 +24,6 @@ from kvtheory.scene.quantities import (
 
 STANDARD_GRAVITY = 9.80665
 LOAD = "W, load per unit width instead of mass times gravity; the mass is then inertia alone"
-
-
-LAYER = ("modulus", "thickness", "poisson_ratio")
-
-
-def layer_stiffness(modulus: Any, thickness: Any, poisson_ratio: Any) -> Any:
-    """Return K = E (1 - nu) / ((1 + nu) (1 - 2 nu) h) of a thin layer bonded to a rigid base, in N/m^3.
-
-    A layer of modulus E (Pa) and thickness h (m) under an indenter can only be squeezed, not sheared
-    away, where h is small against the half length a of the contact: K is its confined modulus over its
-    thickness. What is left out is of the order of h/a, and grows without bound towards nu = 1/2, where
-    a layer yields by flowing aside instead: (h/a)^2 must be small against 1 - 2 nu as well.
-
-    Numbers or arrays; Johnson, Contact Mechanics (1985), section 5.8.
-
-    >>> round(layer_stiffness(5e6, 2e-3, 0.45) / 1e9, 4)
-    9.4828
-    """
-    return (
-        modulus * (1 - poisson_ratio) / ((1 + poisson_ratio) * (1 - 2 * poisson_ratio)) / thickness
-    )
-
-
-@dataclass(frozen=True)
-class Foundation:
-    """Independent Kelvin-Voigt elements: stiffness K and damping C = K tau, both per unit area.
-
-    A thin bonded layer is given by `modulus`, `thickness` and `poisson_ratio` instead of `stiffness`,
-    which then follows from them; see `layer_stiffness` for where that holds.
-
-    >>> layer = Foundation(modulus="5 MPa", thickness="2 mm", poisson_ratio=0.45, retardation_time=0.1)
-    >>> round(layer.stiffness / 1e9, 4)
-    9.4828
-    """
-
-    stiffness: float = quantity(
-        "N/m^3", "K, stiffness of the foundation per unit area",
-        default=None, needed=True, instead="modulus", excludes=LAYER,
-    )  # fmt: skip
-    retardation_time: float = quantity(
-        "s", "tau = C/K, retardation time of the foundation (Eq. 22)", default=None, needed=True
-    )
-    modulus: float | None = quantity(
-        "N/m^2", "E, Young's modulus of a thin bonded layer, in the place of the stiffness",
-        default=None, beside=("thickness", "poisson_ratio"), excludes=("stiffness",),
-    )  # fmt: skip
-    thickness: float | None = quantity(
-        "m", "h, thickness of the layer, small against the contact",
-        default=None, beside=("modulus", "poisson_ratio"), excludes=("stiffness",),
-    )  # fmt: skip
-    poisson_ratio: float | None = quantity(
-        "1", "nu, Poisson's ratio of the layer", default=None, exclusive=False, below=0.5,
-        beside=("modulus", "thickness"), excludes=("stiffness",),
-    )  # fmt: skip
-
-    def __post_init__(self) -> None:
-        settle(self, "foundation")
-        if self.modulus is not None:
-            stiffness = layer_stiffness(self.modulus, self.thickness, self.poisson_ratio)
-            derive(self, "foundation", "stiffness", stiffness, "the layer")
-
-    @property
-    def damping(self) -> float:
-        """C = K tau, damping per unit area, in N s/m^3 (Eq. 22)."""
-        return self.stiffness * self.retardation_time
 
 
 @dataclass(frozen=True)
@@ -195,14 +131,14 @@ class Scene:
     """
 
     indenter: Indenter = Parabola(radius=0.01)
-    foundation: Foundation = Foundation(stiffness=1e10, retardation_time=0.1)
+    foundation: AnyFoundation = Foundation(stiffness=1e10, retardation_time=0.1)
     support: Support = DeadWeight(mass=1000.0)
     drive: Drive = Drive(velocity=0.1)
     run: Run = Run()
 
     def __post_init__(self) -> None:
         parts: dict[str, Any] = {
-            "indenter": Indenter, "foundation": Foundation, "support": Support, "drive": Drive, "run": Run,
+            "indenter": Indenter, "foundation": AnyFoundation, "support": Support, "drive": Drive, "run": Run,
         }  # fmt: skip
         problems = []
         for name, kind in parts.items():
@@ -228,6 +164,16 @@ class Scene:
             raise ValueError(f'`support` = "{support}": {nearest(support, TABLE1_SUPPORTS)}')
         return cls(support=TABLE1_SUPPORTS[support])
 
+    def parts(self) -> dict[str, Any]:
+        """Return what holds the quantities of the scene at rest, by its dotted name, each arm by its own."""
+        arms = enumerate(self.foundation.arms)
+        return {
+            "indenter": self.indenter,
+            "foundation": self.foundation,
+            **{f"foundation.arms[{number}]": arm for number, arm in arms},
+            "support": self.support,
+        }
+
     def values(self) -> Mapping[str, float]:
         """Return every quantity of the scene in SI by its dotted key, as ``"drive.velocity"``.
 
@@ -235,10 +181,9 @@ class Scene:
 
         A drive that is a function has no velocity to give.
         """
-        parts = {"indenter": self.indenter, "foundation": self.foundation, "support": self.support}
         flat = {
             f"{section}.{name}": getattr(part, name)
-            for section, part in parts.items()
+            for section, part in self.parts().items()
             for name in quantities(part)
             if getattr(part, name) is not None
         }

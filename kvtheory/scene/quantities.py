@@ -39,7 +39,7 @@ class Derived(float):
 
 @dataclass(frozen=True)
 class Quantity:
-    """What a field of a scene may hold: a value from `minimum`, or above it, to less than `below`.
+    """What a field of a scene may hold: from `minimum`, or above it, to `maximum` and less than `below`.
 
     `needed` says that it must be given, unless the one named by `instead` is; `beside` names those that
     it must be given with, and `excludes` those that it cannot be given with.
@@ -50,6 +50,7 @@ class Quantity:
     minimum: float
     exclusive: bool
     below: float = math.inf
+    maximum: float = math.inf
     needed: bool = False
     instead: str = ""
     beside: tuple[str, ...] = ()
@@ -59,10 +60,11 @@ class Quantity:
         """Whether every `value` (in SI) is finite and in range."""
         if isinstance(value, float):  # the most frequent, and NumPy takes ten times as long for it
             above = value > self.minimum if self.exclusive else value >= self.minimum
-            return math.isfinite(value) and above and value < self.below
+            return math.isfinite(value) and above and value < self.below and value <= self.maximum
         value = np.asarray(value)
         above = value > self.minimum if self.exclusive else value >= self.minimum
-        return bool(np.all(np.isfinite(value) & above & (value < self.below)))
+        under = (value < self.below) & (value <= self.maximum)
+        return bool(np.all(np.isfinite(value) & above & under))
 
     @property
     def range(self) -> str:
@@ -70,6 +72,7 @@ class Quantity:
         if self.minimum == -math.inf:
             return "a finite value"
         below = f" and below {self.below:g}" if math.isfinite(self.below) else ""
+        below += f" and of at most {self.maximum:g}" if math.isfinite(self.maximum) else ""
         above = "above" if self.exclusive else "of at least"
         return f"a finite value {above} {self.minimum:g}{below}"
 

@@ -1,10 +1,12 @@
 """What a method needs of a scene: one predicate and one wording for each need."""
 
+from collections.abc import Callable
+
+from kvtheory.scene.foundations import Foundation
 from kvtheory.scene.indenters import Parabola, PowerLaw, Wedge
 from kvtheory.scene.model import Scene
 
-CLOSED_FORMS = (Parabola, PowerLaw, Wedge)
-"""Shapes whose steady sliding is in closed form, with one scalar root at most."""
+Lacking = Callable[[Scene], str]
 
 
 def lacks_parabola(scene: Scene) -> str:
@@ -13,31 +15,48 @@ def lacks_parabola(scene: Scene) -> str:
     >>> lacks_parabola(Scene())
     ''
     """
-    return _lacks(scene, (Parabola,), "the parabola")
+    return _lacks_shape(scene, (Parabola,), "the parabola")
+
+
+def lacks_kelvin_voigt(scene: Scene) -> str:
+    """Say why a method that needs a Kelvin-Voigt foundation does not hold; nothing if it does."""
+    if isinstance(scene.foundation, Foundation):
+        return ""
+    named = f'foundation.kind = "{scene.foundation.kind}"'
+    return f'holds for foundation.kind = "{Foundation.kind}" only, not for {named}'
+
+
+def lacks_paper_model(scene: Scene) -> str:
+    """Say why a method for a parabola on a Kelvin-Voigt foundation does not hold; nothing if it does."""
+    return lacks_parabola(scene) or lacks_kelvin_voigt(scene)
+
+
+def lacks_asymptotes(scene: Scene) -> str:
+    """Say why a method that needs closed forms of Kelvin-Voigt does not hold; nothing if it does."""
+    shapes = (Parabola, PowerLaw, Wedge)
+    lacking = _lacks_shape(scene, shapes, "the parabola, the power law and the wedge")
+    return lacking or lacks_kelvin_voigt(scene)
 
 
 def lacks_closed_form(scene: Scene) -> str:
-    """Say why a method that needs closed forms does not hold for a scene; nothing if it does.
+    """Say why steady sliding is not in closed form, with one scalar root at most; nothing if it is.
 
     >>> lacks_closed_form(Scene())
     ''
     """
-    return _lacks(scene, CLOSED_FORMS, "the parabola, the power law and the wedge")
+    lacking = lacks_asymptotes(scene)
+    return lacking if lacks_parabola(scene) else ""
 
 
-def _lacks(scene: Scene, shapes: tuple[type, ...], named: str) -> str:
+def _lacks_shape(scene: Scene, shapes: tuple[type, ...], named: str) -> str:
     if isinstance(scene.indenter, shapes):
         return ""
     return f'holds for {named} only, not for indenter.shape = "{scene.indenter.shape}"'
 
 
-def require_closed_form(scene: Scene, what: str) -> None:
-    """Raise `ValueError` if the shape has no closed forms; `what` needs them."""
-    if lacking := lacks_closed_form(scene):
-        raise ValueError(f"{what} {lacking}")
-
-
-def require_parabola(scene: Scene, what: str) -> None:
-    """Raise `ValueError` if the indenter is not a parabola; `what` needs it."""
-    if lacking := lacks_parabola(scene):
-        raise ValueError(f"{what} {lacking}; `elements`, or `solve` with `at`, follows any shape")
+def require(lacks: Lacking, scene: Scene, what: str) -> None:
+    """Raise `ValueError` if the scene lacks what is needed by `what`."""
+    if lacking := lacks(scene):
+        others = "; `elements`, or `solve` with `at`, follows any shape"
+        of_shape = lacks in (lacks_parabola, lacks_paper_model) and lacks_parabola(scene)
+        raise ValueError(f"{what} {lacking}{others if of_shape else ''}")

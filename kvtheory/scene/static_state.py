@@ -4,7 +4,7 @@ import math
 from dataclasses import asdict, dataclass
 
 from kvtheory.scene.model import Scene
-from kvtheory.scene.requirements import require_parabola
+from kvtheory.scene.requirements import lacks_parabola, require
 
 
 @dataclass(frozen=True)
@@ -42,7 +42,7 @@ class StaticState:
             If the indenter is not a parabola, for which alone these numbers suffice, or if the scene
             leaves the range of double precision.
         """
-        require_parabola(scene, "the static state in closed form")
+        require(lacks_parabola, scene, "the static state in closed form")
         try:
             found = _parabolic(scene)
         except ArithmeticError:

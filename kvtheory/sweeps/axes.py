@@ -8,10 +8,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kvtheory.results.sweep import Axis
-from kvtheory.scene.drives import VELOCITY
+from kvtheory.scene.broadcasting import replaceable
 from kvtheory.scene.lists import item_values, items
 from kvtheory.scene.model import Scene
-from kvtheory.scene.quantities import Quantity, SceneError, convert, free, nearest, problem
+from kvtheory.scene.quantities import Quantity, SceneError, convert, nearest, problem, quantities
 
 Array = NDArray[np.float64]
 
@@ -20,13 +20,8 @@ EXAMPLE = '{"drive.velocity": "1 mm/s:10 m/s:200:log"}'
 
 def sweepable(scene: Scene) -> dict[str, Quantity]:
     """Return the keys of a scene that can be swept, each with its unit and range."""
-    sections = {name: getattr(scene, name) for name in ("indenter", "foundation", "support", "run")}
-    found = {
-        f"{section}.{name}": spec
-        for section, part in sections.items()
-        for name, spec in free(part).items()
-    }
-    return {**found, "drive.velocity": VELOCITY}
+    run = {f"run.{name}": spec for name, spec in quantities(scene.run).items()}
+    return replaceable(scene) | run
 
 
 def axes_of(scene: Scene, over: Mapping[Any, Any]) -> tuple[Axis, ...]:

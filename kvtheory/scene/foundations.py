@@ -1,0 +1,213 @@
+"""Foundations: rows of independent viscoelastic elements, each known by its relaxation function G(t).
+
+An element that is compressed by u answers with p(t) = int G(t - t') du/dt' dt', per unit area. Every
+foundation has its `kind`; the `stiffness` K that it keeps; the `arms` of a Prony series, in addition to
+it; and `damping` C = int (G - K) dt, by which slow sliding feels the rest, with `retardation_time` C/K.
+"""
+
+import math
+from collections.abc import Sequence
+from dataclasses import KW_ONLY, dataclass
+from itertools import pairwise
+from typing import Any, ClassVar
+
+from kvtheory.scene.quantities import (
+    SceneError,
+    collecting,
+    derive,
+    problem,
+    quantity,
+    settle,
+)
+
+LAYER = ("modulus", "thickness", "poisson_ratio")
+MOST_ARMS = 100
+PAIRS = 'pairs of stiffness and relaxation time, such as ["30 GN/m^3", "10 ms"]'
+DISTINCT = 1e-6
+"""Relative difference of relaxation times below which two arms are one, written twice."""
+
+
+def layer_stiffness(modulus: Any, thickness: Any, poisson_ratio: Any) -> Any:
+    """Return K = E (1 - nu) / ((1 + nu) (1 - 2 nu) h) of a thin layer bonded to a rigid base, in N/m^3.
+
+    A layer of modulus E (Pa) and thickness h (m) under an indenter can only be squeezed, not sheared
+    away, where h is small against the half length a of the contact: K is its confined modulus over its
+    thickness. What is left out is of the order of h/a, and grows without bound towards nu = 1/2, where
+    a layer yields by flowing aside instead: (h/a)^2 must be small against 1 - 2 nu as well.
+
+    Numbers or arrays; Johnson, Contact Mechanics (1985), section 5.8.
+
+    >>> round(layer_stiffness(5e6, 2e-3, 0.45) / 1e9, 4)
+    9.4828
+    """
+    return (
+        modulus * (1 - poisson_ratio) / ((1 + poisson_ratio) * (1 - 2 * poisson_ratio)) / thickness
+    )
+
+
+@dataclass(frozen=True)
+class _Relaxed:
+    """What all foundations share: a stiffness, or a thin bonded layer that gives it."""
+
+    stiffness: float = quantity(
+        "N/m^3", "K, stiffness of the foundation per unit area",
+        default=None, needed=True, instead="modulus", excludes=LAYER,
+    )  # fmt: skip
+    _: KW_ONLY
+    modulus: float | None = quantity(
+        "N/m^2", "E, Young's modulus of a thin bonded layer, in the place of the stiffness",
+        default=None, beside=("thickness", "poisson_ratio"), excludes=("stiffness",),
+    )  # fmt: skip
+    thickness: float | None = quantity(
+        "m", "h, thickness of the layer, small against the contact",
+        default=None, beside=("modulus", "poisson_ratio"), excludes=("stiffness",),
+    )  # fmt: skip
+    poisson_ratio: float | None = quantity(
+        "1", "nu, Poisson's ratio of the layer", default=None, exclusive=False, below=0.5,
+        beside=("modulus", "thickness"), excludes=("stiffness",),
+    )  # fmt: skip
+
+    def __post_init__(self) -> None:
+        settle(self, "foundation")
+        if self.modulus is not None:
+            stiffness = layer_stiffness(self.modulus, self.thickness, self.poisson_ratio)
+            derive(self, "foundation", "stiffness", stiffness, "the layer")
+
+
+@dataclass(frozen=True)
+class Foundation(_Relaxed):
+    """Independent Kelvin-Voigt elements: G = K + C delta(t), C = K tau, all per unit area.
+
+    A thin bonded layer is given by `modulus`, `thickness` and `poisson_ratio` instead of `stiffness`,
+    which then follows from them; see `layer_stiffness` for where that holds.
+
+    >>> layer = Foundation(modulus="5 MPa", thickness="2 mm", poisson_ratio=0.45, retardation_time=0.1)
+    >>> round(layer.stiffness / 1e9, 4)
+    9.4828
+    """
+
+    kind: ClassVar[str] = "kelvin-voigt"
+    arms: ClassVar[tuple["Arm", ...]] = ()
+    retardation_time: float = quantity(
+        "s", "tau = C/K, retardation time of the foundation (Eq. 22)", default=None, needed=True
+    )
+
+    @property
+    def damping(self) -> float:
+        """C = K tau, damping per unit area, in N s/m^3 (Eq. 22)."""
+        return self.stiffness * self.retardation_time
+
+
+@dataclass(frozen=True)
+class Arm:
+    """A Maxwell arm, spring and damper in a row: K_i e^(-t/tau_i), a term of a Prony series."""
+
+    stiffness: float = quantity("N/m^3", "K_i, stiffness of the arm per unit area")
+    relaxation_time: float = quantity("s", "tau_i, relaxation time of the arm")
+
+    def __post_init__(self) -> None:
+        settle(self, "arm")
+
+
+@dataclass(frozen=True)
+class GeneralizedMaxwell(_Relaxed):
+    """A spring beside Maxwell arms: G = K + sum K_i e^(-t/tau_i), a Prony series.
+
+    `arms` are pairs of stiffness and relaxation time, one to a hundred, with different times. One arm
+    is the standard linear solid (Zener).
+
+    >>> zener = GeneralizedMaxwell("10 GN/m^3", arms=[["30 GN/m^3", "10 ms"]])
+    >>> zener.arms[0].relaxation_time, zener.damping, zener.retardation_time
+    (0.01, 300000000.0, 0.03)
+    """
+
+    kind: ClassVar[str] = "generalized-maxwell"
+    arms: tuple[Arm, ...] = ()
+
+    def __post_init__(self) -> None:
+        problems: list[str] = []
+        with collecting(problems, "foundation", self):
+            super().__post_init__()
+        with collecting(problems, "foundation.arms", self.arms):
+            object.__setattr__(self, "arms", arms_of(self.arms))
+        if problems:
+            raise SceneError(problems)
+
+    @property
+    def damping(self) -> float:
+        """C = sum K_i tau_i, in N s/m^3: of the Kelvin-Voigt foundation that it is in slow sliding."""
+        return math.fsum(arm.stiffness * arm.relaxation_time for arm in self.arms)
+
+    @property
+    def retardation_time(self) -> float:
+        """C/K, in s."""
+        return self.damping / self.stiffness
+
+
+@dataclass(frozen=True)
+class FractionalKelvinVoigt(_Relaxed):
+    """A spring beside a springpot: G = K [1 + (t/tau)^(-alpha)/Gamma(1 - alpha)], 0 < alpha <= 1.
+
+    With `order` alpha = 1 it is the Kelvin-Voigt foundation. Below 1 its damping is infinite: the
+    springpot relaxes too slowly for C = int (G - K) dt to exist.
+
+    >>> FractionalKelvinVoigt("10 GN/m^3", "100 ms", 0.5).damping
+    inf
+    """
+
+    kind: ClassVar[str] = "fractional-kelvin-voigt"
+    arms: ClassVar[tuple[Arm, ...]] = ()
+    retardation_time: float = quantity(
+        "s", "tau, time scale of the springpot", default=None, needed=True
+    )
+    order: float = quantity(
+        "1", "alpha, order of the springpot", default=None, needed=True, maximum=1.0
+    )
+
+    @property
+    def damping(self) -> float:
+        """C = int (G - K) dt, in N s/m^3."""
+        return self.stiffness * self.retardation_time if self.order == 1.0 else math.inf
+
+
+AnyFoundation = Foundation | GeneralizedMaxwell | FractionalKelvinVoigt
+FOUNDATIONS: dict[str, Any] = {
+    cls.kind: cls for cls in (Foundation, GeneralizedMaxwell, FractionalKelvinVoigt)
+}
+"""The kinds that a scene file can name."""
+
+
+def arms_of(given: Any) -> tuple[Arm, ...]:
+    """Make the arms of a Prony series from pairs of stiffness and relaxation time, or from arms.
+
+    Raises
+    ------
+    SceneError
+        Listing every mistake.
+    """
+    pairs = given if isinstance(given, Sequence) and not isinstance(given, str) else ()
+    if not 1 <= len(pairs) <= MOST_ARMS:
+        raise ValueError(f"expected 1 to {MOST_ARMS} {PAIRS}")
+    problems: list[str] = []
+    arms: dict[int, Arm] = {}
+    for number, pair in enumerate(pairs):
+        key = f"foundation.arms[{number}]"
+        if isinstance(pair, Arm):
+            arms[number] = pair
+        elif isinstance(pair, Sequence) and not isinstance(pair, str) and len(pair) == 2:
+            try:
+                arms[number] = Arm(*pair)
+            except SceneError as error:
+                problems += [line.replace("arm", key, 1) for line in error.problems]
+        else:
+            problems.append(problem(key, pair, f"expected one of {PAIRS}"))
+    inorder = sorted(arms.items(), key=lambda item: item[1].relaxation_time)
+    for (one, fast), (two, slow) in pairwise(inorder):
+        if slow.relaxation_time <= fast.relaxation_time * (1.0 + DISTINCT):
+            problems.append(
+                f"foundation.arms[{one}] and foundation.arms[{two}] have the relaxation time "
+                f"{fast.relaxation_time:g} s in common; expected one arm with the sum of both"
+            )
+    if problems:
+        raise SceneError(problems)
+    return tuple(arms.values())
