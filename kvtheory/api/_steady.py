@@ -9,7 +9,13 @@ from kvtheory.results import SteadyState
 from kvtheory.scene.broadcasting import values
 from kvtheory.scene.model import Scene
 from kvtheory.scene.quantities import nearest
-from kvtheory.scene.requirements import lacks_closed_form
+from kvtheory.scene.requirements import lacks_asymptotes, lacks_closed_form, lacks_kelvin_voigt
+
+LACKS = {
+    "exact": lacks_closed_form,
+    "quadrature": lacks_kelvin_voigt,
+    "asymptote": lacks_asymptotes,
+}
 
 
 def steady(
@@ -30,9 +36,10 @@ def steady(
         ``{"drive.velocity": np.geomspace(1e-3, 10)}``: SI numbers, arrays of them, or text with a
         unit. Arrays broadcast against each other.
     method
-        ``"exact"`` (parabola, power law, wedge; the default for them), ``"quadrature"`` (any shape; the
-        default for the others) or ``"asymptote"`` (of the regime in which the velocity lies; for the
-        same shapes as ``"exact"``).
+        ``"exact"`` (parabola, power law, wedge on Kelvin-Voigt, and the parabola on any foundation; the
+        default for them), ``"quadrature"`` (any shape on Kelvin-Voigt; the default for the others) or
+        ``"asymptote"`` (of the regime in which the velocity lies; for the same shapes as ``"exact"``, on
+        Kelvin-Voigt).
 
     Returns
     -------
@@ -67,11 +74,13 @@ def steady(
 
 
 def method_for(scene: Scene, method: str | None) -> str:
-    """Return the method of steady sliding that is asked for, or else the one that suits the shape."""
-    lacking = lacks_closed_form(scene)
-    method = method or ("quadrature" if lacking else "exact")
+    """Return the method of steady sliding that is asked for, or else the one that suits the scene."""
+    lacking = {name: lacks(scene) for name, lacks in LACKS.items()}
+    method = method or ("quadrature" if lacking["exact"] else "exact")
     if method not in METHODS:
         raise ValueError(f'`method` = "{method}": {nearest(method, METHODS)}')
-    if method != "quadrature" and lacking:
-        raise ValueError(f'`method` = "{method}" {lacking}; use method = "quadrature"')
+    if lacking[method]:
+        others = [name for name in ("exact", "quadrature") if not lacking[name]]
+        hint = f'; use method = "{others[0]}"' if others else ""
+        raise ValueError(f'`method` = "{method}" {lacking[method]}{hint}')
     return method

@@ -3,17 +3,20 @@
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
+from itertools import chain
 from types import ModuleType
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from kvtheory.models.steady import asymptotes, exact, power_law
+from kvtheory.models.steady import asymptotes, exact, power_law, viscoelastic
 from kvtheory.models.steady.power_law_contact import shape_of
 from kvtheory.results import STEADY_UNITS, Certificate, SteadyState
 from kvtheory.scene.broadcasting import values as broadcast
+from kvtheory.scene.foundations import AnyFoundation
 from kvtheory.scene.model import Scene
+from kvtheory.scene.requirements import lacks_kelvin_voigt
 
 Array = NDArray[np.float64]
 Values = Mapping[str, Array]
@@ -35,8 +38,25 @@ ROUNDING = 64 * 2.0**-52
 
 def solve_exact(scene: Scene, values: Values) -> SteadyState:
     """Evaluate the closed forms on whole arrays."""
+    if lacks_kelvin_voigt(scene):
+        return _solve_on(scene.foundation, values)
     method, parameters = FAMILIES[scene.indenter.shape]
     return _solve(method, values, *parameters(values))
+
+
+def _solve_on(foundation: AnyFoundation, values: Values) -> SteadyState:
+    """Evaluate the moments of a foundation that is not Kelvin-Voigt, under a parabola."""
+    radius, tau = values["indenter.radius"], "foundation.retardation_time"
+    if not foundation.arms:
+        parameters = values[tau], values["foundation.order"]
+        return _solve(viscoelastic, values, viscoelastic.Fractional, parameters, radius)
+    arms = [
+        [values[f"foundation.arms[{number}].{name}"] for name in ("stiffness", "relaxation_time")]
+        for number in range(len(foundation.arms))
+    ]
+    damping = sum(stiffness * time for stiffness, time in arms)
+    own = {**values, tau: damping / values["foundation.stiffness"]}
+    return _solve(viscoelastic, own, viscoelastic.Prony, list(chain(*arms)), radius)
 
 
 def solve_quadrature(scene: Scene, values: Values) -> SteadyState:

@@ -1,0 +1,212 @@
+"""Steady sliding on any linear viscoelastic foundation: against balls, limits, identities, and mistakes."""
+
+import re
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import sympy as sp
+
+import kvtheory as kv
+from derivations import viscoelastic as theory
+from kvtheory.models.steady import exact, viscoelastic
+from kvtheory.models.steady.viscoelastic import Prony
+from kvtheory.results import STEADY_UNITS
+from tests import reference_viscoelastic
+
+SUPPORTS = ("fixed", "dead-weight", "suspended")
+STATED = viscoelastic.RELATIVE_ERROR
+ARMS = [["30 GN/m^3", "10 ms"], ["5 GN/m^3", "1 s"]]
+ZENER = kv.GeneralizedMaxwell(1e10, arms=ARMS)
+HALF = kv.FractionalKelvinVoigt(1e10, 0.1, 0.5)
+NAMES = [name for name in STEADY_UNITS if name != "retardation_length"]
+
+
+def scene(foundation, support="dead-weight", **parts):
+    return replace(kv.Scene.table1(support), foundation=foundation, **parts)
+
+
+@pytest.mark.parametrize("kind", SUPPORTS)
+def test_every_quantity_is_within_its_error_of_ball_arithmetic(kind):
+    """1 to 20 arms over ten decades, and springpots; ``python -m tests.reference_viscoelastic`` takes more."""
+    rng = np.random.default_rng(SUPPORTS.index(kind))
+    for _ in range(60):
+        case = reference_viscoelastic.random_case(rng, kind)
+        for name, error in reference_viscoelastic.errors(case).items():
+            assert error <= STATED, (name, case)
+
+
+def test_the_reference_would_show_a_wrong_arm():
+    """Its own check: a thousandth of one arm is seen."""
+    case = (Prony, (3e10, 0.01), 0.01, 1e10, 0.1, 0.1, 9806.65)
+    state = viscoelastic.at_load(*case)
+    truth = reference_viscoelastic.at_load(Prony, (3.003e10, 0.01), *case[2:])
+    assert abs(state.friction_force / float(truth["friction_force"]) - 1) > 1e-4
+
+
+@pytest.mark.parametrize("z", [0.0, 1e-9, 0.3, 3.999999, 4.000001, 60.0, 1e6])
+def test_moments_are_those_of_the_derivations(z):
+    P, Q, D, E, end = viscoelastic.exponential_moments(np.array([z]))
+    found = dict(zip((theory.P, theory.Q, theory.D, theory.E), (P, Q, D, E), strict=True))
+    for name, (weight, form) in theory.MOMENTS.items():
+        exactly = sp.Rational(z)
+        if z == 0.0:
+            truth = sp.integrate(weight, theory.UNIT)
+        else:
+            truth = form.subs(theory.z, exactly).evalf(60, maxn=400)
+        assert float(found[name][0]) == pytest.approx(float(truth), rel=4e-15, abs=1e-17), name
+    assert end[0] == pytest.approx(np.exp(-z), rel=1e-15)
+
+
+@pytest.mark.parametrize("support", SUPPORTS)
+def test_kelvin_voigt_is_the_springpot_of_order_one(support):
+    over = {"drive.velocity": np.concatenate((-np.geomspace(1e-6, 1e6, 25), [0.0, 1e-3, 1.0, 1e3]))}
+    plain = kv.steady(kv.Scene.table1(support), over=over)
+    springpot = kv.steady(scene(kv.FractionalKelvinVoigt(1e10, 0.1, 1.0), support), over=over)
+    for name in STEADY_UNITS:
+        assert getattr(springpot, name) == pytest.approx(getattr(plain, name), rel=2e-14, abs=0), (
+            name
+        )
+
+
+@pytest.mark.parametrize("support", SUPPORTS)
+def test_a_stiff_and_fast_arm_tends_to_kelvin_voigt_in_first_order(support):
+    plain = kv.steady(kv.Scene.table1(support))
+    off = []
+    for tau in (1e-6, 1e-7):
+        arm = kv.GeneralizedMaxwell(1e10, arms=[(1e9 / tau, tau)])
+        state = kv.steady(scene(arm, support))
+        off.append(abs(state.friction_force / plain.friction_force - 1))
+    assert 9.0 < off[0] / off[1] < 11.0
+    assert off[1] < 1e-3
+
+
+@pytest.mark.parametrize("foundation", [ZENER, HALF], ids=["zener", "springpot"])
+@pytest.mark.parametrize("support", SUPPORTS)
+def test_a_reversed_drive_is_the_mirror_image_and_rest_is_elastic(foundation, support):
+    V = np.geomspace(1e-6, 1e3, 19)
+    here = scene(foundation, support)
+    there, back = (kv.steady(here, over={"drive.velocity": side * V}) for side in (1, -1))
+    for name in NAMES:
+        odd = name in ("leading_edge", "trailing_edge", "friction_force", "friction_coefficient")
+        assert np.array_equal(getattr(back, name), (-1 if odd else 1) * getattr(there, name)), name
+    at_rest, plain = (
+        kv.steady(each, over={"drive.velocity": 0.0}) for each in (here, kv.Scene.table1(support))
+    )
+    for name in NAMES:
+        assert getattr(at_rest, name) == pytest.approx(getattr(plain, name), rel=1e-14), name
+
+
+def test_every_foundation_with_a_damping_is_kelvin_voigt_at_low_velocity():
+    """F18: mu -> C V/(K R), with an error that falls in proportion to the velocity."""
+    V = np.array([1e-6, 1e-7])
+    mu = kv.steady(scene(ZENER), over={"drive.velocity": V}).friction_coefficient
+    off = mu / (ZENER.damping * V / (ZENER.stiffness * 0.01)) - 1
+    assert np.all(np.abs(off) < 1e-2)
+    assert off[0] / off[1] == pytest.approx(10.0, rel=0.05)
+
+
+def test_friction_falls_as_one_over_the_velocity_beyond_the_glass_transition():
+    """F18: mu -> (2/5) (a^2/R) (-G'(0)/G(0))/V, a being that of the stiffness G(0)."""
+    V = np.array([1e4, 1e5])
+    state = kv.steady(scene(ZENER, "fixed"), over={"drive.velocity": V})
+    glassy = 1e10 + 3e10 + 5e9
+    slope = (3e10 / 0.01 + 5e9 / 1.0) / glassy
+    off = state.friction_coefficient / (0.4 * 2 * 3e-4 * slope / V) - 1
+    assert np.all(np.abs(off) < 1e-3)
+    assert off[0] / off[1] == pytest.approx(10.0, rel=0.05)
+    peak = kv.steady(scene(ZENER, "fixed"), over={"drive.velocity": np.geomspace(1e-3, 1e3, 200)})
+    assert 0 < np.argmax(peak.friction_coefficient) < 199
+
+
+def test_the_pressure_carries_the_load_and_the_friction_force():
+    """By its own convolution on a fine grid, which knows nothing of moments."""
+    state = kv.steady(scene(ZENER))
+    a, c, R = state.half_length, state.half_length + state.trailing_edge, 0.01
+    edges = np.linspace(0.0, c, 4001)
+    X = 0.5 * (edges[1:] + edges[:-1])
+    rate = np.diff((a * edges - edges**2 / 2) / R)
+
+    def left(l):  # the mean over a cell of what earlier cells have left, exactly relaxed
+        h = edges[1]
+        decay = np.exp(-np.abs(X[:, None] - X[None, :]) / l) * (X[:, None] > X[None, :])
+        full = (np.sinh(h / (2 * l)) / (h / (2 * l))) ** 2
+        own = (1 - (1 - np.exp(-h / l)) / (h / l)) / (h / l)
+        return (decay * full + own * np.eye(X.size)) @ rate
+
+    pressure = 1e10 * np.diff((a * edges**2 / 2 - edges**3 / 6) / R) / np.diff(edges)
+    for stiffness, time in ((3e10, 0.01), (5e9, 1.0)):
+        pressure += stiffness * left(0.1 * time)
+    load, friction = pressure.sum() * edges[1], (pressure * rate).sum()
+    assert load == pytest.approx(state.load, rel=1e-6)
+    assert friction == pytest.approx(state.friction_force, rel=1e-6)
+    assert pressure.max() == pytest.approx(state.peak_pressure, rel=1e-5)
+    assert abs(pressure[-1]) < 1e-3 * pressure.max()
+
+
+def test_arms_can_be_swept_and_broadcast():
+    over = {"foundation.arms[0].stiffness": [1e9, 3e10], "drive.velocity": [[0.1], [0.2], [0.0]]}
+    state = kv.steady(scene(ZENER), over=over)
+    assert state.depth.shape == (3, 2)
+    single = kv.steady(scene(ZENER), over={"drive.velocity": 0.2})
+    assert state.depth[1, 1] == single.depth
+    swept = kv.sweep(scene(ZENER), over={"foundation.arms[1].relaxation_time": ["1 ms", "1 s"]})
+    assert swept["friction_force"][1] == kv.steady(scene(ZENER)).friction_force
+    orders = kv.sweep(scene(HALF), over={"foundation.order": [0.5, 1.0]})
+    assert orders["depth"][1] == pytest.approx(kv.steady().depth, rel=1e-14)
+
+
+def test_a_foundation_is_written_to_a_file_and_read_back(tmp_path):
+    for foundation in (ZENER, HALF):
+        path = tmp_path / "scene.toml"
+        path.write_text(kv.to_toml(scene(foundation)))
+        assert kv.load_scene(path) == scene(foundation)
+
+
+def test_mistakes_of_arms_are_listed_together():
+    arms = [["30 GN/m^3", "10 mm"], [-1.0, 2.0], 3, [1.0, 5.0], [2.0, 5.0], [1.0, 1e-3]]
+    with pytest.raises(kv.SceneError) as caught:
+        kv.GeneralizedMaxwell("1 mm", arms=arms)
+    text = str(caught.value)
+    for told in (
+        'foundation.stiffness = "1 mm"', 'arms[0].relaxation_time = "10 mm"', "arms[1].stiffness = -1.0",
+        "arms[2] = 3: expected", "arms[3] and foundation.arms[4] have the relaxation time 5 s",
+    ):  # fmt: skip
+        assert told in text
+    assert len(caught.value.problems) == 5
+    for wrong in ([], "x", None, [[1.0, 1.0 + i] for i in range(101)]):
+        with pytest.raises(kv.SceneError, match="1 to 100"):
+            kv.GeneralizedMaxwell(1e10, arms=wrong)
+
+
+@pytest.mark.parametrize(
+    ("overrides", "told"),
+    [
+        (["foundation.kind=maxwell"], 'did you mean "generalized-maxwell"'),
+        (["foundation.kind=generalized-maxwell"], "foundation.arms: missing"),
+        (["foundation.arms=1"], 'arms is of kind = "generalized-maxwell"'),
+        (["foundation.kind=fractional-kelvin-voigt", "foundation.order=1.5"], "of at most 1"),
+        (["foundation.kind=generalized-maxwell", "foundation.arms=[[1, 2]]"], "without a unit"),
+    ],
+)
+def test_mistakes_of_a_foundation_are_told(overrides, told):
+    with pytest.raises(kv.SceneError, match=re.escape(told)):
+        kv.load_scene(overrides=overrides)
+
+
+@pytest.mark.parametrize(
+    "call",
+    [
+        kv.transient, kv.elements, kv.compare, kv.asymptotes,
+        lambda scene: kv.steady(scene, method="quadrature"),
+        lambda scene: kv.solve(scene, at=["1 ms"]),
+    ],
+)  # fmt: skip
+def test_what_needs_kelvin_voigt_refuses_the_others_in_one_wording(call):
+    with pytest.raises((ValueError, kv.ToleranceError), match=r"only, not for foundation\.kind"):
+        call(scene(ZENER))
+
+
+def test_the_certificate_is_not_less_than_that_of_the_closed_forms():
+    assert exact.RELATIVE_ERROR <= STATED
+    assert kv.steady(scene(HALF)).certificate.relative_error["load"] == STATED
