@@ -30,6 +30,7 @@ from . import (
     transient_motion,
     transient_rates,
     transient_scaling,
+    viscoelastic,
     wedge,
 )
 from .record import Derivation
@@ -38,6 +39,7 @@ _CHAPTERS = (
     *(model, steady, one_contact, friction_identity, asymptotics, tables, groups),
     *(theorems, master_curve, energy, asymptote_errors, circle),
     *(power_law, power_law_limits, power_law_weight, power_law_errors, wedge),
+    viscoelastic,
     *(transient_scaling, transient_memory, contact_interval, transient_edges),
     *(transient_motion, transient_rates, transient_balance),
     *(element_schemes, element_edges),

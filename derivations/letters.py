@@ -34,6 +34,9 @@ BY_SECTION: dict[str, dict[str, str]] = {
         "s": r"\hat a", "s_1": r"\hat a_1", "s_2": r"\hat a_2", "r": r"\hat r", "z": r"\bar z",
         "c": r"\hat c", "k": "j",
     },
+    "Any linear viscoelastic foundation": {
+        "G_v": r"\breve G", **{f"G_{{v{n}}}": rf"\breve G_{n}" for n in (1, 2, 3)},
+    },
     "True circle": _CIRCLE,
     "Transient sliding": {r"\hat p": r"\bar p", "z_A": r"z_{\mathrm{A}}"},
     "Transient: theorems": {

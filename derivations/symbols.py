@@ -124,6 +124,23 @@ logarithm, slope_rate = (sp.Function(name, real=True) for name in ("psi", "chi")
 travelled, ratio_near, ratio_now, ratio_gain = _positive("m rho_1 rho_2 beta_1")
 s_peeling, s_peeled, held, inclination = _positive("s_1 s_2 held c_1")
 
+# Any linear viscoelastic foundation: one arm that relaxes as exp(-X/l_i), over the length c of the contact.
+arm_number, place, half_share, excess_share, from_trailing, contact_length, arm_length = _positive(
+    "z_v x_v a_v eta_v w_v c_v l_v"
+)
+"""c/l_i; distance from the leading edge over c; a/c; a/c - 1/2; distance from the trailing edge over c."""
+passed = sp.Symbol("s_v", real=True)
+moment_ahead, moment_behind, moment_mean, moment_slant, moment_bulge, moment_twist = _positive(
+    "P_v Q_v A_v B_v D_v E_v"
+)
+arm_pressure, arm_load, arm_work, arm_lost = _positive("p_v W_v F_v L_v")
+spring_share, springpot, forgotten = _positive("nu_v zeta_v phi_v")
+ratio_first, ratio_second = _positive("t_v0 t_v1")
+primitive_1, primitive_2, primitive_3 = (
+    sp.Function(f"G_v{n}", positive=True)(contact_length) for n in (1, 2, 3)
+)
+relaxation = sp.Function("G_v", positive=True)(contact_length)
+
 alpha = 2 * sp.sqrt(2) / 3
 """The coefficient of Eqs. 40-46."""
 
@@ -218,5 +235,28 @@ TEX = {
     inclination: "c",
     held: r"\bar w",
     ratio_gain: r"\beta",
+    arm_number: r"\breve z",
+    place: r"\breve x",
+    half_share: r"\breve a",
+    excess_share: r"\breve \eta",
+    from_trailing: r"\breve w",
+    contact_length: r"\breve c",
+    arm_length: "l_i",
+    passed: r"\breve s",
+    moment_ahead: r"\breve P",
+    moment_behind: r"\breve Q",
+    moment_mean: r"\breve A",
+    moment_slant: r"\breve B",
+    moment_bulge: r"\breve D",
+    moment_twist: r"\breve E",
+    arm_pressure: r"\breve p",
+    arm_load: r"\breve W",
+    arm_work: r"\breve F",
+    arm_lost: r"\breve L",
+    spring_share: r"\breve \nu",
+    forgotten: r"\breve \phi",
+    springpot: r"\breve \zeta",
+    ratio_first: r"\breve t_0",
+    ratio_second: r"\breve t_1",
 }
 """How `sympy.latex` prints these symbols where its own choice differs from the paper's."""
