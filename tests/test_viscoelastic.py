@@ -28,12 +28,27 @@ def scene(foundation, support="dead-weight", **parts):
 
 @pytest.mark.parametrize("kind", SUPPORTS)
 def test_every_quantity_is_within_its_error_of_ball_arithmetic(kind):
-    """1 to 20 arms over ten decades, and springpots; ``python -m tests.reference_viscoelastic`` takes more."""
+    """1 to 20 arms over ten decades, and springpots; the module of the reference compares more of them."""
     rng = np.random.default_rng(SUPPORTS.index(kind))
     for _ in range(60):
         case = reference_viscoelastic.random_case(rng, kind)
         for name, error in reference_viscoelastic.errors(case).items():
             assert error <= STATED, (name, case)
+
+
+def test_the_peak_is_found_where_newtons_steps_go_to_and_fro():
+    """Arms far apart: the highest of many pressures of the same contact is not higher."""
+    rng = np.random.default_rng(7)
+    for _ in range(300):
+        case = reference_viscoelastic.random_case(rng, "dead-weight")
+        state = viscoelastic.at_load(*case)
+        law, parameters, R, K, _, V = case[:6]
+        one = [np.array([value]) for value in (K, V, *parameters)]
+        X = state.half_length * np.geomspace(1e-14, 1.0, 4000)
+        M = law(one[0], one[1], tuple(one[2:])).moments(X)
+        highest = ((state.half_length * (M.P + M.Q) - X * M.P) * X / R).max()
+        assert highest <= state.peak_pressure * (1 + STATED)
+        assert highest >= state.peak_pressure * (1 - 1e-3)
 
 
 def test_the_reference_would_show_a_wrong_arm():
