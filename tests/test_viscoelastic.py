@@ -9,7 +9,7 @@ import sympy as sp
 
 import kvtheory as kv
 from derivations import viscoelastic as theory
-from kvtheory.models.steady import exact, viscoelastic
+from kvtheory.models.steady import convolution, exact, viscoelastic
 from kvtheory.models.steady.viscoelastic import Prony
 from kvtheory.results import STEADY_UNITS
 from tests import reference_viscoelastic
@@ -213,7 +213,6 @@ def test_mistakes_of_a_foundation_are_told(overrides, told):
     "call",
     [
         kv.transient, kv.elements, kv.compare, kv.asymptotes,
-        lambda scene: kv.steady(scene, method="quadrature"),
         lambda scene: kv.solve(scene, at=["1 ms"]),
     ],
 )  # fmt: skip
@@ -225,3 +224,80 @@ def test_what_needs_kelvin_voigt_refuses_the_others_in_one_wording(call):
 def test_the_certificate_is_not_less_than_that_of_the_closed_forms():
     assert exact.RELATIVE_ERROR <= STATED
     assert kv.steady(scene(HALF)).certificate.relative_error["load"] == STATED
+
+
+SHAPES = {
+    "parabola": kv.Parabola(0.01),
+    "circle": kv.Circle(0.01),
+    "power": kv.PowerLaw(0.01, 4.0),
+    "sharp": kv.PowerLaw(0.01, 1.4),
+    "wedge": kv.Wedge(0.1),
+}
+
+
+@pytest.mark.parametrize("support", SUPPORTS)
+def test_convolution_confirms_the_moments(support):
+    rng = np.random.default_rng(SUPPORTS.index(support))
+    for _ in range(12):
+        law, parameters, R, K, time, V, *rest = reference_viscoelastic.random_case(rng, support)
+        method = "at_depth" if support == "fixed" else "at_load"
+        truth = getattr(viscoelastic, method)(law, parameters, R, K, time, V, *rest)
+        if law is Prony:
+            memory = convolution.Arms(parameters[0::2], abs(V) * np.array(parameters[1::2]))
+        else:
+            memory = convolution.Springpot(K, abs(V) * parameters[0], parameters[1])
+        state = getattr(convolution, method)(memory, kv.Parabola(R), K, time, V, *rest)
+        for name in STEADY_UNITS:
+            value, claimed = getattr(truth, name), state.certificate.relative_error[name]
+            assert abs(getattr(state, name) - value) <= (claimed + STATED) * abs(value), (name, law)
+            assert name == "trailing_edge" or claimed < 1e-12
+
+
+@pytest.mark.parametrize("shape", SHAPES)
+@pytest.mark.parametrize("support", SUPPORTS)
+def test_convolution_of_any_shape_is_kelvin_voigt_for_order_one(shape, support):
+    springpot = scene(kv.FractionalKelvinVoigt(1e10, 0.1, 1.0), support, indenter=SHAPES[shape])
+    plain = kv.Scene.table1(support)
+    plain = replace(plain, indenter=SHAPES[shape])
+    for V in (-0.3, 0.0, 1e-4, 0.02, 5.0):
+        one, other = (
+            kv.steady(each, over={"drive.velocity": V}, method="quadrature")
+            for each in (springpot, plain)
+        )
+        for name in STEADY_UNITS:
+            claimed = sum(each.certificate.relative_error[name] for each in (one, other))
+            there = getattr(other, name)
+            assert abs(getattr(one, name) - there) <= claimed * abs(there) + 1e-300, (name, V)
+
+
+@pytest.mark.parametrize("shape", SHAPES)
+def test_convolution_of_any_shape_agrees_with_a_row_of_elements(shape):
+    """Elements that follow the shape at a constant depth, each arm exact over a step: order h."""
+    indenter, depth, V = SHAPES[shape], 1e-4, 0.1
+    fixed = kv.Scene(indenter, ZENER, kv.Fixed(depth), kv.Drive(V))
+    state = kv.steady(fixed, method="quadrature")
+    found = []
+    for cells in (2000, 4000):
+        x = np.linspace(-state.half_length, state.half_length, cells + 1)
+        u, h = depth - indenter.height(x), x[1] - x[0]
+        p = 1e10 * u
+        for arm in ZENER.arms:
+            l = V * arm.relaxation_time
+            y = np.zeros_like(x)
+            for i in range(cells):
+                y[i + 1] = np.exp(-h / l) * y[i] - np.expm1(-h / l) * l * (u[i + 1] - u[i]) / h
+                y[i + 1] = y[i + 1] if np.isfinite(y[i + 1]) else 0.0
+            p = p + arm.stiffness * y / 1.0
+        end = int(np.argmax((p <= 0) & (x > 0)))
+        mid, du = 0.5 * (p[: end - 1] + p[1:end]), np.diff(u[:end])
+        found.append((mid.sum() * h, (mid * du).sum(), p.max()))
+    truth = state.load, state.friction_force, state.peak_pressure
+    for coarse, fine, value in zip(*found, truth, strict=True):
+        assert fine == pytest.approx(value, rel=3e-3)
+        assert abs(fine - value) < 0.7 * abs(coarse - value) + 1e-6 * abs(value)
+
+
+def test_a_shape_of_python_functions_needs_kelvin_voigt():
+    own = kv.Profile(lambda x: x * x / 0.02, lambda x: x / 0.01)
+    with pytest.raises(ValueError, match=r'"callable" holds for foundation\.kind'):
+        kv.steady(scene(ZENER, indenter=own))

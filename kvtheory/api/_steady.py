@@ -9,11 +9,11 @@ from kvtheory.results import SteadyState
 from kvtheory.scene.broadcasting import values
 from kvtheory.scene.model import Scene
 from kvtheory.scene.quantities import nearest
-from kvtheory.scene.requirements import lacks_asymptotes, lacks_closed_form, lacks_kelvin_voigt
+from kvtheory.scene.requirements import lacks_asymptotes, lacks_closed_form, lacks_quadrature
 
 LACKS = {
     "exact": lacks_closed_form,
-    "quadrature": lacks_kelvin_voigt,
+    "quadrature": lacks_quadrature,
     "asymptote": lacks_asymptotes,
 }
 
@@ -37,9 +37,9 @@ def steady(
         unit. Arrays broadcast against each other.
     method
         ``"exact"`` (parabola, power law, wedge on Kelvin-Voigt, and the parabola on any foundation; the
-        default for them), ``"quadrature"`` (any shape on Kelvin-Voigt; the default for the others) or
-        ``"asymptote"`` (of the regime in which the velocity lies; for the same shapes as ``"exact"``, on
-        Kelvin-Voigt).
+        default for them), ``"quadrature"`` (any shape on Kelvin-Voigt, the named shapes on any foundation;
+        the default for the others) or ``"asymptote"`` (of the regime in which the velocity lies; for the
+        same shapes as ``"exact"``, on Kelvin-Voigt).
 
     Returns
     -------

@@ -48,6 +48,17 @@ def lacks_closed_form(scene: Scene) -> str:
     return lacking if lacks_parabola(scene) else ""
 
 
+def lacks_quadrature(scene: Scene) -> str:
+    """Say why the pressure of steady sliding cannot be integrated; nothing if it can.
+
+    >>> lacks_quadrature(Scene())
+    ''
+    """
+    if scene.indenter.convex or not (lacking := lacks_kelvin_voigt(scene)):
+        return ""
+    return f'of indenter.shape = "{scene.indenter.shape}" {lacking}'
+
+
 def _lacks_shape(scene: Scene, shapes: tuple[type, ...], named: str) -> str:
     if isinstance(scene.indenter, shapes):
         return ""

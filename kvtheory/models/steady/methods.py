@@ -30,6 +30,8 @@ FAMILIES: dict[str, tuple[ModuleType, Callable[[Values], tuple[Array, ...]]]] = 
 """By the name of the shape, its closed forms and what they take first; `kvtheory.scene.requirements`
 knows the same names."""
 
+TIME = "foundation.retardation_time"
+
 COLUMN = 256
 """Scenes that are integrated at once: their nodes then fit into the second cache of a core."""
 ROUNDING = 64 * 2.0**-52
@@ -46,17 +48,43 @@ def solve_exact(scene: Scene, values: Values) -> SteadyState:
 
 def _solve_on(foundation: AnyFoundation, values: Values) -> SteadyState:
     """Evaluate the moments of a foundation that is not Kelvin-Voigt, under a parabola."""
-    radius, tau = values["indenter.radius"], "foundation.retardation_time"
-    if not foundation.arms:
-        parameters = values[tau], values["foundation.order"]
-        return _solve(viscoelastic, values, viscoelastic.Fractional, parameters, radius)
-    arms = [
+    radius, values = values["indenter.radius"], _with_time(foundation, values)
+    if foundation.arms:
+        arms = list(chain(*_arms(foundation, values)))
+        return _solve(viscoelastic, values, viscoelastic.Prony, arms, radius)
+    springpot = values[TIME], values["foundation.order"]
+    return _solve(viscoelastic, values, viscoelastic.Fractional, springpot, radius)
+
+
+def _convolved(scene: Scene, values: Mapping[str, float], indenter: Any) -> SteadyState:
+    """Integrate one scene on a foundation that is not Kelvin-Voigt."""
+    from kvtheory.models.steady import convolution  # not needed by the other methods
+
+    values = _with_time(scene.foundation, values)
+    speed, stiffness = abs(values["drive.velocity"]), values["foundation.stiffness"]
+    memory: convolution.Memory
+    if scene.foundation.arms:
+        arms = np.array(_arms(scene.foundation, values))
+        memory = convolution.Arms(arms[:, 0], speed * arms[:, 1])
+    else:
+        length = speed * values[TIME]
+        memory = convolution.Springpot(stiffness, length, values["foundation.order"])
+    return _solve(convolution, values, memory, indenter)
+
+
+def _arms(foundation: AnyFoundation, values: Mapping[str, Any]) -> list[list[Any]]:
+    """Return stiffness and relaxation time of each arm."""
+    return [
         [values[f"foundation.arms[{number}].{name}"] for name in ("stiffness", "relaxation_time")]
         for number in range(len(foundation.arms))
     ]
-    damping = sum(stiffness * time for stiffness, time in arms)
-    own = {**values, tau: damping / values["foundation.stiffness"]}
-    return _solve(viscoelastic, own, viscoelastic.Prony, list(chain(*arms)), radius)
+
+
+def _with_time(foundation: AnyFoundation, values: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the values with C/K of a Prony series."""
+    damping = sum(stiffness * time for stiffness, time in _arms(foundation, values))
+    own = {TIME: damping / values["foundation.stiffness"]} if foundation.arms else {}
+    return {**values, **own}
 
 
 def solve_quadrature(scene: Scene, values: Values) -> SteadyState:
@@ -70,7 +98,7 @@ def solve_quadrature(scene: Scene, values: Values) -> SteadyState:
     if not shape:
         return _integrated(scene, {key: float(array) for key, array in values.items()})
     count = math.prod(shape)
-    if scene.indenter.convex:
+    if scene.indenter.convex and not lacks_kelvin_voigt(scene):
         columns: dict[str, Any] = {key: array.reshape(-1, 1) for key, array in values.items()}
         parts: list[Any] = [slice(start, start + COLUMN) for start in range(0, count, COLUMN)]
     else:
@@ -92,6 +120,8 @@ def _integrated(scene: Scene, values: Mapping[str, Any]) -> SteadyState:
     for key, value in values.items():
         if key.startswith("indenter."):
             vars(indenter)[key.removeprefix("indenter.")] = value
+    if lacks_kelvin_voigt(scene):
+        return _convolved(scene, values, indenter)
     return _solve(quadrature, values, indenter)
 
 

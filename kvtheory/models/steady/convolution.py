@@ -1,0 +1,375 @@
+r"""Steady sliding of a convex shape on any linear viscoelastic foundation, by convolution.
+
+With X the distance from the leading edge, where h = delta, and u' = -h' the rate of compression,
+
+    p(X) = K u + sum over branches m(X) <u'>,   m = int_0^X g(s) ds,   g = G - K,
+
+where <u'> is the mean of u' over what the branch remembers: with v = (int_0^s g)/m in (0, 1) the past is
+u'(X - s(v)), whatever the branch forgets, and the double-exponential rule meets no layer that it does not
+resolve. The pressure is followed to its first zero, and
+
+    W = int p dX,   F = int u' p dX,   dW/d(delta) = int_0^c G dX,
+
+as a greater depth adds a step of compression at the leading edge, which relaxes with G. There is one zero:
+where p = 0 behind the lowest point, p' <= -|u'| G(X) < 0, because |u'| rises and G does not.
+"""
+
+import math
+from functools import partial
+from typing import Any, NamedTuple, Protocol
+
+import numpy as np
+from scipy.optimize import brentq, minimize_scalar
+from scipy.special import gamma
+
+from kvtheory.models.steady.double_exponential import RULES
+from kvtheory.results import Certificate, SteadyState
+from kvtheory.results.errors import QuadratureError
+from kvtheory.scene.indenters import Indenter
+
+Array = Any
+"""Of floats."""
+
+_NODES, _WEIGHTS = RULES[3][0], RULES[3][2]
+NODES = _NODES[: _NODES.size // 2]
+FINE, COARSE = _WEIGHTS[: NODES.size, :2].T
+"""A double-exponential rule from 0 to 1, and the one of twice its step."""
+STEPS = 60
+"""Newton steps on the depth; a handful is needed."""
+CLOSE = 1e-9
+"""Newton's method squares an error."""
+LONGEST = 20.0
+"""Longest step of ln(delta)."""
+ROOT, TINY = 8.9e-16, 1e-300
+"""Tolerances of edges: all digits, however small they are."""
+VERTEX = 1e-290
+"""Share of the half length at which the pressure is that behind the lowest point."""
+STRIDE = 1e-6
+"""Relative step of x for the slope of the pressure at its zero."""
+PEAK_RTOL = 1e-6
+"""Of the place of the peak between two nodes: its value has the square."""
+MARGIN = 8.0
+"""On the differences of both rules."""
+FLOOR = 2e-13
+"""Relative rounding of a result."""
+LIMIT = 1e-6
+"""Relative error above which a result is refused."""
+
+STATEMENT = (
+    "differences of two double-exponential rules, for the memory and for the contact, carried to each "
+    "quantity; for shapes computed to a few units in the last place"
+)
+
+
+class Memory(Protocol):
+    """What the branches of a foundation remember, one row each."""
+
+    def amount(self, X: Array) -> Array:
+        """Return m = int_0^X g."""
+
+    def delay(self, v: Array, X: Array) -> Array:
+        """Return s at which a share v of m is reached."""
+
+    def share(self, s: Array, X: Array) -> Array:
+        """Return the share of m that is reached at s."""
+
+    def works(self, sliding: "Sliding", memory: Array, left: Array) -> tuple[float, float]:
+        """Return the work of the branches over the contact, and the part that is lost in it.
+
+        `memory` are their pressures at the nodes, `left` those at the trailing edge.
+        """
+
+
+class Arms:
+    """K_i e^(-X/l_i)."""
+
+    def __init__(self, stiffness: Array, length: Array) -> None:
+        self.stiffness, self.length = (np.asarray(row)[:, None] for row in (stiffness, length))
+
+    def amount(self, X: Array) -> Array:
+        """Return K_i l_i (1 - e^(-X/l_i))."""
+        return -self.stiffness * self.length * np.expm1(-X / self.length)
+
+    def delay(self, v: Array, X: Array) -> Array:
+        """Return -l_i ln(1 - v (1 - e^(-X/l_i)))."""
+        l = self.length[..., None]
+        return -l * np.log1p(v * np.expm1(-X[..., None] / l))
+
+    def share(self, s: Array, X: Array) -> Array:
+        """Return (1 - e^(-s/l_i))/(1 - e^(-X/l_i))."""
+        return np.expm1(-s / self.length) / np.expm1(-X / self.length)
+
+    def works(self, sliding: "Sliding", memory: Array, left: Array) -> tuple[float, float]:
+        """Return the work of the arms, and the part of it that is lost in the contact: sums of squares."""
+        lost, _ = sliding.total((memory**2 / (self.stiffness * self.length)).sum(axis=0))
+        return float((left**2 / (2.0 * self.stiffness)).sum()) + lost, lost
+
+
+class Springpot:
+    """K (X/l)^(-alpha)/Gamma(1 - alpha)."""
+
+    def __init__(self, stiffness: float, length: float, order: float) -> None:
+        self.scale = stiffness * length**order / gamma(2.0 - order)
+        self.rest = 1.0 - order
+
+    def amount(self, X: Array) -> Array:
+        """Return K l^alpha X^(1 - alpha)/Gamma(2 - alpha)."""
+        return self.scale * X[None, :] ** self.rest
+
+    def delay(self, v: Array, X: Array) -> Array:
+        """Return X v^(1/(1 - alpha)): for alpha = 1 nothing is remembered."""
+        if self.rest == 0.0:
+            return 0.0 * v * X[..., None]
+        return X[..., None] * v ** (1.0 / self.rest)
+
+    def share(self, s: Array, X: Array) -> Array:
+        """Return (s/X)^(1 - alpha)."""
+        return (s / X) ** self.rest if self.rest > 0.0 else np.ones_like(X)
+
+    def works(self, sliding: "Sliding", memory: Array, left: Array) -> tuple[float, float]:
+        """Return the work of the springpot, and the part of it that is lost in the contact.
+
+        What it holds where the contact ends is that of its arms, 1/2 int int G(s + s') u' u' ds ds'.
+        """
+        work, _ = sliding.total(sliding.rate * memory.sum(axis=0))
+        if self.rest == 0.0:
+            return work, work
+        s = sliding.ahead
+        kernel = (s[:, None] + s[None, :]) ** (self.rest - 1.0) / gamma(self.rest)
+        scale = self.scale * gamma(1.0 + self.rest)
+        weighed = sliding.weights[0] * sliding.rate
+        return work, work - 0.5 * scale * float(weighed @ kernel @ weighed)
+
+
+class Contact(NamedTuple):
+    """A contact at one depth: its half length at rest, and its trailing edge."""
+
+    depth: float
+    a: float
+    x_te: float
+
+
+class Sliding:
+    """One contact, with what is needed of it at the nodes of both rules."""
+
+    def __init__(self, shape: Indenter, K: float, memory: Memory | None, contact: Contact) -> None:
+        self.shape, self.K, self.memory, self.contact = shape, K, memory, contact
+        _, a, x_te = contact
+        self.x = np.concatenate((-a * NODES[::-1], x_te * NODES))
+        self.ahead = np.concatenate((x_te + a * NODES[::-1], x_te * NODES[::-1]))
+        """Distances from the trailing edge: the rule is symmetric."""
+        self.weights = np.concatenate([end * np.stack((FINE, COARSE)) for end in (a, x_te)], axis=1)
+        self.rate = -shape.slope(self.x)
+        self.rows, self.noise = remembered(shape, memory, a, self.x)
+        self.pressure = self.K * (contact.depth - shape.height(self.x)) + self.rows.sum(axis=0)
+
+    def total(self, values: Array) -> tuple[float, float]:
+        """Return the integral over the contact, and the difference of both rules."""
+        fine, coarse = (float(weights @ values) for weights in self.weights)
+        return fine, abs(fine - coarse)
+
+
+def remembered(shape: Indenter, memory: Memory | None, a: float, x: Array) -> tuple[Array, float]:
+    """Return the pressure of each branch at the places x, and how far both rules are apart."""
+    if memory is None:
+        return np.zeros((1, x.size)), 0.0
+    X = a + x
+    amount = memory.amount(X)
+    behind = np.ones_like(amount)
+    if shape.kinks:  # one rule on either side of the lowest point
+        behind = np.where(x > 0.0, memory.share(np.maximum(x, 0.0), X), behind)
+    means = []
+    for first, width in ((0.0 * behind, behind), (behind, 1.0 - behind)):
+        if not width.any():
+            continue
+        past = memory.delay(first[..., None] + width[..., None] * NODES, X)
+        rate = -shape.slope(np.maximum(x[:, None] - past, -a))
+        means.append(width[..., None] * (rate @ np.column_stack((FINE, COARSE))))
+    fine, coarse = np.moveaxis(sum(means), -1, 0)
+    size = np.abs(amount * fine).sum(axis=0)
+    apart = np.abs(amount * (fine - coarse)).sum(axis=0)
+    return amount * fine, float((apart / np.maximum(size.max(), TINY)).max())
+
+
+def contact_at(shape: Indenter, K: float, memory: Memory | None, depth: float) -> Contact:
+    """Return the contact at a depth: h(a) = depth, and the first zero of the pressure."""
+    a = _half_length(shape, depth)
+    if memory is None:
+        return Contact(depth, a, a)
+    pressure = partial(_pressure, shape, K, memory, Contact(depth, a, a))
+    if pressure(VERTEX * a) <= 0.0:  # beyond the vertex of a wedge
+        return Contact(depth, a, 0.0)
+    if pressure(a) >= 0.0:  # nothing is remembered that counts
+        return Contact(depth, a, a)
+    return Contact(depth, a, brentq(pressure, VERTEX * a, a, xtol=TINY, rtol=ROOT, maxiter=2000))
+
+
+def _pressure(
+    shape: Indenter, K: float, memory: Memory | None, contact: Contact, x: float
+) -> float:
+    """Return the pressure at x."""
+    rows, _ = remembered(shape, memory, contact.a, np.array([x]))
+    return float(K * (contact.depth - shape.height(x)) + rows.sum())
+
+
+def _half_length(shape: Indenter, depth: float) -> float:
+    """Return a > 0 with h(a) = depth."""
+    end = math.nextafter(shape.reach, 0.0)
+    high = min(1.0, end)
+    while shape.height(high) < depth:
+        if high == end:
+            raise QuadratureError("the leading edge lies beyond the indenter's reach")
+        high = min(4.0 * high, end)
+    low = high
+    while shape.height(low) >= depth:
+        low *= 0.25
+    return float(brentq(lambda x: shape.height(x) / depth - 1.0, low, high, xtol=TINY, rtol=ROOT))
+
+
+def depth_at(
+    shape: Indenter, K: float, memory: Memory | None, load: float, spring: float
+) -> Contact:
+    """Return the contact where W + spring * depth is the load, by Newton's method in logarithms."""
+    deepest = float(shape.height(math.nextafter(shape.reach, 0.0)))
+    depth = min(
+        load / K, 0.5 * deepest
+    )  # where the contact is 1 m long; steps are exact for a power
+    for _ in range(STEPS):
+        contact = contact_at(shape, K, memory, depth)
+        sliding = Sliding(shape, K, memory, contact)
+        total = sliding.total(sliding.pressure)[0] + spring * depth
+        slope = K * (contact.a + contact.x_te) + spring
+        if memory is not None:
+            slope += float(memory.amount(np.array([contact.a + contact.x_te])).sum())
+        step = math.log(load / total) * total / (depth * slope)
+        depth = min(depth * math.exp(min(step, LONGEST)), 0.5 * (depth + deepest))
+        if abs(step) < CLOSE:
+            return contact_at(shape, K, memory, depth)
+    raise QuadratureError(
+        "no depth was found that carries the weight: it lies beyond the indenter's reach"
+    )
+
+
+def at_depth(
+    memory: Memory,
+    indenter: Indenter,
+    stiffness: float,
+    retardation_time: float,
+    velocity: float,
+    depth: float,
+) -> SteadyState:
+    """Return the steady state at a given indentation depth.
+
+    Parameters
+    ----------
+    memory
+        What the foundation remembers besides its spring.
+    indenter
+        A convex shape; see `kvtheory.scene.indenters`.
+    stiffness, retardation_time, velocity, depth
+        K in N/m^3, C/K in s for the retardation length alone, V in m/s (any sign, or zero), delta in m.
+
+    Returns
+    -------
+    SteadyState
+        With an estimate of the relative error of each quantity.
+
+    Raises
+    ------
+    QuadratureError
+        If a quadrature fails, or the contact goes beyond the indenter's reach.
+
+    Examples
+    --------
+    Kelvin-Voigt is the springpot of order 1, which forgets at once:
+
+    >>> from kvtheory.scene.indenters import Parabola
+    >>> state = at_depth(Springpot(1e10, 0.1 * 0.1, 1.0), Parabola(0.01), 1e10, 0.1, 0.1, 3e-4)
+    >>> print(f"{state.load:.6g} {state.friction_force:.6g} {state.trailing_edge:.6g}")
+    35344.6 5344.58 0.00029563
+    """
+    given = indenter, stiffness, memory if velocity != 0.0 else None
+    with np.errstate(all="ignore"):
+        return _state(Sliding(*given, contact_at(*given, depth)), velocity, retardation_time)
+
+
+def at_load(
+    memory: Memory,
+    indenter: Indenter,
+    stiffness: float,
+    retardation_time: float,
+    velocity: float,
+    weight: float,
+    spring: float = 0.0,
+) -> SteadyState:
+    """Return the steady state under a weight in N/m, on a spring in N/m^2 or without.
+
+    The other arguments, and the state, are as in `at_depth`; a spring is relaxed at the static depth.
+
+    Examples
+    --------
+    >>> from kvtheory.scene.indenters import Parabola
+    >>> zener = Arms([3e10], [0.1 * 0.01])
+    >>> state = at_load(zener, Parabola(0.01), 1e10, 0.03, 0.1, 9806.65)
+    >>> print(f"{1e3 * state.depth:.6f} mm, mu = {state.friction_coefficient:.6f}")
+    0.203372 mm, mu = 0.048083
+    """
+    given = indenter, stiffness, memory if velocity != 0.0 else None
+    with np.errstate(all="ignore"):
+        if spring > 0.0:
+            weight = weight + spring * depth_at(indenter, stiffness, None, weight, 0.0).depth
+        contact = depth_at(*given, weight, spring)
+        return _state(Sliding(*given, contact), velocity, retardation_time)
+
+
+def _state(sliding: Sliding, velocity: float, retardation_time: float) -> SteadyState:
+    """Give every quantity its sign and its error."""
+    depth, a, x_te = contact = sliding.contact
+    side = -1.0 if velocity < 0.0 else 1.0
+    load, apart = sliding.total(sliding.pressure)
+    work, inside = 0.0, 0.0
+    if sliding.memory is not None:
+        left, _ = remembered(sliding.shape, sliding.memory, a, np.array([x_te]))
+        work, inside = sliding.memory.works(sliding, sliding.rows, left)
+        # K u = -(memory) at the trailing edge, unless the pressure jumps there.
+        rest = -float(left.sum()) / sliding.K if x_te > 0.0 else depth
+        work += 0.5 * sliding.K * rest * rest
+    values = {
+        "depth": depth,
+        "half_length": a,
+        "retardation_length": abs(velocity) * retardation_time,
+        "leading_edge": -side * a,
+        "trailing_edge": side * x_te + 0.0,
+        "load": load,
+        "friction_force": side * work + 0.0,
+        "friction_coefficient": side * work / load + 0.0,
+        "peak_pressure": _peak(sliding),
+        "dissipated_in_contact": inside / work if work > 0.0 else 1.0,
+    }
+    error = MARGIN * (sliding.noise + apart / load) ** 1.5 + FLOOR
+    if not error < LIMIT:
+        raise QuadratureError("quadrature of the shape fails: the indenter's reach is too close")
+    errors = dict.fromkeys(values, error)
+    errors["trailing_edge"] += _edge_error(sliding, contact)
+    certificate = Certificate("estimated", STATEMENT, errors)
+    return SteadyState(**values, model="quadrature", certificate=certificate)
+
+
+def _edge_error(sliding: Sliding, contact: Contact) -> float:
+    """Return how far rounding of the pressure moves its zero, over the trailing edge."""
+    x = contact.x_te
+    if x in (0.0, contact.a):
+        return 0.0
+    args = sliding.shape, sliding.K, sliding.memory, contact
+    fall = (_pressure(*args, x * (1.0 - STRIDE)) - _pressure(*args, x * (1.0 + STRIDE))) / STRIDE
+    return FLOOR * float(np.abs(sliding.pressure).max()) / fall
+
+
+def _peak(sliding: Sliding) -> float:
+    """Return the greatest pressure: the highest node, and what is between its neighbours."""
+    x, best = sliding.x, int(sliding.pressure.argmax())
+    low, high = x[max(best - 1, 0)], x[min(best + 1, x.size - 1)]
+    pressure = partial(_pressure, sliding.shape, sliding.K, sliding.memory, sliding.contact)
+    found = minimize_scalar(lambda x: -pressure(x), bounds=(low, high), method="bounded",
+                            options={"xatol": PEAK_RTOL * (high - low)})  # fmt: skip
+    return max(float(sliding.pressure[best]), -float(found.fun))
