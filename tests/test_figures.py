@@ -71,6 +71,21 @@ def test_fig6_points_of_random_scenes_fall_on_the_master_curves(made):
         assert points == pytest.approx(curve, rel=1e-12)
 
 
+def test_foundations_tend_to_kelvin_voigt_and_every_profile_carries_the_load(made):
+    data, _, _ = made["foundations"]
+    for family in data.curves.values():
+        plain = family["Kelvin–Voigt"]
+        assert family[r"$\alpha = 1$"] == pytest.approx(plain, rel=1e-13)
+        window = data.columns["V tau/a_0 [1]"] < 1.0
+        off = [
+            np.abs(family[rf"$\beta = {beta}$"] / plain - 1)[window].max()
+            for beta in (100, 1000, 10000)
+        ]
+        assert off[0] > 5 * off[1] > 25 * off[2]
+    for name, (x, p) in data.profiles.items():
+        assert np.trapezoid(p, x) == pytest.approx(4 / 3, rel=2e-2), name
+
+
 def test_table2_carries_the_papers_coefficients(made):
     columns = made["table2"][0].columns
     alpha, R, K, C, delta, W = 2 * np.sqrt(2) / 3, 0.01, 1e10, 1e9, 3e-4, 9806.65

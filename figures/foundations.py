@@ -1,0 +1,124 @@
+"""Friction on foundations beyond Kelvin-Voigt: master curves, and the pressure below the indenter.
+
+Left, the standard linear solid: an arm beta times as stiff as the spring, with the same damping C = K tau
+for every beta. At low velocity all of them are Kelvin-Voigt, Eq. (42); beyond their glass transition they are
+springs again, and the high-velocity asymptotes of the paper hold in the window between alone. Right, the
+springpot of order alpha, which has no such limits. Every curve is exact.
+"""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from matplotlib.figure import Figure
+
+import kvtheory as kv
+from figures import drawing
+from kvtheory.models.steady.viscoelastic import Fractional, Prony
+from kvtheory.plots import BLACK
+
+NUMBERS = np.geomspace(1e-4, 1e5, 361)
+"""V tau/a_0."""
+RATIOS = (1.0, 10.0, 100.0, 1e3, 1e4)
+ORDERS = (0.2, 0.4, 0.6, 0.8, 1.0)
+PROFILE = 3.0
+"""V tau/a_0 of the profiles."""
+SHARES = np.concatenate(([1e-9], np.linspace(0.0, 1.0, 201)[1:]))
+ROWS = {"fixed": "fixed indenter", "dead-weight": "dead weight"}
+
+
+@dataclass(frozen=True)
+class Data:
+    """mu R/a_0 by support and foundation on `NUMBERS`; x/a_0 and p/(K delta_0) by foundation."""
+
+    curves: dict[str, dict[str, np.ndarray]]
+    profiles: dict[str, tuple[np.ndarray, np.ndarray]]
+    columns: drawing.Columns
+
+
+def _foundations() -> dict[str, dict[str, kv.Scene]]:
+    """Return the scenes of each column by their labels: R = K = tau = 1 and a_0 = 1."""
+    at_rest = {"fixed": kv.Fixed(0.5), "dead-weight": kv.DeadWeight(load=2.0 / 3.0)}
+    kinds = {
+        rf"$\beta = {ratio:g}$": kv.GeneralizedMaxwell(1.0, arms=[(ratio, 1.0 / ratio)])
+        for ratio in RATIOS
+    }
+    kinds |= {
+        rf"$\alpha = {order:g}$": kv.FractionalKelvinVoigt(1.0, 1.0, order) for order in ORDERS
+    }
+    kinds["Kelvin–Voigt"] = kv.Foundation(1.0, 1.0)
+    return {
+        support: {name: kv.Scene(kv.Parabola(1.0), kind, held) for name, kind in kinds.items()}
+        for support, held in at_rest.items()
+    }
+
+
+def compute() -> Data:
+    """Evaluate the exact steady states, and the pressure in the contact at one velocity."""
+    scenes = _foundations()
+    over = {"drive.velocity": NUMBERS}
+    curves = {
+        support: {
+            name: kv.steady(scene, over=over).friction_coefficient for name, scene in family.items()
+        }
+        for support, family in scenes.items()
+    }
+    profiles = {name: _profile(scene) for name, scene in scenes["dead-weight"].items()}
+    columns = {"V tau/a_0 [1]": NUMBERS} | {
+        f"mu R/a_0, {support}, {name.replace('$', '')} [1]": mu
+        for support, family in curves.items() for name, mu in family.items()
+    }  # fmt: skip
+    return Data(curves, profiles, columns)
+
+
+def _profile(scene: kv.Scene) -> tuple[np.ndarray, np.ndarray]:
+    """Return x and the pressure between the edges."""
+    state = kv.steady(replace(scene, drive=kv.Drive(PROFILE)))
+    a = float(state.half_length)
+    X = SHARES * (a + float(state.trailing_edge))
+    K, V = np.ones(1), np.full(1, PROFILE)
+    if scene.foundation.arms:
+        arm = scene.foundation.arms[0]
+        row: Prony | Fractional = Prony(
+            K, V, (np.array([arm.stiffness]), np.array([arm.relaxation_time]))
+        )
+    else:
+        row = Fractional(K, V, (K, np.array([getattr(scene.foundation, "order", 1.0)])))
+    M = row.moments(X)
+    return X - a, 2.0 * X * (a * (M.P + M.Q) - X * M.P)
+
+
+def draw(data: Data) -> Figure:
+    """Draw both families: fixed, dead weight, and the profiles."""
+    drawn = drawing.figure(7.2, 8.0)
+    axes = drawn.subplots(3, 2, sharex="row", sharey="row")
+    colors = ["#08306b", "#2171b5", "#41ab5d", "#fe9929", "#cb181d"]
+    for column, letter in enumerate((r"\beta", r"\alpha")):
+        axes[0, column].set_title(
+            "standard linear solid, $\\beta = K_1/K$"
+            if column == 0
+            else "springpot of order $\\alpha$"
+        )
+        names = [name for name in data.profiles if letter in name]
+        for row, (support, words) in enumerate(ROWS.items()):
+            ax = axes[row, column]
+            for name, color in zip(names, colors, strict=True):
+                ax.loglog(NUMBERS, data.curves[support][name], color=color, label=name)
+            plain = data.curves[support]["Kelvin–Voigt"]
+            ax.loglog(NUMBERS, plain, "--", color=BLACK, linewidth=1, label="Kelvin–Voigt")
+            ax.set(ylim=(1e-4, 1.5), xlabel=r"$V\tau/a_0$")
+            if column == 0:
+                ax.set_ylabel(rf"{words}: $\mu R/a_0$")
+        ax = axes[2, column]
+        for name, color in zip([*names, "Kelvin–Voigt"], [*colors, BLACK], strict=True):
+            line = {"linestyle": "--", "linewidth": 1} if color == BLACK else {}
+            ax.plot(*data.profiles[name], color=color, **line)
+        ax.set(xlabel="$x/a_0$", ylim=(0.0, 4.2))
+        if column == 0:
+            ax.set_ylabel(rf"$p/(K\delta_0)$ at $V\tau = {PROFILE:g}\,a_0$")
+        handles, labels = axes[0, column].get_legend_handles_labels()
+        ax.legend(handles, labels, loc="upper right", fontsize=8)
+    return drawn
+
+
+if __name__ == "__main__":
+    drawing.run("foundations", compute, draw)
