@@ -212,7 +212,7 @@ def test_mistakes_of_a_foundation_are_told(overrides, told):
 @pytest.mark.parametrize(
     "call",
     [
-        kv.transient, kv.elements, kv.compare, kv.asymptotes,
+        kv.transient, kv.elements, kv.compare,
         lambda scene: kv.solve(scene, at=["1 ms"]),
     ],
 )  # fmt: skip
@@ -301,3 +301,35 @@ def test_a_shape_of_python_functions_needs_kelvin_voigt():
     own = kv.Profile(lambda x: x * x / 0.02, lambda x: x / 0.01)
     with pytest.raises(ValueError, match=r'"callable" holds for foundation\.kind'):
         kv.steady(scene(ZENER, indenter=own))
+
+
+@pytest.mark.parametrize("support", SUPPORTS)
+def test_the_report_says_how_far_each_formula_may_stand_for_the_foundation(support):
+    """At the end of its range a formula is off by the tolerance, within it by less, beyond it by more."""
+    here, tolerance = scene(ZENER, support), 0.01
+    for line in kv.asymptotes(here, tolerance=tolerance).lines:
+        low = line.regime == "low"
+        edge = line.velocity_max if low else line.velocity_min
+        inward = 10.0 ** -np.linspace(0.01, 5, 9) if low else 10.0 ** np.linspace(0.01, 5, 9)
+        V = edge * np.concatenate(([1.0], inward, [1.1 if low else 0.9]))
+        found = next(
+            each for each in kv.asymptotes(here, over={"drive.velocity": V}, tolerance=tolerance).lines
+            if each.name == line.name
+        )  # fmt: skip
+        off = np.abs(found.relative_error)
+        assert off[0] == pytest.approx(tolerance, rel=1e-6)
+        assert np.all(off[1:-1] < tolerance)
+        assert off[-1] > tolerance
+        assert found.exact == pytest.approx(
+            kv.steady(here, over={"drive.velocity": V}).friction_coefficient, rel=1e-15
+        )
+
+
+def test_the_advice_names_the_first_formula_that_is_within_the_tolerance():
+    V = [0.0, 1e-6, 0.01, 0.1, 1e5, -1e5]
+    report = kv.asymptotes(scene(ZENER), over={"drive.velocity": V}, tolerance=0.05)
+    assert report.use.tolist()[1] == "L1"
+    assert report.use.tolist()[3:] == ["exact", "glassy", "glassy"]
+    assert report.lines[-1].value[-1] == -report.lines[-1].value[-2]
+    with pytest.raises(ValueError, match="only, not for"):
+        kv.asymptotes(scene(HALF))

@@ -7,7 +7,7 @@ from kvtheory.api._edge import double_precision, scene_of
 from kvtheory.results import AsymptoteReport
 from kvtheory.scene.broadcasting import values
 from kvtheory.scene.model import Scene
-from kvtheory.scene.requirements import lacks_asymptotes, require
+from kvtheory.scene.requirements import lacks_limits, require
 
 MINIMUM_TOLERANCE = 1e-10
 """Asymptotes that must be closer than this are not told apart from rounding."""
@@ -24,7 +24,9 @@ def asymptotes(
     Parameters
     ----------
     scene, over
-        As in `steady`; the indenter must be a parabola, a power law or a wedge.
+        As in `steady`; the indenter must be a parabola, a power law or a wedge on a Kelvin-Voigt
+        foundation, or a parabola on a Prony series. There the lines are the limits of F18, and the exact
+        state of the Kelvin-Voigt foundation with the same K and C.
     tolerance
         Relative error up to which an asymptote counts as good, from 1e-10 to 1.
 
@@ -59,8 +61,10 @@ def asymptotes(
         raise ValueError(
             f"`tolerance` = {tolerance!r}: expected a number from {MINIMUM_TOLERANCE} to 1"
         )
-    require(lacks_asymptotes, scene, "the theory of asymptotes")
-    from kvtheory.models.steady import regimes  # it imports SciPy, which takes a while
+    require(lacks_limits, scene, "the theory of asymptotes")
+    from kvtheory.models.steady import prony_limits, regimes  # SciPy takes a while to import
 
     with double_precision():
-        return regimes.report(scene, values(scene, over), tolerance)
+        return (prony_limits if scene.foundation.arms else regimes).report(
+            scene, values(scene, over), tolerance
+        )

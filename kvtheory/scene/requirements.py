@@ -38,6 +38,12 @@ def lacks_asymptotes(scene: Scene) -> str:
     return lacking or lacks_kelvin_voigt(scene)
 
 
+def lacks_limits(scene: Scene) -> str:
+    """Say why the limits of steady sliding are not known; nothing if they are."""
+    on_arms = scene.foundation.arms and not lacks_parabola(scene)
+    return "" if on_arms else lacks_asymptotes(scene)
+
+
 def lacks_closed_form(scene: Scene) -> str:
     """Say why steady sliding is not in closed form, with one scalar root at most; nothing if it is.
 

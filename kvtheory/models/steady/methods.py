@@ -50,7 +50,7 @@ def _solve_on(foundation: AnyFoundation, values: Values) -> SteadyState:
     """Evaluate the moments of a foundation that is not Kelvin-Voigt, under a parabola."""
     radius, values = values["indenter.radius"], _with_time(foundation, values)
     if foundation.arms:
-        arms = list(chain(*_arms(foundation, values)))
+        arms = list(chain(*arms_of(foundation, values)))
         return _solve(viscoelastic, values, viscoelastic.Prony, arms, radius)
     springpot = values[TIME], values["foundation.order"]
     return _solve(viscoelastic, values, viscoelastic.Fractional, springpot, radius)
@@ -64,7 +64,7 @@ def _convolved(scene: Scene, values: Mapping[str, float], indenter: Any) -> Stea
     speed, stiffness = abs(values["drive.velocity"]), values["foundation.stiffness"]
     memory: convolution.Memory
     if scene.foundation.arms:
-        arms = np.array(_arms(scene.foundation, values))
+        arms = np.array(arms_of(scene.foundation, values))
         memory = convolution.Arms(arms[:, 0], speed * arms[:, 1])
     else:
         length = speed * values[TIME]
@@ -72,7 +72,7 @@ def _convolved(scene: Scene, values: Mapping[str, float], indenter: Any) -> Stea
     return _solve(convolution, values, memory, indenter)
 
 
-def _arms(foundation: AnyFoundation, values: Mapping[str, Any]) -> list[list[Any]]:
+def arms_of(foundation: AnyFoundation, values: Mapping[str, Any]) -> list[list[Any]]:
     """Return stiffness and relaxation time of each arm."""
     return [
         [values[f"foundation.arms[{number}].{name}"] for name in ("stiffness", "relaxation_time")]
@@ -82,7 +82,7 @@ def _arms(foundation: AnyFoundation, values: Mapping[str, Any]) -> list[list[Any
 
 def _with_time(foundation: AnyFoundation, values: Mapping[str, Any]) -> dict[str, Any]:
     """Return the values with C/K of a Prony series."""
-    damping = sum(stiffness * time for stiffness, time in _arms(foundation, values))
+    damping = sum(stiffness * time for stiffness, time in arms_of(foundation, values))
     own = {TIME: damping / values["foundation.stiffness"]} if foundation.arms else {}
     return {**values, **own}
 
