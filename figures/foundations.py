@@ -7,6 +7,7 @@ springpot of order alpha, which has no such limits. Every curve is exact.
 """
 
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from matplotlib.figure import Figure
@@ -15,6 +16,7 @@ import kvtheory as kv
 from figures import drawing
 from kvtheory.models.steady.viscoelastic import Fractional, Prony
 from kvtheory.plots import BLACK
+from kvtheory.scene.foundations import Arm
 
 NUMBERS = np.geomspace(1e-4, 1e5, 361)
 """V tau/a_0."""
@@ -37,9 +39,9 @@ class Data:
 
 def _foundations() -> dict[str, dict[str, kv.Scene]]:
     """Return the scenes of each column by their labels: R = K = tau = 1 and a_0 = 1."""
-    at_rest = {"fixed": kv.Fixed(0.5), "dead-weight": kv.DeadWeight(load=2.0 / 3.0)}
-    kinds = {
-        rf"$\beta = {ratio:g}$": kv.GeneralizedMaxwell(1.0, arms=[(ratio, 1.0 / ratio)])
+    at_rest: dict[str, Any] = {"fixed": kv.Fixed(0.5), "dead-weight": kv.DeadWeight(load=2.0 / 3.0)}
+    kinds: dict[str, Any] = {
+        rf"$\beta = {ratio:g}$": kv.GeneralizedMaxwell(1.0, arms=(Arm(ratio, 1.0 / ratio),))
         for ratio in RATIOS
     }
     kinds |= {

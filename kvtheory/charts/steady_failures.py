@@ -2,6 +2,7 @@
 
 import math
 import warnings
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,6 +12,7 @@ from scipy.optimize import brentq, newton
 from kvtheory.api import asymptotes, steady
 from kvtheory.charts.entry import Line, Outcome, Picture
 from kvtheory.scene.drives import Drive
+from kvtheory.scene.foundations import Arm, Foundation, GeneralizedMaxwell
 from kvtheory.scene.indenters import Circle, Parabola
 from kvtheory.scene.model import DeadWeight, Fixed, Scene
 from kvtheory.scene.static_state import StaticState
@@ -24,6 +26,8 @@ SHALLOW = 1e-9
 WANTED_FRICTION = 0.05
 FIRST_GUESS = 0.1
 """Velocity (m/s) of Table 1, which lies beyond the maximum of the friction coefficient."""
+RUBBER = Arm(3e10, 0.01), Arm(5e9, 1.0)
+"""Arms of a foundation that is not Kelvin-Voigt; its C is mostly that of the slow one."""
 STEEP = 0.8
 """a/R of the static contact in the entry on the parabola."""
 
@@ -145,6 +149,23 @@ def _steep() -> Outcome:
         float(mu[-1, 0]), _circle_by_sums(scenes[-1]), float(mu[-1, 1]),
         Picture.of(r"static half length $a_0/R$", "friction coefficient",
                    (slopes, mu[:, 0]), (slopes, mu[:, 1])),
+    )  # fmt: skip
+
+
+def _glassy() -> Outcome:
+    rubber = Scene(foundation=GeneralizedMaxwell(1e10, RUBBER), drive=Drive(velocity=1.0))
+    plain = replace(rubber, foundation=Foundation(1e10, rubber.foundation.retardation_time))
+    V = np.geomspace(1e-6, 10.0, 141)
+    over = {"drive.velocity": V}
+    ours, wrong = (steady(scene, over=over).friction_coefficient for scene in (rubber, plain))
+    end = asymptotes(rubber, tolerance=0.01).lines[1].velocity_max
+    return Outcome(
+        float(steady(plain).friction_coefficient),
+        float(steady(rubber, method="quadrature").friction_coefficient),
+        float(steady(rubber).friction_coefficient),
+        Picture.of("V [mm/s]", "friction coefficient", (1e3 * V, wrong), (1e3 * V, ours),
+                   log_x=True, log_y=True),
+        f"kv.asymptotes: Kelvin-Voigt with the same C within 1 % up to {1e3 * end:.3g} mm/s",
     )  # fmt: skip
 
 
