@@ -209,7 +209,7 @@ def _override(tables: dict[str, Any], overrides: list[str], *, embedded: bool) -
         key, separator, value = text.partition("=")
         section, _, name = key.strip().partition(".")
         if not (separator and section and name):
-            near = closest(key.strip(), _keys())
+            near = closest(key.strip(), _all_keys())
             hint = f'did you mean "{near}"? ' if near else ""
             problems.append(
                 f'`overrides` "{text}": {hint}expected KEY=VALUE, such as drive.velocity="50 mm/s"'
@@ -241,11 +241,11 @@ def _override(tables: dict[str, Any], overrides: list[str], *, embedded: bool) -
     return problems
 
 
-def _keys() -> list[str]:
+def _all_keys() -> list[str]:
     """Return the keys of all sections, whatever their models."""
     models = {name: tuple(known.values()) for name, (_, known) in CHOICES.items()}
     models |= {name: (cls,) for name, cls in PLAIN.items()}
-    return [f"{name}.{key}" for name in SECTIONS for cls in models[name] for key in quantities(cls)]
+    return [f"{name}.{key}" for name in SECTIONS for cls in models[name] for key in _keys(cls)]
 
 
 def _change_drive(table: dict[str, Any], name: str) -> None:
