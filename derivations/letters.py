@@ -71,7 +71,7 @@ BY_LABEL: dict[str, dict[str, str]] = {
     "F11": _PASSED,
     "F13": {"f": r"f_{\mathrm{b}}"},
     "F13-root": {"f": r"f_{\mathrm{b}}", "n": r"\bar n", r"\beta": r"\bar b"},
-    "F14-surface": {"E": r"E_{\mathrm{s}}"},
+    "F14": {"E": r"E_{\mathrm{s}}", "S": r"\bar U", "g": "g"},
     "F15-runge-kutta": {"u": "u"},
     "element-kink": {"u": "u", r"\hat p": r"\bar p"},
     "element-trapezoids": {"u": "u"},

@@ -495,6 +495,7 @@ SYMBOLS = tuple(
             "1",
             "F13-root",
         ),
+        (r"\bar U", r"scaled integral of the compression, $U/(a_0 \delta_0)$", "1", "F14-force"),
         (r"E_{\mathrm{s}}", "energy of the surface outside the contact", "1", "F14-surface"),
         (r"\Delta x", "spacing of the elements", "m", "F15-runge-kutta"),
         (r"\Delta t", "step in time", "s", "F15-runge-kutta"),

@@ -71,6 +71,9 @@ def contradiction(premises: tuple[Premise, ...], new: tuple[Premise, ...]) -> st
         for _ in range(_DEPTH):
             if never_zero(rest):
                 return f"{premise.lhs} = {premise.rhs} contradicts what else is given"
+            bound = (node.variables for node in rest.atoms(sp.Integral, sp.Sum, sp.Derivative))
+            if others.keys() & {variable for each in bound for variable in each}:
+                break
             rest, before = rest.xreplace(others), rest
             if rest == before or rest.count_ops() > _TOO_LONG:
                 break

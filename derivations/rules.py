@@ -5,6 +5,7 @@ dependence on the variable is hidden behind a name.
 """
 
 from collections.abc import Iterable, Mapping
+from functools import lru_cache
 
 import sympy as sp
 from sympy.core.function import AppliedUndef
@@ -32,8 +33,18 @@ def resolve(
     HiddenError
         For a derivative or an integral over a variable on which a name depends unseen.
     """
-    rewriter = _Rewriter(rules, hidden)
-    before, after = None, sp.sympify(expr)
+    return _resolved(sp.sympify(expr), tuple(rules.items()), tuple(hidden.items()))
+
+
+@lru_cache(maxsize=4096)
+def _resolved(
+    expr: sp.Expr,
+    rules: tuple[tuple[sp.Expr, sp.Expr], ...],
+    hidden: tuple[tuple[sp.Expr, frozenset[sp.Expr]], ...],
+) -> tuple[sp.Expr, frozenset[sp.Expr]]:
+    """Resolve once: a step asks for the same expression when it checks, records and displays it."""
+    rewriter = _Rewriter(dict(rules), dict(hidden))
+    before, after = None, expr
     while after != before:
         before, after = after, rewriter.rewrite(after)
         if after.has(sp.Derivative, sp.Subs, Computed):

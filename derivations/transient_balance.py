@@ -1,15 +1,28 @@
-"""Balances that hold in every transient: of momentum and of energy (F14)."""
+"""Balances that hold in every transient: of momentum and of energy (F14).
+
+In the contact everything is a polynomial of depth, drive and edges. Outside, each element relaxes by
+itself, and only two facts are needed: it does so at the rate of its own compression, and at an edge the
+surface meets the indenter.
+"""
 
 from functools import partial
 
 import sympy as sp
 
+from .book import established
 from .record import Derivation
 from .step import Proof
 from .symbols import (
+    W_0,
+    C,
+    F_z,
+    K,
+    a_0,
     compression,
     d,
     d_s,
+    d_ss,
+    delta_0,
     depth,
     eps,
     f_friction,
@@ -19,6 +32,8 @@ from .symbols import (
     left,
     material,
     right,
+    t,
+    tau,
     time,
     travel,
     xi,
@@ -27,62 +42,156 @@ from .transient_memory import OF_TIME, SECTION
 from .transient_motion import CONTACT, FRICTION_FORCE, NORMAL_FORCE
 from .transient_scaling import PRESSURE
 
-_first, _last = sp.symbols("X_1 X_2", real=True)
-ELEMENTS = (material, _first, _last)
-"""A stretch of the foundation outside of which every element is at rest."""
+_ends = sp.symbols("X_1 X_2", real=True)
+"""A stretch of the foundation outside of which no element was ever pressed."""
+_left, _right = (sp.Function(str(end), real=True)(time) for end in (left, right))
+_IN_TIME = {**OF_TIME, lam: sp.Derivative(travel, time), left: _left, right: _right}
 
 _u = compression(material, time)
 _u_s = sp.Derivative(_u, time)
 _share = sp.Rational(3, 4)
 _speed = sp.Derivative(depth, time)
+_height, _rate = d - xi**2, d_s - 2 * lam * xi
+"""Compression under the indenter, and its rate in the foundation."""
+_total, _free = (sp.Function(name, real=True) for name in "SE")
+"""The compression of all elements (it prints as U with a bar); the energy of those outside."""
 _theorem = partial(Proof, equation=None, section=SECTION)
 
 
 def derive() -> tuple[Derivation, ...]:
     """Prove F14."""
-    return _momentum(), _power(), _energy(), _surface()
+    return _surface(), _force(), _momentum(), _power(), _energy()
 
 
-def _momentum() -> Derivation:
-    proof = _theorem("F14", title="Balance of momentum", text=_MOMENTUM, uses=("F8", "scaled-form"))
-    total = sp.Integral(_u, ELEMENTS)
-    proof.notation |= {r"\int": sp.Tuple(*ELEMENTS), "U": sp.Lambda(time, total), "u": _u}
-    force = _share * (total + sp.Derivative(total, time))
-    pushed = _share * sp.Integral(_u + _u_s, ELEMENTS)
-    proof.define(f_normal, pushed, r"$\hat p$ is zero outside the contact",
-                 right=r"\frac{3}{4} \int \left(u + u'\right) dX")  # fmt: skip
-    proof.equal(
-        f_normal, force, "summed over all elements", right=r"\frac{3}{4} \left(U + U'\right)"
+def _outside(density: sp.Expr) -> sp.Expr:
+    """Integrate over the elements on both sides of the contact."""
+    first, last = _ends
+    return sp.Integral(density, (material, first, _left - travel)) + sp.Integral(
+        density, (material, _right - travel, last)
     )
-    proof.define(
-        *(sp.Derivative(depth, (time, 2)), (1 - f_normal - kappa * (depth - 1)) / eps, "scaled motion"),
-        left="d''", right=r"\frac{1 - f_z - \kappa (d - 1)}{\varepsilon}",
+
+
+def _both_sides(density: str) -> str:
+    """Print such an integral."""
+    return rf"\int_{{X_1}}^{{\ell - Y}} {density} \, dX + \int_{{r - Y}}^{{X_2}} {density} \, dX"
+
+
+def _relaxing(proof: Proof) -> None:
+    """Lay down what is known of the surface outside the contact."""
+    proof.notation |= {"u": _u, "u'": _u_s}
+    proof.notation[r"\lambda"] = _IN_TIME[lam]
+    proof.define(_u_s, -_u, "outside there is no pressure, Eq. (20)", left="u'", right="-u")
+    for edge, name in ((_left, r"\ell"), (_right, "r")):
+        proof.define(
+            *(compression(edge - travel, time), depth - edge**2, "there the surface meets the indenter"),
+            left=rf"u({name} - Y, s)", right=f"d - {name}^2",
+        )  # fmt: skip
+
+
+def _surface() -> Derivation:
+    proof = _theorem("F14-surface", title="Energy of the surface that relaxes", text=_HANDED_OVER,
+                     uses=("F8", "F9"))  # fmt: skip
+    energy = _free(time)
+    handed = [
+        (depth - edge**2) ** 2 * sp.Derivative(edge - travel, time) for edge in (_left, _right)
+    ]
+    change = -2 * energy + _share / 2 * (handed[0] - handed[1])
+    _relaxing(proof)
+    proof.define(energy, _share / 2 * _outside(_u**2), "the springs on both sides of the contact",
+                 right=rf"\frac{{3}}{{8}} \left[{_both_sides('u^2')}\right]")  # fmt: skip
+    proof.equal(
+        *(_share * _outside(_u_s**2), 2 * energy, "the dampers there"),
+        left=r"\frac{3}{4} \left[" + _both_sides("u'^2") + r"\right]",
     )  # fmt: skip
-    change = sp.Derivative(eps * _speed + _share * total, time)
-    impulse = 1 - kappa * (depth - 1) - _share * total
     proof.equal(
-        *(change, impulse, "integrated over time, the balance of impulse"),
-        left=r"\frac{d}{ds} \left[\varepsilon d' + \frac{3}{4} U\right]",
-        right=r"1 - \kappa (d - 1) - \frac{3}{4} U",
+        *(sp.Derivative(energy, time), change, "the ends of the integrals move with the edges"),
+        left="E'",
+        right=r"-2 E + \frac{3}{8} \left[(d - \ell^2)^2 (\ell' - \lambda) "
+        r"- (d - r^2)^2 (r' - \lambda)\right]",
     )
+    return proof.done(sp.Derivative(energy, time), change)
+
+
+_HANDED_OVER = (
+    r"Outside the contact each element relaxes by itself; beyond $X_1$ and $X_2$ none was ever pressed. What "
+    r"the contact hands over at its edges is stored in the free surface as $E$ and dissipated there at "
+    r"the rate $2 E$."
+)
+
+
+def _force() -> Derivation:
+    proof = _theorem("F14-force", title="Normal force from the compression of all elements",
+                     text=_ALL, uses=("F9",))  # fmt: skip
+    total = _total(time)
+    force = _share * (total + sp.Derivative(total, time))
+    _relaxing(proof)
+    _let_move(proof)
+    under = _under(proof, _height.subs(_IN_TIME), "under the indenter", _COMPRESSION, _COMPRESSED)
+    proof.define(total, _outside(_u) + under, "all elements",
+                 right=rf"{_both_sides('u')} + {_COMPRESSION}")  # fmt: skip
+    proof.recall("F11", f_normal, NORMAL_FORCE)
+    proof.equal(f_normal, force, _CONTINUOUS, right=r"\frac{3}{4} \left(S + S'\right)")
     return proof.done(f_normal, force)
 
 
-_MOMENTUM = (
-    r"With $U = \int u \, dX$ over all elements, also those that relax outside the contact. In "
-    r"dimensional form, $F_z = K U + C \dot U$ with $U = \int u \, dx$."
+_COMPRESSION = r"\int_{\ell}^{r} (d - \xi^2) \, d\xi"
+_COMPRESSED = r"(r - \ell) d - \frac{r^3 - \ell^3}{3}"
+_CONTINUOUS = "what the ends of the integrals sweep cancels: the surface is continuous at the edges"
+_ALL = (
+    r"With $S$, the compression of all elements, also of those that relax outside the contact. A drive to "
+    "the other side is the mirror image, here and in the balance of energy."
 )
+
+
+def _let_move(proof: Proof) -> None:
+    """Let depth, drive and edges be functions of time."""
+    proof.notation |= {"d": depth, r"\lambda": _IN_TIME[lam], r"\ell": _left, "r": _right}
+    for name, value in _IN_TIME.items():
+        proof.define(name, value)
+
+
+def _obey(proof: Proof) -> None:
+    """Let the indenter obey its equation of motion."""
+    proof.define(sp.Derivative(depth, (time, 2)), d_ss)
+    proof.recall("scaled-form", eps * d_ss, established("scaled-form", eps * d_ss))
+
+
+def _momentum() -> Derivation:
+    proof = _theorem("F14", title="Balance of momentum", text=_UNITS, notation={"d": depth})
+    total, now = _total(time), sp.Function("U", real=True)(t)
+    proof.define(d, depth)
+    proof.recall("F14-force", f_normal, established("F14-force", f_normal))
+    _obey(proof)
+    proof.equal(
+        sp.Derivative(eps * _speed + _share * total, time),
+        1 - kappa * (depth - 1) - _share * total,
+        "integrated over time, the balance of impulse",
+        left=r"\frac{d}{ds} \left[\varepsilon d' + \frac{3}{4} S\right]",
+        right=r"1 - \kappa (d - 1) - \frac{3}{4} S",
+    )
+    proof.recall("scaled-pressure", W_0, established("scaled-pressure", W_0))
+    proof.define(F_z, W_0 * f_normal)
+    proof.define(C, K * tau, "Eq. (22)")
+    proof.define(now, a_0 * delta_0 * _total(t / tau))
+    proof.define(time, t / tau)
+    result = K * now + C * sp.Derivative(now, t)
+    proof.equal(
+        F_z, result, r"in units of $W_0 = \frac{4}{3} K a_0 \delta_0$", right=r"K U + C \dot{U}"
+    )
+    return proof.done(F_z, result)
+
+
+_UNITS = r"With $S$ of F14-force, in dimensional form $U$, the integral of the compression over all elements."
 
 
 def _power() -> Derivation:
     proof = _theorem("F14-power", title="Power given to the foundation", text=_POWER,
                      uses=("scaled-pressure",))  # fmt: skip
-    rate = d_s - 2 * lam * xi
-    density = sp.expand(_share * PRESSURE * rate)
+    density = sp.expand(_share * PRESSURE * _rate)
     proof.recall("F11", f_normal, NORMAL_FORCE)
     proof.recall("F11", f_friction, FRICTION_FORCE)
-    proof.notation |= {r"\hat p": PRESSURE, "u'": rate}
-    proof.equal(PRESSURE, d - xi**2 + rate, r"$u + u'$ in the contact", left=r"\hat p")
+    proof.notation |= {r"\hat p": PRESSURE, "u'": _rate}
+    proof.equal(PRESSURE, _height + _rate, r"$u + u'$ in the contact", left=r"\hat p")
     whole = sp.Integral(density, CONTACT)
     proof.integral(
         *(whole, density, CONTACT, sp.integrate(density, xi), "pressure times velocity"),
@@ -92,104 +201,74 @@ def _power() -> Derivation:
     return proof.done(whole, d_s * f_normal + lam * f_friction)
 
 
-_POWER = r"In units of $W_0 \delta_0/\tau$: by the motion of the indenter, and by the drive."
+_POWER = (
+    r"In units of $W_0 \delta_0/\tau$: by the motion of the indenter, and by the drive. Outside the contact "
+    "there is no pressure, and nothing is given."
+)
 
 
 def _energy() -> Derivation:
-    proof = _theorem(
-        "F14-energy", title="Balance of energy", text=_ENERGY, uses=("scaled-form", "F14-power")
+    proof = _theorem("F14-energy", title="Balance of energy", text=_ENERGY,
+                     uses=("scaled-form", "F14-power"))  # fmt: skip
+    _let_move(proof)
+    height, rate = (each.subs(_IN_TIME) for each in (_height, _rate))
+    proof.notation |= {"u": sp.Lambda(xi, height), "u'": sp.Lambda(xi, rate)}
+    stored, lost = (
+        _under(proof, sp.expand(density), *shown)
+        for density, shown in (
+            (_share / 2 * height**2, ("stored under the indenter", _STORED, _STORED_THERE)),
+            (_share * rate**2, ("dissipated there", _LOST, _LOST_THERE)),
+        )
     )
-    stored = _share * sp.Integral(_u**2 / 2, ELEMENTS)
-    lost = _share * sp.Integral(_u_s**2, ELEMENTS)
-    given = _share * sp.Integral((_u + _u_s) * _u_s, ELEMENTS)
+    proof.recall("F11", f_normal, NORMAL_FORCE)
+    proof.recall("F11", f_friction, FRICTION_FORCE)
+    energy, free = _free(time), established("F14-surface", _free(time).diff(time))
+    given = _speed * f_normal + lam * f_friction - (free + 2 * energy)
+    proof.equal(
+        *(sp.Derivative(stored, time) + lost, given, "elements enter and leave at the edges"),
+        left=rf"\frac{{d}}{{ds}} {_STORED} + {_LOST}",
+        right=r"d' f_z + \lambda f_x + \frac{3}{8} \left[(d - r^2)^2 (r' - \lambda) - (d - \ell^2)^2 "
+        r"(\ell' - \lambda)\right]",
+    )
+    proof.recall("F14-surface", sp.Derivative(energy, time), free)
+    _obey(proof)
     moving = eps * _speed**2 / 2 - depth + kappa * (depth - 1) ** 2 / 2
-    proof.notation |= {r"\int": sp.Tuple(*ELEMENTS), "u": _u, r"\hat p": _u + _u_s}
-    proof.define(
-        *(sp.Derivative(depth, (time, 2)), (1 - f_normal - kappa * (depth - 1)) / eps, "scaled motion"),
-        left="d''", right=r"\frac{1 - f_z - \kappa (d - 1)}{\varepsilon}",
-    )  # fmt: skip
     proof.equal(
         *(sp.Derivative(moving, time), -_speed * f_normal, "kinetic energy, weight and spring"),
         left=rf"\frac{{d}}{{ds}} \left[{_MOVING}\right]", right="-d' f_z",
     )  # fmt: skip
+    balance = sp.Derivative(moving + stored + energy, time) + lost + 2 * energy
     proof.equal(
-        *(given, sp.Derivative(stored, time) + lost, "springs and dampers, outside the contact as well"),
-        left=r"\frac{3}{4} \int \hat p u' \, dX", right=rf"\frac{{d}}{{ds}} {_STORED} + {_LOST}",
-    )  # fmt: skip
-    proof.define(
-        *(lam * f_friction, given - _speed * f_normal, "F14-power, with no pressure outside"),
-        left=_DRIVE,
-        right=r"\frac{3}{4} \int \hat p u' \, dX - d' f_z",
-    )
-    balance = sp.Derivative(moving + stored, time) + lost
-    proof.equal(
-        *(lam * f_friction, balance, "what it is spent on"),
-        left=_DRIVE,
-        right=rf"\frac{{d}}{{ds}} \left[{_MOVING} + {_STORED}\right] + {_LOST}",
+        *(lam * f_friction, balance, "what it is spent on: the sum of the three"),
+        left=r"\lambda f_x",
+        right=rf"\frac{{d}}{{ds}} \left[{_MOVING} + {_STORED} + E\right] + {_LOST} + 2 E",
     )
     return proof.done(lam * f_friction, balance)
 
 
-_DRIVE = r"\lambda f_x"
+def _under(proof: Proof, density: sp.Expr, reason: str, left: str, right: str) -> sp.Expr:
+    """Prove what an integral over the contact is, and return it."""
+    place = (xi, _left, _right)
+    whole = sp.Integral(density, place)
+    primitive = sp.integrate(density, xi)
+    proof.integral(whole, density, place, primitive, reason, left=left, right=right)
+    return whole
+
+
 _MOVING = r"\frac{\varepsilon d'^2}{2} - d + \frac{\kappa}{2} (d - 1)^2"
-_STORED = r"\frac{3}{8} \int u^2 \, dX"
-_LOST = r"\frac{3}{4} \int u'^2 \, dX"
-_ENERGY = (
-    r"In units of $W_0 \delta_0$ and $W_0 \delta_0/\tau$, with integrals over all elements. In dimensional "
-    r"form the power $F_x V$ of the drive is the rate of change of the kinetic energy $\frac{1}{2} M "
-    r"\dot\delta^2$, of the potential energies $-M g \delta$ and $\frac{1}{2} k_s (\delta - \delta_0)^2$ and "
-    r"of the energy $\int \frac{1}{2} K u^2 dx$ of the springs, and the power $\int C \dot u^2 dx$ lost in "
-    "the dampers. A fixed indenter has $d' = 0$, and only the foundation is left."
+_STORED = r"\frac{3}{8} \int_{\ell}^{r} u^2 \, d\xi"
+_STORED_THERE = (
+    r"\frac{3}{8} d^2 (r - \ell) - \frac{1}{4} (r^3 - \ell^3) d + \frac{3}{40} (r^5 - \ell^5)"
 )
-
-
-def _surface() -> Derivation:
-    proof = _theorem("F14-surface", title="Energy of the surface that relaxes", text=_HANDED_OVER,
-                     uses=("F8", "F14-energy"))  # fmt: skip
-    height, rate = d - xi**2, d_s - 2 * lam * xi
-    stored, lost, exchange = (
-        sp.integrate(sp.expand(share * density), CONTACT)
-        for share, density in (
-            (_share / 2, height**2), (_share, rate**2), (_share, height * rate),
-        )
-    )  # fmt: skip
-    for share, density, value, shown in (
-        (_share / 2, height**2, stored, "stored under the indenter"),
-        (_share, rate**2, lost, "dissipated there"),
-    ):
-        integrand = sp.expand(share * density)
-        whole = sp.Integral(integrand, CONTACT)
-        proof.integral(whole, integrand, CONTACT, sp.integrate(integrand, xi), shown, value=value)
-    moving = {**OF_TIME, lam: sp.Derivative(travel, time)}
-    moving |= {end: sp.Function(str(end), real=True)(time) for end in (left, right)}
-    at_right, at_left = (
-        _share / 2 * height.subs(xi, end) ** 2 * (sp.Derivative(moving[end], time) - lam)
-        for end in (right, left)
-    )
-    change = sp.Derivative(stored.subs(moving), time)
-    free = {name: sp.Lambda(xi, each.subs(moving)) for name, each in (("u", height), ("u'", rate))}
-    proof.notation |= {r"\ell": moving[left], "r": moving[right], "d": depth, **free}
-    proof.notation[r"\lambda"] = moving[lam]
-    parts = (exchange + at_right - at_left).subs(moving)
-    proof.equal(
-        *(change, parts, "elements enter and leave at the edges"),
-        left=r"\frac{d}{ds} \frac{3}{8} \int_{\ell}^{r} u^2 \, d\xi",
-        right=r"\frac{3}{4} \int_{\ell}^{r} u u' \, d\xi + \frac{3}{8} \left[u(r)^2 (r' - \lambda) - "
-        r"u(\ell)^2 (\ell' - \lambda)\right]",
-    )
-    proof.notation |= {"u": _u, "u'": _u_s}
-    proof.define(_u_s, -_u, "outside there is no pressure", left="u'", right="-u")
-    loss = -2 * (_share / 2 * _u**2)
-    proof.equal(sp.Derivative(_share / 2 * _u**2, time), loss, "twice what is stored, per $\\tau$",
-                left=r"\frac{d}{ds} \frac{3}{8} u^2", right=r"-2 \cdot \frac{3}{8} u^2")  # fmt: skip
-    proof.equal(_share * _u_s**2, -loss, "all of it dissipated", left=r"\frac{3}{4} u'^2",
-                right=r"2 \cdot \frac{3}{8} u^2")  # fmt: skip
-    return proof.done(change, parts)
-
-
-_HANDED_OVER = (
-    r"The terms of F14-energy under the indenter are polynomials of the edges. What the contact hands "
-    r"over at its edges is stored in the free surface, $E = \frac{3}{8} \int u^2 \, d\xi$ outside, and "
-    r"dissipated there at the rate $2 E$, so that $E' = -2 E + \frac{3}{8} [u^2(\ell) (\ell' - \lambda) - "
-    r"u^2(r) (r' - \lambda)]$."
+_LOST = r"\frac{3}{4} \int_{\ell}^{r} u'^2 \, d\xi"
+_LOST_THERE = (
+    r"\frac{3}{4} d'^2 (r - \ell) - \frac{3}{2} (r^2 - \ell^2) \lambda d' "
+    r"+ \lambda^2 (r^3 - \ell^3)"
+)
+_ENERGY = (
+    r"In units of $W_0 \delta_0$ and $W_0 \delta_0/\tau$. What the drive gives, in dimensional form $F_x V$, "
+    r"becomes kinetic energy $\frac{1}{2} M \dot\delta^2$, potential energies $-M g \delta$ and $\frac{1}{2} "
+    r"k_s (\delta - \delta_0)^2$, and energy of the springs of the foundation under the indenter and "
+    r"outside, $E$; the rest is lost in its dampers, under the indenter and outside. A fixed indenter has "
+    "$d' = 0$, and only the foundation is left."
 )
