@@ -69,6 +69,7 @@ BY_LABEL: dict[str, dict[str, str]] = {
     "F9": _SHAPES,
     "F10": {**_STEP, **_PASSED, "c": r"c_{\mathrm{t}}", "X_e": r"X_{\mathrm{e}}"},
     "F11": _PASSED,
+    "F12": {"D": r"\tilde d"},
     "F13": {"f": r"f_{\mathrm{b}}"},
     "F13-root": {"f": r"f_{\mathrm{b}}", "n": r"\bar n", r"\beta": r"\bar b"},
     "F14": {"E": r"E_{\mathrm{s}}", "S": r"\bar U", "g": "g"},

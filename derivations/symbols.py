@@ -88,7 +88,7 @@ material, left, right = sp.symbols("X ell r", real=True)
 mix = sp.Symbol("theta", positive=True)
 rho, beta, per_depth, per_rate, eps_critical = _positive("rho beta A B epsilon_c")
 drive_excess = sp.Symbol("n", real=True)
-drift, lift = sp.symbols("lambda_bar d_bar", real=True)
+drift, lift, change = sp.symbols("lambda_bar d_bar d_hat", real=True)
 compression, indenter = (sp.Function(name, real=True) for name in "ug")
 """The surface of an element, and the indenter above it."""
 
@@ -184,6 +184,7 @@ TEX = {
     d_ss: "d''",
     drift: r"\bar\lambda",
     lift: r"\bar d",
+    change: r"\hat d",
     eps_critical: r"\varepsilon_{\mathrm{c}}",
     distance: r"\bar x",
     q_root: r"\hat q",

@@ -50,6 +50,9 @@ JACOBIAN = (
 )
 """Derivatives of both forces with respect to d and d' after a start from rest."""
 
+START = {right: sp.sqrt(d + d_s + lam**2) - lam, left: -sp.sqrt(d)}
+"""The edges after a start from rest: the right one peels, the left one finds undisturbed ground."""
+
 _theorem = partial(Proof, equation=None, section=SECTION)
 
 
@@ -159,19 +162,17 @@ def _moving_ends(share: sp.Expr, inside: sp.Expr, force: sp.Expr, variable: sp.E
 def _start_from_rest() -> Derivation:
     proof = _theorem("F11-start", title="The same after a start from rest", text=_START,
                      uses=("F11-derivatives",))  # fmt: skip
-    trailing, leading = sp.sqrt(d + d_s + lam**2) - lam, -sp.sqrt(d)
     proof.where(sp.Gt(d + d_s + lam**2, 0), "the indenter is on the foundation")
-    proof.define(right, trailing, "peels")
-    proof.define(left, leading, "touches undisturbed ground")
+    proof.define(right, START[right], "peels")
+    proof.define(left, START[left], "touches undisturbed ground")
     proof.define(a, sp.sqrt(d))
-    ends = {right: trailing, left: leading}
     named = {"f_z": f_normal, "f_x": f_friction}
-    proof.notation |= {name: established("F11", each).subs(ends) for name, each in named.items()}
+    proof.notation |= {name: established("F11", each).subs(START) for name, each in named.items()}
     pairs = [(force, variable) for force in (f_normal, f_friction) for variable in (d, d_s)]
     for (force, variable), value in zip(pairs, JACOBIAN, strict=True):
-        slope = sp.Derivative(established("F11", force).subs(ends), variable)
+        slope = sp.Derivative(established("F11", force).subs(START), variable)
         proof.equal(slope, value, "F11", left=_partial(force, variable))
-    first = sp.Derivative(established("F11", f_normal).subs(ends), d)
+    first = sp.Derivative(established("F11", f_normal).subs(START), d)
     return proof.done(first, JACOBIAN[0])
 
 

@@ -5,6 +5,7 @@ from functools import partial
 import sympy as sp
 
 from . import tables
+from .book import established
 from .record import Derivation, Table
 from .step import Proof
 from .symbols import (
@@ -16,12 +17,14 @@ from .symbols import (
     a,
     b,
     beta,
+    change,
     d,
     d_s,
     drive_excess,
     eps,
     eps_critical,
     f,
+    f_normal,
     g,
     kappa,
     l,
@@ -39,18 +42,20 @@ from .symbols import (
 )
 from .theorems import LOAD, NUMBER, UNIT, A
 from .transient_memory import SECTION
-from .transient_motion import JACOBIAN, PEELING_NORMAL_FORCE
+from .transient_motion import PEELING_NORMAL_FORCE, START
 from .transient_scaling import PRESSURE
 
 DAMPING, STIFFNESS = 3 * per_rate / 4, 3 * per_depth / 4 + kappa
 """How strongly the force on the indenter depends on the rate of the depth, and on the depth."""
+QUADRATIC = eps * sigma**2 + DAMPING * sigma + STIFFNESS
+"""Its roots are the rates of small motions."""
 
 _root = sp.sqrt(DAMPING**2 - 4 * eps * STIFFNESS)
 FAST, SLOW = -(DAMPING + _root) / (2 * eps), -2 * STIFFNESS / (DAMPING + _root)
 """The rates per retardation time, without a difference of nearly equal numbers."""
 
 _first, _second = sp.symbols("sigma_1 sigma_2", real=True)
-_times = sp.symbols("T_1 T_2", positive=True)
+_times = sp.symbols("T_1 T_2", real=True)
 
 SLOW_RATE = right**2 + 2 * lam * right - d
 """d' of the slow manifold."""
@@ -62,53 +67,75 @@ _theorem = partial(Proof, equation=None, section=SECTION)
 
 def derive() -> tuple[Derivation, ...]:
     """Prove F12 and F13."""
-    return _rates(), _critical_inertia(), _time_constants(), _standard(), _manifold(), _one_root()
+    return _linearised(), _contact(), _rates(), _critical_inertia(), _time_constants(), _standard(), _manifold(), _one_root()
+
+
+def _linearised() -> Derivation:
+    proof = _theorem("F12-linear", title="Small motions about steady sliding", text=_SMALL,
+                     uses=("scaled-form", "F11-start"))  # fmt: skip
+    force = established("F11", f_normal).subs(START)
+    near = a**2 + change * sp.exp(sigma * time)
+    rate = sp.diff(near, time)
+    pushed = force.subs({d: near, d_s: rate}, simultaneous=True)
+    motion = eps * sp.Derivative(near, (time, 2)) - (1 - pushed - kappa * (near - 1))
+    proof.notation |= {"D": sp.Lambda(time, near), "f_z": sp.Lambda((d, d_s), force)}
+    proof.define(per_depth, sp.sqrt(a**2 + lam**2) + a, "how much the force grows with the depth")
+    proof.define(per_rate, sp.sqrt(a**2 + lam**2) - lam + a, "and with its rate")
+    proof.where(sp.Gt(near, 0), "the change is small")
+    proof.where(sp.Gt(near + rate + lam**2, 0), "and the contact remains")
+    first = sp.Subs(sp.Derivative(motion, change), change, 0)
+    proof.equal(
+        *(first, QUADRATIC * sp.exp(sigma * time), r"the terms of first order in $\hat d$"),
+        left=r"\left. \frac{\partial}{\partial \hat d} \left[\varepsilon D'' - \left(1 - f_z(D, D') - "
+        r"\kappa (D - 1)\right)\right] \right|_{\hat d = 0}",
+        right=r"\left(\varepsilon \sigma^2 + \frac{3}{4} B \sigma + \frac{3}{4} A + \kappa\right) "
+        r"e^{\sigma s}",
+    )
+    return proof.done(first, QUADRATIC * sp.exp(sigma * time))
+
+
+_SMALL = (
+    r"The scaled motion with the force of F11-start, for the depth $D = a^2 + \hat d e^{\sigma s}$ near "
+    r"that of steady sliding, $a^2$. To first order in $\hat d$ it is obeyed if $\sigma$ is a root of the "
+    "quadratic."
+)
+
+
+def _contact() -> Derivation:
+    proof = _theorem("F12-steady", title="Stiffness and damping of the contact in steady sliding", text=_SPRING)
+    proof.define(lam, a * l)
+    proof.define(l, NUMBER)
+    for name, form in _IN_Q.items():
+        proof.recall("F12-linear", name, established("F12-linear", name))
+        proof.equal(name, form, r"$\sqrt{1 + l^2} = l + q$")
+    return proof.done(per_depth, _IN_Q[per_depth])
+
+
+_SPRING = r"With the half length $a$ in units of $a_0$, and the trailing edge at $a q$."
+_IN_Q = {per_depth: a * (1 + q) ** 2 / (2 * q), per_rate: a * (1 + q)}
 
 
 def _rates() -> Derivation:
-    proof = _theorem(
-        "F12", title="Rates at the steady state", text=_RATES, uses=("scaled-form", "F11-start")
-    )
-    growth = sp.exp(sigma * time)
-    quadratic = eps * sigma**2 + DAMPING * sigma + STIFFNESS
-    motion = eps * sp.diff(growth, time, 2) + DAMPING * sp.diff(growth, time) + STIFFNESS * growth
-    proof.equal(
-        *(
-            motion,
-            quadratic * growth,
-            r"a small change of the depth in proportion to $e^{\sigma s}$",
-        ),
-        left=r"\varepsilon \frac{d^2}{ds^2} e^{\sigma s} + \frac{3 B}{4} \frac{d}{ds} e^{\sigma s} + "
-        r"\left(\frac{3 A}{4} + \kappa\right) e^{\sigma s}",
-    )
+    proof = _theorem("F12", title="Rates at the steady state", text=_RATES, uses=("F12-linear",))
     proof.where(sp.Gt(DAMPING**2, 4 * eps * STIFFNESS), "no oscillation")
     middle = -DAMPING / (2 * eps)
-    proof.root(quadratic, sigma, FAST, "fast", over=(sigma, -sp.oo, middle), name=_first)
-    proof.root(quadratic, sigma, SLOW, "slow", over=(sigma, middle, sp.oo), name=_second)
-    proof.define(d_s, sp.S.Zero, "steady sliding")
-    proof.define(right, a * q, "with its trailing edge")
-    proof.define(lam, a * l)
-    proof.define(l, NUMBER)
-    per_unit = sp.Rational(4, 3)
-    proof.define(per_depth, per_unit * JACOBIAN[0], r"$\frac{4}{3} \partial f_z/\partial d$")
-    proof.equal(per_depth, a * (1 + q) ** 2 / (2 * q), r"which is $\sqrt{a^2 + \lambda^2} + a$")
-    proof.define(per_rate, per_unit * JACOBIAN[1], r"$\frac{4}{3} \partial f_z/\partial d'$")
-    proof.equal(per_rate, a * (1 + q), r"which is $\sqrt{a^2 + \lambda^2} - \lambda + a$")
+    proof.root(QUADRATIC, sigma, FAST, "fast", over=(sigma, -sp.oo, middle), name=_first)
+    proof.root(QUADRATIC, sigma, SLOW, "slow", over=(sigma, middle, sp.oo), name=_second)
     return proof.done(_second, SLOW)
 
 
 _RATES = (
-    r"Near the steady state, with the half length $a$ and the trailing edge $r$ in units of $a_0$, the "
-    r"change of depth is a sum of $e^{\sigma_1 s}$ and $e^{\sigma_2 s}$."
+    r"The roots of the quadratic of F12-linear: near the steady state the change of depth is a sum of "
+    r"$e^{\sigma_1 s}$ and $e^{\sigma_2 s}$."
 )
 
 
 def _steady(proof: Proof) -> None:
     """Let A, B and lambda be those of steady sliding, by the half length and q."""
     proof.define(l, NUMBER)
-    proof.recall("F12", lam, a * l)
-    proof.recall("F12", per_depth, a * (1 + q) ** 2 / (2 * q))
-    proof.recall("F12", per_rate, a * (1 + q))
+    proof.recall("F12-steady", lam, a * l)
+    for name, form in _IN_Q.items():
+        proof.recall("F12-steady", name, form)
 
 
 def _critical_inertia() -> Derivation:
