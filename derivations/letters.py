@@ -67,7 +67,10 @@ BY_LABEL: dict[str, dict[str, str]] = {
     "circle-dead-weight": {**_LIFTED, "m": "m"},
     "F8": {**_STEP, **_PASSED, "c": r"\bar c"},
     "F9": _SHAPES,
-    "F10": {**_STEP, **_PASSED, "c": r"c_{\mathrm{t}}", "X_e": r"X_{\mathrm{e}}"},
+    "F10": {
+        **_STEP, **_PASSED, "c": r"c_{\mathrm{t}}", "X_e": r"X_{\mathrm{e}}", "k": r"\bar k", "y": r"\bar y",
+        "k_1": r"\bar k_1", "k_2": r"\bar k_2", "k_3": r"\bar k_3",
+    },  # fmt: skip
     "F11": _PASSED,
     "F12": {"D": r"\tilde d"},
     "F13": {"f": r"f_{\mathrm{b}}"},

@@ -13,6 +13,7 @@ from .step import Proof
 from .symbols import (
     E,
     P,
+    b,
     c,
     d,
     d_s,
@@ -44,7 +45,7 @@ LEFT_AT_ONCE, RIGHT_AT_ONCE = -E * drift - _radius, -E * drift + _radius
 
 _MOVING = {**OF_TIME, lam: sp.Derivative(travel, time)}
 _d_0, _moved = sp.symbols("d_0 m", real=True)
-_h = sp.Symbol("h", positive=True)
+_h, _ahead = sp.symbols("h k", positive=True)
 edge_path = sp.Function("X_e", real=True)(time)
 """The element at an edge of the contact."""
 TOUCHING_PRESSURE = 2 * (xi - E * eta) * sp.Derivative(edge_path, time)
@@ -54,7 +55,10 @@ _theorem = partial(Proof, equation=None, section=SECTION, notation={"g": SURFACE
 
 def derive() -> tuple[Derivation, ...]:
     """Prove F10."""
-    return _peeling(), _touching(), _at_once(), _gradually(), _turning()
+    return (
+        *(_peeling(), _touching(), _signs()),
+        *(_at_once(), _soon_and_late(), _gradually(), _turning()),
+    )
 
 
 def _peeling() -> Derivation:
@@ -130,9 +134,43 @@ _TOUCH = (
     r"= \mp\sqrt{d}$ (Eq. 32), and on ground whose last contact was at $\sigma$ where $e^{s} g(X, s) = "
     r"e^{\sigma} g(X, \sigma)$. The pressure $\hat p$ at the edge is proportional to the velocity "
     r"$X_{\mathrm{e}}'$ of the edge through the foundation, and positive while it moves outward, because "
-    r"$\xi - E \eta$ has the sign of the side (F9). On undisturbed ground $E = 0$. How $\sigma$ depends "
+    r"$\xi - E \eta$ has the sign of the side (F10-signs). On undisturbed ground $E = 0$. How $\sigma$ depends "
     r"on $X$ does not matter: either all of the ground was left at once, or each element when its "
     r"pressure, and with it $\partial(e^{\sigma} g)/\partial\sigma$, vanished."
+)
+
+
+def _signs() -> Derivation:
+    proof = _theorem("F10-signs", title="Inward an edge peels, outward it touches", text=_SIGNS,
+                     uses=("F9", "F10-peel"))  # fmt: skip
+    now, speed = depth - (material + travel) ** 2, sp.Derivative(edge_path, time)
+    margin = sp.exp(time) * now - sp.exp(sigma) * now.subs(time, sigma)
+    other = margin.subs(material, material - b)
+    slope = material + travel - sp.exp(sigma - time) * (material + travel.subs(time, sigma))
+    proof.notation |= {r"X_{\mathrm{e}}": edge_path, "D_1": sp.Lambda(material, margin)}
+    proof.notation |= {r"\xi - E \eta": slope}
+    proof.holds(2 * rho * speed, "<", 0, "F10-peel: what a right edge lets go of loses its pressure",
+                cases=(sp.Lt(speed, 0),))  # fmt: skip
+    proof.holds(-2 * rho * speed, "<", 0, "and at a left edge", cases=(sp.Gt(speed, 0),))
+    inside, bulge = sp.Symbol("D_2", nonnegative=True), (sp.exp(time) - sp.exp(sigma)) * b**2
+    proof.define(inside, other, r"at the left edge, not negative: it is in contact", right="D_1(X - b)")
+    proof.equal(
+        *(2 * sp.exp(time) * b * slope, inside - margin + bulge, r"at a right edge $D_1(X) = 0$"),
+        left=r"2 e^{s} b \left(\xi - E \eta\right)",
+        right=r"D_2 - D_1(X) + \left(e^{s} - e^{\sigma}\right) b^2",
+    )
+    proof.where(time > sigma, "an earlier instant")
+    proof.holds(bulge, ">", 0, r"and $D_2 \ge 0$, so that $\xi > E \eta$ there")
+    proof.recall("F10-touch", P, TOUCHING_PRESSURE)
+    proof.define(xi, E * eta + _ahead, "with $k > 0$")
+    proof.equivalent(P, speed, sp.S.Zero, r"it says the same as $\hat p \ge 0$ at an edge that touches")
+    return proof.done(speed, 0)
+
+
+_SIGNS = (
+    r"In the foundation an edge is at $X_{\mathrm{e}}$. A right edge that peels moves inward, "
+    r"$X_{\mathrm{e}}' < 0$: the elements there must lose their pressure, which vanishes. One that touches "
+    r"moves outward, for its pressure is not negative. A left edge is the mirror image."
 )
 
 
@@ -167,8 +205,38 @@ def _at_once() -> Derivation:
 _INSTANT = (
     r"A jump of the drive at $s_0$ lets go of all ground between the old edge and the new one at once. "
     r"With $E = e^{-(s - s_0)}$ and $m$, the way since then, $g(X, s) = E g(X, s_0)$ is a quadratic in "
-    r"$\xi$. For $s \to s_0$ the root tends to $-\lambda + \sqrt{d + d' + \lambda^2}$, at which the "
-    r"edge peels after the jump; for $s \to \infty$ it tends to $\sqrt{d}$, undisturbed ground."
+    r"$\xi$."
+)
+
+
+def _soon_and_late() -> Derivation:
+    proof = _theorem("F10-instant-limits", title="The same soon after, and long after", text=_LIMITS,
+                     uses=("F10-instant", "F10-peel", "F10-touch"))  # fmt: skip
+    proof.notation["r"] = sp.Lambda((E, lift, drift), RIGHT_AT_ONCE)
+    proof.where(sp.Gt(lift + E * drift**2, 0), "as in F10-instant")
+    proof.where(sp.Gt(RADICAND, 0), "as in F10-peel")
+    decayed = sp.exp(-_h)
+    for small, mean, end, words in (
+        (_h, (d + d_s * _h - decayed * d) / (1 - decayed), d + d_s, r"$\bar d$ soon after the jump"),
+        (_h, lam * _h / (1 - decayed), lam, r"$\bar \lambda$ soon after it"),
+        (E, (d - E * _d_0) / (1 - E), d, r"$\bar d$ long after it"),
+        (E, _moved / (1 - E), _moved, r"$\bar \lambda$ long after it"),
+    ):
+        proof.leading_order(mean, end, small, 0, words, eps=small)
+    means = E, lift, drift
+    for ends, edge, shown, words in (
+        ((1, d + d_s, lam), sp.sqrt(RADICAND) - lam, r"1, d + d', \lambda", "soon: it peels"),
+        ((0, d, _moved), sp.sqrt(d), "0, d, m", "late: undisturbed ground"),
+    ):
+        place = sp.Subs(RIGHT_AT_ONCE, means, ends)
+        proof.equal(place, edge, words, left=f"r({shown})")
+    return proof.done(place, edge)
+
+
+_LIMITS = (
+    r"The right edge $r(E, \bar d, \bar \lambda)$ of F10-instant is continuous. Soon after the jump the depth "
+    r"is $d + d' h$ and the way $\lambda h$, with $d$, $d'$ and $\lambda$ of the instant after it; long after "
+    r"it $E$ vanishes, and $m$ is what the way has been."
 )
 
 
@@ -209,29 +277,39 @@ def _turning() -> Derivation:
     proof = _theorem(
         "F10-turn", title="Where an edge turns", text=_TURN, uses=("F8", "F10-gradual")
     )
-    peel = c * zeta**2 / 2
-    lost = -2 * rho * (peel.subs(zeta, sigma) - peel)
-    total = sp.Integral(lost, (zeta, sigma, _h))
-    value = rho * c * (_h - sigma) ** 2 * (2 * sigma + _h) / 3
-    reason = r"pressure since $\sigma$ on the element $X = c \sigma^2/2$, to leading order"
-    proof.integral(
-        *(total, lost, (zeta, sigma, _h), sp.integrate(lost, zeta), reason), value=value,
+    bend, drop, shift, y = sp.symbols("k_1 k_2 k_3 y", real=True)
+    peel = c * zeta**2 / 2 * (1 + bend * zeta)
+    lost = sp.expand(-2 * rho * (1 + drop * zeta) * (peel.subs(zeta, sigma) - peel))
+    proof.notation["X"] = sp.Lambda(zeta, peel)
+    since = (zeta, sigma, _h)
+    value = proof.integral(
+        *(sp.Integral(lost, since), lost, since, sp.integrate(lost, zeta), "pressure since then"),
+        left=_PRESSED.replace("y h", r"\sigma"), right=_PUSHED,
     )  # fmt: skip
-    proof.root(value, sigma, -_h / 2, "left as long before the turn as half the time since",
-               over=(sigma, -sp.oo, _h))  # fmt: skip
-    at_root = sp.Subs(sp.Derivative(value, sigma), sigma, -_h / 2)
-    proof.equal(at_root, 3 * rho * c * _h**2 / 2, "not zero: a simple root")
-    quarter = peel.subs(zeta, _h) / 4
-    proof.equal(sp.Subs(peel, zeta, -_h / 2), quarter, r"where the edge is: $X = c \sigma^2/2$",
-                right=r"\frac{1}{4} \frac{c h^2}{2}")  # fmt: skip
-    return proof.done(sp.Subs(peel, zeta, -_h / 2), quarter)
+    first = rho * c * _h**3 * (1 - y) ** 2 * (1 + 2 * y) / 3
+    proof.leading_order(value.subs(sigma, y * _h), first, _h, 0, r"with $\sigma = y h$", eps=_h,
+                        short=True, left=_PRESSED)  # fmt: skip
+    proof.root(first, y, -sp.S.Half, "left as long before the turn as half the time since",
+               over=(y, -sp.oo, 1))  # fmt: skip
+    simple = sp.Subs(sp.Derivative(first, y), y, -sp.S.Half)
+    proof.equal(simple, 3 * rho * c * _h**3 / 2, "not zero: a simple root")
+    edge, quarter = peel.subs(zeta, -_h / 2 + shift * _h**2), c * _h**2 / 8
+    proof.leading_order(edge, quarter, _h, 0, "where the edge is then", eps=_h, short=True,
+                        left=r"X(-h/2 + k_3 h^2)")  # fmt: skip
+    return proof.done(edge, quarter)
 
 
+_PRESSED = r"\int_{y h}^{h} 2 \rho (1 + k_2 \zeta) \left(X(\zeta) - X(y h)\right) d\zeta"
+_PUSHED = (
+    r"\rho c (h - \sigma)^2 \left[\frac{h + 2 \sigma}{3} + \frac{k_1}{4} (h^2 + 2 h \sigma + 3 \sigma^2) + "
+    r"\frac{k_2}{4} (h + \sigma)^2 + \frac{k_1 k_2}{10} (2 h^3 + 4 h^2 \sigma + 6 h \sigma^2 + 3 \sigma^3)\right]"
+)
 _TURN = (
     r"Let a right edge that peels stop moving inward at $s_0$. The zero of the pressure turns there: "
-    r"counted from its turn it is at $X = c \zeta^2/2$ with $c > 0$, at the time $s_0 + \zeta$. The edge "
-    r"itself then touches ground that it has just left, and follows with a quarter of the curvature, $X "
-    r"= c h^2/8$ at $s_0 + h$. By F8 the pressure $e^{\zeta} \hat p$, which is $-2 \rho$ per distance to "
-    r"its zero, must add up to nothing from $\sigma$ to $h$. The terms left out are smaller by a factor "
-    r"$h$, so that they move the simple root by $O(h^2)$."
+    r"counted from its turn it is at $X(\zeta) = \frac{c \zeta^2}{2} (1 + k_1 \zeta)$ with $c > 0$, at the "
+    r"time $s_0 + \zeta$, and the pressure $e^{\zeta} \hat p$ is $-2 \rho (1 + k_2 \zeta)$ per distance to "
+    r"it. The edge itself then touches ground that it has just left at $\sigma$: by F8 the pressure must "
+    r"add up to nothing from $\sigma$ to $h$. To leading order it does for $\sigma = -h/2$, and because this "
+    r"root is simple, for $\sigma = -h/2 + k_3 h^2$: the edge follows with a quarter of the curvature, "
+    r"whatever $k_1$, $k_2$ and $k_3$ are."
 )

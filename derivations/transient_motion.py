@@ -24,7 +24,7 @@ from .symbols import (
     time,
     xi,
 )  # fmt: skip
-from .transient_edges import TOUCHING_PRESSURE, edge_path
+from .transient_edges import RADICAND, TOUCHING_PRESSURE, edge_path
 from .transient_memory import SECTION
 from .transient_scaling import PRESSURE
 
@@ -50,15 +50,17 @@ JACOBIAN = (
 )
 """Derivatives of both forces with respect to d and d' after a start from rest."""
 
-START = {right: sp.sqrt(d + d_s + lam**2) - lam, left: -sp.sqrt(d)}
+START = {right: sp.sqrt(RADICAND) - lam, left: -sp.sqrt(d)}
 """The edges after a start from rest: the right one peels, the left one finds undisturbed ground."""
 
+_touching = sp.Function("xi", real=True)(d, d_s)
+"""An edge that touches, as it depends on the motion."""
 _theorem = partial(Proof, equation=None, section=SECTION)
 
 
 def derive() -> tuple[Derivation, ...]:
     """Prove F11."""
-    return _forces(), _peeling_forces(), _derivatives(), _start_from_rest()
+    return _forces(), _peeling_forces(), _edges(), _derivatives(), _start_from_rest()
 
 
 def _forces() -> Derivation:
@@ -109,6 +111,34 @@ def _peeling_forces() -> Derivation:
 _PEELS = r"The pressure at the left edge is $b (2 \rho - b)$, so that $b \le 2 \rho$."
 
 
+def _edges() -> Derivation:
+    proof = _theorem("F11-edges", title="How edges depend on the motion", text=_EDGES,
+                     uses=("F10-peel", "F10-instant", "F10-gradual"))  # fmt: skip
+    then, moved = sp.symbols("d_0 m", real=True)
+    meets = d - _touching**2 - E * (then - (_touching - moved) ** 2)
+    proof.define(eta, _touching - moved, "where the element was when it was left", right=r"\xi - m")
+    proof.where(sp.Gt(_touching, E * eta), "a right edge; a left one mirrors it")
+    per_depth = 1 / (2 * (_touching - E * eta))
+    shown = r"\frac{1}{2 (\xi - E \eta)}"
+    for variable, value, latex in ((d, per_depth, shown), (d_s, sp.S.Zero, "0")):
+        slope = sp.Derivative(_touching, variable)
+        proof.root(sp.Derivative(meets, variable), slope, value, "an edge that touches",
+                   left=_partial(xi, variable), right=latex)  # fmt: skip
+    proof.where(sp.Gt(RADICAND, 0), "the indenter is on the foundation")
+    proof.notation["r"] = START[right]
+    for variable in (d, d_s):
+        slope = sp.Derivative(START[right], variable)
+        proof.equal(slope, 1 / (2 * sp.sqrt(RADICAND)), "an edge that peels", left=_partial(right, variable))
+    return proof.done(sp.Derivative(_touching, d), per_depth)
+
+
+_EDGES = (
+    r"An edge that peels is a zero of the pressure. One that touches at $\xi$ meets ground that was left "
+    r"at $\eta$, where $d - \xi^2 = E (d_0 - \eta^2)$ with $\eta = \xi - m$, $d_0$ and $E$ of that instant; if "
+    r"each element was left at an instant of its own, this instant does not matter to first order (F10-gradual)."
+)
+
+
 def _derivatives() -> Derivation:
     proof = _theorem("F11-derivatives", title="How forces depend on the motion", text=_DEPEND,
                      uses=("F10-peel", "F11"))  # fmt: skip
@@ -129,16 +159,17 @@ def _derivatives() -> Derivation:
                 left=_partial(force, variable), right=_moving_ends(share, inside, force, variable),
             )  # fmt: skip
     proof.recall("F10-touch", P, TOUCHING_PRESSURE)
-    proof.where(sp.Gt(xi, E * eta), "a right edge; a left one mirrors it")
-    motion = 1 / (2 * (xi - E * eta))
+    per_depth = sp.Derivative(_touching, d)
+    proof.recall("F11-edges", per_depth, established("F11-edges", per_depth))
+    proof.define(xi, _touching)
     proof.notation |= {r"\hat p": P, r"X_{\mathrm{e}}": edge_path}
-    proof.equal(P * motion, sp.Derivative(edge_path, time), _TOUCHES, left=_AT_TOUCH,
+    proof.equal(P * per_depth, sp.Derivative(edge_path, time), _TOUCHES, left=_AT_TOUCH,
                 right=r"X_{\mathrm{e}}'")  # fmt: skip
-    return proof.done(P * motion, sp.Derivative(edge_path, time))
+    return proof.done(P * per_depth, sp.Derivative(edge_path, time))
 
 
-_AT_TOUCH = r"\frac{\hat p}{2 (\xi - E \eta)}"
-_TOUCHES = r"an edge that touches, where $g = u$ holds $\xi$: its velocity through the foundation"
+_AT_TOUCH = r"\hat p \frac{\partial \xi}{\partial d}"
+_TOUCHES = "an edge that touches: its velocity through the foundation"
 _DEPEND = (
     r"At an edge that peels $\hat p$ vanishes and with it the term of that edge. An edge that touches does "
     r"not depend on $d'$; in $\partial f_z/\partial d$ it leaves its velocity $X_{\mathrm{e}}'$ through "
