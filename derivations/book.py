@@ -106,8 +106,10 @@ def tex_condition(gap: sp.Expr) -> str:
 def evaluated(expr: sp.Expr) -> sp.Expr:
     """Evaluate the integrals of polynomials, and the derivatives of what they give."""
     found = expr.replace(
-        lambda node: isinstance(node, sp.Integral)
-        and node.function.doit(integrals=False).is_polynomial(*node.variables),
+        lambda node: (
+            isinstance(node, sp.Integral)
+            and node.function.doit(integrals=False).is_polynomial(*node.variables)
+        ),
         lambda node: node.doit(),
     )
     return found.doit(integrals=False) if found != expr else found

@@ -265,7 +265,7 @@ class Proof(Guarded):
             if not proves_nonzero(base, self._conditions):
                 raise StepError(f"{self.label}: {claim}: {base} may vanish")
         sign = 1 if ">" in relation else -1
-        if not any(proves(sign * form, self._conditions) for form in (gap, raw)):
+        if not any(proves(sign * form, self._conditions) for form in (raw, gap)):
             raise StepError(f"{self.label}: {claim} is not proved: left - right = {gap}")
 
     @asked

@@ -134,8 +134,8 @@ _TOUCH = (
     r"= \mp\sqrt{d}$ (Eq. 32), and on ground whose last contact was at $\sigma$ where $e^{s} g(X, s) = "
     r"e^{\sigma} g(X, \sigma)$. The pressure $\hat p$ at the edge is proportional to the velocity "
     r"$X_{\mathrm{e}}'$ of the edge through the foundation, and positive while it moves outward, because "
-    r"$\xi - E \eta$ has the sign of the side (F10-signs). On undisturbed ground $E = 0$. How $\sigma$ depends "
-    r"on $X$ does not matter: either all of the ground was left at once, or each element when its "
+    r"$\xi - E \eta$ has the sign of the side (F10-signs). On undisturbed ground $E = 0$. How $\sigma$ "
+    r"depends on $X$ does not matter: either all of the ground was left at once, or each element when its "
     r"pressure, and with it $\partial(e^{\sigma} g)/\partial\sigma$, vanished."
 )
 
@@ -147,23 +147,27 @@ def _signs() -> Derivation:
     margin = sp.exp(time) * now - sp.exp(sigma) * now.subs(time, sigma)
     other = margin.subs(material, material - b)
     slope = material + travel - sp.exp(sigma - time) * (material + travel.subs(time, sigma))
-    proof.notation |= {r"X_{\mathrm{e}}": edge_path, "D_1": sp.Lambda(material, margin)}
+    proof.notation |= {r"X_{\mathrm{e}}": edge_path, "D": sp.Lambda(material, margin)}
     proof.notation |= {r"\xi - E \eta": slope}
+    proof.recall("F10-touch", P, TOUCHING_PRESSURE)
     proof.holds(2 * rho * speed, "<", 0, "F10-peel: what a right edge lets go of loses its pressure",
                 cases=(sp.Lt(speed, 0),))  # fmt: skip
     proof.holds(-2 * rho * speed, "<", 0, "and at a left edge", cases=(sp.Gt(speed, 0),))
     inside, bulge = sp.Symbol("D_2", nonnegative=True), (sp.exp(time) - sp.exp(sigma)) * b**2
-    proof.define(inside, other, r"at the left edge, not negative: it is in contact", right="D_1(X - b)")
+    proof.define(
+        inside, other, r"at the left edge, not negative: it is in contact", right="D(X - b)"
+    )
     proof.equal(
-        *(2 * sp.exp(time) * b * slope, inside - margin + bulge, r"at a right edge $D_1(X) = 0$"),
+        *(2 * sp.exp(time) * b * slope, inside - margin + bulge, r"at a right edge $D(X) = 0$"),
         left=r"2 e^{s} b \left(\xi - E \eta\right)",
-        right=r"D_2 - D_1(X) + \left(e^{s} - e^{\sigma}\right) b^2",
+        right=r"D_2 - D(X) + \left(e^{s} - e^{\sigma}\right) b^2",
     )
     proof.where(time > sigma, "an earlier instant")
     proof.holds(bulge, ">", 0, r"and $D_2 \ge 0$, so that $\xi > E \eta$ there")
-    proof.recall("F10-touch", P, TOUCHING_PRESSURE)
     proof.define(xi, E * eta + _ahead, "with $k > 0$")
-    proof.equivalent(P, speed, sp.S.Zero, r"it says the same as $\hat p \ge 0$ at an edge that touches")
+    proof.equivalent(
+        P, speed, sp.S.Zero, r"it says the same as $\hat p \ge 0$ at an edge that touches"
+    )
     return proof.done(speed, 0)
 
 
@@ -215,14 +219,13 @@ def _soon_and_late() -> Derivation:
     proof.notation["r"] = sp.Lambda((E, lift, drift), RIGHT_AT_ONCE)
     proof.where(sp.Gt(lift + E * drift**2, 0), "as in F10-instant")
     proof.where(sp.Gt(RADICAND, 0), "as in F10-peel")
-    decayed = sp.exp(-_h)
-    for small, mean, end, words in (
-        (_h, (d + d_s * _h - decayed * d) / (1 - decayed), d + d_s, r"$\bar d$ soon after the jump"),
-        (_h, lam * _h / (1 - decayed), lam, r"$\bar \lambda$ soon after it"),
-        (E, (d - E * _d_0) / (1 - E), d, r"$\bar d$ long after it"),
-        (E, _moved / (1 - E), _moved, r"$\bar \lambda$ long after it"),
-    ):
-        proof.leading_order(mean, end, small, 0, words, eps=small)
+    past, factor = 1 - sp.exp(-_h), _h / (1 - sp.exp(-_h))
+    proof.leading_order(factor, sp.S.One, _h, 0, r"with $h = s - s_0$", eps=_h)
+    proof.equal(
+        (d + d_s * _h - (1 - past) * d) / past, d + d_s * factor, r"$\bar d$ soon after the jump"
+    )
+    proof.leading_order((d - E * _d_0) / (1 - E), d, E, 0, r"$\bar d$ long after it", eps=E)
+    proof.leading_order(_moved / (1 - E), _moved, E, 0, r"$\bar \lambda$ long after it", eps=E)
     means = E, lift, drift
     for ends, edge, shown, words in (
         ((1, d + d_s, lam), sp.sqrt(RADICAND) - lam, r"1, d + d', \lambda", "soon: it peels"),
@@ -234,9 +237,9 @@ def _soon_and_late() -> Derivation:
 
 
 _LIMITS = (
-    r"The right edge $r(E, \bar d, \bar \lambda)$ of F10-instant is continuous. Soon after the jump the depth "
-    r"is $d + d' h$ and the way $\lambda h$, with $d$, $d'$ and $\lambda$ of the instant after it; long after "
-    r"it $E$ vanishes, and $m$ is what the way has been."
+    r"The right edge $r(E, \bar d, \bar \lambda)$ of F10-instant is continuous. Soon after the jump the "
+    r"depth is $d + d' h$ and the way $\lambda h$, with $d$, $d'$ and $\lambda$ of the instant after it; "
+    r"long after it $E$ vanishes, and $m$ is what the way has been."
 )
 
 
@@ -302,7 +305,8 @@ def _turning() -> Derivation:
 _PRESSED = r"\int_{y h}^{h} 2 \rho (1 + k_2 \zeta) \left(X(\zeta) - X(y h)\right) d\zeta"
 _PUSHED = (
     r"\rho c (h - \sigma)^2 \left[\frac{h + 2 \sigma}{3} + \frac{k_1}{4} (h^2 + 2 h \sigma + 3 \sigma^2) + "
-    r"\frac{k_2}{4} (h + \sigma)^2 + \frac{k_1 k_2}{10} (2 h^3 + 4 h^2 \sigma + 6 h \sigma^2 + 3 \sigma^3)\right]"
+    r"\frac{k_2}{4} (h + \sigma)^2 + \frac{k_1 k_2}{10} "
+    r"(2 h^3 + 4 h^2 \sigma + 6 h \sigma^2 + 3 \sigma^3)\right]"
 )
 _TURN = (
     r"Let a right edge that peels stop moving inward at $s_0$. The zero of the pressure turns there: "

@@ -9,7 +9,7 @@ from functools import partial
 import sympy as sp
 
 from .record import Derivation
-from .step import Proof
+from .step import Proof, tex
 from .symbols import (
     compression,
     d,
@@ -159,7 +159,7 @@ _MARGIN = sp.Lambda(material, _margin(material))
 
 def _interval() -> Derivation:
     proof = _theorem("F9", title="The contact is one interval", text=_INTERVAL, uses=("F8",),
-                     notation={"g": SURFACE, "D_1": _MARGIN})  # fmt: skip
+                     notation={"g": SURFACE, "D": _MARGIN})  # fmt: skip
     margin = _margin(material)
     curvature = sp.Derivative(margin, (material, 2))
     proof.sign(-2 * (eta - 1), "<", 0, (eta, 1, sp.oo), r"time passes: $\eta = e^{s - s_1} > 1$",
@@ -170,54 +170,61 @@ def _interval() -> Derivation:
         left=r"\frac{d^2}{dX^2} \left[e^{s} g(X, s) - e^{s_1} g(X, s_1)\right]",
         right=r"-2 e^{s_1} (\eta - 1)",
     )
-    _between(proof)
-    first, second = sp.symbols("D_1 D_2", nonnegative=True)
     proof.where(sp.Gt(time, earlier), "any earlier instant")
     proof.where(mix < 1, "between two elements in contact")
-    proof.holds(mix * first + (1 - mix) * second + _BULGE, ">=", 0, _CONVEX)
+    _between(proof)
+    proof.holds(_BULGE, ">=", 0, _CONVEX)
     return proof.done(curvature, -2 * sp.exp(earlier) * (eta - 1))
 
 
 _CONVEX = (
-    "so where a difference is positive or zero for two elements, it is so for all between them, for "
-    "each past instant and hence for all of them: the contact has no gap"
+    "and so is the sum, for each past instant and hence for all: what is between is in contact too"
 )
 _INTERVAL = (
     _NOTATION
     + r" By F8 an element is in contact at $s$ if and only if $e^{s} g(X, s)$ is not less than $e^{s_1} "
     r"g(X, s_1)$ at each earlier instant, and not less than $u_0$, which is zero or $g(X, 0)$. Each of "
-    "these differences is concave in $X$, so that it is positive or zero on one interval; and "
-    "intervals intersect in an interval, or not at all. So the two edges are the whole geometry of the "
-    r"contact, for any drive $\lambda(s)$ and any depth $d(s)$. That the differences are concave needs the "
-    "parabola, whose curvature is the same everywhere; that the contact is one interval does not."
+    "these differences, $D(X)$, is concave (with $u_0 = 0$ in place of the earlier instant it bulges by "
+    "$e^{s}$), so that the elements between two in contact meet the same conditions: the contact has no gap. "
+    r"So the two edges are the whole geometry of the contact, for any drive $\lambda(s)$ and any depth $d(s)$. "
+    "That the differences are concave needs the parabola, whose curvature is the same everywhere; that the "
+    "contact is one interval does not."
 )
 
 
 def _between(proof: Proof) -> None:
-    """Prove how far a difference bulges above its chord."""
+    """Prove what a difference is between two elements where it is not negative."""
+    first, second = sp.symbols("D_1 D_2", nonnegative=True)
+    for name, place, shown in ((first, _one, "X_1"), (second, _other, "X_2")):
+        proof.notation[tex(name)] = name
+        proof.define(name, _margin(place), f"at ${shown}$, not negative", right=f"D({shown})")
     between = _margin(mix * _one + (1 - mix) * _other)
-    chord = mix * _margin(_one) + (1 - mix) * _margin(_other)
     proof.equal(
-        *(between - chord, _BULGE, "how far it bulges above its chord"),
-        left=r"D_1(\theta X_1 + (1 - \theta) X_2) - \theta D_1(X_1) - (1 - \theta) D_1(X_2)",
+        *(
+            between,
+            mix * first + (1 - mix) * second + _BULGE,
+            "its chord, and how far it bulges above",
+        ),
+        left=r"D(\theta X_1 + (1 - \theta) X_2)",
+        right=r"\theta D_1 + (1 - \theta) D_2 + \theta (1 - \theta) \left(e^{s} - e^{s_1}\right) "
+        "(X_1 - X_2)^2",
     )
 
 
 def _landing() -> Derivation:
     proof = _theorem("F9-landing", title="Landing is at one point", text=_LANDING,
-                     uses=("F8", "F9"), notation={"D_1": _MARGIN})  # fmt: skip
-    _between(proof)
+                     uses=("F8", "F9"), notation={"D": _MARGIN})  # fmt: skip
     proof.where(sp.Gt(time, earlier), "any earlier instant")
     proof.where(mix < 1, "between two elements")
     proof.where(sp.Gt(_one, _other), "that are not the same")
+    _between(proof)
     proof.holds(_BULGE, ">", 0, "if both landed at once, the elements between would have before")
     return proof.done(_BULGE, 0)
 
 
 _LANDING = (
-    r"Let $D_1(X) = e^{s} g(X, s) - e^{s_1} g(X, s_1)$ and $D = e^{s} (g - u)$ while the indenter flies "
-    r"since $s_0$. By F8, $D$ is the least of all $D_1$ with $s_1 \le s_0$ and of $e^{s} g - u_0$, so "
-    r"that it bulges above its chords at least by $\theta (1 - \theta) (e^{s} - e^{s_0}) (X_1 - X_2)^2$: "
-    "it is strictly concave. Two points cannot land at once, for $D$ would have been positive between "
-    "them."
+    r"While the indenter flies since $s_0$, an element is reached when $D(X) = e^{s} g(X, s) - e^{s_1} g(X, "
+    r"s_1)$ is no longer negative for any $s_1 \le s_0$, and $e^{s} g$ not less than $u_0$ (F8). If two "
+    r"elements were reached at once, those between them would be above that by at least $\theta (1 - \theta) "
+    r"(e^{s} - e^{s_0}) (X_1 - X_2)^2$, whatever $s_1$ is: they would have been pressed before."
 )

@@ -128,14 +128,17 @@ def _edges() -> Derivation:
     proof.notation["r"] = START[right]
     for variable in (d, d_s):
         slope = sp.Derivative(START[right], variable)
-        proof.equal(slope, 1 / (2 * sp.sqrt(RADICAND)), "an edge that peels", left=_partial(right, variable))
+        proof.equal(
+            slope, 1 / (2 * sp.sqrt(RADICAND)), "an edge that peels", left=_partial(right, variable)
+        )
     return proof.done(sp.Derivative(_touching, d), per_depth)
 
 
 _EDGES = (
     r"An edge that peels is a zero of the pressure. One that touches at $\xi$ meets ground that was left "
-    r"at $\eta$, where $d - \xi^2 = E (d_0 - \eta^2)$ with $\eta = \xi - m$, $d_0$ and $E$ of that instant; if "
-    r"each element was left at an instant of its own, this instant does not matter to first order (F10-gradual)."
+    r"at $\eta$, where $d - \xi^2 = E (d_0 - \eta^2)$ with $\eta = \xi - m$, $d_0$ and $E$ of that instant; "
+    "if each element was left at an instant of its own, this instant does not matter to first order "
+    "(F10-gradual)."
 )
 
 

@@ -67,7 +67,16 @@ _theorem = partial(Proof, equation=None, section=SECTION)
 
 def derive() -> tuple[Derivation, ...]:
     """Prove F12 and F13."""
-    return _linearised(), _contact(), _rates(), _critical_inertia(), _time_constants(), _standard(), _manifold(), _one_root()
+    return (
+        _linearised(),
+        _contact(),
+        _rates(),
+        _critical_inertia(),
+        _time_constants(),
+        _standard(),
+        _manifold(),
+        _one_root(),
+    )
 
 
 def _linearised() -> Derivation:
@@ -102,7 +111,7 @@ _SMALL = (
 
 
 def _contact() -> Derivation:
-    proof = _theorem("F12-steady", title="Stiffness and damping of the contact in steady sliding", text=_SPRING)
+    proof = _theorem("F12-steady", title="Stiffness and damping of the contact", text=_SPRING)
     proof.define(lam, a * l)
     proof.define(l, NUMBER)
     for name, form in _IN_Q.items():
@@ -111,7 +120,7 @@ def _contact() -> Derivation:
     return proof.done(per_depth, _IN_Q[per_depth])
 
 
-_SPRING = r"With the half length $a$ in units of $a_0$, and the trailing edge at $a q$."
+_SPRING = r"In steady sliding, with the half length $a$ in units of $a_0$, and the trailing edge at $a q$."
 _IN_Q = {per_depth: a * (1 + q) ** 2 / (2 * q), per_rate: a * (1 + q)}
 
 

@@ -362,6 +362,9 @@ TRUE = {
     "value of a function": _after([(f(x), x**2)], _equal(sp.Derivative(f(x), x), 2 * x)),
     "domain of a name": _after([(a, 1 - h)], _sign(2 - a, ">", (h, 0, 1))),
     "condition": lambda p: p.where(a < b),
+    "a value for the variable of an integral and of a derivative": _defined(
+        (f(y), sp.Integral(x * sp.Derivative(f(u), u), (x, 0, z))), (x, z**2), (u, z + 1)
+    ),
     # identities
     "binomial": _equal((x + y) ** 2, x**2 + 2 * x * y + y**2),
     "partial fractions": _equal(1 / (1 - x) - 1 / (1 + x), 2 * x / (1 - x**2)),

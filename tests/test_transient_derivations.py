@@ -189,6 +189,11 @@ class Slowing:
         return mp.findroot(meeting, turn - (now - turn) / 2)
 
 
+def test_the_turn_is_a_leading_order_and_says_so(by_label):
+    assert by_label["F10-turn"].status == "proved-leading-order"
+    assert by_label["F10-instant-limits"].status == "proved-leading-order"
+
+
 def test_an_edge_turns_onto_ground_that_it_left_half_as_long_ago():
     slowing = Slowing()
     turn = slowing.turn()

@@ -3,8 +3,10 @@
 import mpmath as mp
 import numpy as np
 import pytest
+import sympy as sp
 from kvtheory.derivations import symbols as s
-from kvtheory.derivations import theorems, transient_motion, transient_rates
+from kvtheory.derivations import theorems, transient_balance, transient_motion, transient_rates
+from kvtheory.derivations.book import StepError, established
 from kvtheory.derivations.catalogue import catalogue
 
 from tests.test_transient_derivations import CLOSE, DIGITS, close, value
@@ -57,6 +59,21 @@ def test_jacobian_after_a_start_from_rest():
         for order in ((1, 0), (0, 1)):
             found = mp.diff(lambda one, two, f=measured: f(one, two, lam), (d, rate), order)
             assert abs(found - value(next(slopes), point)) < mp.mpf("1e-20")
+
+
+def test_an_edge_that_touches_moves_with_the_depth_as_derived(by_label):
+    assert by_label["F11-edges"].status == "proved"
+    then, moved, decay = mp.mpf("0.9"), mp.mpf("0.3"), mp.mpf("0.6")
+
+    def edge(d):
+        return mp.findroot(lambda xi: d - xi**2 - decay * (then - (xi - moved) ** 2), 1)
+
+    d = mp.mpf("0.7")
+    place = edge(d)
+    (call,) = transient_motion._touching.atoms(sp.core.function.AppliedUndef)
+    slope = established("F11-edges", sp.Derivative(call, s.d)).subs(call, s.xi)
+    found = value(slope, {s.xi: place, s.eta: place - moved, s.E: decay})
+    assert abs(mp.diff(edge, d) - found) < mp.mpf("1e-20")
 
 
 def steady_state(lam, kappa):
@@ -131,6 +148,33 @@ def test_slow_manifold_balances_the_weight(d, lam):
 
 
 # Balances
+
+
+@pytest.mark.parametrize("label", ["F14-surface", "F14-force", "F14", "F14-power", "F14-energy"])
+def test_a_balance_rests_on_names_and_laws_alone(by_label, label):
+    """No premise of a balance is itself a sum over all elements or a power of the drive."""
+    assert by_label[label].status == "proved"
+    sums = [each for each in by_label[label].premises if r"\int" in each]
+    named = ("E_{\\mathrm{s}}", "\\bar U", "f_z", "f_x")
+    assert all(each.startswith(named) for each in sums)
+    assert not any(
+        each.startswith((r"\lambda f_x", r"d'' = \frac{1")) for each in by_label[label].premises
+    )
+
+
+@pytest.mark.parametrize(
+    ("name", "prove"),
+    [
+        ("_share", "_force"), ("_height", "_force"), ("_rate", "_power"), ("_height", "_energy"),
+        ("_rate", "_energy"), ("_share", "_energy"), ("_speed", "_momentum"),
+    ],
+)  # fmt: skip
+def test_a_slightly_wrong_balance_is_refused(monkeypatch, by_label, name, prove):
+    assert "F14-energy" in by_label
+    wrong = getattr(transient_balance, name) * (1 + sp.Rational(1, 10**9))
+    monkeypatch.setattr(transient_balance, name, wrong)
+    with pytest.raises(StepError):
+        getattr(transient_balance, prove)()
 
 
 class Start:
