@@ -186,7 +186,7 @@ _INTERVAL = (
     r"g(X, s_1)$ at each earlier instant, and not less than $u_0$, which is zero or $g(X, 0)$. Each of "
     "these differences, $D(X)$, is concave (with $u_0 = 0$ in place of the earlier instant it bulges by "
     "$e^{s}$), so that the elements between two in contact meet the same conditions: the contact has no gap. "
-    r"So the two edges are the whole geometry of the contact, for any drive $\lambda(s)$ and any depth $d(s)$. "
+    r"So the two edges are the whole geometry of the contact, for any drive $\lambda(s)$ and depth $d(s)$. "
     "That the differences are concave needs the parabola, whose curvature is the same everywhere; that the "
     "contact is one interval does not."
 )
