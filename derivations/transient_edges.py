@@ -304,9 +304,9 @@ def _turning() -> Derivation:
 
 _PRESSED = r"\int_{y h}^{h} 2 \rho (1 + k_2 \zeta) \left(X(\zeta) - X(y h)\right) d\zeta"
 _PUSHED = (
-    r"\rho c (h - \sigma)^2 \left[\frac{h + 2 \sigma}{3} + \frac{k_1}{4} (h^2 + 2 h \sigma + 3 \sigma^2) + "
-    r"\frac{k_2}{4} (h + \sigma)^2 + \frac{k_1 k_2}{10} "
-    r"(2 h^3 + 4 h^2 \sigma + 6 h \sigma^2 + 3 \sigma^3)\right]"
+    r"\frac{\rho c}{3} (h - \sigma)^2 (h + 2 \sigma) + \frac{\rho c k_1}{4} (h - \sigma)^2 "
+    r"(h^2 + 2 h \sigma + 3 \sigma^2) + \frac{\rho c k_2}{4} (h^2 - \sigma^2)^2 + "
+    r"\frac{\rho c k_1 k_2}{10} (h - \sigma)^2 (2 h^3 + 4 h^2 \sigma + 6 h \sigma^2 + 3 \sigma^3)"
 )
 _TURN = (
     r"Let a right edge that peels stop moving inward at $s_0$. The zero of the pressure turns there: "
