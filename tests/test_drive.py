@@ -205,3 +205,19 @@ def test_a_faster_drive_has_every_velocity_multiplied_whatever_it_is():
     ):
         motion, faster = (each.motion(0.1, 1.0) for each in (drive, drive.faster(3.0)))
         assert faster.velocity(0.05) == pytest.approx(3.0 * motion.velocity(0.05), rel=1e-12)
+
+
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_a_ramp_down_to_rest_is_not_a_motion_backwards(sign):
+    rng = np.random.default_rng(11)
+    for start, length, speed in rng.uniform(0.01, 1.0, (200, 3)).tolist():
+        points = [(0.0, sign * speed), (start, sign * speed), (start + length, 0.0)]
+        motion = BaseMotion.from_points(points, end=3.0).scaled(0.7, 0.3)
+        assert motion.forward(start + length) is motion.forward(motion.end) is (sign > 0.0)
+
+
+def test_the_edges_keep_their_names_where_a_swing_turns():
+    motion = BaseMotion.from_function(lambda t: math.sin(t), end=10.0)
+    assert [motion.forward(t) for t in (0.0, 1e-9, math.pi, 4.0, 2 * math.pi, 7.0)] == [
+        True, True, True, False, False, True,
+    ]  # fmt: skip

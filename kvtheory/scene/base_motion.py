@@ -29,6 +29,9 @@ pieces this much wider nowhere do, it is refused."""
 SAME_TIME = 4.0
 """Units in the last place by which times differ from rounding: they are one time."""
 
+ON_REST = 16.0 * 2.0**-52
+"""Of the terms of a velocity: what rounding leaves of it where they cancel, and the base rests."""
+
 START, END, DISPLACEMENT, POWERS = 0, 1, 2, 3
 """Layout of a piece: its times, Y at its start, then the coefficients of V in t - start."""
 
@@ -168,9 +171,13 @@ class BaseMotion:
     def forward(self, t: float) -> bool:
         """Whether the base moves, or moved last, with V >= 0."""
         for piece in reversed(self.pieces[: bisect_right(self.starts, t)]):
-            V = evaluate(piece, t)[1] or piece[POWERS]
-            if V:
+            after = t - piece[START]
+            _, V, slope = evaluate(piece, t)
+            size = sum(abs(c) * after**k for k, c in enumerate(piece[POWERS:]))
+            if abs(V) > ON_REST * size:
                 return V > 0.0
+            if abs(slope) * after > ON_REST * size:
+                return slope < 0.0  # it comes to rest here
             t = piece[START]
         return True
 
