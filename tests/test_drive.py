@@ -217,7 +217,7 @@ def test_a_ramp_down_to_rest_is_not_a_motion_backwards(sign):
 
 
 def test_the_edges_keep_their_names_where_a_swing_turns():
-    motion = BaseMotion.from_function(lambda t: math.sin(t), end=10.0)
+    motion = BaseMotion.from_function(math.sin, end=10.0)
     assert [motion.forward(t) for t in (0.0, 1e-9, math.pi, 4.0, 2 * math.pi, 7.0)] == [
         True, True, True, False, False, True,
     ]  # fmt: skip

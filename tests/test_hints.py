@@ -40,6 +40,36 @@ def test_what_is_no_text_is_told_with_its_name(tmp_path, content):
         kv.load_scene(path)
 
 
+HOSTILE = {
+    "nested": "[run]\nduration = " + "[" * 90_000,
+    "nested and closed": "[run]\nduration = " + "[" * 150 + "]" * 150,
+    "a key of two lines": '[run]\n"a\\nb" = 1',
+    "a key that steers a terminal": '[run]\n"\\u001b[31m" = 1',
+    "a long key": f"[run]\n{'k' * 5000} = 1",
+    "many mistakes": "[run]\n" + "\n".join(f"k{i} = 1" for i in range(2000)),
+    "a value that steers a terminal": '[run]\nduration = "5 ms\\u001b[31m"',
+}
+
+
+@pytest.mark.parametrize("text", HOSTILE.values(), ids=HOSTILE)
+def test_a_message_is_short_and_only_shown_whatever_a_file_holds(tmp_path, text):
+    path = tmp_path / "scene.toml"
+    path.write_text(text)
+    found = CliRunner().invoke(main, ["scene", str(path)])
+    assert found.exit_code == 2
+    assert len(found.output) < 6000
+    assert found.output.replace("\n", "").isprintable()
+    assert "recursion" not in found.output
+    assert "scene.toml" in found.output or "run." in found.output
+
+
+def test_a_mistake_of_toml_is_shown_with_its_line(tmp_path):
+    path = tmp_path / "scene.toml"
+    path.write_text('[run]\nduration = "1 s"\nduration = "2 s"\n')
+    with pytest.raises(kv.SceneError, match=r'line 3, .*: duration = "2 s"'):
+        kv.load_scene(path)
+
+
 @pytest.mark.parametrize(
     ("override", "words"),
     [

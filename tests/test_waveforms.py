@@ -84,15 +84,21 @@ def test_mistakes_are_named(overrides, words):
 
 @pytest.mark.parametrize(
     "text",
-    ["", "0,1\n", "t [ms],V [mm]\n0,1\n", "t [ms],V [mm/s]\n0,fast\n", "t [ms],V [mm/s]\n0\n"],
-)
+    [
+        "", "0,1\n", "t [ms],V [mm]\n0,1\n", "t [ms],V [mm/s]\n0,fast\n", "t [ms],V [mm/s]\n0\n",
+        "t [ms],V [mm/s]\n", "t [ms]\n0\n", "t [ms],V [mm/s]\n0,1\n1,nan\n", "t [ms],V [mm/s]\n5,1\n",
+        "t [ms],V [mm/s]\n0," + "1" * 200_000, "t [ms],V [mm/s]\n0,\"1\n", "\0", '"',
+    ],
+)  # fmt: skip
 def test_a_table_that_is_none_is_refused_in_one_line(tmp_path, text):
     path = tmp_path / "drive.csv"
     path.write_text(text)
     with pytest.raises(kv.SceneError) as caught:
         kv.load_scene(overrides=[f"drive.file={path}"])
     (line,) = caught.value.problems
-    assert "drive.file" in line or "drive.history" in line
+    assert line.startswith("drive.file")
+    assert "drive.csv" in line
+    assert len(line) < 400
 
 
 def test_another_way_to_drive_replaces_the_one_before():
@@ -119,13 +125,6 @@ def test_a_waveform_survives_a_copy():
     assert dataclasses.replace(drive, tolerance=1e-9).waveform == drive.waveform
 
 
-@pytest.mark.parametrize("name", ["sine", "triangle"])
-def test_what_changes_too_often_is_refused_by_its_name(name):
-    wave = dataclasses.replace(WAVES[name], frequency=1e9)
-    with pytest.raises(kv.SceneError, match=f'drive.waveform = "{name}": it changes too fast'):
-        kv.transient(kv.Scene(drive=kv.Drive(waveform=wave)))
-
-
 @pytest.mark.parametrize(
     ("text", "encoding"),
     [
@@ -150,7 +149,7 @@ def test_a_drive_is_read_from_any_table(tmp_path, text, encoding):
         (b"t [ms],x [mm]\n0,1\n", "no column is named v or velocity"),
         (b"t [ms],V [mm/s],v [m/s]\n0,1,1\n", "more than one column"),
         (b't [ms],V [mm/s]\n0,"1\n1,1\n', "quotation mark"),
-        (b"t [ms],V [mm/s]\n0,\n1,1\n", "drive.history"),
+        (b"t [ms],V [mm/s]\n0,\n1,1\n", "drive.file"),
     ],
 )
 def test_a_table_that_is_damaged_is_named_as_what_it_is(tmp_path, text, words):
@@ -158,3 +157,27 @@ def test_a_table_that_is_damaged_is_named_as_what_it_is(tmp_path, text, words):
     path.write_bytes(text)
     with pytest.raises(kv.SceneError, match=words):
         kv.load_scene(overrides=[f"drive.file={path}"])
+
+
+def test_a_long_swing_is_followed_like_a_short_one():
+    wave = kv.Sine(amplitude=0.1, frequency=900.0, mean=0.03)
+    motion = kv.Drive(waveform=wave).motion(10.0, 1e-3)
+    for t in np.random.default_rng(3).uniform(0.0, 10.0, 200).tolist():
+        assert motion.velocity(t) == pytest.approx(wave(t), abs=1e-11)
+        turned = (1.0 - math.cos(2.0 * math.pi * 900.0 * t)) / (2.0 * math.pi * 900.0)
+        assert motion.displacement(t) == pytest.approx(0.03 * t + 0.1 * turned, abs=1e-12)
+
+
+@pytest.mark.parametrize("shape", [kv.Sine, kv.Triangle])
+def test_a_swing_of_more_cycles_than_can_be_followed_is_refused(shape):
+    drive = kv.Drive(waveform=shape(amplitude=0.1, frequency=20.0))
+    with pytest.raises(kv.SceneError, match=r'drive\.frequency = "20 Hz": more than'):
+        drive.motion(1e299, 1e-3)
+
+
+def test_a_sudden_ramp_is_followed_however_long_the_run():
+    wave = kv.SmoothRamp(velocity=0.1, rise_time=1e-9)
+    motion = kv.Drive(waveform=wave).motion(1e9, 1e-3)
+    assert motion.velocity(1e-9) == pytest.approx(wave(1e-9), rel=1e-9)
+    assert motion.velocity(5e8) == 0.1
+    assert motion.end == 1e9

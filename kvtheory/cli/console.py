@@ -62,7 +62,9 @@ def teaching(command: Callable[..., None]) -> Callable[..., None]:
 
 def complain(message: str, status: int) -> None:
     """Write a message to standard error, and end."""
-    click.echo(f"kvtheory: {message}", err=True)
+    from kvtheory.scene.quantities import printable
+
+    click.echo("\n".join(map(printable, f"kvtheory: {message}".splitlines())), err=True)
     sys.exit(status)
 
 

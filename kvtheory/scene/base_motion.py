@@ -127,6 +127,30 @@ class BaseMotion:
             todo += [(middle, b), (a, middle)]
         return cls(_joined(found), (0.0, *inner))
 
+    def repeated(self, end: float) -> "BaseMotion":
+        """Return the motion over and over again until `end`, as of a period.
+
+        >>> swing = BaseMotion.from_function(lambda t: math.sin(2.0 * math.pi * t), end=1.0)
+        >>> abs(swing.repeated(1000.0).velocity(999.3) - math.sin(0.6 * math.pi)) < 1e-11
+        True
+        """
+        starts = (k * self.end for k in range(math.ceil(end / self.end)))
+        found = [
+            (start + a, min(start + b, end), tuple(coefficients))
+            for start in starts
+            for a, b, _, *coefficients in self.pieces
+            if start + a < end
+        ]
+        return BaseMotion(_joined(found))
+
+    def kept(self, end: float) -> "BaseMotion":
+        """Return the motion with its last velocity from its end to `end`."""
+        if end <= self.end:
+            return self
+        last = (self.velocity(self.end), *(0.0 for _ in self.pieces[-1][POWERS + 1 :]))
+        found = [(a, b, tuple(coefficients)) for a, b, _, *coefficients in self.pieces]
+        return BaseMotion(_joined([*found, (self.end, end, last)]), self.changes)
+
     def scaled(self, time: float, length: float) -> "BaseMotion":
         """Return the motion in units of `time` and `length`."""
         return BaseMotion(

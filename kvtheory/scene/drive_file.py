@@ -2,6 +2,7 @@
 
 from pathlib import Path
 
+from kvtheory.scene.drives import history_points
 from kvtheory.scene.quantities import mistake
 from kvtheory.scene.tables import numbers, parts, plain, read_table
 from kvtheory.scene.units import to_si
@@ -15,7 +16,7 @@ NAMES = {
 """How the columns of the times and of the velocities may be named, by their units."""
 
 
-def history_from(path: Path) -> list[tuple[float, float]]:
+def history_from(path: Path) -> tuple[tuple[float, float], ...]:
     """Return the points (t, V) in SI of a CSV whose head names the units; other columns are ignored.
 
     Raises
@@ -42,4 +43,5 @@ def history_from(path: Path) -> list[tuple[float, float]]:
         told = str(error).removeprefix(f"{path}: ")
         raise mistake(KEY, str(path), f"{told}; {EXPECTED}") from None
     (t, V), (of_t, of_V) = at, factors
-    return [(row[t] * of_t, row[V] * of_V) for row in rows]
+    points = [(row[t] * of_t, row[V] * of_V) for row in rows]
+    return history_points(points, f"{KEY} ({path.name})")

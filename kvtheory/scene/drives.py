@@ -29,6 +29,8 @@ TIME = Quantity("s", "time", 0.0, False)
 
 LEAST_TOLERANCE = 1e-13
 """Of a drive that is a function: polynomials are not closer to it than rounding."""
+MOST_CYCLES = 10_000
+"""Of a swing, which a run has to follow one by one."""
 ON_LINE = 4.0 * 2.0**-52
 """Of the velocity: a point of a history as near to the line between its neighbours says nothing."""
 
@@ -77,7 +79,7 @@ class Drive:
         if self.velocity is not None:
             settle(self, "drive")
         elif self.history is not None:
-            object.__setattr__(self, "history", _history(self.history))
+            object.__setattr__(self, "history", history_points(self.history))
         object.__setattr__(self, "breaks", _breaks(self))
 
     @cached_property
@@ -180,17 +182,23 @@ class Drive:
         """
         if self.function is None:
             return BaseMotion.from_points(self.points, end)
-        try:
-            if isinstance(self.waveform, Triangle):
-                return BaseMotion.from_points(self.waveform.points(end), end)
-            return BaseMotion.from_function(
-                self.called, end, tolerance=0.5 * self.tolerance, breaks=self.breaks, least=least
-            )
-        except ValueError:
-            if self.waveform is None:
-                raise
-            told = f"it changes too fast to be followed until {end:.6g} s; give a shorter run"
-            raise mistake("drive.waveform", self.waveform.waveform, told) from None
+        if (
+            isinstance(self.waveform, Sine | Triangle)
+            and self.waveform.frequency * end > MOST_CYCLES
+        ):
+            told = f"more than {MOST_CYCLES:,} cycles until {end:.6g} s; expected a shorter run"
+            raise mistake("drive.frequency", f"{self.waveform.frequency:g} Hz", told)
+        if isinstance(self.waveform, Triangle):
+            return BaseMotion.from_points(self.waveform.points(end), end)
+        first = end
+        if isinstance(self.waveform, Sine):
+            first = min(end, 1.0 / self.waveform.frequency)
+        elif isinstance(self.waveform, SmoothRamp):
+            first = min(end, self.last_change)
+        motion = BaseMotion.from_function(
+            self.called, first, tolerance=0.5 * self.tolerance, breaks=self.breaks, least=least
+        )
+        return motion.repeated(end) if isinstance(self.waveform, Sine) else motion.kept(end)
 
     def called(self, time: float) -> float:
         """Return what `function` gives at `time` (s), in m/s.
@@ -266,9 +274,8 @@ def _breaks(drive: Drive) -> tuple[float, ...]:
     return tuple(sorted(times))
 
 
-def _history(points: Any) -> tuple[tuple[float, float], ...]:
+def history_points(points: Any, key: str = "drive.history") -> tuple[tuple[float, float], ...]:
     """Convert the points of a drive history, or report every one that is wrong."""
-    key = "drive.history"
     if isinstance(points, np.ndarray):
         points = points.tolist()
     if isinstance(points, str) or not isinstance(points, Sequence) or not points:

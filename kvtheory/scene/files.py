@@ -1,5 +1,6 @@
 """Scene files: TOML in and out, overrides, and the commented template."""
 
+import re
 import tomllib
 from collections.abc import Iterable, Mapping
 from pathlib import Path
@@ -24,6 +25,7 @@ from kvtheory.scene.quantities import (
     problem,
     quantities,
     required,
+    shown,
 )
 from kvtheory.scene.texts import read_text
 from kvtheory.scene.units import expected
@@ -120,7 +122,7 @@ def to_toml(scene: Scene) -> str:
 
 def template(support: str = "dead-weight") -> str:
     """Return Table 1 as a scene file with a comment on every key."""
-    shown = {
+    examples = {
         "radius": "10 mm", "stiffness": "10 GN/m^3", "retardation_time": "100 ms",
         "depth": "0.3 mm", "mass": "1 kg/mm", "gravity": "9.80665 m/s^2",
         "velocity": "100 mm/s", "duration": "200 ms",
@@ -136,7 +138,7 @@ def template(support: str = "dead-weight") -> str:
                 f'{key} = "{getattr(type(part), key)}"{" " * 12}# or one of: {", ".join(models)}'
             )
         for name, spec in given(part).items():
-            value = "30 MN/m^2" if spec.unit == "N/m^2" else shown[name]
+            value = "30 MN/m^2" if spec.unit == "N/m^2" else examples[name]
             lines.append(f'{name} = "{value}"'.ljust(36) + f"# {spec.doc}")
         lines += NOTES.get(section, ()) if support != "fixed" or section != "support" else ()
         if section == "drive":
@@ -195,11 +197,25 @@ def _toml(value: Any) -> str:
 
 
 def _read(path: Path) -> dict[str, Any]:
+    text = ""
     try:
-        return tomllib.loads(read_text(path))
-    except ValueError as error:  # of TOML, of the encoding, or an endless integer
-        hint = 'a quantity is text in quotes, such as radius = "10 mm"'
-        raise SceneError([f"{path} is not a TOML file: {error}; {hint}"]) from None
+        text = read_text(path)
+        return tomllib.loads(text)
+    except UnicodeDecodeError:
+        told = "it is not text in UTF-8, UTF-16 or Windows-1252"
+    except RecursionError:
+        told = "its brackets are nested too deep"
+    except ValueError as error:  # of TOML, or an endless integer
+        told = (
+            f'{error}{_line(text, error)}; a quantity is text in quotes, such as radius = "10 mm"'
+        )
+    raise SceneError([f"{path} is not a TOML file: {told}"])
+
+
+def _line(text: str, error: ValueError) -> str:
+    """Quote the line that an error of TOML names."""
+    number = re.search(r"at line (\d+)", str(error))
+    return f": {shown(text.splitlines()[int(number[1]) - 1].strip())}" if number else ""
 
 
 def _override(tables: dict[str, Any], overrides: list[str], *, embedded: bool) -> list[str]:
@@ -236,7 +252,7 @@ def _override(tables: dict[str, Any], overrides: list[str], *, embedded: bool) -
         try:
             listed = (section, name) in LISTS
             table[name] = tomllib.loads(f"v = {value}")["v"] if listed else value
-        except tomllib.TOMLDecodeError:
+        except (ValueError, RecursionError):
             table[name] = value
     return problems
 

@@ -6,6 +6,7 @@ The reader of scene files, the template, the writer and the constructors work fr
 import dataclasses
 import difflib
 import math
+import reprlib
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
@@ -16,6 +17,12 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from kvtheory.scene.units import expected, to_si
+
+LONGEST_SHOWN = 60
+"""Characters of a key or of a value in a message."""
+SHORT = reprlib.Repr()
+"""Of values that may be nested deeper than can be written."""
+SHORT.maxlist = SHORT.maxtuple = SHORT.maxdict = SHORT.maxstring = SHORT.maxother = LONGEST_SHOWN
 
 
 class SceneError(ValueError):
@@ -189,11 +196,29 @@ def derive(instance: Any, section: str, name: str, value: float, of: str) -> Non
 
 
 def problem(key: str, given: Any, what: str) -> str:
-    """One line about one mistake: the key, what was given, and what is wrong."""
-    shown = f'"{given}"' if isinstance(given, str) else repr(given)
-    if len(shown) > 60:
-        shown = shown[:57] + "..."
-    return f"{key} = {shown}: {what}"
+    r"""One line about one mistake: the key, what was given, and what is wrong.
+
+    >>> problem("run.\n" + 60 * "a", [[[[[[[[5]]]]]]]], "unknown key")
+    'run.\\naaaaaaaaaaaaaaaaaaaaaaaaa...aaaaaaaaaaaaaaaaaaaaaaaaaaa = [[[[[[[...]]]]]]]: unknown key'
+    """
+    value = f'"{given}"' if isinstance(given, str) else SHORT.repr(given)
+    return f"{shown(key)} = {shown(value)}: {what}"
+
+
+def shown(text: str) -> str:
+    """Return a text of a file as a message can quote it: short, and such that a terminal only shows it."""
+    if len(text) > LONGEST_SHOWN:
+        text = f"{text[: LONGEST_SHOWN // 2]}...{text[3 - LONGEST_SHOWN // 2 :]}"  # paths count from the end
+    return printable(text)
+
+
+def printable(text: str) -> str:
+    r"""Write what would steer a terminal, or begin a line, as an escape.
+
+    >>> printable("a\x1b[31m\nb")
+    'a\\x1b[31m\\nb'
+    """
+    return "".join(c if c.isprintable() else ascii(c)[1:-1] for c in text)
 
 
 def mistake(key: str, given: Any, what: str) -> SceneError:

@@ -57,12 +57,12 @@ def read_table(path: Path) -> Table:
         )
     bare = re.sub(r"[\[(].*?[\])]", "", lines[0][1])
     separator = separator or max(SEPARATORS, key=bare.count)
+    if any(line.count('"') % 2 for _, line in lines):
+        raise ValueError(f"{path}: a quotation mark is opened and not closed on the same line")
     try:
         rows = list(csv.reader((line for _, line in lines), delimiter=separator))
     except csv.Error as error:
         raise ValueError(f"{path}: not a table of numbers: {error}") from None
-    if len(rows) != len(lines):
-        raise ValueError(f"{path}: a quotation mark is opened and not closed on the same line")
     decimal = "," if separator != "," else "."
     cells = [[cell.strip() for cell in row] for row in rows]
     heads = cells[0]
