@@ -12,6 +12,7 @@ from click.testing import CliRunner
 import kvtheory as kv
 from kvtheory.checks.balance import missing_force, windows
 from kvtheory.checks.columns import SPELLINGS, recognise
+from kvtheory.checks.noise import noise
 from kvtheory.checks.reading import MOST_ROWS, read
 from kvtheory.checks.relaxation import fit, uncertainty
 from kvtheory.cli import main
@@ -228,7 +229,9 @@ def test_separators_and_comments(tmp_path, sound, separator):
 DECIMAL = str.maketrans(".", ",")
 
 
-@pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig", "utf-16", "cp1252"])
+@pytest.mark.parametrize(
+    "encoding", ["utf-8", "utf-8-sig", "utf-16", "utf-16-le", "utf-16-be", "cp1252"]
+)
 def test_what_a_spreadsheet_writes_is_read(tmp_path, encoding):
     heads = "Zeit / ms;Eindringtiefe in µm;Normalkraft (N/mm);F_x/(N/mm);Raumtemperatur [°C];Notiz"
     lines = [
@@ -248,6 +251,32 @@ def test_columns_that_are_not_used_are_named(sound):
     found = kv.compare(data={**sound, "Raumtemperatur [K]": np.full(sound["time"].size, 293.0)})
     assert found.verdict == "agrees"
     assert "not used: Raumtemperatur [K]" in found.diagnosis
+
+
+def test_columns_that_are_not_used_are_named_shortly_and_only_shown(sound):
+    others = {f"{k}\x1b[31m{'x' * 500} [K]": sound["time"] for k in range(300)}
+    found = kv.compare(data={**sound, **others})
+    assert "and 280 more" in found.diagnosis
+    assert len(found.diagnosis) < 3000
+    assert found.diagnosis.isprintable()
+
+
+def test_progress_tells_of_the_faults_that_are_tried(sound):
+    told = []
+    kv.compare(data=sound, progress=lambda *report: told.append(report))
+    assert not told
+    wrong = {**sound, "friction_force": 1.5 * sound["friction_force"]}
+    kv.compare(data=wrong, progress=lambda *report: told.append(report))
+    shares = [share for share, _ in told]
+    assert shares == sorted(shares)
+    assert 0.0 <= shares[0] <= shares[-1] < 1.0
+    assert told[-1][1] == f"{len(told)} faults tried"
+
+
+@pytest.mark.parametrize("scale", [1e-300, 1e-200, 1.0, 1e200])
+def test_noise_is_measured_at_any_scale(scale):
+    t, r = np.linspace(0.0, 1.0, 400), np.random.default_rng(0).normal(size=400)
+    assert noise(t, scale * r, np.full(400, scale)) / scale == pytest.approx(1.0, rel=0.2)
 
 
 def test_few_rows_cannot_tell(tmp_path, sound):

@@ -15,6 +15,9 @@ from kvtheory.results import TRANSIENT_UNITS
 from kvtheory.results.comparison import Check, Comparison, Explanation
 from kvtheory.scene.model import Scene
 
+MOST_NAMED = 20
+"""Columns that were not used, and are named."""
+
 
 def compare(
     scene: Scene,
@@ -31,7 +34,10 @@ def compare(
 
 
 def _compare(
-    theory: Theory, series: Series, per_length: float | None, tolerance: float
+    theory: Theory,
+    series: Series,
+    per_length: float | None,
+    tolerance: float,
 ) -> Comparison:
     try:
         case = make_case(theory, series, per_length, tolerance, COARSEST)
@@ -47,7 +53,9 @@ def _compare(
         checks = judge(case)
     text, explanations = diagnose(case, checks)
     if series.ignored:
-        text += f" Columns that were not used: {', '.join(series.ignored)}."
+        several = series.ignored[:MOST_NAMED]
+        more = f" and {len(series.ignored) - len(several)} more" * (several != series.ignored)
+        text += f" Columns that were not used: {', '.join(several)}{more}."
     allowed = {name: case.most(name) * case.theory.scales[name] for name in case.names}
     return Comparison(
         verdict(checks), checks, text, explanations, series.source, tolerance,

@@ -63,6 +63,7 @@ def noise(time: Array, residual: Array, curve: Array) -> Array:
     size = np.nan_to_num(np.abs(curve))
     if not rows.size or not size.any():
         return np.zeros_like(residual)
+    size = size / size.max()  # first, so that no square underflows
     size = size / math.sqrt(float(np.mean(size * size)))
     likeliest, found = math.inf, np.zeros_like(residual)
     for mix in MIXES:

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kvtheory.checks.columns import SHOWN, SI_UNITS, Column, recognise
+from kvtheory.scene.quantities import shown
 from kvtheory.scene.tables import numbers, read_table
 
 Array = NDArray[np.float64]
@@ -123,9 +124,13 @@ def _named(
 ) -> Series:
     """Return the series of the columns that are known, and name the others."""
     pairs = [(c, array) for c, array in zip(columns, arrays, strict=True) if c is not None]
-    ignored = tuple(head for head, column in zip(heads, columns, strict=True) if column is None)
+    ignored = tuple(
+        shown(head) for head, column in zip(heads, columns, strict=True) if column is None
+    )
     if not pairs:
-        raise ValueError(f"{source}: no column is known: {', '.join(heads)}; expected {SHOWN}")
+        raise ValueError(
+            f"{source}: no column is known: {shown(', '.join(heads))}; expected {SHOWN}"
+        )
     values = {column.quantity: column.factor * array for column, array in pairs}
     headers = {column.quantity: column.header for column, _ in pairs}
     return _checked(values, headers, source, lines=lines, ignored=ignored)

@@ -9,13 +9,12 @@ import re
 from pathlib import Path
 from typing import NamedTuple
 
+from kvtheory.scene.quantities import shown
 from kvtheory.scene.texts import read_text
 
 SEPARATORS = "\t;,"
 SEPARATED = re.compile(r"^\s*\"?sep=(.)\"?\s*$", re.IGNORECASE)
 """The line by which a spreadsheet is told the separator."""
-LONGEST_SHOWN = 40
-"""Characters of a cell in a message."""
 _HEADS = (
     re.compile(r"^(?P<name>.*?)\s*\[(?P<unit>[^\]]*)\]$"),
     re.compile(r"^(?P<name>.*?)\s*\((?P<unit>.*)\)$"),
@@ -107,9 +106,8 @@ def numbers(path: Path, table: Table, line: int, cells: list[str], used: list[bo
         value = number(cell, table.decimal) if cell and wanted else float("nan")
         if value is None:
             hint = "; write the decimal mark as a point" if "," in cell else ""
-            shown = cell if len(cell) <= LONGEST_SHOWN else f"{cell[:LONGEST_SHOWN]}..."
             raise ValueError(
-                f'{path}: line {line}, column "{head}": "{shown}" is not a number{hint}'
+                f'{path}: line {line}, column "{shown(head)}": "{shown(cell)}" is not a number{hint}'
             )
         found.append(value)
     return found
