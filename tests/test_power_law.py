@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import kvtheory as kv
-from kvtheory.models.steady import power_law, power_law_contact
+from kvtheory.models.steady import power_law, power_law_contact, quadrature
 from kvtheory.results import STEADY_UNITS
 from tests import reference, reference_power_law
 
@@ -50,6 +50,30 @@ def test_every_quantity_is_within_its_error_of_ball_arithmetic(n, kind):
             assert name == OWN or claimed <= 1e-14
             if name == OWN and n >= 1.3:  # d ln x_TE/d ln V is at most 1/(n - 1)
                 assert claimed <= (1 + 1 / (n - 1)) * STATED[OWN] * (1 + 1e-12)
+
+
+@pytest.mark.parametrize("kind", SUPPORTS)
+@pytest.mark.parametrize(
+    ("n", "profile"),
+    [*((n, False) for n in EXPONENTS), *((n, True) for n in EXPONENTS if n == 1.0 or n > 1.01)],
+)
+def test_quadrature_is_within_its_error_of_ball_arithmetic(n, kind, profile):
+    """Of the shape, and of functions that say no more than h and h'; edges close to the tip included."""
+    rng = np.random.default_rng([int(1000 * n), 7, SUPPORTS.index(kind)])
+    method = "at_depth" if kind == "fixed" else "at_load"
+    for _ in range(3 if profile else SCENES):
+        case = random_case(rng, n, kind, 6 if profile else 12)
+        shape = kv.PowerLaw(case[1], n) if n > 1.0 else kv.Wedge(case[0])
+        if profile:
+            shape = kv.Profile(shape.height, shape.slope, kinks=(0.0,))
+        state = getattr(quadrature, method)(shape, *case[3:])
+        truth = getattr(reference_power_law, method)(*case)
+        for name in STEADY_UNITS:
+            error = reference.relative_error(getattr(state, name), truth[name])
+            claimed = state.certificate.relative_error[name]
+            assert error <= claimed, (name, case, error, claimed)
+            sure = name != OWN or state.trailing_edge != 0.0 or n == 1.0
+            assert profile or (claimed < 1e-11) == sure, (name, case)
 
 
 def test_the_trailing_edge_of_nearly_a_wedge_says_how_uncertain_it_is():

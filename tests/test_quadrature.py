@@ -444,7 +444,12 @@ def test_the_depth_under_a_load_carries_it(shape, side):
     held = at_load(shape, K * one, TAU * one, V, carried.load, spring)
     assert held.load == pytest.approx(carried.load + spring * (rest.depth - held.depth), rel=1e-12)
     for state in (carried, free, held):
-        errors = state.certificate.relative_error
+        errors = dict(state.certificate.relative_error)
+        seen = (
+            state.trailing_edge != 0.0
+        )  # of a tip that is nearly sharp it may be too close to tell
+        assert np.all(np.isinf(errors["trailing_edge"][~seen]) | (shape.bend(1.0) == 0.0))
+        errors["trailing_edge"] = errors["trailing_edge"][seen]
         assert max(np.max(error) for error in errors.values()) < 1e-11
 
 
@@ -460,7 +465,8 @@ def test_a_column_of_scenes_is_as_good_as_each_scene(shape):
             value = getattr(single, name)
             allowed = single.certificate.relative_error[name]
             assert isinstance(value, float), name
-            assert abs(getattr(column, name)[i, 0] - value) <= allowed * abs(value), name
+            same = getattr(column, name)[i, 0] == value
+            assert same or abs(getattr(column, name)[i, 0] - value) <= allowed * abs(value), name
 
 
 def ratio_of(n, ratio):

@@ -2,7 +2,8 @@
 
 Every shape has `height` (h, in m) and `slope` (h', dimensionless), each for floats and arrays; its
 `reach`, in m: the surface is defined for |x| < reach; `kinks`, the points where h' jumps or a
-derivative is singular, in m; and `convex`, whether h is known to be convex.
+derivative is singular, in m; and `convex`, whether h is known to be convex: then it also has `bend`,
+x h''/h'.
 """
 
 import math
@@ -48,6 +49,10 @@ class Parabola(_Shape):
         """Return h'(x)."""
         return x / self.radius
 
+    def bend(self, x: Value) -> Value:
+        """Return x h''/h'."""
+        return 1.0
+
 
 @dataclass(frozen=True)
 class Circle(_Shape):
@@ -74,6 +79,10 @@ class Circle(_Shape):
         """Return h'(x)."""
         with np.errstate(divide="ignore"):
             return x / self._centre_height(x)
+
+    def bend(self, x: Value) -> Value:
+        """Return x h''/h'."""
+        return (self.radius / self._centre_height(x)) ** 2
 
     def _centre_height(self, x: Value) -> Value:
         """Return R - h(x), factored against cancellation for |x| close to R; NaN beyond."""
@@ -105,6 +114,10 @@ class PowerLaw(_Shape):
         """Return h'(x)."""
         return np.sign(x) * (np.abs(x) / self.length) ** (self.exponent - 1.0)
 
+    def bend(self, x: Value) -> Value:
+        """Return x h''/h'."""
+        return self.exponent - 1.0
+
 
 @dataclass(frozen=True)
 class Wedge(_Shape):
@@ -126,6 +139,10 @@ class Wedge(_Shape):
     def slope(self, x: Value) -> Value:
         """Return h'(x)."""
         return self.inclination * np.sign(x)
+
+    def bend(self, x: Value) -> Value:
+        """Return x h''/h'."""
+        return 0.0
 
 
 @dataclass(frozen=True)
@@ -174,7 +191,8 @@ def _pointwise(function: Callable[[float], float], x: Value) -> Value:
     return function(x)
 
 
-Indenter = Parabola | Circle | PowerLaw | Wedge | Profile
+Convex = Parabola | Circle | PowerLaw | Wedge
+Indenter = Convex | Profile
 
 SHAPES: dict[str, Any] = {cls.shape: cls for cls in (Parabola, Circle, PowerLaw, Wedge)}
 """The shapes that a scene file can name."""

@@ -25,8 +25,16 @@ from typing import Any, NamedTuple
 import numpy as np
 from scipy.optimize import brentq, minimize_scalar
 
-from kvtheory.models.steady.cells import DENSE, NODES, SQUARED, VALUES, WEIGHTS, Surface
-from kvtheory.models.steady.contact import ROUNDING
+from kvtheory.models.steady.cells import (
+    DENSE,
+    NODES,
+    SQUARED,
+    TAIL_MARGIN,
+    VALUES,
+    WEIGHTS,
+    Surface,
+)
+from kvtheory.models.steady.contact import ROUNDING, SMALLEST
 from kvtheory.results.errors import QuadratureError
 
 PEAK_BAND = 0.02
@@ -35,6 +43,10 @@ PEAK_XTOL = 1e-8
 """Tolerance of the place of the peak, over the distance of two samples; its value has the square."""
 MOST_STEPS = 100
 """Trial depths; they are a handful unless a contact begins at the very depth that is sought."""
+CORNER = 1e-10, 1e-290
+"""Distances from a corner, over the length of the contact, between which the slope hardly changes ..."""
+AT_CORNER = 1e-9
+"""... by no more than this."""
 HALF = 0.5
 """Share of the depth below which u_TE is better taken from the slope than from the height."""
 SETTLED = 1e-9
@@ -130,6 +142,13 @@ class Contact:
         x[:, 0], x[:, -1] = c.start, c.end
         g = self.depth - c.height @ VALUES
         p = g - l_r * (c.slope @ VALUES)
+        # Where what the series misses could change the sign, the shape itself is asked.
+        unsure = abs(p) <= TAIL_MARGIN * (c.height_tail + l_r * c.slope_tail)[:, None]
+        unsure[:, 0] |= np.isin(c.start, self.surface.kinks)
+        unsure[:, -1] |= np.isin(c.end, self.surface.kinks)
+        for row, column in np.argwhere(unsure).tolist():
+            within = math.nextafter(x[row, column], 0.5 * (c.start[row] + c.end[row]))
+            p[row, column] = self.pressure(within, l_r)
         # Two roots may hide between samples: there the parabola through three of them crosses zero.
         left, middle, right = p[:, :-2], p[:, 1:-1], p[:, 2:]
         bend, tilt = left - 2.0 * middle + right, 0.5 * (right - left)
@@ -173,6 +192,14 @@ class Contact:
         return value, error
 
     @property
+    def lost(self) -> float:
+        """Relative error of a trailing edge at the lowest point: all of it, unless that is a corner."""
+        if abs(self.patches[-1].x_te) >= SMALLEST:
+            return 0.0
+        near, nearer = (self.surface.slope(-share * self.patches[0].x_le) for share in CORNER)
+        return 0.0 if math.isclose(near, nearer, rel_tol=AT_CORNER) else math.inf
+
+    @property
     def noise(self) -> float:
         """Relative error of the depth that has the effects of rounding: of edges, of h and of h'."""
         c = self.cells
@@ -189,11 +216,12 @@ class Contact:
         x, _, p = self._sampled(self.l_r)
         inside = [(x >= patch.x_le) & (x <= patch.x_te) for patch in self.patches]
         highest = max(self.pressure(patch.x_le, self.l_r) for patch in self.patches)
-        highest = max(highest, p[np.any(inside, axis=0)].max(initial=0.0))
+        high = p > (1.0 - PEAK_BAND) * max(highest, p[np.any(inside, axis=0)].max(initial=0.0))
         intervals = set()
         for patch, samples in zip(self.patches, inside, strict=True):
-            for i in np.flatnonzero(samples & (p > (1.0 - PEAK_BAND) * highest)).tolist():
-                points = x[max(i - 1, 0) : i + 2].clip(patch.x_le, patch.x_te).tolist()
+            for i in np.flatnonzero(samples & high).tolist():
+                # Where two cells meet there are two samples, and the peak may be on either side.
+                points = x[max(i - 2, 0) : i + 3].clip(patch.x_le, patch.x_te).tolist()
                 if p[i] >= max(p[i - 1 : i + 2]):
                     intervals |= set(itertools.pairwise(points))
         for start, end in intervals:
@@ -204,16 +232,23 @@ class Contact:
                     method="bounded",
                     options={"xatol": PEAK_XTOL * (end - start)},
                 )
-                highest = max(highest, -float(found.fun))
+                ends = math.nextafter(start, end), math.nextafter(end, start)
+                highest = max(
+                    highest, -float(found.fun), *(self.pressure(y, self.l_r) for y in ends)
+                )
         return float(highest)
 
 
 def _root(function: Callable[[float], float], low: float, high: float) -> float:
     """Return a root between two points; one of them, if only rounding keeps the signs equal."""
+    low, high = low or math.nextafter(0.0, high), high or math.nextafter(0.0, low)
     left, right = function(low), function(high)
     if left * right >= 0.0:
         return low if abs(left) < abs(right) else high
-    return float(brentq(function, low, high, xtol=5e-324, rtol=ROOT_RTOL, maxiter=2000))
+    while 0.0 < low / high < 0.5 or low / high > 2.0:  # the root may be close to a tip
+        middle = math.copysign(math.sqrt(abs(low)) * math.sqrt(abs(high)), low)
+        low, high = (low, middle) if function(middle) * left <= 0.0 else (middle, high)
+    return float(brentq(function, low, high, xtol=SMALLEST, rtol=ROOT_RTOL, maxiter=2000))
 
 
 def at_depth(surface: Surface, l_r: float, depth: float) -> Contact:
@@ -288,6 +323,7 @@ def _values(contact: Contact) -> tuple[dict[str, float], dict[str, float]]:
     }
     own = drag_error / drag
     errors = {
+        "trailing_edge": contact.lost,
         "load": contact.load_error,
         "friction_force": own,
         "friction_coefficient": own + contact.load_error,

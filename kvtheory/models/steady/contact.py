@@ -33,17 +33,16 @@ from kvtheory.models.steady.double_exponential import (
     some,
 )
 from kvtheory.results.errors import QuadratureError
-from kvtheory.scene.indenters import Indenter
+from kvtheory.scene.indenters import Convex
 
 EPS = float(np.finfo(float).eps)
+SMALLEST = float(np.finfo(float).tiny)
 ULPS = 8.0 * EPS
 """The least relative step of x, and of the depth."""
 LINEAR = 1e-8
 """Newton's method squares an error: a step of this size leaves less than the rounding."""
 CUBIC = 1e-5
 """The same for the depth, whose steps leave a cube of the error."""
-DIFFERENCE = 1e-7
-"""Relative step of x for h'': its error only slows the roots, and changes a peak by its square."""
 STRIDES = tuple(4.0 ** (2**power) for power in range(6, -1, -1))
 """By which a half-length far below the depth is widened at first, as far as it stays too short."""
 CLOSER = 3
@@ -56,8 +55,8 @@ VERTEX = 1e-290
 """A trailing edge closer to the lowest point than this share of the half-length is at it."""
 FLOOR = 1e-20
 """Share of the half-length below which the peak is at the lowest point."""
-PEAK_RTOL = 1e-7
-"""Tolerance of its place: its value has the square."""
+PEAK_RTOL = 1e-8
+"""Tolerance of its place: its value has the square, times the exponent of a power."""
 PEAK_STEPS = 8
 """Secant steps towards the peak: one for a power, more for a circle."""
 TINY = 1e-300
@@ -94,7 +93,7 @@ class Contact(NamedTuple):
         return ROUNDING * (1.0 + self.a / (self.a_moves * self.depth))
 
 
-def at_depth(shape: Indenter, l_r: Value, depth: Value) -> Contact:
+def at_depth(shape: Convex, l_r: Value, depth: Value) -> Contact:
     """Return the contact at a depth."""
     if not largest(depth - _deepest(shape)) < 0.0:
         raise QuadratureError("the leading edge lies beyond the indenter's reach")
@@ -102,7 +101,7 @@ def at_depth(shape: Indenter, l_r: Value, depth: Value) -> Contact:
     return _at_depth(shape, l_r, depth, a, a)
 
 
-def at_load(shape: Indenter, l_r: Value, load: Value, spring: Value) -> Contact:
+def at_load(shape: Convex, l_r: Value, load: Value, spring: Value) -> Contact:
     """Return the contact where W/K + spring * depth is the load.
 
     d ln W/d ln delta lies between 1 and 2: above, because W is convex in delta; below, because u is
@@ -139,12 +138,12 @@ def at_load(shape: Indenter, l_r: Value, load: Value, spring: Value) -> Contact:
     )
 
 
-def _deepest(shape: Indenter) -> Value:
+def _deepest(shape: Convex) -> Value:
     """Return the depth at which the contact is as wide as the reach."""
     return math.inf if shape.reach is math.inf else shape.height(shape.reach * (1.0 - EPS))
 
 
-def _first(shape: Indenter, scale: Value, wanted: Value, width: Callable[[Value], Value]) -> Value:
+def _first(shape: Convex, scale: Value, wanted: Value, width: Callable[[Value], Value]) -> Value:
     """Return the first of spaced points x where h times a width is as wanted, or the last."""
     most = NEAR_REACH * shape.reach
     x = least(scale / STRIDES[0], most)
@@ -154,12 +153,12 @@ def _first(shape: Indenter, scale: Value, wanted: Value, width: Callable[[Value]
     return least(x * STRIDES[-1], most)
 
 
-def _within(shape: Indenter, a: Value, factor: Value) -> Value:
+def _within(shape: Convex, a: Value, factor: Value) -> Value:
     """Return a half-length times a factor, at most halfway to the reach."""
     return least(a * factor, 0.5 * (a + shape.reach))
 
 
-def _at_depth(shape: Indenter, l_r: Value, depth: Value, a: Value, x: Value) -> Contact:
+def _at_depth(shape: Convex, l_r: Value, depth: Value, a: Value, x: Value) -> Contact:
     """Return the contact at a depth, from guesses of a and x."""
     start = a
     a, a_moves = _half_length(shape, depth, start)
@@ -176,7 +175,7 @@ def _at_depth(shape: Indenter, l_r: Value, depth: Value, a: Value, x: Value) -> 
     )  # fmt: skip
 
 
-def _half_length(shape: Indenter, depth: Value, a: Value) -> tuple[Value, Value]:
+def _half_length(shape: Convex, depth: Value, a: Value) -> tuple[Value, Value]:
     """Return a > 0 with h(a) = depth, and d a/d(delta)."""
     active, moves = depth > 0.0, a
     for _ in range(MOST_STEPS):
@@ -190,13 +189,13 @@ def _half_length(shape: Indenter, depth: Value, a: Value) -> tuple[Value, Value]
     raise QuadratureError("the leading edge lies beyond the indenter's reach")
 
 
-def _trailing(shape: Indenter, l_r: Value, depth: Value, a: Value, x: Value) -> tuple[Value, Value]:
+def _trailing(shape: Convex, l_r: Value, depth: Value, a: Value, x: Value) -> tuple[Value, Value]:
     """Return x in (0, a] with h(x) + l_r h'(x) = depth, and d x/d(delta)."""
     active, moves = depth > 0.0, x
     for _ in range(MOST_STEPS):
         slope = shape.slope(x)
         total = shape.height(x) + l_r * slope
-        rise = x * slope + l_r * _bend(shape, x, slope)
+        rise = slope * (x + l_r * shape.bend(x))
         factor = (depth / total) ** (total / rise)
         moves = pick(active, x / rise, moves)
         x = pick(active, least(x * factor, a), x)
@@ -206,15 +205,7 @@ def _trailing(shape: Indenter, l_r: Value, depth: Value, a: Value, x: Value) -> 
     raise QuadratureError("the trailing edge was not found: it is too close to a vertex")
 
 
-def _bend(shape: Indenter, x: Value, slope: Value) -> Value:
-    """Return x h''."""
-    step = DIFFERENCE * x
-    if shape.reach is not math.inf:
-        step = DIFFERENCE * least(x, shape.reach - x) + ULPS * x
-    return x * ((slope - shape.slope(x - step)) / step)
-
-
-def _peak(shape: Indenter, l_r: Value, contact: Contact) -> Value:
+def _peak(shape: Convex, l_r: Value, contact: Contact) -> Value:
     """Return the highest p/K.
 
     It is on the entering side, at y = -x > 0. There p' = 0 means y = l_r y h''/h', which is constant
@@ -226,7 +217,7 @@ def _peak(shape: Indenter, l_r: Value, contact: Contact) -> Value:
     for _ in range(PEAK_STEPS):
         slope = shape.slope(y)
         found = -least(-found, -(contact.depth - shape.height(y) + l_r * slope))
-        to = l_r * _bend(shape, y, slope) / (slope + TINY) + FLOOR * contact.a
+        to = l_r * shape.bend(y) + FLOOR * contact.a
         gain = (to - last[1]) / (y - last[0] + TINY)
         last = y, to
         active = active & (abs(least(to, contact.a) / y - 1.0) >= PEAK_RTOL)
@@ -236,7 +227,7 @@ def _peak(shape: Indenter, l_r: Value, contact: Contact) -> Value:
     return found
 
 
-def quantities(shape: Indenter, l_r: Value, contact: Contact) -> dict[str, tuple[Value, ...]]:
+def quantities(shape: Convex, l_r: Value, contact: Contact) -> dict[str, tuple[Value, ...]]:
     """Return each quantity over the stiffness, its relative error at this depth, and d ln/d ln delta.
 
     The friction is l_r times the sum of int h'^2 dx and of u_TE^2/(2 l_r).
@@ -251,14 +242,16 @@ def quantities(shape: Indenter, l_r: Value, contact: Contact) -> dict[str, tuple
     load_power, friction_power = depth * load_slope / load, depth * (left + at_a) / total
     drag_power = depth * (at_a + at_x * at_x * x_moves) / drag
     peak = _peak(shape, l_r, contact)
-    peak_power = depth / peak * -least(-1.0 + 0.0 * l_r, -l_r * _bend(shape, a, at_a) / (a * at_a))
+    peak_power = depth / peak * -least(-1.0 + 0.0 * l_r, -l_r * shape.bend(a) / a)
     edge = depth * a_moves / a
+    # Zero is the trailing edge at a corner; of a rounded tip it says that the edge is too close to tell.
+    lost = pick((rolls * x < SMALLEST) & (shape.bend(x) != 0.0), math.inf, 0.0)
     return {
         "depth": (depth, 0.0, 0.0),
         "half_length": (a, 0.0, edge),
         "retardation_length": (l_r, 0.0, 0.0),
         "leading_edge": (-a, 0.0, edge),
-        "trailing_edge": (rolls * x, 0.0, depth * x_moves / x),
+        "trailing_edge": (rolls * x, lost, depth * x_moves / x),
         "load": (load, load_error, load_power),
         "friction_force": (l_r * total, drag_error, friction_power),
         "friction_coefficient": (
