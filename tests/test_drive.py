@@ -192,9 +192,13 @@ def test_the_limit_of_steps_grows_with_the_drive():
         kv.transient(scene, at=[0.2], max_steps=100)
 
 
-def test_a_function_may_jump_at_its_breaks_and_at_the_start_unless_it_starts_at_rest():
-    assert kv.Drive(function=math.cos, breaks=[0.0, 0.5]).jumps == (0.0, 0.5)
-    assert kv.Drive(function=math.sin, breaks=[0.0, 0.5]).jumps == (0.5,)
+def test_a_function_jumps_at_breaks_that_are_no_kinks_and_at_the_start_unless_it_starts_at_rest():
+    def pulse(t):
+        return 0.1 * t if t < 0.5 else 0.3
+
+    assert kv.Drive(function=math.cos, breaks=[0.0, 0.5]).jumps == (0.0,)
+    assert kv.Drive(function=math.sin, breaks=[0.0, 0.5]).jumps == ()
+    assert kv.Drive(function=pulse, breaks=[0.0, 0.5]).jumps == (0.5,)
 
 
 def test_a_faster_drive_has_every_velocity_multiplied_whatever_it_is():

@@ -54,6 +54,46 @@ def test_a_jump_may_take_either_value_where_it_is(at_the_jump):
         assert difference(found, history) <= 1e-9
 
 
+@pytest.mark.parametrize("at_the_jump", [0.1, -0.05, 0.03])
+def test_the_jumps_of_a_function_are_those_of_the_same_history(at_the_jump):
+    """At some of its breaks it has a kink, or nothing at all."""
+    points = [(0.0, 0.1), (0.02, 0.1), (0.02, -0.05), (0.04, -0.05), (0.06, 0.02)]
+    times, levels = (np.array(column) for column in zip(*points, strict=True))
+
+    def velocity(t):
+        if t == 0.02:
+            return at_the_jump
+        side = slice(0, 2) if t < 0.02 else slice(2, None)
+        return float(np.interp(t, times[side], levels[side]))
+
+    drive = kv.Drive(function=velocity, breaks=[0.02, 0.03, 0.04, 0.06])
+    assert drive.jumps == kv.Drive(history=points).jumps == (0.0, 0.02)
+
+
+@pytest.mark.parametrize("tau", [1.0, 7e-3])
+@pytest.mark.parametrize("place", [0.05, 0.1])
+@pytest.mark.parametrize("ulps", [-5000, -900, -5, -1, 1, 5, 900, 5000])
+def test_changes_that_rounding_sets_apart_are_one(ulps, place, tau):
+    """From each other, or from the end of the run."""
+    late = place + ulps * math.ulp(place)
+    first, second = sorted((place, late))
+    history = [(0.0, 1.0), (first, 1.0), (second, -1.0)]
+    changing = [
+        kv.Drive(history=history),
+        kv.Drive(function=lambda t: 1.0 if t < second else -1.0, breaks=[first, second]),
+    ]
+    base = kv.Parabola(0.5), kv.Foundation(1.0, tau), kv.DeadWeight(1.0, 1.0)
+    ends = [kv.transient(kv.Scene(*base, drive, kv.Run(0.1)), at=[0.04, 0.1]) for drive in changing]
+    assert np.all(ends[0].normal_force > 0.0)
+    assert ends[1].depth == pytest.approx(ends[0].depth, rel=1e-7)
+
+
+def test_waveforms_jump_at_most_at_the_start():
+    swing = {"frequency": 3.0, "amplitude": 0.1}
+    assert kv.Drive(waveform=kv.Triangle(**swing)).jumps == ()
+    assert kv.Drive(waveform=kv.Sine(**swing, mean=0.2)).jumps == (0.0,)
+
+
 @pytest.mark.parametrize("support", ["fixed", "dead-weight"])
 def test_a_sine_is_the_limit_of_histories(support):
     """A line through its points is off by h^2/8 of its curvature: twice the points, a quarter."""

@@ -26,8 +26,9 @@ EARLY, LOOKS, WIDER = 500, 16, 4.0
 """After so many pieces that would take too many to the end, a function is looked at in so many places: if
 pieces this much wider nowhere do, it is refused."""
 
-SAME_TIME = 4.0
-"""Units in the last place by which times differ from rounding: they are one time."""
+SAME_TIME = 1024.0
+"""Units in the last place by which times differ from rounding: they are one time. A model could not step
+from one to the other."""
 
 ON_REST = 16.0 * 2.0**-52
 """Of the terms of a velocity: what rounding leaves of it where they cancel, and the base rests."""
@@ -67,6 +68,8 @@ class BaseMotion:
         >>> [motion.at(t)[:2] for t in (0.5, 1.0, 3.0)]
         [(0.25, 1.0), (1.0, -1.0), (-1.0, -1.0)]
         """
+        near = SAME_TIME * math.ulp(end)
+        points = [(end if abs(t - end) <= near else t, velocity) for t, velocity in points]
         found = [
             (a, b, (left, (right - left) / (b - a)))
             for (a, left), (b, right) in itertools.pairwise(points)
@@ -102,12 +105,15 @@ class BaseMotion:
         >>> abs(motion.at(5.0)[0] - (1.0 - math.cos(5.0))) < 1e-12
         True
         """
-        inner = sorted(t for t in breaks if 0.0 < t < end)
+        near = SAME_TIME * math.ulp(end)
+        inner = sorted(t for t in breaks if near < t < end - near)
+        inner = [b for a, b in itertools.pairwise([0.0, *inner]) if b - a > near]
+        latest = min((t for t in breaks if abs(t - end) <= near), default=math.inf) - near
         todo = list(itertools.pairwise([0.0, *inner, end]))[::-1]
         found: list[tuple[float, float, tuple[float, ...]]] = []
 
         def value(t: float) -> float:
-            return function(_beside(t, breaks))
+            return function(_beside(min(t, latest), breaks))
 
         while todo:
             a, b = todo.pop()

@@ -31,6 +31,8 @@ LEAST_TOLERANCE = 1e-13
 """Of a drive that is a function: polynomials are not closer to it than rounding."""
 MOST_CYCLES = 10_000
 """Of a swing, which a run has to follow one by one."""
+SMOOTH = 1e-9
+"""Relative change of a function across a break that is no jump."""
 ON_LINE = 4.0 * 2.0**-52
 """Of the velocity: a point of a history as near to the line between its neighbours says nothing."""
 
@@ -125,16 +127,22 @@ class Drive:
 
     @property
     def jumps(self) -> tuple[float, ...]:
-        """The times in s at which the velocity may jump, t = 0 among them unless it starts at rest.
+        """The times in s at which the velocity jumps, t = 0 among them; of a function, those of its `breaks`.
 
-        Those of a function are its `breaks`.
+        >>> Drive(function=lambda t: 0.1 * t if t < 1.0 else 0.3, breaks=[1.0, 2.0]).jumps
+        (1.0,)
         """
-        if self.function is not None:
-            first = (0.0,) if self.called(0.0) else ()
-            return (*first, *(time for time in self.breaks if time > 0.0))
-        points = self.points
-        first = (0.0,) if points[0][1] != 0.0 else ()
-        return (*first, *(b for (a, _), (b, _) in pairwise(points) if a == b))
+        if self.function is None:
+            points = self.points
+            first = (0.0,) if points[0][1] != 0.0 else ()
+            return (*first, *(b for (a, _), (b, _) in pairwise(points) if a == b))
+        # Nothing moves before t = 0; elsewhere a smooth function changes by no more than rounding.
+        moves = (0.0,) if self.called(0.0) != 0.0 else ()
+        return (*moves, *(t for t in sorted(set(self.breaks)) if t > 0.0 and self._steps(t)))
+
+    def _steps(self, time: float) -> bool:
+        before, after = (self.called(math.nextafter(time, to)) for to in (0.0, math.inf))
+        return abs(after - before) > SMOOTH * max(abs(before), abs(after))
 
     @property
     def changes(self) -> tuple[float, ...]:

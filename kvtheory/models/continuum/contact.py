@@ -44,8 +44,8 @@ SWEEP_ERROR = 1e-15
 """Of an edge, from that of sigma: the edge is stationary where sigma is right."""
 FARTHEST_GUESS = 0.75
 """Share of a sweep from its outer end: the guess by linear interpolation keeps off the inner end."""
-SWEEP_STEPS = 100
-"""Bisection alone needs less than 60."""
+SWEEP_STEPS, NEWTON_ALONE = 150, 20
+"""Bisection alone needs less than 60; after so many, every other step is one, for Newton's may go round."""
 
 ROUNDING = 1e-15
 """Of an edge on ground that was left just now, times the age of that ground."""
@@ -149,7 +149,7 @@ def sweep(
         return outer, row[OUT_D], row[OUT_Y]
     share = -ahead / (abs(row[OUT_X] - row[IN_X]) or math.inf)
     sigma = outer + min(share, FARTHEST_GUESS) * (inner - outer)
-    for _ in range(SWEEP_STEPS):
+    for turn in range(SWEEP_STEPS):
         d_0, v_0, dv_0, Y_0, number, slope = instant(run, int(row[RECORD]), sigma)
         b, c, m = secant(s, d, Y, sigma, d_0, Y_0)
         xi, half = root(side, b, c)
@@ -170,7 +170,8 @@ def sweep(
         else:
             move = math.inf
         sigma += move
-        if not min(inner, outer) < sigma < max(inner, outer):
+        inside = min(inner, outer) < sigma < max(inner, outer)
+        if not inside or (turn >= NEWTON_ALONE and turn % 2 == 0):
             sigma = 0.5 * (inner + outer)
             if sigma in (inner, outer):
                 return sigma, d_0, Y_0

@@ -15,9 +15,10 @@ from kvtheory.models.continuum.stepping import TAKE_OFF
 
 DEPTH, RATE, NORMAL_FORCE, FRICTION_FORCE, EDGES, PEAK_PRESSURE, HOPS = range(7)
 """Layout of the deviations: of the quantities in scaled form, and of the times of take-offs and landings."""
-EDGE_ROUNDING, NORMAL_ROUNDING, FRICTION_ROUNDING = range(7, 10)
-"""What rounding of the edges may do to them, and to the forces, for the pressure there acts."""
-SIZE = 10
+EDGE_ROUNDING, NORMAL_ROUNDING, FRICTION_ROUNDING, PEAK_ROUNDING = range(7, 11)
+"""What rounding of the edges may do to them, and to the forces, for the pressure there acts, and to the
+pressure at them."""
+SIZE = 11
 
 
 def deviations(times: Any, found: Any, fine: Run, other: Run, rows: Any, worst: Any) -> None:
@@ -49,6 +50,7 @@ def deviations(times: Any, found: Any, fine: Run, other: Run, rows: Any, worst: 
         _raise(worst, found[i], rows[0], rows[shifted])
         if not alike:
             _raise(worst, found[i], found[0], found[0])
+            worst[HOPS] = max(worst[HOPS], other.now[r_.S])
 
 
 def hops(run: Run) -> int:
@@ -85,6 +87,8 @@ def _raise(worst: Any, row: Any, one: Any, two: Any) -> None:
     arm = max(abs(_known(row[e_.LEFT])), abs(_known(row[e_.RIGHT])))
     worst[EDGE_ROUNDING] = max(worst[EDGE_ROUNDING], rounding)
     worst[NORMAL_ROUNDING] = max(worst[NORMAL_ROUNDING], 0.75 * pressure * rounding)
+    steepest = 2.0 * (abs(row[e_.NUMBER]) + arm)
+    worst[PEAK_ROUNDING] = max(worst[PEAK_ROUNDING], steepest * rounding)
     worst[FRICTION_ROUNDING] = max(worst[FRICTION_ROUNDING], 1.5 * arm * pressure * rounding)
 
 

@@ -87,7 +87,7 @@ def errors(here: Any, whole: Any, rtol: float, fixed: bool) -> dict[str, Any]:
         "friction_force": at_times[d_.FRICTION_FORCE] + here[d_.FRICTION_ROUNDING],
         "leading_edge": edges,
         "trailing_edge": edges,
-        "peak_pressure": at_times[d_.PEAK_PRESSURE],
+        "peak_pressure": at_times[d_.PEAK_PRESSURE] + here[d_.PEAK_ROUNDING],
         "pressure": depth + moves * ever[d_.RATE],
         "surface": depth,
         "jump_time": moves * ever[d_.HOPS],

@@ -25,7 +25,7 @@ from kvtheory.models.continuum.run import Run, StepControl, as_arrays, begin, wi
 from kvtheory.results.errors import TransientError
 from kvtheory.scene.base_motion import BaseMotion
 
-STEP_LIMIT = 100_000
+STEP_LIMIT = 300_000
 ATTEMPTS = 1000
 """Between two looks at how far the run has come."""
 

@@ -204,7 +204,9 @@ def _longest(run: Run) -> float:
     now, longest = run.now, run.given.control.longest
     if run.states[0] != FREE:
         return math.inf if _quiet(run) else longest
-    slide = RELIEF / (RELIEF + abs(drive_now(run, now[r_.S])[1]))
+    _, number, slope = drive_now(run, now[r_.S])
+    speed = 0.5 * (abs(number) + math.sqrt(number * number + 2.0 * RELIEF * abs(slope)))
+    slide = RELIEF / (RELIEF + speed)
     if now[r_.D] < 0.0:
         slide = max(slide, -0.5 * now[r_.D] / (abs(now[r_.V]) + 1e-3))
     return min(longest, slide)
@@ -253,7 +255,9 @@ def _commit(run: Run, record: Any, end: float) -> None:
 def _change(run: Run, violated: Monitors) -> int:
     """Change the states that the event at the present time violates."""
     now = run.now
-    run.counts[r_.TOGGLES] += 1
+    # An edge that runs outward over ground that is there in many pieces leaves fewer each time.
+    crosses = run.states[0] != FREE and violated[0] >= 0.0 and min(violated[2], violated[4]) < 0.0
+    run.counts[r_.TOGGLES] = 1 if crosses else run.counts[r_.TOGGLES] + 1
     if run.counts[r_.TOGGLES] > TOGGLE_LIMIT:
         return INCONSISTENT
     Y, _, _ = drive_now(run, now[r_.S])
