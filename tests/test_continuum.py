@@ -8,6 +8,7 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from kvtheory.models.continuum.radau_iia import STAGES, radau
+from kvtheory.models.continuum.run import StepControl
 from kvtheory.models.continuum.solver import solve
 from kvtheory.models.continuum.surface import volume
 from kvtheory.results.errors import TransientError
@@ -214,3 +215,31 @@ def test_a_callable_that_jumps_needs_its_breaks():
         BaseMotion.from_function(jump, 1.0)
     given = BaseMotion.from_function(jump, 1.0, breaks=[0.3])
     assert [given.at(s)[1] for s in (0.0, 0.3, 1.0)] == pytest.approx([1, 2, 2], abs=1e-12)
+
+
+def triangle(levels, quarter, end):
+    """Return a drive from rest through the levels, one after each `quarter`."""
+    points = [(0.0, 0.0), *((quarter * (k + 1), level) for k, level in enumerate(levels))]
+    return BaseMotion.from_points(points, end)
+
+
+def test_a_touch_in_flight_is_seen_however_fast_the_ground_becomes_within_a_step():
+    """At the start of a step of a flight the drive may just turn; the touch is brief."""
+    drive = triangle([6994.3463, -2098.3039, 6994.3463, -6994.3463], 0.03464932670844973, 0.13)
+    for control in (StepControl(), StepControl(first_step=0.07, longest=0.02, grow=3.0)):
+        hops = [
+            event.kind
+            for event in solve(drive, 10.02245639, 0.0, 0.13, 1e-8, control=control).events
+            if event.kind in ("take-off", "landing")
+        ]
+        assert hops == ["take-off", "landing", "take-off"]
+
+
+def test_ground_that_was_left_just_now_is_found():
+    """Newton's method alone goes round there, so that an edge had no place."""
+    level, quarter, end = 0.009654823105660083, 0.0641212712494557, 1.6030317812363926
+    drive = triangle([level * (-1) ** (k + 1) for k in range(25)], quarter, end)
+    motion = solve(drive, 0.26558088605703467, 0.0, end, 1e-8)
+    after = [start + np.geomspace(1e-9, 1e-4, 40) for start in motion.starts]
+    times = np.append(np.concatenate(after), 1.3465473545522675)
+    assert np.all(np.isfinite(motion.states(times[times < end])))

@@ -122,6 +122,10 @@ def make_case(
     return Case(theory, series, fine, *allowance(theory, series, fine, THEORY_RTOL), tolerance)
 
 
+ROUNDED = 1.64
+"""Of the last digit's half: how far rounding takes a value from its neighbours, in the units of `gaps`."""
+
+
 def _coarser(case: Case) -> float:
     """Return how much wider the spacing is than assumed, by the sawtooth of +-b in the normal force (F15).
 
@@ -131,6 +135,7 @@ def _coarser(case: Case) -> float:
     force = "normal_force"
     gap, rows = gaps(case.series.time, case.series.columns[force] - case.now[force])
     b, digits = case.allowance.force[rows], case.allowance.rounding[force][rows]
+    gap = np.maximum(gap - ROUNDED * digits, 0.0)
     usual, large = np.quantile(gap[b > 0.0] / b[b > 0.0], [0.5, OFTEN])
     usual, large = float(usual) / USUAL, float(large) / LARGE
     shown = float(np.median(digits)) <= FINEST * float(np.median(b))

@@ -13,6 +13,8 @@ FEWEST = 5
 """Values from whose neighbours noise can be told."""
 MIXES = (0.0, 0.5, 0.9, 0.99, 0.999)
 """Parts of the noise that may be in proportion to the value, the rest being the same everywhere."""
+DOUBT = 5.0
+"""Difference of logarithms of likelihoods: the less likely is not ruled out."""
 RARE = 2.0
 """Beyond sqrt(2 ln n) standard deviations, where the largest of n normal errors is expected: so many more
 make a false alarm in one of twenty checks rarer than one in a thousand."""
@@ -57,7 +59,8 @@ def noise(time: Array, residual: Array, curve: Array) -> Array:
     """Return sigma of the random part of a residual for each value, from its differences to its neighbours.
 
     The median of magnitudes is robust against jumps. Of sigmas that are the same everywhere, in proportion
-    to the curve, or mixed, the likeliest counts, by the law of Laplace.
+    to the curve, or mixed, the likeliest counts, by the law of Laplace, or the largest of those hardly less
+    likely: few values tell what the noise is where the curve is large.
     """
     gap, rows = gaps(time, residual)
     size = np.nan_to_num(np.abs(curve))
@@ -65,7 +68,7 @@ def noise(time: Array, residual: Array, curve: Array) -> Array:
         return np.zeros_like(residual)
     size = size / size.max()  # first, so that no square underflows
     size = size / math.sqrt(float(np.mean(size * size)))
-    likeliest, found = math.inf, np.zeros_like(residual)
+    sigmas = []
     for mix in MIXES:
         shape = np.hypot(1.0 - mix, mix * size)
         inner = shape[rows]
@@ -73,9 +76,10 @@ def noise(time: Array, residual: Array, curve: Array) -> Array:
         if sigma == 0.0:
             continue
         unlikely = float(np.sum(np.log(sigma * inner) + gap / (sigma * inner)))
-        if unlikely < likeliest:
-            likeliest, found = unlikely, sigma * shape
-    return np.asarray(found)
+        sigmas.append((unlikely, sigma * shape))
+    likeliest = min((unlikely for unlikely, _ in sigmas), default=0.0)
+    found = [sigma for unlikely, sigma in sigmas if unlikely <= likeliest + DOUBT]
+    return np.max(found, axis=0) if found else np.zeros_like(residual)
 
 
 def rounded(values: Array, fewest: int = FEW_DIGITS[0]) -> Array:

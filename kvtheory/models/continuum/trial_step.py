@@ -13,8 +13,7 @@ from kvtheory.models.continuum.radau_iia import collocate, defect_error, imbalan
 from kvtheory.models.continuum.run import SIDES, Run
 from kvtheory.scene.base_motion import evaluate
 
-EVENT_RESOLUTION, SHARE_RESOLUTION, ULPS = 1e-13, 1e-6, 4e-16
-"""Of the time of an event, and of the piece of a step that it is in; as far as times can tell."""
+EVENT_RESOLUTION = 1e-13
 ROUNDING = 1e-15
 """Of an edge, whose material coordinate is xi - Y, relative to Y and to what a rounded time does to it."""
 
@@ -136,9 +135,7 @@ def _locate(run: Run, record: Any, low: float, high: float) -> tuple[float, Moni
     """Return the time of the first violation in (low, high], and the monitors just after it."""
     violated = monitors(run, record, high)[0]
     at_low, at_high, turn = math.nan, smallest(violated), 0
-    resolution = min(EVENT_RESOLUTION * (1.0 + high), SHARE_RESOLUTION * (high - low))
-    resolution = max(resolution, ULPS * high)
-    while high - low > resolution:
+    while high - low > EVENT_RESOLUTION * (1.0 + abs(high)):
         turn += 1
         middle = 0.5 * (low + high)
         if turn % 3 != 0 and not math.isnan(at_low):  # by halves now and then: secants may crawl
