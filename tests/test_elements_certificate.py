@@ -1,6 +1,7 @@
 """The error that `kv.elements` claims, held against theory on random scenes, and where it used to fail."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -76,6 +77,20 @@ def test_the_certificate_covers_the_error_on_random_scenes(first):
         claimed = run.certificate.relative_error
         for name, error in errors(run, theory, scene).items():
             assert error <= max(claimed[name], LEAST), (seed, name)
+
+
+@pytest.mark.parametrize("seed", range(24))
+def test_the_certificate_covers_the_error_under_a_drive_that_is_a_function(seed):
+    """A swinging drive leaves pressure on an edge, as a jump does."""
+    plain, times, density = drawn(seed)
+    rng = np.random.default_rng(seed)
+    mean, rate = rng.uniform(-1.5, 1.5), 10.0 ** rng.uniform(-0.3, 1.2)
+    drive = kv.Drive(function=lambda t: 3.0 * (mean + math.sin(rate * t)))
+    scene = replace(plain, drive=drive)
+    run = kv.elements(scene, per_length=density, at=times)
+    theory = kv.transient(scene, at=times, rtol=1e-9)
+    for name, error in errors(run, theory, scene).items():
+        assert error <= max(run.certificate.relative_error[name], LEAST), name
 
 
 @pytest.mark.parametrize("density", [8.0, 11.7, 40.0])

@@ -10,14 +10,14 @@ from kvtheory.models.elements.schemes import DEFAULT
 from kvtheory.results import TRANSIENT_UNITS, Certificate
 from kvtheory.results.certificate import AT_REST
 from kvtheory.results.table import scales
-from kvtheory.scene.base_motion import BaseMotion
+from kvtheory.scene.base_motion import POWERS, BaseMotion
 
 SAFETY = 4.0
 """Of the estimated errors: a change of the density can be small by luck. With one coarse run a bound was
 exceeded in one of a hundred random scenes, by any factor; two, whose elements are half a spacing apart,
 are seldom lucky at once."""
 KNOWN = 0.5
-"""Of an element: how well an edge is known after a jump of the drive, which leaves pressure on it."""
+"""Of an element: how well an edge is known after a change of the drive, which leaves pressure on it."""
 KINKED = 0.05
 """Of an element: how well an edge is known under a shape with kinks, whose overlap is straight anywhere."""
 ROUNDING = 1e-12
@@ -50,7 +50,8 @@ def estimate(
         + (0.0 if fine is None else _apart(rows, fine, name))
         for name in TRANSIENT_UNITS
     }
-    jump = KNOWN if len(path.changes) > 1 else 0.0
+    changes = len(path.pieces) > 1 or any(path.pieces[0][POWERS + 1 :])
+    jump = KNOWN if changes else 0.0
     edge = (jump + (KINKED if model.indenter.kinks else 0.0)) * model.spacing
     force = jump * model.spacing * float(rows["peak_pressure"].max())
     steepest = float(abs(model.slope(np.array(span(model.indenter, model.depth)))).max())
