@@ -39,7 +39,7 @@ def transient(
         Whether to estimate the error, by a second run with a tighter tolerance; without it the
         certificate says that nothing is known.
     max_steps
-        Steps after which to give up; without it, 100,000 and 100 for each piece of the drive.
+        Steps after which to give up; without it, 300,000 and 100 for each piece of the drive.
     progress
         Called now and then with the share of the work done, from 0 to 1, and a text, as every public
         function calls it: `kvtheory.progress.ProgressLine` shows both on standard error.

@@ -19,7 +19,7 @@ from kvtheory.cli.outputs import check_results, deliver, series_options
 )
 @click.option(
     "--max-steps", type=click.IntRange(1),
-    help="Steps after which to give up; default: 100,000 and 100 for each piece of the drive.",
+    help="Steps after which to give up; default: 300,000 and 100 for each piece of the drive.",
 )  # fmt: skip
 @series_options
 def transient(
