@@ -131,7 +131,10 @@ def _calculations(derivation: Derivation, given: Numbers) -> tuple[Calculation, 
         known.pop(claim.lhs, None)
         if value is not None:
             known[claim.lhs] = value
-    return tuple(found.values())
+    # The result comes last, also where what follows from it is said after it.
+    return tuple(
+        sorted(found.values(), key=lambda each: derivation.latex.startswith(f"{each.symbol} ="))
+    )
 
 
 def _agree(one: sp.Expr, other: sp.Expr) -> bool:

@@ -11,20 +11,9 @@ from pathlib import Path
 import sympy as sp
 from sympy.codegen.cfunctions import expm1, log1p
 
-from . import (
-    asymptote_errors,
-    circle,
-    energy,
-    master_curve,
-    power_law,
-    power_law_errors,
-    power_law_limits,
-    power_law_weight,
-    theorems,
-    wedge,
-)
 from . import symbols as sym
 from .book import established
+from .catalogue import catalogue
 from .symbols import Q, kappa, l, lam, q, r, s, xi, y
 from .symbols import exponent as n
 from .symbols import z_peeled as z
@@ -148,16 +137,9 @@ _BY_SYMBOL = {form.symbol: form for form in FORMS if form.arguments and form.sym
 """The functions that others may call; q is their argument instead."""
 
 
-_CHAPTERS = (
-    *(theorems, master_curve, energy, asymptote_errors, circle),
-    *(power_law, power_law_limits, power_law_weight, power_law_errors, wedge),
-)
-
-
 def closed_forms_source() -> str:
     """Return the text of the generated module, after all that it rests on has been proved anew."""
-    for chapter in _CHAPTERS:
-        chapter.derive()
+    catalogue(until={form.label for form in FORMS})
     constants = [_constant(form) for form in FORMS if not form.arguments]
     functions = [_function(form) for form in FORMS if form.arguments]
     return "\n".join([_HEADER, *constants]) + "".join(f"\n\n{text}" for text in functions)

@@ -616,12 +616,6 @@ SYMBOLS = tuple(
         (r"\breve F", r"friction force of an arm, in units of $K_i \breve c^4/R^2$", "1", "F17"),
         (r"\breve L", r"part of $\breve F$ that is lost in the contact", "1", "F17-energy"),
         (r"\breve G", "relaxation function at the trailing edge", "N/m³", "F17-growth"),
-        (
-            r"\breve G_n",
-            r"integral of $\breve G$ over the contact, repeated $n$ times",
-            "N/m³⁻ⁿ",
-            "F17-growth",
-        ),
         (r"\breve G_1", r"integral of $\breve G$ over the contact", "N/m²", "F17-growth"),
         (r"\breve G_2", r"integral of $\breve G_1$ over the contact", "N/m", "F17-growth"),
         (r"\breve G_3", r"integral of $\breve G_2$ over the contact", "N", "F17-growth"),

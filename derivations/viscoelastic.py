@@ -232,15 +232,15 @@ def _growth() -> Derivation:
     proof.equal(slope - sp.Rational(1, 2), gap / (2 * primitive_1**2), "more than one half, if")
     proof.equal(sp.Derivative(gap, c), -2 * primitive_2 * fall,
                 r"this, which is 0 for $\breve c = 0$, rises: $G$ falls")  # fmt: skip
-    proof.define(W, (primitive_2 * a - primitive_3) / R, "F17-load")
-    rise = primitive_2 * sp.Derivative(a, c) / R
-    proof.equal(sp.Derivative(W, c), rise, "no pressure at the trailing edge")
+    proof.define(W, (primitive_2**2 / primitive_1 - primitive_3) / R, "F17-load, with $a$ put in")
+    rise = primitive_2 * slope / R
+    proof.equal(sp.Derivative(W, c), rise, r"$a' \breve G_2/R$: no pressure at the trailing edge")
     return proof.done(sp.Derivative(W, c), rise)
 
 
 _GROWTH = (
     r"With $\frac{1}{2} \le a' < 1$ each depth belongs to one length of the contact, and with $W' > 0$ each "
-    r"load. $\breve G_n$ is the integral of $G$ over the contact, repeated $n$ times."
+    r"load. $\breve G_1$ to $\breve G_3$ are repeated integrals of $G$ over the contact."
 )
 
 

@@ -84,7 +84,7 @@ def test_each_label_finds_itself(label):
         (["--shape", "c*x**4", "--only", "eq27"], "does not go with --only"),
         (["--set", "drive.velocity=1 m/s"], "go with --numbers"),
         (["--numbers", "--set", "drive.velocity=0 m/s"], "drive.velocity is 0"),
-        (["--numbers", "--set", "indenter.shape=circle"], "of a parabola"),
+        (["--numbers", "--set", "indenter.shape=circle"], "the parabola only"),
     ],
 )
 def test_a_mistake_costs_one_message_and_no_work(no_work, tmp_path, arguments, message):

@@ -7,16 +7,10 @@ import mpmath as mp
 import numpy as np
 import pytest
 import sympy as sp
-from kvtheory.derivations import (
-    emit,
-    power_law,
-    power_law_errors,
-    power_law_limits,
-    power_law_weight,
-    wedge,
-)
+from kvtheory.derivations import emit
 from kvtheory.derivations import symbols as sym
 from kvtheory.derivations.book import established
+from kvtheory.derivations.catalogue import catalogue
 from kvtheory.derivations.symbols import exponent as n
 from kvtheory.derivations.symbols import l, q
 
@@ -41,8 +35,7 @@ CANCELLING = {
 
 @pytest.fixture(scope="module", autouse=True)
 def _proved():
-    for chapter in (power_law, power_law_limits, power_law_weight, power_law_errors, wedge):
-        chapter.derive()
+    catalogue(until=["wedge-weight-peeled"])
 
 
 @pytest.fixture(autouse=True)

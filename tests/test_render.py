@@ -412,7 +412,7 @@ def test_the_closure_has_all_that_a_result_rests_on_in_order(everything, tmp_pat
     chosen = edition(everything, ["eq46"], with_premises=True).derivations
     labels = [each.label for each in chosen]
     assert labels[-1] == "eq46"
-    assert {"eq3", "eq28", "load", "friction"} <= set(labels)
+    assert {"eq3", "eq28", "eq29", "F21", "F21-steady"} <= set(labels)
     for place, each in enumerate(chosen):
         assert set(each.uses) <= set(labels[:place])
 

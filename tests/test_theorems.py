@@ -11,9 +11,9 @@ import sympy as sp
 from kvtheory.derivations import asymptote_errors, circle, emit, energy, master_curve, theorems
 from kvtheory.derivations import symbols as sym
 from kvtheory.derivations.book import StepError, established
+from kvtheory.derivations.catalogue import catalogue
 from kvtheory.derivations.symbols import kappa, l, lam, q, s, xi
 
-CHAPTERS = (theorems, master_curve, energy, asymptote_errors, circle)
 OWNER = {form.symbol: form.label for form in emit.FORMS}
 NUMBERS = ("1e-4", "0.1", "0.75", "1", "1.7", "30", "1e5")
 """Retardation length over half length."""
@@ -27,7 +27,7 @@ def _fifty_digits():
 
 @pytest.fixture(scope="module", autouse=True)
 def proved():
-    return {proof.label: proof for chapter in CHAPTERS for proof in chapter.derive()}
+    return {proof.label: proof for proof in catalogue(until=["circle-dead-weight"])}
 
 
 def exact(label, symbol, known):
@@ -83,7 +83,11 @@ def test_all_are_proved_and_none_is_sampled(proved):
         "circle-fixed",
         "circle-dead-weight",
     } < set(proved)
-    assert {proof.status for proof in proved.values()} == {"proved", "proved-leading-order"}
+    own = [proof for proof in proved.values() if proof.section not in ("Model", "Tables")]
+    assert {proof.status for proof in own if proof.equation is None} == {
+        "proved",
+        "proved-leading-order",
+    }
 
 
 @pytest.mark.parametrize(

@@ -6,9 +6,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import sympy as sp
+from kvtheory.derivations import viscoelastic as theory
 
 import kvtheory as kv
-from derivations import viscoelastic as theory
 from kvtheory.models.steady import convolution, exact, viscoelastic
 from kvtheory.models.steady.viscoelastic import Prony
 from kvtheory.results import STEADY_UNITS

@@ -7,7 +7,6 @@ by algebra where that is quick, else at random points with 50 digits; so are sig
 import random
 from collections.abc import Iterator
 from contextlib import contextmanager
-from functools import reduce
 from typing import Any
 
 import sympy as sp
@@ -37,6 +36,7 @@ class Steps:
         self.label, self.draw = label, random.Random(2020)
         self.rules: dict[Expr, Expr] = {}
         self.conditions: list[Expr] = []
+        self.numbers: dict[Expr, Expr] = {}
 
     def given(self, lhs: Expr, rhs: Expr) -> None:
         """Let the left side stand for the right side."""
@@ -162,12 +162,21 @@ class Steps:
         while after != before:
             before, named = after, None
             while after != named:  # a derivative acts on what its names stand for
-                named, after = after, after.subs(self.rules)
+                named, after = after, self._named(after)
             after = after.doit(integrals=False)
         return after
 
+    def _named(self, expr: Expr) -> Expr:
+        """Put in once what names stand for; functions exactly as they are written."""
+        exact = {
+            lhs: rhs
+            for lhs, rhs in self.rules.items()
+            if isinstance(lhs, (AppliedUndef, sp.Derivative))
+        }
+        return expr.xreplace(exact).subs({k: v for k, v in self.rules.items() if k not in exact})
+
     def _zero(self, expr: Expr, claim: str, *, quiet: bool = False) -> None:
-        masked = _without_functions(expr)
+        masked = self._masked(expr)
         if masked == 0 or (
             not _has_powers(masked) and sp.expand(sp.fraction(sp.together(masked))[0]) == 0
         ):
@@ -183,7 +192,16 @@ class Steps:
                 holds = holds and abs(sum(values)) <= CLOSE * max(map(abs, values))
             self._report(holds, claim, f"{POINTS} points", quiet=quiet)
 
+    def _masked(self, expr: Expr) -> Expr:
+        """Let unknown functions and their derivatives be numbers, the same ones in each check."""
+        for kind in (sp.Subs, sp.Derivative, AppliedUndef):
+            for part in sorted(expr.atoms(kind), key=sp.count_ops, reverse=True):
+                number = self.numbers.setdefault(part, sp.Dummy(real=True))
+                expr = expr.xreplace({part: number})
+        return expr
+
     def _all(self, relation: str, gap: Expr) -> bool:
+        gap = self._masked(gap)
         points = (self._point(gap) for _ in range(POINTS))
         return all(_SIGNS[relation](self._value(gap, point)) for point in points)
 
@@ -200,11 +218,11 @@ class Steps:
 
     def _point(self, expr: Expr, fixed: dict[Expr, Expr] | None = None) -> dict[Expr, Expr]:
         """Draw values for all symbols until the conditions hold."""
-        gaps = [self._put(condition.gts - condition.lts) for condition in self.conditions]
+        gaps = [self._masked(self._put(each.gts - each.lts)) for each in self.conditions]
         wanted = expr.free_symbols | set().union(*(gap.free_symbols for gap in gaps))
         for _ in range(TRIES):
             point = {s: self._inside(0, 3, s) for s in wanted} | (fixed or {})
-            if all(self._value(gap, point) > 0 for gap in gaps if not gap.atoms(AppliedUndef)):
+            if all(self._value(gap, point) > 0 for gap in gaps):
                 return point
         raise AssertionError(f"{self.label}: no point satisfies {self.conditions}")
 
@@ -215,7 +233,10 @@ class Steps:
     def _inside(self, low: Expr, high: Expr, symbol: Expr | None = None) -> Expr:
         low, high = map(sp.sympify, (low, high))
         share = sp.Float(self.draw.randrange(1, 10**9), 2 * DIGITS) / 10**9
-        sign = -1 if symbol is not None and symbol.is_negative else 1
+        negative = symbol is not None and symbol.is_negative
+        if isinstance(symbol, sp.Dummy):  # the value of an unknown function
+            negative = self.draw.random() < 0.5
+        sign = -1 if negative else 1
         if low.is_finite and high.is_finite:
             return sign * (low + (high - low) * share)
         far = (1 - share) / share  # from 0 to infinity
@@ -236,11 +257,3 @@ def Rank(matrix: Expr) -> Expr:  # noqa: N802
 def _has_powers(expr: Expr) -> bool:
     """Tell whether an exponent is a symbol; algebra takes long over these."""
     return any(power.exp.free_symbols for power in expr.atoms(sp.Pow))
-
-
-def _without_functions(expr: Expr) -> Expr:
-    """Let unknown functions and their derivatives be numbers, for an identity in them."""
-    for kind in (sp.Subs, sp.Derivative, AppliedUndef):
-        parts = sorted(expr.atoms(kind), key=sp.count_ops, reverse=True)
-        expr = reduce(lambda e, part: e.xreplace({part: sp.Dummy(real=True)}), parts, expr)
-    return expr

@@ -128,11 +128,12 @@ def _quantities(path: str | None, overrides: Sequence[str]) -> tuple[dict[str, f
     """Return the quantities of a scene and of its steady state by the names of `derivations.symbols`."""
     from kvtheory.api import steady
     from kvtheory.scene import load_scene
-    from kvtheory.scene.requirements import lacks_paper_model, require
+    from kvtheory.scene.requirements import lacks_paper_model
     from kvtheory.scene.static_state import StaticState
 
     scene = load_scene(path, overrides)
-    require(lacks_paper_model, scene, "--numbers")
+    if lacking := lacks_paper_model(scene):
+        raise ValueError(f"--numbers {lacking}")
     velocity = abs(scene.drive.final_velocity)
     if velocity == 0.0:
         raise ValueError(
