@@ -271,7 +271,8 @@ def _response(
     """Return by how much b moves the depth and its rate.
 
     The rate answers C L d' + (K A + k_s) d = b at once, and by b h/M in a step; the depth with the time
-    constant T = C L/(K A + k_s) of the contact at the time.
+    constant T = C L/(K A + k_s) of the contact at the time. In flight nothing relaxes: the rate keeps what
+    it had when the contact was lost, and the depth drifts with it.
     """
     support, foundation = theory.scene.support, theory.scene.foundation
     if theory.scene.held or theory.rates is None:
@@ -285,12 +286,17 @@ def _response(
     left = np.exp(-ages * stiffness / damping)
     at_rest = foundation.stiffness * fine.spacing**2 * theory.static.half_length
     at_rest /= theory.scene.indenter.radius * float(stiffness[0])  # type: ignore[union-attr]
-    depth = [at_rest + GIVEN * theory.static.depth]
-    for most, share in zip(larger.tolist(), left.tolist(), strict=True):
-        depth.append(most + share * (depth[-1] - most))
+    depth, rate = [at_rest + GIVEN * theory.static.depth], [0.0]
     swing = SWING if theory.rates.oscillates else 1.0
-    found = swing * np.array(depth[1:])
-    return (
-        found,
-        force / damping + found * stiffness / damping + force * fine.time_step / support.mass,
+    kick = force * (1.0 / damping + fine.time_step / support.mass)
+    rows = zip(
+        *(larger, left, ages, kick, stiffness / damping, contact_length(curves) == 0.0), strict=True
     )
+    for most, share, age, step, decay, flies in rows:
+        if flies:
+            depth.append(depth[-1] + rate[-1] * age / swing)
+            rate.append(rate[-1])
+        else:
+            depth.append(most + share * (depth[-1] - most))
+            rate.append(step + swing * depth[-1] * decay)
+    return swing * np.array(depth[1:]), np.array(rate[1:])
