@@ -462,9 +462,7 @@ def test_a_run_too_long_for_our_own_simulation_is_refused_before_it():
 
 @pytest.mark.parametrize("velocity", [2.0, 10.0])
 def test_a_simulation_in_flight_keeps_the_error_with_which_it_took_off(velocity):
-    scene = kv.Scene(drive=kv.Drive(velocity=velocity))
+    scene = kv.Scene(drive=kv.Drive(velocity=velocity), run=kv.Run(0.05))
+    assert np.isnan(kv.transient(scene, at="20 ms:50 ms:30").leading_edge).any()
     held = kv.compare(scene)
-    assert np.isnan(kv.transient(scene, at="20 ms:200 ms:50").leading_edge).any()
     assert held.verdict == "agrees", held.diagnosis
-    heavier = kv.Scene(support=kv.DeadWeight(mass=1500.0), drive=kv.Drive(velocity=velocity))
-    assert kv.compare(scene, kv.elements(heavier)).verdict == "disagrees"
