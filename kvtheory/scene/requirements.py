@@ -8,6 +8,9 @@ from kvtheory.scene.model import Scene
 
 Lacking = Callable[[Scene], str]
 
+CLOSED_FORMS = (Parabola, PowerLaw, Wedge)
+"""Shapes whose steady sliding on a Kelvin-Voigt foundation is in closed form, with one root at most."""
+
 
 def lacks_parabola(scene: Scene) -> str:
     """Say why a method that needs a parabola does not hold for a scene; nothing if it does.
@@ -33,8 +36,7 @@ def lacks_paper_model(scene: Scene) -> str:
 
 def lacks_asymptotes(scene: Scene) -> str:
     """Say why a method that needs closed forms of Kelvin-Voigt does not hold; nothing if it does."""
-    shapes = (Parabola, PowerLaw, Wedge)
-    lacking = _lacks_shape(scene, shapes, "the parabola, the power law and the wedge")
+    lacking = _lacks_shape(scene, CLOSED_FORMS, "the parabola, the power law and the wedge")
     return lacking or lacks_kelvin_voigt(scene)
 
 
