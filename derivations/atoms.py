@@ -18,7 +18,7 @@ _BRACES = r"\{(?:[^{}]|\{(?:[^{}]|\{[^{}]*\})*\})*\}"
 _LETTER = rf"(?:\\Delta [stx](?![A-Za-z_'])|\\math(?:sf|bf)\{{[A-Za-z]\}}|{_GREEK}|[A-Za-z])"
 _TOKEN = re.compile(
     rf"\\(?:mathrm|operatorname|text|textrm|begin|end|phantom)\*?{_BRACES}"
-    rf"|(?P<dots>\\d*dot\s*)?(?P<accent>\\(?:bar|hat|tilde|breve)\s*)?"
+    rf"|(?P<dots>\\d*dot\s*)?(?P<accent>\\(?:bar|hat|tilde|breve|check)\s*)?"
     rf"(?P<letter>{_LETTER}|(?<=dot)\{{{_LETTER}\}}|(?<=bar)\{{{_LETTER}\}}|(?<=hat)\{{{_LETTER}\}})"
     rf"(?P<primes>'*)(?P<star>\^(?:\*|\{{\*\}}))?"
     rf"(?P<index>_(?:{_BRACES}|{_LETTER}|[0-9]|\\mathrm{_BRACES}))?(?P<late>\^(?:\*|\{{\*\}}))?"

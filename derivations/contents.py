@@ -147,6 +147,7 @@ CONTENTS = {
     "eq33": "Trailing edge of the movable indenter",
     "F8": "Memory in closed form",
     "F8-update": "Memory from one instant to the next",
+    "F8-remainder": "What a step can miss of the memory",
     "F9": "The contact is one interval",
     "F9-landing": "Landing is at one point",
     "F9-difference": "Contact against one past instant",

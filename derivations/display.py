@@ -34,6 +34,7 @@ _ARGUMENTS = {
     r"\hat": 1,
     r"\bar": 1,
     r"\breve": 1,
+    r"\check": 1,
 }
 _FUNCTIONS = {
     r"\exp": sp.exp, r"\sin": sp.sin, r"\cos": sp.cos, r"\tan": sp.tan, r"\log": sp.log,

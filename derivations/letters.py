@@ -66,6 +66,10 @@ BY_LABEL: dict[str, dict[str, str]] = {
     "error-depth-low": {"b": r"b_\delta", "E": r"E_\delta"},
     "circle-dead-weight": {**_LIFTED, "m": "m"},
     "F8": {**_STEP, **_PASSED, "c": r"\bar c"},
+    "F8-remainder": {
+        **_STEP,
+        **{f"{letter}_8": rf"\check {letter}" for letter in "fvcbyMk"},
+    },
     "F9": _SHAPES,
     "F10": {
         **_STEP,

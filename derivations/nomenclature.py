@@ -457,6 +457,28 @@ SYMBOLS = tuple(
         (r"\bar k_3", "third bounded factor", "1", "F10-turn"),
         (r"\bar y", "instant before a turn over the time since", "1", "F10-turn"),
         (r"\bar c", "rate of a motion within a step", "1", "F8"),
+        (
+            r"\check f",
+            "kept compression within a step, by the end of the step",
+            "1",
+            "F8-remainder",
+        ),
+        (r"\check v", r"slope of $\check f$", "1", "F8-remainder"),
+        (r"\check c", r"by how much less than $\check M$ that slope falls", "1", "F8-remainder"),
+        (
+            r"\check b",
+            "time from the nearer end of a step to the largest value",
+            "1",
+            "F8-remainder",
+        ),
+        (r"\check y", "time from the nearer end of a step", "1", "F8-remainder"),
+        (r"\check k", "half of how much farther the other end is", "1", "F8-remainder"),
+        (
+            r"\check M",
+            r"greatest magnitude of the second derivative of $\check f$",
+            "1",
+            "F8-remainder",
+        ),
         ("J", "jump that a proof excludes", "1", "F8-update"),
         (
             "D",

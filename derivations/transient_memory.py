@@ -52,7 +52,7 @@ _theorem = partial(Proof, equation=None, section=SECTION)
 
 def derive() -> tuple[Derivation, ...]:
     """Prove F8 and F9, with what they mean for a step in time and for landing."""
-    return _memory(), _update(), _interval(), _landing()
+    return _memory(), _update(), _remainder(), _interval(), _landing()
 
 
 def _memory() -> Derivation:
@@ -141,7 +141,37 @@ _UPDATE = (
     + r" The update needs no flag of contact. It is exact if $e^{s} g$ takes its maximum over the step "
     "at an end of it, so always where it is monotone. It fails only where, within the step, an "
     "element could first be pressed and then no longer; there $u$ is too small by at most $h^2/8$ times "
-    r"the greatest $|\hat p + \hat p'|$ of the step."
+    r"the greatest $|\hat p + \hat p'|$ of the step (F8-remainder)."
+)
+
+
+def _remainder() -> Derivation:
+    proof = _theorem("F8-remainder", title="What a step can miss of the memory", text=_REMAINDER,
+                     uses=("F8-update",))  # fmt: skip
+    f, slope = (sp.Function(name, real=True) for name in ("f_8", "v_8"))
+    unused = sp.Function("c_8", nonnegative=True)
+    y, b, most = sp.symbols("y_8 b_8 M_8", positive=True)
+    later = sp.Symbol("k_8", nonnegative=True)
+    missed = f(b) - f(0)
+    proof.define(sp.Derivative(f(y), y), slope(y), "its slope")
+    proof.define(sp.Derivative(slope(y), y), unused(y) - most, "which falls by at most this bound")
+    whole, spare = (y, 0, b), sp.Integral(y * unused(y), (y, 0, b))
+    primitive = most * y**2 / 2 + y * slope(y) - f(y)
+    proof.integral(spare, y * unused(y), whole, primitive, "by parts")
+    proof.define(slope(b), sp.S.Zero, "the largest value is at $b_8$")
+    proof.equal(missed, most * b**2 / 2 - spare, "what the nearer end of the step misses")
+    proof.define(_h, 2 * (b + later), "the other end is at least as far")
+    proof.equal(most * _h**2 / 8 - missed, most * later * (2 * b + later) / 2 + spare, "the rest")
+    proof.holds(most * later * (2 * b + later) / 2 + spare, ">=", 0, "never negative")
+    return proof.done(most * _h**2 / 8 - missed, most * later * (2 * b + later) / 2 + spare)
+
+
+_REMAINDER = (
+    r"Where $e^{s} g$ is largest within a step, at the time $b_8$ from its nearer end, let $f_8(y_8)$ be it "
+    "over the exponential at its end, at the time $y_8$ from the nearer end; the update takes "
+    r"$f_8(0)$ for $f_8(b_8)$. Its second derivative is $\hat p + \hat p'$ times at most 1 (F8-update), and "
+    "$M_8$ its greatest magnitude: so $u$ is too small by at most $M_8 h^2/8$. The slope falls by "
+    r"$M_8 - c_8$ with $c_8 \ge 0$."
 )
 
 

@@ -7,6 +7,7 @@ import sympy as sp
 from kvtheory.derivations import symbols as s
 from kvtheory.derivations import transient_edges, transient_motion
 from kvtheory.derivations.catalogue import catalogue
+from kvtheory.derivations.step import Proof, StepError
 from kvtheory.derivations.transient_scaling import LEADING, PRESSURE, SECTION, TRAILING
 
 DIGITS = 50
@@ -240,3 +241,20 @@ def test_edges_on_ground_that_was_left_at_once(moved):
     }  # fmt: skip
     peel = -drive + mp.sqrt(d + rate + drive**2)
     assert abs(value(transient_edges.RIGHT_AT_ONCE, known) - peel) < 10 * soon
+
+
+@pytest.mark.parametrize(("kind", "right"), [(sp.Max, True), (sp.Min, False)])
+def test_the_update_holds_with_max_and_not_with_min(kind, right):
+    """F8-update anew, in other letters: free until the end of the step, or in contact there."""
+    h, decay = sp.Symbol("h", positive=True), sp.exp(-sp.Symbol("h", positive=True))
+    before, after, now = sp.symbols("u_0 u_1 g_1", real=True)
+    clearance, impulse = sp.symbols("c_1 J_1", nonnegative=True)
+    proof = Proof("planted-update", None, section="Test", title="Test")
+    proof.define(now, after - clearance)
+    proof.define(before, sp.exp(h) * (after - decay * impulse))
+    cases = sp.Eq(impulse, 0), sp.Eq(clearance, 0)
+    if right:
+        proof.equal(after, kind(decay * before, now), "update", cases=cases)
+    else:
+        with pytest.raises(StepError):
+            proof.equal(after, kind(decay * before, now), "update", cases=cases)
