@@ -156,10 +156,10 @@ def _edge() -> Derivation:
 
 
 _EDGE = (
-    r"The arms and the spring together have no pressure there: $\breve a = \sum \breve P/\sum \breve A$, "
-    r"that is $a = \breve c \sum K_i \breve P/\sum K_i \breve A$ and $x_{\mathrm{TE}} = \breve c \sum "
-    r"K_i \breve Q/\sum K_i \breve A$: the length of the contact gives its half length at rest. The "
-    r"pressure $R p' = a G - \int_0^X G$ falls where $G$ does, so that $p$ is concave and vanishes once."
+    r"All arms and the spring together have no pressure there: $a = \breve c \sum K_i \breve P/\sum "
+    r"K_i \breve A$ and $x_{\mathrm{TE}} = \breve c \sum K_i \breve Q/\sum K_i \breve A$, with the moments "
+    "of each arm. The length of the contact so gives its half length at rest. The slope of the pressure, "
+    r"$R p' = a G - \int_0^X G$, falls where $G$ does, so that $p$ is concave and vanishes once."
 )
 
 
