@@ -50,6 +50,7 @@ CERTIFICATE = Certificate(
     "over ten decades of relaxation times, and of fractional orders",
     relative_error=dict.fromkeys(STEADY_UNITS, RELATIVE_ERROR),
 )
+OWN_ERRORS = ("dissipated_in_contact",)
 
 
 class Moments(NamedTuple):
@@ -84,13 +85,13 @@ class Prony:
             *(K + self._sum(end), -self._sum(z * end)),
         )
 
-    def dissipated(self, c: Array, eta: Array, work: Array) -> Array:
-        """Return the share of the work that is lost in the contact: a sum of terms that are positive."""
+    def dissipated(self, c: Array, eta: Array, work: Array) -> tuple[Array, Array]:
+        """Return the share of the work that is lost in the contact, all terms positive, and its error."""
         z = np.minimum(c / self.length, FAR)
         P, Q, _, E, _ = exponential_moments(z)
         A, B = P + Q, 0.5 * (P - Q)
         lost = E - 0.5 * B * B + eta * (A * B + eta * (B + 0.5 * A * z * P))
-        return self._sum(lost) / work
+        return self._sum(lost) / work, np.full_like(work, RELATIVE_ERROR)
 
     def response(self, X: Array) -> tuple[Array, Array, Array]:
         """Return G, X dG/dX and the mean of G up to X."""
@@ -154,8 +155,11 @@ class Fractional:
             *(K + part * first, -alpha * part * first),
         )
 
-    def dissipated(self, c: Array, eta: Array, work: Array) -> Array:
-        """Return the share of the work that is lost in the contact: what is not left at its edge."""
+    def dissipated(self, c: Array, eta: Array, work: Array) -> tuple[Array, Array]:
+        """Return the share of the work that is lost in the contact: what is not left at its edge.
+
+        Towards order 0 next to nothing is lost, and the difference loses digits: so its own error.
+        """
         rest, two = 1.0 - self.alpha, 2.0**-self.alpha
         third, fourth = self.rgamma[3:5]
         none = 2.0 * np.expm1(rest * math.log(2.0)) * third  # (w + w')^-alpha over both w
@@ -163,7 +167,11 @@ class Fractional:
         both = 2.0 * (1.0 - 2.0 * two * self.alpha) * third / (4.0 - self.alpha)  # and times w w'
         shift = eta - 0.5
         stored = both + shift * (2.0 * once + shift * none)
-        return 1.0 - 0.5 * (self.K * eta * eta + self._part(c) * stored) / work
+        size = 2.0 * third + np.abs(shift) * (2.0 * once + np.abs(shift) * none)
+        spring, part = 0.5 * self.K * eta * eta, 0.5 * self._part(c)
+        lost = 1.0 - (spring + part * stored) / work
+        least = np.maximum(lost, np.finfo(float).eps)
+        return lost, RELATIVE_ERROR * (1.0 + (spring + part * size) / (work * least))
 
     def response(self, X: Array) -> tuple[Array, Array, Array]:
         """Return G, X dG/dX and the mean of G up to X."""
@@ -233,7 +241,7 @@ def at_depth(
         return _state(R, row, time, V, delta, a, _length_at_half(row, a))
 
     given = radius, stiffness, retardation_time, velocity, depth, *parameters
-    return evaluate(held, given, velocity, CERTIFICATE)
+    return evaluate(held, given, velocity, CERTIFICATE, OWN_ERRORS)
 
 
 def at_load(
@@ -267,7 +275,7 @@ def at_load(
         return _state(R, row, time, V, a * (a / (2.0 * R)), a, c)
 
     given = radius, stiffness, retardation_time, velocity, weight, spring, *parameters
-    return evaluate(carried, given, velocity, CERTIFICATE)
+    return evaluate(carried, given, velocity, CERTIFICATE, OWN_ERRORS)
 
 
 def _length_at_half(row: Prony | Fractional, a: Array) -> Array:
@@ -318,14 +326,14 @@ def _growth(M: Moments) -> tuple[Array, Array, Array]:
 def _state(
     R: Array, row: Prony | Fractional, time: Array, V: Array, delta: Array, a: Array, c: Array
 ) -> tuple[Array, ...]:
-    """Return the quantities in the order of `STEADY_UNITS`."""
+    """Return the quantities in the order of `STEADY_UNITS`, and the error of the last one."""
     M = row.moments(c)
     A = M.P + M.Q
     eta = 0.5 * (M.P - M.Q) / A
     side = np.where(V < 0.0, -1.0, 1.0)  # a reversed drive is the mirror image
     slope = c / R
     load, work = M.D + eta * M.P, M.E + eta * eta * M.P
-    inside = row.dissipated(c, eta, np.where(work > 0.0, work, 1.0))
+    inside, error = row.dissipated(c, eta, np.where(work > 0.0, work, 1.0))
     return (
         delta,
         a,
@@ -337,6 +345,7 @@ def _state(
         side * slope * (work / load) + 0.0,
         _peak(R, row, a),
         np.where(work > 0.0, inside, 1.0),
+        error,
     )
 
 
