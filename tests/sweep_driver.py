@@ -21,6 +21,8 @@ POINTS = 6000
 BLOCK = 20
 SLOW_POINTS = 120
 OVER = {"drive.velocity": f"1 mm/s:10 m/s:{POINTS}:log"}
+PAUSE = 0.01
+"""Seconds; the blocks that a sweep is left with take some of them."""
 MOST_REPORTS, LONGEST_DELAY = 12, 2e-3
 """A child is killed after so many reports, of the 300 that a whole sweep makes, and so many seconds."""
 
@@ -53,6 +55,12 @@ def kept(output):
 def tell(pipe):
     """Return what writes the number of points that are done, with which its words begin."""
     return lambda share, words: os.write(pipe, f"{done_of(words)}\n".encode())
+
+
+def tell_slowly(pipe):
+    """Return the same with a pause after each block, so that there is time to disturb the sweep."""
+    told = tell(pipe)
+    return lambda share, words: (told(share, words), time.sleep(PAUSE))
 
 
 def done_of(words):
@@ -93,7 +101,7 @@ if __name__ == "__main__":
         resource.setrlimit(resource.RLIMIT_FSIZE, (int(sys.argv[3]),) * 2)
     try:
         jobs = int(sys.argv[2])
-        (run if jobs == 1 else run_slowly)(Path(sys.argv[1]), jobs=jobs, progress=tell(1))
+        (run if jobs == 1 else run_slowly)(Path(sys.argv[1]), jobs=jobs, progress=tell_slowly(1))
     except (OSError, RuntimeError) as error:
         sys.exit(f"{type(error).__name__}: {error}")
     except KeyboardInterrupt:

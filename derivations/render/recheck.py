@@ -196,7 +196,8 @@ class Steps:
         """Let unknown functions and their derivatives be numbers, the same ones in each check."""
         for kind in (sp.Subs, sp.Derivative, AppliedUndef):
             for part in sorted(expr.atoms(kind), key=sp.count_ops, reverse=True):
-                number = self.numbers.setdefault(part, sp.Dummy(real=True))
+                never = part.is_nonnegative  # what is known of its sign
+                number = self.numbers.setdefault(part, sp.Dummy(real=True, nonnegative=never))
                 expr = expr.xreplace({part: number})
         return expr
 
@@ -234,7 +235,7 @@ class Steps:
         low, high = map(sp.sympify, (low, high))
         share = sp.Float(self.draw.randrange(1, 10**9), 2 * DIGITS) / 10**9
         negative = symbol is not None and symbol.is_negative
-        if isinstance(symbol, sp.Dummy):  # the value of an unknown function
+        if isinstance(symbol, sp.Dummy) and not symbol.is_nonnegative:  # of an unknown function
             negative = self.draw.random() < 0.5
         sign = -1 if negative else 1
         if low.is_finite and high.is_finite:
