@@ -89,13 +89,14 @@ def _formulas(scene: Scene, values: Values) -> dict[str, Callable[[Array], Array
     damping = sum(stiffness * time for stiffness, time in arms)
     glassy = K + sum(stiffness for stiffness, _ in arms)
     slope = sum(stiffness / time for stiffness, time in arms)
-    a = _glassy_half_length(values, glassy)
     plainly = replace(scene, foundation=Foundation(1.0, 1.0))
     kelvin_voigt = {**values, TIME: damping / K}
     return {
         "L1": lambda V: damping * V / (R * K),
         "Kelvin-Voigt": lambda V: _exact(plainly, kelvin_voigt, V),
-        "glassy": lambda V: 0.4 * (a * (a / R)) * (slope / glassy) / V,
+        "glassy": lambda V: (
+            0.4 * (_glassy_half_length(values, glassy) ** 2 / R) * (slope / glassy) / V
+        ),
     }
 
 

@@ -237,8 +237,7 @@ def at_depth(
         R: Array, K: Array, time: Array, V: Array, delta: Array, *own: Array
     ) -> tuple[Array, ...]:
         row = law(K, V, own)
-        a = np.sqrt(2.0 * R * delta)
-        return _state(R, row, time, V, delta, a, _length_at_half(row, a))
+        return _state(R, row, time, V, _length_at_half(row, np.sqrt(2.0 * R * delta)), delta)
 
     given = radius, stiffness, retardation_time, velocity, depth, *parameters
     return evaluate(held, given, velocity, CERTIFICATE, OWN_ERRORS)
@@ -269,10 +268,7 @@ def at_load(
         R: Array, K: Array, time: Array, V: Array, load: Array, k: Array, *own: Array
     ) -> tuple[Array, ...]:
         row = law(K, V, own)
-        c = _length_at_load(row, R, load, k)
-        M = row.moments(c)
-        a = c * (M.P / (M.P + M.Q))
-        return _state(R, row, time, V, a * (a / (2.0 * R)), a, c)
+        return _state(R, row, time, V, _length_at_load(row, R, load, k))
 
     given = radius, stiffness, retardation_time, velocity, weight, spring, *parameters
     return evaluate(carried, given, velocity, CERTIFICATE, OWN_ERRORS)
@@ -324,11 +320,21 @@ def _growth(M: Moments) -> tuple[Array, Array, Array]:
 
 
 def _state(
-    R: Array, row: Prony | Fractional, time: Array, V: Array, delta: Array, a: Array, c: Array
+    R: Array,
+    row: Prony | Fractional,
+    time: Array,
+    V: Array,
+    c: Array,
+    delta: Array | None = None,
 ) -> tuple[Array, ...]:
-    """Return the quantities in the order of `STEADY_UNITS`, and the error of the last one."""
+    """Return the quantities in the order of `STEADY_UNITS`, and the error of the last one.
+
+    A depth that is given is kept to the last bit; without, it follows from the length of the contact.
+    """
     M = row.moments(c)
     A = M.P + M.Q
+    a = c * (M.P / A) if delta is None else np.sqrt(2.0 * R * delta)
+    delta = a * (a / (2.0 * R)) if delta is None else delta
     eta = 0.5 * (M.P - M.Q) / A
     side = np.where(V < 0.0, -1.0, 1.0)  # a reversed drive is the mirror image
     slope = c / R
