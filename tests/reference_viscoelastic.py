@@ -17,8 +17,8 @@ from flint import arb, ctx
 from kvtheory.models.steady import viscoelastic
 from tests import reference
 
-DIGITS = 1100
-"""Bits: the cancellation of G_4 takes four times the decades of the fastest arm over the contact."""
+BITS = 1100
+"""The cancellation of G_4 takes four times the decades of the fastest arm over the contact."""
 WIDTH = arb(2) ** -300
 
 
@@ -80,7 +80,7 @@ LAWS = {viscoelastic.Prony: Prony, viscoelastic.Fractional: Fractional}
 
 def at_depth(law, parameters, radius, stiffness, retardation_time, velocity, depth):
     """Every steady quantity at a given depth."""
-    with ctx.workprec(DIGITS):
+    with ctx.workprec(BITS):
         R, K, tau, V, depth = map(arb, (radius, stiffness, retardation_time, velocity, depth))
         row, a = LAWS[law](K, V, parameters), (2 * R * depth).sqrt()
 
@@ -93,7 +93,7 @@ def at_depth(law, parameters, radius, stiffness, retardation_time, velocity, dep
 
 def at_load(law, parameters, radius, stiffness, retardation_time, velocity, weight, spring=0.0):
     """Every steady quantity under a weight, on a spring relaxed at the static depth."""
-    with ctx.workprec(DIGITS):
+    with ctx.workprec(BITS):
         R, K, tau, V, weight, k = map(
             arb, (radius, stiffness, retardation_time, velocity, weight, spring)
         )

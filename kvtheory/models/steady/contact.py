@@ -95,10 +95,20 @@ class Contact(NamedTuple):
 
 def at_depth(shape: Convex, l_r: Value, depth: Value) -> Contact:
     """Return the contact at a depth."""
+    a = _start(shape, depth)
+    return _at_depth(shape, l_r, depth, a, a)
+
+
+def half_length(shape: Convex, depth: Value) -> Value:
+    """Return a > 0 with h(a) = depth."""
+    return _half_length(shape, depth, _start(shape, depth))[0]
+
+
+def _start(shape: Convex, depth: Value) -> Value:
+    """Return where the search for the half length of a contact at a depth begins."""
     if not largest(depth - _deepest(shape)) < 0.0:
         raise QuadratureError("the leading edge lies beyond the indenter's reach")
-    a = _first(shape, depth, depth, lambda x: 1.0)
-    return _at_depth(shape, l_r, depth, a, a)
+    return _first(shape, depth, depth, lambda x: 1.0)
 
 
 def at_load(shape: Convex, l_r: Value, load: Value, spring: Value) -> Contact:

@@ -22,10 +22,11 @@ import numpy as np
 from scipy.optimize import brentq, minimize_scalar
 from scipy.special import gamma
 
+from kvtheory.models.steady.contact import half_length
 from kvtheory.models.steady.double_exponential import RULES
 from kvtheory.results import Certificate, SteadyState
 from kvtheory.results.errors import QuadratureError
-from kvtheory.scene.indenters import Indenter
+from kvtheory.scene.indenters import Convex
 
 Array = Any
 """Of floats."""
@@ -152,7 +153,7 @@ class Contact(NamedTuple):
 class Sliding:
     """One contact, with what is needed of it at the nodes of both rules."""
 
-    def __init__(self, shape: Indenter, K: float, memory: Memory | None, contact: Contact) -> None:
+    def __init__(self, shape: Convex, K: float, memory: Memory | None, contact: Contact) -> None:
         self.shape, self.K, self.memory, self.contact = shape, K, memory, contact
         _, a, x_te = contact
         self.x = np.concatenate((-a * NODES[::-1], x_te * NODES))
@@ -169,7 +170,7 @@ class Sliding:
         return fine, abs(fine - coarse)
 
 
-def remembered(shape: Indenter, memory: Memory | None, a: float, x: Array) -> tuple[Array, float]:
+def remembered(shape: Convex, memory: Memory | None, a: float, x: Array) -> tuple[Array, float]:
     """Return the pressure of each branch at the places x, and how far both rules are apart."""
     if memory is None:
         return np.zeros((1, x.size)), 0.0
@@ -191,9 +192,9 @@ def remembered(shape: Indenter, memory: Memory | None, a: float, x: Array) -> tu
     return amount * fine, float((apart / np.maximum(size.max(), TINY)).max())
 
 
-def contact_at(shape: Indenter, K: float, memory: Memory | None, depth: float) -> Contact:
+def contact_at(shape: Convex, K: float, memory: Memory | None, depth: float) -> Contact:
     """Return the contact at a depth: h(a) = depth, and the first zero of the pressure."""
-    a = _half_length(shape, depth)
+    a = half_length(shape, depth)
     if memory is None:
         return Contact(depth, a, a)
     pressure = partial(_pressure, shape, K, memory, Contact(depth, a, a))
@@ -205,29 +206,15 @@ def contact_at(shape: Indenter, K: float, memory: Memory | None, depth: float) -
 
 
 def _pressure(
-    shape: Indenter, K: float, memory: Memory | None, contact: Contact, x: float
+    shape: Convex, K: float, memory: Memory | None, contact: Contact, x: float
 ) -> float:
     """Return the pressure at x."""
     rows, _ = remembered(shape, memory, contact.a, np.array([x]))
     return float(K * (contact.depth - shape.height(x)) + rows.sum())
 
 
-def _half_length(shape: Indenter, depth: float) -> float:
-    """Return a > 0 with h(a) = depth."""
-    end = math.nextafter(shape.reach, 0.0)
-    high = min(1.0, end)
-    while shape.height(high) < depth:
-        if high == end:
-            raise QuadratureError("the leading edge lies beyond the indenter's reach")
-        high = min(4.0 * high, end)
-    low = high
-    while shape.height(low) >= depth:
-        low *= 0.25
-    return float(brentq(lambda x: shape.height(x) / depth - 1.0, low, high, xtol=TINY, rtol=ROOT))
-
-
 def depth_at(
-    shape: Indenter, K: float, memory: Memory | None, load: float, spring: float
+    shape: Convex, K: float, memory: Memory | None, load: float, spring: float
 ) -> Contact:
     """Return the contact where W + spring * depth is the load, by Newton's method in logarithms."""
     deepest = float(shape.height(math.nextafter(shape.reach, 0.0)))
@@ -252,7 +239,7 @@ def depth_at(
 
 def at_depth(
     memory: Memory,
-    indenter: Indenter,
+    indenter: Convex,
     stiffness: float,
     retardation_time: float,
     velocity: float,
@@ -295,7 +282,7 @@ def at_depth(
 
 def at_load(
     memory: Memory,
-    indenter: Indenter,
+    indenter: Convex,
     stiffness: float,
     retardation_time: float,
     velocity: float,
