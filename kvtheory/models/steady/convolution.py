@@ -205,17 +205,13 @@ def contact_at(shape: Convex, K: float, memory: Memory | None, depth: float) -> 
     return Contact(depth, a, brentq(pressure, VERTEX * a, a, xtol=TINY, rtol=ROOT, maxiter=2000))
 
 
-def _pressure(
-    shape: Convex, K: float, memory: Memory | None, contact: Contact, x: float
-) -> float:
+def _pressure(shape: Convex, K: float, memory: Memory | None, contact: Contact, x: float) -> float:
     """Return the pressure at x."""
     rows, _ = remembered(shape, memory, contact.a, np.array([x]))
     return float(K * (contact.depth - shape.height(x)) + rows.sum())
 
 
-def depth_at(
-    shape: Convex, K: float, memory: Memory | None, load: float, spring: float
-) -> Contact:
+def depth_at(shape: Convex, K: float, memory: Memory | None, load: float, spring: float) -> Contact:
     """Return the contact where W + spring * depth is the load, by Newton's method in logarithms."""
     deepest = float(shape.height(math.nextafter(shape.reach, 0.0)))
     depth = min(
