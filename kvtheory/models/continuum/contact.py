@@ -48,7 +48,7 @@ SWEEP_STEPS, NEWTON_ALONE = 150, 20
 """Bisection alone needs less than 60; after so many, every other step is one, for Newton's may go round."""
 
 ROUNDING = 1e-15
-"""Of an edge on ground that was left just now, times the age of that ground."""
+"""Of an edge on ground that was left just now, times the age of that ground, relative to 1 + |Y|."""
 
 Node = Sequence[float]
 
@@ -192,5 +192,5 @@ def slack(
         terms = 1.0 + abs(v) + abs(dv) + number * number + abs(slope * xi)
         return -pressure_rate(xi, v, dv, number, slope) / terms, math.inf
     p = pressure(xi, d, v, number) / (1.0 + abs(v) + abs(number * xi))
-    rounding = ROUNDING / (s - row[IN_S])
+    rounding = ROUNDING * (1.0 + abs(Y)) / (s - row[IN_S])
     return p + rounding, side * (row[OUT_X] - (xi - Y)) + rounding

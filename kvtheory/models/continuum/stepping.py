@@ -80,14 +80,28 @@ def _meet_drive(run: Run) -> None:
     if index > 0:
         _, last, last_slope = b_.evaluate(run.pieces[index - 1], now[r_.S])
     jumps = abs(number - last) > SMOOTH * (1.0 + abs(number))
-    if jumps or abs(slope - last_slope) > SMOOTH * (1.0 + abs(slope)):
-        now[r_.KINK] = now[r_.S]
     if jumps or index == 0:
         _restart(run)
+    if jumps or abs(slope - last_slope) > SMOOTH * (1.0 + abs(slope)):
+        _begin_briefly(run, number, slope)
     if run.states[0] != FREE:
         _detach(run, Y, number)
     if run.counts[r_.SMOOTH] != 0:
         _meet_kink(run, Y, number, slope)
+
+
+def _begin_briefly(run: Run, number: float, slope: float) -> None:
+    """After a kink or jump, let a step be no longer than lambda takes to change, and what came before lasted.
+
+    A steep ramp from rest, and ground that was left in a short pulse, make the forces change in so short a
+    time that a longer step would not see it.
+    """
+    now = run.now
+    brief = (1.0 + abs(number)) / max(abs(slope), TINY)
+    if now[r_.S] > now[r_.KINK]:
+        brief = min(brief, now[r_.S] - now[r_.KINK])
+    brief = max(run.given.control.first_step * brief, SHORTEST * (1.0 + now[r_.S]))
+    now[r_.SPAN], now[r_.KINK] = min(now[r_.SPAN], brief), now[r_.S]
 
 
 def _meet_kink(run: Run, Y: float, number: float, slope: float) -> None:
