@@ -33,7 +33,8 @@ Array = NDArray[np.float64]
 DEGREES = (24, 48, 96)
 """Of the Chebyshev series, tried in turn; 24 do down to 1e-5, 48 at 1e-8, at any velocity."""
 SETTLED = 1e-2
-"""Share of the tolerance within which the path comes to the steady depth before its end."""
+"""Share of the tolerance within which the path comes to the steady half length before its end; from there on
+the rest fades at one rate."""
 RESOLVED = 1e-2
 """Share of the tolerance that the tail of the series may take."""
 INVERSIONS = 12
@@ -76,15 +77,16 @@ def follow(given: Start, s: Array, tolerance: float) -> SlowMotion:
     [1.       0.303964]
     """
     path = _path(given, tolerance)
-    u = path.when(s)
-    moved = np.where(s >= path.length, 0.0, (1.0 - given.steady) * np.exp(-u))
+    u = path.when(np.minimum(s, path.length))
+    fading = np.exp(-np.maximum(s - path.length, 0.0) / path.last_pace)
+    moved = (1.0 - given.steady) * np.exp(-u) * fading
     a, b, v, stiff, slope = _manifold(given, moved)
     values = _values(given, a, b, v)
     delay = path.delay(u)
     least, most = 1.0 / given.stiffest, 1.0 / given.stiff
     apart = np.maximum(np.abs(delay - least), np.abs(delay - most))
     late = given.eps * (apart + path.ratio * (delay + most)) + path.error
-    depth = SAFETY * np.abs(v) * late + tolerance * SETTLED
+    depth = SAFETY * np.abs(v) * late + tolerance * RESOLVED
     falling = -(slope + given.kappa) / stiff  # G'
     own = SAFETY * given.eps * np.abs(v) * -falling / stiff
     errors = _errors(given, values, a, b, falling, depth, own, given.layer(s))
@@ -165,6 +167,11 @@ class _Path:
             if np.all((np.abs(step) <= INVERTED) | (s >= self.length)):
                 return u
         raise ArithmeticError("the times on the slow manifold could not be inverted")
+
+    @property
+    def last_pace(self) -> float:
+        """ds/du at the end: the time constant with which what is left fades."""
+        return float(self.pace.sum())
 
     def delay(self, u: Array) -> Array:
         """Return the integral that delays the motion, in units of eps."""
