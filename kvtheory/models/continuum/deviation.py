@@ -18,7 +18,9 @@ DEPTH, RATE, NORMAL_FORCE, FRICTION_FORCE, EDGES, PEAK_PRESSURE, HOPS = range(7)
 EDGE_ROUNDING, NORMAL_ROUNDING, FRICTION_ROUNDING, PEAK_ROUNDING = range(7, 11)
 """What rounding of the edges may do to them, and to the forces, for the pressure there acts, and to the
 pressure at them."""
-SIZE = 11
+SIZES = 11
+"""From here on, the largest magnitude of each quantity; of `HOPS` it stays zero."""
+SIZE = SIZES + HOPS + 1
 
 
 def deviations(times: Any, found: Any, fine: Run, other: Run, rows: Any, worst: Any) -> None:
@@ -82,6 +84,7 @@ def _raise(worst: Any, row: Any, one: Any, two: Any) -> None:
         (PEAK_PRESSURE, e_.PEAK_PRESSURE),
     ):
         value = _known(row[i])
+        worst[SIZES + k] = max(worst[SIZES + k], abs(value))
         worst[k] = max(worst[k], min(abs(value - _known(one[i])), abs(value - _known(two[i]))))
     rounding, pressure = row[e_.ROUNDING], row[e_.PEAK_PRESSURE]
     arm = max(abs(_known(row[e_.LEFT])), abs(_known(row[e_.RIGHT])))

@@ -26,7 +26,8 @@ MARGIN = 10.0
 """The difference is multiplied by this: in one of a thousand scenes with hops it is so many times smaller
 than the error."""
 FLOOR = 1e-2
-"""In units of the tolerance: what lies below it is luck."""
+"""In units of the tolerance, which is relative to 1 + a quantity where it is largest: what lies below it is
+luck, for then the error of the solution compared with may be as large."""
 
 STATEMENT = (
     f"{MARGIN:g} times the difference to a solution with {1 / TIGHTER:g} times the tolerance and other "
@@ -75,7 +76,10 @@ def errors(here: Any, whole: Any, rtol: float, fixed: bool) -> dict[str, Any]:
     Deviations may be arrays of those of many scenes.
     """
     moves = 0.0 if fixed else 1.0
-    at_times, ever = (np.maximum(MARGIN * np.asarray(of), FLOOR * rtol) for of in (here, whole))
+    luck = FLOOR * rtol * (1.0 + np.asarray(whole[d_.SIZES :]))
+    at_times, ever = (
+        np.maximum(MARGIN * np.asarray(of[: d_.HOPS + 1]), luck) for of in (here, whole)
+    )
     edges = at_times[d_.EDGES] + here[d_.EDGE_ROUNDING]
     depth = moves * ever[d_.DEPTH]
     return {

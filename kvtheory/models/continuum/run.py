@@ -111,9 +111,9 @@ def begin(
     )  # fmt: skip
     if arrays:
         large: Any = map(np.zeros, sizes)
-        run = Run(given, np.array(drive.pieces), *map(np.array, small), *large)
+        run = Run(given, drive.rows, *map(np.array, small), *large)
     else:
-        run = Run(given, drive.pieces, *small, *(_lists(*size) for size in sizes))
+        run = Run(given, drive.rows.tolist(), *small, *(_lists(*size) for size in sizes))
     rest(run)
     return run
 
