@@ -13,7 +13,7 @@ from kvtheory.results.comparison import Comparison
 from kvtheory.results.schemes import SCHEME_ROWS
 from kvtheory.scene.model import Scene
 from kvtheory.scene.quantities import Quantity, SceneError, convert, nearest, problem
-from kvtheory.scene.requirements import lacks_paper_model, require
+from kvtheory.scene.requirements import lacks_rigid_paper_model, require
 
 EVEN, DENSE = 401, 60
 """Samples of our own simulation: over the run, and more after each change of the drive."""
@@ -114,7 +114,7 @@ def compare(
     Nakano and Kono (2020), doi:10.3389/fmech.2020.00038; facts F8-F15 of the derivations.
     """
     scene = scene_of(scene)
-    require(lacks_paper_model, scene, "the theory of the transient")
+    require(lacks_rigid_paper_model, scene, "the theory of the transient")
     if not (math.isfinite(tolerance) and tolerance > 0.0):
         raise ValueError(f"`tolerance` = {tolerance!r}: expected a positive number")
     density = None if per_length is None else _density(per_length)

@@ -11,7 +11,7 @@ from kvtheory.api._transient import MAXIMUM_RTOL, MINIMUM_RTOL
 from kvtheory.progress import Progress
 from kvtheory.results import Sweep
 from kvtheory.scene.model import Scene
-from kvtheory.scene.requirements import lacks_paper_model, require
+from kvtheory.scene.requirements import lacks_rigid_paper_model, require
 
 if TYPE_CHECKING:
     from kvtheory.sweeps.plan import Plan
@@ -139,7 +139,7 @@ def plan_of(
     columns = columns_of(quantities, series=at is not None)
     plan = Plan(scene, axes_of(scene, over), columns, times, method, rtol)
     if plan.transient:
-        require(lacks_paper_model, scene, "the transient")
+        require(lacks_rigid_paper_model, scene, "the transient")
     if not MINIMUM_RTOL <= rtol <= MAXIMUM_RTOL:
         raise ValueError(
             f"`rtol` = {rtol!r}: expected a number from {MINIMUM_RTOL} to {MAXIMUM_RTOL}"

@@ -9,7 +9,7 @@ from kvtheory.charts.work_precision import FULL, QUICK, Chart, transient_chart
 from kvtheory.scene.drives import Drive
 from kvtheory.scene.model import Scene
 from kvtheory.scene.quantities import nearest
-from kvtheory.scene.requirements import lacks_paper_model, require
+from kvtheory.scene.requirements import lacks_rigid_paper_model, require
 
 Job = Callable[..., Chart]
 """Makes one chart, with an `effort`, and tells its `progress`."""
@@ -29,7 +29,7 @@ def chosen(scene: Scene, standard: Sequence[str], *, quick: bool) -> list[Job]:
     for name in standard:
         if name not in (*STANDARD, ALL):
             raise ValueError(f'`standard` "{name}": {nearest(name, (*STANDARD, ALL))}')
-    require(lacks_paper_model, scene, "the chart of transients")
+    require(lacks_rigid_paper_model, scene, "the chart of transients")
     scenes = [("this scene", scene, scene)]
     if standard:
         names = list(STANDARD) if ALL in standard else standard

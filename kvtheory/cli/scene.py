@@ -8,6 +8,9 @@ import click
 from kvtheory.cli.console import print_json, print_table, scene_command
 from kvtheory.cli.group import main
 
+AMBIGUOUS = {"support.stiffness", "drive.stiffness", "drive.damping", "drive.mass"}
+"""Keys whose last part another section has, too: they are printed with their own section."""
+
 
 @scene_command(
     main, "kvtheory scene --support fixed > my-scene.toml && kvtheory scene my-scene.toml"
@@ -32,7 +35,7 @@ def scene(scene: str | None, overrides: Sequence[str], as_json: bool, support: s
     checked = load_scene(scene, overrides)
     numbers = {} if lacks_parabola(checked) else StaticState.of(checked).named()
     named = {
-        key.replace(".", "_") if key == "support.stiffness" else key.split(".", 1)[1]: value
+        key.replace(".", "_") if key in AMBIGUOUS else key.split(".", 1)[1]: value
         for key, value in checked.values().items()
     }
     damping = {"damping": checked.foundation.damping}

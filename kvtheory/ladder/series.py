@@ -16,7 +16,7 @@ from kvtheory.results import TRANSIENT_UNITS, Certificate, Simulation, SteadySta
 from kvtheory.results.certificate import AT_REST
 from kvtheory.results.table import scales
 from kvtheory.scene.model import Scene
-from kvtheory.scene.requirements import lacks_paper_model
+from kvtheory.scene.requirements import lacks_rigid_drive, lacks_rigid_paper_model
 from kvtheory.scene.static_state import StaticState
 
 Array = NDArray[np.float64]
@@ -69,16 +69,18 @@ def rungs(models: Models) -> tuple[Rung, ...]:
 
 
 def _parabola(scene: Scene, request: Request) -> Judgement:
-    return Judgement(lacks_paper_model(scene))
+    return Judgement(lacks_rigid_paper_model(scene))
 
 
 def _anything(scene: Scene, request: Request) -> Judgement:
+    if lacking := lacks_rigid_drive(scene):
+        return Judgement(lacking)
     return Judgement(error=BEST_OF_ELEMENTS if request.rtol < BEST_OF_ELEMENTS else math.nan)
 
 
 def _steady(scene: Scene, request: Request) -> Judgement:
     """Admit what is steady at once: a fixed indenter (Eqs. 26, 33 with d' = 0), and rest."""
-    reason = lacks_paper_model(scene)
+    reason = lacks_rigid_paper_model(scene)
     if not scene.drive.constant:
         reason = reason or "the drive changes"
     elif scene.drive.final_velocity != 0.0 and not scene.held:
@@ -109,7 +111,7 @@ def _at_once(steady: Callable[..., SteadyState], scene: Scene, request: Request,
 
 def _slow(scene: Scene, request: Request) -> Judgement:
     """Judge by scalars: the ratio of the rates, the layer at the first time, the first delay."""
-    reason = lacks_paper_model(scene)
+    reason = lacks_rigid_paper_model(scene)
     if reason or not scene.drive.constant or scene.held:
         return Judgement(
             reason or ("it cannot rise" if scene.drive.constant else "the drive changes")

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from kvtheory.scene.drives import VELOCITY
+from kvtheory.scene.drives import SPRING, VELOCITY
 from kvtheory.scene.foundations import LAYER, layer_stiffness
 from kvtheory.scene.model import Scene
 from kvtheory.scene.quantities import (
@@ -17,6 +17,7 @@ from kvtheory.scene.quantities import (
     free,
     nearest,
     problem,
+    quantities,
 )
 
 Array = NDArray[np.float64]
@@ -29,7 +30,12 @@ def replaceable(scene: Scene) -> dict[str, Quantity]:
         for section, part in scene.parts().items()
         for name, spec in free(part).items()
     }
-    return {**found, "drive.velocity": VELOCITY}
+    springs = (
+        SPRING if not scene.drive.rigid else SPRING[:1]
+    )  # what goes with a stiffness needs one
+    specs = quantities(scene.drive)
+    spring = {f"drive.{name}": specs[name] for name in springs}
+    return {**found, "drive.velocity": VELOCITY, **spring}
 
 
 def values(scene: Scene, over: Mapping[str, Any] | None = None) -> dict[str, Array]:

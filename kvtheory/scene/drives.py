@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from itertools import pairwise
 from typing import Any
@@ -11,12 +11,14 @@ import numpy as np
 
 from kvtheory.scene.base_motion import SAME_TIME, BaseMotion
 from kvtheory.scene.quantities import (
+    Derived,
     Quantity,
     SceneError,
     collecting,
     convert,
     mistake,
     problem,
+    quantity,
     settle,
 )
 from kvtheory.scene.waveforms import AT_LAST, Sine, SmoothRamp, Triangle
@@ -25,7 +27,8 @@ VELOCITY = Quantity(
     "m/s", "V, drive velocity of the foundation, from rest to this at t = 0", -math.inf, True
 )
 TIME = Quantity("s", "time", 0.0, False)
-
+SPRING = "stiffness", "damping", "mass"
+"""What a drive that is not rigid has between itself and the indenter."""
 
 LEAST_TOLERANCE = 1e-13
 """Of a drive that is a function: polynomials are not closer to it than rounding."""
@@ -50,6 +53,9 @@ class Drive:
     times at which it jumps or has a kink. The transient replaces it by polynomials, with an error of at
     most `tolerance` times max(|V|, a_0/tau), a_0 the static half length.
 
+    With a `stiffness` the drive holds the indenter along x by a spring, and a `damping` beside it; the
+    `mass` that moves along x is that of the support if not given. Without a stiffness the drive is rigid.
+
     Examples
     --------
     >>> Drive(history=[("0 s", "0 m/s"), ("50 ms", "0.1 m/s")]).final_velocity
@@ -58,6 +64,8 @@ class Drive:
     0.0479425538604203
     >>> Drive(waveform=SmoothRamp(velocity="0.1 m/s", rise_time="10 ms")).final_velocity
     0.1
+    >>> Drive(velocity="0.1 m/s", stiffness="1 MN/m^2").stiffness
+    1000000.0
     """
 
     velocity: float | None = field(default=None, metadata={"quantity": VELOCITY})
@@ -66,23 +74,49 @@ class Drive:
     waveform: Sine | Triangle | SmoothRamp | None = None
     breaks: Sequence[float] = ()
     tolerance: float = 1e-12
+    stiffness: float | None = quantity(
+        "N/m^2",
+        "k_x, stiffness per unit width of a spring between drive and indenter",
+        default=None,
+    )
+    damping: float = quantity(
+        "N*s/m^2", "c_x, damping per unit width beside the spring",
+        exclusive=False, default=Derived(0.0),
+    )  # fmt: skip
+    mass: float | None = quantity(
+        "kg/m", "M_x, mass per unit width that moves along x; that of the support if not given",
+        default=None,
+    )  # fmt: skip
 
     def __post_init__(self) -> None:
+        problems: list[str] = []
         function = None if self.function is self.waveform else self.function  # of a copy
         ways = self.velocity, self.history, function, self.waveform
         if sum(given is not None for given in ways) != 1:
             told = "drive: expected one of velocity, history and waveform, such as "
-            raise SceneError([told + 'velocity = "100 mm/s"; or, in Python, a function'])
+            problems.append(told + 'velocity = "100 mm/s"; or, in Python, a function')
         if not isinstance(self.waveform, Sine | Triangle | SmoothRamp | None):
             told = "expected a Sine, Triangle or SmoothRamp"
-            raise mistake("drive.waveform", self.waveform, told)
-        if self.waveform is not None:
+            problems.append(problem("drive.waveform", self.waveform, told))
+        elif self.waveform is not None:
             object.__setattr__(self, "function", self.waveform)
-        if self.velocity is not None:
+        with collecting(problems, "drive", self):
             settle(self, "drive")
-        elif self.history is not None:
-            object.__setattr__(self, "history", history_points(self.history))
-        object.__setattr__(self, "breaks", _breaks(self))
+        problems += _without_spring(self)
+        if self.damping is None:
+            object.__setattr__(self, "damping", Derived(0.0))
+        if self.history is not None:
+            with collecting(problems, "drive.history", self.history):
+                object.__setattr__(self, "history", history_points(self.history))
+        with collecting(problems, "drive.breaks", self.breaks):
+            object.__setattr__(self, "breaks", _breaks(self))
+        if problems:
+            raise SceneError(problems)
+
+    @property
+    def rigid(self) -> bool:
+        """Whether the indenter cannot move along x: there is no spring."""
+        return self.stiffness is None
 
     @cached_property
     def points(self) -> tuple[tuple[float, float], ...]:
@@ -164,14 +198,20 @@ class Drive:
         ((0.0, 0.2), (1.0, -0.4))
         """
         if self.function is not None:
-            return Drive(
-                function=lambda t: times * self.called(t),
-                breaks=self.breaks,
-                tolerance=self.tolerance,
-            )
+            return replace(self, function=lambda t: times * self.called(t), waveform=None)
         if self.history is not None:
-            return Drive(history=[(time, times * speed) for time, speed in self.history])
-        return Drive(times * self.final_velocity)
+            return replace(self, history=[(time, times * speed) for time, speed in self.history])
+        return replace(self, velocity=times * self.final_velocity)
+
+    def changed(self, **values: float) -> "Drive":
+        """Return the drive with some quantities replaced; a velocity replaces any other way to drive.
+
+        >>> Drive(history=[(0.0, 0.1), (1.0, 0.2)], stiffness=1e6).changed(velocity=0.3).points
+        ((0.0, 0.3),)
+        """
+        if "velocity" not in values:
+            return replace(self, **values)  # type: ignore[arg-type]
+        return replace(self, **values, history=None, function=None, waveform=None, breaks=())
 
     def motion(self, end: float, least: float) -> BaseMotion:
         """Return V(t) and Y(t) up to the time `end` (s), as polynomials.
@@ -232,6 +272,15 @@ class Drive:
                 problem(f"drive.function({time!r})", given, "expected a finite number, in m/s")
             )
         return value
+
+
+def _without_spring(drive: Drive) -> list[str]:
+    """Say what a rigid drive was given that belongs to a spring."""
+    told = "needs drive.stiffness, of the spring between drive and indenter"
+    given = {"damping": drive.damping, "mass": drive.mass} if drive.rigid else {}
+    return [
+        problem(f"drive.{name}", value, told) for name, value in given.items() if value is not None
+    ]
 
 
 def _without_redundant(

@@ -7,9 +7,10 @@ from pathlib import Path
 from typing import Any
 
 from kvtheory.scene.drive_file import history_from
+from kvtheory.scene.drives import SPRING
 from kvtheory.scene.foundations import FOUNDATIONS, PAIRS, Foundation, GeneralizedMaxwell, arms_of
 from kvtheory.scene.indenters import SHAPES
-from kvtheory.scene.model import SUPPORTS, Drive, Run, Scene
+from kvtheory.scene.model import SUPPORTS, Drive, Run, Scene, lacks_mass
 from kvtheory.scene.quantities import (
     MEANT,
     Quantity,
@@ -148,6 +149,10 @@ def template(support: str = "dead-weight") -> str:
                 '# or from a table: file = "drive.csv", whose first line is t [ms],V [mm/s]',
                 '# or: waveform = "sine" or "triangle" with amplitude, frequency and mean,',
                 '#     waveform = "smooth-ramp" with velocity and rise_time',
+                "# and, if the drive holds the indenter by a spring along x:",
+                '# stiffness = "1 MN/m^2"',
+                '# damping = "0 N*s/m^2"             # beside the spring; this is the default',
+                '# mass = "1 kg/mm"                  # that moves along x; by default that of the support',
             ]
         lines.append("")
     return "\n".join(lines)
@@ -180,7 +185,7 @@ def _tables(scene: Scene) -> dict[str, dict[str, Any]]:
         own = {
             name: _text(getattr(waveform, name), q.unit) for name, q in quantities(waveform).items()
         }
-        tables["drive"] = {"waveform": waveform.waveform, **own}
+        tables["drive"] = {"waveform": waveform.waveform, **own, **tables["drive"]}
     elif scene.drive.function is not None:
         raise ValueError("`scene` has a drive made of a Python function, which a file cannot hold")
     return tables
@@ -265,10 +270,15 @@ def _all_keys() -> list[str]:
 
 
 def _change_drive(table: dict[str, Any], name: str) -> None:
-    """Take out of a drive what does not go with a new key: the ways to drive exclude each other."""
+    """Take out of a drive what does not go with a new key: the ways to drive exclude each other.
+
+    A spring goes with each of them.
+    """
     own = quantities(WAVEFORMS[table["waveform"]]) if table.get("waveform") in WAVEFORMS else ()
     if name in DRIVES and name not in own:
+        spring = {key: table[key] for key in SPRING if key in table}
         table.clear()
+        table.update(spring)
 
 
 def _switched(old: Any, section: str, choice: str, embedded: bool) -> dict[str, Any]:
@@ -298,6 +308,8 @@ def _build(tables: Mapping[str, Any], problems: list[str]) -> Scene:
     for section in (name for name in SECTIONS if name in tables):
         with collecting(problems, section, tables[section]):
             parts[section] = _part(section, tables[section])
+    if {"support", "drive"} <= parts.keys():
+        problems += lacks_mass(parts["support"], parts["drive"])
     if problems:
         raise SceneError(problems)
     return Scene(**parts)
@@ -344,12 +356,21 @@ def _waveform(table: Mapping[str, Any]) -> Drive:
     rest = {key: value for key, value in table.items() if key != "waveform"}
     if not (isinstance(name, str) and name in WAVEFORMS):
         raise mistake("drive.waveform", name, nearest(str(name), WAVEFORMS))
-    return Drive(waveform=_make(WAVEFORMS[name], "drive", rest, f'waveform = "{name}"'))
+    values = _values(WAVEFORMS[name], "drive", rest, f'waveform = "{name}"')
+    spring = {key: values.pop(key) for key in SPRING if key in values}
+    return Drive(waveform=WAVEFORMS[name](**values), **spring)
 
 
 def _make(cls: Any, section: str, table: Mapping[str, Any], choice: str = "") -> Any:
     """Construct `cls` from TOML values, in which a bare number is a mistake."""
+    return cls(**_values(cls, section, table, choice))
+
+
+def _values(cls: Any, section: str, table: Mapping[str, Any], choice: str) -> dict[str, Any]:
+    """Return what `cls` is constructed from; of a waveform, the spring of its drive is among it."""
     specs, valid = quantities(cls), _keys(cls)
+    if section == "drive":
+        specs |= {name: quantities(Drive)[name] for name in SPRING}
     known = [CHOICES[section][0], *valid] if section in CHOICES else valid
     of = f" for {choice}" if choice else ""
     needed = required(cls, table)
@@ -374,7 +395,7 @@ def _make(cls: Any, section: str, table: Mapping[str, Any], choice: str = "") ->
                 values[key] = _value(value, specs[key]) if key in specs else _pairs(value, POINTS)
     if problems:
         raise SceneError(problems)
-    return cls(**values)
+    return values
 
 
 def _elsewhere(section: str, key: str) -> str:
@@ -404,6 +425,10 @@ def _pairs(value: Any, told: str) -> Any:
 
 
 def _keys(cls: Any) -> list[str]:
-    """Return the keys of a model: its quantities, and the lists of pairs that it takes."""
-    lists = DRIVES if cls is Drive else ("arms",) if cls is GeneralizedMaxwell else ()
+    """Return the keys of a model: its quantities, and what else it takes, such as lists of pairs."""
+    lists: tuple[str, ...] = DRIVES if cls is Drive else ()
+    if cls is GeneralizedMaxwell:
+        lists = ("arms",)
+    elif cls in WAVEFORMS.values():
+        lists = SPRING
     return list(dict.fromkeys((*quantities(cls), *lists)))

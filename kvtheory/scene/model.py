@@ -9,12 +9,13 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
-from kvtheory.scene.drives import Drive
+from kvtheory.scene.drives import SPRING, Drive
 from kvtheory.scene.foundations import AnyFoundation, Foundation
 from kvtheory.scene.indenters import Indenter, Parabola
 from kvtheory.scene.quantities import (
     SceneError,
     derive,
+    missing,
     nearest,
     problem,
     quantities,
@@ -145,6 +146,7 @@ class Scene:
             if not isinstance(getattr(self, name), kind):
                 told = getattr(kind, "__name__", f"one of {kind}")
                 problems.append(problem(name, getattr(self, name), f"expected {told}"))
+        problems = problems or lacks_mass(self.support, self.drive)
         if problems:
             raise SceneError(problems)
 
@@ -152,6 +154,11 @@ class Scene:
     def held(self) -> bool:
         """Whether the support holds the indenter at its depth, so that it cannot move."""
         return math.isinf(self.support.spring)
+
+    @property
+    def drive_mass(self) -> float:
+        """M_x, in kg/m: the mass that moves along x, that of the support unless the drive gives another."""
+        return self.support.mass if self.drive.mass is None else self.drive.mass
 
     @classmethod
     def table1(cls, support: str = "dead-weight") -> "Scene":
@@ -189,9 +196,22 @@ class Scene:
         }
         if not self.held:
             flat["support.weight"] = self.support.weight
-        if not self.drive.ends:
-            return flat
-        return {**flat, "drive.velocity": self.drive.final_velocity}
+        if self.drive.ends:
+            flat["drive.velocity"] = self.drive.final_velocity
+        if not self.drive.rigid:
+            flat |= {f"drive.{name}": getattr(self.drive, name) for name in SPRING}
+            flat["drive.mass"] = self.drive_mass
+        return flat
+
+
+def lacks_mass(support: Support, drive: Drive) -> list[str]:
+    """Say that a fixed indenter on a spring needs a mass, for its support has none; or nothing."""
+    if drive.rigid or drive.mass is not None or math.isfinite(support.mass):
+        return []
+    needed = missing(
+        "drive", "mass", quantities(drive)["mass"], f' for support.kind = "{support.kind}"'
+    )
+    return [f"{needed}, which moves along x on the spring"]
 
 
 TABLE1_SUPPORTS: dict[str, Support] = {

@@ -34,6 +34,22 @@ def lacks_paper_model(scene: Scene) -> str:
     return lacks_parabola(scene) or lacks_kelvin_voigt(scene)
 
 
+def lacks_rigid_drive(scene: Scene) -> str:
+    """Say why a method that follows a rigid drive alone does not hold; nothing if it does.
+
+    Steady sliding, whatever drives it, does not depend on a spring.
+
+    >>> lacks_rigid_drive(Scene())
+    ''
+    """
+    return "" if scene.drive.rigid else "holds for a rigid drive only, not with drive.stiffness"
+
+
+def lacks_rigid_paper_model(scene: Scene) -> str:
+    """Say why a method for the paper's model in motion does not hold; nothing if it does."""
+    return lacks_paper_model(scene) or lacks_rigid_drive(scene)
+
+
 def lacks_asymptotes(scene: Scene) -> str:
     """Say why a method that needs closed forms of Kelvin-Voigt does not hold; nothing if it does."""
     lacking = _lacks_shape(scene, CLOSED_FORMS, "the parabola, the power law and the wedge")
@@ -73,9 +89,12 @@ def _lacks_shape(scene: Scene, shapes: tuple[type, ...], named: str) -> str:
     return f'holds for {named} only, not for indenter.shape = "{scene.indenter.shape}"'
 
 
+PARABOLIC = lacks_parabola, lacks_paper_model, lacks_rigid_paper_model
+
+
 def require(lacks: Lacking, scene: Scene, what: str) -> None:
     """Raise `ValueError` if the scene lacks what is needed by `what`."""
     if lacking := lacks(scene):
         others = "; `elements`, or `solve` with `at`, follows any shape"
-        of_shape = lacks in (lacks_parabola, lacks_paper_model) and lacks_parabola(scene)
+        of_shape = lacks in PARABOLIC and lacks_parabola(scene)
         raise ValueError(f"{what} {lacking}{others if of_shape else ''}")

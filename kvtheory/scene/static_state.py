@@ -14,7 +14,10 @@ class StaticState:
     With the static depth delta_0, half length a_0 = sqrt(2 R delta_0) and load W_0 = (4/3) K a_0
     delta_0: the drive number lambda = V tau/a_0 at the last velocity (NaN if the drive is a function),
     the inertia number epsilon = M delta_0/(W_0 tau^2) and the support number kappa = k_s delta_0/W_0,
-    both infinite for a fixed indenter. The other attributes are the products that measure a quantity.
+    both infinite for a fixed indenter. A drive with a spring has three more, along x (fact F22):
+    eps_x = M_x a_0^2/(W_0 delta_0 tau^2), c_x a_0^2/(W_0 delta_0 tau) and kappa_x = k_x a_0^2/(W_0
+    delta_0), the last one infinite for a rigid drive. The other attributes are the products that
+    measure a quantity.
 
     Examples
     --------
@@ -31,6 +34,9 @@ class StaticState:
     support_number: float
     time: float
     stiffness: float
+    drive_inertia_number: float
+    drive_damping_number: float
+    drive_stiffness_number: float
 
     @classmethod
     def of(cls, scene: Scene) -> "StaticState":
@@ -56,6 +62,8 @@ class StaticState:
         """Return the static state of any shape, whose depth, half length and load are known."""
         tau, support, drive = scene.foundation.retardation_time, scene.support, scene.drive
         velocity = drive.final_velocity if drive.ends else math.nan
+        along = half_length**2 / (load * depth)
+        spring = math.inf if drive.stiffness is None else drive.stiffness * along
         return cls(
             depth=depth,
             half_length=half_length,
@@ -65,6 +73,9 @@ class StaticState:
             support_number=support.spring * depth / load,
             time=tau,
             stiffness=scene.foundation.stiffness,
+            drive_inertia_number=scene.drive_mass * along / tau**2,
+            drive_damping_number=drive.damping * along / tau,
+            drive_stiffness_number=spring,
         )
 
     @property
@@ -73,11 +84,18 @@ class StaticState:
         return math.isinf(self.support_number)
 
     @property
+    def rigid_drive(self) -> bool:
+        """Whether the indenter cannot move along x: its drive has no spring."""
+        return math.isinf(self.drive_stiffness_number)
+
+    @property
     def in_range(self) -> bool:
         """Whether every number is one that double precision can hold."""
         held = 0.0 < self.depth < math.inf and self.half_length > 0.0 and 0.0 < self.load < math.inf
         finite = self.fixed or (self.inertia_number < math.inf and self.support_number < math.inf)
-        return held and finite and not math.isinf(self.drive_number)
+        along = self.drive_inertia_number + self.drive_damping_number + self.drive_stiffness_number
+        carried = self.rigid_drive or (self.drive_inertia_number > 0.0 and along < math.inf)
+        return held and finite and carried and not math.isinf(self.drive_number)
 
     @property
     def velocity(self) -> float:
@@ -108,7 +126,9 @@ class StaticState:
         """Return what exists by plain names, as ``"static_depth"`` and ``"drive_number"``."""
         found = asdict(self)
         names = {name: f"static_{name}" for name in ("depth", "half_length", "load")}
-        numbers = ("drive_number", "inertia_number", "support_number")
+        numbers = ["drive_number", "inertia_number", "support_number"]
+        if not self.rigid_drive:
+            numbers += [f"drive_{name}_number" for name in ("inertia", "damping", "stiffness")]
         shown = {names[name]: found[name] for name in names}
         return shown | {name: found[name] for name in numbers if math.isfinite(found[name])}
 

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from kvtheory.models.steady.methods import METHODS
 from kvtheory.scene.broadcasting import values
-from kvtheory.scene.model import Drive, Scene
+from kvtheory.scene.model import Scene
 from kvtheory.scene.quantities import changed
 from kvtheory.sweeps.axes import narrowed, values_at
 from kvtheory.sweeps.plan import Plan
@@ -180,7 +180,7 @@ def at_point(scene: Scene, point: Mapping[str, float]) -> Scene:
         section, _, name = key.partition(".")
         sections.setdefault(section, {})[name] = value
     parts: dict[str, Any] = {
-        section: Drive(velocity=values["velocity"])
+        section: scene.drive.changed(**values)
         if section == "drive"
         else changed(getattr(scene, section), **values)
         for section, values in sections.items()

@@ -13,7 +13,7 @@ from kvtheory.models.elements.law import RIGHT, Array, ContactRule, KelvinVoigt
 from kvtheory.scene.base_motion import BaseMotion
 from kvtheory.scene.indenters import Indenter
 from kvtheory.scene.model import Scene
-from kvtheory.scene.requirements import lacks_kelvin_voigt, require
+from kvtheory.scene.requirements import lacks_kelvin_voigt, lacks_rigid_drive, require
 from kvtheory.scene.static_state import StaticState
 
 LEVEL = 1.1
@@ -62,7 +62,8 @@ class Model:
         ValueError
             If there are too few or too many elements in the contact.
         """
-        require(lacks_kelvin_voigt, scene, "the simulator")
+        for lacks in (lacks_kelvin_voigt, lacks_rigid_drive):
+            require(lacks, scene, "the simulator")
         support, foundation, fixed = scene.support, scene.foundation, scene.held
         law = KelvinVoigt(foundation.stiffness, foundation.retardation_time)
         model = cls(
