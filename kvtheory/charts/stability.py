@@ -232,7 +232,8 @@ def _begin(
     left = state.depth - float(model.height(np.array(state.trailing_edge)))
     behind = np.maximum(under.x - state.trailing_edge, 0.0) / state.retardation_length
     relaxing = np.where(under.x > state.trailing_edge, left * np.exp(-behind), 0.0)
-    row.settle(under, np.where(pressed, state.depth - under.height, relaxing), pressed)
+    u = np.where(pressed, state.depth - under.height, relaxing)
+    row.settle(under, model.law.at_rest(u), pressed)
     return row, scheme, start._replace(depth=float(state.depth))
 
 

@@ -41,10 +41,10 @@ def report(row: ElementRow, at: IndenterState, time: float) -> tuple[float, ...]
     """
     model, V = row.model, row.path.velocity(time)
     under = row.under(at.time, 0.0, max(at.depth, model.depth))
-    p = pressure(model, under, at.depth, at.rate, V)
+    p = pressure(model, under, under.state, at, V)
     pressed = under.touched & (model.rule.pulls | (p >= 0.0))
     V_before = row.path.velocity(at.time, before=True)
-    p_before = p if V_before == V else pressure(model, under, at.depth, at.rate, V_before)
+    p_before = p if V_before == V else pressure(model, under, under.state, at, V_before)
     if not pressed.any():
         found = FLIGHT
     elif model.parts:
@@ -55,9 +55,10 @@ def report(row: ElementRow, at: IndenterState, time: float) -> tuple[float, ...]
     return time, V, at.depth, at.rate, *found[:2], *edges, *found[4:]
 
 
-def pressure(model: Model, under: Under, depth: float, rate: float, V: float) -> Array:
+def pressure(model: Model, under: Under, state: Array, at: IndenterState, V: float) -> Array:
     """Return p of the elements under the indenter: g = δ - h(x), g' = δ' - V h'(x) (Eqs. 6, 7, 12)."""
-    return model.law.pressure(depth - under.height, rate - V * model.slope(under.x))
+    g_rate = at.rate - V * model.slope(under.x)
+    return model.law.pressure(state, at.depth - under.height, g_rate)
 
 
 def _whole_elements(
@@ -80,7 +81,7 @@ def _parts_of_elements(
     `p_before`, is still where it was, or has gone further in.
     """
     inside = np.flatnonzero(pressed)
-    dx, overlap, slope = model.spacing, depth - under.height - under.free, model.slope(under.x)
+    dx, overlap, slope = model.spacing, depth - under.height - under.left[0], model.slope(under.x)
     force, push = float(p[inside].sum()), -float(slope[inside] @ p[inside])
     reach, places, at_edges = {}, [], []
     for inner, outward in edges_of(pressed):

@@ -50,28 +50,28 @@ def implicit_step(
     row: ElementRow, now: IndenterState, h: float, *, theta: Callable[[float], float]
 ) -> IndenterState:
     """Take a step in which the depth at its end is the root of the balance of momentum."""
-    end = now.time + h
-    if math.isinf(row.model.mass):
-        new, under = IndenterState(end, now.depth, 0.0), row.under(end, h, now.depth)
-    else:
-        new, under = _balance(row, now, h, theta)
+    sinks = _sinking(row.model, now, h)
+    under = row.under(now.time + h, h, now.depth + sinks)
+    rest, new = under.rest(), IndenterState(now.time + h, now.depth, 0.0)
+    if math.isfinite(row.model.mass):
+        new = _balance(row, now, h, theta, (under, rest, sinks))
     g = new.depth - under.height
-    row.settle(under, np.maximum(g, under.free), g >= under.free, h)
+    pressed = g >= rest
+    row.settle(under, np.where(pressed, under.pressed(g), under.left), pressed, h)
     return new
 
 
 def _balance(
-    row: ElementRow, now: IndenterState, h: float, theta_of: Callable[[float], float]
-) -> tuple[IndenterState, Under]:
+    row: ElementRow, now: IndenterState, h: float, theta_of: Callable[[float], float],
+    met: tuple[Under, Array, float],
+) -> IndenterState:  # fmt: skip
     """Solve M (v_1 - v_0)/h = W - k_s (d - δ_0) - F_z for the new depth by Newton's method."""
-    model, fall = row.model, now.depth + _sinking(row.model, now, h)
-    M, W, k_s, dx = model.mass, model.weight, model.spring, model.spacing
-    under = row.under(now.time + h, h, max(fall, now.depth))
-    meets = under.height + under.free
-    sunk = min(h * now.rate, fall - now.depth)
+    model, (under, rest, sinks) = row.model, met
+    M, W, k_s, dx, law = model.mass, model.weight, model.spring, model.spacing, under.law
+    meets = under.height + rest
+    sunk = min(h * now.rate, sinks)
     length = dx * max(np.count_nonzero(meets <= now.depth + sunk), np.count_nonzero(under.touched))
-    theta = theta_of(h * model.law.damping * length / M)
-    stiffness = model.law.mean_stiffness(h)
+    theta = theta_of(h * law.damping * length / M)
     kinks = _Kinks(row, now, under, h) if model.parts else None
 
     # The unknown is how far it sinks: the depths themselves cancel where the step is short.
@@ -86,12 +86,12 @@ def _balance(
             more, wider = kinks(overlap, pressed)
             area, width = area + more, width + wider
         mean = now.depth - model.depth + theta * sunk
-        residual = M * (velocity(sunk) - now.rate) / h - W + k_s * mean + stiffness * area
-        change = residual / (M / (theta * h * h) + theta * k_s + stiffness * width)
+        residual = M * (velocity(sunk) - now.rate) / h - W + k_s * mean + law.stiffness * area
+        change = residual / (M / (theta * h * h) + theta * k_s + law.stiffness * width)
         sunk -= change
         if abs(change) <= NEWTON_RTOL * model.depth:
             break
-    return IndenterState(now.time + h, now.depth + sunk, velocity(sunk)), under
+    return IndenterState(now.time + h, now.depth + sunk, velocity(sunk))
 
 
 def _sinking(model: Model, now: IndenterState, h: float) -> float:
@@ -114,11 +114,11 @@ class _Kinks:
         path, model = row.path, row.model
         travel = path.displacement(now.time + h) - path.displacement(now.time)
         self.dx, self.least = model.spacing, -STANDS * model.depth
-        self.before: Array = now.depth - model.height(under.x - travel) - under.surface
+        self.before: Array = now.depth - model.height(under.x - travel) - under.state[0]
         self.relaxed = {-1: 0.0, 1: 0.0}
         for edge in edges_of(under.touched):
             area, _ = kink_area(self.dx, gaps(self.before, *edge))
-            self.relaxed[edge[1]] += float(model.law.left(area, h))
+            self.relaxed[edge[1]] += under.law.kink * area
         self.counts: dict[int, bool] = {}
 
     def __call__(self, overlap: Array, pressed: NDArray[np.bool_]) -> tuple[float, float]:

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kvtheory.models.elements.contact import pressure
+from kvtheory.models.elements.law import Array
 from kvtheory.models.elements.row import ElementRow, IndenterState, Under
 
 Tableau = tuple[tuple[float, ...], ...]
@@ -31,8 +32,8 @@ def explicit_step(row: ElementRow, now: IndenterState, h: float, tableau: Tablea
         )
     depth, rate = now.depth + h * _dot(weights, rates), now.rate + h * _dot(weights, pulls) / M
     new = IndenterState(now.time + h, depth, rate)
-    pull, under, pressed = _meet(row, new, now, before=True)
-    row.settle(under, np.where(pressed, depth - under.height, under.free), pressed, h)
+    pull, under, moved, pressed = _meet(row, new, now, before=True)
+    row.settle(under, np.where(pressed, moved, under.left), pressed, h)
     if math.isinf(M):
         return new
     imbalance = abs(_dot(weights, pulls) - 0.5 * (pulls[0] + pull))
@@ -46,12 +47,16 @@ def _dot(a: Sequence[float], b: Sequence[float]) -> float:
 
 def _meet(
     row: ElementRow, at: IndenterState, now: IndenterState, *, before: bool, within: bool = False
-) -> tuple[float, Under, NDArray[np.bool_]]:
-    """Return M δ'', the elements under the indenter, and which of them press (Eqs. 17, 20-25)."""
+) -> tuple[float, Under, Array, NDArray[np.bool_]]:
+    """Return M δ'', the elements under the indenter, their state if pressed, and which of them are.
+
+    Eqs. 17, 20-25.
+    """
     model, under = row.model, row.under(at.time, at.time - now.time, max(at.depth, now.depth))
-    p = pressure(model, under, at.depth, at.rate, row.path.velocity(at.time, before=before))
-    pressed = model.rule.pressed(
-        at.depth - under.height, p, (under.surface, under.free), under.touched, within=within
-    )
+    g = at.depth - under.height
+    moved = under.pressed(g)
+    p = pressure(model, under, moved, at, row.path.velocity(at.time, before=before))
+    surfaces = under.state[0], under.left[0]
+    pressed = model.rule.pressed(g, p, surfaces, under.touched, within=within)
     force = model.spacing * float(p[pressed].sum())
-    return model.weight - model.spring * (at.depth - model.depth) - force, under, pressed
+    return model.weight - model.spring * (at.depth - model.depth) - force, under, moved, pressed

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from kvtheory.models.elements.edges import edges_of, gaps, kink_area
-from kvtheory.models.elements.law import RIGHT, Array, ContactRule, KelvinVoigt
+from kvtheory.models.elements.law import RIGHT, Array, ContactRule, Law
 from kvtheory.scene.base_motion import BaseMotion
 from kvtheory.scene.indenters import Indenter
 from kvtheory.scene.model import Scene
@@ -36,7 +36,7 @@ class Model:
     """
 
     indenter: Indenter
-    law: KelvinVoigt
+    law: Law
     spacing: float
     mass: float
     weight: float
@@ -64,8 +64,7 @@ class Model:
         """
         for lacks in (lacks_kelvin_voigt, lacks_rigid_drive):
             require(lacks, scene, "the simulator")
-        support, foundation, fixed = scene.support, scene.foundation, scene.held
-        law = KelvinVoigt(foundation.stiffness, foundation.retardation_time)
+        support, law, fixed = scene.support, Law.of(scene.foundation), scene.held
         model = cls(
             scene.indenter, law, 1.0, support.mass, support.weight, 0.0,
             support.depth or 1.0, parts, shift,
@@ -128,7 +127,8 @@ class Model:
     def sliding(self, depth: float, V: float) -> tuple[float, float]:
         """Return length and normal force of a contact that slides steadily on a continuous foundation."""
         x = np.linspace(*span(self.indenter, depth), SAMPLES)
-        p = self.law.pressure(depth - self.height(x), -V * self.slope(x))
+        g = depth - self.height(x)
+        p = self.law.pressure(self.law.at_rest(g), g, -V * self.slope(x))
         pressed, step = p > 0.0, x[1] - x[0]
         return step * np.count_nonzero(pressed), step * float(p[pressed].sum())
 

@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from kvtheory.models.elements.law import Array
+from kvtheory.models.elements.law import Array, Step
 from kvtheory.models.elements.model import Model, span
 from kvtheory.scene.base_motion import BaseMotion
 
@@ -44,32 +44,48 @@ class IndenterState(NamedTuple):
 class Under(NamedTuple):
     """The elements under the indenter at one instant: a view into the row.
 
-    `surface` is the compression that each had at the start of the step, `free` the one that it has now
-    if the indenter leaves it alone, `touched` whether it was in contact at the start.
+    `state` is that of each at the start of the step, `left` the one that it has now if it was left alone,
+    `touched` whether it was in contact at the start, `law` what the law says of the time between.
     """
 
     place: slice
     x: Array
     height: Array
-    surface: Array
-    free: Array
+    state: Array
+    left: Array
     touched: NDArray[np.bool_]
+    law: Step
+
+    def rest(self) -> Array:
+        """Return where the mean pressure would vanish: it is `law.stiffness` times how far g is below."""
+        held: Array = self.state[0] - self.law.held_pressure @ self.state / self.law.stiffness
+        return np.where(self.touched, held, self.left[0])
+
+    def pressed(self, g: Array) -> Array:
+        """Return the state of elements that the indenter presses to g."""
+        base = np.where(self.touched, self.law.held[:, None] * self.state, self.left)
+        moved: Array = base + self.law.ramp[:, None] * (g - base[0])
+        moved[0] = g
+        return moved
 
 
 class ElementRow:
-    """The compressions u of the stored elements, first to last, and which of them are in contact."""
+    """The states of the stored elements, first to last, and which of them are in contact."""
 
     def __init__(self, model: Model, path: BaseMotion, kept_depth: float = KEPT_DEPTH) -> None:
         self.model, self.path = model, path
-        tau = model.law.retardation_time if model.rule.relaxes else math.inf
-        self.memory = -tau * math.log(FORGOTTEN)
+        slowest = model.law.slowest if model.rule.relaxes else math.inf
+        self.memory = -slowest * math.log(FORGOTTEN)
         self.deepest = kept_depth * model.depth
         self.reach = span(model.indenter, self.deepest)
-        self.first, self.u, self.touched = 0, np.zeros(0), np.zeros(0, dtype=bool)
+        self.first, self.states = 0, model.law.at_rest(np.zeros(0))
+        self.touched = np.zeros(0, dtype=bool)
         self.updates = 0
         depth = model.start * model.depth
         rest = self.under(0.0, 0.0, depth)
-        self.settle(rest, np.maximum(depth - rest.height, 0.0), rest.height <= depth)
+        self.settle(
+            rest, model.law.at_rest(np.maximum(depth - rest.height, 0.0)), rest.height <= depth
+        )
 
     def under(self, t: float, delay: float, depth: float) -> Under:
         """Return the elements that an indenter of at most this depth can meet at t, and `delay` before.
@@ -85,25 +101,27 @@ class ElementRow:
         before = self.path.displacement(t - delay) if delay else Y
         low = self.model.under(max(Y, before), depth)[0]
         high = self.model.under(min(Y, before), depth)[1]
-        if low < self.first or high > self.first + self.u.size:
+        if low < self.first or high > self.first + self.touched.size:
             self._move(t, low, high)
         self.updates += high - low
         place = slice(low - self.first, high - self.first)
-        x, u = self.model.places(low, high, Y), self.u[place]
-        height, free = self.model.height(x), self._left(u, delay)
-        return Under(place, x, height, u, free, self.touched[place])
+        x, state = self.model.places(low, high, Y), self.states[:, place]
+        left = self._left(state, delay)
+        law = self.model.law.step(delay)
+        return Under(place, x, self.model.height(x), state, left, self.touched[place], law)
 
     def settle(
-        self, under: Under, u: Array, touched: NDArray[np.bool_], delay: float = 0.0
+        self, under: Under, states: Array, touched: NDArray[np.bool_], delay: float = 0.0
     ) -> None:
         """Let `delay` pass: put in what has become of the elements under the indenter."""
-        self.u = self._left(self.u, delay)
-        self.u[under.place] = u
+        self.states = self._left(self.states, delay)
+        self.states[:, under.place] = states
         self.touched[:] = False
         self.touched[under.place] = touched
 
-    def _left(self, u: Array, delay: float) -> Array:
-        return np.asarray(self.model.law.left(u, delay)) if self.model.rule.relaxes else u.copy()
+    def _left(self, states: Array, delay: float) -> Array:
+        relaxes = delay and self.model.rule.relaxes
+        return self.model.law.step(delay).left @ states if relaxes else states.copy()
 
     def _move(self, t: float, low: int, high: int) -> None:
         """Move the window so that it holds the elements `low` to `high`, and those still of use."""
@@ -111,10 +129,11 @@ class ElementRow:
         back, ahead = self.path.extremes(t, min(t + self.memory, max(t, self.path.end)))
         useful = math.floor((self.reach[0] - ahead) / dx), math.ceil((self.reach[1] - back) / dx)
         first = min(low - spare, max(self.first, useful[0]))
-        last = max(high + spare, min(self.first + self.u.size, useful[1]))
-        u, touched = np.zeros(last - first), np.zeros(last - first, dtype=bool)
-        start, stop = max(first, self.first), min(last, self.first + self.u.size)
+        last = max(high + spare, min(self.first + self.touched.size, useful[1]))
+        states = self.model.law.at_rest(np.zeros(last - first))
+        touched = np.zeros(last - first, dtype=bool)
+        start, stop = max(first, self.first), min(last, self.first + self.touched.size)
         if start < stop:
             new, old = (slice(start - f, stop - f) for f in (first, self.first))
-            u[new], touched[new] = self.u[old], self.touched[old]
-        self.first, self.u, self.touched = first, u, touched
+            states[:, new], touched[new] = self.states[:, old], self.touched[old]
+        self.first, self.states, self.touched = first, states, touched

@@ -111,7 +111,7 @@ def _default_step(model: Model, path: BaseMotion, scheme: Scheme) -> float:
                 f'such as "{0.01 * model.law.retardation_time * 1e3:.4g} ms", or `scheme` = "{DEFAULT}"'
             )
         return passing
-    stiffness = 2.0 * model.half_length * model.law.stiffness + model.spring
+    stiffness = 2.0 * model.half_length * model.law.at_once + model.spring
     period = 2.0 * math.pi * math.sqrt(model.mass / stiffness)
     resolved = min(model.law.retardation_time / PER_RELAXATION, period / PER_OSCILLATION)
     stable = limit_at(scheme, model, max(lengths(model, path)))
@@ -166,11 +166,12 @@ def _run(
     found: dict[float, tuple[float, ...]] = {}
     try:
         for start, stop, count in legs:
+            h = (stop - start) / max(count, 1)
             for k in range(1, count + 1):
                 time = stop if k == count else start + (stop - start) * k / count
-                state = scheme.step(row, state, time - state.time)._replace(time=time)
+                state = scheme.step(row, state, h)._replace(time=time)
                 if row.model.rule == RIGHT:
-                    watch.see(state, (stop - start) / count)
+                    watch.see(state, h)
                 done += 1
                 if progress is not None and (done % PER_NOTICE == 0 or done == total):
                     progress(done / total, f"{done:,} of {total:,} steps")

@@ -7,9 +7,11 @@ rates σ; for the fast rate, about -C L/M, this is fact F15, h C L/M <= 2.785 or
 
 import math
 from collections import deque
+from collections.abc import Sequence
 
 import numpy as np
 
+from kvtheory.models.elements.law import Array
 from kvtheory.models.elements.model import Model, span
 from kvtheory.models.elements.row import ElementRow, IndenterState
 from kvtheory.models.elements.schemes import DEFAULT, Scheme
@@ -26,6 +28,11 @@ WINDOW = 40
 """Steps over which the balance of forces is judged: a sudden change of the drive upsets only a few."""
 IMBALANCE = 0.05
 """Of the forces: a mean imbalance that a stable run stays below, besides that of single elements."""
+
+GROWS = 1e-10
+"""Growth in a step that is not rounding."""
+SHORTEST, LIMIT_RTOL = 1e-6, 1e-9
+"""Of the search for the largest stable step: one as short, times the fastest rate, is none; where it ends."""
 
 ELEMENTS = 4.0
 """Elements whose coming and going may upset the balance in a stable run, of all in contact at rest."""
@@ -51,25 +58,57 @@ def lengths(model: Model, path: BaseMotion) -> tuple[float, float]:
 
 
 def limit_at(scheme: Scheme, model: Model, length: float) -> float:
-    """Return the largest stable step for a contact of this length, in s."""
-    R = scheme.stability_polynomial
-    if not R or math.isinf(model.mass):
+    """Return the largest stable step for a contact of this length, in s: where |R| first exceeds 1."""
+    if not scheme.tableau or math.isinf(model.mass):
         return math.inf
-    law = model.law
-    rates = np.roots([model.mass, law.damping * length, law.stiffness * length + model.spring])
-    return min(_reach(R, complex(rate)) for rate in rates)
+    law, M = model.law, model.mass
+    fastest = law.damping * length / M + math.sqrt((law.at_once * length + model.spring) / M)
+
+    def grows(h: float) -> bool:
+        step = amplification(scheme, model, length, h)
+        return bool(abs(np.linalg.eigvals(step)).max() > 1.0 + GROWS)
+
+    low = high = 1.0 / fastest
+    while grows(low):
+        low, high = 0.5 * low, low
+        if low * fastest < SHORTEST:
+            return 0.0
+    while not grows(high):
+        low, high = high, 2.0 * high
+    while high - low > LIMIT_RTOL * high:
+        middle = 0.5 * (low + high)
+        low, high = (low, middle) if grows(middle) else (middle, high)
+    return low
 
 
-def _reach(R: tuple[float, ...], rate: complex) -> float:
-    """Return the first h > 0 with |R(rate h)| = 1, by the roots of a polynomial in h."""
-    along = np.array([c * (rate / abs(rate)) ** k for k, c in enumerate(R)])
-    square = np.polynomial.polynomial.polymul(along, along.conj()).real
-    square[0] -= 1.0
-    roots = np.polynomial.polynomial.polyroots(square[1:])  # without the root h = 0
-    positive = roots.real[(abs(roots.imag) < 1e-9 * abs(roots)) & (roots.real > 0.0)]
-    first = float(positive.min()) if positive.size else math.inf
-    growing = np.polynomial.polynomial.polyval(0.5 * min(first, 1.0), square) > 0.0
-    return 0.0 if growing else first / abs(rate)
+def amplification(scheme: Scheme, model: Model, length: float, h: float) -> Array:
+    """Return the matrix of one explicit step of (δ, δ', s_1, s_2, ...), the contact held.
+
+    For Kelvin-Voigt its eigenvalues are R(σ h), R(z) = 1 + z + z^2/2 + ... of the tableau (F15).
+    """
+    *stages, weights = scheme.tableau
+    law, M, k_s = model.law, model.mass, model.spring
+    start = np.eye(2 + law.arm_stiffness.size)
+    u, held = start[:1], np.delete(start, 1, axis=0)
+    rates, pulls = list[Array](), list[Array]()
+
+    def along(a: Sequence[float]) -> tuple[Array, Array]:
+        return tuple(
+            start[k] + h * sum((x * y for x, y in zip(a, slopes, strict=True)), 0.0 * start[k])
+            for k, slopes in enumerate((rates, pulls))
+        )
+
+    def moved(c: float, depth: Array) -> Array:
+        step = law.step(c * h)
+        return step.held[:, None] * held + step.ramp[:, None] * (depth - u)
+
+    for c, *a in stages:
+        depth, rate = along(a)
+        p = law.pressure(moved(c, depth), depth, rate)
+        rates.append(rate)
+        pulls.append(-(length * p + k_s * depth) / M)
+    depth, rate = along(weights)
+    return np.vstack([depth, rate, moved(1.0, depth)[1:]])
 
 
 def doubts(scheme: Scheme, model: Model, path: BaseMotion, h: float) -> str:
@@ -114,10 +153,12 @@ class Watch:
         model = row.model
         self._row, self._scheme = row, scheme
         ends = np.array(span(model.indenter, model.depth))
+        arms = float(model.law.arm_stiffness.sum())
         thrown = (
             model.depth / model.law.retardation_time
             + row.path.highest_speed * float(abs(model.slope(ends)).max())
             + model.depth * math.sqrt(model.spring / model.mass)
+            + model.depth * math.sqrt(2.0 * model.half_length * arms / model.mass)
         )
         self._limit = -RISE * thrown if math.isfinite(model.mass) else -math.inf
         self._allowed = IMBALANCE + ELEMENTS * model.spacing / (2.0 * model.half_length)
