@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 
-from kvtheory.scene.foundations import Foundation
+from kvtheory.scene.foundations import Foundation, GeneralizedMaxwell
 from kvtheory.scene.indenters import Parabola, PowerLaw, Wedge
 from kvtheory.scene.model import Scene
 
@@ -27,6 +27,11 @@ def lacks_kelvin_voigt(scene: Scene) -> str:
         return ""
     named = f'foundation.kind = "{scene.foundation.kind}"'
     return f'holds for foundation.kind = "{Foundation.kind}" only, not for {named}'
+
+
+def lacks_arms(scene: Scene) -> str:
+    """Say why a foundation has no finite state that could be followed in time; nothing if it has."""
+    return "" if scene.foundation.arms else lacks_kelvin_voigt(scene)
 
 
 def lacks_paper_model(scene: Scene) -> str:
@@ -93,8 +98,18 @@ PARABOLIC = lacks_parabola, lacks_paper_model, lacks_rigid_paper_model
 
 
 def require(lacks: Lacking, scene: Scene, what: str) -> None:
-    """Raise `ValueError` if the scene lacks what is needed by `what`."""
+    """Raise `ValueError` if the scene lacks what is needed by `what`, saying what could be asked instead."""
     if lacking := lacks(scene):
-        others = "; `elements`, or `solve` with `at`, follows any shape"
-        of_shape = lacks in PARABOLIC and lacks_parabola(scene)
-        raise ValueError(f"{what} {lacking}{others if of_shape else ''}")
+        raise ValueError(f"{what} {lacking}{_instead(lacks, scene)}")
+
+
+def _instead(lacks: Lacking, scene: Scene) -> str:
+    """Say what can be done with a scene for which the paper's model is not enough."""
+    if lacks is not lacks_arms and not (lacks in PARABOLIC and lacks_paper_model(scene)):
+        return ""
+    if lacks_arms(scene):
+        return (
+            "; `steady` holds for it, and `elements` follows a Prony series (foundation.kind = "
+            f'"{GeneralizedMaxwell.kind}") that comes near it'
+        )
+    return "; `elements`, or `solve` with `at`, follows any shape and any Prony series"

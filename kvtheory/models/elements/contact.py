@@ -114,9 +114,11 @@ def _peak(
 ) -> tuple[float, float, float]:
     """Return the peak near element k, of the parabola through three, and both doubts.
 
-    A shape with kinks has no such parabola: there the peak is known to the next element.
+    A shape with kinks has no such parabola: there the peak is known to the next element. Arms remember
+    where contact began, so that the pressure itself may have a kink between two elements.
     """
     before, here, after = (p.item(i) for i in (k - 1, k, k + 1))
+    doubt = 0.5 * max(here - before, here - after) if model.law.arm_stiffness.size else 0.0
     if model.indenter.kinks:
         return here, min(abs(here - before), abs(here - after)), 0.0
     bend = 2.0 * here - before - after
@@ -124,5 +126,5 @@ def _peak(
         return here, 0.0, 0.0
     ahead = 0.5 * (after - before) / bend
     if abs(ahead) > reach.get((k, 1 if ahead > 0.0 else -1), 1.0):
-        return here, 0.0, 0.0
-    return here + 0.25 * (after - before) * ahead, 0.0, 0.0
+        return here, doubt, 0.0
+    return here + 0.25 * (after - before) * ahead, doubt, 0.0

@@ -51,6 +51,21 @@ def straight(found: Gaps) -> bool:
     return slope * slope - 2.0 * w * curvature > STRAIGHT * slope * slope
 
 
+def jump(found: Gaps) -> float:
+    """Return by how much u bends where w = 0, as a difference of two elements."""
+    return found[1] + 0.5 * found[2]
+
+
+def bend(values: Array, inner: int, outward: int) -> float:
+    """Return by how much a field bends at an edge, by differences on either side.
+
+    >>> bend(np.array([0.0, 0.0, 3.0, 9.0]), 2, -1)
+    6.0
+    """
+    inside = values.item(inner - outward) - values.item(inner)
+    return inside - (values.item(inner + outward) - values.item(inner + 2 * outward))
+
+
 def kink_area(dx: float, found: Gaps) -> tuple[float, float]:
     """Return what trapezoids leave out of the area of u at an edge, and d/dδ of it.
 
@@ -63,8 +78,7 @@ def kink_area(dx: float, found: Gaps) -> tuple[float, float]:
     >>> bool(abs(sums + kink_area(0.1, gaps(x, 5, -1))[0] - 0.5 * x[-1] ** 2) < 1e-15)
     True
     """
-    outside, slope, curvature = found
-    within = outside + slope + 0.5 * curvature
+    outside, within = found[0], found[0] + jump(found)
     if not (within > 0.0 > outside > -math.inf):
         return 0.0, 0.0
     half = 0.5 * dx / (within - outside)

@@ -17,7 +17,7 @@ SAFETY = 4.0
 exceeded in one of a hundred random scenes, by any factor; two, whose elements are half a spacing apart,
 are seldom lucky at once."""
 KNOWN = 0.5
-"""Of an element: how well an edge is known after a change of the drive, which leaves pressure on it."""
+"""Of an element: how well an edge is known after a change of the drive, if a damper leaves pressure on it."""
 KINKED = 0.05
 """Of an element: how well an edge is known under a shape with kinks, whose overlap is straight anywhere."""
 ROUNDING = 1e-12
@@ -51,7 +51,7 @@ def estimate(
         for name in TRANSIENT_UNITS
     }
     changes = len(path.pieces) > 1 or any(path.pieces[0][POWERS + 1 :])
-    jump = KNOWN if changes else 0.0
+    jump = KNOWN if changes and model.law.damping else 0.0
     edge = (jump + (KINKED if model.indenter.kinks else 0.0)) * model.spacing
     force = jump * model.spacing * float(rows["peak_pressure"].max())
     steepest = float(abs(model.slope(np.array(span(model.indenter, model.depth)))).max())

@@ -23,7 +23,7 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
-from kvtheory.models.elements.edges import edges_of, gaps, kink_area
+from kvtheory.models.elements.edges import bend, edges_of, gaps, jump, kink_area
 from kvtheory.models.elements.law import Array
 from kvtheory.models.elements.model import Model
 from kvtheory.models.elements.row import ElementRow, IndenterState, Under
@@ -116,9 +116,13 @@ class _Kinks:
         self.dx, self.least = model.spacing, -STANDS * model.depth
         self.before: Array = now.depth - model.height(under.x - travel) - under.state[0]
         self.relaxed = {-1: 0.0, 1: 0.0}
+        spring, k = under.law.held_pressure[0], under.law.stiffness
+        arms = under.law.held_pressure[1:] @ under.state[1:]
         for edge in edges_of(under.touched):
-            area, _ = kink_area(self.dx, gaps(self.before, *edge))
-            self.relaxed[edge[1]] += under.law.kink * area
+            found = gaps(self.before, *edge)
+            if area := kink_area(self.dx, found)[0]:
+                held = spring + bend(arms, *edge) / jump(found)  # per kink of u
+                self.relaxed[edge[1]] += (1.0 - held / k) * area
         self.counts: dict[int, bool] = {}
 
     def __call__(self, overlap: Array, pressed: NDArray[np.bool_]) -> tuple[float, float]:

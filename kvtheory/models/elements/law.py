@@ -32,9 +32,8 @@ class Step(NamedTuple):
     An element out of contact is left alone at first, one in contact is held where it is; besides, it is
     moved along a straight line to where the indenter ends, and no other history of u enters. `left` is the
     matrix of the state if left alone, `held` its factors if held, `held_pressure` gives the mean pressure
-    then; `ramp` is the state that a unit ramp adds, `stiffness` the mean pressure that it adds. `kink` is
-    the share of a kink of u at the start that is left in `rest`; `damping` that of the damper which, beside
-    a spring, does as the step does to a ramp.
+    then; `ramp` is the state that a unit ramp adds, `stiffness` the mean pressure that it adds; `damping`
+    is that of the damper which, beside a spring, does to a ramp as the step does.
     """
 
     left: Array
@@ -42,7 +41,6 @@ class Step(NamedTuple):
     held_pressure: Array
     ramp: Array
     stiffness: float
-    kink: float
     damping: float
 
 
@@ -115,14 +113,12 @@ class Law:
             spring = -K / math.expm1(-h * K / C) if h else math.inf
         k = spring + float(K_i @ phi_2)
         weights = np.concatenate([[K], phi_1])
-        jump = np.concatenate([[1.0], K_i])  # the state after a sudden unit compression
         return Step(
             left=self._left(h),
             held=np.concatenate([[1.0], np.exp(-z)]),
             held_pressure=weights,
             ramp=np.concatenate([[1.0], K_i * phi_1]),
             stiffness=k,
-            kink=1.0 - float(weights @ jump) / k,
             damping=C + h * float(K_i @ (2.0 * phi_2 - phi_1)),
         )
 

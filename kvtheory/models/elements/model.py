@@ -13,7 +13,7 @@ from kvtheory.models.elements.law import RIGHT, Array, ContactRule, Law
 from kvtheory.scene.base_motion import BaseMotion
 from kvtheory.scene.indenters import Indenter
 from kvtheory.scene.model import Scene
-from kvtheory.scene.requirements import lacks_kelvin_voigt, lacks_rigid_drive, require
+from kvtheory.scene.requirements import lacks_arms, lacks_rigid_drive, require
 from kvtheory.scene.static_state import StaticState
 
 LEVEL = 1.1
@@ -62,7 +62,7 @@ class Model:
         ValueError
             If there are too few or too many elements in the contact.
         """
-        for lacks in (lacks_kelvin_voigt, lacks_rigid_drive):
+        for lacks in (lacks_arms, lacks_rigid_drive):
             require(lacks, scene, "the simulator")
         support, law, fixed = scene.support, Law.of(scene.foundation), scene.held
         model = cls(

@@ -1,0 +1,355 @@
+"""`kv.elements` on a Prony series: the law of one element, its schemes, and runs against other methods."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy.integrate import quad, solve_ivp
+from scipy.linalg import expm
+
+import kvtheory as kv
+from kvtheory.charts.stability import growth
+from kvtheory.models.elements.law import Law
+from kvtheory.models.elements.model import Model
+from kvtheory.models.elements.row import ElementRow, IndenterState
+from kvtheory.models.elements.schemes import SCHEMES, exponential_fit
+from kvtheory.models.elements.stability import amplification, lengths, limit_at
+from kvtheory.results import TRANSIENT_UNITS
+from kvtheory.results.table import scales
+from tests import prony_elements
+
+LOAD = 4.0 / 3.0
+SUPPORTS = ("fixed", "dead-weight", "suspended")
+ARMS = [(3e10, 0.01), (1e10, 0.1)]
+RUBBER = kv.GeneralizedMaxwell(1e10, arms=ARMS)
+ENDS = (("depth", "depth"), ("normal_force", "load"), ("friction_force", "friction_force"),
+        ("leading_edge", "leading_edge"), ("trailing_edge", "trailing_edge"),
+        ("peak_pressure", "peak_pressure"))  # fmt: skip
+WAYS = {
+    "start": [(0.0, 3.0)],
+    "stop": [(0.0, 3.0), (0.4, 3.0), (0.4, 0.0)],
+    "reversal": [(0.0, 3.0), (0.4, 3.0), (0.4, -2.0)],
+    "stop and go": [(0.0, 3.0), (0.3, 3.0), (0.3, 0.0), (0.6, 0.0), (0.6, 3.0)],
+    "ramp": [(0.0, 0.0), (0.3, 3.0), (0.6, 3.0), (1.0, -3.0)],
+}
+
+
+def random_law(rng):
+    count = int(rng.integers(1, 6))
+    return Law(1.0, 0.0, 10.0 ** rng.uniform(-2, 2, count), 10.0 ** rng.uniform(-2, 2, count))
+
+
+def scaled(history, support="dead-weight", arms=((3.0, 0.2), (0.5, 2.0)), end=1.0):
+    """Return a scene with static half length and depth 1 and static load 4/3."""
+    held = {"fixed": kv.Fixed(1.0), "dead-weight": kv.DeadWeight(0.1 * LOAD, 10.0),
+            "suspended": kv.Suspended(0.1 * LOAD, LOAD, 10.0)}[support]  # fmt: skip
+    foundation = kv.GeneralizedMaxwell(1.0, arms=arms)
+    return kv.Scene(kv.Parabola(0.5), foundation, held, kv.Drive(history=history), kv.Run(end))
+
+
+# The law of one element
+
+
+def test_an_element_left_alone_is_that_of_its_equations():
+    """Against the exponential of y_i' = (u - y_i)/tau_i, K u + sum K_i (u - y_i) = 0, by another method."""
+    rng = np.random.default_rng(1)
+    for _ in range(50):
+        law, h = random_law(rng), 10.0 ** rng.uniform(-2, 2)
+        K_i, tau = law.arm_stiffness, law.arm_time
+        state = np.concatenate([[1.0], K_i * rng.uniform(0.0, 1.0, K_i.size)])
+        matrix = (np.outer(np.ones_like(K_i), K_i / law.at_once) - np.eye(K_i.size)) / tau[:, None]
+        y = expm(h * matrix) @ (1.0 - state[1:] / K_i)
+        u = K_i @ y / law.at_once
+        found = law.step(h).left @ state
+        assert found[0] == pytest.approx(u, rel=1e-11, abs=1e-13)
+        assert found[1:] == pytest.approx(K_i * (u - y), rel=1e-10, abs=1e-12 * law.at_once)
+        assert abs(law.pressure(found[:, None], found[:1], 0.0)[0]) < 1e-11 * law.at_once
+
+
+def test_an_element_on_a_ramp_is_that_of_its_equations():
+    """s_i' = K_i u' - s_i/tau_i, integrated; the mean pressure too."""
+    rng = np.random.default_rng(2)
+    for _ in range(10):
+        law, h, rise = random_law(rng), 10.0 ** rng.uniform(-2, 0.5), rng.uniform(-1, 1)
+        K_i, tau = law.arm_stiffness, law.arm_time
+        s_0 = K_i * rng.uniform(-1.0, 1.0, K_i.size)
+        truth = solve_ivp(
+            lambda t, s, K_i=K_i, tau=tau, rate=rise / h: K_i * rate - s / tau,
+            (0.0, h), s_0, "Radau", rtol=1e-10, atol=1e-12, dense_output=True,
+        )  # fmt: skip
+        step, state = law.step(h), np.concatenate([[0.7], s_0])
+        found = step.held * state + step.ramp * rise
+        assert found[1:] == pytest.approx(truth.y[:, -1], rel=1e-6, abs=1e-8 * law.at_once)
+        whole = quad(lambda t, s=truth.sol: s(t).sum(), 0.0, h, epsrel=1e-9)[0]
+        mean = law.stiffness * (0.7 + 0.5 * rise) + whole / h
+        assert step.held_pressure @ state + step.stiffness * rise == pytest.approx(
+            mean, rel=1e-6, abs=1e-8 * law.at_once
+        )
+
+
+def test_twenty_arms_over_ten_decades_relax_and_never_grow():
+    tau = np.geomspace(1e-8, 1e2, 20)
+    law = Law(1.0, 0.0, np.geomspace(1e3, 1e-3, 20), tau)
+    assert law.slowest > tau.max()
+    state = np.concatenate([[1.0], np.zeros(20)])
+    heights = [(law.step(h).left @ state)[0] for h in np.geomspace(1e-9, 1e4, 60)]
+    assert np.all(np.diff(heights) < 1e-12)
+    assert 0.0 <= heights[-1] < 1e-12
+
+
+@pytest.mark.parametrize("h", [1e-4, 0.03, 2.0])
+def test_kelvin_voigt_is_the_limit_of_a_stiff_and_fast_arm_in_first_order(h):
+    """With K_1 tau_1 = C. Of the ways to take the mean, Kelvin-Voigt has that with weights; left is both."""
+    plain, off = Law(2.0, 0.5, np.zeros(0), np.zeros(0)).step(h), []
+    for tau in (1e-6, 1e-7):
+        arm = Law(2.0, 0.0, np.array([0.5 / tau]), np.array([tau])).step(h)
+        state = np.array([1.0, -2.0])  # free of pressure: K u + s = 0
+        off.append(abs((arm.left @ state)[0] - plain.left[0, 0]))
+        assert arm.damping == pytest.approx(plain.damping, rel=10 * tau / h)
+    assert off[0] / off[1] == pytest.approx(10.0, rel=0.05)
+
+
+# Schemes
+
+
+def test_no_implicit_step_amplifies_on_any_arms():
+    """The matrix of a step of the implicit schemes, the contact held."""
+    rng = np.random.default_rng(3)
+    for _ in range(500):
+        law, (M, L, k_s, h) = random_law(rng), 10.0 ** rng.uniform([-4, -2, -2, -4], [3, 1, 2, 3])
+        step, count = law.step(h), law.arm_stiffness.size
+        for theta in (0.5, exponential_fit(h * step.damping * L / M), 1.0):
+            # Columns: d, v, s_i at the start; unknown are the depth and the rate at the end.
+            stiff = L * step.stiffness + theta * k_s
+            new = np.array([[stiff, M / h], [1.0, -h * theta]])
+            old = np.zeros((2, 2 + count))
+            old[0, :2] = stiff - L * law.stiffness - k_s, M / h
+            old[0, 2:] = -L * step.held_pressure[1:]
+            old[1, :2] = 1.0, h * (1.0 - theta)
+            whole = np.zeros((2 + count, 2 + count))
+            whole[:2] = np.linalg.solve(new, old)
+            whole[2:, 2:] = np.diag(step.held[1:])
+            whole[2:] += step.ramp[1:, None] * (whole[0] - np.eye(2 + count)[0])
+            assert np.abs(np.linalg.eigvals(whole)).max() <= 1.0 + 1e-9
+
+
+@pytest.mark.parametrize("arms", [ARMS, [(1e14, 1e-5)], [(1e12, 1e-3)]])
+def test_measured_stability_limit_of_the_papers_scheme_is_the_derived_one(arms):
+    """By two runs side by side, whose difference grows or does not."""
+    scene = kv.Scene(
+        foundation=kv.GeneralizedMaxwell(1e10, arms=arms), drive=kv.Drive(1e-3), run=kv.Run(0.6)
+    )
+    model = Model.of(scene)
+    limit = limit_at(SCHEMES["paper"], model, max(lengths(model, model.path(scene))))
+    below, above = (
+        growth(scene, "paper", 5e4, share * limit, steady=False) for share in (0.8, 1.15)
+    )
+    assert below <= 1.0 < 1.1 < above
+
+
+def test_the_matrix_of_a_step_has_the_stability_polynomial_of_kelvin_voigt():
+    """F15: |R(h sigma)| of both rates."""
+    model, length, h = Model.of(kv.Scene()), 2e-3, 7e-4
+    law = model.law
+    for name in ("paper", "explicit-euler"):
+        sigma = np.roots([model.mass, law.damping * length, law.stiffness * length])
+        R = np.polynomial.polynomial.polyval(h * sigma, SCHEMES[name].stability_polynomial)
+        found = np.linalg.eigvals(amplification(SCHEMES[name], model, length, h))
+        assert np.sort(found) == pytest.approx(np.sort(R), rel=1e-10)
+
+
+def ledger(scene, density, end):
+    """Return what is stored at every step of a run, what is lost and the work of the drive between."""
+    model = Model.of(scene, 1.0 / density)
+    law, row = model.law, ElementRow(model, model.path(scene))
+    K_i, tau = law.arm_stiffness[:, None], law.arm_time[:, None]
+    state, h, rows = IndenterState(0.0, model.depth, 0.0), 1.0 / density, []
+    for _ in range(round(end * density)):
+        under, risen = row.under(state.time, 0.0, state.depth), model.depth - state.depth
+        p = law.pressure(under.state, state.depth - under.height, 0.0)
+        friction = -model.slope(under.x) @ np.where(under.touched, p, 0.0)
+        u, s = row.states[0], row.states[1:]
+        kinetic = 0.5 * model.mass * state.rate**2
+        potential = model.weight * risen + 0.5 * model.spring * risen**2
+        springs = 0.5 * law.stiffness * u @ u + (s * s / (2.0 * K_i)).sum()
+        lost = (s * s / (K_i * tau)).sum()
+        stored = kinetic + potential + model.spacing * springs
+        power = model.spacing * friction * row.path.velocity(state.time)
+        rows.append((stored, model.spacing * lost, power))
+        state = SCHEMES["exponential"].step(row, state, h)
+    stored, lost, power = np.array(rows).T
+    mean = 0.5 * h
+    return stored, mean * (lost[1:] + lost[:-1]), mean * (power[1:] + power[:-1])
+
+
+def test_the_energy_of_the_elements_is_balanced():
+    """The work of the drive is kinetic, potential, stored in springs or lost in dampers, and nothing else."""
+    lacking = []
+    for density in (60.0, 120.0, 240.0):
+        stored, lost, work = ledger(scaled(WAYS["start"], "suspended"), density, 0.8)
+        lacking.append(abs(stored[-1] - stored[0] + lost.sum() - work.sum()) / work.sum())
+    assert lacking[-1] < 1e-3
+    assert lacking[1] / lacking[2] > 1.8
+
+
+# Against exact steady sliding
+
+
+@pytest.mark.parametrize("support", SUPPORTS)
+@pytest.mark.parametrize("scheme", SCHEMES)
+def test_every_scheme_ends_in_exact_steady_sliding(scheme, support):
+    scene = replace(kv.Scene.table1(support), foundation=RUBBER, run=kv.Run(0.3))
+    steady = kv.steady(scene)
+    end = kv.elements(scene, per_length="50 /mm", scheme=scheme, at=[0.3], certify=False)
+    bound = 4e-4 if SCHEMES[scheme].row.parts_of_elements else 1e-2
+    for column, name in ENDS:
+        assert getattr(end, column)[0] == pytest.approx(getattr(steady, name), rel=bound), column
+
+
+@pytest.mark.parametrize("shape", [kv.Circle(0.01), kv.PowerLaw(0.01, 4.0), kv.Wedge(0.1)])
+def test_other_shapes_end_in_the_steady_state_of_quadrature(shape):
+    scene = kv.Scene(shape, RUBBER, run=kv.Run(0.3))
+    steady = kv.steady(scene, method="quadrature")
+    end = kv.elements(scene, per_length="100 /mm", at=[0.3], certify=False)
+    for column, name in ENDS:
+        bound = 2e-2 if (shape.shape, name) == ("wedge", "friction_force") else 1e-3
+        assert getattr(end, column)[0] == pytest.approx(getattr(steady, name), rel=bound), column
+
+
+def test_many_arms_over_ten_decades_end_in_exact_steady_sliding():
+    arms = [(2e9, float(tau)) for tau in np.geomspace(1e-9, 1e-1, 20)]
+    scene = replace(
+        kv.Scene.table1("fixed"),
+        foundation=kv.GeneralizedMaxwell(1e10, arms=arms),
+        run=kv.Run(0.05),
+    )
+    steady = kv.steady(scene)
+    end = kv.elements(scene, per_length="50 /mm", at=[0.05])
+    for column, name in (("normal_force", "load"), ("friction_force", "friction_force")):
+        claimed = end.certificate.relative_error[column] * scales(Model.of(scene).at_rest)[column]
+        error = abs(getattr(end, column)[0] - getattr(steady, name))
+        assert error <= claimed
+        assert error < 2e-3 * abs(getattr(steady, name))
+
+
+def test_the_order_is_two():
+    """The friction of a fixed indenter, spacing and step halved together, against exact."""
+    scene = replace(kv.Scene.table1("fixed"), foundation=RUBBER, run=kv.Run(0.1))
+    truth, errors = kv.steady(scene).friction_force, []
+    for density in (2e4, 4e4, 8e4):
+        end = kv.elements(scene, per_length=density, at=[0.1], certify=False)
+        errors.append(abs(end.friction_force[0] / truth - 1.0))
+    assert np.log2(np.array(errors[:-1]) / errors[1:]) == pytest.approx([2.0, 2.0], abs=0.25)
+
+
+# Against brute force, in time
+
+
+@pytest.mark.parametrize("way", WAYS)
+@pytest.mark.parametrize("support", SUPPORTS)
+def test_the_transient_is_that_of_brute_force(way, support):
+    scene, times = scaled(WAYS[way], support), [0.05, 0.35, 0.45, 0.65, 1.0]
+    truth = prony_elements.run(scene, times)
+    found = kv.elements(scene, per_length=100.0, at=times, certify=False)
+    scale = scales(Model.of(scene).at_rest)
+    for name in truth:
+        assert np.abs(getattr(found, name) - truth[name]).max() < 3e-3 * scale[name], name
+
+
+def drawn(seed):
+    """Return a random scene on one to three arms, instants, and elements in a static half length."""
+    rng = np.random.default_rng(seed)
+    arms = [10.0 ** rng.uniform([-1.0, -1.3], [1.0, 0.7]) for _ in range(rng.integers(1, 4))]
+    end, top = 10.0 ** rng.uniform([-0.3, -1.0], [0.4, 0.9]) * [1.0, rng.choice([-1.0, 1.0])]
+    way = list(WAYS.values())[rng.integers(len(WAYS))]
+    history = [(float(t * end), float(V * top / 3.0)) for t, V in way]
+    support = SUPPORTS[rng.integers(3)]
+    scene = scaled(history, support, [tuple(map(float, arm)) for arm in arms], float(end))
+    return scene, np.sort(rng.uniform(0.0, end, 6)).tolist(), float(10.0 ** rng.uniform(1.0, 1.9))
+
+
+def test_the_certificate_covers_the_error_on_random_scenes():
+    for seed in range(16):
+        scene, times, density = drawn(seed)
+        run = kv.elements(scene, per_length=density, at=times)
+        truth = prony_elements.run(scene, times)
+        scale = scales(Model.of(scene, 1.0 / density).at_rest)
+        for name in truth:
+            error = np.abs(getattr(run, name) - truth[name]).max() / scale[name]
+            known = 1e-4  # how well brute force knows it
+            assert error <= run.certificate.relative_error[name] + known, (seed, name)
+
+
+def test_a_stiff_and_fast_arm_tends_to_kelvin_voigt_in_first_order():
+    """K_1 tau_1 = C, after a start, a stop and a reversal."""
+    history = [(0.0, 0.1), (0.05, 0.1), (0.05, 0.0), (0.08, 0.0), (0.08, -0.1)]
+    times = [0.02, 0.05, 0.07, 0.1]
+    plain = kv.Scene(drive=kv.Drive(history=history), run=kv.Run(0.1))
+    truth, off = kv.transient(plain, at=times, rtol=1e-8), []
+    for tau in (1e-4, 5e-5):
+        arm = kv.GeneralizedMaxwell(1e10, arms=[(1e9 / tau, tau)])
+        found = kv.elements(replace(plain, foundation=arm), at=times, certify=False)
+        off.append(found.depth / truth.depth - 1.0)
+    assert np.abs(off).max() < 1e-3
+    assert off[0] / off[1] == pytest.approx(2.0, abs=0.2)
+
+
+# Symmetry, rest, extremes
+
+
+@pytest.mark.parametrize("scheme", SCHEMES)
+def test_a_reversed_drive_is_the_mirror_image(scheme):
+    options = {"per_length": "50 /mm", "scheme": scheme, "certify": False, "at": [0.01, 0.04, 0.1]}
+    history = np.array([(0.0, 0.1), (0.03, 0.1), (0.03, -0.05), (0.1, -0.05)])
+    drives = (kv.Drive(history=(history * [1, side]).tolist()) for side in (1, -1))
+    scenes = (kv.Scene(foundation=RUBBER, drive=drive, run=kv.Run(0.1)) for drive in drives)
+    forth, back = (kv.elements(scene, **options) for scene in scenes)
+    np.testing.assert_allclose(back.depth, forth.depth, rtol=1e-9)
+    np.testing.assert_allclose(back.friction_force, -forth.friction_force, rtol=1e-5)
+
+
+@pytest.mark.parametrize("support", SUPPORTS)
+@pytest.mark.parametrize("scheme", [name for name in SCHEMES if name != "paper"])
+def test_rest_stays_rest(support, scheme):
+    scene = replace(kv.Scene.table1(support), foundation=RUBBER, drive=kv.Drive(0.0))
+    result = kv.elements(scene, scheme=scheme, per_length="50 /mm", certify=False, at=[0.0, 0.2])
+    assert np.ptp(result.depth) <= 1e-12 * result.depth[0]
+    assert np.all(np.abs(result.friction_force) < 1e-9 * result.normal_force)
+
+
+def test_no_force_jumps_with_the_drive():
+    """Without a damper the pressure is continuous: at t = 0 it is that of rest."""
+    scene = kv.Scene(foundation=RUBBER)
+    result = kv.elements(scene, at=[0.0, 1e-9], per_length="50 /mm", certify=False)
+    assert result.normal_force == pytest.approx([9806.65] * 2, rel=1e-4)
+    assert np.abs(result.friction_force).max() < 1e-3
+
+
+@pytest.mark.parametrize("velocity", [1e-9, 1e3])
+@pytest.mark.parametrize("tau", [1e-9, 1e9])
+def test_extremes_have_finite_answers(velocity, tau):
+    arms = [(1e10, tau), (1e11, 1e-2 * tau)]
+    end = 1e-3 / max(velocity, 1e-3)
+    scene = kv.Scene(
+        foundation=kv.GeneralizedMaxwell(1e10, arms=arms), drive=kv.Drive(velocity), run=kv.Run(end)
+    )
+    options = {"per_length": "20 /mm", "time_step": end / 500.0, "certify": False}
+    result = kv.elements(scene, at=[0.5 * end, end], **options)
+    for name in ("depth", "normal_force", "friction_force"):
+        assert np.all(np.isfinite(getattr(result, name))), name
+
+
+@pytest.mark.parametrize("ask", [kv.elements, kv.transient, kv.compare])
+def test_a_springpot_is_refused_with_what_can_be_done(ask):
+    scene = kv.Scene(foundation=kv.FractionalKelvinVoigt(1e10, 0.1, 0.5))
+    with pytest.raises(ValueError, match="`steady` holds for it, and `elements` follows a Prony"):
+        ask(scene)
+
+
+def test_a_prony_series_is_sent_to_the_elements():
+    with pytest.raises(ValueError, match="`elements`, or `solve` with `at`, follows any shape and"):
+        kv.transient(kv.Scene(foundation=RUBBER))
+    result = kv.elements(kv.Scene(foundation=RUBBER), at=[0.01], per_length="50 /mm")
+    assert set(result.certificate.relative_error) == set(TRANSIENT_UNITS)
+    assert all(math.isfinite(error) for error in result.certificate.relative_error.values())
