@@ -21,6 +21,7 @@ from . import (
     power_law_errors,
     power_law_limits,
     power_law_weight,
+    relaxation,
     steady,
     tables,
     theorems,
@@ -31,6 +32,7 @@ from . import (
     transient_rates,
     transient_scaling,
     viscoelastic,
+    viscoelastic_limits,
     wedge,
 )
 from .record import Derivation
@@ -39,7 +41,7 @@ _CHAPTERS = (
     *(model, steady, one_contact, friction_identity, asymptotics, tables, groups),
     *(theorems, master_curve, energy, asymptote_errors, circle),
     *(power_law, power_law_limits, power_law_weight, power_law_errors, wedge),
-    viscoelastic,
+    *(viscoelastic, relaxation, viscoelastic_limits),
     *(transient_scaling, transient_memory, contact_interval, transient_edges),
     *(transient_motion, transient_rates, transient_balance),
     *(element_schemes, element_edges),

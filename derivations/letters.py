@@ -35,7 +35,8 @@ BY_SECTION: dict[str, dict[str, str]] = {
         "c": r"\hat c", "k": "j",
     },
     "Any linear viscoelastic foundation": {
-        "G_v": r"\breve G", **{f"G_{{v{n}}}": rf"\breve G_{n}" for n in (1, 2, 3)},
+        "G_v": r"\breve G", **{f"G_{{v{n}}}": rf"\breve G_{n}" for n in (1, 2, 3, 4)},
+        "H_v": r"\breve H",
     },
     "True circle": _CIRCLE,
     "Transient sliding": {r"\hat p": r"\bar p", "z_A": r"z_{\mathrm{A}}"},

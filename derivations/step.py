@@ -123,6 +123,7 @@ class Proof(Guarded):
             found = value_at(primitive, variable, high) - value_at(primitive, variable, low)
         except UndecidedError as error:
             raise StepError(f"{self.label}: {whole}: {error}") from error
+        found = self._resolve(found)  # a rule may be about a function at the very end
         if found.has(sp.oo, sp.zoo, sp.nan) or found.is_real is False:
             raise StepError(f"{self.label}: {whole} has no finite real value but {found}")
         if lhs in self._rules:

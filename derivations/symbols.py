@@ -140,6 +140,24 @@ primitive_1, primitive_2, primitive_3 = (
     sp.Function(f"G_v{n}", positive=True)(contact_length) for n in (1, 2, 3)
 )
 relaxation = sp.Function("G_v", positive=True)(contact_length)
+behind, edge_distance = _positive("X_v y_v")
+"""Distance from the leading edge, and a distance back from there or behind the trailing edge."""
+memory = sp.Function("G_v", positive=True)
+repeated = tuple(sp.Function(f"G_v{n}", nonnegative=True) for n in (1, 2, 3, 4))
+fading = sp.Function("H_v", nonnegative=True)
+"""The relaxation function at a distance, its repeated integrals, and how fast it falls."""
+arm_ratio, left_behind, parting, spring_1, spring_2 = _positive("beta_v u_v sigma_v K_v1 K_v2")
+damper_1, damper_2, share_1, share_2, on_off = sp.symbols(
+    "u_v1 u_v2 gamma_v1 gamma_v2 theta_v", nonnegative=True
+)
+spare_1, spare_2 = sp.symbols("omega_v1 omega_v2", nonnegative=True)
+delay, spring_number = _positive("epsilon_v kappa_v")
+lack_mean, lack_ahead, lack_bulge, lack_twist = sp.symbols(
+    "alpha_vA alpha_vP alpha_vD alpha_vE", nonnegative=True
+)
+haste, steepness, load_number, friction_number = _positive("omega_v chi_v Lambda_v m_v")
+pressed, shift, slope_free = sp.symbols("g_v h_v s_vf", real=True)
+other_trailing = sp.Symbol("v_v", positive=True)
 
 alpha = 2 * sp.sqrt(2) / 3
 """The coefficient of Eqs. 40-46."""
@@ -259,5 +277,33 @@ TEX = {
     springpot: r"\breve \zeta",
     ratio_first: r"\breve t_0",
     ratio_second: r"\breve t_1",
+    behind: r"\breve X",
+    edge_distance: r"\breve y",
+    arm_ratio: r"\breve \beta",
+    left_behind: r"\breve u",
+    parting: r"\breve \sigma",
+    spring_1: "K_1",
+    spring_2: "K_2",
+    damper_1: r"\breve u_1",
+    damper_2: r"\breve u_2",
+    share_1: r"\breve \gamma_1",
+    share_2: r"\breve \gamma_2",
+    on_off: r"\breve \theta",
+    spare_1: r"\breve \omega_1",
+    spare_2: r"\breve \omega_2",
+    delay: r"\breve \varepsilon",
+    spring_number: r"\breve \kappa",
+    lack_mean: r"\breve \alpha_A",
+    lack_ahead: r"\breve \alpha_P",
+    lack_bulge: r"\breve \alpha_D",
+    lack_twist: r"\breve \alpha_E",
+    pressed: r"\breve g",
+    shift: r"\breve h",
+    slope_free: r"\breve \chi_0",
+    other_trailing: r"\breve v",
+    haste: r"\breve \omega",
+    load_number: r"\breve \Lambda",
+    friction_number: r"\breve m",
+    steepness: r"\breve \chi",
 }
 """How `sympy.latex` prints these symbols where its own choice differs from the paper's."""

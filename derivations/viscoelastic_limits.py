@@ -1,0 +1,321 @@
+r"""How far a foundation is from its limits: proved bounds for V -> 0 and V -> oo, and the springpot (F18).
+
+Of the relaxation function a bound takes two numbers: for low velocity its integral C = int (G - K) dt and
+the mean time int t (G - K) dt/C; for high velocity -G'(0)/G(0) and G''(0)/G'(0).
+"""
+
+from functools import partial
+
+import sympy as sp
+
+from .record import Derivation
+from .step import Proof
+from .symbols import (
+    delay,
+    friction_number,
+    half_share,
+    haste,
+    l,
+    lack_ahead,
+    lack_bulge,
+    lack_mean,
+    lack_twist,
+    load_number,
+    q,
+    spring_number,
+    spring_share,
+    springpot,
+    steepness,
+)  # fmt: skip
+from .theorems import FRICTION_COEFFICIENT, LOAD, NUMBER, RATIO
+from .theorems import UNIT as RATIOS
+from .viscoelastic import MOMENTS, SECTION, SPRINGPOT, UNIT, D, E, P, Q, w
+
+kap, eps, nu = spring_number, delay, spring_share
+half, twelfth = sp.Rational(1, 2), sp.Rational(1, 12)
+SMALL = sp.Rational(1, 20)
+"""Up to here the mean relaxation length over the contact may be."""
+VOIGT = 7
+"""Relative error of Kelvin-Voigt, over that number."""
+HASTE = sp.Rational(1, 5)
+GLASSY = 2
+"""The same for the glassy limit, over the length of the contact by that of the fastest arms."""
+
+_theorem = partial(Proof, equation=None, section=SECTION)
+
+
+def derive() -> tuple[Derivation, ...]:
+    """Prove the bounds, and the limits of the springpot."""
+    return (
+        *(_lacks(), _voigt(), _window(), _window_weight(), _glass(), _glassy()),
+        *(_springpot(), _monotonic()),
+    )
+
+
+def _lacks() -> Derivation:
+    proof = _theorem("F18-lacks", title="Low velocity: moments near those of a dashpot", text=_LACKS,
+                     uses=("F17-parts",))  # fmt: skip
+    ahead, bulge, twist = (MOMENTS[name][0] for name in (P, D, E))
+    proof.equal(1 - ahead, w,
+                r"$\breve \alpha_P \le \breve \varepsilon$: beyond the contact, 1 is less than $\breve w$",
+                left=r"1 - (1 - \breve w)")  # fmt: skip
+    proof.sign(w / 2 - bulge, ">", 0, UNIT, r"$\breve \alpha_D \le \breve \varepsilon/2$")
+    proof.sign(twelfth - twist, ">", 0, UNIT, r"$\breve \alpha_E \ge 0$")
+    proof.sign(
+        w / 4 - (twelfth - twist), ">=", 0, UNIT, r"$\breve \alpha_E \le \breve \varepsilon/4$"
+    )
+    return proof.done(w / 4 - (twelfth - twist), 0)
+
+
+_LACKS = (
+    r"Let $\breve \zeta = C V/(K \breve c)$, and $\breve \varepsilon = V \bar t/\breve c$ with the mean "
+    r"relaxation time $\bar t = \int t\, (G - K)\, dt/C$, which is $\sum K_i \tau_i^2/\sum K_i \tau_i$. "
+    r"Without the spring, and over $\breve \zeta$, the moments $\breve A$, $\breve P$, $\breve D$ and "
+    r"$\breve E$ are $1 - \breve \alpha_A$, $1 - \breve \alpha_P$, $\breve \alpha_D$ and $\frac{1}{12} - "
+    r"\breve \alpha_E$; for a dashpot all four lacks are 0. They are integrals of $G - K \ge 0$ over all "
+    r"$\breve w > 0$ with the weights below, and those beyond $\breve w = 1$ are 1, 1, 0 and "
+    r"$\frac{1}{12}$. Hence $0 \le \breve \alpha_A \le \breve \alpha_P \le \breve \varepsilon$, and so "
+    r"on, for every $G \ge K$."
+)
+
+
+def _voigt() -> Derivation:
+    proof = _theorem("F18-voigt", title="Low velocity: Kelvin-Voigt instead of the foundation",
+                     text=_VOIGT, uses=("F18-lacks", "F17-load", "F17", "F19-monotonic"))  # fmt: skip
+    for small, bound in (
+        (eps, SMALL), (lack_ahead, eps), (lack_mean, lack_ahead), (lack_bulge, eps / 2),
+        (lack_twist, eps / 4),
+    ):  # fmt: skip
+        proof.where(sp.Lt(small, bound), "F18-lacks" if small != eps else "slow enough")
+    mean, ahead = kap + 1 - lack_mean, kap / 2 + 1 - lack_ahead
+    slant = half - lack_ahead + lack_mean / 2
+    plain_mean, plain_ahead = kap + 1, kap / 2 + 1
+    for low, value, high, what in (
+        ((1 - eps) * plain_ahead, ahead, plain_ahead, r"$\breve P$"),
+        ((1 - eps) * plain_mean, mean, plain_mean, r"$\breve A$"),
+        ((half - eps), slant, half, r"$\breve B$"),
+        ((1 - 3 * eps) * twelfth, twelfth - lack_twist, twelfth, r"$\breve E$"),
+    ):  # fmt: skip
+        proof.holds(value, ">=", low, f"{what}, with that of Kelvin-Voigt on the right")
+        proof.holds(high, ">=", value, "and above")
+    proof.holds(
+        plain_ahead * mean, ">=", ahead * plain_mean, "so $a$ is not larger than on Kelvin-Voigt"
+    )
+    load = kap / 12 + plain_ahead / (2 * plain_mean)
+    proof.sign(load, ">", sp.Rational(4, 9), (kap, 0, sp.oo),
+               r"Kelvin-Voigt's load: $\breve \alpha_D$ adds less than $9 \breve \varepsilon/8$ of it")  # fmt: skip
+    unit = (eps, 0, SMALL)
+    lowest = (1 - 2 * eps) ** 2 * (1 - eps)
+    proof.sign(
+        lowest,
+        ">",
+        1 - 5 * eps,
+        unit,
+        r"on the left, over Kelvin-Voigt, the least $\breve \eta^2 \breve P$; $\breve E$ is closer",
+    )
+    proof.sign((1 - 5 * eps) ** 2 - (1 - VOIGT * eps) ** 2 * (1 + 9 * eps / 8) ** 3, ">", 0, unit,
+               r"$\mu/\mu_0 \ge (1 - 5 \breve \varepsilon)/(1 + 9 \breve \varepsilon/8)^{3/2}$")  # fmt: skip
+    upper = (1 - eps) ** 5 * (1 - 2 * eps) ** 3 * (1 + VOIGT * eps) ** 2
+    proof.sign(upper, ">", 1, unit,
+               r"and at most $1/\sqrt{(1 - \breve \varepsilon)^5 (1 - 2 \breve \varepsilon)^3}$")  # fmt: skip
+    return proof.done(upper, 1)
+
+
+_VOIGT = (
+    r"Let $\mu_0$ be the friction coefficient of the Kelvin-Voigt foundation with the same $K$ and $C$, "
+    r"on the same support at the same velocity. Then $|\mu/\mu_0 - 1| \le 7 \breve \varepsilon$ for "
+    r"$\breve \varepsilon = V \bar t/\breve c \le \frac{1}{20}$, whatever $G$, the support and $V \tau/a$ "
+    r"are. The steps, in units of $K \breve \zeta$ with $\breve \kappa = 1/\breve \zeta$, compare both "
+    r"foundations at one $\breve c$. There $\breve a$ is between $1 - \breve \varepsilon$ and 1 times "
+    r"that of Kelvin-Voigt, the load between $(1 - \breve \varepsilon)(1 - 2 \breve \varepsilon)$ and $1 "
+    r"+ 9 \breve \varepsilon/8$ times, and $\mu$ between $(1 - 5 \breve \varepsilon)/(1 + 9 \breve "
+    r"\varepsilon/8)$ and $1/((1 - \breve \varepsilon)^2 (1 - 2 \breve \varepsilon))$ times. Then "
+    "Kelvin-Voigt moves to the contact that its support asks for. In words: at a given velocity $W + k_s "
+    r"\delta$ grows at least as $a^2$, and $\mu_0$ with $a$ at most in proportion (F19-monotonic), so "
+    r"that the factor of $\mu_0$ is at most the root of that of the load. With the error of Eq. (42) on "
+    "Kelvin-Voigt (error-L1) this bounds that of Eq. (42) on every foundation."
+)
+
+
+def _window() -> Derivation:
+    proof = _theorem("F18-window", title="The window of the asymptotes for high velocity", text=_WINDOW,
+                     uses=("F18-voigt", "F1"))  # fmt: skip
+    proof.recall("scaling", l, NUMBER, RATIO)
+    over = sp.Rational(2, 3) / FRICTION_COEFFICIENT
+    proof.sign(over, ">", 1, RATIOS, "Eq. (45) over Kelvin-Voigt")
+    proof.sign(
+        2 / (3 * l) - (over - 1), ">", 0, RATIOS, r"its error is below $2/(3 l)$ at every velocity"
+    )
+    best = sp.sqrt(2 * steepness / 21)
+    sum_of = 2 / (3 * q) + VOIGT * q / steepness
+    proof.equal(sum_of, VOIGT / steepness * (q - best) ** 2 / q + 2 * VOIGT * best / steepness,
+                "both errors together, to first order")  # fmt: skip
+    return proof.done(
+        sum_of, VOIGT / steepness * (q - best) ** 2 / q + 2 * VOIGT * best / steepness
+    )
+
+
+_WINDOW = (
+    r"With $l = V \tau/a$ and $\breve \chi = \tau/\bar t$, which is $\breve \beta$ for one arm, $\breve "
+    r"\varepsilon$ is below $l/\breve \chi$, because $\breve c > a$. So Eq. (45) is off by at most $(1 + "
+    r"\frac{2}{3 l})/(1 - 7 l/\breve \chi) - 1$ one way, and by $7 l/\breve \chi$ the other: it holds for "
+    r"$1 \ll l \ll \breve \chi$ alone. The last step is with $q$ for $l$: the window is best at $l = "
+    r"\sqrt{2 \breve \chi/21}$, where the bound is $4.3/\sqrt{\breve \chi}$. It opens as slowly as that: "
+    "for one part in ten an arm must be 1900 times as stiff as the spring, by this bound."
+)
+
+
+def _window_weight() -> Derivation:
+    proof = _theorem("F18-window-weight", title="The window under a dead weight", text=_WINDOW_WEIGHT,
+                     uses=("F18-voigt", "F1"))  # fmt: skip
+    proof.recall("scaling", l, NUMBER, RATIO)
+    square = 4 * LOAD / (9 * l * FRICTION_COEFFICIENT**2)
+    proof.sign(square, ">", 1, RATIOS, r"$(L_2/\mu)^2$, as $\alpha^2 = 8/9$ and $a^2 = 2 R \delta$")
+    proof.sign(
+        (1 + 1 / l) ** 2 - square,
+        ">",
+        0,
+        (q, 0, sp.Rational(2, 5)),
+        r"$l > \frac{21}{20}$: its error is below $1/l$",
+    )
+    return proof.done((1 + 1 / l) ** 2 - square, 0)
+
+
+_WINDOW_WEIGHT = "Likewise Eq. (46), with the error $1/l$ of Kelvin-Voigt, where $a$ is that of the lifted indenter."
+
+
+def _glass() -> Derivation:
+    proof = _theorem("F18-glass", title="High velocity: moments near those of a spring", text=_GLASS,
+                     uses=("F17-sign",))  # fmt: skip
+    bulge = w * (1 - w) ** 2 * (2 + w) / 24
+    for integrand, value, what in (
+        (bulge, sp.Rational(1, 120), r"$\breve E$ is at most $\breve \gamma$ times this"),
+        (w * bulge, sp.Rational(1, 288), r"and misses at most $\breve \gamma \breve \omega$ times this"),
+        (w * (1 - w) / 2, twelfth, r"$\breve B$ is at most $\breve \gamma$ times this"),
+        (w, half, r"$\breve A$ misses at most $\breve \gamma$ times this"),
+        (w * MOMENTS[D][0], sp.Rational(1, 24), r"and $\breve D$ misses at most $\breve \gamma$ times this"),
+    ):  # fmt: skip
+        whole = sp.Integral(integrand, UNIT)
+        proof.integral(
+            whole, integrand, UNIT, sp.integrate(sp.expand(integrand), w), what, value=value
+        )
+    return proof.done(whole, sp.Rational(1, 24))
+
+
+_GLASS = (
+    r"In units of $G(0)$, with $\breve \gamma = -\breve c\, G'(0)/(V G(0))$ and $\breve \omega = -\breve "
+    r"c\, G''(0)/(V G'(0))$, that is $\breve c/V$ times $\sum K_i \tau_i^{-2}/\sum K_i \tau_i^{-1}$. As "
+    r"$G$ falls and is convex, and so is $-G'$ (a Prony series), $1 - \breve \gamma \breve w \le \breve G "
+    r"\le 1$ and $\breve \gamma (1 - \breve \omega \breve w) \le -\breve G' \le \breve \gamma$; and "
+    r"$\breve \gamma \le \breve \omega$ by Cauchy and Schwarz. The weights are those of F17-sign and "
+    "F17-moments."
+)
+
+
+def _glassy() -> Derivation:
+    proof = _theorem("F18-glassy", title="High velocity: how far from the glassy limit", text=_GLASSY,
+                     uses=("F18-glass", "F18-high"))  # fmt: skip
+    unit, o = (haste, 0, HASTE), haste
+    part = 1 - o / 2
+    share = sp.Rational(5, 12)
+    lower, upper = (1 - share * o) * part**2, 1 + share * o / part**2
+    longest = (1 + (o / 6) / part) * part
+    proof.where(o < HASTE, "fast enough")
+    proof.equal(120 * twelfth**2 / 2, share, r"$\breve \eta^2 \breve P$ over $\breve E$, at most",
+                left=r"120 \left(\frac{1}{12}\right)^2 \frac{1}{2}")  # fmt: skip
+    proof.equal(longest, 1 - o / 3, r"greatest $2 \breve a$, times $1 - \breve \omega/2$")
+    proof.sign(
+        part - (1 - o / 3) ** 2, ">", 0, unit, "so that its square is bounded as the load is"
+    )
+    proof.sign(lower, ">", 1 - GLASSY * o, unit, r"$\mu$ over its limit is at least this")
+    proof.sign((1 + GLASSY * o) * part**2 - upper, ">", 0, unit,
+               r"and at most the last terms of this over $(1 - \breve \omega/2)^2$")  # fmt: skip
+    return proof.done((1 + GLASSY * o) * part**2 - upper, 0)
+
+
+_GLASSY = (
+    r"The limit is $\mu_\infty = \frac{2}{5} \frac{a^2}{R V} \frac{-G'(0)}{G(0)}$ with the half length "
+    r"$a$ on a spring of the stiffness $G(0)$ on the same support (F18-high). Then $|\mu/\mu_\infty - 1| "
+    r"\le 2 \breve \omega$ for $\breve \omega \le \frac{1}{5}$, whatever $G$ and the support are. At one "
+    r"$\breve c$ the load is between $1 - \frac{\breve \omega}{2}$ and $1/(1 - \frac{\breve \omega}{2})$ "
+    r"times that of the spring of half length $\breve c/2$, and so is, on any support, $(2 a/\breve c)^2$ "
+    r"of the spring that carries what is asked for, as $W + k_s \delta$ grows at least as $a^2$."
+)
+
+
+def _state(nu: sp.Expr = nu) -> tuple[sp.Expr, sp.Expr, sp.Expr]:
+    """Return load, friction coefficient and half length, over those of the units, of spring and springpot."""
+    t, (ahead, behind, bulge, twist) = (
+        springpot,
+        (SPRINGPOT[name].subs(spring_share, nu) for name in (P, Q, D, E)),
+    )
+    mean = 1 + t * (ahead + behind)
+    eta = t * (ahead - behind) / (2 * mean)
+    load = sp.factor(twelfth + t * bulge + eta * (half + t * ahead))
+    work = sp.factor(t * twist + eta**2 * (half + t * ahead))
+    return load, sp.factor(work / load), sp.factor((half + t * ahead) / mean)
+
+
+def _springpot() -> Derivation:
+    proof = _theorem("F18-springpot", title="Fractional Kelvin-Voigt: both limits", text=_BOTH,
+                     uses=("F17-springpot", "F17-load", "F17"))  # fmt: skip
+    load, friction, share = _state()
+    ratio, t = friction / share, springpot
+    slow, fast = (
+        {"variable": t, "point": 0, "eps": t},
+        {"variable": t, "point": sp.oo, "eps": 1 / t},
+    )
+    low = 6 * (1 - nu) * t / (nu * (1 + nu) * (3 + nu))
+    high = (1 - nu) * (2 + nu) / (3 + nu)
+    proof.where(nu < 1, "the order is above 0")
+    proof.leading_order(share, half, reason=r"$\breve a$ at low velocity", **slow)
+    proof.leading_order(load, twelfth, reason=r"load, of the spring alone", **slow)
+    proof.leading_order(ratio, low, reason=r"$\mu R/a$", **slow)
+    proof.leading_order(share, 1 / (1 + nu), reason=r"$\breve a$ at high velocity", **fast)
+    proof.leading_order(
+        load, t / (nu * (1 + nu) ** 2 * (2 + nu)), reason="load, of the springpot alone", **fast
+    )
+    proof.leading_order(ratio, high, reason=r"$\mu R/a$: no velocity is left in it", **fast)
+    return proof.done(ratio, high)
+
+
+_BOTH = (
+    r"With $\breve \zeta = (V \tau/\breve c)^\alpha/\Gamma(\breve \nu)$ and $\alpha = 1 - \breve \nu$ for "
+    r"the order, in units of $K$. At low velocity $\mu \to \frac{a}{R} \frac{6 \alpha}{(4 - \alpha) "
+    r"\Gamma(3 - \alpha)} \left(\frac{V \tau}{2 a}\right)^\alpha$, at high velocity $\mu \to \frac{a}{R} "
+    r"\frac{\alpha (3 - \alpha)}{4 - \alpha}$ and $W \to \frac{K}{R} \frac{(2 - \alpha)^{2 - "
+    r"\alpha}}{\Gamma(4 - \alpha)} (V \tau)^\alpha a^{3 - \alpha}$; Eqs. (42), (45) and (43) for $\alpha "
+    r"= 1$. Under a dead weight $\mu$ falls as $V^{-\alpha/(3 - \alpha)}$."
+)
+
+
+def _monotonic() -> Derivation:
+    proof = _theorem("F18-springpot-monotonic", title="Fractional Kelvin-Voigt: the errors are monotonic",
+                     text=_MONOTONIC, uses=("F18-springpot", "F17-growth"))  # fmt: skip
+    load, friction, share = load_number, friction_number, half_share
+    states = _state(1 / (1 + steepness))
+    for name, form in zip((load, friction, share), states, strict=True):
+        proof.define(name, form, r"of spring and springpot, $\breve \nu = 1/(1 + \breve \chi)$")
+    t, nu = springpot, 1 / (1 + steepness)
+    rise, heavier, longer = (t * sp.Derivative(form, t) / form for form in (friction, load, share))
+    for form, what in (
+        (heavier, "the load grows"),
+        (longer, r"the half length grows, at a given $\breve c$"),
+        (1 - 3 * longer, "but slowly"),
+        (1 - rise, r"$\breve m$ grows less than in proportion"),
+        (rise - longer, r"but more than $\breve a$: at a fixed depth $\mu$ grows"),
+        ((2 + nu) * rise + 1 - heavier, r"under a dead weight $\mu$ falls less than its limit"),
+    ):  # fmt: skip
+        proof.holds(form, ">", 0, what)
+    return proof.done(form, 0)
+
+
+_MONOTONIC = (
+    r"Slopes over $\ln \breve \zeta$, and $\breve \zeta$ grows with the velocity (F17-growth). At a fixed "
+    r"depth $\ln \breve c$ falls as $\ln \breve a$ grows, under a dead weight as $\frac{1}{3} \ln \breve "
+    r"\Lambda$ does, and on a spring by a mean of both with positive weights. The limit for low velocity "
+    r"over $\mu$ has the slope $1 - d \ln \breve m - \breve \nu\, d \ln \breve c$, and $\mu$ over that "
+    r"for high velocity, on a spring, $d \ln \breve m + (1 + 3\, d \ln \breve c)/(2 + \breve \nu)$. Both "
+    "are positive at both ends of that mean, by these inequalities, so on every support: each limit is "
+    "within a tolerance on a half-line of velocities."
+)
