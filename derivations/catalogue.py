@@ -22,6 +22,8 @@ from . import (
     power_law_limits,
     power_law_weight,
     relaxation,
+    spring_drive,
+    spring_stability,
     steady,
     tables,
     theorems,
@@ -44,6 +46,7 @@ _CHAPTERS = (
     *(viscoelastic, relaxation, viscoelastic_limits),
     *(transient_scaling, transient_memory, contact_interval, transient_edges),
     *(transient_motion, transient_rates, transient_balance),
+    *(spring_drive, spring_stability),
     *(element_schemes, element_edges),
 )
 """Each chapter may recall what the chapters before it have established."""

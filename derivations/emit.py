@@ -133,6 +133,30 @@ FORMS += (
          "delta/delta_0 of a wedge from lam = s on"),
 )  # fmt: skip
 
+GIVEN = (sym.T_z, sym.coupling, sym.S_c, sym.uncoupled, sym.rise)
+FORMS += (
+    Form("damping_across", "F22-numbers", sym.B_z, (sym.a, q),
+         "df_z/dd' at the half length a, in units of a_0"),
+    Form("damping_along", "F22-numbers", sym.B_x, (sym.a, q),
+         "df_x/dlam at the half length a, in units of a_0"),
+    Form("relaxation_rate", "F22-numbers", sym.S_z, (q, sym.support_rate), "df_z/dd + kappa over df_z/dd'"),
+    Form("coupling_rate", "F22-numbers", sym.S_c, (q,), "df_x/dd over df_x/dd'"),
+    Form("coupling", "F22-numbers", sym.coupling, (l, q, sym.damper_share),
+         "how strongly the motions across and along are coupled"),
+    Form("uncoupled", "F22-numbers", sym.uncoupled, (q, sym.damper_share), "1 - coupling"),
+    Form("friction_rise", "F22-numbers", sym.rise, (q, sym.damper_share, sym.support_rate),
+         "what has the sign of dF/dV + c_x"),
+    Form("onset_square", "F22-critical", sym.onset_square, GIVEN,
+         "the square of T_z^2 times the difference of both Omega"),
+    Form("onset_sum", "F22-critical", sym.onset_sum, GIVEN, "-T_z^2 times the sum of both Omega"),
+    Form("onset_lag", "F22-falling", sym.lag_plus, (*GIVEN[:4], sym.S_z, sym.spread),
+         "S_z - T_z Omega of the larger"),
+    Form("onset_lag_of_lower", "F22-flutter", sym.lag_minus, (*GIVEN[:4], sym.spread),
+         "S_z - T_z Omega of the smaller"),
+    Form("onset_stiffness", "F22-falling", sym.S_x, (sym.T_x, sym.S_c, sym.Omega, sym.lag_plus),
+         "the critical S_x at a squared frequency and its lag"),
+)  # fmt: skip
+
 _BY_SYMBOL = {form.symbol: form for form in FORMS if form.arguments and form.symbol != q}
 """The functions that others may call; q is their argument instead."""
 

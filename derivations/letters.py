@@ -43,6 +43,7 @@ BY_SECTION: dict[str, dict[str, str]] = {
     "Transient: theorems": {
         r"\hat p": r"\bar p", "a": r"\hat a", "u": r"\bar u", "u_0": r"\bar u_0", "g": r"\bar g",
     },
+    "A drive with a spring": {"a": r"\hat a", "z_A": r"z_{\mathrm{A}}"},
     "Discrete elements": {
         r"\hat p": r"\bar p", "u": r"\bar u", "L": r"\ell_{\mathrm{c}}", "R": r"\hat R", "z": r"\hat z",
         "y": r"\bar y", r"\Delta": r"\Delta x", r"\eta": r"\hat\eta",
@@ -85,6 +86,7 @@ BY_LABEL: dict[str, dict[str, str]] = {
     },
     "F11": _PASSED,
     "F12": {"D": r"\tilde d"},
+    "F22": {"D": r"\tilde d"},
     "F13": {"f": r"f_{\mathrm{b}}"},
     "F13-root": {"f": r"f_{\mathrm{b}}", "n": r"\bar n", r"\beta": r"\bar b"},
     "F14": {"E": r"E_{\mathrm{s}}", "S": r"\bar U", "g": "g"},

@@ -159,6 +159,24 @@ haste, steepness, load_number, friction_number = _positive("omega_v chi_v Lambda
 pressed, shift, slope_free = sp.symbols("g_v h_v s_vf", real=True)
 other_trailing = sp.Symbol("v_v", positive=True)
 
+# A drive with a spring (F22): mass, damper and spring along x, where the indenter is, and what each
+# becomes in scaled form; then the motions over their dampings, and what sets in.
+M_x, k_x, eps_x, kappa_x, B_x = _positive("M_x k_x epsilon_x kappa_x B_x")
+C_x, damper, damper_share, support_rate = sp.symbols("C_x c_x n_x S_s", nonnegative=True)
+x_a = sp.Function("x_A", real=True)(t)
+along, along_s, along_ss, along_0, swing, small = sp.symbols(
+    "x_d x_ds x_dss x_d0 x_d1 theta_d", real=True
+)
+lam_0 = sp.Symbol("lambda_0", real=True)
+B_z, T_z, T_x, S_z, S_x, S_c, coupling, uncoupled = _positive("B_z T_z T_x S_z S_x S_c g_c h_c")
+Omega, lag_plus, lag_minus, T_flutter = _positive("Omega p_p p_m T_f")
+rise, bias, onset_sum, hurwitz, Omega_plus, Omega_minus, onset_square = sp.symbols(
+    "e_c m_c n_c H_c Omega_p Omega_m D_c", real=True
+)
+sinks = sp.Symbol("d_l", real=True)
+"""How the depth changes with the drive number in steady sliding."""
+spread = sp.Symbol("s_c", nonnegative=True)
+
 alpha = 2 * sp.sqrt(2) / 3
 """The coefficient of Eqs. 40-46."""
 
@@ -305,5 +323,35 @@ TEX = {
     load_number: r"\breve \Lambda",
     friction_number: r"\breve m",
     steepness: r"\breve \chi",
+    x_a: r"x_{\mathrm{A}}",
+    eps_x: r"\varepsilon_x",
+    kappa_x: r"\kappa_x",
+    along: r"\check x",
+    along_s: r"\check x'",
+    along_ss: r"\check x''",
+    along_0: r"\check x_0",
+    swing: r"\check x_1",
+    small: r"\check \theta",
+    T_z: r"\vartheta_z",
+    T_x: r"\vartheta_x",
+    S_z: r"\varrho_z",
+    S_x: r"\varrho_x",
+    S_c: r"\varrho_{\mathrm{c}}",
+    support_rate: r"\varrho_{\mathrm{s}}",
+    coupling: r"\check g",
+    uncoupled: r"\check h",
+    rise: r"\check e",
+    Omega: r"\Omega",
+    Omega_plus: r"\Omega_{+}",
+    Omega_minus: r"\Omega_{-}",
+    lag_plus: r"\check p_{+}",
+    lag_minus: r"\check p_{-}",
+    T_flutter: r"\vartheta_{\mathrm{f}}",
+    hurwitz: r"\check H",
+    sinks: r"d_\lambda",
+    bias: r"\check m",
+    onset_sum: r"\check n",
+    spread: r"\check s",
+    onset_square: r"\check D",
 }
 """How `sympy.latex` prints these symbols where its own choice differs from the paper's."""

@@ -139,7 +139,7 @@ _RATES = (
 )
 
 
-def _steady(proof: Proof) -> None:
+def steady_sliding(proof: Proof) -> None:
     """Let A, B and lambda be those of steady sliding, by the half length and q."""
     proof.define(l, NUMBER)
     proof.recall("F12-steady", lam, a * l)
@@ -152,7 +152,7 @@ def _critical_inertia() -> Derivation:
     cubed = 27 * q**4 / (64 * (1 + q) ** 2 * A)
     proof.define(eps_critical, DAMPING**2 / (4 * STIFFNESS))
     proof.equal(DAMPING**2 - 4 * eps_critical * STIFFNESS, sp.S.Zero, "both rates are equal")
-    _steady(proof)
+    steady_sliding(proof)
     proof.define(kappa, sp.S.Zero, "dead weight")
     proof.equal(eps_critical, 3 * a * q / 8, "three eighths of the trailing edge $r = a q$")
     proof.define(a, sp.cbrt(4 / (3 * w)), r"the load $W_0 \frac{3}{4} a^3 w$ is the weight")
@@ -177,7 +177,7 @@ def _time_constants() -> Derivation:
     proof = _theorem(
         "F12-time-constants", title="The two time constants", text=_TIMES, uses=("F12",)
     )
-    _steady(proof)
+    steady_sliding(proof)
     proof.define(kappa, sp.S.Zero, "dead weight")
     fast, slow = 4 * eps / (3 * a * (1 + q)), 2 * q / (1 + q)
     for name, rate in zip(_times, (FAST, SLOW), strict=True):

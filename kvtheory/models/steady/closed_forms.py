@@ -300,3 +300,65 @@ def wedge_scaled_depth_peeling(kappa: Value, lam: Value) -> Value:
 def wedge_scaled_depth_peeled(kappa: Value, lam: Value) -> Value:
     """Return delta/delta_0 of a wedge from lam = s on; theorem wedge-weight-peeled."""
     return (2 * kappa + 2) / (kappa + lam + np.sqrt(2 * kappa + (kappa + lam) * (kappa + lam) + 2))
+
+
+def damping_across(a: Value, q: Value) -> Value:
+    """Return df_z/dd' at the half length a, in units of a_0; theorem F22-numbers."""
+    return 3 * a * (q + 1) / 4
+
+
+def damping_along(a: Value, q: Value) -> Value:
+    """Return df_x/dlam at the half length a, in units of a_0; theorem F22-numbers."""
+    return a * a * a * (q + 1) * (q + (1 - q) * (1 - q))
+
+
+def relaxation_rate(q: Value, S_s: Value) -> Value:
+    """Return df_z/dd + kappa over df_z/dd'; theorem F22-numbers."""
+    return S_s + (q + 1) / (2 * q)
+
+
+def coupling_rate(q: Value) -> Value:
+    """Return df_x/dd over df_x/dd'; theorem F22-numbers."""
+    return (q + 1) / q
+
+
+def coupling(l: Value, q: Value, n_x: Value) -> Value:
+    """Return how strongly the motions across and along are coupled; theorem F22-numbers."""
+    return 3 * l * l * q * q / ((n_x + 1) * (q + 1) * (q + 1) * (q + (1 - q) * (1 - q)))
+
+
+def uncoupled(q: Value, n_x: Value) -> Value:
+    """Return 1 - coupling; theorem F22-numbers."""
+    return (n_x + (q + 1) * (q + 1) / (4 * q + 4 * (1 - q) * (1 - q))) / (n_x + 1)
+
+
+def friction_rise(q: Value, n_x: Value, S_s: Value) -> Value:
+    """Return what has the sign of dF/dV + c_x; theorem F22-numbers."""
+    return S_s + (n_x * (q + 1) / (2 * q) + (q + 1) * (-q * q + 4 * q - 1) / (4 * q * (q + (1 - q) * (1 - q)))) / (n_x + 1)
+
+
+def onset_spread(T_z: Value, g_c: Value, S_c: Value, h_c: Value, e_c: Value) -> Value:
+    """Return T_z^2 times the difference of both Omega; theorem F22-critical."""
+    m_c = -S_c * T_z * g_c + h_c
+    return np.sqrt(-4 * T_z * e_c * h_c + m_c * m_c)
+
+
+def onset_sum(T_z: Value, g_c: Value, S_c: Value, h_c: Value, e_c: Value) -> Value:
+    """Return -T_z^2 times the sum of both Omega; theorem F22-critical."""
+    m_c = -S_c * T_z * g_c + h_c
+    return -2 * T_z * e_c + m_c
+
+
+def onset_lag(T_z: Value, g_c: Value, S_c: Value, h_c: Value, S_z: Value, s_c: Value) -> Value:
+    """Return S_z - T_z Omega of the larger; theorem F22-falling."""
+    return 2 * S_z * h_c / (S_c * T_z * g_c + h_c + s_c)
+
+
+def onset_lag_of_lower(T_z: Value, g_c: Value, S_c: Value, h_c: Value, s_c: Value) -> Value:
+    """Return S_z - T_z Omega of the smaller; theorem F22-flutter."""
+    return (S_c * T_z * g_c + h_c + s_c) / (2 * T_z)
+
+
+def onset_stiffness(T_x: Value, S_c: Value, Omega: Value, p_p: Value) -> Value:
+    """Return the critical S_x at a squared frequency and its lag; theorem F22-falling."""
+    return Omega * (T_x + (S_c - p_p) / (Omega + S_c * p_p))

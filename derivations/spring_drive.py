@@ -1,0 +1,223 @@
+"""A drive with a spring: the motion along the foundation, and its small motions in steady sliding (F22)."""
+
+from functools import partial
+
+import sympy as sp
+
+from .book import established
+from .record import Derivation
+from .step import Proof
+from .symbols import (
+    W_0,
+    C_x,
+    F_x,
+    M_x,
+    V,
+    a,
+    a_0,
+    along,
+    along_0,
+    along_s,
+    along_ss,
+    change,
+    d,
+    d_s,
+    damper,
+    delta_0,
+    eps,
+    eps_x,
+    f_friction,
+    f_normal,
+    k_x,
+    kappa,
+    kappa_x,
+    lam,
+    lam_0,
+    per_depth,
+    per_rate,
+    right,
+    sigma,
+    small,
+    swing,
+    t,
+    tau,
+    time,
+    x_a,
+)  # fmt: skip
+from .transient_motion import JACOBIAN, START
+from .transient_rates import QUADRATIC
+
+SECTION = "A drive with a spring"
+_theorem = partial(Proof, equation=None, section=SECTION)
+
+_unit = W_0 * delta_0 / a_0
+"""Of the friction force and of all forces along the foundation."""
+LONGITUDINAL = eps_x * sigma**2 + (right**3 + a**3 + damper) * sigma + kappa_x
+"""Its roots are the rates along the foundation of an indenter that is held at its depth."""
+COUPLING = sp.Rational(9, 4) * lam**2 * right * sigma * (right + a + right * sigma)
+QUARTIC = QUADRATIC * LONGITUDINAL - COUPLING
+
+
+def derive() -> tuple[Derivation, ...]:
+    """Derive the equation of motion along the foundation and the quartic of the rates."""
+    return _scaled(), _forces(), _quartic(), _energy()
+
+
+def _scaled() -> Derivation:
+    proof = _theorem("F22-scaled", title="Motion along the foundation", text=_SCALED,
+                     uses=("scaled-pressure", "eq15"))  # fmt: skip
+    proof.define(
+        along_s, tau * x_a.diff(t) / a_0, left=r"\check x'", right=r"\tau \dot{x}_{\mathrm{A}}/a_0"
+    )
+    proof.define(along_ss, tau**2 * x_a.diff(t, 2) / a_0, left=r"\check x''",
+                 right=r"\tau^2 \ddot{x}_{\mathrm{A}}/a_0")  # fmt: skip
+    proof.define(lam_0, V * tau / a_0)
+    proof.define(lam, (V - x_a.diff(t)) * tau / a_0, right=r"(V - \dot{x}_{\mathrm{A}}) \tau/a_0")
+    proof.equal(lam, lam_0 - along_s, "the foundation slides under an indenter that gives way")
+    proof.define(along, x_a / a_0, left=r"\check x", right=r"x_{\mathrm{A}}/a_0")
+    proof.define(f_friction, F_x / _unit)
+    proof.define(eps_x, M_x * a_0 / (_unit * tau**2))
+    proof.define(damper, C_x * a_0 / (_unit * tau))
+    proof.define(kappa_x, k_x * a_0 / _unit)
+    force = F_x - C_x * x_a.diff(t) - k_x * x_a
+    proof.define(x_a.diff(t, 2), force / M_x, "friction, damper and spring",
+                 left=r"\ddot{x}_{\mathrm{A}}",
+                 right=r"\frac{F_x - C_x \dot{x}_{\mathrm{A}} - k_x x_{\mathrm{A}}}{M_x}")  # fmt: skip
+    result = f_friction - damper * along_s - kappa_x * along
+    proof.equal(
+        eps_x * along_ss, result, "scaled motion", right=r"f_x - c_x \check x' - \kappa_x \check x"
+    )
+    return proof.done(eps_x * along_ss, result)
+
+
+_SCALED = (
+    "The indenter, of mass $M_x$ as far as it moves along the foundation, hangs on a spring of stiffness "
+    r"$k_x$ and a damper $C_x$; $x_{\mathrm{A}}$ is how far it has been dragged. Two numbers more, and one "
+    r"for the damper, in units of $a_0$, $\tau$ and $W_0 \delta_0/a_0$. For $\kappa_x \to \infty$ the "
+    "drive is rigid."
+)
+
+
+def _forces() -> Derivation:
+    proof = _theorem("F22-forces", title="Stiffness and damping, along and across", text=_SIX,
+                     uses=("F11-start",))  # fmt: skip
+    proof.where(sp.Gt(d + d_s + lam**2, 0), "the indenter is on the foundation")
+    proof.define(right, START[right], "peels")
+    proof.define(a, sp.sqrt(d))
+    named = {"f_z": f_normal, "f_x": f_friction}
+    forces = {name: established("F11", each).subs(START) for name, each in named.items()}
+    proof.notation |= forces
+    slopes = {name: sp.Derivative(force, lam) for name, force in forces.items()}
+    proof.equal(slopes["f_z"], JACOBIAN[3], "F11; an edge that touches does not depend on it",
+                left=_partial("f_z", r"\lambda"), right=r"\frac{3}{4} \left(a^2 - r^2\right)")  # fmt: skip
+    proof.equal(slopes["f_z"], sp.Derivative(forces["f_x"], d_s), "a reciprocity",
+                left=_partial("f_z", r"\lambda"), right=_partial("f_x", "d'"))  # fmt: skip
+    proof.equal(slopes["f_x"], right**3 + a**3, "F11", left=_partial("f_x", r"\lambda"))
+    proof.define(per_depth, right + lam + a)
+    proof.define(per_rate, right + a)
+    steady = (
+        ("f_z", "d", d, sp.Rational(3, 4) * per_depth),
+        ("f_z", "d'", d_s, sp.Rational(3, 4) * per_rate),
+        ("f_z", r"\lambda", lam, sp.Rational(3, 2) * lam * right),
+        ("f_x", "d", d, sp.Rational(3, 2) * lam * (right + a)),
+        ("f_x", "d'", d_s, sp.Rational(3, 2) * lam * right),
+        ("f_x", r"\lambda", lam, right**3 + a**3),
+    )
+    for name, latex, variable, value in steady:
+        slope = sp.Subs(sp.Derivative(forces[name], variable), d_s, 0)
+        here = sp.Subs(value, d_s, 0)
+        proof.equal(slope, here, "in steady sliding, $d' = 0$",
+                    left=rf"\left. {_partial(name, latex)} \right|_{{d' = 0}}",
+                    right=rf"\left. {sp.latex(value)} \right|_{{d' = 0}}")  # fmt: skip
+    return proof.done(slopes["f_z"], sp.Derivative(forces["f_x"], d_s))
+
+
+_SIX = (
+    "How both forces depend on the depth, on its rate and on the velocity at which the foundation slides, "
+    "after a start from rest."
+)
+
+
+def _partial(force: str, variable: str) -> str:
+    return rf"\frac{{\partial {force}}}{{\partial {variable}}}"
+
+
+def _quartic() -> Derivation:
+    proof = _theorem("F22", title="Rates with a spring in the drive", text=_RATES,
+                     uses=("scaled-form", "F22-scaled", "F11-start", "F12-linear"))  # fmt: skip
+    place = a**2 + small * change * sp.exp(sigma * time)
+    dragged = along_0 + small * swing * sp.exp(sigma * time)
+    rate, slides = place.diff(time), lam - dragged.diff(time)
+    forces = {
+        name: sp.Lambda((d, d_s, lam), established("F11", force).subs(START))
+        for name, force in (("f_z", f_normal), ("f_x", f_friction))
+    }
+    pushed, rubbed = (force(place, rate, slides) for force in forces.values())
+    across = eps * place.diff(time, 2) - (1 - pushed - kappa * (place - 1))
+    lengthwise = eps_x * dragged.diff(time, 2) - (
+        rubbed - damper * dragged.diff(time) - kappa_x * dragged
+    )
+    proof.notation |= {"D": sp.Lambda(time, place), r"\check x": sp.Lambda(time, dragged), **forces}
+    proof.where(sp.Gt(place, 0), "the change is small")
+    proof.where(sp.Gt(place + rate + slides**2, 0), "and the contact remains")
+    proof.define(right, sp.sqrt(a**2 + lam**2) - lam, "the trailing edge in steady sliding")
+    proof.define(per_depth, sp.sqrt(a**2 + lam**2) + a)
+    proof.define(per_rate, right + a)
+    own = [QUADRATIC, -sp.Rational(3, 2) * lam * right * sigma]
+    other = [-sp.Rational(3, 2) * lam * (right + a + right * sigma), LONGITUDINAL]
+    for motion, row, shown, form in (
+        (across, own, r"\varepsilon D'' - \left(1 - f_z(D, D', \lambda - \check x') - \kappa (D - 1)\right)",
+         rf"\left({_ACROSS}\right) \hat d - \frac{{3}}{{2}} \lambda r \sigma \check x_1"),
+        (lengthwise, other, r"\varepsilon_x \check x'' - \left(f_x(D, D', \lambda - \check x') - c_x "
+         r"\check x' - \kappa_x \check x\right)",
+         rf"\left({_ALONG}\right) \check x_1 - \frac{{3}}{{2}} \lambda (r + a + r \sigma) \hat d"),
+    ):  # fmt: skip
+        first = sp.Subs(sp.Derivative(motion, small), small, 0)
+        proof.equal(
+            *(first, (row[0] * change + row[1] * swing) * sp.exp(sigma * time), _FIRST),
+            left=rf"\left. \frac{{\partial}}{{\partial \check \theta}} \left[{shown}\right] "
+            r"\right|_{\check \theta = 0}",
+            right=rf"\left[{form}\right] e^{{\sigma s}}",
+        )  # fmt: skip
+    determinant = own[0] * other[1] - own[1] * other[0]
+    proof.equal(determinant, QUARTIC, "both vanish for some motion: the determinant does")
+    return proof.done(determinant, QUARTIC)
+
+
+_ACROSS = r"\varepsilon \sigma^2 + \frac{3}{4} B \sigma + \frac{3}{4} A + \kappa"
+_ALONG = r"\varepsilon_x \sigma^2 + (r^3 + a^3 + c_x) \sigma + \kappa_x"
+_FIRST = r"the terms of first order in $\check \theta$"
+_RATES = (
+    r"Both motions near steady sliding: the depth is $D = a^2 + \check \theta \hat d e^{\sigma s}$, and "
+    r"the indenter is at $\check x = \check x_0 + \check \theta \check x_1 e^{\sigma s}$, so that the "
+    r"foundation slides at $\lambda - \check x'$. To first order both equations of motion hold if $\sigma$ "
+    "is a root of the quartic."
+)
+
+
+def _energy() -> Derivation:
+    proof = _theorem("F22-energy", title="Balance of energy with the spring", text=_SPENT,
+                     uses=("F22-scaled", "F14-energy"))  # fmt: skip
+    place = sp.Function(str(along), real=True)(time)
+    moves = sp.Derivative(place, time)
+    held = f_friction - damper * moves - kappa_x * place
+    proof.notation[r"\check x"] = place
+    proof.define(sp.Derivative(place, (time, 2)), held / eps_x, "F22-scaled", left=r"\check x''",
+                 right=r"\frac{f_x - c_x \check x' - \kappa_x \check x}{\varepsilon_x}")  # fmt: skip
+    proof.define(lam, lam_0 - moves, right=r"\lambda_0 - \check x'")
+    stored = eps_x * moves**2 / 2 + kappa_x * place**2 / 2
+    spent = lam * f_friction + sp.Derivative(stored, time) + damper * moves**2
+    proof.equal(
+        *(lam_0 * f_friction, spent, r"$\lambda f_x$ is spent as in F14-energy"),
+        left=r"\lambda_0 f_x",
+        right=r"\lambda f_x + \frac{d}{ds} \left[\frac{\varepsilon_x \check x'^2}{2} + "
+        r"\frac{\kappa_x \check x^2}{2}\right] + c_x \check x'^2",
+    )  # fmt: skip
+    return proof.done(lam_0 * f_friction, spent)
+
+
+_SPENT = (
+    "What the drive gives, in dimensional form $F_x V$, becomes energy of the motion along the foundation "
+    "and of the spring, or is lost in its damper; the rest goes to the foundation and the motion across, "
+    "as with a rigid drive."
+)
