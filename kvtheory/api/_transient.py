@@ -6,7 +6,7 @@ from kvtheory.api._edge import double_precision, scene_of, times_of
 from kvtheory.progress import Progress
 from kvtheory.results import Transient
 from kvtheory.scene.model import Scene
-from kvtheory.scene.requirements import lacks_rigid_paper_model, require
+from kvtheory.scene.requirements import lacks_paper_model, require
 
 MINIMUM_RTOL, MAXIMUM_RTOL = 1e-12, 1e-2
 """Beyond these, rounding or the first step would decide."""
@@ -80,7 +80,7 @@ def transient(
         raise ValueError(
             f"`rtol` = {rtol!r}: expected a number from {MINIMUM_RTOL} to {MAXIMUM_RTOL}"
         )
-    require(lacks_rigid_paper_model, scene, "the transient")
+    require(lacks_paper_model, scene, "the transient")
     from kvtheory.models.continuum import solved_scene
 
     with double_precision():

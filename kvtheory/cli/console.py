@@ -152,11 +152,15 @@ def print_json(result: Any) -> None:
 
 def print_series(result: Any, *, whole: bool) -> None:
     """Print a time series for people: every row, or about twenty of them with both ends."""
-    from kvtheory.results import SHOWN_UNITS, TRANSIENT_UNITS
+    from kvtheory.results import SERIES_UNITS, SHOWN_UNITS
 
     last = result.time.size - 1
     rows = range(last + 1) if whole else sorted({round(i * last / 20) for i in range(21)})
-    units = {name: unit for name, unit in TRANSIENT_UNITS.items() if name != "depth_rate"}
+    units = {
+        name: unit
+        for name, unit in SERIES_UNITS.items()
+        if name != "depth_rate" and hasattr(result, name)
+    }
     print_table(
         [f"{name} [{SHOWN_UNITS[unit][0]}]" for name, unit in units.items()],
         [[shown(getattr(result, name)[i], unit)[0] for name, unit in units.items()] for i in rows],

@@ -16,7 +16,11 @@ from kvtheory.results import TRANSIENT_UNITS, Certificate, Simulation, SteadySta
 from kvtheory.results.certificate import AT_REST
 from kvtheory.results.table import scales
 from kvtheory.scene.model import Scene
-from kvtheory.scene.requirements import lacks_rigid_drive, lacks_rigid_paper_model
+from kvtheory.scene.requirements import (
+    lacks_paper_model,
+    lacks_rigid_drive,
+    lacks_rigid_paper_model,
+)
 from kvtheory.scene.static_state import StaticState
 
 Array = NDArray[np.float64]
@@ -69,7 +73,7 @@ def rungs(models: Models) -> tuple[Rung, ...]:
 
 
 def _parabola(scene: Scene, request: Request) -> Judgement:
-    return Judgement(lacks_rigid_paper_model(scene))
+    return Judgement(lacks_paper_model(scene))
 
 
 def _anything(scene: Scene, request: Request) -> Judgement:

@@ -11,15 +11,17 @@ from scipy.integrate import simpson
 
 from kvtheory.plots.comparison import draw_comparison
 from kvtheory.plots.files import save_picture
-from kvtheory.plots.style import BLUE, LABELS, TRANSIENT_ROWS
+from kvtheory.plots.style import BLUE, LABELS, RED, TRANSIENT_ROWS
 from kvtheory.plots.sweep import plot_sweep
-from kvtheory.results import AsymptoteReport, Comparison, SteadyState, Sweep, Transient
+from kvtheory.results import QUANTITIES, AsymptoteReport, Comparison, SteadyState, Sweep, Transient
 from kvtheory.results.transient import TimeSeries
 
 SERIES, STEADY = (5.0, 6.4), (5.0, 3.4)
 """Sizes of the pictures, in inches."""
 POINTS = 201
 """Of the pressure over the contact."""
+BESIDE = {"velocity": "sliding_velocity", "friction_force": "spring_force"}
+"""What a drive with a spring has beside a quantity."""
 NOT_ITS_LOAD = 1e-6
 """A pressure whose integral, by Simpson's rule, is as far from the load is not that of a parabola."""
 
@@ -57,7 +59,8 @@ def plot_asymptote_errors(ax: Any, report: AsymptoteReport, styles: Mapping[str,
 def plot_transient(axes: Sequence[Any], result: TimeSeries, **style: Any) -> list[Any]:
     """Draw velocity, position, normal and friction force over time on four axes, as in Fig. 3.
 
-    The rest before t = 0 is drawn too, for a twentieth of the time shown: V and F_x are zero there.
+    The rest before t = 0 is drawn too, for a twentieth of the time shown: V and F_x are zero there. Of a
+    drive with a spring, the sliding velocity and the force of the spring are drawn beside them.
     """
     time = np.asarray(result.time) * 1e3
     before = np.array([-0.05 * time[-1], 0.0])
@@ -68,6 +71,11 @@ def plot_transient(axes: Sequence[Any], result: TimeSeries, **style: Any) -> lis
         values = np.concatenate([[rest[name]] * 2, getattr(result, name)]) * factor
         artists += ax.plot(np.concatenate([before, time]), values, **style)
         ax.set(ylabel=label)
+        if hasattr(result, BESIDE.get(name, "")):
+            beside = np.asarray(getattr(result, BESIDE[name])) * factor
+            words = QUANTITIES[BESIDE[name]].words
+            artists += ax.plot(time, beside, color=RED, linewidth=0.8, label=words)
+            ax.legend(loc="upper right")
     axes[-1].set(xlabel=r"time $t$ [ms]")
     return artists
 

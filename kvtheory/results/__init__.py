@@ -11,12 +11,21 @@ from kvtheory.results.errors import (
 from kvtheory.results.solution import ClimbStep, Solution
 from kvtheory.results.steady import AsymptoteLine, AsymptoteReport, SteadyState
 from kvtheory.results.sweep import Axis, Failure, Sweep
-from kvtheory.results.table import QUANTITIES, SHOWN_UNITS, STEADY_UNITS, TRANSIENT_UNITS
-from kvtheory.results.transient import Event, Simulation, Transient
+from kvtheory.results.table import (
+    QUANTITIES,
+    SERIES_UNITS,
+    SHOWN_UNITS,
+    SPRING_UNITS,
+    STEADY_UNITS,
+    TRANSIENT_UNITS,
+)
+from kvtheory.results.transient import Event, Simulation, SprungTransient, Transient
 
 __all__ = [
     "QUANTITIES",
+    "SERIES_UNITS",
     "SHOWN_UNITS",
+    "SPRING_UNITS",
     "STEADY_UNITS",
     "TRANSIENT_UNITS",
     "AsymptoteLine",
@@ -33,6 +42,7 @@ __all__ = [
     "QuadratureError",
     "Simulation",
     "Solution",
+    "SprungTransient",
     "SteadyState",
     "Sweep",
     "ToleranceError",

@@ -21,6 +21,7 @@ class Row(NamedTuple):
 _ALL = (
     Row("time", "t", "s", "time", "time"),
     Row("velocity", "V", "m/s", "drive velocity", "velocity"),
+    Row("sliding_velocity", r"v", "m/s", "sliding velocity", "velocity"),
     Row("depth", r"\delta", "m", "depth", "depth"),
     Row("depth_rate", r"\dot\delta", "m/s", "rate of the depth", "depth_rate"),
     Row("half_length", "a", "m", "half length of the stationary contact", "half_length"),
@@ -28,6 +29,7 @@ _ALL = (
     Row("normal_force", "F_z", "N/m", "normal force", "load"),
     Row("load", "W", "N/m", "load", "load"),
     Row("friction_force", "F", "N/m", "friction force", "friction_force"),
+    Row("spring_force", r"F_\mathrm{s}", "N/m", "force of the drive's spring", "friction_force"),
     Row("friction_coefficient", r"\mu", "1", "friction coefficient", ""),
     Row("leading_edge", r"x_\mathrm{LE}", "m", "leading edge", "half_length"),
     Row("trailing_edge", r"x_\mathrm{TE}", "m", "trailing edge", "half_length"),
@@ -54,6 +56,10 @@ TRANSIENT_UNITS = {
     )
 }  # fmt: skip
 """The quantities of a time series and their units, `time` first."""
+
+SPRING_UNITS = {name: QUANTITIES[name].unit for name in ("sliding_velocity", "spring_force")}
+"""The quantities that a time series has beside these where the drive has a spring."""
+SERIES_UNITS = TRANSIENT_UNITS | SPRING_UNITS
 
 SHOWN_UNITS = {
     "1": ("", 1.0),

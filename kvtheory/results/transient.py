@@ -97,6 +97,19 @@ class Transient(TimeSeries):
 
 
 @dataclass(frozen=True, repr=False)
+class SprungTransient(Transient):
+    """A transient whose drive holds the indenter by a spring: two series more, `SPRING_UNITS`.
+
+    `sliding_velocity` is that of the base under the indenter, V - dx/dt, and `spring_force` is what spring
+    and damper exert, k_x x + c_x dx/dt, where x is how far the indenter was dragged along. Leading and
+    trailing edge follow the sign of the sliding velocity.
+    """
+
+    sliding_velocity: Value
+    spring_force: Value
+
+
+@dataclass(frozen=True, repr=False)
 class Simulation(TimeSeries):
     """A run of the elements as a time series: arrays in SI over `time`; in flight the edges are NaN.
 

@@ -162,7 +162,7 @@ class _Block:
     def _room(self, drive: BaseMotion, units: StaticState) -> list[Run]:
         runs, numbers = [], (float(units.inertia_number), float(units.support_number))
         for tolerance, control in estimate.methods(self.plan.rtol):
-            run = begin(drive, numbers, drive.end, tolerance, control, arrays=True)
+            run = begin(drive, numbers, None, drive.end, tolerance, control, arrays=True)
             for _ in range(DOUBLINGS):
                 run = with_more_room(run)
             runs.append(run)

@@ -87,10 +87,11 @@ def _begun(run: Run, scenes: Scenes, i: int) -> Run:
     given = Given(
         scenes.eps[i], scenes.kappa[i], scenes.end[i],
         g.fixed, g.rtol, g.allowed, g.control, g.method,
+        g.eps_x, g.damping, g.spring, g.sprung, g.drives,
     )  # fmt: skip
     begun = Run(
         given, pieces, run.now, run.counts, run.states, run.tops, run.edges,
-        run.records, run.nodes, run.events, run.matrix,
+        run.records, run.nodes, run.events, run.matrix, run.along,
     )  # fmt: skip
     rest(begun)
     return begun

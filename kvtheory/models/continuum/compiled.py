@@ -20,6 +20,7 @@ import numpy as np
 from kvtheory.models.continuum import (
     bulk,
     contact,
+    coupled,
     dense_output,
     deviation,
     evaluation,
@@ -36,6 +37,7 @@ MODULES = (
     base_motion,
     dense_output,
     contact,
+    coupled,
     radau_iia,
     run,
     memory_chains,

@@ -104,11 +104,11 @@ def forces(l: float, r: float, d: float, v: float, number: float) -> tuple[float
 
 def edge(
     run: Past, side: float, state: float, node: int, s: float, now: Instant
-) -> tuple[float, float, int]:
-    """Return xi of an edge, d(xi)/dd for the force (a peeling edge adds none), and its node."""
+) -> tuple[float, float, float, int]:
+    """Return xi of an edge, d(xi)/dd and d(xi)/dY for the force (a peeling edge adds none), and its node."""
     d, v, _, Y, number, _ = now
     if state == PEELING:
-        return root(side, number, d + v)[0], 0.0, node
+        return root(side, number, d + v)[0], 0.0, 0.0, node
     node = reached(run, side, node, s, d, Y)
     row = run.nodes[node]
     s_0, d_0, Y_0 = row[IN_S], row[IN_D], row[IN_Y]
@@ -116,7 +116,8 @@ def edge(
         s_0, d_0, Y_0 = sweep(run, side, row, s, d, Y)
     b, c, m = secant(s, d, Y, s_0, d_0, Y_0)
     xi, half = root(side, b, c)
-    return xi, side / (2.0 * m * max(half, 1e-300)), node
+    xi_d = side / (2.0 * m * max(half, 1e-300))
+    return xi, xi_d, 2.0 * (1.0 - m) * xi_d * (Y - Y_0 - xi), node
 
 
 def reached(run: Past, side: float, node: int, s: float, d: float, Y: float) -> int:

@@ -18,9 +18,11 @@ DEPTH, RATE, NORMAL_FORCE, FRICTION_FORCE, EDGES, PEAK_PRESSURE, HOPS = range(7)
 EDGE_ROUNDING, NORMAL_ROUNDING, FRICTION_ROUNDING, PEAK_ROUNDING = range(7, 11)
 """What rounding of the edges may do to them, and to the forces, for the pressure there acts, and to the
 pressure at them."""
-SIZES = 11
-"""From here on, the largest magnitude of each quantity; of `HOPS` it stays zero."""
-SIZE = SIZES + HOPS + 1
+ALONG_RATE, SPRING_FORCE = range(11, 13)
+"""Of a drive with a spring."""
+SIZES = 13
+"""From here on, the largest magnitude of each quantity; of those that stand for rounding it stays zero."""
+SIZE = 2 * SIZES
 
 
 def deviations(times: Any, found: Any, fine: Run, other: Run, rows: Any, worst: Any) -> None:
@@ -82,6 +84,8 @@ def _raise(worst: Any, row: Any, one: Any, two: Any) -> None:
         (EDGES, e_.LEFT),
         (EDGES, e_.RIGHT),
         (PEAK_PRESSURE, e_.PEAK_PRESSURE),
+        (ALONG_RATE, e_.ALONG_RATE),
+        (SPRING_FORCE, e_.SPRING_FORCE),
     ):
         value = _known(row[i])
         worst[SIZES + k] = max(worst[SIZES + k], abs(value))

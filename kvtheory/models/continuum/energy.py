@@ -2,16 +2,17 @@ r"""Where the work of the drive goes: the energy ledger of a transient (fact F14
 
 In units of W_0 delta_0, with integrals over the contact (in) and over the surface outside it (out),
 
-    int lambda f_x ds + 2/5 = 1/2 eps d'^2 - (d - 1) + 1/2 kappa (d - 1)^2
+    int lambda_0 f_x ds + 2/5 = 1/2 eps d'^2 - (d - 1) + 1/2 kappa (d - 1)^2
+                              + 1/2 eps_x x'^2 + 1/2 kappa_x x^2 + int c_x x'^2 ds
                               + 3/8 int_in u^2 dxi + 3/8 int_out u^2 dxi
                               + 3/4 int int_in u'^2 dxi ds + 3/4 int int_out u'^2 dxi ds,
 
-where 2/5 is stored at rest. No term is the remainder of the others: under the indenter the integrals
-over xi are polynomials of the edges, what is stored outside is what the memory holds, and since u' = -u
-there, twice that energy is dissipated per unit of time (F14-surface).
+where 2/5 is stored at rest, and x = 0 for a rigid drive. No term is the remainder of the others: under
+the indenter the integrals over xi are polynomials of the edges, what is stored outside is what the memory
+holds, and since u' = -u there, twice that energy is dissipated per unit of time (F14-surface).
 """
 
-from dataclasses import astuple, dataclass
+from dataclasses import astuple, dataclass, fields
 from typing import Any
 
 import numpy as np
@@ -27,8 +28,9 @@ from kvtheory.models.continuum.surface import Array, kept, relaxing
 class Ledger:
     """Energies at one time, or arrays of them: in units of W_0 delta_0, or in J/m.
 
-    `stored_at_rest` and the `work` of the drive since then are spent on the other entries; the two
-    dissipated energies are sums since the start. What is potential is zero at the static depth.
+    `stored_at_rest` and the `work` of the drive since then are spent on the other entries; the
+    dissipated energies are sums since the start. What is potential is zero at the static depth. The last
+    three are of a drive with a spring: of the motion along x, in the spring, and in the damper.
     """
 
     stored_at_rest: Any
@@ -40,6 +42,9 @@ class Ledger:
     stored_surface: Any
     dissipated_contact: Any
     dissipated_surface: Any
+    kinetic_along: Any = 0.0
+    stored_drive: Any = 0.0
+    dissipated_drive: Any = 0.0
 
     @property
     def balance(self) -> Any:
@@ -78,17 +83,24 @@ def ledger(motion: Trajectory, s: ArrayLike) -> Ledger:
     low, high = np.append(starts[:-1], starts[index]), np.append(starts[1:], flat)
     parts = integrals(lambda _, t: _powers(motion, t, memory), low, high)
     steps = starts.size - 1
-    sums = np.concatenate([np.zeros((1, 3)), np.cumsum(parts[:steps], axis=0)])
+    sums = np.concatenate([np.zeros((1, parts.shape[1])), np.cumsum(parts[:steps], axis=0)])
     spent = sums[index] + parts[steps:]
     free = relaxing(motion, flat, 2, memory)
-    rows = [_entries(motion, motion.at(t), *of) for t, *of in zip(flat, free, spent, strict=True)]
-    return Ledger(*np.array(rows).reshape(-1, 9).T.reshape(9, *times.shape))
+    along = motion.states(flat)[:, [evaluation.ALONG, evaluation.ALONG_RATE]]
+    rows = [
+        _entries(motion, motion.at(t), *of) for t, *of in zip(flat, free, spent, along, strict=True)
+    ]
+    count = len(fields(Ledger))
+    return Ledger(*np.array(rows).reshape(-1, count).T.reshape(count, *times.shape))
 
 
-def _entries(motion: Trajectory, now: Moment, free: float, spent: Array) -> list[float]:
+def _entries(
+    motion: Trajectory, now: Moment, free: float, spent: Array, along: Array
+) -> list[float]:
     given = motion.rows.given
     eps, kappa = 0.0 if given.fixed else given.eps, given.kappa
-    work, in_contact, in_surface = spent.tolist()
+    work, in_contact, in_surface, in_damper = spent.tolist()
+    x, w = along.tolist()
     return [
         _stored(1.0, -1.0, 1.0),
         work,
@@ -99,20 +111,25 @@ def _entries(motion: Trajectory, now: Moment, free: float, spent: Array) -> list
         0.375 * free,
         in_contact,
         in_surface,
+        0.5 * given.eps_x * w * w,
+        0.5 * given.spring * x * x,
+        in_damper,
     ]
 
 
 def _powers(motion: Trajectory, times: Array, memory: list[tuple[float, float]]) -> Array:
-    """Return the power of the drive and what is dissipated in and behind the contact at the times."""
+    """Return the power of the drive and what is dissipated in the contact, behind it and in the damper."""
     flat = times.reshape(-1)
     found = motion.states(flat).T
     l, r, v, number = found[[evaluation.LEFT, evaluation.RIGHT, evaluation.RATE, evaluation.NUMBER]]
     thirds = 4.0 / 3.0 * number * number * (r * r + r * l + l * l)
     inside = 0.75 * (r - l) * (v * v - 2.0 * number * v * (r + l) + thirds)
     behind = 0.75 * relaxing(motion, flat.tolist(), 2, memory)
-    work = number * found[evaluation.FRICTION_FORCE]
+    work = found[evaluation.DRIVE] * found[evaluation.FRICTION_FORCE]
+    in_damper = motion.rows.given.damping * found[evaluation.ALONG_RATE] ** 2
     in_contact = np.where(np.isnan(l), 0.0, inside)  # in flight there are no edges
-    return np.stack([work, in_contact, behind], axis=-1).reshape(*times.shape, 3)
+    powers = np.stack([work, in_contact, behind, in_damper], axis=-1)
+    return powers.reshape(*times.shape, powers.shape[-1])
 
 
 def _stored(d: float, l: float, r: float) -> float:

@@ -48,18 +48,18 @@ def methods(rtol: float) -> tuple[tuple[float, StepControl], tuple[float, StepCo
 def certificate(fine: Trajectory, other: Trajectory | None, times: Array | None) -> Certificate:
     """Return the certificate of the states at the scaled `times`, by default the natural ones."""
     if other is None:
-        return unknown(NOTHING)
+        return unknown(NOTHING, sprung=fine.rows.given.sprung)
     given, whole = fine.rows.given, fine.deviations(other)
     here = whole if times is None else fine.deviations(other, times)
-    told = errors(here, whole, given.rtol, given.fixed)
+    told = errors(here, whole, given.rtol, given.fixed, sprung=given.sprung)
     return Certificate(
         "estimated", STATEMENT, {k: float(error) for k, error in told.items()}, AT_REST
     )
 
 
-def unknown(why: str) -> Certificate:
+def unknown(why: str, *, sprung: bool = False) -> Certificate:
     """Return the certificate of a transient of whose error nothing is known."""
-    names = errors([0.0] * d_.SIZE, [0.0] * d_.SIZE, 1.0, False)
+    names = errors([0.0] * d_.SIZE, [0.0] * d_.SIZE, 1.0, False, sprung=sprung)
     given = dict.fromkeys(EXACT, 0.0)
     return Certificate("estimated", why, dict.fromkeys(names, math.inf) | given, AT_REST)
 
@@ -68,7 +68,9 @@ EXACT = ("time", "velocity")
 """Quantities that are given, not solved for."""
 
 
-def errors(here: Any, whole: Any, rtol: float, fixed: bool) -> dict[str, Any]:
+def errors(
+    here: Any, whole: Any, rtol: float, fixed: bool, *, sprung: bool = False
+) -> dict[str, Any]:
     """Return the error of each quantity from the deviations at some times, and those over the whole run.
 
     The surface is the largest of what the depths of the past left: it is no more wrong than the depth
@@ -78,10 +80,14 @@ def errors(here: Any, whole: Any, rtol: float, fixed: bool) -> dict[str, Any]:
     moves = 0.0 if fixed else 1.0
     luck = FLOOR * rtol * (1.0 + np.asarray(whole[d_.SIZES :]))
     at_times, ever = (
-        np.maximum(MARGIN * np.asarray(of[: d_.HOPS + 1]), luck) for of in (here, whole)
+        np.maximum(MARGIN * np.asarray(of[: d_.SIZES]), luck) for of in (here, whole)
     )
     edges = at_times[d_.EDGES] + here[d_.EDGE_ROUNDING]
     depth = moves * ever[d_.DEPTH]
+    spring = {
+        "sliding_velocity": at_times[d_.ALONG_RATE],
+        "spring_force": at_times[d_.SPRING_FORCE],
+    }
     return {
         "time": 0.0,
         "velocity": 0.0,
@@ -95,4 +101,5 @@ def errors(here: Any, whole: Any, rtol: float, fixed: bool) -> dict[str, Any]:
         "pressure": depth + moves * ever[d_.RATE],
         "surface": depth,
         "jump_time": moves * ever[d_.HOPS],
+        **(spring if sprung else {}),
     }

@@ -9,12 +9,16 @@ from kvtheory.models.continuum import run as r_
 from kvtheory.models.continuum.contact import FREE
 from kvtheory.models.continuum.dense_output import instant
 from kvtheory.models.continuum.run import Run
+from kvtheory.scene.base_motion import evaluate
 
 DEPTH, RATE, ACCELERATION, NUMBER, LEFT, RIGHT = range(6)
 LEFT_STATE, RIGHT_STATE, NORMAL_FORCE, FRICTION_FORCE, PEAK_PRESSURE, ROUNDING = range(6, 12)
-SIZE = 12
-"""Layout of a state, in scaled form; edges are NaN in flight. `ROUNDING` is how far rounding may have
-moved an edge: much, on ground that was left only just before."""
+DRIVE, ALONG, ALONG_RATE, SPRING_FORCE = range(12, 16)
+SIZE = 16
+"""Layout of a state, in scaled form; edges are NaN in flight. `NUMBER` is that of the base under the
+indenter, `ROUNDING` is how far rounding may have moved an edge: much, on ground that was left only just
+before. `DRIVE` is the drive number; the last three are x, x' and the force of spring and damper, which
+are zero for a rigid drive."""
 
 SUBDIVISIONS = 4
 """Points shown for each step, which is long where nothing happens."""
@@ -78,8 +82,8 @@ def state_at(run: Run, index: int, s: float, found: Any) -> None:
         # what was left at this very instant confines nothing yet
         l, r = record[h_.LEFT_X] + Y, record[h_.RIGHT_X] + Y
         if s > record[h_.START]:
-            l, l_d, _ = c_.edge(run, -1.0, sides[0], int(sides[1]), s, now)
-            r, r_d, _ = c_.edge(run, 1.0, sides[2], int(sides[3]), s, now)
+            l, l_d, _, _ = c_.edge(run, -1.0, sides[0], int(sides[1]), s, now)
+            r, r_d, _, _ = c_.edge(run, 1.0, sides[2], int(sides[3]), s, now)
             rounding = UNIT * (1.0 + abs(Y)) * max(abs(l_d), abs(r_d))
         f_z, f_x = c_.forces(l, r, d, v, number)
         p = max(c_.pressure(min(max(-number, l), r), d, v, number), 0.0)
@@ -88,3 +92,10 @@ def state_at(run: Run, index: int, s: float, found: Any) -> None:
     found[LEFT_STATE], found[RIGHT_STATE] = sides[0], sides[2]
     found[NORMAL_FORCE], found[FRICTION_FORCE] = f_z, f_x
     found[PEAK_PRESSURE], found[ROUNDING] = p, rounding
+    found[DRIVE], found[ALONG], found[ALONG_RATE], found[SPRING_FORCE] = number, 0.0, 0.0, 0.0
+    if run.given.sprung:
+        along = run.along[index]
+        found[DRIVE] = evaluate(run.pieces[int(along[h_.PIECE])], s)[1]
+        found[ALONG], found[ALONG_RATE], _ = h_.motion(along, s)
+        force = run.given.spring * found[ALONG] + run.given.damping * found[ALONG_RATE]
+        found[SPRING_FORCE] = force

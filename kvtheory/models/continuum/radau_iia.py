@@ -29,6 +29,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.polynomial import Legendre, Polynomial
 
+from kvtheory.models.continuum import coupled
 from kvtheory.models.continuum import dense_output as h_
 from kvtheory.models.continuum.contact import FREE, edge, forces, pressure
 from kvtheory.models.continuum.dense_output import Instant, Past
@@ -43,7 +44,7 @@ NEWTON_SHARE = 1e-3
 NEWTON_STALL = 0.5
 """Of the tolerance, for a correction that rounding keeps from becoming smaller."""
 ROUNDING = 1e-15
-"""Of F, by its largest derivative: a stiff spring feels the last digit of the depth."""
+"""Of F, by its terms and its largest derivative: a stiff spring feels the last digit of the depth."""
 PLACES = (0.08, 0.25, 0.55)
 """About where each step is examined, besides its end."""
 
@@ -129,8 +130,8 @@ def imbalance(
     F, F_d, F_v = 1.0 - kappa * (d - 1.0), -kappa, 0.0
     if sides[0] == FREE:
         return F, F_d, F_v, math.nan, math.nan
-    l, l_d, _ = edge(run, -1.0, sides[0], int(sides[1]), s, now)
-    r, r_d, _ = edge(run, 1.0, sides[2], int(sides[3]), s, now)
+    l, l_d, _, _ = edge(run, -1.0, sides[0], int(sides[1]), s, now)
+    r, r_d, _, _ = edge(run, 1.0, sides[2], int(sides[3]), s, now)
     if l < r:
         f_z, _ = forces(l, r, d, v, now[4])
         F -= f_z
@@ -141,53 +142,74 @@ def imbalance(
     return F, F_d, F_v, l, r
 
 
-def collocate(run: Past, record: Any) -> int:
+def collocate(run: Past, record: Any, along: Any) -> int:
     """Solve for the stages of the step that `record` begins, and write its powers of v.
 
-    Of s stages, row s of `matrix` holds a guess of v at the stages minus v at the start; the rest is work
-    space. Newton's method with the exact Jacobian of all stages; return the number of evaluations of
+    Of n unknowns, v at the stages, row n of `matrix` holds a guess of them less v at the start; the rest is
+    work space. With a spring there are as many unknowns along x, and the powers of x' are written to
+    `along`. Newton's method with the exact Jacobian of all stages; return the number of evaluations of
     F, or 0 if it does not converge.
     """
-    eps, method, matrix = run.given.eps, run.given.method, run.matrix
-    stages = len(method.nodes)
-    start, span, depth = record[h_.START], record[h_.SPAN], record[h_.DEPTH]
-    rate = record[h_.POWERS]
-    sides = record[h_.LEFT_STATE : h_.LEFT_X]
-    change, places, numbers = matrix[stages], matrix[stages + 1], matrix[stages + 2]
+    method, matrix, sprung = run.given.method, run.matrix, run.given.sprung
+    stages, unknowns = len(method.nodes), len(matrix[0]) - 1
+    change, places, numbers = matrix[unknowns], matrix[unknowns + 1], matrix[unknowns + 2]
+    start, span, size = record[h_.START], record[h_.SPAN], 1.0 + abs(record[h_.POWERS])
+    drive = int(along[h_.PIECE]) if sprung else int(record[h_.PIECE])
     for i in range(stages):
-        s = start + span * method.nodes[i]
-        places[i], numbers[i], _ = evaluate(run.pieces[int(record[h_.PIECE])], s)
-    allowed, previous = run.given.rtol * (1.0 + abs(rate)), math.inf
+        places[i], numbers[i], _ = evaluate(run.pieces[drive], start + span * method.nodes[i])
+    if sprung:
+        size += abs(along[h_.POWERS])
+    allowed, previous = run.given.rtol * size, math.inf
     for iteration in range(1, NEWTON_STEPS + 1):
-        for i in range(stages):
-            a, inverse, row = method.A[i], method.inverse[i], matrix[i]
-            d, inertia = depth + span * method.nodes[i] * rate, 0.0
-            for j in range(stages):
-                d += span * a[j] * change[j]
-                inertia += eps * inverse[j] * change[j]
-            now = d, rate + change[i], 0.0, places[i], numbers[i], 0.0
-            F, F_d, F_v, _, _ = imbalance(run, sides, start + span * method.nodes[i], now)
-            if not math.isfinite(F):
-                return 0
-            for j in range(stages):
-                row[j] = eps * inverse[j] - span * span * F_d * a[j]
-            row[i] -= span * F_v
-            row[stages] = span * F - inertia
+        finite = coupled.linearize(run, record, along) if sprung else linearize(run, record)
+        if not finite:
+            return 0
         largest = eliminate(matrix)
-        for i in range(stages):
-            change[i] += matrix[i][stages]
+        for i in range(unknowns):
+            change[i] += matrix[i][unknowns]
         stalled = 0.5 * previous <= largest <= NEWTON_STALL * allowed
         if largest <= NEWTON_SHARE * allowed or stalled:
-            for k in range(stages):
-                power, powers = 0.0, method.powers[k]
-                for j in range(stages):
-                    power += powers[j] * change[j]
-                record[h_.POWERS + 1 + k] = power
+            _write_powers(method, change, 0, record)
+            if sprung:
+                _write_powers(method, change, stages, along)
             return iteration * stages
         if not largest < math.inf:
             return 0
         previous = largest
     return 0
+
+
+def linearize(run: Past, record: Any) -> bool:
+    """Write the equations of Newton's method for all stages; say whether they are finite."""
+    eps, method, matrix = run.given.eps, run.given.method, run.matrix
+    stages = len(method.nodes)
+    change, places, numbers = matrix[stages], matrix[stages + 1], matrix[stages + 2]
+    start, span, depth = record[h_.START], record[h_.SPAN], record[h_.DEPTH]
+    rate = record[h_.POWERS]
+    sides = record[h_.LEFT_STATE : h_.LEFT_X]
+    for i in range(stages):
+        a, inverse, row = method.A[i], method.inverse[i], matrix[i]
+        d, inertia = depth + span * method.nodes[i] * rate, 0.0
+        for j in range(stages):
+            d += span * a[j] * change[j]
+            inertia += eps * inverse[j] * change[j]
+        now = d, rate + change[i], 0.0, places[i], numbers[i], 0.0
+        F, F_d, F_v, _, _ = imbalance(run, sides, start + span * method.nodes[i], now)
+        if not math.isfinite(F):
+            return False
+        for j in range(stages):
+            row[j] = eps * inverse[j] - span * span * F_d * a[j]
+        row[i] -= span * F_v
+        row[stages] = span * F - inertia
+    return True
+
+
+def _write_powers(method: Method, change: Any, first: int, record: Any) -> None:
+    for k in range(len(method.nodes)):
+        power, powers = 0.0, method.powers[k]
+        for j in range(len(method.nodes)):
+            power += powers[j] * change[first + j]
+        record[h_.POWERS + 1 + k] = power
 
 
 def eliminate(matrix: Any) -> float:
@@ -220,14 +242,16 @@ def eliminate(matrix: Any) -> float:
 
 
 def defect_error(
-    span: float, eps: float, dv: float, F: float, F_d: float, F_v: float, scales: Sequence[float]
-) -> float:
+    span: float, eps: float, dv: float, F: float, F_d: float, F_v: float,
+    rounding: float, scales: Sequence[float],
+) -> float:  # fmt: skip
     """Estimate the error of v over the step from the defect eps v' - F at one of the probes.
 
     The error e obeys eps e' = F_v e + F_d int e - defect. It is the integral of the defect where
-    inertia rules, the defect itself where damping does, its derivative where stiffness does.
+    inertia rules, the defect itself where damping does, its derivative where stiffness does. A defect
+    may be `rounding` of the terms of F.
     """
     integral, value, derivative = scales[0], scales[1], scales[2]
-    defect = max(abs(eps * dv - F) - ROUNDING * (1.0 - F_d), 0.0)
+    defect = max(abs(eps * dv - F) - ROUNDING * rounding, 0.0)
     resistance = eps / integral - span * F_v / value - span * span * F_d / derivative
     return defect * span / resistance

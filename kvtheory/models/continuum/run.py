@@ -5,6 +5,7 @@ walk stops before the room runs out.
 """
 
 import math
+from collections.abc import Sequence
 from functools import cache
 from typing import Any, NamedTuple
 
@@ -14,14 +15,16 @@ from kvtheory.models.continuum import contact as c_
 from kvtheory.models.continuum import dense_output as h_
 from kvtheory.models.continuum.contact import TOUCHING
 from kvtheory.models.continuum.radau_iia import Method, radau, stages_for
+from kvtheory.scene import base_motion as b_
 from kvtheory.scene.base_motion import BaseMotion
 
-S, D, V, SPAN, KINK = range(5)
-"""Indices of `now`: time, depth, depth rate, the length of the next step, and the last kink or jump of the
-drive."""
-PIECE, MET, SMOOTH, TOGGLES, RECORDS, NODES, EVENTS, REJECTED, EVALUATIONS = range(9)
-"""Indices of `counts`: the piece of the drive, whether its beginning was dealt with, whether the motion
-goes on smoothly from the last record, the changes of state at this instant; then how many there are."""
+S, D, V, SPAN, KINK, X, W = range(7)
+"""Indices of `now`: time, depth, depth rate, the length of the next step, the last kink or jump of the
+drive, and on a spring the place of the indenter along x and its rate."""
+PIECE, SLIDE, MET, SMOOTH, TOGGLES, RECORDS, NODES, EVENTS, REJECTED, EVALUATIONS = range(10)
+"""Indices of `counts`: the piece of the drive, the piece by which the base slides under the indenter (the
+same one for a rigid drive), whether its beginning was dealt with, whether the motion goes on smoothly from
+the last record, the changes of state at this instant; then how many there are."""
 
 SIDES = (-1.0, 1.0)
 
@@ -51,11 +54,24 @@ class StepControl(NamedTuple):
     stages: int = 0
 
 
+class Spring(NamedTuple):
+    """What holds the indenter along x: its inertia number there, damping number and stiffness number."""
+
+    eps: float
+    damping: float
+    stiffness: float
+
+
+RIGID = Spring(1.0, 0.0, 0.0)
+"""In the place of a spring that is not there."""
+
+
 class Given(NamedTuple):
     """What never changes in a run, beside the drive.
 
     Inertia number, support number, the time at which to stop; whether the indenter is fixed, tolerance
-    of a step, how far a state of an edge may be violated.
+    of a step, how far a state of an edge may be violated. Of a drive with a spring: inertia, damping and
+    stiffness along x. Then whether there is one, and how many pieces the drive has.
     """
 
     eps: float
@@ -66,12 +82,19 @@ class Given(NamedTuple):
     allowed: float
     control: StepControl
     method: Method
+    eps_x: float
+    damping: float
+    spring: float
+    sprung: bool
+    drives: int
 
 
 class Run(NamedTuple):
     """A transient in progress; `records`, `nodes` and `events` are its outcome.
 
     Of each edge, the left one first, there are its state, its innermost node and its material coordinate.
+    With a spring, `along` holds the motion along x for each record, and `pieces` goes on behind those of
+    the drive with how the base slides under the indenter.
     """
 
     given: Given
@@ -85,11 +108,13 @@ class Run(NamedTuple):
     nodes: Any
     events: Any
     matrix: Any
+    along: Any
 
 
 def begin(
     drive: BaseMotion,
     numbers: tuple[float, float],
+    spring: Spring | None,
     end: float,
     rtol: float,
     control: StepControl,
@@ -104,18 +129,31 @@ def begin(
     fixed, stages = math.isinf(kappa), control.stages or stages_for(rtol)
     allowed = max(EVENT_SHARE * rtol, EVENT_FLOOR)
     method = _arrays_of(stages) if arrays else radau(stages)
-    given = Given(eps, 0.0 if fixed else kappa, end, fixed, rtol, allowed, control, method)
-    small: Any = [0.0] * 5, [0] * 9, [0.0] * 2, [0] * 2, [0.0] * 2
-    sizes = (
-        (ROOM, h_.POWERS + 1 + stages), (3 * ROOM, c_.SIZE), (ROOM, 2), (stages + 3, stages + 1)
+    sprung, count = spring is not None, len(drive.pieces)
+    given = Given(
+        eps, 0.0 if fixed else kappa, end, fixed, rtol, allowed, control, method,
+        *(spring or RIGID), sprung, count,
     )  # fmt: skip
+    small: Any = [0.0] * 7, [0] * 10, [0.0] * 2, [0] * 2, [0.0] * 2
+    unknowns, row = 2 * stages if sprung else stages, h_.POWERS + 1 + stages
+    sizes = (
+        (ROOM, row), (3 * ROOM, c_.SIZE), (ROOM, 2), (unknowns + 3, unknowns + 1),
+        (ROOM, row) if sprung else (1, 1),
+    )  # fmt: skip
+    pieces = np.array(with_slides(drive.pieces, stages)) if sprung else drive.rows
     if arrays:
         large: Any = map(np.zeros, sizes)
-        run = Run(given, drive.rows, *map(np.array, small), *large)
+        run = Run(given, pieces, *map(np.array, small), *large)
     else:
-        run = Run(given, drive.rows.tolist(), *small, *(_lists(*size) for size in sizes))
+        run = Run(given, pieces.tolist(), *small, *(_lists(*size) for size in sizes))
     rest(run)
     return run
+
+
+def with_slides(pieces: Sequence[Sequence[float]], stages: int) -> list[list[float]]:
+    """Return the pieces of a drive, as long as those by which the base slides, and room for these."""
+    size = max(len(pieces[0]), b_.POWERS + 1 + stages)
+    return [[*piece, *[0.0] * (size - len(piece))] for piece in pieces] + _lists(ROOM, size)
 
 
 def rest(run: Run) -> None:
@@ -125,6 +163,7 @@ def rest(run: Run) -> None:
     run.counts[NODES] = 2
     now = run.now
     now[S], now[D], now[V], now[SPAN], now[KINK] = 0.0, 1.0, 0.0, math.inf, 0.0
+    now[X] = now[W] = 0.0
     for k in range(2):
         run.states[k], run.tops[k], run.edges[k] = TOUCHING, k, SIDES[k]
         c_.undisturbed(SIDES[k], run.nodes[k])
@@ -141,9 +180,12 @@ def has_room(run: Run) -> bool:
 
 def with_more_room(run: Run) -> Run:
     """Return the run with room for twice as much."""
-    return run._replace(
+    wider = run._replace(
         records=_doubled(run.records), nodes=_doubled(run.nodes), events=_doubled(run.events)
     )
+    if not run.given.sprung:
+        return wider
+    return wider._replace(along=_doubled(run.along), pieces=_longer(run.pieces, len(run.records)))
 
 
 def as_arrays(run: Run) -> Run:
@@ -162,6 +204,9 @@ def _lists(count: int, size: int) -> list[list[float]]:
 
 
 def _doubled(rows: Any) -> Any:
-    if isinstance(rows, np.ndarray):
-        return np.concatenate([rows, np.zeros_like(rows)])
-    return rows + _lists(len(rows), len(rows[0]))
+    return _longer(rows, len(rows))
+
+
+def _longer(rows: Any, count: int) -> Any:
+    more = _lists(count, len(rows[0]))
+    return np.concatenate([rows, more]) if isinstance(rows, np.ndarray) else rows + more

@@ -11,11 +11,11 @@ from numpy.typing import ArrayLike, NDArray
 from kvtheory.models.continuum import evaluation, maxima
 from kvtheory.models.continuum.energy import Ledger, ledger
 from kvtheory.models.continuum.error_estimate import NOT_ASKED, certificate, methods, unknown
-from kvtheory.models.continuum.run import StepControl
+from kvtheory.models.continuum.run import Spring, StepControl
 from kvtheory.models.continuum.solver import STATE_NAMES, STEP_LIMIT, Trajectory, solve
 from kvtheory.models.continuum.surface import height
 from kvtheory.progress import Progress
-from kvtheory.results import Certificate, Event, Transient
+from kvtheory.results import Certificate, Event, SprungTransient, Transient
 from kvtheory.results.errors import TransientError
 from kvtheory.scene.base_motion import BaseMotion
 from kvtheory.scene.model import Scene
@@ -35,6 +35,15 @@ def scaled_drive(scene: Scene, units: StaticState) -> BaseMotion:
     """Return the drive number over scaled time until the end of the run."""
     motion = scene.drive.motion(scene.run.duration, units.velocity)
     return motion.scaled(units.time, units.half_length)
+
+
+def spring_of(units: StaticState) -> Spring | None:
+    """Return what holds the indenter along x in scaled form; nothing if the drive is rigid."""
+    if units.rigid_drive:
+        return None
+    return Spring(
+        units.drive_inertia_number, units.drive_damping_number, units.drive_stiffness_number
+    )
 
 
 @dataclass(frozen=True)
@@ -65,9 +74,13 @@ class SolvedScene:
         forward = left_leads(numbers, self.drive, s)
         left, right = found[evaluation.LEFT], found[evaluation.RIGHT]
         states = found[evaluation.LEFT_STATE], found[evaluation.RIGHT_STATE]
+        spring = {
+            "sliding_velocity": numbers * u.velocity,
+            "spring_force": found[evaluation.SPRING_FORCE] * u.friction_force,
+        }
         return {
             "time": np.asarray(time, dtype=float),
-            "velocity": numbers * u.velocity,
+            "velocity": found[evaluation.DRIVE] * u.velocity,
             "depth": found[evaluation.DEPTH] * u.depth,
             "depth_rate": found[evaluation.RATE] * u.depth_rate,
             "normal_force": found[evaluation.NORMAL_FORCE] * u.load,
@@ -77,6 +90,7 @@ class SolvedScene:
             "peak_pressure": found[evaluation.PEAK_PRESSURE] * u.pressure,
             "leading_state": _named(np.where(forward, *states)),
             "trailing_state": _named(np.where(forward, *states[::-1])),
+            **({} if u.rigid_drive else spring),
         }
 
     def states(self, time: ArrayLike) -> Array:
@@ -123,7 +137,8 @@ def transient(
         scene, times, rtol, progress, certify=certify, max_steps=max_steps
     )
     motion = solution.motion
-    return Transient(
+    kind = Transient if solution.units.rigid_drive else SprungTransient
+    return kind(
         **solution.series(time),
         events=solution.events,
         steps=motion.steps,
@@ -156,7 +171,7 @@ def certified(
     Without `times`, these are the natural ones.
     """
     units = StaticState.of(scene)
-    drive = scaled_drive(scene, units)
+    drive, spring = scaled_drive(scene, units), spring_of(units)
     limit = max_steps or STEP_LIMIT + STEPS_A_PIECE * len(drive.pieces)
     first, second = methods(rtol)
 
@@ -167,7 +182,7 @@ def certified(
 
         return solve(
             drive, units.inertia_number, units.support_number, drive.end, tolerance,
-            control=control, progress=report, max_steps=limit,
+            spring=spring, control=control, progress=report, max_steps=limit,
         )  # fmt: skip
 
     try:
@@ -177,7 +192,7 @@ def certified(
         raise TransientError(reason, error.s * units.time, "t", " s") from None
     time = fine.natural_times if times is None else np.asarray(times, dtype=float).reshape(-1)
     if not certify:
-        return fine, time, unknown(NOT_ASKED)
+        return fine, time, unknown(NOT_ASKED, sprung=spring is not None)
     other = None
     with suppress(TransientError):  # a tighter solution may fail where this one did not
         other = solved(1, *second)

@@ -2,15 +2,17 @@ r"""The whole transient without discretizing the foundation: one equation of mot
 
     eps d'' = 1 - f_z - kappa (d - 1),    d(0) = 1, d'(0) = 0, at rest for s < 0
 
-with f_z in closed form in d, d', lambda and the two edges (fact F11). Between events the right-hand
-side is smooth; a step that runs over an event is cut there, for its polynomial continues the states
-of the edges that it began with. A fixed indenter, d = 1, needs no equation, only events.
+with f_z in closed form in d, d', lambda and the two edges (fact F11), and another equation along x if the
+drive has a spring (`coupled`). Between events the right-hand side is smooth; a step that runs over an
+event is cut there, for its polynomial continues the states of the edges that it began with. A fixed
+indenter, d = 1, needs no equation along z, only events.
 """
 
 import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import pairwise
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -21,8 +23,16 @@ from kvtheory.models.continuum import contact as c_
 from kvtheory.models.continuum import dense_output as h_
 from kvtheory.models.continuum import run as r_
 from kvtheory.models.continuum.contact import FREE, PEELING, TOUCHING
-from kvtheory.models.continuum.run import Run, StepControl, as_arrays, begin, with_more_room
+from kvtheory.models.continuum.run import (
+    Run,
+    Spring,
+    StepControl,
+    as_arrays,
+    begin,
+    with_more_room,
+)
 from kvtheory.results.errors import TransientError
+from kvtheory.scene import base_motion as b_
 from kvtheory.scene.base_motion import BaseMotion
 
 STEP_LIMIT = 300_000
@@ -59,6 +69,8 @@ class Moment(NamedTuple):
     friction_force: float
 
 
+REVERSAL = "sliding reverses"
+"""The kind of an event that only an indenter on a spring has."""
 STATE_NAMES = {PEELING: "peeling", TOUCHING: "touching", FREE: "free"}
 
 
@@ -101,7 +113,7 @@ class Trajectory:
         """What happened to the contact, in the order of time."""
         rows = self.rows.events[: self.rows.counts[r_.EVENTS]]
         found = [ScaledEvent(float(s), stepping.KINDS[int(kind)]) for s, kind in rows]
-        return tuple(sorted([*found, *self._memory()], key=lambda event: event.s))
+        return tuple(sorted([*found, *self._memory(), *self._reversals()], key=lambda e: e.s))
 
     def _memory(self) -> Iterator[ScaledEvent]:
         """Yield when an edge begins to touch ground that was touched before, and when it ceases to."""
@@ -114,6 +126,22 @@ class Trajectory:
         for at, k in np.argwhere(remembers != before).tolist():
             what, name = "begins" if remembers[at, k] else "ends", ("left", "right")[k]
             yield ScaledEvent(float(records[at, h_.START]), f"memory {what} at the {name} edge")
+
+    def _reversals(self) -> Iterator[ScaledEvent]:
+        """Yield when the indenter on a spring begins to slide the other way: where lambda changes sign."""
+        before = 0.0
+        for index in range(self.steps if self.rows.given.sprung else 0):
+            record = self.records[index]
+            row, start, span = self.pieces[int(record[h_.PIECE])], record[h_.START], record[h_.SPAN]
+            powers = [c * span**k for k, c in enumerate(row[b_.POWERS :])]
+            roots = np.polynomial.polynomial.polyroots(np.trim_zeros(powers, "b") or [1.0])
+            share = (evaluation.natural_step(self.rows, index)[1] - start) / span
+            within = sorted(x for x in roots.real.tolist() if 0.0 < x < share)
+            for low, high in pairwise([0.0, *within, share]):
+                number = b_.evaluate(row, start + 0.5 * (low + high) * span)[1]
+                if number * before < 0.0:
+                    yield ScaledEvent(start + low * span, REVERSAL)
+                before = number or before
 
     @cached_property
     def records(self) -> list[list[float]]:
@@ -231,6 +259,7 @@ def solve(
     end: float,
     rtol: float = 1e-9,
     *,
+    spring: Spring | None = None,
     fast: bool | None = None,
     control: StepControl = StepControl(),  # noqa: B008 - immutable
     progress: Callable[[float], Any] | None = None,
@@ -249,7 +278,9 @@ def solve(
     end
         Time until which to solve, in units of tau.
     rtol
-        Error allowed in a step for d' relative to 1 + |d'|, all along the step.
+        Error allowed in a step for d' relative to 1 + |d'|, and for x' likewise, all along the step.
+    spring
+        What holds the indenter along x; without it the drive is rigid.
     fast
         Whether the kernels are compiled; by default, if numba is installed and enough steps were
         interpreted for that to pay. The numbers are the same.
@@ -273,13 +304,19 @@ def solve(
     """
     if not 0.0 < end <= drive.end:
         raise ValueError(f"`end` must be positive and within the drive, got {end!r}")
+    if spring is not None and not (
+        spring.eps > 0.0 and spring.damping >= 0.0 and spring.stiffness > 0.0
+    ):
+        raise ValueError(
+            "expected a `spring` with inertia and stiffness above 0, damping from 0 on"
+        )
     if not (inertia_number > 0.0 and support_number >= 0.0 and 1e-13 <= rtol <= 1e-2):
         raise ValueError(
             "expected `inertia_number` > 0, `support_number` >= 0, 1e-13 <= `rtol` <= 1e-2"
         )
     numbers = float(inertia_number), float(support_number)
     arrays = compiled.worthwhile() if fast is None else fast
-    run = begin(drive, numbers, float(end), rtol, control, arrays=arrays)
+    run = begin(drive, numbers, spring, float(end), rtol, control, arrays=arrays)
     left, status = max_steps, stepping.PAUSED
     while status != stepping.DONE:
         if not compiled.in_use(run) and (compiled.worthwhile() if fast is None else fast):

@@ -10,7 +10,7 @@ from kvtheory.models.continuum import run as r_
 from kvtheory.models.continuum.contact import FREE, PEELING, TOUCHING
 from kvtheory.models.continuum.dense_output import motion
 from kvtheory.models.continuum.run import SIDES, Run, has_room
-from kvtheory.models.continuum.trial_step import Monitors, attempt, drive_now
+from kvtheory.models.continuum.trial_step import Monitors, attempt, next_along, sliding_now, take_up
 from kvtheory.scene import base_motion as b_
 
 SAFETY = 0.9
@@ -75,15 +75,20 @@ def walk(run: Run, attempts: int) -> int:
 def _meet_drive(run: Run) -> None:
     """Let a jump of lambda detach strips, or turn peeling edges where the pressure rises."""
     now, index = run.now, run.counts[r_.PIECE]
-    Y, number, slope = drive_now(run, now[r_.S])
-    last = last_slope = 0.0
+    _, number, slope = b_.evaluate(run.pieces[index], now[r_.S])
+    last = last_slope = rate = 0.0
     if index > 0:
         _, last, last_slope = b_.evaluate(run.pieces[index - 1], now[r_.S])
     jumps = abs(number - last) > SMOOTH * (1.0 + abs(number))
+    changes = jumps or abs(slope - last_slope) > SMOOTH * (1.0 + abs(slope))
+    if run.given.sprung and run.counts[r_.SMOOTH] != 0:
+        rate = motion(run.along[run.counts[r_.RECORDS] - 1], now[r_.S])[2]
+    take_up(run, 1.0, rate)
     if jumps or index == 0:
         _restart(run)
-    if jumps or abs(slope - last_slope) > SMOOTH * (1.0 + abs(slope)):
+    if changes:
         _begin_briefly(run, number, slope)
+    Y, number, slope = sliding_now(run, now[r_.S])
     if run.states[0] != FREE:
         _detach(run, Y, number)
     if run.counts[r_.SMOOTH] != 0:
@@ -150,11 +155,14 @@ def _detach(run: Run, Y: float, number: float) -> None:
 def _restart(run: Run) -> None:
     """Forget the step length, for v' jumps or is singular here."""
     now = run.now
-    _, number, _ = drive_now(run, now[r_.S])
+    _, number, _ = sliding_now(run, now[r_.S])
     width = run.edges[1] - run.edges[0] if run.states[0] != FREE else 1.0
     fast = 1.0
     if not run.given.fixed:
         fast = run.given.eps / (run.given.eps + 0.75 * max(width, 1e-3))
+    if run.given.sprung:
+        eps = run.given.eps_x
+        fast = min(fast, eps / (eps + run.given.damping + max(width, 1e-3)))
     span = run.given.control.first_step * fast / (1.0 + abs(number))
     now[r_.SPAN], run.counts[r_.SMOOTH] = max(span, SHORTEST * (1.0 + now[r_.S])), 0
 
@@ -218,7 +226,7 @@ def _longest(run: Run) -> float:
     now, longest = run.now, run.given.control.longest
     if run.states[0] != FREE:
         return math.inf if _quiet(run) else longest
-    _, number, slope = drive_now(run, now[r_.S])
+    _, number, slope = sliding_now(run, now[r_.S])
     speed = 0.5 * (abs(number) + math.sqrt(number * number + 2.0 * RELIEF * abs(slope)))
     slide = RELIEF / (RELIEF + speed)
     if now[r_.D] < 0.0:
@@ -237,24 +245,34 @@ def _quiet(run: Run) -> bool:
     for k in range(b_.POWERS + 1, len(piece)):
         if piece[k] != 0.0:
             return False
-    record = run.records[counts[r_.RECORDS] - 1]
+    last = counts[r_.RECORDS] - 1
+    rate = _fastest(run.records[last])
+    if run.given.sprung:
+        rate = max(rate, _fastest(run.along[last]))
+    return rate <= QUIET * run.given.rtol
+
+
+def _fastest(record: Any) -> float:
+    """Return the largest of the powers of a rate."""
     rate = 0.0
     for k in range(h_.POWERS, len(record)):
         rate = max(rate, abs(record[k]))
-    return rate <= QUIET * run.given.rtol
+    return rate
 
 
 def _commit(run: Run, record: Any, end: float) -> None:
     """Keep `record` up to `end`, and what the peeling edges swept meanwhile."""
     now = run.now
-    Y_0, _, _ = drive_now(run, now[r_.S])
-    then = motion(record, end) + drive_now(run, end)
+    Y_0, _, _ = sliding_now(run, now[r_.S])
+    then = motion(record, end) + sliding_now(run, end)
     d, v, _, Y, _, _ = then
+    if run.given.sprung:
+        now[r_.X], now[r_.W], _ = motion(run.along[next_along(run)], end)
     index = run.counts[r_.RECORDS]
     run.counts[r_.RECORDS] += 1
     if run.states[0] != FREE:
         for k in range(2):
-            xi, _, node = c_.edge(run, SIDES[k], run.states[k], run.tops[k], end, then)
+            xi, _, _, node = c_.edge(run, SIDES[k], run.states[k], run.tops[k], end, then)
             if run.states[k] == PEELING:
                 row = run.nodes[m_.free_row(run)]
                 m_.set_end(row, c_.IN_X, xi - Y, end, d, Y)
@@ -274,7 +292,7 @@ def _change(run: Run, violated: Monitors) -> int:
     run.counts[r_.TOGGLES] = 1 if crosses else run.counts[r_.TOGGLES] + 1
     if run.counts[r_.TOGGLES] > TOGGLE_LIMIT:
         return INCONSISTENT
-    Y, _, _ = drive_now(run, now[r_.S])
+    Y, _, _ = sliding_now(run, now[r_.S])
     if run.states[0] == FREE:
         m_.land(run, Y)
         _note(run, LANDING)
@@ -297,7 +315,7 @@ def _change_side(run: Run, k: int, Y: float) -> None:
     if run.states[k] == PEELING:
         _turn(run, k)
         return
-    if SIDES[k] * (run.edges[k] + Y + drive_now(run, now[r_.S])[1]) <= 0.0:
+    if SIDES[k] * (run.edges[k] + Y + sliding_now(run, now[r_.S])[1]) <= 0.0:
         _leave(run, Y)  # the pressure fell to zero at the root of the other side
         return
     m_.trim(run, k, Y)

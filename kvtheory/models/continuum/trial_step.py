@@ -4,6 +4,7 @@ import math
 from typing import Any
 
 from kvtheory.models.continuum import contact as c_
+from kvtheory.models.continuum import coupled
 from kvtheory.models.continuum import dense_output as h_
 from kvtheory.models.continuum import run as r_
 from kvtheory.models.continuum.contact import FREE, TOUCHING
@@ -24,9 +25,28 @@ the right one."""
 NO_EVENT = (math.inf, math.inf, math.inf, math.inf, math.inf)
 
 
-def drive_now(run: Run, s: float) -> tuple[float, float, float]:
-    """Return Y, lambda, lambda' of the present piece of the drive."""
-    return evaluate(run.pieces[run.counts[r_.PIECE]], s)
+def sliding_now(run: Run, s: float) -> tuple[float, float, float]:
+    """Return Y, lambda, lambda' of the base under the indenter at present."""
+    return evaluate(run.pieces[run.counts[r_.SLIDE]], s)
+
+
+def next_along(run: Run) -> int:
+    """Return the row of the motion along x for the next record; a rigid drive has but one, unused."""
+    return int(run.counts[r_.RECORDS]) if run.given.sprung else 0
+
+
+def take_up(run: Run, span: float, rate: float) -> None:
+    """Let the base slide from now on as it does if x' changes by `rate` in a time `span`."""
+    if not run.given.sprung:
+        run.counts[r_.SLIDE] = run.counts[r_.PIECE]
+        return
+    now, along = run.now, run.along[next_along(run)]
+    for i in range(len(along)):
+        along[i] = 0.0
+    along[h_.START], along[h_.SPAN], along[h_.PIECE] = now[r_.S], span, run.counts[r_.PIECE]
+    along[h_.DEPTH], along[h_.POWERS], along[h_.POWERS + 1] = now[r_.X], now[r_.W], rate
+    run.counts[r_.SLIDE] = run.given.drives + run.counts[r_.RECORDS]
+    coupled.slide(run, along, run.pieces[run.counts[r_.SLIDE]])
 
 
 def attempt(run: Run, record: Any, span: float) -> tuple[float, float, Monitors]:
@@ -36,7 +56,7 @@ def attempt(run: Run, record: Any, span: float) -> tuple[float, float, Monitors]
     """
     _begin(run, record, span)
     start = run.now[r_.S]
-    if not run.given.fixed:
+    if run.given.sprung or not run.given.fixed:
         evaluations = _solve(run, record)
         run.counts[r_.EVALUATIONS] += evaluations
         if evaluations == 0:
@@ -61,8 +81,9 @@ def attempt(run: Run, record: Any, span: float) -> tuple[float, float, Monitors]
 def _begin(run: Run, record: Any, span: float) -> None:
     """Begin a record: a step of the length `span`, its powers of v still zero."""
     now = run.now
+    take_up(run, span, 0.0)
     record[h_.START], record[h_.SPAN] = now[r_.S], span
-    record[h_.DEPTH], record[h_.PIECE] = now[r_.D], run.counts[r_.PIECE]
+    record[h_.DEPTH], record[h_.PIECE] = now[r_.D], run.counts[r_.SLIDE]
     record[h_.LEFT_STATE], record[h_.LEFT_NODE] = run.states[0], run.tops[0]
     record[h_.RIGHT_STATE], record[h_.RIGHT_NODE] = run.states[1], run.tops[1]
     record[h_.LEFT_X], record[h_.RIGHT_X] = run.edges[0], run.edges[1]
@@ -72,26 +93,48 @@ def _begin(run: Run, record: Any, span: float) -> None:
 
 
 def _solve(run: Run, record: Any) -> int:
-    now, stages = run.now, len(run.given.method.nodes)
-    guess = run.matrix[stages]
-    for i in range(stages):
+    now, stages, sprung = run.now, len(run.given.method.nodes), run.given.sprung
+    guess, last, along = (
+        run.matrix[len(run.matrix) - 3],
+        run.counts[r_.RECORDS] - 1,
+        run.along[next_along(run)],
+    )
+    for i in range(len(guess) - 1):
         guess[i] = 0.0
-        if run.counts[r_.SMOOTH] != 0:
-            last = run.records[run.counts[r_.RECORDS] - 1]
-            s = now[r_.S] + run.given.method.nodes[i] * record[h_.SPAN]
-            guess[i] = motion(last, s)[1] - now[r_.V]
-    return collocate(run, record)
+    for i in range(stages if run.counts[r_.SMOOTH] != 0 else 0):
+        s = now[r_.S] + run.given.method.nodes[i] * record[h_.SPAN]
+        guess[i] = motion(run.records[last], s)[1] - now[r_.V]
+        if sprung:
+            guess[stages + i] = motion(run.along[last], s)[1] - now[r_.W]
+    evaluations = collocate(run, record, along)
+    if sprung and evaluations > 0:
+        coupled.slide(run, along, run.pieces[run.counts[r_.SLIDE]])
+    return evaluations
 
 
 def _probe(run: Run, record: Any, s: float, probe: int) -> tuple[float, float]:
     """Return the slack of all states at `s`, and the error there by the tolerance."""
     values, F, F_d, F_v, dv = monitors(run, record, s)
-    if run.given.fixed or probe >= len(run.given.method.probes):
-        return smallest(values), 0.0
-    run.counts[r_.EVALUATIONS] += 1
-    scales = run.given.method.scales[probe]
-    error = defect_error(record[h_.SPAN], run.given.eps, dv, F, F_d, F_v, scales)
-    return smallest(values), error / (run.given.rtol * (1.0 + abs(run.now[r_.V])))
+    error = 0.0
+    if probe < len(run.given.method.probes):
+        scales = run.given.method.scales[probe]
+        if not run.given.fixed:
+            run.counts[r_.EVALUATIONS] += 1
+            error = defect_error(record[h_.SPAN], run.given.eps, dv, F, F_d, F_v, 1.0 - F_d, scales)
+            error /= run.given.rtol * (1.0 + abs(run.now[r_.V]))
+        if run.given.sprung:
+            error = max(error, _error_along(run, record, s, scales))
+    return smallest(values), error
+
+
+def _error_along(run: Run, record: Any, s: float, scales: Any) -> float:
+    """Return the error of x' from the defect at `s`, by the tolerance."""
+    given, now = run.given, motion(record, s) + sliding_now(run, s)
+    x, w, dw = motion(run.along[next_along(run)], s)
+    _, (G, _, _, G_x, G_w) = coupled.balances(run, record[h_.LEFT_STATE : h_.LEFT_X], s, now, x, w)
+    rounding = 1.0 + given.spring * abs(x) + abs(w) * (given.damping - G_w) + abs(now[4])
+    error = defect_error(record[h_.SPAN], given.eps_x, dw, G, G_x, G_w, rounding, scales)
+    return error / (given.rtol * (1.0 + abs(run.now[r_.W])))
 
 
 def smallest(values: Monitors) -> float:
@@ -104,7 +147,7 @@ def smallest(values: Monitors) -> float:
 
 def monitors(run: Run, record: Any, s: float) -> tuple[Monitors, float, float, float, float]:
     """Return what must stay positive, and F, dF/dd, dF/dv and v'."""
-    now = motion(record, s) + drive_now(run, s)
+    now = motion(record, s) + sliding_now(run, s)
     d, v, dv, Y, number, _ = now
     allowed = run.given.allowed + ROUNDING * (abs(Y) + s * (abs(number) + abs(v)))
     sides = record[h_.LEFT_STATE : h_.LEFT_X]
