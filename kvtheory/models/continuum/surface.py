@@ -26,7 +26,7 @@ many digits of the instant as of the height would do."""
 
 LEAST_HALF = 1e-9
 """Of half the width of the interval in which p > 0, relative to 1 + |lambda|: a smaller one is rounding.
-It is zero where an indenter takes off."""
+It is zero where an indenter takes off, which is found a little too late: nothing is swept in that while."""
 
 STRIP = np.polynomial.legendre.leggauss(3)
 """Exact for u^2 on a strip."""
@@ -172,11 +172,12 @@ def _sweep_of(motion: Trajectory, rows: Array) -> Callable[[Any, Array], tuple[A
         Y = piece[drive_.DISPLACEMENT] + value(travels, t)
         v, number = value(rates, theta), value(numbers, t)
         half = np.sqrt(np.maximum(d + v + number * number, 0.0))
-        half = np.maximum(half, LEAST_HALF * (1.0 + np.abs(number)))
+        least = LEAST_HALF * (1.0 + np.abs(number))
+        gone, half = half < least, np.maximum(half, least)
         near = branch * number > 0.0  # without cancellation
         xi = branch * np.where(near, (d + v) / (np.abs(number) + half), half - branch * number)
         rate = v + value(slopes, theta) / span - 2.0 * value(number_slopes, t) * xi
-        return xi, d, Y, rate / (2.0 * branch * half) - number
+        return xi, d, Y, np.where(gone, 0.0, rate / (2.0 * branch * half) - number)
 
     return at
 
