@@ -7,6 +7,7 @@ from types import ModuleType
 from . import (
     asymptote_errors,
     asymptotics,
+    ball,
     circle,
     contact_interval,
     element_edges,
@@ -43,7 +44,7 @@ _CHAPTERS = (
     *(model, steady, one_contact, friction_identity, asymptotics, tables, groups),
     *(theorems, master_curve, energy, asymptote_errors, circle),
     *(power_law, power_law_limits, power_law_weight, power_law_errors, wedge),
-    *(viscoelastic, relaxation, viscoelastic_limits),
+    *(ball, viscoelastic, relaxation, viscoelastic_limits),
     *(transient_scaling, transient_memory, contact_interval, transient_edges),
     *(transient_motion, transient_rates, transient_balance),
     *(spring_drive, spring_stability),

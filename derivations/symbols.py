@@ -177,6 +177,19 @@ sinks = sp.Symbol("d_l", real=True)
 """How the depth changes with the drive number in steady sliding."""
 spread = sp.Symbol("s_c", nonnegative=True)
 
+# A ball: place of a strip over its half width, arctan(1/l), and what its strips sum up to.
+aside, ball_angle, ball_load, ball_friction, ball_coefficient, ball_share = _positive(
+    "y_b theta_b w_b phi_b m_b eta_b"
+)
+ball_tail, ball_loss = _positive("T_b D_b")
+ball_scaled, ball_scaled_s, ball_scaled_ss = _positive("f_b f_b_s f_b_ss")
+ball_l1, ball_l2, ball_load_low, ball_load_high = sp.symbols(
+    "e_b_L1 e_b_L2 e_b_W_low e_b_W_high", real=True
+)
+ball_friction_low, ball_friction_high = sp.symbols("e_b_F_low e_b_F_high", real=True)
+ball_slip = sp.Symbol("E_b", real=True)
+ball_cross, ball_lam_cross = _positive("l_b lambda_b")
+
 alpha = 2 * sp.sqrt(2) / 3
 """The coefficient of Eqs. 40-46."""
 
@@ -353,5 +366,25 @@ TEX = {
     onset_sum: r"\check n",
     spread: r"\check s",
     onset_square: r"\check D",
+    aside: r"\tilde y",
+    ball_angle: r"\tilde \theta",
+    ball_load: r"\tilde w",
+    ball_friction: r"\tilde \varphi",
+    ball_coefficient: r"\tilde m",
+    ball_share: r"\tilde \eta",
+    ball_tail: r"\tilde T",
+    ball_loss: r"\tilde D",
+    ball_scaled: r"\tilde f",
+    ball_scaled_s: r"\tilde f'",
+    ball_scaled_ss: r"\tilde f''",
+    ball_l1: r"\tilde e_{\mathrm{L1}}",
+    ball_l2: r"\tilde e_{\mathrm{L2}}",
+    ball_load_low: r"\tilde e_{W\!,\,V\to0}",
+    ball_load_high: r"\tilde e_{W\!,\,V\to\infty}",
+    ball_friction_low: r"\tilde e_{F\!,\,V\to0}",
+    ball_friction_high: r"\tilde e_{F\!,\,V\to\infty}",
+    ball_slip: r"\tilde E",
+    ball_cross: r"\tilde l^{*}",
+    ball_lam_cross: r"\tilde \lambda^{*}",
 }
 """How `sympy.latex` prints these symbols where its own choice differs from the paper's."""

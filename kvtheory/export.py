@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from kvtheory.results import SERIES_UNITS, STEADY_UNITS, TRANSIENT_UNITS, Comparison, Transient
+from kvtheory.results import TRANSIENT_UNITS, Comparison, Transient
 
 SERIES_SUFFIXES = (".csv", ".nc")
 """Of files that hold a time series."""
@@ -106,8 +106,7 @@ def dataset(result: Any) -> Any:
 
 
 def _units(result: Any) -> Mapping[str, str]:
-    units = SERIES_UNITS if hasattr(result, "time") else STEADY_UNITS
-    return {name: unit for name, unit in units.items() if hasattr(result, name)}
+    return {name: unit for name, unit in result.units.items() if hasattr(result, name)}
 
 
 def check_path(path: Path, suffixes: Sequence[str]) -> None:

@@ -41,7 +41,11 @@ def test_the_quadrature_of_the_slow_manifold_agrees_with_its_integration(number,
 
 def random_start(rng):
     kappa = float(rng.choice([0.0, 10 ** rng.uniform(-2, 1.5)]))
-    number, eps, end = 10 ** rng.uniform(-2, 2), 10 ** rng.uniform(-8, -1), 10 ** rng.uniform(-1, 1.3)
+    number, eps, end = (
+        10 ** rng.uniform(-2, 2),
+        10 ** rng.uniform(-8, -1),
+        10 ** rng.uniform(-1, 1.3),
+    )
     return number, eps, kappa, np.sort(end * 10 ** rng.uniform(-3, 0, 12))
 
 

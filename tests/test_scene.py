@@ -120,7 +120,7 @@ def test_python_functions_do_not_go_into_a_file():
             ["support.kind", "exactly one of"],
         ),
         ('mass = "1 kg/mm"', 'mass = "1 kg/mm"\ndepth = "1 mm"', ["support.depth", "dead-weight"]),
-        ('mass = "1 kg/mm"', 'mass = "1 kg"', ["support.mass", "another dimension", "kg/m"]),
+        ('mass = "1 kg/mm"', 'mass = "1 kg"', ["support.mass", "in a line", "kg/m"]),
         ("[support]", "[[support]]", ["[support]", "one table"]),
         ('velocity = "100 mm/s"', 'velocity = "inf m/s"', ["drive.velocity", "finite"]),
         ('velocity = "100 mm/s"', "", ["drive", "velocity, history and waveform"]),

@@ -136,7 +136,7 @@ def plan_of(
     scene = scene_of(scene)
     method = method_for(scene, method)
     times = None if at is None else tuple(times_of(scene, at))
-    columns = columns_of(quantities, series=at is not None)
+    columns = columns_of(quantities, series=at is not None, indenter=scene.indenter)
     plan = Plan(scene, axes_of(scene, over), columns, times, method, rtol)
     if plan.transient:
         require(lacks_rigid_paper_model, scene, "the transient")

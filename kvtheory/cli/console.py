@@ -152,15 +152,11 @@ def print_json(result: Any) -> None:
 
 def print_series(result: Any, *, whole: bool) -> None:
     """Print a time series for people: every row, or about twenty of them with both ends."""
-    from kvtheory.results import SERIES_UNITS, SHOWN_UNITS
+    from kvtheory.results import SHOWN_UNITS
 
     last = result.time.size - 1
     rows = range(last + 1) if whole else sorted({round(i * last / 20) for i in range(21)})
-    units = {
-        name: unit
-        for name, unit in SERIES_UNITS.items()
-        if name != "depth_rate" and hasattr(result, name)
-    }
+    units = {name: unit for name, unit in result.units.items() if name != "depth_rate"}
     print_table(
         [f"{name} [{SHOWN_UNITS[unit][0]}]" for name, unit in units.items()],
         [[shown(getattr(result, name)[i], unit)[0] for name, unit in units.items()] for i in rows],
@@ -169,13 +165,11 @@ def print_series(result: Any, *, whole: bool) -> None:
 
 def print_steady(result: Any, names: Iterable[str]) -> None:
     """Print some quantities of steady sliding with their errors."""
-    from kvtheory.results import STEADY_UNITS
-
     errors = result.certificate.relative_error
     print_table(
         ("quantity", "value", "unit", "relative error"),
         [
-            (name, *shown(getattr(result, name), STEADY_UNITS[name]), f"{errors[name]:.1e}")
+            (name, *shown(getattr(result, name), result.units[name]), f"{errors[name]:.1e}")
             for name in names
         ],
     )

@@ -34,7 +34,6 @@ def steady(
 ) -> None:  # fmt: skip
     """Print the state of steady sliding: depth, edges, load, friction, peak pressure."""
     from kvtheory.api import steady as solve
-    from kvtheory.results import STEADY_UNITS
     from kvtheory.scene import load_scene
 
     check_results(output, plot)
@@ -44,7 +43,7 @@ def steady(
         return
     _note_history(checked)
     click.echo(f"Steady sliding, {checked.support.kind} support, model: {state.model}\n")
-    print_steady(state, STEADY_UNITS)
+    print_steady(state, state.units)
     click.echo(f"\nErrors are {state.certificate.kind}: {state.certificate.statement}.")
 
 
@@ -58,7 +57,6 @@ def asymptotes(
 ) -> None:
     """Say which asymptote holds, how wrong it is, and over which velocities."""
     from kvtheory.api import asymptotes as examine
-    from kvtheory.results import STEADY_UNITS
     from kvtheory.scene import load_scene
 
     checked = load_scene(scene, overrides)
@@ -88,8 +86,8 @@ def asymptotes(
         [
             (
                 line.name, f"({line.equation})" if line.equation else "", line.formula,
-                text(line.value, STEADY_UNITS[line.quantity]),
-                text(line.exact, STEADY_UNITS[line.quantity]),
+                text(line.value, report.units[line.quantity]),
+                text(line.exact, report.units[line.quantity]),
                 "-" if math.isnan(line.relative_error) else f"{line.relative_error:+.3g}",
                 velocity_range(line.velocity_min, line.velocity_max),
             )

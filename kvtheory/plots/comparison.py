@@ -8,13 +8,13 @@ from typing import Any
 import numpy as np
 
 from kvtheory.plots.files import inline, save_page, template
-from kvtheory.plots.style import BLACK, BLUE, GREEN, RED, TRANSIENT_ROWS
-from kvtheory.results import Check, Comparison
+from kvtheory.plots.style import BLACK, BLUE, GREEN, RED, TRANSIENT_ROWS, with_unit
+from kvtheory.results import TRANSIENT_UNITS, Check, Comparison
 from kvtheory.results.comparison import Explanation
 from kvtheory.scene import Scene, to_toml
 
-CURVES = {name: (label, factor) for name, label, factor in TRANSIENT_ROWS if name != "velocity"}
-"""What is drawn, if the data hold it: axis label, factor from SI."""
+CURVES = {name: (symbol, sign) for name, symbol, sign in TRANSIENT_ROWS if name != "velocity"}
+"""What is drawn, if the data hold it: symbol, sign."""
 DOTS = 200
 """More samples than this are drawn as a line."""
 MARKS = {True: ("ok", GREEN), False: ("fails", RED), None: ("not made", "#777777")}
@@ -47,7 +47,9 @@ def plot_comparison(axes: Sequence[Sequence[Any]], comparison: Comparison) -> li
     time = np.asarray(comparison.series["time"]) * 1e3
     artists: list[Any] = []
     for (over, rest), name in zip(axes, names, strict=False):
-        label, factor = CURVES[name]
+        symbol, sign = CURVES[name]
+        label, factor = with_unit(symbol, TRANSIENT_UNITS[name])
+        factor *= sign
         data, theory = comparison.series[name] * factor, comparison.theory[name] * factor
         style = "." if time.size <= DOTS else "-"
         artists += over.plot(time, theory, color=BLACK, linewidth=0.8, label="theory", zorder=3)

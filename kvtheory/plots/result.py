@@ -11,7 +11,7 @@ from scipy.integrate import simpson
 
 from kvtheory.plots.comparison import draw_comparison
 from kvtheory.plots.files import save_picture
-from kvtheory.plots.style import BLUE, LABELS, RED, TRANSIENT_ROWS
+from kvtheory.plots.style import BLUE, LABELS, RED, TRANSIENT_ROWS, label, with_unit
 from kvtheory.plots.sweep import plot_sweep
 from kvtheory.results import QUANTITIES, AsymptoteReport, Comparison, SteadyState, Sweep, Transient
 from kvtheory.results.transient import TimeSeries
@@ -38,7 +38,10 @@ def plot_steady(
     >>> line.get_ydata().round(4).tolist()
     [0.2814, 0.0897, 0.0098]
     """
-    (x_label, x_factor), (y_label, y_factor) = LABELS["velocity"], LABELS[quantity]
+    (x_label, x_factor), (y_label, y_factor) = (
+        LABELS["velocity"],
+        label(quantity, state.units[quantity]),
+    )
     x, y = np.asarray(velocity) * x_factor, np.asarray(getattr(state, quantity)) * y_factor
     ax.set(xlabel=x_label, ylabel=y_label, xscale="log", yscale="log")
     artists: list[Any] = ax.plot(x, y, **style)
@@ -67,14 +70,16 @@ def plot_transient(axes: Sequence[Any], result: TimeSeries, **style: Any) -> lis
     rest = {"velocity": 0.0, "friction_force": 0.0, "depth": result.depth[0]}
     rest["normal_force"] = result.solution.units.load if isinstance(result, Transient) else math.nan
     artists = []
-    for ax, (name, label, factor) in zip(axes, TRANSIENT_ROWS, strict=True):
-        values = np.concatenate([[rest[name]] * 2, getattr(result, name)]) * factor
+    for ax, (name, symbol, sign) in zip(axes, TRANSIENT_ROWS, strict=True):
+        words, factor = with_unit(symbol, result.units[name])
+        values = np.concatenate([[rest[name]] * 2, getattr(result, name)]) * (sign * factor)
         artists += ax.plot(np.concatenate([before, time]), values, **style)
-        ax.set(ylabel=label)
+        ax.set(ylabel=words)
         if hasattr(result, BESIDE.get(name, "")):
-            beside = np.asarray(getattr(result, BESIDE[name])) * factor
-            words = QUANTITIES[BESIDE[name]].words
-            artists += ax.plot(time, beside, color=RED, linewidth=0.8, label=words)
+            beside = np.asarray(getattr(result, BESIDE[name])) * (sign * factor)
+            artists += ax.plot(
+                time, beside, color=RED, linewidth=0.8, label=QUANTITIES[BESIDE[name]].words
+            )
             ax.legend(loc="upper right")
     axes[-1].set(xlabel=r"time $t$ [ms]")
     return artists
@@ -120,7 +125,7 @@ def plot_result(result: Any, axes: Any = None, **style: Any) -> Any:
 def _over_velocity(ax: Any, state: SteadyState, style: dict[str, Any]) -> None:
     """Draw the friction coefficient over the retardation length."""
     names = "retardation_length", "friction_coefficient"
-    (x_label, x_factor), (y_label, y_factor) = (LABELS[name] for name in names)
+    (x_label, x_factor), (y_label, y_factor) = (label(name, state.units[name]) for name in names)
     x, y = (np.ravel(getattr(state, name)) for name in names)
     order = np.argsort(x)
     ax.plot(x[order] * x_factor, y[order] * y_factor, **style)

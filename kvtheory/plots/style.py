@@ -31,12 +31,12 @@ STYLE: Any = {
 
 
 TRANSIENT_ROWS = (
-    ("velocity", r"$V$ [mm/s]", 1e3),
-    ("depth", r"$z_\mathrm{A}$ [mm]", -1e3),
-    ("normal_force", r"$F_z$ [N/mm]", 1e-3),
-    ("friction_force", r"$F_x$ [N/mm]", 1e-3),
+    ("velocity", r"$V$", 1.0),
+    ("depth", r"$z_\mathrm{A}$", -1.0),
+    ("normal_force", r"$F_z$", 1.0),
+    ("friction_force", r"$F_x$", 1.0),
 )
-"""The rows of Fig. 3 of the paper: quantity, axis label, factor from SI."""
+"""The rows of Fig. 3 of the paper: quantity, symbol, sign."""
 
 
 def with_unit(words: str, unit: str) -> tuple[str, float]:
@@ -50,8 +50,15 @@ def with_unit(words: str, unit: str) -> tuple[str, float]:
     return words + (f" [{powers}]" if shown else ""), factor
 
 
-LABELS = {
-    row.name: with_unit(f"{row.words} ${row.symbol}$" if row.symbol else row.words, row.unit)
-    for row in QUANTITIES.values()
-}
-"""Axis label of each quantity of a result, in the paper's units, and the factor from SI."""
+def label(name: str, unit: str) -> tuple[str, float]:
+    """Return the axis label of a quantity of a result, and the factor from its SI unit.
+
+    >>> label("load", "N")
+    ('load $W$ [N]', 1.0)
+    """
+    row = QUANTITIES[name]
+    return with_unit(f"{row.words} ${row.symbol}$" if row.symbol else row.words, unit)
+
+
+LABELS = {row.name: label(row.name, row.unit) for row in QUANTITIES.values()}
+"""Axis label of each quantity of a line contact, in the paper's units, and the factor from SI."""

@@ -6,8 +6,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from kvtheory.plots.style import LABELS, with_unit
-from kvtheory.results import Sweep
+from kvtheory.plots.style import label, with_unit
+from kvtheory.results import QUANTITIES, Sweep
 from kvtheory.scene.quantities import nearest
 from kvtheory.sweeps.plan import Plan
 
@@ -36,7 +36,7 @@ WORDS = {
     "run.duration": "duration",
     "peak_to_steady_friction": "peak friction / steady friction",
 }
-"""Names for what has none in `LABELS`; all others are shown as they are."""
+"""Names for what is no quantity of a result; all others are shown as they are."""
 FIRST = "friction_coefficient"
 """Drawn where it is there and no quantity is named."""
 
@@ -105,11 +105,11 @@ def _drawn(result: Sweep, name: str) -> tuple[list[Side], Array]:
 
 def _side(name: str, unit: str, values: Array) -> Side:
     base = name.rpartition(".")[2]
-    if base in LABELS:
-        label, factor = LABELS[base]
+    if base in QUANTITIES:
+        words, factor = label(base, unit)
     else:
-        label, factor = with_unit(WORDS.get(name, name.replace(".", ": ").replace("_", " ")), unit)
-    return Side(label, np.asarray(values, dtype=float) * factor)
+        words, factor = with_unit(WORDS.get(name, name.replace(".", ": ").replace("_", " ")), unit)
+    return Side(words, np.asarray(values, dtype=float) * factor)
 
 
 def _scale(values: Array) -> str:

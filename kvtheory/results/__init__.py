@@ -18,6 +18,7 @@ from kvtheory.results.table import (
     SPRING_UNITS,
     STEADY_UNITS,
     TRANSIENT_UNITS,
+    units_for,
 )
 from kvtheory.results.transient import Event, Simulation, SprungTransient, Transient
 
@@ -49,4 +50,5 @@ __all__ = [
     "Transient",
     "TransientError",
     "record",
+    "units_for",
 ]

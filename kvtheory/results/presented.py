@@ -1,6 +1,6 @@
 """How a result shows itself: a few lines of text, a table in a notebook, a picture, a file."""
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from html import escape
 from pathlib import Path
 from typing import Any
@@ -24,6 +24,7 @@ class Presented:
 
     model: str
     certificate: Certificate
+    units: Mapping[str, str]
 
     @property
     def _title(self) -> str:
@@ -37,7 +38,7 @@ class Presented:
     def _shown(self) -> Iterator[tuple[str, str, str, str]]:
         """Yield name, value, unit and error of each quantity as text."""
         for name in self._named:
-            unit, factor = SHOWN_UNITS[QUANTITIES[name].unit]
+            unit, factor = SHOWN_UNITS[self.units[name]]
             error = self.certificate.relative_error.get(name)
             worst = "" if error is None else f"{float(np.max(error, initial=0.0)):.1e}"
             yield name, _range(getattr(self, name), factor), unit, worst

@@ -6,6 +6,7 @@ from typing import Any
 
 from kvtheory.results.certificate import Certificate, Value, record
 from kvtheory.results.presented import Presented
+from kvtheory.results.table import STEADY_UNITS, TRANSIENT_UNITS
 
 
 @dataclass(frozen=True)
@@ -55,6 +56,12 @@ class Solution(Presented):
         if name.startswith("_") or name == "values" or name not in self.values:
             raise AttributeError(f"a {type(self).__name__} of this request has no `{name}`")
         return self.values[name]
+
+    @property
+    def units(self) -> Mapping[str, str]:  # type: ignore[override]
+        """The SI unit of each quantity."""
+        own = TRANSIENT_UNITS if "time" in self.values else STEADY_UNITS
+        return getattr(self.answer, "units", own)
 
     @property
     def choosing_share(self) -> float:

@@ -1,10 +1,12 @@
 """Steady sliding, and which asymptote of it holds."""
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field, fields
 from typing import Any
 
 from kvtheory.results.certificate import Certificate, Value, record
 from kvtheory.results.presented import Presented
+from kvtheory.results.table import STEADY_UNITS
 
 
 @dataclass(frozen=True, repr=False)
@@ -12,7 +14,9 @@ class SteadyState(Presented):
     """Steady sliding: each quantity a float, or an array where the input was an array.
 
     The edges are coordinates in the frame of the indenter, in which the foundation moves through
-    x with the drive velocity: the leading edge is at x < 0 for a positive velocity.
+    x with the drive velocity: the leading edge is at x < 0 for a positive velocity. Of a ball they are
+    those of its middle plane, across which it touches over |y| < a sqrt(R'/R); its forces are whole, in N,
+    as `units` says.
     """
 
     depth: Value
@@ -27,10 +31,14 @@ class SteadyState(Presented):
     dissipated_in_contact: Value
     model: str
     certificate: Certificate
+    units: Mapping[str, str] = field(
+        default_factory=lambda: STEADY_UNITS, repr=False, compare=False
+    )
+    """The SI unit of each quantity."""
 
     def as_dict(self) -> dict[str, Any]:
         """Return plain Python values, ready for JSON; what does not exist is None."""
-        return record(self)
+        return {f.name: record(getattr(self, f.name)) for f in fields(self) if f.repr}
 
 
 @dataclass(frozen=True)
@@ -74,7 +82,11 @@ class AsymptoteReport:
     lines: tuple[AsymptoteLine, ...]
     model: str
     certificate: Certificate
+    units: Mapping[str, str] = field(
+        default_factory=lambda: STEADY_UNITS, repr=False, compare=False
+    )
+    """The SI unit of each quantity."""
 
     def as_dict(self) -> dict[str, Any]:
         """Return plain Python values, ready for JSON; what does not exist is None."""
-        return record(self)
+        return {f.name: record(getattr(self, f.name)) for f in fields(self) if f.repr}

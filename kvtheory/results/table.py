@@ -1,8 +1,11 @@
 """What each quantity of a result is: one table, which everything that names or shows one reads."""
 
+from collections.abc import Mapping
 from typing import NamedTuple
 
+from kvtheory.scene.indenters import Indenter
 from kvtheory.scene.static_state import StaticState
+from kvtheory.scene.units import WHOLE
 
 
 class Row(NamedTuple):
@@ -67,13 +70,27 @@ SHOWN_UNITS = {
     "m": ("mm", 1e3),
     "m/s": ("mm/s", 1e3),
     "m/s^2": ("m/s^2", 1.0),
+    "N": ("N", 1.0),
     "N/m": ("N/mm", 1e-3),
     "N/m^2": ("MN/m^2", 1e-6),
     "N/m^3": ("N/mm^3", 1e-9),
     "Pa": ("MPa", 1e-6),
+    "kg": ("kg", 1.0),
     "kg/m": ("kg/mm", 1e-3),
 }
 """For people, each SI unit as the paper has it, and the factor to it; JSON and CSV are in SI."""
+
+
+def units_for(indenter: Indenter, units: Mapping[str, str]) -> Mapping[str, str]:
+    """Return the units of quantities of a result, which a line contact has per unit width and a ball whole.
+
+    >>> from kvtheory.scene import Sphere
+    >>> units_for(Sphere(radius=0.01), STEADY_UNITS)["load"]
+    'N'
+    """
+    if indenter.per_width:
+        return units
+    return {name: WHOLE.get(unit, unit) for name, unit in units.items()}
 
 
 def scales(at_rest: StaticState) -> dict[str, float]:

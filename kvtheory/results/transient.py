@@ -1,10 +1,12 @@
 """Motions as time series: a transient, and a simulation by elements."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field, fields
 from typing import Any, NamedTuple
 
 from kvtheory.results.certificate import Certificate, Value, record
 from kvtheory.results.presented import Presented
+from kvtheory.results.table import SERIES_UNITS, TRANSIENT_UNITS
 
 
 class Event(NamedTuple):
@@ -27,6 +29,10 @@ class TimeSeries(Presented):
     leading_edge: Value
     trailing_edge: Value
     peak_pressure: Value
+    units: Mapping[str, str] = field(
+        default_factory=lambda: TRANSIENT_UNITS, repr=False, compare=False, kw_only=True
+    )
+    """The SI unit of each quantity."""
 
     @property
     def _title(self) -> str:
@@ -107,6 +113,10 @@ class SprungTransient(Transient):
 
     sliding_velocity: Value
     spring_force: Value
+    units: Mapping[str, str] = field(
+        default_factory=lambda: SERIES_UNITS, repr=False, compare=False, kw_only=True
+    )
+    """The SI unit of each quantity."""
 
 
 @dataclass(frozen=True, repr=False)

@@ -2,7 +2,16 @@
 
 from kvtheory.scene.files import load_scene, template, to_toml
 from kvtheory.scene.foundations import Foundation, FractionalKelvinVoigt, GeneralizedMaxwell
-from kvtheory.scene.indenters import Circle, Indenter, Parabola, PowerLaw, Profile, Wedge
+from kvtheory.scene.indenters import (
+    Circle,
+    Indenter,
+    Parabola,
+    PowerLaw,
+    Profile,
+    Revolved,
+    Sphere,
+    Wedge,
+)
 from kvtheory.scene.model import (
     DeadWeight,
     Drive,
@@ -27,11 +36,13 @@ __all__ = [
     "Parabola",
     "PowerLaw",
     "Profile",
+    "Revolved",
     "Run",
     "Scene",
     "SceneError",
     "Sine",
     "SmoothRamp",
+    "Sphere",
     "Support",
     "Suspended",
     "Triangle",

@@ -26,7 +26,7 @@ Array = NDArray[np.float64]
 def replaceable(scene: Scene) -> dict[str, Quantity]:
     """Return the keys of a scene whose values can be replaced."""
     found = {
-        f"{section}.{name}": spec
+        f"{section}.{name}": spec.fitting(scene.indenter.per_width)
         for section, part in scene.parts().items()
         for name, spec in free(part).items()
     }

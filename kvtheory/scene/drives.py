@@ -76,16 +76,16 @@ class Drive:
     tolerance: float = 1e-12
     stiffness: float | None = quantity(
         "N/m^2",
-        "k_x, stiffness per unit width of a spring between drive and indenter",
-        default=None,
-    )
+        "k_x, stiffness of a spring between drive and indenter",
+        default=None, per_width=True,
+    )  # fmt: skip
     damping: float = quantity(
-        "N*s/m^2", "c_x, damping per unit width beside the spring",
-        exclusive=False, default=Derived(0.0),
+        "N*s/m^2", "c_x, damping beside the spring",
+        exclusive=False, default=Derived(0.0), per_width=True,
     )  # fmt: skip
     mass: float | None = quantity(
-        "kg/m", "M_x, mass per unit width that moves along x; that of the support if not given",
-        default=None,
+        "kg/m", "M_x, mass that moves along x; that of the support if not given",
+        default=None, per_width=True,
     )  # fmt: skip
 
     def __post_init__(self) -> None:

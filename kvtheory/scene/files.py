@@ -10,7 +10,7 @@ from kvtheory.scene.drive_file import history_from
 from kvtheory.scene.drives import SPRING
 from kvtheory.scene.foundations import FOUNDATIONS, PAIRS, Foundation, GeneralizedMaxwell, arms_of
 from kvtheory.scene.indenters import SHAPES
-from kvtheory.scene.model import SUPPORTS, Drive, Run, Scene, lacks_mass
+from kvtheory.scene.model import SUPPORTS, WEIGHED, Drive, Run, Scene, lacks_mass
 from kvtheory.scene.quantities import (
     MEANT,
     Quantity,
@@ -20,6 +20,7 @@ from kvtheory.scene.quantities import (
     collecting,
     convert,
     given,
+    misfits,
     missing,
     mistake,
     nearest,
@@ -27,6 +28,7 @@ from kvtheory.scene.quantities import (
     quantities,
     required,
     shown,
+    written_as,
 )
 from kvtheory.scene.texts import read_text
 from kvtheory.scene.units import expected
@@ -48,6 +50,10 @@ DRIVES = ("velocity", "history", "waveform", "file")
 PLAIN = {"drive": Drive, "run": Run}
 OPTIONAL = {"run"}
 NOTES = {
+    "indenter": [
+        '# or a ball: shape = "sphere"; masses, loads and springs are then whole: mass = "1 kg"',
+        '# radius_across = "20 mm"  of a ball that is curved otherwise across the sliding direction',
+    ],
     "support": [
         "# or, instead of mass times gravity, a load; the mass is then inertia alone (load/gravity):",
         '# load = "9.80665 N/mm"',
@@ -140,7 +146,7 @@ def template(support: str = "dead-weight") -> str:
             )
         for name, spec in given(part).items():
             value = "30 MN/m^2" if spec.unit == "N/m^2" else examples[name]
-            lines.append(f'{name} = "{value}"'.ljust(36) + f"# {spec.doc}")
+            lines.append(f'{name} = "{value}"'.ljust(36) + f"# {spec.words}")
         lines += NOTES.get(section, ()) if support != "fixed" or section != "support" else ()
         if section == "drive":
             lines += [
@@ -167,7 +173,8 @@ def _tables(scene: Scene) -> dict[str, dict[str, Any]]:
         if section in CHOICES:
             table[CHOICES[section][0]] = getattr(type(part), CHOICES[section][0])
         for name, spec in given(part).items():
-            table[name] = _text(getattr(part, name), spec.unit)
+            unit = spec.fitting(scene.indenter.per_width).unit
+            table[name] = _text(getattr(part, name), unit)
         if section == "drive" and part.history is not None:
             table["history"] = [[_text(t, "s"), _text(v, "m/s")] for t, v in part.history]
         if section == "foundation" and part.arms:
@@ -308,6 +315,8 @@ def _build(tables: Mapping[str, Any], problems: list[str]) -> Scene:
     for section in (name for name in SECTIONS if name in tables):
         with collecting(problems, section, tables[section]):
             parts[section] = _part(section, tables[section])
+    for section in WEIGHED if "indenter" in parts else ():
+        problems += misfits(section, parts.get(section), parts["indenter"])
     if {"support", "drive"} <= parts.keys():
         problems += lacks_mass(parts["support"], parts["drive"])
     if problems:
@@ -409,10 +418,12 @@ def _elsewhere(section: str, key: str) -> str:
     return f"{meant} is of {chooser} = {' or '.join(having)}" if having else ""
 
 
-def _value(value: Any, spec: Quantity) -> float:
+def _value(value: Any, spec: Quantity) -> Any:
+    """Return a value in SI, or the text where its unit says more: whether it is per unit width."""
     if spec.unit != "1" and isinstance(value, (int, float)):
         raise ValueError(f"has no unit; expected {expected(spec.unit)}")
-    return convert(value, spec)
+    number = convert(value, written_as(value, spec))
+    return value if spec.per_width else number
 
 
 def _pairs(value: Any, told: str) -> Any:

@@ -3,7 +3,8 @@
 Every shape has `height` (h, in m) and `slope` (h', dimensionless), each for floats and arrays; its
 `reach`, in m: the surface is defined for |x| < reach; `kinks`, the points where h' jumps or a
 derivative is singular, in m; and `convex`, whether h is known to be convex: then it also has `bend`,
-x h''/h'.
+x h''/h'. They touch in a line: what acts on them is per unit width, `per_width`. A ball and its kin, which
+touch in a spot, have forces as a whole; their shape is that of their middle plane, y = 0.
 """
 
 import math
@@ -23,6 +24,7 @@ class _Shape:
     """What the shapes that a scene file can name share."""
 
     convex: ClassVar[bool] = True
+    per_width: ClassVar[bool] = True
 
     def __post_init__(self) -> None:
         settle(self, "indenter")
@@ -157,6 +159,7 @@ class Profile:
 
     shape: ClassVar[str] = "callable"
     convex: ClassVar[bool] = False
+    per_width: ClassVar[bool] = True
     height_function: Callable[[float], float]
     slope_function: Callable[[float], float]
     reach: float = math.inf
@@ -191,8 +194,95 @@ def _pointwise(function: Callable[[float], float], x: Value) -> Value:
     return function(x)
 
 
-Convex = Parabola | Circle | PowerLaw | Wedge
-Indenter = Convex | Profile
+@dataclass(frozen=True)
+class Sphere(_Shape):
+    """A ball, h = x^2/(2R) + y^2/(2R'): a paraboloid, R' being R unless `radius_across` says otherwise.
 
-SHAPES: dict[str, Any] = {cls.shape: cls for cls in (Parabola, Circle, PowerLaw, Wedge)}
+    It stands for a sphere as the parabola does for a cylinder, to first order in (a/R)^2. Its strips along
+    x are parabolas of depth delta - y^2/(2R').
+
+    >>> Sphere(radius="10 mm").stretch, Sphere("10 mm", radius_across="40 mm").stretch
+    (1.0, 2.0)
+    """
+
+    shape: ClassVar[str] = "sphere"
+    per_width: ClassVar[bool] = False
+    reach: ClassVar[float] = math.inf
+    kinks: ClassVar[tuple[float, ...]] = ()
+    radius: float = quantity("m", "R, radius of the ball, in the sliding direction")
+    radius_across: float | None = quantity(
+        "m", "R', radius across the sliding direction; that of the ball if not given", default=None
+    )
+
+    @property
+    def stretch(self) -> float:
+        """sqrt(R'/R), by which the contact at rest is wider than long."""
+        return 1.0 if self.radius_across is None else math.sqrt(self.radius_across / self.radius)
+
+    @property
+    def profile(self) -> Parabola:
+        """The shape in the middle plane."""
+        return Parabola(self.radius)
+
+    def height(self, x: Value) -> Value:
+        """Return h(x) in the middle plane."""
+        return self.profile.height(x)
+
+    def slope(self, x: Value) -> Value:
+        """Return h'(x) in the middle plane."""
+        return self.profile.slope(x)
+
+
+@dataclass(frozen=True)
+class Revolved:
+    """Any profile h(rho) turned around its lowest point: a true sphere, a cone, a blunt punch.
+
+    From Python alone; the profile is one of the shapes of this module.
+
+    >>> cone = Revolved(Wedge(inclination=0.1))
+    >>> cone.height(-0.02), cone.stretch
+    (0.002, 1.0)
+    """
+
+    shape: ClassVar[str] = "revolved"
+    per_width: ClassVar[bool] = False
+    stretch: ClassVar[float] = 1.0
+    profile: Parabola | Circle | PowerLaw | Wedge | Profile
+
+    def __post_init__(self) -> None:
+        if not isinstance(self.profile, Line):
+            raise mistake(
+                "indenter.profile", self.profile, "expected a shape h(x) of a line contact"
+            )
+
+    @property
+    def convex(self) -> bool:
+        """Whether the profile is known to be convex."""
+        return self.profile.convex
+
+    @property
+    def reach(self) -> float:
+        """That of the profile."""
+        return self.profile.reach
+
+    @property
+    def kinks(self) -> tuple[float, ...]:
+        """Those of the profile."""
+        return self.profile.kinks
+
+    def height(self, x: Value) -> Value:
+        """Return h(x) in the middle plane."""
+        return self.profile.height(x)
+
+    def slope(self, x: Value) -> Value:
+        """Return h'(x) in the middle plane."""
+        return self.profile.slope(x)
+
+
+Convex = Parabola | Circle | PowerLaw | Wedge
+Line = Convex | Profile
+Spot = Sphere | Revolved
+Indenter = Line | Spot
+
+SHAPES: dict[str, Any] = {cls.shape: cls for cls in (Parabola, Circle, PowerLaw, Wedge, Sphere)}
 """The shapes that a scene file can name."""

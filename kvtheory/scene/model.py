@@ -15,6 +15,7 @@ from kvtheory.scene.indenters import Indenter, Parabola
 from kvtheory.scene.quantities import (
     SceneError,
     derive,
+    misfits,
     missing,
     nearest,
     problem,
@@ -24,7 +25,7 @@ from kvtheory.scene.quantities import (
 )
 
 STANDARD_GRAVITY = 9.80665
-LOAD = "W, load per unit width instead of mass times gravity; the mass is then inertia alone"
+LOAD = "W, load instead of mass times gravity; the mass is then inertia alone"
 
 
 @dataclass(frozen=True)
@@ -41,7 +42,7 @@ class Fixed:
         settle(self, "support")
 
 
-MASS: dict[str, Any] = {"default": None, "needed": True, "instead": "load"}
+MASS: dict[str, Any] = {"default": None, "needed": True, "instead": "load", "per_width": True}
 
 
 class _Loaded:
@@ -59,7 +60,7 @@ class _Loaded:
 
     @property
     def weight(self) -> float:
-        """W, in N/m: the load, or else M g."""
+        """W, in N/m, or in N for a ball: the load, or else M g."""
         return self.mass * self.gravity if self.load is None else self.load
 
 
@@ -76,9 +77,9 @@ class DeadWeight(_Loaded):
     kind: ClassVar[str] = "dead-weight"
     spring: ClassVar[float] = 0.0
     depth: ClassVar[None] = None
-    mass: float = quantity("kg/m", "M, mass of the indenter per unit width", **MASS)
+    mass: float = quantity("kg/m", "M, mass of the indenter", **MASS)
     gravity: float = quantity("m/s^2", "g, gravity", default=STANDARD_GRAVITY)
-    load: float | None = quantity("N/m", LOAD, default=None)
+    load: float | None = quantity("N/m", LOAD, default=None, per_width=True)
 
 
 @dataclass(frozen=True)
@@ -87,22 +88,23 @@ class Suspended(_Loaded):
 
     kind: ClassVar[str] = "suspended"
     depth: ClassVar[None] = None
-    mass: float = quantity("kg/m", "M, mass of the indenter per unit width", **MASS)
+    mass: float = quantity("kg/m", "M, mass of the indenter", **MASS)
     stiffness: float = quantity(
-        "N/m^2", "k_s, stiffness of the suspension per unit width", default=None, needed=True
+        "N/m^2", "k_s, stiffness of the suspension", default=None, needed=True, per_width=True
     )
     gravity: float = quantity("m/s^2", "g, gravity", default=STANDARD_GRAVITY)
-    load: float | None = quantity("N/m", LOAD, default=None)
+    load: float | None = quantity("N/m", LOAD, default=None, per_width=True)
 
     @property
     def spring(self) -> float:
-        """k_s, in N/m^2."""
+        """k_s, in N/m^2, or in N/m for a ball."""
         return self.stiffness
 
 
 Support = Fixed | DeadWeight | Suspended
 """Each answers for `mass` (kg/m), `weight` (N/m) and `spring` (N/m^2) that act on its motion, and for the
-`depth` (m) at which it is held: mass and spring of a fixed one are infinite, a moving one has no depth."""
+`depth` (m) at which it is held: mass and spring of a fixed one are infinite, a moving one has no depth.
+For a ball these are in kg, N and N/m."""
 SUPPORTS: dict[str, Any] = {cls.kind: cls for cls in (Fixed, DeadWeight, Suspended)}
 
 
@@ -114,6 +116,10 @@ class Run:
 
     def __post_init__(self) -> None:
         settle(self, "run")
+
+
+WEIGHED = ("support", "drive")
+"""Parts of a scene whose masses, loads and springs a line contact has per unit width."""
 
 
 @dataclass(frozen=True)
@@ -146,6 +152,8 @@ class Scene:
             if not isinstance(getattr(self, name), kind):
                 told = getattr(kind, "__name__", f"one of {kind}")
                 problems.append(problem(name, getattr(self, name), f"expected {told}"))
+        for name in () if problems else WEIGHED:
+            problems += misfits(name, getattr(self, name), self.indenter)
         problems = problems or lacks_mass(self.support, self.drive)
         if problems:
             raise SceneError(problems)

@@ -16,7 +16,7 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike
 
-from kvtheory.scene.units import expected, to_si
+from kvtheory.scene.units import WHOLE, expected, to_si
 
 LONGEST_SHOWN = 60
 """Characters of a key or of a value in a message."""
@@ -49,7 +49,8 @@ class Quantity:
     """What a field of a scene may hold: from `minimum`, or above it, to `maximum` and less than `below`.
 
     `needed` says that it must be given, unless the one named by `instead` is; `beside` names those that
-    it must be given with, and `excludes` those that it cannot be given with.
+    it must be given with, and `excludes` those that it cannot be given with. `per_width` says that a
+    line contact has it per unit width, in `unit`, and a ball as a whole: see `fitting`.
     """
 
     unit: str
@@ -62,6 +63,18 @@ class Quantity:
     instead: str = ""
     beside: tuple[str, ...] = ()
     excludes: tuple[str, ...] = ()
+    per_width: bool = False
+
+    def fitting(self, per_width: bool) -> "Quantity":
+        """Return what this is for an indenter that has it per unit width, or as a whole."""
+        if per_width or not self.per_width:
+            return self
+        return dataclasses.replace(self, unit=WHOLE[self.unit], per_width=False)
+
+    @property
+    def words(self) -> str:
+        """What it means, and whether it is per unit width."""
+        return f"{self.doc} per unit width" if self.per_width else self.doc
 
     def admits(self, value: ArrayLike) -> bool:
         """Whether every `value` (in SI) is finite and in range."""
@@ -167,17 +180,20 @@ def convert(value: Any, spec: Quantity) -> float:
 def settle(instance: Any, section: str) -> None:
     """Convert and check every quantity of a frozen dataclass; for use in ``__post_init__``.
 
-    A quantity that followed from others is taken out, to be found anew.
+    A quantity that followed from others is taken out, to be found anew. What was written with a unit
+    that tells whether it is per unit width is kept in `written`, for the scene to judge.
     """
-    specs = quantities(instance)
+    specs, written = quantities(instance), {}
     values = {name: getattr(instance, name) for name in specs}
     values = {name: None if isinstance(v, Derived) else v for name, v in values.items()}
     here = [name for name, value in values.items() if value is not None]
     problems = [missing(section, name, specs[name]) for name in required(type(instance), here)]
     for name, value in values.items():
         try:
-            number = None if value is None else convert(value, specs[name])
-            object.__setattr__(instance, name, number)
+            spec = written_as(value, specs[name])
+            object.__setattr__(instance, name, None if value is None else convert(value, spec))
+            if specs[name].per_width and _has_unit(value):
+                written[name] = value, spec.per_width
         except ValueError as error:
             problems.append(problem(f"{section}.{name}", value, str(error)))
     for name in here:
@@ -186,6 +202,40 @@ def settle(instance: Any, section: str) -> None:
             problems.append(problem(f"{section}.{name}", values[name], told))
     if problems:
         raise SceneError(problems)
+    if written:
+        object.__setattr__(instance, "written", written)
+
+
+def _has_unit(value: Any) -> bool:
+    return isinstance(value, str) or hasattr(value, "units")
+
+
+def written_as(value: Any, spec: Quantity) -> Quantity:
+    """Return the quantity that a value with a unit is one of: per unit width, or that of a ball.
+
+    >>> written_as("3 N", Quantity("N/m", "W, load", 0.0, True, per_width=True)).unit
+    'N'
+    """
+    if spec.per_width and _has_unit(value):
+        try:
+            to_si(value, WHOLE[spec.unit])
+        except ValueError:
+            return spec
+        return spec.fitting(False)
+    return spec
+
+
+def misfits(section: str, part: Any, indenter: Any) -> list[str]:
+    """Say what is written per unit width although the indenter is a ball, or the other way round."""
+    found, shape = [], f'indenter.shape = "{indenter.shape}"'
+    for name, (value, per_width) in getattr(part, "written", {}).items():
+        if per_width != indenter.per_width:
+            unit = quantities(part)[name].fitting(indenter.per_width).unit
+            what = "that of a ball" if indenter.per_width else "per unit width"
+            touches = "in a line" if indenter.per_width else "in a spot"
+            told = f"is {what}, but {shape} touches {touches}; expected {expected(unit)}"
+            found.append(problem(f"{section}.{name}", value, told))
+    return found
 
 
 def derive(instance: Any, section: str, name: str, value: float, of: str) -> None:

@@ -3,12 +3,12 @@
 from collections.abc import Callable
 
 from kvtheory.scene.foundations import Foundation, GeneralizedMaxwell
-from kvtheory.scene.indenters import Parabola, PowerLaw, Wedge
+from kvtheory.scene.indenters import Parabola, PowerLaw, Sphere, Wedge
 from kvtheory.scene.model import Scene
 
 Lacking = Callable[[Scene], str]
 
-CLOSED_FORMS = (Parabola, PowerLaw, Wedge)
+CLOSED_FORMS = (Parabola, PowerLaw, Wedge, Sphere)
 """Shapes whose steady sliding on a Kelvin-Voigt foundation is in closed form, with one root at most."""
 
 
@@ -19,6 +19,18 @@ def lacks_parabola(scene: Scene) -> str:
     ''
     """
     return _lacks_shape(scene, (Parabola,), "the parabola")
+
+
+def lacks_quadratic(scene: Scene) -> str:
+    """Say why a method that needs a parabola or a ball does not hold; nothing if it does."""
+    return _lacks_shape(scene, (Parabola, Sphere), "the parabola and the ball")
+
+
+def lacks_line(scene: Scene) -> str:
+    """Say why a method for line contacts does not hold for a scene; nothing if it does."""
+    if scene.indenter.per_width:
+        return ""
+    return f'holds for line contacts only so far, not for indenter.shape = "{scene.indenter.shape}"'
 
 
 def lacks_kelvin_voigt(scene: Scene) -> str:
@@ -57,7 +69,8 @@ def lacks_rigid_paper_model(scene: Scene) -> str:
 
 def lacks_asymptotes(scene: Scene) -> str:
     """Say why a method that needs closed forms of Kelvin-Voigt does not hold; nothing if it does."""
-    lacking = _lacks_shape(scene, CLOSED_FORMS, "the parabola, the power law and the wedge")
+    named = "the parabola, the power law, the wedge and the ball"
+    lacking = _lacks_shape(scene, CLOSED_FORMS, named)
     return lacking or lacks_kelvin_voigt(scene)
 
 
@@ -74,7 +87,7 @@ def lacks_closed_form(scene: Scene) -> str:
     ''
     """
     lacking = lacks_asymptotes(scene)
-    return lacking if lacks_parabola(scene) else ""
+    return lacking if lacks_quadratic(scene) else ""
 
 
 def lacks_quadrature(scene: Scene) -> str:
@@ -104,8 +117,9 @@ def require(lacks: Lacking, scene: Scene, what: str) -> None:
 
 
 def _instead(lacks: Lacking, scene: Scene) -> str:
-    """Say what can be done with a scene for which the paper's model is not enough."""
-    if lacks is not lacks_arms and not (lacks in PARABOLIC and lacks_paper_model(scene)):
+    """Say what can be done with a line contact for which the paper's model is not enough."""
+    asked = lacks is lacks_arms or (lacks in PARABOLIC and lacks_paper_model(scene))
+    if not asked or not scene.indenter.per_width:
         return ""
     if lacks_arms(scene):
         return (

@@ -4,7 +4,7 @@ import math
 from dataclasses import asdict, dataclass
 
 from kvtheory.scene.model import Scene
-from kvtheory.scene.requirements import lacks_parabola, require
+from kvtheory.scene.requirements import lacks_quadratic, require
 
 
 @dataclass(frozen=True)
@@ -12,12 +12,12 @@ class StaticState:
     """The indenter at rest, in SI, and the numbers of its motion: what errors are relative to.
 
     With the static depth delta_0, half length a_0 = sqrt(2 R delta_0) and load W_0 = (4/3) K a_0
-    delta_0: the drive number lambda = V tau/a_0 at the last velocity (NaN if the drive is a function),
-    the inertia number epsilon = M delta_0/(W_0 tau^2) and the support number kappa = k_s delta_0/W_0,
-    both infinite for a fixed indenter. A drive with a spring has three more, along x (fact F22):
-    eps_x = M_x a_0^2/(W_0 delta_0 tau^2), c_x a_0^2/(W_0 delta_0 tau) and kappa_x = k_x a_0^2/(W_0
-    delta_0), the last one infinite for a rigid drive. The other attributes are the products that
-    measure a quantity.
+    delta_0, of a ball (pi/2) K a_0^2 delta_0 sqrt(R'/R): the drive number lambda = V tau/a_0 at the last
+    velocity (NaN if the drive is a function), the inertia number epsilon = M delta_0/(W_0 tau^2) and the
+    support number kappa = k_s delta_0/W_0, both infinite for a fixed indenter. A drive with a spring has
+    three more, along x (fact F22): eps_x = M_x a_0^2/(W_0 delta_0 tau^2), c_x a_0^2/(W_0 delta_0 tau) and
+    kappa_x = k_x a_0^2/(W_0 delta_0), the last one infinite for a rigid drive. The other attributes are
+    the products that measure a quantity.
 
     Examples
     --------
@@ -45,12 +45,12 @@ class StaticState:
         Raises
         ------
         ValueError
-            If the indenter is not a parabola, for which alone these numbers suffice, or if the scene
-            leaves the range of double precision.
+            If the indenter is neither a parabola nor a ball, for which alone these numbers suffice, or if
+            the scene leaves the range of double precision.
         """
-        require(lacks_parabola, scene, "the static state in closed form")
+        require(lacks_quadratic, scene, "the static state in closed form")
         try:
-            found = _parabolic(scene)
+            found = _parabolic(scene) if scene.indenter.per_width else _round(scene)
         except ArithmeticError:
             found = None
         if found is None or not found.in_range:
@@ -109,7 +109,7 @@ class StaticState:
 
     @property
     def friction_force(self) -> float:
-        """W_0 delta_0/a_0, in N/m."""
+        """W_0 delta_0/a_0, in N/m (in N for a ball)."""
         return self.load * self.depth / self.half_length
 
     @property
@@ -119,7 +119,7 @@ class StaticState:
 
     @property
     def energy(self) -> float:
-        """W_0 delta_0, in J/m."""
+        """W_0 delta_0, in J/m (in J for a ball)."""
         return self.load * self.depth
 
     def named(self) -> dict[str, float]:
@@ -140,3 +140,14 @@ def _parabolic(scene: Scene) -> StaticState:
         return StaticState.at(scene, support.depth, a_0, 4 / 3 * K * a_0 * support.depth)
     a_0 = (1.5 * R * support.weight / K) ** (1 / 3)
     return StaticState.at(scene, a_0**2 / (2 * R), a_0, support.weight)
+
+
+def _round(scene: Scene) -> StaticState:
+    """Return the state of a ball: W_0 = pi K R delta_0^2 sqrt(R'/R) (theorem F20)."""
+    R, support = scene.indenter.radius, scene.support  # type: ignore[union-attr]
+    stiffness = math.pi * scene.foundation.stiffness * scene.indenter.stretch * R  # type: ignore[union-attr]
+    if support.depth is not None:
+        load = stiffness * support.depth**2
+        return StaticState.at(scene, support.depth, math.sqrt(2 * R * support.depth), load)
+    depth = math.sqrt(support.weight / stiffness)
+    return StaticState.at(scene, depth, math.sqrt(2 * R * depth), support.weight)

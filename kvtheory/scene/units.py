@@ -18,6 +18,8 @@ EXAMPLES = {
     "s": ("100 ms", "0.1 s", "5 min"),
     "m/s": ("100 mm/s", "0.1 m/s", "1 km/h"),
     "m/s^2": ("9.80665 m/s^2", "1620 mm/s^2"),
+    "kg": ("1 kg", "300 g"),
+    "N": ("3 N", "9.8 kN"),
     "kg/m": ("1 kg/mm", "1000 kg/m", "10 g/mm"),
     "N/m": ("10 N/mm", "9.8 kN/m"),
     "N/m^2": ("30 MN/m^2", "30 MPa", "30 N/mm^2"),
@@ -27,6 +29,9 @@ EXAMPLES = {
     "N/m^3": ("10 GN/m^3", "10 N/mm^3", "10 MPa/mm"),
 }
 """Ways to write a quantity of each SI unit that a scene uses; messages show the first one."""
+
+WHOLE = {"kg/m": "kg", "N/m": "N", "N/m^2": "N/m", "N*s/m^2": "N*s/m", "J/m": "J"}
+"""By the unit of what a line contact has per unit width, the unit in which a ball has it as a whole."""
 
 _METRES = {"km": 3, "m": 0, "cm": -2, "mm": -3, "um": -6, "µm": -6, "μm": -6, "nm": -9}
 _SECONDS = {"s": 0, "ms": -3, "us": -6, "µs": -6, "μs": -6}
@@ -49,6 +54,8 @@ USUAL = {
     "s": _SECONDS,
     "m/s": _ratios(_METRES, _SECONDS, 1),
     "m/s^2": _ratios(_METRES, _SECONDS, 2),
+    "kg": _KILOGRAMS,
+    "N": _NEWTONS,
     "kg/m": _ratios(_KILOGRAMS, _METRES, 1),
     "N/m": _ratios(_NEWTONS, _METRES, 1),
     "N/m^2": _ratios(_NEWTONS, _METRES, 2) | _PASCALS,

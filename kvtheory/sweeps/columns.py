@@ -5,9 +5,10 @@ NAME.max, NAME.min and NAME.time_of_max are of the transient; then there are tho
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
-from kvtheory.results import STEADY_UNITS, TRANSIENT_UNITS
+from kvtheory.results import STEADY_UNITS, TRANSIENT_UNITS, units_for
+from kvtheory.scene.indenters import Indenter
 from kvtheory.scene.quantities import SceneError, nearest, problem
 
 SERIES = {name: unit for name, unit in TRANSIENT_UNITS.items() if name != "time"}
@@ -38,8 +39,12 @@ class Column:
         return not self.unit
 
 
-def columns_of(names: Sequence[str] | str | None, *, series: bool) -> tuple[Column, ...]:
+def columns_of(
+    names: Sequence[str] | str | None, *, series: bool, indenter: Indenter | None = None
+) -> tuple[Column, ...]:
     """Return the columns by name; None is every steady quantity, or every series.
+
+    Their units are those of line contacts, unless the `indenter` is a ball.
 
     Raises
     ------
@@ -52,6 +57,9 @@ def columns_of(names: Sequence[str] | str | None, *, series: bool) -> tuple[Colu
     ['N/m', 's', '1']
     """
     known = _known(series)
+    if indenter is not None:
+        units = units_for(indenter, {name: column.unit for name, column in known.items()})
+        known = {name: replace(column, unit=units[name]) for name, column in known.items()}
     if names is None:
         names = list(SERIES if series else STEADY_UNITS)
     names = list(dict.fromkeys([names] if isinstance(names, str) else names))

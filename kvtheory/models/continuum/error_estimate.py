@@ -79,9 +79,7 @@ def errors(
     """
     moves = 0.0 if fixed else 1.0
     luck = FLOOR * rtol * (1.0 + np.asarray(whole[d_.SIZES :]))
-    at_times, ever = (
-        np.maximum(MARGIN * np.asarray(of[: d_.SIZES]), luck) for of in (here, whole)
-    )
+    at_times, ever = (np.maximum(MARGIN * np.asarray(of[: d_.SIZES]), luck) for of in (here, whole))
     edges = at_times[d_.EDGES] + here[d_.EDGE_ROUNDING]
     depth = moves * ever[d_.DEPTH]
     spring = {

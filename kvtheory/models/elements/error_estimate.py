@@ -1,10 +1,10 @@
 """How wrong a run may be: by runs with half as many elements, which are placed in two ways."""
 
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 
-from kvtheory.models.elements.law import Array
 from kvtheory.models.elements.model import Model, span
 from kvtheory.models.elements.schemes import DEFAULT
 from kvtheory.results import TRANSIENT_UNITS, Certificate
@@ -30,7 +30,7 @@ RELATIVE_TO = (
 )
 UNKNOWN = Certificate("none", "no error was estimated, since certify=False", {}, AT_REST)
 
-Rows = dict[str, Array]
+Rows = dict[str, Any]
 DOUBTS = ("peak_doubt", "edge_doubt")
 COLUMNS = (*TRANSIENT_UNITS, *DOUBTS)
 """Of a report: a time series, and by how much the pressure differs between the elements beside its peak,

@@ -3,8 +3,8 @@
 Each function is the form for floating-point numbers of an expression proved in `derivations`, with
 l = l_r/a >= 0 (retardation length over half length) and q = x_TE/a in (0, 1] (trailing edge over half
 length); for a power law h = |x|^n/(n L^(n-1)) with Q = q^(n-1), and for the wedge, which is n = 1, with
-q = max(0, 1 - l) and Q = 1/(q + l). Floats and arrays alike; an asymptote for high velocity has no error
-at l = 0.
+q = max(0, 1 - l) and Q = 1/(q + l); for a ball with theta_b = arctan(1/l) and its tail T_b. Floats and
+arrays alike; an asymptote for high velocity has no error at l = 0.
 """
 
 from typing import TypeVar
@@ -28,6 +28,9 @@ PEAK_DRIVE_NUMBER = 1.6002702943554925
 
 PEAK_FRICTION = 0.5072653568498905
 """mu (K R^2/W)^(1/3) at that maximum; theorem F3-values."""
+
+BALL_CROSSING = 0.5890486225480862
+"""l where the asymptotes of mu meet; theorem F20-crossing."""
 
 
 def trailing_edge_ratio(l: Value) -> Value:
@@ -337,10 +340,10 @@ def friction_rise(q: Value, n_x: Value, S_s: Value) -> Value:
     return S_s + (n_x * (q + 1) / (2 * q) + (q + 1) * (-q * q + 4 * q - 1) / (4 * q * (q + (1 - q) * (1 - q)))) / (n_x + 1)
 
 
-def onset_spread(T_z: Value, g_c: Value, S_c: Value, h_c: Value, e_c: Value) -> Value:
-    """Return T_z^2 times the difference of both Omega; theorem F22-critical."""
+def onset_square(T_z: Value, g_c: Value, S_c: Value, h_c: Value, e_c: Value) -> Value:
+    """Return the square of T_z^2 times the difference of both Omega; theorem F22-critical."""
     m_c = -S_c * T_z * g_c + h_c
-    return np.sqrt(-4 * T_z * e_c * h_c + m_c * m_c)
+    return -4 * T_z * e_c * h_c + m_c * m_c
 
 
 def onset_sum(T_z: Value, g_c: Value, S_c: Value, h_c: Value, e_c: Value) -> Value:
@@ -362,3 +365,91 @@ def onset_lag_of_lower(T_z: Value, g_c: Value, S_c: Value, h_c: Value, s_c: Valu
 def onset_stiffness(T_x: Value, S_c: Value, Omega: Value, p_p: Value) -> Value:
     """Return the critical S_x at a squared frequency and its lag; theorem F22-falling."""
     return Omega * (T_x + (S_c - p_p) / (Omega + S_c * p_p))
+
+
+def ball_tail(l: Value, theta_b: Value) -> Value:
+    """Return T from theta = arctan(1/l); theorem F20-load."""
+    return -2 * l * l * l - 10 * l / 3 + 2 * theta_b * (l * l + 1) * (l * l + 1)
+
+
+def ball_load_factor(l: Value, T_b: Value) -> Value:
+    """Return W/(K delta a^2) of a ball; theorem F20-load."""
+    return T_b / 4 + 4 * l / 3 + np.pi / 4
+
+
+def ball_friction_force_factor(l: Value, T_b: Value) -> Value:
+    """Return F R/(K delta a^3); theorem F20."""
+    return l * (T_b + np.pi) / 4
+
+
+def ball_friction_coefficient_factor(l: Value, T_b: Value) -> Value:
+    """Return mu R/a of a ball; theorem F20."""
+    return l * (T_b + np.pi) / (T_b + 16 * l / 3 + np.pi)
+
+
+def ball_loss(l: Value, T_b: Value) -> Value:
+    """Return D, what leaves the contact; theorem F20-loss."""
+    return (-T_b * l / 2 + 2 / 3) / (l * l + 1)
+
+
+def ball_dissipated_in_contact(l: Value, T_b: Value) -> Value:
+    """Return the part of F V dissipated in the contact; theorem F20-energy."""
+    D_b = ball_loss(l, T_b)
+    return -8 * D_b * l / (T_b + np.pi) + 1
+
+
+def ball_scaled_load(s: Value, lam: Value, T_b: Value) -> Value:
+    """Return f = W/W_0 at s = a/a_0, lam = V tau/a_0; theorem F20-balance."""
+    return s * s * s * (8 * lam / (3 * np.pi) + s * (T_b / np.pi + 1) / 2)
+
+
+def ball_scaled_load_slope(s: Value, lam: Value, theta_b: Value) -> Value:
+    """Return df/d ln s at fixed lam; theorem F20-balance."""
+    return 4 * s * s * (lam * s + np.pi * s * s / 2 + theta_b * (lam * lam + s * s)) / np.pi
+
+
+def ball_scaled_load_curvature(s: Value, lam: Value, theta_b: Value) -> Value:
+    """Return d2f/d(ln s)2 at fixed lam; theorem F20-balance."""
+    return 8 * s * s * (2 * lam * s + np.pi * s * s + theta_b * (lam * lam + 2 * s * s)) / np.pi
+
+
+def ball_crossing_at_load(kappa: Value) -> Value:
+    """Return V tau/a_0 where they meet, at a load; theorem F20-crossing."""
+    return 3 * np.pi * np.sqrt(np.sqrt(2 * kappa + 2)) / 16
+
+
+def ball_friction_rise(l: Value, T_b: Value) -> Value:
+    """Return what has the sign of dmu/dV under a dead weight; theorem F20-peak."""
+    D_b = ball_loss(l, T_b)
+    w_b = ball_load_factor(l, T_b)
+    return -5 * l * (4 / 3 - 2 * D_b) / 4 + w_b * (-8 * D_b * l / (T_b + np.pi) + 1)
+
+
+def ball_error_l1(l: Value, T_b: Value) -> Value:
+    """Return L1/mu - 1; theorem F20-error-L1."""
+    return 4 * l / (3 * T_b / 4 + 3 * np.pi / 4)
+
+
+def ball_error_l2(l: Value, T_b: Value) -> Value:
+    """Return L2/mu - 1, fixed depth; theorem F20-error-L2."""
+    return -T_b / (T_b + np.pi) + 3 * np.pi / (16 * l)
+
+
+def ball_error_load_low(l: Value, T_b: Value) -> Value:
+    """Return load for l -> 0 over W, - 1; theorem F20-error-load-low."""
+    return (-T_b - 16 * l / 3 + np.pi) / (T_b + 16 * l / 3 + np.pi)
+
+
+def ball_error_load_high(l: Value, T_b: Value) -> Value:
+    """Return load for l -> oo over W, - 1; theorem F20-error-load-high."""
+    return (-T_b - np.pi) / (T_b + 16 * l / 3 + np.pi)
+
+
+def ball_error_friction_low(l: Value, T_b: Value) -> Value:
+    """Return friction force for l -> 0 over F, - 1; theorem F20-error-friction-low."""
+    return (np.pi - T_b) / (T_b + np.pi)
+
+
+def ball_error_friction_high(l: Value, T_b: Value) -> Value:
+    """Return friction force for l -> oo over F, - 1; theorem F20-error-friction-high."""
+    return -T_b / (T_b + np.pi)

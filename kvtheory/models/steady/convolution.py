@@ -317,7 +317,7 @@ def _state(sliding: Sliding, velocity: float, retardation_time: float) -> Steady
         # K u = -(memory) at the trailing edge, unless the pressure jumps there.
         rest = -float(left.sum()) / sliding.K if x_te > 0.0 else depth
         work += 0.5 * sliding.K * rest * rest
-    values = {
+    values: dict[str, Any] = {
         "depth": depth,
         "half_length": a,
         "retardation_length": abs(velocity) * retardation_time,

@@ -10,9 +10,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from kvtheory.models.steady import asymptotes, exact, power_law, viscoelastic
+from kvtheory.models.steady import asymptotes, ball, ball_asymptotes, exact, power_law, viscoelastic
 from kvtheory.models.steady.power_law_contact import shape_of
-from kvtheory.results import STEADY_UNITS, Certificate, SteadyState
+from kvtheory.models.steady.spots import stretch_of
+from kvtheory.results import STEADY_UNITS, Certificate, SteadyState, units_for
 from kvtheory.scene.broadcasting import values as broadcast
 from kvtheory.scene.foundations import AnyFoundation
 from kvtheory.scene.model import Scene
@@ -26,6 +27,7 @@ FAMILIES: dict[str, tuple[ModuleType, Callable[[Values], tuple[Array, ...]]]] = 
     "parabola": (exact, lambda values: (values["indenter.radius"],)),
     "power-law": (power_law, shape_of),
     "wedge": (power_law, shape_of),
+    "sphere": (ball, lambda values: (values["indenter.radius"], stretch_of(values))),
 }
 """By the name of the shape, its closed forms and what they take first; `kvtheory.scene.requirements`
 knows the same names."""
@@ -38,12 +40,26 @@ ROUNDING = 64 * 2.0**-52
 """Of an asymptote and of its error, which are of some twenty operations each."""
 
 
+def asymptotes_of(scene: Scene) -> ModuleType:
+    """Return the asymptotes that hold for a scene, and their errors."""
+    return asymptotes if scene.indenter.per_width else ball_asymptotes
+
+
 def solve_exact(scene: Scene, values: Values) -> SteadyState:
     """Evaluate the closed forms on whole arrays."""
     if lacks_kelvin_voigt(scene):
-        return _solve_on(scene.foundation, values)
-    method, parameters = FAMILIES[scene.indenter.shape]
-    return _solve(method, values, *parameters(values))
+        state = _solve_on(scene.foundation, values)
+    else:
+        method, parameters = FAMILIES[scene.indenter.shape]
+        state = _solve(method, values, *parameters(values))
+    return _in_units(scene, state)
+
+
+def _in_units(scene: Scene, state: SteadyState) -> SteadyState:
+    """Return a state that says in which units it is: per unit width, or those of a ball."""
+    if scene.indenter.per_width:
+        return state
+    return replace(state, units=units_for(scene.indenter, STEADY_UNITS))
 
 
 def _solve_on(foundation: AnyFoundation, values: Values) -> SteadyState:
@@ -127,6 +143,7 @@ def _integrated(scene: Scene, values: Mapping[str, Any]) -> SteadyState:
 
 def solve_asymptote(scene: Scene, values: Values) -> SteadyState:
     """Evaluate the asymptote of the regime in which each velocity lies, with its error in closed form."""
+    asymptotes = asymptotes_of(scene)
     truth, limits = solve_exact(scene, values), asymptotes.limits(values)
     V, tau = values["drive.velocity"], values["foundation.retardation_time"]
     slow = np.abs(V) <= asymptotes.critical_velocity(limits, tau)
@@ -134,14 +151,16 @@ def solve_asymptote(scene: Scene, values: Values) -> SteadyState:
     with np.errstate(divide="ignore", invalid="ignore"):  # at V = 0 the high one is not chosen
         low, high = (asymptotes.quantities(limits, regime, side) for regime in ("low", "high"))
         lows, highs = (asymptotes.errors(limits, regime, truth) for regime in ("low", "high"))
-    found = {name: plain(np.where(slow, low[name], high[name])) for name in STEADY_UNITS}
+    found: dict[str, Any] = {
+        name: plain(np.where(slow, low[name], high[name])) for name in STEADY_UNITS
+    }
     wrong = {name: np.abs(np.where(slow, lows[name], highs[name])) for name in STEADY_UNITS}
     certificate = Certificate(
         "proved",
         f"closed forms of the asymptotes' errors (derivations {asymptotes.PROVED})",
         {name: plain(error + ROUNDING * (1.0 + error)) for name, error in wrong.items()},
     )
-    return SteadyState(**found, model="asymptote", certificate=certificate)
+    return _in_units(scene, SteadyState(**found, model="asymptote", certificate=certificate))
 
 
 METHODS: dict[str, Callable[[Scene, Values], SteadyState]] = {

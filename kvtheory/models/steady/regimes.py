@@ -7,9 +7,14 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import elementwise
 
-from kvtheory.models.steady import asymptotes
-from kvtheory.models.steady.methods import plain, solve_exact
-from kvtheory.results import AsymptoteLine, AsymptoteReport, Certificate
+from kvtheory.models.steady.methods import asymptotes_of, plain, solve_exact
+from kvtheory.results import (
+    STEADY_UNITS,
+    AsymptoteLine,
+    AsymptoteReport,
+    Certificate,
+    units_for,
+)
 from kvtheory.scene.model import Scene
 
 Array = NDArray[np.float64]
@@ -80,6 +85,31 @@ OF_POWER_LAW = {
     ),
 }
 """Their formulas; n = 1 for a wedge, W = M g is the load of a dead weight."""
+OF_BALL = {
+    "fixed": (
+        "C V/(R K)",
+        "(3 pi/16) a/R",
+        "pi K R delta^2",
+        "(4/3) C V delta a",
+        "pi C V delta^2",
+        "(pi/4) C V delta a^2/R",
+    ),
+    "dead-weight": (
+        "C V/(R K)",
+        "(3 pi/16) a/R, a^3 = 3 R W/(2 C V)",
+        "delta_0 = (W/(pi K R))^(1/2)",
+        "a^2/(2 R), a as above",
+    ),
+    "suspended": (
+        "C V/(R K)",
+        "(3 pi/16) a/R, a^3 = 3 R (M g + k_s delta_0)/(2 C V)",
+        "delta_0 = (M g/(pi K R))^(1/2)",
+        "a^2/(2 R), a as above",
+        "M g",
+        "M g + k_s delta_0",
+    ),
+}
+"""With R' across, K and C are multiplied by sqrt(R'/R) where W stands beside them or alone."""
 
 
 class Row(NamedTuple):
@@ -102,7 +132,7 @@ def rows(shape: str, support: str) -> list[Row]:
     names = ["L1", "L2"]
     names += [f"{name.removesuffix('_force')}, {regime} V" for name, regime in places[2:]]
     parabola = shape == "parabola"
-    formulas = (OF_PARABOLA if parabola else OF_POWER_LAW)[support]
+    formulas = {"parabola": OF_PARABOLA, "sphere": OF_BALL}.get(shape, OF_POWER_LAW)[support]
     equations = EQUATIONS[support] if parabola else [None] * len(formulas)
     return [
         Row(name, *place, equation, formula)
@@ -113,6 +143,7 @@ def rows(shape: str, support: str) -> list[Row]:
 def report(scene: Scene, values: Values, tolerance: float) -> AsymptoteReport:
     """Make the report of `kvtheory.asymptotes`, which documents it."""
     V, tau = values["drive.velocity"], values["foundation.retardation_time"]
+    asymptotes = asymptotes_of(scene)
     limits = asymptotes.limits(values)
     critical = asymptotes.critical_velocity(limits, tau)
     truth, side = solve_exact(scene, values), np.where(V < 0.0, -1.0, 1.0)
@@ -148,6 +179,7 @@ def report(scene: Scene, values: Values, tolerance: float) -> AsymptoteReport:
         lines=tuple(lines),
         model="asymptote",
         certificate=Certificate("proved", STATEMENT.format(asymptotes.PROVED), {}),
+        units=units_for(scene.indenter, STEADY_UNITS),
     )
 
 
@@ -162,6 +194,7 @@ def _range_edge(scene: Scene, values: Values, critical: Array, row: Row, toleran
     def excess(decades: Array, *arrays: Array) -> Array:
         point = dict(zip(keys, arrays[:-1], strict=True))
         point["drive.velocity"] = arrays[-1] * 10.0**decades
+        asymptotes = asymptotes_of(scene)
         truth, limits = solve_exact(scene, point), asymptotes.limits(point)
         with np.errstate(divide="ignore", invalid="ignore"):
             found = asymptotes.errors(limits, row.regime, truth)

@@ -1,0 +1,331 @@
+r"""Steady sliding of a ball on independent elements: theorem F20.
+
+The strips along x do not know of each other: each is a parabola of depth delta - y**2/(2 R'), and the ball is
+their sum. Lengths along x are scaled by the half length a, those across by the half width a sqrt(R'/R), so
+that another radius across only scales y. ``theta`` is arctan(1/l), ``T`` and ``D`` are integrals of positive
+functions, by which every result is a sum without cancellation.
+"""
+
+from functools import partial
+
+import sympy as sp
+
+from .record import Derivation
+from .step import Proof
+from .symbols import (
+    aside,
+    ball_angle,
+    ball_coefficient,
+    ball_cross,
+    ball_friction,
+    ball_friction_high,
+    ball_friction_low,
+    ball_l1,
+    ball_l2,
+    ball_lam_cross,
+    ball_load,
+    ball_load_high,
+    ball_load_low,
+    ball_loss,
+    ball_scaled,
+    ball_scaled_s,
+    ball_scaled_ss,
+    ball_share,
+    ball_slip,
+    ball_tail,
+    kappa,
+    l,
+    lam,
+    s,
+)  # fmt: skip
+
+SECTION = "Ball"
+
+y, theta, T, D = aside, ball_angle, ball_tail, ball_loss
+w, phi, m = ball_load, ball_friction, ball_coefficient
+PI = sp.pi
+ANGLE = sp.atan(1 / l)
+EDGE = sp.sqrt(1 + l**2 - y**2)
+"""(x_TE + l_r)/a of a strip."""
+TAIL = 2 * (1 + l**2) ** 2 * theta - 2 * l**3 - sp.Rational(10, 3) * l
+LOSS = (sp.Rational(2, 3) - l * T / 2) / (1 + l**2)
+LOAD = (PI + sp.Rational(16, 3) * l + T) / 4
+FRICTION = l * (PI + T) / 4
+COEFFICIENT = l * (PI + T) / (PI + sp.Rational(16, 3) * l + T)
+HIGH = 3 * PI / 16
+UNIT = (y, 0, 1)
+
+_theorem = partial(Proof, equation=None, section=SECTION)
+
+
+def derive() -> tuple[Derivation, ...]:
+    """Prove F20 and what follows from it."""
+    return (
+        *(_load(), _tail(), _loss(), _friction(), _energy(), _limits(), _high()),
+        *(_balance(), _crossing(), _slip(), *_errors()),
+    )
+
+
+def _angle(proof: Proof) -> None:
+    proof.define(theta, ANGLE, r"half the angle of the contact as seen from $-l_{\mathrm{r}}$")
+
+
+def _sums(proof: Proof) -> None:
+    """State what every later theorem uses."""
+    _angle(proof)
+    proof.recall("F20-load", T, TAIL)
+    proof.recall("F20-load", w, LOAD)
+
+
+def _load() -> Derivation:
+    proof = _theorem("F20-load", title="Ball: load", text=_STRIPS, uses=("F21-load",))
+    width = 1 - y**2
+    strip = sp.Rational(4, 3) * (width ** sp.Rational(3, 2) + EDGE**3 - l**3)
+    primitive = sp.Rational(4, 3) * (
+        y * (5 - 2 * y**2) * sp.sqrt(width) / 8
+        + sp.Rational(3, 8) * sp.asin(y)
+        + y * (5 * (1 + l**2) - 2 * y**2) * EDGE / 8
+        + sp.Rational(3, 8) * (1 + l**2) ** 2 * sp.atan(y / EDGE)
+        - l**3 * y
+    )
+    closed = PI / 4 + l / 2 - l**3 / 2 + (1 + l**2) ** 2 * ANGLE / 2
+    proof.integral(w, strip, UNIT, primitive, "F21-load of each strip, both sides", value=closed)
+    _angle(proof)
+    proof.define(T, TAIL, "what vanishes at high velocity")
+    proof.equal(w, LOAD, r"$W/(K \delta a^2 \sqrt{R'/R})$")
+    return proof.done(w, LOAD)
+
+
+_STRIPS = (
+    r"A strip at $\tilde y$, in units of the half width $a \sqrt{R'/R}$, has the half length $a \sqrt{1 - "
+    r"\tilde y^2}$; by F21-load it carries $\frac{2}{3} K \delta a [(1 - \tilde y^2)^{3/2} + (1 - \tilde "
+    r"y^2 + l^2)^{3/2} - l^3]$ per unit width. The contact is the disc of the contact at rest, ahead of the "
+    r"curve $x_{\mathrm{TE}}/a = \sqrt{1 - \tilde y^2 + l^2} - l$ on which the pressure vanishes."
+)
+
+
+def _tail() -> Derivation:
+    proof = _theorem("F20-tail", title="Ball: the closed form without cancellation", text=_POSITIVE)
+    positive = 2 * l * (1 - y**2) ** 2 / (l**2 + y**2)
+    primitive = 2 * l * (y**3 / 3 - (2 + l**2) * y) + 2 * (1 + l**2) ** 2 * sp.atan(y / l)
+    closed = TAIL.subs(theta, ANGLE)
+    proof.integral(T, positive, UNIT, primitive, "of a positive function", value=closed)
+    proof.leading_order(T, sp.Rational(16, 15) / l, l, sp.oo, "at high velocity", eps=1 / l)
+    return proof.done(T, closed)
+
+
+_POSITIVE = (
+    r"For $l \gg 1$ the terms of $\tilde T$ grow as $l^3$ and cancel; the integral does not. It falls with "
+    r"$l$, from $\pi$ at $l = 0$ to zero."
+)
+
+
+def _loss() -> Derivation:
+    proof = _theorem(
+        "F20-loss", title="Ball: what leaves the contact", text=_FALLS, uses=("F20-load",)
+    )
+    positive = y**2 * (1 - y**2) / (l**2 + y**2)
+    primitive = -(y**3) / 3 + (1 + l**2) * y - l * (1 + l**2) * sp.atan(y / l)
+    closed = sp.Rational(2, 3) + l**2 - l * (1 + l**2) * ANGLE
+    proof.integral(D, positive, UNIT, primitive, "of a positive function", value=closed)
+    proof.define(T, TAIL.subs(theta, ANGLE), "F20-load")
+    proof.equal(D, LOSS, "from the same tail")
+    proof.equal(sp.Derivative(TAIL.subs(theta, ANGLE), l), -8 * D, "so the tail falls",
+                left=r"\frac{d \tilde T}{d l}")  # fmt: skip
+    proof.leading_order(D, sp.Rational(2, 15) / l**2, l, sp.oo, "at high velocity", eps=1 / l)
+    return proof.done(D, LOSS)
+
+
+_FALLS = r"$\tilde D$ is positive and less than $\frac{2}{15 l^2}$, for $l^2 + \tilde y^2 > l^2$."
+
+
+def _friction() -> Derivation:
+    proof = _theorem("F20", title="Ball: friction", text=_BALL, uses=("F20-load", "F21-steady"))
+    _sums(proof)
+    depth = sp.Symbol("I_b", positive=True)
+    proof.integral(depth, 2 * (1 - y**2), UNIT, 2 * y - 2 * y**3 / 3, "mean depth of the strips")
+    proof.define(
+        phi, l * (w - l * depth), r"$F = \frac{l_{\mathrm{r}}}{R} (W - C V \delta)$ of each strip"
+    )
+    proof.equal(phi, FRICTION, r"$F R/(K \delta a^3 \sqrt{R'/R})$")
+    proof.define(m, phi / w, r"$\mu R/a$")
+    proof.equal(m, COEFFICIENT, "friction coefficient")
+    return proof.done(m, COEFFICIENT)
+
+
+_BALL = (
+    r"The forces of a ball: $W = \sqrt{R'/R}\, K \delta a^2 \tilde w$ and $F = \frac{a}{R} \sqrt{R'/R}\, K "
+    r"\delta a^2 \tilde \varphi$ depend, like $\mu = \frac{a}{R} \tilde m$, on $l = V \tau/a$ alone; of "
+    r"$R'$, the radius across, only the scale depends, and not $\mu$ at all at a given depth."
+)
+
+
+def _energy() -> Derivation:
+    proof = _theorem("F20-energy", title="Ball: energy dissipated inside the contact", text=_SHARE,
+                     uses=("energy-any-shape", "F20-loss"))  # fmt: skip
+    left_behind = sp.Symbol("J_b", positive=True)
+    primitive = (1 + 2 * l**2) * y - y**3 / 3 - l * (y * EDGE + (1 + l**2) * sp.atan(y / EDGE))
+    closed = sp.Rational(2, 3) + l**2 - l * (1 + l**2) * ANGLE
+    proof.integral(left_behind, (EDGE - l) ** 2, UNIT, primitive,
+                   r"$u_{\mathrm{TE}}^2$ of each strip, in units of $(l_{\mathrm{r}} a/R)^2$",
+                   value=closed)  # fmt: skip
+    proof.define(D, closed, "F20-loss")
+    proof.equal(left_behind, D, "the same integral")
+    proof.recall("F20", phi, FRICTION)
+    share = 1 - 8 * l * D / (PI + T)
+    proof.define(ball_share, 1 - 2 * l**2 * D / phi, r"the rest of $F V$, which relaxes behind")
+    proof.equal(ball_share, share, "fraction inside")
+    return proof.done(ball_share, share)
+
+
+_SHARE = (
+    r"Of the power $F V$ the surface behind a strip takes $\frac{K}{2} V u_{\mathrm{TE}}^2$ per unit width, "
+    r"$u_{\mathrm{TE}} = \frac{l_{\mathrm{r}}}{R} x_{\mathrm{TE}}$. The fraction inside the contact is 1 in "
+    "both limits."
+)
+
+
+def _limits() -> Derivation:
+    proof = _theorem("F20-low", title="Ball: low velocity", text=_LOW, uses=("F20",))
+    _sums(proof)
+    proof.recall("F20", m, COEFFICIENT)
+    near = {"variable": l, "point": 0, "eps": l}
+    proof.leading_order(w, PI / 2, reason="load at rest", **near)
+    proof.leading_order(m, l, reason="friction coefficient: that of the cylinder", **near)
+    return proof.done(m, l)
+
+
+_LOW = (
+    r"$\mu \to \frac{C V}{K R}$, which is Eq. (42): neither load nor shape across matter. At rest $W = "
+    r"\pi K R \delta^2 \sqrt{R'/R}$."
+)
+
+
+def _high() -> Derivation:
+    proof = _theorem("F20-high", title="Ball: high velocity", text=_FAST, uses=("F20",))
+    _sums(proof)
+    proof.recall("F20", m, COEFFICIENT)
+    far = {"variable": l, "point": sp.oo, "eps": 1 / l}
+    proof.leading_order(w, sp.Rational(4, 3) * l, reason=r"$W \to C V$ times the mean depth", **far)
+    proof.leading_order(m, HIGH, reason=r"$\mu \to \frac{3 \pi}{16} \frac{a}{R}$", **far)
+    return proof.done(m, HIGH)
+
+
+_FAST = (
+    r"At a given load $W = \frac{4}{3} C V \delta a \sqrt{R'/R}$ makes $a^3 \sim 1/V$: the friction "
+    r"coefficient of a ball falls as $V^{-1/3}$, where that of a cylinder falls as $V^{-1/2}$."
+)
+
+
+def _balance() -> Derivation:
+    proof = _theorem("F20-balance", title="Ball: one depth for a weight", text=_BALANCE,
+                     uses=("F20-load", "F20-loss"))  # fmt: skip
+    angle, tail = sp.atan(s / lam), TAIL.subs({l: lam / s})
+    whole = 2 * s**4 * LOAD / PI
+    scaled = s**3 * (s * (1 + T / PI) / 2 + 8 * lam / (3 * PI))
+    slope = 4 * s**2 * (PI * s**2 / 2 + s * lam + (s**2 + lam**2) * theta) / PI
+    curve = 8 * s**2 * (PI * s**2 + 2 * s * lam + (2 * s**2 + lam**2) * theta) / PI
+    proof.define(l, lam / s, r"$\lambda = V \tau/a_0$, $s = a/a_0$")
+    proof.define(theta, angle, "F20-load")
+    proof.define(T, tail, "F20-load")
+    proof.define(ball_scaled, whole, r"$W/W_0$, $W_0 = \pi K R \delta_0^2 \sqrt{R'/R}$")
+    proof.equal(ball_scaled, scaled, "a sum of positive terms")
+    proof.define(ball_scaled_s, slope, r"$d \tilde f/d \ln s$ at fixed $\lambda$")
+    of_s = scaled.subs(T, tail).subs(theta, angle)
+    proof.equal(s * sp.diff(of_s, s), ball_scaled_s, "a deeper ball carries more",
+                left=r"s \frac{\partial \tilde f}{\partial s}")  # fmt: skip
+    proof.define(ball_scaled_ss, curve, r"$d^2 \tilde f/d (\ln s)^2$")
+    of_slope = slope.subs(theta, angle)
+    proof.equal(s * sp.diff(of_slope, s), ball_scaled_ss, "once more",
+                left=r"s \frac{\partial \tilde f'}{\partial s}")  # fmt: skip
+    proof.define(D, LOSS.subs(l, lam / s), "F20-loss")
+    gain = 2 * s**4 * ((PI + T) / 4 + 2 * lam / s * D) / PI
+    proof.equal(ball_scaled_s - 3 * ball_scaled, gain, "more than the damper alone")
+    return proof.done(ball_scaled, scaled)
+
+
+_BALANCE = (
+    r"On a spring of support number $\kappa$ the balance is $\tilde f + \kappa (s^2 - 1) = 1$. As $d \ln "
+    r"\tilde f/d \ln s$ is above 3 and below 4, there is one depth, and its relative error is less than that "
+    "of the load."
+)
+
+
+def _crossing() -> Derivation:
+    proof = _theorem("F20-crossing", title="Ball: critical velocity", text=_CROSSING,
+                     uses=("F20-low", "F20-high"))  # fmt: skip
+    proof.define(ball_cross, HIGH, r"$l = \tilde m$ of high velocity, at a given depth")
+    held = HIGH * (2 * (1 + kappa)) ** sp.Rational(1, 4)
+    lifted = 3 * PI * (1 + kappa) / (8 * lam)
+    reason = r"$\lambda = \frac{3 \pi}{16} s$ with $s^3 = \frac{3 \pi (1 + \kappa)}{8 \lambda}$"
+    proof.root(lam**3 - HIGH**3 * lifted, lam, held, reason, name=ball_lam_cross)
+    return proof.done(ball_lam_cross, held)
+
+
+_CROSSING = (
+    r"The asymptotes $\mu = V \tau/R$ and $\mu = \frac{3 \pi}{16} \frac{a}{R}$ meet at $V^{*} \tau = \frac{3 "
+    r"\pi}{16} a$ for a given depth; at a given load ($\kappa = 0$) or on a spring at $V^{*} \tau = \tilde "
+    r"\lambda^{*} a_0$."
+)
+
+
+def _slip() -> Derivation:
+    proof = _theorem("F20-peak", title="Ball: friction maximum of a dead weight", text=_PEAK,
+                     uses=("F20", "F20-loss"))  # fmt: skip
+    tail = TAIL.subs(theta, ANGLE)
+    load, friction = LOAD.subs(T, tail), FRICTION.subs(T, tail)
+    proof.define(theta, ANGLE, "F20-load")
+    proof.define(T, TAIL, "F20-load")
+    proof.define(D, LOSS, "F20-loss")
+    proof.define(w, LOAD, "F20-load")
+    proof.define(phi, FRICTION, "F20")
+    gain = l * (sp.Rational(4, 3) - 2 * D)
+    proof.equal(l * sp.diff(load, l), gain, "a faster ball carries more",
+                left=r"l \frac{d \tilde w}{d l}")  # fmt: skip
+    proof.equal(l * sp.diff(friction, l), phi - 2 * l**2 * D, "and rubs more",
+                left=r"l \frac{d \tilde \varphi}{d l}")  # fmt: skip
+    slip = (1 - 8 * l * D / (PI + T)) * w - sp.Rational(5, 4) * gain
+    proof.define(ball_slip, (phi - 2 * l**2 * D) * w / phi - sp.Rational(5, 4) * gain,
+                 r"$\tilde w \frac{d}{d \ln l} \ln (\tilde \varphi \tilde w^{-5/4})$, for $\mu = F/W$ "
+                 r"and $F \sim a^5 \tilde \varphi$")  # fmt: skip
+    proof.equal(ball_slip, slip, "has the sign of the slope of the friction coefficient")
+    return proof.done(ball_slip, slip)
+
+
+_PEAK = (
+    r"At a given load $a \sim \tilde w^{-1/4}$, and $V \tau = a l$ grows with $l$. The friction coefficient "
+    r"rises where $\tilde E > 0$: at low velocity, where $\tilde E \to \frac{\pi}{2}$; and it falls at high "
+    r"velocity, where $\tilde E \to - \frac{l}{3}$. The root of $\tilde E$ in between is $l = 1.842345$, "
+    "beside the $\\sqrt{3}$ of a cylinder (F3)."
+)
+
+
+def _errors() -> tuple[Derivation, ...]:
+    g, whole = (PI + T) / 4, PI + sp.Rational(16, 3) * l + T
+    rows: tuple[tuple[str, str, sp.Symbol, sp.Expr, sp.Expr, str], ...] = (
+        ("L1", "low velocity", ball_l1, l / COEFFICIENT, 4 * l / (3 * g),
+         r"It grows with $l$, for $\tilde T$ falls"),
+        ("L2", "high velocity, given depth", ball_l2, HIGH / COEFFICIENT,
+         HIGH / l - T / (PI + T),
+         r"It is positive and falls with $l$, for $\tilde T < \frac{16}{15 l}$ and $- \tilde T' = 8 \tilde D "
+         r"< \frac{16}{15 l^2}$, and $\frac{16}{15 \pi} < \frac{3 \pi}{16}$"),
+        ("load-low", "load at low velocity, given depth", ball_load_low, PI / 2 / LOAD,
+         -(sp.Rational(16, 3) * l - (PI - T)) / whole, r"$\tilde w$ grows with $l$, so that it does, too"),
+        ("load-high", "load at high velocity, given depth", ball_load_high, sp.Rational(4, 3) * l / LOAD,
+         -(PI + T) / whole, r"It tends to zero, for $\tilde T$ falls"),
+        ("friction-low", "friction force at low velocity, given depth", ball_friction_low,
+         PI / 2 * l / FRICTION, (PI - T) / (PI + T), r"It grows with $l$, for $\tilde T$ falls"),
+        ("friction-high", "friction force at high velocity, given depth", ball_friction_high,
+         PI / 4 * l / FRICTION, -T / (PI + T), r"It tends to zero with $\tilde T$"),
+    )  # fmt: skip
+    return tuple(_error(*row) for row in rows)
+
+
+def _error(
+    label: str, title: str, name: sp.Symbol, ratio: sp.Expr, error: sp.Expr, text: str
+) -> Derivation:
+    proof = _theorem(f"F20-error-{label}", title=f"Ball: relative error, {title}",
+                     text=f"{text}.", uses=("F20", "F20-loss"))  # fmt: skip
+    proof.define(name, ratio - 1, "asymptote over the truth, less one")
+    proof.equal(name, error, "without cancellation")
+    return proof.done(name, error)
