@@ -9,6 +9,7 @@ from kvtheory.progress import Progress
 from kvtheory.results import Simulation
 from kvtheory.scene.model import Scene
 from kvtheory.scene.quantities import Quantity, SceneError, convert, nearest, problem
+from kvtheory.scene.requirements import lacks_line, require
 
 PER_LENGTH = Quantity("1/m", "elements per length", 0.0, True)
 DENSITY = 200e3
@@ -85,6 +86,7 @@ def elements(
     from kvtheory.models.elements.schemes import SCHEMES
     from kvtheory.models.elements.simulation import simulate
 
+    require(lacks_line, scene, "the discrete simulator")
     if scheme not in SCHEMES:
         raise ValueError(f'`scheme` = "{scheme}": {nearest(str(scheme), SCHEMES)}')
     problems: list[str] = []

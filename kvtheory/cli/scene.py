@@ -22,7 +22,7 @@ AMBIGUOUS = {"support.stiffness", "drive.stiffness", "drive.damping", "drive.mas
 def scene(scene: str | None, overrides: Sequence[str], as_json: bool, support: str | None) -> None:
     """Print a commented scene template, or check SCENE and print its dimensionless numbers."""
     from kvtheory.scene import load_scene, template
-    from kvtheory.scene.requirements import lacks_parabola
+    from kvtheory.scene.requirements import lacks_quadratic
     from kvtheory.scene.static_state import StaticState
 
     if support and (scene or overrides or as_json):
@@ -33,7 +33,7 @@ def scene(scene: str | None, overrides: Sequence[str], as_json: bool, support: s
         click.echo(template(support or "dead-weight"))
         return
     checked = load_scene(scene, overrides)
-    numbers = {} if lacks_parabola(checked) else StaticState.of(checked).named()
+    numbers = {} if lacks_quadratic(checked) else StaticState.of(checked).named()
     named = {
         key.replace(".", "_") if key in AMBIGUOUS else key.split(".", 1)[1]: value
         for key, value in checked.values().items()
@@ -53,4 +53,4 @@ def scene(scene: str | None, overrides: Sequence[str], as_json: bool, support: s
     rows = [(name, f"{value:.6g}") for name, value in quantities.items()]
     print_table(("quantity", "value in SI"), rows)
     if not numbers:
-        click.echo("\nThe dimensionless numbers are defined for a parabola only.")
+        click.echo("\nThe dimensionless numbers are defined for a parabola and a ball only.")

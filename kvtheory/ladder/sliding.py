@@ -12,6 +12,7 @@ from kvtheory.scene.requirements import (
     lacks_closed_form,
     lacks_kelvin_voigt,
     lacks_paper_model,
+    lacks_quadratic,
     lacks_quadrature,
 )
 
@@ -41,14 +42,17 @@ def rungs(steady: Steady) -> tuple[Rung, ...]:
 
     return (
         Rung("asymptote", "steady sliding of a parabola, V far from V*", _far, _asymptote),
-        Rung("exact", "steady sliding of a parabola, power law or wedge", _closed, by("exact")),
+        Rung(
+            "exact", "steady sliding of a parabola, power law, wedge or ball", _closed, by("exact")
+        ),
         Rung("quadrature", "steady sliding of any shape", _any_shape, by("quadrature")),
     )
 
 
 def _closed(scene: Scene, request: Request) -> Judgement:
-    known = "exact, any foundation" if lacks_kelvin_voigt(scene) else "exact, power law"
-    return Judgement(lacks_closed_form(scene), BEST[known if lacks_paper_model(scene) else "exact"])
+    known = "exact, power law" if lacks_quadratic(scene) else "exact"
+    known = "exact, any foundation" if lacks_kelvin_voigt(scene) else known
+    return Judgement(lacks_closed_form(scene), BEST[known])
 
 
 def _any_shape(scene: Scene, request: Request) -> Judgement:

@@ -10,7 +10,15 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from kvtheory.models.steady import asymptotes, ball, ball_asymptotes, exact, power_law, viscoelastic
+from kvtheory.models.steady import (
+    asymptotes,
+    ball,
+    ball_asymptotes,
+    ball_viscoelastic,
+    exact,
+    power_law,
+    viscoelastic,
+)
 from kvtheory.models.steady.power_law_contact import shape_of
 from kvtheory.models.steady.spots import stretch_of
 from kvtheory.results import STEADY_UNITS, Certificate, SteadyState, units_for
@@ -23,14 +31,25 @@ Array = NDArray[np.float64]
 Values = Mapping[str, Array]
 
 
-FAMILIES: dict[str, tuple[ModuleType, Callable[[Values], tuple[Array, ...]]]] = {
-    "parabola": (exact, lambda values: (values["indenter.radius"],)),
+def _cylinder(values: Values) -> tuple[Array, ...]:
+    return (values["indenter.radius"],)
+
+
+def _ball(values: Values) -> tuple[Array, ...]:
+    return values["indenter.radius"], stretch_of(values)
+
+
+Families = dict[str, tuple[ModuleType, Callable[[Values], tuple[Array, ...]]]]
+FAMILIES: Families = {
+    "parabola": (exact, _cylinder),
     "power-law": (power_law, shape_of),
     "wedge": (power_law, shape_of),
-    "sphere": (ball, lambda values: (values["indenter.radius"], stretch_of(values))),
+    "sphere": (ball, _ball),
 }
 """By the name of the shape, its closed forms and what they take first; `kvtheory.scene.requirements`
 knows the same names."""
+ON_ANY: Families = {"parabola": (viscoelastic, _cylinder), "sphere": (ball_viscoelastic, _ball)}
+"""The same on foundations that are not Kelvin-Voigt."""
 
 TIME = "foundation.retardation_time"
 
@@ -48,7 +67,7 @@ def asymptotes_of(scene: Scene) -> ModuleType:
 def solve_exact(scene: Scene, values: Values) -> SteadyState:
     """Evaluate the closed forms on whole arrays."""
     if lacks_kelvin_voigt(scene):
-        state = _solve_on(scene.foundation, values)
+        state = _solve_on(scene, values)
     else:
         method, parameters = FAMILIES[scene.indenter.shape]
         state = _solve(method, values, *parameters(values))
@@ -62,14 +81,16 @@ def _in_units(scene: Scene, state: SteadyState) -> SteadyState:
     return replace(state, units=units_for(scene.indenter, STEADY_UNITS))
 
 
-def _solve_on(foundation: AnyFoundation, values: Values) -> SteadyState:
-    """Evaluate the moments of a foundation that is not Kelvin-Voigt, under a parabola."""
-    radius, values = values["indenter.radius"], _with_time(foundation, values)
+def _solve_on(scene: Scene, values: Values) -> SteadyState:
+    """Evaluate the moments of a foundation that is not Kelvin-Voigt, under a parabola or a ball."""
+    foundation, values = scene.foundation, _with_time(scene.foundation, values)
+    method, parameters = ON_ANY[scene.indenter.shape]
+    shape = parameters(values)
     if foundation.arms:
         arms = list(chain(*arms_of(foundation, values)))
-        return _solve(viscoelastic, values, viscoelastic.Prony, arms, radius)
+        return _solve(method, values, viscoelastic.Prony, arms, *shape)
     springpot = values[TIME], values["foundation.order"]
-    return _solve(viscoelastic, values, viscoelastic.Fractional, springpot, radius)
+    return _solve(method, values, viscoelastic.Fractional, springpot, *shape)
 
 
 def _convolved(scene: Scene, values: Mapping[str, float], indenter: Any) -> SteadyState:

@@ -237,7 +237,7 @@ def at_depth(
         R: Array, K: Array, time: Array, V: Array, delta: Array, *own: Array
     ) -> tuple[Array, ...]:
         row = law(K, V, own)
-        return _state(R, row, time, V, _length_at_half(row, np.sqrt(2.0 * R * delta)), delta)
+        return state(R, row, time, V, length_at_half(row, np.sqrt(2.0 * R * delta)), delta)
 
     given = radius, stiffness, retardation_time, velocity, depth, *parameters
     return evaluate(held, given, velocity, CERTIFICATE, OWN_ERRORS)
@@ -268,18 +268,18 @@ def at_load(
         R: Array, K: Array, time: Array, V: Array, load: Array, k: Array, *own: Array
     ) -> tuple[Array, ...]:
         row = law(K, V, own)
-        return _state(R, row, time, V, _length_at_load(row, R, load, k))
+        return state(R, row, time, V, _length_at_load(row, R, load, k))
 
     given = radius, stiffness, retardation_time, velocity, weight, spring, *parameters
     return evaluate(carried, given, velocity, CERTIFICATE, OWN_ERRORS)
 
 
-def _length_at_half(row: Prony | Fractional, a: Array) -> Array:
+def length_at_half(row: Prony | Fractional, a: Array) -> Array:
     """Return the length of the contact whose half length at rest is a: between a and 2 a."""
     c = 1.5 * a
     for _ in range(MOST_STEPS):
         M = row.moments(c)
-        share, slope, bend = _growth(M)
+        share, slope, bend = growth(M)
         off = share - a / c
         step = off / (slope - 0.5 * off * (bend / slope))
         c = np.clip(c * (1.0 - step), a, 2.0 * a)
@@ -298,7 +298,7 @@ def _length_at_load(row: Prony | Fractional, R: Array, load: Array, spring: Arra
     c = 2.0 * a_0
     for _ in range(MOST_STEPS):
         M = row.moments(c)
-        share, slope, bend = _growth(M)
+        share, slope, bend = growth(M)
         size = c * c * (c / (R * load))
         k = spring * (c / (R * load)) * c
         total = size * (M.D + (share - 0.5) * M.P) + 0.5 * k * share * share
@@ -312,14 +312,14 @@ def _length_at_load(row: Prony | Fractional, R: Array, load: Array, spring: Arra
     return c
 
 
-def _growth(M: Moments) -> tuple[Array, Array, Array]:
+def growth(M: Moments) -> tuple[Array, Array, Array]:
     """Return a/c, a' = da/dc and c a''."""
     A = M.P + M.Q
     share, end = M.P / A, M.end / A
     return share, 1.0 - share * end, 2.0 * share * end * end - end - share * (M.end_slope / A)
 
 
-def _state(
+def state(
     R: Array,
     row: Prony | Fractional,
     time: Array,
