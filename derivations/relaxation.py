@@ -24,6 +24,7 @@ from .symbols import (
     edge_distance,
     excess_share,
     fading,
+    felt,
     from_trailing,
     left_behind,
     memory,
@@ -77,10 +78,10 @@ def _pressure() -> Derivation:
     _by_parts(proof, 2)
     rate = (a - X + y) / R
     value = PRESSURE(X)
-    felt = sp.Integral(G(y) * rate, (y, 0, X))
-    proof.integral(felt, G(y) * rate, (y, 0, X), rate * G_1(y) - G_2(y) / R,
+    whole = sp.Integral(G(y) * rate, (y, 0, X))
+    proof.integral(whole, G(y) * rate, (y, 0, X), rate * G_1(y) - G_2(y) / R,
                    r"by parts; this is the pressure $p(\breve X)$", value=value)  # fmt: skip
-    return proof.done(felt, value)
+    return proof.done(whole, value)
 
 
 _PRESSURE = (
@@ -223,11 +224,10 @@ def _stored_springpot() -> Derivation:
                      text=_STORED_SPRINGPOT, uses=("F17-stored",))  # fmt: skip
     nu, h, v = spring_share, shift, other_trailing
     both = w + v
-    inner = sp.Integral(both ** (nu - 1) * (h + v), (v, 0, 1))
     parts = (h + v) * both**nu / nu - both ** (nu + 1) / (nu * (nu + 1))
     once = parts.subs(v, 1) - parts.subs(v, 0)
-    proof.integral(inner, both ** (nu - 1) * (h + v), (v, 0, 1), parts, "by parts", value=once)
-    outer = sp.Integral((h + w) * once, UNIT)
+    proof.integral(felt, both ** (nu - 1) * (h + v), (v, 0, 1), parts, "by parts", value=once)
+    outer = sp.Integral((h + w) * felt, UNIT)
 
     def part(base: sp.Expr, power: sp.Expr) -> sp.Expr:
         """Integrate (h + w) base**power over w."""
@@ -243,7 +243,7 @@ def _stored_springpot() -> Derivation:
         2 * (1 - (1 - nu) * two) / (nu * (1 + nu) * (3 + nu)),
     )
     value = square + 2 * h * mixed + h**2 * none
-    proof.integral(outer, (h + w) * once, UNIT, primitive, "and once more", value=value)
+    proof.integral(outer, (h + w) * felt, UNIT, primitive, "and once more", value=value)
     return proof.done(outer, value)
 
 

@@ -156,7 +156,7 @@ lack_mean, lack_ahead, lack_bulge, lack_twist = sp.symbols(
     "alpha_vA alpha_vP alpha_vD alpha_vE", nonnegative=True
 )
 haste, steepness, load_number, friction_number = _positive("omega_v chi_v Lambda_v m_v")
-pressed, shift, slope_free = sp.symbols("g_v h_v s_vf", real=True)
+pressed, shift, slope_free, felt = sp.symbols("g_v h_v s_vf J_v", real=True)
 other_trailing = sp.Symbol("v_v", positive=True)
 
 # A drive with a spring (F22): mass, damper and spring along x, where the indenter is, and what each
@@ -329,6 +329,7 @@ TEX = {
     lack_bulge: r"\breve \alpha_D",
     lack_twist: r"\breve \alpha_E",
     pressed: r"\breve g",
+    felt: r"\breve J",
     shift: r"\breve h",
     slope_free: r"\breve \chi_0",
     other_trailing: r"\breve v",

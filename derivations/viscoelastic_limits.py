@@ -12,6 +12,7 @@ from .record import Derivation
 from .step import Proof
 from .symbols import (
     delay,
+    excess_share,
     friction_number,
     half_share,
     haste,
@@ -29,7 +30,7 @@ from .symbols import (
 )  # fmt: skip
 from .theorems import FRICTION_COEFFICIENT, LOAD, NUMBER, RATIO
 from .theorems import UNIT as RATIOS
-from .viscoelastic import MOMENTS, SECTION, SPRINGPOT, UNIT, D, E, P, Q, w
+from .viscoelastic import MOMENTS, SECTION, SPRINGPOT, UNIT, A, D, E, P, Q, w
 
 kap, eps, nu = spring_number, delay, spring_share
 half, twelfth = sp.Rational(1, 2), sp.Rational(1, 12)
@@ -103,7 +104,7 @@ def _voigt() -> Derivation:
     )
     load = kap / 12 + plain_ahead / (2 * plain_mean)
     proof.sign(load, ">", sp.Rational(4, 9), (kap, 0, sp.oo),
-               r"Kelvin-Voigt's load: $\breve \alpha_D$ adds less than $9 \breve \varepsilon/8$ of it")  # fmt: skip
+               r"its load: $\breve \alpha_D$ adds less than $9 \breve \varepsilon/8$ of it")  # fmt: skip
     unit = (eps, 0, SMALL)
     lowest = (1 - 2 * eps) ** 2 * (1 - eps)
     proof.sign(
@@ -181,7 +182,10 @@ def _window_weight() -> Derivation:
     return proof.done((1 + 1 / l) ** 2 - square, 0)
 
 
-_WINDOW_WEIGHT = "Likewise Eq. (46), with the error $1/l$ of Kelvin-Voigt, where $a$ is that of the lifted indenter."
+_WINDOW_WEIGHT = (
+    "Likewise Eq. (46), with the error $1/l$ of Kelvin-Voigt; $a$ is that of the indenter that is "
+    "lifted, and $l$ grows faster for it."
+)
 
 
 def _glass() -> Derivation:
@@ -243,23 +247,34 @@ _GLASSY = (
 )
 
 
-def _state(nu: sp.Expr = nu) -> tuple[sp.Expr, sp.Expr, sp.Expr]:
-    """Return load, friction coefficient and half length, over those of the units, of spring and springpot."""
-    t, (ahead, behind, bulge, twist) = (
-        springpot,
-        (SPRINGPOT[name].subs(spring_share, nu) for name in (P, Q, D, E)),
+def _state(proof: Proof) -> tuple[sp.Expr, sp.Expr, sp.Expr]:
+    """Name load, friction coefficient and half length, over those of the units, of spring and springpot.
+
+    Each is defined in one fraction and shown by its parts: the display is compared with the definition.
+    """
+    nu, t = proof._resolve(spring_share), springpot
+    ahead, behind, bulge, twist = (SPRINGPOT[name].subs(spring_share, nu) for name in (P, Q, D, E))
+    ahead, mean, bulge = half + t * ahead, 1 + t * (ahead + behind), twelfth + t * bulge
+    eta = ahead / mean - half
+    load = sp.factor(bulge + eta * ahead)
+    work = sp.factor(t * twist + eta**2 * ahead)
+    for name, part in ((P, ahead), (A, mean), (D, bulge), (E, t * twist), (excess_share, eta)):
+        proof.define(name, sp.factor(part), "spring and springpot")
+    names = load_number, friction_number, half_share
+    proof.define(load_number, load, "F17-load", right=r"\breve D + \breve \eta \breve P")
+    proof.define(friction_number, sp.factor(work / load), "F17",
+                 right=r"\frac{\breve E + \breve \eta^2 \breve P}{\breve \Lambda}")  # fmt: skip
+    proof.define(
+        half_share, sp.factor(ahead / mean), "F17-edge", right=r"\frac{\breve P}{\breve A}"
     )
-    mean = 1 + t * (ahead + behind)
-    eta = t * (ahead - behind) / (2 * mean)
-    load = sp.factor(twelfth + t * bulge + eta * (half + t * ahead))
-    work = sp.factor(t * twist + eta**2 * (half + t * ahead))
-    return load, sp.factor(work / load), sp.factor((half + t * ahead) / mean)
+    return names
 
 
 def _springpot() -> Derivation:
     proof = _theorem("F18-springpot", title="Fractional Kelvin-Voigt: both limits", text=_BOTH,
                      uses=("F17-springpot", "F17-load", "F17"))  # fmt: skip
-    load, friction, share = _state()
+    proof.where(nu < 1, "the order is above 0")
+    load, friction, share = _state(proof)
     ratio, t = friction / share, springpot
     slow, fast = (
         {"variable": t, "point": 0, "eps": t},
@@ -267,7 +282,6 @@ def _springpot() -> Derivation:
     )
     low = 6 * (1 - nu) * t / (nu * (1 + nu) * (3 + nu))
     high = (1 - nu) * (2 + nu) / (3 + nu)
-    proof.where(nu < 1, "the order is above 0")
     proof.leading_order(share, half, reason=r"$\breve a$ at low velocity", **slow)
     proof.leading_order(load, twelfth, reason=r"load, of the spring alone", **slow)
     proof.leading_order(ratio, low, reason=r"$\mu R/a$", **slow)
@@ -292,10 +306,8 @@ _BOTH = (
 def _monotonic() -> Derivation:
     proof = _theorem("F18-springpot-monotonic", title="Fractional Kelvin-Voigt: the errors are monotonic",
                      text=_MONOTONIC, uses=("F18-springpot", "F17-growth"))  # fmt: skip
-    load, friction, share = load_number, friction_number, half_share
-    states = _state(1 / (1 + steepness))
-    for name, form in zip((load, friction, share), states, strict=True):
-        proof.define(name, form, r"of spring and springpot, $\breve \nu = 1/(1 + \breve \chi)$")
+    proof.define(spring_share, 1 / (1 + steepness), "between 0 and 1")
+    load, friction, share = _state(proof)
     t, nu = springpot, 1 / (1 + steepness)
     rise, heavier, longer = (t * sp.Derivative(form, t) / form for form in (friction, load, share))
     for form, what in (
