@@ -100,7 +100,7 @@ def test_scaled_numbers_are_those_of_the_motion_along_x():
             ["drive.mass: missing", 'support.kind = "fixed"', "kg/m"],
         ),
         ('stiffness = "0 N/m^2"', DEAD_WEIGHT, ["drive.stiffness", "above 0"]),
-        ('stiffness = "1 N/m"', DEAD_WEIGHT, ["drive.stiffness", "another dimension"]),
+        ('stiffness = "1 N/m"', DEAD_WEIGHT, ["drive.stiffness", "that of a ball"]),
         ("stiffness = 3", DEAD_WEIGHT, ["drive.stiffness", "no unit"]),
         (
             'stiffness = "1 N/m^2"\ndamping = "-1 N*s/m^2"',
@@ -128,7 +128,7 @@ def test_mistakes_beside_a_spring_are_told_together(tmp_path):
         "indenter.radius", "run.duration", "drive.mass",
     ]  # fmt: skip
     with pytest.raises(kv.SceneError) as caught:
-        kv.Drive(damping=-1.0, mass="1 kg", tolerance=2.0)
+        kv.Drive(damping=-1.0, mass="1 s", tolerance=2.0)
     keys = [text.split(" =")[0].split(":")[0] for text in caught.value.problems]
     assert keys == ["drive", *["drive.damping", "drive.mass"] * 2, "drive.tolerance"]
 
@@ -157,6 +157,5 @@ def test_what_cannot_follow_a_spring_refuses_it():
     for function in (kv.elements, kv.compare):
         with pytest.raises(ValueError, match="rigid drive only"):
             function(scene)
-    with pytest.raises(ArithmeticError, match="rigid drive only"):
-        kv.solve(scene, at="1 ms")
+    assert kv.solve(scene, at="1 ms").model == "continuum"
     assert kv.solve(scene, quantity="friction_force").model == "exact"

@@ -217,3 +217,23 @@ def test_many_scenes_in_one_call_have_the_bits_of_single_ones(monkeypatch):
     for name in alone.values:
         assert np.array_equal(together[name], alone[name], equal_nan=True), name
     assert dict(together.certificate.relative_error) == dict(alone.certificate.relative_error)
+
+
+def test_what_shapes_a_waveform_is_swept_as_any_other_value():
+    """The same as each scene alone; a ramp also has a steady state, which a swept velocity moves."""
+    swing = kv.Sine(amplitude=0.1, frequency=5.0)
+    over = {"drive.frequency": [5.0, 10.0], "drive.amplitude": [0.05, 0.1]}
+    scene = kv.Scene(drive=kv.Drive(waveform=swing))
+    found = kv.sweep(scene, over=over, quantities="depth.end")["depth.end"]
+    for (i, k), depth in np.ndenumerate(found):
+        frequency, amplitude = (
+            values[at] for values, at in zip(over.values(), (i, k), strict=True)
+        )
+        drive = kv.Drive(waveform=kv.Sine(amplitude=amplitude, frequency=frequency))
+        assert depth == kv.transient(kv.Scene(drive=drive)).depth[-1]
+    ramp = kv.Scene(drive=kv.Drive(waveform=kv.SmoothRamp(velocity=0.1, rise_time=0.01)))
+    names = ["friction_force", "friction_force.end"]
+    found = kv.sweep(ramp, over={V: [0.05, 0.1]}, quantities=names)
+    np.testing.assert_allclose(*(found[name] for name in names), rtol=2e-3)
+    with pytest.raises(kv.SceneError, match="replaces the waveform, of which"):
+        kv.sweep(scene, over={"drive.frequency": [5.0], V: [0.1]}, quantities="depth.end")

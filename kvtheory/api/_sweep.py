@@ -46,7 +46,8 @@ def sweep(
         Maps a dotted key to its values: an array in SI, a list such as ``["10 ms", "1 s"]``, or a text
         ``"1 mm/s:10 m/s:200:log"``. Each key is an axis, and the sweep is over all combinations. A
         tuple of keys with a tuple of lists is one axis on which these values vary together. A
-        ``drive.velocity`` replaces a history.
+        ``drive.velocity`` replaces a history or a swing; the keys of a waveform, such as
+        ``drive.frequency``, change it.
     quantities
         Steady quantities by name (the default is all of them). Of a transient: ``NAME.end``,
         ``NAME.max``, ``NAME.min`` and ``NAME.time_of_max``, with NAME as in `Transient`;

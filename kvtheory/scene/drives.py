@@ -14,10 +14,12 @@ from kvtheory.scene.quantities import (
     Derived,
     Quantity,
     SceneError,
+    changed,
     collecting,
     convert,
     mistake,
     problem,
+    quantities,
     quantity,
     settle,
 )
@@ -204,14 +206,22 @@ class Drive:
         return replace(self, velocity=times * self.final_velocity)
 
     def changed(self, **values: float) -> "Drive":
-        """Return the drive with some quantities replaced; a velocity replaces any other way to drive.
+        """Return the drive with some quantities replaced: those of its waveform, or of its spring.
+
+        Another velocity replaces any other way to drive.
 
         >>> Drive(history=[(0.0, 0.1), (1.0, 0.2)], stiffness=1e6).changed(velocity=0.3).points
         ((0.0, 0.3),)
         """
-        if "velocity" not in values:
-            return replace(self, **values)  # type: ignore[arg-type]
-        return replace(self, **values, history=None, function=None, waveform=None, breaks=())
+        own = () if self.waveform is None else quantities(self.waveform)
+        moves = {name: value for name, value in values.items() if name not in SPRING}
+        way: dict[str, Any] = {}
+        if moves and all(name in own for name in moves):
+            way = {"waveform": changed(self.waveform, **moves), "function": None}
+        elif moves:
+            way = {"history": None, "function": None, "waveform": None, "breaks": (), **moves}
+        springs = {name: value for name, value in values.items() if name in SPRING}
+        return replace(self, **springs, **way)  # type: ignore[arg-type]
 
     def motion(self, end: float, least: float) -> BaseMotion:
         """Return V(t) and Y(t) up to the time `end` (s), as polynomials.

@@ -19,9 +19,22 @@ EXAMPLE = '{"drive.velocity": "1 mm/s:10 m/s:200:log"}'
 
 
 def sweepable(scene: Scene) -> dict[str, Quantity]:
-    """Return the keys of a scene that can be swept, each with its unit and range."""
+    """Return the keys of a scene that can be swept, each with its unit and range.
+
+    >>> from kvtheory.scene import Drive, Sine
+    >>> wave = Drive(waveform=Sine(amplitude=0.1, frequency=5.0))
+    >>> [key for key in sweepable(Scene(drive=wave)) if key.startswith("drive.")]
+    ['drive.velocity', 'drive.stiffness', 'drive.amplitude', 'drive.frequency', 'drive.mean']
+    """
     run = {f"run.{name}": spec for name, spec in quantities(scene.run).items()}
-    return replaceable(scene) | run
+    return replaceable(scene) | waveform_keys(scene) | run
+
+
+def waveform_keys(scene: Scene) -> dict[str, Quantity]:
+    """Return the keys of the waveform of a scene, if it has one."""
+    waveform = scene.drive.waveform
+    specs = {} if waveform is None else quantities(waveform)
+    return {f"drive.{name}": spec for name, spec in specs.items()}
 
 
 def axes_of(scene: Scene, over: Mapping[Any, Any]) -> tuple[Axis, ...]:
@@ -72,6 +85,10 @@ def axes_of(scene: Scene, over: Mapping[Any, Any]) -> tuple[Axis, ...]:
         found.append(arrays)
     if problems:
         raise SceneError(problems)
+    own = seen & waveform_keys(scene).keys()
+    if "drive.velocity" in seen - own and own:
+        told = f"it replaces the waveform, of which {', '.join(sorted(own))} is swept"
+        raise SceneError([f"`over` drive.velocity: {told}"])
     zipped = [arrays for arrays in found if len(arrays) > 1]
     names = ["point"] if len(zipped) == 1 else [f"point_{i + 1}" for i in range(len(zipped))]
     named = iter(names)

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kvtheory.models.steady.methods import METHODS
-from kvtheory.scene.broadcasting import values
+from kvtheory.scene.broadcasting import replaceable, values
 from kvtheory.scene.model import Scene
 from kvtheory.scene.quantities import changed
 from kvtheory.sweeps.axes import narrowed, values_at
@@ -108,7 +108,7 @@ def _steady(
     Returns the statements of the certificates and the worst errors.
     """
     count = next(iter(over.values())).size
-    over = {key: array for key, array in over.items() if key != "run.duration"}
+    over = {key: array for key, array in over.items() if key in replaceable(plan.scene)}
     found |= {name: np.full(count, np.nan) for name in names}
     statements: set[str] = set()
     errors: dict[str, float] = {}
@@ -170,7 +170,7 @@ def _transients(
 
 
 def at_point(scene: Scene, point: Mapping[str, float]) -> Scene:
-    """Return the scene with some values replaced; a velocity replaces a history.
+    """Return the scene with some values replaced; a velocity replaces a history, or a swing.
 
     >>> at_point(Scene(), {"drive.velocity": 0.5, "support.mass": 10.0}).support.mass
     10.0

@@ -201,14 +201,10 @@ def _state(
 
 def _sums(law: Law, own: tuple[Array, ...], at: tuple[Array, ...], c: Array) -> Sums:
     """Return the sums over strips, a part of the scenes at a time."""
-    parts = [
-        _part(
-            law,
-            *(tuple(each[i : i + PART, None] for each in some) for some in (own, at)),
-            c[i : i + PART],
-        )
-        for i in range(0, c.size, PART)
-    ]
+    parts = []
+    for i in range(0, c.size, PART):
+        arms, scenes = (tuple(each[i : i + PART, None] for each in some) for some in (own, at))
+        parts.append(_part(law, arms, scenes, c[i : i + PART]))
     return Sums(*(np.concatenate(rows) for rows in zip(*parts, strict=True)))
 
 
