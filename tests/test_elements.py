@@ -353,7 +353,7 @@ def test_progress_counts_to_the_end():
         ({"per_length": "1 /m"}, ["per_length", "expected"]),
         ({"per_length": 1e15}, ["per_length", "expected"]),
         ({"time_step": "0 s"}, ["time_step", "above 0"]),
-        ({"time_step": "1e-30 s"}, ["time_step", "expected at least", "steps"]),
+        ({"time_step": "1e-30 s"}, ["time_step", "expected at most", "steps"]),
         ({"at": "1 s"}, ["at", "run.duration"]),
         ({"at": "1 m", "time_step": "fast"}, ["at", "time_step"]),
     ],

@@ -37,8 +37,8 @@ ROWS = 400
 """Instants reported where none are asked for, at most about so many."""
 MORE_ROOM = 16.0
 """Ratio of the depths for which elements are kept, from one attempt to the next."""
-MOST_OF_ALL = 1e9
-"""Steps: so many would take days."""
+MOST_OF_ALL = 2e9
+"""Elements under the contact at rest, times steps: so many take from some minutes to hours."""
 TOGETHER = 1e-6
 """Of the time step: instants that are no farther apart share a state. A step so short would change
 it by less than a millionth of what one step does, and times that differ by rounding leave no step at all."""
@@ -69,11 +69,7 @@ def simulate(
     path = model.path(scene)
     h = time_step or _default_step(model, path, scheme)
     stops, wanted = _instants(scene, path, h, at)
-    if stops[-1] > MOST_OF_ALL * h:
-        raise ValueError(
-            f"`time_step` = {h:.6g} s: expected at least {stops[-1] / MOST_OF_ALL:.3g} s, so that at most "
-            f"{MOST_OF_ALL:g} steps lead to t = {stops[-1]:.6g} s"
-        )
+    _refuse_what_takes_too_long(model, stops[-1], h)
     legs = _legs(stops, path.changes, h)
     h = max(((stop - start) / count for start, stop, count in legs if count), default=h)
     warning = doubts(scheme, model, path, h)
@@ -98,6 +94,16 @@ def simulate(
         steps=sum(count for _, _, count in legs), element_updates=updates, warning=warning,
         model="elements", certificate=certificate,
     )  # fmt: skip
+
+
+def _refuse_what_takes_too_long(model: Model, end: float, h: float) -> None:
+    elements, steps = 2.0 * model.half_length / model.spacing, end / h
+    if elements * steps > MOST_OF_ALL:
+        raise ValueError(
+            f"`time_step` = {h:.6g} s: {steps:,.3g} steps with {elements:,.3g} elements in the contact are "
+            f"{elements * steps:.2g} updates, expected at most {MOST_OF_ALL:g}; take longer steps, fewer "
+            "elements (`per_length`), or a shorter run"
+        )
 
 
 def _default_step(model: Model, path: BaseMotion, scheme: Scheme) -> float:
