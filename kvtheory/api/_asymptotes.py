@@ -64,7 +64,7 @@ def asymptotes(
     require(lacks_limits, scene, "the theory of asymptotes")
     from kvtheory.models.steady import prony_limits, regimes  # SciPy takes a while to import
 
-    with double_precision():
+    with double_precision(scene, over):
         return (prony_limits if scene.foundation.arms else regimes).report(
             scene, values(scene, over), tolerance
         )

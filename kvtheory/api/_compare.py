@@ -30,7 +30,7 @@ def _followed(scene: Scene, times: Sequence[float], rtol: float) -> Mapping[str,
     """Follow a transient without a certificate: theory is wanted at many scenes, none of them shown."""
     from kvtheory.models.continuum import solved_scene
 
-    with double_precision():
+    with double_precision(scene):
         return solved_scene.certified(scene, times, rtol, certify=False)[0].series(times)
 
 

@@ -1,6 +1,6 @@
 """What the public functions share: checks of their arguments, and of the range of floats."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from functools import cache
 from typing import Any
@@ -11,6 +11,7 @@ from kvtheory.scene.drives import TIME
 from kvtheory.scene.lists import item_values, items
 from kvtheory.scene.model import Scene
 from kvtheory.scene.quantities import SceneError, convert, problem
+from kvtheory.scene.static_state import out_of_range
 
 
 def scene_of(scene: Scene | None) -> Scene:
@@ -61,10 +62,10 @@ def times_of(scene: Scene, at: Any, problems: list[str] | None = None) -> Any:
 
 
 @contextmanager
-def double_precision() -> Iterator[None]:
-    """Turn an overflow anywhere in a calculation into an error about the scene."""
+def double_precision(scene: Scene, over: Mapping[str, Any] | None = None) -> Iterator[None]:
+    """Turn an overflow anywhere in a calculation into an error about the values of the scene."""
     try:
         with np.errstate(over="raise", invalid="raise", divide="raise"):
             yield
     except (FloatingPointError, OverflowError, ZeroDivisionError) as error:
-        raise ValueError(f"the scene leaves the range of double precision: {error}") from None
+        raise ValueError(out_of_range(scene, over or (), str(error))) from None

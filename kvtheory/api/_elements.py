@@ -96,7 +96,7 @@ def elements(
     times = times_of(scene, at, problems)
     if problems:
         raise SceneError(problems)
-    with double_precision(), _blaming_default(per_length is None):
+    with double_precision(scene), _blaming_default(per_length is None):
         return simulate(
             scene, 1.0 / density, SCHEMES[scheme],
             at=times, time_step=step, certify=certify, progress=progress, warn=warn,

@@ -101,7 +101,7 @@ def solve(
             partial(elements, progress=progress),
         )
         rungs = series.rungs(series.Models(steady, follow, simulate))
-    with double_precision():
+    with double_precision(scene):
         return climb(scene, request, rungs)
 
 

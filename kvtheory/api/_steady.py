@@ -69,7 +69,7 @@ def steady(
     """
     scene = scene_of(scene)
     chosen = method_for(scene, method)
-    with double_precision():
+    with double_precision(scene, over):
         return METHODS[chosen](scene, values(scene, over))
 
 

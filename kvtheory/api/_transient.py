@@ -83,7 +83,7 @@ def transient(
     require(lacks_paper_model, scene, "the transient")
     from kvtheory.models.continuum import solved_scene
 
-    with double_precision():
+    with double_precision(scene):
         return solved_scene.transient(
             scene,
             times_of(scene, at),

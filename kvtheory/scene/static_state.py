@@ -1,9 +1,11 @@
 """The scene at rest, and the dimensionless numbers that govern its motion."""
 
 import math
+from collections.abc import Iterable
 from dataclasses import asdict, dataclass
 
-from kvtheory.scene.model import Scene
+from kvtheory.scene.model import TABLE1_SUPPORTS, Scene
+from kvtheory.scene.quantities import given
 from kvtheory.scene.requirements import lacks_quadratic, require
 
 
@@ -54,7 +56,7 @@ class StaticState:
         except ArithmeticError:
             found = None
         if found is None or not found.in_range:
-            raise ValueError("the scene leaves the range of double precision: check its values")
+            raise ValueError(out_of_range(scene))
         return found
 
     @classmethod
@@ -151,3 +153,38 @@ def _round(scene: Scene) -> StaticState:
         return StaticState.at(scene, support.depth, math.sqrt(2 * R * support.depth), load)
     depth = math.sqrt(support.weight / stiffness)
     return StaticState.at(scene, depth, math.sqrt(2 * R * depth), support.weight)
+
+
+FAR = 10.0
+"""Powers of ten from Table 1: a value as far off is worth a look."""
+
+
+def out_of_range(scene: Scene, replaced: Iterable[str] = (), why: str = "") -> str:
+    """Say that a scene leaves the range of double precision: by values far from Table 1, or `replaced` ones.
+
+    >>> from kvtheory.scene import Drive, Run
+    >>> out_of_range(Scene(drive=Drive(1e300), run=Run(1.0)))
+    'the scene leaves the range of double precision: check drive.velocity = 1e+300 m/s'
+    """
+    usual: dict[str, float] = {}
+    for support in TABLE1_SUPPORTS:
+        usual |= {key: size for key, size, _ in _sizes(Scene.table1(support))}
+    far = [
+        f"{key} = {size:g} {unit}".strip()
+        for key, size, unit in _sizes(scene)
+        if 0.0 < size < math.inf and abs(math.log10(size) - math.log10(usual.get(key, 1.0))) > FAR
+    ]
+    told = ", ".join([*far, *replaced]) or "its values"
+    return f"the scene leaves the range of double precision: {why and f'{why}; '}check {told}"
+
+
+def _sizes(scene: Scene) -> list[tuple[str, float, str]]:
+    """Return the keys of a scene, the magnitudes of their values in SI, and their units."""
+    parts = {**scene.parts(), "run": scene.run, "drive": scene.drive.waveform or scene.drive}
+    found = [
+        (f"{section}.{name}", abs(getattr(part, name)), "" if spec.unit == "1" else spec.unit)
+        for section, part in parts.items()
+        for name, spec in given(part).items()
+    ]
+    speeds = [abs(velocity) for _, velocity in scene.drive.history or ()]
+    return [*found, ("drive.history", max(speeds), "m/s")] if speeds else found
