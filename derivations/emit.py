@@ -1,24 +1,28 @@
 """Write the numerical closed forms from the expressions that the derivations have proved.
 
-``python -m derivations.emit`` rewrites `kvtheory/models/steady/closed_forms.py`.
+``python -m derivations.emit`` rewrites `kvtheory/models/steady/closed_forms.py`; `emit_javascript` writes
+the same and more for the explorer.
 """
 
 import os
-from collections.abc import Callable
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
 import sympy as sp
-from sympy.codegen.cfunctions import expm1, log1p
 
 from . import symbols as sym
 from .book import established
 from .catalogue import catalogue
+from .code_printer import CodePrinter
 from .symbols import Q, kappa, l, lam, q, r, s, xi, y
 from .symbols import exponent as n
 from .symbols import z_peeled as z
 
 TARGET = Path(__file__).parents[1] / "kvtheory" / "models" / "steady" / "closed_forms.py"
+
+NUMPY = CodePrinter("NumPy", "np", {"min": "minimum"})
+code = NUMPY.code
 
 DIGITS = 30
 """Constants are rounded once, from this many digits to double precision."""
@@ -48,9 +52,18 @@ class Form:
     name: str
     label: str
     """The derivation whose last form of `symbol` is emitted."""
-    symbol: sp.Symbol
+    symbol: sp.Expr
     arguments: tuple[sp.Symbol, ...]
     meaning: str
+    at: tuple[tuple[sp.Symbol, sp.Expr], ...] = ()
+    """Where it is emitted at one place: symbols, and what stands there for them."""
+    times: sp.Expr = sp.S.One
+    """A factor by which it is multiplied."""
+
+    @property
+    def expression(self) -> sp.Expr:
+        """What was proved, once it was."""
+        return self.times * established(self.label, self.symbol).subs(self.at)
 
 
 FORMS: tuple[Form, ...] = (
@@ -189,9 +202,6 @@ FORMS += (
          "friction force for l -> oo over F, - 1"),
 )  # fmt: skip
 
-_BY_SYMBOL = {form.symbol: form for form in FORMS if form.arguments and form.symbol != q}
-"""The functions that others may call; q is their argument instead."""
-
 
 def closed_forms_source() -> str:
     """Return the text of the generated module, after all that it rests on has been proved anew."""
@@ -203,123 +213,67 @@ def closed_forms_source() -> str:
 
 def main() -> None:
     """Replace the generated module in one move, so that no half-written file is ever imported."""
-    draft = TARGET.with_suffix(".draft")
-    draft.write_text(closed_forms_source(), encoding="utf-8")
-    os.replace(draft, TARGET)
+    replace(TARGET, closed_forms_source())
 
 
-def _constant(form: Form) -> str:
-    value = float(established(form.label, form.symbol).evalf(DIGITS))
-    return f'{form.name} = {value!r}\n"""{_sentence(form)}"""\n'
+def replace(target: Path, text: str) -> None:
+    """Write a generated file in one move."""
+    draft = target.with_suffix(".draft")
+    draft.write_text(text, encoding="utf-8")
+    os.replace(draft, target)
 
 
-def _function(form: Form) -> str:
-    arguments = ", ".join(f"{_name(symbol)}: Value" for symbol in form.arguments)
-    parts = _parts(form.label, form.symbol, form.arguments)
-    body = [
-        f'"""Return {_sentence(form)}"""',
-        *(f"{name} = {value}" for name, value in parts.items()),
-        f"return {_outer(code(established(form.label, form.symbol)))}",
-    ]
-    head = f"def {form.name}({arguments}) -> Value:\n"
-    return head + "".join(f"    {line}\n" for line in body)
+def number(form: Form) -> float:
+    """Return the value of a constant."""
+    return float(established(form.label, form.symbol).evalf(DIGITS))
 
 
-def _sentence(form: Form) -> str:
+def sentence(form: Form) -> str:
+    """Say what a form is, and what it rests on."""
     return f"{form.meaning}; theorem {form.label}."
 
 
-def _parts(label: str, symbol: sp.Symbol, known: tuple[sp.Symbol, ...]) -> dict[str, str]:
-    """Return the values of the symbols in a form that are not its arguments, in order."""
-    values: dict[str, str] = {}
-    for part in sorted(established(label, symbol).free_symbols - set(known), key=str):
-        if form := _BY_SYMBOL.get(part):
-            values[str(part)] = _call(form.name, form.arguments)
-        else:
-            values |= _parts(label, part, known)
-            values[str(part)] = _outer(code(established(label, part)))
-    return values
+def parts(form: Form, forms: Iterable[Form], printer: CodePrinter) -> Iterator[tuple[str, str]]:
+    """Yield what a function computes before its value: names, and their values as code.
 
-
-def code(expr: sp.Expr) -> str:
-    """Print an expression as NumPy code, in which integer powers are products.
-
-    >>> code(sp.sqrt(1 + l**2) + q**3 / (2 * l))
-    '(np.hypot(1, l) + q * q * q / (2 * l))'
+    The symbols of a form that are not its arguments are functions among the `forms`, or are put together
+    as the derivation does it. q is the argument of functions instead.
     """
-    numerator, denominator = sp.fraction(expr, exact=True)
-    if denominator != 1:
-        below = code(denominator)
-        below = f"({below})" if denominator.is_Mul or denominator.is_Pow else below
-        return f"{code(numerator)} / {below}"
-    for kind, write in _WRITERS.items():
-        if isinstance(expr, kind):
-            return write(expr)
-    raise TypeError(f"no NumPy code for {expr}")
+    functions = {
+        each.symbol: each
+        for each in forms
+        if each.arguments and each.symbol not in (q, form.symbol) and not each.at
+    }
+    yield from _parts(form.label, form.expression, set(form.arguments), functions, printer)
 
 
-def _sum(expr: sp.Add) -> str:
-    text = " + ".join(code(term) for term in expr.as_ordered_terms())
-    return f"({text.replace('+ -', '- ')})"
+def _parts(
+    label: str, expr: sp.Expr, known: set[sp.Symbol], functions: dict[sp.Expr, Form],
+    printer: CodePrinter,
+) -> Iterator[tuple[str, str]]:  # fmt: skip
+    for part in sorted(expr.free_symbols - known, key=str):
+        if form := functions.get(part):
+            yield str(part), printer.call(form.name, form.arguments)
+        else:
+            value = established(label, part)
+            yield from _parts(label, value, known, functions, printer)
+            yield str(part), printer.outer(value)
+        known.add(part)
 
 
-def _product(expr: sp.Mul) -> str:
-    sign = "-" if expr.as_coeff_Mul()[0] < 0 else ""
-    factors = (-expr if sign else expr).as_ordered_factors()
-    return sign + " * ".join(code(factor) for factor in factors)
+def _constant(form: Form) -> str:
+    return f'{form.name} = {number(form)!r}\n"""{sentence(form)}"""\n'
 
 
-def _power(expr: sp.Pow) -> str:
-    base, exponent = expr.as_base_exp()
-    if exponent.is_Integer:
-        return " * ".join([code(base)] * int(exponent))
-    legs = [sp.sqrt(term) for term in base.as_ordered_terms()]
-    if exponent == sp.S.Half and len(legs) == 2 and all(leg.is_Atom for leg in legs):
-        return f"np.hypot({', '.join(map(code, sorted(legs, key=str)))})"
-    if exponent.free_symbols:
-        return f"{code(base)} ** {code(exponent) if exponent.is_Atom else _braced(exponent)}"
-    if exponent == sp.Rational(1, 4):
-        return f"np.sqrt(np.sqrt({_outer(code(base))}))"
-    root = {sp.S.Half: "np.sqrt", sp.Rational(1, 3): "np.cbrt"}[exponent]
-    return f"{root}({_outer(code(base))})"
-
-
-def _braced(expr: sp.Expr) -> str:
-    return f"({_outer(code(expr))})"
-
-
-def _call(name: str, arguments: tuple[sp.Expr, ...]) -> str:
-    return f"{name}({', '.join(_outer(code(argument)) for argument in arguments)})"
-
-
-def _name(symbol: sp.Symbol) -> str:
-    """Return a Python name; `lambda` is a keyword."""
-    return "lam" if symbol == lam else str(symbol)
-
-
-_WRITERS: dict[type, Callable[[sp.Expr], str]] = {
-    sp.Symbol: _name,
-    sp.Integer: str,
-    type(sp.pi): lambda _: "np.pi",
-    sp.Add: _sum,
-    sp.Mul: _product,
-    sp.Pow: _power,
-    expm1: lambda expr: _call("np.expm1", expr.args),
-    log1p: lambda expr: _call("np.log1p", expr.args),
-    sp.Min: lambda expr: _call("np.minimum", tuple(sorted(expr.args, key=str))),
-}
-
-
-def _outer(text: str) -> str:
-    """Drop the parentheses around a whole sum."""
-    if not text.startswith("("):
-        return text
-    depth = 0
-    for position, character in enumerate(text):
-        depth += {"(": 1, ")": -1}.get(character, 0)
-        if depth == 0 and position < len(text) - 1:
-            return text
-    return text[1:-1]
+def _function(form: Form) -> str:
+    arguments = ", ".join(f"{NUMPY.name(symbol)}: Value" for symbol in form.arguments)
+    body = [
+        f'"""Return {sentence(form)}"""',
+        *(f"{name} = {value}" for name, value in parts(form, FORMS, NUMPY)),
+        f"return {NUMPY.outer(form.expression)}",
+    ]
+    head = f"def {form.name}({arguments}) -> Value:\n"
+    return head + "".join(f"    {line}\n" for line in body)
 
 
 if __name__ == "__main__":

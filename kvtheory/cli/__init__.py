@@ -6,6 +6,7 @@ from kvtheory.cli import (  # noqa: F401  # each adds its command to `main`
     compare,
     derive,
     elements,
+    explore,
     scene,
     solve,
     steady,

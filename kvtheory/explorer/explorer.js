@@ -1,0 +1,194 @@
+// The controls, and what happens when one of them moves.
+
+let state = from_hash(location.hash), kept = { key: "", data: null };
+const frames = [];
+/** Milliseconds that the last updates took. */
+
+const escaped = (text) => String(text).replace(/[&<>"]/g, (c) => `&#${c.charCodeAt(0)};`);
+const named = (name) => name.replace(/-/g, " ").replace(/\b(kelvin|voigt|maxwell)\b/g, (w) => w[0].toUpperCase() + w.slice(1)).replace("Kelvin Voigt", "Kelvin\u2013Voigt");
+
+/** Ends of a slider, and where a value stands between them; logarithmic but for a few. */
+function reach(slider) {
+  if (slider.linear) return [...slider.linear, (x) => x, (x) => x];
+  const start = Math.log10(Math.abs(Number(slider.start)) || 1);
+  return [start - slider.decades, start + slider.decades, (x) => Math.log10(Math.abs(x)), (x) => 10 ** x];
+}
+
+function slider_html(key, slider, text, label) {
+  const [low, high, place] = reach(slider), at = place(Number(text));
+  const shown = Number.isFinite(at) ? Math.min(high, Math.max(low, at)) : low;
+  return `<div class="slider"><label for="${key}" title="${escaped(slider.doc)}">${escaped(label)}</label>`
+    + `<span class="value"><input type="text" inputmode="decimal" data-key="${key}" value="${escaped(text)}" aria-label="${escaped(label)}">`
+    + `<span class="unit">${slider.unit}</span></span>`
+    + `<input type="range" id="${key}" data-key="${key}" min="${low}" max="${high}" step="any" value="${shown}" aria-valuetext="${escaped(text)} ${slider.unit}" title="${escaped(slider.doc)}"></div>`;
+}
+
+function choice_html(section) {
+  const { chooser, choices } = SECTIONS[section], here = state.choices[section];
+  const fits = (choice) => section !== "indenter" || MODEL.allowed.some(([shape, kind]) => shape === choice && kind === state.choices.foundation);
+  const options = Object.keys(choices).map((choice) =>
+    `<option value="${choice}"${choice === here ? " selected" : ""}${fits(choice) ? "" : " disabled"}>${named(choice)}${fits(choice) ? "" : " (Kelvin\u2013Voigt only)"}</option>`);
+  return `<select data-section="${section}" aria-label="${section} ${chooser}">${options.join("")}</select>`;
+}
+
+function alternative_html(section) {
+  const sets = SECTIONS[section].alternatives[state.choices[section]];
+  if (sets.length < 2) return "";
+  const here = JSON.stringify(asked(state, section));
+  const names = (set) => set.filter((name) => !sets.every((other) => other.includes(name))).map((name) => name.replace(/_/g, " ")).join(", ");
+  return `<select data-set="${section}" aria-label="${section}: given by">${sets.map((set, k) =>
+    `<option value="${k}"${JSON.stringify(set) === here ? " selected" : ""}>given by ${names(set)}</option>`).join("")}</select>`;
+}
+
+function arms_html() {
+  const { stiffness, relaxation_time } = MODEL.arm;
+  const rows = state.arms.map(([k, t], i) => `<div class="arm">${slider_html(`arms.${i}.0`, stiffness, k, `arm ${i + 1}: stiffness`)}`
+    + `${slider_html(`arms.${i}.1`, { ...relaxation_time, start: "10" }, t, `arm ${i + 1}: relaxation time`)}</div>`);
+  return `${rows.join("")}<div class="arms"><button type="button" data-arm="add">Add an arm</button>`
+    + `<button type="button" data-arm="remove"${state.arms.length < 2 ? " disabled" : ""}>Remove the last</button></div>`;
+}
+
+function build_controls() {
+  const parts = {};
+  for (const [key, slider] of sliders(state)) {
+    const [section, name] = key.split(".");
+    (parts[section] ||= []).push(slider_html(key, slider, text_of(state, key, slider), name.replace(/_/g, " ")));
+  }
+  const html = ["drive", "indenter", "support", "foundation", "run"].map((section) => {
+    const choosing = section in SECTIONS ? choice_html(section) + alternative_html(section) : "";
+    const arms = section === "foundation" && has_arms(state) ? arms_html() : "";
+    return `<fieldset><legend>${section}</legend><div>${choosing}${parts[section].join("")}${arms}</div></fieldset>`;
+  });
+  document.getElementById("controls").innerHTML = `<p id="readout"></p>${html.join("")}`;
+}
+
+function update() {
+  const start = performance.now(), problem = document.getElementById("problem"), told = wrong_in(state);
+  problem.hidden = !told;
+  problem.textContent = told;
+  if (told) return;
+  const scene = scene_of(state), { V, duration, ...still } = scene, key = JSON.stringify(still), found = slide(scene);
+  if (!Number.isFinite(found.friction_coefficient) || !Number.isFinite(found.load)) {
+    problem.hidden = false;
+    problem.textContent = "These values leave the range of double precision.";
+    return;
+  }
+  if (key !== kept.key) kept = { key, data: curve_data(scene) };
+  show_numbers(found);
+  draw_curve(scene, found, kept.data);
+  draw_contact(scene, found);
+  show_formula(scene, found);
+  show_energy(found);
+  show_stability(scene, found);
+  follow(scene);
+  draw_motion();
+  frames.push(performance.now() - start);
+  if (frames.length > 500) frames.shift();
+}
+
+let waiting = false;
+/** Update once before the next picture, however often a slider moves. */
+function soon() {
+  if (waiting) return;
+  waiting = true;
+  requestAnimationFrame(() => {
+    waiting = false;
+    update();
+    history.replaceState(null, "", `#${as_hash(state)}`);
+  });
+}
+
+function set_value(key, text) {
+  const [first, i, k] = key.split(".");
+  if (first === "arms") state.arms[i][k] = text; else state.values[key] = text;
+}
+
+const slider_of = (key) => (key.startsWith("arms.")
+  ? [MODEL.arm.stiffness, { ...MODEL.arm.relaxation_time, start: "10" }][key.split(".")[2]]
+  : sliders(state).find(([name]) => name === key)[1]);
+
+function moved(event) {
+  const { key } = event.target.dataset;
+  if (!key) return;
+  const slider = slider_of(key), [low, high, place, value] = reach(slider), pair = event.target.closest(".slider");
+  const box = pair.querySelector('input[type="text"]'), range = pair.querySelector('input[type="range"]');
+  if (event.target === range) {
+    const sign = Number(box.value) < 0 ? -1 : 1;
+    box.value = String(Number((sign * value(Number(range.value))).toPrecision(3)));
+  } else if (Number.isFinite(place(Number(box.value)))) {
+    range.value = String(Math.min(high, Math.max(low, place(Number(box.value)))));
+  }
+  range.setAttribute("aria-valuetext", `${box.value} ${slider.unit}`);
+  box.classList.toggle("wrong", Boolean(mistake_in(box.value, slider, key === "drive.velocity")));
+  set_value(key, box.value.trim());
+  soon();
+}
+
+function chosen(event) {
+  const { section, set } = event.target.dataset;
+  if (section) state.choices[section] = event.target.value;
+  const [of, at] = section ? [section, 0] : [set, Number(event.target.value)];
+  if (!of) return;
+  const own = SECTIONS[of].choices[state.choices[of]], wanted = SECTIONS[of].alternatives[state.choices[of]][at];
+  for (const key of Object.keys(state.values)) if (key.startsWith(`${of}.`) && !wanted.includes(key.split(".")[1])) delete state.values[key];
+  for (const name of wanted) state.values[`${of}.${name}`] ??= own[name].start;
+  if (section === "support" || section === "foundation") {
+    // A spring of the support and the stiffness of a foundation have their own size.
+    if (own.stiffness && section === "support") state.values["support.stiffness"] = own.stiffness.start;
+  }
+  allowed(state);
+  build_controls();
+  soon();
+}
+
+function arm_pressed(event) {
+  const { arm } = event.target.dataset;
+  if (arm === "add") state.arms.push([state.arms.at(-1)[0], String(Number((Number(state.arms.at(-1)[1]) * 10).toPrecision(3)))]);
+  if (arm === "remove") state.arms.pop();
+  if (arm) {
+    build_controls();
+    soon();
+  }
+}
+
+async function copy(text, told) {
+  const area = document.getElementById("copied"), said = document.getElementById("said");
+  area.hidden = false;
+  area.value = text;
+  area.select();
+  try {
+    await navigator.clipboard.writeText(text);
+    said.textContent = `${told} copied.`;
+  } catch {
+    said.textContent = document.execCommand("copy") ? `${told} copied.` : `${told}: select and copy it below.`;
+  }
+}
+
+function wire() {
+  const form = document.querySelector("form");
+  form.addEventListener("input", moved);
+  form.addEventListener("change", chosen);
+  form.addEventListener("click", arm_pressed);
+  form.addEventListener("submit", (event) => event.preventDefault());
+  document.getElementById("copy-toml").addEventListener("click", () => copy(as_toml(state), "Scene"));
+  document.getElementById("copy-python").addEventListener("click", () => copy(as_python(state), "Script"));
+  document.getElementById("copy-link").addEventListener("click", () => copy(`${location.href.split("#")[0]}#${as_hash(state)}`, "Link"));
+  document.getElementById("reset").addEventListener("click", () => restore(""));
+  window.addEventListener("hashchange", () => restore(location.hash));
+  let width = innerWidth;
+  window.addEventListener("resize", () => {
+    if (innerWidth !== width) soon();
+    width = innerWidth;
+  });
+  wire_player();
+}
+
+function restore(hash) {
+  state = from_hash(hash);
+  build_controls();
+  soon();
+}
+
+build_controls();
+wire();
+update();

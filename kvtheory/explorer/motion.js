@@ -1,0 +1,124 @@
+// The start from rest of a parabola on a Kelvin-Voigt foundation: two states and two edges in closed form
+// (F11). Scaled by the state at rest; it holds until an edge would need to know the past.
+
+const ORDER = 4;
+/** Steps of the linearly implicit Euler method from which one step is extrapolated. */
+
+/** d'' and what the forces are made of, for depth d and rate v. */
+function start_law(d, v, number) {
+  const a = Math.sqrt(d), rho = Math.sqrt(d + v + number.lam ** 2), r = peeling_edge(d, v, number.lam);
+  const f_z = peeling_normal_force(r + a, rho);
+  const rate = (1 - f_z - number.kappa * (d - 1)) / number.epsilon;
+  return { a, r, rho, f_z, f_x: peeling_friction_force(r + a, r, rho), rate };
+}
+
+/** One step of h with `parts` linearly implicit Euler steps. */
+function euler(y, h, parts, number) {
+  const k = h / parts;
+  let [d, v] = y;
+  for (let i = 0; i < parts; i++) {
+    const now = start_law(d, v, number);
+    const by_d = -(force_per_depth(now.a, now.r, number.lam, v) + number.kappa) / number.epsilon;
+    const by_v = -force_per_rate(now.a, now.r) / number.epsilon;
+    const dv = (now.rate + k * by_d * v) * k / (1 - k * by_v - k * k * by_d);
+    v += dv;
+    d += k * v;
+  }
+  return [d, v];
+}
+
+/** One step, extrapolated, and how far the last two extrapolations are apart. */
+function extrapolated(y, h, number) {
+  const table = [];
+  for (let j = 0; j < ORDER; j++) {
+    let row = [euler(y, h, j + 1, number)];
+    for (let k = 0; k < j; k++) {
+      const ratio = (j + 1) / (j - k);
+      row.push(row[k].map((x, i) => x + (x - table[j - 1][k][i]) / (ratio - 1)));
+    }
+    table.push(row);
+  }
+  const last = table[ORDER - 1], best = last[ORDER - 1], other = last[ORDER - 2];
+  const error = Math.max(Math.abs(best[0] - other[0]), Math.abs(best[1] - other[1]) / (1 + Math.abs(y[1])));
+  return { y: best, error: Number.isFinite(error) ? error : Infinity };
+}
+
+/** Why the two states are no longer enough, if they are not. */
+function remembers(d, v, number) {
+  if (!(d + v + number.lam ** 2 > 0)) return "the indenter leaves the foundation";
+  const now = start_law(d, v, number);
+  if (now.r + now.a <= 0) return "the indenter leaves the foundation";
+  const peels = (v + now.rate) / (2 * now.rho) - number.lam;  // X' of the right edge
+  const touches = -v / (2 * now.a) - number.lam;  // X' of the left edge
+  if (peels > 1e-9 && now.r < now.a) return "the trailing edge comes back over ground that it left";
+  if (touches > 1e-9) return "the leading edge peels";
+  return "";
+}
+
+/** Follow the start from rest to the scaled time `end`: rows of s, d, v, edges and forces, and why it ended. */
+function start_from_rest(number, end, tolerance = 1e-7) {
+  const row = (s, d, v) => {
+    const now = start_law(d, v, number);
+    return { s, d, v, l: -now.a, r: now.r, f_z: now.f_z, f_x: now.f_x };
+  };
+  if (number.lam === 0) return { rows: [row(0, 1, 0), row(end, 1, 0)], why: "" };
+  if (number.kappa === Infinity) {
+    const held = { ...number, kappa: 0, epsilon: 1 };
+    const still = { ...start_law(1, 0, held) };
+    const rows = [0, end].map((s) => ({ s, d: 1, v: 0, l: -1, r: still.r, f_z: still.f_z, f_x: still.f_x }));
+    return { rows, why: "" };
+  }
+  let s = 0, y = [1, 0], h = Math.min(end, 0.1 * number.epsilon / (1 + number.lam), 0.01);
+  const rows = [row(0, 1, 0)];
+  for (let k = 0; k < 4000 && s < end; k++) {
+    h = Math.min(h, end - s, 0.02 * end);
+    const step = extrapolated(y, h, number);
+    if (step.error <= tolerance) {
+      const why = remembers(...step.y, number);
+      if (why && h > 1e-6 * end) {
+        h *= 0.25;
+        continue;
+      }
+      if (why) return { rows, why };
+      s += h;
+      y = step.y;
+      rows.push(row(s, ...y));
+    }
+    h *= Math.min(3, Math.max(0.1, 0.9 * (tolerance / Math.max(step.error, 1e-300)) ** (1 / ORDER)));
+    if (h < 1e-14 * end) return { rows, why: "the step became too small" };
+  }
+  return { rows, why: s < end ? "too many steps" : "" };
+}
+
+/** The row at scaled time s, between two that were computed: cubic in the depth, linear in the rest. */
+function row_at(rows, s) {
+  let low = 0, high = rows.length - 1;
+  while (high - low > 1) {
+    const middle = (low + high) >> 1;
+    if (rows[middle].s > s) high = middle; else low = middle;
+  }
+  const one = rows[low], two = rows[high], h = two.s - one.s, w = h > 0 ? Math.min(1, (s - one.s) / h) : 0;
+  const mixed = {};
+  for (const name of ["v", "l", "r", "f_z", "f_x"]) mixed[name] = one[name] + w * (two[name] - one[name]);
+  const cubic = one.d + w * (h * one.v + w * (3 * (two.d - one.d) - h * (2 * one.v + two.v)
+    + w * (2 * (one.d - two.d) + h * (one.v + two.v))));
+  return { s, d: cubic, ...mixed, l: -Math.sqrt(cubic) };
+}
+
+/** The free surface behind the trailing edge at scaled time s: pairs of xi and u, outward. */
+function surface_behind(rows, s, lam) {
+  const points = [];
+  for (const row of rows) {
+    if (row.s > s) break;
+    const u = (row.d - row.r ** 2) * Math.exp(row.s - s);
+    points.push([row.r + lam * (s - row.s), u]);
+  }
+  const now = row_at(rows, s);
+  points.push([now.r, now.d - now.r ** 2]);
+  points.reverse();
+  for (let k = 1; k <= 24; k++) {  // the strip that was let go of when the drive set in
+    const X = rows[0].r + (1 - rows[0].r) * k / 24;
+    points.push([X + lam * s, (1 - X * X) * Math.exp(-s)]);
+  }
+  return points;
+}

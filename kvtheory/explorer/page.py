@@ -1,0 +1,93 @@
+"""The explorer as one HTML file: its scripts, its formulas and a scene; nothing is loaded."""
+
+import json
+import re
+import tomllib
+from collections.abc import Callable
+from importlib.resources import files
+from pathlib import Path
+from typing import Any
+
+from kvtheory.explorer.controls import controls
+from kvtheory.export import check_path, replace_file
+from kvtheory.scene.model import Scene
+from kvtheory.scene.requirements import lacks_closed_form, require
+
+SCRIPTS = (
+    *("closed_forms.js", "steady.js", "motion.js", "scene.js"),
+    *("charts.js", "answers.js", "playing.js", "explorer.js"),
+)
+"""In the order in which they build on each other."""
+QUANTITY = re.compile(r"@(\*|[A-Za-z]+(?:_[a-z0-9])?)")
+
+
+def save_explorer(scene: Scene, path: str | Path) -> None:
+    """Write the explorer, opened at a scene, as one HTML file that needs no server and no network.
+
+    Raises
+    ------
+    ValueError
+        If steady sliding of the scene is not in closed form, or the name does not end in .html.
+    OSError
+        If the file cannot be written.
+    """
+    path = Path(path)
+    check_path(path, [".html"])
+    page = explorer_page(scene)
+    replace_file(path, lambda part: part.write_text(page, encoding="utf-8"))
+
+
+def explorer_page(scene: Scene) -> str:
+    """Return the text of the page.
+
+    Raises
+    ------
+    ValueError
+        If steady sliding of the scene is not in closed form.
+
+    Examples
+    --------
+    >>> explorer_page(Scene()).startswith("<!DOCTYPE html>")
+    True
+    """
+    from kvtheory import __version__
+
+    require(lacks_closed_form, scene, "the explorer")
+    data = {"version": __version__, "formulas": formulas(), **controls(scene)}
+    parts = {
+        "style": _text("explorer.css"),
+        "script": "\n".join(map(_text, SCRIPTS)),
+        "data": json.dumps(data, ensure_ascii=False).replace("</", r"<\/"),
+        "version": __version__,
+    }
+    return re.sub(r"\{\{(\w+)\}\}", lambda found: parts[found[1]], _text("explorer.html"))
+
+
+def formulas() -> dict[str, dict[str, str]]:
+    """Return each formula as MathML: once with symbols, and once with places for numbers."""
+    from latex2mathml.converter import convert
+
+    table = tomllib.loads(_text("formulas.toml"))
+    symbols = {"*": r"\,", **table.pop("symbols")}
+    places = {**{name: rf"\text{{#{name}#}}" for name in symbols}, "*": r"\cdot "}
+
+    def written(latex: str, names: dict[str, str]) -> str:
+        made = convert(QUANTITY.sub(_one_of(names), latex))
+        return made.replace("<math ", '<math displaystyle="true" ', 1)
+
+    return {
+        key: {
+            "label": row["label"],
+            "symbols": written(row["latex"], symbols),
+            "numbers": written(row["latex"], places),
+        }
+        for key, row in table.items()
+    }
+
+
+def _one_of(names: dict[str, Any]) -> Callable[[re.Match[str]], str]:
+    return lambda found: f"{{{names[found[1]]}}}" if found[1] != "*" else names["*"]
+
+
+def _text(name: str) -> str:
+    return files("kvtheory.explorer").joinpath(name).read_text(encoding="utf-8")

@@ -1,0 +1,97 @@
+// The start from rest as an animation: the contact, and the forces so far.
+
+const player = { run: null, playing: false, share: 0, last: 0 };
+const LASTS = 6000;
+/** Milliseconds that the animation takes; its time is logarithmic, as the start has two time scales. */
+
+/** Follow the start anew; nothing where the two states do not hold. */
+function follow(scene) {
+  const note = document.getElementById("motion-note");
+  const lacking = !scene.kelvin_voigt ? "a Kelvin\u2013Voigt foundation" : !scene.parabola ? "a parabola" : "";
+  const usable = !lacking && scene.V !== 0;
+  for (const id of ["player", "motion"]) document.getElementById(id).hidden = !usable;
+  player.run = null;
+  if (!usable) {
+    note.textContent = lacking ? `The start is in closed form for ${lacking} only.` : "Without a velocity nothing starts.";
+    return;
+  }
+  const rest = at_rest(scene), fixed = scene.depth !== undefined;
+  const number = {
+    lam: Math.abs(scene.V) * scene.tau / rest.half_length, kappa: fixed ? Infinity : scene.spring * rest.depth / rest.load,
+    epsilon: fixed ? 1 : scene.mass * rest.depth / (rest.load * scene.tau ** 2),
+  };
+  const { rows, why } = start_from_rest(number, scene.duration / scene.tau);
+  const end = rows.at(-1).s;
+  const first = Math.min(end / 300, 0.1 * number.epsilon / (1 + number.lam));
+  player.run = { rows, rest, number, end, first: Math.max(first, end * 1e-6), side: Math.sign(scene.V), tau: scene.tau };
+  note.textContent = why
+    ? `Two states and two edges in closed form hold up to ${short(end * scene.tau * 1e3)} ms: then ${why}, and what the surface remembers counts. kvtheory transient goes on.`
+    : "Two states and two edges in closed form: no memory of the surface is needed in this run.";
+}
+
+function draw_motion() {
+  const { run } = player;
+  if (!run) return;
+  const { rows, rest, number, end, first, side, tau } = run;
+  const s = first * (end / first) ** player.share, now = row_at(rows, s), ms = tau * 1e3;
+  const deepest = Math.max(...rows.map((row) => row.d)), a_0 = Math.sqrt(deepest), left = -1.5 * a_0, right = 2.6 * a_0;
+  const behind = surface_behind(rows, s, number.lam).filter(([x], k, all) => x >= now.r && (k === 0 || all[k - 1][0] <= x));
+  const surface = [[left, 0], [now.l, 0]];
+  for (let k = 0; k <= 60; k++) {
+    const x = now.l + (now.r - now.l) * k / 60;
+    surface.push([x, x * x - now.d]);
+  }
+  surface.push(...behind.map(([x, u]) => [x, -Math.max(0, u)]), [Math.max(right, behind.length ? behind.at(-1)[0] : 0), 0]);
+  show("motion", (width, height, clip) => {
+    const box = [MARGIN.left, MARGIN.top, width - MARGIN.right, height - MARGIN.bottom], half = box[1] + 0.5 * (box[3] - box[1]);
+    const scaled = rest.half_length * 1e3, x = scale(left, right, side > 0 ? box[0] : box[2], side > 0 ? box[2] : box[0]);
+    const z = scale(-1.3 * deepest, 0.9 * deepest, half - 12, box[1]), at = ([u, v]) => [x.at(u), z.at(v)];
+    const profile = Array.from({ length: 81 }, (_, k) => left + (right - left) * k / 80).map((u) => [u, Math.min(0.9 * deepest, u * u - now.d)]);
+    let drawn = `<g ${clip}><path class="ground" d="${path([...surface.map(at), [x.at(surface.at(-1)[0]), half - 12], [x.at(left), half - 12]])}"/>`;
+    drawn += `<path class="indenter" d="${path([...profile.map(at), [x.at(right), box[1]], [x.at(left), box[1]]])}"/>`;
+    drawn += line(surface.map(at), "surface") + line(surface.filter(([u]) => u >= now.l && u <= now.r).map(at), "touch") + "</g>";
+    drawn += words(box[2] - 4, half - 18, `${short((right - left) * scaled, 3)} mm across`, 'text-anchor="end"');
+    const forces = [["f_z", rest.load, "force"], ["f_x", rest.load * rest.depth / rest.half_length, "drag"]];
+    const sampled = Array.from({ length: 161 }, (_, k) => row_at(rows, first * (end / first) ** (k / 160)));
+    const most = Math.max(...forces.map(([name, unit]) => Math.max(...rows.map((row) => row[name])) * unit)) * 1e-3;
+    const t = scale(first * ms, end * ms, box[0], box[2], true), f = scale(0, most * 1.08, box[3], half + 8);
+    drawn += frame(t, f, [box[0], half + 8, box[2], box[3]], "time [ms]", "force [N/mm]");
+    for (const [name, unit, kind] of forces) drawn += line(sampled.map((row) => [t.at(row.s * ms), f.at(row[name] * unit * 1e-3)]), kind);
+    const told = ([name, unit, kind], what) => swatch(kind, `${what} ${short(now[name] * unit * 1e-3)} N/mm`);
+    document.getElementById("motion-legend").innerHTML = `<span>t = ${short(s * ms)} ms</span><span>\u03b4 = ${short(now.d * rest.depth * 1e3)} mm</span>`
+      + told(forces[0], "normal force") + told(forces[1], "friction force");
+    return drawn + line([[t.at(s * ms), half + 8], [t.at(s * ms), box[3]]], "cursor");
+  }, "The contact during the start from rest, and the forces over time");
+  document.getElementById("instant").value = String(Math.round(1000 * player.share));
+}
+
+function tick(time) {
+  if (!player.playing) return;
+  player.share = Math.min(1, player.share + (time - player.last) / LASTS);
+  player.last = time;
+  draw_motion();
+  if (player.share >= 1) press(false); else requestAnimationFrame(tick);
+}
+
+/** Play or pause; from the start where the end was reached. */
+function press(playing) {
+  player.playing = playing;
+  const button = document.getElementById("play");
+  button.textContent = playing ? "Pause" : "Play";
+  button.setAttribute("aria-pressed", String(playing));
+  if (!playing) return;
+  if (player.share >= 1) player.share = 0;
+  requestAnimationFrame((time) => {
+    player.last = time;
+    tick(time);
+  });
+}
+
+function wire_player() {
+  document.getElementById("play").addEventListener("click", () => press(!player.playing));
+  document.getElementById("instant").addEventListener("input", (event) => {
+    press(false);
+    player.share = Number(event.target.value) / 1000;
+    draw_motion();
+  });
+}

@@ -1,0 +1,172 @@
+// A scene as the page holds it: choices, and texts in the units that are shown. SI, TOML, Python, link.
+
+const MODEL = JSON.parse(document.getElementById("data").textContent);
+const SECTIONS = MODEL.sections, PLAIN = MODEL.plain;
+const original = () => structuredClone(MODEL.scene);
+
+/** A text in the unit that is shown, as a number in SI: with the same decimals. */
+function si(text, slider) {
+  const [digits, power] = String(text).trim().toLowerCase().split("e");
+  const number = /^[+-]?(\d+\.?\d*|\.\d+)$/.test(digits) ? Number(`${digits}e${Number(power || 0) + slider.exponent}`) : NaN;
+  return number;
+}
+
+/** What is wrong with a text, if anything. */
+function mistake_in(text, slider, signed) {
+  const number = si(text, slider), x = signed ? 0 : number;
+  if (!Number.isFinite(number)) return "a number is expected";
+  if (signed) return "";
+  const low = slider.minimum, above = low === null || (slider.exclusive ? x > low : x >= low);
+  const under = (slider.below === null || x < slider.below) && (slider.maximum === null || x <= slider.maximum);
+  return above && under ? "" : `out of range: ${slider.range}`;
+}
+
+/** The quantities of a section that are to be given: the set whose members the scene has, the longest first. */
+function asked(state, section) {
+  const choice = state.choices[section], sets = SECTIONS[section].alternatives[choice];
+  const given = (set) => set.every((name) => `${section}.${name}` in state.values);
+  return [...sets].sort((a, b) => b.length - a.length).find(given) || sets[0];
+}
+
+/** The sliders of a state: [key, slider]. */
+function sliders(state) {
+  const found = [];
+  for (const section of Object.keys(SECTIONS)) {
+    const own = SECTIONS[section].choices[state.choices[section]];
+    for (const name of asked(state, section)) found.push([`${section}.${name}`, own[name]]);
+  }
+  for (const [section, own] of Object.entries(PLAIN)) {
+    for (const [name, slider] of Object.entries(own)) found.push([`${section}.${name}`, slider]);
+  }
+  return found;
+}
+
+const text_of = (state, key, slider) => state.values[key] ?? slider.start;
+const has_arms = (state) => state.choices.foundation === "generalized-maxwell";
+
+/** The first thing that is wrong with a state, or nothing. */
+function wrong_in(state) {
+  for (const [key, slider] of sliders(state)) {
+    const told = mistake_in(text_of(state, key, slider), slider, key === "drive.velocity");
+    if (told) return `${key} = ${text_of(state, key, slider)}: ${told}`;
+  }
+  if (has_arms(state)) {
+    const times = state.arms.map(([, time]) => si(time, MODEL.arm.relaxation_time));
+    for (const [stiffness, time] of state.arms) {
+      const told = mistake_in(stiffness, MODEL.arm.stiffness) || mistake_in(time, MODEL.arm.relaxation_time);
+      if (told) return `foundation.arms: ${told}`;
+    }
+    if (new Set(times).size < times.length) return "foundation.arms: two arms have the same relaxation time";
+  }
+  return "";
+}
+
+/** The scene in SI, as the solvers take it. */
+function scene_of(state) {
+  const v = {};
+  for (const [key, slider] of sliders(state)) v[key] = si(text_of(state, key, slider), slider);
+  const { indenter, foundation, support } = state.choices;
+  const shape = {
+    parabola: [1, v["indenter.radius"], 2], "power-law": [1, v["indenter.length"], v["indenter.exponent"]],
+    wedge: [v["indenter.inclination"], 1, 1],
+  }[indenter];
+  const nu = v["foundation.poisson_ratio"];
+  const layer = v["foundation.modulus"] * (1 - nu) / ((1 + nu) * (1 - 2 * nu)) / v["foundation.thickness"];
+  const scene = {
+    shape, K: v["foundation.stiffness"] ?? layer, tau: v["foundation.retardation_time"],
+    kelvin_voigt: foundation === "kelvin-voigt", V: v["drive.velocity"], duration: v["run.duration"],
+    parabola: indenter === "parabola", support,
+  };
+  if (foundation === "fractional-kelvin-voigt") scene.order = v["foundation.order"];
+  if (has_arms(state)) {
+    scene.arms = state.arms.map(([k, t]) => [si(k, MODEL.arm.stiffness), si(t, MODEL.arm.relaxation_time)]);
+  }
+  if (support === "fixed") return { ...scene, depth: v["support.depth"] };
+  const load = v["support.load"], mass = v["support.mass"] ?? load / v["support.gravity"];
+  return {
+    ...scene, mass, weight: load ?? mass * v["support.gravity"], spring: v["support.stiffness"] ?? 0,
+  };
+}
+
+const quoted = (text, unit) => (unit ? `"${text} ${unit}"` : text);
+const arm_units = () => [MODEL.arm.stiffness.unit, MODEL.arm.relaxation_time.unit];
+const arm_list = (state) =>
+  `[${state.arms.map((arm) => `[${arm.map((text, k) => quoted(text, arm_units()[k])).join(", ")}]`).join(", ")}]`;
+
+/** Sections of a state: name, and pairs of key and written value. */
+function written(state) {
+  const tables = {};
+  for (const [key, slider] of sliders(state)) {
+    const [section, name] = key.split(".");
+    (tables[section] ||= []).push([name, quoted(text_of(state, key, slider), slider.unit)]);
+  }
+  if (has_arms(state)) tables.foundation.push(["arms", arm_list(state)]);
+  return tables;
+}
+
+function as_toml(state) {
+  return Object.entries(written(state)).map(([section, pairs]) => {
+    const chooser = section in SECTIONS ? [`${SECTIONS[section].chooser} = "${state.choices[section]}"`] : [];
+    return [`[${section}]`, ...chooser, ...pairs.map(([name, value]) => `${name} = ${value}`), ""].join("\n");
+  }).join("\n");
+}
+
+function as_python(state) {
+  const classes = { drive: "Drive", run: "Run" };
+  const lines = Object.entries(written(state)).map(([section, pairs]) => {
+    const name = classes[section] || SECTIONS[section].classes[state.choices[section]];
+    return `    ${section}=kv.${name}(${pairs.map(([key, value]) => `${key}=${value}`).join(", ")}),`;
+  });
+  return ["import kvtheory as kv", "", "scene = kv.Scene(", ...lines, ")", "print(kv.steady(scene))", ""].join("\n");
+}
+
+/** The state as the part of an address after #: what differs from the scene that the page was made for. */
+function as_hash(state) {
+  const first = original(), parts = new URLSearchParams();
+  for (const [section, choice] of Object.entries(state.choices)) {
+    if (choice !== first.choices[section]) parts.set(section, choice);
+  }
+  for (const [key, text] of Object.entries(state.values)) {
+    if (text !== first.values[key]) parts.set(key, text);
+  }
+  const gone = Object.keys(first.values).filter((key) => !(key in state.values));
+  if (gone.length) parts.set("without", gone.join(" "));
+  if (JSON.stringify(state.arms) !== JSON.stringify(first.arms)) parts.set("arms", state.arms.map((a) => a.join("_")).join(" "));
+  return parts.toString();
+}
+
+/** The state that an address holds; what it does not know is left out. */
+function from_hash(hash) {
+  const state = original(), parts = new URLSearchParams(hash.replace(/^#/, ""));
+  for (const section of Object.keys(SECTIONS)) {
+    if (parts.get(section) in SECTIONS[section].choices) state.choices[section] = parts.get(section);
+  }
+  for (const key of (parts.get("without") || "").split(" ")) delete state.values[key];
+  for (const [key, text] of parts) {
+    const [section, name] = key.split(".");
+    const known = PLAIN[section]?.[name] || Object.values(SECTIONS[section]?.choices || {}).some((own) => name in own);
+    if (known) state.values[key] = text;
+  }
+  const arms = (parts.get("arms") || "").split(" ").map((arm) => arm.split("_")).filter((arm) => arm.length === 2);
+  if (arms.length) state.arms = arms;
+  return allowed(state);
+}
+
+/** The state with a foundation that is solved under its indenter. */
+function allowed(state) {
+  const { indenter, foundation } = state.choices;
+  const fits = (pair) => pair[0] === indenter && pair[1] === foundation;
+  if (!MODEL.allowed.some(fits)) state.choices.indenter = MODEL.allowed.find((pair) => pair[1] === foundation)[0];
+  return state;
+}
+
+/** A number with four digits, and one with its unit by the size of it. */
+function short(x, digits = 4) {
+  if (!Number.isFinite(x)) return "\u2013";
+  if (x === 0) return "0";
+  const size = Math.abs(x);
+  if (size >= 1e-3 && size < 1e5) return String(Number(x.toPrecision(digits)));
+  const [digit, power] = x.toExponential(digits - 1).split("e");
+  const raised = String(Number(power)).replace(/./g, (c) => "\u207b\u2070\u00b9\u00b2\u00b3\u2074\u2075\u2076\u2077\u2078\u2079"["-0123456789".indexOf(c)]);
+  return `${Number(digit)}\u00b710${raised}`;
+}

@@ -1,0 +1,146 @@
+"""A headless Chromium that is driven through its own pipes: real keys, real screens, no network."""
+
+import base64
+import json
+import os
+import shutil
+import subprocess
+import time
+from pathlib import Path
+
+import pytest
+
+FLAGS = (
+    *("--headless=new", "--no-sandbox", "--disable-gpu", "--no-first-run", "--disable-sync"),
+    *("--disable-background-networking", "--disable-component-update", "--disable-quic"),
+    *("--hide-scrollbars", "--remote-debugging-pipe"),
+)
+PATIENCE = 60.0
+"""Seconds to wait for an answer."""
+
+
+class Browser:
+    """One page; `errors` collects what the console and the scripts complained of."""
+
+    def __init__(self, profile):
+        chromium = shutil.which("chromium")
+        if chromium is None:
+            if os.environ.get("CI"):
+                pytest.fail("chromium is needed in CI")
+            pytest.skip("chromium is not installed")
+        ours, self._commands = os.pipe()
+        self._answers, theirs = os.pipe()
+        # Chromium reads commands from 3 and answers on 4.
+        script = f'exec 3<&{ours} 4>&{theirs}; exec "$0" "$@"'
+        self._process = subprocess.Popen(
+            ["bash", "-c", script, chromium, *FLAGS, f"--user-data-dir={profile}", "about:blank"],
+            pass_fds=(ours, theirs), stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
+        )  # fmt: skip
+        os.close(ours)
+        os.close(theirs)
+        os.set_blocking(self._answers, False)
+        self._buffer, self._count, self._session = b"", 0, None
+        self.errors, self.requests, self._loaded = [], [], False
+        target = self.send("Target.getTargets")["targetInfos"][0]["targetId"]
+        attached = self.send("Target.attachToTarget", targetId=target, flatten=True)
+        self._session = attached["sessionId"]
+        for domain in ("Page", "Runtime", "Log", "Network"):
+            self.send(f"{domain}.enable")
+
+    def close(self):
+        self._process.terminate()
+        self._process.wait(timeout=10)
+        os.close(self._commands)
+        os.close(self._answers)
+
+    def send(self, method, **params):
+        """Send a command and return its result."""
+        self._count += 1
+        message = {"id": self._count, "method": method, "params": params}
+        if self._session:
+            message["sessionId"] = self._session
+        data = json.dumps(message).encode() + b"\0"
+        while data:
+            data = data[os.write(self._commands, data) :]
+        until = time.monotonic() + PATIENCE
+        while time.monotonic() < until:
+            for answer in self._read():
+                if answer.get("id") == self._count:
+                    assert "error" not in answer, answer
+                    return answer["result"]
+        raise TimeoutError(method)
+
+    def _read(self):
+        try:
+            self._buffer += os.read(self._answers, 1 << 20)
+        except BlockingIOError:
+            time.sleep(0.002)
+        while b"\0" in self._buffer:
+            text, _, self._buffer = self._buffer.partition(b"\0")
+            answer = json.loads(text)
+            self._note(answer)
+            yield answer
+
+    def _note(self, answer):
+        params = answer.get("params", {})
+        match answer.get("method"):
+            case "Runtime.exceptionThrown":
+                self.errors.append(params["exceptionDetails"])
+            case "Log.entryAdded" if params["entry"]["level"] in ("warning", "error"):
+                self.errors.append(params["entry"])
+            case "Runtime.consoleAPICalled" if params["type"] in ("warning", "error", "assert"):
+                self.errors.append(params)
+            case "Network.requestWillBeSent":
+                self.requests.append(params["request"]["url"])
+            case "Page.loadEventFired":
+                self._loaded = True
+
+    def open(self, path: Path, state=""):
+        """Open a file and wait until it is loaded."""
+        self._loaded = False
+        self.send("Page.navigate", url="about:blank")
+        self._loaded = False
+        self.send("Page.navigate", url=path.as_uri() + state)
+        until = time.monotonic() + PATIENCE
+        while not self._loaded and time.monotonic() < until:
+            list(self._read())
+        self.settle()
+
+    def run(self, expression):
+        """Return the value of an expression of JavaScript."""
+        found = self.send(
+            "Runtime.evaluate", expression=expression, returnByValue=True, awaitPromise=True
+        )
+        assert "exceptionDetails" not in found, found["exceptionDetails"]
+        return found["result"].get("value")
+
+    def settle(self):
+        """Wait for two pictures."""
+        self.run("new Promise(f => requestAnimationFrame(() => requestAnimationFrame(f)))")
+
+    def screen(self, width, height, *, dark=False, phone=False):
+        """Show the page on a screen of so many points."""
+        self.send(
+            "Emulation.setDeviceMetricsOverride", width=width, height=height, mobile=phone,
+            deviceScaleFactor=1,
+        )  # fmt: skip
+        scheme = {"name": "prefers-color-scheme", "value": "dark" if dark else "light"}
+        self.send("Emulation.setEmulatedMedia", features=[scheme])
+        self.settle()
+
+    def press(self, key, code):
+        """Press a key and let go of it."""
+        text = {"text": "\r"} if key == "Enter" else {}
+        for kind in ("keyDown", "keyUp"):
+            self.send(
+                "Input.dispatchKeyEvent", type=kind, key=key, code=key,
+                windowsVirtualKeyCode=code, **(text if kind == "keyDown" else {}),
+            )  # fmt: skip
+        self.settle()
+
+    def picture(self, path: Path):
+        """Write what the whole page looks like."""
+        size = self.send("Page.getLayoutMetrics")["cssContentSize"]
+        clip = {"x": 0, "y": 0, "width": size["width"], "height": size["height"], "scale": 1}
+        data = self.send("Page.captureScreenshot", captureBeyondViewport=True, clip=clip)["data"]
+        path.write_bytes(base64.b64decode(data))
