@@ -128,7 +128,7 @@ class Browser:
         self.send("Emulation.setEmulatedMedia", features=[scheme])
         self.settle()
 
-    def press(self, key, code):
+    def press(self, key, code, *, settle=True):
         """Press a key and let go of it."""
         text = {"text": "\r"} if key == "Enter" else {}
         for kind in ("keyDown", "keyUp"):
@@ -136,7 +136,8 @@ class Browser:
                 "Input.dispatchKeyEvent", type=kind, key=key, code=key,
                 windowsVirtualKeyCode=code, **(text if kind == "keyDown" else {}),
             )  # fmt: skip
-        self.settle()
+        if settle:
+            self.settle()
 
     def picture(self, path: Path):
         """Write what the whole page looks like."""

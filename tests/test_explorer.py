@@ -1,0 +1,465 @@
+"""The explorer in a browser: its numbers are those of Python, and it can be used by hand, key and phone."""
+
+import json
+import re
+import tomllib
+from itertools import combinations
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+
+import kvtheory as kv
+from kvtheory.charts.naive import two_states
+from kvtheory.cli import main
+from kvtheory.explorer import explorer_page, save_explorer
+from kvtheory.explorer.controls import SHAPES, controls
+from kvtheory.explorer.page import formulas
+from kvtheory.models.steady import closed_forms
+from kvtheory.results import STEADY_UNITS
+from kvtheory.scene.static_state import StaticState
+from tests.browser import Browser
+
+TABLE1 = kv.Scene()
+SCENES = 200
+"""Random scenes of each of five families: a thousand points."""
+
+
+@pytest.fixture(scope="module")
+def page(tmp_path_factory):
+    path = tmp_path_factory.mktemp("explorer") / "explorer.html"
+    save_explorer(TABLE1, path)
+    return path
+
+
+@pytest.fixture(scope="module")
+def session(tmp_path_factory):
+    browser = Browser(tmp_path_factory.mktemp("profile"))
+    yield browser
+    browser.close()
+
+
+@pytest.fixture
+def browser(session, page):
+    """The page as it opens on a screen; nothing may be complained of, and nothing loaded."""
+    session.errors.clear()
+    session.requests.clear()
+    session.screen(1280, 900)
+    session.open(page)
+    yield session
+    assert session.errors == []
+    assert {url.partition("#")[0] for url in session.requests} - {"about:blank"} == {page.as_uri()}
+
+
+def spread(random, low, high, count=SCENES):
+    return np.exp(random.uniform(np.log(low), np.log(high), count))
+
+
+def families(random):
+    """Yield the indenter and the foundation of each family as functions, and what they take."""
+
+    def parabola(R, **_):
+        return kv.Parabola(R)
+
+    def kelvin_voigt(K, tau, **_):
+        return kv.Foundation(K, tau)
+
+    exponents = iter(random.uniform(1.3, 8.0, SCENES).tolist())
+    orders = iter(random.uniform(0.05, 1.0, SCENES).tolist())
+    yield parabola, kelvin_voigt
+    yield lambda R, **_: kv.PowerLaw(R, next(exponents)), kelvin_voigt
+    yield lambda R, **_: kv.Wedge(R), kelvin_voigt
+    yield (
+        parabola,
+        lambda K, tau, **_: kv.GeneralizedMaxwell(K, arms=[[3 * K, tau], [K / 2, 50 * tau]]),
+    )
+    yield parabola, lambda K, tau, **_: kv.FractionalKelvinVoigt(K, tau, next(orders))
+
+
+def random_scenes():
+    random = np.random.default_rng(16)
+    for indenter, foundation in families(random):
+        columns = {
+            "R": (1e-3, 0.1),
+            "K": (1e8, 1e12),
+            "tau": (1e-3, 10.0),
+            "V": (1e-7, 1e3),
+            "W": (10.0, 1e5),
+        }
+        drawn = {name: spread(random, *ends) for name, ends in columns.items()}
+        for k in range(SCENES):
+            own = {name: float(column[k]) for name, column in drawn.items()}
+            mass = own["W"] / 9.80665
+            support = (
+                kv.Fixed(own["R"] / 100),
+                kv.DeadWeight(mass),
+                kv.Suspended(mass, 1e3 * own["W"]),
+            )[k % 3]
+            drive = kv.Drive(own["V"] if k % 5 else -own["V"])
+            yield kv.Scene(indenter(**own), foundation(**own), support, drive)
+
+
+def in_javascript(scene):
+    """The scene as the scripts of the page take it."""
+    shape = {
+        "parabola": lambda i: [1, i.radius, 2], "power-law": lambda i: [1, i.length, i.exponent],
+        "wedge": lambda i: [i.inclination, 1, 1],
+    }[scene.indenter.shape](scene.indenter)  # fmt: skip
+    foundation, support = scene.foundation, scene.support
+    found = {
+        "shape": shape, "K": foundation.stiffness, "tau": foundation.retardation_time, "V": scene.drive.velocity,
+        "kelvin_voigt": foundation.kind == "kelvin-voigt", "support": support.kind,
+        "parabola": scene.indenter.shape == "parabola",
+    }  # fmt: skip
+    if foundation.arms:
+        found["arms"] = [[arm.stiffness, arm.relaxation_time] for arm in foundation.arms]
+    if foundation.kind == "fractional-kelvin-voigt":
+        found["order"] = foundation.order
+    if scene.held:
+        return found | {"depth": support.depth}
+    return found | {"weight": support.weight, "spring": support.spring, "mass": support.mass}
+
+
+def test_a_thousand_scenes_agree_with_python(browser):
+    scenes = list(random_scenes())
+    given = json.dumps([in_javascript(scene) for scene in scenes])
+    found = browser.run(f"{given}.map(slide).map(s => {list(STEADY_UNITS)}.map(n => s[n]))")
+    assert len(found) == 5 * SCENES
+    for scene, row in zip(scenes, found, strict=True):
+        state = kv.steady(scene)
+        for name, value in zip(STEADY_UNITS, row, strict=True):
+            allowed = 1e-12 + state.certificate.relative_error[name]
+            if not np.isfinite(allowed) or (
+                name == "trailing_edge" and abs(state.trailing_edge) < 1e-290
+            ):
+                continue
+            assert value == pytest.approx(getattr(state, name), rel=allowed, abs=1e-300), (
+                name,
+                scene,
+            )
+
+
+def test_every_closed_form_that_python_has_gives_the_same(browser):
+    random, names = np.random.default_rng(3), {}
+    for name, function in vars(closed_forms).items():
+        if callable(function) and function.__module__ == closed_forms.__name__ and name != "Value":
+            count = function.__code__.co_argcount
+            names[name] = random.uniform(0.05, 0.95, (20, count)) + (
+                function.__code__.co_varnames[0] == "n"
+            ) * np.eye(1, count)
+    assert len(names) > 40
+    given = json.dumps({name: points.tolist() for name, points in names.items()})
+    found = browser.run(
+        f"Object.fromEntries(Object.entries({given}).map(([n, p]) => [n, p.map(x => globalThis[n](...x))]))"
+    )
+    for name, points in names.items():
+        right = [getattr(closed_forms, name)(*map(np.float64, point)) for point in points]
+        assert found[name] == pytest.approx(right, rel=1e-13), name
+    for name in ("ALPHA", "CRITICAL_DRIVE_NUMBER", "PEAK_DRIVE_NUMBER", "PEAK_FRICTION"):
+        assert browser.run(name) == getattr(closed_forms, name)
+
+
+@pytest.mark.parametrize("support", ["fixed", "dead-weight", "suspended"])
+@pytest.mark.parametrize("indenter", [kv.Parabola(0.01), kv.PowerLaw(0.01, 3.0), kv.Wedge(0.2)])
+def test_limits_and_maximum_are_those_of_python(browser, support, indenter):
+    scene = kv.Scene(indenter, support=kv.Scene.table1(support).support, drive=kv.Drive(0.3))
+    report = kv.asymptotes(scene)
+    given = json.dumps(in_javascript(scene))
+    low, high, critical = browser.run(
+        f"(k => [k.low(0.3), k.high(0.3), k.critical])(limits({given}))"
+    )
+    assert [low, high] == pytest.approx([line.value for line in report.lines[:2]], rel=1e-12)
+    assert critical == pytest.approx(report.critical_velocity, rel=1e-12)
+    if np.isfinite(report.peak_velocity):
+        top = browser.run(f"maximum({given}, limits({given}).critical, 4)")
+        assert top["friction"] == pytest.approx(report.peak_friction_coefficient, rel=1e-12)
+        assert top["V"] == pytest.approx(report.peak_velocity, rel=1e-5)
+
+
+def test_limits_of_a_prony_series_are_those_of_python(browser):
+    scene = kv.Scene(foundation=kv.GeneralizedMaxwell(1e10, arms=[[3e10, 0.01], [5e9, 1.0]]))
+    lines = kv.asymptotes(scene).lines
+    low, high = browser.run(
+        f"(k => [k.low(0.1), k.high(0.1)])(limits({json.dumps(in_javascript(scene))}))"
+    )
+    assert [low, high] == pytest.approx([lines[0].value, lines[2].value], rel=1e-12)
+
+
+@pytest.mark.parametrize("velocity", [0.003, 0.1, 0.4])
+@pytest.mark.parametrize("support", ["dead-weight", "suspended"])
+def test_rates_are_those_of_the_motion_linearised_by_differences(browser, support, velocity):
+    scene = kv.Scene(support=kv.Scene.table1(support).support, drive=kv.Drive(velocity))
+    given, rest = json.dumps(in_javascript(scene)), StaticState.of(scene)
+    law = two_states(rest.drive_number, rest.inertia_number, rest.support_number)
+    d, h = kv.steady(scene).depth / rest.depth, 1e-6
+    jacobian = np.array(
+        [(np.array(law(0.0, plus)) - law(0.0, minus)) / (2 * h) for plus, minus in (
+            ((d + h, 0.0), (d - h, 0.0)), ((d, h), (d, -h)))]
+    ).T  # fmt: skip
+    right = np.sort_complex(np.linalg.eigvals(jacobian) / rest.time)
+    pairs = browser.run(f"rates({given}, slide({given})).pairs")
+    assert np.sort_complex([complex(*pair) for pair in pairs]) == pytest.approx(right, rel=1e-5)
+
+
+@pytest.mark.parametrize("velocity", [0.001, 0.1, 0.3])
+@pytest.mark.parametrize("support", ["dead-weight", "suspended"])
+def test_the_start_from_rest_is_that_of_the_transient(browser, support, velocity):
+    scene = kv.Scene(support=kv.Scene.table1(support).support, drive=kv.Drive(velocity))
+    rest = StaticState.of(scene)
+    number = {
+        "lam": rest.drive_number,
+        "epsilon": rest.inertia_number,
+        "kappa": rest.support_number,
+    }
+    found = browser.run(f"start_from_rest({json.dumps(number)}, 2.0)")
+    assert found["why"] == ""
+    rows = found["rows"][1:]
+    right = kv.transient(scene, at=[min(row["s"] * rest.time, 0.2) for row in rows])
+    for name, key, unit in (
+        ("depth", "d", rest.depth), ("normal_force", "f_z", rest.load),
+        ("friction_force", "f_x", rest.friction_force), ("trailing_edge", "r", rest.half_length),
+    ):  # fmt: skip
+        assert [row[key] for row in rows] == pytest.approx(getattr(right, name) / unit, abs=2e-6), (
+            name
+        )
+
+
+def test_the_start_ends_where_the_indenter_takes_off(browser):
+    scene = kv.Scene(drive=kv.Drive(1.0))
+    rest = StaticState.of(scene)
+    number = {"lam": rest.drive_number, "epsilon": rest.inertia_number, "kappa": 0.0}
+    found = browser.run(f"start_from_rest({json.dumps(number)}, 2.0)")
+    off = next(event.time for event in kv.transient(scene).events if event.kind == "take-off")
+    assert found["rows"][-1]["s"] * rest.time == pytest.approx(off, rel=1e-3)
+    assert "leaves" in found["why"]
+    browser.run("set_value('drive.velocity', '1000'), soon()")
+    browser.settle()
+    assert f"hold up to {1e3 * off:.3f} ms" in browser.run(
+        "document.querySelector('#motion-note').textContent"
+    )
+
+
+def text(browser, name):
+    return browser.run(f"document.querySelector('[data-name={name}]').textContent")
+
+
+def test_keys_move_a_slider_and_the_answer_follows(browser):
+    assert text(browser, "friction_coefficient") == "0.085709"
+    browser.run("document.getElementById('drive.velocity').focus()")
+    for _ in range(3):
+        browser.press("ArrowRight", 39)
+    velocity = float(browser.run("state.values['drive.velocity']"))
+    assert velocity > 100.0
+    mu = kv.steady(over={"drive.velocity": velocity / 1e3}).friction_coefficient
+    assert float(text(browser, "friction_coefficient")) == pytest.approx(mu, rel=1e-4)
+    assert (
+        float(browser.run("document.querySelector('[data-key=\"drive.velocity\"]').value"))
+        == velocity
+    )
+    assert "velocity" in browser.run("location.hash")
+
+
+def test_every_control_can_be_reached_by_tab_and_says_what_it_is(browser):
+    reached = set()
+    for _ in range(60):
+        browser.press("Tab", 9, settle=False)
+        reached.add(
+            browser.run(
+                "document.activeElement.id || document.activeElement.getAttribute('aria-label')"
+            )
+        )
+    assert {
+        "drive.velocity",
+        "indenter shape",
+        "support.mass",
+        "copy-toml",
+        "play",
+        "instant",
+    } <= reached
+    unnamed = browser.run(
+        "[...document.querySelectorAll('input, select, button, textarea')].filter(e => !(e.textContent.trim() ||"
+        " e.getAttribute('aria-label') || document.querySelector(`label[for=\"${e.id}\"]`))).length"
+    )
+    assert unnamed == 0
+
+
+def test_enter_plays_the_start(browser):
+    browser.run("document.getElementById('play').focus()")
+    browser.press("Enter", 13)
+    browser.run("new Promise(f => setTimeout(f, 200))")
+    assert browser.run("player.playing && player.share > 0")
+
+
+STATES = (
+    "", "#foundation=generalized-maxwell", "#foundation=fractional-kelvin-voigt&support=suspended",
+    "#indenter=power-law&drive.velocity=-3", "#indenter=wedge&support=fixed", "#drive.velocity=0",
+)  # fmt: skip
+
+
+@pytest.mark.parametrize("state", STATES)
+def test_every_scene_fits_a_phone(browser, page, state):
+    browser.screen(375, 812, phone=True)
+    browser.open(page, state)
+    assert browser.run("document.documentElement.scrollWidth") <= 375
+    assert browser.run("document.querySelector('#problem').hidden")
+    assert "NaN" not in browser.run("document.body.innerHTML.replace(/<script[^]*/, '')")
+
+
+@pytest.mark.parametrize("state", STATES)
+def test_copies_are_the_scene_that_is_shown(browser, page, state, tmp_path):
+    browser.open(page, state)
+    written = browser.run("as_toml(state)")
+    path = tmp_path / "scene.toml"
+    path.write_text(written, encoding="utf-8")
+    scene = kv.load_scene(path)
+    names = {}
+    exec(browser.run("as_python(state)"), names)
+    assert names["scene"] == scene
+    found = browser.run("slide(scene_of(state)).friction_coefficient")
+    assert found == pytest.approx(kv.steady(scene).friction_coefficient, rel=1e-12)
+    again = browser.run("as_toml(from_hash(as_hash(state)))")
+    assert tomllib.loads(again) == tomllib.loads(written)
+
+
+def test_the_formula_shown_is_the_limit_that_holds(browser, page):
+    for velocity, label in ((0.5, "eq42"), (100.0, "F1"), (3000.0, "eq46")):
+        browser.open(page, f"#drive.velocity={velocity}")
+        shown = browser.run("document.querySelector('#formula').textContent")
+        assert f"--only {label} " in shown
+        assert "#" not in shown
+        report = kv.asymptotes(over={"drive.velocity": velocity / 1e3})
+        lines = {
+            "eq42": report.lines[0].value,
+            "F1": report.lines[0].exact,
+            "eq46": report.lines[1].value,
+        }
+        value = float(browser.run("document.querySelector('#formula-value').textContent"))
+        assert value == pytest.approx(lines[label], rel=1e-4)
+
+
+def test_a_mistake_is_told_and_nothing_breaks(browser):
+    browser.run("set_value('indenter.radius', '-1'), soon()")
+    browser.settle()
+    told = browser.run("document.querySelector('#problem').textContent")
+    assert told == "indenter.radius = -1: out of range: a finite value above 0"
+    assert browser.run("document.querySelector('#problem').hidden") is False
+
+
+def test_how_long_a_frame_takes_is_measured(browser, record_property):
+    browser.run(
+        "(async () => { for (let k = 0; k < 20; k++) { set_value('drive.velocity', String(50 + k)); soon();"
+        "await new Promise(f => requestAnimationFrame(f)); } })()"
+    )
+    frames = sorted(browser.run("frames"))
+    record_property("milliseconds of a frame", frames[len(frames) // 2])
+    assert len(frames) > 10
+    assert all(frame > 0 for frame in frames)
+
+
+# What needs no browser.
+
+
+def test_one_page_holds_everything_in_less_than_300_kB(page):
+    text = page.read_text(encoding="utf-8")
+    assert page.stat().st_size < 300_000
+    assert not re.search(r'\b(src|href)\s*=\s*"(?!data:)', text)
+    assert not re.search(r"https?://(?!www\.w3\.org/)", text)
+    assert "{{" not in text.replace("}}", "").replace("${{", "")
+
+
+def test_the_page_opens_at_its_scene():
+    scene = kv.Scene(kv.PowerLaw("3 mm", 2.5), support=kv.DeadWeight(load="3 N/mm"))
+    held = controls(scene)["scene"]
+    assert held["choices"]["indenter"] == "power-law"
+    assert held["values"]["indenter.length"] == "3"
+    assert held["values"]["support.load"] == "3"
+    assert "support.mass" not in held["values"]
+
+
+def test_every_quantity_of_a_scene_has_a_slider():
+    sections = controls(TABLE1)["sections"]
+    for section, models in (
+        ("foundation", kv.scene.foundations.FOUNDATIONS),
+        ("support", kv.scene.model.SUPPORTS),
+    ):
+        for name, model in models.items():
+            sliders = sections[section]["choices"][name]
+            assert set(sliders) == set(kv.scene.quantities.quantities(model))
+            assert all(slider["unit"] or slider["exponent"] == 0 for slider in sliders.values())
+            asked = sections[section]["alternatives"][name]
+            assert set().union(*asked) == set(sliders)
+
+
+def test_every_formula_is_drawn_with_symbols_and_with_places_for_numbers():
+    for key, row in formulas().items():
+        assert not re.search(r"#\w+#", row["symbols"]), key
+        assert re.search(r"#\w+#", row["numbers"]), key
+        assert "<mi>\\" not in row["symbols"] + row["numbers"], key
+
+
+def palette(dark):
+    style = re.search(r"<style>(.*?)</style>", explorer_page(TABLE1), re.DOTALL)[1]
+    light, night = re.findall(r":root \{(.*?)\}", style, re.DOTALL)
+    colours = dict(re.findall(r"--(\w+): (#\w{6})", light))
+    return colours | (dict(re.findall(r"--(\w+): (#\w{6})", night)) if dark else {})
+
+
+def linear(colour):
+    part = np.array([int(colour[k : k + 2], 16) for k in (1, 3, 5)]) / 255
+    return np.where(part <= 0.04045, part / 12.92, ((part + 0.055) / 1.055) ** 2.4)
+
+
+def lab(rgb):
+    to_xyz = np.array(
+        [[0.4124, 0.3576, 0.1805], [0.2126, 0.7152, 0.0722], [0.0193, 0.1192, 0.9505]]
+    )
+    t = to_xyz @ np.clip(rgb, 0, 1) / np.array([0.9505, 1.0, 1.089])
+    f = np.where(t > 0.008856, np.cbrt(t), 7.787 * t + 16 / 116)
+    return np.array([116 * f[1] - 16, 500 * (f[0] - f[1]), 200 * (f[1] - f[2])])
+
+
+SIGHTS = {  # Vienot, Brettel and Mollon (1999), in linear RGB
+    "normal": np.eye(3),
+    "protanopia": np.array([[0.11238, 0.88762, 0.0], [0.11238, 0.88762, 0.0], [0.00401, -0.00401, 1.0]]),
+    "deuteranopia": np.array([[0.29275, 0.70725, 0.0], [0.29275, 0.70725, 0.0], [-0.02234, 0.02234, 1.0]]),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("sight", SIGHTS)
+@pytest.mark.parametrize("dark", [False, True])
+def test_lines_stay_apart_in_colour_blindness_and_from_the_card(dark, sight):
+    """Lines differ in dashes, points in shape, as well; colours must differ by what is plainly seen."""
+    colours = palette(dark)
+    seen = {
+        name: lab(SIGHTS[sight] @ linear(colours[name]))
+        for name in ("blue", "red", "green", "purple", "card")
+    }
+    for one, other in combinations(seen, 2):
+        assert np.linalg.norm(seen[one] - seen[other]) > 15.0, (one, other)
+
+
+@pytest.mark.parametrize("dark", [False, True])
+def test_text_stands_out_from_the_card(dark):
+    colours = palette(dark)
+    light = {
+        name: float(linear(colour) @ [0.2126, 0.7152, 0.0722]) for name, colour in colours.items()
+    }
+    for name in ("ink", "soft"):
+        low, high = sorted((light[name], light["card"]))
+        assert (high + 0.05) / (low + 0.05) > 4.5
+
+
+def test_a_scene_that_is_not_in_closed_form_is_refused_and_nothing_written(tmp_path):
+    path = tmp_path / "explorer.html"
+    done = CliRunner().invoke(main, ["explore", "--set", "indenter.shape=circle", "-o", str(path)])
+    assert done.exit_code == 2
+    assert "the explorer holds for the parabola, the power law and the wedge only" in done.output
+    assert not path.exists()
+    assert set(SHAPES) == {"parabola", "power-law", "wedge"}
+
+
+def test_the_command_writes_the_page(tmp_path):
+    path = tmp_path / "explorer.html"
+    done = CliRunner().invoke(main, ["explore", "-o", str(path)])
+    assert done.exit_code == 0, done.output
+    assert path.read_text(encoding="utf-8") == explorer_page(TABLE1)
