@@ -1,6 +1,7 @@
 """Sliding friction of a rigid indenter on a Kelvin-Voigt foundation: derived, exact, checked."""
 
 from kvtheory.api import asymptotes, compare, elements, solve, steady, sweep, transient
+from kvtheory.reference_problems import problem, problems
 from kvtheory.results import (
     AsymptoteReport,
     Certificate,
@@ -79,6 +80,8 @@ __all__ = [
     "compare",
     "elements",
     "load_scene",
+    "problem",
+    "problems",
     "solve",
     "steady",
     "sweep",

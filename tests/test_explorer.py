@@ -107,7 +107,8 @@ def in_javascript(scene):
     }[scene.indenter.shape](scene.indenter)  # fmt: skip
     foundation, support = scene.foundation, scene.support
     found = {
-        "shape": shape, "K": foundation.stiffness, "tau": foundation.retardation_time, "V": scene.drive.velocity,
+        "shape": shape, "K": foundation.stiffness, "tau": foundation.retardation_time,
+        "V": scene.drive.velocity,
         "kelvin_voigt": foundation.kind == "kelvin-voigt", "support": support.kind,
         "parabola": scene.indenter.shape == "parabola",
     }  # fmt: skip
@@ -277,8 +278,9 @@ def test_every_control_can_be_reached_by_tab_and_says_what_it_is(browser):
         "instant",
     } <= reached
     unnamed = browser.run(
-        "[...document.querySelectorAll('input, select, button, textarea')].filter(e => !(e.textContent.trim() ||"
-        " e.getAttribute('aria-label') || document.querySelector(`label[for=\"${e.id}\"]`))).length"
+        "[...document.querySelectorAll('input, select, button, textarea')]"
+        ".filter(e => !(e.textContent.trim() || e.getAttribute('aria-label') ||"
+        ' document.querySelector(`label[for="${e.id}"]`))).length'
     )
     assert unnamed == 0
 

@@ -19,12 +19,24 @@ AMBIGUOUS = {"support.stiffness", "drive.stiffness", "drive.damping", "drive.mas
     "--support", type=click.Choice(["fixed", "dead-weight", "suspended"]),
     help="Support of the template.",
 )  # fmt: skip
-def scene(scene: str | None, overrides: Sequence[str], as_json: bool, support: str | None) -> None:
+@click.option(
+    "--problem", metavar="NAME", help='Print a reference problem instead; "list" names them all.'
+)
+def scene(
+    scene: str | None,
+    overrides: Sequence[str],
+    as_json: bool,
+    support: str | None,
+    problem: str | None,
+) -> None:
     """Print a commented scene template, or check SCENE and print its dimensionless numbers."""
     from kvtheory.scene import load_scene, template
     from kvtheory.scene.requirements import lacks_quadratic
     from kvtheory.scene.static_state import StaticState
 
+    if problem:
+        _print_problem(problem, bare=not (scene or overrides or as_json or support))
+        return
     if support and (scene or overrides or as_json):
         raise ValueError(
             "--support chooses the template; it does not go with SCENE, --set or --json"
@@ -54,3 +66,17 @@ def scene(scene: str | None, overrides: Sequence[str], as_json: bool, support: s
     print_table(("quantity", "value in SI"), rows)
     if not numbers:
         click.echo("\nThe dimensionless numbers are defined for a parabola and a ball only.")
+
+
+def _print_problem(name: str, *, bare: bool) -> None:
+    """Print the scene file of a reference problem, or the list of them."""
+    from kvtheory.reference_problems import problem_text, problems
+
+    if not bare:
+        raise ValueError(
+            "--problem prints a scene; it does not go with SCENE, --set, --json or --support"
+        )
+    if name == "list":
+        print_table(("problem", "what it is"), problems().items())
+    else:
+        click.echo(problem_text(name), nl=False)

@@ -1,0 +1,169 @@
+"""The folders of the reference problems: `python -m figures.reference_problems [-o DIRECTORY] [NAME ...]`.
+
+Each folder can be dropped into another repository: the scene, a reference series with its certificate,
+acceptance criteria, a picture, and a driver that judges a series.
+"""
+
+import argparse
+import json
+import shutil
+from collections.abc import Iterable
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+import kvtheory as kv
+from kvtheory.export import replace_file
+from kvtheory.reference_problems import problem_text
+from kvtheory.reference_problems.named import about
+from kvtheory.results.certificate import record
+from kvtheory.scene.requirements import lacks_kelvin_voigt, lacks_paper_model
+
+OUTPUT = Path("paper/problems")
+DRIVERS = Path(__file__).with_name("drivers")
+INSTANTS = 201
+"""Rows of a series, evenly over the run."""
+SPEEDS = np.geomspace(1e-2, 1e2, 81)
+"""Of a steady reference, over that of the scene."""
+PER_LENGTH, TIME_STEPS = "200 /mm", 4000
+TOLERANCE = 0.02
+"""Of the acceptance criteria, relative to the largest value: what a careful simulation reaches."""
+JUDGED = ("depth", "normal_force", "friction_force", "friction_coefficient")
+
+
+def reference(scene: kv.Scene) -> tuple[Any, str]:
+    """Return what is right for a scene, and what kind of reference it is: the best that there is.
+
+    A transient where theory has it, else a simulation by elements with its estimated error, else steady
+    sliding over velocity.
+    """
+    times = np.linspace(0.0, scene.run.duration, INSTANTS)
+    if not lacks_paper_model(scene):
+        return kv.transient(scene, at=times, rtol=1e-8), "transient"
+    if not lacks_kelvin_voigt(scene):
+        step = scene.run.duration / TIME_STEPS
+        return kv.elements(scene, at=times, per_length=PER_LENGTH, time_step=step), "elements"
+    over = {"drive.velocity": scene.drive.final_velocity * SPEEDS}
+    return kv.steady(scene, over=over), "steady"
+
+
+def criteria(found: Any, kind: str) -> dict[str, Any]:
+    """Return how far a series may be from the reference, by quantity in SI, and what is compared.
+
+    It is a share of the largest value; the error of the reference is well below it.
+    """
+    allowed = {}
+    for name in (name for name in JUDGED if hasattr(found, name)):
+        values = np.asarray(getattr(found, name))
+        largest = float(np.nanmax(np.abs(values)))
+        allowed[name] = float(f"{TOLERANCE * largest:.3g}")
+    return {"over": "velocity" if kind == "steady" else "time", "allowed": allowed}
+
+
+def write(name: str, directory: Path) -> Path:
+    """Write the folder of one problem and return it."""
+    folder = directory / name
+    folder.mkdir(parents=True, exist_ok=True)
+    scene = kv.problem(name)
+    found, kind = reference(scene)
+    texts = {
+        "scene.toml": problem_text(name),
+        "certificate.json": _json({"model": found.model, **record(found.certificate)}),
+        "criteria.json": _json(criteria(found, kind)),
+        "README.md": readme(name, found, kind),
+    }
+    for file, text in texts.items():
+        replace_file(folder / file, partial(_put, text))
+    if kind == "steady":
+        replace_file(folder / "reference.csv", partial(_steady_csv, scene, found))
+    else:
+        found.to_csv(folder / "reference.csv")
+    found.plot().savefig(folder / "reference.png", dpi=110)
+    driver = "compare.py" if kind == "transient" else "within.py"
+    replace_file(folder / "judge.py", partial(shutil.copy, DRIVERS / driver))
+    if name == "point-contact":
+        replace_file(folder / "simulate.py", partial(shutil.copy, DRIVERS / "point_contact.py"))
+    return folder
+
+
+def readme(name: str, found: Any, kind: str) -> str:
+    """Return the page of a problem in Markdown."""
+    what = {
+        "transient": "the exact transient",
+        "elements": "a simulation by elements, with its estimated error",
+        "steady": "steady sliding over velocity",
+    }[kind]
+    return _README.format(
+        title=kv.problems()[name], about=about(name), name=name, scene=problem_text(name), what=what,
+        certificate=f"{found.certificate.kind}: {found.certificate.statement}",
+        rule=_RULES["compare" if kind == "transient" else "within"],
+        more=_POINT_CONTACT if name == "point-contact" else "",
+    )  # fmt: skip
+
+
+_RULES = {
+    "compare": "`python judge.py my-series.csv` holds a series with columns such as\n`t [ms],z_A [mm],"
+    "F_z [N/mm],F_x [N/mm]` against theory. Each check allows what follows from the sampling\nand the "
+    "noise of the data, and a disagreement is explained.",
+    "within": "`python judge.py my-series.csv` holds a series with the columns of `reference.csv` against "
+    "it: each\nquantity may differ by what `criteria.json` says.",
+}
+_POINT_CONTACT = """
+## What becomes of a point contact
+
+`simulate.py` lets the indenter fall on one nonlinear spring and damper, F_z = k d^(3/2) (1 + c d'), after
+Hunt and Crossley, with Coulomb friction; the static depth and the friction of steady sliding are made to fit.
+`python simulate.py && python judge.py point-contact.csv` finds that it disagrees. A contact without length
+feels nothing of the sliding: the indenter does not rise from 0.3 mm to 0.09 mm, and neither force has the
+peak with which sliding begins. So does a hydroelastic contact whose surface has no damping.
+"""
+_README = """# {title}
+
+{about}
+
+```toml
+{scene}```
+
+The reference, `reference.csv`, is {what}. Its certificate is {certificate}.
+
+![The reference](reference.png)
+
+{rule}
+{more}
+`kvtheory scene --problem {name}` prints the scene; `kv.problem("{name}")` loads it.
+"""
+
+
+def _json(content: dict[str, Any]) -> str:
+    return json.dumps(content, indent=1, allow_nan=False) + "\n"
+
+
+def _put(text: str, path: Path) -> None:
+    path.write_text(text, encoding="utf-8")
+
+
+def _steady_csv(scene: kv.Scene, found: Any, path: Path) -> None:
+    """Write steady sliding with the velocity as its first column."""
+    found.to_csv(path)
+    head, *rows = path.read_text(encoding="utf-8").splitlines()
+    speeds = (scene.drive.final_velocity * SPEEDS).tolist()
+    lines = [f"{speed!r},{row}" for speed, row in zip(speeds, rows, strict=True)]
+    _put("\n".join([f"velocity [m/s],{head}", *lines, ""]), path)
+
+
+def main(arguments: Iterable[str] | None = None) -> None:
+    """Write the folders."""
+    parser = argparse.ArgumentParser(
+        prog="python -m figures.reference_problems", description=__doc__
+    )
+    parser.add_argument("-o", "--output", type=Path, default=OUTPUT, help="default: %(default)s")
+    parser.add_argument("names", nargs="*", metavar="NAME", help="default: all")
+    given = parser.parse_args(None if arguments is None else list(arguments))
+    for name in given.names or kv.problems():
+        print(write(name, given.output), flush=True)
+
+
+if __name__ == "__main__":
+    main()
