@@ -174,7 +174,6 @@ CONTENTS = {
     "F18-glass": "High velocity: moments near those of a spring",
     "F18-glassy": "High velocity: how far from the glassy limit",
     "F18-springpot": "Fractional Kelvin-Voigt: both limits",
-    "F18-springpot-monotonic": "Fractional Kelvin-Voigt: the errors are monotonic",
     "scaled-pressure": "Scaled pressure",
     "scaled-form": "Scaled motion of the indenter",
     "eq33": "Trailing edge of the movable indenter",

@@ -49,7 +49,7 @@ def derive() -> tuple[Derivation, ...]:
     """Prove the bounds, and the limits of the springpot."""
     return (
         *(_lacks(), _voigt(), _window(), _window_weight(), _glass(), _glassy()),
-        *(_springpot(), _monotonic()),
+        _springpot(),
     )
 
 
@@ -272,43 +272,10 @@ def _state(proof: Proof) -> tuple[sp.Expr, sp.Expr, sp.Expr]:
 
 def _springpot() -> Derivation:
     proof = _theorem("F18-springpot", title="Fractional Kelvin-Voigt: both limits", text=_BOTH,
-                     uses=("F17-springpot", "F17-load", "F17"))  # fmt: skip
-    proof.where(nu < 1, "the order is above 0")
+                     uses=("F17-springpot", "F17-load", "F17", "F17-growth"))  # fmt: skip
+    proof.define(nu, 1 / (1 + steepness), "between 0 and 1")
     load, friction, share = _state(proof)
     ratio, t = friction / share, springpot
-    slow, fast = (
-        {"variable": t, "point": 0, "eps": t},
-        {"variable": t, "point": sp.oo, "eps": 1 / t},
-    )
-    low = 6 * (1 - nu) * t / (nu * (1 + nu) * (3 + nu))
-    high = (1 - nu) * (2 + nu) / (3 + nu)
-    proof.leading_order(share, half, reason=r"$\breve a$ at low velocity", **slow)
-    proof.leading_order(load, twelfth, reason=r"load, of the spring alone", **slow)
-    proof.leading_order(ratio, low, reason=r"$\mu R/a$", **slow)
-    proof.leading_order(share, 1 / (1 + nu), reason=r"$\breve a$ at high velocity", **fast)
-    proof.leading_order(
-        load, t / (nu * (1 + nu) ** 2 * (2 + nu)), reason="load, of the springpot alone", **fast
-    )
-    proof.leading_order(ratio, high, reason=r"$\mu R/a$: no velocity is left in it", **fast)
-    return proof.done(ratio, high)
-
-
-_BOTH = (
-    r"With $\breve \zeta = (V \tau/\breve c)^\alpha/\Gamma(\breve \nu)$ and $\alpha = 1 - \breve \nu$ for "
-    r"the order, in units of $K$. At low velocity $\mu \to \frac{a}{R} \frac{6 \alpha}{(4 - \alpha) "
-    r"\Gamma(3 - \alpha)} \left(\frac{V \tau}{2 a}\right)^\alpha$, at high velocity $\mu \to \frac{a}{R} "
-    r"\frac{\alpha (3 - \alpha)}{4 - \alpha}$ and $W \to \frac{K}{R} \frac{(2 - \alpha)^{2 - "
-    r"\alpha}}{\Gamma(4 - \alpha)} (V \tau)^\alpha a^{3 - \alpha}$; Eqs. (42), (45) and (43) for $\alpha "
-    r"= 1$. Under a dead weight $\mu$ falls as $V^{-\alpha/(3 - \alpha)}$."
-)
-
-
-def _monotonic() -> Derivation:
-    proof = _theorem("F18-springpot-monotonic", title="Fractional Kelvin-Voigt: the errors are monotonic",
-                     text=_MONOTONIC, uses=("F18-springpot", "F17-growth"))  # fmt: skip
-    proof.define(spring_share, 1 / (1 + steepness), "between 0 and 1")
-    load, friction, share = _state(proof)
-    t, nu = springpot, 1 / (1 + steepness)
     rise, heavier, longer = (t * sp.Derivative(form, t) / form for form in (friction, load, share))
     for form, what in (
         (heavier, "the load grows"),
@@ -319,15 +286,32 @@ def _monotonic() -> Derivation:
         ((2 + nu) * rise + 1 - heavier, r"under a dead weight $\mu$ falls less than its limit"),
     ):  # fmt: skip
         proof.holds(form, ">", 0, what)
-    return proof.done(form, 0)
+    slow, fast = (
+        {"variable": t, "point": 0, "eps": t},
+        {"variable": t, "point": sp.oo, "eps": 1 / t},
+    )
+    low = 6 * (1 - nu) * t / (nu * (1 + nu) * (3 + nu))
+    heavy = t / (nu * (1 + nu) ** 2 * (2 + nu))
+    high = (1 - nu) * (2 + nu) / (3 + nu)
+    proof.leading_order(load, twelfth, reason="load at low velocity, of the spring alone", **slow)
+    proof.leading_order(ratio, low, reason=r"$\mu R/a$ at low velocity", **slow)
+    proof.leading_order(load, heavy, reason="load at high velocity, of the springpot", **fast)
+    proof.leading_order(ratio, high, reason=r"$\mu R/a$ at high velocity", **fast)
+    return proof.done(ratio, high)
 
 
-_MONOTONIC = (
-    r"Slopes over $\ln \breve \zeta$, and $\breve \zeta$ grows with the velocity (F17-growth). At a fixed "
-    r"depth $\ln \breve c$ falls as $\ln \breve a$ grows, under a dead weight as $\frac{1}{3} \ln \breve "
-    r"\Lambda$ does, and on a spring by a mean of both with positive weights. The limit for low velocity "
-    r"over $\mu$ has the slope $1 - d \ln \breve m - \breve \nu\, d \ln \breve c$, and $\mu$ over that "
-    r"for high velocity, on a spring, $d \ln \breve m + (1 + 3\, d \ln \breve c)/(2 + \breve \nu)$. Both "
-    "are positive at both ends of that mean, by these inequalities, so on every support: each limit is "
-    "within a tolerance on a half-line of velocities."
+_BOTH = (
+    r"With $\breve \zeta = (V \tau/\breve c)^\alpha/\Gamma(\breve \nu)$ and $\alpha = 1 - \breve \nu$ for "
+    r"the order, in units of $K$. At low velocity $\mu \to \frac{a}{R} \frac{6 \alpha}{(4 - \alpha) "
+    r"\Gamma(3 - \alpha)} \left(\frac{V \tau}{2 a}\right)^\alpha$, at high velocity $\mu \to \frac{a}{R} "
+    r"\frac{\alpha (3 - \alpha)}{4 - \alpha}$ and $W \to \frac{K}{R} \frac{(2 - \alpha)^{2 - "
+    r"\alpha}}{\Gamma(4 - \alpha)} (V \tau)^\alpha a^{3 - \alpha}$; Eqs. (42), (45) and (43) for $\alpha "
+    r"= 1$. Under a dead weight $\mu$ falls as $V^{-\alpha/(3 - \alpha)}$. Slopes over $\ln \breve "
+    r"\zeta$, and $\breve \zeta$ grows with the velocity (F17-growth). At a fixed depth $\ln \breve c$ "
+    r"falls as $\ln \breve a$ grows, under a dead weight as $\frac{1}{3} \ln \breve \Lambda$ does, and on "
+    r"a spring by a mean of both with positive weights. The limit for low velocity over $\mu$ has the "
+    r"slope $1 - d \ln \breve m - \breve \nu\, d \ln \breve c$, and $\mu$ over that for high velocity, on "
+    r"a spring, $d \ln \breve m + (1 + 3\, d \ln \breve c)/(2 + \breve \nu)$. Both are positive at both "
+    "ends of that mean, by these inequalities, so on every support: each limit is within a tolerance on "
+    "a half-line of velocities."
 )

@@ -6,6 +6,7 @@ from typing import Any
 from kvtheory.api._edge import double_precision, scene_of
 from kvtheory.results import AsymptoteReport
 from kvtheory.scene.broadcasting import values
+from kvtheory.scene.foundations import FractionalKelvinVoigt, GeneralizedMaxwell
 from kvtheory.scene.model import Scene
 from kvtheory.scene.requirements import lacks_limits, require
 
@@ -25,8 +26,8 @@ def asymptotes(
     ----------
     scene, over
         As in `steady`; the indenter must be a parabola, a power law or a wedge on a Kelvin-Voigt
-        foundation, or a parabola on a Prony series. There the lines are the limits of F18, and the exact
-        state of the Kelvin-Voigt foundation with the same K and C.
+        foundation, or a parabola on any foundation. On a Prony series the lines are the limits of F18, and
+        the exact state of the Kelvin-Voigt foundation with the same K and C.
     tolerance
         Relative error up to which an asymptote counts as good, from 1e-10 to 1.
 
@@ -62,9 +63,10 @@ def asymptotes(
             f"`tolerance` = {tolerance!r}: expected a number from {MINIMUM_TOLERANCE} to 1"
         )
     require(lacks_limits, scene, "the theory of asymptotes")
-    from kvtheory.models.steady import prony_limits, regimes  # SciPy takes a while to import
+    # SciPy takes a while to import
+    from kvtheory.models.steady import fractional_limits, prony_limits, regimes
 
+    reports = {GeneralizedMaxwell: prony_limits, FractionalKelvinVoigt: fractional_limits}
     with double_precision(scene, over):
-        return (prony_limits if scene.foundation.arms else regimes).report(
-            scene, values(scene, over), tolerance
-        )
+        report = reports.get(type(scene.foundation), regimes).report
+        return report(scene, values(scene, over), tolerance)

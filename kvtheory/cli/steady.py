@@ -19,6 +19,7 @@ from kvtheory.cli.group import main
 from kvtheory.cli.outputs import check_results, deliver, result_options
 
 if TYPE_CHECKING:
+    from kvtheory.results import AsymptoteLine
     from kvtheory.scene import Scene
 
 
@@ -78,10 +79,11 @@ def asymptotes(
         )
     advice = "the exact solution" if report.use == "exact" else report.use
     click.echo(f"for the friction coefficient to within {tolerance:g}, use {advice}\n")
+    proved = report.certificate.kind == "proved"  # then it is the whole range
     print_table(
         (
             "asymptote", "Eq.", "formula", "value", "exact", "relative error",
-            f"within {tolerance:g} for",
+            f"within {tolerance:g} for", *(() if proved else ("proved for",)),
         ),
         [
             (
@@ -90,10 +92,18 @@ def asymptotes(
                 text(line.exact, report.units[line.quantity]),
                 "-" if math.isnan(line.relative_error) else f"{line.relative_error:+.3g}",
                 velocity_range(line.velocity_min, line.velocity_max),
+                *(() if proved else (_proved_range(line),)),
             )
             for line in report.lines
         ],
     )  # fmt: skip
+
+
+def _proved_range(line: "AsymptoteLine") -> str:
+    low = line.regime == "low"
+    return velocity_range(
+        *((0.0, line.velocity_proved) if low else (line.velocity_proved, math.inf))
+    )
 
 
 def _note_history(scene: "Scene") -> None:

@@ -47,7 +47,8 @@ class AsymptoteLine:
 
     `relative_error` is asymptote/exact - 1; `velocity_min` and `velocity_max` bound the drive
     velocities |V| in m/s at which its magnitude is within the tolerance of the report. What does
-    not exist (the high asymptote of the depth at V = 0) is NaN.
+    not exist (the high asymptote of the depth at V = 0) is NaN. Up to `velocity_proved`, or for high
+    velocity from it on, a theorem says that it is; for Kelvin-Voigt that is the whole range.
     """
 
     name: str
@@ -60,6 +61,7 @@ class AsymptoteLine:
     relative_error: Value
     velocity_min: Value
     velocity_max: Value
+    velocity_proved: Value
 
 
 @dataclass(frozen=True)

@@ -76,8 +76,7 @@ def lacks_asymptotes(scene: Scene) -> str:
 
 def lacks_limits(scene: Scene) -> str:
     """Say why the limits of steady sliding are not known; nothing if they are."""
-    on_arms = scene.foundation.arms and not lacks_parabola(scene)
-    return "" if on_arms else lacks_asymptotes(scene)
+    return lacks_asymptotes(scene) if lacks_parabola(scene) else ""
 
 
 def lacks_closed_form(scene: Scene) -> str:

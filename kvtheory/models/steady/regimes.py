@@ -162,6 +162,7 @@ def report(scene: Scene, values: Values, tolerance: float) -> AsymptoteReport:
                 relative_error=_finite(error),
                 velocity_min=plain(edge if row.regime == "high" else np.zeros_like(edge)),
                 velocity_max=plain(edge if row.regime == "low" else np.full_like(edge, np.inf)),
+                velocity_proved=plain(edge),
             )
         )
     nothing = np.full_like(critical, np.nan)
