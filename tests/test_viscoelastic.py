@@ -345,20 +345,24 @@ def test_the_advice_names_the_first_formula_that_is_within_the_tolerance():
 @pytest.mark.parametrize("support", SUPPORTS)
 def test_what_is_proved_of_a_foundation_covers_its_error(support):
     """F18-voigt and F18-glassy on random arms: within the proved range the error is within the tolerance."""
-    rng = np.random.default_rng(SUPPORTS.index(support))
-    for tolerance in (1e-6, 0.01, 0.3):
-        for _ in range(8):
-            arms = [[1e10 * 10 ** rng.uniform(-3, 5), 10 ** rng.uniform(-4, 2)] for _ in range(3)]
-            here = scene(kv.GeneralizedMaxwell(1e10, arms=arms), support)
-            for line in kv.asymptotes(here, tolerance=tolerance).lines:
-                low = line.regime == "low"
-                V = line.velocity_proved * 10.0 ** ((-1 if low else 1) * np.linspace(0, 4, 9))
-                report = kv.asymptotes(here, over={"drive.velocity": V}, tolerance=tolerance)
-                found = next(each for each in report.lines if each.name == line.name)
-                assert np.all(np.abs(found.relative_error) <= tolerance), (line.name, arms)
-                edge = line.velocity_max if low else line.velocity_min
-                assert 0 < line.velocity_proved < np.inf
-                assert (line.velocity_proved <= edge) if low else (line.velocity_proved >= edge)
+    rng, here, tolerance = (
+        np.random.default_rng(SUPPORTS.index(support)),
+        scene(ZENER, support),
+        0.01,
+    )
+    over = {}
+    for number in range(2):
+        key = f"foundation.arms[{number}]."
+        over[key + "stiffness"] = 1e10 * 10 ** rng.uniform(-3, 5, 12)
+        over[key + "relaxation_time"] = 10 ** rng.uniform(-4, 2, 12)
+    for place, line in enumerate(kv.asymptotes(here, over=over, tolerance=tolerance).lines):
+        low = line.regime == "low"
+        edge, proved = line.velocity_max if low else line.velocity_min, line.velocity_proved
+        assert np.all((0 < proved) & (proved < np.inf))
+        assert np.all((proved <= edge) if low else (proved >= edge))
+        V = proved * 10.0 ** ((-1 if low else 1) * np.array([[0.0], [0.1], [1.0]]))
+        report = kv.asymptotes(here, over=over | {"drive.velocity": V}, tolerance=tolerance)
+        assert np.all(np.abs(report.lines[place].relative_error) <= tolerance)
 
 
 def test_the_bound_of_kelvin_voigt_is_not_idle():
@@ -372,19 +376,19 @@ def test_the_bound_of_kelvin_voigt_is_not_idle():
     assert 0.002 < abs(report.lines[1].relative_error) < 0.01
 
 
-@pytest.mark.parametrize("order", [0.05, 0.4, 0.9, 1.0])
+@pytest.mark.parametrize("order", [0.05, 0.4, 0.9])
 @pytest.mark.parametrize("support", SUPPORTS)
 def test_the_limits_of_a_springpot_have_monotonic_errors(support, order):
     here = scene(kv.FractionalKelvinVoigt(1e10, 0.1, order), support)
     low, high = kv.asymptotes(here, tolerance=0.02).lines
     for line, edge, out in ((low, low.velocity_max, 1.0), (high, high.velocity_min, -1.0)):
-        V = edge * 10.0 ** (np.linspace(-3, 3, 41) / order)
+        V = edge * 10.0 ** (np.linspace(-3, 3, 13) / order)
         report = kv.asymptotes(here, over={"drive.velocity": V}, tolerance=0.02)
         off = (
             out * next(each for each in report.lines if each.name == line.name).relative_error * out
         )
         assert np.all(out * np.diff(off) > 0)
-        assert np.interp(0.0, np.linspace(-3, 3, 41), off) == pytest.approx(0.02, rel=1e-4)
+        assert np.interp(0.0, np.linspace(-3, 3, 13), off) == pytest.approx(0.02, rel=1e-4)
     assert report.certificate.kind == "proved"
     at = kv.asymptotes(here, over={"drive.velocity": report.critical_velocity[0]}).lines
     assert at[0].value == pytest.approx(at[1].value, rel=1e-12)
