@@ -551,6 +551,7 @@ SYMBOLS = tuple(
         (r"\check g", "strength of the coupling of both motions", "1", "F22-numbers"),
         (r"\check h", r"$1 - \check g$", "1", "F22-numbers"),
         (r"\check e", "what has the sign of $dF/dV$ with the damper", "1", "F22-numbers"),
+        (r"\check e_0", "the same of a dead weight without a damper", "1", "F22-numbers"),
         (r"\check H", "determinant of Hurwitz", "1", "F22-routh"),
         (r"\Omega", r"square of the frequency at onset, times $\tau^2$", "1", "F22-onset"),
         (r"\Omega_{+}", "the larger of two", "1", "F22-critical"),

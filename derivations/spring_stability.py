@@ -35,6 +35,7 @@ from .symbols import (
     lam,
     onset_square,
     onset_sum,
+    own_rise,
     per_depth,
     q,
     right,
@@ -50,7 +51,7 @@ from .transient_rates import QUADRATIC, steady_sliding
 PEELED = (1 - q) ** 2 + q
 """1 - q + q**2, without a difference of nearly equal numbers."""
 _DEAD_WEIGHT = (1 + q) * (4 * q - 1 - q**2) / (4 * q * PEELED)
-RISE = (_DEAD_WEIGHT + damper_share * (1 + q) / (2 * q)) / (1 + damper_share) + support_rate
+RISE = (own_rise + damper_share * (1 + q) / (2 * q)) / (1 + damper_share) + support_rate
 ACROSS, ALONG = (T * sigma**2 + sigma + S for T, S in ((T_z, S_z), (T_x, S_x)))
 SCALED = ACROSS * ALONG - coupling * sigma * (sigma + S_c)
 """The quartic over both dampings."""
@@ -100,6 +101,7 @@ def _numbers() -> Derivation:
     own = ((1 + q) ** 2 / (4 * PEELED) + damper_share) / (1 + damper_share)
     proof.define(uncoupled, own)
     proof.equal(1 - coupling, uncoupled, "positive: without stiffness nothing would grow")
+    proof.define(own_rise, _DEAD_WEIGHT)
     proof.define(rise, RISE)
     proof.equal(S_z - coupling * S_c, rise, "it has the sign of $dF/dV$ (F22-soft)")
     return proof.done(whole, form)
@@ -283,6 +285,7 @@ def _soft() -> Derivation:
     proof.define(support_rate, kappa / B_z)
     proof.define(damper_share, damper / B_x)
     proof.define(S_z, (1 + q) / (2 * q) + support_rate)
+    proof.define(own_rise, _DEAD_WEIGHT)
     proof.define(rise, RISE)
     proof.equal(
         S_z * (slope + damper) / (B_x + damper), rise, "what friction and damper gain with velocity"

@@ -170,8 +170,8 @@ along, along_s, along_ss, along_0, swing, small = sp.symbols(
 lam_0 = sp.Symbol("lambda_0", real=True)
 B_z, T_z, T_x, S_z, S_x, S_c, coupling, uncoupled = _positive("B_z T_z T_x S_z S_x S_c g_c h_c")
 Omega, lag_plus, lag_minus, T_flutter = _positive("Omega p_p p_m T_f")
-rise, bias, onset_sum, hurwitz, Omega_plus, Omega_minus, onset_square = sp.symbols(
-    "e_c m_c n_c H_c Omega_p Omega_m D_c", real=True
+rise, own_rise, bias, onset_sum, hurwitz, Omega_plus, Omega_minus, onset_square = sp.symbols(
+    "e_c e_0 m_c n_c H_c Omega_p Omega_m D_c", real=True
 )
 sinks = sp.Symbol("d_l", real=True)
 """How the depth changes with the drive number in steady sliding."""
@@ -355,6 +355,7 @@ TEX = {
     coupling: r"\check g",
     uncoupled: r"\check h",
     rise: r"\check e",
+    own_rise: r"\check e_0",
     Omega: r"\Omega",
     Omega_plus: r"\Omega_{+}",
     Omega_minus: r"\Omega_{-}",

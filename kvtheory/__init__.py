@@ -1,6 +1,6 @@
 """Sliding friction of a rigid indenter on a Kelvin-Voigt foundation: derived, exact, checked."""
 
-from kvtheory.api import asymptotes, compare, elements, solve, steady, sweep, transient
+from kvtheory.api import asymptotes, compare, elements, solve, stability, steady, sweep, transient
 from kvtheory.reference_problems import problem, problems
 from kvtheory.results import (
     AsymptoteReport,
@@ -10,6 +10,7 @@ from kvtheory.results import (
     QuadratureError,
     Simulation,
     Solution,
+    Stability,
     SteadyState,
     Sweep,
     ToleranceError,
@@ -68,6 +69,7 @@ __all__ = [
     "SmoothRamp",
     "Solution",
     "Sphere",
+    "Stability",
     "SteadyState",
     "Suspended",
     "Sweep",
@@ -83,6 +85,7 @@ __all__ = [
     "problem",
     "problems",
     "solve",
+    "stability",
     "steady",
     "sweep",
     "to_toml",

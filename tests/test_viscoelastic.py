@@ -358,7 +358,7 @@ def test_what_is_proved_of_a_foundation_covers_its_error(support):
     for place, line in enumerate(kv.asymptotes(here, over=over, tolerance=tolerance).lines):
         low = line.regime == "low"
         edge, proved = line.velocity_max if low else line.velocity_min, line.velocity_proved
-        assert np.all((0 < proved) & (proved < np.inf))
+        assert np.all((proved > 0) & (proved < np.inf))
         assert np.all((proved <= edge) if low else (proved >= edge))
         V = proved * 10.0 ** ((-1 if low else 1) * np.array([[0.0], [0.1], [1.0]]))
         report = kv.asymptotes(here, over=over | {"drive.velocity": V}, tolerance=tolerance)

@@ -6,14 +6,17 @@ from typing import Any
 
 from kvtheory.api._edge import double_precision, scene_of, times_of
 from kvtheory.api._elements import elements
+from kvtheory.api._stability import stability
 from kvtheory.api._steady import steady
 from kvtheory.api._transient import transient
 from kvtheory.ladder import series, sliding
 from kvtheory.ladder.climbing import Request, climb
 from kvtheory.progress import Progress
-from kvtheory.results import STEADY_UNITS, TRANSIENT_UNITS, Solution
+from kvtheory.results import STEADY_UNITS, TRANSIENT_UNITS, Solution, ToleranceError
+from kvtheory.results.steady import UNKNOWN, UNSTABLE
 from kvtheory.scene.model import Scene
 from kvtheory.scene.quantities import SceneError, nearest, problem
+from kvtheory.scene.requirements import lacks_paper_model
 
 MINIMUM_RTOL, MAXIMUM_RTOL = 1e-14, 1.0
 """Below, rounding decides; above, any number would do."""
@@ -61,7 +64,8 @@ def solve(
     ValueError
         If `rtol` is out of range.
     ToleranceError
-        If no model is known to be within the tolerance; the message says how close each came.
+        If no model is known to be within the tolerance; the message says how close each came. Also if
+        steady sliding is asked for and not known to be stable on the spring in the drive.
 
     Examples
     --------
@@ -94,6 +98,7 @@ def solve(
     request = Request(names, rtol, times, over_time)
     if not over_time:
         scene.drive.final_velocity  # noqa: B018  # it raises if the drive has none
+        _refuse_unstable(scene)
         rungs = sliding.rungs(steady)
     else:
         follow, simulate = (
@@ -103,6 +108,16 @@ def solve(
         rungs = series.rungs(series.Models(steady, follow, simulate))
     with double_precision(scene):
         return climb(scene, request, rungs)
+
+
+def _refuse_unstable(scene: Scene) -> None:
+    """Raise unless steady sliding is known to last on the spring in the drive."""
+    if scene.drive.rigid:
+        return
+    known = not lacks_paper_model(scene)
+    if not known or not stability(scene, quantity="stable").stable:
+        told = UNSTABLE.format("") if known else UNKNOWN
+        raise ToleranceError(f"{told} Ask for a series, with `at`.")
 
 
 def _names(

@@ -1,15 +1,22 @@
 """Steady sliding: `steady`."""
 
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import Any
 
 from kvtheory.api._edge import double_precision, scene_of
+from kvtheory.api._stability import stability
 from kvtheory.models.steady.methods import METHODS
 from kvtheory.results import SteadyState
 from kvtheory.scene.broadcasting import values
 from kvtheory.scene.model import Scene
 from kvtheory.scene.quantities import nearest
-from kvtheory.scene.requirements import lacks_asymptotes, lacks_closed_form, lacks_quadrature
+from kvtheory.scene.requirements import (
+    lacks_asymptotes,
+    lacks_closed_form,
+    lacks_paper_model,
+    lacks_quadrature,
+)
 
 LACKS = {
     "exact": lacks_closed_form,
@@ -44,7 +51,8 @@ def steady(
     Returns
     -------
     SteadyState
-        Floats, or arrays of the broadcast shape, in SI units, with a certificate.
+        Floats, or arrays of the broadcast shape, in SI units, with a certificate; with a spring in the drive
+        also whether steady sliding is stable, as by `stability`.
 
     Raises
     ------
@@ -69,8 +77,15 @@ def steady(
     """
     scene = scene_of(scene)
     chosen = method_for(scene, method)
+    given = values(scene, over)
     with double_precision(scene, over):
-        return METHODS[chosen](scene, values(scene, over))
+        state = METHODS[chosen](scene, given)
+    if "drive.stiffness" not in given:
+        return state
+    known = not lacks_paper_model(scene)
+    return replace(
+        state, stable=stability(scene, over=over, quantity="stable").stable if known else None
+    )
 
 
 def method_for(scene: Scene, method: str | None) -> str:

@@ -9,6 +9,7 @@ from kvtheory.cli import (  # noqa: F401  # each adds its command to `main`
     explore,
     scene,
     solve,
+    stability,
     steady,
     sweep,
     transient,

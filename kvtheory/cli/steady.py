@@ -42,10 +42,12 @@ def steady(
     state = solve(checked, method=method)
     if deliver(state, output, plot, as_json=as_json):
         return
-    _note_history(checked)
+    note_history(checked)
     click.echo(f"Steady sliding, {checked.support.kind} support, model: {state.model}\n")
     print_steady(state, state.units)
     click.echo(f"\nErrors are {state.certificate.kind}: {state.certificate.statement}.")
+    if state.unstable:
+        click.echo(state.unstable)
 
 
 @scene_command(main, "kvtheory asymptotes --tolerance 0.01")
@@ -65,7 +67,7 @@ def asymptotes(
     if as_json:
         print_json(report.as_dict())
         return
-    _note_history(checked)
+    note_history(checked)
     ratio = abs(report.velocity) / report.critical_velocity
     click.echo(
         f"{checked.support.kind} support, V = {text(report.velocity, 'm/s')}, critical velocity "
@@ -106,7 +108,7 @@ def _proved_range(line: "AsymptoteLine") -> str:
     )
 
 
-def _note_history(scene: "Scene") -> None:
+def note_history(scene: "Scene") -> None:
     """Say which velocity of a history counts in steady sliding."""
     if scene.drive.history is not None:
         velocity = text(scene.drive.final_velocity, "m/s")

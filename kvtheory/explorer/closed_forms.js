@@ -321,7 +321,8 @@ function uncoupled(q, n_x) {
 
 /** what has the sign of dF/dV + c_x; theorem F22-numbers. */
 function friction_rise(q, n_x, S_s) {
-  return S_s + (n_x * (q + 1) / (2 * q) + (q + 1) * (-q * q + 4 * q - 1) / (4 * q * (q + (1 - q) * (1 - q)))) / (n_x + 1);
+  const e_0 = (q + 1) * (-q * q + 4 * q - 1) / (4 * q * (q + (1 - q) * (1 - q)));
+  return S_s + (e_0 + n_x * (q + 1) / (2 * q)) / (n_x + 1);
 }
 
 /** the square of T_z^2 times the difference of both Omega; theorem F22-critical. */

@@ -9,6 +9,7 @@ from kvtheory.results.errors import (
     TransientError,
 )
 from kvtheory.results.solution import ClimbStep, Solution
+from kvtheory.results.stability import Stability
 from kvtheory.results.steady import AsymptoteLine, AsymptoteReport, SteadyState
 from kvtheory.results.sweep import Axis, Failure, Sweep
 from kvtheory.results.table import (
@@ -44,6 +45,7 @@ __all__ = [
     "Simulation",
     "Solution",
     "SprungTransient",
+    "Stability",
     "SteadyState",
     "Sweep",
     "ToleranceError",

@@ -4,9 +4,19 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, fields
 from typing import Any
 
+import numpy as np
+
 from kvtheory.results.certificate import Certificate, Value, record
 from kvtheory.results.presented import Presented
 from kvtheory.results.table import STEADY_UNITS
+
+UNSTABLE = (
+    "Steady sliding is unstable{} on the spring in the drive: the indenter will not slide so; "
+    "see `stability`."
+)
+UNKNOWN = (
+    "Whether steady sliding is stable on this spring is known for a parabola on Kelvin-Voigt only."
+)
 
 
 @dataclass(frozen=True, repr=False)
@@ -17,6 +27,9 @@ class SteadyState(Presented):
     x with the drive velocity: the leading edge is at x < 0 for a positive velocity. Of a ball they are
     those of its middle plane, across which it touches over |y| < a sqrt(R'/R); its forces are whole, in N,
     as `units` says.
+
+    `stable` says whether it lasts: with a rigid drive it does; of a spring in the drive it is None where that
+    is not known.
     """
 
     depth: Value
@@ -35,6 +48,20 @@ class SteadyState(Presented):
         default_factory=lambda: STEADY_UNITS, repr=False, compare=False
     )
     """The SI unit of each quantity."""
+    stable: Any = True
+
+    @property
+    def unstable(self) -> str:
+        """Say in one line that what is told here does not happen, or that this is not known; else nothing."""
+        if self.stable is None:
+            return UNKNOWN
+        count = np.size(self.stable) - np.count_nonzero(self.stable)
+        of = "" if np.ndim(self.stable) == 0 else f" in {count} of {np.size(self.stable)} scenes"
+        return UNSTABLE.format(of) if count else ""
+
+    def __repr__(self) -> str:
+        """Say what it is in a few lines, and whether it happens."""
+        return "\n".join([super().__repr__(), *([self.unstable] if self.unstable else [])])
 
     def as_dict(self) -> dict[str, Any]:
         """Return plain Python values, ready for JSON; what does not exist is None."""

@@ -77,6 +77,7 @@ SHOWN_UNITS = {
     "Pa": ("MPa", 1e-6),
     "kg": ("kg", 1.0),
     "kg/m": ("kg/mm", 1e-3),
+    "Hz": ("Hz", 1.0),
 }
 """For people, each SI unit as the paper has it, and the factor to it; JSON and CSV are in SI."""
 

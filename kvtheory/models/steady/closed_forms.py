@@ -337,7 +337,8 @@ def uncoupled(q: Value, n_x: Value) -> Value:
 
 def friction_rise(q: Value, n_x: Value, S_s: Value) -> Value:
     """Return what has the sign of dF/dV + c_x; theorem F22-numbers."""
-    return S_s + (n_x * (q + 1) / (2 * q) + (q + 1) * (-q * q + 4 * q - 1) / (4 * q * (q + (1 - q) * (1 - q)))) / (n_x + 1)
+    e_0 = (q + 1) * (-q * q + 4 * q - 1) / (4 * q * (q + (1 - q) * (1 - q)))
+    return S_s + (e_0 + n_x * (q + 1) / (2 * q)) / (n_x + 1)
 
 
 def onset_square(T_z: Value, g_c: Value, S_c: Value, h_c: Value, e_c: Value) -> Value:

@@ -112,10 +112,15 @@ def scaled_root(drive_number: Array, support_number: Array) -> Array:
 def _balance(
     R: Array, K: Array, tau: Array, V: Array, weight: Array, spring: Array
 ) -> tuple[Array, ...]:
+    return _contact(R, K, tau, V, depth_at_load(R, K, tau, V, weight, spring))
+
+
+def depth_at_load(R: Array, K: Array, tau: Array, V: Array, weight: Array, spring: Array) -> Array:
+    """Return the depth at which the load is carried, all arguments as in `at_load`."""
     a_0 = np.cbrt(1.5 * R * (weight / K))  # weight = (4/3) K a_0 delta_0, delta_0 = a_0^2/(2 R)
     delta_0 = a_0 * (a_0 / (2.0 * R))
     s = scaled_root(np.abs(V) * tau / a_0, spring * (delta_0 / weight))
-    return _contact(R, K, tau, V, s * s * delta_0)
+    return s * s * delta_0
 
 
 def _contact(R: Array, K: Array, tau: Array, V: Array, delta: Array) -> tuple[Array, ...]:

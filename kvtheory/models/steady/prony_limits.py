@@ -70,7 +70,7 @@ def report(scene: Scene, values: Values, tolerance: float) -> AsymptoteReport:
 def _sums(scene: Scene, values: Values) -> list[Array]:
     """Return sum K_i tau_i^n for n from 2 to -2."""
     arms = arms_of(scene.foundation, values)
-    return [sum(k * time**n for k, time in arms) for n in (2, 1, 0, -1, -2)]  # type: ignore[misc]
+    return [sum(k * time**n for k, time in arms) for n in (2, 1, 0, -1, -2)]
 
 
 def _formulas(scene: Scene) -> dict[str, At]:

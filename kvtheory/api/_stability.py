@@ -1,0 +1,104 @@
+"""Whether steady sliding is stable: `stability`."""
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kvtheory.api._edge import double_precision, scene_of
+from kvtheory.results import Stability
+from kvtheory.scene.broadcasting import values
+from kvtheory.scene.model import Scene, lacks_mass
+from kvtheory.scene.quantities import SceneError, nearest, problem
+from kvtheory.scene.requirements import lacks_paper_model, require
+
+QUANTITIES = (
+    "stable", "rates", "time_constants", "critical_stiffness", "lower_critical_stiffness",
+    "critical_velocity", "frequency",
+)  # fmt: skip
+
+
+def stability(
+    scene: Scene | None = None,
+    *,
+    over: Mapping[str, Any] | None = None,
+    quantity: str | Sequence[str] | None = None,
+) -> Stability:
+    """Say whether steady sliding is stable, and from which stiffness of the spring in the drive on.
+
+    The spring is `drive.stiffness`, with `drive.damping` and `drive.mass`. With a rigid drive steady
+    sliding is stable: the rates are the two of the motion across the foundation (theorem F12), and the
+    critical stiffness is that of a spring of its own mass, without a damper, that might take its place.
+
+    Parameters
+    ----------
+    scene, over
+        As in `steady`; the indenter must be a parabola on a Kelvin-Voigt foundation. `over` may give
+        ``"drive.stiffness"`` also where the drive of the scene is rigid.
+    quantity
+        Name of what is wanted, or several; without it, everything. The critical stiffness alone takes
+        less than a microsecond for each scene of an array, the critical velocity and the rates take longer.
+
+    Returns
+    -------
+    Stability
+        Values in SI, or arrays of the broadcast shape, with a certificate.
+
+    Raises
+    ------
+    SceneError
+        As in `steady`, if the mass of a fixed indenter on a spring is not known, or if a quantity is wrong.
+    ValueError
+        If the indenter is no parabola or the foundation not Kelvin-Voigt.
+
+    Examples
+    --------
+    >>> import kvtheory as kv
+    >>> spring = kv.Drive(velocity="91 mm/s", stiffness="1 MN/m^2")
+    >>> found = kv.stability(kv.Scene(drive=spring))
+    >>> bool(found.stable), f"{found.critical_stiffness:.4g} N/m^2, {found.critical_velocity:.4g} m/s"
+    (False, '6.879e+06 N/m^2, 0.05177 m/s')
+    >>> speeds = {"drive.velocity": ["20 mm/s", "39 mm/s"]}
+    >>> kv.stability(over=speeds, quantity="critical_stiffness").critical_stiffness.round()
+    array([    nan, 172166.])
+
+    References
+    ----------
+    Fact F22 of the derivations.
+    """
+    scene = scene_of(scene)
+    require(lacks_paper_model, scene, "the stability of steady sliding")
+    wanted = _names(quantity)
+    given = _with_drive(scene, values(scene, over), over or {})
+    from kvtheory.models.steady import stable_sliding
+
+    with double_precision(scene, over):
+        return stable_sliding.solve(given, wanted)
+
+
+def _names(quantity: str | Sequence[str] | None) -> frozenset[str]:
+    names = [quantity] if isinstance(quantity, str) else list(quantity or QUANTITIES)
+    wrong = [name for name in names if name not in QUANTITIES]
+    if wrong:
+        raise SceneError(
+            [problem("`quantity`", name, nearest(str(name), QUANTITIES)) for name in wrong]
+        )
+    return frozenset(names)
+
+
+def _with_drive(
+    scene: Scene, given: Mapping[str, NDArray[np.float64]], over: Mapping[str, Any]
+) -> dict[str, NDArray[np.float64]]:
+    """Return the values with the mass along x and the damper, also of a rigid drive."""
+    mass = given.get("drive.mass")
+    if mass is None or (scene.drive.mass is None and "drive.mass" not in over):
+        mass = given.get("support.mass")
+    if mass is None:
+        if "drive.stiffness" in given:
+            raise SceneError(
+                lacks_mass(scene.support, scene.drive.changed(velocity=0.0, stiffness=1.0))
+            )
+        mass = np.full_like(given["drive.velocity"], np.nan)  # it cannot move at all
+    nothing = np.zeros_like(given["drive.velocity"])
+    return {"drive.damping": nothing, **given, "drive.mass": mass}

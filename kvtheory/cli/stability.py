@@ -1,0 +1,80 @@
+"""`kvtheory stability`: whether steady sliding is stable on a spring."""
+
+import math
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import click
+
+from kvtheory.cli.console import print_json, print_table, scene_command, shown
+from kvtheory.cli.group import main
+from kvtheory.cli.steady import note_history
+
+if TYPE_CHECKING:
+    from kvtheory.results import Stability
+
+UNITS = {
+    "critical_stiffness": "N/m^2",
+    "lower_critical_stiffness": "N/m^2",
+    "frequency": "Hz",
+    "critical_velocity": "m/s",
+}
+
+
+@scene_command(
+    main,
+    'kvtheory stability --set drive.velocity="91 mm/s" --set drive.stiffness="1 MN/m^2"',
+)
+def stability(scene: str | None, overrides: Sequence[str], as_json: bool) -> None:
+    """Say whether steady sliding is stable, and how stiff the drive must be.
+
+    The indenter hangs on the spring drive.stiffness along the foundation, with drive.damping and
+    drive.mass; without a stiffness the drive is rigid.
+    """
+    from kvtheory.api import stability as examine
+    from kvtheory.scene import load_scene
+
+    checked = load_scene(scene, overrides)
+    found = examine(checked)
+    if as_json:
+        print_json(found.as_dict())
+        return
+    note_history(checked)
+    click.echo(f"Steady sliding, {checked.support.kind} support: {_verdict(found)}\n")
+    errors = found.certificate.relative_error
+    print_table(
+        ("quantity", "value", "unit", "relative error"),
+        [
+            (name, *shown(getattr(found, name), unit), _number(errors.get(name, math.nan)))
+            for name, unit in UNITS.items()
+        ],
+    )
+    if found.rates.size:
+        click.echo()
+        print_table(
+            ("rate [1/s]", "frequency [Hz]", "time constant [ms]", "relative error"),
+            _rates(found),
+        )
+    click.echo(f"\nErrors are {found.certificate.kind}: {found.certificate.statement}.")
+
+
+def _verdict(found: "Stability") -> str:
+    """Say in a line what holds, and for which drive."""
+    if found.rigid_drive:
+        return "stable, for the drive is rigid; the critical stiffness is that of a spring in its place"
+    return "stable" if found.stable else "unstable, between both critical stiffnesses of the spring"
+
+
+def _number(value: float) -> str:
+    return f"{value:.1e}" if math.isfinite(value) else "-"
+
+
+def _rates(found: "Stability") -> list[tuple[str, str, str, str]]:
+    """Return a row for each rate; a time constant below zero is that of a motion that grows."""
+    errors = found.certificate.relative_error["rates"]
+    return [
+        (f"{real:.6g}", f"{imaginary / math.tau:.6g}", shown(time, "s")[0], _number(error))
+        for (real, imaginary), time, error in zip(
+            found.rates, found.time_constants, errors, strict=True
+        )
+    ]

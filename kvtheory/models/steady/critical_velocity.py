@@ -1,0 +1,75 @@
+"""The smallest velocity at which the stiffness of a spring in the drive becomes critical.
+
+The stiffnesses between which steady sliding is unstable are closed forms of the velocity (theorem F22),
+not always monotonic: a damper or a suspension makes steady sliding stable again at a high velocity, a
+heavy indenter may flutter at a low one. So the first change is looked for on a grid, then bisected.
+"""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kvtheory.models.steady.stability import Values, numbers, onsets
+
+Array = NDArray[np.float64]
+
+DECADES = (-8.0, 20.0)
+"""Powers of ten of the drive number V tau/a_0 between which a change is looked for."""
+PER_DECADE = 16
+BISECTIONS = 60
+"""To the last digit of a velocity, from a cell of the grid."""
+NEARBY = 1e-5
+"""Relative difference of velocities for the slope of the critical stiffness."""
+SOFT, UNSTABLE, STIFF, NEVER = -1, 0, 1, 2
+"""How the stiffness of the spring lies to the critical ones: below both, between, above, or none is."""
+
+
+def critical_velocity(values: Values, stiffness: Array) -> tuple[Array, Array]:
+    """Return the velocity in m/s for each scene of flat arrays, NaN if there is none, and its error."""
+    column = {key: np.reshape(each, (-1, 1)) for key, each in values.items()}
+    spring = stiffness.reshape(-1, 1)
+    if "support.depth" in column:
+        nothing = np.full(stiffness.shape, np.nan)
+        return nothing, nothing
+    tau = column["foundation.retardation_time"]
+    load = column["support.weight"] / column["foundation.stiffness"]
+    unit = np.log(np.cbrt(1.5 * column["indenter.radius"] * load) / tau)
+
+    def state(log_velocity: Array) -> NDArray[np.int_]:
+        lower, upper = onsets(numbers(column, np.exp(log_velocity)), tau)
+        places = [spring > upper.stiffness, spring < lower.stiffness, spring <= upper.stiffness]
+        return np.select(places, [STIFF, SOFT, UNSTABLE], NEVER)
+
+    count = round((DECADES[1] - DECADES[0]) * PER_DECADE) + 1
+    grid = unit + np.log(10.0) * np.linspace(*DECADES, count)
+    states = state(grid)
+    before, after = states[:, :-1], states[:, 1:]
+    changes = (after == UNSTABLE) | (before * after == SOFT * STIFF)
+    first, some = changes.argmax(axis=1)[:, np.newaxis], changes.any(axis=1)
+    low, high, was = (
+        np.take_along_axis(each, first, axis=1) for each in (grid[:, :-1], grid[:, 1:], before)
+    )
+    across = np.take_along_axis(after, first, axis=1) != UNSTABLE
+    for _ in range(BISECTIONS):
+        middle = 0.5 * (low + high)
+        now = state(middle)
+        stays = np.where(across, now == was, now != UNSTABLE)
+        low, high = np.where(stays, middle, low), np.where(stays, high, middle)
+    velocity = np.where(some, np.exp(high[:, 0]), np.nan)
+    return velocity, np.where(some, _error(column, tau, spring, high)[:, 0], np.nan)
+
+
+def _error(values: Values, tau: Array, spring: Array, log_velocity: Array) -> Array:
+    """Return the relative error of a velocity: that of the stiffness over how steeply it depends on it.
+
+    Of an end at which both critical stiffnesses meet nothing is known.
+    """
+    near = [onsets(numbers(values, np.exp(log_velocity + step)), tau) for step in (-NEARBY, NEARBY)]
+    found = []
+    for low, high in zip(*near, strict=True):
+        with np.errstate(divide="ignore", invalid="ignore"):
+            steepness = np.abs(np.log(high.stiffness / low.stiffness)) / (2.0 * NEARBY)
+            distance = np.abs(np.log(low.stiffness / spring))
+            found.append((distance, low.error / steepness))
+    (of_lower, lower), (of_upper, upper) = found
+    error = np.where(of_lower < of_upper, lower, upper) + 4.0 * 2.0**-52 * np.abs(log_velocity)
+    return np.where(np.isfinite(error), error, np.inf)

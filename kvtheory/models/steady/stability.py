@@ -1,0 +1,134 @@
+"""Whether steady sliding is stable if the drive holds the indenter by a spring: closed forms (theorem F22).
+
+Small motions across the foundation and along it, each divided by the damping of its contact, obey
+
+    (T_z sigma^2 + sigma + S_z) (T_x sigma^2 + sigma + S_x) = g sigma (sigma + S_c)
+
+with sigma in 1/tau. Where stability is lost the frequency, Omega = omega^2, is a root of a quadratic
+without T_x and S_x, and the spring is the one that gives this frequency with the mass along x.
+"""
+
+from collections.abc import Mapping
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kvtheory.models.steady import closed_forms as cf
+from kvtheory.models.steady.exact import depth_at_load
+
+Array = NDArray[np.float64]
+Values = Mapping[str, Array]
+
+ROUNDING = 32 * 2.0**-52
+"""Relative error of each number of the rates, twice what its some thirty operations were seen to lose."""
+
+
+class Numbers(NamedTuple):
+    """The numbers of the rates (theorem F22-numbers); `unit` is the stiffness in N/m^2 of S_x = 1.
+
+    Of a fixed indenter, which cannot move across, T_z is 0 and S_z infinite.
+    """
+
+    T_z: Array
+    T_x: Array
+    S_z: Array
+    S_c: Array
+    g: Array
+    h: Array
+    e: Array
+    unit: Array
+
+
+class Onset(NamedTuple):
+    """A stiffness in N/m^2 at which stability is lost, the frequency in Hz there, and the error of both.
+
+    Where there is none they are NaN.
+    """
+
+    stiffness: Array
+    frequency: Array
+    error: Array
+
+
+def numbers(values: Values, velocity: Array | None = None) -> Numbers:
+    """Return the numbers of a scene that can be moved along x, at its velocity or another.
+
+    `values` holds SI by dotted key, with the ``drive.mass`` and ``drive.damping``.
+    """
+    R, K = values["indenter.radius"], values["foundation.stiffness"]
+    tau = values["foundation.retardation_time"]
+    V = np.abs(values["drive.velocity"] if velocity is None else velocity)
+    spring = values.get("support.stiffness", np.zeros_like(tau))
+    depth = values.get("support.depth")
+    held = depth is not None
+    if depth is None:
+        depth = depth_at_load(R, K, tau, V, values["support.weight"], spring)
+    a = np.sqrt(2.0 * R * depth)
+    l = V * tau / a
+    q = cf.trailing_edge_ratio(l)
+    along = K * tau * cf.damping_along(a / R, q) * R / 3.0  # dF/dV, in N s/m^2
+    damped = along + values["drive.damping"]
+    n_x = values["drive.damping"] / along
+    unit, T_x = damped / tau, values["drive.mass"] / (damped * tau)
+    g, h, S_c = cf.coupling(l, q, n_x), cf.uncoupled(q, n_x), cf.coupling_rate(q)
+    if held:
+        endless = np.full_like(q, np.inf)
+        return Numbers(np.zeros_like(q), T_x, endless, S_c, g, h, endless, unit)
+    across = K * tau * cf.damping_across(a, q) * (4.0 / 3.0)  # dF_z/d(ddelta/dt), in N s/m^2
+    S_s = spring * tau / across
+    return Numbers(
+        T_z=values["support.mass"] / (across * tau),
+        T_x=T_x,
+        S_z=cf.relaxation_rate(q, S_s),
+        S_c=S_c,
+        g=g,
+        h=h,
+        e=cf.friction_rise(q, n_x, S_s),
+        unit=unit,
+    )
+
+
+def onsets(given: Numbers, tau: Array) -> tuple[Onset, Onset]:
+    """Return between which stiffnesses steady sliding is unstable: the lower one and the upper one.
+
+    Where friction falls with the velocity, every softer spring is unstable: the lower one is then 0.
+    """
+    T_z, T_x, S_z, S_c, g, h, e, unit = given
+    with np.errstate(invalid="ignore", divide="ignore"):  # of a fixed indenter, which is stable
+        square, n = (form(T_z, g, S_c, h, e) for form in (cf.onset_square, cf.onset_sum))
+        falls = e < 0.0
+        some = falls | ((n < 0.0) & (square >= 0.0))
+        s = np.sqrt(np.where(some, square, np.nan))
+        error = _error(given, s, n)
+        slow = -2.0 * S_z * e / (s + n)  # of a light indenter; else there is no difference below
+        Omega = np.where(n > 0.0, slow, (s - n) / (2.0 * T_z * T_z))
+        lag = cf.onset_lag(T_z, g, S_c, h, S_z, s)
+        upper = Onset(unit * cf.onset_stiffness(T_x, S_c, Omega, lag), _hertz(Omega, tau), error)
+        Omega = 2.0 * S_z * e / (s - n)
+        lag = cf.onset_lag_of_lower(T_z, g, S_c, h, s)
+        stiffness = unit * cf.onset_stiffness(T_x, S_c, Omega, lag)
+        stiffness, frequency = (np.where(falls, 0.0, x) for x in (stiffness, _hertz(Omega, tau)))
+    return Onset(stiffness, frequency, np.where(falls, 0.0, error)), upper
+
+
+def _hertz(Omega: Array, tau: Array) -> Array:
+    return np.sqrt(Omega) / (2.0 * np.pi * tau)
+
+
+def _error(given: Numbers, s: Array, n: Array) -> Array:
+    """Return how far rounding moves the roots, relative to them, to first order and twice over.
+
+    It grows without bound where friction neither rises nor falls, and where both roots meet.
+    """
+    T_z, _, S_z, S_c, g, h, e, _ = given
+    m = h - T_z * g * S_c
+    of_m, of_e = h + T_z * g * S_c, S_z + g * S_c
+    of_s = np.abs(m) * of_m / s + 2.0 * h * T_z * (of_e + np.abs(e)) / s
+    of_sum = (of_s + of_m + 2.0 * T_z * of_e) / s
+    return 2.0 * ROUNDING * (4.0 + of_sum + np.where(n > 0.0, of_e / np.abs(e), 0.0))
+
+
+def is_stable(stiffness: Array, lower: Onset, upper: Onset) -> Any:
+    """Return whether a stiffness is outside of those between which steady sliding is unstable."""
+    return ~((stiffness >= lower.stiffness) & (stiffness <= upper.stiffness))

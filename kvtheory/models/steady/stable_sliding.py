@@ -1,0 +1,93 @@
+"""Stability of steady sliding on whole arrays of scenes, block by block, with its certificate."""
+
+import math
+from collections.abc import Sequence, Set
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kvtheory.models.steady.critical_velocity import critical_velocity
+from kvtheory.models.steady.rates import rates
+from kvtheory.models.steady.stability import Values, is_stable, numbers, onsets
+from kvtheory.results import Certificate, Stability
+
+BLOCK = 8192
+"""Scenes treated at a time: the intermediate arrays of a block stay in the processor's cache."""
+ON_GRID = 64
+"""Scenes treated at a time where each is looked at on a grid of velocities."""
+
+STATEMENT = (
+    "closed forms (theorem F22) in double precision, with what rounding makes of them to first order; "
+    "rates by their polynomial, the velocity to where its stiffness is critical"
+)
+SLOW = "rates", "time_constants"
+"""What has a last axis for the rates."""
+
+
+def solve(values: Values, wanted: Set[str]) -> Stability:
+    """Return what is wanted of scenes, given by SI by dotted key in arrays of one shape.
+
+    They hold a ``drive.mass`` and ``drive.damping``, and ``drive.stiffness`` unless the drive is rigid.
+    """
+    shape = values["drive.velocity"].shape
+    size = ON_GRID if "critical_velocity" in wanted else BLOCK
+    flat = {key: np.broadcast_to(each, shape).reshape(-1) for key, each in values.items()}
+    starts = range(0, max(math.prod(shape), 1), size)
+    parts = [
+        _block({key: each[start : start + size] for key, each in flat.items()}, wanted)
+        for start in starts
+    ]
+    found, errors = (
+        {name: _joined([part[which][name] for part in parts], shape) for name in parts[0][which]}
+        for which in (0, 1)
+    )
+    return Stability(
+        **found,
+        rigid_drive="drive.stiffness" not in values,
+        model="exact",
+        certificate=Certificate("estimated", STATEMENT, errors),
+    )
+
+
+def _block(values: Values, wanted: Set[str]) -> tuple[dict[str, Any], dict[str, Any]]:
+    """Return the quantities of flat arrays by name, NaN where they are not wanted, and their errors."""
+    tau, stiffness = values["foundation.retardation_time"], values.get("drive.stiffness")
+    given = numbers(values)
+    lower, upper = onsets(given, tau)
+    nothing = np.full(tau.shape, np.nan)
+    found: dict[str, Any] = {
+        "stable": np.full(tau.shape, True),
+        "rates": nothing[:, np.newaxis, np.newaxis],
+        "time_constants": nothing[:, np.newaxis],
+        "critical_stiffness": upper.stiffness,
+        "lower_critical_stiffness": lower.stiffness,
+        "critical_velocity": nothing,
+        "frequency": upper.frequency,
+    }
+    errors = {
+        "critical_stiffness": upper.error,
+        "lower_critical_stiffness": lower.error,
+        "frequency": upper.error,
+    }
+    if stiffness is not None:
+        found["stable"] = is_stable(stiffness, lower, upper)
+        if "critical_velocity" in wanted:
+            found["critical_velocity"], errors["critical_velocity"] = critical_velocity(
+                values, stiffness
+            )
+    if not wanted.isdisjoint(SLOW):
+        sigma, error = rates(given, tau, stiffness)
+        found["rates"] = np.stack([sigma.real, sigma.imag], axis=-1)
+        with np.errstate(divide="ignore"):  # neither grows nor fades
+            found["time_constants"] = -1.0 / sigma.real
+            errors["rates"] = error
+            errors["time_constants"] = error * np.abs(sigma) / np.abs(sigma.real)
+    return found, errors
+
+
+def _joined(parts: Sequence[NDArray[Any]], shape: tuple[int, ...]) -> Any:
+    """Join the blocks of a quantity to the shape of the scenes; of one scene it is a plain value."""
+    whole = np.concatenate(parts)
+    array = whole.reshape((*shape, *whole.shape[1:]))
+    return array if array.ndim else array.item()

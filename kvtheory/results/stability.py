@@ -1,0 +1,35 @@
+"""Whether steady sliding is stable."""
+
+from dataclasses import dataclass
+from typing import Any
+
+from kvtheory.results.certificate import Certificate, Value, record
+
+
+@dataclass(frozen=True)
+class Stability:
+    """Stability of steady sliding: each quantity a value, or an array where the input was an array.
+
+    `rates` holds, along its last axis but one, the rates of small motions in 1/s as pairs (real,
+    imaginary), fastest growth first, and `time_constants` -1/real of each in s: negative of a motion that
+    grows. `critical_stiffness` (N/m^2) is that of the spring in the drive above which steady sliding is
+    stable, `lower_critical_stiffness` that below which it is, too: 0 where friction falls with the
+    velocity. `frequency` (Hz) is that of the motion at the onset of instability, at the upper one.
+    `critical_velocity` (m/s) is the smallest at which the present stiffness becomes critical.
+    What does not exist, and what was not asked for, is NaN.
+    """
+
+    stable: Any
+    rates: Value
+    time_constants: Value
+    critical_stiffness: Value
+    lower_critical_stiffness: Value
+    critical_velocity: Value
+    frequency: Value
+    rigid_drive: bool
+    model: str
+    certificate: Certificate
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return plain Python values, ready for JSON; what does not exist is None."""
+        return record(self)
