@@ -95,7 +95,8 @@ def lacks_quadrature(scene: Scene) -> str:
     >>> lacks_quadrature(Scene())
     ''
     """
-    if scene.indenter.convex or not (lacking := lacks_kelvin_voigt(scene)):
+    line = scene.indenter.per_width and scene.indenter.convex
+    if line or not (lacking := lacks_kelvin_voigt(scene)):
         return ""
     return f'of indenter.shape = "{scene.indenter.shape}" {lacking}'
 

@@ -125,17 +125,19 @@ def _with_time(foundation: AnyFoundation, values: Mapping[str, Any]) -> dict[str
 
 
 def solve_quadrature(scene: Scene, values: Values) -> SteadyState:
-    """Integrate the pressure of any indenter: in columns if it is convex, else scene by scene.
+    """Integrate the pressure of any indenter: in columns if it is a convex line, else scene by scene.
 
     A scene that fails fails the call.
     """
     shape = values["drive.velocity"].shape
     if 0 in shape:
-        return solve_exact(Scene(), broadcast(Scene(), {"drive.velocity": np.empty(shape)}))
+        none = solve_exact(Scene(), broadcast(Scene(), {"drive.velocity": np.empty(shape)}))
+        return _in_units(scene, none)
     if not shape:
         return _integrated(scene, {key: float(array) for key, array in values.items()})
     count = math.prod(shape)
-    if scene.indenter.convex and not lacks_kelvin_voigt(scene):
+    line = scene.indenter.per_width and scene.indenter.convex
+    if line and not lacks_kelvin_voigt(scene):
         columns: dict[str, Any] = {key: array.reshape(-1, 1) for key, array in values.items()}
         parts: list[Any] = [slice(start, start + COLUMN) for start in range(0, count, COLUMN)]
     else:
@@ -149,7 +151,7 @@ def solve_quadrature(scene: Scene, values: Values) -> SteadyState:
 
 def _integrated(scene: Scene, values: Mapping[str, Any]) -> SteadyState:
     """Integrate one scene of floats, or a column of scenes."""
-    from kvtheory.models.steady import quadrature  # not needed by the other methods
+    from kvtheory.models.steady import quadrature, revolved  # not needed by the other methods
 
     # Past the indenter's own check: the values have been checked, and columns are no values for it.
     indenter = object.__new__(type(scene.indenter))
@@ -159,7 +161,8 @@ def _integrated(scene: Scene, values: Mapping[str, Any]) -> SteadyState:
             vars(indenter)[key.removeprefix("indenter.")] = value
     if lacks_kelvin_voigt(scene):
         return _convolved(scene, values, indenter)
-    return _solve(quadrature, values, indenter)
+    method = quadrature if scene.indenter.per_width else revolved
+    return _in_units(scene, _solve(method, values, indenter))
 
 
 def solve_asymptote(scene: Scene, values: Values) -> SteadyState:

@@ -1,0 +1,302 @@
+r"""Steady sliding of a ball and of any profile of revolution, by quadrature over its strips.
+
+Elements are independent: a strip along x at the distance y from the middle plane is a line contact of its
+own, whose shape is h(sqrt(x^2 + y^2)) - h(|y|) and whose depth is delta - h(|y|). Its load and friction force
+are those of `kvtheory.models.steady.contact`, or `asperities` for a profile that need not be convex, and
+
+    W = int W_2 dy,    F = int F_2 dy    over |y| < b,    h(b) = delta,    y = b sin t.
+
+A strip at the rim has lost the digits of h(|y|) and carries next to nothing: strips beyond `RIM` are left out. As dW_2/d(delta) = K (x_TE - x_LE + l_r) is summed as well, the depth
+at a load is found by Newton's method. The middle plane gives the edges and the peak pressure.
+"""
+
+import math
+from collections.abc import Callable, Iterator
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.polynomial.legendre import leggauss
+from numpy.typing import NDArray
+
+from kvtheory.models.steady import asperities, contact
+from kvtheory.models.steady.cells import Surface
+from kvtheory.models.steady.double_exponential import RULES
+from kvtheory.results import Certificate, SteadyState
+from kvtheory.results.errors import QuadratureError
+from kvtheory.scene.indenters import Line, Profile, Spot
+
+Array = NDArray[np.float64]
+
+RIM = {True: 3e-4, False: 3e-3}
+"""cos t of the last strip of a convex profile, and of one that is looked at point by point, for which rounding
+counts sooner: what lies beyond carries less than its fourth power of the load."""
+MIDDLE = 1e-10
+"""y/b of the strips next to the middle plane: a tip that is any sharper makes no difference."""
+NEAR = 0.02
+"""Rise over y up to which h is integrated from the lowest point of a strip, where its difference cancels."""
+GAUSS = tuple((0.5 + 0.5 * s, 0.5 * w) for s, w in zip(*leggauss(4), strict=True))
+
+LEAST = 2e-14
+"""Relative error below which nothing is claimed."""
+RTOL = 1e-12
+"""Estimate above which the next rule is taken."""
+LIMIT = 1e-6
+"""Estimate above which the last rule is no answer."""
+MOST_STEPS = 100
+"""Steps of Newton's method; they are a handful."""
+STEP = 1e-13
+"""Relative step of the depth after which it is found."""
+
+STATEMENT = (
+    "quadrature over strips, each by its own quadrature; the estimate compares two rules, and what the "
+    "strips estimate of themselves"
+)
+
+
+class Strip:
+    """The shape of a strip at the distances y, floats or a column of them, of a profile of revolution."""
+
+    convex, kinks = True, ()
+
+    def __init__(self, profile: Any, y: Any) -> None:
+        self.profile, self.y = profile, y
+        self.smooth = profile.convex or not profile.kinks
+        self.lowest = profile.height(y)
+        self.reach = math.inf
+        if profile.reach < math.inf:
+            self.reach = np.sqrt((profile.reach - y) * (profile.reach + y))
+
+    def height(self, x: Any) -> Any:
+        """Return h above the lowest point of the strip: next to it, as the integral of h'."""
+        rho = np.hypot(x, self.y)
+        rise = x * (x / (rho + self.y))  # rho - y
+        near = sum(w * self.profile.slope(self.y + s * rise) for s, w in GAUSS) * rise
+        far = self.profile.height(rho) - self.lowest
+        return np.where((rise < NEAR * self.y) & self.smooth, near, far)
+
+    def slope(self, x: Any) -> Any:
+        """Return dh/dx."""
+        rho = np.hypot(x, self.y)
+        return self.profile.slope(rho) * (x / rho)
+
+    def bend(self, x: Any) -> Any:
+        """Return x h''/h'."""
+        rho = np.hypot(x, self.y)
+        return 1.0 + (self.profile.bend(rho) - 1.0) * (x / rho) ** 2
+
+
+class Sums(NamedTuple):
+    """What the strips of a contact sum up to, over the stiffness."""
+
+    load: float
+    load_slope: float
+    friction: float
+    lost: float
+    error: float
+    """Relative."""
+
+
+def at_depth(
+    indenter: Spot, stiffness: float, retardation_time: float, velocity: float, depth: float
+) -> SteadyState:
+    """Return the steady state at a given indentation depth.
+
+    Parameters
+    ----------
+    indenter
+        A ball, or a profile of revolution.
+    stiffness, retardation_time, velocity, depth
+        K in N/m^3, tau in s, V in m/s (any sign, or zero), delta in m.
+
+    Returns
+    -------
+    SteadyState
+        Load and friction force in N, with an estimate of the relative error of each quantity.
+
+    Raises
+    ------
+    QuadratureError
+        If a quadrature or a root fails, or the contact goes beyond the indenter's reach.
+
+    Examples
+    --------
+    >>> from kvtheory.scene.indenters import Sphere
+    >>> state = at_depth(Sphere(0.01), 1e10, 0.1, 0.1, 3e-4)
+    >>> print(f"{state.load:.6g} {state.friction_force:.6g} {state.trailing_edge:.6g}")
+    113.283 15.303 0.00029563
+    """
+    l_r = abs(velocity) * retardation_time
+    with np.errstate(all="ignore"):
+        return _state(indenter, stiffness, velocity, l_r, depth, 0.0)
+
+
+def at_load(
+    indenter: Spot,
+    stiffness: float,
+    retardation_time: float,
+    velocity: float,
+    weight: float,
+    spring: float = 0.0,
+) -> SteadyState:
+    """Return the steady state under a weight in N, on a spring in N/m or without.
+
+    A spring is relaxed at the static depth. The other arguments, and the state, are as in `at_depth`.
+
+    Examples
+    --------
+    >>> from kvtheory.scene.indenters import Sphere
+    >>> state = at_load(Sphere(0.01), 1e10, 0.1, 0.1, 9.80665)
+    >>> print(f"{1e3 * state.depth:.6f} mm, mu = {state.friction_coefficient:.6f}")
+    0.061896 mm, mu = 0.063679
+    """
+    l_r, load, k = abs(velocity) * retardation_time, weight / stiffness, spring / stiffness
+    with np.errstate(all="ignore"):
+        if k > 0.0:
+            load += k * _depth(indenter, 0.0, load, 0.0)
+        depth = _depth(indenter, l_r, load, k)
+        return _state(indenter, stiffness, velocity, l_r, depth, 1.0)
+
+
+def _depth(indenter: Spot, l_r: float, load: float, spring: float) -> float:
+    """Return the depth at which W/K + spring * depth is the load, by Newton's method in logarithms."""
+    depth = _first(indenter, l_r, load, spring)
+    for _ in range(MOST_STEPS):
+        found = _sums(indenter, l_r, depth)
+        total, slope = found.load + spring * depth, found.load_slope + spring
+        factor = (load / total) ** (total / (depth * slope))
+        depth *= min(max(factor, 0.25), 4.0)
+        if abs(factor - 1.0) < max(STEP, found.error):
+            return depth
+    raise QuadratureError("no depth was found that carries the weight")
+
+
+def _first(indenter: Spot, l_r: float, load: float, spring: float) -> float:
+    """Return a depth that carries about the load: bisection in the half length of the contact."""
+    profile, wide = indenter.profile, indenter.stretch
+    low, high = -700.0, 700.0 if math.isinf(profile.reach) else math.log(profile.reach) - 1e-9
+    for _ in range(80):
+        middle = 0.5 * (low + high)
+        a = math.exp(middle)
+        depth = float(profile.height(a))
+        carried = depth * (a * wide * (1.5 * a + 1.3 * l_r) + spring)
+        low, high = (middle, high) if carried < load else (low, middle)
+    return float(profile.height(math.exp(low)))
+
+
+def _state(
+    indenter: Spot, K: float, V: float, l_r: float, depth: float, at_load: float
+) -> SteadyState:
+    """Give the sums their units and signs; the middle plane gives the rest."""
+    model, shape = _model(indenter.profile)
+    middle = model.at_depth(shape, l_r, depth)
+    values, errors = {}, {}
+    found = _sums(indenter, l_r, depth)
+    error = found.error + LEAST
+    noise = 2.0 * (middle.noise + at_load * error)
+    for name, (value, own, power) in model.quantities(shape, l_r, middle).items():
+        values[name], errors[name] = value, own + LEAST + noise * abs(power)
+    values |= {
+        "load": K * found.load,
+        "friction_force": K * found.friction,
+        "friction_coefficient": found.friction / found.load,
+        "peak_pressure": K * values["peak_pressure"],
+        "dissipated_in_contact": found.lost / found.friction if found.friction > 0.0 else 1.0,
+    }
+    summed = ("load", "friction_force", "friction_coefficient", "dissipated_in_contact")
+    errors |= dict.fromkeys(summed, (1.0 + 4.0 * at_load) * error + noise)
+    errors["depth"] = at_load * error
+    side = -1.0 if V < 0.0 else 1.0
+    for name in ("leading_edge", "trailing_edge", "friction_force", "friction_coefficient"):
+        values[name] = side * values[name] + 0.0
+    certificate = Certificate("estimated", STATEMENT, errors)
+    return SteadyState(
+        **{name: float(value) for name, value in values.items()},  # type: ignore[arg-type]
+        model="quadrature",
+        certificate=certificate,
+    )
+
+
+def _model(profile: Line) -> tuple[Any, Any]:
+    """Return the module that knows the contacts of a profile, and the profile as it takes it."""
+    return (contact, profile) if profile.convex else (asperities, Surface(profile, 1.0))
+
+
+def _sums(indenter: Spot, l_r: float, depth: float) -> Sums:
+    """Sum over the strips, by finer rules until two of them agree."""
+    profile = indenter.profile
+    half = _half_length(profile, depth)
+    strips, rim = (_columns if profile.convex else _one_by_one), RIM[profile.convex]
+    for number in range(2, len(RULES)):
+        t = 0.5 * math.pi * RULES[number][0][: len(RULES[number][0]) // 2]
+        weights = RULES[number][2][: t.size, :2]
+        kept = np.cos(t) > rim
+        t = t[kept]
+        y = half * np.maximum(np.sin(t), MIDDLE)
+        deep = np.maximum(depth - profile.height(y), np.finfo(float).tiny)
+        rows, own = strips(profile, y, l_r, deep)
+        weighted = weights[kept] * (math.pi * half * indenter.stretch * np.cos(t))[:, None]
+        fine, coarse = (rows @ weighted).T
+        errors = np.abs(fine[[0, 2]] - coarse[[0, 2]]) / np.where(
+            fine[[0, 2]] > 0, fine[[0, 2]], 1.0
+        )
+        error = float(errors.max()) ** 1.5 + own + rim**4
+        if error < RTOL + rim**4:
+            break
+    if not error < LIMIT:
+        raise QuadratureError("quadrature over the strips fails: the indenter's reach is too close")
+    return Sums(*map(float, fine), error)
+
+
+def _half_length(profile: Line, depth: float) -> float:
+    if profile.convex:
+        return float(contact.half_length(profile, depth))
+    surface = Surface(profile, 1.0)
+    patch = asperities.at_depth(surface, 0.0, depth).patches[-1]
+    return float(patch.x_te)
+
+
+def _columns(profile: Line, y: Array, l_r: float, depth: Array) -> tuple[Array, float]:
+    """Return load, its slope, friction and what is lost in each strip of a convex profile."""
+    column = np.full((y.size, 1), l_r)
+    strip: Any = Strip(profile, y[:, None])
+    found = contact.at_depth(strip, column, depth[:, None])
+    named = contact.quantities(strip, column, found)
+    (load, own, _), (friction, rubbed, _) = named["load"], named["friction_force"]
+    lost = named["dissipated_in_contact"][0] * friction
+    rows = np.array([part[:, 0] for part in (load, found.load_slope, friction, lost)])
+    size = np.abs(np.array([load * own, friction * rubbed])).sum(axis=(1, 2))
+    whole = np.maximum(np.array([load, friction]).sum(axis=(1, 2)), np.finfo(float).tiny)
+    return rows, float((size / whole).max())
+
+
+def _one_by_one(profile: Line, y: Array, l_r: float, depth: Array) -> tuple[Array, float]:
+    """Return the same of a profile that is a pair of Python functions."""
+    rows, worst = np.empty((4, y.size)), 0.0
+    for column, (at, deep) in enumerate(zip(y.tolist(), depth.tolist(), strict=True)):
+        surface = Surface(_cut(profile, at), 1.0)
+        found = asperities.at_depth(surface, l_r, deep)
+        named = asperities.quantities(surface, l_r, found)
+        (load, own, _), (friction, rubbed, _) = named["load"], named["friction_force"]
+        lost = named["dissipated_in_contact"][0] * friction
+        rows[:, column] = load, found.load_slope, friction, lost
+        worst = max(worst, own, rubbed)
+    return rows, worst
+
+
+def _cut(profile: Line, y: float) -> Profile:
+    """Return a strip of a profile as a profile."""
+    strip = Strip(profile, y)
+    return Profile(
+        _float(strip.height), _float(strip.slope), float(strip.reach), tuple(_kinks(profile, y))
+    )
+
+
+def _float(function: Callable[[Any], Any]) -> Callable[[float], float]:
+    return lambda x: float(function(x))
+
+
+def _kinks(profile: Line, y: float) -> Iterator[float]:
+    for kink in profile.kinks:
+        if abs(kink) > y:
+            x = math.sqrt((kink - y) * (kink + y))
+            yield from (-x, x)
