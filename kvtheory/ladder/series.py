@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from kvtheory.ladder import equivalent
 from kvtheory.ladder.climbing import Answer, Judgement, Request, Rung
 from kvtheory.models.slow_manifold import motion as slow_motion
 from kvtheory.models.slow_manifold import start as slow_start
@@ -17,6 +18,7 @@ from kvtheory.results.certificate import AT_REST
 from kvtheory.results.table import scales
 from kvtheory.scene.model import Scene
 from kvtheory.scene.requirements import (
+    lacks_arms,
     lacks_paper_model,
     lacks_rigid_drive,
     lacks_rigid_paper_model,
@@ -68,16 +70,22 @@ def rungs(models: Models) -> tuple[Rung, ...]:
         Rung("exact", "steady from the first instant: the depth cannot change", _steady, at_once),
         Rung("slow manifold", "a start from rest, inertia that is soon overcome", _slow, _follow),
         Rung("continuum", "a parabola", _parabola, partial(_continuum, models.transient)),
+        Rung("continuum", "a parabola, arms much faster than the motion",
+             partial(_replaceable, models.steady), partial(_equivalent, models)),
         Rung("elements", "none", _anything, partial(_elements, models.elements)),
-    )
+    )  # fmt: skip
 
 
 def _parabola(scene: Scene, request: Request) -> Judgement:
     return Judgement(lacks_paper_model(scene))
 
 
+def _replaceable(steady: Callable[..., SteadyState], scene: Scene, request: Request) -> Judgement:
+    return equivalent.judge(steady, scene, request, SOLVED)
+
+
 def _anything(scene: Scene, request: Request) -> Judgement:
-    if lacking := lacks_rigid_drive(scene):
+    if lacking := lacks_arms(scene) or lacks_rigid_drive(scene):
         return Judgement(lacking)
     return Judgement(error=BEST_OF_ELEMENTS if request.rtol < BEST_OF_ELEMENTS else math.nan)
 
@@ -171,6 +179,25 @@ def _continuum(
         if error <= request.rtol or step <= TIGHTEST or error == math.inf:
             return answer
         step = max(step * NEXT * request.rtol / error, TIGHTEST)
+
+
+def _equivalent(models: Models, scene: Scene, request: Request, rate: float) -> Answer:
+    """Solve with the equivalent damping, and count what that of the fastest rate would change."""
+    answer, other = (
+        _continuum(models.transient, replace(scene, foundation=each), request, None)
+        for each in (equivalent.foundation(scene), equivalent.foundation(scene, rate))
+    )
+    own = answer.certificate
+    parts = (
+        own.relative_error,
+        equivalent.neglected(answer.result, other.result, scene, SOLVED),
+        equivalent.in_steady_sliding(models.steady, scene, SOLVED),
+    )
+    errors = {name: sum(part.get(name, 0.0) for part in parts) for name in own.relative_error}
+    certificate = Certificate(
+        "estimated", f"{own.statement}; {equivalent.STATEMENT}", errors, AT_REST
+    )
+    return answer._replace(certificate=certificate)
 
 
 def _elements(

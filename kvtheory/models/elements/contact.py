@@ -41,10 +41,10 @@ def report(row: ElementRow, at: IndenterState, time: float) -> tuple[float, ...]
     """
     model, V = row.model, row.path.velocity(time)
     under = row.under(at.time, 0.0, max(at.depth, model.depth))
-    p = pressure(model, under, under.state, at, V)
+    p = pressure(row, under, at, V)
     pressed = under.touched & (model.rule.pulls | (p >= 0.0))
     V_before = row.path.velocity(at.time, before=True)
-    p_before = p if V_before == V else pressure(model, under, under.state, at, V_before)
+    p_before = p if V_before == V else pressure(row, under, at, V_before)
     if not pressed.any():
         found = FLIGHT
     elif model.parts:
@@ -55,10 +55,17 @@ def report(row: ElementRow, at: IndenterState, time: float) -> tuple[float, ...]
     return time, V, at.depth, at.rate, *found[:2], *edges, *found[4:]
 
 
-def pressure(model: Model, under: Under, state: Array, at: IndenterState, V: float) -> Array:
-    """Return p of the elements under the indenter: g = δ - h(x), g' = δ' - V h'(x) (Eqs. 6, 7, 12)."""
-    g_rate = at.rate - V * model.slope(under.x)
-    return model.law.pressure(state, at.depth - under.height, g_rate)
+def pressure(row: ElementRow, under: Under, at: IndenterState, V: float) -> Array:
+    """Return p of elements under the indenter, g = δ - h(x), g' = δ' - V h'(x) (Eqs. 6, 7, 12).
+
+    Of one that is not in contact, it is what it would be had it followed the indenter in the last step.
+    """
+    law, state, g = row.model.law, under.state, at.depth - under.height
+    g_rate = at.rate - V * row.model.slope(under.x)
+    p = law.pressure(state, g, g_rate)
+    if law.remembers:
+        p += np.where(under.touched, 0.0, law.followed(g - state[0], g_rate, row.last))
+    return p
 
 
 def _whole_elements(
@@ -118,7 +125,7 @@ def _peak(
     where contact began, so that the pressure itself may have a kink between two elements.
     """
     before, here, after = (p.item(i) for i in (k - 1, k, k + 1))
-    doubt = 0.5 * max(here - before, here - after) if model.law.arm_stiffness.size else 0.0
+    doubt = 0.5 * max(here - before, here - after) if model.law.remembers else 0.0
     if model.indenter.kinks:
         return here, min(abs(here - before), abs(here - after)), 0.0
     bend = 2.0 * here - before - after

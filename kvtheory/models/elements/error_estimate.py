@@ -38,7 +38,7 @@ inside the contact and at its edge (Pa)."""
 
 
 def estimate(
-    model: Model, path: BaseMotion, rows: Rows, coarse: Sequence[Rows], fine: Rows | None
+    model: Model, path: BaseMotion, h: float, rows: Rows, coarse: Sequence[Rows], fine: Rows | None
 ) -> Certificate:
     """Compare with other runs of the best scheme; an edge that exists in one of two is not compared.
 
@@ -51,7 +51,7 @@ def estimate(
         for name in TRANSIENT_UNITS
     }
     changes = len(path.pieces) > 1 or any(path.pieces[0][POWERS + 1 :])
-    jump = KNOWN if changes and model.law.damping else 0.0
+    jump = KNOWN if changes and model.law.lags(h) else 0.0
     edge = (jump + (KINKED if model.indenter.kinks else 0.0)) * model.spacing
     force = jump * model.spacing * float(rows["peak_pressure"].max())
     steepest = float(abs(model.slope(np.array(span(model.indenter, model.depth)))).max())

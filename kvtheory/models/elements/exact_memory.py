@@ -57,7 +57,7 @@ def implicit_step(
         new = _balance(row, now, h, theta, (under, rest, sinks))
     g = new.depth - under.height
     pressed = g >= rest
-    row.settle(under, np.where(pressed, under.pressed(g), under.left), pressed, h)
+    row.settle(under, np.where(pressed, row.pressed(under, now.depth, g), under.left), pressed, h)
     return new
 
 
@@ -72,7 +72,12 @@ def _balance(
     sunk = min(h * now.rate, sinks)
     length = dx * max(np.count_nonzero(meets <= now.depth + sunk), np.count_nonzero(under.touched))
     theta = theta_of(h * law.damping * length / M)
-    kinks = _Kinks(row, now, under, h) if model.parts else None
+    kinks = _Kinks(row.model, now, under) if model.parts else None
+    weights = np.ones_like(meets)
+    if model.law.remembers:
+        rise = now.depth + sunk - meets
+        new, within = row.entering(under, now.depth, rise)
+        weights[new] = within / h * model.law.ramps(within)[1] / law.stiffness
 
     # The unknown is how far it sinks: the depths themselves cancel where the step is short.
     def velocity(sunk: float) -> float:
@@ -81,7 +86,10 @@ def _balance(
     for _ in range(NEWTON_STEPS):
         overlap = (now.depth + sunk) - meets
         pressed = overlap > 0.0
-        area, width = dx * float(overlap[pressed].sum()), dx * np.count_nonzero(pressed)
+        area, width = (
+            dx * float(weights[pressed] @ overlap[pressed]),
+            dx * float(weights[pressed].sum()),
+        )
         if kinks is not None:
             more, wider = kinks(overlap, pressed)
             area, width = area + more, width + wider
@@ -110,11 +118,9 @@ class _Kinks:
     is left behind and relaxes like all that is free.
     """
 
-    def __init__(self, row: ElementRow, now: IndenterState, under: Under, h: float) -> None:
-        path, model = row.path, row.model
-        travel = path.displacement(now.time + h) - path.displacement(now.time)
+    def __init__(self, model: Model, now: IndenterState, under: Under) -> None:
         self.dx, self.least = model.spacing, -STANDS * model.depth
-        self.before: Array = now.depth - model.height(under.x - travel) - under.state[0]
+        self.before: Array = now.depth - model.height(under.x - under.travel) - under.state[0]
         self.relaxed = {-1: 0.0, 1: 0.0}
         spring, k = under.law.held_pressure[0], under.law.stiffness
         arms = under.law.held_pressure[1:] @ under.state[1:]

@@ -11,7 +11,6 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from kvtheory.models.elements.contact import pressure
 from kvtheory.models.elements.law import Array
 from kvtheory.models.elements.row import ElementRow, IndenterState, Under
 
@@ -54,8 +53,9 @@ def _meet(
     """
     model, under = row.model, row.under(at.time, at.time - now.time, max(at.depth, now.depth))
     g = at.depth - under.height
-    moved = under.pressed(g)
-    p = pressure(model, under, moved, at, row.path.velocity(at.time, before=before))
+    moved = row.pressed(under, now.depth, g)
+    g_rate = at.rate - row.path.velocity(at.time, before=before) * model.slope(under.x)
+    p = model.law.pressure(moved, g, g_rate)
     surfaces = under.state[0], under.left[0]
     pressed = model.rule.pressed(g, p, surfaces, under.touched, within=within)
     force = model.spacing * float(p[pressed].sum())

@@ -81,6 +81,15 @@ class Law:
         return self.stiffness + float(self.arm_stiffness.sum())
 
     @property
+    def remembers(self) -> bool:
+        """Whether there are arms, to which it matters when an element entered the contact."""
+        return self.arm_stiffness.size > 0
+
+    def stiffness_within(self, time: float) -> float:
+        """Return about what a compression meets that takes so long; of faster arms the damping is left."""
+        return self.stiffness + float(self.arm_stiffness @ (self.arm_time / (self.arm_time + time)))
+
+    @property
     def slowest(self) -> float:
         """The longest retardation time, in s: so fast an element is forgotten that is left alone."""
         return 1.0 / float(self._modes[0].min())
@@ -90,11 +99,29 @@ class Law:
         return np.concatenate([u[None, :], np.zeros((self.arm_stiffness.size, u.size))])
 
     def pressure(self, state: Array, g: Array, g_rate: Any) -> Array:
-        """Return p of elements that are on the indenter, g and g' there (Eqs. 6, 7, 12), or brought to it."""
-        p: Array = self.stiffness * g + self.damping * g_rate
-        if self.arm_stiffness.size:
-            p += state[1:].sum(axis=0) + self.arm_stiffness.sum() * (g - state[0])
+        """Return p of elements on the indenter, g and g' there (Eqs. 6, 7, 12)."""
+        p: Array = self.stiffness * g + self.damping * g_rate + state[1:].sum(axis=0)
         return p
+
+    def followed(self, gap: Array, g_rate: Array, h: float) -> Array:
+        """Return how much more p would be of an element off the indenter, had it followed for a time h.
+
+        It is brought down by the gap at the start of that time, and then moves with the indenter.
+        """
+        step, K_i = self.step(h), self.arm_stiffness
+        brought, moved = float(K_i @ step.held[1:]), float(step.ramp[1:].sum())
+        more: Array = brought * gap + (moved - brought) * h * g_rate
+        return more
+
+    def ramps(self, h: Array) -> tuple[Array, Array]:
+        """Return what unit ramps of these lengths leave in the arms, and the mean pressures of them."""
+        K_i = self.arm_stiffness
+        phi_1, phi_2 = ramp_functions(h / self.arm_time[:, None])
+        return K_i[:, None] * phi_1, 0.5 * self.stiffness + K_i @ phi_2
+
+    def lags(self, h: float) -> bool:
+        """Whether a pressure can change suddenly: by a damper, or an arm that is faster than a step."""
+        return self.damping > 0.0 or bool((self.arm_time < h).any())
 
     @lru_cache(maxsize=64)  # noqa: B019  # a law lives as long as its run
     def step(self, h: float) -> Step:

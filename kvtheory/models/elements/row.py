@@ -45,7 +45,8 @@ class Under(NamedTuple):
     """The elements under the indenter at one instant: a view into the row.
 
     `state` is that of each at the start of the step, `left` the one that it has now if it was left alone,
-    `touched` whether it was in contact at the start, `law` what the law says of the time between.
+    `touched` whether it was in contact at the start; `travel` is the way of the base between, of the length
+    `delay`, and `law` what the law says of it.
     """
 
     place: slice
@@ -54,6 +55,8 @@ class Under(NamedTuple):
     state: Array
     left: Array
     touched: NDArray[np.bool_]
+    travel: float
+    delay: float
     law: Step
 
     def rest(self) -> Array:
@@ -61,16 +64,12 @@ class Under(NamedTuple):
         held: Array = self.state[0] - self.law.held_pressure @ self.state / self.law.stiffness
         return np.where(self.touched, held, self.left[0])
 
-    def pressed(self, g: Array) -> Array:
-        """Return the state of elements that the indenter presses to g."""
-        base = np.where(self.touched, self.law.held[:, None] * self.state, self.left)
-        moved: Array = base + self.law.ramp[:, None] * (g - base[0])
-        moved[0] = g
-        return moved
-
 
 class ElementRow:
-    """The states of the stored elements, first to last, and which of them are in contact."""
+    """The states of the stored elements, first to last, and which of them are in contact.
+
+    `last` is the length of the step by which they came there.
+    """
 
     def __init__(self, model: Model, path: BaseMotion, kept_depth: float = KEPT_DEPTH) -> None:
         self.model, self.path = model, path
@@ -80,7 +79,7 @@ class ElementRow:
         self.reach = span(model.indenter, self.deepest)
         self.first, self.states = 0, model.law.at_rest(np.zeros(0))
         self.touched = np.zeros(0, dtype=bool)
-        self.updates = 0
+        self.updates, self.last = 0, 0.0
         depth = model.start * model.depth
         rest = self.under(0.0, 0.0, depth)
         self.settle(
@@ -108,13 +107,35 @@ class ElementRow:
         x, state = self.model.places(low, high, Y), self.states[:, place]
         left = self._left(state, delay)
         law = self.model.law.step(delay)
-        return Under(place, x, self.model.height(x), state, left, self.touched[place], law)
+        touched, height = self.touched[place], self.model.height(x)
+        return Under(place, x, height, state, left, touched, Y - before, delay, law)
+
+    def entering(self, under: Under, depth: float, rise: Array) -> tuple[NDArray[np.intp], Array]:
+        """Return the elements that enter the contact in a step, and for how long each is in it.
+
+        `depth` is that at the start; `rise` says how far each is below its free surface at the end.
+        """
+        new = np.flatnonzero(~under.touched & (rise > 0.0))
+        gap = depth - self.model.height(under.x[new] - under.travel) - under.state[0, new]
+        return new, under.delay * rise[new] / (rise[new] - np.minimum(gap, 0.0))
+
+    def pressed(self, under: Under, depth: float, g: Array) -> Array:
+        """Return the state of elements that the indenter presses to g, from a `depth` at the start."""
+        law, arms = under.law, self.model.law
+        base = np.where(under.touched, law.held[:, None] * under.state, under.left)
+        rise = g - base[0]
+        moved: Array = base + law.ramp[:, None] * rise
+        moved[0] = g
+        if arms.remembers:
+            new, within = self.entering(under, depth, rise)
+            moved[1:, new] = base[1:, new] + arms.ramps(within)[0] * rise[new]
+        return moved
 
     def settle(
         self, under: Under, states: Array, touched: NDArray[np.bool_], delay: float = 0.0
     ) -> None:
         """Let `delay` pass: put in what has become of the elements under the indenter."""
-        self.states = self._left(self.states, delay)
+        self.states, self.last = self._left(self.states, delay), delay
         self.states[:, under.place] = states
         self.touched[:] = False
         self.touched[under.place] = touched

@@ -26,6 +26,8 @@ PER_RELAXATION = 100.0
 """Steps in a retardation time, at least: the force is a mean over the step weighted by e^(t/τ)."""
 PER_OSCILLATION = 20.0
 """Steps in a period of the mass on the contact at rest, at least."""
+ROUGHLY = 0.9
+"""Of a period: nearer to it, it counts as found."""
 MOST_STEPS = 20_000
 """In a run, for the sake of these two: where the foundation or the spring is far faster than the run
 lasts, no more is resolved than this; the implicit schemes stay stable, and the certificate tells."""
@@ -86,7 +88,7 @@ def simulate(
 
         coarse = [by_best(half, 2.0, shift) for shift in SHIFTS]
         fine = None if scheme is best else by_best(legs)
-        certificate = estimate(model, path, rows, coarse, fine)
+        certificate = estimate(model, path, h, rows, coarse, fine)
     for name in DOUBTS:
         del rows[name]
     return Simulation(
@@ -117,11 +119,20 @@ def _default_step(model: Model, path: BaseMotion, scheme: Scheme) -> float:
                 f'such as "{0.01 * model.law.retardation_time * 1e3:.4g} ms", or `scheme` = "{DEFAULT}"'
             )
         return passing
-    stiffness = 2.0 * model.half_length * model.law.at_once + model.spring
-    period = 2.0 * math.pi * math.sqrt(model.mass / stiffness)
-    resolved = min(model.law.retardation_time / PER_RELAXATION, period / PER_OSCILLATION)
+    resolved = min(model.law.retardation_time / PER_RELAXATION, _period(model) / PER_OSCILLATION)
     stable = limit_at(scheme, model, max(lengths(model, path)))
     return min(passing, max(resolved, path.end / MOST_STEPS), STABLE_SHARE * stable)
+
+
+def _period(model: Model) -> float:
+    """Return the period of the mass on the contact at rest, as stiff as arms are within it, in s."""
+    period = math.inf
+    while True:
+        foundation = 2.0 * model.half_length * model.law.stiffness_within(period / (2.0 * math.pi))
+        shorter = 2.0 * math.pi * math.sqrt(model.mass / (foundation + model.spring))
+        if not shorter < ROUGHLY * period:
+            return shorter
+        period = shorter
 
 
 def _instants(

@@ -1,0 +1,110 @@
+"""A Prony series that slow motion cannot tell from Kelvin-Voigt: the continuum, and what that neglects.
+
+To a motion that changes at the rate sigma, an arm answers as a damper C_i/(1 + sigma tau_i), C_i = K_i tau_i,
+which is between C_i and that of the fastest change. So the answer of the Kelvin-Voigt foundation with C =
+sum C_i is compared with the one whose damping is that of the fastest change: the rate V/a at which elements
+pass the half of the contact, and one over the time since the drive changed last. What does not depend on
+this, the layer in which arms are loaded at the leading edge, shows in steady sliding, where the error of the
+equivalent foundation is known exactly.
+"""
+
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from kvtheory.ladder.climbing import Judgement, Request
+from kvtheory.results import SteadyState
+from kvtheory.results.table import scales
+from kvtheory.scene.drives import Drive
+from kvtheory.scene.foundations import Foundation
+from kvtheory.scene.model import Scene
+from kvtheory.scene.requirements import lacks_parabola
+from kvtheory.scene.static_state import StaticState
+
+SAFETY = 4.0
+"""Of the estimate: the tests find errors up to a third of it on random scenes."""
+LEAST_DAMPING = 0.2
+"""Of C: where a change is so fast that less is felt, Kelvin-Voigt is no model."""
+STEADY_NAMES = {"normal_force": "load"}
+"""Names of steady sliding that differ from those of a series."""
+STATEMENT = (
+    "of the Kelvin-Voigt foundation with the damping sum K_i tau_i, beside the error of its solution: "
+    f"{SAFETY:g} times the change by the damping that the fastest change of the motion feels, and by the "
+    "arms in steady sliding"
+)
+
+
+def damping(scene: Scene, rate: float = 0.0) -> float:
+    """Return that of the damper that stands for the arms in a motion at this rate (1/s)."""
+    return sum(
+        arm.stiffness * arm.relaxation_time / (1.0 + rate * arm.relaxation_time)
+        for arm in scene.foundation.arms
+    )
+
+
+def foundation(scene: Scene, rate: float = 0.0) -> Foundation:
+    """Return the Kelvin-Voigt foundation with this damping."""
+    K = scene.foundation.stiffness
+    return Foundation(K, damping(scene, rate) / K)
+
+
+def judge(
+    steady: Callable[..., SteadyState], scene: Scene, request: Request, solved: tuple[str, ...]
+) -> Judgement:
+    """Judge by steady sliding at the velocities of the drive; the fastest rate is what is known."""
+    if not scene.foundation.arms:
+        return Judgement("the foundation has no arms")
+    if reason := lacks_parabola(scene) or (
+        "the drive is a function" if scene.drive.function else ""
+    ):
+        return Judgement(reason)
+    if request.times is None:
+        return Judgement("no times are given: at the first instant it is wrong")
+    known = rate(steady, scene, request.times)
+    if damping(scene, known) < LEAST_DAMPING * damping(scene):
+        return Judgement("the motion changes as fast as arms relax")
+    errors = in_steady_sliding(steady, scene, solved)
+    return Judgement(error=max(errors.get(name, 0.0) for name in request.quantities), known=known)
+
+
+def rate(steady: Callable[..., SteadyState], scene: Scene, times: Any) -> float:
+    """Return the fastest rate of the motion at the times (1/s)."""
+    changes = np.array([0.0, *scene.drive.changes])
+    since = [t - changes[changes <= t].max(initial=0.0) for t in times]
+    fastest = max(map(abs, velocities(scene)))
+    sliding = steady(replace(scene, foundation=foundation(scene), drive=Drive(fastest)))
+    shortest = min(since)
+    passing = fastest / float(sliding.half_length)
+    return passing + (1.0 / shortest if shortest > 0.0 else np.inf)
+
+
+def velocities(scene: Scene) -> list[float]:
+    """Return the velocities of the drive, between which it is linear."""
+    return list(scene.drive.motion(scene.run.duration, 1.0).velocities)
+
+
+def in_steady_sliding(
+    steady: Callable[..., SteadyState], scene: Scene, solved: tuple[str, ...]
+) -> dict[str, float]:
+    """Return how wrong the equivalent foundation is in steady sliding, by its scales, with `SAFETY`."""
+    measures, errors = scales(StaticState.of(scene)), dict.fromkeys(solved, 0.0)
+    for V in velocities(scene):
+        sliding = replace(scene, drive=Drive(V))
+        pair = steady(sliding), steady(replace(sliding, foundation=foundation(scene)))
+        for name in solved:
+            values = [getattr(each, STEADY_NAMES.get(name, name), 0.0) for each in pair]
+            errors[name] = max(errors[name], SAFETY * abs(values[0] - values[1]) / measures[name])
+    return errors
+
+
+def neglected(one: Any, other: Any, scene: Scene, solved: tuple[str, ...]) -> dict[str, float]:
+    """Return what the series of two dampings differ by, by its scales, with `SAFETY`."""
+    measures = scales(StaticState.of(scene))
+    return {
+        name: SAFETY
+        * float(np.nanmax(np.abs(getattr(one, name) - getattr(other, name)), initial=0.0))
+        / measures[name]
+        for name in solved
+    }
