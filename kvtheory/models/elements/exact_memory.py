@@ -86,10 +86,8 @@ def _balance(
     for _ in range(NEWTON_STEPS):
         overlap = (now.depth + sunk) - meets
         pressed = overlap > 0.0
-        area, width = (
-            dx * float(weights[pressed] @ overlap[pressed]),
-            dx * float(weights[pressed].sum()),
-        )
+        area = dx * float(np.maximum(overlap, 0.0) @ weights)
+        width = dx * np.count_nonzero(pressed)
         if kinks is not None:
             more, wider = kinks(overlap, pressed)
             area, width = area + more, width + wider
@@ -123,11 +121,11 @@ class _Kinks:
         self.before: Array = now.depth - model.height(under.x - under.travel) - under.state[0]
         self.relaxed = {-1: 0.0, 1: 0.0}
         spring, k = under.law.held_pressure[0], under.law.stiffness
-        arms = under.law.held_pressure[1:] @ under.state[1:]
+        arms = under.law.held_pressure[1:] @ under.state[1:] if model.law.remembers else None
         for edge in edges_of(under.touched):
             found = gaps(self.before, *edge)
             if area := kink_area(self.dx, found)[0]:
-                held = spring + bend(arms, *edge) / jump(found)  # per kink of u
+                held = spring if arms is None else spring + bend(arms, *edge) / jump(found)
                 self.relaxed[edge[1]] += (1.0 - held / k) * area
         self.counts: dict[int, bool] = {}
 

@@ -43,6 +43,10 @@ class Step(NamedTuple):
     stiffness: float
     damping: float
 
+    def alone(self, states: Array) -> Array:
+        """Return what becomes of elements that are left alone."""
+        return self.left @ states if len(states) > 1 else self.left[0, 0] * states
+
 
 @dataclass(frozen=True, eq=False)
 class Law:
@@ -80,7 +84,7 @@ class Law:
         """K + sum K_i, the stiffness that a sudden compression meets beside the damper."""
         return self.stiffness + float(self.arm_stiffness.sum())
 
-    @property
+    @cached_property
     def remembers(self) -> bool:
         """Whether there are arms, to which it matters when an element entered the contact."""
         return self.arm_stiffness.size > 0
@@ -100,8 +104,8 @@ class Law:
 
     def pressure(self, state: Array, g: Array, g_rate: Any) -> Array:
         """Return p of elements on the indenter, g and g' there (Eqs. 6, 7, 12)."""
-        p: Array = self.stiffness * g + self.damping * g_rate + state[1:].sum(axis=0)
-        return p
+        p: Array = self.stiffness * g + self.damping * g_rate
+        return p + state[1:].sum(axis=0) if self.remembers else p
 
     def followed(self, gap: Array, g_rate: Array, h: float) -> Array:
         """Return how much more p would be of an element off the indenter, had it followed for a time h.

@@ -61,6 +61,10 @@ class Under(NamedTuple):
 
     def rest(self) -> Array:
         """Return where the mean pressure would vanish: it is `law.stiffness` times how far g is below."""
+        if (
+            len(self.state) == 1
+        ):  # without arms, an element held and one left alone come to the same
+            return self.left[0]
         held: Array = self.state[0] - self.law.held_pressure @ self.state / self.law.stiffness
         return np.where(self.touched, held, self.left[0])
 
@@ -122,13 +126,14 @@ class ElementRow:
     def pressed(self, under: Under, depth: float, g: Array) -> Array:
         """Return the state of elements that the indenter presses to g, from a `depth` at the start."""
         law, arms = under.law, self.model.law
+        if not arms.remembers:
+            return g[None, :]
         base = np.where(under.touched, law.held[:, None] * under.state, under.left)
         rise = g - base[0]
         moved: Array = base + law.ramp[:, None] * rise
         moved[0] = g
-        if arms.remembers:
-            new, within = self.entering(under, depth, rise)
-            moved[1:, new] = base[1:, new] + arms.ramps(within)[0] * rise[new]
+        new, within = self.entering(under, depth, rise)
+        moved[1:, new] = base[1:, new] + arms.ramps(within)[0] * rise[new]
         return moved
 
     def settle(
@@ -142,7 +147,7 @@ class ElementRow:
 
     def _left(self, states: Array, delay: float) -> Array:
         relaxes = delay and self.model.rule.relaxes
-        return self.model.law.step(delay).left @ states if relaxes else states.copy()
+        return self.model.law.step(delay).alone(states) if relaxes else states.copy()
 
     def _move(self, t: float, low: int, high: int) -> None:
         """Move the window so that it holds the elements `low` to `high`, and those still of use."""
