@@ -3,7 +3,16 @@
 from collections.abc import Callable, Iterator, Sequence
 
 from kvtheory.checks.comparison_case import Case
-from kvtheory.checks.faults import WRONG, Trial, decades, offset, parameters, scales, undone
+from kvtheory.checks.faults import (
+    WRONG,
+    Trial,
+    decades,
+    offset,
+    parameters,
+    replaced,
+    scales,
+    undone,
+)
 from kvtheory.checks.fitting import Bench, bench
 from kvtheory.checks.mistakes import mistakes
 from kvtheory.checks.symptoms import coarse, rattling, seen, unmoved
@@ -14,6 +23,10 @@ FAMILIES: tuple[tuple[Callable[[Bench], Iterator[Trial]], float], ...] = (
 )  # fmt: skip
 """The families in the order in which they are tried, and the part of the difference that one of their faults
 must explain for nothing else to be looked for: a sign or a unit is not fitted, so that little is enough."""
+ON_ARMS: tuple[tuple[Callable[[Bench], Iterator[Trial]], float], ...] = (
+    (undone, 0.5), (replaced, 0.9),
+)  # fmt: skip
+"""Those on a foundation with arms: each theory that others would ask for is a run of many elements."""
 NAMED = 0.4
 """Part of the difference that a fault must explain to be named."""
 SHOWN = 4
@@ -54,10 +67,11 @@ def explanations(case: Case) -> list[Explanation]:
     rows = bench(case)
     start = rows.fit(rows.columns, rows.now).score
     trials: list[Trial] = []
-    for number, (family, good) in enumerate(FAMILIES):
+    families = ON_ARMS if case.theory.scene.foundation.arms else FAMILIES
+    for number, (family, good) in enumerate(families):
         for trial in family(rows):
             trials.append(trial)
-            case.theory.methods.tell(number / len(FAMILIES), f"{len(trials)} faults tried")
+            case.theory.methods.tell(number / len(families), f"{len(trials)} faults tried")
         fits = [trial.fitted.fit for trial in trials]
         if any(fit.enough and fit.score <= (1.0 - good) * start for fit in fits):
             break

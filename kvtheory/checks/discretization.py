@@ -74,6 +74,8 @@ def stability(case: Case) -> Iterator[Check]:
     limit = SCHEME_ROWS[scheme].stability_limit if scheme in SCHEME_ROWS else math.nan
     if scene.held:
         yield not_made(name, equation, "the indenter is fixed")
+    elif scene.foundation.arms:
+        yield not_made(name, equation, "F15 holds for Kelvin-Voigt")
     elif not case.resolution.step_known:
         yield not_made(name, equation, "the time step is not known")
     elif math.isinf(limit):

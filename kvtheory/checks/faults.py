@@ -22,6 +22,7 @@ from kvtheory.checks.fitting import (
     uncertainty,
 )
 from kvtheory.checks.theory import CURVES
+from kvtheory.scene.foundations import Foundation
 
 Array = NDArray[np.float64]
 
@@ -142,6 +143,24 @@ def _alike(bench: Bench, there: list[Parameter], best: int, value: float) -> tup
 def judged(bench: Bench, pair: Pair | None) -> Fitted:
     """Judge a fault without an unknown."""
     return NO_FIT if pair is None else Fitted(bench.fit(*pair))
+
+
+def replaced(bench: Bench) -> Iterator[Trial]:
+    """Put a damper in the place of arms."""
+    scene = bench.case.theory.scene
+    if not scene.foundation.arms:
+        return
+    plain = Foundation(scene.foundation.stiffness, scene.foundation.retardation_time)
+    curves = bench.solved(replace(scene, foundation=plain))
+    text = (
+        "the foundation of the data is Kelvin-Voigt, with the damping C = sum K_i tau_i: its arms have no "
+        "stiffness and no relaxation times, which count unless the motion is slow (F18)"
+    )
+    yield Trial(
+        "Kelvin-Voigt instead of arms",
+        text,
+        judged(bench, None if curves is None else (bench.columns, curves)),
+    )
 
 
 def undone(bench: Bench) -> Iterator[Trial]:

@@ -58,6 +58,8 @@ def _why_not(case: Case, curve: str) -> str:
         return f"the data hold no {curve.replace('_', ' ')}"
     if case.theory.rates is None:
         return "a fixed indenter has none"
+    if case.theory.scene.foundation.arms:
+        return "F12 holds for Kelvin-Voigt"
     return "the indenter oscillates" if case.theory.rates.oscillates else ""
 
 
@@ -85,8 +87,8 @@ def _fitted(case: Case, name: str, curve: str, use: NDArray[np.intp], exact: flo
 
 def steady_limit(case: Case) -> Iterator[Check]:
     """Compare the end of the data with exact steady sliding."""
-    name, equation = "steady limit", "F1"
     theory, time, columns = case.theory, case.series.time, case.series.columns
+    name, equation = "steady limit", "F17" if theory.scene.foundation.arms else "F1"
     if math.isinf(theory.last_change):
         yield not_made(name, equation, "the drive is a function, which need not settle")
         return

@@ -104,7 +104,8 @@ class Theory:
     def rates(self) -> Rates | None:
         """The time constants at the steady state; None if the indenter cannot move.
 
-        With A = sqrt(a^2 + l_r^2) + a and B = x_TE + a, M s^2 + C B s + K A + k_s = 0 (F12).
+        With A = sqrt(a^2 + l_r^2) + a and B = x_TE + a, M s^2 + C B s + K A + k_s = 0 (F12); with arms,
+        they are those of the damping that slow sliding feels, and measure what is allowed.
         """
         support, foundation = self.scene.support, self.scene.foundation
         if self.scene.held:
@@ -131,7 +132,11 @@ class Theory:
 
     def _settled(self, end: float) -> float:
         """Return a time in s after which nothing changes, or `end` if that is sooner."""
-        slow = self.scene.foundation.retardation_time
+        foundation = self.scene.foundation
+        slow = foundation.retardation_time
+        if foundation.arms:  # no retardation takes longer than this
+            glassy = 1.0 + sum(arm.stiffness for arm in foundation.arms) / foundation.stiffness
+            slow = glassy * max(arm.relaxation_time for arm in foundation.arms)
         if end > FOREVER * slow:
             raise ArithmeticError(f"that is after {end / slow:.3g} retardation times")
         if end <= self.last_change + FOR_GOOD * slow:

@@ -67,6 +67,11 @@ def lacks_rigid_paper_model(scene: Scene) -> str:
     return lacks_paper_model(scene) or lacks_rigid_drive(scene)
 
 
+def lacks_parabola_on_arms(scene: Scene) -> str:
+    """Say why a transient has nothing to be held against; nothing for a parabola that can be followed."""
+    return lacks_parabola(scene) or lacks_arms(scene)
+
+
 def lacks_asymptotes(scene: Scene) -> str:
     """Say why a method that needs closed forms of Kelvin-Voigt does not hold; nothing if it does."""
     named = "the parabola, the power law, the wedge and the ball"
@@ -107,7 +112,10 @@ def _lacks_shape(scene: Scene, shapes: tuple[type, ...], named: str) -> str:
     return f'holds for {named} only, not for indenter.shape = "{scene.indenter.shape}"'
 
 
-PARABOLIC = lacks_parabola, lacks_paper_model, lacks_rigid_paper_model
+IN_MOTION = (
+    lacks_parabola, lacks_paper_model, lacks_rigid_paper_model, lacks_arms, lacks_parabola_on_arms,
+)  # fmt: skip
+"""What methods in motion need; where one of these is lacking, another method may do."""
 
 
 def require(lacks: Lacking, scene: Scene, what: str) -> None:
@@ -118,7 +126,7 @@ def require(lacks: Lacking, scene: Scene, what: str) -> None:
 
 def _instead(lacks: Lacking, scene: Scene) -> str:
     """Say what can be done with a line contact for which the paper's model is not enough."""
-    asked = lacks is lacks_arms or (lacks in PARABOLIC and lacks_paper_model(scene))
+    asked = lacks in IN_MOTION and (lacks_paper_model(scene) or lacks_arms(scene))
     if not asked or not scene.indenter.per_width:
         return ""
     if lacks_arms(scene):
