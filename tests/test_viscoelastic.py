@@ -1,5 +1,6 @@
 """Steady sliding on any linear viscoelastic foundation: against balls, limits, identities, and mistakes."""
 
+import math
 import re
 from dataclasses import replace
 
@@ -9,7 +10,7 @@ import sympy as sp
 from kvtheory.derivations import viscoelastic as theory
 
 import kvtheory as kv
-from kvtheory.models.steady import convolution, exact, viscoelastic
+from kvtheory.models.steady import branches, convolution, exact, viscoelastic
 from kvtheory.models.steady.viscoelastic import Fractional, Prony
 from kvtheory.results import STEADY_UNITS
 from tests import reference_viscoelastic
@@ -252,9 +253,9 @@ def test_convolution_confirms_the_moments(support):
         method = "at_depth" if support == "fixed" else "at_load"
         truth = getattr(viscoelastic, method)(law, parameters, R, K, time, V, *rest)
         if law is Prony:
-            memory = convolution.Arms(parameters[0::2], abs(V) * np.array(parameters[1::2]))
+            memory = branches.Arms(parameters[0::2], abs(V) * np.array(parameters[1::2]))
         else:
-            memory = convolution.Springpot(K, abs(V) * parameters[0], parameters[1])
+            memory = branches.Springpot(K, abs(V) * parameters[0], parameters[1])
         state = getattr(convolution, method)(memory, kv.Parabola(R), K, time, V, *rest)
         for name in STEADY_UNITS:
             value, claimed = getattr(truth, name), state.certificate.relative_error[name]
@@ -306,10 +307,72 @@ def test_convolution_of_any_shape_agrees_with_a_row_of_elements(shape):
         assert abs(fine - value) < 0.7 * abs(coarse - value) + 1e-6 * abs(value)
 
 
-def test_a_shape_of_python_functions_needs_kelvin_voigt():
-    own = kv.Profile(lambda x: x * x / 0.02, lambda x: x / 0.01)
-    with pytest.raises(ValueError, match=r'"callable" holds for foundation\.kind'):
-        kv.steady(scene(ZENER, indenter=own))
+def lopsided(x):
+    """A convex shape with a kink, steeper behind."""
+    return x * x / 0.02 + (x > 1e-4) * 0.03 * (x - 1e-4) + (x > 0) * 5.0 * x**3
+
+
+OWN = {
+    "parabola": kv.Profile(lambda x: x * x / 0.02, lambda x: x / 0.01),
+    "circle": kv.Profile(
+        lambda x: x * x / (0.01 + math.sqrt(1e-4 - x * x)), lambda x: x / math.sqrt(1e-4 - x * x),
+        reach=0.01,
+    ),
+    "wedge": kv.Profile(lambda x: 0.1 * abs(x), lambda x: math.copysign(0.1, x), kinks=(0.0,)),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("foundation", [ZENER, HALF], ids=["zener", "springpot"])
+@pytest.mark.parametrize("shape", OWN)
+@pytest.mark.parametrize("support", SUPPORTS)
+def test_a_shape_of_python_functions_is_the_named_one(shape, support, foundation):
+    for V in (-0.3, 0.02):
+        own, named = (
+            kv.steady(
+                scene(foundation, support, indenter=indenter), over={"drive.velocity": V},
+                method="quadrature",
+            )
+            for indenter in (OWN[shape], SHAPES[shape])
+        )  # fmt: skip
+        for name in STEADY_UNITS:
+            there, claimed = getattr(named, name), own.certificate.relative_error[name]
+            allowed = claimed + named.certificate.relative_error[name]
+            assert abs(getattr(own, name) - there) <= allowed * abs(there), (name, V)
+            assert claimed < 1e-10
+
+
+@pytest.mark.parametrize("side", [1.0, -1.0])
+def test_a_lopsided_shape_agrees_with_a_row_of_elements(side):
+    def slope(x):
+        return x / 0.01 + (x > 1e-4) * 0.03 + (x > 0) * 15.0 * x * x
+
+    own, depth = kv.Profile(lopsided, slope, kinks=(1e-4,)), 1e-5
+    state = kv.steady(kv.Scene(own, ZENER, kv.Fixed(depth), kv.Drive(0.1 * side)))
+    edges = np.linspace(-abs(state.leading_edge), 4.6e-4, 8001)
+    u, h = depth - np.array([lopsided(side * x) for x in edges]), edges[1] - edges[0]
+    p = 1e10 * u
+    for arm in ZENER.arms:
+        l, y = 0.1 * arm.relaxation_time, np.zeros_like(u)
+        for i in range(u.size - 1):
+            y[i + 1] = math.exp(-h / l) * y[i] - math.expm1(-h / l) * l * (u[i + 1] - u[i]) / h
+        p = p + arm.stiffness * y
+    end = int(np.argmax((p <= 0) & (np.arange(p.size) > np.argmax(u))))
+    mid, du = 0.5 * (p[: end - 1] + p[1:end]), np.diff(u[:end])
+    found = mid.sum() * h, side * (mid * du).sum(), p.max()
+    assert found == pytest.approx((state.load, state.friction_force, state.peak_pressure), rel=1e-6)
+    assert abs(edges[end] - abs(state.trailing_edge)) < 2 * h
+
+
+def test_a_shape_that_may_touch_in_several_places_is_refused_beyond_kelvin_voigt():
+    def height(x):
+        return x * x / 0.02 + 2e-6 * (1.0 - math.cos(x / 1e-5))
+
+    def slope(x):
+        return x / 0.01 + 0.2 * math.sin(x / 1e-5)
+
+    here = scene(ZENER, "fixed", indenter=kv.Profile(height, slope))
+    with pytest.raises(kv.QuadratureError, match="not convex down to"):
+        kv.steady(here)
 
 
 @pytest.mark.parametrize("support", SUPPORTS)

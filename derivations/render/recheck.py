@@ -76,7 +76,9 @@ class Steps:
         slope = self._put(sp.diff(primitive, variable))
         self._zero(slope - inner, f"the derivative of {antiderivative}", quiet=True)
         ends = [
-            primitive.subs(variable, end) if end.is_finite else sp.limit(primitive, variable, end)
+            self._put(primitive.subs(variable, end))
+            if end.is_finite
+            else sp.limit(primitive, variable, end)
             for end in (low, high)
         ]
         value = ends[1] - ends[0] if value is None else sp.sympify(value)

@@ -44,7 +44,7 @@ def steady(
         unit. Arrays broadcast against each other.
     method
         ``"exact"`` (parabola, power law, wedge on Kelvin-Voigt, and the parabola on any foundation; the
-        default for them), ``"quadrature"`` (any shape on Kelvin-Voigt, the named shapes on any foundation;
+        default for them), ``"quadrature"`` (any shape; beyond Kelvin-Voigt, if it is convex where it touches;
         the default for the others) or ``"asymptote"`` (of the regime in which the velocity lies; for the
         same shapes as ``"exact"``, on Kelvin-Voigt).
 

@@ -16,20 +16,24 @@ where p = 0 behind the lowest point, p' <= -|u'| G(X) < 0, because |u'| rises an
 
 import math
 from functools import partial
-from typing import Any, NamedTuple, Protocol
+from itertools import pairwise
+from typing import Any, NamedTuple
 
 import numpy as np
 from scipy.optimize import brentq, minimize_scalar
-from scipy.special import gamma
 
+from kvtheory.models.steady.branches import Memory
 from kvtheory.models.steady.contact import half_length
 from kvtheory.models.steady.double_exponential import RULES
+from kvtheory.models.steady.profile_series import ConvexProfile
 from kvtheory.results import Certificate, SteadyState
 from kvtheory.results.errors import QuadratureError
-from kvtheory.scene.indenters import Convex
+from kvtheory.scene.indenters import Convex, Profile
 
 Array = Any
 """Of floats."""
+
+Shape = Convex | ConvexProfile
 
 _NODES, _WEIGHTS = RULES[3][0], RULES[3][2]
 NODES = _NODES[: _NODES.size // 2]
@@ -53,6 +57,8 @@ MARGIN = 8.0
 """On the differences of both rules."""
 FLOOR = 2e-13
 """Relative rounding of a result."""
+JUMP = 1e-6
+"""Pressure at the trailing edge, over that of the depth, from which it is a jump."""
 LIMIT = 1e-6
 """Relative error above which a result is refused."""
 
@@ -62,104 +68,32 @@ STATEMENT = (
 )
 
 
-class Memory(Protocol):
-    """What the branches of a foundation remember, one row each."""
-
-    def amount(self, X: Array) -> Array:
-        """Return m = int_0^X g."""
-
-    def delay(self, v: Array, X: Array) -> Array:
-        """Return s at which a share v of m is reached."""
-
-    def share(self, s: Array, X: Array) -> Array:
-        """Return the share of m that is reached at s."""
-
-    def works(self, sliding: "Sliding", memory: Array, left: Array) -> tuple[float, float]:
-        """Return the work of the branches over the contact, and the part that is lost in it.
-
-        `memory` are their pressures at the nodes, `left` those at the trailing edge.
-        """
-
-
-class Arms:
-    """K_i e^(-X/l_i)."""
-
-    def __init__(self, stiffness: Array, length: Array) -> None:
-        self.stiffness, self.length = (np.asarray(row)[:, None] for row in (stiffness, length))
-
-    def amount(self, X: Array) -> Array:
-        """Return K_i l_i (1 - e^(-X/l_i))."""
-        return -self.stiffness * self.length * np.expm1(-X / self.length)
-
-    def delay(self, v: Array, X: Array) -> Array:
-        """Return -l_i ln(1 - v (1 - e^(-X/l_i)))."""
-        l = self.length[..., None]
-        return -l * np.log1p(v * np.expm1(-X[..., None] / l))
-
-    def share(self, s: Array, X: Array) -> Array:
-        """Return (1 - e^(-s/l_i))/(1 - e^(-X/l_i))."""
-        return np.expm1(-s / self.length) / np.expm1(-X / self.length)
-
-    def works(self, sliding: "Sliding", memory: Array, left: Array) -> tuple[float, float]:
-        """Return the work of the arms, and the part of it that is lost in the contact: sums of squares."""
-        lost, _ = sliding.total((memory**2 / (self.stiffness * self.length)).sum(axis=0))
-        return float((left**2 / (2.0 * self.stiffness)).sum()) + lost, lost
-
-
-class Springpot:
-    """K (X/l)^(-alpha)/Gamma(1 - alpha)."""
-
-    def __init__(self, stiffness: float, length: float, order: float) -> None:
-        self.scale = stiffness * length**order / gamma(2.0 - order)
-        self.rest = 1.0 - order
-
-    def amount(self, X: Array) -> Array:
-        """Return K l^alpha X^(1 - alpha)/Gamma(2 - alpha)."""
-        return self.scale * X[None, :] ** self.rest
-
-    def delay(self, v: Array, X: Array) -> Array:
-        """Return X v^(1/(1 - alpha)): for alpha = 1 nothing is remembered."""
-        if self.rest == 0.0:
-            return 0.0 * v * X[..., None]
-        return X[..., None] * v ** (1.0 / self.rest)
-
-    def share(self, s: Array, X: Array) -> Array:
-        """Return (s/X)^(1 - alpha)."""
-        return (s / X) ** self.rest if self.rest > 0.0 else np.ones_like(X)
-
-    def works(self, sliding: "Sliding", memory: Array, left: Array) -> tuple[float, float]:
-        """Return the work of the springpot, and the part of it that is lost in the contact.
-
-        What it holds where the contact ends is that of its arms, 1/2 int int G(s + s') u' u' ds ds'.
-        """
-        work, _ = sliding.total(sliding.rate * memory.sum(axis=0))
-        if self.rest == 0.0:
-            return work, work
-        s = sliding.ahead
-        kernel = (s[:, None] + s[None, :]) ** (self.rest - 1.0) / gamma(self.rest)
-        scale = self.scale * gamma(1.0 + self.rest)
-        weighed = sliding.weights[0] * sliding.rate
-        return work, work - 0.5 * scale * float(weighed @ kernel @ weighed)
-
-
 class Contact(NamedTuple):
-    """A contact at one depth: its half length at rest, and its trailing edge."""
+    """A contact at one depth: how far it reaches ahead, and behind at rest, and its trailing edge."""
 
     depth: float
     a: float
+    back: float
     x_te: float
 
 
 class Sliding:
     """One contact, with what is needed of it at the nodes of both rules."""
 
-    def __init__(self, shape: Convex, K: float, memory: Memory | None, contact: Contact) -> None:
+    def __init__(self, shape: Shape, K: float, memory: Memory | None, contact: Contact) -> None:
         self.shape, self.K, self.memory, self.contact = shape, K, memory, contact
-        _, a, x_te = contact
-        self.x = np.concatenate((-a * NODES[::-1], x_te * NODES))
-        self.ahead = np.concatenate((x_te + a * NODES[::-1], x_te * NODES[::-1]))
+        a, x_te = contact.a, contact.x_te
+        cuts = sorted({0.0, *shape.kinks})
+        pieces = list(pairwise([-a, *(cut for cut in cuts if -a < cut < x_te), x_te]))
+        pieces = pieces if x_te > 0.0 else [*pieces, (0.0, 0.0)]
+        self.x = np.concatenate([_nodes(*piece) for piece in pieces])
+        self.ahead = np.concatenate(
+            [x_te - end + (end - start) * NODES[::-1] for start, end in pieces]
+        )
         """Distances from the trailing edge: the rule is symmetric."""
-        self.weights = np.concatenate([end * np.stack((FINE, COARSE)) for end in (a, x_te)], axis=1)
+        self.weights = np.concatenate(
+            [(end - start) * np.stack((FINE, COARSE)) for start, end in pieces], axis=1
+        )
         self.rate = -shape.slope(self.x)
         self.rows, self.noise = remembered(shape, memory, a, self.x)
         self.pressure = self.K * (contact.depth - shape.height(self.x)) + self.rows.sum(axis=0)
@@ -170,17 +104,35 @@ class Sliding:
         return fine, abs(fine - coarse)
 
 
-def remembered(shape: Convex, memory: Memory | None, a: float, x: Array) -> tuple[Array, float]:
+def _nodes(start: float, end: float) -> Array:
+    """Return the nodes from start to end, exact towards the end that is closer to the lowest point."""
+    if abs(start) < abs(end):
+        return start + (end - start) * NODES
+    return end - (end - start) * NODES[::-1]
+
+
+def sides(shape: Shape, depth: float) -> tuple[float, float]:
+    """Return how far the contact at rest reaches ahead and behind: h(-a) = h(back) = depth."""
+    if isinstance(shape, ConvexProfile):
+        return shape.sides(depth)
+    a = half_length(shape, depth)
+    return a, a
+
+
+def remembered(shape: Shape, memory: Memory | None, a: float, x: Array) -> tuple[Array, float]:
     """Return the pressure of each branch at the places x, and how far both rules are apart."""
     if memory is None:
         return np.zeros((1, x.size)), 0.0
     X = a + x
     amount = memory.amount(X)
-    behind = np.ones_like(amount)
-    if shape.kinks:  # one rule on either side of the lowest point
-        behind = np.where(x > 0.0, memory.share(np.maximum(x, 0.0), X), behind)
+    cuts = [np.zeros_like(amount), np.ones_like(amount)]
+    for kink in shape.kinks:  # one rule on either side of each that has been passed
+        if kink > -a:
+            share = memory.share(np.maximum(x - kink, 0.0), X) + 0.0 * amount
+            cuts.insert(1, np.where(x > kink, share, 0.0))
     means = []
-    for first, width in ((0.0 * behind, behind), (behind, 1.0 - behind)):
+    for first, last in pairwise(cuts):
+        width = last - first
         if not width.any():
             continue
         past = memory.delay(first[..., None] + width[..., None] * NODES, X)
@@ -192,31 +144,36 @@ def remembered(shape: Convex, memory: Memory | None, a: float, x: Array) -> tupl
     return amount * fine, float((apart / np.maximum(size.max(), TINY)).max())
 
 
-def contact_at(shape: Convex, K: float, memory: Memory | None, depth: float) -> Contact:
+def contact_at(shape: Shape, K: float, memory: Memory | None, depth: float) -> Contact:
     """Return the contact at a depth: h(a) = depth, and the first zero of the pressure."""
-    a = half_length(shape, depth)
+    a, back = sides(shape, depth)
+    rest = Contact(depth, a, back, back)
     if memory is None:
-        return Contact(depth, a, a)
-    pressure = partial(_pressure, shape, K, memory, Contact(depth, a, a))
-    if pressure(VERTEX * a) <= 0.0:  # beyond the vertex of a wedge
-        return Contact(depth, a, 0.0)
-    if pressure(a) >= 0.0:  # nothing is remembered that counts
-        return Contact(depth, a, a)
-    return Contact(depth, a, brentq(pressure, VERTEX * a, a, xtol=TINY, rtol=ROOT, maxiter=2000))
+        return rest
+    pressure = partial(_pressure, shape, K, memory, rest)
+    near = VERTEX * back
+    if pressure(near) <= 0.0:  # beyond the vertex of a wedge
+        return rest._replace(x_te=0.0)
+    if pressure(back) >= 0.0:  # nothing is remembered that counts
+        return rest
+    found = brentq(pressure, near, back, xtol=TINY, rtol=ROOT, maxiter=2000)
+    return rest._replace(x_te=found)
 
 
-def _pressure(shape: Convex, K: float, memory: Memory | None, contact: Contact, x: float) -> float:
+def _pressure(shape: Shape, K: float, memory: Memory | None, contact: Contact, x: float) -> float:
     """Return the pressure at x."""
     rows, _ = remembered(shape, memory, contact.a, np.array([x]))
-    return float(K * (contact.depth - shape.height(x)) + rows.sum())
+    return float(K * (contact.depth - shape.height(np.array([x]))[0]) + rows.sum())
 
 
-def depth_at(shape: Convex, K: float, memory: Memory | None, load: float, spring: float) -> Contact:
+def depth_at(shape: Shape, K: float, memory: Memory | None, load: float, spring: float) -> Contact:
     """Return the contact where W + spring * depth is the load, by Newton's method in logarithms."""
-    deepest = float(shape.height(math.nextafter(shape.reach, 0.0)))
-    depth = min(
-        load / K, 0.5 * deepest
-    )  # where the contact is 1 m long; steps are exact for a power
+    end = math.nextafter(shape.reach, 0.0)
+    deepest = min(float(shape.height(side * end)) for side in (-1.0, 1.0))
+    if isinstance(shape, ConvexProfile):
+        depth = min(shape.shallow(load / K), 0.5 * deepest)
+    else:  # where the contact is 1 m long; steps are exact for a power
+        depth = min(load / K, 0.5 * deepest)
     for _ in range(STEPS):
         contact = contact_at(shape, K, memory, depth)
         sliding = Sliding(shape, K, memory, contact)
@@ -235,7 +192,7 @@ def depth_at(shape: Convex, K: float, memory: Memory | None, load: float, spring
 
 def at_depth(
     memory: Memory,
-    indenter: Convex,
+    indenter: Convex | Profile,
     stiffness: float,
     retardation_time: float,
     velocity: float,
@@ -248,7 +205,7 @@ def at_depth(
     memory
         What the foundation remembers besides its spring.
     indenter
-        A convex shape; see `kvtheory.scene.indenters`.
+        A convex shape, or a profile that turns out to be; see `kvtheory.scene.indenters`.
     stiffness, retardation_time, velocity, depth
         K in N/m^3, C/K in s for the retardation length alone, V in m/s (any sign, or zero), delta in m.
 
@@ -266,19 +223,21 @@ def at_depth(
     --------
     Kelvin-Voigt is the springpot of order 1, which forgets at once:
 
+    >>> from kvtheory.models.steady.branches import Springpot
     >>> from kvtheory.scene.indenters import Parabola
     >>> state = at_depth(Springpot(1e10, 0.1 * 0.1, 1.0), Parabola(0.01), 1e10, 0.1, 0.1, 3e-4)
     >>> print(f"{state.load:.6g} {state.friction_force:.6g} {state.trailing_edge:.6g}")
     35344.6 5344.58 0.00029563
     """
-    given = indenter, stiffness, memory if velocity != 0.0 else None
+    shape = _framed(indenter, velocity)
+    given = shape, stiffness, memory if velocity != 0.0 else None
     with np.errstate(all="ignore"):
         return _state(Sliding(*given, contact_at(*given, depth)), velocity, retardation_time)
 
 
 def at_load(
     memory: Memory,
-    indenter: Convex,
+    indenter: Convex | Profile,
     stiffness: float,
     retardation_time: float,
     velocity: float,
@@ -291,23 +250,32 @@ def at_load(
 
     Examples
     --------
+    >>> from kvtheory.models.steady.branches import Arms
     >>> from kvtheory.scene.indenters import Parabola
     >>> zener = Arms([3e10], [0.1 * 0.01])
     >>> state = at_load(zener, Parabola(0.01), 1e10, 0.03, 0.1, 9806.65)
     >>> print(f"{1e3 * state.depth:.6f} mm, mu = {state.friction_coefficient:.6f}")
     0.203372 mm, mu = 0.048083
     """
-    given = indenter, stiffness, memory if velocity != 0.0 else None
+    shape = _framed(indenter, velocity)
+    given = shape, stiffness, memory if velocity != 0.0 else None
     with np.errstate(all="ignore"):
         if spring > 0.0:
-            weight = weight + spring * depth_at(indenter, stiffness, None, weight, 0.0).depth
+            weight = weight + spring * depth_at(shape, stiffness, None, weight, 0.0).depth
         contact = depth_at(*given, weight, spring)
         return _state(Sliding(*given, contact), velocity, retardation_time)
 
 
+def _framed(indenter: Convex | Profile, velocity: float) -> Shape:
+    """Return the shape as it meets the foundation."""
+    if isinstance(indenter, Profile):
+        return ConvexProfile(indenter, -1.0 if velocity < 0.0 else 1.0)
+    return indenter
+
+
 def _state(sliding: Sliding, velocity: float, retardation_time: float) -> SteadyState:
     """Give every quantity its sign and its error."""
-    depth, a, x_te = contact = sliding.contact
+    depth, a, back, x_te = contact = sliding.contact
     side = -1.0 if velocity < 0.0 else 1.0
     load, apart = sliding.total(sliding.pressure)
     work, inside = 0.0, 0.0
@@ -315,11 +283,12 @@ def _state(sliding: Sliding, velocity: float, retardation_time: float) -> Steady
         left, _ = remembered(sliding.shape, sliding.memory, a, np.array([x_te]))
         work, inside = sliding.memory.works(sliding, sliding.rows, left)
         # K u = -(memory) at the trailing edge, unless the pressure jumps there.
-        rest = -float(left.sum()) / sliding.K if x_te > 0.0 else depth
+        rest, held = -float(left.sum()) / sliding.K, depth - float(sliding.shape.height(x_te))
+        rest = held if abs(rest - held) > JUMP * depth else rest
         work += 0.5 * sliding.K * rest * rest
     values: dict[str, Any] = {
         "depth": depth,
-        "half_length": a,
+        "half_length": 0.5 * (a + back),
         "retardation_length": abs(velocity) * retardation_time,
         "leading_edge": -side * a,
         "trailing_edge": side * x_te + 0.0,
@@ -330,6 +299,8 @@ def _state(sliding: Sliding, velocity: float, retardation_time: float) -> Steady
         "dissipated_in_contact": inside / work if work > 0.0 else 1.0,
     }
     error = MARGIN * (sliding.noise + apart / load) ** 1.5 + FLOOR
+    if isinstance(sliding.shape, ConvexProfile):
+        error += MARGIN * sliding.shape.noise
     if not error < LIMIT:
         raise QuadratureError("quadrature of the shape fails: the indenter's reach is too close")
     errors = dict.fromkeys(values, error)
@@ -341,7 +312,7 @@ def _state(sliding: Sliding, velocity: float, retardation_time: float) -> Steady
 def _edge_error(sliding: Sliding, contact: Contact) -> float:
     """Return how far rounding of the pressure moves its zero, over the trailing edge."""
     x = contact.x_te
-    if x in (0.0, contact.a):
+    if x in (0.0, contact.back):
         return 0.0
     args = sliding.shape, sliding.K, sliding.memory, contact
     fall = (_pressure(*args, x * (1.0 - STRIDE)) - _pressure(*args, x * (1.0 + STRIDE))) / STRIDE

@@ -95,17 +95,17 @@ def _solve_on(scene: Scene, values: Values) -> SteadyState:
 
 def _convolved(scene: Scene, values: Mapping[str, float], indenter: Any) -> SteadyState:
     """Integrate one scene on a foundation that is not Kelvin-Voigt."""
-    from kvtheory.models.steady import convolution  # not needed by the other methods
+    from kvtheory.models.steady import branches, convolution  # not needed by the other methods
 
     values = _with_time(scene.foundation, values)
     speed, stiffness = abs(values["drive.velocity"]), values["foundation.stiffness"]
-    memory: convolution.Memory
+    memory: branches.Memory
     if scene.foundation.arms:
         arms = np.array(arms_of(scene.foundation, values))
-        memory = convolution.Arms(arms[:, 0], speed * arms[:, 1])
+        memory = branches.Arms(arms[:, 0], speed * arms[:, 1])
     else:
         length = speed * values[TIME]
-        memory = convolution.Springpot(stiffness, length, values["foundation.order"])
+        memory = branches.Springpot(stiffness, length, values["foundation.order"])
     return _solve(convolution, values, memory, indenter)
 
 

@@ -1,0 +1,98 @@
+"""A convex shape of Python functions, as a series in cells: what the convolution asks of a shape.
+
+The series is that of `cells`, resolved to the rounding of the shape, so that thousands of slopes cost no call
+of a Python function. A shape that is not convex where it is below the depth may touch in several places, and
+what the surface between two of them remembers is more than one contact says: it is refused.
+"""
+
+import math
+from typing import Any
+
+import numpy as np
+from numpy.polynomial import legendre
+from scipy.optimize import brentq
+
+from kvtheory.models.steady.cells import DENSE, TAIL_MARGIN, VALUES, Cells, Surface
+from kvtheory.results.errors import QuadratureError
+from kvtheory.scene.indenters import Profile
+
+HOLLOW = 1e-9
+"""Fall of the slope, over its greatest value, that rounding may cause."""
+ROOT, TINY = 8.9e-16, 1e-300
+"""Tolerances of the edges at rest."""
+
+
+class ConvexProfile:
+    """A profile in the frame of the sliding: mirrored for a drive in the negative direction."""
+
+    def __init__(self, profile: Profile, side: float) -> None:
+        self.surface = Surface(profile, side)
+        self.reach = profile.reach
+        self.kinks = tuple(sorted(side * kink for kink in profile.kinks))
+        self._depth, self._cells = math.nan, Cells(*(np.empty(0),) * 6)
+
+    def sides(self, depth: float) -> tuple[float, float]:
+        """Return how far the contact at rest reaches, ahead and behind, after a look at the shape."""
+        surface, cells = self.surface, self.surface.cells(depth)
+        within = (cells.height @ VALUES).min(axis=1) < depth
+        slopes = cells.slope @ VALUES
+        falls = np.diff(slopes[within], prepend=slopes[within][:, :1], axis=1).min(initial=0.0)
+        falls = min(falls, np.diff(slopes[within].mean(axis=1)).min(initial=0.0))
+        whole = np.all(np.diff(np.flatnonzero(within)) == 1) and np.all(
+            cells.start[within][1:] == cells.end[within][:-1]
+        )
+        if not whole or falls < -HOLLOW * np.abs(slopes[within]).max():
+            raise QuadratureError(
+                f"the shape is not convex down to {depth:.6g} m: it may touch in several places, for "
+                'which quadrature needs foundation.kind = "kelvin-voigt"'
+            )
+        if surface.jumps:
+            raise QuadratureError("the slope jumps where `kinks` does not say so")
+        ends = self._end(depth, -1.0), self._end(depth, 1.0)
+        self._depth, self._cells = depth, cells
+        return ends
+
+    def _end(self, depth: float, side: float) -> float:
+        """Return the distance at which the shape has risen to the depth."""
+
+        def excess(x: float) -> float:
+            return self.surface.height(side * x) - depth
+
+        far = self.surface.first(lambda x, _: excess(x) >= 0.0)
+        if excess(far) < 0.0:
+            raise QuadratureError("the contact lies beyond the indenter's reach")
+        return float(brentq(excess, 0.0, far, xtol=TINY, rtol=ROOT, maxiter=2000))
+
+    def shallow(self, load: float) -> float:
+        """Return a depth that carries about this load per stiffness."""
+        x = self.surface.first(lambda x, height: height * x >= load)
+        return min(self.surface.height(-x), self.surface.height(x)) or load / x
+
+    @property
+    def noise(self) -> float:
+        """Relative error of the series, by its last coefficients, over the depth."""
+        cells = self._cells
+        low = (cells.height @ VALUES).min(axis=1) < self._depth
+        tails = cells.height_tail + cells.slope_tail * (cells.end - cells.start)
+        return float(TAIL_MARGIN * tails[low].max() / self._depth)
+
+    def height(self, x: Any) -> Any:
+        """Return h(x) by the series of the last depth; of the function itself where there is none."""
+        return (
+            self._sum(self._cells.height, x)
+            if isinstance(x, np.ndarray)
+            else self.surface.height(x)
+        )
+
+    def slope(self, x: Any) -> Any:
+        """Return h'(x) likewise."""
+        return (
+            self._sum(self._cells.slope, x) if isinstance(x, np.ndarray) else self.surface.slope(x)
+        )
+
+    def _sum(self, series: Any, x: Any) -> Any:
+        cells = self._cells
+        row = np.clip(np.searchsorted(cells.start, x, side="right") - 1, 0, cells.start.size - 1)
+        start, end = cells.start[row], cells.end[row]
+        place = np.clip((2.0 * x - start - end) / (end - start), DENSE[0], DENSE[-1])
+        return legendre.legval(place, np.moveaxis(series[row], -1, 0), tensor=False)
