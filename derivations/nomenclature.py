@@ -748,13 +748,9 @@ SYMBOLS = tuple(
         (r"\breve \gamma_1", r"share of an arm in the glassy stiffness", "1", "F17-interval"),
         (r"\breve \gamma_2", r"share of another arm", "1", "F17-interval"),
         (r"\breve \theta", r"weight of the indenter against the free surface", "1", "F17-interval"),
-        (
-            r"\breve \omega_1",
-            r"by how much the weights of the past fall short of 1, one arm",
-            "1",
-            "F17-interval",
-        ),
-        (r"\breve \omega_2", r"the same for another arm", "1", "F17-interval"),
+        (r"\breve \omega_1", r"what is left of a bound, not negative", "1", "F17-interval"),
+        (r"\breve \omega_2", r"the same of another", "1", "F17-interval"),
+        (r"\breve \omega_3", r"the same of a third", "1", "F18-voigt"),
         (
             r"\breve \varepsilon",
             r"mean relaxation length over the length of the contact",

@@ -150,11 +150,9 @@ arm_ratio, left_behind, parting, spring_1, spring_2 = _positive("beta_v u_v sigm
 damper_1, damper_2, share_1, share_2, on_off = sp.symbols(
     "u_v1 u_v2 gamma_v1 gamma_v2 theta_v", nonnegative=True
 )
-spare_1, spare_2 = sp.symbols("omega_v1 omega_v2", nonnegative=True)
+spare_1, spare_2, spare_3 = sp.symbols("omega_v1 omega_v2 omega_v3", nonnegative=True)
 delay, spring_number = _positive("epsilon_v kappa_v")
-lack_mean, lack_ahead, lack_bulge, lack_twist = sp.symbols(
-    "alpha_vA alpha_vP alpha_vD alpha_vE", nonnegative=True
-)
+lack_mean, lack_ahead, lack_twist = sp.symbols("alpha_vA alpha_vP alpha_vE", nonnegative=True)
 haste, steepness, load_number, friction_number = _positive("omega_v chi_v Lambda_v m_v")
 pressed, shift, slope_free, felt = sp.symbols("g_v h_v s_vf J_v", real=True)
 other_trailing = sp.Symbol("v_v", positive=True)
@@ -322,11 +320,11 @@ TEX = {
     on_off: r"\breve \theta",
     spare_1: r"\breve \omega_1",
     spare_2: r"\breve \omega_2",
+    spare_3: r"\breve \omega_3",
     delay: r"\breve \varepsilon",
     spring_number: r"\breve \kappa",
     lack_mean: r"\breve \alpha_A",
     lack_ahead: r"\breve \alpha_P",
-    lack_bulge: r"\breve \alpha_D",
     lack_twist: r"\breve \alpha_E",
     pressed: r"\breve g",
     felt: r"\breve J",

@@ -18,11 +18,13 @@ from .symbols import (
     haste,
     l,
     lack_ahead,
-    lack_bulge,
     lack_mean,
     lack_twist,
     load_number,
     q,
+    spare_1,
+    spare_2,
+    spare_3,
     spring_number,
     spring_share,
     springpot,
@@ -83,11 +85,10 @@ _LACKS = (
 def _voigt() -> Derivation:
     proof = _theorem("F18-voigt", title="Low velocity: Kelvin-Voigt instead of the foundation",
                      text=_VOIGT, uses=("F18-lacks", "F17-load", "F17", "F19-monotonic"))  # fmt: skip
-    for small, bound in (
-        (eps, SMALL), (lack_ahead, eps), (lack_mean, lack_ahead), (lack_bulge, eps / 2),
-        (lack_twist, eps / 4),
+    for small, bound, spare in (
+        (lack_ahead, eps, spare_1), (lack_mean, lack_ahead, spare_2), (lack_twist, eps / 4, spare_3),
     ):  # fmt: skip
-        proof.where(sp.Lt(small, bound), "F18-lacks" if small != eps else "slow enough")
+        proof.define(small, bound / (1 + spare), "F18-lacks: at most the numerator")
     mean, ahead = kap + 1 - lack_mean, kap / 2 + 1 - lack_ahead
     slant = half - lack_ahead + lack_mean / 2
     plain_mean, plain_ahead = kap + 1, kap / 2 + 1

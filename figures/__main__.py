@@ -12,7 +12,7 @@ from figures import drawing
 FIGURES = (
     *("fig3", "fig4", "fig5", "fig6", "table2"),
     *("energy_split", "asymptote_error", "circle_error", "phase_portrait", "regime_map"),
-    "foundations",
+    *("foundations", "rubber", "foundation_precision"),
     *("onset_maps", "ladder", "stability_map", "work_precision"),
 )
 

@@ -2,8 +2,9 @@
 
 Left, the standard linear solid: an arm beta times as stiff as the spring, with the same damping C = K tau
 for every beta. At low velocity all of them are Kelvin-Voigt, Eq. (42); beyond their glass transition they are
-springs again, and the high-velocity asymptotes of the paper hold in the window between alone. Right, the
-springpot of order alpha, which has no such limits. Every curve is exact.
+springs again (their glassy limit is dotted). The high-velocity asymptote of the paper, L2, holds in a window
+alone, no wider than 1 << V tau/a << beta (theorem F18-window), drawn for the stiffest arm. Right, the
+springpot of order alpha; for one order both limits are dotted (theorem F18-springpot). Every curve is exact.
 """
 
 from dataclasses import dataclass, replace
@@ -14,14 +15,19 @@ from matplotlib.figure import Figure
 
 import kvtheory as kv
 from figures import drawing
+from kvtheory.models.steady import fractional_limits
+from kvtheory.models.steady.closed_forms import ALPHA
 from kvtheory.models.steady.viscoelastic import Fractional, Prony
 from kvtheory.plots import BLACK
+from kvtheory.scene.broadcasting import values as broadcast
 from kvtheory.scene.foundations import Arm
 
 NUMBERS = np.geomspace(1e-4, 1e5, 361)
 """V tau/a_0."""
 RATIOS = (1.0, 10.0, 100.0, 1e3, 1e4)
 ORDERS = (0.2, 0.4, 0.6, 0.8, 1.0)
+SHOWN = r"$\alpha = 0.4$"
+"""The springpot whose limits are drawn."""
 PROFILE = 3.0
 """V tau/a_0 of the profiles."""
 SHARES = np.concatenate(([1e-9], np.linspace(0.0, 1.0, 201)[1:]))
@@ -33,6 +39,7 @@ class Data:
     """mu R/a_0 by support and foundation on `NUMBERS`; x/a_0 and p/(K delta_0) by foundation."""
 
     curves: dict[str, dict[str, np.ndarray]]
+    limits: dict[str, dict[str, tuple[np.ndarray, ...]]]
     profiles: dict[str, tuple[np.ndarray, np.ndarray]]
     columns: drawing.Columns
 
@@ -69,7 +76,24 @@ def compute() -> Data:
         f"mu R/a_0, {support}, {name.replace('$', '')} [1]": mu
         for support, family in curves.items() for name, mu in family.items()
     }  # fmt: skip
-    return Data(curves, profiles, columns)
+    limits = {support: _limits(family) for support, family in scenes.items()}
+    return Data(curves, limits, profiles, columns)
+
+
+def _limits(family: dict[str, kv.Scene]) -> dict[str, tuple[np.ndarray, ...]]:
+    """Return the limits that are drawn: glassy of each arm, which falls as 1/V, and both of one springpot."""
+    found = {}
+    for name, scene in family.items():
+        if scene.foundation.arms:
+            glassy = kv.asymptotes(scene, over={"drive.velocity": 1.0}).lines[-1].value
+            found[name] = (glassy / NUMBERS,)
+        elif name == SHOWN:
+            values = broadcast(scene, {"drive.velocity": NUMBERS})
+            found[name] = (
+                fractional_limits.low(values, NUMBERS),
+                fractional_limits.high(values, NUMBERS),
+            )
+    return found
 
 
 def _profile(scene: kv.Scene) -> tuple[np.ndarray, np.ndarray]:
@@ -105,6 +129,15 @@ def draw(data: Data) -> Figure:
             ax = axes[row, column]
             for name, color in zip(names, colors, strict=True):
                 ax.loglog(NUMBERS, data.curves[support][name], color=color, label=name)
+                for limit in data.limits[support].get(name, ()):
+                    ax.loglog(NUMBERS, limit, ":", color=color, linewidth=1)
+            if column == 0:
+                lifted = support == "dead-weight"  # (a/a_0)^2 -> 4 a_0/(3 V tau)
+                end = (RATIOS[-1] * np.sqrt(4.0 / 3.0)) ** (2.0 / 3.0) if lifted else RATIOS[-1]
+                ax.axvspan(1.0, end, color="0.92", zorder=0)
+                L2 = ALPHA * np.sqrt(2.0 / (3.0 * NUMBERS) if lifted else 0.5 + 0.0 * NUMBERS)
+                ax.loglog(NUMBERS, L2, "-.", color=BLACK, linewidth=0.8)
+                ax.text(1.5e4, 0.0 + L2[-60], "$L_2$", va="bottom")
             plain = data.curves[support]["Kelvin–Voigt"]
             ax.loglog(NUMBERS, plain, "--", color=BLACK, linewidth=1, label="Kelvin–Voigt")
             ax.set(ylim=(1e-4, 1.5), xlabel=r"$V\tau/a_0$")
