@@ -82,8 +82,32 @@ def test_foundations_tend_to_kelvin_voigt_and_every_profile_carries_the_load(mad
             for beta in (100, 1000, 10000)
         ]
         assert off[0] > 5 * off[1] > 25 * off[2]
+    for support, names in data.limits.items():
+        curves, (low, high) = data.curves[support], names[r"$\alpha = 0.4$"]
+        assert low[0] == pytest.approx(curves[r"$\alpha = 0.4$"][0], rel=0.1)
+        assert high[-1] == pytest.approx(curves[r"$\alpha = 0.4$"][-1], rel=0.1)
+        for beta in (1, 10):
+            name = rf"$\beta = {beta}$"
+            assert names[name][0][-1] == pytest.approx(curves[name][-1], rel=0.01)
     for name, (x, p) in data.profiles.items():
         assert np.trapezoid(p, x) == pytest.approx(4 / 3, rel=2e-2), name
+
+
+def test_the_rubber_is_kelvin_voigt_in_the_ranges_that_are_drawn(made):
+    data, _, _ = made["rubber"]
+    V = data.columns["V [m/s]"]
+    assert np.all(np.abs(data.error[data.measured >= V]) <= 0.01)
+    assert 0 < data.proved < data.measured < V[-1]
+    known = np.isfinite(data.bound)
+    assert np.all(np.abs(data.error[known]) <= data.bound[known])
+
+
+def test_gauss_by_hand_converges_on_one_arm_and_not_on_twenty(made):
+    series = made["foundation_precision"][0].series
+    best = {count: min(each["Gauss's rule by hand"][0]) for count, each in series.items()}
+    assert best[1] < 1e-12
+    assert best[20] > 1e-6
+    assert all(each["quadrature"][0][0] < 1e-12 for each in series.values())
 
 
 def test_table2_carries_the_papers_coefficients(made):
