@@ -23,10 +23,12 @@ NUMBERS = (0.0, 1e-150, 1e-12, 1e-8, 1e-3, 0.1, 0.5, 0.75, 1.0, 3**0.5, 10.0, 1e
 
 OF_SHAPES = {emit.n, emit.kappa, emit.z}
 """Arguments of the functions of power law and wedge, which `test_emit_power_law` tests."""
+OF_MOTION = [form for form in emit.FORMS if form.label.startswith("F22")]
+"""Those of stability, which `test_emit_stability` tests."""
 FUNCTIONS = [
     form
     for form in emit.FORMS
-    if form.arguments and not (OF_SHAPES | {sym.Q}) & set(form.arguments)
+    if form.arguments and not (OF_SHAPES | {sym.Q}) & set(form.arguments) and form not in OF_MOTION
 ]
 OF_NUMBER = [form for form in FUNCTIONS if set(form.arguments) <= {l, q}]
 AT_REST_WITHOUT_LIMIT = {"error_l2_fixed", "error_l2_dead_weight", "error_depth_high"}
