@@ -24,6 +24,7 @@ from . import (
     power_law_weight,
     relaxation,
     spring_drive,
+    spring_limits,
     spring_stability,
     steady,
     tables,
@@ -47,7 +48,7 @@ _CHAPTERS = (
     *(ball, viscoelastic, relaxation, viscoelastic_limits),
     *(transient_scaling, transient_memory, contact_interval, transient_edges),
     *(transient_motion, transient_rates, transient_balance),
-    *(spring_drive, spring_stability),
+    *(spring_drive, spring_stability, spring_limits),
     *(element_schemes, element_edges),
 )
 """Each chapter may recall what the chapters before it have established."""

@@ -5,8 +5,8 @@ from functools import partial
 import sympy as sp
 
 from .record import Derivation
-from .spring_drive import COUPLING, LONGITUDINAL, QUARTIC, SECTION
-from .step import Proof, tex
+from .spring_drive import COUPLING, LONGITUDINAL, SECTION
+from .step import Proof
 from .symbols import (
     B_x,
     B_z,
@@ -16,7 +16,6 @@ from .symbols import (
     S_c,
     S_x,
     S_z,
-    T_flutter,
     T_x,
     T_z,
     a,
@@ -30,18 +29,14 @@ from .symbols import (
     kappa,
     kappa_x,
     l,
-    lag_minus,
     lag_plus,
-    lam,
     onset_square,
     onset_sum,
     own_rise,
-    per_depth,
     q,
     right,
     rise,
     sigma,
-    sinks,
     spread,
     support_rate,
     uncoupled,
@@ -50,7 +45,7 @@ from .transient_rates import QUADRATIC, steady_sliding
 
 PEELED = (1 - q) ** 2 + q
 """1 - q + q**2, without a difference of nearly equal numbers."""
-_DEAD_WEIGHT = (1 + q) * (4 * q - 1 - q**2) / (4 * q * PEELED)
+DEAD_WEIGHT_RISE = (1 + q) * (4 * q - 1 - q**2) / (4 * q * PEELED)
 RISE = (own_rise + damper_share * (1 + q) / (2 * q)) / (1 + damper_share) + support_rate
 ACROSS, ALONG = (T * sigma**2 + sigma + S for T, S in ((T_z, S_z), (T_x, S_x)))
 SCALED = ACROSS * ALONG - coupling * sigma * (sigma + S_c)
@@ -76,7 +71,7 @@ _theorem = partial(Proof, equation=None, section=SECTION)
 
 def derive() -> tuple[Derivation, ...]:
     """Prove when steady sliding is stable."""
-    return _numbers(), _routh(), _onset(), _critical(), _forms(), _flutter(), _soft(), _limits()
+    return _numbers(), _routh(), _onset(), _critical(), _forms()
 
 
 def _numbers() -> Derivation:
@@ -101,7 +96,7 @@ def _numbers() -> Derivation:
     own = ((1 + q) ** 2 / (4 * PEELED) + damper_share) / (1 + damper_share)
     proof.define(uncoupled, own)
     proof.equal(1 - coupling, uncoupled, "positive: without stiffness nothing would grow")
-    proof.define(own_rise, _DEAD_WEIGHT)
+    proof.define(own_rise, DEAD_WEIGHT_RISE)
     proof.define(rise, RISE)
     proof.equal(S_z - coupling * S_c, rise, "it has the sign of $dF/dV$ (F22-soft)")
     return proof.done(whole, form)
@@ -115,7 +110,7 @@ _SIX = (
 )
 
 
-def _given(proof: Proof) -> None:
+def lay_down(proof: Proof) -> None:
     """Let the coupling and its stiffness be what is left of the dampings and of the stiffness."""
     proof.define(uncoupled, 1 - coupling)
     proof.define(rise, S_z - coupling * S_c)
@@ -125,7 +120,7 @@ def _routh() -> Derivation:
     proof = _theorem(
         "F22-routh", title="Condition of stability", text=_ROUTH, uses=("F22-numbers",)
     )
-    _given(proof)
+    lay_down(proof)
     series = sum(each * sigma**power for power, each in enumerate(COEFFICIENTS))
     proof.equal(SCALED, series, "by powers of the rate")
     proof.define(hurwitz, HURWITZ, "the determinant of Hurwitz")
@@ -150,7 +145,7 @@ _ROUTH = (
 
 def _onset() -> Derivation:
     proof = _theorem("F22-onset", title="Frequency at onset", text=_ONSET, uses=("F22-routh",))
-    _given(proof)
+    lay_down(proof)
     proof.define(bias, uncoupled - T_z * coupling * S_c)
     proof.define(S_x, (T_z + T_x) * Omega - rise, "the imaginary part of the quartic vanishes")
     real = _a4 * Omega**2 - _a2 * Omega + _a0
@@ -171,7 +166,7 @@ _ONSET = (
 
 def _frequencies(proof: Proof) -> None:
     """Let the roots of the quadratic be known."""
-    _given(proof)
+    lay_down(proof)
     proof.define(bias, uncoupled - T_z * coupling * S_c)
     proof.where(sp.Gt(SQUARE, 0), "else no frequency is real")
     proof.define(onset_square, SQUARE)
@@ -227,108 +222,4 @@ _FALLING = (
     "Friction that falls with the velocity has one critical stiffness, below which steady sliding is "
     "unstable; here without a difference of nearly equal numbers, however small the inertia. Where "
     r"$\check n \le 0$, $\Omega_{+}$ of F22-critical has none."
-)
-
-
-def _flutter() -> Derivation:
-    proof = _theorem(
-        "F22-flutter", title="Flutter where friction rises", text=_FLUTTER, uses=("F22-critical",)
-    )
-    proof.where(sp.Gt(rise, 0), "friction rises")
-    proof.where(sp.Gt(S_z - rise, 0), "in motion")
-    proof.define(coupling, (S_z - rise) / S_c, "F22-numbers")
-    proof.define(bias, uncoupled - T_z * coupling * S_c)
-    more, less = ((sp.sqrt(S_z) + sign * sp.sqrt(rise)) ** 2 for sign in (1, -1))
-    proof.define(T_flutter, uncoupled / less)
-    other = uncoupled / more
-    form = (S_z - rise) ** 2 * (T_z - T_flutter) * (T_z - other)
-    proof.equal(SQUARE, form, r"negative between the two: no frequency is real")
-    proof.define(onset_sum, bias - 2 * T_z * rise)
-    product = 2 * uncoupled * sp.sqrt(S_z * rise)
-    proof.equal(sp.Subs(onset_sum, T_z, other), product / more,
-                r"$\check n > 0$ at the lower and below: no positive $\Omega$ either",
-                left=r"\left. \check n \right|_{\vartheta_z = \check h/(\sqrt{\varrho_z} "
-                r"+ \sqrt{\check e})^2}")  # fmt: skip
-    proof.equal(sp.Subs(onset_sum, T_z, uncoupled / less), -product / less, "but two at the upper and above",
-                left=r"\left. \check n \right|_{\vartheta_z = \vartheta_{\mathrm{f}}}")  # fmt: skip
-    proof.where(sp.Gt(SQUARE, 0))
-    proof.define(spread, sp.sqrt(SQUARE))
-    proof.where(sp.Lt(onset_sum, 0), r"above $\vartheta_{\mathrm{f}}$")
-    proof.define(Omega_minus, -(spread + onset_sum) / (2 * T_z**2), "the lower end")
-    proof.equal(Omega_minus, 2 * S_z * rise / (spread - onset_sum), "of positive terms")
-    proof.define(lag_minus, S_z - T_z * Omega_minus)
-    proof.equal(lag_minus, (uncoupled + T_z * coupling * S_c + spread) / (2 * T_z), "likewise")
-    return proof.done(SQUARE, form)
-
-
-_FLUTTER = (
-    "Friction that rises with the velocity is stable for every stiffness up to the inertia "
-    r"$\vartheta_{\mathrm{f}}$. With more, both motions, each damped, drive each other where their "
-    r"frequencies are close: steady sliding is unstable between the stiffnesses of $\Omega_{-}$ and "
-    r"$\Omega_{+}$."
-)
-
-
-def _soft() -> Derivation:
-    proof = _theorem(
-        "F22-soft", title="A soft spring", text=_SOFT, uses=("F22-routh", "F22-forces", "F3")
-    )
-    steady_sliding(proof)
-    proof.define(right, a * q)
-    half = sp.Rational(3, 2)
-    proof.define(
-        sinks, -half * lam * right / (3 * per_depth / 4 + kappa), "the load stays the same"
-    )
-    slope = right**3 + a**3 + half * lam * (right + a) * sinks
-    proof.define(B_z, 3 * a * (1 + q) / 4)
-    proof.define(B_x, a**3 * (1 + q) * PEELED)
-    proof.define(support_rate, kappa / B_z)
-    proof.define(damper_share, damper / B_x)
-    proof.define(S_z, (1 + q) / (2 * q) + support_rate)
-    proof.define(own_rise, _DEAD_WEIGHT)
-    proof.define(rise, RISE)
-    proof.equal(
-        S_z * (slope + damper) / (B_x + damper), rise, "what friction and damper gain with velocity"
-    )
-    proof.define(kappa, sp.S.Zero, "dead weight")
-    proof.define(damper, sp.S.Zero, "no damper")
-    proof.equal(rise, _DEAD_WEIGHT, "rational")
-    proof.root(_DEAD_WEIGHT, q, 2 - sp.sqrt(3), "the friction maximum of F3", over=(q, 0, 1))
-    return proof.done(rise, _DEAD_WEIGHT)
-
-
-_SOFT = (
-    r"$\check H$ has the sign of $\check e$ where $\varrho_x \to 0$, and that is the sign of what friction "
-    "and damper gain with the velocity: a soft spring needs friction that rises. $f_x$ changes directly, "
-    r"and with the depth, by $d_\lambda$."
-)
-
-
-def _limits() -> Derivation:
-    proof = _theorem("F22-limits", title="Rigid drive, fixed indenter, no inertia", text=_LIMITS,
-                     uses=("F22", "F12", "F22-routh"),
-                     notation={"P": QUARTIC})  # fmt: skip
-    for stiffness, other, reason in (
-        (kappa_x, QUADRATIC, r"all that is left for $\kappa_x \to \infty$, a rigid drive: F12"),
-        (
-            kappa,
-            LONGITUDINAL,
-            r"and for $\kappa \to \infty$, a fixed indenter: a damped oscillation",
-        ),
-    ):
-        slope = sp.Derivative(QUARTIC, stiffness)
-        proof.equal(slope, other, reason, left=rf"\frac{{\partial P}}{{\partial {tex(stiffness)}}}")
-    _given(proof)
-    proof.define(hurwitz, HURWITZ)
-    light = T_x * (uncoupled * S_x + rise * (uncoupled + S_z * T_x))
-    proof.equal(sp.Subs(hurwitz, T_z, 0), light, "a light indenter, across")
-    proof.where(sp.Lt(rise, 0), "friction falls")
-    proof.root(light, S_x, -rise * (uncoupled + S_z * T_x) / uncoupled, "its critical stiffness")
-    return proof.done(sp.Subs(hurwitz, T_z, 0), light)
-
-
-_LIMITS = (
-    "The quartic $P$ of F22 is linear in both stiffnesses. One motion alone is stable. Without inertia "
-    r"across the foundation $\check H$ is linear in the stiffness: there is one critical stiffness where "
-    "friction falls, and none where it rises."
 )

@@ -6,6 +6,7 @@ roots of the quartic. What a simulation of the motion did, given by `compute(set
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from matplotlib.colors import LogNorm
@@ -70,7 +71,7 @@ def compute(settles: Callable[[kv.Scene], bool] | None = None) -> Data:
 def draw(data: Data) -> Figure:
     """Draw a map for each retardation time."""
     drawn = drawing.figure(7.4, 3.0)
-    shade = None
+    shade: Any = None
     for ax, tau in zip(drawn.subplots(1, len(TIMES), sharey=True), TIMES, strict=True):
         growing = np.ma.masked_less_equal(data.growth[tau], 0.0)
         shade = ax.pcolormesh(

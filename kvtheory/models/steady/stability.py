@@ -20,8 +20,9 @@ from kvtheory.models.steady.exact import depth_at_load
 Array = NDArray[np.float64]
 Values = Mapping[str, Array]
 
-ROUNDING = 32 * 2.0**-52
-"""Relative error of each number of the rates, twice what its some thirty operations were seen to lose."""
+ROUNDING = 2.0 * 2.0**-52
+"""Relative error of each number of the rates; what follows from it for results is at least three times what
+the comparison with 80 digits has shown on five hundred scenes."""
 
 
 class Numbers(NamedTuple):

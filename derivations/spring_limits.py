@@ -1,0 +1,216 @@
+"""When steady sliding on a spring is stable at once: limits, and what friction does (F22)."""
+
+from collections.abc import Mapping
+from functools import partial
+
+import sympy as sp
+
+from . import tables
+from .record import Derivation, Table
+from .spring_drive import LONGITUDINAL, QUARTIC, SECTION
+from .spring_stability import DEAD_WEIGHT_RISE, HURWITZ, PEELED, RISE, SQUARE, lay_down
+from .step import Proof, tex
+from .symbols import (
+    B_x,
+    B_z,
+    K,
+    M,
+    Omega_minus,
+    R,
+    S_c,
+    S_x,
+    S_z,
+    T_flutter,
+    T_x,
+    T_z,
+    V,
+    a,
+    bias,
+    coupling,
+    damper,
+    damper_share,
+    g,
+    hurwitz,
+    kappa,
+    kappa_x,
+    lag_minus,
+    lam,
+    onset_sum,
+    own_rise,
+    per_depth,
+    q,
+    right,
+    rise,
+    sinks,
+    spread,
+    support_rate,
+    tau,
+    uncoupled,
+)
+from .theorems import LOAD, UNIT, A
+from .transient_rates import QUADRATIC, steady_sliding
+
+_theorem = partial(Proof, equation=None, section=SECTION)
+
+
+def derive() -> tuple[Derivation, ...]:
+    """Prove what follows for rising and for falling friction, and in the limits."""
+    return _flutter(), _soft(), _limits(), _standard()
+
+
+def _flutter() -> Derivation:
+    proof = _theorem(
+        "F22-flutter", title="Flutter where friction rises", text=_FLUTTER, uses=("F22-critical",)
+    )
+    proof.where(sp.Gt(rise, 0), "friction rises")
+    proof.where(sp.Gt(S_z - rise, 0), "in motion")
+    proof.define(coupling, (S_z - rise) / S_c, "F22-numbers")
+    proof.define(bias, uncoupled - T_z * coupling * S_c)
+    more, less = ((sp.sqrt(S_z) + sign * sp.sqrt(rise)) ** 2 for sign in (1, -1))
+    proof.define(T_flutter, uncoupled / less)
+    other = uncoupled / more
+    form = (S_z - rise) ** 2 * (T_z - T_flutter) * (T_z - other)
+    proof.equal(SQUARE, form, r"negative between the two: no frequency is real")
+    proof.define(onset_sum, bias - 2 * T_z * rise)
+    product = 2 * uncoupled * sp.sqrt(S_z * rise)
+    proof.equal(sp.Subs(onset_sum, T_z, other), product / more,
+                r"$\check n > 0$ at the lower and below: no positive $\Omega$ either",
+                left=r"\left. \check n \right|_{\vartheta_z = \check h/(\sqrt{\varrho_z} "
+                r"+ \sqrt{\check e})^2}")  # fmt: skip
+    proof.equal(sp.Subs(onset_sum, T_z, uncoupled / less), -product / less, "but two at the upper and above",
+                left=r"\left. \check n \right|_{\vartheta_z = \vartheta_{\mathrm{f}}}")  # fmt: skip
+    proof.where(sp.Gt(SQUARE, 0))
+    proof.define(spread, sp.sqrt(SQUARE))
+    proof.where(sp.Lt(onset_sum, 0), r"above $\vartheta_{\mathrm{f}}$")
+    proof.define(Omega_minus, -(spread + onset_sum) / (2 * T_z**2), "the lower end")
+    proof.equal(Omega_minus, 2 * S_z * rise / (spread - onset_sum), "of positive terms")
+    proof.define(lag_minus, S_z - T_z * Omega_minus)
+    proof.equal(lag_minus, (uncoupled + T_z * coupling * S_c + spread) / (2 * T_z), "likewise")
+    return proof.done(SQUARE, form)
+
+
+_FLUTTER = (
+    "Friction that rises with the velocity is stable for every stiffness up to the inertia "
+    r"$\vartheta_{\mathrm{f}}$. With more, both motions, each damped, drive each other where their "
+    r"frequencies are close: steady sliding is unstable between the stiffnesses of $\Omega_{-}$ and "
+    r"$\Omega_{+}$."
+)
+
+
+def _soft() -> Derivation:
+    proof = _theorem(
+        "F22-soft", title="A soft spring", text=_SOFT, uses=("F22-routh", "F22-forces", "F3")
+    )
+    steady_sliding(proof)
+    proof.define(right, a * q)
+    half = sp.Rational(3, 2)
+    proof.define(
+        sinks, -half * lam * right / (3 * per_depth / 4 + kappa), "the load stays the same"
+    )
+    slope = right**3 + a**3 + half * lam * (right + a) * sinks
+    proof.define(B_z, 3 * a * (1 + q) / 4)
+    proof.define(B_x, a**3 * (1 + q) * PEELED)
+    proof.define(support_rate, kappa / B_z)
+    proof.define(damper_share, damper / B_x)
+    proof.define(S_z, (1 + q) / (2 * q) + support_rate)
+    proof.define(own_rise, DEAD_WEIGHT_RISE)
+    proof.define(rise, RISE)
+    proof.equal(
+        S_z * (slope + damper) / (B_x + damper), rise, "what friction and damper gain with velocity"
+    )
+    proof.define(kappa, sp.S.Zero, "dead weight")
+    proof.define(damper, sp.S.Zero, "no damper")
+    proof.equal(rise, DEAD_WEIGHT_RISE, "rational")
+    proof.root(DEAD_WEIGHT_RISE, q, 2 - sp.sqrt(3), "the friction maximum of F3", over=(q, 0, 1))
+    return proof.done(rise, DEAD_WEIGHT_RISE)
+
+
+_SOFT = (
+    r"$\check H$ has the sign of $\check e$ where $\varrho_x \to 0$, and that is the sign of what friction "
+    "and damper gain with the velocity: a soft spring needs friction that rises. $f_x$ changes directly, "
+    r"and with the depth, by $d_\lambda$."
+)
+
+
+def _limits() -> Derivation:
+    proof = _theorem("F22-limits", title="Rigid drive, fixed indenter, no inertia", text=_LIMITS,
+                     uses=("F22", "F12", "F22-routh"),
+                     notation={"P": QUARTIC})  # fmt: skip
+    for stiffness, other, reason in (
+        (kappa_x, QUADRATIC, r"all that is left for $\kappa_x \to \infty$, a rigid drive: F12"),
+        (
+            kappa,
+            LONGITUDINAL,
+            r"and for $\kappa \to \infty$, a fixed indenter: a damped oscillation",
+        ),
+    ):
+        slope = sp.Derivative(QUARTIC, stiffness)
+        proof.equal(slope, other, reason, left=rf"\frac{{\partial P}}{{\partial {tex(stiffness)}}}")
+    lay_down(proof)
+    proof.define(hurwitz, HURWITZ)
+    light = T_x * (uncoupled * S_x + rise * (uncoupled + S_z * T_x))
+    proof.equal(sp.Subs(hurwitz, T_z, 0), light, "a light indenter, across")
+    proof.where(sp.Lt(rise, 0), "friction falls")
+    proof.root(light, S_x, -rise * (uncoupled + S_z * T_x) / uncoupled, "its critical stiffness")
+    return proof.done(sp.Subs(hurwitz, T_z, 0), light)
+
+
+_LIMITS = (
+    "The quartic $P$ of F22 is linear in both stiffnesses. One motion alone is stable. Without inertia "
+    r"across the foundation $\check H$ is linear in the stiffness: there is one critical stiffness where "
+    "friction falls, and none where it rises."
+)
+
+
+VELOCITIES = (20, 39, 91, 214)
+"""In mm/s."""
+
+
+def _standard() -> Derivation:
+    proof = _theorem("F22-table1", title="Critical stiffness under standard conditions", text=_TABLE,
+                     uses=("F22-critical", "F22-falling", "F22-soft", "table1"))  # fmt: skip
+    rows = []
+    for speed in VELOCITIES:
+        at = {**tables.STANDARD, V: sp.Rational(speed, 1000)}
+        cubed = ((V * tau) ** 3 * K / (R * M * g)).subs(at)
+        quartic = sp.numer(
+            sp.together(sp.expand(2 * cubed * q**2 * A - 3 * (1 - q) ** 3 * (1 + q)))
+        )
+        proof.unique_root(quartic, UNIT, f"F2 with the numbers of Table 1 at {speed} mm/s")
+        (state,) = (root for root in sp.Poly(quartic, q).real_roots() if 0 < root < 1)
+        rows.append((str(speed), *_onset_at(sp.N(state, 40), at)))
+    heads = ("$V$ [mm/s]", "$q$", r"$\check e$", "Critical stiffness [MN/m²]", "Frequency [Hz]")
+    return proof.done(quartic, 0, table=Table(heads, tuple(rows)))
+
+
+def _onset_at(state: sp.Expr, at: Mapping[sp.Expr, sp.Expr]) -> tuple[str, ...]:
+    """Return q, the rise of friction, critical stiffness and frequency of a dead weight, four digits each."""
+    depth, weight = (tables.static_depth / 1).subs(at), (M * g).subs(at)
+    half = sp.cbrt(4 / (3 * LOAD.subs(q, state)))
+    along = 2 * at[R] / weight
+    across = 3 * half * (1 + state) / 4
+    known: dict[sp.Expr, sp.Expr] = {
+        S_z: (1 + state) / (2 * state),
+        S_c: (1 + state) / state,
+        rise: DEAD_WEIGHT_RISE.subs(q, state),
+        T_z: at[M] * depth / (weight * at[tau] ** 2) / across,
+    }
+    damping = half**3 * (1 + state) * PEELED.subs(q, state)
+    known[T_x] = at[M] * along / at[tau] ** 2 / damping
+    known[coupling] = (known[S_z] - known[rise]) / known[S_c]
+    known[uncoupled] = 1 - known[coupling]
+    known[bias] = (uncoupled - T_z * coupling * S_c).subs(known)
+    shown = [f"{float(each):.4g}" for each in (state, known[rise])]
+    if known[rise] > 0:
+        return *shown, "-", "-"
+    known[onset_sum] = (bias - 2 * T_z * rise).subs(known)
+    square = (sp.sqrt(SQUARE) - onset_sum).subs(known) / (2 * known[T_z] ** 2)
+    stiffness = ((T_z + T_x) * square - rise).subs(known) * damping / along
+    hertz = sp.sqrt(square) / (2 * sp.pi * at[tau])
+    return *shown, *(f"{float(sp.N(each, 30)):.4g}" for each in (stiffness / 10**6, hertz))
+
+
+_TABLE = (
+    r"For the dead weight, with $M_x = M$ and no damper. At 20 mm/s friction rises, and steady sliding is "
+    "stable for every stiffness."
+)

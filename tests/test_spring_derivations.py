@@ -1,0 +1,86 @@
+"""Derivations F22 against equations written on their own, with many digits."""
+
+import mpmath as mp
+import pytest
+import sympy as sp
+from kvtheory.derivations import spring_drive, spring_stability
+from kvtheory.derivations import symbols as s
+from kvtheory.derivations.catalogue import catalogue
+
+from tests import reference_stability as reference
+
+SCENES = (  # drive, inertia and support number, then inertia, damper and spring number along x
+    ("0.3", "0.01", "0", "0.2", "0", "1.5"),
+    ("1.7", "0.4", "0", "3", "0.2", "0.7"),
+    ("6", "20", "2.5", "0.5", "0", "40"),
+)
+
+
+@pytest.fixture(autouse=True)
+def _digits():
+    with mp.workdps(reference.DIGITS):
+        yield
+
+
+@pytest.fixture(scope="module")
+def proved():
+    return {each.label: each for each in catalogue(until=["F22-table1"])}
+
+
+def contact(scene):
+    """Return the numbers of a scene, and its steady contact: depth, half length and edge."""
+    lam, eps, kappa, eps_x, c_x, kappa_x = map(mp.mpf, scene)
+    depth = reference.steady_depth(lam, kappa, mp.mpf("0.5"))
+    half = mp.sqrt(depth)
+    edge = mp.sqrt(depth + lam**2) - lam
+    known = {
+        s.lam: lam, s.eps: eps, s.kappa: kappa, s.eps_x: eps_x, s.damper: c_x, s.kappa_x: kappa_x,
+        s.a: half, s.right: edge, s.per_depth: edge + lam + half, s.per_rate: edge + half,
+    }  # fmt: skip
+    given = dict(
+        zip(("lam", "eps", "kappa", "eps_x", "c_x", "kappa_x"), map(mp.mpf, scene), strict=True)
+    )
+    return known, reference.quartic(**given, guess=depth)
+
+
+def value(expr, known):
+    names = sorted(expr.free_symbols, key=str)
+    return sp.lambdify(names, expr, "mpmath")(*(known[name] for name in names))
+
+
+@pytest.mark.parametrize("scene", SCENES)
+def test_the_quartic_is_that_of_the_equations_of_motion(scene):
+    known, truth = contact(scene)
+    ours = [value(each, known) for each in sp.Poly(spring_drive.QUARTIC, s.sigma).all_coeffs()]
+    for one, other in zip(ours, truth, strict=True):
+        assert abs(one - other) <= abs(other) * mp.mpf(10) ** -35
+
+
+@pytest.mark.parametrize("scene", SCENES)
+def test_falling_friction_is_the_slope_of_the_steady_curve(scene):
+    """`RISE` by a difference of steady states, each found by its own root."""
+    known, _ = contact(scene)
+    lam, kappa, damper = known[s.lam], known[s.kappa], known[s.damper]
+
+    def friction(number):
+        depth = reference.steady_depth(number, kappa, known[s.a] ** 2)
+        return reference.forces(depth, 0, number)[1]
+
+    slope = mp.diff(friction, lam) + damper
+    q = known[s.right] / known[s.a]
+    along = known[s.a] ** 3 + known[s.right] ** 3
+    across = mp.mpf(3) / 4 * known[s.per_rate]
+    own = value(spring_stability.DEAD_WEIGHT_RISE, {s.q: q})
+    found = value(
+        spring_stability.RISE,
+        {s.q: q, s.own_rise: own, s.damper_share: damper / along, s.support_rate: kappa / across},
+    )
+    stiffness = (mp.mpf(3) / 4 * known[s.per_depth] + kappa) / across
+    assert abs(found - stiffness * slope / (along + damper)) <= abs(found) * mp.mpf(10) ** -15
+
+
+def test_every_derivation_is_proved(proved):
+    labels = [label for label in proved if label.startswith("F22")]
+    assert len(labels) == 12
+    assert {proved[label].status for label in labels} <= {"proved", "definition"}
+    assert proved["F22-soft"].steps[-1].domain == "0 < q < 1"
