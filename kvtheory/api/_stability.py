@@ -58,7 +58,7 @@ def stability(
     >>> spring = kv.Drive(velocity="91 mm/s", stiffness="1 MN/m^2")
     >>> found = kv.stability(kv.Scene(drive=spring))
     >>> bool(found.stable), f"{found.critical_stiffness:.4g} N/m^2, {found.critical_velocity:.4g} m/s"
-    (False, '6.879e+06 N/m^2, 0.05177 m/s')
+    (False, '6.879e+06 N/m^2, 0.05363 m/s')
     >>> speeds = {"drive.velocity": ["20 mm/s", "39 mm/s"]}
     >>> kv.stability(over=speeds, quantity="critical_stiffness").critical_stiffness.round()
     array([    nan, 172166.])
@@ -70,10 +70,10 @@ def stability(
     scene = scene_of(scene)
     require(lacks_paper_model, scene, "the stability of steady sliding")
     wanted = _names(quantity)
-    given = _with_drive(scene, values(scene, over), over or {})
     from kvtheory.models.steady import stable_sliding
 
     with double_precision(scene, over):
+        given = _with_drive(scene, values(scene, over), over or {})
         return stable_sliding.solve(given, wanted)
 
 

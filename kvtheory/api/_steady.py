@@ -77,8 +77,8 @@ def steady(
     """
     scene = scene_of(scene)
     chosen = method_for(scene, method)
-    given = values(scene, over)
     with double_precision(scene, over):
+        given = values(scene, over)
         state = METHODS[chosen](scene, given)
     if "drive.stiffness" not in given:
         return state
