@@ -48,6 +48,36 @@ def test_each_figure_comes_as_vector_and_png_with_its_data(made, name):
     assert not list(paths[0].parent.glob(".*"))
 
 
+def test_small_motions_grow_below_the_critical_stiffness_only(made):
+    data, drawn, _ = made["spring_stability"]
+    script = importlib.import_module("figures.spring_stability")
+    stiffness = script.STIFFNESSES[:, np.newaxis]
+    for tau, critical in data.critical.items():
+        line = np.nan_to_num(critical)
+        below, above = stiffness < 0.99 * line, stiffness > 1.01 * line
+        past = 1.001 * data.peak[tau] < script.VELOCITIES
+        assert np.all(data.growth[tau][below & past] > 0.0)
+        assert np.all(data.growth[tau][above] < 0.0)
+    assert not any(data.settled.values())
+    assert len(drawn.axes) == 4
+
+
+def test_what_motions_did_is_drawn_over_the_map_of_stability():
+    script = importlib.import_module("figures.spring_stability")
+    data = script.compute(settles=lambda scene: bool(kv.stability(scene, quantity="stable").stable))
+    marks = script.draw(data).axes[1].get_lines()[2:]
+    assert [mark.get_marker() for mark in marks] == ["o", "x"]
+    settled = sum(settled for _, _, settled in data.settled[0.1])
+    assert marks[0].get_xdata().size == settled > 0
+
+
+def test_a_stiffer_drive_measures_more_of_the_friction_curve(made):
+    data, _, _ = made["measurable_friction"]
+    peak = kv.asymptotes().peak_velocity
+    assert np.all(np.diff(data.velocities) > 0.0)
+    assert data.velocities[0] == pytest.approx(peak, rel=0.1)
+
+
 def test_fig5_shows_exact_lines_under_quadrature_points(made):
     data, drawn, _ = made["fig5"]
     assert len(drawn.axes) == 8
