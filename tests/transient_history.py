@@ -32,7 +32,7 @@ class Past:
 
     def add(self, step: Any) -> None:
         s = np.linspace(step.t_old, step.t, PER_STEP + 1)[1:]
-        d, _, Y = step(s)
+        d, _, Y = step(s)[:3]
         self.s, self.d, self.Y = (
             np.append(old, new) for old, new in ((self.s, s), (self.d, d), (self.Y, Y))
         )
@@ -42,7 +42,7 @@ class Past:
         """Return d and Y at a past instant."""
         if s <= 0.0:
             return 1.0, 0.0
-        d, _, Y = self.steps[(int(np.searchsorted(self.s, s)) - 1) // PER_STEP](s)
+        d, _, Y = self.steps[(int(np.searchsorted(self.s, s)) - 1) // PER_STEP](s)[:3]
         return d, Y
 
 

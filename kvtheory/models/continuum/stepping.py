@@ -10,7 +10,7 @@ from kvtheory.models.continuum import run as r_
 from kvtheory.models.continuum.contact import FREE, PEELING, TOUCHING
 from kvtheory.models.continuum.dense_output import motion
 from kvtheory.models.continuum.run import SIDES, Run, has_room
-from kvtheory.models.continuum.trial_step import Monitors, attempt, next_along, sliding_now, take_up
+from kvtheory.models.continuum.trial_step import Monitors, attempt, sliding_now, take_up
 from kvtheory.scene import base_motion as b_
 
 SAFETY = 0.9
@@ -81,9 +81,11 @@ def _meet_drive(run: Run) -> None:
         _, last, last_slope = b_.evaluate(run.pieces[index - 1], now[r_.S])
     jumps = abs(number - last) > SMOOTH * (1.0 + abs(number))
     changes = jumps or abs(slope - last_slope) > SMOOTH * (1.0 + abs(slope))
-    if run.given.sprung and run.counts[r_.SMOOTH] != 0:
-        rate = motion(run.along[run.counts[r_.RECORDS] - 1], now[r_.S])[2]
-    take_up(run, 1.0, rate)
+    run.counts[r_.SLIDE] = index
+    if run.given.sprung:
+        if run.counts[r_.SMOOTH] != 0:
+            rate = motion(run.along[run.counts[r_.RECORDS] - 1], now[r_.S])[2]
+        take_up(run, 1.0, rate)
     if jumps or index == 0:
         _restart(run)
     if changes:
@@ -267,7 +269,7 @@ def _commit(run: Run, record: Any, end: float) -> None:
     then = motion(record, end) + sliding_now(run, end)
     d, v, _, Y, _, _ = then
     if run.given.sprung:
-        now[r_.X], now[r_.W], _ = motion(run.along[next_along(run)], end)
+        now[r_.X], now[r_.W], _ = motion(run.along[run.counts[r_.RECORDS]], end)
     index = run.counts[r_.RECORDS]
     run.counts[r_.RECORDS] += 1
     if run.states[0] != FREE:

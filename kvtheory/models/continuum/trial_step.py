@@ -30,17 +30,9 @@ def sliding_now(run: Run, s: float) -> tuple[float, float, float]:
     return evaluate(run.pieces[run.counts[r_.SLIDE]], s)
 
 
-def next_along(run: Run) -> int:
-    """Return the row of the motion along x for the next record; a rigid drive has but one, unused."""
-    return int(run.counts[r_.RECORDS]) if run.given.sprung else 0
-
-
 def take_up(run: Run, span: float, rate: float) -> None:
-    """Let the base slide from now on as it does if x' changes by `rate` in a time `span`."""
-    if not run.given.sprung:
-        run.counts[r_.SLIDE] = run.counts[r_.PIECE]
-        return
-    now, along = run.now, run.along[next_along(run)]
+    """Let the base slide under a sprung indenter from now on, whose x' changes by `rate` in a `span`."""
+    now, along = run.now, run.along[run.counts[r_.RECORDS]]
     for i in range(len(along)):
         along[i] = 0.0
     along[h_.START], along[h_.SPAN], along[h_.PIECE] = now[r_.S], span, run.counts[r_.PIECE]
@@ -81,7 +73,8 @@ def attempt(run: Run, record: Any, span: float) -> tuple[float, float, Monitors]
 def _begin(run: Run, record: Any, span: float) -> None:
     """Begin a record: a step of the length `span`, its powers of v still zero."""
     now = run.now
-    take_up(run, span, 0.0)
+    if run.given.sprung:
+        take_up(run, span, 0.0)
     record[h_.START], record[h_.SPAN] = now[r_.S], span
     record[h_.DEPTH], record[h_.PIECE] = now[r_.D], run.counts[r_.SLIDE]
     record[h_.LEFT_STATE], record[h_.LEFT_NODE] = run.states[0], run.tops[0]
@@ -94,11 +87,8 @@ def _begin(run: Run, record: Any, span: float) -> None:
 
 def _solve(run: Run, record: Any) -> int:
     now, stages, sprung = run.now, len(run.given.method.nodes), run.given.sprung
-    guess, last, along = (
-        run.matrix[len(run.matrix) - 3],
-        run.counts[r_.RECORDS] - 1,
-        run.along[next_along(run)],
-    )
+    guess, last = run.matrix[len(run.matrix) - 3], run.counts[r_.RECORDS] - 1
+    along = run.along[last + 1 if sprung else 0]
     for i in range(len(guess) - 1):
         guess[i] = 0.0
     for i in range(stages if run.counts[r_.SMOOTH] != 0 else 0):
@@ -130,7 +120,7 @@ def _probe(run: Run, record: Any, s: float, probe: int) -> tuple[float, float]:
 def _error_along(run: Run, record: Any, s: float, scales: Any) -> float:
     """Return the error of x' from the defect at `s`, by the tolerance."""
     given, now = run.given, motion(record, s) + sliding_now(run, s)
-    x, w, dw = motion(run.along[next_along(run)], s)
+    x, w, dw = motion(run.along[run.counts[r_.RECORDS]], s)
     _, (G, _, _, G_x, G_w) = coupled.balances(run, record[h_.LEFT_STATE : h_.LEFT_X], s, now, x, w)
     rounding = 1.0 + given.spring * abs(x) + abs(w) * (given.damping - G_w) + abs(now[4])
     error = defect_error(record[h_.SPAN], given.eps_x, dw, G, G_x, G_w, rounding, scales)
