@@ -12,6 +12,8 @@ The scaled form is that of `tests.transient_reference`, with lambda = lambda_0 -
 as the error of each value, and the places of the elements beside it; it takes a few minutes.
 """
 
+# ruff: noqa: B023 - the functions of a step of the elements are called within that step alone
+
 import json
 import math
 from dataclasses import asdict, dataclass

@@ -1,0 +1,142 @@
+"""Random scenes on a spring: `python -m tests.spring_random 1000` follows so many and prints the outcome.
+
+Each is followed twice: at a loose tolerance with its certificate, and at a tight one, which is the truth and
+whose balances are measured. Every scene must end in a result or an error that says when and why.
+"""
+
+import math
+import sys
+from collections import Counter
+from dataclasses import dataclass
+
+import numpy as np
+
+import kvtheory as kv
+from kvtheory.models.continuum import compiled
+from kvtheory.models.continuum import evaluation as e_
+from kvtheory.models.continuum.energy import ledger
+from kvtheory.models.continuum.quadrature import integrals
+from kvtheory.models.continuum.run import Spring
+from kvtheory.models.continuum.solver import Trajectory, solve
+from kvtheory.results.errors import TransientError
+from kvtheory.scene.base_motion import BaseMotion
+
+QUANTITIES = ("depth", "friction_force", "leading_edge", "sliding_velocity", "spring_force")
+SWINGS = 30
+"""That a run takes at most, along x."""
+
+
+@dataclass(frozen=True)
+class Case:
+    """A scene in scaled form."""
+
+    history: tuple[tuple[float, float], ...]
+    eps: float
+    kappa: float
+    spring: Spring
+    end: float
+
+    @property
+    def times(self):
+        """Return times away from the jumps."""
+        return np.linspace(0.0, self.end, 20)[1:-1] + 1e-3 * self.end
+
+    def solved(self, rtol, *, fast=None) -> Trajectory:
+        """Follow it."""
+        given = BaseMotion.from_points(self.history, self.end)
+        return solve(given, self.eps, self.kappa, self.end, rtol, spring=self.spring, fast=fast)
+
+    def scene(self):
+        """Return the scene whose scales R, K and tau make 1: its SI numbers are the scaled ones."""
+        support = kv.DeadWeight(mass=self.eps, gravity=1 / self.eps)
+        if math.isinf(self.kappa):
+            support = kv.Fixed(1.0)
+        elif self.kappa > 0.0:
+            support = kv.Suspended(mass=self.eps, stiffness=self.kappa, gravity=1 / self.eps)
+        mass, damping, stiffness = self.spring
+        drive = kv.Drive(history=self.history, stiffness=stiffness, damping=damping, mass=mass)
+        return kv.Scene(
+            kv.Parabola(0.5), kv.Foundation(0.75, 1.0), support, drive, kv.Run(self.end)
+        )
+
+
+def random_case(seed, sign=1):
+    """Draw lambda, eps, eps_x, kappa_x and c_x over decades: starts, stops, reversals and ramps."""
+    rng = np.random.default_rng(seed)
+    number, eps = sign * 10 ** rng.uniform(-1, 1.5), 10 ** rng.uniform(-3, 1)
+    spring = Spring(
+        10 ** rng.uniform(-2.5, 1),
+        float(rng.choice([0.0, 10 ** rng.uniform(-3, 0)])),
+        10 ** rng.uniform(-2, 2),
+    )
+    kappa = float(rng.choice([0.0, 0.0, 10 ** rng.uniform(-1, 2), math.inf]))
+    end = min(6.0, 1.0 + 2 * math.pi * SWINGS * math.sqrt(spring.eps / spring.stiffness))
+    jump = end * rng.uniform(0.2, 0.6)
+    history = (
+        ((0.0, number),),
+        ((0.0, number), (jump, number), (jump, 0.0)),
+        ((0.0, number), (jump, number), (jump, -number)),
+        ((0.0, 0.0), (jump, number)),
+    )[seed % 4]
+    return Case(history, eps, kappa, spring, end)
+
+
+def balances(motion):
+    """Return by how much energy and both impulses do not balance at four times, over what was turned over."""
+    times = np.linspace(0.0, motion.end, 5)[1:]
+    given, states = motion.rows.given, motion.states(times)
+    books = ledger(motion, times)
+    starts = np.array(motion.starts)
+
+    def impulse(columns):
+        def force(_, s):
+            return motion.states(s.reshape(-1))[:, columns].reshape(*s.shape, len(columns))
+
+        index = np.searchsorted(starts, times, side="right") - 1
+        whole = integrals(force, starts, np.append(starts[1:], motion.end))
+        last = integrals(force, starts[index], times)
+        return np.array([whole[:k].sum(axis=0) + part for k, part in zip(index, last, strict=True)])
+
+    f_z, f_x, f_s, d = impulse([e_.NORMAL_FORCE, e_.FRICTION_FORCE, e_.SPRING_FORCE, e_.DEPTH]).T
+    along = given.eps_x * states[:, e_.ALONG_RATE] - (f_x - f_s)
+    up = given.eps * states[:, e_.RATE] - (times - f_z - given.kappa * (d - times))
+    up = 0.0 * times if given.fixed else up
+    size = 1.0 + np.abs(states[:, [e_.RATE, e_.NUMBER]]).max() + np.abs(f_x) + np.abs(f_z)
+    return {
+        "energy": float(np.max(np.abs(books.balance) / (1.0 + np.abs(books.work) + books.kinetic_along))),
+        "impulse along x": float(np.max(np.abs(along) / (size * max(1.0, given.eps_x)))),
+        "impulse along z": float(np.max(np.abs(up) / (size * (1.0 + (0 if given.fixed else given.eps))))),
+    }  # fmt: skip
+
+
+def survey(count, first=0):
+    """Follow so many scenes; print errors, events, the worst balances and what no certificate covers."""
+    seen, worst, dishonest, failed = Counter(), Counter(), [], []
+    for seed in range(first, first + count):
+        case = random_case(seed)
+        try:
+            result = kv.transient(case.scene(), at=case.times, rtol=1e-6)
+            truth = case.solved(1e-10, fast=compiled.available())
+        except TransientError as error:
+            failed.append((seed, str(error)))
+            continue
+        seen.update({event.kind for event in truth.events})
+        for name, value in balances(truth).items():
+            if value > 1e-9:
+                print(seed, name, value, flush=True)
+            worst[name] = max(worst[name], value)
+        one = truth.states(case.times)
+        right = {
+            "depth": one[:, e_.DEPTH], "sliding_velocity": one[:, e_.NUMBER],
+            "spring_force": one[:, e_.SPRING_FORCE], "friction_force": one[:, e_.FRICTION_FORCE],
+        }  # fmt: skip
+        for name, value in right.items():
+            error = np.abs(getattr(result, name) - value).max()
+            if error > result.certificate.relative_error[name] + 1e-8:
+                dishonest.append((seed, name, error, result.certificate.relative_error[name]))
+    print(f"{count} scenes: {len(failed)} errors {failed}; not covered: {dishonest}")
+    print(dict(worst), {kind: n for kind, n in seen.items() if "memory" not in kind})
+
+
+if __name__ == "__main__":
+    survey(int(sys.argv[1]), int(sys.argv[2]) if len(sys.argv) > 2 else 0)

@@ -1,0 +1,184 @@
+"""The transient on a spring: an independent table, balances, limits, errors, and what happens on the way."""
+
+import json
+import math
+
+import numpy as np
+import pytest
+
+import kvtheory as kv
+from kvtheory.models.continuum import evaluation as e_
+from kvtheory.models.continuum.energy import ledger
+from kvtheory.models.continuum.run import Spring
+from kvtheory.models.continuum.solver import solve
+from kvtheory.models.continuum.surface import volume
+from kvtheory.scene.base_motion import BaseMotion
+from tests import spring_reference as ref
+from tests.spring_random import balances, random_case
+from tests.test_continuum_reference import drive
+
+TABLE = json.loads(ref.TABLE.read_text())
+COLUMNS = {
+    "d": e_.DEPTH, "v": e_.RATE, "x": e_.ALONG, "w": e_.ALONG_RATE,
+    "f_z": e_.NORMAL_FORCE, "f_x": e_.FRICTION_FORCE, "left": e_.LEFT, "right": e_.RIGHT,
+}  # fmt: skip
+
+
+def solved(name, rtol=1e-9):
+    scene = ref.SCENES[name]
+    kappa = math.inf if scene.epsilon is None else scene.kappa
+    spring = Spring(scene.inertia, scene.damping, scene.stiffness)
+    end = scene.times[-1]
+    return solve(drive(scene.drive, end), scene.epsilon or 1.0, kappa, end, rtol, spring=spring)
+
+
+@pytest.mark.parametrize("name", ref.SCENES)
+def test_every_quantity_agrees_with_the_independent_table(name):
+    states = solved(name).states(ref.SCENES[name].times)
+    for quantity, column in COLUMNS.items():
+        truth = np.array(TABLE[name]["values"][quantity], dtype=float)
+        stated = np.array(TABLE[name]["errors"][quantity], dtype=float)
+        found = states[:, column]
+        assert np.array_equal(np.isnan(found), np.isnan(truth)), quantity
+        scale = max(1.0, np.nanmax(np.abs(truth), initial=0.0))
+        assert np.nanmax(np.abs(found - truth) - 3 * stated, initial=0.0) <= 1e-7 * scale, quantity
+
+
+@pytest.mark.parametrize("name", ref.ELEMENTS)
+def test_elements_confirm_the_table(name):
+    entry = TABLE[name]["elements"]
+    for place, quantity in enumerate(("d", "x")):
+        difference = np.abs(np.array(entry["values"][place]) - TABLE[name]["values"][quantity])
+        assert difference.max() <= max(entry["errors"][place]) + 1e-12, quantity
+        assert max(entry["errors"][place]) < 1e-3
+
+
+def test_the_table_holds_what_is_hard():
+    events = {name: [event.kind for event in solved(name, 1e-4).events] for name in ref.SCENES}
+    assert len(events) >= 20
+    assert sum("take-off" in kinds for kinds in events.values()) >= 3
+    assert sum("sliding reverses" in kinds for kinds in events.values()) >= 8
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_energy_and_both_impulses_balance(seed):
+    case = random_case(seed)
+    assert max(balances(case.solved(1e-11)).values()) < 1e-9
+
+
+@pytest.mark.parametrize("name", ["stick-slip", "hop", "two hops"])
+def test_the_whole_foundation_pushes_with_the_normal_force(name):
+    """f_z = 3/4 (U + U') over all elements, the relaxing surface among them (F14)."""
+    motion, step = solved(name, 1e-11), 1e-4
+    for share in (0.21, 0.43, 0.77, 0.98):
+        s = share * motion.end
+        before, now, after = (volume(motion, t) for t in (s - step, s, s + step))
+        force = motion.at(s).normal_force
+        assert force == pytest.approx(0.75 * (now + (after - before) / (2 * step)), abs=1e-5)
+
+
+@pytest.mark.parametrize("damping", [0.0, 1.0])
+def test_a_stiff_spring_meets_the_rigid_drive_at_first_order(damping):
+    """x = f_x/kappa_x + O(1/kappa_x^2) but for a ringing whose mean is zero: so does the depth."""
+    given, times = BaseMotion.constant(3.0, 2.0), np.linspace(0.1, 2.0, 20)
+    rigid = solve(given, 0.05, 0.0, 2.0, 1e-10).states(times)[:, e_.DEPTH]
+    stiffness = np.array([400.0, 1600.0, 6400.0])
+    errors = []
+    for k in stiffness:
+        spring = Spring(0.2, damping * 2.0 * math.sqrt(0.2 * k), float(k))
+        depth = solve(given, 0.05, 0.0, 2.0, 1e-9, spring=spring).states(times)[:, e_.DEPTH]
+        errors.append(np.abs(depth - rigid).max())
+    slope = np.polyfit(np.log(stiffness), np.log(errors), 1)[0]
+    assert slope == pytest.approx(-1.0, abs=0.2)
+    assert errors[-1] < 1e-3
+
+
+def test_compiled_and_interpreted_kernels_give_the_same_bits():
+    for seed in range(3):
+        case = random_case(seed)
+        fast, slow = (case.solved(1e-6, fast=fast) for fast in (True, False))
+        assert fast.records == slow.records
+        assert fast.nodes == slow.nodes
+        assert fast.events == slow.events
+        np.testing.assert_array_equal(fast.natural, slow.natural)
+        at = np.linspace(0.0, case.end, 50)
+        np.testing.assert_array_equal(fast.states(at), slow.states(at))
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_a_reversed_drive_is_the_mirror_image(seed):
+    there, back = (random_case(seed, sign).solved(1e-9).states([0.3, 1.0]) for sign in (1, -1))
+    for column in (e_.NUMBER, e_.ALONG, e_.SPRING_FORCE, e_.FRICTION_FORCE):
+        np.testing.assert_allclose(there[:, column], -back[:, column], atol=1e-6, rtol=0)
+    np.testing.assert_allclose(there[:, e_.DEPTH], back[:, e_.DEPTH], atol=1e-6, rtol=0)
+
+
+def test_a_spring_so_stiff_that_only_a_damper_saves_it_from_ringing():
+    """Ten decades either side: the quasi-static limit along x, and a mass that hardly moves."""
+    given = BaseMotion.constant(3.0, 2.0)
+    stiff = solve(given, 0.05, 0.0, 2.0, 1e-8, spring=Spring(1e-3, 1e4, 1e10)).states([2.0])[0]
+    assert stiff[e_.SPRING_FORCE] == pytest.approx(stiff[e_.FRICTION_FORCE], abs=1e-4)
+    rigid = solve(given, 0.05, 0.0, 2.0, 1e-8).states([2.0])[0]
+    heavy = solve(given, 0.05, 0.0, 2.0, 1e-8, spring=Spring(1e10, 0.0, 1.0)).states([2.0])[0]
+    for row in (stiff, heavy):
+        assert row[e_.DEPTH] == pytest.approx(rigid[e_.DEPTH], abs=1e-7)
+
+
+SPRUNG = kv.Drive(velocity="91 mm/s", stiffness="1 MN/m^2")
+
+
+def test_series_of_a_scene_with_a_spring():
+    scene = kv.Scene(drive=SPRUNG)
+    result = kv.transient(scene, rtol=1e-8)
+    V, own = 0.091, result.as_dict()
+    assert {"sliding_velocity", "spring_force"} <= own.keys()
+    assert result.velocity == pytest.approx(V, rel=1e-14)
+    assert result.sliding_velocity[0] == pytest.approx(V)
+    assert result.spring_force[0] == 0.0
+    assert set(result.certificate.relative_error) >= {"sliding_velocity", "spring_force"}
+    assert "sliding_velocity" not in kv.transient(rtol=1e-4).as_dict()
+    books = result.energy(0.2)
+    assert abs(books.balance) < 1e-7 * books.work
+    assert books.stored_drive > 0.0
+
+
+def test_edges_follow_the_sign_of_the_sliding_velocity():
+    name = "hop"
+    motion = solved(name)
+    given = ref.SCENES[name]
+    support = kv.DeadWeight(mass=given.epsilon, gravity=1 / given.epsilon)
+    spring = {"stiffness": given.stiffness, "mass": given.inertia}
+    scene = kv.Scene(
+        kv.Parabola(0.5), kv.Foundation(0.75, 1.0), support,
+        kv.Drive(history=given.drive, **spring), kv.Run(given.times[-1]),
+    )  # fmt: skip
+    result = kv.transient(scene, rtol=1e-8)
+    touching = ~np.isnan(result.leading_edge)
+    forward = result.sliding_velocity > 0.0
+    left = np.minimum(result.leading_edge, result.trailing_edge)
+    assert np.all((result.leading_edge == left)[touching & forward])
+    assert np.all((result.trailing_edge == left)[touching & ~forward])
+    reversals = [event.time for event in result.events if event.kind == "sliding reverses"]
+    assert reversals == pytest.approx(
+        [event.s for event in motion.events if event.kind == "sliding reverses"], abs=1e-5
+    )
+
+
+def test_the_certificate_covers_the_error():
+    dishonest = []
+    for seed in range(12):
+        case = random_case(seed)
+        result = kv.transient(case.scene(), at=case.times, rtol=1e-5)
+        truth = kv.transient(case.scene(), at=case.times, rtol=1e-11, certify=False)
+        for name in ("depth", "friction_force", "sliding_velocity", "spring_force"):
+            error = np.abs(getattr(result, name) - getattr(truth, name)).max()
+            if error > result.certificate.relative_error[name] + 1e-7:
+                dishonest.append((seed, name))
+    assert dishonest == []
+
+
+def test_energy_counts_what_the_drive_spends():
+    motion = solved("damped", 1e-10)
+    books = ledger(motion, motion.end)
+    assert abs(books.balance) < 1e-9
+    assert books.dissipated_drive > 0.0
