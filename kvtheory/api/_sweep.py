@@ -11,7 +11,8 @@ from kvtheory.api._transient import MAXIMUM_RTOL, MINIMUM_RTOL
 from kvtheory.progress import Progress
 from kvtheory.results import Sweep
 from kvtheory.scene.model import Scene
-from kvtheory.scene.requirements import lacks_rigid_paper_model, require
+from kvtheory.scene.quantities import SceneError
+from kvtheory.scene.requirements import lacks_paper_model, require
 
 if TYPE_CHECKING:
     from kvtheory.sweeps.plan import Plan
@@ -53,7 +54,11 @@ def sweep(
         ``NAME.max``, ``NAME.min`` and ``NAME.time_of_max``, with NAME as in `Transient`;
         ``peak_to_steady_friction``, the largest |F_x| over the steady one; ``settling_time``, after
         which F_x stays within 1 % of the steady one; ``hops``, how often the indenter takes off;
-        ``events``, as JSON. With `at`, NAME is the series; ``NAME.steady`` is the steady value always.
+        ``events``, as JSON; of a drive with a spring ``stick_slip_settles`` (1, or 0 where the end of the
+        run is neither steady nor a cycle that repeats), ``stick_slip_amplitude`` (half the way of the
+        indenter along x), ``stick_slip_period``, and ``sliding_velocity`` and ``friction_force`` with
+        ``.cycle_max`` and ``.cycle_min``. With `at`, NAME is the series; ``NAME.steady`` is the steady
+        value always.
     at
         Times of the series, in s or as text with a unit.
     method, rtol
@@ -140,7 +145,14 @@ def plan_of(
     columns = columns_of(quantities, series=at is not None, indenter=scene.indenter)
     plan = Plan(scene, axes_of(scene, over), columns, times, method, rtol)
     if plan.transient:
-        require(lacks_rigid_paper_model, scene, "the transient")
+        require(lacks_paper_model, scene, "the transient")
+    swept = {key for axis in plan.axes for key in axis.values}
+    if scene.drive.rigid and "drive.stiffness" not in swept:
+        for column in columns:
+            if column.sprung:
+                raise SceneError(
+                    [f"`quantities` {column.name}: needs drive.stiffness, of a spring"]
+                )
     if not MINIMUM_RTOL <= rtol <= MAXIMUM_RTOL:
         raise ValueError(
             f"`rtol` = {rtol!r}: expected a number from {MINIMUM_RTOL} to {MAXIMUM_RTOL}"

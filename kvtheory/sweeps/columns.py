@@ -7,7 +7,7 @@ NAME.max, NAME.min and NAME.time_of_max are of the transient; then there are tho
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-from kvtheory.results import STEADY_UNITS, TRANSIENT_UNITS, units_for
+from kvtheory.results import SPRING_UNITS, STEADY_UNITS, TRANSIENT_UNITS, units_for
 from kvtheory.scene.indenters import Indenter
 from kvtheory.scene.quantities import SceneError, nearest, problem
 
@@ -17,6 +17,16 @@ MEASURES = ("end", "max", "min", "time_of_max")
 
 WHOLE = {"peak_to_steady_friction": "1", "settling_time": "s", "hops": "1", "events": ""}
 """Single values of a whole transient, and their units; `events` is text."""
+CYCLE = {
+    "stick_slip_settles": "1",
+    "stick_slip_amplitude": "m",
+    "stick_slip_period": "s",
+    "sliding_velocity.cycle_max": "m/s",
+    "sliding_velocity.cycle_min": "m/s",
+    "friction_force.cycle_max": "N/m",
+    "friction_force.cycle_min": "N/m",
+}
+"""Single values of the cycle in which an indenter on a spring ends, in the order of `cycles.Cycle`."""
 
 
 @dataclass(frozen=True)
@@ -32,6 +42,11 @@ class Column:
     def steady(self) -> bool:
         """Whether steady sliding alone answers it."""
         return self.measure == "steady"
+
+    @property
+    def sprung(self) -> bool:
+        """Whether only a drive with a spring has it."""
+        return self.measure in CYCLE or self.base in SPRING_UNITS
 
     @property
     def text(self) -> bool:
@@ -77,8 +92,9 @@ def columns_of(
 
 def _known(series: bool) -> dict[str, Column]:
     found = {name: Column(name, unit, name, "steady") for name, unit in STEADY_UNITS.items()}
+    over_time = SERIES | SPRING_UNITS
     if series:
-        found |= {name: Column(name, unit, name, "series") for name, unit in SERIES.items()}
+        found |= {name: Column(name, unit, name, "series") for name, unit in over_time.items()}
     found |= {
         f"{name}.steady": Column(f"{name}.steady", unit, name, "steady")
         for name, unit in STEADY_UNITS.items()
@@ -87,7 +103,7 @@ def _known(series: bool) -> dict[str, Column]:
         f"{name}.{measure}": Column(
             f"{name}.{measure}", "s" if measure == "time_of_max" else unit, name, measure
         )
-        for name, unit in SERIES.items()
+        for name, unit in over_time.items()
         for measure in MEASURES
     }
-    return found | {name: Column(name, unit, "", name) for name, unit in WHOLE.items()}
+    return found | {name: Column(name, unit, "", name) for name, unit in (WHOLE | CYCLE).items()}

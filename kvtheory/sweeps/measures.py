@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from kvtheory.models.continuum import bulk, compiled, deviation, maxima
 from kvtheory.models.continuum import error_estimate as estimate
 from kvtheory.models.continuum import evaluation as e_
+from kvtheory.models.continuum.cycles import cycle
 from kvtheory.models.continuum.run import ROOM, Run, begin, with_more_room
 from kvtheory.models.continuum.solved_scene import certified, left_leads, scaled_drive
 from kvtheory.models.continuum.solver import STEP_LIMIT
@@ -24,13 +25,15 @@ from kvtheory.results.table import QUANTITIES
 from kvtheory.scene.base_motion import BaseMotion
 from kvtheory.scene.model import Scene
 from kvtheory.scene.static_state import StaticState
-from kvtheory.sweeps.columns import Column
+from kvtheory.sweeps.columns import CYCLE, Column
 from kvtheory.sweeps.plan import Plan
 
 Array = NDArray[np.float64]
 
 COLUMNS = {
-    "velocity": e_.NUMBER,
+    "velocity": e_.DRIVE,
+    "sliding_velocity": e_.NUMBER,
+    "spring_force": e_.SPRING_FORCE,
     "depth": e_.DEPTH,
     "depth_rate": e_.RATE,
     "normal_force": e_.NORMAL_FORCE,
@@ -92,7 +95,9 @@ class _Block:
         self.reasons: dict[int, Exception] = {}
         self.statements: set[str] = set()
         self.texts = [""] * size
-        self.errors = {name: np.zeros(size) for name in estimate.unknown("").relative_error}
+        known = estimate.unknown("", sprung=True).relative_error
+        self.errors = {name: np.zeros(size) for name in known}
+        self.cycles = np.full((size, len(CYCLE)), np.nan)
         self.found = bulk.Found(
             status=np.full(size, -1),
             other=np.full(size, -1),
@@ -119,7 +124,9 @@ class _Block:
     def follow(self) -> None:
         """Follow the scenes, as many as possible in one call."""
         worthwhile = compiled.worthwhile() or STEPS * len(self.scenes) >= compiled.WORTHWHILE
-        if self.scenes and not self.plan.textual and worthwhile and compiled.available():
+        rigid = all(units.rigid_drive for _, units, _ in self.scenes.values())
+        together = self.scenes and rigid and not self.plan.textual
+        if together and worthwhile and compiled.available():
             self._together()
         for index in self.scenes:
             if not (self.found.status[index] == self.found.other[index] == DONE):
@@ -181,6 +188,8 @@ class _Block:
             found.states[index] = solution.states(self.plan.times).T
         found.last[index] = motion.last
         found.take_offs[index] = sum(event.kind == "take-off" for event in motion.events)
+        if not solution.units.rigid_drive:
+            self.cycles[index] = cycle(motion)
         if self.plan.textual:
             self.texts[index] = json.dumps([event._asdict() for event in solution.events])
         self.statements.add(_relative(errors.statement))
@@ -241,6 +250,14 @@ def _settling_time(block: _Block, column: Column) -> Array:
     return np.maximum(block.found.settled * block.scales("time") - changes, 0.0)
 
 
+def _of_cycle(block: _Block, column: Column) -> Array:
+    """Return a value of the cycle at the end."""
+    scale = {"1": None, "m": "half_length", "s": "time", "m/s": "velocity", "N/m": "friction_force"}
+    values = block.cycles[:, list(CYCLE).index(column.measure)]
+    name = scale[column.unit]
+    return values if name is None else values * block.scales(name)
+
+
 def _relative(statement: str) -> str:
     """Return a statement on errors for a table that holds values of other models, too."""
     return f"{statement}; relative to {AT_REST}"
@@ -255,5 +272,6 @@ _VALUES: Mapping[str, Callable[[_Block, Column], Array]] = {
     "peak_to_steady_friction": _peak_to_steady,
     "settling_time": _settling_time,
     "hops": lambda block, _: block.found.take_offs.astype(float),
+    **dict.fromkeys(CYCLE, _of_cycle),
 }
 """Values of the columns, by their measure; the units of single ones are in `columns.WHOLE`."""

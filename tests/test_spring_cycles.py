@@ -1,0 +1,56 @@
+"""The cycle in which an indenter on a spring ends, in sweeps: what it is, and who has none."""
+
+import dataclasses
+
+import numpy as np
+import pytest
+
+import kvtheory as kv
+from kvtheory.models.continuum.cycles import cycle
+
+NAMES = ("stick_slip_settles", "stick_slip_amplitude", "stick_slip_period")
+SCENE = kv.Scene(drive=kv.Drive(velocity="91 mm/s", stiffness="1 MN/m^2"), run=kv.Run("3 s"))
+
+
+def test_steady_sliding_and_stick_slip_on_either_side_of_the_critical_velocity():
+    names = [*NAMES, "sliding_velocity.cycle_max", "sliding_velocity.cycle_min"]
+    found = kv.sweep(
+        SCENE, over={"drive.velocity": ["20 mm/s", "91 mm/s"]}, quantities=names, rtol=1e-5
+    )
+    settles, amplitude, period, fastest, slowest = (found[name] for name in names)
+    assert settles.tolist() == [1.0, 1.0]
+    assert amplitude[0] == 0.0
+    assert np.isnan(period[0])
+    assert fastest[0] == pytest.approx(0.02, rel=1e-2)
+    assert slowest[1] < 0.091 < fastest[1]
+    # the peaks of the spring force itself, of a motion followed apart
+    result = kv.transient(SCENE, at=np.linspace(2.0, 3.0, 4001).tolist(), rtol=1e-6, certify=False)
+    force = result.spring_force
+    peaks = result.time[1:-1][(force[1:-1] > force[:-2]) & (force[1:-1] >= force[2:])]
+    assert period[1] == pytest.approx(np.diff(peaks).mean(), rel=1e-2)
+    assert amplitude[1] == pytest.approx(0.5 * np.ptp(force) / 1e6, rel=2e-2)
+
+
+def test_a_run_that_is_too_short_does_not_settle():
+    short = dataclasses.replace(SCENE, run=kv.Run("0.3 s"))
+    found = kv.sweep(short, over={"drive.velocity": ["91 mm/s"]}, quantities=NAMES, rtol=1e-4)
+    assert found["stick_slip_settles"].tolist() == [0.0]
+    assert np.isnan(found["stick_slip_amplitude"]).all()
+
+
+def test_a_rigid_drive_has_no_cycle():
+    with pytest.raises(kv.SceneError, match="stick_slip_period: needs drive"):
+        kv.sweep(over={"drive.velocity": [0.1]}, quantities="stick_slip_period")
+    with pytest.raises(ValueError, match="drive with a spring"):
+        cycle(kv.transient(rtol=1e-3, certify=False).solution.motion)
+
+
+def test_series_of_a_spring_over_a_sweep_of_its_stiffness():
+    names = ["sliding_velocity", "spring_force", "velocity"]
+    short = dataclasses.replace(SCENE, run=kv.Run("20 ms"))
+    found = kv.sweep(
+        short, over={"drive.stiffness": [1e6, 1e7]}, quantities=names, at="0 ms,10 ms", rtol=1e-5
+    )
+    assert found["velocity"] == pytest.approx(np.full((2, 2), 0.091))
+    assert found["sliding_velocity"][:, 0] == pytest.approx([0.091, 0.091])
+    assert found["spring_force"][1, 1] > found["spring_force"][0, 1] > 0.0
