@@ -15,8 +15,10 @@ from .step import Proof
 from .symbols import (
     aside,
     ball_angle,
+    ball_behind,
     ball_coefficient,
     ball_cross,
+    ball_depth,
     ball_friction,
     ball_friction_high,
     ball_friction_low,
@@ -92,15 +94,16 @@ def _load() -> Derivation:
     proof.integral(w, strip, UNIT, primitive, "F21-load of each strip, both sides", value=closed)
     _angle(proof)
     proof.define(T, TAIL, "what vanishes at high velocity")
-    proof.equal(w, LOAD, r"$W/(K \delta a^2 \sqrt{R'/R})$")
+    proof.equal(w, LOAD, r"$W/(K \delta a^2 \sqrt{R_{\mathrm{y}}/R})$")
     return proof.done(w, LOAD)
 
 
 _STRIPS = (
-    r"A strip at $\tilde y$, in units of the half width $a \sqrt{R'/R}$, has the half length $a \sqrt{1 - "
-    r"\tilde y^2}$; by F21-load it carries $\frac{2}{3} K \delta a [(1 - \tilde y^2)^{3/2} + (1 - \tilde "
-    r"y^2 + l^2)^{3/2} - l^3]$ per unit width. The contact is the disc of the contact at rest, ahead of the "
-    r"curve $x_{\mathrm{TE}}/a = \sqrt{1 - \tilde y^2 + l^2} - l$ on which the pressure vanishes."
+    r"A strip at $\tilde \zeta$, in units of the half width $a \sqrt{R_{\mathrm{y}}/R}$, has the half length "
+    r"$a \sqrt{1 - \tilde \zeta^2}$; by F21-load it carries $\frac{2}{3} K \delta a [(1 - \tilde "
+    r"\zeta^2)^{3/2} + (1 - \tilde \zeta^2 + l^2)^{3/2} - l^3]$ per unit width. The contact is the disc of "
+    r"the contact at rest, ahead of the curve $x_{\mathrm{TE}}/a = \sqrt{1 - \tilde \zeta^2 + l^2} - l$ on which the pressure "
+    "vanishes."
 )
 
 
@@ -136,34 +139,36 @@ def _loss() -> Derivation:
     return proof.done(D, LOSS)
 
 
-_FALLS = r"$\tilde D$ is positive and less than $\frac{2}{15 l^2}$, for $l^2 + \tilde y^2 > l^2$."
+_FALLS = (
+    r"$\tilde D$ is positive and less than $\frac{2}{15 l^2}$, for $l^2 + \tilde \zeta^2 > l^2$."
+)
 
 
 def _friction() -> Derivation:
     proof = _theorem("F20", title="Ball: friction", text=_BALL, uses=("F20-load", "F21-steady"))
     _sums(proof)
-    depth = sp.Symbol("I_b", positive=True)
+    depth = ball_depth
     proof.integral(depth, 2 * (1 - y**2), UNIT, 2 * y - 2 * y**3 / 3, "mean depth of the strips")
     proof.define(
         phi, l * (w - l * depth), r"$F = \frac{l_{\mathrm{r}}}{R} (W - C V \delta)$ of each strip"
     )
-    proof.equal(phi, FRICTION, r"$F R/(K \delta a^3 \sqrt{R'/R})$")
+    proof.equal(phi, FRICTION, r"$F R/(K \delta a^3 \sqrt{R_{\mathrm{y}}/R})$")
     proof.define(m, phi / w, r"$\mu R/a$")
     proof.equal(m, COEFFICIENT, "friction coefficient")
     return proof.done(m, COEFFICIENT)
 
 
 _BALL = (
-    r"The forces of a ball: $W = \sqrt{R'/R}\, K \delta a^2 \tilde w$ and $F = \frac{a}{R} \sqrt{R'/R}\, K "
-    r"\delta a^2 \tilde \varphi$ depend, like $\mu = \frac{a}{R} \tilde m$, on $l = V \tau/a$ alone; of "
-    r"$R'$, the radius across, only the scale depends, and not $\mu$ at all at a given depth."
+    r"The forces of a ball: $W = \sqrt{R_{\mathrm{y}}/R}\, K \delta a^2 \tilde w$ and $F = \frac{a}{R} "
+    r"\sqrt{R_{\mathrm{y}}/R}\, K \delta a^2 \tilde \varphi$ depend, like $\mu = \frac{a}{R} \tilde m$, on $l = V "
+    r"\tau/a$ alone; of $R_{\mathrm{y}}$, the radius across, only the scale depends, and not $\mu$ at all at a given depth."
 )
 
 
 def _energy() -> Derivation:
     proof = _theorem("F20-energy", title="Ball: energy dissipated inside the contact", text=_SHARE,
                      uses=("energy-any-shape", "F20-loss"))  # fmt: skip
-    left_behind = sp.Symbol("J_b", positive=True)
+    left_behind = ball_behind
     primitive = (1 + 2 * l**2) * y - y**3 / 3 - l * (y * EDGE + (1 + l**2) * sp.atan(y / EDGE))
     closed = sp.Rational(2, 3) + l**2 - l * (1 + l**2) * ANGLE
     proof.integral(left_behind, (EDGE - l) ** 2, UNIT, primitive,
@@ -197,7 +202,7 @@ def _limits() -> Derivation:
 
 _LOW = (
     r"$\mu \to \frac{C V}{K R}$, which is Eq. (42): neither load nor shape across matter. At rest $W = "
-    r"\pi K R \delta^2 \sqrt{R'/R}$."
+    r"\pi K R \delta^2 \sqrt{R_{\mathrm{y}}/R}$."
 )
 
 
@@ -212,8 +217,8 @@ def _high() -> Derivation:
 
 
 _FAST = (
-    r"At a given load $W = \frac{4}{3} C V \delta a \sqrt{R'/R}$ makes $a^3 \sim 1/V$: the friction "
-    r"coefficient of a ball falls as $V^{-1/3}$, where that of a cylinder falls as $V^{-1/2}$."
+    r"At a given load $W = \frac{4}{3} C V \delta a \sqrt{R_{\mathrm{y}}/R}$ makes $a^3 \sim 1/V$: the "
+    r"friction coefficient of a ball falls as $V^{-1/3}$, where that of a cylinder falls as $V^{-1/2}$."
 )
 
 
@@ -228,7 +233,7 @@ def _balance() -> Derivation:
     proof.define(l, lam / s, r"$\lambda = V \tau/a_0$, $s = a/a_0$")
     proof.define(theta, angle, "F20-load")
     proof.define(T, tail, "F20-load")
-    proof.define(ball_scaled, whole, r"$W/W_0$, $W_0 = \pi K R \delta_0^2 \sqrt{R'/R}$")
+    proof.define(ball_scaled, whole, r"$W/W_0$, $W_0 = \pi K R \delta_0^2 \sqrt{R_{\mathrm{y}}/R}$")
     proof.equal(ball_scaled, scaled, "a sum of positive terms")
     proof.define(ball_scaled_s, slope, r"$d \tilde f/d \ln s$ at fixed $\lambda$")
     of_s = scaled.subs(T, tail).subs(theta, angle)

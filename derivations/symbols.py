@@ -179,7 +179,7 @@ spread = sp.Symbol("s_c", nonnegative=True)
 aside, ball_angle, ball_load, ball_friction, ball_coefficient, ball_share = _positive(
     "y_b theta_b w_b phi_b m_b eta_b"
 )
-ball_tail, ball_loss = _positive("T_b D_b")
+ball_tail, ball_loss, ball_depth, ball_behind = _positive("T_b D_b I_b J_b")
 ball_scaled, ball_scaled_s, ball_scaled_ss = _positive("f_b f_b_s f_b_ss")
 ball_l1, ball_l2, ball_load_low, ball_load_high = sp.symbols(
     "e_b_L1 e_b_L2 e_b_W_low e_b_W_high", real=True
@@ -366,7 +366,9 @@ TEX = {
     onset_sum: r"\check n",
     spread: r"\check s",
     onset_square: r"\check D",
-    aside: r"\tilde y",
+    aside: r"\tilde \zeta",
+    ball_depth: r"\tilde I",
+    ball_behind: r"\tilde J",
     ball_angle: r"\tilde \theta",
     ball_load: r"\tilde w",
     ball_friction: r"\tilde \varphi",

@@ -89,10 +89,9 @@ def simulate(
         coarse = [by_best(half, 2.0, shift) for shift in SHIFTS]
         fine = None if scheme is best else by_best(legs)
         certificate = estimate(model, path, h, rows, coarse, fine)
-    for name in DOUBTS:
-        del rows[name]
+    series = {name: row for name, row in rows.items() if name not in DOUBTS}
     return Simulation(
-        **rows, scheme=scheme.row.name, per_length=1.0 / spacing, time_step=h,
+        **series, scheme=scheme.row.name, per_length=1.0 / spacing, time_step=h,
         steps=sum(count for _, _, count in legs), element_updates=updates, warning=warning,
         model="elements", certificate=certificate,
     )  # fmt: skip

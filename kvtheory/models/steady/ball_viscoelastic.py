@@ -42,9 +42,9 @@ PART = 256
 RELATIVE_ERROR = 1e-11
 CERTIFICATE = Certificate(
     kind="estimated",
-    statement="one quadrature over strips, whose moments do not cancel; more than ten times the worst difference to "
-    "strips by Gauss's rule on random scenes of 1 to 5 arms over ten decades of relaxation times, and of "
-    "fractional orders",
+    statement="one quadrature over strips, whose moments do not cancel; more than ten times the worst "
+    "difference to strips by Gauss's rule on random scenes of 1 to 5 arms over ten decades of relaxation "
+    "times, and of fractional orders",
     relative_error=dict.fromkeys(STEADY_UNITS, RELATIVE_ERROR),
 )
 
@@ -208,7 +208,7 @@ def _sums(law: Law, own: tuple[Array, ...], at: tuple[Array, ...], c: Array) -> 
     return Sums(*(np.concatenate(rows) for rows in zip(*parts, strict=True)))
 
 
-def _part(law: Law, own: tuple[Array, ...], at: tuple[Array, ...], length: Array) -> Sums:
+def _part(law: Law, own: Any, at: Any, *, length: Array) -> Sums:
     R, stretch, K, V = at
     row, middle = law(K, V, own), length[:, None]
     first = row.moments(middle)

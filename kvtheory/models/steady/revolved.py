@@ -6,8 +6,9 @@ are those of `kvtheory.models.steady.contact`, or `asperities` for a profile tha
 
     W = int W_2 dy,    F = int F_2 dy    over |y| < b,    h(b) = delta,    y = b sin t.
 
-A strip at the rim has lost the digits of h(|y|) and carries next to nothing: strips beyond `RIM` are left out. As dW_2/d(delta) = K (x_TE - x_LE + l_r) is summed as well, the depth
-at a load is found by Newton's method. The middle plane gives the edges and the peak pressure.
+A strip at the rim has lost the digits of h(|y|) and carries next to nothing: strips beyond `RIM` are left
+out. As dW_2/d(delta) = K (x_TE - x_LE + l_r) is summed as well, the depth at a load is found by Newton's
+method. The middle plane gives the edges and the peak pressure.
 """
 
 import math
@@ -28,8 +29,8 @@ from kvtheory.scene.indenters import Line, Profile, Spot
 Array = NDArray[np.float64]
 
 RIM = {True: 3e-4, False: 3e-3}
-"""cos t of the last strip of a convex profile, and of one that is looked at point by point, for which rounding
-counts sooner: what lies beyond carries less than its fourth power of the load."""
+"""cos t of the last strip of a convex profile, and of one that is looked at point by point, for which
+rounding counts sooner: what lies beyond carries less than its fourth power of the load."""
 MIDDLE = 1e-10
 """y/b of the strips next to the middle plane: a tip that is any sharper makes no difference."""
 NEAR = 0.02
@@ -38,6 +39,8 @@ GAUSS = tuple((0.5 + 0.5 * s, 0.5 * w) for s, w in zip(*leggauss(4), strict=True
 
 LEAST = 2e-14
 """Relative error below which nothing is claimed."""
+SHARP = 4e-12
+"""The same for a profile with a kink, whose strips next to the middle plane have a sharp tip."""
 RTOL = 1e-12
 """Estimate above which the next rule is taken."""
 LIMIT = 1e-6
@@ -191,7 +194,7 @@ def _state(
     middle = model.at_depth(shape, l_r, depth)
     values, errors = {}, {}
     found = _sums(indenter, l_r, depth)
-    error = found.error + LEAST
+    error = found.error + (SHARP if indenter.kinks else LEAST)
     noise = 2.0 * (middle.noise + at_load * error)
     for name, (value, own, power) in model.quantities(shape, l_r, middle).items():
         values[name], errors[name] = value, own + LEAST + noise * abs(power)
@@ -244,10 +247,11 @@ def _sums(indenter: Spot, l_r: float, depth: float) -> Sums:
             break
     if not error < LIMIT:
         raise QuadratureError("quadrature over the strips fails: the indenter's reach is too close")
-    return Sums(*map(float, fine), error)
+    load, slope, friction, lost = map(float, fine)
+    return Sums(load, slope, friction, lost, error)
 
 
-def _half_length(profile: Line, depth: float) -> float:
+def _half_length(profile: Any, depth: float) -> float:
     if profile.convex:
         return float(contact.half_length(profile, depth))
     surface = Surface(profile, 1.0)
