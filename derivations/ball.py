@@ -102,8 +102,8 @@ _STRIPS = (
     r"A strip at $\tilde \zeta$, in units of the half width $a \sqrt{R_{\mathrm{y}}/R}$, has the half length "
     r"$a \sqrt{1 - \tilde \zeta^2}$; by F21-load it carries $\frac{2}{3} K \delta a [(1 - \tilde "
     r"\zeta^2)^{3/2} + (1 - \tilde \zeta^2 + l^2)^{3/2} - l^3]$ per unit width. The contact is the disc of "
-    r"the contact at rest, ahead of the curve $x_{\mathrm{TE}}/a = \sqrt{1 - \tilde \zeta^2 + l^2} - l$ on which the pressure "
-    "vanishes."
+    r"the contact at rest, ahead of the curve $x_{\mathrm{TE}}/a = \sqrt{1 - \tilde \zeta^2 + l^2} - l$ on "
+    "which the pressure vanishes."
 )
 
 
@@ -160,8 +160,11 @@ def _friction() -> Derivation:
 
 _BALL = (
     r"The forces of a ball: $W = \sqrt{R_{\mathrm{y}}/R}\, K \delta a^2 \tilde w$ and $F = \frac{a}{R} "
-    r"\sqrt{R_{\mathrm{y}}/R}\, K \delta a^2 \tilde \varphi$ depend, like $\mu = \frac{a}{R} \tilde m$, on $l = V "
-    r"\tau/a$ alone; of $R_{\mathrm{y}}$, the radius across, only the scale depends, and not $\mu$ at all at a given depth."
+    r"\sqrt{R_{\mathrm{y}}/R}\, K \delta a^2 \tilde \varphi$ depend, like $\mu = \frac{a}{R} \tilde m$, on "
+    r"$l = V \tau/a$ alone; of $R_{\mathrm{y}}$, the radius across, only the scale depends, and not $\mu$ at "
+    r"all at a given depth. In both limits a line contact with the same $R$, of the half length $\frac{9 "
+    r"\pi}{32} a$ and as wide as $\frac{4}{3} (\frac{32}{9 \pi})^2 a \sqrt{R_{\mathrm{y}}/R}$ has the same "
+    "forces, by F1."
 )
 
 

@@ -13,7 +13,7 @@ FIGURES = (
     *("fig3", "fig4", "fig5", "fig6", "table2"),
     *("energy_split", "asymptote_error", "circle_error", "phase_portrait", "regime_map"),
     *("foundations", "rubber", "foundation_precision"),
-    *("spring_stability", "measurable_friction"),
+    *("spring_stability", "measurable_friction", "ball"),
     *("onset_maps", "ladder", "stability_map", "work_precision"),
 )
 

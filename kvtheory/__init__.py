@@ -1,6 +1,16 @@
 """Sliding friction of a rigid indenter on a Kelvin-Voigt foundation: derived, exact, checked."""
 
-from kvtheory.api import asymptotes, compare, elements, solve, stability, steady, sweep, transient
+from kvtheory.api import (
+    asymptotes,
+    compare,
+    elements,
+    footprint,
+    solve,
+    stability,
+    steady,
+    sweep,
+    transient,
+)
 from kvtheory.reference_problems import problem, problems
 from kvtheory.results import (
     AsymptoteReport,
@@ -81,6 +91,7 @@ __all__ = [
     "asymptotes",
     "compare",
     "elements",
+    "footprint",
     "load_scene",
     "problem",
     "problems",

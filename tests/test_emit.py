@@ -21,8 +21,8 @@ ULPS = 8
 NUMBERS = (0.0, 1e-150, 1e-12, 1e-8, 1e-3, 0.1, 0.5, 0.75, 1.0, 3**0.5, 10.0, 1e3, 1e6, 1e12, 1e150)
 """Retardation length over half length: edges, near-cancellations and what lies between."""
 
-OF_SHAPES = {emit.n, emit.kappa, emit.z}
-"""Arguments of the functions of power law and wedge, which `test_emit_power_law` tests."""
+OF_SHAPES = {emit.n, emit.kappa, emit.z, sym.ball_tail, sym.ball_angle}
+"""Arguments of power law, wedge and ball, which `test_emit_power_law` and `test_emit_ball` test."""
 OF_MOTION = [form for form in emit.FORMS if form.label.startswith("F22")]
 """Those of stability, which `test_emit_stability` tests."""
 FUNCTIONS = [

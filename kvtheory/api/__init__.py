@@ -3,6 +3,7 @@
 from kvtheory.api._asymptotes import asymptotes
 from kvtheory.api._compare import compare
 from kvtheory.api._elements import elements
+from kvtheory.api._footprint import footprint
 from kvtheory.api._solve import solve
 from kvtheory.api._stability import stability
 from kvtheory.api._steady import steady
@@ -13,6 +14,7 @@ __all__ = [
     "asymptotes",
     "compare",
     "elements",
+    "footprint",
     "solve",
     "stability",
     "steady",

@@ -2,11 +2,15 @@
 
 import math
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 import click
 
-from kvtheory.cli.console import print_json, print_table, scene_command
+from kvtheory.cli.console import print_json, print_table, scene_command, text
 from kvtheory.cli.group import main
+
+if TYPE_CHECKING:
+    from kvtheory.scene import Scene
 
 AMBIGUOUS = {"support.stiffness", "drive.stiffness", "drive.damping", "drive.mass"}
 """Keys whose last part another section has, too: they are printed with their own section."""
@@ -31,7 +35,7 @@ def scene(
 ) -> None:
     """Print a commented scene template, or check SCENE and print its dimensionless numbers."""
     from kvtheory.scene import load_scene, template
-    from kvtheory.scene.requirements import lacks_quadratic
+    from kvtheory.scene.requirements import lacks_ball, lacks_quadratic
     from kvtheory.scene.static_state import StaticState
 
     if problem:
@@ -64,6 +68,8 @@ def scene(
     )
     rows = [(name, f"{value:.6g}") for name, value in quantities.items()]
     print_table(("quantity", "value in SI"), rows)
+    if not lacks_ball(checked) and checked.drive.ends:
+        _tell_line(checked)
     if not numbers:
         click.echo("\nThe dimensionless numbers are defined for a parabola and a ball only.")
 
@@ -80,3 +86,22 @@ def _print_problem(name: str, *, bare: bool) -> None:
         print_table(("problem", "what it is"), problems().items())
     else:
         click.echo(problem_text(name), nl=False)
+
+
+def _tell_line(scene: "Scene") -> None:
+    """Say which line contact stands for a ball, and how wrong it is."""
+    from kvtheory.api import steady
+    from kvtheory.models.steady.equivalent_line import (
+        FRICTION_COEFFICIENT_ERROR,
+        LOAD_ERROR,
+        equivalent_line,
+    )
+
+    line = equivalent_line(steady(scene), scene.indenter.stretch)  # type: ignore[union-attr]
+    click.echo(
+        f"\nIn steady sliding at this velocity a parabola of the same radius stands for the ball, "
+        f"{text(line.width, 'm')} wide\nunder {text(line.load, 'N/m')}, at the depth "
+        f"{text(line.depth, 'm')}: its load is right within {LOAD_ERROR:.1%}, its friction\ncoefficient "
+        f"within {FRICTION_COEFFICIENT_ERROR:.2%}. At other velocities the same holds at the same depth; a "
+        "dead weight\nchanges its depth, and with it the width."
+    )

@@ -26,6 +26,11 @@ def lacks_quadratic(scene: Scene) -> str:
     return _lacks_shape(scene, (Parabola, Sphere), "the parabola and the ball")
 
 
+def lacks_ball(scene: Scene) -> str:
+    """Say why a method for a ball on a Kelvin-Voigt foundation does not hold; nothing if it does."""
+    return _lacks_shape(scene, (Sphere,), "the ball") or lacks_kelvin_voigt(scene)
+
+
 def lacks_line(scene: Scene) -> str:
     """Say why a method for line contacts does not hold for a scene; nothing if it does."""
     if scene.indenter.per_width:

@@ -204,7 +204,7 @@ def _sums(law: Law, own: tuple[Array, ...], at: tuple[Array, ...], c: Array) -> 
     parts = []
     for i in range(0, c.size, PART):
         arms, scenes = (tuple(each[i : i + PART, None] for each in some) for some in (own, at))
-        parts.append(_part(law, arms, scenes, c[i : i + PART]))
+        parts.append(_part(law, arms, scenes, length=c[i : i + PART]))
     return Sums(*(np.concatenate(rows) for rows in zip(*parts, strict=True)))
 
 

@@ -1,0 +1,56 @@
+"""The footprint of a ball in steady sliding, and the pressure in it."""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Footprint:
+    """Where a ball touches in steady sliding: a disc, cut behind by the line where the pressure vanishes.
+
+    Lengths in m, `stiffness` in N/m^3. `retardation_length` has the sign of the velocity, along whose
+    direction the foundation moves through x; y is across, up to the `half_width` a sqrt(R'/R).
+    """
+
+    radius: float
+    stiffness: float
+    half_length: float
+    half_width: float
+    retardation_length: float
+
+    def edges(self, y: ArrayLike) -> tuple[Array, Array]:
+        """Return leading and trailing edge of the strips at y, as x; NaN beside the contact.
+
+        With the half length A = sqrt(a^2 - y^2 R/R') of a strip, for V > 0 they are -A and
+        sqrt(A^2 + l_r^2) - l_r (derivation F20-load).
+
+        >>> found = Footprint(0.01, 1e10, 4e-3, 4e-3, 3e-3)
+        >>> [edge.round(6).tolist() for edge in found.edges([0.0, 4e-3, 5e-3])]
+        [[-0.004, -0.0, nan], [0.002, 0.0, nan]]
+        """
+        share = np.asarray(y, dtype=float) / self.half_width
+        inside = np.abs(share) <= 1.0
+        A = self.half_length * np.sqrt(np.where(inside, (1.0 - share) * (1.0 + share), np.nan))
+        l_r = abs(self.retardation_length)
+        side = -1.0 if self.retardation_length < 0.0 else 1.0
+        away = np.hypot(A, l_r) + l_r
+        return -side * A, side * A * (A / np.where(away > 0.0, away, 1.0))
+
+    def pressure(self, x: ArrayLike, y: ArrayLike) -> Any:
+        """Return the pressure in Pa, zero outside; x and y broadcast.
+
+        p = K (A^2 - x^2 - 2 l_r x)/(2 R) between the edges.
+
+        >>> float(Footprint(0.01, 1e10, 4e-3, 4e-3, 3e-3).pressure(-3e-3, 0.0)) / 1e6
+        12.5
+        """
+        x, y = np.broadcast_arrays(np.asarray(x, dtype=float), np.asarray(y, dtype=float))
+        one, two = self.edges(y)
+        within = (x >= np.minimum(one, two)) & (x <= np.maximum(one, two))
+        bent = one * one - x * x - 2.0 * self.retardation_length * x
+        return np.where(within, 0.5 * self.stiffness / self.radius * bent, 0.0)
