@@ -9,6 +9,7 @@ import os
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 os.environ.setdefault("OMP_NUM_THREADS", "1")
@@ -77,21 +78,20 @@ def compute() -> Data:
             state.certificate.relative_error["friction_coefficient"],
         )
         over = {"drive.velocity": np.full(MANY, V)}
+        quadrature = partial(kv.steady, scene, method="quadrature")
+        errors = [abs(by_gauss(some, n) / truth - 1.0) for n in NODES]
         each = {
-            "exact": ([claimed], [_seconds(lambda s=scene: kv.steady(s))]),
+            "exact": ([claimed], [_seconds(partial(kv.steady, scene))]),
             "exact, one of many": (
                 [claimed],
-                [_seconds(lambda s=scene, o=over: kv.steady(s, over=o)) / MANY],
+                [_seconds(partial(kv.steady, scene, over=over)) / MANY],
             ),
+            "quadrature": (
+                [max(abs(quadrature().friction_coefficient / truth - 1.0), 1e-16)],
+                [_seconds(quadrature)],
+            ),
+            "Gauss's rule by hand": (errors, [_seconds(partial(by_gauss, some, n)) for n in NODES]),
         }
-        found = kv.steady(scene, method="quadrature").friction_coefficient
-        spent = _seconds(lambda s=scene: kv.steady(s, method="quadrature"))
-        each["quadrature"] = [max(abs(found / truth - 1.0), 1e-16)], [spent]
-        errors = [abs(by_gauss(some, n) / truth - 1.0) for n in NODES]
-        each["Gauss's rule by hand"] = (
-            errors,
-            [_seconds(lambda a=some, n=n: by_gauss(a, n)) for n in NODES],
-        )
         series[count] = each
         rows += [
             (count, name, *pair)

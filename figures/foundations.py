@@ -82,7 +82,7 @@ def compute() -> Data:
 
 def _limits(family: dict[str, kv.Scene]) -> dict[str, tuple[np.ndarray, ...]]:
     """Return the limits that are drawn: glassy of each arm, which falls as 1/V, and both of one springpot."""
-    found = {}
+    found: dict[str, tuple[np.ndarray, ...]] = {}
     for name, scene in family.items():
         if scene.foundation.arms:
             glassy = kv.asymptotes(scene, over={"drive.velocity": 1.0}).lines[-1].value

@@ -9,6 +9,7 @@ Kelvin-Voigt, what theorem F18-voigt proves of it, and the ranges to within one 
 """
 
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from matplotlib.figure import Figure
@@ -74,7 +75,7 @@ def draw(data: Data) -> Figure:
     """Draw friction and error side by side."""
     drawn = drawing.figure(7.2, 3.3)
     left, right = drawn.subplots(1, 2, sharex=True)
-    looks = (
+    looks: tuple[dict[str, Any], ...] = (
         {"color": BLUE, "linewidth": 2.0},
         {"color": RED, "linestyle": "--"},
         {"color": BLACK, "linestyle": ":"},
