@@ -30,6 +30,8 @@ def elements(
 ) -> Simulation:
     """Simulate a scene by point elements that move with the base: any shape, support and drive.
 
+    The foundation is Kelvin-Voigt or a Prony series.
+
     Parameters
     ----------
     scene
@@ -64,7 +66,8 @@ def elements(
     SceneError
         If a time, the density or the step is wrong; every mistake is listed.
     ValueError
-        If the scheme does not exist, or the density or the step does not suit the scene.
+        If the scheme does not exist, the density or the step does not suit the scene, or the foundation
+        is a springpot, which has no finite state.
     DivergenceError
         If the run becomes unstable; the message says when, why, and which step would do.
 
@@ -76,6 +79,10 @@ def elements(
     [35.37, 12.74, 9.81]
     >>> run.certificate.relative_error["depth"] < 1e-3
     True
+    >>> rubber = kv.GeneralizedMaxwell("10 GN/m^3", arms=[["30 GN/m^3", "10 ms"]])
+    >>> run = kv.elements(kv.Scene(foundation=rubber), at=["0 ms", "1 ms", "200 ms"])
+    >>> (run.normal_force / 1e3).round(2).tolist()
+    [9.81, 9.93, 9.81]
 
     References
     ----------

@@ -14,7 +14,9 @@ class SchemeRow(NamedTuple):
     while spacing and step are refined together; forces summed over whole elements are of order one.
     `stability_limit` is the largest stable h C L/M, L the length of the contact: where |R(-z)| = 1, R the
     stability polynomial (F15); infinite if every step is stable. `parts_of_elements` says whether the
-    part of an element at each edge counts. `papers_step` says whether h = 2 dx/V, as in the paper.
+    part of an element at each edge counts. `papers_step` says whether h = 2 dx/V, as in the paper. All this
+    is for Kelvin-Voigt; on a Prony series an explicit scheme has a limit of its own, and the paper's is of
+    order two in time.
     """
 
     name: str

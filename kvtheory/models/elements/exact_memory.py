@@ -1,14 +1,23 @@
-"""Schemes on the exact memory u <- max(g, u e^(-h/τ)) (F8), which needs no rules of contact.
+"""Schemes on the exact memory of an element (F8 for Kelvin-Voigt), which need no rules of contact.
 
-The force, averaged over the step with the weight e^(t/τ), is
+The force, averaged over the step, is k Σ dx max(g - r, 0), r being where the mean pressure of an element
+would vanish; for Kelvin-Voigt, with the weight e^(t/τ),
 
-    F_z = K/(1 - e^(-h/τ)) Σ dx max(g - u e^(-h/τ), 0),
+    F_z = K/(1 - e^(-h/τ)) Σ dx max(g - u e^(-h/τ), 0).
 
-never negative, free of elements that are left alone, and convex in the depth at the end of the step,
+It is never negative, free of elements that are left alone, and convex in the depth at the end of the step,
 which therefore is the one root of a monotone function. The depth advances with the mean velocity
 (1-θ) v_0 + θ v_1. With θ = 1 the damping is that of the backward Euler method; with the exponential
 fit θ = 1/(1 - e^(-z)) - 1/z, z = h C L/M, the velocity falls by e^(-z) exactly as it should, and the
 order is two. Both are stable at any step, since θ >= 1/2 (derivations, `element-stability`).
+
+On arms, an element in contact is a true element under a surface that moves along a straight line: its mean
+pressure times its way is the work done on it, what its springs store and its dampers lose. With θ = 1/2 the
+same holds of mass and spring, so that the energy of a step with the contact held can only fall, and more with
+θ > 1/2: every step is stable. C is here the damper which, beside a spring, does to a ramp as the arms do in a
+step, h Σ K_i (2 φ_2 - φ_1): K_i τ_i of fast arms, h² K_i/(6 τ_i) of slow ones, so that θ - 1/2 is of the third
+order in h, and the scheme of the second (derivation `element-arms`). It is so in the spacing as well: the
+pressure of arms is continuous, and there is no sawtooth but that of arms faster than a step.
 
 Sums over whole elements carry the sawtooth of theorem F15-sawtooth: on Table 1 at the paper's density
 2e-3 of the force at the start, 1e-3 in steady sliding, halved with the spacing. With the kinks of the

@@ -2,7 +2,9 @@
 
 An element in contact detaches where its pressure would be negative, relaxes as e^(-t/τ), and is in
 contact again where the indenter meets it (Eqs. 20-25). The schemes are stable up to dt C L/M = 2.785
-(the paper's) or 2 (Euler), L the length of the contact.
+(the paper's) or 2 (Euler), L the length of the contact. Arms are loaded along a straight line from the start
+of the step to each stage, which leaves the order two; the limit is then where the matrix of a step
+(`stability.amplification`) begins to grow.
 """
 
 import math
