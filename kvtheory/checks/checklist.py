@@ -3,7 +3,6 @@
 `CHECKS` lists them in the order in which they are shown. A check that cannot be made says why.
 """
 
-import math
 from collections.abc import Callable, Iterator
 
 import numpy as np
@@ -75,9 +74,10 @@ def sampling(case: Case) -> Iterator[Check]:
         yield not_made(name, equation, "a fixed indenter has no transient of its own")
         return
     changed = case.theory.last_change
-    slow, start = abs(rates.slow), changed if math.isfinite(changed) else 0.0
-    inside = np.count_nonzero((time > start) & (time <= start + TRANSIENT * slow))
-    distance = TRANSIENT * slow / max(int(inside), 1)
+    slow, start = abs(rates.slow), changed if changed < time[-1] else 0.0
+    window = min(TRANSIENT * slow, time[-1] - start)
+    inside = np.count_nonzero((time > start) & (time <= start + window))
+    distance = window / max(int(inside), 1)
     yield case.check(name, distance, case.tolerance * slow, equation, "s, mean distance of samples",
                 f"{inside} samples within {TRANSIENT:g} slow time constants")  # fmt: skip
 

@@ -86,9 +86,9 @@ class Theory:
 
     @cached_property
     def last_change(self) -> float:
-        """The time in s after which the drive keeps its velocity; infinite if it is a function."""
+        """The time in s after which the drive keeps its velocity; infinite if it never does, or may not."""
         drive = self.scene.drive
-        return math.inf if drive.function else drive.last_change
+        return drive.last_change if drive.ends else math.inf
 
     @cached_property
     def final_velocity(self) -> float:

@@ -166,8 +166,9 @@ def report(scene: Scene, values: Values, tolerance: float) -> AsymptoteReport:
             )
         )
     nothing = np.full_like(critical, np.nan)
-    dead = scene.support.kind == "dead-weight"
-    peak_velocity, peak_friction = asymptotes.peak(limits, tau) if dead else (nothing, nothing)
+    weight_alone = not scene.held and scene.support.spring == 0.0
+    found_peak = asymptotes.peak(limits, tau) if weight_alone else (nothing, nothing)
+    peak_velocity, peak_friction = found_peak
     l1, l2 = (np.abs(line.relative_error) <= tolerance for line in lines[:2])
     return AsymptoteReport(
         velocity=plain(V),
