@@ -173,7 +173,7 @@ def test_overrides_exchange_a_stiffness_for_a_layer_and_back(tmp_path):
         ),
         (
             lambda: kv.Foundation(1e9, 1.0, thickness=1e-3),
-            ["foundation.modulus: missing", "cannot be given beside foundation.thickness"],
+            ["foundation.stiffness = 1000000000.0: cannot be given beside foundation.thickness"],
         ),
         (
             lambda: kv.Foundation(
@@ -188,6 +188,12 @@ def test_what_is_missing_or_contradicts_is_told(make, words):
         make()
     for word in words:
         assert word in str(error.value)
+
+
+def test_a_pair_that_excludes_each_other_is_one_mistake():
+    with pytest.raises(kv.SceneError) as error:
+        kv.Foundation(1e9, 1.0, modulus=1e6, thickness=1e-3)
+    assert len(error.value.problems) == 1
 
 
 def test_files_that_lack_or_contradict_are_told_all_at_once(tmp_path):

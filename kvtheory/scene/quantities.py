@@ -152,8 +152,14 @@ def changed(instance: Any, **values: float) -> Any:
 
 
 def required(cls: Any, names: Iterable[str] = ()) -> list[str]:
-    """Return the quantities that must be given where those of the `names` are."""
+    """Return the quantities that must be given where those of the `names` are.
+
+    One that another excludes asks for nothing more: it is a mistake of its own.
+    """
     names, found = set(names), []
+    for name, given_first in quantities(cls).items():
+        if name in names:
+            names -= set(given_first.excludes)
     for f in dataclasses.fields(cls):
         spec = f.metadata.get("quantity")
         if spec and f.name not in names and (f.default is dataclasses.MISSING or spec.needed):
@@ -196,9 +202,10 @@ def settle(instance: Any, section: str) -> None:
                 written[name] = value, spec.per_width
         except ValueError as error:
             problems.append(problem(f"{section}.{name}", value, str(error)))
-    for name in here:
-        for other in (other for other in specs[name].excludes if other in here):
-            told = f"cannot be given beside {section}.{other}"
+    for place, name in enumerate(here):  # a pair is one mistake, not two
+        others = [f"{section}.{other}" for other in here[place:] if other in specs[name].excludes]
+        if others:
+            told = f"cannot be given beside {', '.join(others)}"
             problems.append(problem(f"{section}.{name}", values[name], told))
     if problems:
         raise SceneError(problems)
