@@ -59,6 +59,8 @@ def compute() -> Data:
 def draw(data: Data) -> Figure:
     """Draw the curves above and the footprints below."""
     drawn = drawing.figure(7.2, 6.0)
+    above: Any
+    below: Any
     above, below = drawn.subfigures(2, 1, height_ratios=(1.15, 1.0))
     for ax, (support, title) in zip(above.subplots(1, 2, sharey=True), TITLES.items(), strict=True):
         for name, color in (("ball", RED), ("cylinder", BLUE)):
@@ -94,6 +96,7 @@ def _footprint(ax: Any, found: Footprint) -> Any:
     ax.set(
         title=rf"$l_\mathrm{{r}}/a = {found.retardation_length:g}$", xlabel="$x/a$", aspect="equal"
     )
+    ax.set(xlim=(-1.06, 1.06), ylim=(-1.06, 1.06))
     ax.grid(visible=False)
     return image
 

@@ -6,7 +6,7 @@ from kvtheory.api._edge import double_precision, scene_of, times_of
 from kvtheory.progress import Progress
 from kvtheory.results import Transient
 from kvtheory.scene.model import Scene
-from kvtheory.scene.requirements import lacks_paper_model, require
+from kvtheory.scene.requirements import lacks_ball, lacks_paper_model, lacks_strips, require
 
 MINIMUM_RTOL, MAXIMUM_RTOL = 1e-12, 1e-2
 """Beyond these, rounding or the first step would decide."""
@@ -27,7 +27,8 @@ def transient(
     ----------
     scene
         What is modelled; without it, the paper's Table 1 with a dead weight. The indenter must be
-        a parabola. At t < 0 it rests at its static depth. A drive that is a function of the time is
+        a parabola, or a ball that is held at its depth and does not slow down so fast that it meets
+        again what it left. At t < 0 it rests at its static depth. A drive that is a function of the time is
         replaced by polynomials within its own tolerance, which the certificate does not cover.
     at
         Times at which the result is wanted, in s or as text with a unit, such as ``"0 ms, 1 ms"`` or
@@ -80,6 +81,12 @@ def transient(
         raise ValueError(
             f"`rtol` = {rtol!r}: expected a number from {MINIMUM_RTOL} to {MAXIMUM_RTOL}"
         )
+    if not lacks_ball(scene):
+        require(lacks_strips, scene, "the transient")
+        from kvtheory.models.strips import held
+
+        with double_precision():
+            return held.transient(scene, times_of(scene, at), certify=certify)
     require(lacks_paper_model, scene, "the transient")
     from kvtheory.models.continuum import solved_scene
 

@@ -6,7 +6,14 @@ from dataclasses import dataclass
 from time import perf_counter
 from typing import Any, NamedTuple
 
-from kvtheory.results import Certificate, ClimbStep, Solution
+from kvtheory.results import (
+    STEADY_UNITS,
+    TRANSIENT_UNITS,
+    Certificate,
+    ClimbStep,
+    Solution,
+    units_for,
+)
 from kvtheory.results.certificate import Value
 from kvtheory.results.errors import ToleranceError
 from kvtheory.scene.model import Scene
@@ -77,9 +84,11 @@ def climb(scene: Scene, request: Request, rungs: Sequence[Rung]) -> Solution:
         step, answer = _try(rung, scene, request)
         steps.append(step)
         if answer is not None:
+            units = TRANSIENT_UNITS if request.over_time else STEADY_UNITS
             return Solution(
                 values=answer.values, rtol=request.rtol, model=rung.name,
                 certificate=answer.certificate, climb=tuple(steps), answer=answer.result,
+                units=units_for(scene.indenter, units),
             )  # fmt: skip
     raise ToleranceError(_failure(request, steps))
 

@@ -19,7 +19,10 @@ from kvtheory.results.table import scales
 from kvtheory.scene.model import Scene
 from kvtheory.scene.requirements import (
     lacks_arms,
+    lacks_kelvin_voigt,
+    lacks_line,
     lacks_paper_model,
+    lacks_quadratic,
     lacks_rigid_drive,
     lacks_rigid_paper_model,
 )
@@ -85,14 +88,14 @@ def _replaceable(steady: Callable[..., SteadyState], scene: Scene, request: Requ
 
 
 def _anything(scene: Scene, request: Request) -> Judgement:
-    if lacking := lacks_arms(scene) or lacks_rigid_drive(scene):
+    if lacking := lacks_line(scene) or lacks_arms(scene) or lacks_rigid_drive(scene):
         return Judgement(lacking)
     return Judgement(error=BEST_OF_ELEMENTS if request.rtol < BEST_OF_ELEMENTS else math.nan)
 
 
 def _steady(scene: Scene, request: Request) -> Judgement:
     """Admit what is steady at once: a fixed indenter (Eqs. 26, 33 with d' = 0), and rest."""
-    reason = lacks_rigid_paper_model(scene)
+    reason = lacks_quadratic(scene) or lacks_kelvin_voigt(scene) or lacks_rigid_drive(scene)
     if not scene.drive.constant:
         reason = reason or "the drive changes"
     elif scene.drive.final_velocity != 0.0 and not scene.held:

@@ -1,6 +1,6 @@
 """What a model answers: values in SI units, and how wrong they may be."""
 
-from kvtheory.results.certificate import Certificate, record
+from kvtheory.results.certificate import AT_REST, Certificate, record
 from kvtheory.results.comparison import Check, Comparison, Explanation
 from kvtheory.results.errors import (
     DivergenceError,
@@ -24,6 +24,7 @@ from kvtheory.results.table import (
 from kvtheory.results.transient import Event, Simulation, SprungTransient, Transient
 
 __all__ = [
+    "AT_REST",
     "QUANTITIES",
     "SERIES_UNITS",
     "SHOWN_UNITS",

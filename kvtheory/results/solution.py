@@ -6,7 +6,6 @@ from typing import Any
 
 from kvtheory.results.certificate import Certificate, Value, record
 from kvtheory.results.presented import Presented
-from kvtheory.results.table import STEADY_UNITS, TRANSIENT_UNITS
 
 
 @dataclass(frozen=True)
@@ -51,17 +50,13 @@ class Solution(Presented):
     certificate: Certificate
     climb: tuple[ClimbStep, ...]
     answer: Any = field(default=None, repr=False, compare=False)
+    units: Mapping[str, str] = field(default_factory=dict, repr=False, compare=False)
+    """The SI unit of each quantity."""
 
     def __getattr__(self, name: str) -> Value:
         if name.startswith("_") or name == "values" or name not in self.values:
             raise AttributeError(f"a {type(self).__name__} of this request has no `{name}`")
         return self.values[name]
-
-    @property
-    def units(self) -> Mapping[str, str]:  # type: ignore[override]
-        """The SI unit of each quantity."""
-        own = TRANSIENT_UNITS if "time" in self.values else STEADY_UNITS
-        return getattr(self.answer, "units", own)
 
     @property
     def choosing_share(self) -> float:

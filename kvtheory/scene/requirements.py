@@ -31,6 +31,14 @@ def lacks_ball(scene: Scene) -> str:
     return _lacks_shape(scene, (Sphere,), "the ball") or lacks_kelvin_voigt(scene)
 
 
+def lacks_strips(scene: Scene) -> str:
+    """Say why the transient of a ball by strips without memory does not hold; nothing if it does."""
+    if lacking := lacks_ball(scene):
+        return lacking
+    told = 'holds for support.kind = "fixed" only so far: a ball that rises lifts its rim off the ground'
+    return "" if scene.held else f"of a ball {told}, and comes down on what it left there"
+
+
 def lacks_line(scene: Scene) -> str:
     """Say why a method for line contacts does not hold for a scene; nothing if it does."""
     if scene.indenter.per_width:

@@ -1,0 +1,1 @@
+"""A ball by strips along the sliding direction, whose edges are in closed form."""
