@@ -1,0 +1,52 @@
+"""The derivations as pages: one for each section, linked with the functions that compute them."""
+
+import re
+
+from kvtheory.derivations.catalogue import catalogue
+from kvtheory.derivations.emit import FORMS
+from kvtheory.derivations.render import edition, markdown
+from kvtheory.derivations.render.text import by_section
+
+from generators.equations import users
+from kvtheory import __version__
+
+
+def pages() -> dict[str, str]:
+    """Return a page for each section, and their index."""
+    derived = catalogue()
+    text = markdown.document(edition(derived, command="kvtheory derive", version=__version__))
+    head, *sections = re.split(r"^## ", text, flags=re.MULTILINE)
+    members = by_section(derived)
+    texts, names = {}, []
+    for section in sections:
+        title, _, body = section.partition("\n")
+        name = re.sub(r"[^a-z0-9]+", "-", title.lower()).strip("-")
+        names.append(name)
+        labels = [
+            each.label for each in next((m for s, m in members.items() if _same(s, title)), ())
+        ]
+        texts[f"theory/{name}.md"] = f"# {title}\n{_named(body, labels)}"
+    tree = "\n".join(names)
+    texts["theory/index.md"] = f"{head}\n```{{toctree}}\n:maxdepth: 2\n\n{tree}\n```\n"
+    return texts
+
+
+def _same(section: str, title: str) -> bool:
+    return re.sub(r"\W", "", section) == re.sub(r"\W", "", title)
+
+
+def _named(body: str, labels: list[str]) -> str:
+    """Give each derivation of a section its label, and say what computes with it."""
+    first, *parts = re.split(r"^### ", body, flags=re.MULTILINE)
+    if len(parts) != len(labels):
+        return body.replace("### ", "## ")
+    return first + "".join(_one(part, label) for part, label in zip(parts, labels, strict=True))
+
+
+def _one(part: str, label: str) -> str:
+    title, _, body = part.partition("\n")
+    forms = [f"closed_forms.py::{form.name}" for form in FORMS if form.label == label]
+    using = [f"`{place}`" for place in dict.fromkeys([*forms, *users("kvtheory")[label]])][:6]
+    told = f"\nComputed by {', '.join(using)}.\n" if using else ""
+    anchor = "" if re.search(rf"\$\$ \({re.escape(label)}\)", body) else f"({label})=\n"
+    return f"{anchor}## {title}\n{body.rstrip()}\n{told}\n"

@@ -1,0 +1,82 @@
+"""The figures as a gallery: each script a page with its picture. What takes minutes is drawn beforehand."""
+
+import re
+import shutil
+import tempfile
+from pathlib import Path
+from typing import Any
+
+from figures import drawing
+from figures.__main__ import FIGURES
+
+ROOT = Path(__file__).parents[2]
+DRAWN = ("onset_maps", "stability_map", "work_precision")
+"""Taken as they lie beside the scripts: they take minutes, or are measurements."""
+_made: list[Path] = []
+
+
+def patch() -> None:
+    """Let a script, which serves as a command line, hand its picture to the gallery instead."""
+    drawing.run = run
+
+
+def run(name: str, compute: Any, draw: Any) -> None:
+    """Draw one figure, or take it as it is."""
+    kept = ROOT / "figures" / f"{name}.png"
+    if name in DRAWN:
+        _made.append(kept)
+        return
+    import matplotlib as mpl
+
+    from kvtheory.plots import STYLE
+
+    path = Path(tempfile.mkdtemp()) / f"{name}.png"
+    with mpl.rc_context({**STYLE}):
+        draw(compute()).savefig(path, dpi=130)
+    _made.append(path)
+
+
+def pictures(block: Any, variables: dict[str, Any], settings: dict[str, Any]) -> str:
+    """Return what the gallery shows of a script: the picture that it drew."""
+    from sphinx_gallery.scrapers import figure_rst
+
+    paths = []
+    while _made:
+        target = Path(next(variables["image_path_iterator"]))
+        shutil.copy(_made.pop(0), target)
+        paths.append(str(target))
+    return figure_rst(paths, settings["src_dir"]) if paths else ""
+
+
+def write(directory: Path) -> None:
+    """Write the scripts with a title as the gallery wants it, if they have changed."""
+    scripts = directory / "scripts"
+    scripts.mkdir(parents=True, exist_ok=True)
+    _put(scripts / "README.rst", _HEAD)
+    for name in FIGURES:
+        text = (ROOT / "figures" / f"{name}.py").read_text(encoding="utf-8")
+        _put(
+            scripts / f"{name}.py",
+            re.sub(r'\A"""(.*?)"""', _titled, text, count=1, flags=re.DOTALL),
+        )
+
+
+def _titled(found: re.Match[str]) -> str:
+    title, _, rest = found[1].strip().partition("\n\n")
+    title = title.replace("\n", " ").rstrip(".")
+    rest = re.sub(r"`([^`]+)`", r"``\1``", rest)
+    return f'"""\n{title}\n{"=" * len(title)}\n\n{rest}\n"""'
+
+
+def _put(path: Path, text: str) -> None:
+    if not path.exists() or path.read_text(encoding="utf-8") != text:
+        path.write_text(text, encoding="utf-8")
+
+
+_HEAD = """Figures
+=======
+
+Each script is in the folder ``figures`` of the repository; ``python -m figures.NAME`` draws it with its data as CSV.
+Maps that take minutes, and measurements of time, are shown as they lie in the repository.
+
+"""

@@ -1,0 +1,73 @@
+"""The reference of scene files: every key with its unit, its range and its default."""
+
+import dataclasses
+import math
+from typing import Any
+
+from generators.api import escaped
+from kvtheory.scene import template
+from kvtheory.scene.drives import Drive
+from kvtheory.scene.files import CHOICES, DEFAULTS, DRIVES, SECTIONS
+from kvtheory.scene.model import Run, Scene
+from kvtheory.scene.quantities import quantities, required
+from kvtheory.scene.waveforms import WAVEFORMS
+
+
+def pages() -> dict[str, str]:
+    """Return one page about all keys."""
+    parts = ["# Scene files", _HEAD]
+    for section in SECTIONS:
+        parts.append(f"## [{section}]")
+        if section in CHOICES:
+            chooser, models = CHOICES[section]
+            default = (
+                f", `{DEFAULTS[section]}` by default" if section in DEFAULTS else ", to be given"
+            )
+            parts.append(
+                f"`{chooser}` is one of {', '.join(f'`{name}`' for name in models)}{default}."
+            )
+            for name, model in models.items():
+                parts += [f"### {chooser} = {name}", _table(model)]
+            if section == "foundation":
+                parts.append(_ARMS)
+        else:
+            parts.append(_table({"drive": Drive, "run": Run}[section]))
+        if section == "drive":
+            parts.append(_DRIVES.format(ways=", ".join(f"`{name}`" for name in DRIVES)))
+            for name, model in WAVEFORMS.items():
+                parts += [f"### waveform = {name}", _table(model)]
+    parts += ["## A template", f"`kvtheory scene` prints it:\n\n```toml\n{template()}\n```"]
+    return {"scene-keys.md": "\n\n".join(parts) + "\n"}
+
+
+def _table(model: Any) -> str:
+    needed, defaults = set(required(model)), {f.name: f.default for f in dataclasses.fields(model)}
+    rows = [
+        f"| `{name}` | {escaped(spec.unit)} | {escaped(spec.doc)} | {spec.range} | "
+        f"{_default(name, spec, needed, defaults[name])} |"
+        for name, spec in quantities(model).items()
+    ]
+    return "\n".join(["| key | unit | meaning | range | default |", "|---|---|---|---|---|", *rows])
+
+
+def _default(name: str, spec: Any, needed: set[str], default: Any) -> str:
+    if spec.instead:
+        return f"needed, or `{spec.instead}`"
+    if name in needed:
+        return "needed"
+    if isinstance(default, (int, float)) and math.isfinite(default):
+        return f"{default:g} {spec.unit}".replace(" 1", "") if spec.unit != "1" else f"{default:g}"
+    if spec.beside:
+        return f"with {', '.join(f'`{each}`' for each in spec.beside)}"
+    return "none"
+
+
+_HEAD = f"""A scene is a TOML file. Every quantity is text with a unit, such as `"10 mm"`, in any unit of its kind;
+quantities of unit 1 are bare numbers. A quantity without a unit is refused, and all mistakes of a file are told
+at once. These tables follow from the code; the scene without any file is Table 1 of the paper, with
+`{Scene().support.kind}` support."""
+_ARMS = """`arms` of a `generalized-maxwell` foundation is a list of pairs of stiffness and relaxation time,
+`[["30 GN/m^3", "10 ms"], ["5 GN/m^3", "1 s"]]`."""
+_DRIVES = """A drive has one of {ways}. A `history` is a list of pairs of time and velocity, linear between its
+points, with a jump where a time stands twice. A `file` is a table with the columns `t [ms]` and `V [mm/s]`, beside
+the scene."""

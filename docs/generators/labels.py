@@ -1,0 +1,32 @@
+"""The labels of the derivations in words: found, and linked to the page that proves them."""
+
+import re
+
+from kvtheory.derivations.contents import CONTENTS
+
+_MENTION = re.compile(r"(?<![\w-])(?:Eqs?\. (\d+)|(F\d+(?:-[A-Za-z0-9]+)*))(?![\w-])")
+
+
+def mentioned(text: str) -> set[str]:
+    """Return the labels that a text mentions, as "Eq. 33", or by themselves, as "F17-load".
+
+    >>> sorted(mentioned("Eq. 33 and theorem F17-load; Eqs. 26-29"))
+    ['F17-load', 'eq26', 'eq27', 'eq28', 'eq29', 'eq33']
+    """
+    found = {_label(match) for match in _MENTION.finditer(text)}
+    for first, last in re.findall(r"Eqs\. (\d+)-(\d+)", text):
+        found |= {f"eq{number}" for number in range(int(first), int(last) + 1)}
+    named = {label for label in CONTENTS if re.search(rf'["“]{re.escape(label)}["”]', text)}
+    return (found | named) & set(CONTENTS)
+
+
+def linked(text: str) -> str:
+    """Return Markdown in which mentions of labels are links."""
+    return _MENTION.sub(
+        lambda match: f"[{match[0]}](#{_label(match)})" if _label(match) in CONTENTS else match[0],
+        text,
+    )
+
+
+def _label(match: re.Match[str]) -> str:
+    return f"eq{match[1]}" if match[1] else match[2]

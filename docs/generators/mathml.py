@@ -1,0 +1,32 @@
+"""Formulas as MathML, by the converter of the derivations: a site that needs no script and no network."""
+
+from html import escape
+
+from kvtheory.derivations.render.html import mathml
+
+
+def register(app):
+    """Make it a renderer of Sphinx."""
+    app.add_html_math_renderer("mathml", (_inline, None), (_block, None))
+
+
+def _inline(self, node):
+    from docutils import nodes
+
+    self.body.append(mathml(node.astext().strip()))
+    raise nodes.SkipNode
+
+
+def _block(self, node):
+    from docutils import nodes
+
+    label = node.get("label") or ""
+    told = label.removeprefix("eq") if label[:2] == "eq" and label[2:].isdigit() else label
+    number = f'<span class="number">({escape(told)})</span>' if label else ""
+    anchor = "".join(f'<span id="{escape(name)}"></span>' for name in node.get("ids", []))
+    self.body.append(f'{anchor}<div class="formula">{mathml(_bare(node.astext()))}{number}</div>\n')
+    raise nodes.SkipNode
+
+
+def _bare(latex: str) -> str:
+    return latex.strip().removeprefix(r"\begin{equation}").removesuffix(r"\end{equation}").strip()

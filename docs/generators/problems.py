@@ -1,0 +1,48 @@
+"""The reference problems as pages, each with its folder to take along; the explorer and the atlas as they are."""
+
+import os
+import shutil
+from pathlib import Path
+
+import kvtheory as kv
+from figures.reference_problems import write as write_folder
+from kvtheory.explorer import save_explorer
+
+
+def write(directory: Path) -> dict[str, str]:
+    """Write the folders, where they are not there yet, and return the texts of the pages."""
+    extra = directory / "extra"
+    extra.mkdir(parents=True, exist_ok=True)
+    (directory / "static").mkdir(exist_ok=True)
+    save_explorer(kv.Scene(), extra / "explorer.html")
+    texts = {"problems/index.md": _index()}
+    for name in kv.problems():
+        folder, archive = directory / "folders" / name, extra / "problems" / f"{name}.zip"
+        if not archive.exists():
+            write_folder(name, folder.parent)
+            archive.parent.mkdir(exist_ok=True)
+            shutil.make_archive(str(archive.with_suffix("")), "zip", folder.parent, name)
+        page = (folder / "README.md").read_text(encoding="utf-8")
+        picture = os.path.relpath(folder / "reference.png", directory / "problems")
+        texts[f"problems/{name}.md"] = (
+            page.replace("(reference.png)", f"({Path(picture).as_posix()})")
+            + f'\n<a href="../../problems/{name}.zip">The folder as an archive</a>\n'
+        )
+    return texts
+
+
+def _index() -> str:
+    rows = "\n".join(
+        f"| [{title}]({name}.md) | `{name}` |" for name, title in kv.problems().items()
+    )
+    names = "\n".join(kv.problems())
+    return f"{_HEAD}\n| scene | name |\n|---|---|\n{rows}\n\n```{{toctree}}\n:hidden:\n\n{names}\n```\n"
+
+
+_HEAD = """# Reference problems
+
+Named scenes by which a method, or a simulator of your own, can be judged: one for each regime, support, shape,
+foundation and drive. Each folder has the scene, a reference with its certificate, acceptance criteria, a picture
+and a short driver; drop it into your repository. `kvtheory scene --problem NAME` prints a scene,
+`kv.problem("NAME")` loads it.
+"""
