@@ -85,7 +85,7 @@ def transient(
         require(lacks_strips, scene, "the transient")
         from kvtheory.models.strips import held
 
-        with double_precision():
+        with double_precision(scene):
             return held.transient(scene, times_of(scene, at), certify=certify)
     require(lacks_paper_model, scene, "the transient")
     from kvtheory.models.continuum import solved_scene
