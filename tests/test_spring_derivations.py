@@ -81,6 +81,6 @@ def test_falling_friction_is_the_slope_of_the_steady_curve(scene):
 
 def test_every_derivation_is_proved(proved):
     labels = [label for label in proved if label.startswith("F22")]
-    assert len(labels) == 12
+    assert len(labels) == 13
     assert {proved[label].status for label in labels} <= {"proved", "definition"}
     assert proved["F22-soft"].steps[-1].domain == "0 < q < 1"
