@@ -180,7 +180,13 @@ def _quartic() -> Derivation:
             right=rf"\left[{form}\right] e^{{\sigma s}}",
         )  # fmt: skip
     determinant = own[0] * other[1] - own[1] * other[0]
-    proof.equal(determinant, QUARTIC, "both vanish for some motion: the determinant does")
+    both = rf"\left({_ACROSS}\right) \left({_ALONG}\right)"
+    proof.equal(
+        *(determinant, QUARTIC, "both vanish for some motion: the determinant does"),
+        left=both
+        + r" - \left(\frac{3}{2} \lambda r \sigma\right) \left(\frac{3}{2} \lambda (r + a + r \sigma)\right)",
+        right=both + r" - \frac{9}{4} \lambda^2 r \sigma (r + a + r \sigma)",
+    )  # fmt: skip
     return proof.done(determinant, QUARTIC)
 
 
