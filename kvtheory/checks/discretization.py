@@ -17,6 +17,8 @@ from kvtheory.checks.comparison_case import (
 from kvtheory.results.comparison import Check
 from kvtheory.results.schemes import SCHEME_ROWS
 
+ROUNDED = 1e-9
+"""Of the load: noise that is none."""
 COARSE = "elements enough"
 """The check of the density."""
 
@@ -39,7 +41,7 @@ def sawtooth(case: Case) -> Iterator[Check]:
         note = f"{kind}; {1e-3 / case.resolution.spacing:.3g} elements per mm, {how}"
         yield case.check(name, sigma, case.tolerance * limit, equation, unit, note)
         return
-    allowed = case.tolerance * (2.0 * float(case.allowance.force.max()) / W + 1e-9)
+    allowed = case.tolerance * (2.0 * float(case.allowance.force.max()) / W + ROUNDED)
     note = f"N = {1e-3 / case.resolution.spacing:.4g} /mm, sawtooth +-{b:.2g} of the load"
     yield case.check(name, sigma, allowed, equation, unit, note)
 

@@ -7,6 +7,8 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
+LEAST = 1e-300
+"""Magnitude that a zero counts for, where digits are counted."""
 NORMAL_MAD = 0.6745
 """Median of the magnitude of a normal variate of variance one."""
 FEWEST = 5
@@ -94,7 +96,7 @@ def rounded(values: Array, fewest: int = FEW_DIGITS[0]) -> Array:
     step = float(np.diff(distinct).min()) if distinct.size >= SEVERAL else 0.0
     on_grid = step > 0.0 and np.abs(distinct / step - np.round(distinct / step)).max() <= ON_GRID
     half = 0.5 * step if on_grid else 0.0
-    size = 10.0 ** np.floor(np.log10(np.maximum(np.abs(np.nan_to_num(values)), 1e-300)))
+    size = 10.0 ** np.floor(np.log10(np.maximum(np.abs(np.nan_to_num(values)), LEAST)))
     for digits in (d for d in FEW_DIGITS if d >= fewest):
         last = size * 10.0 ** (1 - digits)
         off = np.abs(values / last - np.round(values / last))

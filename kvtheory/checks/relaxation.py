@@ -15,6 +15,8 @@ Array = NDArray[np.float64]
 
 FEWEST = 6
 """Samples for three unknowns."""
+LOG_PRECISE = 1e-6
+"""Of the logarithm of a time constant: far closer than any data fix it."""
 RANGE = 5.0
 """Factor up and down from the expected time constant in which to look."""
 
@@ -39,7 +41,10 @@ def fit(time: Array, values: Array, expected: float) -> float:
     middle = np.log(expected)
     spread = np.log(RANGE)
     found = minimize_scalar(
-        left, bounds=(middle - spread, middle + spread), method="bounded", options={"xatol": 1e-6}
+        left,
+        bounds=(middle - spread, middle + spread),
+        method="bounded",
+        options={"xatol": LOG_PRECISE},
     )
     return float(np.exp(found.x))
 

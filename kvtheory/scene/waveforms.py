@@ -9,6 +9,7 @@ from kvtheory.scene.quantities import quantity, settle
 AT_LAST = 20.0
 """Rise times after which tanh is 1 to the last digit."""
 MOST_CORNERS = 100_000
+"""Of one list: a guard against endless ones; a drive refuses fewer, see `drives.MOST_CYCLES`."""
 
 
 class _Waveform:

@@ -20,6 +20,9 @@ SHRINK, TINY = 0.2, 1e-12
 OVERRUN = 1e-4
 """Share of a step that may lie beyond an event: the states of the edges change there, and a step that
 ran farther is repeated with the right length."""
+SEEN = 0.1
+"""Of a step, or of what may lie beyond an event: a rest of the way so short is not worth a step, and a step
+of which so much is lost in the rounding of the time cannot be made."""
 BRIEF = 1e-10
 """A piece of a step up to an event so close to its start that it needs no repetition."""
 REMAINDER = 1.1
@@ -181,9 +184,9 @@ def _step(run: Run, until: float) -> int:
     span, whole = min(now[r_.SPAN], _longest(run)), until - now[r_.S]
     if span >= whole:
         span = _share(run, whole) * whole
-    if not now[r_.S] + 0.1 * span > now[r_.S]:
+    if not now[r_.S] + SEEN * span > now[r_.S]:
         return STUCK
-    if whole - span < 0.1 * OVERRUN * span:
+    if whole - span < SEEN * OVERRUN * span:
         span = whole
     record = run.records[run.counts[r_.RECORDS]]
     size, found, violated = attempt(run, record, span)

@@ -15,6 +15,9 @@ from kvtheory.models.continuum.run import SIDES, Run
 from kvtheory.scene.base_motion import evaluate
 
 EVENT_RESOLUTION = 1e-13
+"""Of the time of an event, relative to 1 + s."""
+OFF_THE_ENDS = 0.01
+"""Share of a bracket by which a secant keeps off its ends, so that both of them move."""
 ROUNDING = 1e-15
 """Of an edge, whose material coordinate is xi - Y, relative to Y and to what a rounded time does to it."""
 
@@ -173,7 +176,7 @@ def _locate(run: Run, record: Any, low: float, high: float) -> tuple[float, Moni
         middle = 0.5 * (low + high)
         if turn % 3 != 0 and not math.isnan(at_low):  # by halves now and then: secants may crawl
             secant = low + (high - low) * at_low / (at_low - at_high)
-            margin = 0.01 * (high - low)
+            margin = OFF_THE_ENDS * (high - low)
             middle = min(max(secant, low + margin), high - margin)
         values = monitors(run, record, middle)[0]
         value = smallest(values)

@@ -13,6 +13,9 @@ import numpy as np
 NEWTON_STEPS = 60
 """From above, Newton's method falls on the root in less than ten."""
 
+ROUNDING = 4e-16
+"""Of a root, relative: a Newton step as small is the last."""
+
 
 @dataclass(frozen=True)
 class Start:
@@ -95,7 +98,7 @@ def half_length(number: float, support_number: float) -> float:
         load = 0.5 * s * s * (number * number / (number + r) + r + s)
         step = (load + kappa * s * s - (1.0 + kappa)) / (1.5 * s * (r + s) + 2.0 * kappa * s)
         s -= step
-        if abs(step) <= 4e-16 * s:
+        if abs(step) <= ROUNDING * s:
             return s
     raise ArithmeticError("the steady half length did not converge")
 
@@ -107,7 +110,7 @@ def _width(number: float) -> float:
     for _ in range(NEWTON_STEPS):
         step = (b * b * (2.0 * b + 3.0 * n) - 4.0) / (6.0 * b * (b + n))
         b -= step
-        if abs(step) <= 4e-16 * b:
+        if abs(step) <= ROUNDING * b:
             return b
     raise ArithmeticError("the contact length at the start did not converge")
 
