@@ -10,6 +10,7 @@ from . import (
     ball,
     circle,
     contact_interval,
+    element_arms,
     element_edges,
     element_schemes,
     energy,
@@ -49,7 +50,7 @@ _CHAPTERS = (
     *(transient_scaling, transient_memory, contact_interval, transient_edges),
     *(transient_motion, transient_rates, transient_balance),
     *(spring_drive, spring_stability, spring_limits),
-    *(element_schemes, element_edges),
+    *(element_schemes, element_edges, element_arms),
 )
 """Each chapter may recall what the chapters before it have established."""
 

@@ -238,4 +238,5 @@ CONTENTS = {
     "element-trapezoids": "Trapezoids between elements",
     "element-kink": "Part of an element at an edge",
     "element-bent": "What the part of an element leaves out",
+    "element-arms": "An arm over a step",
 }

@@ -101,6 +101,14 @@ BY_LABEL: dict[str, dict[str, str]] = {
         r"\eta_{+}": r"\hat\eta_{+}",
     },
     "F15-sawtooth": {"h": "h"},
+    "element-arms": {
+        "s": r"\check s",
+        "s_0": r"\check s_0",
+        "y": r"\check t",
+        "r": r"\check r",
+        "z": r"\check z",
+        "u": "u",
+    },
 }
 """Beside these, by label or by the first part of one; they come before those of the section."""
 

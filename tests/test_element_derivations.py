@@ -4,17 +4,19 @@ import mpmath as mp
 import numpy as np
 import pytest
 import sympy as sp
+from kvtheory.derivations import element_arms as arms
 from kvtheory.derivations import element_edges as edges
 from kvtheory.derivations import element_schemes as schemes
 from kvtheory.derivations.catalogue import catalogue
 
 from kvtheory.models.elements import schemes as simulator
 from kvtheory.models.elements.edges import kink_area
+from kvtheory.models.elements.law import ramp_functions
 
 LABELS = {
     "F15-runge-kutta", "F15-euler", "F15-sawtooth", "element-mean-force", "element-fit",
     "element-stability", "element-orders", "element-kink",
-    "element-trapezoids", "element-bent",
+    "element-trapezoids", "element-bent", "element-arms",
 }  # fmt: skip
 
 
@@ -51,6 +53,14 @@ def test_exponential_fit_of_the_code_is_the_derived_one(z):
         exact = 1 / (1 - mp.exp(-mp.mpf(z))) - 1 / mp.mpf(z)
         assert simulator.exponential_fit(z) == pytest.approx(float(exact), rel=1e-12)
     assert 0.5 <= simulator.exponential_fit(z) <= 1.0
+
+
+@pytest.mark.parametrize("z", [1e-6, 0.019, 0.021, 3.0, 1e4])
+def test_ramp_of_an_arm_in_the_code_is_the_derived_one(z):
+    found = ramp_functions(np.array([z]))
+    with mp.workdps(40):
+        for value, form in zip(found, (arms.END, arms.MEAN), strict=True):
+            assert value[0] == pytest.approx(float(form.subs(arms._z, sp.Float(z, 40))), rel=1e-12)
 
 
 def step_matrix(epsilon, b, kappa, h, theta):

@@ -15,7 +15,7 @@ On arms, an element in contact is a true element under a surface that moves alon
 pressure times its way is the work done on it, what its springs store and its dampers lose. With θ = 1/2 the
 same holds of mass and spring, so that the energy of a step with the contact held can only fall, and more with
 θ > 1/2: every step is stable. C is here the damper which, beside a spring, does to a ramp as the arms do in a
-step, h Σ K_i (2 φ_2 - φ_1): K_i τ_i of fast arms, h² K_i/(6 τ_i) of slow ones, so that θ - 1/2 is of the third
+step, h Σ K_i (2 φ_2 - φ_1): K_i τ_i of fast arms, h² K_i/(6 τ_i) of slow ones; so θ - 1/2 is of the third
 order in h, and the scheme of the second (derivation `element-arms`). It is so in the spacing as well: the
 pressure of arms is continuous, and there is no sawtooth but that of arms faster than a step.
 

@@ -1,0 +1,69 @@
+"""What a Maxwell arm does over a step of the elements: its stress, its mean, its energy (elements on arms).
+
+Stresses are in units of the stiffness K_i of the arm, time of the step h. The surface moves along a straight
+line, by the rise r; z = h/tau_i. Everything is linear, so that one arm is enough.
+"""
+
+from functools import partial
+
+import sympy as sp
+
+from .element_schemes import SECTION
+from .record import Derivation
+from .step import Proof
+
+_z, _y = sp.symbols("z y", positive=True)
+_rise, _first, _stress = sp.symbols("r s_0 s", real=True)
+_theorem = partial(Proof, equation=None, section=SECTION)
+
+END = (1 - sp.exp(-_z)) / _z
+"""phi_1: the stress of a unit ramp at the end of the step."""
+MEAN = (1 - END) / _z
+"""phi_2: its mean."""
+STRESS = _first * sp.exp(-_z * _y) + _rise * (1 - sp.exp(-_z * _y)) / _z
+
+
+def derive() -> tuple[Derivation, ...]:
+    """Derive the law of an arm over a step, and that its energy is balanced."""
+    return (_arm(),)
+
+
+def _arm() -> Derivation:
+    proof = _theorem("element-arms", title="An arm over a step", text=_ARM)
+    proof.equal(
+        sp.Derivative(STRESS, _y) + _z * STRESS,
+        _rise,
+        "the equation of the arm, with a steady rise",
+    )
+    proof.equal(sp.Subs(STRESS, _y, 0), _first, "and its stress at the start")
+    ends = _first * sp.exp(-_z) + _rise * END
+    proof.equal(sp.Subs(STRESS, _y, 1), ends, "stress at the end of the step")
+    over = (_y, 0, 1)
+    falling = -_first * sp.exp(-_z * _y) / _z
+    rising = _rise * (_y + sp.exp(-_z * _y) / _z) / _z
+    proof.integral(
+        *(sp.Integral(STRESS, over), STRESS, over, falling + rising), "mean stress",
+        value=_first * END + _rise * MEAN,
+    )  # fmt: skip
+    proof.equal(
+        _rise * STRESS, STRESS * sp.Derivative(STRESS, _y) + _z * STRESS**2,
+        "the power that goes in is stored in the spring or lost in the damper",
+    )  # fmt: skip
+    damper, spring = 2 * MEAN - END, 2 * (END - MEAN)
+    proof.equal(spring + damper, END, "a spring and a damper that end as the ramp does")
+    proof.equal(spring / 2 + damper, MEAN, "and have its mean")
+    proof.leading_order(damper, _z / 6, _z, 0, "the damper of a slow arm", eps=_z)
+    proof.equal(
+        _z * damper, 1 + sp.exp(-_z) - 2 * END, r"in units of $K_i \tau_i$: 1 for a fast arm"
+    )
+    return proof.done(sp.Subs(STRESS, _y, 1), ends)
+
+
+_ARM = (
+    r"An arm answers to the compression $u$ with a stress that grows by $K_i u'$ and falls at the rate "
+    r"$1/\tau_i$. In units of $K_i$ and of the step, with $z$ the step over $\tau_i$ and a surface that "
+    r"rises by $r$ along a straight line, the stress $s$ obeys $s' = r - z s$ over $0 < y < 1$. The mean "
+    r"stress times the rise is the work done on the arm, so that a step of elements in contact balances "
+    r"energy exactly. A damper beside a spring can do to a ramp as the arm does: that of a fast arm is "
+    r"$K_i \tau_i$, that of a slow one of the second order in the step."
+)
