@@ -13,7 +13,8 @@ FIGURES = (
     *("fig3", "fig4", "fig5", "fig6", "table2"),
     *("energy_split", "asymptote_error", "circle_error", "phase_portrait", "regime_map"),
     *("foundations", "rubber", "foundation_precision"),
-    *("spring_stability", "measurable_friction", "ball"),
+    *("spring_stability", "measurable_friction", "stick_slip", "stick_slip_amplitude"),
+    "ball",
     *("onset_maps", "ladder", "stability_map", "work_precision"),
 )
 

@@ -23,7 +23,7 @@ LEAST_ERROR = {
     "stale-surface": 1.0, "leading-edge-peels": 0.03, "negative-radicand": 0.5,
     "memory-ignored": 1.0, "slow-manifold": 0.2, "event-missed": 0.5, "cancellation": 0.9,
     "asymptote": 0.5, "kink": 0.9, "no-bracket": 10.0, "steep": 0.05,
-    "glassy": 0.5,
+    "glassy": 0.5, "past-the-maximum": 0.5, "reversal-forgotten": 0.2,
 }  # fmt: skip
 """By how much each naive number is wrong, at least, in the units of its entry."""
 KNOWN = {

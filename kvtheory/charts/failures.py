@@ -4,11 +4,16 @@ import tomllib
 from collections.abc import Iterator, Sequence
 from importlib.resources import files
 
-from kvtheory.charts import element_failures, motion_failures, steady_failures
+from kvtheory.charts import element_failures, motion_failures, spring_failures, steady_failures
 from kvtheory.charts.entry import Entry, Finding
 from kvtheory.scene.quantities import nearest
 
-MEASURES = {**vars(element_failures), **vars(motion_failures), **vars(steady_failures)}
+MEASURES = {
+    **vars(element_failures),
+    **vars(motion_failures),
+    **vars(spring_failures),
+    **vars(steady_failures),
+}
 """Each entry is computed by the function of its name."""
 WORDS = tomllib.loads(files("kvtheory.charts").joinpath("atlas.toml").read_text(encoding="utf-8"))
 ATLAS = {

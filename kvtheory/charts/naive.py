@@ -90,3 +90,34 @@ def stale_elements(scene: Scene, per_length: float) -> tuple[Array, Array]:
         time.append((k + 1) * h)
         depth.append(d)
     return np.array(time), np.array(depth)
+
+
+def mirrored_closed_forms(d: float, v: float, number: float) -> tuple[float, float]:
+    """Return f_z and f_x by `closed_forms` for either direction: its mirror image where lambda < 0.
+
+    Examples
+    --------
+    >>> forward, back = (mirrored_closed_forms(1.0, 0.0, number) for number in (0.5, -0.5))
+    >>> forward[0] == back[0], forward[1] == -back[1]
+    (True, True)
+    """
+    f_z, f_x = closed_forms(d, v, abs(number))
+    return f_z, math.copysign(1.0, number) * f_x
+
+
+def four_states(number: float, epsilon: float, spring: tuple[float, float]) -> Callable[..., Any]:
+    """Return the rates of (d, d', x, x') on a spring: `two_states` with lambda - x', and eps_x, kappa_x.
+
+    Examples
+    --------
+    >>> four_states(0.0, 0.1, (1.0, 2.0))(0.0, (1.0, 0.0, 0.0, 0.0))
+    (0.0, 0.0, 0.0, 0.0)
+    """
+    inertia, stiffness = spring
+
+    def law(s: float, y: Sequence[float]) -> tuple[float, float, float, float]:
+        d, v, x, w = y
+        f_z, f_x = mirrored_closed_forms(d, v, number - w)
+        return v, (1.0 - f_z) / epsilon, w, (f_x - stiffness * x) / inertia + 0.0
+
+    return law
