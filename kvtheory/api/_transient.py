@@ -28,8 +28,10 @@ def transient(
     scene
         What is modelled; without it, the paper's Table 1 with a dead weight. The indenter must be
         a parabola, or a ball that is held at its depth and does not slow down so fast that it meets
-        again what it left. At t < 0 it rests at its static depth. A drive that is a function of the time is
-        replaced by polynomials within its own tolerance, which the certificate does not cover.
+        again what it left. At t < 0 it rests at its static depth. With `drive.stiffness` it is held along x
+        by a spring that is relaxed then, and the mass that moves along x must be above zero. A drive that is
+        a function of the time is replaced by polynomials within its own tolerance, which the certificate
+        does not cover.
     at
         Times at which the result is wanted, in s or as text with a unit, such as ``"0 ms, 1 ms"`` or
         ``"0 ms:200 ms:201"`` (START:STOP:COUNT, both ends included); without it, the steps of
@@ -49,7 +51,8 @@ def transient(
     -------
     Transient
         Arrays over time in SI, the events of the contact, and a certificate whose errors are
-        relative to the static depth, half length and load.
+        relative to the static depth, half length and load. With a spring, a `SprungTransient` that also
+        holds `sliding_velocity` and `spring_force`.
 
     Raises
     ------

@@ -89,8 +89,9 @@ class Transient(TimeSeries):
         The work of the drive, int F_x V dt, and what was stored at rest are spent on the kinetic
         energy, on the potential energies -M g (delta - delta_0) and k_s (delta - delta_0)^2/2, on what
         is stored, int K u^2/2 dx, and on what was dissipated, int int C (du/dt)^2 dx dt; the last two
-        under the indenter (`..._contact`) and in the surface that relaxes (`..._surface`). `balance` is
-        what is left over: only the error.
+        under the indenter (`..._contact`) and in the surface that relaxes (`..._surface`). A drive with a
+        spring also has `kinetic_along`, `stored_drive` and `dissipated_drive`. `balance` is what is left
+        over: only the error.
 
         Examples
         --------
