@@ -59,9 +59,8 @@ def compute() -> Data:
 def draw(data: Data) -> Figure:
     """Draw the curves above and the footprints below."""
     drawn = drawing.figure(7.2, 6.0)
-    above: Any
-    below: Any
-    above, below = drawn.subfigures(2, 1, height_ratios=(1.15, 1.0))
+    parts: Any = drawn.subfigures(2, 1, height_ratios=(1.15, 1.0))
+    above, below = parts
     for ax, (support, title) in zip(above.subplots(1, 2, sharey=True), TITLES.items(), strict=True):
         for name, color in (("ball", RED), ("cylinder", BLUE)):
             ax.loglog(NUMBERS, data.curves[support, name], color=color, label=name)

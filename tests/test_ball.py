@@ -3,7 +3,14 @@
 import numpy as np
 import pytest
 
-from kvtheory.models.steady import ball
+import kvtheory as kv
+from kvtheory.models.steady import ball, exact
+from kvtheory.models.steady.equivalent_line import (
+    FRICTION_COEFFICIENT_ERROR,
+    LOAD_ERROR,
+    SHORTER,
+    WIDTH,
+)
 from kvtheory.results import STEADY_UNITS
 from tests import reference_ball
 from tests.reference import relative_error
@@ -52,3 +59,292 @@ def test_error_stays_below_the_certificate(support):
     print({name: f"{error / EPS:.1f} eps" for name, error in worst.items()})
     for name, error in worst.items():
         assert error <= ball.CERTIFICATE.relative_error[name] < 1e-14, name
+
+
+BALL = kv.Scene(indenter=kv.Sphere("10 mm"), support=kv.DeadWeight(mass="1 kg"))
+WIDER = kv.Sphere("10 mm", radius_across="25 mm")
+GRIPS = {
+    "fixed": kv.Fixed(depth=1e-4),
+    "dead-weight": kv.DeadWeight(load="9.8 N"),
+    "suspended": kv.Suspended(mass="1 kg", stiffness="30 kN/m"),
+}
+V = "drive.velocity"
+SPEEDS = np.array([0.0, 1e-8, 1e-4, 1e-3, 1e-2, -0.03, 0.1, 1.0, -1e3, 1e8])
+
+
+def test_the_closed_forms_are_the_integrals_of_the_strips():
+    scene = (0.01, 0.02, 1e10, 0.1, 0.05, 3e-4)
+    truth = reference_ball.at_depth(*scene)
+    for enclosed, name in zip(
+        reference_ball.integrals(*scene), ("load", "friction_force"), strict=True
+    ):
+        assert enclosed.overlaps(truth[name])
+        assert float(enclosed.rad() / enclosed.mid()) < 1e-13
+
+
+@pytest.mark.parametrize("support", GRIPS)
+def test_quadrature_agrees_within_its_certificate(support):
+    scene = kv.Scene(indenter=WIDER, support=GRIPS[support])
+    found = kv.steady(scene, over={V: SPEEDS}, method="quadrature")
+    truth = kv.steady(scene, over={V: SPEEDS})
+    for name in STEADY_UNITS:
+        value, exact = getattr(found, name), getattr(truth, name)
+        allowed = (found.certificate.relative_error[name] + 4e-15) * np.abs(exact)
+        assert (np.abs(value - exact) <= allowed).all(), name
+        assert np.max(found.certificate.relative_error[name]) < 1e-12
+    assert found.units == truth.units == {**STEADY_UNITS, "load": "N", "friction_force": "N"}
+
+
+def strips(profile, l_r, depth, half):
+    """W/K and F/K of a profile by a plain double sum, for V > 0."""
+    t, w = np.polynomial.legendre.leggauss(60)
+    t, w = 0.25 * np.pi * (t + 1), 0.25 * np.pi * w
+    load = friction = 0.0
+    for angle, weight in zip(t, w, strict=True):
+        y, width = half * np.sin(angle), half * np.cos(angle)
+        x = np.linspace(-width, width, 20001)
+        rho = np.hypot(x, y)
+        slope = profile.slope(rho) * x / rho
+        p = depth - profile.height(rho) - l_r * slope
+        end = len(p) - 1 - int(np.argmax(p[::-1] > 0.0))
+        p = np.where(np.arange(p.size) <= end, p, 0.0)
+        share = 2.0 * half * np.cos(angle) * weight
+        load += share * np.trapezoid(p, x)
+        friction -= share * np.trapezoid(slope * p, x)
+    return load, friction
+
+
+@pytest.mark.parametrize(
+    ("profile", "half"),
+    [
+        (kv.Circle(radius=2e-3), np.sqrt(2e-3**2 - 1.9e-3**2)),
+        (kv.PowerLaw(length=1e-2, exponent=4.0), (4e-6 * 1e-4) ** 0.25),
+        (kv.Wedge(inclination=0.1), 1e-3),
+    ],
+)
+@pytest.mark.parametrize("velocity", [1e-3, 0.1])
+def test_profiles_of_revolution_against_a_plain_double_sum(profile, half, velocity):
+    scene = kv.Scene(
+        indenter=kv.Revolved(profile),
+        support=kv.Fixed(depth=1e-4),
+        drive=kv.Drive(velocity=velocity),
+    )
+    found = kv.steady(scene)
+    load, friction = strips(profile, 0.1 * velocity, 1e-4, half)
+    assert found.load == pytest.approx(1e10 * load, rel=2e-4)
+    assert found.friction_force == pytest.approx(1e10 * friction, rel=1e-3)
+
+
+def test_a_profile_of_functions_may_stand_for_the_ball():
+    profile = kv.Profile(lambda x: x * x / 0.02, lambda x: x / 0.01)
+    held = {"support": kv.Fixed(depth=1e-4), "drive": kv.Drive(velocity=0.01)}
+    found = kv.steady(kv.Scene(indenter=kv.Revolved(profile), **held))
+    truth = kv.steady(kv.Scene(indenter=kv.Sphere(0.01), **held))
+    for name in STEADY_UNITS:
+        error = found.certificate.relative_error[name] + 1e-15
+        assert getattr(found, name) == pytest.approx(getattr(truth, name), rel=error), name
+
+
+@pytest.mark.parametrize("support", GRIPS)
+def test_the_error_of_the_asymptotes_is_what_the_certificate_says(support):
+    scene = kv.Scene(indenter=WIDER, support=GRIPS[support])
+    speeds = np.geomspace(1e-8, 1e6, 200) * np.where(np.arange(200) % 2, 1, -1)
+    found = kv.steady(scene, over={V: speeds}, method="asymptote")
+    truth = kv.steady(scene, over={V: speeds})
+    for name in STEADY_UNITS:
+        error = np.abs(getattr(found, name) / getattr(truth, name) - 1.0)
+        allowed = found.certificate.relative_error[name]
+        assert (error <= allowed).all(), name
+        assert (error >= 0.999 * allowed - 1e-12).all(), name
+
+
+def test_the_maximum_of_a_dead_weight():
+    report = kv.asymptotes(BALL)
+    top = kv.steady(BALL, over={V: report.peak_velocity * np.array([0.99, 1.0, 1.01])})
+    l = top.retardation_length / top.half_length
+    assert l[1] == pytest.approx(1.842345, abs=5e-7)
+    assert top.friction_coefficient[1] == pytest.approx(report.peak_friction_coefficient, rel=1e-14)
+    assert top.friction_coefficient[1] > top.friction_coefficient[[0, 2]].max()
+    assert report.units["load"] == "N"
+    edge = report.lines[1].velocity_min
+    error = kv.steady(BALL, over={V: edge}, method="asymptote").certificate.relative_error
+    assert error["friction_coefficient"] == pytest.approx(report.tolerance, rel=1e-9)
+
+
+@pytest.mark.parametrize("kind", ["maxwell", "fractional"])
+def test_other_foundations_against_a_sum_of_their_strips(kind):
+    rng = np.random.default_rng(17)
+    nodes, weights = np.polynomial.legendre.leggauss(300)
+    t, weights = 0.25 * np.pi * (nodes + 1), 0.25 * np.pi * weights
+    for _ in range(8):
+        arms = [[10 ** rng.uniform(8, 12), 10 ** rng.uniform(-8, 2)] for _ in range(3)]
+        foundation = kv.GeneralizedMaxwell(1e10, arms=arms)
+        if kind == "fractional":
+            foundation = kv.FractionalKelvinVoigt(1e10, 0.1, rng.uniform(0.05, 0.98))
+        drive = kv.Drive(velocity=10 ** rng.uniform(-5, 2))
+        scene = kv.Scene(kv.Sphere(0.01), foundation, kv.Fixed(depth=3e-4), drive)
+        found = kv.steady(scene)
+        line = kv.Scene(kv.Parabola(0.01), foundation, kv.Fixed(depth=3e-4), drive)
+        rows = kv.steady(line, over={"support.depth": 3e-4 * np.cos(t) ** 2})
+        dy = 2.0 * found.half_length * np.cos(t) * weights
+        assert found.load == pytest.approx((rows.load * dy).sum(), rel=2e-12)
+        assert found.friction_force == pytest.approx((rows.friction_force * dy).sum(), rel=2e-12)
+        lost = (rows.friction_force * rows.dissipated_in_contact * dy).sum() / found.friction_force
+        assert found.dissipated_in_contact == pytest.approx(lost, rel=1e-11)
+        weight = kv.Scene(kv.Sphere(0.01), foundation, kv.DeadWeight(load=found.load), drive)
+        assert kv.steady(weight).depth == pytest.approx(3e-4, rel=2e-11)
+
+
+def test_the_footprint_carries_the_forces():
+    for velocity in (0.01, -0.01):
+        scene = kv.Scene(
+            indenter=WIDER, support=kv.Fixed(depth=1e-4), drive=kv.Drive(velocity=velocity)
+        )
+        state, found = kv.steady(scene), kv.footprint(scene)
+        assert found.half_width == pytest.approx(found.half_length * 2.5**0.5)
+        x = np.linspace(-found.half_length, found.half_length, 1201)
+        y = np.linspace(-found.half_width, found.half_width, 1201)[:, None]
+        p = found.pressure(x, y)
+        area = (x[1] - x[0]) * (y[1, 0] - y[0, 0])
+        assert p.sum() * area == pytest.approx(state.load, rel=2e-3)
+        assert (-x / 0.01 * p).sum() * area == pytest.approx(state.friction_force, rel=5e-3)
+        assert p.max() == pytest.approx(state.peak_pressure, rel=1e-3)
+        edges = found.edges(0.0)
+        assert edges == pytest.approx((state.leading_edge, state.trailing_edge))
+    with pytest.raises(ValueError, match="for the ball only"):
+        kv.footprint(kv.Scene())
+
+
+def test_a_line_contact_stands_for_the_ball():
+    speeds = np.geomspace(1e-8, 1e8, 2001)
+    rest = {"stiffness": 1.0, "retardation_time": 1.0, "velocity": speeds}
+    found = ball.at_depth(1.0, 1.0, depth=1.0, **rest)
+    line = exact.at_depth(1.0, depth=SHORTER**2, **rest)
+    load = WIDTH * found.half_length * line.load / found.load - 1.0
+    mu = line.friction_coefficient / found.friction_coefficient - 1.0
+    assert 0.9 * LOAD_ERROR < np.abs(load).max() < LOAD_ERROR
+    assert 0.9 * FRICTION_COEFFICIENT_ERROR < np.abs(mu).max() < FRICTION_COEFFICIENT_ERROR
+    assert np.abs([load[0], load[-1], mu[0], mu[-1]]).max() < 1e-7
+
+
+def test_a_transient_at_a_constant_depth_is_steady_at_every_instant():
+    history = [
+        ["0 s", "0 m/s"],
+        ["50 ms", "-40 mm/s"],
+        ["50 ms", "-100 mm/s"],
+        ["200 ms", "-90 mm/s"],
+    ]
+    scene = kv.Scene(WIDER, support=kv.Fixed(depth=1e-4), drive=kv.Drive(history=history))
+    found = kv.transient(scene, at="0 ms:200 ms:41")
+    truth = kv.steady(scene, over={V: found.velocity})
+    for name, of in (("normal_force", "load"), ("friction_force", "friction_force")):
+        scale = kv.steady(scene, over={V: 0.0}).load
+        error = np.abs(getattr(found, name) - getattr(truth, of)).max() / scale
+        assert error <= found.certificate.relative_error[name] < 1e-8
+    for name in ("leading_edge", "trailing_edge", "peak_pressure"):
+        assert getattr(found, name) == pytest.approx(getattr(truth, name), rel=1e-13)
+    x = np.linspace(-2e-3, 2e-3, 4001)
+    assert found.pressure(x, 0.2).max() == pytest.approx(found.peak_pressure[-1], rel=1e-3)
+    assert found.units["normal_force"] == "N"
+
+
+@pytest.mark.parametrize(
+    ("end", "words"),
+    [("0 m/s", "stops"), ("-10 mm/s", "turns round"), ("1 mm/s", "too fast")],
+)
+def test_a_drive_that_the_foundation_remembers_is_refused(end, words):
+    drive = kv.Drive(history=[["0 s", "100 mm/s"], ["100 ms", "100 mm/s"], ["100.1 ms", end]])
+    scene = kv.Scene(WIDER, support=kv.Fixed(depth=1e-4), drive=drive)
+    with pytest.raises(ValueError, match=words):
+        kv.transient(scene)
+
+
+def test_what_is_not_covered_says_so():
+    with pytest.raises(ValueError, match="lifts its rim"):
+        kv.transient(BALL)
+    with pytest.raises(ValueError, match="line contacts only"):
+        kv.elements(BALL)
+    with pytest.raises(ValueError, match="parabola only"):
+        kv.compare(BALL)
+    maxwell = kv.GeneralizedMaxwell(1e10, arms=[["30 GN/m^3", "10 ms"]])
+    with pytest.raises(ValueError, match="kelvin-voigt"):
+        kv.steady(kv.Scene(kv.Sphere(0.01), maxwell, BALL.support), method="quadrature")
+
+
+# What is per unit width, and what is whole
+
+FILE = """
+[indenter]
+shape = "sphere"
+radius = "10 mm"
+[foundation]
+stiffness = "10 GN/m^3"
+retardation_time = "100 ms"
+[support]
+kind = "suspended"
+mass = "1 kg"
+stiffness = "1 N/mm"
+[drive]
+velocity = "100 mm/s"
+"""
+
+
+def test_a_file_of_a_ball_is_read_and_written(tmp_path):
+    path = tmp_path / "ball.toml"
+    path.write_text(FILE, encoding="utf-8")
+    scene = kv.load_scene(path)
+    assert (scene.support.mass, scene.support.stiffness) == (1.0, 1000.0)
+    text = kv.to_toml(scene)
+    assert '"1.0 kg"' in text
+    assert '"1000.0 N/m"' in text
+    path.write_text(text, encoding="utf-8")
+    assert kv.load_scene(path) == scene
+
+
+@pytest.mark.parametrize(
+    ("overrides", "found"),
+    [
+        (["support.mass=1 kg/mm"], ["support.mass"]),
+        (
+            ["support.mass=1 kg/mm", "support.stiffness=1 N/mm^2"],
+            ["support.mass", "support.stiffness"],
+        ),
+        (["support.load=3 N/mm"], ["support.load"]),
+    ],
+)
+def test_what_is_given_per_width_for_a_ball_costs_one_line_each(tmp_path, overrides, found):
+    path = tmp_path / "ball.toml"
+    path.write_text(FILE, encoding="utf-8")
+    with pytest.raises(kv.SceneError) as caught:
+        kv.load_scene(path, overrides)
+    lines = caught.value.problems
+    assert [line.split(" = ")[0] for line in lines] == found
+    assert all("per unit width" in line and "in a spot" in line for line in lines)
+
+
+def test_what_is_given_whole_for_a_line_costs_one_line_each():
+    with pytest.raises(kv.SceneError, match="that of a ball") as caught:
+        kv.Scene(support=kv.Suspended(mass="1 kg", stiffness="1 N/mm", load="3 N"))
+    assert len(caught.value.problems) == 3
+    with pytest.raises(kv.SceneError, match="per unit width"):
+        kv.Scene(indenter=kv.Sphere(0.01), support=kv.DeadWeight(mass="1 kg/mm"))
+    with pytest.raises(kv.SceneError, match="expected a quantity in kg"):
+        kv.steady(BALL, over={"support.mass": ["1 kg/m"]})
+    assert kv.steady(BALL, over={"support.load": ["3 N"]}).load == pytest.approx([3.0])
+
+
+def test_every_output_is_in_whole_units(tmp_path):
+    state = kv.steady(BALL)
+    assert "load 9.80665 N" in repr(state)
+    state.to_csv(tmp_path / "state.csv")
+    head = (tmp_path / "state.csv").read_text(encoding="utf-8").splitlines()[0]
+    assert "load [N],friction_force [N]" in head
+    assert state.to_xarray()["load"].attrs["units"] == "N"
+    swept = kv.sweep(BALL, over={"support.mass": ["1 kg", "2 kg"]}, quantities="load")
+    assert (swept.units["support.mass"], swept.units["load"]) == ("kg", "N")
+    ax = swept.plot("load")
+    assert (ax.get_xlabel(), ax.get_ylabel()) == ("mass $M$ [kg]", "load $W$ [N]")
+    solved = kv.solve(BALL, quantity="load")
+    assert (solved.model, solved.units["load"]) == ("exact", "N")
+    assert "load 9.80665 N" in repr(solved)
+    assert set(state.as_dict()) == {*STEADY_UNITS, "model", "certificate"}

@@ -229,7 +229,7 @@ def _sums(indenter: Spot, l_r: float, depth: float) -> Sums:
     profile = indenter.profile
     half = _half_length(profile, depth)
     strips, rim = (_columns if profile.convex else _one_by_one), RIM[profile.convex]
-    for number in range(2, len(RULES)):
+    for number in range(1 + profile.convex, len(RULES)):
         t = 0.5 * math.pi * RULES[number][0][: len(RULES[number][0]) // 2]
         weights = RULES[number][2][: t.size, :2]
         kept = np.cos(t) > rim
