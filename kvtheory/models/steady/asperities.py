@@ -287,8 +287,8 @@ def quantities(surface: Surface, l_r: float, contact: Contact) -> dict[str, tupl
 
     The edges are those of all contacts together; the half-length is that of all contacts at rest.
     """
-    values, errors = _values(contact)
-    nearby, _ = _values(Contact(surface, l_r, contact.depth * (1.0 - DEPTH_STEP)))
+    values, errors = integrals_of(contact)
+    nearby, _ = integrals_of(Contact(surface, l_r, contact.depth * (1.0 - DEPTH_STEP)))
     return {
         name: (
             value,
@@ -299,7 +299,7 @@ def quantities(surface: Surface, l_r: float, contact: Contact) -> dict[str, tupl
     }
 
 
-def _values(contact: Contact) -> tuple[dict[str, float], dict[str, float]]:
+def integrals_of(contact: Contact) -> tuple[dict[str, float], dict[str, float]]:
     """Return each quantity over the stiffness, and the errors of those that are integrals."""
     l_r, patches = contact.l_r, contact.patches
     drag = drag_error = left = 0.0
