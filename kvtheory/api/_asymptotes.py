@@ -25,7 +25,7 @@ def asymptotes(
     Parameters
     ----------
     scene, over
-        As in `steady`; the indenter must be a parabola, a power law or a wedge on a Kelvin-Voigt
+        As in `steady`; the indenter must be a parabola, a power law, a wedge or a ball on a Kelvin-Voigt
         foundation, or a parabola on any foundation. On a Prony series the lines are the limits of F18, and
         the exact state of the Kelvin-Voigt foundation with the same K and C.
     tolerance

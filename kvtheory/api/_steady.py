@@ -43,10 +43,10 @@ def steady(
         ``{"drive.velocity": np.geomspace(1e-3, 10)}``: SI numbers, arrays of them, or text with a
         unit. Arrays broadcast against each other.
     method
-        ``"exact"`` (parabola, power law, wedge on Kelvin-Voigt, and the parabola on any foundation; the
-        default for them), ``"quadrature"`` (any shape; beyond Kelvin-Voigt, if it is convex where it touches;
-        the default for the others) or ``"asymptote"`` (of the regime in which the velocity lies; for the
-        same shapes as ``"exact"``, on Kelvin-Voigt).
+        ``"exact"`` (parabola, power law, wedge and ball on Kelvin-Voigt, parabola and ball on any
+        foundation; the default for them), ``"quadrature"`` (any shape on Kelvin-Voigt; beyond it line contacts
+        that are convex where they touch; the default for the others) or ``"asymptote"`` (of the regime in
+        which the velocity lies; for the same shapes as ``"exact"``, on Kelvin-Voigt).
 
     Returns
     -------

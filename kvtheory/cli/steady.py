@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 @scene_command(main, 'kvtheory steady --set drive.velocity="50 mm/s" --json')
 @click.option(
     "--method", metavar="exact|quadrature|asymptote",
-    help="Default: exact for parabola, power law and wedge, quadrature for other shapes.",
+    help="Default: exact for parabola, power law, wedge and ball, quadrature for others.",
 )  # fmt: skip
 @result_options
 def steady(

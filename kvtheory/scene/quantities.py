@@ -8,7 +8,7 @@ import difflib
 import math
 import reprlib
 from collections.abc import Iterable, Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field
 from functools import cache
 from typing import Any, ClassVar
@@ -16,7 +16,7 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike
 
-from kvtheory.scene.units import WHOLE, expected, to_si
+from kvtheory.scene.units import WHOLE, expected, is_usual, to_si
 
 LONGEST_SHOWN = 60
 """Characters of a key or of a value in a message."""
@@ -223,12 +223,16 @@ def written_as(value: Any, spec: Quantity) -> Quantity:
     >>> written_as("3 N", Quantity("N/m", "W, load", 0.0, True, per_width=True)).unit
     'N'
     """
-    if spec.per_width and _has_unit(value):
-        try:
-            to_si(value, WHOLE[spec.unit])
-        except ValueError:
-            return spec
-        return spec.fitting(False)
+    if not (spec.per_width and _has_unit(value)):
+        return spec
+    kinds = spec, spec.fitting(False)
+    for kind in kinds:
+        if is_usual(value, kind.unit):
+            return kind
+    for kind in kinds:
+        with suppress(ValueError):
+            to_si(value, kind.unit)
+            return kind
     return spec
 
 

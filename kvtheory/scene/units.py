@@ -111,6 +111,17 @@ def to_si(value: Any, unit: str) -> float:
         raise ValueError(f"expected {expected(unit)}") from None
 
 
+def is_usual(value: Any, unit: str) -> bool:
+    """Tell whether a text is a number with a usual unit of this kind, for which pint is not needed.
+
+    >>> is_usual("3 kN", "N"), is_usual("3 lbf", "N")
+    (True, False)
+    """
+    text = value.strip() if isinstance(value, str) else ""
+    number = _NUMBER.match(text)
+    return number is not None and text[number.end() :].strip() in USUAL.get(unit, ())
+
+
 def expected(unit: str) -> str:
     """Say in words what a quantity of `unit` looks like."""
     if unit == "1":

@@ -46,8 +46,8 @@ class Footprint:
 
         p = K (A^2 - x^2 - 2 l_r x)/(2 R) between the edges.
 
-        >>> float(Footprint(0.01, 1e10, 4e-3, 4e-3, 3e-3).pressure(-3e-3, 0.0)) / 1e6
-        12.5
+        >>> float(Footprint(1.0, 2.0, 1.0, 1.0, 0.5).pressure(-0.5, 0.0))
+        1.25
         """
         x, y = np.broadcast_arrays(np.asarray(x, dtype=float), np.asarray(y, dtype=float))
         one, two = self.edges(y)
