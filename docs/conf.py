@@ -16,7 +16,7 @@ import kvtheory  # noqa: E402
 
 project = "kvtheory"
 author = "The kvtheory developers"
-copyright = "2026, the kvtheory developers"
+project_copyright = "2026, the kvtheory developers"
 version = release = kvtheory.__version__
 
 extensions = ["myst_nb", "sphinx_gallery.gen_gallery", "sphinx.ext.mathjax"]

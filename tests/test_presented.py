@@ -94,6 +94,11 @@ def test_steady_sliding_is_drawn_as_a_curve_or_as_its_pressure():
         kv.steady(kv.Scene(indenter=kv.Wedge(0.1))).plot()
 
 
+@pytest.mark.parametrize("result", [kv.steady(), kv.transient(at="0 ms:20 ms:21")])
+def test_a_notebook_shows_the_figure_without_pyplot(result):
+    assert result.plot()._repr_png_().startswith(b"\x89PNG")
+
+
 def test_a_comparison_shows_itself(tmp_path):
     right = kv.transient(at=np.linspace(0, 0.2, 200))
     wrong = {"time": right.time, "depth": 1.5 * right.depth, "friction_force": right.friction_force}

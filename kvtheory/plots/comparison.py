@@ -79,14 +79,12 @@ def plot_comparison(axes: Sequence[Sequence[Any]], comparison: Comparison) -> li
 
 def draw_comparison(comparison: Comparison, *, checks: bool = True) -> Any:
     """Return a figure of the curves and, unless left out, the list of checks below them."""
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
-    from matplotlib.figure import Figure
+    from kvtheory.plots.canvas import Picture
 
     rows = sum(name in comparison.series for name in CURVES)
     height = 1.9 * rows
     table = 0.17 * (len(comparison.checks) + 3) if checks else 0.0
-    figure = Figure(figsize=(WIDTH, height + table + 0.4), layout="constrained")
-    FigureCanvasAgg(figure)
+    figure = Picture(WIDTH, height + table + 0.4)
     parts: Any = figure.subfigures(2, 1, height_ratios=[height, table]) if checks else [figure]
     axes = parts[0].subplots(rows, 2, sharex=True, squeeze=False)
     plot_comparison(axes, comparison)

@@ -107,9 +107,9 @@ def plot_result(result: Any, axes: Any = None, **style: Any) -> Any:
         return plot_sweep(axes, result, **style).figure
     steady = not hasattr(result, "time")
     if axes is None:
-        from matplotlib.figure import Figure
+        from kvtheory.plots.canvas import Picture
 
-        figure = Figure(figsize=STEADY if steady else SERIES, layout="constrained")
+        figure = Picture(*(STEADY if steady else SERIES))
         axes = figure.subplots() if steady else figure.subplots(len(TRANSIENT_ROWS), 1, sharex=True)
     style = {"color": BLUE, **style}
     if not steady:

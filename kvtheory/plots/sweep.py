@@ -52,9 +52,9 @@ def plot_sweep(ax: Any, result: Sweep, quantity: str | None = None, **style: Any
     sides, values = _drawn(result, name)
     _refuse_more_than_two([side.label for side in sides])
     if ax is None:
-        from matplotlib.figure import Figure
+        from kvtheory.plots.canvas import Picture
 
-        ax = Figure(figsize=(5.0, 3.8), layout="constrained").subplots()
+        ax = Picture(5.0, 3.8).subplots()
     value = _side(name, result.units[name], values)
     if len(sides) == 2 and min(side.values.size for side in sides) > MOST_CURVES:
         _map(ax, sides, value, style)
