@@ -6,7 +6,7 @@ BIN := $(VENV)/bin
 UV := $(shell command -v uv 2>/dev/null)
 OUT ?= paper
 
-.PHONY: paper test test-lowest lint format benchmark clean
+.PHONY: paper docs test test-lowest lint format benchmark clean
 
 paper: $(VENV)/.installed
 	$(BIN)/kvtheory steady
@@ -16,6 +16,10 @@ paper: $(VENV)/.installed
 	$(BIN)/kvtheory chart failures -o $(OUT)/failures.html
 	$(BIN)/python -m figures -o $(OUT)/figures
 	@echo "Done: open $(OUT)/derivations/derivations.html and $(OUT)/figures"
+
+docs: $(VENV)/.installed-docs
+	$(BIN)/python -m sphinx -W --keep-going -q -b html docs docs/_build/html
+	@echo "Done: open docs/_build/html/index.html"
 
 test: $(VENV)/.installed-test
 	$(BIN)/python -m pytest -n auto --dist loadscope
@@ -46,7 +50,7 @@ benchmark: $(VENV)/.installed
 	$(BIN)/kvtheory chart work-precision --standard all -o $(OUT)/work_precision.png
 
 clean:
-	rm -rf $(VENV) $(LOWEST) $(OUT) build dist *.egg-info .pytest_cache .mypy_cache .ruff_cache .hypothesis .import_linter_cache
+	rm -rf $(VENV) $(LOWEST) $(OUT) build dist docs/_build docs/generated *.egg-info .pytest_cache .mypy_cache .ruff_cache .hypothesis .import_linter_cache
 
 $(BIN)/python:
 ifdef UV
@@ -68,6 +72,14 @@ ifdef UV
 	$(UV) pip install --quiet --python $(BIN)/python --constraint constraints.txt --editable '.[fast,data,benchmark,test]'
 else
 	$(BIN)/python -m pip install --quiet --constraint constraints.txt --editable '.[fast,data,benchmark,test]'
+endif
+	@touch $@
+
+$(VENV)/.installed-docs: $(VENV)/.installed-test
+ifdef UV
+	$(UV) pip install --quiet --python $(BIN)/python --constraint constraints.txt --editable '.[fast,data,benchmark,test,docs]'
+else
+	$(BIN)/python -m pip install --quiet --constraint constraints.txt --editable '.[fast,data,benchmark,test,docs]'
 endif
 	@touch $@
 
