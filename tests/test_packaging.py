@@ -43,6 +43,8 @@ def test_the_wheel_takes_one_name_at_the_top_level(built):
     for needed in (
         "kvtheory/derivations/step.py", "kvtheory/py.typed", "kvtheory/charts/atlas.toml",
         "kvtheory/plots/failures.html", "kvtheory/charts/work_precision_reference.json",
+        "kvtheory/explorer/closed_forms.js", "kvtheory/explorer/explorer.css",
+        "kvtheory/explorer/formulas.toml", "kvtheory/reference_problems/scenes/wedge.toml",
     ):  # fmt: skip
         assert needed in names
 
@@ -53,7 +55,7 @@ def test_the_sdist_can_be_tested_by_a_distributor(built):
     for needed in (
         "CITATION.cff", "CHANGELOG.md", "Makefile", "constraints.txt", "LICENSE",
         "tests/test_exact.py", "tests/data/transient_reference.json", "figures/fig6.py",
-        "derivations/step.py", "kvtheory/plots/comparison.html",
+        "derivations/step.py", "kvtheory/plots/comparison.html", "docs/conf.py", "codemeta.json",
     ):  # fmt: skip
         assert needed in names
 

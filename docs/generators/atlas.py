@@ -36,7 +36,8 @@ def write(directory: Path) -> dict[str, str]:
 
 _HEAD = """# Atlas of failures
 
-Scenes in which a method that looks right gives a wrong number, beside the right one, by a method of another kind.
+Scenes in which a method that looks right gives a wrong number, beside the right one, by a method of another
+kind.
 <a href="../failures.html">The whole atlas</a> says why, how to notice, and what this package does about it;
 `kvtheory chart failures` computes it.
 """

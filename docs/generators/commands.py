@@ -17,7 +17,7 @@ SHOWN = {
     "transient": 'kvtheory transient --at "0 ms,1 ms,10 ms,200 ms"',
     "elements": 'kvtheory elements --at "0 ms,1 ms,10 ms" --per-length "20 /mm"',
     "solve": "kvtheory solve --quantity friction_coefficient --rtol 0.01 --explain",
-    "sweep": 'kvtheory sweep --over "drive.velocity=10 mm/s:1 m/s:3:log" --quantity friction_coefficient -o map.csv',
+    "sweep": 'kvtheory sweep --over "drive.velocity=10 mm/s:1 m/s:3:log" -o map.csv',
     "explore": "kvtheory explore -o explorer.html",
     "cite": "kvtheory cite",
 }
@@ -52,5 +52,5 @@ def _run(arguments: list[str]) -> str:
 
 
 _HEAD = """Every command takes an optional scene file and works on Table 1 of the paper with a dead weight
-without one. `--set KEY=VALUE` changes a key of the scene, and `--json` prints one JSON object in SI units. The
-outputs below were made together with this page. See also the [exit status](../reference/exit-status.md)."""
+without one. `--set KEY=VALUE` changes a key of the scene, and `--json` prints one JSON object in SI units.
+The outputs below were made together with this page. See also [exit status](../reference/exit-status.md)."""

@@ -63,6 +63,6 @@ def _some(places: list[str]) -> str:
     return ", ".join([*shown[:MOST], *more])
 
 
-_TOLD = """Every step of every derivation is checked by SymPy when the derivations are made; `tests/test_emit.py` holds the
-closed forms against the live expressions with 50 digits. Beyond that, the functions and tests below name the
-equation in their text."""
+_TOLD = """Every step of every derivation is checked by SymPy when the derivations are made, and
+`tests/test_emit.py` holds the closed forms against the live expressions with 50 digits. Beyond that, the
+functions and tests below name the equation in their text."""

@@ -76,7 +76,7 @@ def _put(path: Path, text: str) -> None:
 _HEAD = """Figures
 =======
 
-Each script is in the folder ``figures`` of the repository; ``python -m figures.NAME`` draws it with its data as CSV.
-Maps that take minutes, and measurements of time, are shown as they lie in the repository.
+Each script is in the folder ``figures`` of the repository; ``python -m figures.NAME`` draws it and writes
+its data as CSV. Maps that take minutes, and measurements of time, are shown as they lie in the repository.
 
 """

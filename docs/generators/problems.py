@@ -1,4 +1,4 @@
-"""The reference problems as pages, each with its folder to take along; the explorer and the atlas as they are."""
+"""The reference problems as pages, each with its folder to take along; and the explorer as it is."""
 
 import os
 import shutil
@@ -41,8 +41,8 @@ def _index() -> str:
 
 _HEAD = """# Reference problems
 
-Named scenes by which a method, or a simulator of your own, can be judged: one for each regime, support, shape,
-foundation and drive. Each folder has the scene, a reference with its certificate, acceptance criteria, a picture
-and a short driver; drop it into your repository. `kvtheory scene --problem NAME` prints a scene,
+Named scenes by which a method, or a simulator of your own, can be judged: one for each regime, support,
+shape, foundation and drive. Each folder has the scene, a reference with its certificate, acceptance criteria,
+a picture and a short driver; drop it into your repository. `kvtheory scene --problem NAME` prints a scene,
 `kv.problem("NAME")` loads it.
 """

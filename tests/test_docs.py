@@ -1,0 +1,151 @@
+"""The site as far as it can be looked at without building it: what is generated, what runs, what links."""
+
+import json
+import re
+import sys
+from pathlib import Path
+
+import matplotlib as mpl
+import pytest
+from click.testing import CliRunner
+from kvtheory.derivations.contents import CONTENTS
+
+import kvtheory as kv
+from kvtheory.cli import main
+from kvtheory.scene.files import SECTIONS
+from kvtheory.scene.quantities import quantities
+
+ROOT = Path(__file__).parent.parent
+DOCS = ROOT / "docs"
+NOTEBOOKS = sorted((DOCS / "gallery" / "notebooks").glob("*.ipynb"))
+sys.path.insert(0, str(DOCS))
+
+from generators import api, commands, equations, keys, labels  # noqa: E402
+
+
+@pytest.fixture
+def offscreen():
+    before = mpl.get_backend()
+    mpl.use("agg")
+    yield
+    import matplotlib.pyplot as plt
+
+    plt.close("all")
+    mpl.use(before)
+
+
+def test_there_are_five_notebooks_and_the_gallery_lists_them():
+    index = (DOCS / "gallery" / "index.md").read_text()
+    assert len(NOTEBOOKS) >= 5
+    assert all(f"notebooks/{path.stem}\n" in index for path in NOTEBOOKS)
+
+
+@pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)
+def test_a_notebook_runs_and_keeps_no_output(path, offscreen):
+    names = {}
+    for cell in json.loads(path.read_text(encoding="utf-8"))["cells"]:
+        if cell["cell_type"] == "code":
+            assert cell["outputs"] == []
+            exec("".join(cell["source"]), names)
+    assert names["kv"] is kv
+
+
+def test_the_tutorial_runs(offscreen):
+    text = (DOCS / "tutorial" / "index.md").read_text(encoding="utf-8")
+    cells, names = re.findall(r"```\{code-cell\} python\n(.*?)```", text, re.DOTALL), {}
+    for cell in cells:
+        exec(cell, names)
+    assert names["report"].peak_friction_coefficient == pytest.approx(0.0745, abs=1e-4)
+
+
+def test_every_link_in_readme_and_pages_leads_somewhere():
+    for page in (ROOT / "README.md", *DOCS.rglob("*.md")):
+        if {"_build", "generated"} & set(page.parts):
+            continue
+        text = page.read_text(encoding="utf-8")
+        for target in re.findall(r"\]\((?!https?:|#)([^)#]+)", text):
+            if "generated/" not in target:
+                assert (page.parent / target).exists(), (page.name, target)
+        for label in re.findall(r"\]\(#([^)]+)\)", text):
+            assert label in CONTENTS, (page.name, label)
+
+
+def test_every_page_is_in_a_table_of_contents():
+    listed = set()
+    for page in DOCS.rglob("index.md"):
+        for block in re.findall(r"```\{toctree\}\n(.*?)```", page.read_text(), re.DOTALL):
+            listed |= {
+                (page.parent / name).resolve()
+                for name in re.findall(r"^([\w/-]+)$", block, re.MULTILINE)
+            }
+    pages = {
+        path.with_suffix("").resolve()
+        for path in (*DOCS.rglob("*.md"), *DOCS.rglob("*.ipynb"))
+        if not {"_build", "generated", "_static"} & set(path.relative_to(DOCS).parts)
+    }
+    assert pages - listed == {(DOCS / "index").resolve()}
+
+
+def test_the_reference_has_a_page_for_every_public_name():
+    pages = api.pages()
+    assert {f"api/{name}.md" for name in kv.__all__} < set(pages)
+    for name in kv.__all__:
+        assert f"`{name}`]({name}.md)" in pages["api/index.md"]
+    assert "pycon\n>>> " in pages["api/steady.md"]
+    assert "| `radius` | m |" in pages["api/Parabola.md"]
+
+
+def test_docstrings_become_markdown_that_says_the_same():
+    found = api.prose("Return |x|^n of `x`, see F1.\n\nRaises\n------\nValueError\n    If x < 0.\n")
+    assert found == (
+        "Return \\|x\\|\\^n of `x`, see [F1](#F1).\n\n**Raises**\n\n- `ValueError`: If x \\< 0."
+    )
+
+
+def test_the_page_of_commands_has_all_of_them_with_help():
+    text = commands.pages()["commands.md"]
+    for name in main.commands:
+        assert f"## kvtheory {name}" in text
+    assert "## kvtheory chart stability" in text
+    assert text.count("Usage: kvtheory") >= len(main.commands)
+
+
+def test_the_page_of_keys_has_every_quantity_with_unit_and_default():
+    text = keys.pages()["scene-keys.md"]
+    for section in SECTIONS:
+        assert f"## [{section}]" in text
+    for model in (kv.Parabola, kv.Suspended, kv.FractionalKelvinVoigt, kv.Sine, kv.Run):
+        for name in quantities(model):
+            assert f"| `{name}` |" in text
+    assert "| `gravity` | m/s\\^2 | g, gravity | a finite value above 0 | 9.80665 m/s^2 |" in text
+
+
+def test_the_table_of_equations_has_all_of_them_with_a_test():
+    text = equations.pages()["equations.md"]
+    for label in CONTENTS:
+        row = re.search(rf"^\| \[{re.escape(label)}\]\(#.*$", text, re.MULTILINE)[0]
+        assert "`tests/" in row
+    assert "`models/steady/closed_forms.py::load_factor`" in text
+    assert labels.mentioned('Eqs. 26-28, F17-load, "balance" and F99') == {
+        "eq26", "eq27", "eq28", "F17-load", "balance",
+    }  # fmt: skip
+
+
+def test_exit_statuses_are_those_of_the_commands():
+    text = (DOCS / "reference" / "exit-status.md").read_text()
+    assert CliRunner().invoke(main, ["scene", "--problem", "none"]).exit_code == 2
+    from kvtheory.cli import console, group
+
+    for status in (console.BAD_INPUT, console.FAULTY, group.INTERRUPTED, group.BROKEN_PIPE):
+        assert f"| {status} |" in text
+
+
+def test_what_describes_the_project_names_one_version():
+    meta = json.loads((ROOT / "codemeta.json").read_text())
+    assert meta["version"] == kv.__version__
+    paper = (ROOT / "paper.md").read_text()
+    cited = set(re.findall(r"@(\w+)", paper.split("---", 2)[2]))
+    known = set(re.findall(r"@\w+\{(\w+),", (ROOT / "paper.bib").read_text()))
+    assert cited <= known
+    for picture in re.findall(r"\]\((figures/[^)]+)\)", paper):
+        assert (ROOT / picture).is_file()
