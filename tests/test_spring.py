@@ -124,6 +124,17 @@ def test_a_spring_so_stiff_that_only_a_damper_saves_it_from_ringing():
         assert row[e_.DEPTH] == pytest.approx(rigid[e_.DEPTH], abs=1e-7)
 
 
+def test_events_of_one_swing_after_the_other_are_not_those_of_one_instant():
+    """Each step of this ringing ends at an event, and none is without."""
+    spring = Spring(0.4040693775238458, 0.05639174170214583, 11754.287414521204)
+    given = BaseMotion.constant(-0.14061512846933633, 2.230349425995419)
+    motion = solve(
+        given, 3.544933112792483e-05, 0.0349581168774773, given.end, spring=spring, rtol=1e-6
+    )
+    assert len([event for event in motion.events if "touches" in event.kind]) > 6
+    assert motion.at(given.end).depth == pytest.approx(0.9919754, abs=1e-5)
+
+
 SPRUNG = kv.Drive(velocity="91 mm/s", stiffness="1 MN/m^2")
 
 

@@ -206,6 +206,8 @@ def _step(run: Run, until: float) -> int:
     if found < math.inf:
         end = found
     if end > now[r_.S]:
+        if end - now[r_.S] > BRIEF * (1.0 + now[r_.S]):  # another instant: toggles are counted anew
+            run.counts[r_.TOGGLES] = 0
         _commit(run, record, end)
     if found < math.inf:
         return _change(run, violated)
