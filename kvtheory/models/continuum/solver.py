@@ -8,21 +8,19 @@ event is cut there, for its polynomial continues the states of the edges that it
 indenter, d = 1, needs no equation along z, only events.
 """
 
-import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
-from itertools import pairwise
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from kvtheory.models.continuum import compiled, deviation, evaluation, maxima, stepping
-from kvtheory.models.continuum import contact as c_
 from kvtheory.models.continuum import dense_output as h_
 from kvtheory.models.continuum import run as r_
 from kvtheory.models.continuum.contact import FREE, PEELING, TOUCHING
+from kvtheory.models.continuum.events import ScaledEvent, events_of
 from kvtheory.models.continuum.run import (
     Run,
     Spring,
@@ -32,7 +30,6 @@ from kvtheory.models.continuum.run import (
     with_more_room,
 )
 from kvtheory.results.errors import TransientError
-from kvtheory.scene import base_motion as b_
 from kvtheory.scene.base_motion import BaseMotion
 
 STEP_LIMIT = 300_000
@@ -44,13 +41,6 @@ REASONS = {
     stepping.STUCK: "the step length went to zero",
     stepping.INCONSISTENT: "no consistent state of the edges",
 }
-
-
-class ScaledEvent(NamedTuple):
-    """What happened at the time `s`."""
-
-    s: float
-    kind: str
 
 
 class Moment(NamedTuple):
@@ -69,8 +59,6 @@ class Moment(NamedTuple):
     friction_force: float
 
 
-REVERSAL = "sliding reverses"
-"""The kind of an event that only an indenter on a spring has."""
 STATE_NAMES = {PEELING: "peeling", TOUCHING: "touching", FREE: "free"}
 
 
@@ -111,37 +99,7 @@ class Trajectory:
     @cached_property
     def events(self) -> tuple[ScaledEvent, ...]:
         """What happened to the contact, in the order of time."""
-        rows = self.rows.events[: self.rows.counts[r_.EVENTS]]
-        found = [ScaledEvent(float(s), stepping.KINDS[int(kind)]) for s, kind in rows]
-        return tuple(sorted([*found, *self._memory(), *self._reversals()], key=lambda e: e.s))
-
-    def _memory(self) -> Iterator[ScaledEvent]:
-        """Yield when an edge begins to touch ground that was touched before, and when it ceases to."""
-        records, left_at = np.array(self.rows.records), np.array(self.rows.nodes)[:, c_.IN_S]
-        sides = records[: self.steps, h_.LEFT_STATE : h_.LEFT_X]
-        nodes = sides[:, 1::2].astype(int)
-        remembers = (sides[:, ::2] == TOUCHING) & (left_at[nodes] > -math.inf)
-        before = np.zeros_like(remembers)
-        before[1:] = remembers[:-1]
-        for at, k in np.argwhere(remembers != before).tolist():
-            what, name = "begins" if remembers[at, k] else "ends", ("left", "right")[k]
-            yield ScaledEvent(float(records[at, h_.START]), f"memory {what} at the {name} edge")
-
-    def _reversals(self) -> Iterator[ScaledEvent]:
-        """Yield when the indenter on a spring begins to slide the other way: where lambda changes sign."""
-        before = 0.0
-        for index in range(self.steps if self.rows.given.sprung else 0):
-            record = self.records[index]
-            row, start, span = self.pieces[int(record[h_.PIECE])], record[h_.START], record[h_.SPAN]
-            powers = [c * span**k for k, c in enumerate(row[b_.POWERS :])]
-            roots = np.polynomial.polynomial.polyroots(np.trim_zeros(powers, "b") or [1.0])
-            share = (evaluation.natural_step(self.rows, index)[1] - start) / span
-            within = sorted(x for x in roots.real.tolist() if 0.0 < x < share)
-            for low, high in pairwise([0.0, *within, share]):
-                number = b_.evaluate(row, start + 0.5 * (low + high) * span)[1]
-                if number * before < 0.0:
-                    yield ScaledEvent(start + low * span, REVERSAL)
-                before = number or before
+        return events_of(self)
 
     @cached_property
     def records(self) -> list[list[float]]:
