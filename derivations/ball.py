@@ -22,6 +22,7 @@ from .symbols import (
     ball_friction,
     ball_friction_high,
     ball_friction_low,
+    ball_kept,
     ball_l1,
     ball_l2,
     ball_lam_cross,
@@ -29,11 +30,14 @@ from .symbols import (
     ball_load_high,
     ball_load_low,
     ball_loss,
+    ball_lost,
+    ball_rest,
     ball_scaled,
     ball_scaled_s,
     ball_scaled_ss,
     ball_share,
     ball_slip,
+    ball_steep,
     ball_tail,
     kappa,
     l,
@@ -64,7 +68,7 @@ def derive() -> tuple[Derivation, ...]:
     """Prove F20 and what follows from it."""
     return (
         *(_load(), _tail(), _loss(), _friction(), _energy(), _limits(), _high()),
-        *(_balance(), _crossing(), _slip(), *_errors()),
+        *(_balance(), _crossing(), _slip(), _unique(), *_errors()),
     )
 
 
@@ -303,8 +307,58 @@ def _slip() -> Derivation:
 _PEAK = (
     r"At a given load $a \sim \tilde w^{-1/4}$, and $V \tau = a l$ grows with $l$. The friction coefficient "
     r"rises where $\tilde E > 0$: at low velocity, where $\tilde E \to \frac{\pi}{2}$; and it falls at high "
-    r"velocity, where $\tilde E \to - \frac{l}{3}$. The root of $\tilde E$ in between is $l = 1.842345$, "
-    "beside the $\\sqrt{3}$ of a cylinder (F3)."
+    r"velocity, where $\tilde E \to - \frac{l}{3}$. The one root of $\tilde E$ in between (F20-unique) is $l = "
+    r"1.842345$, beside the $\sqrt{3}$ of a cylinder (F3)."
+)
+
+
+def _unique() -> Derivation:
+    proof = _theorem("F20-unique", title="Ball: one friction maximum", text=_UNIQUE,
+                     uses=("F20-peak",))  # fmt: skip
+    arc = sp.atan(y / l)
+    rest, kept, lost = ball_rest, ball_kept, ball_lost
+    square, bulge = y**2 * (1 - y**2), (1 + 3 * l**2) * ANGLE
+    fall = sp.Rational(2, 3) + l**2 - l * (1 + l**2) * ANGLE
+    proof.integral(
+        rest, y**2 * square / (l**2 + y**2), UNIT,
+        y**3 / 3 - y**5 / 5 + l**2 * (y**3 / 3 - (1 + l**2) * y + l * (1 + l**2) * arc),
+        r"so that $l^2 \tilde D < \frac{2}{15}$", value=sp.Rational(2, 15) - l**2 * fall,
+    )  # fmt: skip
+    primitive = l**2 * (-y + (1 + 3 * l**2) * arc / (2 * l) - (1 + l**2) * y / (2 * (l**2 + y**2)))
+    proof.integral(
+        lost, l**2 * square / (l**2 + y**2) ** 2, UNIT, primitive,
+        r"less than $\tilde D$, for $l^2 < l^2 + \tilde \zeta^2$",
+        value=l * (bulge - 3 * l) / 2,
+    )  # fmt: skip
+    proof.equal(l * sp.Derivative(fall, l), -2 * lost, r"how $\tilde D$ falls")
+    g = (PI + T) / 4
+    proof.define(D, kept + lost, "what remains is positive as well")
+    shape = g / l - sp.Rational(1, 3) + D / 2 - sp.Rational(8, 3) * l * D / g
+    slip = (1 - 8 * l * D / (PI + T)) * LOAD - sp.Rational(5, 4) * l * (sp.Rational(4, 3) - 2 * D)
+    proof.equal(slip / l, shape, r"$\tilde E/l$")
+    t, d = sp.Function("T", positive=True)(l), sp.Function("D", positive=True)(l)
+    moving = shape.subs(D, d).subs(T, t)
+    slope = sp.diff(moving, l).subs(
+        {sp.Derivative(t, l): -8 * d, sp.Derivative(d, l): -2 * lost / l}
+    )
+    steep = (-(l**2) * g * slope.subs({d: D, t: T})).subs(D, kept + lost)
+    size = (
+        g**2 - sp.Rational(16, 45) + sp.Rational(8, 3) * (sp.Rational(2, 15) - l**2 * D)
+        + l * g * (2 * D + lost) + sp.Rational(16, 3) * l**2 * (kept + l * D**2 / g)
+    )  # fmt: skip
+    proof.define(
+        ball_steep, steep, r"$- \frac{l^2}{4} (\pi + \tilde T)$ times the slope of $\tilde E/l$"
+    )
+    proof.equal(ball_steep, size, "of which no term but one is negative, by the first line")
+    proof.holds(
+        g**2 - sp.Rational(16, 45), ">", 0, r"it is outweighed: $\frac{\pi^2}{16} > \frac{16}{45}$"
+    )
+    return proof.done(ball_steep, size)
+
+
+_UNIQUE = (
+    r"With F20-loss, $\frac{d \tilde T}{d l} = - 8 \tilde D$. As $\tilde E/l$ falls strictly, from infinity "
+    r"to $- \frac{1}{3}$, it has one root: a ball under a dead weight has one friction maximum."
 )
 
 

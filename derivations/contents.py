@@ -140,6 +140,7 @@ CONTENTS = {
     "F20-balance": "Ball: one depth for a weight",
     "F20-crossing": "Ball: critical velocity",
     "F20-peak": "Ball: friction maximum of a dead weight",
+    "F20-unique": "Ball: one friction maximum",
     "F20-error-L1": "Ball: relative error, low velocity",
     "F20-error-L2": "Ball: relative error, high velocity, given depth",
     "F20-error-load-low": "Ball: relative error, load at low velocity, given depth",

@@ -180,12 +180,13 @@ aside, ball_angle, ball_load, ball_friction, ball_coefficient, ball_share = _pos
     "y_b theta_b w_b phi_b m_b eta_b"
 )
 ball_tail, ball_loss, ball_depth, ball_behind = _positive("T_b D_b I_b J_b")
+ball_rest, ball_kept, ball_lost = _positive("K_b M_b N_b")
 ball_scaled, ball_scaled_s, ball_scaled_ss = _positive("f_b f_b_s f_b_ss")
 ball_l1, ball_l2, ball_load_low, ball_load_high = sp.symbols(
     "e_b_L1 e_b_L2 e_b_W_low e_b_W_high", real=True
 )
 ball_friction_low, ball_friction_high = sp.symbols("e_b_F_low e_b_F_high", real=True)
-ball_slip = sp.Symbol("E_b", real=True)
+ball_slip, ball_steep = sp.symbols("E_b S_b", real=True)
 ball_cross, ball_lam_cross = _positive("l_b lambda_b")
 
 alpha = 2 * sp.sqrt(2) / 3
@@ -368,6 +369,10 @@ TEX = {
     onset_square: r"\check D",
     aside: r"\tilde \zeta",
     ball_depth: r"\tilde I",
+    ball_rest: r"\tilde K",
+    ball_steep: r"\tilde S",
+    ball_kept: r"\tilde M",
+    ball_lost: r"\tilde N",
     ball_behind: r"\tilde J",
     ball_angle: r"\tilde \theta",
     ball_load: r"\tilde w",

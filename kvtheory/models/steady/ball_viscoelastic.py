@@ -5,7 +5,7 @@ F_2 are explicit in the length c of its contact (theorem F17), and so is a(c): w
 
     W = int W_2(c) dy,    dy = - sqrt(R'/R) a a'(c)/y' dc,    y'^2 = a_0^2 - a(c)^2,
 
-no root is needed but that of the middle plane (derivations F20-strips). The double-exponential rule takes
+no root is needed but that of the middle plane (derivation F17-growth). The double-exponential rule takes
 the square root at y' = 0 and what is singular at c = 0. Where c is next to that of the middle plane, a_0 - a
 follows from the derivatives of a. The load grows with the depth as
 
