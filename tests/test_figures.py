@@ -222,3 +222,16 @@ def test_a_failed_picture_leaves_nothing_behind(tmp_path):
     with pytest.raises(RuntimeError, match="no ink"):
         drawing.produce("broken", lambda: None, draw, tmp_path / "out")
     assert not list(tmp_path.rglob("*.*"))
+
+
+def test_stick_slip_cycles_close_and_grow_with_the_velocity(made):
+    data, drawn, _ = made["stick_slip"]
+    assert len(drawn.axes) == 5
+    spans = []
+    for x, v, depth in data.cycles.values():
+        for values in (x, v, depth):
+            assert values[0] == pytest.approx(values[-1], abs=0.02 * np.ptp(values))
+        spans.append(np.ptp(x))
+    assert spans == sorted(spans)
+    amplitude = made["stick_slip_amplitude"][0].curves
+    assert all(curve[1][0] == 0.0 < curve[1][-1] for curve in amplitude.values())
