@@ -307,8 +307,8 @@ def _slip() -> Derivation:
 _PEAK = (
     r"At a given load $a \sim \tilde w^{-1/4}$, and $V \tau = a l$ grows with $l$. The friction coefficient "
     r"rises where $\tilde E > 0$: at low velocity, where $\tilde E \to \frac{\pi}{2}$; and it falls at high "
-    r"velocity, where $\tilde E \to - \frac{l}{3}$. The one root of $\tilde E$ in between (F20-unique) is $l = "
-    r"1.842345$, beside the $\sqrt{3}$ of a cylinder (F3)."
+    r"velocity, where $\tilde E \to - \frac{l}{3}$. The one root of $\tilde E$ in between (F20-unique) is "
+    r"$l = 1.842345$, beside the $\sqrt{3}$ of a cylinder (F3)."
 )
 
 

@@ -26,9 +26,9 @@ def test_other_shapes_are_integrated_by_default():
     assert swept.depth.shape == (2,)
     assert swept.certificate.relative_error["depth"].shape == (2,)
     for method in ("exact", "asymptote"):
-        with pytest.raises(ValueError, match=r'the wedge only.*"circle"'):
+        with pytest.raises(ValueError, match=r'the ball only.*"circle"'):
             kv.steady(scene, method=method)
-    with pytest.raises(ValueError, match="the wedge only"):
+    with pytest.raises(ValueError, match="the ball only"):
         kv.asymptotes(scene)
 
 

@@ -235,3 +235,15 @@ def test_stick_slip_cycles_close_and_grow_with_the_velocity(made):
     assert spans == sorted(spans)
     amplitude = made["stick_slip_amplitude"][0].curves
     assert all(curve[1][0] == 0.0 < curve[1][-1] for curve in amplitude.values())
+
+
+def test_ball_has_its_points_on_its_curve_and_the_pressure_of_its_footprints(made):
+    data, drawn, _ = made["ball"]
+    for support, (numbers, points) in data.points.items():
+        curve = np.exp(np.interp(np.log(numbers), np.log(data.columns["V tau/a_0 [1]"]),
+                                 np.log(data.curves[support, "ball"])))  # fmt: skip
+        assert points == pytest.approx(curve, rel=1e-3)
+    for found in data.footprints:
+        l = found.retardation_length
+        assert found.pressure(-min(l, 1.0), 0.0) == pytest.approx(1 + l * l if l < 1 else 2 * l)
+    assert [ax.get_title() for ax in drawn.axes[:2]] == ["given depth", "dead weight"]

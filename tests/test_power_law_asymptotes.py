@@ -127,5 +127,5 @@ def test_arrays_give_what_single_scenes_give():
 
 
 def test_other_shapes_are_refused_in_words():
-    with pytest.raises(ValueError, match="the parabola, the power law and the wedge only"):
+    with pytest.raises(ValueError, match="the wedge and the ball only"):
         kv.asymptotes(kv.Scene(kv.Circle(0.01)))
