@@ -31,6 +31,7 @@ from .symbols import (
     ball_load_low,
     ball_loss,
     ball_lost,
+    ball_mean,
     ball_rest,
     ball_scaled,
     ball_scaled_s,
@@ -316,7 +317,7 @@ def _unique() -> Derivation:
     proof = _theorem("F20-unique", title="Ball: one friction maximum", text=_UNIQUE,
                      uses=("F20-peak",))  # fmt: skip
     arc = sp.atan(y / l)
-    rest, kept, lost = ball_rest, ball_kept, ball_lost
+    rest, kept, lost, g = ball_rest, ball_kept, ball_lost, ball_mean
     square, bulge = y**2 * (1 - y**2), (1 + 3 * l**2) * ANGLE
     fall = sp.Rational(2, 3) + l**2 - l * (1 + l**2) * ANGLE
     proof.integral(
@@ -331,24 +332,20 @@ def _unique() -> Derivation:
         value=l * (bulge - 3 * l) / 2,
     )  # fmt: skip
     proof.equal(l * sp.Derivative(fall, l), -2 * lost, r"how $\tilde D$ falls")
-    g = (PI + T) / 4
     proof.define(D, kept + lost, "what remains is positive as well")
+    proof.define(g, (PI + T) / 4, r"$\tilde \varphi/l$, whose slope is $- 2 \tilde D$")
     shape = g / l - sp.Rational(1, 3) + D / 2 - sp.Rational(8, 3) * l * D / g
-    slip = (1 - 8 * l * D / (PI + T)) * LOAD - sp.Rational(5, 4) * l * (sp.Rational(4, 3) - 2 * D)
+    slip = (1 - 2 * l * D / g) * LOAD - sp.Rational(5, 4) * l * (sp.Rational(4, 3) - 2 * D)
     proof.equal(slip / l, shape, r"$\tilde E/l$")
-    t, d = sp.Function("T", positive=True)(l), sp.Function("D", positive=True)(l)
-    moving = shape.subs(D, d).subs(T, t)
-    slope = sp.diff(moving, l).subs(
-        {sp.Derivative(t, l): -8 * d, sp.Derivative(d, l): -2 * lost / l}
-    )
-    steep = (-(l**2) * g * slope.subs({d: D, t: T})).subs(D, kept + lost)
+    load, loss = (sp.Function(name, positive=True)(l) for name in "gD")
+    slopes = {sp.Derivative(load, l): -2 * D, sp.Derivative(loss, l): -2 * lost / l}
+    slope = sp.diff(shape.subs({g: load, D: loss}), l).subs(slopes).subs({load: g, loss: D})
+    steep = sp.expand(-(l**2) * g * slope)
     size = (
         g**2 - sp.Rational(16, 45) + sp.Rational(8, 3) * (sp.Rational(2, 15) - l**2 * D)
         + l * g * (2 * D + lost) + sp.Rational(16, 3) * l**2 * (kept + l * D**2 / g)
     )  # fmt: skip
-    proof.define(
-        ball_steep, steep, r"$- \frac{l^2}{4} (\pi + \tilde T)$ times the slope of $\tilde E/l$"
-    )
+    proof.define(ball_steep, steep, r"$- l^2 \tilde g$ times the slope of $\tilde E/l$")
     proof.equal(ball_steep, size, "of which no term but one is negative, by the first line")
     proof.holds(
         g**2 - sp.Rational(16, 45), ">", 0, r"it is outweighed: $\frac{\pi^2}{16} > \frac{16}{45}$"

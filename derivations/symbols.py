@@ -180,7 +180,7 @@ aside, ball_angle, ball_load, ball_friction, ball_coefficient, ball_share = _pos
     "y_b theta_b w_b phi_b m_b eta_b"
 )
 ball_tail, ball_loss, ball_depth, ball_behind = _positive("T_b D_b I_b J_b")
-ball_rest, ball_kept, ball_lost = _positive("K_b M_b N_b")
+ball_rest, ball_kept, ball_lost, ball_mean = _positive("K_b M_b N_b g_b")
 ball_scaled, ball_scaled_s, ball_scaled_ss = _positive("f_b f_b_s f_b_ss")
 ball_l1, ball_l2, ball_load_low, ball_load_high = sp.symbols(
     "e_b_L1 e_b_L2 e_b_W_low e_b_W_high", real=True
@@ -370,6 +370,7 @@ TEX = {
     aside: r"\tilde \zeta",
     ball_depth: r"\tilde I",
     ball_rest: r"\tilde K",
+    ball_mean: r"\tilde g",
     ball_steep: r"\tilde S",
     ball_kept: r"\tilde M",
     ball_lost: r"\tilde N",
