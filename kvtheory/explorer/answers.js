@@ -70,7 +70,7 @@ function show_formula(scene, state) {
     : `${found.key.includes("low") ? "Slow" : "Fast"} sliding: the limit is ${found.error < 0 ? "below" : "above"} the exact value by ${short(100 * Math.abs(found.error), 2)} %.`;
   place.innerHTML = `<p class="note">${told}</p><div class="formula">\u03bc ${relation} ${side} ${row.symbols}</div>`
     + `<div class="formula filled" tabindex="0" aria-label="The same with numbers">\u03bc ${relation} ${side} ${filled} = <b id="formula-value">${side}${short(found.value, 5)}</b></div>`
-    + `<p class="note">Proof: <code>kvtheory derive --only ${row.label} --closure</code></p>`;
+    + `<p class="note">${row.where.replace(/([a-z\u03b4W])_(\w+)/gu, "$1<sub>$2</sub>")} Proof: <code>kvtheory derive --only ${row.label} --closure</code></p>`;
 }
 
 function show_energy(state) {

@@ -78,6 +78,7 @@ def formulas() -> dict[str, dict[str, str]]:
     return {
         key: {
             "label": row["label"],
+            "where": row.get("where", ""),
             "symbols": written(row["latex"], symbols),
             "numbers": written(row["latex"], places),
         }
