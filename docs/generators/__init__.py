@@ -1,25 +1,31 @@
 """Pages that follow from the code: each module returns the texts of its pages by their paths."""
 
+from concurrent.futures import ProcessPoolExecutor
 from pathlib import Path
 
 from generators import api, atlas, commands, derivations, equations, gallery, keys, problems
 
-PAGES = (api, commands, equations, keys)
+QUICK = (api, commands, equations, keys)
 ROOT = Path(__file__).parents[2]
 
 
 def write_all(directory: Path) -> None:
     """Write every page whose text has changed, so that Sphinx reads no other anew.
 
-    The derivations take most of a minute: they are made anew if one of their modules has changed.
+    What takes a while is made at the same time by two processes, and again only if it is not there; the
+    derivations, if one of their modules has changed.
     """
-    texts = {path: text for module in PAGES for path, text in module.pages().items()}
+    directory.mkdir(exist_ok=True)
     proved = directory / "theory" / "index.md"
     changed = max(path.stat().st_mtime for path in (ROOT / "derivations").rglob("*.py"))
-    if not proved.exists() or proved.stat().st_mtime < changed:
-        texts |= derivations.pages()
-    gallery.write(directory)
-    texts |= problems.write(directory) | atlas.write(directory)
+    with ProcessPoolExecutor(2) as pool:
+        slow = [pool.submit(problems.write, directory), pool.submit(atlas.write, directory)]
+        if not proved.exists() or proved.stat().st_mtime < changed:
+            slow.insert(0, pool.submit(derivations.pages))
+        texts = {path: text for module in QUICK for path, text in module.pages().items()}
+        gallery.write(directory)
+        for job in slow:
+            texts |= job.result()
     for path, text in texts.items():
         target = directory / path
         if not target.exists() or target.read_text(encoding="utf-8") != text:
