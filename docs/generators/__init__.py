@@ -13,11 +13,12 @@ def write_all(directory: Path) -> None:
     """Write every page whose text has changed, so that Sphinx reads no other anew.
 
     What takes a while is made at the same time by two processes, and again only if it is not there; the
-    derivations, if one of their modules has changed.
+    derivations, if one of their modules has changed, or one of these.
     """
     directory.mkdir(exist_ok=True)
     proved = directory / "theory" / "index.md"
-    changed = max(path.stat().st_mtime for path in (ROOT / "derivations").rglob("*.py"))
+    sources = (*(ROOT / "derivations").rglob("*.py"), *Path(__file__).parent.glob("*.py"))
+    changed = max(path.stat().st_mtime for path in sources)
     with ProcessPoolExecutor(2) as pool:
         slow = [pool.submit(problems.write, directory), pool.submit(atlas.write, directory)]
         if not proved.exists() or proved.stat().st_mtime < changed:

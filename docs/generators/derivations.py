@@ -7,8 +7,12 @@ from kvtheory.derivations.emit import FORMS
 from kvtheory.derivations.render import edition, markdown
 from kvtheory.derivations.render.text import by_section
 
-from generators.equations import users
+from generators.equations import place_of, users
+from generators.labels import anchor_of
 from kvtheory import __version__
+
+MOST = 6
+"""Functions that are named below one derivation, those of the interface first."""
 
 
 def pages() -> dict[str, str]:
@@ -46,7 +50,10 @@ def _named(body: str, labels: list[str]) -> str:
 def _one(part: str, label: str) -> str:
     title, _, body = part.partition("\n")
     forms = [f"closed_forms.py::{form.name}" for form in FORMS if form.label == label]
-    using = [f"`{place}`" for place in dict.fromkeys([*forms, *users("kvtheory")[label]])][:6]
+    using = [*map(place_of, dict.fromkeys([*forms, *users("kvtheory")[label]]))]
+    using = sorted(using, key=lambda text: not text.startswith("["))[:MOST]
     told = f"\nComputed by {', '.join(using)}.\n" if using else ""
-    anchor = "" if re.search(rf"\$\$ \({re.escape(label)}\)", body) else f"({label})=\n"
-    return f"{anchor}## {title}\n{body.rstrip()}\n{told}\n"
+    # A label of Sphinx would let links show a number of its own: the formula carries the label as its tag.
+    body = re.sub(r"\n\$\$ \((\S+)\)", r" \\tag{\1}\n$$", body)
+    body = re.sub(r"\]\(#([^)]+)\)", lambda found: f"](#{anchor_of(found[1])})", body)
+    return f"({anchor_of(label)})=\n## {title}\n{body.rstrip()}\n{told}\n"

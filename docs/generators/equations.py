@@ -9,9 +9,12 @@ from pathlib import Path
 from kvtheory.derivations.contents import CONTENTS
 from kvtheory.derivations.emit import FORMS
 
-from generators.labels import mentioned
+import kvtheory as kv
+from generators.labels import anchor_of, mentioned
 
 ROOT = Path(__file__).parents[2]
+OF_PRINTING = {"test_render", "test_derive_cli", "test_notebook", "test_docs"}
+"""Tests that name labels as samples of what is printed."""
 MOST = 4
 """Functions or tests that are listed for one equation."""
 
@@ -24,9 +27,8 @@ def pages() -> dict[str, str]:
         own = [form.name for form in FORMS if form.label == label]
         closed = [f"models/steady/closed_forms.py::{name}" for name in own]
         held = tests[label] or (["tests/test_emit.py"] if own else ["tests/test_derivations.py"])
-        rows.append(
-            f"| [{label}](#{label}) | {title} | {_some([*closed, *functions[label]])} | {_some(held)} |"
-        )
+        link, computed = f"[{label}](#{anchor_of(label)})", _some([*closed, *functions[label]])
+        rows.append(f"| {link} | {title} | {computed} | {_some(held)} |")
     head = "| label | what it says | computed by | held by |\n|---|---|---|---|"
     return {
         "equations.md": f"# Equations, functions and tests\n\n{_TOLD}\n\n{head}\n"
@@ -40,7 +42,9 @@ def users(package: str) -> dict[str, list[str]]:
     """Return the functions of a package whose text mentions a label, by the label."""
     found: dict[str, list[str]] = defaultdict(list)
     for path in sorted((ROOT / package).rglob("*.py")):
-        for name, text in _functions(path):
+        for name, text in _functions(path) if path.stem not in OF_PRINTING else ():
+            if package == "tests" and not name.startswith("test_"):
+                continue
             for label in mentioned(text):
                 place = path.relative_to(ROOT / "kvtheory" if package == "kvtheory" else ROOT)
                 found[label].append(f"{place}::{name}")
@@ -57,8 +61,15 @@ def _functions(path: Path) -> Iterator[tuple[str, str]]:
             yield node.name, "\n".join(lines[start - 1 : node.end_lineno])
 
 
+def place_of(place: str) -> str:
+    """Return where a function is; one of the interface is a link to its page."""
+    module, _, name = place.partition("::")
+    public = module.startswith("api/") and name in kv.__all__
+    return f"[`kv.{name}`](/generated/api/{name}.md)" if public else f"`{place}`"
+
+
 def _some(places: list[str]) -> str:
-    shown = [f"`{place}`" for place in dict.fromkeys(places)]
+    shown = [*map(place_of, dict.fromkeys(places))]
     more = [f"and {len(shown) - MOST} more"] if len(shown) > MOST else []
     return ", ".join([*shown[:MOST], *more])
 

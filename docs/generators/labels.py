@@ -23,9 +23,16 @@ def mentioned(text: str) -> set[str]:
 def linked(text: str) -> str:
     """Return Markdown in which mentions of labels are links."""
     return _MENTION.sub(
-        lambda match: f"[{match[0]}](#{_label(match)})" if _label(match) in CONTENTS else match[0],
+        lambda match: (
+            f"[{match[0]}](#{anchor_of(_label(match))})" if _label(match) in CONTENTS else match[0]
+        ),
         text,
     )
+
+
+def anchor_of(label: str) -> str:
+    """Return what a derivation is called in links: Sphinx knows targets by small letters."""
+    return label.lower()
 
 
 def _label(match: re.Match[str]) -> str:

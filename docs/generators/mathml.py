@@ -20,13 +20,9 @@ def _inline(self, node):
 def _block(self, node):
     from docutils import nodes
 
-    label = node.get("label") or ""
+    latex, _, tag = node.astext().strip().partition(r"\tag{")
+    label = tag.removesuffix("}")
     told = label.removeprefix("eq") if label[:2] == "eq" and label[2:].isdigit() else label
     number = f'<span class="number">({escape(told)})</span>' if label else ""
-    anchor = "".join(f'<span id="{escape(name)}"></span>' for name in node.get("ids", []))
-    self.body.append(f'{anchor}<div class="formula">{mathml(_bare(node.astext()))}{number}</div>\n')
+    self.body.append(f'<div class="formula">{mathml(latex)}{number}</div>\n')
     raise nodes.SkipNode
-
-
-def _bare(latex: str) -> str:
-    return latex.strip().removeprefix(r"\begin{equation}").removesuffix(r"\end{equation}").strip()

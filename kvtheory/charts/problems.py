@@ -1,4 +1,7 @@
-"""The scenes of the work-precision charts, and what is right for them, by two independent methods."""
+"""The scenes of the work-precision charts, and what is right for them, by two independent methods.
+
+Scenes by which others judge their simulations are in `kvtheory.reference_problems`.
+"""
 
 import json
 import math

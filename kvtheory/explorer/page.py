@@ -8,7 +8,7 @@ from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
-from kvtheory.explorer.controls import controls
+from kvtheory.explorer.controls import SHAPES, controls
 from kvtheory.export import check_path, replace_file
 from kvtheory.scene.model import Scene
 from kvtheory.scene.requirements import lacks_closed_form, require
@@ -52,7 +52,7 @@ def explorer_page(scene: Scene) -> str:
     """
     from kvtheory import __version__
 
-    require(lacks_closed_form, scene, "the explorer")
+    require(_lacks_scripts, scene, "the explorer")
     data = {"version": __version__, "formulas": formulas(), **controls(scene)}
     parts = {
         "style": _text("explorer.css"),
@@ -61,6 +61,15 @@ def explorer_page(scene: Scene) -> str:
         "version": __version__,
     }
     return re.sub(r"\{\{(\w+)\}\}", lambda found: parts[found[1]], _text("explorer.html"))
+
+
+def _lacks_scripts(scene: Scene) -> str:
+    """Say why the scripts of the page cannot compute a scene; nothing if they can."""
+    if lacking := lacks_closed_form(scene):
+        return lacking
+    shape = scene.indenter.shape
+    known = " and ".join(SHAPES)
+    return "" if shape in SHAPES else f'holds for {known} only, not for indenter.shape = "{shape}"'
 
 
 def formulas() -> dict[str, dict[str, str]]:
