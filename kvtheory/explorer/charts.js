@@ -51,14 +51,18 @@ function frame(x, y, box, x_name, y_name) {
   }
   drawn += line([[left, top], [left, bottom], [right, bottom]], "axis");
   if (x_name) drawn += words((left + right) / 2, bottom + 34, x_name, 'class="title" text-anchor="middle"');
-  const middle = (top + bottom) / 2;
-  return drawn + words(14, middle, y_name, `class="title" text-anchor="middle" transform="rotate(-90 14 ${middle.toFixed(1)})"`);
+  return drawn + upright((top + bottom) / 2, y_name);
 }
 
+/** The name of a vertical axis, beside it. */
+const upright = (y, text) => words(14, y, text, `class="title" text-anchor="middle" transform="rotate(-90 14 ${y.toFixed(1)})"`);
+
+/** Draw into a box, to which what is drawn may be clipped. */
 function show(id, draw, name) {
   const place = document.getElementById(id), width = Math.max(260, place.clientWidth), height = Number(place.dataset.height);
-  const clip = `<clipPath id="${id}-clip"><rect x="${MARGIN.left}" y="0" width="${width - MARGIN.left - MARGIN.right}" height="${height}"/></clipPath>`;
-  const drawn = draw(width, height, `clip-path="url(#${id}-clip)"`);
+  const box = [MARGIN.left, MARGIN.top, width - MARGIN.right, height - MARGIN.bottom], [left, top, right, bottom] = box;
+  const clip = `<clipPath id="${id}-clip"><rect x="${left}" y="${top}" width="${right - left}" height="${bottom - top}"/></clipPath>`;
+  const drawn = draw(box, `clip-path="url(#${id}-clip)"`);
   place.innerHTML = `<svg viewBox="0 0 ${width} ${height}" role="img" aria-label="${name}">${clip}${drawn}</svg>`;
 }
 
@@ -88,8 +92,7 @@ function draw_curve(scene, state, data) {
   const low = speed > 0 ? Math.min(ends[0], speed / 2) : ends[0], high = Math.max(ends[1], speed * 2);
   const values = exact.map(([, mu]) => mu).filter((mu) => mu > 0), most = Math.max(...values);
   const least = Math.min(...values, friction > 0 ? friction : Infinity);
-  show("curve", (width, height, clip) => {
-    const box = [MARGIN.left, MARGIN.top, width - MARGIN.right, height - MARGIN.bottom];
+  show("curve", (box, clip) => {
     const x = scale(low * 1e3, high * 1e3, box[0], box[2], true), y = scale(least / 1.3, most * 2.5, box[3], box[1], true);
     const at = ([V, mu]) => [x.at(V * 1e3), y.at(mu)];
     let drawn = "";
@@ -104,8 +107,7 @@ function draw_curve(scene, state, data) {
     }
     if (top) marks += mark(...at([top.V, top.friction]), "top");
     if (speed > 0 && friction > 0) marks += mark(...at([speed, friction]), "present");
-    const clipped = `<clipPath id="box"><rect x="${box[0]}" y="${box[1]}" width="${box[2] - box[0]}" height="${box[3] - box[1]}"/></clipPath>`;
-    return frame(x, y, box, "velocity [mm/s]", "friction coefficient") + clipped + `<g clip-path="url(#box)">${drawn}</g>${marks}`;
+    return frame(x, y, box, "velocity [mm/s]", "friction coefficient") + `<g ${clip}>${drawn}</g>${marks}`;
   }, "Friction coefficient over velocity, with its asymptotes");
   const parts = [swatch("exact", "exact")];
   if (known.low) parts.push(swatch("low", "limit at low velocity"), swatch("high", "limit at high velocity"));
@@ -156,9 +158,7 @@ function draw_contact(scene, state) {
   const surface = [[left, 0], [-a, 0], ...inside.map((x) => [x, height_of(scene.shape, x) - delta])];
   if (free) away.forEach((x, k) => surface.push([edge + x, -free[k]]));
   const profile = Array.from({ length: 161 }, (_, k) => left + (right - left) * k / 160);
-  let stretch = 1;
-  show("contact", (width, height, clip) => {
-    const box = [MARGIN.left, MARGIN.top, width - MARGIN.right, height - MARGIN.bottom];
+  show("contact", (box, clip) => {
     const tall = box[3] - box[1], first = [box[0], box[1], box[2], box[1] + 0.42 * tall];
     const ends = side > 0 ? [left, right] : [-right, -left];
     const x = scale(ends[0] * 1e3, ends[1] * 1e3, box[0], box[2]), at_x = (value) => x.at(side * value * 1e3);
@@ -169,7 +169,7 @@ function draw_contact(scene, state) {
     // Heights exaggerated
     const middle = [first[3] + 12, box[1] + 0.86 * tall], z = scale(-1.25 * delta, 1.1 * delta, middle[1], middle[0]);
     const px = (box[2] - box[0]) / (right - left), own = (middle[1] - middle[0]) / (2.35 * delta);
-    stretch = own / px;
+    const stretch = own / px;
     const ground = (to, bottom) => path([...surface.map(([u, v]) => [at_x(u), to(v)]), [at_x(surface.at(-1)[0]), bottom], [at_x(left), bottom]]);
     const body = (to, top) => path([...profile.map((u) => [at_x(u), Math.max(top, to(height_of(scene.shape, u) - delta))]), [at_x(right), top], [at_x(left), top]]);
     drawn += `<g ${clip}><path class="ground" d="${ground((v) => z.at(v), middle[1])}"/><path class="indenter" d="${body((v) => z.at(v), middle[0])}"/>`;
@@ -185,7 +185,7 @@ function draw_contact(scene, state) {
     drawn += words(box[2] - 4, middle[1] - 6, `heights \u00d7 ${short(stretch, 2)}`, 'text-anchor="end"') + words(box[2] - 4, strip[1] - 5, "to scale", 'text-anchor="end"');
     for (const tick of x.ticks) drawn += words(x.at(tick), box[3] + 16, tick_text(tick), 'text-anchor="middle"');
     drawn += words((box[0] + box[2]) / 2, box[3] + 34, "x [mm]", 'class="title" text-anchor="middle"');
-    return drawn + words(14, (middle[0] + middle[1]) / 2, "surface", `class="title" text-anchor="middle" transform="rotate(-90 14 ${((middle[0] + middle[1]) / 2).toFixed(1)})"`);
+    return drawn + upright((middle[0] + middle[1]) / 2, "surface");
   }, "Pressure and free surface under the indenter");
   const note = free ? "" : " Behind the contact the surface of a springpot is not drawn: it needs all of its past.";
   document.getElementById("contact-note").textContent =

@@ -1,8 +1,8 @@
 // The controls, and what happens when one of them moves.
 
 let state = from_hash(location.hash), kept = { key: "", data: null };
-const frames = [];
 /** Milliseconds that the last updates took. */
+const frames = [];
 
 const escaped = (text) => String(text).replace(/[&<>"]/g, (c) => `&#${c.charCodeAt(0)};`);
 const named = (name) => name.replace(/-/g, " ").replace(/\b(kelvin|voigt|maxwell)\b/g, (w) => w[0].toUpperCase() + w.slice(1)).replace("Kelvin Voigt", "Kelvin\u2013Voigt");
@@ -43,7 +43,7 @@ function alternative_html(section) {
 function arms_html() {
   const { stiffness, relaxation_time } = MODEL.arm;
   const rows = state.arms.map(([k, t], i) => `<div class="arm">${slider_html(`arms.${i}.0`, stiffness, k, `arm ${i + 1}: stiffness`)}`
-    + `${slider_html(`arms.${i}.1`, { ...relaxation_time, start: "10" }, t, `arm ${i + 1}: relaxation time`)}</div>`);
+    + `${slider_html(`arms.${i}.1`, relaxation_time, t, `arm ${i + 1}: relaxation time`)}</div>`);
   return `${rows.join("")}<div class="arms"><button type="button" data-arm="add">Add an arm</button>`
     + `<button type="button" data-arm="remove"${state.arms.length < 2 ? " disabled" : ""}>Remove the last</button></div>`;
 }
@@ -104,7 +104,7 @@ function set_value(key, text) {
 }
 
 const slider_of = (key) => (key.startsWith("arms.")
-  ? [MODEL.arm.stiffness, { ...MODEL.arm.relaxation_time, start: "10" }][key.split(".")[2]]
+  ? [MODEL.arm.stiffness, MODEL.arm.relaxation_time][key.split(".")[2]]
   : sliders(state).find(([name]) => name === key)[1]);
 
 function moved(event) {
@@ -132,10 +132,6 @@ function chosen(event) {
   const own = SECTIONS[of].choices[state.choices[of]], wanted = SECTIONS[of].alternatives[state.choices[of]][at];
   for (const key of Object.keys(state.values)) if (key.startsWith(`${of}.`) && !wanted.includes(key.split(".")[1])) delete state.values[key];
   for (const name of wanted) state.values[`${of}.${name}`] ??= own[name].start;
-  if (section === "support" || section === "foundation") {
-    // A spring of the support and the stiffness of a foundation have their own size.
-    if (own.stiffness && section === "support") state.values["support.stiffness"] = own.stiffness.start;
-  }
   allowed(state);
   build_controls();
   soon();

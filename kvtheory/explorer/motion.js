@@ -1,8 +1,8 @@
 // The start from rest of a parabola on a Kelvin-Voigt foundation: two states and two edges in closed form
 // (F11). Scaled by the state at rest; it holds until an edge would need to know the past.
 
-const ORDER = 4;
 /** Steps of the linearly implicit Euler method from which one step is extrapolated. */
+const ORDER = 4;
 
 /** d'' and what the forces are made of, for depth d and rate v. */
 function start_law(d, v, number) {

@@ -1,8 +1,8 @@
 // The start from rest as an animation: the contact, and the forces so far.
 
 const player = { run: null, playing: false, share: 0, last: 0 };
-const LASTS = 6000;
 /** Milliseconds that the animation takes; its time is logarithmic, as the start has two time scales. */
+const LASTS = 6000;
 
 /** Follow the start anew; nothing where the two states do not hold. */
 function follow(scene) {
@@ -42,8 +42,8 @@ function draw_motion() {
     surface.push([x, x * x - now.d]);
   }
   surface.push(...behind.map(([x, u]) => [x, -Math.max(0, u)]), [Math.max(right, behind.length ? behind.at(-1)[0] : 0), 0]);
-  show("motion", (width, height, clip) => {
-    const box = [MARGIN.left, MARGIN.top, width - MARGIN.right, height - MARGIN.bottom], half = box[1] + 0.5 * (box[3] - box[1]);
+  show("motion", (box, clip) => {
+    const half = box[1] + 0.5 * (box[3] - box[1]);
     const scaled = rest.half_length * 1e3, x = scale(left, right, side > 0 ? box[0] : box[2], side > 0 ? box[2] : box[0]);
     const z = scale(-1.3 * deepest, 0.9 * deepest, half - 12, box[1]), at = ([u, v]) => [x.at(u), z.at(v)];
     const profile = Array.from({ length: 81 }, (_, k) => left + (right - left) * k / 80).map((u) => [u, Math.min(0.9 * deepest, u * u - now.d)]);

@@ -267,7 +267,7 @@ function limits(scene) {
     for (let k = 0; k < 60; k++) s -= (g * s * s * s + kappa * (s * s - 1) - 1) / (3 * g * s * s + 2 * kappa * s);
   }
   const a = s * rest.half_length, high = 0.4 * a * a / L * (slope_0 / glassy), low = C / (L * K);
-  return { low: (V) => low * V, high: (V) => high / V, critical: Math.sqrt(high / low) };
+  return { low: (V) => low * V, high: (V) => high / V, critical: Math.sqrt(high / low), glassy: [a, slope_0 / glassy] };
 }
 
 /** Speed and friction at the maximum over a span of speeds in powers of ten, from where the limits meet. */
