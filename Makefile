@@ -19,6 +19,7 @@ paper: $(VENV)/.installed
 
 docs: $(VENV)/.installed-docs
 	$(BIN)/python -m sphinx -W --keep-going -q -b html docs docs/_build/html
+	$(BIN)/python docs/check_site.py docs/_build/html
 	@echo "Done: open docs/_build/html/index.html"
 
 test: $(VENV)/.installed-test

@@ -19,7 +19,7 @@ author = "The kvtheory developers"
 project_copyright = "2026, the kvtheory developers"
 version = release = kvtheory.__version__
 
-extensions = ["myst_nb", "sphinx_gallery.gen_gallery", "sphinx.ext.mathjax"]
+extensions = ["myst_nb", "sphinx_gallery.gen_gallery"]
 source_suffix = {".md": "myst-nb", ".ipynb": "myst-nb", ".rst": "restructuredtext"}
 exclude_patterns = [
     "_build",
@@ -27,7 +27,6 @@ exclude_patterns = [
     "generated/folders/*/*.md",
     "generated/gallery/*.ipynb",
     "generated/gallery/*.py",
-    "**/*.zip",
 ]
 suppress_warnings = ["config.cache", "myst.header"]
 nitpicky = False
@@ -66,7 +65,7 @@ sphinx_gallery_conf = {
     "download_all_examples": False,
     "show_memory": False,
     "show_signature": False,
-    "min_reported_time": 1e9,
+    "write_computation_times": False,
     "remove_config_comments": True,
 }
 

@@ -20,6 +20,7 @@ DOCS = ROOT / "docs"
 NOTEBOOKS = sorted((DOCS / "gallery" / "notebooks").glob("*.ipynb"))
 sys.path.insert(0, str(DOCS))
 
+import check_site  # noqa: E402
 from generators import api, commands, equations, keys, labels  # noqa: E402
 
 
@@ -70,13 +71,25 @@ def test_every_link_in_readme_and_pages_leads_somewhere():
             assert label in {each.lower() for each in CONTENTS}, (page.name, label)
 
 
+def test_a_built_site_is_checked_for_dead_links_and_for_what_is_loaded(tmp_path):
+    (tmp_path / "a.html").write_text(
+        '<a href="b.html#x">b</a><a href="#x">x</a><a href="c.html">c</a><a href="https://d.org">d</a>'
+        '<script src="https://e.org/e.js"></script>'
+    )
+    (tmp_path / "b.html").write_text("")
+    assert sorted(check_site.problems(tmp_path)) == [
+        "a.html: c.html leads nowhere",
+        "a.html: https://e.org/e.js is loaded from elsewhere",
+    ]
+
+
 def test_every_page_is_in_a_table_of_contents():
     listed = set()
     for page in DOCS.rglob("index.md"):
         for block in re.findall(r"```\{toctree\}\n(.*?)```", page.read_text(), re.DOTALL):
             listed |= {
                 (page.parent / name).resolve()
-                for name in re.findall(r"^([\w/-]+)$", block, re.MULTILINE)
+                for name in re.findall(r"^(?:\w+ <)?([\w/-]+)>?$", block, re.MULTILINE)
             }
     pages = {
         path.with_suffix("").resolve()
