@@ -66,18 +66,23 @@ function show_formula(scene, state) {
   const relation = found.error === 0 ? "=" : "\u2248", side = Math.sign(state.friction_coefficient) < 0 ? "\u2212" : "";
   const told = found.error === 0
     ? "No limit is within 5 % here: the exact closed form."
-    : `${found.key.includes("low") ? "Slow" : "Fast"} sliding: the limit is ${found.error < 0 ? "below" : "above"} the exact value by ${short(100 * Math.abs(found.error), 2)} %.`;
-  place.innerHTML = `<p class="note">${told}</p><div class="formula">\u03bc ${relation} ${side} ${row.symbols}</div>`
-    + `<div class="formula filled" tabindex="0" aria-label="The same with numbers">\u03bc ${relation} ${side} ${filled} = <b id="formula-value">${side}${short(found.value, 5)}</b></div>`
-    + `<p class="note">${row.where.replace(/([a-z\u03b4W])_(\w+)/gu, "$1<sub>$2</sub>")} Proof: <code>kvtheory derive --only ${row.label} --closure</code></p>`;
+    : `${found.key.includes("low") ? "Slow" : "Fast"} sliding: the limit is ${found.error < 0 ? "below" : "above"}`
+      + ` the exact value by ${short(100 * Math.abs(found.error), 2)} %.`;
+  const where = row.where.replace(/([a-z\u03b4W])_(\w+)/gu, "$1<sub>$2</sub>"), symbol = `\u03bc ${relation} ${side}`;
+  place.innerHTML = `<p class="note">${told}</p><div class="formula">${symbol} ${row.symbols}</div>`
+    + `<div class="formula filled" tabindex="0" aria-label="The same with numbers">${symbol} ${filled} = `
+    + `<b id="formula-value">${side}${short(found.value, 5)}</b></div>`
+    + `<p class="note">${where} Proof: <code>kvtheory derive --only ${row.label} --closure</code></p>`;
 }
 
 function show_energy(state) {
   const inside = state.dissipated_in_contact, share = (x) => `${short(100 * x, 3)} %`;
+  const part = (kind, width) => `<span class="${kind}" style="width:${100 * width}%"></span>`;
   document.getElementById("energy").innerHTML =
-    `<div class="bar" role="img" aria-label="${share(inside)} inside the contact"><span class="inside" style="width:${100 * inside}%"></span>`
-    + `<span class="behind" style="width:${100 * (1 - inside)}%"></span></div>`
-    + `<div class="legend"><span>\u25a0 ${share(inside)} dissipated in the contact</span><span>\u25a8 ${share(Math.max(0, 1 - inside))} in the surface that relaxes behind it</span></div>`;
+    `<div class="bar" role="img" aria-label="${share(inside)} inside the contact">`
+    + `${part("inside", inside)}${part("behind", 1 - inside)}</div>`
+    + `<div class="legend"><span>\u25a0 ${share(inside)} dissipated in the contact</span>`
+    + `<span>\u25a8 ${share(Math.max(0, 1 - inside))} in the surface that relaxes behind it</span></div>`;
 }
 
 function show_stability(scene, state) {

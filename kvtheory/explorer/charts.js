@@ -55,19 +55,22 @@ function frame(x, y, box, x_name, y_name) {
 }
 
 /** The name of a vertical axis, beside it. */
-const upright = (y, text) => words(14, y, text, `class="title" text-anchor="middle" transform="rotate(-90 14 ${y.toFixed(1)})"`);
+const upright = (y, text) =>
+  words(14, y, text, `class="title" text-anchor="middle" transform="rotate(-90 14 ${y.toFixed(1)})"`);
 
 /** Draw into a box, to which what is drawn may be clipped. */
 function show(id, draw, name) {
   const place = document.getElementById(id), width = Math.max(260, place.clientWidth), height = Number(place.dataset.height);
   const box = [MARGIN.left, MARGIN.top, width - MARGIN.right, height - MARGIN.bottom], [left, top, right, bottom] = box;
-  const clip = `<clipPath id="${id}-clip"><rect x="${left}" y="${top}" width="${right - left}" height="${bottom - top}"/></clipPath>`;
-  const drawn = draw(box, `clip-path="url(#${id}-clip)"`);
+  const rect = `<rect x="${left}" y="${top}" width="${right - left}" height="${bottom - top}"/>`;
+  const clip = `<clipPath id="${id}-clip">${rect}</clipPath>`, drawn = draw(box, `clip-path="url(#${id}-clip)"`);
   place.innerHTML = `<svg viewBox="0 0 ${width} ${height}" role="img" aria-label="${name}">${clip}${drawn}</svg>`;
 }
 
-const swatch = (kind, text) => `<span><svg width="26" height="10" aria-hidden="true">${line([[0, 5], [26, 5]], kind)}</svg>${text}</span>`;
-const dot = (kind, text) => `<span><svg width="14" height="14" aria-hidden="true">${mark(7, 7, kind)}</svg>${text}</span>`;
+const sample = (width, height, drawn, text) =>
+  `<span><svg width="${width}" height="${height}" aria-hidden="true">${drawn}</svg>${text}</span>`;
+const swatch = (kind, text) => sample(26, 10, line([[0, 5], [26, 5]], kind), text);
+const dot = (kind, text) => sample(14, 14, mark(7, 7, kind), text);
 const mark = (x, y, kind) => (kind === "top"
   ? `<path class="top" d="M${x} ${y - 7}l6 7l-6 7l-6 -7z"/>` : `<circle class="present" cx="${x}" cy="${y}" r="6"/>`);
 
@@ -148,46 +151,66 @@ function pressure_at(scene, state, x) {
   return Math.max(0, scene.K * state.depth * pressure_behind(n, x < 0 ? -state.l : state.l, y));
 }
 
-function draw_contact(scene, state) {
-  const a = state.half_length, side = scene.V < 0 ? -1 : 1, edge = Math.abs(state.trailing_edge), delta = state.depth;
-  const left = -1.6 * a, right = 2.6 * a, n = 120;
-  const inside = Array.from({ length: n + 1 }, (_, k) => -a + (a + edge) * k / n);
+/** Surface, contact and indenter as points in m, for V > 0; behind a springpot nothing. */
+function contact_shapes(scene, state) {
+  const a = state.half_length, edge = Math.abs(state.trailing_edge), left = -1.6 * a, right = 2.6 * a;
+  const under = (x) => height_of(scene.shape, x) - state.depth;
+  const inside = Array.from({ length: 121 }, (_, k) => -a + (a + edge) * k / 120);
   const away = Array.from({ length: 80 }, (_, k) => (right - edge) * ((k + 1) / 80) ** 2);
-  const leaving = Math.max(0, delta - height_of(scene.shape, edge));
-  const free = state.retardation_length > 0 ? relaxed(scene, state, leaving, away) : away.map(() => 0);
-  const surface = [[left, 0], [-a, 0], ...inside.map((x) => [x, height_of(scene.shape, x) - delta])];
-  if (free) away.forEach((x, k) => surface.push([edge + x, -free[k]]));
+  const free = state.retardation_length > 0
+    ? relaxed(scene, state, Math.max(0, -under(edge)), away) : away.map(() => 0);
+  const behind = free ? away.map((x, k) => [edge + x, -free[k]]) : [];
+  const touched = inside.map((x) => [x, under(x)]);
   const profile = Array.from({ length: 161 }, (_, k) => left + (right - left) * k / 160);
+  return {
+    ends: [left, right], edges: [-a, edge], touched, known: free !== null,
+    surface: [[left, 0], [-a, 0], ...touched, ...behind], profile: profile.map((x) => [x, under(x)]),
+  };
+}
+
+/** Ground and indenter between a top and a bottom, with heights as `to` maps them to pixels. */
+function draw_bodies(shapes, at_x, to, top, bottom) {
+  const { surface, profile, ends } = shapes, at = ([x, z]) => [at_x(x), Math.max(top, to(z))];
+  const ground = [...surface.map(at), [at_x(surface.at(-1)[0]), bottom], [at_x(ends[0]), bottom]];
+  const indenter = [...profile.map(at), [at_x(ends[1]), top], [at_x(ends[0]), top]];
+  return `<path class="ground" d="${path(ground)}"/><path class="indenter" d="${path(indenter)}"/>`;
+}
+
+/** The pressure over the contact, and both edges down to `bottom`. */
+function draw_pressure(scene, state, shapes, box, x, at_x, bottom) {
+  const p = scale(0, state.peak_pressure * 1.12e-6, box[3], box[1]), [front, back] = shapes.edges;
+  const pressed = shapes.touched.map(([place]) => [at_x(place), p.at(pressure_at(scene, state, place) * 1e-6)]);
+  const area = path([[at_x(front), box[3]], ...pressed, [at_x(back), box[3]]]);
+  let drawn = frame(x, p, box, "", "pressure [MPa]") + `<path class="pressure" d="${area}"/>`;
+  for (const [place, name] of [[front, "LE"], [back, "TE"]]) {
+    drawn += line([[at_x(place), box[1]], [at_x(place), bottom]], "edge");
+    drawn += words(at_x(place) + 4, box[1] + 10, `x<tspan dy="3" font-size="9">${name}</tspan>`);
+  }
+  return drawn;
+}
+
+function draw_contact(scene, state) {
+  const side = scene.V < 0 ? -1 : 1, shapes = contact_shapes(scene, state), [left, right] = shapes.ends;
   show("contact", (box, clip) => {
-    const tall = box[3] - box[1], first = [box[0], box[1], box[2], box[1] + 0.42 * tall];
+    const [start, top, end, bottom] = box, tall = bottom - top, split = top + 0.42 * tall;
     const ends = side > 0 ? [left, right] : [-right, -left];
-    const x = scale(ends[0] * 1e3, ends[1] * 1e3, box[0], box[2]), at_x = (value) => x.at(side * value * 1e3);
-    const p = scale(0, state.peak_pressure * 1.12e-6, first[3], first[1]);
-    const pressed = inside.map((place) => [at_x(place), p.at(pressure_at(scene, state, place) * 1e-6)]);
-    let drawn = frame(x, p, first, "", "pressure [MPa]");
-    drawn += `<path class="pressure" d="${path([[at_x(-a), first[3]], ...pressed, [at_x(edge), first[3]]])}"/>`;
-    // Heights exaggerated
-    const middle = [first[3] + 12, box[1] + 0.86 * tall], z = scale(-1.25 * delta, 1.1 * delta, middle[1], middle[0]);
-    const px = (box[2] - box[0]) / (right - left), own = (middle[1] - middle[0]) / (2.35 * delta);
-    const stretch = own / px;
-    const ground = (to, bottom) => path([...surface.map(([u, v]) => [at_x(u), to(v)]), [at_x(surface.at(-1)[0]), bottom], [at_x(left), bottom]]);
-    const body = (to, top) => path([...profile.map((u) => [at_x(u), Math.max(top, to(height_of(scene.shape, u) - delta))]), [at_x(right), top], [at_x(left), top]]);
-    drawn += `<g ${clip}><path class="ground" d="${ground((v) => z.at(v), middle[1])}"/><path class="indenter" d="${body((v) => z.at(v), middle[0])}"/>`;
-    drawn += line(surface.map(([u, v]) => [at_x(u), z.at(v)]), "surface");
-    drawn += line(inside.map((u) => [at_x(u), z.at(height_of(scene.shape, u) - delta)]), "touch") + "</g>";
-    for (const [place, name] of [[-a, "x<tspan dy='3' font-size='9'>LE</tspan>"], [edge, "x<tspan dy='3' font-size='9'>TE</tspan>"]]) {
-      drawn += line([[at_x(place), first[1]], [at_x(place), middle[1]]], "edge") + words(at_x(place) + 4, first[1] + 10, name);
-    }
-    // To scale
-    const base = box[3] - 0.045 * tall, true_z = (v) => base - v * px;
-    const strip = [box[1] + 0.88 * tall, box[3]];
-    drawn += `<g ${clip}><path class="ground" d="${ground(true_z, strip[1])}"/><path class="indenter" d="${body(true_z, strip[0])}"/></g>`;
-    drawn += words(box[2] - 4, middle[1] - 6, `heights \u00d7 ${short(stretch, 2)}`, 'text-anchor="end"') + words(box[2] - 4, strip[1] - 5, "to scale", 'text-anchor="end"');
-    for (const tick of x.ticks) drawn += words(x.at(tick), box[3] + 16, tick_text(tick), 'text-anchor="middle"');
-    drawn += words((box[0] + box[2]) / 2, box[3] + 34, "x [mm]", 'class="title" text-anchor="middle"');
+    const x = scale(ends[0] * 1e3, ends[1] * 1e3, start, end), at_x = (place) => x.at(side * place * 1e3);
+    const per_length = (end - start) / (right - left), middle = [split + 12, top + 0.86 * tall];
+    const z = scale(-1.25 * state.depth, 1.1 * state.depth, middle[1], middle[0]);
+    const stretch = (middle[1] - middle[0]) / (2.35 * state.depth) / per_length;
+    const base = bottom - 0.045 * tall, strip = top + 0.88 * tall;
+    const at = ([place, height]) => [at_x(place), z.at(height)];
+    let drawn = draw_pressure(scene, state, shapes, [start, top, end, split], x, at_x, middle[1]);
+    drawn += `<g ${clip}>${draw_bodies(shapes, at_x, z.at, ...middle)}`;
+    drawn += line(shapes.surface.map(at), "surface") + line(shapes.touched.map(at), "touch");
+    drawn += `${draw_bodies(shapes, at_x, (height) => base - height * per_length, strip, bottom)}</g>`;
+    drawn += words(end - 4, middle[1] - 6, `heights \u00d7 ${short(stretch, 2)}`, 'text-anchor="end"');
+    drawn += words(end - 4, bottom - 5, "to scale", 'text-anchor="end"');
+    for (const tick of x.ticks) drawn += words(x.at(tick), bottom + 16, tick_text(tick), 'text-anchor="middle"');
+    drawn += words((start + end) / 2, bottom + 34, "x [mm]", 'class="title" text-anchor="middle"');
     return drawn + upright((middle[0] + middle[1]) / 2, "surface");
   }, "Pressure and free surface under the indenter");
-  const note = free ? "" : " Behind the contact the surface of a springpot is not drawn: it needs all of its past.";
-  document.getElementById("contact-note").textContent =
-    `The foundation moves ${side > 0 ? "to the right" : "to the left"} under the indenter; it is touched along the thick line.${note}`;
+  const moved = `The foundation moves to the ${side > 0 ? "right" : "left"} under the indenter`;
+  document.getElementById("contact-note").textContent = `${moved}; it is touched along the thick line.${
+    shapes.known ? "" : " Behind the contact the surface of a springpot is not drawn: it needs all of its past."}`;
 }

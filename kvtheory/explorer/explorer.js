@@ -5,7 +5,7 @@ let state = from_hash(location.hash), kept = { key: "", data: null };
 const frames = [];
 
 const escaped = (text) => String(text).replace(/[&<>"]/g, (c) => `&#${c.charCodeAt(0)};`);
-const named = (name) => name.replace(/-/g, " ").replace(/\b(kelvin|voigt|maxwell)\b/g, (w) => w[0].toUpperCase() + w.slice(1)).replace("Kelvin Voigt", "Kelvin\u2013Voigt");
+const named = (name) => name.replace(/-/g, " ").replace("kelvin voigt", "Kelvin\u2013Voigt").replace("maxwell", "Maxwell");
 
 /** Ends of a slider, and where a value stands between them; logarithmic but for a few. */
 function reach(slider) {
@@ -20,14 +20,17 @@ function slider_html(key, slider, text, label) {
   return `<div class="slider"><label for="${key}" title="${escaped(slider.doc)}">${escaped(label)}</label>`
     + `<span class="value"><input type="text" inputmode="decimal" data-key="${key}" value="${escaped(text)}" aria-label="${escaped(label)}">`
     + `<span class="unit">${slider.unit}</span></span>`
-    + `<input type="range" id="${key}" data-key="${key}" min="${low}" max="${high}" step="any" value="${shown}" aria-valuetext="${escaped(text)} ${slider.unit}" title="${escaped(slider.doc)}"></div>`;
+    + `<input type="range" id="${key}" data-key="${key}" min="${low}" max="${high}" step="any" value="${shown}"`
+    + ` aria-valuetext="${escaped(text)} ${slider.unit}" title="${escaped(slider.doc)}"></div>`;
 }
 
 function choice_html(section) {
   const { chooser, choices } = SECTIONS[section], here = state.choices[section];
   const fits = (choice) => section !== "indenter" || MODEL.allowed.some(([shape, kind]) => shape === choice && kind === state.choices.foundation);
-  const options = Object.keys(choices).map((choice) =>
-    `<option value="${choice}"${choice === here ? " selected" : ""}${fits(choice) ? "" : " disabled"}>${named(choice)}${fits(choice) ? "" : " (Kelvin\u2013Voigt only)"}</option>`);
+  const options = Object.keys(choices).map((choice) => {
+    const chosen = choice === here ? " selected" : "", [off, why] = fits(choice) ? ["", ""] : [" disabled", " (Kelvin\u2013Voigt only)"];
+    return `<option value="${choice}"${chosen}${off}>${named(choice)}${why}</option>`;
+  });
   return `<select data-section="${section}" aria-label="${section} ${chooser}">${options.join("")}</select>`;
 }
 
@@ -130,7 +133,10 @@ function chosen(event) {
   const [of, at] = section ? [section, 0] : [set, Number(event.target.value)];
   if (!of) return;
   const own = SECTIONS[of].choices[state.choices[of]], wanted = SECTIONS[of].alternatives[state.choices[of]][at];
-  for (const key of Object.keys(state.values)) if (key.startsWith(`${of}.`) && !wanted.includes(key.split(".")[1])) delete state.values[key];
+  for (const key of Object.keys(state.values)) {
+    const [part, name] = key.split(".");
+    if (part === of && !wanted.includes(name)) delete state.values[key];
+  }
   for (const name of wanted) state.values[`${of}.${name}`] ??= own[name].start;
   allowed(state);
   build_controls();

@@ -25,7 +25,8 @@ function follow(scene) {
   const first = Math.min(end / 300, 0.1 * number.epsilon / (1 + number.lam));
   player.run = { rows, rest, number, end, first: Math.max(first, end * 1e-6), side: Math.sign(scene.V), tau: scene.tau };
   note.textContent = why
-    ? `Two states and two edges in closed form hold up to ${short(end * scene.tau * 1e3)} ms: then ${why}, and what the surface remembers counts. kvtheory transient goes on.`
+    ? `Two states and two edges in closed form hold up to ${short(end * scene.tau * 1e3)} ms: then ${why}, and `
+      + "what the surface remembers counts. kvtheory transient goes on."
     : "Two states and two edges in closed form: no memory of the surface is needed in this run.";
 }
 
@@ -46,19 +47,23 @@ function draw_motion() {
     const half = box[1] + 0.5 * (box[3] - box[1]);
     const scaled = rest.half_length * 1e3, x = scale(left, right, side > 0 ? box[0] : box[2], side > 0 ? box[2] : box[0]);
     const z = scale(-1.3 * deepest, 0.9 * deepest, half - 12, box[1]), at = ([u, v]) => [x.at(u), z.at(v)];
-    const profile = Array.from({ length: 81 }, (_, k) => left + (right - left) * k / 80).map((u) => [u, Math.min(0.9 * deepest, u * u - now.d)]);
-    let drawn = `<g ${clip}><path class="ground" d="${path([...surface.map(at), [x.at(surface.at(-1)[0]), half - 12], [x.at(left), half - 12]])}"/>`;
-    drawn += `<path class="indenter" d="${path([...profile.map(at), [x.at(right), box[1]], [x.at(left), box[1]]])}"/>`;
-    drawn += line(surface.map(at), "surface") + line(surface.filter(([u]) => u >= now.l && u <= now.r).map(at), "touch") + "</g>";
+    const places = Array.from({ length: 81 }, (_, k) => left + (right - left) * k / 80);
+    const shapes = { surface, profile: places.map((u) => [u, u * u - now.d]), ends: [left, right] };
+    const touched = surface.filter(([u]) => u >= now.l && u <= now.r);
+    let drawn = `<g ${clip}>${draw_bodies(shapes, x.at, z.at, box[1], half - 12)}`;
+    drawn += `${line(surface.map(at), "surface")}${line(touched.map(at), "touch")}</g>`;
     drawn += words(box[2] - 4, half - 18, `${short((right - left) * scaled, 3)} mm across`, 'text-anchor="end"');
     const forces = [["f_z", rest.load, "force"], ["f_x", rest.load * rest.depth / rest.half_length, "drag"]];
     const sampled = Array.from({ length: 161 }, (_, k) => row_at(rows, first * (end / first) ** (k / 160)));
     const most = Math.max(...forces.map(([name, unit]) => Math.max(...rows.map((row) => row[name])) * unit)) * 1e-3;
     const t = scale(first * ms, end * ms, box[0], box[2], true), f = scale(0, most * 1.08, box[3], half + 8);
     drawn += frame(t, f, [box[0], half + 8, box[2], box[3]], "time [ms]", "force [N/mm]");
-    for (const [name, unit, kind] of forces) drawn += line(sampled.map((row) => [t.at(row.s * ms), f.at(row[name] * unit * 1e-3)]), kind);
+    for (const [name, unit, kind] of forces) {
+      drawn += line(sampled.map((row) => [t.at(row.s * ms), f.at(row[name] * unit * 1e-3)]), kind);
+    }
     const told = ([name, unit, kind], what) => swatch(kind, `${what} ${short(now[name] * unit * 1e-3)} N/mm`);
-    document.getElementById("motion-legend").innerHTML = `<span>t = ${short(s * ms)} ms</span><span>\u03b4 = ${short(now.d * rest.depth * 1e3)} mm</span>`
+    const depth = `<span>\u03b4 = ${short(now.d * rest.depth * 1e3)} mm</span>`;
+    document.getElementById("motion-legend").innerHTML = `<span>t = ${short(s * ms)} ms</span>${depth}`
       + told(forces[0], "normal force") + told(forces[1], "friction force");
     return drawn + line([[t.at(s * ms), half + 8], [t.at(s * ms), box[3]]], "cursor");
   }, "The contact during the start from rest, and the forces over time");

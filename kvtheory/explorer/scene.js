@@ -160,6 +160,8 @@ function allowed(state) {
   return state;
 }
 
+const SUPERSCRIPTS = "\u207b\u2070\u00b9\u00b2\u00b3\u2074\u2075\u2076\u2077\u2078\u2079";
+
 /** A number with four digits, and one with its unit by the size of it. */
 function short(x, digits = 4) {
   if (!Number.isFinite(x)) return "\u2013";
@@ -167,6 +169,6 @@ function short(x, digits = 4) {
   const size = Math.abs(x);
   if (size >= 1e-3 && size < 1e5) return String(Number(x.toPrecision(digits)));
   const [digit, power] = x.toExponential(digits - 1).split("e");
-  const raised = String(Number(power)).replace(/./g, (c) => "\u207b\u2070\u00b9\u00b2\u00b3\u2074\u2075\u2076\u2077\u2078\u2079"["-0123456789".indexOf(c)]);
+  const raised = String(Number(power)).replace(/./g, (c) => SUPERSCRIPTS["-0123456789".indexOf(c)]);
   return `${Number(digit)}\u00b710${raised}`;
 }
