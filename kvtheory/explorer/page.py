@@ -65,11 +65,10 @@ def explorer_page(scene: Scene) -> str:
 
 def _lacks_scripts(scene: Scene) -> str:
     """Say why the scripts of the page cannot compute a scene; nothing if they can."""
-    if lacking := lacks_closed_form(scene):
-        return lacking
     shape = scene.indenter.shape
-    known = " and ".join(SHAPES)
-    return "" if shape in SHAPES else f'holds for {known} only, not for indenter.shape = "{shape}"'
+    if shape not in SHAPES:
+        return f'holds for {", ".join(SHAPES)} only, not for indenter.shape = "{shape}"'
+    return lacks_closed_form(scene)
 
 
 def formulas() -> dict[str, dict[str, str]]:
