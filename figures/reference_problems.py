@@ -19,7 +19,6 @@ from kvtheory.export import replace_file
 from kvtheory.reference_problems import problem_text
 from kvtheory.reference_problems.named import about
 from kvtheory.results.certificate import record
-from kvtheory.scene.requirements import lacks_kelvin_voigt, lacks_paper_model
 
 OUTPUT = Path("paper/problems")
 DRIVERS = Path(__file__).with_name("drivers")
@@ -37,16 +36,45 @@ def reference(scene: kv.Scene) -> tuple[Any, str]:
     """Return what is right for a scene, and what kind of reference it is: the best that there is.
 
     A transient where theory has it, else a simulation by elements with its estimated error, else steady
-    sliding over velocity.
+    sliding over velocity: a model that does not hold for the scene says so.
     """
-    times = np.linspace(0.0, scene.run.duration, INSTANTS)
-    if not lacks_paper_model(scene):
-        return kv.transient(scene, at=times, rtol=1e-8), "transient"
-    if not lacks_kelvin_voigt(scene):
-        step = scene.run.duration / TIME_STEPS
-        return kv.elements(scene, at=times, per_length=PER_LENGTH, time_step=step), "elements"
-    over = {"drive.velocity": scene.drive.final_velocity * SPEEDS}
-    return kv.steady(scene, over=over), "steady"
+    for kind, compute in REFERENCES.items():
+        try:
+            return compute(scene), kind
+        except ValueError:
+            continue
+    raise ValueError("`scene` has no reference: no model holds for it")
+
+
+def _instants(scene: kv.Scene) -> Any:
+    return np.linspace(0.0, scene.run.duration, INSTANTS)
+
+
+def _transient(scene: kv.Scene) -> Any:
+    return kv.transient(scene, at=_instants(scene), rtol=1e-8)
+
+
+def _elements(scene: kv.Scene) -> Any:
+    step = scene.run.duration / TIME_STEPS
+    return kv.elements(scene, at=_instants(scene), per_length=PER_LENGTH, time_step=step)
+
+
+def _steady(scene: kv.Scene) -> Any:
+    return kv.steady(scene, over={"drive.velocity": scene.drive.final_velocity * SPEEDS})
+
+
+REFERENCES = {"transient": _transient, "elements": _elements, "steady": _steady}
+"""From the best to what there is for every scene."""
+
+
+def judge(scene: kv.Scene, found: Any, kind: str) -> str:
+    """Return the driver that judges a series: theory, where `compare` takes the scene."""
+    if kind != "transient":
+        return "within"
+    try:
+        return "compare" if kv.compare(scene, data=found).verdict == "agrees" else "within"
+    except ValueError:
+        return "within"
 
 
 def criteria(found: Any, kind: str) -> dict[str, Any]:
@@ -68,11 +96,12 @@ def write(name: str, directory: Path) -> Path:
     folder.mkdir(parents=True, exist_ok=True)
     scene = kv.problem(name)
     found, kind = reference(scene)
+    rule = judge(scene, found, kind)
     texts = {
         "scene.toml": problem_text(name),
         "certificate.json": _json({"model": found.model, **record(found.certificate)}),
         "criteria.json": _json(criteria(found, kind)),
-        "README.md": readme(name, found, kind),
+        "README.md": readme(name, found, kind, rule),
     }
     for file, text in texts.items():
         replace_file(folder / file, partial(_put, text))
@@ -81,14 +110,13 @@ def write(name: str, directory: Path) -> Path:
     else:
         found.to_csv(folder / "reference.csv")
     found.plot().savefig(folder / "reference.png", dpi=110)
-    driver = "compare.py" if kind == "transient" else "within.py"
-    replace_file(folder / "judge.py", partial(shutil.copy, DRIVERS / driver))
+    replace_file(folder / "judge.py", partial(shutil.copy, DRIVERS / f"{rule}.py"))
     if name == "point-contact":
         replace_file(folder / "simulate.py", partial(shutil.copy, DRIVERS / "point_contact.py"))
     return folder
 
 
-def readme(name: str, found: Any, kind: str) -> str:
+def readme(name: str, found: Any, kind: str, rule: str) -> str:
     """Return the page of a problem in Markdown."""
     what = {
         "transient": "the exact transient",
@@ -98,7 +126,7 @@ def readme(name: str, found: Any, kind: str) -> str:
     return _README.format(
         title=kv.problems()[name], about=about(name), name=name, scene=problem_text(name), what=what,
         certificate=f"{found.certificate.kind}: {found.certificate.statement}",
-        rule=_RULES["compare" if kind == "transient" else "within"],
+        rule=_RULES[rule],
         more=_POINT_CONTACT if name == "point-contact" else "",
     )  # fmt: skip
 

@@ -20,7 +20,7 @@ from kvtheory.scene.model import SUPPORTS
 FOLDERS = {
     "paper-fixed": "transient",
     "wedge": "elements",
-    "zener": "steady",
+    "springpot": "steady",
     "point-contact": "transient",
 }
 NAMED = "take-off", "heavy-mass", "paper-dead-weight"
@@ -106,16 +106,16 @@ def test_a_folder_holds_scene_reference_certificate_criteria_and_picture(folders
     assert len((folder / "judge.py").read_text().splitlines()) < 30
 
 
-@pytest.mark.parametrize("name", ["wedge", "zener", "paper-fixed"])
+@pytest.mark.parametrize("name", ["wedge", "springpot", "paper-fixed"])
 def test_a_folder_judges_the_right_series_right_and_a_wrong_one_wrong(folders, name, tmp_path):
     folder = folders / name
     head, *rows = (folder / "reference.csv").read_text().splitlines()
     sparse = tmp_path / "right.csv"
-    sparse.write_text("\n".join([head, *rows[:: 1 if name == "zener" else 4]]) + "\n")
+    sparse.write_text("\n".join([head, *rows[:: 1 if name == "springpot" else 4]]) + "\n")
     done = judged(folder, sparse)
     assert done.returncode == 0, done.stdout + done.stderr
     drag = head.split(",").index("friction_force [N/m]")
-    wrong = [row.split(",") for row in rows[:: 1 if name == "zener" else 4]]
+    wrong = [row.split(",") for row in rows[:: 1 if name == "springpot" else 4]]
     for cells in wrong:
         cells[drag] = repr(1.1 * float(cells[drag]))
     off = tmp_path / "wrong.csv"
