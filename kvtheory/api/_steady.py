@@ -44,9 +44,9 @@ def steady(
         unit. Arrays broadcast against each other.
     method
         ``"exact"`` (parabola, power law, wedge and ball on Kelvin-Voigt, parabola and ball on any
-        foundation; the default for them), ``"quadrature"`` (any shape on Kelvin-Voigt; beyond it line contacts
-        that are convex where they touch; the default for the others) or ``"asymptote"`` (of the regime in
-        which the velocity lies; for the same shapes as ``"exact"``, on Kelvin-Voigt).
+        foundation; the default for them), ``"quadrature"`` (any shape on Kelvin-Voigt; beyond it line
+        contacts that are convex where they touch; the default for the others) or ``"asymptote"`` (of the
+        regime in which the velocity lies; for the same shapes as ``"exact"``, on Kelvin-Voigt).
 
     Returns
     -------
