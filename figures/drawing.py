@@ -2,6 +2,7 @@
 
 import argparse
 import csv
+import math
 from collections.abc import Callable, Mapping
 from functools import partial
 from pathlib import Path
@@ -63,4 +64,10 @@ def _write_csv(path: Path, columns: Columns) -> None:
     with path.open("w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file)
         writer.writerow(columns)
-        writer.writerows(zip(*(array.tolist() for array in arrays), strict=True))
+        rows = zip(*(array.tolist() for array in arrays), strict=True)
+        writer.writerows([_written(cell) for cell in row] for row in rows)
+
+
+def _written(cell: Any) -> Any:
+    """Return a cell, empty where its value does not exist."""
+    return "" if isinstance(cell, float) and math.isnan(cell) else cell

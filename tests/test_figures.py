@@ -2,6 +2,7 @@
 
 import csv
 import importlib
+import math
 import subprocess
 import sys
 from pathlib import Path
@@ -44,7 +45,11 @@ def test_each_figure_comes_as_vector_and_png_with_its_data(made, name):
         head, *rows = csv.reader(file)
     assert head == list(data.columns)
     assert len(rows) == len(next(iter(data.columns.values())))
-    assert all(cell not in ("", "nan", "inf") for row in rows for cell in row)
+    for column, cells in zip(data.columns.values(), zip(*rows, strict=True), strict=True):
+        missing = [isinstance(v, float) and math.isnan(v) for v in np.asarray(column).tolist()]
+        assert [cell == "" for cell in cells] == missing
+        assert not all(missing)
+        assert not {"nan", "inf", "-inf"} & set(cells)
     assert not list(paths[0].parent.glob(".*"))
 
 
