@@ -166,7 +166,7 @@ def ledger(scene, density, end):
     K_i, tau = law.arm_stiffness[:, None], law.arm_time[:, None]
     state, h, rows = IndenterState(0.0, model.depth, 0.0), 1.0 / density, []
     for _ in range(round(end * density)):
-        under, risen = row.under(state.time, 0.0, state.depth), model.depth - state.depth
+        under, risen = row.under(state, state, 0.0, state.depth), model.depth - state.depth
         p = law.pressure(under.state, state.depth - under.height, 0.0)
         friction = -model.slope(under.x) @ np.where(under.touched, p, 0.0)
         u, s = row.states[0], row.states[1:]

@@ -227,7 +227,7 @@ def _begin(
     if not steady:
         return row, scheme, start
     state = steady_sliding(scene)
-    under = row.under(0.0, 0.0, state.depth)
+    under = row.under(start, start, 0.0, state.depth)
     pressed = (under.x >= state.leading_edge) & (under.x <= state.trailing_edge)
     left = state.depth - float(model.height(np.array(state.trailing_edge)))
     behind = np.maximum(under.x - state.trailing_edge, 0.0) / state.retardation_length

@@ -21,7 +21,13 @@ from kvtheory.results.table import (
     TRANSIENT_UNITS,
     units_for,
 )
-from kvtheory.results.transient import Event, Simulation, SprungTransient, Transient
+from kvtheory.results.transient import (
+    Event,
+    Simulation,
+    SprungSimulation,
+    SprungTransient,
+    Transient,
+)
 
 __all__ = [
     "AT_REST",
@@ -45,6 +51,7 @@ __all__ = [
     "QuadratureError",
     "Simulation",
     "Solution",
+    "SprungSimulation",
     "SprungTransient",
     "Stability",
     "SteadyState",

@@ -95,10 +95,11 @@ def units_for(indenter: Indenter, units: Mapping[str, str]) -> Mapping[str, str]
 
 
 def scales(at_rest: StaticState) -> dict[str, float]:
-    """Return what measures each quantity of a series: the static state and its products, in SI.
+    """Return what measures each quantity of a series, more on a spring: the static state and its products.
 
     >>> from kvtheory.scene import Scene
     >>> round(scales(StaticState.of(Scene()))["normal_force"], 2)
     9806.65
     """
-    return {name: getattr(at_rest, QUANTITIES[name].scale) for name in TRANSIENT_UNITS}
+    names = TRANSIENT_UNITS if at_rest.rigid_drive else SERIES_UNITS
+    return {name: getattr(at_rest, QUANTITIES[name].scale) for name in names}

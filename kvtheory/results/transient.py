@@ -137,3 +137,15 @@ class Simulation(TimeSeries):
     warning: str
     model: str
     certificate: Certificate
+
+
+@dataclass(frozen=True, repr=False)
+class SprungSimulation(Simulation):
+    """A run of the elements on a spring: two series more, `SPRING_UNITS`, as in a `SprungTransient`."""
+
+    sliding_velocity: Value
+    spring_force: Value
+    units: Mapping[str, str] = field(
+        default_factory=lambda: SERIES_UNITS, repr=False, compare=False, kw_only=True
+    )
+    """The SI unit of each quantity."""

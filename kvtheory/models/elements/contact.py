@@ -40,19 +40,22 @@ def report(row: ElementRow, at: IndenterState, time: float) -> tuple[float, ...]
     They are in the order of `error_estimate.COLUMNS`.
     """
     model, V = row.model, row.path.velocity(time)
-    under = row.under(at.time, 0.0, max(at.depth, model.depth))
-    p = pressure(row, under, at, V)
+    under = row.under(at, at, 0.0, max(at.depth, model.depth))
+    sliding = V - at.along_rate
+    p = pressure(row, under, at, sliding)
     pressed = under.touched & (model.rule.pulls | (p >= 0.0))
-    V_before = row.path.velocity(at.time, before=True)
-    p_before = p if V_before == V else pressure(row, under, at, V_before)
+    before = row.path.velocity(at.time, before=True) - at.along_rate
+    p_before = p if before == sliding else pressure(row, under, at, before)
     if not pressed.any():
         found = FLIGHT
     elif model.parts:
         found = _parts_of_elements(model, under, p, p_before, pressed, at.depth)
     else:
         found = _whole_elements(model, under, p, pressed)
-    edges = found[2:4] if row.path.forward(time) else found[3:1:-1]
-    return time, V, at.depth, at.rate, *found[:2], *edges, *found[4:]
+    forward = sliding >= 0.0 if at.along_rate else row.path.forward(time)
+    edges = found[2:4] if forward else found[3:1:-1]
+    held = model.spring_along * at.along + model.damping_along * at.along_rate
+    return time, V, at.depth, at.rate, *found[:2], *edges, found[4], sliding, held, *found[5:]
 
 
 def pressure(row: ElementRow, under: Under, at: IndenterState, V: float) -> Array:

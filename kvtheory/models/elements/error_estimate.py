@@ -7,7 +7,7 @@ import numpy as np
 
 from kvtheory.models.elements.model import Model, span
 from kvtheory.models.elements.schemes import DEFAULT
-from kvtheory.results import TRANSIENT_UNITS, Certificate
+from kvtheory.results import SERIES_UNITS, Certificate
 from kvtheory.results.certificate import AT_REST
 from kvtheory.results.table import scales
 from kvtheory.scene.base_motion import POWERS, BaseMotion
@@ -26,15 +26,15 @@ SHIFTS = (0.0, 0.5)
 """Of a spacing: where the elements of the coarse runs are."""
 RELATIVE_TO = (
     "of the scene at rest: depth relative to δ_0, its rate to δ_0/τ, edges to a_0, normal force to W_0, "
-    "friction force to W_0 δ_0/a_0, pressure to K δ_0"
+    "forces along x to W_0 δ_0/a_0, pressure to K δ_0, sliding velocity to a_0/τ"
 )
 UNKNOWN = Certificate("none", "no error was estimated, since certify=False", {}, AT_REST)
 
 Rows = dict[str, Any]
 DOUBTS = ("peak_doubt", "edge_doubt")
-COLUMNS = (*TRANSIENT_UNITS, *DOUBTS)
-"""Of a report: a time series, and by how much the pressure differs between the elements beside its peak,
-inside the contact and at its edge (Pa)."""
+COLUMNS = (*SERIES_UNITS, *DOUBTS)
+"""Of a report: a time series as on a spring, and by how much the pressure differs between the elements
+beside its peak, inside the contact and at its edge (Pa)."""
 
 
 def estimate(
@@ -45,10 +45,11 @@ def estimate(
     Let the error of this run be e and that of the best scheme at this density c, at half of it 4 c: the
     sum of both differences, |e - 4 c| + |e - c|, is at least 3/4 |e|. For the best scheme it is 3 |e|.
     """
+    scale = scales(model.at_rest)
     differences = {
         name: max(_apart(rows, other, name) for other in coarse)
         + (0.0 if fine is None else _apart(rows, fine, name))
-        for name in TRANSIENT_UNITS
+        for name in scale
     }
     changes = len(path.pieces) > 1 or any(path.pieces[0][POWERS + 1 :])
     jump = KNOWN if changes and model.law.lags(h) else 0.0
@@ -62,7 +63,6 @@ def estimate(
     differences["peak_pressure"] += float(
         rows["peak_doubt"].max() + jump * rows["edge_doubt"].max()
     )
-    scale = scales(model.at_rest)
     runs = "half as many elements and steps" + ("" if fine is None else ", and as many")
     return Certificate(
         "estimated",

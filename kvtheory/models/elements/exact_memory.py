@@ -27,7 +27,7 @@ on an edge, is the order one too.
 """
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 
 import numpy as np
 from numpy.typing import NDArray
@@ -40,6 +40,10 @@ from kvtheory.models.elements.row import ElementRow, IndenterState, Under
 NEWTON_STEPS = 60
 """The iteration ends after three or four; a monotone convex function cannot need many more."""
 NEWTON_RTOL = 1e-14
+SLIDE_STEPS = 30
+"""On a spring: two or three are taken, since its motion within a step is nearly known."""
+SLIDE_RTOL = 1e-9
+"""Of the static half length: a change so small was the last, and leaves far less."""
 SMALL = 1e-2
 """Below it, θ(z) is taken from its series to z^3, where the closed form would cancel."""
 STANDS = 1e-12
@@ -58,55 +62,106 @@ def exponential_fit(z: float) -> float:
 def implicit_step(
     row: ElementRow, now: IndenterState, h: float, *, theta: Callable[[float], float]
 ) -> IndenterState:
-    """Take a step in which the depth at its end is the root of the balance of momentum."""
-    sinks = _sinking(row.model, now, h)
-    under = row.under(now.time + h, h, now.depth + sinks)
-    rest, new = under.rest(), IndenterState(now.time + h, now.depth, 0.0)
-    if math.isfinite(row.model.mass):
-        new = _balance(row, now, h, theta, (under, rest, sinks))
-    g = new.depth - under.height
-    pressed = g >= rest
+    """Take a step in which the depth at its end is the root of the balance of momentum.
+
+    On a spring, so is the place along x: for every place there is one depth.
+    """
+    model, counts = row.model, dict[int, bool]()
+    new = IndenterState(now.time + h, now.depth, 0.0, now.along + h * now.along_rate)
+    for _ in range(SLIDE_STEPS):
+        contact = _Contact(row, now, new, h, counts)
+        if math.isfinite(model.mass):
+            new = contact.sink(new, theta)
+        if not model.sprung:
+            break
+        before, new = new.along, contact.slide(new, theta)
+        if abs(new.along - before) <= SLIDE_RTOL * model.half_length:
+            break
+    under, g = contact.under, new.depth - contact.under.height
+    pressed = g >= contact.rest
     row.settle(under, np.where(pressed, row.pressed(under, now.depth, g), under.left), pressed, h)
     return new
 
 
-def _balance(
-    row: ElementRow, now: IndenterState, h: float, theta_of: Callable[[float], float],
-    met: tuple[Under, Array, float],
-) -> IndenterState:  # fmt: skip
-    """Solve M (v_1 - v_0)/h = W - k_s (d - δ_0) - F_z for the new depth by Newton's method."""
-    model, (under, rest, sinks) = row.model, met
-    M, W, k_s, dx, law = model.mass, model.weight, model.spring, model.spacing, under.law
-    meets = under.height + rest
-    sunk = min(h * now.rate, sinks)
-    length = dx * max(np.count_nonzero(meets <= now.depth + sunk), np.count_nonzero(under.touched))
-    theta = theta_of(h * law.damping * length / M)
-    kinks = _Kinks(row.model, now, under) if model.parts else None
-    weights = np.ones_like(meets)
-    if model.law.remembers:
-        rise = now.depth + sunk - meets
-        new, within = row.entering(under, now.depth, rise)
-        weights[new] = within / h * model.law.ramps(within)[1] / law.stiffness
+class _Contact:
+    """The elements that the indenter may press in a step, which ends at a given place along x.
 
-    # The unknown is how far it sinks: the depths themselves cancel where the step is short.
-    def velocity(sunk: float) -> float:
-        return (sunk / h - (1.0 - theta) * now.rate) / theta
+    Their mean forces follow from how far it sinks: the depths themselves cancel where the step is short.
+    """
 
-    for _ in range(NEWTON_STEPS):
-        overlap = (now.depth + sunk) - meets
+    def __init__(
+        self, row: ElementRow, now: IndenterState, new: IndenterState, h: float,
+        counts: dict[int, bool],
+    ) -> None:  # fmt: skip
+        model, self.now, self.h = row.model, now, h
+        sinks = _sinking(model, now, h)
+        self.model, self.first = model, min(h * now.rate, sinks)
+        self.under = under = row.under(now, new, h, now.depth + sinks)
+        self.rest = under.rest()
+        if not (model.sprung or math.isfinite(model.mass)):
+            return
+        self.meets = under.height + self.rest
+        self.met = self.meets <= now.depth + self.first
+        self.kinks = _Kinks(model, now, under, counts) if model.parts else None
+        self.weights = np.ones_like(self.meets)
+        if model.law.remembers:
+            new_ones, within = row.entering(under, now.depth, now.depth + self.first - self.meets)
+            mean = within / h * model.law.ramps(within)[1] / under.law.stiffness
+            self.weights[new_ones] = mean
+
+    def sink(self, new: IndenterState, theta_of: Callable[[float], float]) -> IndenterState:
+        """Solve M (v_1 - v_0)/h = W - k_s (d - δ_0) - F_z for the new depth by Newton's method."""
+        model, now, h, law, sunk = self.model, self.now, self.h, self.under.law, self.first
+        M, W, k_s, dx = model.mass, model.weight, model.spring, model.spacing
+        length = dx * max(np.count_nonzero(self.met), np.count_nonzero(self.under.touched))
+        theta = theta_of(h * law.damping * length / M)
+        for _ in range(NEWTON_STEPS):
+            overlap = (now.depth + sunk) - self.meets
+            pressed = overlap > 0.0
+            area = dx * float(np.maximum(overlap, 0.0) @ self.weights)
+            width = dx * np.count_nonzero(pressed)
+            for _, more, wider in self.kinks(overlap, pressed) if self.kinks else ():
+                area, width = area + more, width + wider
+            mean = now.depth - model.depth + theta * sunk
+            change_of_rate = _velocity(sunk, now.rate, h, theta) - now.rate
+            residual = M * change_of_rate / h - W + k_s * mean + law.stiffness * area
+            change = residual / (M / (theta * h * h) + theta * k_s + law.stiffness * width)
+            sunk -= change
+            if abs(change) <= NEWTON_RTOL * model.depth:
+                break
+        return new._replace(depth=now.depth + sunk, rate=_velocity(sunk, now.rate, h, theta))
+
+    def slide(self, new: IndenterState, theta_of: Callable[[float], float]) -> IndenterState:
+        """Take a step of Newton's method to M_x (v_1 - v_0)/h = F_x - c_x (x_1 - x_0)/h - k_x x.
+
+        An element pushes along x with its pressure times the slope halfway through the step, so that the
+        mean forces do the very work by which elements of a parabola are compressed.
+        """
+        model, now, h, under = self.model, self.now, self.h, self.under
+        M, M_x, c_x, k_x = model.mass, model.mass_along, model.damping_along, model.spring_along
+        slope, k, dx = model.slope(under.x - 0.5 * under.travel), under.law.stiffness, model.spacing
+        tilt = dx * float(np.square(slope[self.met | under.touched]).sum())
+        theta = theta_of(h * (c_x + under.law.damping * tilt) / M_x)
+        overlap = new.depth - self.meets
         pressed = overlap > 0.0
-        area = dx * float(np.maximum(overlap, 0.0) @ weights)
-        width = dx * np.count_nonzero(pressed)
-        if kinks is not None:
-            more, wider = kinks(overlap, pressed)
-            area, width = area + more, width + wider
-        mean = now.depth - model.depth + theta * sunk
-        residual = M * (velocity(sunk) - now.rate) / h - W + k_s * mean + law.stiffness * area
-        change = residual / (M / (theta * h * h) + theta * k_s + law.stiffness * width)
-        sunk -= change
-        if abs(change) <= NEWTON_RTOL * model.depth:
-            break
-    return IndenterState(now.time + h, now.depth + sunk, velocity(sunk))
+        area = dx * float(np.maximum(overlap, 0.0) @ (self.weights * slope))
+        for inner, more, _ in self.kinks(overlap, pressed) if self.kinks else ():
+            area += more * slope.item(inner)
+        slid, inside = new.along - now.along, slope[pressed]
+        change_of_rate = _velocity(slid, now.along_rate, h, theta) - now.along_rate
+        held = c_x * slid / h + k_x * (now.along + theta * slid)
+        residual = M_x * change_of_rate / h + held + k * area
+        # As the foundation gives way along x, the depth changes, too.
+        normal = M / (h * h) + model.spring + k * dx * inside.size
+        stiff = k * dx * (float(inside @ inside) - k * dx * float(inside.sum()) ** 2 / normal)
+        slid -= residual / (M_x / (theta * h * h) + c_x / h + theta * k_x + stiff)
+        rate = _velocity(slid, now.along_rate, h, theta)
+        return new._replace(along=now.along + slid, along_rate=rate)
+
+
+def _velocity(way: float, before: float, h: float, theta: float) -> float:
+    """Return the velocity at the end of a step in which the mean (1-θ) v_0 + θ v_1 goes this way."""
+    return (way / h - (1.0 - theta) * before) / theta
 
 
 def _sinking(model: Model, now: IndenterState, h: float) -> float:
@@ -125,7 +180,10 @@ class _Kinks:
     is left behind and relaxes like all that is free.
     """
 
-    def __init__(self, model: Model, now: IndenterState, under: Under) -> None:
+    def __init__(
+        self, model: Model, now: IndenterState, under: Under, counts: dict[int, bool]
+    ) -> None:
+        self.counts = counts
         self.dx, self.least = model.spacing, -STANDS * model.depth
         self.before: Array = now.depth - model.height(under.x - under.travel) - under.state[0]
         self.relaxed = {-1: 0.0, 1: 0.0}
@@ -136,19 +194,19 @@ class _Kinks:
             if area := kink_area(self.dx, found)[0]:
                 held = spring if arms is None else spring + bend(arms, *edge) / jump(found)
                 self.relaxed[edge[1]] += (1.0 - held / k) * area
-        self.counts: dict[int, bool] = {}
 
-    def __call__(self, overlap: Array, pressed: NDArray[np.bool_]) -> tuple[float, float]:
-        """Return the area at this overlap beyond what relaxed of that before, and its rate with depth."""
-        area, rate, edges = 0.0, 0.0, edges_of(pressed)
+    def __call__(
+        self, overlap: Array, pressed: NDArray[np.bool_]
+    ) -> Iterator[tuple[int, float, float]]:
+        """Yield where kinks are, their area at this overlap beyond what relaxed, and its rate with depth."""
+        edges = edges_of(pressed)
         for side in {outward for _, outward in edges}:
             here = [edge for edge in edges if edge[1] == side]
-            # Decided once, so that Newton's method cannot go to and fro.
+            # Decided once in a step, so that Newton's method cannot go to and fro.
             if side not in self.counts:
                 outer = [inner + side for inner, _ in here]
                 self.counts[side] = bool(np.any((overlap - self.before)[outer] >= self.least))
             if self.counts[side]:
                 found = [kink_area(self.dx, gaps(overlap, *edge)) for edge in here]
-                area += sum(kink for kink, _ in found) - self.relaxed[side]
-                rate += sum(wider for _, wider in found)
-        return area, rate
+                area = sum(kink for kink, _ in found) - self.relaxed[side]
+                yield here[0][0], area, sum(wider for _, wider in found)

@@ -18,47 +18,66 @@ from kvtheory.models.elements.row import ElementRow, IndenterState, Under
 
 Tableau = tuple[tuple[float, ...], ...]
 """(c, a_1, a_2, …) for each stage, and then the weights."""
+Pair = tuple[float, float]
+"""Of the depth, and along x."""
 
 
 def explicit_step(row: ElementRow, now: IndenterState, h: float, tableau: Tableau) -> IndenterState:
     """Take a step of Runge-Kutta; which elements are in contact is settled at its end."""
     *stages, weights = tableau
-    M, rates, pulls = row.model.mass, list[float](), list[float]()
+    M, M_x = row.model.mass, row.model.mass_along
+    rates, pulls = list[Pair](), list[Pair]()
+
+    def moved_on(c: float, a: Sequence[float]) -> IndenterState:
+        (rate, along_rate), (pull, pull_along) = _dot(a, rates), _dot(a, pulls)
+        return IndenterState(
+            now.time + c * h, now.depth + h * rate, now.rate + h * pull / M,
+            now.along + h * along_rate, now.along_rate + h * pull_along / M_x,
+        )  # fmt: skip
+
     for c, *a in stages:
-        depth, rate = now.depth + h * _dot(a, rates), now.rate + h * _dot(a, pulls) / M
-        at = IndenterState(now.time + c * h, depth, rate)
-        rates.append(rate)
+        at = moved_on(c, a)
+        rates.append((at.rate, at.along_rate))
+        moves = math.isfinite(min(M, M_x))
         pulls.append(
-            _meet(row, at, now, before=c == 1.0, within=c > 0.0)[0] if math.isfinite(M) else 0.0
+            _meet(row, at, now, before=c == 1.0, within=c > 0.0)[0] if moves else (0.0, 0.0)
         )
-    depth, rate = now.depth + h * _dot(weights, rates), now.rate + h * _dot(weights, pulls) / M
-    new = IndenterState(now.time + h, depth, rate)
-    pull, under, moved, pressed = _meet(row, new, now, before=True)
+    new = moved_on(1.0, weights)
+    (pull, _), under, moved, pressed = _meet(row, new, now, before=True)
     row.settle(under, np.where(pressed, moved, under.left), pressed, h)
     if math.isinf(M):
         return new
-    imbalance = abs(_dot(weights, pulls) - 0.5 * (pulls[0] + pull))
-    force = row.model.weight + max(abs(pull), abs(pulls[0]))
+    imbalance = abs(_dot(weights, pulls)[0] - 0.5 * (pulls[0][0] + pull))
+    force = row.model.weight + max(abs(pull), abs(pulls[0][0]))
     return new._replace(imbalance=imbalance, force=force)
 
 
-def _dot(a: Sequence[float], b: Sequence[float]) -> float:
-    return sum(x * y for x, y in zip(a, b, strict=True))
+def _dot(a: Sequence[float], pairs: Sequence[Pair]) -> Pair:
+    return (
+        sum(x * y for x, (y, _) in zip(a, pairs, strict=True)),
+        sum(x * y for x, (_, y) in zip(a, pairs, strict=True)),
+    )
 
 
 def _meet(
     row: ElementRow, at: IndenterState, now: IndenterState, *, before: bool, within: bool = False
-) -> tuple[float, Under, Array, NDArray[np.bool_]]:
-    """Return M δ'', the elements under the indenter, their state if pressed, and which of them are.
+) -> tuple[Pair, Under, Array, NDArray[np.bool_]]:
+    """Return M δ'' and M_x x'', the elements, their state if pressed, and which of them are.
 
     Eqs. 17, 20-25.
     """
-    model, under = row.model, row.under(at.time, at.time - now.time, max(at.depth, now.depth))
+    model, delay = row.model, at.time - now.time
+    under = row.under(now, at, delay, max(at.depth, now.depth))
     g = at.depth - under.height
     moved = row.pressed(under, now.depth, g)
-    g_rate = at.rate - row.path.velocity(at.time, before=before) * model.slope(under.x)
+    V, slope = row.path.velocity(at.time, before=before) - at.along_rate, model.slope(under.x)
+    g_rate = at.rate - V * slope
     p = model.law.pressure(moved, g, g_rate)
     surfaces = under.state[0], under.left[0]
     pressed = model.rule.pressed(g, p, surfaces, under.touched, within=within)
-    force = model.spacing * float(p[pressed].sum())
-    return model.weight - model.spring * (at.depth - model.depth) - force, under, moved, pressed
+    pull = model.weight - model.spring * (at.depth - model.depth)
+    pull, along = pull - model.spacing * float(p[pressed].sum()), 0.0
+    if model.sprung:
+        held = model.spring_along * at.along + model.damping_along * at.along_rate
+        along = -model.spacing * float(slope[pressed] @ p[pressed]) - held
+    return (pull, along), under, moved, pressed

@@ -13,7 +13,7 @@ from kvtheory.models.elements.law import RIGHT, Array, ContactRule, Law
 from kvtheory.scene.base_motion import BaseMotion
 from kvtheory.scene.indenters import Indenter
 from kvtheory.scene.model import Scene
-from kvtheory.scene.requirements import lacks_arms, lacks_rigid_drive, require
+from kvtheory.scene.requirements import lacks_arms, require
 from kvtheory.scene.static_state import StaticState
 
 LEVEL = 1.1
@@ -31,6 +31,7 @@ class Model:
     """An indenter (depth δ, mass M) over elements with the spacing dx, all in SI.
 
     `mass` is infinite for a fixed indenter; `depth` is the static depth δ_0; `at_rest` measures errors.
+    Along x the indenter has `mass_along` M_x, infinite on a rigid drive, on a spring k_x and a damper c_x.
     At t = 0 an element is at x = `shift` dx; `parts` says whether the part of one at each edge counts.
     `rule` and `start`, the depth at t = 0 relative to δ_0, may be wrong on request.
     """
@@ -47,6 +48,9 @@ class Model:
     at_rest: Any = None
     rule: ContactRule = RIGHT
     start: float = 1.0
+    mass_along: float = math.inf
+    spring_along: float = 0.0
+    damping_along: float = 0.0
 
     @classmethod
     def of(
@@ -62,8 +66,7 @@ class Model:
         ValueError
             If there are too few or too many elements in the contact.
         """
-        for lacks in (lacks_arms, lacks_rigid_drive):
-            require(lacks, scene, "the simulator")
+        require(lacks_arms, scene, "the simulator")
         support, law, fixed = scene.support, Law.of(scene.foundation), scene.held
         model = cls(
             scene.indenter, law, 1.0, support.mass, support.weight, 0.0,
@@ -81,7 +84,33 @@ class Model:
         depth = rough if fixed else root(lambda d: model.static_load(d) - model.weight, rough)
         model = replace(model, depth=depth)
         at_rest = StaticState.at(scene, depth, model.half_length, model.static_load(depth))
-        return replace(model, at_rest=at_rest)
+        model = replace(model, at_rest=at_rest)
+        return model if scene.drive.rigid else model.on_spring(scene)
+
+    def on_spring(self, scene: Scene) -> "Model":
+        """Return the model with the indenter held along x as the drive of the scene does."""
+        drive = scene.drive
+        return replace(
+            self, mass_along=scene.drive_mass, spring_along=drive.stiffness or 0.0,
+            damping_along=drive.damping,
+        )  # fmt: skip
+
+    @property
+    def sprung(self) -> bool:
+        """Whether the indenter moves along x."""
+        return math.isfinite(self.mass_along)
+
+    def fastest(self, path: BaseMotion) -> float:
+        """Return the speed of sliding to expect, in m/s: that of the drive, and of a spring let go.
+
+        Friction throws the mass along x to about F/sqrt(k_x M_x), F = W_0 δ_0/a_0, and through the
+        dampers of the contact no faster than about a_0/τ.
+        """
+        at_rest, own = self.at_rest, 0.0
+        if self.sprung:
+            swing = math.sqrt(self.spring_along * self.mass_along)
+            own = min(at_rest.friction_force / swing if swing else math.inf, at_rest.velocity)
+        return path.highest_speed + own
 
     def path(self, scene: Scene) -> BaseMotion:
         """Return the motion of the base until the end of the run."""

@@ -28,15 +28,18 @@ class OutgrownError(ArithmeticError):
 
 
 class IndenterState(NamedTuple):
-    """Time (s), depth (m) and its rate (m/s); after an explicit step, two forces to judge it by.
+    """Time (s), depth (m) and its rate (m/s), and both along x; two forces to judge an explicit step by.
 
-    `imbalance` says by how much M δ'' over the step differs from the mean of the forces at its ends, and
-    `force` is the larger of these and the weight (N/m).
+    `along` is how far the base has dragged the indenter on its spring, 0 on a rigid drive. `imbalance`
+    says by how much M δ'' over the step differs from the mean of the forces at its ends, and `force` is
+    the larger of these and the weight (N/m).
     """
 
     time: float
     depth: float
     rate: float
+    along: float = 0.0
+    along_rate: float = 0.0
     imbalance: float = 0.0
     force: float = 0.0
 
@@ -45,8 +48,8 @@ class Under(NamedTuple):
     """The elements under the indenter at one instant: a view into the row.
 
     `state` is that of each at the start of the step, `left` the one that it has now if it was left alone,
-    `touched` whether it was in contact at the start; `travel` is the way of the base between, of the length
-    `delay`, and `law` what the law says of it.
+    `touched` whether it was in contact at the start; `travel` is the way of the base under the indenter
+    between, of the length `delay`, and `law` what the law says of it.
     """
 
     place: slice
@@ -85,13 +88,18 @@ class ElementRow:
         self.touched = np.zeros(0, dtype=bool)
         self.updates, self.last = 0, 0.0
         depth = model.start * model.depth
-        rest = self.under(0.0, 0.0, depth)
+        start = IndenterState(0.0, depth, 0.0)
+        rest = self.under(start, start, 0.0, depth)
         self.settle(
             rest, model.law.at_rest(np.maximum(depth - rest.height, 0.0)), rest.height <= depth
         )
 
-    def under(self, t: float, delay: float, depth: float) -> Under:
-        """Return the elements that an indenter of at most this depth can meet at t, and `delay` before.
+    def place(self, at: IndenterState) -> float:
+        """Return Y, by how far the base has moved under the indenter."""
+        return self.path.displacement(at.time) - at.along
+
+    def under(self, now: IndenterState, at: IndenterState, delay: float, depth: float) -> Under:
+        """Return the elements that an indenter of at most this depth can meet, `now` and `delay` later.
 
         Raises
         ------
@@ -100,12 +108,12 @@ class ElementRow:
         """
         if not depth < self.deepest:
             raise OutgrownError
-        Y = self.path.displacement(t)
-        before = self.path.displacement(t - delay) if delay else Y
+        Y = self.place(at)
+        before = self.place(now) if delay else Y
         low = self.model.under(max(Y, before), depth)[0]
         high = self.model.under(min(Y, before), depth)[1]
         if low < self.first or high > self.first + self.touched.size:
-            self._move(t, low, high)
+            self._move(at.time, low, high)
         self.updates += high - low
         place = slice(low - self.first, high - self.first)
         x, state = self.model.places(low, high, Y), self.states[:, place]
@@ -151,9 +159,7 @@ class ElementRow:
 
     def _move(self, t: float, low: int, high: int) -> None:
         """Move the window so that it holds the elements `low` to `high`, and those still of use."""
-        dx, spare = self.model.spacing, high - low
-        back, ahead = self.path.extremes(t, min(t + self.memory, max(t, self.path.end)))
-        useful = math.floor((self.reach[0] - ahead) / dx), math.ceil((self.reach[1] - back) / dx)
+        spare, useful = high - low, self._useful(t)
         first = min(low - spare, max(self.first, useful[0]))
         last = max(high + spare, min(self.first + self.touched.size, useful[1]))
         states = self.model.law.at_rest(np.zeros(last - first))
@@ -163,3 +169,13 @@ class ElementRow:
             new, old = (slice(start - f, stop - f) for f in (first, self.first))
             states[:, new], touched[new] = self.states[:, old], self.touched[old]
         self.first, self.states, self.touched = first, states, touched
+
+    def _useful(self, t: float) -> tuple[int, int]:
+        """Return which elements may be met again: where the drive leads; a spring, to any not forgotten."""
+        if self.model.sprung:
+            compressed = np.abs(self.states[0]) > FORGOTTEN * self.model.depth
+            known = self.first + np.flatnonzero(compressed | self.touched)
+            return (int(known[0]), int(known[-1]) + 1) if known.size else (self.first, self.first)
+        dx = self.model.spacing
+        back, ahead = self.path.extremes(t, min(t + self.memory, max(t, self.path.end)))
+        return math.floor((self.reach[0] - ahead) / dx), math.ceil((self.reach[1] - back) / dx)

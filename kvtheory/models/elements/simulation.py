@@ -8,14 +8,14 @@ from dataclasses import replace
 import numpy as np
 
 from kvtheory.models.elements.contact import report
-from kvtheory.models.elements.error_estimate import COLUMNS, DOUBTS, SHIFTS, UNKNOWN, Rows, estimate
+from kvtheory.models.elements.error_estimate import COLUMNS, SHIFTS, UNKNOWN, Rows, estimate
 from kvtheory.models.elements.law import RIGHT, ContactRule
 from kvtheory.models.elements.model import Model
 from kvtheory.models.elements.row import KEPT_DEPTH, ElementRow, IndenterState, OutgrownError
 from kvtheory.models.elements.schemes import DEFAULT, SCHEMES, Scheme
 from kvtheory.models.elements.stability import Watch, doubts, lengths, limit_at, stability_text
 from kvtheory.progress import Progress
-from kvtheory.results import Simulation
+from kvtheory.results import SERIES_UNITS, TRANSIENT_UNITS, Simulation, SprungSimulation
 from kvtheory.results.errors import DivergenceError
 from kvtheory.scene.base_motion import BaseMotion
 from kvtheory.scene.model import Scene
@@ -89,9 +89,11 @@ def simulate(
         coarse = [by_best(half, 2.0, shift) for shift in SHIFTS]
         fine = None if scheme is best else by_best(legs)
         certificate = estimate(model, path, h, rows, coarse, fine)
-    series = {name: row for name, row in rows.items() if name not in DOUBTS}
-    return Simulation(
-        **series, scheme=scheme.row.name, per_length=1.0 / spacing, time_step=h,
+    kind, names = (
+        (SprungSimulation, SERIES_UNITS) if model.sprung else (Simulation, TRANSIENT_UNITS)
+    )
+    return kind(
+        **{name: rows[name] for name in names}, scheme=scheme.row.name, per_length=1.0 / spacing, time_step=h,
         steps=sum(count for _, _, count in legs), element_updates=updates, warning=warning,
         model="elements", certificate=certificate,
     )  # fmt: skip
@@ -109,7 +111,7 @@ def _refuse_what_takes_too_long(model: Model, end: float, h: float) -> None:
 
 def _default_step(model: Model, path: BaseMotion, scheme: Scheme) -> float:
     """Return the time step of a scheme where none is given, in s."""
-    fastest = path.highest_speed
+    fastest = model.fastest(path)
     passing = ELEMENTS_PER_STEP * model.spacing / fastest if fastest else math.inf
     if scheme.row.papers_step:
         if math.isinf(passing):
@@ -119,6 +121,9 @@ def _default_step(model: Model, path: BaseMotion, scheme: Scheme) -> float:
             )
         return passing
     resolved = min(model.law.retardation_time / PER_RELAXATION, _period(model) / PER_OSCILLATION)
+    if model.sprung:
+        along = 2.0 * math.pi * math.sqrt(model.mass_along / model.spring_along)
+        resolved = min(resolved, along / PER_OSCILLATION)
     stable = limit_at(scheme, model, max(lengths(model, path)))
     return min(passing, max(resolved, path.end / MOST_STEPS), STABLE_SHARE * stable)
 
@@ -196,7 +201,7 @@ def _run(
             if stop in asked:
                 found[stop] = report(row, state, stop)
     except (DivergenceError, OutgrownError) as error:
-        error.rows = tuple(row[: -len(DOUBTS)] for row in found.values())
+        error.rows = tuple(row[: len(TRANSIENT_UNITS)] for row in found.values())
         raise
     columns = np.array([found[time] for time in wanted]).T
     return dict(zip(COLUMNS, columns, strict=True)), row.updates

@@ -8,11 +8,12 @@ rates σ; for the fast rate, about -C L/M, this is fact F15, h C L/M <= 2.785 or
 import math
 from collections import deque
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
 from kvtheory.models.elements.law import Array
-from kvtheory.models.elements.model import Model, span
+from kvtheory.models.elements.model import SAMPLES, Model, span
 from kvtheory.models.elements.row import ElementRow, IndenterState
 from kvtheory.models.elements.schemes import DEFAULT, Scheme
 from kvtheory.results.errors import DivergenceError
@@ -42,11 +43,12 @@ def lengths(model: Model, path: BaseMotion) -> tuple[float, float]:
     """Return the contact lengths (m) that bound the step: in steady sliding, and at the static depth.
 
     Each is the longest over the velocities of the drive; between those the velocity is linear, and
-    the length falls with |V|. A drive that passes through rest has the contact at rest among them. A
-    step that is too long for the latter only, at a start, is unstable at first and may recover.
+    the length falls with |V|. A drive that passes through rest has the contact at rest among them, and
+    so has an indenter on a spring, which may stick. A step that is too long for the latter only, at a
+    start, is unstable at first and may recover.
     """
     velocities = path.velocities
-    if velocities[0] < 0.0 < velocities[-1]:
+    if velocities[0] < 0.0 < velocities[-1] or model.sprung:
         velocities = [0.0, *velocities]
     # The slowest motion in each direction has the longest contact.
     chosen = {min((V for V in velocities if V >= 0.0), default=velocities[-1]),
@@ -58,8 +60,27 @@ def lengths(model: Model, path: BaseMotion) -> tuple[float, float]:
 
 
 def limit_at(scheme: Scheme, model: Model, length: float) -> float:
-    """Return the largest stable step for a contact of this length, in s: where |R| first exceeds 1."""
-    if not scheme.tableau or math.isinf(model.mass):
+    """Return the largest stable step for a contact of this length, in s: where |R| first exceeds 1.
+
+    Along x, F_x = -∫ h' p dx holds the indenter as a contact of the length ∫ h'^2 dx would, with k_x and
+    c_x beside it. The rates of both together are at most the sum of those of each (Weyl), and so are the
+    inverse limits.
+    """
+    if not scheme.tableau:
+        return math.inf
+    limits = [_limit(scheme, model, length)]
+    if model.sprung:
+        x = np.linspace(*span(model.indenter, model.depth), SAMPLES)
+        tilt = length * float(np.square(model.slope(x)).mean())
+        law = replace(model.law, damping=model.law.damping + model.damping_along / tilt)
+        along = replace(model, mass=model.mass_along, spring=model.spring_along, law=law)
+        limits.append(_limit(scheme, along, tilt))
+    return 1.0 / inverse if (inverse := sum(1.0 / h for h in limits)) else math.inf
+
+
+def _limit(scheme: Scheme, model: Model, length: float) -> float:
+    """Return the largest stable step along one axis."""
+    if math.isinf(model.mass):
         return math.inf
     law, M = model.law, model.mass
     fastest = law.damping * length / M + math.sqrt((law.at_once * length + model.spring) / M)
@@ -72,7 +93,7 @@ def limit_at(scheme: Scheme, model: Model, length: float) -> float:
     while grows(low):
         low, high = 0.5 * low, low
         if low * fastest < SHORTEST:
-            return 0.0
+            return low
     while not grows(high):
         low, high = high, 2.0 * high
     while high - low > LIMIT_RTOL * high:
@@ -113,9 +134,9 @@ def amplification(scheme: Scheme, model: Model, length: float, h: float) -> Arra
 
 def doubts(scheme: Scheme, model: Model, path: BaseMotion, h: float) -> str:
     """Return what is doubtful about a time step before the run begins, or nothing."""
-    if math.isfinite(model.mass) and h > limit_at(scheme, model, max(lengths(model, path))):
+    if h > limit_at(scheme, model, max(lengths(model, path))):
         return f"the run may diverge: {stability_text(scheme, model, path, h)}"
-    passed = h * path.highest_speed / model.half_length
+    passed = h * model.fastest(path) / model.half_length
     if passed > LONGEST_PASS:
         return (
             f"the time step, {h * 1e3:.4g} ms, is long: elements pass {passed:.2g} half lengths of the "
@@ -131,8 +152,9 @@ def stability_text(scheme: Scheme, model: Model, path: BaseMotion, h: float) -> 
     if math.isinf(limit):
         return f"its time step is {h * 1e3:.4g} ms"
     number = h * model.law.damping * length / model.mass
+    has = f"has the stability number dt C L/M = {number:.3g}" if number else "is too long"
     return (
-        f"its time step, {h * 1e3:.4g} ms, has the stability number dt C L/M = {number:.3g} for a contact "
+        f"its time step, {h * 1e3:.4g} ms, {has} for a contact "
         f'of L = {length * 1e3:.4g} mm, where the scheme "{scheme.row.name}" is stable up to '
         f"dt = {limit * 1e3:.4g} ms; a time step of {ADVISED * limit * 1e3:.3g} ms would do, or the scheme "
         f'"{DEFAULT}", which is stable at any step'
@@ -156,11 +178,14 @@ class Watch:
         arms = float(model.law.arm_stiffness.sum())
         thrown = (
             model.depth / model.law.retardation_time
-            + row.path.highest_speed * float(abs(model.slope(ends)).max())
+            + model.fastest(row.path) * float(abs(model.slope(ends)).max())
             + model.depth * math.sqrt(model.spring / model.mass)
             + model.depth * math.sqrt(2.0 * model.half_length * arms / model.mass)
         )
         self._limit = -RISE * thrown if math.isfinite(model.mass) else -math.inf
+        self._fastest = RISE * (
+            model.fastest(row.path) + math.sqrt(model.at_rest.energy / model.mass_along)
+        )
         self._allowed = IMBALANCE + ELEMENTS * model.spacing / (2.0 * model.half_length)
         self._balances: deque[tuple[float, float]] = deque(maxlen=WINDOW)
 
@@ -175,6 +200,8 @@ class Watch:
         model, sign = self._row.model, ""
         if not motion.rate >= self._limit:  # NaN is not above it either
             sign = f"where the indenter is thrown upward with {-motion.rate:.3g} m/s"
+        elif not abs(motion.along_rate) <= self._fastest:
+            sign = f"where the indenter is thrown along x with {abs(motion.along_rate):.3g} m/s"
         elif self._scheme.tableau:
             self._balances.append((motion.imbalance, motion.force))
             imbalance, force = map(sum, zip(*self._balances, strict=True))
