@@ -52,8 +52,12 @@ def estimate(
         for name in scale
     }
     changes = len(path.pieces) > 1 or any(path.pieces[0][POWERS + 1 :])
-    jump = KNOWN if changes and model.law.lags(h) else 0.0
-    edge = (jump + (KINKED if model.indenter.kinks else 0.0)) * model.spacing
+    known = KNOWN if model.law.lags(h) else 0.0
+    jump = known if changes else 0.0
+    # On a spring, edges stop and turn without a jump of the pressure.
+    edge = (
+        max(jump, known if model.sprung else 0.0) + (KINKED if model.indenter.kinks else 0.0)
+    ) * model.spacing
     force = jump * model.spacing * float(rows["peak_pressure"].max())
     steepest = float(abs(model.slope(np.array(span(model.indenter, model.depth)))).max())
     differences["leading_edge"] += edge

@@ -66,7 +66,8 @@ def implicit_step(
 
     On a spring, so is the place along x: for every place there is one depth.
     """
-    model, counts = row.model, dict[int, bool]()
+    model = row.model
+    counts: dict[int, bool] = {}
     new = IndenterState(now.time + h, now.depth, 0.0, now.along + h * now.along_rate)
     for _ in range(SLIDE_STEPS):
         contact = _Contact(row, now, new, h, counts)

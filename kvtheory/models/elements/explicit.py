@@ -18,50 +18,46 @@ from kvtheory.models.elements.row import ElementRow, IndenterState, Under
 
 Tableau = tuple[tuple[float, ...], ...]
 """(c, a_1, a_2, …) for each stage, and then the weights."""
-Pair = tuple[float, float]
-"""Of the depth, and along x."""
 
 
 def explicit_step(row: ElementRow, now: IndenterState, h: float, tableau: Tableau) -> IndenterState:
     """Take a step of Runge-Kutta; which elements are in contact is settled at its end."""
     *stages, weights = tableau
     M, M_x = row.model.mass, row.model.mass_along
-    rates, pulls = list[Pair](), list[Pair]()
+    states, pulls, drags = list[IndenterState](), list[float](), list[float]()
 
     def moved_on(c: float, a: Sequence[float]) -> IndenterState:
-        (rate, along_rate), (pull, pull_along) = _dot(a, rates), _dot(a, pulls)
-        return IndenterState(
-            now.time + c * h, now.depth + h * rate, now.rate + h * pull / M,
-            now.along + h * along_rate, now.along_rate + h * pull_along / M_x,
-        )  # fmt: skip
+        rate, pull = _dot(a, [at.rate for at in states]), _dot(a, pulls)
+        at = IndenterState(now.time + c * h, now.depth + h * rate, now.rate + h * pull / M)
+        if not row.model.sprung:
+            return at
+        rate, drag = _dot(a, [at.along_rate for at in states]), _dot(a, drags)
+        return at._replace(along=now.along + h * rate, along_rate=now.along_rate + h * drag / M_x)
 
     for c, *a in stages:
-        at = moved_on(c, a)
-        rates.append((at.rate, at.along_rate))
-        moves = math.isfinite(min(M, M_x))
-        pulls.append(
-            _meet(row, at, now, before=c == 1.0, within=c > 0.0)[0] if moves else (0.0, 0.0)
-        )
+        at, pull, drag = moved_on(c, a), 0.0, 0.0
+        if math.isfinite(min(M, M_x)):
+            pull, drag = _meet(row, at, now, before=c == 1.0, within=c > 0.0)[:2]
+        states.append(at)
+        pulls.append(pull)
+        drags.append(drag)
     new = moved_on(1.0, weights)
-    (pull, _), under, moved, pressed = _meet(row, new, now, before=True)
+    pull, _, under, moved, pressed = _meet(row, new, now, before=True)
     row.settle(under, np.where(pressed, moved, under.left), pressed, h)
     if math.isinf(M):
         return new
-    imbalance = abs(_dot(weights, pulls)[0] - 0.5 * (pulls[0][0] + pull))
-    force = row.model.weight + max(abs(pull), abs(pulls[0][0]))
+    imbalance = abs(_dot(weights, pulls) - 0.5 * (pulls[0] + pull))
+    force = row.model.weight + max(abs(pull), abs(pulls[0]))
     return new._replace(imbalance=imbalance, force=force)
 
 
-def _dot(a: Sequence[float], pairs: Sequence[Pair]) -> Pair:
-    return (
-        sum(x * y for x, (y, _) in zip(a, pairs, strict=True)),
-        sum(x * y for x, (_, y) in zip(a, pairs, strict=True)),
-    )
+def _dot(a: Sequence[float], b: Sequence[float]) -> float:
+    return sum(x * y for x, y in zip(a, b, strict=True))
 
 
 def _meet(
     row: ElementRow, at: IndenterState, now: IndenterState, *, before: bool, within: bool = False
-) -> tuple[Pair, Under, Array, NDArray[np.bool_]]:
+) -> tuple[float, float, Under, Array, NDArray[np.bool_]]:
     """Return M δ'' and M_x x'', the elements, their state if pressed, and which of them are.
 
     Eqs. 17, 20-25.
@@ -76,8 +72,8 @@ def _meet(
     surfaces = under.state[0], under.left[0]
     pressed = model.rule.pressed(g, p, surfaces, under.touched, within=within)
     pull = model.weight - model.spring * (at.depth - model.depth)
-    pull, along = pull - model.spacing * float(p[pressed].sum()), 0.0
+    pull, drag = pull - model.spacing * float(p[pressed].sum()), 0.0
     if model.sprung:
         held = model.spring_along * at.along + model.damping_along * at.along_rate
-        along = -model.spacing * float(slope[pressed] @ p[pressed]) - held
-    return (pull, along), under, moved, pressed
+        drag = -model.spacing * float(slope[pressed] @ p[pressed]) - held
+    return pull, drag, under, moved, pressed

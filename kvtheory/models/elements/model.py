@@ -3,7 +3,7 @@
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from functools import lru_cache
+from functools import cached_property, lru_cache
 from typing import Any
 
 import numpy as np
@@ -95,7 +95,7 @@ class Model:
             damping_along=drive.damping,
         )  # fmt: skip
 
-    @property
+    @cached_property
     def sprung(self) -> bool:
         """Whether the indenter moves along x."""
         return math.isfinite(self.mass_along)
@@ -135,12 +135,13 @@ class Model:
         x: Array = self.spacing * (np.arange(low, high, dtype=np.float64) + self.shift) + Y
         return x
 
-    def under(self, Y: float, depth: float) -> tuple[int, int]:
-        """Return the range of elements, with some to spare at each end, that can be met at this depth."""
+    def under(self, Y: float, before: float, depth: float) -> tuple[int, int]:
+        """Return the range of elements, with some to spare, that can be met at this depth at both places."""
         level = math.ceil(math.log(max(depth / self.depth, 1e-6)) / math.log(LEVEL))
         low, high = span(self.indenter, self.depth * LEVEL**level)
         dx = self.spacing
-        return math.floor((low - Y) / dx) - SPARE, math.ceil((high - Y) / dx) + SPARE + 1
+        first = math.floor((low - max(Y, before)) / dx) - SPARE
+        return first, math.ceil((high - min(Y, before)) / dx) + SPARE + 1
 
     def static_load(self, depth: float) -> float:
         """Return K times the area of max(δ - h, 0), as the elements at rest carry it."""

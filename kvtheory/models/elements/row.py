@@ -110,8 +110,7 @@ class ElementRow:
             raise OutgrownError
         Y = self.place(at)
         before = self.place(now) if delay else Y
-        low = self.model.under(max(Y, before), depth)[0]
-        high = self.model.under(min(Y, before), depth)[1]
+        low, high = self.model.under(Y, before, depth)
         if low < self.first or high > self.first + self.touched.size:
             self._move(at.time, low, high)
         self.updates += high - low
