@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from kvtheory.ladder import equivalent
+from kvtheory.ladder import equivalent, stiff_drive
 from kvtheory.ladder.climbing import Answer, Judgement, Request, Rung
 from kvtheory.models.slow_manifold import motion as slow_motion
 from kvtheory.models.slow_manifold import start as slow_start
@@ -17,6 +17,7 @@ from kvtheory.results import TRANSIENT_UNITS, Certificate, Simulation, SteadySta
 from kvtheory.results.certificate import AT_REST
 from kvtheory.results.table import scales
 from kvtheory.scene.model import Scene
+from kvtheory.scene.quantities import Derived
 from kvtheory.scene.requirements import (
     lacks_arms,
     lacks_kelvin_voigt,
@@ -72,6 +73,8 @@ def rungs(models: Models) -> tuple[Rung, ...]:
     return (
         Rung("exact", "steady from the first instant: the depth cannot change", _steady, at_once),
         Rung("slow manifold", "a start from rest, inertia that is soon overcome", _slow, _follow),
+        Rung("continuum", "a parabola, a drive so stiff that it counts as rigid",
+             _stiff, partial(_rigid, models.transient)),
         Rung("continuum", "a parabola", _parabola, partial(_continuum, models.transient)),
         Rung("continuum", "a parabola, arms much faster than the motion",
              partial(_replaceable, models.steady), partial(_equivalent, models)),
@@ -88,7 +91,7 @@ def _replaceable(steady: Callable[..., SteadyState], scene: Scene, request: Requ
 
 
 def _anything(scene: Scene, request: Request) -> Judgement:
-    if lacking := lacks_line(scene) or lacks_arms(scene) or lacks_rigid_drive(scene):
+    if lacking := lacks_line(scene) or lacks_arms(scene):
         return Judgement(lacking)
     return Judgement(error=BEST_OF_ELEMENTS if request.rtol < BEST_OF_ELEMENTS else math.nan)
 
@@ -182,6 +185,36 @@ def _continuum(
         if error <= request.rtol or step <= TIGHTEST or error == math.inf:
             return answer
         step = max(step * NEXT * request.rtol / error, TIGHTEST)
+
+
+def _stiff(scene: Scene, request: Request) -> Judgement:
+    if reason := lacks_paper_model(scene):
+        return Judgement(reason)
+    if scene.drive.rigid:
+        return Judgement("the drive is rigid")
+    first = 0.0 if request.times is None else min(request.times) / scene.foundation.retardation_time
+    moving = [name for name in request.quantities if name not in ("depth", *GIVEN)]
+    at_once = scene.drive.constant and moving
+    return Judgement(
+        error=stiff_drive.ringing(StaticState.of(scene), first) if at_once else math.nan
+    )
+
+
+def _rigid(transient: Callable[..., Transient], scene: Scene, request: Request, _: Any) -> Answer:
+    """Solve on a rigid drive, and count what the spring would change."""
+    drive = replace(scene.drive, stiffness=None, damping=Derived(0.0), mass=None)
+    answer = _continuum(transient, replace(scene, drive=drive), request, None)
+    solution, asked = answer.result.solution, np.asarray(answer.values["time"])
+    times = np.unique(np.concatenate([solution.natural_times, asked]))
+    found = stiff_drive.neglected(solution.series(times), StaticState.of(scene))
+    wanted = np.searchsorted(times, asked)
+    own = answer.certificate
+    errors = {
+        name: error + float(np.max(found[name][wanted])) if name in found else error
+        for name, error in own.relative_error.items()
+    }
+    statement = f"{own.statement}; {stiff_drive.STATEMENT}"
+    return answer._replace(certificate=Certificate("estimated", statement, errors, AT_REST))
 
 
 def _equivalent(models: Models, scene: Scene, request: Request, rate: float) -> Answer:
