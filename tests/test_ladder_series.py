@@ -1,11 +1,13 @@
 """The rungs of a time series: their assumptions, and that each estimate covers what it neglects."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
 import kvtheory as kv
+from kvtheory.ladder import stiff_drive
 from kvtheory.ladder.climbing import Request
 from kvtheory.ladder.series import SOLVED, Models, rungs
 from kvtheory.models.continuum.solver import solve
@@ -171,3 +173,64 @@ def test_other_shapes_climb_to_the_elements():
     finer = kv.elements(scene, at=[0.01, 0.02], per_length=4.0 * found.answer.per_length)
     assert found.depth == pytest.approx(finer.depth, rel=1e-2)
     assert math.isnan(found.climb[-2].error)
+
+
+def stiff_case(seed):
+    """Return a start on a stiff spring, damped or not, the same on a rigid drive, and some times."""
+    rng = np.random.default_rng(seed)
+    number, eps, inertia = (10 ** rng.uniform(*decades) for decades in ((-1, 1), (-3, 0), (-2, 1)))
+    stiffness = 10 ** rng.uniform(3, 6)
+    damping = float(rng.choice([0.0, 10 ** rng.uniform(-2, 0)])) * math.sqrt(stiffness * inertia)
+    rigid = light(number, eps, float(rng.choice([0.0, 3.0])), 2.0)
+    drive = kv.Drive(number, stiffness=stiffness, damping=damping, mass=inertia)
+    return replace(rigid, drive=drive), rigid, np.sort(rng.uniform(0.0, 2.0, 8))
+
+
+def test_the_estimate_covers_what_a_rigid_drive_neglects():
+    """Against the continuum on the spring, on thirty starts; the bound is no more than it need be."""
+    close, tried = [], 0
+    for seed in range(40):
+        sprung, rigid, at = stiff_case(seed)
+        scales = scales_of(StaticState.of(rigid))
+        on_rigid = kv.transient(rigid, at=at, rtol=1e-9, certify=False)
+        times = np.unique([*on_rigid.solution.natural_times, *at])
+        series = on_rigid.solution.series(times)
+        found = stiff_drive.neglected(series, StaticState.of(sprung))
+        if not math.isfinite(max(found["depth"])):
+            continue
+        truth = kv.transient(sprung, at=at, rtol=1e-7, certify=False)
+        for name, bound in found.items():
+            largest = bound[np.searchsorted(times, at)].max()
+            error = np.abs(getattr(on_rigid, name) - getattr(truth, name)).max() / scales[name]
+            assert error <= largest + 1e-6, (name, seed)
+            if name == "friction_force":
+                close.append(error / largest)
+        tried += 1
+    assert tried >= 25
+    assert np.median(close) > 0.03
+
+
+def test_a_stiff_spring_counts_as_rigid_only_where_it_does():
+    at = [0.1, 0.2]
+    models = {}
+    for stiffness in ("1 MN/m^2", "1e13 N/m^2"):
+        drive = kv.Drive(velocity="91 mm/s", stiffness=stiffness, damping="0.1 MN*s/m^2")
+        found = kv.solve(kv.Scene(drive=drive), at=at, rtol=1e-2)
+        models[stiffness] = found.model, found.climb[-1].assumed
+        truth = kv.transient(kv.Scene(drive=drive), at=at, rtol=1e-5, certify=False)
+        scale = scales_of(StaticState.of(kv.Scene()))["friction_force"]
+        claimed = found.certificate.relative_error["friction_force"]
+        assert np.abs(found.friction_force - truth.friction_force).max() <= claimed * scale
+    assert models["1 MN/m^2"] == ("continuum", "a parabola")
+    assert models["1e13 N/m^2"] == (
+        "continuum",
+        "a parabola, a drive so stiff that it counts as rigid",
+    )
+
+
+def test_elements_follow_a_spring_under_what_is_no_parabola():
+    drive = kv.Drive(velocity="91 mm/s", stiffness="1 MN/m^2")
+    found = kv.solve(
+        kv.Scene(kv.Circle(0.01), drive=drive, run=kv.Run(0.01)), at=[0.005], rtol=0.05
+    )
+    assert found.model == "elements"

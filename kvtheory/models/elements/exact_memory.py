@@ -68,7 +68,8 @@ def implicit_step(
     """
     model = row.model
     counts: dict[int, bool] = {}
-    new = IndenterState(now.time + h, now.depth, 0.0, now.along + h * now.along_rate)
+    slid = h * now.along_rate / (1.0 + 0.25 * model.spring_along * h * h / model.mass_along)
+    new = IndenterState(now.time + h, now.depth, 0.0, now.along + slid)
     for _ in range(SLIDE_STEPS):
         contact = _Contact(row, now, new, h, counts)
         if math.isfinite(model.mass):

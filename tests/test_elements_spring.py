@@ -1,0 +1,228 @@
+"""Elements under an indenter on a spring: against the continuum, its energy, its limits, its orders."""
+
+import json
+import math
+
+import numpy as np
+import pytest
+
+import kvtheory as kv
+from kvtheory.models.elements.model import Model
+from kvtheory.models.elements.row import ElementRow, IndenterState
+from kvtheory.models.elements.schemes import SCHEMES
+from kvtheory.models.elements.stability import lengths, limit_at
+from kvtheory.results import SERIES_UNITS
+from kvtheory.results.table import scales
+from tests import spring_reference
+from tests.spring_random import Case, Spring, random_case
+
+TABLE_1 = kv.Scene(
+    drive=kv.Drive(velocity="91 mm/s", stiffness="1 MN/m^2", damping="2 kN*s/m^2"), run=kv.Run(0.02)
+)
+NAMES = [name for name in SERIES_UNITS if name not in ("time", "velocity")]
+HARD = (
+    "light along x", "overdamped", "suspended", "fixed, soft", "fixed, stop", "stop", "stop, soft",
+    "reversal", "to and fro", "stick-slip", "hop",
+)  # fmt: skip
+"""Of the reference scenes: all supports, stops, reversals, stick-slip, backward sliding and flight."""
+
+
+def hard(name):
+    """Return a reference scene and its times."""
+    given = spring_reference.SCENES[name]
+    kappa = math.inf if given.epsilon is None else given.kappa
+    spring = Spring(given.inertia, given.damping, given.stiffness)
+    case = Case(given.drive, given.epsilon or 1.0, kappa, spring, given.times[-1])
+    return case.scene(), list(given.times)
+
+
+def errors(run, truth, scene):
+    """Return the largest error of each quantity, by its scale."""
+    measures = scales(Model.of(scene).at_rest)
+    return {
+        name: np.nanmax(np.abs(getattr(run, name) - getattr(truth, name)), initial=0.0) / measures[name]
+        for name in NAMES
+    }  # fmt: skip
+
+
+@pytest.mark.parametrize("name", HARD)
+def test_elements_agree_with_the_continuum_and_the_certificate_covers(name):
+    scene, times = hard(name)
+    run = kv.elements(scene, per_length=40.0, at=times)
+    truth = kv.transient(scene, at=times, rtol=1e-8, certify=False)
+    found, claimed = errors(run, truth, scene), run.certificate.relative_error
+    assert set(claimed) == set(SERIES_UNITS)
+    for quantity, error in found.items():
+        assert error <= claimed[quantity], quantity
+    assert max(found[quantity] for quantity in ("depth", "spring_force")) < 4e-3
+
+
+def test_the_hard_scenes_slide_backwards():
+    backward = 0
+    for name in HARD:
+        scene, times = hard(name)
+        velocity = kv.transient(scene, at=times, rtol=1e-4, certify=False).sliding_velocity
+        backward += velocity.min() < 0.0 < velocity.max()
+    assert backward >= 4
+
+
+@pytest.mark.parametrize("seed", [1, 3, 6, 16])
+def test_random_scenes(seed):
+    case = random_case(seed)
+    scene, times = case.scene(), list(case.times)
+    run = kv.elements(scene, per_length=40.0, at=times)
+    truth = kv.transient(scene, at=times, rtol=1e-7, certify=False)
+    for quantity, error in errors(run, truth, scene).items():
+        assert error <= run.certificate.relative_error[quantity], quantity
+
+
+@pytest.mark.parametrize("scheme", SCHEMES)
+def test_the_order_of_every_scheme(scheme):
+    """In time and spacing together: the first at least, and the second with the parts of elements."""
+    times, found = [0.005, 0.01, 0.02], []
+    truth = kv.transient(TABLE_1, at=times, rtol=1e-9, certify=False)
+    densities = np.array([25e3, 50e3, 100e3])
+    for density in densities:
+        run = kv.elements(
+            TABLE_1, per_length=density, scheme=scheme, at=times, certify=False, time_step=2.0 / density
+        )  # fmt: skip
+        found.append(errors(run, truth, TABLE_1))
+    a_0 = Model.of(TABLE_1).half_length
+    for name in ("depth", "sliding_velocity", "spring_force"):
+        column = np.array([each[name] for each in found])
+        assert np.max(column * densities * a_0) < 0.3, name
+        if scheme == "edge-corrected":
+            order = -np.polyfit(np.log(densities), np.log(column), 1)[0]
+            assert order == pytest.approx(2.0, abs=0.15), name
+
+
+def energies(row, state, h, count):
+    """Return the energy of a Kelvin-Voigt scene on a drive at rest, over so many steps."""
+    model, found = row.model, []
+    for _ in range(count):
+        risen = model.depth - state.depth
+        moving = model.mass * state.rate**2 if math.isfinite(model.mass) else 0.0
+        moving += model.mass_along * state.along_rate**2 + model.spring_along * state.along**2
+        lifted = model.weight * risen if math.isfinite(model.mass) else 0.0
+        springs = model.law.stiffness * model.spacing * float(row.states[0] @ row.states[0])
+        found.append(0.5 * (moving + model.spring * risen**2 + springs) + lifted)
+        state = SCHEMES["exponential"].step(row, state, h)
+    return np.array(found)
+
+
+@pytest.mark.parametrize("h", [1e-4, 1e-2, 0.2])
+@pytest.mark.parametrize("support", ["fixed", "dead-weight", "suspended"])
+def test_no_step_gains_energy_however_long(support, h):
+    """The mean forces do the work by which elements are compressed: swings, hops and all."""
+    drive = kv.Drive(velocity=0.0, stiffness="0.1 MN/m^2", mass="0.2 kg/mm")
+    scene = kv.Scene(support=kv.Scene.table1(support).support, drive=drive)
+    model = Model.of(scene, 2e-5)
+    row = ElementRow(model, model.path(scene), 1e7)
+    start = IndenterState(0.0, model.depth, 0.0, along_rate=0.02)
+    energy = energies(row, start, h, 60)
+    assert energy[0] > energy[-1]
+    assert np.all(np.diff(energy) <= 1e-6 * (energy[0] - energy[-1]))
+
+
+@pytest.mark.parametrize("shape", [kv.Parabola(0.01), kv.Circle(0.01), kv.PowerLaw(0.01, 4.0)])
+def test_the_energy_of_arms_on_a_spring_is_balanced(shape):
+    """What the drive does is kinetic, potential, stored or lost, also where elements are left and met."""
+    arms = [["30 GN/m^3", "10 ms"], ["5 GN/m^3", "50 ms"]]
+    drive = kv.Drive(velocity=0.1, stiffness=1e6, damping=1e3, mass=300.0)
+    rubber = kv.GeneralizedMaxwell("10 GN/m^3", arms=arms)
+    scene = kv.Scene(shape, rubber, drive=drive, run=kv.Run(0.04))
+    lacking = []
+    for density in (2e4, 4e4, 8e4):
+        model = Model.of(scene, 1.0 / density)
+        row, h = ElementRow(model, model.path(scene)), 4.0 / density
+        state, rows = IndenterState(0.0, model.depth, 0.0), []
+        K_i, tau = model.law.arm_stiffness[:, None], model.law.arm_time[:, None]
+        for _ in range(round(0.04 / h) + 1):
+            u, s = row.states[0], row.states[1:]
+            springs = model.law.stiffness * u @ u + (s * s / K_i).sum()
+            moving = model.mass * state.rate**2 + model.mass_along * state.along_rate**2
+            held = 1e6 * state.along + 1e3 * state.along_rate
+            rows.append((
+                0.5 * (moving + 1e6 * state.along**2 + model.spacing * springs)
+                - model.weight * state.depth,
+                model.spacing * (s * s / (K_i * tau)).sum() + 1e3 * state.along_rate**2,
+                0.1 * held,
+            ))  # fmt: skip
+            last, state = state, SCHEMES["exponential"].step(row, state, h)
+        stored, lost, power = np.array(rows).T
+        # That of friction on the base, F_x = k_x x + c_x x' + M_x x''.
+        work = np.trapezoid(power, dx=h) + 0.1 * model.mass_along * last.along_rate
+        lacking.append(abs(stored[-1] - stored[0] + np.trapezoid(lost, dx=h) - work) / work)
+    assert lacking[-1] < 2e-3
+    assert lacking[0] / lacking[-1] > 3.0
+
+
+def test_fast_arms_are_the_damper_of_the_continuum():
+    """A Prony series whose arms are over at once, against another model on Kelvin-Voigt."""
+    times = [0.005, 0.01, 0.02]
+    truth = kv.transient(TABLE_1, at=times, rtol=1e-8, certify=False)
+    far = []
+    for tau in (2e-4, 1e-4):
+        rubber = kv.GeneralizedMaxwell("10 GN/m^3", arms=[[1e9 / tau, tau]])
+        scene = kv.Scene(foundation=rubber, drive=TABLE_1.drive, run=TABLE_1.run)
+        run = kv.elements(scene, per_length="100 /mm", at=times, certify=False)
+        far.append(errors(run, truth, TABLE_1)["spring_force"])
+    assert far[1] < 0.02
+    assert far[0] / far[1] == pytest.approx(2.0, abs=0.4)
+
+
+@pytest.mark.parametrize("shape", [kv.Circle(0.01), kv.Wedge(0.1)])
+@pytest.mark.parametrize("direction", [1, -1])
+def test_it_ends_in_the_steady_sliding_of_quadrature(shape, direction):
+    drive = kv.Drive(velocity=direction * 0.1, stiffness=1e7, damping=1e5)
+    scene = kv.Scene(shape, drive=drive, run=kv.Run(0.5))
+    steady = kv.steady(scene, method="quadrature")
+    end = kv.elements(scene, per_length="50 /mm", at=[0.5], certify=False)
+    assert end.spring_force[0] == pytest.approx(float(steady.friction_force), rel=2e-3)
+    assert end.friction_force[0] == pytest.approx(float(steady.friction_force), rel=6e-3)
+    assert end.sliding_velocity[0] == pytest.approx(direction * 0.1, rel=1e-3)
+    assert direction * (end.trailing_edge[0] - end.leading_edge[0]) > 0.0
+
+
+def test_a_stiff_spring_meets_the_rigid_drive_at_first_order():
+    times, found = [0.01, 0.02], []
+    rigid = kv.elements(kv.Scene(run=kv.Run(0.02)), per_length="50 /mm", at=times, certify=False)
+    stiffness = np.array([1e8, 1e9, 1e10])
+    for k in stiffness:
+        drive = kv.Drive(velocity=0.1, stiffness=float(k), damping=2.0 * math.sqrt(1e3 * k))
+        scene = kv.Scene(drive=drive, run=kv.Run(0.02))
+        run = kv.elements(
+            scene, per_length="50 /mm", at=times, certify=False, time_step=rigid.time_step
+        )
+        found.append(np.abs(run.depth - rigid.depth).max())
+    assert np.polyfit(np.log(stiffness), np.log(found), 1)[0] == pytest.approx(-1.0, abs=0.1)
+
+
+def test_the_stable_step_of_a_light_mass_along_x():
+    """The damping of the contact along x, C ∫ h'^2 dx/M_x, bounds the step as C L/M does (F15)."""
+    drive = kv.Drive(velocity="91 mm/s", stiffness="1 MN/m^2", mass="1 g/mm")
+    scene = kv.Scene(drive=drive, run=kv.Run(0.02))
+    model = Model.of(scene, 1e-5)
+    limit = limit_at(SCHEMES["paper"], model, max(lengths(model, model.path(scene))))
+    assert limit < 0.1 * limit_at(SCHEMES["paper"], Model.of(kv.Scene()), 2.0 * model.half_length)
+
+    def run(share):
+        step = {"scheme": "paper", "time_step": share * limit, "certify": False}
+        return kv.elements(scene, per_length="100 /mm", at=[0.02], **step)
+
+    right = kv.elements(scene, per_length="100 /mm", at=[0.02], certify=False)
+    assert run(0.9).spring_force[0] == pytest.approx(right.spring_force[0], rel=2e-2)
+    with pytest.raises(kv.DivergenceError, match="diverged"):
+        run(2.5)
+
+
+def test_all_that_shows_a_run_shows_the_spring(tmp_path):
+    run = kv.elements(TABLE_1, per_length="30 /mm", at=["0 ms", "10 ms"], certify=False)
+    record = json.loads(json.dumps(run.as_dict()))
+    assert record["sliding_velocity"][0] == pytest.approx(0.091)
+    assert record["spring_force"][0] == 0.0
+    run.save(tmp_path / "run.csv")
+    head = (tmp_path / "run.csv").read_text().splitlines()
+    assert any("sliding_velocity [m/s],spring_force [N/m]" in line for line in head)
+    rigid = kv.elements(per_length="30 /mm", at=["0 ms"], certify=False)
+    assert "spring_force" not in rigid.as_dict()
