@@ -30,7 +30,8 @@ def elements(
 ) -> Simulation:
     """Simulate a scene by point elements that move with the base: any shape, support and drive.
 
-    The foundation is Kelvin-Voigt or a Prony series.
+    The foundation is Kelvin-Voigt or a Prony series. With `drive.stiffness` the indenter is held along x by
+    a spring and slides with V - dx/dt, backwards too; the default scheme is of the second order then, too.
 
     Parameters
     ----------
@@ -46,7 +47,7 @@ def elements(
         the run.
     time_step
         The longest step, in s or as text with a unit; without it 2 dx/V, as in the paper, and less
-        where the scheme needs it (but never for the scheme ``"paper"``).
+        where the scheme, or the spring, needs it (but never for the scheme ``"paper"``).
     certify
         Whether to estimate the error, by two more runs with half as many elements and steps; without,
         the certificate is of the kind "none" and holds no errors.
@@ -59,7 +60,8 @@ def elements(
     -------
     Simulation
         Arrays over time in SI and a certificate whose statement says what its errors are relative to,
-        such as the static depth. `warning` is not empty where the step is doubtful.
+        such as the static depth. `warning` is not empty where the step is doubtful. With a spring, a
+        `SprungSimulation` that also holds `sliding_velocity` and `spring_force`.
 
     Raises
     ------
@@ -83,6 +85,9 @@ def elements(
     >>> run = kv.elements(kv.Scene(foundation=rubber), at=["0 ms", "1 ms", "200 ms"])
     >>> (run.normal_force / 1e3).round(2).tolist()
     [9.81, 9.93, 9.81]
+    >>> hung = kv.Scene(drive=kv.Drive(velocity="91 mm/s", stiffness="1 MN/m^2"))
+    >>> (kv.elements(hung, at=["0 ms", "20 ms"], certify=False).spring_force / 1e3).round(2).tolist()
+    [0.0, 0.33]
 
     References
     ----------

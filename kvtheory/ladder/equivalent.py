@@ -3,11 +3,12 @@
 To a motion that changes at the rate sigma, an arm answers as a damper C_i/(1 + sigma tau_i), C_i = K_i tau_i,
 which is between C_i and that of the fastest change. So the answer of the Kelvin-Voigt foundation with C =
 sum C_i is compared with the one whose damping is that of the fastest change: the rate V/a at which elements
-pass the half of the contact, and one over the time since the drive changed last. What does not depend on
-this, the layer in which arms are loaded at the leading edge, shows in steady sliding, where the error of the
-equivalent foundation is known exactly.
+pass the half of the contact, one over the time since the drive changed last, and on a spring sqrt(k_x/M_x).
+What does not depend on this, the layer in which arms are loaded at the leading edge, shows in steady sliding,
+where the error of the equivalent foundation is known exactly.
 """
 
+import math
 from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
@@ -77,7 +78,8 @@ def rate(steady: Callable[..., SteadyState], scene: Scene, times: Any) -> float:
     sliding = steady(replace(scene, foundation=foundation(scene), drive=Drive(fastest)))
     shortest = min(since)
     passing = fastest / float(sliding.half_length)
-    return passing + (1.0 / shortest if shortest > 0.0 else np.inf)
+    swing = 0.0 if scene.drive.rigid else math.sqrt(scene.drive.stiffness / scene.drive_mass)  # type: ignore[operator]
+    return passing + swing + (1.0 / shortest if shortest > 0.0 else np.inf)
 
 
 def velocities(scene: Scene) -> list[float]:
