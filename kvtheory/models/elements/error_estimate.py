@@ -26,8 +26,9 @@ SHIFTS = (0.0, 0.5)
 """Of a spacing: where the elements of the coarse runs are."""
 RELATIVE_TO = (
     "of the scene at rest: depth relative to δ_0, its rate to δ_0/τ, edges to a_0, normal force to W_0, "
-    "forces along x to W_0 δ_0/a_0, pressure to K δ_0, sliding velocity to a_0/τ"
+    "friction force to W_0 δ_0/a_0, pressure to K δ_0"
 )
+ON_SPRING = ", sliding velocity to a_0/τ, spring force as friction"
 UNKNOWN = Certificate("none", "no error was estimated, since certify=False", {}, AT_REST)
 
 Rows = dict[str, Any]
@@ -70,7 +71,8 @@ def estimate(
     runs = "half as many elements and steps" + ("" if fine is None else ", and as many")
     return Certificate(
         "estimated",
-        f'{SAFETY:g} times the largest difference to the scheme "{DEFAULT}" with {runs}, {RELATIVE_TO}',
+        f'{SAFETY:g} times the largest difference to the scheme "{DEFAULT}" with {runs}, {RELATIVE_TO}'
+        + ON_SPRING * model.sprung,
         {name: max(SAFETY * d / scale[name], ROUNDING) for name, d in differences.items()},
         AT_REST,
     )
