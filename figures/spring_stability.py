@@ -1,11 +1,12 @@
 """Where steady sliding is stable on a spring in the drive: over velocity and stiffness, for several tau.
 
 The line is the critical stiffness in closed form (theorem F22), the shade how fast small motions grow, by the
-roots of the quartic. What a simulation of the motion did, given by `compute(settles=...)`, is drawn over it.
+roots of the quartic. Marks are motions from rest, which end in steady sliding or in stick-slip; their solver
+knows nothing of the theorem.
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -14,14 +15,16 @@ from matplotlib.figure import Figure
 
 import kvtheory as kv
 from figures import drawing
-from kvtheory.plots import BLACK, BLUE, RED
+from kvtheory.models.continuum.cycles import cycle
+from kvtheory.plots import BLACK, BLUE
 
 TIMES = (0.01, 0.1, 1.0)
 """Retardation times in s; the rest is Table 1 under a dead weight, its mass along x too."""
 VELOCITIES = np.geomspace(1e-3, 10.0, 161)
 STIFFNESSES = np.geomspace(1e3, 1e11, 121)
-SIMULATED = slice(10, None, 20)
-"""Which velocities and stiffnesses are simulated."""
+SIMULATED_VELOCITIES, SIMULATED_STIFFNESSES = VELOCITIES[10::10], STIFFNESSES[30::15]
+DURATION, SWINGS, RTOL = 15.0, 200.0, 1e-3
+"""In units of the slowest time constant; motions that would swing more often meanwhile are not followed."""
 SLOWEST, FASTEST = 1e-3, 1e2
 """Growth in 1/s between which the shade changes."""
 
@@ -30,7 +33,7 @@ SLOWEST, FASTEST = 1e-3, 1e2
 class Data:
     """By retardation time: critical stiffness over the velocity, growth in 1/s, and what motions did.
 
-    `settled` holds V, k_x and whether the motion settled to steady sliding.
+    `settled` holds V, k_x and whether the motion settled to steady sliding, or else to stick-slip.
     """
 
     critical: dict[float, np.ndarray]
@@ -40,7 +43,18 @@ class Data:
     columns: drawing.Columns
 
 
-def compute(settles: Callable[[kv.Scene], bool] | None = None) -> Data:
+def ends_steadily(scene: kv.Scene) -> bool | None:
+    """Follow the motion from rest; None if it takes too long to end in steady sliding or in a cycle."""
+    rates = np.abs(kv.stability(scene, quantity="rates").rates)
+    duration = DURATION / rates[:, 0].min()
+    if duration * rates[:, 1].max() > 2.0 * np.pi * SWINGS:
+        return None
+    long = replace(scene, run=kv.Run(duration))
+    end = cycle(kv.transient(long, at=[0.0], rtol=RTOL, certify=False).solution.motion)
+    return bool(end.amplitude == 0.0) if end.settles else None
+
+
+def compute(settles: Callable[[kv.Scene], bool | None] = ends_steadily) -> Data:
     """Evaluate boundary and growth; `settles` says whether the motion of a scene ends in steady sliding."""
     critical, growth, peak, settled = {}, {}, {}, {}
     columns: dict[str, list[float]] = {
@@ -55,10 +69,10 @@ def compute(settles: Callable[[kv.Scene], bool] | None = None) -> Data:
         growth[tau] = kv.stability(over=grid, quantity="rates").rates[..., 0, 0]
         peak[tau] = kv.asymptotes(over={"foundation.retardation_time": tau}).peak_velocity
         settled[tau] = [
-            (V, k, settles(_scene(tau, V, k)))
-            for V in VELOCITIES[SIMULATED].tolist()
-            for k in STIFFNESSES[SIMULATED].tolist()
-            if settles is not None
+            (V, k, did)
+            for V in SIMULATED_VELOCITIES.tolist()
+            for k in SIMULATED_STIFFNESSES.tolist()
+            if (did := settles(_scene(tau, V, k))) is not None
         ]
         some = np.isfinite(found.critical_stiffness)
         rows = VELOCITIES, found.critical_stiffness, found.frequency
@@ -80,10 +94,10 @@ def draw(data: Data) -> Figure:
         )  # fmt: skip
         ax.plot(VELOCITIES * 1e3, data.critical[tau] / 1e6, color=BLACK, label="critical stiffness")
         ax.axvline(data.peak[tau] * 1e3, color=BLUE, linestyle=":", label="friction maximum")
-        for settled, mark in ((True, "o"), (False, "x")):
-            points = [(V * 1e3, k / 1e6) for V, k, did in data.settled[tau] if did is settled]
-            if points:
-                ax.plot(*zip(*points, strict=True), mark, color=RED, markersize=3, fillstyle="none")
+        for end, mark, label in ((True, "o", "ends steadily"), (False, "x", "ends in stick–slip")):
+            points = [(V, k) for V, k, did in data.settled[tau] if did is end]
+            x, y = np.reshape(points, (-1, 2)).T
+            ax.plot(x * 1e3, y / 1e6, mark, color=BLUE, markersize=3, label=label)
         ax.set(
             xscale="log", yscale="log", xlim=(1.0, 1e4), ylim=(1e-3, 1e5),
             title=rf"$\tau$ = {tau * 1e3:g} ms", xlabel="velocity $V$ [mm/s]",
@@ -91,8 +105,8 @@ def draw(data: Data) -> Figure:
         ax.grid(False)
     first = drawn.axes[0]
     first.set_ylabel("stiffness $k_x$ [MN/m$^2$]")
-    first.text(0.05, 0.9, "stable", transform=first.transAxes)
-    first.legend(loc="center left", fontsize=6.5, handlelength=1.5, borderpad=0.0)
+    first.legend(loc="upper left", fontsize=6.5, handlelength=1.5)
+    drawn.axes[1].text(0.05, 0.9, "stable", transform=drawn.axes[1].transAxes)
     drawn.axes[1].text(0.97, 0.06, "unstable", transform=drawn.axes[1].transAxes, ha="right")
     drawn.colorbar(shade, ax=drawn.axes, label="growth [1/s]", extend="both", pad=0.01)
     return drawn
