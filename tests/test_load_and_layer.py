@@ -8,8 +8,10 @@ import pytest
 import kvtheory as kv
 from kvtheory.results import TRANSIENT_UNITS
 from kvtheory.scene import template
+from kvtheory.scene.broadcasting import replaceable, values
 from kvtheory.scene.foundations import layer_stiffness
 from kvtheory.scene.quantities import changed
+from kvtheory.sweeps.blocks import at_point
 
 G = 9.80665
 SUPPORTS = {"dead-weight": {}, "suspended": {"stiffness": 3e7}}
@@ -229,3 +231,24 @@ def test_every_shape_and_method_carries_the_load_of_a_load(indenter, kind):
     assert kv.solve(by_load, **asked).friction_coefficient == pytest.approx(
         kv.solve(by_mass, **asked).friction_coefficient, rel=1e-14
     )
+
+
+SPRUNG = kv.Drive(velocity=0.1, stiffness=1e6)
+FOLLOWING = (
+    kv.Scene(drive=SPRUNG),
+    kv.Scene(support=kv.DeadWeight(load=3e3), drive=SPRUNG),
+    kv.Scene(support=kv.Suspended(mass=2.0, load=3e3, stiffness=1e6)),
+    kv.Scene(foundation=LAYER),
+    kv.Scene.table1("fixed"),
+)
+
+
+@pytest.mark.parametrize("given", FOLLOWING)
+def test_what_follows_from_a_replaced_value_is_as_in_a_scene_made_with_it(given):
+    for key in sorted(replaceable(given).keys() & given.values().keys()):
+        value = 1.05 * given.values()[key]
+        made = at_point(given, {key: value}).values()
+        arrays = values(given, {key: [value, value]})
+        assert made.keys() <= arrays.keys(), key
+        for name, expected in made.items():
+            assert arrays[name] == pytest.approx(expected, rel=1e-15), (key, name)

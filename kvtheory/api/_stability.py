@@ -3,13 +3,10 @@
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-import numpy as np
-from numpy.typing import NDArray
-
 from kvtheory.api._edge import double_precision, scene_of
 from kvtheory.results import Stability
 from kvtheory.scene.broadcasting import values
-from kvtheory.scene.model import Scene, lacks_mass
+from kvtheory.scene.model import Scene
 from kvtheory.scene.quantities import SceneError, nearest, problem
 from kvtheory.scene.requirements import lacks_paper_model, require
 
@@ -73,8 +70,7 @@ def stability(
     from kvtheory.models.steady import stable_sliding
 
     with double_precision(scene, over):
-        given = _with_drive(scene, values(scene, over), over or {})
-        return stable_sliding.solve(given, wanted)
+        return stable_sliding.solve(values(scene, over), wanted)
 
 
 def _names(quantity: str | Sequence[str] | None) -> frozenset[str]:
@@ -85,20 +81,3 @@ def _names(quantity: str | Sequence[str] | None) -> frozenset[str]:
             [problem("`quantity`", name, nearest(str(name), QUANTITIES)) for name in wrong]
         )
     return frozenset(names)
-
-
-def _with_drive(
-    scene: Scene, given: Mapping[str, NDArray[np.float64]], over: Mapping[str, Any]
-) -> dict[str, NDArray[np.float64]]:
-    """Return the values with the mass along x and the damper, also of a rigid drive."""
-    mass = given.get("drive.mass")
-    if mass is None or (scene.drive.mass is None and "drive.mass" not in over):
-        mass = given.get("support.mass")
-    if mass is None:
-        if "drive.stiffness" in given:
-            raise SceneError(
-                lacks_mass(scene.support, scene.drive.changed(velocity=0.0, stiffness=1.0))
-            )
-        mass = np.full_like(given["drive.velocity"], np.nan)  # it cannot move at all
-    nothing = np.zeros_like(given["drive.velocity"])
-    return {"drive.damping": nothing, **given, "drive.mass": mass}

@@ -6,15 +6,16 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from kvtheory.scene.drives import SPRING, VELOCITY
+from kvtheory.scene.drives import SPRING, VELOCITY, Drive
 from kvtheory.scene.foundations import LAYER, layer_stiffness
-from kvtheory.scene.model import Scene
+from kvtheory.scene.model import Scene, lacks_mass
 from kvtheory.scene.quantities import (
     Quantity,
     SceneError,
     collecting,
     convert,
     free,
+    given,
     nearest,
     problem,
     quantities,
@@ -41,13 +42,14 @@ def replaceable(scene: Scene) -> dict[str, Quantity]:
 def values(scene: Scene, over: Mapping[str, Any] | None = None) -> dict[str, Array]:
     """Return every quantity of the scene by its dotted key, broadcast, with those of `over` put in.
 
-    What follows from others is there too: ``"support.weight"``, and the stiffness of a layer.
+    What follows from others is there too: ``"support.weight"``, the stiffness of a layer, the mass of a load,
+    and the mass that moves along x with a spring in the drive.
 
     Raises
     ------
     SceneError
         Listing every unknown key and every value that is out of range; or if the drive is a function
-        and `over` gives no velocity.
+        and `over` gives no velocity, or if a spring has no mass to move.
     ValueError
         If the arrays do not broadcast.
 
@@ -57,7 +59,7 @@ def values(scene: Scene, over: Mapping[str, Any] | None = None) -> dict[str, Arr
     [0.001, 1.0]
     """
     specs = replaceable(scene)
-    given: dict[str, Any] = dict(scene.values())
+    flat: dict[str, Any] = dict(scene.values())
     problems: list[str] = []
     for key, value in (over or {}).items():
         if key not in specs:
@@ -65,29 +67,42 @@ def values(scene: Scene, over: Mapping[str, Any] | None = None) -> dict[str, Arr
             problems.append(problem(f"`over` {key}", value, told))
             continue
         with collecting(problems, f"`over` {key}", value):
-            given[key] = array_of(value, specs[key])
-    if "drive.velocity" not in given and not problems:
-        given["drive.velocity"] = scene.drive.final_velocity
+            flat[key] = array_of(value, specs[key])
+    if "drive.velocity" not in flat and not problems:
+        flat["drive.velocity"] = scene.drive.final_velocity
     if problems:
         raise SceneError(problems)
     try:
-        arrays: Iterable[Any] = given.values()
+        arrays: Iterable[Any] = flat.values()
         if any(getattr(value, "ndim", 0) for value in arrays):  # else there is nothing to do
             arrays = np.broadcast_arrays(*arrays)
     except ValueError:
         shapes = ", ".join(
-            f"{key} {np.shape(value)}" for key, value in given.items() if np.ndim(value)
+            f"{key} {np.shape(value)}" for key, value in flat.items() if np.ndim(value)
         )
         raise ValueError(f"the arrays of `over` do not broadcast: {shapes}") from None
-    found = dict(zip(given, (np.asarray(array, dtype=float) for array in arrays), strict=True))
-    if scene.foundation.modulus is not None and "foundation.stiffness" not in (over or ()):
-        layer = (found[f"foundation.{name}"] for name in LAYER)
-        found["foundation.stiffness"] = layer_stiffness(*layer)
-    if "support.load" in found:
-        found["support.weight"] = found["support.load"]
-    elif "support.mass" in found:
-        found["support.weight"] = found["support.mass"] * found["support.gravity"]
+    found = dict(zip(flat, (np.asarray(array, dtype=float) for array in arrays), strict=True))
+    found |= _following(scene, found, over or {})
     return found
+
+
+def _following(scene: Scene, found: dict[str, Array], over: Mapping[str, Any]) -> dict[str, Array]:
+    """Return what follows from other values, as in the parts of a scene, unless it is itself replaced."""
+    follows: dict[str, Array] = {}
+    if scene.foundation.modulus is not None and "foundation.stiffness" not in over:
+        layer = (found[f"foundation.{name}"] for name in LAYER)
+        follows["foundation.stiffness"] = layer_stiffness(*layer)
+    if "support.load" in found:
+        follows["support.weight"] = found["support.load"]
+        if "mass" not in given(scene.support) and "support.mass" not in over:
+            follows["support.mass"] = found["support.load"] / found["support.gravity"]
+    elif "support.mass" in found:
+        follows["support.weight"] = found["support.mass"] * found["support.gravity"]
+    if "drive.stiffness" in found and scene.drive.mass is None and "drive.mass" not in over:
+        if scene.held:
+            raise SceneError(lacks_mass(scene.support, Drive(velocity=0.0, stiffness=1.0)))
+        follows["drive.mass"] = {**found, **follows}["support.mass"]
+    return follows
 
 
 def array_of(value: Any, spec: Quantity) -> Array:

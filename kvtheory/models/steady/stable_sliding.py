@@ -28,8 +28,11 @@ SLOW = "rates", "time_constants"
 def solve(values: Values, wanted: Set[str]) -> Stability:
     """Return what is wanted of scenes, given by SI by dotted key in arrays of one shape.
 
-    They hold a ``drive.mass`` and ``drive.damping``, and ``drive.stiffness`` unless the drive is rigid.
+    The drive is rigid if they hold no ``drive.stiffness``. A spring that might take its place has no damper,
+    and the mass of the support; a fixed support has none.
     """
+    mass = values.get("support.mass", np.array(np.nan))
+    values = {"drive.damping": np.array(0.0), "drive.mass": mass, **values}
     shape = values["drive.velocity"].shape
     size = ON_GRID if "critical_velocity" in wanted else BLOCK
     flat = {key: np.broadcast_to(each, shape).reshape(-1) for key, each in values.items()}
