@@ -54,3 +54,25 @@ def test_series_of_a_spring_over_a_sweep_of_its_stiffness():
     assert found["velocity"] == pytest.approx(np.full((2, 2), 0.091))
     assert found["sliding_velocity"][:, 0] == pytest.approx([0.091, 0.091])
     assert found["spring_force"][1, 1] > found["spring_force"][0, 1] > 0.0
+
+
+def test_a_sweep_says_where_steady_sliding_is_stable():
+    speeds, springs = np.geomspace(0.01, 1.0, 7), np.geomspace(1e4, 1e9, 5)
+    over = {"drive.velocity": speeds, "drive.stiffness": springs, "support.mass": [1e2, 1e3]}
+    found = kv.sweep(over=over, block=9)
+    grid = np.meshgrid(*over.values(), indexing="ij")
+    whole = kv.steady(over=dict(zip(over, grid, strict=True)))
+    assert np.array_equal(found["stable"], whole.stable)
+    assert 0.0 < found["stable"].mean() < 1.0
+    assert "stable" not in found.certificate.relative_error
+    assert "stable" not in kv.sweep(over={"drive.velocity": speeds}).units
+    rigid = kv.sweep(over={"drive.velocity": speeds}, quantities="stable")
+    assert np.all(rigid["stable"] == 1.0)
+
+
+def test_where_stability_is_not_known_a_sweep_says_so():
+    wedge = kv.Scene(indenter=kv.Wedge(inclination=0.1), drive=SCENE.drive)
+    over = {"drive.velocity": [0.1]}
+    assert "stable" not in kv.sweep(wedge, over=over).units
+    with pytest.raises(ValueError, match="the stability of steady sliding holds for the parabola"):
+        kv.sweep(wedge, over=over, quantities="stable")

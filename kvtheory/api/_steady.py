@@ -5,8 +5,8 @@ from dataclasses import replace
 from typing import Any
 
 from kvtheory.api._edge import double_precision, scene_of
-from kvtheory.api._stability import stability
 from kvtheory.models.steady.methods import METHODS
+from kvtheory.models.steady.stable_sliding import lasts
 from kvtheory.results import SteadyState
 from kvtheory.scene.broadcasting import values
 from kvtheory.scene.model import Scene
@@ -14,7 +14,6 @@ from kvtheory.scene.quantities import nearest
 from kvtheory.scene.requirements import (
     lacks_asymptotes,
     lacks_closed_form,
-    lacks_paper_model,
     lacks_quadrature,
 )
 
@@ -80,12 +79,7 @@ def steady(
     with double_precision(scene, over):
         given = values(scene, over)
         state = METHODS[chosen](scene, given)
-    if "drive.stiffness" not in given:
-        return state
-    known = not lacks_paper_model(scene)
-    return replace(
-        state, stable=stability(scene, over=over, quantity="stable").stable if known else None
-    )
+        return replace(state, stable=lasts(scene, given)) if "drive.stiffness" in given else state
 
 
 def method_for(scene: Scene, method: str | None) -> str:

@@ -9,7 +9,7 @@ from kvtheory.api._edge import scene_of, times_of
 from kvtheory.api._steady import method_for
 from kvtheory.api._transient import MAXIMUM_RTOL, MINIMUM_RTOL
 from kvtheory.progress import Progress
-from kvtheory.results import Sweep
+from kvtheory.results import STEADY_UNITS, Sweep
 from kvtheory.scene.model import Scene
 from kvtheory.scene.quantities import SceneError
 from kvtheory.scene.requirements import lacks_paper_model, require
@@ -50,7 +50,8 @@ def sweep(
         ``drive.velocity`` replaces a history or a swing; the keys of a waveform, such as
         ``drive.frequency``, change it.
     quantities
-        Steady quantities by name (the default is all of them). Of a transient: ``NAME.end``,
+        Steady quantities by name (the default is all of them), and ``stable``: 1, or 0 where steady sliding
+        is unstable on the spring in the drive (there by default with a spring). Of a transient: ``NAME.end``,
         ``NAME.max``, ``NAME.min`` and ``NAME.time_of_max``, with NAME as in `Transient`;
         ``peak_to_steady_friction``, the largest |F_x| over the steady one; ``settling_time``, after
         which F_x stays within 1 % of the steady one; ``hops``, how often the indenter takes off;
@@ -136,23 +137,25 @@ def plan_of(
 ) -> "Plan":
     """Check what is asked of `sweep` as a whole, and return the plan."""
     from kvtheory.sweeps.axes import axes_of
-    from kvtheory.sweeps.columns import columns_of
+    from kvtheory.sweeps.columns import STABLE, columns_of
     from kvtheory.sweeps.plan import Plan
 
     scene = scene_of(scene)
     method = method_for(scene, method)
     times = None if at is None else tuple(times_of(scene, at))
+    axes = axes_of(scene, over)
+    sprung = not scene.drive.rigid or any("drive.stiffness" in axis.values for axis in axes)
+    if quantities is None and at is None and sprung and not lacks_paper_model(scene):
+        quantities = [*STEADY_UNITS, STABLE]
     columns = columns_of(quantities, series=at is not None, indenter=scene.indenter)
-    plan = Plan(scene, axes_of(scene, over), columns, times, method, rtol)
+    plan = Plan(scene, axes, columns, times, method, rtol)
     if plan.transient:
         require(lacks_paper_model, scene, "the transient")
-    swept = {key for axis in plan.axes for key in axis.values}
-    if scene.drive.rigid and "drive.stiffness" not in swept:
-        for column in columns:
-            if column.sprung:
-                raise SceneError(
-                    [f"`quantities` {column.name}: needs drive.stiffness, of a spring"]
-                )
+    for column in columns:
+        if column.sprung and not sprung:
+            raise SceneError([f"`quantities` {column.name}: needs drive.stiffness, of a spring"])
+        if column.base == STABLE and sprung:
+            require(lacks_paper_model, scene, "the stability of steady sliding")
     if not MINIMUM_RTOL <= rtol <= MAXIMUM_RTOL:
         raise ValueError(
             f"`rtol` = {rtol!r}: expected a number from {MINIMUM_RTOL} to {MAXIMUM_RTOL}"

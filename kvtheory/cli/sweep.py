@@ -45,9 +45,10 @@ EXAMPLE = '"drive.velocity=1 mm/s:10 m/s:200:log" or "foundation.retardation_tim
 )  # fmt: skip
 @click.option(
     "--quantity", "quantities", multiple=True, metavar="NAME,...",
-    help="What to write; default: all steady quantities. Of a transient: friction_force.max (.min, "
-    ".end, .time_of_max), peak_to_steady_friction, settling_time, hops, events; with a spring "
-    "stick_slip_settles, stick_slip_amplitude, stick_slip_period, sliding_velocity.cycle_max.",
+    help="What to write; default: all steady quantities, and with a spring whether steady sliding is "
+    "stable. Of a transient: friction_force.max (.min, .end, .time_of_max), peak_to_steady_friction, "
+    "settling_time, hops, events; with a spring stick_slip_settles, stick_slip_amplitude, "
+    "stick_slip_period, sliding_velocity.cycle_max.",
 )  # fmt: skip
 @click.option(
     "--at", metavar='"0 ms,1 ms,..."', help="Times of series of a transient, or START:STOP:COUNT."

@@ -12,10 +12,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kvtheory.models.steady.methods import METHODS
+from kvtheory.models.steady.stable_sliding import lasts
 from kvtheory.scene.broadcasting import replaceable, values
 from kvtheory.scene.model import Scene
 from kvtheory.scene.quantities import changed
 from kvtheory.sweeps.axes import narrowed, values_at
+from kvtheory.sweeps.columns import STABLE
 from kvtheory.sweeps.plan import Plan
 
 Array = NDArray[np.float64]
@@ -86,7 +88,8 @@ def compute(given: Task) -> Block:
         for column in plan.columns:
             if column.steady:
                 found[column.name] = steady[column.base]
-                errors[column.name] = worst_of.get(column.base, 0.0)
+                if column.base != STABLE:
+                    errors[column.name] = worst_of.get(column.base, 0.0)
     if plan.transient:
         statements |= _transients(given, over, steady, (found, reasons, errors))
     blank = plan.blank(1)
@@ -118,7 +121,10 @@ def _steady(
         part = {key: array[a:b] for key, array in over.items()}
         try:
             with np.errstate(over="raise", invalid="raise", divide="raise"):
-                state = METHODS[plan.method](plan.scene, values(plan.scene, part))
+                given = values(plan.scene, part)
+                state = METHODS[plan.method](plan.scene, given)
+                if STABLE in names:
+                    state = replace(state, stable=lasts(plan.scene, given))
         except FAILS as error:
             if b - a > 1:
                 middle = (a + b) // 2
@@ -129,7 +135,8 @@ def _steady(
         statements.add(state.certificate.statement)
         for name in names:
             found[name][a:b] = getattr(state, name)
-            worst(errors, name, state.certificate.relative_error[name])
+            if name != STABLE:
+                worst(errors, name, state.certificate.relative_error[name])
     return statements, errors
 
 

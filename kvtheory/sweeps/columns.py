@@ -15,6 +15,8 @@ SERIES = {name: unit for name, unit in TRANSIENT_UNITS.items() if name != "time"
 """What a transient is asked for, by its measures or on a grid of times."""
 MEASURES = ("end", "max", "min", "time_of_max")
 
+STABLE = "stable"
+"""Whether steady sliding lasts: 1, or 0 where it is unstable on the spring in the drive."""
 WHOLE = {"peak_to_steady_friction": "1", "settling_time": "s", "hops": "1", "events": ""}
 """Single values of a whole transient, and their units; `events` is text."""
 CYCLE = {
@@ -92,6 +94,7 @@ def columns_of(
 
 def _known(series: bool) -> dict[str, Column]:
     found = {name: Column(name, unit, name, "steady") for name, unit in STEADY_UNITS.items()}
+    found[STABLE] = Column(STABLE, "1", STABLE, "steady")
     over_time = SERIES | SPRING_UNITS
     if series:
         found |= {name: Column(name, unit, name, "series") for name, unit in over_time.items()}

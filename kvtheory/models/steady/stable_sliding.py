@@ -11,6 +11,8 @@ from kvtheory.models.steady.critical_velocity import critical_velocity
 from kvtheory.models.steady.rates import rates
 from kvtheory.models.steady.stability import Values, is_stable, numbers, onsets
 from kvtheory.results import Certificate, Stability
+from kvtheory.scene.model import Scene
+from kvtheory.scene.requirements import lacks_paper_model
 
 BLOCK = 8192
 """Scenes treated at a time: the intermediate arrays of a block stay in the processor's cache."""
@@ -51,6 +53,19 @@ def solve(values: Values, wanted: Set[str]) -> Stability:
         model="exact",
         certificate=Certificate("estimated", STATEMENT, errors),
     )
+
+
+def lasts(scene: Scene, values: Values) -> Any:
+    """Return whether steady sliding of scenes is stable; None where that is not known on their spring.
+
+    >>> from kvtheory.scene.broadcasting import values
+    >>> speeds = {"drive.velocity": [0.02, 0.091], "drive.stiffness": 1e6}
+    >>> lasts(Scene(), values(Scene(), speeds)).tolist()
+    [True, False]
+    """
+    if "drive.stiffness" not in values:
+        return True
+    return None if lacks_paper_model(scene) else solve(values, {"stable"}).stable
 
 
 def _block(values: Values, wanted: Set[str]) -> tuple[dict[str, Any], dict[str, Any]]:
