@@ -5,7 +5,11 @@ from collections.abc import Mapping, Sequence
 from itertools import pairwise
 from typing import Any
 
+import numpy as np
+from numpy.typing import NDArray
+
 from kvtheory.api._edge import double_precision, scene_of
+from kvtheory.api._stability import stability
 from kvtheory.api._steady import steady
 from kvtheory.checks.theory import Methods
 from kvtheory.progress import Progress
@@ -62,7 +66,13 @@ def _mistaken(
     return vars(found)
 
 
-METHODS = Methods(_followed, steady, _mistaken)
+def _rates(scene: Scene) -> NDArray[np.complex128]:
+    """Return the rates of small motions about steady sliding on a spring (F22), in 1/s."""
+    pairs = stability(scene, quantity="rates").rates
+    return np.asarray(pairs[:, 0] + 1j * pairs[:, 1])
+
+
+METHODS = Methods(_followed, steady, _rates, _mistaken)
 """How theory enters, and what simulates a mistake."""
 
 
@@ -127,8 +137,9 @@ def compare(
     Nakano and Kono (2020), doi:10.3389/fmech.2020.00038; facts F8-F15 of the derivations.
     """
     scene = scene_of(scene)
-    for lacks in (lacks_parabola_on_arms, lacks_rigid_drive):
-        require(lacks, scene, "the theory of the transient")
+    require(lacks_parabola_on_arms, scene, "the theory of the transient")
+    if scene.foundation.arms:
+        require(lacks_rigid_drive, scene, "the theory of the transient on a Prony series")
     if not (math.isfinite(tolerance) and tolerance > 0.0):
         raise ValueError(f"`tolerance` = {tolerance!r}: expected a positive number")
     density = None if per_length is None else _density(per_length)
@@ -183,8 +194,6 @@ def _times(scene: Scene, step: float) -> list[float]:
 
     From each change on they are even numbers of steps apart, so that no step is shortened for them.
     """
-    import numpy as np
-
     end = scene.run.duration
     stride = min(2.0 * step, end / FEWEST)
     changes = [*(time for time in scene.drive.changes if time < end), end]

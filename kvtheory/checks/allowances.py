@@ -3,7 +3,8 @@ r"""By how much a sound simulation may differ from theory, and its data from its
 Four things make a difference without a mistake, each from theory or from the data:
 
 - an element at an edge counts as a whole or not at all (F15): the normal force is off by up to
-  b = p dx/2, p the pressure at that edge, and what follows from b by the linear response of F12;
+  b = p dx/2, p the pressure at that edge, and what follows from b by the linear response of F12, on a
+  spring also what theory says of the motion along x (`spring_response`);
 - a time step smears the curves: theory within two steps before and after is as good; and unless the
   scheme is known to be of higher order, the rate may lag behind the depth by one step, and with it the
   force by h C L d'', which is the share z = h C L/M of the force that is not balanced;
@@ -22,6 +23,7 @@ from numpy.typing import NDArray
 
 from kvtheory.checks.noise import extreme, noise, rounded, unsure
 from kvtheory.checks.reading import Series
+from kvtheory.checks.spring_response import spring_response
 from kvtheory.checks.theory import CURVES, Curves, Theory
 from kvtheory.results.schemes import SCHEME_ROWS
 
@@ -60,7 +62,7 @@ SAME = 1e-6
 """Relative: what is given, not computed, agrees to the digits of a file."""
 
 
-EXACT = {"velocity": 3}
+EXACT = {"velocity": 3, "sliding_velocity": 3}
 """Fewest significant digits that speak for rounding: a velocity of 0.1 m/s is exact."""
 
 
@@ -140,6 +142,10 @@ def allowance(
     lagging = lagging + theory.scene.foundation.damping * contact_length(now) * rest
     forces = (1.0 + share) * force, lagging
     smooth = _systematic(theory, now, series.time, forces, late, fine)
+    if not theory.scene.drive.rigid:
+        step = 0.0 if _higher_order(series) else fine.time_step
+        moved = spring_response(theory, now, series.time, force, step, rtol)
+        smooth = {name: smooth[name] + moved[name] for name in CURVES}
     given = {name: series.columns[name] for name in CURVES if name in series.columns}
     rounding = {name: rounded(values, EXACT.get(name, 0)) for name, values in given.items()}
     spread = {name: smooth[name] + rounding.get(name, 0.0) for name in CURVES}
@@ -203,8 +209,7 @@ def _first_order(
     An element that enters is answered to within a step by the rate, with the share z of its force.
     """
     support, foundation = theory.scene.support, theory.scene.foundation
-    scheme = SCHEME_ROWS.get(series.scheme or "")
-    if theory.scene.held or (scheme is not None and scheme.order_in_time > 1):
+    if theory.scene.held or _higher_order(series):
         none = np.zeros_like(curves["depth"])
         return none, none
     sunk = curves["depth"] - theory.static.depth
@@ -212,6 +217,12 @@ def _first_order(
     rate = foundation.damping * contact_length(curves) / support.mass
     z = np.minimum(fine.time_step * rate, 1.0)
     return z, z * np.abs(net)
+
+
+def _higher_order(series: Series) -> bool:
+    """Whether the scheme of the simulation is known to be of higher than first order."""
+    scheme = SCHEME_ROWS.get(series.scheme or "")
+    return scheme is not None and scheme.order_in_time > 1
 
 
 def edge_force(theory: Theory, curves: Curves, spacing: float) -> Array:
@@ -224,7 +235,7 @@ def edge_force(theory: Theory, curves: Curves, spacing: float) -> Array:
     pressures = []
     for name in ("leading_edge", "trailing_edge"):
         x = curves[name]
-        rate = curves["depth_rate"] - x / R * curves["velocity"]
+        rate = curves["depth_rate"] - x / R * curves["sliding_velocity"]
         pressures.append(K * (curves["depth"] - x * x / (2.0 * R)) + foundation.damping * rate)
     p = np.nan_to_num(np.fmax(np.maximum(pressures[0], 0.0), pressures[1]), nan=0.0)
     return 0.5 * p * spacing + K * spacing**2 * theory.static.half_length / R
@@ -245,7 +256,7 @@ def _systematic(
     foundation, dx, (force, lagging) = theory.scene.foundation, fine.spacing, forces
     R, tau = theory.scene.indenter.radius, foundation.retardation_time  # type: ignore[union-attr]
     a = np.sqrt(2.0 * R * np.maximum(curves["depth"], SHALLOWEST * theory.static.depth))
-    l_r = curves["velocity"] * tau
+    l_r = curves["sliding_velocity"] * tau
     depth, depth_rate = _response(theory, curves, time, force, a, fine)
     depth_rate = depth_rate + late
     both = depth + tau * depth_rate
@@ -253,12 +264,16 @@ def _systematic(
     edge = ELEMENTS_AT_AN_EDGE * dx + R / a * depth
     carried = 1.5 * depth * 2.0 * R / (a * a) * np.abs(curves["friction_force"])
     slope = foundation.stiffness * (a + np.abs(l_r)) / R
+    given = np.full_like(force, SAME * theory.scales["velocity"])
+    friction = (WHOLE_EDGE * force + lagging) * a / R + carried
     return {
-        "velocity": np.full_like(force, SAME * theory.scales["velocity"]),
+        "velocity": given,
+        "sliding_velocity": given,
         "depth": depth + SAME * theory.scales["depth"],
         "depth_rate": depth_rate + SAME * theory.scales["depth_rate"],
         "normal_force": WHOLE_EDGE * force + lagging,
-        "friction_force": (WHOLE_EDGE * force + lagging) * a / R + carried,
+        "friction_force": friction,
+        "spring_force": friction,
         "leading_edge": edge,
         "trailing_edge": edge + np.nan_to_num(R * both / slant),
         "peak_pressure": slope * (edge + dx) + foundation.stiffness * both,
@@ -277,7 +292,7 @@ def _response(
     support, foundation = theory.scene.support, theory.scene.foundation
     if theory.scene.held or theory.rates is None:
         return np.zeros_like(force), np.zeros_like(force)
-    l_r = np.abs(curves["velocity"]) * foundation.retardation_time
+    l_r = np.abs(curves["sliding_velocity"]) * foundation.retardation_time
     stiffness = foundation.stiffness * (np.hypot(a, l_r) + a) + support.spring
     damping = foundation.damping * np.maximum(contact_length(curves), a)
     still = force / stiffness

@@ -11,16 +11,18 @@ from kvtheory.checks.balance import missing_force, random_part, windows
 from kvtheory.checks.comparison_case import Case, not_made, rms
 from kvtheory.checks.discretization import elements, sawtooth, stability
 from kvtheory.checks.noise import SURE, extreme
-from kvtheory.checks.settling import fast_constant, slow_constant, steady_limit
+from kvtheory.checks.settling import fast_constant, phase, slow_constant, steady_limit
 from kvtheory.results.comparison import Check
 
 STATES = {"depth": "Eq. 17", "depth_rate": "Eq. 17", "normal_force": "Eq. 14", "friction_force": "Eq. 15",
           "leading_edge": "Eq. 32", "trailing_edge": "Eq. 33", "peak_pressure": "Eq. 12",
-          "velocity": "the drive of the scene"}  # fmt: skip
+          "velocity": "the drive of the scene", "sliding_velocity": "F22", "spring_force": "F22"}  # fmt: skip
 """The equation behind each curve."""
 
 TRANSIENT = 3.0
 """Slow time constants after the last change of the drive: three samples in them show the transient."""
+SAMPLING = "sampling"
+"""The check whose failure alone says nothing against the data."""
 
 
 def initial_rest(case: Case) -> Iterator[Check]:
@@ -68,8 +70,8 @@ def jump(case: Case) -> Iterator[Check]:
 
 def sampling(case: Case) -> Iterator[Check]:
     """Compare the mean distance of the samples during the transient with the slow time constant."""
-    name, equation = "sampling", "F12"
     rates, time = case.theory.rates, case.series.time
+    name, equation = SAMPLING, "F12" if case.theory.scene.drive.rigid else "F22"
     if rates is None:
         yield not_made(name, equation, "a fixed indenter has no transient of its own")
         return
@@ -139,7 +141,7 @@ def curves(case: Case) -> Iterator[Check]:
 
 
 CHECKS: tuple[Callable[[Case], Iterator[Check]], ...] = (
-    sampling, initial_rest, jump, balance, curves, fast_constant, slow_constant, steady_limit,
+    sampling, initial_rest, jump, balance, curves, fast_constant, slow_constant, steady_limit, phase,
     sawtooth, elements, stability,
 )  # fmt: skip
 """In the order in which they are shown."""

@@ -7,16 +7,18 @@ the indenter, z_A = -depth (Eq. 18), becomes a depth.
 from dataclasses import dataclass
 from difflib import get_close_matches
 
-from kvtheory.results import TRANSIENT_UNITS
+from kvtheory.results.table import SERIES_UNITS
 from kvtheory.scene.tables import parts, plain
 from kvtheory.scene.units import to_si
 
-SI_UNITS = {**TRANSIENT_UNITS, "peak_pressure": "N/m^2"}
+SI_UNITS = {**SERIES_UNITS, "peak_pressure": "N/m^2"}
 """The units of a series as `kvtheory.scene.units` spells them."""
 
 SPELLINGS = {
     "time": "time, t, Zeit",
-    "velocity": "velocity, V, drive velocity, v_drive, sliding velocity, Geschwindigkeit",
+    "velocity": "velocity, V, drive velocity, v_drive, Geschwindigkeit",
+    "sliding_velocity": "sliding_velocity, sliding velocity, v_s, v_slide, slip velocity, "
+    "Gleitgeschwindigkeit",
     "depth": "depth, delta, δ, indentation, indentation depth, penetration, Tiefe, Eindringtiefe",
     "-depth": "z_A, z, position, indenter position, height, Höhe, Hoehe, Lage",
     "depth_rate": "depth_rate, delta_dot, ddelta/dt, depth velocity",
@@ -24,6 +26,8 @@ SPELLINGS = {
     "normal_force": "normal_force, F_z, F_n, normal load, vertical force, Normalkraft, Vertikalkraft",
     "friction_force": "friction_force, F_x, F_t, F, friction, tangential force, horizontal force, "
     "Reibkraft, Reibungskraft, Tangentialkraft",
+    "spring_force": "spring_force, spring force, F_s, F_spring, drive force, pulling force, Federkraft, "
+    "Zugkraft",
     "leading_edge": "leading_edge, x_LE, Vorderkante",
     "trailing_edge": "trailing_edge, x_TE, Hinterkante",
     "peak_pressure": "peak_pressure, p_max, maximum pressure, pressure maximum, Druckmaximum, Maximaldruck",
@@ -48,7 +52,7 @@ KNOWN = {
     for quantity, spellings in SPELLINGS.items()
     for spelling in spellings.split(", ")
 }
-SHOWN = "time, depth (or z_A), normal_force, friction_force, leading_edge, trailing_edge"
+SHOWN = "time, depth (or z_A), normal_force, friction_force, spring_force, leading_edge, trailing_edge"
 
 
 def recognise(header: str) -> Column | None:

@@ -83,7 +83,7 @@ def broken_off(
     name = "unstable time step"
     fault = Explanation(name, f"the time step is unstable (F15): {reason}", 1.0, True)
     text = f"{fault.text[0].upper()}{fault.text[1:]}. Failed: {check.name} (F15)."
-    allowed = {name: np.zeros_like(values) for name, values in theory.items()}
+    allowed = {name: np.zeros_like(theory[name]) for name in series if name in theory}
     return Comparison(
         "disagrees", (check,), text, (fault,), scheme or "our own simulation", tolerance,
         series, theory, allowed,

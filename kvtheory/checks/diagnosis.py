@@ -13,8 +13,10 @@ from kvtheory.checks.faults import (
     scales,
     undone,
 )
+from kvtheory.checks.checklist import SAMPLING
 from kvtheory.checks.fitting import Bench, bench
 from kvtheory.checks.mistakes import mistakes
+from kvtheory.checks.settling import PHASE
 from kvtheory.checks.symptoms import coarse, rattling, seen, unmoved
 from kvtheory.results.comparison import Check, Explanation
 
@@ -31,16 +33,19 @@ NAMED = 0.4
 """Part of the difference that a fault must explain to be named."""
 SHOWN = 4
 """Explanations that are kept."""
-SAMPLING = "sampling"
-"""The check whose failure alone says nothing against the data."""
+UNTOLD = {
+    SAMPLING: "The data are sampled too coarsely to show the transient",
+    PHASE: "Where the cycle of this motion should be by now, theory cannot say for such elements and steps",
+}
+"""Checks whose failure says nothing against the data, and what it does say."""
 
 
 def verdict(checks: Sequence[Check]) -> str:
-    """Return whether the data agree; where they are only sampled too coarsely, that cannot be told."""
+    """Return whether the data agree; where only sampling or the phase of a cycle fails, that is not known."""
     failed = [check.name for check in checks if check.ok is False]
     if not failed:
         return "agrees"
-    return "cannot tell" if failed == [SAMPLING] else "disagrees"
+    return "cannot tell" if all(name in UNTOLD for name in failed) else "disagrees"
 
 
 def diagnose(case: Case, checks: Sequence[Check]) -> tuple[str, tuple[Explanation, ...]]:
@@ -50,9 +55,10 @@ def diagnose(case: Case, checks: Sequence[Check]) -> tuple[str, tuple[Explanatio
     if verdict(checks) == "agrees":
         return f"All {made} checks that could be made are passed.", ()
     if verdict(checks) == "cannot tell":
+        why = "; ".join(UNTOLD[check.name] for check in failed)
         return (
-            "The data are sampled too coarsely to show the transient; nothing else speaks against them, "
-            f"and the other {made - 1} checks that could be made are passed."
+            f"{why}; nothing else speaks against them, and the other {made - len(failed)} checks that could "
+            "be made are passed."
         ), ()
     found = explanations(case)
     if not any(each.enough for each in found[:1]):

@@ -48,6 +48,9 @@ PARAMETERS = (
     Parameter("k_s", {"support.stiffness": 1.0}, "MN/m^2", 1e-6),
     Parameter("delta", {"support.depth": 1.0}, "mm", 1e3),
     Parameter("V", {"drive.velocity": 1.0}, "mm/s", 1e3),
+    Parameter("k_x", {"drive.stiffness": 1.0}, "MN/m^2", 1e-6, " (the spring in the drive)"),
+    Parameter("M_x", {"drive.mass": 1.0}, "kg/mm", 1e-3, " (what moves along x)"),
+    Parameter("c_x", {"drive.damping": 1.0}, "N s/m^2", 1.0, " (beside the spring in the drive)"),
 )  # fmt: skip
 """What may be wrong in a scene; those that the scene has not are passed over."""
 
@@ -56,6 +59,7 @@ WRONG = "wrong "
 GROUPS = {
     **{name: (name,) for name in CURVES if name != "velocity"},
     "both forces": ("normal_force", "friction_force"),
+    "both forces along x": ("friction_force", "spring_force"),
     "both edges": ("leading_edge", "trailing_edge"),
     "the lengths": ("depth", "leading_edge", "trailing_edge"),
 }
@@ -267,7 +271,9 @@ def offset(bench: Bench) -> Iterator[Trial]:
 def _onset(bench: Bench) -> float:
     """Return when a force of the data changes first, in s."""
     name = next(
-        name for name in ("normal_force", "friction_force", "depth") if name in bench.columns
+        name
+        for name in ("normal_force", "friction_force", "spring_force", "depth")
+        if name in bench.columns
     )
     change = np.abs(bench.columns[name] - bench.columns[name][0])
     return float(bench.time[np.argmax(change >= ONSET * np.nanmax(change))])

@@ -15,7 +15,7 @@ from scipy.optimize import least_squares
 
 from kvtheory.checks.comparison_case import Case
 from kvtheory.checks.theory import Curves
-from kvtheory.scene import Drive, Scene
+from kvtheory.scene import Scene
 from kvtheory.scene.quantities import changed
 
 Array = NDArray[np.float64]
@@ -176,6 +176,8 @@ def bench(case: Case) -> Bench:
 def scaled_scene(scene: Scene, powers: Mapping[str, float], factor: float) -> Scene:
     """Return a scene with its quantities multiplied by powers of a factor.
 
+    Of a drive, the velocity stands for all its velocities.
+
     >>> scaled_scene(Scene(), {"support.mass": 1.0, "support.gravity": -1.0}, 2.0).support.mass
     2000.0
     """
@@ -183,8 +185,10 @@ def scaled_scene(scene: Scene, powers: Mapping[str, float], factor: float) -> Sc
         section, name = key.split(".")
         part: Any = getattr(scene, section)
         times = factor**power
-        if isinstance(part, Drive):
+        if key == "drive.velocity":
             part = part.faster(times)
+        elif section == "drive":
+            part = part.changed(**{name: times * scene.values()[key]})
         else:
             part = changed(part, **{name: times * getattr(part, name)})
         scene = replace(scene, **{section: part})

@@ -11,7 +11,7 @@ import numpy as np
 
 from kvtheory.checks.faults import Trial, judged
 from kvtheory.checks.fitting import Bench
-from kvtheory.checks.theory import CURVES, Curves
+from kvtheory.checks.theory import CURVES, Curves, curves
 from kvtheory.results.schemes import RK4_LIMIT
 
 
@@ -98,7 +98,7 @@ def _simulated(bench: Bench, does: Mapping[str, Any]) -> Curves | None:
         found = theory.methods.elements(scene, spacing, step, unique.tolist(), does)
     except (ValueError, ArithmeticError):
         return None
-    return {name: np.asarray(found[name])[index] for name in CURVES}
+    return {name: values[index] for name, values in curves(found, scene).items()}
 
 
 def _changed(bench: Bench, right: Curves, wrong: Curves, share: float) -> Curves:

@@ -1,4 +1,4 @@
-"""Checks of how the data settle: the two time constants of F12, and the steady limit."""
+"""Checks of how the data settle: the two time constants of F12, the steady limit, or the phase of a cycle."""
 
 import math
 from collections.abc import Iterator
@@ -23,6 +23,10 @@ LAST_PART, FEWEST_LATE = 0.75, 3
 """Of the data: the mean of the rest is taken for the limit, if it has so many samples."""
 FITTED = 0.5
 """A time constant that the data fix no better than this, relative, is not judged."""
+PHASE = "phase of the cycle"
+"""The check whose failure alone says nothing against the data: theory itself cannot say where they should be."""
+LOST = 0.5
+"""Of the swing: where so much is allowed, the phase is lost."""
 
 
 def slow_constant(case: Case) -> Iterator[Check]:
@@ -60,6 +64,8 @@ def _why_not(case: Case, curve: str) -> str:
         return "a fixed indenter has none"
     if case.theory.scene.foundation.arms:
         return "F12 holds for Kelvin-Voigt"
+    if not case.theory.scene.drive.rigid:
+        return "F12 holds for a rigid drive"
     return "the indenter oscillates" if case.theory.rates.oscillates else ""
 
 
@@ -93,9 +99,12 @@ def steady_limit(case: Case) -> Iterator[Check]:
         yield not_made(name, equation, "the drive is a function, which need not settle")
         return
     if theory.rates is not None:
-        slow = 1.0 / (1.0 / theory.rates.slow).real
+        slow = theory.rates.settling
     else:
         slow = theory.scene.foundation.retardation_time if theory.last_change else 0.0
+    if math.isinf(slow):
+        yield not_made(name, equation, "steady sliding is unstable on this spring (F22)")
+        return
     settled = theory.last_change + SETTLED * slow
     late = time > max(settled, LAST_PART * time[-1])
     if late.sum() < FEWEST_LATE:
@@ -115,3 +124,22 @@ def steady_limit(case: Case) -> Iterator[Check]:
         found.append((abs(mean - exact[curve]) / scale, allowed, note))
     off, allowed, note = max(found, key=lambda each: each[0] / each[1])
     yield case.check(name, off, allowed, equation, "relative to the static state", note)
+
+
+def phase(case: Case) -> Iterator[Check]:
+    """Compare what is allowed of the sliding velocity with its swing, where steady sliding is unstable.
+
+    A disturbance shifts the phase of a cycle for good: where that may be much of the swing, no agreement says
+    anything.
+    """
+    theory, curve = case.theory, "sliding_velocity"
+    if theory.scene.drive.rigid:
+        return
+    if theory.rates is not None and math.isfinite(theory.rates.settling):
+        yield not_made(PHASE, "F22", "steady sliding is stable")
+        return
+    swing = rms(case.now[curve] - np.mean(case.now[curve]))
+    may_be = case.tolerance * rms(case.allowance.systematic[curve])
+    share = may_be / swing if swing else math.inf
+    unit = "what elements and steps may change of the sliding velocity, relative to its swing"
+    yield case.check(PHASE, share, LOST, "F22", unit)

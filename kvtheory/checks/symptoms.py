@@ -67,6 +67,7 @@ def unmoved(case: Case, failed: Sequence[Check]) -> Iterator[Explanation]:
     if (
         not any(check.name == "impulse balance" for check in failed)
         or case.theory.last_change > 0.0
+        or not case.theory.scene.drive.rigid
     ):
         return
     if case.theory.final_velocity == 0.0:

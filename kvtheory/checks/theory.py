@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from kvtheory.results.table import scales
+from kvtheory.results.table import QUANTITIES, SERIES_UNITS
 from kvtheory.scene import Drive
 from kvtheory.scene.model import Scene
 from kvtheory.scene.static_state import StaticState
@@ -21,10 +21,8 @@ from kvtheory.scene.static_state import StaticState
 Array = NDArray[np.float64]
 Curves = Mapping[str, Array]
 
-CURVES = (
-    *("velocity", "depth", "depth_rate", "normal_force", "friction_force"),
-    *("leading_edge", "trailing_edge", "peak_pressure"),
-)
+CURVES = tuple(name for name in SERIES_UNITS if name != "time")
+"""The curves of a series; with a rigid drive, sliding is at V and what takes the place of the spring feels the friction force."""
 FOR_GOOD = 40.0
 """Time constants after which what is left of a change is below rounding."""
 FOREVER = 1e9
@@ -33,27 +31,50 @@ NO_VELOCITY = 1e-9
 """In units of a_0/tau: a slower drive does not move."""
 
 
+def curves(found: Mapping[str, Any], scene: Scene) -> dict[str, Array]:
+    """Return every curve of what was found for a scene, those of a spring for a rigid drive too."""
+    if scene.drive.rigid:
+        found = {
+            **found, "sliding_velocity": found["velocity"], "spring_force": found["friction_force"],
+        }  # fmt: skip
+    return {name: np.asarray(found[name]) for name in CURVES}
+
+
 class Methods(NamedTuple):
     """What solves a scene.
 
     `transient` returns the curves of theory by name, for a scene, times (s, increasing) and a tolerance;
-    `steady` its exact steady sliding; `elements` the curves of a simulation, for a scene, spacing (m),
+    `steady` its exact steady sliding; `rates` the rates (1/s) of small motions about it, for a scene on a
+    spring; `elements` the curves of a simulation, for a scene, spacing (m),
     time step (s), times, and what it is to do wrong by name. `tell` is told the share of the work done, and
     words.
     """
 
     transient: Callable[[Scene, Sequence[float], float], Mapping[str, Any]]
     steady: Callable[[Scene], Any]
+    rates: Callable[[Scene], NDArray[np.complex128]]
     elements: Callable[..., Mapping[str, Any]]
     tell: Callable[[float, str], object] = lambda _share, _words: None
 
 
 @dataclass(frozen=True)
 class Rates:
-    """The two time constants of F12 near steady sliding, in s; they are complex if it oscillates."""
+    """The shortest and the longest time constant near steady sliding, in s; complex if it oscillates.
+
+    With a rigid drive these are the two of F12, on a spring two of those of F22. After `settling` (s) what
+    lasts longest has fallen to 1/e; where steady sliding is unstable it is infinite.
+    """
 
     fast: complex
     slow: complex
+    settling: float
+
+    @classmethod
+    def of(cls, time_constants: Sequence[complex]) -> "Rates":
+        """Return those of all time constants T, of motions in proportion to exp(-t/T)."""
+        fast, *_, slow = sorted(time_constants, key=abs)
+        fading = [(1.0 / T).real for T in time_constants]
+        return cls(fast, slow, 1.0 / min(fading) if min(fading) > 0.0 else math.inf)
 
     @property
     def oscillates(self) -> bool:
@@ -76,8 +97,9 @@ class Theory:
     @cached_property
     def scales(self) -> Mapping[str, float]:
         """What a difference is compared with: the static state, and its products."""
-        slowest = NO_VELOCITY * self.static.velocity
-        return {**scales(self.static), "velocity": max(self.motion.highest_speed, slowest)}
+        measures = {name: getattr(self.static, QUANTITIES[name].scale) for name in SERIES_UNITS}
+        speed = max(self.motion.highest_speed, NO_VELOCITY * self.static.velocity)
+        return {**measures, "velocity": speed, "sliding_velocity": speed}
 
     @cached_property
     def motion(self) -> Any:
@@ -104,10 +126,14 @@ class Theory:
     def rates(self) -> Rates | None:
         """The time constants at the steady state; None if the indenter cannot move.
 
-        With A = sqrt(a^2 + l_r^2) + a and B = x_TE + a, M s^2 + C B s + K A + k_s = 0 (F12); with arms,
+        On a spring they follow from the quartic of F22. With a rigid drive, A = sqrt(a^2 + l_r^2) + a and B = x_TE + a, M s^2 + C B s + K A + k_s = 0 (F12); with arms,
         they are those of the damping that slow sliding feels, and measure what is allowed.
         """
         support, foundation = self.scene.support, self.scene.foundation
+        if not self.scene.drive.rigid:
+            steady = self.scene.drive.changed(velocity=self.final_velocity)
+            rates = self.methods.rates(replace(self.scene, drive=steady))
+            return Rates.of((-1.0 / rates[rates != 0.0]).tolist())
         if self.scene.held:
             return None
         a, l_r = self.steady_state.half_length, self.steady_state.retardation_length
@@ -115,7 +141,7 @@ class Theory:
         stiffness = foundation.stiffness * (math.hypot(a, l_r) + a) + support.spring
         damping = foundation.damping * (x_te + a)
         root = complex(damping * damping - 4.0 * support.mass * stiffness) ** 0.5
-        return Rates(2.0 * support.mass / (damping + root), (damping + root) / (2.0 * stiffness))
+        return Rates.of([2.0 * support.mass / (damping + root), (damping + root) / (2.0 * stiffness)])
 
     def at(self, times: Array, rtol: float = 1e-6) -> dict[str, Array]:
         """Return the curves at `times` (s): at rest before t = 0, just after a jump of the drive."""
@@ -123,15 +149,15 @@ class Theory:
         unique, index = np.unique(moving, return_inverse=True)
         end = float(unique[-1]) or self.scene.run.duration
         scene = replace(self.scene, run=replace(self.scene.run, duration=end))
-        found = self.methods.transient(scene, unique.tolist(), rtol)
+        found = curves(self.methods.transient(scene, unique.tolist(), rtol), scene)
         rest = self.rest
-        return {
-            name: np.where(times < 0.0, rest[name], np.asarray(found[name])[index])
-            for name in CURVES
-        }
+        return {name: np.where(times < 0.0, rest[name], found[name][index]) for name in CURVES}
 
     def _settled(self, end: float) -> float:
-        """Return a time in s after which nothing changes, or `end` if that is sooner."""
+        """Return a time in s after which nothing changes, or `end` if that is sooner.
+
+        On a spring that need never be: beside steady sliding there may be a cycle.
+        """
         foundation = self.scene.foundation
         slow = foundation.retardation_time
         if foundation.arms:  # no retardation takes longer than this
@@ -139,17 +165,19 @@ class Theory:
             slow = glassy * max(arm.relaxation_time for arm in foundation.arms)
         if end > FOREVER * slow:
             raise ArithmeticError(f"that is after {end / slow:.3g} retardation times")
-        if end <= self.last_change + FOR_GOOD * slow:
+        if end <= self.last_change + FOR_GOOD * slow or not self.scene.drive.rigid:
             return end
         if self.rates is not None:
-            slow = max(slow, 1.0 / (1.0 / self.rates.slow).real)
+            slow = max(slow, self.rates.settling)
         return min(end, self.last_change + FOR_GOOD * slow)
 
     @cached_property
     def rest(self) -> Mapping[str, float]:
         """The state before t = 0."""
         at_rest = self.static
-        moving = dict.fromkeys(("velocity", "depth_rate", "friction_force"), 0.0)
+        moving = dict.fromkeys(
+            ("velocity", "sliding_velocity", "depth_rate", "friction_force", "spring_force"), 0.0
+        )
         edges = {"leading_edge": -at_rest.half_length, "trailing_edge": at_rest.half_length}
         return {
             **moving, **edges, "depth": at_rest.depth, "normal_force": at_rest.load,

@@ -9,11 +9,15 @@ import numpy as np
 
 from kvtheory.plots.files import inline, save_page, template
 from kvtheory.plots.style import BLACK, BLUE, GREEN, RED, TRANSIENT_ROWS, with_unit
-from kvtheory.results import TRANSIENT_UNITS, Check, Comparison
+from kvtheory.results import Check, Comparison
 from kvtheory.results.comparison import Explanation
+from kvtheory.results.table import QUANTITIES, SERIES_UNITS, SPRING_UNITS
 from kvtheory.scene import Scene, to_toml
 
-CURVES = {name: (symbol, sign) for name, symbol, sign in TRANSIENT_ROWS if name != "velocity"}
+CURVES = {
+    **{name: (symbol, sign) for name, symbol, sign in TRANSIENT_ROWS if name != "velocity"},
+    **{name: (f"${QUANTITIES[name].symbol}$", 1.0) for name in SPRING_UNITS},
+}
 """What is drawn, if the data hold it: symbol, sign."""
 DOTS = 200
 """More samples than this are drawn as a line."""
@@ -48,7 +52,7 @@ def plot_comparison(axes: Sequence[Sequence[Any]], comparison: Comparison) -> li
     artists: list[Any] = []
     for (over, rest), name in zip(axes, names, strict=False):
         symbol, sign = CURVES[name]
-        label, factor = with_unit(symbol, TRANSIENT_UNITS[name])
+        label, factor = with_unit(symbol, SERIES_UNITS[name])
         factor *= sign
         data, theory = comparison.series[name] * factor, comparison.theory[name] * factor
         style = "." if time.size <= DOTS else "-"

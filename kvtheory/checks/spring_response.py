@@ -1,0 +1,78 @@
+"""By how much elements and steps may move an indenter on a spring, by theory itself.
+
+Motions along x last long, and grow where steady sliding is unstable (F22), until they are a cycle in which a
+disturbance shifts the phase more and more. How far that goes, no linear response knows, but theory of a
+disturbed scene does:
+
+- the force b at an edge acts as a load that is larger by b; on a fixed indenter, whose forces are in
+  proportion to the stiffness of the foundation, as one that is stiffer;
+- a step h of first order takes from a swing, or adds to it, what a damper c_x = h k_x takes;
+- the friction b a/R that goes with b acts on the spring at once: by so much it is stretched, and the
+  indenter kicked.
+"""
+
+import math
+from collections.abc import Iterator
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kvtheory.checks.theory import CURVES, Curves, Theory
+from kvtheory.scene.model import Scene
+from kvtheory.scene.quantities import changed
+
+Array = NDArray[np.float64]
+
+QUARTER = 0.5 * math.pi
+"""Of a period, in radians: a disturbed swing meets the undisturbed one, and is far off so much later."""
+SWING = 2.0
+"""A sudden force stretches a spring by up to so many times what the force does if it lasts."""
+
+
+def spring_response(
+    theory: Theory, now: Curves, time: Array, force: Array, step: float, rtol: float
+) -> Curves:
+    """Return by how much the force b (N/m) at an edge, and steps of `step` s, move each curve.
+
+    `step` is 0 of a scheme of higher order, whose error is far smaller.
+    """
+    scene, static = theory.scene, theory.static
+    inertia, stiffness = scene.drive_mass, float(scene.drive.stiffness or 0.0)
+    span = float(time[-1] - time[0])
+    lasting = float(np.trapezoid(force, time)) / span / static.load
+    reach = QUARTER * math.sqrt(inertia / stiffness)
+    moved = {name: np.zeros_like(time) for name in CURVES}
+    for other in _disturbed(scene, lasting, step):
+        found = replace(theory, scene=other).at(time, rtol)
+        for name in CURVES:
+            moved[name] += _nearby(time, np.nan_to_num(np.abs(found[name] - now[name])), reach)
+    kick = SWING * force * static.half_length / theory.scene.indenter.radius  # type: ignore[union-attr]
+    moved["spring_force"] += kick
+    moved["sliding_velocity"] += kick / math.sqrt(stiffness * inertia)
+    return moved
+
+
+def _disturbed(scene: Scene, share: float, step: float) -> Iterator[Scene]:
+    """Yield the scene with a load that is larger by its share, and with what steps of first order add."""
+    if scene.held:
+        stiffness = (1.0 + share) * scene.foundation.stiffness
+        yield replace(scene, foundation=changed(scene.foundation, stiffness=stiffness))
+    else:
+        load = (1.0 + share) * scene.support.weight
+        yield replace(scene, support=replace(scene.support, load=load))
+    if step > 0.0:
+        damping = scene.drive.damping + step * float(scene.drive.stiffness or 0.0)
+        yield replace(scene, drive=scene.drive.changed(damping=damping))
+
+
+def _nearby(time: Array, values: Array, reach: float) -> Array:
+    """Return the largest of the values within `reach` before and after each time.
+
+    >>> _nearby(np.arange(5.0), np.array([1.0, 0.0, 0.0, 5.0, 0.0]), 1.0).tolist()
+    [1.0, 1.0, 5.0, 5.0, 5.0]
+    """
+    first = np.searchsorted(time, time - reach, side="left")
+    after = np.searchsorted(time, time + reach, side="right")
+    ends = np.stack([first, after], axis=1).reshape(-1)
+    return np.asarray(np.maximum.reduceat(np.append(values, 0.0), ends)[::2])
