@@ -16,23 +16,19 @@ Four things make a difference without a mistake, each from theory or from the da
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, fields
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from kvtheory.checks.noise import extreme, noise, rounded, unsure
 from kvtheory.checks.reading import Series
+from kvtheory.checks.resolution import Resolution
 from kvtheory.checks.spring_response import spring_response
 from kvtheory.checks.theory import CURVES, Curves, Theory
 from kvtheory.results.schemes import SCHEME_ROWS
 
 Array = NDArray[np.float64]
 
-STANDARD = 200e3
-FEWEST_ASSUMED, MOST_ASSUMED = 200.0, 490.0
-"""Elements per m where the density is not known: the paper's 200 /mm, but so many in the static half
-length at least, and at most as many as in Table 1."""
 STEPS_SMEARED = 2.0
 """Steps of the time within which theory is as good as at the instant: a first-order scheme lags by one,
 and its start by one more."""
@@ -40,15 +36,8 @@ ELEMENTS_AT_AN_EDGE = 2.0
 """An edge is reported to the element, and two enter in a step of the paper's scheme."""
 LARGEST_NOISE = 0.1
 """Of a curve or its scale: louder data cannot be judged, and their noise does not excuse them."""
-UNKNOWN_STEP = 0.25
-"""Of the fast time constant: the most that an unknown time step is taken for, unless the data are
-sampled more coarsely than that."""
 WHOLE_EDGE = 2.0
 """Half an element is the mean error of an edge, a whole one the largest."""
-MOST_STEPS = 1000.0
-"""Steps assumed for a base that never moves."""
-SHORTEST_RUN = 20.0
-"""Steps that a run must at least have, so that an assumed step does not smear all of it."""
 AN_EIGHTH, LAGGING = 0.25 / math.e, 0.25
 """Of the band, what a lag of first order is, and what is allowed of the rate: more, for what long steps add
 of the next order in h/T."""
@@ -64,19 +53,6 @@ SAME = 1e-6
 
 EXACT = {"velocity": 3, "sliding_velocity": 3}
 """Fewest significant digits that speak for rounding: a velocity of 0.1 m/s is exact."""
-
-
-class Resolution(NamedTuple):
-    """Spacing of the elements (m) and time step (s), and whether they are known or assumed.
-
-    `spacing_read` says that the spacing was read from the sawtooth of the data.
-    """
-
-    spacing: float
-    time_step: float
-    spacing_known: bool
-    step_known: bool
-    spacing_read: bool = False
 
 
 @dataclass(frozen=True)
@@ -111,22 +87,6 @@ class Allowance:
         """Return some rows of it."""
         parts = (getattr(self, field.name) for field in fields(self))
         return Allowance(*({name: v[rows] for name, v in part.items()} for part in parts))
-
-
-def resolution(theory: Theory, series: Series, per_length: float | None) -> Resolution:
-    """Return the spacing and the step, known or else those of the paper for this scene."""
-    given = per_length or series.per_length
-    half, scheme = theory.static.half_length, SCHEME_ROWS.get(series.scheme or "")
-    spacing = 1.0 / (given or min(max(STANDARD, FEWEST_ASSUMED / half), MOST_ASSUMED / half))
-    speed, span = theory.motion.highest_speed, float(series.time[-1] - series.time[0])
-    step = 2.0 * spacing / speed if speed else span / MOST_STEPS
-    if series.time_step is not None:
-        return Resolution(spacing, float(series.time_step), bool(given), True)
-    paper = scheme is not None and scheme.papers_step and bool(given)
-    if not paper and theory.rates is not None:
-        sampled = float(np.median(np.diff(series.time)))
-        step = min(step, max(UNKNOWN_STEP * abs(theory.rates.fast), sampled))
-    return Resolution(spacing, min(step, span / SHORTEST_RUN), bool(given), paper)
 
 
 def allowance(

@@ -52,7 +52,9 @@ KNOWN = {
     for quantity, spellings in SPELLINGS.items()
     for spelling in spellings.split(", ")
 }
-SHOWN = "time, depth (or z_A), normal_force, friction_force, spring_force, leading_edge, trailing_edge"
+SHOWN = (
+    "time, depth (or z_A), normal_force, friction_force, spring_force, leading_edge, trailing_edge"
+)
 
 
 def recognise(header: str) -> Column | None:

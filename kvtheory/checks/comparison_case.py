@@ -7,9 +7,10 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from kvtheory.checks.allowances import Allowance, Resolution, allowance, resolution
+from kvtheory.checks.allowances import Allowance, allowance
 from kvtheory.checks.noise import SURE, gaps
 from kvtheory.checks.reading import Series
+from kvtheory.checks.resolution import Resolution, resolution
 from kvtheory.checks.theory import CURVES, Curves, Theory
 from kvtheory.results.comparison import Check
 

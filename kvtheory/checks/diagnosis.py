@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Iterator, Sequence
 
+from kvtheory.checks.checklist import SAMPLING
 from kvtheory.checks.comparison_case import Case
 from kvtheory.checks.faults import (
     WRONG,
@@ -9,19 +10,19 @@ from kvtheory.checks.faults import (
     decades,
     offset,
     parameters,
-    replaced,
     scales,
     undone,
 )
-from kvtheory.checks.checklist import SAMPLING
 from kvtheory.checks.fitting import Bench, bench
 from kvtheory.checks.mistakes import mistakes
+from kvtheory.checks.other_scenes import damper, replaced
 from kvtheory.checks.settling import PHASE
 from kvtheory.checks.symptoms import coarse, rattling, seen, unmoved
 from kvtheory.results.comparison import Check, Explanation
 
 FAMILIES: tuple[tuple[Callable[[Bench], Iterator[Trial]], float], ...] = (
-    (undone, 0.5), (decades, 0.5), (offset, 0.97), (parameters, 0.9), (scales, 0.97), (mistakes, 1.0),
+    (undone, 0.5), (replaced, 0.97), (decades, 0.5), (offset, 0.97), (parameters, 0.9), (damper, 0.9),
+    (scales, 0.97), (mistakes, 1.0),
 )  # fmt: skip
 """The families in the order in which they are tried, and the part of the difference that one of their faults
 must explain for nothing else to be looked for: a sign or a unit is not fitted, so that little is enough."""

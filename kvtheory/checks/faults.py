@@ -22,7 +22,6 @@ from kvtheory.checks.fitting import (
     uncertainty,
 )
 from kvtheory.checks.theory import CURVES
-from kvtheory.scene.foundations import Foundation
 
 Array = NDArray[np.float64]
 
@@ -44,7 +43,7 @@ PARAMETERS = (
     Parameter("M", {"support.mass": 1.0}, "kg/mm", 1e-3),
     Parameter("g", {"support.gravity": 1.0}, "m/s^2", 1.0),
     Parameter("inertia", {"support.mass": 1.0, "support.gravity": -1.0}, "kg/mm", 1e-3,
-              " in M z'' alone (Eq. 17), the weight being right"),
+              " as inertia alone (Eq. 17), the weight being right"),
     Parameter("k_s", {"support.stiffness": 1.0}, "MN/m^2", 1e-6),
     Parameter("delta", {"support.depth": 1.0}, "mm", 1e3),
     Parameter("V", {"drive.velocity": 1.0}, "mm/s", 1e3),
@@ -149,24 +148,6 @@ def judged(bench: Bench, pair: Pair | None) -> Fitted:
     return NO_FIT if pair is None else Fitted(bench.fit(*pair))
 
 
-def replaced(bench: Bench) -> Iterator[Trial]:
-    """Put a damper in the place of arms."""
-    scene = bench.case.theory.scene
-    if not scene.foundation.arms:
-        return
-    plain = Foundation(scene.foundation.stiffness, scene.foundation.retardation_time)
-    curves = bench.solved(replace(scene, foundation=plain))
-    text = (
-        "the foundation of the data is Kelvin-Voigt, with the damping C = sum K_i tau_i: its arms have no "
-        "stiffness and no relaxation times, which count unless the motion is slow (F18)"
-    )
-    yield Trial(
-        "Kelvin-Voigt instead of arms",
-        text,
-        judged(bench, None if curves is None else (bench.columns, curves)),
-    )
-
-
 def undone(bench: Bench) -> Iterator[Trial]:
     """Undo signs, units and an exchange of the edges."""
     return (trial for trial in _columns(bench) if not trial.name.startswith(SCALE))
@@ -232,6 +213,7 @@ SCALE = "scale"
 SIGNS = {
     "friction_force": ": F_x on the indenter is positive for V > 0 (Eqs. 13 and 15)",
     "depth": ": delta = -z_A is positive (Eq. 18)",
+    "spring_force": ": the spring holds the indenter against F_x, and counts as F_x does",
     "normal_force": ": F_z on the indenter is positive (Eqs. 12 and 14)",
 }
 """What fixes the sign of a column."""

@@ -24,7 +24,7 @@ LAST_PART, FEWEST_LATE = 0.75, 3
 FITTED = 0.5
 """A time constant that the data fix no better than this, relative, is not judged."""
 PHASE = "phase of the cycle"
-"""The check whose failure alone says nothing against the data: theory itself cannot say where they should be."""
+"""The check whose failure alone says nothing against the data: theory cannot say where they should be."""
 LOST = 0.5
 """Of the swing: where so much is allowed, the phase is lost."""
 

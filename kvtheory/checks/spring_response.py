@@ -19,7 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kvtheory.checks.theory import CURVES, Curves, Theory
-from kvtheory.scene.model import Scene
+from kvtheory.scene.model import Fixed, Scene
 from kvtheory.scene.quantities import changed
 
 Array = NDArray[np.float64]
@@ -55,12 +55,12 @@ def spring_response(
 
 def _disturbed(scene: Scene, share: float, step: float) -> Iterator[Scene]:
     """Yield the scene with a load that is larger by its share, and with what steps of first order add."""
-    if scene.held:
-        stiffness = (1.0 + share) * scene.foundation.stiffness
-        yield replace(scene, foundation=changed(scene.foundation, stiffness=stiffness))
+    support, foundation = scene.support, scene.foundation
+    if isinstance(support, Fixed):
+        stiffer = changed(foundation, stiffness=(1.0 + share) * foundation.stiffness)
+        yield replace(scene, foundation=stiffer)
     else:
-        load = (1.0 + share) * scene.support.weight
-        yield replace(scene, support=replace(scene.support, load=load))
+        yield replace(scene, support=replace(support, load=(1.0 + share) * support.weight))
     if step > 0.0:
         damping = scene.drive.damping + step * float(scene.drive.stiffness or 0.0)
         yield replace(scene, drive=scene.drive.changed(damping=damping))

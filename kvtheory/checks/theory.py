@@ -22,7 +22,7 @@ Array = NDArray[np.float64]
 Curves = Mapping[str, Array]
 
 CURVES = tuple(name for name in SERIES_UNITS if name != "time")
-"""The curves of a series; with a rigid drive, sliding is at V and what takes the place of the spring feels the friction force."""
+"""The curves of a series. A rigid drive slides at V, and what stands for its spring feels the friction."""
 FOR_GOOD = 40.0
 """Time constants after which what is left of a change is below rounding."""
 FOREVER = 1e9
@@ -126,8 +126,9 @@ class Theory:
     def rates(self) -> Rates | None:
         """The time constants at the steady state; None if the indenter cannot move.
 
-        On a spring they follow from the quartic of F22. With a rigid drive, A = sqrt(a^2 + l_r^2) + a and B = x_TE + a, M s^2 + C B s + K A + k_s = 0 (F12); with arms,
-        they are those of the damping that slow sliding feels, and measure what is allowed.
+        On a spring they follow from the quartic of F22. With a rigid drive, A = sqrt(a^2 + l_r^2) + a and
+        B = x_TE + a, M s^2 + C B s + K A + k_s = 0 (F12); with arms, they are those of the damping that slow
+        sliding feels, and measure what is allowed.
         """
         support, foundation = self.scene.support, self.scene.foundation
         if not self.scene.drive.rigid:
@@ -141,7 +142,9 @@ class Theory:
         stiffness = foundation.stiffness * (math.hypot(a, l_r) + a) + support.spring
         damping = foundation.damping * (x_te + a)
         root = complex(damping * damping - 4.0 * support.mass * stiffness) ** 0.5
-        return Rates.of([2.0 * support.mass / (damping + root), (damping + root) / (2.0 * stiffness)])
+        return Rates.of(
+            [2.0 * support.mass / (damping + root), (damping + root) / (2.0 * stiffness)]
+        )
 
     def at(self, times: Array, rtol: float = 1e-6) -> dict[str, Array]:
         """Return the curves at `times` (s): at rest before t = 0, just after a jump of the drive."""
