@@ -18,7 +18,8 @@ from kvtheory.results.schemes import RK4_LIMIT
 class Mistake(NamedTuple):
     """What a simulator does wrong, by name as `Methods.elements` knows it, and what to say.
 
-    `comes_back` says that it shows only where the indenter comes back over ground that it left.
+    `comes_back` says that it shows only where the indenter comes back over ground that it left, as where the
+    drive does not keep its velocity, or has a spring.
     """
 
     name: str
@@ -42,6 +43,10 @@ MISTAKES = (
     Mistake(UNRELAXED,
             "the free surface does not relax where the indenter comes back to it: it decays as exp(-t/tau) "
             "(Eqs. 20 and 25, F8)", {"relaxes": False}, comes_back=True),
+    Mistake("memory forgotten where sliding reverses",
+            "the indenter meets undisturbed ground where it comes back over ground that it left: the surface "
+            "there is still compressed, and relaxes as exp(-t/tau) (Eq. 20, F8)",
+            {"remembers": False}, comes_back=True),
     Mistake("undeformed at the start",
             "at t = 0 the indenter touches an undeformed foundation, where theory has it at rest at its "
             "static depth (Eq. 40)", {"start": 0.0}),
@@ -67,7 +72,7 @@ def mistakes(bench: Bench) -> Iterator[Trial]:
         return
     theory = bench.case.theory
     for name, text, does, comes_back in MISTAKES:
-        if comes_back and theory.scene.drive.constant:
+        if comes_back and theory.scene.drive.constant and theory.scene.drive.rigid:
             continue
         wrong = _simulated(bench, does)
         pair = None if wrong is None else (bench.columns, _changed(bench, right, wrong, 1.0))

@@ -202,19 +202,22 @@ class ContactRule(NamedTuple):
     `flags`: an element in contact stays so until its pressure vanishes (Eqs. 23-25); without, it counts
     only where the surface of the foundation is met. `stale`: within a step that surface is the one at its
     start. `pulls`: an element below the plane z = 0 is never let go. `relaxes`: the free surface decays
-    as e^(-t/tau) (Eq. 20).
+    as e^(-t/tau) (Eq. 20). `remembers`: it is where the indenter left it; without, in the plane z = 0.
     """
 
     flags: bool = True
     stale: bool = False
     pulls: bool = False
     relaxes: bool = True
+    remembers: bool = True
 
     def pressed(
         self, g: Array, p: Array, surface: tuple[Array, Array], touched: NDArray[np.bool_],
         *, within: bool,
     ) -> NDArray[np.bool_]:  # fmt: skip
         """Return which elements press; `surface` is that at the start of the step, and the present one."""
+        if not self.remembers:
+            return np.asarray((g > 0.0) & (p >= 0.0))
         free = surface[0] if self.stale and within else surface[1]
         met = touched | (g > free) if self.flags else g >= free * (1.0 - TIE)
         return np.asarray(met & (g > 0.0 if self.pulls else p >= 0.0))
