@@ -71,6 +71,8 @@ POWER_OF_TEN = 0.02
 """In the decadic logarithm: nearer to a whole number, a factor is a power of ten."""
 DECADES = (-6, -3, -2, -1, 1, 2, 3)
 """Powers of ten by which the times may be off."""
+LONGEST = 30.0
+"""Times the run of the scene, or the data: farther no motion on a spring is followed to try a unit."""
 SHIFTS = (0.002, 0.005, 0.012, 0.03, 0.08, 0.2, 0.5)
 """Of the span of the data: offsets of the time from which the fit may start, in both directions."""
 HUNDREDTH = 0.01
@@ -232,8 +234,10 @@ def _least_squares(bench: Bench, group: tuple[str, ...]) -> float:
 
 
 def decades(bench: Bench) -> Iterator[Trial]:
-    """Multiply the times by powers of ten."""
-    for power in DECADES:
+    """Multiply the times by powers of ten; a cycle on a spring goes on, and is not followed for too long."""
+    scene, end = bench.case.theory.scene, float(bench.time[-1])
+    longest = math.inf if scene.drive.rigid else LONGEST * max(scene.run.duration, end)
+    for power in (power for power in DECADES if end * 10.0**power <= longest):
         text = f"time: off by a power of ten, 10^{-power}; check the unit"
         pair = _timed(bench, bench.time * 10.0**power)
         yield Trial("unit of time", text, judged(bench, pair), 10.0**-power)

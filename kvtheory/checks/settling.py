@@ -111,8 +111,9 @@ def steady_limit(case: Case) -> Iterator[Check]:
         why = f"the data end before {settled * 1e3:.4g} ms, when the transient is over"
         yield not_made(name, equation, why)
         return
+    friction = theory.steady_state.friction_force
     exact = {"depth": theory.steady_state.depth, "normal_force": theory.steady_state.load,
-             "friction_force": theory.steady_state.friction_force}  # fmt: skip
+             "friction_force": friction, "spring_force": friction}  # fmt: skip
     found = []
     for curve in (name for name in exact if name in columns):
         scale, mean = theory.scales[curve], float(columns[curve][late].mean())
