@@ -5,7 +5,7 @@ unchanged scene is held against.
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import kvtheory as kv
@@ -14,16 +14,21 @@ from tests.faulty_simulator import simulate
 
 STOP_AND_GO = [["0 ms", "100 mm/s"], ["50 ms", "100 mm/s"], ["50 ms", "-60 mm/s"], ["100 ms", "-60 mm/s"],
                ["100 ms", "100 mm/s"]]  # fmt: skip
+SPRING = {"stiffness": "1 MN/m^2", "damping": "20 kN*s/m^2", "mass": "2 kg/mm"}
+LIGHT = {"stiffness": "1 MN/m^2", "damping": "1 kN*s/m^2", "mass": "0.1 kg/mm"}
 SCENES = {
     "Table 1": kv.Scene(),
     "fixed": kv.Scene.table1("fixed"),
     "suspended": kv.Scene.table1("suspended"),
     "10 mm/s": kv.Scene(drive=kv.Drive(velocity=0.01)),
     "reversal": kv.Scene(drive=kv.Drive(history=STOP_AND_GO)),
+    "spring": kv.Scene(drive=kv.Drive("91 mm/s", **SPRING)),
+    "spring, to and fro": kv.Scene(drive=kv.Drive(history=STOP_AND_GO, **LIGHT)),
 }
 STEP = 1e-4
 SYMBOLS = {"tau": "foundation.retardation_time", "K": "foundation.stiffness", "R": "indenter.radius",
-           "M": "support.mass", "g": "support.gravity", "V": "drive.velocity"}  # fmt: skip
+           "M": "support.mass", "g": "support.gravity", "V": "drive.velocity", "k_x": "drive.stiffness",
+           "M_x": "drive.mass", "c_x": "drive.damping"}  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -101,7 +106,8 @@ def others(where):
 def rules(where, names):
     faults = {"pull": "tension allowed at the trailing edge", "stale": "contact lost while rising",
               "dropped": "contact lost while rising", "frozen": "no relaxation of the free surface",
-              "unrelaxed": "no relaxation of the free surface"}  # fmt: skip
+              "unrelaxed": "no relaxation of the free surface",
+              "forgetful": "memory forgotten where sliding reverses"}  # fmt: skip
     for rule in names:
         yield Plant(
             f"rule: {rule}",
@@ -109,6 +115,18 @@ def rules(where, names):
             lambda r=rule: series(SCENES[where], {}, rule=r),
             (faults[rule],),
         )
+
+
+def springs():
+    """Plants of the drive itself."""
+    scene = SCENES["spring"]
+    rigid, bare = (
+        lambda: series(replace(scene, drive=kv.Drive(scene.drive.velocity)), {}),
+        lambda: series(scene, {"drive.damping": 0.0}),
+    )
+    yield Plant("rigid drive", "spring", rigid, ("rigid drive instead of a spring",))
+    yield Plant("no damper", "spring", bare, ("wrong c_x",))
+    yield from rules("spring, to and fro", ("forgetful", "stale", "frozen"))
 
 
 def numerics():
@@ -139,8 +157,12 @@ def plants():
         *others("Table 1"),
         *rules("Table 1", ("pull", "dropped", "unrelaxed")),
     ]
-    found += [*parameters("reversal"), *rules("reversal", ("pull", "stale", "frozen", "unrelaxed"))]
+    found += [
+        *parameters("reversal"),
+        *rules("reversal", ("pull", "stale", "frozen", "unrelaxed", "forgetful")),
+    ]
     found += [*parameters("suspended"), *rules("suspended", ("pull", "dropped")), *numerics()]
+    found += [*parameters("spring"), *springs()]
     return found
 
 
@@ -161,7 +183,13 @@ def quick():
         if plant.scene in ("Table 1", "10 mm/s") and plant.name not in left_out
     ]
     # Where the base keeps its velocity, stale contacts do less than the elements at an edge.
-    there = [("reversal", "rule: frozen"), ("reversal", "rule: stale")]
+    there = [
+        ("reversal", "rule: frozen"),
+        ("reversal", "rule: stale"),
+        ("reversal", "rule: forgetful"),
+    ]
+    there += [("spring", name) for name in ("k_x x 0.9", "M_x x 1.2", "c_x x 1.2", "rigid drive")]
+    there += [("spring, to and fro", "rule: forgetful")]
     return chosen + [plant for plant in plants() if (plant.scene, plant.name) in there]
 
 
@@ -176,7 +204,7 @@ def main():
         factor = "" if first is None or first.factor is None else f" {first.factor:.4g}"
         also = ", ".join(each.name for each in rest if each.enough)
         name = "nothing" if first is None else f"{first.name}{factor} ({first.rank:.0%})"
-        row = f"{'ok' if hit else 'NO'}  {plant.scene:10s} {plant.name:24s} {found.verdict:9s}"
+        row = f"{'ok' if hit else 'NO'}  {plant.scene:18s} {plant.name:24s} {found.verdict:9s}"
         print(f"{row} {name:52s} {also}", flush=True)
     print(f"{right} of {len(plants())} named first")
 
