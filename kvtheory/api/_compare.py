@@ -92,7 +92,8 @@ def compare(
     scene
         What is modelled; without it, the paper's Table 1 with a dead weight. The indenter must be a
         parabola. On a Prony series the theory is that of many elements, and of `steady` at the end; of
-        faults, only wrong signs and units and a Kelvin-Voigt foundation are then looked for.
+        faults, only wrong signs and units and a Kelvin-Voigt foundation are then looked for, and the drive
+        must be rigid. On a spring the data may hold ``sliding_velocity`` and ``spring_force``, too.
     data
         A path to a CSV with named columns and bracketed units (``t [ms], z_A [mm], F_z [N/mm]``), a
         result with the names of `kvtheory.transient`, or a mapping of arrays (by those names in SI,

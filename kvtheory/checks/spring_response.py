@@ -41,15 +41,18 @@ def spring_response(
     inertia, stiffness = scene.drive_mass, float(scene.drive.stiffness or 0.0)
     span = float(time[-1] - time[0])
     lasting = float(np.trapezoid(force, time)) / span / static.load
-    reach = QUARTER * math.sqrt(inertia / stiffness)
+    swing = math.sqrt(inertia / stiffness)  # the period by 2 pi, in s
     moved = {name: np.zeros_like(time) for name in CURVES}
     for other in _disturbed(scene, lasting, step):
         found = replace(theory, scene=other).at(time, rtol)
         for name in CURVES:
-            moved[name] += _nearby(time, np.nan_to_num(np.abs(found[name] - now[name])), reach)
+            moved[name] += _nearby(
+                time, np.nan_to_num(np.abs(found[name] - now[name])), QUARTER * swing
+            )
     kick = SWING * force * static.half_length / theory.scene.indenter.radius  # type: ignore[union-attr]
-    moved["spring_force"] += kick
-    moved["sliding_velocity"] += kick / math.sqrt(stiffness * inertia)
+    turned = np.clip(time / swing, 0.0, 1.0)  # a force needs time to move a mass
+    moved["spring_force"] += kick * turned**2
+    moved["sliding_velocity"] += kick * turned * swing / inertia
     return moved
 
 
