@@ -58,8 +58,8 @@ class Comparison:
     """Whether a time series agrees with theory, check by check, and if not, why.
 
     `verdict` is ``"agrees"``, ``"disagrees"`` if one of the checks that could be made failed, or
-    ``"cannot tell"`` if it was that of the sampling alone, or of the phase of a cycle. `diagnosis` says it in words; `explanations`
-    are the faults behind it, the best first.
+    ``"cannot tell"`` if it was that of the sampling alone, or of the phase of a cycle. `diagnosis` says it
+    in words; `explanations` are the faults behind it, the best first.
     """
 
     verdict: str
