@@ -14,6 +14,9 @@ from kvtheory.models.elements.law import Array
 from kvtheory.models.elements.model import Model
 from kvtheory.models.elements.row import ElementRow, IndenterState, Under
 
+AT_REST = 1e-12
+"""Of a_0/τ: slower on a spring, it stands but for rounding, and the edges are those of the drive."""
+
 
 class ContactSums(NamedTuple):
     """What the elements do to the indenter: forces in N/m, edges in m (NaN in flight), pressure in Pa.
@@ -52,7 +55,8 @@ def report(row: ElementRow, at: IndenterState, time: float) -> tuple[float, ...]
         found = _parts_of_elements(model, under, p, p_before, pressed, at.depth)
     else:
         found = _whole_elements(model, under, p, pressed)
-    forward = sliding >= 0.0 if at.along_rate else row.path.forward(time)
+    slides = at.along_rate and abs(sliding) > AT_REST * model.at_rest.velocity
+    forward = sliding > 0.0 if slides else row.path.forward(time)
     edges = found[2:4] if forward else found[3:1:-1]
     held = model.spring_along * at.along + model.damping_along * at.along_rate
     return time, V, at.depth, at.rate, *found[:2], *edges, found[4], sliding, held, *found[5:]

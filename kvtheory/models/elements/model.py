@@ -154,6 +154,11 @@ class Model:
             area += sum(kink_area(self.spacing, gaps(overlap, *edge))[0] for edge in ends)
         return self.law.stiffness * area
 
+    def tilt(self, length: float) -> float:
+        """Return ∫ h'^2 dx of a contact of this length, as steep as the one at rest."""
+        x = np.linspace(*span(self.indenter, self.depth), SAMPLES)
+        return length * float(np.square(self.slope(x)).mean())
+
     def sliding(self, depth: float, V: float) -> tuple[float, float]:
         """Return length and normal force of a contact that slides steadily on a continuous foundation."""
         x = np.linspace(*span(self.indenter, depth), SAMPLES)

@@ -121,11 +121,17 @@ def _default_step(model: Model, path: BaseMotion, scheme: Scheme) -> float:
             )
         return passing
     resolved = min(model.law.retardation_time / PER_RELAXATION, _period(model) / PER_OSCILLATION)
-    if model.sprung:
-        along = 2.0 * math.pi * math.sqrt(model.mass_along / model.spring_along)
-        resolved = min(resolved, along / PER_OSCILLATION)
+    resolved = min(resolved, _swing(model) / PER_OSCILLATION)
     stable = limit_at(scheme, model, max(lengths(model, path)))
     return min(passing, max(resolved, path.end / MOST_STEPS), STABLE_SHARE * stable)
+
+
+def _swing(model: Model) -> float:
+    """Return the period along x, in s; infinite where the dampers of the contact at rest allow none."""
+    resistance = model.damping_along + model.law.damping * model.tilt(2.0 * model.half_length)
+    stiff = model.spring_along * model.mass_along
+    swings = model.sprung and resistance * resistance < 4.0 * stiff
+    return 2.0 * math.pi * math.sqrt(model.mass_along / model.spring_along) if swings else math.inf
 
 
 def _period(model: Model) -> float:

@@ -13,7 +13,7 @@ from dataclasses import replace
 import numpy as np
 
 from kvtheory.models.elements.law import Array
-from kvtheory.models.elements.model import SAMPLES, Model, span
+from kvtheory.models.elements.model import Model, span
 from kvtheory.models.elements.row import ElementRow, IndenterState
 from kvtheory.models.elements.schemes import DEFAULT, Scheme
 from kvtheory.results.errors import DivergenceError
@@ -70,8 +70,7 @@ def limit_at(scheme: Scheme, model: Model, length: float) -> float:
         return math.inf
     limits = [_limit(scheme, model, length)]
     if model.sprung:
-        x = np.linspace(*span(model.indenter, model.depth), SAMPLES)
-        tilt = length * float(np.square(model.slope(x)).mean())
+        tilt = model.tilt(length)
         law = replace(model.law, damping=model.law.damping + model.damping_along / tilt)
         along = replace(model, mass=model.mass_along, spring=model.spring_along, law=law)
         limits.append(_limit(scheme, along, tilt))
