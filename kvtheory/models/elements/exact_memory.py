@@ -11,6 +11,10 @@ which therefore is the one root of a monotone function. The depth advances with 
 fit θ = 1/(1 - e^(-z)) - 1/z, z = h C L/M, the velocity falls by e^(-z) exactly as it should, and the
 order is two. Both are stable at any step, since θ >= 1/2 (derivations, `element-stability`).
 
+On a spring the place along x is found in the same way, with M_x, k_x and c_x and the force of an element
+times its slope halfway through the step. The work of these forces on both motions is what elements of a
+parabola store and lose, so that no step gains energy, whatever comes into contact or leaves it in the step.
+
 On arms, an element in contact is a true element under a surface that moves along a straight line: its mean
 pressure times its way is the work done on it, what its springs store and its dampers lose. With θ = 1/2 the
 same holds of mass and spring, so that the energy of a step with the contact held can only fall, and more with

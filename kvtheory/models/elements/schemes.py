@@ -1,6 +1,7 @@
 """The schemes by name: how each moves the indenter and then its elements by one step in time.
 
-The indenter obeys M δ'' = W - k_s (δ - δ_0) - F_z (Eq. 17; a prime is d/dt). The schemes differ in how
+The indenter obeys M δ'' = W - k_s (δ - δ_0) - F_z (Eq. 17; a prime is d/dt), and on a spring in the drive
+M_x x'' = F_x - c_x x' - k_x x, while the base moves at V - x' under it. The schemes differ in how
 F_z is summed over the elements and over the step; what is known of each is in `results.schemes`.
 """
 

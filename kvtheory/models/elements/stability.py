@@ -13,7 +13,7 @@ from dataclasses import replace
 import numpy as np
 
 from kvtheory.models.elements.law import Array
-from kvtheory.models.elements.model import Model, span
+from kvtheory.models.elements.model import Model, root, span
 from kvtheory.models.elements.row import ElementRow, IndenterState
 from kvtheory.models.elements.schemes import DEFAULT, Scheme
 from kvtheory.results.errors import DivergenceError
@@ -84,21 +84,15 @@ def _limit(scheme: Scheme, model: Model, length: float) -> float:
     law, M = model.law, model.mass
     fastest = law.damping * length / M + math.sqrt((law.at_once * length + model.spring) / M)
 
-    def grows(h: float) -> bool:
+    def growth(h: float) -> float:
         step = amplification(scheme, model, length, h)
-        return bool(abs(np.linalg.eigvals(step)).max() > 1.0 + GROWS)
+        return (
+            float(abs(np.linalg.eigvals(step)).max()) - 1.0 - GROWS
+            if h * fastest > SHORTEST
+            else -1.0
+        )
 
-    low = high = 1.0 / fastest
-    while grows(low):
-        low, high = 0.5 * low, low
-        if low * fastest < SHORTEST:
-            return low
-    while not grows(high):
-        low, high = high, 2.0 * high
-    while high - low > LIMIT_RTOL * high:
-        middle = 0.5 * (low + high)
-        low, high = (low, middle) if grows(middle) else (middle, high)
-    return low
+    return root(growth, 1.0 / fastest, LIMIT_RTOL)
 
 
 def amplification(scheme: Scheme, model: Model, length: float, h: float) -> Array:
