@@ -11,12 +11,17 @@ Progress = Callable[[float, str], object]
 """Called now and then with the share of the work done, from 0 to 1, and words such as
 ``"600 of 1,000 points"``; the words may be empty."""
 
+
 PATIENCE = 1.0
 """Seconds before anything is shown."""
 ON_TERMINAL, IN_LOG = 0.2, 10.0
 """Seconds between two reports."""
 SETTLING = 0.5
 """Seconds before the time left is worth telling."""
+
+
+def silent(share: float, words: str) -> None:
+    """Report nothing."""
 
 
 class ProgressLine:

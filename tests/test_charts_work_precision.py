@@ -9,7 +9,7 @@ from click.testing import CliRunner
 
 import kvtheory as kv
 from kvtheory.charts import methods, work_precision
-from kvtheory.charts.collection import chosen
+from kvtheory.charts.collection import chosen, measure
 from kvtheory.charts.methods import Clock, Method, TimedOutError, transient_methods
 from kvtheory.charts.problems import (
     STANDARD,
@@ -266,3 +266,13 @@ def test_mistakes(arguments, message, tmp_path, monkeypatch):
 def test_all_standard_scenes_have_a_chart():
     jobs = chosen(kv.Scene(), ["all"], quick=True)
     assert len(jobs) == len(STANDARD) + 3
+
+
+def test_charts_tell_their_progress_by_share_and_words():
+    told = []
+
+    def job(effort, progress):
+        progress(0.5, "half")
+
+    measure([job, job], quick=True, progress=lambda *report: told.append(report))
+    assert told == [(0.25, "half"), (0.75, "half")]

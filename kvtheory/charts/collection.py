@@ -6,6 +6,7 @@ from functools import partial
 from kvtheory.charts.problems import STANDARD, Problem, standard_scene
 from kvtheory.charts.steady_precision import VELOCITIES, steady_chart, suits
 from kvtheory.charts.work_precision import FULL, QUICK, Chart, transient_chart
+from kvtheory.progress import Progress, silent
 from kvtheory.scene.drives import Drive
 from kvtheory.scene.model import Scene
 from kvtheory.scene.quantities import nearest
@@ -49,15 +50,13 @@ def _sliding(name: str) -> Scene:
     return standard_scene(name)
 
 
-def measure(
-    jobs: Sequence[Job], *, quick: bool, progress: Callable[[float], object] = lambda _: None
-) -> list[Chart]:
+def measure(jobs: Sequence[Job], *, quick: bool, progress: Progress = silent) -> list[Chart]:
     """Make the charts, one after the other, so that nothing disturbs the times."""
     charts = []
     for done, job in enumerate(jobs):
 
-        def report(share: float, done: int = done) -> None:
-            progress((done + share) / len(jobs))
+        def report(share: float, words: str, done: int = done) -> None:
+            progress((done + share) / len(jobs), words)
 
         charts.append(job(effort=QUICK if quick else FULL, progress=report))
     return charts

@@ -21,6 +21,7 @@ from kvtheory.models.elements.row import ElementRow, IndenterState, OutgrownErro
 from kvtheory.models.elements.schemes import SCHEMES, Scheme
 from kvtheory.models.elements.simulation import ELEMENTS_PER_STEP
 from kvtheory.models.elements.stability import lengths, limit_at
+from kvtheory.progress import Progress, silent
 from kvtheory.scene.drives import Drive
 from kvtheory.scene.indenters import Parabola
 from kvtheory.scene.model import DeadWeight, Foundation, Run, Scene
@@ -237,9 +238,7 @@ def _begin(
     return row, scheme, start._replace(depth=float(state.depth))
 
 
-def stability_maps(
-    *, quick: bool = False, progress: Callable[[float], object] = lambda _: None
-) -> dict[str, list[Map]]:
+def stability_maps(*, quick: bool = False, progress: Progress = silent) -> dict[str, list[Map]]:
     """Return the maps of every scheme: over ``"velocity"`` and tau, and over lambda and the ``"step"``."""
     kinds = {
         "velocity": (velocity_map, VELOCITY_RANGE, TAU_RANGE),
@@ -253,5 +252,5 @@ def stability_maps(
             points = (points[0] + 1) // 2, (points[1] + 1) // 2
         axes = [np.geomspace(*end, n) for end, n in zip(ends, points, strict=True)]
         found[kind].append(make(name, *axes))
-        progress(done / (len(kinds) * len(SCHEMES)))
+        progress(done / (len(kinds) * len(SCHEMES)), name)
     return found

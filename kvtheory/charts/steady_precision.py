@@ -15,6 +15,7 @@ from kvtheory.api import elements, steady
 from kvtheory.charts.methods import DENSITIES, Clock
 from kvtheory.charts.work_precision import FULL, Chart, Effort, Point, Series, attempt, repeat
 from kvtheory.models.elements.schemes import DEFAULT
+from kvtheory.progress import Progress, silent
 from kvtheory.scene.model import Run, Scene
 from kvtheory.scene.requirements import lacks_paper_model
 
@@ -165,7 +166,7 @@ def _by_elements(scene: Scene, density: float, clock: Clock) -> tuple[float, flo
 
 def steady_chart(
     scene: Scene, name: str, *, effort: Effort = FULL,
-    progress: Callable[[float], object] = lambda _: None,
+    progress: Progress = silent,
 ) -> Chart:  # fmt: skip
     """Measure every method of steady sliding on a scene that `suits`.
 
@@ -196,7 +197,7 @@ def steady_chart(
         series.first = attempt(series.points, partial(_solve, solve, right), effort)
         good = [point for point in series.points if point.errors]
         jobs += [(point, partial(solve, point.knob, Clock())) for point in good]
-        progress(done / (len(solvers) + 1))
+        progress(done / (len(solvers) + 1), series.method)
     repeat(jobs, effort)
     for series, _, count in solvers:
         for point in series.points:

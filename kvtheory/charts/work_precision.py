@@ -17,6 +17,7 @@ import numpy as np
 
 from kvtheory.charts.methods import Clock, Method, TimedOutError, transient_methods
 from kvtheory.charts.problems import Problem, Reference, errors, reference
+from kvtheory.progress import Progress, silent
 from kvtheory.results.certificate import record
 from kvtheory.results.errors import DivergenceError
 
@@ -107,7 +108,7 @@ class Chart:
 
 def transient_chart(
     problem: Problem, *, methods: Iterable[Method] | None = None, effort: Effort = FULL,
-    progress: Callable[[float], object] = lambda _: None,
+    progress: Progress = silent,
 ) -> Chart:  # fmt: skip
     """Measure every method that suits the problem.
 
@@ -129,9 +130,9 @@ def transient_chart(
         series.append(Series(method.name, method.kind, method.knob, method.work, points, first))
         good = [point for point in points if not point.reason or point.errors]
         jobs += [(point, partial(method.solve, problem, point.knob, Clock())) for point in good]
-        progress(0.7 * done / len(chosen))
+        progress(0.7 * done / len(chosen), method.name)
     repeat(jobs, effort)
-    progress(1.0)
+    progress(1.0, "")
     return Chart(problem.name, series, right.agreement, right.methods)
 
 
