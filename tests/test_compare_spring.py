@@ -171,3 +171,19 @@ def test_a_spring_on_a_prony_series_is_refused():
     scene = kv.Scene(foundation=arms, drive=kv.Drive("91 mm/s", stiffness="1 MN/m^2"))
     with pytest.raises(ValueError, match=r"Prony series holds for a rigid drive only"):
         kv.compare(scene, exact("stable"))
+
+
+@pytest.mark.parametrize("scheme", ["edge-corrected", "semi-implicit"])
+def test_our_own_simulation_agrees(scheme):
+    found = kv.compare(SCENES["backward"], scheme=scheme)
+    assert failed(found) == []
+    assert found.verdict == "agrees"
+
+
+def test_our_own_run_that_diverges_disagrees(tmp_path):
+    slow = kv.Scene(drive=kv.Drive("12 mm/s", stiffness="1 MN/m^2"))
+    found = kv.compare(slow, scheme="paper", per_length="60 /mm")
+    assert failed(found) == ["run to the end"]
+    assert found.explanations[0].name == "unstable time step"
+    found.to_csv(tmp_path / "a.csv")
+    assert "depth, theory [m]" in (tmp_path / "a.csv").read_text(encoding="utf-8")
