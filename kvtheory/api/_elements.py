@@ -9,7 +9,6 @@ from kvtheory.progress import Progress
 from kvtheory.results import Simulation
 from kvtheory.scene.model import Scene
 from kvtheory.scene.quantities import Quantity, SceneError, convert, nearest, problem
-from kvtheory.scene.requirements import lacks_line, require
 
 PER_LENGTH = Quantity("1/m", "elements per length", 0.0, True)
 DENSITY = 200e3
@@ -30,8 +29,10 @@ def elements(
 ) -> Simulation:
     """Simulate a scene by point elements that move with the base: any shape, support and drive.
 
-    The foundation is Kelvin-Voigt or a Prony series. With `drive.stiffness` the indenter is held along x by
-    a spring and slides with V - dx/dt, backwards too; the default scheme is of the second order then, too.
+    The foundation is Kelvin-Voigt or a Prony series. A ball, or any profile of revolution, is strips along
+    x, about six elements wide; its forces are sums over them. With `drive.stiffness` the indenter is held
+    along x by a spring and slides with V - dx/dt, backwards too; the default scheme is of the second order
+    then, too.
 
     Parameters
     ----------
@@ -88,6 +89,9 @@ def elements(
     >>> hung = kv.Scene(drive=kv.Drive(velocity="91 mm/s", stiffness="1 MN/m^2"))
     >>> (kv.elements(hung, at=["0 ms", "20 ms"], certify=False).spring_force / 1e3).round(2).tolist()
     [0.0, 0.33]
+    >>> ball = kv.Scene(kv.Sphere("10 mm"), support=kv.DeadWeight(mass="1 kg"))
+    >>> kv.elements(ball, per_length="50 /mm", at=["0 ms", "200 ms"]).normal_force.round(2).tolist()
+    [51.98, 9.81]
 
     References
     ----------
@@ -98,7 +102,6 @@ def elements(
     from kvtheory.models.elements.schemes import SCHEMES
     from kvtheory.models.elements.simulation import simulate
 
-    require(lacks_line, scene, "the discrete simulator")
     if scheme not in SCHEMES:
         raise ValueError(f'`scheme` = "{scheme}": {nearest(str(scheme), SCHEMES)}')
     problems: list[str] = []

@@ -224,13 +224,14 @@ class Sphere(_Shape):
         """The shape in the middle plane."""
         return Parabola(self.radius)
 
-    def height(self, x: Value) -> Value:
-        """Return h(x) in the middle plane."""
-        return self.profile.height(x)
+    def height(self, x: Value, y: Value = 0.0) -> Value:
+        """Return h(x, y), by default in the middle plane."""
+        across = self.radius if self.radius_across is None else self.radius_across
+        return x * (x / (2.0 * self.radius)) + y * (y / (2.0 * across))
 
-    def slope(self, x: Value) -> Value:
-        """Return h'(x) in the middle plane."""
-        return self.profile.slope(x)
+    def slope(self, x: Value, y: Value = 0.0) -> Value:
+        """Return dh/dx, the same for every y."""
+        return x / self.radius
 
 
 @dataclass(frozen=True)
@@ -240,8 +241,8 @@ class Revolved:
     From Python alone; the profile is one of the shapes of this module.
 
     >>> cone = Revolved(Wedge(inclination=0.1))
-    >>> cone.height(-0.02), cone.stretch
-    (0.002, 1.0)
+    >>> round(float(cone.height(-0.03, 0.04)), 12), cone.stretch
+    (0.005, 1.0)
     """
 
     shape: ClassVar[str] = "revolved"
@@ -270,13 +271,14 @@ class Revolved:
         """Those of the profile."""
         return self.profile.kinks
 
-    def height(self, x: Value) -> Value:
-        """Return h(x) in the middle plane."""
-        return self.profile.height(x)
+    def height(self, x: Value, y: Value = 0.0) -> Value:
+        """Return h(rho), by default in the middle plane."""
+        return self.profile.height(np.hypot(x, y))
 
-    def slope(self, x: Value) -> Value:
-        """Return h'(x) in the middle plane."""
-        return self.profile.slope(x)
+    def slope(self, x: Value, y: Value = 0.0) -> Value:
+        """Return dh/dx = h'(rho) x/rho, zero at the lowest point."""
+        rho = np.hypot(x, y)
+        return self.profile.slope(rho) * (x / np.maximum(rho, np.finfo(float).tiny))
 
 
 Convex = Parabola | Circle | PowerLaw | Wedge

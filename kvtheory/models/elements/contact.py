@@ -13,6 +13,7 @@ from kvtheory.models.elements.edges import edges_of, gaps, straight, touching
 from kvtheory.models.elements.law import Array
 from kvtheory.models.elements.model import Model
 from kvtheory.models.elements.row import ElementRow, IndenterState, Under
+from kvtheory.models.elements.strips import total
 
 AT_REST = 1e-12
 """Of a_0/τ: slower on a spring, it stands but for rounding, and the edges are those of the drive."""
@@ -21,6 +22,7 @@ AT_REST = 1e-12
 class ContactSums(NamedTuple):
     """What the elements do to the indenter: forces in N/m, edges in m (NaN in flight), pressure in Pa.
 
+    Of a ball, forces are in N, and edges those in its middle plane.
     The last two say by how much the pressure differs between the elements beside its peak: inside the
     contact, where that matters, or at its edge.
     """
@@ -34,7 +36,8 @@ class ContactSums(NamedTuple):
     edge_doubt: float = 0.0
 
 
-FLIGHT = ContactSums(0.0, 0.0, math.nan, math.nan, 0.0)
+NOWHERE: tuple[float, float] = (math.nan, math.nan)
+FLIGHT = ContactSums(0.0, 0.0, *NOWHERE, 0.0)
 
 
 def report(row: ElementRow, at: IndenterState, time: float) -> tuple[float, ...]:
@@ -49,12 +52,13 @@ def report(row: ElementRow, at: IndenterState, time: float) -> tuple[float, ...]
     pressed = under.touched & (model.rule.pulls | (p >= 0.0))
     before = row.path.velocity(at.time, before=True) - at.along_rate
     p_before = p if before == sliding else pressure(row, under, at, before)
+    weight = model.weights(at.depth, under.strips, p.size)
     if not pressed.any():
         found = FLIGHT
     elif model.parts:
-        found = _parts_of_elements(model, under, p, p_before, pressed, at.depth)
+        found = _parts_of_elements(model, under, (p, p_before), weight, pressed, at.depth)
     else:
-        found = _whole_elements(model, under, p, pressed)
+        found = _whole_elements(model, under, p, weight, pressed)
     slides = at.along_rate and abs(sliding) > AT_REST * model.at_rest.velocity
     forward = sliding > 0.0 if slides else row.path.forward(time)
     edges = found[2:4] if forward else found[3:1:-1]
@@ -68,7 +72,7 @@ def pressure(row: ElementRow, under: Under, at: IndenterState, V: float) -> Arra
     Of one that is not in contact, it is what it would be had it followed the indenter in the last step.
     """
     law, state, g = row.model.law, under.state, at.depth - under.height
-    g_rate = at.rate - V * row.model.slope(under.x)
+    g_rate = at.rate - V * row.model.slope(under.x, under.y)
     p = law.pressure(state, g, g_rate)
     if law.remembers:
         p += np.where(under.touched, 0.0, law.followed(g - state[0], g_rate, row.last))
@@ -76,27 +80,33 @@ def pressure(row: ElementRow, under: Under, at: IndenterState, V: float) -> Arra
 
 
 def _whole_elements(
-    model: Model, under: Under, p: Array, pressed: NDArray[np.bool_]
+    model: Model, under: Under, p: Array, weight: Array, pressed: NDArray[np.bool_]
 ) -> ContactSums:
     """Sum over whole elements, as in the paper (Eqs. 12-15)."""
     inside = np.flatnonzero(pressed)
     dx, x, p = model.spacing, under.x[inside], p[inside]
-    force, push = dx * float(p.sum()), -dx * float(model.slope(x) @ p)
-    return ContactSums(force, push, x[0] - 0.5 * dx, x[-1] + 0.5 * dx, float(p.max()))
+    each = dx * weight[inside] * p
+    middle = x[inside < under.x.size // under.strips]
+    left, right = (middle[0] - 0.5 * dx, middle[-1] + 0.5 * dx) if middle.size else NOWHERE
+    push = -total(model.slope(x, under.y[inside]), each)
+    return ContactSums(float(each.sum()), push, left, right, float(p.max()))
 
 
 def _parts_of_elements(
-    model: Model, under: Under, p: Array, p_before: Array, pressed: NDArray[np.bool_], depth: float
-) -> ContactSums:
+    model: Model, under: Under, pressures: tuple[Array, Array], weight: Array,
+    pressed: NDArray[np.bool_], depth: float,
+) -> ContactSums:  # fmt: skip
     """Sum by trapezoids up to the very edges.
 
     An edge peels where p falls to zero, between two elements by a straight line, and touches where
     the indenter meets the free surface. Where V jumps, an edge that peeled until then, by the pressure
-    `p_before`, is still where it was, or has gone further in.
+    before, the second of `pressures`, is still where it was, or has gone further in.
     """
-    inside = np.flatnonzero(pressed)
-    dx, overlap, slope = model.spacing, depth - under.height - under.left[0], model.slope(under.x)
-    force, push = float(p[inside].sum()), -float(slope[inside] @ p[inside])
+    inside, (p, p_before) = np.flatnonzero(pressed), pressures
+    dx, overlap = model.spacing, depth - under.height - under.left[0]
+    slope, middle = model.slope(under.x, under.y), under.x.size // under.strips
+    each = weight[inside] * p[inside]
+    force, push = float(each.sum()), -total(slope[inside], each)
     reach, places, at_edges = {}, [], []
     for inner, outward in edges_of(pressed):
         outer = inner + outward
@@ -108,14 +118,17 @@ def _parts_of_elements(
         share = min(before, now, 1.0)
         x = under.x.item(inner) + share * dx * outward
         p_edge = 0.0 if now <= share else p_in + share * (p_out - p_in)
-        force += 0.5 * (share * (p_in + p_edge) - p_in)
-        ends = slope.item(inner) * p_in, float(model.slope(x)) * p_edge
-        push -= 0.5 * (share * (ends[0] + ends[1]) - ends[0])
+        half = 0.5 * weight.item(inner)
+        force += half * (share * (p_in + p_edge) - p_in)
+        ends = slope.item(inner) * p_in, float(model.slope(x, under.y.item(inner))) * p_edge
+        push -= half * (share * (ends[0] + ends[1]) - ends[0])
         reach[inner, outward] = share
-        places.append(x)
+        if inner < middle:
+            places.append(x)
         at_edges.append((p_edge, 0.0, abs(p_in - p_out)))
     peak = max(_peak(model, p, int(inside[p[inside].argmax()]), reach), *at_edges)
-    return ContactSums(dx * force, dx * push, places[0], places[-1], *peak)
+    left, right = (places[0], places[-1]) if places else NOWHERE
+    return ContactSums(dx * force, dx * push, left, right, *peak)
 
 
 def _peeling(inside: float, outside: float) -> float:

@@ -59,7 +59,8 @@ def estimate(
     edge = (
         max(jump, known if model.sprung else 0.0) + (KINKED if model.indenter.kinks else 0.0)
     ) * model.spacing
-    force = jump * model.spacing * float(rows["peak_pressure"].max())
+    width = 1.0 if model.indenter.per_width else 2.0 * model.half_width(model.depth)
+    force = jump * model.spacing * width * float(rows["peak_pressure"].max())
     steepest = float(abs(model.slope(np.array(span(model.indenter, model.depth)))).max())
     differences["leading_edge"] += edge
     differences["trailing_edge"] += edge

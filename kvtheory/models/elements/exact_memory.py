@@ -40,6 +40,7 @@ from kvtheory.models.elements.edges import bend, edges_of, gaps, jump, kink_area
 from kvtheory.models.elements.law import Array
 from kvtheory.models.elements.model import Model
 from kvtheory.models.elements.row import ElementRow, IndenterState, Under
+from kvtheory.models.elements.strips import total
 
 NEWTON_STEPS = 60
 """The iteration ends after three or four; a monotone convex function cannot need many more."""
@@ -50,8 +51,13 @@ SLIDE_RTOL = 1e-9
 """Of the static half length: a change so small was the last, and leaves far less."""
 SMALL = 1e-2
 """Below it, θ(z) is taken from its series to z^3, where the closed form would cancel."""
+ROOM, MORE_ROOM = 1.0, 4.0
+"""Of the static depth: so far it is at first taken to sink in a step at most; then so many times farther."""
 STANDS = 1e-12
 """Of the static depth: an edge where the overlap falls by less in a step does not move inward."""
+
+Side = tuple[int, int]
+"""A strip, and -1 or 1 for its left or right side."""
 
 
 def exponential_fit(z: float) -> float:
@@ -71,13 +77,11 @@ def implicit_step(
     On a spring, so is the place along x: for every place there is one depth.
     """
     model = row.model
-    counts: dict[int, bool] = {}
+    counts: dict[Side, bool] = {}
     slid = h * now.along_rate / (1.0 + 0.25 * model.spring_along * h * h / model.mass_along)
     new = IndenterState(now.time + h, now.depth, 0.0, now.along + slid)
     for _ in range(SLIDE_STEPS):
-        contact = _Contact(row, now, new, h, counts)
-        if math.isfinite(model.mass):
-            new = contact.sink(new, theta)
+        contact, new = _sunk(row, now, new, h, theta, counts)
         if not model.sprung:
             break
         before, new = new.along, contact.slide(new, theta)
@@ -89,18 +93,35 @@ def implicit_step(
     return new
 
 
+def _sunk(
+    row: ElementRow, now: IndenterState, new: IndenterState, h: float,
+    theta: Callable[[float], float], counts: dict[Side, bool],
+) -> "tuple[_Contact, IndenterState]":  # fmt: skip
+    """Return the contact of a step that ends at a given place along x, and the depth there."""
+    most = _sinking(row.model, now, h)
+    sinks = min(most, ROOM * row.model.depth)
+    while True:
+        contact = _Contact(row, now, new, h, sinks, counts)
+        found = contact.sink(new, theta) if math.isfinite(row.model.mass) else new
+        if not found.depth > now.depth + sinks or sinks == most:
+            return contact, found
+        # Elements may have been missed, without which it sinks too deep, never too little.
+        sinks = min(most, MORE_ROOM * sinks)
+        counts.clear()
+
+
 class _Contact:
     """The elements that the indenter may press in a step, which ends at a given place along x.
 
     Their mean forces follow from how far it sinks: the depths themselves cancel where the step is short.
+    An element counts by its weight, and by the smaller `share` of it while it enters within the step.
     """
 
     def __init__(
-        self, row: ElementRow, now: IndenterState, new: IndenterState, h: float,
-        counts: dict[int, bool],
+        self, row: ElementRow, now: IndenterState, new: IndenterState, h: float, sinks: float,
+        counts: dict[Side, bool],
     ) -> None:  # fmt: skip
         model, self.now, self.h = row.model, now, h
-        sinks = _sinking(model, now, h)
         self.model, self.first = model, min(h * now.rate, sinks)
         self.under = under = row.under(now, new, h, now.depth + sinks)
         self.rest = under.rest()
@@ -108,24 +129,26 @@ class _Contact:
             return
         self.meets = under.height + self.rest
         self.met = self.meets <= now.depth + self.first
-        self.kinks = _Kinks(model, now, under, counts) if model.parts else None
-        self.weights = np.ones_like(self.meets)
+        halfway = now.depth + 0.5 * h * now.rate
+        self.weights = model.weights(halfway, under.strips, self.meets.size)
+        self.kinks = _Kinks(model, now, under, self.weights, counts) if model.parts else None
+        self.shares = self.weights
         if model.law.remembers:
             new_ones, within = row.entering(under, now.depth, now.depth + self.first - self.meets)
-            mean = within / h * model.law.ramps(within)[1] / under.law.stiffness
-            self.weights[new_ones] = mean
+            self.shares = self.weights.copy()
+            self.shares[new_ones] *= within / h * model.law.ramps(within)[1] / under.law.stiffness
 
     def sink(self, new: IndenterState, theta_of: Callable[[float], float]) -> IndenterState:
         """Solve M (v_1 - v_0)/h = W - k_s (d - δ_0) - F_z for the new depth by Newton's method."""
         model, now, h, law, sunk = self.model, self.now, self.h, self.under.law, self.first
         M, W, k_s, dx = model.mass, model.weight, model.spring, model.spacing
-        length = dx * max(np.count_nonzero(self.met), np.count_nonzero(self.under.touched))
-        theta = theta_of(h * law.damping * length / M)
+        extent = dx * max(total(self.weights, self.met), total(self.weights, self.under.touched))
+        theta = theta_of(h * law.damping * extent / M)
         for _ in range(NEWTON_STEPS):
             overlap = (now.depth + sunk) - self.meets
             pressed = overlap > 0.0
-            area = dx * float(np.maximum(overlap, 0.0) @ self.weights)
-            width = dx * np.count_nonzero(pressed)
+            area = dx * total(self.shares, np.maximum(overlap, 0.0))
+            width = dx * total(self.weights, pressed)
             for _, more, wider in self.kinks(overlap, pressed) if self.kinks else ():
                 area, width = area + more, width + wider
             mean = now.depth - model.depth + theta * sunk
@@ -145,23 +168,24 @@ class _Contact:
         """
         model, now, h, under = self.model, self.now, self.h, self.under
         M, M_x, c_x, k_x = model.mass, model.mass_along, model.damping_along, model.spring_along
-        slope, k, dx = model.slope(under.x - 0.5 * under.travel), under.law.stiffness, model.spacing
-        tilt = dx * float(np.square(slope[self.met | under.touched]).sum())
+        slope, k = model.slope(under.x - 0.5 * under.travel, under.y), under.law.stiffness
+        weights, push = model.spacing * self.weights, model.spacing * self.shares * slope
+        tilt = total(weights * slope * slope, self.met | under.touched)
         # A ringing too fast for the step is damped; θ - 1/2 is of the third order in h, as on arms.
         swing = h * math.sqrt(k_x / M_x)
         theta = theta_of(h * (c_x + under.law.damping * tilt) / M_x + swing * swing * swing)
         overlap = new.depth - self.meets
         pressed = overlap > 0.0
-        area = dx * float(np.maximum(overlap, 0.0) @ (self.weights * slope))
+        area = total(push, np.maximum(overlap, 0.0))
         for inner, more, _ in self.kinks(overlap, pressed) if self.kinks else ():
             area += more * slope.item(inner)
-        slid, inside = new.along - now.along, slope[pressed]
+        slid, inside = new.along - now.along, k * weights * pressed
         change_of_rate = _velocity(slid, now.along_rate, h, theta) - now.along_rate
         held = c_x * slid / h + k_x * (now.along + theta * slid)
         residual = M_x * change_of_rate / h + held + k * area
         # As the foundation gives way along x, the depth changes, too.
-        normal = M / (h * h) + model.spring + k * dx * inside.size
-        stiff = k * dx * (float(inside @ inside) - k * dx * float(inside.sum()) ** 2 / normal)
+        normal = M / (h * h) + model.spring + float(inside.sum())
+        stiff = total(inside * slope, slope) - total(inside, slope) ** 2 / normal
         slid -= residual / (M_x / (theta * h * h) + c_x / h + theta * k_x + stiff)
         rate = _velocity(slid, now.along_rate, h, theta)
         return new._replace(along=now.along + slid, along_rate=rate)
@@ -185,36 +209,48 @@ class _Kinks:
 
     A kink counts where the edge stands or moves outward over the free surface, that is, where the overlap
     w = g - u just outside does not fall. Where the edge moves inward, the surface has no kink, or one that
-    is left behind and relaxes like all that is free.
+    is left behind and relaxes like all that is free. Each side of each strip is asked for itself.
     """
 
     def __init__(
-        self, model: Model, now: IndenterState, under: Under, counts: dict[int, bool]
-    ) -> None:
+        self, model: Model, now: IndenterState, under: Under, weights: Array,
+        counts: dict[Side, bool],
+    ) -> None:  # fmt: skip
         self.counts = counts
         self.dx, self.least = model.spacing, -STANDS * model.depth
-        self.before: Array = now.depth - model.height(under.x - under.travel) - under.state[0]
-        self.relaxed = {-1: 0.0, 1: 0.0}
+        self.weights, self.in_strip = weights, under.x.size // under.strips
+        self.before: Array = now.depth - under.state[0]
+        self.before -= model.height(under.x - under.travel, under.y)
+        self.relaxed: dict[Side, float] = {}
         spring, k = under.law.held_pressure[0], under.law.stiffness
         arms = under.law.held_pressure[1:] @ under.state[1:] if model.law.remembers else None
-        for edge in edges_of(under.touched):
-            found = gaps(self.before, *edge)
-            if area := kink_area(self.dx, found)[0]:
-                held = spring if arms is None else spring + bend(arms, *edge) / jump(found)
-                self.relaxed[edge[1]] += (1.0 - held / k) * area
+        for side, edges in self.by_side(under.touched).items():
+            self.relaxed[side] = 0.0
+            for edge in edges:
+                found = gaps(self.before, *edge)
+                if area := kink_area(self.dx, found)[0]:
+                    held = spring if arms is None else spring + bend(arms, *edge) / jump(found)
+                    self.relaxed[side] += (1.0 - held / k) * area
+
+    def by_side(self, pressed: NDArray[np.bool_]) -> dict[Side, list[tuple[int, int]]]:
+        """Return the edges of each side of each strip."""
+        found: dict[Side, list[tuple[int, int]]] = {}
+        for edge in edges_of(pressed):
+            found.setdefault((edge[0] // self.in_strip, edge[1]), []).append(edge)
+        return found
 
     def __call__(
         self, overlap: Array, pressed: NDArray[np.bool_]
     ) -> Iterator[tuple[int, float, float]]:
         """Yield where kinks are, their area at this overlap beyond what relaxed, and its rate with depth."""
-        edges = edges_of(pressed)
-        for side in {outward for _, outward in edges}:
-            here = [edge for edge in edges if edge[1] == side]
+        for side, edges in self.by_side(pressed).items():
             # Decided once in a step, so that Newton's method cannot go to and fro.
             if side not in self.counts:
-                outer = [inner + side for inner, _ in here]
-                self.counts[side] = bool(np.any((overlap - self.before)[outer] >= self.least))
+                outer = [inner + outward for inner, outward in edges]
+                falls = (self.least > overlap.item(k) - self.before.item(k) for k in outer)
+                self.counts[side] = not all(falls)
             if self.counts[side]:
-                found = [kink_area(self.dx, gaps(overlap, *edge)) for edge in here]
-                area = sum(kink for kink, _ in found) - self.relaxed[side]
-                yield here[0][0], area, sum(wider for _, wider in found)
+                found = [kink_area(self.dx, gaps(overlap, *edge)) for edge in edges]
+                inner, weight = edges[0][0], self.weights.item(edges[0][0])
+                area = sum(kink for kink, _ in found) - self.relaxed.get(side, 0.0)
+                yield inner, weight * area, weight * sum(wider for _, wider in found)

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from kvtheory.models.elements.law import Array
 from kvtheory.models.elements.row import ElementRow, IndenterState, Under
+from kvtheory.models.elements.strips import total
 
 Tableau = tuple[tuple[float, ...], ...]
 """(c, a_1, a_2, …) for each stage, and then the weights."""
@@ -66,14 +67,16 @@ def _meet(
     under = row.under(now, at, delay, max(at.depth, now.depth))
     g = at.depth - under.height
     moved = row.pressed(under, now.depth, g)
-    V, slope = row.path.velocity(at.time, before=before) - at.along_rate, model.slope(under.x)
+    V = row.path.velocity(at.time, before=before) - at.along_rate
+    slope = model.slope(under.x, under.y)
     g_rate = at.rate - V * slope
     p = model.law.pressure(moved, g, g_rate)
     surfaces = under.state[0], under.left[0]
     pressed = model.rule.pressed(g, p, surfaces, under.touched, within=within)
-    pull = model.weight - model.spring * (at.depth - model.depth)
-    pull, drag = pull - model.spacing * float(p[pressed].sum()), 0.0
+    each = model.spacing * model.weights(at.depth, under.strips, p.size)[pressed] * p[pressed]
+    pull = model.weight - model.spring * (at.depth - model.depth) - float(each.sum())
+    drag = 0.0
     if model.sprung:
         held = model.spring_along * at.along + model.damping_along * at.along_rate
-        drag = -model.spacing * float(slope[pressed] @ p[pressed]) - held
+        drag = -total(slope[pressed], each) - held
     return pull, drag, under, moved, pressed

@@ -1,4 +1,8 @@
-"""The scene as the simulator sees it: plain numbers in SI, and an indenter as arrays."""
+"""The scene as the simulator sees it: plain numbers in SI, and an indenter as arrays.
+
+A line contact is one row of elements, and what acts on it is per unit width. A ball has a row, or strip,
+at each y = 0, dy, 2 dy, ..., and its forces are sums over strips (`strips`).
+"""
 
 import math
 from collections.abc import Callable
@@ -10,6 +14,7 @@ import numpy as np
 
 from kvtheory.models.elements.edges import edges_of, gaps, kink_area
 from kvtheory.models.elements.law import RIGHT, Array, ContactRule, Law
+from kvtheory.models.elements.strips import FEWEST_STRIPS, PER_STRIP, total, weights_across
 from kvtheory.scene.base_motion import BaseMotion
 from kvtheory.scene.indenters import Indenter
 from kvtheory.scene.model import Scene
@@ -24,6 +29,8 @@ SPARE = 4
 """Elements beyond those that can be met: the surface is extended from three of them."""
 SAMPLES = 2049
 """Of the surface, where a depth is wanted to about a thousandth."""
+SAMPLES_ALONG, SAMPLES_ACROSS = 257, 16
+"""The same of a ball, along a strip and from its middle plane to its rim."""
 
 
 @dataclass(frozen=True)
@@ -33,6 +40,7 @@ class Model:
     `mass` is infinite for a fixed indenter; `depth` is the static depth δ_0; `at_rest` measures errors.
     Along x the indenter has `mass_along` M_x, infinite on a rigid drive, on a spring k_x and a damper c_x.
     At t = 0 an element is at x = `shift` dx; `parts` says whether the part of one at each edge counts.
+    `across` is the distance dy of the strips of a ball, zero for a line contact.
     `rule` and `start`, the depth at t = 0 relative to δ_0, may be wrong on request.
     """
 
@@ -45,6 +53,7 @@ class Model:
     depth: float
     parts: bool = False
     shift: float = 0.0
+    across: float = 0.0
     at_rest: Any = None
     rule: ContactRule = RIGHT
     start: float = 1.0
@@ -59,7 +68,8 @@ class Model:
     ) -> "Model":  # fmt: skip
         """Return the model of a scene; without a spacing, with `SAMPLES` elements in contact at rest.
 
-        The elements are `coarser` times as far apart as the spacing says.
+        The elements are `coarser` times as far apart as the spacing says, and so are strips; of a run whose
+        elements are shifted, a quarter more, so that their rims are elsewhere too.
 
         Raises
         ------
@@ -81,6 +91,9 @@ class Model:
                 f"{MOST / (high - low):.3g} 1/m, so that {FEWEST} to {MOST} elements carry the indenter"
             )
         model = replace(model, spacing=coarser * dx, spring=0.0 if fixed else support.spring)
+        if not scene.indenter.per_width:
+            dy = model.half_width(rough) * min(PER_STRIP * dx / high, 1.0 / FEWEST_STRIPS)
+            model = replace(model, across=coarser * (1.0 + 0.5 * shift) * dy)
         depth = rough if fixed else root(lambda d: model.static_load(d) - model.weight, rough)
         model = replace(model, depth=depth)
         at_rest = StaticState.at(scene, depth, model.half_length, model.static_load(depth))
@@ -122,23 +135,59 @@ class Model:
         low, high = span(self.indenter, self.depth)
         return 0.5 * (high - low)
 
-    def height(self, x: Any) -> Any:
-        """Return h(x), infinite where the indenter has no surface."""
-        return self._within_reach(self.indenter.height, x, math.inf)
+    @property
+    def extent(self) -> float:
+        """The length (m) of the contact at rest, of a ball its area (m^2)."""
+        length = 2.0 * self.half_length
+        if self.indenter.per_width:
+            return length
+        return 0.5 * math.pi * length * self.half_width(self.depth)
 
-    def slope(self, x: Any) -> Any:
-        """Return h'(x), zero where the indenter has no surface."""
-        return self._within_reach(self.indenter.slope, x, 0.0)
+    def half_width(self, depth: float) -> float:
+        """Return half the width of a ball at a height, in m."""
+        stretch: float = self.indenter.stretch  # type: ignore[union-attr]
+        return stretch * span(self.indenter, depth)[1] if depth > 0.0 else 0.0
+
+    def height(self, x: Any, y: Any = 0.0) -> Any:
+        """Return h(x, y), infinite where the indenter has no surface."""
+        return self._within_reach(self.indenter.height, (x, y), math.inf)
+
+    def slope(self, x: Any, y: Any = 0.0) -> Any:
+        """Return dh/dx, zero where the indenter has no surface."""
+        return self._within_reach(self.indenter.slope, (x, y), 0.0)
 
     def places(self, low: int, high: int, Y: float = 0.0) -> Array:
         """Return x of the elements `low` to `high` when the base has moved by Y."""
         x: Array = self.spacing * (np.arange(low, high, dtype=np.float64) + self.shift) + Y
         return x
 
+    def grid(self, low: int, high: int, strips: int, Y: float = 0.0) -> tuple[Array, Array]:
+        """Return x and y of the elements `low` to `high` of each strip, one strip after the other."""
+        y = self.across * np.arange(strips, dtype=np.float64)
+        return np.tile(self.places(low, high, Y), strips), np.repeat(y, high - low)
+
+    def level(self, depth: float) -> float:
+        """Return the next of a few depths, so that spans need not be found anew."""
+        level = math.ceil(math.log(max(depth / self.depth, 1e-6)) / math.log(LEVEL))
+        return self.depth * LEVEL**level
+
+    def strips(self, depth: float) -> int:
+        """Return how many strips can be met at this depth."""
+        return 1 + int(self.half_width(self.level(depth)) / self.across) if self.across else 1
+
+    def weights(self, depth: float, strips: int, elements: int) -> Array:
+        """Return by what the force of each element counts, strip by strip: 1, or the width of its strip in m.
+
+        `elements` is how many there are in all; `depth` says where the rim is.
+        """
+        if not self.across:
+            return np.ones(elements)
+        rim = self.half_width(depth) if self.parts else 0.0
+        return np.repeat(weights_across(self.across, strips, rim), elements // strips)
+
     def under(self, Y: float, before: float, depth: float) -> tuple[int, int]:
         """Return the range of elements, with some to spare, that can be met at this depth at both places."""
-        level = math.ceil(math.log(max(depth / self.depth, 1e-6)) / math.log(LEVEL))
-        low, high = span(self.indenter, self.depth * LEVEL**level)
+        low, high = span(self.indenter, self.level(depth))
         dx = self.spacing
         first = math.floor((low - max(Y, before)) / dx) - SPARE
         return first, math.ceil((high - min(Y, before)) / dx) + SPARE + 1
@@ -146,26 +195,39 @@ class Model:
     def static_load(self, depth: float) -> float:
         """Return K times the area of max(δ - h, 0), as the elements at rest carry it."""
         low, high = (round(end / self.spacing) for end in span(self.indenter, depth))
-        overlap = depth - self.height(self.places(low - SPARE, high + SPARE + 1))
-        pressed = overlap > 0.0
-        area = self.spacing * float(overlap[pressed].sum())
+        strips = self.strips(depth)
+        overlap = depth - self.height(*self.grid(low - SPARE, high + SPARE + 1, strips))
+        pressed, weight = overlap > 0.0, self.weights(depth, strips, overlap.size)
+        area = self.spacing * total(weight[pressed], overlap[pressed])
         if self.parts:
-            ends = edges_of(pressed)
-            area += sum(kink_area(self.spacing, gaps(overlap, *edge))[0] for edge in ends)
+            for edge in edges_of(pressed):
+                area += weight.item(edge[0]) * kink_area(self.spacing, gaps(overlap, *edge))[0]
         return self.law.stiffness * area
 
-    def tilt(self, length: float) -> float:
-        """Return ∫ h'^2 dx of a contact of this length, as steep as the one at rest."""
-        x = np.linspace(*span(self.indenter, self.depth), SAMPLES)
-        return length * float(np.square(self.slope(x)).mean())
+    def tilt(self, extent: float) -> float:
+        """Return the integral of h'^2 over a contact of this length or area, as steep as the one at rest."""
+        x, y, weight = self.samples(self.depth)
+        inside = weight * (self.height(x, y) <= self.depth)
+        return extent * total(inside, np.square(self.slope(x, y))) / float(inside.sum())
 
     def sliding(self, depth: float, V: float) -> tuple[float, float]:
-        """Return length and normal force of a contact that slides steadily on a continuous foundation."""
-        x = np.linspace(*span(self.indenter, depth), SAMPLES)
-        g = depth - self.height(x)
-        p = self.law.pressure(self.law.at_rest(g), g, -V * self.slope(x))
-        pressed, step = p > 0.0, x[1] - x[0]
-        return step * np.count_nonzero(pressed), step * float(p[pressed].sum())
+        """Return extent and normal force of a contact that slides steadily on a continuous foundation."""
+        x, y, weight = self.samples(depth)
+        g = depth - self.height(x, y)
+        p = self.law.pressure(self.law.at_rest(g), g, -V * self.slope(x, y))
+        pressed = (p > 0.0) & (g >= 0.0)
+        return total(weight, pressed), total(weight[pressed], p[pressed])
+
+    def samples(self, depth: float) -> tuple[Array, Array, Array]:
+        """Return x and y of places under the indenter, and for what length (m) or area (m^2) each counts."""
+        along, strips, rim, width = SAMPLES, 1, 0.0, np.ones(1)
+        if not self.indenter.per_width:
+            along, strips, rim = SAMPLES_ALONG, SAMPLES_ACROSS, self.half_width(depth)
+            width = weights_across(rim / strips, strips, 0.0)
+        low, high = span(self.indenter, depth)
+        x = np.tile(np.linspace(low, high, along), strips)
+        y = np.repeat(np.linspace(0.0, rim, strips, endpoint=False), along)
+        return x, y, (high - low) / (along - 1) * np.repeat(width, along)
 
     def sliding_depth(self, V: float) -> float:
         """Return the depth at which that contact carries the load, to within a thousandth."""
@@ -176,11 +238,14 @@ class Model:
 
         return root(surplus, self.depth, 1e-9)
 
-    def _within_reach(self, function: Callable[[Any], Any], x: Any, beyond: float) -> Any:
+    def _within_reach(
+        self, function: Callable[..., Any], place: tuple[Any, Any], beyond: float
+    ) -> Any:
+        needed = place[:1] if self.indenter.per_width else place
         if math.isinf(self.indenter.reach):
-            return function(x)
-        inside = np.abs(x) < self.indenter.reach
-        return np.where(inside, function(np.where(inside, x, 0.0)), beyond)
+            return function(*needed)
+        inside = np.hypot(*place) < self.indenter.reach
+        return np.where(inside, function(*(np.where(inside, each, 0.0) for each in needed)), beyond)
 
 
 def root(function: Callable[[float], float], guess: float, rtol: float = 0.0) -> float:

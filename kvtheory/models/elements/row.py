@@ -1,7 +1,8 @@
 """The elements that matter: a window on an endless row that moves with the base.
 
 Element i sits at x_i = (i + shift) dx + Y(t). It is stored while it is near the indenter, or while the
-drive will bring it there again before it has relaxed; every other element counts as undisturbed.
+drive will bring it there again before it has relaxed; every other element counts as undisturbed. A ball has a
+row for each strip, at y = 0, dy, ...; they are as long as each other, and one comes after the other.
 """
 
 import math
@@ -45,15 +46,17 @@ class IndenterState(NamedTuple):
 
 
 class Under(NamedTuple):
-    """The elements under the indenter at one instant: a view into the row.
+    """The elements under the indenter at one instant, strip by strip.
 
     `state` is that of each at the start of the step, `left` the one that it has now if it was left alone,
     `touched` whether it was in contact at the start; `travel` is the way of the base under the indenter
     between, of the length `delay`, and `law` what the law says of it.
     """
 
-    place: slice
+    place: tuple[slice, slice]
+    strips: int
     x: Array
+    y: Array
     height: Array
     state: Array
     left: Array
@@ -84,8 +87,8 @@ class ElementRow:
         self.memory = -slowest * math.log(FORGOTTEN)
         self.deepest = kept_depth * model.depth
         self.reach = span(model.indenter, self.deepest)
-        self.first, self.states = 0, model.law.at_rest(np.zeros(0))
-        self.touched = np.zeros(0, dtype=bool)
+        self.first, self.states = 0, np.zeros((1 + model.law.arm_stiffness.size, 1, 0))
+        self.touched = np.zeros((1, 0), dtype=bool)
         self.updates, self.last = 0, 0.0
         depth = model.start * model.depth
         start = IndenterState(0.0, depth, 0.0)
@@ -111,15 +114,17 @@ class ElementRow:
         Y = self.place(at)
         before = self.place(now) if delay else Y
         low, high = self.model.under(Y, before, depth)
-        if low < self.first or high > self.first + self.touched.size:
-            self._move(at.time, low, high)
-        self.updates += high - low
-        place = slice(low - self.first, high - self.first)
-        x, state = self.model.places(low, high, Y), self.states[:, place]
+        strips, stored = self.model.strips(depth), self.touched.shape
+        if low < self.first or high > self.first + stored[1] or strips > stored[0]:
+            self._move(at.time, low, high, strips)
+        self.updates += strips * (high - low)
+        place = slice(strips), slice(low - self.first, high - self.first)
+        x, y = self.model.grid(low, high, strips, Y)
+        state = self.states[:, *place].reshape(len(self.states), -1)
         left = self._left(state, delay)
         law = self.model.law.step(delay)
-        touched, height = self.touched[place], self.model.height(x)
-        return Under(place, x, height, state, left, touched, Y - before, delay, law)
+        touched, height = self.touched[place].reshape(-1), self.model.height(x, y)
+        return Under(place, strips, x, y, height, state, left, touched, Y - before, delay, law)
 
     def entering(self, under: Under, depth: float, rise: Array) -> tuple[NDArray[np.intp], Array]:
         """Return the elements that enter the contact in a step, and for how long each is in it.
@@ -127,7 +132,8 @@ class ElementRow:
         `depth` is that at the start; `rise` says how far each is below its free surface at the end.
         """
         new = np.flatnonzero(~under.touched & (rise > 0.0))
-        gap = depth - self.model.height(under.x[new] - under.travel) - under.state[0, new]
+        height = self.model.height(under.x[new] - under.travel, under.y[new])
+        gap = depth - height - under.state[0, new]
         return new, under.delay * rise[new] / (rise[new] - np.minimum(gap, 0.0))
 
     def pressed(self, under: Under, depth: float, g: Array) -> Array:
@@ -147,33 +153,39 @@ class ElementRow:
         self, under: Under, states: Array, touched: NDArray[np.bool_], delay: float = 0.0
     ) -> None:
         """Let `delay` pass: put in what has become of the elements under the indenter."""
-        self.states, self.last = self._left(self.states, delay), delay
-        self.states[:, under.place] = states
+        flat, shape = self.states.reshape(len(self.states), -1), self.states.shape
+        self.states, self.last = self._left(flat, delay).reshape(shape), delay
+        shape = self.states[:, *under.place].shape
+        self.states[:, *under.place] = states.reshape(shape)
         self.touched[:] = False
-        self.touched[under.place] = touched
+        self.touched[under.place] = touched.reshape(shape[1:])
 
     def _left(self, states: Array, delay: float) -> Array:
         relaxes = delay and self.model.rule.relaxes
         return self.model.law.step(delay).alone(states) if relaxes else states.copy()
 
-    def _move(self, t: float, low: int, high: int) -> None:
-        """Move the window so that it holds the elements `low` to `high`, and those still of use."""
+    def _move(self, t: float, low: int, high: int, strips: int) -> None:
+        """Move the window so that it holds the elements `low` to `high` of strips, and those still of use."""
         spare, useful = high - low, self._useful(t)
         first = min(low - spare, max(self.first, useful[0]))
-        last = max(high + spare, min(self.first + self.touched.size, useful[1]))
-        states = self.model.law.at_rest(np.zeros(last - first))
-        touched = np.zeros(last - first, dtype=bool)
-        start, stop = max(first, self.first), min(last, self.first + self.touched.size)
+        rows, elements = self.touched.shape
+        last = max(high + spare, min(self.first + elements, useful[1]))
+        touched = np.zeros((max(strips, rows), last - first), dtype=bool)
+        states = np.zeros((len(self.states), *touched.shape))
+        start, stop = max(first, self.first), min(last, self.first + elements)
         if start < stop:
             new, old = (slice(start - f, stop - f) for f in (first, self.first))
-            states[:, new], touched[new] = self.states[:, old], self.touched[old]
+            states[:, :rows, new], touched[:rows, new] = (
+                self.states[:, :, old],
+                self.touched[:, old],
+            )
         self.first, self.states, self.touched = first, states, touched
 
     def _useful(self, t: float) -> tuple[int, int]:
         """Return which elements may be met again: where the drive leads; a spring, to any not forgotten."""
         if self.model.sprung:
             compressed = np.abs(self.states[0]) > FORGOTTEN * self.model.depth
-            known = self.first + np.flatnonzero(compressed | self.touched)
+            known = self.first + np.flatnonzero((compressed | self.touched).any(axis=0))
             return (int(known[0]), int(known[-1]) + 1) if known.size else (self.first, self.first)
         dx = self.model.spacing
         back, ahead = self.path.extremes(t, min(t + self.memory, max(t, self.path.end)))

@@ -15,7 +15,7 @@ from kvtheory.models.elements.row import KEPT_DEPTH, ElementRow, IndenterState, 
 from kvtheory.models.elements.schemes import DEFAULT, SCHEMES, Scheme
 from kvtheory.models.elements.stability import Watch, doubts, lengths, limit_at, stability_text
 from kvtheory.progress import Progress
-from kvtheory.results import SERIES_UNITS, TRANSIENT_UNITS, Simulation, SprungSimulation
+from kvtheory.results import SERIES_UNITS, TRANSIENT_UNITS, Simulation, SprungSimulation, units_for
 from kvtheory.results.errors import DivergenceError
 from kvtheory.scene.base_motion import BaseMotion
 from kvtheory.scene.model import Scene
@@ -44,8 +44,8 @@ MOST_OF_ALL = 2e9
 TOGETHER = 1e-6
 """Of the time step: instants that are no farther apart share a state. A step so short would change
 it by less than a millionth of what one step does, and times that differ by rounding leave no step at all."""
-DEEPEST = 1e7
-"""Times the static depth: no scene sinks deeper."""
+DEEPEST, BALL_DEEPEST = 1e7, 256.0
+"""Times the static depth: no scene sinks deeper. Of a ball, elements grow as the depth, not as its root."""
 
 Leg = tuple[float, float, int]
 """From one instant to another in so many steps."""
@@ -96,11 +96,12 @@ def simulate(
         **{name: rows[name] for name in names}, scheme=scheme.row.name, per_length=1.0 / spacing, time_step=h,
         steps=sum(count for _, _, count in legs), element_updates=updates, warning=warning,
         model="elements", certificate=certificate,
+        units=units_for(scene.indenter, names),
     )  # fmt: skip
 
 
 def _refuse_what_takes_too_long(model: Model, end: float, h: float) -> None:
-    elements, steps = 2.0 * model.half_length / model.spacing, end / h
+    elements, steps = model.strips(model.depth) * 2.0 * model.half_length / model.spacing, end / h
     if elements * steps > MOST_OF_ALL:
         raise ValueError(
             f"`time_step` = {h:.6g} s: {steps:,.3g} steps with {elements:,.3g} elements in the contact are "
@@ -128,7 +129,7 @@ def _default_step(model: Model, path: BaseMotion, scheme: Scheme) -> float:
 
 def _swing(model: Model) -> float:
     """Return the period along x, in s; infinite where the dampers of the contact at rest allow none."""
-    resistance = model.damping_along + model.law.damping * model.tilt(2.0 * model.half_length)
+    resistance = model.damping_along + model.law.damping * model.tilt(model.extent)
     stiff = model.spring_along * model.mass_along
     swings = model.sprung and resistance * resistance < 4.0 * stiff
     return 2.0 * math.pi * math.sqrt(model.mass_along / model.spring_along) if swings else math.inf
@@ -138,7 +139,7 @@ def _period(model: Model) -> float:
     """Return the period of the mass on the contact at rest, as stiff as arms are within it, in s."""
     period = math.inf
     while True:
-        foundation = 2.0 * model.half_length * model.law.stiffness_within(period / (2.0 * math.pi))
+        foundation = model.extent * model.law.stiffness_within(period / (2.0 * math.pi))
         shorter = 2.0 * math.pi * math.sqrt(model.mass / (foundation + model.spring))
         if not shorter < ROUGHLY * period:
             return shorter
@@ -173,10 +174,11 @@ def _with_room(
             return _run(ElementRow(model, path, kept), scheme, legs, wanted, progress)
         except OutgrownError as outgrown:
             kept *= MORE_ROOM
-            if kept > DEEPEST:
+            deepest = min(DEEPEST, BALL_DEEPEST if model.across else math.inf)
+            if kept > deepest:
                 h = max((stop - start) / max(count, 1) for start, stop, count in legs)
                 error = DivergenceError(
-                    f"the run diverged: the indenter sank to {DEEPEST:g} times its static depth; "
+                    f"the run diverged: the indenter sank to {deepest:g} times its static depth; "
                     f"{stability_text(scheme, model, path, h)}"
                 )
                 error.rows = outgrown.rows

@@ -42,6 +42,7 @@ ELEMENTS = 4.0
 def lengths(model: Model, path: BaseMotion) -> tuple[float, float]:
     """Return the contact lengths (m) that bound the step: in steady sliding, and at the static depth.
 
+    What stands here for the length of a line contact is the area (m^2) of a ball.
     Each is the longest over the velocities of the drive; between those the velocity is linear, and
     the length falls with |V|. A drive that passes through rest has the contact at rest among them, and
     so has an indenter on a spring, which may stick. A step that is too long for the latter only, at a
@@ -146,9 +147,12 @@ def stability_text(scheme: Scheme, model: Model, path: BaseMotion, h: float) -> 
         return f"its time step is {h * 1e3:.4g} ms"
     number = h * model.law.damping * length / model.mass
     has = f"has the stability number dt C L/M = {number:.3g}" if number else "is too long"
+    of = (
+        f"L = {length * 1e3:.4g} mm" if model.indenter.per_width else f"L = {length * 1e6:.4g} mm^2"
+    )
     return (
         f"its time step, {h * 1e3:.4g} ms, {has} for a contact "
-        f'of L = {length * 1e3:.4g} mm, where the scheme "{scheme.row.name}" is stable up to '
+        f'of {of}, where the scheme "{scheme.row.name}" is stable up to '
         f"dt = {limit * 1e3:.4g} ms; a time step of {ADVISED * limit * 1e3:.3g} ms would do, or the scheme "
         f'"{DEFAULT}", which is stable at any step'
     )
@@ -173,7 +177,7 @@ class Watch:
             model.depth / model.law.retardation_time
             + model.fastest(row.path) * float(abs(model.slope(ends)).max())
             + model.depth * math.sqrt(model.spring / model.mass)
-            + model.depth * math.sqrt(2.0 * model.half_length * arms / model.mass)
+            + model.depth * math.sqrt(model.extent * arms / model.mass)
         )
         self._limit = -RISE * thrown if math.isfinite(model.mass) else -math.inf
         self._fastest = RISE * (
