@@ -10,7 +10,6 @@ from typing import Any
 import numpy as np
 
 from kvtheory.results import Comparison, Transient
-from kvtheory.results.table import SERIES_UNITS
 
 SERIES_SUFFIXES = (".csv", ".nc")
 """Of files that hold a time series."""
@@ -67,7 +66,7 @@ def _curves(comparison: Comparison) -> Iterator[tuple[str, str, str, Any]]:
     held = {"data": "series", "theory": "theory", "allowed": "allowed"}
     for name in comparison.allowed:
         for kind, attribute in held.items():
-            yield name, kind, SERIES_UNITS[name], getattr(comparison, attribute)[name]
+            yield name, kind, comparison.units[name], getattr(comparison, attribute)[name]
 
 
 def _write_columns(path: Path, columns: Mapping[str, Any]) -> None:

@@ -13,11 +13,17 @@ from kvtheory.api._stability import stability
 from kvtheory.api._steady import steady
 from kvtheory.checks.theory import Methods
 from kvtheory.progress import Progress
+from kvtheory.results import TRANSIENT_UNITS, units_for
 from kvtheory.results.comparison import Comparison
 from kvtheory.results.schemes import SCHEME_ROWS
 from kvtheory.scene.model import Scene
 from kvtheory.scene.quantities import Quantity, SceneError, convert, nearest, problem
-from kvtheory.scene.requirements import lacks_parabola_on_arms, lacks_rigid_drive, require
+from kvtheory.scene.requirements import (
+    lacks_quadratic_on_arms,
+    lacks_rigid_drive,
+    lacks_strips,
+    require,
+)
 from kvtheory.scene.static_state import StaticState
 
 EVEN, DENSE = 401, 60
@@ -26,8 +32,8 @@ SOONEST, SOON = 1e-4, 0.1
 """Of the duration: where the latter begin and end."""
 MOST_STEPS = 1e8
 """Of our own simulation: an hour or two."""
-PER_HALF_LENGTH = 400.0
-"""Elements in the static half length that stand for theory where the foundation has arms."""
+PER_HALF_LENGTH, OF_BALL = 400.0, 160.0
+"""Elements in the static half length that stand for theory where the foundation has arms; of a ball."""
 FEWEST = 16
 """Samples at least, even if the time step has to be shortened for them."""
 PER_LENGTH = Quantity("1/m", "N, elements per unit length", 0.0, True)
@@ -36,14 +42,19 @@ PER_LENGTH = Quantity("1/m", "N, elements per unit length", 0.0, True)
 def _followed(scene: Scene, times: Sequence[float], rtol: float) -> Mapping[str, Any]:
     """Follow a transient without a certificate: theory is wanted at many scenes, none of them shown.
 
-    A foundation with arms is followed by elements, which `exact` checks at the end.
+    A foundation with arms and a ball are followed by elements, which `exact` checks at the end, but for a
+    ball that is held and meets nothing that it left.
     """
     from kvtheory.models.continuum import solved_scene
+    from kvtheory.models.strips import held
 
-    if scene.foundation.arms:
+    ball = not scene.indenter.per_width
+    if ball and not lacks_strips(scene) and not held.remembers(scene):
+        return vars(held.transient(scene, times, certify=False))
+    if ball or scene.foundation.arms:
         from kvtheory.api._elements import elements
 
-        density = PER_HALF_LENGTH / StaticState.of(scene).half_length
+        density = (OF_BALL if ball else PER_HALF_LENGTH) / StaticState.of(scene).half_length
         return vars(elements(scene, per_length=density, at=times, certify=False))
 
     with double_precision(scene):
@@ -91,9 +102,10 @@ def compare(
     ----------
     scene
         What is modelled; without it, the paper's Table 1 with a dead weight. The indenter must be a
-        parabola. On a Prony series the theory is that of many elements, and of `steady` at the end; of
-        faults, only wrong signs and units and a Kelvin-Voigt foundation are then looked for, and the drive
-        must be rigid. On a spring the data may hold ``sliding_velocity`` and ``spring_force``, too.
+        parabola or a ball. Of a ball, and on a Prony series, the theory is that of many elements, and of
+        `steady` at the end; of faults, only wrong signs and units and a Kelvin-Voigt foundation are then
+        looked for, and the drive must be rigid. On a spring the data may hold ``sliding_velocity`` and
+        ``spring_force``, too.
     data
         A path to a CSV with named columns and bracketed units (``t [ms], z_A [mm], F_z [N/mm]``), a
         result with the names of `kvtheory.transient`, or a mapping of arrays (by those names in SI,
@@ -138,9 +150,9 @@ def compare(
     Nakano and Kono (2020), doi:10.3389/fmech.2020.00038; facts F8-F15 of the derivations.
     """
     scene = scene_of(scene)
-    require(lacks_parabola_on_arms, scene, "the theory of the transient")
-    if scene.foundation.arms:
-        require(lacks_rigid_drive, scene, "the theory of the transient on a Prony series")
+    require(lacks_quadratic_on_arms, scene, "the theory of the transient")
+    if scene.foundation.arms or not scene.indenter.per_width:
+        require(lacks_rigid_drive, scene, "the theory of the transient by many elements")
     if not (math.isfinite(tolerance) and tolerance > 0.0):
         raise ValueError(f"`tolerance` = {tolerance!r}: expected a positive number")
     density = None if per_length is None else _density(per_length)
@@ -164,7 +176,8 @@ def compare(
             )
     except DivergenceError as error:
         return broken_off(scene, error.rows, str(error), methods, scheme, tolerance)
-    return hold_against(scene, read(found), methods, density, scheme, tolerance)
+    units = units_for(scene.indenter, TRANSIENT_UNITS)
+    return hold_against(scene, read(found, units), methods, density, scheme, tolerance)
 
 
 def _density(per_length: Any) -> float:

@@ -28,10 +28,10 @@ def transient(
     scene
         What is modelled; without it, the paper's Table 1 with a dead weight. The indenter must be
         a parabola, or a ball that is held at its depth and does not slow down so fast that it meets
-        again what it left. At t < 0 it rests at its static depth. With `drive.stiffness` it is held along x
-        by a spring that is relaxed then, and the mass that moves along x must be above zero. A drive that is
-        a function of the time is replaced by polynomials within its own tolerance, which the certificate
-        does not cover.
+        again what it left (`elements` follows any ball). At t < 0 it rests at its static depth. With
+        `drive.stiffness` it is held along x by a spring that is relaxed then, and the mass that moves
+        along x must be above zero. A drive that is a function of the time is replaced by polynomials
+        within its own tolerance, which the certificate does not cover.
     at
         Times at which the result is wanted, in s or as text with a unit, such as ``"0 ms, 1 ms"`` or
         ``"0 ms:200 ms:201"`` (START:STOP:COUNT, both ends included); without it, the steps of
@@ -59,8 +59,8 @@ def transient(
     SceneError
         If a time is wrong; every mistake is listed.
     ValueError
-        If the indenter is not a parabola, a time or `rtol` is out of range, or a function that drives
-        the foundation fails, is not finite, or is not smooth between its breaks.
+        If the indenter is neither a parabola nor such a ball, a time or `rtol` is out of range, or a
+        function that drives the foundation fails, is not finite, or is not smooth between its breaks.
     ArithmeticError
         If the motion cannot be followed to its end; the message says when and why.
 

@@ -24,7 +24,7 @@ from kvtheory.checks.noise import extreme, noise, rounded, unsure
 from kvtheory.checks.reading import Series
 from kvtheory.checks.resolution import Resolution
 from kvtheory.checks.spring_response import spring_response
-from kvtheory.checks.theory import CURVES, Curves, Theory
+from kvtheory.checks.theory import CURVES, SHALLOWEST, Curves, Theory
 from kvtheory.results.schemes import SCHEME_ROWS
 
 Array = NDArray[np.float64]
@@ -41,8 +41,6 @@ WHOLE_EDGE = 2.0
 AN_EIGHTH, LAGGING = 0.25 / math.e, 0.25
 """Of the band, what a lag of first order is, and what is allowed of the rate: more, for what long steps add
 of the next order in h/T."""
-SHALLOWEST = 1e-3
-"""Of the static depth: where the contact vanishes, the response to b is taken at this depth."""
 SWING = 2.0
 """An oscillation overshoots at most by this factor."""
 GIVEN = 1e-3
@@ -99,7 +97,7 @@ def allowance(
     share, lagging = np.fmax.reduce([z for z, _ in lags]), np.fmax.reduce([f for _, f in lags])
     late = _lag(theory, now, series.time, high["depth_rate"] - low["depth_rate"])
     rest = AN_EIGHTH / LAGGING * late * (share > 0.0)
-    lagging = lagging + theory.scene.foundation.damping * contact_length(now) * rest
+    lagging = lagging + theory.scene.foundation.damping * contact_extent(theory, now) * rest
     forces = (1.0 + share) * force, lagging
     smooth = _systematic(theory, now, series.time, forces, late, fine)
     if not theory.scene.drive.rigid:
@@ -149,7 +147,7 @@ def _lag(theory: Theory, curves: Curves, time: Array, width: Array) -> Array:
     support, foundation = theory.scene.support, theory.scene.foundation
     if theory.scene.held:
         return np.zeros_like(width)
-    rate = 0.5 * foundation.damping * contact_length(curves) / support.mass
+    rate = 0.5 * foundation.damping * contact_extent(theory, curves) / support.mass
     ages = np.concatenate([[0.0], np.cumsum(0.5 * (rate[1:] + rate[:-1]) * np.diff(time))])
     with np.errstate(divide="ignore"):
         left = np.maximum.accumulate(np.log(width) + ages) - ages
@@ -159,6 +157,11 @@ def _lag(theory: Theory, curves: Curves, time: Array, width: Array) -> Array:
 def contact_length(curves: Mapping[str, Array]) -> Array:
     """Return the length of the contact in m; zero in flight."""
     return np.asarray(np.nan_to_num(np.abs(curves["trailing_edge"] - curves["leading_edge"])))
+
+
+def contact_extent(theory: Theory, curves: Mapping[str, Array]) -> Array:
+    """Return what the damping of the foundation acts over: a length in m, of a ball an area in m^2."""
+    return np.asarray(theory.width(curves["depth"]) * contact_length(curves))
 
 
 def _first_order(
@@ -174,7 +177,7 @@ def _first_order(
         return none, none
     sunk = curves["depth"] - theory.static.depth
     net = support.weight - support.spring * sunk - curves["normal_force"]
-    rate = foundation.damping * contact_length(curves) / support.mass
+    rate = foundation.damping * contact_extent(theory, curves) / support.mass
     z = np.minimum(fine.time_step * rate, 1.0)
     return z, z * np.abs(net)
 
@@ -188,6 +191,8 @@ def _higher_order(series: Series) -> bool:
 def edge_force(theory: Theory, curves: Curves, spacing: float) -> Array:
     """Return b = p dx/2 at the edge of larger pressure, p = K g + C g' (Eq. 12); zero in flight.
 
+    Of a ball it is that of the middle plane times the mean width: no more than this even if all strips agree.
+
     At rest p = 0 at both edges and the sum over elements is off by the second order K dx^2 a/R.
     """
     foundation = theory.scene.foundation
@@ -198,7 +203,8 @@ def edge_force(theory: Theory, curves: Curves, spacing: float) -> Array:
         rate = curves["depth_rate"] - x / R * curves["sliding_velocity"]
         pressures.append(K * (curves["depth"] - x * x / (2.0 * R)) + foundation.damping * rate)
     p = np.nan_to_num(np.fmax(np.maximum(pressures[0], 0.0), pressures[1]), nan=0.0)
-    return 0.5 * p * spacing + K * spacing**2 * theory.static.half_length / R
+    width = theory.width(curves["depth"])
+    return np.asarray(width * (0.5 * p * spacing + K * spacing**2 * theory.static.half_length / R))
 
 
 def _systematic(
@@ -253,13 +259,15 @@ def _response(
     if theory.scene.held or theory.rates is None:
         return np.zeros_like(force), np.zeros_like(force)
     l_r = np.abs(curves["sliding_velocity"]) * foundation.retardation_time
-    stiffness = foundation.stiffness * (np.hypot(a, l_r) + a) + support.spring
-    damping = foundation.damping * np.maximum(contact_length(curves), a)
+    width = theory.width(curves["depth"])
+    stiffness = foundation.stiffness * width * (np.hypot(a, l_r) + a) + support.spring
+    damping = foundation.damping * width * np.maximum(contact_length(curves), a)
     still = force / stiffness
     larger = np.maximum(still, np.append(still[0], still[:-1]))
     ages = np.maximum(np.diff(time, prepend=0.0), 0.0)
     left = np.exp(-ages * stiffness / damping)
     at_rest = foundation.stiffness * fine.spacing**2 * theory.static.half_length
+    at_rest *= float(theory.width(theory.static.depth))
     at_rest /= theory.scene.indenter.radius * float(stiffness[0])  # type: ignore[union-attr]
     depth, rate = [at_rest + GIVEN * theory.static.depth], [0.0]
     swing = SWING if theory.rates.oscillates else 1.0

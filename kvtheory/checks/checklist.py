@@ -13,6 +13,7 @@ from kvtheory.checks.discretization import elements, sawtooth, stability
 from kvtheory.checks.noise import SURE, extreme
 from kvtheory.checks.settling import fast_constant, phase, slow_constant, steady_limit
 from kvtheory.results.comparison import Check
+from kvtheory.results.table import SHOWN_UNITS
 
 STATES = {"depth": "Eq. 17", "depth_rate": "Eq. 17", "normal_force": "Eq. 14", "friction_force": "Eq. 15",
           "leading_edge": "Eq. 32", "trailing_edge": "Eq. 33", "peak_pressure": "Eq. 12",
@@ -64,7 +65,8 @@ def jump(case: Case) -> Iterator[Check]:
     excess, most = case.excess(force), case.most(force)
     k = max((first, after), key=lambda row: excess[row] / most[row])
     note = f"{force} at {time[k] * 1e3:.4g} ms"
-    unit = f"distance from theory, relative to {theory.scales[force] / 1e3:.4g} N/mm"
+    shown, factor = SHOWN_UNITS[theory.units[force]]
+    unit = f"distance from theory, relative to {factor * theory.scales[force]:.4g} {shown}"
     yield case.check(name, excess[k], most[k], equation, unit, note)
 
 

@@ -4,6 +4,7 @@
 the indenter, z_A = -depth (Eq. 18), becomes a depth.
 """
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from difflib import get_close_matches
 
@@ -11,8 +12,10 @@ from kvtheory.results.table import SERIES_UNITS
 from kvtheory.scene.tables import parts, plain
 from kvtheory.scene.units import to_si
 
-SI_UNITS = {**SERIES_UNITS, "peak_pressure": "N/m^2"}
-"""The units of a series as `kvtheory.scene.units` spells them."""
+PRESSURE = {"peak_pressure": "N/m^2"}
+"""As `kvtheory.scene.units` spells its unit."""
+SI_UNITS: Mapping[str, str] = {**SERIES_UNITS, **PRESSURE}
+"""The units of the series of a line contact as they are spelt there."""
 
 SPELLINGS = {
     "time": "time, t, Zeit",
@@ -57,8 +60,10 @@ SHOWN = (
 )
 
 
-def recognise(header: str) -> Column | None:
+def recognise(header: str, units: Mapping[str, str] = SI_UNITS) -> Column | None:
     """Return what a column holds; None if its name is of no quantity, nor nearly.
+
+    `units` are those of the scene: the forces of a ball are whole.
 
     Raises
     ------
@@ -79,7 +84,7 @@ def recognise(header: str) -> Column | None:
             return None
         raise ValueError(f'column "{header}": unknown name{hint}')
     sign, quantity = (-1.0, quantity[1:]) if quantity[0] == "-" else (1.0, quantity)
-    si = SI_UNITS[quantity]
+    si = units[quantity]
     if not unit:
         raise ValueError(f'column "{header}": has no unit; expected "{name} [{si}]" or the like')
     try:

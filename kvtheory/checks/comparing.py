@@ -59,7 +59,7 @@ def _compare(
     allowed = {name: case.most(name) * case.theory.scales[name] for name in case.names}
     return Comparison(
         verdict(checks), checks, text, explanations, series.source, tolerance,
-        dict(series.columns), dict(case.now), allowed,
+        dict(series.columns), dict(case.now), allowed, theory.units,
     )  # fmt: skip
 
 
@@ -76,7 +76,8 @@ def broken_off(
     `rows` are what it found until then, in the order of `TRANSIENT_UNITS`.
     """
     series = dict(zip(TRANSIENT_UNITS, np.array(rows).T, strict=True))
-    theory = dict(Theory(scene, methods).at(series["time"]))
+    judge_of = Theory(scene, methods)
+    theory = dict(judge_of.at(series["time"]))
     lacking = 1.0 - float(series["time"][-1]) / scene.run.duration
     unit = "part of the duration that is lacking"
     check = Check("run to the end", lacking, 0.0, False, "F15", unit)
@@ -86,5 +87,5 @@ def broken_off(
     allowed = {name: np.zeros_like(theory[name]) for name in series if name in theory}
     return Comparison(
         "disagrees", (check,), text, (fault,), scheme or "our own simulation", tolerance,
-        series, theory, allowed,
+        series, theory, allowed, judge_of.units,
     )  # fmt: skip

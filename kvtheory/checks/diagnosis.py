@@ -26,10 +26,10 @@ FAMILIES: tuple[tuple[Callable[[Bench], Iterator[Trial]], float], ...] = (
 )  # fmt: skip
 """The families in the order in which they are tried, and the part of the difference that one of their faults
 must explain for nothing else to be looked for: a sign or a unit is not fitted, so that little is enough."""
-ON_ARMS: tuple[tuple[Callable[[Bench], Iterator[Trial]], float], ...] = (
+BY_ELEMENTS: tuple[tuple[Callable[[Bench], Iterator[Trial]], float], ...] = (
     (undone, 0.5), (replaced, 0.9),
 )  # fmt: skip
-"""Those on a foundation with arms: each theory that others would ask for is a run of many elements."""
+"""Those where each theory that others would ask for is a run of many elements."""
 NAMED = 0.4
 """Part of the difference that a fault must explain to be named."""
 SHOWN = 4
@@ -74,7 +74,7 @@ def explanations(case: Case) -> list[Explanation]:
     rows = bench(case)
     start = rows.fit(rows.columns, rows.now).score
     trials: list[Trial] = []
-    families = ON_ARMS if case.theory.scene.foundation.arms else FAMILIES
+    families = BY_ELEMENTS if case.theory.by_elements else FAMILIES
     for number, (family, good) in enumerate(families):
         for trial in family(rows):
             trials.append(trial)

@@ -5,6 +5,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from kvtheory.checks.allowances import contact_extent
 from kvtheory.checks.comparison_case import (
     COARSEST,
     COMMON,
@@ -85,6 +86,6 @@ def stability(case: Case) -> Iterator[Check]:
     elif math.isnan(limit):
         yield not_made(name, equation, f'no limit is known of the scheme "{scheme}"')
     else:
-        length = float(np.nanmax(np.abs(case.now["trailing_edge"] - case.now["leading_edge"])))
-        number = case.resolution.time_step * scene.foundation.damping * length / scene.support.mass
+        extent = float(contact_extent(case.theory, case.now).max())
+        number = case.resolution.time_step * scene.foundation.damping * extent / scene.support.mass
         yield case.check(name, number, limit, equation, "dt C L/M", f"scheme {scheme}")

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from kvtheory.checks.columns import SHOWN, SI_UNITS, Column, recognise
+from kvtheory.checks.columns import PRESSURE, SHOWN, SI_UNITS, Column, recognise
 from kvtheory.scene.quantities import shown
 from kvtheory.scene.tables import numbers, read_table
 
@@ -43,8 +43,10 @@ class Series:
         return self.columns["time"]
 
 
-def read(data: Any) -> Series:
+def read(data: Any, units: Mapping[str, str] = SI_UNITS) -> Series:
     """Return the series that `data` holds: a path to a CSV, a result, or a mapping of arrays.
+
+    `units` are those of the quantities of the scene, in SI.
 
     Raises
     ------
@@ -59,10 +61,11 @@ def read(data: Any) -> Series:
     >>> series.columns["depth"].tolist()[0], series.time.tolist()[-1]
     (0.0003, 0.007)
     """
+    units = {**units, **PRESSURE}
     if isinstance(data, (str, PathLike)):
-        return _from_file(Path(data))
+        return _from_file(Path(data), units)
     if isinstance(data, Mapping):
-        return _from_mapping(data)
+        return _from_mapping(data, units)
     names = [name for name in SI_UNITS if getattr(data, name, None) is not None]
     if "time" not in names:
         raise TypeError(
@@ -79,30 +82,32 @@ def read(data: Any) -> Series:
     )  # fmt: skip
 
 
-def _from_mapping(data: Mapping[str, Any]) -> Series:
+def _from_mapping(data: Mapping[str, Any], units: Mapping[str, str]) -> Series:
     """Read arrays by our names, in SI, or by names with units."""
-    heads = [f"{key} [{SI_UNITS[key]}]" if key in SI_UNITS else str(key) for key in data]
+    heads = [f"{key} [{units[key]}]" if key in units else str(key) for key in data]
     arrays, problems = [], []
     for values in data.values():
         try:
             arrays.append(np.asarray(values, dtype=float))
         except (TypeError, ValueError) as error:
             problems.append(f"`data`: {error}")
-    columns, found = _recognised(heads)
+    columns, found = _recognised(heads, units)
     problems += [f"`data`: {problem}" for problem in found]
     if problems:
         raise ValueError("\n".join(problems))
     return _named(columns, heads, arrays, "arrays")
 
 
-def _recognised(heads: Sequence[str]) -> tuple[list[Column | None], list[str]]:
+def _recognised(
+    heads: Sequence[str], units: Mapping[str, str]
+) -> tuple[list[Column | None], list[str]]:
     """Return what the columns hold, None for those of no known name, and what is wrong with them."""
     columns: list[Column | None] = []
     problems: list[str] = []
     seen: dict[str, str] = {}
     for head in heads:
         try:
-            column = recognise(head)
+            column = recognise(head, units)
         except ValueError as error:
             problems.append(str(error))
             continue
@@ -136,10 +141,10 @@ def _named(
     return _checked(values, headers, source, lines=lines, ignored=ignored)
 
 
-def _from_file(path: Path) -> Series:
+def _from_file(path: Path, units: Mapping[str, str]) -> Series:
     """Read a CSV: ``#`` begins a comment, then a header with names and units, then numbers."""
     table = read_table(path)
-    columns, problems = _recognised(table.heads)
+    columns, problems = _recognised(table.heads, units)
     if problems:
         raise ValueError("\n".join(f"{path}: {problem}" for problem in problems))
     if not table.rows:

@@ -64,8 +64,8 @@ def _why_not(case: Case, curve: str) -> str:
         return "a fixed indenter has none"
     if case.theory.scene.foundation.arms:
         return "F12 holds for Kelvin-Voigt"
-    if not case.theory.scene.drive.rigid:
-        return "F12 holds for a rigid drive"
+    if not (case.theory.scene.drive.rigid and case.theory.scene.indenter.per_width):
+        return "F12 holds for a line contact on a rigid drive"
     return "the indenter oscillates" if case.theory.rates.oscillates else ""
 
 
@@ -94,7 +94,8 @@ def _fitted(case: Case, name: str, curve: str, use: NDArray[np.intp], exact: flo
 def steady_limit(case: Case) -> Iterator[Check]:
     """Compare the end of the data with exact steady sliding."""
     theory, time, columns = case.theory, case.series.time, case.series.columns
-    name, equation = "steady limit", "F17" if theory.scene.foundation.arms else "F1"
+    ours = "F1" if theory.scene.indenter.per_width else "F20"
+    name, equation = "steady limit", "F17" if theory.scene.foundation.arms else ours
     if math.isinf(theory.last_change):
         yield not_made(name, equation, "the drive is a function, which need not settle")
         return

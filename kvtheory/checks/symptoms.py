@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from kvtheory.checks.allowances import contact_extent
 from kvtheory.checks.checklist import judge
 from kvtheory.checks.comparison_case import (
     COARSEST,
@@ -70,7 +71,7 @@ def unmoved(case: Case, failed: Sequence[Check]) -> Iterator[Explanation]:
         or not case.theory.scene.drive.rigid
     ):
         return
-    if case.theory.final_velocity == 0.0:
+    if case.theory.final_velocity == 0.0 or not case.theory.scene.indenter.per_width:
         return
     late = case.series.time > FIRST_PART * case.series.time[-1]
     depth, time = columns["depth"][late], case.series.time[late]
@@ -119,8 +120,8 @@ def rattling(case: Case) -> Iterator[Explanation]:
         return
     steps = np.diff(time)
     h = float(steps[steps > 0.0].min())
-    length = float(np.nanmax(np.abs(case.now["trailing_edge"] - case.now["leading_edge"])))
-    number = h * scene.foundation.damping * length / scene.support.mass
+    extent = float(contact_extent(case.theory, case.now).max())
+    number = h * scene.foundation.damping * extent / scene.support.mass
     force = "normal_force"  # its noise is not capped here
     loud = (
         np.median(noise(time, case.residual(force), case.now[force]))

@@ -13,8 +13,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from kvtheory.results.table import QUANTITIES, SERIES_UNITS
-from kvtheory.scene import Drive
+from kvtheory.results.table import QUANTITIES, SERIES_UNITS, units_for
+from kvtheory.scene import Drive, Sphere
 from kvtheory.scene.model import Scene
 from kvtheory.scene.static_state import StaticState
 
@@ -27,6 +27,8 @@ FOR_GOOD = 40.0
 """Time constants after which what is left of a change is below rounding."""
 FOREVER = 1e9
 """Retardation times: no series is so long."""
+SHALLOWEST = 1e-3
+"""Of the static depth: where the contact vanishes, its length and width are those of this depth."""
 NO_VELOCITY = 1e-9
 """In units of a_0/tau: a slower drive does not move."""
 
@@ -102,6 +104,28 @@ class Theory:
         return {**measures, "velocity": speed, "sliding_velocity": speed}
 
     @cached_property
+    def units(self) -> Mapping[str, str]:
+        """The SI unit of each curve."""
+        return units_for(self.scene.indenter, SERIES_UNITS)
+
+    @property
+    def by_elements(self) -> bool:
+        """Whether the transient is that of many elements: of a ball, and on arms."""
+        return bool(self.scene.foundation.arms) or not self.scene.indenter.per_width
+
+    def width(self, depth: Any) -> Any:
+        """Return the mean width of a contact (m) at depths: 1 for a line contact, which is per unit width.
+
+        Strips of a ball are as long and as steep as the middle plane times sqrt(1 - y^2/b^2), at rest and in
+        fast sliding, and nearly so between: their mean width is (pi/4) 2 b, b = sqrt(2 R' delta).
+        """
+        indenter, static = self.scene.indenter, self.static
+        if not isinstance(indenter, Sphere):
+            return 1.0
+        kept = np.maximum(depth, SHALLOWEST * static.depth) / static.depth
+        return 0.5 * math.pi * static.half_length * indenter.stretch * np.sqrt(kept)
+
+    @cached_property
     def motion(self) -> Any:
         """V(t) and Y(t) until the end of the run."""
         return self.scene.drive.motion(self.scene.run.duration, self.static.velocity)
@@ -128,7 +152,7 @@ class Theory:
 
         On a spring they follow from the quartic of F22. With a rigid drive, A = sqrt(a^2 + l_r^2) + a and
         B = x_TE + a, M s^2 + C B s + K A + k_s = 0 (F12); with arms, they are those of the damping that slow
-        sliding feels, and measure what is allowed.
+        sliding feels, and measure what is allowed. So do those of a ball, by its mean width.
         """
         support, foundation = self.scene.support, self.scene.foundation
         if not self.scene.drive.rigid:
@@ -139,8 +163,9 @@ class Theory:
             return None
         a, l_r = self.steady_state.half_length, self.steady_state.retardation_length
         x_te = a * a / (l_r + math.hypot(a, l_r))
-        stiffness = foundation.stiffness * (math.hypot(a, l_r) + a) + support.spring
-        damping = foundation.damping * (x_te + a)
+        width = float(self.width(self.steady_state.depth))
+        stiffness = foundation.stiffness * width * (math.hypot(a, l_r) + a) + support.spring
+        damping = foundation.damping * width * (x_te + a)
         root = complex(damping * damping - 4.0 * support.mass * stiffness) ** 0.5
         return Rates.of(
             [2.0 * support.mass / (damping + root), (damping + root) / (2.0 * stiffness)]

@@ -13,6 +13,7 @@ from kvtheory.ladder import equivalent, stiff_drive
 from kvtheory.ladder.climbing import Answer, Judgement, Request, Rung
 from kvtheory.models.slow_manifold import motion as slow_motion
 from kvtheory.models.slow_manifold import start as slow_start
+from kvtheory.models.strips import held
 from kvtheory.results import TRANSIENT_UNITS, Certificate, Simulation, SteadyState, Transient
 from kvtheory.results.certificate import AT_REST
 from kvtheory.results.table import scales
@@ -21,11 +22,11 @@ from kvtheory.scene.quantities import Derived
 from kvtheory.scene.requirements import (
     lacks_arms,
     lacks_kelvin_voigt,
-    lacks_line,
     lacks_paper_model,
     lacks_quadratic,
     lacks_rigid_drive,
     lacks_rigid_paper_model,
+    lacks_strips,
 )
 from kvtheory.scene.static_state import StaticState
 
@@ -48,11 +49,14 @@ NEXT = 0.1
 
 ELEMENTS = 120.0
 """Elements in the contact at rest, at first."""
-LEAST_FINER, MOST_FINER, SPARE = 2.0, 8.0, 1.3
+LEAST_FINER, MOST_FINER, SPARE = 2.0, {True: 8.0, False: 3.0}, 1.3
 """Then there are so many times more, within these bounds, as second order in their spacing asks for, and
-somewhat more. The work grows as the square."""
-MOST_UPDATES = 5e7
-"""Updates of elements in one run, about a minute and a half."""
+somewhat more. The work grows as the square, of a ball as the cube."""
+MOST_UPDATES = {True: 5e7, False: 1e9}
+"""Updates of elements in one run, about a minute and a half: of a line contact, and of a ball, which has
+thousands of them in a step."""
+DIMENSIONS = {True: 2, False: 3}
+"""What is refined together: elements, steps, and strips of a ball."""
 
 BEST_OF_ELEMENTS = 1e-6
 """With the most work, they come to about this in a start from rest: nothing is run where less is asked."""
@@ -68,11 +72,12 @@ class Models:
 
 
 def rungs(models: Models) -> tuple[Rung, ...]:
-    """Return the rungs in order of cost."""
+    """Return the rungs in order of cost; those of a ball are exact, strips and elements."""
     at_once = partial(_at_once, models.steady)
     return (
         Rung("exact", "steady from the first instant: the depth cannot change", _steady, at_once),
         Rung("slow manifold", "a start from rest, inertia that is soon overcome", _slow, _follow),
+        Rung("strips", "a ball held at its depth, no memory", _held, partial(_strips, models.transient)),
         Rung("continuum", "a parabola, a drive so stiff that it counts as rigid",
              _stiff, partial(_rigid, models.transient)),
         Rung("continuum", "a parabola", _parabola, partial(_continuum, models.transient)),
@@ -86,12 +91,21 @@ def _parabola(scene: Scene, request: Request) -> Judgement:
     return Judgement(lacks_paper_model(scene))
 
 
+def _held(scene: Scene, request: Request) -> Judgement:
+    return Judgement(lacks_strips(scene) or lacks_rigid_drive(scene) or held.remembers(scene))
+
+
+def _strips(transient: Callable[..., Transient], scene: Scene, request: Request, _: Any) -> Answer:
+    result = transient(scene, at=request.times)
+    return _asked(result, result.certificate, request, result)
+
+
 def _replaceable(steady: Callable[..., SteadyState], scene: Scene, request: Request) -> Judgement:
     return equivalent.judge(steady, scene, request, SOLVED)
 
 
 def _anything(scene: Scene, request: Request) -> Judgement:
-    if lacking := lacks_line(scene) or lacks_arms(scene):
+    if lacking := lacks_arms(scene):
         return Judgement(lacking)
     return Judgement(error=BEST_OF_ELEMENTS if request.rtol < BEST_OF_ELEMENTS else math.nan)
 
@@ -255,8 +269,9 @@ def _elements(
             answer = _compared(answer, before, finer, scales(Model.of(scene).at_rest))
         error = max(answer.certificate.relative_error[name] for name in request.quantities)
         enough = error <= request.rtol and before is not None
-        finer = min(max(SPARE * math.sqrt(error / request.rtol), LEAST_FINER), MOST_FINER)
-        if enough or result.element_updates * finer * finer > MOST_UPDATES:
+        line = scene.indenter.per_width
+        finer = min(max(SPARE * math.sqrt(error / request.rtol), LEAST_FINER), MOST_FINER[line])
+        if enough or result.element_updates * finer ** DIMENSIONS[line] > MOST_UPDATES[line]:
             return answer
         count, before = count * finer, answer
 

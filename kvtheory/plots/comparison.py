@@ -11,7 +11,7 @@ from kvtheory.plots.files import inline, save_page, template
 from kvtheory.plots.style import BLACK, BLUE, GREEN, RED, TRANSIENT_ROWS, with_unit
 from kvtheory.results import Check, Comparison
 from kvtheory.results.comparison import Explanation
-from kvtheory.results.table import QUANTITIES, SERIES_UNITS, SPRING_UNITS
+from kvtheory.results.table import QUANTITIES, SPRING_UNITS
 from kvtheory.scene import Scene, to_toml
 
 CURVES = {
@@ -52,7 +52,7 @@ def plot_comparison(axes: Sequence[Sequence[Any]], comparison: Comparison) -> li
     artists: list[Any] = []
     for (over, rest), name in zip(axes, names, strict=False):
         symbol, sign = CURVES[name]
-        label, factor = with_unit(symbol, SERIES_UNITS[name])
+        label, factor = with_unit(symbol, comparison.units[name])
         factor *= sign
         data, theory = comparison.series[name] * factor, comparison.theory[name] * factor
         style = "." if time.size <= DOTS else "-"

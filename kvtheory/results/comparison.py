@@ -1,5 +1,6 @@
 """A time series held against theory."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field, fields
 from pathlib import Path
 from typing import Any
@@ -7,6 +8,7 @@ from typing import Any
 from kvtheory.results.above import above
 from kvtheory.results.certificate import record
 from kvtheory.results.presented import html_table
+from kvtheory.results.table import SERIES_UNITS
 
 
 @dataclass(frozen=True)
@@ -74,6 +76,10 @@ class Comparison:
     """The theory at the times of the data."""
     allowed: Any = field(repr=False, compare=False)
     """By how much the data may differ, by name, at the times of the data."""
+    units: Mapping[str, str] = field(
+        default_factory=lambda: SERIES_UNITS, repr=False, compare=False
+    )
+    """The SI unit of each quantity."""
 
     def __repr__(self) -> str:
         """Say the verdict, the diagnosis, and what failed."""
@@ -114,7 +120,7 @@ class Comparison:
 
     def as_dict(self) -> dict[str, Any]:
         """Return plain Python values, ready for JSON, without the series."""
-        left_out = ("series", "theory", "allowed")
+        left_out = ("series", "theory", "allowed", "units")
         return {
             f.name: record(getattr(self, f.name)) for f in fields(self) if f.name not in left_out
         }

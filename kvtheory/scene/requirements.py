@@ -35,15 +35,8 @@ def lacks_strips(scene: Scene) -> str:
     """Say why the transient of a ball by strips without memory does not hold; nothing if it does."""
     if lacking := lacks_ball(scene):
         return lacking
-    told = 'holds for support.kind = "fixed" only so far: a ball that rises lifts its rim off the ground'
+    told = 'holds for support.kind = "fixed" only: a ball that rises lifts its rim off the ground'
     return "" if scene.held else f"of a ball {told}, and comes down on what it left there"
-
-
-def lacks_line(scene: Scene) -> str:
-    """Say why a method for line contacts does not hold for a scene; nothing if it does."""
-    if scene.indenter.per_width:
-        return ""
-    return f'holds for line contacts only so far, not for indenter.shape = "{scene.indenter.shape}"'
 
 
 def lacks_kelvin_voigt(scene: Scene) -> str:
@@ -80,9 +73,9 @@ def lacks_rigid_paper_model(scene: Scene) -> str:
     return lacks_paper_model(scene) or lacks_rigid_drive(scene)
 
 
-def lacks_parabola_on_arms(scene: Scene) -> str:
-    """Say why a transient has nothing to be held against; nothing for a parabola that can be followed."""
-    return lacks_parabola(scene) or lacks_arms(scene)
+def lacks_quadratic_on_arms(scene: Scene) -> str:
+    """Say why a transient has nothing to be held against; nothing for what can be followed and is exact."""
+    return lacks_quadratic(scene) or lacks_arms(scene)
 
 
 def lacks_asymptotes(scene: Scene) -> str:
@@ -127,7 +120,8 @@ def _lacks_shape(scene: Scene, shapes: tuple[type, ...], named: str) -> str:
 
 
 IN_MOTION = (
-    lacks_parabola, lacks_paper_model, lacks_rigid_paper_model, lacks_arms, lacks_parabola_on_arms,
+    lacks_parabola, lacks_paper_model, lacks_rigid_paper_model, lacks_arms, lacks_quadratic_on_arms,
+    lacks_strips,
 )  # fmt: skip
 """What methods in motion need; where one of these is lacking, another method may do."""
 
@@ -139,9 +133,9 @@ def require(lacks: Lacking, scene: Scene, what: str) -> None:
 
 
 def _instead(lacks: Lacking, scene: Scene) -> str:
-    """Say what can be done with a line contact for which the paper's model is not enough."""
+    """Say what can be done with a scene for which the paper's model is not enough."""
     asked = lacks in IN_MOTION and (lacks_paper_model(scene) or lacks_arms(scene))
-    if not asked or not scene.indenter.per_width:
+    if not asked:
         return ""
     if lacks_arms(scene):
         return (

@@ -10,8 +10,8 @@ foundation that moves away under it, dx_TE/dt <= |V|: a drive that slows down me
 first in the middle plane, where A = a. Over a linear piece of the drive its slow end decides. The forces are
 sums over y = b sin t by Gauss's rule, each strip by F11.
 
-A ball that can rise is not covered: d' < 0 lifts the rim off the ground at once, where sqrt(d - y^2) < -d'/(2
-lambda), and the rim comes down again on ground that remembers it.
+A ball that can rise is left to elements: d' < 0 lifts the rim off the ground at once, where
+sqrt(d - y^2) < -d'/(2 lambda), and the rim comes down again on ground that remembers it.
 """
 
 import math
@@ -59,11 +59,11 @@ class HeldBall:
 
     def surface(self, x: ArrayLike, time: float) -> Any:
         """Refuse: the surface of a ball is not followed."""
-        raise ValueError("`surface` holds for line contacts only so far, not for a ball")
+        raise ValueError("`surface` holds for line contacts only, not for a ball")
 
     def energy(self, time: ArrayLike) -> Any:
         """Refuse: the energies of a ball are not followed."""
-        raise ValueError("`energy` holds for line contacts only so far, not for a ball")
+        raise ValueError("`energy` holds for line contacts only, not for a ball")
 
 
 def transient(scene: Scene, at: ArrayLike | None, *, certify: bool = True) -> Transient:
@@ -127,10 +127,14 @@ FORCES = {"normal_force": "load", "friction_force": "friction_force"}
 
 def refuse_memory(scene: Scene) -> None:
     """Raise `ValueError` if the foundation remembers somewhere along the drive."""
+    if why := remembers(scene):
+        raise ValueError(f"the transient of a ball {why}; `elements` follows it")
+
+
+def remembers(scene: Scene) -> str:
+    """Say where along the drive the foundation remembers; nothing if it does not."""
     if scene.drive.function is not None:
-        raise ValueError(
-            "the transient of a ball follows a drive with a velocity or a history only so far"
-        )
+        return "follows a drive with a velocity or a history only"
     a, tau = StaticState.of(scene).half_length, scene.foundation.retardation_time
     for (before, fast), (after, slow) in pairwise(scene.drive.points):
         if abs(slow) >= abs(fast) and fast * slow >= 0.0:
@@ -138,10 +142,11 @@ def refuse_memory(scene: Scene) -> None:
         l_r = abs(slow) * tau
         rate = math.inf if before == after else (abs(fast) - abs(slow)) / (after - before)
         if fast * slow <= 0.0 or tau * rate * (1.0 - l_r / math.hypot(a, l_r)) > abs(slow):
-            raise ValueError(
-                f"the transient of a ball holds while no edge runs back over ground that it left: the drive "
-                f"slows down too fast, stops or turns round before t = {after:.6g} s"
+            return (
+                "holds while no edge runs back over ground that it left: the drive slows down too fast, "
+                f"stops or turns round before t = {after:.6g} s"
             )
+    return ""
 
 
 def _velocity(scene: Scene, time: float) -> float:
