@@ -1,0 +1,274 @@
+"""A ball by elements in strips: against steady sliding, closed-form edges, and a sheet of points."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import kvtheory as kv
+from kvtheory.models.elements.model import Model
+from kvtheory.models.elements.row import ElementRow, IndenterState
+from kvtheory.models.elements.schemes import SCHEMES
+from kvtheory.models.elements.strips import weights_across
+from kvtheory.results import TRANSIENT_UNITS
+from kvtheory.results.table import scales
+from tests.transient_ball import sheet
+
+WIDER = kv.Sphere("10 mm", radius_across="25 mm")
+GRIPS = {
+    "fixed": kv.Fixed(depth=1e-4),
+    "dead-weight": kv.DeadWeight(load="9.8 N"),
+    "suspended": kv.Suspended(mass="1 kg", stiffness="30 kN/m"),
+}
+RUBBER = kv.GeneralizedMaxwell("10 GN/m^3", arms=[["20 GN/m^3", "10 ms"]])
+STEADY = {"depth": "depth", "normal_force": "load", "friction_force": "friction_force",
+          "leading_edge": "leading_edge", "trailing_edge": "trailing_edge",
+          "peak_pressure": "peak_pressure"}  # fmt: skip
+COMPARED = [name for name in TRANSIENT_UNITS if name not in ("time", "velocity")]
+
+
+def ball(support, velocity=0.1, end=0.3, foundation=None):
+    foundation = foundation or kv.Foundation("10 GN/m^3", "20 ms")
+    return kv.Scene(WIDER, foundation, support, kv.Drive(velocity), kv.Run(end))
+
+
+def errors(run, expected, scene):
+    scale = scales(Model.of(scene, 1.0 / run.per_length).at_rest)
+    return {
+        name: float(np.nanmax(np.abs(getattr(run, name) - expected[name]), initial=0.0))
+        / scale[name]
+        for name in expected
+    }
+
+
+@pytest.mark.parametrize(
+    ("support", "foundation", "velocity"),
+    [
+        ("fixed", None, 0.1),
+        ("dead-weight", None, -0.025),
+        ("suspended", None, 0.1),
+        ("fixed", RUBBER, -0.1),
+        ("dead-weight", RUBBER, 0.1),
+    ],
+)
+def test_a_start_ends_in_exact_steady_sliding(support, foundation, velocity):
+    scene = ball(GRIPS[support], velocity, foundation=foundation)
+    run = kv.elements(scene, per_length="14 /mm", at=[0.3])
+    state = kv.steady(scene)
+    found = errors(run, {name: getattr(state, other) for name, other in STEADY.items()}, scene)
+    for name, error in found.items():
+        assert error <= run.certificate.relative_error[name] + 1e-9, name
+    assert found["depth"] < 5e-4
+    assert max(found.values()) < 5e-3
+    assert run.units["normal_force"] == "N"
+
+
+@pytest.mark.parametrize("scheme", SCHEMES)
+def test_every_scheme_carries_a_ball(scheme):
+    scene = ball(GRIPS["dead-weight"])
+    run = kv.elements(scene, per_length="20 /mm", scheme=scheme, at=[0.3])
+    state = kv.steady(scene)
+    expected = {"depth": state.depth, "friction_force": state.friction_force}
+    for name, error in errors(run, expected, scene).items():
+        assert error <= run.certificate.relative_error[name] < 0.2
+        assert error < 0.02
+
+
+def test_strips_with_closed_form_edges_agree_at_constant_depth():
+    history = [["0 s", "0 m/s"], ["4 ms", "0.1 m/s"], ["60 ms", "50 mm/s"], ["80 ms", "0.2 m/s"]]
+    scene = replace(ball(GRIPS["fixed"]), drive=kv.Drive(history=history), run=kv.Run(0.08))
+    times = np.linspace(0.0, 0.08, 23)
+    truth, run = kv.transient(scene, at=times), kv.elements(scene, per_length="80 /mm", at=times)
+    for name, error in errors(run, {n: getattr(truth, n) for n in COMPARED}, scene).items():
+        assert error <= max(run.certificate.relative_error[name], 1e-9), name
+        assert error < (2e-3 if "edge" in name or "friction" in name else 4e-4), name
+
+
+EPSILON, END = 0.05, 1.2
+PIECES = {
+    "start": [(END, 3.0)],
+    "stop": [(0.6, 3.0), (END, 0.0)],
+    "reversal": [(0.6, 3.0), (END, -2.0)],
+}
+
+
+@pytest.mark.parametrize(("motion", "kappa"), [("start", 0.0), ("stop", 0.7), ("reversal", 0.0)])
+def test_a_ball_that_rises_against_a_sheet_of_points(motion, kappa):
+    """Two computations that share nothing: rims that lift, stops, and ground met again."""
+    pieces, history, begun = PIECES[motion], [], 0.0
+    for end, number in pieces:
+        history += [(begun, number), (end, number)]
+        begun = end
+    W = 0.5 * math.pi
+    support = kv.DeadWeight(W * EPSILON, 1.0 / EPSILON)
+    if kappa:
+        support = kv.Suspended(W * EPSILON, W * kappa, 1.0 / EPSILON)
+    scene = kv.Scene(
+        kv.Sphere(0.5), kv.Foundation(1.0, 1.0), support, kv.Drive(history=history), kv.Run(END)
+    )
+    s, d, f_z = sheet(pieces, EPSILON, kappa, 80, 2e-3)
+    rows = [int(np.argmin(np.abs(s - at))) for at in (0.1, 0.3, 0.59, 0.7, 0.9, 1.19)]
+    run = kv.elements(scene, per_length=200.0, at=s[rows].tolist())
+    assert np.abs(run.depth - d[rows]).max() < 1.5e-4
+    assert np.abs(run.depth - d[rows]).max() < run.certificate.relative_error["depth"]
+    assert np.abs(run.normal_force / W - f_z[rows]).max() < 5e-3
+
+
+@pytest.mark.parametrize(("corrected", "order"), [(True, (2.3, 2.7)), (False, (1.9, 2.2))])
+def test_order_of_the_rule_across(corrected, order):
+    """The strips of F20 are parabolas in closed form; b/dy runs through all fractions."""
+    scene = kv.Scene(kv.Parabola(0.5), kv.Foundation(1.0, 1.0), kv.Fixed(1.0), kv.Drive(0.7))
+    whole = kv.steady(replace(scene, indenter=kv.Sphere(0.5), support=kv.Fixed(1.0))).load
+    counts, left = np.array([8, 16, 32, 64]), []
+    for count in counts:
+        worst = 0.0
+        for fraction in np.linspace(0.0, 0.95, 12):
+            dy = 1.0 / (count + fraction)
+            y = dy * np.arange(count + 1)
+            depth = np.maximum(1.0 - y * y, 1e-12)
+            loads = kv.steady(scene, over={"support.depth": depth}).load
+            weights = weights_across(dy, count + 1, 1.0 if corrected else 0.0)
+            worst = max(worst, abs(float(weights @ loads) / whole - 1.0))
+        left.append(worst)
+    found = -np.polyfit(np.log(counts), np.log(left), 1)[0]
+    assert order[0] < found < order[1]
+
+
+def test_order_in_both_spacings():
+    """Elements, steps and strips together: order two, against strips with closed-form edges."""
+    scene = ball(GRIPS["fixed"], 0.05, 0.01)
+    truth = kv.transient(scene, at=[0.01])
+    densities, left = [70e3, 140e3, 280e3], []
+    for density in densities:
+        runs = [
+            kv.elements(scene, per_length=factor * density, at=[0.01], certify=False)
+            for factor in (0.9, 1.0, 1.1)
+        ]
+        left.append(max(abs(run.friction_force[0] / truth.friction_force[0] - 1.0) for run in runs))
+    assert -np.polyfit(np.log(densities), np.log(left), 1)[0] > 1.8
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_the_certificate_covers_the_error_on_random_scenes(seed):
+    rng = np.random.default_rng(seed)
+    epsilon, kappa = 10.0 ** rng.uniform([-2.5, -1.0], [0.5, 1.0])
+    W = 0.5 * math.pi
+    supports = [
+        kv.DeadWeight(W * epsilon, 1.0 / epsilon),
+        kv.Suspended(W * epsilon, W * kappa, 1.0 / epsilon),
+    ]
+    top, end = 10.0 ** rng.uniform([-1.0, -0.5], [0.8, 0.3])
+    histories = [
+        [(0.0, top)],
+        [(0.0, top), (0.5 * end, top), (0.5 * end, 0.0)],
+        [(0.0, top), (0.5 * end, top), (0.5 * end, -0.6 * top)],
+        [(0.0, 0.0), (0.4 * end, top), (end, -top)],
+    ]
+    history = [(float(t), float(V)) for t, V in histories[seed % 4]]
+    scene = kv.Scene(
+        kv.Sphere(0.5), kv.Foundation(1.0, 1.0), supports[seed % 2], kv.Drive(history=history),
+        kv.Run(float(end)),
+    )  # fmt: skip
+    times = np.sort(rng.uniform(0.0, end, 6))
+    run = kv.elements(scene, per_length=rng.uniform(12.0, 30.0), at=times)
+    fine = kv.elements(scene, per_length=120.0, at=times, certify=False)
+    # Whether a ball that all but flies still touches decides about a pressure at an edge, which no run tells.
+    both = ~(np.isnan(run.leading_edge) ^ np.isnan(fine.leading_edge))
+    run = replace(run, **{name: getattr(run, name)[both] for name in TRANSIENT_UNITS})
+    for name, error in errors(run, {n: getattr(fine, n)[both] for n in COMPARED}, scene).items():
+        assert error <= max(run.certificate.relative_error[name], 1e-9), name
+
+
+def test_profiles_of_revolution():
+    """That of a parabola is the ball; a cone and a true sphere end in steady sliding by quadrature."""
+    held = {"support": kv.Fixed(1e-4), "drive": kv.Drive(0.01), "run": kv.Run(0.05)}
+    how = {"per_length": "40 /mm", "at": [0.05], "certify": False}
+    found = kv.elements(kv.Scene(kv.Revolved(kv.Parabola(0.01)), **held), **how)
+    same = kv.elements(kv.Scene(kv.Sphere(0.01), **held), **how)
+    assert found.normal_force == pytest.approx(same.normal_force, rel=1e-12)
+    assert found.friction_force == pytest.approx(same.friction_force, rel=1e-12)
+    for profile, rel in ((kv.Wedge(inclination=0.1), 1e-2), (kv.Circle(radius=2e-3), 2e-3)):
+        scene = kv.Scene(kv.Revolved(profile), **held)
+        run, state = kv.elements(scene, **{**how, "per_length": "60 /mm"}), kv.steady(scene)
+        assert run.normal_force[0] == pytest.approx(state.load, rel=rel)
+        assert run.friction_force[0] == pytest.approx(state.friction_force, rel=rel)
+
+
+def test_extremes_of_a_ball():
+    """At rest, without inertia, with huge inertia, in flight: numbers, and no warning."""
+    rest = kv.elements(ball(GRIPS["dead-weight"], 0.0, 0.1), at=[0.1], certify=False)
+    assert rest.normal_force[0] == pytest.approx(9.8, rel=1e-5)
+    assert abs(rest.friction_force[0]) < 1e-9
+    for mass in (1e-9, 1e9):
+        scene = ball(kv.DeadWeight(mass=mass, gravity=9.8 / mass), 0.02, 0.01)
+        run = kv.elements(scene, per_length="20 /mm", at=[0.01], time_step="0.1 ms", certify=False)
+        assert np.isfinite([run.depth, run.normal_force, run.leading_edge]).all()
+    light = ball(kv.DeadWeight(mass="100 g"), 20.0, 5e-4)
+    flown = kv.elements(light, per_length="20 /mm", time_step="2 us", certify=False)
+    assert (np.isnan(flown.leading_edge) == (flown.normal_force == 0.0)).all()
+    assert np.isnan(flown.leading_edge).any()
+
+
+def test_strips_are_added_where_the_ball_sinks():
+    """From a fifth of its depth it sinks to where it rests, on strips that were not there at first."""
+    scene = ball(GRIPS["dead-weight"], 0.0, 0.5)
+    model = replace(Model.of(scene, 2e-5, parts=True), start=0.2)
+    row, scheme = ElementRow(model, model.path(scene)), SCHEMES["edge-corrected"]
+    state, begun = IndenterState(0.0, 0.2 * model.depth, 0.0), row.touched.shape[0]
+    for _ in range(500):
+        state = scheme.step(row, state, 1e-3)
+    assert begun == model.strips(0.2 * model.depth) < model.strips(model.depth)
+    assert row.touched.shape[0] >= model.strips(model.depth)
+    assert state.depth == pytest.approx(model.depth, rel=1e-6)
+
+
+def test_compare_judges_the_series_of_a_ball(tmp_path):
+    scene = ball(GRIPS["dead-weight"], 0.1, 0.1)
+    run = kv.elements(scene, per_length="40 /mm", at=np.linspace(0.0, 0.1, 101), certify=False)
+    path = tmp_path / "ball.csv"
+    heads = "t [ms],z_A [mm],F_z [N],F_x [N],x_LE [mm]"
+    rows = np.array(
+        [
+            run.time * 1e3,
+            -run.depth * 1e3,
+            run.normal_force,
+            run.friction_force,
+            run.leading_edge * 1e3,
+        ]
+    ).T
+    np.savetxt(path, rows, delimiter=",", header=heads, comments="")
+    found = kv.compare(scene, path)
+    assert found.verdict == "agrees"
+    assert found.units["normal_force"] == "N"
+    rows[:, 3] *= -1.0
+    np.savetxt(path, rows, delimiter=",", header=heads, comments="")
+    found = kv.compare(scene, path)
+    assert (found.verdict, found.explanations[0].name) == ("disagrees", "sign of friction_force")
+    path.write_text(path.read_text().replace("F_z [N]", "F_z [N/mm]"))
+    with pytest.raises(ValueError, match=r'"F_z \[N/mm\]": the unit'):
+        kv.compare(scene, path)
+
+
+def test_compare_finds_a_ball_that_is_another():
+    scene = ball(GRIPS["dead-weight"], 0.1, 0.1)
+    other = replace(scene, foundation=kv.Foundation("10 GN/m^3", "22 ms"))
+    run = kv.elements(other, per_length="40 /mm", at=np.linspace(0.0, 0.1, 101), certify=False)
+    assert kv.compare(scene, run).verdict == "disagrees"
+
+
+def test_solve_takes_the_cheapest_model_of_a_ball():
+    fixed, risen = ball(GRIPS["fixed"], end=0.05), ball(GRIPS["dead-weight"], end=0.05)
+    ramp = replace(fixed, drive=kv.Drive(history=[["0 s", "0 m/s"], ["20 ms", "0.1 m/s"]]))
+    back = replace(
+        fixed,
+        drive=kv.Drive(history=[["0 s", "9 mm/s"], ["20 ms", "9 mm/s"], ["20 ms", "-9 mm/s"]]),
+    )
+    for scene, model in (
+        (fixed, "exact"),
+        (ramp, "strips"),
+        (back, "elements"),
+        (risen, "elements"),
+    ):
+        found = kv.solve(scene, at=[0.01, 0.05], rtol=2e-2, quantity="depth")
+        assert found.model == model
