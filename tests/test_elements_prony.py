@@ -169,7 +169,7 @@ def ledger(scene, density, end):
         under, risen = row.under(state, state, 0.0, state.depth), model.depth - state.depth
         p = law.pressure(under.state, state.depth - under.height, 0.0)
         friction = -model.slope(under.x) @ np.where(under.touched, p, 0.0)
-        u, s = row.states[0, 0], row.states[1:, 0]
+        u, s = row.states[0, 0], row.states[1:, 0]  # of the one strip
         kinetic = 0.5 * model.mass * state.rate**2
         potential = model.weight * risen + 0.5 * model.spring * risen**2
         springs = 0.5 * law.stiffness * u @ u + (s * s / (2.0 * K_i)).sum()

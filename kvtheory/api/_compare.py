@@ -13,7 +13,7 @@ from kvtheory.api._stability import stability
 from kvtheory.api._steady import steady
 from kvtheory.checks.theory import Methods
 from kvtheory.progress import Progress
-from kvtheory.results import TRANSIENT_UNITS, units_for
+from kvtheory.results import SERIES_UNITS, units_for
 from kvtheory.results.comparison import Comparison
 from kvtheory.results.schemes import SCHEME_ROWS
 from kvtheory.scene.model import Scene
@@ -176,7 +176,7 @@ def compare(
             )
     except DivergenceError as error:
         return broken_off(scene, error.rows, str(error), methods, scheme, tolerance)
-    units = units_for(scene.indenter, TRANSIENT_UNITS)
+    units = units_for(scene.indenter, SERIES_UNITS)
     return hold_against(scene, read(found, units), methods, density, scheme, tolerance)
 
 

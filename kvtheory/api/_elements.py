@@ -91,7 +91,7 @@ def elements(
     [0.0, 0.33]
     >>> ball = kv.Scene(kv.Sphere("10 mm"), support=kv.DeadWeight(mass="1 kg"))
     >>> kv.elements(ball, per_length="50 /mm", at=["0 ms", "200 ms"]).normal_force.round(2).tolist()
-    [51.98, 9.81]
+    [49.48, 9.81]
 
     References
     ----------

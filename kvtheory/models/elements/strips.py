@@ -33,13 +33,11 @@ def total(weights: Array, values: NDArray[Any]) -> float:
 def weights_across(dy: float, count: int, rim: float) -> Array:
     """Return the width for which each strip counts, on both sides, in m; corrected at a `rim` above zero.
 
-    A strip that carries b^2 - y^2 makes (4/3) b^3 of all.
-
-    >>> y = np.arange(8.0)
-    >>> def by_strips(b):
-    ...     return float(weights_across(1.0, 8, b) @ np.maximum(b * b - y * y, 0.0))
-    >>> [round(by_strips(b) / b**3, 3) for b in (5.0, 6.2)]
-    [1.332, 1.333]
+    >>> y, b = np.arange(8.0), 5.0
+    >>> [round(float(weights_across(1.0, 8, rim) @ np.maximum(b * b - y * y, 0.0)), 2) for rim in (0.0, b)]
+    [165.0, 166.5]
+    >>> round(4.0 / 3.0 * b**3, 2)
+    166.67
     """
     weights = np.full(count, 2.0 * dy)
     weights[0] = dy
