@@ -56,6 +56,9 @@ INLINED = base_motion, dense_output, contact, radau_iia, evaluation
 """Kernels that are short and called most. A run is handed to a function as some hundred numbers, which costs
 more than what is computed: with these inlined a motion takes half the time, and compiling a third more. With
 all of them, it would take a quarter less, and compiling three times as long."""
+SHORT = ("sliding_now", "_slack", "_probe")
+"""Functions of the other modules that are inlined, too: called once or twice, or with little to do beside
+being handed a run. A rigid drive gets back what a spring, which makes a run longer, takes from it."""
 
 WORTHWHILE = 4000
 """Steps that are interpreted before it pays to compile: about a second. To load compiled kernels takes
@@ -120,10 +123,10 @@ def _register() -> None:
     from numba.extending import register_jitable
 
     for module in MODULES:
-        told = UNCOUNTED | {"forceinline": module in INLINED}
         for function in vars(module).values():
             if inspect.isfunction(function) and function.__module__ == module.__name__:
-                register_jitable(**told)(function)
+                inlined = module in INLINED or function.__name__ in SHORT
+                register_jitable(**UNCOUNTED, forceinline=inlined)(function)
 
 
 def _kept(entry: Any) -> Any:
