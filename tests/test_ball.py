@@ -261,10 +261,10 @@ def test_a_drive_that_the_foundation_remembers_is_refused(end, words):
 
 def test_what_is_not_covered_says_so():
     with pytest.raises(
-        ValueError, match="lifts its rim .* `elements`, or `solve` with `at`, follows"
+        ValueError, match=r"lifts its rim .* `elements`, or `solve` with `at`, follows"
     ):
         kv.transient(BALL)
-    with pytest.raises(ValueError, match="parabola only.* `elements`"):
+    with pytest.raises(ValueError, match=r"parabola only.* `elements`"):
         kv.sweep(BALL, over={"drive.velocity": [0.1]}, quantities="settling_time")
     with pytest.raises(ValueError, match="the parabola and the ball only"):
         kv.compare(kv.Scene(kv.Revolved(kv.Wedge(0.1)), support=kv.Fixed(1e-4)))
