@@ -568,7 +568,7 @@ SYMBOLS = tuple(
             "1",
             "F22-critical",
         ),
-        (r"\check s", "its root", "1", "F22-critical"),
+        (r"\check w", "its root", "1", "F22-critical"),
         (r"\check n", r"$\check m - 2 \vartheta_z \check e$", "1", "F22-critical"),
         (r"\check p_{+}", r"$\varrho_z - \vartheta_z \Omega_{+}$", "1", "F22-falling"),
         (r"\check p_{-}", r"$\varrho_z - \vartheta_z \Omega_{-}$", "1", "F22-flutter"),

@@ -365,7 +365,7 @@ TEX = {
     sinks: r"d_\lambda",
     bias: r"\check m",
     onset_sum: r"\check n",
-    spread: r"\check s",
+    spread: r"\check w",
     onset_square: r"\check D",
     aside: r"\tilde \zeta",
     ball_depth: r"\tilde I",

@@ -62,4 +62,4 @@ def test_power_law_contains_the_parabola_and_the_wedge():
 
 def test_registry_names_the_shapes_of_scene_files():
     assert {name: cls.shape for name, cls in SHAPES.items()} == {n: n for n in SHAPES}
-    assert set(SHAPES) == {"parabola", "circle", "power-law", "wedge"}
+    assert set(SHAPES) == {"parabola", "circle", "power-law", "wedge", "sphere"}

@@ -226,9 +226,9 @@ def test_mistakes_of_a_foundation_are_told(overrides, told):
         lambda scene: kv.solve(scene, at=["1 ms"]),
     ],
 )  # fmt: skip
-def test_what_needs_kelvin_voigt_refuses_the_others_in_one_wording(call):
+def test_what_cannot_follow_a_springpot_refuses_it_in_one_wording(call):
     with pytest.raises((ValueError, kv.ToleranceError), match=r"only, not for foundation\.kind"):
-        call(scene(ZENER))
+        call(scene(HALF))
 
 
 def test_the_certificate_is_not_less_than_that_of_the_closed_forms():
