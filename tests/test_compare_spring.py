@@ -166,10 +166,16 @@ def test_a_rigid_drive_slides_at_its_velocity_and_holds_the_friction():
     assert kv.compare(data=columns).verdict == "agrees"
 
 
-def test_a_spring_on_a_prony_series_is_refused():
-    arms = kv.GeneralizedMaxwell(1e10, [(3e10, 0.01)])
-    scene = kv.Scene(foundation=arms, drive=kv.Drive("91 mm/s", stiffness="1 MN/m^2"))
-    with pytest.raises(ValueError, match=r"Prony series holds for a rigid drive only"):
+@pytest.mark.parametrize(
+    "given",
+    [
+        {"foundation": kv.GeneralizedMaxwell(1e10, [(3e10, 0.01)])},
+        {"indenter": kv.Sphere("10 mm"), "support": kv.DeadWeight(mass="1 kg")},
+    ],
+)
+def test_a_spring_is_refused_where_theory_is_by_elements(given):
+    scene = kv.Scene(drive=kv.Drive("91 mm/s", stiffness=1e6), **given)
+    with pytest.raises(ValueError, match=r"a ball or on a Prony series holds for a rigid drive"):
         kv.compare(scene, exact("stable"))
 
 

@@ -152,7 +152,8 @@ def compare(
     scene = scene_of(scene)
     require(lacks_quadratic_on_arms, scene, "the theory of the transient")
     if scene.foundation.arms or not scene.indenter.per_width:
-        require(lacks_rigid_drive, scene, "the theory of the transient by many elements")
+        theory = "the theory of the transient of a ball or on a Prony series"
+        require(lacks_rigid_drive, scene, theory)
     if not (math.isfinite(tolerance) and tolerance > 0.0):
         raise ValueError(f"`tolerance` = {tolerance!r}: expected a positive number")
     density = None if per_length is None else _density(per_length)
