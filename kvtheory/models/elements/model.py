@@ -163,8 +163,11 @@ class Model:
 
     def grid(self, low: int, high: int, strips: int, Y: float = 0.0) -> tuple[Array, Array]:
         """Return x and y of the elements `low` to `high` of each strip, one strip after the other."""
+        x = self.places(low, high, Y)
+        if strips == 1:
+            return x, np.zeros_like(x)
         y = self.across * np.arange(strips, dtype=np.float64)
-        return np.tile(self.places(low, high, Y), strips), np.repeat(y, high - low)
+        return np.tile(x, strips), np.repeat(y, high - low)
 
     def level(self, depth: float) -> float:
         """Return the next of a few depths, so that spans need not be found anew."""
@@ -198,7 +201,7 @@ class Model:
         strips = self.strips(depth)
         overlap = depth - self.height(*self.grid(low - SPARE, high + SPARE + 1, strips))
         pressed, weight = overlap > 0.0, self.weights(depth, strips, overlap.size)
-        area = self.spacing * total(weight[pressed], overlap[pressed])
+        area = self.spacing * total(weight, np.maximum(overlap, 0.0))
         if self.parts:
             for edge in edges_of(pressed):
                 area += weight.item(edge[0]) * kink_area(self.spacing, gaps(overlap, *edge))[0]
@@ -216,18 +219,19 @@ class Model:
         g = depth - self.height(x, y)
         p = self.law.pressure(self.law.at_rest(g), g, -V * self.slope(x, y))
         pressed = (p > 0.0) & (g >= 0.0)
-        return total(weight, pressed), total(weight[pressed], p[pressed])
+        return total(weight, pressed), total(weight, np.where(pressed, p, 0.0))
 
     def samples(self, depth: float) -> tuple[Array, Array, Array]:
         """Return x and y of places under the indenter, and for what length (m) or area (m^2) each counts."""
-        along, strips, rim, width = SAMPLES, 1, 0.0, np.ones(1)
-        if not self.indenter.per_width:
-            along, strips, rim = SAMPLES_ALONG, SAMPLES_ACROSS, self.half_width(depth)
-            width = weights_across(rim / strips, strips, 0.0)
         low, high = span(self.indenter, depth)
+        if self.indenter.per_width:
+            each = (high - low) / (SAMPLES - 1)
+            return np.linspace(low, high, SAMPLES), np.zeros(SAMPLES), np.full(SAMPLES, each)
+        along, strips = SAMPLES_ALONG, SAMPLES_ACROSS
+        dx, dy = (high - low) / (along - 1), self.half_width(depth) / strips
         x = np.tile(np.linspace(low, high, along), strips)
-        y = np.repeat(np.linspace(0.0, rim, strips, endpoint=False), along)
-        return x, y, (high - low) / (along - 1) * np.repeat(width, along)
+        y = np.repeat(dy * np.arange(strips), along)
+        return x, y, dx * np.repeat(weights_across(dy, strips, 0.0), along)
 
     def sliding_depth(self, V: float) -> float:
         """Return the depth at which that contact carries the load, to within a thousandth."""

@@ -23,10 +23,14 @@ PER_STRIP = 6.0
 """Elements along as wide as a strip, on a ball that is round: then both spacings matter about as much."""
 FEWEST_STRIPS = 16
 """From the middle plane to the rim at rest."""
+THREADED = 10_000
+"""From about so many elements on, BLAS takes threads; below, it is twice as fast as a plain sum."""
 
 
 def total(weights: Array, values: NDArray[Any]) -> float:
     """Return the sum of products; by no threads, which would cost more than they save."""
+    if weights.size < THREADED:
+        return float(weights @ values)
     return float(np.einsum("i,i->", weights, values))
 
 
