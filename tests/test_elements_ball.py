@@ -13,7 +13,8 @@ from kvtheory.models.elements.schemes import SCHEMES
 from kvtheory.models.elements.strips import weights_across
 from kvtheory.results import TRANSIENT_UNITS
 from kvtheory.results.table import scales
-from tests.transient_ball import sheet
+from kvtheory.scene.static_state import StaticState
+from tests.transient_ball import sheet, sheet_on_spring
 
 WIDER = kv.Sphere("10 mm", radius_across="25 mm")
 GRIPS = {
@@ -272,3 +273,48 @@ def test_solve_takes_the_cheapest_model_of_a_ball():
     ):
         found = kv.solve(scene, at=[0.01, 0.05], rtol=2e-2, quantity="depth")
         assert found.model == model
+
+
+HUNG = kv.Drive("100 mm/s", stiffness="10 kN/m", damping="2 N*s/m", mass="50 g")
+"""Holds a ball along x so softly that it swings."""
+
+
+@pytest.mark.parametrize("support", ["dead-weight", "suspended"])
+def test_a_ball_on_a_spring_moves_as_a_sheet_of_points(support):
+    scene = replace(ball(GRIPS[support], end=0.03), drive=HUNG)
+    at_rest = StaticState.of(scene)
+    s, *found = sheet_on_spring(at_rest, 0.03 / at_rest.time, 40.0, 0.01)
+    run = kv.elements(scene, per_length="40 /mm", at=(s * at_rest.time).tolist(), certify=False)
+    names = ("depth", "sliding_velocity", "spring_force")
+    measures = (at_rest.depth, at_rest.velocity, at_rest.friction_force)
+    assert np.ptp(run.sliding_velocity) > 0.5 * HUNG.velocity
+    for name, expected, measure in zip(names, found, measures, strict=True):
+        assert np.abs(getattr(run, name) / measure - expected).max() < 5e-3, name
+
+
+@pytest.mark.parametrize("shape", [WIDER, kv.Revolved(kv.PowerLaw("10 mm", 3.0))])
+def test_a_damped_ball_on_a_spring_ends_in_steady_sliding(shape):
+    drive = kv.Drive("100 mm/s", stiffness="100 kN/m", damping="0.5 kN*s/m", mass="2 kg")
+    scene = replace(ball(GRIPS["dead-weight"]), indenter=shape, drive=drive)
+    run, state = kv.elements(scene, per_length="14 /mm", at=[0.3]), kv.steady(scene)
+    assert run.units["spring_force"] == "N"
+    assert run.sliding_velocity[0] == pytest.approx(0.1, rel=1e-4)
+    expected = dict.fromkeys(("friction_force", "spring_force"), state.friction_force)
+    for name, error in errors(run, expected, scene).items():
+        assert error <= min(run.certificate.relative_error[name], 5e-3), name
+
+
+@pytest.mark.parametrize("scheme", SCHEMES)
+def test_every_scheme_carries_a_ball_on_a_spring(scheme):
+    scene = replace(ball(GRIPS["suspended"], end=0.02), drive=HUNG)
+    runs = [
+        kv.elements(
+            scene, per_length=density, scheme=name, time_step=8.0 / density, at=[5e-3, 20e-3], certify=False
+        )
+        for density, name in ((20e3, scheme), (40e3, scheme), (80e3, "edge-corrected"))
+    ]  # fmt: skip
+    names = ("depth", "sliding_velocity", "spring_force")
+    truth = {name: getattr(runs[-1], name) for name in names}
+    rough, fine = (max(errors(run, truth, scene).values()) for run in runs[:2])
+    assert fine < 0.15
+    assert math.log2(rough / fine) > min(SCHEMES[scheme].row.order_in_time, 2) - 0.3

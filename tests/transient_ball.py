@@ -10,6 +10,7 @@ motion is written by the balance of impulse, so that it needs no pressure:
 import math
 
 import numpy as np
+from scipy.optimize import fsolve
 
 REACH = 1.6
 """The points extend so far beyond the path of the axis, and across."""
@@ -54,3 +55,46 @@ def sheet(pieces, epsilon, kappa, points, step):
             rows.append((s, d, U))
     s, d, U = np.array(rows).T
     return s, d, SHARE * (U + np.gradient(U, s))
+
+
+def sheet_on_spring(at_rest, end, points, step):
+    """Return s, d, the sliding velocity in a_0/tau and the spring force at every step, from rest.
+
+    The mean pressure of a point in a step follows from u before and after, p = (u_1 - u_0 e^-h)/(1 - e^-h),
+    and is zero where it was left alone; f_x is that of the slope -2 xi halfway.
+    """
+    dx, number = 1.0 / points, at_rest.drive_number
+    X = np.arange(-REACH - abs(number) * end, REACH + abs(number) * end, dx)
+    eta = ((np.arange(math.ceil(REACH / dx)) + 0.5) * dx)[:, None]
+    inertia, damping, stiffness = (
+        at_rest.drive_inertia_number, at_rest.drive_damping_number, at_rest.drive_stiffness_number,
+    )  # fmt: skip
+    count = math.ceil(end / step)
+    h = end / count
+    old = math.exp(-h) * np.maximum(0.0, 1.0 - X * X - eta * eta)
+    d, v, x, w, rows = 1.0, 0.0, 0.0, 0.0, []
+    each = SHARE * 2.0 * dx * dx
+
+    def pressed(place, Y, Y_new):
+        u = np.maximum(place - (X + Y_new) ** 2 - eta * eta, old)
+        p = each * (u - old) / -math.expm1(-h)
+        return u, float(p.sum()), -float((2.0 * (X + 0.5 * (Y + Y_new)) * p).sum())
+
+    def lacking(new):
+        d_new, x_new = new
+        _, f_z, f_x = pressed(d_new, number * s - x, number * (s + h) - x_new)
+        push = 1.0 - at_rest.support_number * (0.5 * (d + d_new) - 1.0) - f_z
+        drag = f_x - damping * (x_new - x) / h - stiffness * 0.5 * (x + x_new)
+        return (
+            at_rest.inertia_number * ((d_new - d) / h - v) - 0.5 * h * push,
+            inertia * ((x_new - x) / h - w) - 0.5 * h * drag,
+        )
+
+    for k in range(count):
+        s = k * h
+        d_new, x_new = fsolve(lacking, (d + h * v, x + h * w), xtol=1e-12)
+        u, _, _ = pressed(d_new, number * s - x, number * (s + h) - x_new)
+        v, w = 2.0 * (d_new - d) / h - v, 2.0 * (x_new - x) / h - w
+        d, x, old = d_new, x_new, math.exp(-h) * u
+        rows.append((s + h, d, number - w, stiffness * x + damping * w))
+    return np.array(rows).T
