@@ -1,5 +1,6 @@
 """Measures of transients in sweeps, held against the transient itself on a dense grid of times."""
 
+import dataclasses
 import json
 
 import numpy as np
@@ -237,3 +238,28 @@ def test_what_shapes_a_waveform_is_swept_as_any_other_value():
     np.testing.assert_allclose(*(found[name] for name in names), rtol=2e-3)
     with pytest.raises(kv.SceneError, match="replaces the waveform, of which"):
         kv.sweep(scene, over={"drive.frequency": [5.0], V: [0.1]}, quantities="depth.end")
+
+
+@pytest.mark.parametrize(
+    "scene",
+    [
+        kv.Scene(indenter=kv.Circle(0.01), run=kv.Run(0.01)),
+        kv.Scene(foundation=kv.GeneralizedMaxwell(1e10, arms=[(3e10, 0.01)]), run=kv.Run(0.01)),
+        kv.Scene(kv.Circle(0.01), drive=kv.Drive(0.1, stiffness=1e8), run=kv.Run(0.01)),
+    ],
+    ids=["circle", "Prony series", "circle on a spring"],
+)
+def test_what_the_solver_does_not_hold_for_is_swept_by_elements(scene):
+    """Within the errors of both, the same as by elements alone; what only the solver gives is refused."""
+    over, at = {V: [0.05, 0.1]}, [0.001, 0.01]
+    names = ["depth", "friction_force.end"]
+    swept = kv.sweep(scene, over=over, quantities=names, at=at)
+    for velocity, depths, friction in zip(over[V], *(swept[name] for name in names), strict=True):
+        drive = scene.drive.changed(velocity=velocity)
+        alone = kv.elements(dataclasses.replace(scene, drive=drive), at=at)
+        error, own = (found.certificate.relative_error["depth"] for found in (swept, alone))
+        at_rest = kv.elements(scene, at=[0.0], certify=False).depth[0]
+        assert np.abs(depths - alone.depth).max() < (error + own) * at_rest
+        assert friction == pytest.approx(alone.friction_force[-1], rel=0.02)
+    with pytest.raises(ValueError, match=r"settling_time.*`elements`"):
+        kv.sweep(scene, over=over, quantities="settling_time")

@@ -12,7 +12,7 @@ from kvtheory.progress import Progress
 from kvtheory.results import STEADY_UNITS, Sweep
 from kvtheory.scene.model import Scene
 from kvtheory.scene.quantities import SceneError
-from kvtheory.scene.requirements import lacks_paper_model, require
+from kvtheory.scene.requirements import lacks_arms, lacks_paper_model, require
 
 if TYPE_CHECKING:
     from kvtheory.sweeps.plan import Plan
@@ -59,7 +59,8 @@ def sweep(
         run is neither steady nor a cycle that repeats), ``stick_slip_amplitude`` (half the way of the
         indenter along x), ``stick_slip_period``, and ``sliding_velocity`` and ``friction_force`` with
         ``.cycle_max`` and ``.cycle_min``. With `at`, NAME is the series; ``NAME.steady`` is the steady
-        value always.
+        value always. Other shapes than the parabola, and Prony series, are followed by elements, about a
+        second a scene: for series and ``NAME.end``.
     at
         Times of the series, in s or as text with a unit.
     method, rtol
@@ -137,7 +138,7 @@ def plan_of(
 ) -> "Plan":
     """Check what is asked of `sweep` as a whole, and return the plan."""
     from kvtheory.sweeps.axes import axes_of
-    from kvtheory.sweeps.columns import STABLE, columns_of
+    from kvtheory.sweeps.columns import OF_ELEMENTS, STABLE, columns_of
     from kvtheory.sweeps.plan import Plan
 
     scene = scene_of(scene)
@@ -149,8 +150,11 @@ def plan_of(
         quantities = [*STEADY_UNITS, STABLE]
     columns = columns_of(quantities, series=at is not None, indenter=scene.indenter)
     plan = Plan(scene, axes, columns, times, method, rtol)
-    if plan.transient:
-        require(lacks_paper_model, scene, "the transient")
+    if plan.transient and plan.by_elements:
+        require(lacks_arms, scene, "the transient")
+        for column in columns:
+            if column.measure not in OF_ELEMENTS:
+                require(lacks_paper_model, scene, f"`quantities` {column.name}")
     for column in columns:
         if column.sprung and not sprung:
             raise SceneError([f"`quantities` {column.name}: needs drive.stiffness, of a spring"])

@@ -150,9 +150,13 @@ def _transients(
 
     `into` is filled: the arrays of the columns, the reasons of failures, and the worst errors.
     """
-    from kvtheory.sweeps import measures  # it imports the solver, which takes a while
-
     plan, (arrays, reasons, errors) = given.plan, into
+    # Imported here: the solver and the simulator take a while.
+    if plan.by_elements:
+        from kvtheory.sweeps.simulated import measure
+    else:
+        from kvtheory.sweeps.measures import measure
+
     scenes: dict[int, Scene] = {}
     for index in range(given.points):
         if index in reasons:
@@ -164,7 +168,7 @@ def _transients(
             reasons[index] = reason(error)
     friction = steady.get("friction_force", np.full(given.points, np.nan))
     with np.errstate(over="raise", invalid="raise", divide="raise"):
-        found = measures.measure(plan, scenes, friction, FAILS)
+        found = measure(plan, scenes, friction, FAILS)
     reasons.update((index, reason(error)) for index, error in found.reasons.items())
     columns = [column for column in plan.columns if not column.steady]
     kept = [index for index in scenes if index not in reasons]

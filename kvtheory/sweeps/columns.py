@@ -14,6 +14,8 @@ from kvtheory.scene.quantities import SceneError, nearest, problem
 SERIES = {name: unit for name, unit in TRANSIENT_UNITS.items() if name != "time"}
 """What a transient is asked for, by its measures or on a grid of times."""
 MEASURES = ("end", "max", "min", "time_of_max")
+OF_ELEMENTS = ("steady", "series", "end")
+"""What is asked of transients that elements follow: what they are known at is the instants asked for."""
 
 STABLE = "stable"
 """Whether steady sliding lasts: 1, or 0 where it is unstable on the spring in the drive."""

@@ -164,7 +164,7 @@ class _Block:
         errors = estimate.errors(told, told, fine.given.rtol, fine.given.fixed)
         for name, error in errors.items():
             self.errors[name][indices] = error
-        self.statements.add(_relative(estimate.STATEMENT))
+        self.statements.add(relative(estimate.STATEMENT))
 
     def _room(self, drive: BaseMotion, units: StaticState) -> list[Run]:
         runs, numbers = [], (float(units.inertia_number), float(units.support_number))
@@ -192,7 +192,7 @@ class _Block:
             self.cycles[index] = cycle(motion)
         if self.plan.textual:
             self.texts[index] = json.dumps([event._asdict() for event in solution.events])
-        self.statements.add(_relative(errors.statement))
+        self.statements.add(relative(errors.statement))
 
     def measured(self) -> Measured:
         """Return what was found, in SI."""
@@ -258,7 +258,7 @@ def _of_cycle(block: _Block, column: Column) -> Array:
     return values if name is None else values * block.scales(name)
 
 
-def _relative(statement: str) -> str:
+def relative(statement: str) -> str:
     """Return a statement on errors for a table that holds values of other models, too."""
     return f"{statement}; relative to {AT_REST}"
 

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from kvtheory.results.sweep import Axis
 from kvtheory.scene.files import to_toml
 from kvtheory.scene.model import Scene
+from kvtheory.scene.requirements import lacks_paper_model
 from kvtheory.sweeps.axes import size, sweepable
 from kvtheory.sweeps.columns import Column
 
@@ -54,6 +55,11 @@ class Plan:
         """The steady quantities that columns of the transient are held against."""
         against = ("peak_to_steady_friction", "settling_time")
         return {"friction_force"} if any(c.measure in against for c in self.columns) else set()
+
+    @property
+    def by_elements(self) -> bool:
+        """Whether elements follow the motion, for the solver does not hold for the scene."""
+        return bool(lacks_paper_model(self.scene))
 
     @property
     def vectorised(self) -> bool:
