@@ -41,7 +41,8 @@ class Browser:
         os.set_blocking(self._answers, False)
         self._buffer, self._count, self._session = b"", 0, None
         self.errors, self.requests, self._loaded = [], [], False
-        target = self.send("Target.getTargets")["targetInfos"][0]["targetId"]
+        # A page of our own: which targets there are at the start is a matter of luck.
+        target = self.send("Target.createTarget", url="about:blank")["targetId"]
         attached = self.send("Target.attachToTarget", targetId=target, flatten=True)
         self._session = attached["sessionId"]
         for domain in ("Page", "Runtime", "Log", "Network"):

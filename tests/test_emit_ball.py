@@ -49,8 +49,8 @@ def arguments(form, x):
 @pytest.mark.parametrize("form", FUNCTIONS, ids=lambda form: form.name)
 @pytest.mark.parametrize("number", NUMBERS)
 def test_functions_agree_at_50_digits(form, number):
-    if form.name == "ball_tail" and number > 1.0:
-        pytest.skip("the integral takes its place")
+    if form.name == "ball_tail":
+        number = min(number, 1.0)  # beyond, the integral takes its place
     given = arguments(form, number)
     truth = exact(form.label, form.symbol, {key: mp.mpf(value) for key, value in given.items()})
     value = getattr(closed_forms, form.name)(*given.values())

@@ -84,8 +84,8 @@ def contact_lengths(scene: Scene) -> tuple[float, float]:
     Examples
     --------
     >>> steady, first = contact_lengths(Scene())
-    >>> print(f"{steady * 1e3:.3f} {first * 1e3:.3f} mm")
-    1.429 2.747 mm
+    >>> print(f"{steady * 1e3:.2f} {first * 1e3:.1f} mm")
+    1.43 2.7 mm
     """
     model = Model.of(scene)
     return lengths(model, model.path(scene))
