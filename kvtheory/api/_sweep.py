@@ -59,8 +59,8 @@ def sweep(
         run is neither steady nor a cycle that repeats), ``stick_slip_amplitude`` (half the way of the
         indenter along x), ``stick_slip_period``, and ``sliding_velocity`` and ``friction_force`` with
         ``.cycle_max`` and ``.cycle_min``. With `at`, NAME is the series; ``NAME.steady`` is the steady
-        value always. Other shapes than the parabola, and Prony series, are followed by elements, about a
-        second a scene: for series and ``NAME.end``.
+        value always. Other shapes than the parabola, and Prony series, are followed by elements, in less
+        than a second a scene: for series and ``NAME.end``.
     at
         Times of the series, in s or as text with a unit.
     method, rtol

@@ -11,7 +11,7 @@ from typing import Any
 from kvtheory.explorer.controls import SHAPES, controls
 from kvtheory.export import check_path, replace_file
 from kvtheory.scene.model import Scene
-from kvtheory.scene.requirements import lacks_closed_form, require
+from kvtheory.scene.requirements import lacks_closed_form, lacks_shape, require
 
 SCRIPTS = (
     *("closed_forms.js", "steady.js", "motion.js", "scene.js"),
@@ -65,10 +65,7 @@ def explorer_page(scene: Scene) -> str:
 
 def _lacks_scripts(scene: Scene) -> str:
     """Say why the scripts of the page cannot compute a scene; nothing if they can."""
-    shape = scene.indenter.shape
-    if shape not in SHAPES:
-        return f'holds for {", ".join(SHAPES)} only, not for indenter.shape = "{shape}"'
-    return lacks_closed_form(scene)
+    return lacks_shape(scene, tuple(SHAPES.values()), ", ".join(SHAPES)) or lacks_closed_form(scene)
 
 
 def formulas() -> dict[str, dict[str, str]]:

@@ -31,10 +31,8 @@ def replaceable(scene: Scene) -> dict[str, Quantity]:
         for section, part in scene.parts().items()
         for name, spec in free(part).items()
     }
-    springs = (
-        SPRING if not scene.drive.rigid else SPRING[:1]
-    )  # what goes with a stiffness needs one
     specs = quantities(scene.drive)
+    springs = SPRING[:1] if scene.drive.rigid else SPRING  # damper and mass need a stiffness
     spring = {f"drive.{name}": specs[name] for name in springs}
     return {**found, "drive.velocity": VELOCITY, **spring}
 

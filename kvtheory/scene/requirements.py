@@ -18,17 +18,17 @@ def lacks_parabola(scene: Scene) -> str:
     >>> lacks_parabola(Scene())
     ''
     """
-    return _lacks_shape(scene, (Parabola,), "the parabola")
+    return lacks_shape(scene, (Parabola,), "the parabola")
 
 
 def lacks_quadratic(scene: Scene) -> str:
     """Say why a method that needs a parabola or a ball does not hold; nothing if it does."""
-    return _lacks_shape(scene, (Parabola, Sphere), "the parabola and the ball")
+    return lacks_shape(scene, (Parabola, Sphere), "the parabola and the ball")
 
 
 def lacks_ball(scene: Scene) -> str:
     """Say why a method for a ball on a Kelvin-Voigt foundation does not hold; nothing if it does."""
-    return _lacks_shape(scene, (Sphere,), "the ball") or lacks_kelvin_voigt(scene)
+    return lacks_shape(scene, (Sphere,), "the ball") or lacks_kelvin_voigt(scene)
 
 
 def lacks_strips(scene: Scene) -> str:
@@ -81,7 +81,7 @@ def lacks_quadratic_on_arms(scene: Scene) -> str:
 def lacks_asymptotes(scene: Scene) -> str:
     """Say why a method that needs closed forms of Kelvin-Voigt does not hold; nothing if it does."""
     named = "the parabola, the power law, the wedge and the ball"
-    lacking = _lacks_shape(scene, CLOSED_FORMS, named)
+    lacking = lacks_shape(scene, CLOSED_FORMS, named)
     return lacking or lacks_kelvin_voigt(scene)
 
 
@@ -113,7 +113,8 @@ def lacks_quadrature(scene: Scene) -> str:
     return f'of indenter.shape = "{scene.indenter.shape}" {lacking}'
 
 
-def _lacks_shape(scene: Scene, shapes: tuple[type, ...], named: str) -> str:
+def lacks_shape(scene: Scene, shapes: tuple[type, ...], named: str) -> str:
+    """Say why a method for some shapes, as they are `named`, does not hold; nothing if it does."""
     if isinstance(scene.indenter, shapes):
         return ""
     return f'holds for {named} only, not for indenter.shape = "{scene.indenter.shape}"'

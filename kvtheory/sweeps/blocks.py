@@ -111,7 +111,8 @@ def _steady(
     Returns the statements of the certificates and the worst errors.
     """
     count = next(iter(over.values())).size
-    over = {key: array for key, array in over.items() if key in replaceable(plan.scene)}
+    known = replaceable(plan.scene)
+    over = {key: array for key, array in over.items() if key in known}
     found |= {name: np.full(count, np.nan) for name in names}
     statements: set[str] = set()
     errors: dict[str, float] = {}
@@ -163,7 +164,7 @@ def _transients(
             continue
         point = {key: float(array[index]) for key, array in over.items()}
         try:
-            scenes[index] = at_point(plan.scene, point)
+            scenes[index] = _in_time(plan, at_point(plan.scene, point))
         except FAILS as error:
             reasons[index] = reason(error)
     friction = steady.get("friction_force", np.full(given.points, np.nan))
@@ -178,6 +179,14 @@ def _transients(
         values = found.texts if column.text else found.values
         arrays[column.name][:] = values[column.name]
     return found.statements
+
+
+def _in_time(plan: Plan, scene: Scene) -> Scene:
+    """Return a scene whose run is as long as the times that are asked for."""
+    if max(plan.times or (0.0,)) > scene.run.duration:
+        late = f"a time of `at` is after the end of the run, {scene.run.duration} s"
+        raise ValueError(late)
+    return scene
 
 
 def at_point(scene: Scene, point: Mapping[str, float]) -> Scene:

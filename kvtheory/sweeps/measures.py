@@ -112,9 +112,6 @@ class _Block:
     def add(self, index: int, scene: Scene, friction: float) -> None:
         """Add a scene, or the reason why it cannot be followed."""
         try:
-            if max(self.plan.times or (0.0,)) > scene.run.duration:
-                late = f"a time of `at` is after the end of the run, {scene.run.duration} s"
-                raise ValueError(late)
             units = StaticState.of(scene)
             self.scenes[index] = scene, units, scaled_drive(scene, units)
             self.friction[index] = friction / units.friction_force

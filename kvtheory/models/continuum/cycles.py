@@ -21,6 +21,8 @@ LAST = 0.75
 """... where it lasts from this share of the motion to its end."""
 MOST_PEAKS = 4
 """In one cycle."""
+COMPARED = 3 * MOST_PEAKS
+"""Peaks at the end of a motion in which a cycle is looked for."""
 POINTS = 4000
 """On which the extremes of a cycle are looked for: a parabola between them is right to 1e-6."""
 
@@ -81,9 +83,9 @@ def cycle(motion: Trajectory) -> Cycle:
 
 
 def _peaks(motion: Trajectory, s: np.ndarray, rate: np.ndarray) -> list[float]:
-    """Return when x is largest: where its rate falls through zero."""
+    """Return when x is largest, where its rate falls through zero: of the last cycles that are compared."""
     found = []
-    for k in np.flatnonzero((rate[:-1] > 0.0) & (rate[1:] <= 0.0)).tolist():
+    for k in np.flatnonzero((rate[:-1] > 0.0) & (rate[1:] <= 0.0))[-COMPARED:].tolist():
         low, high = float(s[k]), float(s[k + 1])
         for _ in range(maxima.BISECTIONS):
             middle = 0.5 * (low + high)
@@ -95,9 +97,8 @@ def _peaks(motion: Trajectory, s: np.ndarray, rate: np.ndarray) -> list[float]:
 
 def _repeats(motion: Trajectory, peaks: list[float]) -> float | None:
     """Return when the last cycle begins, if it repeats the one before it."""
-    last = peaks[-3 * MOST_PEAKS :]
-    x, t = motion.states(last)[:, e_.ALONG] if last else np.empty(0), np.array(last)
-    for count in range(1, (len(last) - 1) // 2 + 1):
+    x, t = motion.states(peaks)[:, e_.ALONG] if peaks else np.empty(0), np.array(peaks)
+    for count in range(1, (len(peaks) - 1) // 2 + 1):
         if count > MOST_PEAKS:
             break
         now, before = slice(-count, None), slice(-2 * count, -count)

@@ -67,9 +67,8 @@ class Under(NamedTuple):
 
     def rest(self) -> Array:
         """Return where the mean pressure would vanish: it is `law.stiffness` times how far g is below."""
-        if (
-            len(self.state) == 1
-        ):  # without arms, an element held and one left alone come to the same
+        # Without arms, an element held and one left alone come to the same.
+        if len(self.state) == 1:
             return self.left[0]
         held: Array = self.state[0] - self.law.held_pressure @ self.state / self.law.stiffness
         return np.where(self.touched, held, self.left[0])

@@ -51,7 +51,8 @@ class HeldBall:
     def pressure(self, x: ArrayLike, time: float) -> Any:
         """Return the pressure in the middle plane."""
         x, a = np.asarray(x, dtype=float), self.units.half_length
-        l_r = _velocity(self.scene, time) * self.scene.foundation.retardation_time
+        path = self.scene.drive.motion(self.scene.run.duration, 1.0)
+        l_r = path.velocity(time) * self.scene.foundation.retardation_time
         ahead = -x if l_r < 0.0 else x
         bent = a * a - x * x - 2.0 * l_r * x
         stiffness = 0.5 * self.scene.foundation.stiffness / self.scene.indenter.radius  # type: ignore[union-attr]
@@ -84,7 +85,8 @@ def transient(scene: Scene, at: ArrayLike | None, *, certify: bool = True) -> Tr
     refuse_memory(scene)
     units = StaticState.of(scene)
     time = np.linspace(0.0, scene.run.duration, OWN_TIMES) if at is None else np.asarray(at, float)
-    velocity = np.array([_velocity(scene, float(t)) for t in np.ravel(time)])
+    path = scene.drive.motion(scene.run.duration, 1.0)
+    velocity = np.array([path.velocity(float(t)) for t in np.ravel(time)])
     l_r = np.abs(velocity) * scene.foundation.retardation_time
     side = np.where(velocity < 0.0, -1.0, 1.0)
     load, friction = _forces(scene, units, l_r, NODES)
@@ -147,10 +149,6 @@ def remembers(scene: Scene) -> str:
                 f"stops or turns round before t = {after:.6g} s"
             )
     return ""
-
-
-def _velocity(scene: Scene, time: float) -> float:
-    return scene.drive.motion(scene.run.duration, 1.0).velocity(time)
 
 
 def _forces(scene: Scene, units: StaticState, l_r: Array, nodes: int) -> tuple[Array, Array]:
