@@ -3,6 +3,7 @@
 import math
 from collections.abc import Iterable
 from dataclasses import asdict, dataclass
+from typing import Any
 
 from kvtheory.scene.model import TABLE1_SUPPORTS, Scene
 from kvtheory.scene.quantities import given
@@ -144,10 +145,18 @@ def _parabolic(scene: Scene) -> StaticState:
     return StaticState.at(scene, a_0**2 / (2 * R), a_0, support.weight)
 
 
+def ball_stiffness(stiffness: Any, radius: Any, stretch: Any) -> Any:
+    """Return W_0/delta_0^2 = pi K R sqrt(R'/R) of a ball at rest in N/m^2, of floats or arrays (theorem F20).
+
+    >>> round(ball_stiffness(1e10, 0.01, 1.0))
+    314159265
+    """
+    return math.pi * stiffness * radius * stretch
+
+
 def _round(scene: Scene) -> StaticState:
-    """Return the state of a ball: W_0 = pi K R delta_0^2 sqrt(R'/R) (theorem F20)."""
     R, support = scene.indenter.radius, scene.support  # type: ignore[union-attr]
-    stiffness = math.pi * scene.foundation.stiffness * scene.indenter.stretch * R  # type: ignore[union-attr]
+    stiffness = ball_stiffness(scene.foundation.stiffness, R, scene.indenter.stretch)  # type: ignore[union-attr]
     if support.depth is not None:
         load = stiffness * support.depth**2
         return StaticState.at(scene, support.depth, math.sqrt(2 * R * support.depth), load)

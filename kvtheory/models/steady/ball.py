@@ -21,6 +21,7 @@ from numpy.typing import ArrayLike, NDArray
 from kvtheory.models.steady import closed_forms as cf
 from kvtheory.models.steady.blockwise import evaluate
 from kvtheory.results import STEADY_UNITS, Certificate, SteadyState
+from kvtheory.scene.static_state import ball_stiffness
 
 Array = NDArray[np.float64]
 
@@ -152,7 +153,7 @@ def scaled_root(drive_number: Array, support_number: Array) -> Array:
 def _balance(
     R: Array, c: Array, K: Array, tau: Array, V: Array, weight: Array, spring: Array
 ) -> tuple[Array, ...]:
-    delta_0 = np.sqrt(weight / K / (np.pi * R * c))  # weight = pi K R delta_0^2 sqrt(R'/R)
+    delta_0 = np.sqrt(weight / ball_stiffness(K, R, c))
     a_0 = np.sqrt(2.0 * R * delta_0)
     s = scaled_root(np.abs(V) * tau / a_0, spring * (delta_0 / weight))
     return _contact(R, c, K, tau, V, s * s * delta_0)

@@ -15,6 +15,7 @@ from kvtheory.models.steady import closed_forms as cf
 from kvtheory.models.steady.ball import angle_and_tail
 from kvtheory.models.steady.spots import stretch_of
 from kvtheory.results import SteadyState
+from kvtheory.scene.static_state import ball_stiffness
 
 Value = Any
 """An array, or a float."""
@@ -48,7 +49,7 @@ def limits(values: Mapping[str, Value]) -> Limits:
     """Collect the limits of a scene, given its values by dotted key."""
     R, K, c = values["indenter.radius"], values["foundation.stiffness"], stretch_of(values)
     l_r = np.abs(values["drive.velocity"]) * values["foundation.retardation_time"]
-    spring = np.pi * K * R * c  # W = spring delta^2
+    spring = ball_stiffness(K, R, c)
     if "support.depth" in values:
         depth = values["support.depth"]
         load = lift = spring * depth * depth

@@ -24,6 +24,7 @@ from kvtheory.models.steady import viscoelastic
 from kvtheory.models.steady.blockwise import evaluate
 from kvtheory.models.steady.viscoelastic import OWN_ERRORS, Fractional, Prony
 from kvtheory.results import STEADY_UNITS, Certificate, SteadyState
+from kvtheory.scene.static_state import ball_stiffness
 
 Array = NDArray[np.float64]
 Law = type[Prony] | type[Fractional]
@@ -156,7 +157,7 @@ def _length_at_load(
     The load is positive and its growth between 2 and 5, so that the steps close in from everywhere.
     """
     R, stretch, K, V = at
-    static = np.sqrt(load / (np.pi * K * R * stretch))
+    static = np.sqrt(load / ball_stiffness(K, R, stretch))
     wanted = load + spring * static
     c = 2.0 * np.sqrt(2.0 * R * static)
     for _ in range(MOST_STEPS):
