@@ -23,7 +23,7 @@ from kvtheory.models.steady import asymptote_bounds as asymptote
 from kvtheory.results import STEADY_UNITS
 from kvtheory.results.table import scales
 from kvtheory.scene.static_state import StaticState
-from tests import reference, transient_closed_form, transient_history
+from tests import reference, reference_ball, transient_closed_form, transient_history
 from tests.transient_scenes import Scene as ScaledScene
 
 TRUER, TRUEST = 1e-2, 1e-4
@@ -51,19 +51,21 @@ class Case:
         return every if asked is None else (asked,)
 
 
-def steady_case(rng):
-    """Draw a parabola in any units, over eight decades of drive number."""
+def steady_case(rng, ball=False):
+    """Draw a parabola or a ball in any units, over eight decades of drive number."""
     R, K, tau = 10 ** rng.uniform((-4, 6, -4), (0, 11, 2))
     delta = R * 10 ** rng.uniform(-5, -1)
     a = math.sqrt(2 * R * delta)
-    weight = 4 / 3 * K * a * delta
+    across = R * 10 ** rng.uniform(-1, 1) if ball else R
+    weight = math.pi * K * math.sqrt(R * across) * delta**2 if ball else 4 / 3 * K * a * delta
     V = rng.choice((-1, 1)) * 10 ** rng.uniform(-4, 4) * a / tau * (rng.random() > 0.02)
     support = (
         kv.Fixed(delta),
         kv.DeadWeight(mass=weight / 9.8, gravity=9.8),
         kv.Suspended(mass=weight / 9.8, stiffness=weight / delta * 10 ** rng.uniform(-3, 3), gravity=9.8),
     )[rng.integers(3)]  # fmt: skip
-    scene = kv.Scene(kv.Parabola(R), kv.Foundation(K, tau), support, kv.Drive(V))
+    shape = kv.Sphere(R, radius_across=across) if ball else kv.Parabola(R)
+    scene = kv.Scene(shape, kv.Foundation(K, tau), support, kv.Drive(V))
     return Case("steady", scene, _request(rng, STEADY_UNITS))
 
 
@@ -135,12 +137,15 @@ def true_error(case, values, model, truer=TRUER):
 
 
 def enclosed(scene):
-    """Return the steady quantities of a parabola in ball arithmetic."""
+    """Return the steady quantities of a parabola, or of a ball, in ball arithmetic."""
     R, f, V = scene.indenter.radius, scene.foundation, scene.drive.velocity
-    given = R, f.stiffness, f.retardation_time, V
+    truth, across = reference, ()
+    if not scene.indenter.per_width:
+        truth, across = reference_ball, (scene.indenter.radius_across or R,)
+    given = R, *across, f.stiffness, f.retardation_time, V
     if isinstance(scene.support, kv.Fixed):
-        return reference.at_depth(*given, scene.support.depth)
-    return reference.at_load(*given, scene.support.weight, getattr(scene.support, "stiffness", 0.0))
+        return truth.at_depth(*given, scene.support.depth)
+    return truth.at_load(*given, scene.support.weight, getattr(scene.support, "stiffness", 0.0))
 
 
 def from_definitions(scene):

@@ -18,7 +18,8 @@ from kvtheory.results.errors import ToleranceError
 from tests import ladder_scenes as scenes
 
 KINDS = {
-    "steady": (scenes.steady_case, 0.80),
+    "steady": (scenes.steady_case, 0.70),
+    "ball": (lambda rng: scenes.steady_case(rng, ball=True), 0.10),
     "other shape": (scenes.shape_case, 0.04),
     "start": (scenes.start_case, 0.14),
     "memory": (lambda rng: scenes.start_case(rng, memory=True), 0.02),

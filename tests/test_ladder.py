@@ -2,6 +2,7 @@
 
 import json
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -11,10 +12,12 @@ import kvtheory as kv
 from kvtheory.cli import main
 from kvtheory.models.slow_manifold.start import half_length
 from kvtheory.models.steady import asymptote_bounds as asymptote
-from kvtheory.models.steady.asymptote_bounds import enclose
-from kvtheory.models.steady.exact import scaled_root
+from kvtheory.models.steady import ball, ball_bounds, exact
+from kvtheory.models.steady.parabola_bounds import enclose
 from kvtheory.results import STEADY_UNITS, TRANSIENT_UNITS
 from kvtheory.results.errors import ToleranceError
+from tests.ladder_scenes import enclosed
+from tests.reference import relative_error
 
 NUMBERS = np.concatenate([[0.0], np.geomspace(1e-9, 1e9, 73)])
 SUPPORT_NUMBERS = (0.0, 1e-3, 1.0, 1e3)
@@ -22,7 +25,7 @@ SUPPORT_NUMBERS = (0.0, 1e-3, 1.0, 1e3)
 
 @pytest.mark.parametrize("kappa", SUPPORT_NUMBERS)
 def test_the_half_length_is_enclosed(kappa):
-    roots = scaled_root(NUMBERS, np.full_like(NUMBERS, kappa))
+    roots = exact.scaled_root(NUMBERS, np.full_like(NUMBERS, kappa))
     for number, root in zip(NUMBERS.tolist(), roots.tolist(), strict=True):
         found = enclose(number, kappa)
         assert found.low * (1 - 1e-15) <= root <= found.high * (1 + 1e-15)
@@ -30,7 +33,16 @@ def test_the_half_length_is_enclosed(kappa):
         assert half_length(number, kappa) == pytest.approx(root, rel=1e-14)
 
 
-def scaled(number, kappa):
+@pytest.mark.parametrize("kappa", SUPPORT_NUMBERS)
+def test_the_half_length_of_a_ball_is_enclosed(kappa):
+    roots = ball.scaled_root(NUMBERS, np.full_like(NUMBERS, kappa))
+    for number, root in zip(NUMBERS.tolist(), roots.tolist(), strict=True):
+        found = ball_bounds.enclose(number, kappa)
+        assert found.low * (1 - 1e-15) <= root <= found.high * (1 + 1e-15)
+        assert found.high / found.low <= 1.00013  # from |r| < 5e-4
+
+
+def scaled(number, kappa, shape="parabola"):
     """Return a scene in scaled units; an infinite kappa is a fixed indenter."""
     support = (
         kv.Fixed(1.0)
@@ -39,23 +51,27 @@ def scaled(number, kappa):
         if kappa
         else kv.DeadWeight(mass=1.0, gravity=1.0)
     )
+    if shape == "sphere":
+        return kv.Scene(
+            kv.Sphere(0.5), kv.Foundation(2.0 / math.pi, 1.0), support, kv.Drive(number)
+        )
     return kv.Scene(kv.Parabola(0.5), kv.Foundation(0.75, 1.0), support, kv.Drive(number))
 
 
+@pytest.mark.parametrize("shape", asymptote.KNOWN)
 @pytest.mark.parametrize("kappa", [*SUPPORT_NUMBERS, math.inf])
-def test_each_bound_covers_the_error_of_its_asymptote_and_is_not_far_above(kappa):
-    """Held against the exact solution, which shares no code with the bounds."""
+def test_each_bound_covers_the_error_of_its_asymptote_and_is_not_far_above(kappa, shape):
+    """Held against ball arithmetic."""
     far = []
     for number in NUMBERS.tolist():
-        scene = scaled(number, kappa)
-        exact, bounds = kv.steady(scene), asymptote.enclosure_of(scene)
-        for regime, table in asymptote.ERRORS[math.isinf(kappa)].items():
+        scene = scaled(number, kappa, shape)
+        exact, bounds = enclosed(scene), asymptote.enclosure_of(scene)
+        for regime, table in asymptote.ERRORS[shape, math.isinf(kappa)].items():
             if regime == "high" and number == 0.0:
                 continue
             values = asymptote.values(scene, regime, tuple(STEADY_UNITS))
             for name, value in values.items():
-                truth = getattr(exact, name)
-                error = abs(value / truth - 1.0) if truth else abs(value)
+                error = relative_error(value, exact[name])
                 worst = max((bound(bounds) for bound in table[name]), default=0.0)
                 bound = worst + asymptote.ROUNDING
                 assert error <= bound * (1.0 + 1e-12), (name, regime, number)
@@ -81,6 +97,20 @@ def test_the_cheapest_steady_model_is_chosen(velocity, rtol, model, sign):
     assert all(step.outcome == "error too large" for step in found.climb[:-1])
 
 
+def test_a_ball_is_climbed_from_its_asymptotes():
+    slow = kv.Scene(
+        kv.Sphere("10 mm"), support=kv.DeadWeight(mass="1 kg"), drive=kv.Drive("-1 um/s")
+    )
+    found = kv.solve(slow, quantity="friction_coefficient", rtol=1e-4)
+    assert (found.model, found.certificate.kind) == ("asymptote", "proved")
+    truth = enclosed(slow)["friction_coefficient"]
+    assert relative_error(found.friction_coefficient, truth) <= 1e-4
+    assert kv.solve(slow, quantity="load", rtol=1e-14).load == kv.steady(slow).load
+    assert kv.solve(slow, quantity="friction_coefficient", rtol=1e-6).model == "exact"
+    arms = kv.GeneralizedMaxwell(1e10, arms=[["30 GN/m^3", "10 ms"]])
+    assert "kelvin-voigt" in kv.solve(replace(slow, foundation=arms)).climb[0].outcome
+
+
 def test_what_is_asked_for_decides():
     """A fixed indenter's depth is known at every velocity, its friction is not."""
     scene = kv.Scene.table1("fixed")
@@ -102,7 +132,7 @@ def test_other_shapes_climb_to_the_quadrature():
     scene = kv.Scene(kv.Circle(radius=0.01))
     found = kv.solve(scene, quantity="load", rtol=1e-8)
     assert [step.rung for step in found.climb] == ["asymptote", "exact", "quadrature"]
-    assert "parabola only" in found.climb[0].outcome
+    assert "parabola and the ball only" in found.climb[0].outcome
     assert found.load == kv.steady(scene).load
 
 

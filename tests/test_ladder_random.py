@@ -13,6 +13,7 @@ from tests.ladder_table import outcome
 
 SAMPLES = {
     "steady": range(20_000, 20_500),
+    "ball": range(20_000, 20_100),
     "other shape": range(20_000, 20_012),
     "start": range(20_002, 20_040),
     "memory": range(20_000, 20_004),
@@ -46,11 +47,11 @@ def test_the_true_error_is_within_the_tolerance(kind):
     assert wrong == KNOWN_WRONG.get(kind, [])
 
 
-@pytest.mark.parametrize("kind", ["steady", "start"])
+@pytest.mark.parametrize("kind", ["steady", "ball", "start"])
 def test_no_cheaper_model_would_have_done_in_nine_of_ten(kind):
     assert np.mean([one.cheapest for one in outcomes(kind).values() if one]) >= 0.9
 
 
-def test_every_model_of_a_parabola_is_used():
+def test_every_model_is_used():
     models = {one.model for kind in SAMPLES for one in outcomes(kind).values() if one}
     assert models == {"asymptote", "exact", "quadrature", "slow manifold", "continuum"}

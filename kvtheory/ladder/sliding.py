@@ -11,7 +11,6 @@ from kvtheory.scene.model import Scene
 from kvtheory.scene.requirements import (
     lacks_closed_form,
     lacks_kelvin_voigt,
-    lacks_paper_model,
     lacks_quadratic,
     lacks_quadrature,
 )
@@ -27,7 +26,8 @@ BEST = {
 
 PROVED = (
     "bounds from the closed forms of the asymptotes' errors (derivations error-L1, error-L2-fixed, "
-    "error-L2-dead-weight and others) and from bounds of the steady half length, relative to the truth"
+    "error-L2-dead-weight and others, of a ball F20-error-L1, F20-error-L2 and others) and from bounds of "
+    "the steady half length, relative to the truth"
 )
 
 
@@ -41,7 +41,7 @@ def rungs(steady: Steady) -> tuple[Rung, ...]:
         return solve
 
     return (
-        Rung("asymptote", "steady sliding of a parabola, V far from V*", _far, _asymptote),
+        Rung("asymptote", "steady sliding of a parabola or ball, V far from V*", _far, _asymptote),
         Rung(
             "exact", "steady sliding of a parabola, power law, wedge or ball", _closed, by("exact")
         ),
@@ -61,7 +61,7 @@ def _any_shape(scene: Scene, request: Request) -> Judgement:
 
 
 def _far(scene: Scene, request: Request) -> Judgement:
-    if lacking := lacks_paper_model(scene):
+    if lacking := lacks_quadratic(scene) or lacks_kelvin_voigt(scene):
         return Judgement(lacking)
     choice = asy.choose(asy.enclosure_of(scene), request.quantities, request.rtol)
     return Judgement(error=choice.error, known=choice)
