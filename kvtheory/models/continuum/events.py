@@ -7,6 +7,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.polynomial import polynomial
+from numpy.typing import NDArray
 
 from kvtheory.models.continuum import contact as c_
 from kvtheory.models.continuum import dense_output as h_
@@ -28,14 +29,20 @@ class ScaledEvent(NamedTuple):
 
 def events_of(motion: Any) -> tuple[ScaledEvent, ...]:
     """Return the events of a `solver.Trajectory`."""
-    rows = motion.rows.events[: motion.rows.counts[r_.EVENTS]]
-    found = [ScaledEvent(float(s), stepping.KINDS[int(kind)]) for s, kind in rows]
+    rows = _counted(motion, motion.rows.events, r_.EVENTS).tolist()
+    found = [ScaledEvent(s, stepping.KINDS[int(kind)]) for s, kind in rows]
     return tuple(sorted([*found, *_memory(motion), *_reversals(motion)], key=lambda event: event.s))
+
+
+def _counted(motion: Any, rows: Any, count: int) -> NDArray[np.float64]:
+    """Return the rows of a run that are in use."""
+    return np.asarray(rows[: motion.rows.counts[count]])
 
 
 def _memory(motion: Any) -> Iterator[ScaledEvent]:
     """Yield when an edge begins to touch ground that was touched before, and when it ceases to."""
-    records, left_at = np.array(motion.records), np.array(motion.nodes)[:, c_.IN_S]
+    records = _counted(motion, motion.rows.records, r_.RECORDS)
+    left_at = _counted(motion, motion.rows.nodes, r_.NODES)[:, c_.IN_S]
     sides = records[:, h_.LEFT_STATE : h_.LEFT_X]
     nodes = sides[:, 1::2].astype(int)
     remembers = (sides[:, ::2] == TOUCHING) & (left_at[nodes] > -math.inf)
