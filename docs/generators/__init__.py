@@ -10,10 +10,10 @@ ROOT = Path(__file__).parents[2]
 
 
 def write_all(directory: Path) -> None:
-    """Write every page whose text has changed, so that Sphinx reads no other anew.
+    """Write every page whose text has changed, so that Sphinx reads only these again.
 
-    What takes a while is made at the same time by two processes, and again only if it is not there; the
-    derivations, if one of their modules has changed, or one of these.
+    The slow pages are made by two processes at the same time, and only if they are missing; the
+    derivations also if one of their modules, or one of these, has changed.
     """
     directory.mkdir(exist_ok=True)
     proved = directory / "theory" / "index.md"

@@ -19,7 +19,7 @@ KINDS = {
     "Supports": "Fixed DeadWeight Suspended",
     "Drives": "Drive Sine Triangle SmoothRamp",
 }
-"""Where names are listed; all others are results, or errors."""
+"""Headings and the names under them; all other names are results, or errors."""
 
 
 def pages() -> dict[str, str]:
@@ -64,7 +64,7 @@ def _entry(kind: str, signature: str, thing: object, fence: str) -> str:
             elif isinstance(member, property):
                 body.append(_entry("property", name, member, fence[:-1]))
     inside = "\n\n".join(part for part in body if part)
-    if signature.partition("(")[0] in CONTENTS:  # a label too, which links shall find
+    if signature.partition("(")[0] in CONTENTS:  # also a label, to which links must lead
         inside = f":no-index:\n\n{inside}"
     return f"{fence}{{py:{kind}}} {signature}\n{inside}\n{fence}"
 
@@ -117,7 +117,7 @@ def prose(docstring: str) -> str:
 
 
 def _paragraphs(text: str) -> str:
-    """Return paragraphs as Markdown: examples and what is indented as code, the rest as words."""
+    """Return paragraphs as Markdown: examples and indented blocks as code, the rest as text."""
     blocks, parts = re.split(r"\n\s*\n", text.strip("\n")), []
     for block in filter(str.strip, blocks):
         if block.lstrip().startswith(">>>"):
@@ -133,7 +133,7 @@ def _paragraphs(text: str) -> str:
 
 
 def _listed(body: str) -> str:
-    """Return parameters, or what is returned or raised, as a list."""
+    """Return the entries of a section, such as parameters, as a list."""
     rows = []
     for block in re.split(r"\n(?=\S)", body.strip("\n")):
         head, _, rest = block.partition("\n")
@@ -145,7 +145,7 @@ def _listed(body: str) -> str:
 
 
 def escaped(text: str) -> str:
-    """Return words as Markdown that says the same; what stands between backticks is code already."""
+    """Return text with the special characters of Markdown escaped, except between backticks."""
     parts = re.split(r"(``[^`]*``|`[^`]*`)", text)
     return "".join(
         part if part.startswith("`") else re.sub(r"([\\*_<>\[\]$|{}#~^])", r"\\\1", part)

@@ -1,4 +1,4 @@
-"""The atlas of failures as a page, computed anew, with the machine and the versions that computed it."""
+"""The atlas of failures as a page, recomputed, with the machine and the versions that computed it."""
 
 from pathlib import Path
 
@@ -25,7 +25,7 @@ def write(directory: Path) -> dict[str, str]:
     ]
     table = "\n".join(
         [
-            "| how a method fails | quantity | as written | right | this package |",
+            "| how a method fails | quantity | naive | right | this package |",
             "|---|---|---|---|---|",
             *rows,
         ]
@@ -36,8 +36,7 @@ def write(directory: Path) -> dict[str, str]:
 
 _HEAD = """# Atlas of failures
 
-Scenes in which a method that looks right gives a wrong number, beside the right one, by a method of another
-kind.
-<a href="../failures.html">The whole atlas</a> says why, how to notice, and what this package does about it;
+Scenes in which a plausible method gives a wrong number, beside the right number from a different kind of method.
+<a href="../failures.html">The full atlas</a> says why, how to notice, and what this package does about it;
 `kvtheory chart failures` computes it.
 """

@@ -1,4 +1,4 @@
-"""The reference of the commands: what each says of itself, and what its example prints."""
+"""The reference of the commands: the help of each, and the output of its example."""
 
 import shlex
 import tempfile
@@ -21,7 +21,7 @@ SHOWN = {
     "explore": "kvtheory explore -o explorer.html",
     "cite": "kvtheory cite",
 }
-"""What is run to show the output of a command; others are shown by their help alone."""
+"""Examples that are run to show their output; other commands are shown by their help alone."""
 
 
 def pages() -> dict[str, str]:
@@ -51,6 +51,6 @@ def _run(arguments: list[str]) -> str:
     return done.output.rstrip()
 
 
-_HEAD = """Every command takes an optional scene file and works on Table 1 of the paper with a dead weight
-without one. `--set KEY=VALUE` changes a key of the scene, and `--json` prints one JSON object in SI units.
+_HEAD = """Every command takes an optional scene file; without one it works on Table 1 of the paper with a dead
+weight. `--set KEY=VALUE` changes a key of the scene, and `--json` prints one JSON object in SI units.
 The outputs below were made together with this page. See also [exit status](../reference/exit-status.md)."""

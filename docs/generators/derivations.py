@@ -40,7 +40,7 @@ def _same(section: str, title: str) -> bool:
 
 
 def _named(body: str, labels: list[str]) -> str:
-    """Give each derivation of a section its label, and say what computes with it."""
+    """Give each derivation of a section its label, and name the functions that compute it."""
     first, *parts = re.split(r"^### ", body, flags=re.MULTILINE)
     if len(parts) != len(labels):
         return body.replace("### ", "## ")

@@ -1,4 +1,4 @@
-"""Each equation and theorem, with the functions that compute it and the tests that hold it."""
+"""Each equation and theorem, with the functions that compute it and its tests."""
 
 import ast
 from collections import defaultdict
@@ -29,7 +29,7 @@ def pages() -> dict[str, str]:
         held = tests[label] or (["tests/test_emit.py"] if own else ["tests/test_derivations.py"])
         link, computed = f"[{label}](#{anchor_of(label)})", _some([*closed, *functions[label]])
         rows.append(f"| {link} | {title} | {computed} | {_some(held)} |")
-    head = "| label | what it says | computed by | held by |\n|---|---|---|---|"
+    head = "| label | title | computed by | tested by |\n|---|---|---|---|"
     return {
         "equations.md": f"# Equations, functions and tests\n\n{_TOLD}\n\n{head}\n"
         + "\n".join(rows)
@@ -75,5 +75,5 @@ def _some(places: list[str]) -> str:
 
 
 _TOLD = """Every step of every derivation is checked by SymPy when the derivations are made, and
-`tests/test_emit.py` holds the closed forms against the live expressions with 50 digits. Beyond that, the
+`tests/test_emit.py` compares the closed forms with the symbolic expressions at 50 digits. The
 functions and tests below name the equation in their text."""

@@ -1,4 +1,4 @@
-"""The figures as a gallery: each script a page with its picture. What takes minutes is drawn beforehand."""
+"""The figures as a gallery: each script a page with its picture. Slow figures are drawn beforehand."""
 
 import re
 import shutil
@@ -11,7 +11,7 @@ from figures.__main__ import FIGURES
 
 ROOT = Path(__file__).parents[2]
 DRAWN = ("onset_maps", "stability_map", "work_precision")
-"""Taken as they lie beside the scripts: they take minutes, or are measurements."""
+"""Copied from the folder of the scripts: they take minutes, or are measurements of time."""
 _made: list[Path] = []
 
 
@@ -21,7 +21,7 @@ def patch() -> None:
 
 
 def run(name: str, compute: Any, draw: Any) -> None:
-    """Draw one figure, or take it as it is."""
+    """Draw one figure, or take the stored one."""
     kept = ROOT / "figures" / f"{name}.png"
     if name in DRAWN:
         _made.append(kept)
@@ -49,7 +49,7 @@ def pictures(block: Any, variables: dict[str, Any], settings: dict[str, Any]) ->
 
 
 def write(directory: Path) -> None:
-    """Write the scripts with a title as the gallery wants it, if they have changed."""
+    """Write the scripts with a title as the gallery requires it, if they have changed."""
     scripts = directory / "scripts"
     scripts.mkdir(parents=True, exist_ok=True)
     _put(scripts / "README.rst", _HEAD)
@@ -77,6 +77,6 @@ _HEAD = """Figures
 =======
 
 Each script is in the folder ``figures`` of the repository; ``python -m figures.NAME`` draws it and writes
-its data as CSV. Maps that take minutes, and measurements of time, are shown as they lie in the repository.
+its data as CSV. Maps that take minutes, and measurements of time, are the stored pictures of the repository.
 
 """

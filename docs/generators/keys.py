@@ -62,12 +62,12 @@ def _default(name: str, spec: Any, needed: set[str], default: Any) -> str:
     return "none"
 
 
-_HEAD = f"""A scene is a TOML file. Every quantity is text with a unit, such as `"10 mm"`, in any unit of its
-kind; quantities of unit 1 are bare numbers. A quantity without a unit is refused. All mistakes of a file are
-told at once. These tables follow from the code; the scene without any file is Table 1 of the paper, with
+_HEAD = f"""A scene is a TOML file. Every quantity is text with a unit, such as `"10 mm"`, in any unit of the same
+dimension; dimensionless quantities are bare numbers. A quantity without its unit is an error. All mistakes in a file
+are reported at once. These tables are generated from the code. Without a file the scene is Table 1 of the paper, with
 `{Scene().support.kind}` support."""
 _ARMS = """`arms` of a `generalized-maxwell` foundation is a list of pairs of stiffness and relaxation time,
 `[["30 GN/m^3", "10 ms"], ["5 GN/m^3", "1 s"]]`."""
 _DRIVES = """A drive has one of {ways}. A `history` is a list of pairs of time and velocity, linear between
-its points, with a jump where a time stands twice. A `file` is a table with the columns `t [ms]` and
-`V [mm/s]`, beside the scene."""
+its points, with a jump where a time is repeated. A `file` is a table with the columns `t [ms]` and
+`V [mm/s]`; its path is relative to the scene file."""

@@ -1,4 +1,4 @@
-"""The labels of the derivations in words: found, and linked to the page that proves them."""
+"""Mentions of derivations in text: found, and linked to the page that proves them."""
 
 import re
 
@@ -8,7 +8,7 @@ _MENTION = re.compile(r"(?<![\w-])(?:Eqs?\. (\d+)|(F\d+(?:-[A-Za-z0-9]+)*))(?![\
 
 
 def mentioned(text: str) -> set[str]:
-    """Return the labels that a text mentions, as "Eq. 33", or by themselves, as "F17-load".
+    """Return the labels that a text mentions, as "Eq. 33" or "F17-load".
 
     >>> sorted(mentioned("Eq. 33 and theorem F17-load; Eqs. 26-29"))
     ['F17-load', 'eq26', 'eq27', 'eq28', 'eq29', 'eq33']
@@ -31,7 +31,7 @@ def linked(text: str) -> str:
 
 
 def anchor_of(label: str) -> str:
-    """Return what a derivation is called in links: Sphinx knows targets by small letters."""
+    """Return the anchor of a derivation in links: Sphinx writes targets in lower case."""
     return label.lower()
 
 

@@ -1,4 +1,4 @@
-"""Formulas as MathML, by the converter of the derivations: a site that needs no script and no network."""
+"""Formulas as MathML, by the converter of the derivations; the site needs no script and no network."""
 
 from html import escape
 
@@ -6,7 +6,7 @@ from kvtheory.derivations.render.html import mathml
 
 
 def register(app):
-    """Make it a renderer of Sphinx."""
+    """Register MathML as a renderer with Sphinx."""
     app.add_html_math_renderer("mathml", (_inline, None), (_block, None))
 
 

@@ -1,4 +1,4 @@
-"""The reference problems as pages, each with its folder to take along; and the explorer as it is."""
+"""The reference problems as pages, each with its folder to download; and the explorer."""
 
 import os
 import shutil
@@ -10,7 +10,7 @@ from kvtheory.explorer import save_explorer
 
 
 def write(directory: Path) -> dict[str, str]:
-    """Write the folders, where they are not there yet, and return the texts of the pages."""
+    """Write the folders that are missing, and return the texts of the pages."""
     extra = directory / "extra"
     extra.mkdir(parents=True, exist_ok=True)
     (directory / "static").mkdir(exist_ok=True)
@@ -41,8 +41,8 @@ def _index() -> str:
 
 _HEAD = """# Reference problems
 
-Named scenes by which a method, or a simulator of your own, can be judged: one for each regime, support,
-shape, foundation and drive. Each folder has the scene, a reference with its certificate, acceptance criteria,
-a picture and a short driver; drop it into your repository. `kvtheory scene --problem NAME` prints a scene,
+Named scenes for testing a method or your own simulator: one for each regime, support,
+shape, foundation and drive. Each folder has the scene, a reference solution with its certificate, acceptance criteria,
+a picture and a short test script; copy it into your repository. `kvtheory scene --problem NAME` prints a scene,
 `kv.problem("NAME")` loads it.
 """

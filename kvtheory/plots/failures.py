@@ -12,7 +12,7 @@ from kvtheory.plots.files import inline, save_page, template
 from kvtheory.plots.style import BLACK, BLUE, RED
 
 LOOKS: dict[str, dict[str, Any]] = {
-    "wrong": {"color": RED, "linestyle": "-", "label": "as written"},
+    "wrong": {"color": RED, "linestyle": "-", "label": "naive"},
     "right": {"color": BLACK, "linestyle": ":", "label": "right"},
     "package": {"color": BLUE, "linestyle": "--", "label": "this package"},
 }
