@@ -51,6 +51,6 @@ def _run(arguments: list[str]) -> str:
     return done.output.rstrip()
 
 
-_HEAD = """Every command takes an optional scene file; without one it works on Table 1 of the paper with a dead
-weight. `--set KEY=VALUE` changes a key of the scene, and `--json` prints one JSON object in SI units.
+_HEAD = """Every command takes an optional scene file; without one it works on Table 1 of the paper with a
+dead weight. `--set KEY=VALUE` changes a key of the scene, and `--json` prints one JSON object in SI units.
 The outputs below were made together with this page. See also [exit status](../reference/exit-status.md)."""

@@ -62,10 +62,10 @@ def _default(name: str, spec: Any, needed: set[str], default: Any) -> str:
     return "none"
 
 
-_HEAD = f"""A scene is a TOML file. Every quantity is text with a unit, such as `"10 mm"`, in any unit of the same
-dimension; dimensionless quantities are bare numbers. A quantity without its unit is an error. All mistakes in a file
-are reported at once. These tables are generated from the code. Without a file the scene is Table 1 of the paper, with
-`{Scene().support.kind}` support."""
+_HEAD = f"""A scene is a TOML file. Every quantity is text with a unit, such as `"10 mm"`, in any unit of the
+same dimension; dimensionless quantities are bare numbers. A quantity without its unit is an error. All
+mistakes in a file are reported at once. These tables are generated from the code. Without a file the scene
+is Table 1 of the paper, with `{Scene().support.kind}` support."""
 _ARMS = """`arms` of a `generalized-maxwell` foundation is a list of pairs of stiffness and relaxation time,
 `[["30 GN/m^3", "10 ms"], ["5 GN/m^3", "1 s"]]`."""
 _DRIVES = """A drive has one of {ways}. A `history` is a list of pairs of time and velocity, linear between

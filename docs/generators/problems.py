@@ -42,7 +42,7 @@ def _index() -> str:
 _HEAD = """# Reference problems
 
 Named scenes for testing a method or your own simulator: one for each regime, support,
-shape, foundation and drive. Each folder has the scene, a reference solution with its certificate, acceptance criteria,
-a picture and a short test script; copy it into your repository. `kvtheory scene --problem NAME` prints a scene,
-`kv.problem("NAME")` loads it.
+shape, foundation and drive. Each folder has the scene, a reference solution with its certificate, acceptance
+criteria, a picture and a short test script; copy it into your repository. `kvtheory scene --problem NAME`
+prints a scene, `kv.problem("NAME")` loads it.
 """
