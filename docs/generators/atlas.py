@@ -37,6 +37,6 @@ def write(directory: Path) -> dict[str, str]:
 _HEAD = """# Atlas of failures
 
 Scenes in which a plausible method gives a wrong number, beside the right number from a different kind of
-method. <a href="../failures.html">The full atlas</a> says why, how to notice, and what this package does about it;
-`kvtheory chart failures` computes it.
+method. <a href="../failures.html">The full atlas</a> says why, how to notice, and what this package
+does about it; `kvtheory chart failures` computes it.
 """

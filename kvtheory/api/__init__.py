@@ -1,4 +1,4 @@
-"""What users call: a scene in, a result out, by the method asked for."""
+"""The public functions: a scene in, a result out."""
 
 from kvtheory.api._asymptotes import asymptotes
 from kvtheory.api._compare import compare

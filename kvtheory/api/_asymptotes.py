@@ -11,7 +11,7 @@ from kvtheory.scene.model import Scene
 from kvtheory.scene.requirements import lacks_limits, require
 
 MINIMUM_TOLERANCE = 1e-10
-"""Asymptotes that must be closer than this are not told apart from rounding."""
+"""Smallest tolerance: below it an asymptote cannot be distinguished from rounding."""
 
 
 def asymptotes(
@@ -20,7 +20,7 @@ def asymptotes(
     over: Mapping[str, Any] | None = None,
     tolerance: float = 0.05,
 ) -> AsymptoteReport:
-    """Say which asymptote holds for a scene, how wrong it is, and over which velocities.
+    """Return which asymptote holds for a scene, its error, and the velocities at which it holds.
 
     Parameters
     ----------
@@ -29,14 +29,14 @@ def asymptotes(
         foundation, or a parabola on any foundation. On a Prony series the lines are the limits of F18, and
         the exact state of the Kelvin-Voigt foundation with the same K and C.
     tolerance
-        Relative error up to which an asymptote counts as good, from 1e-10 to 1.
+        Relative error up to which an asymptote is accepted, from 1e-10 to 1.
 
     Returns
     -------
     AsymptoteReport
         The critical velocity V* (theorem F5, F19-crossing), the regime, and a line for each asymptote:
         its value, the exact value, the relative error and the velocities where that is within the
-        tolerance. A dead weight has its friction maximum too, unless the indenter is a wedge.
+        tolerance. For a dead weight also the friction maximum, unless the indenter is a wedge.
 
     Raises
     ------

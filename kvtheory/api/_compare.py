@@ -1,4 +1,4 @@
-"""A simulation held against theory: `compare`."""
+"""A simulation compared with theory: `compare`."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -27,23 +27,23 @@ from kvtheory.scene.requirements import (
 from kvtheory.scene.static_state import StaticState
 
 EVEN, DENSE = 401, 60
-"""Samples of our own simulation: over the run, and more after each change of the drive."""
+"""Samples of our own simulation: over the run, and in addition after each change of the drive."""
 SOONEST, SOON = 1e-4, 0.1
-"""Of the duration: where the latter begin and end."""
+"""Shares of the duration: where the additional samples begin and end after a change."""
 MOST_STEPS = 1e8
-"""Of our own simulation: an hour or two."""
+"""Most steps of our own simulation, which take an hour or two."""
 PER_HALF_LENGTH, OF_BALL = 400.0, 160.0
-"""Elements in the static half length that stand for theory where the foundation has arms; of a ball."""
+"""Elements in the static half length that serve as theory: where the foundation has arms; of a ball."""
 FEWEST = 16
 """Samples at least, even if the time step has to be shortened for them."""
 PER_LENGTH = Quantity("1/m", "N, elements per unit length", 0.0, True)
 
 
 def _followed(scene: Scene, times: Sequence[float], rtol: float) -> Mapping[str, Any]:
-    """Follow a transient without a certificate: theory is wanted at many scenes, none of them shown.
+    """Compute a transient without a certificate: theory is needed for many trial scenes.
 
-    A foundation with arms and a ball are followed by elements, which `exact` checks at the end, but for a
-    ball that is held and meets nothing that it left.
+    A foundation with arms and a ball are simulated by elements, checked at the end by exact steady sliding;
+    except a ball at constant depth that does not meet its own trace, which needs no elements.
     """
     from kvtheory.models.continuum import solved_scene
     from kvtheory.models.strips import held
@@ -96,16 +96,16 @@ def compare(
     tolerance: float = 1.0,
     progress: Progress | None = None,
 ) -> Comparison:
-    """Hold a simulation against theory, across the whole transient, and say what is wrong with it.
+    """Compare a simulation with theory over the whole transient, and diagnose a disagreement.
 
     Parameters
     ----------
     scene
         What is modelled; without it, the paper's Table 1 with a dead weight. The indenter must be a
-        parabola or a ball. Of a ball, and on a Prony series, the theory is that of many elements, and of
-        `steady` at the end; of faults, only wrong signs and units and a Kelvin-Voigt foundation are then
-        looked for, and the drive must be rigid. On a spring the data may hold ``sliding_velocity`` and
-        ``spring_force``, too.
+        parabola or a ball. For a ball, and on a Prony series, theory is a simulation with many elements, and
+        `steady` at the end; then the only faults looked for are wrong signs, wrong units and a Kelvin-Voigt
+        foundation, and the drive must be rigid. With a spring in the drive the data may also hold
+        ``sliding_velocity`` and ``spring_force``.
     data
         A path to a CSV with named columns and bracketed units (``t [ms], z_A [mm], F_z [N/mm]``), a
         result with the names of `kvtheory.transient`, or a mapping of arrays (by those names in SI,
@@ -115,24 +115,24 @@ def compare(
     scheme
         Its scheme, if known: ``"paper"`` fixes the time step at 2 dx/V.
     tolerance
-        Multiplies what theory allows.
+        Factor on the differences that theory allows, above 0.
     progress
-        Called as in `transient`: through our own simulation, if there are no data, and then through the
+        Called as in `transient`: during our own simulation, if there are no data, and then for the
         faults that are tried.
 
     Returns
     -------
     Comparison
-        The verdict, each check with what was measured and what is allowed, and a diagnosis in words.
+        The verdict, each check with its measured and its allowed value, and a diagnosis in words.
 
     Raises
     ------
     ValueError
-        If the data cannot be read, saying what is wrong with them, or an argument is out of range.
+        If the data cannot be read, with the reason, or an argument is out of range.
     TypeError
-        If `data` is nothing that can hold a series.
+        If `data` is of a type that cannot hold a series.
     ArithmeticError
-        If the theory cannot be followed to the end of the data.
+        If the motion cannot be computed to the end of the data.
 
     Examples
     --------
@@ -205,9 +205,9 @@ def _simulated(scene: Scene, per_length: Any, scheme: str | None, progress: Prog
 
 
 def _times(scene: Scene, step: float) -> list[float]:
-    """Return the times at which our own simulation is judged: dense after each change of the drive.
+    """Return the times at which our own simulation is compared: dense after each change of the drive.
 
-    From each change on they are even numbers of steps apart, so that no step is shortened for them.
+    After each change they are an even number of steps apart, so that no step is shortened for them.
     """
     end = scene.run.duration
     stride = min(2.0 * step, end / FEWEST)

@@ -25,14 +25,14 @@ def scene_of(scene: Scene | None) -> Scene:
 
 @cache
 def _table1() -> Scene:
-    """Return the default scene, made once: it is frozen, and to make it takes a while."""
+    """Return the default scene, made once: it is frozen, and making it is slow."""
     return Scene()
 
 
 def times_of(scene: Scene, at: Any, problems: list[str] | None = None) -> Any:
     """Return the times in s, checked against the duration of the run; None stays None.
 
-    What is wrong is added to `problems`, if they are collected; else it is raised.
+    Mistakes are appended to `problems`, if given; else they are raised.
     """
     if at is None:
         return None

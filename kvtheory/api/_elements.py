@@ -29,10 +29,10 @@ def elements(
 ) -> Simulation:
     """Simulate a scene by point elements that move with the base: any shape, support and drive.
 
-    The foundation is Kelvin-Voigt or a Prony series. A ball, or any profile of revolution, is strips along
-    x, about six elements wide; its forces are sums over them. With `drive.stiffness` the indenter is held
-    along x by a spring and slides with V - dx/dt, backwards too; the default scheme is of the second order
-    then, too.
+    The foundation is Kelvin-Voigt or a Prony series. A ball, or any profile of revolution, is divided into
+    strips along x, about six elements wide; its forces are sums over the strips. With `drive.stiffness` the
+    indenter is held along x by a spring and slides with V - dx/dt, which may be negative; the default scheme
+    remains of second order.
 
     Parameters
     ----------
@@ -42,26 +42,25 @@ def elements(
     per_length
         Elements per length, 1/dx, in 1/m or as text with a unit; without it 200 in a millimetre.
     scheme
-        How a step is taken: a name in `kvtheory.models.elements.schemes.SCHEMES`.
+        Time integration scheme: a name in `kvtheory.models.elements.schemes.SCHEMES`.
     at
-        Times at which the result is wanted, in s or as text with a unit; without it, some 400 over
-        the run.
+        Output times, in s or as text with a unit; without it, about 400 over the run.
     time_step
         The longest step, in s or as text with a unit; without it 2 dx/V, as in the paper, and less
         where the scheme, or the spring, needs it (but never for the scheme ``"paper"``).
     certify
-        Whether to estimate the error, by two more runs with half as many elements and steps; without,
+        Whether to estimate the error, by two more runs with half as many elements and steps; if not,
         the certificate is of the kind "none" and holds no errors.
     progress
-        Called as in `transient`, with the steps done as words.
+        Called as in `transient`, with the number of steps as its text.
     warn
-        Called with `warning`, if there is one, before the run begins.
+        Called with the text of `warning`, if there is one, before the run begins.
 
     Returns
     -------
     Simulation
         Arrays over time in SI and a certificate whose statement says what its errors are relative to,
-        such as the static depth. `warning` is not empty where the step is doubtful. With a spring, a
+        such as the static depth. `warning` is not empty if the time step may be too long. With a spring, a
         `SprungSimulation` that also holds `sliding_velocity` and `spring_force`.
 
     Raises
@@ -72,7 +71,7 @@ def elements(
         If the scheme does not exist, the density or the step does not suit the scene, or the foundation
         is a springpot, which has no finite state.
     DivergenceError
-        If the run becomes unstable; the message says when, why, and which step would do.
+        If the run becomes unstable; the message says when, why, and which step would be stable.
 
     Examples
     --------
@@ -120,7 +119,7 @@ def elements(
 
 @contextmanager
 def _blaming_default(taken: bool) -> Iterator[None]:
-    """Say of a density that does not suit the scene that it was taken by default, if it was."""
+    """Add to the error about an unsuitable density that it was the default, if it was."""
     try:
         yield
     except ValueError as error:

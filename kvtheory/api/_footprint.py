@@ -13,7 +13,7 @@ from kvtheory.scene.requirements import lacks_ball, require
 
 
 def footprint(scene: Scene | None = None, *, over: Mapping[str, Any] | None = None) -> Footprint:
-    """Return where a ball touches in steady sliding, and its pressure there.
+    """Return the contact area of a ball in steady sliding, and the pressure in it.
 
     Parameters
     ----------
@@ -23,12 +23,12 @@ def footprint(scene: Scene | None = None, *, over: Mapping[str, Any] | None = No
     Returns
     -------
     Footprint
-        With `edges`, the leading and trailing edge of each strip, and `pressure` at any point.
+        With `edges(y)`, the leading and trailing edge of the strip at y, and `pressure` at any point, in SI.
 
     Raises
     ------
     SceneError, ValueError
-        As in `steady`, or if the indenter is no ball.
+        As in `steady`, or if the indenter is not a ball.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""The cheapest model that is enough: `solve`."""
+"""The cheapest sufficient model: `solve`."""
 
 from collections.abc import Mapping
 from functools import partial
@@ -19,7 +19,7 @@ from kvtheory.scene.quantities import SceneError, nearest, problem
 from kvtheory.scene.requirements import lacks_paper_model
 
 MINIMUM_RTOL, MAXIMUM_RTOL = 1e-14, 1.0
-"""Below, rounding decides; above, any number would do."""
+"""Below, rounding dominates; above, any number would satisfy it."""
 
 
 def solve(
@@ -31,30 +31,30 @@ def solve(
     over_time: bool = False,
     progress: Progress | None = None,
 ) -> Solution:
-    """Answer with the cheapest model that is known to be within a tolerance, and say how it was found.
+    """Solve a scene by the cheapest model that is known to be within a tolerance.
 
     Parameters
     ----------
     scene
         What is modelled; without it, the paper's Table 1 with a dead weight.
     quantity
-        Name of what is wanted, or a list of names: of steady sliding as in `SteadyState`, or of a series
+        Name of a quantity, or a list of names: of steady sliding as in `SteadyState`, or of a time series
         as in `Transient`; without it, all of them.
     at
-        Times of a series, in s or as text with a unit; without it, steady sliding is asked for, of a
-        drive with a history that at its final velocity.
+        Times of a series, in s or as text with a unit; without it, steady sliding is solved, for a drive
+        with a history at its final velocity.
     rtol
-        Largest error allowed, from 1e-14 to 1: of steady sliding relative to the true value; of a series
+        Largest error allowed, from 1e-14 to 1: for steady sliding relative to the true value; for a series
         relative to the static depth, half length and load (the static state), as in `transient`.
     over_time
-        Ask for a series also without `at`, at times of the model's own.
+        Solve for a time series even without `at`, at times chosen by the model.
     progress
-        Called as in `transient`, by each run of a model over time from 0 to 1.
+        Called as in `transient`, from 0 to 1 for each run of a model over time.
 
     Returns
     -------
     Solution
-        The values, the model, its certificate and the climb: asymptote, exact, quadrature for steady
+        The values, the model, its certificate, and the models tried: asymptote, exact, quadrature for steady
         sliding; exact (where nothing moves), slow manifold, continuum, elements for a series.
 
     Raises
@@ -65,7 +65,7 @@ def solve(
         If `rtol` is out of range.
     ToleranceError
         If no model is known to be within the tolerance; the message says how close each came. Also if
-        steady sliding is asked for and not known to be stable on the spring in the drive.
+        steady sliding is not known to be stable on the spring in the drive.
 
     Examples
     --------
@@ -111,7 +111,7 @@ def solve(
 
 
 def _refuse_unstable(scene: Scene) -> None:
-    """Raise unless steady sliding is known to last on the spring in the drive."""
+    """Raise unless steady sliding is known to be stable on the spring in the drive."""
     if scene.drive.rigid:
         return
     known = not lacks_paper_model(scene)
@@ -123,7 +123,7 @@ def _refuse_unstable(scene: Scene) -> None:
 def _names(
     quantity: Any, units: Mapping[str, str], over_time: bool, problems: list[str]
 ) -> tuple[str, ...]:
-    """Return the names of what is asked for, and note what is wrong with them."""
+    """Return the names of the quantities asked for, and append mistakes to the problems."""
     if quantity is None:
         return tuple(units)
     names = list(quantity) if isinstance(quantity, (list, tuple)) else [quantity]

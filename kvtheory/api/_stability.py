@@ -22,11 +22,12 @@ def stability(
     over: Mapping[str, Any] | None = None,
     quantity: str | Sequence[str] | None = None,
 ) -> Stability:
-    """Say whether steady sliding is stable, and from which stiffness of the spring in the drive on.
+    """Return whether steady sliding is stable, and the critical stiffness of the spring in the drive.
 
     The spring is `drive.stiffness`, with `drive.damping` and `drive.mass`. With a rigid drive steady
-    sliding is stable: the rates are the two of the motion across the foundation (theorem F12), and the
-    critical stiffness is that of a spring of its own mass, without a damper, that might take its place.
+    sliding is stable: the rates are the two of the vertical motion (theorem F12), and the critical
+    stiffness is that of a spring, without damper and with the mass of the support, in place of the
+    rigid drive.
 
     Parameters
     ----------
@@ -34,8 +35,8 @@ def stability(
         As in `steady`; the indenter must be a parabola on a Kelvin-Voigt foundation. `over` may give
         ``"drive.stiffness"`` also where the drive of the scene is rigid.
     quantity
-        Name of what is wanted, or several; without it, everything. The critical stiffness alone takes
-        less than a microsecond for each scene of an array, the critical velocity and the rates take longer.
+        Name of a quantity, or several; without it, all. The critical stiffness alone takes
+        less than a microsecond for each scene of an array; the critical velocity and the rates take longer.
 
     Returns
     -------
@@ -47,7 +48,7 @@ def stability(
     SceneError
         As in `steady`, if the mass of a fixed indenter on a spring is not known, or if a quantity is wrong.
     ValueError
-        If the indenter is no parabola or the foundation not Kelvin-Voigt.
+        If the indenter is not a parabola or the foundation is not Kelvin-Voigt.
 
     Examples
     --------

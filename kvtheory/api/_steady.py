@@ -51,7 +51,7 @@ def steady(
     -------
     SteadyState
         Floats, or arrays of the broadcast shape, in SI units, with a certificate; with a spring in the drive
-        also whether steady sliding is stable, as by `stability`.
+        also whether steady sliding is stable, as in `stability`.
 
     Raises
     ------
@@ -83,7 +83,7 @@ def steady(
 
 
 def method_for(scene: Scene, method: str | None) -> str:
-    """Return the method of steady sliding that is asked for, or else the one that suits the scene."""
+    """Return the requested method of steady sliding, or by default the one that suits the scene."""
     lacking = {name: lacks(scene) for name, lacks in LACKS.items()}
     method = method or ("quadrature" if lacking["exact"] else "exact")
     if method not in METHODS:

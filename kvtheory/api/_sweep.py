@@ -47,20 +47,20 @@ def sweep(
         Maps a dotted key to its values: an array in SI, a list such as ``["10 ms", "1 s"]``, or a text
         ``"1 mm/s:10 m/s:200:log"``. Each key is an axis, and the sweep is over all combinations. A
         tuple of keys with a tuple of lists is one axis on which these values vary together. A
-        ``drive.velocity`` replaces a history or a swing; the keys of a waveform, such as
+        ``drive.velocity`` replaces a history or a waveform; the keys of a waveform, such as
         ``drive.frequency``, change it.
     quantities
-        Steady quantities by name (the default is all of them), and ``stable``: 1, or 0 where steady sliding
-        is unstable on the spring in the drive (there by default with a spring). Of a transient: ``NAME.end``,
-        ``NAME.max``, ``NAME.min`` and ``NAME.time_of_max``, with NAME as in `Transient`;
-        ``peak_to_steady_friction``, the largest |F_x| over the steady one; ``settling_time``, after
-        which F_x stays within 1 % of the steady one; ``hops``, how often the indenter takes off;
-        ``events``, as JSON; of a drive with a spring ``stick_slip_settles`` (1, or 0 where the end of the
-        run is neither steady nor a cycle that repeats), ``stick_slip_amplitude`` (half the way of the
+        Steady quantities by name (default: all of them), and ``stable``: 1, or 0 where steady sliding is
+        unstable on the spring in the drive (included by default with a spring). Of a transient:
+        ``NAME.end``, ``NAME.max``, ``NAME.min`` and ``NAME.time_of_max``, with NAME as in `Transient`;
+        ``peak_to_steady_friction``, the ratio of the largest |F_x| to the steady one; ``settling_time``,
+        after which F_x stays within 1 % of the steady one; ``hops``, how often the indenter takes off;
+        ``events``, as JSON. With a spring in the drive ``stick_slip_settles`` (1, or 0 where the end of the
+        run is neither steady nor a repeating cycle), ``stick_slip_amplitude`` (half the stroke of the
         indenter along x), ``stick_slip_period``, and ``sliding_velocity`` and ``friction_force`` with
-        ``.cycle_max`` and ``.cycle_min``. With `at`, NAME is the series; ``NAME.steady`` is the steady
-        value always. Other shapes than the parabola, and Prony series, are followed by elements, in less
-        than a second a scene: for series and ``NAME.end``.
+        ``.cycle_max`` and ``.cycle_min``. With `at`, NAME is the time series; ``NAME.steady`` is always the
+        steady value. Transients of other shapes, and on Prony series, are simulated by elements, in less
+        than a second per scene: they give series and ``NAME.end`` only.
     at
         Times of the series, in s or as text with a unit.
     method, rtol
@@ -69,37 +69,37 @@ def sweep(
         Any `concurrent.futures.Executor`, also of Dask (``Client.get_executor(pure=False)``) or MPI.
         It is not shut down.
     jobs
-        Without `executor`, the number of own workers: threads or spawned processes, whichever is
-        faster. A script that asks for more than one needs the usual ``if __name__ == "__main__"``.
+        Without `executor`, the number of workers: threads or spawned processes, whichever is
+        faster. With more than one, a script needs the usual ``if __name__ == "__main__"``.
     in_flight
-        Blocks given out at a time; default two for each worker. It bounds the memory.
+        Blocks submitted at a time; default two for each worker. It bounds the memory.
     block
         Points in a block.
     output
-        A file ``.csv`` or ``.nc``. Blocks are kept beside it, in ``FILE.part``, as they come, so that the
-        same call resumes a sweep that was killed. An interrupt leaves the file with what there is.
+        A file ``.csv`` or ``.nc``. Finished blocks are kept beside it, in ``FILE.part``, so that the
+        same call resumes a sweep that was killed. After an interrupt the file holds what was done.
     overwrite
-        Write over whatever `output` and its unfinished work hold, also over this very sweep, which is
-        then computed anew. Without it, anything else than this sweep is left as it is.
+        Overwrite whatever `output` and its unfinished work hold, including this sweep itself, which is
+        then recomputed. Without it, a file that holds anything else is left unchanged.
     progress
-        Called as in `transient`, with the points done, their rate and the failed ones as words.
+        Called as in `transient`, with the points done, their rate and the failures as text.
 
     Returns
     -------
     Sweep
-        Labelled arrays in SI. With `output`, they are read from the file when asked for.
+        Labelled arrays in SI. With `output`, they are read from the file on access.
 
     Raises
     ------
     SceneError
         If a key, value, quantity or time is wrong; every mistake is listed.
     ValueError
-        If another argument is wrong, or `output` holds anything else than this sweep, or a sweep that
-        lost rows or was changed since it was written; or if memory or disk cannot hold the answer.
+        If another argument is wrong, if `output` holds anything other than this sweep, or a sweep that
+        lost rows or was changed since it was written; or if memory or disk cannot hold the result.
     OSError
-        If a file cannot be written; what was kept stays, and the same call resumes.
+        If a file cannot be written; finished blocks are kept, and the same call resumes.
     RuntimeError
-        If the executor breaks, or loses a block again and again.
+        If the executor breaks, or loses a block repeatedly.
 
     Examples
     --------
@@ -136,7 +136,7 @@ def plan_of(
     method: str | None,
     rtol: float,
 ) -> "Plan":
-    """Check what is asked of `sweep` as a whole, and return the plan."""
+    """Check the arguments of `sweep` together, and return the plan."""
     from kvtheory.sweeps.axes import axes_of
     from kvtheory.sweeps.columns import OF_ELEMENTS, STABLE, columns_of
     from kvtheory.sweeps.plan import Plan

@@ -9,7 +9,7 @@ from kvtheory.scene.model import Scene
 from kvtheory.scene.requirements import lacks_ball, lacks_paper_model, lacks_strips, require
 
 MINIMUM_RTOL, MAXIMUM_RTOL = 1e-12, 1e-2
-"""Beyond these, rounding or the first step would decide."""
+"""Beyond these, rounding or the first step would dominate."""
 
 
 def transient(
@@ -21,31 +21,31 @@ def transient(
     max_steps: int | None = None,
     progress: Progress | None = None,
 ) -> Transient:
-    """Follow the transient of a scene, exactly: no discretized foundation.
+    """Compute the transient of a scene without discretizing the foundation.
 
     Parameters
     ----------
     scene
         What is modelled; without it, the paper's Table 1 with a dead weight. The indenter must be
-        a parabola, or a ball that is held at its depth and does not slow down so fast that it meets
-        again what it left (`elements` follows any ball). At t < 0 it rests at its static depth. With
-        `drive.stiffness` it is held along x by a spring that is relaxed then, and the mass that moves
-        along x must be above zero. A drive that is a function of the time is replaced by polynomials
+        a parabola, or a ball at constant depth that does not slow down so fast that it meets its own
+        trace again (`elements` simulates any ball). At t < 0 it rests at its static depth. With
+        `drive.stiffness` it is held along x by a spring that is then relaxed, and the mass that moves
+        along x must be above zero. A drive that is a function of time is replaced by polynomials
         within its own tolerance, which the certificate does not cover.
     at
-        Times at which the result is wanted, in s or as text with a unit, such as ``"0 ms, 1 ms"`` or
+        Output times, in s or as text with a unit, such as ``"0 ms, 1 ms"`` or
         ``"0 ms:200 ms:201"`` (START:STOP:COUNT, both ends included); without it, the steps of
         the solver, subdivided.
     rtol
         Error allowed in a step, relative to the static state, from 1e-12 to 1e-2.
     certify
-        Whether to estimate the error, by a second run with a tighter tolerance; without it the
-        certificate says that nothing is known.
+        Whether to estimate the error, by a second run with a tighter tolerance; if not, the
+        errors in the certificate are infinite.
     max_steps
-        Steps after which to give up; without it, 300,000 and 100 for each piece of the drive.
+        Steps after which to give up; by default 300,000 plus 100 for each piece of the drive.
     progress
-        Called now and then with the share of the work done, from 0 to 1, and a text, as every public
-        function calls it: `kvtheory.progress.ProgressLine` shows both on standard error.
+        Called repeatedly with the share of the work done, from 0 to 1, and a text, as by every public
+        function: `kvtheory.progress.ProgressLine` shows both on standard error.
 
     Returns
     -------
@@ -62,7 +62,7 @@ def transient(
         If the indenter is neither a parabola nor such a ball, a time or `rtol` is out of range, or a
         function that drives the foundation fails, is not finite, or is not smooth between its breaks.
     ArithmeticError
-        If the motion cannot be followed to its end; the message says when and why.
+        If the motion cannot be computed to its end; the message says when and why.
 
     Examples
     --------
