@@ -1,4 +1,4 @@
-"""Sliding friction of a rigid indenter on a Kelvin-Voigt foundation: derived, exact, checked."""
+"""Sliding friction of a rigid indenter on a viscoelastic foundation: derived, exact, checked."""
 
 from kvtheory.api import (
     asymptotes,

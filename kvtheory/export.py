@@ -12,15 +12,15 @@ import numpy as np
 from kvtheory.results import Comparison, Transient
 
 SERIES_SUFFIXES = (".csv", ".nc")
-"""Of files that hold a time series."""
+"""Suffixes of files that hold a time series."""
 PICTURES = (".png", ".svg", ".pdf")
-"""Of files that hold a drawing."""
+"""Suffixes of files that hold a picture."""
 
 
 def save_result(result: Any, path: Path) -> None:
     """Write a time series or steady sliding as ``.csv`` or ``.nc``, by the suffix of `path`.
 
-    A CSV is one as in RFC 4180, empty where a value does not exist.
+    A CSV follows RFC 4180; a value that does not exist is empty.
 
     Raises
     ------
@@ -46,7 +46,7 @@ def save_csv(result: Any, path: Path) -> None:
 
 
 def save_compared(comparison: Comparison, path: Path) -> None:
-    """Write data, theory and what is allowed between them, with units in the header."""
+    """Write data, theory and the allowed difference, with units in the header."""
     curves = {f"{name}, {kind} [{unit}]": curve for name, kind, unit, curve in _curves(comparison)}
     _write_columns(path, {"time [s]": comparison.series["time"], **curves})
 
@@ -110,12 +110,12 @@ def _units(result: Any) -> Mapping[str, str]:
 
 
 def check_path(path: Path, suffixes: Sequence[str]) -> None:
-    """Raise unless a file of this name can be written, as far as names and places tell.
+    """Raise unless a file of this name can be written, judging by its name and directory.
 
     Raises
     ------
     ValueError
-        If the name does not end in one of the `suffixes`, in capitals or not, or xarray is missing.
+        If the name does not end in one of the `suffixes`, in upper or lower case, or xarray is missing.
     OSError
         If there is no such directory, or the name is that of a directory.
 
@@ -138,7 +138,7 @@ def check_path(path: Path, suffixes: Sequence[str]) -> None:
 
 
 def replace_file(path: Path, write: Callable[[Path], Any]) -> None:
-    """Write to a temporary name beside `path` and rename, so that no half file is ever seen.
+    """Write to a temporary file beside `path` and rename it, so that no incomplete file is ever visible.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""How far some work is: what the public functions call on the way, and a line that shows it."""
+"""Progress of long work: the callback of the public functions, and a line that shows it."""
 
 import io
 import shutil
@@ -8,8 +8,8 @@ from collections.abc import Callable
 from typing import TextIO
 
 Progress = Callable[[float, str], object]
-"""Called now and then with the share of the work done, from 0 to 1, and words such as
-``"600 of 1,000 points"``; the words may be empty."""
+"""Called repeatedly with the share of the work done, from 0 to 1, and a text such as
+``"600 of 1,000 points"``, which may be empty."""
 
 
 PATIENCE = 1.0
@@ -17,7 +17,7 @@ PATIENCE = 1.0
 ON_TERMINAL, IN_LOG = 0.2, 10.0
 """Seconds between two reports."""
 SETTLING = 0.5
-"""Seconds before the time left is worth telling."""
+"""Seconds before the remaining time is shown."""
 
 
 def silent(share: float, words: str) -> None:
@@ -89,7 +89,7 @@ class ProgressLine:
 
 
 def duration(seconds: float) -> str:
-    """Say how long something takes, to a digit or two.
+    """Return a duration in words, to a digit or two.
 
     >>> [duration(s) for s in (8.2, 300.0, 9000.0, 1e6, 1e10)]
     ['8 s', '5 min', '2 h 30 min', '11 days', '317 years']

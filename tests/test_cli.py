@@ -109,7 +109,7 @@ def test_bad_input_costs_one_message_and_status_2(arguments, words):
 def test_a_history_is_mentioned():
     history = 'drive.history=[["0 s", "1 m/s"], ["1 s", "20 mm/s"]]'
     for command in ("steady", "asymptotes"):
-        assert "last velocity, 20 mm/s" in run(command, "--set", history).stdout
+        assert "final velocity, 20 mm/s" in run(command, "--set", history).stdout
         json.loads(run(command, "--json", "--set", history).stdout)
 
 

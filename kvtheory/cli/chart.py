@@ -1,4 +1,4 @@
-"""`kvtheory chart`: speed against accuracy, where schemes are stable, and how methods fail."""
+"""`kvtheory chart`: speed against accuracy, stability of schemes, and failures of methods."""
 
 import os
 from collections.abc import Sequence
@@ -36,9 +36,7 @@ def chart() -> None:
 
 @chart.command(cls=Examples, example="kvtheory chart failures -o failures.html")
 @click.option("--only", metavar="KEY,...", help="Entries to compute; default: all of them.")
-@path_option(
-    "-o", "--output", help="Write FILE.html, which holds all of it and needs nothing else."
-)
+@path_option("-o", "--output", help="Write the atlas as one self-contained FILE.html.")
 @json_option
 @overwrite_option
 @teaching

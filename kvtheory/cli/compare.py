@@ -31,10 +31,10 @@ DISAGREES = 1
 @click.option("--scheme", default=None, help="Scheme of the simulation, such as paper.")
 @click.option(
     "--tolerance", type=float, default=1.0, show_default=True,
-    help="Multiplies what theory allows.",
+    help="Factor on the differences that theory allows.",
 )  # fmt: skip
 @path_option("--plot", help="Draw data, theory and checks to FILE.png, .svg or .pdf.")
-@path_option("--report", help="Write FILE.html, which holds all of it and needs nothing else.")
+@path_option("--report", help="Write the comparison as one self-contained FILE.html.")
 @overwrite_option
 def compare(
     scene: str | None,
@@ -45,9 +45,9 @@ def compare(
     report: Path | None,
     **how: Any,
 ) -> None:
-    """Hold a simulation of SCENE against theory, and say what is wrong with it.
+    """Compare a simulation of SCENE with theory, and diagnose a disagreement.
 
-    Exit status: 0 it agrees, or is sampled too coarsely to tell; 1 it disagrees; 2 bad input.
+    Exit status: 0 it agrees, or the data cannot tell; 1 it disagrees; 2 bad input.
     """
     from kvtheory.api._compare import compare as hold_against
     from kvtheory.scene import load_scene

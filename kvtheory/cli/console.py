@@ -1,4 +1,4 @@
-"""What the commands share: errors that teach, options of a scene, tables and JSON."""
+"""The common parts of commands: error messages, options of a scene, tables and JSON."""
 
 import json
 import math
@@ -15,7 +15,7 @@ import click
 from kvtheory.cli.group import INTERRUPTED, leave_quietly
 
 BAD_INPUT, FAULTY = 2, 70
-"""Exit status for bad input, and for a fault of this program."""
+"""Exit status for bad input, and for an internal error."""
 
 
 class Examples(click.Command):
@@ -55,13 +55,13 @@ def teaching(command: Callable[..., None]) -> Callable[..., None]:
             head = "error:" if count == 1 else f"{count:,} mistakes:\n "
             complain(f"{head} " + "\n  ".join(lines), BAD_INPUT)
         except Exception:
-            complain(f"this is a fault of the program:\n{traceback.format_exc()}", FAULTY)
+            complain(f"internal error, please report it:\n{traceback.format_exc()}", FAULTY)
 
     return run
 
 
 def complain(message: str, status: int) -> None:
-    """Write a message to standard error, and end."""
+    """Write a message to standard error, and exit."""
     from kvtheory.scene.quantities import printable
 
     click.echo("\n".join(map(printable, f"kvtheory: {message}".splitlines())), err=True)
@@ -69,7 +69,7 @@ def complain(message: str, status: int) -> None:
 
 
 def in_options(message: str) -> str:
-    """Name the options of this command where the library names the arguments of a function.
+    """Replace the names of arguments in a message of the library by the options of this command.
 
     >>> with click.Context(click.Command("a", params=[click.Option(["--per-length"])])):
     ...     in_options("`per_length` = 3: expected a quantity in 1/m; see `h`")
@@ -109,7 +109,7 @@ json_option = click.option(
 
 @contextmanager
 def progress_bar(label: str) -> Iterator[Callable[..., None]]:
-    """Give a function that shows the share done, and words if it is given any, once work takes a while."""
+    """Provide a function that shows the share done, and a text, when work takes long."""
     from kvtheory.progress import ProgressLine
 
     line = ProgressLine(label)
@@ -133,12 +133,12 @@ def shown(value: float, unit: str) -> tuple[str, str]:
 
 
 def text(value: float, unit: str) -> str:
-    """Return an SI value with the unit of the tables; what does not exist is a dash."""
+    """Return an SI value with the unit of the tables; a value that does not exist is a dash."""
     return "-" if math.isnan(value) else " ".join(shown(value, unit)).rstrip()
 
 
 def velocity_range(low: float, high: float) -> str:
-    """Say between which velocities something holds."""
+    """Return the range of velocities over which something holds, in words."""
     if low == 0.0 and high == float("inf"):
         return "every V"
     return f"|V| <= {text(high, 'm/s')}" if low == 0.0 else f"|V| >= {text(low, 'm/s')}"
@@ -151,7 +151,7 @@ def print_json(result: Any) -> None:
 
 
 def print_series(result: Any, *, whole: bool) -> None:
-    """Print a time series for people: every row, or about twenty of them with both ends."""
+    """Print a time series as a table: every row, or about twenty of them with both ends."""
     from kvtheory.results import SHOWN_UNITS
 
     last = result.time.size - 1

@@ -36,17 +36,19 @@ DERIVING = 0.7
 )  # fmt: skip
 @click.option(
     "--only", default="", metavar="eq27,F3,...",
-    help="Labels of the derivations to print; 27, eq. 27 and f3 will do.",
+    help="Labels of the derivations to print, such as eq27, 27 or F3.",
 )  # fmt: skip
-@click.option("--closure", is_flag=True, help="Add all that these rest on, in order.")
-@click.option("--numbers", is_flag=True, help="Put the quantities of SCENE into the closed forms.")
+@click.option("--closure", is_flag=True, help="Add all derivations that these depend on, in order.")
+@click.option(
+    "--numbers", is_flag=True, help="Insert the quantities of SCENE into the closed forms."
+)
 @click.option(
     "--shape", default=None, metavar='"c*x**4"',
     help="Derive steady sliding for this surface of the indenter instead.",
 )  # fmt: skip
 @click.option(
     "--notation", type=click.Path(exists=True, dir_okay=False, path_type=Path), default=None,
-    metavar="FILE.toml", help='Your letters, as in l_r = "\\\\ell"; applied everywhere.',
+    metavar="FILE.toml", help='Your symbols, as in l_r = "\\\\ell"; used everywhere.',
 )  # fmt: skip
 @click.option(
     "--set", "overrides", multiple=True, metavar="KEY=VALUE",
@@ -88,7 +90,7 @@ def derive(
 
 @dataclass
 class Request:
-    """What is to be derived, and how it is to be written."""
+    """The derivations to print, and their notation."""
 
     labels: list[str]
     closure: bool
@@ -190,7 +192,7 @@ def _edition(request: Request, report: Callable[[float], None] | None) -> "Editi
 
 
 def _command(request: Request) -> str:
-    """Return the command that makes the same content again, wherever it is written."""
+    """Return the command that reproduces the content, wherever it is written."""
     context = click.get_current_context()
     given = {
         name: value for name, value in context.params.items()
@@ -209,7 +211,7 @@ def _command(request: Request) -> str:
 def _part(
     report: Callable[[float], None] | None, start: float, end: float
 ) -> Callable[[float], None] | None:
-    """Let a part of the work report its own share."""
+    """Scale the progress of a part of the work to its share."""
     return None if report is None else lambda share: report(start + (end - start) * share)
 
 
@@ -223,7 +225,7 @@ def _print_labels(contents: dict[str, str], as_json: bool) -> None:
 def _report(
     derived: Sequence["Derivation"], output: Path, paths: Sequence[Path], as_json: bool
 ) -> None:
-    """Say what was derived and what was written."""
+    """Print what was derived and which files were written."""
     counts = dict(Counter(each.status for each in derived))
     if as_json:
         files = [str(path) for path in paths]

@@ -1,4 +1,4 @@
-"""`kvtheory explore`: one page of HTML to play with a scene."""
+"""`kvtheory explore`: an interactive HTML page for a scene."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -19,7 +19,7 @@ from kvtheory.cli.outputs import check_output, overwrite_option, path_option
 @overwrite_option
 @teaching
 def explore(scene: str | None, overrides: Sequence[str], output: Path) -> None:
-    """Write one page of HTML with a slider for every number of a scene: steady sliding at once."""
+    """Write one HTML page with a slider for every number of a scene, which shows steady sliding at once."""
     from kvtheory.explorer import save_explorer
     from kvtheory.scene import load_scene
 

@@ -7,12 +7,12 @@ from typing import Any, NoReturn
 import click
 
 BAD_OUTPUT, INTERRUPTED, BROKEN_PIPE = 2, 130, 141
-"""Exit status where the output cannot be written; after Ctrl-C and where its reader has gone, as shells
-have it."""
+"""Exit status if the output cannot be written; after Ctrl-C, and if its reader has closed the pipe, as in
+shells."""
 
 
 class Commands(click.Group):
-    """A group whose output never dies of the console: of its encoding, or of a reader that has gone."""
+    """A group whose output survives the console: its encoding, or a reader that has closed the pipe."""
 
     def main(self, *args: Any, **kwargs: Any) -> Any:
         """Run a command; letters that the console lacks are written as escapes."""
@@ -50,7 +50,7 @@ def _flush() -> None:
 
 
 def _flush_quietly() -> None:
-    """Write what is left of the output of a command that has told already what went wrong."""
+    """Write the rest of the output of a command that has already reported its error."""
     try:
         _flush()
     except OSError:
@@ -58,7 +58,7 @@ def _flush_quietly() -> None:
 
 
 def _silence() -> None:
-    """Let what is still buffered go nowhere."""
+    """Discard what is still buffered."""
     nowhere = os.open(os.devnull, os.O_WRONLY)
     for stream in (sys.stdout, sys.stderr):
         try:
@@ -68,7 +68,7 @@ def _silence() -> None:
 
 
 def leave_quietly(message: str = "") -> NoReturn:
-    """End because the output cannot be written: its reader has gone, or the disk is full."""
+    """Exit because the output cannot be written: its reader has closed the pipe, or the disk is full."""
     if message:
         click.echo(f"kvtheory: error: {message}", err=True)
     _silence()
@@ -81,11 +81,11 @@ def leave_quietly(message: str = "") -> NoReturn:
 )
 @click.version_option(package_name="kvtheory")
 def main() -> None:
-    """Sliding friction of a rigid indenter on a Kelvin-Voigt foundation.
+    """Sliding friction of a rigid indenter on a viscoelastic foundation.
 
     Without a scene file, each command works on Table 1 of Nakano and Kono (2020) with a dead
     weight. Exit status: 0 done, 1 a check found disagreement, 2 bad input, 130 interrupted.
 
-    An output is never a file that the command reads. A file that holds something else than this
-    command writes is left alone, unless --overwrite is given.
+    No command overwrites a file that it reads. A file of another kind than the command
+    writes is overwritten only if --overwrite is given.
     """

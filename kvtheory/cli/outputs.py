@@ -1,7 +1,7 @@
-"""Files that commands write: named and checked before anything is computed, by one rule.
+"""Output files of commands: checked by one rule before anything is computed.
 
-An output is never a file that the command reads. An existing file is replaced where it holds what this
-command writes, and left alone where it holds anything else, unless ``--overwrite`` is given.
+An output is never a file that the command reads. An existing file is replaced if it holds what this
+command writes, and left unchanged if it holds anything else, unless ``--overwrite`` is given.
 """
 
 from collections.abc import Callable, Sequence
@@ -28,24 +28,24 @@ BEGINNINGS = {
     ".ipynb": (b'{\n "cells": ',),
     ".bib": (b"@article{NakanoKono2020,",),
 }
-"""How files begin that commands write; those of sweeps are told apart by the sweep itself."""
+"""How the files that commands write begin; a sweep recognises its own files."""
 OVERWRITE = "kvtheory.overwrite"
 
 
 def overwrite_option(command: Callable[..., Any]) -> Callable[..., Any]:
-    """Give a command `--overwrite`, which `check_output` and `overwriting` ask for."""
+    """Give a command `--overwrite`, which `check_output` and `overwriting` read."""
 
     def keep(context: click.Context, _: click.Parameter, value: bool) -> None:
         context.meta[OVERWRITE] = value
 
     return click.option(
         "--overwrite", is_flag=True, expose_value=False, callback=keep,
-        help="Write over files that hold something else than this command writes.",
+        help="Overwrite files of another kind than this command writes.",
     )(command)  # fmt: skip
 
 
 def overwriting() -> bool:
-    """Whether the running command was told to write over what it finds."""
+    """Whether the running command was given `--overwrite`."""
     context = click.get_current_context(silent=True)
     return bool(context and context.meta.get(OVERWRITE))
 
@@ -89,7 +89,7 @@ def deliver(result: Any, output: Path | None, plot: Path | None, *, as_json: boo
 
 
 def check_output(option: str, path: Path | None, suffixes: Sequence[str]) -> None:
-    """Raise unless a file of this name can be written, as far as names, places and the rule tell.
+    """Raise unless a file of this name can be written, judging by its name, its directory and the rule.
 
     Examples
     --------
@@ -113,7 +113,7 @@ def check_output(option: str, path: Path | None, suffixes: Sequence[str]) -> Non
 
 
 def check_not_an_input(option: str, path: Path) -> None:
-    """Raise `ValueError` if the running command reads this file, be it for the drive of its scene."""
+    """Raise `ValueError` if the running command reads this file, also as the drive of its scene."""
     context = click.get_current_context(silent=True)
     if context is None or not path.exists():
         return
@@ -133,7 +133,7 @@ def check_not_an_input(option: str, path: Path) -> None:
 
 
 def _is_ours(path: Path) -> bool:
-    """Whether a file begins as those do that commands write; an empty one holds nothing to lose."""
+    """Whether a file begins like those that commands write; an empty file may be overwritten."""
     with path.open("rb") as file:
         start = file.read(128)
     return not start or start.startswith(BEGINNINGS.get(path.suffix.lower(), (b"",)))

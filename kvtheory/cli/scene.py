@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from kvtheory.scene import Scene
 
 AMBIGUOUS = {"support.stiffness", "drive.stiffness", "drive.damping", "drive.mass"}
-"""Keys whose last part another section has, too: they are printed with their own section."""
+"""Keys whose last part occurs in another section too: they are printed with their section."""
 
 
 @scene_command(
@@ -63,7 +63,7 @@ def scene(
         )
         return
     click.echo(
-        f"Sound: {checked.indenter.shape} indenter, {checked.foundation.kind} foundation, "
+        f"Valid: {checked.indenter.shape} indenter, {checked.foundation.kind} foundation, "
         f"{checked.support.kind} support.\n"
     )
     rows = [(name, f"{value:.6g}") for name, value in quantities.items()]
@@ -89,7 +89,7 @@ def _print_problem(name: str, *, bare: bool) -> None:
 
 
 def _tell_line(scene: "Scene") -> None:
-    """Say which line contact stands for a ball, and how wrong it is."""
+    """Print the line contact equivalent to a ball, and its error."""
     from kvtheory.api import steady
     from kvtheory.models.steady.equivalent_line import (
         FRICTION_COEFFICIENT_ERROR,
@@ -99,9 +99,9 @@ def _tell_line(scene: "Scene") -> None:
 
     line = equivalent_line(steady(scene), scene.indenter.stretch)  # type: ignore[union-attr]
     click.echo(
-        f"\nIn steady sliding at this velocity a parabola of the same radius stands for the ball, "
-        f"{text(line.width, 'm')} wide\nunder {text(line.load, 'N/m')}, at the depth "
-        f"{text(line.depth, 'm')}: its load is right within {LOAD_ERROR:.1%}, its friction\ncoefficient "
-        f"within {FRICTION_COEFFICIENT_ERROR:.2%}. At other velocities the same holds at the same depth; a "
-        "dead weight\nchanges its depth, and with it the width."
+        f"\nEquivalent line contact in steady sliding at this velocity: a parabola of the same radius, "
+        f"{text(line.width, 'm')} wide,\nunder {text(line.load, 'N/m')}, at the depth "
+        f"{text(line.depth, 'm')}. Its load is right within {LOAD_ERROR:.1%}, its friction\ncoefficient "
+        f"within {FRICTION_COEFFICIENT_ERROR:.2%}. It is equivalent at every velocity if the depth is kept; "
+        "the depth\nof a dead weight changes with velocity, and with it the width."
     )

@@ -1,4 +1,4 @@
-"""`kvtheory solve`: the cheapest model that is enough."""
+"""`kvtheory solve`: the cheapest sufficient model."""
 
 import math
 from collections.abc import Sequence
@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     "--rtol", type=float, default=1e-3, show_default=True,
     help="Largest relative error; of a series, relative to the static state.",
 )  # fmt: skip
-@click.option("--quantity", metavar="NAME,...", help="What is wanted; default: everything.")
+@click.option("--quantity", metavar="NAME,...", help="Quantities to solve for; default: all.")
 @click.option("--explain", is_flag=True, help="Print which models were tried, and why.")
 @series_options
 def solve(
@@ -68,7 +68,7 @@ def solve(
 
 
 def _explain(found: "Solution") -> None:
-    """Print the climb: what was assumed, the margin, the error, the time."""
+    """Print the models tried: assumptions, error, margin and time of each."""
     print_table(
         ("model", "assumes", "error", "margin", "time [ms]", "outcome"),
         [

@@ -26,9 +26,9 @@ UNITS = {
     'kvtheory stability --set drive.velocity="91 mm/s" --set drive.stiffness="1 MN/m^2"',
 )
 def stability(scene: str | None, overrides: Sequence[str], as_json: bool) -> None:
-    """Say whether steady sliding is stable, and how stiff the drive must be.
+    """Print whether steady sliding is stable, and the critical stiffness of the drive.
 
-    The indenter hangs on the spring drive.stiffness along the foundation, with drive.damping and
+    The spring drive.stiffness holds the indenter in the sliding direction, with drive.damping and
     drive.mass; without a stiffness the drive is rigid.
     """
     from kvtheory.api import stability as examine
@@ -59,7 +59,7 @@ def stability(scene: str | None, overrides: Sequence[str], as_json: bool) -> Non
 
 
 def _verdict(found: "Stability") -> str:
-    """Say in a line what holds, and for which drive."""
+    """Return one line about the stability with this drive."""
     if found.rigid_drive:
         return "stable, for the drive is rigid; the critical stiffness is that of a spring in its place"
     return "stable" if found.stable else "unstable, between both critical stiffnesses of the spring"
@@ -70,7 +70,7 @@ def _number(value: float) -> str:
 
 
 def _rates(found: "Stability") -> list[tuple[str, str, str, str]]:
-    """Return a row for each rate; a time constant below zero is that of a motion that grows."""
+    """Return a row for each rate; the time constant of a growing motion is negative."""
     errors = found.certificate.relative_error["rates"]
     return [
         (f"{real:.6g}", f"{imaginary / math.tau:.6g}", shown(time, "s")[0], _number(error))

@@ -53,12 +53,12 @@ def steady(
 @scene_command(main, "kvtheory asymptotes --tolerance 0.01")
 @click.option(
     "--tolerance", type=float, default=0.05, show_default=True,
-    help="Relative error up to which an asymptote is good.",
+    help="Relative error up to which an asymptote is accepted.",
 )  # fmt: skip
 def asymptotes(
     scene: str | None, overrides: Sequence[str], as_json: bool, tolerance: float
 ) -> None:
-    """Say which asymptote holds, how wrong it is, and over which velocities."""
+    """Print which asymptote holds, its error, and over which velocities it holds."""
     from kvtheory.api import asymptotes as examine
     from kvtheory.scene import load_scene
 
@@ -109,7 +109,7 @@ def _proved_range(line: "AsymptoteLine") -> str:
 
 
 def note_history(scene: "Scene") -> None:
-    """Say which velocity of a history counts in steady sliding."""
+    """Print at which velocity of a history steady sliding is taken."""
     if scene.drive.history is not None:
         velocity = text(scene.drive.final_velocity, "m/s")
-        click.echo(f"The drive has a history; taken at its last velocity, {velocity}.")
+        click.echo(f"The drive has a history; taken at its final velocity, {velocity}.")

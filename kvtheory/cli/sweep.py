@@ -41,7 +41,7 @@ EXAMPLE = '"drive.velocity=1 mm/s:10 m/s:200:log" or "foundation.retardation_tim
 )  # fmt: skip
 @path_option(
     "-o", "--output", required=True,
-    help="FILE.csv or FILE.nc; FILE.part keeps what is done, until all is. The same command resumes.",
+    help="FILE.csv or FILE.nc; until all is done, FILE.part keeps finished blocks. The same command resumes.",
 )  # fmt: skip
 @click.option(
     "--quantity", "quantities", multiple=True, metavar="NAME,...",
@@ -60,7 +60,7 @@ EXAMPLE = '"drive.velocity=1 mm/s:10 m/s:200:log" or "foundation.retardation_tim
 @click.option("--jobs", type=click.IntRange(1), help="Workers; default: 1.")
 @click.option(
     "--executor", metavar="MODULE:FACTORY",
-    help="Gives a concurrent.futures.Executor; called with the number of jobs, if that is given.",
+    help="Factory of a concurrent.futures.Executor; called with the number of jobs, if given.",
 )  # fmt: skip
 @click.option("--block", type=click.IntRange(1), help="Scenes in a block.")
 @overwrite_option
@@ -70,7 +70,7 @@ def sweep(
     output: Path, quantities: Sequence[str], jobs: int | None, executor: str | None,
     block: int | None, plot: Path | None, **how: Any,
 ) -> None:  # fmt: skip
-    """Solve SCENE for many values of its quantities, into a file that survives and resumes."""
+    """Solve SCENE for many values of its quantities; an interrupted sweep resumes from its file."""
     from kvtheory.api import sweep as run
     from kvtheory.api._sweep import plan_of
     from kvtheory.scene import load_scene

@@ -19,14 +19,14 @@ from kvtheory.cli.outputs import check_results, deliver, series_options
 )
 @click.option(
     "--max-steps", type=click.IntRange(1),
-    help="Steps after which to give up; default: 300,000 and 100 for each piece of the drive.",
+    help="Steps after which to give up; default: 300,000 plus 100 for each piece of the drive.",
 )  # fmt: skip
 @series_options
 def transient(
     scene: str | None, overrides: Sequence[str], as_json: bool, rtol: float,
     max_steps: int | None, at: str | None, output: Path | None, plot: Path | None,
 ) -> None:  # fmt: skip
-    """Follow the transient of SCENE: depth, forces, edges and events over time."""
+    """Compute the transient of SCENE: depth, forces, edges and events over time."""
     from kvtheory.api import transient as follow
     from kvtheory.scene import load_scene
 

@@ -1,4 +1,4 @@
-"""Reference problems: named scenes that a method, or somebody's simulator, can be judged by."""
+"""Reference problems: named scenes for testing a method or a simulator."""
 
 from kvtheory.reference_problems.named import problem, problem_text, problems
 

@@ -1,4 +1,4 @@
-"""The reference problems by name: each is a scene file that says in its first lines what it is about."""
+"""The reference problems by name: each is a scene file whose first lines describe it."""
 
 from functools import cache
 from importlib.resources import as_file, files
@@ -19,7 +19,7 @@ def _names() -> tuple[str, ...]:
 def problems() -> dict[str, str]:
     """Return the names of the reference problems, and a line about each.
 
-    One stands for each regime, support, shape, foundation and kind of drive; `problem` returns its scene.
+    There is one for each regime, support, shape, foundation and kind of drive; `problem` returns its scene.
 
     Examples
     --------
@@ -35,7 +35,7 @@ def problem(name: str) -> Scene:
     Raises
     ------
     ValueError
-        If there is no problem of this name; the message has the nearest.
+        If there is no problem of this name; the message names the nearest.
 
     Examples
     --------
@@ -48,7 +48,7 @@ def problem(name: str) -> Scene:
 
 
 def problem_text(name: str) -> str:
-    """Return the scene file of a reference problem, with what it is about in its first lines.
+    """Return the text of the scene file of a reference problem, whose first lines describe it.
 
     Raises
     ------
@@ -62,7 +62,7 @@ def problem_text(name: str) -> str:
 
 
 def about(name: str) -> str:
-    """Return what a reference problem is about, in a sentence or two.
+    """Return the description of a reference problem, in a sentence or two.
 
     >>> about("wedge")
     'Beyond its crossover the friction coefficient is the slope of the wedge exactly.'

@@ -1,4 +1,4 @@
-"""What a model answers: values in SI units, and how wrong they may be."""
+"""Results of models: values in SI units, and their errors."""
 
 from kvtheory.results.certificate import AT_REST, Certificate, record
 from kvtheory.results.comparison import Check, Comparison, Explanation

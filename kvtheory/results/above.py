@@ -1,7 +1,7 @@
-"""What results offer although it is done above them: drawing and writing, imported when asked for.
+"""Methods of results that are implemented in higher rooms: drawing and writing, imported on call.
 
-Results stand below everything that draws or writes them, so that no circle of imports is left. This
-is the one place that names what is above, and `above` the one way there.
+Results are below everything that draws or writes them, which avoids circular imports. Only this module
+names the functions above, and only `above` imports them.
 """
 
 from collections.abc import Callable
@@ -18,7 +18,7 @@ ABOVE = {
     "save_result": "kvtheory.export",
     "save_sweep": "kvtheory.sweeps.files",
 }
-"""The functions that methods of results call, and the modules that hold them."""
+"""The functions that methods of results call, and their modules."""
 
 
 def above(name: str) -> Callable[..., Any]:

@@ -1,4 +1,4 @@
-"""How wrong a result may be, and results as plain Python values."""
+"""The certificate of a result's error, and results as plain Python values."""
 
 import math
 from collections.abc import Mapping
@@ -18,14 +18,14 @@ AT_REST = "the static depth, half length and load"
 
 @dataclass(frozen=True)
 class Certificate:
-    """How wrong a result may be, and what stands behind that.
+    """The error of a result, and its justification.
 
     `kind` is ``"proved"`` (a bound derived in `derivations`), ``"estimated"`` (measured by the tests,
-    or by the method itself) or ``"none"`` (nobody asked for one, and `relative_error` is empty);
-    `statement` says it in words; `relative_error` maps the name of
-    a quantity to a bound of |computed - true| over what `relative_to` names: `THE_TRUTH` itself in
-    steady sliding, and in a time series, which may pass through zero, `AT_REST`: the state before the
-    motion, by whose products `kvtheory.results.table.scales` measures each quantity.
+    or by the method itself) or ``"none"`` (not requested, and `relative_error` is empty);
+    `statement` explains it in words. `relative_error` maps the name of
+    a quantity to a bound of |computed - true| over the scale that `relative_to` names: for steady sliding
+    the true value (`THE_TRUTH`); for a time series, which may pass through zero, the state at rest
+    (`AT_REST`), with the scale of each quantity from `kvtheory.results.table.scales`.
     """
 
     kind: str
@@ -35,7 +35,7 @@ class Certificate:
 
 
 def record(result: Any) -> Any:
-    """Turn a result, and what it holds, into what `json` writes."""
+    """Return a result, and everything in it, as values that `json` can write."""
     if is_dataclass(result):
         return {f.name: record(getattr(result, f.name)) for f in fields(result)}
     if isinstance(result, Mapping):

@@ -1,4 +1,4 @@
-"""A time series held against theory."""
+"""A time series compared with theory."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, fields
@@ -13,10 +13,10 @@ from kvtheory.results.table import SERIES_UNITS
 
 @dataclass(frozen=True)
 class Check:
-    """One thing that was looked at.
+    """One check.
 
     `measured` must not exceed `allowed`; both are in `unit`, which says what is measured. `equation`
-    is what stands behind it. A check that cannot be made has no numbers, `ok` is None, and `note` says
+    is the basis of the check. A check that cannot be made has no numbers, `ok` is None, and `note` says
     why.
     """
 
@@ -33,11 +33,11 @@ class Check:
 class Explanation:
     """A fault that would explain a disagreement.
 
-    `rank` orders them, from 0 to 1. For a fault that was tried on theory it is `explained`, the part of
-    the difference (root mean square, relative to what is allowed) that goes away with it; for one that is
-    read off signs in the data, it is how telling the sign is taken to be, and `explained` is None.
-    `enough` says whether what remains is allowed; `factor` is what was fitted, if anything. `alike` are
-    the parameters that the data cannot tell from the one that this fault names.
+    `rank` orders them, from 0 to 1. For a fault that was simulated, `rank` equals `explained`, the part of
+    the difference (root mean square, relative to the allowance) that it removes; for one that is
+    inferred from a symptom in the data, it is an assumed strength of the evidence, and `explained` is None.
+    `enough` says whether the remaining difference is allowed; `factor` is the fitted factor or shift, if any.
+    `alike` are the parameters that the data cannot distinguish from the one that this fault names.
     """
 
     name: str
@@ -50,7 +50,7 @@ class Explanation:
 
 
 MOST_SHOWN = 6
-"""Failed checks in the text of a comparison."""
+"""Most failed checks in the text of a comparison."""
 MARKS = {True: "ok", False: "NO", None: "not made"}
 HEADS = "check", "measured", "allowed", "", "equation", "what is measured"
 
@@ -60,8 +60,8 @@ class Comparison:
     """Whether a time series agrees with theory, check by check, and if not, why.
 
     `verdict` is ``"agrees"``, ``"disagrees"`` if one of the checks that could be made failed, or
-    ``"cannot tell"`` if it was that of the sampling alone, or of the phase of a cycle. `diagnosis` says it
-    in words; `explanations` are the faults behind it, the best first.
+    ``"cannot tell"`` if only the check of the sampling, or of the phase of a cycle, failed. `diagnosis`
+    explains it in words; `explanations` are possible faults, the most likely first.
     """
 
     verdict: str
@@ -82,7 +82,7 @@ class Comparison:
     """The SI unit of each quantity."""
 
     def __repr__(self) -> str:
-        """Say the verdict, the diagnosis, and what failed."""
+        """Return the verdict, the diagnosis, and the failed checks as text."""
         failed = [check for check in self.checks if check.ok is False]
         rows = [f"{c.name}: {c.measured:.3g}, allowed {c.allowed:.3g}" for c in failed[:MOST_SHOWN]]
         more = [f"and {len(failed) - MOST_SHOWN} more"] if len(failed) > MOST_SHOWN else []
@@ -101,7 +101,7 @@ class Comparison:
         return html_table(f"{self.source}: {self.verdict}. {self.diagnosis}", HEADS, rows)
 
     def to_xarray(self) -> Any:
-        """Return data, theory and what is allowed between them as an `xarray.Dataset` over time.
+        """Return data, theory and the allowed difference as an `xarray.Dataset` over time.
 
         Raises
         ------
@@ -111,11 +111,11 @@ class Comparison:
         return above("compared")(self)
 
     def to_csv(self, path: str | Path) -> None:
-        """Write data, theory and what is allowed between them, with units in the header, in SI."""
+        """Write data, theory and the allowed difference as CSV in SI, with units in the header."""
         above("save_compared")(self, Path(path))
 
     def plot(self) -> Any:
-        """Draw data over theory, what is left, and the checks, and return the figure."""
+        """Draw data over theory, the residual, and the checks, and return the figure."""
         return above("plot_result")(self)
 
     def as_dict(self) -> dict[str, Any]:

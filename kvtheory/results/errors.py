@@ -1,4 +1,4 @@
-"""What can go wrong beyond the input: one error for each kind of failure, with the message in it.
+"""Errors other than bad input: one for each kind of failure, with a message.
 
 A wrong scene is a `kvtheory.scene.SceneError`, which lists every mistake.
 """
@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 
 class TransientError(ArithmeticError):
-    """The transient could not be followed further; the message says why and when."""
+    """The transient could not be computed further; the message says why and when."""
 
     def __init__(self, reason: str, s: float, name: str = "s", unit: str = "") -> None:
         super().__init__(f"{reason} at {name} = {s!r}{unit}")
@@ -17,7 +17,7 @@ class TransientError(ArithmeticError):
 class DivergenceError(ArithmeticError):
     """The time step is so long that the run became unstable; the message says when and why.
 
-    `rows` holds what was to be reported until then: tuples in the order of `TRANSIENT_UNITS`.
+    `rows` holds the output until then: tuples in the order of `TRANSIENT_UNITS`.
     """
 
     rows: Sequence[tuple[float, ...]] = ()
@@ -28,4 +28,4 @@ class QuadratureError(ArithmeticError):
 
 
 class ToleranceError(ArithmeticError):
-    """No model is known to be within the tolerance; the message says how far each came."""
+    """No model is known to be within the tolerance; the message gives the error of each."""

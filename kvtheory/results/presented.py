@@ -1,4 +1,4 @@
-"""How a result shows itself: a few lines of text, a table in a notebook, a picture, a file."""
+"""The presentation of a result: a few lines of text, a table in a notebook, a picture, a file."""
 
 from collections.abc import Iterable, Iterator, Mapping
 from html import escape
@@ -44,7 +44,7 @@ class Presented:
             yield name, _range(getattr(self, name), factor), unit, worst
 
     def __repr__(self) -> str:
-        """Say what it is in ten lines at most."""
+        """Return a summary in ten lines at most."""
         cells = [f"{name} {value} {unit}".rstrip() for name, value, unit, _ in self._shown()]
         pairs = [
             f"{a:38} {b}".rstrip() for a, b in zip(cells[::2], [*cells[1::2], ""], strict=False)

@@ -1,6 +1,6 @@
-"""The schemes of discrete simulators, one row each: what they are called, how exact and how stable.
+"""The schemes of discrete simulators, one row each: name, order and stability limit.
 
-Whoever steps elements, and whoever judges such a run, reads them here.
+Both the simulator and the checks of such a run read them here.
 """
 
 import math
@@ -8,15 +8,15 @@ from typing import NamedTuple
 
 
 class SchemeRow(NamedTuple):
-    """What is known of a scheme.
+    """The properties of a scheme.
 
-    `order_in_time` is that of the motion of the indenter between two elements; `order` that of the depth
-    while spacing and step are refined together; forces summed over whole elements are of order one.
-    `stability_limit` is the largest stable h C L/M, L the length of the contact: where |R(-z)| = 1, R the
-    stability polynomial (F15); infinite if every step is stable. `parts_of_elements` says whether the
-    part of an element at each edge counts. `papers_step` says whether h = 2 dx/V, as in the paper. All this
-    is for Kelvin-Voigt; on a Prony series an explicit scheme has a limit of its own, and the paper's is of
-    order two in time.
+    `order_in_time` is the order of the motion of the indenter while no element enters or leaves the contact;
+    `order` is that of the depth when spacing and step are refined together; forces summed over whole
+    elements are of order one. `stability_limit` is the largest stable h C L/M, L the length of the contact:
+    where |R(-z)| = 1, R the stability polynomial (F15); infinite if every step is stable.
+    `parts_of_elements` says whether fractions of elements at the edges are counted. `papers_step` says
+    whether h = 2 dx/V, as in the paper. All this is for Kelvin-Voigt; on a Prony series the explicit schemes
+    have other limits, and the paper's scheme is of order two in time.
     """
 
     name: str

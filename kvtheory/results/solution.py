@@ -1,4 +1,4 @@
-"""What the cheapest model that is enough answered, and how it was found."""
+"""The result of the cheapest sufficient model, and how it was found."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -12,9 +12,9 @@ from kvtheory.results.presented import Presented
 class ClimbStep:
     """One rung that was tried.
 
-    `assumed` says what the model rests on, `outcome` is ``"used"`` or why it was not, `error` the
-    largest relative error that it may have (NaN where it was not known), `margin` the tolerance over
-    it; `choosing` and `solving` are the seconds spent to judge the model and to run it.
+    `assumed` states the assumptions of the model, `outcome` is ``"used"`` or why it was not, `error` the
+    largest relative error that it may have (NaN if not known), `margin` the ratio of the tolerance to
+    it; `choosing` and `solving` are the seconds spent on judging the model and on running it.
     """
 
     rung: str
@@ -31,10 +31,10 @@ class Solution(Presented):
     """Values within a tolerance, by the cheapest model that is known to be enough.
 
     `values` maps the name of each quantity to a float (steady sliding) or to an array (a time series,
-    `time` first); each is also an attribute: ``solution.friction_force``. In a series, what was not
-    asked for is NaN. `certificate` holds the errors of what was asked: relative to the true value, in
-    a series to the static depth, half length and load. `answer` is the result of the model itself,
-    where it has one of its own.
+    `time` first); each is also an attribute: ``solution.friction_force``. Quantities of a series that were
+    not requested are NaN. `certificate` holds the errors of those that were: relative to the true value, in
+    a series to the static depth, half length and load. `answer` is the full result of the model, if it has
+    one.
 
     Examples
     --------
@@ -60,12 +60,12 @@ class Solution(Presented):
 
     @property
     def choosing_share(self) -> float:
-        """Share of the time that went into the choice, with the rungs that were run in vain."""
+        """Share of the time spent on the choice, including rungs that were run but not used."""
         vain = sum(step.choosing + step.solving for step in self.climb[:-1])
         last = self.climb[-1]
         return (vain + last.choosing) / (vain + last.choosing + last.solving)
 
     def as_dict(self) -> dict[str, Any]:
-        """Return plain Python values, ready for JSON; what does not exist is None."""
+        """Return plain Python values, ready for JSON; a missing value is None."""
         rest = {"model": self.model, "certificate": self.certificate, "climb": self.climb}
         return record({**self.values, **rest})

@@ -11,12 +11,12 @@ class Stability:
     """Stability of steady sliding: each quantity a value, or an array where the input was an array.
 
     `rates` holds, along its last axis but one, the rates of small motions in 1/s as pairs (real,
-    imaginary), fastest growth first, and `time_constants` -1/real of each in s: negative of a motion that
-    grows. `critical_stiffness` (N/m^2) is that of the spring in the drive above which steady sliding is
-    stable, `lower_critical_stiffness` that below which it is, too: 0 where friction falls with the
-    velocity. `frequency` (Hz) is that of the motion at the onset of instability, at the upper one.
+    imaginary), fastest growth first, and `time_constants` -1/real of each in s: negative for a growing
+    motion. Above `critical_stiffness` (N/m^2) of the spring in the drive steady sliding is stable, and
+    below `lower_critical_stiffness`, too, which is 0 where friction falls with velocity.
+    `frequency` (Hz) is that of the motion at the onset of instability, at the upper critical stiffness.
     `critical_velocity` (m/s) is the smallest at which the present stiffness becomes critical.
-    What does not exist, and what was not asked for, is NaN.
+    Values that do not exist, or were not requested, are NaN.
     """
 
     stable: Any
@@ -31,5 +31,5 @@ class Stability:
     certificate: Certificate
 
     def as_dict(self) -> dict[str, Any]:
-        """Return plain Python values, ready for JSON; what does not exist is None."""
+        """Return plain Python values, ready for JSON; a missing value is None."""
         return record(self)

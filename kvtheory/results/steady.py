@@ -24,12 +24,12 @@ class SteadyState(Presented):
     """Steady sliding: each quantity a float, or an array where the input was an array.
 
     The edges are coordinates in the frame of the indenter, in which the foundation moves through
-    x with the drive velocity: the leading edge is at x < 0 for a positive velocity. Of a ball they are
-    those of its middle plane, across which it touches over |y| < a sqrt(R'/R); its forces are whole, in N,
-    as `units` says.
+    x with the drive velocity: the leading edge is at x < 0 for a positive velocity. For a ball they are
+    those of its middle plane; its contact extends over |y| < a sqrt(R'/R), and its forces are in N, see
+    `units`.
 
-    `stable` says whether it lasts: with a rigid drive it does; of a spring in the drive it is None where that
-    is not known.
+    `stable` says whether steady sliding is stable: it is with a rigid drive; with a spring in the drive it
+    is None if not known.
     """
 
     depth: Value
@@ -52,7 +52,7 @@ class SteadyState(Presented):
 
     @property
     def unstable(self) -> str:
-        """Say in one line that what is told here does not happen, or that this is not known; else nothing."""
+        """Return one line if steady sliding is unstable, or if its stability is not known; else nothing."""
         if self.stable is None:
             return UNKNOWN
         count = np.size(self.stable) - np.count_nonzero(self.stable)
@@ -60,7 +60,7 @@ class SteadyState(Presented):
         return UNSTABLE.format(of) if count else ""
 
     def __repr__(self) -> str:
-        """Say what it is in a few lines, and whether it happens."""
+        """Return a summary in a few lines, with a warning if steady sliding is unstable."""
         return "\n".join([super().__repr__(), *([self.unstable] if self.unstable else [])])
 
     def as_dict(self) -> dict[str, Any]:
@@ -70,12 +70,12 @@ class SteadyState(Presented):
 
 @dataclass(frozen=True)
 class AsymptoteLine:
-    """One asymptote of a scene: its value, the exact one, and where it is good enough.
+    """One asymptote of a scene: its value, the exact one, and its range.
 
     `relative_error` is asymptote/exact - 1; `velocity_min` and `velocity_max` bound the drive
-    velocities |V| in m/s at which its magnitude is within the tolerance of the report. What does
-    not exist (the high asymptote of the depth at V = 0) is NaN. Up to `velocity_proved`, or for high
-    velocity from it on, a theorem says that it is; for Kelvin-Voigt that is the whole range.
+    velocities |V| in m/s at which its magnitude is within the tolerance of the report. Values that do
+    not exist (the high asymptote of the depth at V = 0) are NaN. Up to `velocity_proved`, or from it on for
+    the high-velocity asymptote, a theorem guarantees this; for Kelvin-Voigt that is the whole range.
     """
 
     name: str

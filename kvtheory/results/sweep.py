@@ -25,13 +25,13 @@ class Axis:
 
     @property
     def size(self) -> int:
-        """How many points lie along it."""
+        """The number of points along it."""
         return int(next(iter(self.values.values())).size)
 
 
 @dataclass(frozen=True)
 class Failure:
-    """A scene without an answer: its index in C order, what was swept there, and the reason."""
+    """A scene that failed: its index in C order, its swept values, and the reason."""
 
     index: int
     point: Mapping[str, float]
@@ -40,14 +40,14 @@ class Failure:
 
 @dataclass(frozen=True)
 class Sweep:
-    """Answers over many scenes, as arrays over `axes` in SI; a missing value is NaN.
+    """Results of many scenes, as arrays over `axes` in SI; a missing value is NaN.
 
     `values` maps each quantity to an array with one dimension for each axis, and `time` as the last
-    one for a series; `events` is an array of JSON texts. Where the sweep was written to a file,
-    `path`, the arrays are read from there when they are asked for. `units` covers swept keys and
-    quantities. `computed` counts the points that this call solved; the others a file held already.
+    one for a series; `events` is an array of JSON texts. If the sweep was written to the file
+    `path`, the arrays are read from there on access. `units` covers swept keys and
+    quantities. `computed` counts the points that this call solved; the others were in the file already.
     `failures` lists scenes that failed: all of them, or for a file the first hundred;
-    `failed` counts them all. The errors in the certificate are the worst over the sweep.
+    `failed` counts them all. The errors in the certificate are the largest over the sweep.
     """
 
     scene: Scene
@@ -63,7 +63,7 @@ class Sweep:
     version: str
     path: Path | None = None
     plan: Any = field(default=None, repr=False, compare=False)
-    """What was asked, from which files are written."""
+    """The request, from which files are written."""
 
     def __getitem__(self, name: str) -> Any:
         """Return the array of a swept key or a quantity."""

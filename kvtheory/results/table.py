@@ -1,4 +1,4 @@
-"""What each quantity of a result is: one table, which everything that names or shows one reads."""
+"""The quantities of results: one table, which everything that names or shows a quantity reads."""
 
 from collections.abc import Mapping
 from typing import NamedTuple
@@ -9,9 +9,9 @@ from kvtheory.scene.units import WHOLE
 
 
 class Row(NamedTuple):
-    """A quantity: its name, symbol (TeX), SI unit and words.
+    """A quantity: its name, symbol (TeX), SI unit and description.
 
-    `scale` names the attribute of `kvtheory.scene.static_state.StaticState` that measures it in a series.
+    `scale` names the attribute of `kvtheory.scene.static_state.StaticState` that is its scale in a series.
     """
 
     name: str
@@ -61,7 +61,7 @@ TRANSIENT_UNITS = {
 """The quantities of a time series and their units, `time` first."""
 
 SPRING_UNITS = {name: QUANTITIES[name].unit for name in ("sliding_velocity", "spring_force")}
-"""The quantities that a time series has beside these where the drive has a spring."""
+"""The additional quantities of a time series if the drive has a spring."""
 SERIES_UNITS = TRANSIENT_UNITS | SPRING_UNITS
 
 SHOWN_UNITS = {
@@ -79,11 +79,12 @@ SHOWN_UNITS = {
     "kg/m": ("kg/mm", 1e-3),
     "Hz": ("Hz", 1.0),
 }
-"""For people, each SI unit as the paper has it, and the factor to it; JSON and CSV are in SI."""
+"""The unit in which tables show each SI unit, as in the paper, and the factor to it; JSON and CSV are in
+SI."""
 
 
 def units_for(indenter: Indenter, units: Mapping[str, str]) -> Mapping[str, str]:
-    """Return the units of quantities of a result, which a line contact has per unit width and a ball whole.
+    """Return the units of quantities of a result: per unit width for a line contact, total for a ball.
 
     >>> from kvtheory.scene import Sphere
     >>> units_for(Sphere(radius=0.01), STEADY_UNITS)["load"]
@@ -95,7 +96,8 @@ def units_for(indenter: Indenter, units: Mapping[str, str]) -> Mapping[str, str]
 
 
 def scales(at_rest: StaticState) -> dict[str, float]:
-    """Return what measures each quantity of a series, more on a spring: the static state and its products.
+    """Return the scale of each quantity of a series, also those on a spring: the static state and its
+    products.
 
     >>> from kvtheory.scene import Scene
     >>> round(scales(StaticState.of(Scene()))["normal_force"], 2)

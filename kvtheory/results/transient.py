@@ -84,14 +84,14 @@ class Transient(TimeSeries):
         return self.solution.surface(x, time)
 
     def energy(self, time: Any) -> Any:
-        """Return the energy ledger at the times (s): a `Ledger` of values or arrays in J/m (fact F14).
+        """Return the energy balance at the times (s): a `Ledger` of values or arrays in J/m (fact F14).
 
-        The work of the drive, int F_x V dt, and what was stored at rest are spent on the kinetic
-        energy, on the potential energies -M g (delta - delta_0) and k_s (delta - delta_0)^2/2, on what
-        is stored, int K u^2/2 dx, and on what was dissipated, int int C (du/dt)^2 dx dt; the last two
-        under the indenter (`..._contact`) and in the surface that relaxes (`..._surface`). A drive with a
-        spring also has `kinetic_along`, `stored_drive` and `dissipated_drive`. `balance` is what is left
-        over: only the error.
+        The work of the drive, int F_x V dt, and the energy stored at rest equal the sum of the kinetic
+        energy, the potential energies -M g (delta - delta_0) and k_s (delta - delta_0)^2/2, the stored
+        energy, int K u^2/2 dx, and the dissipated energy, int int C (du/dt)^2 dx dt; the last two are split
+        into the contact (`..._contact`) and the relaxing surface (`..._surface`). With a spring in the drive
+        there are also `kinetic_along`, `stored_drive` and `dissipated_drive`. `balance` is the residual, a
+        measure of the error.
 
         Examples
         --------
@@ -107,8 +107,8 @@ class Transient(TimeSeries):
 class SprungTransient(Transient):
     """A transient whose drive holds the indenter by a spring: two series more, `SPRING_UNITS`.
 
-    `sliding_velocity` is that of the base under the indenter, V - dx/dt, and `spring_force` is what spring
-    and damper exert, k_x x + c_x dx/dt, where x is how far the indenter was dragged along. Leading and
+    `sliding_velocity` is that of the base under the indenter, V - dx/dt, and `spring_force` the force of
+    spring and damper, k_x x + c_x dx/dt, with x the displacement of the indenter. Leading and
     trailing edge follow the sign of the sliding velocity.
     """
 
@@ -125,8 +125,8 @@ class Simulation(TimeSeries):
     """A run of the elements as a time series: arrays in SI over `time`; in flight the edges are NaN.
 
     At an instant where the drive jumps, values are those just after the jump. `per_length` is the
-    number of elements per length (1/m), `time_step` the longest step (s), `element_updates` how often
-    an element was moved or pressed; `warning` says what is doubtful about the step, if anything.
+    number of elements per length (1/m), `time_step` the longest step (s), `element_updates` the number of
+    updates of single elements; `warning` says why the step may be too long, if so.
     """
 
     scheme: str

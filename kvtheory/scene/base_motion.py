@@ -1,7 +1,7 @@
 """How the base moves: its velocity V(t) as a piecewise polynomial, and the exact integral Y(t).
 
-Every model takes V and Y from here; the times and lengths may be in SI or scaled. At a jump the value
-just after it counts.
+Every model takes V and Y from here; times and lengths may be in SI or scaled. At a jump, V is the value
+just after it.
 """
 
 import itertools
@@ -16,22 +16,22 @@ from numpy.polynomial import Chebyshev, Polynomial
 from numpy.typing import NDArray
 
 DEGREE = 8
-"""Of a piece that represents a function: a few pieces for a period of a sine, at any tolerance."""
+"""Polynomial degree of a piece that represents a function: a period of a sine takes a few pieces."""
 CHECKS = 2 * DEGREE + 3
-"""Points at which a piece is compared with its function, most of them between the nodes."""
+"""Number of points at which a piece is compared with its function, most of them between the nodes."""
 SHORTEST = 1e-12
-"""Share of the whole motion; a piece that would have to be shorter holds a jump or a kink."""
+"""Shortest piece, as a share of the whole motion; one that would have to be shorter has a jump or a kink."""
 PIECE_LIMIT = 100_000
 EARLY, LOOKS, WIDER = 500, 16, 4.0
-"""After so many pieces that would take too many to the end, a function is looked at in so many places: if
-pieces this much wider nowhere do, it is refused."""
+"""When this many pieces show that too many would be needed, the function is sampled at this many places: if
+pieces this much wider are sufficient nowhere, it is refused."""
 
 SAME_TIME = 1024.0
-"""Units in the last place by which times differ from rounding: they are one time. A model could not step
-from one to the other."""
+"""Times that differ by this many units in the last place are one time: the difference is rounding, and a
+model could not step from one to the other."""
 
 ON_REST = 16.0 * 2.0**-52
-"""Of the terms of a velocity: what rounding leaves of it where they cancel, and the base rests."""
+"""Relative to the terms of a velocity: what rounding leaves where they cancel and the base rests."""
 
 START, END, DISPLACEMENT, POWERS = 0, 1, 2, 3
 """Layout of a piece: its times, Y at its start, then the coefficients of V in t - start."""
@@ -134,7 +134,7 @@ class BaseMotion:
         return cls(_joined(found), (0.0, *inner))
 
     def repeated(self, end: float) -> "BaseMotion":
-        """Return the motion over and over again until `end`, as of a period.
+        """Return the motion repeated periodically until `end`.
 
         >>> swing = BaseMotion.from_function(lambda t: math.sin(2.0 * math.pi * t), end=1.0)
         >>> abs(swing.repeated(1000.0).velocity(999.3) - math.sin(0.6 * math.pi)) < 1e-11

@@ -38,9 +38,9 @@ def replaceable(scene: Scene) -> dict[str, Quantity]:
 
 
 def values(scene: Scene, over: Mapping[str, Any] | None = None) -> dict[str, Array]:
-    """Return every quantity of the scene by its dotted key, broadcast, with those of `over` put in.
+    """Return every quantity of the scene by its dotted key, broadcast, with those of `over` inserted.
 
-    What follows from others is there too: ``"support.weight"``, the stiffness of a layer, the mass of a load,
+    Derived quantities are included: ``"support.weight"``, the stiffness of a layer, the mass of a load,
     and the mass that moves along x with a spring in the drive.
 
     Raises
@@ -85,7 +85,7 @@ def values(scene: Scene, over: Mapping[str, Any] | None = None) -> dict[str, Arr
 
 
 def _following(scene: Scene, found: dict[str, Array], over: Mapping[str, Any]) -> dict[str, Array]:
-    """Return what follows from other values, as in the parts of a scene, unless it is itself replaced."""
+    """Return the quantities derived from others, as in the parts of a scene, unless they are replaced."""
     follows: dict[str, Array] = {}
     if scene.foundation.modulus is not None and "foundation.stiffness" not in over:
         layer = (found[f"foundation.{name}"] for name in LAYER)

@@ -13,16 +13,16 @@ NAMES = {
     "s": ("t", "time", "zeit"),
     "m/s": ("v", "velocity", "speed", "drivevelocity", "vdrive", "geschwindigkeit"),
 }
-"""How the columns of the times and of the velocities may be named, by their units."""
+"""Possible names of the columns of time and velocity, by their units."""
 
 
 def history_from(path: Path) -> tuple[tuple[float, float], ...]:
-    """Return the points (t, V) in SI of a CSV whose head names the units; other columns are ignored.
+    """Return the points (t, V) in SI of a CSV whose header names the units; other columns are ignored.
 
     Raises
     ------
     SceneError
-        If the file cannot be read, saying in which line.
+        If the file cannot be read; the message says in which line.
     """
     try:
         table = read_table(path)

@@ -30,16 +30,17 @@ VELOCITY = Quantity(
 )
 TIME = Quantity("s", "time", 0.0, False)
 SPRING = "stiffness", "damping", "mass"
-"""What a drive that is not rigid has between itself and the indenter."""
+"""The quantities of the spring between the drive and the indenter."""
 
 LEAST_TOLERANCE = 1e-13
-"""Of a drive that is a function: polynomials are not closer to it than rounding."""
+"""Smallest tolerance of a drive that is a function: closer, polynomials are limited by rounding."""
 MOST_CYCLES = 10_000
-"""Of a swing, which a run has to follow one by one."""
+"""Most periods of a waveform in a run, which follows them one by one."""
 SMOOTH = 1e-9
-"""Relative change of a function across a break that is no jump."""
+"""Largest relative change of a function across a break that is not a jump."""
 ON_LINE = 4.0 * 2.0**-52
-"""Of the velocity: a point of a history as near to the line between its neighbours says nothing."""
+"""Relative to the velocity: a point of a history this near to the line between its neighbours is
+redundant."""
 
 
 @dataclass(frozen=True)
@@ -47,15 +48,15 @@ class Drive:
     """The motion of the foundation: a `velocity` from t = 0 on, a `history`, `waveform` or `function`.
 
     A history holds pairs (time, velocity). It is linear between its points and jumps where a time
-    stands twice; it starts at t = 0 and keeps its last velocity.
+    is repeated; it starts at t = 0 and keeps its final velocity.
 
-    A `waveform` swings or rises smoothly: `Sine`, `Triangle` or `SmoothRamp`.
+    A `waveform` oscillates or rises smoothly: `Sine`, `Triangle` or `SmoothRamp`.
 
-    A function V(t), from Python only, gives m/s at the time in s, smoothly but at the `breaks`: the
+    A function V(t), in Python only, returns m/s for a time in s. It is smooth except at the `breaks`: the
     times at which it jumps or has a kink. The transient replaces it by polynomials, with an error of at
     most `tolerance` times max(|V|, a_0/tau), a_0 the static half length.
 
-    With a `stiffness` the drive holds the indenter along x by a spring, and a `damping` beside it; the
+    With a `stiffness` the drive holds the indenter along x by a spring, with a `damping` in parallel; the
     `mass` that moves along x is that of the support if not given. Without a stiffness the drive is rigid.
 
     Examples
@@ -124,8 +125,8 @@ class Drive:
     def points(self) -> tuple[tuple[float, float], ...]:
         """The points (time, velocity) that matter, in SI.
 
-        A velocity has one; of a history, those are left out that lie on the line between their
-        neighbours, or repeat the last velocity.
+        A velocity has one; points of a history are left out if they lie on the line between their
+        neighbours, or repeat the final velocity.
 
         Raises
         ------
@@ -147,7 +148,7 @@ class Drive:
 
     @property
     def final_velocity(self) -> float:
-        """The velocity that the drive ends with, in m/s; a function has none, and raises SceneError."""
+        """The final velocity of the drive, in m/s; a function has none, and raises SceneError."""
         last = getattr(self.waveform, "final_velocity", None)
         return self.points[-1][1] if last is None else float(last)
 
@@ -158,7 +159,7 @@ class Drive:
 
     @property
     def constant(self) -> bool:
-        """Whether the velocity is one and the same from t = 0 on; that of a function is taken to vary."""
+        """Whether the velocity is constant from t = 0 on; that of a function is assumed to vary."""
         return self.function is None and len(self.points) == 1
 
     @property
@@ -208,7 +209,7 @@ class Drive:
     def changed(self, **values: float) -> "Drive":
         """Return the drive with some quantities replaced: those of its waveform, or of its spring.
 
-        Another velocity replaces any other way to drive.
+        A velocity replaces a history, waveform or function.
 
         >>> Drive(history=[(0.0, 0.1), (1.0, 0.2)], stiffness=1e6).changed(velocity=0.3).points
         ((0.0, 0.3),)
@@ -285,7 +286,7 @@ class Drive:
 
 
 def _without_spring(drive: Drive) -> list[str]:
-    """Say what a rigid drive was given that belongs to a spring."""
+    """Report the quantities of a spring that a rigid drive was given."""
     told = "needs drive.stiffness, of the spring between drive and indenter"
     given = {"damping": drive.damping, "mass": drive.mass} if drive.rigid else {}
     return [
@@ -319,7 +320,7 @@ def _without_redundant(
 
 
 def _breaks(drive: Drive) -> tuple[float, ...]:
-    """Return the breaks in s and in order, or report everything about a function that is wrong."""
+    """Return the breaks in s and in order, or report every mistake in a drive that is a function."""
     problems: list[str] = []
     times: list[float] = []
     if drive.function is None:

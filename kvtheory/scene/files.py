@@ -40,13 +40,13 @@ CHOICES = {
     "foundation": ("kind", FOUNDATIONS),
     "support": ("kind", SUPPORTS),
 }
-"""Sections in which one key chooses the model; the other keys depend on it."""
+"""Sections in which one key selects the model; the other keys depend on it."""
 DEFAULTS = {"indenter": "parabola", "foundation": "kelvin-voigt"}
 LISTS = {("foundation", "arms"), ("drive", "history")}
 """Keys whose values are lists of pairs."""
 POINTS = 'points such as ["50 ms", "100 mm/s"]'
 DRIVES = ("velocity", "history", "waveform", "file")
-"""Ways to drive, of which a scene has one."""
+"""Keys that define the motion of a drive; a scene has one of them."""
 PLAIN = {"drive": Drive, "run": Run}
 OPTIONAL = {"run"}
 NOTES = {
@@ -103,13 +103,13 @@ def load_scene(path: str | Path | None = None, overrides: Iterable[str] = ()) ->
 
 
 def drive_file(path: str | Path | None, overrides: Iterable[str]) -> str:
-    """Return the name of the table that drives a scene, or nothing; it is read with the scene."""
+    """Return the name of the file that gives the drive of a scene, or nothing; it is read with the scene."""
     drive = _overridden(path, list(overrides))[0].get("drive")
     return str(drive.get("file", "")) if isinstance(drive, dict) else ""
 
 
 def _overridden(path: str | Path | None, overrides: list[str]) -> tuple[dict[str, Any], list[str]]:
-    """Return the tables of a scene file, or of Table 1, and what is wrong with the overrides."""
+    """Return the tables of a scene file, or of Table 1, and the mistakes in the overrides."""
     tables = _tables(Scene.table1()) if path is None else _read(Path(path))
     drive = tables.get("drive")
     if path is not None and isinstance(drive, dict) and isinstance(drive.get("file"), str):
@@ -277,9 +277,9 @@ def _all_keys() -> list[str]:
 
 
 def _change_drive(table: dict[str, Any], name: str) -> None:
-    """Take out of a drive what does not go with a new key: the ways to drive exclude each other.
+    """Remove from a drive the keys that a new key excludes: a drive has only one of `DRIVES`.
 
-    A spring goes with each of them.
+    A spring is compatible with each of them.
     """
     own = quantities(WAVEFORMS[table["waveform"]]) if table.get("waveform") in WAVEFORMS else ()
     if name in DRIVES and name not in own:
@@ -289,7 +289,7 @@ def _change_drive(table: dict[str, Any], name: str) -> None:
 
 
 def _switched(old: Any, section: str, choice: str, embedded: bool) -> dict[str, Any]:
-    """Return a section for another shape or support: what the old one has in common with it stays.
+    """Return a section for another shape or support, with the keys that it shares with the old one.
 
     Table 1 gives both the mass and the depth, so that the built-in scene can switch its support.
     """
@@ -376,7 +376,7 @@ def _make(cls: Any, section: str, table: Mapping[str, Any], choice: str = "") ->
 
 
 def _values(cls: Any, section: str, table: Mapping[str, Any], choice: str) -> dict[str, Any]:
-    """Return what `cls` is constructed from; of a waveform, the spring of its drive is among it."""
+    """Return the arguments of `cls`; for a waveform they include the spring of its drive."""
     specs, valid = quantities(cls), _keys(cls)
     if section == "drive":
         specs |= {name: quantities(Drive)[name] for name in SPRING}
@@ -408,7 +408,7 @@ def _values(cls: Any, section: str, table: Mapping[str, Any], choice: str) -> di
 
 
 def _elsewhere(section: str, key: str) -> str:
-    """Say which other models of a section have a key of this name, or one that it means."""
+    """Return which other models of a section have a key of this name, or a similar one."""
     if section not in CHOICES:
         return ""
     chooser, models = CHOICES[section]
@@ -419,7 +419,7 @@ def _elsewhere(section: str, key: str) -> str:
 
 
 def _value(value: Any, spec: Quantity) -> Any:
-    """Return a value in SI, or the text where its unit says more: whether it is per unit width."""
+    """Return a value in SI, or the text itself where its unit tells whether it is per unit width."""
     if spec.unit != "1" and isinstance(value, (int, float)):
         raise ValueError(f"has no unit; expected {expected(spec.unit)}")
     number = convert(value, written_as(value, spec))
@@ -427,7 +427,7 @@ def _value(value: Any, spec: Quantity) -> Any:
 
 
 def _pairs(value: Any, told: str) -> Any:
-    """Pass a list of pairs on to those who check it, if all of them carry units."""
+    """Return a list of pairs unchanged, for later checks, if all of them carry units."""
     pairs = value if isinstance(value, list) else []
     items = (item for pair in pairs if isinstance(pair, list) for item in pair)
     if any(isinstance(item, (int, float)) for item in items):
@@ -436,7 +436,7 @@ def _pairs(value: Any, told: str) -> Any:
 
 
 def _keys(cls: Any) -> list[str]:
-    """Return the keys of a model: its quantities, and what else it takes, such as lists of pairs."""
+    """Return the keys of a model: its quantities, and its other keys, such as lists of pairs."""
     lists: tuple[str, ...] = DRIVES if cls is Drive else ()
     if cls is GeneralizedMaxwell:
         lists = ("arms",)

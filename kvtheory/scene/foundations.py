@@ -1,8 +1,8 @@
 """Foundations: rows of independent viscoelastic elements, each known by its relaxation function G(t).
 
-An element that is compressed by u answers with p(t) = int G(t - t') du/dt' dt', per unit area. Every
-foundation has its `kind`; the `stiffness` K that it keeps; the `arms` of a Prony series, in addition to
-it; and `damping` C = int (G - K) dt, by which slow sliding feels the rest, with `retardation_time` C/K.
+An element compressed by u exerts the pressure p(t) = int G(t - t') du/dt' dt'. Every
+foundation has its `kind`; the relaxed `stiffness` K; the `arms` of a Prony series, in addition to
+it; and the `damping` C = int (G - K) dt, which governs slow sliding, with `retardation_time` C/K.
 """
 
 import math
@@ -24,16 +24,16 @@ LAYER = ("modulus", "thickness", "poisson_ratio")
 MOST_ARMS = 100
 PAIRS = 'pairs of stiffness and relaxation time, such as ["30 GN/m^3", "10 ms"]'
 DISTINCT = 1e-6
-"""Relative difference of relaxation times below which two arms are one, written twice."""
+"""Relative difference of relaxation times below which two arms count as the same."""
 
 
 def layer_stiffness(modulus: Any, thickness: Any, poisson_ratio: Any) -> Any:
     """Return K = E (1 - nu) / ((1 + nu) (1 - 2 nu) h) of a thin layer bonded to a rigid base, in N/m^3.
 
-    A layer of modulus E (Pa) and thickness h (m) under an indenter can only be squeezed, not sheared
-    away, where h is small against the half length a of the contact: K is its confined modulus over its
-    thickness. What is left out is of the order of h/a, and grows without bound towards nu = 1/2, where
-    a layer yields by flowing aside instead: (h/a)^2 must be small against 1 - 2 nu as well.
+    Under an indenter a layer of modulus E (Pa) and thickness h (m) is compressed without lateral strain,
+    if h is small compared with the half length a of the contact: K is its confined modulus over its
+    thickness. The relative error is of the order of h/a. It grows without bound towards nu = 1/2, where
+    the layer flows sideways instead: (h/a)^2 must also be small compared with 1 - 2 nu.
 
     Numbers or arrays; Johnson, Contact Mechanics (1985), section 5.8.
 
@@ -47,7 +47,7 @@ def layer_stiffness(modulus: Any, thickness: Any, poisson_ratio: Any) -> Any:
 
 @dataclass(frozen=True)
 class _Relaxed:
-    """What all foundations share: a stiffness, or a thin bonded layer that gives it."""
+    """The common part of all foundations: a stiffness, or a thin bonded layer that determines it."""
 
     stiffness: float = quantity(
         "N/m^3", "K, stiffness of the foundation per unit area",
@@ -100,7 +100,7 @@ class Foundation(_Relaxed):
 
 @dataclass(frozen=True)
 class Arm:
-    """A Maxwell arm, spring and damper in a row: K_i e^(-t/tau_i), a term of a Prony series."""
+    """A Maxwell arm, spring and damper in series: K_i e^(-t/tau_i), a term of a Prony series."""
 
     stiffness: float = quantity("N/m^3", "K_i, stiffness of the arm per unit area")
     relaxation_time: float = quantity("s", "tau_i, relaxation time of the arm")
@@ -111,7 +111,7 @@ class Arm:
 
 @dataclass(frozen=True)
 class GeneralizedMaxwell(_Relaxed):
-    """A spring beside Maxwell arms: G = K + sum K_i e^(-t/tau_i), a Prony series.
+    """A spring in parallel with Maxwell arms: G = K + sum K_i e^(-t/tau_i), a Prony series.
 
     `arms` are pairs of stiffness and relaxation time, one to a hundred, with different times. One arm
     is the standard linear solid (Zener).
@@ -135,7 +135,7 @@ class GeneralizedMaxwell(_Relaxed):
 
     @property
     def damping(self) -> float:
-        """C = sum K_i tau_i, in N s/m^3: of the Kelvin-Voigt foundation that it is in slow sliding."""
+        """C = sum K_i tau_i, in N s/m^3: that of the equivalent Kelvin-Voigt foundation in slow sliding."""
         return math.fsum(arm.stiffness * arm.relaxation_time for arm in self.arms)
 
     @property
@@ -146,10 +146,10 @@ class GeneralizedMaxwell(_Relaxed):
 
 @dataclass(frozen=True)
 class FractionalKelvinVoigt(_Relaxed):
-    """A spring beside a springpot: G = K [1 + (t/tau)^(-alpha)/Gamma(1 - alpha)], 0 < alpha <= 1.
+    """A spring in parallel with a springpot: G = K [1 + (t/tau)^(-alpha)/Gamma(1 - alpha)], 0 < alpha <= 1.
 
     With `order` alpha = 1 it is the Kelvin-Voigt foundation. Below 1 its damping is infinite: the
-    springpot relaxes too slowly for C = int (G - K) dt to exist.
+    springpot relaxes too slowly for C = int (G - K) dt to converge.
 
     >>> FractionalKelvinVoigt("10 GN/m^3", "100 ms", 0.5).damping
     inf

@@ -3,8 +3,8 @@
 Every shape has `height` (h, in m) and `slope` (h', dimensionless), each for floats and arrays; its
 `reach`, in m: the surface is defined for |x| < reach; `kinks`, the points where h' jumps or a
 derivative is singular, in m; and `convex`, whether h is known to be convex: then it also has `bend`,
-x h''/h'. They touch in a line: what acts on them is per unit width, `per_width`. A ball and its kin, which
-touch in a spot, have forces as a whole; their shape is that of their middle plane, y = 0.
+x h''/h'. They form line contacts: forces are per unit width, `per_width`. A ball and other bodies of
+revolution form point contacts, with total forces; their shape is that of the middle plane, y = 0.
 """
 
 import math
@@ -21,7 +21,7 @@ Value = Any
 
 
 class _Shape:
-    """What the shapes that a scene file can name share."""
+    """The common part of the shapes that a scene file can name."""
 
     convex: ClassVar[bool] = True
     per_width: ClassVar[bool] = True
@@ -198,8 +198,8 @@ def _pointwise(function: Callable[[float], float], x: Value) -> Value:
 class Sphere(_Shape):
     """A ball, h = x^2/(2R) + y^2/(2R'): a paraboloid, R' being R unless `radius_across` says otherwise.
 
-    It stands for a sphere as the parabola does for a cylinder, to first order in (a/R)^2. Its strips along
-    x are parabolas of depth delta - y^2/(2R').
+    It approximates a sphere as the parabola approximates a cylinder, with a relative error of the order of
+    (a/R)^2. Its strips along x are parabolas of depth delta - y^2/(2R').
 
     >>> Sphere(radius="10 mm").stretch, Sphere("10 mm", radius_across="40 mm").stretch
     (1.0, 2.0)
@@ -216,7 +216,7 @@ class Sphere(_Shape):
 
     @property
     def stretch(self) -> float:
-        """sqrt(R'/R), by which the contact at rest is wider than long."""
+        """sqrt(R'/R), the ratio of width to length of the contact at rest."""
         return 1.0 if self.radius_across is None else math.sqrt(self.radius_across / self.radius)
 
     @property
@@ -236,9 +236,9 @@ class Sphere(_Shape):
 
 @dataclass(frozen=True)
 class Revolved:
-    """Any profile h(rho) turned around its lowest point: a true sphere, a cone, a blunt punch.
+    """Any profile h(rho) revolved about the vertical axis: a true sphere, a cone, a blunt punch.
 
-    From Python alone; the profile is one of the shapes of this module.
+    In Python only; the profile is one of the shapes of this module.
 
     >>> cone = Revolved(Wedge(inclination=0.1))
     >>> round(float(cone.height(-0.03, 0.04)), 12), cone.stretch

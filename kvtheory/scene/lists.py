@@ -7,11 +7,11 @@ from kvtheory.scene.quantities import Quantity, convert
 
 RANGE = "START:STOP:COUNT or START:STOP:COUNT:log"
 MOST = 10**8
-"""Values in one list, which are held in memory; more than this is a slip of the finger."""
+"""Most values in one list, which are held in memory; more than this is a typing error."""
 
 
 def items(text: str) -> list[str]:
-    """Cut a text at its commas.
+    """Split a text at its commas.
 
     >>> items("0 ms, 1 ms:3 ms:3")
     ['0 ms', '1 ms:3 ms:3']
@@ -25,7 +25,7 @@ def item_values(item: str, spec: Quantity) -> NDArray[np.float64]:
     Raises
     ------
     ValueError
-        Saying what is wrong with it.
+        If the item cannot be read; the message says why.
 
     Examples
     --------

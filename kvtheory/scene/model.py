@@ -46,7 +46,7 @@ MASS: dict[str, Any] = {"default": None, "needed": True, "instead": "load", "per
 
 
 class _Loaded:
-    """What carries a load: its weight, or a load that is given beside or instead of its mass."""
+    """The common part of supports with a load: mass times gravity, or a load that is given."""
 
     mass: float
     gravity: float
@@ -68,7 +68,7 @@ class _Loaded:
 class DeadWeight(_Loaded):
     """The indenter moves freely up and down under its weight (the paper's MI model, Eq. 17).
 
-    A `load` stands for the weight; the mass is then that of inertia alone, load/gravity if not given.
+    A `load` replaces the weight; the mass is then inertia alone, and load/gravity if not given.
 
     >>> DeadWeight(load="3 N/mm").mass, DeadWeight(mass="1 kg/mm", load="3 N/mm").weight
     (305.9148638933785, 3000.0)
@@ -102,7 +102,7 @@ class Suspended(_Loaded):
 
 
 Support = Fixed | DeadWeight | Suspended
-"""Each answers for `mass` (kg/m), `weight` (N/m) and `spring` (N/m^2) that act on its motion, and for the
+"""Each has the `mass` (kg/m), `weight` (N/m) and `spring` (N/m^2) of its equation of motion, and the
 `depth` (m) at which it is held: mass and spring of a fixed one are infinite, a moving one has no depth.
 For a ball these are in kg, N and N/m."""
 SUPPORTS: dict[str, Any] = {cls.kind: cls for cls in (Fixed, DeadWeight, Suspended)}
@@ -110,7 +110,7 @@ SUPPORTS: dict[str, Any] = {cls.kind: cls for cls in (Fixed, DeadWeight, Suspend
 
 @dataclass(frozen=True)
 class Run:
-    """How long the transient is followed."""
+    """The duration of the transient."""
 
     duration: float = quantity("s", "time to follow the transient", default=0.2)
 
@@ -213,7 +213,7 @@ class Scene:
 
 
 def lacks_mass(support: Support, drive: Drive) -> list[str]:
-    """Say that a fixed indenter on a spring needs a mass, for its support has none; or nothing."""
+    """Return that a fixed indenter on a spring needs a mass, as its support has none; or nothing."""
     if drive.rigid or drive.mass is not None or math.isfinite(support.mass):
         return []
     needed = missing(

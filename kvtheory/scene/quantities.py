@@ -1,4 +1,4 @@
-"""Fields of a scene: each says its unit, its range and what it means, once, for every use.
+"""Fields of a scene: each states its unit, range and meaning, once, for every use.
 
 The reader of scene files, the template, the writer and the constructors work from this metadata.
 """
@@ -21,12 +21,12 @@ from kvtheory.scene.units import WHOLE, expected, is_usual, to_si
 LONGEST_SHOWN = 60
 """Characters of a key or of a value in a message."""
 SHORT = reprlib.Repr()
-"""Of values that may be nested deeper than can be written."""
+"""Shortens values, which may be nested too deeply to be shown whole."""
 SHORT.maxlist = SHORT.maxtuple = SHORT.maxdict = SHORT.maxstring = SHORT.maxother = LONGEST_SHOWN
 
 
 class SceneError(ValueError):
-    """One or more mistakes in a scene, all of them listed in `problems`, and the first ones in its text."""
+    """One or more mistakes in a scene: all of them are in `problems`, the first ones in its text."""
 
     SHOWN: ClassVar[int] = 20
 
@@ -41,16 +41,16 @@ class SceneError(ValueError):
 
 
 class Derived(float):
-    """A quantity that follows from others: where these are replaced, it is found anew."""
+    """A quantity derived from others: when these are replaced, it is recomputed."""
 
 
 @dataclass(frozen=True)
 class Quantity:
-    """What a field of a scene may hold: from `minimum`, or above it, to `maximum` and less than `below`.
+    """The range of a field of a scene: from `minimum`, or above it, to `maximum` and less than `below`.
 
     `needed` says that it must be given, unless the one named by `instead` is; `beside` names those that
-    it must be given with, and `excludes` those that it cannot be given with. `per_width` says that a
-    line contact has it per unit width, in `unit`, and a ball as a whole: see `fitting`.
+    it must be given with, and `excludes` those that it cannot be given with. `per_width` says that it is
+    per unit width for a line contact, in `unit`, and a total for a ball: see `fitting`.
     """
 
     unit: str
@@ -66,7 +66,7 @@ class Quantity:
     per_width: bool = False
 
     def fitting(self, per_width: bool) -> "Quantity":
-        """Return what this is for an indenter that has it per unit width, or as a whole."""
+        """Return this quantity for a line contact, per unit width, or for a ball, as a total."""
         if per_width or not self.per_width:
             return self
         return dataclasses.replace(self, unit=WHOLE[self.unit], per_width=False)
@@ -118,7 +118,7 @@ def quantities(cls: Any) -> dict[str, Quantity]:
 
 @cache
 def _declared(cls: type) -> tuple[tuple[str, Quantity], ...]:
-    """Return them once and for all; a dataclass is read field by field, which takes a while."""
+    """Return them from a cache; reading a dataclass field by field is slow."""
     return tuple(
         (f.name, f.metadata["quantity"])
         for f in dataclasses.fields(cls)
@@ -127,7 +127,7 @@ def _declared(cls: type) -> tuple[tuple[str, Quantity], ...]:
 
 
 def given(instance: Any) -> dict[str, Quantity]:
-    """Return the quantities that an instance was given: that are there, and do not follow from others."""
+    """Return the quantities that an instance was given: those that exist and are not derived."""
     return {
         name: spec
         for name, spec in quantities(instance).items()
@@ -154,7 +154,7 @@ def changed(instance: Any, **values: float) -> Any:
 def required(cls: Any, names: Iterable[str] = ()) -> list[str]:
     """Return the quantities that must be given where those of the `names` are.
 
-    One that another excludes asks for nothing more: it is a mistake of its own.
+    One that another excludes requires nothing more: that is a separate mistake.
     """
     names, found = set(names), []
     for name, given_first in quantities(cls).items():
@@ -170,7 +170,7 @@ def required(cls: Any, names: Iterable[str] = ()) -> list[str]:
 
 
 def missing(section: str, name: str, spec: Quantity, of: str = "") -> str:
-    """Say that a quantity is missing, and what may be given in its place."""
+    """Return the message that a quantity is missing, and what may be given instead."""
     instead = f"; or {section}.{spec.instead}" if spec.instead else ""
     return f"{section}.{name}: missing{of}; expected {expected(spec.unit)}{instead}"
 
@@ -186,8 +186,8 @@ def convert(value: Any, spec: Quantity) -> float:
 def settle(instance: Any, section: str) -> None:
     """Convert and check every quantity of a frozen dataclass; for use in ``__post_init__``.
 
-    A quantity that followed from others is taken out, to be found anew. What was written with a unit
-    that tells whether it is per unit width is kept in `written`, for the scene to judge.
+    A derived quantity is removed, to be recomputed. Values whose unit tells whether they are per unit
+    width are kept in `written`, for the scene to check.
     """
     specs, written = quantities(instance), {}
     values = {name: getattr(instance, name) for name in specs}
@@ -237,7 +237,7 @@ def written_as(value: Any, spec: Quantity) -> Quantity:
 
 
 def misfits(section: str, part: Any, indenter: Any) -> list[str]:
-    """Say what is written per unit width although the indenter is a ball, or the other way round."""
+    """Report values given per unit width although the indenter is a ball, or the other way round."""
     found, shape = [], f'indenter.shape = "{indenter.shape}"'
     for name, (value, per_width) in getattr(part, "written", {}).items():
         if per_width != indenter.per_width:
@@ -250,7 +250,7 @@ def misfits(section: str, part: Any, indenter: Any) -> list[str]:
 
 
 def derive(instance: Any, section: str, name: str, value: float, of: str) -> None:
-    """Put in a quantity that follows from others; for use in ``__post_init__`` after `settle`."""
+    """Set a quantity derived from others; for use in ``__post_init__`` after `settle`."""
     if not quantities(instance)[name].admits(value):
         raise SceneError([f"{section}.{name} = {value:g} follows from {of}, and is out of range"])
     object.__setattr__(instance, name, Derived(value))
@@ -267,14 +267,14 @@ def problem(key: str, given: Any, what: str) -> str:
 
 
 def shown(text: str) -> str:
-    """Return a text of a file as a message can quote it: short, and such that a terminal only shows it."""
+    """Return text of a file in a form that a message can quote: short, without control characters."""
     if len(text) > LONGEST_SHOWN:
         text = f"{text[: LONGEST_SHOWN // 2]}...{text[3 - LONGEST_SHOWN // 2 :]}"  # paths count from the end
     return printable(text)
 
 
 def printable(text: str) -> str:
-    r"""Write what would steer a terminal, or begin a line, as an escape.
+    r"""Write control characters and line breaks as escapes.
 
     >>> printable("a\x1b[31m\nb")
     'a\\x1b[31m\\nb'
@@ -289,7 +289,7 @@ def mistake(key: str, given: Any, what: str) -> SceneError:
 
 @contextmanager
 def collecting(problems: list[str], key: str, given: Any) -> Iterator[None]:
-    """Add what is wrong with a value that was given to `problems`, instead of raising it."""
+    """Append the mistake in a given value to `problems`, instead of raising it."""
     try:
         yield
     except SceneError as error:
@@ -324,13 +324,13 @@ MEANT = {
     }.items()
     for symbol in symbols.split()
 }
-"""Names by symbols and by other words, which no likeness of letters would find."""
+"""Names by symbols and synonyms, which similarity of spelling would not find."""
 
 
 def closest(name: str, valid: Iterable[str]) -> str | None:
     """Return the one of the `valid` names that was probably meant, if any.
 
-    Symbols and other words count as well, with or without the section before a dot.
+    Symbols and synonyms are recognised too, with or without the section before a dot.
 
     >>> closest("tau", ["radius", "retardation_time"]), closest("support.W", ["support.load"])
     ('retardation_time', 'support.load')

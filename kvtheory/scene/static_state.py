@@ -12,15 +12,15 @@ from kvtheory.scene.requirements import lacks_quadratic, require
 
 @dataclass(frozen=True)
 class StaticState:
-    """The indenter at rest, in SI, and the numbers of its motion: what errors are relative to.
+    """The indenter at rest, in SI, its dimensionless numbers, and the scales of errors.
 
     With the static depth delta_0, half length a_0 = sqrt(2 R delta_0) and load W_0 = (4/3) K a_0
-    delta_0, of a ball (pi/2) K a_0^2 delta_0 sqrt(R'/R): the drive number lambda = V tau/a_0 at the last
+    delta_0, of a ball (pi/2) K a_0^2 delta_0 sqrt(R'/R): the drive number lambda = V tau/a_0 at the final
     velocity (NaN if the drive is a function), the inertia number epsilon = M delta_0/(W_0 tau^2) and the
     support number kappa = k_s delta_0/W_0, both infinite for a fixed indenter. A drive with a spring has
     three more, along x (fact F22): eps_x = M_x a_0^2/(W_0 delta_0 tau^2), c_x a_0^2/(W_0 delta_0 tau) and
     kappa_x = k_x a_0^2/(W_0 delta_0), the last one infinite for a rigid drive. The other attributes are
-    the products that measure a quantity.
+    products of these, the scales of other quantities.
 
     Examples
     --------
@@ -48,8 +48,8 @@ class StaticState:
         Raises
         ------
         ValueError
-            If the indenter is neither a parabola nor a ball, for which alone these numbers suffice, or if
-            the scene leaves the range of double precision.
+            If the indenter is neither a parabola nor a ball (for other shapes these numbers do not
+            suffice), or if the scene leaves the range of double precision.
         """
         require(lacks_quadratic, scene, "the static state in closed form")
         try:
@@ -93,7 +93,7 @@ class StaticState:
 
     @property
     def in_range(self) -> bool:
-        """Whether every number is one that double precision can hold."""
+        """Whether every number is in the range of double precision."""
         held = 0.0 < self.depth < math.inf and self.half_length > 0.0 and 0.0 < self.load < math.inf
         finite = self.fixed or (self.inertia_number < math.inf and self.support_number < math.inf)
         along = self.drive_inertia_number + self.drive_damping_number + self.drive_stiffness_number
@@ -126,7 +126,7 @@ class StaticState:
         return self.load * self.depth
 
     def named(self) -> dict[str, float]:
-        """Return what exists by plain names, as ``"static_depth"`` and ``"drive_number"``."""
+        """Return the values that exist by plain names, as ``"static_depth"`` and ``"drive_number"``."""
         found = asdict(self)
         names = {name: f"static_{name}" for name in ("depth", "half_length", "load")}
         numbers = ["drive_number", "inertia_number", "support_number"]
@@ -165,11 +165,11 @@ def _round(scene: Scene) -> StaticState:
 
 
 FAR = 10.0
-"""Powers of ten from Table 1: a value as far off is worth a look."""
+"""Powers of ten from Table 1 beyond which a message names a value as suspicious."""
 
 
 def out_of_range(scene: Scene, replaced: Iterable[str] = (), why: str = "") -> str:
-    """Say that a scene leaves the range of double precision: by values far from Table 1, or `replaced` ones.
+    """Return that a scene leaves the range of double precision, naming values far from Table 1 or `replaced`.
 
     >>> from kvtheory.scene import Drive, Run
     >>> out_of_range(Scene(drive=Drive(1e300), run=Run(1.0)))

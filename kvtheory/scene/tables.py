@@ -1,7 +1,7 @@
 """Tables of numbers in text, as programs and spreadsheets write them.
 
-Separators are commas, semicolons, tabs or what a ``sep=`` line says; a decimal comma is read where commas
-separate nothing; ``#`` begins a comment; a head holds a name and a unit.
+Separators are commas, semicolons, tabs or as given by a ``sep=`` line; a decimal comma is read where the
+comma is not the separator; ``#`` begins a comment; a column header holds a name and a unit.
 """
 
 import csv
@@ -14,18 +14,18 @@ from kvtheory.scene.texts import read_text
 
 SEPARATORS = "\t;,"
 SEPARATED = re.compile(r"^\s*\"?sep=(.)\"?\s*$", re.IGNORECASE)
-"""The line by which a spreadsheet is told the separator."""
+"""The line that tells a spreadsheet the separator."""
 _HEADS = (
     re.compile(r"^(?P<name>.*?)\s*\[(?P<unit>[^\]]*)\]$"),
     re.compile(r"^(?P<name>.*?)\s*\((?P<unit>.*)\)$"),
     re.compile(r"^(?P<name>.*?)\s+in\s+(?P<unit>.+)$"),
     re.compile(r"^(?P<name>[^/]*?)\s*/\s*(?P<unit>.+)$"),
 )
-"""A name and a unit: in brackets, after "in", or, as ISO 80000 has it, after a stroke."""
+"""A name and a unit: in brackets, after "in", or, as in ISO 80000, after a slash."""
 
 
 class Table(NamedTuple):
-    """The heads of the columns, and the cells of each line below, with the number of the line."""
+    """The headers of the columns, and the cells of each line below, with the number of the line."""
 
     heads: list[str]
     rows: list[tuple[int, list[str]]]
@@ -93,7 +93,7 @@ def numbers(path: Path, table: Table, line: int, cells: list[str], used: list[bo
     Raises
     ------
     ValueError
-        If a cell is not a number, or there are more or fewer of them than heads.
+        If a cell is not a number, or there are more or fewer cells than columns.
     """
     while len(cells) > len(table.heads) and not cells[-1]:
         cells = cells[:-1]
@@ -114,7 +114,7 @@ def numbers(path: Path, table: Table, line: int, cells: list[str], used: list[bo
 
 
 def number(cell: str, decimal: str) -> float | None:
-    """Return a number; a decimal comma is read where commas separate nothing."""
+    """Return a number; a decimal comma is read where the comma is not the separator."""
     if decimal == "," and cell.count(",") == 1 and "." not in cell:
         cell = cell.replace(",", ".")
     try:
@@ -124,7 +124,7 @@ def number(cell: str, decimal: str) -> float | None:
 
 
 def plain(name: str) -> str:
-    """Return a name without what people write differently: case, spaces, underlines, TeX."""
+    """Return a name without differences of spelling: case, spaces, underscores, TeX."""
     return re.sub(r"[\s_{}$\\^-]", "", name).casefold()
 
 

@@ -8,14 +8,14 @@ MARKS = {
     codecs.BOM_UTF16_LE: "utf-16",
     codecs.BOM_UTF16_BE: "utf-16",
 }
-"""What a file may begin with to tell its encoding."""
+"""Byte order marks, by which a file tells its encoding."""
 
 
 def read_text(path: Path) -> str:
     r"""Return the text of a file in UTF-8, UTF-16 (of a Windows shell) or Windows-1252 (of Excel).
 
-    UTF-16 is known by its mark or by the zeros between its letters; what is not UTF-8 is Windows-1252,
-    in which every letter of a unit stands as in Latin-1.
+    UTF-16 is recognised by its mark or by the zeros between its letters. Text that is not UTF-8 is read as
+    Windows-1252, in which all letters of units have the same codes as in Latin-1.
 
     Raises
     ------

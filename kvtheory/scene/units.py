@@ -1,7 +1,7 @@
 """Quantities with units at the edge of the package: text or pint quantities in, SI floats out.
 
 Numbers are read as exact fractions and rounded once, so ``"5 µm"`` is 5e-06 to the last bit. pint
-is imported only when a unit has to be understood that is not among the usual ones.
+is imported only for a unit that is not among the usual ones.
 """
 
 import difflib
@@ -32,7 +32,7 @@ EXAMPLES = {
 """Ways to write a quantity of each SI unit that a scene uses; messages show the first one."""
 
 WHOLE = {"kg/m": "kg", "N/m": "N", "N/m^2": "N/m", "N*s/m^2": "N*s/m", "J/m": "J"}
-"""By the unit of what a line contact has per unit width, the unit in which a ball has it as a whole."""
+"""For each unit of a quantity per unit width, the unit of the total quantity of a ball."""
 
 _METRES = {"km": 3, "m": 0, "cm": -2, "mm": -3, "um": -6, "µm": -6, "μm": -6, "nm": -9}
 _SECONDS = {"s": 0, "ms": -3, "us": -6, "µs": -6, "μs": -6}
@@ -63,8 +63,8 @@ USUAL = {
     "N/m^3": _ratios(_NEWTONS, _METRES, 3),
     "1/m": _ratios({"": 0}, _METRES, 1),
 }
-"""The usual ways to write each unit, and the power of ten to SI: for them pint, which takes longer to
-import than most answers take to find, is not needed."""
+"""The usual ways to write each unit, and the power of ten to SI: for them pint is not needed, whose import
+takes longer than most computations."""
 
 LONGEST_UNIT = 60
 _NUMBER = re.compile(
@@ -112,7 +112,7 @@ def to_si(value: Any, unit: str) -> float:
 
 
 def is_usual(value: Any, unit: str) -> bool:
-    """Tell whether a text is a number with a usual unit of this kind, for which pint is not needed.
+    """Return whether a text is a number with a usual unit of this dimension, for which pint is not needed.
 
     >>> is_usual("3 kN", "N"), is_usual("3 lbf", "N")
     (True, False)
@@ -123,7 +123,7 @@ def is_usual(value: Any, unit: str) -> bool:
 
 
 def expected(unit: str) -> str:
-    """Say in words what a quantity of `unit` looks like."""
+    """Describe in words how a quantity of `unit` is written."""
     if unit == "1":
         return "a dimensionless number"
     return f'a quantity in {unit}, such as "{EXAMPLES[unit][0]}"'

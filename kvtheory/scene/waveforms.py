@@ -1,4 +1,4 @@
-"""Drives with a shape: velocities V(t) that a scene file can name, each a function of the time in s."""
+"""Waveforms: velocities V(t) that a scene file can name, each a function of the time in s."""
 
 import math
 from dataclasses import dataclass
@@ -9,7 +9,7 @@ from kvtheory.scene.quantities import quantity, settle
 AT_LAST = 20.0
 """Rise times after which tanh is 1 to the last digit."""
 MOST_CORNERS = 100_000
-"""Of one list: a guard against endless ones; a drive refuses fewer, see `drives.MOST_CYCLES`."""
+"""Most corners of one list, a guard against endless ones; a drive allows fewer, see `drives.MOST_CYCLES`."""
 
 
 class _Waveform:
@@ -79,7 +79,7 @@ class Triangle(_Swing):
 
 @dataclass(frozen=True)
 class SmoothRamp(_Waveform):
-    """V = velocity tanh(t/rise_time): from rest to a velocity without a kink but at the start.
+    """V = velocity tanh(t/rise_time): a smooth rise from rest, with a kink only at the start.
 
     >>> round(SmoothRamp(velocity=0.1, rise_time="10 ms")(0.01), 6)
     0.076159
