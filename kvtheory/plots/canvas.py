@@ -1,4 +1,4 @@
-"""Figures that are of no window: they are saved, and a notebook shows them by itself."""
+"""Figures without a window: they can be saved, and a notebook displays them."""
 
 import io
 
@@ -7,7 +7,7 @@ from matplotlib.figure import Figure
 
 
 class Picture(Figure):
-    """A figure that a notebook shows, whether or not pyplot was imported."""
+    """A figure that a notebook displays, whether or not pyplot was imported."""
 
     def __init__(self, width: float, height: float) -> None:
         super().__init__(figsize=(width, height), layout="constrained")

@@ -1,4 +1,4 @@
-"""A simulation held against theory: data over theory, what is left, the checks, and all on one page."""
+"""A simulation compared with theory: data over theory, residuals, checks, and a page with all of them."""
 
 from collections.abc import Sequence
 from html import escape
@@ -18,9 +18,9 @@ CURVES = {
     **{name: (symbol, sign) for name, symbol, sign in TRANSIENT_ROWS if name != "velocity"},
     **{name: (f"${QUANTITIES[name].symbol}$", 1.0) for name in SPRING_UNITS},
 }
-"""What is drawn, if the data hold it: symbol, sign."""
+"""The curves that are drawn if the data hold them: symbol, sign."""
 DOTS = 200
-"""More samples than this are drawn as a line."""
+"""With more samples than this the data are drawn as a line."""
 MARKS = {True: ("ok", GREEN), False: ("fails", RED), None: ("not made", "#777777")}
 HTML_MARKS = {True: ("yes", "✓"), False: ("no", "✗ fails"), None: ("none", "not made")}
 HTML_VERDICTS = {
@@ -28,9 +28,9 @@ HTML_VERDICTS = {
     "disagrees": ("#b34700", "#fdf0e7", "The data disagree with theory."),
     "cannot tell": ("#5c5c5c", "#f2f2f2", "Whether the data agree with theory cannot be told."),
 }
-"""Colours of text and ground, and the verdict in a sentence."""
+"""Colours of text and background, and the verdict in a sentence."""
 ROOM = 1.6
-"""Of the band: how far the axis of the residuals goes, for the legend has its place above the band."""
+"""Limit of the axis of residuals, relative to the band, with room for the legend above the band."""
 LONGEST_NOTE = 74
 WIDTH = 7.2
 

@@ -1,4 +1,4 @@
-"""The atlas of failures as one HTML file: an entry, its numbers and its picture; nothing is loaded."""
+"""The atlas of failures as one self-contained HTML file: each entry with its numbers and its picture."""
 
 import math
 import re
@@ -73,12 +73,12 @@ def _svg(found: Finding) -> str:
         plot_failure(figure.subplots(), found.outcome.picture)
         return figure
 
-    # So that no two pictures of the page share an id.
+    # No two pictures of the page may share an id.
     return re.sub(r'(\bid="|href="#|url\(#)', rf"\g<1>{found.entry.key}-", inline(draw))
 
 
 def _text(words: str) -> str:
-    """Return words as HTML, with the subscripts of symbols such as l_r."""
+    """Return text as HTML, with subscripts for symbols such as l_r."""
     return re.sub(
         r"\b([A-Za-zδ])_([A-Za-z0-9]{1,2})(?![A-Za-z0-9_])", r"\1<sub>\2</sub>", escape(words)
     )

@@ -1,4 +1,4 @@
-"""Files: pictures by their suffix, charts with their data beside, pages of HTML that hold all they need."""
+"""Output files: pictures by suffix, charts with their data beside them, self-contained HTML pages."""
 
 import io
 import json
@@ -14,7 +14,7 @@ from kvtheory.export import PICTURES, check_path, replace_file
 from kvtheory.plots.style import STYLE
 
 PACKAGES = "kvtheory", "numpy", "scipy", "numba", "scikit-sundae"
-"""Whose versions stand beside a chart."""
+"""The packages whose versions are recorded with a chart."""
 
 
 def save_picture(draw: Callable[[], Any], path: Path) -> None:
@@ -33,7 +33,7 @@ def save_picture(draw: Callable[[], Any], path: Path) -> None:
 
 
 def save_chart(draw: Callable[[], Any], data: Mapping[str, Any], path: Path) -> None:
-    """Draw and write a picture, and as JSON beside it what was drawn, with machine and versions."""
+    """Draw and write a picture, and its data as JSON beside it, with machine and versions."""
     text = json.dumps({"environment": environment(), **data}, indent=1, allow_nan=False)
     save_picture(draw, path)
     save_page(text + "\n", path.with_suffix(".json"))
@@ -63,7 +63,7 @@ def _version(name: str) -> str:
 
 
 def _processor() -> str:
-    """Return the name of the processor, where the system tells it."""
+    """Return the name of the processor, if the system provides it."""
     try:
         lines = Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines()
     except OSError:
@@ -84,7 +84,7 @@ def inline(draw: Callable[[], Any]) -> str:
 
 
 def template(name: str) -> str:
-    """Return a page or a part of it, in which names in braces are still to be filled in."""
+    """Return the template of a page or of a part of it, with names in braces to be filled in."""
     return files("kvtheory.plots").joinpath(name).read_text(encoding="utf-8")
 
 

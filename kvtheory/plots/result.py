@@ -1,4 +1,4 @@
-"""Results of a scene as pictures: those of the paper, and what `plot` of a result draws."""
+"""Results of a scene as pictures: those of the paper, and those drawn by `plot` of a result."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -19,11 +19,12 @@ from kvtheory.results.transient import TimeSeries
 SERIES, STEADY = (5.0, 6.4), (5.0, 3.4)
 """Sizes of the pictures, in inches."""
 POINTS = 201
-"""Of the pressure over the contact."""
+"""Points of the pressure over the contact."""
 BESIDE = {"velocity": "sliding_velocity", "friction_force": "spring_force"}
-"""What a drive with a spring has beside a quantity."""
+"""The quantity of a drive with a spring that is drawn beside another one."""
 NOT_ITS_LOAD = 1e-6
-"""A pressure whose integral, by Simpson's rule, is as far from the load is not that of a parabola."""
+"""If the integral of the pressure, by Simpson's rule, differs from the load by this much relative to it, the
+indenter is not a parabola."""
 
 
 def plot_steady(
@@ -62,8 +63,8 @@ def plot_asymptote_errors(ax: Any, report: AsymptoteReport, styles: Mapping[str,
 def plot_transient(axes: Sequence[Any], result: TimeSeries, **style: Any) -> list[Any]:
     """Draw velocity, position, normal and friction force over time on four axes, as in Fig. 3.
 
-    The rest before t = 0 is drawn too, for a twentieth of the time shown: V and F_x are zero there. Of a
-    drive with a spring, the sliding velocity and the force of the spring are drawn beside them.
+    The state of rest before t = 0 is drawn too, for a twentieth of the time shown: V and F_x are zero there.
+    With a spring in the drive, the sliding velocity and the spring force are also drawn.
     """
     time = np.asarray(result.time) * 1e3
     before = np.array([-0.05 * time[-1], 0.0])

@@ -1,4 +1,4 @@
-"""Stability maps: the measured classes, with the predicted boundaries over them."""
+"""Stability maps: the measured classes, overlaid with the predicted boundaries."""
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -18,18 +18,18 @@ from kvtheory.scene.model import Scene
 from kvtheory.scene.static_state import StaticState
 
 COLOURS = "#eef3f7", "#f6c9a3", "#d55e00"
-"""Of the classes."""
+"""Colours of the classes."""
 BOUNDARIES: tuple[tuple[str, str, Any], ...] = (
     ("start", "predicted_start", ":"),
     ("steady sliding", "predicted_steady", "-"),
 )
-"""Name, values and dashes of the boundaries that are predicted."""
+"""Name, values and dashes of the predicted boundaries."""
 PAPERS_TAUS = 1e-2, 0.1, 1.0
 """Retardation times (s) of Fig. 5 of the paper."""
 TABLE1 = 0.1, 0.1
 """V (m/s) and tau (s) of Table 1."""
 TITLES = {"paper": "paper (Runge-Kutta)", "explicit-euler": "explicit Euler"}
-"""Of the schemes whose name alone would not do."""
+"""Titles of the schemes whose name alone is not sufficient."""
 
 
 def plot_stability(ax: Any, found: Map, factors: tuple[float, float] = (1.0, 1.0)) -> Any:

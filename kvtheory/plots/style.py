@@ -6,7 +6,7 @@ from typing import Any
 from kvtheory.results import QUANTITIES, SHOWN_UNITS
 
 BLACK, BLUE, RED, GREEN, PURPLE = "#000000", "#0072b2", "#d55e00", "#009e73", "#aa4499"
-"""Colours that stay apart in colour blindness (after Okabe and Ito); lines differ in dashes too."""
+"""Colours that colour-blind readers can distinguish (after Okabe and Ito); lines differ in dashes too."""
 
 STYLE: Any = {
     "axes.grid": True,
@@ -40,7 +40,7 @@ TRANSIENT_ROWS = (
 
 
 def with_unit(words: str, unit: str) -> tuple[str, float]:
-    """Return an axis label with the unit that people read, and the factor to it from the SI unit.
+    """Return an axis label with the customary unit, and the factor to it from the SI unit.
 
     >>> with_unit("stiffness $K$", "N/m^3")
     ('stiffness $K$ [N/mm$^3$]', 1e-09)

@@ -1,4 +1,4 @@
-"""Sweeps: a curve, a family of curves, or a map, whichever the dimensions ask for."""
+"""Sweeps: a curve, a family of curves, or a map, depending on the dimensions."""
 
 from collections.abc import Sequence
 from typing import Any, NamedTuple
@@ -16,7 +16,7 @@ Array = NDArray[np.float64]
 MOST_CURVES = 8
 """Values of the second dimension up to which curves are drawn; beyond, a map is easier to read."""
 DECADES = 1.5
-"""Range of positive values, in powers of ten, from which an axis or a colour is logarithmic."""
+"""Range of positive values, in powers of ten, from which an axis or colour scale is logarithmic."""
 
 
 class Side(NamedTuple):
@@ -36,9 +36,9 @@ WORDS = {
     "run.duration": "duration",
     "peak_to_steady_friction": "peak friction / steady friction",
 }
-"""Names for what is no quantity of a result; all others are shown as they are."""
+"""Labels of swept keys and measures; all other names are shown as they are."""
 FIRST = "friction_coefficient"
-"""Drawn where it is there and no quantity is named."""
+"""Drawn by default, if the sweep has it."""
 
 
 def plot_sweep(ax: Any, result: Sweep, quantity: str | None = None, **style: Any) -> Any:
@@ -64,14 +64,14 @@ def plot_sweep(ax: Any, result: Sweep, quantity: str | None = None, **style: Any
 
 
 def check_drawable(plan: Plan) -> None:
-    """Raise `ValueError` unless `plot_sweep` can draw what a sweep will give."""
+    """Raise `ValueError` unless `plot_sweep` can draw the result of a sweep."""
     _chosen([column.name for column in plan.numeric])
     drawn = [axis.name for axis in plan.axes if axis.size > 1]
     _refuse_more_than_two([*drawn, *(["time"] * (plan.series and len(plan.times or ()) > 1))])
 
 
 def _chosen(numeric: Sequence[str], quantity: str | None = None) -> str:
-    """Return the quantity to draw: the one that is named, or else the first that suits."""
+    """Return the quantity to draw: the named one, or else the first that can be drawn."""
     name = quantity or (FIRST if FIRST in numeric else next(iter(numeric), ""))
     if not numeric:
         raise ValueError("no quantity of this sweep is a number, so that nothing can be drawn")
@@ -113,7 +113,7 @@ def _side(name: str, unit: str, values: Array) -> Side:
 
 
 def _scale(values: Array) -> str:
-    """Return ``"log"`` for finite values that are positive and range over decades."""
+    """Return ``"log"`` for finite positive values that extend over decades."""
     finite = values[np.isfinite(values)]
     low, high = finite.min(initial=np.inf), finite.max(initial=0.0)
     return "log" if 0.0 < low * 10.0**DECADES <= high else "linear"

@@ -1,4 +1,4 @@
-"""Work-precision charts: time and work over the achieved error, and a rail for what failed."""
+"""Work-precision charts: time and work over the achieved error, with a strip for failures, the rail."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -13,9 +13,9 @@ from kvtheory.plots.files import save_chart
 from kvtheory.plots.style import BLACK, BLUE, GREEN, PURPLE, RED
 
 RESOLVED = 100.0
-"""Times the floor, above which an error is certain; points below it are hollow."""
+"""Multiple of the floor above which an error is significant; points below it are hollow."""
 LEAST = 1e-17
-"""Errors are drawn as at least this much."""
+"""Smaller errors are drawn at this value."""
 GREY, OCHRE, SKY = "#777777", "#b8860b", "#56b4e9"
 LOOKS = {
     "asymptote": (BLACK, "D"), "slow manifold": (BLACK, "D"),
@@ -39,7 +39,7 @@ def plot_work_precision(
 ) -> list[Any]:
     """Draw a chart over one of its errors: points on `ax`, failures on `rail`, and return the lines.
 
-    With `work` the ordinate is what was evaluated or updated instead of the time.
+    With `work` the ordinate is the number of evaluations or updates instead of the time.
     """
     floor = chart.floor[error]
     artists = []
@@ -109,7 +109,7 @@ def draw_work_precision(charts: Sequence[Chart], errors: Sequence[str]) -> Figur
 
 
 def default_errors(charts: Sequence[Chart]) -> list[str]:
-    """Return the error over which each chart is drawn if none is chosen."""
+    """Return the error over which each chart is drawn by default."""
     first, other = "depth, maximum", "friction coefficient"
     return [first if first in chart.floor else other for chart in charts]
 

@@ -96,8 +96,7 @@ def units_for(indenter: Indenter, units: Mapping[str, str]) -> Mapping[str, str]
 
 
 def scales(at_rest: StaticState) -> dict[str, float]:
-    """Return the scale of each quantity of a series, also those on a spring: the static state and its
-    products.
+    """Return the scale of each quantity of a series: a value of the static state, or a product of these.
 
     >>> from kvtheory.scene import Scene
     >>> round(scales(StaticState.of(Scene()))["normal_force"], 2)

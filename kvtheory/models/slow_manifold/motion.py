@@ -2,20 +2,20 @@ r"""The slow manifold as a time series, with an estimate of what it neglects (fa
 
 For eps -> 0 the forces balance at every instant, f_z = f with f = 1 - kappa (d - 1). With the leading edge
 on undisturbed ground, l = -a, a = sqrt(d), and a peeling trailing edge r, the contact length b = r + a
-is the one positive root of b^2 (2 b + 3 (lambda - a)) = 4 f, and p(r) = 0 gives
-d' = G(d) = r^2 + 2 lambda r - d. One number moves.
+is the only positive root of b^2 (2 b + 3 (lambda - a)) = 4 f, and p(r) = 0 gives
+d' = G(d) = r^2 + 2 lambda r - d. One ODE of first order is left.
 
-As d falls from 1 to its steady value, s = int dd/G: no step is taken. The substitution
+As d falls from 1 to its steady value, s = int dd/G: no time stepping is needed. The substitution
 a = a_oo + (1 - a_oo) e^-u makes the integrand smooth and bounded, and one Chebyshev series gives s(u)
 for the whole run.
 
-What is neglected, to first order in eps: with the slopes f_v = (3/4) b and f_d of the force,
+The neglected terms, to first order in eps: with the derivatives f_v = (3/4) b and f_d of the force,
 
-    d' - G = -eps G' G/f_v                  on the way, as eps d'' = -f_v (d' - G),
+    d' - G = -eps G' G/f_v                  along the slow motion, as eps d'' = -f_v (d' - G),
     d' - G = -G(1) e^(-f_v s/eps)           after the start, where d' = 0,
     d error = eps |G| |int (f_d + kappa)/f_v^2 ds - j|,    1/f_v(d' = 0) <= j <= 1/f_v(d' = G),
 
-the last of which is a delay: the error of d obeys e' = G' e + ..., as G itself does.
+the last of which is a time delay: the error of d obeys e' = G' e + ..., as G itself does.
 """
 
 import math
@@ -31,29 +31,29 @@ from kvtheory.models.slow_manifold.start import Start, depth_slope, outruns
 Array = NDArray[np.float64]
 
 DEGREES = (24, 48, 96)
-"""Of the Chebyshev series, tried in turn; 24 do down to 1e-5, 48 at 1e-8, at any velocity."""
+"""Degrees of the Chebyshev series, tried in turn; 24 is enough down to 1e-5, 48 at 1e-8, at any velocity."""
 SETTLED = 1e-2
-"""Share of the tolerance within which the path comes to the steady half length before its end; from there on
-the rest fades at one rate."""
+"""Share of the tolerance by which the path still differs from the steady half length at its end; from there
+on the remainder decays at one rate."""
 RESOLVED = 1e-2
-"""Share of the tolerance that the tail of the series may take."""
+"""Share of the tolerance allowed for the truncation of the series."""
 INVERSIONS = 12
-"""Newton steps from times to u; four were the most that four hundred random starts took."""
+"""Newton steps from times to u; four hundred random starts took at most four."""
 LARGEST_RATIO = 0.1
-"""Slow over fast rate, above which first order in eps says little."""
+"""Ratio of slow to fast rate above which the first order in eps is unreliable."""
 SAFETY = 1.5
-"""Of the first-order estimates; it also covers the second order at the largest ratio."""
+"""Safety factor on the first-order estimates; it also covers the second order at the largest ratio."""
 NEWTON_STEPS = 60
-"""For the contact length: from above, Newton's method falls on the root in less than ten."""
+"""Iterations for the contact length: Newton's method converges from above in less than ten."""
 CLOSE = 1e-7
-"""A Newton step after which the next is rounding."""
+"""After a relative Newton step this small, the next one is rounding."""
 INVERTED = 1e-7
-"""A step in u after which the next is rounding."""
+"""After a step in u this small, the next one is rounding."""
 
 
 @dataclass(frozen=True)
 class SlowMotion:
-    """Scaled quantities at the times asked for, and an estimate of the error of each (not signed)."""
+    """Scaled quantities at the requested times, and an estimate of the magnitude of the error of each."""
 
     values: dict[str, Array]
     errors: dict[str, Array]
@@ -67,7 +67,7 @@ def follow(given: Start, s: Array, tolerance: float) -> SlowMotion:
     Raises
     ------
     ArithmeticError
-        If the path is not resolved, or an edge would move back over ground that it left.
+        If the path is not resolved, or an edge would move back over its own trace.
 
     Examples
     --------
@@ -107,9 +107,9 @@ def depth_rate(depth: Array, number: float, support_number: float = 0.0) -> Arra
 
 
 def _manifold(given: Start, moved: Array) -> tuple[Array, Array, Array, Array, Array]:
-    """Return a, b, d' = G, f_v and f_d where a is by `moved` above its steady value.
+    """Return a, b, d' = G, f_v and f_d where a exceeds its steady value by `moved`.
 
-    Both b and G are taken as differences to steady sliding, so that they keep their digits near it.
+    Both b and G are computed as differences to steady sliding, to avoid cancellation near it.
     """
     number, kappa, a_0 = given.number, given.kappa, given.steady
     r_0 = a_0 * a_0 / (math.hypot(a_0, number) + number)
@@ -238,10 +238,10 @@ def _errors(
     given: Start, values: dict[str, Array], a: Array, b: Array, falling: Array,
     depth: Array, own: Array, layer: Array,
 ) -> dict[str, Array]:  # fmt: skip
-    """Carry the errors to each quantity by its slopes in d and d' (F11-derivatives).
+    """Propagate the errors to each quantity by its derivatives with respect to d and d' (F11-derivatives).
 
-    d' - G is `own` on the way and `layer` after the start, and an error of d adds `falling`, G', times it
-    to d'. In the layer the slopes of the forces at d' = 0 are the largest.
+    d' - G is `own` along the slow motion and `layer` after the start; an error of d adds `falling`, G',
+    times it to d'. In the layer the derivatives of the forces are largest at d' = 0.
     """
     r, number = values["trailing_edge"], given.number
     arm = a * a - r * r

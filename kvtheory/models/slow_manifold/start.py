@@ -1,4 +1,4 @@
-"""The slow manifold just after a start from rest: scalars, cheap enough for a choice.
+"""The slow manifold just after a start from rest: scalars, cheap enough to choose a model by.
 
 At d = 1 the contact length b solves b^2 (2 b + 3 (lambda - 1)) = 4, whatever the spring, and
 d' = G(1) = b (b - 2 + 2 lambda) - 2 lambda; see `kvtheory.models.slow_manifold.motion`.
@@ -11,15 +11,15 @@ from typing import Any
 import numpy as np
 
 NEWTON_STEPS = 60
-"""From above, Newton's method falls on the root in less than ten."""
+"""Iterations: Newton's method converges from above in less than ten."""
 
 ROUNDING = 4e-16
-"""Of a root, relative: a Newton step as small is the last."""
+"""Relative size of a Newton step after which the iteration stops."""
 
 
 @dataclass(frozen=True)
 class Start:
-    """The slow manifold just after the start: scalars, cheap enough for a choice."""
+    """The slow manifold just after the start: scalars, cheap enough to choose a model by."""
 
     number: float
     eps: float
@@ -37,18 +37,18 @@ class Start:
 
     @property
     def ratio(self) -> float:
-        """Slow over fast rate; the slow manifold needs it to be small."""
+        """Ratio of slow to fast rate; it must be small for the slow manifold."""
         return self.eps * self.relaxation / self.stiff
 
     @property
     def goes_back(self) -> bool:
-        """Whether the trailing edge would at once move back over ground that it left (see `outruns`)."""
+        """Whether the trailing edge would immediately move back over its own trace (see `outruns`)."""
         a, b = 1.0, self.width
         return bool(outruns(a, b, self.rate, -self.relaxation, self.number) > 0.0)
 
     @property
     def least_error(self) -> float:
-        """What the depth is wrong by just after the fast motion, from below, to first order."""
+        """A lower bound, to first order, of the error of the depth just after the fast motion."""
         return self.eps * abs(self.rate) / self.stiffest
 
     def layer(self, s: Any) -> Any:
@@ -121,7 +121,7 @@ def depth_slope(a: Any, b: Any, v: Any, number: float) -> Any:
 
 
 def outruns(a: Any, b: Any, rate: Any, slope: Any, number: float) -> Any:
-    """Return what is positive where the trailing edge moves outward faster than the material.
+    """Return a number that is positive if the trailing edge moves outward faster than the material.
 
     (r + lambda) r' = (d' + d'')/2 (Eq. 33 differentiated) with d'' = G' d', and r' is to be at most
     lambda; `slope` is G'.
