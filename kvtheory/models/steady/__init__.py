@@ -1,1 +1,1 @@
-"""Steady sliding: closed forms, quadrature, asymptotes, and which of them to use."""
+"""Steady sliding: closed forms, quadrature, asymptotes, and the choice among them."""

@@ -1,20 +1,20 @@
-r"""The steady contacts of an indenter of any shape: where they are, and what they carry.
+r"""The steady contacts of an indenter of any shape: their edges and forces.
 
 In steady sliding the surface of the foundation is (fact F8, with x = V t along the base)
 
     u(x) = max(0, sup over x' <= x of g(x') e^(-(x - x')/l_r)),   g = delta - h,
 
 so that u e^(x/l_r) is the running maximum of g e^(x/l_r), which rises where p/K = g - l_r h' > 0. Each
-rise that exceeds the maximum so far is a contact: it ends where the rise ends (p = 0), and begins
-where the rise crosses the surface that the contact before it has left behind, or the level of the
+rise that exceeds the maximum so far is a contact. It ends where the rise ends (p = 0). It begins
+where the rise crosses the surface left by the previous contact, or the undisturbed level of the
 foundation. From p = K (u + l_r u') and p = 0 elsewhere,
 
     W = K sum (int u dx + l_r (u_TE - u_LE)),
     F = K sum ((u_TE^2 - u_LE^2)/2 + l_r int h'^2 dx),      dW/d(delta) = K int du/d(delta) dx,
 
-where du/d(delta) is 1 in contact and decays as e^(-x/l_r) behind it. As a supremum of what is linear in
-the depth, u is convex in it, and so is W, which vanishes with it: d ln W/d ln delta >= 1, and every
-load is carried at one depth only.
+where du/d(delta) is 1 in contact and decays as e^(-x/l_r) behind it. As a supremum of functions linear in
+the depth, u is convex in the depth, and so is W, which vanishes at zero depth: d ln W/d ln delta >= 1, and
+every load is carried at exactly one depth.
 """
 
 import itertools
@@ -40,7 +40,8 @@ from kvtheory.results.errors import QuadratureError
 PEAK_BAND = 0.02
 """Local maxima of the sampled pressure that are this close to the highest are searched."""
 PEAK_XTOL = 1e-8
-"""Tolerance of the place of the peak, over the distance of two samples; its value has the square."""
+"""Tolerance of the position of the peak, over the distance of two samples; the error of its value is of
+second order."""
 MOST_STEPS = 100
 """Trial depths; they are a handful unless a contact begins at the very depth that is sought."""
 CORNER = 1e-10, 1e-290
@@ -52,9 +53,9 @@ HALF = 0.5
 SETTLED = 1e-9
 """Last step of the depth, over the depth; the one after it is much smaller."""
 DEEPER = 8.0
-"""A depth without an answer is divided by this, if none is known to be too shallow."""
+"""A depth without a solution is divided by this, if none is known to be too shallow."""
 SHALLOWEST = 1e-12
-"""Share of the first trial depth below which no answer is sought any more."""
+"""Share of the first trial depth below which the search ends."""
 DEPTH_STEP = 2.0**-20
 """Relative step of the depth for derivatives, which are needed to a digit or two."""
 ROOT_RTOL = 4.0 * float(np.finfo(float).eps)
@@ -123,7 +124,7 @@ class Contact:
                 left = found[-1] if found else Patch(0.0, start, 0.0, 0.0)
 
                 def level(y: Any, left: Patch = left) -> Any:
-                    """Return what the contact before has left behind."""
+                    """Return the surface left by the previous contact."""
                     return left.u_te * np.exp((left.x_te - y) / l_r)
 
                 if u_te <= level(last):
@@ -142,7 +143,7 @@ class Contact:
         x[:, 0], x[:, -1] = c.start, c.end
         g = self.depth - c.height @ VALUES
         p = g - l_r * (c.slope @ VALUES)
-        # Where what the series misses could change the sign, the shape itself is asked.
+        # Where the truncation error of the series could change the sign, the shape itself is evaluated.
         unsure = abs(p) <= TAIL_MARGIN * (c.height_tail + l_r * c.slope_tail)[:, None]
         unsure[:, 0] |= np.isin(c.start, self.surface.kinks)
         unsure[:, -1] |= np.isin(c.end, self.surface.kinks)
@@ -201,7 +202,7 @@ class Contact:
 
     @property
     def noise(self) -> float:
-        """Relative error of the depth that has the effects of rounding: of edges, of h and of h'."""
+        """Relative error of the depth equivalent to rounding: of edges, of h and of h'."""
         c = self.cells
         low = (c.height @ VALUES).min(axis=1) < self.depth
         edges = [x for patch in self.patches for x in (patch.x_le, patch.x_te)]

@@ -24,14 +24,14 @@ KNOWN = {"parabola": PARABOLA, "sphere": BALL}
 """By the name of the shape."""
 
 ROUNDING = 16 * 2.0**-52
-"""Of the formulas themselves, as in the exact solution."""
+"""Rounding of the formulas themselves, as in the exact solution."""
 
 UNIT = 4 * 2.0**-52
-"""Rounding of s^2 where it is taken from 1."""
+"""Rounding of s^2 where it is subtracted from 1."""
 
 LOW_UP_TO, HIGH_FROM = 2.0, 0.5
-"""Drive numbers, the first in units of 1 + kappa, beyond which what an asymptote alone gives has an error
-of the order of one: it is not looked at."""
+"""Drive numbers, the first in units of 1 + kappa, beyond which the asymptotes of one regime have errors of
+the order of one and are not tried."""
 
 
 class Choice(NamedTuple):
@@ -53,7 +53,7 @@ def enclosure_of(scene: Scene) -> Enclosure:
 def choose(bounds: Enclosure, quantities: tuple[str, ...], enough: float = math.inf) -> Choice:
     """Return the better regime for all `quantities`, with a proved bound of their relative error.
 
-    One quantity whose bound is above `enough` decides about a regime: its bound stands for all.
+    A regime is judged by the first quantity whose bound is above `enough`: its bound is returned for all.
 
     Examples
     --------

@@ -31,7 +31,7 @@ PEAK_BRACKET = 0.5, 4.0
 
 
 class Limits(NamedTuple):
-    """What the asymptotes take of a scene, in SI, all of one shape, with V >= 0.
+    """The input of the asymptotes from a scene, in SI, all arrays of one shape, with V >= 0.
 
     `static_depth`, `static_half_length` and `static_load` belong to V = 0. `lift_load` is the load for
     V -> oo: under a spring the indenter is lifted by its whole static depth, W -> M g + k_s delta_0.
@@ -185,7 +185,7 @@ def _high_errors(
         depth, load = np.zeros_like(l), cf.power_law_error_load_high(n, l, q, Q)
         friction = cf.power_law_error_friction_high(n, l, q, Q)
     else:
-        # The spring has not yet let go of k_s delta: lift_load - W = k_s delta.
+        # The spring still carries k_s delta: lift_load - W = k_s delta.
         lifted = state.depth / scene.static_depth
         load = (scene.lift_load - scene.static_load) * lifted / state.load
         depth = _compound(cf.power_law_error_depth_high(n, l, q, Q), load)
@@ -204,7 +204,7 @@ def _high_errors(
 
 
 def _peeled(n: Value, l: Value, q: Value, Q: Value) -> tuple[Value, Value, Value]:
-    """Return 1 - q, 1 - Q and l - (1 - q) without a difference where they are small."""
+    """Return 1 - q, 1 - Q and l - (1 - q) without cancellation where they are small."""
     small = n * l * Q <= SMALL
     z = np.where(small, n * l * Q, 0.0)
     y = -np.log1p(-z) / n

@@ -33,8 +33,8 @@ def evaluate(
     Raises
     ------
     FloatingPointError
-        If a value leaves the range of double precision. One with an error of its own may become
-        zero: that error says so.
+        If a value leaves the range of double precision. A value with its own error may become
+        zero, as its error then says.
     """
     arrays = np.broadcast_arrays(
         *(np.asarray(argument, dtype=float) for argument in (*arguments, velocity))
@@ -57,7 +57,7 @@ def evaluate(
 
 
 def _check_underflow(result: Array, velocity: Array, own_errors: tuple[str, ...]) -> None:
-    """Raise where digits were lost below the smallest normal number; zero is right only at rest."""
+    """Raise if digits were lost below the smallest normal number; zero is correct only at rest."""
     lost = np.abs(result) < np.finfo(float).tiny
     lost[[QUANTITIES.index(name) for name in ZERO_AT_REST]] &= velocity != 0.0
     lost[[QUANTITIES.index(name) for name in own_errors]] = False

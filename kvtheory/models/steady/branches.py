@@ -1,7 +1,7 @@
-"""What the branches of a foundation remember besides its spring, for the convolution.
+"""The memory of the branches of a foundation, besides its spring, for the convolution.
 
-A branch with the part g of G - K remembers the amount m(X) = int_0^X g of a steady compression over the
-distance X; of that, it has reached the share v at the delay s(v).
+A branch with the part g of G - K answers a steady rate of compression over the distance X with
+m(X) = int_0^X g; the share v of this is due to delays up to s(v).
 """
 
 from typing import Any, Protocol
@@ -14,7 +14,7 @@ Array = Any
 
 
 class Contact(Protocol):
-    """What a branch asks of the contact: nodes, weights and totals over it."""
+    """The quadrature over the contact that a branch needs: nodes, weights and integrals."""
 
     ahead: Array
     weights: Array
@@ -25,7 +25,7 @@ class Contact(Protocol):
 
 
 class Memory(Protocol):
-    """What the branches of a foundation remember, one row each."""
+    """The memory of the branches of a foundation, one row each."""
 
     def amount(self, X: Array) -> Array:
         """Return m = int_0^X g."""

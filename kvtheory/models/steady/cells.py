@@ -1,8 +1,8 @@
-"""A shape of any kind as a series in cells: where it may touch, and how well that is known.
+"""A shape of any kind as a series in cells: where it may touch, and the error of the series.
 
-The shape is cut into cells, until it lies above the depth in a cell or is resolved there: the last
-coefficients of the Legendre series of h and h' are rounding. What is narrower than the nodes of the
-first cells, 1/100 of its distance from the lowest point, can hide between them.
+The shape is divided into cells, until it lies above the depth in a cell or is resolved there: the last
+coefficients of the Legendre series of h and h' are rounding. Details narrower than the spacing of the nodes
+of the first cells, 1/100 of their distance from the lowest point, may be missed.
 """
 
 import itertools
@@ -17,37 +17,37 @@ from kvtheory.results.errors import QuadratureError
 from kvtheory.scene.indenters import Indenter
 
 DEGREE = 15
-"""Of the series in a cell; with 16 nodes."""
+"""Degree of the series in a cell, with 16 nodes."""
 NODES, WEIGHTS = legendre.leggauss(DEGREE + 1)
 SERIES = legendre.legvander(NODES, DEGREE).T * WEIGHTS * (np.arange(DEGREE + 1)[:, None] + 0.5)
-"""Takes values at the nodes to coefficients."""
+"""Matrix from values at the nodes to coefficients."""
 DENSE = np.linspace(-1.0, 1.0, 33)
-"""Where the series is looked at; a resolved cell holds hardly more than half a wave."""
+"""Points at which the series is examined; a resolved cell holds hardly more than half a wave."""
 VALUES = legendre.legvander(DENSE, DEGREE).T
 TAIL = 13
 """First of the coefficients that tell how well a cell is resolved."""
 RESOLVED = 1e-13
-"""Last coefficients over the depth: what is resolved."""
+"""A cell is resolved if its last coefficients, over the depth, are below this."""
 NOISE = 1e-9
 """The same for a shape whose own rounding is more than that; the certificate says so."""
 HELPS = 0.25
-"""What a cut leaves of the last coefficients of a smooth shape, at the most."""
+"""Largest share of the last coefficients of a smooth shape that remains after a cut."""
 WIDE = 1e3
-"""Height over the depth above which rounding is not accepted, but cut away."""
+"""Height over the depth above which cells limited by rounding are divided, not accepted."""
 JUMP, NARROW = 1e-3, 1e-9
 """Last coefficients of a slope, over the slope, that only a jump keeps in so narrow a cell."""
 TAIL_MARGIN = 4.0
-"""What a series may miss, over its last coefficients, in a cell that is not resolved."""
+"""Truncation error of a series, over its last coefficients, in a cell that is not resolved."""
 FAR_ABOVE = 1e9
-"""Height over the depth from which a cell is not looked at any closer."""
+"""Height over the depth from which a cell is not examined further."""
 PARTS = 8
 """Cells of each octave of x at first: with their nodes, dips of 1/100 of their distance are seen."""
 OCTAVES = 20
-"""How far a shape without a reach is looked at, beyond the contact: a million times its length."""
+"""How far a shape without a reach is examined beyond the contact: a million times its length."""
 MOST_CELLS = 2**14
-"""A shape that needs more is not smooth."""
+"""Most cells; a shape that needs more is not smooth."""
 AHEAD = 4.0
-"""Cells are made for a depth that much larger, and serve down to that depth over `AHEAD`."""
+"""Cells are made for a depth larger by this factor, and are used down to that depth over `AHEAD`."""
 CHECK_RTOL = 1e-11
 """Discrepancy between h and h' that a check allows, relative to the depth."""
 SQUARED = 1.0 / (2.0 * np.arange(DEGREE + 1) + 1.0)
@@ -175,7 +175,7 @@ class Surface:
         return cells
 
     def _note_jumps(self, cells: Any) -> None:
-        """Remember where the slope jumps in a cell without a kink that was declared."""
+        """Record where the slope jumps in a cell without a declared kink."""
         for start, end in cells.tolist():
             if end < self.end and not any(start <= kink <= end for kink in self.kinks):
                 self.jumps.append(end)

@@ -13,9 +13,9 @@ One contact: e^(x/l_r) u rises where p > 0, for its derivative is e^(x/l_r) p/(K
 that is left behind relaxes as e^(-x/l_r), and is met again only where e^(x/l_r) u exceeds its running
 maximum. As h is convex, log u + x/l_r is concave: there is one maximum, the trailing edge.
 
-Roots are found by Newton's method in ln h against ln x, which is exact for a power. For powers and
-for the circle, ln(h + l_r h') is convex in ln x, so that the steps fall towards the root from above.
-Everything is written in operators that floats and columns, of shape (n, 1), share.
+Roots are found by Newton's method for ln h as a function of ln x, which is exact for a power. For powers and
+for the circle, ln(h + l_r h') is convex in ln x, so that the steps converge to the root from above.
+All operations work for floats and for columns, of shape (n, 1).
 """
 
 import math
@@ -40,11 +40,11 @@ SMALLEST = float(np.finfo(float).tiny)
 ULPS = 8.0 * EPS
 """The least relative step of x, and of the depth."""
 LINEAR = 1e-8
-"""Newton's method squares an error: a step of this size leaves less than the rounding."""
+"""Newton's method squares an error: after a step of this size the error is below rounding."""
 CUBIC = 1e-5
-"""The same for the depth, whose steps leave a cube of the error."""
+"""The same for the depth, whose steps converge cubically."""
 STRIDES = tuple(4.0 ** (2**power) for power in range(6, -1, -1))
-"""By which a half-length far below the depth is widened at first, as far as it stays too short."""
+"""Factors by which a half-length far too short is widened at first, as long as it stays too short."""
 CLOSER = 3
 """Newton steps on the load of a parabola as blunt as the shape, for the first depth."""
 NEAR_REACH = 0.5
@@ -52,15 +52,15 @@ NEAR_REACH = 0.5
 MOST_STEPS = 200
 """Steps of a root; they are a handful unless a vertex or the reach of a circle is close."""
 VERTEX = 1e-290
-"""A trailing edge closer to the lowest point than this share of the half-length is at it."""
+"""A trailing edge closer to the lowest point than this share of the half-length is set to it."""
 FLOOR = 1e-20
-"""Share of the half-length below which the peak is at the lowest point."""
+"""Share of the half-length below which the peak is set to the lowest point."""
 PEAK_RTOL = 1e-8
-"""Tolerance of its place: its value has the square, times the exponent of a power."""
+"""Tolerance of its position; the error of its value is the square of it, times the exponent of a power."""
 PEAK_STEPS = 8
 """Secant steps towards the peak: one for a power, more for a circle."""
 TINY = 1e-300
-"""Added to what may vanish together with what it divides."""
+"""Added to a divisor that may vanish together with its dividend."""
 
 
 ROUNDING = 5e-15
@@ -89,7 +89,7 @@ class Contact(NamedTuple):
 
     @property
     def noise(self) -> Value:
-        """Relative error of the depth that has the effects of rounding: of x_LE, and of u."""
+        """Relative error of the depth equivalent to rounding: of x_LE, and of u."""
         return ROUNDING * (1.0 + self.a / (self.a_moves * self.depth))
 
 
@@ -116,7 +116,7 @@ def at_load(shape: Convex, l_r: Value, load: Value, spring: Value) -> Contact:
 
     d ln W/d ln delta lies between 1 and 2: above, because W is convex in delta; below, because u is
     concave, so that W/K is at least half of delta d(W/K)/d(delta). Newton's method in logarithms
-    therefore closes in from everywhere; the second derivative of W makes it cubic (Chebyshev).
+    therefore converges from any start; the second derivative of W makes it cubic (Chebyshev).
     """
     deepest, extra = _deepest(shape), l_r + spring
     a = _first(shape, load**0.5, load, lambda x: x + extra)
@@ -140,7 +140,7 @@ def at_load(shape: Convex, l_r: Value, load: Value, spring: Value) -> Contact:
         step, last = abs(factor - 1.0), step
         active = active & (last >= CUBIC) & (step >= ULPS)
         if not some(active):
-            return contact  # what has settled before was evaluated again from the same guesses
+            return contact  # converged values were evaluated again from the same guesses
         depth = pick(active, least(depth * factor, 0.5 * (depth + deepest)), depth)
         a, x = pick(active, contact.a, a), pick(active, contact.x, x)
     raise QuadratureError(
@@ -219,8 +219,8 @@ def _peak(shape: Convex, l_r: Value, contact: Contact) -> Value:
     """Return the highest p/K.
 
     It is on the entering side, at y = -x > 0. There p' = 0 means y = l_r y h''/h', which is constant
-    for a power and rises with y for the circle, or else the peak is at the leading edge. Every value
-    on the way is a pressure of this contact, so that the highest of them is never too high.
+    for a power and rises with y for the circle, or else the peak is at the leading edge. Every iterate
+    is a pressure of this contact, so that the highest of them is never too high.
     """
     found, last = l_r * shape.slope(contact.a), (contact.a, 0.0 * l_r)
     y, active = least(l_r, contact.a) + FLOOR * contact.a, l_r >= 0.0

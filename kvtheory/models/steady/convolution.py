@@ -4,9 +4,9 @@ With X the distance from the leading edge, where h = delta, and u' = -h' the rat
 
     p(X) = K u + sum over branches m(X) <u'>,   m = int_0^X g(s) ds,   g = G - K,
 
-where <u'> is the mean of u' over what the branch remembers: with v = (int_0^s g)/m in (0, 1) the past is
-u'(X - s(v)), whatever the branch forgets, and the double-exponential rule meets no layer that it does not
-resolve. The pressure is followed to its first zero, and
+where <u'> is the mean of u' over the memory of the branch: with v = (int_0^s g)/m in (0, 1) the past is
+u'(X - s(v)), however fast the branch relaxes, and the integrand has no boundary layer that the
+double-exponential rule would not resolve. The trailing edge is the first zero of the pressure, and
 
     W = int p dX,   F = int u' p dX,   dW/d(delta) = int_0^c G dX,
 
@@ -52,9 +52,9 @@ VERTEX = 1e-290
 STRIDE = 1e-6
 """Relative step of x for the slope of the pressure at its zero."""
 PEAK_RTOL = 1e-6
-"""Of the place of the peak between two nodes: its value has the square."""
+"""Tolerance of the position of the peak between two nodes; the error of its value is of second order."""
 MARGIN = 8.0
-"""On the differences of both rules."""
+"""Safety factor on the differences of both rules."""
 FLOOR = 2e-13
 """Relative rounding of a result."""
 JUMP = 1e-6
@@ -69,7 +69,7 @@ STATEMENT = (
 
 
 class Contact(NamedTuple):
-    """A contact at one depth: how far it reaches ahead, and behind at rest, and its trailing edge."""
+    """A contact at one depth: its extent ahead, its extent behind at rest, and its trailing edge."""
 
     depth: float
     a: float
@@ -78,7 +78,7 @@ class Contact(NamedTuple):
 
 
 class Sliding:
-    """One contact, with what is needed of it at the nodes of both rules."""
+    """One contact, with the values at the nodes of both rules."""
 
     def __init__(self, shape: Shape, K: float, memory: Memory | None, contact: Contact) -> None:
         self.shape, self.K, self.memory, self.contact = shape, K, memory, contact
@@ -112,7 +112,7 @@ def _nodes(start: float, end: float) -> Array:
 
 
 def sides(shape: Shape, depth: float) -> tuple[float, float]:
-    """Return how far the contact at rest reaches ahead and behind: h(-a) = h(back) = depth."""
+    """Return the extent of the contact at rest ahead and behind: h(-a) = h(back) = depth."""
     if isinstance(shape, ConvexProfile):
         return shape.sides(depth)
     a = half_length(shape, depth)
@@ -120,7 +120,7 @@ def sides(shape: Shape, depth: float) -> tuple[float, float]:
 
 
 def remembered(shape: Shape, memory: Memory | None, a: float, x: Array) -> tuple[Array, float]:
-    """Return the pressure of each branch at the places x, and how far both rules are apart."""
+    """Return the pressure of each branch at the positions x, and the difference of both rules."""
     if memory is None:
         return np.zeros((1, x.size)), 0.0
     X = a + x
@@ -203,9 +203,9 @@ def at_depth(
     Parameters
     ----------
     memory
-        What the foundation remembers besides its spring.
+        The memory of the foundation besides its spring.
     indenter
-        A convex shape, or a profile that turns out to be; see `kvtheory.scene.indenters`.
+        A convex shape, or a profile that proves to be convex; see `kvtheory.scene.indenters`.
     stiffness, retardation_time, velocity, depth
         K in N/m^3, C/K in s for the retardation length alone, V in m/s (any sign, or zero), delta in m.
 
@@ -221,7 +221,7 @@ def at_depth(
 
     Examples
     --------
-    Kelvin-Voigt is the springpot of order 1, which forgets at once:
+    Kelvin-Voigt is the springpot of order 1, which has no memory:
 
     >>> from kvtheory.models.steady.branches import Springpot
     >>> from kvtheory.scene.indenters import Parabola
@@ -267,7 +267,7 @@ def at_load(
 
 
 def _framed(indenter: Convex | Profile, velocity: float) -> Shape:
-    """Return the shape as it meets the foundation."""
+    """Return the shape in the direction of sliding."""
     if isinstance(indenter, Profile):
         return ConvexProfile(indenter, -1.0 if velocity < 0.0 else 1.0)
     return indenter
@@ -310,7 +310,7 @@ def _state(sliding: Sliding, velocity: float, retardation_time: float) -> Steady
 
 
 def _edge_error(sliding: Sliding, contact: Contact) -> float:
-    """Return how far rounding of the pressure moves its zero, over the trailing edge."""
+    """Return the shift of the zero of the pressure by rounding, over the trailing edge."""
     x = contact.x_te
     if x in (0.0, contact.back):
         return 0.0
@@ -320,7 +320,7 @@ def _edge_error(sliding: Sliding, contact: Contact) -> float:
 
 
 def _peak(sliding: Sliding) -> float:
-    """Return the greatest pressure: the highest node, and what is between its neighbours."""
+    """Return the greatest pressure: at the highest node, or between its neighbours."""
     x, best = sliding.x, int(sliding.pressure.argmax())
     low, high = x[max(best - 1, 0)], x[min(best + 1, x.size - 1)]
     pressure = partial(_pressure, sliding.shape, sliding.K, sliding.memory, sliding.contact)

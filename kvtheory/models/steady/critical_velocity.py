@@ -1,8 +1,8 @@
 """The smallest velocity at which the stiffness of a spring in the drive becomes critical.
 
 The stiffnesses between which steady sliding is unstable are closed forms of the velocity (theorem F22),
-not always monotonic: a damper or a suspension makes steady sliding stable again at a high velocity, a
-heavy indenter may flutter at a low one. So the first change is looked for on a grid, then bisected.
+not always monotonic: a damper or a suspension makes steady sliding stable again at a high velocity, and a
+heavy indenter may flutter at a low one. The first change is therefore found on a grid, then bisected.
 """
 
 import numpy as np
@@ -13,14 +13,14 @@ from kvtheory.models.steady.stability import Values, numbers, onsets
 Array = NDArray[np.float64]
 
 DECADES = (-8.0, 20.0)
-"""Powers of ten of the drive number V tau/a_0 between which a change is looked for."""
+"""Powers of ten of the drive number V tau/a_0 between which a change is sought."""
 PER_DECADE = 16
 BISECTIONS = 60
 """To the last digit of a velocity, from a cell of the grid."""
 NEARBY = 1e-5
 """Relative difference of velocities for the slope of the critical stiffness."""
 SOFT, UNSTABLE, STIFF, NEVER = -1, 0, 1, 2
-"""How the stiffness of the spring lies to the critical ones: below both, between, above, or none is."""
+"""The stiffness of the spring relative to the critical ones: below both, between, above, or none exists."""
 
 
 def critical_velocity(values: Values, stiffness: Array) -> tuple[Array, Array]:
@@ -59,9 +59,9 @@ def critical_velocity(values: Values, stiffness: Array) -> tuple[Array, Array]:
 
 
 def _error(values: Values, tau: Array, spring: Array, log_velocity: Array) -> Array:
-    """Return the relative error of a velocity: that of the stiffness over how steeply it depends on it.
+    """Return the relative error of a velocity: that of the stiffness over its logarithmic derivative.
 
-    Of an end at which both critical stiffnesses meet nothing is known.
+    It is not known where both critical stiffnesses meet.
     """
     near = [onsets(numbers(values, np.exp(log_velocity + step)), tau) for step in (-NEARBY, NEARBY)]
     found = []

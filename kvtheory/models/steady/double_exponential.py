@@ -1,6 +1,6 @@
 """Integrals from the lowest point to both edges by the double-exponential rule, for floats and for columns.
 
-A float is one scene; a column, of shape (n, 1), is n of them, and stands beside nodes along a row.
+A float is one scene; a column, of shape (n, 1), is n of them, and broadcasts with nodes along a row.
 """
 
 from collections.abc import Callable
@@ -21,7 +21,7 @@ SMOOTH = 10
 RTOL = 1e-14
 """Estimate above which the next rule is taken."""
 LIMIT = 1e-6
-"""Estimate above which the last rule is no answer."""
+"""Estimate above which the result of the last rule is refused."""
 
 
 def _rule(step: float) -> tuple[Any, Any, Any]:
@@ -120,8 +120,8 @@ def some(condition: Any) -> bool:
 def pick(condition: Any, chosen: Value, other: Value) -> Value:
     """Return one of two values, element by element.
 
-    What has converged stays as it is while the rest of a column goes on, so that no scene depends
-    on the ones beside it.
+    Scenes that have converged stay unchanged while the rest of a column is iterated, so that no result
+    depends on the other scenes.
     """
     if isinstance(condition, np.ndarray):
         return np.where(condition, chosen, other)

@@ -1,8 +1,9 @@
-r"""The line contact that stands for a ball: a cylinder with its radius, and how wide it must be.
+r"""The line contact equivalent to a ball: a cylinder with the same radius, and its width.
 
-In both limits of the velocity, a cylinder with the radius R of the ball has the forces of the ball if its
-contact at rest is (9 pi/32) a long on either side, a that of the ball, and (4/3)(32/(9 pi))^2 a sqrt(R'/R)
-wide (derivation F20 with F1): four limits, two numbers. In between little is missing.
+In both limits of the velocity, a cylinder with the radius R of the ball has the forces of the ball if the
+half length of its contact at rest is (9 pi/32) a, with a that of the ball, and its width
+(4/3)(32/(9 pi))^2 a sqrt(R'/R) (derivation F20 with F1): two numbers satisfy four limits. In between the
+difference is small.
 """
 
 import math
@@ -15,11 +16,11 @@ SHORTER = 9.0 * math.pi / 32.0
 WIDTH = 4.0 / 3.0 / SHORTER**2
 """Its width over the half width of the contact of the ball at rest."""
 LOAD_ERROR, FRICTION_COEFFICIENT_ERROR = 0.002, 0.0025
-"""By how much it differs at most, relative to the ball: 0.00192 and 0.00236."""
+"""The largest differences relative to the ball, rounded up from 0.00192 and 0.00236."""
 
 
 class EquivalentLine(NamedTuple):
-    """A line contact that stands for a ball at one depth, in SI."""
+    """A line contact equivalent to a ball at one depth, in SI."""
 
     width: float
     depth: float
@@ -28,10 +29,11 @@ class EquivalentLine(NamedTuple):
 
 
 def equivalent_line(ball: SteadyState, stretch: float) -> EquivalentLine:
-    """Return the line contact with the radius R that stands for a ball in steady sliding.
+    """Return the line contact with the radius R equivalent to a ball in steady sliding.
 
-    `stretch` is sqrt(R'/R), 1 for a ball. Its friction coefficient is that of the ball at the velocity of
-    `ball`, and at all others at the same depth; under a dead weight the width follows the velocity.
+    `stretch` is sqrt(R'/R), 1 for a ball. Its friction coefficient is that of the ball, within
+    `FRICTION_COEFFICIENT_ERROR`, at every velocity if the depth is kept; under a dead weight depth and
+    width change with velocity.
 
     >>> from kvtheory.models.steady.ball import at_load
     >>> line = equivalent_line(at_load(0.01, 1.0, 1e10, 0.1, 0.1, 9.80665), 1.0)

@@ -1,8 +1,8 @@
 r"""Steady sliding of a parabolic indenter: closed forms and one scalar root.
 
 Lengths are scaled by the half length a of the stationary contact, so that one number, l = l_r/a,
-fixes the contact (Eqs. 26-29, theorem F1). A fixed indenter needs nothing else. An indenter that
-can move finds its depth from the balance of forces, in units of its static depth delta_0, half
+determines the contact (Eqs. 26-29, theorem F1). A fixed indenter needs nothing else. For an indenter
+that can move, the depth follows from the balance of forces, in units of the static depth delta_0, half
 length a_0 and weight,
 
     f_z(s) + kappa (s^2 - 1) = 1,    s = a/a_0 in (0, 1],    d = delta/delta_0 = s^2,

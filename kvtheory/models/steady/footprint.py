@@ -11,7 +11,7 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Footprint:
-    """Where a ball touches in steady sliding: a disc, cut behind by the line where the pressure vanishes.
+    """The contact area of a ball in steady sliding: a disc, cut at the rear where the pressure vanishes.
 
     Lengths in m, `stiffness` in N/m^3. `retardation_length` has the sign of the velocity, along whose
     direction the foundation moves through x; y is across, up to the `half_width` a sqrt(R'/R).
@@ -24,7 +24,7 @@ class Footprint:
     retardation_length: float
 
     def edges(self, y: ArrayLike) -> tuple[Array, Array]:
-        """Return leading and trailing edge of the strips at y, as x; NaN beside the contact.
+        """Return leading and trailing edge of the strips at y, as x; NaN outside the contact.
 
         With the half length A = sqrt(a^2 - y^2 R/R') of a strip, for V > 0 they are -A and
         sqrt(A^2 + l_r^2) - l_r (derivation F20-load).

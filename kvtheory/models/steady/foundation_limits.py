@@ -1,4 +1,4 @@
-"""What the reports of asymptotes on foundations beyond Kelvin-Voigt share: lines, ranges and the advice."""
+"""The common part of asymptote reports on foundations beyond Kelvin-Voigt: lines, ranges, the choice."""
 
 from collections.abc import Callable, Mapping, Sequence
 from typing import NamedTuple
@@ -14,7 +14,7 @@ from kvtheory.scene.model import Scene
 Array = NDArray[np.float64]
 Values = Mapping[str, Array]
 At = Callable[[Values, Array], Array]
-"""What a formula gives at velocities |V|, from the other values of a scene."""
+"""A formula: its value at velocities |V|, from the other values of a scene."""
 
 
 class Line(NamedTuple):
@@ -28,7 +28,7 @@ class Line(NamedTuple):
     edge: Array
     """Velocity at which its error passes the tolerance."""
     proved: Array
-    """Velocity up to which, or from which on, a theorem says that it does not."""
+    """Velocity up to which, or from which on, a theorem guarantees that it does not."""
 
 
 def exact_friction(scene: Scene, values: Values, V: Array) -> Array:
@@ -59,7 +59,7 @@ def report(
     lines: Sequence[Line],
     certificate: Certificate,
 ) -> AsymptoteReport:
-    """Evaluate the lines, and advise the first that is within the tolerance."""
+    """Evaluate the lines, and choose the first that is within the tolerance."""
     signed = values["drive.velocity"]
     V, side = np.abs(signed), np.where(signed < 0.0, -1.0, 1.0)
     truth = exact_friction(scene, values, V)

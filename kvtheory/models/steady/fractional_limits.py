@@ -6,8 +6,9 @@ With the order alpha (theorem F18-springpot)
     V -> oo:  mu -> (a/R) alpha (3 - alpha)/(4 - alpha),
               W -> (K/R) ((2 - alpha)^(2 - alpha)/Gamma(4 - alpha)) (V tau)^alpha a^(3 - alpha),
 
-with a of the depth, or of the load that the spring carries alone, and then the springpot. For alpha = 1 they
-are the paper's Eqs. 42, 45 and 46. Their errors are monotonic in V, on every support: a range has one end.
+with a that of the depth, or of the load, which is carried by the spring alone for V -> 0, by the springpot
+for V -> oo. For alpha = 1 they are the paper's Eqs. 42, 45 and 46. Their errors are monotonic in V on every
+support, so that a range has one end.
 """
 
 from functools import partial
@@ -28,7 +29,8 @@ from kvtheory.results import AsymptoteReport, Certificate
 from kvtheory.scene.model import Scene
 
 DECADES, MOST_DECADES = 30.0, 200.0
-"""How far from V* a range is looked for, in powers of ten: an order alpha takes 1/alpha times as many."""
+"""How far from V* the end of a range is sought, in powers of ten: for an order alpha, 1/alpha times as
+far."""
 STATEMENT = (
     "closed forms against the exact state, which is known to about 5e-15; the errors are monotonic in V "
     "(derivation F18-springpot)"

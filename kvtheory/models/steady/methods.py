@@ -1,4 +1,4 @@
-"""The ways to compute steady sliding, and the one place that chooses among them."""
+"""The methods of steady sliding, and the choice among them."""
 
 import math
 from collections.abc import Callable, Mapping, Sequence
@@ -46,17 +46,17 @@ FAMILIES: Families = {
     "wedge": (power_law, shape_of),
     "sphere": (ball, _ball),
 }
-"""By the name of the shape, its closed forms and what they take first; `kvtheory.scene.requirements`
-knows the same names."""
+"""For each shape, by name, its closed forms and their first arguments; `kvtheory.scene.requirements`
+lists the same shapes."""
 ON_ANY: Families = {"parabola": (viscoelastic, _cylinder), "sphere": (ball_viscoelastic, _ball)}
 """The same on foundations that are not Kelvin-Voigt."""
 
 TIME = "foundation.retardation_time"
 
 COLUMN = 256
-"""Scenes that are integrated at once: their nodes then fit into the second cache of a core."""
+"""Scenes that are integrated at once: their nodes then fit into the second-level cache of a core."""
 ROUNDING = 64 * 2.0**-52
-"""Of an asymptote and of its error, which are of some twenty operations each."""
+"""Rounding error of an asymptote and of its error, about twenty operations each."""
 
 
 def asymptotes_of(scene: Scene) -> ModuleType:
@@ -75,7 +75,7 @@ def solve_exact(scene: Scene, values: Values) -> SteadyState:
 
 
 def _in_units(scene: Scene, state: SteadyState) -> SteadyState:
-    """Return a state that says in which units it is: per unit width, or those of a ball."""
+    """Return a state with its units: per unit width, or those of a ball."""
     if scene.indenter.per_width:
         return state
     return replace(state, units=units_for(scene.indenter, STEADY_UNITS))
@@ -153,7 +153,7 @@ def _integrated(scene: Scene, values: Mapping[str, Any]) -> SteadyState:
     """Integrate one scene of floats, or a column of scenes."""
     from kvtheory.models.steady import quadrature, revolved  # not needed by the other methods
 
-    # Past the indenter's own check: the values have been checked, and columns are no values for it.
+    # Bypasses the check of the indenter: the values have been checked, and it does not accept columns.
     indenter = object.__new__(type(scene.indenter))
     vars(indenter).update(vars(scene.indenter))
     for key, value in values.items():
@@ -209,7 +209,7 @@ def _solve(method: ModuleType, values: Mapping[str, Any], *indenter: Any) -> Ste
 
 
 def plain(array: Any) -> Any:
-    """Return what has no dimensions as a plain value."""
+    """Return an array without dimensions as a plain value."""
     return array if array.ndim else array.item()
 
 

@@ -1,8 +1,8 @@
 r"""Steady sliding of a power law h = slope |x|^n/(n L^(n-1)) and of a wedge, n = 1: closed forms, one root.
 
 Lengths are scaled by the half length a = L (n delta/(slope L))^(1/n) of the stationary contact, so that n
-and l = l_r/a fix the contact (derivations "F19" and "wedge"). An indenter that can move finds its depth
-from the balance of forces in units of the static state,
+and l = l_r/a determine the contact (derivations "F19" and "wedge"). For an indenter that can move, the depth
+follows from the balance of forces in units of the static state,
 
     f(s) + kappa (s^n - 1) = 1,    s = a/a_0 in (0, 1],    d = delta/delta_0 = s^n,
 
@@ -21,7 +21,7 @@ from kvtheory.results import STEADY_UNITS, Certificate, SteadyState
 Array = NDArray[np.float64]
 
 MOST_STEPS = 40
-"""Far more than are needed: three to six."""
+"""Most iterations; three to six are needed."""
 LAST_STEP = 1e-8
 """After a step as small as this the error, of the order of its square, is below rounding."""
 
@@ -61,7 +61,7 @@ def at_depth(
     -------
     SteadyState
         With W = K delta a w, F = K delta^2 phi and so on (derivation F19); the error of each quantity is
-        in its certificate. The trailing edge has one of its own: for n close to 1 it is ill-conditioned.
+        in its certificate. That of the trailing edge is larger: for n close to 1 it is ill-conditioned.
 
     Raises
     ------

@@ -5,8 +5,8 @@ ln q the root of the increasing and convex function
 
     G(t) = (n - 1) t + ln(e^t + c),
 
-so that Newton's method descends to it from q = min(1, c^(-1/(n-1))), where G >= 0. G''/(2 G') <= 1/2:
-the error e of ln q becomes at most e^2/2. The last step multiplies q, which keeps its digits.
+so that Newton's method descends to it from q = min(1, c^(-1/(n-1))), where G >= 0. As G''/(2 G') <= 1/2,
+the error e of ln q becomes at most e^2/2. The last step multiplies q, to preserve its digits.
 """
 
 from collections.abc import Mapping
@@ -18,11 +18,11 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 
 MOST_STEPS = 80
-"""Far more than are needed: about seven, and ln(1/(n - 1)) more where n is close to 1."""
+"""Most iterations; about seven are needed, and ln(1/(n - 1)) more if n is close to 1."""
 LAST_STEP = 1e-8
 """After a step as small as this the error, its square, is below rounding."""
 LAST_RESIDUAL = 8 * 2.0**-52
-"""Rounding of the residual: nothing is gained below it."""
+"""Rounding of the residual, below which iteration does not improve it."""
 
 
 def shape_of(values: Mapping[str, Any]) -> tuple[Any, Any, Any]:
@@ -42,7 +42,7 @@ def trailing_edge(exponent: Array, number: Array) -> tuple[Array, Array]:
     """Return q = x_TE/a and Q = q^(n-1) for n >= 1 and l = l_r/a >= 0.
 
     For n = 1, the wedge, q = max(0, 1 - l) and Q is its limit, min(1, 1/l). Where q is below the range
-    of double precision it is 0, and Q is right all the same.
+    of double precision it is 0, and Q is still correct.
 
     Examples
     --------
@@ -73,7 +73,7 @@ def _descend(q: Array, c: Array, m: Array) -> Array:
 
 
 def edge_sensitivity(exponent: Array, number: Array, q: Array, Q: Array) -> Array:
-    """Return -d ln q/d ln l, by which the relative error of l is multiplied in q.
+    """Return -d ln q/d ln l, the factor from the relative error of l to that of q.
 
     It is below 1/(n - 1); for a wedge it is l/q.
     """
@@ -82,7 +82,7 @@ def edge_sensitivity(exponent: Array, number: Array, q: Array, Q: Array) -> Arra
 
 
 def root(base: Array, degree: Array) -> Array:
-    """Return base^(1/degree), with a Newton step against the rounding of 1/degree.
+    """Return base^(1/degree), with a Newton step that corrects the rounding of 1/degree.
 
     Examples
     --------

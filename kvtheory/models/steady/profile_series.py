@@ -1,8 +1,8 @@
-"""A convex shape of Python functions, as a series in cells: what the convolution asks of a shape.
+"""A convex shape given by Python functions, as a series in cells, for the convolution.
 
-The series is that of `cells`, resolved to the rounding of the shape, so that thousands of slopes cost no call
-of a Python function. A shape that is not convex where it is below the depth may touch in several places, and
-what the surface between two of them remembers is more than one contact says: it is refused.
+The series is that of `cells`, resolved to the rounding of the shape, so that thousands of slopes need no call
+of a Python function. A shape that is not convex where it is below the depth may touch in several places; the
+memory of the surface between them is not modelled here, and the shape is refused.
 """
 
 import math
@@ -17,13 +17,13 @@ from kvtheory.results.errors import QuadratureError
 from kvtheory.scene.indenters import Profile
 
 HOLLOW = 1e-9
-"""Fall of the slope, over its greatest value, that rounding may cause."""
+"""Decrease of the slope, over its greatest value, that rounding may cause."""
 ROOT, TINY = 8.9e-16, 1e-300
 """Tolerances of the edges at rest."""
 
 
 class ConvexProfile:
-    """A profile in the frame of the sliding: mirrored for a drive in the negative direction."""
+    """A profile in the direction of sliding: mirrored for a drive in the negative direction."""
 
     def __init__(self, profile: Profile, side: float) -> None:
         self.surface = Surface(profile, side)
@@ -32,7 +32,7 @@ class ConvexProfile:
         self._depth, self._cells = math.nan, Cells(*(np.empty(0),) * 6)
 
     def sides(self, depth: float) -> tuple[float, float]:
-        """Return how far the contact at rest reaches, ahead and behind, after a look at the shape."""
+        """Return the extent of the contact at rest, ahead and behind, after checking the shape."""
         surface, cells = self.surface, self.surface.cells(depth)
         within = (cells.height @ VALUES).min(axis=1) < depth
         slopes = cells.slope @ VALUES

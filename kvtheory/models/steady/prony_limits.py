@@ -1,10 +1,10 @@
-r"""The limits of steady sliding of a parabola on a Prony series, and Kelvin-Voigt in its place.
+r"""The limits of steady sliding of a parabola on a Prony series, and its approximation by Kelvin-Voigt.
 
 At low velocity mu -> C V/(R K), C = sum K_i tau_i; at high velocity mu -> (2/5) (a^2/R) (-G'(0)/G(0))/V with
 the half length a of the glassy stiffness G(0) (theorem F18). Between them lies the paper's model with K and
-C. Each is compared with the exact state, and the velocity found at which its error passes the tolerance.
+C. Each is compared with the exact state, to find the velocity at which its error exceeds the tolerance.
 
-How far each holds is proved as well, if not as far: mu is within 7 V t/c of Kelvin-Voigt, t = sum K_i
+A shorter range is also proved for each: mu is within 7 V t/c of Kelvin-Voigt, t = sum K_i
 tau_i^2/C, c the length of the contact, where V t/c <= 1/20 (theorem F18-voigt), and within 2 c/(V s) of the
 glassy limit, s = (sum K_i/tau_i)/(sum K_i/tau_i^2), where c/(V s) <= 1/5 (theorem F18-glassy). On every
 support V/c grows with V, as the contact grows with the load (theorem F17-growth).
@@ -30,9 +30,9 @@ from kvtheory.scene.foundations import Foundation
 from kvtheory.scene.model import Scene
 
 DECADES = 15.0
-"""How far from where both limits meet, in powers of ten, the range of a formula is looked for."""
+"""How far from the crossing of both limits, in powers of ten, the end of a range is sought."""
 POINTS = 301
-"""Velocities at which the error is looked at, before its place is refined."""
+"""Velocities at which the error is evaluated, before the end of the range is refined."""
 STATEMENT = (
     "differences to the exact state; a range ends where the error first passes the tolerance between "
     "the limit and {:g} decades beyond where both limits meet, if it grows all the way; up to (high: from) "
@@ -97,7 +97,7 @@ def _formulas(scene: Scene) -> dict[str, At]:
 
 
 def _bounds(scene: Scene) -> dict[str, At]:
-    """Return what the relative error of each formula is at most, by theorem; infinite where none holds."""
+    """Return the proved bound of the relative error of each formula; infinite where none holds."""
     formulas = _formulas(scene)
 
     def length(values: Values, V: Array) -> Array:

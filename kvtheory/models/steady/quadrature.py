@@ -8,8 +8,8 @@ Integrated over the contact (see `kvtheory.models.steady.contact` for its geomet
 
 by -h' = u' and u_LE = 0. No term of either sum is negative, so nothing cancels, whereas -h' p changes
 its sign and integrates to a small difference where l_r is small; and h', which may grow without bound
-towards an edge, stays out of W. Of the power F V, the last term is lost inside the contact;
-K u_TE^2/2 is carried out by the surface that relaxes behind it.
+towards an edge, does not occur in W. Of the power F V, the last term is dissipated inside the contact;
+K u_TE^2/2 is dissipated in the surface that relaxes behind it.
 
 Depth at a load: dW/d(delta) = K (x_TE - x_LE + l_r), because the pressure vanishes at a root of the
 trailing edge, and the leading edge moves by d(-x_LE) = d(delta)/|h'| with p_LE = K l_r |h'|; likewise
@@ -33,7 +33,7 @@ from kvtheory.scene.indenters import Indenter
 CARRIED = 1e-6
 """Relative error of the load carried above which the result is refused."""
 MARGIN = 2.0
-"""Factor on what the derivatives carry: they hold for small errors."""
+"""Safety factor on errors propagated by derivatives, which hold for small errors."""
 
 STATEMENT = (
     "error estimates of the quadratures and tolerances of the roots, carried to each quantity by its "
@@ -47,7 +47,7 @@ OF_ANY_SHAPE = (
 ODD = {"leading_edge", "trailing_edge", "friction_force", "friction_coefficient"}
 """Quantities that change their sign with the velocity."""
 FORCES = {"load", "friction_force", "peak_pressure"}
-"""Quantities in proportion to the stiffness."""
+"""Quantities proportional to the stiffness."""
 
 
 def at_depth(
@@ -148,7 +148,7 @@ def _retardation_length(retardation_time: Value, velocity: Value) -> Value:
 
 
 def _model(indenter: Indenter, velocity: Value) -> tuple[Any, Any]:
-    """Return the shape, and the module that knows its contacts."""
+    """Return the shape, and the module that computes its contacts."""
     if indenter.convex:
         return indenter, contact
     return Surface(indenter, -1.0 if velocity < 0.0 else 1.0), asperities
@@ -163,7 +163,7 @@ def _state(
     found: Any,
     depth_error: Value,
 ) -> SteadyState:
-    """Give every quantity its unit and sign, and carry the errors of depth and of rounding to it."""
+    """Give every quantity its unit and sign, and propagate the errors of depth and of rounding to it."""
     side = 1.0 - 2.0 * (velocity < 0.0)
     noise = MARGIN * (depth_error + found.noise)
     values, errors = {}, {}

@@ -1,4 +1,4 @@
-"""The rates at which small motions about steady sliding grow or fade: roots of real polynomials.
+"""The rates at which small disturbances of steady sliding grow or decay: roots of real polynomials.
 
 Quadratic for a rigid drive (theorem F12), quartic with a spring in it (theorem F22).
 """
@@ -11,7 +11,7 @@ from kvtheory.models.steady.stability import ROUNDING, Numbers
 Array = NDArray[np.float64]
 
 POLISHES = 3
-"""Steps of Newton after the eigenvalues of the companion matrix, which lose digits of the slow rates."""
+"""Newton steps after the eigenvalues of the companion matrix, which lose digits of the slow rates."""
 
 
 def rates(
@@ -45,7 +45,7 @@ def roots(coefficients: Array, sizes: Array) -> tuple[NDArray[np.complex128], Ar
     """Return the roots of polynomials, from the constant coefficient on, and their relative errors.
 
     `sizes` are those of the terms of which each coefficient is a sum. A polynomial of degree n has a
-    root within n |P/P'| of any number; to |P| comes what rounding makes of it.
+    root within n |P/P'| of any number; the rounding of P is added to |P|.
     """
     degree = coefficients.shape[-1] - 1
     unit = (coefficients[..., :1] / coefficients[..., -1:]) ** (1.0 / degree)  # of the mean root
@@ -72,7 +72,7 @@ def roots(coefficients: Array, sizes: Array) -> tuple[NDArray[np.complex128], Ar
 
 
 def _horner(coefficients: Array, places: NDArray) -> tuple[NDArray, NDArray]:
-    """Return the values and the slopes of polynomials at their places, along the last axis."""
+    """Return the values and derivatives of polynomials at given points, along the last axis."""
     value = np.zeros_like(places)
     slope = np.zeros_like(places)
     for each in np.moveaxis(coefficients, -1, 0)[::-1]:

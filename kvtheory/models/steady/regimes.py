@@ -1,4 +1,4 @@
-"""Which asymptote holds for a scene, how wrong it is, and over which velocities."""
+"""Which asymptote holds for a scene, its error, and over which velocities it holds."""
 
 from collections.abc import Mapping
 from typing import Any, NamedTuple
@@ -21,7 +21,7 @@ Array = NDArray[np.float64]
 Values = Mapping[str, Array]
 
 DECADES = 30.0
-"""How far from the critical velocity, in powers of ten, the range of an asymptote is looked for."""
+"""How far from the critical velocity, in powers of ten, the end of a range is sought."""
 
 STATEMENT = "the relative errors are closed forms (derivations {}), monotonic in V, evaluated to about 1e-14"
 
@@ -31,13 +31,13 @@ LISTED = {
     "dead-weight": ("friction_coefficient", "depth"),
     "suspended": ("friction_coefficient", "depth", "load"),
 }
-"""What is listed for each support, each at low and then at high velocity."""
+"""The quantities listed for each support, each at low and then at high velocity."""
 EQUATIONS = {
     "fixed": (42, 45, 40, 43, 41, 44),
     "dead-weight": (42, 46, None, 49),
     "suspended": (42, None, None, None, None, None),
 }
-"""The paper's numbers of them."""
+"""Their equation numbers in the paper."""
 OF_PARABOLA = {
     "fixed": (
         "C V/(R K)",
@@ -109,7 +109,7 @@ OF_BALL = {
         "M g + k_s delta_0",
     ),
 }
-"""With R' across, K and C are multiplied by sqrt(R'/R) where W stands beside them or alone."""
+"""With a radius R' across, K and C are multiplied by sqrt(R'/R) in formulas that contain W or give W or F."""
 
 
 class Row(NamedTuple):
@@ -189,7 +189,7 @@ def _range_edge(scene: Scene, values: Values, critical: Array, row: Row, toleran
     """Return the velocity at which the error of an asymptote passes the tolerance.
 
     The error is monotonic in V: a sign change within `DECADES` of V* is the edge; without one the
-    asymptote is good at every velocity (a dead weight's load, say).
+    asymptote is within the tolerance at every velocity (such as the load of a dead weight).
     """
     keys = list(values)
 

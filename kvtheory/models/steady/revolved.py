@@ -1,13 +1,13 @@
 r"""Steady sliding of a ball and of any profile of revolution, by quadrature over its strips.
 
-Elements are independent: a strip along x at the distance y from the middle plane is a line contact of its
-own, whose shape is h(sqrt(x^2 + y^2)) - h(|y|) and whose depth is delta - h(|y|). Its load and friction force
+Elements are independent: a strip along x at the distance y from the middle plane is a separate line contact,
+whose shape is h(sqrt(x^2 + y^2)) - h(|y|) and whose depth is delta - h(|y|). Its load and friction force
 are those of `kvtheory.models.steady.contact`, or `asperities` for a profile that need not be convex, and
 
     W = int W_2 dy,    F = int F_2 dy    over |y| < b,    h(b) = delta,    y = b sin t.
 
-A strip at the rim has lost the digits of h(|y|) and carries next to nothing: strips beyond `RIM` are left
-out. As dW_2/d(delta) = K (x_TE - x_LE + l_r) is summed as well, the depth at a load is found by Newton's
+Strips at the rim suffer cancellation in delta - h(|y|) and carry almost nothing: strips beyond `RIM` are
+omitted. As dW_2/d(delta) = K (x_TE - x_LE + l_r) is summed as well, the depth at a load is found by Newton's
 method. The middle plane gives the edges and the peak pressure.
 """
 
@@ -29,8 +29,8 @@ from kvtheory.scene.indenters import Line, Profile, Spot
 Array = NDArray[np.float64]
 
 RIM = {True: 3e-4, False: 3e-3}
-"""cos t of the last strip of a convex profile, and of one that is looked at point by point, for which
-rounding counts sooner: what lies beyond carries less than its fourth power of the load."""
+"""cos t of the last strip of a convex profile, and of one that is evaluated point by point, which is more
+sensitive to rounding: the strips beyond carry less than its fourth power of the load."""
 MIDDLE = 1e-10
 """y/b of the strips next to the middle plane: a tip that is any sharper makes no difference."""
 NEAR = 0.02
@@ -38,13 +38,13 @@ NEAR = 0.02
 GAUSS = tuple((0.5 + 0.5 * s, 0.5 * w) for s, w in zip(*leggauss(4), strict=True))
 
 LEAST = 2e-14
-"""Relative error below which nothing is claimed."""
+"""Smallest relative error that is claimed."""
 SHARP = 4e-12
 """The same for a profile with a kink, whose strips next to the middle plane have a sharp tip."""
 RTOL = {True: 1e-12, False: 1e-9}
 """Estimate above which the next rule is taken."""
 LIMIT = 1e-6
-"""Estimate above which the last rule is no answer."""
+"""Estimate above which the result of the last rule is refused."""
 MOST_STEPS = 100
 """Steps of Newton's method; they are a handful."""
 STEP = 1e-13
@@ -89,7 +89,7 @@ class Strip:
 
 
 class Sums(NamedTuple):
-    """What the strips of a contact sum up to, over the stiffness."""
+    """The sums over the strips of a contact, over the stiffness."""
 
     load: float
     load_slope: float
@@ -220,7 +220,7 @@ def _state(
 
 
 def _model(profile: Line) -> tuple[Any, Any]:
-    """Return the module that knows the contacts of a profile, and the profile as it takes it."""
+    """Return the module that computes the contacts of a profile, and the profile in its form."""
     return (contact, profile) if profile.convex else (asperities, Surface(profile, 1.0))
 
 

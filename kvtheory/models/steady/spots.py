@@ -1,4 +1,4 @@
-"""What methods take of a ball: the values of its scene."""
+"""The input of methods for a ball, from the values of its scene."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -7,7 +7,7 @@ import numpy as np
 
 
 def stretch_of(values: Mapping[str, Any]) -> Any:
-    """Return sqrt(R'/R), by which the contact at rest is wider than long.
+    """Return sqrt(R'/R), the ratio of width to length of the contact at rest.
 
     >>> float(stretch_of({"indenter.radius": 0.01, "indenter.radius_across": 0.04}))
     2.0

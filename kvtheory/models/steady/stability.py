@@ -1,11 +1,12 @@
 """Whether steady sliding is stable if the drive holds the indenter by a spring: closed forms (theorem F22).
 
-Small motions across the foundation and along it, each divided by the damping of its contact, obey
+Small motions in the vertical and in the sliding direction, each divided by the damping of the contact, obey
 
     (T_z sigma^2 + sigma + S_z) (T_x sigma^2 + sigma + S_x) = g sigma (sigma + S_c)
 
-with sigma in 1/tau. Where stability is lost the frequency, Omega = omega^2, is a root of a quadratic
-without T_x and S_x, and the spring is the one that gives this frequency with the mass along x.
+with sigma in 1/tau. At the onset of instability Omega = omega^2, with omega the angular frequency, is a
+root of a quadratic without T_x and S_x; the critical stiffness is the one with this frequency for the mass
+along x.
 """
 
 from collections.abc import Mapping
@@ -28,7 +29,7 @@ the comparison with 80 digits has shown on five hundred scenes."""
 class Numbers(NamedTuple):
     """The numbers of the rates (theorem F22-numbers); `unit` is the stiffness in N/m^2 of S_x = 1.
 
-    Of a fixed indenter, which cannot move across, T_z is 0 and S_z infinite.
+    For a fixed indenter, which cannot move vertically, T_z is 0 and S_z infinite.
     """
 
     T_z: Array
@@ -118,9 +119,9 @@ def _hertz(Omega: Array, tau: Array) -> Array:
 
 
 def _error(given: Numbers, s: Array, n: Array) -> Array:
-    """Return how far rounding moves the roots, relative to them, to first order and twice over.
+    """Return the relative error of the roots by rounding, to first order, with a safety factor of two.
 
-    It grows without bound where friction neither rises nor falls, and where both roots meet.
+    It grows without bound at a maximum or minimum of friction, and where both roots coincide.
     """
     T_z, _, S_z, S_c, g, h, e, _ = given
     m = h - T_z * g * S_c
@@ -131,5 +132,5 @@ def _error(given: Numbers, s: Array, n: Array) -> Array:
 
 
 def is_stable(stiffness: Array, lower: Onset, upper: Onset) -> Any:
-    """Return whether a stiffness is outside of those between which steady sliding is unstable."""
+    """Return whether a stiffness is outside the interval in which steady sliding is unstable."""
     return ~((stiffness >= lower.stiffness) & (stiffness <= upper.stiffness))

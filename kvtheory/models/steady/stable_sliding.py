@@ -24,14 +24,14 @@ STATEMENT = (
     "rates by their polynomial, the velocity to where its stiffness is critical"
 )
 SLOW = "rates", "time_constants"
-"""What has a last axis for the rates."""
+"""The quantities with a last axis for the rates."""
 
 
 def solve(values: Values, wanted: Set[str]) -> Stability:
-    """Return what is wanted of scenes, given by SI by dotted key in arrays of one shape.
+    """Return the wanted quantities of scenes, given in SI by dotted key in arrays of one shape.
 
-    The drive is rigid if they hold no ``drive.stiffness``. A spring that might take its place has no damper,
-    and the mass of the support; a fixed support has none.
+    The drive is rigid if there is no ``drive.stiffness``. The critical stiffness is then that of a spring
+    without damper and with the mass of the support; a fixed support has none.
     """
     mass = values.get("support.mass", np.array(np.nan))
     values = {"drive.damping": np.array(0.0), "drive.mass": mass, **values}
@@ -56,7 +56,7 @@ def solve(values: Values, wanted: Set[str]) -> Stability:
 
 
 def lasts(scene: Scene, values: Values) -> Any:
-    """Return whether steady sliding of scenes is stable; None where that is not known on their spring.
+    """Return whether steady sliding of scenes is stable; None if that is not known for their spring.
 
     >>> from kvtheory.scene.broadcasting import values
     >>> speeds = {"drive.velocity": [0.02, 0.091], "drive.stiffness": 1e6}

@@ -30,15 +30,16 @@ from kvtheory.results import STEADY_UNITS, Certificate, SteadyState
 Array = NDArray[np.float64]
 
 MOST_STEPS = 12
-"""Far more than are needed: three to six."""
+"""Most iterations; three to six are needed."""
 LAST_STEP = 1e-6
 """A step as small as this leaves an error of its cube."""
 PEAK_STEP, PEAK_STEPS = 1e-8, 80
-"""The place of the peak: its value has the square. Bisection alone would need as many steps."""
+"""Tolerance and steps for the position of the peak, whose value has an error of second order; bisection alone
+would need as many steps."""
 FRACTION_TERMS = 10
 """Terms of the continued fraction for z <= 4: the next one is below rounding."""
 FAR = 1e150
-"""z of an arm that relaxes at once: its square is still a number."""
+"""z of an arm that relaxes immediately: its square is still finite."""
 
 RELATIVE_ERROR = 24 * float(np.finfo(float).eps)
 """5.3e-15, twice the worst that the comparison with 50 digits has shown."""
@@ -101,7 +102,7 @@ class Prony:
         return self.K + self._sum(end), -self._sum(z * end), self.K + self._sum(mean)
 
     def least_peak(self, a: Array) -> Array:
-        """Return a distance at which the pressure still rises: there G has hardly fallen."""
+        """Return a distance at which the pressure still rises, because G has hardly decreased."""
         return np.minimum(0.25 * a, 0.5 * self.length.min(axis=0))
 
     def _sum(self, rows: Array) -> Array:
@@ -156,9 +157,9 @@ class Fractional:
         )
 
     def dissipated(self, c: Array, eta: Array, work: Array) -> tuple[Array, Array]:
-        """Return the share of the work that is lost in the contact: what is not left at its edge.
+        """Return the share of the work lost in the contact: that not stored at the trailing edge.
 
-        Towards order 0 next to nothing is lost, and the difference loses digits: so its own error.
+        Towards order 0 almost nothing is lost, and the difference cancels; hence its separate error.
         """
         rest, two = 1.0 - self.alpha, 2.0**-self.alpha
         third, fourth = self.rgamma[3:5]
@@ -329,7 +330,7 @@ def state(
 ) -> tuple[Array, ...]:
     """Return the quantities in the order of `STEADY_UNITS`, and the error of the last one.
 
-    A depth that is given is kept to the last bit; without, it follows from the length of the contact.
+    A given depth is kept to the last bit; otherwise it follows from the length of the contact.
     """
     M = row.moments(c)
     A = M.P + M.Q
