@@ -1,4 +1,4 @@
-"""Decisions by exact algebra: is it zero, which sign has it, how does it approach a limit.
+"""Decisions by exact algebra: zero or not, sign, behaviour near a limit.
 
 Nothing here is numerical. A function that cannot decide raises `UndecidedError`; it never guesses.
 """
@@ -19,7 +19,7 @@ from .identity import vanishes
 
 
 class UndecidedError(ArithmeticError):
-    """The algebra could neither prove nor refute what was asked."""
+    """The algebra could neither prove nor refute the statement."""
 
 
 _CONTINUOUS = (sp.exp, sp.sin, sp.cos, sp.sinh, sp.cosh, sp.tanh, sp.atan, sp.Abs)
@@ -28,7 +28,7 @@ _CONTINUOUS = (sp.exp, sp.sin, sp.cos, sp.sinh, sp.cosh, sp.tanh, sp.atan, sp.Ab
 
 @lru_cache(maxsize=4096)
 def normalise(expr: sp.Expr) -> sp.Expr:
-    """Write tangents as quotients, minima by cases, and factor what stands under roots.
+    """Write tangents as quotients, minima by cases, and factor radicands.
 
     Factoring lets ``sqrt((1 - q**2)**2/(4*q**2) + 1)`` become ``(q**2 + 1)/(2*q)`` where the
     assumptions on the symbols allow it.
@@ -48,7 +48,7 @@ def _is_of_two(expr: sp.Expr) -> bool:
 
 
 def _by_distance(expr: sp.Expr) -> sp.Expr:
-    """Write the larger or smaller of two by how far they are apart."""
+    """Write the larger or smaller of two by their distance."""
     one, other = expr.args
     sign = 1 if isinstance(expr, sp.Max) else -1
     return (one + other + sign * sp.Abs(one - other)) / 2

@@ -1,4 +1,4 @@
-r"""How wrong each asymptote of Eqs. 40-49 is: exact relative errors, and bounds that hold everywhere.
+r"""The errors of the asymptotes of Eqs. 40-49: exact relative errors, and bounds valid at every velocity.
 
 Every error is asymptote/exact - 1 as a function of l = l_r/a and q = x_TE/a. It is monotonic in q, so
 that an asymptote is within a tolerance on a half-line of velocities; a power of l bounds it.
@@ -51,7 +51,7 @@ SECTION = "Errors of the asymptotes"
 
 @dataclass(frozen=True)
 class Asymptote:
-    """An asymptote over the exact value, and what is to be proved of it."""
+    """An asymptote over the exact value, and the statements to be proved about it."""
 
     label: str
     title: str
@@ -60,7 +60,7 @@ class Asymptote:
     ratio: sp.Expr
     """Asymptote/exact in terms of w, phi, m and l."""
     stable: sp.Expr
-    """Asymptote/exact - 1 without a difference of nearly equal numbers."""
+    """Asymptote/exact - 1 without cancellation."""
     power: int
     """The error is bounded on both sides by multiples of l**power ..."""
     lower: sp.Expr | int
@@ -135,7 +135,7 @@ def _start(label: str, title: str, text: str, *uses: str) -> Proof:
 
 
 def _recall(proof: Proof, ratio: sp.Expr) -> None:
-    """Recall of theorem F1 what the ratio is made of."""
+    """Recall the parts of the ratio from theorem F1."""
     proof.recall("scaling", l, NUMBER, RATIO)
     for symbol, form in _F1.items():
         if ratio.has(symbol):
@@ -195,7 +195,7 @@ def _dead_weight() -> Derivation:
     proof = _start(
         "error-L2-dead-weight",
         "Friction coefficient at high velocity, dead weight",
-        "The error of the asymptote at fixed depth, and that of the depth which goes into it under a "
+        "The error of the asymptote at fixed depth, and that of the depth, which enters it under a "
         r"square root. It is monotonic, and $1 + e < (1 + \frac{2}{3 l})^2$ at every velocity.",
         "eq46",
     )
@@ -238,7 +238,7 @@ def _suspended() -> Derivation:
     proof.define(
         e_load_spring, (f + kappa * s**2) / f - 1, r"balance: $1 + \kappa = f + \kappa s^2$"
     )
-    proof.equal(e_load_spring, form, "the spring has not yet let go of this")
+    proof.equal(e_load_spring, form, "the part that the spring still carries")
     return proof.done(e_load_spring, form)
 
 

@@ -1,7 +1,7 @@
 """The asymptotes of low and high velocity with their next order, and where they meet (Eqs. 40-50).
 
-The paper estimates load and friction by integrals over the limiting contact. Each of them is
-evaluated here as it stands, and then compared with the exact load, and the friction force of F21.
+The paper estimates load and friction by integrals over the limiting contact. Each integral is
+evaluated here as given, and compared with the exact load and with the friction force of F21.
 """
 
 from functools import partial
@@ -112,7 +112,7 @@ def _estimate(
     if force == F:
         spring = low_load if low else low_load / 2
         reason = "what the spring carries: all of the load at rest" if low else _HALF
-        proof.define(load_excess, W - C * V * delta, "F21 wants the load without the damper's part")
+        proof.define(load_excess, W - C * V * delta, "F21 needs the load without the damper's part")
         proof.leading_order(load_excess, spring, *point, reason, eps=small)
         proof.equal(leading, l_r / R * spring, r"$l_{\mathrm{r}}/R$ times that", left=shown)
     proof.leading_order(force, leading, *point, "the exact force", eps=small, right=shown)
@@ -184,7 +184,7 @@ def _high_dead_weight() -> Derivation:
     return proof.done(mu, high_coefficient_dead_weight)
 
 
-_IN_DRIVE = "The velocity $V^{*}$ is that of Eq. (48); the load $W$ is held."
+_IN_DRIVE = "The velocity $V^{*}$ is that of Eq. (48); the load $W$ is given."
 
 
 def _define_critical(proof: Proof) -> None:

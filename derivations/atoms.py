@@ -1,6 +1,6 @@
 r"""The symbols in a piece of LaTeX: a letter with its bar or hat, its index and its star.
 
-Dots and primes are no part of a symbol: they say that it is differentiated.
+Dots and primes are not part of a symbol: they denote derivatives.
 
 >>> [atom.symbol for atom in atoms(r"\dot{u}_{i} = \bar a^{2} d'/l_{\mathrm{r}} + \int_{a}^b h(x)")]
 ['u_i', '\\bar a', 'd', 'l_{\\mathrm{r}}', 'a', 'b', 'h', 'x']

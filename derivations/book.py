@@ -1,4 +1,4 @@
-"""The book of a proof: what it has defined, recalled and established, and what it ends in."""
+"""The book of a proof: its definitions, recalled and established relations, and its result."""
 
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
@@ -39,7 +39,7 @@ NOTATION: dict[str, Meaning] = {r"\alpha": alpha}
 
 
 class StepError(ValueError):
-    """A step that is wrong, or that the engine cannot show to be right."""
+    """A step that is wrong, or that the engine cannot prove."""
 
 
 class Shown(TypedDict, total=False):
@@ -50,7 +50,7 @@ class Shown(TypedDict, total=False):
 
 
 def asked(check: Callable[_P, _Value]) -> Callable[_P, _Value]:
-    """Let a check keep what it was asked with the step that it records."""
+    """Let a check store its input with the step that it records."""
     form = signature(check)
 
     @wraps(check)
@@ -71,7 +71,7 @@ def tex(expr: sp.Expr) -> str:
 
 
 def tex_interval(over: Interval) -> str:
-    r"""Print for which values of a variable a step holds.
+    r"""Print the values of a variable for which a step holds.
 
     >>> x = sp.Symbol("x", real=True)
     >>> [tex_interval((x, *ends)) for ends in ((0, 1), (0, sp.oo), (-sp.oo, 2), (-sp.oo, sp.oo))]
@@ -183,7 +183,7 @@ class Book:
 
     @asked
     def define(self, lhs: sp.Expr, rhs: sp.Expr, reason: str = "", **shown: Unpack[Shown]) -> None:
-        """Let the left side stand for the right side: a name, or a law of the model."""
+        """Define the left side by the right side: a name, or a law of the model."""
         self._displayed(sp.sympify(lhs), sp.sympify(rhs), shown)
         self._rule(lhs, rhs)
         self._imply(sp.sympify(lhs))
@@ -267,7 +267,7 @@ class Book:
         return Claim(check, sp.sympify(lhs), sp.sympify(rhs), arguments, rules)
 
     def _stated(self) -> tuple[Step, ...]:
-        """Return the steps without the premises of which no check made use."""
+        """Return the steps without the premises that no check has used."""
         needed, before = set(self._needed), -1
         while len(needed) > before:
             before = len(needed)
@@ -305,7 +305,7 @@ class Book:
     def pair(
         self, one: tuple[sp.Expr, sp.Expr], other: tuple[sp.Expr, sp.Expr], reason: str
     ) -> Derivation:
-        """End the proof with two relations that its steps established, side by side."""
+        """End the proof with two established relations, side by side."""
         facts = [self._known.get((sp.sympify(lhs), sp.sympify(rhs))) for lhs, rhs in (one, other)]
         if None in facts:
             raise StepError(f"{self.label}: no step established {one} and {other}")
@@ -342,7 +342,7 @@ class Book:
 
     @contextmanager
     def _case(self, case: Relational | sp.logic.boolalg.BooleanTrue) -> Iterator[None]:
-        """Let an equality for a name, or a strict inequality, hold for a while."""
+        """Assume an equality for a name, or a strict inequality, within a context."""
         kept = self._rules.copy(), self._origins.copy(), self._conditions
         if isinstance(case, sp.Eq):
             premise = Premise(case.lhs, case.rhs, tex(case))

@@ -1,4 +1,4 @@
-r"""Closed forms with the numbers of a scene put in, as engineers calculate by hand.
+r"""Closed forms with the numbers of a scene inserted, as in a hand calculation.
 
 The numbers come in as SI values and units by the name of a symbol; what follows from them (half length,
 retardation length, edges) is computed from the proved closed forms.
@@ -36,13 +36,13 @@ FOLLOWING = (
     ("eq26", sym.x_le),
     ("eq27", sym.x_te),
 )
-"""What follows from the quantities of a scene and from its depth, by the derivations that say so."""
+"""The quantities that follow from a scene and its depth, with the derivations that give them."""
 
 CONSTANTS = (sym.R, sym.M, sym.K, sym.C, sym.tau, sym.g, sym.a_0, sym.delta_0, sym.W_0)
-"""What a scene is in every state."""
+"""The constants of a scene, the same in every state."""
 
 COORDINATES = (sym.x, sym.z, sym.t, sym.xi)
-"""Where something is is not a result."""
+"""Positions, which are not results."""
 
 _CHECKS = ("define", "equal", "root", "integral", "leading_order")
 _PREFIXES = (
@@ -55,7 +55,7 @@ _PREFIXES = (
     (1e-9, "n"),
 )
 _NEEDLESS = re.compile(r"\{\(([^()]*)\)\}")
-"""Parentheses around all that stands between two braces."""
+"""Parentheses around everything between two braces."""
 _NUMBER = re.compile(r"(-?[\d.]+)e([+-]\d+)")
 
 
@@ -142,7 +142,7 @@ def _agree(one: sp.Expr, other: sp.Expr) -> bool:
 
 
 def _value(form: sp.Expr, known: Numbers) -> sp.Expr | None:
-    """Return the number that a form has, or None if it holds something without a number."""
+    """Return the value of a form, or None if it contains a symbol without a value."""
     if not form.free_symbols <= known.keys() or form.has(AppliedUndef, sp.Integral, sp.Derivative):
         return None
     value = form.subs(known).evalf(DIGITS)
@@ -172,7 +172,7 @@ def _calculation(
 
 
 def _substituted(formula: str, known: Numbers) -> str:
-    r"""Put a quantity with its unit in the place of each symbol; nothing if one has no number."""
+    r"""Replace each symbol by its quantity with its unit; return nothing if one has no value."""
     quantities = {r"\alpha": shown(float(sym.alpha), "1"), **_listed(known)}
     present = {atom.symbol for atom in atoms(formula)}
     if not present or not present <= quantities.keys():

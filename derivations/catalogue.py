@@ -52,7 +52,7 @@ _CHAPTERS = (
     *(spring_drive, spring_stability, spring_limits),
     *(element_schemes, element_edges, element_arms),
 )
-"""Each chapter may recall what the chapters before it have established."""
+"""Each chapter may recall the results of the chapters before it."""
 
 SECTIONS = tuple(dict.fromkeys(chapter.SECTION for chapter in _CHAPTERS))
 """The sections of the document, in order."""

@@ -1,4 +1,4 @@
-r"""How wrong the parabola h = x**2/(2 R) is for a true circle h = R - sqrt(R**2 - x**2).
+r"""The error of the parabola h = x**2/(2 R) for a true circle h = R - sqrt(R**2 - x**2).
 
 With eps = (a/R)**2, where a = sqrt(2 R delta) belongs to the parabola, each quantity of steady sliding
 is that of the parabola times 1 + c eps + O(eps**2). Shape and edges are analytic in eps, so that the
@@ -49,7 +49,7 @@ CONTACT = (xi, -1, q)
 PARABOLA = 1 - xi**2 - 2 * l * xi
 """p/(K delta) of the parabola at x = xi a."""
 CORRECTION = -(xi**4) / 4 - l * xi**3
-"""What the fourth-order term of the circle adds to it, per eps."""
+"""The addition by the fourth-order term of the circle, per eps."""
 _shift = sp.Symbol("t", real=True)
 EDGE = sp.Rational(1, 8)
 """The leading edge of the circle is at xi = -1 + eps/8 + O(eps**2)."""
@@ -76,10 +76,10 @@ def _shape() -> Derivation:
     edge = sp.sqrt(1 - eps / 4)
     proof.define(a, R * sp.sqrt(eps), r"$\varepsilon = (a/R)^2$")
     proof.recall("eq28", delta, a**2 / (2 * R))
-    proof.where(eps * xi**2 < 1, "below the sides of the circle")
+    proof.where(eps * xi**2 < 1, "within the radius, $|x| < R$")
     proof.equal((R - sp.sqrt(R**2 - (xi * a) ** 2)) / delta, circle, r"$h/\delta$ of the circle")
     first = eps * xi**4 / 4
-    proof.leading_order(circle - xi**2, first, eps, 0, "against the parabola", eps=eps)
+    proof.leading_order(circle - xi**2, first, eps, 0, "the difference to the parabola", eps=eps)
     reason = (
         r"$h = \delta$ where $(R - \delta)^2 = R^2 - x^2$: at $\xi = -\sqrt{1 - \varepsilon/4}$"
     )
@@ -93,9 +93,9 @@ def _fixed() -> Derivation:
         "circle-fixed",
         title="True circle at given depth",
         text=r"Load, friction force and friction coefficient are those of the parabola times $1 + c_W "
-        r"\varepsilon$, $1 + c_F \varepsilon$ and $1 + c_\mu \varepsilon$, up to $O(\varepsilon^2)$. The "
-        "pressure is zero at the trailing edge, whose shift therefore does not count; at the leading edge "
-        "it is not.",
+        r"\varepsilon$, $1 + c_F \varepsilon$ and $1 + c_\mu \varepsilon$, up to "
+        r"$O(\varepsilon^2)$. The pressure vanishes at the trailing edge, whose shift therefore has "
+        r"no effect to this order; at the leading edge it does not vanish.",
         uses=("circle-shape", "F16"),
     )
     proof.recall("scaling", l, NUMBER, RATIO)
@@ -128,7 +128,7 @@ def _fixed() -> Derivation:
         )
         proof.equal(coefficient, value, f"{name}: the shift $t$ of the trailing edge drops out")
     proof.sign(c_w, "<", 0, UNIT, "the circle carries less")
-    proof.sign(c_f, ">", 0, UNIT, "and resists more")
+    proof.sign(c_f, ">", 0, UNIT, "and has more friction")
     proof.define(c_mu, c_f - c_w, r"$\mu = F/W$, a sum of positive terms")
     return proof.done(c_mu, c_f - c_w)
 
@@ -145,7 +145,7 @@ def _dead_weight() -> Derivation:
         title="True circle at given load",
         text=r"With $\varepsilon = (a/R)^2$ of the parabola at the same load and velocity, depth and "
         r"friction coefficient are those of the parabola times $1 + c_{\delta,W} \varepsilon$ and $1 + "
-        r"c_{\mu,W} \varepsilon$, up to $O(\varepsilon^2)$: the depth gives way until the load is the same.",
+        r"c_{\mu,W} \varepsilon$, up to $O(\varepsilon^2)$: the depth adjusts until the load is the same.",
     )
     loading = 3 / A
     slipping = sp.diff(FRICTION_COEFFICIENT, q) / FRICTION_COEFFICIENT * NUMBER / sp.diff(NUMBER, q)
@@ -155,7 +155,7 @@ def _dead_weight() -> Derivation:
     proof.recall("circle-fixed", c_f, FORCE_COEFFICIENT)
     proof.recall("circle-fixed", c_mu, c_f - c_w)
     proof.equal(s * f_s / f / 2, loading, r"$d \ln W/d \ln \delta$ at fixed velocity")
-    proof.define(c_delta_load, -c_w / loading, "depth: the load stays")
+    proof.define(c_delta_load, -c_w / loading, "depth: the load is kept")
     change = sp.Symbol("m_l", real=True)
     proof.define(change, slipping, r"$d \ln m/d \ln l$, by $q$")
     proof.equal(change, slope, "logarithmic slope of $m$")

@@ -13,7 +13,7 @@ from .symbols import lam
 class CodePrinter:
     """Prints expressions; integer powers are products, square roots of sums of squares `hypot`.
 
-    `library` is what functions are taken from, and `names` says where it has other names for them.
+    `library` is the library of functions, and `names` maps functions to its names where they differ.
 
     >>> a, b = sp.symbols("a b", positive=True)
     >>> CodePrinter("JavaScript", "Math").code(sp.sqrt(1 + a**2) + b**3 / (2 * a))

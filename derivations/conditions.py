@@ -1,4 +1,4 @@
-r"""Under which conditions a step holds: intervals and inequalities, and what they prove.
+r"""Conditions under which a step holds: intervals and inequalities, and what follows from them.
 
 Everything here is conservative: a function returns True only for what is proved, and where it cannot
 prove anything it returns False.
@@ -22,7 +22,7 @@ Interval = tuple[sp.Symbol, sp.Expr | int, sp.Expr | int]
 
 @dataclass(frozen=True)
 class Conditions:
-    """What may be used beside the assumptions on the symbols."""
+    """The premises in addition to the assumptions on the symbols."""
 
     intervals: tuple[Interval, ...] = ()
     positive: tuple[sp.Expr, ...] = ()
@@ -98,7 +98,7 @@ def _sign(expr: sp.Expr, known: Conditions) -> int:
 
 
 def _known_sign(expr: sp.Expr, *, strict: bool = True) -> int:
-    """Return what the assumptions on the symbols say at once."""
+    """Return the sign that follows directly from the assumptions on the symbols."""
     if expr.is_positive or (expr.is_nonnegative and not strict):
         return 1
     return -1 if expr.is_negative or (expr.is_nonpositive and not strict) else 0
@@ -121,7 +121,7 @@ def _once(forms: Iterable[sp.Expr]) -> Iterator[sp.Expr]:
 def _name(place: int) -> sp.Dummy:
     """Return a positive variable for one place among the conditions, the same whenever it is asked.
 
-    A new one each time would hide from every cache that the question has been answered before.
+    A new one each time would defeat every cache.
     """
     return sp.Dummy(f"positive_{place}", positive=True)
 

@@ -1,7 +1,7 @@
-r"""For which shapes the contact is one interval, whatever the motion: F9 beyond the parabola.
+r"""The shapes for which the contact is one interval under any motion: F9 beyond the parabola.
 
 Let h be even, convex, h' > 0 for x > 0. The contact is one interval for every drive and every motion of
-the indenter if ln h' is concave for x > 0, and for no other shape: a wedge of two slopes shows how.
+the indenter if ln h' is concave for x > 0, and for no other shape; a wedge of two slopes is a counterexample.
 """
 
 from functools import partial
@@ -57,7 +57,10 @@ def _height(place: sp.Expr) -> sp.Expr:
 
 def _condition() -> Derivation:
     proof = _theorem(
-        "F9-difference", title="Contact against one past instant", text=_NOTATION, uses=("F8",)
+        "F9-difference",
+        title="Contact condition from one past instant",
+        text=_NOTATION,
+        uses=("F8",),
     )
     h = sp.Function("h", real=True)
     now, then = sp.symbols("d d_1", real=True)
@@ -78,8 +81,8 @@ def _condition() -> Derivation:
 
 _NOTATION = (
     r"An element is now at $\xi$, where the indenter is at $d - h(\xi)$; at $s_1 < s$ it was at "
-    r"$\xi - m$, and the indenter at $d_1 - h(\xi - m)$. Lengths, depths and $h$ are scaled as "
-    r"they may be. By F8 the element is in contact if and only if $D_1 \ge 0$ for every past "
+    r"$\xi - m$, and the indenter at $d_1 - h(\xi - m)$. Lengths, depths and $h$ may be scaled "
+    r"arbitrarily. By F8 the element is in contact if and only if $D_1 \ge 0$ for every past "
     r"instant and $e^{s} (d - h) \ge u_0$, which is zero or the same difference for $s_1 = 0$; and "
     r"$d \ge h(\xi)$ on one interval, because $h$ is even and convex."
 )
@@ -118,14 +121,15 @@ def _interval() -> Derivation:
 
 
 _INTERVAL = (
-    r"Let $h$ be even and convex, $h' > 0$ and $\ln h'$ concave for $x > 0$. Let $m \ge 0$; a way "
-    r"back is the mirror image. From the tip on $f$ falls. Ahead of it, $\rho$ does not grow with "
+    r"Let $h$ be even and convex, $h' > 0$ and $\ln h'$ concave for $x > 0$. Let $m \ge 0$; motion "
+    r"in the other direction is the mirror image. From the tip on $f$ falls. Ahead of it, $\rho$ "
+    r"does not grow with "
     r"$y$: going towards the tip $1 - E \rho$ can change its sign once only, from + to $-$. So $f$ "
     r"rises to one place and falls beyond it, $D_1 \ge 0$ on one interval for each past instant, "
-    "and intervals intersect in an interval, or not at all: two edges are the whole geometry of "
-    "the contact. What no machine has checked here: that a function which first rises and then "
-    "falls is at or above a given value on an interval; that an integral of what is not positive "
-    r"is not positive; and that where $h'$ or $\chi$ has a kink, concavity itself, $\rho(y_2) \le "
+    "and intervals intersect in an interval, or not at all: the contact is described by two edges. "
+    "Not checked by machine: that a function which first rises and then "
+    "falls is at or above a given value on an interval; that the integral of a non-positive "
+    r"function is not positive; and that where $h'$ or $\chi$ has a kink, concavity itself, $\rho(y_2) \le "
     r"\rho(y_1)$ for $y_2 > y_1$, takes the place of the integral."
 )
 
@@ -174,7 +178,7 @@ _CIRCLE = (
 
 
 def _converse() -> Derivation:
-    proof = _theorem("F9-converse", title="No other shape has one contact always", text=_CONVERSE,
+    proof = _theorem("F9-converse", title="Necessary condition for a single contact", text=_CONVERSE,
                      uses=("F9-shapes",))  # fmt: skip
     middle = 2 / (ratio_near + ratio_now)
     proof.notation |= {r"\rho(y_1)": ratio_near, r"\rho(y_2)": ratio_now}
@@ -196,10 +200,10 @@ def _converse() -> Derivation:
 _CONVERSE = (
     r"If $\ln h'$ is not concave, some $\rho(y_2) = h'(y_2 + m)/h'(y_2)$ is greater than "
     r"$\rho(y_1)$ with $y_1 < y_2$. Let the indenter rest at a depth $d_1$, be lifted, be moved by "
-    "$m$ while $e^{s}$ grows to $1/E$, and be set down at once to $d = E d_1 - k$. Elements are "
+    "$m$ while $e^{s}$ grows to $1/E$, and be set down instantly to $d = E d_1 - k$. Elements are "
     r"in contact where $f \ge k$ and $d \ge h$. With $k$ between the bottom of the valley and its "
-    "lower rim, and $d_1$ so great that all of them were pressed, the contact is in two parts, on "
-    "both sides of the valley."
+    "lower rim, and $d_1$ so large that all of these elements were compressed, the contact consists "
+    "of two parts, one on each side of the valley."
 )
 
 
@@ -231,7 +235,7 @@ def _two_slopes() -> Derivation:
 _TWO_SLOPES = (
     r"The wedge $h = |x| + 3 \max(0, |x| - 1)$ is even and convex, but $\ln h'$ jumps up at $|x| = "
     r"1$. It rests at the depth 4, is lifted, moved by $m = \frac{1}{2}$ during $s = \ln 2$, and "
-    r"set down at once to $\frac{15}{8}$. By F8 the surface at $\xi$ is then at $u = \frac{1}{2} "
+    r"set down instantly to $\frac{15}{8}$. By F8 the surface at $\xi$ is then at $u = \frac{1}{2} "
     r"\left[4 - h(\xi - \frac{1}{2})\right]$, and the indenter at $g = \frac{15}{8} - h(\xi)$: the "
     r"contact is $[-\frac{19}{16}, -\frac{5}{8}]$ and $[-\frac{1}{4}, \frac{1}{12}]$. (While it is "
     "being set down the indenter has pressed no element farther than in the end.)"

@@ -1,7 +1,7 @@
-r"""Read displayed mathematics back: what a step shows must be what it checked.
+r"""Parse displayed mathematics: the displayed relation must be the one that was checked.
 
-A reader of the little LaTeX that the derivations are written in: sums, products, fractions, powers,
-roots, functions, derivatives, integrals and values at a point. What it does not know it refuses.
+A parser for the small subset of LaTeX in which the derivations are written: sums, products, fractions,
+powers, roots, functions, derivatives, integrals and values at a point. Anything else is refused.
 
 >>> x, l_r = sp.symbols("x l_r")
 >>> read(r"\frac{x^2}{2} - l_{\mathrm{r}} (1 + x)", {"x": x, r"l_{\mathrm{r}}": l_r})
@@ -21,7 +21,7 @@ variables (`Lambda`); under the name \\\\int for the variable and ends of an int
 
 
 class UnreadableError(ValueError):
-    """Mathematics that the reader does not know."""
+    """Mathematics that the parser does not know."""
 
 
 _TOKEN = re.compile(r"\\[A-Za-z]+|\\.|\d+(?:\.\d+)?|\S")
@@ -46,12 +46,12 @@ _TIME = {"s", "t", "zeta", "sigma"}
 
 
 def read(latex: str, names: Mapping[str, Meaning]) -> sp.Expr:
-    """Return what one side of a relation says."""
+    """Return the expression of one side of a relation."""
     return _Reader(latex, names).whole()
 
 
 def read_chain(latex: str, names: Mapping[str, Meaning]) -> list[sp.Expr]:
-    """Return the links of a chain of equalities."""
+    """Return the sides of a chain of equalities."""
     links, depth, start = [], 0, 0
     for match in _TOKEN.finditer(latex):
         depth += (match[0] in _OPEN) - (match[0] in _CLOSE)

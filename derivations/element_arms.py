@@ -1,4 +1,4 @@
-"""What a Maxwell arm does over a step of the elements: its stress, its mean, its energy (elements on arms).
+"""A Maxwell arm over a step of the elements: its stress, its mean, its energy.
 
 Stresses are in units of the stiffness K_i of the arm, time of the step h. The surface moves along a straight
 line, by the rise r; z = h/tau_i. Everything is linear, so that one arm is enough.
@@ -50,8 +50,10 @@ def _arm() -> Derivation:
         "the power that goes in is stored in the spring or lost in the damper",
     )  # fmt: skip
     damper, spring = 2 * MEAN - END, 2 * (END - MEAN)
-    proof.equal(spring + damper, END, "a spring and a damper that end as the ramp does")
-    proof.equal(spring / 2 + damper, MEAN, "and have its mean")
+    proof.equal(
+        spring + damper, END, "a spring and a damper with the same stress at the end of the ramp"
+    )
+    proof.equal(spring / 2 + damper, MEAN, "and the same mean")
     proof.leading_order(damper, _z / 6, _z, 0, "the damper of a slow arm", eps=_z)
     proof.equal(
         _z * damper, 1 + sp.exp(-_z) - 2 * END, r"in units of $K_i \tau_i$: 1 for a fast arm"
@@ -60,10 +62,10 @@ def _arm() -> Derivation:
 
 
 _ARM = (
-    r"An arm answers to the compression $u$ with a stress that grows by $K_i u'$ and falls at the rate "
+    r"The stress of an arm grows by $K_i u'$ with the compression $u$ and decays at the rate "
     r"$1/\tau_i$. In units of $K_i$ and of the step, with $z$ the step over $\tau_i$ and a surface that "
     r"rises by $r$ along a straight line, the stress $s$ obeys $s' = r - z s$ over $0 < y < 1$. The mean "
     r"stress times the rise is the work done on the arm, so that a step of elements in contact balances "
-    r"energy exactly. A damper beside a spring can do to a ramp as the arm does: that of a fast arm is "
-    r"$K_i \tau_i$, that of a slow one of the second order in the step."
+    r"energy exactly. A spring and a damper in parallel can replace the arm on a ramp: the damper "
+    r"of a fast arm is $K_i \tau_i$, that of a slow one is of second order in the step."
 )

@@ -1,4 +1,4 @@
-"""What point elements do at an edge, and how parts of elements mend it (F15).
+"""The error of point elements at an edge, and its correction by parts of elements (F15).
 
 Elements are a distance Delta apart. The default scheme of the simulator, "edge-corrected", adds `KINK`
 and `END` at each edge to the area of the compression; forces are reported by trapezoids up to the edges.
@@ -21,9 +21,9 @@ _u = sp.Function("u", real=True)
 _theorem = partial(Proof, equation=None, section=SECTION)
 
 KINK = _spacing * _inside * _outside / (2 * (_inside - _outside))
-"""What the chord over a kink leaves out of the area."""
+"""The area missed by the chord over a kink."""
 END = _spacing * (_inside - _outside) / 12
-"""What trapezoids leave out where the surface gets the slope of the indenter at once."""
+"""The area missed by trapezoids where the surface has the slope of the indenter immediately."""
 
 
 def derive() -> tuple[Derivation, ...]:
@@ -38,13 +38,13 @@ def _sawtooth() -> Derivation:
     missed = -(_end * first + _rise * first**2 / 2)
     proof.integral(
         *(_surplus, line, (x, first, 0), _end * x + _rise * x**2 / 2),
-        "what the sum over elements has too much", value=missed,
+        "the excess of the sum over elements", value=missed,
     )  # fmt: skip
     largest = _end * _spacing / 2 - _rise * _spacing**2 / 8
     just_in, about_to = (sp.Subs(missed, _share, place) for place in (0, 1))
-    proof.equal(just_in, largest, r"an element has just come in, $\vartheta = 0$")
+    proof.equal(just_in, largest, r"an element has just entered, $\vartheta = 0$")
     proof.equal(about_to, -_end * _spacing / 2 - _rise * _spacing**2 / 8,
-                r"the next one is about to, $\vartheta = 1$")  # fmt: skip
+                r"the next one is about to enter, $\vartheta = 1$")  # fmt: skip
     inside = _end + _rise * _share * _spacing
     mended = missed + _spacing * (_share * (inside + _end) - inside) / 2
     reason = "with a trapezoid up to the edge for half of the first element: no sawtooth"
@@ -54,11 +54,11 @@ def _sawtooth() -> Derivation:
 
 _SAWTOOTH = (
     r"The pressure jumps to $p_e$ at the leading edge and changes from there as $p_e + p_s x$; "
-    r"elements are at $x_k = (k + \vartheta) \Delta$, $0 \le \vartheta \le 1$. Each stands for the "
-    r"length $\Delta$ about it, with the exact integral of a straight line, so that the sum begins at "
-    r"$(\vartheta - \frac{1}{2}) \Delta$ instead of 0. As elements come in, the normal force goes up "
-    r"and down by $\pm p_e \Delta/2$, and the friction force by that times $-h'$: first order in the "
-    r"spacing. The edge-corrected scheme reports forces by trapezoids up to the edge."
+    r"elements are at $x_k = (k + \vartheta) \Delta$, $0 \le \vartheta \le 1$. Each represents the "
+    r"length $\Delta$ around it, with the exact integral of a straight line, so that the sum begins "
+    r"at $(\vartheta - \frac{1}{2}) \Delta$ instead of 0. As elements enter, the normal force has a "
+    r"sawtooth of $\pm p_e \Delta/2$, and the friction force one of that times $-h'$: first order "
+    r"in the spacing. The edge-corrected scheme reports forces by trapezoids up to the edge."
 )
 
 
@@ -77,10 +77,10 @@ def _trapezoids() -> Derivation:
     proof.integral(
         sp.Integral(integrand, over), integrand, over, parts, "by parts, four times", value=value
     )
-    proof.holds(kernel, ">=", 0, "so the mean of $u''''$ decides")
+    proof.holds(kernel, ">=", 0, "so the error depends on the mean of $u''''$")
     proof.integral(
         *(sp.Integral(kernel, over), kernel, over, sp.integrate(kernel, x)),
-        r"what is left of each element is at most this times the greatest $|u''''|$",
+        r"the remaining error per element is at most this times the greatest $|u''''|$",
         value=_spacing**5 / 720,
     )  # fmt: skip
     return proof.done(sp.Integral(integrand, over), value)
@@ -88,9 +88,10 @@ def _trapezoids() -> Derivation:
 
 _ENDS = (
     r"For a compression $u$ with four continuous derivatives from one element to the next. Summed over "
-    r"elements, the slopes cancel but for those at both ends: trapezoids have $\Delta^2/12$ times the "
-    r"slope at the end too much, and that at the beginning too little. Under a parabola $u'''' = 0$, "
-    r"so that nothing else is left."
+    r"elements, the slopes cancel but for those at both ends: the trapezoidal sum is too large by "
+    r"$\Delta^2/12$ times the slope at the end less that at the beginning. Under a "
+    r"parabola $u'''' = 0$, "
+    r"so that there is no other error."
 )
 
 
@@ -138,7 +139,7 @@ _KINK = (
 
 
 def _bent() -> Derivation:
-    proof = _theorem("element-bent", title="What the part of an element leaves out", text=_BENT,
+    proof = _theorem("element-bent", title="Error of the part of an element", text=_BENT,
                      uses=("element-kink", "element-trapezoids"))  # fmt: skip
     overlap = _slope * (x - _share * _spacing) + _bend * (x - _share * _spacing) ** 2 / 2
     over = (x, _share * _spacing, _spacing)
@@ -155,7 +156,7 @@ def _bent() -> Derivation:
     slope = 2 * _slope + _spacing * _bend * (1 - 2 * _share)
     proof.where(slope > 0, "the overlap grows inward")
     result = -(_spacing**3) * _bend * rest / (24 * slope)
-    proof.equal(due, result, "what is due less what the scheme adds", left=_DUE, right=_LEFT)
+    proof.equal(due, result, "the exact value less that of the scheme", left=_DUE, right=_LEFT)
     return proof.done(due, result)
 
 
@@ -168,7 +169,8 @@ _LEFT = (
     r"\vartheta + 4 \vartheta^3 - 2 \vartheta^4)}{2 m + \Delta w_2 (1 - 2 \vartheta)}"
 )
 _BENT = (
-    r"Where the surfaces do not meet in straight lines, but with an overlap $w$ of curvature $w_2$: the "
-    r"scheme is wrong in the third order of the spacing, $\Delta^3 w_2$ times a bounded factor, so that "
+    r"Where the surfaces do not meet in straight lines, but with an overlap $w$ of curvature $w_2$: "
+    r"the error of the scheme is of third order in the spacing, $\Delta^3 w_2$ times a bounded "
+    r"factor, so that "
     r"the forces are of second order."
 )

@@ -31,7 +31,7 @@ THETA_STEP = (1 - (1 - _theta) * _z) / (1 + _theta * _z)
 FIT = 1 / (1 - sp.exp(-_z)) - 1 / _z
 """theta of the exponential scheme."""
 WEIGHT = 1 / (1 - sp.exp(-_h))
-"""eta: how strongly the mean force of F8 counts a change of the depth within the step."""
+"""eta: the weight of a change of the depth within the step in the mean force of F8."""
 
 _theorem = partial(Proof, equation=None, section=SECTION)
 
@@ -51,7 +51,7 @@ def _runge_kutta() -> Derivation:
         proof.define(stage, -_z * (1 + at))
     proof.define(_R, 1 + (_k1 + 2 * _k2 + 2 * _k3 + _k4) / 6, "after one step")
     proof.equal(_R, RUNGE_KUTTA, "the Taylor series of $e^{-z}$ to the fourth order")
-    proof.equal(1 - _R, _z * CUBIC / 24, r"so that $R \le 1$ as far as the cubic is positive")
+    proof.equal(1 - _R, _z * CUBIC / 24, r"so that $R \le 1$ as long as the cubic is positive")
     proof.sign(1 + RUNGE_KUTTA, ">", 0, (_z, 0, sp.oo), "the other bound is never reached",
                left="1 + R")  # fmt: skip
     proof.unique_root(CUBIC, (_z, 0, sp.oo), "one limit")
@@ -102,13 +102,13 @@ def _mean_force() -> Derivation:
         "the weights", value=whole,
     )  # fmt: skip
     mean = (u(time + _h) - sp.exp(-_h) * u(time)) / (1 - sp.exp(-_h))
-    proof.equal(impulse / whole, mean, "their ratio, which is zero for an element left alone")
+    proof.equal(impulse / whole, mean, "their ratio, which is zero for an element without contact")
     _centre(proof)
     return proof.done(impulse / whole, mean)
 
 
 def _centre(proof: Proof) -> None:
-    """Prove where the weights have their centre, and so what a pressure that changes does to the mean."""
+    """Derive the centre of the weights, and from it the effect of a changing pressure on the mean."""
     over = (zeta, 0, _h)
     first = zeta * sp.exp(zeta)
     weights = sp.exp(_h) - 1
@@ -118,14 +118,14 @@ def _centre(proof: Proof) -> None:
         "the moment of the weights", value=moment,
     )  # fmt: skip
     centre = _h * WEIGHT - 1
-    proof.equal(moment / weights, centre, "where the weights have their centre")
+    proof.equal(moment / weights, centre, "the centre of the weights")
     proof.leading_order(
-        *(centre - _h / 2, _h**2 / 12, _h, 0, "that far behind the middle of the step"), eps=_h
+        *(centre - _h / 2, _h**2 / 12, _h, 0, "its distance behind the middle of the step"), eps=_h
     )
     line = _end + _pressure_rate * zeta
     proof.integral(
         *(sp.Integral(line, over), line, over, _end * zeta + _pressure_rate * zeta**2 / 2),
-        "a pressure that changes steadily", value=_h * (_end + _pressure_rate * _h / 2),
+        "a pressure that changes linearly", value=_h * (_end + _pressure_rate * _h / 2),
     )  # fmt: skip
     weighted = sp.exp(zeta) * line
     proof.integral(
@@ -275,7 +275,7 @@ _RESIDUAL = (
 )
 _ORDERS = (
     r"The exact motion $e^{\sigma s}$, with $\varepsilon \sigma^2 + b \sigma + b + \kappa = 0$, is "
-    r"put into the equation of a step, $\varepsilon D^2/h^2 + (1 + \theta D) [b + \kappa + (b \eta + "
-    r"\kappa \theta) D] = 0$ with $D = e^{\sigma h} - 1$. What is left over, $r$, is of the order of "
-    r"the scheme in $h$."
+    r"inserted into the equation of a step, $\varepsilon D^2/h^2 + (1 + \theta D) [b + \kappa + (b \eta + "
+    r"\kappa \theta) D] = 0$ with $D = e^{\sigma h} - 1$. The residual $r$ is of the order of the "
+    r"scheme in $h$."
 )

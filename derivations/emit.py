@@ -68,10 +68,13 @@ class Form:
 
 FORMS: tuple[Form, ...] = (
     Form("ALPHA", "F5", sym.Lambda_fixed, (), "V tau/sqrt(R delta) at the critical velocity, fixed depth"),
-    Form("CRITICAL_DRIVE_NUMBER", "F5", sym.Lambda_weight, (), "V tau (K/(R W))^(1/3) there, dead weight"),
+    Form("CRITICAL_DRIVE_NUMBER", "F5", sym.Lambda_weight, (),
+         "V tau (K/(R W))^(1/3) at the critical velocity, dead weight"),
     Form("PEAK_TRAILING_EDGE_RATIO", "F3", q, (), "q at the friction maximum of a dead weight"),
-    Form("PEAK_DRIVE_NUMBER", "F3-values", sym.Lambda_peak, (), "V tau (K/(R W))^(1/3) at that maximum"),
-    Form("PEAK_FRICTION", "F3-values", sym.mu_peak, (), "mu (K R^2/W)^(1/3) at that maximum"),
+    Form("PEAK_DRIVE_NUMBER", "F3-values", sym.Lambda_peak, (),
+         "V tau (K/(R W))^(1/3) at the friction maximum of a dead weight"),
+    Form("PEAK_FRICTION", "F3-values", sym.mu_peak, (),
+         "mu (K R^2/W)^(1/3) at the friction maximum of a dead weight"),
     Form("trailing_edge_ratio", "F16", q, (l,), "q = x_TE/a = sqrt(1 + l^2) - l (Eq. 27)"),
     Form("load_factor", "F1", sym.w, (q,), "w = W/(K delta a)"),
     Form("friction_force_factor", "F16", sym.phi, (l, q), "phi = F R/(K delta a^2)"),
@@ -86,22 +89,23 @@ FORMS: tuple[Form, ...] = (
     Form("error_l2_fixed", "error-L2-fixed", sym.e_l2_fixed, (q, l), "L2/mu - 1, fixed depth (Eq. 45)"),
     Form("error_l2_dead_weight", "error-L2-dead-weight", sym.e_l2_weight, (l, q),
          "L2/mu - 1, dead weight (Eq. 46)"),
-    Form("error_load_low", "error-load-low", sym.e_load_low, (l, q), "Eq. 40 over W, - 1"),
-    Form("error_load_high", "error-load-high", sym.e_load_high, (q,), "Eq. 43 over W, - 1"),
-    Form("error_friction_force_low", "error-friction-low", sym.e_friction_low, (l, q), "Eq. 41 over F, - 1"),
-    Form("error_friction_force_high", "error-friction-high", sym.e_friction_high, (q,), "Eq. 44 over F, - 1"),
+    Form("error_load_low", "error-load-low", sym.e_load_low, (l, q), "(Eq. 40)/W - 1"),
+    Form("error_load_high", "error-load-high", sym.e_load_high, (q,), "(Eq. 43)/W - 1"),
+    Form("error_friction_force_low", "error-friction-low", sym.e_friction_low, (l, q), "(Eq. 41)/F - 1"),
+    Form("error_friction_force_high", "error-friction-high", sym.e_friction_high, (q,), "(Eq. 44)/F - 1"),
     Form("error_depth_low", "error-depth-low", sym.e_depth_low, (l, q),
-         "static depth over delta, - 1, dead weight"),
+         "delta_0/delta - 1, dead weight"),
     Form("error_depth_high", "error-depth-high", sym.e_depth_high, (l, q),
-         "Eq. 49 over delta, - 1, dead weight"),
-    Form("circle_load", "circle-fixed", sym.c_w, (q,), "c in 1 + c (a/R)^2, circle over parabola, of W"),
-    Form("circle_friction_force", "circle-fixed", sym.c_f, (q,), "c in 1 + c (a/R)^2, likewise, of F"),
+         "(Eq. 49)/delta - 1, dead weight"),
+    Form("circle_load", "circle-fixed", sym.c_w, (q,), "c in circle/parabola = 1 + c (a/R)^2, for W"),
+    Form("circle_friction_force", "circle-fixed", sym.c_f, (q,),
+         "c in circle/parabola = 1 + c (a/R)^2, for F"),
     Form("circle_friction_coefficient", "circle-fixed", sym.c_mu, (q,),
-         "c in 1 + c (a/R)^2, likewise, of mu"),
+         "c in circle/parabola = 1 + c (a/R)^2, for mu"),
     Form("circle_friction_coefficient_at_load", "circle-dead-weight", sym.c_mu_load, (q,),
-         "c in 1 + c (a/R)^2, likewise, of mu at given load"),
+         "c in circle/parabola = 1 + c (a/R)^2, for mu at given load"),
     Form("circle_depth_at_load", "circle-dead-weight", sym.c_delta_load, (q,),
-         "c in 1 + c (a/R)^2, likewise, of delta at given load"),
+         "c in circle/parabola = 1 + c (a/R)^2, for delta at given load"),
 )  # fmt: skip
 
 POWER_LAW = (n, l, q, Q)
@@ -133,13 +137,13 @@ FORMS += (
     Form("power_law_error_load_low", "F19-error-load-low", sym.e_n_load_low, (l, q, Q, sym.bend),
          "load for l -> 0 over W, - 1"),
     Form("power_law_error_load_high", "F19-error-load-high", sym.e_n_load_high, POWER_LAW,
-         "C V delta over W, - 1"),
+         "C V delta/W - 1"),
     Form("power_law_error_friction_low", "F19-error-friction-low", sym.e_n_friction_low,
          (*POWER_LAW, sym.gap_edge, sym.gap_slope), "friction force for l -> 0 over F, - 1"),
     Form("power_law_error_friction_high", "F19-error-friction-high", sym.e_n_friction_high,
          POWER_LAW, "friction force for l -> oo over F, - 1"),
     Form("power_law_error_depth_high", "F19-error-depth-high", sym.e_n_depth_high, POWER_LAW,
-         "W/(C V) over delta, - 1, dead weight"),
+         "W/(C V delta) - 1, dead weight"),
     Form("wedge_scaled_depth_peeling", "wedge-weight-peeling", sym.s_peeling, (kappa, lam),
          "delta/delta_0 of a wedge while lam < s"),
     Form("wedge_scaled_depth_peeled", "wedge-weight-peeled", sym.s_peeled, (kappa, lam),
@@ -204,7 +208,7 @@ FORMS += (
 
 
 def closed_forms_source() -> str:
-    """Return the text of the generated module, after all that it rests on has been proved anew."""
+    """Return the text of the generated module, after proving everything that it depends on."""
     catalogue(until={form.label for form in FORMS})
     constants = [_constant(form) for form in FORMS if not form.arguments]
     functions = [_function(form) for form in FORMS if form.arguments]
@@ -212,12 +216,12 @@ def closed_forms_source() -> str:
 
 
 def main() -> None:
-    """Replace the generated module in one move, so that no half-written file is ever imported."""
+    """Replace the generated module by one rename, so that no incomplete file is ever imported."""
     replace(TARGET, closed_forms_source())
 
 
 def replace(target: Path, text: str) -> None:
-    """Write a generated file in one move."""
+    """Write a generated file by one rename."""
     draft = target.with_suffix(".draft")
     draft.write_text(text, encoding="utf-8")
     os.replace(draft, target)
@@ -229,7 +233,7 @@ def number(form: Form) -> float:
 
 
 def sentence(form: Form) -> str:
-    """Say what a form is, and what it rests on."""
+    """Return the description of a form, and its theorem."""
     return f"{form.meaning}; theorem {form.label}."
 
 

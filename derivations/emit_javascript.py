@@ -72,7 +72,7 @@ FOUNDATIONS = (
          (sym.moment_twist, sym.moment_ahead, _eta), "the friction force from the moments"),
     Form("arm_lost", "F17-energy", sym.arm_lost,
          (_mean, sym.moment_slant, sym.moment_twist, sym.moment_ahead, _eta, _arm),
-         "what an arm loses in the contact"),
+         "the energy that an arm dissipates in the contact"),
 )  # fmt: skip
 
 EMITTED = (*FORMS, *TRANSIENT, *FOUNDATIONS)
@@ -80,13 +80,13 @@ _parts = partial(parts, forms=FORMS, printer=JAVASCRIPT)
 
 
 def closed_forms_source() -> str:
-    """Return the text of the generated script, after all that it rests on has been proved anew."""
+    """Return the text of the generated script, after proving everything that it depends on."""
     catalogue(until={form.label for form in EMITTED})
     return "\n".join([_HEADER, *map(_written, EMITTED)])
 
 
 def main() -> None:
-    """Replace the generated script in one move."""
+    """Replace the generated script by one rename."""
     replace(TARGET, closed_forms_source())
 
 

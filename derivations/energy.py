@@ -1,4 +1,4 @@
-"""Where the power of the friction force goes: theorem F6, and the identity behind it for any shape."""
+"""Dissipation of the power of the friction force: theorem F6, and the identity behind it for any shape."""
 
 from functools import partial
 
@@ -125,7 +125,7 @@ def _parabola() -> Derivation:
         "F6",
         title="Energy dissipated inside the contact",
         text=r"The fraction $\eta$ of the power $F V$ that is dissipated inside the contact of a parabola "
-        r"is 1 in both limits and never below 4/5, which it reaches at $l_{\mathrm{r}} = \frac{3}{4} a$.",
+        r"is 1 in both limits and never below 4/5, which is reached at $l_{\mathrm{r}} = \frac{3}{4} a$.",
         uses=("energy-any-shape", "F1"),
     )
     fraction = 4 * (q**2 - q + 1) / B

@@ -1,7 +1,7 @@
 r"""Friction without integrals (F21): the friction force from the load and the pressure at the edges.
 
 In the contact of a parabola the pressure has the slope -(K/R)(x + l_r), at every instant of every motion.
-So x p is a multiple of p and a derivative of p**2, and the friction force needs no integral of its own.
+So x p is a multiple of p plus a derivative of p**2, and the friction force needs no separate integral.
 """
 
 from functools import partial
@@ -132,14 +132,14 @@ def _steady() -> Derivation:
     for edge, place in ((p_te, x_te), (p_le, x_le)):
         proof.define(edge, steady.pressure.subs(x, place), "the pressure of steady sliding")
     proof.equal(p_te, sp.S.Zero, "none at the trailing edge")
-    proof.equal(p_le, K * l_r * a / R, "at the leading edge only the damper works")
+    proof.equal(p_le, K * l_r * a / R, "at the leading edge only the damper acts")
     proof.recall("F21-load", W, LOAD)
     proof.define(r, sp.sqrt(a**2 + l_r**2))
     proof.define(F_z, W, "in steady sliding")
     proof.define(F, F_x, "likewise")
-    proof.equal(F, FRICTION, "the whole of friction")
+    proof.equal(F, FRICTION, "the total friction force")
     proof.recall("eq37", mu, F / W)
-    proof.equal(mu, l_r / R * (1 - C * V * delta / W), "Eq. (42), and what it leaves out")
+    proof.equal(mu, l_r / R * (1 - C * V * delta / W), "Eq. (42), and the terms that it neglects")
     exact = steady.friction.subs(delta, a**2 / (2 * R))
     proof.equal(F, exact, "the same as by the integral of Eq. (15)")
     return proof.done(F, FRICTION)

@@ -1,8 +1,8 @@
 r"""Dimensionless groups by the null space of the matrix of dimensions.
 
 Lengths along x and along z are independent dimensions: the model keeps its form when they change by
-factors of their own (groups-lengths). With that, steady sliding has one group; with one isotropic length
-it would have two.
+independent factors (groups-lengths). Therefore steady sliding has one group; with one isotropic length it
+would have two.
 
 The base dimensions are force per unit width N, horizontal length X, vertical length Z and time T.
 """
@@ -142,13 +142,13 @@ def _circle(proof: Proof) -> None:
     term = x**4 / (8 * R**3)
     circle = R - sp.sqrt(R**2 - x**2)
     proof.leading_order(
-        circle - x**2 / (2 * R), term, x, 0, "what a circle has beyond it", eps=x**2
+        circle - x**2 / (2 * R), term, x, 0, "the additional term of a circle", eps=x**2
     )
     factor = _Z**3 / _X**2
     places = {R: R * DIMENSIONS[R], x: x * _X}
     proof.equal(sp.Subs(term, list(places), list(places.values())), factor * term,
                 "changes by another factor than $Z$")  # fmt: skip
-    proof.root(factor - _Z, _Z, _X, "but if both lengths change alike")
+    proof.root(factor - _Z, _Z, _X, "except if both lengths change by the same factor")
 
 
 _CHANGED = (
@@ -159,8 +159,9 @@ _LENGTHS = (
     r"Let lengths along the foundation change by a factor $X$, those across it by $Z$, forces by $N$ and "
     r"times by $T$, and every quantity by its dimension: $R$ by $X^2/Z$, $K$ by $N/(X Z)$, and so on. "
     r"Shape and pressure keep their form, whatever the factors, and with them load and friction force, "
-    r"integrals over $x$ of $p$ and $-h' p$. So $X$ and $Z$ count as two dimensions. It is the small slope "
-    r"that allows it: the shape is a parabola, and $-h'$ stands for the inclination; a circle does not."
+    r"integrals over $x$ of $p$ and $-h' p$. So $X$ and $Z$ count as two dimensions. This is due to "
+    r"the small slope: the shape is a parabola, and $-h'$ replaces the inclination; a "
+    r"circle does not allow it."
 )
 
 

@@ -1,4 +1,4 @@
-"""What a step must not do: sweep what is fixed, leave what is allowed, divide by what may vanish."""
+"""Guards of a step: no interval for a fixed variable, no value outside its range, no zero divisor."""
 
 import sympy as sp
 

@@ -1,4 +1,4 @@
-r"""Is an expression identically zero? Asked in a ring of polynomials, which is fast and exact.
+r"""Test whether an expression is identically zero, in a ring of polynomials: fast and exact.
 
 Symbols are the generators, and so are roots, powers with a symbol in the exponent, exponentials, and
 whatever else is no fraction of them. Of a root ``g = b**(1/q)`` it is used that ``g**q = b``. Other

@@ -1,4 +1,4 @@
-"""The labels of the derivations: what there is without deriving it, and what a person calls it.
+"""The labels of the derivations: their list without deriving them, and the names that users may type.
 
 ``python -m derivations.labels`` rewrites `derivations/contents.py`.
 """
@@ -66,7 +66,7 @@ def closure(labels: Iterable[str], uses: Mapping[str, Iterable[str]]) -> list[st
 
 
 def unknown(name: str, valid: Collection[str], kind: str) -> str:
-    """Say that a name is not known, and which known one is nearest."""
+    """Return that a name is not known, and which known one is nearest."""
     nearest = difflib.get_close_matches(name, valid, n=1, cutoff=0)
     return f"unknown {kind} {name!r}" + (f"; the nearest is {nearest[0]!r}" if nearest else "")
 

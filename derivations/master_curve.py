@@ -53,8 +53,9 @@ def _master_curve() -> Derivation:
         "F2",
         title="Master curve of the dead-weight indenter",
         text=r"With $X = (V\tau)^3 K/(R W)$ and $Y = \mu^3 K R^2/W$, the cubes of the axes of Fig. 6, "
-        r"$X$ falls from $\infty$ to 0 while $q$ goes from 0 to 1: one root $q$ of a quartic gives depth, "
-        r"friction force and friction coefficient. With $T = \mu R K/(C V)$, so that $T^3 = Y/X$, the "
+        r"$X$ falls from $\infty$ to 0 while $q$ goes from 0 to 1: depth, friction force and "
+        r"friction coefficient follow from one root $q$ of a quartic. With $T = \mu R K/(C V)$, so "
+        r"that $T^3 = Y/X$, the "
         "curve is one polynomial relation between $T$ and $X$, of degrees 4 and 3: the resultant.",
     )
     quartic = 2 * X * q**2 * A - 3 * (1 - q) ** 3 * (1 + q)
@@ -74,7 +75,7 @@ def _master_curve() -> Derivation:
     proof.equal(quartic, sp.S.Zero, "the quartic")
     proof.define(Y, mu**3 * K * R**2 / W, "cube of the ordinate")
     proof.equal(Y, FRICTION_CUBED, "scaled friction coefficient")
-    proof.define(l_r, l * a, "the retardation length in half lengths")
+    proof.define(l_r, l * a, "the retardation length over the half length")
     proof.define(T, mu * R / l_r, "over the asymptote of Eq. (42)")
     proof.equal(T, q * B / ((1 + q) * A), "rational")
     proof.equal(T**3, Y / X, "the same in the scales of Fig. 6")
@@ -86,8 +87,8 @@ def _peak() -> Derivation:
     proof = _theorem(
         "F3",
         title="Friction maximum of the dead-weight indenter",
-        text=r"$\mu (K R^2/W)^{1/3}$ has one maximum over all velocities, where the retardation length is "
-        r"$\sqrt{3}$ half lengths of the contact.",
+        text=r"$\mu (K R^2/W)^{1/3}$ has one maximum over all velocities, where the retardation "
+        r"length is $\sqrt{3}$ times the half length of the contact.",
     )
     parabola = q**2 - 4 * q + 1
     rest = 18 * (1 - q) ** 2 * (1 + q**2) * B**2 / ((1 + q) ** 3 * A**5)
@@ -116,7 +117,7 @@ def _peak_values() -> Derivation:
 
 
 def _series() -> tuple[Derivation, ...]:
-    """Prove the first terms of m on both sides; the last one with the order of what is left out."""
+    """Prove the first terms of m in both limits, and the order of the remainder."""
     low, high = l - 3 * l**2 / 4, sp.Rational(2, 3) - 7 / (36 * l)
     return tuple(_expansion(*case) for case in (
         ("F4-low", "low", 1, l, (l, low), 9 * l**4 / 16, r"m - l + \frac{3}{4} l^2"),
@@ -139,7 +140,7 @@ def _expansion(
     proof.recall("F1", m, FRICTION_COEFFICIENT)
     proof.leading_order(m, sums[0], q, end, "the asymptote", eps=small)
     proof.leading_order(
-        m - sums[1], last, q, end, "what two terms leave out", eps=small, left=shown
+        m - sums[1], last, q, end, "the remainder after two terms", eps=small, left=shown
     )
     return proof.done(m - sums[1], last)
 
@@ -148,8 +149,8 @@ def _intersections() -> Derivation:
     proof = _theorem(
         "F5",
         title="Critical velocity and friction maximum",
-        text="The critical velocity is where the two asymptotes of the friction coefficient meet. A "
-        r"dead-weight indenter has its maximum at 1.664 times that velocity.",
+        text="The critical velocity is where the two asymptotes of the friction coefficient meet. "
+        "For a dead-weight indenter the maximum is at 1.664 times that velocity.",
         uses=("eq42", "eq45", "eq46"),
     )
     low = C * V / (R * K)

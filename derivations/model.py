@@ -1,4 +1,4 @@
-"""The model: Eqs. 1-25, from the shape of the indenter to the elements that it has left behind."""
+"""The model: Eqs. 1-25, from the shape of the indenter to the free elements behind it."""
 
 from functools import partial
 
@@ -55,9 +55,9 @@ def derive() -> tuple[Derivation, ...]:
 
 def _surface() -> list[Derivation]:
     fixed = _equation("eq1", 1, title="Surface of the fixed indenter")
-    fixed.define(z(x), h(x) - delta, "the depth is held", right=r"h(x) - \delta")
+    fixed.define(z(x), h(x) - delta, "the depth is constant", right=r"h(x) - \delta")
     moving = _equation("eq2", 2, title="Surface of the movable indenter")
-    moving.define(z(x), h(x) - delta_t, "the depth changes", right=r"h(x) - \delta(t)")
+    moving.define(z(x), h(x) - delta_t, "the depth varies", right=r"h(x) - \delta(t)")
     shape = _equation("eq3", 3, title="Shape of the indenter")
     shape.define(h(x), x**2 / (2 * R), "a cylinder of radius $R$ near its lowest line", left="h(x)")
     return [
@@ -199,7 +199,7 @@ def _retardation() -> list[Derivation]:
 
 
 def _separation() -> list[Derivation]:
-    """Derive when an element leaves the indenter, and what it does then."""
+    """Derive when an element detaches from the indenter, and its motion then."""
     found = []
     cases = (
         (23, "fixed", "eq5", -slope * V, slope * V * tau, ""),

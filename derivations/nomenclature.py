@@ -16,7 +16,7 @@ class Symbol:
     meaning: str
     unit: str
     source: str = ""
-    """Label of the derivation that defines or derives it, or what else it is; none for what a scene gives."""
+    """Label of the derivation that defines or derives it, or another source; none if a scene gives it."""
 
 
 SYMBOLS = tuple(
@@ -83,11 +83,16 @@ SYMBOLS = tuple(
         ),
         (r"\bar q", "$1 - q$", "1", "error-load-low"),
         (r"\hat x", "scaled coordinate, $x/a$", "1", "F16"),
-        (r"\bar s", "distance ahead of the leading edge in half lengths", "1", "eq26"),
+        (r"\bar s", "distance ahead of the leading edge, over the half length", "1", "eq26"),
         (r"\alpha", r"$2 \sqrt{2}/3$", "1", "eq40"),
         (r"\hat p", r"scaled pressure, $p/(K \delta)$", "1", "F16"),
         (r"\hat p_{\max}", "its maximum", "1", "F7"),
-        (r"\hat n", "place of this maximum, in half lengths ahead of the lowest line", "1", "F7"),
+        (
+            r"\hat n",
+            "position of this maximum ahead of the lowest line, over the half length",
+            "1",
+            "F7",
+        ),
         ("w", r"scaled load, $W/(K \delta a)$", "1", "F1"),
         (r"\varphi", r"scaled friction force, $F R/(K \delta a^{2})$", "1", "F1"),
         ("m", r"scaled friction coefficient, $\mu R/a$", "1", "F1"),
@@ -124,7 +129,7 @@ SYMBOLS = tuple(
         ),
         (r"\hat X", r"$\Lambda^3$", "1", "F2"),
         (r"\hat Y", r"cube of the scaled friction coefficient, $\mu^3 K R^2/W$", "1", "F2"),
-        (r"\hat T", "friction coefficient over its asymptote for low velocity", "1", "F2"),
+        (r"\hat T", "ratio of the friction coefficient to its low-velocity asymptote", "1", "F2"),
         (
             r"\hat a",
             r"half length in units of the static one, $a/a_0 = \sqrt{d}$",
@@ -303,8 +308,8 @@ SYMBOLS = tuple(
             "1",
             "wedge-weight-peeled",
         ),
-        ("b_n", "$l - (1 - q)$, how far $1 - q$ lags behind $l$", "1", "F19-bend"),
-        (r"\bar k", r"what is missing from a relaxed depth, $E \bar d_1 - d$", "1", "F9-converse"),
+        ("b_n", "$l - (1 - q)$, the difference of $l$ and $1 - q$", "1", "F19-bend"),
+        (r"\bar k", r"relaxed depth less the present one, $E \bar d_1 - d$", "1", "F9-converse"),
         (
             r"\phi_2",
             r"$\phi_2(x) = (e^x - 1 - x)/x^2$, as in exponential integrators",
@@ -323,14 +328,14 @@ SYMBOLS = tuple(
         ),
         (
             r"D_{\mathrm{b}}",
-            r"part of $e_{\mathrm{L2},n} l D_{\mathrm{d}}$ that a wedge has not",
+            r"part of $e_{\mathrm{L2},n} l D_{\mathrm{d}}$ that vanishes for a wedge",
             "1",
             "F19-error-L2",
         ),
         (r"D_{\mathrm{d}}", r"$(2 n - 1) \varphi_n/(n^2 l)$", "1", "F19-error-L1"),
         (
             r"D_{\mathrm{s}}",
-            r"part of $e_{\mathrm{L2},n} l D_{\mathrm{d}}$ that a wedge has too",
+            r"part of $e_{\mathrm{L2},n} l D_{\mathrm{d}}$ that remains for a wedge",
             "1",
             "F19-error-L2",
         ),
@@ -421,7 +426,7 @@ SYMBOLS = tuple(
         (r"\bar u_0", "scaled compression at the beginning", "1", "F8"),
         (
             r"\bar g",
-            "scaled compression that the indenter asks for, above the free surface if positive",
+            "scaled depth of the indenter's surface, negative above the undisturbed foundation",
             "1",
             "F8",
         ),
@@ -429,7 +434,7 @@ SYMBOLS = tuple(
         ("X_1", "first of two elements", "1", "F9"),
         ("X_2", "second of two elements", "1", "F9"),
         (r"X_{\mathrm{e}}", "element at an edge", "1", "F10-touch"),
-        ("Y", r"scaled way of the foundation, with $Y' = \lambda$", "1", "F8"),
+        ("Y", r"scaled displacement of the foundation, with $Y' = \lambda$", "1", "F8"),
         (r"\ell", "scaled left edge of the contact", "1", "F10-peel"),
         ("r", "scaled right edge of the contact", "1", "F10-peel"),
         ("b", "scaled length of the contact, from edge to edge", "1", "F11-peel"),
@@ -443,7 +448,7 @@ SYMBOLS = tuple(
         (r"\bar \sigma", "earlier instant, at which an element was at an edge", "1", "F8"),
         (r"\bar \eta", "place where an element was then", "1", "F9"),
         (r"\zeta", "variable of integration", "1", "F8"),
-        (r"\bar m", "scaled way since an earlier instant", "1", "F9-difference"),
+        (r"\bar m", "scaled displacement since an earlier instant", "1", "F9-difference"),
         (
             r"\bar \lambda",
             "mean drive number since an earlier instant, weighted by memory",
@@ -452,19 +457,24 @@ SYMBOLS = tuple(
         ),
         (r"\bar d", "mean depth since an earlier instant, weighted by memory", "1", "F10-instant"),
         (r"c_{\mathrm{t}}", "rate at which an edge turns", "1", "F10-turn"),
-        (r"\bar k_1", "bounded factor of what a leading order leaves out", "1", "F10-turn"),
+        (r"\bar k_1", "bounded factor of the remainder after the leading order", "1", "F10-turn"),
         (r"\bar k_2", "second bounded factor", "1", "F10-turn"),
         (r"\bar k_3", "third bounded factor", "1", "F10-turn"),
         (r"\bar y", "instant before a turn over the time since", "1", "F10-turn"),
         (r"\bar c", "rate of a motion within a step", "1", "F8"),
         (
             r"\check f",
-            "kept compression within a step, by the end of the step",
+            "memory $e^{s} g$ within a step, over the exponential at its end",
             "1",
             "F8-remainder",
         ),
         (r"\check v", r"slope of $\check f$", "1", "F8-remainder"),
-        (r"\check c", r"by how much less than $\check M$ that slope falls", "1", "F8-remainder"),
+        (
+            r"\check c",
+            r"difference of $\check M$ and the decrease of that slope",
+            "1",
+            "F8-remainder",
+        ),
         (
             r"\check b",
             "time from the nearer end of a step to the largest value",
@@ -472,7 +482,7 @@ SYMBOLS = tuple(
             "F8-remainder",
         ),
         (r"\check y", "time from the nearer end of a step", "1", "F8-remainder"),
-        (r"\check k", "half of how much farther the other end is", "1", "F8-remainder"),
+        (r"\check k", "half of the additional distance to the other end", "1", "F8-remainder"),
         (
             r"\check M",
             r"greatest magnitude of the second derivative of $\check f$",
@@ -496,7 +506,7 @@ SYMBOLS = tuple(
         (r"\bar \theta", "share of two elements in one between them", "1", "F9"),
         (
             r"\bar f",
-            r"$E\, h(\xi - \bar m) - h(\xi)$, indenter now against the relaxed one",
+            r"$E\, h(\xi - \bar m) - h(\xi)$, relaxed earlier shape less the present one",
             "1",
             "F9-difference",
         ),
@@ -628,7 +638,7 @@ SYMBOLS = tuple(
         ("v_1", "scaled velocity at the end of a step", "1", "element-fit"),
         (
             r"\hat \varrho",
-            "what the exact motion leaves over in the equation of a step",
+            "residual of the exact motion in the equation of a step",
             "1",
             "element-orders",
         ),
@@ -656,7 +666,7 @@ SYMBOLS = tuple(
         (r"\hat w", "indenter below the free surface, along an element", "m", "element-bent"),
         (r"\hat w_2", r"second derivative of $\hat w$", "1/m", "element-bent"),
         (r"\check z", r"time step over the relaxation time of an arm", "1", "element-arms"),
-        (r"\check t", "part of a time step that is over", "1", "element-arms"),
+        (r"\check t", "elapsed part of a time step", "1", "element-arms"),
         (r"\check r", "rise of the surface in a time step", "m", "element-arms"),
         (r"\check s", "stress of an arm, in units of $K_i$", "m", "element-arms"),
         (r"\check s_0", r"$\check s$ at the start of the step", "m", "element-arms"),
@@ -818,7 +828,7 @@ SYMBOLS = tuple(
         (r"\breve X", r"distance from the leading edge", "m", "F17-any"),
         (r"\breve y", r"distance back from there, or behind the trailing edge", "m", "F17-any"),
         (r"\breve G_4", r"integral of $\breve G_3$ over the contact", "N m", "F17-any"),
-        (r"\breve H", r"how fast the relaxation function falls", "Pa/m²", "F17-concave"),
+        (r"\breve H", r"rate of decrease of the relaxation function", "Pa/m²", "F17-concave"),
         (r"\breve v", r"as $\breve w$, of another place", "1", "F17-stored-springpot"),
         (r"\breve J", "part of a double integral", "1", "F17-stored-springpot"),
         (r"\breve h", r"$\breve a - 1$", "1", "F17-stored-springpot"),
@@ -833,7 +843,7 @@ SYMBOLS = tuple(
         (r"\breve \chi_0", r"slope of the free surface", "1", "F17-surface"),
         (
             r"\breve g",
-            r"how far the indenter is below the undisturbed surface",
+            r"depth of the indenter below the undisturbed surface",
             "m",
             "F17-interval",
         ),
@@ -843,8 +853,13 @@ SYMBOLS = tuple(
         (r"K_2", r"stiffness of another arm per unit area", "N/m³", "F17-interval"),
         (r"\breve \gamma_1", r"share of an arm in the glassy stiffness", "1", "F17-interval"),
         (r"\breve \gamma_2", r"share of another arm", "1", "F17-interval"),
-        (r"\breve \theta", r"weight of the indenter against the free surface", "1", "F17-interval"),
-        (r"\breve \omega_1", r"what is left of a bound, not negative", "1", "F17-interval"),
+        (
+            r"\breve \theta",
+            r"weight of the indenter relative to the free surface",
+            "1",
+            "F17-interval",
+        ),
+        (r"\breve \omega_1", r"remainder of a bound, not negative", "1", "F17-interval"),
         (r"\breve \omega_2", r"the same of another", "1", "F17-interval"),
         (r"\breve \omega_3", r"the same of a third", "1", "F18-voigt"),
         (
@@ -863,15 +878,15 @@ SYMBOLS = tuple(
         (r"\breve \kappa", r"$K \breve c/(C V)$", "1", "F18-voigt"),
         (
             r"\breve \alpha_A",
-            r"by how much $\breve A$ falls short of a dashpot's",
+            r"difference of a dashpot's $\breve A$ and this one",
             "1",
             "F18-lacks",
         ),
         (r"\breve \alpha_P", r"the same for $\breve P$", "1", "F18-lacks"),
-        (r"\breve \alpha_D", r"by how much $\breve D$ exceeds a dashpot's", "1", "F18-lacks"),
+        (r"\breve \alpha_D", r"difference of $\breve D$ and that of a dashpot", "1", "F18-lacks"),
         (
             r"\breve \alpha_E",
-            r"by how much $\breve E$ falls short of a dashpot's",
+            r"difference of a dashpot's $\breve E$ and this one",
             "1",
             "F18-lacks",
         ),
@@ -896,7 +911,7 @@ SYMBOLS = tuple(
         ("c_0", "constant coefficient of a quadratic", "1", "element-stability"),
         ("c_1", "coefficient of its linear term", "1", "element-stability"),
         ("c_2", "coefficient of its square", "1", "element-stability"),
-        (r"f_\Delta", "what the sum over elements has too much", "N/m", "F15-sawtooth"),
+        (r"f_\Delta", "excess of the sum over elements", "N/m", "F15-sawtooth"),
         (r"\tilde x", "real part of a root", "1", "element-stability"),
         (r"\tilde y", "imaginary part of a root", "1", "element-stability"),
     )

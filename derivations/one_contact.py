@@ -9,7 +9,7 @@ from .symbols import R, a, delta, l_r, x_te
 
 
 def derive() -> tuple[Derivation, ...]:
-    """Prove that indenter and free surface part."""
+    """Prove that indenter and free surface separate."""
     return (_one_contact(),)
 
 
@@ -28,14 +28,12 @@ def _one_contact() -> Derivation:
     proof.integral(above, 1 - sp.exp(-part), over, part + sp.exp(-part),
                    "an exponential above its tangent", value=sp.exp(-y / l_r) - 1 + y / l_r)  # fmt: skip
     gap = left * sp.exp(-y / l_r) - indenter
-    proof.equal(
-        gap, y**2 / (2 * R) + left * above, "how far the free surface is below the indenter"
-    )
-    proof.holds(y**2 / (2 * R) + left * above, ">=", y**2 / (2 * R), "never again in touch")
+    proof.equal(gap, y**2 / (2 * R) + left * above, "the gap between indenter and free surface")
+    proof.holds(y**2 / (2 * R) + left * above, ">=", y**2 / (2 * R), "never again in contact")
     return proof.done(gap, y**2 / (2 * R) + left * above)
 
 
 _ONE = (
     r"Behind the trailing edge the surface relaxes by Eqs. (25) and (29), and the indenter rises as a "
-    r"parabola. Both leave the edge with one slope, and from there on they part."
+    r"parabola. Both leave the edge with the same slope, and then separate."
 )
