@@ -1,6 +1,6 @@
 r"""Steady sliding of a power law h = |x|**n/(n L**(n - 1)), n > 1: theorem F19.
 
-One number fixes the contact: q = x_TE/a, or l = l_r/a = (1 - q**n)/(n q**(n - 1)). With Q = q**(n - 1)
+One number determines the contact: q = x_TE/a, or l = l_r/a = (1 - q**n)/(n q**(n - 1)). With Q = q**(n - 1)
 load, friction force and the rest are sums of positive terms in l, q and Q, which neither cancel nor
 overflow. They hold for n = 1 as well, the wedge, where q = max(0, 1 - l); `derivations.wedge` proves it.
 """
@@ -76,7 +76,7 @@ def derive() -> tuple[Derivation, ...]:
 def in_q(proof: Proof) -> None:
     """Let l and Q be functions of q and n = 1 + nu."""
     proof.define(n, 1 + excess, r"$n > 1$, that is, $\nu > 0$")
-    proof.define(l, NUMBER, r"$q = x_{\mathrm{TE}}/a$ names the state")
+    proof.define(l, NUMBER, r"$q = x_{\mathrm{TE}}/a$ is the parameter")
     proof.define(Q, SLOPE_POWER, "the slope at the trailing edge over that at $x = a$")
 
 
@@ -86,7 +86,7 @@ def _pressure() -> Derivation:
     height, slope = (y * a) ** n / (n * L ** (n - 1)), (y * a / L) ** (n - 1)
     proof.define(delta, a**n / (n * L ** (n - 1)), r"$h(a) = \delta$: the half length at rest")
     proof.recall("eq29", C, K * l_r / V)
-    proof.define(l_r, l * a, "the retardation length in half lengths")
+    proof.define(l_r, l * a, "the retardation length over the half length")
     for side, form, where in ((1, AHEAD, "-y a"), (-1, BEHIND, "y a")):
         proof.notation |= {"h": height, "h'": -side * slope, "C": C, "V": V, "K": K}
         proof.equal(
@@ -116,7 +116,7 @@ def _edge() -> Derivation:
         "F19-edge", title="Power law: trailing edge", text=_EDGE, uses=("F19-pressure",)
     )
     proof.define(n, 1 + excess, r"$n > 1$, that is, $\nu > 0$")
-    proof.define(l, NUMBER, "what $l$ is for an edge at $y = q$")
+    proof.define(l, NUMBER, "$l$ for an edge at $y = q$")
     proof.notation |= {r"\hat p": sp.Lambda(y, BEHIND), "l": sp.Lambda(q, NUMBER)}
     proof.equal(BEHIND.subs(y, q), sp.S.Zero, "no pressure there", left=r"\hat p(q)")
     proof.equal(
@@ -169,7 +169,9 @@ def _friction() -> Derivation:
         (phi_ahead, AHEAD, 1, sp.S.One), (phi_behind, BEHIND, -1, q),
     ):  # fmt: skip
         integrand = sp.expand(n * y ** (n - 1) * pressure)
-        where = "pushed back ahead of the tip" if side == 1 else "and forward behind it"
+        where = (
+            "a backward force ahead of the tip" if side == 1 else "and a forward force behind it"
+        )
         proof.integral(name, integrand, (y, 0, end), primitive + side * damper, where)
     proof.define(phi_n, phi_ahead - phi_behind, r"$F/(K \delta^2)$")
     explicit = (1 - q**n) ** 2 / 2

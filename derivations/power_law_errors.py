@@ -1,7 +1,7 @@
-r"""How wrong the asymptotes of a power law are: exact relative errors, stable in both limits (F19).
+r"""The errors of the asymptotes of a power law: exact relative errors, stable in both limits (F19).
 
-Every error is asymptote/exact - 1 in terms of l, q and Q. What vanishes at rest is carried by the peeled
-parts 1 - q and 1 - Q and by the bend l - (1 - q), which have forms without a difference.
+Every error is asymptote/exact - 1 in terms of l, q and Q. The factors that vanish at rest are the peeled
+parts 1 - q and 1 - Q and the bend l - (1 - q), which have forms without cancellation.
 """
 
 from dataclasses import dataclass
@@ -128,7 +128,7 @@ def derive() -> tuple[Derivation, ...]:
 
 
 def _peeled() -> Derivation:
-    proof = _theorem("F19-peeled", title="Power law: what has peeled", text=_PEELED,
+    proof = _theorem("F19-peeled", title="Power law: the peeled parts", text=_PEELED,
                      uses=("F19-edge",))  # fmt: skip
     logarithm = log1p(-z)
     edge, slope = expm1(logarithm / n), expm1((n - 1) * logarithm / n)
@@ -147,7 +147,7 @@ def _peeled() -> Derivation:
     proof.equal(
         gap_edge, -edge, "without a difference", right=rf"-\operatorname{{expm1}} {_brace(edge)}"
     )
-    proof.define(gap_slope, 1 - Q, "by how much the slope there is smaller")
+    proof.define(gap_slope, 1 - Q, "the decrease of the slope there")
     proof.equal(gap_slope, -slope, "without a difference",
                 right=rf"-\operatorname{{expm1}} {_brace(slope)}")  # fmt: skip
     return proof.done(gap_slope, -slope)
@@ -165,7 +165,7 @@ _PEELED = (
 
 
 def _bend() -> Derivation:
-    proof = _theorem("F19-bend", title="Power law: how far the edge is from a line", text=_BEND,
+    proof = _theorem("F19-bend", title="Power law: the bend of the trailing edge", text=_BEND,
                      uses=("F19-edge",))  # fmt: skip
     form = (n - 1) * y**2 * ((n - 1) * phi_rise + phi_fall) / n
     in_q(proof)
@@ -173,7 +173,7 @@ def _bend() -> Derivation:
     proof.define(phi_rise, (sp.exp((n - 1) * y) - 1 - (n - 1) * y) / ((n - 1) * y) ** 2,
                  r"$\phi_2((n - 1) y)$")  # fmt: skip
     proof.define(phi_fall, (sp.exp(-y) - 1 + y) / y**2, r"$\phi_2(-y)$")
-    proof.define(bend, l - (1 - q), "how far $1 - q$ lags behind $l$")
+    proof.define(bend, l - (1 - q), "the difference of $l$ and $1 - q$")
     proof.equal(bend, form, "without a difference")
     return proof.done(bend, form)
 
@@ -222,8 +222,8 @@ _MONOTONIC = (
     "At a given depth this is F19-monotonic: $w_n$ and $m_n$ grow with $l$, and $w_n/l$, "
     r"$\varphi_n/l$ and $m_n/l$ fall. Under a dead weight $d \ln s/d \ln l = -\omega/(n + 1)$ "
     "(F19-balance), under a spring between that and 0: the error of the asymptote for low "
-    "velocity grows with the velocity (for $n > 2$ the spring only takes away from a positive "
-    r"term). The asymptote for high velocity over the exact value is $(W_\infty/W)^{1 - 1/n} "
+    "velocity grows with the velocity (for $n > 2$ the spring only reduces a positive term). The "
+    r"asymptote for high velocity over the exact value is $(W_\infty/W)^{1 - 1/n} "
     "(w_n/l)^{1 - 1/n}/m_n$, each factor of which falls. So each asymptote is within a tolerance "
     "on a half-line of velocities."
 )

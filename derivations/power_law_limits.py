@@ -1,4 +1,4 @@
-r"""A power law at a given depth over its velocity: what grows, both limits, where they meet (F19)."""
+r"""A power law at a given depth over velocity: monotonicity, both limits, and their crossing (F19)."""
 
 from functools import partial
 
@@ -31,7 +31,7 @@ def derive() -> tuple[Derivation, ...]:
 
 
 def _monotonic() -> Derivation:
-    proof = _theorem("F19-monotonic", title="Power law: more speed, more force", text=_MONOTONIC,
+    proof = _theorem("F19-monotonic", title="Power law: forces grow with velocity", text=_MONOTONIC,
                      uses=("F19-load", "F19-friction"))  # fmt: skip
     in_q(proof)
     state = {l: NUMBER, Q: SLOPE_POWER}
@@ -96,7 +96,7 @@ def _high() -> Derivation:
     damper = n**2 * (SQUARES + z * Q / (2 * n))
     proof.equal(LOAD / l, share, "load per $l$")
     proof.equal(FRICTION_FORCE / l, damper, "friction force per $l$")
-    proof.equal(share.subs(fast), sp.S.One, "the damper carries all")
+    proof.equal(share.subs(fast), sp.S.One, "the damper carries the total load")
     proof.define(m_high, damper.subs(fast) / share.subs(fast), "friction coefficient")
     proof.equal(m_high, HIGH_COEFFICIENT, r"in units of $\delta/a$")
     return proof.done(m_high, HIGH_COEFFICIENT)

@@ -64,7 +64,7 @@ _theorem = partial(Proof, equation=None, section=SECTION)
 
 
 def derive() -> tuple[Derivation, ...]:
-    """Prove what a weight makes of F19."""
+    """Prove F19 at a given load."""
     return _scaled_load(), _balance(), _exponents(), _crossing(), _at_load(), _slip(), _maximum()
 
 
@@ -89,7 +89,7 @@ _SCALED = (
 
 
 def _balance() -> Derivation:
-    proof = _theorem("F19-balance", title="Power law: one depth for a weight", text=_BALANCE,
+    proof = _theorem("F19-balance", title="Power law: a unique depth at a load", text=_BALANCE,
                      uses=("F19-scaled-load", "F19-monotonic"))  # fmt: skip
     in_q(proof)
     proof.define(s, lam / NUMBER, r"at fixed velocity, $\lambda$ constant")
@@ -106,8 +106,8 @@ def _balance() -> Derivation:
     proof.define(scaled_n_s, SCALED_SLOPE, r"$\partial f_n/\partial s$")
     elasticity, whole = s * scaled_n_s / scaled_n, 1 + q + l + l**2 * Q
     above, below = (1 + q + l * q**n) / whole, (n + 1) * l**2 * Q / whole
-    proof.equal(elasticity - n, above, "more than the damper alone")
-    proof.equal(n + 1 - elasticity, below, "less than the spring alone")
+    proof.equal(elasticity - n, above, "more than for the damper alone")
+    proof.equal(n + 1 - elasticity, below, "less than for the spring alone")
     proof.holds(above, ">", 0, "a quotient of positive terms")
     proof.holds(below, ">", 0, "likewise")
     return proof.done(elasticity - n, above)
@@ -137,9 +137,9 @@ def _exponents() -> Derivation:
 
 
 _EXPONENTS = (
-    r"With the load held, $\delta \propto V^{-1}$ and $\mu \propto V^{-(1 - 1/n)}$: $V^{-1/2}$ for "
-    "the parabola (Eq. 46), nearly $V^{-1}$ for a flat punch with rounded edges, and no fall at "
-    r"all for $n \to 1$. At low velocity $\mu \propto V$ for every $n$."
+    r"At a given load, $\delta \propto V^{-1}$ and $\mu \propto V^{-(1 - 1/n)}$: $V^{-1/2}$ for "
+    "the parabola (Eq. 46), nearly $V^{-1}$ for a flat punch with rounded edges, and no decrease "
+    r"for $n \to 1$. At low velocity $\mu \propto V$ for every $n$."
 )
 
 
@@ -229,7 +229,7 @@ def _slip() -> Derivation:
         r"its logarithmic slope times $w_n \varphi_n$, by F19-monotonic",
         left=r"(n + 1) w_n \varphi_n' - 2 n \varphi_n w_n'",
     )
-    proof.define(slip_n, SLIP, "what decides its sign")
+    proof.define(slip_n, SLIP, "an expression with its sign")
     return proof.done(slip_n, SLIP)
 
 

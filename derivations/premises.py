@@ -1,4 +1,4 @@
-"""What a result rests on: definitions and laws, carried along, and whether they contradict each other."""
+"""The premises of a result: definitions and laws, carried along, and whether they contradict each other."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass
@@ -13,14 +13,14 @@ from .rules import is_name
 
 @dataclass(frozen=True)
 class Premise:
-    """An equality that was not proved but laid down, by a definition or as the condition of a root."""
+    """An equality that was not proved but assumed, by a definition or as the condition of a root."""
 
     lhs: sp.Expr
     rhs: sp.Expr
     latex: str = ""
 
     def __eq__(self, other: object) -> bool:
-        """Compare what is said, not how it is printed."""
+        """Compare the content, not the printed form."""
         return isinstance(other, Premise) and (self.lhs, self.rhs) == (other.lhs, other.rhs)
 
     def __hash__(self) -> int:
@@ -29,7 +29,7 @@ class Premise:
 
 @dataclass(frozen=True)
 class Fact:
-    """An established relation with all that it rests on."""
+    """An established relation with all its premises."""
 
     step: Step
     premises: tuple[Premise, ...] = ()
@@ -86,7 +86,7 @@ definitions that name each other in turn make expressions grow."""
 
 
 def _touches(premise: Premise, premises: Iterable[Premise]) -> bool:
-    """Tell whether a premise says more than what a new name stands for."""
+    """Tell whether a premise says more than the definition of a new name."""
     return not premise.lhs.is_Symbol or any(
         other != premise and (premise.lhs in other.lhs.free_symbols | other.rhs.free_symbols)
         for other in premises

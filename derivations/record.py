@@ -1,4 +1,4 @@
-r"""What a derivation is once every step of it has been checked: LaTeX and words, ready to print.
+r"""The record of a derivation after every step has been checked: LaTeX and words, ready to print.
 
 The engine (`derivations.step`) makes these records and the renderers (`derivations.render`)
 print them; neither knows the other.
@@ -14,7 +14,7 @@ from typing import Any
 import sympy as sp
 
 STATUSES = ("definition", "proved", "proved-leading-order", "sampled")
-"""What stands behind an equality, strongest first."""
+"""The status of an equality, strongest first."""
 
 
 @dataclass(frozen=True)
@@ -26,9 +26,9 @@ class Claim:
     lhs: sp.Expr
     rhs: sp.Expr
     arguments: Mapping[str, Any]
-    """All that the check was given, by name, but for words and LaTeX."""
+    """The input of the check, by name, except words and LaTeX."""
     rules: Mapping[sp.Expr, sp.Expr]
-    """What stood for what when the check was asked."""
+    """The rules in force when the check was made."""
 
 
 @dataclass(frozen=True)
@@ -43,7 +43,7 @@ class Step:
     source: str = ""
     """Label of the derivation that a recalled step comes from."""
     domain: str = ""
-    """For which values of its variable a sign or a root was proved, in LaTeX."""
+    """The values of its variable for which a sign or a root was proved, in LaTeX."""
     claim: Claim | None = field(default=None, compare=False, repr=False)
 
     @property
@@ -74,7 +74,7 @@ class Calculation:
     """In SI."""
     unit: str
     note: str = ""
-    """What the number is worth, in words: of an asymptote, the next order."""
+    """The accuracy of the number, in words: for an asymptote, the next order."""
 
 
 @dataclass(frozen=True)
@@ -84,7 +84,7 @@ class Derivation:
     label: str
     """Unique name, usable in file names and links: ``eq27``, ``F3``, ``table2``."""
     equation: int | None
-    """The paper's equation number, or None for what the paper does not have."""
+    """The paper's equation number, or None if the paper does not have it."""
     section: str
     title: str
     text: str
@@ -100,6 +100,6 @@ class Derivation:
     numbers: tuple[Calculation, ...] = ()
     """The closed forms of this derivation with the numbers of a scene."""
     domain: tuple[str, ...] = ()
-    """Under which conditions the result holds, beside the assumptions on its symbols, in LaTeX."""
+    """The conditions under which the result holds, besides the assumptions on its symbols, in LaTeX."""
     premises: tuple[str, ...] = ()
     """The definitions and laws that the result rests on, those of recalled results included."""

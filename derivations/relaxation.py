@@ -1,6 +1,6 @@
-r"""Steady sliding on a foundation with any relaxation function: theorem F17 without arms, and what follows.
+r"""Steady sliding on a foundation with any relaxation function: theorem F17 without arms, and corollaries.
 
-G(t) is positive, does not rise, and has an integral from t = 0; nothing else is asked of it. Where the
+G(t) is positive, does not rise, and has an integral from t = 0; nothing else is assumed. Where the
 chapter before this one adds up arms, this one integrates by parts. Beside it: the surface that the standard
 linear solid leaves behind, and the one interval of contact on every Prony series.
 """
@@ -59,7 +59,7 @@ _theorem = partial(Proof, equation=None, section=SECTION)
 
 
 def derive() -> tuple[Derivation, ...]:
-    """Prove F17 for any relaxation function, and what the surface does behind the contact."""
+    """Prove F17 for any relaxation function, and the relaxation of the surface behind the contact."""
     return (
         *(_pressure(), _concave(), _forces(), _moments(), _positive()),
         *(_stored(), _stored_springpot(), _surface(), _interval()),
@@ -85,8 +85,9 @@ def _pressure() -> Derivation:
 
 
 _PRESSURE = (
-    r"An element at the distance $\breve X$ behind the leading edge was compressed at the rate $(a - "
-    r"\breve X + \breve y)/R$ when it was $\breve y$ ahead of its place; $\breve G(\breve y) = G(\breve "
+    r"An element at the distance $\breve X$ behind the leading edge was compressed at the rate $(a "
+    r"- \breve X + \breve y)/R$ when it was $\breve y$ ahead of its present position; $\breve "
+    r"G(\breve y) = G(\breve "
     r"y/V)$, and $\breve G_1$ to $\breve G_4$ are its repeated integrals. $G$ need not be a sum of arms."
 )
 
@@ -97,7 +98,7 @@ def _concave() -> Derivation:
     _by_parts(proof, 2)
     first = (a * G(y) - G_1(y)) / R
     proof.equal(sp.Derivative(PRESSURE(y), y), first, "slope of the pressure")
-    proof.define(sp.Derivative(G(y), y), -fading(y), "G does not rise")
+    proof.define(sp.Derivative(G(y), y), -fading(y), "G does not increase")
     second = -(a * fading(y) + G(y)) / R
     proof.equal(sp.Derivative(first, y), second, "and its slope")
     proof.holds(second, "<", 0, "the pressure is concave")
@@ -106,9 +107,9 @@ def _concave() -> Derivation:
 
 _CONCAVE = (
     "The pressure begins with 0, or with a jump where $G$ holds a dashpot, rises at first and is "
-    r"concave: it vanishes at one place behind, the trailing edge, where $a \breve G_1 = \breve G_2$. "
-    r"(Where $G$ falls by steps, concavity is that of $\int (a - \breve X + \breve y)\, dG$, which is no "
-    "step of the machine.)"
+    r"concave: it vanishes at one point behind, the trailing edge, where $a \breve G_1 = \breve G_2$. "
+    r"(Where $G$ falls by steps, concavity is that of $\int (a - \breve X + \breve y)\, dG$, which "
+    r"was not checked by machine.)"
 )
 
 
@@ -149,7 +150,7 @@ def _moments() -> Derivation:
             name, weight * G(y), (y, 0, c), primitive, "by parts", value=sp.expand(value)
         )
     proof.define(a, G_2(c) / G_1(c), "F17-concave: no pressure at the trailing edge")
-    proof.define(excess_share, a / c - sp.Rational(1, 2), "what exceeds half of the contact")
+    proof.define(excess_share, a / c - sp.Rational(1, 2), "the excess over half of the contact")
     e, load, work = excess_share, LOAD, WORK
     proof.equal(load, c**3 / R * (moment_bulge + e * moment_ahead), "the load of F17-load")
     form = c**4 / R**2 * (moment_twist + e**2 * moment_ahead)
@@ -158,7 +159,7 @@ def _moments() -> Derivation:
 
 
 _PARTS = (
-    "The moments of F17-moments, taken of the whole relaxation function: load and friction force are "
+    "The moments of F17-moments, applied to the whole relaxation function: load and friction force are "
     "those of F17-load and F17, whether or not $G$ is a sum of arms. (F17-sign shows that the moments "
     "are positive.)"
 )
@@ -185,9 +186,9 @@ def _positive() -> Derivation:
 _SIGN = (
     r"Integrals by parts over the contact. Where $G$ does not rise, $\breve B$ and $\breve E$ are "
     r"therefore not negative, and $F = (\breve c^4/R^2)(\breve E + \breve \eta^2 \breve P)$ with $\breve "
-    r"\eta = \breve B/\breve A$ is positive unless $G$ is constant: convexity of $G$ is not needed. In "
-    "words alone: that integrals of what is not negative are not negative, and that a springpot, "
-    r"infinite at $\breve w = 0$, leaves no end value there, because $\breve w\, G$ vanishes."
+    r"\eta = \breve B/\breve A$ is positive unless $G$ is constant: convexity of $G$ is not needed. "
+    r"Not checked by machine: that integrals of non-negative functions are not negative, and that a "
+    r"springpot, infinite at $\breve w = 0$, gives no boundary term there, because $\breve w\, G$ vanishes."
 )
 
 
@@ -201,21 +202,22 @@ def _stored() -> Derivation:
     held = sp.Integral(sp.exp(-z * w) * (b - 1 + w), UNIT)
     primitive = -sp.exp(-z * w) * ((b - 1 + w) / z + 1 / z**2)
     proof.integral(held, sp.exp(-z * w) * (b - 1 + w), UNIT, primitive,
-                   "what an arm holds at the trailing edge", value=ARM.subs(at, 1))  # fmt: skip
+                   "stress of an arm at the trailing edge", value=ARM.subs(at, 1))  # fmt: skip
     return proof.done(held, ARM.subs(at, 1))
 
 
 _STORED_SPRINGPOT = (
     r"With $u' \sim \breve h + \breve w$, $\breve h = a/\breve c - 1$, and $G \sim \breve w^{\breve \nu - "
-    "1}$: twice what the springpot holds at the trailing edge, in the units of F17-springpot."
+    "1}$: twice the energy of the springpot at the trailing edge, in the units of F17-springpot."
 )
 _STORED = (
-    r"Half of the square of this is what the spring of an arm holds (F17-energy), $\frac{1}{2} \int \int "
+    r"Half of the square of this is the energy stored in the spring of an arm (F17-energy), "
+    r"$\frac{1}{2} \int \int "
     r"e^{-\breve z (\breve w + \breve w')} u' u'$. Added up over arms it is $\frac{1}{2} \int \int "
     r"G(\breve w + \breve w')\, u'(\breve w)\, u'(\breve w')$ for every $G$ that is a sum or an integral "
     "of arms (Bernstein: that is completely monotone), the springpot among them. It is lost while the "
-    "surface relaxes behind the contact; the rest of $F$ is lost inside it. Of other relaxation "
-    "functions the energy that is stored is not known from $G$ alone."
+    "surface relaxes behind the contact; the rest of $F$ is lost inside it. For other relaxation "
+    "functions $G$ alone does not determine the stored energy."
 )
 
 
@@ -271,17 +273,18 @@ def _surface() -> Derivation:
     indenter = u - x_te * y / R - y**2 / (2 * R)
     gap = u * sp.exp(-y / stretch) - indenter
     form = y**2 / (2 * R) + parting * y + u * above
-    proof.equal(gap, form, "how far the free surface is below the indenter")
-    proof.holds(form, ">=", y**2 / (2 * R), "never again in touch")
+    proof.equal(gap, form, "the gap between indenter and free surface")
+    proof.holds(form, ">=", y**2 / (2 * R), "never again in contact")
     return proof.done(gap, form)
 
 
 _SURFACE = (
-    r"A spring $K$ beside one arm of $K_1 = \breve \beta K$ leaves the contact with the compression "
-    r"$\breve u$. At the distance $\breve y$ behind the edge it is $\breve u e^{-\breve y/((1 + \breve "
+    r"A spring $K$ in parallel with one arm of $K_1 = \breve \beta K$ leaves the contact with the "
+    r"compression $\breve u$. At the distance $\breve y$ behind the edge it is $\breve u e^{-\breve "
+    r"y/((1 + \breve "
     r"\beta) l_i)}$: the free surface relaxes with the time $(1 + \breve \beta) \tau_i$, which is $\tau = "
-    r"C/K$ for $\breve \beta \gg 1$. It leaves the edge at an angle $\breve \sigma > 0$, under which "
-    "Kelvin-Voigt has none, and does not touch again."
+    r"C/K$ for $\breve \beta \gg 1$. It leaves the edge at an angle $\breve \sigma > 0$, which is "
+    r"zero for Kelvin-Voigt, and does not touch again."
 )
 
 
@@ -298,7 +301,7 @@ def _interval() -> Derivation:
     proof.where(on_off < 1, "free for 0; for 1, in contact, what follows is 0")
     drive = on_off * pressed + (1 - on_off) * free
     proof.equal(sp.Derivative(drive, damper_2), (1 - on_off) * share_2,
-                "no dashpot is driven down by another: the system is cooperative")  # fmt: skip
+                "no dashpot reduces the extension of another: the system is cooperative")  # fmt: skip
     proof.holds((1 - on_off) * share_2, ">=", 0, "so that larger drives give larger extensions")
     ones = on_off + (1 - on_off) * (share_1 + share_2) - 1
     proof.equal(ones, -(1 - on_off) * K / stiff, "with all extensions and the indenter at 1")
@@ -317,14 +320,14 @@ def _interval() -> Derivation:
 _INTERVAL = (
     r"The dashpot of an arm follows $\tau_i\, \mathrm{d}\breve u_1/\mathrm{d}t = \breve u - \breve u_1$; "
     r"the surface is the larger of $\breve g$ and of the free surface $\breve \gamma_1 \breve u_1 + "
-    r"\breve \gamma_2 \breve u_2$. Shown with two arms; nothing depends on their number. In words, as no "
-    r"machine has checked it: the larger of two is the upper bound of all mixtures with weights $\breve "
+    r"\breve \gamma_2 \breve u_2$. Shown with two arms; nothing depends on their number. Not "
+    r"checked by machine: the larger of two is the upper bound of all mixtures with weights $\breve "
     r"\theta$ and $1 - \breve \theta$, so that by the comparison theorem of cooperative systems (Kamke) "
     r"each extension is the upper bound, over all histories $\breve \theta(t)$, of the solution of a "
     r"linear system: an integral of the past of $\breve g$ with weights that are not negative and add up "
     r"to $1 - \breve \omega_1$, at most 1. Along the foundation $\breve g$ is one parabola, displaced "
     "from instant to instant, so that the height of the indenter over the free surface is a lower bound "
     "of concave functions, and concave. An element is in contact where it is not negative, which is one "
-    "interval, for any drive and any motion: two edges are the whole geometry on every Prony series, as "
-    "F9 says for Kelvin-Voigt."
+    "interval, for any drive and any motion: two edges describe the contact on every Prony series, "
+    "as F9 says for Kelvin-Voigt."
 )

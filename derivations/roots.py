@@ -18,7 +18,7 @@ from .conditions import (
 
 @dataclass(frozen=True)
 class Domain:
-    """Where the variable may be: between two bounds, each with whether it belongs to the domain."""
+    """The domain of a variable: two bounds, each with whether it belongs to the domain."""
 
     low: sp.Expr
     high: sp.Expr

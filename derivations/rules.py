@@ -1,4 +1,4 @@
-"""Rules of rewriting: what a proof has defined or recalled, put in place of what it stands for.
+"""Rules of rewriting: the definitions and recalled relations of a proof, substituted from left to right.
 
 A rule reaches everything: under a derivative the inner expression is written out first, so that no
 dependence on the variable is hidden behind a name.
@@ -58,7 +58,7 @@ def is_name(lhs: sp.Expr) -> bool:
 
 
 class _Rewriter:
-    """One resolution: the rules, what they gave so far, and which of them were used."""
+    """One resolution: the rules, their results so far, and which of them were used."""
 
     def __init__(self, rules: Rules, hidden: Dependences) -> None:
         self.rules, self.hidden = rules, hidden
@@ -96,7 +96,7 @@ class _Rewriter:
         return new
 
     def _derivative(self, expr: sp.Derivative) -> sp.Expr:
-        """Write out what is differentiated, then put the variables to their values."""
+        """Write out the differentiated expression, then insert the values of the variables."""
         variables = [variable for variable, _ in expr.variable_count]
         fixed = [variable for variable in variables if variable in self.rules]
         inner = self._without(fixed).rewrite(expr.expr)

@@ -1,4 +1,4 @@
-"""Comparison at random points: for the steps that algebra does not decide, and against its errors."""
+"""Comparison at random points: for steps that algebra does not decide, and to detect its errors."""
 
 import random
 from collections.abc import Iterable
@@ -45,7 +45,7 @@ def refutation(lhs: sp.Expr, rhs: sp.Expr) -> str:
 
 
 _UNKNOWN = (AppliedUndef, sp.Derivative, sp.Integral, sp.Sum, sp.Subs)
-"""What has no value at a point."""
+"""An expression without a value at a point."""
 
 
 def _is_not_rational(expr: sp.Expr) -> bool:

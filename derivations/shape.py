@@ -1,8 +1,8 @@
-"""Steady sliding of an indenter of one's own shape: edges, load, friction and both limits.
+"""Steady sliding of an indenter of a user's shape: edges, load, friction and both limits.
 
 The shape rises as a convex sum of powers of |x|. With q = x_TE/a everything is explicit: a is the half
-length of the contact at rest, delta = h(a), and l_r follows from q. Where the edges are wanted from the
-depth and the velocity instead, they are roots, which the text says.
+length of the contact at rest, delta = h(a), and l_r follows from q. If the edges are
+to follow from depth and velocity instead, they are roots, as the text says.
 """
 
 from collections.abc import Iterator
@@ -173,9 +173,9 @@ class _Chapter:
         proof.equal(sp.Derivative(p, distance), fall, _FALLS)
         if closed is not None:
             if not self.blunt:
-                proof.where(sp.Lt(l_r, a), "the edge is behind the tip")
+                proof.where(sp.Lt(l_r, a), "the trailing edge is behind the tip")
             proof.root(p, distance, closed, "the positive root of $p = 0$")
-        proof.define(l_r, number, r"what it is for an edge at $x_{\mathrm{TE}} = q a$")
+        proof.define(l_r, number, r"its value for an edge at $x_{\mathrm{TE}} = q a$")
         zero = (K * (delta - self.rise - l_r * self.slope)).subs(distance, place)
         proof.equal(zero, sp.S.Zero, "no pressure there")
         return proof.done(l_r, number)
@@ -209,7 +209,7 @@ class _Chapter:
             total += value
         proof.define(force, ahead + behind, "both sides")
         result = _tidy(proof._resolve(total))
-        proof.equal(force, result, "with the edges put in")
+        proof.equal(force, result, "with the edges inserted")
         return proof.done(force, result)
 
     def _coefficient(self) -> Derivation:
@@ -335,26 +335,27 @@ def _trailing_text(closed: bool, blunt: bool) -> str:
     form = (
         "The trailing edge has a closed form."
         if closed
-        else "Here the closed form ends: as a function of the velocity the trailing edge is the root of an "
-        r"equation, $h(a) - h(x_{\mathrm{TE}}) = l_{\mathrm{r}} h'(x_{\mathrm{TE}})$. With "
-        r"$q = x_{\mathrm{TE}}/a$ as the parameter instead, all that follows is explicit."
+        else r"The trailing edge has no closed form in the velocity: it is the root of an equation, "
+        r"$h(a) - h(x_{\mathrm{TE}}) = l_{\mathrm{r}} h'(x_{\mathrm{TE}})$. With "
+        r"$q = x_{\mathrm{TE}}/a$ as the parameter, everything below is explicit."
     )
     return form if blunt else f"{form} {_SHARP}"
 
 
 _FALLS = "negative, as $h' > 0$ and $h'' \\ge 0$: the pressure has one zero"
 _SHAPE = (
-    r"In terms of the distance $\bar x = |x|$ from the lowest line, by which primes differentiate."
+    r"In terms of the distance $\bar x = |x|$ from the lowest line; primes are derivatives with "
+    r"respect to it."
 )
 _EXPLICIT_A = r"The half length $a$ of the contact at rest; the leading edge is at $x = -a$."
 _IMPLICIT_A = (
-    r"Here the closed form ends: the half length $a$ is the root of $h(a) = \delta$, one because $h$ "
-    r"rises. In what follows $a$ is given and $\delta$ follows from it; the leading edge is at $x = -a$."
+    r"The half length $a$ has no closed form: it is the root of $h(a) = \delta$, unique because $h$ "
+    r"rises. Below, $a$ is given and $\delta$ follows from it; the leading edge is at $x = -a$."
 )
-_SHARP = "The tip is sharp: this holds while the edge is behind it, beyond, the contact ends there."
+_SHARP = (
+    "The tip is sharp: this holds while the edge is behind it; beyond, the contact ends at the tip."
+)
 _SIDES = r"From both sides of the lowest line, with $q = x_{\mathrm{TE}}/a$."
 _LOW = r"For $l_{\mathrm{r}} \ll a$, that is $q \to 1$."
 _HIGH = r"For $l_{\mathrm{r}} \gg a$, that is $q \to 0$."
-_TIP = (
-    r"From the velocity on at which the trailing edge has come to the tip, $q = 0$, it stays there."
-)
+_TIP = r"Above the velocity at which the trailing edge reaches the tip, $q = 0$, it stays there."

@@ -1,4 +1,4 @@
-r"""The shape of an indenter from the text that a person types; nothing of the text is ever run.
+r"""The shape of an indenter from a text that a user types; the text is never executed.
 
 >>> read_shape("c*x^4").rise
 c*x_abs**4
@@ -41,7 +41,7 @@ TAKEN = [
     "e",
     "i",
 ]
-"""Letters with a meaning of their own in the derivation."""
+"""Letters that already have a meaning in the derivation."""
 
 _OPERATORS: dict[type[ast.operator], Callable[[sp.Expr, sp.Expr], sp.Expr]] = {
     ast.Add: lambda one, other: one + other,
@@ -64,7 +64,7 @@ class Shape:
     powers: tuple[sp.Rational, ...]
 
     def coefficient(self, power: sp.Rational) -> sp.Expr:
-        """Return what stands before a power."""
+        """Return the coefficient of a power."""
         return sp.Add(*(
             term / distance**power
             for term in sp.Add.make_args(self.rise)

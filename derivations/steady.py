@@ -88,7 +88,7 @@ def _retardation_length() -> Derivation:
     proof.define(l_r, V * tau)
     decay = start * sp.exp(-(t - t_0) / tau)
     later = {t: t_0 + (x - x_te) / V}
-    proof.recall("eq25", u_i, decay, "it has left the trailing edge at $t_0$", at=later)
+    proof.recall("eq25", u_i, decay, "it left the trailing edge at $t_0$", at=later)
     result = start * sp.exp(-(x - x_te) / l_r)
     shown = r"u(x_{\mathrm{TE}}) \exp\left(-\frac{x - x_{\mathrm{TE}}}{l_{\mathrm{r}}}\right)"
     reason = r"$l_{\mathrm{r}}$ is its e-folding length"
@@ -114,8 +114,8 @@ def _pressure() -> Derivation:
 
 
 _PRESSURE = (
-    r"Force per area is $p = N f_{zi}$, with $K = N k$ and $C = N c$; a steady contact looks the "
-    "same under both indenters."
+    r"Force per area is $p = N f_{zi}$, with $K = N k$ and $C = N c$; a steady contact is the same "
+    r"under both indenters."
 )
 
 
@@ -204,7 +204,7 @@ _LIMITS = (
     (39, False, True, "high velocity, steady sliding"),
 )
 _EITHER = (
-    r" By Eqs. (34) to (36) this holds for either indenter, with the depth at which it slides; "
+    r" By Eqs. (34) to (36) this holds for either indenter, with its depth in steady sliding; "
     r"$l_{\mathrm{r}}/a = C V/(K a)$."
 )
 _EDGES = {

@@ -152,7 +152,7 @@ class Proof(Guarded):
         name: sp.Symbol | None = None,
         **shown: Unpack[Shown],
     ) -> None:
-        """Prove that the expression vanishes where the variable has this value, and nowhere else.
+        """Prove that the expression vanishes at this value of the variable, and nowhere else.
 
         Nowhere else in the interval or, without one, among the values that the assumptions on the
         variable allow. `name` is what the root is called, if not by the variable itself.

@@ -53,8 +53,8 @@ w, phi, m, P_max, n, eta = _positive("w phi m P_max n eta")
 P = sp.Symbol("P", real=True)
 F_elastic, F_viscous = _positive("F_elastic F_viscous")
 X, Y, T = _positive("X Y T")
-"""Of a dead weight (F2): the cubes of the scaled velocity and of the scaled friction coefficient, and
-the friction coefficient over its asymptote for low velocity."""
+"""For a dead weight (F2): the cubes of the scaled velocity and of the scaled friction coefficient, and
+the ratio of the friction coefficient to its low-velocity asymptote."""
 mu_peak, Lambda_peak, Lambda_fixed, Lambda_weight = _positive(
     "mu_peak Lambda_peak Lambda_fixed Lambda_weight"
 )

@@ -1,6 +1,6 @@
 r"""Steady sliding beyond the paper: exact closed forms, the peak pressure, the balance of forces.
 
-One number fixes the contact: ``q`` = x_TE/a in (0, 1), or l = l_r/a = (1 - q**2)/(2 q). Where several
+One number determines the contact: ``q`` = x_TE/a in (0, 1), or l = l_r/a = (1 - q**2)/(2 q). Where several
 forms of a quantity are proved equal, the last one is the form for floating-point numbers: no
 difference of nearly equal numbers, no overflow.
 """
@@ -66,7 +66,7 @@ PROFILE = 1 - xi**2 - 2 * l * xi
 """p/(K delta) at x = xi a."""
 SCALED_LOAD = s**2 * (s + r + lam**2 / (r + lam)) / 2
 
-RATIO = r"$q = x_{\mathrm{TE}}/a$ names the state: $l = l_{\mathrm{r}}/a > 0$ is $0 < q < 1$"
+RATIO = r"$q = x_{\mathrm{TE}}/a$ is the parameter: $l = l_{\mathrm{r}}/a > 0$ is $0 < q < 1$"
 _theorem = partial(Proof, equation=None, section=SECTION)
 
 
@@ -79,7 +79,7 @@ def _rational() -> Derivation:
     proof = _theorem(
         "F1",
         title="The steady state is rational in one number",
-        text="For a parabola that slides steadily at V > 0, load, friction force and friction "
+        text="For a parabola in steady sliding at $V > 0$, load, friction force and friction "
         r"coefficient are rational functions of $q = x_{\mathrm{TE}}/a$.",
         uses=("eq3", "eq22", "eq26", "eq27", "eq28", "eq29"),
     )
@@ -152,7 +152,9 @@ def _peak_pressure() -> Derivation:
         *(2 * l, profile, (xi, -1), "at the leading edge, else"),
         surplus=(1 + xi) * (xi - 1 + 2 * l), given=(xi > -1, l > 1), left=r"\hat p(-1)",
     )  # fmt: skip
-    proof.define(n, sp.Min(1, l), "where the peak is, in half lengths from the bottom")
+    proof.define(
+        n, sp.Min(1, l), "position of the peak ahead of the lowest line, over the half length"
+    )
     proof.define(P_max, form, "its height in one form")
     proof.equal(sp.Piecewise((1 + l**2, l <= 1), (2 * l, True)), form, "for both cases")
     return proof.done(P_max, form)
@@ -206,7 +208,7 @@ def _balance() -> Derivation:
     proof.recall("scaling", l, NUMBER, RATIO)
     proof.recall("scaled-load", f, SCALED_LOAD)
     proof.recall("scaled-load", f_s, 3 * s * (s + r) / 2)
-    proof.equal(logarithmic, 6 / A, "how strongly the load depends on the depth")
+    proof.equal(logarithmic, 6 / A, "the dependence of the load on the depth")
     proof.sign(logarithmic, ">", 2, UNIT, "the damper alone")
     proof.sign(logarithmic, "<", 3, UNIT, "the spring alone")
     proof.sign(f / s**3, ">", 1, UNIT, "hence $G > 0$ at $s = 1$")

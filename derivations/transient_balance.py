@@ -1,8 +1,8 @@
 """Balances that hold in every transient: of momentum and of energy (F14).
 
-In the contact everything is a polynomial of depth, drive and edges. Outside, each element relaxes by
-itself, and only two facts are needed: it does so at the rate of its own compression, and at an edge the
-surface meets the indenter.
+In the contact everything is a polynomial of depth, drive and edges. Outside, each element relaxes freely, and
+only two facts are needed: its rate follows from its own compression, and at an edge the surface meets the
+indenter.
 """
 
 from functools import partial
@@ -77,7 +77,7 @@ def _both_sides(density: str) -> str:
 
 
 def _relaxing(proof: Proof) -> None:
-    """Lay down what is known of the surface outside the contact."""
+    """Define the known properties of the surface outside the contact."""
     proof.notation |= {"u": _u, "u'": _u_s}
     proof.notation[r"\lambda"] = _IN_TIME[lam]
     proof.define(_u_s, -_u, "outside there is no pressure, Eq. (20)", left="u'", right="-u")
@@ -113,9 +113,9 @@ def _surface() -> Derivation:
 
 
 _HANDED_OVER = (
-    r"Outside the contact each element relaxes by itself; beyond $X_1$ and $X_2$ none was ever pressed. What "
-    r"the contact hands over at its edges is stored in the free surface as $E$ and dissipated there at "
-    r"the rate $2 E$."
+    r"Outside the contact each element relaxes freely; beyond $X_1$ and $X_2$ none was ever "
+    r"compressed. The energy that leaves the contact at its edges is stored in the free surface as "
+    r"$E$ and dissipated there at the rate $2 E$."
 )
 
 
@@ -136,10 +136,10 @@ def _force() -> Derivation:
 
 _COMPRESSION = r"\int_{\ell}^{r} (d - \xi^2) \, d\xi"
 _COMPRESSED = r"(r - \ell) d - \frac{r^3 - \ell^3}{3}"
-_CONTINUOUS = "what the ends of the integrals sweep cancels: the surface is continuous at the edges"
+_CONTINUOUS = "the terms from moving ends cancel: the surface is continuous at the edges"
 _ALL = (
-    r"With $S$, the compression of all elements, also of those that relax outside the contact. A drive to "
-    "the other side is the mirror image, here and in the balance of energy."
+    r"$S$ is the compression of all elements, including those that relax outside the contact. "
+    r"Sliding in the other direction is the mirror image, here and in the balance of energy."
 )
 
 
@@ -203,7 +203,7 @@ def _power() -> Derivation:
 
 _POWER = (
     r"In units of $W_0 \delta_0/\tau$: by the motion of the indenter, and by the drive. Outside the contact "
-    "there is no pressure, and nothing is given."
+    "there is no pressure, and no power."
 )
 
 
@@ -239,7 +239,7 @@ def _energy() -> Derivation:
     )  # fmt: skip
     balance = sp.Derivative(moving + stored + energy, time) + lost + 2 * energy
     proof.equal(
-        *(lam * f_friction, balance, "what it is spent on: the sum of the three"),
+        *(lam * f_friction, balance, "the sum of the three contributions"),
         left=r"\lambda f_x",
         right=rf"\frac{{d}}{{ds}} \left[{_MOVING} + {_STORED} + E\right] + {_LOST} + 2 E",
     )
@@ -266,8 +266,9 @@ _LOST_THERE = (
     r"+ \lambda^2 (r^3 - \ell^3)"
 )
 _ENERGY = (
-    r"In units of $W_0 \delta_0$ and $W_0 \delta_0/\tau$. What the drive gives, in dimensional form $F_x V$, "
-    r"becomes kinetic energy $\frac{1}{2} M \dot\delta^2$, potential energies $-M g \delta$ and $\frac{1}{2} "
+    r"In units of $W_0 \delta_0$ and $W_0 \delta_0/\tau$. The power of the drive, in dimensional "
+    r"form $F_x V$, becomes kinetic energy $\frac{1}{2} M \dot\delta^2$, potential energies $-M g "
+    r"\delta$ and $\frac{1}{2} "
     r"k_s (\delta - \delta_0)^2$, and energy of the springs of the foundation under the indenter and "
     r"outside, $E$; the rest is lost in its dampers, under the indenter and outside. A fixed indenter has "
     "$d' = 0$, and only the foundation is left."

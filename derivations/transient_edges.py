@@ -1,7 +1,7 @@
 """The two edges of the contact (F10): where they peel, where they touch, and where they turn.
 
 An edge at xi = X + Y peels while it moves inward through the foundation and touches while it moves
-outward: onto undisturbed ground, or onto ground that it left before and that still remembers it.
+outward: onto undisturbed ground, or onto ground that it left before and that has not yet recovered.
 """
 
 from functools import partial
@@ -150,7 +150,8 @@ def _signs() -> Derivation:
     proof.notation |= {r"X_{\mathrm{e}}": edge_path, "D": sp.Lambda(material, margin)}
     proof.notation |= {r"\xi - E \eta": slope}
     proof.recall("F10-touch", P, TOUCHING_PRESSURE)
-    proof.holds(2 * rho * speed, "<", 0, "F10-peel: what a right edge lets go of loses its pressure",
+    proof.holds(2 * rho * speed, "<", 0,
+                "F10-peel: an element that detaches on the right loses its pressure",
                 cases=(sp.Lt(speed, 0),))  # fmt: skip
     proof.holds(-2 * rho * speed, "<", 0, "and at a left edge", cases=(sp.Gt(speed, 0),))
     inside, bulge = sp.Symbol("D_2", nonnegative=True), (sp.exp(time) - sp.exp(sigma)) * b**2
@@ -207,14 +208,14 @@ def _at_once() -> Derivation:
 
 
 _INSTANT = (
-    r"A jump of the drive at $s_0$ lets go of all ground between the old edge and the new one at once. "
+    r"A jump of the drive at $s_0$ detaches all ground between the old edge and the new one instantly. "
     r"With $E = e^{-(s - s_0)}$ and $m$, the way since then, $g(X, s) = E g(X, s_0)$ is a quadratic in "
     r"$\xi$."
 )
 
 
 def _soon_and_late() -> Derivation:
-    proof = _theorem("F10-instant-limits", title="The same soon after, and long after", text=_LIMITS,
+    proof = _theorem("F10-instant-limits", title="Ground left at one instant: early and late", text=_LIMITS,
                      uses=("F10-instant", "F10-peel", "F10-touch"))  # fmt: skip
     proof.notation["r"] = sp.Lambda((E, lift, drift), RIGHT_AT_ONCE)
     proof.where(sp.Gt(lift + E * drift**2, 0), "as in F10-instant")

@@ -1,4 +1,4 @@
-"""What the foundation remembers: theorems F8 and F9, for any drive and any motion of the indenter.
+"""The memory of the foundation: theorems F8 and F9, for any drive and any motion of the indenter.
 
 Element X of the foundation is at xi = X + Y(s), with Y' = lambda, where the surface of the indenter is
 at the compression g(X, s) = d - xi**2: negative where it hangs above the undisturbed foundation.
@@ -51,7 +51,7 @@ _theorem = partial(Proof, equation=None, section=SECTION)
 
 
 def derive() -> tuple[Derivation, ...]:
-    """Prove F8 and F9, with what they mean for a step in time and for landing."""
+    """Prove F8 and F9, and their consequences for a step in time and for landing."""
     return _memory(), _update(), _remainder(), _interval(), _landing()
 
 
@@ -68,14 +68,14 @@ def _memory() -> Derivation:
     )  # fmt: skip
     proof.integral(
         *(pushed, sp.exp(zeta) * PUSH(zeta), whole, sp.exp(zeta) * u(zeta)),
-        r"$\frac{d}{ds} \left[e^{s} u\right] = e^{s} \hat p$: what is kept, $e^{s} u$, never decreases",
+        r"$\frac{d}{ds} \left[e^{s} u\right] = e^{s} \hat p$: so $e^{s} u$ never decreases",
         value=kept - sp.exp(earlier) * u(earlier),
         left=r"\int_{s_1}^{s} e^{\zeta} \hat p(\zeta) \, d\zeta",
         right=r"e^{s} u(s) - e^{s_1} u(s_1)",
     )  # fmt: skip
     proof.define(g(earlier), u(earlier) - _clear(earlier), r"the clearance $c$ is never negative")
     at_last = {earlier: sigma}
-    proof.define(pushed.subs(at_last), sp.S.Zero, r"nothing has pressed since $\sigma$, the last contact",
+    proof.define(pushed.subs(at_last), sp.S.Zero, r"no pressure since $\sigma$, the last contact",
                  left=r"\int_{\sigma}^{s} e^{\zeta} \hat p(\zeta) \, d\zeta")  # fmt: skip
     proof.define(_clear(sigma), sp.S.Zero, "where the element met the indenter")
     proof.where(sp.Gt(time, earlier), "any earlier instant")
@@ -98,8 +98,9 @@ _BOUND = (
 _MEMORY = (
     _NOTATION
     + r" Its surface is never above the indenter, $u \ge g$; its pressure $\hat p = u + u'$ is never "
-    r"negative, and zero unless $u = g$. Then, whatever drive and indenter do, $e^{s} u$ is the running "
-    r"maximum of $e^{s} g$. The start counts as a contact with $u_0$, the compression at $s = 0$: an "
+    r"negative, and zero unless $u = g$. Then, for any motion of drive and indenter, $e^{s} u$ is "
+    r"the running maximum of $e^{s} g$. The start counts as a contact with $u_0$, the compression "
+    r"at $s = 0$: an "
     r"element that has not been touched since keeps $e^{s} u = u_0$, though $u$ itself decays."
 )
 
@@ -138,15 +139,15 @@ def _update() -> Derivation:
 _RISES = r"it rises where contact would give a pressure $\hat p > 0$, and falls elsewhere"
 _UPDATE = (
     _NOTATION
-    + r" The update needs no flag of contact. It is exact if $e^{s} g$ takes its maximum over the step "
-    "at an end of it, so always where it is monotone. It fails only where, within the step, an "
-    "element could first be pressed and then no longer; there $u$ is too small by at most $h^2/8$ times "
+    + r" The update needs no contact flag. It is exact if $e^{s} g$ takes its maximum over the step "
+    "at an end of it, so always where it is monotone. It is inexact only if, within the step, an "
+    "element is first compressed and then released; there $u$ is too small by at most $h^2/8$ times "
     r"the greatest $|\hat p + \hat p'|$ of the step (F8-remainder)."
 )
 
 
 def _remainder() -> Derivation:
-    proof = _theorem("F8-remainder", title="What a step can miss of the memory", text=_REMAINDER,
+    proof = _theorem("F8-remainder", title="Error of the memory within a step", text=_REMAINDER,
                      uses=("F8-update",))  # fmt: skip
     f, slope = (sp.Function(name, real=True) for name in ("f_8", "v_8"))
     unused = sp.Function("c_8", nonnegative=True)
@@ -159,7 +160,9 @@ def _remainder() -> Derivation:
     primitive = most * y**2 / 2 + y * slope(y) - f(y)
     proof.integral(spare, y * unused(y), whole, primitive, "by parts")
     proof.define(slope(b), sp.S.Zero, "the largest value is at $b_8$")
-    proof.equal(missed, most * b**2 / 2 - spare, "what the nearer end of the step misses")
+    proof.equal(
+        missed, most * b**2 / 2 - spare, "the error of the value at the nearer end of the step"
+    )
     proof.define(_h, 2 * (b + later), "the other end is at least as far")
     proof.equal(most * _h**2 / 8 - missed, most * later * (2 * b + later) / 2 + spare, "the rest")
     proof.holds(most * later * (2 * b + later) / 2 + spare, ">=", 0, "never negative")
@@ -215,8 +218,8 @@ _INTERVAL = (
     + r" By F8 an element is in contact at $s$ if and only if $e^{s} g(X, s)$ is not less than $e^{s_1} "
     r"g(X, s_1)$ at each earlier instant, and not less than $u_0$, which is zero or $g(X, 0)$. Each of "
     "these differences, $D(X)$, is concave (with $u_0 = 0$ in place of the earlier instant it bulges by "
-    "$e^{s}$), so that the elements between two in contact meet the same conditions: the contact has no gap. "
-    r"So the two edges are the whole geometry of the contact, for any drive $\lambda(s)$ and depth $d(s)$. "
+    "$e^{s}$), so that the elements between two in contact satisfy the same conditions: the contact "
+    r"has no gap. So two edges describe the contact, for any drive $\lambda(s)$ and depth $d(s)$. "
     "That the differences are concave needs the parabola, whose curvature is the same everywhere; that the "
     "contact is one interval does not."
 )
@@ -248,13 +251,15 @@ def _landing() -> Derivation:
     proof.where(mix < 1, "between two elements")
     proof.where(sp.Gt(_one, _other), "that are not the same")
     _between(proof)
-    proof.holds(_BULGE, ">", 0, "if both landed at once, the elements between would have before")
+    proof.holds(_BULGE, ">", 0,
+                "if both landed at the same instant, the elements between would have before")  # fmt: skip
     return proof.done(_BULGE, 0)
 
 
 _LANDING = (
-    r"While the indenter flies since $s_0$, an element is reached when $D(X) = e^{s} g(X, s) - e^{s_1} g(X, "
-    r"s_1)$ is no longer negative for any $s_1 \le s_0$, and $e^{s} g$ not less than $u_0$ (F8). If two "
-    r"elements were reached at once, those between them would be above that by at least $\theta (1 - \theta) "
-    r"(e^{s} - e^{s_0}) (X_1 - X_2)^2$, whatever $s_1$ is: they would have been pressed before."
+    r"While the indenter flies since $s_0$, an element is touched when $D(X) = e^{s} g(X, s) - e^{s_1} g(X, "
+    r"s_1)$ is no longer negative for any $s_1 \le s_0$, and $e^{s} g$ not less than $u_0$ (F8). If "
+    r"two elements were touched at the same instant, those between them would exceed this condition "
+    r"by at least $\theta (1 - \theta) "
+    r"(e^{s} - e^{s_0}) (X_1 - X_2)^2$, whatever $s_1$ is: they would have been compressed before."
 )

@@ -40,7 +40,7 @@ FRICTION_FORCE = _FRICTION_SHARE * (
     - 2 * lam * (right**3 - left**3) / 3
 )
 PEELING_NORMAL_FORCE = b**2 * (3 * rho - b) / 4
-"""Right edge at r = rho - lambda, left edge at r - b: no difference of nearly equal numbers."""
+"""Right edge at r = rho - lambda, left edge at r - b: no cancellation."""
 PEELING_FRICTION_FORCE = b**2 * (4 * right * (b - 3 * rho) + b * (8 * rho - 3 * b)) / 8
 JACOBIAN = (
     _LOAD_SHARE * (right + a + lam + d_s / (2 * a)),
@@ -51,10 +51,10 @@ JACOBIAN = (
 """Derivatives of both forces with respect to d and d' after a start from rest."""
 
 START = {right: sp.sqrt(RADICAND) - lam, left: -sp.sqrt(d)}
-"""The edges after a start from rest: the right one peels, the left one finds undisturbed ground."""
+"""The edges after a start from rest: the right one peels, the left one touches undisturbed ground."""
 
 _touching = sp.Function("xi", real=True)(d, d_s)
-"""An edge that touches, as it depends on the motion."""
+"""The dependence of a touching edge on the motion."""
 _theorem = partial(Proof, equation=None, section=SECTION)
 
 
@@ -87,8 +87,8 @@ _FRICTION = (
     r"\ell^2}{2} - \frac{r^4 - \ell^4}{4} - 2 \lambda \frac{r^3 - \ell^3}{3}\right]"
 )
 _FORCES = (
-    r"In units of $W_0$ and $W_0 \delta_0/a_0$, with the edges $\ell < r$ of F10: elements outside "
-    "press on nothing."
+    r"In units of $W_0$ and $W_0 \delta_0/a_0$, with the edges $\ell < r$ of F10: there is no "
+    r"pressure outside."
 )
 
 
@@ -116,7 +116,9 @@ def _edges() -> Derivation:
                      uses=("F10-peel", "F10-instant", "F10-gradual"))  # fmt: skip
     then, moved = sp.symbols("d_0 m", real=True)
     meets = d - _touching**2 - E * (then - (_touching - moved) ** 2)
-    proof.define(eta, _touching - moved, "where the element was when it was left", right=r"\xi - m")
+    proof.define(
+        eta, _touching - moved, "where the element was when the edge left it", right=r"\xi - m"
+    )
     proof.where(sp.Gt(_touching, E * eta), "a right edge; a left one mirrors it")
     per_depth = 1 / (2 * (_touching - E * eta))
     shown = r"\frac{1}{2 (\xi - E \eta)}"
@@ -137,7 +139,7 @@ def _edges() -> Derivation:
 _EDGES = (
     r"An edge that peels is a zero of the pressure. One that touches at $\xi$ meets ground that was left "
     r"at $\eta$, where $d - \xi^2 = E (d_0 - \eta^2)$ with $\eta = \xi - m$, $d_0$ and $E$ of that instant; "
-    "if each element was left at an instant of its own, this instant does not matter to first order "
+    "if each element was left at a different instant, this instant has no effect to first order "
     "(F10-gradual)."
 )
 
@@ -174,9 +176,9 @@ def _derivatives() -> Derivation:
 _AT_TOUCH = r"\hat p \frac{\partial \xi}{\partial d}"
 _TOUCHES = "an edge that touches: its velocity through the foundation"
 _DEPEND = (
-    r"At an edge that peels $\hat p$ vanishes and with it the term of that edge. An edge that touches does "
-    r"not depend on $d'$; in $\partial f_z/\partial d$ it leaves its velocity $X_{\mathrm{e}}'$ through "
-    "the foundation."
+    r"At an edge that peels $\hat p$ vanishes, and with it the term of that edge. An edge that "
+    r"touches does not depend on $d'$; it contributes its velocity $X_{\mathrm{e}}'$ through the "
+    r"foundation to $\partial f_z/\partial d$."
 )
 
 
@@ -194,8 +196,8 @@ def _moving_ends(share: sp.Expr, inside: sp.Expr, force: sp.Expr, variable: sp.E
 
 
 def _start_from_rest() -> Derivation:
-    proof = _theorem("F11-start", title="The same after a start from rest", text=_START,
-                     uses=("F11-derivatives",))  # fmt: skip
+    proof = _theorem("F11-start", title="How forces depend on the motion after a start from rest",
+                     text=_START, uses=("F11-derivatives",))  # fmt: skip
     proof.where(sp.Gt(d + d_s + lam**2, 0), "the indenter is on the foundation")
     proof.define(right, START[right], "peels")
     proof.define(left, START[left], "touches undisturbed ground")
@@ -211,6 +213,7 @@ def _start_from_rest() -> Derivation:
 
 
 _START = (
-    "While the drive does not fall off, the right edge peels and the left one finds undisturbed ground: "
-    "the motion is an ordinary differential equation for two numbers, without memory, with this Jacobian."
+    "While the drive does not slow down, the right edge peels and the left one touches undisturbed "
+    "ground: the motion is an ordinary differential equation of two variables, without memory, with "
+    "this Jacobian."
 )

@@ -46,13 +46,13 @@ from .transient_motion import PEELING_NORMAL_FORCE, START
 from .transient_scaling import PRESSURE
 
 DAMPING, STIFFNESS = 3 * per_rate / 4, 3 * per_depth / 4 + kappa
-"""How strongly the force on the indenter depends on the rate of the depth, and on the depth."""
+"""The dependence of the force on the indenter on the depth rate, and on the depth."""
 QUADRATIC = eps * sigma**2 + DAMPING * sigma + STIFFNESS
 """Its roots are the rates of small motions."""
 
 _root = sp.sqrt(DAMPING**2 - 4 * eps * STIFFNESS)
 FAST, SLOW = -(DAMPING + _root) / (2 * eps), -2 * STIFFNESS / (DAMPING + _root)
-"""The rates per retardation time, without a difference of nearly equal numbers."""
+"""The rates per retardation time, without cancellation."""
 
 _first, _second = sp.symbols("sigma_1 sigma_2", real=True)
 _times = sp.symbols("T_1 T_2", real=True)
@@ -88,7 +88,7 @@ def _linearised() -> Derivation:
     pushed = force.subs({d: near, d_s: rate}, simultaneous=True)
     motion = eps * sp.Derivative(near, (time, 2)) - (1 - pushed - kappa * (near - 1))
     proof.notation |= {"D": sp.Lambda(time, near), "f_z": sp.Lambda((d, d_s), force)}
-    proof.define(per_depth, sp.sqrt(a**2 + lam**2) + a, "how much the force grows with the depth")
+    proof.define(per_depth, sp.sqrt(a**2 + lam**2) + a, "growth of the force with the depth")
     proof.define(per_rate, sp.sqrt(a**2 + lam**2) - lam + a, "and with its rate")
     proof.where(sp.Gt(near, 0), "the change is small")
     proof.where(sp.Gt(near + rate + lam**2, 0), "and the contact remains")
@@ -188,8 +188,8 @@ def _time_constants() -> Derivation:
 
 
 _TIMES = (
-    r"$T_1 = -\tau/\sigma_1$ and $T_2 = -\tau/\sigma_2$ for small $\varepsilon$: the fast one is due to "
-    "the mass, the slow one is a part of the retardation time, given by the drive alone."
+    r"$T_1 = -\tau/\sigma_1$ and $T_2 = -\tau/\sigma_2$ for small $\varepsilon$: the fast one is "
+    r"due to the mass; the slow one is a fraction of the retardation time, which depends on the drive alone."
 )
 
 
@@ -244,15 +244,16 @@ def _manifold() -> Derivation:
     proof.root(P, d_s, SLOW_RATE, "no pressure there")
     proof.define(rho, right + lam)
     proof.define(b, right + a, r"the left edge touches at $-a = -\sqrt{d}$")
-    proof.define(f, PEELING_NORMAL_FORCE, "F11: the force is all that is left of the weight")
+    proof.define(f, PEELING_NORMAL_FORCE, "F11: the force equals the weight less the spring force")
     proof.equal(f, (right + a) ** 2 * (2 * right + 3 * lam - a) / 4, "which is a cubic in $r$")
     proof.equal(4 * f / 3, cubic, "expanded")
     return proof.done(d_s, SLOW_RATE)
 
 
 _MANIFOLD = (
-    r"Without inertia the indenter is in balance, $f_z = f$ with $f = 1 - \kappa (d - 1)$: given $d$, "
-    r"this fixes the right edge $r$, and $r$ fixes $d'$. One differential equation of first order is left. "
+    r"Without inertia the indenter is in balance, $f_z = f$ with $f = 1 - \kappa (d - 1)$: given "
+    r"$d$, this determines the right edge $r$, and $r$ determines $d'$. One differential equation "
+    r"of first order remains. "
     r"It holds where the left edge touches undisturbed ground, $b \le 2 \rho$."
 )
 

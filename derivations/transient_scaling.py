@@ -94,7 +94,8 @@ def _scaled_form() -> tuple[Derivation, ...]:
 
 
 _SCALES = (
-    r"The unit of lengths along $x$ is $a_0 = \sqrt{2 R \delta_0}$, half the contact at rest, that of "
+    r"The unit of lengths along $x$ is $a_0 = \sqrt{2 R \delta_0}$, the half length of the contact "
+    r"at rest, that of "
     r"depths the static depth $\delta_0$, that of forces the static load $W_0 = \frac{4}{3} K a_0 "
     r"\delta_0$ and that of time $\tau$; a prime is the derivative with respect to $s = t/\tau$."
 )
@@ -131,7 +132,8 @@ def _scaled_motion() -> Derivation:
 
 
 _SUPPORTS = (
-    r"Three numbers are left: $\lambda = V \tau/a_0$, $\varepsilon = M \delta_0/(W_0 \tau^2)$ and "
+    r"Three dimensionless numbers remain: $\lambda = V \tau/a_0$, $\varepsilon = M \delta_0/(W_0 "
+    r"\tau^2)$ and "
     r"$\kappa = k_s \delta_0/W_0$. A dead weight has $\kappa = 0$; a spring of stiffness $k_s$, relaxed "
     r"at the static depth, makes the indenter suspended, and $\kappa \to \infty$ holds it at $d = 1$."
 )
@@ -175,6 +177,6 @@ _KINEMATICS = r"$K u + C \dot u$ with Eqs. (6) and (7)"
 _PEEL = (
     "It holds while the edge peels, that is, while elements leave the contact there because their "
     "pressure vanishes. The paper gives one zero of the pressure; the other is a leading edge that "
-    "peels, as it does when the indenter is lifted faster than the edge finds undisturbed ground. If "
+    "peels, as occurs when the indenter is lifted faster than the edge advances onto undisturbed ground. If "
     "there is no zero, no element can be pressed and the indenter has left the foundation."
 )

@@ -1,6 +1,6 @@
 r"""Steady sliding of a parabola on any linear viscoelastic foundation: theorem F17.
 
-Everything is linear in the relaxation function, so that one arm is enough: what relaxes as exp(-X/l) over
+Everything is linear in the relaxation function, so that one arm is enough, which relaxes as exp(-X/l) over
 the distance X. A spring is an arm with l -> oo, a Prony series a sum of arms; a springpot, like every
 relaxation function that is completely monotone, is an integral over arms (Bernstein). Lengths are scaled by
 the length of the contact.
@@ -81,7 +81,7 @@ _theorem = partial(Proof, equation=None, section=SECTION)
 
 
 def derive() -> tuple[Derivation, ...]:
-    """Prove F17 for an arm, and what follows for sums of arms."""
+    """Prove F17 for an arm, and its consequences for sums of arms."""
     return (
         *(_pressure(), _moments(), _edge(), _load(), _work(), _energy()),
         *(_growth(), _forms(), _springpot(), _kelvin_voigt(), _slow(), _fast()),
@@ -102,7 +102,8 @@ def _pressure() -> Derivation:
 
 _ARM = (
     "An element at the distance $X$ behind the leading edge is compressed by $u$, $R u' = a - X$; a "
-    r"foundation with the relaxation function $G(t)$ answers with $p = \int G((X - X')/V)\, u'\, dX'$. "
+    r"foundation with the relaxation function $G(t)$ exerts the pressure "
+    r"$p = \int G((X - X')/V)\, u'\, dX'$. "
     r"This is linear in $G$. One arm is $G = K_i e^{-X/l_i}$, $l_i = V \tau_i$; its pressure is $\breve "
     r"p$ in units of $K_i \breve c^2/R$, where $\breve c$ is the length of the contact, $\breve z = "
     r"\breve c/l_i$, $\breve x = X/\breve c$ and $\breve a = a/\breve c$."
@@ -124,8 +125,9 @@ def _moments() -> Derivation:
 
 
 _MOMENTS = (
-    r"Of what an arm still remembers at the trailing edge, at the distance $\breve w \breve c$ ahead of "
-    "it. The weights of the first three are positive; that of the last has no mean, and falls from the "
+    r"The moments weight the memory of an arm at the trailing edge, at the distance $\breve w "
+    r"\breve c$ ahead of it. The weights of the first three are positive; that of the last has no "
+    r"mean, and falls from the "
     "trailing edge, so that none of the moments is negative where $G$ falls and is convex."
 )
 
@@ -136,7 +138,9 @@ def _from_moments(proof: Proof) -> None:
         proof.recall("F17-moments", name, form)
     proof.recall("F17-moments", A, P + Q)
     proof.recall("F17-moments", B, (P - Q) / 2)
-    proof.define(b, sp.Rational(1, 2) + e, "the half length, by what exceeds half of the contact")
+    proof.define(
+        b, sp.Rational(1, 2) + e, "the half length, by its excess over half of the contact"
+    )
 
 
 def _under_pressure(proof: Proof) -> None:
@@ -158,7 +162,8 @@ def _edge() -> Derivation:
 _EDGE = (
     r"All arms and the spring together have no pressure there: $a = \breve c \sum K_i \breve P/\sum "
     r"K_i \breve A$ and $x_{\mathrm{TE}} = \breve c \sum K_i \breve Q/\sum K_i \breve A$, with the moments "
-    "of each arm. The length of the contact so gives its half length at rest. The slope of the pressure, "
+    "of each arm. The length of the contact therefore determines the half length at rest. The slope "
+    "of the pressure, "
     r"$R p' = a G - \int_0^X G$, falls where $G$ does, so that $p$ is concave and vanishes once."
 )
 
@@ -232,7 +237,7 @@ def _growth() -> Derivation:
     proof.equal(slope - sp.Rational(1, 2), gap / (2 * primitive_1**2), "more than one half, if")
     proof.equal(sp.Derivative(gap, c), -2 * primitive_2 * fall,
                 r"this, which is 0 for $\breve c = 0$, rises: $G$ falls")  # fmt: skip
-    proof.define(W, (primitive_2**2 / primitive_1 - primitive_3) / R, "F17-load, with $a$ put in")
+    proof.define(W, (primitive_2**2 / primitive_1 - primitive_3) / R, "F17-load, with $a$ inserted")
     rise = primitive_2 * slope / R
     proof.equal(sp.Derivative(W, c), rise, r"$a' \breve G_2/R$: no pressure at the trailing edge")
     return proof.done(sp.Derivative(W, c), rise)
@@ -265,8 +270,9 @@ def _forms() -> Derivation:
 
 
 _FORMS = (
-    r"$\breve t_0 = 1/(3 + (\breve z/2)^2 \breve t_1)$ begins Gauss's continued fraction of $\coth$, which "
-    r"goes on with 5, 7 and so on, all positive; ten terms give every digit for $\breve z \le 4$."
+    r"$\breve t_0 = 1/(3 + (\breve z/2)^2 \breve t_1)$ begins Gauss's continued fraction of "
+    r"$\coth$, which continues with 5, 7 and so on, all positive; ten terms give full double "
+    r"precision for $\breve z \le 4$."
 )
 
 
@@ -317,8 +323,8 @@ def _kelvin_voigt() -> Derivation:
 
 
 _VOIGT = (
-    r"A spring beside a dashpot, with $\breve \zeta = l_{\mathrm{r}}/\breve c$, returns the steady "
-    "state of F1."
+    r"A spring in parallel with a dashpot, with $\breve \zeta = l_{\mathrm{r}}/\breve c$, gives the "
+    r"steady state of F1."
 )
 
 
@@ -326,7 +332,7 @@ def _slow() -> Derivation:
     proof = _theorem("F18-low", title="Any relaxation function: low velocity", text=_SLOW,
                      uses=("F17", "F17-load"))  # fmt: skip
     _from_moments(proof)
-    proof.define(FALL, forgotten / z**2, "the arm forgets faster than any power of $\\breve z$")
+    proof.define(FALL, forgotten / z**2, "its memory decays faster than any power of $\\breve z$")
     far = {"variable": z, "point": sp.oo, "eps": 1 / z}
     proof.leading_order(B, 1 / (2 * z), reason=r"so $\breve \eta^2$ is of second order", **far)
     proof.leading_order(E, 1 / (12 * z), reason="friction force of the arm", **far)
@@ -358,5 +364,5 @@ _FAST = (
     r"With $\breve c \to 2 a$ this is $\mu \to \frac{2}{5} \frac{a^2}{R V} \frac{-G'(0)}{G(0)}$, as $G(0) = "
     r"K (1 + \breve \zeta)$ and $-G'(0) = K \breve \zeta/\tau_i$; to this order arms add up. The half length "
     r"is that of the stiffness $G(0)$. So friction has a maximum even at a fixed depth, and Eqs. (45) and "
-    "(46) hold in a window alone, in which most of the arms have relaxed and the fastest have not."
+    "(46) hold only in a window, in which most of the arms have relaxed and the fastest have not."
 )

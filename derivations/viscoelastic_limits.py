@@ -1,6 +1,6 @@
-r"""How far a foundation is from its limits: proved bounds for V -> 0 and V -> oo, and the springpot (F18).
+r"""Distance of a foundation from its limits: proved bounds for V -> 0 and V -> oo, and the springpot (F18).
 
-Of the relaxation function a bound takes two numbers: for low velocity its integral C = int (G - K) dt and
+A bound uses two numbers of the relaxation function: for low velocity its integral C = int (G - K) dt and
 the mean time int t (G - K) dt/C; for high velocity -G'(0)/G(0) and G''(0)/G'(0).
 """
 
@@ -37,7 +37,7 @@ from .viscoelastic import MOMENTS, SECTION, SPRINGPOT, UNIT, A, D, E, P, Q, w
 kap, eps, nu = spring_number, delay, spring_share
 half, twelfth = sp.Rational(1, 2), sp.Rational(1, 12)
 SMALL = sp.Rational(1, 20)
-"""Up to here the mean relaxation length over the contact may be."""
+"""Largest ratio of the mean relaxation length to the contact length."""
 VOIGT = 7
 """Relative error of Kelvin-Voigt, over that number."""
 HASTE = sp.Rational(1, 5)
@@ -75,7 +75,8 @@ _LACKS = (
     r"relaxation time $\bar t = \int t\, (G - K)\, dt/C$, which is $\sum K_i \tau_i^2/\sum K_i \tau_i$. "
     r"Without the spring, and over $\breve \zeta$, the moments $\breve A$, $\breve P$, $\breve D$ and "
     r"$\breve E$ are $1 - \breve \alpha_A$, $1 - \breve \alpha_P$, $\breve \alpha_D$ and $\frac{1}{12} - "
-    r"\breve \alpha_E$; for a dashpot all four lacks are 0. They are integrals of $G - K \ge 0$ over all "
+    r"\breve \alpha_E$; for a dashpot all four differences are 0. They are integrals of $G - K \ge "
+    r"0$ over all "
     r"$\breve w > 0$ with the weights below, and those beyond $\breve w = 1$ are 1, 1, 0 and "
     r"$\frac{1}{12}$. Hence $0 \le \breve \alpha_A \le \breve \alpha_P \le \breve \varepsilon$, and so "
     r"on, for every $G \ge K$."
@@ -83,7 +84,7 @@ _LACKS = (
 
 
 def _voigt() -> Derivation:
-    proof = _theorem("F18-voigt", title="Low velocity: Kelvin-Voigt instead of the foundation",
+    proof = _theorem("F18-voigt", title="Low velocity: distance from Kelvin-Voigt",
                      text=_VOIGT, uses=("F18-lacks", "F17-load", "F17", "F19-monotonic"))  # fmt: skip
     for small, bound, spare in (
         (lack_ahead, eps, spare_1), (lack_mean, lack_ahead, spare_2), (lack_twist, eps / 4, spare_3),
@@ -101,11 +102,11 @@ def _voigt() -> Derivation:
         proof.holds(value, ">=", low, f"{what}, with that of Kelvin-Voigt on the right")
         proof.holds(high, ">=", value, "and above")
     proof.holds(
-        plain_ahead * mean, ">=", ahead * plain_mean, "so $a$ is not larger than on Kelvin-Voigt"
+        plain_ahead * mean, ">=", ahead * plain_mean, "so $a$ is at most that on Kelvin-Voigt"
     )
     load = kap / 12 + plain_ahead / (2 * plain_mean)
     proof.sign(load, ">", sp.Rational(4, 9), (kap, 0, sp.oo),
-               r"its load: $\breve \alpha_D$ adds less than $9 \breve \varepsilon/8$ of it")  # fmt: skip
+               r"its load: $\breve \alpha_D$ adds less than the share $9 \breve \varepsilon/8$")  # fmt: skip
     unit = (eps, 0, SMALL)
     lowest = (1 - 2 * eps) ** 2 * (1 - eps)
     proof.sign(
@@ -132,7 +133,8 @@ _VOIGT = (
     r"that of Kelvin-Voigt, the load between $(1 - \breve \varepsilon)(1 - 2 \breve \varepsilon)$ and $1 "
     r"+ 9 \breve \varepsilon/8$ times, and $\mu$ between $(1 - 5 \breve \varepsilon)/(1 + 9 \breve "
     r"\varepsilon/8)$ and $1/((1 - \breve \varepsilon)^2 (1 - 2 \breve \varepsilon))$ times. Then "
-    "Kelvin-Voigt moves to the contact that its support asks for. In words: at a given velocity $W + k_s "
+    r"the contact on Kelvin-Voigt changes to the one on its own support. Not checked by machine: at "
+    r"a given velocity $W + k_s "
     r"\delta$ grows at least as $a^2$, and $\mu_0$ with $a$ at most in proportion (F19-monotonic), so "
     r"that the factor of $\mu_0$ is at most the root of that of the load. With the error of Eq. (42) on "
     "Kelvin-Voigt (error-L1) this bounds that of Eq. (42) on every foundation."
@@ -159,11 +161,12 @@ def _window() -> Derivation:
 
 _WINDOW = (
     r"With $l = V \tau/a$ and $\breve \chi = \tau/\bar t$, which is $\breve \beta$ for one arm, $\breve "
-    r"\varepsilon$ is below $l/\breve \chi$, because $\breve c > a$. So Eq. (45) is off by at most $(1 + "
-    r"\frac{2}{3 l})/(1 - 7 l/\breve \chi) - 1$ one way, and by $7 l/\breve \chi$ the other: it holds for "
-    r"$1 \ll l \ll \breve \chi$ alone. The last step is with $q$ for $l$: the window is best at $l = "
-    r"\sqrt{2 \breve \chi/21}$, where the bound is $4.3/\sqrt{\breve \chi}$. It opens as slowly as that: "
-    "for one part in ten an arm must be 1900 times as stiff as the spring, by this bound."
+    r"\varepsilon$ is below $l/\breve \chi$, because $\breve c > a$. So the relative error of Eq. "
+    r"(45) is at most $(1 + \frac{2}{3 l})/(1 - 7 l/\breve \chi) - 1$ upwards, and $7 l/\breve "
+    r"\chi$ downwards: it holds only for $1 \ll l \ll \breve \chi$. The last step is with $q$ for "
+    r"$l$: the window is best at $l = "
+    r"\sqrt{2 \breve \chi/21}$, where the bound is $4.3/\sqrt{\breve \chi}$. It opens slowly: for "
+    r"an error of 10 % by this bound an arm must be 1900 times as stiff as the spring."
 )
 
 
@@ -195,10 +198,10 @@ def _glass() -> Derivation:
     bulge = w * (1 - w) ** 2 * (2 + w) / 24
     for integrand, value, what in (
         (bulge, sp.Rational(1, 120), r"$\breve E$ is at most $\breve \gamma$ times this"),
-        (w * bulge, sp.Rational(1, 288), r"and misses at most $\breve \gamma \breve \omega$ times this"),
+        (w * bulge, sp.Rational(1, 288), r"and less by at most $\breve \gamma \breve \omega$ times this"),
         (w * (1 - w) / 2, twelfth, r"$\breve B$ is at most $\breve \gamma$ times this"),
-        (w, half, r"$\breve A$ misses at most $\breve \gamma$ times this"),
-        (w * MOMENTS[D][0], sp.Rational(1, 24), r"and $\breve D$ misses at most $\breve \gamma$ times this"),
+        (w, half, r"$\breve A$ is less than its limit by at most $\breve \gamma$ times this"),
+        (w * MOMENTS[D][0], sp.Rational(1, 24), r"and $\breve D$ by at most $\breve \gamma$ times this"),
     ):  # fmt: skip
         whole = sp.Integral(integrand, UNIT)
         proof.integral(
@@ -218,7 +221,7 @@ _GLASS = (
 
 
 def _glassy() -> Derivation:
-    proof = _theorem("F18-glassy", title="High velocity: how far from the glassy limit", text=_GLASSY,
+    proof = _theorem("F18-glassy", title="High velocity: distance from the glassy limit", text=_GLASSY,
                      uses=("F18-glass", "F18-high"))  # fmt: skip
     unit, o = (haste, 0, HASTE), haste
     part = 1 - o / 2

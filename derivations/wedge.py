@@ -1,4 +1,4 @@
-r"""Steady sliding of a wedge h = c |x|: theorem F19 for n = 1, where everything is closed.
+r"""Steady sliding of a wedge h = c |x|: theorem F19 for n = 1, all in closed form.
 
 While l = l_r/a < 1 the trailing edge is at a - l_r behind the tip; from l = 1 on it stays at the tip,
 and the friction coefficient is the slope c of the wedge.
@@ -66,7 +66,7 @@ def _edge() -> Derivation:
     ahead, behind = ((K * (delta - c * y * a) + side * C * V * c) / (K * delta) for side in (1, -1))
     proof.define(delta, c * a, r"$h(a) = \delta$: the half length at rest")
     proof.recall("eq29", C, K * l_r / V)
-    proof.define(l_r, l * a, "the retardation length in half lengths")
+    proof.define(l_r, l * a, "the retardation length over the half length")
     proof.notation |= {r"\hat p(-y a)": ahead, r"\hat p(y a)": behind}
     proof.equal(
         ahead, 1 - y + l, "at $x = -y a$, largest at the tip: $1 + l$", left=r"\hat p(-y a)"
@@ -144,9 +144,9 @@ def _fast() -> Derivation:
 
 
 _FAST = (
-    r"From $l_{\mathrm{r}} = a$ on all contact is on the one flank, so that $\mu = c$ exactly, at "
-    "any depth and under any load: vertical lift does not make the friction of a sharp tip fall, "
-    "and Eq. (50) needs a rounded one."
+    r"From $l_{\mathrm{r}} = a$ on the contact is on one flank only, so that $\mu = c$ exactly, at "
+    r"any depth and under any load: vertical lift does not reduce the friction coefficient of a "
+    r"sharp tip, and Eq. (50) requires a rounded one."
 )
 
 

@@ -1,4 +1,4 @@
-"""How wrong each asymptote of the friction coefficient is, over V/V*."""
+"""The error of each asymptote of the friction coefficient, over V/V*."""
 
 from dataclasses import dataclass
 

@@ -1,8 +1,9 @@
 """The ball beside the cylinder: master curves, and the footprint with its pressure at three velocities.
 
-The scaled friction coefficient mu R/a_0 depends on V tau/a_0 alone, a_0 being the half length at rest; that
-of a ball falls more slowly under a dead weight, V^(-1/3) against V^(-1/2). The footprint is a disc, cut
-behind by the line on which the pressure vanishes; its shape depends on l_r/a alone.
+The scaled friction coefficient mu R/a_0 depends on V tau/a_0 alone, a_0 being the half length at rest.
+Under a dead weight that of a ball falls more slowly, as V^(-1/3), than that of a cylinder, as V^(-1/2). The
+footprint is a disc, cut at the rear by the line on which the pressure vanishes; its shape depends on l_r/a
+alone.
 """
 
 from dataclasses import dataclass

@@ -1,8 +1,9 @@
 """Figs. 3 and 5 of the paper for a ball: the onset of sliding, and steady sliding over the velocity.
 
 The ball has the radius and the foundation of Table 1, and the depth of its fixed indenter; the dead weight
-is what rests at that depth. A ball that is held is steady at once (`transient`); one that may rise is
-followed by elements in strips (`elements`), and ends in exact steady sliding, which is dotted.
+is the one that rests at that depth. The forces on a ball at constant depth are steady immediately
+(`transient`). A ball that may rise is simulated by elements in strips (`elements`), and approaches exact
+steady sliding, drawn dotted.
 """
 
 from dataclasses import dataclass, replace
@@ -41,7 +42,7 @@ def scenes() -> dict[str, kv.Scene]:
 
 
 def compute() -> Data:
-    """Follow both scenes, and slide them at every velocity."""
+    """Compute both starts, and steady sliding at every velocity."""
     found = scenes()
     starts = {
         "fixed": kv.transient(found["fixed"], at=TIMES),

@@ -1,6 +1,6 @@
-"""What public calls cost beside what they compute, measured side by side in one run: `make benchmark`.
+"""Overhead of public calls, measured side by side in one run: `make benchmark`.
 
-Each row is the time of a call over that of what it rests on: the bare kernels, the formula that was
+Each row is the time of a call over that of its core: the bare kernels, the formula that was
 chosen, NumPy's own import. Times are the least of several in random order, in one process; commands
 are whole processes on a warm disk.
 """
@@ -53,7 +53,7 @@ def least(calls: dict[str, Callable[[], Any]], repeats: int = REPEATS) -> dict[s
 
 
 def transient() -> None:
-    """Hold a certified transient, compiled, against its kernel runs."""
+    """Compare a certified transient, compiled, with its kernel runs."""
     scene, at_rest = kv.Scene(), StaticState.of(kv.Scene())
     drive = scaled_drive(scene, at_rest)
     numbers = at_rest.inertia_number, at_rest.support_number
@@ -82,7 +82,7 @@ def transient() -> None:
 
 
 def chooser() -> None:
-    """Hold the choice of an asymptote against the formula that is chosen."""
+    """Compare the choice of an asymptote with the formula that is chosen."""
     slowly = kv.Scene(drive=kv.Drive(velocity=1e-3))
     print("\nChoice of `solve` over the formula that it chooses (asymptote)")
     for names in (("friction_coefficient",), tuple(STEADY_UNITS)):

@@ -1,4 +1,4 @@
-"""How wrong the parabola is for a true circle of the same radius, at the same depth or load.
+"""The error of the parabola for a true circle of the same radius, at the same depth or load.
 
 Circle over parabola is 1 + c (a/R)^2 + O((a/R)^4) with coefficients c that depend on l_r/a alone;
 the points come from quadrature of the circle itself.

@@ -1,4 +1,4 @@
-"""Where the power F V is lost: inside the contact, or in the surface that relaxes behind it (F6)."""
+"""Where the power F V is dissipated: inside the contact, or in the surface that relaxes behind it (F6)."""
 
 from dataclasses import dataclass
 

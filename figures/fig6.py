@@ -1,8 +1,8 @@
 """Fig. 6 of the paper: the master curves of the friction coefficient and their asymptotes.
 
-One number fixes the scaled friction coefficient: V tau (R delta)^(-1/2) for a fixed indenter and
+The scaled friction coefficient depends on one number: V tau (R delta)^(-1/2) for a fixed indenter and
 V tau (K/(R W))^(1/3) for a dead weight. The curves are exact; the points come from quadrature on
-scenes with random parameters, which fall on the curve all the same.
+scenes with random parameters, and fall on the curves.
 """
 
 from dataclasses import dataclass

@@ -1,8 +1,9 @@
 """Speed against accuracy of steady sliding on a Prony series: one arm, and twenty over ten decades.
 
-Three ways to one friction coefficient at a fixed depth: the exact moments, the convolution of `quadrature`,
-and Gauss's rule on the relaxation integral as one would write it down. Errors are against the exact state,
-whose own, below 5.3e-15, is drawn at what it claims. Times are the shortest of a few calls of one scene.
+Three methods for one friction coefficient at a fixed depth: the exact moments, the convolution of
+`quadrature`, and a straightforward Gauss rule for the relaxation integral. Errors are relative to the exact
+state; its own error is drawn at its claimed bound, 5.3e-15. Times are the shortest of a few calls of one
+scene.
 """
 
 import os

@@ -2,8 +2,8 @@
 
 Left, the standard linear solid: an arm beta times as stiff as the spring, with the same damping C = K tau
 for every beta. At low velocity all of them are Kelvin-Voigt, Eq. (42); beyond their glass transition they are
-springs again (their glassy limit is dotted). The high-velocity asymptote of the paper, L2, holds in a window
-alone, no wider than 1 << V tau/a << beta (theorem F18-window), drawn for the stiffest arm. Right, the
+springs again (their glassy limit is dotted). The high-velocity asymptote of the paper, L2, holds only in a
+window, no wider than 1 << V tau/a << beta (theorem F18-window), drawn for the stiffest arm. Right, the
 springpot of order alpha; for one order both limits are dotted (theorem F18-springpot). Every curve is exact.
 """
 

@@ -1,7 +1,7 @@
 """Which model the ladder chooses, over drive number or inertia number and tolerance (dead weight).
 
-Areas are what `kvtheory.solve` chose; the lines are the true errors of the cheaper models, by their
-closed forms and against the continuum: a perfect choice would change colour on them.
+Areas show the choice of `kvtheory.solve`; the lines are the true errors of the cheaper models, by their
+closed forms and relative to the continuum: a perfect choice would change colour on them.
 """
 
 from collections.abc import Sequence

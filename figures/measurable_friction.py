@@ -1,7 +1,7 @@
-"""Where the friction curve of Fig. 6 can be measured at all: on a drive of given stiffness.
+"""Where the friction curve of Fig. 6 can be measured on a drive of given stiffness.
 
-The friction coefficient of a dead weight over the velocity (Table 1), exact. Beyond the circle steady sliding
-is unstable on that stiffness: the curve is there, but the indenter does not follow it (theorem F22).
+The exact friction coefficient of a dead weight over velocity (Table 1). Beyond the circle steady sliding
+is unstable on a drive of that stiffness: the indenter does not follow the curve (theorem F22).
 """
 
 from dataclasses import dataclass
@@ -15,7 +15,7 @@ from kvtheory.plots import BLACK, BLUE, GREEN, PURPLE, RED
 
 VELOCITIES = np.geomspace(1e-3, 10.0, 401)
 STIFFNESSES = (1e5, 1e7, 1e9)
-"""In N/m^2: of a finger, of a good tribometer, of a rigid frame, per width."""
+"""In N/m^2, that is per unit width: of a finger, of a good tribometer, of a rigid frame."""
 COLOURS = (RED, PURPLE, GREEN)
 
 

@@ -1,8 +1,8 @@
-"""What the onset of sliding leaves of "static friction", over drive number and inertia number.
+"""Apparent "static friction" at the onset of sliding, over drive number and inertia number.
 
-Three maps of one sweep of transients from rest, under a dead weight: the largest friction force over
-the steady one, a peak though nothing sticks, which inertia does not change, for it comes with the very
-first instant; the time until the friction force stays within 1 % of the steady one; and how often the
+Three maps of one sweep of transients from rest, under a dead weight. First, the ratio of the largest friction
+force to the steady one: a peak although nothing sticks, independent of inertia because it occurs at the first
+instant. Second, the time until the friction force stays within 1 % of the steady one. Third, how often the
 indenter hops. Only lambda and epsilon matter; they are set by the velocity, and by the mass at a
 constant weight.
 """
@@ -23,9 +23,9 @@ NUMBERS = np.geomspace(1e-2, 1e2, 33)
 INERTIAS = np.geomspace(1e-4, 1e1, 31)
 RTOL = 1e-6
 LATEST, PERIODS = 40.0, 130.0
-"""A run ends at so many tau, and so many sqrt(epsilon) tau, in which oscillations die out."""
+"""A run ends after this many tau, plus this many sqrt(epsilon) tau, in which oscillations die out."""
 RATIOS = (1.01, 1.1, 2.0, 10.0, 100.0)
-"""Lines on the map of the ratio."""
+"""Contour lines of the ratio."""
 HOPS = {0: "none", 1: "1", 2: "2", 3: "3-4", 5: "5-9", 10: "10-19", 20: "20 or more"}
 """Classes of hops by their lower ends."""
 HOP_COLOURS = ("#f4f4f4", "#d6e6f4", "#abcfe5", "#6aaed6", "#3787c0", "#105ba4", "#08306b")
@@ -43,7 +43,7 @@ class Data:
 
 
 def compute() -> Data:
-    """Follow the motion at every point of the map."""
+    """Compute the motion at every point of the map."""
     scene = kv.Scene()
     own = StaticState.of(scene)
     tau, load = scene.foundation.retardation_time, own.load
@@ -111,7 +111,7 @@ def draw(data: Data) -> Figure:
 
 
 def _settling(ax: Any, settling: NDArray[np.float64], style: dict[str, Any]) -> None:
-    """Draw the settling time, with what is settled from the start and what is not in the run."""
+    """Draw the settling time, with the areas settled from the start and not settled within the run."""
     ax.set_facecolor(LATER)
     for values, look in (
         (settling, {"cmap": "viridis", "norm": LogNorm(vmin=1e-3)}),

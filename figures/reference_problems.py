@@ -1,7 +1,7 @@
 """The folders of the reference problems: `python -m figures.reference_problems [-o DIRECTORY] [NAME ...]`.
 
 Each folder can be dropped into another repository: the scene, a reference series with its certificate,
-acceptance criteria, a picture, and a driver that judges a series.
+acceptance criteria, a picture, and a script that tests a series.
 """
 
 import argparse
@@ -25,18 +25,18 @@ DRIVERS = Path(__file__).with_name("drivers")
 INSTANTS = 401
 """Rows of a series, evenly over the run."""
 SPEEDS = np.geomspace(1e-2, 1e2, 81)
-"""Of a steady reference, over that of the scene."""
+"""Velocities of a steady reference, over that of the scene."""
 PER_LENGTH, TIME_STEPS = "200 /mm", 4000
 TOLERANCE = 0.02
-"""Of the acceptance criteria, relative to the largest value: what a careful simulation reaches."""
+"""Tolerance of the acceptance criteria, relative to the largest value: a careful simulation meets it."""
 JUDGED = ("depth", "normal_force", "friction_force", "friction_coefficient")
 
 
 def reference(scene: kv.Scene) -> tuple[Any, str]:
-    """Return what is right for a scene, and what kind of reference it is: the best that there is.
+    """Return the best reference solution of a scene, and its kind.
 
-    A transient where theory has it, else a simulation by elements with its estimated error, else steady
-    sliding over velocity: a model that does not hold for the scene says so.
+    A transient if theory provides it, else a simulation by elements with its estimated error, else steady
+    sliding over velocity: a model that does not apply to the scene raises an error.
     """
     for kind, compute in REFERENCES.items():
         try:
@@ -64,11 +64,11 @@ def _steady(scene: kv.Scene) -> Any:
 
 
 REFERENCES = {"transient": _transient, "elements": _elements, "steady": _steady}
-"""From the best to what there is for every scene."""
+"""The kinds, best first; the last exists for every scene."""
 
 
 def judge(scene: kv.Scene, found: Any, kind: str) -> str:
-    """Return the driver that judges a series: theory, where `compare` takes the scene."""
+    """Return the script that tests a series: against theory, if `compare` accepts the scene."""
     if kind != "transient":
         return "within"
     try:
@@ -78,7 +78,7 @@ def judge(scene: kv.Scene, found: Any, kind: str) -> str:
 
 
 def criteria(found: Any, kind: str) -> dict[str, Any]:
-    """Return how far a series may be from the reference, by quantity in SI, and what is compared.
+    """Return the allowed difference of a series to the reference, by quantity in SI, and the quantities.
 
     It is a share of the largest value; the error of the reference is well below it.
     """
@@ -132,20 +132,21 @@ def readme(name: str, found: Any, kind: str, rule: str) -> str:
 
 
 _RULES = {
-    "compare": "`python judge.py my-series.csv` holds a series with columns such as\n`t [ms],z_A [mm],"
-    "F_z [N/mm],F_x [N/mm]` against theory. Each check allows what follows from the sampling\nand the "
+    "compare": "`python judge.py my-series.csv` compares a series with columns such as\n`t [ms],z_A [mm],"
+    "F_z [N/mm],F_x [N/mm]` with theory. The tolerance of each check follows from the sampling\nand the "
     "noise of the data, and a disagreement is explained.",
-    "within": "`python judge.py my-series.csv` holds a series with the columns of `reference.csv` against "
-    "it: each\nquantity may differ by what `criteria.json` says.",
+    "within": "`python judge.py my-series.csv` compares a series with the columns of `reference.csv` with "
+    "it:\n`criteria.json` gives the allowed difference of each quantity.",
 }
 _POINT_CONTACT = """
-## What becomes of a point contact
+## The failure of a point contact
 
-`simulate.py` lets the indenter fall on one nonlinear spring and damper, F_z = k d^(3/2) (1 + c d'), after
-Hunt and Crossley, with Coulomb friction; the static depth and the friction of steady sliding are made to fit.
-`python simulate.py && python judge.py point-contact.csv` finds that it disagrees. A contact without length
-feels nothing of the sliding: the indenter does not rise from 0.3 mm to 0.09 mm, and neither force has the
-peak with which sliding begins. So does a hydroelastic contact whose surface has no damping.
+`simulate.py` supports the indenter by one nonlinear spring and damper, F_z = k d^(3/2) (1 + c d'), after
+Hunt and Crossley, with Coulomb friction; the static depth and the friction of steady sliding are fitted.
+`python simulate.py && python judge.py point-contact.csv` finds that it disagrees. The normal force of a
+contact without length does not depend on sliding: the indenter does not rise from 0.3 mm to 0.09 mm, and
+neither force has a peak at the onset of sliding. A hydroelastic contact whose surface has no damping fails
+in the same way.
 """
 _README = """# {title}
 

@@ -1,6 +1,6 @@
-"""How a start from rest goes, over drive number and inertia number (dead weight).
+"""Regimes of a start from rest, over drive number and inertia number (dead weight).
 
-Each point is a solved transient, classed by what happened; the line is the closed-form boundary of
+Each point is a solved transient, classified by its events; the line is the closed-form boundary of
 oscillation about the steady state (F12), eps = 3 r/8 with r the trailing edge in units of a_0.
 """
 
@@ -23,8 +23,8 @@ CLASSES = {
     "memory": "#ddcc77",
     "take-off": "#cc6677",
 }
-"""Each class contains what the ones before it do not: the depth turns, an edge goes back over ground
-that it left, the indenter leaves the foundation. Colours after Tol, safe in colour blindness."""
+"""Each class adds an event to the one before: the depth oscillates, an edge moves back over its trace, the
+indenter leaves the foundation. Colours after Tol, safe in colour blindness."""
 
 NUMBERS = np.geomspace(1e-2, 1e2, 97)
 INERTIAS = np.geomspace(1e-4, 1e2, 91)
@@ -44,7 +44,7 @@ class Data:
 
 
 def compute() -> Data:
-    """Solve and class every point of the map."""
+    """Solve and classify every point of the map."""
     classes = np.array([[_class(number, eps) for number in NUMBERS] for eps in INERTIAS])
     names = list(CLASSES)
     grid = [(number, eps) for eps in INERTIAS for number in NUMBERS]

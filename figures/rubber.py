@@ -1,11 +1,11 @@
-"""A filled rubber by its Prony table, and where the paper's model is enough for it.
+"""A filled rubber as a Prony series, and where the paper's model is accurate for it.
 
-The table is synthetic: eleven arms a decade apart, made up in the style of published tables of filled
-rubber (glassy over relaxed stiffness near 200, a spectrum that falls over ten decades). It stands for no
-material and no measurement; put your own in its place.
+The series is synthetic: eleven arms a decade apart, in the style of published series of filled rubber (a
+ratio of glassy to relaxed stiffness near 200, a spectrum that falls over ten decades). It represents no
+material and no measurement; replace it by your own.
 
-Left, friction as it is, by Kelvin-Voigt with the same damping C, and by the glassy limit. Right, the error of
-Kelvin-Voigt, what theorem F18-voigt proves of it, and the ranges to within one per cent.
+Left, the exact friction coefficient, that of Kelvin-Voigt with the same damping C, and the glassy limit.
+Right, the error of Kelvin-Voigt, its bound by theorem F18-voigt, and the ranges within one per cent.
 """
 
 from dataclasses import dataclass, replace

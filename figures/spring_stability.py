@@ -1,8 +1,8 @@
 """Where steady sliding is stable on a spring in the drive: over velocity and stiffness, for several tau.
 
-The line is the critical stiffness in closed form (theorem F22), the shade how fast small motions grow, by the
-roots of the quartic. Marks are motions from rest, which end in steady sliding or in stick-slip; their solver
-knows nothing of the theorem.
+The line is the critical stiffness in closed form (theorem F22), the shade the growth rate of small
+disturbances, from the roots of the quartic. Marks are motions from rest, which end in steady sliding or in
+stick-slip; their solver does not use the theorem.
 """
 
 from collections.abc import Callable
@@ -24,7 +24,8 @@ VELOCITIES = np.geomspace(1e-3, 10.0, 161)
 STIFFNESSES = np.geomspace(1e3, 1e11, 121)
 SIMULATED_VELOCITIES, SIMULATED_STIFFNESSES = VELOCITIES[10::10], STIFFNESSES[30::15]
 DURATION, SWINGS, RTOL = 15.0, 200.0, 1e-3
-"""In units of the slowest time constant; motions that would swing more often meanwhile are not followed."""
+"""Duration of the motions in units of the slowest time constant, and most cycles within it; motions with
+more cycles are omitted."""
 SLOWEST, FASTEST = 1e-3, 1e2
 """Growth in 1/s between which the shade changes."""
 
@@ -44,7 +45,7 @@ class Data:
 
 
 def ends_steadily(scene: kv.Scene) -> bool | None:
-    """Follow the motion from rest; None if it takes too long to end in steady sliding or in a cycle."""
+    """Compute the motion from rest; None if it takes too long to end in steady sliding or in a cycle."""
     rates = np.abs(kv.stability(scene, quantity="rates").rates)
     duration = DURATION / rates[:, 0].min()
     if duration * rates[:, 1].max() > 2.0 * np.pi * SWINGS:

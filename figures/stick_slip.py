@@ -1,7 +1,7 @@
 """Stick-slip though nothing sticks: Table 1 on a spring of 1 MN/m^2, and the cycles that it ends in.
 
 At 91 mm/s steady sliding is past the friction maximum, and unstable on a spring softer than 6.9 MN/m^2. The
-indenter creeps with the base while the spring is stretched, and lets go as friction falls with velocity.
+indenter creeps with the base while the spring is stretched, and slips as friction falls with velocity.
 """
 
 from dataclasses import dataclass
@@ -24,7 +24,7 @@ STYLES: dict[int, dict[str, Any]] = {
 }
 """Velocities in mm/s."""
 LONG = 4.0
-"""Seconds after which only the cycle is left."""
+"""Seconds after which the motion has settled to its cycle."""
 
 
 @dataclass(frozen=True)
@@ -44,7 +44,7 @@ def followed(velocity: float, end: float, first: float) -> Any:
 
 
 def compute() -> Data:
-    """Follow the time series, and each velocity until its cycle is left."""
+    """Compute the time series, and the cycle at each velocity."""
     rows: dict[str, list[Any]] = {
         "V [mm/s]": [],
         "t [ms]": [],

@@ -1,7 +1,7 @@
-"""How far an indenter swings on its spring over the drive velocity, Table 1: not at all, then in a cycle.
+"""Amplitude of stick-slip on a spring over the drive velocity, Table 1: zero, then that of a cycle.
 
-The swing sets in where steady sliding becomes unstable past the friction maximum, the later the stiffer the
-spring. Motions that have not settled by the end of the run, near the onset, are left out.
+Stick-slip sets in where steady sliding becomes unstable past the friction maximum, at a higher velocity for a
+stiffer spring. Motions near the onset that have not settled by the end of the run are omitted.
 """
 
 from dataclasses import dataclass

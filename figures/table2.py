@@ -35,7 +35,7 @@ class Data:
 
 
 def compute() -> Data:
-    """Evaluate the formulas for Table 1; the asymptotes at 1 mm/s, which gives their coefficients."""
+    """Evaluate the formulas for Table 1; the asymptotes at 1 mm/s give their coefficients."""
     over = {"drive.velocity": "1 mm/s"}
     reports = {support: kv.asymptotes(kv.Scene.table1(support), over=over) for support in FORMULAS}
     values = {

@@ -1,6 +1,6 @@
-"""Speed against accuracy of every method, measured side by side: Table 1, and a stop and go.
+"""Speed against accuracy of every method, measured side by side: Table 1, and a stop-and-go drive.
 
-By itself it writes the quick form; `kvtheory chart work-precision` makes others.
+The script writes the quick version; `kvtheory chart work-precision` makes others.
 """
 
 import os

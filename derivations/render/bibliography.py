@@ -16,7 +16,7 @@ _PAPER = rf"""@article{{NakanoKono2020,
 
 
 def document(edition: Edition) -> str:
-    """Return both entries; `version` and the command say how to make the derivations again."""
+    """Return both entries; `version` and the command say how to reproduce the derivations."""
     version = f"  version = {{{edition.version}}},\n" if edition.version else ""
     note = (
         f"  note    = {{Made by \\texttt{{{_escaped(edition.command)}}}}},\n"

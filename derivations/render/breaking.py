@@ -1,4 +1,4 @@
-r"""Formulas wider than a line, broken as a person would: at relations, then at plus and minus.
+r"""Formulas wider than a line, broken as by hand: at relations, then at plus and minus.
 
 >>> lines(r"\mu = a + b", 30)
 ['\\mu = a + b']

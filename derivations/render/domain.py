@@ -11,7 +11,7 @@ _SIGNS = (("is_positive", "> 0"), ("is_nonnegative", r"\ge 0"), ("is_negative", 
 
 
 def domain(derivation: Derivation) -> str:
-    """Return a sentence, or nothing where a result asks for nothing.
+    """Return a sentence, or nothing if a result has no conditions.
 
     A symbol without a sign is a real number.
     """

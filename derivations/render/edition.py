@@ -1,4 +1,4 @@
-"""One printing of the derivations: which of them, in whose letters, and what it says of itself."""
+"""One edition of the derivations: their selection, notation and source."""
 
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, field, replace
@@ -14,7 +14,7 @@ from .text import conclusion, reference
 
 @dataclass(frozen=True)
 class Edition:
-    """The derivations to print and what stands around them."""
+    """The derivations to print and the surrounding text."""
 
     derivations: tuple[Derivation, ...]
     nomenclature: tuple[Symbol, ...]
@@ -27,7 +27,7 @@ class Edition:
     values: Mapping[str, str] = field(default_factory=dict)
     """Quantities of a scene in LaTeX, by the symbol as it is printed."""
     scene: str = ""
-    """What the numbers are of, in words."""
+    """The scene of the numbers, in words."""
     letters: Mapping[str, str] = field(default_factory=dict)
     """New LaTeX by the symbol that it replaces."""
 
@@ -49,7 +49,7 @@ class Edition:
         return (*row, f"${value}$" if value else "") if self.values else row
 
     def domain(self, derivation: Derivation) -> str:
-        """Say for which values of its symbols a result holds."""
+        """Return the values of its symbols for which a result holds."""
         return _words(domain(derivation), self.letters.get)
 
     def symbols(self, derivation: Derivation) -> tuple[Symbol, ...]:
@@ -71,7 +71,7 @@ def edition(
     scene: str = "",
     symbols: Sequence[Symbol] = (),
 ) -> Edition:
-    """Choose derivations, after all that they rest on if asked, and write them in other letters.
+    """Select derivations, with those that they depend on if wanted, and write them in other letters.
 
     `notation` gives new LaTeX by the LaTeX of a symbol of the nomenclature, as `notation.read_notation`
     returns it. `symbols` are rows of the nomenclature that come before those of the same symbol.

@@ -1,6 +1,6 @@
 r"""Equations to `\input` in any document that loads amsmath: alone, or with all that they need.
 
-A fragment has no number of its own: the document counts it, and refers to it by its label.
+A fragment has no number: the document numbers it, and refers to it by its label.
 """
 
 from collections.abc import Collection
@@ -102,7 +102,7 @@ def _block(block: Given | Line, label: str, labels: Collection[str]) -> str:
 
 
 def _reference(piece: Piece) -> str:
-    """Print a reference that is a number where the document has it, and a name where it has not."""
+    """Print a reference: a number if the document contains the equation, else a name."""
     label = piece.target
     name = number(label)
     name = f"{escape(name)} of Nakano and Kono" if name.isdigit() else escape(name)

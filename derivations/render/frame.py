@@ -1,4 +1,4 @@
-"""What stands around the derivations: title, introduction, vocabulary, nomenclature, source."""
+"""The text around the derivations: title, introduction, vocabulary, nomenclature, source."""
 
 TITLE = "Sliding friction on a Kelvin–Voigt foundation: derivations"
 
@@ -10,13 +10,13 @@ INTRODUCTION = (
     "each of them is defined or derived, together with further results on the same model, which are "
     "named theorems (F1 and so on). Equation numbers without a letter are those of the paper.",
     "Every line is an equality or an inequality that computer algebra checked when this document "
-    "was made; a line that does not hold stops the making. With each line stands its reason and "
-    "what the check was worth; the sentence before it tells what is given: definitions, and what "
-    "was established elsewhere, by its number. A result is worth as much as its weakest line.",
+    "was made; if a check fails, no document is made. Each line has its reason and the status of "
+    "its check; the sentence before it lists the premises: definitions, and results established "
+    "elsewhere, by their number. A result has the status of its weakest line.",
     "A check establishes the formula of its line, on the domain that is given with it, from the "
     "definitions and results that are named; what is printed was read back and compared with what was "
-    "checked. The words beside a line say what the formula means for the contact: that a law of the "
-    "model is the right one, and that lines together prove what a title says, rests on them.",
+    "checked. The words beside a line say what the formula means for the contact; they are not "
+    "checked, nor that a law of the model is right or that the lines together prove the title.",
 )
 
 VOCABULARY = {
@@ -38,14 +38,13 @@ MARKS = (
     "A dot over a symbol is its derivative with respect to time $t$, a prime the one with respect to "
     "its argument; of scaled quantities of the transient, with respect to the scaled time."
 )
-"""What stands above the nomenclature."""
+"""The text above the nomenclature."""
 
 WITH_NUMBERS = "With these numbers:"
 
 
 def numbers_of(scene: str) -> str:
-    """Say whose numbers stand beside the formulas."""
+    """Return the sentence about the numbers beside the formulas."""
     return (
-        f"Closed forms are followed by their numbers for {scene}; the nomenclature lists the "
-        "quantities that were put in."
+        f"Closed forms are followed by their values for {scene}; the nomenclature lists the input."
     )

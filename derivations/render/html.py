@@ -50,7 +50,7 @@ _CORRECTIONS = (
     (re.compile("</mfrac><mfrac>"), '</mfrac><mspace width="0.167em" /><mfrac>'),
     (re.compile(' xmlns="[^"]*"'), ""),  # HTML needs none
 )
-"""What latex2mathml writes and what it should."""
+"""What latex2mathml writes, and its correction."""
 
 _PUNCTUATED = re.compile(r"(<math(?:(?!</math>).)*</math>[.,;:)]+)")
 """A formula and the punctuation that must stay on its line."""

@@ -1,4 +1,4 @@
-"""Words in LaTeX: what has a meaning to TeX is escaped, and references become links."""
+"""Words in LaTeX: special characters of TeX are escaped, and references become links."""
 
 import re
 from collections.abc import Callable, Collection, Iterable

@@ -1,6 +1,6 @@
 """Check the steps of a derivation again, with nothing but SymPy.
 
-This is a second opinion: it shares no code with the engine that proved the steps. An identity is decided
+This check is independent: it shares no code with the engine that proved the steps. An identity is decided
 by algebra where that is quick, else at random points with 50 digits; so are signs and limits.
 """
 
@@ -30,7 +30,7 @@ _SIGNS = {
 
 
 class Steps:
-    """The steps of one derivation; what is given is put into all that follows."""
+    """The steps of one derivation; premises are substituted into all later steps."""
 
     def __init__(self, label: str) -> None:
         self.label, self.draw = label, random.Random(2020)
@@ -39,7 +39,7 @@ class Steps:
         self.numbers: dict[Expr, Expr] = {}
 
     def given(self, lhs: Expr, rhs: Expr) -> None:
-        """Let the left side stand for the right side."""
+        """Define the left side by the right side."""
         self.rules[sp.sympify(lhs)] = sp.sympify(rhs)
 
     def where(self, condition: Expr) -> None:
@@ -113,7 +113,7 @@ class Steps:
     def greatest(
         self, value: Expr, expr: Expr, place: Over, surplus: Expr, given: tuple[Expr, ...] = ()
     ) -> None:
-        """Check that the value is nowhere exceeded, and that it is reached at the place."""
+        """Check that the value is nowhere exceeded, and that it is attained at the given point."""
         kept = list(self.conditions)
         self.conditions += given
         gap = self._put(value) - self._put(expr)

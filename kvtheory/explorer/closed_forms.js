@@ -5,16 +5,16 @@
 /** V tau/sqrt(R delta) at the critical velocity, fixed depth; theorem F5. */
 const ALPHA = 0.9428090415820634;
 
-/** V tau (K/(R W))^(1/3) there, dead weight; theorem F5. */
+/** V tau (K/(R W))^(1/3) at the critical velocity, dead weight; theorem F5. */
 const CRITICAL_DRIVE_NUMBER = 0.9614997135382722;
 
 /** q at the friction maximum of a dead weight; theorem F3. */
 const PEAK_TRAILING_EDGE_RATIO = 0.2679491924311227;
 
-/** V tau (K/(R W))^(1/3) at that maximum; theorem F3-values. */
+/** V tau (K/(R W))^(1/3) at the friction maximum of a dead weight; theorem F3-values. */
 const PEAK_DRIVE_NUMBER = 1.6002702943554925;
 
-/** mu (K R^2/W)^(1/3) at that maximum; theorem F3-values. */
+/** mu (K R^2/W)^(1/3) at the friction maximum of a dead weight; theorem F3-values. */
 const PEAK_FRICTION = 0.5072653568498905;
 
 /** q = x_TE/a = sqrt(1 + l^2) - l (Eq. 27); theorem F16. */
@@ -89,29 +89,29 @@ function error_l2_dead_weight(l, q) {
   return S * (e_L2 + 1) + e_L2;
 }
 
-/** Eq. 40 over W, - 1; theorem error-load-low. */
+/** (Eq. 40)/W - 1; theorem error-load-low. */
 function error_load_low(l, q) {
   const gap = 2 * l * q / (q + 1);
   return -gap * gap * (q * q + 2 * q + 3) / ((q + 1) * (q + 1) * ((1 - q) * (1 - q) + 2));
 }
 
-/** Eq. 43 over W, - 1; theorem error-load-high. */
+/** (Eq. 43)/W - 1; theorem error-load-high. */
 function error_load_high(q) {
   return -q * (q * q - q + 4) / ((q + 1) * ((1 - q) * (1 - q) + 2));
 }
 
-/** Eq. 41 over F, - 1; theorem error-friction-low. */
+/** (Eq. 41)/F - 1; theorem error-friction-low. */
 function error_friction_force_low(l, q) {
   const gap = 2 * l * q / (q + 1);
   return gap * (q * q + q + 4) / ((q + 1) * (q * q - q + 4));
 }
 
-/** Eq. 44 over F, - 1; theorem error-friction-high. */
+/** (Eq. 44)/F - 1; theorem error-friction-high. */
 function error_friction_force_high(q) {
   return -q * (q * q + 3) / ((q + 1) * (q * q - q + 4));
 }
 
-/** static depth over delta, - 1, dead weight; theorem error-depth-low. */
+/** delta_0/delta - 1, dead weight; theorem error-depth-low. */
 function error_depth_low(l, q) {
   const gap = 2 * l * q / (q + 1);
   const E = gap * gap * (q * q + 2 * q + 3) / (8 * q);
@@ -119,34 +119,34 @@ function error_depth_low(l, q) {
   return E * (b + 1) / (b * b + b + 1);
 }
 
-/** Eq. 49 over delta, - 1, dead weight; theorem error-depth-high. */
+/** (Eq. 49)/delta - 1, dead weight; theorem error-depth-high. */
 function error_depth_high(l, q) {
   return (q + 1) * (q * q - q + 4) / (6 * l);
 }
 
-/** c in 1 + c (a/R)^2, circle over parabola, of W; theorem circle-fixed. */
+/** c in circle/parabola = 1 + c (a/R)^2, for W; theorem circle-fixed. */
 function circle_load(q) {
   return -3 * q * ((1 - q) * (-3 * q * (1 - q) + 1) + 1) / (20 * (1 - q) * (1 - q) + 40);
 }
 
-/** c in 1 + c (a/R)^2, likewise, of F; theorem circle-fixed. */
+/** c in circle/parabola = 1 + c (a/R)^2, for F; theorem circle-fixed. */
 function circle_friction_force(q) {
   return (-9 * q * (1 - q) * (q * q + 1) + 9) / (10 * q * q - 10 * q + 40);
 }
 
-/** c in 1 + c (a/R)^2, likewise, of mu; theorem circle-fixed. */
+/** c in circle/parabola = 1 + c (a/R)^2, for mu; theorem circle-fixed. */
 function circle_friction_coefficient(q) {
   const c_F = circle_friction_force(q);
   const c_W = circle_load(q);
   return c_F - c_W;
 }
 
-/** c in 1 + c (a/R)^2, likewise, of mu at given load; theorem circle-dead-weight. */
+/** c in circle/parabola = 1 + c (a/R)^2, for mu at given load; theorem circle-dead-weight. */
 function circle_friction_coefficient_at_load(q) {
   return 3 * (q + 1) * (2 * q + 3 * (1 - q) * (1 - q)) / (10 * (q * q - q + 4));
 }
 
-/** c in 1 + c (a/R)^2, likewise, of delta at given load; theorem circle-dead-weight. */
+/** c in circle/parabola = 1 + c (a/R)^2, for delta at given load; theorem circle-dead-weight. */
 function circle_depth_at_load(q) {
   const c_W = circle_load(q);
   return -c_W * ((1 - q) * (1 - q) / 3 + 2 / 3);
@@ -253,7 +253,7 @@ function power_law_error_load_low(l, q, Q, bend) {
   return (-Q * l * l - bend) / whole;
 }
 
-/** C V delta over W, - 1; theorem F19-error-load-high. */
+/** C V delta/W - 1; theorem F19-error-load-high. */
 function power_law_error_load_high(n, l, q, Q) {
   const tip = n * n + q * (Q * q + n * n - 1);
   const whole = Q * l * l + l + q + 1;
@@ -272,7 +272,7 @@ function power_law_error_friction_high(n, l, q, Q) {
   return (-Q * Q * l * (2 * n - 1) / 2 - Q * Q * q) / damped;
 }
 
-/** W/(C V) over delta, - 1, dead weight; theorem F19-error-depth-high. */
+/** W/(C V delta) - 1, dead weight; theorem F19-error-depth-high. */
 function power_law_error_depth_high(n, l, q, Q) {
   const tip = n * n + q * (Q * q + n * n - 1);
   return tip / (l * n * (n + 1));
@@ -558,7 +558,7 @@ function moments_work(E_v, P_v, eta_v) {
   return E_v + P_v * eta_v * eta_v;
 }
 
-/** what an arm loses in the contact; theorem F17-energy. */
+/** the energy that an arm dissipates in the contact; theorem F17-energy. */
 function arm_lost(A_v, B_v, E_v, P_v, eta_v, z_v) {
   return -B_v * B_v / 2 + E_v + eta_v * (A_v * B_v + eta_v * (A_v * P_v * z_v / 2 + B_v));
 }

@@ -18,16 +18,16 @@ ALPHA = 0.9428090415820634
 """V tau/sqrt(R delta) at the critical velocity, fixed depth; theorem F5."""
 
 CRITICAL_DRIVE_NUMBER = 0.9614997135382722
-"""V tau (K/(R W))^(1/3) there, dead weight; theorem F5."""
+"""V tau (K/(R W))^(1/3) at the critical velocity, dead weight; theorem F5."""
 
 PEAK_TRAILING_EDGE_RATIO = 0.2679491924311227
 """q at the friction maximum of a dead weight; theorem F3."""
 
 PEAK_DRIVE_NUMBER = 1.6002702943554925
-"""V tau (K/(R W))^(1/3) at that maximum; theorem F3-values."""
+"""V tau (K/(R W))^(1/3) at the friction maximum of a dead weight; theorem F3-values."""
 
 PEAK_FRICTION = 0.5072653568498905
-"""mu (K R^2/W)^(1/3) at that maximum; theorem F3-values."""
+"""mu (K R^2/W)^(1/3) at the friction maximum of a dead weight; theorem F3-values."""
 
 BALL_CROSSING = 0.5890486225480862
 """l where the asymptotes of mu meet; theorem F20-crossing."""
@@ -106,29 +106,29 @@ def error_l2_dead_weight(l: Value, q: Value) -> Value:
 
 
 def error_load_low(l: Value, q: Value) -> Value:
-    """Return Eq. 40 over W, - 1; theorem error-load-low."""
+    """Return (Eq. 40)/W - 1; theorem error-load-low."""
     gap = 2 * l * q / (q + 1)
     return -gap * gap * (q * q + 2 * q + 3) / ((q + 1) * (q + 1) * ((1 - q) * (1 - q) + 2))
 
 
 def error_load_high(q: Value) -> Value:
-    """Return Eq. 43 over W, - 1; theorem error-load-high."""
+    """Return (Eq. 43)/W - 1; theorem error-load-high."""
     return -q * (q * q - q + 4) / ((q + 1) * ((1 - q) * (1 - q) + 2))
 
 
 def error_friction_force_low(l: Value, q: Value) -> Value:
-    """Return Eq. 41 over F, - 1; theorem error-friction-low."""
+    """Return (Eq. 41)/F - 1; theorem error-friction-low."""
     gap = 2 * l * q / (q + 1)
     return gap * (q * q + q + 4) / ((q + 1) * (q * q - q + 4))
 
 
 def error_friction_force_high(q: Value) -> Value:
-    """Return Eq. 44 over F, - 1; theorem error-friction-high."""
+    """Return (Eq. 44)/F - 1; theorem error-friction-high."""
     return -q * (q * q + 3) / ((q + 1) * (q * q - q + 4))
 
 
 def error_depth_low(l: Value, q: Value) -> Value:
-    """Return static depth over delta, - 1, dead weight; theorem error-depth-low."""
+    """Return delta_0/delta - 1, dead weight; theorem error-depth-low."""
     gap = 2 * l * q / (q + 1)
     E = gap * gap * (q * q + 2 * q + 3) / (8 * q)
     b = np.cbrt(E + 1)
@@ -136,34 +136,34 @@ def error_depth_low(l: Value, q: Value) -> Value:
 
 
 def error_depth_high(l: Value, q: Value) -> Value:
-    """Return Eq. 49 over delta, - 1, dead weight; theorem error-depth-high."""
+    """Return (Eq. 49)/delta - 1, dead weight; theorem error-depth-high."""
     return (q + 1) * (q * q - q + 4) / (6 * l)
 
 
 def circle_load(q: Value) -> Value:
-    """Return c in 1 + c (a/R)^2, circle over parabola, of W; theorem circle-fixed."""
+    """Return c in circle/parabola = 1 + c (a/R)^2, for W; theorem circle-fixed."""
     return -3 * q * ((1 - q) * (-3 * q * (1 - q) + 1) + 1) / (20 * (1 - q) * (1 - q) + 40)
 
 
 def circle_friction_force(q: Value) -> Value:
-    """Return c in 1 + c (a/R)^2, likewise, of F; theorem circle-fixed."""
+    """Return c in circle/parabola = 1 + c (a/R)^2, for F; theorem circle-fixed."""
     return (-9 * q * (1 - q) * (q * q + 1) + 9) / (10 * q * q - 10 * q + 40)
 
 
 def circle_friction_coefficient(q: Value) -> Value:
-    """Return c in 1 + c (a/R)^2, likewise, of mu; theorem circle-fixed."""
+    """Return c in circle/parabola = 1 + c (a/R)^2, for mu; theorem circle-fixed."""
     c_F = circle_friction_force(q)
     c_W = circle_load(q)
     return c_F - c_W
 
 
 def circle_friction_coefficient_at_load(q: Value) -> Value:
-    """Return c in 1 + c (a/R)^2, likewise, of mu at given load; theorem circle-dead-weight."""
+    """Return c in circle/parabola = 1 + c (a/R)^2, for mu at given load; theorem circle-dead-weight."""
     return 3 * (q + 1) * (2 * q + 3 * (1 - q) * (1 - q)) / (10 * (q * q - q + 4))
 
 
 def circle_depth_at_load(q: Value) -> Value:
-    """Return c in 1 + c (a/R)^2, likewise, of delta at given load; theorem circle-dead-weight."""
+    """Return c in circle/parabola = 1 + c (a/R)^2, for delta at given load; theorem circle-dead-weight."""
     c_W = circle_load(q)
     return -c_W * ((1 - q) * (1 - q) / 3 + 2 / 3)
 
@@ -270,7 +270,7 @@ def power_law_error_load_low(l: Value, q: Value, Q: Value, bend: Value) -> Value
 
 
 def power_law_error_load_high(n: Value, l: Value, q: Value, Q: Value) -> Value:
-    """Return C V delta over W, - 1; theorem F19-error-load-high."""
+    """Return C V delta/W - 1; theorem F19-error-load-high."""
     tip = n * n + q * (Q * q + n * n - 1)
     whole = Q * l * l + l + q + 1
     return -tip / (n * n * whole)
@@ -289,7 +289,7 @@ def power_law_error_friction_high(n: Value, l: Value, q: Value, Q: Value) -> Val
 
 
 def power_law_error_depth_high(n: Value, l: Value, q: Value, Q: Value) -> Value:
-    """Return W/(C V) over delta, - 1, dead weight; theorem F19-error-depth-high."""
+    """Return W/(C V delta) - 1, dead weight; theorem F19-error-depth-high."""
     tip = n * n + q * (Q * q + n * n - 1)
     return tip / (l * n * (n + 1))
 
