@@ -321,7 +321,7 @@ def test_what_is_given_per_width_for_a_ball_costs_one_line_each(tmp_path, overri
         kv.load_scene(path, overrides)
     lines = caught.value.problems
     assert [line.split(" = ")[0] for line in lines] == found
-    assert all("per unit width" in line and "in a spot" in line for line in lines)
+    assert all("per unit width" in line and "point contact" in line for line in lines)
 
 
 def test_what_is_given_whole_for_a_line_costs_one_line_each():

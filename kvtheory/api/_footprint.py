@@ -37,6 +37,10 @@ def footprint(scene: Scene | None = None, *, over: Mapping[str, Any] | None = No
     >>> found = kv.footprint(ball)
     >>> [f"{float(edge) * 1e3:.4f} mm" for edge in found.edges(0.5 * found.half_width)]
     ['-0.9636 mm', '0.0463 mm']
+
+    References
+    ----------
+    Theorem F20 of the derivations.
     """
     scene = scene_of(scene)
     require(lacks_ball, scene, "the footprint")

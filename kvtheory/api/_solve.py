@@ -135,7 +135,7 @@ def _names(
             continue
         if name in other:
             hint = "leave out the times" if over_time else 'give the times, such as at="1 ms"'
-            what = f"is of {'steady sliding' if over_time else 'a time series'}; {hint}"
+            what = f"belongs to {'steady sliding' if over_time else 'a time series'}; {hint}"
         else:
             what = nearest(str(name), units)
         problems.append(problem("`quantity`", name, what))

@@ -27,7 +27,7 @@ def stability(
     The spring is `drive.stiffness`, with `drive.damping` and `drive.mass`. With a rigid drive steady
     sliding is stable: the rates are the two of the vertical motion (theorem F12), and the critical
     stiffness is that of a spring, without damper and with the mass of the support, in place of the
-    rigid drive.
+    rigid drive. With a spring the rates are the roots of the quartic of theorem F22.
 
     Parameters
     ----------

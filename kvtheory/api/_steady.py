@@ -32,6 +32,9 @@ def steady(
 ) -> SteadyState:
     """Return the state of steady sliding.
 
+    With the pressure p = K (delta - h(x) - V tau h'(x)) on Kelvin-Voigt between the edges, the load is
+    W = int p dx, the friction force F = -int h' p dx, and the friction coefficient F/W.
+
     Parameters
     ----------
     scene

@@ -108,6 +108,10 @@ def sweep(
     >>> result = kv.sweep(over=over, quantities="friction_coefficient")
     >>> result["friction_coefficient"].round(4).tolist()
     [[0.0097, 0.0713], [0.0857, 0.0294], [0.0093, 0.003]]
+
+    References
+    ----------
+    Nakano and Kono (2020), doi:10.3389/fmech.2020.00038; see `steady` and `transient`.
     """
     from kvtheory.sweeps import session  # what it needs takes a while to import
     from kvtheory.sweeps.size import refuse_what_cannot_fit

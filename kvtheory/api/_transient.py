@@ -23,6 +23,9 @@ def transient(
 ) -> Transient:
     """Compute the transient of a scene without discretizing the foundation.
 
+    It solves M z_A'' = F_z - M g (Eq. 17), with the spring of a suspended indenter, where F_z = int p dx and
+    p = K u + C du/dt in the contact; a fixed indenter keeps its depth.
+
     Parameters
     ----------
     scene

@@ -125,9 +125,7 @@ def work_precision(
         output /= "work_precision.png"
     check_chart(output)
     if standard and (scene or overrides):
-        raise ValueError(
-            "--standard stands for scenes of its own: give no SCENE and no --set with it"
-        )
+        raise ValueError("--standard names its own scenes; it does not go with SCENE or --set")
     jobs = chosen(load_scene(scene, overrides), split(standard) if standard else [], quick=quick)
     with progress_bar("methods") as report:
         charts = measure(jobs, quick=quick, progress=report)

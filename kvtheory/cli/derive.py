@@ -104,10 +104,10 @@ def _check_options(
     scene: str | None, only: str, numbers: bool, shape: str | None, overrides: Sequence[str]
 ) -> None:
     if (scene or overrides) and not numbers:
-        raise ValueError("SCENE and --set go with --numbers, which puts their quantities in")
+        raise ValueError("SCENE and --set go with --numbers, which inserts their quantities")
     if shape is not None and (only or numbers):
         raise ValueError(
-            "--shape derives a chapter of its own; it does not go with --only or --numbers"
+            "--shape derives a separate chapter; it does not go with --only or --numbers"
         )
 
 

@@ -26,6 +26,10 @@ class Certificate:
     a quantity to a bound of |computed - true| over the scale that `relative_to` names: for steady sliding
     the true value (`THE_TRUTH`); for a time series, which may pass through zero, the state at rest
     (`AT_REST`), with the scale of each quantity from `kvtheory.results.table.scales`.
+
+    >>> import kvtheory as kv
+    >>> kv.steady().certificate.kind
+    'estimated'
     """
 
     kind: str

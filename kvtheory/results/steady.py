@@ -11,8 +11,7 @@ from kvtheory.results.presented import Presented
 from kvtheory.results.table import STEADY_UNITS
 
 UNSTABLE = (
-    "Steady sliding is unstable{} on the spring in the drive: the indenter will not slide so; "
-    "see `stability`."
+    "Steady sliding is unstable{} on the spring in the drive and will not persist; see `stability`."
 )
 UNKNOWN = (
     "Whether steady sliding is stable on this spring is known for a parabola on Kelvin-Voigt only."

@@ -368,7 +368,7 @@ def history_points(points: Any, key: str = "drive.history") -> tuple[tuple[float
                 times[i] = before  # the same but for rounding, as in i * 0.1 + 0.1
         if times[0] != 0.0:
             problems.append(problem(f"{key}[0]", points[0], "the first time must be 0 s"))
-        told = "times must not decrease, and one time may stand at most twice"
+        told = "times must not decrease, and a time may occur at most twice"
         problems += [
             problem(f"{key}[{i}]", points[i], told)
             for i in range(1, len(times))

@@ -51,8 +51,8 @@ PLAIN = {"drive": Drive, "run": Run}
 OPTIONAL = {"run"}
 NOTES = {
     "indenter": [
-        '# or a ball: shape = "sphere"; masses, loads and springs are then whole: mass = "1 kg"',
-        '# radius_across = "20 mm"  of a ball that is curved otherwise across the sliding direction',
+        '# or a ball: shape = "sphere"; masses, loads and springs are then totals: mass = "1 kg"',
+        '# radius_across = "20 mm"  of a ball with another radius across the sliding direction',
     ],
     "support": [
         "# or, instead of mass times gravity, a load; the mass is then inertia alone (load/gravity):",
@@ -118,7 +118,19 @@ def _overridden(path: str | Path | None, overrides: list[str]) -> tuple[dict[str
 
 
 def to_toml(scene: Scene) -> str:
-    """Write a scene as TOML in SI units; `load_scene` reads it back equal to the last bit."""
+    """Return a scene as TOML text in SI units; `load_scene` reads it back equal to the last bit.
+
+    Raises
+    ------
+    ValueError
+        If the indenter or the drive is made of Python functions, which a file cannot hold.
+
+    Examples
+    --------
+    >>> from kvtheory.scene import Scene
+    >>> print(to_toml(Scene()).splitlines()[1])
+    shape = "parabola"
+    """
     lines = []
     for section, table in _tables(scene).items():
         lines.append(f"[{section}]")
@@ -150,7 +162,7 @@ def template(support: str = "dead-weight") -> str:
         lines += NOTES.get(section, ()) if support != "fixed" or section != "support" else ()
         if section == "drive":
             lines += [
-                "# or a history, linear between its points, a jump where a time stands twice:",
+                "# or a history, linear between its points, a jump where a time is repeated:",
                 '# history = [["0 ms", "100 mm/s"], ["50 ms", "100 mm/s"], ["50 ms", "0 mm/s"]]',
                 '# or from a table: file = "drive.csv", whose first line is t [ms],V [mm/s]',
                 '# or: waveform = "sine" or "triangle" with amplitude, frequency and mean,',

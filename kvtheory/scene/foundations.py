@@ -55,11 +55,11 @@ class _Relaxed:
     )  # fmt: skip
     _: KW_ONLY
     modulus: float | None = quantity(
-        "N/m^2", "E, Young's modulus of a thin bonded layer, in the place of the stiffness",
+        "N/m^2", "E, Young's modulus of a thin bonded layer, instead of the stiffness",
         default=None, beside=("thickness", "poisson_ratio"), excludes=("stiffness",),
     )  # fmt: skip
     thickness: float | None = quantity(
-        "m", "h, thickness of the layer, small against the contact",
+        "m", "h, thickness of the layer, small compared with the contact",
         default=None, beside=("modulus", "poisson_ratio"), excludes=("stiffness",),
     )  # fmt: skip
     poisson_ratio: float | None = quantity(

@@ -30,7 +30,11 @@ LOAD = "W, load instead of mass times gravity; the mass is then inertia alone"
 
 @dataclass(frozen=True)
 class Fixed:
-    """The indenter cannot move (the paper's FI model): a constant depth is given."""
+    """The indenter cannot move (the paper's FI model): a constant depth is given.
+
+    >>> Fixed(depth="300 um").depth
+    0.0003
+    """
 
     kind: ClassVar[str] = "fixed"
     mass: ClassVar[float] = math.inf
@@ -84,7 +88,13 @@ class DeadWeight(_Loaded):
 
 @dataclass(frozen=True)
 class Suspended(_Loaded):
-    """A dead weight on a spring that is relaxed at the static depth; `load` is as for a dead weight."""
+    """A dead weight on a spring that is relaxed at the static depth; `load` is as for a dead weight.
+
+    M z'' = F_z - W - k_s (z - z_0): k_s -> 0 is `DeadWeight`, k_s -> oo is `Fixed` at the static depth.
+
+    >>> Suspended(load="3 N/mm", stiffness="30 MN/m^2").weight
+    3000.0
+    """
 
     kind: ClassVar[str] = "suspended"
     depth: ClassVar[None] = None
@@ -112,7 +122,7 @@ SUPPORTS: dict[str, Any] = {cls.kind: cls for cls in (Fixed, DeadWeight, Suspend
 class Run:
     """The duration of the transient."""
 
-    duration: float = quantity("s", "time to follow the transient", default=0.2)
+    duration: float = quantity("s", "duration of the transient", default=0.2)
 
     def __post_init__(self) -> None:
         settle(self, "run")

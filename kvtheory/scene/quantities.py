@@ -243,8 +243,8 @@ def misfits(section: str, part: Any, indenter: Any) -> list[str]:
         if per_width != indenter.per_width:
             unit = quantities(part)[name].fitting(indenter.per_width).unit
             what = "that of a ball" if indenter.per_width else "per unit width"
-            touches = "in a line" if indenter.per_width else "in a spot"
-            told = f"is {what}, but {shape} touches {touches}; expected {expected(unit)}"
+            contact = "line" if indenter.per_width else "point"
+            told = f"is {what}, but {shape} has a {contact} contact; expected {expected(unit)}"
             found.append(problem(f"{section}.{name}", value, told))
     return found
 

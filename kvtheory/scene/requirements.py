@@ -1,4 +1,4 @@
-"""What a method needs of a scene: one predicate and one wording for each need."""
+"""The requirements of methods on a scene: one predicate and one wording for each."""
 
 from collections.abc import Callable
 
@@ -13,7 +13,7 @@ CLOSED_FORMS = (Parabola, PowerLaw, Wedge, Sphere)
 
 
 def lacks_parabola(scene: Scene) -> str:
-    """Say why a method that needs a parabola does not hold for a scene; nothing if it does.
+    """Return why a method that needs a parabola does not apply to a scene, or an empty text.
 
     >>> lacks_parabola(Scene())
     ''
@@ -22,25 +22,25 @@ def lacks_parabola(scene: Scene) -> str:
 
 
 def lacks_quadratic(scene: Scene) -> str:
-    """Say why a method that needs a parabola or a ball does not hold; nothing if it does."""
+    """Return why a method that needs a parabola or a ball does not apply, or an empty text."""
     return lacks_shape(scene, (Parabola, Sphere), "the parabola and the ball")
 
 
 def lacks_ball(scene: Scene) -> str:
-    """Say why a method for a ball on a Kelvin-Voigt foundation does not hold; nothing if it does."""
+    """Return why a method for a ball on a Kelvin-Voigt foundation does not apply, or an empty text."""
     return lacks_shape(scene, (Sphere,), "the ball") or lacks_kelvin_voigt(scene)
 
 
 def lacks_strips(scene: Scene) -> str:
-    """Say why the transient of a ball by strips without memory does not hold; nothing if it does."""
+    """Return why the transient of a ball by strips without memory does not apply, or an empty text."""
     if lacking := lacks_ball(scene):
         return lacking
     told = 'holds for support.kind = "fixed" only: a ball that rises lifts its rim off the ground'
-    return "" if scene.held else f"of a ball {told}, and comes down on what it left there"
+    return "" if scene.held else f"for a ball {told} and meets its own trace again"
 
 
 def lacks_kelvin_voigt(scene: Scene) -> str:
-    """Say why a method that needs a Kelvin-Voigt foundation does not hold; nothing if it does."""
+    """Return why a method that needs a Kelvin-Voigt foundation does not apply, or an empty text."""
     if isinstance(scene.foundation, Foundation):
         return ""
     named = f'foundation.kind = "{scene.foundation.kind}"'
@@ -48,17 +48,17 @@ def lacks_kelvin_voigt(scene: Scene) -> str:
 
 
 def lacks_arms(scene: Scene) -> str:
-    """Say why a foundation has no finite state that could be followed in time; nothing if it has."""
+    """Return why a foundation has no finite state for a transient, or an empty text."""
     return "" if scene.foundation.arms else lacks_kelvin_voigt(scene)
 
 
 def lacks_paper_model(scene: Scene) -> str:
-    """Say why a method for a parabola on a Kelvin-Voigt foundation does not hold; nothing if it does."""
+    """Return why a method for a parabola on a Kelvin-Voigt foundation does not apply, or an empty text."""
     return lacks_parabola(scene) or lacks_kelvin_voigt(scene)
 
 
 def lacks_rigid_drive(scene: Scene) -> str:
-    """Say why a method that follows a rigid drive alone does not hold; nothing if it does.
+    """Return why a method for a rigid drive does not apply, or an empty text.
 
     Steady sliding, whatever drives it, does not depend on a spring.
 
@@ -69,29 +69,29 @@ def lacks_rigid_drive(scene: Scene) -> str:
 
 
 def lacks_rigid_paper_model(scene: Scene) -> str:
-    """Say why a method for the paper's model in motion does not hold; nothing if it does."""
+    """Return why a method for transients of the paper's model does not apply, or an empty text."""
     return lacks_paper_model(scene) or lacks_rigid_drive(scene)
 
 
 def lacks_quadratic_on_arms(scene: Scene) -> str:
-    """Say why a transient has nothing to be held against; nothing for what can be followed and is exact."""
+    """Return why there is no theory to compare a transient with, or an empty text."""
     return lacks_quadratic(scene) or lacks_arms(scene)
 
 
 def lacks_asymptotes(scene: Scene) -> str:
-    """Say why a method that needs closed forms of Kelvin-Voigt does not hold; nothing if it does."""
+    """Return why a method that needs closed forms of Kelvin-Voigt does not apply, or an empty text."""
     named = "the parabola, the power law, the wedge and the ball"
     lacking = lacks_shape(scene, CLOSED_FORMS, named)
     return lacking or lacks_kelvin_voigt(scene)
 
 
 def lacks_limits(scene: Scene) -> str:
-    """Say why the limits of steady sliding are not known; nothing if they are."""
+    """Return why the limits of steady sliding are not known, or an empty text."""
     return lacks_asymptotes(scene) if lacks_parabola(scene) else ""
 
 
 def lacks_closed_form(scene: Scene) -> str:
-    """Say why steady sliding is not in closed form, with one scalar root at most; nothing if it is.
+    """Return why steady sliding is not in closed form, with one scalar root at most, or an empty text.
 
     >>> lacks_closed_form(Scene())
     ''
@@ -101,9 +101,9 @@ def lacks_closed_form(scene: Scene) -> str:
 
 
 def lacks_quadrature(scene: Scene) -> str:
-    """Say why the pressure of steady sliding cannot be integrated; nothing if it can.
+    """Return why the pressure of steady sliding cannot be integrated, or an empty text.
 
-    Where the surface of a line contact beyond Kelvin-Voigt is not convex shows only on the way.
+    Beyond Kelvin-Voigt, non-convex shapes of a line contact are detected only during the computation.
 
     >>> lacks_quadrature(Scene())
     ''
@@ -114,7 +114,7 @@ def lacks_quadrature(scene: Scene) -> str:
 
 
 def lacks_shape(scene: Scene, shapes: tuple[type, ...], named: str) -> str:
-    """Say why a method for some shapes, as they are `named`, does not hold; nothing if it does."""
+    """Return why a method for some shapes, listed in `named`, does not apply, or an empty text."""
     if isinstance(scene.indenter, shapes):
         return ""
     return f'holds for {named} only, not for indenter.shape = "{scene.indenter.shape}"'
@@ -124,17 +124,17 @@ IN_MOTION = (
     lacks_parabola, lacks_paper_model, lacks_rigid_paper_model, lacks_arms, lacks_quadratic_on_arms,
     lacks_strips,
 )  # fmt: skip
-"""What methods in motion need; where one of these is lacking, another method may do."""
+"""The requirements of methods for transients; where one is not met, another method may apply."""
 
 
 def require(lacks: Lacking, scene: Scene, what: str) -> None:
-    """Raise `ValueError` if the scene lacks what is needed by `what`, saying what could be asked instead."""
+    """Raise `ValueError` if the scene does not meet a requirement of `what`, naming an alternative."""
     if lacking := lacks(scene):
         raise ValueError(f"{what} {lacking}{_instead(lacks, scene)}")
 
 
 def _instead(lacks: Lacking, scene: Scene) -> str:
-    """Say what can be done with a scene for which the paper's model is not enough."""
+    """Return the methods for a scene that the paper's model does not cover."""
     asked = lacks in IN_MOTION and (lacks_paper_model(scene) or lacks_arms(scene))
     if not asked:
         return ""

@@ -181,7 +181,7 @@ def _factor(written: str, unit: str) -> Fraction:
             f'"{written}" is not a known unit{_nearest(written, unit)}; expected {expected(unit)}'
         ) from None
     if factor is None:
-        raise ValueError(f'the unit "{written}" is of another dimension; expected {expected(unit)}')
+        raise ValueError(f'the unit "{written}" has the wrong dimension; expected {expected(unit)}')
     return factor
 
 

@@ -21,8 +21,8 @@ class _Waveform:
 
 @dataclass(frozen=True)
 class _Swing(_Waveform):
-    amplitude: float = quantity("m/s", "largest velocity less the mean")
-    frequency: float = quantity("1/s", "cycles per time")
+    amplitude: float = quantity("m/s", "largest velocity minus the mean")
+    frequency: float = quantity("1/s", "cycles per unit time")
     mean: float = quantity("m/s", "mean velocity", minimum=-math.inf, default=0.0)
 
 
@@ -86,12 +86,12 @@ class SmoothRamp(_Waveform):
     """
 
     waveform: ClassVar[str] = "smooth-ramp"
-    velocity: float = quantity("m/s", "velocity at last", minimum=-math.inf)
-    rise_time: float = quantity("s", "time in which it comes to tanh 1 = 76 % of it")
+    velocity: float = quantity("m/s", "final velocity", minimum=-math.inf)
+    rise_time: float = quantity("s", "time to reach tanh 1 = 76 % of it")
 
     @property
     def final_velocity(self) -> float:  # type: ignore[override]
-        """The velocity at last."""
+        """The final velocity."""
         return self.velocity
 
     def __call__(self, t: float) -> float:
