@@ -13,6 +13,7 @@ from . import (
     element_arms,
     element_edges,
     element_schemes,
+    element_strips,
     energy,
     friction_identity,
     groups,
@@ -50,7 +51,7 @@ _CHAPTERS = (
     *(transient_scaling, transient_memory, contact_interval, transient_edges),
     *(transient_motion, transient_rates, transient_balance),
     *(spring_drive, spring_stability, spring_limits),
-    *(element_schemes, element_edges, element_arms),
+    *(element_schemes, element_edges, element_strips, element_arms),
 )
 """Each chapter may recall the results of the chapters before it."""
 

@@ -239,5 +239,7 @@ CONTENTS = {
     "element-trapezoids": "Trapezoids between elements",
     "element-kink": "Part of an element at an edge",
     "element-bent": "Error of the part of an element",
+    "strips-rim": "Strips at the rim of a ball",
+    "strips-rule": "Order of the rule over the strips of a ball",
     "element-arms": "An arm over a step",
 }

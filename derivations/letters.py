@@ -101,6 +101,12 @@ BY_LABEL: dict[str, dict[str, str]] = {
         r"\eta_{+}": r"\hat\eta_{+}",
     },
     "F15-sawtooth": {"h": "h"},
+    "strips-rim": {"y": r"y_{\mathrm{s}}", r"\psi": r"\breve \psi"},
+    "strips-rule": {
+        **{letter: rf"{letter}_{{\mathrm{{s}}}}" for letter in "yvxQ"},
+        **{letter: rf"\breve {letter}" for letter in ("p_1", "p_2")},
+        r"\Delta": r"\Delta y",
+    },
     "element-arms": {
         "s": r"\check s",
         "s_0": r"\check s_0",

@@ -7,16 +7,18 @@ import sympy as sp
 from kvtheory.derivations import element_arms as arms
 from kvtheory.derivations import element_edges as edges
 from kvtheory.derivations import element_schemes as schemes
+from kvtheory.derivations import element_strips as strips
 from kvtheory.derivations.catalogue import catalogue
 
 from kvtheory.models.elements import schemes as simulator
 from kvtheory.models.elements.edges import kink_area
 from kvtheory.models.elements.law import ramp_functions
+from kvtheory.models.elements.strips import weights_across
 
 LABELS = {
     "F15-runge-kutta", "F15-euler", "F15-sawtooth", "element-mean-force", "element-fit",
     "element-stability", "element-orders", "element-kink",
-    "element-trapezoids", "element-bent", "element-arms",
+    "element-trapezoids", "element-bent", "element-arms", "strips-rim", "strips-rule",
 }  # fmt: skip
 
 
@@ -136,3 +138,30 @@ def test_correction_leaves_out_what_the_derivation_says(by_label):
     left = float(step.rhs.subs(places))
     added, _ = kink_area(dx, (overlap(0.0), overlap(dx) - overlap(0.0), 0.0))
     assert area - sums - added == pytest.approx(left, rel=1e-6)
+
+
+def test_what_the_rule_over_strips_has_too_much_is_hurwitz_zeta_function():
+    start, strip = sp.lambdify(strips._v, strips.START, "mpmath"), 300
+    with mp.workdps(30):
+        for v in (mp.mpf("0.01"), mp.mpf("0.4"), mp.mpf(1)):
+            # START less all Q up to a strip; what follows is between zero and a bound.
+            whole = start(v + strip) + mp.fsum((v + j) ** 1.5 for j in range(strip))
+            assert 0 < whole - mp.zeta(-1.5, v) < (strip - 1) ** -1.5 / 1920
+
+
+@pytest.mark.parametrize("share", [0.1, 0.5, 0.9])
+def test_order_of_the_rule_over_the_strips_of_a_ball(share):
+    """At a given place of the rim the error falls as the derivation says, with its factor."""
+    l, left = 0.7, []
+    tail = 2 * (1 + l * l) ** 2 * np.arctan(1 / l) - 2 * l**3 - 10 * l / 3
+    whole = (np.pi + 16 * l / 3 + tail) / 4  # F20
+    counts = np.array([400, 1600])
+    for count in counts:
+        dy = 1.0 / (count + share)
+        bent = 1.0 - (dy * np.arange(count + 1)) ** 2
+        loads = 2 / 3 * (bent**1.5 + (bent + l * l) ** 1.5 - l**3)
+        surplus = float(weights_across(dy, count + 1, 1.0) @ loads) - whole
+        left.append(surplus / (2 * 4 * np.sqrt(2) / 3 * dy**2.5))
+    due = float(mp.zeta(-1.5, share)) + float(strips.SECOND.subs(strips._share, share))
+    assert left == pytest.approx([due, due], rel=0.1)
+    assert 2.0 * left[1] - left[0] == pytest.approx(due, rel=0.01)  # without the order 3
