@@ -103,8 +103,8 @@ def _cell(proof: Proof) -> None:
 
 _RULE = (
     r"Strips are $\Delta$ apart, the first at $\vartheta \Delta$ from the rim, $0 < \vartheta \le 1$, and "
-    r"the load begins as $p_1 y + p_2 y^{3/2}$. What trapezoids have too much is due to the rim alone, for the "
-    r"load is even about the middle plane. Of $y^{3/2}$ it is, in units of $\Delta^{5/2}$, "
+    r"the load begins as $p_1 y + p_2 y^{3/2}$. What trapezoids have too much is due to the rim alone, for "
+    r"the load is even about the middle plane. Of $y^{3/2}$ it is, in units of $\Delta^{5/2}$, "
     r"$\frac{1}{2} \vartheta^{3/2} - \frac{2}{5} \vartheta^{5/2} - \frac{1}{8} \vartheta^{1/2} - \sum_{j \ge "
     r"0} Q(\vartheta + j)$, where $Q$ makes the sum converge. This solves the last equation, as Hurwitz's "
     r"$\zeta(-\frac{3}{2}, \vartheta)$ does; their difference has the period 1 and vanishes for great "

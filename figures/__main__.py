@@ -14,7 +14,7 @@ FIGURES = (
     *("energy_split", "asymptote_error", "circle_error", "phase_portrait", "regime_map"),
     *("foundations", "rubber", "foundation_precision"),
     *("spring_stability", "measurable_friction", "stick_slip", "stick_slip_amplitude"),
-    *("ball", "ball_start"),
+    *("ball", "ball_start", "ball_pressure"),
     *("onset_maps", "ladder", "stability_map", "work_precision"),
 )
 

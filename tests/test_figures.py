@@ -254,3 +254,16 @@ def test_ball_has_its_points_on_its_curve_and_the_pressure_of_its_footprints(mad
         l = found.retardation_length
         assert found.pressure(-min(l, 1.0), 0.0) == pytest.approx(1 + l * l if l < 1 else 2 * l)
     assert [ax.get_title() for ax in drawn.axes[:2]] == ["given depth", "dead weight"]
+
+
+def test_pressure_of_a_ball_has_the_peak_that_its_series_reports(made):
+    data, drawn, _ = made["ball_pressure"]
+    script = importlib.import_module("figures.ball_pressure")
+    for found in data.results.values():
+        for time in (0.0, 1e-3, 0.1):
+            row = int(np.argmin(np.abs(found.time - time)))
+            x = np.linspace(found.leading_edge[row], found.trailing_edge[row], 5)
+            p = found.pressure(x, time)
+            assert p.max() == pytest.approx(found.peak_pressure[row], rel=1e-2)
+            assert p[-1] == pytest.approx(0.0, abs=1e-2 * p.max())
+    assert [ax.get_title() for ax in drawn.axes[:2]] == list(script.TITLES.values())
