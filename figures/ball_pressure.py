@@ -25,7 +25,7 @@ class MiddlePlane:
     """A series of a ball with the pressure in its middle plane, at the times of the series."""
 
     series: Any
-    scene: kv.Scene
+    scene: Any
 
     def __getattr__(self, name: str) -> Any:
         """Return what the series has."""
@@ -47,7 +47,7 @@ class MiddlePlane:
 class Data:
     """The start of both scenes at `TIMES`."""
 
-    results: dict[str, MiddlePlane]
+    results: dict[str, Any]
     columns: drawing.Columns
 
 

@@ -135,6 +135,20 @@ def test_profiles_of_revolution_against_a_plain_double_sum(profile, half, veloci
     assert found.friction_force == pytest.approx(1e10 * friction, rel=1e-3)
 
 
+@pytest.mark.parametrize("slope", [0.03, 0.3])
+def test_a_cone_at_any_velocity(slope):
+    """The strips next to its axis have a sharp tip; fast, W = C V delta b and mu = (pi/4) slope."""
+    velocity = np.geomspace(1e-3, 1e4, 15)
+    scene = kv.Scene(indenter=kv.Revolved(kv.Wedge(slope)), support=kv.Fixed(depth=1e-4))
+    found = kv.steady(scene, over={V: velocity})
+    l = found.retardation_length / found.half_length
+    fast = l > 10.0
+    viscous = 1e10 * found.retardation_length * 1e-4 * found.half_length
+    for ratio in (found.load / viscous, found.friction_coefficient / (np.pi / 4 * slope)):
+        assert (np.abs(ratio[fast] - 1.0) < 2.0 / l[fast]).all()
+    assert (np.diff(found.load) > 0.0).all()
+
+
 def test_a_profile_of_functions_may_stand_for_the_ball():
     profile = kv.Profile(lambda x: x * x / 0.02, lambda x: x / 0.01)
     held = {"support": kv.Fixed(depth=1e-4), "drive": kv.Drive(velocity=0.01)}

@@ -90,8 +90,29 @@ def test_steady_sliding_is_drawn_as_a_curve_or_as_its_pressure():
         )
         at_trailing = p[np.argmin(np.abs(x - single.trailing_edge * 1e3))]
         assert abs(at_trailing) < 1e-9 * p.max()
-    with pytest.raises(ValueError, match="parabola only"):
+    with pytest.raises(ValueError, match="parabola and for a ball"):
         kv.steady(kv.Scene(indenter=kv.Wedge(0.1))).plot()
+
+
+@pytest.mark.parametrize("velocity", ["50 mm/s", "-5 mm/s", "0 mm/s", "3 m/s"])
+def test_the_pressure_of_a_ball_is_that_of_its_middle_plane(velocity):
+    ball = kv.Sphere("10 mm", radius_across="20 mm")
+    rest = {"support": kv.Fixed("0.1 mm"), "drive": kv.Drive(velocity)}
+    scene = kv.Scene(indenter=ball, **rest)
+    ax = kv.steady(scene).plot().axes[0]
+    x, p = ax.lines[0].get_data()
+    assert "middle plane" in ax.get_ylabel()
+    inside = slice(1, -1)
+    truth = kv.footprint(scene).pressure(x[inside] * 1e-3, 0.0) * 1e-6
+    assert p[inside] == pytest.approx(truth, rel=1e-9, abs=1e-12)
+    refused = [kv.Scene(indenter=kv.Revolved(kv.Wedge(0.1)), **rest)]
+    if scene.drive.velocity:  # at rest all foundations are springs
+        refused.append(
+            kv.Scene(ball, kv.GeneralizedMaxwell(1e10, arms=[["30 GN/m^3", "10 ms"]]), **rest)
+        )
+    for other in refused:
+        with pytest.raises(ValueError, match="give several velocities"):
+            kv.steady(other).plot()
 
 
 @pytest.mark.parametrize("result", [kv.steady(), kv.transient(at="0 ms:20 ms:21")])

@@ -9,6 +9,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.integrate import simpson
 
+from kvtheory.models.steady.ball import angle_and_tail
+from kvtheory.models.steady.closed_forms import ball_friction_coefficient_factor
 from kvtheory.plots.comparison import draw_comparison
 from kvtheory.plots.files import save_picture
 from kvtheory.plots.style import BLUE, LABELS, RED, TRANSIENT_ROWS, label, with_unit
@@ -24,7 +26,7 @@ BESIDE = {"velocity": "sliding_velocity", "friction_force": "spring_force"}
 """The quantity of a drive with a spring that is drawn beside another one."""
 NOT_ITS_LOAD = 1e-6
 """If the integral of the pressure, by Simpson's rule, differs from the load by this much relative to it, the
-indenter is not a parabola."""
+indenter is not a parabola; if a friction coefficient differs as much from its closed form, it is not a ball."""
 
 
 def plot_steady(
@@ -135,19 +137,36 @@ def _over_velocity(ax: Any, state: SteadyState, style: dict[str, Any]) -> None:
 
 
 def _over_contact(ax: Any, state: SteadyState, style: dict[str, Any]) -> None:
-    """Draw p = K delta (1 - x^2/a^2 - 2 l_r x/a^2) from edge to edge (Eqs. 8 and 12, for V >= 0)."""
+    """Draw p = K delta (1 - x^2/a^2 - 2 l_r x/a^2) from edge to edge (Eqs. 8 and 12, for V >= 0).
+
+    Of a ball it is the pressure in the middle plane.
+    """
     a, l = float(state.half_length), float(state.retardation_length / state.half_length)
     low, high = sorted((float(state.leading_edge), float(state.trailing_edge)))
     x = np.linspace(low, high, POINTS)
     forward = -1.0 if state.leading_edge > 0.0 else 1.0
     peak = 1.0 + l * l if l < 1.0 else 2.0 * l  # theorem F7
     p = state.peak_pressure / peak * (1.0 - (x / a) ** 2 - 2.0 * l * forward * x / a)
-    if abs(simpson(p, x) / state.load - 1.0) > NOT_ITS_LOAD:
+    whole = state.units["load"] == "N"
+    off = _unlike_ball(state, l) if whole else abs(simpson(p, x) / state.load - 1.0)
+    if off > NOT_ITS_LOAD:
         raise ValueError(
-            "the pressure is drawn for a parabola only; give several velocities to `over`"
+            "the pressure is drawn for a parabola and for a ball on Kelvin-Voigt only; give several "
+            "velocities to `over`"
         )
     ax.plot(x * 1e3, p * 1e-6, **style)
-    ax.set(xlabel=r"position $x$ [mm]", ylabel=r"pressure $p$ [MPa]")
+    place = "pressure in the middle plane" if whole else "pressure"
+    ax.set(xlabel=r"position $x$ [mm]", ylabel=rf"{place} $p$ [MPa]")
+
+
+def _unlike_ball(state: SteadyState, l: float) -> float:
+    """Return how far the friction coefficient is from (a/R) m(l), that of a ball (derivation F20)."""
+    if l == 0.0:  # there is none, and only a ball is exact
+        return 0.0 if state.model == "exact" else math.inf
+    _, tail = angle_and_tail(np.array([l]))
+    slope = 2.0 * float(state.depth / state.half_length)
+    own = slope * ball_friction_coefficient_factor(np.array([l]), tail)[0]
+    return abs(abs(float(state.friction_coefficient)) / own - 1.0)
 
 
 def save_plot(result: Any, path: Path) -> None:

@@ -208,7 +208,8 @@ def _trailing(shape: Convex, l_r: Value, depth: Value, a: Value, x: Value) -> tu
         rise = slope * (x + l_r * shape.bend(x))
         factor = (depth / total) ** (total / rise)
         moves = pick(active, x / rise, moves)
-        x = pick(active, least(x * factor, a), x)
+        # Where the slope hardly changes a step may overshoot the tip; it closes in from there.
+        x = pick(active, least(-least(-x * factor, -VERTEX * a), a), x)
         active = active & (abs(factor - 1.0) + abs(depth / total - 1.0) >= LINEAR)
         if not some(active):
             return x, moves
