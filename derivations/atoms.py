@@ -15,7 +15,7 @@ _GREEK = (
     r"|tau|upsilon|phi|chi|psi|omega|Gamma|Delta|Theta|Lambda|Xi|Pi|Sigma|Phi|Psi|Omega|ell)(?![A-Za-z])"
 )
 _BRACES = r"\{(?:[^{}]|\{(?:[^{}]|\{[^{}]*\})*\})*\}"
-_LETTER = rf"(?:\\Delta [stx](?![A-Za-z_'])|\\math(?:sf|bf)\{{[A-Za-z]\}}|{_GREEK}|[A-Za-z])"
+_LETTER = rf"(?:\\Delta [stxy](?![A-Za-z_'])|\\math(?:sf|bf)\{{[A-Za-z]\}}|{_GREEK}|[A-Za-z])"
 _TOKEN = re.compile(
     rf"\\(?:mathrm|operatorname|text|textrm|begin|end|phantom)\*?{_BRACES}"
     rf"|(?P<dots>\\d*dot\s*)?(?P<accent>\\(?:bar|hat|tilde|breve|check)\s*)?"

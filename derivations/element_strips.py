@@ -76,7 +76,9 @@ def _rule() -> Derivation:
     _cell(proof)
     later = START.subs(_v, _v + 1)
     proof.equal(
-        START - later - _rest, _v**POWER, r"the difference equation of $\zeta(-\frac{3}{2}, v)$"
+        START - later - _rest,
+        _v**POWER,
+        r"the difference equation of $\zeta_{\mathrm{H}}(-\frac{3}{2}, v)$",
     )
     return proof.done(START - later - _rest, _v**POWER)
 
@@ -107,8 +109,9 @@ _RULE = (
     r"the load is even about the middle plane. Of $y^{3/2}$ it is, in units of $\Delta^{5/2}$, "
     r"$\frac{1}{2} \vartheta^{3/2} - \frac{2}{5} \vartheta^{5/2} - \frac{1}{8} \vartheta^{1/2} - \sum_{j \ge "
     r"0} Q(\vartheta + j)$, where $Q$ makes the sum converge. This solves the last equation, as Hurwitz's "
-    r"$\zeta(-\frac{3}{2}, \vartheta)$ does; their difference has the period 1 and vanishes for great "
-    r"$\vartheta$, so that they are the same. With the correction the rule over strips has $p_2 \Delta^{5/2} "
-    r"[\zeta(-\frac{3}{2}, \vartheta) + \frac{1}{2} (\vartheta^2 - \vartheta + \frac{1}{6}) \sqrt{1 + "
-    r"\vartheta}]$ too much, and terms of the order of $\Delta^3$: its order is $\frac{5}{2}$."
+    r"$\zeta_{\mathrm{H}}(-\frac{3}{2}, \vartheta)$ does; their difference has the period 1 and vanishes for "
+    r"great $\vartheta$, so that they are the same. With the correction the rule over strips has $p_2 "
+    r"\Delta^{5/2} [\zeta_{\mathrm{H}}(-\frac{3}{2}, \vartheta) + \frac{1}{2} (\vartheta^2 - \vartheta + "
+    r"\frac{1}{6}) \sqrt{1 + \vartheta}]$ too much, and terms of the order of $\Delta^3$: its order is "
+    r"$\frac{5}{2}$."
 )

@@ -686,6 +686,7 @@ SYMBOLS = tuple(
         (r"v_{\mathrm{s}}", r"distance of a strip from the rim, in spacings", "1", "strips-rule"),
         (r"x_{\mathrm{s}}", r"distance from that strip inward, in spacings", "1", "strips-rule"),
         (r"Q_{\mathrm{s}}", r"what trapezoids leave out between two strips", "1", "strips-rule"),
+        (r"\zeta_{\mathrm{H}}", "zeta function of Hurwitz", "1", "strips-rule"),
         (
             r"\breve p_1",
             r"slope of a strip's load over $y_{\mathrm{s}}$ at the rim",
