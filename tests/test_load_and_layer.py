@@ -164,7 +164,7 @@ def test_overrides_exchange_a_stiffness_for_a_layer_and_back(tmp_path):
     [
         (kv.DeadWeight, ["support.mass: missing", "or support.load"]),
         (lambda: kv.DeadWeight(load="-3 N/mm"), ["support.load", "above 0"]),
-        (lambda: kv.DeadWeight(load="3 kg"), ["support.load", "another dimension", "N/m"]),
+        (lambda: kv.DeadWeight(load="3 kg"), ["support.load", "wrong dimension", "N/m"]),
         (lambda: kv.DeadWeight(load=1e300, gravity=1e-300), ["follows from support.load"]),
         (lambda: kv.Suspended(load=1.0), ["support.stiffness: missing"]),
         (lambda: kv.Foundation(1e9), ["retardation_time: missing"]),

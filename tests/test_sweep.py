@@ -180,7 +180,7 @@ def test_as_dict_is_json():
         ({V: "1 mm/s:10 m/s:3:lin"}, ["log"]),
         ({V: "-1 mm/s:10 m/s:3:log"}, ["one sign"]),
         ({V: "1:10:3"}, [V, "no unit"]),
-        ({V: "1 mm/s:10 kg:3"}, ["another dimension", "m/s"]),
+        ({V: "1 mm/s:10 kg:3"}, ["wrong dimension", "m/s"]),
         ({V: []}, ["empty"]),
         ({V: [[0.1, 0.2]]}, ["one list"]),
         ({V: [0.1, math.nan]}, ["out of range"]),

@@ -174,7 +174,7 @@ def test_results_become_json(standard):
 @pytest.mark.parametrize(
     ("at_times", "words"),
     [
-        (["1 mm"], "another dimension"),
+        (["1 mm"], "wrong dimension"),
         (["-1 ms"], "out of range"),
         (["300 ms"], "after the end"),
         ([], "empty"),
