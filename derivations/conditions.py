@@ -273,7 +273,7 @@ def _sign_by_roots(expr: sp.Expr, known: Conditions) -> int:
 def fails_inside(expr: sp.Expr, over: Interval) -> bool:
     """Tell whether an expression that should be positive in an interval is not, or may not be.
 
-    A rational function is decided; of others some values are looked at.
+    A rational function is decided; of others some values are tested.
     """
     if proves_nonnegative(expr, NONE.with_interval(over)):
         return False

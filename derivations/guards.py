@@ -23,7 +23,7 @@ class Guarded(Book):
             raise StepError(f"{self.label}: {variable} is {self._rules[variable]} here, not free")
 
     def _resolve_free(self, expr: sp.Expr, variable: sp.Expr) -> sp.Expr:
-        """Resolve what is looked at as a function of a variable that no premise has fixed."""
+        """Resolve an expression as a function of a variable that no premise has fixed."""
         if variable.is_Symbol:
             self._free(variable)
         before = set(self._used)

@@ -52,7 +52,7 @@ def merged(groups: Iterable[Iterable[Premise]]) -> tuple[Premise, ...]:
 def contradiction(premises: tuple[Premise, ...], new: tuple[Premise, ...]) -> str:
     """Describe a premise that cannot hold together with new ones; empty if none is found.
 
-    Each premise is looked at with the others put into it. Laws that are no mere names are solved
+    Each premise is checked with the others substituted. Laws that are not mere names are solved
     together as polynomials.
     """
     for premise in premises:

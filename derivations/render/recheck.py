@@ -169,7 +169,7 @@ class Steps:
         return after
 
     def _named(self, expr: Expr) -> Expr:
-        """Put in once what names stand for; functions exactly as they are written."""
+        """Substitute definitions once; functions exactly as they are written."""
         exact = {
             lhs: rhs
             for lhs, rhs in self.rules.items()

@@ -153,7 +153,7 @@ def _scaled(number: str | float, written: str, unit: str) -> float:
     if not written:
         raise ValueError(f"has no unit; expected {expected(unit)}")
     factor = _factor(written, unit)
-    # Zero stands for what underflows as well, before a huge power of ten is formed.
+    # A value that underflows is zero, before a huge power of ten is formed.
     exact = Fraction(number) * factor if approximate else Fraction(0)
     try:
         return float(exact)

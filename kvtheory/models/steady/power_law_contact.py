@@ -65,7 +65,7 @@ def _descend(q: Array, c: Array, m: Array) -> Array:
         residual = np.log(q**m * (q + c))
         step = np.where(active, residual / (m + q / (q + c)), 0.0)
         q = q * np.exp(-step)
-        # Each goes on for itself, so that it does not matter what is computed together.
+        # Each is iterated separately, so that the result does not depend on the others in the array.
         active &= (np.abs(step) > LAST_STEP) & (np.abs(residual) > LAST_RESIDUAL)
         if not active.any():
             break

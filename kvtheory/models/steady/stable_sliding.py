@@ -17,7 +17,7 @@ from kvtheory.scene.requirements import lacks_paper_model
 BLOCK = 8192
 """Scenes treated at a time: the intermediate arrays of a block stay in the processor's cache."""
 ON_GRID = 64
-"""Scenes treated at a time where each is looked at on a grid of velocities."""
+"""Scenes treated at a time where each is evaluated on a grid of velocities."""
 
 STATEMENT = (
     "closed forms (theorem F22) in double precision, with what rounding makes of them to first order; "
