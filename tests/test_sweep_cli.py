@@ -142,7 +142,7 @@ def test_an_interrupt_is_told_and_the_command_goes_on(place, monkeypatch):
     with monkeypatch.context() as patch:
         patch.setattr(engine, "compute", interrupted)
         result = run(*OVER, "-o", "map.csv", "--block", "2", status=130)
-    assert '"map.csv" has what was done, and the same command goes on' in result.stderr
+    assert '"map.csv" holds the finished points, and the same command resumes' in result.stderr
     assert "# unfinished: 4 of 8 points" in (place / "map.csv").read_text()
     assert "8 points, 4 of them computed now" in run(*OVER, "-o", "map.csv").stdout
     assert [item.name for item in place.iterdir()] == ["map.csv"]

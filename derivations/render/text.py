@@ -1,4 +1,4 @@
-r"""What the LaTeX and the HTML renderers share: how the text and the order of a record are read.
+r"""The common part of the renderers: the text of a record and the order of its steps.
 
 >>> for piece in pieces(r"by Eq. (27), $\mu > 0$", {"eq27"}):
 ...     print([piece.kind, piece.content, piece.target])
@@ -24,7 +24,7 @@ _TOKEN = re.compile(
     r"(?P<open>(?<!\\)\{|\\left(?![a-z]))|(?P<close>(?<!\\)\}|\\right(?![a-z]))"
     r"|=|<|>|\\(?:le|ge|lt|gt|approx|sim|equiv)(?![a-z])"
 )
-"""What opens a group, what closes it, and a relation."""
+"""The opening of a group, its end, and a relation."""
 
 _GLYPH = re.compile(r"\\(?!left|right|frac|sqrt|math|text|[,;:! ])[A-Za-z]+|[^\s{}_^\\]")
 _MOST_GLYPHS = 60
@@ -54,7 +54,7 @@ class Line:
 
 @dataclass(frozen=True)
 class Given:
-    """Steps in a row that are told in one sentence, and the mark that ends it."""
+    """Consecutive steps that are printed in one sentence, and the mark that ends it."""
 
     steps: tuple[Step, ...]
     end: str
@@ -90,12 +90,12 @@ def by_section(derivations: Sequence[Derivation]) -> dict[str, list[Derivation]]
 
 
 def number(label: str) -> str:
-    """Return what stands in parentheses beside a result: 27 for eq27, F3, Table 2 for table2."""
+    """Return the number in parentheses beside a result: 27 for eq27, F3, Table 2 for table2."""
     return re.sub("^table", "Table ", label.removeprefix("eq"))
 
 
 def reference(label: str) -> str:
-    """Return what a person calls a derivation, in a form that `pieces` makes a link of.
+    """Return the usual name of a derivation, in a form that `pieces` turns into a link.
 
     >>> [reference(label) for label in ("eq27", "F3", "table2", "scaling")]
     ['Eq. (27)', 'F3', 'Table 2', 'scaling']
@@ -129,10 +129,10 @@ def relations(latex: str) -> list[str]:
 
 
 def blocks(derivation: Derivation) -> Iterator[Given | Line]:
-    """Arrange the steps: what is given in sentences, what is proved and the result in lines.
+    """Arrange the steps: premises in sentences, proved steps and the result in lines.
 
-    Steps recalled from elsewhere and definitions are given; those too big for a sentence stand
-    in a line of their own.
+    Premises are definitions and steps recalled from elsewhere; those too large for a sentence
+    have a separate line.
     """
     printed = _lines(derivation)
     for is_given, group in groupby(printed, key=_is_given):
@@ -145,9 +145,9 @@ def blocks(derivation: Derivation) -> Iterator[Given | Line]:
 
 
 def sentence(given: Given, labels: Collection[str]) -> Iterator[Piece]:
-    """Tell what is given, for the line that follows.
+    """Return the sentence of the premises for the line that follows.
 
-    A remark that several formulas in a row share stands after the last of them.
+    A remark shared by several consecutive formulas is printed after the last of them.
     """
     remarks = [(step.source, step.reason) for step in given.steps]
     last = len(given.steps) - 1
@@ -169,7 +169,7 @@ def sentence(given: Given, labels: Collection[str]) -> Iterator[Piece]:
 
 
 def remark(step: Step, labels: Collection[str]) -> Iterator[Piece]:
-    """Tell where a displayed step comes from, why it holds, and in which domain."""
+    """Return the origin of a displayed step, its reason, and its domain."""
     if step.source:
         yield from (citation(step.source, labels), Piece("words", " "))
     yield from pieces(step.reason, labels)
@@ -201,7 +201,7 @@ def conclusion(step: Step) -> str:
 def _lines(derivation: Derivation) -> list[Line]:
     """Return the steps with the number of each, which only the result has.
 
-    The result is the step that reads as it; where none does, a line of its own ends the list.
+    The result is the step with the same formula; if there is none, an additional line ends the list.
     """
     tag = number(derivation.label)
     found = [Line(step, tag if step.latex == derivation.latex else "") for step in derivation.steps]

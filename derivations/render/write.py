@@ -11,7 +11,7 @@ from . import bibliography, fragments, html, json, latex, markdown, notebook, pd
 from .edition import Edition, edition
 
 Files = dict[str, bytes]
-"""What a format makes: contents by file name, relative to the directory."""
+"""The output of a format: contents by file name, relative to the directory."""
 
 
 def _tex(edition: Edition) -> Files:
@@ -61,11 +61,11 @@ def write(
     derivations
         The records to print, in this order.
     directory
-        Where to write; made where it is missing.
+        Where to write; created if it is missing.
     formats
         Names of `FORMATS`.
     only
-        What `labels.find` understands; all where it is empty.
+        Names that `labels.find` understands; all derivations if empty.
     command
         The command that asks for the files, to be named in the documents.
 
@@ -74,7 +74,7 @@ def write(
     ValueError
         For an unknown format or label.
     RenderError
-        Where a format cannot be made.
+        If a format cannot be made.
     """
     check_formats(formats)
     return write_edition(edition(derivations, only, command=command), directory, formats)

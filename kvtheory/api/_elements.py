@@ -127,7 +127,7 @@ def _blaming_default(taken: bool) -> Iterator[None]:
         if not taken or not key.startswith("`per_length`"):
             raise
         raise ValueError(
-            f"the density taken by default, {DENSITY / 1e3:g} elements per mm, does not suit the size of "
+            f"the default density, {DENSITY / 1e3:g} elements per mm, does not suit the size of "
             f"this scene: give `per_length`, {hint}"
         ) from None
 

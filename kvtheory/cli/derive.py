@@ -231,7 +231,7 @@ def _report(
         files = [str(path) for path in paths]
         print_json({"directory": str(output), "files": files, "derivations": counts})
         return
-    click.echo("Derived and checked: " + ", ".join(f"{n} {status}" for status, n in counts.items()))
+    click.echo("Derived and checked: " + ", ".join(f"{status} {n}" for status, n in counts.items()))
     for path in paths:
         if path.parent == output:
             click.echo(f"  {path}")

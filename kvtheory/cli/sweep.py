@@ -100,7 +100,9 @@ def sweep(
                 progress=progress,
             )  # fmt: skip
         except KeyboardInterrupt:
-            told = f'interrupted; "{output}" has what was done, and the same command goes on'
+            told = (
+                f'interrupted; "{output}" holds the finished points, and the same command resumes'
+            )
             raise KeyboardInterrupt(told) from None
     seconds = time.perf_counter() - began
     if plot:
@@ -189,7 +191,7 @@ def _tell(result: "Sweep", seconds: float, as_json: bool) -> None:
     )
     if result.path and result.path.suffix.lower() == ".csv":
         click.echo(
-            'Lines above the table say what it is: pandas.read_csv(FILE, comment="#") reads it.'
+            'The lines above the table describe it: read it by pandas.read_csv(FILE, comment="#").'
         )
     for failure in result.failures[:SHOWN_FAILURES]:
         point = ", ".join(f"{key} = {value:.6g}" for key, value in failure.point.items())
