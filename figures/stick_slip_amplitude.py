@@ -20,7 +20,7 @@ STYLES: dict[float, dict[str, Any]] = {
     1e7: {"color": GREEN, "marker": "^"},
 }
 """By stiffness in N/m^2."""
-VELOCITIES, END, RTOL = np.geomspace(0.03, 0.2, 15), 4.0, 1e-5
+VELOCITIES, END, RTOL = np.geomspace(0.03, 0.2, 15), 8.0, 1e-5
 NAMES = (
     "stick_slip_settles",
     "stick_slip_amplitude",

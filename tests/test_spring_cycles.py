@@ -38,6 +38,25 @@ def test_a_run_that_is_too_short_does_not_settle():
     assert np.isnan(found["stick_slip_amplitude"]).all()
 
 
+def test_near_the_limit_of_stability_the_limit_is_told_long_before_it_is_reached():
+    # after 1500 cycles it is 0.07144 half lengths; after these 14, 0.106
+    near = dataclasses.replace(
+        SCENE, drive=kv.Drive(velocity="91 mm/s", stiffness="6.7 MN/m^2"), run=kv.Run("1.2 s")
+    )
+    found = kv.sweep(near, over={"drive.velocity": [0.091]}, quantities=NAMES, rtol=1e-5)
+    half = kv.steady(dataclasses.replace(SCENE, drive=kv.Drive(velocity=1e-6))).half_length
+    assert found["stick_slip_settles"].tolist() == [1.0]
+    assert found["stick_slip_amplitude"][0] == pytest.approx(0.07144 * half, rel=1.5e-2)
+    assert found["stick_slip_period"][0] == pytest.approx(0.07839, rel=1e-3)
+
+
+def test_a_swing_that_fades_slowly_is_no_cycle():
+    # the critical velocity is 53.6 mm/s; each swing is within 1 % of the one before it
+    slow = dataclasses.replace(SCENE, run=kv.Run("6 s"))
+    found = kv.sweep(slow, over={"drive.velocity": [0.053]}, quantities=NAMES, rtol=1e-4)
+    assert found["stick_slip_settles"].tolist() == [0.0]
+
+
 def test_a_rigid_drive_has_no_cycle():
     with pytest.raises(kv.SceneError, match="stick_slip_period: needs drive"):
         kv.sweep(over={"drive.velocity": [0.1]}, quantities="stick_slip_period")
