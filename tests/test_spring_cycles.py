@@ -95,3 +95,21 @@ def test_where_stability_is_not_known_a_sweep_says_so():
     assert "stable" not in kv.sweep(wedge, over=over).units
     with pytest.raises(ValueError, match="the stability of steady sliding holds for the parabola"):
         kv.sweep(wedge, over=over, quantities="stable")
+
+
+@pytest.mark.parametrize(("within", "swings"), [("1 ms", True), ("20 s", False)])
+def test_where_steady_sliding_is_stable_a_sudden_start_may_end_in_a_cycle(within, swings):
+    """Hard excitation: the same drive, spring and velocity end in two motions."""
+    rubber = kv.Foundation(stiffness="10 GN/m^3", retardation_time="1 s")
+    history = [["0 s", "0 mm/s"], [within, "4.3 mm/s"]]
+    drive = kv.Drive(history=history, stiffness="0.1 MN/m^2")
+    scene = kv.Scene(foundation=rubber, drive=drive, run=kv.Run("60 s"))
+    found = kv.transient(scene, rtol=1e-4, certify=False)
+    steady = dataclasses.replace(scene, drive=kv.Drive(velocity="4.3 mm/s", stiffness="0.1 MN/m^2"))
+    assert kv.stability(steady, quantity="stable").stable
+    late = found.sliding_velocity[found.time > 45.0]
+    if swings:
+        assert (late.min(), late.max()) == pytest.approx((0.36e-3, 38e-3), rel=0.05)
+        assert cycle(found.solution.motion).period == pytest.approx(5.076, rel=1e-3)
+    else:
+        assert late == pytest.approx(4.3e-3, rel=2e-2)

@@ -65,7 +65,8 @@ def solve(
         If `rtol` is out of range.
     ToleranceError
         If no model is known to be within the tolerance; the message says how close each came. Also if
-        steady sliding is not known to be stable on the spring in the drive.
+        steady sliding is asked for and not known to be stable, against small disturbances, on the spring in
+        the drive.
 
     Examples
     --------
@@ -111,7 +112,7 @@ def solve(
 
 
 def _refuse_unstable(scene: Scene) -> None:
-    """Raise unless steady sliding is known to be stable on the spring in the drive."""
+    """Raise unless steady sliding on the spring in the drive is known to be stable against small disturbances."""
     if scene.drive.rigid:
         return
     known = not lacks_paper_model(scene)

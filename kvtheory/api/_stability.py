@@ -29,6 +29,9 @@ def stability(
     stiffness is that of a spring, without damper and with the mass of the support, in place of the
     rigid drive. With a spring the rates are the roots of the quartic of theorem F22.
 
+    Stable is meant against small disturbances. After a large one, such as a sudden start, the motion may
+    end in stick-slip all the same (hard excitation): `transient` and `sweep` follow it.
+
     Parameters
     ----------
     scene, over

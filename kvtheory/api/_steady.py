@@ -54,7 +54,7 @@ def steady(
     -------
     SteadyState
         Floats, or arrays of the broadcast shape, in SI units, with a certificate; with a spring in the drive
-        also whether steady sliding is stable, as in `stability`.
+        also whether steady sliding is stable against small disturbances, as in `stability`.
 
     Raises
     ------

@@ -29,7 +29,8 @@ def stability(scene: str | None, overrides: Sequence[str], as_json: bool) -> Non
     """Print whether steady sliding is stable, and the critical stiffness of the drive.
 
     The spring drive.stiffness holds the indenter in the sliding direction, with drive.damping and
-    drive.mass; without a stiffness the drive is rigid.
+    drive.mass; without a stiffness the drive is rigid. Stable means against small disturbances: a large
+    one, such as a sudden start, may still end in stick-slip.
     """
     from kvtheory.api import stability as examine
     from kvtheory.scene import load_scene
@@ -62,7 +63,9 @@ def _verdict(found: "Stability") -> str:
     """Return one line about the stability with this drive."""
     if found.rigid_drive:
         return "stable, for the drive is rigid; the critical stiffness is that of a spring in its place"
-    return "stable" if found.stable else "unstable, between both critical stiffnesses of the spring"
+    if not found.stable:
+        return "unstable, between both critical stiffnesses of the spring"
+    return "stable against small disturbances; a large one, such as a sudden start, may end in stick-slip"
 
 
 def _number(value: float) -> str:

@@ -10,6 +10,7 @@ from kvtheory.results.certificate import Certificate, Value, record
 class Stability:
     """Stability of steady sliding: each quantity a value, or an array where the input was an array.
 
+    `stable` is meant against small disturbances: the real parts of all rates are negative.
     `rates` holds, along its last axis but one, the rates of small motions in 1/s as pairs (real,
     imaginary), fastest growth first, and `time_constants` -1/real of each in s: negative for a growing
     motion. Above `critical_stiffness` (N/m^2) of the spring in the drive steady sliding is stable, and
