@@ -13,7 +13,7 @@ from . import symbols as sym
 from .catalogue import catalogue
 from .code_printer import CodePrinter
 from .emit import FORMS, Form, number, parts, replace, sentence
-from .symbols import E, a, b, d, d_s, lam, q, rho, right
+from .symbols import E, a, b, d, d_s, lam, rho, right
 from .transient_edges import RIGHT_AT_ONCE
 from .transient_motion import FRICTION_FORCE, NORMAL_FORCE, START
 from .viscoelastic import MOMENTS
@@ -37,8 +37,6 @@ _state = (a, right, lam, d_s)
 TRANSIENT = (
     Form("pressure_behind", "F19-pressure", sym.P, (sym.exponent, sym.l, sym.y),
          "p/(K delta) at x = y a; with -l for l, at x = -y a"),
-    Form("contact_stiffness", "F12-steady", sym.per_depth, (a, q), "A, (4/3) df_z/dd at the steady state"),
-    Form("contact_damping", "F12-steady", sym.per_rate, (a, q), "B, (4/3) df_z/dd' at the steady state"),
     Form("peeling_edge", "F10-instant", RIGHT_AT_ONCE, (d, d_s, lam), "the right edge while it peels", _now),
     Form("peeling_normal_force", "F11-peel", sym.f_normal, (b, rho), "f_z from the width b and rho"),
     Form("peeling_friction_force", "F11-peel", sym.f_friction, (b, right, rho), "f_x, likewise"),

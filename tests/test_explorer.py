@@ -1,8 +1,10 @@
 """The explorer in a browser: its numbers are those of Python, and it can be used by hand, key and phone."""
 
 import json
+import math
 import re
 import tomllib
+from dataclasses import replace
 from itertools import combinations
 
 import numpy as np
@@ -13,16 +15,17 @@ import kvtheory as kv
 from kvtheory.charts.naive import two_states
 from kvtheory.cli import main
 from kvtheory.explorer import explorer_page, save_explorer
-from kvtheory.explorer.controls import SHAPES, controls
+from kvtheory.explorer.controls import controls
 from kvtheory.explorer.page import formulas
 from kvtheory.models.steady import closed_forms
 from kvtheory.results import STEADY_UNITS
+from kvtheory.results.errors import QuadratureError
 from kvtheory.scene.static_state import StaticState
 from tests.browser import Browser
 
 TABLE1 = kv.Scene()
-SCENES = 200
-"""Random scenes of each of five families: a thousand points."""
+SCENES = 125
+"""Random scenes of each of nine families: more than a thousand points."""
 
 
 @pytest.fixture(scope="module")
@@ -65,7 +68,7 @@ def families(random):
         return kv.Foundation(K, tau)
 
     exponents = iter(random.uniform(1.3, 8.0, SCENES).tolist())
-    orders = iter(random.uniform(0.05, 1.0, SCENES).tolist())
+    orders = iter(random.uniform(0.05, 1.0, 2 * SCENES).tolist())
     yield parabola, kelvin_voigt
     yield lambda R, **_: kv.PowerLaw(R, next(exponents)), kelvin_voigt
     yield lambda R, **_: kv.Wedge(R), kelvin_voigt
@@ -74,6 +77,14 @@ def families(random):
         lambda K, tau, **_: kv.GeneralizedMaxwell(K, arms=[[3 * K, tau], [K / 2, 50 * tau]]),
     )
     yield parabola, lambda K, tau, **_: kv.FractionalKelvinVoigt(K, tau, next(orders))
+    yield lambda R, **_: kv.Circle(R), kelvin_voigt
+
+    def ball(R, V, **_):
+        return kv.Sphere(R, radius_across=R * (1.0 + V % 7.0))
+
+    yield lambda R, **_: kv.Sphere(R), kelvin_voigt
+    yield ball, lambda K, tau, **_: kv.GeneralizedMaxwell(K, arms=[[3 * K, tau], [K / 2, 50 * tau]])
+    yield ball, lambda K, tau, **_: kv.FractionalKelvinVoigt(K, tau, next(orders))
 
 
 def random_scenes():
@@ -101,21 +112,23 @@ def random_scenes():
 
 def in_javascript(scene):
     """The scene as the scripts of the page take it."""
+    indenter, foundation, support = scene.indenter, scene.foundation, scene.support
     shape = {
-        "parabola": lambda i: [1, i.radius, 2], "power-law": lambda i: [1, i.length, i.exponent],
-        "wedge": lambda i: [i.inclination, 1, 1],
-    }[scene.indenter.shape](scene.indenter)  # fmt: skip
-    foundation, support = scene.foundation, scene.support
+        "power-law": lambda i: [1, i.length, i.exponent], "wedge": lambda i: [i.inclination, 1, 1],
+    }.get(indenter.shape, lambda i: [1, i.radius, 2])(indenter)  # fmt: skip
     found = {
-        "shape": shape, "K": foundation.stiffness, "tau": foundation.retardation_time,
+        "indenter": indenter.shape, "shape": shape, "stretch": getattr(indenter, "stretch", 1.0),
+        "K": foundation.stiffness, "tau": foundation.retardation_time,
         "V": scene.drive.velocity,
         "kelvin_voigt": foundation.kind == "kelvin-voigt", "support": support.kind,
-        "parabola": scene.indenter.shape == "parabola",
     }  # fmt: skip
     if foundation.arms:
         found["arms"] = [[arm.stiffness, arm.relaxation_time] for arm in foundation.arms]
     if foundation.kind == "fractional-kelvin-voigt":
         found["order"] = foundation.order
+    if not scene.drive.rigid:
+        names = {name: getattr(scene.drive, name) for name in ("stiffness", "damping")}
+        found["drive"] = {**names, "mass": scene.drive_mass}
     if scene.held:
         return found | {"depth": support.depth}
     return found | {"weight": support.weight, "spring": support.spring, "mass": support.mass}
@@ -125,19 +138,18 @@ def test_a_thousand_scenes_agree_with_python(browser):
     scenes = list(random_scenes())
     given = json.dumps([in_javascript(scene) for scene in scenes])
     found = browser.run(f"{given}.map(slide).map(s => {list(STEADY_UNITS)}.map(n => s[n]))")
-    assert len(found) == 5 * SCENES
+    assert len(found) == 9 * SCENES > 1000
     for scene, row in zip(scenes, found, strict=True):
-        state = kv.steady(scene)
+        try:
+            state = kv.steady(scene)
+        except QuadratureError:  # a circle that is too heavy
+            assert row[list(STEADY_UNITS).index("load")] is None, scene
+            continue
         for name, value in zip(STEADY_UNITS, row, strict=True):
-            allowed = 1e-12 + state.certificate.relative_error[name]
-            if not np.isfinite(allowed) or (
-                name == "trailing_edge" and abs(state.trailing_edge) < 1e-290
-            ):
-                continue
-            assert value == pytest.approx(getattr(state, name), rel=allowed, abs=1e-300), (
-                name,
-                scene,
-            )
+            known = np.isfinite(state.certificate.relative_error[name])
+            if known and not (name == "trailing_edge" and abs(state.trailing_edge) < 1e-290):
+                right = pytest.approx(getattr(state, name), rel=1e-12, abs=1e-300)
+                assert value == right, (name, scene)
 
 
 def test_every_closed_form_that_python_has_gives_the_same(browser):
@@ -161,9 +173,18 @@ def test_every_closed_form_that_python_has_gives_the_same(browser):
 
 
 @pytest.mark.parametrize("support", ["fixed", "dead-weight", "suspended"])
-@pytest.mark.parametrize("indenter", [kv.Parabola(0.01), kv.PowerLaw(0.01, 3.0), kv.Wedge(0.2)])
+@pytest.mark.parametrize(
+    "indenter",
+    [kv.Parabola(0.01), kv.PowerLaw(0.01, 3.0), kv.Wedge(0.2), kv.Sphere(0.01, radius_across=0.03)],
+)
 def test_limits_and_maximum_are_those_of_python(browser, support, indenter):
-    scene = kv.Scene(indenter, support=kv.Scene.table1(support).support, drive=kv.Drive(0.3))
+    supports = {
+        "fixed": kv.Fixed(3e-4),
+        "dead-weight": kv.DeadWeight(1.0),
+        "suspended": kv.Suspended(1.0, 3e4),
+    }
+    held = kv.Scene.table1(support).support if indenter.per_width else supports[support]
+    scene = kv.Scene(indenter, support=held, drive=kv.Drive(0.3))
     report = kv.asymptotes(scene)
     given = json.dumps(in_javascript(scene))
     low, high, critical = browser.run(
@@ -172,7 +193,7 @@ def test_limits_and_maximum_are_those_of_python(browser, support, indenter):
     assert [low, high] == pytest.approx([line.value for line in report.lines[:2]], rel=1e-12)
     assert critical == pytest.approx(report.critical_velocity, rel=1e-12)
     if np.isfinite(report.peak_velocity):
-        top = browser.run(f"maximum({given}, limits({given}).critical, 4)")
+        top = browser.run(f"curve_data({given}).top")
         assert top["friction"] == pytest.approx(report.peak_friction_coefficient, rel=1e-12)
         assert top["V"] == pytest.approx(report.peak_velocity, rel=1e-5)
 
@@ -198,8 +219,54 @@ def test_rates_are_those_of_the_motion_linearised_by_differences(browser, suppor
             ((d + h, 0.0), (d - h, 0.0)), ((d, h), (d, -h)))]
     ).T  # fmt: skip
     right = np.sort_complex(np.linalg.eigvals(jacobian) / rest.time)
-    pairs = browser.run(f"rates({given}, slide({given})).pairs")
+    pairs = browser.run(f"rates({given}, slide({given}))")
     assert np.sort_complex([complex(*pair) for pair in pairs]) == pytest.approx(right, rel=1e-5)
+
+
+def scenes_on_springs():
+    """Scenes of Table 1 and around it, on every support, with a spring in the drive and without."""
+    random = np.random.default_rng(22)
+    for k in range(200):
+        support = kv.Scene.table1(("fixed", "dead-weight", "suspended")[k % 3]).support
+        if k % 3 and k % 2:
+            support = replace(support, mass=float(10 ** random.uniform(1.0, 5.0)))
+        spring = {
+            "stiffness": float(10 ** random.uniform(4.0, 9.0)),
+            "damping": float(random.choice([0.0, 10 ** random.uniform(1.0, 5.0)])),
+            "mass": float(10 ** random.uniform(0.0, 5.0)),
+        }
+        velocity = float(10 ** random.uniform(-3.0, 1.5))
+        yield kv.Scene(support=support, drive=kv.Drive(velocity, **({} if k % 10 == 9 else spring)))
+
+
+def test_stability_on_a_spring_is_that_of_python(browser):
+    scenes = list(scenes_on_springs())
+    given = json.dumps([in_javascript(scene) for scene in scenes])
+    found = browser.run(
+        f"{given}.map(s => [s, slide(s)]).map(([s, t]) => [onsets(stability_numbers(s, t)), s, rates(s, t)])"
+        ".map(([o, s, r]) => [!s.drive || is_stable(s.drive.stiffness, o), o.upper.stiffness,"
+        " o.lower.stiffness, o.upper.frequency, r])"
+    )
+    names = ("critical_stiffness", "lower_critical_stiffness", "frequency")
+    kinds = set()
+    for scene, (stable, *numbers, pairs) in zip(scenes, found, strict=True):
+        right = kv.stability(scene)
+        errors = right.certificate.relative_error
+        assert stable == right.stable, scene
+        for name, number in zip(names, numbers, strict=True):
+            expected = getattr(right, name)
+            allowed = 1e-12 + float(np.nan_to_num(errors[name]))
+            known = math.nan if number is None else number
+            assert known == pytest.approx(expected, rel=allowed, nan_ok=True), (name, scene)
+        rates = np.array([complex(*pair) for pair in pairs])
+        expected = np.array([complex(*pair) for pair in right.rates])
+        apart = np.abs(rates - expected[:, np.newaxis]).min(axis=1, initial=np.inf)
+        assert rates.shape == expected.shape
+        assert np.all(apart <= (1e-12 + 2.0 * errors["rates"]) * np.abs(expected)), scene
+        kinds.add(
+            (scene.support.kind, stable, math.isnan(right.critical_stiffness), bool(numbers[1]))
+        )
+    assert {(True, True), (True, False), (False, False)} <= {kind[1:3] for kind in kinds}
 
 
 @pytest.mark.parametrize("velocity", [0.001, 0.1, 0.3])
@@ -383,13 +450,15 @@ def test_every_quantity_of_a_scene_has_a_slider():
     for section, models in (
         ("foundation", kv.scene.foundations.FOUNDATIONS),
         ("support", kv.scene.model.SUPPORTS),
+        ("indenter", kv.scene.indenters.SHAPES),
+        ("drive", {"drive": kv.Drive}),
     ):
         for name, model in models.items():
             sliders = sections[section]["choices"][name]
             assert set(sliders) == set(kv.scene.quantities.quantities(model))
             assert all(slider["unit"] or slider["exponent"] == 0 for slider in sliders.values())
             asked = sections[section]["alternatives"][name]
-            assert set().union(*asked) == set(sliders)
+            assert set().union(*(each["names"] for each in asked)) == set(sliders)
 
 
 def test_every_formula_is_drawn_with_symbols_and_with_places_for_numbers():
@@ -451,13 +520,18 @@ def test_text_stands_out_from_the_card(dark):
         assert (high + 0.05) / (low + 0.05) > 4.5
 
 
-def test_a_scene_that_is_not_in_closed_form_is_refused_and_nothing_written(tmp_path):
-    path = tmp_path / "explorer.html"
-    done = CliRunner().invoke(main, ["explore", "--set", "indenter.shape=circle", "-o", str(path)])
+def test_a_scene_that_the_page_does_not_know_is_refused_and_nothing_written(tmp_path):
+    path, scene = tmp_path / "explorer.html", tmp_path / "scene.toml"
+    rubber = kv.Scene(kv.Circle("10 mm"), kv.GeneralizedMaxwell(1e10, arms=[[3e10, 0.01]]))
+    scene.write_text(kv.scene.files.to_toml(rubber), encoding="utf-8")
+    done = CliRunner().invoke(main, ["explore", str(scene), "-o", str(path)])
     assert done.exit_code == 2
-    assert "the explorer holds for parabola, power-law, wedge only" in done.output
+    assert 'circle" holds for foundation.kind = "kelvin-voigt" only' in done.output
     assert not path.exists()
-    assert set(SHAPES) == {"parabola", "power-law", "wedge"}
+    with pytest.raises(
+        ValueError, match="the explorer holds for parabola, circle, power-law, wedge, sphere"
+    ):
+        explorer_page(kv.Scene(kv.Revolved(kv.Wedge(0.1)), support=kv.Fixed(1e-4)))
 
 
 def test_the_command_writes_the_page(tmp_path):

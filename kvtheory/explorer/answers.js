@@ -1,25 +1,35 @@
 // Numbers in words: the results, the formula that holds, energy, stability.
 
 const NUMBERS = [
-  ["friction_coefficient", "friction coefficient", "", 1], ["friction_force", "friction force F", "N/mm", 1e-3],
-  ["load", "load W", "N/mm", 1e-3], ["depth", "depth \u03b4", "mm", 1e3],
+  ["friction_coefficient", "friction coefficient", "", 1], ["friction_force", "friction force F", "force"],
+  ["load", "load W", "force"], ["depth", "depth \u03b4", "mm", 1e3],
   ["peak_pressure", "peak pressure", "MPa", 1e-6], ["leading_edge", "leading edge", "mm", 1e3],
   ["trailing_edge", "trailing edge", "mm", 1e3], ["retardation_length", "retardation length", "mm", 1e3],
 ];
 /** Relative error up to which a limit is called the formula that holds. */
 const WITHIN = 0.05;
 
-function show_numbers(state) {
-  document.getElementById("numbers").innerHTML = NUMBERS.map(([name, told, unit, factor]) =>
-    `<div><small>${told}</small><b data-name="${name}">${short(state[name] * factor, 5)}${unit ? ` <small>${unit}</small>` : ""}</b></div>`).join("");
+function show_numbers(scene, state) {
+  const force = force_units(scene);
+  document.getElementById("numbers").innerHTML = NUMBERS.map(([name, told, unit, factor]) => {
+    const [shown, by] = unit === "force" ? force : [unit, factor];
+    return `<div><small>${told}</small><b data-name="${name}">${short(state[name] * by, 5)}${shown ? ` <small>${shown}</small>` : ""}</b></div>`;
+  }).join("");
   document.getElementById("readout").textContent =
-    `\u03bc = ${short(state.friction_coefficient)}, \u03b4 = ${short(state.depth * 1e3)} mm, F = ${short(state.friction_force * 1e-3)} N/mm`;
+    `\u03bc = ${short(state.friction_coefficient)}, \u03b4 = ${short(state.depth * 1e3)} mm, F = ${short(state.friction_force * force[1])} ${force[0]}`;
+}
+
+/** Whose formulas hold: those of the shape on Kelvin-Voigt elements, else those of the foundation. */
+function family_of({ indenter, kelvin_voigt }) {
+  const shape = { "power-law": "power", wedge: "power", sphere: "ball" }[indenter] || indenter;
+  if (kelvin_voigt) return shape;
+  return shape === "ball" ? "viscoelastic-ball" : "viscoelastic";
 }
 
 /** The formula that is within the tolerance here, its value and its error. */
 function formula_here(scene, state) {
   const known = limits(scene), speed = Math.abs(scene.V), exact = Math.abs(state.friction_coefficient);
-  const family = scene.kelvin_voigt ? (scene.parabola ? "parabola" : "power") : "viscoelastic";
+  const family = family_of(scene);
   for (const kind of ["low", "high"]) {
     const value = known[kind] && speed > 0 ? known[kind](speed) : NaN, error = value / exact - 1;
     if (Math.abs(error) <= WITHIN) {
@@ -36,17 +46,23 @@ function quantities_of(scene, state) {
   const C = scene.arms ? damping(scene) : K * scene.tau, fixed = scene.depth !== undefined;
   const lift = fixed ? 0 : rest.load + scene.spring * rest.depth;
   const high = fixed ? rest.depth : lift / (C * speed);
-  const m = (x) => `${short(x * 1e3)} mm`;
+  const m = (x) => `${short(x * 1e3)} mm`, [unit, factor] = force_units(scene), whole = scene.indenter === "sphere";
+  const force = (x) => `${short(x * factor)} ${unit}`;
+  const tilt = whole ? limits(scene).half_length?.(speed) : L * root_of(n * high / (scene.shape[0] * L), n);
   const found = {
     C: `${short(C * 1e-9)} N\u00b7s/mm\u00b3`, K: `${short(K * 1e-9)} N/mm\u00b3`, V: `${short(speed * 1e3)} mm/s`,
-    R: m(L), W: `${short(state.load * 1e-3)} N/mm`, W_0: `${short(rest.load * 1e-3)} N/mm`,
-    k_s: `${short((scene.spring || 0) * 1e-6)} N/mm\u00b2`, a: m(state.half_length), a_0: m(rest.half_length),
+    R: m(L), W: force(state.load), F: force(Math.abs(state.friction_force)), W_0: force(rest.load),
+    k_s: whole ? `${short((scene.spring || 0) * 1e-3)} N/mm` : `${short((scene.spring || 0) * 1e-6)} N/mm\u00b2`, a: m(state.half_length), a_0: m(rest.half_length),
     delta: m(state.depth), delta_0: m(rest.depth), l_r: m(state.retardation_length), delta_h: m(high),
-    a_h: m(scene.shape[1] * root_of(n * high / (scene.shape[0] * scene.shape[1]), n)),
-    n: short(n), q: short(state.q ?? NaN), Q: short(state.Q ?? NaN), l: short(state.l ?? NaN),
+    a_h: m(tilt), n: short(n), q: short(state.q ?? NaN), Q: short(state.Q ?? NaN), l: short(state.l ?? NaN),
+    T: short(state.tail ?? NaN),
   };
+  if (state.parts) {
+    const { left, steepness, compressed } = state.parts;
+    Object.assign(found, { u: m(left), S: m(steepness), U: `${short(compressed * 1e6)} mm\u00b2` });
+  }
   if (scene.kelvin_voigt) return found;
-  const c = state.half_length + Math.abs(state.trailing_edge), M = (scene.arms ? prony(scene) : springpot(scene)).moments(c);
+  const c = state.half_length + Math.abs(state.trailing_edge), M = law_of(scene).moments(c);
   const in_GPa = (x) => `${short(x * 1e-9)}`;
   const [a_g, rate] = limits(scene).glassy || [NaN, NaN];
   return {
@@ -65,7 +81,7 @@ function show_formula(scene, state) {
   const filled = row.numbers.replace(/#(\w+)#/g, (_, name) => numbers[name]);
   const relation = found.error === 0 ? "=" : "\u2248", side = Math.sign(state.friction_coefficient) < 0 ? "\u2212" : "";
   const told = found.error === 0
-    ? "No limit is within 5 % here: the exact closed form."
+    ? `${limits(scene).low ? "No limit is within 5 % here: the" : "The"} exact form.`
     : `${found.key.includes("low") ? "Slow" : "Fast"} sliding: the limit is ${found.error < 0 ? "below" : "above"}`
       + ` the exact value by ${short(100 * Math.abs(found.error), 2)} %.`;
   const where = row.where.replace(/([a-z\u03b4W])_(\w+)/gu, "$1<sub>$2</sub>"), symbol = `\u03bc ${relation} ${side}`;
@@ -81,23 +97,40 @@ function show_energy(state) {
   document.getElementById("energy").innerHTML =
     `<div class="bar" role="img" aria-label="${share(inside)} inside the contact">`
     + `${part("inside", inside)}${part("behind", 1 - inside)}</div>`
-    + `<div class="legend"><span>\u25a0 ${share(inside)} dissipated in the contact</span>`
-    + `<span>\u25a8 ${share(Math.max(0, 1 - inside))} in the surface that relaxes behind it</span></div>`;
+    + `<div class="legend"><span><b>\u25a0</b> ${share(inside)} dissipated in the contact</span>`
+    + `<span><b>\u25a8</b> ${share(Math.max(0, 1 - inside))} in the surface that relaxes behind it</span></div>`;
+}
+
+const STIFFNESS = (x) => `${short(x * 1e-6)} MN/m\u00b2`;
+const table = (rows) => `<table>${rows.map(([name, value]) => `<tr><td>${name}</td><td>${value}</td></tr>`).join("")}</table>`;
+
+/** What small motions do, each rate or pair of rates once. */
+function motions(pairs) {
+  return pairs.filter(([, imaginary]) => imaginary >= 0).map(([real, imaginary]) => {
+    const time = `${real < 0 ? "dies out" : "grows"} in ${short(1e3 / Math.abs(real))} ms`;
+    return imaginary > 0 ? [`oscillation at ${short(imaginary / (2 * Math.PI))} Hz`, time] : ["monotonic motion", time];
+  });
 }
 
 function show_stability(scene, state) {
-  const place = document.getElementById("stability");
-  if (scene.depth !== undefined) {
+  const place = document.getElementById("stability"), { drive } = scene;
+  if (scene.depth !== undefined && !drive) {
     place.innerHTML = "<p>An indenter that is held cannot move: nothing can become unstable.</p>";
-  } else if (!scene.kelvin_voigt || !scene.parabola) {
-    place.innerHTML = "<p>Known in closed form for a parabola on Kelvin\u2013Voigt elements.</p>";
-  } else {
-    const { pairs } = rates(scene, state), [one, two] = pairs;
-    const time = (rate) => `${short(-1e3 / rate)} ms`;
-    const rows = one[1] === 0
-      ? [["small motions", "die out monotonically"], ["fast time constant", time(one[0])], ["slow time constant", time(two[0])]]
-      : [["small motions", "oscillate and die out"], ["frequency", `${short(one[1] / (2 * Math.PI))} Hz`], ["decay time", time(one[0])]];
-    place.innerHTML = `<p class="note">Stable under a rigid drive: both rates are negative (derivation F12).</p><table>${
-      rows.map(([name, value]) => `<tr><td>${name}</td><td>${value}</td></tr>`).join("")}</table>`;
+    return;
   }
+  if (!has_stability(scene)) {
+    place.innerHTML = "<p>Known in closed form for a parabola on Kelvin\u2013Voigt elements.</p>";
+    return;
+  }
+  const onset = onsets(stability_numbers(scene, state)), { lower, upper } = onset, pairs = rates(scene, state);
+  const stable = !drive || is_stable(drive.stiffness, onset), some = Number.isFinite(upper.stiffness);
+  const told = drive ? `${stable ? "Stable on this spring: small motions die out" : "Unstable on this spring: small motions grow"} (derivation F22).`
+    : "Stable under a rigid drive (derivation F12).";
+  const rows = drive ? [["spring of the drive", STIFFNESS(drive.stiffness)]] : [];
+  if (some) {
+    rows.push([drive ? "stable above" : "a spring in the drive would have to exceed", STIFFNESS(upper.stiffness)]);
+    if (lower.stiffness > 0) rows.push(["and below", STIFFNESS(lower.stiffness)]);
+    rows.push(["frequency at the onset", `${short(upper.frequency)} Hz`]);
+  } else rows.push([drive ? "critical stiffness" : "with a spring in the drive", drive ? "none: stable on every spring" : "stable on every spring"]);
+  place.innerHTML = `<p class="note" data-stable="${stable}">${told}</p>${table([...rows, ...motions(pairs)])}`;
 }

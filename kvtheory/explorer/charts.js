@@ -74,23 +74,22 @@ const dot = (kind, text) => sample(14, 14, mark(7, 7, kind), text);
 const mark = (x, y, kind) => (kind === "top"
   ? `<path class="top" d="M${x} ${y - 7}l6 7l-6 7l-6 -7z"/>` : `<circle class="present" cx="${x}" cy="${y}" r="6"/>`);
 
-const POINTS = 120, SPAN = 3;
+const POINTS = 80, SPAN = 3;
 
 /** What the curve of friction over velocity is made of: found anew only when more than V has changed. */
 function curve_data(scene) {
   const known = limits(scene), decades = SPAN + (scene.arms ? 1 : 0);
-  const centre = known.critical || at_rest(scene).half_length / scene.tau;
+  const centre = known.critical || (at_rest(scene).half_length || scene.shape[1]) / mean_time(scene);
   const rising = scene.kelvin_voigt && (scene.depth !== undefined || scene.shape[2] === 1);
   const speeds = Array.from({ length: POINTS + 1 }, (_, k) => centre * 10 ** (decades * (2 * k / POINTS - 1)));
-  return {
-    known, centre, decades, top: rising ? null : maximum(scene, centre, decades + 2),
-    exact: speeds.map((V) => [V, slide({ ...scene, V }).friction_coefficient]),
-  };
+  const drawn = { ...scene, rough: true }, states = speeds.map((V) => slide({ ...drawn, V }));
+  const exact = states.map((state, k) => [speeds[k], state.friction_coefficient]);
+  return { known, centre, decades, top: rising ? null : maximum(drawn, exact), exact, ...unstable_speeds(scene, speeds, states) };
 }
 
 function draw_curve(scene, state, data) {
   const speed = Math.abs(scene.V), friction = Math.abs(state.friction_coefficient);
-  const { known, centre, decades, top, exact } = data;
+  const { known, centre, decades, top, exact, unstable, from } = data;
   const ends = [centre * 10 ** -decades, centre * 10 ** decades];
   const low = speed > 0 ? Math.min(ends[0], speed / 2) : ends[0], high = Math.max(ends[1], speed * 2);
   const values = exact.map(([, mu]) => mu).filter((mu) => mu > 0), most = Math.max(...values);
@@ -102,7 +101,7 @@ function draw_curve(scene, state, data) {
     for (const kind of ["low", "high"]) {
       if (known[kind]) drawn += line([low, high].map((V) => at([V, known[kind](V)])), kind);
     }
-    drawn += line(exact.map(at), "exact");
+    drawn += line(exact.map((point, k) => (unstable[k] ? at(point) : [NaN, NaN])), "unstable") + line(exact.map(at), "exact");
     let marks = "";
     if (known.critical) {
       const V = x.at(known.critical * 1e3);
@@ -113,104 +112,10 @@ function draw_curve(scene, state, data) {
     return frame(x, y, box, "velocity [mm/s]", "friction coefficient") + `<g ${clip}>${drawn}</g>${marks}`;
   }, "Friction coefficient over velocity, with its asymptotes");
   const parts = [swatch("exact", "exact")];
+  if (unstable.some(Boolean)) parts.push(swatch("unstable", `unstable on this spring${from ? `, from ${short(from * 1e3)} mm/s` : ""}`));
   if (known.low) parts.push(swatch("low", "limit at low velocity"), swatch("high", "limit at high velocity"));
   if (known.critical) parts.push(swatch("critical", `V* = ${short(known.critical * 1e3)} mm/s`));
   if (top) parts.push(dot("top", `maximum ${short(top.friction)} at ${short(top.V * 1e3)} mm/s`));
   parts.push(dot("present", "this scene"));
   document.getElementById("curve-legend").innerHTML = parts.join("");
-}
-
-const height_of = ([slope, L, n], x) => slope * L / n * (Math.abs(x) / L) ** n;
-
-/** u behind the trailing edge, at distances behind it: relaxation without pressure. */
-function relaxed(scene, state, u, distances) {
-  if (scene.kelvin_voigt) return distances.map((x) => u * Math.exp(-x / state.retardation_length));
-  if (!state.borne) return null;
-  const arms = state.borne.map(([stiffness, length, stress]) => ({ stiffness, length, stress }));
-  let before = 0, now = u;
-  return distances.map((x) => {  // implicit Euler's steps: a picture
-    const h = x - before;
-    let held = 0, stiff = scene.K;
-    for (const arm of arms) {
-      const rest = 1 / (1 + h / arm.length);
-      held += (arm.stress - arm.stiffness * now) * rest;
-      stiff += arm.stiffness * rest;
-    }
-    const next = -held / stiff;
-    for (const arm of arms) arm.stress = (arm.stress + arm.stiffness * (next - now)) / (1 + h / arm.length);
-    [before, now] = [x, next];
-    return now;
-  });
-}
-
-/** Pressure at x of the contact, in Pa. */
-function pressure_at(scene, state, x) {
-  const a = state.half_length;
-  if (!scene.kelvin_voigt) return state.pressure(x + a);
-  const n = scene.shape[2], y = Math.abs(x) / a;
-  return Math.max(0, scene.K * state.depth * pressure_behind(n, x < 0 ? -state.l : state.l, y));
-}
-
-/** Surface, contact and indenter as points in m, for V > 0; behind a springpot nothing. */
-function contact_shapes(scene, state) {
-  const a = state.half_length, edge = Math.abs(state.trailing_edge), left = -1.6 * a, right = 2.6 * a;
-  const under = (x) => height_of(scene.shape, x) - state.depth;
-  const inside = Array.from({ length: 121 }, (_, k) => -a + (a + edge) * k / 120);
-  const away = Array.from({ length: 80 }, (_, k) => (right - edge) * ((k + 1) / 80) ** 2);
-  const free = state.retardation_length > 0
-    ? relaxed(scene, state, Math.max(0, -under(edge)), away) : away.map(() => 0);
-  const behind = free ? away.map((x, k) => [edge + x, -free[k]]) : [];
-  const touched = inside.map((x) => [x, under(x)]);
-  const profile = Array.from({ length: 161 }, (_, k) => left + (right - left) * k / 160);
-  return {
-    ends: [left, right], edges: [-a, edge], touched, known: free !== null,
-    surface: [[left, 0], [-a, 0], ...touched, ...behind], profile: profile.map((x) => [x, under(x)]),
-  };
-}
-
-/** Ground and indenter between a top and a bottom, with heights as `to` maps them to pixels. */
-function draw_bodies(shapes, at_x, to, top, bottom) {
-  const { surface, profile, ends } = shapes, at = ([x, z]) => [at_x(x), Math.max(top, to(z))];
-  const ground = [...surface.map(at), [at_x(surface.at(-1)[0]), bottom], [at_x(ends[0]), bottom]];
-  const indenter = [...profile.map(at), [at_x(ends[1]), top], [at_x(ends[0]), top]];
-  return `<path class="ground" d="${path(ground)}"/><path class="indenter" d="${path(indenter)}"/>`;
-}
-
-/** The pressure over the contact, and both edges down to `bottom`. */
-function draw_pressure(scene, state, shapes, box, x, at_x, bottom) {
-  const p = scale(0, state.peak_pressure * 1.12e-6, box[3], box[1]), [front, back] = shapes.edges;
-  const pressed = shapes.touched.map(([place]) => [at_x(place), p.at(pressure_at(scene, state, place) * 1e-6)]);
-  const area = path([[at_x(front), box[3]], ...pressed, [at_x(back), box[3]]]);
-  let drawn = frame(x, p, box, "", "pressure [MPa]") + `<path class="pressure" d="${area}"/>`;
-  for (const [place, name] of [[front, "LE"], [back, "TE"]]) {
-    drawn += line([[at_x(place), box[1]], [at_x(place), bottom]], "edge");
-    drawn += words(at_x(place) + 4, box[1] + 10, `x<tspan dy="3" font-size="9">${name}</tspan>`);
-  }
-  return drawn;
-}
-
-function draw_contact(scene, state) {
-  const side = scene.V < 0 ? -1 : 1, shapes = contact_shapes(scene, state), [left, right] = shapes.ends;
-  show("contact", (box, clip) => {
-    const [start, top, end, bottom] = box, tall = bottom - top, split = top + 0.42 * tall;
-    const ends = side > 0 ? [left, right] : [-right, -left];
-    const x = scale(ends[0] * 1e3, ends[1] * 1e3, start, end), at_x = (place) => x.at(side * place * 1e3);
-    const per_length = (end - start) / (right - left), middle = [split + 12, top + 0.86 * tall];
-    const z = scale(-1.25 * state.depth, 1.1 * state.depth, middle[1], middle[0]);
-    const stretch = (middle[1] - middle[0]) / (2.35 * state.depth) / per_length;
-    const base = bottom - 0.045 * tall, strip = top + 0.88 * tall;
-    const at = ([place, height]) => [at_x(place), z.at(height)];
-    let drawn = draw_pressure(scene, state, shapes, [start, top, end, split], x, at_x, middle[1]);
-    drawn += `<g ${clip}>${draw_bodies(shapes, at_x, z.at, ...middle)}`;
-    drawn += line(shapes.surface.map(at), "surface") + line(shapes.touched.map(at), "touch");
-    drawn += `${draw_bodies(shapes, at_x, (height) => base - height * per_length, strip, bottom)}</g>`;
-    drawn += words(end - 4, middle[1] - 6, `heights \u00d7 ${short(stretch, 2)}`, 'text-anchor="end"');
-    drawn += words(end - 4, bottom - 5, "to scale", 'text-anchor="end"');
-    for (const tick of x.ticks) drawn += words(x.at(tick), bottom + 16, tick_text(tick), 'text-anchor="middle"');
-    drawn += words((start + end) / 2, bottom + 34, "x [mm]", 'class="title" text-anchor="middle"');
-    return drawn + upright((middle[0] + middle[1]) / 2, "surface");
-  }, "Pressure and free surface under the indenter");
-  const moved = `The foundation moves to the ${side > 0 ? "right" : "left"} under the indenter`;
-  document.getElementById("contact-note").textContent = `${moved}; it is touched along the thick line.${
-    shapes.known ? "" : " Behind the contact the surface of a springpot is not drawn: it needs all of its past."}`;
 }

@@ -448,16 +448,6 @@ function pressure_behind(n, l, y) {
   return -l * n * y ** (n - 1) - y ** n + 1;
 }
 
-/** A, (4/3) df_z/dd at the steady state; theorem F12-steady. */
-function contact_stiffness(a, q) {
-  return a * (q + 1) * (q + 1) / (2 * q);
-}
-
-/** B, (4/3) df_z/dd' at the steady state; theorem F12-steady. */
-function contact_damping(a, q) {
-  return a * (q + 1);
-}
-
 /** the right edge while it peels; theorem F10-instant. */
 function peeling_edge(d, d_s, lam) {
   return (d + d_s) / (lam + Math.sqrt(d + d_s + lam * lam));

@@ -1,41 +1,72 @@
 """What the explorer has sliders for: the quantities of a scene, from the dataclasses that declare them."""
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from decimal import Decimal
 from typing import Any
 
 from kvtheory.results import SHOWN_UNITS
 from kvtheory.scene.drives import Drive
 from kvtheory.scene.foundations import FOUNDATIONS, Arm
-from kvtheory.scene.indenters import Parabola, PowerLaw, Wedge
+from kvtheory.scene.indenters import SHAPES, Circle
 from kvtheory.scene.model import SUPPORTS, Run, Scene
 from kvtheory.scene.quantities import Quantity, given, quantities, required
-from kvtheory.scene.requirements import lacks_closed_form
+from kvtheory.scene.requirements import lacks_closed_form, lacks_kelvin_voigt, lacks_shape
 
-SHAPES = {cls.shape: cls for cls in (Parabola, PowerLaw, Wedge)}
-"""The shapes that the explorer's scripts compute with."""
 SECTIONS: dict[str, tuple[str, dict[str, Any]]] = {
     "indenter": ("shape", SHAPES),
     "foundation": ("kind", FOUNDATIONS),
     "support": ("kind", SUPPORTS),
+    "drive": ("", {"drive": Drive}),
+    "run": ("", {"run": Run}),
 }
-"""The key that chooses, and what it chooses from."""
-PLAIN = {"drive": (Drive, "velocity"), "run": (Run, "duration")}
-"""Sections of which one quantity counts here."""
+"""The key that chooses, and what it chooses from; nothing is chosen where there is one."""
 START = {
-    "radius": 0.01, "length": 0.01, "exponent": 4.0, "inclination": 0.1,
+    "radius": 0.01, "radius_across": 0.02, "length": 0.01, "exponent": 4.0, "inclination": 0.1,
     "stiffness": 1e10, "retardation_time": 0.1, "order": 0.5,
     "modulus": 5e6, "thickness": 2e-3, "poisson_ratio": 0.45,
     "depth": 3e-4, "mass": 1000.0, "gravity": 9.80665, "load": 9806.65,
-    "velocity": 0.1, "duration": 0.2, "relaxation_time": 0.01,
+    "velocity": 0.1, "damping": 1000.0, "duration": 0.2, "relaxation_time": 0.01,
 }  # fmt: skip
-"""Where a slider stands that the scene says nothing about, in SI: Table 1, and what is usual."""
-START_OF = {("suspended", "stiffness"): 3e7, ("arm", "stiffness"): 3e10}
+"""Where a slider stands that the scene says nothing about, in SI: Table 1, and what is usual.
+
+What a line contact has per unit width, a ball has with the same digits in its own unit: 1 kg for 1 kg/mm."""
+START_OF = {
+    ("suspended", "stiffness"): 3e7,
+    ("drive", "stiffness"): 1e6,
+    ("arm", "stiffness"): 3e10,
+}
 LINEAR = {"exponent": (1.0, 8.0), "order": (0.05, 1.0), "poisson_ratio": (0.0, 0.49)}
 """Ranges of the sliders that are not logarithmic."""
 DECADES = 3
 """How far the others reach to either side of where they stand at first."""
+ADDED: dict[tuple[str, str], list[tuple[str, list[str]]]] = {
+    ("indenter", "sphere"): [
+        ("one radius: a ball", []),
+        ("another radius across", ["radius_across"]),
+    ],
+    ("drive", "drive"): [
+        ("rigid", []),
+        ("with a spring", ["stiffness", "damping"]),
+        ("with a spring and its own mass", ["stiffness", "damping", "mass"]),
+    ],
+}
+"""By section and choice, what may be added to the quantities that are always there, and what it is called."""
+UNITS = SHOWN_UNITS | {"N*s/m": ("N*s/m", 1.0), "N*s/m^2": ("kN*s/m^2", 1e-3)}
+
+
+def lacks_scripts(scene: Scene) -> str:
+    """Say why the scripts of the page cannot compute a scene; nothing if they can.
+
+    >>> lacks_scripts(Scene(indenter=Circle("10 mm")))
+    ''
+    """
+    if lacking := lacks_shape(scene, tuple(SHAPES.values()), ", ".join(SHAPES)):
+        return lacking
+    if isinstance(scene.indenter, Circle):
+        lacking = lacks_kelvin_voigt(scene)
+        return lacking and f'of indenter.shape = "circle" {lacking}'
+    return lacks_closed_form(scene)
 
 
 def controls(scene: Scene) -> dict[str, Any]:
@@ -45,46 +76,52 @@ def controls(scene: Scene) -> dict[str, Any]:
     >>> found["unit"], found["start"], found["exponent"]
     ('mm', '10', -3)
     """
-    sections = {
-        section: {
-            "chooser": chooser,
-            "choices": {
-                name: _sliders(section, cls, getattr(scene, section))
-                for name, cls in models.items()
-            },
-            "alternatives": {name: _alternatives(cls) for name, cls in models.items()},
-            "classes": {name: cls.__name__ for name, cls in models.items()},
-        }
-        for section, (chooser, models) in SECTIONS.items()
-    }
-    velocity = scene.drive.final_velocity
-    plain = {
-        "drive": {"velocity": _slider("drive", Drive, "velocity", velocity or START["velocity"])},
-        "run": {"duration": _slider("run", Run, "duration", scene.run.duration)},
-    }
     return {
-        "sections": sections,
-        "plain": plain,
-        "arm": {name: _slider("arm", Arm, name, None) for name in quantities(Arm)},
+        "sections": {
+            section: {
+                "chooser": chooser,
+                "choices": {name: _sliders(scene, section, cls) for name, cls in models.items()},
+                "alternatives": {
+                    name: _alternatives(section, name, cls) for name, cls in models.items()
+                },
+                "classes": {name: cls.__name__ for name, cls in models.items()},
+            }
+            for section, (chooser, models) in SECTIONS.items()
+        },
+        "arm": {
+            name: _slider("arm", spec, name, None, True) for name, spec in quantities(Arm).items()
+        },
         "allowed": _allowed(),
+        "whole": [name for name, cls in SHAPES.items() if not cls.per_width],
         "scene": _scene(scene),
     }
 
 
+def _values(scene: Scene, section: str) -> dict[str, float]:
+    """Return what a part of the scene gives, in SI; of a drive the velocity that it ends with."""
+    part = getattr(scene, section)
+    found = {name: getattr(part, name) for name in given(part)}
+    if section != "drive":
+        return found
+    damper = {} if part.rigid else {"damping": part.damping}
+    return {**found, "velocity": part.final_velocity, **damper}
+
+
 def _scene(scene: Scene) -> dict[str, Any]:
     """Return what the scene chooses and gives, as texts in the units that are shown."""
-    values = {"drive.velocity": _text(scene.drive.final_velocity, "m/s")}
-    values["run.duration"] = _text(scene.run.duration, "s")
-    for section in SECTIONS:
-        part = getattr(scene, section)
-        for name, spec in given(part).items():
-            values[f"{section}.{name}"] = _text(getattr(part, name), spec.unit)
+    per_width = scene.indenter.per_width
     return {
         "choices": {
-            section: getattr(type(getattr(scene, section)), chooser)
+            section: getattr(getattr(scene, section), chooser) if chooser else section
             for section, (chooser, _) in SECTIONS.items()
         },
-        "values": values,
+        "values": {
+            f"{section}.{name}": _text(
+                value, quantities(getattr(scene, section))[name].fitting(per_width).unit
+            )
+            for section in SECTIONS
+            for name, value in _values(scene, section).items()
+        },
         "arms": [
             [_text(arm.stiffness, "N/m^3"), _text(arm.relaxation_time, "s")]
             for arm in scene.foundation.arms or _arms()
@@ -96,36 +133,54 @@ def _arms() -> tuple[Arm, Arm]:
     return Arm(3e10, 0.01), Arm(5e9, 1.0)
 
 
-def _sliders(section: str, cls: Any, part: Any) -> dict[str, Any]:
-    own = given(part) if isinstance(part, cls) else {}
+def _sliders(scene: Scene, section: str, cls: Any) -> dict[str, Any]:
+    own = _values(scene, section) if isinstance(getattr(scene, section), cls) else {}
+    of = getattr(cls, "kind", section)
     return {
-        name: _slider(getattr(cls, "kind", section), cls, name, getattr(part, name) if name in own else None)
-        for name in quantities(cls)
-    }  # fmt: skip
+        name: _slider(of, spec, name, own.get(name), scene.indenter.per_width)
+        for name, spec in quantities(cls).items()
+    }
 
 
-def _slider(of: str, cls: Any, name: str, value: float | None) -> dict[str, Any]:
-    spec: Quantity = quantities(cls)[name]
-    unit, _ = SHOWN_UNITS[spec.unit]
-    start = START_OF.get((of, name), START[name]) if value is None else value
+def _slider(
+    of: str, spec: Quantity, name: str, value: float | None, per_width: bool
+) -> dict[str, Any]:
+    unit, whole = spec.unit, spec.fitting(False).unit
+    start = _text(START_OF.get((of, name), START[name]), unit)
+    if value:
+        start = _text(value, spec.fitting(per_width).unit)
     return {
-        "doc": spec.doc, "unit": unit, "exponent": _exponent(spec.unit), "start": _text(start, spec.unit),
+        "doc": spec.doc, "unit": UNITS[unit][0], "exponent": _exponent(unit), "start": start,
+        "whole": {"unit": UNITS[whole][0], "exponent": _exponent(whole)} if spec.per_width else None,
         "linear": LINEAR.get(name), "decades": DECADES, "range": spec.range,
         "minimum": _finite(spec.minimum), "exclusive": spec.exclusive,
         "below": _finite(spec.below), "maximum": _finite(spec.maximum),
     }  # fmt: skip
 
 
-def _alternatives(cls: Any) -> list[list[str]]:
-    """Return the sets of quantities of which one is to be given: those needed, or others instead.
+def _alternatives(section: str, name: str, cls: Any) -> list[dict[str, Any]]:
+    """Return the sets of quantities of which one is to be given, and what each is called.
 
-    >>> _alternatives(FOUNDATIONS["kelvin-voigt"])
+    >>> [each["names"] for each in _alternatives("foundation", "kelvin-voigt", FOUNDATIONS["kelvin-voigt"])]
     [['stiffness', 'retardation_time'], ['modulus', 'thickness', 'poisson_ratio', 'retardation_time']]
+    >>> [each["told"] for each in _alternatives("drive", "drive", Drive)]
+    ['rigid', 'with a spring', 'with a spring and its own mass']
     """
-    return list(_sets(cls))
+    if (section, name) in ADDED:
+        added = ADDED[section, name]
+        always = [each for each in quantities(cls) if each not in added[-1][1]]
+        return [{"told": told, "names": [*always, *more]} for told, more in added]
+    sets = list(_sets(cls))
+    return [{"told": _told(names, sets), "names": names} for names in sets]
+
+
+def _told(names: Sequence[str], sets: Sequence[Sequence[str]]) -> str:
+    own = [name for name in names if not all(name in other for other in sets)]
+    return f"given by {', '.join(own)}".replace("_", " ")
 
 
 def _sets(cls: Any) -> Iterator[list[str]]:
+    """Yield what is to be given: the quantities that are needed, then others in their place."""
     specs = quantities(cls)
     optional = {name for spec in specs.values() for name in (spec.instead, *spec.excludes)}
     first = [name for name in specs if name in required(cls) or name not in optional]
@@ -139,7 +194,7 @@ def _sets(cls: Any) -> Iterator[list[str]]:
 
 
 def _allowed() -> list[list[str]]:
-    """Return the pairs of shape and foundation whose steady state is in closed form."""
+    """Return the pairs of shape and foundation that the scripts can compute."""
     pairs = []
     for shape, indenter in SHAPES.items():
         for kind, foundation in FOUNDATIONS.items():
@@ -148,14 +203,14 @@ def _allowed() -> list[list[str]]:
                 indenter(**{name: START[name] for name in quantities(indenter)}),
                 foundation(**{name: START[name] for name in required(foundation)}, **arms),
             )
-            if not lacks_closed_form(scene):
+            if not lacks_scripts(scene):
                 pairs.append([shape, kind])
     return pairs
 
 
 def _exponent(unit: str) -> int:
     """Return the power of ten that a value in the unit that is shown has to be multiplied by."""
-    return -round(math.log10(SHOWN_UNITS[unit][1]))
+    return -round(math.log10(UNITS[unit][1]))
 
 
 def _text(value: float, unit: str) -> str:

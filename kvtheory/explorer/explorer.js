@@ -7,6 +7,8 @@ const frames = [];
 const escaped = (text) => String(text).replace(/[&<>"]/g, (c) => `&#${c.charCodeAt(0)};`);
 const named = (name) => name.replace(/-/g, " ").replace("kelvin voigt", "Kelvin\u2013Voigt").replace("maxwell", "Maxwell");
 
+const pretty = (unit) => unit.replace(/\^(\d)/g, (_, k) => "\u00b9\u00b2\u00b3"[k - 1]).replace("*", "\u00b7");
+
 /** Ends of a slider, and where a value stands between them; logarithmic but for a few. */
 function reach(slider) {
   if (slider.linear) return [...slider.linear, (x) => x, (x) => x];
@@ -19,13 +21,14 @@ function slider_html(key, slider, text, label) {
   const shown = Number.isFinite(at) ? Math.min(high, Math.max(low, at)) : low;
   return `<div class="slider"><label for="${key}" title="${escaped(slider.doc)}">${escaped(label)}</label>`
     + `<span class="value"><input type="text" inputmode="decimal" data-key="${key}" value="${escaped(text)}" aria-label="${escaped(label)}">`
-    + `<span class="unit">${slider.unit}</span></span>`
+    + `<span class="unit">${pretty(slider.unit)}</span></span>`
     + `<input type="range" id="${key}" data-key="${key}" min="${low}" max="${high}" step="any" value="${shown}"`
     + ` aria-valuetext="${escaped(text)} ${slider.unit}" title="${escaped(slider.doc)}"></div>`;
 }
 
 function choice_html(section) {
   const { chooser, choices } = SECTIONS[section], here = state.choices[section];
+  if (!chooser) return "";
   const fits = (choice) => section !== "indenter" || MODEL.allowed.some(([shape, kind]) => shape === choice && kind === state.choices.foundation);
   const options = Object.keys(choices).map((choice) => {
     const chosen = choice === here ? " selected" : "", [off, why] = fits(choice) ? ["", ""] : [" disabled", " (Kelvin\u2013Voigt only)"];
@@ -35,12 +38,13 @@ function choice_html(section) {
 }
 
 function alternative_html(section) {
-  const sets = SECTIONS[section].alternatives[state.choices[section]];
+  const sets = SECTIONS[section].alternatives[state.choices[section]], here = String(asked(state, section));
   if (sets.length < 2) return "";
-  const here = JSON.stringify(asked(state, section));
-  const names = (set) => set.filter((name) => !sets.every((other) => other.includes(name))).map((name) => name.replace(/_/g, " ")).join(", ");
-  return `<select data-set="${section}" aria-label="${section}: given by">${sets.map((set, k) =>
-    `<option value="${k}"${JSON.stringify(set) === here ? " selected" : ""}>given by ${names(set)}</option>`).join("")}</select>`;
+  const needs_mass = section === "drive" && state.choices.support === "fixed";
+  return `<select data-set="${section}" aria-label="${section}: what is given">${sets.map(({ told, names }, k) => {
+    const off = needs_mass && names.includes("stiffness") && !names.includes("mass");
+    return `<option value="${k}"${String(names) === here ? " selected" : ""}${off ? " disabled" : ""}>${told}</option>`;
+  }).join("")}</select>`;
 }
 
 function arms_html() {
@@ -58,7 +62,7 @@ function build_controls() {
     (parts[section] ||= []).push(slider_html(key, slider, text_of(state, key, slider), name.replace(/_/g, " ")));
   }
   const html = ["drive", "indenter", "support", "foundation", "run"].map((section) => {
-    const choosing = section in SECTIONS ? choice_html(section) + alternative_html(section) : "";
+    const choosing = choice_html(section) + alternative_html(section);
     const arms = section === "foundation" && has_arms(state) ? arms_html() : "";
     return `<fieldset><legend>${section}</legend><div>${choosing}${parts[section].join("")}${arms}</div></fieldset>`;
   });
@@ -73,17 +77,19 @@ function update() {
   const scene = scene_of(state), { V, duration, ...still } = scene, key = JSON.stringify(still), found = slide(scene);
   if (!Number.isFinite(found.friction_coefficient) || !Number.isFinite(found.load)) {
     problem.hidden = false;
-    problem.textContent = "These values leave the range of double precision.";
+    problem.textContent = scene.indenter === "circle" ? "The circle would be pressed in by more than its radius."
+      : "These values leave the range of double precision.";
     return;
   }
   if (key !== kept.key) kept = { key, data: curve_data(scene) };
-  show_numbers(found);
+  show_numbers(scene, found);
   draw_curve(scene, found, kept.data);
   draw_contact(scene, found);
+  draw_footprint(scene, found);
   show_formula(scene, found);
   show_energy(found);
   show_stability(scene, found);
-  follow(scene);
+  follow(scene, found);
   draw_motion();
   frames.push(performance.now() - start);
   if (frames.length > 500) frames.shift();
@@ -132,7 +138,7 @@ function chosen(event) {
   if (section) state.choices[section] = event.target.value;
   const [of, at] = section ? [section, 0] : [set, Number(event.target.value)];
   if (!of) return;
-  const own = SECTIONS[of].choices[state.choices[of]], wanted = SECTIONS[of].alternatives[state.choices[of]][at];
+  const own = SECTIONS[of].choices[state.choices[of]], wanted = sets_of(state, of)[at];
   for (const key of Object.keys(state.values)) {
     const [part, name] = key.split(".");
     if (part === of && !wanted.includes(name)) delete state.values[key];

@@ -8,14 +8,22 @@ from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
-from kvtheory.explorer.controls import SHAPES, controls
+from kvtheory.explorer.controls import controls, lacks_scripts
 from kvtheory.export import check_path, replace_file
 from kvtheory.scene.model import Scene
-from kvtheory.scene.requirements import lacks_closed_form, lacks_shape, require
+from kvtheory.scene.requirements import require
 
 SCRIPTS = (
-    *("closed_forms.js", "steady.js", "motion.js", "scene.js"),
-    *("charts.js", "answers.js", "playing.js", "explorer.js"),
+    *(
+        "closed_forms.js",
+        "steady.js",
+        "ball.js",
+        "circle.js",
+        "stability.js",
+        "motion.js",
+        "scene.js",
+    ),
+    *("charts.js", "contact.js", "answers.js", "playing.js", "explorer.js"),
 )
 """In the order in which they build on each other."""
 QUANTITY = re.compile(r"@(\*|[A-Za-z]+(?:_[a-z0-9])?)")
@@ -27,7 +35,7 @@ def save_explorer(scene: Scene, path: str | Path) -> None:
     Raises
     ------
     ValueError
-        If steady sliding of the scene is not in closed form, or the name does not end in .html.
+        If the scripts of the page do not know steady sliding of the scene, or the name does not end in .html.
     OSError
         If the file cannot be written.
     """
@@ -43,7 +51,7 @@ def explorer_page(scene: Scene) -> str:
     Raises
     ------
     ValueError
-        If steady sliding of the scene is not in closed form.
+        If the scripts of the page do not know steady sliding of the scene.
 
     Examples
     --------
@@ -52,7 +60,7 @@ def explorer_page(scene: Scene) -> str:
     """
     from kvtheory import __version__
 
-    require(_lacks_scripts, scene, "the explorer")
+    require(lacks_scripts, scene, "the explorer")
     data = {"version": __version__, "formulas": formulas(), **controls(scene)}
     parts = {
         "style": _text("explorer.css"),
@@ -61,11 +69,6 @@ def explorer_page(scene: Scene) -> str:
         "version": __version__,
     }
     return re.sub(r"\{\{(\w+)\}\}", lambda found: parts[found[1]], _text("explorer.html"))
-
-
-def _lacks_scripts(scene: Scene) -> str:
-    """Say why the scripts of the page cannot compute a scene; nothing if they can."""
-    return lacks_shape(scene, tuple(SHAPES.values()), ", ".join(SHAPES)) or lacks_closed_form(scene)
 
 
 def formulas() -> dict[str, dict[str, str]]:

@@ -4,15 +4,27 @@ const player = { run: null, playing: false, share: 0, last: 0 };
 /** Milliseconds that the animation takes; its time is logarithmic, as the start has two time scales. */
 const LASTS = 6000;
 
+/** Why the start is not in closed form; nothing if it is. */
+function lacks_start(scene) {
+  const { indenter, depth, drive } = scene, further = (command) => ` <code>kvtheory ${command}</code> follows it.`;
+  if (scene.V === 0) return "Without a velocity nothing starts.";
+  if (!scene.kelvin_voigt) {
+    return `The start is in closed form on Kelvin\u2013Voigt elements only.${scene.arms ? further("elements") : ""}`;
+  }
+  if (drive) return `The start is in closed form under a rigid drive only: on a spring the indenter may slide back.${further(OWN[indenter] ? "elements" : "solve")}`;
+  if (indenter === "sphere" && depth === undefined) {
+    return `A ball that rises lifts its rim off the ground and comes down on what it left there: no closed form.${further("elements")}`;
+  }
+  return ["parabola", "sphere"].includes(indenter) ? "" : `The start is in closed form for a parabola and for a ball at a fixed depth only.${further("elements")}`;
+}
+
 /** Follow the start anew; nothing where the two states do not hold. */
-function follow(scene) {
-  const note = document.getElementById("motion-note");
-  const lacking = !scene.kelvin_voigt ? "a Kelvin\u2013Voigt foundation" : !scene.parabola ? "a parabola" : "";
-  const usable = !lacking && scene.V !== 0;
-  for (const id of ["player", "motion"]) document.getElementById(id).hidden = !usable;
+function follow(scene, state) {
+  const note = document.getElementById("motion-note"), lacking = lacks_start(scene);
+  for (const id of ["player", "motion", "motion-legend"]) document.getElementById(id).hidden = Boolean(lacking);
   player.run = null;
-  if (!usable) {
-    note.textContent = lacking ? `The start is in closed form for ${lacking} only.` : "Without a velocity nothing starts.";
+  if (lacking) {
+    note.innerHTML = lacking;
     return;
   }
   const rest = at_rest(scene), fixed = scene.depth !== undefined;
@@ -20,11 +32,15 @@ function follow(scene) {
     lam: Math.abs(scene.V) * scene.tau / rest.half_length, kappa: fixed ? Infinity : scene.spring * rest.depth / rest.load,
     epsilon: fixed ? 1 : scene.mass * rest.depth / (rest.load * scene.tau ** 2),
   };
-  const { rows, why } = start_from_rest(number, scene.duration / scene.tau);
+  const { rows, why } = start_from_rest(number, scene.duration / scene.tau), whole = scene.indenter === "sphere";
+  if (whole) {  // held, its strips have their edges at once
+    const drag = rest.load * rest.depth / rest.half_length;
+    for (const row of rows) Object.assign(row, { f_z: state.load / rest.load, f_x: Math.abs(state.friction_force) / drag });
+  }
   const end = rows.at(-1).s;
   const first = Math.min(end / 300, 0.1 * number.epsilon / (1 + number.lam));
-  player.run = { rows, rest, number, end, first: Math.max(first, end * 1e-6), side: Math.sign(scene.V), tau: scene.tau };
-  note.textContent = why
+  player.run = { rows, rest, number, end, first: Math.max(first, end * 1e-6), side: Math.sign(scene.V), tau: scene.tau, force: force_units(scene) };
+  note.textContent = fixed ? `At a fixed depth the edges are at once where they stay${whole ? ", those of every strip of the ball; the middle plane is shown" : ""}.` : why
     ? `Two states and two edges in closed form hold up to ${short(end * scene.tau * 1e3)} ms: then ${why}, and `
       + "what the surface remembers counts. kvtheory transient goes on."
     : "Two states and two edges in closed form: no memory of the surface is needed in this run.";
@@ -33,7 +49,7 @@ function follow(scene) {
 function draw_motion() {
   const { run } = player;
   if (!run) return;
-  const { rows, rest, number, end, first, side, tau } = run;
+  const { rows, rest, number, end, first, side, tau, force: [unit_of_force, factor] } = run;
   const s = first * (end / first) ** player.share, now = row_at(rows, s), ms = tau * 1e3;
   const deepest = Math.max(...rows.map((row) => row.d)), a_0 = Math.sqrt(deepest), left = -1.5 * a_0, right = 2.6 * a_0;
   const behind = surface_behind(rows, s, number.lam).filter(([x], k, all) => x >= now.r && (k === 0 || all[k - 1][0] <= x));
@@ -55,13 +71,13 @@ function draw_motion() {
     drawn += words(box[2] - 4, half - 18, `${short((right - left) * scaled, 3)} mm across`, 'text-anchor="end"');
     const forces = [["f_z", rest.load, "force"], ["f_x", rest.load * rest.depth / rest.half_length, "drag"]];
     const sampled = Array.from({ length: 161 }, (_, k) => row_at(rows, first * (end / first) ** (k / 160)));
-    const most = Math.max(...forces.map(([name, unit]) => Math.max(...rows.map((row) => row[name])) * unit)) * 1e-3;
+    const most = Math.max(...forces.map(([name, unit]) => Math.max(...rows.map((row) => row[name])) * unit)) * factor;
     const t = scale(first * ms, end * ms, box[0], box[2], true), f = scale(0, most * 1.08, box[3], half + 8);
-    drawn += frame(t, f, [box[0], half + 8, box[2], box[3]], "time [ms]", "force [N/mm]");
+    drawn += frame(t, f, [box[0], half + 8, box[2], box[3]], "time [ms]", `force [${unit_of_force}]`);
     for (const [name, unit, kind] of forces) {
-      drawn += line(sampled.map((row) => [t.at(row.s * ms), f.at(row[name] * unit * 1e-3)]), kind);
+      drawn += line(sampled.map((row) => [t.at(row.s * ms), f.at(row[name] * unit * factor)]), kind);
     }
-    const told = ([name, unit, kind], what) => swatch(kind, `${what} ${short(now[name] * unit * 1e-3)} N/mm`);
+    const told = ([name, unit, kind], what) => swatch(kind, `${what} ${short(now[name] * unit * factor)} ${unit_of_force}`);
     const depth = `<span>\u03b4 = ${short(now.d * rest.depth * 1e3)} mm</span>`;
     document.getElementById("motion-legend").innerHTML = `<span>t = ${short(s * ms)} ms</span>${depth}`
       + told(forces[0], "normal force") + told(forces[1], "friction force");

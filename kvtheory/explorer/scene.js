@@ -1,7 +1,7 @@
 // A scene as the page holds it: choices, and texts in the units that are shown. SI, TOML, Python, link.
 
 const MODEL = JSON.parse(document.getElementById("data").textContent);
-const SECTIONS = MODEL.sections, PLAIN = MODEL.plain;
+const SECTIONS = MODEL.sections;
 const original = () => structuredClone(MODEL.scene);
 
 /** A text in the unit that is shown, as a number in SI: with the same decimals. */
@@ -21,24 +21,24 @@ function mistake_in(text, slider, signed) {
   return above && under ? "" : `out of range: ${slider.range}`;
 }
 
-/** The quantities of a section that are to be given: the set whose members the scene has, the longest first. */
+/** The sets of quantities of a section of which one is to be given, and which of them is: the longest there. */
+const sets_of = (state, section) => SECTIONS[section].alternatives[state.choices[section]].map((set) => set.names);
+
 function asked(state, section) {
-  const choice = state.choices[section], sets = SECTIONS[section].alternatives[choice];
-  const given = (set) => set.every((name) => `${section}.${name}` in state.values);
+  const sets = sets_of(state, section), given = (set) => set.every((name) => `${section}.${name}` in state.values);
   return [...sets].sort((a, b) => b.length - a.length).find(given) || sets[0];
 }
 
-/** The sliders of a state: [key, slider]. */
+/** Whether forces are those of a ball, and not per unit width. */
+const is_whole = (state) => MODEL.whole.includes(state.choices.indenter);
+
+/** The sliders of a state: [key, slider], in the units that its indenter has. */
 function sliders(state) {
-  const found = [];
-  for (const section of Object.keys(SECTIONS)) {
+  const whole = is_whole(state);
+  return Object.keys(SECTIONS).flatMap((section) => {
     const own = SECTIONS[section].choices[state.choices[section]];
-    for (const name of asked(state, section)) found.push([`${section}.${name}`, own[name]]);
-  }
-  for (const [section, own] of Object.entries(PLAIN)) {
-    for (const [name, slider] of Object.entries(own)) found.push([`${section}.${name}`, slider]);
-  }
-  return found;
+    return asked(state, section).map((name) => [`${section}.${name}`, whole ? { ...own[name], ...own[name].whole } : own[name]]);
+  });
 }
 
 const text_of = (state, key, slider) => state.values[key] ?? slider.start;
@@ -65,28 +65,36 @@ function wrong_in(state) {
 function scene_of(state) {
   const v = {};
   for (const [key, slider] of sliders(state)) v[key] = si(text_of(state, key, slider), slider);
-  const { indenter, foundation, support } = state.choices;
+  const { indenter, foundation, support } = state.choices, radius = v["indenter.radius"];
   const shape = {
-    parabola: [1, v["indenter.radius"], 2], "power-law": [1, v["indenter.length"], v["indenter.exponent"]],
-    wedge: [v["indenter.inclination"], 1, 1],
-  }[indenter];
+    "power-law": [1, v["indenter.length"], v["indenter.exponent"]], wedge: [v["indenter.inclination"], 1, 1],
+  }[indenter] || [1, radius, 2];
   const nu = v["foundation.poisson_ratio"];
   const layer = v["foundation.modulus"] * (1 - nu) / ((1 + nu) * (1 - 2 * nu)) / v["foundation.thickness"];
   const scene = {
-    shape, K: v["foundation.stiffness"] ?? layer, tau: v["foundation.retardation_time"],
-    kelvin_voigt: foundation === "kelvin-voigt", V: v["drive.velocity"], duration: v["run.duration"],
-    parabola: indenter === "parabola", support,
+    indenter, shape, stretch: Math.sqrt((v["indenter.radius_across"] ?? radius) / radius),
+    K: v["foundation.stiffness"] ?? layer, tau: v["foundation.retardation_time"],
+    kelvin_voigt: foundation === "kelvin-voigt", V: v["drive.velocity"], duration: v["run.duration"], support,
   };
   if (foundation === "fractional-kelvin-voigt") scene.order = v["foundation.order"];
   if (has_arms(state)) {
     scene.arms = state.arms.map(([k, t]) => [si(k, MODEL.arm.stiffness), si(t, MODEL.arm.relaxation_time)]);
   }
-  if (support === "fixed") return { ...scene, depth: v["support.depth"] };
-  const load = v["support.load"], mass = v["support.mass"] ?? load / v["support.gravity"];
-  return {
-    ...scene, mass, weight: load ?? mass * v["support.gravity"], spring: v["support.stiffness"] ?? 0,
-  };
+  if (support === "fixed") scene.depth = v["support.depth"];
+  else {
+    const load = v["support.load"];
+    scene.mass = v["support.mass"] ?? load / v["support.gravity"];
+    scene.weight = load ?? scene.mass * v["support.gravity"];
+    scene.spring = v["support.stiffness"] ?? 0;
+  }
+  if (v["drive.stiffness"] !== undefined) {
+    scene.drive = { stiffness: v["drive.stiffness"], damping: v["drive.damping"], mass: v["drive.mass"] ?? scene.mass };
+  }
+  return scene;
 }
+
+/** The unit of forces that is shown, and the factor to it. */
+const force_units = (scene) => (scene.indenter === "sphere" ? ["N", 1] : ["N/mm", 1e-3]);
 
 const quoted = (text, unit) => (unit ? `"${text} ${unit}"` : text);
 const arm_units = () => [MODEL.arm.stiffness.unit, MODEL.arm.relaxation_time.unit];
@@ -106,15 +114,14 @@ function written(state) {
 
 function as_toml(state) {
   return Object.entries(written(state)).map(([section, pairs]) => {
-    const chooser = section in SECTIONS ? [`${SECTIONS[section].chooser} = "${state.choices[section]}"`] : [];
+    const chooser = SECTIONS[section].chooser ? [`${SECTIONS[section].chooser} = "${state.choices[section]}"`] : [];
     return [`[${section}]`, ...chooser, ...pairs.map(([name, value]) => `${name} = ${value}`), ""].join("\n");
   }).join("\n");
 }
 
 function as_python(state) {
-  const classes = { drive: "Drive", run: "Run" };
   const lines = Object.entries(written(state)).map(([section, pairs]) => {
-    const name = classes[section] || SECTIONS[section].classes[state.choices[section]];
+    const name = SECTIONS[section].classes[state.choices[section]];
     return `    ${section}=kv.${name}(${pairs.map(([key, value]) => `${key}=${value}`).join(", ")}),`;
   });
   return ["import kvtheory as kv", "", "scene = kv.Scene(", ...lines, ")", "print(kv.steady(scene))", ""].join("\n");
@@ -144,7 +151,7 @@ function from_hash(hash) {
   for (const key of (parts.get("without") || "").split(" ")) delete state.values[key];
   for (const [key, text] of parts) {
     const [section, name] = key.split(".");
-    const known = PLAIN[section]?.[name] || Object.values(SECTIONS[section]?.choices || {}).some((own) => name in own);
+    const known = Object.values(SECTIONS[section]?.choices || {}).some((own) => name in own);
     if (known) state.values[key] = text;
   }
   const arms = (parts.get("arms") || "").split(" ").map((arm) => arm.split("_")).filter((arm) => arm.length === 2);
@@ -152,11 +159,15 @@ function from_hash(hash) {
   return allowed(state);
 }
 
-/** The state with a foundation that is solved under its indenter. */
+/** The state with a foundation that is solved under its indenter, and a mass on the spring of its drive. */
 function allowed(state) {
-  const { indenter, foundation } = state.choices;
+  const { indenter, foundation, support } = state.choices;
   const fits = (pair) => pair[0] === indenter && pair[1] === foundation;
   if (!MODEL.allowed.some(fits)) state.choices.indenter = MODEL.allowed.find((pair) => pair[1] === foundation)[0];
+  if (support === "fixed" && "drive.stiffness" in state.values) {
+    state.values["drive.damping"] ??= "0";
+    state.values["drive.mass"] ??= SECTIONS.drive.choices.drive.mass.start;
+  }
   return state;
 }
 

@@ -1,7 +1,9 @@
 // Steady sliding: closed forms and one root, as kvtheory.models.steady has them. SI throughout.
 //
-// A scene is { shape: [slope, L, n], K, tau, arms: [[K_i, tau_i], ...], order, V } with what carries the
-// indenter: { depth } or { weight, spring, mass }. The shape is h = slope |x|^n/(n L^(n-1)).
+// A scene is { indenter, shape: [slope, L, n], stretch, K, tau, arms: [[K_i, tau_i], ...], order, V } with what
+// carries the indenter, { depth } or { weight, spring, mass }, and the spring of its drive, if it has one:
+// { drive: { stiffness, damping, mass } }. The shape is h = slope |x|^n/(n L^(n-1)), of a ball and of a circle
+// the parabola at its lowest point; a ball is sqrt(R'/R) = stretch times wider than long.
 
 const EPS = 2 ** -52, TINY = 2 ** -1022;
 
@@ -47,7 +49,9 @@ function scaled_root(n, lam, kappa) {
 }
 
 /** Depth, half length and load at rest. */
-function at_rest(scene) {
+const at_rest = (scene) => (OWN[scene.indenter]?.at_rest || line_at_rest)(scene);
+
+function line_at_rest(scene) {
   const [slope, L, n] = scene.shape, K = scene.K;
   if (scene.depth !== undefined) {
     const a = L * root_of(n * scene.depth / (slope * L), n);
@@ -57,7 +61,7 @@ function at_rest(scene) {
   return { depth: scene.weight / (K * a * power_law_static_load(n)), half_length: a, load: scene.weight };
 }
 
-function slide_kelvin_voigt(scene, rest) {
+function slide_line(scene, rest) {
   const [, , n] = scene.shape, K = scene.K, l_r = Math.abs(scene.V) * scene.tau;
   let a = rest.half_length, delta = rest.depth;
   if (scene.depth === undefined) {
@@ -112,7 +116,11 @@ function prony(scene) {
       const M = { P: 0.5 * K, Q: 0.5 * K, D: K / 12, E: 0, end: K, end_slope: 0 };
       for (const [stiffness, length] of arms) {
         const z = number(c, length), own = arm_moments(z);
-        for (const name of ["P", "Q", "D", "E", "end"]) M[name] += stiffness * own[name];
+        M.P += stiffness * own.P;
+        M.Q += stiffness * own.Q;
+        M.D += stiffness * own.D;
+        M.E += stiffness * own.E;
+        M.end += stiffness * own.end;
         M.end_slope -= stiffness * z * own.end;
       }
       return M;
@@ -197,13 +205,21 @@ function length_at_load(law, R, rest, spring) {
   return c;
 }
 
+const law_of = (scene) => (scene.arms ? prony(scene) : springpot(scene));
+
 function slide_viscoelastic(scene, rest) {
-  const R = scene.shape[1], law = scene.arms ? prony(scene) : springpot(scene), fixed = scene.depth !== undefined;
-  const c = fixed ? length_at_half(law, rest.half_length) : length_at_load(law, R, rest, scene.spring);
+  const law = law_of(scene), R = scene.shape[1];
+  const c = scene.depth === undefined ? length_at_load(law, R, rest, scene.spring) : length_at_half(law, rest.half_length);
+  return plane_state(scene, rest, law, c);
+}
+
+/** The state of a parabola, or of the middle plane of a ball, whose contact is c long. */
+function plane_state(scene, rest, law, c) {
+  const R = scene.shape[1], fixed = scene.depth !== undefined;
   const M = law.moments(c), A = M.P + M.Q, share = M.P / A, eta = 0.5 * (M.P - M.Q) / A;
   const a = fixed ? rest.half_length : c * share;
   const load = moments_load(M.D, M.P, eta), work = moments_work(M.E, M.P, eta);
-  const l_r = Math.abs(scene.V) * (scene.arms ? damping(scene) / scene.K : scene.tau);
+  const l_r = Math.abs(scene.V) * mean_time(scene);
   const pressure = (X) => {
     const m = law.moments(X);
     return X > 0 ? (a * (m.P + m.Q) - X * m.P) * (X / R) : 0;
@@ -212,9 +228,9 @@ function slide_viscoelastic(scene, rest) {
     depth: fixed ? scene.depth : a * (a / (2 * R)), half_length: a, retardation_length: l_r,
     leading_edge: -a, trailing_edge: c * (M.Q / A), load: c * c * (c / R) * load,
     friction_force: (c * (c / R)) ** 2 * work, friction_coefficient: (c / R) * (work / load),
-    peak_pressure: greatest(pressure, a),
+    peak_pressure: scene.rough ? NaN : greatest(pressure, a),
     dissipated_in_contact: work > 0 ? law.dissipated(c, eta, work) : 1,
-    pressure, borne: law.borne(R, c, share),
+    pressure, borne: law.borne(R, c, share), length: c,
   };
 }
 
@@ -235,18 +251,29 @@ function damping(scene) {
   return scene.arms.reduce((sum, [stiffness, time]) => sum + stiffness * time, 0);
 }
 
+/** C/K: the retardation time, or what takes its place. */
+const mean_time = (scene) => (scene.arms ? damping(scene) / scene.K : scene.tau);
+
 const MIRRORED = ["leading_edge", "trailing_edge", "friction_force", "friction_coefficient"];
+
+/** Shapes with rules of their own; the others are power laws, or a parabola on what is not Kelvin-Voigt. */
+const OWN = {
+  sphere: { at_rest: ball_at_rest, slide: slide_ball, limits: ball_limits },
+  circle: { at_rest: circle_at_rest, slide: slide_circle, limits: () => ({}) },
+};
 
 /** The steady state; a reversed drive is the mirror image. */
 function slide(scene) {
-  const rest = at_rest(scene);
-  const state = scene.kelvin_voigt ? slide_kelvin_voigt(scene, rest) : slide_viscoelastic(scene, rest);
+  const rest = at_rest(scene), line = scene.kelvin_voigt ? slide_line : slide_viscoelastic;
+  const state = (OWN[scene.indenter]?.slide || line)(scene, rest);
   if (scene.V < 0) for (const name of MIRRORED) state[name] = -state[name];
   return { ...state, rest };
 }
 
-/** Asymptotes of the friction coefficient over |V|, and where they meet. */
-function limits(scene) {
+/** Asymptotes of the friction coefficient over |V|, and where they meet, as far as they are known. */
+const limits = (scene) => (OWN[scene.indenter]?.limits || line_limits)(scene);
+
+function line_limits(scene) {
   const [slope, L, n] = scene.shape, rest = at_rest(scene), K = scene.K, fixed = scene.depth !== undefined;
   if (scene.kelvin_voigt) {
     const kappa = fixed ? Infinity : scene.spring * (rest.depth / rest.load), a_0 = rest.half_length;
@@ -270,35 +297,17 @@ function limits(scene) {
   return { low: (V) => low * V, high: (V) => high / V, critical: Math.sqrt(high / low), glassy: [a, slope_0 / glassy] };
 }
 
-/** Speed and friction at the maximum over a span of speeds in powers of ten, from where the limits meet. */
-function maximum(scene, centre, decades) {
+/** Speed and friction at the maximum, from points of the curve: parabolas over ever closer speeds. */
+function maximum(scene, points) {
   const friction = (V) => slide({ ...scene, V }).friction_coefficient;
-  let best = 0, top = 0;
-  for (let k = -40; k <= 40; k++) {
-    const found = friction(centre * 10 ** (decades * k / 40));
-    if (found > top) [best, top] = [k, found];
+  const best = points.reduce((top, [, mu], k) => (mu > points[top][1] ? k : top), 0);
+  if (best === 0 || best === points.length - 1) return null;
+  let place = Math.log(points[best][0]);
+  for (let h = Math.log(points[best + 1][0]) - place, k = 0; k < 4; k++, h /= 8) {
+    const [low, top, high] = [-h, 0, h].map((step) => friction(Math.exp(place + step)));
+    const off = 0.5 * h * (high - low) / (2 * top - low - high);
+    place += Math.min(h, Math.max(-h, off)) || 0;
   }
-  if (Math.abs(best) === 40) return null;
-  let low = decades * (best - 1) / 40, high = decades * (best + 1) / 40;
-  for (let k = 0; k < 30; k++) {
-    const one = low + (high - low) / 3, two = high - (high - low) / 3;
-    if (friction(centre * 10 ** one) < friction(centre * 10 ** two)) low = one; else high = two;
-  }
-  const V = centre * 10 ** ((low + high) / 2);
+  const V = Math.exp(place);
   return { V, friction: friction(V) };
-}
-
-/** Rates of small motions about steady sliding of a parabola that can move (F12), in 1/s. */
-function rates(scene, state) {
-  const { rest } = state, a = state.half_length / rest.half_length;
-  const epsilon = scene.mass * rest.depth / (rest.load * scene.tau ** 2);
-  const kappa = scene.spring * (rest.depth / rest.load);
-  const B = 0.75 * contact_damping(a, state.q), A = 0.75 * contact_stiffness(a, state.q) + kappa;
-  const square = B * B - 4 * epsilon * A;
-  if (square < 0) {
-    const real = -B / (2 * epsilon * scene.tau), imaginary = Math.sqrt(-square) / (2 * epsilon * scene.tau);
-    return { epsilon, pairs: [[real, imaginary], [real, -imaginary]] };
-  }
-  const sum = B + Math.sqrt(square);
-  return { epsilon, pairs: [[-sum / (2 * epsilon * scene.tau), 0], [-2 * A / (sum * scene.tau), 0]] };
 }

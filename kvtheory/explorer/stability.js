@@ -1,0 +1,109 @@
+// Stability of steady sliding of a parabola on Kelvin-Voigt elements, held along x by a spring or rigidly:
+// closed forms (F12, F22), as kvtheory.models.steady.stability has them.
+
+/** The numbers of the rates; `unit` is the stiffness of S_x = 1. A held indenter has T_z = 0, S_z infinite. */
+function stability_numbers(scene, state) {
+  const R = scene.shape[1], K = scene.K, tau = scene.tau, a = state.half_length, { l, q } = state;
+  const drive = scene.drive || { damping: 0, mass: scene.mass ?? NaN }, held = scene.depth !== undefined;
+  const along = K * tau * damping_along(a / R, q) * R / 3, damped = along + drive.damping, n_x = drive.damping / along;
+  const found = {
+    tau, unit: damped / tau, T_x: drive.mass / (damped * tau), n_x, held,
+    g: coupling(l, q, n_x), h: uncoupled(q, n_x), S_c: coupling_rate(q),
+  };
+  if (held) return { ...found, T_z: 0, S_z: Infinity, e: Infinity };
+  const across = K * tau * damping_across(a, q) * (4 / 3), S_s = scene.spring * tau / across;
+  return { ...found, T_z: scene.mass / (across * tau), S_z: relaxation_rate(q, S_s), e: friction_rise(q, n_x, S_s) };
+}
+
+/** The stiffnesses between which steady sliding is unstable, in N/m^2, and the frequencies there, in Hz. */
+function onsets(number) {
+  const { T_z, T_x, S_z, S_c, g, h, e, unit, tau, held } = number, none = { stiffness: NaN, frequency: NaN };
+  if (held) return { lower: none, upper: none };
+  const square = onset_square(T_z, g, S_c, h, e), n = onset_sum(T_z, g, S_c, h, e), falls = e < 0;
+  if (!falls && !(n < 0 && square >= 0)) return { lower: none, upper: none };
+  const s = Math.sqrt(square);
+  const at = (Omega, lag) => ({
+    stiffness: unit * onset_stiffness(T_x, S_c, Omega, lag), frequency: Math.sqrt(Omega) / (2 * Math.PI * tau),
+  });
+  const fast = n > 0 ? -2 * S_z * e / (s + n) : (s - n) / (2 * T_z * T_z);
+  const lower = falls ? { stiffness: 0, frequency: 0 } : at(2 * S_z * e / (s - n), onset_lag_of_lower(T_z, g, S_c, h, s));
+  return { lower, upper: at(fast, onset_lag(T_z, g, S_c, h, S_z, s)) };
+}
+
+const is_stable = (stiffness, { lower, upper }) => !(stiffness >= lower.stiffness && stiffness <= upper.stiffness);
+
+/** Coefficients of the polynomial of the rates in 1/tau, from the constant one on: none if nothing can move. */
+function rate_polynomial(number, scene) {
+  const { T_z, T_x, S_z, h, e, unit, held } = number;
+  if (!scene.drive) return held ? [] : [S_z, 1, T_z];
+  const S_x = scene.drive.stiffness / unit;
+  return held ? [S_x, 1, T_x] : [S_z * S_x, S_x + e, T_z * S_x + h + S_z * T_x, T_z + T_x, T_z * T_x];
+}
+
+/** Rates of small motions about steady sliding in 1/s, as pairs, fastest growth first. */
+function rates(scene, state) {
+  const number = stability_numbers(scene, state);
+  return roots(rate_polynomial(number, scene)).map((pair) => pair.map((each) => each / number.tau));
+}
+
+/** The roots of a real polynomial of a low degree: Aberth's method on all of them at once. */
+function roots(coefficients) {
+  const degree = coefficients.length - 1;
+  if (degree < 1) return [];
+  const unit = (coefficients[0] / coefficients[degree]) ** (1 / degree);
+  const scaled = coefficients.map((each, k) => each * unit ** k), most = Math.max(...scaled.map(Math.abs));
+  const P = scaled.map((each) => each / most);
+  const over = ([a, b], [c, d]) => [(a * c + b * d) / (c * c + d * d), (b * c - a * d) / (c * c + d * d)];
+  const value = ([x, y]) => {
+    let p = [0, 0], dp = [0, 0];
+    for (let k = degree; k >= 0; k--) {
+      dp = [dp[0] * x - dp[1] * y + p[0], dp[0] * y + dp[1] * x + p[1]];
+      p = [p[0] * x - p[1] * y + P[k], p[0] * y + p[1] * x];
+    }
+    return [p, dp];
+  };
+  const z = start_places(P, degree);
+  for (let round = 0; round < 100; round++) {
+    let moved = 0;
+    for (let i = 0; i < degree; i++) {
+      const [p, dp] = value(z[i]);
+      if (p[0] === 0 && p[1] === 0) continue;
+      const newton = over(p, dp), push = [0, 0];
+      for (let j = 0; j < degree; j++) {
+        if (j === i) continue;
+        const [x, y] = over([1, 0], [z[i][0] - z[j][0], z[i][1] - z[j][1]]);
+        push[0] += x;
+        push[1] += y;
+      }
+      const [x, y] = newton, step = over(newton, [1 - x * push[0] + y * push[1], -x * push[1] - y * push[0]]);
+      if (!Number.isFinite(step[0] + step[1])) continue;
+      z[i] = [z[i][0] - step[0], z[i][1] - step[1]];
+      moved = Math.max(moved, Math.hypot(...step) / Math.hypot(...z[i]));
+    }
+    if (moved < 4 * EPS) break;
+  }
+  const real = ([x, y]) => (Math.abs(y) < 1e-9 * Math.abs(x) ? [x, 0] : [x, y]);
+  return z.map(real).map(([x, y]) => [x * unit, y * unit]).sort((a, b) => b[0] - a[0] || a[1] - b[1]);
+}
+
+/** Places around the sizes that neighbouring coefficients give: the roots may lie decades apart. */
+function start_places(P, degree) {
+  const sizes = Array.from({ length: degree }, (_, k) => Math.abs(P[k] / P[k + 1]) || 1);
+  return sizes.map((size, k) => [size * Math.cos(1 + 2.4 * k), size * Math.sin(1 + 2.4 * k)]);
+}
+
+/** At which of several speeds the steady state is unstable on the spring of the drive, and from which speed on. */
+function unstable_speeds(scene, speeds, states) {
+  if (!has_stability(scene) || !scene.drive) return { unstable: speeds.map(() => false) };
+  const slips = (state) => !is_stable(scene.drive.stiffness, onsets(stability_numbers(scene, state)));
+  const unstable = states.map(slips), first = unstable.indexOf(true);
+  if (first < 1) return { unstable };
+  let [low, high] = [speeds[first - 1], speeds[first]];
+  for (let k = 0; k < 50; k++) {
+    const middle = Math.sqrt(low * high);
+    if (slips(slide({ ...scene, V: middle }))) high = middle; else low = middle;
+  }
+  return { unstable, from: high };
+}
+
+const has_stability = (scene) => scene.kelvin_voigt && scene.indenter === "parabola";
