@@ -4,6 +4,7 @@ import json
 import math
 import re
 import tomllib
+from contextlib import contextmanager
 from dataclasses import replace
 from itertools import combinations
 
@@ -42,16 +43,23 @@ def session(tmp_path_factory):
     browser.close()
 
 
-@pytest.fixture
-def browser(session, page):
-    """The page as it opens on a screen; nothing may be complained of, and nothing loaded."""
+@contextmanager
+def watched(session, page, state="", width=1280, height=900, *, phone=False):
+    """Open the page on a screen; nothing may be complained of, and nothing loaded."""
     session.errors.clear()
     session.requests.clear()
-    session.screen(1280, 900)
-    session.open(page)
+    session.screen(width, height, phone=phone)
+    session.open(page, state)
     yield session
     assert session.errors == []
     assert {url.partition("#")[0] for url in session.requests} - {"about:blank"} == {page.as_uri()}
+
+
+@pytest.fixture
+def browser(session, page):
+    """The page as it opens on a screen."""
+    with watched(session, page) as opened:
+        yield opened
 
 
 def spread(random, low, high, count=SCENES):
@@ -250,7 +258,7 @@ def test_stability_on_a_spring_is_that_of_python(browser):
     names = ("critical_stiffness", "lower_critical_stiffness", "frequency")
     kinds = set()
     for scene, (stable, *numbers, pairs) in zip(scenes, found, strict=True):
-        right = kv.stability(scene)
+        right = kv.stability(scene, quantity=("stable", *names, "rates"))
         errors = right.certificate.relative_error
         assert stable == right.stable, scene
         for name, number in zip(names, numbers, strict=True):
@@ -352,6 +360,17 @@ def test_every_control_can_be_reached_by_tab_and_says_what_it_is(browser):
     assert unnamed == 0
 
 
+def test_a_choice_by_key_keeps_its_place(browser):
+    browser.run("document.querySelector('[data-section=support]').focus()")
+    browser.press("ArrowDown", 40)
+    assert browser.run("state.choices.support") == "suspended"
+    assert browser.run("document.activeElement.dataset.section") == "support"
+    browser.run("document.querySelector('[data-set=drive]').focus()")
+    browser.press("ArrowDown", 40)
+    assert browser.run("state.values['drive.stiffness']") == "1"
+    assert browser.run("document.activeElement.dataset.set") == "drive"
+
+
 def test_enter_plays_the_start(browser):
     browser.run("document.getElementById('play').focus()")
     browser.press("Enter", 13)
@@ -362,32 +381,123 @@ def test_enter_plays_the_start(browser):
 STATES = (
     "", "#foundation=generalized-maxwell", "#foundation=fractional-kelvin-voigt&support=suspended",
     "#indenter=power-law&drive.velocity=-3", "#indenter=wedge&support=fixed", "#drive.velocity=0",
+    "#indenter=circle&support=suspended", "#indenter=sphere&support=fixed",
+    "#indenter=sphere&indenter.radius_across=40&foundation=generalized-maxwell&drive.velocity=-30",
+    "#drive.stiffness=1&drive.damping=0&drive.velocity=91", "#drive.stiffness=1&support=fixed",
+    "#indenter=sphere&foundation=fractional-kelvin-voigt&drive.stiffness=2&drive.damping=3&drive.mass=4",
 )  # fmt: skip
 
 
 @pytest.mark.parametrize("state", STATES)
-def test_every_scene_fits_a_phone(browser, page, state):
-    browser.screen(375, 812, phone=True)
-    browser.open(page, state)
-    assert browser.run("document.documentElement.scrollWidth") <= 375
-    assert browser.run("document.querySelector('#problem').hidden")
-    assert "NaN" not in browser.run("document.body.innerHTML.replace(/<script[^]*/, '')")
+def test_every_scene_fits_a_phone_and_its_copies_are_what_is_shown(session, page, state, tmp_path):
+    with watched(session, page, state, 375, 812, phone=True) as browser:
+        assert browser.run("document.documentElement.scrollWidth") <= 375
+        assert browser.run("document.querySelector('#problem').hidden")
+        assert "NaN" not in browser.run("document.body.innerHTML.replace(/<script[^]*/, '')")
+        written = browser.run("as_toml(state)")
+        path = tmp_path / "scene.toml"
+        path.write_text(written, encoding="utf-8")
+        scene = kv.load_scene(path)
+        names = {}
+        exec(browser.run("as_python(state)"), names)
+        assert names["scene"] == scene
+        found = browser.run("slide(scene_of(state))")
+        right = kv.steady(scene)
+        assert found["friction_coefficient"] == pytest.approx(right.friction_coefficient, rel=1e-12)
+        assert found["load"] == pytest.approx(right.load, rel=1e-12)
+        again = browser.run("as_toml(from_hash(as_hash(state)))")
+        assert tomllib.loads(again) == tomllib.loads(written)
+        drawn = browser.run(
+            "(s => contact_shapes(s, slide(s)).touched.map(([x]) => [x, pressure_at(s, slide(s), x)]))"
+            "(scene_of(state))"
+        )
+        if scene.indenter.per_width:
+            x, p = np.transpose(drawn)
+            assert np.trapezoid(p, x) == pytest.approx(right.load, rel=1e-2)
 
 
-@pytest.mark.parametrize("state", STATES)
-def test_copies_are_the_scene_that_is_shown(browser, page, state, tmp_path):
-    browser.open(page, state)
-    written = browser.run("as_toml(state)")
-    path = tmp_path / "scene.toml"
-    path.write_text(written, encoding="utf-8")
-    scene = kv.load_scene(path)
-    names = {}
-    exec(browser.run("as_python(state)"), names)
-    assert names["scene"] == scene
-    found = browser.run("slide(scene_of(state)).friction_coefficient")
-    assert found == pytest.approx(kv.steady(scene).friction_coefficient, rel=1e-12)
-    again = browser.run("as_toml(from_hash(as_hash(state)))")
-    assert tomllib.loads(again) == tomllib.loads(written)
+@pytest.mark.parametrize("order", [0.3, 0.7, 1.0])
+def test_the_free_surface_of_a_springpot_bears_no_load(browser, order):
+    """W = K int u dx over all elements, because a springpot that is left alone ends where it began."""
+    foundation = kv.FractionalKelvinVoigt(1e10, 0.1, order)
+    given = in_javascript(kv.Scene(foundation=foundation, drive=kv.Drive(0.02)))
+    found = browser.run(
+        f"(s => {{ const state = slide(s), {{ touched }} = contact_shapes(s, state);"
+        " const away = Array.from({ length: 300 }, (_, k) => 1e-6 * 1.08 ** k);"
+        " return [state.load, touched, away, relaxed(s, state, away, touched)]; })"
+        f"({json.dumps(given)})"
+    )
+    load, touched, away, left = found
+    x, z = np.transpose(touched)
+    under = np.trapezoid(-z, x) + 0.5 * away[0] * (-z[-1] + left[0])
+    assert 1e10 * (under + np.trapezoid(left, away)) == pytest.approx(load, rel=0.02)
+    assert np.all(np.diff(left) <= 0.0)
+
+
+def test_the_footprint_is_that_of_python(browser):
+    ball = kv.Sphere("10 mm", radius_across="40 mm")
+    scene = kv.Scene(ball, support=kv.DeadWeight(mass="1 kg"), drive=kv.Drive(0.02))
+    y, front, back = np.transpose(
+        browser.run(f"(s => footprint(s, slide(s)))({json.dumps(in_javascript(scene))})")
+    )
+    edges = kv.footprint(scene).edges(y[:-1])
+    assert front[:-1] == pytest.approx(edges[0], rel=1e-12)
+    assert back[:-1] == pytest.approx(edges[1], rel=1e-12)
+    nearly = replace(scene, foundation=kv.FractionalKelvinVoigt(1e10, 0.1, 1.0))
+    y, front, back = np.transpose(
+        browser.run(f"(s => footprint(s, slide(s)))({json.dumps(in_javascript(nearly))})")
+    )
+    edges = kv.footprint(scene).edges(y[:-1])
+    assert front[:-1] == pytest.approx(edges[0], rel=1e-6)
+    assert back[:-1] == pytest.approx(edges[1], rel=1e-6)
+
+
+def test_a_ball_starts_at_a_fixed_depth_alone_and_the_others_say_why_not(browser):
+    def told(state):
+        browser.run(f"restore('{state}')")
+        browser.settle()
+        return browser.run(
+            "[document.querySelector('#motion-note').textContent, player.run !== null]"
+        )
+
+    held = kv.Scene(kv.Sphere("10 mm"), support=kv.Fixed("0.3 mm"), drive=kv.Drive(0.05))
+    right = kv.transient(held, at=[0.1])
+    assert told("#indenter=sphere&support=fixed&drive.velocity=50")[1]
+    row, rest = browser.run("[player.run.rows.at(-1), player.run.rest]")
+    drag = rest["load"] * rest["depth"] / rest["half_length"]
+    assert row["f_z"] * rest["load"] == pytest.approx(right.normal_force[0], rel=1e-12)
+    assert row["f_x"] * drag == pytest.approx(right.friction_force[0], rel=1e-12)
+    for state, why in (
+        ("#indenter=sphere", "lifts its rim"),
+        ("#indenter=circle", "for a parabola and for a ball"),
+        ("#drive.stiffness=1&drive.damping=0", "under a rigid drive only"),
+        ("#foundation=generalized-maxwell", "on Kelvin\u2013Voigt elements only"),
+        ("#drive.velocity=0", "nothing starts"),
+    ):
+        note, runs = told(state)
+        assert why in note
+        assert not runs
+
+
+def test_the_page_tells_from_which_speed_a_spring_is_too_soft(browser):
+    browser.run("restore('#drive.stiffness=1&drive.damping=0&drive.velocity=91')")
+    browser.settle()
+    right = kv.stability(over={"drive.velocity": 0.091, "drive.stiffness": 1e6})
+    assert browser.run("kept.data.from") == pytest.approx(right.critical_velocity, rel=1e-10)
+    assert not browser.run("document.querySelector('#stability p').dataset.stable === 'true'")
+    rows = browser.run("document.querySelector('#stability').textContent")
+    assert "stable above6.879 MN/m\u00b2" in rows
+    assert f"{right.frequency:.4g} Hz" in rows
+
+
+def test_units_follow_the_indenter(browser):
+    browser.run("state.choices.indenter = 'sphere', build_controls(), soon()")
+    browser.settle()
+    ball = kv.Scene(kv.Sphere("10 mm"), support=kv.DeadWeight(mass="1 kg"))
+    assert text(browser, "friction_force") == f"{kv.steady(ball).friction_force:.5g} N"
+    units = "[...document.querySelectorAll('[data-key=\"support.mass\"] + .unit')].map(e => e.textContent)"
+    assert browser.run(units) == ["kg"]
+    assert tomllib.loads(browser.run("as_toml(state)"))["support"]["mass"] == "1 kg"
 
 
 def test_the_formula_shown_is_the_limit_that_holds(browser, page):
@@ -434,6 +544,27 @@ def test_one_page_holds_everything_in_less_than_300_kB(page):
     assert not re.search(r'\b(src|href)\s*=\s*"(?!data:)', text)
     assert not re.search(r"https?://(?!www\.w3\.org/)", text)
     assert "{{" not in text.replace("}}", "").replace("${{", "")
+
+
+def test_the_page_opens_at_a_ball_and_at_a_spring():
+    ball = kv.Scene(
+        kv.Sphere("5 mm", radius_across="7 mm"),
+        support=kv.Suspended(mass="2 kg", stiffness="3 kN/m"),
+    )
+    held = controls(ball)["scene"]["values"]
+    assert (held["support.mass"], held["support.stiffness"], held["indenter.radius_across"]) == (
+        "2",
+        "3",
+        "7",
+    )
+    spring = kv.Scene(drive=kv.Drive("50 mm/s", stiffness="2 MN/m^2"))
+    values = controls(spring)["scene"]["values"]
+    assert (values["drive.velocity"], values["drive.stiffness"], values["drive.damping"]) == (
+        "50",
+        "2",
+        "0",
+    )
+    assert "drive.mass" not in values
 
 
 def test_the_page_opens_at_its_scene():

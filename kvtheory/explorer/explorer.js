@@ -55,8 +55,14 @@ function arms_html() {
     + `<button type="button" data-arm="remove"${state.arms.length < 2 ? " disabled" : ""}>Remove the last</button></div>`;
 }
 
+/** What finds a control again after all of them were built anew. */
+function address(control) {
+  const name = ["section", "set", "arm", "key"].find((each) => control.dataset?.[each]);
+  return name && `${control.tagName}[data-${name}="${control.dataset[name]}"]${control.type === "range" ? "[type=range]" : ""}`;
+}
+
 function build_controls() {
-  const parts = {};
+  const parts = {}, focused = address(document.activeElement);
   for (const [key, slider] of sliders(state)) {
     const [section, name] = key.split(".");
     (parts[section] ||= []).push(slider_html(key, slider, text_of(state, key, slider), name.replace(/_/g, " ")));
@@ -67,6 +73,7 @@ function build_controls() {
     return `<fieldset><legend>${section}</legend><div>${choosing}${parts[section].join("")}${arms}</div></fieldset>`;
   });
   document.getElementById("controls").innerHTML = `<p id="readout"></p>${html.join("")}`;
+  if (focused) document.querySelector(focused)?.focus();
 }
 
 function update() {
