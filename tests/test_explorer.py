@@ -565,6 +565,8 @@ def test_the_page_opens_at_a_ball_and_at_a_spring():
         "0",
     )
     assert "drive.mass" not in values
+    assert controls(spring)["scene"]["note"] == ""
+    assert "velocity that it ends with" in controls(kv.problem("stop-and-go"))["scene"]["note"]
 
 
 def test_the_page_opens_at_its_scene():

@@ -52,6 +52,7 @@ ADDED: dict[tuple[str, str], list[tuple[str, list[str]]]] = {
     ],
 }
 """By section and choice, what may be added to the quantities that are always there, and what it is called."""
+ENDS = "The drive of the scene varies in time; the page takes the velocity that it ends with."
 UNITS = SHOWN_UNITS | {"N*s/m": ("N*s/m", 1.0), "N*s/m^2": ("kN*s/m^2", 1e-3)}
 
 
@@ -126,6 +127,7 @@ def _scene(scene: Scene) -> dict[str, Any]:
             [_text(arm.stiffness, "N/m^3"), _text(arm.relaxation_time, "s")]
             for arm in scene.foundation.arms or _arms()
         ],
+        "note": "" if scene.drive.constant else ENDS,
     }
 
 

@@ -70,7 +70,8 @@ function build_controls() {
   const html = ["drive", "indenter", "support", "foundation", "run"].map((section) => {
     const choosing = choice_html(section) + alternative_html(section);
     const arms = section === "foundation" && has_arms(state) ? arms_html() : "";
-    return `<fieldset><legend>${section}</legend><div>${choosing}${parts[section].join("")}${arms}</div></fieldset>`;
+    const note = section === "drive" && state.note ? `<p class="note">${state.note}</p>` : "";
+    return `<fieldset><legend>${section}</legend><div>${choosing}${parts[section].join("")}${arms}${note}</div></fieldset>`;
   });
   document.getElementById("controls").innerHTML = `<p id="readout"></p>${html.join("")}`;
   if (focused) document.querySelector(focused)?.focus();

@@ -9,13 +9,18 @@ function lacks_start(scene) {
   const { indenter, depth, drive } = scene, further = (command) => ` <code>kvtheory ${command}</code> follows it.`;
   if (scene.V === 0) return "Without a velocity nothing starts.";
   if (!scene.kelvin_voigt) {
-    return `The start is in closed form on Kelvin\u2013Voigt elements only.${scene.arms ? further("elements") : ""}`;
+    const told = scene.arms ? further("elements") : " Nothing here follows a springpot in time.";
+    return `The start is in closed form on Kelvin\u2013Voigt elements only.${told}`;
   }
-  if (drive) return `The start is in closed form under a rigid drive only: on a spring the indenter may slide back.${further(OWN[indenter] ? "elements" : "solve")}`;
+  if (drive) {
+    const told = "The start is in closed form under a rigid drive only: on a spring the indenter may slide back.";
+    return told + further(indenter === "parabola" ? "transient" : "elements");
+  }
   if (indenter === "sphere" && depth === undefined) {
     return `A ball that rises lifts its rim off the ground and comes down on what it left there: no closed form.${further("elements")}`;
   }
-  return ["parabola", "sphere"].includes(indenter) ? "" : `The start is in closed form for a parabola and for a ball at a fixed depth only.${further("elements")}`;
+  if (["parabola", "sphere"].includes(indenter)) return "";
+  return `The start is in closed form for a parabola and for a ball at a fixed depth only.${further("elements")}`;
 }
 
 /** Follow the start anew; nothing where the two states do not hold. */
