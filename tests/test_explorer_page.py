@@ -1,0 +1,154 @@
+"""The page of the explorer as a file: what it holds, its colours, and which scenes it knows."""
+
+import re
+from itertools import combinations
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+
+import kvtheory as kv
+from kvtheory.cli import main
+from kvtheory.explorer import explorer_page, save_explorer
+from kvtheory.explorer.controls import controls
+from kvtheory.explorer.page import formulas
+
+TABLE1 = kv.Scene()
+
+
+def test_one_page_holds_everything_in_less_than_300_kB(tmp_path):
+    page = tmp_path / "explorer.html"
+    save_explorer(TABLE1, page)
+    text = page.read_text(encoding="utf-8")
+    assert page.stat().st_size < 300_000
+    assert not re.search(r'\b(src|href)\s*=\s*"(?!data:)', text)
+    assert not re.search(r"https?://(?!www\.w3\.org/)", text)
+    assert "{{" not in text.replace("}}", "").replace("${{", "")
+
+
+def test_the_page_opens_at_a_ball_and_at_a_spring():
+    ball = kv.Scene(
+        kv.Sphere("5 mm", radius_across="7 mm"),
+        support=kv.Suspended(mass="2 kg", stiffness="3 kN/m"),
+    )
+    held = controls(ball)["scene"]["values"]
+    assert (held["support.mass"], held["support.stiffness"], held["indenter.radius_across"]) == (
+        "2",
+        "3",
+        "7",
+    )
+    spring = kv.Scene(drive=kv.Drive("50 mm/s", stiffness="2 MN/m^2"))
+    values = controls(spring)["scene"]["values"]
+    assert (values["drive.velocity"], values["drive.stiffness"], values["drive.damping"]) == (
+        "50",
+        "2",
+        "0",
+    )
+    assert "drive.mass" not in values
+    assert controls(spring)["scene"]["note"] == ""
+    assert "velocity that it ends with" in controls(kv.problem("stop-and-go"))["scene"]["note"]
+
+
+def test_the_page_opens_at_its_scene():
+    scene = kv.Scene(kv.PowerLaw("3 mm", 2.5), support=kv.DeadWeight(load="3 N/mm"))
+    held = controls(scene)["scene"]
+    assert held["choices"]["indenter"] == "power-law"
+    assert held["values"]["indenter.length"] == "3"
+    assert held["values"]["support.load"] == "3"
+    assert "support.mass" not in held["values"]
+
+
+def test_every_quantity_of_a_scene_has_a_slider():
+    sections = controls(TABLE1)["sections"]
+    for section, models in (
+        ("foundation", kv.scene.foundations.FOUNDATIONS),
+        ("support", kv.scene.model.SUPPORTS),
+        ("indenter", kv.scene.indenters.SHAPES),
+        ("drive", {"drive": kv.Drive}),
+    ):
+        for name, model in models.items():
+            sliders = sections[section]["choices"][name]
+            assert set(sliders) == set(kv.scene.quantities.quantities(model))
+            assert all(slider["unit"] or slider["exponent"] == 0 for slider in sliders.values())
+            asked = sections[section]["alternatives"][name]
+            assert set().union(*(each["names"] for each in asked)) == set(sliders)
+
+
+def test_every_formula_is_drawn_with_symbols_and_with_places_for_numbers():
+    for key, row in formulas().items():
+        assert not re.search(r"#\w+#", row["symbols"]), key
+        assert re.search(r"#\w+#", row["numbers"]), key
+        assert "<mi>\\" not in row["symbols"] + row["numbers"], key
+
+
+def palette(dark):
+    style = re.search(r"<style>(.*?)</style>", explorer_page(TABLE1), re.DOTALL)[1]
+    light, night = re.findall(r":root \{(.*?)\}", style, re.DOTALL)
+    colours = dict(re.findall(r"--(\w+): (#\w{6})", light))
+    return colours | (dict(re.findall(r"--(\w+): (#\w{6})", night)) if dark else {})
+
+
+def linear(colour):
+    part = np.array([int(colour[k : k + 2], 16) for k in (1, 3, 5)]) / 255
+    return np.where(part <= 0.04045, part / 12.92, ((part + 0.055) / 1.055) ** 2.4)
+
+
+def lab(rgb):
+    to_xyz = np.array(
+        [[0.4124, 0.3576, 0.1805], [0.2126, 0.7152, 0.0722], [0.0193, 0.1192, 0.9505]]
+    )
+    t = to_xyz @ np.clip(rgb, 0, 1) / np.array([0.9505, 1.0, 1.089])
+    f = np.where(t > 0.008856, np.cbrt(t), 7.787 * t + 16 / 116)
+    return np.array([116 * f[1] - 16, 500 * (f[0] - f[1]), 200 * (f[1] - f[2])])
+
+
+SIGHTS = {  # Vienot, Brettel and Mollon (1999), in linear RGB
+    "normal": np.eye(3),
+    "protanopia": np.array([[0.11238, 0.88762, 0.0], [0.11238, 0.88762, 0.0], [0.00401, -0.00401, 1.0]]),
+    "deuteranopia": np.array([[0.29275, 0.70725, 0.0], [0.29275, 0.70725, 0.0], [-0.02234, 0.02234, 1.0]]),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("sight", SIGHTS)
+@pytest.mark.parametrize("dark", [False, True])
+def test_lines_stay_apart_in_colour_blindness_and_from_the_card(dark, sight):
+    """Lines differ in dashes, points in shape, as well; colours must differ by what is plainly seen."""
+    colours = palette(dark)
+    seen = {
+        name: lab(SIGHTS[sight] @ linear(colours[name]))
+        for name in ("blue", "red", "green", "purple", "card")
+    }
+    for one, other in combinations(seen, 2):
+        assert np.linalg.norm(seen[one] - seen[other]) > 15.0, (one, other)
+
+
+@pytest.mark.parametrize("dark", [False, True])
+def test_text_stands_out_from_the_card(dark):
+    colours = palette(dark)
+    light = {
+        name: float(linear(colour) @ [0.2126, 0.7152, 0.0722]) for name, colour in colours.items()
+    }
+    for name in ("ink", "soft"):
+        low, high = sorted((light[name], light["card"]))
+        assert (high + 0.05) / (low + 0.05) > 4.5
+
+
+def test_a_scene_that_the_page_does_not_know_is_refused_and_nothing_written(tmp_path):
+    path, scene = tmp_path / "explorer.html", tmp_path / "scene.toml"
+    rubber = kv.Scene(kv.Circle("10 mm"), kv.GeneralizedMaxwell(1e10, arms=[[3e10, 0.01]]))
+    scene.write_text(kv.scene.files.to_toml(rubber), encoding="utf-8")
+    done = CliRunner().invoke(main, ["explore", str(scene), "-o", str(path)])
+    assert done.exit_code == 2
+    assert 'circle" holds for foundation.kind = "kelvin-voigt" only' in done.output
+    assert not path.exists()
+    with pytest.raises(
+        ValueError, match="the explorer holds for parabola, circle, power-law, wedge, sphere"
+    ):
+        explorer_page(kv.Scene(kv.Revolved(kv.Wedge(0.1)), support=kv.Fixed(1e-4)))
+
+
+def test_the_command_writes_the_page(tmp_path):
+    path = tmp_path / "explorer.html"
+    done = CliRunner().invoke(main, ["explore", "-o", str(path)])
+    assert done.exit_code == 0, done.output
+    assert path.read_text(encoding="utf-8") == explorer_page(TABLE1)
