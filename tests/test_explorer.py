@@ -295,6 +295,44 @@ def test_the_start_from_rest_is_that_of_the_transient(browser, support, velocity
         )
 
 
+BACK = "the trailing edge comes back over ground that it left"
+
+
+@pytest.mark.parametrize(
+    ("support", "spring", "why"),
+    [
+        ("dead-weight", {"stiffness": 1e6}, ""),
+        ("dead-weight", {"stiffness": 3e7, "damping": 1e4, "mass": 10.0}, BACK),
+        ("suspended", {"stiffness": 1e5, "damping": 3e3}, BACK),
+        ("fixed", {"stiffness": 1e7, "mass": 300.0}, BACK),
+    ],
+)
+def test_the_start_on_a_spring_is_that_of_the_transient(browser, support, spring, why):
+    drive = kv.Drive(0.091, **spring)
+    scene = kv.Scene(support=kv.Scene.table1(support).support, drive=drive)
+    found = browser.run(
+        "(s => (rest => start_from_rest({ lam: s.V * s.tau / rest.half_length, along: numbers_along(s, rest),"
+        " kappa: s.depth === undefined ? s.spring * rest.depth / rest.load : Infinity,"
+        " epsilon: s.depth === undefined ? s.mass * rest.depth / (rest.load * s.tau ** 2) : 1 }, 2))"
+        f"(at_rest(s)))({json.dumps(in_javascript(scene))})"
+    )
+    rest = StaticState.of(scene)
+    rows = [row for row in found["rows"][1:] if row["s"] * rest.time <= 0.2]
+    assert len(rows) > 10
+    assert found["why"] == why
+    right = kv.transient(scene, at=[row["s"] * rest.time for row in rows])
+    sliding = [(rest.drive_number - row["w"]) * rest.velocity for row in rows]
+    assert sliding == pytest.approx(right.sliding_velocity, abs=1e-6 * drive.velocity)
+    for name, key, unit in (
+        ("depth", "d", rest.depth), ("normal_force", "f_z", rest.load),
+        ("trailing_edge", "r", rest.half_length),
+        ("friction_force", "f_x", rest.friction_force), ("spring_force", "f_s", rest.friction_force),
+    ):  # fmt: skip
+        assert [row[key] for row in rows] == pytest.approx(getattr(right, name) / unit, abs=3e-6), (
+            name
+        )
+
+
 def test_the_start_ends_where_the_indenter_takes_off(browser):
     scene = kv.Scene(drive=kv.Drive(1.0))
     rest = StaticState.of(scene)
@@ -465,7 +503,7 @@ def test_a_ball_starts_at_a_fixed_depth_alone_and_the_others_say_why_not(browser
     for state, why in (
         ("#indenter=sphere", "lifts its rim"),
         ("#indenter=circle", "for a parabola and for a ball"),
-        ("#drive.stiffness=1&drive.damping=0", "under a rigid drive only"),
+        ("#indenter=sphere&drive.stiffness=1&drive.damping=0", "under a rigid drive only"),
         ("#foundation=generalized-maxwell", "on Kelvin\u2013Voigt elements only"),
         ("#drive.velocity=0", "nothing starts"),
     ):
