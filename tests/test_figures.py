@@ -7,16 +7,25 @@ import subprocess
 import sys
 from pathlib import Path
 
+import matplotlib as mpl
 import numpy as np
 import pytest
 
 import kvtheory as kv
 from figures import __main__ as every
-from figures import drawing
+from figures import drawing, onset_maps
 from figures.__main__ import FIGURES
-from kvtheory.plots import plot_asymptote_errors, plot_steady
+from kvtheory.charts import stability
+from kvtheory.plots import STYLE, plot_asymptote_errors, plot_steady
+from kvtheory.scene.static_state import StaticState
 
 ROOT = Path(__file__).parent.parent
+
+
+COARSE = {"regime_map": 3, "onset_maps": 2}
+"""Maps of which the tests solve every second or third row and column: points do not know of each other."""
+MAP_POINTS = 5, 4
+"""Of the maps of growth, whose points are held against the prediction in `test_charts_stability`."""
 
 
 @pytest.fixture(scope="module")
@@ -24,12 +33,21 @@ def made(tmp_path_factory):
     """Every figure, drawn once: its data, its axes and its directory."""
     directory = tmp_path_factory.mktemp("figures")
     result = {}
-    for name in FIGURES:
-        script = importlib.import_module(f"figures.{name}")
-        data = script.compute()
-        paths = drawing.produce(name, lambda data=data: data, script.draw, directory)
-        result[name] = data, script.draw(data), paths
-    return result
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(stability, "QUICK_POINTS", MAP_POINTS)
+        for name in FIGURES:
+            script = importlib.import_module(f"figures.{name}")
+            if name in COARSE:
+                for axis in ("NUMBERS", "INERTIAS"):
+                    patch.setattr(script, axis, getattr(script, axis)[:: COARSE[name]])
+            data = script.compute()
+            with mpl.rc_context({**STYLE}):
+                drawn = script.draw(data)
+            paths = drawing.produce(
+                name, lambda data=data: data, lambda _, drawn=drawn: drawn, directory
+            )
+            result[name] = data, drawn, paths
+        yield result
 
 
 @pytest.mark.parametrize("name", FIGURES)
@@ -267,3 +285,48 @@ def test_pressure_of_a_ball_has_the_peak_that_its_series_reports(made):
             assert p.max() == pytest.approx(found.peak_pressure[row], rel=1e-2)
             assert p[-1] == pytest.approx(0.0, abs=1e-2 * p.max())
     assert [ax.get_title() for ax in drawn.axes[:2]] == list(script.TITLES.values())
+
+
+def test_the_peak_is_that_of_the_fixed_indenter_and_no_inertia_changes_it(made):
+    data, _, _ = made["onset_maps"]
+    scene = kv.Scene()
+    own = StaticState.of(scene)
+    velocity = onset_maps.NUMBERS * own.half_length / scene.foundation.retardation_time
+    over = {"drive.velocity": velocity}
+    at_depth = kv.Scene(support=kv.Fixed(depth=own.depth))
+    peak = kv.steady(at_depth, over=over).friction_force
+    ratio = peak / kv.steady(scene, over=over).friction_force
+    assert data.ratio == pytest.approx(np.tile(ratio, (onset_maps.INERTIAS.size, 1)), rel=1e-9)
+
+
+def test_hops_come_with_speed_and_mass(made):
+    data, _, _ = made["onset_maps"]
+    assert not data.hops[:, onset_maps.NUMBERS < 1.0].any()
+    assert data.hops[-1, -1] > 1
+    assert (data.hops[0] <= 1).all()
+
+
+def test_what_settles_at_once_is_slow_and_what_does_not_is_fast_and_heavy(made):
+    data, _, _ = made["onset_maps"]
+    at_once = data.settling == 0.0
+    assert at_once[:, onset_maps.NUMBERS < 0.1].all()
+    assert not at_once[:, onset_maps.NUMBERS > 0.2].any()
+    inertia, number = np.meshgrid(onset_maps.INERTIAS, onset_maps.NUMBERS, indexing="ij")
+    later = np.isnan(data.settling)
+    assert later.any()
+    assert (number * inertia)[later].min() > 5.0
+
+
+def test_the_columns_of_the_onset_are_its_maps(made):
+    data, _, _ = made["onset_maps"]
+    assert np.array_equal(data.columns["hops [1]"], data.hops.reshape(-1))
+    told = data.columns["settling_time/tau [1]"]
+    assert told.count("later") == np.isnan(data.settling).sum()
+
+
+def test_the_picture_of_the_onset_shows_its_maps(made):
+    data, drawn, _ = made["onset_maps"]
+    shown = drawn.axes[0].collections[0].get_array()
+    assert np.array_equal(np.asarray(shown), data.ratio)
+    hops = drawn.axes[2].collections[0].get_array()
+    assert np.array_equal(np.asarray(hops), data.hops)
