@@ -1,0 +1,42 @@
+"""How the tests are shared out among processes: what takes longest first, all derivations to one of them.
+
+To derive everything takes half a minute, once in the life of a process. What a file sets up is shared by its
+tests, so other scopes are files. Kernels that are compiled in one process are loaded by the others.
+"""
+
+from functools import cache
+from pathlib import Path
+
+import pytest
+
+FIRST = ("test_figures", "derivations", "test_compare_faults")
+"""Scopes in the order in which they begin, then all others; the first of them compiles all kernels."""
+DERIVING = "derivations.catalogue import", "derivations import emit"
+"""In the text of a file whose tests derive everything, or most of it."""
+
+
+@cache
+def scope_of(path: Path) -> str:
+    """Return the name of the scope of the tests of a file."""
+    text = path.read_text(encoding="utf-8") if path.suffix == ".py" else ""
+    deriving = path.parent == Path(__file__).parent and any(part in text for part in DERIVING)
+    return "derivations" if deriving else path.stem
+
+
+def pytest_collection_modifyitems(items):
+    """Put scopes in order."""
+    ranks = {scope: rank for rank, scope in enumerate(FIRST)}
+    items.sort(key=lambda item: ranks.get(scope_of(item.path), len(FIRST)))
+
+
+@pytest.hookimpl(optionalhook=True)
+def pytest_xdist_make_scheduler(config, log):
+    """Hand out the scopes in this order, and not those with most tests first."""
+    from xdist.scheduler import LoadScopeScheduling
+
+    class Scheduling(LoadScopeScheduling):
+        def _split_scope(self, nodeid):
+            return scope_of(config.rootpath / nodeid.partition("::")[0])
+
+    config.option.loadscopereorder = False
+    return Scheduling(config, log)
