@@ -112,7 +112,7 @@ def solve(
 
 
 def _refuse_unstable(scene: Scene) -> None:
-    """Raise unless steady sliding on the spring in the drive is known to be stable against small disturbances."""
+    """Raise unless steady sliding on the spring in the drive is known to be linearly stable."""
     if scene.drive.rigid:
         return
     known = not lacks_paper_model(scene)

@@ -26,7 +26,7 @@ BESIDE = {"velocity": "sliding_velocity", "friction_force": "spring_force"}
 """The quantity of a drive with a spring that is drawn beside another one."""
 NOT_ITS_LOAD = 1e-6
 """If the integral of the pressure, by Simpson's rule, differs from the load by this much relative to it, the
-indenter is not a parabola; if a friction coefficient differs as much from its closed form, it is not a ball."""
+indenter is not a parabola; if a friction coefficient differs so from its closed form, it is no ball."""
 
 
 def plot_steady(
