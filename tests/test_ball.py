@@ -209,6 +209,50 @@ def test_other_foundations_against_a_sum_of_their_strips(kind):
         assert kv.steady(weight).depth == pytest.approx(3e-4, rel=2e-11)
 
 
+OTHERS = {
+    "maxwell": kv.GeneralizedMaxwell(1e10, arms=[["30 GN/m^3", "10 ms"], ["5 GN/m^3", "1 s"]]),
+    "fractional": kv.FractionalKelvinVoigt(1e10, 0.1, 0.5),
+}
+
+
+@pytest.mark.parametrize(
+    ("kind", "support", "velocity"),
+    [("maxwell", "fixed", -0.1), ("fractional", "fixed", 3.0), ("fractional", "suspended", 1e-3)],
+)
+def test_other_foundations_by_quadrature(kind, support, velocity):
+    """Both methods share no code: moments without roots, and convolution in each strip."""
+    scene = kv.Scene(WIDER, OTHERS[kind], GRIPS[support], kv.Drive(velocity))
+    found, truth = kv.steady(scene, method="quadrature"), kv.steady(scene)
+    for name in STEADY_UNITS:
+        error = found.certificate.relative_error[name]
+        assert getattr(found, name) == pytest.approx(getattr(truth, name), rel=error, abs=0), name
+        assert error < 1e-11
+    assert found.units == truth.units
+
+
+def test_a_cone_on_the_springpot_of_order_one_is_on_kelvin_voigt():
+    rest = {"support": kv.Fixed(1e-4), "drive": kv.Drive(0.01)}
+    found, truth = (
+        kv.steady(kv.Scene(kv.Revolved(kv.Wedge(0.3)), foundation, **rest))
+        for foundation in (kv.FractionalKelvinVoigt(1e10, 0.1, 1.0), kv.Foundation(1e10, 0.1))
+    )
+    for name in STEADY_UNITS:
+        error = found.certificate.relative_error[name] + truth.certificate.relative_error[name]
+        assert getattr(found, name) == pytest.approx(getattr(truth, name), rel=error), name
+
+
+def test_a_cone_on_an_arm():
+    """Fast, the foundation is a stiffer spring: W = G(0) pi b^2 delta/3."""
+    scene = kv.Scene(
+        kv.Revolved(kv.Wedge(0.3)), kv.GeneralizedMaxwell(1e10, arms=[["30 GN/m^3", "10 ms"]]),
+        kv.Fixed(1e-4), kv.Drive(1e6),
+    )  # fmt: skip
+    found = kv.steady(scene)
+    whole = 4e10 * np.pi / 3 * found.half_length**2 * 1e-4
+    assert found.model == "quadrature"
+    assert found.load == pytest.approx(whole, rel=1e-6)
+
+
 def test_the_footprint_carries_the_forces():
     for velocity in (0.01, -0.01):
         scene = kv.Scene(
@@ -283,8 +327,9 @@ def test_what_is_not_covered_says_so():
     with pytest.raises(ValueError, match="the parabola and the ball only"):
         kv.compare(kv.Scene(kv.Revolved(kv.Wedge(0.1)), support=kv.Fixed(1e-4)))
     maxwell = kv.GeneralizedMaxwell(1e10, arms=[["30 GN/m^3", "10 ms"]])
-    with pytest.raises(ValueError, match="kelvin-voigt"):
-        kv.steady(kv.Scene(kv.Sphere(0.01), maxwell, BALL.support), method="quadrature")
+    told = kv.Revolved(kv.Profile(lambda x: x * x / 0.02, lambda x: x / 0.01))
+    with pytest.raises(ValueError, match=r"profile of functions.*kelvin-voigt"):
+        kv.steady(kv.Scene(told, maxwell, BALL.support))
 
 
 # What is per unit width, and what is whole

@@ -47,7 +47,8 @@ def steady(
     method
         ``"exact"`` (parabola, power law, wedge and ball on Kelvin-Voigt, parabola and ball on any
         foundation; the default for them), ``"quadrature"`` (any shape on Kelvin-Voigt; beyond it line
-        contacts that are convex where they touch; the default for the others) or ``"asymptote"`` (of the
+        contacts that are convex where they touch, the ball, and shapes of this package turned around their
+        lowest point; the default for the others) or ``"asymptote"`` (of the
         regime in which the velocity lies; for the same shapes as ``"exact"``, on Kelvin-Voigt).
 
     Returns

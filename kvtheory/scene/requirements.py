@@ -103,14 +103,16 @@ def lacks_closed_form(scene: Scene) -> str:
 def lacks_quadrature(scene: Scene) -> str:
     """Return why the pressure of steady sliding cannot be integrated, or an empty text.
 
-    Beyond Kelvin-Voigt, non-convex shapes of a line contact are detected only during the computation.
+    Beyond Kelvin-Voigt, non-convex shapes of a line contact are detected only during the computation;
+    profiles of revolution must be known to be convex.
 
     >>> lacks_quadrature(Scene())
     ''
     """
-    if scene.indenter.per_width or not (lacking := lacks_kelvin_voigt(scene)):
+    indenter = scene.indenter
+    if indenter.per_width or indenter.convex or not (lacking := lacks_kelvin_voigt(scene)):
         return ""
-    return f'of indenter.shape = "{scene.indenter.shape}" {lacking}'
+    return f'of a profile of functions, indenter.shape = "{scene.indenter.shape}" {lacking}'
 
 
 def lacks_shape(scene: Scene, shapes: tuple[type, ...], named: str) -> str:

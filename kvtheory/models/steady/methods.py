@@ -95,7 +95,7 @@ def _solve_on(scene: Scene, values: Values) -> SteadyState:
 
 def _convolved(scene: Scene, values: Mapping[str, float], indenter: Any) -> SteadyState:
     """Integrate one scene on a foundation that is not Kelvin-Voigt."""
-    from kvtheory.models.steady import branches, convolution  # not needed by the other methods
+    from kvtheory.models.steady import branches, convolution, revolved_convolution  # as seldom
 
     values = _with_time(scene.foundation, values)
     speed, stiffness = abs(values["drive.velocity"]), values["foundation.stiffness"]
@@ -106,7 +106,8 @@ def _convolved(scene: Scene, values: Mapping[str, float], indenter: Any) -> Stea
     else:
         length = speed * values[TIME]
         memory = branches.Springpot(stiffness, length, values["foundation.order"])
-    return _solve(convolution, values, memory, indenter)
+    method = convolution if scene.indenter.per_width else revolved_convolution
+    return _in_units(scene, _solve(method, values, memory, indenter))
 
 
 def arms_of(foundation: AnyFoundation, values: Mapping[str, Any]) -> list[list[Any]]:

@@ -13,6 +13,7 @@ method. The middle plane gives the edges and the peak pressure.
 
 import math
 from collections.abc import Callable, Iterator
+from functools import partial
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -47,8 +48,8 @@ LIMIT = 1e-6
 """Estimate above which the result of the last rule is refused."""
 MOST_STEPS = 100
 """Steps of Newton's method; they are a handful."""
-STEP = 1e-13
-"""Relative step of the depth after which it is found."""
+STEP = 3e-8
+"""Relative step of the depth after which it is found: Newton's method squares an error."""
 
 STATEMENT = (
     "quadrature over strips, each by its own quadrature; the estimate compares two rules, and what the "
@@ -86,6 +87,10 @@ class Strip:
         """Return x h''/h'."""
         rho = np.hypot(x, self.y)
         return 1.0 + (self.profile.bend(rho) - 1.0) * (x / rho) ** 2
+
+
+Strips = Callable[[Array, Array], tuple[Array, float]]
+"""Load, its slope, friction and what is lost in strips at y, with a depth each, over K; and their error."""
 
 
 class Sums(NamedTuple):
@@ -155,16 +160,19 @@ def at_load(
     l_r, load, k = abs(velocity) * retardation_time, weight / stiffness, spring / stiffness
     with np.errstate(all="ignore"):
         if k > 0.0:
-            load += k * _depth(indenter, 0.0, load, 0.0)
-        depth = _depth(indenter, l_r, load, k)
+            load += k * depth_at(indenter, _strips(indenter, 0.0), 0.0, load, 0.0)
+        depth = depth_at(indenter, _strips(indenter, l_r), l_r, load, k)
         return _state(indenter, stiffness, velocity, l_r, depth, 1.0)
 
 
-def _depth(indenter: Spot, l_r: float, load: float, spring: float) -> float:
-    """Return the depth at which W/K + spring * depth is the load, by Newton's method in logarithms."""
+def depth_at(indenter: Spot, strips: Strips, l_r: float, load: float, spring: float) -> float:
+    """Return the depth at which W/K + spring * depth is the load, by Newton's method in logarithms.
+
+    The retardation length is for the first guess alone.
+    """
     depth = _first(indenter, l_r, load, spring)
     for _ in range(MOST_STEPS):
-        found = _sums(indenter, l_r, depth)
+        found = sums(indenter, strips, depth)
         total, slope = found.load + spring * depth, found.load_slope + spring
         factor = (load / total) ** (total / (depth * slope))
         depth *= min(max(factor, 0.25), 4.0)
@@ -193,7 +201,7 @@ def _state(
     model, shape = _model(indenter.profile)
     middle = model.at_depth(shape, l_r, depth)
     values, errors = {}, {}
-    found = _sums(indenter, l_r, depth)
+    found = sums(indenter, _strips(indenter, l_r), depth)
     error = found.error + (SHARP if indenter.kinks else LEAST)
     noise = 2.0 * (middle.noise + at_load * error)
     for name, (value, own, power) in model.quantities(shape, l_r, middle).items():
@@ -224,11 +232,16 @@ def _model(profile: Line) -> tuple[Any, Any]:
     return (contact, profile) if profile.convex else (asperities, Surface(profile, 1.0))
 
 
-def _sums(indenter: Spot, l_r: float, depth: float) -> Sums:
+def _strips(indenter: Spot, l_r: float) -> Strips:
+    """Return the function that knows the strips of an indenter."""
+    profile = indenter.profile
+    return partial(_columns if profile.convex else _one_by_one, profile, l_r)
+
+
+def sums(indenter: Spot, strips: Strips, depth: float) -> Sums:
     """Sum over the strips, by finer rules until two of them agree."""
     profile = indenter.profile
-    half = _half_length(profile, depth)
-    strips, rim = (_columns if profile.convex else _one_by_one), RIM[profile.convex]
+    half, rim = _half_length(profile, depth), RIM[profile.convex]
     for number in range(1 + profile.convex, len(RULES)):
         t = 0.5 * math.pi * RULES[number][0][: len(RULES[number][0]) // 2]
         weights = RULES[number][2][: t.size, :2]
@@ -236,14 +249,15 @@ def _sums(indenter: Spot, l_r: float, depth: float) -> Sums:
         t = t[kept]
         y = half * np.maximum(np.sin(t), MIDDLE)
         deep = np.maximum(depth - profile.height(y), np.finfo(float).tiny)
-        rows, own = strips(profile, y, l_r, deep)
+        rows, own = strips(y, deep)
         weighted = weights[kept] * (math.pi * half * indenter.stretch * np.cos(t))[:, None]
         fine, coarse = (rows @ weighted).T
         errors = np.abs(fine[[0, 2]] - coarse[[0, 2]]) / np.where(
             fine[[0, 2]] > 0, fine[[0, 2]], 1.0
         )
-        error = float(errors.max()) ** 1.5 + own + rim**4
-        if error < RTOL[profile.convex] + rim**4:
+        apart = float(errors.max()) ** 1.5
+        error = apart + own + rim**4
+        if apart < RTOL[profile.convex]:
             break
     if not error < LIMIT:
         raise QuadratureError("quadrature over the strips fails: the indenter's reach is too close")
@@ -259,7 +273,7 @@ def _half_length(profile: Any, depth: float) -> float:
     return float(patch.x_te)
 
 
-def _columns(profile: Line, y: Array, l_r: float, depth: Array) -> tuple[Array, float]:
+def _columns(profile: Line, l_r: float, y: Array, depth: Array) -> tuple[Array, float]:
     """Return load, its slope, friction and what is lost in each strip of a convex profile."""
     column = np.full((y.size, 1), l_r)
     strip: Any = Strip(profile, y[:, None])
@@ -273,7 +287,7 @@ def _columns(profile: Line, y: Array, l_r: float, depth: Array) -> tuple[Array, 
     return rows, float((size / whole).max())
 
 
-def _one_by_one(profile: Line, y: Array, l_r: float, depth: Array) -> tuple[Array, float]:
+def _one_by_one(profile: Line, l_r: float, y: Array, depth: Array) -> tuple[Array, float]:
     """Return the same of a profile that is a pair of Python functions."""
     rows, worst = np.empty((4, y.size)), 0.0
     for column, (at, deep) in enumerate(zip(y.tolist(), depth.tolist(), strict=True)):
