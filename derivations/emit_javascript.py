@@ -15,7 +15,7 @@ from .code_printer import CodePrinter
 from .emit import FORMS, Form, number, parts, replace, sentence
 from .symbols import E, a, b, d, d_s, lam, rho, right
 from .transient_edges import RIGHT_AT_ONCE
-from .transient_motion import FRICTION_FORCE, NORMAL_FORCE, START
+from .transient_motion import NORMAL_FORCE, START
 from .viscoelastic import MOMENTS
 
 TARGET = Path(__file__).parents[1] / "kvtheory" / "explorer" / "closed_forms.js"
@@ -28,11 +28,10 @@ _HEADER = """\
 // and arguments are those of kvtheory/models/steady/closed_forms.py where that has the same.
 """
 
-_force, _drag = NORMAL_FORCE.subs(START), FRICTION_FORCE.subs(START)
+_force = NORMAL_FORCE.subs(START)
 _now = ((E, sp.S.One), (sym.lift, d + d_s), (sym.drift, lam))
 _arm, _mean, _first, _second = sym.arm_number, sym.moment_mean, sym.ratio_first, sym.ratio_second
 _rest, _eta = sym.spring_share, sym.excess_share
-_state = (a, right, lam, d_s)
 
 TRANSIENT = (
     Form("pressure_behind", "F19-pressure", sym.P, (sym.exponent, sym.l, sym.y),
@@ -40,10 +39,9 @@ TRANSIENT = (
     Form("peeling_edge", "F10-instant", RIGHT_AT_ONCE, (d, d_s, lam), "the right edge while it peels", _now),
     Form("peeling_normal_force", "F11-peel", sym.f_normal, (b, rho), "f_z from the width b and rho"),
     Form("peeling_friction_force", "F11-peel", sym.f_friction, (b, right, rho), "f_x, likewise"),
-    Form("force_per_depth", "F11-start", sp.Derivative(_force, d), _state, "df_z/dd after a start"),
+    Form("force_per_depth", "F11-start", sp.Derivative(_force, d), (a, right, lam, d_s),
+         "df_z/dd after a start"),
     Form("force_per_rate", "F11-start", sp.Derivative(_force, d_s), (a, right), "df_z/dd' after a start"),
-    Form("drag_per_depth", "F11-start", sp.Derivative(_drag, d), _state, "df_x/dd after a start"),
-    Form("drag_per_rate", "F11-start", sp.Derivative(_drag, d_s), (a, right), "df_x/dd' after a start"),
 )  # fmt: skip
 
 MOMENTS_OF = dict(zip(MOMENTS, ("ahead", "behind", "bulge", "twist"), strict=True))

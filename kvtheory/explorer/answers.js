@@ -13,10 +13,12 @@ function show_numbers(scene, state) {
   const force = force_units(scene);
   document.getElementById("numbers").innerHTML = NUMBERS.map(([name, told, unit, factor]) => {
     const [shown, by] = unit === "force" ? force : [unit, factor];
-    return `<div><small>${told}</small><b data-name="${name}">${short(state[name] * by, 5)}${shown ? ` <small>${shown}</small>` : ""}</b></div>`;
+    const value = `${short(state[name] * by, 5)}${shown ? ` <small>${shown}</small>` : ""}`;
+    return `<div><small>${told}</small><b data-name="${name}">${value}</b></div>`;
   }).join("");
   document.getElementById("readout").textContent =
-    `\u03bc = ${short(state.friction_coefficient)}, \u03b4 = ${short(state.depth * 1e3)} mm, F = ${short(state.friction_force * force[1])} ${force[0]}`;
+    `\u03bc = ${short(state.friction_coefficient)}, \u03b4 = ${short(state.depth * 1e3)} mm, `
+    + `F = ${short(state.friction_force * force[1])} ${force[0]}`;
 }
 
 /** Whose formulas hold: those of the shape on Kelvin-Voigt elements, else those of the foundation. */
@@ -52,7 +54,8 @@ function quantities_of(scene, state) {
   const found = {
     C: `${short(C * 1e-9)} N\u00b7s/mm\u00b3`, K: `${short(K * 1e-9)} N/mm\u00b3`, V: `${short(speed * 1e3)} mm/s`,
     R: m(L), W: force(state.load), F: force(Math.abs(state.friction_force)), W_0: force(rest.load),
-    k_s: whole ? `${short((scene.spring || 0) * 1e-3)} N/mm` : `${short((scene.spring || 0) * 1e-6)} N/mm\u00b2`, a: m(state.half_length), a_0: m(rest.half_length),
+    k_s: whole ? `${short(scene.spring * 1e-3)} N/mm` : `${short(scene.spring * 1e-6)} N/mm\u00b2`,
+    a: m(state.half_length), a_0: m(rest.half_length),
     delta: m(state.depth), delta_0: m(rest.depth), l_r: m(state.retardation_length), delta_h: m(high),
     a_h: m(tilt), n: short(n), q: short(state.q ?? NaN), Q: short(state.Q ?? NaN), l: short(state.l ?? NaN),
     T: short(state.tail ?? NaN),
@@ -124,13 +127,13 @@ function show_stability(scene, state) {
   }
   const onset = onsets(stability_numbers(scene, state)), { lower, upper } = onset, pairs = rates(scene, state);
   const stable = !drive || is_stable(drive.stiffness, onset), some = Number.isFinite(upper.stiffness);
-  const told = drive ? `${stable ? "Stable on this spring: small motions die out" : "Unstable on this spring: small motions grow"} (derivation F22).`
-    : "Stable under a rigid drive (derivation F12).";
+  const on_spring = stable ? "Stable on this spring: small motions die out" : "Unstable on this spring: small motions grow";
+  const told = drive ? `${on_spring} (derivation F22).` : "Stable under a rigid drive (derivation F12).";
   const rows = drive ? [["spring of the drive", STIFFNESS(drive.stiffness)]] : [];
   if (some) {
     rows.push([drive ? "stable above" : "a spring in the drive would have to exceed", STIFFNESS(upper.stiffness)]);
     if (lower.stiffness > 0) rows.push(["and below", STIFFNESS(lower.stiffness)]);
     rows.push(["frequency at the onset", `${short(upper.frequency)} Hz`]);
-  } else rows.push([drive ? "critical stiffness" : "with a spring in the drive", drive ? "none: stable on every spring" : "stable on every spring"]);
+  } else rows.push(["with any spring in the drive", "stable"]);
   place.innerHTML = `<p class="note" data-stable="${stable}">${told}</p>${table([...rows, ...motions(pairs)])}`;
 }

@@ -473,16 +473,6 @@ function force_per_rate(a, r) {
   return 3 * a / 4 + 3 * r / 4;
 }
 
-/** df_x/dd after a start; theorem F11-start. */
-function drag_per_depth(a, r, lam, d_s) {
-  return 3 * a * a / 4 + 3 * a * lam / 2 + 3 * d_s / 4 - 3 * r * r / 4;
-}
-
-/** df_x/dd' after a start; theorem F11-start. */
-function drag_per_rate(a, r) {
-  return 3 * a * a / 4 - 3 * r * r / 4;
-}
-
 /** t_0 of an arm, for z > 4; theorem F17-arm. */
 function arm_ratio(z_v) {
   return 2 * ((1 + Math.exp(-z_v)) / (1 - Math.exp(-z_v)) - 2 / z_v) / z_v;

@@ -58,7 +58,8 @@ function arms_html() {
 /** What finds a control again after all of them were built anew. */
 function address(control) {
   const name = ["section", "set", "arm", "key"].find((each) => control.dataset?.[each]);
-  return name && `${control.tagName}[data-${name}="${control.dataset[name]}"]${control.type === "range" ? "[type=range]" : ""}`;
+  const kind = control.type === "range" ? "[type=range]" : "";
+  return name && `${control.tagName}[data-${name}="${control.dataset[name]}"]${kind}`;
 }
 
 function build_controls() {

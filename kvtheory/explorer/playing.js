@@ -52,7 +52,10 @@ function follow(scene, state) {
     return;
   }
   const first = Math.min(end / 300, 0.1 * number.epsilon / (1 + number.lam));
-  player.run = { rows, rest, number, end, first: Math.max(first, end * 1e-6), side: Math.sign(scene.V), tau: scene.tau, force: force_units(scene) };
+  player.run = {
+    rows, rest, number, end, first: Math.max(first, end * 1e-6), side: Math.sign(scene.V), tau: scene.tau,
+    force: force_units(scene),
+  };
   const states = number.along ? "Four states" : "Two states";
   if (fixed && !number.along) {
     const strips = whole ? ", those of every strip of the ball; the middle plane is shown" : "";
@@ -97,9 +100,10 @@ function draw_motion() {
     }
     const told = ([name, unit, kind], what) => swatch(kind, `${what} ${short(now[name] * unit * factor)} ${unit_of_force}`);
     const depth = `<span>\u03b4 = ${short(now.d * rest.depth * 1e3)} mm</span>`;
+    const speed = short((number.lam - now.w) * rest.half_length / tau * 1e3);
     document.getElementById("motion-legend").innerHTML = `<span>t = ${short(s * ms)} ms</span>${depth}`
       + told(forces[0], "normal force") + told(forces[1], "friction force")
-      + (number.along ? told(forces[2], "spring force") + `<span>sliding at ${short((number.lam - now.w) * rest.half_length / tau * 1e3)} mm/s</span>` : "");
+      + (number.along ? told(forces[2], "spring force") + `<span>sliding at ${speed} mm/s</span>` : "");
     return drawn + line([[t.at(s * ms), half + 8], [t.at(s * ms), box[3]]], "cursor");
   }, "The contact during the start from rest, and the forces over time");
   document.getElementById("instant").value = String(Math.round(1000 * player.share));
