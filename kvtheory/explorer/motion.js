@@ -16,22 +16,23 @@ function start_law([d, v, x, w], number) {
   return { lam, a, r, rho, f_z, f_x, rate, rate_along };
 }
 
-/** One step of h with `parts` linearly implicit Euler steps; what couples both motions is taken explicitly. */
+/** One step of h with `parts` linearly implicit Euler steps, first along x and then across. */
 function euler(y, h, parts, number) {
   const k = h / parts, { along } = number;
   let [d, v, x, w] = y;
   for (let i = 0; i < parts; i++) {
-    const now = start_law([d, v, x, w], number);
+    let now = start_law([d, v, x, w], number);
+    if (along) {
+      const damped = along.damping + now.r ** 3 + now.a ** 3;  // as at the steady state
+      w += (now.rate_along * along.epsilon - k * along.kappa * w) * k / (along.epsilon + k * damped + k * k * along.kappa);
+      x += k * w;
+      now = start_law([d, v, x, w], number);
+    }
     if (number.kappa < Infinity) {
       const by_d = -(force_per_depth(now.a, now.r, now.lam, v) + number.kappa) / number.epsilon;
       const by_v = -force_per_rate(now.a, now.r) / number.epsilon;
       v += (now.rate + k * by_d * v) * k / (1 - k * by_v - k * k * by_d);
       d += k * v;
-    }
-    if (along) {
-      const damped = along.damping + now.r ** 3 + now.a ** 3;  // as at the steady state
-      w += (now.rate_along * along.epsilon - k * along.kappa * w) * k / (along.epsilon + k * damped + k * k * along.kappa);
-      x += k * w;
     }
   }
   return [d, v, x, w];
