@@ -57,9 +57,9 @@ def sweep(
         after which F_x stays within 1 % of the steady one; ``hops``, how often the indenter takes off;
         ``events``, as JSON. With a spring in the drive ``stick_slip_settles`` (1, or 0 where the run
         shows neither steady sliding nor the limit of its cycles), ``stick_slip_amplitude`` (half the
-        stroke of the indenter along x), ``stick_slip_period``, and ``sliding_velocity`` and ``friction_force`` with
-        ``.cycle_max`` and ``.cycle_min``. With `at`, NAME is the time series; ``NAME.steady`` is always the
-        steady value. Transients of other shapes, and on Prony series, are simulated by elements, in less
+        stroke of the indenter along x), ``stick_slip_period``, and ``sliding_velocity`` and
+        ``friction_force`` with ``.cycle_max`` and ``.cycle_min``. With `at`, NAME is the time series;
+        ``NAME.steady`` is always the steady value. Transients of other shapes, and on Prony series, are simulated by elements, in less
         than a second per scene: they give series and ``NAME.end`` only.
     at
         Times of the series, in s or as text with a unit.
