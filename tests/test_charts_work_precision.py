@@ -250,7 +250,7 @@ def test_command(tmp_path, monkeypatch):
     ("arguments", "message"),
     [
         (("--standard", "hopp"), 'did you mean "hop"?'),
-        (("--standard", "hop", "--set", "drive.velocity=1 m/s"), "give no SCENE"),
+        (("--standard", "hop", "--set", "drive.velocity=1 m/s"), "does not go with SCENE"),
         (("-o", "chart.txt"), "expected a name that ends in"),
         (("--set", "indenter.shape=circle"), "parabola only"),
     ],
