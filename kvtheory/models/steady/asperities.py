@@ -286,7 +286,7 @@ def at_load(surface: Surface, l_r: float, load: float, spring: float) -> Contact
 def quantities(surface: Surface, l_r: float, contact: Contact) -> dict[str, tuple[float, ...]]:
     """Return each quantity over the stiffness, its relative error at this depth, and d ln/d ln delta.
 
-    The edges are those of all contacts together; the half-length is that of all contacts at rest.
+    The edges are those of all contacts together; the half length is that of all contacts at rest.
     """
     values, errors = integrals_of(contact)
     nearby, _ = integrals_of(Contact(surface, l_r, contact.depth * (1.0 - DEPTH_STEP)))

@@ -44,17 +44,17 @@ LINEAR = 1e-8
 CUBIC = 1e-5
 """The same for the depth, whose steps converge cubically."""
 STRIDES = tuple(4.0 ** (2**power) for power in range(6, -1, -1))
-"""Factors by which a half-length far too short is widened at first, as long as it stays too short."""
+"""Factors by which a half length far too short is widened at first, as long as it stays too short."""
 CLOSER = 3
 """Newton steps on the load of a parabola as blunt as the shape, for the first depth."""
 NEAR_REACH = 0.5
-"""Share of the reach at which the search for the half-length starts at most."""
+"""Share of the reach at which the search for the half length starts at most."""
 MOST_STEPS = 200
 """Steps of a root; they are a handful unless a vertex or the reach of a circle is close."""
 VERTEX = 1e-290
-"""A trailing edge closer to the lowest point than this share of the half-length is set to it."""
+"""A trailing edge closer to the lowest point than this share of the half length is set to it."""
 FLOOR = 1e-20
-"""Share of the half-length below which the peak is set to the lowest point."""
+"""Share of the half length below which the peak is set to the lowest point."""
 PEAK_RTOL = 1e-8
 """Tolerance of its position; the error of its value is the square of it, times the exponent of a power."""
 PEAK_STEPS = 8
@@ -164,7 +164,7 @@ def _first(shape: Convex, scale: Value, wanted: Value, width: Callable[[Value], 
 
 
 def _within(shape: Convex, a: Value, factor: Value) -> Value:
-    """Return a half-length times a factor, at most halfway to the reach."""
+    """Return a half length times a factor, at most halfway to the reach."""
     return least(a * factor, 0.5 * (a + shape.reach))
 
 

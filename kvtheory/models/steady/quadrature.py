@@ -73,7 +73,7 @@ def at_depth(
     QuadratureError
         If a quadrature or a root fails, the contact goes beyond the indenter's reach, or a callable
         shape is not smooth where it touches. Such a shape may touch in several places: they are
-        summed, and the edges and the half-length are the outermost.
+        summed, and the edges and the half length are the outermost.
 
     Examples
     --------
