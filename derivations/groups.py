@@ -156,7 +156,7 @@ _CHANGED = (
     r"\frac{X}{T} V \frac{Z}{X} h'\right)"
 )
 _LENGTHS = (
-    r"Let lengths along the foundation change by a factor $X$, those across it by $Z$, forces by $N$ and "
+    r"Let lengths along the foundation change by a factor $X$, vertical ones by $Z$, forces by $N$ and "
     r"times by $T$, and every quantity by its dimension: $R$ by $X^2/Z$, $K$ by $N/(X Z)$, and so on. "
     r"Shape and pressure keep their form, whatever the factors, and with them load and friction force, "
     r"integrals over $x$ of $p$ and $-h' p$. So $X$ and $Z$ count as two dimensions. This is due to "

@@ -1,4 +1,4 @@
-"""That no second contact exists behind the trailing edge of steady sliding (Eq. 27)."""
+"""There is no second contact behind the trailing edge of steady sliding (Eq. 27)."""
 
 import sympy as sp
 
