@@ -1,1 +1,1 @@
-"""Methods judged by what they cost and achieve, by where they are stable, and by how they fail."""
+"""Comparison of methods: cost and accuracy, stability, and failures."""

@@ -1,4 +1,4 @@
-"""Which charts of speed against accuracy are made, of a user's scene or of the standard ones."""
+"""The choice of charts of speed against accuracy: for a user's scene or for the standard ones."""
 
 from collections.abc import Callable, Sequence
 from functools import partial
@@ -13,14 +13,14 @@ from kvtheory.scene.quantities import nearest
 from kvtheory.scene.requirements import lacks_rigid_paper_model, require
 
 Job = Callable[..., Chart]
-"""Makes one chart, with an `effort`, and tells its `progress`."""
+"""Makes one chart, with an `effort`, and reports its `progress`."""
 ALL = "all"
 
 
 def chosen(scene: Scene, standard: Sequence[str], *, quick: bool) -> list[Job]:
     """Return a job for each chart: of the standard scenes that are named, or else of the scene.
 
-    Where a scene has a steady state that suits, its chart comes before that of the transient.
+    If a scene has a suitable steady state, its chart comes before that of the transient.
 
     Raises
     ------
@@ -44,7 +44,7 @@ def chosen(scene: Scene, standard: Sequence[str], *, quick: bool) -> list[Job]:
 
 
 def _sliding(name: str) -> Scene:
-    """Return the scene of steady sliding that stands for a standard scene, which may not suit."""
+    """Return the scene of steady sliding for a standard scene, which may not be suitable."""
     if name in VELOCITIES:
         return Scene(drive=Drive(velocity=VELOCITIES[name]))
     return standard_scene(name)

@@ -35,7 +35,7 @@ def _instability() -> Outcome:
 
 
 def _refusal(scene: Scene) -> str:
-    """Return what the package says where the paper's scheme does not work."""
+    """Return the message of the package where the paper's scheme does not work."""
     try:
         elements(scene, scheme="paper", certify=False)
     except (DivergenceError, ValueError) as error:
@@ -44,7 +44,7 @@ def _refusal(scene: Scene) -> str:
 
 
 def _fixed(scheme: str, times: Any, time_step: float) -> Any:
-    """Return the normal force on a fixed indenter, which should not change at all."""
+    """Return the normal force on a fixed indenter, which should be constant."""
     fixed = Scene.table1("fixed")
     return elements(
         fixed, per_length=COARSE, scheme=scheme, at=times, time_step=time_step, certify=False

@@ -1,4 +1,4 @@
-"""What an entry of the atlas of failures holds."""
+"""The data of an entry of the atlas of failures."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -32,16 +32,16 @@ class Picture:
 
     @classmethod
     def of(cls, x: str, y: str, wrong: Curve, package: Curve, **logarithmic: bool) -> "Picture":
-        """Return the picture of what is wrong, and of what the package gives, each as x and y."""
+        """Return the wrong curve and that of the package, each as x and y."""
         return cls(x, y, (Line("wrong", *wrong), Line("package", *package)), **logarithmic)
 
 
 @dataclass(frozen=True)
 class Outcome:
-    """What was computed: the wrong number, the right one and that of the package, in SI.
+    """The computed numbers: the wrong one, the right one and that of the package, in SI.
 
-    `right` comes from a formula or a method that shares no code with what gives `package`. A method that
-    gives no number at all gives NaN or infinity. `said` is what the package tells the user, if it does.
+    `right` comes from a formula or a method that shares no code with that of `package`. A method without a
+    result gives NaN or infinity. `said` is the message of the package, if any.
     """
 
     wrong: float
@@ -73,7 +73,7 @@ class Entry:
     scale: float = 0.0
 
     def error(self, value: float, right: float) -> float:
-        """Return how wrong a value is, relative to the right one or to `scale`."""
+        """Return the error of a value, relative to the right one or to `scale`."""
         return abs(value - right) / (self.scale or abs(right))
 
 

@@ -1,4 +1,4 @@
-"""The atlas of failures: one entry for each way in which a method fails, computed when it is asked for."""
+"""The atlas of failures: one entry for each way in which a method fails, computed on request."""
 
 import tomllib
 from collections.abc import Iterator, Sequence

@@ -1,4 +1,4 @@
-"""The methods of the work-precision charts for transients, each with the knob that it sweeps."""
+"""The methods of the work-precision charts for transients, each with its accuracy parameter."""
 
 import math
 import os
@@ -30,18 +30,18 @@ LINES_DENSITIES = DENSITIES[:5]
 LINES_RTOL = 1e-6
 """Tolerance of the method of lines: its error in time is below that of the elements."""
 SUNDIALS_LOGS = "SUNLOGGER_WARNING_FILENAME", "SUNLOGGER_ERROR_FILENAME"
-"""Where SUNDIALS writes what it would else print in the middle of a table."""
+"""File to which SUNDIALS writes its messages, which would otherwise appear within a table."""
 REACH = 1.6
-"""The row of the method of lines extends so far beyond the indenter's path, in half lengths."""
+"""Margin of the row of the method of lines beyond the indenter's path, in half lengths."""
 
 
 class TimedOutError(Exception):
-    """A run took longer than it was given."""
+    """A run took longer than allowed."""
 
 
 @dataclass
 class Clock:
-    """Ends a run that has gone on for too long, from within its own function."""
+    """Ends a run that takes too long, from within its right-hand side."""
 
     seconds: float = math.inf
     began: float = 0.0
@@ -72,8 +72,8 @@ Solve = Callable[[Problem, float, Clock], tuple[Curves, int]]
 class Method:
     """A way to solve a problem; `solve` returns the curves and the work that these took.
 
-    `kind` is ``"model"`` where the error is that of a simpler model, which no knob can reduce; `work` is
-    what is counted; `suits` says whether the method can take a problem at all.
+    `kind` is ``"model"`` where the error is that of a simpler model, which no parameter can reduce; `work`
+    names the counted operations; `suits` says whether the method applies to a problem.
     """
 
     name: str

@@ -26,7 +26,7 @@ Array = NDArray[np.float64]
 LOAD = 4.0 / 3.0
 RTOL = 1e-9
 FINE = 120.0
-"""Elements per unit length, of a static contact that is 2 long: the second opinion on the right number."""
+"""Elements per unit length, of a static contact that is 2 long: the independent check of the right number."""
 
 FLIGHTS = "take-off", "landing"
 """Kinds of events."""

@@ -1,4 +1,4 @@
-"""Methods as one would write them at first: the peers of the charts, and the failures of the atlas.
+"""Naive implementations: the peers of the charts, and the failures of the atlas.
 
 None of them uses the methods of the package. Scaled form: depths by delta_0, time by tau, lengths by
 a_0, forces by W_0 (f_x by W_0 delta_0/a_0).
@@ -18,7 +18,7 @@ Law = Callable[[float, Any], tuple[float, float]]
 
 
 def closed_forms(d: float, v: float, number: float) -> tuple[float, float]:
-    """Return f_z and f_x with the edges of Eqs. 32 and 33 as they are written, which know no past.
+    """Return f_z and f_x with the edges of Eqs. 32 and 33 as written, which have no memory.
 
     The radicand of Eq. 33 is taken as zero where it is negative, so that no square root fails.
 
@@ -54,7 +54,7 @@ def two_states(number: float | Callable[[float], float], epsilon: float, kappa: 
 
 
 def stale_elements(scene: Scene, per_length: float) -> tuple[Array, Array]:
-    """Return t (s) and depth (m) by the paper's scheme, with surfaces that stand still within a step.
+    """Return t (s) and depth (m) by the paper's scheme, with surfaces kept fixed within a step.
 
     In every stage of the Runge-Kutta method an element is taken to be in contact if the indenter is
     below the surface that the element had at the end of the last step. The indenter must be a parabola

@@ -1,6 +1,6 @@
-"""The scenes of the work-precision charts, and what is right for them, by two independent methods.
+"""The scenes of the work-precision charts, and their reference solutions by two independent methods.
 
-Scenes by which others judge their simulations are in `kvtheory.reference_problems`.
+Scenes for testing other simulations are in `kvtheory.reference_problems`.
 """
 
 import json
@@ -29,14 +29,14 @@ from kvtheory.scene.static_state import StaticState
 Array = NDArray[np.float64]
 
 EVENLY, AFTER_JUMP = 41, 9
-"""Instants that are judged: so many over the whole run, and so many soon after each jump."""
+"""Instants at which errors are measured: this many over the run, and this many soon after each jump."""
 SOON = np.geomspace(1e-4, 5e-2, AFTER_JUMP)
 """Shares of the run after a jump."""
 APART = 1e-6
-"""Share of the run by which instants are apart at least."""
+"""Smallest distance of instants, as a share of the run."""
 REFERENCE_RTOL, INDEPENDENT_RTOL = 1e-12, 1e-10
 NO_MEMORY = 1e-7
-"""Where Radau on the two states agrees so well with the continuum, no memory was needed."""
+"""If Radau on the two states agrees this well with the continuum, no memory was needed."""
 DENSITIES = {False: 160.0, True: 60.0}
 """Elements per half length at rest of the finer reference by elements; for the quick form, fewer."""
 TABLE = "work_precision_reference.json"
@@ -67,7 +67,7 @@ class Curves(NamedTuple):
 
 @dataclass(frozen=True)
 class Reference:
-    """What is right; how far two independent methods agree on each error; and which methods these are."""
+    """The reference solution; the difference of two independent methods in each error; and their names."""
 
     curves: Curves
     agreement: dict[str, float]
@@ -84,7 +84,7 @@ class Problem:
 
     @cached_property
     def units(self) -> StaticState:
-        """The scene at rest, which measures the scaled form."""
+        """The scene at rest, the scale of all quantities."""
         return StaticState.of(self.scene)
 
     @cached_property
@@ -109,7 +109,7 @@ class Problem:
 
     @cached_property
     def times(self) -> Array:
-        """Instants (s) that are judged; where the drive jumps, just after the jump."""
+        """Instants (s) at which errors are measured; where the drive jumps, just after the jump."""
         end = self.scene.run.duration
         soon = [t + x for t in self.jumps for x in SOON * end if t + x < end]
         evenly = np.linspace(0.0, end, EVENLY).tolist()
@@ -211,7 +211,7 @@ def by_two_states(
     problem: Problem, method: str, rtol: float, law_of: Callable[..., Law] = two_states,
     piece: Callable[..., tuple[Array, int]] = piece_by_scipy,
 ) -> tuple[Curves, int]:  # fmt: skip
-    """Return the curves by the two states, started anew at each jump, and the evaluations."""
+    """Return the curves by the two states, restarted at each jump, and the evaluations."""
     times, y, rows, count = problem.times / problem.units.time, np.array([1.0, 0.0]), [], 0
     for a, b, number in problem.pieces:
         law, s = law_of(number, problem.epsilon, problem.kappa), times[(times >= a) & (times < b)]
@@ -239,7 +239,7 @@ def by_elements(
 
 
 def reference(problem: Problem) -> Reference:
-    """Return the solution by the continuum at a tight tolerance, held against an independent one."""
+    """Return the solution by the continuum at a tight tolerance, compared with an independent one."""
     first = by_continuum(problem, REFERENCE_RTOL)[0]
     other, name = _independent(problem, first)
     return Reference(first, errors(other, first), ("continuum, rtol 1e-12", name))

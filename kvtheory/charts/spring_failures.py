@@ -25,7 +25,7 @@ PATH = 3000
 def _followed(
     number: float, epsilon: float, spring: tuple[float, float], s: Array
 ) -> NDArray[np.float64]:
-    """Return (d, d', x, x') by SciPy's Radau, with edges that know undisturbed ground only."""
+    """Return (d, d', x, x') by SciPy's Radau, with edges that assume undisturbed ground."""
     law = four_states(number, epsilon, spring)
     run = solve_ivp(
         law, (0.0, s[-1]), (1.0, 0.0, 0.0, 0.0), "Radau", t_eval=s, rtol=1e-8, atol=1e-10

@@ -2,10 +2,10 @@
 
 Predicted (derivations, F15): a step h is stable if |R(σ h)| <= 1 for both rates of the contact,
 M σ^2 + C L σ + K L + k_s = 0, with L of the contact at the static depth, where a start from rest
-begins, and with L in steady sliding. Measured: two runs that differ by a tiny velocity go side by
-side for some steps; the factor by which their difference grows in a step is above 1 if and only if
-the scheme is unstable. No stability theory enters the measurement. Above lambda of some 20 a step near
-the limit passes much of the contact, which the prediction holds fixed: there it is too optimistic.
+begins, and with L in steady sliding. Measured: two runs that differ by a tiny velocity are made side by
+side for some steps; the factor by which their difference grows in a step is above 1 if and only if the
+scheme is unstable. No stability theory enters the measurement. Above lambda of about 20 a step near the
+limit passes much of the contact, which the prediction takes as fixed: there it is too optimistic.
 """
 
 from collections.abc import Callable, Iterator
@@ -34,13 +34,13 @@ STEPS = 30
 LATEST = 8
 """Steps after which growth counts in steady sliding. A run that has blown up may calm down later."""
 NUDGE = 1e-9
-"""Difference of both runs: depths per step. Nothing flips by it, and rounding is far below."""
+"""Difference of both runs, in depths per step: no contact changes by it, and rounding is far below."""
 BLOWN_UP, DIED_OUT = 1e4, 0.1
-"""Times the difference at first, at which a measurement ends."""
+"""Multiple of the first difference at which a measurement ends."""
 SWELLING = 1.08
-"""Growth in the first steps that counts as unstable: stable runs come apart by up to 1.06, once."""
+"""Growth in the first steps that counts as unstable: stable runs diverge by up to 1.06, once."""
 DEEP = 1e6
-"""Times the static depth, to which elements are kept: an unstable indenter may sink."""
+"""Multiple of the static depth to which elements are kept: an unstable indenter may sink."""
 KEPT_ROWS = 100.0
 """Elements in a static half length where the step is given in units of its limit."""
 PAPERS_DENSITY = 2e5
@@ -50,7 +50,7 @@ VELOCITY_RANGE, TAU_RANGE = (1e-3, 1.0), (3e-3, 3.0)
 NUMBER_RANGE, STEP_RANGE = (0.1, 100.0), (0.2, 5.0)
 """Ends of the axes of the maps: V in m/s, tau in s, lambda, and the step over its limit."""
 POINTS, QUICK_POINTS = (31, 24), (13, 10)
-"""Of a map; those of schemes that are stable everywhere have half as many each way."""
+"""Points of a map each way; maps of schemes that are stable everywhere have half as many."""
 
 CLASSES = "stable", "unstable at first", "unstable in steady sliding"
 """Of a point of a map: the start from rest may be unstable though steady sliding is not."""
@@ -94,7 +94,7 @@ def contact_lengths(scene: Scene) -> tuple[float, float]:
 def walk(
     row: ElementRow, scheme: Scheme, state: IndenterState, time_step: float
 ) -> Iterator[IndenterState]:
-    """Step on and on, with nobody to watch for instability; ends if the indenter sinks too deep."""
+    """Step without checks for instability; ends if the indenter sinks too deep."""
     with np.errstate(all="ignore"):
         while True:
             try:
@@ -122,7 +122,7 @@ def unwatched(
 def growth(
     scene: Scene, scheme: str, per_length: float, time_step: float, *, steady: bool
 ) -> float:
-    """Return the factor per step by which two runs, apart by a tiny velocity, come further apart.
+    """Return the factor per step by which the difference of two runs, at first a tiny velocity, grows.
 
     Above 1 the scheme is unstable, below 1 stable. The indenter is a parabola that is driven with one
     positive velocity. With `steady` it begins in steady sliding; else it begins at its static depth,

@@ -22,7 +22,7 @@ Array = NDArray[np.float64]
 FAR = 1e9
 """l_r/a of the entry on cancellation: Eq. 27 loses twice as many digits as it has decades."""
 SHALLOW = 1e-9
-"""Depth (m) of a contact that a rule of integration over the whole indenter does not see."""
+"""Depth (m) of a contact that a quadrature over the whole indenter misses."""
 WANTED_FRICTION = 0.05
 FIRST_GUESS = 0.1
 """Velocity (m/s) of Table 1, which lies beyond the maximum of the friction coefficient."""
@@ -170,7 +170,7 @@ def _glassy() -> Outcome:
 
 
 def _circle_by_sums(scene: Scene) -> float:
-    """Return mu of a circle by sums over 400 000 points: a coarse method that needs no care."""
+    """Return mu of a circle by sums over 400 000 points, a brute-force method."""
     R, K, W = 0.01, 1e10, scene.support.weight
     l_r = 0.1 * scene.foundation.retardation_time
     half = 0.5 * math.pi * (np.arange(400_000) + 0.5) / 400_000

@@ -20,11 +20,11 @@ from kvtheory.scene.model import Run, Scene
 from kvtheory.scene.requirements import lacks_paper_model
 
 DIGITS = 40
-"""Of the reference solutions, at least; they are computed with decimals, three times as many."""
+"""Correct digits of the reference solutions; they are computed with three times as many decimals."""
 MANY = 10_000
 """Scenes solved at once, where a method takes arrays."""
 TIME_CONSTANTS = 16.0
-"""After which a transient counts as steady: e^-16 = 1e-7."""
+"""Time constants after which a transient counts as steady: e^-16 = 1e-7."""
 TOLERANCES = tuple(10.0**-k for k in range(2, 14, 2))
 LOOKS = 50
 """At the clock, during a transient."""
@@ -38,7 +38,7 @@ Solve = Callable[[float, Clock], tuple[float, float, int]]
 
 
 def suits(scene: Scene) -> bool:
-    """Whether a scene has this chart: a parabola under a dead weight with a constant velocity above 0."""
+    """Return whether a scene has this chart: a parabola, a dead weight, a constant velocity above 0."""
     return (
         not lacks_paper_model(scene)
         and scene.support.spring == 0.0
@@ -57,7 +57,7 @@ class Numbers(NamedTuple):
 
     @classmethod
     def of(cls, scene: Scene) -> "Numbers":
-        """Return those of a scene that suits."""
+        """Return the numbers of a suitable scene."""
         K, tau = scene.foundation.stiffness, scene.foundation.retardation_time
         return cls(scene.indenter.radius, K, scene.drive.final_velocity * tau, scene.support.weight)  # type: ignore[union-attr]
 
@@ -103,7 +103,7 @@ def by_ratio(numbers: Numbers) -> tuple[Decimal, Decimal]:
 
 
 def _by_halves(below: Callable[[Decimal], bool], high: Decimal) -> Decimal:
-    """Return the place between 0 and `high` where `below` ends."""
+    """Return the position between 0 and `high` where `below` ends."""
     low = Decimal(0)
     for _ in range(4 * DIGITS + 80):
         middle = (low + high) / 2

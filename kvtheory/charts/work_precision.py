@@ -1,8 +1,8 @@
-"""Work-precision charts: what each method achieves, and what that costs, measured side by side.
+"""Work-precision charts: the accuracy and the cost of each method, measured side by side.
 
-Each method sweeps its own knob. Its first call, which imports and compiles, is timed apart; one run of
-each setting gives the errors; then all settings are repeated in random order, and the least time and
-the quartiles count. Settings that fail are kept, with the reason.
+Each method sweeps its accuracy parameter. Its first call, which imports and compiles, is timed separately;
+one run of each setting gives the errors; then all settings are repeated in random order, for the least time
+and the quartiles. Settings that fail are kept, with the reason.
 """
 
 import random
@@ -24,7 +24,7 @@ from kvtheory.results.errors import DivergenceError
 WRONG = 1e-3
 """Error of a curve at which a run that reported success is wrong, if it is also far beyond its tolerance."""
 BEYOND = 100.0
-"""Times its tolerance, at which an error is far beyond it."""
+"""Multiple of its tolerance at which an error is far beyond it."""
 JUDGED = "depth, maximum", "friction, maximum"
 """Errors by which a run is called wrong."""
 REASONS = ("unstable", "not converged", "timed out", "refused", "missed event",
@@ -40,7 +40,7 @@ REASON_OF: dict[type[BaseException], str] = {
 
 @dataclass(frozen=True)
 class Effort:
-    """What a chart may take: repeats of each setting, seconds for one run and for all repeats."""
+    """Limits of a chart: repeats of each setting, seconds for one run and for all repeats."""
 
     repeats: int
     longest: float
@@ -49,12 +49,12 @@ class Effort:
 
 
 FULL, QUICK = Effort(11, 20.0, 120.0, 1), Effort(3, 0.4, 3.0, 2)
-"""`every` so many settings of a knob are taken."""
+"""Only one of `every` settings of a parameter is taken."""
 
 
 @dataclass
 class Point:
-    """One setting of a knob: its cost and errors, or why it failed. Times are in s."""
+    """One setting of a parameter: its cost and errors, or why it failed. Times are in s."""
 
     knob: float
     reason: str = ""
@@ -90,7 +90,7 @@ class Series:
 
 @dataclass(frozen=True)
 class Chart:
-    """All methods on one scene; `floor` is how far two independent references agree on each error."""
+    """All methods on one scene; `floor` is the difference of two independent references in each error."""
 
     name: str
     series: list[Series]
@@ -137,7 +137,7 @@ def transient_chart(
 
 
 def repeat(jobs: list[tuple[Point, Callable[[], Any]]], effort: Effort) -> None:
-    """Time the jobs again and again in random order, as far as the effort allows."""
+    """Time the jobs repeatedly in random order, as far as the effort allows."""
     order = random.Random(0)
     began = time.perf_counter()
     for _ in range(effort.repeats):
@@ -154,10 +154,10 @@ def repeat(jobs: list[tuple[Point, Callable[[], Any]]], effort: Effort) -> None:
 
 
 def attempt(points: list[Point], solve: Callable[[Point, Clock], object], effort: Effort) -> float:
-    """Run each setting once, from cheap to dear, and keep why it failed; return the time of the first call.
+    """Run each setting once, the cheapest first, and keep why it failed; return the time of the first call.
 
-    That call imports and compiles, and is made apart. Once a setting has timed out, the dearer ones count
-    as timed out too and are not begun.
+    That call imports and compiles, and is made separately. Once a setting has timed out, the more expensive
+    ones count as timed out and are not begun.
     """
     first, clock = Clock(effort.longest), Clock(effort.longest)
     first.start()
