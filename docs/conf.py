@@ -73,5 +73,5 @@ sphinx_gallery_conf = {
 def setup(app):
     """Let formulas be MathML, which needs no script, and write the pages that follow from the code."""
     write_all(HERE / "generated")
-    gallery.patch()
+    gallery.patch(HERE / "generated")
     mathml.register(app)

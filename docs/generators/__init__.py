@@ -20,13 +20,16 @@ def write_all(directory: Path) -> None:
     sources = (*(ROOT / "derivations").rglob("*.py"), *Path(__file__).parent.glob("*.py"))
     changed = max(path.stat().st_mtime for path in sources)
     with ProcessPoolExecutor(2) as pool:
-        slow = [pool.submit(problems.write, directory), pool.submit(atlas.write, directory)]
-        if not proved.exists() or proved.stat().st_mtime < changed:
-            slow.insert(0, pool.submit(derivations.pages))
+        anew = not proved.exists() or proved.stat().st_mtime < changed
+        slow = [pool.submit(derivations.pages)] if anew else []
+        slow += [pool.submit(module.write, directory) for module in (problems, atlas)]
+        drawn = [pool.submit(gallery.draw, name, directory) for name in gallery.HERE]
         texts = {path: text for module in QUICK for path, text in module.pages().items()}
         gallery.write(directory)
         for job in slow:
             texts |= job.result()
+        for job in drawn:
+            job.result()
     for path, text in texts.items():
         target = directory / path
         if not target.exists() or target.read_text(encoding="utf-8") != text:

@@ -2,7 +2,7 @@
 
 import re
 import shutil
-import tempfile
+from importlib import import_module
 from pathlib import Path
 from typing import Any
 
@@ -12,28 +12,32 @@ from figures.__main__ import FIGURES
 ROOT = Path(__file__).parents[2]
 DRAWN = ("onset_maps", "stability_map", "work_precision")
 """Copied from the folder of the scripts: they take minutes, or are measurements of time."""
+HERE = [name for name in FIGURES if name not in DRAWN]
+"""Drawn when the site is built."""
 _made: list[Path] = []
 
 
-def patch() -> None:
+def patch(directory: Path) -> None:
     """Let a script, which serves as a command line, hand its picture to the gallery instead."""
+
+    def run(name: str, compute: Any, draw: Any) -> None:
+        kept = ROOT / "figures" / f"{name}.png"
+        _made.append(kept if name in DRAWN else directory / "pictures" / kept.name)
+
     drawing.run = run
 
 
-def run(name: str, compute: Any, draw: Any) -> None:
-    """Draw one figure, or take the stored one."""
-    kept = ROOT / "figures" / f"{name}.png"
-    if name in DRAWN:
-        _made.append(kept)
-        return
+def draw(name: str, directory: Path) -> None:
+    """Draw one figure, unless it is there and younger than its script."""
     import matplotlib as mpl
 
     from kvtheory.plots import STYLE
 
-    path = Path(tempfile.mkdtemp()) / f"{name}.png"
-    with mpl.rc_context({**STYLE}):
-        draw(compute()).savefig(path, dpi=130)
-    _made.append(path)
+    script, path = import_module(f"figures.{name}"), directory / "pictures" / f"{name}.png"
+    if not path.exists() or path.stat().st_mtime < Path(script.__file__).stat().st_mtime:
+        path.parent.mkdir(exist_ok=True)
+        with mpl.rc_context({**STYLE}):
+            script.draw(script.compute()).savefig(path, dpi=130)
 
 
 def pictures(block: Any, variables: dict[str, Any], settings: dict[str, Any]) -> str:
