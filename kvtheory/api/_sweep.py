@@ -59,8 +59,8 @@ def sweep(
         shows neither steady sliding nor the limit of its cycles), ``stick_slip_amplitude`` (half the
         stroke of the indenter along x), ``stick_slip_period``, and ``sliding_velocity`` and
         ``friction_force`` with ``.cycle_max`` and ``.cycle_min``. With `at`, NAME is the time series;
-        ``NAME.steady`` is always the steady value. Transients of other shapes, and on Prony series, are simulated by elements, in less
-        than a second per scene: they give series and ``NAME.end`` only.
+        ``NAME.steady`` is always the steady value. Transients of other shapes, and on Prony series,
+        are simulated by elements, in less than a second per scene: they give series and ``NAME.end`` only.
     at
         Times of the series, in s or as text with a unit.
     method, rtol
