@@ -6,7 +6,7 @@ BIN := $(VENV)/bin
 UV := $(shell command -v uv 2>/dev/null)
 OUT ?= paper
 
-.PHONY: paper docs test test-lowest lint format benchmark clean
+.PHONY: paper docs test test-lowest package lint format benchmark clean
 
 paper: $(VENV)/.installed
 	$(BIN)/kvtheory steady
@@ -18,7 +18,7 @@ paper: $(VENV)/.installed
 	@echo "Done: open $(OUT)/derivations/derivations.html and $(OUT)/figures"
 
 docs: $(VENV)/.installed-docs
-	$(BIN)/python -m sphinx -W --keep-going -q -b html docs docs/_build/html
+	$(BIN)/python -m sphinx -W --keep-going -q -j 2 -b html docs docs/_build/html
 	$(BIN)/python docs/check_site.py docs/_build/html
 	@echo "Done: open docs/_build/html/index.html"
 
@@ -33,6 +33,12 @@ LOWEST_TESTS := test_api test_asymptotes test_exact test_quadrature test_transie
 test-lowest: $(LOWEST)/.installed
 	$(LOWEST)/bin/python -m pytest -n auto --dist loadscope -W "ignore:numpy.ndarray size changed" \
 		$(LOWEST_TESTS:%=tests/%.py)
+
+# What users install, in clean environments of all these Pythons that are on the PATH; it names those that are not.
+PYTHONS ?= python3.11 python3.12 python3.13
+
+package:
+	.ci/package $(PYTHONS)
 
 lint: $(VENV)/.installed-test
 	$(BIN)/ruff check .
@@ -60,29 +66,18 @@ else
 	$(PYTHON) -m venv $(VENV)
 endif
 
-$(VENV)/.installed: pyproject.toml constraints.txt | $(BIN)/python
+# Each holds those before it.
+$(VENV)/.installed-test: EXTRAS = ,test
+$(VENV)/.installed-test: HELD = $(VENV)/.installed
+$(VENV)/.installed-docs: EXTRAS = ,test,docs
+$(VENV)/.installed-docs: HELD = $(VENV)/.installed $(VENV)/.installed-test
+$(VENV)/.installed $(VENV)/.installed-test $(VENV)/.installed-docs: pyproject.toml constraints.txt | $(BIN)/python
 ifdef UV
-	$(UV) pip install --quiet --python $(BIN)/python --constraint constraints.txt --editable '.[fast,data,benchmark]'
+	$(UV) pip install --quiet --python $(BIN)/python --constraint constraints.txt --editable '.[fast,data,benchmark$(EXTRAS)]'
 else
-	$(BIN)/python -m pip install --quiet --constraint constraints.txt --editable '.[fast,data,benchmark]'
+	$(BIN)/python -m pip install --quiet --constraint constraints.txt --editable '.[fast,data,benchmark$(EXTRAS)]'
 endif
-	@touch $@
-
-$(VENV)/.installed-test: $(VENV)/.installed
-ifdef UV
-	$(UV) pip install --quiet --python $(BIN)/python --constraint constraints.txt --editable '.[fast,data,benchmark,test]'
-else
-	$(BIN)/python -m pip install --quiet --constraint constraints.txt --editable '.[fast,data,benchmark,test]'
-endif
-	@touch $@
-
-$(VENV)/.installed-docs: $(VENV)/.installed-test
-ifdef UV
-	$(UV) pip install --quiet --python $(BIN)/python --constraint constraints.txt --editable '.[fast,data,benchmark,test,docs]'
-else
-	$(BIN)/python -m pip install --quiet --constraint constraints.txt --editable '.[fast,data,benchmark,test,docs]'
-endif
-	@touch $@
+	@touch $(HELD) $@
 
 $(LOWEST)/.installed: pyproject.toml constraints-lowest.txt
 	$(PYTHON) -m venv $(LOWEST)
