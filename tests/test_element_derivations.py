@@ -117,11 +117,14 @@ def test_sawtooth_and_kink_by_brute_force():
 def test_correction_of_the_code_is_the_derived_one(outside, inside):
     places = {edges._spacing: 0.02, edges._inside: inside, edges._outside: outside}
     correction = edges.KINK + edges.END
-    area, rate = kink_area(0.02, (outside, inside - outside, 0.0))
+    rise = inside - outside
+    area, rate, bent, _ = (0.02 * each for each in kink_area(outside - rise * np.arange(3.0)))
     assert area == pytest.approx(float(correction.subs(places)), rel=1e-12)
     # With the depth the overlap rises by the same everywhere.
     rises = sp.diff(correction, edges._inside) + sp.diff(correction, edges._outside)
     assert rate == pytest.approx(float(rises.subs(places)), rel=1e-12)
+    faster = sp.diff(rises, edges._inside) + sp.diff(rises, edges._outside)
+    assert bent == pytest.approx(float(faster.subs(places)), rel=1e-12)
 
 
 def test_correction_leaves_out_what_the_derivation_says(by_label):
@@ -136,7 +139,8 @@ def test_correction_leaves_out_what_the_derivation_says(by_label):
     step = by_label["element-bent"].steps[-1].claim
     places = {edges._spacing: dx, edges._share: share, edges._slope: m, edges._bend: bend}
     left = float(step.rhs.subs(places))
-    added, _ = kink_area(dx, (overlap(0.0), overlap(dx) - overlap(0.0), 0.0))
+    rise = overlap(dx) - overlap(0.0)
+    added = dx * kink_area(overlap(0.0) - rise * np.arange(3.0))[0]
     assert area - sums - added == pytest.approx(left, rel=1e-6)
 
 

@@ -158,10 +158,10 @@ def test_where_an_edge_is_between_two_elements():
     x = np.arange(8.0)
     for place in (3.1, 3.5, 3.9):
         line = 2.0 * (place - x)
-        assert 1.0 - touching(gaps(line, 3, 1)) == pytest.approx(place - 3.0)
-        assert straight(gaps(line, 3, 1))
+        assert 1.0 - touching(gaps(*line[4:7])) == pytest.approx(place - 3.0)
+        assert straight(gaps(*line[4:7]))
         square = -((x - place) ** 2)
-        assert not straight(gaps(square, 3, 1))
+        assert not straight(gaps(*square[4:7]))
         curved = (place - x) * (4.0 + x)
-        assert 1.0 - touching(gaps(curved, 3, 1)) == pytest.approx(place - 3.0)
+        assert 1.0 - touching(gaps(*curved[4:7])) == pytest.approx(place - 3.0)
     assert touching((math.nan, 1.0, 0.0)) == 1.0

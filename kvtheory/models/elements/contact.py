@@ -9,11 +9,20 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from kvtheory.models.elements.edges import edges_of, gaps, straight, touching
+from kvtheory.models.elements.edges import (
+    BEYOND,
+    INSIDE,
+    OUTSIDE,
+    OUTWARD,
+    gaps,
+    runs_of,
+    straight,
+    sums_over,
+    touching,
+)
 from kvtheory.models.elements.law import Array
 from kvtheory.models.elements.model import Model
 from kvtheory.models.elements.row import ElementRow, IndenterState, Under
-from kvtheory.models.elements.strips import total
 
 AT_REST = 1e-12
 """Of a_0/τ: slower on a spring, it stands but for rounding, and the edges are those of the drive."""
@@ -52,13 +61,13 @@ def report(row: ElementRow, at: IndenterState, time: float) -> tuple[float, ...]
     pressed = under.touched & (model.rule.pulls | (p >= 0.0))
     before = row.path.velocity(at.time, before=True) - at.along_rate
     p_before = p if before == sliding else pressure(row, under, at, before)
-    weight = model.weights(at.depth, under.strips, p.size)
+    weights = model.weights(at.depth, under.strips)
     if not pressed.any():
         found = FLIGHT
     elif model.parts:
-        found = _parts_of_elements(model, under, (p, p_before), weight, pressed, at.depth)
+        found = _parts_of_elements(model, under, (p, p_before), weights, pressed, at.depth)
     else:
-        found = _whole_elements(model, under, p, weight, pressed)
+        found = _whole_elements(model, under, p, weights, pressed)
     slides = at.along_rate and abs(sliding) > AT_REST * model.at_rest.velocity
     forward = sliding > 0.0 if slides else row.path.forward(time)
     edges = found[2:4] if forward else found[3:1:-1]
@@ -72,7 +81,7 @@ def pressure(row: ElementRow, under: Under, at: IndenterState, V: float) -> Arra
     Of one that is not in contact, it is what it would be had it followed the indenter in the last step.
     """
     law, state, g = row.model.law, under.state, at.depth - under.height
-    g_rate = at.rate - V * row.model.slope(under.x, under.y)
+    g_rate = at.rate - V * under.slope(row.model)
     p = law.pressure(state, g, g_rate)
     if law.remembers:
         p += np.where(under.touched, 0.0, law.followed(g - state[0], g_rate, row.last))
@@ -80,20 +89,18 @@ def pressure(row: ElementRow, under: Under, at: IndenterState, V: float) -> Arra
 
 
 def _whole_elements(
-    model: Model, under: Under, p: Array, weight: Array, pressed: NDArray[np.bool_]
+    model: Model, under: Under, p: Array, weights: Array, pressed: NDArray[np.bool_]
 ) -> ContactSums:
     """Sum over whole elements, as in the paper (Eqs. 12-15)."""
-    inside = np.flatnonzero(pressed)
-    dx, x, p = model.spacing, under.x[inside], p[inside]
-    each = dx * weight[inside] * p
-    middle = x[inside < under.x.size // under.strips]
-    left, right = (middle[0] - 0.5 * dx, middle[-1] + 0.5 * dx) if middle.size else NOWHERE
-    push = -total(model.slope(x, under.y[inside]), each)
-    return ContactSums(float(each.sum()), push, left, right, float(p.max()))
+    runs, dx, slope = runs_of(pressed), model.spacing, under.slope(model)
+    weight, middle = weights[runs[:, 0] // under.along.size], runs[runs[:, 0] < under.along.size]
+    left, right = (under.along[0, middle[[0, -1], [0, 1]]] + 0.5 * dx) if middle.size else NOWHERE
+    force, push = (float(weight @ sums_over(runs, each)) for each in (p, slope * p))
+    return ContactSums(dx * force, -dx * push, float(left), float(right), float(p[pressed].max()))
 
 
 def _parts_of_elements(
-    model: Model, under: Under, pressures: tuple[Array, Array], weight: Array,
+    model: Model, under: Under, pressures: tuple[Array, Array], weights: Array,
     pressed: NDArray[np.bool_], depth: float,
 ) -> ContactSums:  # fmt: skip
     """Sum by trapezoids up to the very edges.
@@ -102,43 +109,42 @@ def _parts_of_elements(
     the indenter meets the free surface. Where V jumps, an edge that peeled until then, by the pressure
     before, the second of `pressures`, is still where it was, or has gone further in.
     """
-    inside, (p, p_before) = np.flatnonzero(pressed), pressures
-    dx, overlap = model.spacing, depth - under.height - under.left[0]
-    slope, middle = model.slope(under.x, under.y), under.x.size // under.strips
-    each = weight[inside] * p[inside]
-    force, push = float(each.sum()), -total(slope[inside], each)
-    reach, places, at_edges = {}, [], []
-    for inner, outward in edges_of(pressed):
-        outer = inner + outward
-        p_in, p_out = p.item(inner), p.item(outer)
-        now, before = _peeling(p_in, p_out), _peeling(p_before.item(inner), p_before.item(outer))
-        free = gaps(overlap, inner, outward)
-        if before == math.inf or straight(free):
-            before = 1.0 if under.touched[outer] else 1.0 - touching(free)
-        share = min(before, now, 1.0)
-        x = under.x.item(inner) + share * dx * outward
-        p_edge = 0.0 if now <= share else p_in + share * (p_out - p_in)
-        half = 0.5 * weight.item(inner)
-        force += half * (share * (p_in + p_edge) - p_in)
-        ends = slope.item(inner) * p_in, float(model.slope(x, under.y.item(inner))) * p_edge
-        push -= half * (share * (ends[0] + ends[1]) - ends[0])
-        reach[inner, outward] = share
-        if inner < middle:
-            places.append(x)
-        at_edges.append((p_edge, 0.0, abs(p_in - p_out)))
-    peak = max(_peak(model, p, int(inside[p[inside].argmax()]), reach), *at_edges)
-    left, right = (places[0], places[-1]) if places else NOWHERE
-    return ContactSums(dx * force, dx * push, left, right, *peak)
+    runs, dx, (p, p_before) = runs_of(pressed), model.spacing, pressures
+    inner, outer = runs + INSIDE, runs + OUTSIDE
+    weight, slope = weights[runs[:, 0] // under.along.size], under.slope(model)
+    force, push = (float(weight @ sums_over(runs, each)) for each in (p, p * slope))
+    p_in, p_out = p[inner], p[outer]
+    now = _peeling(p_in, p_out)
+    before = now if p_before is p else _peeling(p_before[inner], p_before[outer])
+    beyond = runs + BEYOND
+    free = gaps(*(depth - under.height[beyond] - under.left[0, beyond]))
+    touches = np.isinf(before) | straight(free)
+    before = np.where(touches, np.where(under.touched[outer], 1.0, 1.0 - touching(free)), before)
+    share = np.minimum(np.minimum(before, now), 1.0)
+    x, y = under.at(inner)
+    x = x + share * dx * OUTWARD
+    p_edge = np.where(now <= share, 0.0, p_in + share * (p_out - p_in))
+    half = 0.5 * weight[:, None]
+    force += float((half * (share * (p_in + p_edge) - p_in)).sum())
+    ends = slope[inner] * p_in, model.slope(x, y) * p_edge
+    push += float((half * (share * (ends[0] + ends[1]) - ends[0])).sum())
+    middle = x[runs[:, 0] < under.along.size]
+    left, right = (middle.item(0), middle.item(-1)) if middle.size else NOWHERE
+    best = int(p_edge.argmax())
+    at_edge = p_edge.item(best), 0.0, abs(p_in - p_out).item(best)
+    highest = int(np.where(pressed, p, -math.inf).argmax())
+    reach = np.where(inner == highest, share, 1.0).min(axis=0)
+    peak = max(_peak(model, p, highest, reach), at_edge)
+    return ContactSums(dx * force, -dx * push, left, right, *peak)
 
 
-def _peeling(inside: float, outside: float) -> float:
+def _peeling(inside: Array, outside: Array) -> Array:
     """Return how far outward of the last element the pressure vanishes; infinite if it does not."""
-    return max(inside, 0.0) / (max(inside, 0.0) - outside) if outside < 0.0 else math.inf
+    positive = np.maximum(inside, 0.0)
+    return np.where(outside < 0.0, positive / (positive - outside), math.inf)
 
 
-def _peak(
-    model: Model, p: Array, k: int, reach: dict[tuple[int, int], float]
-) -> tuple[float, float, float]:
+def _peak(model: Model, p: Array, k: int, reach: Array) -> tuple[float, float, float]:
     """Return the peak near element k, of the parabola through three, and both doubts.
 
     A shape with kinks has no such parabola: there the peak is known to the next element. Arms remember
@@ -152,6 +158,6 @@ def _peak(
     if not (here >= before > -math.inf and here >= after > -math.inf and bend > 0.0):
         return here, 0.0, 0.0
     ahead = 0.5 * (after - before) / bend
-    if abs(ahead) > reach.get((k, 1 if ahead > 0.0 else -1), 1.0):
+    if abs(ahead) > reach[1 if ahead > 0.0 else 0]:
         return here, doubt, 0.0
     return here + 0.25 * (after - before) * ahead, doubt, 0.0

@@ -31,20 +31,27 @@ on an edge, is the order one too.
 """
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
 
-from kvtheory.models.elements.edges import bend, edges_of, gaps, jump, kink_area
+from kvtheory.models.elements.edges import (
+    BEYOND,
+    INSIDE,
+    Runs,
+    bend,
+    kink_area,
+    runs_of,
+    sums_over,
+)
 from kvtheory.models.elements.law import Array
 from kvtheory.models.elements.model import Model
-from kvtheory.models.elements.row import ElementRow, IndenterState, Under
-from kvtheory.models.elements.strips import total
+from kvtheory.models.elements.row import ElementRow, IndenterState
 
 NEWTON_STEPS = 60
-"""The iteration ends after three or four; a monotone convex function cannot need many more."""
-NEWTON_RTOL = 1e-14
+"""The iteration ends after one or two; a monotone convex function cannot need many more."""
 SLIDE_STEPS = 30
 """On a spring: two or three are taken, since its motion within a step is nearly known."""
 SLIDE_RTOL = 1e-9
@@ -56,8 +63,11 @@ ROOM, MORE_ROOM = 1.0, 4.0
 STANDS = 1e-12
 """Of the static depth: an edge where the overlap falls by less in a step does not move inward."""
 
-Side = tuple[int, int]
-"""A strip, and -1 or 1 for its left or right side."""
+UNMET = 3
+"""Elements at either end of a strip that are never met, so that there are three beyond every edge."""
+
+Falling = list[NDArray[np.bool_]]
+"""One array, once it is known, of whether the overlap falls at both sides of each strip in a step."""
 
 
 def exponential_fit(z: float) -> float:
@@ -77,86 +87,123 @@ def implicit_step(
     On a spring, so is the place along x: for every place there is one depth.
     """
     model = row.model
-    counts: dict[Side, bool] = {}
+    falling: Falling = []
     slid = h * now.along_rate / (1.0 + 0.25 * model.spring_along * h * h / model.mass_along)
     new = IndenterState(now.time + h, now.depth, 0.0, now.along + slid)
     for _ in range(SLIDE_STEPS):
-        contact, new = _sunk(row, now, new, h, theta, counts)
+        contact, new = _sunk(row, now, new, h, theta, falling)
         if not model.sprung:
             break
         before, new = new.along, contact.slide(new, theta)
         if abs(new.along - before) <= SLIDE_RTOL * model.half_length:
             break
     under, g = contact.under, new.depth - contact.under.height
-    pressed = g >= contact.rest
+    pressed = contact.meets <= new.depth - now.depth
     row.settle(under, np.where(pressed, row.pressed(under, now.depth, g), under.left), pressed, h)
     return new
 
 
 def _sunk(
     row: ElementRow, now: IndenterState, new: IndenterState, h: float,
-    theta: Callable[[float], float], counts: dict[Side, bool],
+    theta: Callable[[float], float], falling: Falling,
 ) -> "tuple[_Contact, IndenterState]":  # fmt: skip
     """Return the contact of a step that ends at a given place along x, and the depth there."""
     most = _sinking(row.model, now, h)
     sinks = min(most, ROOM * row.model.depth)
     while True:
-        contact = _Contact(row, now, new, h, sinks, counts)
+        contact = _Contact(row, now, new, h, sinks, falling)
         found = contact.sink(new, theta) if math.isfinite(row.model.mass) else new
         if not found.depth > now.depth + sinks or sinks == most:
             return contact, found
         # Elements may have been missed, without which it sinks too deep, never too little.
         sinks = min(most, MORE_ROOM * sinks)
-        counts.clear()
+        falling.clear()
 
 
 class _Contact:
     """The elements that the indenter may press in a step, which ends at a given place along x.
 
-    Their mean forces follow from how far it sinks: the depths themselves cancel where the step is short.
-    An element counts by its weight, and by the smaller `share` of it while it enters within the step.
+    Their mean forces follow from how far it sinks: the depths themselves cancel where the step is short. An
+    element is pressed if the indenter sinks farther than to where it `meets` it. One that it enters within
+    the step answers less, which is what it `lacks` of its weight.
     """
 
     def __init__(
         self, row: ElementRow, now: IndenterState, new: IndenterState, h: float, sinks: float,
-        counts: dict[Side, bool],
+        falling: Falling,
     ) -> None:  # fmt: skip
-        model, self.now, self.h = row.model, now, h
-        self.model, self.first = model, min(h * now.rate, sinks)
+        self.model, self.now, self.h, self.first = row.model, now, h, min(h * now.rate, sinks)
         self.under = under = row.under(now, new, h, now.depth + sinks)
-        self.rest = under.rest()
-        if not (model.sprung or math.isfinite(model.mass)):
-            return
-        self.meets = under.height + self.rest
-        self.met = self.meets <= now.depth + self.first
-        halfway = now.depth + 0.5 * h * now.rate
-        self.weights = model.weights(halfway, under.strips, self.meets.size)
-        self.kinks = _Kinks(model, now, under, self.weights, counts) if model.parts else None
-        self.shares = self.weights
-        if model.law.remembers:
-            new_ones, within = row.entering(under, now.depth, now.depth + self.first - self.meets)
-            self.shares = self.weights.copy()
-            self.shares[new_ones] *= within / h * model.law.ramps(within)[1] / under.law.stiffness
+        self.meets = under.height + under.rest()
+        self.meets -= now.depth
+        ends = self.meets.reshape(under.strips, -1)
+        ends[:, :UNMET] = ends[:, -UNMET:] = math.inf
+        self.weights = row.model.weights(now.depth + 0.5 * h * now.rate, under.strips)
+        self.begun, self.falling = runs_of(under.touched), falling
+        self.late = self._late(row) if row.model.law.remembers else None
+        arms = under.law.held_pressure[1:] @ under.state[1:] if self.late else None
+        self.bent = None if arms is None else bend(arms, self.begun)
+        self.before = partial(row.before, under, now.depth)
+
+    def _late(self, row: ElementRow) -> tuple[NDArray[np.intp], Array]:
+        """Return the elements that are entered within the step, and what they lack."""
+        under, law = self.under, self.model.law
+        elements, within = row.entering(under, self.now.depth, self.first - self.meets)
+        share = within / self.h * law.ramps(within)[1] / under.law.stiffness
+        return elements, (1.0 - share) * self.weights[elements // under.along.size]
+
+    def lacking(self, sunk: float) -> tuple[NDArray[np.intp], Array, Array]:
+        """Return what is lacking in the area, element by element, and its derivative by depth."""
+        elements, lack = self.late or (np.zeros(0, dtype=np.intp), np.zeros(0))
+        overlap = sunk - self.meets[elements]
+        return elements, lack * np.maximum(overlap, 0.0), lack * (overlap > 0.0)
+
+    def runs(self, sunk: float) -> tuple[Runs, Array]:
+        """Return the runs of elements that are pressed, and their weights."""
+        runs = runs_of(self.meets < sunk)
+        return runs, self.weight(runs)
+
+    def weight(self, runs: Runs) -> Array:
+        """Return the weight of each run."""
+        weight: Array = self.weights[runs[:, 0] // self.under.along.size]
+        return weight
 
     def sink(self, new: IndenterState, theta_of: Callable[[float], float]) -> IndenterState:
-        """Solve M (v_1 - v_0)/h = W - k_s (d - δ_0) - F_z for the new depth by Newton's method."""
-        model, now, h, law, sunk = self.model, self.now, self.h, self.under.law, self.first
-        M, W, k_s, dx = model.mass, model.weight, model.spring, model.spacing
-        extent = dx * max(total(self.weights, self.met), total(self.weights, self.under.touched))
-        theta = theta_of(h * law.damping * extent / M)
+        """Solve M (v_1 - v_0)/h = W - k_s (d - δ_0) - F_z for the new depth.
+
+        While no element is met or let go, F_z is of the second order in the depth: one step of Newton's
+        method with the second derivative is exact.
+        """
+        model, now, h, sunk = self.model, self.now, self.h, self.first
+        M, W, k_s, k = (
+            model.mass,
+            model.weight,
+            model.spring,
+            self.under.law.stiffness * model.spacing,
+        )
+        runs, weight = self.runs(sunk)
+        held = float(self.weight(self.begun) @ (self.begun[:, 1] - self.begun[:, 0]))
+        extent = max(float(weight @ (runs[:, 1] - runs[:, 0])), held)
+        theta = theta_of(h * self.under.law.damping * model.spacing * extent / M)
         for _ in range(NEWTON_STEPS):
-            overlap = (now.depth + sunk) - self.meets
-            pressed = overlap > 0.0
-            area = dx * total(self.shares, np.maximum(overlap, 0.0))
-            width = dx * total(self.weights, pressed)
-            for _, more, wider in self.kinks(overlap, pressed) if self.kinks else ():
-                area, width = area + more, width + wider
+            width, bent = float(weight @ (runs[:, 1] - runs[:, 0])), 0.0
+            area = sunk * width - float(weight @ sums_over(runs, self.meets))
+            if self.late:
+                _, less, narrower = self.lacking(sunk)
+                area, width = area - float(less.sum()), width - float(narrower.sum())
+            if model.parts:
+                _, *kinks = self.kinks(sunk, runs, weight)
+                added, wider, bent = (float(np.add.reduce(each, axis=None)) for each in kinks)
+                area, width = area + added, width + wider
             mean = now.depth - model.depth + theta * sunk
             change_of_rate = _velocity(sunk, now.rate, h, theta) - now.rate
-            residual = M * change_of_rate / h - W + k_s * mean + law.stiffness * area
-            change = residual / (M / (theta * h * h) + theta * k_s + law.stiffness * width)
-            sunk -= change
-            if abs(change) <= NEWTON_RTOL * model.depth:
+            residual = M * change_of_rate / h - W + k_s * mean + k * area
+            slope = M / (theta * h * h) + theta * k_s + k * width
+            root = math.sqrt(max(slope * slope - 2.0 * residual * k * bent, 0.0))
+            sunk -= 2.0 * residual / (slope + root)
+            before = runs
+            runs, weight = self.runs(sunk)
+            if runs.tobytes() == before.tobytes():
                 break
         return new._replace(depth=now.depth + sunk, rate=_velocity(sunk, now.rate, h, theta))
 
@@ -168,27 +215,73 @@ class _Contact:
         """
         model, now, h, under = self.model, self.now, self.h, self.under
         M, M_x, c_x, k_x = model.mass, model.mass_along, model.damping_along, model.spring_along
-        slope, k = model.slope(under.x - 0.5 * under.travel, under.y), under.law.stiffness
-        weights, push = model.spacing * self.weights, model.spacing * self.shares * slope
-        tilt = total(weights * slope * slope, self.met | under.touched)
+        k, sunk = under.law.stiffness * model.spacing, new.depth - now.depth
+        slope = under.slope(model, 0.5 * under.travel)
+        steep = slope * slope
+        held_or_met = runs_of((self.meets < self.first) | under.touched)
+        tilt = model.spacing * float(self.weight(held_or_met) @ sums_over(held_or_met, steep))
         # A ringing too fast for the step is damped; θ - 1/2 is of the third order in h, as on arms.
         swing = h * math.sqrt(k_x / M_x)
         theta = theta_of(h * (c_x + under.law.damping * tilt) / M_x + swing * swing * swing)
-        overlap = new.depth - self.meets
-        pressed = overlap > 0.0
-        area = total(push, np.maximum(overlap, 0.0))
-        for inner, more, _ in self.kinks(overlap, pressed) if self.kinks else ():
-            area += more * slope.item(inner)
-        slid, inside = new.along - now.along, k * weights * pressed
+        runs, weight = self.runs(sunk)
+        width, inclined, tilted = (
+            float(weight @ each)
+            for each in (runs[:, 1] - runs[:, 0], sums_over(runs, slope), sums_over(runs, steep))
+        )
+        area = sunk * inclined - float(weight @ sums_over(runs, slope * self.meets))
+        elements, less, _ = self.lacking(sunk)
+        area -= float(slope[elements] @ less)
+        if model.parts:
+            edges, kinks = self.kinks(sunk, runs, weight)[:2]
+            area += float((kinks * slope[edges + INSIDE]).sum())
+        slid = new.along - now.along
         change_of_rate = _velocity(slid, now.along_rate, h, theta) - now.along_rate
         held = c_x * slid / h + k_x * (now.along + theta * slid)
         residual = M_x * change_of_rate / h + held + k * area
         # As the foundation gives way along x, the depth changes, too.
-        normal = M / (h * h) + model.spring + float(inside.sum())
-        stiff = total(inside * slope, slope) - total(inside, slope) ** 2 / normal
+        normal = M / (h * h) + model.spring + k * width
+        stiff = k * tilted - (k * inclined) ** 2 / normal
         slid -= residual / (M_x / (theta * h * h) + c_x / h + theta * k_x + stiff)
         rate = _velocity(slid, now.along_rate, h, theta)
         return new._replace(along=now.along + slid, along_rate=rate)
+
+    def kinks(self, sunk: float, runs: Runs, weight: Array) -> tuple[Runs, Array, Array, Array]:
+        """Return edges, the area of the kinks there by dx less what relaxed, and its derivatives by depth.
+
+        A kink of the surface, at an edge between two elements, adds to the area that is pressed. It counts
+        where the edge stands or moves outward over the free surface, that is, where the overlap w = g - u
+        just outside does not fall. Where the edge moves inward, the surface has no kink, or one that is left
+        behind and relaxes like all that is free. Each side of each strip is asked for itself.
+        """
+        count, law, edges = len(runs), self.under.law, np.concatenate([runs, self.begun])
+        beyond, strip = edges + BEYOND, edges[:, 0] // self.under.along.size
+        overlap = self.before(beyond)
+        now = sunk - self.meets[beyond[:, :count]]
+        # Decided once in a step, so that no iteration can go to and fro.
+        if not self.falling:
+            falls = now[0] - overlap[0, :count] < -STANDS * self.model.depth
+            found = np.zeros((self.under.strips, 2), dtype=bool)
+            found[strip[:count]] = falls
+            k, side = (~falls).nonzero()
+            found[strip[k], side] = False
+            self.falling.append(found)
+        overlap[:, :count] = now
+        counted = np.zeros((self.under.strips, 2))
+        counted[strip[:count]] = np.where(self.falling[0][strip[:count]], 0.0, weight[:, None])
+        area, wider, bent, rise = kink_area(overlap)
+        held = (
+            law.held_pressure[0]
+            if self.bent is None
+            else law.held_pressure[0] + self.bent / rise[count:]
+        )
+        area[count:] *= held / law.stiffness - 1.0
+        counted = counted[strip]
+        return (
+            edges,
+            counted * area,
+            counted[:count] * wider[:count],
+            counted[:count] * bent[:count],
+        )
 
 
 def _velocity(way: float, before: float, h: float, theta: float) -> float:
@@ -202,55 +295,3 @@ def _sinking(model: Model, now: IndenterState, h: float) -> float:
     pull = max(model.weight + model.spring * (model.depth - now.depth), 0.0)
     most = 1.0 / (1.0 + q) if q < 1.0 else 0.5 / math.sqrt(q)
     return h * max(now.rate, 0.0) / (1.0 + 0.25 * q) + most * pull * h * h / model.mass
-
-
-class _Kinks:
-    """What the kinks of the surface, at edges between two elements, add to the area that is pressed.
-
-    A kink counts where the edge stands or moves outward over the free surface, that is, where the overlap
-    w = g - u just outside does not fall. Where the edge moves inward, the surface has no kink, or one that
-    is left behind and relaxes like all that is free. Each side of each strip is asked for itself.
-    """
-
-    def __init__(
-        self, model: Model, now: IndenterState, under: Under, weights: Array,
-        counts: dict[Side, bool],
-    ) -> None:  # fmt: skip
-        self.counts = counts
-        self.dx, self.least = model.spacing, -STANDS * model.depth
-        self.weights, self.in_strip = weights, under.x.size // under.strips
-        self.before: Array = now.depth - under.state[0]
-        self.before -= model.height(under.x - under.travel, under.y)
-        self.relaxed: dict[Side, float] = {}
-        spring, k = under.law.held_pressure[0], under.law.stiffness
-        arms = under.law.held_pressure[1:] @ under.state[1:] if model.law.remembers else None
-        for side, edges in self.by_side(under.touched).items():
-            self.relaxed[side] = 0.0
-            for edge in edges:
-                found = gaps(self.before, *edge)
-                if area := kink_area(self.dx, found)[0]:
-                    held = spring if arms is None else spring + bend(arms, *edge) / jump(found)
-                    self.relaxed[side] += (1.0 - held / k) * area
-
-    def by_side(self, pressed: NDArray[np.bool_]) -> dict[Side, list[tuple[int, int]]]:
-        """Return the edges of each side of each strip."""
-        found: dict[Side, list[tuple[int, int]]] = {}
-        for edge in edges_of(pressed):
-            found.setdefault((edge[0] // self.in_strip, edge[1]), []).append(edge)
-        return found
-
-    def __call__(
-        self, overlap: Array, pressed: NDArray[np.bool_]
-    ) -> Iterator[tuple[int, float, float]]:
-        """Yield where kinks are, their area at this overlap beyond what relaxed, and its rate with depth."""
-        for side, edges in self.by_side(pressed).items():
-            # Decided once in a step, so that Newton's method cannot go to and fro.
-            if side not in self.counts:
-                outer = [inner + outward for inner, outward in edges]
-                falls = (self.least > overlap.item(k) - self.before.item(k) for k in outer)
-                self.counts[side] = not all(falls)
-            if self.counts[side]:
-                found = [kink_area(self.dx, gaps(overlap, *edge)) for edge in edges]
-                inner, weight = edges[0][0], self.weights.item(edges[0][0])
-                area = sum(kink for kink, _ in found) - self.relaxed.get(side, 0.0)
-                yield inner, weight * area, weight * sum(wider for _, wider in found)

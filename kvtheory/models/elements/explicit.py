@@ -68,12 +68,13 @@ def _meet(
     g = at.depth - under.height
     moved = row.pressed(under, now.depth, g)
     V = row.path.velocity(at.time, before=before) - at.along_rate
-    slope = model.slope(under.x, under.y)
+    slope = under.slope(model)
     g_rate = at.rate - V * slope
     p = model.law.pressure(moved, g, g_rate)
     surfaces = under.state[0], under.left[0]
     pressed = model.rule.pressed(g, p, surfaces, under.touched, within=within)
-    each = model.spacing * model.weights(at.depth, under.strips, p.size)[pressed] * p[pressed]
+    weights = np.repeat(model.weights(at.depth, under.strips), under.along.size)
+    each = model.spacing * weights[pressed] * p[pressed]
     pull = model.weight - model.spring * (at.depth - model.depth) - float(each.sum())
     drag = 0.0
     if model.sprung:

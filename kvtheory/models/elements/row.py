@@ -7,7 +7,7 @@ row for each strip, at y = 0, dy, ...; they are as long as each other, and one c
 
 import math
 from collections.abc import Sequence
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -48,15 +48,15 @@ class IndenterState(NamedTuple):
 class Under(NamedTuple):
     """The elements under the indenter at one instant, strip by strip.
 
-    `state` is that of each at the start of the step, `left` the one that it has now if it was left alone,
+    `along` are their x, a row, and `across` those y of their strips, a column. `state` is that of each at
+    the start of the step, `left` the one that it has now if it was left alone,
     `touched` whether it was in contact at the start; `travel` is the way of the base under the indenter
     between, of the length `delay`, and `law` what the law says of it.
     """
 
     place: tuple[slice, slice]
-    strips: int
-    x: Array
-    y: Array
+    along: Array
+    across: Array
     height: Array
     state: Array
     left: Array
@@ -64,6 +64,30 @@ class Under(NamedTuple):
     travel: float
     delay: float
     law: Step
+
+    @property
+    def strips(self) -> int:
+        """How many strips there are."""
+        return self.across.size
+
+    @property
+    def x(self) -> Array:
+        """Return x of every element."""
+        return self._spread(self.along)
+
+    def at(self, elements: Any) -> tuple[Array, Array]:
+        """Return x and y of some elements."""
+        strip, element = np.divmod(elements, self.along.size)
+        return self.along[0, element], self.across[strip, 0]
+
+    def slope(self, model: Model, back: float = 0.0) -> Array:
+        """Return dh/dx at every element, so far back."""
+        return self._spread(model.slope(self.along - back, self.across))
+
+    def _spread(self, values: Array) -> Array:
+        everywhere = np.empty((self.strips, self.along.size))
+        everywhere[:] = values
+        return everywhere.reshape(-1)
 
     def rest(self) -> Array:
         """Return where the mean pressure would vanish: it is `law.stiffness` times how far g is below."""
@@ -122,17 +146,22 @@ class ElementRow:
         state = self.states[:, *place].reshape(len(self.states), -1)
         left = self._left(state, delay)
         law = self.model.law.step(delay)
-        touched, height = self.touched[place].reshape(-1), self.model.height(x, y)
-        return Under(place, strips, x, y, height, state, left, touched, Y - before, delay, law)
+        touched, height = self.touched[place].reshape(-1), self.model.height(x, y).reshape(-1)
+        return Under(place, x, y, height, state, left, touched, Y - before, delay, law)
+
+    def before(self, under: Under, depth: float, elements: Any) -> Array:
+        """Return how far some elements were below the indenter at the start of a step, at this depth."""
+        x, y = under.at(elements)
+        gap: Array = depth - self.model.height(x - under.travel, y) - under.state[0, elements]
+        return gap
 
     def entering(self, under: Under, depth: float, rise: Array) -> tuple[NDArray[np.intp], Array]:
         """Return the elements that enter the contact in a step, and for how long each is in it.
 
         `depth` is that at the start; `rise` says how far each is below its free surface at the end.
         """
-        new = np.flatnonzero(~under.touched & (rise > 0.0))
-        height = self.model.height(under.x[new] - under.travel, under.y[new])
-        gap = depth - height - under.state[0, new]
+        new = ((rise > 0.0) & ~under.touched).nonzero()[0]
+        gap = self.before(under, depth, new)
         return new, under.delay * rise[new] / (rise[new] - np.minimum(gap, 0.0))
 
     def pressed(self, under: Under, depth: float, g: Array) -> Array:
