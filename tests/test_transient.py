@@ -3,6 +3,7 @@
 import csv
 import json
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -246,3 +247,35 @@ def test_a_light_indenter_far_away_keeps_a_consistent_contact(history, rtol):
     result = kv.transient(scene, rtol=rtol, at=[1.0, 5.0, 10.0])
     assert np.isfinite(result.depth).all()
     assert np.isfinite(max(result.certificate.relative_error.values()))
+
+
+@pytest.mark.parametrize("duration", [0.2, 0.37, 50.0])
+@pytest.mark.parametrize("scene", [kv.Scene(), kv.Scene.table1("fixed")], ids=["free", "fixed"])
+def test_a_jump_just_before_the_end_is_met(scene, duration):
+    """The value at the end is the one just after it, as in a run that goes on, which has it inside."""
+    for ulps in (0, 1, 30, 500, 1000, 3000, 10_000, 100_000):
+        jump = duration - ulps * math.ulp(duration)
+        drive = kv.Drive(history=[(0.0, 0.1), (jump, 0.1), (jump, -0.05)])
+        found = kv.transient(replace(scene, drive=drive, run=kv.Run(duration)))
+        longer = replace(scene, drive=drive, run=kv.Run(1.1 * duration))
+        right = kv.transient(longer, at=[max(duration, jump)], rtol=1e-10)
+        assert found.time[-1] == duration
+        assert found.time[-2] < duration
+        assert found.velocity[-1] == right.velocity[-1] == pytest.approx(-0.05, rel=1e-15)
+        for name, scale in (("normal_force", 1e4), ("friction_force", 1e3), ("depth", 3e-4)):
+            error = found.certificate.relative_error[name] + right.certificate.relative_error[name]
+            off = abs(getattr(found, name)[-1] - getattr(right, name)[-1])
+            assert off <= error * scale, (ulps, name)
+
+
+def test_a_jump_at_the_end_is_met_on_a_spring_and_in_a_sweep():
+    history = [(0.0, 0.1), (0.05, 0.1), (0.05, 0.02)]
+    sprung = kv.Drive(history=history, stiffness=1e6)
+    found = kv.transient(kv.Scene(drive=sprung, run=kv.Run(0.05)))
+    longer = kv.transient(kv.Scene(drive=sprung, run=kv.Run(0.06)), at=[0.05])
+    assert found.velocity[-1] == pytest.approx(0.02, rel=1e-15)
+    assert found.sliding_velocity[-1] == pytest.approx(longer.sliding_velocity[0], rel=1e-6)
+    rigid = kv.Scene(drive=kv.Drive(history=history), run=kv.Run(0.05))
+    swept = kv.sweep(rigid, over={"support.mass": [1e3]}, quantities=["friction_force.end"])
+    alone = kv.transient(rigid, at=[0.05]).friction_force
+    assert swept["friction_force.end"] == pytest.approx(alone, rel=1e-7)

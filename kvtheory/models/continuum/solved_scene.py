@@ -1,5 +1,6 @@
 """The transient of a scene in SI: the scaled solution of `continuum`, put back into units."""
 
+import math
 from contextlib import suppress
 from dataclasses import dataclass
 from operator import itemgetter
@@ -17,7 +18,7 @@ from kvtheory.models.continuum.surface import height
 from kvtheory.progress import Progress
 from kvtheory.results import Certificate, Event, SprungTransient, Transient
 from kvtheory.results.errors import TransientError
-from kvtheory.scene.base_motion import BaseMotion
+from kvtheory.scene.base_motion import SAME_TIME, BaseMotion
 from kvtheory.scene.model import Scene
 from kvtheory.scene.static_state import StaticState
 
@@ -25,16 +26,27 @@ Array = NDArray[np.float64]
 
 AFTER_END = 1e-12
 """Share of the run by which a time may lie after its end, from rounding."""
+TO_A_CHANGE = 0.5 * AFTER_END
+"""Share of the run by which it is followed beyond its end, if the drive changes so near to it that both were
+one time: the change is then met where it is."""
 STEPS_A_PIECE = 100
 """More than a piece of a drive takes: a stop takes 25."""
 FORCE_MAXIMA = "normal force maximum", "friction force maximum"
 """Kinds of events."""
 
 
+def end_of(scene: Scene) -> float:
+    """Return the time (s) to which a scene is followed: the end of its run, or of a longer history."""
+    drive = scene.drive
+    return max(scene.run.duration, drive.last_change if drive.function is None else 0.0)
+
+
 def scaled_drive(scene: Scene, units: StaticState) -> BaseMotion:
-    """Return the drive number over scaled time until the end of the run."""
-    motion = scene.drive.motion(scene.run.duration, units.velocity)
-    return motion.scaled(units.time, units.half_length)
+    """Return the drive number over scaled time until the end, or just beyond a change of a history there."""
+    drive, end = scene.drive, end_of(scene)
+    if drive.function is None and end - drive.last_change <= SAME_TIME * math.ulp(end):
+        end *= 1.0 + TO_A_CHANGE
+    return drive.motion(end, units.velocity).scaled(units.time, units.half_length)
 
 
 def spring_of(units: StaticState) -> Spring | None:
@@ -48,16 +60,20 @@ def spring_of(units: StaticState) -> Spring | None:
 
 @dataclass(frozen=True)
 class SolvedScene:
-    """A solved motion and its scales; evaluates every quantity of a transient in SI."""
+    """A solved motion and its scales; evaluates every quantity of a transient in SI.
+
+    `end` is that of the run in scaled time; the motion may go on until a little later.
+    """
 
     motion: Trajectory
     drive: BaseMotion
     units: StaticState
+    end: float
 
     @property
     def natural_times(self) -> Array:
         """Times (s) at which the series shows all that happens: the solver's steps, subdivided."""
-        return self.motion.natural * self.units.time
+        return np.unique(np.minimum(self.motion.natural, self.end)) * self.units.time
 
     @property
     def events(self) -> tuple[Event, ...]:
@@ -117,7 +133,7 @@ class SolvedScene:
 
     def scaled(self, time: Any) -> Any:
         """Return times in units of tau; those after the end by no more than rounding are the end."""
-        s, end = np.asarray(time, dtype=float) / self.units.time, self.motion.end
+        s, end = np.asarray(time, dtype=float) / self.units.time, self.end
         if not np.all((s >= 0.0) & (s <= end * (1.0 + AFTER_END))):
             raise ValueError(f"`time` must lie in [0, {end * self.units.time!r}] s, got {time!r}")
         return np.minimum(s, end)[()]
@@ -186,7 +202,7 @@ def certified(
         )  # fmt: skip
 
     try:
-        fine = SolvedScene(solved(0, *first), drive, units)
+        fine = SolvedScene(solved(0, *first), drive, units, end_of(scene) / units.time)
     except TransientError as error:
         reason = f"{error.reason}, in a run of {drive.end:.4g} retardation times,"
         raise TransientError(reason, error.s * units.time, "t", " s") from None
