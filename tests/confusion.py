@@ -9,6 +9,7 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 import kvtheory as kv
+from kvtheory.charts.naive import stale_elements
 from kvtheory.checks.fitting import scaled_scene
 from tests.faulty_simulator import simulate
 
@@ -117,6 +118,12 @@ def rules(where, names):
         )
 
 
+def still():
+    """Return the depth by surfaces that stand still within a step, of which it depends how long that is."""
+    time, depth = stale_elements(SCENES["Table 1"], 200e3)
+    return {"time": time[::5], "depth": depth[::5]}
+
+
 def springs():
     """Plants of the drive itself."""
     scene = SCENES["spring"]
@@ -156,6 +163,7 @@ def plants():
         *parameters("Table 1"),
         *others("Table 1"),
         *rules("Table 1", ("pull", "dropped", "unrelaxed")),
+        Plant("rule: still, depth alone", "Table 1", still, ("contact lost while rising",)),
     ]
     found += [
         *parameters("reversal"),

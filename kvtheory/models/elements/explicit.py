@@ -64,7 +64,8 @@ def _meet(
     Eqs. 17, 20-25.
     """
     model, delay = row.model, at.time - now.time
-    under = row.under(now, at, delay, max(at.depth, now.depth))
+    still = within and model.rule.still
+    under = row.under(now, now if still else at, delay, max(at.depth, now.depth))
     g = at.depth - under.height
     moved = row.pressed(under, now.depth, g)
     V = row.path.velocity(at.time, before=before) - at.along_rate

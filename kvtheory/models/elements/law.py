@@ -201,12 +201,14 @@ class ContactRule(NamedTuple):
 
     `flags`: an element in contact stays so until its pressure vanishes (Eqs. 23-25); without, it counts
     only where the surface of the foundation is met. `stale`: within a step that surface is the one at its
-    start. `pulls`: an element below the plane z = 0 is never let go. `relaxes`: the free surface decays
-    as e^(-t/tau) (Eq. 20). `remembers`: it is where the indenter left it; without, in the plane z = 0.
+    start. `still`: elements stand still within it, and move at its end. `pulls`: an element below the plane
+    z = 0 is never let go. `relaxes`: the free surface decays as e^(-t/tau) (Eq. 20). `remembers`: it is
+    where the indenter left it; without, in the plane z = 0.
     """
 
     flags: bool = True
     stale: bool = False
+    still: bool = False
     pulls: bool = False
     relaxes: bool = True
     remembers: bool = True
