@@ -8,6 +8,11 @@ import pytest
 
 import kvtheory as kv
 from kvtheory.results import TRANSIENT_UNITS
+from kvtheory.results.table import scales
+from kvtheory.scene.static_state import StaticState
+from kvtheory.sweeps import simulated
+from kvtheory.sweeps.columns import columns_of
+from kvtheory.sweeps.plan import Plan
 
 V, TAU, DURATION = "drive.velocity", "foundation.retardation_time", "run.duration"
 DENSE = np.linspace(0.0, 1.0, 20_001)
@@ -261,5 +266,27 @@ def test_what_the_solver_does_not_hold_for_is_swept_by_elements(scene):
         at_rest = kv.elements(scene, at=[0.0], certify=False).depth[0]
         assert np.abs(depths - alone.depth).max() < (error + own) * at_rest
         assert friction == pytest.approx(alone.friction_force[-1], rel=0.02)
-    with pytest.raises(ValueError, match=r"settling_time.*`elements`"):
-        kv.sweep(scene, over=over, quantities="settling_time")
+    with pytest.raises(ValueError, match=r"settling_time, hops: .*`elements`.* NAME.max"):
+        kv.sweep(scene, over=over, quantities=["depth.max", "settling_time", "hops"])
+
+
+def test_largest_values_by_elements_are_those_of_the_solver_within_what_is_stated():
+    """A parabola followed by elements, through a reversal, a swing and a start from rest."""
+    stop = kv.Drive(history=[(0.0, 0.1), (0.01, 0.1), (0.01, -0.06)])
+    swing = kv.Drive(waveform=kv.Sine(amplitude=0.1, frequency=40.0))
+    names = [f"{name}.{of}" for name in ("normal_force", "friction_force", "depth", "depth_rate",
+             "peak_pressure", "leading_edge", "trailing_edge") for of in ("max", "min", "end")]  # fmt: skip
+    names.append("peak_to_steady_friction")
+    for drive in (kv.Drive(0.1), stop, swing):
+        scene = kv.Scene(drive=drive, run=kv.Run(0.025))
+        asked = names if drive.ends else names[:-1]
+        right = kv.sweep(scene, over={"support.mass": [1e3]}, quantities=asked)
+        plan = Plan(scene, (), columns_of(asked, series=False), None, "exact", 1e-6)
+        friction = np.array([kv.steady(scene).friction_force if drive.ends else np.nan])
+        found = simulated.measure(plan, {0: scene}, friction, ())
+        scale = scales(StaticState.of(scene))
+        for column in plan.columns:
+            of = "friction_force" if not column.base else column.base
+            unit = scale[of] if column.base else scale[of] / abs(friction[0])
+            off = abs(found.values[column.name][0] - right[column.name].item()) / unit
+            assert off <= min(found.errors[of][0], 0.06), (column.name, off, found.errors[of][0])

@@ -60,7 +60,8 @@ def sweep(
         stroke of the indenter along x), ``stick_slip_period``, and ``sliding_velocity`` and
         ``friction_force`` with ``.cycle_max`` and ``.cycle_min``. With `at`, NAME is the time series;
         ``NAME.steady`` is always the steady value. Transients of other shapes, and on Prony series,
-        are simulated by elements, in less than a second per scene: they give series and ``NAME.end`` only.
+        are simulated by elements, in some seconds per scene: they give series, ``NAME.end``, ``NAME.max``,
+        ``NAME.min`` and ``peak_to_steady_friction`` only.
     at
         Times of the series, in s or as text with a unit.
     method, rtol
@@ -156,9 +157,12 @@ def plan_of(
     plan = Plan(scene, axes, columns, times, method, rtol)
     if plan.transient and plan.by_elements:
         require(lacks_arms, scene, "the transient")
-        for column in columns:
-            if column.measure not in OF_ELEMENTS:
-                require(lacks_paper_model, scene, f"`quantities` {column.name}")
+        if lacking := [column.name for column in columns if column.measure not in OF_ELEMENTS]:
+            had = "series, NAME.end, NAME.max, NAME.min and peak_to_steady_friction"
+            names, why = ", ".join(lacking), lacks_paper_model(scene)
+            raise SceneError(
+                [f"`quantities` {names}: {why}; `elements`, which follow it, give {had}"]
+            )
     for column in columns:
         if column.sprung and not sprung:
             raise SceneError([f"`quantities` {column.name}: needs drive.stiffness, of a spring"])

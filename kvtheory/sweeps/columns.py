@@ -14,8 +14,9 @@ from kvtheory.scene.quantities import SceneError, nearest, problem
 SERIES = {name: unit for name, unit in TRANSIENT_UNITS.items() if name != "time"}
 """What a transient is asked for, by its measures or on a grid of times."""
 MEASURES = ("end", "max", "min", "time_of_max")
-OF_ELEMENTS = ("steady", "series", "end")
-"""What is asked of transients that elements follow: what they are known at is the instants asked for."""
+OF_ELEMENTS = ("steady", "series", "end", "max", "min", "peak_to_steady_friction")
+"""What is asked of transients that elements follow. When a value is largest, or whether the contact is lost
+for a moment, they know no better than what passes between two instants."""
 
 STABLE = "stable"
 """Whether steady sliding lasts: 1, or 0 where it is unstable on the spring in the drive."""
