@@ -124,7 +124,7 @@ def test_a_density_is_blamed_only_where_it_was_given():
         indenter=kv.Parabola(radius=1e6), support=kv.Fixed(depth=1e3), drive=kv.Drive(velocity=1e3)
     )
     with pytest.raises(
-        ValueError, match=r"taken by default, 200 elements per mm.*give `per_length`"
+        ValueError, match=r"default density, 200 elements per mm.*give `per_length`"
     ):
         kv.elements(large)
     with pytest.raises(ValueError, match=r"^`per_length` = 200000"):
