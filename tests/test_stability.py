@@ -235,7 +235,7 @@ def test_extremes_give_numbers_without_a_warning(support):
 
 
 def test_what_is_not_covered_is_refused_with_one_message():
-    with pytest.raises(ValueError, match=r"stability .* holds for the parabola only"):
+    with pytest.raises(ValueError, match=r"stability .* holds for the parabola and the ball only"):
         kv.stability(kv.Scene(indenter=kv.Circle(radius=0.01)))
     with pytest.raises(ValueError, match=r"kelvin-voigt"):
         kv.stability(kv.Scene(foundation=kv.GeneralizedMaxwell(1e10, [(1e10, 0.1)])))

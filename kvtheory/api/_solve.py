@@ -16,7 +16,7 @@ from kvtheory.results import STEADY_UNITS, TRANSIENT_UNITS, Solution, ToleranceE
 from kvtheory.results.steady import UNKNOWN, UNSTABLE
 from kvtheory.scene.model import Scene
 from kvtheory.scene.quantities import SceneError, nearest, problem
-from kvtheory.scene.requirements import lacks_paper_model
+from kvtheory.scene.requirements import lacks_stability
 
 MINIMUM_RTOL, MAXIMUM_RTOL = 1e-14, 1.0
 """Below, rounding dominates; above, any number would satisfy it."""
@@ -115,7 +115,7 @@ def _refuse_unstable(scene: Scene) -> None:
     """Raise unless steady sliding on the spring in the drive is known to be linearly stable."""
     if scene.drive.rigid:
         return
-    known = not lacks_paper_model(scene)
+    known = not lacks_stability(scene)
     if not known or not stability(scene, quantity="stable").stable:
         told = UNSTABLE.format("") if known else UNKNOWN
         raise ToleranceError(f"{told} Ask for a series, with `at`.")

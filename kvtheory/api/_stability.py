@@ -8,7 +8,7 @@ from kvtheory.results import Stability
 from kvtheory.scene.broadcasting import values
 from kvtheory.scene.model import Scene
 from kvtheory.scene.quantities import SceneError, nearest, problem
-from kvtheory.scene.requirements import lacks_paper_model, require
+from kvtheory.scene.requirements import lacks_stability, require
 
 QUANTITIES = (
     "stable", "rates", "time_constants", "critical_stiffness", "lower_critical_stiffness",
@@ -35,8 +35,8 @@ def stability(
     Parameters
     ----------
     scene, over
-        As in `steady`; the indenter must be a parabola on a Kelvin-Voigt foundation. `over` may give
-        ``"drive.stiffness"`` also where the drive of the scene is rigid.
+        As in `steady`; the indenter must be a parabola or a ball on a Kelvin-Voigt foundation. `over` may
+        give ``"drive.stiffness"`` also where the drive of the scene is rigid.
     quantity
         Name of a quantity, or several; without it, all. The critical stiffness alone takes
         less than a microsecond for each scene of an array; the critical velocity and the rates take longer.
@@ -51,7 +51,7 @@ def stability(
     SceneError
         As in `steady`, if the mass of a fixed indenter on a spring is not known, or if a quantity is wrong.
     ValueError
-        If the indenter is not a parabola or the foundation is not Kelvin-Voigt.
+        If the indenter is neither a parabola nor a ball, or the foundation not Kelvin-Voigt.
 
     Examples
     --------
@@ -69,12 +69,12 @@ def stability(
     Fact F22 of the derivations.
     """
     scene = scene_of(scene)
-    require(lacks_paper_model, scene, "the stability of steady sliding")
+    require(lacks_stability, scene, "the stability of steady sliding")
     wanted = _names(quantity)
     from kvtheory.models.steady import stable_sliding
 
     with double_precision(scene, over):
-        return stable_sliding.solve(values(scene, over), wanted)
+        return stable_sliding.solve(values(scene, over), wanted, ball=not scene.indenter.per_width)
 
 
 def _names(quantity: str | Sequence[str] | None) -> frozenset[str]:

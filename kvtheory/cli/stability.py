@@ -33,6 +33,7 @@ def stability(scene: str | None, overrides: Sequence[str], as_json: bool) -> Non
     one, such as a sudden start, may still end in stick-slip.
     """
     from kvtheory.api import stability as examine
+    from kvtheory.results import units_for
     from kvtheory.scene import load_scene
 
     checked = load_scene(scene, overrides)
@@ -47,7 +48,7 @@ def stability(scene: str | None, overrides: Sequence[str], as_json: bool) -> Non
         ("quantity", "value", "unit", "relative error"),
         [
             (name, *shown(getattr(found, name), unit), _number(errors.get(name, math.nan)))
-            for name, unit in UNITS.items()
+            for name, unit in units_for(checked.indenter, UNITS).items()
         ],
     )
     if found.rates.size:

@@ -13,8 +13,8 @@ class Stability:
     `stable` is meant against small disturbances: the real parts of all rates are negative.
     `rates` holds, along its last axis but one, the rates of small motions in 1/s as pairs (real,
     imaginary), fastest growth first, and `time_constants` -1/real of each in s: negative for a growing
-    motion. Above `critical_stiffness` (N/m^2) of the spring in the drive steady sliding is stable, and
-    below `lower_critical_stiffness`, too, which is 0 where friction falls with velocity.
+    motion. Above `critical_stiffness` (N/m^2, of a ball N/m) of the spring in the drive steady sliding is
+    stable, and below `lower_critical_stiffness`, too, which is 0 where friction falls with velocity.
     `frequency` (Hz) is that of the motion at the onset of instability, at the upper critical stiffness.
     `critical_velocity` (m/s) is the smallest at which the present stiffness becomes critical.
     Values that do not exist, or were not requested, are NaN.

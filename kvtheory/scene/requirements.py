@@ -57,6 +57,11 @@ def lacks_paper_model(scene: Scene) -> str:
     return lacks_parabola(scene) or lacks_kelvin_voigt(scene)
 
 
+def lacks_stability(scene: Scene) -> str:
+    """Say why the stability of steady sliding is not known; nothing if it is."""
+    return lacks_quadratic(scene) or lacks_kelvin_voigt(scene)
+
+
 def lacks_rigid_drive(scene: Scene) -> str:
     """Return why a method for a rigid drive does not apply, or an empty text.
 

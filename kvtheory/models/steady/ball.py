@@ -153,10 +153,17 @@ def scaled_root(drive_number: Array, support_number: Array) -> Array:
 def _balance(
     R: Array, c: Array, K: Array, tau: Array, V: Array, weight: Array, spring: Array
 ) -> tuple[Array, ...]:
+    return _contact(R, c, K, tau, V, depth_at_load(R, c, K, tau, V, weight, spring))
+
+
+def depth_at_load(
+    R: Array, c: Array, K: Array, tau: Array, V: Array, weight: Array, spring: Array
+) -> Array:
+    """Return the depth at which the load is carried, all arguments as in `at_load`."""
     delta_0 = np.sqrt(weight / ball_stiffness(K, R, c))
     a_0 = np.sqrt(2.0 * R * delta_0)
     s = scaled_root(np.abs(V) * tau / a_0, spring * (delta_0 / weight))
-    return _contact(R, c, K, tau, V, s * s * delta_0)
+    return s * s * delta_0
 
 
 def _contact(R: Array, c: Array, K: Array, tau: Array, V: Array, delta: Array) -> tuple[Array, ...]:

@@ -5,12 +5,15 @@ not always monotonic: a damper or a suspension makes steady sliding stable again
 heavy indenter may flutter at a low one. The first change is therefore found on a grid, then bisected.
 """
 
+from collections.abc import Callable
+
 import numpy as np
 from numpy.typing import NDArray
 
-from kvtheory.models.steady.stability import Values, numbers, onsets
+from kvtheory.models.steady.stability import Numbers, Values, numbers, onsets
 
 Array = NDArray[np.float64]
+NumbersOf = Callable[[Values, Array], Numbers]
 
 DECADES = (-8.0, 20.0)
 """Powers of ten of the drive number V tau/a_0 between which a change is sought."""
@@ -23,8 +26,13 @@ SOFT, UNSTABLE, STIFF, NEVER = -1, 0, 1, 2
 """The stiffness of the spring relative to the critical ones: below both, between, above, or none exists."""
 
 
-def critical_velocity(values: Values, stiffness: Array) -> tuple[Array, Array]:
-    """Return the velocity in m/s for each scene of flat arrays, NaN if there is none, and its error."""
+def critical_velocity(
+    values: Values, stiffness: Array, numbers: NumbersOf = numbers
+) -> tuple[Array, Array]:
+    """Return the velocity in m/s for each scene of flat arrays, NaN if there is none, and its error.
+
+    `numbers` are those of the shape.
+    """
     column = {key: np.reshape(each, (-1, 1)) for key, each in values.items()}
     spring = stiffness.reshape(-1, 1)
     if "support.depth" in column:
@@ -55,10 +63,12 @@ def critical_velocity(values: Values, stiffness: Array) -> tuple[Array, Array]:
         stays = np.where(across, now == was, now != UNSTABLE)
         low, high = np.where(stays, middle, low), np.where(stays, high, middle)
     velocity = np.where(some, np.exp(high[:, 0]), np.nan)
-    return velocity, np.where(some, _error(column, tau, spring, high)[:, 0], np.nan)
+    return velocity, np.where(some, _error(column, tau, spring, high, numbers)[:, 0], np.nan)
 
 
-def _error(values: Values, tau: Array, spring: Array, log_velocity: Array) -> Array:
+def _error(
+    values: Values, tau: Array, spring: Array, log_velocity: Array, numbers: NumbersOf
+) -> Array:
     """Return the relative error of a velocity: that of the stiffness over its logarithmic derivative.
 
     It is not known where both critical stiffnesses meet.

@@ -7,12 +7,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from kvtheory.models.steady import ball_stability
 from kvtheory.models.steady.critical_velocity import critical_velocity
 from kvtheory.models.steady.rates import rates
 from kvtheory.models.steady.stability import Values, is_stable, numbers, onsets
 from kvtheory.results import Certificate, Stability
 from kvtheory.scene.model import Scene
-from kvtheory.scene.requirements import lacks_paper_model
+from kvtheory.scene.requirements import lacks_stability
 
 BLOCK = 8192
 """Scenes treated at a time: the intermediate arrays of a block stay in the processor's cache."""
@@ -27,11 +28,11 @@ SLOW = "rates", "time_constants"
 """The quantities with a last axis for the rates."""
 
 
-def solve(values: Values, wanted: Set[str]) -> Stability:
+def solve(values: Values, wanted: Set[str], ball: bool = False) -> Stability:
     """Return the wanted quantities of scenes, given in SI by dotted key in arrays of one shape.
 
-    The drive is rigid if there is no ``drive.stiffness``. The critical stiffness is then that of a spring
-    without damper and with the mass of the support; a fixed support has none.
+    The indenter is a parabola, or a ball. The drive is rigid if there is no ``drive.stiffness``. The critical
+    stiffness is then that of a spring without damper and with the mass of the support; a fixed one has none.
     """
     mass = values.get("support.mass", np.array(np.nan))
     values = {"drive.damping": np.array(0.0), "drive.mass": mass, **values}
@@ -40,7 +41,7 @@ def solve(values: Values, wanted: Set[str]) -> Stability:
     flat = {key: np.broadcast_to(each, shape).reshape(-1) for key, each in values.items()}
     starts = range(0, max(math.prod(shape), 1), size)
     parts = [
-        _block({key: each[start : start + size] for key, each in flat.items()}, wanted)
+        _block({key: each[start : start + size] for key, each in flat.items()}, wanted, ball)
         for start in starts
     ]
     found, errors = (
@@ -65,13 +66,16 @@ def lasts(scene: Scene, values: Values) -> Any:
     """
     if "drive.stiffness" not in values:
         return True
-    return None if lacks_paper_model(scene) else solve(values, {"stable"}).stable
+    if lacks_stability(scene):
+        return None
+    return solve(values, {"stable"}, not scene.indenter.per_width).stable
 
 
-def _block(values: Values, wanted: Set[str]) -> tuple[dict[str, Any], dict[str, Any]]:
+def _block(values: Values, wanted: Set[str], ball: bool) -> tuple[dict[str, Any], dict[str, Any]]:
     """Return the quantities of flat arrays by name, NaN where they are not wanted, and their errors."""
     tau, stiffness = values["foundation.retardation_time"], values.get("drive.stiffness")
-    given = numbers(values)
+    numbers_of = ball_stability.numbers if ball else numbers
+    given = numbers_of(values)
     lower, upper = onsets(given, tau)
     nothing = np.full(tau.shape, np.nan)
     found: dict[str, Any] = {
@@ -92,7 +96,7 @@ def _block(values: Values, wanted: Set[str]) -> tuple[dict[str, Any], dict[str, 
         found["stable"] = is_stable(stiffness, lower, upper)
         if "critical_velocity" in wanted:
             found["critical_velocity"], errors["critical_velocity"] = critical_velocity(
-                values, stiffness
+                values, stiffness, numbers_of
             )
     if not wanted.isdisjoint(SLOW):
         sigma, error = rates(given, tau, stiffness)
