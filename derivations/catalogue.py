@@ -27,6 +27,7 @@ from . import (
     relaxation,
     spring_drive,
     spring_limits,
+    spring_ringing,
     spring_stability,
     steady,
     tables,
@@ -50,7 +51,7 @@ _CHAPTERS = (
     *(ball, viscoelastic, relaxation, viscoelastic_limits),
     *(transient_scaling, transient_memory, contact_interval, transient_edges),
     *(transient_motion, transient_rates, transient_balance),
-    *(spring_drive, spring_stability, spring_limits),
+    *(spring_drive, spring_stability, spring_limits, spring_ringing),
     *(element_schemes, element_edges, element_strips, element_arms),
 )
 """Each chapter may recall the results of the chapters before it."""

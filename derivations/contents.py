@@ -229,6 +229,8 @@ CONTENTS = {
     "F22-soft": "A soft spring",
     "F22-limits": "Rigid drive, fixed indenter, no inertia",
     "F22-table1": "Critical stiffness under standard conditions",
+    "F22-dampers": "The dampers of a contact resist",
+    "F22-ringing": "A stiff spring rings off",
     "F15-runge-kutta": "Stability limit of the paper's scheme",
     "F15-euler": "Stability limit of Euler's method",
     "element-mean-force": "Mean force on an element",

@@ -165,6 +165,8 @@ x_a = sp.Function("x_A", real=True)(t)
 along, along_s, along_ss, along_0, swing, small = sp.symbols(
     "x_d x_ds x_dss x_d0 x_d1 theta_d", real=True
 )
+slides_more, sinks_faster, middle = sp.symbols("v_x v_z c_m", real=True)
+length, power = _positive("l_c Pi_c")
 lam_0 = sp.Symbol("lambda_0", real=True)
 B_z, T_z, T_x, S_z, S_x, S_c, coupling, uncoupled = _positive("B_z T_z T_x S_z S_x S_c g_c h_c")
 Omega, lag_plus, lag_minus, T_flutter = _positive("Omega p_p p_m T_f")
@@ -345,6 +347,11 @@ TEX = {
     along_0: r"\check x_0",
     swing: r"\check x_1",
     small: r"\check \theta",
+    slides_more: r"\check v_x",
+    sinks_faster: r"\check v_z",
+    length: r"\check l",
+    middle: r"\check \xi",
+    power: r"\check \Pi",
     T_z: r"\vartheta_z",
     T_x: r"\vartheta_x",
     S_z: r"\varrho_z",

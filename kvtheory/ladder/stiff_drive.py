@@ -2,9 +2,9 @@
 
 In scaled form (fact F22) the spring lets the indenter follow the friction f of the rigid drive by
 x = f/κ_x, at the velocity f'/κ_x. Where f jumps, the indenter rings about that, at a velocity w =
-Δf/sqrt(κ_x ε_x), which decays: the dampers of a contact of the length L resist a motion along x, the
-depth being free to follow, by 3 ∫(ξ - ξ_m)^2 dξ = L^3/4 at least, ξ_m its middle. All else feels w
-through the sliding velocity λ - w:
+Δf/sqrt(κ_x ε_x). That decays at least as with a damper L^3/4 beside c_x, L the length of the contact: so
+much its dampers resist a motion along x, however the depth follows (derivations F22-dampers, F22-ringing).
+With ξ_m the middle of the contact, all else feels w through the sliding velocity λ - w:
 
     ∂f_x/∂λ = r^3 + a^3,   ∂f_z/∂λ = -(3/2) L ξ_m,   ∂p/∂λ = -2 ξ,   δd' = 2 ξ_m w.
 
