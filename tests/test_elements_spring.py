@@ -185,15 +185,14 @@ def test_it_ends_in_the_steady_sliding_of_quadrature(shape, direction):
 
 
 def test_a_stiff_spring_meets_the_rigid_drive_at_first_order():
-    times, found = [0.01, 0.02], []
-    rigid = kv.elements(kv.Scene(run=kv.Run(0.02)), per_length="50 /mm", at=times, certify=False)
+    found = []
+    how = {"per_length": "50 /mm", "at": [0.01, 0.02], "time_step": "0.4 ms", "certify": False}
+    rigid = kv.elements(kv.Scene(run=kv.Run(0.02)), **how)
     stiffness = np.array([1e8, 1e9, 1e10])
     for k in stiffness:
         drive = kv.Drive(velocity=0.1, stiffness=float(k), damping=2.0 * math.sqrt(1e3 * k))
         scene = kv.Scene(drive=drive, run=kv.Run(0.02))
-        run = kv.elements(
-            scene, per_length="50 /mm", at=times, certify=False, time_step=rigid.time_step
-        )
+        run = kv.elements(scene, **how)
         found.append(np.abs(run.depth - rigid.depth).max())
     assert np.polyfit(np.log(stiffness), np.log(found), 1)[0] == pytest.approx(-1.0, abs=0.1)
 

@@ -28,6 +28,10 @@ AT_REST = 1e-12
 """Of a_0/τ: slower on a spring, it stands but for rounding, and the edges are those of the drive."""
 
 
+NEAR = 1e-9
+"""Of the spacing: so far inside an edge is the slope there, which may jump at the edge."""
+
+
 class ContactSums(NamedTuple):
     """What the elements do to the indenter: forces in N/m, edges in m (NaN in flight), pressure in Pa.
 
@@ -66,6 +70,8 @@ def report(row: ElementRow, at: IndenterState, time: float) -> tuple[float, ...]
         found = FLIGHT
     elif model.parts:
         found = _parts_of_elements(model, under, (p, p_before), weights, pressed, at.depth)
+        if model.indenter.per_width:
+            found = _kinked(model, under, p, pressed, sliding, found)
     else:
         found = _whole_elements(model, under, p, weights, pressed)
     slides = at.along_rate and abs(sliding) > AT_REST * model.at_rest.velocity
@@ -121,12 +127,18 @@ def _parts_of_elements(
     touches = np.isinf(before) | straight(free)
     before = np.where(touches, np.where(under.touched[outer], 1.0, 1.0 - touching(free)), before)
     share = np.minimum(np.minimum(before, now), 1.0)
-    x, y = under.at(inner)
-    x = x + share * dx * OUTWARD
     p_edge = np.where(now <= share, 0.0, p_in + share * (p_out - p_in))
+    x, y = under.at(inner)
+    for kink in model.indenter.kinks if model.indenter.per_width else ():
+        # There p falls at once, by -C V times the jump of h'.
+        ahead = (kink - x) / dx * OUTWARD
+        p_kink = p_in + ahead * (p_in - p[2 * inner - outer])
+        stops = (ahead >= 0.0) & (ahead < np.minimum(before, 1.0)) & (p_out < 0.0) & (p_kink > 0.0)
+        share, p_edge = np.where(stops, ahead, share), np.where(stops, p_kink, p_edge)
+    x = x + share * dx * OUTWARD
     half = 0.5 * weight[:, None]
     force += float((half * (share * (p_in + p_edge) - p_in)).sum())
-    ends = slope[inner] * p_in, model.slope(x, y) * p_edge
+    ends = slope[inner] * p_in, model.slope(x - NEAR * dx * OUTWARD, y) * p_edge
     push += float((half * (share * (ends[0] + ends[1]) - ends[0])).sum())
     middle = x[runs[:, 0] < under.along.size]
     left, right = (middle.item(0), middle.item(-1)) if middle.size else NOWHERE
@@ -136,6 +148,30 @@ def _parts_of_elements(
     reach = np.where(inner == highest, share, 1.0).min(axis=0)
     peak = max(_peak(model, p, highest, reach), at_edge)
     return ContactSums(dx * force, -dx * push, left, right, *peak)
+
+
+def _kinked(
+    model: Model, under: Under, p: Array, pressed: NDArray[np.bool_], V: float, found: ContactSums
+) -> ContactSums:
+    """Split the element in which a kink of the shape is: h' jumps there, and p by -C V times as much.
+
+    Without this, the forces under a wedge are of the first order in the spacing.
+    """
+    x, dx = under.along[0], model.spacing
+    for kink in model.indenter.kinks:
+        k = round((kink - x.item(0)) / dx)
+        if not (0 < k < x.size - 1 and pressed[k - 1 : k + 2].all()):
+            continue
+        slope = model.slope(np.array([kink, *np.nextafter(kink, [-math.inf, math.inf])]))
+        here = slope[(x[k] != kink) + (x[k] > kink).astype(int)]
+        p_each = p[k] - model.law.damping * V * (slope - here)
+        left = (kink - x.item(k)) / dx + 0.5
+        share = np.array([0.0, left, 1.0 - left])
+        if (p_each[1:] >= 0.0).all():
+            force = found.normal_force + dx * float(share @ (p_each - p[k]))
+            push = found.friction_force - dx * float(share @ (p_each * slope - p[k] * here))
+            found = found._replace(normal_force=force, friction_force=push)
+    return found
 
 
 def _peeling(inside: Array, outside: Array) -> Array:

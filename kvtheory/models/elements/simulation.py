@@ -28,9 +28,12 @@ PER_OSCILLATION = 20.0
 """Steps in a period of the mass on the contact at rest, at least."""
 ROUGHLY = 0.9
 """Of a period: nearer to it, it counts as found."""
-PER_STOPPING = 4.0
-"""Steps in the time in which dampers stop the mass, at least, after a jump of the drive; later they grow with
-the time since the jump, up to the step of the run."""
+PER_STOPPING, FINER = 4.0, 1.0 / 16.0
+"""Steps in the time in which dampers stop the mass, at least, after a jump of the drive, and so many for each
+element in half a contact, so that more elements are more accurate there, too; later the steps grow with the
+time since the jump, up to the step of the run."""
+JUMP = 1e-6
+"""Of the highest speed: a smaller jump of the drive is rounding between pieces of a function."""
 MOST_STEPS = 20_000
 """In a run, for the sake of these two: where the foundation or the spring is far faster than the run
 lasts, no more is resolved than this; the implicit schemes stay stable, and the certificate tells."""
@@ -75,9 +78,9 @@ def simulate(
     h = time_step or _default_step(model, path, scheme)
     stops, wanted = _instants(scene, path, h, at)
     _refuse_what_takes_too_long(model, stops[-1], h)
-    graded = time_step is None and not scheme.tableau
-    stopping = _stopping_time(model) if graded else math.inf
-    legs = _legs(stops, path, h, stopping)
+    own_step = time_step is None and not scheme.tableau
+    graded = _graded(model, path, h, stops[-1]) if own_step else {}
+    legs = _legs(stops, path.changes, h, graded)
     h = max(((stop - start) / count for start, stop, count in legs if count), default=h)
     warning = doubts(scheme, model, path, h)
     if warning and warn is not None:
@@ -132,22 +135,29 @@ def _default_step(model: Model, path: BaseMotion, scheme: Scheme) -> float:
     return min(passing, max(resolved, path.end / MOST_STEPS), STABLE_SHARE * stable)
 
 
-def _stopping_time(model: Model) -> float:
-    """Return the time in which the dampers of the contact at rest stop the mass, M/(C L), in s."""
+def _graded(model: Model, path: BaseMotion, h: float, end: float) -> dict[float, float]:
+    """Return where steps are shorter than h, after jumps of the drive, and how long they are there.
+
+    The dampers of the contact at rest stop the mass in the time M/(C L).
+    """
     resistance = model.law.damping * model.extent
-    return model.mass / resistance if resistance else math.inf
-
-
-def _graded(path: BaseMotion, h: float, stopping: float, end: float) -> dict[float, float]:
-    """Return where steps are shorter than h, after jumps of the drive, and how long they are there."""
-    count = math.ceil(math.log2(max(PER_STOPPING * h / stopping, 1.0)))
-    jumps = [t for t in path.changes if path.velocity(t) != path.velocity(t, before=True)]
+    if not resistance or math.isinf(model.mass):
+        return {}
+    stopping, steps = (
+        model.mass / resistance,
+        max(PER_STOPPING, FINER * model.half_length / model.spacing),
+    )
+    count = math.ceil(math.log2(max(steps * h / stopping, 1.0)))
+    least = JUMP * path.highest_speed
+    jumps = [
+        t for t in path.changes if abs(path.velocity(t) - path.velocity(t, before=True)) > least
+    ]
     found = {}
     for jump, after in itertools.pairwise([0.0, *(t for t in jumps if 0.0 < t < end), end]):
         for k in range(count):
             start = jump + stopping * (2.0**k - 1.0)
             if start < after:
-                found[start] = min(h, stopping * 2.0**k / PER_STOPPING)
+                found[start] = min(h, stopping * 2.0**k / steps)
         if count and (start := jump + stopping * (2.0**count - 1.0)) < after:
             found[start] = h
     return found
@@ -241,17 +251,18 @@ def _run(
     return dict(zip(COLUMNS, columns, strict=True)), row.updates
 
 
-def _legs(stops: Sequence[float], path: BaseMotion, h: float, stopping: float) -> list[Leg]:
+def _legs(
+    stops: Sequence[float], breaks: Sequence[float], h: float, graded: dict[float, float]
+) -> list[Leg]:
     """Return for each stop whence the run comes and in how many steps; in none if it is there already."""
     legs: list[Leg] = []
-    start, step = 0.0, h
-    graded = _graded(path, h, stopping, stops[-1])
+    start, step = 0.0, graded.get(0.0, h)
     for stop in sorted({*stops, *graded}):
         # An even number of steps of at most h, so that half as many fit too.
         count = max(2 * math.ceil(0.5 * (stop - start) / step * (1.0 - 1e-9)), 2)
         count = count if stop - start > TOGETHER * step else 0
         legs.append((start, stop, count))
-        if count or stop in path.changes:
+        if count or stop in breaks:
             start = stop
         step = graded.get(stop, step)
     return legs
