@@ -110,6 +110,7 @@ def _ringing() -> Derivation:
 
 _RINGS = (
     r"A ringing that is fast beside the retardation time, while the edges stay: $\check x$ along the "
-    r"foundation, $\check d$ normal to it, $\check v_x = -\check x'$ and $\check v_z = \check d'$. Its energy "
-    r"falls at least as that of an oscillator with the damper $\check l^3/4 + c_x$, however the depth follows."
+    r"foundation, $\check d$ normal to it, $\check v_x = -\check x'$ and $\check v_z = \check d'$. Its "
+    r"energy falls at least as that of an oscillator with the damper $\check l^3/4 + c_x$, however the depth "
+    r"follows."
 )
