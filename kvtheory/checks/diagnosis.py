@@ -11,6 +11,7 @@ from kvtheory.checks.faults import (
     offset,
     parameters,
     scales,
+    spring,
     undone,
 )
 from kvtheory.checks.fitting import Bench, bench
@@ -27,7 +28,7 @@ FAMILIES: tuple[tuple[Callable[[Bench], Iterator[Trial]], float], ...] = (
 """The families in the order in which they are tried, and the part of the difference that one of their faults
 must explain for nothing else to be looked for: a sign or a unit is not fitted, so that little is enough."""
 BY_ELEMENTS: tuple[tuple[Callable[[Bench], Iterator[Trial]], float], ...] = (
-    (undone, 0.5), (replaced, 0.9),
+    (undone, 0.5), (replaced, 0.9), (spring, 1.0),
 )  # fmt: skip
 """Those where each theory that others would ask for is a run of many elements."""
 NAMED = 0.4

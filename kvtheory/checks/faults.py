@@ -5,7 +5,7 @@ A fault is a parameter of the scene that the data were not made with, a column t
 """
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import NamedTuple
 
@@ -52,6 +52,8 @@ PARAMETERS = (
     Parameter("c_x", {"drive.damping": 1.0}, "N s/m^2", 1.0, " (beside the spring in the drive)"),
 )  # fmt: skip
 """What may be wrong in a scene; those that the scene has not are passed over."""
+OF_SPRING = PARAMETERS[-3:]
+"""Those of the spring in the drive."""
 
 WRONG = "wrong "
 """How the names of faults begin that are a parameter."""
@@ -97,18 +99,34 @@ class Trial:
 
 def parameters(bench: Bench) -> Iterator[Trial]:
     """Fit each parameter of the scene, and try the direction of the drive."""
-    scene, values = bench.case.theory.scene, dict(bench.case.theory.scene.values())
+    yield from _fitted(bench, PARAMETERS, FACTORS)
+    backward = _scaled(bench, {"drive.velocity": 1.0}, -1.0)
+    text = "the base moves in the other direction: x and V have the other sign"
+    yield Trial("direction of the drive", text, judged(bench, backward), -1.0)
+
+
+def spring(bench: Bench) -> Iterator[Trial]:
+    """Fit the parameters of the spring alone, from what the scene says: where each theory takes a while."""
+    if not bench.case.theory.scene.drive.rigid:
+        yield from _fitted(bench, OF_SPRING, FACTORS[:1])
+
+
+def _scaled(bench: Bench, powers: Mapping[str, float], factor: float) -> Pair | None:
+    curves = bench.solved(scaled_scene(bench.case.theory.scene, powers, factor))
+    return None if curves is None else (bench.columns, curves)
+
+
+def _fitted(
+    bench: Bench, several: Sequence[Parameter], factors: Sequence[float]
+) -> Iterator[Trial]:
+    """Fit each of several parameters that the scene has, starting from the best of some factors."""
+    values = dict(bench.case.theory.scene.values())
     values.setdefault("drive.velocity", bench.case.theory.final_velocity)
-
-    def scaled(powers: Mapping[str, float], factor: float) -> Pair | None:
-        curves = bench.solved(scaled_scene(scene, powers, factor))
-        return None if curves is None else (bench.columns, curves)
-
-    there = [each for each in PARAMETERS if all(values.get(name) for name in each.powers)]
+    there = [each for each in several if all(values.get(name) for name in each.powers)]
     trials: list[Trial] = []
     for symbol, powers, unit, per_si, words in there:
-        key = next(iter(powers))
-        found = bench.fitted(lambda x, p=powers: scaled(p, math.exp(x)), np.log(FACTORS).tolist())  # type: ignore[misc]
+        key, starts = next(iter(powers)), np.log(factors).tolist()
+        found = bench.fitted(lambda x, p=powers: _scaled(bench, p, math.exp(x)), starts)  # type: ignore[misc]
         factor = math.exp(found.value)
         old, new = values[key] * per_si, factor * values[key] * per_si
         size = f"{new:.4g} {unit} rather than {old:.4g} {unit}"
@@ -120,9 +138,6 @@ def parameters(bench: Bench) -> Iterator[Trial]:
             trials[best], alike=_alike(bench, there, best, trials[best].fitted.value)
         )
     yield from trials
-    backward = scaled({"drive.velocity": 1.0}, -1.0)
-    text = "the base moves in the other direction: x and V have the other sign"
-    yield Trial("direction of the drive", text, judged(bench, backward), -1.0)
 
 
 def _alike(bench: Bench, there: list[Parameter], best: int, value: float) -> tuple[str, ...]:

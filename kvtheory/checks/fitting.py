@@ -7,6 +7,7 @@ for them; the covariance of a fit of two unknowns says whether the data tell the
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -137,11 +138,22 @@ class Bench:
 
     def solved(self, scene: Scene, times: Array | None = None) -> Curves | None:
         """Return the theory of another scene at the times of the rows, or None where it has none."""
-        theory = replace(self.case.theory, scene=scene)
+        theory, moments = (
+            replace(self.case.theory, scene=scene),
+            self.time if times is None else times,
+        )
         try:
-            return theory.at(self.time if times is None else times, TRIAL_RTOL)
+            found = theory.at(moments, TRIAL_RTOL)
         except (ValueError, ArithmeticError):
             return None
+        if not theory.by_elements or times is not None:
+            return found
+        return {name: self.now[name] + found[name] - self._coarse[name] for name in self.now}
+
+    @cached_property
+    def _coarse(self) -> Curves:
+        """The theory of the scene as it is given by as few elements as in trials, whose errors cancel."""
+        return self.case.theory.at(self.time, TRIAL_RTOL)
 
 
 def uncertainty(slope: Array, other: Array) -> float:

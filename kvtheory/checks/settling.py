@@ -99,6 +99,10 @@ def steady_limit(case: Case) -> Iterator[Check]:
     if math.isinf(theory.last_change):
         yield not_made(name, equation, "the drive is a function, which need not settle")
         return
+    if theory.by_elements and not theory.scene.drive.rigid:
+        why = "whether steady sliding is stable on a spring is known for a parabola on Kelvin-Voigt only"
+        yield not_made(name, equation, why)
+        return
     if theory.rates is not None:
         slow = theory.rates.settling
     else:

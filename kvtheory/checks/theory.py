@@ -152,10 +152,11 @@ class Theory:
 
         On a spring they follow from the quartic of F22. With a rigid drive, A = sqrt(a^2 + l_r^2) + a and
         B = x_TE + a, M s^2 + C B s + K A + k_s = 0 (F12); with arms, they are those of the damping that slow
-        sliding feels, and measure what is allowed. So do those of a ball, by its mean width.
+        sliding feels, and measure what is allowed. So do those of a ball, by its mean width. Whether steady
+        sliding of these is stable on a spring, and when it is there, is not known.
         """
         support, foundation = self.scene.support, self.scene.foundation
-        if not self.scene.drive.rigid:
+        if not self.scene.drive.rigid and not self.by_elements:
             steady = self.scene.drive.changed(velocity=self.final_velocity)
             rates = self.methods.rates(replace(self.scene, drive=steady))
             return Rates.of((-1.0 / rates[rates != 0.0]).tolist())
@@ -167,9 +168,10 @@ class Theory:
         stiffness = foundation.stiffness * width * (math.hypot(a, l_r) + a) + support.spring
         damping = foundation.damping * width * (x_te + a)
         root = complex(damping * damping - 4.0 * support.mass * stiffness) ** 0.5
-        return Rates.of(
+        found = Rates.of(
             [2.0 * support.mass / (damping + root), (damping + root) / (2.0 * stiffness)]
         )
+        return found if self.scene.drive.rigid else replace(found, settling=math.inf)
 
     def at(self, times: Array, rtol: float = 1e-6) -> dict[str, Array]:
         """Return the curves at `times` (s): at rest before t = 0, just after a jump of the drive."""

@@ -92,7 +92,7 @@ def _parabola(scene: Scene, request: Request) -> Judgement:
 
 
 def _held(scene: Scene, request: Request) -> Judgement:
-    return Judgement(lacks_strips(scene) or lacks_rigid_drive(scene) or held.remembers(scene))
+    return Judgement(lacks_strips(scene) or held.remembers(scene))
 
 
 def _strips(transient: Callable[..., Transient], scene: Scene, request: Request, _: Any) -> Answer:

@@ -33,7 +33,7 @@ def lacks_ball(scene: Scene) -> str:
 
 def lacks_strips(scene: Scene) -> str:
     """Return why the transient of a ball by strips without memory does not apply, or an empty text."""
-    if lacking := lacks_ball(scene):
+    if lacking := lacks_ball(scene) or lacks_rigid_drive(scene):
         return lacking
     told = 'holds for support.kind = "fixed" only: a ball that rises lifts its rim off the ground'
     return "" if scene.held else f"for a ball {told} and meets its own trace again"
