@@ -134,6 +134,9 @@ class _Contact:
     ) -> None:  # fmt: skip
         self.model, self.now, self.h, self.first = row.model, now, h, min(h * now.rate, sinks)
         self.under = under = row.under(now, new, h, now.depth + sinks)
+        if row.model.indenter.per_width and row.model.law.damping:
+            for kink in row.model.indenter.kinks:
+                self._pass(kink)
         self.meets = under.height + under.rest()
         self.meets -= now.depth
         ends = self.meets.reshape(under.strips, -1)
@@ -144,6 +147,20 @@ class _Contact:
         arms = under.law.held_pressure[1:] @ under.state[1:] if self.late else None
         self.bent = None if arms is None else bend(arms, self.begun)
         self.before = partial(row.before, under, now.depth)
+
+    def _pass(self, kink: float) -> None:
+        """Let elements that pass a kink of the shape in the step be pressed as far as it pressed them.
+
+        What a damper has of that compression until the end of the step, g e^(-t/τ), is left, and so is its
+        mean pressure; without this, a wedge stands on its tip at the first order in the spacing.
+        """
+        under, law = self.under, self.model.law
+        x, travel = under.along[0], under.travel
+        passed = ((x - kink) * (x - travel - kink) < 0.0).nonzero()[0]
+        since = self.h * (x[passed] - kink) / travel if passed.size else np.zeros(0)
+        tip = float(self.model.height(np.array(kink)))
+        g = (self.now.depth - tip) * np.exp(-since / law.retardation_time)
+        under.height[passed] = np.minimum(under.height[passed], self.now.depth - g)
 
     def _late(self, row: ElementRow) -> tuple[NDArray[np.intp], Array]:
         """Return the elements that are entered within the step, and what they lack."""
