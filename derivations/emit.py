@@ -183,6 +183,8 @@ FORMS += (
     Form("ball_loss", "F20-loss", sym.ball_loss, BALL, "D, what leaves the contact"),
     Form("ball_dissipated_in_contact", "F20-energy", sym.ball_share, BALL,
          "the part of F V dissipated in the contact"),
+    Form("ball_trailing_edges", "F20-slopes", sym.ball_edges, BALL, "int x_TE/a over the strips"),
+    Form("ball_cubed_trailing_edges", "F20-slopes", sym.ball_cubes, BALL, "int (x_TE/a)^3 over the strips"),
     Form("ball_scaled_load", "F20-balance", sym.ball_scaled, (s, lam, sym.ball_tail),
          "f = W/W_0 at s = a/a_0, lam = V tau/a_0"),
     Form("ball_scaled_load_slope", "F20-balance", sym.ball_scaled_s, (s, lam, sym.ball_angle),

@@ -790,6 +790,8 @@ SYMBOLS = tuple(
         (r"\tilde T", "what the load of a ball has beside its limits", "1", "F20-load"),
         (r"\tilde D", "integral by which a ball leaves energy behind", "1", "F20-loss"),
         (r"\tilde I", "integral of the depths of the strips", "1", "F20"),
+        (r"\tilde P", "integral of the trailing edges of the strips of a ball", "1", "F20-slopes"),
+        (r"\tilde Q", "integral of their cubes", "1", "F20-slopes"),
         (r"\tilde J", "integral of the squares of what the strips leave behind", "1", "F20-energy"),
         (
             r"\tilde \varphi",

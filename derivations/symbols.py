@@ -188,6 +188,7 @@ ball_l1, ball_l2, ball_load_low, ball_load_high = sp.symbols(
     "e_b_L1 e_b_L2 e_b_W_low e_b_W_high", real=True
 )
 ball_friction_low, ball_friction_high = sp.symbols("e_b_F_low e_b_F_high", real=True)
+ball_edges, ball_cubes = _positive("P_b Q_b")
 ball_slip, ball_steep = sp.symbols("E_b S_b", real=True)
 ball_cross, ball_lam_cross = _positive("l_b lambda_b")
 
@@ -382,6 +383,8 @@ TEX = {
     ball_kept: r"\tilde M",
     ball_lost: r"\tilde N",
     ball_behind: r"\tilde J",
+    ball_edges: r"\tilde P",
+    ball_cubes: r"\tilde Q",
     ball_angle: r"\tilde \theta",
     ball_load: r"\tilde w",
     ball_friction: r"\tilde \varphi",

@@ -383,6 +383,16 @@ function ball_dissipated_in_contact(l, T_b) {
   return -8 * D_b * l / (T_b + Math.PI) + 1;
 }
 
+/** int x_TE/a over the strips; theorem F20-slopes. */
+function ball_trailing_edges(l, T_b) {
+  return (T_b / 4 + l / 3) / (l * l + 1);
+}
+
+/** int (x_TE/a)^3 over the strips; theorem F20-slopes. */
+function ball_cubed_trailing_edges(l, T_b) {
+  return (3 * T_b * (5 * l * l + 1) / 16 - l) / (l * l + 1);
+}
+
 /** f = W/W_0 at s = a/a_0, lam = V tau/a_0; theorem F20-balance. */
 function ball_scaled_load(s, lam, T_b) {
   return s * s * s * (8 * lam / (3 * Math.PI) + s * (T_b / Math.PI + 1) / 2);

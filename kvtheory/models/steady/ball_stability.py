@@ -13,7 +13,7 @@ plane, in units of a and a^3,
     int A dv = pi/4,    X_1 = int x_TE dv = (l/3 + T/4)/(1 + l^2),
     int A^3 dv = 3 pi/16,    X_3 = int x_TE^3 dv = (3 T (1 + 5 l^2)/16 - l)/(1 + l^2),
 
-by F20-load and F20-loss. The last one loses digits for l >> 1, where it does not count beside 3 pi/16.
+by derivation F20-slopes. The last one loses digits for l >> 1, where it does not count beside 3 pi/16.
 """
 
 from collections.abc import Mapping
@@ -22,6 +22,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kvtheory.models.steady import ball
+from kvtheory.models.steady import closed_forms as cf
 from kvtheory.models.steady.spots import stretch_of
 from kvtheory.models.steady.stability import Numbers
 
@@ -42,9 +43,8 @@ def numbers(values: Values, velocity: Array | None = None) -> Numbers:
     a = np.sqrt(2.0 * R * depth)
     l = V * tau / a
     _, T = ball.angle_and_tail(l)
-    A_1, A_3, bent = np.pi / 4.0, 3.0 * np.pi / 16.0, 1.0 + l * l
-    X_1 = (l / 3.0 + 0.25 * T) / bent
-    X_3 = (3.0 / 16.0 * T * (1.0 + 5.0 * l * l) - l) / bent
+    A_1, A_3 = np.pi / 4.0, 3.0 * np.pi / 16.0
+    X_1, X_3 = cf.ball_trailing_edges(l, T), cf.ball_cubed_trailing_edges(l, T)
     unit = 2.0 * K * a * (a * c)
     along = tau * unit * (a / R) ** 2 * ((A_3 + X_3) / 3.0)  # dF/dV, in N s/m
     across = tau * unit * (A_1 + X_1)  # dW/d(ddelta/dt), in N s/m

@@ -399,6 +399,16 @@ def ball_dissipated_in_contact(l: Value, T_b: Value) -> Value:
     return -8 * D_b * l / (T_b + np.pi) + 1
 
 
+def ball_trailing_edges(l: Value, T_b: Value) -> Value:
+    """Return int x_TE/a over the strips; theorem F20-slopes."""
+    return (T_b / 4 + l / 3) / (l * l + 1)
+
+
+def ball_cubed_trailing_edges(l: Value, T_b: Value) -> Value:
+    """Return int (x_TE/a)^3 over the strips; theorem F20-slopes."""
+    return (3 * T_b * (5 * l * l + 1) / 16 - l) / (l * l + 1)
+
+
 def ball_scaled_load(s: Value, lam: Value, T_b: Value) -> Value:
     """Return f = W/W_0 at s = a/a_0, lam = V tau/a_0; theorem F20-balance."""
     return s * s * s * (8 * lam / (3 * np.pi) + s * (T_b / np.pi + 1) / 2)

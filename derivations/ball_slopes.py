@@ -1,0 +1,52 @@
+r"""What the stability of a ball on a spring needs beside its forces: two more sums over its strips.
+
+By F22 the forces of a strip change with its depth, the rate of it and the velocity by its half length A, by
+x_TE and by the cubes of both. Over the strips these are integrals of sqrt(1 - y**2), of x_TE and of cubes.
+"""
+
+import sympy as sp
+
+from .ball import ANGLE, EDGE, PI, SECTION, TAIL, UNIT, y
+from .record import Derivation
+from .step import Proof
+from .symbols import ball_angle, ball_cubes, ball_edges, ball_tail, l
+
+theta, T = ball_angle, ball_tail
+EDGES = (l / 3 + T / 4) / (1 + l**2)
+CUBES = (sp.Rational(3, 16) * T * (1 + 5 * l**2) - l) / (1 + l**2)
+
+
+def derive() -> tuple[Derivation, ...]:
+    """Prove both sums, in terms of the tail of the load."""
+    return (_slopes(),)
+
+
+def _slopes() -> Derivation:
+    proof = Proof("F20-slopes", None, section=SECTION, title="Ball: how its forces change", text=_SLOPES,
+                  uses=("F20-load",))  # fmt: skip
+    width, whole, arc = sp.sqrt(1 - y**2), 1 + l**2, sp.atan(y / EDGE)
+    cubed = y * (5 * whole - 2 * y**2) * EDGE / 8 + sp.Rational(3, 8) * whole**2 * arc
+    line = (y * EDGE + whole * arc) / 2
+    at_rest = sp.Integral(width, UNIT)
+    proof.integral(at_rest, width, UNIT, (y * width + sp.asin(y)) / 2, "half lengths", value=PI / 4)
+    proof.integral(
+        sp.Integral(width**3, UNIT), width**3, UNIT,
+        y * (5 - 2 * y**2) * width / 8 + sp.Rational(3, 8) * sp.asin(y), "and their cubes",
+        value=3 * PI / 16,
+    )  # fmt: skip
+    closed = (whole * ANGLE - l) / 2
+    proof.integral(ball_edges, EDGE - l, UNIT, line - l * y, "trailing edges", value=closed)
+    powers = cubed - 3 * l * (whole * y - y**3 / 3) + 3 * l**2 * line - l**3 * y
+    third = sp.Rational(3, 8) * whole * (1 + 5 * l**2) * ANGLE - l * (13 + 15 * l**2) / 8
+    proof.integral(ball_cubes, (EDGE - l) ** 3, UNIT, powers, "and their cubes", value=third)
+    proof.define(T, TAIL.subs(theta, ANGLE), "F20-load")
+    proof.equal(ball_edges, EDGES, "from the same tail, a sum of positive terms")
+    proof.equal(ball_cubes, CUBES, "likewise; for great $l$ it does not count beside that at rest")
+    return proof.done(ball_cubes, CUBES)
+
+
+_SLOPES = (
+    r"A strip of the half length $\sqrt{1 - \tilde \zeta^2}$ has its trailing edge at $\sqrt{1 - \tilde "
+    r"\zeta^2 + l^2} - l$. By F22 these two and their cubes say how its forces change with depth, rate and "
+    r"velocity; strips that the motion lifts or presses down carry nothing to first order."
+)
