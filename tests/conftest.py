@@ -9,7 +9,10 @@ from pathlib import Path
 
 import pytest
 
-FIRST = ("test_figures", "derivations", "test_compare_faults")
+FIRST = (
+    *("test_figures", "derivations", "test_compare_faults", "test_transient_random"),
+    *("test_sweep_lasting", "test_shape", "test_viscoelastic"),
+)
 """Scopes in the order in which they begin, then all others; the first of them compiles all kernels."""
 DERIVING = "derivations.catalogue import", "derivations import emit"
 """In the text of a file whose tests derive everything, or most of it."""

@@ -24,7 +24,7 @@ ROOT = Path(__file__).parent.parent
 
 COARSE = {"regime_map": 3, "onset_maps": 2}
 """Maps of which the tests solve every second or third row and column: points do not know of each other."""
-MAP_POINTS = 5, 4
+MAP_POINTS = 3, 3
 """Of the maps of growth, whose points are held against the prediction in `test_charts_stability`."""
 
 
