@@ -106,10 +106,10 @@ def compare(
     ----------
     scene
         What is modelled; without it, the paper's Table 1 with a dead weight. The indenter must be a
-        parabola or a ball. For a ball, and on a Prony series, theory is a simulation with many elements, and
-        with a rigid drive `steady` at the end; the only faults looked for are then wrong signs, wrong units, a
-        Kelvin-Voigt foundation, a rigid drive, and a wrong stiffness, mass or damper along x. With a spring
-        in the drive the data may also hold ``sliding_velocity`` and ``spring_force``.
+        parabola or a ball. For a ball, and on a Prony series, theory is a simulation with many elements,
+        and with a rigid drive `steady` at the end; the only faults looked for are then wrong signs, wrong
+        units, a Kelvin-Voigt foundation, a rigid drive, and a wrong stiffness, mass or damper along x. With
+        a spring in the drive the data may also hold ``sliding_velocity`` and ``spring_force``.
     data
         A path to a CSV with named columns and bracketed units (``t [ms], z_A [mm], F_z [N/mm]``), a
         result with the names of `kvtheory.transient`, or a mapping of arrays (by those names in SI,
