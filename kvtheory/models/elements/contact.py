@@ -69,7 +69,7 @@ def report(row: ElementRow, at: IndenterState, time: float) -> tuple[float, ...]
     if not pressed.any():
         found = FLIGHT
     elif model.parts:
-        found = _parts_of_elements(model, under, (p, p_before), weights, pressed, at.depth)
+        found = _parts_of_elements(model, under, (p, p_before), weights, pressed, at.depth, sliding)
         if model.indenter.per_width:
             found = _kinked(model, under, p, pressed, sliding, found)
     else:
@@ -87,11 +87,16 @@ def pressure(row: ElementRow, under: Under, at: IndenterState, V: float) -> Arra
     Of one that is not in contact, it is what it would be had it followed the indenter in the last step.
     """
     law, state, g = row.model.law, under.state, at.depth - under.height
-    g_rate = at.rate - V * under.slope(row.model)
+    g_rate = at.rate - V * under.slope(row.model, _behind(row.model, V))
     p = law.pressure(state, g, g_rate)
     if law.remembers:
         p += np.where(under.touched, 0.0, law.followed(g - state[0], g_rate, row.last))
     return p
+
+
+def _behind(model: Model, V: float) -> float:
+    """Return how far back the slope is taken: an element on a kink is still on the flank before it."""
+    return math.copysign(NEAR * model.spacing, V) if model.indenter.kinks and V else 0.0
 
 
 def _whole_elements(
@@ -107,7 +112,7 @@ def _whole_elements(
 
 def _parts_of_elements(
     model: Model, under: Under, pressures: tuple[Array, Array], weights: Array,
-    pressed: NDArray[np.bool_], depth: float,
+    pressed: NDArray[np.bool_], depth: float, V: float,
 ) -> ContactSums:  # fmt: skip
     """Sum by trapezoids up to the very edges.
 
@@ -117,7 +122,8 @@ def _parts_of_elements(
     """
     runs, dx, (p, p_before) = runs_of(pressed), model.spacing, pressures
     inner, outer = runs + INSIDE, runs + OUTSIDE
-    weight, slope = weights[runs[:, 0] // under.along.size], under.slope(model)
+    weight = weights[runs[:, 0] // under.along.size]
+    slope = under.slope(model, _behind(model, V))
     force, push = (float(weight @ sums_over(runs, each)) for each in (p, p * slope))
     p_in, p_out = p[inner], p[outer]
     now = _peeling(p_in, p_out)
@@ -133,7 +139,9 @@ def _parts_of_elements(
         # There p falls at once, by -C V times the jump of h'.
         ahead = (kink - x) / dx * OUTWARD
         p_kink = p_in + ahead * (p_in - p[2 * inner - outer])
-        stops = (ahead >= 0.0) & (ahead < np.minimum(before, 1.0)) & (p_out < 0.0) & (p_kink > 0.0)
+        stops = (
+            (ahead >= -NEAR) & (ahead < np.minimum(before, 1.0)) & (p_out < 0.0) & (p_kink > 0.0)
+        )
         share, p_edge = np.where(stops, ahead, share), np.where(stops, p_kink, p_edge)
     x = x + share * dx * OUTWARD
     half = 0.5 * weight[:, None]

@@ -134,6 +134,7 @@ class _Contact:
     ) -> None:  # fmt: skip
         self.model, self.now, self.h, self.first = row.model, now, h, min(h * now.rate, sinks)
         self.under = under = row.under(now, new, h, now.depth + sinks)
+        self.passed = list[NDArray[np.intp]]()
         if row.model.indenter.per_width and row.model.law.damping:
             for kink in row.model.indenter.kinks:
                 self._pass(kink)
@@ -156,7 +157,8 @@ class _Contact:
         """
         under, law = self.under, self.model.law
         x, travel = under.along[0], under.travel
-        passed = ((x - kink) * (x - travel - kink) < 0.0).nonzero()[0]
+        passed: NDArray[np.intp] = ((x - kink) * (x - travel - kink) < 0.0).nonzero()[0]
+        self.passed.append(passed)
         since = self.h * (x[passed] - kink) / travel if passed.size else np.zeros(0)
         tip = float(self.model.height(np.array(kink)))
         g = (self.now.depth - tip) * np.exp(-since / law.retardation_time)
@@ -234,6 +236,8 @@ class _Contact:
         M, M_x, c_x, k_x = model.mass, model.mass_along, model.damping_along, model.spring_along
         k, sunk = under.law.stiffness * model.spacing, new.depth - now.depth
         slope = under.slope(model, 0.5 * under.travel)
+        for passed in self.passed:  # pressed by the flank that they come from
+            slope[passed] = model.slope(under.along[0, passed] - under.travel)
         steep = slope * slope
         held_or_met = runs_of((self.meets < self.first) | under.touched)
         tilt = model.spacing * float(self.weight(held_or_met) @ sums_over(held_or_met, steep))
