@@ -70,7 +70,7 @@ def bend(values: Array, runs: Runs) -> Array:
     """Return by how much a field bends at each edge, by differences on either side.
 
     >>> bend(np.array([0.0, 0.0, 3.0, 9.0, 9.0, 9.0, 9.0]), np.array([[1, 3]])).tolist()
-    [[6.0, 0.0]]
+    [[6.0, -6.0]]
     """
     inner, outer, inward = runs + INSIDE, runs + OUTSIDE, np.array([1, -1])
     inside = values[inner + inward] - values[inner]
