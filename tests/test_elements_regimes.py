@@ -203,3 +203,9 @@ def test_a_start_faster_than_elements_pass_is_resolved():
     )
     assert coarse.certificate.relative_error["peak_pressure"] < 0.05
     assert coarse.peak_pressure == pytest.approx(fine.peak_pressure, rel=1e-3)
+
+
+def test_an_indenter_that_is_flat_in_double_precision_is_refused():
+    flat = kv.Scene(indenter=kv.Parabola("1e308 m"))
+    with pytest.raises(ValueError, match="leaves the range of double precision: check"):
+        kv.elements(flat, per_length="50 /mm")

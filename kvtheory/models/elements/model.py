@@ -19,7 +19,7 @@ from kvtheory.scene.base_motion import BaseMotion
 from kvtheory.scene.indenters import Indenter
 from kvtheory.scene.model import Scene
 from kvtheory.scene.requirements import lacks_arms, require
-from kvtheory.scene.static_state import StaticState
+from kvtheory.scene.static_state import StaticState, out_of_range
 
 LEVEL = 1.1
 """Ratio of the depths for which the span of the indenter is kept: a tenth more elements than needed."""
@@ -74,7 +74,8 @@ class Model:
         Raises
         ------
         ValueError
-            If there are too few or too many elements in the contact.
+            If there are too few or too many elements in the contact, or if the scene leaves the range of
+            double precision.
         """
         require(lacks_arms, scene, "the simulator")
         support, law, fixed = scene.support, Law.of(scene.foundation), scene.held
@@ -82,6 +83,8 @@ class Model:
             scene.indenter, law, 1.0, support.mass, support.weight, 0.0,
             support.depth or 1.0, parts, shift,
         )  # fmt: skip
+        if not all(map(math.isfinite, span(model.indenter, model.depth))):
+            raise ValueError(out_of_range(scene))
         rough = model.depth if fixed else model.sliding_depth(0.0)
         low, high = span(model.indenter, rough)
         dx = spacing or (high - low) / SAMPLES
@@ -254,6 +257,8 @@ class Model:
 def root(function: Callable[[float], float], guess: float, rtol: float = 0.0) -> float:
     """Return where an increasing function of x > 0 becomes positive: to the last digit, or to `rtol`.
 
+    Infinite if it nowhere does.
+
     By false position (Illinois), every fourth step by halves. SciPy's would be as fast, but takes longer to
     import than most runs.
 
@@ -262,7 +267,7 @@ def root(function: Callable[[float], float], guess: float, rtol: float = 0.0) ->
     """
     low = high = guess
     below = above = function(guess)
-    while above < 0.0:
+    while above < 0.0 and high < math.inf:
         low, below, high = high, above, 2.0 * high
         above = function(high)
     while below > 0.0:
