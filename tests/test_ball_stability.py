@@ -114,3 +114,14 @@ def test_the_command_names_whole_units():
     assert "N/m^2" not in shown.output
     record = json.loads(CliRunner().invoke(main, ["stability", *arguments, "--json"]).stdout)
     assert record["critical_stiffness"] > 0.0
+
+
+def test_sweeps_say_whether_a_ball_slides_stably():
+    ball = kv.Scene(
+        indenter=kv.Sphere("10 mm"),
+        support=kv.DeadWeight(mass="1 kg"),
+        drive=kv.Drive(velocity="91 mm/s", stiffness="1 kN/m"),
+    )
+    over = {"drive.velocity": ["1 mm/s", "91 mm/s"]}
+    assert kv.sweep(ball, over=over)["stable"].tolist() == [1.0, 0.0]
+    assert kv.stability(ball, over=over).stable.tolist() == [True, False]

@@ -148,8 +148,8 @@ def test_a_tolerance_that_nothing_meets_says_how_close_it_came():
     ("request_", "message"),
     [
         ({"quantity": "frictoin_force"}, "friction_force"),
-        ({"quantity": "depth_rate"}, "of a time series"),
-        ({"quantity": "load", "at": "1 ms"}, "of steady sliding"),
+        ({"quantity": "depth_rate"}, "a time series; give the times"),
+        ({"quantity": "load", "at": "1 ms"}, "steady sliding; leave out"),
         ({"quantity": []}, "is empty"),
         ({"quantity": 5}, "`quantity`"),
         ({"rtol": 0.0}, "`rtol` = 0.0"),

@@ -11,8 +11,7 @@ from numpy.typing import NDArray
 from kvtheory.api._edge import double_precision, scene_of
 from kvtheory.api._stability import stability
 from kvtheory.api._steady import steady
-from kvtheory.checks.fitting import TRIAL_RTOL
-from kvtheory.checks.theory import Methods
+from kvtheory.checks.theory import TRIAL_RTOL, Methods
 from kvtheory.progress import Progress
 from kvtheory.results import SERIES_UNITS, units_for
 from kvtheory.results.comparison import Comparison

@@ -78,7 +78,7 @@ def elements(
     >>> import kvtheory as kv
     >>> run = kv.elements(at=["0 ms", "1 ms", "200 ms"])
     >>> (run.normal_force / 1e3).round(2).tolist()
-    [35.37, 12.74, 9.81]
+    [35.37, 12.73, 9.81]
     >>> run.certificate.relative_error["depth"] < 1e-3
     True
     >>> rubber = kv.GeneralizedMaxwell("10 GN/m^3", arms=[["30 GN/m^3", "10 ms"]])

@@ -12,7 +12,7 @@ from kvtheory.progress import Progress
 from kvtheory.results import STEADY_UNITS, Sweep
 from kvtheory.scene.model import Scene
 from kvtheory.scene.quantities import SceneError
-from kvtheory.scene.requirements import lacks_arms, lacks_paper_model, require
+from kvtheory.scene.requirements import lacks_arms, lacks_paper_model, lacks_stability, require
 
 if TYPE_CHECKING:
     from kvtheory.sweeps.plan import Plan
@@ -151,7 +151,7 @@ def plan_of(
     times = None if at is None else tuple(times_of(scene, at))
     axes = axes_of(scene, over)
     sprung = not scene.drive.rigid or any("drive.stiffness" in axis.values for axis in axes)
-    if quantities is None and at is None and sprung and not lacks_paper_model(scene):
+    if quantities is None and at is None and sprung and not lacks_stability(scene):
         quantities = [*STEADY_UNITS, STABLE]
     columns = columns_of(quantities, series=at is not None, indenter=scene.indenter)
     plan = Plan(scene, axes, columns, times, method, rtol)
@@ -160,14 +160,12 @@ def plan_of(
         if lacking := [column.name for column in columns if column.measure not in OF_ELEMENTS]:
             had = "series, NAME.end, NAME.max, NAME.min and peak_to_steady_friction"
             names, why = ", ".join(lacking), lacks_paper_model(scene)
-            raise SceneError(
-                [f"`quantities` {names}: {why}; `elements`, which follow it, give {had}"]
-            )
+            raise SceneError([f"`quantities` {names}: {why}; a simulation by elements gives {had}"])
     for column in columns:
         if column.sprung and not sprung:
             raise SceneError([f"`quantities` {column.name}: needs drive.stiffness, of a spring"])
         if column.base == STABLE and sprung:
-            require(lacks_paper_model, scene, "the stability of steady sliding")
+            require(lacks_stability, scene, "the stability of steady sliding")
     if not MINIMUM_RTOL <= rtol <= MAXIMUM_RTOL:
         raise ValueError(
             f"`rtol` = {rtol!r}: expected a number from {MINIMUM_RTOL} to {MAXIMUM_RTOL}"

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from scipy.optimize import least_squares
 
 from kvtheory.checks.comparison_case import Case
-from kvtheory.checks.theory import Curves
+from kvtheory.checks.theory import TRIAL_RTOL, Curves
 from kvtheory.scene import Scene
 from kvtheory.scene.quantities import changed
 
@@ -35,8 +35,6 @@ FITTED_TO = 1e-5
 """Accuracy of a fitted unknown."""
 STEP = 1e-3
 """By which an unknown is changed to see what it does: the theory of trials is smooth far below that."""
-TRIAL_RTOL = 1e-5
-"""Tolerance of the theory in trials."""
 MOST_TRIALS = 30
 """Of one unknown; from a near start, five are enough."""
 

@@ -23,6 +23,8 @@ Curves = Mapping[str, Array]
 
 CURVES = tuple(name for name in SERIES_UNITS if name != "time")
 """The curves of a series. A rigid drive slides at V, and what stands for its spring feels the friction."""
+TRIAL_RTOL = 1e-5
+"""Tolerance of the theory in the trials of a diagnosis."""
 FOR_GOOD = 40.0
 """Time constants after which what is left of a change is below rounding."""
 FOREVER = 1e9

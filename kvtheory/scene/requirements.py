@@ -58,7 +58,7 @@ def lacks_paper_model(scene: Scene) -> str:
 
 
 def lacks_stability(scene: Scene) -> str:
-    """Say why the stability of steady sliding is not known; nothing if it is."""
+    """Return why the stability of steady sliding is not known, or an empty text."""
     return lacks_quadratic(scene) or lacks_kelvin_voigt(scene)
 
 
