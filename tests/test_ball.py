@@ -383,6 +383,29 @@ def test_what_is_given_per_width_for_a_ball_costs_one_line_each(tmp_path, overri
     assert all("per unit width" in line and "point contact" in line for line in lines)
 
 
+@pytest.mark.parametrize(
+    ("overrides", "units"),
+    [
+        ([], {"support.mass": "kg"}),
+        (["support.kind=suspended"], {"support.mass": "kg", "support.stiffness": "N/m"}),
+        (["support.kind=suspended", "support.mass=1 kg"], {"support.stiffness": "N/m"}),
+        (["support.kind=fixed", "drive.stiffness=1 N/mm"], {"drive.mass": "kg"}),
+    ],
+)
+def test_a_ball_on_the_built_in_scene_is_told_what_it_needs_and_nothing_that_it_did_not_give(
+    overrides, units
+):
+    with pytest.raises(kv.SceneError) as caught:
+        kv.load_scene(overrides=["indenter.shape=sphere", *overrides])
+    told = caught.value.problems
+    assert [line.split(": missing")[0] for line in told] == list(units)
+    for line, unit in zip(told, units.values(), strict=True):
+        assert f"expected a quantity in {unit}," in line
+        assert "1000" not in line
+    enough = kv.load_scene(overrides=["indenter.shape=sphere", "support.load=5 N"])
+    assert enough.support == kv.DeadWeight(load=5.0)
+
+
 def test_what_is_given_whole_for_a_line_costs_one_line_each():
     with pytest.raises(kv.SceneError, match="that of a ball") as caught:
         kv.Scene(support=kv.Suspended(mass="1 kg", stiffness="1 N/mm", load="3 N"))

@@ -98,7 +98,8 @@ def _following(scene: Scene, found: dict[str, Array], over: Mapping[str, Any]) -
         follows["support.weight"] = found["support.mass"] * found["support.gravity"]
     if "drive.stiffness" in found and scene.drive.mass is None and "drive.mass" not in over:
         if scene.held:
-            raise SceneError(lacks_mass(scene.support, Drive(velocity=0.0, stiffness=1.0)))
+            spring = Drive(velocity=0.0, stiffness=1.0)
+            raise SceneError(lacks_mass(scene.support, spring, scene.indenter.per_width))
         follows["drive.mass"] = {**found, **follows}["support.mass"]
     return follows
 

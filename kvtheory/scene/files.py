@@ -44,6 +44,11 @@ CHOICES = {
 DEFAULTS = {"indenter": "parabola", "foundation": "kelvin-voigt"}
 LISTS = {("foundation", "arms"), ("drive", "history")}
 """Keys whose values are lists of pairs."""
+PER_WIDTH = {
+    key for cls in SUPPORTS.values() for key, spec in quantities(cls).items() if spec.per_width
+}
+"""Keys of a support that are masses, loads and springs."""
+BALL = " with a ball, whose support is in kg, N and N/m, and not per unit width"
 POINTS = 'points such as ["50 ms", "100 mm/s"]'
 DRIVES = ("velocity", "history", "waveform", "file")
 """Keys that define the motion of a drive; a scene has one of them."""
@@ -242,8 +247,8 @@ def _line(text: str, error: ValueError) -> str:
     return f": {shown(text.splitlines()[int(number[1]) - 1].strip())}" if number else ""
 
 
-def _override(tables: dict[str, Any], overrides: list[str], *, embedded: bool) -> list[str]:
-    """Apply ``section.key=value`` texts in place; return what was wrong with them."""
+def _parsed(overrides: list[str]) -> tuple[list[tuple[str, str, str]], list[str]]:
+    """Return section, key and value of each text, and what was wrong with the others."""
     problems, pairs = [], []
     for text in overrides:
         key, separator, value = text.partition("=")
@@ -259,10 +264,19 @@ def _override(tables: dict[str, Any], overrides: list[str], *, embedded: bool) -
         if len(value) > 1 and value[0] == value[-1] and value[0] in "\"'":
             value = value[1:-1]
         pairs.append((section, name, value))
+    return pairs, problems
+
+
+def _override(tables: dict[str, Any], overrides: list[str], *, embedded: bool) -> list[str]:
+    """Apply ``section.key=value`` texts in place; return what was wrong with them."""
+    pairs, problems = _parsed(overrides)
     keys = {(section, name) for section, name, _ in pairs}
     for section, name, value in pairs:
         if section in CHOICES and name == CHOICES[section][0]:
             tables[section] = _switched(tables.get(section), section, value, embedded)
+    if embedded and not _is_per_width(tables):  # what Table 1 gives does not fit a ball
+        kept = {key: value for key, value in tables["support"].items() if key not in PER_WIDTH}
+        tables["support"] = kept
     for section, name, value in pairs:
         table = tables.setdefault(section, {})
         if not isinstance(table, dict):
@@ -313,6 +327,13 @@ def _switched(old: Any, section: str, choice: str, embedded: bool) -> dict[str, 
     return {**built_in, **common, chooser: choice}
 
 
+def _is_per_width(tables: Mapping[str, Any]) -> bool:
+    """Tell whether the forces on the indenter are per unit width: on any but a ball."""
+    indenter = tables.get("indenter")
+    shape = indenter.get("shape") if isinstance(indenter, dict) else None
+    return not isinstance(shape, str) or getattr(SHAPES.get(shape), "per_width", True)
+
+
 def _build(tables: Mapping[str, Any], problems: list[str]) -> Scene:
     """Make the scene, or raise with every problem found on the way."""
     problems = list(problems)
@@ -323,33 +344,33 @@ def _build(tables: Mapping[str, Any], problems: list[str]) -> Scene:
     ]
     missing = [name for name in absent(SECTIONS, tables) if name not in OPTIONAL]
     problems += [f"[{name}]: this section is missing" for name in missing]
-    parts = {}
+    parts, per_width = {}, _is_per_width(tables)
     for section in (name for name in SECTIONS if name in tables):
         with collecting(problems, section, tables[section]):
-            parts[section] = _part(section, tables[section])
+            parts[section] = _part(section, tables[section], per_width)
     for section in WEIGHED if "indenter" in parts else ():
         problems += misfits(section, parts.get(section), parts["indenter"])
     if {"support", "drive"} <= parts.keys():
-        problems += lacks_mass(parts["support"], parts["drive"])
+        problems += lacks_mass(parts["support"], parts["drive"], per_width)
     if problems:
         raise SceneError(problems)
     return Scene(**parts)
 
 
-def _part(section: str, table: Any) -> Any:
+def _part(section: str, table: Any, per_width: bool) -> Any:
     """Make one part of a scene from its table."""
     if not isinstance(table, dict):
         told = f"expected one table with this name, not {type(table).__name__}"
         raise SceneError([f"[{section}]: {told}"])
     if section == "drive" and "waveform" in table:
-        return _waveform(table)
+        return _waveform(table, per_width)
     if section not in CHOICES:
-        return _make(PLAIN[section], section, table)
+        return _make(PLAIN[section], section, table, per_width)
     chooser, models = CHOICES[section]
     rest = {key: value for key, value in table.items() if key != chooser}
     name = table.get(chooser, DEFAULTS.get(section))
     if isinstance(name, str) and name in models:
-        return _make(models[name], section, rest, f'{chooser} = "{name}"')
+        return _make(models[name], section, rest, per_width, f'{chooser} = "{name}"')
     problems = []
     if chooser not in table and absent([chooser], table):
         problems.append(f"{section}.{chooser}: missing; expected one of: {', '.join(models)}")
@@ -367,27 +388,31 @@ def _part(section: str, table: Any) -> Any:
         ]
     else:
         with collecting(problems, section, table):
-            _make(models[meant], section, rest, f'{chooser} = "{meant}"')
+            _make(models[meant], section, rest, per_width, f'{chooser} = "{meant}"')
     raise SceneError(problems)
 
 
-def _waveform(table: Mapping[str, Any]) -> Drive:
+def _waveform(table: Mapping[str, Any], per_width: bool) -> Drive:
     """Make a drive that swings or rises smoothly."""
     name = table["waveform"]
     rest = {key: value for key, value in table.items() if key != "waveform"}
     if not (isinstance(name, str) and name in WAVEFORMS):
         raise mistake("drive.waveform", name, nearest(str(name), WAVEFORMS))
-    values = _values(WAVEFORMS[name], "drive", rest, f'waveform = "{name}"')
+    values = _values(WAVEFORMS[name], "drive", rest, per_width, f'waveform = "{name}"')
     spring = {key: values.pop(key) for key in SPRING if key in values}
     return Drive(waveform=WAVEFORMS[name](**values), **spring)
 
 
-def _make(cls: Any, section: str, table: Mapping[str, Any], choice: str = "") -> Any:
+def _make(
+    cls: Any, section: str, table: Mapping[str, Any], per_width: bool, choice: str = ""
+) -> Any:
     """Construct `cls` from TOML values, in which a bare number is a mistake."""
-    return cls(**_values(cls, section, table, choice))
+    return cls(**_values(cls, section, table, per_width, choice))
 
 
-def _values(cls: Any, section: str, table: Mapping[str, Any], choice: str) -> dict[str, Any]:
+def _values(
+    cls: Any, section: str, table: Mapping[str, Any], per_width: bool, choice: str
+) -> dict[str, Any]:
     """Return the arguments of `cls`; for a waveform they include the spring of its drive."""
     specs, valid = quantities(cls), _keys(cls)
     if section == "drive":
@@ -395,9 +420,10 @@ def _values(cls: Any, section: str, table: Mapping[str, Any], choice: str) -> di
     known = [CHOICES[section][0], *valid] if section in CHOICES else valid
     of = f" for {choice}" if choice else ""
     needed = required(cls, table)
-    problems = [
-        missing(section, name, specs[name], of) for name in absent(valid, table) if name in needed
-    ]
+    problems = []
+    for name in (name for name in absent(valid, table) if name in needed):
+        spec = specs[name].fitting(per_width)
+        problems.append(missing(section, name, spec, of + ("" if spec == specs[name] else BALL)))
     if "arms" in absent(valid, table):
         problems.append(f"{section}.arms: missing{of}; expected {PAIRS}")
     values: dict[str, Any] = {}

@@ -164,7 +164,7 @@ class Scene:
                 problems.append(problem(name, getattr(self, name), f"expected {told}"))
         for name in () if problems else WEIGHED:
             problems += misfits(name, getattr(self, name), self.indenter)
-        problems = problems or lacks_mass(self.support, self.drive)
+        problems = problems or lacks_mass(self.support, self.drive, self.indenter.per_width)
         if problems:
             raise SceneError(problems)
 
@@ -222,13 +222,12 @@ class Scene:
         return flat
 
 
-def lacks_mass(support: Support, drive: Drive) -> list[str]:
+def lacks_mass(support: Support, drive: Drive, per_width: bool) -> list[str]:
     """Return that a fixed indenter on a spring needs a mass, as its support has none; or nothing."""
     if drive.rigid or drive.mass is not None or math.isfinite(support.mass):
         return []
-    needed = missing(
-        "drive", "mass", quantities(drive)["mass"], f' for support.kind = "{support.kind}"'
-    )
+    spec = quantities(drive)["mass"].fitting(per_width)
+    needed = missing("drive", "mass", spec, f' for support.kind = "{support.kind}"')
     return [f"{needed}, which moves along x on the spring"]
 
 
