@@ -22,7 +22,7 @@ class UndecidedError(ArithmeticError):
     """The algebra could neither prove nor refute the statement."""
 
 
-_CONTINUOUS = (sp.exp, sp.sin, sp.cos, sp.sinh, sp.cosh, sp.tanh, sp.atan, sp.Abs)
+_CONTINUOUS = (sp.exp, sp.sin, sp.cos, sp.sinh, sp.cosh, sp.tanh, sp.atan, sp.asinh, sp.Abs)
 """Functions without jumps or poles where they are real."""
 
 

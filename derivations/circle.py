@@ -2,7 +2,8 @@ r"""The error of the parabola h = x**2/(2 R) for a true circle h = R - sqrt(R**2
 
 With eps = (a/R)**2, where a = sqrt(2 R delta) belongs to the parabola, each quantity of steady sliding
 is that of the parabola times 1 + c eps + O(eps**2). Shape and edges are analytic in eps, so that the
-coefficients c follow from the first terms of the pressure and of the moving edges.
+coefficients c follow from the first terms of the pressure and of the moving edges. What a circle of any depth
+dissipates inside its contact has a closed form, by which the explorer computes its friction.
 """
 
 from functools import partial
@@ -29,7 +30,10 @@ from .symbols import (
     phi,
     q,
     s,
+    slope_square,
+    tilt,
     w,
+    x,
     xi,
 )  # fmt: skip
 from .theorems import (
@@ -62,8 +66,8 @@ _theorem = partial(Proof, equation=None, section=SECTION)
 
 
 def derive() -> tuple[Derivation, ...]:
-    """Prove the leading corrections for a true circle, at given depth and at given load."""
-    return _shape(), _fixed(), _dead_weight()
+    """Prove the leading corrections for a true circle, and the integral of the square of its slope."""
+    return _shape(), _fixed(), _dead_weight(), _steepness()
 
 
 def _shape() -> Derivation:
@@ -164,4 +168,24 @@ def _dead_weight() -> Derivation:
     return proof.done(c_mu_load, LOADED_COEFFICIENT)
 
 
+def _steepness() -> Derivation:
+    proof = _theorem("circle-steepness", title="True circle: the square of its slope", text=_STEEP,
+                     uses=("energy-any-shape",))  # fmt: skip
+    y = sp.Symbol("y", nonnegative=True)
+    place, size = R * y / sp.sqrt(1 + y**2), (1 + y**2) ** sp.Rational(3, 2)
+    slope = x / sp.sqrt(R**2 - x**2)
+    proof.equal(sp.Derivative(R - sp.sqrt(R**2 - x**2), x), slope, "slope of the circle")
+    proof.equal(slope.subs(x, place), y, r"it is $y$ at $x = R y/\sqrt{1 + y^2}$")
+    proof.equal(sp.Derivative(place, y), R / size, r"so that $d x = R\, d y/(1 + y^2)^{3/2}$")
+    closed = sp.asinh(y) - y / sp.sqrt(1 + y**2)
+    value = closed.subs(y, tilt)
+    proof.integral(slope_square, y**2 / size, (y, 0, tilt), closed, _SQUARE, value=value)
+    return proof.done(slope_square, value)
+
+
+_STEEP = (
+    r"$\frac{1}{R} \int h'^2\, dx$ from the lowest point to where the slope is $\hat h'$. The integrand is "
+    "positive; where the slope is small the closed form cancels, and the integral does not."
+)
+_SQUARE = "the slope as variable"
 _CHAIN = r"$\mu = (a/R)\, m(l)$ with $a \propto \sqrt{\delta}$ and $l \propto 1/a$"

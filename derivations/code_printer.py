@@ -95,6 +95,7 @@ _WRITERS: dict[type, Callable[[CodePrinter, sp.Expr], str]] = {
     sp.Add: CodePrinter.sum,
     sp.Mul: CodePrinter.product,
     sp.Pow: CodePrinter.power,
+    sp.asinh: _applied("asinh"),
     sp.exp: _applied("exp"),
     expm1: _applied("expm1"),
     log1p: _applied("log1p"),

@@ -1,7 +1,8 @@
 """Write the closed forms for the explorer, in JavaScript, from the same proved expressions.
 
 ``python -m derivations.emit_javascript`` rewrites `kvtheory/explorer/closed_forms.js`: the functions of
-`emit.FORMS`, and those that Python has by other means, of the transient and of the moments of an arm.
+`emit.FORMS`, and those that Python has by other means, of the transient, of the moments of an arm,
+of the strips of a ball and of a circle.
 """
 
 from functools import partial
@@ -71,7 +72,18 @@ FOUNDATIONS = (
          "the energy that an arm dissipates in the contact"),
 )  # fmt: skip
 
-EMITTED = (*FORMS, *TRANSIENT, *FOUNDATIONS)
+BALL = (
+    Form("ball_trailing", "F20-edges", sym.ball_edge, (sym.l, sym.ball_tail),
+         "int x_TE dv of the strips at v from 0 to 1, in half lengths and half widths"),
+    Form("ball_trailing_cubed", "F20-edges", sym.ball_edge_cubed, (sym.l, sym.ball_tail),
+         "int x_TE^3 dv, likewise"),
+)  # fmt: skip
+CIRCLE = (
+    Form("circle_steepness", "circle-steepness", sym.slope_square, (sym.tilt,),
+         "int h'^2 dx/R of a circle, from the lowest point to where the slope is this"),
+)  # fmt: skip
+
+EMITTED = (*FORMS, *TRANSIENT, *FOUNDATIONS, *BALL, *CIRCLE)
 _parts = partial(parts, forms=FORMS, printer=JAVASCRIPT)
 
 

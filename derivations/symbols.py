@@ -76,6 +76,8 @@ E, S, b, gap = _positive("E S b gap")
 eps = sp.Symbol("epsilon", positive=True)
 W_1, F_1 = sp.symbols("W_1 F_1", real=True)
 c_w, c_f, c_mu, c_delta_load, c_mu_load = sp.symbols("c_W c_F c_mu c_delta_W c_mu_W", real=True)
+tilt = sp.Symbol("slope", positive=True)
+slope_square = sp.Symbol("slope_square", real=True)
 
 # The transient, scaled by the static state: lengths by a_0, depths by delta_0, forces by W_0 and
 # time by tau. A prime is the derivative with respect to the scaled time s.
@@ -182,6 +184,7 @@ aside, ball_angle, ball_load, ball_friction, ball_coefficient, ball_share = _pos
     "y_b theta_b w_b phi_b m_b eta_b"
 )
 ball_tail, ball_loss, ball_depth, ball_behind = _positive("T_b D_b I_b J_b")
+ball_edge, ball_edge_cubed = sp.symbols("X_b Y_b", real=True)
 ball_rest, ball_kept, ball_lost, ball_mean = _positive("K_b M_b N_b g_b")
 ball_scaled, ball_scaled_s, ball_scaled_ss = _positive("f_b f_b_s f_b_ss")
 ball_l1, ball_l2, ball_load_low, ball_load_high = sp.symbols(
@@ -375,8 +378,12 @@ TEX = {
     onset_sum: r"\check n",
     spread: r"\check w",
     onset_square: r"\check D",
+    tilt: r"\hat h'",
+    slope_square: r"\hat S",
     aside: r"\tilde \zeta",
     ball_depth: r"\tilde I",
+    ball_edge: r"\tilde X",
+    ball_edge_cubed: r"\tilde Y",
     ball_rest: r"\tilde K",
     ball_mean: r"\tilde g",
     ball_steep: r"\tilde S",

@@ -27,7 +27,7 @@ def _fifty_digits():
 
 @pytest.fixture(scope="module", autouse=True)
 def proved():
-    return {proof.label: proof for proof in catalogue(until=["circle-dead-weight"])}
+    return {proof.label: proof for proof in catalogue(until=["circle-steepness"])}
 
 
 def exact(label, symbol, known):
@@ -309,6 +309,14 @@ def test_the_circle_at_given_depth(number):
     }
     for symbol, of in quantities.items():
         assert second_order(lambda eps, of=of, symbol=symbol: left_out(eps, of, symbol)), symbol
+
+
+@pytest.mark.parametrize("end", ["1e-3", "0.3", "0.9", "0.999"])
+def test_the_square_of_the_slope_of_a_circle(end):
+    end = mp.mpf(end)
+    truth = mp.quad(lambda place: mp.diff(lambda x: 1 - mp.sqrt(1 - x * x), place) ** 2, [0, end])
+    slope = end / mp.sqrt(1 - end**2)
+    assert near(exact("circle-steepness", sym.slope_square, {sym.tilt: slope}), truth, 20)
 
 
 @pytest.mark.parametrize("number", ["0.1", "0.75", "4"])

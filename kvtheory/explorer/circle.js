@@ -5,11 +5,9 @@
 const circle_height = (R, x) => x * (x / (R + Math.sqrt((R - x) * (R + x))));
 const circle_slope = (R, x) => x / Math.sqrt((R - x) * (R + x));
 
-/** int h'^2 dx/R from the lowest point to where the slope is `slope`: t - tanh t, sinh t = slope. */
-function slope_integral(slope) {
-  const t = Math.asinh(slope);
-  return t > 1 ? t - Math.tanh(t) : integral((each) => Math.tanh(each) ** 2, 0, t);
-}
+/** int h'^2 dx/R from the lowest point to where the slope is `slope`; where the closed form cancels, the integral. */
+const slope_integral = (slope) =>
+  (slope > 1 ? circle_steepness(slope) : integral((y) => y * y / (1 + y * y) ** 1.5, 0, slope));
 
 /** The angle at which h + l_r h' = delta behind the lowest point: Newton's method on a convex function, from beyond. */
 function trailing_angle(R, delta, l_r, front) {
