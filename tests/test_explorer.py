@@ -242,8 +242,31 @@ def scenes_on_springs():
         yield kv.Scene(support=support, drive=kv.Drive(velocity, **({} if k % 10 == 9 else spring)))
 
 
-def test_stability_on_a_spring_is_that_of_python(browser):
-    scenes = list(scenes_on_springs())
+def balls_on_springs():
+    """Balls around a weight of 10 N, on every support, with a spring in the drive and without."""
+    random = np.random.default_rng(23)
+    for k in range(120):
+        mass = float(10 ** random.uniform(-2.0, 2.0))
+        support = (
+            kv.Fixed(3e-4),
+            kv.DeadWeight(mass, load=10.0),
+            kv.Suspended(mass, 3e4, load=10.0),
+        )[k % 3]
+        spring = {
+            "stiffness": float(10 ** random.uniform(0.0, 5.0)),
+            "damping": float(random.choice([0.0, 10 ** random.uniform(-2.0, 2.0)])),
+            "mass": float(10 ** random.uniform(-3.0, 2.0)),
+        }
+        velocity = 0.0 if k % 40 == 7 else float(10 ** random.uniform(-3.5, 3.0))
+        drive = kv.Drive(velocity, **({} if k % 10 == 9 else spring))
+        yield kv.Scene(
+            kv.Sphere(0.01, radius_across=0.01 * (1 + k % 4)), support=support, drive=drive
+        )
+
+
+@pytest.mark.parametrize("family", [scenes_on_springs, balls_on_springs])
+def test_stability_on_a_spring_is_that_of_python(browser, family):
+    scenes = list(family())
     given = json.dumps([in_javascript(scene) for scene in scenes])
     found = browser.run(
         f"{given}.map(s => [s, slide(s)]).map(([s, t]) => [onsets(stability_numbers(s, t)), s, rates(s, t)])"
@@ -512,14 +535,21 @@ def test_a_ball_starts_at_a_fixed_depth_alone_and_the_others_say_why_not(browser
         assert not runs
 
 
-def test_the_page_tells_from_which_speed_a_spring_is_too_soft(browser):
-    browser.run("restore('#drive.stiffness=1&drive.damping=0&drive.velocity=91')")
+@pytest.mark.parametrize(
+    ("chosen", "scene", "spring", "unit"),
+    [
+        ("", TABLE1, 1e6, "MN/m\u00b2"),
+        ("indenter=sphere&", kv.Scene(kv.Sphere(0.01), support=kv.DeadWeight(1.0)), 1e3, "N/mm"),
+    ],
+)
+def test_the_page_tells_from_which_speed_a_spring_is_too_soft(browser, chosen, scene, spring, unit):
+    browser.run(f"restore('#{chosen}drive.stiffness=1&drive.damping=0&drive.velocity=91')")
     browser.settle()
-    right = kv.stability(over={"drive.velocity": 0.091, "drive.stiffness": 1e6})
+    right = kv.stability(scene, over={"drive.velocity": 0.091, "drive.stiffness": spring})
     assert browser.run("kept.data.from") == pytest.approx(right.critical_velocity, rel=1e-10)
     assert not browser.run("document.querySelector('#stability p').dataset.stable === 'true'")
     rows = browser.run("document.querySelector('#stability').textContent")
-    assert "stable above6.879 MN/m\u00b2" in rows
+    assert f"stable above{right.critical_stiffness / spring:.4g} {unit}" in rows
     assert f"{right.frequency:.4g} Hz" in rows
 
 

@@ -104,7 +104,9 @@ function show_energy(state) {
     + `<span><b>\u25a8</b> ${share(Math.max(0, 1 - inside))} in the surface that relaxes behind it</span></div>`;
 }
 
-const STIFFNESS = (x) => `${short(x * 1e-6)} MN/m\u00b2`;
+/** The stiffness of a spring along x. */
+const stiffness_text = (scene, x) =>
+  (scene.indenter === "sphere" ? `${short(x * 1e-3)} N/mm` : `${short(x * 1e-6)} MN/m\u00b2`);
 const table = (rows) => `<table>${rows.map(([name, value]) => `<tr><td>${name}</td><td>${value}</td></tr>`).join("")}</table>`;
 
 /** What small motions do, each rate or pair of rates once. */
@@ -122,17 +124,17 @@ function show_stability(scene, state) {
     return;
   }
   if (!has_stability(scene)) {
-    place.innerHTML = "<p>Known in closed form for a parabola on Kelvin\u2013Voigt elements.</p>";
+    place.innerHTML = "<p>Known in closed form for a parabola and for a ball on Kelvin\u2013Voigt elements.</p>";
     return;
   }
   const onset = onsets(stability_numbers(scene, state)), { lower, upper } = onset, pairs = rates(scene, state);
   const stable = !drive || is_stable(drive.stiffness, onset), some = Number.isFinite(upper.stiffness);
   const on_spring = stable ? "Stable on this spring: small motions die out" : "Unstable on this spring: small motions grow";
   const told = drive ? `${on_spring} (derivation F22).` : "Stable under a rigid drive (derivation F12).";
-  const rows = drive ? [["spring of the drive", STIFFNESS(drive.stiffness)]] : [];
+  const rows = drive ? [["spring of the drive", stiffness_text(scene, drive.stiffness)]] : [];
   if (some) {
-    rows.push([drive ? "stable above" : "a spring in the drive would have to exceed", STIFFNESS(upper.stiffness)]);
-    if (lower.stiffness > 0) rows.push(["and below", STIFFNESS(lower.stiffness)]);
+    rows.push([drive ? "stable above" : "a spring in the drive would have to exceed", stiffness_text(scene, upper.stiffness)]);
+    if (lower.stiffness > 0) rows.push(["and below", stiffness_text(scene, lower.stiffness)]);
     rows.push(["frequency at the onset", `${short(upper.frequency)} Hz`]);
   } else rows.push(["with any spring in the drive", "stable"]);
   place.innerHTML = `<p class="note" data-stable="${stable}">${told}</p>${table([...rows, ...motions(pairs)])}`;

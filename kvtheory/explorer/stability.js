@@ -1,21 +1,38 @@
-// Stability of steady sliding of a parabola on Kelvin-Voigt elements, held along x by a spring or rigidly:
-// closed forms (F12, F22), as kvtheory.models.steady.stability has them.
+// Stability of steady sliding of a parabola or a ball on Kelvin-Voigt elements, held along x by a spring or
+// rigidly: closed forms (F12, F22), as kvtheory.models.steady.stability and ball_stability have them.
+
+/** Both dampings of the contact, and the numbers that follow from them and from the damper of the drive. */
+function parabola_numbers(scene, state, damper) {
+  const R = scene.shape[1], K = scene.K, tau = scene.tau, a = state.half_length, { l, q } = state;
+  const along = K * tau * damping_along(a / R, q) * R / 3, across = K * tau * damping_across(a, q) * (4 / 3);
+  const n_x = damper / along, S_s = scene.spring * tau / across;
+  return {
+    along, across, g: coupling(l, q, n_x), h: uncoupled(q, n_x), S_c: coupling_rate(q),
+    S_z: relaxation_rate(q, S_s), e: friction_rise(q, n_x, S_s),
+  };
+}
+
+/** The same of a ball: sums over its strips, each a parabola, in closed form (F20-edges). */
+function ball_numbers(scene, state, damper) {
+  const R = scene.shape[1], tau = scene.tau, a = state.half_length, { l, tail } = state;
+  const X = ball_trailing(l, tail), both = Math.PI / 4 + X, cubes = 3 * Math.PI / 16 + ball_trailing_cubed(l, tail);
+  const unit = 2 * scene.K * a * (a * scene.stretch), across = tau * unit * both;
+  const along = tau * unit * (a / R) ** 2 * (cubes / 3), share = along / (along + damper);
+  const g = l * X / both * (3 * l * X / cubes) * share, S_c = both / X, S_z = (both + l) / both + scene.spring * tau / across;
+  return { along, across, g, h: 1 - g, S_c, S_z, e: S_z - g * S_c };
+}
 
 /** The numbers of the rates; `unit` is the stiffness of S_x = 1. A held indenter has T_z = 0, S_z infinite. */
 function stability_numbers(scene, state) {
-  const R = scene.shape[1], K = scene.K, tau = scene.tau, a = state.half_length, { l, q } = state;
-  const drive = scene.drive || { damping: 0, mass: scene.mass ?? NaN }, held = scene.depth !== undefined;
-  const along = K * tau * damping_along(a / R, q) * R / 3, damped = along + drive.damping, n_x = drive.damping / along;
-  const found = {
-    tau, unit: damped / tau, T_x: drive.mass / (damped * tau), n_x, held,
-    g: coupling(l, q, n_x), h: uncoupled(q, n_x), S_c: coupling_rate(q),
-  };
-  if (held) return { ...found, T_z: 0, S_z: Infinity, e: Infinity };
-  const across = K * tau * damping_across(a, q) * (4 / 3), S_s = scene.spring * tau / across;
-  return { ...found, T_z: scene.mass / (across * tau), S_z: relaxation_rate(q, S_s), e: friction_rise(q, n_x, S_s) };
+  const tau = scene.tau, held = scene.depth !== undefined;
+  const drive = scene.drive || { damping: 0, mass: scene.mass ?? NaN };
+  const { along, across, ...found } = (scene.indenter === "sphere" ? ball_numbers : parabola_numbers)(scene, state, drive.damping);
+  const damped = along + drive.damping, own = { tau, held, unit: damped / tau, T_x: drive.mass / (damped * tau) };
+  if (held) return { ...found, ...own, T_z: 0, S_z: Infinity, e: Infinity };
+  return { ...found, ...own, T_z: scene.mass / (across * tau) };
 }
 
-/** The stiffnesses between which steady sliding is unstable, in N/m^2, and the frequencies there, in Hz. */
+/** The stiffnesses between which steady sliding is unstable, in N/m^2 (of a ball in N/m), and the frequencies there, in Hz. */
 function onsets(number) {
   const { T_z, T_x, S_z, S_c, g, h, e, unit, tau, held } = number, none = { stiffness: NaN, frequency: NaN };
   if (held) return { lower: none, upper: none };
@@ -106,4 +123,4 @@ function unstable_speeds(scene, speeds, states) {
   return { unstable, from: high };
 }
 
-const has_stability = (scene) => scene.kelvin_voigt && scene.indenter === "parabola";
+const has_stability = (scene) => scene.kelvin_voigt && ["parabola", "sphere"].includes(scene.indenter);
