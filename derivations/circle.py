@@ -22,6 +22,7 @@ from .symbols import (
     c_mu,
     c_mu_load,
     c_w,
+    circle_number,
     delta,
     eps,
     f,
@@ -32,6 +33,8 @@ from .symbols import (
     s,
     slope_square,
     tilt,
+    turning,
+    turning_angle,
     w,
     x,
     xi,
@@ -67,7 +70,7 @@ _theorem = partial(Proof, equation=None, section=SECTION)
 
 def derive() -> tuple[Derivation, ...]:
     """Prove the leading corrections for a true circle, and the integral of the square of its slope."""
-    return _shape(), _fixed(), _dead_weight(), _steepness()
+    return _shape(), _fixed(), _dead_weight(), _steepness(), _peak()
 
 
 def _shape() -> Derivation:
@@ -188,4 +191,30 @@ _STEEP = (
     "positive; where the slope is small the closed form cancels, and the integral does not."
 )
 _SQUARE = "the slope as variable"
+
+
+def _peak() -> Derivation:
+    proof = _theorem("circle-peak", title="True circle: peak pressure", text=_HIGHEST)
+    y, root = sp.Symbol("y", positive=True), sp.sqrt(3)
+    proof.where(y < 1, "within the radius")
+    height, slope = 1 - sp.sqrt(1 - y**2), y / sp.sqrt(1 - y**2)
+    rise = circle_number - y * (1 - y**2)
+    proof.equal(sp.Derivative(circle_number * slope - height, y), rise / (1 - y**2) ** sp.Rational(3, 2),
+                r"slope of $p/(K R)$ ahead of the lowest point, at $x = -R y$")  # fmt: skip
+    proof.define(circle_number, 2 * sp.sin(3 * turning_angle) / (3 * root), _NUMBER)
+    proof.define(turning, 2 * sp.sin(turning_angle) / root, "where the slope changes its sign")
+    others = y**2 + turning * y + turning**2 - 1
+    proof.equal(rise, (y - turning) * others, r"$\hat s$ is the smallest positive root")
+    return proof.done(turning, 2 * sp.sin(turning_angle) / root)
+
+
+_HIGHEST = (
+    r"Ahead of the lowest point the pressure is $p = K [\delta - R (1 - \sqrt{1 - y^2}) + l_{\mathrm{r}} "
+    r"y/\sqrt{1 - y^2}]$ at $x = -R y$. It rises up to $y = \hat s$, and again beyond the other positive "
+    r"root: the peak is there or at the leading edge. For $\hat l > 2/(3 \sqrt{3})$ it rises all the way."
+)
+_NUMBER = (
+    r"$\hat l = l_{\mathrm{r}}/R$, if $\hat l \le 2/(3 \sqrt{3})$, with $0 < \hat \theta \le "
+    r"\frac{\pi}{6}$"
+)
 _CHAIN = r"$\mu = (a/R)\, m(l)$ with $a \propto \sqrt{\delta}$ and $l \propto 1/a$"

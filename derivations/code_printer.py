@@ -97,6 +97,7 @@ _WRITERS: dict[type, Callable[[CodePrinter, sp.Expr], str]] = {
     sp.Pow: CodePrinter.power,
     sp.asinh: _applied("asinh"),
     sp.exp: _applied("exp"),
+    sp.sin: _applied("sin"),
     expm1: _applied("expm1"),
     log1p: _applied("log1p"),
     sp.Min: _least,

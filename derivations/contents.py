@@ -96,6 +96,7 @@ CONTENTS = {
     "circle-fixed": "True circle at given depth",
     "circle-dead-weight": "True circle at given load",
     "circle-steepness": "True circle: the square of its slope",
+    "circle-peak": "True circle: peak pressure",
     "F19-pressure": "Power law: pressure",
     "F19-edge": "Power law: trailing edge",
     "F19-load": "Power law: load",

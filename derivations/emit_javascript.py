@@ -81,6 +81,8 @@ BALL = (
 CIRCLE = (
     Form("circle_steepness", "circle-steepness", sym.slope_square, (sym.tilt,),
          "int h'^2 dx/R of a circle, from the lowest point to where the slope is this"),
+    Form("circle_peak_place", "circle-peak", sym.turning, (sym.turning_angle,),
+         "-x/R of the peak pressure of a circle; the sine of thrice this angle is 3 sqrt(3) l_r/(2 R)"),
 )  # fmt: skip
 
 EMITTED = (*FORMS, *TRANSIENT, *FOUNDATIONS, *BALL, *CIRCLE)

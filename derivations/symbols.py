@@ -78,6 +78,7 @@ W_1, F_1 = sp.symbols("W_1 F_1", real=True)
 c_w, c_f, c_mu, c_delta_load, c_mu_load = sp.symbols("c_W c_F c_mu c_delta_W c_mu_W", real=True)
 tilt = sp.Symbol("slope", positive=True)
 slope_square = sp.Symbol("slope_square", real=True)
+circle_number, turning, turning_angle = _positive("v_c s_c angle")
 
 # The transient, scaled by the static state: lengths by a_0, depths by delta_0, forces by W_0 and
 # time by tau. A prime is the derivative with respect to the scaled time s.
@@ -380,6 +381,9 @@ TEX = {
     onset_square: r"\check D",
     tilt: r"\hat h'",
     slope_square: r"\hat S",
+    circle_number: r"\hat l",
+    turning: r"\hat s",
+    turning_angle: r"\hat \theta",
     aside: r"\tilde \zeta",
     ball_depth: r"\tilde I",
     ball_edge: r"\tilde X",

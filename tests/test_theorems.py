@@ -27,7 +27,7 @@ def _fifty_digits():
 
 @pytest.fixture(scope="module", autouse=True)
 def proved():
-    return {proof.label: proof for proof in catalogue(until=["circle-steepness"])}
+    return {proof.label: proof for proof in catalogue(until=["circle-peak"])}
 
 
 def exact(label, symbol, known):
@@ -317,6 +317,19 @@ def test_the_square_of_the_slope_of_a_circle(end):
     truth = mp.quad(lambda place: mp.diff(lambda x: 1 - mp.sqrt(1 - x * x), place) ** 2, [0, end])
     slope = end / mp.sqrt(1 - end**2)
     assert near(exact("circle-steepness", sym.slope_square, {sym.tilt: slope}), truth, 20)
+
+
+@pytest.mark.parametrize("number", ["1e-3", "0.2", "0.38"])
+def test_the_place_of_the_peak_pressure_of_a_circle(number):
+    number = mp.mpf(number)
+    angle = mp.asin(mp.sqrt(27) / 2 * number) / 3
+    place = exact("circle-peak", sym.turning, {sym.turning_angle: angle})
+
+    def pressure(y):
+        return mp.sqrt(1 - y * y) + number * y / mp.sqrt(1 - y * y)
+
+    assert near(mp.diff(pressure, place) + 1, mp.mpf(1), 20)
+    assert pressure(place) > max(pressure(0.9 * place), pressure(1.05 * place))
 
 
 @pytest.mark.parametrize("number", ["0.1", "0.75", "4"])

@@ -58,7 +58,7 @@ function slide_circle(scene, rest) {
   const wanted = rest.load / K + (spring > 0 ? spring * rest.depth : 0);  // at rest it may go under
   const delta = scene.depth ?? circle_depth(R, l_r, wanted, spring);
   const found = circle_contact(R, delta, l_r), { a, x } = found;
-  const turn = Math.sin(Math.asin(Math.min(1, 1.5 * Math.sqrt(3) * l_r / R)) / 3) * 2 / Math.sqrt(3);  // where p' = 0
+  const turn = circle_peak_place(Math.asin(Math.min(1, 1.5 * Math.sqrt(3) * l_r / R)) / 3);
   const pressure = (y) => delta - circle_height(R, y) + l_r * circle_slope(R, y);
   return {
     depth: delta, half_length: a, retardation_length: l_r, leading_edge: -a, trailing_edge: x,

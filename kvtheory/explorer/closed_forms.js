@@ -567,3 +567,8 @@ function ball_trailing_cubed(l, T_b) {
 function circle_steepness(slope) {
   return -slope / (Math.hypot(1, slope)) + Math.asinh(slope);
 }
+
+/** -x/R of the peak pressure of a circle; the sine of thrice this angle is 3 sqrt(3) l_r/(2 R); theorem circle-peak. */
+function circle_peak_place(angle) {
+  return 2 * Math.sqrt(3) * Math.sin(angle) / 3;
+}
