@@ -412,9 +412,9 @@ def _edges() -> Derivation:
 
 
 _EDGES = (
-    r"The dampers under a strip of the half length $A$ resist a vertical motion with $C (A + "
-    r"x_{\mathrm{TE}})$ and a motion along $x$ with $C (A^3 + x_{\mathrm{TE}}^3)/(3 R^2)$ per unit width "
-    r"(F22). For a ball these are summed over the strips of one half of the contact, with $x_{\mathrm{TE}}$ "
-    r"in units of $a$. For $l \gg 1$ the second sum cancels, where it does not count beside that of $A^3$, "
-    r"$\frac{3 \pi}{16} a^3$."
+    "The dampers under a strip resist a vertical motion in proportion to its length, and a motion along "
+    "the foundation in proportion to the sum of the cubes of its parts ahead of the lowest line and behind "
+    "it (F22). For a ball the parts behind are summed over one half of the contact, in units of $a$. For "
+    r"$l \gg 1$ the second sum cancels, where it does not count beside that of the parts ahead, $\frac{3 "
+    r"\pi}{16}$."
 )

@@ -179,7 +179,7 @@ def _steepness() -> Derivation:
     slope = x / sp.sqrt(R**2 - x**2)
     proof.equal(sp.Derivative(R - sp.sqrt(R**2 - x**2), x), slope, "slope of the circle")
     proof.equal(slope.subs(x, place), y, r"it is $y$ at $x = R y/\sqrt{1 + y^2}$")
-    proof.equal(sp.Derivative(place, y), R / size, r"so that $d x = R\, d y/(1 + y^2)^{3/2}$")
+    proof.equal(sp.Derivative(place, y), R / size, r"how $x$ grows with the slope")
     closed = sp.asinh(y) - y / sp.sqrt(1 + y**2)
     value = closed.subs(y, tilt)
     proof.integral(slope_square, y**2 / size, (y, 0, tilt), closed, _SQUARE, value=value)

@@ -67,6 +67,8 @@ BY_LABEL: dict[str, dict[str, str]] = {
     "error-load-suspended": _LIFTED,
     "error-depth-low": {"b": r"b_\delta", "E": r"E_\delta"},
     "circle-dead-weight": {**_LIFTED, "m": "m"},
+    "circle-steepness": {"y": r"\hat v"},
+    "circle-peak": {"y": r"\hat y"},
     "F8": {**_STEP, **_PASSED, "c": r"\bar c"},
     "F8-remainder": {
         **_STEP,

@@ -255,6 +255,7 @@ SYMBOLS = tuple(
             "circle-dead-weight",
         ),
         (r"\hat h", "height of a true circle over $R$", "1", "circle-steepness"),
+        (r"\hat v", "slope of a true circle", "1", "circle-steepness"),
         (r"\hat l", r"$l_{\mathrm{r}}/R$ of a true circle", "1", "circle-peak"),
         (r"\hat s", r"$-x/R$ at the peak pressure of a true circle", "1", "circle-peak"),
         (r"\hat \theta", r"angle that gives $\hat s$", "1", "circle-peak"),
