@@ -83,7 +83,7 @@ def test_the_papers_scheme_diverges_on_its_own_parameters_at_low_velocity():
 def test_maps_of_explicit_schemes_agree_with_the_prediction(scheme):
     maps = [
         velocity_map(scheme, np.geomspace(1e-3, 0.3, 6), np.geomspace(1e-2, 1.0, 4)),
-        step_map(scheme, np.geomspace(0.1, 8.0, 4), np.array([0.4, 0.8, 1.25, 2.5])),
+        step_map(scheme, np.geomspace(0.1, 10.0, 4), np.array([0.4, 0.8, 1.8, 2.5])),
     ]
     for found in maps:
         for growing, share, band in (
