@@ -215,6 +215,6 @@ def test_names_without_their_section_are_answered_with_the_key(name, key):
 @pytest.mark.parametrize("command", [kv.transient, lambda s: kv.sweep(
     s, over={"drive.velocity": [0.1]}, quantities=["hops"])])  # fmt: skip
 def test_what_needs_a_parabola_says_what_does_not(command):
-    known = r"`elements`, or `solve` with `at`, follows any shape|by elements gives series"
+    known = r"`elements`, or `solve` with `at`, follows any shape|`elements` gives series"
     with pytest.raises(ValueError, match=known):
         command(kv.Scene(indenter=kv.Wedge(0.1)))

@@ -19,7 +19,7 @@ from .text import calculation, number
 _IMPORTED = (
     "Abs, Derivative, E, Eq, "
     "Function, Heaviside, I, IndexedBase, Integral, Matrix, Max, Min, Piecewise, S, Subs, Sum, "
-    "Symbol, acos, asin, atan, cos, cosh, exp, log, oo, pi, sin, sinh, sqrt, tan, tanh"
+    "Symbol, acos, asin, asinh, atan, cos, cosh, exp, log, oo, pi, sin, sinh, sqrt, tan, tanh"
 )
 _ALSO = "from sympy.codegen.cfunctions import expm1, log1p"
 _GIVEN = {"define", "recall"}

@@ -160,7 +160,7 @@ def plan_of(
         if lacking := [column.name for column in columns if column.measure not in OF_ELEMENTS]:
             had = "series, NAME.end, NAME.max, NAME.min and peak_to_steady_friction"
             names, why = ", ".join(lacking), lacks_paper_model(scene)
-            raise SceneError([f"`quantities` {names}: {why}; a simulation by elements gives {had}"])
+            raise SceneError([f"`quantities` {names}: {why}; `elements` gives {had}"])
     for column in columns:
         if column.sprung and not sprung:
             raise SceneError([f"`quantities` {column.name}: needs drive.stiffness, of a spring"])
