@@ -14,7 +14,7 @@ FIRST = (
     *("test_sweep_lasting", "test_shape", "test_viscoelastic"),
 )
 """Scopes in the order in which they begin, then all others; the first of them compiles all kernels."""
-DERIVING = "derivations.catalogue import", "derivations import emit"
+DERIVING = "derivations.catalogue import", "derivations import emit", "derivations import ball"
 """In the text of a file whose tests derive everything, or most of it."""
 
 

@@ -95,13 +95,17 @@ def mistakes(bench: Bench) -> Iterator[Trial]:
             return NO_FIT
         return judged(bench, (bench.columns, _changed(bench, right, wrong, 1.0)))
 
+    least = math.inf
     for name, text, does, comes_back, by_step in MISTAKES:
         if comes_back and theory.scene.drive.constant and theory.scene.drive.rigid:
             continue
         if by_step and theory.scene.held:
             continue
         by_steps = partial(_in_steps, bench, does)
-        found = _at_best_step(bench, by_steps, fit) if by_step else fit(_simulated(bench, does))
+        found = (
+            _at_best_step(bench, by_steps, fit, least) if by_step else fit(_simulated(bench, does))
+        )
+        least = min(least, found.fit.score)
         yield Trial(name, text, found)
     deeper = None if theory.scene.held else _simulated(bench, {"start": 1.0 + MORE})
     if deeper is None:
@@ -118,15 +122,17 @@ def _at_best_step(
     bench: Bench,
     simulated: Callable[[float], Curves | None],
     fit: Callable[[Curves | None], Fitted],
+    least: float,
 ) -> Fitted:
     """Return how a mistake fits at the time step of the simulation, or where that is not known, at the best.
 
-    It is sought where the step assumed explains something.
+    It is sought where the step assumed explains something, and leaves less than `least`, the best so far.
     """
     step = bench.case.resolution.time_step
     fits = [fit(simulated(step))]
     start = bench.fit(bench.columns, bench.now).score
-    if bench.case.resolution.step_known or not fits[0].fit.score < (1.0 - SOME) * start:
+    enough = min((1.0 - SOME) * start, least)
+    if bench.case.resolution.step_known or not fits[0].fit.score < enough:
         return fits[0]
 
     def score(x: float) -> float:
