@@ -19,8 +19,6 @@ from .symbols import (
     ball_coefficient,
     ball_cross,
     ball_depth,
-    ball_edge,
-    ball_edge_cubed,
     ball_friction,
     ball_friction_high,
     ball_friction_low,
@@ -71,7 +69,7 @@ def derive() -> tuple[Derivation, ...]:
     """Prove F20 and what follows from it."""
     return (
         *(_load(), _tail(), _loss(), _friction(), _energy(), _limits(), _high()),
-        *(_balance(), _crossing(), _slip(), _unique(), *_errors(), _edges()),
+        *(_balance(), _crossing(), _slip(), _unique(), *_errors()),
     )
 
 
@@ -390,31 +388,3 @@ def _error(
     proof.define(name, ratio - 1, "asymptote over the truth, less one")
     proof.equal(name, error, "without cancellation")
     return proof.done(name, error)
-
-
-def _edges() -> Derivation:
-    proof = _theorem("F20-edges", title="Ball: sums of trailing edges", text=_EDGES,
-                     uses=("F20-load",))  # fmt: skip
-    width = 1 + l**2
-    once = (y * EDGE + width * sp.atan(y / EDGE)) / 2
-    cubed = y * (5 * width - 2 * y**2) * EDGE / 8 + sp.Rational(3, 8) * width**2 * sp.atan(y / EDGE)
-    both = cubed - 3 * l * (width * y - y**3 / 3) + 3 * l**2 * once - l**3 * y
-    first, third = (width * ANGLE - l) / 2, sp.Rational(3, 8) * width * (1 + 5 * l**2) * ANGLE
-    third += l / 4 - sp.Rational(15, 8) * l * width
-    proof.integral(ball_edge, EDGE - l, UNIT, once - l * y, "the trailing edges", value=first)
-    proof.integral(ball_edge_cubed, (EDGE - l) ** 3, UNIT, both, "their cubes", value=third)
-    _angle(proof)
-    proof.recall("F20-load", T, TAIL)
-    proof.equal(ball_edge, (l / 3 + T / 4) / width, "from the same tail, without cancellation")
-    tail = (sp.Rational(3, 16) * T * (1 + 5 * l**2) - l) / width
-    proof.equal(ball_edge_cubed, tail, "likewise")
-    return proof.done(ball_edge_cubed, tail)
-
-
-_EDGES = (
-    "The dampers under a strip resist a vertical motion in proportion to its length, and a motion along "
-    "the foundation in proportion to the sum of the cubes of its parts ahead of the lowest line and behind "
-    "it (F22). For a ball the parts behind are summed over one half of the contact, in units of $a$. For "
-    r"$l \gg 1$ the second sum cancels, where it does not count beside that of the parts ahead, $\frac{3 "
-    r"\pi}{16}$."
-)

@@ -149,7 +149,6 @@ CONTENTS = {
     "F20-error-load-high": "Ball: relative error, load at high velocity, given depth",
     "F20-error-friction-low": "Ball: relative error, friction force at low velocity, given depth",
     "F20-error-friction-high": "Ball: relative error, friction force at high velocity, given depth",
-    "F20-edges": "Ball: sums of trailing edges",
     "F20-slopes": "Ball: how its forces change",
     "F17-pressure": "Any relaxation function: pressure of an arm",
     "F17-moments": "Any relaxation function: four moments",

@@ -72,12 +72,6 @@ FOUNDATIONS = (
          "the energy that an arm dissipates in the contact"),
 )  # fmt: skip
 
-BALL = (
-    Form("ball_trailing", "F20-edges", sym.ball_edge, (sym.l, sym.ball_tail),
-         "int x_TE dv of the strips at v from 0 to 1, in half lengths and half widths"),
-    Form("ball_trailing_cubed", "F20-edges", sym.ball_edge_cubed, (sym.l, sym.ball_tail),
-         "int x_TE^3 dv, likewise"),
-)  # fmt: skip
 CIRCLE = (
     Form("circle_steepness", "circle-steepness", sym.slope_square, (sym.tilt,),
          "int h'^2 dx/R of a circle, from the lowest point to where the slope is this"),
@@ -85,7 +79,7 @@ CIRCLE = (
          "-x/R of the peak pressure of a circle; the sine of thrice this angle is 3 sqrt(3) l_r/(2 R)"),
 )  # fmt: skip
 
-EMITTED = (*FORMS, *TRANSIENT, *FOUNDATIONS, *BALL, *CIRCLE)
+EMITTED = (*FORMS, *TRANSIENT, *FOUNDATIONS, *CIRCLE)
 _parts = partial(parts, forms=FORMS, printer=JAVASCRIPT)
 
 

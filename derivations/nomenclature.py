@@ -789,8 +789,6 @@ SYMBOLS = tuple(
             "F20-load",
         ),
         (r"\tilde g", r"$(\pi + \tilde T)/4$", "1", "F20-unique"),
-        (r"\tilde X", "integral of the trailing edges of the strips", "1", "F20-edges"),
-        (r"\tilde Y", "integral of their cubes", "1", "F20-edges"),
         (r"\tilde K", r"$\frac{2}{15} - l^2 \tilde D$", "1", "F20-unique"),
         (r"\tilde M", r"$\tilde D - \tilde N$", "1", "F20-unique"),
         (r"\tilde N", r"half of $- l \frac{d \tilde D}{d l}$", "1", "F20-unique"),

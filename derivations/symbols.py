@@ -185,7 +185,6 @@ aside, ball_angle, ball_load, ball_friction, ball_coefficient, ball_share = _pos
     "y_b theta_b w_b phi_b m_b eta_b"
 )
 ball_tail, ball_loss, ball_depth, ball_behind = _positive("T_b D_b I_b J_b")
-ball_edge, ball_edge_cubed = sp.symbols("X_b Y_b", real=True)
 ball_rest, ball_kept, ball_lost, ball_mean = _positive("K_b M_b N_b g_b")
 ball_scaled, ball_scaled_s, ball_scaled_ss = _positive("f_b f_b_s f_b_ss")
 ball_l1, ball_l2, ball_load_low, ball_load_high = sp.symbols(
@@ -386,8 +385,6 @@ TEX = {
     turning_angle: r"\hat \theta",
     aside: r"\tilde \zeta",
     ball_depth: r"\tilde I",
-    ball_edge: r"\tilde X",
-    ball_edge_cubed: r"\tilde Y",
     ball_rest: r"\tilde K",
     ball_mean: r"\tilde g",
     ball_steep: r"\tilde S",

@@ -11,10 +11,8 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure
 
-import kvtheory as kv
-from figures import drawing
-from figures.ball_start import DENSITY, TITLES, scenes
-from kvtheory.plots import plot_pressure
+from figures import drawing, fig4
+from figures.ball_start import TITLES, scenes, starts
 
 POSITIONS = np.linspace(-2.6e-3, 2.6e-3, 261)
 TIMES = np.linspace(0.0, 0.1, 201)
@@ -53,35 +51,15 @@ class Data:
 
 def compute() -> Data:
     """Follow both scenes."""
-    found = scenes()
-    series = {
-        "fixed": kv.transient(found["fixed"], at=TIMES),
-        "dead-weight": kv.elements(
-            found["dead-weight"], per_length=DENSITY, at=TIMES, certify=False
-        ),
-    }
-    columns: dict[str, Any] = {"time [s]": TIMES}
-    for support, result in series.items():
-        for name, unit in (("leading_edge", "m"), ("trailing_edge", "m"), ("peak_pressure", "Pa")):
-            columns[f"{name}, {support} [{unit}]"] = getattr(result, name)
-    return Data({name: MiddlePlane(series[name], found[name]) for name in series}, columns)
+    found, series = scenes(), starts(TIMES)
+    planes = {name: MiddlePlane(series[name], found[name]) for name in series}
+    return Data(planes, fig4.columns(TIMES, series))
 
 
 def draw(data: Data) -> Figure:
-    """Draw both panels on one scale of pressure."""
-    drawn = drawing.figure(7.2, 3.6)
-    axes = drawn.subplots(1, 2, sharey=True)
-    images = []
-    for ax, (support, title) in zip(axes, TITLES.items(), strict=True):
-        images.append(plot_pressure(ax, data.results[support], POSITIONS, TIMES))
-        ax.set_title(title)
-        ax.label_outer()
-    highest = max(image.get_clim()[1] for image in images)
-    for image in images:
-        image.set_clim(0.0, highest)
-    axes[1].legend(loc="upper right")
-    drawn.colorbar(images[1], ax=axes, label=r"pressure in the middle plane $p$ [MPa]")
-    return drawn
+    """Draw both panels."""
+    label = r"pressure in the middle plane $p$ [MPa]"
+    return fig4.panels(data.results, TITLES, POSITIONS, TIMES, label)
 
 
 if __name__ == "__main__":

@@ -41,22 +41,23 @@ def scenes() -> dict[str, kv.Scene]:
     return {"fixed": held, "dead-weight": replace(held, support=kv.DeadWeight(load=rest.load))}
 
 
+def starts(times: np.ndarray) -> dict[str, Any]:
+    """Return the start from rest of both scenes, by support."""
+    held, free = scenes().values()
+    rising = kv.elements(free, per_length=DENSITY, at=times, certify=False)
+    return {"fixed": kv.transient(held, at=times), "dead-weight": rising}
+
+
 def compute() -> Data:
     """Compute both starts, and steady sliding at every velocity."""
-    found = scenes()
-    starts = {
-        "fixed": kv.transient(found["fixed"], at=TIMES),
-        "dead-weight": kv.elements(
-            found["dead-weight"], per_length=DENSITY, at=TIMES, certify=False
-        ),
-    }
+    found, begun = scenes(), starts(TIMES)
     over = {"drive.velocity": VELOCITIES}
     ends = {name: kv.steady(scene) for name, scene in found.items()}
     steady = {name: kv.steady(scene, over=over) for name, scene in found.items()}
-    columns: dict[str, Any] = {"support": [name for name in starts for _ in TIMES]}
+    columns: dict[str, Any] = {"support": [name for name in begun for _ in TIMES]}
     for name, unit in units_for(found["fixed"].indenter, TRANSIENT_UNITS).items():
-        columns[f"{name} [{unit}]"] = np.concatenate([getattr(r, name) for r in starts.values()])
-    return Data(starts, ends, steady, columns)
+        columns[f"{name} [{unit}]"] = np.concatenate([getattr(r, name) for r in begun.values()])
+    return Data(begun, ends, steady, columns)
 
 
 def draw(data: Data) -> Figure:

@@ -100,7 +100,7 @@ def steady_limit(case: Case) -> Iterator[Check]:
         yield not_made(name, equation, "the drive is a function, which need not settle")
         return
     if theory.by_elements and not theory.scene.drive.rigid:
-        why = "whether steady sliding is stable on a spring is known for a parabola on Kelvin-Voigt only"
+        why = "steady sliding on a spring is compared for a parabola on Kelvin-Voigt only"
         yield not_made(name, equation, why)
         return
     if theory.rates is not None:

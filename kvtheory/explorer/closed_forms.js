@@ -553,16 +553,6 @@ function arm_lost(A_v, B_v, E_v, P_v, eta_v, z_v) {
   return -B_v * B_v / 2 + E_v + eta_v * (A_v * B_v + eta_v * (A_v * P_v * z_v / 2 + B_v));
 }
 
-/** int x_TE dv of the strips at v from 0 to 1, in half lengths and half widths; theorem F20-edges. */
-function ball_trailing(l, T_b) {
-  return (T_b / 4 + l / 3) / (l * l + 1);
-}
-
-/** int x_TE^3 dv, likewise; theorem F20-edges. */
-function ball_trailing_cubed(l, T_b) {
-  return (3 * T_b * (5 * l * l + 1) / 16 - l) / (l * l + 1);
-}
-
 /** int h'^2 dx/R of a circle, from the lowest point to where the slope is this; theorem circle-steepness. */
 function circle_steepness(slope) {
   return -slope / (Math.hypot(1, slope)) + Math.asinh(slope);

@@ -12,10 +12,10 @@ function parabola_numbers(scene, state, damper) {
   };
 }
 
-/** The same of a ball: sums over its strips, each a parabola, in closed form (F20-edges). */
+/** The same of a ball: sums over its strips, each a parabola, in closed form (F20-slopes). */
 function ball_numbers(scene, state, damper) {
   const R = scene.shape[1], tau = scene.tau, a = state.half_length, { l, tail } = state;
-  const X = ball_trailing(l, tail), both = Math.PI / 4 + X, cubes = 3 * Math.PI / 16 + ball_trailing_cubed(l, tail);
+  const X = ball_trailing_edges(l, tail), both = Math.PI / 4 + X, cubes = 3 * Math.PI / 16 + ball_cubed_trailing_edges(l, tail);
   const unit = 2 * scene.K * a * (a * scene.stretch), across = tau * unit * both;
   const along = tau * unit * (a / R) ** 2 * (cubes / 3), share = along / (along + damper);
   const g = l * X / both * (3 * l * X / cubes) * share, S_c = both / X, S_z = (both + l) / both + scene.spring * tau / across;
