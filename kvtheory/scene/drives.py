@@ -12,6 +12,7 @@ import numpy as np
 from kvtheory.scene.base_motion import SAME_TIME, BaseMotion
 from kvtheory.scene.quantities import (
     Derived,
+    Part,
     Quantity,
     SceneError,
     changed,
@@ -43,8 +44,8 @@ ON_LINE = 4.0 * 2.0**-52
 redundant."""
 
 
-@dataclass(frozen=True)
-class Drive:
+@dataclass(frozen=True, eq=False)
+class Drive(Part):
     """The motion of the foundation: a `velocity` from t = 0 on, a `history`, `waveform` or `function`.
 
     A history holds pairs (time, velocity). It is linear between its points and jumps where a time

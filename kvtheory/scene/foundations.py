@@ -6,12 +6,14 @@ it; and the `damping` C = int (G - K) dt, which governs slow sliding, with `reta
 """
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import KW_ONLY, dataclass
-from itertools import pairwise
 from typing import Any, ClassVar
 
+import numpy as np
+
 from kvtheory.scene.quantities import (
+    Part,
     SceneError,
     collecting,
     derive,
@@ -45,8 +47,8 @@ def layer_stiffness(modulus: Any, thickness: Any, poisson_ratio: Any) -> Any:
     )
 
 
-@dataclass(frozen=True)
-class _Relaxed:
+@dataclass(frozen=True, eq=False)
+class _Relaxed(Part):
     """The common part of all foundations: a stiffness, or a thin bonded layer that determines it."""
 
     stiffness: float = quantity(
@@ -74,7 +76,7 @@ class _Relaxed:
             derive(self, "foundation", "stiffness", stiffness, "the layer")
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Foundation(_Relaxed):
     """Independent Kelvin-Voigt elements: G = K + C delta(t), C = K tau, all per unit area.
 
@@ -98,8 +100,8 @@ class Foundation(_Relaxed):
         return self.stiffness * self.retardation_time
 
 
-@dataclass(frozen=True)
-class Arm:
+@dataclass(frozen=True, eq=False)
+class Arm(Part):
     """A Maxwell arm, spring and damper in series: K_i e^(-t/tau_i), a term of a Prony series."""
 
     stiffness: float = quantity("N/m^3", "K_i, stiffness of the arm per unit area")
@@ -109,7 +111,7 @@ class Arm:
         settle(self, "arm")
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class GeneralizedMaxwell(_Relaxed):
     """A spring in parallel with Maxwell arms: G = K + sum K_i e^(-t/tau_i), a Prony series.
 
@@ -136,7 +138,7 @@ class GeneralizedMaxwell(_Relaxed):
     @property
     def damping(self) -> float:
         """C = sum K_i tau_i, in N s/m^3: that of the equivalent Kelvin-Voigt foundation in slow sliding."""
-        return math.fsum(arm.stiffness * arm.relaxation_time for arm in self.arms)
+        return sum(arm.stiffness * arm.relaxation_time for arm in self.arms)
 
     @property
     def retardation_time(self) -> float:
@@ -144,7 +146,7 @@ class GeneralizedMaxwell(_Relaxed):
         return self.damping / self.stiffness
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class FractionalKelvinVoigt(_Relaxed):
     """A spring in parallel with a springpot: G = K [1 + (t/tau)^(-alpha)/Gamma(1 - alpha)], 0 < alpha <= 1.
 
@@ -167,7 +169,8 @@ class FractionalKelvinVoigt(_Relaxed):
     @property
     def damping(self) -> float:
         """C = int (G - K) dt, in N s/m^3."""
-        return self.stiffness * self.retardation_time if self.order == 1.0 else math.inf
+        finite = self.stiffness * self.retardation_time
+        return finite if np.all(self.order == 1.0) else np.where(self.order == 1.0, finite, math.inf)[()]
 
 
 AnyFoundation = Foundation | GeneralizedMaxwell | FractionalKelvinVoigt
@@ -201,13 +204,25 @@ def arms_of(given: Any) -> tuple[Arm, ...]:
                 problems += [line.replace("arm", key, 1) for line in error.problems]
         else:
             problems.append(problem(key, pair, f"expected one of {PAIRS}"))
-    inorder = sorted(arms.items(), key=lambda item: item[1].relaxation_time)
-    for (one, fast), (two, slow) in pairwise(inorder):
-        if slow.relaxation_time <= fast.relaxation_time * (1.0 + DISTINCT):
-            problems.append(
-                f"foundation.arms[{one}] and foundation.arms[{two}] have the relaxation time "
-                f"{fast.relaxation_time:g} s in common; expected one arm with the sum of both"
-            )
+    problems += _equal_times(arms)
     if problems:
         raise SceneError(problems)
     return tuple(arms.values())
+
+
+def _equal_times(arms: Mapping[int, Arm]) -> list[str]:
+    """Report the arms that have a relaxation time in common."""
+    if not arms:
+        return []
+    numbers = np.array(list(arms))
+    times = np.stack(np.broadcast_arrays(*(arm.relaxation_time for arm in arms.values())))
+    times = times.reshape(len(arms), -1)
+    order = np.argsort(times, axis=0, kind="stable")
+    times = np.take_along_axis(times, order, axis=0)
+    close = np.argwhere(times[1:] <= times[:-1] * (1.0 + DISTINCT))
+    pairs = {(numbers[order[i, j]], numbers[order[i + 1, j]]): times[i, j] for i, j in close}
+    return [
+        f"foundation.arms[{one}] and foundation.arms[{two}] have the relaxation time {time:g} s in "
+        "common; expected one arm with the sum of both"
+        for (one, two), time in pairs.items()
+    ]

@@ -14,13 +14,13 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from kvtheory.scene.quantities import SceneError, mistake, quantity, settle
+from kvtheory.scene.quantities import Part, SceneError, mistake, quantity, settle
 
 Value = Any
 """A float or an array of floats, in m or dimensionless."""
 
 
-class _Shape:
+class _Shape(Part):
     """The common part of the shapes that a scene file can name."""
 
     convex: ClassVar[bool] = True
@@ -30,7 +30,7 @@ class _Shape:
         settle(self, "indenter")
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Parabola(_Shape):
     """The paper's cylinder, h = x^2/(2R) (Eq. 3).
 
@@ -56,7 +56,7 @@ class Parabola(_Shape):
         return 1.0
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Circle(_Shape):
     """A true cylinder, h = R - sqrt(R^2 - x^2), up to |x| = R.
 
@@ -92,7 +92,7 @@ class Circle(_Shape):
             return np.sqrt((self.radius - x) * (self.radius + x))
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class PowerLaw(_Shape):
     """A blunt (n > 2) or pointed (n < 2) indenter, h = |x|^n/(n L^(n-1)), n >= 1.
 
@@ -121,7 +121,7 @@ class PowerLaw(_Shape):
         return self.exponent - 1.0
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Wedge(_Shape):
     """A wedge, h = slope |x|.
 
@@ -147,8 +147,8 @@ class Wedge(_Shape):
         return 0.0
 
 
-@dataclass(frozen=True)
-class Profile:
+@dataclass(frozen=True, eq=False)
+class Profile(Part):
     """Any shape, from Python functions of one float: h(x), lowest at h(0) = 0, and h'(x).
 
     >>> ellipse = Profile(lambda x: 0.001 * (1 - math.sqrt(1 - (x / 0.02) ** 2)),
@@ -194,7 +194,7 @@ def _pointwise(function: Callable[[float], float], x: Value) -> Value:
     return function(x)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Sphere(_Shape):
     """A ball, h = x^2/(2R) + y^2/(2R'): a paraboloid, R' being R unless `radius_across` says otherwise.
 
@@ -217,7 +217,7 @@ class Sphere(_Shape):
     @property
     def stretch(self) -> float:
         """sqrt(R'/R), the ratio of width to length of the contact at rest."""
-        return 1.0 if self.radius_across is None else math.sqrt(self.radius_across / self.radius)
+        return 1.0 if self.radius_across is None else (self.radius_across / self.radius) ** 0.5
 
     @property
     def profile(self) -> Parabola:
@@ -234,8 +234,8 @@ class Sphere(_Shape):
         return x / self.radius
 
 
-@dataclass(frozen=True)
-class Revolved:
+@dataclass(frozen=True, eq=False)
+class Revolved(Part):
     """Any profile h(rho) revolved about the vertical axis: a true sphere, a cone, a blunt punch.
 
     In Python only; the profile is one of the shapes of this module.

@@ -1,20 +1,30 @@
 """What is modelled: an indenter on a viscoelastic foundation, its support and its drive.
 
-Every field accepts SI numbers, text with a unit (``"10 mm"``) and pint quantities, and holds an SI
-float afterwards.
+Every quantity accepts SI numbers, text with a unit (``"10 mm"``), pint quantities, and arrays of these; it
+holds an SI float or an array of them afterwards. The arrays of a scene broadcast against each other.
 """
 
 import math
+import re
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Any, ClassVar
 
-from kvtheory.scene.drives import SPRING, Drive
+import numpy as np
+
+from kvtheory.scene.drives import SPRING, VELOCITY, Drive
 from kvtheory.scene.foundations import AnyFoundation, Foundation
 from kvtheory.scene.indenters import Indenter, Parabola
 from kvtheory.scene.quantities import (
+    Part,
+    Quantity,
     SceneError,
+    changed,
+    collecting,
+    converted,
     derive,
+    free,
     misfits,
     missing,
     nearest,
@@ -28,8 +38,8 @@ STANDARD_GRAVITY = 9.80665
 LOAD = "W, load instead of mass times gravity; the mass is then inertia alone"
 
 
-@dataclass(frozen=True)
-class Fixed:
+@dataclass(frozen=True, eq=False)
+class Fixed(Part):
     """The indenter cannot move (the paper's FI model): a constant depth is given.
 
     >>> Fixed(depth="300 um").depth
@@ -49,7 +59,7 @@ class Fixed:
 MASS: dict[str, Any] = {"default": None, "needed": True, "instead": "load", "per_width": True}
 
 
-class _Loaded:
+class _Loaded(Part):
     """The common part of supports with a load: mass times gravity, or a load that is given."""
 
     mass: float
@@ -68,7 +78,7 @@ class _Loaded:
         return self.mass * self.gravity if self.load is None else self.load
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class DeadWeight(_Loaded):
     """The indenter moves freely up and down under its weight (the paper's MI model, Eq. 17).
 
@@ -86,7 +96,7 @@ class DeadWeight(_Loaded):
     load: float | None = quantity("N/m", LOAD, default=None, per_width=True)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Suspended(_Loaded):
     """A dead weight on a spring that is relaxed at the static depth; `load` is as for a dead weight.
 
@@ -118,8 +128,8 @@ For a ball these are in kg, N and N/m."""
 SUPPORTS: dict[str, Any] = {cls.kind: cls for cls in (Fixed, DeadWeight, Suspended)}
 
 
-@dataclass(frozen=True)
-class Run:
+@dataclass(frozen=True, eq=False)
+class Run(Part):
     """The duration of the transient."""
 
     duration: float = quantity("s", "duration of the transient", default=0.2)
@@ -132,8 +142,8 @@ WEIGHED = ("support", "drive")
 """Parts of a scene whose masses, loads and springs a line contact has per unit width."""
 
 
-@dataclass(frozen=True)
-class Scene:
+@dataclass(frozen=True, eq=False)
+class Scene(Part):
     """An indenter, a foundation, a support and a drive; without arguments, the paper's Table 1.
 
     Examples
@@ -145,6 +155,11 @@ class Scene:
     10000000000.0
     >>> Scene.table1("fixed").support
     Fixed(depth=0.0003)
+
+    Arrays make many scenes of one:
+
+    >>> Scene(drive=Drive(velocity="1 mm/s:1 m/s:4:log")).shape
+    (4,)
     """
 
     indenter: Indenter = Parabola(radius=0.01)
@@ -167,11 +182,39 @@ class Scene:
         problems = problems or lacks_mass(self.support, self.drive, self.indenter.per_width)
         if problems:
             raise SceneError(problems)
+        _ = self.shape  # or raise
+
+    @cached_property
+    def shape(self) -> tuple[int, ...]:
+        """The shape to which the arrays of the scene broadcast; () if there are none."""
+        arrays = self.arrays()
+        try:
+            return np.broadcast_shapes(*(each.shape for each in arrays.values())) if arrays else ()
+        except ValueError:
+            told = ", ".join(f"{key} {each.shape}" for key, each in arrays.items())
+            raise SceneError([f"the arrays of the scene do not broadcast: {told}"]) from None
+
+    def flat(self) -> "Scene":
+        """Return the scene with its arrays broadcast to one dimension."""
+        return self.mapped(lambda array: np.broadcast_to(array, self.shape).reshape(-1))
+
+    def rows(self, part: slice) -> "Scene":
+        """Return some of the scenes of a flat one."""
+        return self.mapped(lambda array: array[part])
+
+    def at(self, velocity: Any) -> "Scene":
+        """Return the scene at one drive velocity or several in m/s, which are not checked."""
+        drive = self.drive.mapped(lambda array: array)
+        for name, value in {"velocity": velocity, "history": None, "function": None, "waveform": None}.items():
+            object.__setattr__(drive, name, value)
+        scene = self.mapped(lambda array: array)
+        object.__setattr__(scene, "drive", drive)
+        return scene
 
     @property
     def held(self) -> bool:
         """Whether the support holds the indenter at its depth, so that it cannot move."""
-        return math.isinf(self.support.spring)
+        return self.support.depth is not None
 
     @property
     def drive_mass(self) -> float:
@@ -202,9 +245,8 @@ class Scene:
     def values(self) -> Mapping[str, float]:
         """Return every quantity of the scene in SI by its dotted key, as ``"drive.velocity"``.
 
-        What follows from others is there too: the ``"support.weight"``, and the stiffness of a layer.
-
-        A drive that is a function has no velocity to give.
+        The stiffness of a layer and the mass of a load are there too. A drive that is a function has no
+        velocity to give.
         """
         flat = {
             f"{section}.{name}": getattr(part, name)
@@ -212,8 +254,6 @@ class Scene:
             for name in quantities(part)
             if getattr(part, name) is not None
         }
-        if not self.held:
-            flat["support.weight"] = self.support.weight
         if self.drive.ends:
             flat["drive.velocity"] = self.drive.final_velocity
         if not self.drive.rigid:
@@ -221,10 +261,70 @@ class Scene:
             flat["drive.mass"] = self.drive_mass
         return flat
 
+    def replaceable(self) -> dict[str, Quantity]:
+        """Return the quantities that `replace` takes, by dotted key, in the units of the scene."""
+        found = {
+            f"{section}.{name}": spec
+            for section, part in self.parts().items()
+            for name, spec in free(part).items()
+        }
+        own = {} if self.drive.waveform is None else quantities(self.drive.waveform)
+        springs = SPRING[:1] if self.drive.rigid else SPRING  # damper and mass need a stiffness
+        specs = quantities(self.drive)
+        drive = {"velocity": VELOCITY, **{name: specs[name] for name in springs}, **own}
+        found |= {f"drive.{name}": spec for name, spec in drive.items()}
+        found |= {f"run.{name}": spec for name, spec in quantities(self.run).items()}
+        per_width = self.indenter.per_width
+        return {key: spec.fitting(per_width) for key, spec in found.items()}
+
+    def replace(self, over: Mapping[str, Any]) -> "Scene":
+        """Return the scene with some quantities replaced; what follows from them follows.
+
+        A velocity replaces a history, a waveform or a function.
+
+        Raises
+        ------
+        SceneError
+            Listing every unknown key and every value that is out of range.
+
+        Examples
+        --------
+        >>> Scene().replace({"drive.velocity": ["1 mm/s", "1 m/s"], "support.mass": 10.0}).shape
+        (2,)
+        """
+        specs, problems = self.replaceable(), []
+        sections: dict[str, dict[str, Any]] = {}
+        for key, value in over.items():
+            if key not in specs:
+                told = f"unknown key for this scene; {nearest(str(key), specs)}"
+                problems.append(problem(f"`over` {key}", value, told))
+                continue
+            with collecting(problems, f"`over` {key}", value):
+                section, _, name = key.rpartition(".")
+                sections.setdefault(section, {})[name] = converted(value, specs[key])
+        if problems:
+            raise SceneError(problems)
+        arms = list(self.foundation.arms)
+        parts: dict[str, Any] = {}
+        for section, values in sections.items():
+            if match := ARM.fullmatch(section):
+                arms[int(match[1])] = changed(arms[int(match[1])], **values)
+            elif section == "drive":
+                parts[section] = self.drive.changed(**values)
+            else:
+                parts[section] = changed(getattr(self, section), **values)
+        if arms != list(self.foundation.arms):
+            parts["foundation"] = replace(parts.get("foundation", self.foundation), arms=tuple(arms))
+        return replace(self, **parts) if parts else self
+
+
+ARM = re.compile(r"foundation\.arms\[(\d+)\]")
+"""The key of an arm of a Prony series."""
+
 
 def lacks_mass(support: Support, drive: Drive, per_width: bool) -> list[str]:
     """Return that a fixed indenter on a spring needs a mass, as its support has none; or nothing."""
-    if drive.rigid or drive.mass is not None or math.isfinite(support.mass):
+    if drive.rigid or drive.mass is not None or support.depth is None:
         return []
     spec = quantities(drive)["mass"].fitting(per_width)
     needed = missing("drive", "mass", spec, f' for support.kind = "{support.kind}"')

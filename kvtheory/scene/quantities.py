@@ -1,20 +1,21 @@
 """Fields of a scene: each states its unit, range and meaning, once, for every use.
 
-The reader of scene files, the template, the writer and the constructors work from this metadata.
+The reader of scene files, the template, the writer and the constructors work from this metadata. A
+quantity is a float or an array of floats, in SI.
 """
 
 import dataclasses
 import difflib
 import math
 import reprlib
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field
 from functools import cache
 from typing import Any, ClassVar
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from kvtheory.scene.units import WHOLE, expected, is_usual, to_si
 
@@ -42,6 +43,72 @@ class SceneError(ValueError):
 
 class Derived(float):
     """A quantity derived from others: when these are replaced, it is recomputed."""
+
+
+class DerivedArray(np.ndarray):
+    """An array of derived quantities; what is computed from it is a plain array."""
+
+    def __array_ufunc__(self, ufunc: Any, method: str, *inputs: Any, **options: Any) -> Any:
+        """Apply a function to plain arrays."""
+        plain = [np.asarray(x) if isinstance(x, DerivedArray) else x for x in inputs]
+        return getattr(ufunc, method)(*plain, **options)
+
+
+class Part:
+    """A frozen part of a scene, whose quantities are floats or arrays: equality, hash, and a map."""
+
+    def __eq__(self, other: object) -> bool:
+        return type(self) is type(other) and _content(self) == _content(other)
+
+    def __hash__(self) -> int:
+        return hash(_content(self))
+
+    def mapped(self, function: Callable[[Any], Any]) -> Any:
+        """Return a copy with a function applied to every array, which is not checked again."""
+        copy = object.__new__(type(self))
+        for name in _names(type(self)):
+            object.__setattr__(copy, name, _mapped(getattr(self, name), function))
+        return copy
+
+
+    def arrays(self) -> dict[str, NDArray[np.float64]]:
+        """Return the arrays among the quantities, those of parts within it by dotted name."""
+        found: dict[str, Any] = {}
+        for name, value in vars(self).items():
+            if value.__class__ in SCALARS:  # most of them
+                continue
+            if isinstance(value, np.ndarray):
+                found[name] = value
+            elif isinstance(value, Part):
+                found |= {f"{name}.{inner}": each for inner, each in value.arrays().items()}
+            elif isinstance(value, tuple) and value and isinstance(value[0], Part):
+                for i, part in enumerate(value):
+                    found |= {f"{name}[{i}].{inner}": x for inner, x in part.arrays().items()}
+        return found
+
+
+SCALARS = {float, type(None), Derived, dict}
+"""What a part holds that is no array, nor holds one; looked up, as scenes are made by the thousand."""
+
+
+def _mapped(value: Any, function: Callable[[Any], Any]) -> Any:
+    if isinstance(value, np.ndarray):
+        return function(np.asarray(value))
+    if isinstance(value, Part):
+        return value.mapped(function)
+    if isinstance(value, tuple) and value and isinstance(value[0], Part):
+        return tuple(part.mapped(function) for part in value)
+    return value
+
+
+def _content(part: Part) -> tuple[Any, ...]:
+    values = (getattr(part, name) for name in _names(type(part)))
+    return tuple((v.shape, v.tobytes()) if isinstance(v, np.ndarray) else v for v in values)
+
+
+@cache
+def _names(cls: Any) -> tuple[str, ...]:
+    return tuple(f.name for f in dataclasses.fields(cls))
 
 
 @dataclass(frozen=True)
@@ -131,7 +198,7 @@ def given(instance: Any) -> dict[str, Quantity]:
     return {
         name: spec
         for name, spec in quantities(instance).items()
-        if not isinstance(getattr(instance, name), Derived | None)
+        if not isinstance(getattr(instance, name), Derived | DerivedArray | None)
     }
 
 
@@ -176,11 +243,80 @@ def missing(section: str, name: str, spec: Quantity, of: str = "") -> str:
 
 
 def convert(value: Any, spec: Quantity) -> float:
-    """Return `value` in SI, or raise `ValueError` saying what is wrong with it."""
+    """Return one `value` in SI, or raise `ValueError` saying what is wrong with it."""
     number = to_si(value, spec.unit)
     if not spec.admits(number):
         raise ValueError(f"is out of range; expected {spec.range}, {expected(spec.unit)}")
     return number
+
+
+def converted(value: Any, spec: Quantity) -> Any:
+    """Return a value, or an array of them, in SI; each is checked.
+
+    Arrays are NumPy arrays in SI, arrays with a pint unit, lists whose items may be texts, and ranges.
+
+    >>> converted("1 m:3 m:3", Quantity("m", "length", 0.0, True)).tolist()
+    [1.0, 2.0, 3.0]
+    """
+    if isinstance(value, str) and ":" in value:
+        return item_values(value, spec)
+    bare = getattr(value, "magnitude", value)
+    if np.ndim(bare) == 0:
+        return convert(value, spec)
+    if bare is value and isinstance(value, np.ndarray) and value.dtype.kind in "fiu":
+        array = value.astype(float)
+        if not spec.admits(array):
+            raise ValueError(f"is out of range; expected {spec.range} in {spec.unit} throughout")
+        return array
+    flat = bare if np.ndim(bare) == 1 else np.asarray(bare, dtype=object).reshape(-1)
+    items = list(flat) if bare is value else [item * value.units for item in flat]
+    return np.array([convert(item, spec) for item in items]).reshape(np.shape(bare))
+
+
+RANGE = "START:STOP:COUNT or START:STOP:COUNT:log"
+MOST = 10**8
+"""Most values of a range, which are held in memory; more than this is a typing error."""
+
+
+def items(text: str) -> list[str]:
+    """Split a text at its commas.
+
+    >>> items("0 ms, 1 ms:3 ms:3")
+    ['0 ms', '1 ms:3 ms:3']
+    """
+    return [item.strip() for item in text.split(",") if item.strip()]
+
+
+def item_values(item: str, spec: Quantity) -> NDArray[np.float64]:
+    """Return the values in SI of one item: a quantity, or a range with both ends.
+
+    Raises
+    ------
+    ValueError
+        If the item cannot be read; the message says why.
+
+    Examples
+    --------
+    >>> from kvtheory.scene.drives import TIME
+    >>> item_values("1 ms:3 ms:3", TIME).tolist()
+    [0.001, 0.002, 0.003]
+    """
+    if ":" not in item:
+        return np.array([convert(item, spec)])
+    parts = [part.strip() for part in item.split(":")]
+    if len(parts) not in (3, 4) or (len(parts) == 4 and parts[3] != "log"):
+        raise ValueError(f'expected {RANGE}, such as "1 mm/s:10 m/s:200:log"')
+    start, stop = (convert(part, spec) for part in parts[:2])
+    if not parts[2].isdecimal() or not 1 <= int(parts[2]) <= MOST:
+        raise ValueError(f"COUNT must be a whole number from 1 to {MOST}; got {parts[2]}")
+    count = int(parts[2])
+    if len(parts) == 4 and min(start, stop) <= 0.0 <= max(start, stop):
+        raise ValueError("a logarithmic range needs START and STOP of one sign, neither zero")
+    with np.errstate(over="ignore", invalid="ignore"):
+        array = (np.linspace if len(parts) == 3 else np.geomspace)(start, stop, count)
+    if not spec.admits(array):
+        raise ValueError("the range leaves that of double precision")
+    return array
 
 
 def settle(instance: Any, section: str) -> None:
@@ -191,14 +327,16 @@ def settle(instance: Any, section: str) -> None:
     """
     specs, written = quantities(instance), {}
     values = {name: getattr(instance, name) for name in specs}
-    values = {name: None if isinstance(v, Derived) else v for name, v in values.items()}
+    values = {
+        name: None if isinstance(v, Derived | DerivedArray) else v for name, v in values.items()
+    }
     here = [name for name, value in values.items() if value is not None]
     problems = [missing(section, name, specs[name]) for name in required(type(instance), here)]
     for name, value in values.items():
         try:
             spec = written_as(value, specs[name])
-            object.__setattr__(instance, name, None if value is None else convert(value, spec))
-            if specs[name].per_width and _has_unit(value):
+            object.__setattr__(instance, name, None if value is None else converted(value, spec))
+            if specs[name].per_width and _has_unit(_sample(value)):
                 written[name] = value, spec.per_width
         except ValueError as error:
             problems.append(problem(f"{section}.{name}", value, str(error)))
@@ -217,12 +355,20 @@ def _has_unit(value: Any) -> bool:
     return isinstance(value, str) or hasattr(value, "units")
 
 
+def _sample(value: Any) -> Any:
+    """Return one item of a list, or one end of a range; the others have the same unit."""
+    while isinstance(value, list | tuple) and value:
+        value = value[0]
+    return value.split(":")[0] if isinstance(value, str) else value
+
+
 def written_as(value: Any, spec: Quantity) -> Quantity:
     """Return the quantity that a value with a unit is one of: per unit width, or that of a ball.
 
     >>> written_as("3 N", Quantity("N/m", "W, load", 0.0, True, per_width=True)).unit
     'N'
     """
+    value = _sample(value)
     if not (spec.per_width and _has_unit(value)):
         return spec
     kinds = spec, spec.fitting(False)
@@ -252,8 +398,9 @@ def misfits(section: str, part: Any, indenter: Any) -> list[str]:
 def derive(instance: Any, section: str, name: str, value: float, of: str) -> None:
     """Set a quantity derived from others; for use in ``__post_init__`` after `settle`."""
     if not quantities(instance)[name].admits(value):
-        raise SceneError([f"{section}.{name} = {value:g} follows from {of}, and is out of range"])
-    object.__setattr__(instance, name, Derived(value))
+        raise mistake(f"{section}.{name}", value, f"follows from {of}, and is out of range")
+    whole = Derived(value) if np.ndim(value) == 0 else np.asarray(value).view(DerivedArray)
+    object.__setattr__(instance, name, whole)
 
 
 def problem(key: str, given: Any, what: str) -> str:

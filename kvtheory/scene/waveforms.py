@@ -4,7 +4,7 @@ import math
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
-from kvtheory.scene.quantities import quantity, settle
+from kvtheory.scene.quantities import Part, quantity, settle
 
 AT_LAST = 20.0
 """Rise times after which tanh is 1 to the last digit."""
@@ -12,21 +12,21 @@ MOST_CORNERS = 100_000
 """Most corners of one list, a guard against endless ones; a drive allows fewer, see `drives.MOST_CYCLES`."""
 
 
-class _Waveform:
+class _Waveform(Part):
     final_velocity: ClassVar[float | None] = None
 
     def __post_init__(self) -> None:
         settle(self, "drive")
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class _Swing(_Waveform):
     amplitude: float = quantity("m/s", "largest velocity minus the mean")
     frequency: float = quantity("1/s", "cycles per unit time")
     mean: float = quantity("m/s", "mean velocity", minimum=-math.inf, default=0.0)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Sine(_Swing):
     """V = mean + amplitude sin(2 pi frequency t), in m/s.
 
@@ -41,7 +41,7 @@ class Sine(_Swing):
         return self.mean + self.amplitude * math.sin(2.0 * math.pi * self.frequency * t)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Triangle(_Swing):
     """V rises and falls in straight lines between mean + amplitude and mean - amplitude, from the mean.
 
@@ -77,7 +77,7 @@ class Triangle(_Swing):
         return found
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class SmoothRamp(_Waveform):
     """V = velocity tanh(t/rise_time): a smooth rise from rest, with a kink only at the start.
 

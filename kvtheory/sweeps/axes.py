@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from kvtheory.results.sweep import Axis
 from kvtheory.scene.broadcasting import replaceable
-from kvtheory.scene.lists import item_values, items
+from kvtheory.scene.quantities import item_values, items
 from kvtheory.scene.model import Scene
 from kvtheory.scene.quantities import Quantity, SceneError, convert, nearest, problem, quantities
 
