@@ -244,14 +244,13 @@ def sums(indenter: Spot, strips: Strips, depth: float) -> Sums:
     half, rim = _half_length(profile, depth), RIM[profile.convex]
     for number in range(1 + profile.convex, len(RULES)):
         t = 0.5 * math.pi * RULES[number][0][: len(RULES[number][0]) // 2]
-        weights = RULES[number][2][: t.size, :2]
         kept = np.cos(t) > rim
-        t = t[kept]
+        t, weights = t[kept], RULES[number][2][:, kept]
         y = half * np.maximum(np.sin(t), MIDDLE)
         deep = np.maximum(depth - profile.height(y), np.finfo(float).tiny)
         rows, own = strips(y, deep)
-        weighted = weights[kept] * (math.pi * half * indenter.stretch * np.cos(t))[:, None]
-        fine, coarse = (rows @ weighted).T
+        weighted = weights * (math.pi * half * indenter.stretch * np.cos(t))
+        fine, coarse = np.einsum("ij,kj->ki", rows, weighted)
         errors = np.abs(fine[[0, 2]] - coarse[[0, 2]]) / np.where(
             fine[[0, 2]] > 0, fine[[0, 2]], 1.0
         )
