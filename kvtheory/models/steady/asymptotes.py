@@ -7,7 +7,6 @@ mu -> (delta/a) n^2/(2 n - 1) (derivations "F19-low" and "F19-high"). With n = 2
 towards either limit (derivations "F19-error-..."): "within a tolerance" is a half-line of velocities.
 """
 
-from collections.abc import Mapping
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -15,6 +14,7 @@ import numpy as np
 from kvtheory.models.steady import closed_forms as cf
 from kvtheory.models.steady.power_law_contact import root, shape_of, trailing_edge
 from kvtheory.results import SteadyState
+from kvtheory.scene.model import Scene
 
 Value = Any
 """An array, or a float."""
@@ -49,21 +49,19 @@ class Limits(NamedTuple):
     fixed: bool
 
 
-def limits(values: Mapping[str, Value]) -> Limits:
-    """Collect the limits of a scene, given its values by dotted key."""
-    slope, L, n = shape = shape_of(values)
-    K = values["foundation.stiffness"]
-    l_r = np.abs(values["drive.velocity"]) * values["foundation.retardation_time"]
-    if "support.depth" in values:
-        depth = values["support.depth"]
-        a = _half_length(*shape, depth)
-        load = K * depth * a * cf.power_law_static_load(n)  # Eq. 40
-        return Limits(*shape, K, l_r, depth, a, load, load, fixed=True)
-    weight = values["support.weight"]
-    a_0 = L * root((n + 1.0) * (weight / K) / (2.0 * slope * L * L), n + 1.0)
-    delta_0 = weight / (K * a_0 * cf.power_law_static_load(n))
-    lift = weight + values.get("support.stiffness", 0.0) * delta_0
-    return Limits(*shape, K, l_r, delta_0, a_0, weight, lift, fixed=False)
+def limits(scene: Scene) -> Limits:
+    """Collect the limits of a scene."""
+    slope, L, n = shape = shape_of(scene.indenter)
+    K, support = scene.foundation.stiffness, scene.support
+    l_r = np.abs(scene.drive.final_velocity) * scene.foundation.retardation_time
+    if scene.held:
+        a = _half_length(*shape, support.depth)
+        load = K * support.depth * a * cf.power_law_static_load(n)  # Eq. 40
+        return Limits(*shape, K, l_r, support.depth, a, load, load, fixed=True)
+    a_0 = L * root((n + 1.0) * (support.weight / K) / (2.0 * slope * L * L), n + 1.0)
+    delta_0 = support.weight / (K * a_0 * cf.power_law_static_load(n))
+    lift = support.weight + support.spring * delta_0
+    return Limits(*shape, K, l_r, delta_0, a_0, support.weight, lift, fixed=False)
 
 
 def _half_length(slope: Value, length: Value, exponent: Value, depth: Value) -> Value:

@@ -14,13 +14,16 @@ An indenter that can move finds its depth from f(s) + kappa (s^2 - 1) = 1 in uni
 cylinder does, with s = a/a_0 and d ln f/d ln s between 3 and 4 (derivation F20-balance).
 """
 
+from typing import Any
+
 import numpy as np
 from numpy.polynomial.legendre import leggauss
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from kvtheory.models.steady import closed_forms as cf
-from kvtheory.models.steady.blockwise import evaluate
-from kvtheory.results import STEADY_UNITS, Certificate, SteadyState
+from kvtheory.results import STEADY_UNITS, Certificate
+from kvtheory.scene.indenters import Sphere
+from kvtheory.scene.model import DeadWeight, Scene
 from kvtheory.scene.static_state import ball_stiffness
 
 Array = NDArray[np.float64]
@@ -48,72 +51,63 @@ CERTIFICATE = Certificate(
 )
 
 
-def at_depth(
-    radius: ArrayLike,
-    stretch: ArrayLike,
-    stiffness: ArrayLike,
-    retardation_time: ArrayLike,
-    velocity: ArrayLike,
-    depth: ArrayLike,
-) -> SteadyState:
-    """Return the steady state at a given indentation depth.
+def quantities(scene: Scene) -> tuple[Any, ...]:
+    """Return the quantities in the order of `STEADY_UNITS`, forces in N (derivations F20).
 
-    Parameters
-    ----------
-    radius, stretch
-        R in m along the sliding direction, and sqrt(R'/R), 1 for a ball.
-    stiffness, retardation_time, velocity, depth
-        K in N/m^3, tau in s, V in m/s (any sign, or zero), delta in m. All broadcast.
-
-    Returns
-    -------
-    SteadyState
-        Load and friction force in N; the error of each quantity is in its certificate.
-
-    Raises
-    ------
-    FloatingPointError
-        If a value leaves the range of double precision.
-
-    Examples
-    --------
-    >>> state = at_depth(0.01, 1.0, 1e10, 0.1, 0.1, 3e-4)
-    >>> print(f"{state.load:.6g} {state.friction_force:.6g} {state.trailing_edge:.6g}")
-    113.283 15.303 0.00029563
-    """
-    given = radius, stretch, stiffness, retardation_time, velocity, depth
-    return evaluate(_contact, given, velocity, CERTIFICATE)
-
-
-def at_load(
-    radius: ArrayLike,
-    stretch: ArrayLike,
-    stiffness: ArrayLike,
-    retardation_time: ArrayLike,
-    velocity: ArrayLike,
-    weight: ArrayLike,
-    spring: ArrayLike = 0.0,
-) -> SteadyState:
-    """Return the steady state under a weight in N, on a spring in N/m or without.
-
-    A spring is relaxed at the static depth. The other arguments, and the state, are as in `at_depth`.
-
-    Examples
-    --------
-    >>> state = at_load(0.01, 1.0, 1e10, 0.1, 0.1, 9.80665)
-    >>> print(f"{1e3 * state.depth:.6f} mm, mu = {state.friction_coefficient:.6f}")
+    >>> ball = Scene(Sphere(0.01), support=DeadWeight(mass=1.0))
+    >>> found = quantities(ball)
+    >>> print(f"{1e3 * found[0]:.6f} mm, mu = {found[7]:.6f}")
     0.061896 mm, mu = 0.063679
     """
-    given = radius, stretch, stiffness, retardation_time, velocity, weight, spring
-    return evaluate(_balance, given, velocity, CERTIFICATE)
+    R, c = scene.indenter.radius, scene.indenter.stretch
+    K, V = scene.foundation.stiffness, scene.drive.final_velocity
+    delta = depth(scene)
+    a = np.sqrt(2.0 * R * delta)
+    l_r = np.abs(V) * scene.foundation.retardation_time
+    l = l_r / a
+    _, tail = angle_and_tail(l)
+    side = np.where(V < 0.0, -1.0, 1.0)  # a reversed drive is the mirror image
+    pressure, slope = K * delta, a / R
+    force = pressure * a * (a * c)
+    return (
+        delta,
+        a,
+        l_r,
+        -side * a,
+        side * a * cf.trailing_edge_ratio(l),
+        force * cf.ball_load_factor(l, tail),
+        side * force * (slope * cf.ball_friction_force_factor(l, tail)),
+        side * slope * cf.ball_friction_coefficient_factor(l, tail),
+        pressure * cf.peak_pressure_factor(l),
+        cf.ball_dissipated_in_contact(l, tail),
+    )
 
 
-def angle_and_tail(l: Array) -> tuple[Array, Array]:
+def depth(scene: Scene) -> Any:
+    """Return the indentation depth: that of the support, or where the load is carried."""
+    support, foundation = scene.support, scene.foundation
+    if scene.held:
+        return support.depth
+    R, c, V = scene.indenter.radius, scene.indenter.stretch, scene.drive.final_velocity
+    delta_0 = np.sqrt(support.weight / ball_stiffness(foundation.stiffness, R, c))
+    a_0 = np.sqrt(2.0 * R * delta_0)
+    drive_number = np.abs(V) * foundation.retardation_time / a_0
+    s = scaled_root(drive_number, support.spring * (delta_0 / support.weight))
+    return s * s * delta_0
+
+
+OWN_ERRORS = ()
+
+
+def angle_and_tail(l: Any) -> tuple[Any, Any]:
     """Return theta = arctan(1/l) and T to a few units in the last place of pi + T, for l >= 0.
 
     >>> angle_and_tail(np.array([0.0, 1e8]))[1].round(12).tolist()
     [3.14159265359, 1.0667e-08]
     """
+    if np.ndim(l) == 0:
+        theta, tail = angle_and_tail(np.array([l]))
+        return theta[0], tail[0]
     theta = np.arctan2(1.0, l)
     near = np.minimum(l, NEAR)
     tail = cf.ball_tail(near, np.arctan2(1.0, near))
@@ -148,42 +142,3 @@ def scaled_root(drive_number: Array, support_number: Array) -> Array:
         if np.abs(step).max(initial=0.0) < LAST_STEP:
             break
     return s
-
-
-def _balance(
-    R: Array, c: Array, K: Array, tau: Array, V: Array, weight: Array, spring: Array
-) -> tuple[Array, ...]:
-    return _contact(R, c, K, tau, V, depth_at_load(R, c, K, tau, V, weight, spring))
-
-
-def depth_at_load(
-    R: Array, c: Array, K: Array, tau: Array, V: Array, weight: Array, spring: Array
-) -> Array:
-    """Return the depth at which the load is carried, all arguments as in `at_load`."""
-    delta_0 = np.sqrt(weight / ball_stiffness(K, R, c))
-    a_0 = np.sqrt(2.0 * R * delta_0)
-    s = scaled_root(np.abs(V) * tau / a_0, spring * (delta_0 / weight))
-    return s * s * delta_0
-
-
-def _contact(R: Array, c: Array, K: Array, tau: Array, V: Array, delta: Array) -> tuple[Array, ...]:
-    """Return the quantities in the order of `STEADY_UNITS`."""
-    a = np.sqrt(2.0 * R * delta)
-    l_r = np.abs(V) * tau
-    l = l_r / a
-    _, tail = angle_and_tail(l)
-    side = np.where(V < 0.0, -1.0, 1.0)  # a reversed drive is the mirror image
-    pressure, slope = K * delta, a / R
-    force = pressure * a * (a * c)
-    return (
-        delta,
-        a,
-        l_r,
-        -side * a,
-        side * a * cf.trailing_edge_ratio(l),
-        force * cf.ball_load_factor(l, tail),
-        side * force * (slope * cf.ball_friction_force_factor(l, tail)),
-        side * slope * cf.ball_friction_coefficient_factor(l, tail),
-        pressure * cf.peak_pressure_factor(l),
-        cf.ball_dissipated_in_contact(l, tail),
-    )

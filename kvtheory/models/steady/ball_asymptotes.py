@@ -6,15 +6,14 @@ errors are closed forms in l = l_r/a and the tail T that fall monotonically towa
 "F20-error-..."). The names are those of `kvtheory.models.steady.asymptotes`, for the ball.
 """
 
-from collections.abc import Mapping
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from kvtheory.models.steady import closed_forms as cf
 from kvtheory.models.steady.ball import angle_and_tail
-from kvtheory.models.steady.spots import stretch_of
 from kvtheory.results import SteadyState
+from kvtheory.scene.model import Scene
 from kvtheory.scene.static_state import ball_stiffness
 
 Value = Any
@@ -45,20 +44,20 @@ class Limits(NamedTuple):
     fixed: bool
 
 
-def limits(values: Mapping[str, Value]) -> Limits:
-    """Collect the limits of a scene, given its values by dotted key."""
-    R, K, c = values["indenter.radius"], values["foundation.stiffness"], stretch_of(values)
-    l_r = np.abs(values["drive.velocity"]) * values["foundation.retardation_time"]
+def limits(scene: Scene) -> Limits:
+    """Collect the limits of a scene."""
+    R, c, K = scene.indenter.radius, scene.indenter.stretch, scene.foundation.stiffness
+    l_r = np.abs(scene.drive.final_velocity) * scene.foundation.retardation_time
     spring = ball_stiffness(K, R, c)
-    if "support.depth" in values:
-        depth = values["support.depth"]
+    if scene.held:
+        depth = scene.support.depth
         load = lift = spring * depth * depth
     else:
-        load = values["support.weight"]
+        load = scene.support.weight
         depth = np.sqrt(load / spring)
-        lift = load + values.get("support.stiffness", 0.0) * depth
+        lift = load + scene.support.spring * depth
     a = np.sqrt(2.0 * R * depth)
-    return Limits(R, c, K, l_r, depth, a, load, lift, fixed="support.depth" in values)
+    return Limits(R, c, K, l_r, depth, a, load, lift, fixed=scene.held)
 
 
 def critical_velocity(scene: Limits, retardation_time: Value) -> Value:

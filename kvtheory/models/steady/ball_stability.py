@@ -16,49 +16,37 @@ plane, in units of a and a^3,
 by derivation F20-slopes. The last one loses digits for l >> 1, where it does not count beside 3 pi/16.
 """
 
-from collections.abc import Mapping
-
 import numpy as np
-from numpy.typing import NDArray
 
 from kvtheory.models.steady import ball
 from kvtheory.models.steady import closed_forms as cf
-from kvtheory.models.steady.spots import stretch_of
 from kvtheory.models.steady.stability import Numbers
-
-Array = NDArray[np.float64]
-Values = Mapping[str, Array]
+from kvtheory.scene.model import Scene
 
 
-def numbers(values: Values, velocity: Array | None = None) -> Numbers:
+def numbers(scene: Scene) -> Numbers:
     """Return the numbers of a scene with a ball, as `stability.numbers` does; `unit` is in N/m."""
-    R, K, c = values["indenter.radius"], values["foundation.stiffness"], stretch_of(values)
-    tau = values["foundation.retardation_time"]
-    V = np.abs(values["drive.velocity"] if velocity is None else velocity)
-    spring = values.get("support.stiffness", np.zeros_like(tau))
-    depth = values.get("support.depth")
-    held = depth is not None
-    if depth is None:
-        depth = ball.depth_at_load(R, c, K, tau, V, values["support.weight"], spring)
-    a = np.sqrt(2.0 * R * depth)
-    l = V * tau / a
+    foundation, support, drive = scene.foundation, scene.support, scene.drive
+    R, K, tau = scene.indenter.radius, foundation.stiffness, foundation.retardation_time
+    a = np.sqrt(2.0 * R * ball.depth(scene))
+    l = np.abs(drive.final_velocity) * tau / a
     _, T = ball.angle_and_tail(l)
     A_1, A_3 = np.pi / 4.0, 3.0 * np.pi / 16.0
     X_1, X_3 = cf.ball_trailing_edges(l, T), cf.ball_cubed_trailing_edges(l, T)
-    unit = 2.0 * K * a * (a * c)
+    unit = 2.0 * K * a * (a * scene.indenter.stretch)
     along = tau * unit * (a / R) ** 2 * ((A_3 + X_3) / 3.0)  # dF/dV, in N s/m
     across = tau * unit * (A_1 + X_1)  # dW/d(ddelta/dt), in N s/m
     coupled = l * X_1 / (A_1 + X_1)
-    damped = along + values["drive.damping"]
-    T_x = values["drive.mass"] / (damped * tau)
+    damped = along + drive.damping
+    T_x = scene.drive_mass / (damped * tau)
     S_c = (A_1 + X_1) / X_1
     g = coupled * (3.0 * l * X_1 / (A_3 + X_3)) * (along / damped)
-    if held:
+    if scene.held:
         endless = np.full_like(g, np.inf)
         return Numbers(np.zeros_like(g), T_x, endless, S_c, g, 1.0 - g, endless, damped / tau)
-    S_z = (A_1 + X_1 + l) / (A_1 + X_1) + spring * tau / across
+    S_z = (A_1 + X_1 + l) / (A_1 + X_1) + support.spring * tau / across
     return Numbers(
-        T_z=values["support.mass"] / (across * tau),
+        T_z=support.mass / (across * tau),
         T_x=T_x,
         S_z=S_z,
         S_c=S_c,

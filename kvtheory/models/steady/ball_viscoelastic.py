@@ -14,20 +14,19 @@ follows from the derivatives of a. The load grows with the depth as
 which gives Newton's method for the length that carries a load.
 """
 
-from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from kvtheory.models.steady import viscoelastic
-from kvtheory.models.steady.blockwise import evaluate
-from kvtheory.models.steady.viscoelastic import OWN_ERRORS, Fractional, Prony
-from kvtheory.results import STEADY_UNITS, Certificate, SteadyState
+from kvtheory.results import STEADY_UNITS, Certificate
+from kvtheory.scene.foundations import FractionalKelvinVoigt
+from kvtheory.scene.indenters import Sphere
+from kvtheory.scene.model import DeadWeight, Scene
 from kvtheory.scene.static_state import ball_stiffness
 
 Array = NDArray[np.float64]
-Law = type[Prony] | type[Fractional]
 
 STEP, LAST = 0.0625, 3.9
 """Of the double-exponential rule, and where its weights vanish."""
@@ -41,6 +40,7 @@ PART = 256
 """Scenes treated at a time: their nodes stay in the processor's cache."""
 
 RELATIVE_ERROR = 1e-11
+OWN_ERRORS = viscoelastic.OWN_ERRORS
 CERTIFICATE = Certificate(
     kind="estimated",
     statement="one quadrature over strips, whose moments do not cancel; more than ten times the worst "
@@ -75,117 +75,25 @@ class Sums(NamedTuple):
     """d ln W/d ln c."""
 
 
-def at_depth(
-    law: Law,
-    parameters: Sequence[ArrayLike],
-    radius: ArrayLike,
-    stretch: ArrayLike,
-    stiffness: ArrayLike,
-    retardation_time: ArrayLike,
-    velocity: ArrayLike,
-    depth: ArrayLike,
-) -> SteadyState:
-    """Return the steady state at a given indentation depth.
+def quantities(scene: Scene) -> tuple[Any, ...]:
+    """Return the quantities in the order of `STEADY_UNITS`, and the error of the last one.
 
-    The arguments are those of `viscoelastic.at_depth`, with sqrt(R'/R), 1 for a ball, after the radius; load
-    and friction force are in N.
-
-    Examples
-    --------
     Kelvin-Voigt is the springpot of order 1:
 
-    >>> state = at_depth(Fractional, (0.1, 1.0), 0.01, 1.0, 1e10, 0.1, 0.1, 3e-4)
-    >>> print(f"{state.load:.6g} {state.friction_force:.6g} {state.trailing_edge:.6g}")
-    113.283 15.303 0.00029563
-    """
-
-    def held(
-        R: Array, stretch: Array, K: Array, time: Array, V: Array, delta: Array, *own: Array
-    ) -> tuple[Array, ...]:
-        row = law(K, V, own)
-        c = viscoelastic.length_at_half(row, np.sqrt(2.0 * R * delta))
-        return _state(law, own, (R, stretch, K, time, V), row, c, delta)
-
-    given = radius, stretch, stiffness, retardation_time, velocity, depth, *parameters
-    return evaluate(held, given, velocity, CERTIFICATE, OWN_ERRORS)
-
-
-def at_load(
-    law: Law,
-    parameters: Sequence[ArrayLike],
-    radius: ArrayLike,
-    stretch: ArrayLike,
-    stiffness: ArrayLike,
-    retardation_time: ArrayLike,
-    velocity: ArrayLike,
-    weight: ArrayLike,
-    spring: ArrayLike = 0.0,
-) -> SteadyState:
-    """Return the steady state under a weight in N, on a spring in N/m or without.
-
-    The other arguments, and the state, are as in `at_depth`; a spring is relaxed at the static depth.
-
-    Examples
-    --------
-    >>> state = at_load(Fractional, (0.1, 1.0), 0.01, 1.0, 1e10, 0.1, 0.1, 9.80665)
-    >>> print(f"{1e3 * state.depth:.6f} mm, mu = {state.friction_coefficient:.6f}")
+    >>> springpot = FractionalKelvinVoigt(1e10, 0.1, 1.0)
+    >>> found = quantities(Scene(Sphere(0.01), springpot, DeadWeight(mass=1.0)))
+    >>> print(f"{1e3 * found[0]:.6f} mm, mu = {found[7]:.6f}")
     0.061896 mm, mu = 0.063679
     """
-
-    def carried(
-        R: Array,
-        stretch: Array,
-        K: Array,
-        time: Array,
-        V: Array,
-        load: Array,
-        k: Array,
-        *own: Array,
-    ) -> tuple[Array, ...]:
-        c = _length_at_load(law, own, (R, stretch, K, V), load, k)
-        return _state(law, own, (R, stretch, K, time, V), law(K, V, own), c)
-
-    given = radius, stretch, stiffness, retardation_time, velocity, weight, spring, *parameters
-    return evaluate(carried, given, velocity, CERTIFICATE, OWN_ERRORS)
-
-
-def _length_at_load(
-    law: Law, own: tuple[Array, ...], at: tuple[Array, ...], load: Array, spring: Array
-) -> Array:
-    """Return the length of the contact in the middle plane: Newton's method in logarithms, from rest.
-
-    The load is positive and its growth between 2 and 5, so that the steps close in from everywhere.
-    """
-    R, stretch, K, V = at
-    static = np.sqrt(load / ball_stiffness(K, R, stretch))
-    wanted = load + spring * static
-    c = 2.0 * np.sqrt(2.0 * R * static)
-    for _ in range(MOST_STEPS):
-        found = _sums(law, own, (R, stretch, K, V), c)
-        held = spring * found.a * (found.a / (2.0 * R))
-        total = found.load + held
-        row = law(K, V, own).moments(c)
-        share, slope, _ = viscoelastic.growth(row)
-        rise = (found.growth * found.load + 2.0 * (slope / share) * held) / total
-        step = np.log(total / wanted) / rise
-        c = c * np.exp(-step)
-        if np.abs(step).max(initial=0.0) < LAST_STEP:
-            break
-    return c
-
-
-def _state(
-    law: Law,
-    own: tuple[Array, ...],
-    at: tuple[Array, ...],
-    row: Any,
-    c: Array,
-    delta: Array | None = None,
-) -> tuple[Array, ...]:
-    """Return the quantities in the order of `STEADY_UNITS`, and the error of the last one."""
-    R, stretch, K, time, V = at
-    plane = viscoelastic.state(R, row, time, V, c, delta)
-    found = _sums(law, own, (R, stretch, K, V), c)
+    if not scene.shape:
+        return tuple(row[0] for row in quantities(scene.at(np.array([scene.drive.final_velocity]))))
+    row, R = viscoelastic.law(scene), scene.indenter.radius
+    if scene.held:
+        half = np.broadcast_to(np.sqrt(2.0 * R * scene.support.depth), scene.shape)
+        c = viscoelastic.length_at_half(row, half)
+    else:
+        c = _length_at_load(scene, row)
+    V, plane, found = scene.drive.final_velocity, viscoelastic.state(scene, row, c), _sums(scene, c)
     side = np.where(V < 0.0, -1.0, 1.0)
     moving = found.friction > 0.0
     work = np.where(moving, found.friction, 1.0)
@@ -200,18 +108,39 @@ def _state(
     )
 
 
-def _sums(law: Law, own: tuple[Array, ...], at: tuple[Array, ...], c: Array) -> Sums:
+def _length_at_load(scene: Scene, row: Any) -> Array:
+    """Return the length of the contact in the middle plane: Newton's method in logarithms, from rest.
+
+    The load is positive and its growth between 2 and 5, so that the steps close in from everywhere.
+    """
+    R, load, spring = scene.indenter.radius, scene.support.weight, scene.support.spring
+    static = np.sqrt(load / ball_stiffness(scene.foundation.stiffness, R, scene.indenter.stretch))
+    wanted = load + spring * static
+    c = np.broadcast_to(2.0 * np.sqrt(2.0 * R * static), scene.shape)
+    for _ in range(MOST_STEPS):
+        found = _sums(scene, c)
+        held = spring * found.a * (found.a / (2.0 * R))
+        total = found.load + held
+        share, slope, _ = viscoelastic.growth(row.moments(c))
+        rise = (found.growth * found.load + 2.0 * (slope / share) * held) / total
+        step = np.log(total / wanted) / rise
+        c = c * np.exp(-step)
+        if np.abs(step).max(initial=0.0) < LAST_STEP:
+            break
+    return c
+
+
+def _sums(scene: Scene, c: Array) -> Sums:
     """Return the sums over strips, a part of the scenes at a time."""
     parts = []
     for i in range(0, c.size, PART):
-        arms, scenes = (tuple(each[i : i + PART, None] for each in some) for some in (own, at))
-        parts.append(_part(law, arms, scenes, length=c[i : i + PART]))
+        part = slice(i, i + PART)
+        parts.append(_part(scene.mapped(lambda x, part=part: x[part, None]), c[part, None]))
     return Sums(*(np.concatenate(rows) for rows in zip(*parts, strict=True)))
 
 
-def _part(law: Law, own: Any, at: Any, *, length: Array) -> Sums:
-    R, stretch, K, V = at
-    row, middle = law(K, V, own), length[:, None]
+def _part(scene: Scene, middle: Array) -> Sums:
+    row, R, stretch = viscoelastic.law(scene), scene.indenter.radius, scene.indenter.stretch
     first = row.moments(middle)
     share, slope, bend = viscoelastic.growth(first)
     a_0 = middle * share

@@ -1,13 +1,15 @@
-"""A formula of steady sliding on whole arrays: broadcast, block by block, with its certificate."""
+"""A formula of steady sliding on all scenes of arrays, block by block, with its certificate."""
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
-from kvtheory.results import STEADY_UNITS, Certificate, SteadyState
+from kvtheory.results import STEADY_UNITS, Certificate, SteadyState, units_for
+from kvtheory.scene.model import Scene
 
 BLOCK = 16384
 """Scenes treated at a time: the intermediate arrays of a block stay in the processor's cache."""
@@ -19,13 +21,12 @@ Array = NDArray[np.float64]
 
 
 def evaluate(
-    formula: Callable[..., tuple[Array, ...]],
-    arguments: Sequence[ArrayLike],
-    velocity: ArrayLike,
+    formula: Callable[[Scene], Sequence[Any]],
+    scene: Scene,
     certificate: Certificate,
     own_errors: tuple[str, ...] = (),
 ) -> SteadyState:
-    """Return the steady state that `formula` gives for the broadcast arguments.
+    """Return the steady state that `formula` gives for a scene, or for each of its arrays.
 
     The formula returns the quantities in the order of `STEADY_UNITS` and then the relative errors
     of those in `own_errors`, which replace what the certificate says of them.
@@ -36,29 +37,45 @@ def evaluate(
         If a value leaves the range of double precision. A value with its own error may become
         zero, as its error then says.
     """
-    arrays = np.broadcast_arrays(
-        *(np.asarray(argument, dtype=float) for argument in (*arguments, velocity))
-    )
-    shape, size = arrays[0].shape, arrays[0].size
-    flat = [array.reshape(-1) for array in arrays]
-    result = np.empty((len(QUANTITIES) + len(own_errors), size))
-    with np.errstate(over="raise", divide="raise", invalid="raise", under="ignore"):
-        for start in range(0, size, BLOCK):
-            part = slice(start, start + BLOCK)
-            values = formula(*(array[part] for array in flat[:-1]))
-            for row, found in zip(result, values, strict=True):
-                row[part] = found
-    _check_underflow(result[: len(QUANTITIES)], flat[-1], own_errors)
-    rows = [row.reshape(shape) if shape else float(row[0]) for row in result]
+    shape = scene.shape
+    rows: Sequence[Any]
+    if shape:
+        flat, size = scene.flat(), math.prod(shape)
+        result = np.empty((len(QUANTITIES) + len(own_errors), size))
+        with np.errstate(over="raise", divide="raise", invalid="raise", under="ignore"):
+            for start in range(0, size, BLOCK):
+                part = slice(start, start + BLOCK)
+                for row, found in zip(result, formula(flat.rows(part)), strict=True):
+                    row[part] = found
+        _check_underflow(result[: len(QUANTITIES)], flat.drive.final_velocity, own_errors)
+        rows = result.reshape(-1, *shape)
+    else:
+        rows = [float(each) for each in formula(scene)]
+        _check_range(rows, scene.drive.final_velocity, own_errors)
     quantities: dict[str, Any] = dict(zip(QUANTITIES, rows, strict=False))
-    own_rows = dict(zip(own_errors, rows[len(QUANTITIES) :], strict=True))
-    own = replace(certificate, relative_error={**certificate.relative_error, **own_rows})
-    return SteadyState(**quantities, model="exact", certificate=own)
+    if own_errors:
+        own = dict(zip(own_errors, rows[len(QUANTITIES) :], strict=True))
+        certificate = replace(certificate, relative_error={**certificate.relative_error, **own})
+    units = units_for(scene.indenter, STEADY_UNITS)
+    return SteadyState(**quantities, model="exact", certificate=certificate, units=units)
 
 
-def _check_underflow(result: Array, velocity: Array, own_errors: tuple[str, ...]) -> None:
+def _check_range(values: Sequence[float], velocity: float, own_errors: tuple[str, ...]) -> None:
+    """Raise if a value is not finite, or lost digits below the smallest normal number."""
+    for name, value in zip(QUANTITIES, values, strict=False):
+        if not math.isfinite(value):
+            raise FloatingPointError(f"overflow in {name}")
+        small = abs(value) < SMALLEST and name not in own_errors
+        if small and (name not in ZERO_AT_REST or velocity != 0.0):
+            raise FloatingPointError(f"underflow in {name}")
+
+
+SMALLEST = float(np.finfo(float).tiny)
+
+
+def _check_underflow(result: Array, velocity: Any, own_errors: tuple[str, ...]) -> None:
     """Raise if digits were lost below the smallest normal number; zero is correct only at rest."""
-    lost = np.abs(result) < np.finfo(float).tiny
+    lost = np.abs(result) < SMALLEST
     lost[[QUANTITIES.index(name) for name in ZERO_AT_REST]] &= velocity != 0.0
     lost[[QUANTITIES.index(name) for name in own_errors]] = False
     if lost.any():

@@ -22,13 +22,15 @@ from typing import Any, NamedTuple
 import numpy as np
 from scipy.optimize import brentq, minimize_scalar
 
-from kvtheory.models.steady.branches import Memory
+from kvtheory.models.steady.branches import Arms, Memory, Springpot
 from kvtheory.models.steady.contact import half_length
 from kvtheory.models.steady.double_exponential import RULES
 from kvtheory.models.steady.profile_series import ConvexProfile
 from kvtheory.results import Certificate, SteadyState
 from kvtheory.results.errors import QuadratureError
+from kvtheory.scene.foundations import FractionalKelvinVoigt
 from kvtheory.scene.indenters import Convex, Profile
+from kvtheory.scene.model import Scene
 
 Array = Any
 """Of floats."""
@@ -109,6 +111,16 @@ def _nodes(start: float, end: float) -> Array:
     if abs(start) < abs(end):
         return start + (end - start) * NODES
     return end - (end - start) * NODES[::-1]
+
+
+def memory_of(scene: Scene) -> Memory:
+    """Return the memory of the branches of a foundation at the velocity of a scene."""
+    foundation, speed = scene.foundation, abs(scene.drive.final_velocity)
+    if isinstance(foundation, FractionalKelvinVoigt):
+        length = speed * foundation.retardation_time
+        return Springpot(foundation.stiffness, length, foundation.order)
+    arms = np.array([(arm.stiffness, arm.relaxation_time) for arm in foundation.arms])
+    return Arms(arms[:, 0], speed * arms[:, 1])
 
 
 def sides(shape: Shape, depth: float) -> tuple[float, float]:

@@ -10,10 +10,11 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
-from kvtheory.models.steady.stability import Numbers, Values, numbers, onsets
+from kvtheory.models.steady.stability import Numbers, onsets
+from kvtheory.scene.model import Scene
 
 Array = NDArray[np.float64]
-NumbersOf = Callable[[Values, Array], Numbers]
+NumbersOf = Callable[[Scene], Numbers]
 
 DECADES = (-8.0, 20.0)
 """Powers of ten of the drive number V tau/a_0 between which a change is sought."""
@@ -26,29 +27,26 @@ SOFT, UNSTABLE, STIFF, NEVER = -1, 0, 1, 2
 """The stiffness of the spring relative to the critical ones: below both, between, above, or none exists."""
 
 
-def critical_velocity(
-    values: Values, stiffness: Array, numbers: NumbersOf = numbers
-) -> tuple[Array, Array]:
-    """Return the velocity in m/s for each scene of flat arrays, NaN if there is none, and its error.
+def critical_velocity(scene: Scene, numbers: NumbersOf) -> tuple[Array, Array]:
+    """Return the velocity in m/s for each of flat scenes, NaN if there is none, and its error.
 
     `numbers` are those of the shape.
     """
-    column = {key: np.reshape(each, (-1, 1)) for key, each in values.items()}
-    spring = stiffness.reshape(-1, 1)
-    if "support.depth" in column:
-        nothing = np.full(stiffness.shape, np.nan)
+    if scene.held:
+        nothing = np.full(scene.shape, np.nan)
         return nothing, nothing
-    tau = column["foundation.retardation_time"]
-    load = column["support.weight"] / column["foundation.stiffness"]
-    unit = np.log(np.cbrt(1.5 * column["indenter.radius"] * load) / tau)
+    column = scene.flat().mapped(lambda x: x[:, np.newaxis])
+    spring, tau = column.drive.stiffness, column.foundation.retardation_time
+    load = column.support.weight / column.foundation.stiffness
+    unit = np.log(np.cbrt(1.5 * column.indenter.radius * load) / tau)
 
     def state(log_velocity: Array) -> NDArray[np.int_]:
-        lower, upper = onsets(numbers(column, np.exp(log_velocity)), tau)
+        lower, upper = onsets(numbers(column.at(np.exp(log_velocity))), tau)
         places = [spring > upper.stiffness, spring < lower.stiffness, spring <= upper.stiffness]
         return np.select(places, [STIFF, SOFT, UNSTABLE], NEVER)
 
     count = round((DECADES[1] - DECADES[0]) * PER_DECADE) + 1
-    grid = unit + np.log(10.0) * np.linspace(*DECADES, count)
+    grid = np.broadcast_to(unit, column.shape) + np.log(10.0) * np.linspace(*DECADES, count)
     states = state(grid)
     before, after = states[:, :-1], states[:, 1:]
     changes = (after == UNSTABLE) | (before * after == SOFT * STIFF)
@@ -63,17 +61,18 @@ def critical_velocity(
         stays = np.where(across, now == was, now != UNSTABLE)
         low, high = np.where(stays, middle, low), np.where(stays, high, middle)
     velocity = np.where(some, np.exp(high[:, 0]), np.nan)
-    return velocity, np.where(some, _error(column, tau, spring, high, numbers)[:, 0], np.nan)
+    return velocity, np.where(some, _error(column, high, numbers)[:, 0], np.nan)
 
 
-def _error(
-    values: Values, tau: Array, spring: Array, log_velocity: Array, numbers: NumbersOf
-) -> Array:
+def _error(column: Scene, log_velocity: Array, numbers: NumbersOf) -> Array:
     """Return the relative error of a velocity: that of the stiffness over its logarithmic derivative.
 
     It is not known where both critical stiffnesses meet.
     """
-    near = [onsets(numbers(values, np.exp(log_velocity + step)), tau) for step in (-NEARBY, NEARBY)]
+    tau, spring = column.foundation.retardation_time, column.drive.stiffness
+    near = [
+        onsets(numbers(column.at(np.exp(log_velocity + step))), tau) for step in (-NEARBY, NEARBY)
+    ]
     found = []
     for low, high in zip(*near, strict=True):
         with np.errstate(divide="ignore", invalid="ignore"):

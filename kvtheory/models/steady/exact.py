@@ -12,12 +12,14 @@ d ln f_z/d ln s lies between 2 and 3, so that rounding moves the depth by a few 
 place at most, over any range of velocity.
 """
 
+from typing import Any
+
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from kvtheory.models.steady import closed_forms as cf
-from kvtheory.models.steady.blockwise import evaluate
-from kvtheory.results import STEADY_UNITS, Certificate, SteadyState
+from kvtheory.results import STEADY_UNITS, Certificate
+from kvtheory.scene.model import Scene
 
 HALLEY_STEPS = 2
 """The first guess is within 3 % of the root; cubic convergence gives 1e-5, then all digits."""
@@ -32,101 +34,21 @@ CERTIFICATE = Certificate(
     relative_error=dict.fromkeys(STEADY_UNITS, RELATIVE_ERROR),
 )
 
+OWN_ERRORS = ()
 Array = NDArray[np.float64]
 
 
-def at_depth(
-    radius: ArrayLike,
-    stiffness: ArrayLike,
-    retardation_time: ArrayLike,
-    velocity: ArrayLike,
-    depth: ArrayLike,
-) -> SteadyState:
-    """Return the steady state at a given indentation depth (the paper's FI model).
+def quantities(scene: Scene) -> tuple[Any, ...]:
+    """Return the quantities in the order of `STEADY_UNITS` (theorem F1, Eqs. 26-29).
 
-    Parameters
-    ----------
-    radius, stiffness, retardation_time, velocity, depth
-        R in m, K in N/m^3, tau in s, V in m/s (any sign, or zero), delta in m; they broadcast.
-
-    Returns
-    -------
-    SteadyState
-        With W = K delta a w(q), F = (a/R) W phi/w and so on (theorem F1); the error of each
-        quantity is in its certificate.
-
-    Raises
-    ------
-    FloatingPointError
-        If a value leaves the range of double precision.
-
-    Examples
-    --------
-    >>> state = at_depth(0.01, 1e10, 0.1, 0.1, 3e-4)
-    >>> print(f"{state.load:.6g} {state.friction_force:.6g} {state.trailing_edge:.6g}")
-    35344.6 5344.58 0.00029563
+    >>> print(", ".join(f"{value:.6g}" for value in quantities(Scene.table1("fixed"))[4:8]))
+    0.00029563, 35344.6, 5344.58, 0.151213
     """
-    given = radius, stiffness, retardation_time, velocity, depth
-    return evaluate(_contact, given, velocity, CERTIFICATE)
-
-
-def at_load(
-    radius: ArrayLike,
-    stiffness: ArrayLike,
-    retardation_time: ArrayLike,
-    velocity: ArrayLike,
-    weight: ArrayLike,
-    spring: ArrayLike = 0.0,
-) -> SteadyState:
-    """Return the steady state under a weight (the paper's MI model), on a spring or without.
-
-    The weight M g is in N/m, the stiffness of the suspension in N/m^2: it is relaxed at the static depth,
-    and 0 for a dead weight. The other arguments, and the state, are as in `at_depth`.
-
-    Examples
-    --------
-    >>> state = at_load(0.01, 1e10, 0.1, 0.1, 9806.65)
-    >>> print(f"{1e3 * state.depth:.6f} mm, mu = {state.friction_coefficient:.6f}")
-    0.089661 mm, mu = 0.085709
-    """
-    given = radius, stiffness, retardation_time, velocity, weight, spring
-    return evaluate(_balance, given, velocity, CERTIFICATE)
-
-
-def scaled_root(drive_number: Array, support_number: Array) -> Array:
-    """Solve f_z(s) + kappa (s^2 - 1) = 1 for s = a/a_0 in (0, 1], by Halley's method.
-
-    The first guess interpolates between the limits s = 1 at lambda = 0 and s^2 (3/4 lambda + kappa)
-    = 1 + kappa at lambda -> oo.
-    """
-    kappa = support_number
-    s = np.sqrt((1.0 + kappa) / (kappa + np.hypot(1.0, 0.75 * drive_number)))
-    for _ in range(HALLEY_STEPS):
-        residual = cf.scaled_load(s, drive_number) + kappa * (s * s - 1.0) - 1.0
-        slope = cf.scaled_load_slope(s, drive_number) + 2.0 * kappa * s
-        curvature = cf.scaled_load_curvature(s, drive_number) + 2.0 * kappa
-        s = s - residual / (slope - 0.5 * residual * (curvature / slope))
-    return s
-
-
-def _balance(
-    R: Array, K: Array, tau: Array, V: Array, weight: Array, spring: Array
-) -> tuple[Array, ...]:
-    return _contact(R, K, tau, V, depth_at_load(R, K, tau, V, weight, spring))
-
-
-def depth_at_load(R: Array, K: Array, tau: Array, V: Array, weight: Array, spring: Array) -> Array:
-    """Return the depth at which the load is carried, all arguments as in `at_load`."""
-    a_0 = np.cbrt(1.5 * R * (weight / K))  # weight = (4/3) K a_0 delta_0, delta_0 = a_0^2/(2 R)
-    delta_0 = a_0 * (a_0 / (2.0 * R))
-    s = scaled_root(np.abs(V) * tau / a_0, spring * (delta_0 / weight))
-    return s * s * delta_0
-
-
-def _contact(R: Array, K: Array, tau: Array, V: Array, delta: Array) -> tuple[Array, ...]:
-    """Return the quantities in the order of `STEADY_UNITS`."""
+    K, V = scene.foundation.stiffness, scene.drive.final_velocity
+    R = scene.indenter.radius
+    delta = depth(scene)
     a = np.sqrt(2.0 * R * delta)  # Eq. 28
-    l_r = np.abs(V) * tau  # Eq. 29
+    l_r = np.abs(V) * scene.foundation.retardation_time  # Eq. 29
     l = l_r / a
     q = cf.trailing_edge_ratio(l)
     side = np.where(V < 0.0, -1.0, 1.0)  # a reversed drive is the mirror image
@@ -144,3 +66,32 @@ def _contact(R: Array, K: Array, tau: Array, V: Array, delta: Array) -> tuple[Ar
         pressure * cf.peak_pressure_factor(l),
         cf.dissipated_in_contact(q),
     )
+
+
+def depth(scene: Scene) -> Any:
+    """Return the indentation depth: that of the support, or where the load is carried."""
+    support, foundation = scene.support, scene.foundation
+    if scene.held:
+        return support.depth
+    R, tau, V = scene.indenter.radius, foundation.retardation_time, scene.drive.final_velocity
+    # weight = (4/3) K a_0 delta_0, delta_0 = a_0^2/(2 R)
+    a_0 = np.cbrt(1.5 * R * (support.weight / foundation.stiffness))
+    delta_0 = a_0 * (a_0 / (2.0 * R))
+    s = scaled_root(np.abs(V) * tau / a_0, support.spring * (delta_0 / support.weight))
+    return s * s * delta_0
+
+
+def scaled_root(drive_number: Array, support_number: Array) -> Array:
+    """Solve f_z(s) + kappa (s^2 - 1) = 1 for s = a/a_0 in (0, 1], by Halley's method.
+
+    The first guess interpolates between the limits s = 1 at lambda = 0 and s^2 (3/4 lambda + kappa)
+    = 1 + kappa at lambda -> oo.
+    """
+    kappa = support_number
+    s = np.sqrt((1.0 + kappa) / (kappa + np.hypot(1.0, 0.75 * drive_number)))
+    for _ in range(HALLEY_STEPS):
+        residual = cf.scaled_load(s, drive_number) + kappa * (s * s - 1.0) - 1.0
+        slope = cf.scaled_load_slope(s, drive_number) + 2.0 * kappa * s
+        curvature = cf.scaled_load_curvature(s, drive_number) + 2.0 * kappa
+        s = s - residual / (slope - 0.5 * residual * (curvature / slope))
+    return s

@@ -10,13 +10,16 @@ whose logarithm has a slope between n and n + 1 in ln s (derivation "F19-balance
 closed form.
 """
 
+from typing import Any
+
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from kvtheory.models.steady import closed_forms as cf
-from kvtheory.models.steady.blockwise import evaluate
-from kvtheory.models.steady.power_law_contact import edge_sensitivity, root, trailing_edge
-from kvtheory.results import STEADY_UNITS, Certificate, SteadyState
+from kvtheory.models.steady.power_law_contact import edge_sensitivity, root, shape_of, trailing_edge
+from kvtheory.results import STEADY_UNITS, Certificate
+from kvtheory.scene.indenters import Wedge
+from kvtheory.scene.model import Scene
 
 Array = NDArray[np.float64]
 
@@ -38,68 +41,24 @@ CERTIFICATE = Certificate(
 OWN_ERRORS = ("trailing_edge",)
 
 
-def at_depth(
-    slope: ArrayLike,
-    length: ArrayLike,
-    exponent: ArrayLike,
-    stiffness: ArrayLike,
-    retardation_time: ArrayLike,
-    velocity: ArrayLike,
-    depth: ArrayLike,
-) -> SteadyState:
-    """Return the steady state at a given indentation depth.
+def quantities(scene: Scene) -> tuple[Any, ...]:
+    """Return the quantities in the order of `STEADY_UNITS`, and the error of the trailing edge.
 
-    Parameters
-    ----------
-    slope, length, exponent
-        Of the indenter h = slope |x|^n/(n L^(n-1)): slope at x = L, L in m, n >= 1. For a wedge n = 1, and
-        L does not matter.
-    stiffness, retardation_time, velocity, depth
-        K in N/m^3, tau in s, V in m/s (any sign, or zero), delta in m; all broadcast.
+    W = K delta a w, F = K delta^2 phi and so on (derivation F19).
 
-    Returns
-    -------
-    SteadyState
-        With W = K delta a w, F = K delta^2 phi and so on (derivation F19); the error of each quantity is
-        in its certificate. That of the trailing edge is larger: for n close to 1 it is ill-conditioned.
-
-    Raises
-    ------
-    FloatingPointError
-        If a value other than the trailing edge leaves the range of double precision.
-
-    Examples
-    --------
-    >>> state = at_depth(1.0, 0.01, 2.0, 1e10, 0.1, 0.1, 3e-4)  # the parabola of radius 10 mm
-    >>> print(f"{state.load:.6g} {state.friction_force:.6g} {state.trailing_edge:.6g}")
-    35344.6 5344.58 0.00029563
-    """
-    given = slope, length, exponent, stiffness, retardation_time, velocity, depth
-    return evaluate(_held, given, velocity, CERTIFICATE, OWN_ERRORS)
-
-
-def at_load(
-    slope: ArrayLike,
-    length: ArrayLike,
-    exponent: ArrayLike,
-    stiffness: ArrayLike,
-    retardation_time: ArrayLike,
-    velocity: ArrayLike,
-    weight: ArrayLike,
-    spring: ArrayLike = 0.0,
-) -> SteadyState:
-    """Return the steady state under a weight in N/m, on a spring in N/m^2 or without.
-
-    The other arguments, and the state, are as in `at_depth`; a spring is relaxed at the static depth.
-
-    Examples
-    --------
-    >>> state = at_load(0.1, 1.0, 1.0, 1e10, 0.1, 0.1, 9806.65)  # a wedge, past its crossover
-    >>> print(f"mu = {state.friction_coefficient:.6f}, x_TE = {state.trailing_edge:.6g}")
+    >>> found = quantities(Scene(Wedge(0.1)))  # past its crossover
+    >>> print(f"mu = {found[7]:.6f}, x_TE = {found[4]:.6g}")
     mu = 0.100000, x_TE = 0
     """
-    given = slope, length, exponent, stiffness, retardation_time, velocity, weight, spring
-    return evaluate(_carried, given, velocity, CERTIFICATE, OWN_ERRORS)
+    K, V, support = scene.foundation.stiffness, scene.drive.final_velocity, scene.support
+    l_r = np.abs(V) * scene.foundation.retardation_time
+    slope, L, n = shape_of(scene.indenter)
+    if scene.held:
+        return _contact(n, K, l_r, V, support.depth, L * root(n * support.depth / (slope * L), n))
+    a_0 = L * root((n + 1.0) * (support.weight / K) / (2.0 * slope * L * L), n + 1.0)
+    delta_0 = support.weight / (K * a_0 * cf.power_law_static_load(n))  # F19-low
+    s, depth = scaled_root(n, l_r / a_0, support.spring * (delta_0 / support.weight))
+    return _contact(n, K, l_r, V, depth * delta_0, s * a_0)
 
 
 def scaled_root(exponent: Array, drive_number: Array, support_number: Array) -> tuple[Array, Array]:
@@ -132,23 +91,6 @@ def _wedge_root(lam: Array, kappa: Array) -> Array:
     peeling = lam * (1.5 * lam + kappa) < 1.0 + kappa  # then lam < 1
     slow = cf.wedge_scaled_depth_peeling(kappa, np.minimum(lam, 1.0))
     return np.where(peeling, slow, cf.wedge_scaled_depth_peeled(kappa, lam))
-
-
-def _carried(
-    slope: Array, L: Array, n: Array, K: Array, tau: Array, V: Array, weight: Array, spring: Array
-) -> tuple[Array, ...]:
-    a_0 = L * root((n + 1.0) * (weight / K) / (2.0 * slope * L * L), n + 1.0)
-    delta_0 = weight / (K * a_0 * cf.power_law_static_load(n))  # F19-low
-    l_r = np.abs(V) * tau
-    s, depth = scaled_root(n, l_r / a_0, spring * (delta_0 / weight))
-    return _contact(n, K, l_r, V, depth * delta_0, s * a_0)
-
-
-def _held(
-    slope: Array, L: Array, n: Array, K: Array, tau: Array, V: Array, delta: Array
-) -> tuple[Array, ...]:
-    a = L * root(n * delta / (slope * L), n)
-    return _contact(n, K, np.abs(V) * tau, V, delta, a)
 
 
 def _contact(n: Array, K: Array, l_r: Array, V: Array, delta: Array, a: Array) -> tuple[Array, ...]:

@@ -9,11 +9,12 @@ so that Newton's method descends to it from q = min(1, c^(-1/(n-1))), where G >=
 the error e of ln q becomes at most e^2/2. The last step multiplies q, to preserve its digits.
 """
 
-from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+
+from kvtheory.scene.indenters import Parabola, Wedge
 
 Array = NDArray[np.float64]
 
@@ -25,17 +26,17 @@ LAST_RESIDUAL = 8 * 2.0**-52
 """Rounding of the residual, below which iteration does not improve it."""
 
 
-def shape_of(values: Mapping[str, Any]) -> tuple[Any, Any, Any]:
-    """Return slope, L and n of h = slope |x|^n/(n L^(n-1)), given the values of a scene by dotted key.
+def shape_of(indenter: Any) -> tuple[Any, Any, Any]:
+    """Return slope, L and n of h = slope |x|^n/(n L^(n-1)).
 
-    >>> shape_of({"indenter.inclination": 0.1})
+    >>> shape_of(Wedge(inclination=0.1))
     (0.1, 1.0, 1.0)
     """
-    if "indenter.inclination" in values:
-        return values["indenter.inclination"], 1.0, 1.0
-    if "indenter.radius" in values:
-        return 1.0, values["indenter.radius"], 2.0
-    return 1.0, values["indenter.length"], values["indenter.exponent"]
+    if isinstance(indenter, Wedge):
+        return indenter.inclination, 1.0, 1.0
+    if isinstance(indenter, Parabola):
+        return 1.0, indenter.radius, 2.0
+    return 1.0, indenter.length, indenter.exponent
 
 
 def trailing_edge(exponent: Array, number: Array) -> tuple[Array, Array]:

@@ -9,17 +9,16 @@ root of a quadratic without T_x and S_x; the critical stiffness is the one with 
 along x.
 """
 
-from collections.abc import Mapping
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from kvtheory.models.steady import closed_forms as cf
-from kvtheory.models.steady.exact import depth_at_load
+from kvtheory.models.steady import exact
+from kvtheory.scene.model import Scene
 
 Array = NDArray[np.float64]
-Values = Mapping[str, Array]
 
 ROUNDING = 2.0 * 2.0**-52
 """Relative error of each number of the rates; what follows from it for results is at least three times what
@@ -53,34 +52,25 @@ class Onset(NamedTuple):
     error: Array
 
 
-def numbers(values: Values, velocity: Array | None = None) -> Numbers:
-    """Return the numbers of a scene that can be moved along x, at its velocity or another.
-
-    `values` holds SI by dotted key, with the ``drive.mass`` and ``drive.damping``.
-    """
-    R, K = values["indenter.radius"], values["foundation.stiffness"]
-    tau = values["foundation.retardation_time"]
-    V = np.abs(values["drive.velocity"] if velocity is None else velocity)
-    spring = values.get("support.stiffness", np.zeros_like(tau))
-    depth = values.get("support.depth")
-    held = depth is not None
-    if depth is None:
-        depth = depth_at_load(R, K, tau, V, values["support.weight"], spring)
-    a = np.sqrt(2.0 * R * depth)
-    l = V * tau / a
+def numbers(scene: Scene) -> Numbers:
+    """Return the numbers of a scene that can be moved along x."""
+    foundation, support, drive = scene.foundation, scene.support, scene.drive
+    R, K, tau = scene.indenter.radius, foundation.stiffness, foundation.retardation_time
+    a = np.sqrt(2.0 * R * exact.depth(scene))
+    l = np.abs(drive.final_velocity) * tau / a
     q = cf.trailing_edge_ratio(l)
     along = K * tau * cf.damping_along(a / R, q) * R / 3.0  # dF/dV, in N s/m^2
-    damped = along + values["drive.damping"]
-    n_x = values["drive.damping"] / along
-    unit, T_x = damped / tau, values["drive.mass"] / (damped * tau)
+    damped = along + drive.damping
+    n_x = drive.damping / along
+    unit, T_x = damped / tau, scene.drive_mass / (damped * tau)
     g, h, S_c = cf.coupling(l, q, n_x), cf.uncoupled(q, n_x), cf.coupling_rate(q)
-    if held:
+    if scene.held:
         endless = np.full_like(q, np.inf)
         return Numbers(np.zeros_like(q), T_x, endless, S_c, g, h, endless, unit)
     across = K * tau * cf.damping_across(a, q) * (4.0 / 3.0)  # dF_z/d(ddelta/dt), in N s/m^2
-    S_s = spring * tau / across
+    S_s = support.spring * tau / across
     return Numbers(
-        T_z=values["support.mass"] / (across * tau),
+        T_z=support.mass / (across * tau),
         T_x=T_x,
         S_z=cf.relaxation_rate(q, S_s),
         S_c=S_c,

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from kvtheory.models.steady import ball_stability
 from kvtheory.models.steady.critical_velocity import critical_velocity
 from kvtheory.models.steady.rates import rates
-from kvtheory.models.steady.stability import Values, is_stable, numbers, onsets
+from kvtheory.models.steady.stability import Numbers, is_stable, numbers, onsets
 from kvtheory.results import Certificate, Stability
 from kvtheory.scene.model import Scene
 from kvtheory.scene.requirements import lacks_stability
@@ -28,58 +28,52 @@ SLOW = "rates", "time_constants"
 """The quantities with a last axis for the rates."""
 
 
-def solve(values: Values, wanted: Set[str], ball: bool = False) -> Stability:
-    """Return the wanted quantities of scenes, given in SI by dotted key in arrays of one shape.
+def solve(scene: Scene, wanted: Set[str]) -> Stability:
+    """Return the wanted quantities of a scene, or of its arrays; the indenter is a parabola or a ball.
 
-    The indenter is a parabola, or a ball. The drive is rigid if there is no ``drive.stiffness``. The critical
-    stiffness is then that of a spring without damper and with the mass of the support; a fixed one has none.
+    With a rigid drive the critical stiffness is that of a spring without damper and with the mass of the
+    support; a fixed one has none.
     """
-    mass = values.get("support.mass", np.array(np.nan))
-    values = {"drive.damping": np.array(0.0), "drive.mass": mass, **values}
-    shape = values["drive.velocity"].shape
+    shape = scene.shape
     size = ON_GRID if "critical_velocity" in wanted else BLOCK
-    flat = {key: np.broadcast_to(each, shape).reshape(-1) for key, each in values.items()}
+    flat = scene.at(np.broadcast_to(scene.drive.final_velocity, shape or (1,))).flat()
     starts = range(0, max(math.prod(shape), 1), size)
-    parts = [
-        _block({key: each[start : start + size] for key, each in flat.items()}, wanted, ball)
-        for start in starts
-    ]
+    parts = [_block(flat.rows(slice(start, start + size)), wanted) for start in starts]
     found, errors = (
         {name: _joined([part[which][name] for part in parts], shape) for name in parts[0][which]}
         for which in (0, 1)
     )
     return Stability(
         **found,
-        rigid_drive="drive.stiffness" not in values,
+        rigid_drive=scene.drive.rigid,
         model="exact",
         certificate=Certificate("estimated", STATEMENT, errors),
     )
 
 
-def lasts(scene: Scene, values: Values) -> Any:
+def lasts(scene: Scene) -> Any:
     """Return whether steady sliding of scenes is stable; None if that is not known for their spring.
 
-    >>> from kvtheory.scene.broadcasting import values
-    >>> speeds = {"drive.velocity": [0.02, 0.091], "drive.stiffness": 1e6}
-    >>> lasts(Scene(), values(Scene(), speeds)).tolist()
+    >>> lasts(Scene().replace({"drive.velocity": [0.02, 0.091], "drive.stiffness": 1e6})).tolist()
     [True, False]
     """
-    if "drive.stiffness" not in values:
+    if scene.drive.rigid:
         return True
-    if lacks_stability(scene):
-        return None
-    return solve(values, {"stable"}, not scene.indenter.per_width).stable
+    return None if lacks_stability(scene) else solve(scene, {"stable"}).stable
 
 
-def _block(values: Values, wanted: Set[str], ball: bool) -> tuple[dict[str, Any], dict[str, Any]]:
-    """Return the quantities of flat arrays by name, NaN where they are not wanted, and their errors."""
-    tau, stiffness = values["foundation.retardation_time"], values.get("drive.stiffness")
-    numbers_of = ball_stability.numbers if ball else numbers
-    given = numbers_of(values)
+def _block(scene: Scene, wanted: Set[str]) -> tuple[dict[str, Any], dict[str, Any]]:
+    """Return the quantities of flat scenes by name, NaN where they are not wanted, and their errors."""
+    tau, spring = (
+        None if each is None else np.broadcast_to(each, scene.shape)
+        for each in (scene.foundation.retardation_time, scene.drive.stiffness)
+    )
+    numbers_of = numbers if scene.indenter.per_width else ball_stability.numbers
+    given = Numbers(*(np.broadcast_to(each, scene.shape) for each in numbers_of(scene)))
     lower, upper = onsets(given, tau)
-    nothing = np.full(tau.shape, np.nan)
+    nothing = np.full(scene.shape, np.nan)
     found: dict[str, Any] = {
-        "stable": np.full(tau.shape, True),
+        "stable": np.full(scene.shape, True),
         "rates": nothing[:, np.newaxis, np.newaxis],
         "time_constants": nothing[:, np.newaxis],
         "critical_stiffness": upper.stiffness,
@@ -92,14 +86,12 @@ def _block(values: Values, wanted: Set[str], ball: bool) -> tuple[dict[str, Any]
         "lower_critical_stiffness": lower.error,
         "frequency": upper.error,
     }
-    if stiffness is not None:
-        found["stable"] = is_stable(stiffness, lower, upper)
+    if spring is not None:
+        found["stable"] = is_stable(spring, lower, upper)
         if "critical_velocity" in wanted:
-            found["critical_velocity"], errors["critical_velocity"] = critical_velocity(
-                values, stiffness, numbers_of
-            )
+            found["critical_velocity"], errors["critical_velocity"] = critical_velocity(scene, numbers_of)
     if not wanted.isdisjoint(SLOW):
-        sigma, error = rates(given, tau, stiffness)
+        sigma, error = rates(given, tau, spring)
         found["rates"] = np.stack([sigma.real, sigma.imag], axis=-1)
         with np.errstate(divide="ignore"):  # neither grows nor fades
             found["time_constants"] = -1.0 / sigma.real

@@ -19,13 +19,14 @@ G being the value at the trailing edge, so that c is one root, by Halley's metho
 
 import math
 from collections.abc import Sequence
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
-from kvtheory.models.steady.blockwise import evaluate
-from kvtheory.results import STEADY_UNITS, Certificate, SteadyState
+from kvtheory.results import STEADY_UNITS, Certificate
+from kvtheory.scene.foundations import FractionalKelvinVoigt, GeneralizedMaxwell
+from kvtheory.scene.model import Scene
 
 Array = NDArray[np.float64]
 
@@ -70,7 +71,7 @@ class Moments(NamedTuple):
 class Prony:
     """G = K + sum K_i e^(-X/l_i), l_i = |V| tau_i; one row of `stiffness` and `length` for each arm."""
 
-    def __init__(self, K: Array, V: Array, arms: tuple[Array, ...]) -> None:
+    def __init__(self, K: Array, V: Array, arms: Sequence[Array]) -> None:
         moving = V != 0.0
         self.K = K
         self.stiffness = np.stack(arms[0::2]) * moving
@@ -192,87 +193,32 @@ class Fractional:
         return part
 
 
-def at_depth(
-    law: type[Prony] | type[Fractional],
-    parameters: Sequence[ArrayLike],
-    radius: ArrayLike,
-    stiffness: ArrayLike,
-    retardation_time: ArrayLike,
-    velocity: ArrayLike,
-    depth: ArrayLike,
-) -> SteadyState:
-    """Return the steady state at a given indentation depth.
+def law(scene: Scene) -> Prony | Fractional:
+    """Return the relaxation function of a scene along its contact, in the shape of the scene."""
+    foundation = scene.foundation
+    K, V = (np.broadcast_to(x, scene.shape) for x in (foundation.stiffness, scene.drive.final_velocity))
+    if isinstance(foundation, FractionalKelvinVoigt):
+        return Fractional(K, V, (foundation.retardation_time, foundation.order))
+    arms = [(arm.stiffness, arm.relaxation_time) for arm in foundation.arms]
+    return Prony(K, V, [np.broadcast_to(x, scene.shape) for arm in arms for x in arm])
 
-    Parameters
-    ----------
-    law, parameters
-        `Prony` with K_1, tau_1, K_2, tau_2, ... in N/m^3 and s, or `Fractional` with tau and alpha.
-    radius, stiffness
-        R in m, K in N/m^3 of the relaxed foundation.
-    retardation_time
-        C/K in s, for the retardation length alone.
-    velocity, depth
-        V in m/s (any sign, or zero), delta in m. All broadcast.
 
-    Returns
-    -------
-    SteadyState
-        The error of each quantity is in its certificate.
+def quantities(scene: Scene) -> tuple[Any, ...]:
+    """Return the quantities in the order of `STEADY_UNITS`, and the error of the last one.
 
-    Raises
-    ------
-    FloatingPointError
-        If a value leaves the range of double precision.
-
-    Examples
-    --------
     Kelvin-Voigt is the springpot of order 1, and an arm that is stiff and fast:
 
-    >>> springpot = at_depth(Fractional, (0.1, 1.0), 0.01, 1e10, 0.1, 0.1, 3e-4)
-    >>> arm = at_depth(Prony, (1e19, 1e-10), 0.01, 1e10, 0.1, 0.1, 3e-4)
-    >>> print(f"{springpot.load:.6g} {springpot.friction_force:.6g} {arm.friction_force:.6g}")
-    35344.6 5344.58 5344.58
+    >>> springpot = Scene(foundation=FractionalKelvinVoigt(1e10, 0.1, 1.0))
+    >>> arm = Scene(foundation=GeneralizedMaxwell(1e10, arms=[(1e19, 1e-10)]))
+    >>> print(f"{quantities(springpot)[7]:.6f} {quantities(arm)[7]:.6f}")
+    0.085709 0.085709
     """
-
-    def held(
-        R: Array, K: Array, time: Array, V: Array, delta: Array, *own: Array
-    ) -> tuple[Array, ...]:
-        row = law(K, V, own)
-        return state(R, row, time, V, length_at_half(row, np.sqrt(2.0 * R * delta)), delta)
-
-    given = radius, stiffness, retardation_time, velocity, depth, *parameters
-    return evaluate(held, given, velocity, CERTIFICATE, OWN_ERRORS)
-
-
-def at_load(
-    law: type[Prony] | type[Fractional],
-    parameters: Sequence[ArrayLike],
-    radius: ArrayLike,
-    stiffness: ArrayLike,
-    retardation_time: ArrayLike,
-    velocity: ArrayLike,
-    weight: ArrayLike,
-    spring: ArrayLike = 0.0,
-) -> SteadyState:
-    """Return the steady state under a weight in N/m, on a spring in N/m^2 or without.
-
-    The other arguments, and the state, are as in `at_depth`; a spring is relaxed at the static depth.
-
-    Examples
-    --------
-    >>> state = at_load(Fractional, (0.1, 1.0), 0.01, 1e10, 0.1, 0.1, 9806.65)
-    >>> print(f"{1e3 * state.depth:.6f} mm, mu = {state.friction_coefficient:.6f}")
-    0.089661 mm, mu = 0.085709
-    """
-
-    def carried(
-        R: Array, K: Array, time: Array, V: Array, load: Array, k: Array, *own: Array
-    ) -> tuple[Array, ...]:
-        row = law(K, V, own)
-        return state(R, row, time, V, _length_at_load(row, R, load, k))
-
-    given = radius, stiffness, retardation_time, velocity, weight, spring, *parameters
-    return evaluate(carried, given, velocity, CERTIFICATE, OWN_ERRORS)
+    row, support, R = law(scene), scene.support, scene.indenter.radius
+    if scene.held:
+        c = length_at_half(row, np.sqrt(2.0 * R * support.depth))
+    else:
+        c = _length_at_load(row, R, support.weight, support.spring)
+    return state(scene, row, c)
 
 
 def length_at_half(row: Prony | Fractional, a: Array) -> Array:
@@ -320,18 +266,12 @@ def growth(M: Moments) -> tuple[Array, Array, Array]:
     return share, 1.0 - share * end, 2.0 * share * end * end - end - share * (M.end_slope / A)
 
 
-def state(
-    R: Array,
-    row: Prony | Fractional,
-    time: Array,
-    V: Array,
-    c: Array,
-    delta: Array | None = None,
-) -> tuple[Array, ...]:
-    """Return the quantities in the order of `STEADY_UNITS`, and the error of the last one.
+def state(scene: Scene, row: Prony | Fractional, c: Array) -> tuple[Array, ...]:
+    """Return the quantities of a parabola from the length of its contact.
 
     A given depth is kept to the last bit; otherwise it follows from the length of the contact.
     """
+    R, V, delta = scene.indenter.radius, scene.drive.final_velocity, scene.support.depth
     M = row.moments(c)
     A = M.P + M.Q
     a = c * (M.P / A) if delta is None else np.sqrt(2.0 * R * delta)
@@ -344,7 +284,7 @@ def state(
     return (
         delta,
         a,
-        np.abs(V) * time,
+        np.abs(V) * scene.foundation.retardation_time,
         -side * a,
         side * c * (M.Q / A) + 0.0,
         c * c * slope * load,
