@@ -87,10 +87,9 @@ def _distinct(
 
 def values(scene: Scene, regime: str, quantities: tuple[str, ...]) -> dict[str, float]:
     """Return the asymptotes of the quantities, in SI."""
-    given = scene.values()
-    side = -1.0 if given["drive.velocity"] < 0.0 else 1.0
+    side = -1.0 if scene.drive.final_velocity < 0.0 else 1.0
     asymptotes = KNOWN[scene.indenter.shape].asymptotes
-    limits = asymptotes.limits(given)
+    limits = asymptotes.limits(scene)
     found = asymptotes.quantities(limits, regime, side)
     return {name: float(found[name]) for name in quantities}
 

@@ -1,6 +1,6 @@
 """The common part of asymptote reports on foundations beyond Kelvin-Voigt: lines, ranges, the choice."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -12,9 +12,8 @@ from kvtheory.results import AsymptoteLine, AsymptoteReport, Certificate
 from kvtheory.scene.model import Scene
 
 Array = NDArray[np.float64]
-Values = Mapping[str, Array]
-At = Callable[[Values, Array], Array]
-"""A formula: its value at velocities |V|, from the other values of a scene."""
+At = Callable[[Scene, Array], Array]
+"""A formula: its value for a scene at velocities |V|."""
 
 
 class Line(NamedTuple):
@@ -31,42 +30,40 @@ class Line(NamedTuple):
     """Velocity up to which, or from which on, a theorem guarantees that it does not."""
 
 
-def exact_friction(scene: Scene, values: Values, V: Array) -> Array:
+def exact_friction(scene: Scene, V: Array) -> Array:
     """Return the friction coefficient at velocities |V|."""
-    state = solve_exact(scene, {**values, "drive.velocity": V})
-    return np.asarray(state.friction_coefficient)
+    return np.asarray(solve_exact(scene.at(V)).friction_coefficient)
 
 
 def crossing(
-    excess: At, values: Values, critical: Array, bracket: tuple[Array, Array], otherwise: float
+    excess: At, scene: Scene, critical: Array, bracket: tuple[Array, Array], otherwise: float
 ) -> Array:
     """Return the velocity at which `excess` vanishes, between powers of ten away from V*."""
-    keys = list(values)
+    flat = scene.flat()
 
-    def at(decades: Array, *arrays: Array) -> Array:
-        point = dict(zip(keys, arrays[:-1], strict=True))
-        return excess(point, arrays[-1] * 10.0**decades)
+    def at(decades: Array, index: Array, critical: Array) -> Array:
+        return excess(flat.rows(index) if scene.shape else flat, critical * 10.0**decades)
 
-    found = elementwise.find_root(at, bracket, args=(*values.values(), critical))
+    index = np.arange(critical.size).reshape(critical.shape)
+    found = elementwise.find_root(at, bracket, args=(index, critical))
     return np.where(found.success, critical * 10.0**found.x, otherwise)
 
 
 def report(
     scene: Scene,
-    values: Values,
     tolerance: float,
     critical: Array,
     lines: Sequence[Line],
     certificate: Certificate,
 ) -> AsymptoteReport:
     """Evaluate the lines, and choose the first that is within the tolerance."""
-    signed = values["drive.velocity"]
+    signed = np.broadcast_to(scene.drive.final_velocity, scene.shape)
     V, side = np.abs(signed), np.where(signed < 0.0, -1.0, 1.0)
-    truth = exact_friction(scene, values, V)
+    truth = exact_friction(scene, V)
     use = np.full(V.shape, "exact", dtype=object)
     told = []
     for line in reversed(lines):
-        value, low = line.at(values, V), line.regime == "low"
+        value, low = line.at(scene, V), line.regime == "low"
         with np.errstate(divide="ignore", invalid="ignore"):
             error = np.where(truth > 0.0, value / truth - 1.0, np.nan)
         use = np.where(np.abs(error) <= tolerance, line.name, use)

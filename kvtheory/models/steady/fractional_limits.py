@@ -11,7 +11,7 @@ for V -> oo. For alpha = 1 they are the paper's Eqs. 42, 45 and 46. Their errors
 support, so that a range has one end.
 """
 
-from functools import partial
+from typing import Any
 
 import numpy as np
 
@@ -19,12 +19,10 @@ from kvtheory.models.steady.foundation_limits import (
     Array,
     At,
     Line,
-    Values,
     crossing,
     exact_friction,
 )
 from kvtheory.models.steady.foundation_limits import report as _report
-from kvtheory.models.steady.methods import TIME
 from kvtheory.results import AsymptoteReport, Certificate
 from kvtheory.scene.model import Scene
 
@@ -35,72 +33,68 @@ STATEMENT = (
     "closed forms against the exact state, which is known to about 5e-15; the errors are monotonic in V "
     "(derivation F18-springpot)"
 )
-ORDER = "foundation.order"
 
 
-def report(scene: Scene, values: Values, tolerance: float) -> AsymptoteReport:
+def report(scene: Scene, tolerance: float) -> AsymptoteReport:
     """Make the report of `kvtheory.asymptotes` for a parabola on a fractional foundation."""
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
-        critical = critical_velocity(values)
+        critical = np.broadcast_to(critical_velocity(scene), scene.shape)
         lines = []
         for name, regime, at, formula in (
             ("L1", "low", low, "6 A/((4-A) Gamma(3-A)) (a/R) (V tau/(2 a))^A, A = order"),
             ("L2", "high", high, "A (3-A)/(4-A) a/R"),
         ):
-            edge = _edge(scene, values, at, regime, critical, tolerance)
+            edge = _edge(scene, at, regime, critical, tolerance)
             lines.append(Line(name, regime, None, formula, at, edge, edge))
         certificate = Certificate("proved", STATEMENT, {})
-        return _report(scene, values, tolerance, critical, lines, certificate)
+        return _report(scene, tolerance, critical, lines, certificate)
 
 
-def low(values: Values, V: Array) -> Array:
+def low(scene: Scene, V: Array) -> Any:
     """Return the limit of the friction coefficient for V -> 0."""
     from scipy.special import rgamma
 
-    a, alpha = _at_rest(values)[0], values[ORDER]
+    a, alpha = _at_rest(scene)[0], scene.foundation.order
     share = 6.0 * alpha * rgamma(3.0 - alpha) / (4.0 - alpha)
-    return share * (a / values["indenter.radius"]) * (V * values[TIME] / (2.0 * a)) ** alpha
+    slowness = V * scene.foundation.retardation_time / (2.0 * a)
+    return share * (a / scene.indenter.radius) * slowness**alpha
 
 
-def high(values: Values, V: Array) -> Array:
+def high(scene: Scene, V: Array) -> Any:
     """Return the limit of the friction coefficient for V -> oo."""
     from scipy.special import gamma
 
-    alpha, R = values[ORDER], values["indenter.radius"]
-    a, load = _at_rest(values)
-    if "support.depth" not in values:
+    foundation, R = scene.foundation, scene.indenter.radius
+    alpha = foundation.order
+    a, load = _at_rest(scene)
+    if not scene.held:
         rest = 2.0 - alpha
-        cubed = load * R * gamma(4.0 - alpha) / (values["foundation.stiffness"] * rest**rest)
-        a = (cubed / (V * values[TIME]) ** alpha) ** (1.0 / (3.0 - alpha))
-    return alpha * (3.0 - alpha) / (4.0 - alpha) * (a / R)
+        cubed = load * R * gamma(4.0 - alpha) / (foundation.stiffness * rest**rest)
+        a = (cubed / (V * foundation.retardation_time) ** alpha) ** (1.0 / (3.0 - alpha))
+    return alpha * (3.0 - alpha) / (4.0 - alpha) * (a / R) + 0.0 * V
 
 
-def critical_velocity(values: Values) -> Array:
+def critical_velocity(scene: Scene) -> Any:
     """Return V*, where both limits meet: each is a power of V."""
-    alpha, unit = values[ORDER], _at_rest(values)[0] / values[TIME]
-    slope = alpha if "support.depth" in values else alpha + alpha / (3.0 - alpha)
-    return unit * (high(values, unit) / low(values, unit)) ** (1.0 / slope)
+    alpha, unit = scene.foundation.order, _at_rest(scene)[0] / scene.foundation.retardation_time
+    slope = alpha if scene.held else alpha + alpha / (3.0 - alpha)
+    return unit * (high(scene, unit) / low(scene, unit)) ** (1.0 / slope)
 
 
-def _at_rest(values: Values) -> tuple[Array, Array]:
+def _at_rest(scene: Scene) -> tuple[Any, Any]:
     """Return the half length at rest, and the load for V -> oo, where a spring has risen by the depth."""
-    R, K = values["indenter.radius"], values["foundation.stiffness"]
-    if "support.depth" in values:
-        a = np.sqrt(2.0 * R * values["support.depth"])
-        return a, np.full_like(a, np.nan)
-    weight = values["support.weight"]
-    a = np.cbrt(1.5 * R * (weight / K))
-    return a, weight + values.get("support.stiffness", 0.0 * a) * (a * a / (2.0 * R))
+    R, support = scene.indenter.radius, scene.support
+    if scene.held:
+        return np.sqrt(2.0 * R * support.depth), np.nan
+    a = np.cbrt(1.5 * R * (support.weight / scene.foundation.stiffness))
+    return a, support.weight + support.spring * (a * a / (2.0 * R))
 
 
-def _edge(
-    scene: Scene, values: Values, at: At, regime: str, critical: Array, tolerance: float
-) -> Array:
+def _edge(scene: Scene, at: At, regime: str, critical: Array, tolerance: float) -> Array:
     """Return the velocity at which the error of a limit passes the tolerance."""
 
-    def excess(point: Values, V: Array) -> Array:
-        return np.abs(at(point, V) / exact_friction(scene, point, V) - 1.0) - tolerance
+    def excess(scene: Scene, V: Array) -> Array:
+        return np.abs(at(scene, V) / exact_friction(scene, V) - 1.0) - tolerance
 
-    far = np.minimum(DECADES / values[ORDER], MOST_DECADES)
-    found = partial(crossing, excess, values, critical, (-far, far))
-    return found(0.0 if regime == "low" else np.inf)
+    far = np.minimum(DECADES / scene.foundation.order, MOST_DECADES)
+    return crossing(excess, scene, critical, (-far, far), 0.0 if regime == "low" else np.inf)
