@@ -19,7 +19,6 @@ from kvtheory.models.steady import fractional_limits
 from kvtheory.models.steady.closed_forms import ALPHA
 from kvtheory.models.steady.viscoelastic import Fractional, Prony
 from kvtheory.plots import BLACK
-from kvtheory.scene.broadcasting import values as broadcast
 from kvtheory.scene.foundations import Arm
 
 NUMBERS = np.geomspace(1e-4, 1e5, 361)
@@ -88,10 +87,9 @@ def _limits(family: dict[str, kv.Scene]) -> dict[str, tuple[np.ndarray, ...]]:
             glassy = kv.asymptotes(scene, over={"drive.velocity": 1.0}).lines[-1].value
             found[name] = (glassy / NUMBERS,)
         elif name == SHOWN:
-            values = broadcast(scene, {"drive.velocity": NUMBERS})
             found[name] = (
-                fractional_limits.low(values, NUMBERS),
-                fractional_limits.high(values, NUMBERS),
+                fractional_limits.low(scene, NUMBERS),
+                fractional_limits.high(scene, NUMBERS),
             )
     return found
 

@@ -5,7 +5,6 @@ from typing import Any
 
 from kvtheory.api._edge import double_precision, scene_of
 from kvtheory.results import AsymptoteReport
-from kvtheory.scene.broadcasting import values
 from kvtheory.scene.foundations import FractionalKelvinVoigt, GeneralizedMaxwell
 from kvtheory.scene.model import Scene
 from kvtheory.scene.requirements import lacks_limits, require
@@ -57,7 +56,7 @@ def asymptotes(
     ----------
     Nakano and Kono (2020), doi:10.3389/fmech.2020.00038, Eqs. 40-48 and Table 2.
     """
-    scene = scene_of(scene)
+    scene = scene_of(scene).replace(over or {})
     if not MINIMUM_TOLERANCE <= tolerance <= 1.0:
         raise ValueError(
             f"`tolerance` = {tolerance!r}: expected a number from {MINIMUM_TOLERANCE} to 1"
@@ -69,4 +68,4 @@ def asymptotes(
     reports = {GeneralizedMaxwell: prony_limits, FractionalKelvinVoigt: fractional_limits}
     with double_precision(scene, over):
         report = reports.get(type(scene.foundation), regimes).report
-        return report(scene, values(scene, over), tolerance)
+        return report(scene, tolerance)

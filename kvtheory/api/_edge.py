@@ -8,9 +8,8 @@ from typing import Any
 import numpy as np
 
 from kvtheory.scene.drives import TIME
-from kvtheory.scene.quantities import item_values, items
 from kvtheory.scene.model import Scene
-from kvtheory.scene.quantities import SceneError, convert, problem
+from kvtheory.scene.quantities import SceneError, convert, item_values, items, problem
 from kvtheory.scene.static_state import out_of_range
 
 

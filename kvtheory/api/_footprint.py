@@ -6,10 +6,8 @@ from typing import Any
 from kvtheory.api._edge import scene_of
 from kvtheory.api._steady import steady
 from kvtheory.models.steady.footprint import Footprint
-from kvtheory.models.steady.spots import stretch_of
-from kvtheory.scene.broadcasting import values
 from kvtheory.scene.model import Scene
-from kvtheory.scene.requirements import lacks_ball, require
+from kvtheory.scene.requirements import lacks_ball, lacks_one_scene, require
 
 
 def footprint(scene: Scene | None = None, *, over: Mapping[str, Any] | None = None) -> Footprint:
@@ -42,18 +40,15 @@ def footprint(scene: Scene | None = None, *, over: Mapping[str, Any] | None = No
     ----------
     Theorem F20 of the derivations.
     """
-    scene = scene_of(scene)
+    scene = scene_of(scene).replace(over or {})
     require(lacks_ball, scene, "the footprint")
-    given, state = values(scene, over), steady(scene, over=over)
-    if given["drive.velocity"].ndim:
-        raise ValueError("`over` holds arrays: a footprint is that of one scene")
-    a, stretch = float(state.half_length), float(stretch_of(given))
-    backwards = given["drive.velocity"] < 0.0
-    l_r = float(state.retardation_length) * (-1.0 if backwards else 1.0)
+    require(lacks_one_scene, scene, "the footprint")
+    state = steady(scene)
+    backwards = scene.drive.final_velocity < 0.0
     return Footprint(
-        radius=float(given["indenter.radius"]),
-        stiffness=float(given["foundation.stiffness"]),
-        half_length=a,
-        half_width=a * stretch,
-        retardation_length=l_r,
+        radius=scene.indenter.radius,
+        stiffness=scene.foundation.stiffness,
+        half_length=state.half_length,
+        half_width=state.half_length * scene.indenter.stretch,
+        retardation_length=state.retardation_length * (-1.0 if backwards else 1.0),
     )

@@ -5,7 +5,6 @@ from typing import Any
 
 from kvtheory.api._edge import double_precision, scene_of
 from kvtheory.results import Stability
-from kvtheory.scene.broadcasting import values
 from kvtheory.scene.model import Scene
 from kvtheory.scene.quantities import SceneError, nearest, problem
 from kvtheory.scene.requirements import lacks_stability, require
@@ -68,13 +67,13 @@ def stability(
     ----------
     Fact F22 of the derivations.
     """
-    scene = scene_of(scene)
+    scene = scene_of(scene).replace(over or {})
     require(lacks_stability, scene, "the stability of steady sliding")
     wanted = _names(quantity)
     from kvtheory.models.steady import stable_sliding
 
     with double_precision(scene, over):
-        return stable_sliding.solve(values(scene, over), wanted, ball=not scene.indenter.per_width)
+        return stable_sliding.solve(scene, wanted)
 
 
 def _names(quantity: str | Sequence[str] | None) -> frozenset[str]:

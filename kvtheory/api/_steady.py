@@ -8,7 +8,6 @@ from kvtheory.api._edge import double_precision, scene_of
 from kvtheory.models.steady.methods import METHODS
 from kvtheory.models.steady.stable_sliding import lasts
 from kvtheory.results import SteadyState
-from kvtheory.scene.broadcasting import values
 from kvtheory.scene.model import Scene
 from kvtheory.scene.quantities import nearest
 from kvtheory.scene.requirements import (
@@ -78,12 +77,11 @@ def steady(
     ----------
     Nakano and Kono (2020), doi:10.3389/fmech.2020.00038, Eqs. 26-49.
     """
-    scene = scene_of(scene)
-    chosen = method_for(scene, method)
+    scene = scene_of(scene).replace(over or {})
+    solve = METHODS[method_for(scene, method)]
     with double_precision(scene, over):
-        given = values(scene, over)
-        state = METHODS[chosen](scene, given)
-        return replace(state, stable=lasts(scene, given)) if "drive.stiffness" in given else state
+        state = solve(scene)
+        return state if scene.drive.rigid else replace(state, stable=lasts(scene))
 
 
 def method_for(scene: Scene, method: str | None) -> str:

@@ -8,7 +8,7 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,7 +17,6 @@ from scipy.optimize import least_squares
 from kvtheory.checks.comparison_case import Case
 from kvtheory.checks.theory import TRIAL_RTOL, Curves
 from kvtheory.scene import Scene
-from kvtheory.scene.quantities import changed
 
 Array = NDArray[np.float64]
 Pair = tuple[Curves, Curves]
@@ -183,23 +182,18 @@ def bench(case: Case) -> Bench:
     return Bench(case.rows(rows), names)
 
 
+FASTER = "drive.velocity"
+"""Of a drive, the velocity stands for all its velocities."""
+
+
 def scaled_scene(scene: Scene, powers: Mapping[str, float], factor: float) -> Scene:
     """Return a scene with its quantities multiplied by powers of a factor.
-
-    Of a drive, the velocity stands for all its velocities.
 
     >>> scaled_scene(Scene(), {"support.mass": 1.0, "support.gravity": -1.0}, 2.0).support.mass
     2000.0
     """
-    for key, power in powers.items():
-        section, name = key.split(".")
-        part: Any = getattr(scene, section)
-        times = factor**power
-        if key == "drive.velocity":
-            part = part.faster(times)
-        elif section == "drive":
-            part = part.changed(**{name: times * scene.values()[key]})
-        else:
-            part = changed(part, **{name: times * getattr(part, name)})
-        scene = replace(scene, **{section: part})
-    return scene
+    values = scene.values()
+    over = {key: factor**power * values[key] for key, power in powers.items() if key != FASTER}
+    if FASTER in powers:
+        scene = replace(scene, drive=scene.drive.faster(factor ** powers[FASTER]))
+    return scene.replace(over)

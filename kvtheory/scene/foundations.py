@@ -170,7 +170,11 @@ class FractionalKelvinVoigt(_Relaxed):
     def damping(self) -> float:
         """C = int (G - K) dt, in N s/m^3."""
         finite = self.stiffness * self.retardation_time
-        return finite if np.all(self.order == 1.0) else np.where(self.order == 1.0, finite, math.inf)[()]
+        return (
+            finite
+            if np.all(self.order == 1.0)
+            else np.where(self.order == 1.0, finite, math.inf)[()]
+        )
 
 
 AnyFoundation = Foundation | GeneralizedMaxwell | FractionalKelvinVoigt

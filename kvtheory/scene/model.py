@@ -204,10 +204,10 @@ class Scene(Part):
 
     def at(self, velocity: Any) -> "Scene":
         """Return the scene at one drive velocity or several in m/s, which are not checked."""
-        drive = self.drive.mapped(lambda array: array)
-        for name, value in {"velocity": velocity, "history": None, "function": None, "waveform": None}.items():
+        drive, scene = (part.mapped(lambda array: array) for part in (self.drive, self))
+        others = dict.fromkeys(("history", "function", "waveform"))
+        for name, value in {"velocity": velocity, **others}.items():
             object.__setattr__(drive, name, value)
-        scene = self.mapped(lambda array: array)
         object.__setattr__(scene, "drive", drive)
         return scene
 
@@ -314,7 +314,9 @@ class Scene(Part):
             else:
                 parts[section] = changed(getattr(self, section), **values)
         if arms != list(self.foundation.arms):
-            parts["foundation"] = replace(parts.get("foundation", self.foundation), arms=tuple(arms))
+            parts["foundation"] = replace(
+                parts.get("foundation", self.foundation), arms=tuple(arms)
+            )
         return replace(self, **parts) if parts else self
 
 

@@ -70,7 +70,6 @@ class Part:
             object.__setattr__(copy, name, _mapped(getattr(self, name), function))
         return copy
 
-
     def arrays(self) -> dict[str, NDArray[np.float64]]:
         """Return the arrays among the quantities, those of parts within it by dotted name."""
         found: dict[str, Any] = {}

@@ -31,6 +31,16 @@ def lacks_ball(scene: Scene) -> str:
     return lacks_shape(scene, (Sphere,), "the ball") or lacks_kelvin_voigt(scene)
 
 
+def lacks_one_scene(scene: Scene) -> str:
+    """Return why what is made for one scene does not take arrays of them, or an empty text.
+
+    >>> lacks_one_scene(Scene())
+    ''
+    """
+    keys = ", ".join(scene.arrays())
+    return f"is for one scene, but {keys} is an array: use `sweep`, or one value" if keys else ""
+
+
 def lacks_strips(scene: Scene) -> str:
     """Return why the transient of a ball by strips without memory does not apply, or an empty text."""
     if lacking := lacks_ball(scene) or lacks_rigid_drive(scene):

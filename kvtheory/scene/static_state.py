@@ -7,7 +7,7 @@ from typing import Any
 
 from kvtheory.scene.model import TABLE1_SUPPORTS, Scene
 from kvtheory.scene.quantities import given
-from kvtheory.scene.requirements import lacks_quadratic, require
+from kvtheory.scene.requirements import lacks_one_scene, lacks_quadratic, require
 
 
 @dataclass(frozen=True)
@@ -51,6 +51,7 @@ class StaticState:
             If the indenter is neither a parabola nor a ball (for other shapes these numbers do not
             suffice), or if the scene leaves the range of double precision.
         """
+        require(lacks_one_scene, scene, "the static state")
         require(lacks_quadratic, scene, "the static state in closed form")
         try:
             found = _parabolic(scene) if scene.indenter.per_width else _round(scene)

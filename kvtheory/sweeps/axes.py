@@ -8,26 +8,21 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kvtheory.results.sweep import Axis
-from kvtheory.scene.broadcasting import replaceable
-from kvtheory.scene.quantities import item_values, items
 from kvtheory.scene.model import Scene
-from kvtheory.scene.quantities import Quantity, SceneError, convert, nearest, problem, quantities
+from kvtheory.scene.quantities import (
+    Quantity,
+    SceneError,
+    convert,
+    item_values,
+    items,
+    nearest,
+    problem,
+    quantities,
+)
 
 Array = NDArray[np.float64]
 
 EXAMPLE = '{"drive.velocity": "1 mm/s:10 m/s:200:log"}'
-
-
-def sweepable(scene: Scene) -> dict[str, Quantity]:
-    """Return the keys of a scene that can be swept, each with its unit and range.
-
-    >>> from kvtheory.scene import Drive, Sine
-    >>> wave = Drive(waveform=Sine(amplitude=0.1, frequency=5.0))
-    >>> [key for key in sweepable(Scene(drive=wave)) if key.startswith("drive.")]
-    ['drive.velocity', 'drive.stiffness', 'drive.amplitude', 'drive.frequency', 'drive.mean']
-    """
-    run = {f"run.{name}": spec for name, spec in quantities(scene.run).items()}
-    return replaceable(scene) | waveform_keys(scene) | run
 
 
 def waveform_keys(scene: Scene) -> dict[str, Quantity]:
@@ -63,7 +58,7 @@ def axes_of(scene: Scene, over: Mapping[Any, Any]) -> tuple[Axis, ...]:
     >>> axes_of(Scene(), pairs)[0].size
     2
     """
-    specs, problems, found = sweepable(scene), [], []
+    specs, problems, found = scene.replaceable(), [], []
     seen: set[str] = set()
     if not isinstance(over, Mapping) or not over:
         raise SceneError([f"`over` is empty: expected a key and its values, such as {EXAMPLE}"])

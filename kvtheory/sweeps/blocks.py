@@ -13,9 +13,7 @@ from numpy.typing import NDArray
 
 from kvtheory.models.steady.methods import METHODS
 from kvtheory.models.steady.stable_sliding import lasts
-from kvtheory.scene.broadcasting import replaceable, values
 from kvtheory.scene.model import Scene
-from kvtheory.scene.quantities import changed
 from kvtheory.sweeps.axes import narrowed, values_at
 from kvtheory.sweeps.columns import STABLE
 from kvtheory.sweeps.plan import Plan
@@ -111,8 +109,6 @@ def _steady(
     Returns the statements of the certificates and the worst errors.
     """
     count = next(iter(over.values())).size
-    known = replaceable(plan.scene)
-    over = {key: array for key, array in over.items() if key in known}
     found |= {name: np.full(count, np.nan) for name in names}
     statements: set[str] = set()
     errors: dict[str, float] = {}
@@ -122,10 +118,10 @@ def _steady(
         part = {key: array[a:b] for key, array in over.items()}
         try:
             with np.errstate(over="raise", invalid="raise", divide="raise"):
-                given = values(plan.scene, part)
-                state = METHODS[plan.method](plan.scene, given)
+                scene = plan.scene.replace(part)
+                state = METHODS[plan.method](scene)
                 if STABLE in names:
-                    state = replace(state, stable=lasts(plan.scene, given))
+                    state = replace(state, stable=lasts(scene))
         except FAILS as error:
             if b - a > 1:
                 middle = (a + b) // 2
@@ -164,7 +160,7 @@ def _transients(
             continue
         point = {key: float(array[index]) for key, array in over.items()}
         try:
-            scenes[index] = _in_time(plan, at_point(plan.scene, point))
+            scenes[index] = _in_time(plan, plan.scene.replace(point))
         except FAILS as error:
             reasons[index] = reason(error)
     friction = steady.get("friction_force", np.full(given.points, np.nan))
@@ -187,25 +183,6 @@ def _in_time(plan: Plan, scene: Scene) -> Scene:
         late = f"a time of `at` is after the end of the run, {scene.run.duration} s"
         raise ValueError(late)
     return scene
-
-
-def at_point(scene: Scene, point: Mapping[str, float]) -> Scene:
-    """Return the scene with some values replaced; a velocity replaces a history, or a swing.
-
-    >>> at_point(Scene(), {"drive.velocity": 0.5, "support.mass": 10.0}).support.mass
-    10.0
-    """
-    sections: dict[str, dict[str, float]] = {}
-    for key, value in point.items():
-        section, _, name = key.partition(".")
-        sections.setdefault(section, {})[name] = value
-    parts: dict[str, Any] = {
-        section: scene.drive.changed(**values)
-        if section == "drive"
-        else changed(getattr(scene, section), **values)
-        for section, values in sections.items()
-    }
-    return replace(scene, **parts)
 
 
 def reason(error: Exception) -> str:

@@ -15,7 +15,7 @@ from kvtheory.results.sweep import Axis
 from kvtheory.scene.files import to_toml
 from kvtheory.scene.model import Scene
 from kvtheory.scene.requirements import lacks_paper_model
-from kvtheory.sweeps.axes import size, sweepable
+from kvtheory.sweeps.axes import size
 from kvtheory.sweeps.columns import Column
 
 
@@ -87,7 +87,7 @@ class Plan:
     @property
     def units(self) -> Mapping[str, str]:
         """The unit of each swept key and of each quantity; that of a text is empty."""
-        specs = sweepable(self.scene)
+        specs = self.scene.replaceable()
         swept = {key: specs[key].unit for axis in self.axes for key in axis.values}
         return swept | {column.name: column.unit for column in self.columns}
 

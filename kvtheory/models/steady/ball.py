@@ -22,8 +22,7 @@ from numpy.typing import NDArray
 
 from kvtheory.models.steady import closed_forms as cf
 from kvtheory.results import STEADY_UNITS, Certificate
-from kvtheory.scene.indenters import Sphere
-from kvtheory.scene.model import DeadWeight, Scene
+from kvtheory.scene.model import Scene
 from kvtheory.scene.static_state import ball_stiffness
 
 Array = NDArray[np.float64]

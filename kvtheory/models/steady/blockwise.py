@@ -25,11 +25,14 @@ def evaluate(
     scene: Scene,
     certificate: Certificate,
     own_errors: tuple[str, ...] = (),
+    *,
+    floats: bool = False,
 ) -> SteadyState:
     """Return the steady state that `formula` gives for a scene, or for each of its arrays.
 
     The formula returns the quantities in the order of `STEADY_UNITS` and then the relative errors
-    of those in `own_errors`, which replace what the certificate says of them.
+    of those in `own_errors`, which replace what the certificate says of them. With `floats` it takes
+    floats as well as arrays.
 
     Raises
     ------
@@ -50,7 +53,11 @@ def evaluate(
         _check_underflow(result[: len(QUANTITIES)], flat.drive.final_velocity, own_errors)
         rows = result.reshape(-1, *shape)
     else:
-        rows = [float(each) for each in formula(scene)]
+        if floats:
+            rows = [float(each) for each in formula(scene)]
+        else:
+            one = formula(scene.at(np.array([scene.drive.final_velocity])))
+            rows = [float(np.ravel(each)[0]) for each in one]
         _check_range(rows, scene.drive.final_velocity, own_errors)
     quantities: dict[str, Any] = dict(zip(QUANTITIES, rows, strict=False))
     if own_errors:

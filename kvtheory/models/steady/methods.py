@@ -46,7 +46,13 @@ def asymptotes_of(scene: Scene) -> ModuleType:
 def solve_exact(scene: Scene) -> SteadyState:
     """Evaluate the closed forms, or the moments of the relaxation function."""
     family = (MOMENTS if lacks_kelvin_voigt(scene) else CLOSED)[scene.indenter.shape]
-    return evaluate(family.quantities, scene, family.CERTIFICATE, family.OWN_ERRORS)
+    return evaluate(
+        family.quantities,
+        scene,
+        family.CERTIFICATE,
+        family.OWN_ERRORS,
+        floats=family is exact,
+    )
 
 
 def solve_quadrature(scene: Scene) -> SteadyState:
@@ -83,17 +89,17 @@ def _integrated(scene: Scene) -> SteadyState:
     else:
         method = convolution if scene.indenter.per_width else revolved_convolution
         law = (convolution.memory_of(scene),)
-    first = (
-        *law,
-        scene.indenter,
+    grip = (support.depth,) if scene.held else (support.weight, support.spring)
+    given: tuple[Any, ...] = (
         foundation.stiffness,
         foundation.retardation_time,
         scene.drive.final_velocity,
+        *grip,
     )
-    if scene.held:
-        state = method.at_depth(*first, support.depth)
-    else:
-        state = method.at_load(*first, support.weight, support.spring)
+    if scene.shape:
+        given = tuple(np.broadcast_to(each, scene.shape) for each in given)
+    solve = method.at_depth if scene.held else method.at_load
+    state = solve(*law, scene.indenter, *given)
     return replace(state, units=units_for(scene.indenter, STEADY_UNITS))
 
 
@@ -141,7 +147,10 @@ def _joined(
     def joined(parts: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
         return {
             name: np.concatenate(
-                [np.broadcast_to(p[name], s.shape).ravel() for p, s in zip(parts, scenes, strict=True)]
+                [
+                    np.broadcast_to(p[name], s.shape).ravel()
+                    for p, s in zip(parts, scenes, strict=True)
+                ]
             ).reshape(shape)
             for name in STEADY_UNITS
         }

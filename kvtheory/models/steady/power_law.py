@@ -18,7 +18,6 @@ from numpy.typing import NDArray
 from kvtheory.models.steady import closed_forms as cf
 from kvtheory.models.steady.power_law_contact import edge_sensitivity, root, shape_of, trailing_edge
 from kvtheory.results import STEADY_UNITS, Certificate
-from kvtheory.scene.indenters import Wedge
 from kvtheory.scene.model import Scene
 
 Array = NDArray[np.float64]
@@ -46,8 +45,8 @@ def quantities(scene: Scene) -> tuple[Any, ...]:
 
     W = K delta a w, F = K delta^2 phi and so on (derivation F19).
 
-    >>> found = quantities(Scene(Wedge(0.1)))  # past its crossover
-    >>> print(f"mu = {found[7]:.6f}, x_TE = {found[4]:.6g}")
+    >>> found = quantities(Scene(Wedge([0.1])))  # past its crossover
+    >>> print(f"mu = {found[7][0]:.6f}, x_TE = {found[4][0]:.6g}")
     mu = 0.100000, x_TE = 0
     """
     K, V, support = scene.foundation.stiffness, scene.drive.final_velocity, scene.support

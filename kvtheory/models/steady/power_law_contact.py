@@ -26,17 +26,20 @@ LAST_RESIDUAL = 8 * 2.0**-52
 """Rounding of the residual, below which iteration does not improve it."""
 
 
-def shape_of(indenter: Any) -> tuple[Any, Any, Any]:
+def shape_of(indenter: Any) -> tuple[Array, Array, Array]:
     """Return slope, L and n of h = slope |x|^n/(n L^(n-1)).
 
-    >>> shape_of(Wedge(inclination=0.1))
-    (0.1, 1.0, 1.0)
+    >>> [float(each) for each in shape_of(Wedge(inclination=0.1))]
+    [0.1, 1.0, 1.0]
     """
     if isinstance(indenter, Wedge):
-        return indenter.inclination, 1.0, 1.0
-    if isinstance(indenter, Parabola):
-        return 1.0, indenter.radius, 2.0
-    return 1.0, indenter.length, indenter.exponent
+        shape = indenter.inclination, 1.0, 1.0
+    elif isinstance(indenter, Parabola):
+        shape = 1.0, indenter.radius, 2.0
+    else:
+        shape = 1.0, indenter.length, indenter.exponent
+    slope, length, exponent = map(np.asarray, shape)
+    return slope, length, exponent
 
 
 def trailing_edge(exponent: Array, number: Array) -> tuple[Array, Array]:

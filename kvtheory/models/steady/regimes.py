@@ -1,13 +1,12 @@
 """Which asymptote holds for a scene, its error, and over which velocities it holds."""
 
-from collections.abc import Mapping
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import elementwise
 
-from kvtheory.models.steady.methods import asymptotes_of, plain, solve_exact
+from kvtheory.models.steady.methods import ROUNDING, asymptotes_of, plain, solve_exact
 from kvtheory.results import (
     STEADY_UNITS,
     AsymptoteLine,
@@ -18,7 +17,6 @@ from kvtheory.results import (
 from kvtheory.scene.model import Scene
 
 Array = NDArray[np.float64]
-Values = Mapping[str, Array]
 
 DECADES = 30.0
 """How far from the critical velocity, in powers of ten, the end of a range is sought."""
@@ -140,20 +138,20 @@ def rows(shape: str, support: str) -> list[Row]:
     ]
 
 
-def report(scene: Scene, values: Values, tolerance: float) -> AsymptoteReport:
+def report(scene: Scene, tolerance: float) -> AsymptoteReport:
     """Make the report of `kvtheory.asymptotes`, which documents it."""
-    V, tau = values["drive.velocity"], values["foundation.retardation_time"]
+    V, tau = np.asarray(scene.drive.final_velocity), scene.foundation.retardation_time
     asymptotes = asymptotes_of(scene)
-    limits = asymptotes.limits(values)
-    critical = asymptotes.critical_velocity(limits, tau)
-    truth, side = solve_exact(scene, values), np.where(V < 0.0, -1.0, 1.0)
+    limits = asymptotes.limits(scene)
+    critical = np.broadcast_to(asymptotes.critical_velocity(limits, tau), scene.shape)
+    truth, side = solve_exact(scene), np.where(V < 0.0, -1.0, 1.0)
     with np.errstate(divide="ignore", invalid="ignore"):  # no high asymptote at V = 0
         found = {name: asymptotes.quantities(limits, name, side) for name in ("low", "high")}
         errors = {name: asymptotes.errors(limits, name, truth) for name in found}
     lines = []
     for row in rows(scene.indenter.shape, scene.support.kind):
         error = errors[row.regime][row.quantity]
-        edge = _range_edge(scene, values, critical, row, tolerance)
+        edge = _range_edge(scene, critical, row, tolerance)
         lines.append(
             AsymptoteLine(
                 *row,
@@ -185,28 +183,29 @@ def report(scene: Scene, values: Values, tolerance: float) -> AsymptoteReport:
     )
 
 
-def _range_edge(scene: Scene, values: Values, critical: Array, row: Row, tolerance: float) -> Array:
+def _range_edge(scene: Scene, critical: Array, row: Row, tolerance: float) -> Array:
     """Return the velocity at which the error of an asymptote passes the tolerance.
 
-    The error is monotonic in V: a sign change within `DECADES` of V* is the edge; without one the
-    asymptote is within the tolerance at every velocity (such as the load of a dead weight).
+    The error is monotonic in V: a sign change within `DECADES` of V* is the edge. If the error is within the
+    tolerance at the far end too, where it has reached its limit, the asymptote holds at every velocity (such as
+    the load on a soft spring). Otherwise nothing is claimed.
     """
-    keys = list(values)
+    asymptotes, flat = asymptotes_of(scene), scene.flat()
 
-    def excess(decades: Array, *arrays: Array) -> Array:
-        point = dict(zip(keys, arrays[:-1], strict=True))
-        point["drive.velocity"] = arrays[-1] * 10.0**decades
-        asymptotes = asymptotes_of(scene)
-        truth, limits = solve_exact(scene, point), asymptotes.limits(point)
+    def excess(decades: Array, index: Array, critical: Array) -> Array:
+        point = (flat.rows(index) if scene.shape else flat).at(critical * 10.0**decades)
+        truth, limits = solve_exact(point), asymptotes.limits(point)
         with np.errstate(divide="ignore", invalid="ignore"):
             found = asymptotes.errors(limits, row.regime, truth)
-        return np.abs(found[row.quantity]) - tolerance
+        error = np.broadcast_to(np.abs(found[row.quantity]), decades.shape)
+        return error + ROUNDING * (1.0 + error) - tolerance
 
-    args = (*values.values(), critical)
     bracket = (np.full_like(critical, -DECADES), np.full_like(critical, DECADES))
-    found = elementwise.find_root(excess, bracket, args=args)
-    everywhere = np.inf if row.regime == "low" else 0.0
-    return np.where(found.success, critical * 10.0**found.x, everywhere)
+    index = np.arange(critical.size).reshape(critical.shape)
+    found = elementwise.find_root(excess, bracket, args=(index, critical))
+    nowhere, everywhere, far = (0.0, np.inf, 1) if row.regime == "low" else (np.inf, 0.0, 0)
+    without = np.where(found.f_bracket[far] <= 0.0, everywhere, nowhere)
+    return np.where(found.success, critical * 10.0**found.x, without)
 
 
 def _finite(array: Array) -> Any:

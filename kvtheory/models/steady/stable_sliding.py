@@ -89,7 +89,9 @@ def _block(scene: Scene, wanted: Set[str]) -> tuple[dict[str, Any], dict[str, An
     if spring is not None:
         found["stable"] = is_stable(spring, lower, upper)
         if "critical_velocity" in wanted:
-            found["critical_velocity"], errors["critical_velocity"] = critical_velocity(scene, numbers_of)
+            found["critical_velocity"], errors["critical_velocity"] = critical_velocity(
+                scene, numbers_of
+            )
     if not wanted.isdisjoint(SLOW):
         sigma, error = rates(given, tau, spring)
         found["rates"] = np.stack([sigma.real, sigma.imag], axis=-1)

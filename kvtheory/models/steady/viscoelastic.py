@@ -25,7 +25,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kvtheory.results import STEADY_UNITS, Certificate
-from kvtheory.scene.foundations import FractionalKelvinVoigt, GeneralizedMaxwell
+from kvtheory.scene.foundations import FractionalKelvinVoigt
 from kvtheory.scene.model import Scene
 
 Array = NDArray[np.float64]
@@ -196,7 +196,9 @@ class Fractional:
 def law(scene: Scene) -> Prony | Fractional:
     """Return the relaxation function of a scene along its contact, in the shape of the scene."""
     foundation = scene.foundation
-    K, V = (np.broadcast_to(x, scene.shape) for x in (foundation.stiffness, scene.drive.final_velocity))
+    K, V = (
+        np.broadcast_to(x, scene.shape) for x in (foundation.stiffness, scene.drive.final_velocity)
+    )
     if isinstance(foundation, FractionalKelvinVoigt):
         return Fractional(K, V, (foundation.retardation_time, foundation.order))
     arms = [(arm.stiffness, arm.relaxation_time) for arm in foundation.arms]
@@ -208,9 +210,9 @@ def quantities(scene: Scene) -> tuple[Any, ...]:
 
     Kelvin-Voigt is the springpot of order 1, and an arm that is stiff and fast:
 
-    >>> springpot = Scene(foundation=FractionalKelvinVoigt(1e10, 0.1, 1.0))
-    >>> arm = Scene(foundation=GeneralizedMaxwell(1e10, arms=[(1e19, 1e-10)]))
-    >>> print(f"{quantities(springpot)[7]:.6f} {quantities(arm)[7]:.6f}")
+    >>> springpot = Scene(foundation=FractionalKelvinVoigt([1e10], 0.1, 1.0))
+    >>> arm = Scene(foundation=GeneralizedMaxwell([1e10], arms=[(1e19, 1e-10)]))
+    >>> print(f"{quantities(springpot)[7][0]:.6f} {quantities(arm)[7][0]:.6f}")
     0.085709 0.085709
     """
     row, support, R = law(scene), scene.support, scene.indenter.radius
