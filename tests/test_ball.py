@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import kvtheory as kv
-from kvtheory.models.steady import ball, exact
+from kvtheory.models.steady import ball
 from kvtheory.models.steady.equivalent_line import (
     FRICTION_COEFFICIENT_ERROR,
     LOAD_ERROR,
@@ -14,6 +14,7 @@ from kvtheory.models.steady.equivalent_line import (
 from kvtheory.results import STEADY_UNITS
 from tests import reference_ball
 from tests.reference import relative_error
+from tests.steady import at_depth
 
 EPS = np.finfo(float).eps
 SCENES = 700
@@ -275,9 +276,9 @@ def test_the_footprint_carries_the_forces():
 
 def test_a_line_contact_stands_for_the_ball():
     speeds = np.geomspace(1e-8, 1e8, 2001)
-    rest = {"stiffness": 1.0, "retardation_time": 1.0, "velocity": speeds}
-    found = ball.at_depth(1.0, 1.0, depth=1.0, **rest)
-    line = exact.at_depth(1.0, depth=SHORTER**2, **rest)
+    rest = {"K": 1.0, "tau": 1.0, "V": speeds}
+    found = at_depth(kv.Sphere(1.0), depth=1.0, **rest)
+    line = at_depth(1.0, depth=SHORTER**2, **rest)
     load = WIDTH * found.half_length * line.load / found.load - 1.0
     mu = line.friction_coefficient / found.friction_coefficient - 1.0
     assert 0.9 * LOAD_ERROR < np.abs(load).max() < LOAD_ERROR

@@ -7,7 +7,6 @@ import pytest
 
 import kvtheory as kv
 from kvtheory.models.continuum.solved_scene import scaled_drive
-from kvtheory.scene.broadcasting import values
 from kvtheory.scene.static_state import StaticState
 
 QUANTITIES = (
@@ -169,7 +168,7 @@ def test_steady_sliding_needs_a_velocity():
     assert "drive.velocity" not in sine.values()
     assert "drive_number" not in StaticState.of(sine).named()
     with pytest.raises(kv.SceneError, match="unknown key"):
-        values(sine, {"drive.velocty": 0.1})
+        sine.replace({"drive.velocty": 0.1})
 
 
 def test_a_file_cannot_hold_it():

@@ -7,7 +7,8 @@ from hypothesis import strategies as st
 
 from kvtheory.models.steady import blockwise, exact
 from kvtheory.results import STEADY_UNITS
-from tests import reference
+from tests import reference, steady
+from tests.steady import at_depth, at_load
 
 EPS = np.finfo(float).eps
 SCENES = 3400
@@ -38,7 +39,7 @@ SUPPORTS = {
 
 def worst_errors(arguments, support):
     method = "at_depth" if support == "fixed" else "at_load"
-    state = getattr(exact, method)(*arguments)
+    state = getattr(steady, method)(*arguments)
     worst = dict.fromkeys(STEADY_UNITS, 0.0)
     for i, scene in enumerate(zip(*(x.tolist() for x in arguments), strict=True)):
         truth = getattr(reference, method)(*scene)
@@ -65,14 +66,14 @@ POSITIVE = st.floats(-6, 6).map(lambda exponent: 10.0**exponent)
 def test_one_number_fixes_the_friction_coefficient(R, K, tau, W, number):
     """Scale invariance: mu (K R^2/W)^(1/3) depends on Lambda alone, for any scene."""
     V = number / tau * np.cbrt(R * W / K)
-    scaled = exact.at_load(R, K, tau, V, W).friction_coefficient * np.cbrt(K * R * R / W)
-    unit = exact.at_load(1.0, 1.0, 1.0, number, 1.0).friction_coefficient
+    scaled = at_load(R, K, tau, V, W).friction_coefficient * np.cbrt(K * R * R / W)
+    unit = at_load(1.0, 1.0, 1.0, number, 1.0).friction_coefficient
     assert scaled == pytest.approx(unit, rel=1e-13)
 
 
 @given(V=POSITIVE, spring=st.sampled_from([0.0, 1e5, 1e9]))
 def test_reversal_mirrors_the_contact(V, spring):
-    forth, back = (exact.at_load(0.01, 1e10, 0.1, v, 9806.65, spring) for v in (V, -V))
+    forth, back = (at_load(0.01, 1e10, 0.1, v, 9806.65, spring) for v in (V, -V))
     for name in ("leading_edge", "trailing_edge", "friction_force", "friction_coefficient"):
         assert getattr(back, name) == -getattr(forth, name)
     for name in ("depth", "load", "peak_pressure", "dissipated_in_contact"):
@@ -81,7 +82,7 @@ def test_reversal_mirrors_the_contact(V, spring):
 
 @given(V=POSITIVE, factor=st.floats(1.001, 1e6), spring=st.sampled_from([0.0, 1e5, 1e9]))
 def test_faster_lifts_the_indenter(V, factor, spring):
-    slow, fast = (exact.at_load(0.01, 1e10, 0.1, v, 9806.65, spring) for v in (V, V * factor))
+    slow, fast = (at_load(0.01, 1e10, 0.1, v, 9806.65, spring) for v in (V, V * factor))
     assert fast.depth <= slow.depth
     assert fast.depth < slow.depth or V * factor < 1e-6
 
@@ -90,7 +91,7 @@ def test_faster_lifts_the_indenter(V, factor, spring):
 def test_power_is_spent_inside_and_behind_the_contact(V, depth):
     """Theorem F6, each loss from its definition: C V^2 int h'^2 dx and V K u_TE^2/2."""
     R, K, tau = 0.01, 1e10, 0.1
-    state = exact.at_depth(R, K, tau, V, depth)
+    state = at_depth(R, K, tau, V, depth)
     inside = K * tau * V**2 * (state.trailing_edge**3 - state.leading_edge**3) / (3 * R**2)
     left_over = V * tau * state.trailing_edge / R  # u_TE = l_r h'(x_TE), where p = 0
     behind = V * K * left_over**2 / 2
@@ -101,7 +102,7 @@ def test_power_is_spent_inside_and_behind_the_contact(V, depth):
 
 
 def test_rest_is_the_winkler_contact():
-    state = exact.at_load(0.01, 1e10, 0.1, 0.0, 9806.65)
+    state = at_load(0.01, 1e10, 0.1, 0.0, 9806.65)
     a = (1.5 * 0.01 * 9806.65 / 1e10) ** (1 / 3)
     assert state.friction_force == 0.0
     assert state.friction_coefficient == 0.0
@@ -113,18 +114,18 @@ def test_rest_is_the_winkler_contact():
 @pytest.mark.parametrize("decades", [-10, 10])
 def test_limits_ten_decades_from_the_critical_velocity(decades):
     V = 0.02 * 10.0**decades
-    state = exact.at_load(0.01, 1e10, 0.1, V, 9806.65)
+    state = at_load(0.01, 1e10, 0.1, V, 9806.65)
     alpha = 2 * np.sqrt(2) / 3
     limit = V * 0.1 / 0.01 if decades < 0 else alpha * np.sqrt(9806.65 / (0.01 * 1e9 * V))
     assert state.friction_coefficient == pytest.approx(limit, rel=1e-9)
 
 
 def test_a_suspension_joins_dead_weight_and_fixed():
-    free = exact.at_load(0.01, 1e10, 0.1, 0.1, 9806.65)
-    static = exact.at_load(0.01, 1e10, 0.1, 0.0, 9806.65)
-    held = exact.at_depth(0.01, 1e10, 0.1, 0.1, static.depth)
-    soft = exact.at_load(0.01, 1e10, 0.1, 0.1, 9806.65, 1e-6)
-    stiff = exact.at_load(0.01, 1e10, 0.1, 0.1, 9806.65, 1e22)
+    free = at_load(0.01, 1e10, 0.1, 0.1, 9806.65)
+    static = at_load(0.01, 1e10, 0.1, 0.0, 9806.65)
+    held = at_depth(0.01, 1e10, 0.1, 0.1, static.depth)
+    soft = at_load(0.01, 1e10, 0.1, 0.1, 9806.65, 1e-6)
+    stiff = at_load(0.01, 1e10, 0.1, 0.1, 9806.65, 1e22)
     for name in STEADY_UNITS:
         assert getattr(soft, name) == pytest.approx(getattr(free, name), rel=1e-12)
         assert getattr(stiff, name) == pytest.approx(getattr(held, name), rel=1e-12)
@@ -132,10 +133,10 @@ def test_a_suspension_joins_dead_weight_and_fixed():
 
 def test_arrays_broadcast_and_do_not_depend_on_the_blocks(monkeypatch):
     V, tau = np.geomspace(1e-3, 1e1, 7)[:, None], np.array([0.01, 0.1, 1.0])
-    whole = exact.at_load(0.01, 1e10, tau, V, 9806.65)
+    whole = at_load(0.01, 1e10, tau, V, 9806.65)
     monkeypatch.setattr(blockwise, "BLOCK", 2)
-    blocks = exact.at_load(0.01, 1e10, tau, V, 9806.65)
-    single = exact.at_load(0.01, 1e10, 0.1, float(V[3, 0]), 9806.65)
+    blocks = at_load(0.01, 1e10, tau, V, 9806.65)
+    single = at_load(0.01, 1e10, 0.1, float(V[3, 0]), 9806.65)
     for name in STEADY_UNITS:
         assert getattr(whole, name).shape == (7, 3)
         assert np.array_equal(getattr(whole, name), getattr(blocks, name))
@@ -155,4 +156,4 @@ def test_the_first_guess_needs_no_more_than_the_steps_it_is_given(monkeypatch):
 
 def test_overflow_is_an_error():
     with pytest.raises(FloatingPointError):
-        exact.at_depth(1e300, 1e300, 1.0, 1.0, 1e300)
+        at_depth(1e300, 1e300, 1.0, 1.0, 1e300)

@@ -8,10 +8,8 @@ import pytest
 import kvtheory as kv
 from kvtheory.results import TRANSIENT_UNITS
 from kvtheory.scene import template
-from kvtheory.scene.broadcasting import replaceable, values
 from kvtheory.scene.foundations import layer_stiffness
 from kvtheory.scene.quantities import changed
-from kvtheory.sweeps.blocks import at_point
 
 G = 9.80665
 SUPPORTS = {"dead-weight": {}, "suspended": {"stiffness": 3e7}}
@@ -245,10 +243,10 @@ FOLLOWING = (
 
 @pytest.mark.parametrize("given", FOLLOWING)
 def test_what_follows_from_a_replaced_value_is_as_in_a_scene_made_with_it(given):
-    for key in sorted(replaceable(given).keys() & given.values().keys()):
+    for key in sorted(given.replaceable().keys() & given.values().keys()):
         value = 1.05 * given.values()[key]
-        made = at_point(given, {key: value}).values()
-        arrays = values(given, {key: [value, value]})
-        assert made.keys() <= arrays.keys(), key
+        made = given.replace({key: value}).values()
+        arrays = given.replace({key: [value, value]}).values()
+        assert made.keys() == arrays.keys(), key
         for name, expected in made.items():
             assert arrays[name] == pytest.approx(expected, rel=1e-15), (key, name)

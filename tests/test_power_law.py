@@ -6,7 +6,7 @@ import pytest
 import kvtheory as kv
 from kvtheory.models.steady import power_law, power_law_contact, quadrature
 from kvtheory.results import STEADY_UNITS
-from tests import reference, reference_power_law
+from tests import reference, reference_power_law, steady
 
 SUPPORTS = ("fixed", "dead-weight", "suspended")
 EXPONENTS = (1.0, 1.0 + 1e-9, 1.0001, 1.03, 1.3, 1.5, 2.0, 2.7, 3.0, 4.0, 6.0, 11.5, 20.0, 24.0)
@@ -33,7 +33,8 @@ def random_case(rng, n, kind, decades=12):
 
 def both(case, kind):
     method = "at_depth" if kind == "fixed" else "at_load"
-    return getattr(power_law, method)(*case), getattr(reference_power_law, method)(*case)
+    shape = kv.Wedge(case[0]) if case[2] == 1.0 else kv.PowerLaw(*case[1:3])
+    return getattr(steady, method)(shape, *case[3:]), getattr(reference_power_law, method)(*case)
 
 
 @pytest.mark.parametrize("kind", SUPPORTS)
@@ -78,7 +79,7 @@ def test_quadrature_is_within_its_error_of_ball_arithmetic(n, kind, profile):
 
 def test_the_trailing_edge_of_nearly_a_wedge_says_how_uncertain_it_is():
     """For n -> 1 it is the wedge's, to first order in n - 1; far beyond l = 1 it leaves double precision."""
-    state = power_law.at_depth(1.0, 0.01, 1.001, 1e10, 0.1, [1e-4, 1e-3, 3e-3, 1e2], 3e-4)
+    state = steady.at_depth(kv.PowerLaw(0.01, 1.001), 1e10, 0.1, [1e-4, 1e-3, 3e-3, 1e2], 3e-4)
     claimed = state.certificate.relative_error[OWN]
     assert claimed[0] < 1e-14 < claimed[2] < 1e-11
     assert (state.trailing_edge[3], claimed[3]) == (0.0, np.inf)
@@ -196,9 +197,9 @@ def test_the_trailing_edge_solves_its_equation_in_any_corner():
 
 def test_what_leaves_double_precision_raises():
     with pytest.raises(FloatingPointError):
-        power_law.at_load(1.0, 0.01, 3.0, 1e10, 0.1, 1e-320, 1e4)
+        steady.at_load(kv.PowerLaw(0.01, 3.0), 1e10, 0.1, 1e-320, 1e4)
     with pytest.raises(FloatingPointError):
-        power_law.at_depth(1.0, 0.01, 3.0, 1e200, 0.1, 1e150, 1e2)
+        steady.at_depth(kv.PowerLaw(0.01, 3.0), 1e200, 0.1, 1e150, 1e2)
 
 
 def test_the_ladder_uses_the_closed_forms():

@@ -7,6 +7,7 @@ from flint import arb, ctx, fmpq_poly, fmpz
 from kvtheory.models.steady import closed_forms as cf
 from kvtheory.models.steady import exact
 from tests import reference
+from tests.steady import at_depth, at_load
 
 BITS = 300
 STATED = exact.CERTIFICATE.relative_error
@@ -72,7 +73,7 @@ def test_the_root_of_the_quartic_is_enclosed(decade):
         def excess(q, cube=cube):
             return 3 * (1 - q) ** 3 * (1 + q) - 2 * cube * q * q * (q * q - 2 * q + 3)
 
-        state = exact.at_load(1.0, 1.0, 1.0, number, 1.0)
+        state = at_load(1.0, 1.0, 1.0, number, 1.0)
         found = state.trailing_edge / state.half_length
         # The root in terms of l = (1 - q^2)/(2 q), whose relative accuracy holds in both limits.
         l = state.retardation_length / state.half_length
@@ -100,6 +101,6 @@ def test_load_and_friction_are_within_their_error_of_the_enclosed_integrals():
         R, K, tau, depth = (float(x) for x in 10.0 ** rng.uniform([-4, 6, -4, -8], [0, 12, 2, -2]))
         V = float(10.0 ** rng.uniform(-6, 6) * np.sqrt(2 * R * depth) / tau)
         load, friction = reference.integrals(R, K, tau, V, depth)
-        state = exact.at_depth(R, K, tau, V, depth)
+        state = at_depth(R, K, tau, V, depth)
         assert covers(STATED["load"], state.load, load)
         assert covers(STATED["friction_force"], state.friction_force, friction)

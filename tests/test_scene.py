@@ -1,7 +1,10 @@
 """Scenes: from Python, from files, back to files, and what is refused."""
 
+import copy
+import pickle
 import re
 import tomllib
+from dataclasses import replace
 
 import numpy as np
 import pint
@@ -11,7 +14,6 @@ from hypothesis import strategies as st
 
 import kvtheory as kv
 from kvtheory.scene import template
-from kvtheory.scene.broadcasting import values
 from kvtheory.scene.static_state import StaticState
 
 TABLE_1 = """
@@ -254,25 +256,47 @@ def test_python_takes_text_quantities_and_numbers():
         kv.PowerLaw(length="1 mm", exponent=0.5)
 
 
-def test_values_broadcast_and_are_checked():
-    found = values(
-        kv.Scene(), {"drive.velocity": [[0.1], [0.2]], "support.mass": np.array([1, 2, 3])}
-    )
-    assert {array.shape for array in found.values()} == {(2, 3)}
-    assert values(kv.Scene(), {"support.mass": "1 kg/mm"})["support.mass"] == 1000.0
+def test_quantities_are_replaced_by_arrays_that_broadcast_and_are_checked():
+    scene = kv.Scene()
+    many = scene.replace({"drive.velocity": [[0.1], [0.2]], "support.mass": np.array([1, 2, 3])})
+    assert many.shape == (2, 3)
+    assert scene.replace({"support.mass": "1 kg/mm"}).support.mass == 1000.0
     millimetres = pint.UnitRegistry().Quantity([1.0, 2.0], "mm")
-    assert values(kv.Scene(), {"indenter.radius": millimetres})["indenter.radius"].tolist() == [
+    assert scene.replace({"indenter.radius": millimetres}).indenter.radius.tolist() == [
         0.001,
         0.002,
     ]
     with pytest.raises(kv.SceneError) as caught:
-        values(
-            kv.Scene(), {"drive.velocty": 1.0, "support.mass": [1.0, -1.0], "support.depth": 1.0}
-        )
+        scene.replace({"drive.velocty": 1.0, "support.mass": [1.0, -1.0], "support.depth": 1.0})
     assert len(caught.value.problems) == 3
     assert 'did you mean "drive.velocity"' in caught.value.problems[0]
     with pytest.raises(ValueError, match="do not broadcast"):
-        values(kv.Scene(), {"drive.velocity": [1.0, 2.0], "support.mass": [1.0, 2.0, 3.0]})
+        scene.replace({"drive.velocity": [1.0, 2.0], "support.mass": [1.0, 2.0, 3.0]})
+
+
+def test_a_scene_of_arrays_is_a_value():
+    """Equality, hash, copies, and the scenes it holds one by one."""
+    V = ["10 mm/s", "0.1 m/s"]
+    arms = [[["30 GN/m^3", "40 GN/m^3"], "10 ms"], ["5 GN/m^3", "1 s"]]
+    rubber = kv.GeneralizedMaxwell("10 GN/m^3", arms=arms)
+    scene = kv.Scene(foundation=rubber, drive=kv.Drive(velocity=V))
+    same = pickle.loads(pickle.dumps(scene))
+    assert same == scene == copy.deepcopy(scene)
+    assert hash(same) == hash(scene)
+    assert scene != kv.Scene(foundation=rubber)
+    assert scene.flat().rows(slice(1, 2)).drive.velocity.tolist() == [0.1]
+    one = kv.Scene(foundation=replace(rubber, arms=[(4e10, 0.01), (5e9, 1.0)]), drive=kv.Drive(0.1))
+    assert kv.steady(scene).friction_force[1] == kv.steady(one).friction_force
+    load = kv.DeadWeight(load=["1 N/mm", "2 N/mm"])
+    assert replace(load, load="9.80665 N/mm").mass == 1000.0
+
+
+@pytest.mark.parametrize(
+    "ask", [kv.transient, kv.elements, StaticState.of, lambda s: kv.solve(s, at=0.1)]
+)
+def test_what_runs_over_time_is_for_one_scene(ask):
+    with pytest.raises(ValueError, match=r"drive\.velocity is an array: use `sweep`"):
+        ask(kv.Scene(drive=kv.Drive(velocity=[0.1, 0.2])))
 
 
 def test_dimensionless_numbers_of_table_1():

@@ -66,6 +66,6 @@ def asymptotes(
     from kvtheory.models.steady import fractional_limits, prony_limits, regimes
 
     reports = {GeneralizedMaxwell: prony_limits, FractionalKelvinVoigt: fractional_limits}
-    with double_precision(scene, over):
+    with double_precision(scene):
         report = reports.get(type(scene.foundation), regimes).report
         return report(scene, tolerance)

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from kvtheory.api._edge import double_precision, scene_of
+from kvtheory.api._edge import double_precision, one_scene
 from kvtheory.api._stability import stability
 from kvtheory.api._steady import steady
 from kvtheory.checks.theory import TRIAL_RTOL, Methods
@@ -152,7 +152,7 @@ def compare(
     ----------
     Nakano and Kono (2020), doi:10.3389/fmech.2020.00038; facts F8-F15 of the derivations.
     """
-    scene = scene_of(scene)
+    scene = one_scene(scene, "a comparison")
     require(lacks_quadratic_on_arms, scene, "the theory of the transient")
     if not (math.isfinite(tolerance) and tolerance > 0.0):
         raise ValueError(f"`tolerance` = {tolerance!r}: expected a positive number")

@@ -1,6 +1,6 @@
 """What the public functions share: checks of their arguments, and of the range of floats."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from contextlib import contextmanager
 from functools import cache
 from typing import Any
@@ -10,6 +10,7 @@ import numpy as np
 from kvtheory.scene.drives import TIME
 from kvtheory.scene.model import Scene
 from kvtheory.scene.quantities import SceneError, convert, item_values, items, problem
+from kvtheory.scene.requirements import lacks_one_scene, require
 from kvtheory.scene.static_state import out_of_range
 
 
@@ -20,6 +21,13 @@ def scene_of(scene: Scene | None) -> Scene:
             f"expected a Scene, got {scene!r}; kvtheory.load_scene reads one from a file"
         )
     return _table1() if scene is None else scene
+
+
+def one_scene(scene: Scene | None, what: str) -> Scene:
+    """Return the scene, or that of Table 1; arrays are refused, as `what` is for one scene."""
+    scene = scene_of(scene)
+    require(lacks_one_scene, scene, what)
+    return scene
 
 
 @cache
@@ -61,10 +69,10 @@ def times_of(scene: Scene, at: Any, problems: list[str] | None = None) -> Any:
 
 
 @contextmanager
-def double_precision(scene: Scene, over: Mapping[str, Any] | None = None) -> Iterator[None]:
+def double_precision(scene: Scene) -> Iterator[None]:
     """Turn an overflow anywhere in a calculation into an error about the values of the scene."""
     try:
         with np.errstate(over="raise", invalid="raise", divide="raise"):
             yield
     except (FloatingPointError, OverflowError, ZeroDivisionError) as error:
-        raise ValueError(out_of_range(scene, over or (), str(error))) from None
+        raise ValueError(out_of_range(scene, str(error))) from None

@@ -4,7 +4,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import Any
 
-from kvtheory.api._edge import double_precision, scene_of, times_of
+from kvtheory.api._edge import double_precision, one_scene, times_of
 from kvtheory.progress import Progress
 from kvtheory.results import Simulation
 from kvtheory.scene.model import Scene
@@ -96,7 +96,7 @@ def elements(
     ----------
     Nakano and Kono (2020), doi:10.3389/fmech.2020.00038, Eqs. 1-25 and Methods.
     """
-    scene = scene_of(scene)
+    scene = one_scene(scene, "a simulation")
     # They import SciPy, which takes a while.
     from kvtheory.models.elements.schemes import SCHEMES
     from kvtheory.models.elements.simulation import simulate

@@ -3,11 +3,11 @@
 from collections.abc import Mapping
 from typing import Any
 
-from kvtheory.api._edge import scene_of
+from kvtheory.api._edge import one_scene, scene_of
 from kvtheory.api._steady import steady
 from kvtheory.models.steady.footprint import Footprint
 from kvtheory.scene.model import Scene
-from kvtheory.scene.requirements import lacks_ball, lacks_one_scene, require
+from kvtheory.scene.requirements import lacks_ball, require
 
 
 def footprint(scene: Scene | None = None, *, over: Mapping[str, Any] | None = None) -> Footprint:
@@ -40,9 +40,8 @@ def footprint(scene: Scene | None = None, *, over: Mapping[str, Any] | None = No
     ----------
     Theorem F20 of the derivations.
     """
-    scene = scene_of(scene).replace(over or {})
+    scene = one_scene(scene_of(scene).replace(over or {}), "the footprint")
     require(lacks_ball, scene, "the footprint")
-    require(lacks_one_scene, scene, "the footprint")
     state = steady(scene)
     backwards = scene.drive.final_velocity < 0.0
     return Footprint(

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from functools import partial
 from typing import Any
 
-from kvtheory.api._edge import double_precision, scene_of, times_of
+from kvtheory.api._edge import double_precision, one_scene, times_of
 from kvtheory.api._elements import elements
 from kvtheory.api._stability import stability
 from kvtheory.api._steady import steady
@@ -85,7 +85,7 @@ def solve(
     ----------
     Nakano and Kono (2020), doi:10.3389/fmech.2020.00038; facts F1-F13 of the derivations.
     """
-    scene = scene_of(scene)
+    scene = one_scene(scene, "`solve`")
     if not MINIMUM_RTOL <= rtol <= MAXIMUM_RTOL:
         raise ValueError(
             f"`rtol` = {rtol!r}: expected a number from {MINIMUM_RTOL} to {MAXIMUM_RTOL}"

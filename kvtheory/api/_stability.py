@@ -72,7 +72,7 @@ def stability(
     wanted = _names(quantity)
     from kvtheory.models.steady import stable_sliding
 
-    with double_precision(scene, over):
+    with double_precision(scene):
         return stable_sliding.solve(scene, wanted)
 
 

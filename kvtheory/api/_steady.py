@@ -79,7 +79,7 @@ def steady(
     """
     scene = scene_of(scene).replace(over or {})
     solve = METHODS[method_for(scene, method)]
-    with double_precision(scene, over):
+    with double_precision(scene):
         state = solve(scene)
         return state if scene.drive.rigid else replace(state, stable=lasts(scene))
 

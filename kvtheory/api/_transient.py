@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from kvtheory.api._edge import double_precision, scene_of, times_of
+from kvtheory.api._edge import double_precision, one_scene, times_of
 from kvtheory.progress import Progress
 from kvtheory.results import Transient
 from kvtheory.scene.model import Scene
@@ -80,7 +80,7 @@ def transient(
     ----------
     Nakano and Kono (2020), doi:10.3389/fmech.2020.00038, Eqs. 1-33 and Figs. 3, 4.
     """
-    scene = scene_of(scene)
+    scene = one_scene(scene, "a transient")
     if max_steps is not None and max_steps < 1:
         raise ValueError(f"`max_steps` = {max_steps!r}: expected a positive number")
     if not MINIMUM_RTOL <= rtol <= MAXIMUM_RTOL:

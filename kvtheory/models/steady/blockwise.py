@@ -41,30 +41,34 @@ def evaluate(
         zero, as its error then says.
     """
     shape = scene.shape
-    rows: Sequence[Any]
-    if shape:
-        flat, size = scene.flat(), math.prod(shape)
-        result = np.empty((len(QUANTITIES) + len(own_errors), size))
-        with np.errstate(over="raise", divide="raise", invalid="raise", under="ignore"):
-            for start in range(0, size, BLOCK):
-                part = slice(start, start + BLOCK)
-                for row, found in zip(result, formula(flat.rows(part)), strict=True):
-                    row[part] = found
-        _check_underflow(result[: len(QUANTITIES)], flat.drive.final_velocity, own_errors)
-        rows = result.reshape(-1, *shape)
-    else:
-        if floats:
+    with np.errstate(over="raise", divide="raise", invalid="raise", under="ignore"):
+        if shape:
+            rows: Sequence[Any] = _arrays(formula, scene.flat(), own_errors)
+            rows = [row.reshape(shape) for row in rows]
+        elif floats:
             rows = [float(each) for each in formula(scene)]
         else:
-            one = formula(scene.at(np.array([scene.drive.final_velocity])))
-            rows = [float(np.ravel(each)[0]) for each in one]
+            one = scene.at(np.array([scene.drive.final_velocity]))
+            rows = [float(np.ravel(each)[0]) for each in formula(one)]
+    if not shape:
         _check_range(rows, scene.drive.final_velocity, own_errors)
     quantities: dict[str, Any] = dict(zip(QUANTITIES, rows, strict=False))
-    if own_errors:
-        own = dict(zip(own_errors, rows[len(QUANTITIES) :], strict=True))
-        certificate = replace(certificate, relative_error={**certificate.relative_error, **own})
+    own = dict(zip(own_errors, rows[len(QUANTITIES) :], strict=True))
+    certificate = replace(certificate, relative_error={**certificate.relative_error, **own})
     units = units_for(scene.indenter, STEADY_UNITS)
     return SteadyState(**quantities, model="exact", certificate=certificate, units=units)
+
+
+def _arrays(formula: Any, flat: Scene, own_errors: tuple[str, ...]) -> Array:
+    """Return what the formula gives for flat scenes, block by block."""
+    (size,) = flat.shape
+    result = np.empty((len(QUANTITIES) + len(own_errors), size))
+    for start in range(0, size, BLOCK):
+        part = slice(start, start + BLOCK)
+        for row, found in zip(result, formula(flat.rows(part)), strict=True):
+            row[part] = found
+    _check_underflow(result[: len(QUANTITIES)], flat.drive.final_velocity, own_errors)
+    return result
 
 
 def _check_range(values: Sequence[float], velocity: float, own_errors: tuple[str, ...]) -> None:
