@@ -49,7 +49,7 @@ def test_mistakes_are_named():
     for method in ("exact", "quadrature"):
         with pytest.raises(ValueError, match="double precision"):
             kv.steady(over={"drive.velocity": 1e300}, method=method)
-    with pytest.raises(ValueError, match=r"double precision: underflow in.*check support\.mass$"):
+    with pytest.raises(ValueError, match=r"underflow in.*check support\.mass = 1e-300 kg/m$"):
         kv.steady(over={"support.mass": 1e-300})
     with pytest.raises(ValueError, match=r"check foundation\.retardation_time = 1e\+300 s$"):
         kv.transient(kv.Scene(foundation=kv.Foundation(1e10, 1e300)))

@@ -12,7 +12,7 @@ from kvtheory.models.steady.equivalent_line import (
     WIDTH,
 )
 from kvtheory.results import STEADY_UNITS
-from tests import reference_ball
+from tests import reference_ball, steady
 from tests.reference import relative_error
 from tests.steady import at_depth
 
@@ -49,7 +49,7 @@ def test_error_stays_below_the_certificate(support):
     R, S, K, tau, V, W = random_scenes(SCENES, seed=20)
     extra = SUPPORTS[support](R, S, K, W, np.random.default_rng(15))
     method = "at_depth" if support == "fixed" else "at_load"
-    state = getattr(ball, method)(R, np.sqrt(S / R), K, tau, V, *extra)
+    state = getattr(steady, method)(kv.Sphere(R, radius_across=S), K, tau, V, *extra)
     worst = dict.fromkeys(STEADY_UNITS, 0.0)
     for i, scene in enumerate(zip(*(x.tolist() for x in (R, S, K, tau, V, *extra)), strict=True)):
         truth = getattr(reference_ball, method)(*scene)

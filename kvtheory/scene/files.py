@@ -6,6 +6,8 @@ from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from kvtheory.scene.drive_file import history_from
 from kvtheory.scene.drives import SPRING
 from kvtheory.scene.foundations import FOUNDATIONS, PAIRS, Foundation, GeneralizedMaxwell, arms_of
@@ -18,7 +20,7 @@ from kvtheory.scene.quantities import (
     absent,
     closest,
     collecting,
-    convert,
+    converted,
     given,
     misfits,
     missing,
@@ -215,7 +217,9 @@ def _tables(scene: Scene) -> dict[str, dict[str, Any]]:
     return tables
 
 
-def _text(value: float, unit: str) -> Any:
+def _text(value: Any, unit: str) -> Any:
+    if isinstance(value, np.ndarray):
+        return [_text(each, unit) for each in (value.tolist() if value.ndim == 1 else value)]
     return value if unit == "1" else f"{value!r} {unit}"
 
 
@@ -288,7 +292,7 @@ def _override(tables: dict[str, Any], overrides: list[str], *, embedded: bool) -
                 if (section, other) not in keys:
                     table.pop(other, None)
         try:
-            listed = (section, name) in LISTS
+            listed = (section, name) in LISTS or value.startswith("[")
             table[name] = tomllib.loads(f"v = {value}")["v"] if listed else value
         except (ValueError, RecursionError):
             table[name] = value
@@ -458,9 +462,10 @@ def _elsewhere(section: str, key: str) -> str:
 
 def _value(value: Any, spec: Quantity) -> Any:
     """Return a value in SI, or the text itself where its unit tells whether it is per unit width."""
-    if spec.unit != "1" and isinstance(value, (int, float)):
+    items = value if isinstance(value, list) else [value]
+    if spec.unit != "1" and any(isinstance(item, (int, float)) for item in items):
         raise ValueError(f"has no unit; expected {expected(spec.unit)}")
-    number = convert(value, written_as(value, spec))
+    number = converted(value, written_as(value, spec))
     return value if spec.per_width else number
 
 

@@ -1,9 +1,11 @@
 """The scene at rest, and the dimensionless numbers that govern its motion."""
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterator
 from dataclasses import asdict, dataclass
 from typing import Any
+
+import numpy as np
 
 from kvtheory.scene.model import TABLE1_SUPPORTS, Scene
 from kvtheory.scene.quantities import given
@@ -169,8 +171,8 @@ FAR = 10.0
 """Powers of ten from Table 1 beyond which a message names a value as suspicious."""
 
 
-def out_of_range(scene: Scene, replaced: Iterable[str] = (), why: str = "") -> str:
-    """Return that a scene leaves the range of double precision, naming values far from Table 1 or `replaced`.
+def out_of_range(scene: Scene, why: str = "") -> str:
+    """Return that a scene leaves the range of double precision, naming values far from those of Table 1.
 
     >>> from kvtheory.scene import Drive, Run
     >>> out_of_range(Scene(drive=Drive(1e300), run=Run(1.0)))
@@ -182,19 +184,21 @@ def out_of_range(scene: Scene, replaced: Iterable[str] = (), why: str = "") -> s
     far = [
         f"{key} = {size:g} {unit}".strip()
         for key, size, unit in _sizes(scene)
-        if 0.0 < size < math.inf and abs(math.log10(size) - math.log10(usual.get(key, 1.0))) > FAR
+        if 0.0 < size < math.inf and abs(math.log10(size / usual.get(key, 1.0))) > FAR
     ]
-    told = ", ".join([*far, *replaced]) or "its values"
+    told = ", ".join(dict.fromkeys(far)) or "its values"
     return f"the scene leaves the range of double precision: {why and f'{why}; '}check {told}"
 
 
-def _sizes(scene: Scene) -> list[tuple[str, float, str]]:
-    """Return the keys of a scene, the magnitudes of their values in SI, and their units."""
+def _sizes(scene: Scene) -> Iterator[tuple[str, float, str]]:
+    """Return the keys of a scene, the least and the largest magnitude of each in SI, and their units."""
     parts = {**scene.parts(), "run": scene.run, "drive": scene.drive.waveform or scene.drive}
-    found = [
-        (f"{section}.{name}", abs(getattr(part, name)), "" if spec.unit == "1" else spec.unit)
-        for section, part in parts.items()
-        for name, spec in given(part).items()
-    ]
+    for section, part in parts.items():
+        for name, spec in given(part).items():
+            sizes = np.abs(getattr(part, name))
+            unit = "" if spec.unit == "1" else spec.unit
+            for size in (np.min(sizes, initial=math.inf), np.max(sizes, initial=0.0)):
+                yield f"{section}.{name}", float(size), unit
     speeds = [abs(velocity) for _, velocity in scene.drive.history or ()]
-    return [*found, ("drive.history", max(speeds), "m/s")] if speeds else found
+    if speeds:
+        yield "drive.history", max(speeds), "m/s"

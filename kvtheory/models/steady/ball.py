@@ -53,6 +53,7 @@ CERTIFICATE = Certificate(
 def quantities(scene: Scene) -> tuple[Any, ...]:
     """Return the quantities in the order of `STEADY_UNITS`, forces in N (derivations F20).
 
+    >>> from kvtheory.scene import DeadWeight, Sphere
     >>> ball = Scene(Sphere(0.01), support=DeadWeight(mass=1.0))
     >>> found = quantities(ball)
     >>> print(f"{1e3 * found[0]:.6f} mm, mu = {found[7]:.6f}")

@@ -78,6 +78,7 @@ def quantities(scene: Scene) -> tuple[Any, ...]:
 
     Kelvin-Voigt is the springpot of order 1:
 
+    >>> from kvtheory.scene import DeadWeight, FractionalKelvinVoigt, Sphere
     >>> springpot = FractionalKelvinVoigt(1e10, 0.1, 1.0)
     >>> found = quantities(Scene(Sphere(0.01), springpot, DeadWeight(mass=[1.0])))
     >>> print(f"{1e3 * found[0][0]:.6f} mm, mu = {found[7][0]:.6f}")

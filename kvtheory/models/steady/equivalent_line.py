@@ -35,8 +35,9 @@ def equivalent_line(ball: SteadyState, stretch: float) -> EquivalentLine:
     `FRICTION_COEFFICIENT_ERROR`, at every velocity if the depth is kept; under a dead weight depth and
     width change with velocity.
 
-    >>> from kvtheory.models.steady.ball import at_load
-    >>> line = equivalent_line(at_load(0.01, 1.0, 1e10, 0.1, 0.1, 9.80665), 1.0)
+    >>> import kvtheory as kv
+    >>> ball = kv.Scene(kv.Sphere("10 mm"), support=kv.DeadWeight(mass="1 kg"))
+    >>> line = equivalent_line(kv.steady(ball), 1.0)
     >>> print(f"{line.width * 1e3:.4f} mm, {line.load / 1e3:.4f} N/mm")
     1.9002 mm, 5.1608 N/mm
     """

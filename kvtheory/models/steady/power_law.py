@@ -45,13 +45,15 @@ def quantities(scene: Scene) -> tuple[Any, ...]:
 
     W = K delta a w, F = K delta^2 phi and so on (derivation F19).
 
+    >>> from kvtheory.scene import Wedge
     >>> found = quantities(Scene(Wedge([0.1])))  # past its crossover
     >>> print(f"mu = {found[7][0]:.6f}, x_TE = {found[4][0]:.6g}")
     mu = 0.100000, x_TE = 0
     """
     K, V, support = scene.foundation.stiffness, scene.drive.final_velocity, scene.support
     l_r = np.abs(V) * scene.foundation.retardation_time
-    slope, L, n = shape_of(scene.indenter)
+    # NumPy takes a power otherwise where one exponent stands for all than where each has its own.
+    slope, L, n = (np.array(np.broadcast_to(x, scene.shape)) for x in shape_of(scene.indenter))
     if scene.held:
         return _contact(n, K, l_r, V, support.depth, L * root(n * support.depth / (slope * L), n))
     a_0 = L * root((n + 1.0) * (support.weight / K) / (2.0 * slope * L * L), n + 1.0)

@@ -210,6 +210,7 @@ def quantities(scene: Scene) -> tuple[Any, ...]:
 
     Kelvin-Voigt is the springpot of order 1, and an arm that is stiff and fast:
 
+    >>> from kvtheory.scene import GeneralizedMaxwell
     >>> springpot = Scene(foundation=FractionalKelvinVoigt([1e10], 0.1, 1.0))
     >>> arm = Scene(foundation=GeneralizedMaxwell([1e10], arms=[(1e19, 1e-10)]))
     >>> print(f"{quantities(springpot)[7][0]:.6f} {quantities(arm)[7][0]:.6f}")
