@@ -105,7 +105,7 @@ def test_python_functions_do_not_go_into_a_file():
         ('radius = "10 mm"', 'radius = "inf mm"', ["indenter.radius", "finite"]),
         ('radius = "10 mm"', 'radius = "nan mm"', ["indenter.radius", "finite"]),
         ('radius = "10 mm"', "radius = true", ["indenter.radius", "quantity in m"]),
-        ('radius = "10 mm"', 'radius = ["10 mm"]', ["indenter.radius", "quantity in m"]),
+        ('radius = "10 mm"', 'radius = ["10 mm", true]', ["indenter.radius", "quantity in m"]),
         ('radius = "10 mm"', 'raduis = "10 mm"', ["indenter.raduis", 'did you mean "radius"']),
         ('radius = "10 mm"', "", ["indenter.radius", "missing", '"10 mm"']),
         (
@@ -295,7 +295,7 @@ def test_a_scene_of_arrays_is_a_value():
     "ask", [kv.transient, kv.elements, StaticState.of, lambda s: kv.solve(s, at=0.1)]
 )
 def test_what_runs_over_time_is_for_one_scene(ask):
-    with pytest.raises(ValueError, match=r"drive\.velocity is an array: use `sweep`"):
+    with pytest.raises(ValueError, match=r"arrays \(drive\.velocity\); use `sweep`"):
         ask(kv.Scene(drive=kv.Drive(velocity=[0.1, 0.2])))
 
 

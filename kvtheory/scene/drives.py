@@ -148,10 +148,10 @@ class Drive(Part):
         return _without_redundant(self.history)
 
     @property
-    def final_velocity(self) -> float:
+    def final_velocity(self) -> Any:
         """The final velocity of the drive, in m/s; a function has none, and raises SceneError."""
         last = getattr(self.waveform, "final_velocity", None)
-        return self.points[-1][1] if last is None else float(last)
+        return self.points[-1][1] if last is None else last
 
     @property
     def ends(self) -> bool:
