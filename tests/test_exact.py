@@ -5,6 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+import kvtheory as kv
 from kvtheory.models.steady import blockwise, exact
 from kvtheory.results import STEADY_UNITS
 from tests import reference
@@ -141,6 +142,38 @@ def test_arrays_broadcast_and_do_not_depend_on_the_blocks(monkeypatch):
         assert np.array_equal(getattr(whole, name), getattr(blocks, name))
         assert isinstance(getattr(single, name), float)
         assert getattr(whole, name)[3, 1] == pytest.approx(getattr(single, name), rel=1e-15)
+
+
+KELVIN_VOIGT = kv.Scene().foundation
+MAXWELL = kv.GeneralizedMaxwell(1e10, arms=[["30 GN/m^3", "10 ms"], ["5 GN/m^3", "1 s"]])
+FRACTIONAL = kv.FractionalKelvinVoigt(1e10, 0.1, 0.5)
+LINES = (kv.Parabola(0.01), kv.Wedge(0.1), *(kv.PowerLaw(0.01, n) for n in (1.0, 1.5, 2.0, 3.0, 8.6)))
+BALL = kv.Sphere(0.01)
+CLOSED_FORMS = (
+    *((line, KELVIN_VOIGT) for line in LINES),
+    *((LINES[0], MAXWELL), (LINES[0], FRACTIONAL)),
+    *((BALL, foundation) for foundation in (KELVIN_VOIGT, MAXWELL, FRACTIONAL)),
+)
+
+
+@pytest.mark.parametrize("support", SUPPORTS)
+@pytest.mark.parametrize(("shape", "foundation"), CLOSED_FORMS, ids=str)
+def test_no_scene_depends_on_those_beside_it(shape, foundation, support):
+    """Each converges for itself: the same bits alone, in threes, and among many."""
+    if shape is BALL:
+        held = kv.Suspended(mass=1.0, stiffness=1e4)
+        own = {"fixed": kv.Fixed(1e-4), "dead-weight": kv.DeadWeight(mass=1.0), "suspended": held}
+    else:
+        own = {support: kv.Scene.table1(support).support}
+    scene = kv.Scene(shape, foundation, own[support])
+    V = np.geomspace(1e-6, 1e3, 60)
+    together = kv.steady(scene, over={"drive.velocity": V})
+    for size in (1, 3, 7):
+        for start in range(0, V.size, size):
+            part = slice(start, start + size)
+            few = kv.steady(scene, over={"drive.velocity": V[part]})
+            for name in STEADY_UNITS:
+                assert np.array_equal(getattr(few, name), getattr(together, name)[part]), name
 
 
 def test_the_first_guess_needs_no_more_than_the_steps_it_is_given(monkeypatch):

@@ -143,21 +143,6 @@ def test_arrays_give_what_single_scenes_give(shape):
             assert isinstance(getattr(alone, name), float)
 
 
-def test_it_does_not_matter_what_is_computed_together():
-    """A scene converges for itself: the same bits alone, in threes, and among many."""
-    V = np.geomspace(1e-6, 1e3, 60)
-    for shape in SHAPES:
-        for support in SUPPORTS:
-            scene = kv.Scene(shape, support=kv.Scene.table1(support).support)
-            together = kv.steady(scene, over={"drive.velocity": V})
-            for size in (3, 7):
-                for start in range(0, V.size, size):
-                    part = slice(start, start + size)
-                    few = kv.steady(scene, over={"drive.velocity": V[part]})
-                    for name in STEADY_UNITS:
-                        assert np.array_equal(getattr(few, name), getattr(together, name)[part])
-
-
 def test_the_exponent_may_be_an_array():
     scene = kv.Scene(kv.PowerLaw(0.01, 2.0))
     n = np.array([1.0, 1.5, 2.0, 6.0])

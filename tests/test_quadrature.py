@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 
+import kvtheory as kv
 from kvtheory.models.steady.quadrature import at_depth, at_load
 from kvtheory.results import STEADY_UNITS
 from kvtheory.results.errors import QuadratureError
@@ -479,15 +480,16 @@ def ratio_of(n, ratio):
     return mpmath.exp(low)
 
 
-@pytest.mark.parametrize("shape", SHAPES, ids=NAMED)
+@pytest.mark.parametrize("shape", [*SHAPES, PowerLaw(0.01, 1.5), PowerLaw(0.01, 3.0)], ids=str)
 def test_no_scene_depends_on_those_beside_it(shape):
+    """For exponents 1.5 and 3 the slope is a root and a square."""
     rng = np.random.default_rng(1)
-    V, weight = 10.0 ** rng.uniform(-6, 0, (60, 1)), 10.0 ** rng.uniform(0, 3, (60, 1))
-    one = np.ones_like(V)
+    V, mass = 10.0 ** rng.uniform(-6, 0, 60), 10.0 ** rng.uniform(-1, 2, 60)
+    scene = kv.Scene(shape, kv.Foundation(K, TAU), kv.Suspended(mass=1.0, stiffness=3e7))
 
     def solved(part):
-        fixed = (K * one[part], TAU * one[part])
-        return at_load(shape, *fixed, V[part], weight[part], 3e7 * one[part])
+        over = {"drive.velocity": V[part], "support.mass": mass[part]}
+        return kv.steady(scene, over=over, method="quadrature")
 
     whole = solved(slice(0, 60))
     for size in (1, 7, 30):

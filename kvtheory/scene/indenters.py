@@ -20,6 +20,22 @@ Value = Any
 """A float or an array of floats, in m or dimensionless."""
 
 
+SHORT_CUTS = ((2.0, np.square), (0.5, np.sqrt), (-1.0, np.reciprocal))
+"""Exponents for which NumPy may take another routine, which rounds otherwise."""
+
+
+def power(base: Value, exponent: Value) -> Value:
+    """Return base^exponent to the same bits however many scenes are in an array.
+
+    NumPy takes the short cuts where one exponent stands for all; here they are always taken.
+    """
+    found = base**exponent
+    for special, routine in SHORT_CUTS if isinstance(exponent, np.ndarray) else ():
+        if np.any(exponent == special):
+            found = np.where(exponent == special, routine(base), found)
+    return found
+
+
 class _Shape:
     """The common part of the shapes that a scene file can name."""
 
@@ -114,7 +130,7 @@ class PowerLaw(_Shape):
 
     def slope(self, x: Value) -> Value:
         """Return h'(x)."""
-        return np.sign(x) * (np.abs(x) / self.length) ** (self.exponent - 1.0)
+        return np.sign(x) * power(np.abs(x) / self.length, self.exponent - 1.0)
 
     def bend(self, x: Value) -> Value:
         """Return x h''/h'."""
