@@ -9,7 +9,7 @@ from kvtheory.models.steady import exact
 from tests import reference
 
 BITS = 300
-STATED = exact.CERTIFICATE.relative_error
+STATED = exact.HELD.relative_error
 SCENES = 300
 
 

@@ -75,6 +75,16 @@ def converge(
     return value
 
 
+def cube_root(value: Array) -> Array:
+    """Return the cube root to a unit in the last place: that of some C libraries is four off.
+
+    >>> float(cube_root(np.array(27.0)))
+    3.0
+    """
+    root = np.cbrt(value)
+    return root - (root - value / (root * root)) / 3.0
+
+
 def _check_underflow(result: Array, velocity: Array, own_errors: tuple[str, ...]) -> None:
     """Raise if digits were lost below the smallest normal number; zero is correct only at rest."""
     lost = np.abs(result) < np.finfo(float).tiny

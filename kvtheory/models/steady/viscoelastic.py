@@ -24,7 +24,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from kvtheory.models.steady.blockwise import converge, evaluate
+from kvtheory.models.steady.blockwise import converge, cube_root, evaluate
 from kvtheory.results import STEADY_UNITS, Certificate, SteadyState
 from kvtheory.scene.indenters import power
 
@@ -294,7 +294,7 @@ def _length_at_load(row: Prony | Fractional, R: Array, load: Array, spring: Arra
 
     Halley's method for ln(W + k_s delta) against ln c, from the contact at rest.
     """
-    a_0 = np.cbrt(1.5 * R * (load / row.K))
+    a_0 = cube_root(1.5 * R * (load / row.K))
     wanted = 1.0 + spring * (a_0 * a_0 / (2.0 * R)) / load
 
     def step(c: Array) -> Array:
