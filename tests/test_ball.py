@@ -43,6 +43,7 @@ SUPPORTS = {
 }  # fmt: skip
 
 
+@pytest.mark.processor
 @pytest.mark.parametrize("support", SUPPORTS)
 def test_error_stays_below_the_certificate(support):
     R, S, K, tau, V, W = random_scenes(SCENES, seed=20)

@@ -50,6 +50,7 @@ def worst_errors(arguments, support):
     return worst
 
 
+@pytest.mark.processor
 @pytest.mark.parametrize("support", SUPPORTS)
 def test_error_stays_below_the_certificate(support):
     R, K, tau, V, W = random_scenes(SCENES, seed=2020)
@@ -156,6 +157,7 @@ def test_a_suspension_joins_dead_weight_and_fixed():
         assert getattr(stiff, name) == pytest.approx(getattr(held, name), rel=1e-12)
 
 
+@pytest.mark.processor
 def test_arrays_broadcast_and_do_not_depend_on_the_blocks(monkeypatch):
     V, tau = np.geomspace(1e-3, 1e1, 7)[:, None], np.array([0.01, 0.1, 1.0])
     whole = exact.at_load(0.01, 1e10, tau, V, 9806.65)
@@ -185,6 +187,7 @@ CLOSED_FORMS = (
 )
 
 
+@pytest.mark.processor
 @pytest.mark.parametrize("support", SUPPORTS)
 @pytest.mark.parametrize(("shape", "foundation"), CLOSED_FORMS, ids=str)
 def test_no_scene_depends_on_those_beside_it(shape, foundation, support):
@@ -205,6 +208,7 @@ def test_no_scene_depends_on_those_beside_it(shape, foundation, support):
                 assert np.array_equal(getattr(few, name), getattr(together, name)[part]), name
 
 
+@pytest.mark.processor
 def test_the_first_guess_needs_no_more_than_the_steps_it_is_given(monkeypatch):
     numbers = np.geomspace(1e-14, 1e14, 4001)
     for kappa in (0.0, 1e-6, 1e-3, 0.03, 0.3, 1.0, 3.0, 1e2, 1e8, 1e14):

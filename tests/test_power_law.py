@@ -36,6 +36,7 @@ def both(case, kind):
     return getattr(power_law, method)(*case), getattr(reference_power_law, method)(*case)
 
 
+@pytest.mark.processor
 @pytest.mark.parametrize("kind", SUPPORTS)
 @pytest.mark.parametrize("n", EXPONENTS)
 def test_every_quantity_is_within_its_error_of_ball_arithmetic(n, kind):

@@ -454,6 +454,7 @@ def test_the_depth_under_a_load_carries_it(shape, side):
         assert max(np.max(error) for error in errors.values()) < 1e-11
 
 
+@pytest.mark.processor
 @pytest.mark.parametrize("shape", SHAPES, ids=NAMED)
 def test_a_column_of_scenes_is_as_good_as_each_scene(shape):
     V = np.array([0.0, -0.0, 1e-9, -3e-3, 0.02, 0.1, -7.0, 1e6])[:, None]
@@ -480,6 +481,7 @@ def ratio_of(n, ratio):
     return mpmath.exp(low)
 
 
+@pytest.mark.processor
 @pytest.mark.parametrize("shape", [*SHAPES, PowerLaw(0.01, 1.5), PowerLaw(0.01, 3.0)], ids=str)
 def test_no_scene_depends_on_those_beside_it(shape):
     """For exponents 1.5 and 3 the slope is a root and a square."""
@@ -503,6 +505,7 @@ def test_no_scene_depends_on_those_beside_it(shape):
 POWERS = [1.0, 1.1, 1.5, 2.0, 4.0, 12.0]
 
 
+@pytest.mark.processor
 @pytest.mark.parametrize("n", POWERS)
 def test_power_laws_agree_with_their_closed_form(n):
     """Fact F19, h = c |x|^n with q = x_TE/a, over ten decades of drive number on either side."""

@@ -27,6 +27,7 @@ def scene(foundation, support="dead-weight", **parts):
     return replace(kv.Scene.table1(support), foundation=foundation, **parts)
 
 
+@pytest.mark.processor
 @pytest.mark.parametrize("kind", SUPPORTS)
 def test_every_quantity_is_within_its_error_of_ball_arithmetic(kind):
     """1 to 20 arms over ten decades, and springpots; the module of the reference compares more of them."""
@@ -244,6 +245,7 @@ SHAPES = {
 }
 
 
+@pytest.mark.processor
 @pytest.mark.parametrize("support", SUPPORTS)
 def test_convolution_confirms_the_moments(support):
     rng = np.random.default_rng(SUPPORTS.index(support))
