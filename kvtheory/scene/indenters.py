@@ -29,10 +29,15 @@ def power(base: Value, exponent: Value) -> Value:
 
     NumPy takes the short cuts where one exponent stands for all; here they are always taken.
     """
+    if not isinstance(exponent, np.ndarray):
+        return base**exponent
+    cuts = [(exponent == special, routine) for special, routine in SHORT_CUTS]
+    for chosen, routine in cuts:
+        if chosen.all():
+            return routine(base)
     found = base**exponent
-    for special, routine in SHORT_CUTS if isinstance(exponent, np.ndarray) else ():
-        if np.any(exponent == special):
-            found = np.where(exponent == special, routine(base), found)
+    for chosen, routine in cuts:
+        found = np.where(chosen, routine(base), found) if chosen.any() else found
     return found
 
 
