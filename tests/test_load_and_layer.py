@@ -142,7 +142,7 @@ def test_the_template_tells_of_both():
 
         tables = tomllib.loads(told)
         assert tables["support"]["load"] == "9.80665 N/mm"
-        assert tables["foundation"]["poisson_ratio"] == 0.45
+        assert tables["foundation"]["poisson_ratio"] == 0.3
 
 
 def test_overrides_exchange_a_stiffness_for_a_layer_and_back(tmp_path):

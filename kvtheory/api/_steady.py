@@ -94,7 +94,9 @@ def steady(
         if scene.foundation.modulus is None or "foundation.stiffness" in (over or {}):
             return state
         shortest = state.half_length * np.minimum(1.0, stretch_of(given))
-        note = thick_layer(given["foundation.thickness"], shortest, given["foundation.poisson_ratio"])
+        note = thick_layer(
+            given["foundation.thickness"], shortest, given["foundation.poisson_ratio"]
+        )
         return replace(state, notes=(*state.notes, note)) if note else state
 
 
