@@ -63,6 +63,7 @@ def test_overrides():
 
 def test_asymptotes():
     shown = run("asymptotes", "--tolerance", "0.1").stdout
+    assert shown == f"dead-weight support, {kv.asymptotes(tolerance=0.1)}\n"
     assert "use L2" in shown
     assert "friction maximum" in shown
     record = json.loads(run("asymptotes", "--json").stdout)

@@ -35,8 +35,8 @@ def asymptotes(
     -------
     AsymptoteReport
         The velocity V* at which the asymptotes cross (Eqs. 47, 48; F5, F19-crossing), the regime, and a line
-        for each asymptote: its value, the exact value, the relative error and the velocities where that is within the
-        tolerance. For a dead weight also the friction maximum, unless the indenter is a wedge.
+        for each asymptote: its value, the exact value, the relative error and the velocities where that is
+        within the tolerance. For a dead weight also the friction maximum, unless the indenter is a wedge.
 
     Raises
     ------
