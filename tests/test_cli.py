@@ -45,7 +45,7 @@ def test_steady_prints_one_json_object_in_si(scene_file, method):
     record = json.loads(run("steady", scene_file, "--json", "--method", method).stdout)
     state = kv.steady(kv.load_scene(scene_file), method=method)
     assert record == state.as_dict()
-    assert set(STEADY_UNITS) | {"model", "certificate", "stable"} == set(record)
+    assert set(STEADY_UNITS) | {"model", "certificate", "stable", "notes"} == set(record)
 
 
 def test_steady_prints_a_table_in_the_papers_units():
