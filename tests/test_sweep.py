@@ -53,6 +53,7 @@ def test_zipped_points_lie_on_the_diagonal():
     assert [axis.name for axis in pairs.axes] == ["point"]
 
 
+@pytest.mark.processor
 @pytest.mark.parametrize("block", [1, 2, 3, 5, 64])
 @pytest.mark.parametrize("support", ["fixed", "dead-weight", "suspended"])
 def test_every_cut_into_blocks_gives_the_same_bits(block, support):
@@ -228,6 +229,7 @@ def test_wrong_arguments_are_told(arguments, words):
         assert word in str(error.value)
 
 
+@pytest.mark.processor
 def test_other_shapes_are_swept_by_what_suits_them():
     wedge = kv.Scene(indenter=kv.Wedge(inclination=0.1))
     over = {"indenter.inclination": [0.05, 0.1]}

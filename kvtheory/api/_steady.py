@@ -4,10 +4,13 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
 
+import numpy as np
+
 from kvtheory.api._edge import double_precision, scene_of
 from kvtheory.models.steady.methods import METHODS
 from kvtheory.models.steady.stable_sliding import lasts
 from kvtheory.results import SteadyState
+from kvtheory.scene.foundations import thick_layer
 from kvtheory.scene.model import Scene
 from kvtheory.scene.quantities import nearest
 from kvtheory.scene.requirements import (
@@ -54,7 +57,8 @@ def steady(
     -------
     SteadyState
         Floats, or arrays of the broadcast shape, in SI units, with a certificate; with a spring in the drive
-        also whether steady sliding is stable against small disturbances, as in `stability`.
+        also whether steady sliding is stable against small disturbances, as in `stability`. Its `notes` say
+        if it is not, and if a foundation given as a layer is not thin for its contact.
 
     Raises
     ------
@@ -81,7 +85,15 @@ def steady(
     solve = METHODS[method_for(scene, method)]
     with double_precision(scene):
         state = solve(scene)
-        return state if scene.drive.rigid else replace(state, stable=lasts(scene))
+        if not scene.drive.rigid:
+            state = replace(state, stable=lasts(scene))
+            state = replace(state, notes=tuple(filter(None, [state.unstable])))
+        foundation = scene.foundation
+        if foundation.modulus is None:
+            return state
+        shortest = state.half_length * np.minimum(1.0, getattr(scene.indenter, "stretch", 1.0))
+        note = thick_layer(foundation.thickness, shortest, foundation.poisson_ratio)
+        return replace(state, notes=(*state.notes, note)) if note else state
 
 
 def method_for(scene: Scene, method: str | None) -> str:

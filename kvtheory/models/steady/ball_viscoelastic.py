@@ -20,6 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kvtheory.models.steady import viscoelastic
+from kvtheory.models.steady.blockwise import converge
 from kvtheory.results import STEADY_UNITS, Certificate
 from kvtheory.scene.model import Scene
 from kvtheory.scene.static_state import ball_stiffness
@@ -46,6 +47,8 @@ CERTIFICATE = Certificate(
     "times, and of fractional orders",
     relative_error=dict.fromkeys(STEADY_UNITS, RELATIVE_ERROR),
 )
+HELD = CARRIED = CERTIFICATE
+"""At a depth, and at a load."""
 
 
 def _rule() -> tuple[Array, Array, Array]:
@@ -113,18 +116,17 @@ def _length_at_load(scene: Scene, row: Any) -> Array:
     R, load, spring = scene.indenter.radius, scene.support.weight, scene.support.spring
     static = np.sqrt(load / ball_stiffness(scene.foundation.stiffness, R, scene.indenter.stretch))
     wanted = load + spring * static
-    c = np.broadcast_to(2.0 * np.sqrt(2.0 * R * static), scene.shape)
-    for _ in range(MOST_STEPS):
+    first = np.broadcast_to(2.0 * np.sqrt(2.0 * R * static), scene.shape)
+
+    def step(c: Array) -> Array:
         found = _sums(scene, c)
         held = spring * found.a * (found.a / (2.0 * R))
         total = found.load + held
         share, slope, _ = viscoelastic.growth(row.moments(c))
         rise = (found.growth * found.load + 2.0 * (slope / share) * held) / total
-        step = np.log(total / wanted) / rise
-        c = c * np.exp(-step)
-        if np.abs(step).max(initial=0.0) < LAST_STEP:
-            break
-    return c
+        return np.log(total / wanted) / rise
+
+    return converge(step, first, LAST_STEP, MOST_STEPS)
 
 
 def _sums(scene: Scene, c: Array) -> Sums:

@@ -59,6 +59,34 @@ def evaluate(
     return SteadyState(**quantities, model="exact", certificate=certificate, units=units)
 
 
+def converge(
+    step_of: Callable[[Array], Array], value: Array, last_step: float, most_steps: int
+) -> Array:
+    """Return the roots from `value`, element by element, by steps of the logarithm.
+
+    An element is left alone after its first step that is no longer than `last_step`, so that no result
+    depends on the others of its block.
+    """
+    active = np.full(value.shape, True)
+    for _ in range(most_steps):
+        step = step_of(value)
+        value = np.where(active, value * np.exp(-step), value)
+        active &= np.abs(step) > last_step
+        if not active.any():
+            break
+    return value
+
+
+def cube_root(value: Array) -> Array:
+    """Return the cube root to a unit in the last place: that of some C libraries is four off.
+
+    >>> float(cube_root(np.array(27.0)))
+    3.0
+    """
+    root = np.cbrt(value)
+    return root - (root - value / (root * root)) / 3.0
+
+
 def _arrays(formula: Any, flat: Scene, own_errors: tuple[str, ...]) -> Array:
     """Return what the formula gives for flat scenes, block by block."""
     (size,) = flat.shape

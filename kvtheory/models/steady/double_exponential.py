@@ -82,7 +82,7 @@ def integral(
     result, accuracy, active = 0.0, 0.0, one >= 0.0
     for to_left, to_right, weights in RULES if smooth else RULES[1:]:
         values = function(ends[0] * to_left + ends[1] * to_right)
-        # Unlike a product of matrices, this sums in an order that depends on neither processor nor number of rows.
+        # Unlike a product of matrices, this sums in one order on every processor for any number of rows.
         sums = np.einsum("...j,kj->k...", values.reshape(*values.shape[:-1], 2, -1), weights)
         (left, right), (left_coarse, right_coarse) = (
             sums.tolist() if values.ndim == 1 else sums.transpose(0, 2, 1)[..., None]

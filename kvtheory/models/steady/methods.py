@@ -49,7 +49,7 @@ def solve_exact(scene: Scene) -> SteadyState:
     return evaluate(
         family.quantities,
         scene,
-        family.CERTIFICATE,
+        family.HELD if scene.held else family.CARRIED,
         family.OWN_ERRORS,
         floats=family is exact,
     )

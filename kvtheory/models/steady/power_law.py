@@ -37,6 +37,8 @@ CERTIFICATE = Certificate(
     "The trailing edge is less certain by d ln x_TE/d ln V, which grows as 1/(n - 1) for n close to 1",
     relative_error=dict.fromkeys(STEADY_UNITS, RELATIVE_ERROR),
 )
+HELD = CARRIED = CERTIFICATE
+"""At a depth, and at a load."""
 OWN_ERRORS = ("trailing_edge",)
 
 

@@ -19,9 +19,12 @@ from kvtheory.scene.model import Scene
 Array = NDArray[np.float64]
 
 DECADES = 30.0
-"""How far from the critical velocity, in powers of ten, the end of a range is sought."""
+"""How far from V*, in powers of ten, the end of a range is sought."""
 
-STATEMENT = "the relative errors are closed forms (derivations {}), monotonic in V, evaluated to about 1e-14"
+STATEMENT = (
+    "the relative errors e are closed forms (derivations {}), monotonic in V, "
+    "evaluated to 2e-14 (1 + |e|)"
+)
 
 
 LISTED = {
@@ -186,9 +189,9 @@ def report(scene: Scene, tolerance: float) -> AsymptoteReport:
 def _range_edge(scene: Scene, critical: Array, row: Row, tolerance: float) -> Array:
     """Return the velocity at which the error of an asymptote passes the tolerance.
 
-    The error is monotonic in V: a sign change within `DECADES` of V* is the edge. If the error is within the
-    tolerance at the far end too, where it has reached its limit, the asymptote holds at every velocity (such as
-    the load on a soft spring). Otherwise nothing is claimed.
+    The error is monotonic in V: a sign change within `DECADES` of V* is the edge. If the error is within
+    the tolerance at the far end too, where it has reached its limit, the asymptote holds at every velocity
+    (such as the load on a soft spring). Otherwise nothing is claimed.
     """
     asymptotes, flat = asymptotes_of(scene), scene.flat()
 
