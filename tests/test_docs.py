@@ -13,6 +13,8 @@ from kvtheory.derivations.contents import CONTENTS
 import kvtheory as kv
 from kvtheory.cli import main
 from kvtheory.scene.files import SECTIONS
+from kvtheory.scene.indenters import SHAPES
+from kvtheory.scene.model import SUPPORTS
 from kvtheory.scene.quantities import quantities
 
 ROOT = Path(__file__).parent.parent
@@ -104,6 +106,12 @@ def test_the_reference_has_a_page_for_every_public_name():
     assert {f"api/{name}.md" for name in kv.__all__} < set(pages)
     for name in kv.__all__:
         assert f"`{name}`]({name}.md)" in pages["api/index.md"]
+    listed = dict(re.findall(r"## (\w+)\n\n((?:- .*\n)+)", pages["api/index.md"]))
+    shown = {title: set(re.findall(r"\[`(\w+)`\]", rows)) for title, rows in listed.items()}
+    assert {"footprint", "stability", "steady"} < shown["Compute"]
+    assert shown["Indenters"] == {model.__name__ for model in SHAPES.values()} | {"Profile", "Revolved"}
+    assert shown["Supports"] == {model.__name__ for model in SUPPORTS.values()}
+    assert all(kv.results.__name__ in getattr(kv, name).__module__ for name in shown["Results"])
     assert "pycon\n>>> " in pages["api/steady.md"]
     assert "| `radius` | m |" in pages["api/Parabola.md"]
 
