@@ -109,7 +109,10 @@ def test_the_reference_has_a_page_for_every_public_name():
     listed = dict(re.findall(r"## (\w+)\n\n((?:- .*\n)+)", pages["api/index.md"]))
     shown = {title: set(re.findall(r"\[`(\w+)`\]", rows)) for title, rows in listed.items()}
     assert {"footprint", "stability", "steady"} < shown["Compute"]
-    assert shown["Indenters"] == {model.__name__ for model in SHAPES.values()} | {"Profile", "Revolved"}
+    assert shown["Indenters"] == {model.__name__ for model in SHAPES.values()} | {
+        "Profile",
+        "Revolved",
+    }
     assert shown["Supports"] == {model.__name__ for model in SUPPORTS.values()}
     assert all(kv.results.__name__ in getattr(kv, name).__module__ for name in shown["Results"])
     assert "pycon\n>>> " in pages["api/steady.md"]

@@ -8,7 +8,7 @@ from kvtheory.api._edge import double_precision, scene_of
 from kvtheory.models.steady.methods import METHODS
 from kvtheory.models.steady.stable_sliding import lasts
 from kvtheory.results import SteadyState
-from kvtheory.scene.broadcasting import values
+from kvtheory.scene.broadcasting import replaceable, values
 from kvtheory.scene.model import Scene
 from kvtheory.scene.quantities import nearest
 from kvtheory.scene.requirements import (
@@ -83,7 +83,13 @@ def steady(
     with double_precision(scene, over):
         given = values(scene, over)
         state = METHODS[chosen](scene, given)
-        return replace(state, stable=lasts(scene, given)) if "drive.stiffness" in given else state
+        if "drive.stiffness" in given:
+            state = replace(state, stable=lasts(scene, given))
+        if over and given["drive.velocity"].ndim:
+            specs = replaceable(scene)
+            units = {**state.units, **{key: specs[key].unit for key in over}}
+            state = replace(state, over={key: given[key] for key in over}, units=units)
+        return state
 
 
 def method_for(scene: Scene, method: str | None) -> str:
