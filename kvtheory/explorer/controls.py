@@ -24,7 +24,7 @@ SECTIONS: dict[str, tuple[str, dict[str, Any]]] = {
 START = {
     "radius": 0.01, "radius_across": 0.02, "length": 0.01, "exponent": 4.0, "inclination": 0.1,
     "stiffness": 1e10, "retardation_time": 0.1, "order": 0.5,
-    "modulus": 5e6, "thickness": 2e-3, "poisson_ratio": 0.45,
+    "modulus": 2e6, "thickness": 2.5e-4, "poisson_ratio": 0.3,
     "depth": 3e-4, "mass": 1000.0, "gravity": 9.80665, "load": 9806.65,
     "velocity": 0.1, "damping": 1000.0, "duration": 0.2, "relaxation_time": 0.01,
 }  # fmt: skip
