@@ -46,8 +46,8 @@ def steady(
     click.echo(f"Steady sliding, {checked.support.kind} support, model: {state.model}\n")
     print_steady(state, state.units)
     click.echo(f"\nErrors are {state.certificate.kind}: {state.certificate.statement}.")
-    if state.unstable:
-        click.echo(state.unstable)
+    for note in state.notes:
+        click.echo(note)
 
 
 @scene_command(main, "kvtheory asymptotes --tolerance 0.01")

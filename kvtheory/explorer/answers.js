@@ -10,8 +10,6 @@ const NUMBERS = [
 const WITHIN = 0.05;
 /** Size of letters in pixels below which a formula is not legible. */
 const SMALLEST = 11;
-/** (thickness/half length)^2/(1 - 2 nu) up to which a layer acts as independent elements. */
-const THIN = 0.1;
 
 /** The number that says whether a layer is thin for its contact; 0 where no layer is given. */
 function layer_number({ layer, stretch }, { half_length }) {
@@ -20,8 +18,8 @@ function layer_number({ layer, stretch }, { half_length }) {
 
 function show_layer(scene, state) {
   const place = document.getElementById("layer"), number = layer_number(scene, state);
-  place.hidden = number <= THIN;
-  place.innerHTML = `The layer is not thin for its contact: (h/a)\u00b2/(1 \u2212 2\u03bd) = <b>${short(number, 3)}</b>, above ${THIN}, so `
+  place.hidden = number <= MODEL.thin;
+  place.innerHTML = `The layer is not thin for its contact: (h/a)\u00b2/(1 \u2212 2\u03bd) = <b>${short(number, 3)}</b>, above ${MODEL.thin}, so `
     + "that it does not act as independent elements. Reduce its thickness h or Poisson\u2019s ratio \u03bd, or enlarge the half "
     + "length a of the contact; otherwise use a boundary-element code.";
 }
@@ -36,7 +34,7 @@ function show_numbers(scene, state) {
   document.getElementById("readout").textContent =
     `\u03bc = ${short(state.friction_coefficient)}, \u03b4 = ${short(state.depth * 1e3, 3)} mm, `
     + `F = ${short(state.friction_force * force[1], 3)} ${force[0]}`
-    + (layer_number(scene, state) > THIN ? ", layer not thin" : "");
+    + (layer_number(scene, state) > MODEL.thin ? ", layer not thin" : "");
 }
 
 /** Whose formulas hold: those of the shape on Kelvin-Voigt elements, else those of the foundation. */

@@ -7,7 +7,7 @@ from typing import Any
 
 from kvtheory.results import SHOWN_UNITS
 from kvtheory.scene.drives import Drive
-from kvtheory.scene.foundations import FOUNDATIONS, Arm
+from kvtheory.scene.foundations import FOUNDATIONS, THIN, Arm
 from kvtheory.scene.indenters import SHAPES, Circle
 from kvtheory.scene.model import SUPPORTS, Run, Scene
 from kvtheory.scene.quantities import Quantity, given, quantities, required
@@ -93,6 +93,7 @@ def controls(scene: Scene) -> dict[str, Any]:
             name: _slider("arm", spec, name, None, True) for name, spec in quantities(Arm).items()
         },
         "allowed": _allowed(),
+        "thin": THIN,
         "whole": [name for name, cls in SHAPES.items() if not cls.per_width],
         "scene": _scene(scene),
     }

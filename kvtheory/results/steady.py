@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, fields
+from html import escape
 from typing import Any
 
 import numpy as np
@@ -29,7 +30,7 @@ class SteadyState(Presented):
     `units`.
 
     `stable` says whether steady sliding is stable: it is with a rigid drive; with a spring in the drive it
-    is None if not known.
+    is None if not known. `notes` are sentences about limits of the model that this scene exceeds.
     """
 
     depth: Value
@@ -51,6 +52,7 @@ class SteadyState(Presented):
     stable: Any = True
     over: Mapping[str, Any] = field(default_factory=dict, repr=False, compare=False)
     """The values that vary, by key of the scene, in SI; each has the shape of the quantities."""
+    notes: tuple[str, ...] = field(default=(), compare=False)
 
     @property
     def unstable(self) -> str:
@@ -62,8 +64,11 @@ class SteadyState(Presented):
         return UNSTABLE.format(of) if count else ""
 
     def __repr__(self) -> str:
-        """Return a summary in a few lines, with a warning if steady sliding is unstable."""
-        return "\n".join([super().__repr__(), *([self.unstable] if self.unstable else [])])
+        """Return a summary in a few lines, with the notes."""
+        return "\n".join([super().__repr__(), *self.notes])
+
+    def _repr_html_(self) -> str:
+        return super()._repr_html_() + "".join(f"<p>{escape(note)}</p>" for note in self.notes)
 
     def as_dict(self) -> dict[str, Any]:
         """Return plain Python values, ready for JSON; what does not exist is None."""

@@ -66,8 +66,8 @@ NOTES = {
     "foundation": [
         "# or, instead of the stiffness, a thin layer bonded to a rigid base:",
         '# modulus = "5 MPa"',
-        '# thickness = "2 mm"',
-        "# poisson_ratio = 0.45",
+        '# thickness = "0.2 mm"',
+        "# poisson_ratio = 0.3",
         "# or another foundation:",
         '# kind = "generalized-maxwell" with arms = [["30 GN/m^3", "10 ms"], ["5 GN/m^3", "1 s"]]',
         "#     instead of the retardation time: stiffness and relaxation time of each arm",
