@@ -53,7 +53,7 @@ def pictures(block: Any, variables: dict[str, Any], settings: dict[str, Any]) ->
 
 
 def write(directory: Path) -> None:
-    """Write the scripts with a title as the gallery requires it, a folder for each topic, if they have changed."""
+    """Write the scripts that have changed, titled as the gallery requires, in a folder for each topic."""
     _put(directory / "scripts" / "README.rst", _HEAD)
     for number, (topic, names) in enumerate(TOPICS.items(), start=1):
         folder = directory / "scripts" / f"{number}-{topic.split()[-1].lower()}"
