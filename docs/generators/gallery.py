@@ -64,9 +64,9 @@ def write(directory: Path) -> None:
             _put(folder / f"{name}.py", titled)
 
 
-def order(directory: str) -> Any:
-    """Return the key by which the scripts of a topic are sorted: the order in which they are drawn."""
-    return lambda file: FIGURES.index(Path(file).stem)
+def order(file: str) -> int:
+    """Return the place of a script in the gallery: the order in which the figures are drawn."""
+    return FIGURES.index(Path(file).stem)
 
 
 def _titled(found: re.Match[str]) -> str:
