@@ -12,6 +12,7 @@ from click.testing import CliRunner
 from kvtheory.derivations.contents import CONTENTS
 
 import kvtheory as kv
+from figures.__main__ import TOPICS
 from kvtheory.cli import main
 from kvtheory.scene.files import SECTIONS
 from kvtheory.scene.indenters import SHAPES
@@ -24,7 +25,7 @@ NOTEBOOKS = sorted((DOCS / "gallery" / "notebooks").glob("*.ipynb"))
 sys.path.insert(0, str(DOCS))
 
 import check_site  # noqa: E402
-from generators import api, commands, equations, keys, labels  # noqa: E402
+from generators import api, commands, equations, gallery, keys, labels  # noqa: E402
 
 
 @pytest.fixture
@@ -167,6 +168,18 @@ def test_the_reference_has_a_page_for_every_public_name():
     assert all(kv.results.__name__ in getattr(kv, name).__module__ for name in shown["Results"])
     assert "pycon\n>>> " in pages["api/steady.md"]
     assert "| `radius` | m |" in pages["api/Parabola.md"]
+
+
+def test_the_gallery_is_ordered_by_topic(tmp_path):
+    gallery.write(tmp_path)
+    folders = sorted(path for path in (tmp_path / "scripts").iterdir() if path.is_dir())
+    heads = [(folder / "README.rst").read_text("utf-8").partition("\n")[0] for folder in folders]
+    shown = [
+        tuple(path.stem for path in sorted(folder.glob("*.py"), key=gallery.order))
+        for folder in folders
+    ]
+    assert dict(zip(heads, shown, strict=True)) == TOPICS
+    assert heads == list(TOPICS)
 
 
 def test_docstrings_become_markdown_that_says_the_same():
