@@ -170,6 +170,28 @@ def test_circle(fraction, l_r):
         close(at_depth(Circle(R), K, 1.0, l_r, depth), truth)
 
 
+@pytest.mark.parametrize("l_r", [1.01e-8, 1.03e-8, 1.05e-8])
+def test_a_nearly_vertical_circle_dissipates_what_it_says(l_r):
+    """Where the sensitivities to both edges cancel, their rounding does not."""
+    R, depth = 0.01, 0.01 * (1.0 - 6.6e-5)
+    with mpmath.workdps(40):
+        radius, d, l = mpmath.mpf(R), mpmath.mpf(depth), mpmath.mpf(l_r)
+
+        def slope(x):
+            return x / mpmath.sqrt(radius**2 - x**2)
+
+        def height(x):
+            return radius - mpmath.sqrt(radius**2 - x**2)
+
+        a = mpmath.sqrt(2 * radius * d - d**2)
+        ends = {"solver": "bisect", "maxsteps": 250, "verify": False}
+        x = mpmath.findroot(lambda x: height(x) + l * slope(x) - d, (0, a), **ends)
+        drag = sum(radius * mpmath.atanh(end / radius) - end for end in (a, x))
+        truth = drag / (drag + l * slope(x) ** 2 / 2)
+        state = at_depth(Circle(R), K, 1.0, l_r, depth)
+        close(state, {"dissipated_in_contact": truth}, rtol=1e-9)
+
+
 @pytest.mark.parametrize("q", [0.999, 0.5, 0.01])
 def test_circle_departs_from_the_parabola_with_the_square_of_the_half_length(q):
     """To leading order in a/R, the circle is the parabola with x^4/(8 R^3) added to it."""

@@ -34,9 +34,9 @@ def asymptotes(
     Returns
     -------
     AsymptoteReport
-        The critical velocity V* (theorem F5, F19-crossing), the regime, and a line for each asymptote:
-        its value, the exact value, the relative error and the velocities where that is within the
-        tolerance. For a dead weight also the friction maximum, unless the indenter is a wedge.
+        The velocity V* at which the asymptotes cross (Eqs. 47, 48; F5, F19-crossing), the regime, and a line
+        for each asymptote: its value, the exact value, the relative error and the velocities where that is
+        within the tolerance. For a dead weight also the friction maximum, unless the indenter is a wedge.
 
     Raises
     ------

@@ -39,7 +39,8 @@ def stability(
         give ``"drive.stiffness"`` also where the drive of the scene is rigid.
     quantity
         Name of a quantity, or several; without it, all. The critical stiffness alone takes
-        less than a microsecond for each scene of an array; the critical velocity and the rates take longer.
+        less than a microsecond for each scene of an array; the critical velocity, that of the onset of
+        instability, and the rates take longer.
 
     Returns
     -------

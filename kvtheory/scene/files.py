@@ -65,7 +65,7 @@ NOTES = {
     ],
     "foundation": [
         "# or, instead of the stiffness, a thin layer bonded to a rigid base:",
-        '# modulus = "5 MPa"',
+        '# modulus = "20 MPa"',
         '# thickness = "0.2 mm"',
         "# poisson_ratio = 0.3",
         "# or another foundation:",

@@ -25,8 +25,8 @@ from kvtheory.scene.quantities import (
 LAYER = ("modulus", "thickness", "poisson_ratio")
 THIN = 0.1
 """Largest `layer_number` of a thin layer. Up to it K predicts the load at a given depth to 5 % for a parabola
-and 11 % for a ball, and the length of the contact to 15 %: measured by solving the contact of a parabola with
-the exact compliance of the layer for nu from 0 to 0.499, that of a ball for nu near 1/2."""
+and 11 % for a ball, and the length of the contact to 15 %: measured by solving the contact with the exact
+compliance of the layer, for nu from 0 to nearly 1/2."""
 MOST_ARMS = 100
 PAIRS = 'pairs of stiffness and relaxation time, such as ["30 GN/m^3", "10 ms"]'
 DISTINCT = 1e-6
@@ -52,11 +52,11 @@ def layer_stiffness(modulus: Any, thickness: Any, poisson_ratio: Any) -> Any:
 def layer_number(thickness: Any, half_length: Any, poisson_ratio: Any) -> Any:
     """Return (h/a)^2/(1 - 2 nu): a layer is thin for a contact of half length a if it is below `THIN`.
 
-    In plane strain a bonded layer of thickness h without friction on its surface is compressed by
-    u = (p/K) [1 + c (kh)^2 + ...] under a pressure of wave number k, c = nu (4 nu - 1)/(3 (1 - nu)(1 - 2 nu)).
-    The foundation of stiffness K is the first term. The second one becomes (h/a)^2/(3 (1 - 2 nu)) as nu
-    approaches 1/2, where the layer flows sideways instead of being compressed: with L^2 = c h^2 a parabola
-    at a given depth then carries [(1 - L^2/a^2)^(3/2) + L^3/a^3] of the load that K predicts.
+    Under a pressure of wave number k a bonded layer of thickness h without friction on its surface is
+    compressed by u = (p/K) [1 + c (k h)^2 + ...], c = nu (4 nu - 1)/(3 (1 - nu)(1 - 2 nu)). The first term
+    is the foundation. The second one is (k h)^2/(3 (1 - 2 nu)) near nu = 1/2, where the layer flows sideways
+    instead of being compressed: with L^2 = c h^2 a parabola at a given depth then carries
+    (1 - L^2/a^2)^(3/2) + L^3/a^3 of the load that K predicts.
 
     The same parameter decides in Chandler and Vella (2020), Proc. R. Soc. A 476, arXiv:2010.11133.
 
