@@ -11,7 +11,7 @@ from kvtheory.models.steady.methods import METHODS
 from kvtheory.models.steady.spots import stretch_of
 from kvtheory.models.steady.stable_sliding import lasts
 from kvtheory.results import SteadyState
-from kvtheory.scene.broadcasting import values
+from kvtheory.scene.broadcasting import replaceable, values
 from kvtheory.scene.foundations import thick_layer
 from kvtheory.scene.model import Scene
 from kvtheory.scene.quantities import nearest
@@ -91,6 +91,10 @@ def steady(
         if "drive.stiffness" in given:
             state = replace(state, stable=lasts(scene, given))
             state = replace(state, notes=tuple(filter(None, [state.unstable])))
+        if over and given["drive.velocity"].ndim:
+            specs = replaceable(scene)
+            units = {**state.units, **{key: specs[key].unit for key in over}}
+            state = replace(state, over={key: given[key] for key in over}, units=units)
         if scene.foundation.modulus is None or "foundation.stiffness" in (over or {}):
             return state
         shortest = state.half_length * np.minimum(1.0, stretch_of(given))
