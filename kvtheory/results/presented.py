@@ -65,8 +65,8 @@ class Presented:
     def plot(self, *, ax: Any = None, **style: Any) -> Any:
         """Draw the result and return the figure; `ax` is an axes or several, else they are new.
 
-        A time series is drawn as in Fig. 3 of the paper; steady sliding as the friction coefficient over
-        the retardation length V tau, or, for a single parabola, as its pressure over the contact.
+        A time series is drawn as in Fig. 3 of the paper; steady sliding as its friction coefficient over what
+        varies, or, for a single parabola or ball, as its pressure over the contact.
         """
         return above("plot_result")(self, ax, **style)
 

@@ -50,6 +50,8 @@ class SteadyState(Presented):
     )
     """The SI unit of each quantity."""
     stable: Any = True
+    over: Mapping[str, Any] = field(default_factory=dict, repr=False, compare=False)
+    """The values that vary, by key of the scene, in SI; each has the shape of the quantities."""
     notes: tuple[str, ...] = field(default=(), compare=False)
 
     @property

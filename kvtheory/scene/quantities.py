@@ -71,12 +71,12 @@ class Part:
         return copy
 
     def arrays(self) -> dict[str, NDArray[np.float64]]:
-        """Return the arrays among the quantities, those of parts within it by dotted name."""
+        """Return the arrays among the given quantities, those of parts within it by dotted name."""
         found: dict[str, Any] = {}
         for name, value in vars(self).items():
             if value.__class__ in SCALARS:  # most of them
                 continue
-            if isinstance(value, np.ndarray):
+            if type(value) is np.ndarray:  # and not derived
                 found[name] = value
             elif isinstance(value, Part):
                 found |= {f"{name}.{inner}": each for inner, each in value.arrays().items()}
