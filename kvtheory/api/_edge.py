@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 
 from kvtheory.scene.drives import TIME
-from kvtheory.scene.lists import item_values, items
+from kvtheory.scene.lists import array_of, item_values, items
 from kvtheory.scene.model import Scene
-from kvtheory.scene.quantities import SceneError, convert, problem
+from kvtheory.scene.quantities import SceneError, collecting
 from kvtheory.scene.static_state import out_of_range
 
 
@@ -38,20 +38,17 @@ def times_of(scene: Scene, at: Any, problems: list[str] | None = None) -> Any:
         return None
     found: list[str] = []
     times: list[float] = []
-    given = [at] if isinstance(at, str) or np.ndim(at) == 0 else at
-    for value in (
-        part for one in given for part in (items(one) if isinstance(one, str) else [one])
-    ):
-        try:
-            text = isinstance(value, str)
-            several = item_values(value, TIME).tolist() if text else [convert(value, TIME)]
-            if max(several) > scene.run.duration:
-                raise ValueError(
-                    f"is after the end of the run, run.duration = {scene.run.duration} s"
-                )
-            times += several
-        except ValueError as error:
-            found.append(problem("`at`", value, str(error)))
+    for one in at if isinstance(at, (list, tuple)) else [at]:
+        for value in items(one) if isinstance(one, str) else [one]:
+            with collecting(found, "`at`", value):
+                read = item_values if isinstance(value, str) else array_of
+                several = np.atleast_1d(read(value, TIME))
+                if several.ndim > 1:
+                    raise ValueError("expected one list of times")
+                if np.any(several > scene.run.duration):
+                    late = f"is after the end of the run, run.duration = {scene.run.duration} s"
+                    raise ValueError(late)
+                times += several.tolist()
     if not times and not found:
         found.append('`at` is empty: expected times such as "0 ms,1 ms"')
     if problems is not None:
