@@ -16,10 +16,6 @@ from kvtheory.scene.static_state import out_of_range
 
 def scene_of(scene: Scene | None) -> Scene:
     """Return the scene, or that of Table 1."""
-    if scene is not None and not isinstance(scene, Scene):
-        raise TypeError(
-            f"expected a Scene, got {scene!r}; kvtheory.load_scene reads one from a file"
-        )
     return _table1() if scene is None else scene
 
 

@@ -1,4 +1,4 @@
-"""Several values of one quantity: arrays, lists, and texts as ``"10 ms,1 s"`` and ``"1 mm/s:10 m/s:200:log"``."""
+"""Several values of one quantity: arrays, lists, and texts such as ``"0 ms,10 ms:1 s:200:log"``."""
 
 from typing import Any
 
