@@ -8,6 +8,7 @@ import math
 from collections.abc import Callable, Iterable, Mapping
 from contextlib import suppress
 from functools import wraps
+from operator import index
 from os import PathLike
 from typing import Any, TypeVar, cast
 
@@ -107,9 +108,13 @@ def measured(spec: Quantity) -> Kind:
 
 def count(value: Any) -> int:
     """Read a whole number of at least 1."""
-    if isinstance(value, bool) or not isinstance(value, (int, np.integer)) or value < 1:
+    found = 0
+    if not isinstance(value, bool):
+        with suppress(TypeError):
+            found = index(value)
+    if found < 1:
         raise ValueError("expected a whole number of at least 1")
-    return int(value)
+    return found
 
 
 def flag(value: Any) -> bool:
@@ -135,7 +140,7 @@ def pool(value: Any) -> Any:
 
 def file_name(value: Any) -> Any:
     """Read the name of a file."""
-    if not isinstance(value, (str, PathLike)) or "\0" in str(value):
+    if not isinstance(value, (str, PathLike)) or "\0" in str(value) or not str(value):
         raise ValueError("expected the name of a file")
     return value
 

@@ -1,10 +1,16 @@
-"""Sweeps as files: CSV in long form and NetCDF, written block by block, and read again."""
+"""Sweeps as files: CSV in long form and NetCDF, written block by block, and read again.
 
+The last line of a file is the SHA-256 of all bytes above it, so that a file in which anything was changed is
+not taken for this sweep: numbers, axes, units, texts, or their order. Readers of CSV skip the line as a
+comment, those of NetCDF do not reach it. A file that another program saved anew has lost it.
+"""
+
+import hashlib
 import json
 from collections.abc import Iterator, Mapping
 from importlib.metadata import version
 from pathlib import Path
-from typing import Any
+from typing import Any, BinaryIO
 
 import numpy as np
 
@@ -17,9 +23,14 @@ from kvtheory.sweeps.outcome import Outcome, outcome
 from kvtheory.sweeps.plan import Plan, differences
 
 FORMATS: Mapping[str, Any] = {".csv": csv_file, ".nc": netcdf_file}
-"""Modules with `check`, `write`, `header`, `damage` and `values`, by the suffix that they serve."""
+"""Modules with `check`, `write`, `header` and `values`, by the suffix that they serve."""
 
 WAYS_OUT = "remove it, choose another name, or overwrite it (`overwrite`)"
+
+
+SEAL = "# sha256 of all above: {}\r\n"
+PART = 2**20
+"""Bytes read at a time."""
 
 
 def format_of(path: Path) -> Any:
@@ -35,7 +46,29 @@ def check(path: Path) -> None:
 
 def write(result: Outcome, path: Path) -> None:
     """Write a result to `path` by a temporary name."""
-    replace_file(path, lambda part: format_of(path).write(result, part))
+
+    def sealed(part: Path) -> None:
+        format_of(path).write(result, part)
+        with part.open("r+b") as file:
+            file.write(_seal(file, part.stat().st_size))
+
+    replace_file(path, sealed)
+
+
+def _seal(file: BinaryIO, size: int) -> bytes:
+    """Return the last line of a file, from the `size` bytes above it, and stand there."""
+    digest = hashlib.sha256()
+    while part := file.read(min(PART, size)):
+        digest.update(part)
+        size -= len(part)
+    return SEAL.format(digest.hexdigest()).encode()
+
+
+def _whole(path: Path) -> bool:
+    """Whether every byte of a file is as it was written."""
+    above = path.stat().st_size - len(SEAL.format("0" * 64))
+    with path.open("rb") as file:
+        return above > 0 and _seal(file, above) == file.read()
 
 
 def finished(path: Path, plan: Plan) -> bool:
@@ -44,24 +77,22 @@ def finished(path: Path, plan: Plan) -> bool:
     Raises
     ------
     ValueError
-        If it holds anything else but this sweep, or has lost or changed some of it since.
+        If it holds anything else but this sweep as it was written.
     """
     if not path.exists():
         return False
+    if not _whole(path):
+        raise ValueError(
+            f'"{path}" exists and is not a sweep as it was written: it is another file, or was changed, cut, '
+            f"or saved anew by another program; {WAYS_OUT}"
+        )
     header = format_of(path).header(path)
-    if header is None:
-        raise ValueError(f'"{path}" exists and is not a sweep: {WAYS_OUT}')
-    if not header:
-        raise ValueError(f'"{path}" is a sweep whose beginning is damaged: {WAYS_OUT}')
     if differing := differences(header["record"], plan):
         raise ValueError(
             f'"{path}" holds another sweep: it differs in {", ".join(differing)}; {WAYS_OUT}'
         )
     summary = json.loads(header["summary"])
-    whole = bool(summary["done"] == summary["points"])
-    if damage := format_of(path).damage(path, plan, whole):
-        raise ValueError(f'"{path}" is this sweep, but {damage}; to compute it anew, {WAYS_OUT}')
-    return whole
+    return bool(summary["done"] == summary["points"])
 
 
 class Stored(Mapping[str, Any]):
