@@ -195,7 +195,7 @@ def test_what_an_old_section_has_in_common_with_the_new_one_stays(tmp_path):
 def test_parts_of_the_wrong_kind_are_named():
     with pytest.raises(kv.SceneError) as caught:
         kv.Scene(indenter="parabola", drive="100 mm/s")
-    assert [text.split(" = ")[0] for text in caught.value.problems] == ["indenter", "drive"]
+    assert [text.split(" = ")[0] for text in caught.value.problems] == ["`indenter`", "`drive`"]
     with pytest.raises(ValueError, match='did you mean "fixed"'):
         kv.Scene.table1("Fixed")
     for options in (

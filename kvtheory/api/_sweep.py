@@ -112,8 +112,8 @@ def sweep(
     SceneError
         If a key, value, quantity or time is wrong; every mistake is listed.
     ValueError
-        If another argument is wrong, if `output` holds anything other than this sweep, or a sweep that
-        lost rows or was changed since it was written; or if memory or disk cannot hold the result.
+        If another argument is wrong, if `output` holds anything other than this sweep, or a sweep
+        in which anything was changed since it was written; or if memory or disk cannot hold the result.
     OSError
         If a file cannot be written; finished blocks are kept, and the same call resumes.
     RuntimeError

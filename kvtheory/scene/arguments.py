@@ -23,6 +23,7 @@ from kvtheory.scene.quantities import (
     collecting,
     convert,
     nearest,
+    problem,
     shown,
 )
 from kvtheory.scene.units import bare, to_si
@@ -81,7 +82,8 @@ def checked(**kinds: Kind) -> Callable[[Function], Function]:
 def a_scene(value: Any) -> Scene:
     """Read a scene."""
     if not isinstance(value, Scene):
-        raise ValueError("expected a Scene; kvtheory.load_scene reads one from a file")
+        told = "expected a Scene; kvtheory.load_scene reads one from a file"
+        raise TypeError(problem("`scene`", value, told))
     return value
 
 

@@ -1,7 +1,7 @@
 """Sweeps as CSV (RFC 4180) in long form: one row for each point, or each point and time.
 
 What the file is stands above the table in lines that begin with ``#``; the first of them say how to
-read it.
+read it, and by which digest a change is noticed.
 """
 
 import csv
@@ -23,6 +23,8 @@ from kvtheory.sweeps.plan import Plan
 END = "\r\n"
 MARK = "# kvtheory sweep"
 """The first line of every such file."""
+DIGEST = f"{MARK}{END}# sha256 of the rest of this file: "
+SEAL = len(DIGEST)
 READ = "# to read the table: pandas.read_csv(FILE, comment='#')"
 
 
@@ -33,7 +35,7 @@ def check() -> None:
 def write(result: Outcome, path: Path) -> None:
     """Write header and rows; rows of points that were not computed yet are left out."""
     with path.open("wb") as file:
-        lines = [MARK, *_comments(result), ",".join(_heads(result.plan)), ""]
+        lines = [f"{DIGEST}{'0' * 64}", *_comments(result), ",".join(_heads(result.plan)), ""]
         file.write(END.join(lines).encode())
         for block in result.blocks():
             file.write(_rows(result.plan, block))

@@ -1,12 +1,13 @@
 """Sweeps as files: CSV in long form and NetCDF, written block by block, and read again.
 
-The last line of a file is the SHA-256 of all bytes above it, so that a file in which anything was changed is
-not taken for this sweep: numbers, axes, units, texts, or their order. Readers of CSV skip the line as a
-comment, those of NetCDF do not reach it. A file that another program saved anew has lost it.
+A file holds the SHA-256 of all its other bytes, so that one in which anything was changed is not taken for
+this sweep: numbers, axes, units, texts, or their order. In CSV it stands in the second line, in NetCDF
+behind what its readers reach. A file that another program saved anew has lost it.
 """
 
 import hashlib
 import json
+import os
 from collections.abc import Iterator, Mapping
 from importlib.metadata import version
 from pathlib import Path
@@ -23,12 +24,14 @@ from kvtheory.sweeps.outcome import Outcome, outcome
 from kvtheory.sweeps.plan import Plan, differences
 
 FORMATS: Mapping[str, Any] = {".csv": csv_file, ".nc": netcdf_file}
-"""Modules with `check`, `write`, `header` and `values`, by the suffix that they serve."""
+"""Modules with `check`, `write`, `header` and `values`, by the suffix that they serve; `SEAL` is the place of
+the digest, counted from the end if it is negative."""
 
 WAYS_OUT = "remove it, choose another name, or overwrite it (`overwrite`)"
 
 
-SEAL = "# sha256 of all above: {}\r\n"
+DIGITS = 64
+"""Of a SHA-256."""
 PART = 2**20
 """Bytes read at a time."""
 
@@ -46,29 +49,36 @@ def check(path: Path) -> None:
 
 def write(result: Outcome, path: Path) -> None:
     """Write a result to `path` by a temporary name."""
+    form = format_of(path)
 
     def sealed(part: Path) -> None:
-        format_of(path).write(result, part)
+        form.write(result, part)
         with part.open("r+b") as file:
-            file.write(_seal(file, part.stat().st_size))
+            digest = _digest(file, form.SEAL)
+            file.seek(-DIGITS, os.SEEK_CUR)
+            file.write(digest)
 
     replace_file(path, sealed)
 
 
-def _seal(file: BinaryIO, size: int) -> bytes:
-    """Return the last line of a file, from the `size` bytes above it, and stand there."""
-    digest = hashlib.sha256()
-    while part := file.read(min(PART, size)):
-        digest.update(part)
-        size -= len(part)
-    return SEAL.format(digest.hexdigest()).encode()
+def _digest(file: BinaryIO, place: int) -> bytes:
+    """Return the digest of all bytes of a file but those of the digest itself, and stand behind these."""
+    size, digest = file.seek(0, os.SEEK_END), hashlib.sha256()
+    place = max(0, place if place >= 0 else size + place)
+    for start, stop in ((place + DIGITS, size), (0, place)):
+        file.seek(start)
+        while part := file.read(max(0, min(PART, stop - file.tell()))):
+            digest.update(part)
+    file.seek(place + DIGITS)
+    return digest.hexdigest().encode()
 
 
 def _whole(path: Path) -> bool:
     """Whether every byte of a file is as it was written."""
-    above = path.stat().st_size - len(SEAL.format("0" * 64))
     with path.open("rb") as file:
-        return above > 0 and _seal(file, above) == file.read()
+        digest = _digest(file, format_of(path).SEAL)
+        file.seek(-DIGITS, os.SEEK_CUR)
+        return digest == file.read(DIGITS)
 
 
 def finished(path: Path, plan: Plan) -> bool:

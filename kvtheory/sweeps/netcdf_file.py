@@ -13,6 +13,8 @@ from kvtheory.sweeps.outcome import Outcome
 from kvtheory.sweeps.plan import Plan
 
 TITLE = "kvtheory sweep"
+SEAL = -64
+"""Behind what HDF5 reads."""
 
 
 def check() -> None:
@@ -49,6 +51,8 @@ def write(result: Outcome, path: Path) -> None:
         for block in result.blocks():
             for place, part in rectangles(block.start, block.stop, shape):
                 _fill(by_name, block, place, part)
+    with path.open("ab") as file:
+        file.write(b"0" * -SEAL)
 
 
 def header(path: Path) -> Mapping[str, str]:
