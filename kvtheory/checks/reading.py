@@ -65,8 +65,8 @@ def read(data: Any, units: Mapping[str, str] = SI_UNITS) -> Series:
     units = {**units, **PRESSURE}
     if isinstance(data, (str, PathLike)):
         return _from_file(Path(data), units)
-    if isinstance(data, Mapping) or (hasattr(data, "keys") and getattr(data, "ndim", 2) == 2):
-        return _from_mapping(data, units)  # a table of pandas or xarray, too
+    if isinstance(data, Mapping) or (hasattr(data, "columns") and not isinstance(data, type)):
+        return _from_mapping(data, units)  # a table of pandas, too
     names = [name for name in SI_UNITS if getattr(data, name, None) is not None]
     if "time" not in names:
         raise TypeError(

@@ -137,8 +137,11 @@ def bare(value: Any) -> tuple[Any, str | None]:
     elif isinstance(attributes := getattr(value, "attrs", None), dict):
         units = attributes.get("units")
         written = ("" if units == "1" else units) if isinstance(units, str) else None
-    if np.ma.is_masked(value):
-        count = int(np.ma.count_masked(value))
+    masked = (
+        [item for item in value if np.ma.is_masked(item)] if isinstance(value, list) else [value]
+    )
+    if any(map(np.ma.is_masked, masked)):
+        count = int(sum(map(np.ma.count_masked, masked)))
         raise ValueError(
             f"has {count} masked value{'s' * (count > 1)}; leave masked values out "
             "(`.compressed()`), or fill them (`.filled()`)"
