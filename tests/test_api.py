@@ -72,7 +72,7 @@ ARRAYS = (
     xarray.DataArray([0.05]),
     dask.array.ones(2),
 )
-NUMBERS = (None, True, "1e-3", -1.0, 5, np.nan, np.inf, np.ma.masked, [0.05], {}, *ARRAYS)
+NUMBERS = (None, True, "1e-3", -1.0, np.nan, np.inf, np.ma.masked, [0.05], {}, *ARRAYS)
 NAMES = (5, 0.1, np.nan, {"load": 1}, ["load", 5], [["load"]], *ARRAYS)
 COUNTS = (0, -1, 1.0, "2", True, np.nan, np.timedelta64(5), *ARRAYS)
 FLAGS = (None, 1, "yes", np.nan, [True], *ARRAYS)
@@ -87,7 +87,7 @@ OVER = (
     *ARRAYS,
 )
 WRONG = {
-    "rtol": NUMBERS, "tolerance": NUMBERS, "quantity": NAMES, "quantities": NAMES, "overrides": NAMES,
+    "rtol": (5, *NUMBERS), "tolerance": NUMBERS, "quantity": NAMES, "quantities": NAMES, "overrides": NAMES,
     "method": NAMES, "scheme": NAMES, "max_steps": COUNTS, "jobs": COUNTS, "block": COUNTS,
     "in_flight": COUNTS, "certify": FLAGS, "over_time": FLAGS, "overwrite": FLAGS, "over": OVER,
     "scene": (5, "scene.toml", {}, *ARRAYS), "progress": (5, "x", True, dict), "warn": (5, "x"),

@@ -2,6 +2,7 @@
 
 import re
 import tomllib
+from pathlib import Path
 
 import numpy as np
 import pint
@@ -10,7 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import kvtheory as kv
-from kvtheory.scene import template
+from kvtheory.scene import template, texts
 from kvtheory.scene.broadcasting import values
 from kvtheory.scene.static_state import StaticState
 
@@ -295,3 +296,21 @@ def test_the_template_is_what_the_design_asks_for():
     parsed = tomllib.loads(template("suspended"))
     assert parsed["support"]["kind"] == "suspended"
     assert re.fullmatch(r"[\d.]+ \S+", parsed["support"]["stiffness"])
+
+
+@pytest.mark.parametrize("device", [True, False])
+def test_devices_and_files_that_are_too_large_are_not_read(tmp_path, monkeypatch, device):
+    path, told = Path("/dev/zero"), "is a device"
+    if not device:
+        path, told = tmp_path / "large.csv", "holds more than 0 MB"
+        path.write_text("t [s],V [m/s]\n0,1\n1,1\n")
+        monkeypatch.setattr(texts, "MOST", 10)
+    elif not path.exists():
+        pytest.skip("this system has no such device")
+    for read in (
+        lambda: kv.load_scene(path),
+        lambda: kv.load_scene(overrides=[f"drive.file={path}"]),
+        lambda: kv.compare(data=path),
+    ):
+        with pytest.raises((OSError, ValueError), match=rf"{path.name}.*{told}|{told}.*{path.name}"):
+            read()

@@ -137,10 +137,10 @@ def bare(value: Any) -> tuple[Any, str | None]:
     elif isinstance(attributes := getattr(value, "attrs", None), dict):
         units = attributes.get("units")
         written = ("" if units == "1" else units) if isinstance(units, str) else None
-    masked = (
-        [item for item in value if np.ma.is_masked(item)] if isinstance(value, list) else [value]
-    )
-    if any(map(np.ma.is_masked, masked)):
+    masked = [
+        part for part in (value if isinstance(value, list) else [value]) if np.ma.is_masked(part)
+    ]
+    if masked:
         count = int(sum(map(np.ma.count_masked, masked)))
         raise ValueError(
             f"has {count} masked value{'s' * (count > 1)}; leave masked values out "
