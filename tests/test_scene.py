@@ -312,5 +312,7 @@ def test_devices_and_files_that_are_too_large_are_not_read(tmp_path, monkeypatch
         lambda: kv.load_scene(overrides=[f"drive.file={path}"]),
         lambda: kv.compare(data=path),
     ):
-        with pytest.raises((OSError, ValueError), match=rf"{path.name}.*{told}|{told}.*{path.name}"):
+        with pytest.raises(
+            (OSError, ValueError), match=rf"{path.name}.*{told}|{told}.*{path.name}"
+        ):
             read()

@@ -7,10 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from kvtheory.scene.drives import TIME
-from kvtheory.scene.lists import array_of, item_values, items
 from kvtheory.scene.model import Scene
-from kvtheory.scene.quantities import SceneError, collecting
+from kvtheory.scene.quantities import SceneError, problem
 from kvtheory.scene.static_state import out_of_range
 
 
@@ -25,33 +23,18 @@ def _table1() -> Scene:
     return Scene()
 
 
-def times_of(scene: Scene, at: Any, problems: list[str] | None = None) -> Any:
+def times_of(scene: Scene, at: list[float] | None, problems: list[str] | None = None) -> Any:
     """Return the times in s, checked against the duration of the run; None stays None.
 
     Mistakes are appended to `problems`, if given; else they are raised.
     """
-    if at is None:
-        return None
-    found: list[str] = []
-    times: list[float] = []
-    for one in at if isinstance(at, (list, tuple)) else [at]:
-        for value in items(one) if isinstance(one, str) else [one]:
-            with collecting(found, "`at`", value):
-                read = item_values if isinstance(value, str) else array_of
-                several = np.atleast_1d(read(value, TIME))
-                if several.ndim > 1:
-                    raise ValueError("expected one list of times")
-                if np.any(several > scene.run.duration):
-                    late = f"is after the end of the run, run.duration = {scene.run.duration} s"
-                    raise ValueError(late)
-                times += several.tolist()
-    if not times and not found:
-        found.append('`at` is empty: expected times such as "0 ms,1 ms"')
+    late = f"is after the end of the run, run.duration = {scene.run.duration} s"
+    found = [problem("`at`", time, late) for time in at or () if time > scene.run.duration]
     if problems is not None:
         problems += found
     elif found:
         raise SceneError(found)
-    return times
+    return at
 
 
 @contextmanager

@@ -8,7 +8,7 @@ from kvtheory.api._edge import double_precision, scene_of, times_of
 from kvtheory.progress import Progress
 from kvtheory.results import Simulation
 from kvtheory.results.schemes import SCHEME_ROWS
-from kvtheory.scene.arguments import a_scene, callback, checked, choice, flag, measured
+from kvtheory.scene.arguments import a_scene, callback, checked, choice, flag, measured, times
 from kvtheory.scene.model import Scene
 from kvtheory.scene.quantities import Quantity
 
@@ -19,8 +19,8 @@ TIME_STEP = Quantity("s", "time step", 0.0, True)
 
 
 @checked(
-    scene=a_scene, per_length=measured(PER_LENGTH), scheme=choice(SCHEME_ROWS), time_step=measured(TIME_STEP),
-    certify=flag, progress=callback, warn=callback,
+    scene=a_scene, at=times, per_length=measured(PER_LENGTH), scheme=choice(SCHEME_ROWS),
+    time_step=measured(TIME_STEP), certify=flag, progress=callback, warn=callback,
 )  # fmt: skip
 def elements(
     scene: Scene | None = None,

@@ -14,7 +14,7 @@ from kvtheory.ladder.climbing import Request, climb
 from kvtheory.progress import Progress
 from kvtheory.results import STEADY_UNITS, TRANSIENT_UNITS, Solution, ToleranceError
 from kvtheory.results.steady import UNKNOWN, UNSTABLE
-from kvtheory.scene.arguments import a_scene, callback, checked, flag, names, number
+from kvtheory.scene.arguments import a_scene, callback, checked, flag, names, number, times
 from kvtheory.scene.model import Scene
 from kvtheory.scene.quantities import SceneError, nearest, problem
 from kvtheory.scene.requirements import lacks_stability
@@ -25,6 +25,7 @@ MINIMUM_RTOL, MAXIMUM_RTOL = 1e-14, 1.0
 
 @checked(
     scene=a_scene,
+    at=times,
     quantity=names,
     rtol=number(MINIMUM_RTOL, MAXIMUM_RTOL),
     over_time=flag,

@@ -22,6 +22,7 @@ from kvtheory.scene.arguments import (
     number,
     pool,
     replacements,
+    times,
 )
 from kvtheory.scene.model import Scene
 from kvtheory.scene.quantities import SceneError
@@ -144,7 +145,7 @@ def sweep(
 
 
 @checked(
-    scene=a_scene, over=replacements, quantities=names, method=choice(LACKS),
+    scene=a_scene, at=times, over=replacements, quantities=names, method=choice(LACKS),
     rtol=number(MINIMUM_RTOL, MAXIMUM_RTOL),
 )  # fmt: skip
 def plan_of(

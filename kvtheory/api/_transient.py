@@ -5,7 +5,7 @@ from typing import Any
 from kvtheory.api._edge import double_precision, scene_of, times_of
 from kvtheory.progress import Progress
 from kvtheory.results import Transient
-from kvtheory.scene.arguments import a_scene, callback, checked, count, flag, number
+from kvtheory.scene.arguments import a_scene, callback, checked, count, flag, number, times
 from kvtheory.scene.model import Scene
 from kvtheory.scene.requirements import lacks_ball, lacks_paper_model, lacks_strips, require
 
@@ -15,6 +15,7 @@ MINIMUM_RTOL, MAXIMUM_RTOL = 1e-12, 1e-2
 
 @checked(
     scene=a_scene,
+    at=times,
     rtol=number(MINIMUM_RTOL, MAXIMUM_RTOL),
     certify=flag,
     max_steps=count,

@@ -15,6 +15,8 @@ from typing import Any, TypeVar, cast
 import numpy as np
 
 from kvtheory.progress import listening
+from kvtheory.scene.drives import TIME
+from kvtheory.scene.lists import array_of, item_values, items
 from kvtheory.scene.model import Scene
 from kvtheory.scene.quantities import (
     SHORT,
@@ -106,6 +108,26 @@ def number(low: float, high: float = math.inf) -> Kind:
 def measured(spec: Quantity) -> Kind:
     """Return the kind of one quantity, in SI or with a unit."""
     return lambda value: convert(value, spec)
+
+
+def times(value: Any) -> list[float]:
+    """Read times in s: one or several, also as text; every mistake is reported by its value."""
+    problems: list[str] = []
+    found: list[float] = []
+    for one in value if isinstance(value, (list, tuple)) else [value]:
+        for given in items(one) if isinstance(one, str) else [one]:
+            with collecting(problems, "`at`", given):
+                read = np.atleast_1d(
+                    (item_values if isinstance(given, str) else array_of)(given, TIME)
+                )
+                if read.ndim > 1:
+                    raise ValueError("expected one list of times")
+                found += read.tolist()
+    if not found and not problems:
+        problems = ['`at` is empty: expected times such as "0 ms,1 ms"']
+    if problems:
+        raise SceneError(problems)
+    return found
 
 
 def count(value: Any) -> int:
