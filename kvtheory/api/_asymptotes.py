@@ -5,6 +5,7 @@ from typing import Any
 
 from kvtheory.api._edge import double_precision, scene_of
 from kvtheory.results import AsymptoteReport
+from kvtheory.scene.arguments import a_scene, checked, number, replacements
 from kvtheory.scene.foundations import FractionalKelvinVoigt, GeneralizedMaxwell
 from kvtheory.scene.model import Scene
 from kvtheory.scene.requirements import lacks_limits, require
@@ -13,6 +14,7 @@ MINIMUM_TOLERANCE = 1e-10
 """Smallest tolerance: below it an asymptote cannot be distinguished from rounding."""
 
 
+@checked(scene=a_scene, over=replacements, tolerance=number(MINIMUM_TOLERANCE, 1.0))
 def asymptotes(
     scene: Scene | None = None,
     *,
@@ -57,10 +59,6 @@ def asymptotes(
     Nakano and Kono (2020), doi:10.3389/fmech.2020.00038, Eqs. 40-48 and Table 2.
     """
     scene = scene_of(scene).replace(over or {})
-    if not MINIMUM_TOLERANCE <= tolerance <= 1.0:
-        raise ValueError(
-            f"`tolerance` = {tolerance!r}: expected a number from {MINIMUM_TOLERANCE} to 1"
-        )
     require(lacks_limits, scene, "the theory of asymptotes")
     # SciPy takes a while to import
     from kvtheory.models.steady import fractional_limits, prony_limits, regimes

@@ -5,6 +5,7 @@ from typing import Any
 
 from kvtheory.api._edge import double_precision, scene_of
 from kvtheory.results import Stability
+from kvtheory.scene.arguments import a_scene, checked, names, replacements
 from kvtheory.scene.model import Scene
 from kvtheory.scene.quantities import SceneError, nearest, problem
 from kvtheory.scene.requirements import lacks_stability, require
@@ -15,6 +16,7 @@ QUANTITIES = (
 )  # fmt: skip
 
 
+@checked(scene=a_scene, over=replacements, quantity=names)
 def stability(
     scene: Scene | None = None,
     *,
@@ -70,18 +72,10 @@ def stability(
     """
     scene = scene_of(scene).replace(over or {})
     require(lacks_stability, scene, "the stability of steady sliding")
-    wanted = _names(quantity)
+    wanted = frozenset(QUANTITIES if quantity is None else quantity)
+    if wrong := sorted(wanted - set(QUANTITIES)):
+        raise SceneError([problem("`quantity`", name, nearest(name, QUANTITIES)) for name in wrong])
     from kvtheory.models.steady import stable_sliding
 
     with double_precision(scene):
         return stable_sliding.solve(scene, wanted)
-
-
-def _names(quantity: str | Sequence[str] | None) -> frozenset[str]:
-    names = [quantity] if isinstance(quantity, str) else list(quantity or QUANTITIES)
-    wrong = [name for name in names if name not in QUANTITIES]
-    if wrong:
-        raise SceneError(
-            [problem("`quantity`", name, nearest(str(name), QUANTITIES)) for name in wrong]
-        )
-    return frozenset(names)

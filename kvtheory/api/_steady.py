@@ -10,9 +10,9 @@ from kvtheory.api._edge import double_precision, scene_of
 from kvtheory.models.steady.methods import METHODS
 from kvtheory.models.steady.stable_sliding import lasts
 from kvtheory.results import SteadyState
+from kvtheory.scene.arguments import a_scene, checked, choice, replacements
 from kvtheory.scene.foundations import thick_layer
 from kvtheory.scene.model import Scene
-from kvtheory.scene.quantities import nearest
 from kvtheory.scene.requirements import (
     lacks_asymptotes,
     lacks_closed_form,
@@ -26,6 +26,7 @@ LACKS = {
 }
 
 
+@checked(scene=a_scene, over=replacements, method=choice(LACKS))
 def steady(
     scene: Scene | None = None,
     *,
@@ -105,8 +106,6 @@ def method_for(scene: Scene, method: str | None) -> str:
     """Return the requested method of steady sliding, or by default the one that suits the scene."""
     lacking = {name: lacks(scene) for name, lacks in LACKS.items()}
     method = method or ("quadrature" if lacking["exact"] else "exact")
-    if method not in METHODS:
-        raise ValueError(f'`method` = "{method}": {nearest(method, METHODS)}')
     if lacking[method]:
         others = [name for name in ("exact", "quadrature") if not lacking[name]]
         hint = f'; use method = "{others[0]}"' if others else ""

@@ -31,7 +31,7 @@ def replaced(bench: Bench) -> Iterator[Trial]:
             "the drive of the data is rigid: the indenter slides at the velocity of the drive, where it "
             "swings on the spring of the scene (F22)"
         )
-        rigid = replace(scene.drive, stiffness=None, damping=None, mass=None)  # type: ignore[arg-type]
+        rigid = replace(scene.drive, stiffness=None, damping=None, mass=None)
         simpler.append(("rigid drive instead of a spring", text, replace(scene, drive=rigid)))
     for name, text, other in simpler:
         curves = bench.solved(other)

@@ -78,7 +78,7 @@ def rate(steady: Callable[..., SteadyState], scene: Scene, times: Any) -> float:
     sliding = steady(replace(scene, foundation=foundation(scene), drive=Drive(fastest)))
     shortest = min(since)
     passing = fastest / float(sliding.half_length)
-    swing = 0.0 if scene.drive.rigid else math.sqrt(scene.drive.stiffness / scene.drive_mass)  # type: ignore[operator]
+    swing = 0.0 if scene.drive.rigid else math.sqrt(scene.drive.stiffness / scene.drive_mass)
     return passing + swing + (1.0 / shortest if shortest > 0.0 else np.inf)
 
 

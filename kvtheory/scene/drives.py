@@ -15,6 +15,8 @@ from kvtheory.scene.quantities import (
     Part,
     Quantity,
     SceneError,
+    Value,
+    array_of,
     changed,
     collecting,
     convert,
@@ -78,16 +80,16 @@ class Drive(Part):
     waveform: Sine | Triangle | SmoothRamp | None = None
     breaks: Sequence[float] = ()
     tolerance: float = 1e-12
-    stiffness: float | None = quantity(
+    stiffness: Value = quantity(
         "N/m^2",
         "k_x, stiffness of a spring between drive and indenter",
         default=None, per_width=True,
     )  # fmt: skip
-    damping: float = quantity(
+    damping: Value = quantity(
         "N*s/m^2", "c_x, damping beside the spring",
         exclusive=False, default=Derived(0.0), per_width=True,
     )  # fmt: skip
-    mass: float | None = quantity(
+    mass: Value = quantity(
         "kg/m", "M_x, mass that moves along x; that of the support if not given",
         default=None, per_width=True,
     )  # fmt: skip
@@ -329,10 +331,8 @@ def _breaks(drive: Drive) -> tuple[float, ...]:
             problems.append(problem("drive.breaks", drive.breaks, "needs a function"))
     elif not callable(drive.function):
         problems.append(problem("drive.function", drive.function, "expected a function V(t)"))
-    several = isinstance(drive.breaks, (Sequence, np.ndarray)) and not isinstance(drive.breaks, str)
-    for time in drive.breaks if several else [drive.breaks]:
-        with collecting(problems, "drive.breaks", time):
-            times.append(convert(time, TIME))
+    with collecting(problems, "drive.breaks", drive.breaks):
+        times = np.atleast_1d(array_of(drive.breaks, TIME)).tolist()
     tolerance = drive.tolerance
     if not (isinstance(tolerance, (int, float)) and LEAST_TOLERANCE <= tolerance <= 1.0):
         problems.append(

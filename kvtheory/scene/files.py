@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from kvtheory.scene.arguments import a_scene, checked, file_name, names
 from kvtheory.scene.drive_file import history_from
 from kvtheory.scene.drives import SPRING
 from kvtheory.scene.foundations import FOUNDATIONS, PAIRS, Foundation, GeneralizedMaxwell, arms_of
@@ -79,6 +80,7 @@ NOTES = {
 """What the template says about keys that can be given instead of others."""
 
 
+@checked(path=file_name, overrides=names)
 def load_scene(path: str | Path | None = None, overrides: Iterable[str] = ()) -> Scene:
     """Read a scene from a TOML file, or take Table 1 where `path` is None.
 
@@ -103,7 +105,7 @@ def load_scene(path: str | Path | None = None, overrides: Iterable[str] = ()) ->
     >>> load_scene(overrides=["drive.velocity=50 mm/s"]).drive.velocity
     0.05
     """
-    overrides = [overrides] if isinstance(overrides, str) else list(overrides)
+    overrides = list(overrides)
     if path is None and not overrides:
         return Scene.table1()
     return _build(*_overridden(path, overrides))
@@ -124,6 +126,7 @@ def _overridden(path: str | Path | None, overrides: list[str]) -> tuple[dict[str
     return tables, _override(tables, overrides, embedded=path is None)
 
 
+@checked(scene=a_scene)
 def to_toml(scene: Scene) -> str:
     """Return a scene as TOML text in SI units; `load_scene` reads it back equal to the last bit.
 

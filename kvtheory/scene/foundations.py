@@ -15,6 +15,7 @@ import numpy as np
 from kvtheory.scene.quantities import (
     Part,
     SceneError,
+    Value,
     collecting,
     derive,
     problem,
@@ -90,20 +91,20 @@ def thick_layer(thickness: Any, half_length: Any, poisson_ratio: Any) -> str:
 class _Relaxed(Part):
     """The common part of all foundations: a stiffness, or a thin bonded layer that determines it."""
 
-    stiffness: float = quantity(
+    stiffness: Value = quantity(
         "N/m^3", "K, stiffness of the foundation per unit area",
         default=None, needed=True, instead="modulus", excludes=LAYER,
     )  # fmt: skip
     _: KW_ONLY
-    modulus: float | None = quantity(
+    modulus: Value = quantity(
         "N/m^2", "E, Young's modulus of a thin bonded layer, instead of the stiffness",
         default=None, beside=("thickness", "poisson_ratio"), excludes=("stiffness",),
     )  # fmt: skip
-    thickness: float | None = quantity(
+    thickness: Value = quantity(
         "m", "h, thickness of the layer, small compared with the contact",
         default=None, beside=("modulus", "poisson_ratio"), excludes=("stiffness",),
     )  # fmt: skip
-    poisson_ratio: float | None = quantity(
+    poisson_ratio: Value = quantity(
         "1", "nu, Poisson's ratio of the layer", default=None, exclusive=False, below=0.5,
         beside=("modulus", "thickness"), excludes=("stiffness",),
     )  # fmt: skip
@@ -129,12 +130,12 @@ class Foundation(_Relaxed):
 
     kind: ClassVar[str] = "kelvin-voigt"
     arms: ClassVar[tuple["Arm", ...]] = ()
-    retardation_time: float = quantity(
+    retardation_time: Value = quantity(
         "s", "tau = C/K, retardation time of the foundation (Eq. 22)", default=None, needed=True
     )
 
     @property
-    def damping(self) -> float:
+    def damping(self) -> Value:
         """C = K tau, damping per unit area, in N s/m^3 (Eq. 22)."""
         return self.stiffness * self.retardation_time
 
@@ -143,8 +144,8 @@ class Foundation(_Relaxed):
 class Arm(Part):
     """A Maxwell arm, spring and damper in series: K_i e^(-t/tau_i), a term of a Prony series."""
 
-    stiffness: float = quantity("N/m^3", "K_i, stiffness of the arm per unit area")
-    relaxation_time: float = quantity("s", "tau_i, relaxation time of the arm")
+    stiffness: Value = quantity("N/m^3", "K_i, stiffness of the arm per unit area")
+    relaxation_time: Value = quantity("s", "tau_i, relaxation time of the arm")
 
     def __post_init__(self) -> None:
         settle(self, "arm")
@@ -175,12 +176,12 @@ class GeneralizedMaxwell(_Relaxed):
             raise SceneError(problems)
 
     @property
-    def damping(self) -> float:
+    def damping(self) -> Value:
         """C = sum K_i tau_i, in N s/m^3: that of the equivalent Kelvin-Voigt foundation in slow sliding."""
         return sum(arm.stiffness * arm.relaxation_time for arm in self.arms)
 
     @property
-    def retardation_time(self) -> float:
+    def retardation_time(self) -> Value:
         """C/K, in s."""
         return self.damping / self.stiffness
 
@@ -198,15 +199,15 @@ class FractionalKelvinVoigt(_Relaxed):
 
     kind: ClassVar[str] = "fractional-kelvin-voigt"
     arms: ClassVar[tuple[Arm, ...]] = ()
-    retardation_time: float = quantity(
+    retardation_time: Value = quantity(
         "s", "tau, time scale of the springpot", default=None, needed=True
     )
-    order: float = quantity(
+    order: Value = quantity(
         "1", "alpha, order of the springpot", default=None, needed=True, maximum=1.0
     )
 
     @property
-    def damping(self) -> float:
+    def damping(self) -> Value:
         """C = int (G - K) dt, in N s/m^3."""
         finite = self.stiffness * self.retardation_time
         return (

@@ -14,11 +14,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from kvtheory.scene.quantities import Part, SceneError, mistake, quantity, settle
-
-Value = Any
-"""A float or an array of floats, in m or dimensionless."""
-
+from kvtheory.scene.quantities import Part, SceneError, Value, mistake, quantity, settle
 
 SHORT_CUTS = ((2.0, np.square), (0.5, np.sqrt), (-1.0, np.reciprocal))
 """Exponents for which NumPy may take another routine, which rounds otherwise."""
@@ -62,7 +58,7 @@ class Parabola(_Shape):
     shape: ClassVar[str] = "parabola"
     reach: ClassVar[float] = math.inf
     kinks: ClassVar[tuple[float, ...]] = ()
-    radius: float = quantity("m", "R, curvature radius of the indenter (Eq. 3)")
+    radius: Value = quantity("m", "R, curvature radius of the indenter (Eq. 3)")
 
     def height(self, x: Value) -> Value:
         """Return h(x)."""
@@ -87,7 +83,7 @@ class Circle(_Shape):
 
     shape: ClassVar[str] = "circle"
     kinks: ClassVar[tuple[float, ...]] = ()
-    radius: float = quantity("m", "R, curvature radius of the indenter (Eq. 3)")
+    radius: Value = quantity("m", "R, curvature radius of the indenter (Eq. 3)")
 
     @property
     def reach(self) -> float:
@@ -126,8 +122,8 @@ class PowerLaw(_Shape):
     shape: ClassVar[str] = "power-law"
     reach: ClassVar[float] = math.inf
     kinks: ClassVar[tuple[float, ...]] = (0.0,)
-    length: float = quantity("m", "L, where |h'| = 1")
-    exponent: float = quantity("1", "n, at least 1", minimum=1.0, exclusive=False)
+    length: Value = quantity("m", "L, where |h'| = 1")
+    exponent: Value = quantity("1", "n, at least 1", minimum=1.0, exclusive=False)
 
     def height(self, x: Value) -> Value:
         """Return h(x)."""
@@ -153,7 +149,7 @@ class Wedge(_Shape):
     shape: ClassVar[str] = "wedge"
     reach: ClassVar[float] = math.inf
     kinks: ClassVar[tuple[float, ...]] = (0.0,)
-    inclination: float = quantity("1", "slope |h'| of the flanks")
+    inclination: Value = quantity("1", "slope |h'| of the flanks")
 
     def height(self, x: Value) -> Value:
         """Return h(x)."""
@@ -230,13 +226,13 @@ class Sphere(_Shape):
     per_width: ClassVar[bool] = False
     reach: ClassVar[float] = math.inf
     kinks: ClassVar[tuple[float, ...]] = ()
-    radius: float = quantity("m", "R, radius of the ball, in the sliding direction")
-    radius_across: float | None = quantity(
+    radius: Value = quantity("m", "R, radius of the ball, in the sliding direction")
+    radius_across: Value = quantity(
         "m", "R', radius across the sliding direction; that of the ball if not given", default=None
     )
 
     @property
-    def stretch(self) -> float:
+    def stretch(self) -> Value:
         """sqrt(R'/R), the ratio of width to length of the contact at rest."""
         return 1.0 if self.radius_across is None else (self.radius_across / self.radius) ** 0.5
 

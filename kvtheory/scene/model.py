@@ -20,6 +20,7 @@ from kvtheory.scene.quantities import (
     Part,
     Quantity,
     SceneError,
+    Value,
     changed,
     collecting,
     converted,
@@ -47,10 +48,10 @@ class Fixed(Part):
     """
 
     kind: ClassVar[str] = "fixed"
-    mass: ClassVar[float] = math.inf
-    weight: ClassVar[float] = 0.0
-    spring: ClassVar[float] = math.inf
-    depth: float = quantity("m", "delta, indentation depth, held constant")
+    mass: ClassVar[Value] = math.inf
+    weight: ClassVar[Value] = 0.0
+    spring: ClassVar[Value] = math.inf
+    depth: Value = quantity("m", "delta, indentation depth, held constant")
 
     def __post_init__(self) -> None:
         settle(self, "support")
@@ -62,9 +63,9 @@ MASS: dict[str, Any] = {"default": None, "needed": True, "instead": "load", "per
 class _Loaded(Part):
     """The common part of supports with a load: mass times gravity, or a load that is given."""
 
-    mass: float
-    gravity: float
-    load: float | None
+    mass: Value
+    gravity: Value
+    load: Value
 
     def __post_init__(self) -> None:
         settle(self, "support")
@@ -73,7 +74,7 @@ class _Loaded(Part):
             derive(self, "support", "mass", mass, "support.load/support.gravity")
 
     @property
-    def weight(self) -> float:
+    def weight(self) -> Value:
         """W, in N/m, or in N for a ball: the load, or else M g."""
         return self.mass * self.gravity if self.load is None else self.load
 
@@ -89,11 +90,11 @@ class DeadWeight(_Loaded):
     """
 
     kind: ClassVar[str] = "dead-weight"
-    spring: ClassVar[float] = 0.0
-    depth: ClassVar[None] = None
-    mass: float = quantity("kg/m", "M, mass of the indenter", **MASS)
-    gravity: float = quantity("m/s^2", "g, gravity", default=STANDARD_GRAVITY)
-    load: float | None = quantity("N/m", LOAD, default=None, per_width=True)
+    spring: ClassVar[Value] = 0.0
+    depth: ClassVar[Value] = None
+    mass: Value = quantity("kg/m", "M, mass of the indenter", **MASS)
+    gravity: Value = quantity("m/s^2", "g, gravity", default=STANDARD_GRAVITY)
+    load: Value = quantity("N/m", LOAD, default=None, per_width=True)
 
 
 @dataclass(frozen=True, eq=False)
@@ -107,16 +108,16 @@ class Suspended(_Loaded):
     """
 
     kind: ClassVar[str] = "suspended"
-    depth: ClassVar[None] = None
-    mass: float = quantity("kg/m", "M, mass of the indenter", **MASS)
-    stiffness: float = quantity(
+    depth: ClassVar[Value] = None
+    mass: Value = quantity("kg/m", "M, mass of the indenter", **MASS)
+    stiffness: Value = quantity(
         "N/m^2", "k_s, stiffness of the suspension", default=None, needed=True, per_width=True
     )
-    gravity: float = quantity("m/s^2", "g, gravity", default=STANDARD_GRAVITY)
-    load: float | None = quantity("N/m", LOAD, default=None, per_width=True)
+    gravity: Value = quantity("m/s^2", "g, gravity", default=STANDARD_GRAVITY)
+    load: Value = quantity("N/m", LOAD, default=None, per_width=True)
 
     @property
-    def spring(self) -> float:
+    def spring(self) -> Value:
         """k_s, in N/m^2, or in N/m for a ball."""
         return self.stiffness
 
@@ -132,7 +133,7 @@ SUPPORTS: dict[str, Any] = {cls.kind: cls for cls in (Fixed, DeadWeight, Suspend
 class Run(Part):
     """The duration of the transient."""
 
-    duration: float = quantity("s", "duration of the transient", default=0.2)
+    duration: Value = quantity("s", "duration of the transient", default=0.2)
 
     def __post_init__(self) -> None:
         settle(self, "run")
@@ -176,7 +177,7 @@ class Scene(Part):
         for name, kind in parts.items():
             if not isinstance(getattr(self, name), kind):
                 told = getattr(kind, "__name__", f"one of {kind}")
-                problems.append(problem(name, getattr(self, name), f"expected {told}"))
+                problems.append(problem(f"`{name}`", getattr(self, name), f"expected {told}"))
         for name in () if problems else WEIGHED:
             problems += misfits(name, getattr(self, name), self.indenter)
         problems = problems or lacks_mass(self.support, self.drive, self.indenter.per_width)
@@ -198,8 +199,8 @@ class Scene(Part):
         """Return the scene with its arrays broadcast to one dimension."""
         return self.mapped(lambda array: np.broadcast_to(array, self.shape).reshape(-1))
 
-    def rows(self, part: slice) -> "Scene":
-        """Return some of the scenes of a flat one."""
+    def rows(self, part: Any) -> "Scene":
+        """Return some of the scenes of a flat one, by a slice or by their indices."""
         return self.mapped(lambda array: array[part])
 
     def at(self, velocity: Any) -> "Scene":
@@ -217,7 +218,7 @@ class Scene(Part):
         return self.support.depth is not None
 
     @property
-    def drive_mass(self) -> float:
+    def drive_mass(self) -> Value:
         """M_x, in kg/m: the mass that moves along x, that of the support unless the drive gives another."""
         return self.support.mass if self.drive.mass is None else self.drive.mass
 

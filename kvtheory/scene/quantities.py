@@ -17,13 +17,17 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from kvtheory.scene.units import WHOLE, expected, is_usual, to_si
+from kvtheory.scene.units import WHOLE, bare, expected, is_usual, to_si
 
 LONGEST_SHOWN = 60
 """Characters of a key or of a value in a message."""
 SHORT = reprlib.Repr()
 """Shortens values, which may be nested too deeply to be shown whole."""
 SHORT.maxlist = SHORT.maxtuple = SHORT.maxdict = SHORT.maxstring = SHORT.maxother = LONGEST_SHOWN
+
+
+Value = Any
+"""A float, or an array of floats."""
 
 
 class SceneError(ValueError):
@@ -66,7 +70,7 @@ class Part:
     def mapped(self, function: Callable[[Any], Any]) -> Any:
         """Return a copy with a function applied to every array, which is not checked again."""
         copy = object.__new__(type(self))
-        for name in _names(type(self)):
+        for name in _names(self.__class__):
             object.__setattr__(copy, name, _mapped(getattr(self, name), function))
         return copy
 
@@ -101,13 +105,12 @@ def _mapped(value: Any, function: Callable[[Any], Any]) -> Any:
 
 
 def _content(part: Part) -> tuple[Any, ...]:
-    values = (getattr(part, name) for name in _names(type(part)))
+    values = (getattr(part, name) for name in _names(part.__class__))
     return tuple((v.shape, v.tobytes()) if isinstance(v, np.ndarray) else v for v in values)
 
 
-@cache
-def _names(cls: Any) -> tuple[str, ...]:
-    return tuple(f.name for f in dataclasses.fields(cls))
+_names: Any = cache(lambda cls: tuple(f.name for f in dataclasses.fields(cls)))
+"""Return the names of the fields of a dataclass, from a cache."""
 
 
 @dataclass(frozen=True)
@@ -252,24 +255,52 @@ def convert(value: Any, spec: Quantity) -> float:
 def converted(value: Any, spec: Quantity) -> Any:
     """Return a value, or an array of them, in SI; each is checked.
 
-    Arrays are NumPy arrays in SI, arrays with a pint unit, lists whose items may be texts, and ranges.
+    Arrays are those of any library, lists whose items may be texts, and ranges.
 
     >>> converted("1 m:3 m:3", Quantity("m", "length", 0.0, True)).tolist()
     [1.0, 2.0, 3.0]
     """
-    if isinstance(value, str) and ":" in value:
-        return item_values(value, spec)
-    bare = getattr(value, "magnitude", value)
-    if np.ndim(bare) == 0:
+    if isinstance(value, str):
+        return item_values(value, spec) if ":" in value else convert(value, spec)
+    if isinstance(value, float):
         return convert(value, spec)
-    if bare is value and isinstance(value, np.ndarray) and value.dtype.kind in "fiu":
-        array = value.astype(float)
-        if not spec.admits(array):
-            raise ValueError(f"is out of range; expected {spec.range} in {spec.unit} throughout")
-        return array
-    flat = bare if np.ndim(bare) == 1 else np.asarray(bare, dtype=object).reshape(-1)
-    items = list(flat) if bare is value else [item * value.units for item in flat]
-    return np.array([convert(item, spec) for item in items]).reshape(np.shape(bare))
+    array = array_of(value, spec)
+    return array if array.ndim else float(array)
+
+
+def array_of(value: Any, spec: Quantity) -> NDArray[np.float64]:
+    """Return a value, or an array or a list of values of any library, in SI, checked element by element.
+
+    Raises
+    ------
+    ValueError
+        Saying what is wrong: with a value, or because values are masked.
+
+    Examples
+    --------
+    >>> from kvtheory.scene.drives import TIME
+    >>> array_of([["1 ms", 2.0], [3, "4 min"]], TIME).tolist()
+    [[0.001, 2.0], [3.0, 240.0]]
+    """
+    values, written = bare(value)
+    if isinstance(values, np.ndarray) and values.ndim:
+        if written is None and values.dtype.kind in "fiu":
+            array = values.astype(float)
+            if not spec.admits(array):
+                raise ValueError(
+                    f"is out of range; expected {spec.range} in {spec.unit} throughout"
+                )
+            return array
+        items = values.reshape(-1).tolist()
+        if written is not None:
+            items = [f"{item!r} {written}" for item in items]
+        return np.array([convert(item, spec) for item in items]).reshape(values.shape)
+    if not isinstance(values, (list, tuple, range)):
+        return np.asarray(convert(value, spec))
+    rows = [array_of(item, spec) for item in values]
+    if len({row.shape for row in rows}) > 1:
+        raise ValueError("holds rows of different lengths")
+    return np.array(rows, dtype=float)
 
 
 RANGE = "START:STOP:COUNT or START:STOP:COUNT:log"

@@ -140,7 +140,7 @@ class StaticState:
 
 
 def _parabolic(scene: Scene) -> StaticState:
-    R, K, support = scene.indenter.radius, scene.foundation.stiffness, scene.support  # type: ignore[union-attr]
+    R, K, support = scene.indenter.radius, scene.foundation.stiffness, scene.support
     if support.depth is not None:
         a_0 = math.sqrt(2 * R * support.depth)
         return StaticState.at(scene, support.depth, a_0, 4 / 3 * K * a_0 * support.depth)
@@ -158,8 +158,8 @@ def ball_stiffness(stiffness: Any, radius: Any, stretch: Any) -> Any:
 
 
 def _round(scene: Scene) -> StaticState:
-    R, support = scene.indenter.radius, scene.support  # type: ignore[union-attr]
-    stiffness = ball_stiffness(scene.foundation.stiffness, R, scene.indenter.stretch)  # type: ignore[union-attr]
+    R, support = scene.indenter.radius, scene.support
+    stiffness = ball_stiffness(scene.foundation.stiffness, R, scene.indenter.stretch)
     if support.depth is not None:
         load = stiffness * support.depth**2
         return StaticState.at(scene, support.depth, math.sqrt(2 * R * support.depth), load)

@@ -4,7 +4,7 @@ import math
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
-from kvtheory.scene.quantities import Part, quantity, settle
+from kvtheory.scene.quantities import Part, Value, quantity, settle
 
 AT_LAST = 20.0
 """Rise times after which tanh is 1 to the last digit."""
@@ -21,9 +21,9 @@ class _Waveform(Part):
 
 @dataclass(frozen=True, eq=False)
 class _Swing(_Waveform):
-    amplitude: float = quantity("m/s", "largest velocity minus the mean")
-    frequency: float = quantity("1/s", "cycles per unit time")
-    mean: float = quantity("m/s", "mean velocity", minimum=-math.inf, default=0.0)
+    amplitude: Value = quantity("m/s", "largest velocity minus the mean")
+    frequency: Value = quantity("1/s", "cycles per unit time")
+    mean: Value = quantity("m/s", "mean velocity", minimum=-math.inf, default=0.0)
 
 
 @dataclass(frozen=True, eq=False)
@@ -86,8 +86,8 @@ class SmoothRamp(_Waveform):
     """
 
     waveform: ClassVar[str] = "smooth-ramp"
-    velocity: float = quantity("m/s", "final velocity", minimum=-math.inf)
-    rise_time: float = quantity("s", "time to reach tanh 1 = 76 % of it")
+    velocity: Value = quantity("m/s", "final velocity", minimum=-math.inf)
+    rise_time: Value = quantity("s", "time to reach tanh 1 = 76 % of it")
 
     @property
     def final_velocity(self) -> float:  # type: ignore[override]

@@ -134,7 +134,7 @@ def _sums(scene: Scene, c: Array) -> Sums:
     parts = []
     for i in range(0, c.size, PART):
         part = slice(i, i + PART)
-        parts.append(_part(scene.mapped(lambda x, part=part: x[part, None]), c[part, None]))
+        parts.append(_part(scene.rows((part, None)), c[part, None]))
     return Sums(*(np.concatenate(rows) for rows in zip(*parts, strict=True)))
 
 

@@ -43,8 +43,8 @@ def evaluate(
     shape = scene.shape
     with np.errstate(over="raise", divide="raise", invalid="raise", under="ignore"):
         if shape:
-            rows: Sequence[Any] = _arrays(formula, scene.flat(), own_errors)
-            rows = [row.reshape(shape) for row in rows]
+            flat = _arrays(formula, scene.flat(), own_errors)
+            rows: list[Any] = [row.reshape(shape) for row in flat]
         elif floats:
             rows = [float(each) for each in formula(scene)]
         else:

@@ -69,12 +69,16 @@ def solve_quadrature(scene: Scene) -> SteadyState:
     line = scene.indenter.per_width and scene.indenter.convex
     if line and not lacks_kelvin_voigt(scene):
         parts = [
-            flat.mapped(lambda x, i=i: x[i : i + COLUMN].reshape(-1, 1))
+            flat.rows(slice(i, i + COLUMN)).mapped(lambda x: x.reshape(-1, 1))
             for i in range(0, count, COLUMN)
         ]
     else:
-        parts = [flat.mapped(lambda x, i=i: float(x[i])) for i in range(count)]
+        parts = [_one(flat, i) for i in range(count)]
     return _joined(parts, [_integrated(part) for part in parts], shape)
+
+
+def _one(flat: Scene, index: int) -> Scene:
+    return flat.mapped(lambda x: float(x[index]))
 
 
 def _integrated(scene: Scene) -> SteadyState:

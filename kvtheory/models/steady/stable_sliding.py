@@ -64,10 +64,9 @@ def lasts(scene: Scene) -> Any:
 
 def _block(scene: Scene, wanted: Set[str]) -> tuple[dict[str, Any], dict[str, Any]]:
     """Return the quantities of flat scenes by name, NaN where they are not wanted, and their errors."""
-    tau, spring = (
-        None if each is None else np.broadcast_to(each, scene.shape)
-        for each in (scene.foundation.retardation_time, scene.drive.stiffness)
-    )
+    tau, spring = np.broadcast_to(scene.foundation.retardation_time, scene.shape), None
+    if not scene.drive.rigid:
+        spring = np.broadcast_to(scene.drive.stiffness, scene.shape)
     numbers_of = numbers if scene.indenter.per_width else ball_stability.numbers
     given = Numbers(*(np.broadcast_to(each, scene.shape) for each in numbers_of(scene)))
     lower, upper = onsets(given, tau)
