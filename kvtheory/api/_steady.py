@@ -90,7 +90,7 @@ def steady(
             state = replace(state, stable=lasts(scene))
             state = replace(state, notes=tuple(filter(None, [state.unstable])))
         if scene.shape:
-            specs, arrays = scene.replaceable(), scene.arrays()
+            specs, arrays = scene.replaceable, scene.arrays()
             units = {**state.units, **{key: specs[key].unit for key in arrays}}
             varied = {key: np.broadcast_to(array, scene.shape) for key, array in arrays.items()}
             state = replace(state, over=varied, units=units)

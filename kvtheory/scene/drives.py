@@ -106,6 +106,7 @@ class Drive(Part):
             problems.append(problem("drive.waveform", self.waveform, told))
         elif self.waveform is not None:
             object.__setattr__(self, "function", self.waveform)
+            self.mark([self.waveform])
         with collecting(problems, "drive", self):
             settle(self, "drive")
         problems += _without_spring(self)

@@ -172,6 +172,7 @@ class GeneralizedMaxwell(_Relaxed):
             super().__post_init__()
         with collecting(problems, "foundation.arms", self.arms):
             object.__setattr__(self, "arms", arms_of(self.arms))
+            self.mark(self.arms)
         if problems:
             raise SceneError(problems)
 

@@ -272,6 +272,7 @@ class Revolved(Part):
             raise mistake(
                 "indenter.profile", self.profile, "expected a shape h(x) of a line contact"
             )
+        self.mark([self.profile])
 
     @property
     def convex(self) -> bool:

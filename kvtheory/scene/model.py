@@ -183,33 +183,44 @@ class Scene(Part):
         problems = problems or lacks_mass(self.support, self.drive, self.indenter.per_width)
         if problems:
             raise SceneError(problems)
+        self.mark(getattr(self, name) for name in parts)
         _ = self.shape  # or raise
 
     @cached_property
     def shape(self) -> tuple[int, ...]:
         """The shape to which the arrays of the scene broadcast; () if there are none."""
+        if not self.arrayed:
+            return ()
         arrays = self.arrays()
         try:
-            return np.broadcast_shapes(*(each.shape for each in arrays.values())) if arrays else ()
+            return np.broadcast_shapes(*(each.shape for each in arrays.values()))
         except ValueError:
             told = ", ".join(f"{key} {each.shape}" for key, each in arrays.items())
             raise SceneError([f"the arrays of the scene do not broadcast: {told}"]) from None
 
     def flat(self) -> "Scene":
         """Return the scene with its arrays broadcast to one dimension."""
-        return self.mapped(lambda array: np.broadcast_to(array, self.shape).reshape(-1))
+        found = self.mapped(lambda array: np.broadcast_to(array, self.shape).reshape(-1))
+        vars(found)["shape"] = (math.prod(self.shape),)
+        return found
 
     def rows(self, part: Any) -> "Scene":
         """Return some of the scenes of a flat one, by a slice or by their indices."""
-        return self.mapped(lambda array: array[part])
+        found = self.mapped(lambda array: array[part])
+        vars(found)["shape"] = np.broadcast_to(0.0, self.shape)[part].shape
+        return found
 
     def at(self, velocity: Any) -> "Scene":
         """Return the scene at one drive velocity or several in m/s, which are not checked."""
-        drive, scene = (part.mapped(lambda array: array) for part in (self.drive, self))
-        others = dict.fromkeys(("history", "function", "waveform"))
-        for name, value in {"velocity": velocity, **others}.items():
-            object.__setattr__(drive, name, value)
-        object.__setattr__(scene, "drive", drive)
+        drive, scene = object.__new__(Drive), object.__new__(Scene)
+        way = dict.fromkeys(("history", "function", "waveform"))
+        arrayed = isinstance(velocity, np.ndarray) or self.arrayed
+        vars(drive).update({**vars(self.drive), **way, "velocity": velocity, "arrayed": arrayed})
+        vars(drive).pop("points", None)
+        own = {name: vars(self)[name] for name in ("indenter", "foundation", "support", "run")}
+        vars(scene).update({**own, "drive": drive, "arrayed": arrayed})
+        if not self.arrayed:
+            vars(scene)["shape"] = np.shape(velocity)
         return scene
 
     @property
@@ -262,6 +273,7 @@ class Scene(Part):
             flat["drive.mass"] = self.drive_mass
         return flat
 
+    @cached_property
     def replaceable(self) -> dict[str, Quantity]:
         """Return the quantities that `replace` takes, by dotted key, in the units of the scene."""
         found = {
@@ -293,7 +305,7 @@ class Scene(Part):
         >>> Scene().replace({"drive.velocity": ["1 mm/s", "1 m/s"], "support.mass": 10.0}).shape
         (2,)
         """
-        specs, problems = self.replaceable(), []
+        specs, problems = self.replaceable, []
         sections: dict[str, dict[str, Any]] = {}
         for key, value in over.items():
             if key not in specs:

@@ -67,19 +67,24 @@ class Part:
     def __hash__(self) -> int:
         return hash(_content(self))
 
+    arrayed: ClassVar[bool] = False
+    """Whether a quantity is an array; set by `settle`, as scenes are made by the thousand."""
+
     def mapped(self, function: Callable[[Any], Any]) -> Any:
         """Return a copy with a function applied to every array, which is not checked again."""
-        copy = object.__new__(type(self))
-        for name in _names(self.__class__):
-            object.__setattr__(copy, name, _mapped(getattr(self, name), function))
+        copy = object.__new__(self.__class__)
+        values = {name: getattr(self, name) for name in _names(self.__class__)}
+        if self.arrayed:
+            values = {name: _mapped(value, function) for name, value in values.items()}
+            values["arrayed"] = True
+        vars(copy).update(values)
         return copy
 
     def arrays(self) -> dict[str, NDArray[np.float64]]:
         """Return the arrays among the given quantities, those of parts within it by dotted name."""
         found: dict[str, Any] = {}
-        for name, value in vars(self).items():
-            if value.__class__ in SCALARS:  # most of them
-                continue
+        for name in _names(self.__class__) if self.arrayed else ():
+            value = getattr(self, name)
             if type(value) is np.ndarray:  # and not derived
                 found[name] = value
             elif isinstance(value, Part):
@@ -89,9 +94,10 @@ class Part:
                     found |= {f"{name}[{i}].{inner}": x for inner, x in part.arrays().items()}
         return found
 
-
-SCALARS = {float, type(None), Derived, dict}
-"""What a part holds that is no array, nor holds one; looked up, as scenes are made by the thousand."""
+    def mark(self, parts: Iterable["Part"]) -> None:
+        """Mark that it holds arrays, if one of its parts does."""
+        if any(part.arrayed for part in parts):
+            object.__setattr__(self, "arrayed", True)
 
 
 def _mapped(value: Any, function: Callable[[Any], Any]) -> Any:
@@ -365,7 +371,10 @@ def settle(instance: Any, section: str) -> None:
     for name, value in values.items():
         try:
             spec = written_as(value, specs[name])
-            object.__setattr__(instance, name, None if value is None else converted(value, spec))
+            number = None if value is None else converted(value, spec)
+            object.__setattr__(instance, name, number)
+            if number.__class__ is np.ndarray:
+                object.__setattr__(instance, "arrayed", True)
             if specs[name].per_width and _has_unit(_sample(value)):
                 written[name] = value, spec.per_width
         except ValueError as error:

@@ -58,7 +58,7 @@ def axes_of(scene: Scene, over: Mapping[Any, Any]) -> tuple[Axis, ...]:
     >>> axes_of(Scene(), pairs)[0].size
     2
     """
-    specs, problems, found = scene.replaceable(), [], []
+    specs, problems, found = scene.replaceable, [], []
     seen: set[str] = set()
     if not isinstance(over, Mapping) or not over:
         raise SceneError([f"`over` is empty: expected a key and its values, such as {EXAMPLE}"])

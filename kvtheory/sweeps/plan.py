@@ -87,7 +87,7 @@ class Plan:
     @property
     def units(self) -> Mapping[str, str]:
         """The unit of each swept key and of each quantity; that of a text is empty."""
-        specs = self.scene.replaceable()
+        specs = self.scene.replaceable
         swept = {key: specs[key].unit for axis in self.axes for key in axis.values}
         return swept | {column.name: column.unit for column in self.columns}
 
