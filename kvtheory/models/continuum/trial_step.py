@@ -226,7 +226,7 @@ def _slack(run: Run, k: int, s: float, xi: float, now: Instant) -> tuple[float, 
 
 def _locate(run: Run, record: Any, low: float, high: float) -> tuple[float, Monitors]:
     """Return the time of the first violation in (low, high], and the monitors just after it."""
-    violated = monitors(run, record, high)[0]
+    violated, earliest = monitors(run, record, high)[0], low
     at_low, at_high, turn = math.nan, smallest(violated), 0
     while high - low > EVENT_RESOLUTION * (1.0 + abs(high)):
         turn += 1
@@ -241,4 +241,17 @@ def _locate(run: Run, record: Any, low: float, high: float) -> tuple[float, Moni
             high, at_high, violated = middle, value, values
         else:
             low, at_low = middle, value
-    return (run.now[r_.S] if low == run.now[r_.S] else high), violated
+    if low == run.now[r_.S]:
+        return low, violated
+    return (_touchdown(run, record, earliest, high) if run.states[0] == FREE else high), violated
+
+
+def _touchdown(run: Run, record: Any, earliest: float, s: float) -> float:
+    """Return when the gap is zero, from a time when it is negative by what a monitor allows.
+
+    By a step of Newton's method: du/ds = -u on the ground, and dg/ds = p - g under the indenter.
+    """
+    d, v, _, Y, number, _ = motion(record, s) + sliding_now(run, s)
+    depth, X, _, _, _ = summit(run, s, d, Y)
+    rate = c_.pressure(X + Y, d, v, number) - depth
+    return max(s - depth / rate, earliest) if rate > 0.0 else s
