@@ -110,7 +110,8 @@ def _dip(
             rise = (g - f) / (b - a)
             bend = (h - g) / (c - b) - rise
             place = 0.5 * (a + b - rise * (c - a) / bend) if bend > 0.0 else math.nan
-            if not earliest < place < c or abs(place - b) < CLOSE:
+            nearest = min(abs(place - a), abs(place - b), abs(place - c))
+            if not (earliest < place < c and nearest > CLOSE):
                 break
             value = monitors(run, record, start + place * span)[0][k]
             if value < 0.0:
