@@ -80,7 +80,7 @@ def next_hop(run: Run, index: int) -> int:
 
 
 def hop_rounding(run: Run, s: float, row: Any) -> float:
-    """Return what rounding may do to the time of a hop: of the gap, which closes as fast as the pressure says."""
+    """Return what rounding may do to the time of a hop: at a landing, the gap closes by the pressure."""
     index, found = e_.record_at(run, s), EVENT_RESOLUTION * (1.0 + s)
     e_.state_at(run, index, s, row)
     if row[e_.PEAK_PRESSURE] > 0.0:

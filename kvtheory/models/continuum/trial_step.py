@@ -19,11 +19,12 @@ EVENT_RESOLUTION = 1e-13
 OFF_THE_ENDS = 0.01
 """Share of a bracket by which a secant keeps off its ends, so that both of them move."""
 DIPPING = 0, 1, 3
-"""The monitors that may be negative for a moment within a step: an edge is beyond its ground from then on."""
-LOW = 0.3
-"""Of the largest of three values, the smallest, if what they are of may be zero between: for a parabola, 0.22."""
+"""The monitors that may be negative for a moment within a step; an edge does not return to ground it left."""
+LOW = 0.5
+"""A monitor may be zero between three probes if its smallest value there is below this share of the largest;
+a parabola that is zero between them has at most 0.33."""
 LOOKS, CLOSE = 6, 1e-7
-"""At the bottom of a dip, and how near two of them are one, as a share of the step."""
+"""Most evaluations in search of one minimum, and the least distance between two, as a share of the step."""
 ROUNDING = 1e-15
 """Of an edge, whose material coordinate is xi - Y, relative to Y and to what a rounded time does to it."""
 
@@ -84,10 +85,10 @@ def attempt(run: Run, record: Any, span: float) -> tuple[float, float, Monitors]
 
 def _low(first: Monitors, second: Monitors, third: Monitors) -> bool:
     """Whether a monitor is so low at one of three probes that it may be negative between them."""
+    low = False
     for k in DIPPING:
-        if min(first[k], second[k], third[k]) < LOW * max(first[k], third[k]) < math.inf:
-            return True
-    return False
+        low = low or min(first[k], second[k], third[k]) < LOW * max(first[k], third[k]) < math.inf
+    return low
 
 
 def _dip(
