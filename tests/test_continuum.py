@@ -263,7 +263,7 @@ def edges_by_f8(number, way, s):
     ("w", "mean"), [(3.6, -0.999), (3.6, 1.2819), (1.5, 1.1578), (1.5, 1.16378)]
 )
 def test_a_momentary_reversal_is_not_missed(w, mean):
-    """V = size (sin wt + mean) reverses for a moment, or slows so that a peeling edge touches for a moment."""
+    """V reverses for a moment, or slows down so that a peeling edge touches for a moment."""
     size = 3.0
 
     def number(s):

@@ -263,8 +263,11 @@ def _one_way(found: Iterable[Span]) -> Iterator[Span]:
         start, powers = a, coefficients
         for zero in _reversals(coefficients, a, b):
             yield start, zero, powers
-            shifted = Polynomial(coefficients)(Polynomial([zero - a, 1.0])).coef.tolist()
-            start, powers = zero, (0.0, *shifted[1:], *coefficients[len(shifted) :])
+            start, shifted = zero, list(coefficients)
+            for first in range(len(shifted) - 1):
+                for k in range(len(shifted) - 2, first - 1, -1):
+                    shifted[k] += (zero - a) * shifted[k + 1]
+            powers = (0.0, *shifted[1:])
         yield start, b, powers
 
 
@@ -274,7 +277,11 @@ def _reversals(coefficients: Sequence[float], a: float, b: float) -> list[float]
     size = sum(map(abs, powers))
     if 2.0 * abs(powers[0]) >= size:
         return []
-    roots, near = polynomial.polyroots(powers), SAME_TIME * math.ulp(b) / (b - a)
+    near = SAME_TIME * math.ulp(b) / (b - a)
+    if not any(powers[2:]):
+        share = -powers[0] / powers[1]
+        return [a + share * (b - a)] if near < share < 1.0 - near else []
+    roots = polynomial.polyroots(powers)
     inner = np.sort(roots.real[(roots.imag == 0.0) & (abs(roots.real - 0.5) < 0.5 - near)])
     ends = np.concatenate([[0.0], inner, [1.0]])
     V = polynomial.polyval(0.5 * (ends[1:] + ends[:-1]), powers) / (ON_REST * size)
