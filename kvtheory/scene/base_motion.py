@@ -281,7 +281,7 @@ def _reversals(coefficients: Sequence[float], a: float, b: float) -> list[float]
     if not any(powers[2:]):
         share = -powers[0] / powers[1]
         return [a + share * (b - a)] if near < share < 1.0 - near else []
-    roots = polynomial.polyroots(powers)
+    roots = polynomial.polyroots([c if abs(c) > 1e-3 * ON_REST * size else 0.0 for c in powers])
     inner = np.sort(roots.real[(roots.imag == 0.0) & (abs(roots.real - 0.5) < 0.5 - near)])
     ends = np.concatenate([[0.0], inner, [1.0]])
     V = polynomial.polyval(0.5 * (ends[1:] + ends[:-1]), powers) / (ON_REST * size)
