@@ -28,15 +28,15 @@ from scipy.optimize import brentq, minimize_scalar
 from kvtheory.models.steady.cells import (
     DENSE,
     NODES,
-    SMALLEST,
     SQUARED,
     TAIL_MARGIN,
     VALUES,
     WEIGHTS,
     Surface,
 )
-from kvtheory.models.steady.contact import ROUNDING
+from kvtheory.models.steady.contact import ROUNDING, SMALLEST
 from kvtheory.results.errors import QuadratureError
+from kvtheory.scene.indenters import beside
 
 PEAK_BAND = 0.02
 """Local maxima of the sampled pressure that are this close to the highest are searched."""
@@ -262,7 +262,7 @@ def _root(
 
     `ends` are the values there, if they are not those of the function, which may jump at a kink.
     """
-    low, high = low or math.copysign(SMALLEST, high), high or math.copysign(SMALLEST, low)
+    low, high = low or beside(low, high), high or beside(high, low)
     left, right = (function(low), function(high)) if ends is None else ends
     if (left > 0.0) == (right > 0.0):
         return low if abs(left) < abs(right) else high

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.polynomial import legendre
 
 from kvtheory.results.errors import QuadratureError
+from kvtheory.scene.indenters import beside
 
 DEGREE = 15
 """Degree of the series in a cell, with 16 nodes."""
@@ -49,8 +50,6 @@ NEAREST, FARTHEST = 2.0**-200, 2.0**200
 """Where the search for the width of the contact begins and ends, in m."""
 AHEAD = 4.0
 """Cells are made for a depth larger by this factor, and are used down to that depth over `AHEAD`."""
-SMALLEST = float(np.finfo(float).tiny)
-"""The number next to 0 here: a processor may be set to flush those that are smaller."""
 CHECK_RTOL = 1e-11
 """Discrepancy between h and h' that a check allows, relative to the depth."""
 SQUARED = 1.0 / (2.0 * np.arange(DEGREE + 1) + 1.0)
@@ -121,9 +120,7 @@ class Surface:
 
     def beside(self, x: float, to: float) -> float:
         """Return x, or where it is a kink the next number towards `to`."""
-        if x not in self.kinks:
-            return x
-        return math.nextafter(x, to) if x else math.copysign(SMALLEST, to)
+        return beside(x, to) if x in self.kinks else x
 
     def first(self, enough: Callable[[float, float], bool]) -> float:
         """Return the first power of two at which the higher of both sides is enough, or the reach."""
