@@ -18,6 +18,8 @@ from kvtheory.scene.indenters import Profile
 
 HOLLOW = 1e-9
 """Decrease of the slope, over its greatest value, that rounding may cause."""
+NARROW = 2.0**-9
+"""Width of a cell, over that of the contact, in which only a jump of a higher derivative leaves the series."""
 ROOT, TINY = 8.9e-16, 1e-300
 """Tolerances of the edges at rest."""
 
@@ -28,7 +30,10 @@ class ConvexProfile:
     def __init__(self, profile: Profile, side: float) -> None:
         self.surface = Surface(profile, side)
         self.reach = profile.reach
-        self.kinks = tuple(sorted(side * kink for kink in profile.kinks))
+        self.kinks: tuple[float, ...] = ()
+        """Those of the profile, and where a higher derivative jumps: the convolution is cut there."""
+        self.bent = False
+        """Whether there are any of the latter; they are not known to the last digit."""
         self._depth, self._cells = math.nan, Cells(*(np.empty(0),) * 6)
 
     def sides(self, depth: float) -> tuple[float, float]:
@@ -36,12 +41,14 @@ class ConvexProfile:
         surface, cells = self.surface, self.surface.cells(depth)
         within = (cells.height @ VALUES).min(axis=1) < depth
         slopes = cells.slope @ VALUES
-        falls = np.diff(slopes[within], prepend=slopes[within][:, :1], axis=1).min(initial=0.0)
-        falls = min(falls, np.diff(slopes[within].mean(axis=1)).min(initial=0.0))
+        rounding = HOLLOW * np.abs(slopes[within]).max(initial=0.0)
+        rounding = rounding + TAIL_MARGIN * cells.slope_tail[within]
+        hollow = np.any(np.diff(slopes[within], axis=1) < -rounding[:, None])
+        hollow |= np.any(np.diff(slopes[within].mean(axis=1)) < -rounding[1:])
         whole = np.all(np.diff(np.flatnonzero(within)) == 1) and np.all(
             cells.start[within][1:] == cells.end[within][:-1]
         )
-        if not whole or falls < -HOLLOW * np.abs(slopes[within]).max():
+        if not whole or hollow:
             raise QuadratureError(
                 f"the shape is not convex down to {depth:.6g} m: it may touch in several places, for "
                 'which quadrature needs foundation.kind = "kelvin-voigt"'
@@ -49,6 +56,8 @@ class ConvexProfile:
         if surface.jumps:
             raise QuadratureError("the slope jumps where `kinks` does not say so")
         ends = self._end(depth, -1.0), self._end(depth, 1.0)
+        bends = _bends(cells, NARROW * sum(ends), surface.kinks)
+        self.kinks, self.bent = tuple(sorted((*surface.kinks, *bends))), bool(bends)
         self._depth, self._cells = depth, cells
         return ends
 
@@ -96,3 +105,16 @@ class ConvexProfile:
         start, end = cells.start[row], cells.end[row]
         place = np.clip((2.0 * x - start - end) / (end - start), DENSE[0], DENSE[-1])
         return legendre.legval(place, np.moveaxis(series[row], -1, 0), tensor=False)
+
+
+def _bends(cells: Cells, narrow: float, kinks: list[float]) -> list[float]:
+    """Return the middle of the narrowest cell of each run of narrow cells that no kink explains."""
+    width = cells.end - cells.start
+    runs = np.split(np.arange(width.size), np.flatnonzero(np.diff(width < narrow)) + 1)
+    found = []
+    for run in runs:
+        start, end = cells.start[run[0]], cells.end[run[-1]]
+        if width[run[0]] < narrow and not any(start <= kink <= end for kink in kinks):
+            least = run[np.argmin(width[run])]
+            found.append(0.5 * float(cells.start[least] + cells.end[least]))
+    return found
