@@ -363,6 +363,25 @@ def test_a_lopsided_shape_agrees_with_a_row_of_elements(side):
     assert abs(edges[end] - abs(state.trailing_edge)) < 2 * h
 
 
+def test_a_jump_of_the_curvature_need_not_be_declared():
+    """A flat punch with rounded edges, and one whose curvature changes in the contact."""
+    for height, slope, kinks in (
+        (lambda x: max(abs(x) - 1e-3, 0.0) ** 2 / 0.02,
+         lambda x: math.copysign(max(abs(x) - 1e-3, 0.0) / 0.01, x), (-1e-3, 1e-3)),
+        (lambda x: x * x / 0.02 + max(x - 2e-4, 0.0) ** 2 / 0.004,
+         lambda x: x / 0.01 + max(x - 2e-4, 0.0) / 0.002, (2e-4,)),
+    ):  # fmt: skip
+        told, untold = (
+            kv.steady(scene(ZENER, "fixed", indenter=kv.Profile(height, slope, kinks=named)))
+            for named in (kinks, ())
+        )
+        for name, error in untold.certificate.relative_error.items():
+            value = getattr(told, name)
+            allowed = error + told.certificate.relative_error[name]
+            assert abs(getattr(untold, name) - value) <= allowed * abs(value), name
+            assert error < 1e-8
+
+
 def test_a_shape_that_may_touch_in_several_places_is_refused_beyond_kelvin_voigt():
     def height(x):
         return x * x / 0.02 + 2e-6 * (1.0 - math.cos(x / 1e-5))

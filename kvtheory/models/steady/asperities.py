@@ -182,7 +182,8 @@ class Contact:
             if start in self.surface.kinks or p[low - 1] * p[high + 1] >= 0.0:
                 return start
             low, high = low - 1, high + 1
-        return _root(lambda y: self.pressure(y, l_r), *x[[low, high]].tolist(), p[[low, high]])
+        start, end = x[[low, high]].tolist()
+        return _root(lambda y: self.pressure(y, l_r), start, end, p[[low, high]].tolist())
 
     def integral(
         self, patch: Patch, function: Callable[[float], float], power: int
@@ -255,9 +256,7 @@ class Contact:
         return float(highest)
 
 
-def _root(
-    function: Callable[[float], float], low: float, high: float, ends: Any = None
-) -> float:
+def _root(function: Callable[[float], float], low: float, high: float, ends: Any = None) -> float:
     """Return a root between two points; one of them, if only rounding keeps the signs equal.
 
     `ends` are the values there, if they are not those of the function, which may jump at a kink.

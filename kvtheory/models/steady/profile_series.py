@@ -19,7 +19,7 @@ from kvtheory.scene.indenters import Profile
 HOLLOW = 1e-9
 """Decrease of the slope, over its greatest value, that rounding may cause."""
 NARROW = 2.0**-9
-"""Width of a cell, over that of the contact, in which only a jump of a higher derivative leaves the series."""
+"""Width of a cell, over that of the contact, left only by the jump of a higher derivative."""
 ROOT, TINY = 8.9e-16, 1e-300
 """Tolerances of the edges at rest."""
 

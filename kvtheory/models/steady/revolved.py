@@ -26,7 +26,7 @@ from kvtheory.models.steady.cells import Surface
 from kvtheory.models.steady.double_exponential import RULES
 from kvtheory.results import Certificate, SteadyState
 from kvtheory.results.errors import QuadratureError
-from kvtheory.scene.indenters import Line, Profile, Spot
+from kvtheory.scene.indenters import Line, Spot
 
 Array = NDArray[np.float64]
 
@@ -274,7 +274,8 @@ def sums(indenter: Spot, strips: Strips, l_r: float, depth: float) -> Sums:
             break
     if not error < LIMIT:
         raise QuadratureError("quadrature over the strips fails: the indenter's reach is too close")
-    return Sums(*each[:, 0].tolist(), error)
+    load, slope, friction, lost = each[:, 0].tolist()
+    return Sums(load, slope, friction, lost, error)
 
 
 def _rule(number: int) -> tuple[Array, Array]:
@@ -336,4 +337,6 @@ def _one_by_one(
         lost = named["dissipated_in_contact"] * friction
         rows[:, column] = load, found.load_slope, friction, lost
         errors[:, column] = own["load"] * load, own["friction_force"] * friction
-    return rows, float((errors @ weights / np.maximum(rows[[0, 2]] @ weights, np.finfo(float).tiny)).max())
+    return rows, float(
+        (errors @ weights / np.maximum(rows[[0, 2]] @ weights, np.finfo(float).tiny)).max()
+    )
