@@ -364,12 +364,13 @@ def test_a_lopsided_shape_agrees_with_a_row_of_elements(side):
 
 
 def test_a_jump_of_the_curvature_need_not_be_declared():
-    """A flat punch with rounded edges, and one whose curvature changes in the contact."""
+    """A flat punch with rounded edges, and curvatures that change in the contact, and at its lowest point."""
     for height, slope, kinks in (
         (lambda x: max(abs(x) - 1e-3, 0.0) ** 2 / 0.02,
          lambda x: math.copysign(max(abs(x) - 1e-3, 0.0) / 0.01, x), (-1e-3, 1e-3)),
         (lambda x: x * x / 0.02 + max(x - 2e-4, 0.0) ** 2 / 0.004,
          lambda x: x / 0.01 + max(x - 2e-4, 0.0) / 0.002, (2e-4,)),
+        (lambda x: x * x / (0.02 if x < 0.0 else 6e-3), lambda x: x / (0.01 if x < 0.0 else 3e-3), (0.0,)),
     ):  # fmt: skip
         told, untold = (
             kv.steady(scene(ZENER, "fixed", indenter=kv.Profile(height, slope, kinks=named)))

@@ -12,13 +12,23 @@ import numpy as np
 from numpy.polynomial import legendre
 from scipy.optimize import brentq
 
-from kvtheory.models.steady.cells import DENSE, TAIL_MARGIN, VALUES, Cells, Surface
+from kvtheory.models.steady.cells import (
+    DENSE,
+    NODES,
+    RESOLVED,
+    SERIES,
+    TAIL,
+    TAIL_MARGIN,
+    VALUES,
+    Cells,
+    Surface,
+)
 from kvtheory.results.errors import QuadratureError
 from kvtheory.scene.indenters import Profile
 
 HOLLOW = 1e-9
 """Decrease of the slope, over its greatest value, that rounding may cause."""
-NARROW = 2.0**-9
+NARROW = 2.0**-5
 """Width of a cell, over that of the contact, left only by the jump of a higher derivative."""
 ROOT, TINY = 8.9e-16, 1e-300
 """Tolerances of the edges at rest."""
@@ -30,6 +40,7 @@ class ConvexProfile:
     def __init__(self, profile: Profile, side: float) -> None:
         self.surface = Surface(profile, side)
         self.reach = profile.reach
+        self.declared = [side * kink for kink in profile.kinks]
         self.kinks: tuple[float, ...] = ()
         """Those of the profile, and where a higher derivative jumps: the convolution is cut there."""
         self.bent = False
@@ -56,10 +67,21 @@ class ConvexProfile:
         if surface.jumps:
             raise QuadratureError("the slope jumps where `kinks` does not say so")
         ends = self._end(depth, -1.0), self._end(depth, 1.0)
-        bends = _bends(cells, NARROW * sum(ends), surface.kinks)
-        self.kinks, self.bent = tuple(sorted((*surface.kinks, *bends))), bool(bends)
         self._depth, self._cells = depth, cells
+        bends = _bends(cells, NARROW * sum(ends), surface.kinks)
+        tip = [0.0] if self._bent_at_zero() else []
+        self.kinks, self.bent = tuple(sorted({*self.declared, *bends, *tip})), bool(bends)
         return ends
+
+    def _bent_at_zero(self) -> bool:
+        """Return whether one series does not hold on both sides of the lowest point."""
+        cells = self._cells
+        i = int(np.searchsorted(cells.start, 0.0))
+        beside = slice(i - 1, i + 1)
+        half = 0.5 * (cells.end - cells.start)[beside].min()
+        series = SERIES @ self.slope(half * NODES)
+        rounding = RESOLVED * np.abs(series).sum() + TAIL_MARGIN * cells.slope_tail[beside].sum()
+        return bool(np.abs(series[TAIL:]).sum() > rounding)
 
     def _end(self, depth: float, side: float) -> float:
         """Return the distance at which the shape has risen to the depth."""
