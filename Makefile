@@ -6,7 +6,7 @@ BIN := $(VENV)/bin
 UV := $(shell command -v uv 2>/dev/null)
 OUT ?= paper
 
-.PHONY: paper docs test test-lowest package lint format benchmark clean
+.PHONY: paper docs test test-lowest test-processors package lint format benchmark clean
 
 paper: $(VENV)/.installed
 	$(BIN)/kvtheory steady
@@ -33,6 +33,16 @@ LOWEST_TESTS := test_api test_asymptotes test_exact test_quadrature test_transie
 test-lowest: $(LOWEST)/.installed
 	$(LOWEST)/bin/python -m pytest -n auto --dist loadscope -W "ignore:numpy.ndarray size changed" \
 		$(LOWEST_TESTS:%=tests/%.py)
+
+# What may depend on the processor: without what NumPy, OpenBLAS and the C library gain from AVX2 and FMA; then
+# with AVX-512, where there is any.
+PROCESSOR_TESTS = $(BIN)/python -m pytest -n 2 -m processor $$(grep -l mark.processor tests/test_*.py)
+GAINED := import numpy._core._multiarray_umath as m; print(*[f for f in m.__cpu_dispatch__ if m.__cpu_features__[f]])
+
+test-processors: $(VENV)/.installed-test
+	OPENBLAS_CORETYPE=Nehalem NPY_DISABLE_CPU_FEATURES="$$($(BIN)/python -c '$(GAINED)')" \
+		GLIBC_TUNABLES=glibc.cpu.hwcaps=-AVX2,-FMA $(PROCESSOR_TESTS)
+	! grep -qs avx512vl /proc/cpuinfo || OPENBLAS_CORETYPE=SkylakeX $(PROCESSOR_TESTS)
 
 # What users install, in clean environments of all these Pythons that are on the PATH; it names those that are not.
 PYTHONS ?= python3.11 python3.12 python3.13

@@ -265,7 +265,7 @@ _BALANCE = (
 
 
 def _crossing() -> Derivation:
-    proof = _theorem("F20-crossing", title="Ball: critical velocity", text=_CROSSING,
+    proof = _theorem("F20-crossing", title="Ball: crossing velocity", text=_CROSSING,
                      uses=("F20-low", "F20-high"))  # fmt: skip
     proof.define(ball_cross, HIGH, r"$l = \tilde m$ of high velocity, at a given depth")
     held = HIGH * (2 * (1 + kappa)) ** sp.Rational(1, 4)

@@ -67,9 +67,9 @@ class Form:
 
 
 FORMS: tuple[Form, ...] = (
-    Form("ALPHA", "F5", sym.Lambda_fixed, (), "V tau/sqrt(R delta) at the critical velocity, fixed depth"),
+    Form("ALPHA", "F5", sym.Lambda_fixed, (), "V tau/sqrt(R delta) at the crossing velocity, fixed depth"),
     Form("CRITICAL_DRIVE_NUMBER", "F5", sym.Lambda_weight, (),
-         "V tau (K/(R W))^(1/3) at the critical velocity, dead weight"),
+         "V tau (K/(R W))^(1/3) at the crossing velocity, dead weight"),
     Form("PEAK_TRAILING_EDGE_RATIO", "F3", q, (), "q at the friction maximum of a dead weight"),
     Form("PEAK_DRIVE_NUMBER", "F3-values", sym.Lambda_peak, (),
          "V tau (K/(R W))^(1/3) at the friction maximum of a dead weight"),

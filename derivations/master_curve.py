@@ -1,4 +1,4 @@
-r"""The dead-weight indenter over its velocity: master curve, friction maximum, series, critical velocity.
+r"""The dead-weight indenter over its velocity: master curve, friction maximum, series, crossing velocity.
 
 ``q`` = x_TE/a in (0, 1) names the state, as in `derivations.theorems`, whose section this continues.
 """
@@ -148,8 +148,8 @@ def _expansion(
 def _intersections() -> Derivation:
     proof = _theorem(
         "F5",
-        title="Critical velocity and friction maximum",
-        text="The critical velocity is where the two asymptotes of the friction coefficient meet. "
+        title="Crossing velocity and friction maximum",
+        text="The crossing velocity is where the two asymptotes of the friction coefficient meet. "
         "For a dead-weight indenter the maximum is at 1.664 times that velocity.",
         uses=("eq42", "eq45", "eq46"),
     )

@@ -67,7 +67,7 @@ SYMBOLS = tuple(
         (r"F_{\mathrm{v}}", "viscous part of the friction force", "N/m", "energy-split"),
         (r"W_{\mathrm{e}}", "elastic part of the load", "N/m", "eq41"),
         (r"\mu", "friction coefficient, $F/W$", "1", "eq37"),
-        ("V^{*}", "critical velocity, where the two asymptotes meet", "m/s", "eq47"),
+        ("V^{*}", "crossing velocity, where the two asymptotes meet", "m/s", "eq47"),
         (
             r"\bar r",
             r"half the distance of the zeros of the pressure, $\sqrt{a^2 + l_{\mathrm{r}}^2}$",
@@ -117,13 +117,13 @@ SYMBOLS = tuple(
         ),
         (
             r"\Lambda^{*}_{\mathrm{FI}}",
-            r"scaled critical velocity, fixed indenter, $V^{*} \tau/\sqrt{R \delta}$",
+            r"scaled crossing velocity, fixed indenter, $V^{*} \tau/\sqrt{R \delta}$",
             "1",
             "F5",
         ),
         (
             r"\Lambda^{*}_{\mathrm{MI}}",
-            r"scaled critical velocity, dead weight, $V^{*} \tau (K/(R W))^{1/3}$",
+            r"scaled crossing velocity, dead weight, $V^{*} \tau (K/(R W))^{1/3}$",
             "1",
             "F5",
         ),
@@ -815,13 +815,13 @@ SYMBOLS = tuple(
         (r"\tilde f", "scaled load of a ball that has been lifted", "1", "F20-balance"),
         (
             r"\tilde l^{*}",
-            "scaled critical velocity of a ball at a given depth",
+            "scaled crossing velocity of a ball at a given depth",
             "1",
             "F20-crossing",
         ),
         (
             r"\tilde \lambda^{*}",
-            "scaled critical velocity of a ball at a given load",
+            "scaled crossing velocity of a ball at a given load",
             "1",
             "F20-crossing",
         ),

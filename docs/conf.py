@@ -25,8 +25,8 @@ exclude_patterns = [
     "_build",
     "generated/scripts",
     "generated/folders/*/*.md",
-    "generated/gallery/*.ipynb",
-    "generated/gallery/*.py",
+    "generated/gallery/**/*.ipynb",
+    "generated/gallery/**/*.py",
 ]
 suppress_warnings = ["config.cache", "myst.header"]
 nitpicky = False
@@ -51,6 +51,7 @@ html_theme_options = {
     "footer_start": ["copyright"],
     "footer_end": [],
 }
+html_context = {"default_mode": "auto"}
 html_sidebars = {"index": []}
 html_show_sourcelink = False
 html_math_renderer = "mathml"
@@ -61,7 +62,7 @@ sphinx_gallery_conf = {
     "filename_pattern": "/",
     "image_scrapers": (gallery.pictures,),
     "reset_modules": (),
-    "within_subsection_order": "ExampleTitleSortKey",
+    "within_subsection_order": "generators.gallery.order",
     "download_all_examples": False,
     "show_memory": False,
     "show_signature": False,

@@ -9,14 +9,20 @@ from pathlib import Path
 
 from figures import drawing
 
-FIGURES = (
-    *("fig3", "fig4", "fig5", "fig6", "table2"),
-    *("energy_split", "asymptote_error", "circle_error", "phase_portrait", "regime_map"),
-    *("foundations", "rubber", "foundation_precision"),
-    *("spring_stability", "measurable_friction", "stick_slip", "stick_slip_amplitude"),
-    *("ball", "ball_start", "ball_pressure"),
-    *("onset_maps", "ladder", "stability_map", "work_precision"),
-)
+TOPICS = {
+    "The paper": ("fig3", "fig4", "fig5", "fig6", "table2"),
+    "Energy, limits and regimes": (
+        *("energy_split", "asymptote_error", "circle_error"),
+        *("phase_portrait", "regime_map", "onset_maps"),
+    ),
+    "Other foundations": ("foundations", "rubber", "foundation_precision"),
+    "The ball": ("ball", "ball_start", "ball_pressure"),
+    "A spring in the drive": (
+        *("spring_stability", "measurable_friction", "stick_slip", "stick_slip_amplitude"),
+    ),
+    "Methods": ("ladder", "stability_map", "work_precision"),
+}
+FIGURES = tuple(name for names in TOPICS.values() for name in names)
 
 INTERPRETED = (
     "numba is not installed, so that transients are interpreted: regime_map and onset_maps take several "

@@ -4,13 +4,19 @@ import io
 import shutil
 import sys
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from contextvars import ContextVar
 from typing import TextIO
 
 Progress = Callable[[float, str], object]
 """Called repeatedly with the share of the work done, from 0 to 1, and a text such as
 ``"600 of 1,000 points"``, which may be empty."""
 
+
+COMPILING = "compiling, once for this installation"
+"""What is reported before kernels are compiled, which takes half a minute."""
+_LISTENER: ContextVar[Callable[[], object]] = ContextVar("_LISTENER", default=lambda: None)
 
 PATIENCE = 1.0
 """Seconds before anything is shown."""
@@ -22,6 +28,28 @@ SETTLING = 0.5
 
 def silent(share: float, words: str) -> None:
     """Report nothing."""
+
+
+@contextmanager
+def listening(progress: Progress) -> Iterator[Progress]:
+    """Provide a progress that is also told, by `compiling`, that kernels are being compiled."""
+    reached = 0.0
+
+    def report(share: float, words: str) -> None:
+        nonlocal reached
+        reached = share
+        progress(share, words)
+
+    before = _LISTENER.set(lambda: progress(reached, COMPILING))
+    try:
+        yield report
+    finally:
+        _LISTENER.reset(before)
+
+
+def compiling() -> None:
+    """Report to whoever follows the work of this thread that kernels are being compiled."""
+    _LISTENER.get()()
 
 
 class ProgressLine:
@@ -48,15 +76,18 @@ class ProgressLine:
         self._due = clock() + (PATIENCE if self._terminal else IN_LOG)
         self._first: tuple[float, float] | None = None
         self._last: tuple[float, str] | None = None
+        self._told = 0.0
         self._width = 0
         self._stale = False
 
     def __call__(self, share: float, words: str = "") -> None:
         """Report, unless the last report is recent."""
         now = self._clock()
-        self._first = self._first or (share, now)
+        if self._first and self._last and self._last[1] == COMPILING:  # takes no part in the rate
+            self._first = self._first[0], self._first[1] + now - self._told
+        self._first, self._told = self._first or (share, now), now
         self._last, self._stale = (share, words), True
-        if now >= self._due:
+        if now >= self._due or (words == COMPILING and self._terminal):
             self._due = now + (ON_TERMINAL if self._terminal else IN_LOG)
             self._write(now)
 
@@ -76,7 +107,7 @@ class ProgressLine:
         share, words = self._last
         done, seconds = share - self._first[0], now - self._first[1]
         text = f"{self._label}: {int(100 * share)} %"
-        if done > 0.0 and share < 1.0 and seconds > SETTLING:
+        if done > 0.0 and share < 1.0 and seconds > SETTLING and words != COMPILING:
             text += f", {duration((1.0 - share) * seconds / done)} left"
         text += f", {words}" if words else ""
         if self._terminal:

@@ -3,12 +3,11 @@
 import base64
 import json
 import os
-import shutil
 import subprocess
 import time
 from pathlib import Path
 
-import pytest
+from tests.conftest import required
 
 FLAGS = (
     *("--headless=new", "--no-sandbox", "--disable-gpu", "--no-first-run", "--disable-sync"),
@@ -23,11 +22,7 @@ class Browser:
     """One page; `errors` collects what the console and the scripts complained of."""
 
     def __init__(self, profile):
-        chromium = shutil.which("chromium")
-        if chromium is None:
-            if os.environ.get("CI"):
-                pytest.fail("chromium is needed in CI")
-            pytest.skip("chromium is not installed")
+        chromium = required("chromium")
         ours, self._commands = os.pipe()
         self._answers, theirs = os.pipe()
         # Chromium reads commands from 3 and answers on 4.

@@ -1,9 +1,13 @@
-"""How the tests are shared out among processes: what takes longest first, all derivations to one of them.
+"""How the tests are shared out among processes, and what becomes of them without the programs that they need.
+
+What takes longest starts first, and all derivations are in one process.
 
 To derive everything takes half a minute, once in the life of a process. What a file sets up is shared by its
 tests, so other scopes are files. Kernels that are compiled in one process are loaded by the others.
 """
 
+import os
+import shutil
 from functools import cache
 from pathlib import Path
 
@@ -16,6 +20,30 @@ FIRST = (
 """Scopes in the order in which they begin, then all others; the first of them compiles all kernels."""
 DERIVING = "derivations.catalogue import", "derivations import emit", "derivations import ball"
 """In the text of a file whose tests derive everything, or most of it."""
+
+PACKAGES = {"chromium": "chromium", "pdflatex": "texlive-latex-base"}
+"""Programs that are not Python's, and the packages of Debian that hold them."""
+MISSING = "{} is not installed"
+
+
+def required(program: str) -> str:
+    """Return the path of a program; without it, skip the test, or fail in CI."""
+    found = shutil.which(program)
+    if found is None:
+        (pytest.fail if os.environ.get("CI") else pytest.skip)(MISSING.format(program))
+    return found
+
+
+def pytest_terminal_summary(terminalreporter):
+    """Say what was not tested for want of a program, and how to install it."""
+    reasons = [str(report.longrepr) for report in terminalreporter.stats.get("skipped", [])]
+    for program, package in PACKAGES.items():
+        count = sum(MISSING.format(program) in reason for reason in reasons)
+        if count:
+            terminalreporter.write_line(
+                f"Not tested: {count} tests that need {program}. On Debian: sudo apt-get install {package}",
+                yellow=True,
+            )
 
 
 @cache

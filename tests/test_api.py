@@ -1,9 +1,14 @@
 """`kv.steady` and `kv.asymptotes` as users call them."""
 
+import inspect
 import json
+from concurrent.futures import ThreadPoolExecutor
 
+import dask.array
 import numpy as np
+import pandas
 import pytest
+import xarray
 
 import kvtheory as kv
 from kvtheory.results import STEADY_UNITS
@@ -53,9 +58,113 @@ def test_mistakes_are_named():
         kv.steady(over={"support.mass": 1e-300})
     with pytest.raises(ValueError, match=r"check foundation\.retardation_time = 1e\+300 s$"):
         kv.transient(kv.Scene(foundation=kv.Foundation(1e10, 1e300)))
-    for wrong in ("scene.toml", 0.1):
-        with pytest.raises(TypeError, match="load_scene"):
-            kv.steady(wrong)
+
+
+PUBLIC = (
+    kv.steady, kv.asymptotes, kv.transient, kv.elements, kv.compare, kv.solve, kv.sweep, kv.stability,
+    kv.footprint, kv.problem, kv.load_scene, kv.to_toml, kv.Scene,
+)  # fmt: skip
+NEVER = (1j, b"x", dict, object(), np.ones((2, 2), complex), np.datetime64("2020"))
+"""Right for no argument."""
+ARRAYS = (
+    np.array([0.05, 0.1]),
+    pandas.Series([0.05]),
+    xarray.DataArray([0.05]),
+    dask.array.ones(2),
+)
+NUMBERS = (None, True, "1e-3", -1.0, np.nan, np.inf, np.ma.masked, [0.05], {}, *ARRAYS)
+NAMES = (5, 0.1, np.nan, {"load": 1}, ["load", 5], [["load"]], *ARRAYS)
+COUNTS = (0, -1, 1.0, "2", True, np.nan, np.timedelta64(5), *ARRAYS)
+FLAGS = (None, 1, "yes", np.nan, [True], *ARRAYS)
+OVER = (
+    5,
+    "drive.velocity",
+    ["drive.velocity"],
+    {1: 2},
+    {None: 1},
+    {(1,): [2]},
+    pandas.DataFrame(),
+    *ARRAYS,
+)
+WRONG = {
+    "rtol": (5, *NUMBERS), "tolerance": NUMBERS, "quantity": NAMES, "quantities": NAMES, "overrides": NAMES,
+    "method": NAMES, "scheme": NAMES, "max_steps": COUNTS, "jobs": COUNTS, "block": COUNTS,
+    "in_flight": COUNTS, "certify": FLAGS, "over_time": FLAGS, "overwrite": FLAGS, "over": OVER,
+    "scene": (5, "scene.toml", {}, *ARRAYS), "progress": (5, "x", True, dict), "warn": (5, "x"),
+    "executor": (5, ThreadPoolExecutor), "output": (5, "", "a\0.csv", *ARRAYS), "path": (5, "", *ARRAYS),
+    "at": ("x", {}, np.nan, np.inf, -1.0, [[1.0], [1.0, 2.0]], [], {1: 2}, xarray.Dataset()),
+    "time_step": (0.0, "1 mm", np.nan, *ARRAYS), "per_length": (0.0, "1 mm", np.nan, *ARRAYS),
+    "name": (5, None, "wegde", *ARRAYS), "data": (5, np.nan, *ARRAYS),
+    "indenter": (5, None), "foundation": (5, None), "support": (5, None), "drive": (5, None),
+    "run": (5, None),
+}  # fmt: skip
+"""What is wrong for an argument of this name beside that."""
+
+
+@pytest.mark.parametrize("function", PUBLIC)
+def test_a_value_of_a_wrong_kind_is_refused_by_the_name_of_its_argument(function):
+    for name in inspect.signature(function).parameters:
+        told = "`problem`" if name == "name" else f"`{name}`"
+        for value in (*NEVER, *WRONG[name]):
+            given = {"over": {"drive.velocity": [0.1]}} if function is kv.sweep else {}
+            with pytest.raises((ValueError, TypeError), match=told):
+                function(**{**given, name: value})
+
+
+def test_every_wrong_argument_is_listed():
+    with pytest.raises(kv.SceneError) as caught:
+        kv.transient(rtol="small", certify=None)
+    assert [text.split(" = ")[0] for text in caught.value.problems] == ["`rtol`", "`certify`"]
+
+
+@pytest.mark.parametrize(
+    "given",
+    [
+        np.ma.masked_array([0.01, 0.02], [0, 1]), [np.ma.masked_array([0.01, 0.02], [0, 1])],
+        [0.01, np.ma.masked], np.ma.masked, np.ma.masked_array([[0.01, 0.02]], [[0, 1]]),
+    ],
+)  # fmt: skip
+def test_masked_values_are_refused_wherever_arrays_enter(given):
+    for call in (
+        lambda: kv.transient(at=given),
+        lambda: kv.elements(at=given),
+        lambda: kv.solve(at=given),
+        lambda: kv.steady(over={"drive.velocity": given}),
+        lambda: kv.stability(over={"drive.velocity": given}),
+        lambda: kv.sweep(over={"drive.velocity": given}),
+        lambda: kv.sweep(over={"drive.velocity": [0.1]}, quantities="depth", at=given),
+        lambda: kv.Parabola(given),
+        lambda: kv.Drive(history=[(0.0, 0.1), (1.0, given)]),
+        lambda: kv.Drive(function=np.sin, breaks=given),
+        lambda: kv.compare(data={"time": given, "depth": given}),
+    ):
+        with pytest.raises(ValueError, match=r"masked|expected|differ in length"):
+            call()
+    whole = np.ma.masked_array([0.01, 0.02], [0, 0])
+    assert kv.transient(at=whole).time.tolist() == [0.01, 0.02]
+
+
+@pytest.mark.parametrize(
+    "given",
+    [
+        pandas.Series([0.01, 0.02]), xarray.DataArray([0.01, 0.02]), dask.array.from_array([0.01, 0.02]),
+        xarray.DataArray([10.0, 20.0], attrs={"units": "mm/s"}), np.array(["10 mm/s", "2 cm/s"]),
+        np.array([0.01, 0.02], dtype=object), ("10 mm/s", 0.02),
+    ],
+)  # fmt: skip
+def test_arrays_of_other_libraries_are_read(given):
+    over = {"drive.velocity": given}
+    plain = kv.steady(over={"drive.velocity": [0.01, 0.02]}).load
+    assert kv.steady(over=over).load.tolist() == plain.tolist()
+    assert kv.sweep(over=over)["drive.velocity"].tolist() == [0.01, 0.02]
+    times = np.array([1, 2], dtype="timedelta64[ms]")
+    assert kv.transient(at=times).time.tolist() == [1e-3, 2e-3]
+
+
+def test_a_table_of_pandas_is_compared_in_the_units_of_its_columns():
+    run = kv.transient(at=np.linspace(0.0, 0.2, 101))
+    table = pandas.DataFrame({"t [ms]": 1e3 * run.time, "depth": run.depth})
+    assert kv.compare(data=table).verdict == "agrees"
 
 
 def test_no_scenes_give_no_states():

@@ -48,6 +48,7 @@ SUPPORTS = {
 }  # fmt: skip
 
 
+@pytest.mark.processor
 @pytest.mark.parametrize("support", SUPPORTS)
 def test_error_stays_below_the_certificate(support):
     R, S, K, tau, V, W = random_scenes(SCENES, seed=20)
@@ -496,4 +497,4 @@ def test_every_output_is_in_whole_units(tmp_path):
     solved = kv.solve(BALL, quantity="load")
     assert (solved.model, solved.units["load"]) == ("asymptote", "N")  # it is the weight
     assert "load 9.80665 N" in repr(solved)
-    assert set(state.as_dict()) == {*STEADY_UNITS, "stable", "model", "certificate"}
+    assert set(state.as_dict()) == {*STEADY_UNITS, "stable", "notes", "model", "certificate"}

@@ -45,7 +45,7 @@ def test_steady_prints_one_json_object_in_si(scene_file, method):
     record = json.loads(run("steady", scene_file, "--json", "--method", method).stdout)
     state = kv.steady(kv.load_scene(scene_file), method=method)
     assert record == state.as_dict()
-    assert set(STEADY_UNITS) | {"model", "certificate", "stable"} == set(record)
+    assert set(STEADY_UNITS) | {"model", "certificate", "stable", "notes"} == set(record)
 
 
 def test_steady_prints_a_table_in_the_papers_units():
@@ -63,6 +63,7 @@ def test_overrides():
 
 def test_asymptotes():
     shown = run("asymptotes", "--tolerance", "0.1").stdout
+    assert shown == f"dead-weight support, {kv.asymptotes(tolerance=0.1)}\n"
     assert "use L2" in shown
     assert "friction maximum" in shown
     record = json.loads(run("asymptotes", "--json").stdout)

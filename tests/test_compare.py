@@ -345,7 +345,7 @@ BAD = {
     "endless cell": (rows(HEADS, "0," + "9" * 200_000 + ",9,0"), "not a table of numbers: field larger"),
     "nothing known": (rows("a,b", "1,2"), "no column is known: a, b"),
     "no unit": (rows("t [ms],depth", "0,1"), 'expected "depth [m]"'),
-    "wrong unit": (rows("t [ms],F_z [N]", "0,1"), "has the wrong dimension"),
+    "wrong unit": (rows("t [ms],F_z [N]", "0,1"), '"F_z [N]": the unit "N" has the wrong dimension'),
     "unknown unit": (rows("t [ms],z_A [furlongz]", "0,1"), '"furlongz" is not a known unit'),
     "misspelt": (rows("t [ms],Fricton [N/mm]", "0,1"), 'did you mean "friction"'),
     "twice": (rows("t [ms],depth [m],z_A [mm]", "0,1,1"), 'bad.csv: columns "depth [m]" and "z_A [mm]"'),

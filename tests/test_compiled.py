@@ -10,6 +10,7 @@ import pytest
 
 from kvtheory.models.continuum import compiled, solver
 from kvtheory.models.continuum.solver import solve
+from kvtheory.progress import COMPILING, listening
 from kvtheory.scene.base_motion import BaseMotion
 from tests.test_transient_random import random_case
 
@@ -91,6 +92,20 @@ def test_without_numba_the_kernels_are_interpreted():
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.split() == ["False", "89.661"]
+
+
+def test_compiling_is_reported_and_loading_what_is_compiled_is_not(tmp_path, monkeypatch):
+    monkeypatch.setattr("numba.config.CACHE_DIR", str(tmp_path))
+    told = []
+
+    def entry(x):
+        return 2.0 * x
+
+    with listening(lambda share, words: told.append((share, words))) as report:
+        report(0.25, "begun")
+        for _ in range(2):
+            assert compiled._kept(entry)(1.5) == 3.0
+    assert told == [(0.25, "begun"), (0.25, COMPILING)]
 
 
 @pytest.mark.parametrize("left", [b"", b"\x80damaged", None])

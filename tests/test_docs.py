@@ -2,6 +2,7 @@
 
 import json
 import re
+import shlex
 import sys
 from pathlib import Path
 
@@ -11,8 +12,11 @@ from click.testing import CliRunner
 from kvtheory.derivations.contents import CONTENTS
 
 import kvtheory as kv
+from figures.__main__ import TOPICS
 from kvtheory.cli import main
 from kvtheory.scene.files import SECTIONS
+from kvtheory.scene.indenters import SHAPES
+from kvtheory.scene.model import SUPPORTS
 from kvtheory.scene.quantities import quantities
 
 ROOT = Path(__file__).parent.parent
@@ -21,7 +25,7 @@ NOTEBOOKS = sorted((DOCS / "gallery" / "notebooks").glob("*.ipynb"))
 sys.path.insert(0, str(DOCS))
 
 import check_site  # noqa: E402
-from generators import api, commands, equations, keys, labels  # noqa: E402
+from generators import api, commands, equations, gallery, keys, labels  # noqa: E402
 
 
 @pytest.fixture
@@ -51,12 +55,63 @@ def test_a_notebook_runs_and_keeps_no_output(path, offscreen):
     assert names["kv"] is kv
 
 
-def test_the_tutorial_runs(offscreen):
-    text = (DOCS / "tutorial" / "index.md").read_text(encoding="utf-8")
-    cells, names = re.findall(r"```\{code-cell\} python\n(.*?)```", text, re.DOTALL), {}
-    for cell in cells:
-        exec(cell, names)
-    assert names["report"].peak_friction_coefficient == pytest.approx(0.0745, abs=1e-4)
+CODE = re.compile(
+    r"<!-- python\n(?P<hidden>.*?)-->"
+    r"|^```(?:\{code-cell\} )?(?P<kind>python|console|toml)\n(?P<shown>.*?)^```",
+    re.MULTILINE | re.DOTALL,
+)
+"""Code of a page; what is hidden in a comment prepares what the reader has: data, a cluster."""
+PAGES = {
+    path.relative_to(DOCS).as_posix(): text
+    for path in sorted(DOCS.rglob("*.md"))
+    if not {"_build", "generated"} & set(path.parts)
+    and CODE.search(text := path.read_text("utf-8"))
+}
+
+
+def sections(text):
+    """Return the sections of a scene file by their names."""
+    return {
+        part.partition("]")[0]: f"[{part}" for part in re.split(r"^\[(?=\w)", text, flags=re.M)[1:]
+    }
+
+
+TABLE1 = sections(kv.to_toml(kv.Scene()))
+
+
+@pytest.mark.parametrize("name", PAGES)
+def test_the_code_of_a_page_runs_in_order(name, tmp_path, monkeypatch, offscreen):
+    """In an empty directory but for a scene: that of the last TOML block, or Table 1."""
+    monkeypatch.chdir(tmp_path)
+    scene, names = tmp_path / "my-scene.toml", {}
+    exec(re.search("```python\n(.*?)```", PAGES["howto/index.md"], re.DOTALL)[1], names)
+    scene.write_text(kv.to_toml(kv.Scene()), "utf-8")
+    for piece in CODE.finditer(PAGES[name]):
+        line = PAGES[name].count("\n", 0, piece.start("shown")) + 1
+        if piece["kind"] == "toml":
+            scene.write_text("\n".join({**TABLE1, **sections(piece["shown"])}.values()), "utf-8")
+            kv.load_scene(scene)
+        elif piece["kind"] == "console":
+            for command in re.findall(
+                r"^\$ (.*)", piece["shown"].replace("\\\n", ""), re.MULTILINE
+            ):
+                run_command(command)
+        elif code := piece["hidden"] or piece["shown"]:
+            exec(compile(code, f"{name}, line {line}", "exec"), names)
+    if name == "tutorial/index.md":
+        assert kv.steady(names["scene"]).notes == ()  # its layer is thin
+
+
+def run_command(command):
+    """Run a line of the console as it stands; it has to end well."""
+    program, *arguments = shlex.split(command)
+    arguments, _, target = (" ".join(map(shlex.quote, arguments))).partition(" '>' ")
+    assert program in ("kvtheory", "python"), command
+    if program == "kvtheory":
+        done = CliRunner().invoke(main, shlex.split(arguments))
+        assert done.exit_code == 0, (command, done.output)
+        if target:
+            Path(target).write_text(done.stdout, "utf-8")
 
 
 def test_every_link_in_readme_and_pages_leads_somewhere():
@@ -104,8 +159,29 @@ def test_the_reference_has_a_page_for_every_public_name():
     assert {f"api/{name}.md" for name in kv.__all__} < set(pages)
     for name in kv.__all__:
         assert f"`{name}`]({name}.md)" in pages["api/index.md"]
+    listed = dict(re.findall(r"## (\w+)\n\n((?:- .*\n)+)", pages["api/index.md"]))
+    shown = {title: set(re.findall(r"\[`(\w+)`\]", rows)) for title, rows in listed.items()}
+    assert {"footprint", "stability", "steady"} < shown["Compute"]
+    assert shown["Indenters"] == {model.__name__ for model in SHAPES.values()} | {
+        "Profile",
+        "Revolved",
+    }
+    assert shown["Supports"] == {model.__name__ for model in SUPPORTS.values()}
+    assert all(kv.results.__name__ in getattr(kv, name).__module__ for name in shown["Results"])
     assert "pycon\n>>> " in pages["api/steady.md"]
     assert "| `radius` | m |" in pages["api/Parabola.md"]
+
+
+def test_the_gallery_is_ordered_by_topic(tmp_path):
+    gallery.write(tmp_path)
+    folders = sorted(path for path in (tmp_path / "scripts").iterdir() if path.is_dir())
+    heads = [(folder / "README.rst").read_text("utf-8").partition("\n")[0] for folder in folders]
+    shown = [
+        tuple(path.stem for path in sorted(folder.glob("*.py"), key=gallery.order))
+        for folder in folders
+    ]
+    assert dict(zip(heads, shown, strict=True)) == TOPICS
+    assert heads == list(TOPICS)
 
 
 def test_docstrings_become_markdown_that_says_the_same():

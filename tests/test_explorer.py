@@ -2,6 +2,7 @@
 
 import json
 import math
+import re
 import tomllib
 from contextlib import contextmanager
 from dataclasses import replace
@@ -15,6 +16,7 @@ from kvtheory.explorer import save_explorer
 from kvtheory.models.steady import closed_forms
 from kvtheory.results import STEADY_UNITS
 from kvtheory.results.errors import QuadratureError
+from kvtheory.scene.foundations import THIN, layer_number
 from kvtheory.scene.static_state import StaticState
 from tests.browser import Browser
 
@@ -591,6 +593,132 @@ def test_a_mistake_is_told_and_nothing_breaks(browser):
     told = browser.run("document.querySelector('#problem').textContent")
     assert told == "indenter.radius = -1: out of range: a finite value above 0"
     assert browser.run("document.querySelector('#problem').hidden") is False
+
+
+TYPED = {
+    "5 m/s": "5000", "5m/s": "5000", "0,5": "0.5", "\u2212.5 m\u00b7s^-1": "-500", "36 km/h": "10000",
+    "1e-3": "1e-3",
+    "20 \u00b5m/ms": "20", "5 N/m": "does not fit", "5 furlong": "not known", "1,500": "comma",
+    "1,5,0": "number", "fast": "number", "": "number", "1e400": "number",
+}  # fmt: skip
+
+
+def type_in(browser, key, text):
+    """Type a text into a field, and return what the scene has, the mistake that is told and the address."""
+    return browser.run(
+        f"(box => {{ box.value = {json.dumps(text)};"
+        " box.dispatchEvent(new Event('change', { bubbles: true }));"
+        " const told = document.getElementById(box.getAttribute('aria-describedby'));"
+        f" return [state.values['{key}'], box.getAttribute('aria-invalid'),"
+        " told.hidden ? '' : told.textContent]; })"
+        f"(document.querySelector('input[type=text][data-key=\"{key}\"]'))"
+    )
+
+
+@pytest.mark.parametrize("text", TYPED)
+def test_a_typed_value_is_understood_or_refused_and_not_kept(browser, text):
+    value, invalid, told = type_in(browser, "drive.velocity", text)
+    browser.settle()
+    address = browser.run("decodeURIComponent(location.hash)")
+    if re.match(r"[a-z]", TYPED[text]):
+        assert (value, invalid) == ("100", "true")
+        assert TYPED[text] in told
+        assert address in ("", "#")
+        assert type_in(browser, "drive.velocity", "7 mm/s") == ["7", None, ""]
+    else:
+        assert (value, invalid, told) == (TYPED[text], None, "")
+        assert address == f"#drive.velocity={value}"
+
+
+def test_units_of_every_kind_are_converted(browser):
+    for key, text, value in (
+        ("support.mass", "2 g/m", "0.000002"), ("foundation.stiffness", "12 MPa/mm", "12"),
+        ("foundation.stiffness", "3 kN m^-1/cm\u00b2", "0.03"), ("indenter.radius", "1,2 cm", "12"),
+        ("foundation.retardation_time", "2 min", "120000"),
+    ):  # fmt: skip
+        shown, _, told = type_in(browser, key, text)
+        assert (float(shown), told) == (float(value), ""), text
+    assert "out of range" in type_in(browser, "indenter.radius", "-1 mm")[2]
+    browser.run("restore('#drive.velocity=fast&indenter.radius=-3&support.mass=2')")
+    assert browser.run("[state.values['drive.velocity'], as_hash(state)]") == [
+        "100",
+        "support.mass=2",
+    ]
+
+
+LAYER = (
+    "#without=foundation.stiffness&foundation.modulus={}&foundation.thickness={}"
+    "&foundation.poisson_ratio={}"
+)
+
+
+@pytest.mark.parametrize(
+    ("modulus", "thickness", "ratio", "thin"),
+    [(2, 0.25, 0.3, True), (5, 2, 0.45, False), (2, 0.25, 0.499, False), (2, 0.3, 0.3, False)],
+)
+def test_a_layer_that_is_not_thin_is_said_to_be_so(session, page, modulus, thickness, ratio, thin):
+    with watched(session, page, LAYER.format(modulus, thickness, ratio)) as browser:
+        layer = {
+            "modulus": f"{modulus} MPa",
+            "thickness": f"{thickness} mm",
+            "poisson_ratio": ratio,
+        }
+        state = kv.steady(kv.Scene(foundation=kv.Foundation(retardation_time="100 ms", **layer)))
+        number = layer_number(thickness * 1e-3, state.half_length, ratio)
+        assert thin == (number <= THIN) == (not state.notes)
+        hidden, told, shown = browser.run(
+            "(p => [p.hidden, p.textContent, document.querySelector('#readout').textContent])"
+            "(document.querySelector('#layer'))"
+        )
+        assert hidden == thin
+        assert ("not thin" in shown) != thin
+        assert thin or float(re.search("= ([0-9.]+), above", told)[1]) == pytest.approx(
+            number, rel=5e-3
+        )
+
+
+def test_the_curve_stays_in_sight_on_a_phone_and_the_buttons_on_a_low_screen(session, page):
+    box = "(e => (r => [r.top, r.bottom])(e.getBoundingClientRect()))(document.{})"
+    with watched(session, page, "", 375, 812, phone=True) as browser:
+        for key in ("drive.velocity", "support.mass", "foundation.retardation_time"):
+            browser.run(f"document.getElementById('{key}').scrollIntoView({{ block: 'center' }})")
+            browser.settle()
+            top, bottom = browser.run(box.format("getElementById('curve')"))
+            slider = browser.run(box.format(f"getElementById('{key}')"))
+            assert 0 <= top < bottom < slider[0] < slider[1] < 812
+    with watched(session, page, "#foundation=generalized-maxwell", 1280, 700) as browser:
+        for name in ("copy-toml", "reset"):
+            top, bottom = browser.run(box.format(f"getElementById('{name}')"))
+            assert 0 < top < bottom < 700
+
+
+@pytest.mark.parametrize("state", STATES)
+def test_no_formula_is_cut(session, page, state):
+    with watched(session, page, state) as browser:
+        widths = (
+            "[...document.querySelectorAll('.formula')].map(f => f.scrollWidth - f.clientWidth)"
+        )
+        assert max(browser.run(widths), default=0) <= 0
+
+
+EXTREME = (
+    "drive.velocity",
+    "indenter.radius",
+    "support.mass",
+    "foundation.stiffness",
+    "foundation.retardation_time",
+)
+
+
+@pytest.mark.parametrize("family", ["", "indenter=sphere&", "foundation=generalized-maxwell&"])
+def test_ten_decades_either_side_leave_no_gap(browser, family):
+    for key in EXTREME:
+        for value in ("1e-9", "1e11"):
+            browser.run(f"restore('#{family}{key}={value}')")
+            browser.settle()
+            html = browser.run("document.body.innerHTML.replace(/<script[^]*/, '')")
+            assert not re.search("NaN|Infinity|undefined", html), (key, value)
+            assert browser.run("document.querySelector('#problem').hidden"), (key, value)
 
 
 def test_how_long_a_frame_takes_is_measured(browser, record_property):

@@ -1,15 +1,18 @@
 """A load instead of a weight, and a thin layer instead of a stiffness: one scene in other words."""
 
+import json
 from dataclasses import replace
 
 import numpy as np
 import pytest
+from click.testing import CliRunner
 
 import kvtheory as kv
+from kvtheory.cli import main
 from kvtheory.results import TRANSIENT_UNITS
 from kvtheory.scene import template
 from kvtheory.scene.broadcasting import replaceable, values
-from kvtheory.scene.foundations import layer_stiffness
+from kvtheory.scene.foundations import THIN, layer_stiffness
 from kvtheory.scene.quantities import changed
 from kvtheory.sweeps.blocks import at_point
 
@@ -79,6 +82,74 @@ def test_the_layer_is_its_confined_modulus_over_its_thickness():
     assert LAYER.stiffness == layer_stiffness(5e6, 2e-3, 0.45)
 
 
+def compressed_layer(nu, thickness):
+    """Load and half length of a parabola with a = 1 on a layer, over those on elements of stiffness K.
+
+    By the exact compliance of a bonded layer in plane strain, without friction on its surface.
+    """
+    dx, n, count = 0.01, 250, 4096
+    k = 2.0 * np.pi * np.fft.rfftfreq(count, dx)
+    s = np.maximum(k * thickness, 1e-6)
+    e = np.exp(-2.0 * s)
+    above = (3.0 - 4.0 * nu) * (1.0 - e * e) / 2.0 - 2.0 * s * e
+    below = (3.0 - 4.0 * nu) * (1.0 + e * e) / 2.0
+    below += (2.0 * s * s + 5.0 - 12.0 * nu + 8.0 * nu * nu) * e
+    compliance = 2.0 * (1.0 - nu) ** 2 / (1.0 - 2.0 * nu) * above / (s * below)  # 1 for s -> 0
+    influence = np.fft.irfft(compliance * np.sinc(k * dx / (2.0 * np.pi)) ** 2, count)
+    x = dx * np.arange(-n, n + 1)
+    matrix = influence[np.abs(np.subtract.outer(np.arange(2 * n + 1), np.arange(2 * n + 1)))]
+    depth, inside = 1.0 - x * x, np.abs(x) <= 1.0
+    while True:
+        pressure = np.zeros_like(x)
+        pressure[inside] = np.linalg.solve(matrix[np.ix_(inside, inside)], depth[inside])
+        touching = np.where(inside, pressure > 0.0, matrix @ pressure < depth - 1e-12)
+        if (touching == inside).all():
+            return pressure.sum() * dx / (4.0 / 3.0), dx * inside.sum() / 2.0
+        inside = touching
+
+
+@pytest.mark.parametrize("nu", [0.0, 0.3, 0.45, 0.49])
+def test_a_thin_layer_is_as_independent_as_its_limit_says(nu):
+    load, half_length = compressed_layer(nu, np.sqrt(THIN * (1.0 - 2.0 * nu)))
+    assert abs(load - 1.0) < 0.05
+    assert abs(half_length - 1.0) < 0.15
+    if nu == 0.49:  # and the next-order correction is right
+        c = nu * (4.0 * nu - 1.0) / (3.0 * (1.0 - nu) * (1.0 - 2.0 * nu))
+        share = c * THIN * (1.0 - 2.0 * nu)
+        assert load == pytest.approx((1.0 - share) ** 1.5 + share**1.5, abs=2e-3)
+
+
+def test_a_layer_that_is_not_thin_for_its_contact_is_noted():
+    thick = kv.Scene(foundation=LAYER)
+    state = kv.steady(thick)
+    (note,) = state.notes
+    number = (2e-3 / state.half_length) ** 2 / 0.1
+    assert f"= {number:.3g}, above 0.1" in note
+    assert note in repr(state)
+    assert note in state._repr_html_()
+    assert state.as_dict()["notes"] == [note]
+    assert kv.steady(thick, over={"foundation.stiffness": 1e9}).notes == ()
+    (several,) = kv.steady(thick, over={"foundation.thickness": [1e-6, 1e-3, 2e-3]}).notes
+    assert "in 2 of 3 scenes" in several
+    assert kv.steady().notes == kv.steady(kv.problem("thin-layer")).notes == ()
+    narrow = {"radius": 1.0, "radius_across": 1e-4}  # thin for its length, not for its width
+    ball = replace(thick, indenter=kv.Sphere(**narrow), support=kv.Fixed(depth=1e-2))
+    assert kv.steady(ball, over={"indenter.radius_across": 1.0}).notes == ()
+    assert kv.steady(ball).notes
+
+
+@pytest.mark.parametrize("shape", ["parabola", "circle"])
+def test_the_scene_command_notes_a_thick_layer_for_the_contact_at_rest(shape):
+    layer = {"modulus": "5 MPa", "thickness": "2 mm", "poisson_ratio": "0.45"}
+    given = [f"foundation.{key}={value}" for key, value in layer.items()]
+    command = ["scene", *(f"--set={each}" for each in (*given, f"indenter.shape={shape}"))]
+    told = CliRunner().invoke(main, command, catch_exceptions=False).stdout
+    (note,) = json.loads(CliRunner().invoke(main, [*command, "--json"]).stdout)["notes"]
+    assert note in told
+    scene = kv.load_scene(overrides=[*given, f"indenter.shape={shape}"])
+    assert (note,) == kv.steady(scene, over={"drive.velocity": 0.0}).notes
+
+
 def test_a_layer_is_the_foundation_of_its_stiffness_in_every_function():
     by_layer = kv.Scene(foundation=LAYER)
     plain = kv.Scene(foundation=kv.Foundation(float(LAYER.stiffness), 0.1))
@@ -142,7 +213,7 @@ def test_the_template_tells_of_both():
 
         tables = tomllib.loads(told)
         assert tables["support"]["load"] == "9.80665 N/mm"
-        assert tables["foundation"]["poisson_ratio"] == 0.45
+        assert tables["foundation"]["poisson_ratio"] == 0.3
 
 
 def test_overrides_exchange_a_stiffness_for_a_layer_and_back(tmp_path):

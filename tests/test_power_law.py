@@ -36,6 +36,7 @@ def both(case, kind):
     return getattr(power_law, method)(*case), getattr(reference_power_law, method)(*case)
 
 
+@pytest.mark.processor
 @pytest.mark.parametrize("kind", SUPPORTS)
 @pytest.mark.parametrize("n", EXPONENTS)
 def test_every_quantity_is_within_its_error_of_ball_arithmetic(n, kind):
@@ -141,21 +142,6 @@ def test_arrays_give_what_single_scenes_give(shape):
         for name in STEADY_UNITS:
             assert getattr(together, name)[place] == pytest.approx(getattr(alone, name), rel=1e-14)
             assert isinstance(getattr(alone, name), float)
-
-
-def test_it_does_not_matter_what_is_computed_together():
-    """A scene converges for itself: the same bits alone, in threes, and among many."""
-    V = np.geomspace(1e-6, 1e3, 60)
-    for shape in SHAPES:
-        for support in SUPPORTS:
-            scene = kv.Scene(shape, support=kv.Scene.table1(support).support)
-            together = kv.steady(scene, over={"drive.velocity": V})
-            for size in (3, 7):
-                for start in range(0, V.size, size):
-                    part = slice(start, start + size)
-                    few = kv.steady(scene, over={"drive.velocity": V[part]})
-                    for name in STEADY_UNITS:
-                        assert np.array_equal(getattr(few, name), getattr(together, name)[part])
 
 
 def test_the_exponent_may_be_an_array():

@@ -81,6 +81,8 @@ def test_steady_sliding_is_drawn_as_a_curve_or_as_its_pressure():
     state = kv.steady(over=V)
     (line,) = state.plot().axes[0].lines
     assert line.get_ydata() == pytest.approx(state.friction_coefficient)
+    assert line.get_xdata() == pytest.approx(V["drive.velocity"] * 1e3)
+    assert line.axes.get_xlabel() == "drive velocity $V$ [mm/s]"
     for velocity in ("50 mm/s", "-50 mm/s", "1 mm/s"):
         single = kv.steady(over={"drive.velocity": velocity})
         x, p = single.plot().axes[0].lines[0].get_data()
@@ -92,6 +94,37 @@ def test_steady_sliding_is_drawn_as_a_curve_or_as_its_pressure():
         assert abs(at_trailing) < 1e-9 * p.max()
     with pytest.raises(ValueError, match="parabola and for a ball"):
         kv.steady(kv.Scene(indenter=kv.Wedge(0.1))).plot()
+
+
+SPEEDS, TIMES, RADII = (np.linspace(1.0, 2.0, n) for n in (12, 9, 3))
+
+
+@pytest.mark.parametrize(
+    ("over", "axes"),
+    [
+        ({"foundation.retardation_time": TIMES}, ("retardation time", "friction")),
+        ({"indenter.radius": RADII, "drive.velocity": RADII}, ("drive velocity", "friction")),
+        (
+            {"drive.velocity": SPEEDS[:, None], "indenter.radius": RADII},
+            ("drive velocity", "friction"),
+        ),
+        (
+            {"foundation.retardation_time": TIMES[:, None], "drive.velocity": SPEEDS},
+            ("drive velocity", "retardation time"),
+        ),
+        ({"drive.velocity": RADII + 0.1 * RADII[:, None]}, None),
+        ({"drive.velocity": np.empty(0)}, None),
+        ({"drive.velocity": np.ones((2, 2, 2)) * RADII[:2]}, None),
+    ],
+)
+def test_steady_sliding_is_drawn_over_what_varies(over, axes):
+    state = kv.steady(over=over)
+    if axes is None:
+        with pytest.raises(ValueError, match=r"dimension|empty"):
+            state.plot()
+        return
+    ax = state.plot().axes[0]
+    assert (ax.get_xlabel()[: len(axes[0])], ax.get_ylabel()[: len(axes[1])]) == axes
 
 
 @pytest.mark.parametrize("velocity", ["50 mm/s", "-5 mm/s", "0 mm/s", "3 m/s"])

@@ -1,9 +1,7 @@
 """Printing: the files are complete, correct in their format, and fit their page."""
 
 import json
-import os
 import re
-import shutil
 import subprocess
 import xml.etree.ElementTree as ET
 from html.parser import HTMLParser
@@ -28,6 +26,8 @@ from kvtheory.derivations.render import (
 )
 from kvtheory.derivations.render.edition import symbols_of
 from kvtheory.derivations.render.text import Given, Line, blocks, sentence
+
+from tests.conftest import required
 
 SAMPLE = (
     Derivation(
@@ -63,16 +63,6 @@ def everything() -> tuple[Derivation, ...]:
 @pytest.fixture(scope="session")
 def page(everything) -> str:
     return html.document(edition(everything, command="kvtheory derive"))
-
-
-def required(tool: str) -> str:
-    found = shutil.which(tool)
-    if found is None:
-        reason = f"{tool} is not installed"
-        if os.environ.get("CI"):
-            pytest.fail(reason)
-        pytest.skip(reason)
-    return found
 
 
 def overfull(log: str) -> list[float]:

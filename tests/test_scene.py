@@ -2,6 +2,7 @@
 
 import re
 import tomllib
+from pathlib import Path
 
 import numpy as np
 import pint
@@ -10,7 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import kvtheory as kv
-from kvtheory.scene import template
+from kvtheory.scene import template, texts
 from kvtheory.scene.broadcasting import values
 from kvtheory.scene.static_state import StaticState
 
@@ -195,7 +196,7 @@ def test_what_an_old_section_has_in_common_with_the_new_one_stays(tmp_path):
 def test_parts_of_the_wrong_kind_are_named():
     with pytest.raises(kv.SceneError) as caught:
         kv.Scene(indenter="parabola", drive="100 mm/s")
-    assert [text.split(" = ")[0] for text in caught.value.problems] == ["indenter", "drive"]
+    assert [text.split(" = ")[0] for text in caught.value.problems] == ["`indenter`", "`drive`"]
     with pytest.raises(ValueError, match='did you mean "fixed"'):
         kv.Scene.table1("Fixed")
     for options in (
@@ -295,3 +296,23 @@ def test_the_template_is_what_the_design_asks_for():
     parsed = tomllib.loads(template("suspended"))
     assert parsed["support"]["kind"] == "suspended"
     assert re.fullmatch(r"[\d.]+ \S+", parsed["support"]["stiffness"])
+
+
+@pytest.mark.parametrize("device", [True, False])
+def test_devices_and_files_that_are_too_large_are_not_read(tmp_path, monkeypatch, device):
+    path, told = Path("/dev/zero"), "is a device"
+    if not device:
+        path, told = tmp_path / "large.csv", "holds more than 0 MB"
+        path.write_text("t [s],V [m/s]\n0,1\n1,1\n")
+        monkeypatch.setattr(texts, "MOST", 10)
+    elif not path.exists():
+        pytest.skip("this system has no such device")
+    for read in (
+        lambda: kv.load_scene(path),
+        lambda: kv.load_scene(overrides=[f"drive.file={path}"]),
+        lambda: kv.compare(data=path),
+    ):
+        with pytest.raises(
+            (OSError, ValueError), match=rf"{path.name}.*{told}|{told}.*{path.name}"
+        ):
+            read()

@@ -246,7 +246,9 @@ def test_what_is_not_covered_is_refused_with_one_message():
 def test_the_command_prints_a_table_and_json():
     command = ["stability", "--set", "drive.velocity=91 mm/s", "--set", "drive.stiffness=1 MN/m^2"]
     told = CliRunner().invoke(main, command).stdout
-    assert "unstable" in told
+    assert "unstable, below the critical stiffness" in told  # the lower one is 0
+    assert re.search(r"velocity at the onset of instability +53\.6258 +mm/s", told)
+    assert "critical velocity" not in CliRunner().invoke(main, ["asymptotes"]).stdout
     assert re.search(r"critical_stiffness +6\.87857 +MN/m\^2", told)
     assert re.search(r"frequency +12\.9277 +Hz", told)
     record = json.loads(CliRunner().invoke(main, [*command, "--json"]).stdout)

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import kvtheory as kv
-from kvtheory.progress import ProgressLine
+from kvtheory.progress import COMPILING, ProgressLine
 from kvtheory.results import STEADY_UNITS
 from kvtheory.scene.quantities import given
 from kvtheory.sweeps import engine
@@ -53,6 +53,7 @@ def test_zipped_points_lie_on_the_diagonal():
     assert [axis.name for axis in pairs.axes] == ["point"]
 
 
+@pytest.mark.processor
 @pytest.mark.parametrize("block", [1, 2, 3, 5, 64])
 @pytest.mark.parametrize("support", ["fixed", "dead-weight", "suspended"])
 def test_every_cut_into_blocks_gives_the_same_bits(block, support):
@@ -228,6 +229,7 @@ def test_wrong_arguments_are_told(arguments, words):
         assert word in str(error.value)
 
 
+@pytest.mark.processor
 def test_other_shapes_are_swept_by_what_suits_them():
     wedge = kv.Scene(indenter=kv.Wedge(inclination=0.1))
     over = {"indenter.inclination": [0.05, 0.1]}
@@ -320,6 +322,20 @@ def test_progress_writes_lines_to_a_log_and_one_line_to_a_terminal():
         assert "sweep: 50 %, 100 s left, 1000 of 2000 points" in stream.text
         assert stream.text.count("\n") == (1 if terminal else 10)
         assert stream.text.count("\r") == (100 if terminal else 0)
+
+
+@pytest.mark.parametrize("terminal", [False, True])
+def test_compiling_is_shown_at_once_on_a_terminal_and_takes_no_part_in_the_time_left(terminal):
+    stream, now = io.StringIO(), [0.0]
+    stream.isatty = lambda: terminal
+    line = ProgressLine("sweep", stream, clock=lambda: now[0])
+    for second, share, words in (
+        (0.5, 0.0, ""), (0.6, 0.0, COMPILING), (30.6, 0.0, COMPILING), (60.6, 0.0, ""), (70.6, 0.5, "half"),
+    ):  # fmt: skip
+        now[0] = second
+        line(share, words)
+        assert second != 0.6 or (COMPILING in stream.getvalue()) == terminal
+    assert "sweep: 50 %, 10 s left, half" in stream.getvalue()
 
 
 def test_progress_is_silent_where_nothing_takes_long():

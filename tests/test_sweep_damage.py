@@ -28,44 +28,104 @@ def whole(tmp_path_factory):
 
 
 @pytest.mark.parametrize("suffix", [".csv", ".nc"])
-def test_a_file_that_lost_or_changed_anything_is_never_taken_for_whole(tmp_path, suffix, whole):
+def test_a_file_of_which_any_byte_was_lost_or_changed_is_never_taken_for_whole(
+    tmp_path, suffix, whole
+):
     path, content, chance = tmp_path / f"map{suffix}", whole[suffix], random.Random(1)
     ends = [*np.linspace(1, len(content) - 1, 25).astype(int), len(content) - 1]
-    damaged = [content[:end] for end in ends]
-    if suffix == ".csv":  # of HDF5, the bytes between the arrays say nothing
-        lines = content.splitlines(keepends=True)
-        damaged += [b"".join(lines[:n] + lines[n + 1 :]) for n in range(3, len(lines), 7)]
-        damaged += [b"".join([*lines[:n], *lines[n - 1 :]]) for n in range(12, len(lines), 17)]
-        for _ in range(50):
-            at = chance.randrange(len(content))
-            damaged.append(content[:at] + bytes([content[at] ^ 1]) + content[at + 1 :])
+    damaged = [b"", content + b"\n", *(content[:end] for end in ends)]
+    for _ in range(50):
+        at = chance.randrange(len(content))
+        damaged.append(content[:at] + bytes([content[at] ^ 1]) + content[at + 1 :])
     for spoilt in damaged:
         path.write_bytes(spoilt)
-        with pytest.raises(ValueError, match=r"map\.(csv|nc)") as error:
+        with pytest.raises(ValueError, match=r"not a sweep as it was written.*overwrite"):
             run(path)
-        assert "overwrite" in str(error.value)
         assert path.read_bytes() == spoilt
     run(path, overwrite=True)
-    assert path.read_bytes() == content if suffix == ".csv" else run(path)["load"].all()
+    assert run(path).computed == 0
     assert [item.name for item in tmp_path.iterdir()] == [path.name]
 
 
-def test_the_rows_that_are_missing_are_counted(tmp_path, whole):
+LINES = {
+    "an axis": lambda lines: lines[-1].__setitem__(0, "11"),
+    "a value": lambda lines: lines[-1].__setitem__(3, "7"),
+    "a unit": lambda lines: lines[HEADS].__setitem__(1, f"{TAU} [ms]"),
+    "a name": lambda lines: lines[HEADS].__setitem__(3, "halflength [m]"),
+    "the order of columns": lambda lines: [line.insert(2, line.pop(3)) for line in lines[HEADS:]],
+    "the order of rows": lambda lines: lines.insert(HEADS + 1, lines.pop(HEADS + 2)),
+    "a repeated row": lambda lines: lines.insert(HEADS + 1, lines[HEADS + 2]),
+    "the scene": lambda lines: text(lines, "10000000000.0", "20000000000.0"),
+    "the certificate": lambda lines: text(lines, "certificate", "proof"),
+    "an error": lambda lines: text(lines, "relative_error", "relative_errors"),
+    "the version": lambda lines: text(lines, "# version: 0", "# version: 1"),
+    "the digest": lambda lines: text(lines, "sha256", "sha512"),
+    "a remark": lambda lines: lines.insert(1, ["# measured on Monday"]),
+}
+"""What is altered in the cells of a CSV."""
+HEADS = -121
+
+
+def text(lines, old, new):
+    found = [line for line in lines if any(old in cell for cell in line)]
+    assert found
+    for line in found:
+        line[:] = [cell.replace(old, new) for cell in line]
+
+
+NODES = {
+    "an axis": lambda data: data[V].__setitem__(0, 7.0),
+    "a value": lambda data: data["depth"].__setitem__((17, 1), data["depth"][17, 1] * (1 + 1e-15)),
+    "a unit": lambda data: data[TAU].setncattr("units", "ms"),
+    "a unit of a quantity": lambda data: data["load"].setncattr("units", "N"),
+    "a name": lambda data: data.renameVariable("half_length", "halflength"),
+    "the name of a dimension": lambda data: data.renameDimension(TAU, "tau"),
+    "the order of rows": lambda data: data["load"].__setitem__(..., data["load"][::-1]),
+    "the scene": lambda data: data.setncattr("scene", data.scene.replace("0.1", "0.2")),
+    "the certificate": lambda data: data.setncattr("certificate", "exact"),
+    "an error": lambda data: data.setncattr("summary", data.summary.replace("e-1", "e-2")),
+    "the version": lambda data: data.setncattr("kvtheory_version", "9"),
+    "a remark": lambda data: data.setncattr("history", "measured on Monday"),
+    "a failure": lambda data: data.createDimension("more", 1),
+}
+"""What is altered in NetCDF by its own library."""
+
+
+@pytest.mark.parametrize("what", LINES)
+def test_whatever_is_altered_in_a_csv_is_noticed(tmp_path, what, whole):
     path = tmp_path / "map.csv"
-    lines = whole[".csv"].splitlines(keepends=True)
-    path.write_bytes(b"".join(lines[:-7]))
-    with pytest.raises(ValueError, match="7 of its 120 rows are missing"):
+    lines = [line.split(",") for line in whole[".csv"].decode().split("\r\n")[:-1]]
+    assert lines[HEADS][0] == f"{V} [m/s]"
+    LINES[what](lines)
+    path.write_bytes("".join(",".join(line) + "\r\n" for line in lines).encode())
+    assert path.read_bytes() != whole[".csv"]
+    with pytest.raises(ValueError, match="not a sweep as it was written"):
         run(path)
 
 
-def test_a_number_that_was_changed_in_netcdf_is_seen(tmp_path):
+@pytest.mark.parametrize("what", NODES)
+def test_whatever_is_altered_in_netcdf_is_noticed(tmp_path, what, whole):
     import netCDF4
 
     path = tmp_path / "map.nc"
-    run(path)
+    path.write_bytes(whole[".nc"])
     with netCDF4.Dataset(path, "a") as data:
-        data["depth"][17, 1] *= 1.0 + 1e-15
-    with pytest.raises(ValueError, match="depth was changed"):
+        NODES[what](data)
+    with pytest.raises(ValueError, match="not a sweep as it was written"):
+        run(path)
+
+
+def test_what_reads_a_file_does_not_mind_its_digest_and_what_saves_it_anew_is_told(tmp_path, whole):
+    import xarray
+
+    path = tmp_path / "map.nc"
+    path.write_bytes(whole[".nc"])
+    with xarray.open_dataset(path) as data:
+        assert data["load"].shape == (40, 3)
+        copy = data.load()
+    assert run(path).computed == 0
+    copy.to_netcdf(path)
+    with pytest.raises(ValueError, match="saved anew by another program"):
         run(path)
 
 

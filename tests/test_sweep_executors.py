@@ -10,7 +10,12 @@ import numpy as np
 import pytest
 
 import kvtheory as kv
+from kvtheory.models.continuum import compiled
+from kvtheory.sweeps import measures
+from kvtheory.sweeps.axes import axes_of
 from kvtheory.sweeps.blocks import compute, task
+from kvtheory.sweeps.columns import columns_of
+from kvtheory.sweeps.plan import Plan
 from tests.sweep_driver import done_of
 
 V, TAU = "drive.velocity", "foundation.retardation_time"
@@ -185,3 +190,43 @@ def test_a_task_is_small_and_picklable():
     assert np.array_equal(
         compute(pickle.loads(text)).values["depth"], compute(given).values["depth"]
     )
+
+
+@pytest.mark.parametrize(("quantity", "points"), [("hops", 320), ("hops", 250), ("load", 320)])
+def test_kernels_are_compiled_once_before_work_is_given_out(monkeypatch, quantity, points):
+    """Two workers would each compile what follows 320 motions; 250 they had better interpret."""
+    told = []
+
+    class Recording(ThreadPoolExecutor):
+        def submit(self, function, given):
+            told.append("block")
+            return super().submit(function, given)
+
+    monkeypatch.setattr(measures, "compile_ahead", lambda plan, scene: told.append(scene))
+    with Recording(2) as executor:
+        kv.sweep(over={V: f"10 mm/s:1 m/s:{points}"}, quantities=quantity, executor=executor)
+    first = [kv.Scene(drive=kv.Drive(0.01))] if (quantity, points) == ("hops", 320) else []
+    assert told[: len(first) + 1] == [*first, "block"]
+    assert set(told[len(first) :]) == {"block"}
+
+
+@pytest.mark.parametrize("names", [["hops", "depth"], ["events"]])
+def test_what_is_compiled_ahead_is_all_that_a_block_calls(monkeypatch, names):
+    monkeypatch.setattr(compiled.Tally, "steps", compiled.WORTHWHILE)
+    columns = columns_of(names, series="depth" in names)
+    axes = axes_of(kv.Scene(), {V: [0.1, 0.2]})
+    plan = Plan(kv.Scene(), axes, columns, (0.0, 0.1), "exact", 1e-6)
+    measures.compile_ahead(plan, kv.Scene())
+    called, kernel = {}, compiled.kernel
+    known = kernel.cache_info().currsize
+
+    def counted(function):
+        entry = kernel(function)
+        called.setdefault(entry, len(entry.signatures))
+        return entry
+
+    monkeypatch.setattr(compiled, "kernel", counted)
+    assert compute(task(plan, 0, 2)).failures == []
+    assert kernel.cache_info().currsize == known
+    assert called
+    assert all(before == len(entry.signatures) for entry, before in called.items())

@@ -1,14 +1,15 @@
 """The text around the derivations: title, introduction, vocabulary, nomenclature, source."""
 
-TITLE = "Sliding friction on a Kelvin–Voigt foundation: derivations"
+TITLE = "Sliding friction on viscoelastic foundations: derivations"
 
 AUTHORS = "Nakano and Kono (2020)"
 
 INTRODUCTION = (
     "A rigid cylinder presses into a row of independent Kelvin–Voigt elements and slides over it. "
     f"{AUTHORS} state the model, its transient and its steady state in numbered equations; here "
-    "each of them is defined or derived, together with further results on the same model, which are "
-    "named theorems (F1 and so on). Equation numbers without a letter are those of the paper.",
+    "each of them is defined or derived, together with further results on this model, on other shapes and "
+    "foundations, and on a drive with a spring: the theorems F1 and so on. Equation numbers without a letter "
+    "are those of the paper.",
     "Every line is an equality or an inequality that computer algebra checked when this document "
     "was made; if a check fails, no document is made. Each line has its reason and the status of "
     "its check; the sentence before it lists the premises: definitions, and results established "

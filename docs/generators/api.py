@@ -11,24 +11,30 @@ import kvtheory as kv
 from generators.labels import linked
 
 SECTION = re.compile(r"^([A-Z]\w+(?: \w+)?)\n-{3,}\n", re.MULTILINE)
-KINDS = {
-    "Compute": "asymptotes compare elements solve steady sweep transient",
-    "Scenes": "Scene load_scene to_toml problem problems Run",
-    "Indenters": "Parabola Circle PowerLaw Wedge Profile",
-    "Foundations": "Foundation GeneralizedMaxwell FractionalKelvinVoigt",
-    "Supports": "Fixed DeadWeight Suspended",
-    "Drives": "Drive Sine Triangle SmoothRamp",
+GROUPS = {
+    "kvtheory.api": "Compute",
+    "kvtheory.scene": "Scenes",
+    "kvtheory.scene.model.Scene": "Scenes",
+    "kvtheory.scene.model.Run": "Scenes",
+    "kvtheory.reference_problems": "Scenes",
+    "kvtheory.scene.indenters": "Indenters",
+    "kvtheory.scene.foundations": "Foundations",
+    "kvtheory.scene.model": "Supports",
+    "kvtheory.scene.drives": "Drives",
+    "kvtheory.scene.waveforms": "Drives",
+    "kvtheory.results": "Results",
+    "kvtheory.results.errors": "Errors",
+    "kvtheory.scene.quantities.SceneError": "Errors",
 }
-"""Headings and the names under them; all other names are results, or errors."""
+"""Headings of the public names, by the name itself, its module or its package."""
 
 
 def pages() -> dict[str, str]:
     """Return a page for each public name, and their index."""
     texts = {f"api/{name}.md": _page(name) for name in kv.__all__}
-    groups = {title: names.split() for title, names in KINDS.items()}
-    rest = [name for name in kv.__all__ if not any(name in names for names in groups.values())]
-    groups["Results"] = [name for name in rest if not name.endswith("Error")]
-    groups["Errors"] = [name for name in rest if name.endswith("Error")]
+    groups: dict[str, list[str]] = {title: [] for title in GROUPS.values()}
+    for name in kv.__all__:
+        groups[_group(name)].append(name)
     parts = ["# Python interface", "`import kvtheory as kv`; each name is `kv.NAME`."]
     for title, names in groups.items():
         rows = "\n".join(f"- [`{name}`]({name}.md): {_first(getattr(kv, name))}" for name in names)
@@ -36,6 +42,13 @@ def pages() -> dict[str, str]:
         parts.append(f"## {title}\n\n{rows}\n\n```{{toctree}}\n:hidden:\n\n{tree}\n```")
     texts["api/index.md"] = "\n\n".join(parts) + "\n"
     return texts
+
+
+def _group(name: str) -> str:
+    """Return the heading of a public name."""
+    module = getattr(kv, name).__module__
+    places = (f"{module}.{name}", module, module.rpartition(".")[0])
+    return next(GROUPS[place] for place in places if place in GROUPS)
 
 
 def _page(name: str) -> str:

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from figures import drawing
-from figures.__main__ import FIGURES
+from figures.__main__ import FIGURES, TOPICS
 
 ROOT = Path(__file__).parents[2]
 DRAWN = ("onset_maps", "stability_map", "work_precision")
@@ -53,16 +53,20 @@ def pictures(block: Any, variables: dict[str, Any], settings: dict[str, Any]) ->
 
 
 def write(directory: Path) -> None:
-    """Write the scripts with a title as the gallery requires it, if they have changed."""
-    scripts = directory / "scripts"
-    scripts.mkdir(parents=True, exist_ok=True)
-    _put(scripts / "README.rst", _HEAD)
-    for name in FIGURES:
-        text = (ROOT / "figures" / f"{name}.py").read_text(encoding="utf-8")
-        _put(
-            scripts / f"{name}.py",
-            re.sub(r'\A"""(.*?)"""', _titled, text, count=1, flags=re.DOTALL),
-        )
+    """Write the scripts that have changed, titled as the gallery requires, in a folder for each topic."""
+    _put(directory / "scripts" / "README.rst", _HEAD)
+    for number, (topic, names) in enumerate(TOPICS.items(), start=1):
+        folder = directory / "scripts" / f"{number}-{topic.split()[-1].lower()}"
+        _put(folder / "README.rst", f"{topic}\n{'-' * len(topic)}\n")
+        for name in names:
+            text = (ROOT / "figures" / f"{name}.py").read_text(encoding="utf-8")
+            titled = re.sub(r'\A"""(.*?)"""', _titled, text, count=1, flags=re.DOTALL)
+            _put(folder / f"{name}.py", titled)
+
+
+def order(file: str) -> int:
+    """Return the place of a script in the gallery: the order in which the figures are drawn."""
+    return FIGURES.index(Path(file).stem)
 
 
 def _titled(found: re.Match[str]) -> str:
@@ -73,6 +77,7 @@ def _titled(found: re.Match[str]) -> str:
 
 
 def _put(path: Path, text: str) -> None:
+    path.parent.mkdir(parents=True, exist_ok=True)
     if not path.exists() or path.read_text(encoding="utf-8") != text:
         path.write_text(text, encoding="utf-8")
 

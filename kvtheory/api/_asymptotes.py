@@ -5,6 +5,7 @@ from typing import Any
 
 from kvtheory.api._edge import double_precision, scene_of
 from kvtheory.results import AsymptoteReport
+from kvtheory.scene.arguments import a_scene, checked, number, replacements
 from kvtheory.scene.broadcasting import values
 from kvtheory.scene.foundations import FractionalKelvinVoigt, GeneralizedMaxwell
 from kvtheory.scene.model import Scene
@@ -14,6 +15,7 @@ MINIMUM_TOLERANCE = 1e-10
 """Smallest tolerance: below it an asymptote cannot be distinguished from rounding."""
 
 
+@checked(scene=a_scene, over=replacements, tolerance=number(MINIMUM_TOLERANCE, 1.0))
 def asymptotes(
     scene: Scene | None = None,
     *,
@@ -34,9 +36,9 @@ def asymptotes(
     Returns
     -------
     AsymptoteReport
-        The critical velocity V* (theorem F5, F19-crossing), the regime, and a line for each asymptote:
-        its value, the exact value, the relative error and the velocities where that is within the
-        tolerance. For a dead weight also the friction maximum, unless the indenter is a wedge.
+        The velocity V* at which the asymptotes cross (Eqs. 47, 48; F5, F19-crossing), the regime, and a line
+        for each asymptote: its value, the exact value, the relative error and the velocities where that is
+        within the tolerance. For a dead weight also the friction maximum, unless the indenter is a wedge.
 
     Raises
     ------
@@ -58,10 +60,6 @@ def asymptotes(
     Nakano and Kono (2020), doi:10.3389/fmech.2020.00038, Eqs. 40-48 and Table 2.
     """
     scene = scene_of(scene)
-    if not MINIMUM_TOLERANCE <= tolerance <= 1.0:
-        raise ValueError(
-            f"`tolerance` = {tolerance!r}: expected a number from {MINIMUM_TOLERANCE} to 1"
-        )
     require(lacks_limits, scene, "the theory of asymptotes")
     # SciPy takes a while to import
     from kvtheory.models.steady import fractional_limits, prony_limits, regimes

@@ -1,6 +1,5 @@
 """A simulation compared with theory: `compare`."""
 
-import math
 from collections.abc import Mapping, Sequence
 from itertools import pairwise
 from typing import Any
@@ -16,8 +15,9 @@ from kvtheory.progress import Progress
 from kvtheory.results import SERIES_UNITS, units_for
 from kvtheory.results.comparison import Comparison
 from kvtheory.results.schemes import SCHEME_ROWS
+from kvtheory.scene.arguments import a_scene, callback, checked, choice, measured, number
 from kvtheory.scene.model import Scene
-from kvtheory.scene.quantities import Quantity, SceneError, convert, nearest, problem
+from kvtheory.scene.quantities import Quantity
 from kvtheory.scene.requirements import (
     lacks_quadratic_on_arms,
     lacks_strips,
@@ -90,6 +90,10 @@ METHODS = Methods(_followed, steady, _rates, _mistaken)
 """How theory enters, and what simulates a mistake."""
 
 
+@checked(
+    scene=a_scene, per_length=measured(PER_LENGTH), scheme=choice(SCHEME_ROWS), tolerance=number(0.0),
+    progress=callback,
+)  # fmt: skip
 def compare(
     scene: Scene | None = None,
     data: Any = None,
@@ -154,13 +158,6 @@ def compare(
     """
     scene = scene_of(scene)
     require(lacks_quadratic_on_arms, scene, "the theory of the transient")
-    if not (math.isfinite(tolerance) and tolerance > 0.0):
-        raise ValueError(f"`tolerance` = {tolerance!r}: expected a positive number")
-    density = None if per_length is None else _density(per_length)
-    if scheme is not None and scheme not in SCHEME_ROWS:
-        raise ValueError(
-            f'`scheme` = "{scheme}": {nearest(str(scheme), SCHEME_ROWS)}; leave it out if it is another'
-        )
     from kvtheory.checks.comparing import broken_off
     from kvtheory.checks.comparing import compare as hold_against
     from kvtheory.checks.reading import read
@@ -178,14 +175,7 @@ def compare(
     except DivergenceError as error:
         return broken_off(scene, error.rows, str(error), methods, scheme, tolerance)
     units = units_for(scene.indenter, SERIES_UNITS)
-    return hold_against(scene, read(found, units), methods, density, scheme, tolerance)
-
-
-def _density(per_length: Any) -> float:
-    try:
-        return convert(per_length, PER_LENGTH)
-    except ValueError as error:
-        raise SceneError([problem("`per_length`", per_length, str(error))]) from None
+    return hold_against(scene, read(found, units), methods, per_length, scheme, tolerance)
 
 
 def _simulated(scene: Scene, per_length: Any, scheme: str | None, progress: Progress) -> Any:

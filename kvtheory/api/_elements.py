@@ -7,8 +7,10 @@ from typing import Any
 from kvtheory.api._edge import double_precision, scene_of, times_of
 from kvtheory.progress import Progress
 from kvtheory.results import Simulation
+from kvtheory.results.schemes import SCHEME_ROWS
+from kvtheory.scene.arguments import a_scene, callback, checked, choice, flag, measured, times
 from kvtheory.scene.model import Scene
-from kvtheory.scene.quantities import Quantity, SceneError, convert, nearest, problem
+from kvtheory.scene.quantities import Quantity
 
 PER_LENGTH = Quantity("1/m", "elements per length", 0.0, True)
 DENSITY = 200e3
@@ -16,6 +18,10 @@ DENSITY = 200e3
 TIME_STEP = Quantity("s", "time step", 0.0, True)
 
 
+@checked(
+    scene=a_scene, at=times, per_length=measured(PER_LENGTH), scheme=choice(SCHEME_ROWS),
+    time_step=measured(TIME_STEP), certify=flag, progress=callback, warn=callback,
+)  # fmt: skip
 def elements(
     scene: Scene | None = None,
     *,
@@ -101,19 +107,10 @@ def elements(
     from kvtheory.models.elements.schemes import SCHEMES
     from kvtheory.models.elements.simulation import simulate
 
-    if scheme not in SCHEMES:
-        raise ValueError(f'`scheme` = "{scheme}": {nearest(str(scheme), SCHEMES)}')
-    problems: list[str] = []
-    given = DENSITY if per_length is None else per_length
-    density = _checked("`per_length`", given, PER_LENGTH, problems)
-    step = None if time_step is None else _checked("`time_step`", time_step, TIME_STEP, problems)
-    times = times_of(scene, at, problems)
-    if problems:
-        raise SceneError(problems)
     with double_precision(scene), _blaming_default(per_length is None):
         return simulate(
-            scene, 1.0 / density, SCHEMES[scheme],
-            at=times, time_step=step, certify=certify, progress=progress, warn=warn,
+            scene, 1.0 / (per_length or DENSITY), SCHEMES[scheme],
+            at=times_of(scene, at), time_step=time_step, certify=certify, progress=progress, warn=warn,
         )  # fmt: skip
 
 
@@ -130,11 +127,3 @@ def _blaming_default(taken: bool) -> Iterator[None]:
             f"the default density, {DENSITY / 1e3:g} elements per mm, does not suit the size of "
             f"this scene: give `per_length`, {hint}"
         ) from None
-
-
-def _checked(key: str, value: Any, spec: Quantity, problems: list[str]) -> float:
-    try:
-        return convert(value, spec)
-    except ValueError as error:
-        problems.append(problem(key, value, str(error)))
-        return 1.0

@@ -7,11 +7,13 @@ from kvtheory.api._edge import scene_of
 from kvtheory.api._steady import steady
 from kvtheory.models.steady.footprint import Footprint
 from kvtheory.models.steady.spots import stretch_of
+from kvtheory.scene.arguments import a_scene, checked, replacements
 from kvtheory.scene.broadcasting import values
 from kvtheory.scene.model import Scene
 from kvtheory.scene.requirements import lacks_ball, require
 
 
+@checked(scene=a_scene, over=replacements)
 def footprint(scene: Scene | None = None, *, over: Mapping[str, Any] | None = None) -> Footprint:
     """Return the contact area of a ball in steady sliding, and the pressure in it.
 

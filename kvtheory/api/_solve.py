@@ -1,6 +1,6 @@
 """The cheapest sufficient model: `solve`."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from functools import partial
 from typing import Any
 
@@ -14,6 +14,7 @@ from kvtheory.ladder.climbing import Request, climb
 from kvtheory.progress import Progress
 from kvtheory.results import STEADY_UNITS, TRANSIENT_UNITS, Solution, ToleranceError
 from kvtheory.results.steady import UNKNOWN, UNSTABLE
+from kvtheory.scene.arguments import a_scene, callback, checked, flag, names, number, times
 from kvtheory.scene.model import Scene
 from kvtheory.scene.quantities import SceneError, nearest, problem
 from kvtheory.scene.requirements import lacks_stability
@@ -22,6 +23,14 @@ MINIMUM_RTOL, MAXIMUM_RTOL = 1e-14, 1.0
 """Below, rounding dominates; above, any number would satisfy it."""
 
 
+@checked(
+    scene=a_scene,
+    at=times,
+    quantity=names,
+    rtol=number(MINIMUM_RTOL, MAXIMUM_RTOL),
+    over_time=flag,
+    progress=callback,
+)
 def solve(
     scene: Scene | None = None,
     *,
@@ -86,10 +95,6 @@ def solve(
     Nakano and Kono (2020), doi:10.3389/fmech.2020.00038; facts F1-F13 of the derivations.
     """
     scene = scene_of(scene)
-    if not MINIMUM_RTOL <= rtol <= MAXIMUM_RTOL:
-        raise ValueError(
-            f"`rtol` = {rtol!r}: expected a number from {MINIMUM_RTOL} to {MAXIMUM_RTOL}"
-        )
     over_time = over_time or at is not None
     problems: list[str] = []
     names = _names(quantity, TRANSIENT_UNITS if over_time else STEADY_UNITS, over_time, problems)
@@ -122,12 +127,11 @@ def _refuse_unstable(scene: Scene) -> None:
 
 
 def _names(
-    quantity: Any, units: Mapping[str, str], over_time: bool, problems: list[str]
+    names: Sequence[str] | None, units: Mapping[str, str], over_time: bool, problems: list[str]
 ) -> tuple[str, ...]:
     """Return the names of the quantities asked for, and append mistakes to the problems."""
-    if quantity is None:
+    if names is None:
         return tuple(units)
-    names = list(quantity) if isinstance(quantity, (list, tuple)) else [quantity]
     if not names:
         problems.append("`quantity` is empty: expected a name such as friction_force")
     other = STEADY_UNITS if over_time else TRANSIENT_UNITS
@@ -138,6 +142,6 @@ def _names(
             hint = "leave out the times" if over_time else 'give the times, such as at="1 ms"'
             what = f"belongs to {'steady sliding' if over_time else 'a time series'}; {hint}"
         else:
-            what = nearest(str(name), units)
+            what = nearest(name, units)
         problems.append(problem("`quantity`", name, what))
     return tuple(dict.fromkeys(names))

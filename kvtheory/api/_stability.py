@@ -5,6 +5,7 @@ from typing import Any
 
 from kvtheory.api._edge import double_precision, scene_of
 from kvtheory.results import Stability
+from kvtheory.scene.arguments import a_scene, checked, names, replacements
 from kvtheory.scene.broadcasting import values
 from kvtheory.scene.model import Scene
 from kvtheory.scene.quantities import SceneError, nearest, problem
@@ -16,6 +17,7 @@ QUANTITIES = (
 )  # fmt: skip
 
 
+@checked(scene=a_scene, over=replacements, quantity=names)
 def stability(
     scene: Scene | None = None,
     *,
@@ -39,7 +41,8 @@ def stability(
         give ``"drive.stiffness"`` also where the drive of the scene is rigid.
     quantity
         Name of a quantity, or several; without it, all. The critical stiffness alone takes
-        less than a microsecond for each scene of an array; the critical velocity and the rates take longer.
+        less than a microsecond for each scene of an array; the critical velocity, that of the onset of
+        instability, and the rates take longer.
 
     Returns
     -------
@@ -70,18 +73,10 @@ def stability(
     """
     scene = scene_of(scene)
     require(lacks_stability, scene, "the stability of steady sliding")
-    wanted = _names(quantity)
+    wanted = frozenset(QUANTITIES if quantity is None else quantity)
+    if wrong := sorted(wanted - set(QUANTITIES)):
+        raise SceneError([problem("`quantity`", name, nearest(name, QUANTITIES)) for name in wrong])
     from kvtheory.models.steady import stable_sliding
 
     with double_precision(scene, over):
         return stable_sliding.solve(values(scene, over), wanted, ball=not scene.indenter.per_width)
-
-
-def _names(quantity: str | Sequence[str] | None) -> frozenset[str]:
-    names = [quantity] if isinstance(quantity, str) else list(quantity or QUANTITIES)
-    wrong = [name for name in names if name not in QUANTITIES]
-    if wrong:
-        raise SceneError(
-            [problem("`quantity`", name, nearest(str(name), QUANTITIES)) for name in wrong]
-        )
-    return frozenset(names)

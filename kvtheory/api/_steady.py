@@ -4,13 +4,17 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
 
+import numpy as np
+
 from kvtheory.api._edge import double_precision, scene_of
 from kvtheory.models.steady.methods import METHODS
+from kvtheory.models.steady.spots import stretch_of
 from kvtheory.models.steady.stable_sliding import lasts
 from kvtheory.results import SteadyState
-from kvtheory.scene.broadcasting import values
+from kvtheory.scene.arguments import a_scene, checked, choice, replacements
+from kvtheory.scene.broadcasting import replaceable, values
+from kvtheory.scene.foundations import thick_layer
 from kvtheory.scene.model import Scene
-from kvtheory.scene.quantities import nearest
 from kvtheory.scene.requirements import (
     lacks_asymptotes,
     lacks_closed_form,
@@ -24,6 +28,7 @@ LACKS = {
 }
 
 
+@checked(scene=a_scene, over=replacements, method=choice(LACKS))
 def steady(
     scene: Scene | None = None,
     *,
@@ -55,7 +60,8 @@ def steady(
     -------
     SteadyState
         Floats, or arrays of the broadcast shape, in SI units, with a certificate; with a spring in the drive
-        also whether steady sliding is stable against small disturbances, as in `stability`.
+        also whether steady sliding is stable against small disturbances, as in `stability`. Its `notes` say
+        if it is not, and if a foundation given as a layer is not thin for its contact.
 
     Raises
     ------
@@ -83,15 +89,26 @@ def steady(
     with double_precision(scene, over):
         given = values(scene, over)
         state = METHODS[chosen](scene, given)
-        return replace(state, stable=lasts(scene, given)) if "drive.stiffness" in given else state
+        if "drive.stiffness" in given:
+            state = replace(state, stable=lasts(scene, given))
+            state = replace(state, notes=tuple(filter(None, [state.unstable])))
+        if over and given["drive.velocity"].ndim:
+            specs = replaceable(scene)
+            units = {**state.units, **{key: specs[key].unit for key in over}}
+            state = replace(state, over={key: given[key] for key in over}, units=units)
+        if scene.foundation.modulus is None or "foundation.stiffness" in (over or {}):
+            return state
+        shortest = state.half_length * np.minimum(1.0, stretch_of(given))
+        note = thick_layer(
+            given["foundation.thickness"], shortest, given["foundation.poisson_ratio"]
+        )
+        return replace(state, notes=(*state.notes, note)) if note else state
 
 
 def method_for(scene: Scene, method: str | None) -> str:
     """Return the requested method of steady sliding, or by default the one that suits the scene."""
     lacking = {name: lacks(scene) for name, lacks in LACKS.items()}
     method = method or ("quadrature" if lacking["exact"] else "exact")
-    if method not in METHODS:
-        raise ValueError(f'`method` = "{method}": {nearest(method, METHODS)}')
     if lacking[method]:
         others = [name for name in ("exact", "quadrature") if not lacking[name]]
         hint = f'; use method = "{others[0]}"' if others else ""

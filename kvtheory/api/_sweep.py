@@ -6,10 +6,24 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from kvtheory.api._edge import scene_of, times_of
-from kvtheory.api._steady import method_for
+from kvtheory.api._steady import LACKS, method_for
 from kvtheory.api._transient import MAXIMUM_RTOL, MINIMUM_RTOL
 from kvtheory.progress import Progress
 from kvtheory.results import STEADY_UNITS, Sweep
+from kvtheory.scene.arguments import (
+    a_scene,
+    callback,
+    checked,
+    choice,
+    count,
+    file_name,
+    flag,
+    names,
+    number,
+    pool,
+    replacements,
+    times,
+)
 from kvtheory.scene.model import Scene
 from kvtheory.scene.quantities import SceneError
 from kvtheory.scene.requirements import lacks_arms, lacks_paper_model, lacks_stability, require
@@ -18,6 +32,10 @@ if TYPE_CHECKING:
     from kvtheory.sweeps.plan import Plan
 
 
+@checked(
+    executor=pool, jobs=count, in_flight=count, block=count, output=file_name, overwrite=flag,
+    progress=callback,
+)  # fmt: skip
 def sweep(
     scene: Scene | None = None,
     *,
@@ -95,8 +113,8 @@ def sweep(
     SceneError
         If a key, value, quantity or time is wrong; every mistake is listed.
     ValueError
-        If another argument is wrong, if `output` holds anything other than this sweep, or a sweep that
-        lost rows or was changed since it was written; or if memory or disk cannot hold the result.
+        If another argument is wrong, if `output` holds anything other than this sweep, or a sweep
+        in which anything was changed since it was written; or if memory or disk cannot hold the result.
     OSError
         If a file cannot be written; finished blocks are kept, and the same call resumes.
     RuntimeError
@@ -118,28 +136,26 @@ def sweep(
     from kvtheory.sweeps.size import refuse_what_cannot_fit
 
     plan = plan_of(scene, over=over, quantities=quantities, at=at, method=method, rtol=rtol)
-    for name, number in (("jobs", jobs), ("in_flight", in_flight), ("block", block)):
-        if number is not None and (type(number) is not int or number < 1):
-            raise ValueError(f"`{name}` = {number!r}: expected a whole number of at least 1")
-    executes = callable(getattr(executor, "submit", None)) and not isinstance(executor, type)
-    if executor is not None and not executes:
-        raise ValueError(f"`executor` = {executor!r}: expected a concurrent.futures.Executor")
-    path = None if output is None else Path(output)
-    refuse_what_cannot_fit(plan, path, jobs)
+    file = None if output is None else Path(output)
+    refuse_what_cannot_fit(plan, file, jobs)
     walk = session.walker(plan, executor, jobs, in_flight, block, progress)
-    if path is None:
+    if file is None:
         return session.in_memory(plan, walk)
-    return session.into_file(plan, walk, path, overwrite=overwrite)
+    return session.into_file(plan, walk, file, overwrite=overwrite)
 
 
+@checked(
+    scene=a_scene, at=times, over=replacements, quantities=names, method=choice(LACKS),
+    rtol=number(MINIMUM_RTOL, MAXIMUM_RTOL),
+)  # fmt: skip
 def plan_of(
-    scene: Scene | None,
+    scene: Scene | None = None,
     *,
     over: Mapping[Any, Any],
-    quantities: Sequence[str] | str | None,
-    at: Any,
-    method: str | None,
-    rtol: float,
+    quantities: Sequence[str] | str | None = None,
+    at: Any = None,
+    method: str | None = None,
+    rtol: float = 1e-6,
 ) -> "Plan":
     """Check the arguments of `sweep` together, and return the plan."""
     from kvtheory.sweeps.axes import axes_of
@@ -166,10 +182,6 @@ def plan_of(
             raise SceneError([f"`quantities` {column.name}: needs drive.stiffness, of a spring"])
         if column.base == STABLE and sprung:
             require(lacks_stability, scene, "the stability of steady sliding")
-    if not MINIMUM_RTOL <= rtol <= MAXIMUM_RTOL:
-        raise ValueError(
-            f"`rtol` = {rtol!r}: expected a number from {MINIMUM_RTOL} to {MAXIMUM_RTOL}"
-        )
     if at is not None and not plan.series:
         raise ValueError("`at` gives the times of series, but no quantity asked for is a series")
     return plan

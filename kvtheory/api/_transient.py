@@ -5,6 +5,7 @@ from typing import Any
 from kvtheory.api._edge import double_precision, scene_of, times_of
 from kvtheory.progress import Progress
 from kvtheory.results import Transient
+from kvtheory.scene.arguments import a_scene, callback, checked, count, flag, number, times
 from kvtheory.scene.model import Scene
 from kvtheory.scene.requirements import lacks_ball, lacks_paper_model, lacks_strips, require
 
@@ -12,6 +13,14 @@ MINIMUM_RTOL, MAXIMUM_RTOL = 1e-12, 1e-2
 """Beyond these, rounding or the first step would dominate."""
 
 
+@checked(
+    scene=a_scene,
+    at=times,
+    rtol=number(MINIMUM_RTOL, MAXIMUM_RTOL),
+    certify=flag,
+    max_steps=count,
+    progress=callback,
+)
 def transient(
     scene: Scene | None = None,
     *,
@@ -81,12 +90,6 @@ def transient(
     Nakano and Kono (2020), doi:10.3389/fmech.2020.00038, Eqs. 1-33 and Figs. 3, 4.
     """
     scene = scene_of(scene)
-    if max_steps is not None and max_steps < 1:
-        raise ValueError(f"`max_steps` = {max_steps!r}: expected a positive number")
-    if not MINIMUM_RTOL <= rtol <= MAXIMUM_RTOL:
-        raise ValueError(
-            f"`rtol` = {rtol!r}: expected a number from {MINIMUM_RTOL} to {MAXIMUM_RTOL}"
-        )
     if not lacks_ball(scene):
         require(lacks_strips, scene, "the transient")
         from kvtheory.models.strips import held

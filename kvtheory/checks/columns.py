@@ -90,7 +90,7 @@ def recognise(header: str, units: Mapping[str, str] = SI_UNITS) -> Column | None
     try:
         return Column(header, quantity, sign * to_si(f"1 {unit}", si))
     except ValueError as error:
-        raise ValueError(f'column "{header}": the unit {error}') from None
+        raise ValueError(f'column "{header}": {error}') from None
 
 
 def _suggestion(name: str) -> str:

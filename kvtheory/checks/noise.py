@@ -1,4 +1,4 @@
-"""What is random in a curve, and what its digits leave out: both from the data alone."""
+"""Noise and rounding error of a time series, estimated from the data alone."""
 
 import math
 
@@ -18,12 +18,12 @@ MIXES = (0.0, 0.5, 0.9, 0.99, 0.999)
 DOUBT = 5.0
 """Difference of logarithms of likelihoods: the less likely is not ruled out."""
 RARE = 2.0
-"""Beyond sqrt(2 ln n) standard deviations, where the largest of n normal errors is expected: so many more
-make a false alarm in one of twenty checks rarer than one in a thousand."""
+"""Standard deviations allowed beyond sqrt(2 ln n), where the largest of n normal errors is expected. With
+them fewer than one run of twenty checks in a thousand raises a false alarm."""
 FROM_FEW = 2.0
 """A standard deviation from n values is known to this many 1/sqrt(n) at worst, relative."""
 SURE = 4.5
-"""Standard deviations that one number does not exceed, hardly ever."""
+"""Standard deviations that a single normal error almost never exceeds."""
 FEW_DIGITS = (2, 3, 4, 5)
 """Significant digits to which a column may have been written; more do not matter."""
 SEVERAL = 10
@@ -37,7 +37,7 @@ REPEATED = 0.1
 
 
 def extreme(count: int) -> float:
-    """Return a multiple of sigma that the largest of so many normal errors does not exceed, hardly ever."""
+    """Return the multiple of sigma that the largest of `count` normal errors almost never exceeds."""
     n = max(count, 2)
     return (math.sqrt(2.0 * math.log(n)) + RARE) * (1.0 + FROM_FEW / math.sqrt(n))
 

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from kvtheory.checks.columns import PRESSURE, SHOWN, SI_UNITS, Column, recognise
 from kvtheory.scene.quantities import shown
 from kvtheory.scene.tables import numbers, read_table
+from kvtheory.scene.units import bare
 
 Array = NDArray[np.float64]
 
@@ -64,8 +65,8 @@ def read(data: Any, units: Mapping[str, str] = SI_UNITS) -> Series:
     units = {**units, **PRESSURE}
     if isinstance(data, (str, PathLike)):
         return _from_file(Path(data), units)
-    if isinstance(data, Mapping):
-        return _from_mapping(data, units)
+    if isinstance(data, Mapping) or (hasattr(data, "columns") and not isinstance(data, type)):
+        return _from_mapping(data, units)  # a table of pandas, too
     names = [name for name in SI_UNITS if getattr(data, name, None) is not None]
     if "time" not in names:
         raise TypeError(
@@ -84,18 +85,29 @@ def read(data: Any, units: Mapping[str, str] = SI_UNITS) -> Series:
 
 def _from_mapping(data: Mapping[str, Any], units: Mapping[str, str]) -> Series:
     """Read arrays by our names, in SI, or by names with units."""
-    heads = [f"{key} [{units[key]}]" if key in units else str(key) for key in data]
-    arrays, problems = [], []
-    for values in data.values():
-        try:
-            arrays.append(np.asarray(values, dtype=float))
-        except (TypeError, ValueError) as error:
-            problems.append(f"`data`: {error}")
+    heads: list[str] = []
+    arrays: list[Array] = []
+    problems: list[str] = []
+    for key in data:
+        array, unit = _numbers(str(key), data[key], problems)
+        unit = unit or (units.get(key, "") if isinstance(key, str) else "")
+        heads.append(f"{key} [{unit}]" if unit else str(key))
+        arrays.append(array)
     columns, found = _recognised(heads, units)
     problems += [f"`data`: {problem}" for problem in found]
     if problems:
         raise ValueError("\n".join(problems))
     return _named(columns, heads, arrays, "arrays")
+
+
+def _numbers(name: str, values: Any, problems: list[str]) -> tuple[Array, str | None]:
+    """Return a column as an array, and its unit if it carries one; append what is wrong to `problems`."""
+    try:
+        numbers, unit = bare(values)
+        return np.asarray(numbers, dtype=float), unit
+    except (TypeError, ValueError) as error:
+        problems.append(f'`data`: column "{shown(name)}": {error}')
+        return np.empty(0), None
 
 
 def _recognised(
@@ -164,8 +176,10 @@ def _checked(
     **known: Any,
 ) -> Series:
     """Return the series, or raise with every reason why it cannot be judged."""
-    arrays = {name: np.atleast_1d(np.asarray(v, dtype=float)) for name, v in columns.items()}
-    problems = []
+    problems: list[str] = []
+    arrays = {name: np.atleast_1d(_numbers(name, v, problems)[0]) for name, v in columns.items()}
+    if problems:
+        raise ValueError("\n".join(problems))
     if "time" not in arrays:
         problems.append(f"no column is the time; expected t [ms] or time [s] beside {SHOWN}")
     if not any(name in arrays for name in JUDGED):

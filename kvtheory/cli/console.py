@@ -137,13 +137,6 @@ def text(value: float, unit: str) -> str:
     return "-" if math.isnan(value) else " ".join(shown(value, unit)).rstrip()
 
 
-def velocity_range(low: float, high: float) -> str:
-    """Return the range of velocities over which something holds, in words."""
-    if low == 0.0 and high == float("inf"):
-        return "every V"
-    return f"|V| <= {text(high, 'm/s')}" if low == 0.0 else f"|V| >= {text(low, 'm/s')}"
-
-
 def print_json(result: Any) -> None:
     """Print the one JSON object of a command."""
     plain = "utf" not in (getattr(sys.stdout, "encoding", None) or "").lower()
@@ -177,7 +170,7 @@ def print_steady(result: Any, names: Iterable[str]) -> None:
 
 def print_table(heads: Sequence[str], rows: Iterable[Sequence[str]]) -> None:
     """Print columns as wide as they need to be."""
-    table = [heads, *rows]
-    widths = [max(len(row[i]) for row in table) for i in range(len(heads))]
-    for row in table:
-        click.echo("  ".join(map(str.ljust, row, widths)).rstrip())
+    from kvtheory.results.presented import aligned
+
+    for line in aligned(heads, rows):
+        click.echo(line)

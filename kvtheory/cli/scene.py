@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import click
@@ -56,10 +57,15 @@ def scene(
     }
     damping = {"damping": checked.foundation.damping}
     quantities = {**named, **(damping if math.isfinite(damping["damping"]) else {}), **numbers}
+    notes = _notes(checked)
     if as_json:
         kinds = checked.indenter.shape, checked.foundation.kind, checked.support.kind
         print_json(
-            {**dict(zip(("shape", "foundation", "support"), kinds, strict=True)), **quantities}
+            {
+                **dict(zip(("shape", "foundation", "support"), kinds, strict=True)),
+                **quantities,
+                "notes": notes,
+            }
         )
         return
     click.echo(
@@ -72,6 +78,18 @@ def scene(
         _tell_line(checked)
     if not numbers:
         click.echo("\nThe dimensionless numbers are defined for a parabola and a ball only.")
+    for note in notes:
+        click.echo(f"\n{note}")
+
+
+def _notes(scene: "Scene") -> tuple[str, ...]:
+    """Return whether a layer is thin for the contact at rest."""
+    from kvtheory.api import steady
+    from kvtheory.scene import Drive
+
+    if scene.foundation.modulus is None:
+        return ()
+    return steady(replace(scene, drive=Drive(velocity=0.0))).notes
 
 
 def _print_problem(name: str, *, bare: bool) -> None:

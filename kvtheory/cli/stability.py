@@ -20,6 +20,9 @@ UNITS = {
     "critical_velocity": "m/s",
 }
 
+WORDS = {"critical_velocity": "velocity at the onset of instability"}
+"""What the table says where the name alone is ambiguous: V* of `asymptotes` is another velocity."""
+
 
 @scene_command(
     main,
@@ -47,7 +50,11 @@ def stability(scene: str | None, overrides: Sequence[str], as_json: bool) -> Non
     print_table(
         ("quantity", "value", "unit", "relative error"),
         [
-            (name, *shown(getattr(found, name), unit), _number(errors.get(name, math.nan)))
+            (
+                WORDS.get(name, name),
+                *shown(getattr(found, name), unit),
+                _number(errors.get(name, math.nan)),
+            )
             for name, unit in units_for(checked.indenter, UNITS).items()
         ],
     )
@@ -65,7 +72,9 @@ def _verdict(found: "Stability") -> str:
     if found.rigid_drive:
         return "stable, for the drive is rigid; the critical stiffness is that of a spring in its place"
     if not found.stable:
-        return "unstable, between both critical stiffnesses of the spring"
+        between = found.lower_critical_stiffness > 0.0
+        where = "between the critical stiffnesses" if between else "below the critical stiffness"
+        return f"unstable, {where} of the spring"
     return "stable against small disturbances; a large one, such as a sudden start, may end in stick-slip"
 
 

@@ -1,6 +1,5 @@
 """`kvtheory steady` and `kvtheory asymptotes`: steady sliding."""
 
-import math
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -10,16 +9,13 @@ import click
 from kvtheory.cli.console import (
     print_json,
     print_steady,
-    print_table,
     scene_command,
     text,
-    velocity_range,
 )
 from kvtheory.cli.group import main
 from kvtheory.cli.outputs import check_results, deliver, result_options
 
 if TYPE_CHECKING:
-    from kvtheory.results import AsymptoteLine
     from kvtheory.scene import Scene
 
 
@@ -46,8 +42,8 @@ def steady(
     click.echo(f"Steady sliding, {checked.support.kind} support, model: {state.model}\n")
     print_steady(state, state.units)
     click.echo(f"\nErrors are {state.certificate.kind}: {state.certificate.statement}.")
-    if state.unstable:
-        click.echo(state.unstable)
+    for note in state.notes:
+        click.echo(note)
 
 
 @scene_command(main, "kvtheory asymptotes --tolerance 0.01")
@@ -68,44 +64,7 @@ def asymptotes(
         print_json(report.as_dict())
         return
     note_history(checked)
-    ratio = abs(report.velocity) / report.critical_velocity
-    click.echo(
-        f"{checked.support.kind} support, V = {text(report.velocity, 'm/s')}, critical velocity "
-        f"V* = {text(report.critical_velocity, 'm/s')}, V/V* = {ratio:.4g}: "
-        f"{report.regime}-velocity regime"
-    )
-    if not math.isnan(report.peak_velocity):
-        click.echo(
-            f"friction maximum: mu = {report.peak_friction_coefficient:.6g} "
-            f"at V = {text(report.peak_velocity, 'm/s')}"
-        )
-    advice = "the exact solution" if report.use == "exact" else report.use
-    click.echo(f"for the friction coefficient to within {tolerance:g}, use {advice}\n")
-    proved = report.certificate.kind == "proved"  # then it is the whole range
-    print_table(
-        (
-            "asymptote", "Eq.", "formula", "value", "exact", "relative error",
-            f"within {tolerance:g} for", *(() if proved else ("proved for",)),
-        ),
-        [
-            (
-                line.name, f"({line.equation})" if line.equation else "", line.formula,
-                text(line.value, report.units[line.quantity]),
-                text(line.exact, report.units[line.quantity]),
-                "-" if math.isnan(line.relative_error) else f"{line.relative_error:+.3g}",
-                velocity_range(line.velocity_min, line.velocity_max),
-                *(() if proved else (_proved_range(line),)),
-            )
-            for line in report.lines
-        ],
-    )  # fmt: skip
-
-
-def _proved_range(line: "AsymptoteLine") -> str:
-    low = line.regime == "low"
-    return velocity_range(
-        *((0.0, line.velocity_proved) if low else (line.velocity_proved, math.inf))
-    )
+    click.echo(f"{checked.support.kind} support, {report}")
 
 
 def note_history(scene: "Scene") -> None:

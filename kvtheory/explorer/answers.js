@@ -8,6 +8,21 @@ const NUMBERS = [
 ];
 /** Relative error up to which a limit is called the formula that holds. */
 const WITHIN = 0.05;
+/** Size of letters in pixels below which a formula is not legible. */
+const SMALLEST = 11;
+
+/** The number that says whether a layer is thin for its contact; 0 where no layer is given. */
+function layer_number({ layer, stretch }, { half_length }) {
+  return layer ? (layer.thickness / (half_length * Math.min(1, stretch))) ** 2 / (1 - 2 * layer.poisson_ratio) : 0;
+}
+
+function show_layer(scene, state) {
+  const place = document.getElementById("layer"), number = layer_number(scene, state);
+  place.hidden = number <= MODEL.thin;
+  place.innerHTML = `The layer is not thin for its contact: (h/a)\u00b2/(1 \u2212 2\u03bd) = <b>${short(number, 3)}</b>, above ${MODEL.thin}, so `
+    + "that it does not act as independent elements. Reduce its thickness h or Poisson\u2019s ratio \u03bd, or enlarge the half "
+    + "length a of the contact; otherwise use a boundary-element code.";
+}
 
 function show_numbers(scene, state) {
   const force = force_units(scene);
@@ -17,8 +32,9 @@ function show_numbers(scene, state) {
     return `<div><small>${told}</small><b data-name="${name}">${value}</b></div>`;
   }).join("");
   document.getElementById("readout").textContent =
-    `\u03bc = ${short(state.friction_coefficient)}, \u03b4 = ${short(state.depth * 1e3)} mm, `
-    + `F = ${short(state.friction_force * force[1])} ${force[0]}`;
+    `\u03bc = ${short(state.friction_coefficient)}, \u03b4 = ${short(state.depth * 1e3, 3)} mm, `
+    + `F = ${short(state.friction_force * force[1], 3)} ${force[0]}`
+    + (layer_number(scene, state) > MODEL.thin ? ", layer not thin" : "");
 }
 
 /** Whose formulas hold: those of the shape on Kelvin-Voigt elements, else those of the foundation. */
@@ -74,6 +90,12 @@ function quantities_of(scene, state) {
   };
 }
 
+/** Make a formula smaller where it is wider than its card, as far as it stays legible; beyond, it scrolls. */
+function fit(formula) {
+  const size = parseFloat(getComputedStyle(formula).fontSize), share = formula.clientWidth / formula.scrollWidth;
+  if (share < 1) formula.style.fontSize = `${Math.max(SMALLEST, 0.98 * share * size)}px`;
+}
+
 function show_formula(scene, state) {
   const place = document.getElementById("formula");
   if (state.friction_coefficient === 0) {
@@ -89,9 +111,10 @@ function show_formula(scene, state) {
       + ` the exact value by ${short(100 * Math.abs(found.error), 2)} %.`;
   const where = row.where.replace(/([a-z\u03b4W])_(\w+)/gu, "$1<sub>$2</sub>"), symbol = `\u03bc ${relation} ${side}`;
   place.innerHTML = `<p class="note">${told}</p><div class="formula">${symbol} ${row.symbols}</div>`
-    + `<div class="formula filled" tabindex="0" aria-label="The same with numbers">${symbol} ${filled} = `
-    + `<b id="formula-value">${side}${short(found.value, 5)}</b></div>`
+    + `<div class="formula filled" tabindex="0" aria-label="The same with numbers">${symbol} ${filled}</div>`
+    + `<p>${symbol} <b id="formula-value">${side}${short(found.value, 5)}</b></p>`
     + `<p class="note">${where} Proof: <code>kvtheory derive --only ${row.label} --closure</code></p>`;
+  place.querySelectorAll(".formula").forEach(fit);
 }
 
 function show_energy(state) {
@@ -109,11 +132,11 @@ const stiffness_text = (scene, x) =>
   (scene.indenter === "sphere" ? `${short(x * 1e-3)} N/mm` : `${short(x * 1e-6)} MN/m\u00b2`);
 const table = (rows) => `<table>${rows.map(([name, value]) => `<tr><td>${name}</td><td>${value}</td></tr>`).join("")}</table>`;
 
-/** What small motions do, each rate or pair of rates once. */
+/** How small disturbances change, each rate or pair of rates once. */
 function motions(pairs) {
   return pairs.filter(([, imaginary]) => imaginary >= 0).map(([real, imaginary]) => {
-    const time = `${real < 0 ? "dies out" : "grows"} in ${short(1e3 / Math.abs(real))} ms`;
-    return imaginary > 0 ? [`oscillation at ${short(imaginary / (2 * Math.PI))} Hz`, time] : ["monotonic motion", time];
+    const change = real < 0 ? "decays" : "grows", time = `time constant ${short(1e3 / Math.abs(real))} ms`;
+    return [imaginary > 0 ? `oscillation at ${short(imaginary / (2 * Math.PI))} Hz ${change}` : `a disturbance ${change}`, time];
   });
 }
 
@@ -129,7 +152,7 @@ function show_stability(scene, state) {
   }
   const onset = onsets(stability_numbers(scene, state)), { lower, upper } = onset, pairs = rates(scene, state);
   const stable = !drive || is_stable(drive.stiffness, onset), some = Number.isFinite(upper.stiffness);
-  const on_spring = stable ? "Stable on this spring: small motions die out" : "Unstable on this spring: small motions grow";
+  const on_spring = stable ? "Stable on this spring: small disturbances decay" : "Unstable on this spring: small disturbances grow";
   const told = drive ? `${on_spring} (derivation F22).` : "Stable under a rigid drive (derivation F12).";
   const rows = drive ? [["spring of the drive", stiffness_text(scene, drive.stiffness)]] : [];
   if (some) {

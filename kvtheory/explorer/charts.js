@@ -60,7 +60,8 @@ const upright = (y, text) =>
 
 /** Draw into a box, to which what is drawn may be clipped. */
 function show(id, draw, name) {
-  const place = document.getElementById(id), width = Math.max(260, place.clientWidth), height = Number(place.dataset.height);
+  const place = document.getElementById(id), width = Math.max(260, place.clientWidth), { height: full, small } = place.dataset;
+  const height = Number(small && matchMedia("(max-width: 900px) and (min-height: 480px)").matches ? small : full);
   const box = [MARGIN.left, MARGIN.top, width - MARGIN.right, height - MARGIN.bottom], [left, top, right, bottom] = box;
   const rect = `<rect x="${left}" y="${top}" width="${right - left}" height="${bottom - top}"/>`;
   const clip = `<clipPath id="${id}-clip">${rect}</clipPath>`, drawn = draw(box, `clip-path="url(#${id}-clip)"`);
@@ -109,7 +110,8 @@ function draw_curve(scene, state, data) {
     }
     if (top) marks += mark(...at([top.V, top.friction]), "top");
     if (speed > 0 && friction > 0) marks += mark(...at([speed, friction]), "present");
-    return frame(x, y, box, "velocity [mm/s]", "friction coefficient") + `<g ${clip}>${drawn}</g>${marks}`;
+    const name = box[3] - box[1] > 150 ? "friction coefficient" : "\u03bc";
+    return frame(x, y, box, "velocity [mm/s]", name) + `<g ${clip}>${drawn}</g>${marks}`;
   }, "Friction coefficient over velocity, with its asymptotes");
   const parts = [swatch("exact", "exact")];
   if (unstable.some(Boolean)) parts.push(swatch("unstable", `unstable on this spring${from ? `, from ${short(from * 1e3)} mm/s` : ""}`));

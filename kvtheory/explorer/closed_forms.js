@@ -2,10 +2,10 @@
 // Each function is the form for floating-point numbers of an expression proved in `derivations`; the names
 // and arguments are those of kvtheory/models/steady/closed_forms.py where that has the same.
 
-/** V tau/sqrt(R delta) at the critical velocity, fixed depth; theorem F5. */
+/** V tau/sqrt(R delta) at the crossing velocity, fixed depth; theorem F5. */
 const ALPHA = 0.9428090415820634;
 
-/** V tau (K/(R W))^(1/3) at the critical velocity, dead weight; theorem F5. */
+/** V tau (K/(R W))^(1/3) at the crossing velocity, dead weight; theorem F5. */
 const CRITICAL_DRIVE_NUMBER = 0.9614997135382722;
 
 /** q at the friction maximum of a dead weight; theorem F3. */

@@ -7,7 +7,7 @@ from typing import Any
 
 from kvtheory.results import SHOWN_UNITS
 from kvtheory.scene.drives import Drive
-from kvtheory.scene.foundations import FOUNDATIONS, Arm
+from kvtheory.scene.foundations import FOUNDATIONS, THIN, Arm
 from kvtheory.scene.indenters import SHAPES, Circle
 from kvtheory.scene.model import SUPPORTS, Run, Scene
 from kvtheory.scene.quantities import Quantity, given, quantities, required
@@ -24,7 +24,7 @@ SECTIONS: dict[str, tuple[str, dict[str, Any]]] = {
 START = {
     "radius": 0.01, "radius_across": 0.02, "length": 0.01, "exponent": 4.0, "inclination": 0.1,
     "stiffness": 1e10, "retardation_time": 0.1, "order": 0.5,
-    "modulus": 5e6, "thickness": 2e-3, "poisson_ratio": 0.45,
+    "modulus": 2e6, "thickness": 2.5e-4, "poisson_ratio": 0.3,
     "depth": 3e-4, "mass": 1000.0, "gravity": 9.80665, "load": 9806.65,
     "velocity": 0.1, "damping": 1000.0, "duration": 0.2, "relaxation_time": 0.01,
 }  # fmt: skip
@@ -93,6 +93,7 @@ def controls(scene: Scene) -> dict[str, Any]:
             name: _slider("arm", spec, name, None, True) for name, spec in quantities(Arm).items()
         },
         "allowed": _allowed(),
+        "thin": THIN,
         "whole": [name for name, cls in SHAPES.items() if not cls.per_width],
         "scene": _scene(scene),
     }

@@ -20,8 +20,8 @@ function slider_html(key, slider, text, label) {
   const [low, high, place] = reach(slider), at = place(Number(text));
   const shown = Number.isFinite(at) ? Math.min(high, Math.max(low, at)) : low;
   return `<div class="slider"><label for="${key}" title="${escaped(slider.doc)}">${escaped(label)}</label>`
-    + `<span class="value"><input type="text" inputmode="decimal" data-key="${key}" value="${escaped(text)}" aria-label="${escaped(label)}">`
-    + `<span class="unit">${pretty(slider.unit)}</span></span>`
+    + `<span class="value"><input type="text" inputmode="decimal" data-key="${key}" value="${escaped(text)}" aria-label="${escaped(label)}" aria-describedby="${key}-mistake">`
+    + `<span class="unit">${pretty(slider.unit)}</span></span><p class="mistake" id="${key}-mistake" role="alert" hidden></p>`
     + `<input type="range" id="${key}" data-key="${key}" min="${low}" max="${high}" step="any" value="${shown}"`
     + ` aria-valuetext="${escaped(text)} ${slider.unit}" title="${escaped(slider.doc)}"></div>`;
 }
@@ -74,7 +74,7 @@ function build_controls() {
     const note = section === "drive" && state.note ? `<p class="note">${state.note}</p>` : "";
     return `<fieldset><legend>${section}</legend><div>${choosing}${parts[section].join("")}${arms}${note}</div></fieldset>`;
   });
-  document.getElementById("controls").innerHTML = `<p id="readout"></p>${html.join("")}`;
+  document.getElementById("controls").innerHTML = html.join("");
   if (focused) document.querySelector(focused)?.focus();
 }
 
@@ -92,6 +92,7 @@ function update() {
   }
   if (key !== kept.key) kept = { key, data: curve_data(scene) };
   show_numbers(scene, found);
+  show_layer(scene, found);
   draw_curve(scene, found, kept.data);
   draw_contact(scene, found);
   draw_footprint(scene, found);
@@ -125,25 +126,47 @@ const slider_of = (key) => (key.startsWith("arms.")
   ? [MODEL.arm.stiffness, MODEL.arm.relaxation_time][key.split(".")[2]]
   : sliders(state).find(([name]) => name === key)[1]);
 
-function moved(event) {
-  const { key } = event.target.dataset;
-  if (!key) return;
-  const slider = slider_of(key), [low, high, place, value] = reach(slider), pair = event.target.closest(".slider");
-  const box = pair.querySelector('input[type="text"]'), range = pair.querySelector('input[type="range"]');
-  if (event.target === range) {
-    const sign = Number(box.value) < 0 ? -1 : 1;
-    box.value = String(Number((sign * value(Number(range.value))).toPrecision(3)));
-  } else if (Number.isFinite(place(Number(box.value)))) {
-    range.value = String(Math.min(high, Math.max(low, place(Number(box.value)))));
-  }
-  range.setAttribute("aria-valuetext", `${box.value} ${slider.unit}`);
-  box.classList.toggle("wrong", Boolean(mistake_in(box.value, slider, key === "drive.velocity")));
-  set_value(key, box.value.trim());
+/** The field and the slider of a quantity, and the text about a mistake. */
+function parts_of(control) {
+  const pair = control.closest(".slider");
+  return ['input[type="text"]', 'input[type="range"]', ".mistake"].map((part) => pair.querySelector(part));
+}
+
+/** Take a value over, and show it in field and slider. */
+function accept(control, text) {
+  const { key } = control.dataset, slider = slider_of(key), [low, high, place] = reach(slider);
+  const [box, range, told] = parts_of(control), at = place(Number(text));
+  box.value = text;
+  box.removeAttribute("aria-invalid");
+  told.hidden = true;
+  if (control === box) range.value = String(Number.isFinite(at) ? Math.min(high, Math.max(low, at)) : low);
+  range.setAttribute("aria-valuetext", `${text} ${slider.unit}`);
+  set_value(key, text);
   soon();
+}
+
+function moved(event) {
+  if (event.target.type !== "range") return;
+  const [, , , value] = reach(slider_of(event.target.dataset.key)), sign = Number(parts_of(event.target)[0].value) < 0 ? -1 : 1;
+  accept(event.target, String(Number((sign * value(Number(event.target.value))).toPrecision(3))));
+}
+
+/** Understand what was typed, or say what is wrong with it; then the scene stays as it was. */
+function typed(box) {
+  const { key } = box.dataset, [text, mistake] = understood(box.value, slider_of(key), key === "drive.velocity");
+  if (!mistake) {
+    accept(box, text);
+    return;
+  }
+  const told = parts_of(box)[2];
+  box.setAttribute("aria-invalid", "true");
+  told.textContent = `Not taken: ${mistake}.`;
+  told.hidden = false;
 }
 
 function chosen(event) {
   const { section, set } = event.target.dataset;
+  if (event.target.type === "text") typed(event.target);
   if (section) state.choices[section] = event.target.value;
   const [of, at] = section ? [section, 0] : [set, Number(event.target.value)];
   if (!of) return;

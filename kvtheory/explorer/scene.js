@@ -21,6 +21,44 @@ function mistake_in(text, slider, signed) {
   return above && under ? "" : `out of range: ${slider.range}`;
 }
 
+const PREFIXES = { n: -9, u: -6, "\u00b5": -6, "\u03bc": -6, m: -3, c: -2, d: -1, "": 0, h: 2, k: 3, M: 6, G: 9, T: 12 };
+/** Units as powers of metre, kilogram and second, and their size. */
+const UNITS = {
+  m: [[1, 0, 0], 1], g: [[0, 1, 0], 1e-3], s: [[0, 0, 1], 1], N: [[1, 1, -2], 1], Pa: [[-1, 1, -2], 1], Hz: [[0, 0, -1], 1],
+  min: [[0, 0, 1], 60], h: [[0, 0, 1], 3600], "1": [[0, 0, 0], 1],
+};
+
+/** The dimension and size of a unit such as N*s/m^2; nothing if it is unknown. */
+function unit_of(text) {
+  const plain = text.trim().replace(/[\u00b9\u00b2\u00b3]/g, (c) => `^${"\u00b9\u00b2\u00b3".indexOf(c) + 1}`).replace(/\s*([*\u00b7/])\s*|\s+/g, (_, c) => c || "*");
+  let dimension = [0, 0, 0], size = 1;
+  for (const [, sign, name, power] of plain.replace(/\*\*/g, "^").matchAll(/(^|[*\u00b7/])([^*\u00b7/^]*)(?:\^(-?\d+))?/g)) {
+    const own = name in UNITS ? ["", name] : [name[0], name.slice(1)];
+    if (!(own[0] in PREFIXES) || !(own[1] in UNITS)) return null;
+    const [powers, value] = UNITS[own[1]], k = (sign === "/" ? -1 : 1) * Number(power || 1);
+    dimension = dimension.map((x, i) => x + k * powers[i]);
+    size *= (value * Number(`1e${PREFIXES[own[0]]}`)) ** k;
+  }
+  return { dimension: String(dimension), size };
+}
+
+/** A typed text as a number in the unit of its slider: [number, ""], or ["", what is wrong]. */
+function understood(text, slider, signed) {
+  const plain = text.trim().replace(/^\u2212/, "-").replace(/e\u2212/i, "e-");
+  const [, number, unit] = plain.match(/^([+-]?[\d.,]+(?:e[+-]?\d+)?)\s*(.*)$/i) || [];
+  if (number === undefined) return ["", "a number is expected"];
+  if (/^[+-]?[1-9]\d{0,2},\d{3}$/.test(number)) return ["", "does the comma separate decimals or thousands? Write a point, or no comma"];
+  let value = number.replace(/^([^.,]*),([^.,]*)$/, "$1.$2");
+  if (unit) {
+    const given = unit_of(unit), own = unit_of(slider.unit || "1");
+    if (!given) return ["", `the unit ${unit} is not known; expected ${slider.unit || "none"}`];
+    if (given.dimension !== own.dimension) return ["", `${unit} does not fit; expected a unit such as ${slider.unit || "none"}`];
+    if (unit !== slider.unit) value = String(Number((Number(value) * (given.size / own.size)).toPrecision(15)));
+  }
+  const mistake = mistake_in(value, slider, signed);
+  return mistake ? ["", mistake] : [value, ""];
+}
+
 /** The sets of quantities of a section of which one is to be given, and which of them is: the longest there. */
 const sets_of = (state, section) => SECTIONS[section].alternatives[state.choices[section]].map((set) => set.names);
 
@@ -70,12 +108,13 @@ function scene_of(state) {
     "power-law": [1, v["indenter.length"], v["indenter.exponent"]], wedge: [v["indenter.inclination"], 1, 1],
   }[indenter] || [1, radius, 2];
   const nu = v["foundation.poisson_ratio"];
-  const layer = v["foundation.modulus"] * (1 - nu) / ((1 + nu) * (1 - 2 * nu)) / v["foundation.thickness"];
+  const h = v["foundation.thickness"], layer = v["foundation.modulus"] * (1 - nu) / ((1 + nu) * (1 - 2 * nu)) / h;
   const scene = {
     indenter, shape, stretch: Math.sqrt((v["indenter.radius_across"] ?? radius) / radius),
     K: v["foundation.stiffness"] ?? layer, tau: v["foundation.retardation_time"],
     kelvin_voigt: foundation === "kelvin-voigt", V: v["drive.velocity"], duration: v["run.duration"], support,
   };
+  if (h !== undefined) scene.layer = { thickness: h, poisson_ratio: nu };
   if (foundation === "fractional-kelvin-voigt") scene.order = v["foundation.order"];
   if (has_arms(state)) {
     scene.arms = state.arms.map(([k, t]) => [si(k, MODEL.arm.stiffness), si(t, MODEL.arm.relaxation_time)]);
@@ -150,9 +189,11 @@ function from_hash(hash) {
   }
   for (const key of (parts.get("without") || "").split(" ")) delete state.values[key];
   for (const [key, text] of parts) {
-    const [section, name] = key.split(".");
-    const known = Object.values(SECTIONS[section]?.choices || {}).some((own) => name in own);
-    if (known) state.values[key] = text;
+    const [section, name] = key.split("."), choices = SECTIONS[section]?.choices || {};
+    const slider = choices[state.choices[section]]?.[name] || Object.values(choices).find((own) => name in own)?.[name];
+    const unit = slider && is_whole(state) ? { ...slider, ...slider.whole } : slider;
+    const [value] = slider ? understood(text, unit, key === "drive.velocity") : [];
+    if (value) state.values[key] = value;
   }
   const arms = (parts.get("arms") || "").split(" ").map((arm) => arm.split("_")).filter((arm) => arm.length === 2);
   if (arms.length) state.arms = arms;

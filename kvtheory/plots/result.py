@@ -14,7 +14,7 @@ from kvtheory.models.steady.closed_forms import ball_friction_coefficient_factor
 from kvtheory.plots.comparison import draw_comparison
 from kvtheory.plots.files import save_picture
 from kvtheory.plots.style import BLUE, LABELS, RED, TRANSIENT_ROWS, label, with_unit
-from kvtheory.plots.sweep import plot_sweep
+from kvtheory.plots.sweep import plot_over, plot_sweep
 from kvtheory.results import QUANTITIES, AsymptoteReport, Comparison, SteadyState, Sweep, Transient
 from kvtheory.results.transient import TimeSeries
 
@@ -109,6 +109,8 @@ def plot_result(result: Any, axes: Any = None, **style: Any) -> Any:
     if isinstance(result, Sweep):
         return plot_sweep(axes, result, **style).figure
     steady = not hasattr(result, "time")
+    if steady and np.ndim(result.depth):
+        return plot_over(axes, result, **style).figure
     if axes is None:
         from kvtheory.plots.canvas import Picture
 
@@ -118,22 +120,8 @@ def plot_result(result: Any, axes: Any = None, **style: Any) -> Any:
     if not steady:
         plot_transient(axes, result, **style)
         return axes[0].figure
-    if np.ndim(result.depth):
-        _over_velocity(axes, result, style)
-    else:
-        _over_contact(axes, result, style)
+    _over_contact(axes, result, style)
     return axes.figure
-
-
-def _over_velocity(ax: Any, state: SteadyState, style: dict[str, Any]) -> None:
-    """Draw the friction coefficient over the retardation length."""
-    names = "retardation_length", "friction_coefficient"
-    (x_label, x_factor), (y_label, y_factor) = (label(name, state.units[name]) for name in names)
-    x, y = (np.ravel(getattr(state, name)) for name in names)
-    order = np.argsort(x)
-    ax.plot(x[order] * x_factor, y[order] * y_factor, **style)
-    scale = "log" if x.min() > 0.0 and y.min() > 0.0 else "linear"
-    ax.set(xlabel=x_label, ylabel=y_label, xscale=scale, yscale=scale)
 
 
 def _over_contact(ax: Any, state: SteadyState, style: dict[str, Any]) -> None:

@@ -6,8 +6,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from kvtheory.plots.style import label, with_unit
-from kvtheory.results import QUANTITIES, Sweep
+from kvtheory.plots.style import BLUE, label, with_unit
+from kvtheory.results import QUANTITIES, SteadyState, Sweep
 from kvtheory.scene.quantities import nearest
 from kvtheory.sweeps.plan import Plan
 
@@ -39,6 +39,7 @@ WORDS = {
 """Labels of swept keys and measures; all other names are shown as they are."""
 FIRST = "friction_coefficient"
 """Drawn by default, if the sweep has it."""
+VELOCITY = "drive.velocity"
 
 
 def plot_sweep(ax: Any, result: Sweep, quantity: str | None = None, **style: Any) -> Any:
@@ -50,12 +51,50 @@ def plot_sweep(ax: Any, result: Sweep, quantity: str | None = None, **style: Any
     numeric = [name for name, unit in result.units.items() if unit and name in result.values]
     name = _chosen(numeric, quantity)
     sides, values = _drawn(result, name)
+    return _picture(ax, sides, _side(name, result.units[name], values), style)
+
+
+def plot_over(ax: Any, state: SteadyState, quantity: str = FIRST, **style: Any) -> Any:
+    """Draw a quantity of steady sliding over what varies, as `plot_sweep` does, and return the axes.
+
+    Where several keys vary together, the axis is the velocity if it is one of them, or else the first.
+
+    >>> import kvtheory as kv
+    >>> state = kv.steady(over={"foundation.retardation_time": [0.1, 0.2], "drive.velocity": [0.1, 0.3]})
+    >>> plot_over(None, state).get_xlabel()
+    'drive velocity $V$ [mm/s]'
+    """
+    values = np.asarray(getattr(state, quantity))
+    if not values.size:
+        raise ValueError("there are no values to draw: an array of `over` is empty")
+    sides = []
+    for axis in (axis for axis, size in enumerate(values.shape) if size > 1):
+        along = {
+            key: rows for key, array in state.over.items() if (rows := _along(array, axis)).size
+        }
+        if not along:
+            raise ValueError(
+                "two keys vary along the same two dimensions: draw one dimension at a time"
+            )
+        key = max(along, key=lambda key: (np.ptp(along[key]) > 0.0, key == VELOCITY))
+        sides.append(_side(key, state.units[key], along[key]))
+    value = _side(quantity, state.units[quantity], values.reshape([s.values.size for s in sides]))
+    return _picture(ax, sides, value, style)
+
+
+def _along(values: Array, axis: int) -> Array:
+    """Return the values along an axis, or none if they vary along another one too."""
+    rows = np.moveaxis(values, axis, -1).reshape(-1, values.shape[axis])
+    return rows[0] if np.all(rows == rows[0]) else np.empty(0)
+
+
+def _picture(ax: Any, sides: list[Side], value: Side, style: Any) -> Any:
+    """Draw a curve, a family of curves or a map."""
     _refuse_more_than_two([side.label for side in sides])
     if ax is None:
         from kvtheory.plots.canvas import Picture
 
         ax = Picture(5.0, 3.8).subplots()
-    value = _side(name, result.units[name], values)
     if len(sides) == 2 and min(side.values.size for side in sides) > MOST_CURVES:
         _map(ax, sides, value, style)
     else:
@@ -145,8 +184,9 @@ def _curves(ax: Any, sides: Sequence[Side], value: Side, style: Any) -> None:
     marker = "o" if x.values.size == 1 else ""
     rows = values.reshape(-1, x.values.size)
     names = [None] if len(sides) == 1 else [f"{v:.4g}" for v in sides[0].values]
-    for row, name, shade in zip(rows, names, np.linspace(0.0, 0.85, len(rows)), strict=True):
-        look = {"label": name, "color": colormaps["viridis"](shade), "marker": marker, **style}
+    shades = colormaps["viridis"](np.linspace(0.0, 0.85, len(rows)))
+    for row, name, shade in zip(rows, names, shades if len(rows) > 1 else [BLUE], strict=True):
+        look = {"label": name, "color": shade, "marker": marker, **style}
         ax.plot(x.values[order], row[order], **look)
     ax.set(xlabel=x.label, ylabel=value.label, xscale=_scale(x.values), yscale=_scale(values))
     if len(sides) == 2:

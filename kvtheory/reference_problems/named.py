@@ -5,7 +5,7 @@ from importlib.resources import as_file, files
 from itertools import takewhile
 
 from kvtheory.scene import Scene, load_scene
-from kvtheory.scene.quantities import nearest
+from kvtheory.scene.quantities import mistake, nearest
 
 SCENES = "scenes"
 
@@ -55,8 +55,8 @@ def problem_text(name: str) -> str:
     ValueError
         If there is no problem of this name.
     """
-    if name not in _names():
-        raise ValueError(f'`problem` = "{name}": {nearest(str(name), _names())}')
+    if not (isinstance(name, str) and name in _names()):
+        raise mistake("`problem`", name, nearest(str(name), _names()))
     found = files("kvtheory.reference_problems").joinpath(SCENES, f"{name}.toml")
     return found.read_text(encoding="utf-8")
 

@@ -1,6 +1,6 @@
 """The presentation of a result: a few lines of text, a table in a notebook, a picture, a file."""
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from html import escape
 from pathlib import Path
 from typing import Any
@@ -41,7 +41,7 @@ class Presented:
             unit, factor = SHOWN_UNITS[self.units[name]]
             error = self.certificate.relative_error.get(name)
             worst = "" if error is None else f"{float(np.max(error, initial=0.0)):.1e}"
-            yield name, _range(getattr(self, name), factor), unit, worst
+            yield name, spread(getattr(self, name), factor=factor), unit, worst
 
     def __repr__(self) -> str:
         """Return a summary in ten lines at most."""
@@ -65,8 +65,8 @@ class Presented:
     def plot(self, *, ax: Any = None, **style: Any) -> Any:
         """Draw the result and return the figure; `ax` is an axes or several, else they are new.
 
-        A time series is drawn as in Fig. 3 of the paper; steady sliding as the friction coefficient over
-        the retardation length V tau, or, for a single parabola, as its pressure over the contact.
+        A time series is drawn as in Fig. 3 of the paper; steady sliding as its friction coefficient over what
+        varies, or, for a single parabola or ball, as its pressure over the contact.
         """
         return above("plot_result")(self, ax, **style)
 
@@ -97,6 +97,28 @@ class Presented:
         above("save_result")(self, Path(path))
 
 
+def aligned(heads: Sequence[str], rows: Iterable[Sequence[str]]) -> list[str]:
+    """Return the lines of a table with columns as wide as they need to be.
+
+    >>> aligned(("a", "b"), [("12", "3")])
+    ['a   b', '12  3']
+    """
+    table = [heads, *rows]
+    widths = [max(len(row[i]) for row in table) for i in range(len(heads))]
+    return ["  ".join(map(str.ljust, row, widths)).rstrip() for row in table]
+
+
+def with_unit(value: Any, unit: str) -> str:
+    """Return an SI value, or the least and the largest of several, with the unit of the tables.
+
+    >>> with_unit(0.05, "m/s"), with_unit([0.05, 2.0], "m/s"), with_unit(float("nan"), "m/s")
+    ('50 mm/s', '50 … 2000 mm/s', '-')
+    """
+    name, factor = SHOWN_UNITS[unit]
+    text = spread(value, factor=factor)
+    return text if text == "-" else f"{text} {name}".rstrip()
+
+
 def html_table(caption: str, heads: Iterable[str], rows: Iterable[Iterable[str]]) -> str:
     """Return a table of texts in HTML."""
     head = "".join(f"<th>{escape(text)}</th>" for text in heads)
@@ -109,12 +131,12 @@ def html_table(caption: str, heads: Iterable[str], rows: Iterable[Iterable[str]]
     )
 
 
-def _range(value: Any, factor: float) -> str:
-    """Return a number as text, or the least and the largest of several."""
+def spread(value: Any, style: str = "", factor: float = 1.0) -> str:
+    """Return a number as text, or the least and the largest of several; a dash if there is none."""
     array = np.asarray(value, dtype=float) * factor
-    known = array[np.isfinite(array)]
+    known = array[~np.isnan(array)]
     if not known.size:
         return "-"
     if known.min() == known.max():
-        return f"{known.flat[0]:.6g}"
-    return f"{known.min():.4g} … {known.max():.4g}"
+        return format(known.flat[0], style or ".6g")
+    return f"{known.min():{style or '.4g'}} … {known.max():{style or '.4g'}}"

@@ -16,7 +16,8 @@ class Stability:
     motion. Above `critical_stiffness` (N/m^2, of a ball N/m) of the spring in the drive steady sliding is
     stable, and below `lower_critical_stiffness`, too, which is 0 where friction falls with velocity.
     `frequency` (Hz) is that of the motion at the onset of instability, at the upper critical stiffness.
-    `critical_velocity` (m/s) is the smallest at which the present stiffness becomes critical.
+    `critical_velocity` (m/s) is that of the onset of instability: the smallest at which the present stiffness
+    becomes critical. It is not V* of `kvtheory.asymptotes`, where the asymptotes of friction cross.
     Values that do not exist, or were not requested, are NaN.
     """
 

@@ -2,12 +2,13 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, fields
+from html import escape
 from typing import Any
 
 import numpy as np
 
 from kvtheory.results.certificate import Certificate, Value, record
-from kvtheory.results.presented import Presented
+from kvtheory.results.presented import Presented, aligned, html_table, spread, with_unit
 from kvtheory.results.table import STEADY_UNITS
 
 UNSTABLE = (
@@ -29,7 +30,7 @@ class SteadyState(Presented):
     `units`.
 
     `stable` says whether steady sliding is stable: it is with a rigid drive; with a spring in the drive it
-    is None if not known.
+    is None if not known. `notes` are sentences about limits of the model that this scene exceeds.
     """
 
     depth: Value
@@ -49,6 +50,9 @@ class SteadyState(Presented):
     )
     """The SI unit of each quantity."""
     stable: Any = True
+    over: Mapping[str, Any] = field(default_factory=dict, repr=False, compare=False)
+    """The values that vary, by key of the scene, in SI; each has the shape of the quantities."""
+    notes: tuple[str, ...] = field(default=(), compare=False)
 
     @property
     def unstable(self) -> str:
@@ -60,8 +64,11 @@ class SteadyState(Presented):
         return UNSTABLE.format(of) if count else ""
 
     def __repr__(self) -> str:
-        """Return a summary in a few lines, with a warning if steady sliding is unstable."""
-        return "\n".join([super().__repr__(), *([self.unstable] if self.unstable else [])])
+        """Return a summary in a few lines, with the notes."""
+        return "\n".join([super().__repr__(), *self.notes])
+
+    def _repr_html_(self) -> str:
+        return super()._repr_html_() + "".join(f"<p>{escape(note)}</p>" for note in self.notes)
 
     def as_dict(self) -> dict[str, Any]:
         """Return plain Python values, ready for JSON; what does not exist is None."""
@@ -91,11 +98,13 @@ class AsymptoteLine:
     velocity_proved: Value
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class AsymptoteReport:
     """Which asymptote of the friction coefficient holds.
 
-    `regime` is ``"low"`` or ``"high"`` (V below or above V*); `use` names the asymptote that is
+    `critical_velocity` is V* of the paper (Eqs. 47, 48), where both asymptotes cross; the velocity at which
+    a spring in the drive becomes unstable is another, see `kvtheory.stability`. `regime` is ``"low"`` or
+    ``"high"`` (V below or above V*); `use` names the asymptote that is
     within the tolerance, ``"L1"`` or ``"L2"``, or else ``"exact"``.
     `peak_velocity` and `peak_friction_coefficient` locate the friction maximum of a dead weight
     (theorem F3); they are NaN for the other supports.
@@ -116,6 +125,65 @@ class AsymptoteReport:
     )
     """The SI unit of each quantity."""
 
+    def __repr__(self) -> str:
+        """Return what to use, and a table of the asymptotes."""
+        return "\n".join([*self._told(), "", *aligned(self._heads(), self._rows())])
+
+    def _repr_html_(self) -> str:
+        """Return the same for notebooks."""
+        return html_table("; ".join(self._told()), self._heads(), self._rows())
+
     def as_dict(self) -> dict[str, Any]:
         """Return plain Python values, ready for JSON; what does not exist is None."""
         return {f.name: record(getattr(self, f.name)) for f in fields(self) if f.repr}
+
+    def _told(self) -> list[str]:
+        regimes = " or ".join(f"{each}-velocity" for each in np.unique(self.regime))
+        use = " or ".join(np.unique(self.use)).replace("exact", "the exact solution")
+        ratio = with_unit(np.abs(self.velocity) / self.critical_velocity, "1")
+        told = [
+            f"V = {with_unit(self.velocity, 'm/s')}, asymptotes cross at V* = "
+            f"{with_unit(self.critical_velocity, 'm/s')}, V/V* = {ratio}: {regimes} regime"
+        ]
+        if not np.all(np.isnan(self.peak_velocity)):
+            told.append(
+                f"friction maximum: mu = {with_unit(self.peak_friction_coefficient, '1')} "
+                f"at V = {with_unit(self.peak_velocity, 'm/s')}"
+            )
+        return [*told, f"for the friction coefficient to within {self.tolerance:g}, use {use}"]
+
+    @property
+    def _proved(self) -> bool:
+        """Whether the whole range is proved."""
+        return self.certificate.kind == "proved"
+
+    def _heads(self) -> tuple[str, ...]:
+        proved = () if self._proved else ("proved for",)
+        heads = "asymptote", "Eq.", "formula", "value", "exact", "relative error"
+        return (*heads, f"within {self.tolerance:g} for", *proved)
+
+    def _rows(self) -> list[tuple[str, ...]]:
+        rows = []
+        for line in self.lines:
+            unit, low = self.units[line.quantity], line.regime == "low"
+            proved = (0.0, line.velocity_proved) if low else (line.velocity_proved, np.inf)
+            rows.append(
+                (
+                    line.name, f"({line.equation})" if line.equation else "", line.formula,
+                    with_unit(line.value, unit), with_unit(line.exact, unit),
+                    spread(line.relative_error, "+.3g"),
+                    _velocities(line.velocity_min, line.velocity_max),
+                    *(() if self._proved else (_velocities(*proved),)),
+                )
+            )  # fmt: skip
+        return rows
+
+
+def _velocities(low: Value, high: Value) -> str:
+    """Return the range of velocities over which something holds, in words."""
+    if np.all(np.equal(low, 0.0) & np.isinf(high)):
+        return "every V"
+    if np.all(np.equal(high, 0.0) | np.isinf(low)):
+        return "no V"
+    upper = f"|V| <= {with_unit(high, 'm/s')}"
+    return f"|V| >= {with_unit(low, 'm/s')}" if np.all(np.isinf(high)) else upper

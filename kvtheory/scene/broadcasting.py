@@ -8,12 +8,12 @@ from numpy.typing import NDArray
 
 from kvtheory.scene.drives import SPRING, VELOCITY, Drive
 from kvtheory.scene.foundations import LAYER, layer_stiffness
+from kvtheory.scene.lists import array_of
 from kvtheory.scene.model import Scene, lacks_mass
 from kvtheory.scene.quantities import (
     Quantity,
     SceneError,
     collecting,
-    convert,
     free,
     given,
     nearest,
@@ -102,20 +102,3 @@ def _following(scene: Scene, found: dict[str, Array], over: Mapping[str, Any]) -
             raise SceneError(lacks_mass(scene.support, spring, scene.indenter.per_width))
         follows["drive.mass"] = {**found, **follows}["support.mass"]
     return follows
-
-
-def array_of(value: Any, spec: Quantity) -> Array:
-    """Return `value` in SI, checked element by element."""
-    bare = getattr(value, "magnitude", value)
-    if np.ndim(bare) == 0:
-        return np.asarray(convert(value, spec))
-    if isinstance(value, np.ndarray) and value.dtype.kind in "fiu":
-        array = value.astype(float)
-        if not spec.admits(array):
-            raise ValueError(f"is out of range; expected {spec.range} in {spec.unit} throughout")
-        return array
-    flat = bare if np.ndim(bare) == 1 else np.asarray(bare, dtype=object).reshape(-1)
-    items = list(flat)
-    if bare is not value:
-        items = [item * value.units for item in items]
-    return np.array([convert(item, spec) for item in items]).reshape(np.shape(bare))

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from kvtheory.scene.base_motion import SAME_TIME, BaseMotion
+from kvtheory.scene.lists import array_of
 from kvtheory.scene.quantities import (
     Derived,
     Quantity,
@@ -328,10 +329,8 @@ def _breaks(drive: Drive) -> tuple[float, ...]:
             problems.append(problem("drive.breaks", drive.breaks, "needs a function"))
     elif not callable(drive.function):
         problems.append(problem("drive.function", drive.function, "expected a function V(t)"))
-    several = isinstance(drive.breaks, (Sequence, np.ndarray)) and not isinstance(drive.breaks, str)
-    for time in drive.breaks if several else [drive.breaks]:
-        with collecting(problems, "drive.breaks", time):
-            times.append(convert(time, TIME))
+    with collecting(problems, "drive.breaks", drive.breaks):
+        times = np.atleast_1d(array_of(drive.breaks, TIME)).tolist()
     tolerance = drive.tolerance
     if not (isinstance(tolerance, (int, float)) and LEAST_TOLERANCE <= tolerance <= 1.0):
         problems.append(

@@ -6,6 +6,7 @@ from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
+from kvtheory.scene.arguments import a_scene, checked, file_name, names
 from kvtheory.scene.drive_file import history_from
 from kvtheory.scene.drives import SPRING
 from kvtheory.scene.foundations import FOUNDATIONS, PAIRS, Foundation, GeneralizedMaxwell, arms_of
@@ -65,9 +66,9 @@ NOTES = {
     ],
     "foundation": [
         "# or, instead of the stiffness, a thin layer bonded to a rigid base:",
-        '# modulus = "5 MPa"',
-        '# thickness = "2 mm"',
-        "# poisson_ratio = 0.45",
+        '# modulus = "20 MPa"',
+        '# thickness = "0.2 mm"',
+        "# poisson_ratio = 0.3",
         "# or another foundation:",
         '# kind = "generalized-maxwell" with arms = [["30 GN/m^3", "10 ms"], ["5 GN/m^3", "1 s"]]',
         "#     instead of the retardation time: stiffness and relaxation time of each arm",
@@ -77,6 +78,7 @@ NOTES = {
 """What the template says about keys that can be given instead of others."""
 
 
+@checked(path=file_name, overrides=names)
 def load_scene(path: str | Path | None = None, overrides: Iterable[str] = ()) -> Scene:
     """Read a scene from a TOML file, or take Table 1 where `path` is None.
 
@@ -101,7 +103,7 @@ def load_scene(path: str | Path | None = None, overrides: Iterable[str] = ()) ->
     >>> load_scene(overrides=["drive.velocity=50 mm/s"]).drive.velocity
     0.05
     """
-    overrides = [overrides] if isinstance(overrides, str) else list(overrides)
+    overrides = list(overrides)
     if path is None and not overrides:
         return Scene.table1()
     return _build(*_overridden(path, overrides))
@@ -122,6 +124,7 @@ def _overridden(path: str | Path | None, overrides: list[str]) -> tuple[dict[str
     return tables, _override(tables, overrides, embedded=path is None)
 
 
+@checked(scene=a_scene)
 def to_toml(scene: Scene) -> str:
     """Return a scene as TOML text in SI units; `load_scene` reads it back equal to the last bit.
 

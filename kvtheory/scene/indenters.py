@@ -20,6 +20,27 @@ Value = Any
 """A float or an array of floats, in m or dimensionless."""
 
 
+SHORT_CUTS = ((2.0, np.square), (0.5, np.sqrt), (-1.0, np.reciprocal))
+"""Exponents for which NumPy may take another routine, which rounds otherwise."""
+
+
+def power(base: Value, exponent: Value) -> Value:
+    """Return base^exponent to the same bits however many scenes are in an array.
+
+    NumPy takes the short cuts where one exponent stands for all; here they are always taken.
+    """
+    if not isinstance(exponent, np.ndarray):
+        return base**exponent
+    cuts = [(exponent == special, routine) for special, routine in SHORT_CUTS]
+    for chosen, routine in cuts:
+        if chosen.all():
+            return routine(base)
+    found = base**exponent
+    for chosen, routine in cuts:
+        found = np.where(chosen, routine(base), found) if chosen.any() else found
+    return found
+
+
 class _Shape:
     """The common part of the shapes that a scene file can name."""
 
@@ -114,7 +135,7 @@ class PowerLaw(_Shape):
 
     def slope(self, x: Value) -> Value:
         """Return h'(x)."""
-        return np.sign(x) * (np.abs(x) / self.length) ** (self.exponent - 1.0)
+        return np.sign(x) * power(np.abs(x) / self.length, self.exponent - 1.0)
 
     def bend(self, x: Value) -> Value:
         """Return x h''/h'."""

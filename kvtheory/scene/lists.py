@@ -1,9 +1,12 @@
-"""Several values of one quantity in a text: ``"10 ms,1 s"`` and ``"1 mm/s:10 m/s:200:log"``."""
+"""Several values of one quantity: arrays, lists, and texts such as ``"0 ms,10 ms:1 s:200:log"``."""
+
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from kvtheory.scene.quantities import Quantity, convert
+from kvtheory.scene.units import bare
 
 RANGE = "START:STOP:COUNT or START:STOP:COUNT:log"
 MOST = 10**8
@@ -49,3 +52,38 @@ def item_values(item: str, spec: Quantity) -> NDArray[np.float64]:
     if not spec.admits(array):
         raise ValueError("the range leaves that of double precision")
     return array
+
+
+def array_of(value: Any, spec: Quantity) -> NDArray[np.float64]:
+    """Return a value, or an array or a list of values of any library, in SI, checked element by element.
+
+    Raises
+    ------
+    ValueError
+        Saying what is wrong: with a value, or because values are masked.
+
+    Examples
+    --------
+    >>> from kvtheory.scene.drives import TIME
+    >>> array_of([["1 ms", 2.0], [3, "4 min"]], TIME).tolist()
+    [[0.001, 2.0], [3.0, 240.0]]
+    """
+    values, written = bare(value)
+    if isinstance(values, np.ndarray) and values.ndim:
+        if written is None and values.dtype.kind in "fiu":
+            array = values.astype(float)
+            if not spec.admits(array):
+                raise ValueError(
+                    f"is out of range; expected {spec.range} in {spec.unit} throughout"
+                )
+            return array
+        items = values.reshape(-1).tolist()
+        if written is not None:
+            items = [f"{item!r} {written}" for item in items]
+        return np.array([convert(item, spec) for item in items]).reshape(values.shape)
+    if not isinstance(values, (list, tuple, range)):
+        return np.asarray(convert(value, spec))
+    rows = [array_of(item, spec) for item in values]
+    if len({row.shape for row in rows}) > 1:
+        raise ValueError("holds rows of different lengths")
+    return np.array(rows, dtype=float)

@@ -161,7 +161,7 @@ class Scene:
         for name, kind in parts.items():
             if not isinstance(getattr(self, name), kind):
                 told = getattr(kind, "__name__", f"one of {kind}")
-                problems.append(problem(name, getattr(self, name), f"expected {told}"))
+                problems.append(problem(f"`{name}`", getattr(self, name), f"expected {told}"))
         for name in () if problems else WEIGHED:
             problems += misfits(name, getattr(self, name), self.indenter)
         problems = problems or lacks_mass(self.support, self.drive, self.indenter.per_width)

@@ -1,6 +1,9 @@
 """Text files in the encodings in which shells and spreadsheets write them."""
 
 import codecs
+import errno
+import os
+import stat
 from pathlib import Path
 
 MARKS = {
@@ -9,6 +12,8 @@ MARKS = {
     codecs.BOM_UTF16_BE: "utf-16",
 }
 """Byte order marks, by which a file tells its encoding."""
+MOST = 2**28
+"""Bytes of a text; a million rows of ten columns are fewer."""
 
 
 def read_text(path: Path) -> str:
@@ -22,7 +27,7 @@ def read_text(path: Path) -> str:
     UnicodeDecodeError
         If it is none of these.
     OSError
-        If it cannot be read.
+        If it cannot be read, is a device, or holds more than `MOST` bytes.
 
     Examples
     --------
@@ -32,7 +37,13 @@ def read_text(path: Path) -> str:
     ...     _ = path.write_text('radius = "5 µm"', encoding=encoding)
     ...     assert read_text(path) == 'radius = "5 µm"'
     """
-    data = path.read_bytes()
+    with path.open("rb") as file:
+        if stat.S_ISCHR(os.fstat(file.fileno()).st_mode):
+            raise OSError(errno.EINVAL, "is a device; expected a file", str(path))
+        data = file.read(MOST + 1)
+    if len(data) > MOST:
+        told = f"holds more than {MOST / 1e6:.0f} MB, the most that is read"
+        raise OSError(errno.EFBIG, told, str(path))
     encodings = [name for mark, name in MARKS.items() if data.startswith(mark)]
     if not encodings and b"\0" in data[:2]:
         encodings = ["utf-16-be" if data.startswith(b"\0") else "utf-16-le"]

@@ -13,6 +13,8 @@ from functools import cache, lru_cache
 from numbers import Real
 from typing import Any
 
+import numpy as np
+
 EXAMPLES = {
     "m": ("10 mm", "300 µm", "0.01 m"),
     "s": ("100 ms", "0.1 s", "5 min"),
@@ -98,17 +100,60 @@ def to_si(value: Any, unit: str) -> float:
     """
     if isinstance(value, str):
         return _from_text(value, unit)
-    if hasattr(value, "magnitude") and hasattr(value, "units"):
-        written = f"{value.units:C}".replace("dimensionless", "")
-        return _scaled(float(value.magnitude), written, unit)
+    value, written = bare(value)
     if getattr(value, "shape", None) == ():  # a NumPy scalar
         value = value.item()
     if isinstance(value, bool) or not isinstance(value, Real | Decimal):
         raise ValueError(f"expected {expected(unit)}")
     try:
-        return float(value)
+        number = float(value)
     except (OverflowError, TypeError, ValueError):
         raise ValueError(f"expected {expected(unit)}") from None
+    return number if written is None else _scaled(number, written, unit)
+
+
+def bare(value: Any) -> tuple[Any, str | None]:
+    """Return a number or an array without its unit, an array of any library as one of NumPy, and the unit.
+
+    The unit is that of pint, or the attribute ``units`` of xarray and pandas; None if there is none.
+
+    Raises
+    ------
+    ValueError
+        If values are masked, or an array of another library cannot be read.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> bare(np.ma.masked_array([0.01, 0.02], mask=[0, 1]))
+    Traceback (most recent call last):
+    ValueError: has 1 masked value; leave masked values out (`.compressed()`), or fill them (`.filled()`)
+    """
+    written = None
+    if type(value) in (float, int):
+        return value, None
+    if hasattr(value, "magnitude") and hasattr(value, "units"):
+        value, written = value.magnitude, f"{value.units:C}".replace("dimensionless", "")
+    elif isinstance(attributes := getattr(value, "attrs", None), dict):
+        units = attributes.get("units")
+        written = ("" if units == "1" else units) if isinstance(units, str) else None
+    masked = [
+        part for part in (value if isinstance(value, list) else [value]) if np.ma.is_masked(part)
+    ]
+    if masked:
+        count = int(sum(map(np.ma.count_masked, masked)))
+        raise ValueError(
+            f"has {count} masked value{'s' * (count > 1)}; leave masked values out "
+            "(`.compressed()`), or fill them (`.filled()`)"
+        )
+    if hasattr(value, "__array__") and not isinstance(value, type):
+        try:
+            value = np.asarray(value)
+        except Exception:  # whatever its library raises
+            raise ValueError(f"a {type(value).__name__} is no array of numbers") from None
+        if value.dtype.kind == "m":
+            value, written = value / np.timedelta64(1, "s"), "s"
+    return value, written
 
 
 def is_usual(value: Any, unit: str) -> bool:

@@ -9,9 +9,9 @@ from numpy.typing import NDArray
 
 from kvtheory.results.sweep import Axis
 from kvtheory.scene.broadcasting import replaceable
-from kvtheory.scene.lists import item_values, items
+from kvtheory.scene.lists import array_of, item_values, items
 from kvtheory.scene.model import Scene
-from kvtheory.scene.quantities import Quantity, SceneError, convert, nearest, problem, quantities
+from kvtheory.scene.quantities import Quantity, SceneError, nearest, problem, quantities
 
 Array = NDArray[np.float64]
 
@@ -152,19 +152,9 @@ def _known(key: Any, value: Any, specs: Mapping[str, Quantity], seen: set[str]) 
 def _values(value: Any, spec: Quantity) -> Array:
     if isinstance(value, str) and items(value):
         return np.concatenate([item_values(item, spec) for item in items(value)])
-    magnitude = getattr(value, "magnitude", value)
-    if np.ndim(magnitude) > 1:
+    array = np.atleast_1d(array_of(value, spec))
+    if array.ndim > 1:
         raise ValueError("expected one list; give pairs as a tuple of keys with a list for each")
-    if isinstance(magnitude, np.ndarray) and magnitude.dtype.kind in "fiu" and magnitude is value:
-        array = np.atleast_1d(magnitude).astype(float)
-        if not spec.admits(array):
-            raise ValueError(f"is out of range; expected {spec.range} in {spec.unit} throughout")
-    elif magnitude is not value:
-        bare = np.atleast_1d(magnitude)
-        array = np.array([convert(item * value.units, spec) for item in bare])
-    else:
-        single = [value] if np.ndim(value) == 0 else list(value)
-        array = np.array([convert(item, spec) for item in single])
     if array.size == 0:
         raise ValueError("is empty; expected at least one value")
     return array

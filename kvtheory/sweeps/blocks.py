@@ -5,6 +5,7 @@ same bits; a scene that fails is a missing value with its reason, and its neighb
 """
 
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -24,6 +25,9 @@ Array = NDArray[np.float64]
 
 FAILS = (ValueError, ArithmeticError, RuntimeError)
 """What a scene without an answer raises; anything else is a mistake of the program."""
+
+INTERPRETED = 1.5
+"""Of the steps from which compiling pays: more are interpreted before the first block that is compiled."""
 
 
 @dataclass(frozen=True)
@@ -179,6 +183,26 @@ def _transients(
         values = found.texts if column.text else found.values
         arrays[column.name][:] = values[column.name]
     return found.statements
+
+
+def compile_ahead(plan: Plan, points: int, workers: int) -> None:
+    """Compile the kernels here, if `points` are so many that each of the workers would do it otherwise.
+
+    Workers load what is compiled from the disk, if they share it and have processors of the same kind.
+    """
+    if not plan.transient or plan.by_elements:
+        return
+    from kvtheory.models.continuum import compiled
+    from kvtheory.sweeps.measures import STEPS, compile_ahead
+
+    if not compiled.available() or STEPS * points < INTERPRETED * compiled.WORTHWHILE * workers:
+        return
+    for index in (0, plan.points - 1):  # the second, if the first has no answer
+        over = values_at(plan.axes, index, index + 1)
+        with suppress(*FAILS):
+            point = {key: float(array[0]) for key, array in over.items()}
+            compile_ahead(plan, at_point(plan.scene, point))
+            break
 
 
 def _in_time(plan: Plan, scene: Scene) -> Scene:

@@ -1,15 +1,15 @@
 """Sweeps as CSV (RFC 4180) in long form: one row for each point, or each point and time.
 
 What the file is stands above the table in lines that begin with ``#``; the first of them say how to
-read it, and the SHA-256 of all that follows, by which a file that lost something is known.
+read it, and by which digest a change is noticed.
 """
 
 import csv
-import hashlib
 import json
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
+from itertools import takewhile
 from pathlib import Path
-from typing import Any, BinaryIO
+from typing import Any
 
 import numpy as np
 import orjson
@@ -23,10 +23,9 @@ from kvtheory.sweeps.plan import Plan
 END = "\r\n"
 MARK = "# kvtheory sweep"
 """The first line of every such file."""
+DIGEST = f"{MARK}{END}# sha256 of the rest of this file: "
+SEAL = len(DIGEST)
 READ = "# to read the table: pandas.read_csv(FILE, comment='#')"
-DIGEST = "# sha256 of what follows: "
-PART = 2**20
-"""Bytes read at a time."""
 
 
 def check() -> None:
@@ -35,74 +34,19 @@ def check() -> None:
 
 def write(result: Outcome, path: Path) -> None:
     """Write header and rows; rows of points that were not computed yet are left out."""
-    digest = hashlib.sha256()
     with path.open("wb") as file:
-        file.write(f"{MARK}{END}{DIGEST}".encode())
-        place = file.tell()
-        file.write(f"{digest.hexdigest()}{END}".encode())
-        for part in _parts(result):
-            digest.update(part)
-            file.write(part)
-        file.seek(place)
-        file.write(digest.hexdigest().encode())
+        lines = [f"{DIGEST}{'0' * 64}", *_comments(result), ",".join(_heads(result.plan)), ""]
+        file.write(END.join(lines).encode())
+        for block in result.blocks():
+            file.write(_rows(result.plan, block))
 
 
-def _parts(result: Outcome) -> Iterator[bytes]:
-    """Yield what stands below the digest."""
-    lines = [*_comments(result), ",".join(_heads(result.plan)), ""]
-    yield END.join(lines).encode()
-    for block in result.blocks():
-        yield _rows(result.plan, block)
-
-
-def header(path: Path) -> Mapping[str, str] | None:
-    """Return what a file says about itself; nothing if that is damaged, None if it is no such file."""
-    found = {}
-    with path.open(encoding="utf-8", errors="replace", newline="") as file:
-        if file.readline().rstrip() != MARK:
-            return None
-        for line in file:
-            if not line.startswith("#"):
-                break
-            key, _, text = line[1:].strip().partition(": ")
-            if key in ("record", "summary"):
-                found[key] = text
-    return found if len(found) == 2 and _is_json(found["summary"]) else {}
-
-
-def _is_json(text: str) -> bool:
-    try:
-        return bool(json.loads(text))
-    except ValueError:
-        return False
-
-
-def damage(path: Path, plan: Plan, whole: bool) -> str:
-    """Say what a file has lost since it was written, `whole` or not; or nothing."""
-    with path.open("rb") as file:
-        told = _told(file)
-        table = file.tell()
-        digest = hashlib.sha256()
-        while part := file.read(PART):
-            digest.update(part)
-        if digest.hexdigest() == told:
-            return ""
-        file.seek(table)
-        rows = sum(not line.startswith(b"#") and bool(line.strip()) for line in file) - 1
-    wanted = plan.points * (len(plan.times or ()) if plan.series else 1)
-    if whole and rows < wanted:
-        return f"{wanted - rows:,} of its {wanted:,} rows are missing"
-    return "it was changed after it was written"
-
-
-def _told(file: BinaryIO) -> str:
-    """Return the digest that a file tells, and stand below it."""
-    for line in iter(file.readline, b""):
-        if line.startswith(DIGEST.encode()):
-            return line.decode(errors="replace").rpartition(": ")[2].strip()
-        if not line.startswith(b"#"):
-            break
-    return ""
+def header(path: Path) -> Mapping[str, str]:
+    """Return what a file says about itself."""
+    with path.open(encoding="utf-8", newline="") as file:
+        comments = takewhile(lambda line: line.startswith("#"), file)
+        pairs = [line[1:].strip().partition(": ") for line in comments]
+    return {key: text for key, _, text in pairs}
 
 
 def values(path: Path, plan: Plan, name: str) -> dict[str, Any]:

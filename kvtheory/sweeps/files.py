@@ -1,10 +1,17 @@
-"""Sweeps as files: CSV in long form and NetCDF, written block by block, and read again."""
+"""Sweeps as files: CSV in long form and NetCDF, written block by block, and read again.
 
+A file holds the SHA-256 of all its other bytes, so that one in which anything was changed is not taken for
+this sweep: numbers, axes, units, texts, or their order. In CSV it stands in the second line, in NetCDF
+behind what its readers reach. A file that another program saved anew has lost it.
+"""
+
+import hashlib
 import json
+import os
 from collections.abc import Iterator, Mapping
 from importlib.metadata import version
 from pathlib import Path
-from typing import Any
+from typing import Any, BinaryIO
 
 import numpy as np
 
@@ -17,9 +24,16 @@ from kvtheory.sweeps.outcome import Outcome, outcome
 from kvtheory.sweeps.plan import Plan, differences
 
 FORMATS: Mapping[str, Any] = {".csv": csv_file, ".nc": netcdf_file}
-"""Modules with `check`, `write`, `header`, `damage` and `values`, by the suffix that they serve."""
+"""Modules with `check`, `write`, `header` and `values`, by the suffix that they serve; `SEAL` is the place of
+the digest, counted from the end if it is negative."""
 
 WAYS_OUT = "remove it, choose another name, or overwrite it (`overwrite`)"
+
+
+DIGITS = 64
+"""Of a SHA-256."""
+PART = 2**20
+"""Bytes read at a time."""
 
 
 def format_of(path: Path) -> Any:
@@ -35,7 +49,36 @@ def check(path: Path) -> None:
 
 def write(result: Outcome, path: Path) -> None:
     """Write a result to `path` by a temporary name."""
-    replace_file(path, lambda part: format_of(path).write(result, part))
+    form = format_of(path)
+
+    def sealed(part: Path) -> None:
+        form.write(result, part)
+        with part.open("r+b") as file:
+            digest = _digest(file, form.SEAL)
+            file.seek(-DIGITS, os.SEEK_CUR)
+            file.write(digest)
+
+    replace_file(path, sealed)
+
+
+def _digest(file: BinaryIO, place: int) -> bytes:
+    """Return the digest of all bytes of a file but those of the digest itself, and stand behind these."""
+    size, digest = file.seek(0, os.SEEK_END), hashlib.sha256()
+    place = max(0, place if place >= 0 else size + place)
+    for start, stop in ((place + DIGITS, size), (0, place)):
+        file.seek(start)
+        while part := file.read(max(0, min(PART, stop - file.tell()))):
+            digest.update(part)
+    file.seek(place + DIGITS)
+    return digest.hexdigest().encode()
+
+
+def _whole(path: Path) -> bool:
+    """Whether every byte of a file is as it was written."""
+    with path.open("rb") as file:
+        digest = _digest(file, format_of(path).SEAL)
+        file.seek(-DIGITS, os.SEEK_CUR)
+        return digest == file.read(DIGITS)
 
 
 def finished(path: Path, plan: Plan) -> bool:
@@ -44,24 +87,22 @@ def finished(path: Path, plan: Plan) -> bool:
     Raises
     ------
     ValueError
-        If it holds anything else but this sweep, or has lost or changed some of it since.
+        If it holds anything else but this sweep as it was written.
     """
     if not path.exists():
         return False
+    if not _whole(path):
+        raise ValueError(
+            f'"{path}" exists and is not a sweep as it was written: it is another file, or was changed, cut, '
+            f"or saved anew by another program; {WAYS_OUT}"
+        )
     header = format_of(path).header(path)
-    if header is None:
-        raise ValueError(f'"{path}" exists and is not a sweep: {WAYS_OUT}')
-    if not header:
-        raise ValueError(f'"{path}" is a sweep whose beginning is damaged: {WAYS_OUT}')
     if differing := differences(header["record"], plan):
         raise ValueError(
             f'"{path}" holds another sweep: it differs in {", ".join(differing)}; {WAYS_OUT}'
         )
     summary = json.loads(header["summary"])
-    whole = bool(summary["done"] == summary["points"])
-    if damage := format_of(path).damage(path, plan, whole):
-        raise ValueError(f'"{path}" is this sweep, but {damage}; to compute it anew, {WAYS_OUT}')
-    return whole
+    return bool(summary["done"] == summary["points"])
 
 
 class Stored(Mapping[str, Any]):

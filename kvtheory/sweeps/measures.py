@@ -5,6 +5,7 @@ nothing is compiled or events are asked for, are followed one by one, into the s
 """
 
 import json
+import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -81,6 +82,17 @@ def measure(
     return block.measured()
 
 
+def compile_ahead(plan: Plan, scene: Scene) -> None:
+    """Compile what `measure` calls for a plan, by beginning one of its scenes."""
+    block = _Block(plan, 1, ())
+    block.add(0, scene, math.nan)
+    if block.alike:
+        block.follow_together(1)
+    else:
+        compiled.Tally.steps += compiled.WORTHWHILE
+        block.follow_alone(0)
+
+
 class _Block:
     """A block of scenes on its way: what is asked, and arrays with a row for each index."""
 
@@ -121,18 +133,23 @@ class _Block:
     def follow(self) -> None:
         """Follow the scenes, as many as possible in one call."""
         worthwhile = compiled.worthwhile() or STEPS * len(self.scenes) >= compiled.WORTHWHILE
-        rigid = all(units.rigid_drive for _, units, _ in self.scenes.values())
-        together = self.scenes and rigid and not self.plan.textual
-        if together and worthwhile and compiled.available():
-            self._together()
+        if self.scenes and self.alike and worthwhile and compiled.available():
+            self.follow_together(STEP_LIMIT)
         for index in self.scenes:
             if not (self.found.status[index] == self.found.other[index] == DONE):
                 try:
-                    self._alone(index)
+                    self.follow_alone(index)
                 except self.fails as error:
                     self.reasons[index] = error
 
-    def _together(self) -> None:
+    @property
+    def alike(self) -> bool:
+        """Whether one call follows all scenes: the drives are rigid, and no texts are asked for."""
+        rigid = all(units.rigid_drive for _, units, _ in self.scenes.values())
+        return rigid and not self.plan.textual
+
+    def follow_together(self, limit: int) -> None:
+        """Follow all scenes in one call, each for so many steps at most."""
         indices = list(self.scenes)
         units, drives = [self.scenes[i][1] for i in indices], [self.scenes[i][2] for i in indices]
         fine, other = self._room(drives[0], units[0])
@@ -154,7 +171,7 @@ class _Block:
         rows = np.zeros((2, e_.SIZE))
         room = bulk.Room(np.zeros(samples), one, np.zeros(samples), two, rows)
         found = bulk.Found(*(array[indices] for array in self.found))
-        compiled.kernel(bulk.follow)(scenes, fine, other, asked, room, found, STEP_LIMIT)
+        compiled.kernel(bulk.follow)(scenes, fine, other, asked, room, found, limit)
         for whole, part in zip(self.found, found, strict=True):
             whole[indices] = part
         told = found.deviations.T
@@ -172,7 +189,8 @@ class _Block:
             runs.append(run)
         return runs
 
-    def _alone(self, index: int) -> None:
+    def follow_alone(self, index: int) -> None:
+        """Follow one scene."""
         scene, _, _ = self.scenes[index]
         solution, _, errors = certified(scene, None, self.plan.rtol)
         motion, found = solution.motion, self.found

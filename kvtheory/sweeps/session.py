@@ -11,11 +11,11 @@ from time import monotonic
 from kvtheory.progress import Progress
 from kvtheory.results.sweep import Sweep
 from kvtheory.sweeps import engine, files
-from kvtheory.sweeps.blocks import Block
+from kvtheory.sweeps.blocks import Block, compile_ahead
 from kvtheory.sweeps.outcome import FAILURES_LISTED, outcome
 from kvtheory.sweeps.plan import Plan
 from kvtheory.sweeps.store import Memory, Store, WorkFile
-from kvtheory.sweeps.workers import in_flight_of, own_workers
+from kvtheory.sweeps.workers import AHEAD, own_workers, workers_of
 
 WORK = ".part"
 """What the name of a work file adds to that of the result."""
@@ -66,8 +66,10 @@ def walker(
 
     def walk(store: Store) -> int:
         done = store.done()
-        before, began = sum(stop - start for start, stop in done), monotonic()
-        computed = failed = 0
+        before, computed, failed = sum(stop - start for start, stop in done), 0, 0
+        several = workers_of(executor, jobs)
+        compile_ahead(plan, plan.points - before, several)
+        began = monotonic()
 
         def show() -> None:
             if report:
@@ -86,7 +88,7 @@ def walker(
         if executor is None and jobs == 1:
             engine.run_here(tasks, keep)
             return computed
-        flying = in_flight or in_flight_of(executor, jobs)
+        flying = in_flight or AHEAD * several
         pool = (
             own_workers(jobs, threads=plan.vectorised)
             if executor is None

@@ -38,11 +38,11 @@ def own_workers(jobs: int, *, threads: bool) -> Iterator[Workers]:
             pool.shutdown(wait=True, cancel_futures=True)
 
 
-def in_flight_of(executor: Executor | None, jobs: int) -> int:
-    """Return how many blocks to have in flight."""
+def workers_of(executor: Executor | None, jobs: int) -> int:
+    """Return how many workers compute the blocks."""
     if executor is None:
-        return AHEAD * jobs
-    return AHEAD * int(getattr(executor, "_max_workers", None) or UNKNOWN_WORKERS)
+        return jobs
+    return int(getattr(executor, "_max_workers", None) or UNKNOWN_WORKERS)
 
 
 def _follow_parent() -> None:

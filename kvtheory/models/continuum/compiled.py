@@ -31,6 +31,7 @@ from kvtheory.models.continuum import (
     stepping,
     trial_step,
 )
+from kvtheory.progress import compiling
 from kvtheory.scene import base_motion
 
 MODULES = (
@@ -136,16 +137,20 @@ def _kept(entry: Any) -> Any:
     try:
         compiled = njit(entry, cache=True, nogil=True, **UNCOUNTED)
     except RuntimeError:  # no place to keep it: the package and the home are read-only
+        compiling()
         return njit(entry, nogil=True, **UNCOUNTED)
     kept = compiled._cache
     load = kept.load_overload
 
     def load_or_forget(*key: Any) -> Any:
+        found = None
         try:
-            return load(*key)
+            found = load(*key)
         except Exception:  # whatever damaged files raise, or those of another version
             kept.flush()
-            return None
+        if found is None:
+            compiling()
+        return found
 
     kept.load_overload = load_or_forget
     return compiled

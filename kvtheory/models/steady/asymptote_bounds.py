@@ -24,7 +24,7 @@ KNOWN = {"parabola": PARABOLA, "sphere": BALL}
 """By the name of the shape."""
 
 ROUNDING = 16 * 2.0**-52
-"""Rounding of the formulas themselves, as in the exact solution."""
+"""Rounding of the formulas themselves: 32 operations, half a unit in the last place each."""
 
 UNIT = 4 * 2.0**-52
 """Rounding of s^2 where it is subtracted from 1."""

@@ -138,13 +138,14 @@ def quantities(scene: Limits, regime: str, side: Value = 1.0) -> dict[str, Value
 
 
 def errors(scene: Limits, regime: str, state: SteadyState) -> dict[str, Value]:
-    """Return asymptote/exact - 1 of each quantity, given the exact state; V > 0 if `regime` is high."""
+    """Return asymptote/exact - 1 of each quantity, given the exact state; V > 0 if `regime` is high.
+
+    Ratios multiply by their logarithms: products of relative errors lose all digits where one nears -1.
+    """
     n, half = scene.exponent, np.asarray(state.half_length)
     l, q = state.retardation_length / half, np.abs(state.trailing_edge) / half
     contact = n, l, q, 1.0 / (q + n * l)
     found = (_low_errors if regime == "low" else _high_errors)(scene, state, *contact)
-    if not scene.fixed:
-        found["friction_force"] = _compound(found["load"], found["friction_coefficient"])
     return {
         **found,
         "retardation_length": np.zeros_like(l),
@@ -157,30 +158,31 @@ def _low_errors(
     scene: Limits, state: SteadyState, n: Value, l: Value, q: Value, Q: Value
 ) -> dict[str, Value]:
     peeled, drop, bend = _peeled(n, l, q, Q)
-    mu, friction = cf.power_law_error_l1(n, l, q, Q, drop), None
+    depth = np.log(scene.static_depth / state.depth)
+    mu = np.log1p(cf.power_law_error_l1(n, l, q, Q, drop)) + (1.0 - 2.0 / n) * depth
     if scene.fixed:
-        depth, load = np.zeros_like(l), cf.power_law_error_load_low(l, q, Q, bend)
+        load = cf.power_law_error_load_low(l, q, Q, bend)
         friction = cf.power_law_error_friction_low(n, l, q, Q, peeled, drop)
     else:
-        depth = scene.static_depth / state.depth - 1
         load = scene.static_load / state.load - 1
-        mu = _compound(mu, _power(depth, 1.0 - 2.0 / n))
-    length = _power(depth, 1.0 / n)
+        friction = np.expm1(np.log(scene.static_load / state.load) + mu)
+    with np.errstate(divide="ignore", over="ignore"):  # a sharp tip has x_TE = 0, or nearly
+        trailing = np.expm1(depth / n + np.log1p(peeled / q))
     return {
-        "depth": depth,
-        "half_length": length,
-        "trailing_edge": _compound(length, peeled / q),
+        "depth": np.expm1(depth),
+        "half_length": np.expm1(depth / n),
+        "trailing_edge": trailing,
         "load": load,
         "friction_force": friction,
-        "friction_coefficient": mu,
-        "peak_pressure": _compound(depth, 1 / cf.power_law_peak_pressure(n, l) - 1),
+        "friction_coefficient": np.expm1(mu),
+        "peak_pressure": np.expm1(depth - np.log(cf.power_law_peak_pressure(n, l))),
     }
 
 
 def _high_errors(
     scene: Limits, state: SteadyState, n: Value, l: Value, q: Value, Q: Value
 ) -> dict[str, Value]:
-    mu, friction = cf.power_law_error_l2(n, l, q, Q), None
+    mu = np.log1p(cf.power_law_error_l2(n, l, q, Q))
     if scene.fixed:
         depth, load = np.zeros_like(l), cf.power_law_error_load_high(n, l, q, Q)
         friction = cf.power_law_error_friction_high(n, l, q, Q)
@@ -188,18 +190,19 @@ def _high_errors(
         # The spring still carries k_s delta: lift_load - W = k_s delta.
         lifted = state.depth / scene.static_depth
         load = (scene.lift_load - scene.static_load) * lifted / state.load
-        depth = _compound(cf.power_law_error_depth_high(n, l, q, Q), load)
-        mu = _compound(mu, _power(depth, 1.0 - 1.0 / n))
-    peak = n * l / cf.power_law_peak_pressure(n, l) - 1
+        depth = np.log1p(cf.power_law_error_depth_high(n, l, q, Q)) + np.log1p(load)
+        mu = mu + (1.0 - 1.0 / n) * depth
+        friction = np.expm1(np.log1p(load) + mu)
+    peak = np.log(n * l / cf.power_law_peak_pressure(n, l))
     return {
-        "depth": depth,
-        "half_length": _power(depth, 1.0 / n),
+        "depth": np.expm1(depth),
+        "half_length": np.expm1(depth / n),
         # The asymptote is the tip, where that of a wedge is from l = 1 on.
         "trailing_edge": np.where((q == 0.0) & (n == 1.0), 0.0, -1.0),
         "load": load,
         "friction_force": friction,
-        "friction_coefficient": mu,
-        "peak_pressure": _compound(_power(depth, 1.0 - 1.0 / n), peak),
+        "friction_coefficient": np.expm1(mu),
+        "peak_pressure": np.expm1((1.0 - 1.0 / n) * depth + peak),
     }
 
 
@@ -214,13 +217,3 @@ def _peeled(n: Value, l: Value, q: Value, Q: Value) -> tuple[Value, Value, Value
         np.where(small, cf.power_law_slope_drop(n, z), 1.0 - Q),
         np.where(small, cf.power_law_bend(n, y, rise, fall), l - (1.0 - q)),
     )
-
-
-def _power(error: Value, power: Value) -> Value:
-    """Return the relative error of a power: (1 + error)^power - 1."""
-    return np.expm1(power * np.log1p(error))
-
-
-def _compound(first: Value, second: Value) -> Value:
-    """Return the relative error of a product: (1 + first)(1 + second) - 1."""
-    return first + second + first * second

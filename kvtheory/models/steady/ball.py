@@ -19,7 +19,7 @@ from numpy.polynomial.legendre import leggauss
 from numpy.typing import ArrayLike, NDArray
 
 from kvtheory.models.steady import closed_forms as cf
-from kvtheory.models.steady.blockwise import evaluate
+from kvtheory.models.steady.blockwise import converge, evaluate
 from kvtheory.results import STEADY_UNITS, Certificate, SteadyState
 from kvtheory.scene.static_state import ball_stiffness
 
@@ -135,19 +135,18 @@ def scaled_root(drive_number: Array, support_number: Array) -> Array:
     """
     lam, kappa = drive_number, support_number
     fast = lam * (8.0 / (3.0 * np.pi))
-    s = np.cbrt((1.0 + kappa) / (1.0 + kappa + fast))
-    for _ in range(MOST_STEPS):
+
+    def step(s: Array) -> Array:
         theta, tail = angle_and_tail(lam / s)
         held = kappa * s * s
         total = cf.ball_scaled_load(s, lam, tail) + held
         rise = (cf.ball_scaled_load_slope(s, lam, theta) + 2.0 * held) / total
         curve = (cf.ball_scaled_load_curvature(s, lam, theta) + 4.0 * held) / total - rise * rise
         off = np.log(total / (1.0 + kappa))
-        step = off / (rise - 0.5 * off * (curve / rise))
-        s = s * np.exp(-step)
-        if np.abs(step).max(initial=0.0) < LAST_STEP:
-            break
-    return s
+        return off / (rise - 0.5 * off * (curve / rise))
+
+    first = np.cbrt((1.0 + kappa) / (1.0 + kappa + fast))
+    return converge(step, first, LAST_STEP, MOST_STEPS)
 
 
 def _balance(

@@ -122,43 +122,34 @@ def errors(scene: Limits, regime: str, state: SteadyState) -> dict[str, Value]:
     _, T = angle_and_tail(np.atleast_1d(l))
     T = T.reshape(np.shape(l))
     q, peak = cf.trailing_edge_ratio(l), cf.peak_pressure_factor(l)
-    held = (cf.ball_error_l1 if slow else cf.ball_error_l2)(l, T)
+    mu = np.log1p((cf.ball_error_l1 if slow else cf.ball_error_l2)(l, T))
+    length = 0.5 * np.log(
+        scene.static_depth / state.depth
+    )  # ln(asymptote/exact): ratios multiply by their logarithms
     if scene.fixed:
-        depth = np.zeros_like(l)
         load = (cf.ball_error_load_low if slow else cf.ball_error_load_high)(l, T)
         friction = (cf.ball_error_friction_low if slow else cf.ball_error_friction_high)(l, T)
-        length, mu = depth, held
+    elif slow:
+        load = scene.static_load / state.load - 1.0
+        friction = np.expm1(np.log(scene.static_load / state.load) + mu)
     else:
-        lifted = np.asarray(state.depth) / scene.static_depth
-        pressed = scene.lift_load - scene.static_load  # k_s delta_0
-        if slow:
-            depth = 1.0 / lifted - 1.0
-            load = -pressed * (1.0 - lifted) / state.load
-            length = np.sqrt(1.0 + depth) - 1.0
-            mu = held
-        else:
-            load = pressed * lifted / state.load  # what the spring still holds, lift_load - W
-            cubed = (1.0 + load) / (1.0 + cf.ball_error_load_high(l, T)) - 1.0
-            length = np.expm1(np.log1p(cubed) / 3.0)
-            depth = _compound(length, length)
-            mu = _compound(held, length)
-        friction = _compound(load, mu)
+        # The spring still carries k_s delta: lift_load - W = k_s delta.
+        lifted = state.depth / scene.static_depth
+        load = (scene.lift_load - scene.static_load) * lifted / state.load
+        viscous = 4.0 / 3.0 * l / cf.ball_load_factor(l, T)  # C V delta a 4/3 over W
+        length = (np.log1p(load) - np.log(viscous)) / 3.0
+        mu = mu + length
+        friction = np.expm1(np.log1p(load) + mu)
+    own = 2.0 * length - np.log(peak) if slow else length + np.log(2.0 * l / peak)
     return {
-        "depth": depth,
-        "half_length": length,
+        "depth": np.expm1(2.0 * length),
+        "half_length": np.expm1(length),
         "retardation_length": np.zeros_like(l),
-        "leading_edge": length,
-        "trailing_edge": (1.0 + length) / q - 1.0 if slow else -np.ones_like(l),
+        "leading_edge": np.expm1(length),
+        "trailing_edge": np.expm1(length - np.log(q)) if slow else -np.ones_like(l),
         "load": load,
         "friction_force": friction,
-        "friction_coefficient": mu,
-        "peak_pressure": (1.0 + depth) / peak - 1.0
-        if slow
-        else _compound(length, 2.0 * l / peak - 1.0),
+        "friction_coefficient": np.expm1(mu),
+        "peak_pressure": np.expm1(own),
         "dissipated_in_contact": 1.0 / cf.ball_dissipated_in_contact(l, T) - 1.0,
     }
-
-
-def _compound(first: Value, second: Value) -> Value:
-    """Return the relative error of a product: (1 + first)(1 + second) - 1."""
-    return first + second + first * second

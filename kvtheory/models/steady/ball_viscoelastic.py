@@ -21,7 +21,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from kvtheory.models.steady import viscoelastic
-from kvtheory.models.steady.blockwise import evaluate
+from kvtheory.models.steady.blockwise import converge, evaluate
 from kvtheory.models.steady.viscoelastic import OWN_ERRORS, Fractional, Prony
 from kvtheory.results import STEADY_UNITS, Certificate, SteadyState
 from kvtheory.scene.static_state import ball_stiffness
@@ -159,19 +159,17 @@ def _length_at_load(
     R, stretch, K, V = at
     static = np.sqrt(load / ball_stiffness(K, R, stretch))
     wanted = load + spring * static
-    c = 2.0 * np.sqrt(2.0 * R * static)
-    for _ in range(MOST_STEPS):
+
+    def step(c: Array) -> Array:
         found = _sums(law, own, (R, stretch, K, V), c)
         held = spring * found.a * (found.a / (2.0 * R))
         total = found.load + held
         row = law(K, V, own).moments(c)
         share, slope, _ = viscoelastic.growth(row)
         rise = (found.growth * found.load + 2.0 * (slope / share) * held) / total
-        step = np.log(total / wanted) / rise
-        c = c * np.exp(-step)
-        if np.abs(step).max(initial=0.0) < LAST_STEP:
-            break
-    return c
+        return np.log(total / wanted) / rise
+
+    return converge(step, 2.0 * np.sqrt(2.0 * R * static), LAST_STEP, MOST_STEPS)
 
 
 def _state(

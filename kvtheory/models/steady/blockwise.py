@@ -45,7 +45,8 @@ def evaluate(
     with np.errstate(over="raise", divide="raise", invalid="raise", under="ignore"):
         for start in range(0, size, BLOCK):
             part = slice(start, start + BLOCK)
-            values = formula(*(array[part] for array in flat[:-1]))
+            # NumPy takes a power otherwise where one exponent is repeated than where each has its own.
+            values = formula(*(np.ascontiguousarray(array[part]) for array in flat[:-1]))
             for row, found in zip(result, values, strict=True):
                 row[part] = found
     _check_underflow(result[: len(QUANTITIES)], flat[-1], own_errors)
@@ -54,6 +55,34 @@ def evaluate(
     own_rows = dict(zip(own_errors, rows[len(QUANTITIES) :], strict=True))
     own = replace(certificate, relative_error={**certificate.relative_error, **own_rows})
     return SteadyState(**quantities, model="exact", certificate=own)
+
+
+def converge(
+    step_of: Callable[[Array], Array], value: Array, last_step: float, most_steps: int
+) -> Array:
+    """Return the roots from `value`, element by element, by steps of the logarithm.
+
+    An element is left alone after its first step that is no longer than `last_step`, so that no result
+    depends on the others of its block.
+    """
+    active = np.full(value.shape, True)
+    for _ in range(most_steps):
+        step = step_of(value)
+        value = np.where(active, value * np.exp(-step), value)
+        active &= np.abs(step) > last_step
+        if not active.any():
+            break
+    return value
+
+
+def cube_root(value: Array) -> Array:
+    """Return the cube root to a unit in the last place: that of some C libraries is four off.
+
+    >>> float(cube_root(np.array(27.0)))
+    3.0
+    """
+    root = np.cbrt(value)
+    return root - (root - value / (root * root)) / 3.0
 
 
 def _check_underflow(result: Array, velocity: Array, own_errors: tuple[str, ...]) -> None:

@@ -153,6 +153,10 @@ class Surface:
         """Return the nodes of each cell."""
         return cells.mean(axis=1)[:, None] + 0.5 * np.diff(cells) * NODES
 
+    def slope_series(self, cells: Any) -> Any:
+        """Return the coefficients of h' in each cell."""
+        return self._values(self.indenter.slope, self._nodes(cells), self.side) @ SERIES.T
+
     def _resolved(self, depth: float) -> Cells:
         """Cut the cells in which h may be below the depth until h and h' are resolved in each."""
         todo, tails, done = self._grid(depth / AHEAD), np.array(math.inf), []
@@ -164,7 +168,7 @@ class Surface:
             low = (height @ VALUES).min(axis=1) - TAIL_MARGIN * tail
             near = ~((low > depth) | (values.min(axis=1) > FAR_ABOVE * depth))
             todo, height, tail = todo[near], height[near], tail[near]
-            slope = self._values(self.indenter.slope, self._nodes(todo), self.side) @ SERIES.T
+            slope = self.slope_series(todo)
             start, end = todo.T
             width, slope_tail = end - start, np.abs(slope[:, TAIL:]).sum(axis=1)
             size, worst = np.abs(slope).sum(axis=1), np.maximum(tail, slope_tail * width)

@@ -15,10 +15,10 @@ from numpy.typing import NDArray
 Value = TypeVar("Value", float, NDArray[np.float64])
 
 ALPHA = 0.9428090415820634
-"""V tau/sqrt(R delta) at the critical velocity, fixed depth; theorem F5."""
+"""V tau/sqrt(R delta) at the crossing velocity, fixed depth; theorem F5."""
 
 CRITICAL_DRIVE_NUMBER = 0.9614997135382722
-"""V tau (K/(R W))^(1/3) at the critical velocity, dead weight; theorem F5."""
+"""V tau (K/(R W))^(1/3) at the crossing velocity, dead weight; theorem F5."""
 
 PEAK_TRAILING_EDGE_RATIO = 0.2679491924311227
 """q at the friction maximum of a dead weight; theorem F3."""

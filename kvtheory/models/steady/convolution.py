@@ -37,7 +37,7 @@ Shape = Convex | ConvexProfile
 
 _NODES, _WEIGHTS = RULES[3][0], RULES[3][2]
 NODES = _NODES[: _NODES.size // 2]
-FINE, COARSE = _WEIGHTS[: NODES.size, :2].T
+FINE, COARSE = _WEIGHTS
 """A double-exponential rule from 0 to 1, and the one of twice its step."""
 STEPS = 60
 """Newton steps on the depth; a handful is needed."""

@@ -27,7 +27,7 @@ LIMIT = 1e-6
 def _rule(step: float) -> tuple[Any, Any, Any]:
     """Return nodes from 0 to 1 on the left, beside zeros; the same on the right; and weights.
 
-    The four columns of weights are of this step and of twice that, on the left and on the right.
+    The two rows of weights are for this step and for twice that.
     Takahasi and Mori (1974), doi:10.2977/prims/1195192451: singular ends do not matter.
     """
     count = 2 * int(0.5 * LAST / step)
@@ -54,7 +54,7 @@ def _gauss() -> tuple[Any, Any, Any]:
 
 def _on_both_sides(nodes: Any, fine: Any, coarse: Any) -> tuple[Any, Any, Any]:
     left, right = np.kron(np.eye(2), nodes)
-    return left, right, np.kron(np.eye(2), np.column_stack((fine, coarse)))
+    return left, right, np.array((fine, coarse))
 
 
 RULES = (_gauss(), *(_rule(COARSEST / 2**level) for level in range(LEVELS)))
@@ -82,12 +82,11 @@ def integral(
     result, accuracy, active = 0.0, 0.0, one >= 0.0
     for to_left, to_right, weights in RULES if smooth else RULES[1:]:
         values = function(ends[0] * to_left + ends[1] * to_right)
-        if values.ndim == 1:
-            left, left_coarse, right, right_coarse = values.dot(weights).tolist()
-        else:  # a product of this form does not depend on the number of rows
-            half = values.shape[1] // 2
-            sums = values.reshape(-1, half).dot(weights[:half, :2]).reshape(-1, 2, 2, 1)
-            (left, left_coarse), (right, right_coarse) = sums.transpose(1, 2, 0, 3)
+        # Unlike a product of matrices, this sums in one order on every processor for any number of rows.
+        sums = np.einsum("...j,kj->k...", values.reshape(*values.shape[:-1], 2, -1), weights)
+        (left, right), (left_coarse, right_coarse) = (
+            sums.tolist() if values.ndim == 1 else sums.transpose(0, 2, 1)[..., None]
+        )
         total = one * left + two * right
         apart = one * abs(left - left_coarse) + two * abs(right - right_coarse)
         error = (apart / total) ** 1.5

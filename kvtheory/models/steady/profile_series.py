@@ -30,6 +30,8 @@ HOLLOW = 1e-9
 """Decrease of the slope, over its greatest value, that rounding may cause."""
 NARROW = 2.0**-5
 """Width of a cell, over that of the contact, left only by the jump of a higher derivative."""
+FLAT = 1e-15
+"""Last coefficients of a slope, over the slope, that are rounding."""
 ROOT, TINY = 8.9e-16, 1e-300
 """Tolerances of the edges at rest."""
 
@@ -67,10 +69,12 @@ class ConvexProfile:
         if surface.jumps:
             raise QuadratureError("the slope jumps where `kinks` does not say so")
         ends = self._end(depth, -1.0), self._end(depth, 1.0)
-        self._depth, self._cells = depth, cells
-        bends = _bends(cells, NARROW * sum(ends), surface.kinks)
-        tip = [0.0] if self._bent_at_zero() else []
-        self.kinks, self.bent = tuple(sorted({*self.declared, *bends, *tip})), bool(bends)
+        self._depth, known = depth, cells is self._cells
+        self._cells = cells
+        if not known:
+            bends = _bends(surface, cells, NARROW * sum(ends))
+            tip = [0.0] if self._bent_at_zero() else []
+            self.kinks, self.bent = tuple(sorted({*self.declared, *bends, *tip})), bool(bends)
         return ends
 
     def _bent_at_zero(self) -> bool:
@@ -129,14 +133,26 @@ class ConvexProfile:
         return legendre.legval(place, np.moveaxis(series[row], -1, 0), tensor=False)
 
 
-def _bends(cells: Cells, narrow: float, kinks: list[float]) -> list[float]:
-    """Return the middle of the narrowest cell of each run of narrow cells that no kink explains."""
-    width = cells.end - cells.start
-    runs = np.split(np.arange(width.size), np.flatnonzero(np.diff(width < narrow)) + 1)
-    found = []
+def _bends(surface: Surface, cells: Cells, narrow: float) -> list[float]:
+    """Return where the narrowest of narrow cells close in on a bend that no kink explains."""
+    width, found = cells.end - cells.start, list[float]()
+    runs = np.split(np.arange(width.size), np.flatnonzero(np.diff(width)) + 1)
     for run in runs:
-        start, end = cells.start[run[0]], cells.end[run[-1]]
-        if width[run[0]] < narrow and not any(start <= kink <= end for kink in kinks):
-            least = run[np.argmin(width[run])]
-            found.append(0.5 * float(cells.start[least] + cells.end[least]))
+        start, end, size = cells.start[run[0]], cells.end[run[-1]], width[run[0]]
+        beside = width[[max(run[0] - 1, 0), min(run[-1] + 1, width.size - 1)]]
+        known = any(start - size <= kink <= end + size for kink in surface.kinks)
+        if size < narrow and size <= beside.min() and not known:
+            found.append(_bend(surface, start, end))
     return found
+
+
+def _bend(surface: Surface, start: float, end: float) -> float:
+    """Return the bend of the slope in an interval: halved until no half is worse resolved than rounding."""
+    while True:
+        middle = 0.5 * (start + end)
+        halves = np.array([[start, middle], [middle, end]])
+        slope = surface.slope_series(halves)
+        tails = np.abs(slope[:, TAIL:]).sum(axis=1)
+        if tails.max() <= FLAT * np.abs(slope).max() or middle in (start, end):
+            return float(middle)
+        start, end = halves[np.argmax(tails)].tolist()

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import elementwise
 
-from kvtheory.models.steady.methods import asymptotes_of, plain, solve_exact
+from kvtheory.models.steady.methods import ROUNDING, asymptotes_of, plain, solve_exact
 from kvtheory.results import (
     STEADY_UNITS,
     AsymptoteLine,
@@ -21,9 +21,12 @@ Array = NDArray[np.float64]
 Values = Mapping[str, Array]
 
 DECADES = 30.0
-"""How far from the critical velocity, in powers of ten, the end of a range is sought."""
+"""How far from V*, in powers of ten, the end of a range is sought."""
 
-STATEMENT = "the relative errors are closed forms (derivations {}), monotonic in V, evaluated to about 1e-14"
+STATEMENT = (
+    "the relative errors e are closed forms (derivations {}), monotonic in V, "
+    "evaluated to 2e-14 (1 + |e|)"
+)
 
 
 LISTED = {
@@ -188,8 +191,9 @@ def report(scene: Scene, values: Values, tolerance: float) -> AsymptoteReport:
 def _range_edge(scene: Scene, values: Values, critical: Array, row: Row, tolerance: float) -> Array:
     """Return the velocity at which the error of an asymptote passes the tolerance.
 
-    The error is monotonic in V: a sign change within `DECADES` of V* is the edge; without one the
-    asymptote is within the tolerance at every velocity (such as the load of a dead weight).
+    The error is monotonic in V: a sign change within `DECADES` of V* is the edge. If the error is within
+    the tolerance at the far end too, where it has reached its limit, the asymptote holds at every velocity
+    (such as the load on a soft spring). Otherwise nothing is claimed.
     """
     keys = list(values)
 
@@ -200,13 +204,15 @@ def _range_edge(scene: Scene, values: Values, critical: Array, row: Row, toleran
         truth, limits = solve_exact(scene, point), asymptotes.limits(point)
         with np.errstate(divide="ignore", invalid="ignore"):
             found = asymptotes.errors(limits, row.regime, truth)
-        return np.abs(found[row.quantity]) - tolerance
+        error = np.abs(found[row.quantity])
+        return error + ROUNDING * (1.0 + error) - tolerance
 
     args = (*values.values(), critical)
     bracket = (np.full_like(critical, -DECADES), np.full_like(critical, DECADES))
     found = elementwise.find_root(excess, bracket, args=args)
-    everywhere = np.inf if row.regime == "low" else 0.0
-    return np.where(found.success, critical * 10.0**found.x, everywhere)
+    nowhere, everywhere, far = (0.0, np.inf, 1) if row.regime == "low" else (np.inf, 0.0, 0)
+    without = np.where(found.f_bracket[far] <= 0.0, everywhere, nowhere)
+    return np.where(found.success, critical * 10.0**found.x, without)
 
 
 def _finite(array: Array) -> Any:

@@ -257,14 +257,14 @@ def sums(indenter: Spot, strips: Strips, l_r: float, depth: float) -> Sums:
     for number in range(1 + profile.convex, len(RULES)):
         nodes, rule = _rule(number)
         t = np.concatenate([start + (end - start) * nodes for start, end in pieces])
-        weights = np.concatenate([(end - start) * rule for start, end in pieces])
+        weights = np.concatenate([(end - start) * rule for start, end in pieces], axis=1)
         kept = np.cos(t) > rim
-        t = t[kept]
+        t, weights = t[kept], weights[:, kept]
         y = half * np.maximum(np.sin(t), MIDDLE)
         deep = np.maximum(depth - profile.height(y), np.finfo(float).tiny)
-        weights = weights[kept] * (2.0 * half * indenter.stretch * np.cos(t))[:, None]
-        rows, own = strips(y, deep, weights[:, 0])
-        each = rows @ weights
+        weights *= 2.0 * half * indenter.stretch * np.cos(t)
+        rows, own = strips(y, deep, weights[0])
+        each = np.einsum("ij,kj->ik", rows, weights)
         apart = np.abs(np.diff(each)[[0, 2]]) / np.maximum(each[[0, 2], :1], np.finfo(float).tiny)
         last, before = apart.max(axis=0).tolist()
         # An analytic integrand squares its error with each rule; any other one divides it.
@@ -281,9 +281,9 @@ def sums(indenter: Spot, strips: Strips, l_r: float, depth: float) -> Sums:
 def _rule(number: int) -> tuple[Array, Array]:
     """Return nodes from 0 to 1, and weights of the rule, of its half and of its quarter."""
     nodes, _, weights = RULES[number]
-    count, every = len(nodes) // 2, np.array([1, 2, 4])
-    taken = (np.arange(count)[:, None] - count // 2) % every == 0
-    return nodes[:count], weights[:count, :1] * np.where(taken, every, 0)
+    count, every = weights.shape[1], np.array([[1], [2], [4]])
+    taken = (np.arange(count) - count // 2) % every == 0
+    return nodes[:count], weights[0] * np.where(taken, every, 0)
 
 
 def _breaks(profile: Any, l_r: float, depth: float, half: float) -> list[float]:
@@ -337,6 +337,5 @@ def _one_by_one(
         lost = named["dissipated_in_contact"] * friction
         rows[:, column] = load, found.load_slope, friction, lost
         errors[:, column] = own["load"] * load, own["friction_force"] * friction
-    return rows, float(
-        (errors @ weights / np.maximum(rows[[0, 2]] @ weights, np.finfo(float).tiny)).max()
-    )
+    whole = np.maximum((rows[[0, 2]] * weights).sum(axis=1), np.finfo(float).tiny)
+    return rows, float(((errors * weights).sum(axis=1) / whole).max())

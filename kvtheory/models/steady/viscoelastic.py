@@ -24,8 +24,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from kvtheory.models.steady.blockwise import evaluate
+from kvtheory.models.steady.blockwise import converge, cube_root, evaluate
 from kvtheory.results import STEADY_UNITS, Certificate, SteadyState
+from kvtheory.scene.indenters import power
 
 Array = NDArray[np.float64]
 
@@ -188,7 +189,7 @@ class Fractional:
         return np.maximum((1.0 - self.alpha), np.finfo(float).eps) * 0.25 * a
 
     def _part(self, X: Array) -> Array:
-        part: Array = self.K * (self.length / X) ** self.alpha
+        part: Array = self.K * power(self.length / X, self.alpha)
         return part
 
 
@@ -277,16 +278,15 @@ def at_load(
 
 def length_at_half(row: Prony | Fractional, a: Array) -> Array:
     """Return the length of the contact whose half length at rest is a: between a and 2 a."""
-    c = 1.5 * a
-    for _ in range(MOST_STEPS):
+
+    def step(c: Array) -> Array:
         M = row.moments(c)
         share, slope, bend = growth(M)
         off = share - a / c
-        step = off / (slope - 0.5 * off * (bend / slope))
-        c = np.clip(c * (1.0 - step), a, 2.0 * a)
-        if np.abs(step).max(initial=0.0) < LAST_STEP:
-            break
-    return c
+        step = off / (slope - 0.5 * off * (bend / slope))  # of c, over c
+        return -np.log1p(-np.clip(step, 1.0 - 2.0 * a / c, 1.0 - a / c))
+
+    return converge(step, 1.5 * a, LAST_STEP, MOST_STEPS)
 
 
 def _length_at_load(row: Prony | Fractional, R: Array, load: Array, spring: Array) -> Array:
@@ -294,10 +294,10 @@ def _length_at_load(row: Prony | Fractional, R: Array, load: Array, spring: Arra
 
     Halley's method for ln(W + k_s delta) against ln c, from the contact at rest.
     """
-    a_0 = np.cbrt(1.5 * R * (load / row.K))
+    a_0 = cube_root(1.5 * R * (load / row.K))
     wanted = 1.0 + spring * (a_0 * a_0 / (2.0 * R)) / load
-    c = 2.0 * a_0
-    for _ in range(MOST_STEPS):
+
+    def step(c: Array) -> Array:
         M = row.moments(c)
         share, slope, bend = growth(M)
         size = c * c * (c / (R * load))
@@ -306,11 +306,9 @@ def _length_at_load(row: Prony | Fractional, R: Array, load: Array, spring: Arra
         rise = (slope * (size * M.P + k * share)) / total
         curve = size * (bend * M.P + slope * (M.P + M.Q)) + k * (slope * slope + share * bend)
         off = np.log(total / wanted)
-        step = off / (rise - 0.5 * off * ((curve / total + rise) / rise - rise))
-        c = c * np.exp(-step)
-        if np.abs(step).max(initial=0.0) < LAST_STEP:
-            break
-    return c
+        return off / (rise - 0.5 * off * ((curve / total + rise) / rise - rise))
+
+    return converge(step, 2.0 * a_0, LAST_STEP, MOST_STEPS)
 
 
 def growth(M: Moments) -> tuple[Array, Array, Array]:
@@ -362,7 +360,7 @@ def _peak(R: Array, row: Prony | Fractional, a: Array) -> Array:
     Newton's method for ln(a G/(X mean G)) against ln X, and bisection where its steps are long.
     """
     low, high = np.log(row.least_peak(a)), np.log(a)
-    y = high
+    y, active = high, np.full(a.shape, True)
     for _ in range(PEAK_STEPS):
         X = np.exp(y)
         end, end_slope, mean = row.response(X)
@@ -371,8 +369,8 @@ def _peak(R: Array, row: Prony | Fractional, a: Array) -> Array:
         new = y - off / (end_slope / end - end / mean)
         short = np.abs(new - y) <= 0.5 * (high - low)  # else the steps may go to and fro
         new = np.where(short & (new >= low) & (new <= high), new, 0.5 * (low + high))
-        step, y = np.abs(new - y), new
-        if step.max(initial=0.0) < PEAK_STEP:
+        active, y = active & (np.abs(new - y) >= PEAK_STEP), np.where(active, new, y)
+        if not active.any():
             break
     X = np.exp(y)
     M = row.moments(X)

@@ -1,0 +1,203 @@
+"""The arguments of the public functions: each function declares what each of them is, once.
+
+`checked` reads them before the function sees them, so that a wrong value is answered by its name.
+"""
+
+import inspect
+import math
+from collections.abc import Callable, Iterable, Mapping
+from contextlib import suppress
+from functools import wraps
+from operator import index
+from os import PathLike
+from typing import Any, TypeVar, cast
+
+import numpy as np
+
+from kvtheory.progress import listening
+from kvtheory.scene.drives import TIME
+from kvtheory.scene.lists import array_of, item_values, items
+from kvtheory.scene.model import Scene
+from kvtheory.scene.quantities import (
+    SHORT,
+    Quantity,
+    SceneError,
+    collecting,
+    convert,
+    nearest,
+    problem,
+    shown,
+)
+from kvtheory.scene.units import bare, to_si
+
+Function = TypeVar("Function", bound=Callable[..., Any])
+Kind = Callable[[Any], Any]
+"""Reads a value, or raises `ValueError` saying what is expected."""
+
+
+def checked(**kinds: Kind) -> Callable[[Function], Function]:
+    """Have the named arguments of a function read by their kinds; an argument may be its default.
+
+    While the function runs, its `progress` is also told that kernels are being compiled.
+
+    Examples
+    --------
+    >>> @checked(jobs=count)
+    ... def run(jobs=None):
+    ...     return jobs
+    >>> run(), run(jobs=2)
+    (None, 2)
+    >>> run(jobs="two")
+    Traceback (most recent call last):
+    kvtheory.scene.quantities.SceneError: `jobs` = "two": expected a whole number of at least 1
+    """
+
+    def decorate(function: Function) -> Function:
+        parameters = inspect.signature(function).parameters
+        defaults = {name: parameters[name].default for name in kinds}
+
+        @wraps(function)
+        def run(*args: Any, **kwargs: Any) -> Any:
+            problems: list[str] = []
+
+            def read(name: str, value: Any) -> Any:
+                if name not in kinds or value is defaults[name]:
+                    return value
+                with collecting(problems, f"`{name}`", value):
+                    return kinds[name](value)
+
+            extra = args[len(parameters) :]
+            args = (*map(read, parameters, args), *extra)
+            kwargs = {name: read(name, value) for name, value in kwargs.items()}
+            if problems:
+                raise SceneError(problems)
+            if kwargs.get("progress") is None:
+                return function(*args, **kwargs)
+            with listening(kwargs["progress"]) as kwargs["progress"]:
+                return function(*args, **kwargs)
+
+        return cast(Function, run)
+
+    return decorate
+
+
+def a_scene(value: Any) -> Scene:
+    """Read a scene."""
+    if not isinstance(value, Scene):
+        told = "expected a Scene; kvtheory.load_scene reads one from a file"
+        raise TypeError(problem("`scene`", value, told))
+    return value
+
+
+def number(low: float, high: float = math.inf) -> Kind:
+    """Return the kind of a finite number from `low` to `high`; an infinite `high` excludes `low`."""
+    said = f"a number from {low} to {high}" if math.isfinite(high) else f"a number above {low:g}"
+
+    def read(value: Any) -> float:
+        found = math.nan
+        if not isinstance(value, str):
+            with suppress(ValueError):
+                found = to_si(value, "1")
+        if not (low <= found <= high and math.isfinite(found) and (found > low or high < math.inf)):
+            raise ValueError(f"expected {said}")
+        return found
+
+    return read
+
+
+def measured(spec: Quantity) -> Kind:
+    """Return the kind of one quantity, in SI or with a unit."""
+    return lambda value: convert(value, spec)
+
+
+def times(value: Any) -> list[float]:
+    """Read times in s: one or several, also as text; every mistake is reported by its value."""
+    problems: list[str] = []
+    found: list[float] = []
+    for one in value if isinstance(value, (list, tuple)) else [value]:
+        for given in items(one) if isinstance(one, str) else [one]:
+            with collecting(problems, "`at`", given):
+                read = np.atleast_1d(
+                    (item_values if isinstance(given, str) else array_of)(given, TIME)
+                )
+                if read.ndim > 1:
+                    raise ValueError("expected one list of times")
+                found += read.tolist()
+    if not found and not problems:
+        problems = ['`at` is empty: expected times such as "0 ms,1 ms"']
+    if problems:
+        raise SceneError(problems)
+    return found
+
+
+def count(value: Any) -> int:
+    """Read a whole number of at least 1."""
+    found = 0
+    if not isinstance(value, bool):
+        with suppress(TypeError):
+            found = index(value)
+    if found < 1:
+        raise ValueError("expected a whole number of at least 1")
+    return found
+
+
+def flag(value: Any) -> bool:
+    """Read True or False."""
+    if not isinstance(value, (bool, np.bool_)):
+        raise ValueError("expected True or False")
+    return bool(value)
+
+
+def callback(value: Any) -> Any:
+    """Read a function that reports something."""
+    if not callable(value) or isinstance(value, type):
+        raise ValueError("expected a function")
+    return value
+
+
+def pool(value: Any) -> Any:
+    """Read an executor."""
+    if isinstance(value, type) or not callable(getattr(value, "submit", None)):
+        raise ValueError("expected a concurrent.futures.Executor")
+    return value
+
+
+def file_name(value: Any) -> Any:
+    """Read the name of a file."""
+    if not isinstance(value, (str, PathLike)) or "\0" in str(value) or not str(value):
+        raise ValueError("expected the name of a file")
+    return value
+
+
+def choice(options: Iterable[str]) -> Kind:
+    """Return the kind of a name out of several."""
+    options = list(options)
+
+    def read(value: Any) -> str:
+        if not (isinstance(value, str) and value in options):
+            raise ValueError(nearest(value if isinstance(value, str) else "", options))
+        return value
+
+    return read
+
+
+def names(value: Any) -> list[str]:
+    """Read a name, or several: in a list, or in an array of text."""
+    listed = [value]
+    if not isinstance(value, (str, Mapping)):
+        with suppress(TypeError):
+            listed = list(bare(value)[0])
+    if not all(isinstance(name, str) for name in listed):
+        raise ValueError("expected a name, or a list of names")
+    return listed
+
+
+def replacements(value: Any) -> Mapping[Any, Any]:
+    """Read a mapping of dotted keys to values; a tuple of keys stands for values that vary together."""
+    if not isinstance(value, Mapping):
+        raise ValueError('expected keys and their values, such as {"drive.velocity": "50 mm/s"}')
+    for key in value:
+        if not all(isinstance(name, str) for name in (key if isinstance(key, tuple) else [key])):
+            told = 'expected a key as text, such as "drive.velocity"'
+            raise SceneError([f"`over` {shown(SHORT.repr(key))}: {told}"])
+    return value
