@@ -364,6 +364,25 @@ def test_a_lopsided_shape_agrees_with_a_row_of_elements(side):
     assert abs(edges[end] - abs(state.trailing_edge)) < 2 * h
 
 
+def test_a_node_that_rounds_to_before_the_leading_edge():
+    """There a springpot raised a negative length to a broken power."""
+    R, kink, c, V = (
+        0.012405181050498832,
+        -8.297472106578946e-05,
+        376.6851309204793,
+        6.303886700724625,
+    )
+    own = kv.Profile(
+        lambda x: x * x / 2.0 / R + c * max(kink - x, 0.0) ** 2,
+        lambda x: x / R - 2.0 * c * max(kink - x, 0.0),
+        kinks=(kink,),
+    )
+    springpot = kv.FractionalKelvinVoigt(1e10, 0.0011513546970316273, 0.20978043346173947)
+    weight = kv.DeadWeight(load=230.92946340465673)
+    state = kv.steady(kv.Scene(own, springpot, weight, kv.Drive(velocity=V)))
+    assert state.load == pytest.approx(230.92946340465673, rel=1e-12)
+
+
 def test_a_jump_of_the_curvature_need_not_be_declared():
     """A flat punch with rounded edges, and curvatures that change in the contact, and at its lowest point."""
     for height, slope, kinks in (

@@ -123,7 +123,7 @@ def remembered(shape: Shape, memory: Memory | None, a: float, x: Array) -> tuple
     """Return the pressure of each branch at the positions x, and the difference of both rules."""
     if memory is None:
         return np.zeros((1, x.size)), 0.0
-    X = a + x
+    X = np.maximum(a + x, 0.0)  # not below by rounding
     amount = memory.amount(X)
     cuts = [np.zeros_like(amount), np.ones_like(amount)]
     for kink in shape.kinks:  # one rule on either side of each that has been passed
