@@ -316,7 +316,9 @@ def quantities(surface: Surface, l_r: float, contact: Contact) -> dict[str, tupl
     The edges are those of all contacts together; the half length is that of all contacts at rest.
     """
     values, errors = integrals_of(contact)
-    nearby, _ = integrals_of(Contact(surface, l_r, contact.depth * (1.0 - DEPTH_STEP)))
+    shallower = Contact(surface, l_r, contact.depth * (1.0 - DEPTH_STEP))
+    nearby, _ = integrals_of(shallower)
+    values["peak_pressure"], nearby["peak_pressure"] = contact.peak(), shallower.peak()
     return {
         name: (
             value,
@@ -328,7 +330,7 @@ def quantities(surface: Surface, l_r: float, contact: Contact) -> dict[str, tupl
 
 
 def integrals_of(contact: Contact) -> tuple[dict[str, float], dict[str, float]]:
-    """Return each quantity over the stiffness, and the errors of those that are integrals."""
+    """Return each quantity but the peak over the stiffness, and the errors of those that are integrals."""
     l_r, patches = contact.l_r, contact.patches
     drag = drag_error = left = 0.0
     for patch in patches:
@@ -346,7 +348,6 @@ def integrals_of(contact: Contact) -> tuple[dict[str, float], dict[str, float]]:
         "load": contact.load,
         "friction_force": friction,
         "friction_coefficient": friction / contact.load,
-        "peak_pressure": contact.peak(),
         "dissipated_in_contact": l_r * drag / friction if friction else 1.0,
     }
     own = drag_error / drag
