@@ -170,12 +170,12 @@ def _kinked(
         k = round((kink - x.item(0)) / dx)
         if not (0 < k < x.size - 1 and pressed[k - 1 : k + 2].all()):
             continue
-        slope = model.slope(np.array([kink, *np.nextafter(kink, [-math.inf, math.inf])]))
-        here = slope[(x[k] != kink) + (x[k] > kink).astype(int)]
-        p_each = p[k] - model.law.damping * V * (slope - here)
+        places = np.array([x[k] - _behind(model, V), kink - NEAR * dx, kink + NEAR * dx])
+        here, *slope = model.slope(places)
+        p_each = p[k] - model.law.damping * V * (np.array(slope) - here)
         left = (kink - x.item(k)) / dx + 0.5
-        share = np.array([0.0, left, 1.0 - left])
-        if (p_each[1:] >= 0.0).all():
+        share = np.array([left, 1.0 - left])
+        if (p_each >= 0.0).all():
             force = found.normal_force + dx * float(share @ (p_each - p[k]))
             push = found.friction_force - dx * float(share @ (p_each * slope - p[k] * here))
             found = found._replace(normal_force=force, friction_force=push)
