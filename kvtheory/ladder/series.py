@@ -36,6 +36,9 @@ GIVEN = ("time", "velocity")
 """Known before anything is solved."""
 SOLVED = tuple(name for name in TRANSIENT_UNITS if name not in GIVEN)
 
+ON_RIGID = {"sliding_velocity": "velocity", "spring_force": "friction_force"}
+"""On a rigid drive the indenter slides at its velocity, and it bears the friction."""
+
 OWN_TIMES = 201
 """Of a series whose times are not given, where the model has no steps of its own."""
 
@@ -100,8 +103,12 @@ def _strips(transient: Callable[..., Transient], scene: Scene, request: Request,
     return _asked(result, result.certificate, request, result)
 
 
+def _solved(request: Request) -> tuple[str, ...]:
+    return tuple(name for name in request.units if name not in GIVEN)
+
+
 def _replaceable(steady: Callable[..., SteadyState], scene: Scene, request: Request) -> Judgement:
-    return equivalent.judge(steady, scene, request, SOLVED)
+    return equivalent.judge(steady, scene, request, _solved(request))
 
 
 def _anything(scene: Scene, request: Request) -> Judgement:
@@ -237,11 +244,11 @@ def _equivalent(models: Models, scene: Scene, request: Request, rate: float) -> 
         _continuum(models.transient, replace(scene, foundation=each), request, None)
         for each in (equivalent.foundation(scene), equivalent.foundation(scene, rate))
     )
-    own = answer.certificate
+    own, solved = answer.certificate, _solved(request)
     parts = (
         own.relative_error,
-        equivalent.neglected(answer.result, other.result, scene, SOLVED),
-        equivalent.in_steady_sliding(models.steady, scene, SOLVED),
+        equivalent.neglected(answer.result, other.result, scene, solved),
+        equivalent.in_steady_sliding(models.steady, scene, solved),
     )
     errors = {name: sum(part.get(name, 0.0) for part in parts) for name in own.relative_error}
     certificate = Certificate(
@@ -291,15 +298,13 @@ def _compared(answer: Answer, before: Answer, finer: float, scales: dict[str, fl
 
 def _asked(series: Any, certificate: Certificate, request: Request, result: Any = None) -> Answer:
     """Return the series with NaN for what was not asked for, and the errors of what was."""
-    get = series.__getitem__ if isinstance(series, dict) else lambda name: getattr(series, name)
-    wanted = {*GIVEN, *request.quantities}
-    nothing = np.full(np.size(get("time")), np.nan)
-    values = {name: get(name) if name in wanted else nothing for name in TRANSIENT_UNITS}
-    errors = {
-        name: 0.0 if name in GIVEN else certificate.relative_error[name]
-        for name in TRANSIENT_UNITS
-        if name in wanted
-    }
+    held = series if isinstance(series, dict) else vars(series)
+    known = {**certificate.relative_error, **dict.fromkeys(GIVEN, 0.0)}
+    wanted = [name for name in request.units if name in (*GIVEN, *request.quantities)]
+    source = {name: name if name in held else ON_RIGID[name] for name in wanted}
+    values = {name: np.full(np.size(held["time"]), np.nan) for name in request.units}
+    values |= {name: held[source[name]] for name in wanted}
+    errors = {name: known[source[name]] for name in wanted}
     return Answer(values, replace(certificate, relative_error=errors), result)
 
 
