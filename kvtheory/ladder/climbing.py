@@ -118,9 +118,12 @@ def _try(rung: Rung, scene: Scene, request: Request) -> tuple[ClimbStep, Answer 
 def _failure(request: Request, steps: Sequence[ClimbStep]) -> str:
     reached = [step.error for step in steps if step.outcome == TOO_LARGE and step.error < math.inf]
     hint = f"; try a tolerance from {min(reached):.1e}" if reached else ""
-    tried = "; ".join(
-        f"{step.rung}: {step.outcome}"
-        + (f" ({step.error:.1e})" if step.outcome == TOO_LARGE and step.error < math.inf else "")
-        for step in steps
-    )
+    reasons: dict[str, list[str]] = {}  # each once, with the models that it holds for
+    for step in steps:
+        known = step.outcome == TOO_LARGE and step.error < math.inf
+        reached_by = f" ({step.error:.1e})" if known else ""
+        models = reasons.setdefault(step.outcome + reached_by, [])
+        if step.rung not in models:
+            models.append(step.rung)
+    tried = "; ".join(f"{', '.join(models)}: {reason}" for reason, models in reasons.items())
     return f"no model is known to be within rtol = {request.rtol:g}{hint}; {tried}"

@@ -58,6 +58,8 @@ somewhat more. The work grows as the square, of a ball as the cube."""
 MOST_UPDATES = {True: 5e7, False: 1e9}
 """Updates of elements in one run, about a minute and a half: of a line contact, and of a ball, which has
 thousands of them in a step."""
+OF_AN_ARM = 0.4
+"""The work of an arm of an element, in updates."""
 DIMENSIONS = {True: 2, False: 3}
 """What is refined together: elements, steps, and strips of a ball."""
 
@@ -260,7 +262,7 @@ def _equivalent(models: Models, scene: Scene, request: Request, rate: float) -> 
 def _elements(
     elements: Callable[..., Simulation], scene: Scene, request: Request, _: Any
 ) -> Answer:
-    """Refine until the certificate is met, or the work would be too much.
+    """Refine until the certificate is met, or until that would be too much work.
 
     A certificate compares with half as many elements, and both may be too coarse to see what is fast:
     what a run differs from the coarser one before it counts too, divided by the ratio of their elements.
@@ -277,8 +279,11 @@ def _elements(
         error = max(answer.certificate.relative_error[name] for name in request.quantities)
         enough = error <= request.rtol and before is not None
         line = scene.indenter.per_width
-        finer = min(max(SPARE * math.sqrt(error / request.rtol), LEAST_FINER), MOST_FINER[line])
-        if enough or result.element_updates * finer ** DIMENSIONS[line] > MOST_UPDATES[line]:
+        needed = max(SPARE * math.sqrt(error / request.rtol), LEAST_FINER)
+        finer = min(needed, MOST_FINER[line])
+        ratio = finer if before is None else needed  # the first run may be too coarse to tell
+        work = result.element_updates * (1.0 + OF_AN_ARM * len(scene.foundation.arms))
+        if enough or work * ratio ** DIMENSIONS[line] > MOST_UPDATES[line]:
             return answer
         count, before = count * finer, answer
 
