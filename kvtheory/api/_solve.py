@@ -139,7 +139,7 @@ def _names(
         if over_time and name in SPRING_UNITS:
             what = "needs drive.stiffness, of a spring"
         elif name in other:
-            hint = "leave out the times" if over_time else 'give the times, such as at="1 ms"'
+            hint = "leave out the times" if over_time else 'give the times, such as `at` = "1 ms"'
             what = f"belongs to {'steady sliding' if over_time else 'a time series'}; {hint}"
         else:
             what = nearest(str(name), units)
