@@ -43,12 +43,13 @@ class ProgressLine:
         label: str,
         stream: TextIO | None = None,
         clock: Callable[[], float] = time.monotonic,
+        patience: float = PATIENCE,
     ) -> None:
         self._label, self._clock = label, clock
         self._stream = stream or sys.stderr or io.StringIO()  # standard error may be closed
         self._terminal = self._stream.isatty()
         self._begun = clock()
-        self._due = self._begun + (PATIENCE if self._terminal else IN_LOG)
+        self._due = self._begun + (patience if self._terminal else IN_LOG)
         self._first: tuple[float, float] | None = None
         self._last: tuple[float, str] | None = None
         self._width = 0

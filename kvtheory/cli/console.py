@@ -5,6 +5,7 @@ import math
 import re
 import sys
 import threading
+import time
 import traceback
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager, suppress
@@ -17,6 +18,8 @@ from kvtheory.cli.group import INTERRUPTED, leave_quietly
 
 LARGE_ERROR = 0.05
 """Of the static state: a larger one is seen in any plot, and is beyond the scatter of a good measurement."""
+BEGUN = "kvtheory.begun"
+"""When a command began to work, in the meta of its context."""
 BAD_INPUT, FAULTY = 2, 70
 """Exit status for bad input, and for an internal error."""
 
@@ -117,9 +120,12 @@ def progress_bar(label: str) -> Iterator[Callable[..., None]]:
 
     A terminal shows every second or so that the work goes on, also where it reports nothing.
     """
-    from kvtheory.progress import BEAT, ProgressLine
+    from kvtheory.progress import BEAT, PATIENCE, ProgressLine
 
-    line, over = ProgressLine(label), threading.Event()
+    context = click.get_current_context(silent=True)
+    begun = context.meta.setdefault(BEGUN, time.monotonic()) if context else time.monotonic()
+    patience = max(PATIENCE - (time.monotonic() - begun), 0.0)  # of all parts of a command together
+    line, over = ProgressLine(label, patience=patience), threading.Event()
 
     def beat() -> None:
         while not over.wait(BEAT / 2.0):
