@@ -18,7 +18,7 @@ paper: $(VENV)/.installed
 	@echo "Done: open $(OUT)/derivations/derivations.html and $(OUT)/figures"
 
 docs: $(VENV)/.installed-docs
-	$(BIN)/python -m sphinx -W --keep-going -q -j 2 -b html docs docs/_build/html
+	$(BIN)/python -m sphinx -W --keep-going -j 2 -b html docs docs/_build/html
 	$(BIN)/python docs/check_site.py docs/_build/html
 	@echo "Done: open docs/_build/html/index.html"
 

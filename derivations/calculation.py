@@ -7,25 +7,32 @@ retardation length, edges) is computed from the proved closed forms.
 ('310\\,\\mathrm{\\mu m}', '2.5\\,\\mathrm{GN/m^{3}}', '0.25')
 """
 
+import math
 import re
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
 
+import mpmath
 import sympy as sp
+from mpmath.libmp import prec_to_dps
 from sympy.core.function import AppliedUndef
 
 from . import symbols as sym
 from .atoms import atoms, replaced
 from .book import established, tex
+from .groups import k_s
 from .letters import letters
-from .nomenclature import BY_LATEX
+from .nomenclature import BY_LATEX, Symbol
 from .record import Calculation, Claim, Derivation, Step
 from .render.text import relations
 
 Numbers = dict[sp.Symbol, sp.Expr]
 
-DIGITS = 30
-"""Forms are evaluated with this many digits, so that a value is right to the last one shown."""
+DIGITS, CANCELLED = 30, 5.0
+"""Forms are evaluated with this many digits, and this many more for each decade between l_r and a, as far
+as terms may cancel: so a value is right to the last digit shown."""
+GUARD = 10
+"""Digits beyond these while a root is found."""
 SHOWN_DIGITS = 6
 AGREEMENT = 1e-9
 """Relative difference below which two values of one quantity are the same."""
@@ -37,6 +44,30 @@ FOLLOWING = (
     ("eq27", sym.x_te),
 )
 """The quantities that follow from a scene and its depth, with the derivations that give them."""
+
+GIVEN = {
+    symbol.name: symbol
+    for symbol in (
+        *(sym.R, sym.K, sym.tau, sym.C, sym.V, sym.delta, sym.M, sym.g, k_s, sym.W, sym.F, sym.mu),
+        *(sym.delta_0, sym.a_0, sym.W_0, sym.lam, sym.eps, sym.kappa),
+        *(sym.L, sym.exponent, sym.inclination),
+    )
+}
+"""The quantities that a scene may give, by name."""
+
+OWN = {"sphere": "F20", "power-law": "F19", "wedge": "wedge"}
+"""The family of records about a shape; all others are about the parabola, but for those of the next table."""
+
+SHARED = {
+    "sphere": ("eq22", "eq29", "eq26", "eq27", "eq28"),  # in its middle plane
+    "power-law": ("eq22", "eq29"), "wedge": ("eq22", "eq29"),
+}  # fmt: skip
+
+ELSEWHERE = {
+    True: ("wedge-peeled", "wedge", "wedge-weight-peeled"),
+    False: ("wedge-edge", "wedge-peeling", "wedge-low", "wedge-weight-peeling"),
+}
+"""The records about a wedge that do not hold, by whether l < 1."""
 
 CONSTANTS = (sym.R, sym.M, sym.K, sym.C, sym.tau, sym.g, sym.a_0, sym.delta_0, sym.W_0)
 """The constants of a scene, the same in every state."""
@@ -60,32 +91,66 @@ _NUMBER = re.compile(r"(-?[\d.]+)e([+-]\d+)")
 
 
 def with_numbers(
-    derivations: Iterable[Derivation], quantities: Mapping[str, float]
+    derivations: Iterable[Derivation], quantities: Mapping[str, float], shape: str
 ) -> Iterator[Derivation]:
-    """Give each derivation its closed forms with these quantities, as `known_quantities` returns them."""
-    known = known_quantities(quantities)
+    """Give each derivation about this shape its closed forms, as `known_quantities` returns them."""
+    known = known_quantities(quantities, shape)
+    other = ELSEWHERE[bool(known[sym.l] < 1)] if shape == "wedge" else ()
     for derivation in derivations:
-        numbers = tuple(_calculations(derivation, known))
-        yield replace(derivation, numbers=numbers)
+        holds = _concerns(derivation.label, shape) and derivation.label not in other
+        yield replace(derivation, numbers=_calculations(derivation, known) if holds else ())
 
 
-def known_quantities(quantities: Mapping[str, float]) -> Numbers:
-    """Return the quantities (in SI, by the name of a symbol) with what follows from them."""
-    by_name = {
-        symbol.name: symbol for symbol in vars(sym).values() if isinstance(symbol, sp.Symbol)
-    }
-    known: Numbers = {by_name[name]: sp.Float(value, DIGITS) for name, value in quantities.items()}
-    following = [(symbol, established(label, symbol)) for label, symbol in FOLLOWING]
-    for symbol, form in (*following, (sym.l, sym.l_r / sym.a), (sym.q, sym.x_te / sym.a)):
-        value = _value(form, known)
-        if value is not None:
-            known.setdefault(symbol, value)
+def _concerns(label: str, shape: str) -> bool:
+    family = label.split("-", maxsplit=1)[0]
+    if shape in OWN:
+        return family == OWN[shape] or label in SHARED[shape]
+    return family not in OWN.values()
+
+
+def known_quantities(
+    quantities: Mapping[str, float], shape: str = "parabola", digits: int = DIGITS
+) -> Numbers:
+    """Return the quantities (in SI, by the names of `GIVEN`) with what follows from them."""
+    known: Numbers = {GIVEN[name]: sp.Float(value, digits) for name, value in quantities.items()}
+    forms = {symbol: established(label, symbol) for label, symbol in FOLLOWING}
+    n, l, q = sym.exponent, sym.l, sym.q
+    forms[l] = sym.l_r / sym.a
+    if shape == "power-law":
+        forms[sym.a] = (n * sym.L ** (n - 1) * sym.delta) ** (1 / n)  # F19-pressure
+        forms |= {sym.excess: n - 1, sym.Q: q ** (n - 1)}
+    if shape == "wedge":
+        forms |= {sym.a: sym.delta / sym.inclination, q: sp.Max(0, 1 - l)}
+    if shape in ("power-law", "wedge"):
+        forms[sym.x_te] = q * sym.a  # F19-edge, wedge-edge
+    else:
+        forms[q] = sym.x_te / sym.a
+    for _ in forms:  # each may need those after it
+        for symbol, form in forms.items():
+            if symbol not in known and (value := _value(form, known)) is not None:
+                known[symbol] = value
+        if shape == "power-law" and l in known:
+            known[q] = _trailing_edge(known[n], known[l], digits)
+    if digits == DIGITS and l in known:
+        digits += math.ceil(CANCELLED * abs(math.log10(known[l])))
+        return known_quantities(quantities, shape, digits) if digits > DIGITS else known
     return known
 
 
-def shown_quantities(quantities: Mapping[str, float]) -> dict[str, str]:
+def _trailing_edge(n: sp.Float, l: sp.Float, digits: int) -> sp.Float:
+    """Return q of a power law: ln q is the root of an increasing, convex function (F19-edge)."""
+    with mpmath.workdps(digits + GUARD):
+        n, l = mpmath.mpmathify(n), mpmath.mpmathify(l)
+        found = mpmath.findroot(
+            lambda s: (n - 1) * s + mpmath.log(mpmath.exp(s) + n * l), 0, solver="newton",
+            df=lambda s: n - 1 + mpmath.exp(s) / (mpmath.exp(s) + n * l),
+        )  # fmt: skip
+        return sp.Float(mpmath.exp(found), digits)
+
+
+def shown_quantities(quantities: Mapping[str, float], shape: str) -> dict[str, str]:
     """Return the known quantities in LaTeX by the LaTeX of their symbol, as far as they are listed."""
-    return _listed(known_quantities(quantities))
+    return _listed(known_quantities(quantities, shape))
 
 
 def _latex(symbol: sp.Symbol) -> str:
@@ -119,7 +184,7 @@ def _calculations(derivation: Derivation, given: Numbers) -> tuple[Calculation, 
         before = known.get(claim.lhs)
         same = before is None or value is None or _agree(value, before)
         restated = claim.check == "define" and claim.lhs in given and step.latex != derivation.latex
-        wanted = step.left in BY_LATEX and claim.lhs not in COORDINATES
+        wanted = _row(step) is not None and claim.lhs not in COORDINATES
         if value is not None and wanted and not (step.source or restated):
             if not (same or asymptote or claim.check == "root"):
                 return ()
@@ -137,6 +202,14 @@ def _calculations(derivation: Derivation, given: Numbers) -> tuple[Calculation, 
     )
 
 
+def _row(step: Step) -> Symbol | None:
+    """Return the row of the nomenclature of the left side, if that is one symbol."""
+    found = list(atoms(step.left))
+    alone = len(found) == 1 and (found[0].start, found[0].end) == (0, len(step.left))
+    plain = alone and not (found[0].dots or found[0].primes)
+    return BY_LATEX.get(found[0].symbol) if plain else None
+
+
 def _agree(one: sp.Expr, other: sp.Expr) -> bool:
     return bool(abs(one - other) <= AGREEMENT * max(abs(one), abs(other)))
 
@@ -145,7 +218,8 @@ def _value(form: sp.Expr, known: Numbers) -> sp.Expr | None:
     """Return the value of a form, or None if it contains a symbol without a value."""
     if not form.free_symbols <= known.keys() or form.has(AppliedUndef, sp.Integral, sp.Derivative):
         return None
-    value = form.subs(known).evalf(DIGITS)
+    digits = prec_to_dps(max(value._prec for value in known.values() if value.is_Float))
+    value = form.subs(known).evalf(digits)
     return value if value.is_Float or value.is_Integer else None
 
 
@@ -157,9 +231,10 @@ def _calculation(
     if claim.check == "leading_order":
         formula = formula.rpartition(r" \left(1 ")[0] or formula
         note = "an asymptote"
-        if exact is not None:
+        if exact:
             note += f", {float(value / exact - 1):+.3%} off the exact value"
-    unit = BY_LATEX[step.left].unit if step.left in BY_LATEX else "1"
+    row = _row(step)
+    unit = row.unit if row else "1"
     return Calculation(
         symbol=step.left,
         formula=formula,

@@ -43,6 +43,7 @@ from . import (
     viscoelastic_limits,
     wedge,
 )
+from .contents import CONTENTS
 from .record import Derivation
 
 _CHAPTERS = (
@@ -61,6 +62,11 @@ SECTIONS = tuple(dict.fromkeys(chapter.SECTION for chapter in _CHAPTERS))
 """The sections of the document, in order."""
 
 
+def wanted_up_to(labels: Collection[str]) -> int:
+    """Return how many records come up to the last of the labels, or in all if there are none."""
+    return max((i for i, label in enumerate(CONTENTS, 1) if label in labels), default=len(CONTENTS))
+
+
 @cache
 def _chapter(chapter: ModuleType) -> tuple[Derivation, ...]:
     derived: tuple[Derivation, ...] = chapter.derive()
@@ -68,20 +74,22 @@ def _chapter(chapter: ModuleType) -> tuple[Derivation, ...]:
 
 
 def catalogue(
-    until: Collection[str] = (), report: Callable[[float], None] | None = None
+    until: Collection[str] = (), report: Callable[[float, str], None] | None = None
 ) -> tuple[Derivation, ...]:
     """Derive everything, or the chapters up to the last of the labels `until`.
 
-    Every step is checked anew, once in the life of the process. `report` is told the share done.
+    Every step is checked anew, once in the life of the process. `report` is told the share done, and how
+    many records that is.
 
     >>> [derivation.label for derivation in catalogue(until=["eq3"])][:3]
     ['eq1', 'eq2', 'eq3']
     """
     derived: list[Derivation] = []
-    for done, chapter in enumerate(_CHAPTERS, start=1):
+    total = wanted_up_to(until)
+    for chapter in _CHAPTERS:
         derived += _chapter(chapter)
         if report is not None:
-            report(done / len(_CHAPTERS))
+            report(min(len(derived) / total, 1.0), f"{len(derived)} records")
         if until and set(until) <= {derivation.label for derivation in derived}:
             break
     return tuple(derived)

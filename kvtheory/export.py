@@ -84,7 +84,7 @@ def _xarray() -> Any:
     try:
         import xarray
     except ModuleNotFoundError:
-        raise ValueError('this needs xarray: pip install "kvtheory[data]"') from None
+        raise ValueError('this needs xarray: pip install ".[data]" in the checkout') from None
     return xarray
 
 
@@ -145,11 +145,24 @@ def replace_file(path: Path, write: Callable[[Path], Any]) -> None:
     OSError
         If the file cannot be written; the message names it.
     """
-    part = path.with_name(f".{path.stem}.{os.getpid()}.part{path.suffix}")
+    replace_files({path: write})
+
+
+def replace_files(writers: Mapping[Path, Callable[[Path], Any]]) -> None:
+    """Write several files as `replace_file` does: all of them or, if one cannot be made, none."""
+    parts = {
+        path: path.with_name(f".{path.stem}.{os.getpid()}.part{path.suffix}") for path in writers
+    }
+    path = Path()
     try:
-        write(part)
-        os.replace(part, path)
+        for path, write in writers.items():
+            write(parts[path])
+        for path, part in parts.items():
+            os.replace(part, path)
     except OSError as error:
-        raise OSError(f'"{path}" cannot be written: {error.strerror or error}') from error
+        cause = error.__cause__ or error  # of a writer that replaces its file itself
+        told = getattr(cause, "strerror", None) or cause
+        raise OSError(f'"{path}" cannot be written: {told}') from error
     finally:
-        part.unlink(missing_ok=True)
+        for part in parts.values():
+            part.unlink(missing_ok=True)

@@ -22,6 +22,8 @@ PATIENCE = 1.0
 """Seconds before anything is shown."""
 ON_TERMINAL, IN_LOG = 0.2, 10.0
 """Seconds between two reports."""
+BEAT = 1.0
+"""Seconds between two signs of life on a terminal, where nothing is reported."""
 SETTLING = 0.5
 """Seconds before the remaining time is shown."""
 
@@ -69,11 +71,13 @@ class ProgressLine:
         label: str,
         stream: TextIO | None = None,
         clock: Callable[[], float] = time.monotonic,
+        patience: float = PATIENCE,
     ) -> None:
         self._label, self._clock = label, clock
         self._stream = stream or sys.stderr or io.StringIO()  # standard error may be closed
         self._terminal = self._stream.isatty()
-        self._due = clock() + (PATIENCE if self._terminal else IN_LOG)
+        self._begun = clock()
+        self._due = self._begun + (patience if self._terminal else IN_LOG)
         self._first: tuple[float, float] | None = None
         self._last: tuple[float, str] | None = None
         self._told = 0.0
@@ -90,6 +94,19 @@ class ProgressLine:
         if now >= self._due or (words == COMPILING and self._terminal):
             self._due = now + (ON_TERMINAL if self._terminal else IN_LOG)
             self._write(now)
+
+    def beat(self) -> None:
+        """Show on a terminal that the work goes on, where nothing has been reported for a while."""
+        if not self._terminal or (now := self._clock()) < self._due:
+            return
+        self._due = now + BEAT
+        share, words = self._last or (0.0, "")
+        known = [f"{int(100 * share)} %", words] if self._last else []
+        text = ", ".join(filter(None, (*known, f"{duration(now - self._begun)} so far")))
+        text = f"{self._label}: {text}"[: shutil.get_terminal_size().columns - 1]
+        self._stream.write("\r" + text.ljust(self._width))
+        self._stream.flush()
+        self._width, self._stale = len(text), True
 
     def finish(self) -> None:
         """End the line on a terminal, and report for the last time, if anything was shown."""

@@ -1,6 +1,10 @@
 """Shapes that touch in several places, against a fine grid with exact memory."""
 
+import json
 import math
+import platform
+import subprocess
+import sys
 
 import numpy as np
 import pytest
@@ -10,6 +14,7 @@ from kvtheory.models.steady.quadrature import at_depth, at_load
 from kvtheory.results import STEADY_UNITS
 from kvtheory.results.errors import QuadratureError
 from kvtheory.scene.indenters import Circle, Parabola, PowerLaw, Profile
+from tests import flushed
 
 POINTS = 200_001
 
@@ -220,3 +225,50 @@ def test_a_weight_beyond_the_reach_is_an_error():
     assert at_load(short, 1e10, 0.1, 0.1, 300.0).load == pytest.approx(300.0, rel=1e-12)
     with pytest.raises(QuadratureError, match="reach"):
         at_load(short, 1e10, 0.1, 0.1, 1e4)
+
+
+@pytest.mark.parametrize("at_kink", ["left", "right", "mean", "lower", "nonsense", "nan", "error"])
+@pytest.mark.parametrize("side", [-1.0, 1.0])
+def test_what_the_slope_function_returns_at_a_kink_does_not_matter(at_kink, side):
+    """Two contacts, the first ends at the kink. W and F are by mpmath, each piece in closed form."""
+    a, b, D, e = (
+        1.6610036122645326e-3,
+        6.424327871506451e-05,
+        -0.4051779669421389,
+        2.3919088664695193e-3,
+    )
+    kink, depth, l_r = -0.26152387244755915, 1.1312568762807481e-04, 8.138962364733335e-4
+
+    def height(x):
+        return min(a * x * x, b + e * (side * x - D) ** 2)
+
+    def slope(x):
+        left, right = 2.0 * e * (x - side * D), 2.0 * a * x
+        if x != side * kink:
+            return left if side * x < kink else right
+        lower = left if b + e * (kink - D) ** 2 < a * kink * kink else right
+        values = {"left": left, "right": right, "mean": 0.5 * (left + right), "lower": lower,
+                  "nonsense": 7.0, "nan": math.nan}  # fmt: skip
+        return values[at_kink] if at_kink != "error" else 1.0 / (x - x)
+
+    state = at_depth(Profile(height, slope, kinks=(side * kink,)), 1.0, 1.0, side * l_r, depth)
+    for name, value in (
+        ("load", 4.8681533963680223e-5),
+        ("friction_force", side * 1.42275496455146356e-10),
+    ):
+        error = state.certificate.relative_error[name]
+        assert abs(getattr(state, name) / value - 1.0) <= error < 2e-13
+
+
+def test_a_processor_that_flushes_subnormal_numbers_changes_nothing():
+    """Warnings are errors there."""
+    if platform.machine() != "x86_64":
+        pytest.skip("the processor is set in the machine code of x86-64")
+    run = [sys.executable, "-W", "error", "-m", "tests.flushed", "0.5"]
+    done = subprocess.run(run, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    there = json.loads(done.stdout)
+    for scene, values in flushed.states().items():
+        for name, (value, error) in values.items():
+            other, stated = there[scene][name]
+            assert abs(other - value) <= (error + stated) * abs(value), (scene, name)

@@ -1,7 +1,12 @@
 """The ball: closed forms against ball arithmetic, units, asymptotes, identities."""
 
+import math
+from itertools import pairwise
+
 import numpy as np
 import pytest
+from scipy.integrate import quad
+from scipy.optimize import brentq
 
 import kvtheory as kv
 from kvtheory.models.steady import ball
@@ -159,6 +164,66 @@ def test_a_profile_of_functions_may_stand_for_the_ball():
     for name in STEADY_UNITS:
         error = found.certificate.relative_error[name] + 1e-15
         assert getattr(found, name) == pytest.approx(getattr(truth, name), rel=error), name
+
+
+def two_slopes(first, second, kink, l_r, depth):
+    """W/K and F/K of a cone with two slopes, by adaptive quadrature of p over x and over y."""
+    rim = kink + (depth - first * kink) / second
+
+    def strip(y):
+        cut = np.sqrt(max(kink * kink - y * y, 0.0))
+
+        def slope(x):
+            return (second if abs(x) > cut else first) * x / np.hypot(x, y)
+
+        def gap(x):
+            rho = np.hypot(x, y)
+            return depth - first * min(rho, kink) - second * max(rho - kink, 0.0)
+
+        end = np.sqrt((rim - y) * (rim + y))
+        cuts = [-end, -cut, 0.0]
+        for low, high in ((0.0, cut), (cut, end)):
+            near, far = low + 1e-13 * (high - low), high - 1e-13 * (high - low)
+            if high > low and gap(near) > l_r * slope(near):
+                falls = gap(far) < l_r * slope(far)
+                cuts.append(brentq(lambda x: gap(x) - l_r * slope(x), near, far) if falls else high)
+        u_te = gap(cuts[-1])
+        pieces = [ends for ends in pairwise(cuts) if ends[1] > ends[0]]
+        area, drag = (
+            sum(quad(f, *ends, epsabs=0.0, epsrel=1e-10, limit=500)[0] for ends in pieces)
+            for f in (gap, lambda x: slope(x) ** 2)
+        )
+        return area + l_r * u_te, 0.5 * u_te * u_te + l_r * drag
+
+    def total(which):
+        return quad(
+            lambda t: 2.0 * rim * np.cos(t) * strip(rim * np.sin(t))[which], 0.0, 0.5 * np.pi,
+            epsabs=0.0, epsrel=1e-9, limit=200, points=[np.arcsin(kink / rim)],
+        )[0]  # fmt: skip
+
+    return total(0), total(1)
+
+
+def test_cones_of_functions():
+    """One with two slopes, whose trailing edge stays at the kink in some strips; and the plain one."""
+    kink = 3e-4
+    cone = kv.Profile(lambda x: 0.1 * abs(x), lambda x: math.copysign(0.1, x), kinks=(0.0,))
+    bent = kv.Profile(
+        lambda x: 0.05 * abs(x) + 0.2 * max(abs(x) - kink, 0.0),
+        lambda x: math.copysign(0.05 + 0.2 * (abs(x) > kink), x),
+        kinks=(-kink, 0.0, kink),
+    )
+    held = {"support": kv.Fixed(depth=1e-4), "drive": kv.Drive(velocity=0.1)}
+    truth, plain = (kv.steady(kv.Scene(kv.Revolved(p), **held)) for p in (kv.Wedge(0.1), cone))
+    for name in STEADY_UNITS:
+        errors = (state.certificate.relative_error[name] for state in (plain, truth))
+        value = getattr(truth, name)
+        assert abs(getattr(plain, name) - value) <= sum(errors) * abs(value), name
+    found = kv.steady(kv.Scene(kv.Revolved(bent), **held))
+    load, friction = two_slopes(0.05, 0.25, kink, 0.01, 1e-4)
+    for value, sought in ((found.load, load), (found.friction_force, friction)):
+        assert value == pytest.approx(1e10 * sought, rel=1e-9)
+    assert found.certificate.relative_error["load"] < 1e-9
 
 
 @pytest.mark.parametrize("support", GRIPS)

@@ -54,6 +54,16 @@ def test_steady_prints_a_table_in_the_papers_units():
     assert depth[1:3] == ["0.0896613", "mm"]
 
 
+def test_a_large_error_stands_above_the_table():
+    """With its quantities and its remedy; a good result has no such line."""
+    lines = run("elements", "--per-length", "5 /mm", "--at", "1 ms,10 ms").stdout.splitlines()
+    assert lines[0].startswith("! Large error")
+    assert "peak_pressure" in lines[0]
+    assert "--per-length" in lines[0]
+    assert lines[1].startswith("time [ms]")
+    assert run("elements", "--at", "10 ms").stdout.startswith("time [ms]")
+
+
 def test_overrides():
     record = json.loads(run("steady", "--json", "--set", 'drive.velocity="-50 mm/s"').stdout)
     assert record["friction_force"] < 0

@@ -5,6 +5,7 @@ import sys
 
 import pytest
 from click.testing import CliRunner
+from matplotlib.figure import Figure
 
 import kvtheory as kv
 from kvtheory.cli import main
@@ -46,6 +47,31 @@ def place(tmp_path, monkeypatch):
     times = [0.002 * i for i in range(101)]
     kv.transient(at=times, certify=False).to_csv(tmp_path / "data.csv")
     return tmp_path / "here"
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        ["steady", "-o", "a.csv", "--plot", "a.png", "--set", "indenter.shape=wedge",
+         "--set", "indenter.inclination=0.1"],
+        ["compare", "--data", "../data.csv", "--plot", "a.png", "--report", "a.html"],
+        ["chart", "stability", "--quick", "-o", "a.png"],
+    ],
+)  # fmt: skip
+def test_all_outputs_are_written_or_none(place, monkeypatch, arguments):
+    """The first is refused by its result; of the others the second file cannot be made."""
+    from kvtheory.charts import stability
+    from kvtheory.plots import comparison, files
+
+    def refuse(*_):
+        raise ValueError("cannot be made")
+
+    monkeypatch.setattr(comparison, "save_comparison_report", refuse)
+    monkeypatch.setattr(files, "save_page", refuse)
+    monkeypatch.setattr(stability, "stability_maps", lambda **_: {"velocity": (), "step": ()})
+    monkeypatch.setattr("kvtheory.plots.stability.draw_stability", lambda *_: Figure())
+    run(*arguments, status=2)
+    assert list(place.iterdir()) == []
 
 
 @pytest.mark.parametrize("name", COMMANDS)
@@ -144,6 +170,11 @@ def test_closed_streams_end_in_no_traceback(closed):
     status, _, message = shell(f"kvtheory steady {closed}")
     assert b"Traceback" not in message
     assert status in (0, 2, 141)
+
+
+@pytest.mark.parametrize("command", ["steady --set a=b", "steady --nope", "nope"])
+def test_bad_input_is_2_also_where_nothing_can_be_told(command):
+    assert shell(f"kvtheory {command} 2> /dev/full")[0] == 2
 
 
 @pytest.mark.parametrize("encoding", ["ascii", "latin-1", "cp1252", "utf-8"])

@@ -335,6 +335,7 @@ BAD = {
     "empty cell": (rows(HEADS, *GOOD[:5], "5,,9.8,0", *GOOD[6:]), "the first in line 7"),
     "infinite": (rows(HEADS, *GOOD, "12,inf,9.8,0"), "diverged"),
     "backward": (rows(HEADS, *GOOD, "3,-0.3,9.8,0"), "must increase, but 0.003 s in line 14 follows 0.011 s"),
+    "brief": (rows(HEADS, *[f"{k}e-297,-0.3,9.8,0" for k in range(12)]), "do not span a transient"),
     "standing": (rows(HEADS, *["1,-0.3,9.8,0"] * 12), "do not span a transient"),
     "text": (rows(HEADS, *GOOD, "12,abc,9.8,0"), '"abc" is not a number'),
     "quotation": (rows(HEADS, *GOOD[:5], '"5,-0.3,9.8,0', *GOOD[6:]), "a quotation mark is opened"),

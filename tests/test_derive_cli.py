@@ -84,7 +84,10 @@ def test_each_label_finds_itself(label):
         (["--shape", "c*x**4", "--only", "eq27"], "does not go with --only"),
         (["--set", "drive.velocity=1 m/s"], "go with --numbers"),
         (["--numbers", "--set", "drive.velocity=0 m/s"], "drive.velocity is 0"),
-        (["--numbers", "--set", "indenter.shape=circle"], "the parabola only"),
+        (
+            ["--numbers", "--set", "indenter.shape=circle"],
+            "the parabola, the power law, the wedge and the ball only",
+        ),
     ],
 )
 def test_a_mistake_costs_one_message_and_no_work(no_work, tmp_path, arguments, message):
@@ -144,6 +147,84 @@ def test_numbers_are_those_of_the_scene(tmp_path):
     assert found["eq28"][-1]["unit"] == "m"
 
 
+@pytest.mark.parametrize("support", ["fixed", "dead-weight", "suspended"])
+@pytest.mark.parametrize(
+    ("shape", "velocity", "label", "scale"),
+    [
+        ({"shape": "parabola", "radius": "10 mm"}, "100 mm/s", "coefficient", None),
+        ({"shape": "sphere", "radius": "10 mm"}, "100 mm/s", "F20", "a/R"),
+        ({"shape": "power-law", "length": "10 mm", "exponent": "3"}, "100 mm/s", "F19", "d/a"),
+        ({"shape": "power-law", "length": "10 mm", "exponent": "1.5"}, "0.1 um/s", "F19", "d/a"),
+        ({"shape": "wedge", "inclination": "0.1"}, "1 mm/s", "wedge-peeling", "d/a"),
+        ({"shape": "wedge", "inclination": "0.1"}, "100 mm/s", "wedge-peeled", "d/a"),
+    ],
+)
+def test_every_closed_form_takes_numbers(tmp_path, support, shape, velocity, label, scale):
+    """Each shape on each support: the friction coefficient of its own records is that of `steady`."""
+    import kvtheory as kv
+
+    given = {f"indenter.{key}": value for key, value in shape.items()}
+    given |= {"support.kind": support, "drive.velocity": velocity}
+    if support == "suspended":
+        given["support.stiffness"] = "1 MN/m" if shape["shape"] == "sphere" else "1 MN/m^2"
+    if support != "fixed" and shape["shape"] == "sphere":
+        given["support.mass"] = "1 kg"
+    overrides = [f"{key}={value}" for key, value in given.items()]
+    options = [part for each in overrides for part in ("--set", each)]
+    run("--only", f"{label},eq29", "--numbers", "--format", "json", "-o", str(tmp_path), *options)
+    state = kv.steady(kv.load_scene(None, overrides))
+    unit = {None: 1.0, "a/R": state.half_length / 0.01, "d/a": state.depth / state.half_length}
+    found = {name: entry["numbers"] for name, entry in entries(tmp_path).items()}
+    value = found[label][-1]["value"] * unit[scale]
+    assert value == pytest.approx(state.friction_coefficient, rel=1e-9)
+    assert found["eq29"][-1]["value"] == pytest.approx(state.retardation_length, rel=1e-12)
+
+
+def test_numbers_are_of_records_about_this_shape_and_others_are_named(tmp_path):
+    """The closed forms of other shapes, and of the other regime of a wedge, have none."""
+    wedge = ["--set", "indenter.shape=wedge", "--set", "indenter.inclination=0.1"]
+    labels = "wedge,eq27,F1,F20"
+    told = run("--only", labels, "--numbers", "--format", "json", "-o", str(tmp_path), *wedge)
+    found = entries(tmp_path)
+    assert {label for label, entry in found.items() if entry["numbers"]} == {
+        "wedge-peeled",
+        "wedge",
+    }
+    assert f"no numbers of this scene in {len(found) - 2}" in told.stderr
+    told = run("--only", labels, "--numbers", "--format", "json", "-o", str(tmp_path))
+    with_numbers = {label for label, entry in entries(tmp_path).items() if entry["numbers"]}
+    assert {"eq27", "F1"} <= with_numbers
+    assert not any(label.startswith(("wedge", "F20")) for label in with_numbers)
+
+
+def test_numbers_hold_far_from_the_scale_of_a_contact(tmp_path):
+    """The trailing edge is 1e-294 m, where its closed form cancels to hundreds of digits."""
+    run("--only", "eq27,F3", "--numbers", "--format", "json", "-o", str(tmp_path),
+        "--set", "foundation.stiffness=1e300 N/m^3")  # fmt: skip
+    load, damping, speed = 1000 * 9.80665, 1e299, 0.1
+    expected = load / (damping * speed)  # W -> C V delta and x_TE -> a^2/(2 l_r) = R delta/l_r
+    assert entries(tmp_path)["eq27"]["numbers"][-1]["value"] == pytest.approx(expected, rel=1e-12)
+
+
+def test_it_says_how_much_is_derived_for_what_is_asked(tmp_path):
+    told = run("--only", "27", "--format", "json", "-o", str(tmp_path)).stderr
+    assert f"deriving {list(CONTENTS).index('eq27') + 1} records for the 1 asked for" in told
+
+
+def test_the_name_of_a_scene_is_no_markup(tmp_path):
+    hostile = tmp_path / "`<script>$a$.toml"
+    hostile.write_text(CliRunner().invoke(main, ["scene"]).stdout, encoding="utf-8")
+    run("--only", "29", "--numbers", str(hostile), "--format", "html,md,tex", "-o", str(tmp_path))
+    html, md, tex = (
+        (tmp_path / f"derivations.{kind}").read_text() for kind in ("html", "md", "tex")
+    )
+    assert "<script" not in html
+    assert "<script" not in tex
+    lines = [line for line in md.splitlines() if "<script" in line]
+    assert lines
+    assert all(line.startswith("Made by") and ": `` " in line for line in lines)
+
+
 def test_numbers_stand_in_every_format_that_carries_text(tmp_path):
     run("--only", "29", "--numbers", "--format", "tex,html,md,ipynb,json", "-o", str(tmp_path))
     for name in ("derivations.tex", "derivations.md", "derivations.ipynb", "derivations.json",
@@ -181,6 +262,29 @@ def test_letters_that_would_mislead_are_refused(no_work, tmp_path, text, message
     mine.write_text(text)
     result = run("--notation", str(mine), "-o", str(tmp_path / "out"), code=2)
     assert message in result.stderr
+
+
+def test_only_symbols_that_are_shown_can_clash(tmp_path):
+    """An example that looks simple, and letters of symbols in other chapters."""
+    mine = tmp_path / "mine.toml"
+    mine.write_text('l_r = "\\\\ell"\na = "b"\nR = "\\\\varrho"\n')
+    only = ["--only", "27,28", "--notation", str(mine), "--format", "json", "-o"]
+    run(*only, str(tmp_path))
+    assert entries(tmp_path)["eq28"]["latex"] == r"b = \sqrt{2 \varrho \delta}"
+    mine.write_text('a = "R"\n')
+    assert "that letter already stands for R" in run(*only, str(tmp_path / "no"), code=2).stderr
+    assert not (tmp_path / "no").exists()
+
+
+def test_the_symbols_are_listed_by_name_and_derive_nothing(no_work, tmp_path):
+    names = [line.split()[0] for line in run("--symbols").stdout.splitlines()[1:]]
+    assert {"R", "l_r", "x_TE", "delta_0"} <= set(names)
+    listed = json.loads(run("--symbols", "--json").stdout)
+    assert {"name": "R", "latex": "R", "meaning": "radius of the indenter", "unit": "m"} in listed
+    mine = tmp_path / "mine.toml"  # every name is one that --notation takes
+    mine.write_text("".join(f"{json.dumps(name)} = 1\n" for name in names))
+    told = run("--notation", str(mine), code=2).stderr
+    assert "unknown symbol" not in told
 
 
 def test_the_citation_says_the_version(tmp_path):

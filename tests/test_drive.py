@@ -115,6 +115,17 @@ def test_random_points_inside_a_history_are_found_redundant():
         assert len(drive.points) == len(plain)
 
 
+def test_on_a_piece_of_its_motion_the_base_moves_one_way():
+    for velocity in (lambda t: (t - 0.7) ** 2 - 1e-9, lambda t: math.sin(5 * t) - 0.9999):
+        motion = BaseMotion.from_function(velocity, 1.0)
+        zeros = [piece[0] for piece in motion.pieces if piece[3] == 0.0]
+        assert len(zeros) == 2
+        for t in zeros:
+            assert velocity(t) == pytest.approx(0.0, abs=1e-12)
+            assert motion.at(t)[:2] == (pytest.approx(motion.displacement(t), abs=1e-15), 0.0)
+            assert motion.forward(t - 1e-6) is not motion.forward(t + 1e-6)
+
+
 def test_the_motion_of_a_drive_is_its_integral():
     points = [(0.0, 0.0), (1.0, 2.0), (1.0, -1.0), (3.0, 1.0)]
     motion = BaseMotion.from_points(points, 5.0)

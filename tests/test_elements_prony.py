@@ -353,3 +353,34 @@ def test_a_prony_series_is_sent_to_the_elements():
     result = kv.elements(kv.Scene(foundation=RUBBER), at=[0.01], per_length="50 /mm")
     assert set(result.certificate.relative_error) == set(TRANSIENT_UNITS)
     assert all(math.isfinite(error) for error in result.certificate.relative_error.values())
+
+
+def test_a_kink_of_the_pressure_at_its_peak_is_known_to_second_order():
+    """There what lay in contact at the start meets what entered it: the pressure has a ridge."""
+    scene, scale = (
+        kv.Scene(foundation=RUBBER, run=kv.Run(0.01)),
+        1e10 * kv.steady(over={"drive.velocity": 0.0}).depth,
+    )
+    truth = kv.elements(scene, per_length="3200 /mm", at=[0.01], certify=False).peak_pressure
+    claims = []
+    for density in ("100 /mm", "400 /mm"):
+        run = kv.elements(scene, per_length=density, at=[0.01])
+        claims.append(run.certificate.relative_error["peak_pressure"])
+        assert abs(run.peak_pressure - truth) / scale <= claims[-1]
+    assert claims[1] < claims[0] / 8.0
+    assert claims[1] < 2e-3
+
+
+def test_a_hundred_arms_cost_no_more_elements_than_three():
+    """All quantities at one instant; progress goes on until the last run is over."""
+    told = []
+    times = np.geomspace(1e-4, 1.0, 100)
+    many = kv.GeneralizedMaxwell(1e10, arms=[(3e8, float(time)) for time in times])
+    scene = kv.Scene(foundation=many)
+    found = kv.solve(
+        scene, at="10 ms", rtol=1e-2, progress=lambda share, words: told.append((share, words))
+    )
+    assert found.answer.element_updates < 5e5
+    assert told[-1][0] == 1.0
+    assert "for the error" in told[-1][1]
+    assert max(found.certificate.relative_error.values()) <= 1e-2

@@ -144,6 +144,13 @@ def test_a_tolerance_that_nothing_meets_says_how_close_it_came():
     assert "quadrature: error too large" in str(error.value)
 
 
+def test_a_reason_is_given_once_for_all_models_that_it_holds_for():
+    with pytest.raises(ToleranceError) as error:
+        kv.solve(kv.Scene(kv.Circle(radius="10 mm")), at="1 ms", rtol=1e-9)
+    assert "slow manifold, continuum: holds for the parabola only" in str(error.value)
+    assert str(error.value).count("the parabola only") == 1
+
+
 @pytest.mark.parametrize(
     ("request_", "message"),
     [

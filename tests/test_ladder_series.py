@@ -9,10 +9,11 @@ import pytest
 import kvtheory as kv
 from kvtheory.ladder import stiff_drive
 from kvtheory.ladder.climbing import Request
-from kvtheory.ladder.series import SOLVED, Models, rungs
+from kvtheory.ladder.series import ON_RIGID, SOLVED, Models, rungs
 from kvtheory.models.continuum.solver import solve
 from kvtheory.models.slow_manifold import motion as slow_motion
 from kvtheory.models.slow_manifold import start as slow_start
+from kvtheory.results import TRANSIENT_UNITS
 from kvtheory.results.table import scales as scales_of
 from kvtheory.scene.base_motion import BaseMotion
 from kvtheory.scene.static_state import StaticState
@@ -157,7 +158,7 @@ def test_the_steps_are_tightened_until_the_certificate_is_met():
 def test_the_elements_are_as_good_as_they_say(rtol):
     """The last rung on a parabola, where the continuum tells the truth; fast at first, at 1 ms."""
     at = [1e-3, 5e-3, 0.05]
-    request = Request(SOLVED, rtol, at, over_time=True)
+    request = Request(SOLVED, rtol, at, TRANSIENT_UNITS)
     scene = kv.Scene(run=kv.Run(0.05))
     answer = rungs(Models(kv.steady, kv.transient, kv.elements))[-1].solve(scene, request, None)
     truth, scales = kv.transient(scene, at=at, rtol=1e-9), scales_of(StaticState.of(scene))
@@ -191,7 +192,7 @@ def test_the_estimate_covers_what_a_rigid_drive_neglects():
     close, tried = [], 0
     for seed in range(40):
         sprung, rigid, at = stiff_case(seed)
-        scales = scales_of(StaticState.of(rigid))
+        scales = scales_of(StaticState.of(sprung))
         on_rigid = kv.transient(rigid, at=at, rtol=1e-9, certify=False)
         times = np.unique([*on_rigid.solution.natural_times, *at])
         series = on_rigid.solution.series(times)
@@ -201,7 +202,8 @@ def test_the_estimate_covers_what_a_rigid_drive_neglects():
         truth = kv.transient(sprung, at=at, rtol=1e-7, certify=False)
         for name, bound in found.items():
             largest = bound[np.searchsorted(times, at)].max()
-            error = np.abs(getattr(on_rigid, name) - getattr(truth, name)).max() / scales[name]
+            solved = getattr(on_rigid, ON_RIGID.get(name, name))
+            error = np.abs(solved - getattr(truth, name)).max() / scales[name]
             assert error <= largest + 1e-6, (name, seed)
             if name == "friction_force":
                 close.append(error / largest)
@@ -215,7 +217,7 @@ def test_a_stiff_spring_counts_as_rigid_only_where_it_does():
     models = {}
     for stiffness in ("1 MN/m^2", "1e13 N/m^2"):
         drive = kv.Drive(velocity="91 mm/s", stiffness=stiffness, damping="0.1 MN*s/m^2")
-        found = kv.solve(kv.Scene(drive=drive), at=at, rtol=1e-2)
+        found = kv.solve(kv.Scene(drive=drive), quantity=list(SOLVED), at=at, rtol=1e-2)
         models[stiffness] = found.model, found.climb[-1].assumed
         truth = kv.transient(kv.Scene(drive=drive), at=at, rtol=1e-5, certify=False)
         scale = scales_of(StaticState.of(kv.Scene()))["friction_force"]
@@ -226,6 +228,22 @@ def test_a_stiff_spring_counts_as_rigid_only_where_it_does():
         "continuum",
         "a parabola, a drive so stiff that it counts as rigid",
     )
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_what_the_spring_does_is_within_its_tolerance(seed):
+    """Its force and the sliding velocity, by both models of a parabola, against a tight transient."""
+    sprung, _, at = stiff_case(seed)
+    truth, scales = kv.transient(sprung, at=at, rtol=1e-9), scales_of(StaticState.of(sprung))
+    for name in ON_RIGID:
+        found = kv.solve(sprung, quantity=name, at=at, rtol=3e-2)
+        error = np.abs(getattr(found, name) - getattr(truth, name)).max() / scales[name]
+        assert error <= found.certificate.relative_error[name] + 1e-8 <= 3e-2 + 1e-8, name
+
+
+def test_a_rigid_drive_has_no_force_of_a_spring():
+    with pytest.raises(ValueError, match=r"`quantity` = \"spring_force\": needs drive.stiffness"):
+        kv.solve(quantity="spring_force", at="1 ms")
 
 
 def test_elements_follow_a_spring_under_what_is_no_parabola():

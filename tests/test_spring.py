@@ -193,3 +193,23 @@ def test_energy_counts_what_the_drive_spends():
     books = ledger(motion, motion.end)
     assert abs(books.balance) < 1e-9
     assert books.dissipated_drive > 0.0
+
+
+@pytest.mark.parametrize("spring", [{}, {"stiffness": 1e6, "mass": 1000.0}])
+def test_pressure_and_surface_of_a_fixed_indenter_owe_the_motion_along_x(spring):
+    wave = kv.Sine(amplitude=0.5, frequency=7.0, mean=0.2)
+    scene = kv.Scene(support=kv.Fixed(depth=3e-4), drive=kv.Drive(waveform=wave, **spring))
+    found, truth = (kv.transient(scene, rtol=rtol, at=[0.05, 0.2]) for rtol in (1e-6, 1e-12))
+    units, stated = found.solution.units, found.certificate.relative_error
+    for t in found.time:
+        x = np.linspace(-3.0, 3.0, 201) * units.half_length
+        inside = (np.array([found.pressure(x, t), truth.pressure(x, t)]) > 0.0).all(axis=0)
+        p = found.pressure(x[inside], t) / units.pressure
+        if spring:
+            right = truth.pressure(x[inside], t) / units.pressure
+        else:
+            xi = x[inside] / units.half_length
+            right = 1.0 - xi * (xi + 2.0 * wave(t) / units.velocity)
+        assert 0.0 < np.abs(p - right).max() <= stated["pressure"] < 1e-4
+        apart = np.abs(found.surface(x, t) - truth.surface(x, t)).max() / units.depth
+        assert apart <= stated["surface"] < 1e-4

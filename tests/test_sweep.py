@@ -338,6 +338,31 @@ def test_compiling_is_shown_at_once_on_a_terminal_and_takes_no_part_in_the_time_
     assert "sweep: 50 %, 10 s left, half" in stream.getvalue()
 
 
+def test_a_terminal_shows_that_work_goes_on_that_reports_nothing():
+    for terminal in (False, True):
+        stream, now = io.StringIO(), [0.0]
+        stream.isatty = lambda terminal=terminal: terminal
+        progress = ProgressLine("steady", stream, clock=lambda now=now: now[0])
+        for second in range(7):
+            now[0] = 0.5 * second
+            progress.beat()
+        progress(0.4, "step 4")
+        now[0] = 9.0
+        progress.beat()
+        progress.finish()
+        shown = stream.getvalue().split("\r")[1:]
+        expected = [
+            "1 s so far",
+            "2 s so far",
+            "3 s so far",
+            "40 %, step 4, 9 s so far",
+            "40 %, step 4",
+        ]
+        assert [text.strip() for text in shown] == [
+            f"steady: {each}" for each in expected
+        ] * terminal
+
+
 def test_progress_is_silent_where_nothing_takes_long():
     stream = io.StringIO()
     progress = ProgressLine("sweep", stream)

@@ -188,7 +188,7 @@ def test_bad_input_costs_one_message_and_status_2_and_nothing_is_written(place, 
 
 def test_netcdf_without_its_library_is_told(place, monkeypatch):
     monkeypatch.setitem(sys.modules, "netCDF4", None)
-    assert 'pip install "kvtheory[data]"' in run(*OVER, "-o", "a.nc", status=2).stderr
+    assert 'pip install ".[data]" in the checkout' in run(*OVER, "-o", "a.nc", status=2).stderr
     assert not list(place.iterdir())
 
 

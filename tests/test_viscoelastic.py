@@ -362,6 +362,45 @@ def test_a_lopsided_shape_agrees_with_a_row_of_elements(side):
     assert abs(edges[end] - abs(state.trailing_edge)) < 2 * h
 
 
+def test_a_node_that_rounds_to_before_the_leading_edge():
+    """There a springpot raised a negative length to a broken power."""
+    R, kink, c, V = (
+        0.012405181050498832,
+        -8.297472106578946e-05,
+        376.6851309204793,
+        6.303886700724625,
+    )
+    own = kv.Profile(
+        lambda x: x * x / 2.0 / R + c * max(kink - x, 0.0) ** 2,
+        lambda x: x / R - 2.0 * c * max(kink - x, 0.0),
+        kinks=(kink,),
+    )
+    springpot = kv.FractionalKelvinVoigt(1e10, 0.0011513546970316273, 0.20978043346173947)
+    weight = kv.DeadWeight(load=230.92946340465673)
+    state = kv.steady(kv.Scene(own, springpot, weight, kv.Drive(velocity=V)))
+    assert state.load == pytest.approx(230.92946340465673, rel=1e-12)
+
+
+def test_a_jump_of_the_curvature_need_not_be_declared():
+    """A flat punch with rounded edges, and curvatures that change in the contact, and at its lowest point."""
+    for height, slope, kinks in (
+        (lambda x: max(abs(x) - 1e-3, 0.0) ** 2 / 0.02,
+         lambda x: math.copysign(max(abs(x) - 1e-3, 0.0) / 0.01, x), (-1e-3, 1e-3)),
+        (lambda x: x * x / 0.02 + max(x - 2e-4, 0.0) ** 2 / 0.004,
+         lambda x: x / 0.01 + max(x - 2e-4, 0.0) / 0.002, (2e-4,)),
+        (lambda x: x * x / (0.02 if x < 0.0 else 6e-3), lambda x: x / (0.01 if x < 0.0 else 3e-3), (0.0,)),
+    ):  # fmt: skip
+        told, untold = (
+            kv.steady(scene(ZENER, "fixed", indenter=kv.Profile(height, slope, kinks=named)))
+            for named in (kinks, ())
+        )
+        for name, error in untold.certificate.relative_error.items():
+            value = getattr(told, name)
+            allowed = error + told.certificate.relative_error[name]
+            assert abs(getattr(untold, name) - value) <= allowed * abs(value), name
+            assert error < 1e-8
+
+
 def test_a_shape_that_may_touch_in_several_places_is_refused_beyond_kelvin_voigt():
     def height(x):
         return x * x / 0.02 + 2e-6 * (1.0 - math.cos(x / 1e-5))

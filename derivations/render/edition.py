@@ -9,6 +9,7 @@ from ..nomenclature import HEADS, SYMBOLS, Symbol
 from ..record import Derivation, Step, Table
 from .domain import domain
 from .frame import TITLE
+from .notation import check_letters
 from .text import conclusion, reference
 
 
@@ -74,7 +75,8 @@ def edition(
     """Select derivations, with those that they depend on if wanted, and write them in other letters.
 
     `notation` gives new LaTeX by the LaTeX of a symbol of the nomenclature, as `notation.read_notation`
-    returns it. `symbols` are rows of the nomenclature that come before those of the same symbol.
+    returns it; a letter that then had two meanings raises `ValueError`. `symbols` are rows of the
+    nomenclature that come before those of the same symbol.
     """
     uses = {each.label: each.uses for each in derivations}
     by_label = {each.label: each for each in derivations}
@@ -88,6 +90,7 @@ def edition(
     listed = tuple(symbol for symbol in rows if symbol.latex in shown)
     values = dict(values or {})
     if notation:
+        check_letters(notation, shown)
         values = {notation.get(symbol, symbol): value for symbol, value in values.items()}
         chosen = tuple(_in_letters(each, notation.get) for each in chosen)
         listed = tuple(_row_in_letters(each, notation.get) for each in listed)

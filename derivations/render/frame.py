@@ -1,5 +1,7 @@
 """The text around the derivations: title, introduction, vocabulary, nomenclature, source."""
 
+import re
+
 TITLE = "Sliding friction on viscoelastic foundations: derivations"
 
 AUTHORS = "Nakano and Kono (2020)"
@@ -42,6 +44,16 @@ MARKS = (
 """The text above the nomenclature."""
 
 WITH_NUMBERS = "With these numbers:"
+
+
+def code_span(text: str) -> str:
+    """Return text as code in Markdown, whatever it holds: in more backticks than follow each other in it.
+
+    >>> code_span("derive"), code_span("a`<b>`")
+    ('`derive`', '`` a`<b>` ``')
+    """
+    fence = "`" * (max(map(len, re.findall("`+", text)), default=0) + 1)
+    return f"{fence}{text}{fence}" if len(fence) == 1 else f"{fence} {text} {fence}"
 
 
 def numbers_of(scene: str) -> str:

@@ -26,7 +26,9 @@ def document(edition: Edition) -> str:
     parts = [f"# {edition.title}", *(_text(paragraph, labels) for paragraph in told)]
     parts += [f"*{status}*: {meaning}" for status, meaning in frame.VOCABULARY.items()]
     if edition.command:
-        parts.append(f"Made by {f'kvtheory {edition.version}'.strip()}: `{edition.command}`")
+        parts.append(
+            f"Made by {f'kvtheory {edition.version}'.strip()}: {frame.code_span(edition.command)}"
+        )
     parts += ["## Nomenclature", _text(frame.MARKS, labels), _table(edition.table(), labels)]
     for section, members in by_section(edition.derivations).items():
         parts.append(f"## {_text(section, ())}")

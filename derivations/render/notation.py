@@ -2,6 +2,7 @@
 
 import re
 import tomllib
+from collections.abc import Collection, Mapping
 from pathlib import Path
 
 from ..atoms import atoms
@@ -18,29 +19,38 @@ def plain(latex: str) -> str:
     return re.sub(r"\\mathrm|\\text|[\\{}^]", "", latex)
 
 
+NAMES = {plain(symbol.latex): symbol.latex for symbol in SYMBOLS}
+"""The LaTeX of each symbol by its name."""
+
+
 def read_notation(path: Path) -> dict[str, str]:
     r"""Read a TOML file of lines like ``l_r = "\\ell"`` and return new LaTeX by the LaTeX of a symbol.
 
     Raises
     ------
     ValueError
-        For a file that is not TOML, an unknown symbol, a letter that is not one symbol, and two
-        meanings for one letter; all mistakes at once, one a line.
+        For a file that is not TOML, an unknown symbol, a letter that is not one symbol, and one letter
+        for two symbols; all mistakes at once, one a line.
     """
     try:
         wanted = tomllib.loads(path.read_text(encoding="utf-8"))
     except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
         raise ValueError(f"--notation {path}: not TOML: {error}") from error
-    names = {plain(symbol.latex): symbol.latex for symbol in SYMBOLS}
-    mistakes = [unknown(name, names, "symbol") for name in wanted if name not in names]
-    letters = {names[name]: letter for name, letter in wanted.items() if name in names}
+    mistakes = [unknown(name, NAMES, "symbol") for name in wanted if name not in NAMES]
+    letters = {NAMES[name]: letter for name, letter in wanted.items() if name in NAMES}
     for symbol, letter in letters.items():
         mistakes += _mistakes(symbol, letter)
     valid = {symbol: letter for symbol, letter in letters.items() if isinstance(letter, str)}
-    mistakes += _clashes(valid)
+    mistakes += _clashes(valid, valid)
     if mistakes:
         raise ValueError("\n".join(f"--notation {path}: {each}" for each in mistakes))
     return valid
+
+
+def check_letters(letters: Mapping[str, str], shown: Collection[str]) -> None:
+    """Raise `ValueError` if a new letter stands for another of the symbols that are shown."""
+    if mistakes := _clashes({each: letters[each] for each in letters if each in shown}, shown):
+        raise ValueError("\n".join(f"--notation: {each}" for each in mistakes))
 
 
 def _mistakes(symbol: str, letter: object) -> list[str]:
@@ -52,15 +62,16 @@ def _mistakes(symbol: str, letter: object) -> list[str]:
     return []
 
 
-def _clashes(letters: dict[str, str]) -> list[str]:
-    """Say which letters would have two meanings."""
-    meaning = {symbol.latex: symbol.latex for symbol in SYMBOLS if symbol.latex not in letters}
+def _clashes(letters: Mapping[str, str], shown: Collection[str]) -> list[str]:
+    """Say which letters would have two meanings among the symbols that are shown."""
+    meaning = {symbol: symbol for symbol in shown if symbol not in letters}
     found = []
     for symbol, letter in letters.items():
         for atom in atoms(letter):
             other = meaning.setdefault(atom.symbol, symbol)
             if other != symbol:
                 found.append(
-                    f"{plain(symbol)} = {letter!r}: that letter already stands for {plain(other)}"
+                    f"{plain(symbol)} = {letter!r}: that letter already stands for {plain(other)} "
+                    "in these derivations; choose another, or rename that symbol too"
                 )
     return found

@@ -52,7 +52,9 @@ def document(edition: Edition) -> str:
     """Return the notebook; running its cells from top to bottom checks every step."""
     head = [f"# {edition.title}", *frame.INTRODUCTION]
     if edition.command:
-        head.append(f"Made by {f'kvtheory {edition.version}'.strip()}: `{edition.command}`")
+        head.append(
+            f"Made by {f'kvtheory {edition.version}'.strip()}: {frame.code_span(edition.command)}"
+        )
     cells = [
         _markdown("\n\n".join(head)),
         _code(Path(recheck.__file__).read_text(encoding="utf-8")),

@@ -84,15 +84,15 @@ def write_edition(
     edition: Edition,
     directory: Path,
     formats: Iterable[str],
-    report: Callable[[float], None] | None = None,
+    report: Callable[[float, str], None] | None = None,
 ) -> list[Path]:
-    """Write one printing in each of the formats; `report` is told the share done."""
+    """Write one printing in each of the formats; `report` is told the share done, and of what."""
     files: Files = {}
     wanted = list(formats)
-    for done, name in enumerate(wanted, start=1):
-        files |= FORMATS[name](edition)
+    for done, name in enumerate(wanted):
         if report is not None:
-            report(done / len(wanted))
+            report(done / len(wanted), f"writing {name}")
+        files |= FORMATS[name](edition)
     return _place({Path(directory) / name: content for name, content in files.items()})
 
 

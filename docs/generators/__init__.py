@@ -1,6 +1,6 @@
 """Pages that follow from the code: each module returns the texts of its pages by their paths."""
 
-from concurrent.futures import ProcessPoolExecutor
+from concurrent.futures import ProcessPoolExecutor, as_completed
 from pathlib import Path
 
 from generators import api, atlas, commands, derivations, equations, gallery, keys, problems
@@ -21,15 +21,20 @@ def write_all(directory: Path) -> None:
     changed = max(path.stat().st_mtime for path in sources)
     with ProcessPoolExecutor(2) as pool:
         anew = not proved.exists() or proved.stat().st_mtime < changed
-        slow = [pool.submit(derivations.pages)] if anew else []
-        slow += [pool.submit(module.write, directory) for module in (problems, atlas)]
-        drawn = [pool.submit(gallery.draw, name, directory) for name in gallery.HERE]
+        slow = {pool.submit(derivations.pages): "derivations"} if anew else {}
+        slow |= {
+            pool.submit(module.write, directory): module.__name__.rpartition(".")[2]
+            for module in (problems, atlas)
+        }
+        drawn = {pool.submit(gallery.draw, name, directory): name for name in gallery.HERE}
+        jobs = slow | drawn
+        print(f"Making pages and figures: {', '.join(jobs.values())}", flush=True)
         texts = {path: text for module in QUICK for path, text in module.pages().items()}
         gallery.write(directory)
-        for job in slow:
-            texts |= job.result()
-        for job in drawn:
-            job.result()
+        for done, job in enumerate(as_completed(jobs), start=1):
+            made = job.result()
+            texts |= made if job in slow else {}
+            print(f"{done} of {len(jobs)}: {jobs[job]}", flush=True)
     for path, text in texts.items():
         target = directory / path
         if not target.exists() or target.read_text(encoding="utf-8") != text:

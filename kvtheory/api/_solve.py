@@ -12,8 +12,9 @@ from kvtheory.api._transient import transient
 from kvtheory.ladder import series, sliding
 from kvtheory.ladder.climbing import Request, climb
 from kvtheory.progress import Progress
-from kvtheory.results import STEADY_UNITS, TRANSIENT_UNITS, Solution, ToleranceError
+from kvtheory.results import STEADY_UNITS, Solution, ToleranceError
 from kvtheory.results.steady import UNKNOWN, UNSTABLE
+from kvtheory.results.table import SERIES_UNITS, SPRING_UNITS, series_units
 from kvtheory.scene.arguments import a_scene, callback, checked, flag, names, number, times
 from kvtheory.scene.model import Scene
 from kvtheory.scene.quantities import SceneError, nearest, problem
@@ -48,7 +49,7 @@ def solve(
         What is modelled; without it, the paper's Table 1 with a dead weight.
     quantity
         Name of a quantity, or a list of names: of steady sliding as in `SteadyState`, or of a time series
-        as in `Transient`; without it, all of them.
+        as in `Transient`, with a spring in the drive as in `SprungTransient`; without it, all of them.
     at
         Times of a series, in s or as text with a unit; without it, steady sliding is solved, for a drive
         with a history at its final velocity.
@@ -97,11 +98,12 @@ def solve(
     scene = one_scene(scene, "`solve`")
     over_time = over_time or at is not None
     problems: list[str] = []
-    names = _names(quantity, TRANSIENT_UNITS if over_time else STEADY_UNITS, over_time, problems)
+    units = series_units(rigid_drive=scene.drive.rigid) if over_time else STEADY_UNITS
+    names = _names(quantity, units, over_time, problems)
     times = times_of(scene, at, problems)
     if problems:
         raise SceneError(problems)
-    request = Request(names, rtol, times, over_time)
+    request = Request(names, rtol, times, units)
     if not over_time:
         scene.drive.final_velocity  # noqa: B018  # it raises if the drive has none
         _refuse_unstable(scene)
@@ -134,12 +136,14 @@ def _names(
         return tuple(units)
     if not names:
         problems.append("`quantity` is empty: expected a name such as friction_force")
-    other = STEADY_UNITS if over_time else TRANSIENT_UNITS
+    other = STEADY_UNITS if over_time else SERIES_UNITS
     for name in names:
         if name in units:
             continue
-        if name in other:
-            hint = "leave out the times" if over_time else 'give the times, such as at="1 ms"'
+        if over_time and name in SPRING_UNITS:
+            what = "needs drive.stiffness, of a spring"
+        elif name in other:
+            hint = "leave out the times" if over_time else 'give the times, such as `at` = "1 ms"'
             what = f"belongs to {'steady sliding' if over_time else 'a time series'}; {hint}"
         else:
             what = nearest(name, units)

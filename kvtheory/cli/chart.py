@@ -42,24 +42,21 @@ def chart() -> None:
 @teaching
 def failures(only: str | None, output: Path | None, as_json: bool) -> None:
     """Show how methods fail: wrong numbers, computed beside the right ones."""
-    from kvtheory.charts.failures import ATLAS, findings
-
     check_output("-o", output, [".html"])
-    keys = split(only) if only else list(ATLAS)
     found = []
-    with progress_bar("entries") as report:
+    with progress_bar("entries") as report:  # what is imported takes a while, too
+        from kvtheory.charts.failures import ATLAS, findings
+        from kvtheory.plots.failures import save_failures, shown
+
+        keys = split(only) if only else list(ATLAS)
         for finding in findings(keys):
             found.append(finding)
             report(len(found) / len(keys), f"{len(found)} of {len(keys)}")
-    if output:
-        from kvtheory.plots.failures import save_failures
-
-        save_failures(found, output)
+        if output:
+            save_failures(found, output)
     if as_json:
         print_json({"failures": [finding.as_dict() for finding in found]})
         return
-    from kvtheory.plots.failures import shown
-
     roles = ("wrong", "right", "package")
     print_table(
         ("entry", "quantity", "wrong", "right", "this package"),
@@ -84,13 +81,12 @@ def failures(only: str | None, output: Path | None, as_json: bool) -> None:
 @teaching
 def stability(output: Path, quick: bool) -> None:
     """Map where each scheme of the elements is stable: predicted over measured."""
-    from kvtheory.charts.stability import stability_maps
-    from kvtheory.plots.stability import save_stability
-
     check_chart(output)
     with progress_bar("maps") as report:
-        maps = stability_maps(quick=quick, progress=report)
-    save_stability(maps, output)
+        from kvtheory.charts.stability import stability_maps
+        from kvtheory.plots.stability import save_stability
+
+        save_stability(stability_maps(quick=quick, progress=report), output)
     click.echo(f"{output}\n{output.with_suffix('.json')}")
 
 
@@ -117,19 +113,20 @@ def work_precision(
 ) -> None:
     """Chart the speed of all methods against their accuracy, on SCENE."""
     os.environ.update(dict.fromkeys(THREADS, "1"))
-    from kvtheory.charts.collection import chosen, measure
-    from kvtheory.plots.work_precision import default_errors, save_work_precision
-    from kvtheory.scene import load_scene
-
     if output.is_dir():
         output /= "work_precision.png"
     check_chart(output)
     if standard and (scene or overrides):
         raise ValueError("--standard names its own scenes; it does not go with SCENE or --set")
-    jobs = chosen(load_scene(scene, overrides), split(standard) if standard else [], quick=quick)
     with progress_bar("methods") as report:
+        from kvtheory.charts.collection import chosen, measure
+        from kvtheory.plots.work_precision import default_errors, save_work_precision
+        from kvtheory.scene import load_scene
+
+        standards = split(standard) if standard else []
+        jobs = chosen(load_scene(scene, overrides), standards, quick=quick)
         charts = measure(jobs, quick=quick, progress=report)
-    save_work_precision(charts, output)
+        save_work_precision(charts, output)
     click.echo(f"{output}\n{output.with_suffix('.json')}")
     for one in charts:
         (error,) = default_errors([one])

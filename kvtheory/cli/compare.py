@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from kvtheory.cli.console import print_json, print_table, progress_bar, scene_command
+from kvtheory.cli.console import print_table, progress_bar, scene_command
 from kvtheory.cli.group import main
-from kvtheory.cli.outputs import PICTURES, check_output, overwrite_option, path_option
+from kvtheory.cli.outputs import PICTURES, check_output, deliver, overwrite_option, path_option
 
 if TYPE_CHECKING:
     from kvtheory.results.comparison import Check
@@ -57,17 +57,7 @@ def compare(
     checked = load_scene(scene, overrides)
     with progress_bar("compare") as progress:
         found = hold_against(checked, data, **how, progress=progress)
-    if plot:
-        from kvtheory.plots.result import save_plot
-
-        save_plot(found, plot)
-    if report:
-        from kvtheory.plots.comparison import save_comparison_report
-
-        save_comparison_report(found, checked, report)
-    if as_json:
-        print_json(found.as_dict())
-    else:
+    if not deliver(found, None, plot, as_json=as_json, report=(report, checked)):
         tells = "cannot tell" if found.verdict == "cannot tell" else f"{found.verdict} with theory"
         click.echo(f"{found.source}: {tells}\n")
         heads = ("check", "measured", "allowed", "", "equation", "what is measured")

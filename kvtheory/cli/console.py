@@ -4,9 +4,11 @@ import json
 import math
 import re
 import sys
+import threading
+import time
 import traceback
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from functools import wraps
 from typing import Any
 
@@ -14,6 +16,10 @@ import click
 
 from kvtheory.cli.group import INTERRUPTED, leave_quietly
 
+LARGE_ERROR = 0.05
+"""Of the static state: a larger one is seen in any plot, and is beyond the scatter of a good measurement."""
+BEGUN = "kvtheory.begun"
+"""When a command began to work, in the meta of its context."""
 BAD_INPUT, FAULTY = 2, 70
 """Exit status for bad input, and for an internal error."""
 
@@ -61,10 +67,11 @@ def teaching(command: Callable[..., None]) -> Callable[..., None]:
 
 
 def complain(message: str, status: int) -> None:
-    """Write a message to standard error, and exit."""
+    """Write a message to standard error, if that can be written, and exit."""
     from kvtheory.scene.quantities import printable
 
-    click.echo("\n".join(map(printable, f"kvtheory: {message}".splitlines())), err=True)
+    with suppress(OSError):
+        click.echo("\n".join(map(printable, f"kvtheory: {message}".splitlines())), err=True)
     sys.exit(status)
 
 
@@ -109,13 +116,28 @@ json_option = click.option(
 
 @contextmanager
 def progress_bar(label: str) -> Iterator[Callable[..., None]]:
-    """Provide a function that shows the share done, and a text, when work takes long."""
-    from kvtheory.progress import ProgressLine
+    """Provide a function that shows the share done, and a text, when work takes long.
 
-    line = ProgressLine(label)
+    A terminal shows every second or so that the work goes on, also where it reports nothing.
+    """
+    from kvtheory.progress import BEAT, PATIENCE, ProgressLine
+
+    context = click.get_current_context(silent=True)
+    begun = context.meta.setdefault(BEGUN, time.monotonic()) if context else time.monotonic()
+    patience = max(PATIENCE - (time.monotonic() - begun), 0.0)  # of all parts of a command together
+    line, over = ProgressLine(label, patience=patience), threading.Event()
+
+    def beat() -> None:
+        while not over.wait(BEAT / 2.0):
+            line.beat()
+
+    beating = threading.Thread(target=beat, daemon=True)
+    beating.start()
     try:
         yield line
     finally:
+        over.set()
+        beating.join()
         line.finish()
 
 
@@ -143,10 +165,18 @@ def print_json(result: Any) -> None:
     click.echo(json.dumps(result, indent=2, ensure_ascii=plain, allow_nan=False))
 
 
-def print_series(result: Any, *, whole: bool) -> None:
-    """Print a time series as a table: every row, or about twenty of them with both ends."""
+def print_series(result: Any, *, whole: bool, remedy: str) -> None:
+    """Print a time series as a table: every row, or about twenty of them with both ends.
+
+    Above it stands a large error, with its remedy.
+    """
     from kvtheory.results import SHOWN_UNITS
 
+    errors = result.certificate.relative_error
+    if large := {name: error for name, error in errors.items() if not error <= LARGE_ERROR}:
+        named = ", ".join(f"{name} {error:.2g}" for name, error in large.items())
+        told = f"! Large error, relative to {result.certificate.relative_to}: {named}. {remedy}"
+        click.secho(told, bold=True)
     last = result.time.size - 1
     rows = range(last + 1) if whole else sorted({round(i * last / 20) for i in range(21)})
     units = {name: unit for name, unit in result.units.items() if name != "depth_rate"}

@@ -1,6 +1,8 @@
 """`kvtheory derive`: the derivations, checked and printed."""
 
+import math
 import os
+import re
 import shlex
 from collections import Counter
 from collections.abc import Callable, Iterable, Sequence
@@ -18,8 +20,15 @@ if TYPE_CHECKING:
     from kvtheory.derivations.record import Derivation
     from kvtheory.derivations.render import Edition
 
+MOST_NAMED = 20
+"""Labels in one message, at most."""
 DERIVING = 0.7
 """Share of the work that is deriving; the rest is printing."""
+SHAPE_SYMBOLS = {"radius": "R", "length": "L", "exponent": "n", "inclination": "c_1"}
+SUPPORT_SYMBOLS = {"mass": "M", "gravity": "g", "stiffness": "k_s"}
+"""Names of symbols by the keys of a scene."""
+UNUSUAL = re.compile(r"[^\w .,()+-]")
+"""What the name of a scene may not hold inside a document, where it could be mathematics or markup."""
 
 
 @main.command(
@@ -48,7 +57,7 @@ DERIVING = 0.7
 )  # fmt: skip
 @click.option(
     "--notation", type=click.Path(exists=True, dir_okay=False, path_type=Path), default=None,
-    metavar="FILE.toml", help='Your symbols, as in l_r = "\\\\ell"; used everywhere.',
+    metavar="FILE.toml", help='Your symbols, as in l_r = "\\\\ell_r"; --symbols lists the names.',
 )  # fmt: skip
 @click.option(
     "--set", "overrides", multiple=True, metavar="KEY=VALUE",
@@ -56,35 +65,50 @@ DERIVING = 0.7
 )  # fmt: skip
 @click.option("--list", "listing", is_flag=True, help="List the labels, one line each, and stop.")
 @click.option(
+    "--symbols", is_flag=True, help="List the names of the symbols for --notation, and stop."
+)
+@click.option(
     "--json", "as_json", is_flag=True, help="Print one JSON object about what was written."
 )
 @overwrite_option
 @teaching
 def derive(
     scene: str | None, output: Path, formats: str | None, only: str, closure: bool, numbers: bool,
-    shape: str | None, notation: Path | None, overrides: Sequence[str], listing: bool, as_json: bool,
+    shape: str | None, notation: Path | None, overrides: Sequence[str], listing: bool, symbols: bool,
+    as_json: bool,
 ) -> None:  # fmt: skip
-    """Derive the equations, check every step, and print them: LaTeX, HTML, PDF, notebook and more."""
+    """Derive the equations, check every step, and print them: LaTeX, HTML, PDF, notebook and more.
+
+    A record rests on earlier ones: all up to the last of those asked for are derived. Without --only that
+    is everything, which takes a minute or two.
+    """
     from kvtheory.derivations.contents import CONTENTS
     from kvtheory.derivations.labels import find
     from kvtheory.derivations.render import check_directory, write_edition
-    from kvtheory.derivations.render.notation import read_notation
+    from kvtheory.derivations.render.notation import NAMES, check_letters, read_notation
 
-    if listing:
-        _print_labels(CONTENTS, as_json)
+    if listing or symbols:
+        _print_symbols(as_json) if symbols else _print_labels(CONTENTS, as_json)
         return
-    _check_options(scene, only, numbers, shape, overrides)
+    _check_options(scene, only, closure, numbers, shape, overrides)
     wanted = _formats(formats)
     labels = find(split(only), CONTENTS)
     request = Request(labels, closure, shape, read_notation(notation) if notation else {})
+    if not (labels or shape):  # then every symbol is shown
+        check_letters(request.notation, NAMES.values())
     if numbers:
-        request.quantities, request.scene = _quantities(scene, overrides)
+        request.quantities, request.indenter, request.scene = _quantities(scene, overrides)
     check_directory(output)
     for name in wanted if output.is_dir() else ():
         check_output("-o", output / f"derivations.{name}", [f".{name}"])
-    with progress_bar("deriving") as report:
-        edition = _edition(request, _part(report, 0.0, DERIVING))
-        paths = write_edition(edition, output, wanted, _part(report, DERIVING, 1.0))
+    if shape is None:
+        _announce(request)
+    with progress_bar("derive") as report:
+        edition = _edition(request, lambda share, told: report(DERIVING * share, told))
+        writing = lambda share, name: report(DERIVING + (1.0 - DERIVING) * share, name)  # noqa: E731
+        paths = write_edition(edition, output, wanted, writing)
+    if numbers:
+        _say_without_numbers(edition.derivations)
     _report(edition.derivations, output, paths, as_json)
 
 
@@ -97,17 +121,19 @@ class Request:
     shape: str | None
     notation: dict[str, str]
     quantities: dict[str, float] = field(default_factory=dict)
+    indenter: str = "parabola"
     scene: str = ""
 
 
 def _check_options(
-    scene: str | None, only: str, numbers: bool, shape: str | None, overrides: Sequence[str]
-) -> None:
+    scene: str | None, only: str, closure: bool, numbers: bool, shape: str | None,
+    overrides: Sequence[str],
+) -> None:  # fmt: skip
     if (scene or overrides) and not numbers:
         raise ValueError("SCENE and --set go with --numbers, which inserts their quantities")
-    if shape is not None and (only or numbers):
+    if shape is not None and (only or numbers or closure):
         raise ValueError(
-            "--shape derives a separate chapter; it does not go with --only or --numbers"
+            "--shape derives a separate chapter; it does not go with --only, --closure or --numbers"
         )
 
 
@@ -126,50 +152,89 @@ def _formats(formats: str | None) -> list[str]:
     return [name for name in FORMATS if name != "pdf"]
 
 
-def _quantities(path: str | None, overrides: Sequence[str]) -> tuple[dict[str, float], str]:
-    """Return the quantities of a scene and of its steady state by the names of `derivations.symbols`."""
+def _quantities(path: str | None, overrides: Sequence[str]) -> tuple[dict[str, float], str, str]:
+    """Return the quantities of a scene and of its steady state by the names of `calculation.GIVEN`.
+
+    Beside them the shape of the indenter, and the scene in words. Forces, masses and springs of a ball are
+    left out, for the symbols of the derivations stand for those per unit width.
+    """
     from kvtheory.api import steady
     from kvtheory.scene import load_scene
-    from kvtheory.scene.requirements import lacks_paper_model
+    from kvtheory.scene.requirements import lacks_asymptotes, lacks_quadratic
     from kvtheory.scene.static_state import StaticState
 
     scene = load_scene(path, overrides)
-    if lacking := lacks_paper_model(scene):
+    if lacking := lacks_asymptotes(scene):
         raise ValueError(f"--numbers {lacking}")
     velocity = abs(scene.drive.final_velocity)
     if velocity == 0.0:
         raise ValueError(
             "--numbers: drive.velocity is 0; the closed forms are of an indenter that slides"
         )
-    state, at_rest = steady(scene), StaticState.of(scene)
+    state, values, line = steady(scene), scene.values(), scene.indenter.per_width
     quantities = {
-        "R": scene.values()["indenter.radius"],
         "K": scene.foundation.stiffness,
         "tau": scene.foundation.retardation_time,
         "C": scene.foundation.damping,
         "V": velocity,
         "delta": float(state.depth),
-        "W": float(state.load),
-        "F": abs(float(state.friction_force)),
         "mu": abs(float(state.friction_coefficient)),
-        "delta_0": at_rest.depth,
-        "a_0": at_rest.half_length,
-        "W_0": at_rest.load,
-        "lambda": abs(at_rest.drive_number),
     }
-    for key, name in {"mass": "M", "gravity": "g", "stiffness": "k_s"}.items():
-        if f"support.{key}" in scene.values():
-            quantities[name] = scene.values()[f"support.{key}"]
-    if not at_rest.fixed:
-        quantities |= {"epsilon": at_rest.inertia_number, "kappa": at_rest.support_number}
-    where = Path(path).name if path else "Table 1"
-    return quantities, f"{where} ({scene.support.kind} support)"
+    if line:
+        quantities |= {"W": float(state.load), "F": abs(float(state.friction_force))}
+    if small := [name for name, value in quantities.items() if not 0.0 < value < math.inf]:
+        raise ValueError(f"--numbers: {', '.join(small)} of this scene cannot be held by a float")
+    names = {f"indenter.{key}": name for key, name in SHAPE_SYMBOLS.items()}
+    if line:
+        names |= {f"support.{key}": name for key, name in SUPPORT_SYMBOLS.items()}
+    quantities |= {name: values[key] for key, name in names.items() if key in values}
+    if not lacks_quadratic(scene):
+        at_rest = StaticState.of(scene)
+        quantities |= {
+            "delta_0": at_rest.depth,
+            "a_0": at_rest.half_length,
+            "lambda": abs(at_rest.drive_number),
+        }
+        if line:
+            quantities["W_0"] = at_rest.load
+        if not at_rest.fixed:
+            quantities |= {"epsilon": at_rest.inertia_number, "kappa": at_rest.support_number}
+    where = UNUSUAL.sub("_", Path(path).name) if path else "Table 1"
+    told = ", ".join([f"{scene.support.kind} support", *([] if line else ["ball"])])
+    return quantities, scene.indenter.shape, f"{where} ({told})"
 
 
-def _edition(request: Request, report: Callable[[float], None] | None) -> "Edition":
+def _needed(request: Request) -> set[str]:
+    """Return the labels up to the last of which records are derived; none for everything."""
+    from kvtheory.derivations.calculation import FOLLOWING
+
+    following = {label for label, _ in FOLLOWING} if request.quantities else set()
+    return {*request.labels, *following} if request.labels else set()
+
+
+def _announce(request: Request) -> None:
+    """Say how much is derived."""
+    from kvtheory.derivations.catalogue import wanted_up_to
+
+    total, asked = wanted_up_to(_needed(request)), len(request.labels)
+    if asked:
+        told = f"{total} records for the {asked} asked for, since each rests on earlier ones"
+    else:
+        told = f"all {total} records; --only chooses some"
+    click.echo(f"kvtheory: deriving {told}", err=True)
+
+
+def _say_without_numbers(derived: Sequence["Derivation"]) -> None:
+    """Say which records have no number in the scene."""
+    if without := [each.label for each in derived if not each.numbers]:
+        named = ", ".join(without[:MOST_NAMED]) + (", ..." if len(without) > MOST_NAMED else "")
+        click.echo(f"kvtheory: no numbers of this scene in {len(without)}: {named}", err=True)
+
+
+def _edition(request: Request, report: Callable[[float, str], None]) -> "Edition":
     """Derive what was asked for."""
     from kvtheory import __version__
-    from kvtheory.derivations.calculation import FOLLOWING, shown_quantities, with_numbers
+    from kvtheory.derivations.calculation import shown_quantities, with_numbers
     from kvtheory.derivations.catalogue import catalogue
     from kvtheory.derivations.render import edition
     from kvtheory.derivations.shape import derive_shape, symbols, title
@@ -183,11 +248,11 @@ def _edition(request: Request, report: Callable[[float], None] | None) -> "Editi
         chapter = derive_shape(request.shape)
         own = symbols(request.shape)
         return edition(chapter, **about, title=title(request.shape), symbols=own)
-    needed = {*request.labels, *(label for label, _ in FOLLOWING)} if request.labels else ()
-    derived: Iterable[Derivation] = catalogue(needed, report)
+    derived: Iterable[Derivation] = catalogue(_needed(request), report)
     if request.quantities:
-        derived = with_numbers(derived, request.quantities)
-        about |= {"values": shown_quantities(request.quantities), "scene": request.scene}
+        given = request.quantities, request.indenter
+        derived = with_numbers(derived, *given)
+        about |= {"values": shown_quantities(*given), "scene": request.scene}
     return edition(tuple(derived), request.labels, with_premises=request.closure, **about)
 
 
@@ -208,18 +273,23 @@ def _command(request: Request) -> str:
     return " ".join([words[0], shlex.join(words[1:])]).strip()
 
 
-def _part(
-    report: Callable[[float], None] | None, start: float, end: float
-) -> Callable[[float], None] | None:
-    """Scale the progress of a part of the work to its share."""
-    return None if report is None else lambda share: report(start + (end - start) * share)
-
-
 def _print_labels(contents: dict[str, str], as_json: bool) -> None:
     if as_json:
         print_json([{"label": label, "title": title} for label, title in contents.items()])
         return
     print_table(("label", "title"), contents.items())
+
+
+def _print_symbols(as_json: bool) -> None:
+    from kvtheory.derivations.nomenclature import SYMBOLS
+    from kvtheory.derivations.render.notation import plain
+
+    rows = [(plain(each.latex), each.latex, each.meaning, each.unit) for each in SYMBOLS]
+    heads = "name", "latex", "meaning", "unit"
+    if as_json:
+        print_json([dict(zip(heads, row, strict=True)) for row in rows])
+        return
+    print_table(heads, rows)
 
 
 def _report(

@@ -42,7 +42,8 @@ def elements(
         )
     if deliver(result, output, plot, as_json=as_json):
         return
-    print_series(result, whole=how["at"] is not None)
+    remedy = "Take more elements (--per-length), which also shortens the steps."
+    print_series(result, whole=how["at"] is not None, remedy=remedy)
     worst = max(result.certificate.relative_error.values())
     click.echo(
         f"\n{result.scheme}, {result.per_length / 1e3:g} elements per mm, {result.steps} steps of at most "

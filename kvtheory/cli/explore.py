@@ -5,7 +5,7 @@ from pathlib import Path
 
 import click
 
-from kvtheory.cli.console import Examples, scene_options, teaching
+from kvtheory.cli.console import Examples, progress_bar, scene_options, teaching
 from kvtheory.cli.group import main
 from kvtheory.cli.outputs import check_output, overwrite_option, path_option
 
@@ -24,6 +24,7 @@ def explore(scene: str | None, overrides: Sequence[str], output: Path) -> None:
     from kvtheory.scene import load_scene
 
     check_output("-o", output, [".html"])
-    checked = load_scene(scene, overrides)
-    save_explorer(checked, output)
+    with progress_bar("explore"):
+        checked = load_scene(scene, overrides)
+        save_explorer(checked, output)
     click.echo(f"{output}: open it in any browser")

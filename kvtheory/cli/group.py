@@ -2,6 +2,7 @@
 
 import os
 import sys
+from contextlib import suppress
 from typing import Any, NoReturn
 
 import click
@@ -27,7 +28,9 @@ class Commands(click.Group):
             status = run(*args, standalone_mode=False, **kwargs)
             _flush()
         except click.ClickException as error:
-            error.show()
+            with suppress(OSError):
+                error.show()
+            _flush_quietly()
             sys.exit(error.exit_code)
         except click.Abort:
             sys.exit(INTERRUPTED)
@@ -70,7 +73,8 @@ def _silence() -> None:
 def leave_quietly(message: str = "") -> NoReturn:
     """Exit because the output cannot be written: its reader has closed the pipe, or the disk is full."""
     if message:
-        click.echo(f"kvtheory: error: {message}", err=True)
+        with suppress(OSError):
+            click.echo(f"kvtheory: error: {message}", err=True)
     _silence()
     sys.exit(BAD_OUTPUT if message else BROKEN_PIPE)
 

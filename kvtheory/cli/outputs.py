@@ -5,13 +5,14 @@ command writes, and left unchanged if it holds anything else, unless ``--overwri
 """
 
 from collections.abc import Callable, Sequence
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 import click
 
-from kvtheory.cli.console import print_json
-from kvtheory.export import PICTURES, SERIES_SUFFIXES, check_path, save_result
+from kvtheory.cli.console import print_json, progress_bar
+from kvtheory.export import PICTURES, SERIES_SUFFIXES, check_path, replace_files, save_result
 
 __all__ = ["PICTURES", "check_output"]
 
@@ -75,14 +76,28 @@ def check_results(output: Path | None, plot: Path | None) -> None:
     check_output("--plot", plot, PICTURES)
 
 
-def deliver(result: Any, output: Path | None, plot: Path | None, *, as_json: bool) -> bool:
-    """Write a result to the files of `result_options`, or as JSON; return whether that is all."""
-    if output:
-        save_result(result, output)
-    if plot:
-        from kvtheory.plots.result import save_plot
+def deliver(
+    result: Any, output: Path | None, plot: Path | None, *,
+    as_json: bool, report: tuple[Path | None, Any] = (None, None),
+) -> bool:  # fmt: skip
+    """Write a result to the files of `result_options`, or as JSON; return whether that is all.
 
-        save_plot(result, plot)
+    `report` is a page of it, and the scene that this names. All files are made before any is put in place.
+    """
+    writers: dict[Path, Callable[[Path], Any]] = {}
+    page, scene = report
+    with progress_bar("writing"):
+        if output:
+            writers[output] = partial(save_result, result)
+        if plot:
+            from kvtheory.plots.result import save_plot
+
+            writers[plot] = partial(save_plot, result)
+        if page:
+            from kvtheory.plots.comparison import save_comparison_report
+
+            writers[page] = partial(save_comparison_report, result, scene)
+        replace_files(writers)
     if as_json:
         print_json(result.as_dict())
     return as_json

@@ -57,7 +57,7 @@ def solve(
     if explain:
         _explain(found)
     if at is not None or over_time:
-        print_series(found, whole=at is not None)
+        print_series(found, whole=at is not None, remedy="Take a smaller --rtol.")
     else:
         print_steady(found, found.values)
     worst = max(found.certificate.relative_error.values())

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from kvtheory.cli.console import print_json, print_table, scene_command, shown
+from kvtheory.cli.console import print_json, print_table, progress_bar, scene_command, shown
 from kvtheory.cli.group import main
 from kvtheory.cli.steady import note_history
 
@@ -35,12 +35,13 @@ def stability(scene: str | None, overrides: Sequence[str], as_json: bool) -> Non
     drive.mass; without a stiffness the drive is rigid. Stable means against small disturbances: a large
     one, such as a sudden start, may still end in stick-slip.
     """
-    from kvtheory.api import stability as examine
-    from kvtheory.results import units_for
-    from kvtheory.scene import load_scene
+    with progress_bar("stability"):
+        from kvtheory.api import stability as examine
+        from kvtheory.results import units_for
+        from kvtheory.scene import load_scene
 
-    checked = load_scene(scene, overrides)
-    found = examine(checked)
+        checked = load_scene(scene, overrides)
+        found = examine(checked)
     if as_json:
         print_json(found.as_dict())
         return

@@ -9,6 +9,7 @@ import click
 from kvtheory.cli.console import (
     print_json,
     print_steady,
+    progress_bar,
     scene_command,
     text,
 )
@@ -30,12 +31,13 @@ def steady(
     output: Path | None, plot: Path | None,
 ) -> None:  # fmt: skip
     """Print the state of steady sliding: depth, edges, load, friction, peak pressure."""
-    from kvtheory.api import steady as solve
-    from kvtheory.scene import load_scene
-
     check_results(output, plot)
-    checked = load_scene(scene, overrides)
-    state = solve(checked, method=method)
+    with progress_bar("steady"):
+        from kvtheory.api import steady as solve
+        from kvtheory.scene import load_scene
+
+        checked = load_scene(scene, overrides)
+        state = solve(checked, method=method)
     if deliver(state, output, plot, as_json=as_json):
         return
     note_history(checked)
@@ -55,11 +57,12 @@ def asymptotes(
     scene: str | None, overrides: Sequence[str], as_json: bool, tolerance: float
 ) -> None:
     """Print which asymptote holds, its error, and over which velocities it holds."""
-    from kvtheory.api import asymptotes as examine
-    from kvtheory.scene import load_scene
+    with progress_bar("asymptotes"):
+        from kvtheory.api import asymptotes as examine
+        from kvtheory.scene import load_scene
 
-    checked = load_scene(scene, overrides)
-    report = examine(checked, tolerance=tolerance)
+        checked = load_scene(scene, overrides)
+        report = examine(checked, tolerance=tolerance)
     if as_json:
         print_json(report.as_dict())
         return

@@ -36,7 +36,7 @@ def transient(
         result = follow(checked, at=at, rtol=rtol, max_steps=max_steps, progress=progress)
     if deliver(result, output, plot, as_json=as_json):
         return
-    print_series(result, whole=at is not None)
+    print_series(result, whole=at is not None, remedy="Take a smaller --rtol.")
     click.echo("\nevents:")
     for event in result.events:
         click.echo(f"  {text(event.time, 's')}: {event.kind}")

@@ -2,18 +2,11 @@
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from time import perf_counter
 from typing import Any, NamedTuple
 
-from kvtheory.results import (
-    STEADY_UNITS,
-    TRANSIENT_UNITS,
-    Certificate,
-    ClimbStep,
-    Solution,
-    units_for,
-)
+from kvtheory.results import STEADY_UNITS, Certificate, ClimbStep, Solution, units_for
 from kvtheory.results.certificate import Value
 from kvtheory.results.errors import ToleranceError
 from kvtheory.scene.model import Scene
@@ -24,13 +17,13 @@ class Request:
     """What is asked of a scene.
 
     `quantities` must be within `rtol`; `times` (s) are those of a series, None for its own times;
-    `over_time` says whether a series is asked for.
+    `units` has all quantities that the answer holds, those of a series or of steady sliding.
     """
 
     quantities: tuple[str, ...]
     rtol: float
     times: Sequence[float] | None = None
-    over_time: bool = False
+    units: Mapping[str, str] = field(default_factory=lambda: STEADY_UNITS)
 
 
 class Judgement(NamedTuple):
@@ -84,11 +77,10 @@ def climb(scene: Scene, request: Request, rungs: Sequence[Rung]) -> Solution:
         step, answer = _try(rung, scene, request)
         steps.append(step)
         if answer is not None:
-            units = TRANSIENT_UNITS if request.over_time else STEADY_UNITS
             return Solution(
                 values=answer.values, rtol=request.rtol, model=rung.name,
                 certificate=answer.certificate, climb=tuple(steps), answer=answer.result,
-                units=units_for(scene.indenter, units),
+                units=units_for(scene.indenter, request.units),
             )  # fmt: skip
     raise ToleranceError(_failure(request, steps))
 
@@ -126,9 +118,12 @@ def _try(rung: Rung, scene: Scene, request: Request) -> tuple[ClimbStep, Answer 
 def _failure(request: Request, steps: Sequence[ClimbStep]) -> str:
     reached = [step.error for step in steps if step.outcome == TOO_LARGE and step.error < math.inf]
     hint = f"; try a tolerance from {min(reached):.1e}" if reached else ""
-    tried = "; ".join(
-        f"{step.rung}: {step.outcome}"
-        + (f" ({step.error:.1e})" if step.outcome == TOO_LARGE and step.error < math.inf else "")
-        for step in steps
-    )
+    reasons: dict[str, list[str]] = {}  # each once, with the models that it holds for
+    for step in steps:
+        known = step.outcome == TOO_LARGE and step.error < math.inf
+        reached_by = f" ({step.error:.1e})" if known else ""
+        models = reasons.setdefault(step.outcome + reached_by, [])
+        if step.rung not in models:
+            models.append(step.rung)
+    tried = "; ".join(f"{', '.join(models)}: {reason}" for reason, models in reasons.items())
     return f"no model is known to be within rtol = {request.rtol:g}{hint}; {tried}"

@@ -28,7 +28,7 @@ SAFETY = 4.0
 """Of the estimate: the largest error on random scenes was 0.6 of the estimate with it."""
 LEAST_DAMPING = 0.7
 """Of C: where a change is so fast that less is felt, an estimate of first order is none."""
-STEADY_NAMES = {"normal_force": "load"}
+STEADY_NAMES = {"normal_force": "load", "spring_force": "friction_force"}
 """Names of steady sliding that differ from those of a series."""
 STATEMENT = (
     "of the Kelvin-Voigt foundation with the damping sum K_i tau_i, beside the error of its solution: "

@@ -36,6 +36,9 @@ GIVEN = ("time", "velocity")
 """Known before anything is solved."""
 SOLVED = tuple(name for name in TRANSIENT_UNITS if name not in GIVEN)
 
+ON_RIGID = {"sliding_velocity": "velocity", "spring_force": "friction_force"}
+"""On a rigid drive the indenter slides at its velocity, and it bears the friction."""
+
 OWN_TIMES = 201
 """Of a series whose times are not given, where the model has no steps of its own."""
 
@@ -55,6 +58,8 @@ somewhat more. The work grows as the square, of a ball as the cube."""
 MOST_UPDATES = {True: 5e7, False: 1e9}
 """Updates of elements in one run, about a minute and a half: of a line contact, and of a ball, which has
 thousands of them in a step."""
+OF_AN_ARM = 0.4
+"""The work of an arm of an element, in updates."""
 DIMENSIONS = {True: 2, False: 3}
 """What is refined together: elements, steps, and strips of a ball."""
 
@@ -100,8 +105,12 @@ def _strips(transient: Callable[..., Transient], scene: Scene, request: Request,
     return _asked(result, result.certificate, request, result)
 
 
+def _solved(request: Request) -> tuple[str, ...]:
+    return tuple(name for name in request.units if name not in GIVEN)
+
+
 def _replaceable(steady: Callable[..., SteadyState], scene: Scene, request: Request) -> Judgement:
-    return equivalent.judge(steady, scene, request, SOLVED)
+    return equivalent.judge(steady, scene, request, _solved(request))
 
 
 def _anything(scene: Scene, request: Request) -> Judgement:
@@ -237,11 +246,11 @@ def _equivalent(models: Models, scene: Scene, request: Request, rate: float) -> 
         _continuum(models.transient, replace(scene, foundation=each), request, None)
         for each in (equivalent.foundation(scene), equivalent.foundation(scene, rate))
     )
-    own = answer.certificate
+    own, solved = answer.certificate, _solved(request)
     parts = (
         own.relative_error,
-        equivalent.neglected(answer.result, other.result, scene, SOLVED),
-        equivalent.in_steady_sliding(models.steady, scene, SOLVED),
+        equivalent.neglected(answer.result, other.result, scene, solved),
+        equivalent.in_steady_sliding(models.steady, scene, solved),
     )
     errors = {name: sum(part.get(name, 0.0) for part in parts) for name in own.relative_error}
     certificate = Certificate(
@@ -253,7 +262,7 @@ def _equivalent(models: Models, scene: Scene, request: Request, rate: float) -> 
 def _elements(
     elements: Callable[..., Simulation], scene: Scene, request: Request, _: Any
 ) -> Answer:
-    """Refine until the certificate is met, or the work would be too much.
+    """Refine until the certificate is met, or until that would be too much work.
 
     A certificate compares with half as many elements, and both may be too coarse to see what is fast:
     what a run differs from the coarser one before it counts too, divided by the ratio of their elements.
@@ -270,8 +279,11 @@ def _elements(
         error = max(answer.certificate.relative_error[name] for name in request.quantities)
         enough = error <= request.rtol and before is not None
         line = scene.indenter.per_width
-        finer = min(max(SPARE * math.sqrt(error / request.rtol), LEAST_FINER), MOST_FINER[line])
-        if enough or result.element_updates * finer ** DIMENSIONS[line] > MOST_UPDATES[line]:
+        needed = max(SPARE * math.sqrt(error / request.rtol), LEAST_FINER)
+        finer = min(needed, MOST_FINER[line])
+        ratio = finer if before is None else needed  # the first run may be too coarse to tell
+        work = result.element_updates * (1.0 + OF_AN_ARM * len(scene.foundation.arms))
+        if enough or work * ratio ** DIMENSIONS[line] > MOST_UPDATES[line]:
             return answer
         count, before = count * finer, answer
 
@@ -291,15 +303,13 @@ def _compared(answer: Answer, before: Answer, finer: float, scales: dict[str, fl
 
 def _asked(series: Any, certificate: Certificate, request: Request, result: Any = None) -> Answer:
     """Return the series with NaN for what was not asked for, and the errors of what was."""
-    get = series.__getitem__ if isinstance(series, dict) else lambda name: getattr(series, name)
-    wanted = {*GIVEN, *request.quantities}
-    nothing = np.full(np.size(get("time")), np.nan)
-    values = {name: get(name) if name in wanted else nothing for name in TRANSIENT_UNITS}
-    errors = {
-        name: 0.0 if name in GIVEN else certificate.relative_error[name]
-        for name in TRANSIENT_UNITS
-        if name in wanted
-    }
+    held = series if isinstance(series, dict) else vars(series)
+    known = {**certificate.relative_error, **dict.fromkeys(GIVEN, 0.0)}
+    wanted = [name for name in request.units if name in (*GIVEN, *request.quantities)]
+    source = {name: name if name in held else ON_RIGID[name] for name in wanted}
+    values = {name: np.full(np.size(held["time"]), np.nan) for name in request.units}
+    values |= {name: held[source[name]] for name in wanted}
+    errors = {name: known[source[name]] for name in wanted}
     return Answer(values, replace(certificate, relative_error=errors), result)
 
 

@@ -49,7 +49,7 @@ def neglected(series: dict[str, Array], at_rest: StaticState) -> dict[str, Array
     edges = np.array([series["leading_edge"], series["trailing_edge"]]) / at_rest.half_length
     left, right = np.sort(edges, axis=0)
     length, tilt = right - left, np.abs(right + left)
-    speed, place, depth = _felt(s, force, length, tilt, at_rest)
+    speed, place, depth, ring = _felt(s, force, length, tilt, at_rest)
     rate = tilt * speed + FASTER * depth
     far, near = np.maximum(-left, right), np.minimum(-left, right) + np.abs(number)
     edge = speed + place + 0.5 * (depth + rate) / np.maximum(near, TINY)
@@ -61,13 +61,15 @@ def neglected(series: dict[str, Array], at_rest: StaticState) -> dict[str, Array
         "leading_edge": edge,
         "trailing_edge": edge,
         "peak_pressure": 2.0 * far * speed + depth + rate + 2.0 * np.abs(number) * edge,
+        "sliding_velocity": speed,
     }
+    errors["spring_force"] = errors["friction_force"] + ring  # f_s = f - ε_x x''
     least = 0.0 if np.all(speed <= SMALL * np.abs(number)) else math.inf
     return {name: SAFETY * error + least for name, error in errors.items()}
 
 
 def _felt(s: Array, force: Array, length: Array, tilt: Array, at_rest: StaticState) -> list[Array]:
-    """Return bounds of velocity and place along x, and of what the depth is wrong by."""
+    """Return bounds of velocity and displacement along x, of the depth error, and of ε_x x''."""
     inertia, stiffness = at_rest.drive_inertia_number, at_rest.drive_stiffness_number
     steps, jumps = np.diff(s, prepend=s[0]), np.abs(np.diff(force, prepend=0.0))
     slope = np.divide(jumps, steps, out=np.zeros_like(s), where=steps > 0.0)
@@ -83,7 +85,7 @@ def _felt(s: Array, force: Array, length: Array, tilt: Array, at_rest: StaticSta
         wave = wave * math.exp(-fall * step) + min(float(jumps[k]) / swing, float(kinks[k]))
         sunk = sunk * math.exp(-step) + float(tilt[k] * jumps[k]) / stiffness
         sunk += 0.5 * step * wave * wave
-        place = wave * swing / stiffness
-        found.append((wave, place, sunk + float(tilt[k]) * place))
-    wave, place, sunk = np.array(found).T
-    return [wave + slope / stiffness, place + np.abs(force) / stiffness, sunk]
+        ring = wave * swing
+        found.append((wave, ring, sunk + float(tilt[k]) * ring / stiffness))
+    wave, ring, sunk = np.array(found).T
+    return [wave + slope / stiffness, (ring + np.abs(force)) / stiffness, sunk, ring]

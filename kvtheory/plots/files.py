@@ -10,7 +10,7 @@ from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
-from kvtheory.export import PICTURES, check_path, replace_file
+from kvtheory.export import PICTURES, check_path, replace_file, replace_files
 from kvtheory.plots.style import STYLE
 
 PACKAGES = "kvtheory", "numpy", "scipy", "numba", "scikit-sundae"
@@ -35,8 +35,11 @@ def save_picture(draw: Callable[[], Any], path: Path) -> None:
 def save_chart(draw: Callable[[], Any], data: Mapping[str, Any], path: Path) -> None:
     """Draw and write a picture, and its data as JSON beside it, with machine and versions."""
     text = json.dumps({"environment": environment(), **data}, indent=1, allow_nan=False)
-    save_picture(draw, path)
-    save_page(text + "\n", path.with_suffix(".json"))
+    picture, page = path, path.with_suffix(".json")
+    replace_files({
+        picture: lambda part: save_picture(draw, part),
+        page: lambda part: save_page(text + "\n", part),
+    })  # fmt: skip
 
 
 def environment() -> dict[str, str | int]:

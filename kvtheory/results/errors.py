@@ -10,7 +10,7 @@ class TransientError(ArithmeticError):
     """The transient could not be computed further; the message says why and when."""
 
     def __init__(self, reason: str, s: float, name: str = "s", unit: str = "") -> None:
-        super().__init__(f"{reason} at {name} = {s!r}{unit}")
+        super().__init__(f"{reason} at {name} = {s:.6g}{unit}")
         self.reason, self.s = reason, s
 
 

@@ -93,7 +93,7 @@ class Sweep:
         try:
             import xarray
         except ModuleNotFoundError:
-            raise ValueError('this needs xarray: pip install "kvtheory[data]"') from None
+            raise ValueError('this needs xarray: pip install ".[data]" in the checkout') from None
         dims = [axis.name for axis in self.axes]
         coordinates: dict[str, Any] = {
             key: (axis.name, array, {"units": self.units[key]})

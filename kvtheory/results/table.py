@@ -95,6 +95,11 @@ def units_for(indenter: Indenter, units: Mapping[str, str]) -> Mapping[str, str]
     return {name: WHOLE.get(unit, unit) for name, unit in units.items()}
 
 
+def series_units(*, rigid_drive: bool) -> Mapping[str, str]:
+    """Return the quantities of a time series and their units, `time` first."""
+    return TRANSIENT_UNITS if rigid_drive else SERIES_UNITS
+
+
 def scales(at_rest: StaticState) -> dict[str, float]:
     """Return the scale of each quantity of a series: a value of the static state, or a product of these.
 
@@ -102,5 +107,5 @@ def scales(at_rest: StaticState) -> dict[str, float]:
     >>> round(scales(StaticState.of(Scene()))["normal_force"], 2)
     9806.65
     """
-    names = TRANSIENT_UNITS if at_rest.rigid_drive else SERIES_UNITS
+    names = series_units(rigid_drive=at_rest.rigid_drive)
     return {name: getattr(at_rest, QUANTITIES[name].scale) for name in names}

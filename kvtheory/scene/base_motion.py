@@ -7,12 +7,12 @@ just after it.
 import itertools
 import math
 from bisect import bisect_right
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.polynomial import Chebyshev, Polynomial
+from numpy.polynomial import Chebyshev, Polynomial, polynomial
 from numpy.typing import NDArray
 
 DEGREE = 8
@@ -31,19 +31,22 @@ SAME_TIME = 1024.0
 model could not step from one to the other."""
 
 ON_REST = 16.0 * 2.0**-52
-"""Relative to the terms of a velocity: what rounding leaves where they cancel and the base rests."""
+"""Relative to the terms of a velocity: what rounding leaves where they cancel."""
 
 START, END, DISPLACEMENT, POWERS = 0, 1, 2, 3
 """Layout of a piece: its times, Y at its start, then the coefficients of V in t - start."""
 
 Piece = Sequence[float]
+Span = tuple[float, float, tuple[float, ...]]
+"""A piece without its displacement: its times, and the coefficients of V."""
 
 
 @dataclass(frozen=True)
 class BaseMotion:
-    """V(t) of pieces that follow each other; V may jump between them.
+    """V(t) of pieces that follow each other; V may jump between them, and passes through zero only there.
 
-    Each piece is (start, end, Y(start), c_0, c_1, ...), V = sum c_k (t - start)^k, all of one length.
+    Each piece is (start, end, Y(start), c_0, c_1, ...), V = sum c_k (t - start)^k, all of one length. On a
+    piece the base moves one way: a model whose steps end with the pieces misses no reversal, however brief.
     The last piece may have no length: it then says how the base moves just after a jump at the end.
     `changes` are the times at which V may jump or have a kink. Before t = 0 the base rests.
     """
@@ -77,7 +80,7 @@ class BaseMotion:
         ]
         last, velocity = points[-1]
         found.append((last, max(float(end), last), (velocity, 0.0)))
-        return cls(_joined(found), tuple(start for start, _, _ in found))
+        return cls(_joined(_one_way(found)), tuple(start for start, _, _ in found))
 
     @classmethod
     def from_function(
@@ -110,7 +113,7 @@ class BaseMotion:
         inner = [b for a, b in itertools.pairwise([0.0, *inner]) if b - a > near]
         latest = min((t for t in breaks if abs(t - end) <= near), default=math.inf) - near
         todo = list(itertools.pairwise([0.0, *inner, end]))[::-1]
-        found: list[tuple[float, float, tuple[float, ...]]] = []
+        found: list[Span] = []
 
         def value(t: float) -> float:
             return function(_beside(min(t, latest), breaks))
@@ -131,7 +134,7 @@ class BaseMotion:
                     "and kinks as `breaks`, or a larger `tolerance`"
                 )
             todo += [(middle, b), (a, middle)]
-        return cls(_joined(found), (0.0, *inner))
+        return cls(_joined(_one_way(found)), (0.0, *inner))
 
     def repeated(self, end: float) -> "BaseMotion":
         """Return the motion repeated periodically until `end`.
@@ -201,13 +204,9 @@ class BaseMotion:
     def forward(self, t: float) -> bool:
         """Whether the base moves, or moved last, with V >= 0."""
         for piece in reversed(self.pieces[: bisect_right(self.starts, t)]):
-            after = t - piece[START]
-            _, V, slope = evaluate(piece, t)
-            size = sum(abs(c) * after**k for k, c in enumerate(piece[POWERS:]))
-            if abs(V) > ON_REST * size:
+            V = evaluate(piece, 0.5 * (piece[START] + t))[1]
+            if V != 0.0:
                 return V > 0.0
-            if abs(slope) * after > ON_REST * size:
-                return slope < 0.0  # it comes to rest here
             t = piece[START]
         return True
 
@@ -239,12 +238,9 @@ class BaseMotion:
 
     @cached_property
     def _turns(self) -> tuple[list[float], list[float]]:
-        """Times and places at which Y may turn: the ends of the pieces, and where V is zero."""
-        times = {piece[at] for piece in self.pieces for at in (START, END)}
-        for piece in self.pieces:
-            times.update(t for t in _zeros(piece) if piece[START] < t < piece[END])
-        ordered = sorted(times)
-        return ordered, [self.displacement(t) for t in ordered]
+        """Times and places at which Y may turn: the ends of the pieces."""
+        times = [*self.starts, self.end]
+        return times, [self.displacement(t) for t in times]
 
     def _piece(self, t: float) -> Piece:
         return self.pieces[max(bisect_right(self.starts, t) - 1, 0)]
@@ -261,13 +257,36 @@ def evaluate(piece: Piece, t: float) -> tuple[float, float, float]:
     return piece[DISPLACEMENT] + displacement * after, velocity, slope
 
 
-def _zeros(piece: Piece) -> list[float]:
-    """Return the times at which the polynomial of a piece is zero, outside the piece too."""
-    c_0, c_1, *higher = piece[POWERS:]
-    if not any(higher):
-        return [piece[START] - c_0 / c_1] if c_1 else []
-    roots = Polynomial(piece[POWERS:]).roots()
-    return [piece[START] + float(root.real) for root in roots]
+def _one_way(found: Iterable[Span]) -> Iterator[Span]:
+    """Cut the pieces where V passes through zero."""
+    for a, b, coefficients in found:
+        start, powers = a, coefficients
+        for zero in _reversals(coefficients, a, b):
+            yield start, zero, powers
+            start, shifted = zero, list(coefficients)
+            for first in range(len(shifted) - 1):
+                for k in range(len(shifted) - 2, first - 1, -1):
+                    shifted[k] += (zero - a) * shifted[k + 1]
+            powers = (0.0, *shifted[1:])
+        yield start, b, powers
+
+
+def _reversals(coefficients: Sequence[float], a: float, b: float) -> list[float]:
+    """Return the times within a piece at which V changes its sign, by more than rounding."""
+    powers = [c * (b - a) ** k for k, c in enumerate(coefficients)]
+    size = sum(map(abs, powers))
+    if 2.0 * abs(powers[0]) >= size:
+        return []
+    near = SAME_TIME * math.ulp(b) / (b - a)
+    if not any(powers[2:]):
+        share = -powers[0] / powers[1]
+        return [a + share * (b - a)] if near < share < 1.0 - near else []
+    roots = polynomial.polyroots([c if abs(c) > 1e-3 * ON_REST * size else 0.0 for c in powers])
+    inner = np.sort(roots.real[(roots.imag == 0.0) & (abs(roots.real - 0.5) < 0.5 - near)])
+    ends = np.concatenate([[0.0], inner, [1.0]])
+    V = polynomial.polyval(0.5 * (ends[1:] + ends[:-1]), powers) / (ON_REST * size)
+    changes = (np.minimum(V[1:], V[:-1]) < -1.0) & (np.maximum(V[1:], V[:-1]) > 1.0)
+    return [a + float(share) * (b - a) for share in inner[changes]]
 
 
 def _beside(t: float, breaks: Iterable[float]) -> float:
@@ -312,9 +331,7 @@ def _refuse_if_too_fast(
         )
 
 
-def _joined(
-    found: Iterable[tuple[float, float, tuple[float, ...]]],
-) -> tuple[tuple[float, ...], ...]:
+def _joined(found: Iterable[Span]) -> tuple[tuple[float, ...], ...]:
     """Give each piece (a, b, coefficients) the displacement at which the one before it ends."""
     pieces: list[tuple[float, ...]] = []
     displacement = 0.0

@@ -262,7 +262,7 @@ def _parsed(overrides: list[str]) -> tuple[list[tuple[str, str, str]], list[str]
         section, _, name = key.strip().partition(".")
         if not (separator and section and name):
             near = closest(key.strip(), _all_keys())
-            hint = f'did you mean "{near}"? ' if near else ""
+            hint = f'did you mean "{near}"? ' if near not in ("", None, key.strip()) else ""
             problems.append(
                 f'`overrides` "{text}": {hint}expected KEY=VALUE, such as drive.velocity="50 mm/s"'
             )

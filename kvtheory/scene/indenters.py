@@ -168,6 +168,8 @@ class Wedge(_Shape):
 class Profile(Part):
     """Any shape, from Python functions of one float: h(x), lowest at h(0) = 0, and h'(x).
 
+    At a kink, h' is taken from both sides; the value of its function there does not matter.
+
     >>> ellipse = Profile(lambda x: 0.001 * (1 - math.sqrt(1 - (x / 0.02) ** 2)),
     ...                   lambda x: 0.05 * (x / 0.02) / math.sqrt(1 - (x / 0.02) ** 2), reach=0.02)
     >>> print(f"{ellipse.height(0.012):.6g}")
@@ -196,8 +198,19 @@ class Profile(Part):
         return _pointwise(self.height_function, x)
 
     def slope(self, x: Value) -> Value:
-        """Return h'(x)."""
-        return _pointwise(self.slope_function, x)
+        """Return h'(x): at a kink the mean of both sides, whatever the function says there."""
+        return _pointwise(self._slope if self.kinks else self.slope_function, x)
+
+    def _slope(self, x: float) -> float:
+        if x not in self.kinks:
+            return self.slope_function(x)
+        before, after = (self.slope_function(beside(x, to)) for to in (-math.inf, math.inf))
+        return 0.5 * (before + after)
+
+
+def beside(x: float, to: float) -> float:
+    """Return the next number towards another; beside 0, the next that no processor takes for 0."""
+    return math.nextafter(x, to) if x else math.copysign(float(np.finfo(float).tiny), to)
 
 
 def _is_finite(value: Any) -> bool:

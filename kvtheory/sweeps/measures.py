@@ -175,7 +175,10 @@ class _Block:
         for whole, part in zip(self.found, found, strict=True):
             whole[indices] = part
         told = found.deviations.T
-        errors = estimate.errors(told, told, fine.given.rtol, fine.given.fixed)
+        tolerance = max(self.scenes[index][0].drive.tolerance for index in indices)
+        errors = estimate.errors(
+            told, told, fine.given.rtol, fine.given.fixed, sprung=False, tolerance=tolerance
+        )
         for name, error in errors.items():
             self.errors[name][indices] = error
         self.statements.add(relative(estimate.STATEMENT))

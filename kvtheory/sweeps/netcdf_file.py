@@ -26,7 +26,7 @@ def _library() -> Any:
     try:
         import netCDF4
     except ModuleNotFoundError:
-        raise ValueError('NetCDF needs netCDF4: pip install "kvtheory[data]"') from None
+        raise ValueError('NetCDF needs netCDF4: pip install ".[data]" in the checkout') from None
     return netCDF4
 
 

@@ -8,19 +8,21 @@ other solution counts as far from its own jump as the instant is from the first 
 import math
 from typing import Any
 
+from kvtheory.models.continuum import dense_output as h_
 from kvtheory.models.continuum import evaluation as e_
 from kvtheory.models.continuum import run as r_
 from kvtheory.models.continuum.run import Run
 from kvtheory.models.continuum.stepping import TAKE_OFF
+from kvtheory.models.continuum.trial_step import EVENT_RESOLUTION
 
 DEPTH, RATE, NORMAL_FORCE, FRICTION_FORCE, EDGES, PEAK_PRESSURE, HOPS = range(7)
 """Layout of the deviations: of the quantities in scaled form, and of the times of take-offs and landings."""
-EDGE_ROUNDING, NORMAL_ROUNDING, FRICTION_ROUNDING, PEAK_ROUNDING = range(7, 11)
+EDGE_ROUNDING, NORMAL_ROUNDING, FRICTION_ROUNDING, PEAK_ROUNDING, HOP_ROUNDING = range(7, 12)
 """What rounding of the edges may do to them, and to the forces, for the pressure there acts, and to the
-pressure at them."""
-ALONG_RATE, SPRING_FORCE = range(11, 13)
-"""Of a drive with a spring."""
-SIZES = 13
+pressure at them; and that of the gap, to the time of a landing."""
+NUMBER, SPRING_FORCE, ALONG = range(12, 15)
+"""How fast the base slides; the force of a spring in the drive, and how far it is stretched."""
+SIZES = 15
 """From here on, the largest magnitude of each quantity; of those that stand for rounding it stays zero."""
 SIZE = 2 * SIZES
 
@@ -37,6 +39,9 @@ def deviations(times: Any, found: Any, fine: Run, other: Run, rows: Any, worst: 
     for i in range(len(times)):
         s = times[i]
         while alike and next_f >= 0 and fine.events[next_f][0] <= s:
+            worst[HOP_ROUNDING] = max(
+                worst[HOP_ROUNDING], hop_rounding(fine, fine.events[next_f][0], rows[1])
+            )
             last_f, last_o = next_f, next_o
             next_f, next_o = next_hop(fine, next_f + 1), next_hop(other, next_o + 1)
         e_.state_at(other, e_.record_at(other, s), s, rows[0])
@@ -74,6 +79,16 @@ def next_hop(run: Run, index: int) -> int:
     return -1
 
 
+def hop_rounding(run: Run, s: float, row: Any) -> float:
+    """Return what rounding may do to the time of a hop: at a landing, the gap closes by the pressure."""
+    index, found = e_.record_at(run, s), EVENT_RESOLUTION * (1.0 + s)
+    e_.state_at(run, index, s, row)
+    if row[e_.PEAK_PRESSURE] > 0.0:
+        Y = row[e_.LEFT] - run.records[index][h_.LEFT_X]
+        found += e_.UNIT * (1.0 + abs(Y)) / row[e_.PEAK_PRESSURE]
+    return found
+
+
 def _raise(worst: Any, row: Any, one: Any, two: Any) -> None:
     """Raise the deviations to those of `row` from the nearer of two other states, in each quantity."""
     for k, i in (
@@ -84,8 +99,9 @@ def _raise(worst: Any, row: Any, one: Any, two: Any) -> None:
         (EDGES, e_.LEFT),
         (EDGES, e_.RIGHT),
         (PEAK_PRESSURE, e_.PEAK_PRESSURE),
-        (ALONG_RATE, e_.ALONG_RATE),
+        (NUMBER, e_.NUMBER),
         (SPRING_FORCE, e_.SPRING_FORCE),
+        (ALONG, e_.ALONG),
     ):
         value = _known(row[i])
         worst[SIZES + k] = max(worst[SIZES + k], abs(value))

@@ -45,13 +45,18 @@ def methods(rtol: float) -> tuple[tuple[float, StepControl], tuple[float, StepCo
     return (rtol, StepControl()), (max(rtol / TIGHTER, TIGHTEST), COMPARISON)
 
 
-def certificate(fine: Trajectory, other: Trajectory | None, times: Array | None) -> Certificate:
-    """Return the certificate of the states at the scaled `times`, by default the natural ones."""
+def certificate(
+    fine: Trajectory, other: Trajectory | None, times: Array | None, tolerance: float
+) -> Certificate:
+    """Return the certificate of the states at the scaled `times`, by default the natural ones.
+
+    `tolerance` is that of the polynomials that stand for a drive.
+    """
     if other is None:
         return unknown(NOTHING, sprung=fine.rows.given.sprung)
     given, whole = fine.rows.given, fine.deviations(other)
     here = whole if times is None else fine.deviations(other, times)
-    told = errors(here, whole, given.rtol, given.fixed, sprung=given.sprung)
+    told = errors(here, whole, given.rtol, given.fixed, sprung=given.sprung, tolerance=tolerance)
     return Certificate(
         "estimated", STATEMENT, {k: float(error) for k, error in told.items()}, AT_REST
     )
@@ -59,7 +64,8 @@ def certificate(fine: Trajectory, other: Trajectory | None, times: Array | None)
 
 def unknown(why: str, *, sprung: bool = False) -> Certificate:
     """Return the certificate of a transient of whose error nothing is known."""
-    names = errors([0.0] * d_.SIZE, [0.0] * d_.SIZE, 1.0, False, sprung=sprung)
+    nothing = [0.0] * d_.SIZE
+    names = errors(nothing, nothing, 1.0, False, sprung=sprung, tolerance=1.0)
     given = dict.fromkeys(EXACT, 0.0)
     return Certificate("estimated", why, dict.fromkeys(names, math.inf) | given, AT_REST)
 
@@ -69,23 +75,24 @@ EXACT = ("time", "velocity")
 
 
 def errors(
-    here: Any, whole: Any, rtol: float, fixed: bool, *, sprung: bool = False
+    here: Any, whole: Any, rtol: float, fixed: bool, *, sprung: bool, tolerance: float
 ) -> dict[str, Any]:
     """Return the error of each quantity from the deviations at some times, and those over the whole run.
 
-    The surface is the largest of what the depths of the past left: it is no more wrong than the depth
-    has ever been (fact F8). The pressure inside the contact is wrong as the depth and its rate are.
-    Deviations may be arrays of those of many scenes.
+    The pressure inside the contact, d + d' - xi^2 - 2 lambda xi, is wrong as the depth, its rate and lambda
+    are. The surface is the largest of what the past left, e^-(s - sigma) (d - xi^2) at sigma (fact F8): it is
+    no more wrong than the depth has ever been, and the way by which the base has slid since, of which the
+    place along x at both instants is a part. Deviations may be arrays of those of many scenes.
     """
-    moves = 0.0 if fixed else 1.0
-    luck = FLOOR * rtol * (1.0 + np.asarray(whole[d_.SIZES :]))
+    moves, slides = 0.0 if fixed else 1.0, 1.0 if sprung else 0.0
+    sizes = np.asarray(whole[d_.SIZES :])
+    luck = FLOOR * rtol * (1.0 + sizes)
     at_times, ever = (np.maximum(MARGIN * np.asarray(of[: d_.SIZES]), luck) for of in (here, whole))
     edges = at_times[d_.EDGES] + here[d_.EDGE_ROUNDING]
-    depth = moves * ever[d_.DEPTH]
-    spring = {
-        "sliding_velocity": at_times[d_.ALONG_RATE],
-        "spring_force": at_times[d_.SPRING_FORCE],
-    }
+    depth, arm = moves * ever[d_.DEPTH], sizes[d_.EDGES]
+    drive = tolerance * (1.0 + sizes[d_.NUMBER])
+    way = slides * 2.0 * ever[d_.ALONG] + drive + 2.0 * whole[d_.EDGE_ROUNDING]
+    spring = {"sliding_velocity": at_times[d_.NUMBER], "spring_force": at_times[d_.SPRING_FORCE]}
     return {
         "time": 0.0,
         "velocity": 0.0,
@@ -96,8 +103,8 @@ def errors(
         "leading_edge": edges,
         "trailing_edge": edges,
         "peak_pressure": at_times[d_.PEAK_PRESSURE] + here[d_.PEAK_ROUNDING],
-        "pressure": depth + moves * ever[d_.RATE],
-        "surface": depth,
-        "jump_time": moves * ever[d_.HOPS],
+        "pressure": depth + moves * ever[d_.RATE] + 2.0 * arm * (slides * ever[d_.NUMBER] + drive),
+        "surface": depth + 2.0 * arm * way,
+        "jump_time": moves * (ever[d_.HOPS] + whole[d_.HOP_ROUNDING]),
         **(spring if sprung else {}),
     }

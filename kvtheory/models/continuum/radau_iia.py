@@ -79,7 +79,8 @@ def _probes(c: list[float]) -> list[float]:
     """Return where each step is examined: where the defect is largest, between the stages."""
     M = Polynomial.fromroots(c)
     turns = np.sort(np.real(M.deriv().roots()))
-    return [float(turns[np.argmin(np.abs(turns - place))]) for place in PLACES]
+    nearest = [float(turns[np.argmin(np.abs(turns - place))]) for place in PLACES]
+    return sorted(set(nearest))  # of few stages, one may be the nearest of two
 
 
 def _scales(c: list[float], probes: list[float]) -> list[list[float]]:

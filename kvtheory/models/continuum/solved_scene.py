@@ -213,7 +213,7 @@ def certified(
     with suppress(TransientError):  # a tighter solution may fail where this one did not
         other = solved(1, *second)
     s = None if times is None else fine.scaled(time)
-    return fine, time, certificate(fine.motion, other, s)
+    return fine, time, certificate(fine.motion, other, s, scene.drive.tolerance)
 
 
 def _named(states: Array) -> tuple[str, ...]:

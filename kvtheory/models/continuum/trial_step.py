@@ -18,6 +18,13 @@ EVENT_RESOLUTION = 1e-13
 """Of the time of an event, relative to 1 + s."""
 OFF_THE_ENDS = 0.01
 """Share of a bracket by which a secant keeps off its ends, so that both of them move."""
+DIPPING = 0, 1, 3
+"""The monitors that may be negative for a moment within a step; an edge does not return to ground it left."""
+LOW = 0.5
+"""A monitor may be zero between three probes if its smallest value there is below this share of the largest;
+a parabola that is zero between them has at most 0.33."""
+LOOKS, CLOSE = 6, 1e-7
+"""Most evaluations in search of one minimum, and the least distance between two, as a share of the step."""
 ROUNDING = 1e-15
 """Of an edge, whose material coordinate is xi - Y, relative to Y and to what a rounded time does to it."""
 
@@ -58,19 +65,71 @@ def attempt(run: Run, record: Any, span: float) -> tuple[float, float, Monitors]
             return math.inf, math.inf, NO_EVENT
     size, before, found_after, found = 0.0, start, start, math.inf
     probes = run.given.method.probes
+    first = second = NO_EVENT
     for probe in range(len(probes) + 1):
         s = start + (probes[probe] if probe < len(probes) else 1.0) * span
-        slack, error = _probe(run, record, s, probe)
-        size = max(size, error)
+        values, error = _probe(run, record, s, probe)
+        size, slack = max(size, error), smallest(values)
         if math.isnan(slack):
             return math.inf, math.inf, NO_EVENT
         if found == math.inf and slack < 0.0:
             found_after, found = before, s
-        before = s
+        if found == math.inf and _low(first, second, values):
+            found_after, found = _dip(run, record, probe, first, second, values)
+        before, first, second = s, second, values
     if found == math.inf:
         return size, math.inf, NO_EVENT
     found, violated = _locate(run, record, found_after, found)
     return size, found, violated
+
+
+def _low(first: Monitors, second: Monitors, third: Monitors) -> bool:
+    """Whether a monitor is so low at one of three probes that it may be negative between them."""
+    low = False
+    for k in DIPPING:
+        low = low or min(first[k], second[k], third[k]) < LOW * max(first[k], third[k]) < math.inf
+    return low
+
+
+def _dip(
+    run: Run, record: Any, probe: int, first: Monitors, second: Monitors, third: Monitors
+) -> tuple[float, float]:
+    """Return a time before, and one when, a monitor is negative between three probes where none is.
+
+    The parabola through three points is lowest near where the monitor is: it is evaluated there, and the
+    parabola drawn anew. The first three probes stand for what is before them, too.
+    """
+    start, span, probes = record[h_.START], record[h_.SPAN], run.given.method.probes
+    for k in DIPPING:
+        f, g, h = first[k], second[k], third[k]
+        if not min(f, g, h) < LOW * max(f, h) < math.inf:
+            continue
+        a, b = probes[probe - 2], probes[probe - 1]
+        c = probes[probe] if probe < len(probes) else 1.0
+        earliest = 0.0 if probe == 2 else a
+        for _ in range(LOOKS):
+            rise = (g - f) / (b - a)
+            bend = (h - g) / (c - b) - rise
+            place = 0.5 * (a + b - rise * (c - a) / bend) if bend > 0.0 else math.nan
+            nearest = min(abs(place - a), abs(place - b), abs(place - c))
+            if not (earliest < place < c and nearest > CLOSE):
+                break
+            value = monitors(run, record, start + place * span)[0][k]
+            if value < 0.0:
+                before = b if b < place else a if a < place else earliest
+                return start + before * span, start + place * span
+            if place < a:
+                a, b, c, f, g, h = place, a, b, value, f, g
+            elif place < b:
+                if value < g:
+                    b, c, g, h = place, b, value, g
+                else:
+                    a, f = place, value
+            elif value < g:
+                a, b, f, g = b, place, g, value
+            else:
+                c, h = place, value
+    return math.inf, math.inf
 
 
 def _begin(run: Run, record: Any, span: float) -> None:
@@ -105,8 +164,8 @@ def _solve(run: Run, record: Any) -> int:
     return evaluations
 
 
-def _probe(run: Run, record: Any, s: float, probe: int) -> tuple[float, float]:
-    """Return the slack of all states at `s`, and the error there by the tolerance."""
+def _probe(run: Run, record: Any, s: float, probe: int) -> tuple[Monitors, float]:
+    """Return the monitors at `s`, and the error there by the tolerance."""
     values, F, F_d, F_v, dv = monitors(run, record, s)
     error = 0.0
     if probe < len(run.given.method.probes):
@@ -117,7 +176,7 @@ def _probe(run: Run, record: Any, s: float, probe: int) -> tuple[float, float]:
             error /= run.given.rtol * (1.0 + abs(run.now[r_.V]))
         if run.given.sprung:
             error = max(error, _error_along(run, record, s, scales))
-    return smallest(values), error
+    return values, error
 
 
 def _error_along(run: Run, record: Any, s: float, scales: Any) -> float:
@@ -169,7 +228,7 @@ def _slack(run: Run, k: int, s: float, xi: float, now: Instant) -> tuple[float, 
 
 def _locate(run: Run, record: Any, low: float, high: float) -> tuple[float, Monitors]:
     """Return the time of the first violation in (low, high], and the monitors just after it."""
-    violated = monitors(run, record, high)[0]
+    violated, earliest = monitors(run, record, high)[0], low
     at_low, at_high, turn = math.nan, smallest(violated), 0
     while high - low > EVENT_RESOLUTION * (1.0 + abs(high)):
         turn += 1
@@ -184,4 +243,17 @@ def _locate(run: Run, record: Any, low: float, high: float) -> tuple[float, Moni
             high, at_high, violated = middle, value, values
         else:
             low, at_low = middle, value
-    return (run.now[r_.S] if low == run.now[r_.S] else high), violated
+    if low == run.now[r_.S]:
+        return low, violated
+    return (_touchdown(run, record, earliest, high) if run.states[0] == FREE else high), violated
+
+
+def _touchdown(run: Run, record: Any, earliest: float, s: float) -> float:
+    """Return when the gap is zero, from a time when it is negative by what a monitor allows.
+
+    By a step of Newton's method: du/ds = -u on the ground, and dg/ds = p - g under the indenter.
+    """
+    d, v, _, Y, number, _ = motion(record, s) + sliding_now(run, s)
+    depth, X, _, _, _ = summit(run, s, d, Y)
+    rate = c_.pressure(X + Y, d, v, number) - depth
+    return max(s - depth / rate, earliest) if rate > 0.0 else s

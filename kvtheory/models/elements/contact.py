@@ -4,6 +4,7 @@ An element is in contact if the indenter touches its surface and its pressure p 
 """
 
 import math
+from operator import itemgetter
 from typing import NamedTuple
 
 import numpy as np
@@ -154,7 +155,7 @@ def _parts_of_elements(
     at_edge = p_edge.item(best), 0.0, abs(p_in - p_out).item(best)
     highest = int(np.where(pressed, p, -math.inf).argmax())
     reach = np.where(inner == highest, share, 1.0).min(axis=0)
-    peak = max(_peak(model, p, highest, reach), at_edge)
+    peak = max(_peak(model, p, highest, reach, pressed), at_edge)
     return ContactSums(dx * force, -dx * push, left, right, *peak)
 
 
@@ -170,12 +171,12 @@ def _kinked(
         k = round((kink - x.item(0)) / dx)
         if not (0 < k < x.size - 1 and pressed[k - 1 : k + 2].all()):
             continue
-        slope = model.slope(np.array([kink, *np.nextafter(kink, [-math.inf, math.inf])]))
-        here = slope[(x[k] != kink) + (x[k] > kink).astype(int)]
-        p_each = p[k] - model.law.damping * V * (slope - here)
+        places = np.array([x[k] - _behind(model, V), kink - NEAR * dx, kink + NEAR * dx])
+        here, *slope = model.slope(places)
+        p_each = p[k] - model.law.damping * V * (np.array(slope) - here)
         left = (kink - x.item(k)) / dx + 0.5
-        share = np.array([0.0, left, 1.0 - left])
-        if (p_each[1:] >= 0.0).all():
+        share = np.array([left, 1.0 - left])
+        if (p_each >= 0.0).all():
             force = found.normal_force + dx * float(share @ (p_each - p[k]))
             push = found.friction_force - dx * float(share @ (p_each * slope - p[k] * here))
             found = found._replace(normal_force=force, friction_force=push)
@@ -188,7 +189,9 @@ def _peeling(inside: Array, outside: Array) -> Array:
     return np.where(outside < 0.0, positive / (positive - outside), math.inf)
 
 
-def _peak(model: Model, p: Array, k: int, reach: Array) -> tuple[float, float, float]:
+def _peak(
+    model: Model, p: Array, k: int, reach: Array, pressed: NDArray[np.bool_]
+) -> tuple[float, float, float]:
     """Return the peak near element k, of the parabola through three, and both doubts.
 
     A shape with kinks has no such parabola: there the peak is known to the next element. Arms remember
@@ -201,7 +204,35 @@ def _peak(model: Model, p: Array, k: int, reach: Array) -> tuple[float, float, f
     bend = 2.0 * here - before - after
     if not (here >= before > -math.inf and here >= after > -math.inf and bend > 0.0):
         return here, 0.0, 0.0
+    if doubt and pressed[k - 3 : k + 4].all():
+        return *min(_smooth(p[k - 3 : k + 4]), _ridge(p[k - 3 : k + 4]), key=itemgetter(1)), 0.0
     ahead = 0.5 * (after - before) / bend
     if abs(ahead) > reach[1 if ahead > 0.0 else 0]:
         return here, doubt, 0.0
     return here + 0.25 * (after - before) * ahead, doubt, 0.0
+
+
+def _smooth(p: Array) -> tuple[float, float]:
+    """Return the peak of the parabola through the middle three of seven pressures, and its doubt.
+
+    A kink beside the middle adds to one or two of the second differences at the middle three.
+    """
+    _, _, before, here, after, _, _ = p.tolist()
+    peak = here + 0.125 * (after - before) ** 2 / (2.0 * here - before - after)
+    return peak, 0.5 * float(np.ptp(np.diff(p[1:6], n=2)))
+
+
+def _ridge(p: Array) -> tuple[float, float]:
+    """Return the peak where the curves from both sides meet beside the middle of seven, and its doubt."""
+    i = 2 + int(2.0 * p[4] - p[3] - p[5] >= 2.0 * p[2] - p[1] - p[3])
+    sides = p[[i, i - 1, i - 2]], p[[i + 1, i + 2, i + 3]]
+    rises = [float(side[0] - side[1]) for side in sides]
+    if not sum(rises) > 0.0:
+        return float(p[3]), math.inf
+    share = min(max(float(p[i + 1] + rises[1] - p[i]) / sum(rises), 0.0), 1.0)
+    peaks, bends = [], []
+    for side, rise, far in zip(sides, rises, (share, 1.0 - share), strict=True):
+        bends.append(0.5 * far * (far + 1.0) * float(side[0] - 2.0 * side[1] + side[2]))
+        peaks.append(float(side[0]) + rise * far + bends[-1])
+    doubt = max(map(abs, bends)) + abs(peaks[0] - peaks[1])
+    return max(0.5 * sum(peaks), float(p[3])), doubt

@@ -18,6 +18,8 @@ from kvtheory.scene.base_motion import BaseMotion
 
 FORGOTTEN = 1e-12
 """A compression that has relaxed to this share counts as none."""
+MANY_ARMS = 12
+"""With so many, to relax an element that is left alone is most of the work: it is done where needed only."""
 KEPT_DEPTH = 16.0
 """Elements are kept within the reach of an indenter this many times as deep as at rest."""
 
@@ -49,9 +51,9 @@ class Under(NamedTuple):
     """The elements under the indenter at one instant, strip by strip.
 
     `along` are their x, a row, and `across` those y of their strips, a column. `state` is that of each at
-    the start of the step, `left` the one that it has now if it was left alone,
-    `touched` whether it was in contact at the start; `travel` is the way of the base under the indenter
-    between, of the length `delay`, and `law` what the law says of it.
+    the start of the step, `left` the one that it has now if it was left alone (with many arms, of those not
+    in contact at the start), `touched` whether it was in contact at the start; `travel` is the way of the
+    base under the indenter between, of the length `delay`, and `law` what the law says of it.
     """
 
     place: tuple[slice, slice]
@@ -113,6 +115,7 @@ class ElementRow:
         self.first, self.states = 0, np.zeros((1 + model.law.arm_stiffness.size, 1, 0))
         self.touched = np.zeros((1, 0), dtype=bool)
         self.updates, self.last = 0, 0.0
+        self.many = model.rule.flags and model.law.arm_stiffness.size >= MANY_ARMS
         depth = model.start * model.depth
         start = IndenterState(0.0, depth, 0.0)
         rest = self.under(start, start, 0.0, depth)
@@ -144,9 +147,9 @@ class ElementRow:
         place = slice(strips), slice(low - self.first, high - self.first)
         x, y = self.model.grid(low, high, strips, Y)
         state = self.states[:, *place].reshape(len(self.states), -1)
-        left = self._left(state, delay)
-        law = self.model.law.step(delay)
         touched, height = self.touched[place].reshape(-1), self.model.height(x, y).reshape(-1)
+        left = self._left(state, delay, ~touched if self.many else None)
+        law = self.model.law.step(delay)
         return Under(place, x, y, height, state, left, touched, Y - before, delay, law)
 
     def before(self, under: Under, depth: float, elements: Any) -> Array:
@@ -182,15 +185,30 @@ class ElementRow:
     ) -> None:
         """Let `delay` pass: put in what has become of the elements under the indenter."""
         flat, shape = self.states.reshape(len(self.states), -1), self.states.shape
-        self.states, self.last = self._left(flat, delay).reshape(shape), delay
+        elsewhere = None
+        if self.many:
+            elsewhere = np.ones(shape[1:], dtype=bool)
+            elsewhere[under.place] = False
+        self.states, self.last = self._left(flat, delay, elsewhere).reshape(shape), delay
+        if self.many and delay:
+            released = np.flatnonzero(under.touched & ~touched)
+            states[:, released] = self._left(under.state[:, released], delay)
         shape = self.states[:, *under.place].shape
         self.states[:, *under.place] = states.reshape(shape)
         self.touched[:] = False
         self.touched[under.place] = touched.reshape(shape[1:])
 
-    def _left(self, states: Array, delay: float) -> Array:
-        relaxes = delay and self.model.rule.relaxes
-        return self.model.law.step(delay).alone(states) if relaxes else states.copy()
+    def _left(self, states: Array, delay: float, wanted: NDArray[np.bool_] | None = None) -> Array:
+        """Return what becomes of elements that are left alone; zero where not `wanted`, or undisturbed."""
+        if not (delay and self.model.rule.relaxes):
+            return states.copy()
+        law = self.model.law.step(delay)
+        if wanted is None:
+            return law.alone(states)
+        columns = np.flatnonzero(states[[0, -1]].any(axis=0) & wanted.ravel())
+        left = np.zeros_like(states)
+        left[:, columns] = law.alone(states[:, columns])
+        return left
 
     def _move(self, t: float, low: int, high: int, strips: int) -> None:
         """Move the window so that it holds the elements `low` to `high` of strips, and those still of use."""

@@ -2,7 +2,7 @@
 
 import itertools
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -39,8 +39,8 @@ MOST_STEPS = 20_000
 lasts, no more is resolved than this; the implicit schemes stay stable, and the certificate tells."""
 STABLE_SHARE = 0.5
 """Of the largest stable step, for an explicit scheme."""
-PER_NOTICE = 500
-"""Steps from one notice of the progress to the next: a few a second."""
+COARSE = 0.25
+"""Of the work of a run: that with half as many elements and steps, for the error."""
 ROWS = 400
 """Instants reported where none are asked for, at most about so many."""
 MORE_ROOM = 16.0
@@ -85,17 +85,20 @@ def simulate(
     warning = doubts(scheme, model, path, h)
     if warning and warn is not None:
         warn(warning)
-    rows, updates = _with_room(model, path, scheme, legs, wanted, progress)
+    best, half = SCHEMES[DEFAULT], [(start, stop, count // 2) for start, stop, count in legs]
+    again = scheme is not best
+    work = [1.0, *([COARSE] * len(SHIFTS) + [1.0] * again if certify else [])]
+    parts = _parts(progress, work)
+    rows, updates = _with_room(model, path, scheme, legs, wanted, next(parts))
     certificate = UNKNOWN
     if certify:
-        best, half = SCHEMES[DEFAULT], [(start, stop, count // 2) for start, stop, count in legs]
 
         def by_best(legs: list[Leg], coarser: float = 1.0, shift: float = 0.0) -> Rows:
             other = Model.of(scene, spacing, parts=True, shift=shift, coarser=coarser)
-            return _with_room(other, path, best, legs, wanted, None)[0]
+            return _with_room(other, path, best, legs, wanted, next(parts))[0]
 
         coarse = [by_best(half, 2.0, shift) for shift in SHIFTS]
-        fine = None if scheme is best else by_best(legs)
+        fine = by_best(legs) if again else None
         certificate = estimate(model, path, h, rows, coarse, fine)
     kind, names = (
         (SprungSimulation, SERIES_UNITS) if model.sprung else (Simulation, TRANSIENT_UNITS)
@@ -106,6 +109,18 @@ def simulate(
         model="elements", certificate=certificate,
         units=units_for(scene.indenter, names),
     )  # fmt: skip
+
+
+def _parts(progress: Progress | None, work: Sequence[float]) -> Iterator[Progress | None]:
+    """Yield the progress of each of several runs, by its share of the work; those after one are checks."""
+    for k, part in enumerate(work):
+
+        def report(share: float, words: str, k: int = k, part: float = part) -> None:
+            assert progress is not None
+            told = words + (" for the error" if k else "")
+            progress((sum(work[:k]) + part * share) / sum(work), told)
+
+        yield report if progress else None
 
 
 def _refuse_what_takes_too_long(model: Model, end: float, h: float) -> None:
@@ -238,7 +253,7 @@ def _run(
                 if row.model.rule == RIGHT:
                     watch.see(state, h)
                 done += 1
-                if progress is not None and (done % PER_NOTICE == 0 or done == total):
+                if progress is not None:
                     progress(done / total, f"{done:,} of {total:,} steps")
             if not count and stop in row.path.changes:
                 state = state._replace(time=stop)

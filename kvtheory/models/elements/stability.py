@@ -49,7 +49,7 @@ def lengths(model: Model, path: BaseMotion) -> tuple[float, float]:
     start, is unstable at first and may recover.
     """
     velocities = path.velocities
-    if velocities[0] < 0.0 < velocities[-1] or model.sprung:
+    if model.sprung:
         velocities = [0.0, *velocities]
     # The slowest motion in each direction has the longest contact.
     chosen = {min((V for V in velocities if V >= 0.0), default=velocities[-1]),

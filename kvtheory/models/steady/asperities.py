@@ -36,6 +36,7 @@ from kvtheory.models.steady.cells import (
 )
 from kvtheory.models.steady.contact import ROUNDING, SMALLEST
 from kvtheory.results.errors import QuadratureError
+from kvtheory.scene.indenters import beside
 
 PEAK_BAND = 0.02
 """Local maxima of the sampled pressure that are this close to the highest are searched."""
@@ -48,8 +49,12 @@ CORNER = 1e-10, 1e-290
 """Distances from a corner, over the length of the contact, between which the slope hardly changes ..."""
 AT_CORNER = 1e-9
 """... by no more than this."""
-HALF = 0.5
-"""Share of the depth below which u_TE is better taken from the slope than from the height."""
+HALF, BALANCED = 0.5, 1e-6
+"""Share of the depth below which u_TE is better taken from the slope than from the height, and within
+which both agree unless the pressure jumps."""
+ONE_SIDED = 1e3
+"""Difference of series and function at a kink, over the last coefficients, that even a singular slope does
+not exceed: beyond it, the function gives the slope of the other side."""
 SETTLED = 1e-9
 """Last step of the depth, over the depth; the one after it is much smaller."""
 DEEPER = 8.0
@@ -114,11 +119,11 @@ class Contact:
         turns = np.flatnonzero((p[1:] > 0.0) != (p[:-1] > 0.0)).tolist()
         turns = [-1, *turns] if p[0] > 0.0 else turns
         for begin, end in zip(turns[::2], turns[1::2], strict=False):
-            start, _ = self._turn(x, begin, l_r)
-            last, smooth = self._turn(x, end, l_r)
+            start, last = self._turn(x, p, begin, l_r), self._turn(x, p, end, l_r)
             u_te = self.gap(last)
-            if smooth and u_te < HALF * self.depth:  # p = 0, and l_r h' does not cancel
-                u_te = l_r * self.surface.slope(last)
+            if u_te < HALF * self.depth and last not in self.surface.kinks:
+                rolling = l_r * self.surface.slope(last)  # where p = 0; it does not cancel
+                u_te = rolling if abs(rolling - u_te) < BALANCED * self.depth else u_te
             x_le, u_le = start, 0.0
             if l_r:
                 left = found[-1] if found else Patch(0.0, start, 0.0, 0.0)
@@ -144,12 +149,17 @@ class Contact:
         g = self.depth - c.height @ VALUES
         p = g - l_r * (c.slope @ VALUES)
         # Where the truncation error of the series could change the sign, the shape itself is evaluated.
-        unsure = abs(p) <= TAIL_MARGIN * (c.height_tail + l_r * c.slope_tail)[:, None]
-        unsure[:, 0] |= np.isin(c.start, self.surface.kinks)
-        unsure[:, -1] |= np.isin(c.end, self.surface.kinks)
-        for row, column in np.argwhere(unsure).tolist():
-            within = math.nextafter(x[row, column], 0.5 * (c.start[row] + c.end[row]))
-            p[row, column] = self.pressure(within, l_r)
+        tail = c.height_tail + l_r * c.slope_tail
+        unsure = abs(p) <= TAIL_MARGIN * tail[:, None]
+        # Beside a kink too, for its slope may be singular, unless that proves to be the other side.
+        kinks = np.zeros_like(unsure)
+        kinks[:, 0] = np.isin(c.start, self.surface.kinks)
+        kinks[:, -1] = np.isin(c.end, self.surface.kinks)
+        for row, column in np.argwhere(unsure | kinks).tolist():
+            point = self.surface.beside(x[row, column], 0.5 * (c.start[row] + c.end[row]))
+            value = self.pressure(point, l_r)
+            if not kinks[row, column] or abs(value - p[row, column]) <= ONE_SIDED * tail[row]:
+                p[row, column] = value
         # Two roots may hide between samples: there the parabola through three of them crosses zero.
         left, middle, right = p[:, :-2], p[:, 1:-1], p[:, 2:]
         bend, tilt = left - 2.0 * middle + right, 0.5 * (right - left)
@@ -162,16 +172,18 @@ class Contact:
             x[at], g[at], p[at] = point, self.gap(point), self.pressure(point, l_r)
         return x.ravel(), g.ravel(), p.ravel()
 
-    def _turn(self, x: Any, index: int, l_r: float) -> tuple[float, bool]:
-        """Return where p changes its sign after a sample, and whether by a root."""
-        start, end = float(x[max(index, 0)]), float(x[min(index + 1, x.size - 1)])
+    def _turn(self, x: Any, p: Any, index: int, l_r: float) -> float:
+        """Return where p changes its sign after a sample."""
+        low, high = max(index, 0), min(index + 1, x.size - 1)
+        start, end = float(x[low]), float(x[high])
         if index < 0 or (end > start and index % DENSE.size == DENSE.size - 1):
-            return start, False
-        if end == start:  # two cells meet: a jump, unless the root is close behind
-            start, end = math.nextafter(start, math.inf), float(x[index + 2])
-            if (self.pressure(start, l_r) > 0.0) == (self.pressure(end, l_r) > 0.0):
-                return float(x[index]), False
-        return _root(lambda y: self.pressure(y, l_r), start, end), True
+            return start
+        if end == start:  # two cells meet
+            if start in self.surface.kinks or p[low - 1] * p[high + 1] >= 0.0:
+                return start
+            low, high = low - 1, high + 1
+        start, end = x[[low, high]].tolist()
+        return _root(lambda y: self.pressure(y, l_r), start, end, p[[low, high]].tolist())
 
     def integral(
         self, patch: Patch, function: Callable[[float], float], power: int
@@ -206,7 +218,8 @@ class Contact:
         c = self.cells
         low = (c.height @ VALUES).min(axis=1) < self.depth
         edges = [x for patch in self.patches for x in (patch.x_le, patch.x_te)]
-        shift = max(abs(x * self.surface.slope(x)) for x in edges)
+        middle = 0.5 * (edges[0] + edges[-1])
+        shift = max(abs(x * self.surface.slope(self.surface.beside(x, middle))) for x in edges)
         # The slope counts where the pressure falls to zero.
         ends = [(c.start <= patch.x_te) & (patch.x_te <= c.end) for patch in self.patches]
         tail = c.height_tail[low].max() + self.l_r * c.slope_tail[np.any(ends, axis=0)].max()
@@ -216,7 +229,11 @@ class Contact:
         """Return the highest p/K, with one-sided values at edges and kinks."""
         x, _, p = self._sampled(self.l_r)
         inside = [(x >= patch.x_le) & (x <= patch.x_te) for patch in self.patches]
-        highest = max(self.pressure(patch.x_le, self.l_r) for patch in self.patches)
+        beside = self.surface.beside
+        starts = [beside(patch.x_le, patch.x_te) for patch in self.patches]
+        highest = max(self.pressure(start, self.l_r) for start in starts)
+        kinks = np.isin(x, self.surface.kinks) & np.any(inside, axis=0)
+        highest = max(highest, p[kinks].max(initial=0.0))
         high = p > (1.0 - PEAK_BAND) * max(highest, p[np.any(inside, axis=0)].max(initial=0.0))
         intervals = set()
         for patch, samples in zip(self.patches, inside, strict=True):
@@ -233,23 +250,33 @@ class Contact:
                     method="bounded",
                     options={"xatol": PEAK_XTOL * (end - start)},
                 )
-                ends = math.nextafter(start, end), math.nextafter(end, start)
-                highest = max(
-                    highest, -float(found.fun), *(self.pressure(y, self.l_r) for y in ends)
-                )
+                ends = {start, end}.difference(self.surface.kinks)
+                values = [self.pressure(y, self.l_r) for y in ends]
+                highest = max(highest, -float(found.fun), *values)
         return float(highest)
 
 
-def _root(function: Callable[[float], float], low: float, high: float) -> float:
-    """Return a root between two points; one of them, if only rounding keeps the signs equal."""
-    low, high = low or math.nextafter(0.0, high), high or math.nextafter(0.0, low)
-    left, right = function(low), function(high)
-    if left * right >= 0.0:
+def _root(function: Callable[[float], float], low: float, high: float, ends: Any = None) -> float:
+    """Return a root between two points; one of them, if only rounding keeps the signs equal.
+
+    `ends` are the values there, if they are not those of the function, which may jump at a kink.
+    """
+    low, high = low or beside(low, high), high or beside(high, low)
+    left, right = (function(low), function(high)) if ends is None else ends
+    if (left > 0.0) == (right > 0.0):
         return low if abs(left) < abs(right) else high
-    while 0.0 < low / high < 0.5 or low / high > 2.0:  # the root may be close to a tip
+    known = {low: left, high: right}
+    # The root may be close to a tip.
+    while (low > 0.0) == (high > 0.0) and not 0.5 * abs(high) <= abs(low) <= 2.0 * abs(high):
         middle = math.copysign(math.sqrt(abs(low)) * math.sqrt(abs(high)), low)
-        low, high = (low, middle) if function(middle) * left <= 0.0 else (middle, high)
-    return float(brentq(function, low, high, xtol=SMALLEST, rtol=ROOT_RTOL, maxiter=2000))
+        value = function(middle)
+        known[middle] = value
+        low, high = (low, middle) if (value > 0.0) != (left > 0.0) else (middle, high)
+    found = brentq(
+        lambda x: known[x] if x in known else function(x),
+        low, high, xtol=SMALLEST, rtol=ROOT_RTOL, maxiter=2000,
+    )  # fmt: skip
+    return float(found)
 
 
 def at_depth(surface: Surface, l_r: float, depth: float) -> Contact:
@@ -289,7 +316,9 @@ def quantities(surface: Surface, l_r: float, contact: Contact) -> dict[str, tupl
     The edges are those of all contacts together; the half length is that of all contacts at rest.
     """
     values, errors = integrals_of(contact)
-    nearby, _ = integrals_of(Contact(surface, l_r, contact.depth * (1.0 - DEPTH_STEP)))
+    shallower = Contact(surface, l_r, contact.depth * (1.0 - DEPTH_STEP))
+    nearby, _ = integrals_of(shallower)
+    values["peak_pressure"], nearby["peak_pressure"] = contact.peak(), shallower.peak()
     return {
         name: (
             value,
@@ -301,7 +330,7 @@ def quantities(surface: Surface, l_r: float, contact: Contact) -> dict[str, tupl
 
 
 def integrals_of(contact: Contact) -> tuple[dict[str, float], dict[str, float]]:
-    """Return each quantity over the stiffness, and the errors of those that are integrals."""
+    """Return each quantity but the peak over the stiffness, and the errors of those that are integrals."""
     l_r, patches = contact.l_r, contact.patches
     drag = drag_error = left = 0.0
     for patch in patches:
@@ -319,7 +348,6 @@ def integrals_of(contact: Contact) -> tuple[dict[str, float], dict[str, float]]:
         "load": contact.load,
         "friction_force": friction,
         "friction_coefficient": friction / contact.load,
-        "peak_pressure": contact.peak(),
         "dissipated_in_contact": l_r * drag / friction if friction else 1.0,
     }
     own = drag_error / drag

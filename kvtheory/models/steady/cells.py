@@ -14,7 +14,7 @@ import numpy as np
 from numpy.polynomial import legendre
 
 from kvtheory.results.errors import QuadratureError
-from kvtheory.scene.indenters import Indenter
+from kvtheory.scene.indenters import beside
 
 DEGREE = 15
 """Degree of the series in a cell, with 16 nodes."""
@@ -46,6 +46,8 @@ OCTAVES = 20
 """How far a shape without a reach is examined beyond the contact: a million times its length."""
 MOST_CELLS = 2**14
 """Most cells; a shape that needs more is not smooth."""
+NEAREST, FARTHEST = 2.0**-200, 2.0**200
+"""Where the search for the width of the contact begins and ends, in m."""
 AHEAD = 4.0
 """Cells are made for a depth larger by this factor, and are used down to that depth over `AHEAD`."""
 CHECK_RTOL = 1e-11
@@ -72,8 +74,8 @@ class Cells(NamedTuple):
 class Surface:
     """The surface of an indenter, mirrored (`side` = -1) for a drive in the negative direction."""
 
-    def __init__(self, indenter: Indenter, side: float) -> None:
-        self.indenter, self.side = indenter, side
+    def __init__(self, indenter: Any, side: float, least: float = NEAREST) -> None:
+        self.indenter, self.side, self.least = indenter, side, least
         self.end = math.nextafter(indenter.reach, 0.0)
         self.kinks = sorted({0.0, *(side * kink for kink in indenter.kinks)})
         self.jumps: list[float] = []
@@ -105,14 +107,27 @@ class Surface:
             raise QuadratureError(f"the indenter's shape is nan at x = {x:.6g} m")
         return value
 
+    def _values(self, function: Callable[[Any], Any], x: Any, sign: float = 1.0) -> Any:
+        """Return the values of h or h' at an array of points."""
+        try:
+            values = sign * np.asarray(function(self.side * x), dtype=float)
+        except (ArithmeticError, ValueError):
+            values = np.full(1, math.nan)
+        if np.isnan(values).any():  # one by one, for the message
+            flat = [sign * self._value(function, point) for point in x.ravel().tolist()]
+            values = np.array(flat).reshape(x.shape)
+        return values
+
+    def beside(self, x: float, to: float) -> float:
+        """Return x, or where it is a kink the next number towards `to`."""
+        return beside(x, to) if x in self.kinks else x
+
     def first(self, enough: Callable[[float, float], bool]) -> float:
         """Return the first power of two at which the higher of both sides is enough, or the reach."""
-        for x in (2.0 ** np.arange(-200, 201)).tolist():
-            if x >= self.end:
-                break
-            if enough(x, max(self.height(-x), self.height(x))):
-                return float(x)
-        return self.end
+        x, last = self.least, min(self.end, FARTHEST)
+        while x < last and not enough(x, max(self.height(-x), self.height(x))):
+            x *= 2.0
+        return x if x < last else self.end
 
     def cells(self, depth: float) -> Cells:
         """Return the cells in which h may be below a depth; they serve for others near it."""
@@ -134,23 +149,26 @@ class Surface:
         cuts = np.unique(np.concatenate((-side, side, kinks)))
         return np.column_stack((cuts[:-1], cuts[1:]))
 
-    def _series(self, function: Callable[[float], float], cells: Any) -> tuple[Any, Any]:
-        """Return the values of a function at the nodes of each cell, and their coefficients."""
-        x = cells.mean(axis=1)[:, None] + 0.5 * np.diff(cells) * NODES
-        values = np.array([function(point) for point in x.ravel().tolist()]).reshape(x.shape)
-        return values, values @ SERIES.T
+    def _nodes(self, cells: Any) -> Any:
+        """Return the nodes of each cell."""
+        return cells.mean(axis=1)[:, None] + 0.5 * np.diff(cells) * NODES
+
+    def slope_series(self, cells: Any) -> Any:
+        """Return the coefficients of h' in each cell."""
+        return self._values(self.indenter.slope, self._nodes(cells), self.side) @ SERIES.T
 
     def _resolved(self, depth: float) -> Cells:
         """Cut the cells in which h may be below the depth until h and h' are resolved in each."""
         todo, tails, done = self._grid(depth / AHEAD), np.array(math.inf), []
         count = len(todo)
         while todo.size:
-            values, height = self._series(self.height, todo)
+            values = self._values(self.indenter.height, self._nodes(todo))
+            height = values @ SERIES.T
             tail = np.abs(height[:, TAIL:]).sum(axis=1)
             low = (height @ VALUES).min(axis=1) - TAIL_MARGIN * tail
             near = ~((low > depth) | (values.min(axis=1) > FAR_ABOVE * depth))
             todo, height, tail = todo[near], height[near], tail[near]
-            _, slope = self._series(self.slope, todo)
+            slope = self.slope_series(todo)
             start, end = todo.T
             width, slope_tail = end - start, np.abs(slope[:, TAIL:]).sum(axis=1)
             size, worst = np.abs(slope).sum(axis=1), np.maximum(tail, slope_tail * width)

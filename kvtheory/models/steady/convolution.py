@@ -135,7 +135,7 @@ def remembered(shape: Shape, memory: Memory | None, a: float, x: Array) -> tuple
     """Return the pressure of each branch at the positions x, and the difference of both rules."""
     if memory is None:
         return np.zeros((1, x.size)), 0.0
-    X = a + x
+    X = np.maximum(a + x, 0.0)  # not below by rounding
     amount = memory.amount(X)
     cuts = [np.zeros_like(amount), np.ones_like(amount)]
     for kink in shape.kinks:  # one rule on either side of each that has been passed
@@ -310,11 +310,16 @@ def _state(sliding: Sliding, velocity: float, retardation_time: float) -> Steady
         "peak_pressure": _peak(sliding),
         "dissipated_in_contact": inside / work if work > 0.0 else 1.0,
     }
-    error = MARGIN * (sliding.noise + apart / load) ** 1.5 + FLOOR
-    if isinstance(sliding.shape, ConvexProfile):
-        error += MARGIN * sliding.shape.noise
+    error, shape = sliding.noise + apart / load, sliding.shape
+    if isinstance(shape, ConvexProfile):
+        error = MARGIN * (error ** (1.0 if shape.bent else 1.5) + shape.noise) + FLOOR
+    else:
+        error = MARGIN * error**1.5 + FLOOR
     if not error < LIMIT:
-        raise QuadratureError("quadrature of the shape fails: the indenter's reach is too close")
+        raise QuadratureError(
+            "quadrature of the shape does not converge: the indenter's reach is too close, or `kinks` "
+            "does not name every kink"
+        )
     errors = dict.fromkeys(values, error)
     errors["trailing_edge"] += _edge_error(sliding, contact)
     certificate = Certificate("estimated", STATEMENT, errors)

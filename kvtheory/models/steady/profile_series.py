@@ -12,12 +12,26 @@ import numpy as np
 from numpy.polynomial import legendre
 from scipy.optimize import brentq
 
-from kvtheory.models.steady.cells import DENSE, TAIL_MARGIN, VALUES, Cells, Surface
+from kvtheory.models.steady.cells import (
+    DENSE,
+    NODES,
+    RESOLVED,
+    SERIES,
+    TAIL,
+    TAIL_MARGIN,
+    VALUES,
+    Cells,
+    Surface,
+)
 from kvtheory.results.errors import QuadratureError
 from kvtheory.scene.indenters import Profile
 
 HOLLOW = 1e-9
 """Decrease of the slope, over its greatest value, that rounding may cause."""
+NARROW = 2.0**-5
+"""Width of a cell, over that of the contact, left only by the jump of a higher derivative."""
+FLAT = 1e-15
+"""Last coefficients of a slope, over the slope, that are rounding."""
 ROOT, TINY = 8.9e-16, 1e-300
 """Tolerances of the edges at rest."""
 
@@ -28,7 +42,11 @@ class ConvexProfile:
     def __init__(self, profile: Profile, side: float) -> None:
         self.surface = Surface(profile, side)
         self.reach = profile.reach
-        self.kinks = tuple(sorted(side * kink for kink in profile.kinks))
+        self.declared = [side * kink for kink in profile.kinks]
+        self.kinks: tuple[float, ...] = ()
+        """Those of the profile, and where a higher derivative jumps: the convolution is cut there."""
+        self.bent = False
+        """Whether there are any of the latter; they are not known to the last digit."""
         self._depth, self._cells = math.nan, Cells(*(np.empty(0),) * 6)
 
     def sides(self, depth: float) -> tuple[float, float]:
@@ -36,12 +54,14 @@ class ConvexProfile:
         surface, cells = self.surface, self.surface.cells(depth)
         within = (cells.height @ VALUES).min(axis=1) < depth
         slopes = cells.slope @ VALUES
-        falls = np.diff(slopes[within], prepend=slopes[within][:, :1], axis=1).min(initial=0.0)
-        falls = min(falls, np.diff(slopes[within].mean(axis=1)).min(initial=0.0))
+        rounding = HOLLOW * np.abs(slopes[within]).max(initial=0.0)
+        rounding = rounding + TAIL_MARGIN * cells.slope_tail[within]
+        hollow = np.any(np.diff(slopes[within], axis=1) < -rounding[:, None])
+        hollow |= np.any(np.diff(slopes[within].mean(axis=1)) < -rounding[1:])
         whole = np.all(np.diff(np.flatnonzero(within)) == 1) and np.all(
             cells.start[within][1:] == cells.end[within][:-1]
         )
-        if not whole or falls < -HOLLOW * np.abs(slopes[within]).max():
+        if not whole or hollow:
             raise QuadratureError(
                 f"the shape is not convex down to {depth:.6g} m: it may touch in several places, for "
                 'which quadrature needs foundation.kind = "kelvin-voigt"'
@@ -49,8 +69,23 @@ class ConvexProfile:
         if surface.jumps:
             raise QuadratureError("the slope jumps where `kinks` does not say so")
         ends = self._end(depth, -1.0), self._end(depth, 1.0)
-        self._depth, self._cells = depth, cells
+        self._depth, known = depth, cells is self._cells
+        self._cells = cells
+        if not known:
+            bends = _bends(surface, cells, NARROW * sum(ends))
+            tip = [0.0] if self._bent_at_zero() else []
+            self.kinks, self.bent = tuple(sorted({*self.declared, *bends, *tip})), bool(bends)
         return ends
+
+    def _bent_at_zero(self) -> bool:
+        """Return whether one series does not hold on both sides of the lowest point."""
+        cells = self._cells
+        i = int(np.searchsorted(cells.start, 0.0))
+        beside = slice(i - 1, i + 1)
+        half = 0.5 * (cells.end - cells.start)[beside].min()
+        series = SERIES @ self.slope(half * NODES)
+        rounding = RESOLVED * np.abs(series).sum() + TAIL_MARGIN * cells.slope_tail[beside].sum()
+        return bool(np.abs(series[TAIL:]).sum() > rounding)
 
     def _end(self, depth: float, side: float) -> float:
         """Return the distance at which the shape has risen to the depth."""
@@ -96,3 +131,28 @@ class ConvexProfile:
         start, end = cells.start[row], cells.end[row]
         place = np.clip((2.0 * x - start - end) / (end - start), DENSE[0], DENSE[-1])
         return legendre.legval(place, np.moveaxis(series[row], -1, 0), tensor=False)
+
+
+def _bends(surface: Surface, cells: Cells, narrow: float) -> list[float]:
+    """Return where the narrowest of narrow cells close in on a bend that no kink explains."""
+    width, found = cells.end - cells.start, list[float]()
+    runs = np.split(np.arange(width.size), np.flatnonzero(np.diff(width)) + 1)
+    for run in runs:
+        start, end, size = cells.start[run[0]], cells.end[run[-1]], width[run[0]]
+        beside = width[[max(run[0] - 1, 0), min(run[-1] + 1, width.size - 1)]]
+        known = any(start - size <= kink <= end + size for kink in surface.kinks)
+        if size < narrow and size <= beside.min() and not known:
+            found.append(_bend(surface, start, end))
+    return found
+
+
+def _bend(surface: Surface, start: float, end: float) -> float:
+    """Return the bend of the slope in an interval: halved until no half is worse resolved than rounding."""
+    while True:
+        middle = 0.5 * (start + end)
+        halves = np.array([[start, middle], [middle, end]])
+        slope = surface.slope_series(halves)
+        tails = np.abs(slope[:, TAIL:]).sum(axis=1)
+        if tails.max() <= FLAT * np.abs(slope).max() or middle in (start, end):
+            return float(middle)
+        start, end = halves[np.argmax(tails)].tolist()

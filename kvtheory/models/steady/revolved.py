@@ -12,8 +12,9 @@ method. The middle plane gives the edges and the peak pressure.
 """
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from functools import partial
+from itertools import pairwise
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -25,7 +26,7 @@ from kvtheory.models.steady.cells import Surface
 from kvtheory.models.steady.double_exponential import RULES
 from kvtheory.results import Certificate, SteadyState
 from kvtheory.results.errors import QuadratureError
-from kvtheory.scene.indenters import Line, Profile, Spot
+from kvtheory.scene.indenters import Line, Spot
 
 Array = NDArray[np.float64]
 
@@ -36,6 +37,8 @@ MIDDLE = 1e-10
 """y/b of the strips next to the middle plane: a tip that is any sharper makes no difference."""
 NEAR = 0.02
 """Rise over y up to which h is integrated from the lowest point of a strip, where its difference cancels."""
+NARROWEST = 1e-6
+"""Half width of a strip, over that of the contact, from which on one that is evaluated is sought."""
 GAUSS = tuple((0.5 + 0.5 * s, 0.5 * w) for s, w in zip(*leggauss(4), strict=True))
 
 LEAST = 2e-14
@@ -46,6 +49,10 @@ RTOL = {True: 1e-12, False: 1e-9}
 """Estimate above which the next rule is taken."""
 LIMIT = 1e-6
 """Estimate above which the result of the last rule is refused."""
+MARGIN = 4.0
+"""Factor on the ratio of the last two differences, by which the next one is foreseen."""
+BESIDE = 1e-9
+"""Share of a radius at which the slopes on both sides of a kink are taken, to see where strips change."""
 MOST_STEPS = 100
 """Steps of Newton's method; they are a handful."""
 STEP = 3e-8
@@ -60,23 +67,25 @@ STATEMENT = (
 class Strip:
     """The shape of a strip at the distances y, floats or a column of them, of a profile of revolution."""
 
-    convex, kinks = True, ()
-
-    def __init__(self, profile: Any, y: Any) -> None:
-        self.profile, self.y = profile, y
-        self.smooth = profile.convex or not profile.kinks
+    def __init__(self, profile: Any, y: Any, reach: float) -> None:
+        self.profile, self.y, self.convex = profile, y, profile.convex
         self.lowest = profile.height(y)
-        self.reach = math.inf
-        if profile.reach < math.inf:
-            self.reach = np.sqrt((profile.reach - y) * (profile.reach + y))
+        radii = [kink for kink in profile.kinks if kink > 0.0]
+        self.clear = np.min([y, *(abs(kink - y) for kink in radii)], axis=0)
+        """Distance of y from the nearest point where the profile may be singular."""
+        cuts = [math.sqrt((kink - y) * (kink + y)) for kink in radii if kink > y]
+        cuts += [y] if 0.0 in profile.kinks and not profile.convex else []  # a tip is rounded there
+        self.kinks = tuple(side * x for x in cuts for side in (-1.0, 1.0))
+        self.reach = math.inf if reach == math.inf else np.sqrt((reach - y) * (reach + y))
 
     def height(self, x: Any) -> Any:
         """Return h above the lowest point of the strip: next to it, as the integral of h'."""
         rho = np.hypot(x, self.y)
         rise = x * (x / (rho + self.y))  # rho - y
-        near = sum(w * self.profile.slope(self.y + s * rise) for s, w in GAUSS) * rise
-        far = self.profile.height(rho) - self.lowest
-        return np.where((rise < NEAR * self.y) & self.smooth, near, far)
+        near, h = rise < NEAR * self.clear, np.array(self.profile.height(rho) - self.lowest)
+        mean = sum(w * self.profile.slope((self.y + s * rise)[near]) for s, w in GAUSS)
+        h[near] = mean * rise[near]
+        return h
 
     def slope(self, x: Any) -> Any:
         """Return dh/dx."""
@@ -89,7 +98,7 @@ class Strip:
         return 1.0 + (self.profile.bend(rho) - 1.0) * (x / rho) ** 2
 
 
-Strips = Callable[[Array, Array], tuple[Array, float]]
+Strips = Callable[[Array, Array, Array], tuple[Array, float]]
 """Load, its slope, friction and what is lost in strips at y, with a depth each, over K; and their error."""
 
 
@@ -172,7 +181,7 @@ def depth_at(indenter: Spot, strips: Strips, l_r: float, load: float, spring: fl
     """
     depth = _first(indenter, l_r, load, spring)
     for _ in range(MOST_STEPS):
-        found = sums(indenter, strips, depth)
+        found = sums(indenter, strips, l_r, depth)
         total, slope = found.load + spring * depth, found.load_slope + spring
         factor = (load / total) ** (total / (depth * slope))
         depth *= min(max(factor, 0.25), 4.0)
@@ -201,7 +210,7 @@ def _state(
     model, shape = _model(indenter.profile)
     middle = model.at_depth(shape, l_r, depth)
     values, errors = {}, {}
-    found = sums(indenter, _strips(indenter, l_r), depth)
+    found = sums(indenter, _strips(indenter, l_r), l_r, depth)
     error = found.error + (SHARP if indenter.kinks else LEAST)
     noise = 2.0 * (middle.noise + at_load * error)
     for name, (value, own, power) in model.quantities(shape, l_r, middle).items():
@@ -235,33 +244,58 @@ def _model(profile: Line) -> tuple[Any, Any]:
 def _strips(indenter: Spot, l_r: float) -> Strips:
     """Return the function that knows the strips of an indenter."""
     profile = indenter.profile
-    return partial(_columns if profile.convex else _one_by_one, profile, l_r)
+    if profile.convex:
+        return partial(_columns, profile, l_r)
+    return partial(_one_by_one, Surface(profile, 1.0), l_r)
 
 
-def sums(indenter: Spot, strips: Strips, depth: float) -> Sums:
+def sums(indenter: Spot, strips: Strips, l_r: float, depth: float) -> Sums:
     """Sum over the strips, by finer rules until two of them agree."""
     profile = indenter.profile
     half, rim = _half_length(profile, depth), RIM[profile.convex]
+    pieces = list(pairwise([0.0, *_breaks(profile, l_r, depth, half), 0.5 * math.pi]))
     for number in range(1 + profile.convex, len(RULES)):
-        t = 0.5 * math.pi * RULES[number][0][: len(RULES[number][0]) // 2]
+        nodes, rule = _rule(number)
+        t = np.concatenate([start + (end - start) * nodes for start, end in pieces])
+        weights = np.concatenate([(end - start) * rule for start, end in pieces], axis=1)
         kept = np.cos(t) > rim
-        t, weights = t[kept], RULES[number][2][:, kept]
+        t, weights = t[kept], weights[:, kept]
         y = half * np.maximum(np.sin(t), MIDDLE)
         deep = np.maximum(depth - profile.height(y), np.finfo(float).tiny)
-        rows, own = strips(y, deep)
-        weighted = weights * (math.pi * half * indenter.stretch * np.cos(t))
-        fine, coarse = np.einsum("ij,kj->ki", rows, weighted)
-        errors = np.abs(fine[[0, 2]] - coarse[[0, 2]]) / np.where(
-            fine[[0, 2]] > 0, fine[[0, 2]], 1.0
-        )
-        apart = float(errors.max()) ** 1.5
-        error = apart + own + rim**4
-        if apart < RTOL[profile.convex]:
+        weights *= 2.0 * half * indenter.stretch * np.cos(t)
+        rows, own = strips(y, deep, weights[0])
+        each = np.einsum("ij,kj->ik", rows, weights)
+        apart = np.abs(np.diff(each)[[0, 2]]) / np.maximum(each[[0, 2], :1], np.finfo(float).tiny)
+        last, before = apart.max(axis=0).tolist()
+        # An analytic integrand squares its error with each rule; any other one divides it.
+        estimate = last**1.5 if profile.convex else last * min(MARGIN * last / before, 1.0)
+        error = estimate + own + rim**4
+        if estimate < RTOL[profile.convex]:
             break
     if not error < LIMIT:
         raise QuadratureError("quadrature over the strips fails: the indenter's reach is too close")
-    load, slope, friction, lost = map(float, fine)
+    load, slope, friction, lost = each[:, 0].tolist()
     return Sums(load, slope, friction, lost, error)
+
+
+def _rule(number: int) -> tuple[Array, Array]:
+    """Return nodes from 0 to 1, and weights of the rule, of its half and of its quarter."""
+    nodes, _, weights = RULES[number]
+    count, every = weights.shape[1], np.array([[1], [2], [4]])
+    taken = (np.arange(count) - count // 2) % every == 0
+    return nodes[:count], weights[0] * np.where(taken, every, 0)
+
+
+def _breaks(profile: Any, l_r: float, depth: float, half: float) -> list[float]:
+    """Return t of the strips that touch a kink of the profile, or whose pressure vanishes there."""
+    breaks = set()
+    for kink in profile.kinks:
+        if 0.0 < kink < half:
+            slopes = [l_r * abs(profile.slope(kink * (1.0 + side * BESIDE))) for side in (-1, 1)]
+            rise = depth - profile.height(kink)
+            shares = [0.0, *(rise / slope for slope in slopes if 0.0 < rise < slope)]
+            breaks |= {math.asin(kink / half * math.sqrt(1.0 - share**2)) for share in shares}
+    return sorted(breaks)
 
 
 def _half_length(profile: Any, depth: float) -> float:
@@ -272,10 +306,12 @@ def _half_length(profile: Any, depth: float) -> float:
     return float(patch.x_te)
 
 
-def _columns(profile: Line, l_r: float, y: Array, depth: Array) -> tuple[Array, float]:
+def _columns(
+    profile: Line, l_r: float, y: Array, depth: Array, weights: Array
+) -> tuple[Array, float]:
     """Return load, its slope, friction and what is lost in each strip of a convex profile."""
     column = np.full((y.size, 1), l_r)
-    strip: Any = Strip(profile, y[:, None])
+    strip: Any = Strip(profile, y[:, None], profile.reach)
     found = contact.at_depth(strip, column, depth[:, None])
     named = contact.quantities(strip, column, found)
     (load, own, _), (friction, rubbed, _) = named["load"], named["friction_force"]
@@ -286,34 +322,20 @@ def _columns(profile: Line, l_r: float, y: Array, depth: Array) -> tuple[Array, 
     return rows, float((size / whole).max())
 
 
-def _one_by_one(profile: Line, l_r: float, y: Array, depth: Array) -> tuple[Array, float]:
+def _one_by_one(
+    surface: Surface, l_r: float, y: Array, depth: Array, weights: Array
+) -> tuple[Array, float]:
     """Return the same of a profile that is a pair of Python functions."""
-    rows, worst = np.empty((4, y.size)), 0.0
+    profile: Any = surface.indenter
+    reach = float(surface.cells(float(depth[0]) + surface.height(y[0])).end.max())
+    least = 2.0 ** math.floor(math.log2(NARROWEST * y.max()))
+    rows, errors = np.empty((4, y.size)), np.empty((2, y.size))
     for column, (at, deep) in enumerate(zip(y.tolist(), depth.tolist(), strict=True)):
-        surface = Surface(_cut(profile, at), 1.0)
-        found = asperities.at_depth(surface, l_r, deep)
-        named, errors = asperities.integrals_of(found)
+        found = asperities.at_depth(Surface(Strip(profile, at, reach), 1.0, least), l_r, deep)
+        named, own = asperities.integrals_of(found)
         load, friction = named["load"], named["friction_force"]
         lost = named["dissipated_in_contact"] * friction
         rows[:, column] = load, found.load_slope, friction, lost
-        worst = max(worst, errors["load"], errors["friction_force"])
-    return rows, worst
-
-
-def _cut(profile: Line, y: float) -> Profile:
-    """Return a strip of a profile as a profile."""
-    strip = Strip(profile, y)
-    return Profile(
-        _float(strip.height), _float(strip.slope), float(strip.reach), tuple(_kinks(profile, y))
-    )
-
-
-def _float(function: Callable[[Any], Any]) -> Callable[[float], float]:
-    return lambda x: float(function(x))
-
-
-def _kinks(profile: Line, y: float) -> Iterator[float]:
-    for kink in profile.kinks:
-        if abs(kink) > y:
-            x = math.sqrt((kink - y) * (kink + y))
-            yield from (-x, x)
+        errors[:, column] = own["load"] * load, own["friction_force"] * friction
+    whole = np.maximum((rows[[0, 2]] * weights).sum(axis=1), np.finfo(float).tiny)
+    return rows, float(((errors * weights).sum(axis=1) / whole).max())

@@ -101,11 +101,12 @@ def _strips(
     velocity: float,
     y: Array,
     depth: Array,
+    weights: Array,
 ) -> tuple[Array, float]:
     """Return load, its slope, friction and what is lost in strips, over K, and their own error."""
     rows, worst = np.empty((4, y.size)), 0.0
     for column, (at, deep) in enumerate(zip(y.tolist(), depth.tolist(), strict=True)):
-        strip: Any = revolved.Strip(indenter.profile, at)
+        strip: Any = revolved.Strip(indenter.profile, at, indenter.reach)
         strip.kinks = indenter.kinks  # next to a tip, the strip has one nearly as sharp
         found = convolution.at_depth(memory, strip, K, tau, abs(velocity), deep)
         length = np.array([found.trailing_edge - found.leading_edge])
@@ -129,7 +130,8 @@ def _state(
 ) -> SteadyState:
     """Sum the strips; the middle plane gives the rest. `found` says that the depth was found for a load."""
     middle = convolution.at_depth(memory, indenter.profile, K, tau, velocity, depth)
-    summed = revolved.sums(indenter, partial(_strips, memory, indenter, K, tau, velocity), depth)
+    strips = partial(_strips, memory, indenter, K, tau, velocity)
+    summed = revolved.sums(indenter, strips, abs(velocity) * tau, depth)
     side = -1.0 if velocity < 0.0 else 1.0
     error = summed.error + (revolved.SHARP if indenter.kinks else LEAST)
     errors = dict.fromkeys(middle.certificate.relative_error, (5.0 if found else 1.0) * error)
