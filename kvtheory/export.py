@@ -38,11 +38,12 @@ def save_result(result: Any, path: Path) -> None:
 
 
 def save_csv(result: Any, path: Path) -> None:
-    """Write one row for each time, or for each state, with units in the header."""
-    units = _units(result)
-    _write_columns(
-        path, {f"{name} [{unit}]": getattr(result, name) for name, unit in units.items()}
-    )
+    """Write one row for each time, or for each state after what varies, with units in the header."""
+    over = getattr(result, "over", {})
+    columns = {f"{key} [{result.units[key]}]": values for key, values in over.items()}
+    for name, unit in _units(result).items():
+        columns[f"{name} [{unit}]"] = getattr(result, name)
+    _write_columns(path, columns)
 
 
 def save_compared(comparison: Comparison, path: Path) -> None:

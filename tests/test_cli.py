@@ -48,6 +48,55 @@ def test_steady_prints_one_json_object_in_si(scene_file, method):
     assert set(STEADY_UNITS) | {"model", "certificate", "stable", "notes"} == set(record)
 
 
+ARRAYS = """
+[indenter]
+shape = "sphere"
+radius = ["10 mm", "20 mm"]
+[foundation]
+kind = "generalized-maxwell"
+stiffness = "10 GN/m^3"
+arms = [[["30 GN/m^3", "40 GN/m^3"], "10 ms"], ["5 GN/m^3", "1 s"]]
+[support]
+kind = "dead-weight"
+load = ["1 N", "2 N"]
+[drive]
+velocity = "1 mm/s:1 m/s:2:log"
+"""
+
+
+def test_a_scene_of_arrays_is_many_scenes(tmp_path):
+    path, table = tmp_path / "many.toml", tmp_path / "many.csv"
+    path.write_text(ARRAYS, encoding="utf-8")
+    scene = kv.load_scene(path)
+    text = kv.to_toml(scene)
+    path.write_text(text, encoding="utf-8")
+    assert kv.load_scene(path) == scene
+    record = json.loads(run("steady", str(path), "--json").stdout)
+    for i, (radius, glassy, load, velocity) in enumerate(
+        [(0.01, 3e10, 1.0, 1e-3), (0.02, 4e10, 2.0, 1.0)]
+    ):
+        one = kv.Scene(
+            kv.Sphere(radius), kv.GeneralizedMaxwell(1e10, arms=[(glassy, 0.01), (5e9, 1.0)]),
+            kv.DeadWeight(load=load), kv.Drive(velocity),
+        )  # fmt: skip
+        assert record["friction_force"][i] == kv.steady(one).friction_force
+    shown = run("steady", str(path), "-o", str(table)).stdout
+    keys = ["indenter.radius [m]", "foundation.arms[0].stiffness [N/m^3]", "support.load [N]"]
+    assert all(key in shown for key in keys)
+    assert table.read_text("utf-8").startswith(",".join([*keys, "drive.velocity [m/s],depth [m]"]))
+
+
+def test_commands_take_ranges_and_refuse_them_over_time():
+    many = ("--set", "drive.velocity=1 mm/s:1 m/s:50:log")
+    assert "21 of 50 scenes" in run("steady", *many).stdout
+    stable = run("stability", *many, "--set", "drive.stiffness=1 MN/m^2").stdout
+    assert stable.splitlines()[2].startswith("drive.velocity [m/s]  stable  critical_stiffness")
+    assert "V = 1 … 1000 mm/s" in run("asymptotes", *many).stdout
+    for command in ("transient", "elements", "compare", "scene"):
+        told = run(command, *many, status=2).stderr
+        assert "arrays (drive.velocity); use `sweep`" in told
+
+
 def test_steady_prints_a_table_in_the_papers_units():
     lines = run("steady").stdout.splitlines()
     depth = next(line for line in lines if line.startswith("depth")).split()

@@ -7,7 +7,7 @@ import sys
 import threading
 import time
 import traceback
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from functools import wraps
 from typing import Any
@@ -184,6 +184,30 @@ def print_series(result: Any, *, whole: bool, remedy: str) -> None:
         [f"{name} [{SHOWN_UNITS[unit][0]}]" for name, unit in units.items()],
         [[shown(getattr(result, name)[i], unit)[0] for name, unit in units.items()] for i in rows],
     )
+
+
+def print_scenes(scene: Any, result: Any, units: Mapping[str, str]) -> None:
+    """Print some quantities of many scenes: a row for each, or about twenty with both ends."""
+    import numpy as np  # as a help text needs none
+
+    specs = scene.replaceable
+    columns: dict[str, tuple[Any, str]] = {}
+    for key, values in scene.arrays().items():
+        columns[f"{key} [{specs[key].unit}]".removesuffix(" [1]")] = values, "1"
+    for name, unit in units.items():
+        columns[f"{name} [{shown(0.0, unit)[1]}]".removesuffix(" []")] = getattr(result, name), unit
+    flat = {name: np.broadcast_to(x, scene.shape).ravel() for name, (x, _) in columns.items()}
+    last = math.prod(scene.shape) - 1
+    rows = sorted({round(i * last / 20) for i in range(21)}) if last >= 0 else []
+    print_table(
+        list(columns),
+        [
+            [shown(float(flat[name][i]), unit)[0] for name, (_, unit) in columns.items()]
+            for i in rows
+        ],
+    )
+    if len(rows) <= last:
+        click.echo(f"{len(rows)} of {last + 1:,} scenes; --json prints all")
 
 
 def print_steady(result: Any, names: Iterable[str]) -> None:

@@ -6,7 +6,14 @@ from typing import TYPE_CHECKING
 
 import click
 
-from kvtheory.cli.console import print_json, print_table, progress_bar, scene_command, shown
+from kvtheory.cli.console import (
+    print_json,
+    print_scenes,
+    print_table,
+    progress_bar,
+    scene_command,
+    shown,
+)
 from kvtheory.cli.group import main
 from kvtheory.cli.steady import note_history
 
@@ -46,6 +53,11 @@ def stability(scene: str | None, overrides: Sequence[str], as_json: bool) -> Non
         print_json(found.as_dict())
         return
     note_history(checked)
+    if checked.shape:
+        click.echo(f"Steady sliding, {checked.support.kind} support\n")
+        units = {"stable": "1", **units_for(checked.indenter, UNITS)}
+        print_scenes(checked, found, units)
+        return
     click.echo(f"Steady sliding, {checked.support.kind} support: {_verdict(found)}\n")
     errors = found.certificate.relative_error
     print_table(

@@ -8,6 +8,7 @@ import click
 
 from kvtheory.cli.console import (
     print_json,
+    print_scenes,
     print_steady,
     progress_bar,
     scene_command,
@@ -34,6 +35,7 @@ def steady(
     check_results(output, plot)
     with progress_bar("steady"):
         from kvtheory.api import steady as solve
+        from kvtheory.results import STEADY_UNITS
         from kvtheory.scene import load_scene
 
         checked = load_scene(scene, overrides)
@@ -42,7 +44,10 @@ def steady(
         return
     note_history(checked)
     click.echo(f"Steady sliding, {checked.support.kind} support, model: {state.model}\n")
-    print_steady(state, state.units)
+    if checked.shape:
+        print_scenes(checked, state, {name: state.units[name] for name in STEADY_UNITS})
+    else:
+        print_steady(state, state.units)
     click.echo(f"\nErrors are {state.certificate.kind}: {state.certificate.statement}.")
     for note in state.notes:
         click.echo(note)
