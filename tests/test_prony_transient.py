@@ -9,6 +9,7 @@ import kvtheory as kv
 from kvtheory.ladder import equivalent
 from kvtheory.ladder.climbing import Request
 from kvtheory.ladder.series import SOLVED, Models, rungs
+from kvtheory.results import TRANSIENT_UNITS
 from kvtheory.results.table import scales
 from kvtheory.scene.static_state import StaticState
 from tests.test_elements_prony import SUPPORTS, WAYS, scaled
@@ -46,10 +47,10 @@ def test_fast_arms_are_solved_by_the_continuum_and_the_certificate_says_so():
 def test_the_first_instant_is_no_matter_of_kelvin_voigt():
     """There the force of a damper jumps, that of an arm does not."""
     times = [0.0, 0.1]
-    request = Request(SOLVED, 1.0, times, True)
+    request = Request(SOLVED, 1.0, times, TRANSIENT_UNITS)
     judged = equivalent.judge(kv.steady, fast(1e-9), request, SOLVED)
     assert "as fast as arms relax" in judged.reason
-    slow = Request(SOLVED, 1.0, times[1:], True)
+    slow = Request(SOLVED, 1.0, times[1:], TRANSIENT_UNITS)
     assert not equivalent.judge(kv.steady, fast(1e-9), slow, SOLVED).reason
 
 
@@ -66,7 +67,8 @@ def test_the_estimate_covers_what_a_damper_in_the_place_of_arms_neglects():
         way = list(WAYS.values())[rng.integers(len(WAYS))]
         history = [(float(t * end), float(V * top / 3.0)) for t, V in way]
         scene = scaled(history, SUPPORTS[seed % 3], arms, float(end))
-        request = Request(SOLVED, 1.0, np.sort(rng.uniform(0.0, end, 4)).tolist(), True)
+        times = np.sort(rng.uniform(0.0, end, 4)).tolist()
+        request = Request(SOLVED, 1.0, times, TRANSIENT_UNITS)
         judged = rung.judge(scene, request)
         if judged.reason:
             continue

@@ -25,7 +25,7 @@ BEGINNINGS = {
     ".html": (b"<!DOCTYPE html", b"<!doctype html"),
     ".json": (b'{\n "environment"', b'[\n {\n  "label": '),
     ".tex": (b"\\documentclass[11pt,a4paper]{article}\n\\usepackage[margin=25mm]{geometry}",),
-    ".md": (b"# Sliding friction on a Kelvin", b"# Steady sliding of an indenter of the shape"),
+    ".md": (b"# Sliding friction on ", b"# Steady sliding of an indenter of the shape"),
     ".ipynb": (b'{\n "cells": ',),
     ".bib": (b"@article{NakanoKono2020,",),
 }
