@@ -52,10 +52,15 @@ def test_files_hold_what_the_result_holds(result, tmp_path, suffix):
     if suffix == ".csv":
         with path.open(newline="") as file:
             head, *rows = list(csv.reader(file))
-        assert head == [f"{name} [{unit}]" for name, unit in units.items()]
+        over = getattr(result, "over", {})
+        varied = {f"{key} [{result.units[key]}]": values for key, values in over.items()}
+        held = {f"{name} [{unit}]": getattr(result, name) for name, unit in units.items()}
         columns = np.array(rows, dtype=float).T
-        for name, column in zip(units, columns, strict=True):
-            assert np.array_equal(column, np.ravel(getattr(result, name)))
+        for (name, values), title, column in zip(
+            {**varied, **held}.items(), head, columns, strict=True
+        ):
+            assert name == title
+            assert np.array_equal(column, np.ravel(values))
         result.to_csv(tmp_path / "again.csv")
         assert (tmp_path / "again.csv").read_text() == path.read_text()
         return

@@ -211,11 +211,9 @@ class FractionalKelvinVoigt(_Relaxed):
     def damping(self) -> Value:
         """C = int (G - K) dt, in N s/m^3."""
         finite = self.stiffness * self.retardation_time
-        return (
-            finite
-            if np.all(self.order == 1.0)
-            else np.where(self.order == 1.0, finite, math.inf)[()]
-        )
+        if np.ndim(self.order) == 0:
+            return finite if self.order == 1.0 else math.inf
+        return np.where(self.order == 1.0, finite, math.inf)
 
 
 AnyFoundation = Foundation | GeneralizedMaxwell | FractionalKelvinVoigt

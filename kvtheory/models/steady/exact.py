@@ -46,7 +46,7 @@ def quantities(scene: Scene) -> tuple[Any, ...]:
     """Return the quantities in the order of `STEADY_UNITS` (theorem F1, Eqs. 26-29).
 
     >>> print(", ".join(f"{value:.6g}" for value in quantities(Scene.table1("fixed"))[4:8]))
-    0.00029563, 35344.6, 5344.58, 0.151213
+    0.00029563, 35344.6, 5344.58, 0.151214
     """
     K, V = scene.foundation.stiffness, scene.drive.final_velocity
     R = scene.indenter.radius
