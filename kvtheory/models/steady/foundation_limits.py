@@ -92,8 +92,14 @@ def report(
     )
 
 
+NOTE = (
+    "The limits of friction at low and high velocity are known for a parabola on any foundation, and for a "
+    "power law, a wedge and a ball on Kelvin-Voigt; of this scene only the maxima are."
+)
+
+
 def unknown(
-    scene: Scene, tolerance: float, maxima: Mapping[str, Any], method: str, note: str
+    scene: Scene, tolerance: float, maxima: Mapping[str, Any], method: str
 ) -> AsymptoteReport:
     """Return the report of a scene whose limits are not known: its maxima, and a note."""
 
@@ -110,5 +116,5 @@ def unknown(
         lines=(),
         model=method,
         certificate=Certificate("none", "the limits of friction are not known", {}),
-        notes=(note,),
+        notes=(NOTE,),
     )

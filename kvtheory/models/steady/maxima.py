@@ -26,7 +26,7 @@ Friction = Callable[[Array, Array], tuple[Array, Array]]
 FINE = 3.0, 16, 0.0
 """How many decades beyond the time scales maxima are sought, at how many velocities in a decade, and the least
 tolerance of ln V."""
-INTEGRATED = 2.0, 6, 0.0
+INTEGRATED = 2.0, 6, 1e-4
 """The same where each velocity costs a quadrature of tens of milliseconds."""
 IN_STRIPS = 1.0, 3, 1e-2
 """The same where each costs a quadrature over strips of several seconds."""
@@ -86,8 +86,7 @@ def highest(rows: Array, friction: Array) -> list[Any]:
 
 
 def _scan(scene: Scene, method: str) -> tuple[float, int, float]:
-    elastic = lacks_kelvin_voigt(scene)
-    if method == "exact" or (scene.indenter.convex and not elastic):
+    if method == "exact" or (scene.indenter.convex and not lacks_kelvin_voigt(scene)):
         return FINE
     return INTEGRATED if scene.indenter.per_width else IN_STRIPS
 
@@ -130,7 +129,7 @@ def _ends(base: Scene, rest: Any, decades: float, per_decade: int) -> tuple[Arra
     beyond = np.minimum((decades + np.log10(1.0 + kappa)) / order, MOST_DECADES)
     start = np.log10(rest.half_length / slow) - np.minimum(decades / order, MOST_DECADES)
     end = np.log10(rest.half_length / fast) + beyond
-    steps = 1 + int(np.ceil(np.max((end - start) * order) * per_decade))
+    steps = 1 + int(np.ceil(np.max((end - start) * order, initial=0.0) * per_decade))
     return np.log(10.0) * start, np.log(10.0) * end, steps
 
 
@@ -166,7 +165,7 @@ def _refined(friction: Friction, grid: Array, row: Array, place: Array, toleranc
     best = elementwise.find_minimum(depth, bracket, args=(row,), tolerances=tolerances)
     y = np.where(best.success, best.x, bracket[1])
     top, own = friction(y, row)
-    far, low, fallen = np.full_like(y, 8.0 * tolerance), np.zeros_like(y), np.zeros(y.shape, bool)
+    far, low, fallen = np.full_like(y, 4.0 * tolerance), np.zeros_like(y), np.zeros(y.shape, bool)
     while (left := np.flatnonzero(~fallen & (far < WIDEST))).size:
         sides = [friction(y[left] + side * far[left], row[left]) for side in (-1.0, 1.0)]
         low[left] = np.min([mu for mu, _ in sides], axis=0)
