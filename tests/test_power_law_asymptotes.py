@@ -147,8 +147,3 @@ def test_arrays_give_what_single_scenes_give():
         assert together.use[place] == alone.use
         for one, other in zip(together.lines, alone.lines, strict=True):
             assert one.relative_error[place] == pytest.approx(other.relative_error, rel=1e-12)
-
-
-def test_other_shapes_are_refused_in_words():
-    with pytest.raises(ValueError, match="the wedge and the ball only"):
-        kv.asymptotes(kv.Scene(kv.Circle(0.01)))

@@ -107,9 +107,10 @@ class AsymptoteReport:
     ``"high"`` (V below or above V*); `use` names the asymptote that is
     within the tolerance, ``"L1"`` or ``"L2"``, or else ``"exact"``.
     `maxima` are all local maxima of the friction coefficient over V > 0, as pairs of velocity and friction
-    coefficient in the order of velocity; `peak_velocity` and `peak_friction_coefficient` are the highest, NaN
-    if there is none. Of arrays of scenes they are arrays, padded with NaN. Their relative errors have the same
-    names and form in `maxima_certificate`; a maximum that does not stand out by more is not listed.
+    coefficient in the order of velocity; `peak_velocity` and `peak_friction_coefficient` are the highest,
+    NaN if there is none. For arrays of scenes they are arrays, padded with NaN. Their relative errors have
+    the same names and form in `maxima_certificate`; a maximum that does not stand out by more than the error
+    of friction is not listed.
 
     Where the limits of friction are not known there are no `lines`, no V* (NaN) and no regime (None), and
     `notes` say so.

@@ -1,13 +1,14 @@
 r"""The maxima of friction over velocity, of every scene for which steady sliding is known.
 
-On Kelvin-Voigt a dead weight has one in closed form (theorems F3, F19, F20); a fixed indenter, whose friction
-rises to a limit, and a wedge, whose friction coefficient reaches a plateau, have none. Otherwise mu(V) is
-evaluated at equal steps of ln V over all time scales of the scene, and each maximum is refined by a bracketing
-optimiser. It counts only where mu has fallen by more than its errors on both sides: between these two
-velocities there certainly is a maximum, and they are the error of its velocity.
+On Kelvin-Voigt a dead weight has one in closed form (theorems F3, F19, F20); a fixed indenter, whose
+friction rises to a limit, and a wedge, whose friction coefficient reaches a plateau, have none. Otherwise
+mu(V) is evaluated at equal steps of ln V over all time scales of the scene, more closely on shoulders, and
+each maximum is refined by a bracketing optimiser. It counts only where mu has fallen by more than its errors
+on both sides: between these two velocities there certainly is a maximum, and they are the error of its
+velocity.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
@@ -24,14 +25,16 @@ Friction = Callable[[Array, Array], tuple[Array, Array]]
 """The friction coefficient and its relative error at ln V, of the scenes with some indices."""
 
 FINE = 3.0, 16, 0.0
-"""How many decades beyond the time scales maxima are sought, at how many velocities in a decade, and the least
-tolerance of ln V."""
+"""How many decades beyond the time scales maxima are sought, at how many velocities in a decade, and the
+least tolerance of ln V."""
 INTEGRATED = 2.0, 6, 1e-4
 """The same where each velocity costs a quadrature of tens of milliseconds."""
 IN_STRIPS = 1.0, 3, 1e-2
 """The same where each costs a quadrature over strips of several seconds."""
 MOST_DECADES = 200.0
 """The farthest that is sought: for a springpot of order alpha it is 1/alpha times as far."""
+FLAT = 0.02
+"""Change of ln mu from one velocity to the next below which a shoulder is examined more closely."""
 WIDEST = 2.0
 """Largest error of ln V; a flatter maximum is not told from a plateau."""
 CLOSED_ERROR = 1e-14
@@ -58,7 +61,7 @@ def told(scene: Scene, method: str) -> dict[str, Any]:
         scan = _scan(scene, method)
         found, certificate = _sought(base, method, *scan), STATEMENT.format(*scan)
     found = np.broadcast_to(found, (*scene.shape, *found.shape[-2:]))
-    pairs, errors = (
+    pairs, wrong = (
         tuple((plain(top[..., 0]), plain(top[..., 1])) for top in np.moveaxis(rows, -2, 0))
         for rows in (found[..., :2], found[..., 2:])
     )
@@ -68,7 +71,10 @@ def told(scene: Scene, method: str) -> dict[str, Any]:
         "maxima_certificate": Certificate(
             "estimated",
             certificate,
-            {**dict(zip(PEAK, highest(found[..., 2:], found[..., 1]), strict=True)), "maxima": errors},
+            {
+                **dict(zip(PEAK, highest(found[..., 2:], found[..., 1]), strict=True)),
+                "maxima": wrong,
+            },
         ),
     }
 
@@ -91,10 +97,8 @@ def _scan(scene: Scene, method: str) -> tuple[float, int, float]:
     return INTEGRATED if scene.indenter.per_width else IN_STRIPS
 
 
-def _sought(
-    base: Scene, method: str, decades: float, per_decade: int, tolerance: float
-) -> Array:
-    """Return velocity, friction coefficient and their errors of all maxima, as rows after the shape of the scene."""
+def _sought(base: Scene, method: str, decades: float, per_decade: int, tolerance: float) -> Array:
+    """Return velocity, friction coefficient and their errors: a row for each maximum of each scene."""
     start, end, steps = _ends(base, METHODS[method](base.at(0.0)), decades, per_decade)
     grid = np.linspace(start, end, steps, axis=-1).reshape(-1, steps)
     flat = base.flat()
@@ -104,14 +108,25 @@ def _sought(
         error = state.certificate.relative_error["friction_coefficient"]
         return state.friction_coefficient, np.broadcast_to(error, y.shape)
 
-    index = np.arange(len(grid))
-    mu, error = friction(grid, np.broadcast_to(index[:, None], grid.shape))
+    mu, error = friction(grid, np.broadcast_to(np.arange(len(grid))[:, None], grid.shape))
     row, place = np.nonzero(summits(mu, error))
+    brackets = [grid[row, place + side] for side in (-1, 0, 1)]
+    shoulder, place = np.nonzero(_nearly_flat(mu, error))
+    if shoulder.size:
+        closer = np.linspace(
+            grid[shoulder, place], grid[shoulder, place + 3], 4 * per_decade, axis=-1
+        )
+        found = summits(*friction(closer, np.broadcast_to(shoulder[:, None], closer.shape)))
+        part, place = np.nonzero(found)
+        row = np.concatenate([row, shoulder[part]])
+        more = [closer[part, place + side] for side in (-1, 0, 1)]
+        brackets = [np.concatenate(pair) for pair in zip(brackets, more, strict=True)]
     found = np.empty((4, 0))
     if row.size:
-        found = _refined(friction, grid, row, place, max(tolerance, 0.25 * np.sqrt(error.min())))
-        sure = ~np.isnan(found[0])
-        found, row = found[:, sure], row[sure]
+        found = _refined(friction, brackets, row, max(tolerance, 0.25 * np.sqrt(error.min())))
+        order = np.lexsort((found[0], row))
+        order = order[~np.isnan(found[0, order])]
+        found, row = found[:, order], row[order]
     number = np.arange(row.size) - np.searchsorted(row, row)  # of the maximum in its scene
     table = np.full((len(grid), int(number.max(initial=-1)) + 1, 4), np.nan)
     table[row, number] = found.T
@@ -136,9 +151,9 @@ def _ends(base: Scene, rest: Any, decades: float, per_decade: int) -> tuple[Arra
 def summits(mu: Array, error: Array) -> Array:
     """Return where each row of mu has a maximum that stands out by more than the errors on both sides.
 
-    >>> summits(np.array([[0.0, 1.0, 0.8, 0.9, 0.1]]), np.full((1, 5), 0.02)).astype(int)
+    >>> summits(np.array([[0.1, 1.0, 0.8, 0.9, 0.1]]), np.full((1, 5), 0.02)).astype(int)
     array([[0, 1, 0, 1, 0]])
-    >>> summits(np.array([[0.0, 1.0, 0.8, 0.9, 0.1]]), np.full((1, 5), 0.1)).astype(int)
+    >>> summits(np.array([[0.1, 1.0, 0.8, 0.9, 0.1]]), np.full((1, 5), 0.1)).astype(int)
     array([[0, 1, 0, 0, 0]])
     """
     found, row = np.zeros(mu.shape, dtype=bool), np.arange(len(mu))
@@ -154,21 +169,37 @@ def summits(mu: Array, error: Array) -> Array:
     return found
 
 
-def _refined(friction: Friction, grid: Array, row: Array, place: Array, tolerance: float) -> Array:
-    """Return the maxima next to points of the grid, in columns; NaN where one is not told from a plateau."""
-    bracket = tuple(grid[row, place + side] for side in (-1, 0, 1))
+def _nearly_flat(mu: Array, error: Array) -> NDArray[np.bool_]:
+    """Return where mu has a shoulder, at the second of four points, that may hide a maximum and a minimum."""
+    slope = np.diff(np.log(mu), axis=1)
+    before, here, after = slope[:, :-2], slope[:, 1:-1], slope[:, 2:]
+    least = np.abs(here) <= np.minimum(np.abs(before), np.abs(after))
+    doubt = 2.0 * error[:, 1:-2]
+    return (
+        least
+        & (before * here > 0.0)
+        & (here * after > 0.0)
+        & (np.abs(here) < FLAT)
+        & (np.abs(here) > doubt)
+    )
+
+
+def _refined(friction: Friction, bracket: Sequence[Array], row: Any, tolerance: float) -> Array:
+    """Return the maxima within brackets in columns; NaN where one is not told from a plateau."""
 
     def depth(y: Array, row: Array) -> Array:
         return -friction(y, row)[0]
 
     tolerances = {"xatol": tolerance, "xrtol": 0.0}
-    best = elementwise.find_minimum(depth, bracket, args=(row,), tolerances=tolerances)
+    best = elementwise.find_minimum(depth, tuple(bracket), args=(row,), tolerances=tolerances)
     y = np.where(best.success, best.x, bracket[1])
     top, own = friction(y, row)
     far, low, fallen = np.full_like(y, 4.0 * tolerance), np.zeros_like(y), np.zeros(y.shape, bool)
     while (left := np.flatnonzero(~fallen & (far < WIDEST))).size:
         sides = [friction(y[left] + side * far[left], row[left]) for side in (-1.0, 1.0)]
         low[left] = np.min([mu for mu, _ in sides], axis=0)
-        fallen[left] = np.all([mu * (1.0 + e) < (top * (1.0 - own))[left] for mu, e in sides], axis=0)
+        fallen[left] = np.all(
+            [mu * (1.0 + e) < (top * (1.0 - own))[left] for mu, e in sides], axis=0
+        )
         far[left] *= np.where(fallen[left], 1.0, 2.0)
     return np.where(fallen, [np.exp(y), top, np.expm1(far), own + (1.0 - low / top)], np.nan)
