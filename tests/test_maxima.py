@@ -5,6 +5,7 @@ import pytest
 
 import kvtheory as kv
 from kvtheory.models.steady import maxima
+from tests import reference_viscoelastic
 
 V = "drive.velocity"
 TWO_ARMS = kv.GeneralizedMaxwell(1e10, arms=[["10 GN/m^3", "1 ms"], ["10 GN/m^3", "1 s"]])
@@ -119,6 +120,27 @@ def test_a_fixed_indenter_has_a_maximum_for_each_of_two_distant_arms():
         names = "peak_velocity", "peak_friction_coefficient"
         assert tuple(getattr(report, name) for name in names) == report.maxima[0]
         assert tuple(errors[name] for name in names) == errors["maxima"][0]
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_ball_arithmetic_proves_a_maximum_within_the_errors(kind):
+    support = kv.Scene.table1(kind).support
+    report = kv.asymptotes(kv.Scene(foundation=TWO_ARMS, support=support))
+    law = reference_viscoelastic.viscoelastic.Prony, (1e10, 1e-3, 1e10, 1.0), 0.01, 1e10, 1.001
+    errors = report.maxima_certificate.relative_error["maxima"]
+    assert len(errors) == 2
+    for (velocity, top), (off, own) in zip(report.maxima, errors, strict=True):
+        assert off < 2e-6
+        assert own < 2e-13
+        below, at, above = (
+            reference_viscoelastic.at_depth(*law, v, support.depth)
+            if support.depth is not None
+            else reference_viscoelastic.at_load(*law, v, support.weight, support.spring)
+            for v in velocity * np.array([1.0 / (1.0 + off), 1.0, 1.0 + off])
+        )
+        assert at["friction_coefficient"] > below["friction_coefficient"]
+        assert at["friction_coefficient"] > above["friction_coefficient"]
+        assert abs(at["friction_coefficient"] / top - 1) < own
 
 
 def test_a_stiffer_suspension_moves_the_maximum_towards_that_of_a_fixed_indenter():
