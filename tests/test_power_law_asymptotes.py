@@ -129,13 +129,6 @@ def test_the_friction_maximum_of_a_dead_weight(n):
         assert parabola.peak_friction_coefficient == pytest.approx(top, rel=1e-14)
 
 
-def test_a_wedge_and_a_fixed_indenter_have_no_friction_maximum():
-    assert np.isnan(kv.asymptotes(kv.Scene(kv.Wedge(0.1))).peak_velocity)
-    assert np.isnan(
-        kv.asymptotes(kv.Scene(kv.PowerLaw(0.01, 3.0), support=kv.Fixed(depth=3e-4))).peak_velocity
-    )
-
-
 @pytest.mark.parametrize("n", [1.0, 1.3, 2.0, 4.0, 10.0])
 def test_under_a_dead_weight_friction_falls_with_its_own_power(n):
     scene = kv.Scene(kv.Wedge(0.1) if n == 1.0 else kv.PowerLaw(0.01, n))
@@ -154,8 +147,3 @@ def test_arrays_give_what_single_scenes_give():
         assert together.use[place] == alone.use
         for one, other in zip(together.lines, alone.lines, strict=True):
             assert one.relative_error[place] == pytest.approx(other.relative_error, rel=1e-12)
-
-
-def test_other_shapes_are_refused_in_words():
-    with pytest.raises(ValueError, match="the wedge and the ball only"):
-        kv.asymptotes(kv.Scene(kv.Circle(0.01)))

@@ -4,11 +4,12 @@ from collections.abc import Mapping
 from typing import Any
 
 from kvtheory.api._edge import double_precision, scene_of
+from kvtheory.api._steady import method_for
 from kvtheory.results import AsymptoteReport
 from kvtheory.scene.arguments import a_scene, checked, number, replacements
 from kvtheory.scene.foundations import FractionalKelvinVoigt, GeneralizedMaxwell
 from kvtheory.scene.model import Scene
-from kvtheory.scene.requirements import lacks_limits, require
+from kvtheory.scene.requirements import lacks_limits
 
 MINIMUM_TOLERANCE = 1e-10
 """Smallest tolerance: below it an asymptote cannot be distinguished from rounding."""
@@ -21,14 +22,15 @@ def asymptotes(
     over: Mapping[str, Any] | None = None,
     tolerance: float = 0.05,
 ) -> AsymptoteReport:
-    """Return which asymptote holds for a scene, its error, and the velocities at which it holds.
+    """Return which asymptote holds for a scene, its error and its range, and the friction maxima.
 
     Parameters
     ----------
     scene, over
-        As in `steady`; the indenter must be a parabola, a power law, a wedge or a ball on a Kelvin-Voigt
-        foundation, or a parabola on any foundation. On a Prony series the lines are the limits of F18, and
-        the exact state of the Kelvin-Voigt foundation with the same K and C.
+        As in `steady`. The limits are known for a parabola, a power law, a wedge and a ball on a
+        Kelvin-Voigt foundation, and for a parabola on any foundation: on a Prony series those of F18, and
+        the exact state of the Kelvin-Voigt foundation with the same K and C. The maxima are found for every
+        scene; of a profile of revolution beyond Kelvin-Voigt they take minutes.
     tolerance
         Relative error up to which an asymptote is accepted, from 1e-10 to 1.
 
@@ -37,7 +39,8 @@ def asymptotes(
     AsymptoteReport
         The velocity V* at which the asymptotes cross (Eqs. 47, 48; F5, F19-crossing), the regime, and a line
         for each asymptote: its value, the exact value, the relative error and the velocities where that is
-        within the tolerance. For a dead weight also the friction maximum, unless the indenter is a wedge.
+        within the tolerance. Where the limits are not known there are no lines, and `notes` say so. `maxima`
+        are all maxima of friction over velocity, with their errors.
 
     Raises
     ------
@@ -54,16 +57,32 @@ def asymptotes(
     >>> print(f"{l1.value:.6f} {l1.exact:.6f} {l1.relative_error:.4f} {l1.velocity_max:.6f} m/s")
     0.010000 0.009694 0.0315 0.001559 m/s
 
+    A fixed indenter has maxima too where the glassy stiffness is finite:
+
+    >>> rubber = kv.GeneralizedMaxwell(1e10, arms=[["10 GN/m^3", "1 ms"], ["10 GN/m^3", "1 s"]])
+    >>> found = kv.asymptotes(kv.Scene(foundation=rubber, support=kv.Fixed(depth="0.3 mm"))).maxima
+    >>> [f"{mu:.4f} at {V:.4g} m/s" for V, mu in found]
+    ['0.0341 at 0.0009755 m/s', '0.0202 at 1.138 m/s']
+
     References
     ----------
     Nakano and Kono (2020), doi:10.3389/fmech.2020.00038, Eqs. 40-48 and Table 2.
     """
     scene = scene_of(scene).replace(over or {})
-    require(lacks_limits, scene, "the theory of asymptotes")
+    method = method_for(scene, None)
     # SciPy takes a while to import
-    from kvtheory.models.steady import fractional_limits, prony_limits, regimes
+    from kvtheory.models.steady import (
+        foundation_limits,
+        fractional_limits,
+        maxima,
+        prony_limits,
+        regimes,
+    )
 
     reports = {GeneralizedMaxwell: prony_limits, FractionalKelvinVoigt: fractional_limits}
     with double_precision(scene):
+        told = maxima.told(scene, method)
+        if lacks_limits(scene):
+            return foundation_limits.unknown(scene, tolerance, told, method)
         report = reports.get(type(scene.foundation), regimes).report
-        return report(scene, tolerance)
+        return report(scene, tolerance, told)

@@ -106,20 +106,29 @@ class AsymptoteReport:
     a spring in the drive becomes unstable is another, see `kvtheory.stability`. `regime` is ``"low"`` or
     ``"high"`` (V below or above V*); `use` names the asymptote that is
     within the tolerance, ``"L1"`` or ``"L2"``, or else ``"exact"``.
-    `peak_velocity` and `peak_friction_coefficient` locate the friction maximum of a dead weight
-    (theorem F3); they are NaN for the other supports.
+    `maxima` are all local maxima of the friction coefficient over V > 0, as pairs of velocity and friction
+    coefficient in the order of velocity; `peak_velocity` and `peak_friction_coefficient` are the highest,
+    NaN if there is none. For arrays of scenes they are arrays, padded with NaN. Their relative errors have
+    the same names and form in `maxima_certificate`; a maximum that does not stand out by more than the error
+    of friction is not listed.
+
+    Where the limits of friction are not known there are no `lines`, no V* (NaN) and no regime (None), and
+    `notes` say so.
     """
 
     velocity: Value
     critical_velocity: Value
     peak_velocity: Value
     peak_friction_coefficient: Value
+    maxima: tuple[tuple[Value, Value], ...]
     regime: Any
     use: Any
     tolerance: float
     lines: tuple[AsymptoteLine, ...]
     model: str
     certificate: Certificate
+    maxima_certificate: Certificate
+    notes: tuple[str, ...] = field(default=(), compare=False)
     units: Mapping[str, str] = field(
         default_factory=lambda: STEADY_UNITS, repr=False, compare=False
     )
@@ -127,10 +136,13 @@ class AsymptoteReport:
 
     def __repr__(self) -> str:
         """Return what to use, and a table of the asymptotes."""
-        return "\n".join([*self._told(), "", *aligned(self._heads(), self._rows())])
+        table = ["", *aligned(self._heads(), self._rows())] if self.lines else []
+        return "\n".join([*self._told(), *table])
 
     def _repr_html_(self) -> str:
         """Return the same for notebooks."""
+        if not self.lines:
+            return "".join(f"<p>{escape(line)}</p>" for line in self._told())
         return html_table("; ".join(self._told()), self._heads(), self._rows())
 
     def as_dict(self) -> dict[str, Any]:
@@ -138,19 +150,28 @@ class AsymptoteReport:
         return {f.name: record(getattr(self, f.name)) for f in fields(self) if f.repr}
 
     def _told(self) -> list[str]:
+        velocity, maxima = with_unit(self.velocity, "m/s"), self._maxima()
+        if not self.lines:
+            return [f"V = {velocity}", maxima, *self.notes]
         regimes = " or ".join(f"{each}-velocity" for each in np.unique(self.regime))
         use = " or ".join(np.unique(self.use)).replace("exact", "the exact solution")
         ratio = with_unit(np.abs(self.velocity) / self.critical_velocity, "1")
-        told = [
-            f"V = {with_unit(self.velocity, 'm/s')}, asymptotes cross at V* = "
-            f"{with_unit(self.critical_velocity, 'm/s')}, V/V* = {ratio}: {regimes} regime"
+        return [
+            f"V = {velocity}, asymptotes cross at V* = "
+            f"{with_unit(self.critical_velocity, 'm/s')}, V/V* = {ratio}: {regimes} regime",
+            maxima,
+            f"for the friction coefficient to within {self.tolerance:g}, use {use}",
         ]
-        if not np.all(np.isnan(self.peak_velocity)):
-            told.append(
-                f"friction maximum: mu = {with_unit(self.peak_friction_coefficient, '1')} "
-                f"at V = {with_unit(self.peak_velocity, 'm/s')}"
-            )
-        return [*told, f"for the friction coefficient to within {self.tolerance:g}, use {use}"]
+
+    def _maxima(self) -> str:
+        """Return the maxima of one scene, or the range of the highest of several."""
+        if not self.maxima:
+            return "no friction maximum"
+        several = np.ndim(self.peak_velocity) > 0
+        pairs = [(self.peak_velocity, self.peak_friction_coefficient)] if several else self.maxima
+        name = "highest friction maximum" if several else "friction maximum"
+        places = (f"mu = {with_unit(mu, '1')} at V = {with_unit(V, 'm/s')}" for V, mu in pairs)
+        return f"{name}: {'; '.join(places)}"
 
     @property
     def _proved(self) -> bool:

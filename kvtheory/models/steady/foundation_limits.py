@@ -1,7 +1,7 @@
 """The common part of asymptote reports on foundations beyond Kelvin-Voigt: lines, ranges, the choice."""
 
-from collections.abc import Callable, Sequence
-from typing import NamedTuple
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -55,6 +55,7 @@ def report(
     critical: Array,
     lines: Sequence[Line],
     certificate: Certificate,
+    maxima: Mapping[str, Any],
 ) -> AsymptoteReport:
     """Evaluate the lines, and choose the first that is within the tolerance."""
     signed = np.broadcast_to(scene.drive.final_velocity, scene.shape)
@@ -78,16 +79,42 @@ def report(
                 velocity_proved=plain(line.proved),
             )
         )  # fmt: skip
-    nothing = plain(np.full_like(critical, np.nan))
     return AsymptoteReport(
         velocity=plain(signed),
         critical_velocity=plain(critical),
-        peak_velocity=nothing,
-        peak_friction_coefficient=nothing,
+        **maxima,
         regime=plain(np.where(critical >= V, "low", "high")),
         use=plain(use),
         tolerance=tolerance,
         lines=tuple(reversed(told)),
         model="asymptote",
         certificate=certificate,
+    )
+
+
+NOTE = (
+    "The limits of friction at low and high velocity are known for a parabola on any foundation, and for a "
+    "power law, a wedge and a ball on Kelvin-Voigt; of this scene only the maxima are."
+)
+
+
+def unknown(
+    scene: Scene, tolerance: float, maxima: Mapping[str, Any], method: str
+) -> AsymptoteReport:
+    """Return the report of a scene whose limits are not known: its maxima, and a note."""
+
+    def each(value: Any) -> Any:
+        return plain(np.full(scene.shape, value))
+
+    return AsymptoteReport(
+        velocity=plain(np.broadcast_to(scene.drive.final_velocity, scene.shape)),
+        critical_velocity=each(np.nan),
+        **maxima,
+        regime=each(None),
+        use=each("exact"),
+        tolerance=tolerance,
+        lines=(),
+        model=method,
+        certificate=Certificate("none", "the limits of friction are not known", {}),
+        notes=(NOTE,),
     )

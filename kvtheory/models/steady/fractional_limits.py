@@ -11,6 +11,7 @@ for V -> oo. For alpha = 1 they are the paper's Eqs. 42, 45 and 46. Their errors
 support, so that a range has one end.
 """
 
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -35,7 +36,7 @@ STATEMENT = (
 )
 
 
-def report(scene: Scene, tolerance: float) -> AsymptoteReport:
+def report(scene: Scene, tolerance: float, maxima: Mapping[str, Any]) -> AsymptoteReport:
     """Make the report of `kvtheory.asymptotes` for a parabola on a fractional foundation."""
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
         critical = np.broadcast_to(critical_velocity(scene), scene.shape)
@@ -47,7 +48,7 @@ def report(scene: Scene, tolerance: float) -> AsymptoteReport:
             edge = _edge(scene, at, regime, critical, tolerance)
             lines.append(Line(name, regime, None, formula, at, edge, edge))
         certificate = Certificate("proved", STATEMENT, {})
-        return _report(scene, tolerance, critical, lines, certificate)
+        return _report(scene, tolerance, critical, lines, certificate, maxima)
 
 
 def low(scene: Scene, V: Array) -> Any:

@@ -10,6 +10,7 @@ glassy limit, s = (sum K_i/tau_i)/(sum K_i/tau_i^2), where c/(V s) <= 1/5 (theor
 support V/c grows with V, as the contact grows with the load (theorem F17-growth).
 """
 
+from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
 
@@ -44,7 +45,7 @@ GLASSY, MOST_HASTE = 2.0, 0.2
 """Relative error over c/(V s), and the largest c/(V s) (theorem F18-glassy)."""
 
 
-def report(scene: Scene, tolerance: float) -> AsymptoteReport:
+def report(scene: Scene, tolerance: float, maxima: Mapping[str, Any]) -> AsymptoteReport:
     """Make the report of `kvtheory.asymptotes` for a parabola on a Prony series."""
     unit = np.ones(scene.shape)
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
@@ -58,7 +59,7 @@ def report(scene: Scene, tolerance: float) -> AsymptoteReport:
             for name, regime, equation, formula, at, bound in LINES
         ]
         certificate = Certificate("estimated", STATEMENT.format(DECADES), {})
-        return _report(scene, tolerance, critical, lines, certificate)
+        return _report(scene, tolerance, critical, lines, certificate, maxima)
 
 
 def _sum(scene: Scene, power: int) -> Any:

@@ -1,5 +1,6 @@
 """Which asymptote holds for a scene, its error, and over which velocities it holds."""
 
+from collections.abc import Mapping
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -141,7 +142,7 @@ def rows(shape: str, support: str) -> list[Row]:
     ]
 
 
-def report(scene: Scene, tolerance: float) -> AsymptoteReport:
+def report(scene: Scene, tolerance: float, maxima: Mapping[str, Any]) -> AsymptoteReport:
     """Make the report of `kvtheory.asymptotes`, which documents it."""
     V, tau = np.asarray(scene.drive.final_velocity), scene.foundation.retardation_time
     asymptotes = asymptotes_of(scene)
@@ -166,16 +167,11 @@ def report(scene: Scene, tolerance: float) -> AsymptoteReport:
                 velocity_proved=plain(edge),
             )
         )
-    nothing = np.full_like(critical, np.nan)
-    weight_alone = not scene.held and scene.support.spring == 0.0
-    found_peak = asymptotes.peak(limits, tau) if weight_alone else (nothing, nothing)
-    peak_velocity, peak_friction = found_peak
     l1, l2 = (np.abs(line.relative_error) <= tolerance for line in lines[:2])
     return AsymptoteReport(
         velocity=plain(V),
         critical_velocity=plain(critical),
-        peak_velocity=plain(peak_velocity),
-        peak_friction_coefficient=plain(peak_friction),
+        **maxima,
         regime=plain(np.where(np.abs(V) <= critical, "low", "high")),
         use=plain(np.where(l1, "L1", np.where(l2, "L2", "exact"))),
         tolerance=tolerance,
