@@ -33,11 +33,8 @@ NEAR = 2.0
 NODES, WEIGHTS = (0.5 * each for each in np.polynomial.legendre.leggauss(14))
 NODES = 0.5 + NODES
 SHARES = [WEIGHTS * (1.0 - NODES) ** n / math.factorial(n) for n in range(4)]
-STRIPS = 40
+STRIPS = 24
 """Of the half of a ball, in the angle whose cosine is the half length of a strip over the largest."""
-_angles, _weights = (0.25 * np.pi * each for each in np.polynomial.legendre.leggauss(STRIPS))
-COSINES = np.cos(0.25 * np.pi + _angles)
-SPREADS = COSINES * _weights
 AT_REST = 1e-9
 """V tau_i/c, of the slowest arm, of slow sliding that stands for rest."""
 
@@ -96,7 +93,7 @@ class Contact(NamedTuple):
         return along - coupled, across, np.abs(D) + np.abs(coupled) * (1.0 + size / np.abs(across))
 
 
-def contact(scene: Scene) -> Contact:
+def contact(scene: Scene, strips: int = STRIPS) -> Contact:
     """Return what small motions of flat scenes see: a parabola or a ball on a Prony series."""
     shape, support = scene.shape, scene.support
     row = viscoelastic.law(scene)
@@ -106,8 +103,10 @@ def contact(scene: Scene) -> Contact:
     else:
         middle = ball_viscoelastic.contact_length(scene, row)
         half = middle * viscoelastic.growth(row.moments(middle))[0]
-        c = np.stack([viscoelastic.length_at_half(row, half * cosine) for cosine in COSINES])
-        width = 2.0 * scene.indenter.stretch * half * SPREADS[:, np.newaxis]
+        angles, weights = (0.25 * np.pi * x for x in np.polynomial.legendre.leggauss(strips))
+        cosines = np.cos(0.25 * np.pi + angles)
+        c = np.stack([viscoelastic.length_at_half(row, half * cosine) for cosine in cosines])
+        width = 2.0 * scene.indenter.stretch * half * (cosines * weights)[:, np.newaxis]
     M = [row.moments(each) for each in c]
     eta = np.stack([0.5 * (each.P - each.Q) / (each.P + each.Q) for each in M])
 

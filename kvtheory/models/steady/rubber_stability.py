@@ -30,8 +30,8 @@ BISECTIONS = 52
 NEARBY = 1e-5
 """Relative difference of frequencies, of rates and of velocities for slopes."""
 ROUNDING = 16 * 2.0**-52
-STRIPS_ERROR = 1e-9
-"""Relative to the terms of k_x, of the sums over the strips of a ball."""
+CHECKED = 2
+"""So many times as many strips of a ball show the error of the sums."""
 NEWTON_STEPS, SETTLED, SAME = 60, 1e-9, 1e-6
 ANGLES, RADII = 15, 6
 """Starts of Newton's method: directions in the upper half plane, and distances per decade."""
@@ -69,8 +69,8 @@ def scales(given: Contact) -> Array:
     return np.stack(found)
 
 
-def crossings(given: Contact) -> Crossings:
-    """Return every crossing at a positive stiffness."""
+def crossings(given: Contact, finer: Contact) -> Crossings:
+    """Return every crossing at a positive stiffness; `finer` has more strips, for the errors."""
     own = scales(given)
     low, high = (np.log(own.min(axis=0)), np.log(own.max(axis=0)))
     low, high = low - BEYOND * np.log(10.0), high + BEYOND * np.log(10.0)
@@ -86,20 +86,20 @@ def crossings(given: Contact) -> Crossings:
         middle = 0.5 * (start + end)
         before = (stiffness(given, row, middle)[0].imag > 0.0) == (way > 0)
         start, end = np.where(before, middle, start), np.where(before, end, middle)
-    return _crossings(given, row, 0.5 * (start + end), way)
+    return _crossings(given, finer, row, 0.5 * (start + end), way)
 
 
-def _crossings(given: Contact, row: Any, log: Array, way: Any) -> Crossings:
+def _crossings(given: Contact, finer: Contact, row: Any, log: Array, way: Any) -> Crossings:
     """Return those at a positive stiffness, with their errors to first order."""
     k, _, size = stiffness(given, row, log)
     near = [stiffness(given, row, log + step)[0] for step in (-NEARBY, NEARBY)]
     slope = (near[1] - near[0]) / (2.0 * NEARBY)
-    doubt = ROUNDING if len(given.c) == 1 else STRIPS_ERROR
+    doubt = ROUNDING * size + 2.0 * np.abs(stiffness(finer, row, log)[0] - k)
     omega = np.exp(log)
     with np.errstate(divide="ignore"):
-        off = doubt * size / np.abs(slope.imag) + ROUNDING
+        off = doubt / np.abs(slope.imag) + ROUNDING
     inertia = given.mass_along[row] * omega * omega
-    wrong = np.abs(slope.real) * off + doubt * size + ROUNDING * inertia
+    wrong = np.abs(slope.real) * off + doubt + ROUNDING * inertia
     some = k.real > 0.0
     parts = row, k.real, omega, way, wrong / np.abs(k.real), off
     return Crossings(*(each[some] for each in parts))
@@ -151,7 +151,13 @@ def critical(found: Crossings, count: int) -> tuple[dict[str, Array], dict[str, 
     return dict(zip(names, values, strict=True)), dict(zip(names, errors, strict=True))
 
 
-def rates(given: Contact, spring: float | None) -> tuple[Complex, Array]:
+def both(scene: Scene) -> tuple[Contact, Contact]:
+    """Return what small motions see, and for a ball the same in more strips."""
+    given = contact(scene)
+    return given, given if scene.indenter.per_width else contact(scene, CHECKED * len(given.c))
+
+
+def rates(given: Contact, finer: Contact, spring: float | None) -> tuple[Complex, Array]:
     """Return the least stable rates of one scene and their relative errors: as many as on Kelvin-Voigt.
 
     These are four, or two for a rigid drive or a fixed indenter, and none for both. An infinite error says
@@ -161,14 +167,14 @@ def rates(given: Contact, spring: float | None) -> tuple[Complex, Array]:
     if not degree:
         return np.empty(0, complex), np.empty(0)
 
-    def value(s: Complex) -> tuple[Complex, Array]:
+    def value(s: Complex, given: Contact = given) -> tuple[Complex, Array]:
         k, across, size = given.rows(np.zeros(s.shape, int)).stiffness(s)
         if spring is None:
             return across, np.abs(s * s) * given.mass + np.abs(across)
         return across * (spring - k), np.abs(across) * (spring + np.abs(k) + size)
 
     with np.errstate(all="ignore"):
-        found, error = _newton(given, value, spring)
+        found, error = _newton(given, finer, value, spring)
     upper = found.imag > SAME * np.abs(found)
     found, error = (
         np.concatenate([each, (np.conj(each) if each is found else each)[upper]])
@@ -191,7 +197,7 @@ def _range(given: Contact, spring: float | None) -> Array:
     return own if spring is None else np.append(own, np.sqrt(spring / given.mass_along))
 
 
-def _newton(given: Contact, value: Any, spring: float | None) -> tuple[Complex, Array]:
+def _newton(given: Contact, finer: Contact, value: Any, spring: float | None) -> tuple[Complex, Array]:
     """Return the roots in the closed upper half plane that Newton's method reaches, and their errors."""
     own = np.log10(_range(given, spring))
     low, high = own.min() - BEYOND, own.max() + BEYOND
@@ -200,22 +206,28 @@ def _newton(given: Contact, value: Any, spring: float | None) -> tuple[Complex, 
     passing = (given.V / given.c).min()
     chain = passing * (np.arange(-1.0, 12.0)[:, np.newaxis] - 1j * np.linspace(0.0, 60.0, 31))
     s = np.concatenate([polar.ravel(), *(-rate - chain.ravel() for rate in given.relaxed[:, 0])])
+    moving = np.arange(s.size)
     for _ in range(NEWTON_STEPS):
-        f, size = value(s)
-        h = NEARBY * s
-        slope = (value(s + h)[0] - value(s - h)[0]) / (2.0 * h)
-        step = f / slope
-        limited = np.minimum(1.0, 0.5 * np.abs(s) / np.abs(step))
-        settled = np.abs(step) < SETTLED * np.abs(s)
-        s = np.where(np.isfinite(step), s - limited * step, s)
-    error = (np.abs(step) + ROUNDING * size / np.abs(slope)) / np.abs(s) + ROUNDING
+        here = s[moving]
+        f, h = value(here)[0], NEARBY * here
+        step = h * f / (value(here + h)[0] - f)
+        limited = np.minimum(1.0, 0.5 * np.abs(here) / np.abs(step))
+        s[moving] = np.where(np.isfinite(step), here - limited * step, np.nan)
+        moving = moving[np.abs(step) > SETTLED * np.abs(here)]
+        if not moving.size:
+            break
+    s[moving] = np.nan
+    s = s[np.isfinite(s)]
     s = np.where(np.abs(s.imag) < SETTLED * np.abs(s), s.real, s.real + 1j * np.abs(s.imag))
-    s, error = s[settled], error[settled]
     kept: list[int] = []
     for i in np.argsort(-s.real):
         if all(abs(s[i] - s[j]) > SAME * abs(s[i]) for j in kept):
             kept.append(i)
-    return s[kept], error[kept]
+    s = s[kept]
+    (f, size), h = value(s), NEARBY * s
+    slope = (value(s + h)[0] - value(s - h)[0]) / (2.0 * h)
+    off = np.abs(f) + ROUNDING * size + 2.0 * np.abs(value(s, finer)[0] - f)
+    return s, off / np.abs(slope * s) + ROUNDING
 
 
 def _count(given: Contact, value: Any, line: float, degree: int, spring: float | None) -> int:
@@ -243,9 +255,8 @@ def critical_velocity(scene: Scene) -> tuple[float, float]:
     low, high = length.min() - SPEED_DECADES, length.max() + SPEED_DECADES
     spring = np.broadcast_to(scene.drive.stiffness, (1,))
 
-    def found(log: Array) -> Crossings:
-        many = scene.rows(np.zeros(log.size, int))
-        return crossings(contact(many.at(10.0**log)))
+    def found(log: Array, strips: Any = lambda scene: 2 * (contact(scene),)) -> Crossings:
+        return crossings(*strips(scene.rows(np.zeros(log.size, int)).at(10.0**log)))
 
     grid = np.linspace(low, high, 1 + int(SPEEDS * (high - low)))
     now = found(grid).unstable(np.repeat(spring, grid.size))
@@ -264,7 +275,7 @@ def critical_velocity(scene: Scene) -> tuple[float, float]:
 
     onset = brentq(signed, *grid[change[0] : change[0] + 2], xtol=1e-15)
     step = NEARBY / np.log(10.0)
-    near = [found(np.array([onset + side * step])) for side in (-1.0, 1.0)]
+    near = [found(np.array([onset + side * step]), both) for side in (-1.0, 1.0)]
     if not all(each.row.size for each in near):
         return 10.0**onset, np.inf
     at = [np.argmin(np.abs(each.stiffness / spring - 1.0)) for each in near]

@@ -10,7 +10,6 @@ from numpy.typing import NDArray
 from kvtheory.models.steady import ball_stability, rubber_stability
 from kvtheory.models.steady.critical_velocity import critical_velocity
 from kvtheory.models.steady.rates import rates
-from kvtheory.models.steady.rubber_response import contact
 from kvtheory.models.steady.stability import Numbers, is_stable, numbers, onsets
 from kvtheory.results import Certificate, Stability
 from kvtheory.scene.model import Scene
@@ -110,9 +109,9 @@ def _block(scene: Scene, wanted: Set[str]) -> tuple[dict[str, Any], dict[str, An
 def _block_on_arms(scene: Scene, wanted: Set[str]) -> tuple[dict[str, Any], dict[str, Any]]:
     """Return what `_block` does for a Prony series."""
     found, errors = _unless_wanted(scene.shape), {}
-    given, rigid = contact(scene), scene.drive.rigid
+    (given, finer), rigid = rubber_stability.both(scene), scene.drive.rigid
     if not (rigid and scene.held):  # of which the mass is not known
-        crossings = rubber_stability.crossings(given)
+        crossings = rubber_stability.crossings(given, finer)
         stiffnesses, errors = rubber_stability.critical(crossings, *scene.shape)
         found |= stiffnesses
     if not rigid:
@@ -124,7 +123,9 @@ def _block_on_arms(scene: Scene, wanted: Set[str]) -> tuple[dict[str, Any], dict
         found["critical_velocity"], errors["critical_velocity"] = np.array(pairs).reshape(-1, 2).T
     if not wanted.isdisjoint(SLOW):
         rows = [
-            rubber_stability.rates(given.rows([i]), None if rigid else float(spring[i]))
+            rubber_stability.rates(
+                given.rows([i]), finer.rows([i]), None if rigid else float(spring[i])
+            )
             for i in range(*scene.shape)
         ]
         s, error = (np.array([row[which] for row in rows]) for which in (0, 1))
