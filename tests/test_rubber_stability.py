@@ -47,7 +47,9 @@ def residue(scene, s, spring):
     else:
         nodes, weights = (0.25 * np.pi * x for x in np.polynomial.legendre.leggauss(40))
         cosines = np.cos(0.25 * np.pi + nodes)
-        sums = [2 * a * w * c * forces(scene, a * c, s) for c, w in zip(cosines, weights, strict=True)]
+        sums = [
+            2 * a * w * c * forces(scene, a * c, s) for c, w in zip(cosines, weights, strict=True)
+        ]
         A, B, C, D = sum(sums) * scene.indenter.stretch
     along = scene.drive_mass * s * s + spring - D
     if scene.held:
@@ -58,7 +60,11 @@ def residue(scene, s, spring):
 
 @pytest.mark.parametrize(
     ("arms", "velocity", "stiffness", "omega"),
-    [(ZENER, 0.05, 4.533990e6, 66.6002), (ZENER, 0.3, 146.765e6, None), (TWO, 0.2, 44.7401e6, None)],
+    [
+        (ZENER, 0.05, 4.533990e6, 66.6002),
+        (ZENER, 0.3, 146.765e6, None),
+        (TWO, 0.2, 44.7401e6, None),
+    ],
 )
 def test_critical_stiffness_of_table_1(arms, velocity, stiffness, omega):
     found = kv.stability(rubber(arms, velocity), quantity=QUICK)
@@ -84,7 +90,9 @@ def test_a_fast_stiff_arm_is_a_damper(ball):
     velocity = np.array([0.039, 0.091, 0.214])
     scenes = [rubber([(1e9 / t, t)], velocity, **parts) for t in (1e-6, 1e-7)]
     damper = kv.Scene(drive=kv.Drive(velocity=velocity), **parts)
-    truth, *found = (kv.stability(each, quantity=QUICK).critical_stiffness for each in (damper, *scenes))
+    truth, *found = (
+        kv.stability(each, quantity=QUICK).critical_stiffness for each in (damper, *scenes)
+    )
     off = [np.abs(each / truth - 1.0) for each in found]
     assert (off[0] < 2e-2).all()
     assert off[1] == pytest.approx(0.1 * off[0], rel=0.1)
@@ -122,6 +130,9 @@ def test_the_critical_velocity_is_where_the_stiffness_is_critical():
 
 
 def test_the_springpot_is_refused_and_solve_refuses_what_is_unstable():
+    springpot = kv.Scene(foundation=kv.FractionalKelvinVoigt(1e10, 0.1, 0.5))
+    with pytest.raises(ValueError, match='not for "fractional-kelvin-voigt"'):
+        kv.stability(springpot)
     with pytest.raises(kv.ToleranceError, match="unstable on the spring"):
         kv.solve(rubber(ZENER, 0.05), quantity="load")
     stiff = kv.solve(rubber(ZENER, 0.05, 1e7), quantity="load")

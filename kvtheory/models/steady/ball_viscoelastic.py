@@ -107,7 +107,8 @@ def quantities(scene: Scene) -> tuple[Any, ...]:
 def contact_length(scene: Scene, row: Any) -> Array:
     """Return the length of the contact in the middle plane, on every support.
 
-    At a load by Newton's method in logarithms, from rest. The load is positive and its growth between 2 and 5, so that the steps close in from everywhere.
+    At a load by Newton's method in logarithms, from rest. The load is positive and its growth between 2
+    and 5, so that the steps close in from everywhere.
     """
     R, load, spring = scene.indenter.radius, scene.support.weight, scene.support.spring
     if scene.held:

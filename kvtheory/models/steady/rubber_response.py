@@ -4,16 +4,16 @@ A depth delta_1 e^(st) and a displacement X_1 e^(st) along x change the forces b
 
     F_z1 = A delta_1 + B X_1,    F_x1 = C delta_1 + D X_1.
 
-With the length c of the contact, sigma = s c/V, z = c/(V tau_i), m = z + sigma, the half length a = (1/2 + eta) c
-and phi_n(-m) = int_0^1 e^(-m v) (1 - v)^(n-1)/(n-1)! dv, each arm adds
+With the length c of the contact, its half length at rest (1/2 + eta) c, sigma = s c/V, z = c/(V tau_i),
+m = z + sigma and phi_n(-m) = int_0^1 e^(-m v) (1 - v)^(n-1)/(n-1)! dv, each arm adds
 
     A:   K_i c [phi_1 + sigma phi_2],
     B:   K_i (c^2/R) z [Delta_3 - (1/2 + eta) Delta_2],
     C:  -K_i (c^2/R) [(1/2 - eta) (phi_1 + sigma phi_2) - phi_2 - sigma phi_3],
     D:  -K_i (c^3/R^2) z [Delta_3 - Delta_4 - (1/4 - eta^2) Delta_2],
 
-all phi at -m, Delta_n = phi_n(-z) - phi_n(-m), to K c in A and K eta c^2/R in C. Nothing cancels for stiff, fast
-arms; a small sigma is taken out of Delta_n as a factor. A ball is the sum of its strips.
+all phi at -m, Delta_n = phi_n(-z) - phi_n(-m), to K c in A and K eta c^2/R in C. Nothing cancels for
+stiff, fast arms; a small sigma is taken out of Delta_n as a factor. A ball is the sum of its strips.
 """
 
 import math
@@ -61,7 +61,8 @@ class Contact(NamedTuple):
 
     def rows(self, index: Any) -> "Contact":
         """Return some of the scenes."""
-        return Contact(*(each[..., index] for each in self[:-1]), held=self.held)
+        parts: list[Any] = [each[..., index] for each in self[:-1]]
+        return Contact(*parts, self.held)
 
     def forces(self, s: Complex) -> tuple[Complex, ...]:
         """Return A, B, C, D, for one s of each scene."""
@@ -81,7 +82,7 @@ class Contact(NamedTuple):
         each = A, slope * B, slope * C, slope * slope * D
         return tuple((share * term).sum(axis=0) for term in each)
 
-    def stiffness(self, s: Complex) -> tuple[Complex, Complex, Complex]:
+    def stiffness(self, s: Complex) -> tuple[Complex, Complex, Array]:
         """Return the k_x for which s is a rate, what resists vertical motion, and the size of its terms."""
         A, B, C, D = self.forces(s)
         along = D - s * (self.mass_along * s + self.damping)
@@ -114,7 +115,9 @@ def contact(scene: Scene, strips: int = STRIPS) -> Contact:
         return np.broadcast_to(value, shape).astype(float)
 
     relaxed = np.stack([full(1.0 / arm.relaxation_time) for arm in scene.foundation.arms])
-    V = np.maximum(np.abs(scene.drive.final_velocity), AT_REST * c.max(axis=0) * relaxed.min(axis=0))
+    V = np.maximum(
+        np.abs(scene.drive.final_velocity), AT_REST * c.max(axis=0) * relaxed.min(axis=0)
+    )
     return Contact(
         full(V), full(scene.indenter.radius), full(scene.foundation.stiffness),
         np.stack([full(arm.stiffness) for arm in scene.foundation.arms]), relaxed,
@@ -128,7 +131,7 @@ def phi(m: Complex) -> list[Complex]:
     """Return phi_1 to phi_4 at -m."""
     near = np.abs(m) < NEAR
     far = np.where(near, NEAR, m)
-    found = [-np.expm1(-far) / far]
+    found: list[Complex] = [np.asarray(-np.expm1(-far) / far, complex)]
     for n in range(1, 4):
         found.append((1.0 / math.factorial(n) - found[-1]) / far)
     if near.any():

@@ -1,13 +1,14 @@
 """Stability of steady sliding on a Prony series, the drive holding the indenter by a spring (theorem F24).
 
-A stiffness k_x(s) = D - M_x s^2 - c_x s - B C/(M s^2 + k_s + A) belongs to each rate s. Every stiff spring is
-stable. On the way to a soft one two rates enter or leave the right half plane at each frequency where k_x(i omega)
-is real and positive: they enter where its imaginary part falls through zero over the frequency, and leave where it
-rises. All these frequencies, found on a grid and bisected, say which stiffnesses are stable.
+A stiffness k_x(s) = D - M_x s^2 - c_x s - B C/(M s^2 + k_s + A) belongs to each rate s. On a very stiff spring
+sliding is stable. On the way to a soft one two rates enter or leave the right half plane at each frequency
+where k_x(i omega) is real and positive: they enter where its imaginary part falls through zero over the
+frequency, and leave where it rises. All these frequencies, found on a grid and bisected, tell which
+stiffnesses are stable.
 
 The equation for the rates is transcendental and has infinitely many roots, finitely many to the right of any
-line. The least stable ones are found by Newton's method from many starts; the argument principle counts whether
-any is missing.
+line. The least stable ones are found by Newton's method from many starts; the argument principle counts
+whether any is missing.
 """
 
 from typing import Any, NamedTuple
@@ -21,11 +22,11 @@ from kvtheory.scene.model import Scene
 Array = NDArray[np.float64]
 
 PER_DECADE, BEYOND = 48, 2.0
-"""Frequencies of the grid, and how many decades it extends beyond the shortest and longest times of a scene."""
+"""Frequencies of the grid, and its decades beyond the shortest and longest times of a scene."""
 LOWER, LOWER_COUNT = 10.0, 16
 """Further decades for soft springs next to the maximum of friction, where nothing else changes."""
 TURN, REFINEMENTS, CLOSER = 0.4, 24, 3
-"""Cells in which the phase turns by more are halved, so many times at most; those at a zero, some times more."""
+"""Phase in a cell above which it is halved, the most halvings, and those of the cells at a zero."""
 BISECTIONS = 52
 NEARBY = 1e-5
 """Relative difference of frequencies, of rates and of velocities for slopes."""
@@ -33,7 +34,7 @@ ROUNDING = 16 * 2.0**-52
 CHECKED = 2
 """So many times as many strips of a ball show the error of the sums."""
 NEWTON_STEPS, SETTLED, SAME = 60, 1e-9, 1e-6
-ANGLES, RADII = 15, 6
+ANGLES, RADII = 9, 5
 """Starts of Newton's method: directions in the upper half plane, and distances per decade."""
 FAR = 100.0
 """Distance in logarithms of a stiffness from a critical one that does not exist."""
@@ -42,8 +43,10 @@ SPEEDS, SPEED_DECADES = 6, 4.0
 
 
 class Crossings(NamedTuple):
-    """Where two rates cross the imaginary axis: the scene, the stiffness, the frequency in rad/s, +1 where
-    they are unstable for softer springs and -1 where for stiffer ones, and relative errors."""
+    """Where two rates cross the imaginary axis, with relative errors.
+
+    `way` is 1 where softer springs have two more unstable rates, and -1 where they have two fewer.
+    """
 
     row: NDArray[np.int_]
     stiffness: Array
@@ -102,7 +105,8 @@ def _crossings(given: Contact, finer: Contact, row: Any, log: Array, way: Any) -
     wrong = np.abs(slope.real) * off + doubt + ROUNDING * inertia
     some = k.real > 0.0
     parts = row, k.real, omega, way, wrong / np.abs(k.real), off
-    return Crossings(*(each[some] for each in parts))
+    chosen: list[Any] = [each[some] for each in parts]
+    return Crossings(*chosen)
 
 
 def stiffness(given: Contact, row: Any, log: Array) -> tuple[Complex, Complex, Array]:
@@ -160,14 +164,15 @@ def both(scene: Scene) -> tuple[Contact, Contact]:
 def rates(given: Contact, finer: Contact, spring: float | None) -> tuple[Complex, Array]:
     """Return the least stable rates of one scene and their relative errors: as many as on Kelvin-Voigt.
 
-    These are four, or two for a rigid drive or a fixed indenter, and none for both. An infinite error says
+    These are four, or two for a rigid drive or a fixed indenter, and none for both; NaN where fewer are found,
+    as next to rest, where those left of -1/tau_i of the slowest arm do not exist. An infinite error says
     that the count of the argument principle differs.
     """
     degree = 2 * ((spring is not None) + (not given.held))
     if not degree:
         return np.empty(0, complex), np.empty(0)
 
-    def value(s: Complex, given: Contact = given) -> tuple[Complex, Array]:
+    def value(s: Complex, given: Contact = given) -> tuple[Any, Any]:
         k, across, size = given.rows(np.zeros(s.shape, int)).stiffness(s)
         if spring is None:
             return across, np.abs(s * s) * given.mass + np.abs(across)
@@ -176,19 +181,20 @@ def rates(given: Contact, finer: Contact, spring: float | None) -> tuple[Complex
     with np.errstate(all="ignore"):
         found, error = _newton(given, finer, value, spring)
     upper = found.imag > SAME * np.abs(found)
-    found, error = (
-        np.concatenate([each, (np.conj(each) if each is found else each)[upper]])
-        for each in (found, error)
-    )
+    found = np.concatenate([found, found[upper].conj()])
+    error = np.concatenate([error, error[upper]])
     order = np.lexsort((found.imag, -found.real))
     found, error = found[order], error[order]
+    if not found.size:
+        return np.full(degree, np.nan, complex), np.full(degree, np.inf)
     last = found[min(degree, len(found)) - 1].real
     left = found.real[found.real < last - SAME * abs(last)]
     line = 0.5 * (last + left[0]) if left.size else 1.05 * last
     if _count(given, value, line, degree, spring) != np.count_nonzero(found.real > line):
         error = np.full_like(error, np.inf)
     short = max(degree - len(found), 0)
-    found, error = (np.pad(each, (0, short), constant_values=np.nan) for each in (found, error))
+    found = np.append(found, np.full(short, np.nan))
+    error = np.append(error, np.full(short, np.inf))
     return found[:degree], error[:degree]
 
 
@@ -197,14 +203,16 @@ def _range(given: Contact, spring: float | None) -> Array:
     return own if spring is None else np.append(own, np.sqrt(spring / given.mass_along))
 
 
-def _newton(given: Contact, finer: Contact, value: Any, spring: float | None) -> tuple[Complex, Array]:
+def _newton(
+    given: Contact, finer: Contact, value: Any, spring: float | None
+) -> tuple[Complex, Array]:
     """Return the roots in the closed upper half plane that Newton's method reaches, and their errors."""
     own = np.log10(_range(given, spring))
     low, high = own.min() - BEYOND, own.max() + BEYOND
     radii = np.logspace(low, high, int(RADII * (high - low)))
     polar = radii[:, np.newaxis] * np.exp(1j * np.linspace(0.0, np.pi, ANGLES))
     passing = (given.V / given.c).min()
-    chain = passing * (np.arange(-1.0, 12.0)[:, np.newaxis] - 1j * np.linspace(0.0, 60.0, 31))
+    chain = passing * (np.arange(-1.0, 12.0, 2.0)[:, np.newaxis] - 1j * np.linspace(0.0, 60.0, 16))
     s = np.concatenate([polar.ravel(), *(-rate - chain.ravel() for rate in given.relaxed[:, 0])])
     moving = np.arange(s.size)
     for _ in range(NEWTON_STEPS):
@@ -249,7 +257,7 @@ def _count(given: Contact, value: Any, line: float, degree: int, spring: float |
 
 
 def critical_velocity(scene: Scene) -> tuple[float, float]:
-    """Return the smallest velocity at which one scene becomes unstable, NaN if there is none, and its error."""
+    """Return the smallest velocity at which one scene becomes unstable, or NaN, and its error."""
     given = contact(scene.at(np.ones(1)))
     length = np.log10(given.c.max() * given.relaxed)
     low, high = length.min() - SPEED_DECADES, length.max() + SPEED_DECADES

@@ -26,8 +26,8 @@ STATEMENT = (
 )
 ON_ARMS = (
     "rates of the memory integrals in closed form (theorem F24), with what rounding and the sums over strips "
-    "make of them to first order; critical stiffnesses from a grid of frequencies that follows resonances; the "
-    "least stable rates, counted by the argument principle (an error of infinity: the count differs)"
+    "make of them to first order; critical stiffnesses from a grid of frequencies that follows resonances; "
+    "the least stable rates, counted by the argument principle (an error of infinity: the count differs)"
 )
 FREQUENCIES = 64
 """Scenes on arms treated at a time: each is evaluated on a grid of frequencies, a ball in each strip."""
@@ -108,7 +108,7 @@ def _block(scene: Scene, wanted: Set[str]) -> tuple[dict[str, Any], dict[str, An
 
 def _block_on_arms(scene: Scene, wanted: Set[str]) -> tuple[dict[str, Any], dict[str, Any]]:
     """Return what `_block` does for a Prony series."""
-    found, errors = _unless_wanted(scene.shape), {}
+    found, errors = _unless_wanted(scene.shape), dict[str, Any]()
     (given, finer), rigid = rubber_stability.both(scene), scene.drive.rigid
     if not (rigid and scene.held):  # of which the mass is not known
         crossings = rubber_stability.crossings(given, finer)
@@ -145,7 +145,8 @@ def _unless_wanted(shape: tuple[int, ...]) -> dict[str, Any]:
         "rates": nothing[:, np.newaxis, np.newaxis],
         "time_constants": nothing[:, np.newaxis],
         **dict.fromkeys(
-            ("critical_stiffness", "lower_critical_stiffness", "critical_velocity", "frequency"), nothing
+            ("critical_stiffness", "lower_critical_stiffness", "critical_velocity", "frequency"),
+            nothing,
         ),
     }
 
