@@ -31,8 +31,8 @@ def stability(
     rigid drive. With a spring the rates are the roots of the quartic of theorem F22.
 
     On a Prony series (theorem F24) the equation for the rates is transcendental: the least stable ones are
-    returned, as many as on Kelvin-Voigt, and a fixed indenter may be unstable too. Between the lower and the upper
-    critical stiffness there may be stable ranges; `stable` is right for the stiffness that is given.
+    returned, as many as on Kelvin-Voigt, and a fixed indenter may be unstable too. Between the lower and
+    the upper critical stiffness there may be stable ranges; `stable` is right for the stiffness that is given.
 
     Stable is meant against small disturbances. After a large one, such as a sudden start, the motion may
     end in stick-slip all the same (hard excitation): `transient` and `sweep` follow it.
@@ -41,7 +41,8 @@ def stability(
     ----------
     scene, over
         As in `steady`; the indenter must be a parabola or a ball, on a Kelvin-Voigt foundation or on a Prony
-        series; it is not known for a springpot. `over` may give ``"drive.stiffness"`` also where the drive of the scene is rigid.
+        series; it is not known for a springpot. `over` may give ``"drive.stiffness"`` also where the
+        drive of the scene is rigid.
     quantity
         Name of a quantity, or several; without it, all. The critical stiffness alone takes
         less than a microsecond for each scene of an array; the critical velocity, that of the onset of

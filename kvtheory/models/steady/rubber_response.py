@@ -62,7 +62,7 @@ class Contact(NamedTuple):
     def rows(self, index: Any) -> "Contact":
         """Return some of the scenes."""
         parts: list[Any] = [each[..., index] for each in self[:-1]]
-        return Contact(*parts, self.held)
+        return Contact(*[*parts, self.held])
 
     def forces(self, s: Complex) -> tuple[Complex, ...]:
         """Return A, B, C, D, for one s of each scene."""

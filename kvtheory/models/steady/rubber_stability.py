@@ -1,7 +1,7 @@
 """Stability of steady sliding on a Prony series, the drive holding the indenter by a spring (theorem F24).
 
-A stiffness k_x(s) = D - M_x s^2 - c_x s - B C/(M s^2 + k_s + A) belongs to each rate s. On a very stiff spring
-sliding is stable. On the way to a soft one two rates enter or leave the right half plane at each frequency
+A stiffness k_x(s) = D - M_x s^2 - c_x s - B C/(M s^2 + k_s + A) belongs to each rate s. A stiff spring
+keeps sliding stable. On the way to a soft one two rates enter or leave the right half plane at each frequency
 where k_x(i omega) is real and positive: they enter where its imaginary part falls through zero over the
 frequency, and leave where it rises. All these frequencies, found on a grid and bisected, tell which
 stiffnesses are stable.
@@ -164,8 +164,8 @@ def both(scene: Scene) -> tuple[Contact, Contact]:
 def rates(given: Contact, finer: Contact, spring: float | None) -> tuple[Complex, Array]:
     """Return the least stable rates of one scene and their relative errors: as many as on Kelvin-Voigt.
 
-    These are four, or two for a rigid drive or a fixed indenter, and none for both; NaN where fewer are found,
-    as next to rest, where those left of -1/tau_i of the slowest arm do not exist. An infinite error says
+    These are four, or two for a rigid drive or a fixed indenter, and none for both; NaN where fewer are
+    found, as next to rest, where those left of -1/tau_i of the slowest arm do not exist. An infinite error says
     that the count of the argument principle differs.
     """
     degree = 2 * ((spring is not None) + (not given.held))
