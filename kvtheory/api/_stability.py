@@ -32,7 +32,7 @@ def stability(
 
     On a Prony series (theorem F24) the equation for the rates is transcendental: the least stable ones are
     returned, as many as on Kelvin-Voigt, and a fixed indenter may be unstable too. Between the lower and
-    the upper critical stiffness there may be stable ranges; `stable` is right for the stiffness that is given.
+    the upper critical stiffness there may be stable ranges; `stable` holds for the given stiffness.
 
     Stable is meant against small disturbances. After a large one, such as a sudden start, the motion may
     end in stick-slip all the same (hard excitation): `transient` and `sweep` follow it.

@@ -165,8 +165,8 @@ def rates(given: Contact, finer: Contact, spring: float | None) -> tuple[Complex
     """Return the least stable rates of one scene and their relative errors: as many as on Kelvin-Voigt.
 
     These are four, or two for a rigid drive or a fixed indenter, and none for both; NaN where fewer are
-    found, as next to rest, where those left of -1/tau_i of the slowest arm do not exist. An infinite error says
-    that the count of the argument principle differs.
+    found, as next to rest, where those left of -1/tau_i of the slowest arm do not exist. An infinite error
+    says that the count of the argument principle differs.
     """
     degree = 2 * ((spring is not None) + (not given.held))
     if not degree:
