@@ -30,18 +30,24 @@ def stability(
     stiffness is that of a spring, without damper and with the mass of the support, in place of the
     rigid drive. With a spring the rates are the roots of the quartic of theorem F22.
 
+    On a Prony series (theorem F24) the equation for the rates is transcendental: the least stable ones are
+    returned, as many as on Kelvin-Voigt, and a fixed indenter may be unstable too. Between the lower and
+    the upper critical stiffness there may be stable ranges; `stable` holds for the given stiffness.
+
     Stable is meant against small disturbances. After a large one, such as a sudden start, the motion may
     end in stick-slip all the same (hard excitation): `transient` and `sweep` follow it.
 
     Parameters
     ----------
     scene, over
-        As in `steady`; the indenter must be a parabola or a ball on a Kelvin-Voigt foundation. `over` may
-        give ``"drive.stiffness"`` also where the drive of the scene is rigid.
+        As in `steady`; the indenter must be a parabola or a ball, on a Kelvin-Voigt foundation or on a Prony
+        series; it is not known for a springpot. `over` may give ``"drive.stiffness"`` also where the
+        drive of the scene is rigid.
     quantity
         Name of a quantity, or several; without it, all. The critical stiffness alone takes
         less than a microsecond for each scene of an array; the critical velocity, that of the onset of
-        instability, and the rates take longer.
+        instability, and the rates take longer. On a Prony series a scene takes some 30 ms, the
+        critical velocity and the rates about a second each, those of a ball a few.
 
     Returns
     -------
@@ -53,7 +59,7 @@ def stability(
     SceneError
         As in `steady`, if the mass of a fixed indenter on a spring is not known, or if a quantity is wrong.
     ValueError
-        If the indenter is neither a parabola nor a ball, or the foundation not Kelvin-Voigt.
+        If the indenter is neither a parabola nor a ball, or the foundation a springpot.
 
     Examples
     --------
@@ -68,7 +74,7 @@ def stability(
 
     References
     ----------
-    Fact F22 of the derivations.
+    Fact F22 of the derivations; F24 for a Prony series.
     """
     scene = scene_of(scene).replace(over or {})
     require(lacks_stability, scene, "the stability of steady sliding")

@@ -15,8 +15,8 @@ UNSTABLE = (
     "Steady sliding is unstable{} on the spring in the drive and will not persist; see `stability`."
 )
 UNKNOWN = (
-    "Whether steady sliding is stable on this spring is known for a parabola and for a ball on Kelvin-Voigt "
-    "only."
+    "Whether steady sliding is stable on this spring is known only for a parabola and a ball on "
+    "Kelvin-Voigt or a Prony series."
 )
 
 

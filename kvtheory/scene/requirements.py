@@ -72,7 +72,10 @@ def lacks_paper_model(scene: Scene) -> str:
 
 def lacks_stability(scene: Scene) -> str:
     """Return why the stability of steady sliding is not known, or an empty text."""
-    return lacks_quadratic(scene) or lacks_kelvin_voigt(scene)
+    if (lacking := lacks_quadratic(scene)) or not lacks_arms(scene):
+        return lacking
+    known = f'foundation.kind = "{Foundation.kind}" or "{GeneralizedMaxwell.kind}"'
+    return f'holds for {known} only, not for "{scene.foundation.kind}"'
 
 
 def lacks_rigid_drive(scene: Scene) -> str:

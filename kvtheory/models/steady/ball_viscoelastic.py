@@ -87,12 +87,8 @@ def quantities(scene: Scene) -> tuple[Any, ...]:
     >>> print(f"{1e3 * found[0][0]:.6f} mm, mu = {found[7][0]:.6f}")
     0.061896 mm, mu = 0.063679
     """
-    row, R = viscoelastic.law(scene), scene.indenter.radius
-    if scene.held:
-        half = np.broadcast_to(np.sqrt(2.0 * R * scene.support.depth), scene.shape)
-        c = viscoelastic.length_at_half(row, half)
-    else:
-        c = _length_at_load(scene, row)
+    row = viscoelastic.law(scene)
+    c = contact_length(scene, row)
     V, plane, found = scene.drive.final_velocity, viscoelastic.state(scene, row, c), _sums(scene, c)
     side = np.where(V < 0.0, -1.0, 1.0)
     moving = found.friction > 0.0
@@ -108,12 +104,16 @@ def quantities(scene: Scene) -> tuple[Any, ...]:
     )
 
 
-def _length_at_load(scene: Scene, row: Any) -> Array:
-    """Return the length of the contact in the middle plane: Newton's method in logarithms, from rest.
+def contact_length(scene: Scene, row: Any) -> Array:
+    """Return the length of the contact in the middle plane, on every support.
 
-    The load is positive and its growth between 2 and 5, so that the steps close in from everywhere.
+    At a load by Newton's method in logarithms, from rest. The load is positive and its growth between 2
+    and 5, so that the steps close in from everywhere.
     """
     R, load, spring = scene.indenter.radius, scene.support.weight, scene.support.spring
+    if scene.held:
+        half = np.broadcast_to(np.sqrt(2.0 * R * scene.support.depth), scene.shape)
+        return viscoelastic.length_at_half(row, half)
     static = np.sqrt(load / ball_stiffness(scene.foundation.stiffness, R, scene.indenter.stretch))
     wanted = load + spring * static
     first = np.broadcast_to(2.0 * np.sqrt(2.0 * R * static), scene.shape)

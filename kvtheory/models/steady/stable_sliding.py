@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from kvtheory.models.steady import ball_stability
+from kvtheory.models.steady import ball_stability, rubber_stability
 from kvtheory.models.steady.critical_velocity import critical_velocity
 from kvtheory.models.steady.rates import rates
 from kvtheory.models.steady.stability import Numbers, is_stable, numbers, onsets
@@ -24,6 +24,13 @@ STATEMENT = (
     "closed forms (theorem F22) in double precision, with what rounding makes of them to first order; "
     "rates by their polynomial, the velocity to where its stiffness is critical"
 )
+ON_ARMS = (
+    "rates of the memory integrals in closed form (theorem F24), with what rounding and the sums over strips "
+    "make of them to first order; critical stiffnesses from a grid of frequencies that follows resonances; "
+    "the least stable rates, counted by the argument principle (an error of infinity: the count differs)"
+)
+FREQUENCIES = 64
+"""Scenes on arms treated at a time: each is evaluated on a grid of frequencies, a ball in each strip."""
 SLOW = "rates", "time_constants"
 """The quantities with a last axis for the rates."""
 
@@ -34,11 +41,14 @@ def solve(scene: Scene, wanted: Set[str]) -> Stability:
     With a rigid drive the critical stiffness is that of a spring without damper and with the mass of the
     support; a fixed one has none.
     """
-    shape = scene.shape
+    shape, on_arms = scene.shape, bool(scene.foundation.arms)
     size = ON_GRID if "critical_velocity" in wanted else BLOCK
+    if on_arms:
+        size = FREQUENCIES if scene.indenter.per_width else FREQUENCIES // 16
     flat = scene.at(np.broadcast_to(scene.drive.final_velocity, shape or (1,))).flat()
     starts = range(0, max(math.prod(shape), 1), size)
-    parts = [_block(flat.rows(slice(start, start + size)), wanted) for start in starts]
+    block = _block_on_arms if on_arms else _block
+    parts = [block(flat.rows(slice(start, start + size)), wanted) for start in starts]
     found, errors = (
         {name: _joined([part[which][name] for part in parts], shape) for name in parts[0][which]}
         for which in (0, 1)
@@ -47,7 +57,7 @@ def solve(scene: Scene, wanted: Set[str]) -> Stability:
         **found,
         rigid_drive=scene.drive.rigid,
         model="exact",
-        certificate=Certificate("estimated", STATEMENT, errors),
+        certificate=Certificate("estimated", ON_ARMS if on_arms else STATEMENT, errors),
     )
 
 
@@ -70,14 +80,9 @@ def _block(scene: Scene, wanted: Set[str]) -> tuple[dict[str, Any], dict[str, An
     numbers_of = numbers if scene.indenter.per_width else ball_stability.numbers
     given = Numbers(*(np.broadcast_to(each, scene.shape) for each in numbers_of(scene)))
     lower, upper = onsets(given, tau)
-    nothing = np.full(scene.shape, np.nan)
-    found: dict[str, Any] = {
-        "stable": np.full(scene.shape, True),
-        "rates": nothing[:, np.newaxis, np.newaxis],
-        "time_constants": nothing[:, np.newaxis],
+    found = _unless_wanted(scene.shape) | {
         "critical_stiffness": upper.stiffness,
         "lower_critical_stiffness": lower.stiffness,
-        "critical_velocity": nothing,
         "frequency": upper.frequency,
     }
     errors = {
@@ -99,6 +104,51 @@ def _block(scene: Scene, wanted: Set[str]) -> tuple[dict[str, Any], dict[str, An
             errors["rates"] = error
             errors["time_constants"] = error * np.abs(sigma) / np.abs(sigma.real)
     return found, errors
+
+
+def _block_on_arms(scene: Scene, wanted: Set[str]) -> tuple[dict[str, Any], dict[str, Any]]:
+    """Return what `_block` does for a Prony series."""
+    found, errors = _unless_wanted(scene.shape), dict[str, Any]()
+    (given, finer), rigid = rubber_stability.both(scene), scene.drive.rigid
+    if not (rigid and scene.held):  # of which the mass is not known
+        crossings = rubber_stability.crossings(given, finer)
+        stiffnesses, errors = rubber_stability.critical(crossings, *scene.shape)
+        found |= stiffnesses
+    if not rigid:
+        spring = np.broadcast_to(scene.drive.stiffness, scene.shape)
+        found["stable"] = ~crossings.unstable(spring)
+    each = [scene.rows(slice(i, i + 1)) for i in range(*scene.shape)]
+    if "critical_velocity" in wanted and not rigid:
+        pairs = [rubber_stability.critical_velocity(one) for one in each]
+        found["critical_velocity"], errors["critical_velocity"] = np.array(pairs).reshape(-1, 2).T
+    if not wanted.isdisjoint(SLOW):
+        rows = [
+            rubber_stability.rates(
+                given.rows([i]), finer.rows([i]), None if rigid else float(spring[i])
+            )
+            for i in range(*scene.shape)
+        ]
+        s, error = (np.array([row[which] for row in rows]) for which in (0, 1))
+        found["rates"] = np.stack([s.real, s.imag], axis=-1)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            found["time_constants"] = -1.0 / s.real
+            errors["rates"] = error
+            errors["time_constants"] = error * np.abs(s) / np.abs(s.real)
+    return found, errors
+
+
+def _unless_wanted(shape: tuple[int, ...]) -> dict[str, Any]:
+    """Return what stands for the quantities of flat scenes that are not computed."""
+    nothing = np.full(shape, np.nan)
+    return {
+        "stable": np.full(shape, True),
+        "rates": nothing[:, np.newaxis, np.newaxis],
+        "time_constants": nothing[:, np.newaxis],
+        **dict.fromkeys(
+            ("critical_stiffness", "lower_critical_stiffness", "critical_velocity", "frequency"),
+            nothing,
+        ),
+    }
 
 
 def _joined(parts: Sequence[NDArray[Any]], shape: tuple[int, ...]) -> Any:

@@ -220,12 +220,16 @@ def quantities(scene: Scene) -> tuple[Any, ...]:
     >>> print(f"{quantities(springpot)[7][0]:.6f} {quantities(arm)[7][0]:.6f}")
     0.085709 0.085709
     """
-    row, support, R = law(scene), scene.support, scene.indenter.radius
+    row = law(scene)
+    return state(scene, row, contact_length(scene, row))
+
+
+def contact_length(scene: Scene, row: Prony | Fractional) -> Array:
+    """Return the length of the contact, on every support."""
+    support, R = scene.support, scene.indenter.radius
     if scene.held:
-        c = length_at_half(row, np.broadcast_to(np.sqrt(2.0 * R * support.depth), scene.shape))
-    else:
-        c = _length_at_load(row, R, support.weight, support.spring)
-    return state(scene, row, c)
+        return length_at_half(row, np.broadcast_to(np.sqrt(2.0 * R * support.depth), scene.shape))
+    return _length_at_load(row, R, support.weight, support.spring)
 
 
 def length_at_half(row: Prony | Fractional, a: Array) -> Array:

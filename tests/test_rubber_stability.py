@@ -1,0 +1,139 @@
+"""Stability of steady sliding on a Prony series (theorem F24), against quadrature of its definition."""
+
+import numpy as np
+import pytest
+
+import kvtheory as kv
+
+ZENER = [(5e10, 0.1)]
+TWO = [(3e10, 0.01), (5e9, 0.5)]
+QUICK = "stable", "critical_stiffness", "frequency"
+
+
+def rubber(arms, velocity, stiffness=1e6, **parts):
+    parts = {"support": kv.DeadWeight(mass=1000.0), **parts}
+    drive = kv.Drive(velocity=velocity, stiffness=stiffness, mass=parts["support"].mass)
+    return kv.Scene(foundation=kv.GeneralizedMaxwell(1e10, arms=arms), drive=drive, **parts)
+
+
+def forces(scene, strip, s, points=60):
+    """A, B, C, D of a parabola at the half length `strip`, by plain sums over the history of each element."""
+    V, R, K = scene.drive.velocity, scene.indenter.radius, scene.foundation.stiffness
+    held = kv.Scene(kv.Parabola(R), scene.foundation, kv.Fixed(strip**2 / (2.0 * R)), kv.Drive(V))
+    state = kv.steady(held)
+    nodes, weights = np.polynomial.legendre.leggauss(points)
+    nodes, weights = 0.5 + 0.5 * nodes, 0.5 * weights
+    x = state.leading_edge + nodes[:, None] * (state.trailing_edge - state.leading_edge)
+    share = weights * (state.trailing_edge - state.leading_edge)
+    age = (x - state.leading_edge) / V
+    t = age * nodes
+    G = K + sum(arm.stiffness for arm in scene.foundation.arms)
+    slope = -sum(
+        arm.stiffness / arm.relaxation_time * np.exp(-t / arm.relaxation_time)
+        for arm in scene.foundation.arms
+    )
+    lowered = G + age[:, 0] * ((slope * np.exp(-s * t)) @ weights)
+    moved = age[:, 0] * ((-slope * (x - V * t) / R * (1.0 - np.exp(-s * t))) @ weights)
+    lever = -share * x[:, 0] / R
+    return np.array([share @ lowered, share @ moved, lever @ lowered, lever @ moved])
+
+
+def residue(scene, s, spring):
+    """The determinant that vanishes at a rate, over the sum of its terms' sizes."""
+    support, R = scene.support, scene.indenter.radius
+    a = np.sqrt(2.0 * R * kv.steady(scene).depth)
+    if scene.indenter.per_width:
+        A, B, C, D = forces(scene, a, s)
+    else:
+        nodes, weights = (0.25 * np.pi * x for x in np.polynomial.legendre.leggauss(40))
+        cosines = np.cos(0.25 * np.pi + nodes)
+        sums = [
+            2 * a * w * c * forces(scene, a * c, s) for c, w in zip(cosines, weights, strict=True)
+        ]
+        A, B, C, D = sum(sums) * scene.indenter.stretch
+    along = scene.drive_mass * s * s + spring - D
+    if scene.held:
+        return abs(along) / (abs(D) + spring)
+    across = support.mass * s * s + support.spring + A
+    return abs(across * along + B * C) / (abs(across) * (abs(D) + spring) + abs(B * C))
+
+
+@pytest.mark.parametrize(
+    ("arms", "velocity", "stiffness", "omega"),
+    [
+        (ZENER, 0.05, 4.533990e6, 66.6002),
+        (ZENER, 0.3, 146.765e6, None),
+        (TWO, 0.2, 44.7401e6, None),
+    ],
+)
+def test_critical_stiffness_of_table_1(arms, velocity, stiffness, omega):
+    found = kv.stability(rubber(arms, velocity), quantity=QUICK)
+    assert found.critical_stiffness == pytest.approx(stiffness, rel=3e-6)
+    assert not found.stable
+    if omega:
+        assert 2.0 * np.pi * found.frequency == pytest.approx(omega, rel=1e-6)
+    for factor, stable in ((1.0 - 1e-9, False), (1.0 + 1e-9, True)):
+        near = rubber(arms, velocity, factor * found.critical_stiffness)
+        assert kv.steady(near).stable is stable
+
+
+def test_slow_sliding_is_stable_for_every_stiffness():
+    found = kv.stability(rubber(TWO, [0.0, 0.05, -0.05]), quantity=QUICK)
+    assert found.stable.all()
+    assert np.isnan(found.critical_stiffness).all()
+
+
+@pytest.mark.parametrize("ball", [False, True])
+def test_a_fast_stiff_arm_is_a_damper(ball):
+    """To first order in its relaxation time: ten times as fast, a tenth of the difference."""
+    parts = {"indenter": kv.Sphere(0.01), "support": kv.DeadWeight(mass=1.0)} if ball else {}
+    velocity = np.array([0.039, 0.091, 0.214])
+    scenes = [rubber([(1e9 / t, t)], velocity, **parts) for t in (1e-6, 1e-7)]
+    damper = kv.Scene(drive=kv.Drive(velocity=velocity), **parts)
+    truth, *found = (
+        kv.stability(each, quantity=QUICK).critical_stiffness for each in (damper, *scenes)
+    )
+    off = [np.abs(each / truth - 1.0) for each in found]
+    assert (off[0] < 2e-2).all()
+    assert off[1] == pytest.approx(0.1 * off[0], rel=0.1)
+
+
+@pytest.mark.parametrize("support", ["dead-weight", "suspended", "fixed"])
+@pytest.mark.parametrize("ball", [False, True])
+def test_onsets_and_rates_solve_the_linearised_equations(support, ball):
+    mass = 1.0 if ball else 1000.0
+    kinds = {
+        "dead-weight": kv.DeadWeight(mass=mass),
+        "suspended": kv.Suspended(mass=mass, stiffness=3e4 * mass),
+        "fixed": kv.Fixed(depth=1e-4),
+    }
+    indenter = kv.Sphere(0.01, 0.02) if ball else kv.Parabola(0.01)
+    drive = kv.Drive(velocity=0.2, stiffness=1e3 * mass, mass=mass)
+    scene = kv.Scene(indenter, kv.GeneralizedMaxwell(1e10, arms=TWO), kinds[support], drive)
+    found = kv.stability(scene, quantity=[*QUICK, "rates"])
+    size = 1e-6 if ball else 1e-11
+    onset = 2j * np.pi * found.frequency
+    assert residue(scene, onset, found.critical_stiffness) < size
+    for rate in found.rates[:2]:
+        assert residue(scene, complex(*rate), drive.stiffness) < size
+    assert found.stable == (found.rates[0, 0] < 0.0)
+    assert np.isfinite(found.certificate.relative_error["rates"]).all()
+    for factor, side in () if ball else ((1.0 - 1e-4, 1.0), (1.0 + 1e-4, -1.0)):
+        over = {"drive.stiffness": factor * found.critical_stiffness}
+        assert np.sign(kv.stability(scene, over=over, quantity="rates").rates[0, 0]) == side
+
+
+def test_the_critical_velocity_is_where_the_stiffness_is_critical():
+    found = kv.stability(rubber(ZENER, 0.05), quantity="critical_velocity")
+    there = kv.stability(rubber(ZENER, found.critical_velocity), quantity=QUICK)
+    assert there.critical_stiffness == pytest.approx(1e6, rel=1e-9)
+
+
+def test_the_springpot_is_refused_and_solve_refuses_what_is_unstable():
+    springpot = kv.Scene(foundation=kv.FractionalKelvinVoigt(1e10, 0.1, 0.5))
+    with pytest.raises(ValueError, match='not for "fractional-kelvin-voigt"'):
+        kv.stability(springpot)
+    with pytest.raises(kv.ToleranceError, match="unstable on the spring"):
+        kv.solve(rubber(ZENER, 0.05), quantity="load")
+    stiff = kv.solve(rubber(ZENER, 0.05, 1e7), quantity="load")
+    assert stiff.load == pytest.approx(9806.65)
