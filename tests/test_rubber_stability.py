@@ -1,4 +1,4 @@
-"""Stability of steady sliding on a Prony series (theorem F24), against quadrature of its definition."""
+"""Stability of steady sliding on a Prony series, against quadrature of its definition."""
 
 import numpy as np
 import pytest

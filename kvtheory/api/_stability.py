@@ -30,7 +30,7 @@ def stability(
     stiffness is that of a spring, without damper and with the mass of the support, in place of the
     rigid drive. With a spring the rates are the roots of the quartic of theorem F22.
 
-    On a Prony series (theorem F24) the equation for the rates is transcendental: the least stable ones are
+    On a Prony series the equation for the rates is transcendental: the least stable ones are
     returned, as many as on Kelvin-Voigt, and a fixed indenter may be unstable too. Between the lower and
     the upper critical stiffness there may be stable ranges; `stable` holds for the given stiffness.
 
@@ -74,7 +74,8 @@ def stability(
 
     References
     ----------
-    Fact F22 of the derivations; F24 for a Prony series.
+    Fact F22 of the derivations; on a Prony series the formulas of `kvtheory.models.steady.rubber_response`,
+    which are checked by quadrature and are not among the derivations yet.
     """
     scene = scene_of(scene).replace(over or {})
     require(lacks_stability, scene, "the stability of steady sliding")

@@ -1,4 +1,4 @@
-r"""What a contact that slides on a Prony series answers to small motions e^(st) (theorem F24).
+r"""What a contact that slides on a Prony series answers to small motions e^(st).
 
 A depth delta_1 e^(st) and a displacement X_1 e^(st) along x change the forces by
 

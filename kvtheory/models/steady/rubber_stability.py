@@ -1,4 +1,4 @@
-"""Stability of steady sliding on a Prony series, the drive holding the indenter by a spring (theorem F24).
+"""Stability of steady sliding on a Prony series, the drive holding the indenter by a spring.
 
 A stiffness k_x(s) = D - M_x s^2 - c_x s - B C/(M s^2 + k_s + A) belongs to each rate s. A stiff spring
 keeps sliding stable. On the way to a soft one two rates enter or leave the right half plane at each frequency

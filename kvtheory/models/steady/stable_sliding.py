@@ -25,8 +25,8 @@ STATEMENT = (
     "rates by their polynomial, the velocity to where its stiffness is critical"
 )
 ON_ARMS = (
-    "rates of the memory integrals in closed form (theorem F24), with what rounding and the sums over strips "
-    "make of them to first order; critical stiffnesses from a grid of frequencies that follows resonances; "
+    "memory integrals in closed form, checked by quadrature, with what rounding and sums over strips make "
+    "of them to first order; critical stiffnesses from a grid of frequencies that follows resonances; "
     "the least stable rates, counted by the argument principle (an error of infinity: the count differs)"
 )
 FREQUENCIES = 64
