@@ -1,7 +1,5 @@
 """Faults planted in a simulator of its own, and whether the diagnosis names them."""
 
-import functools
-
 import numpy as np
 import pytest
 

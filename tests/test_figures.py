@@ -36,7 +36,7 @@ BRIEF = (
     (collection, "QUICK", Effort(repeats=1, longest=0.1, whole=0.5, every=5)),
     (drawing, "STYLE", {**STYLE, "savefig.dpi": 50}),
 )
-"""Maps of growth and charts are held to theory in `test_charts_stability` and `test_charts_work_precision`."""
+"""`test_charts_stability` and `test_charts_work_precision` test what these maps and charts hold."""
 
 
 @pytest.fixture(scope="module")

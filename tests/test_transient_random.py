@@ -1,7 +1,7 @@
 """Random scenes: what becomes of each, how honest its estimated error is, and its mirror image.
 
-The lists of known defects are meant to empty: a scene that is mended must leave its list. More scenes are drawn
-with KVTHEORY_TEST_SCENES=1000 in the environment.
+The lists of known defects are meant to empty: a scene that is mended must leave its list.
+KVTHEORY_TEST_SCENES=1000 in the environment draws more scenes.
 """
 
 import functools
@@ -214,7 +214,7 @@ def stated_and_true(case, rtol):
 
 @pytest.mark.parametrize("rtol", [1e-4, 1e-6, 1e-9])
 def test_the_estimate_covers_the_error_where_a_third_hops(rtol):
-    """In 99.8 % of the scenes each error lies within its estimate, which in half of them is not 20 times it."""
+    """In 99.8 % each error lies within its estimate, which in half of them is not 20 times the error."""
     covered, ratios, ended = [], [], 0
     for case in scenes_of_which_a_third_hop():
         try:
