@@ -14,8 +14,8 @@ from pathlib import Path
 import pytest
 
 FIRST = (
-    *("test_figures", "derivations", "test_compare_faults", "test_transient_random"),
-    *("test_sweep_lasting", "test_shape", "test_viscoelastic"),
+    *("test_figures", "derivations", "test_compare_faults", "test_docs", "test_viscoelastic"),
+    *("test_sweep_lasting", "test_transient_random", "test_compare", "test_balance", "test_shape"),
 )
 """Scopes in the order in which they begin, then all others; the first of them compiles all kernels."""
 DERIVING = "derivations.catalogue import", "derivations import emit", "derivations import ball"

@@ -2,6 +2,7 @@
 
 import itertools
 import math
+from functools import cache
 
 import numpy as np
 import pytest
@@ -17,12 +18,14 @@ RTOL, BALANCE, CHECKS = 1e-10, 1e-9, 6
 """Of each law, relative to what it sums up, at so many times."""
 
 
+@cache
 def of_the_table(name):
     scene = TABLE[name]
     end, kappa = scene["times"][-1], scene["kappa"] if scene["epsilon"] else math.inf
     return solve(drive(scene["drive"], end), scene["epsilon"] or 1.0, kappa, end, RTOL)
 
 
+@cache
 def of_the_seed(seed):
     case = random_case(seed, 1)
     return solve(case.drive, case.eps, case.kappa, case.drive.end, RTOL)

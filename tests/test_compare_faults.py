@@ -4,9 +4,27 @@ import numpy as np
 import pytest
 
 import kvtheory as kv
+from kvtheory.api import _compare
 from kvtheory.checks.fitting import uncertainty
 from tests.blind_trial import simulated
 from tests.confusion import SCENES, quick, series
+
+
+@pytest.fixture(scope="module", autouse=True)
+def _each_mistake_is_simulated_once():
+    """Most series are of one scene at the same times, where elements with a mistake do the same again."""
+    simulated = _compare.METHODS.elements
+    known = {}
+
+    def once(scene, spacing, step, times, does):
+        key = repr(scene), spacing, step, tuple(times), tuple(does.items())
+        if key not in known:
+            known[key] = simulated(scene, spacing, step, times, does)
+        return known[key]
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(_compare, "METHODS", _compare.METHODS._replace(elements=once))
+        yield
 
 
 @pytest.mark.parametrize("plant", quick(), ids=lambda plant: f"{plant.scene}: {plant.name}")

@@ -13,6 +13,8 @@ from kvtheory.derivations.contents import CONTENTS
 
 import kvtheory as kv
 from figures.__main__ import TOPICS
+from kvtheory.charts import collection
+from kvtheory.charts.work_precision import Effort
 from kvtheory.cli import main
 from kvtheory.scene.files import SECTIONS
 from kvtheory.scene.indenters import SHAPES
@@ -67,6 +69,8 @@ PAGES = {
     if not {"_build", "generated"} & set(path.parts)
     and CODE.search(text := path.read_text("utf-8"))
 }
+BRIEF = Effort(repeats=1, longest=0.1, whole=0.5, every=5)
+"""Of the chart on a page; `test_charts_work_precision` tests what it holds."""
 
 
 def sections(text):
@@ -83,6 +87,7 @@ TABLE1 = sections(kv.to_toml(kv.Scene()))
 def test_the_code_of_a_page_runs_in_order(name, tmp_path, monkeypatch, offscreen):
     """In an empty directory but for a scene: that of the last TOML block, or Table 1."""
     monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(collection, "QUICK", BRIEF)
     scene, names = tmp_path / "my-scene.toml", {}
     exec(re.search("```python\n(.*?)```", PAGES["howto/index.md"], re.DOTALL)[1], names)
     scene.write_text(kv.to_toml(kv.Scene()), "utf-8")

@@ -15,17 +15,28 @@ import kvtheory as kv
 from figures import __main__ as every
 from figures import drawing, onset_maps
 from figures.__main__ import FIGURES
-from kvtheory.charts import stability
+from kvtheory.charts import collection, stability
+from kvtheory.charts.work_precision import Effort
 from kvtheory.plots import STYLE, plot_asymptote_errors, plot_steady
 from kvtheory.scene.static_state import StaticState
 
 ROOT = Path(__file__).parent.parent
 
 
-COARSE = {"regime_map": 3, "onset_maps": 2}
-"""Maps of which the tests solve every second or third row and column: points do not know of each other."""
-MAP_POINTS = 3, 3
-"""Of the maps of growth, whose points are held against the prediction in `test_charts_stability`."""
+COARSE = {
+    "regime_map": {"NUMBERS": 6, "INERTIAS": 6},
+    "onset_maps": {"NUMBERS": 4, "INERTIAS": 3},
+    "spring_stability": {"VELOCITIES": 4, "STIFFNESSES": 4},
+    "stick_slip_amplitude": {"VELOCITIES": 7},
+    "ladder": {"TOLERANCES": 4, "NUMBERS": 4, "INERTIAS": 4},
+}
+"""Of these axes the tests take one in so many values: points do not know of each other."""
+BRIEF = (
+    (stability, "QUICK_POINTS", (3, 3)),
+    (collection, "QUICK", Effort(repeats=1, longest=0.1, whole=0.5, every=5)),
+    (drawing, "STYLE", {**STYLE, "savefig.dpi": 50}),
+)
+"""`test_charts_stability` and `test_charts_work_precision` test what these maps and charts hold."""
 
 
 @pytest.fixture(scope="module")
@@ -34,14 +45,14 @@ def made(tmp_path_factory):
     directory = tmp_path_factory.mktemp("figures")
     result = {}
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(stability, "QUICK_POINTS", MAP_POINTS)
+        for brief in BRIEF:
+            patch.setattr(*brief)
         for name in FIGURES:
             script = importlib.import_module(f"figures.{name}")
-            if name in COARSE:
-                for axis in ("NUMBERS", "INERTIAS"):
-                    patch.setattr(script, axis, getattr(script, axis)[:: COARSE[name]])
+            for axis, step in COARSE.get(name, {}).items():
+                patch.setattr(script, axis, getattr(script, axis)[::step])
             data = script.compute()
-            with mpl.rc_context({**STYLE}):
+            with mpl.rc_context(drawing.STYLE):
                 drawn = script.draw(data)
             paths = drawing.produce(
                 name, lambda data=data: data, lambda _, drawn=drawn: drawn, directory
@@ -126,7 +137,7 @@ def test_fig6_points_of_random_scenes_fall_on_the_master_curves(made):
         assert points == pytest.approx(curve, rel=1e-12)
 
 
-def test_foundations_tend_to_kelvin_voigt_and_every_profile_carries_the_load(made):
+def test_foundations_tend_to_kelvin_voigt_and_stepprofile_carries_the_load(made):
     data, _, _ = made["foundations"]
     for family in data.curves.values():
         plain = family["Kelvin–Voigt"]

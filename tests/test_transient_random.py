@@ -1,11 +1,13 @@
 """Random scenes: what becomes of each, how honest its estimated error is, and its mirror image.
 
 The lists of known defects are meant to empty: a scene that is mended must leave its list.
+KVTHEORY_TEST_SCENES=1000 in the environment draws more scenes.
 """
 
 import functools
 import itertools
 import math
+import os
 from dataclasses import dataclass
 from unittest.mock import patch
 
@@ -20,6 +22,8 @@ from kvtheory.results.errors import TransientError
 from kvtheory.scene.base_motion import BaseMotion
 
 SEEDS = range(63)
+SCENES = int(os.environ.get("KVTHEORY_TEST_SCENES", "200"))
+"""Random scenes of the longest tests."""
 RTOL, TRUTH = 1e-6, 1e-10
 HARMLESS = 1e-2 * RTOL
 """An error this small need not be covered: rounding, and states that change within their tolerance."""
@@ -185,12 +189,12 @@ def flies(case):
 
 @functools.cache
 def scenes_of_which_a_third_hop():
-    """Return a thousand scenes."""
+    """Return so many scenes."""
     flying, resting, seeds = [], [], itertools.count(3000)
-    while len(flying) < 333:
+    while len(flying) < SCENES // 3:
         case = random_case(next(seeds), 1)
         (flying if flies(case) else resting).append(case)
-    return flying + resting[:667]
+    return flying + resting[: SCENES - SCENES // 3]
 
 
 def stated_and_true(case, rtol):
@@ -209,8 +213,8 @@ def stated_and_true(case, rtol):
 
 
 @pytest.mark.parametrize("rtol", [1e-4, 1e-6, 1e-9])
-def test_the_estimate_covers_the_error_of_a_thousand_scenes(rtol):
-    """In 998 of 1000 scenes each error lies within its estimate, which in half of them is not 20 times it."""
+def test_the_estimate_covers_the_error_where_a_third_hops(rtol):
+    """In 99.8 % each error lies within its estimate, which in half of them is not 20 times the error."""
     covered, ratios, ended = [], [], 0
     for case in scenes_of_which_a_third_hop():
         try:
@@ -241,7 +245,7 @@ def brief_case(seed):
 
 def test_the_estimate_covers_the_error_of_what_is_brief():
     exceeded = {}
-    for seed, rtol in itertools.product(range(150), (1e-4, 1e-6, 1e-9)):
+    for seed, rtol in itertools.product(range(SCENES // 2), (1e-4, 1e-6, 1e-9)):
         stated, errors = stated_and_true(brief_case(seed), rtol)
         ratio = max(error / stated[name] for name, error in errors.items() if error > 0.0)
         if ratio > 1.0:
