@@ -35,17 +35,22 @@ def exact_friction(scene: Scene, V: Array) -> Array:
     return np.asarray(solve_exact(scene.at(V)).friction_coefficient)
 
 
-def crossing(
-    excess: At, scene: Scene, critical: Array, bracket: tuple[Array, Array], otherwise: float
-) -> Array:
-    """Return the velocity at which `excess` vanishes, between powers of ten away from V*."""
+def sought(excess: At, scene: Scene, critical: Array, bracket: tuple[Array, Array]) -> Any:
+    """Return what SciPy finds of the zero of `excess`, in powers of ten away from V*."""
     flat = scene.flat()
 
     def at(decades: Array, index: Array, critical: Array) -> Array:
         return excess(flat.rows(index) if scene.shape else flat, critical * 10.0**decades)
 
     index = np.arange(critical.size).reshape(critical.shape)
-    found = elementwise.find_root(at, bracket, args=(index, critical))
+    return elementwise.find_root(at, bracket, args=(index, critical))
+
+
+def crossing(
+    excess: At, scene: Scene, critical: Array, bracket: tuple[Array, Array], otherwise: float
+) -> Array:
+    """Return the velocity at which `excess` vanishes, between powers of ten away from V*."""
+    found = sought(excess, scene, critical, bracket)
     return np.where(found.success, critical * 10.0**found.x, otherwise)
 
 

@@ -5,8 +5,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import elementwise
 
+from kvtheory.models.steady.foundation_limits import sought
 from kvtheory.models.steady.methods import ROUNDING, asymptotes_of, plain, solve_exact
 from kvtheory.results import (
     STEADY_UNITS,
@@ -189,19 +189,18 @@ def _range_edge(scene: Scene, critical: Array, row: Row, tolerance: float) -> Ar
     the tolerance at the far end too, where it has reached its limit, the asymptote holds at every velocity
     (such as the load on a soft spring). Otherwise nothing is claimed.
     """
-    asymptotes, flat = asymptotes_of(scene), scene.flat()
+    asymptotes = asymptotes_of(scene)
 
-    def excess(decades: Array, index: Array, critical: Array) -> Array:
-        point = (flat.rows(index) if scene.shape else flat).at(critical * 10.0**decades)
+    def excess(scene: Scene, V: Array) -> Array:
+        point = scene.at(V)
         truth, limits = solve_exact(point), asymptotes.limits(point)
         with np.errstate(divide="ignore", invalid="ignore"):
             found = asymptotes.errors(limits, row.regime, truth)
-        error = np.broadcast_to(np.abs(found[row.quantity]), decades.shape)
+        error = np.broadcast_to(np.abs(found[row.quantity]), V.shape)
         return error + ROUNDING * (1.0 + error) - tolerance
 
     bracket = (np.full_like(critical, -DECADES), np.full_like(critical, DECADES))
-    index = np.arange(critical.size).reshape(critical.shape)
-    found = elementwise.find_root(excess, bracket, args=(index, critical))
+    found = sought(excess, scene, critical, bracket)
     nowhere, everywhere, far = (0.0, np.inf, 1) if row.regime == "low" else (np.inf, 0.0, 0)
     without = np.where(found.f_bracket[far] <= 0.0, everywhere, nowhere)
     return np.where(found.success, critical * 10.0**found.x, without)
