@@ -275,6 +275,24 @@ def test_quantities_are_replaced_by_arrays_that_broadcast_and_are_checked():
         scene.replace({"drive.velocity": [1.0, 2.0], "support.mass": [1.0, 2.0, 3.0]})
 
 
+@pytest.mark.parametrize(
+    ("scene", "key"),
+    [
+        (kv.Scene(drive=kv.Drive(waveform=kv.SmoothRamp([0.1, 0.2], 0.01))), "drive.velocity"),
+        (
+            kv.Scene(kv.Revolved(kv.Wedge([0.1, 0.2])), support=kv.DeadWeight(mass=1.0)),
+            "indenter.profile.inclination",
+        ),
+    ],
+)
+def test_arrays_within_a_part_have_the_keys_that_replace_them(scene, key):
+    found = kv.steady(scene)
+    assert list(found.over) == list(scene.arrays()) == [key]
+    one = scene.replace({key: 0.2})
+    assert one.shape == ()
+    assert found.friction_force[1] == kv.steady(one).friction_force
+
+
 def test_a_scene_of_arrays_is_a_value():
     """Equality, hash, copies, and the scenes it holds one by one."""
     V = ["10 mm/s", "0.1 m/s"]

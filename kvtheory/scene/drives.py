@@ -120,6 +120,11 @@ class Drive(Part):
         if problems:
             raise SceneError(problems)
 
+    def arrays(self) -> dict[str, Any]:
+        """Return the arrays among the quantities; those of a waveform are keys of the drive itself."""
+        own = {name: each for name, each in super().arrays().items() if "." not in name}
+        return own if self.waveform is None else {**own, **self.waveform.arrays()}
+
     @property
     def rigid(self) -> bool:
         """Whether the indenter cannot move along x: there is no spring."""

@@ -15,7 +15,7 @@ import numpy as np
 
 from kvtheory.scene.drives import SPRING, VELOCITY, Drive
 from kvtheory.scene.foundations import AnyFoundation, Foundation
-from kvtheory.scene.indenters import Indenter, Parabola
+from kvtheory.scene.indenters import Indenter, Parabola, Revolved
 from kvtheory.scene.quantities import (
     Part,
     Quantity,
@@ -247,8 +247,10 @@ class Scene(Part):
     def parts(self) -> dict[str, Any]:
         """Return what holds the quantities of the scene at rest, by its dotted name, each arm by its own."""
         arms = enumerate(self.foundation.arms)
+        body: Any = self.indenter
         return {
-            "indenter": self.indenter,
+            "indenter": body,
+            **({"indenter.profile": body.profile} if isinstance(body, Revolved) else {}),
             "foundation": self.foundation,
             **{f"foundation.arms[{number}]": arm for number, arm in arms},
             "support": self.support,
@@ -322,6 +324,9 @@ class Scene(Part):
         for section, values in sections.items():
             if match := ARM.fullmatch(section):
                 arms[int(match[1])] = changed(arms[int(match[1])], **values)
+            elif section == "indenter.profile":
+                body: Any = self.indenter
+                parts["indenter"] = replace(body, profile=changed(body.profile, **values))
             elif section == "drive":
                 parts[section] = self.drive.changed(**values)
             else:

@@ -37,11 +37,8 @@ def lacks_one_scene(scene: Scene) -> str:
     >>> lacks_one_scene(Scene())
     ''
     """
-    if not scene.shape:
-        return ""
-    ways = ".waveform", ".function"
-    keys = (key.replace(ways[0], "") for key in scene.arrays() if ways[1] not in key)
-    return f"is for one scene, not for arrays ({', '.join(keys)}); use `sweep`, or one value"
+    keys = ", ".join(scene.arrays())
+    return f"is for one scene, not for arrays ({keys}); use `sweep`, or one value" if keys else ""
 
 
 def lacks_strips(scene: Scene) -> str:
