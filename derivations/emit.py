@@ -1,6 +1,6 @@
 """Write the numerical closed forms from the expressions that the derivations have proved.
 
-``python -m derivations.emit`` rewrites `kvtheory/models/steady/closed_forms.py`; `emit_javascript` writes
+``python -m derivations.emit`` rewrites `kvtheory/theory/closed_forms.py`; `emit_javascript` writes
 the same and more for the explorer.
 """
 
@@ -19,7 +19,7 @@ from .symbols import Q, kappa, l, lam, q, r, s, xi, y
 from .symbols import exponent as n
 from .symbols import z_peeled as z
 
-TARGET = Path(__file__).parents[1] / "kvtheory" / "models" / "steady" / "closed_forms.py"
+TARGET = Path(__file__).parents[1] / "kvtheory" / "theory" / "closed_forms.py"
 
 NUMPY = CodePrinter("NumPy", "np", {"min": "minimum"})
 code = NUMPY.code

@@ -13,8 +13,8 @@ from matplotlib.figure import Figure
 
 import kvtheory as kv
 from figures import drawing
-from kvtheory.models.steady import closed_forms as cf
 from kvtheory.plots import BLACK, BLUE, GREEN, RED
+from kvtheory.theory import closed_forms as cf
 
 SLOPES = np.geomspace(0.01, 0.8, 12)
 """a/R, the slope of the parabola at the edge of the stationary contact."""

@@ -13,13 +13,13 @@ from matplotlib.figure import Figure
 
 import kvtheory as kv
 from figures import drawing
-from kvtheory.models.steady.closed_forms import (
+from kvtheory.plots import BLACK, BLUE, GREEN, RED
+from kvtheory.theory.closed_forms import (
     ALPHA,
     CRITICAL_DRIVE_NUMBER,
     PEAK_DRIVE_NUMBER,
     PEAK_FRICTION,
 )
-from kvtheory.plots import BLACK, BLUE, GREEN, RED
 
 NUMBERS = np.geomspace(1e-3, 1e3, 301)
 POINTS = 24

@@ -16,10 +16,10 @@ from matplotlib.figure import Figure
 import kvtheory as kv
 from figures import drawing
 from kvtheory.models.steady import fractional_limits
-from kvtheory.models.steady.closed_forms import ALPHA
 from kvtheory.models.steady.viscoelastic import Fractional, Prony
 from kvtheory.plots import BLACK
 from kvtheory.scene.foundations import Arm
+from kvtheory.theory.closed_forms import ALPHA
 
 NUMBERS = np.geomspace(1e-4, 1e5, 361)
 """V tau/a_0."""

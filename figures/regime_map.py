@@ -13,9 +13,9 @@ from matplotlib.figure import Figure
 from figures import drawing
 from kvtheory.models.continuum.evaluation import RATE
 from kvtheory.models.continuum.solver import Trajectory, solve
-from kvtheory.models.steady import closed_forms as cf
 from kvtheory.plots import BLACK
 from kvtheory.scene.base_motion import BaseMotion
+from kvtheory.theory import closed_forms as cf
 
 CLASSES = {
     "monotone": "#dddddd",

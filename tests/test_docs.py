@@ -219,7 +219,7 @@ def test_the_table_of_equations_has_all_of_them_with_a_test():
     for label in CONTENTS:
         row = re.search(rf"^\| \[{re.escape(label)}\]\(#.*$", text, re.MULTILINE)[0]
         assert "`tests/" in row
-    assert "`models/steady/closed_forms.py::load_factor`" in text
+    assert "`theory/closed_forms.py::load_factor`" in text
     assert labels.mentioned('Eqs. 26-28, F17-load, "balance" and F99') == {
         "eq26", "eq27", "eq28", "F17-load", "balance",
     }  # fmt: skip

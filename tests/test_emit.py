@@ -12,7 +12,7 @@ from kvtheory.derivations import emit
 from kvtheory.derivations import symbols as sym
 from kvtheory.derivations.symbols import l, lam, q, s, xi
 
-from kvtheory.models.steady import closed_forms
+from kvtheory.theory import closed_forms
 from tests.test_theorems import exact
 
 ULPS = 8

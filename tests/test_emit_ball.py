@@ -8,8 +8,8 @@ from kvtheory.derivations import symbols as sym
 from kvtheory.derivations.catalogue import catalogue
 from kvtheory.derivations.symbols import kappa, l, lam, s
 
-from kvtheory.models.steady import closed_forms
 from kvtheory.models.steady.ball import angle_and_tail
+from kvtheory.theory import closed_forms
 from tests.test_theorems import exact
 
 NUMBERS = (1e-12, 1e-8, 1e-3, 0.1, 0.5, 0.9999, 1.0, 1.0001, 1.842345, 10.0, 1e3, 1e6, 1e12)

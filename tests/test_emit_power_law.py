@@ -14,7 +14,7 @@ from kvtheory.derivations.catalogue import catalogue
 from kvtheory.derivations.symbols import exponent as n
 from kvtheory.derivations.symbols import l, q
 
-from kvtheory.models.steady import closed_forms
+from kvtheory.theory import closed_forms
 from tests import test_emit, test_emit_ball
 
 ULPS = 12

@@ -8,7 +8,7 @@ import pytest
 from kvtheory.derivations import symbols as sym
 from kvtheory.derivations.catalogue import catalogue
 
-from kvtheory.models.steady import closed_forms
+from kvtheory.theory import closed_forms
 from tests.test_emit import OF_MOTION
 from tests.test_emit_power_law import exact
 

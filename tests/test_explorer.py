@@ -13,11 +13,11 @@ import pytest
 import kvtheory as kv
 from kvtheory.charts.naive import two_states
 from kvtheory.explorer import save_explorer
-from kvtheory.models.steady import closed_forms
 from kvtheory.results import STEADY_UNITS
 from kvtheory.results.errors import QuadratureError
 from kvtheory.scene.foundations import THIN, layer_number
 from kvtheory.scene.static_state import StaticState
+from kvtheory.theory import closed_forms
 from tests.browser import Browser
 
 TABLE1 = kv.Scene()

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from flint import arb, ctx, fmpq_poly, fmpz
 
-from kvtheory.models.steady import closed_forms as cf
 from kvtheory.models.steady import exact
+from kvtheory.theory import closed_forms as cf
 from tests import reference
 from tests.steady import at_depth, at_load
 

@@ -25,7 +25,7 @@ def pages() -> dict[str, str]:
     rows = []
     for label, title in CONTENTS.items():
         own = [form.name for form in FORMS if form.label == label]
-        closed = [f"models/steady/closed_forms.py::{name}" for name in own]
+        closed = [f"theory/closed_forms.py::{name}" for name in own]
         held = tests[label] or (["tests/test_emit.py"] if own else ["tests/test_derivations.py"])
         link, computed = f"[{label}](#{anchor_of(label)})", _some([*closed, *functions[label]])
         rows.append(f"| {link} | {title} | {computed} | {_some(held)} |")

@@ -10,13 +10,13 @@ from numpy.typing import ArrayLike
 from scipy.integrate import simpson
 
 from kvtheory.models.steady.ball import angle_and_tail
-from kvtheory.models.steady.closed_forms import ball_friction_coefficient_factor
 from kvtheory.plots.comparison import draw_comparison
 from kvtheory.plots.files import save_picture
 from kvtheory.plots.style import BLUE, LABELS, RED, TRANSIENT_ROWS, label, with_unit
 from kvtheory.plots.sweep import plot_over, plot_sweep
 from kvtheory.results import QUANTITIES, AsymptoteReport, Comparison, SteadyState, Sweep, Transient
 from kvtheory.results.transient import TimeSeries
+from kvtheory.theory.closed_forms import ball_friction_coefficient_factor
 
 SERIES, STEADY = (5.0, 6.4), (5.0, 3.4)
 """Sizes of the pictures, in inches."""

@@ -11,10 +11,10 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from kvtheory.models.steady import closed_forms as cf
 from kvtheory.models.steady.power_law_contact import root, shape_of, trailing_edge
 from kvtheory.results import SteadyState
 from kvtheory.scene.model import Scene
+from kvtheory.theory import closed_forms as cf
 
 Value = Any
 """An array, or a float."""

@@ -20,11 +20,11 @@ import numpy as np
 from numpy.polynomial.legendre import leggauss
 from numpy.typing import NDArray
 
-from kvtheory.models.steady import closed_forms as cf
 from kvtheory.models.steady.blockwise import converge
 from kvtheory.results import STEADY_UNITS, Certificate
 from kvtheory.scene.model import Scene
 from kvtheory.scene.static_state import ball_stiffness
+from kvtheory.theory import closed_forms as cf
 
 Array = NDArray[np.float64]
 

@@ -10,11 +10,11 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from kvtheory.models.steady import closed_forms as cf
 from kvtheory.models.steady.ball import angle_and_tail
 from kvtheory.results import SteadyState
 from kvtheory.scene.model import Scene
 from kvtheory.scene.static_state import ball_stiffness
+from kvtheory.theory import closed_forms as cf
 
 Value = Any
 """An array, or a float."""

@@ -16,9 +16,9 @@ as W is (8 lambda/(3 pi)) s^3 of the damper and s^4 (1 + T/pi)/2 in these units.
 import math
 
 from kvtheory.models.steady import ball_asymptotes
-from kvtheory.models.steady import closed_forms as cf
 from kvtheory.models.steady.ball import NEAR, SQUARES, WEIGHTS
 from kvtheory.models.steady.enclosure import Enclosure, Known
+from kvtheory.theory import closed_forms as cf
 
 DAMPER = 8.0 / (3.0 * math.pi)
 """f/(lambda s^3) for high velocity."""

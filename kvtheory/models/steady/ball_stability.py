@@ -19,9 +19,9 @@ by derivation F20-slopes. The last one loses digits for l >> 1, where it does no
 import numpy as np
 
 from kvtheory.models.steady import ball
-from kvtheory.models.steady import closed_forms as cf
 from kvtheory.models.steady.stability import Numbers
 from kvtheory.scene.model import Scene
+from kvtheory.theory import closed_forms as cf
 
 
 def numbers(scene: Scene) -> Numbers:

@@ -17,10 +17,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from kvtheory.models.steady import closed_forms as cf
 from kvtheory.models.steady.blockwise import cube_root
 from kvtheory.results import STEADY_UNITS, Certificate
 from kvtheory.scene.model import Scene
+from kvtheory.theory import closed_forms as cf
 
 HALLEY_STEPS = 2
 """The first guess is within 3 % of the root; cubic convergence gives 1e-5, then all digits."""

@@ -14,8 +14,8 @@ the depth for high velocity, (g(s) + kappa)/(3/4 lambda) - 1.
 import math
 
 from kvtheory.models.steady import asymptotes
-from kvtheory.models.steady import closed_forms as cf
 from kvtheory.models.steady.enclosure import Enclosure, Known
+from kvtheory.theory import closed_forms as cf
 
 
 def _load_over_square(s: float, number: float) -> float:

@@ -15,10 +15,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from kvtheory.models.steady import closed_forms as cf
 from kvtheory.models.steady.power_law_contact import edge_sensitivity, root, shape_of, trailing_edge
 from kvtheory.results import STEADY_UNITS, Certificate
 from kvtheory.scene.model import Scene
+from kvtheory.theory import closed_forms as cf
 
 Array = NDArray[np.float64]
 

@@ -14,9 +14,9 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from kvtheory.models.steady import closed_forms as cf
 from kvtheory.models.steady import exact
 from kvtheory.scene.model import Scene
+from kvtheory.theory import closed_forms as cf
 
 Array = NDArray[np.float64]
 
