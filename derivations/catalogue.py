@@ -26,6 +26,7 @@ from . import (
     power_law_limits,
     power_law_weight,
     relaxation,
+    rubber_drive,
     spring_drive,
     spring_limits,
     spring_ringing,
@@ -53,7 +54,7 @@ _CHAPTERS = (
     *(ball, ball_slopes, viscoelastic, relaxation, viscoelastic_limits),
     *(transient_scaling, transient_memory, contact_interval, transient_edges),
     *(transient_motion, transient_rates, transient_balance),
-    *(spring_drive, spring_stability, spring_limits, spring_ringing),
+    *(spring_drive, spring_stability, spring_limits, spring_ringing, rubber_drive),
     *(element_schemes, element_edges, element_strips, element_arms),
 )
 """Each chapter may recall the results of the chapters before it."""

@@ -180,6 +180,23 @@ sinks = sp.Symbol("d_l", real=True)
 """How the depth changes with the drive number in steady sliding."""
 spread = sp.Symbol("s_c", nonnegative=True)
 
+# Small motions on an arm (F24): rates and times, four functions of each argument, and changes of both forces
+# with depth and with displacement, of an arm and in all; temperature (F25).
+rate_number, shifted_number, age, swing_rate, time_back = _positive("sigma_r z_r v_r s_r t_r")
+delta_swing, x_swing, fading_depth, fading_drag = sp.symbols(
+    "delta_r X_r alpha_r beta_r", real=True
+)
+kernels, kernels_still = _positive("phi_r1:5"), _positive("psi_r1:5")
+normal_per_depth = sp.Symbol("f_zd", positive=True)
+rubbing_per_depth, normal_per_drag, rubbing_per_drag = sp.symbols("f_xd f_zX f_xX", real=True)
+total_normal_per_depth = sp.Symbol("F_zd", positive=True)
+total_rubbing_per_depth, total_normal_per_drag, total_rubbing_per_drag = sp.symbols(
+    "F_xd F_zX F_xX", real=True
+)
+shift_factor, tau_warm, temperature, T_ref, wlf_1, wlf_2, activation, gas_constant = _positive(
+    "a_T tau_T T T_r C_1 C_2 E_A R_g"
+)
+
 # A ball: place of a strip over its half width, arctan(1/l), and what its strips sum up to.
 aside, ball_angle, ball_load, ball_friction, ball_coefficient, ball_share = _positive(
     "y_b theta_b w_b phi_b m_b eta_b"
@@ -342,6 +359,28 @@ TEX = {
     load_number: r"\breve \Lambda",
     friction_number: r"\breve m",
     steepness: r"\breve \chi",
+    rate_number: r"\tilde \sigma",
+    shifted_number: r"\tilde z",
+    age: r"\tilde v",
+    swing_rate: r"\tilde s",
+    time_back: r"\tilde t",
+    delta_swing: r"\tilde \delta",
+    x_swing: r"\tilde X",
+    fading_depth: r"\tilde \alpha",
+    fading_drag: r"\tilde \beta",
+    **{symbol: rf"\tilde \phi_{n}" for n, symbol in enumerate(kernels, 1)},
+    **{symbol: rf"\tilde \psi_{n}" for n, symbol in enumerate(kernels_still, 1)},
+    normal_per_depth: r"f_{z\delta}",
+    rubbing_per_depth: r"f_{x\delta}",
+    normal_per_drag: "f_{zX}",
+    rubbing_per_drag: "f_{xX}",
+    total_normal_per_depth: r"F_{z\delta}",
+    total_rubbing_per_depth: r"F_{x\delta}",
+    total_normal_per_drag: "F_{zX}",
+    total_rubbing_per_drag: "F_{xX}",
+    T_ref: r"T_{\mathrm{r}}",
+    activation: r"E_{\mathrm{A}}",
+    gas_constant: r"R_{\mathrm{g}}",
     x_a: r"x_{\mathrm{A}}",
     eps_x: r"\varepsilon_x",
     kappa_x: r"\kappa_x",

@@ -3,7 +3,7 @@
 import mpmath as mp
 import pytest
 import sympy as sp
-from kvtheory.derivations import spring_drive, spring_ringing, spring_stability
+from kvtheory.derivations import rubber_drive, spring_drive, spring_ringing, spring_stability
 from kvtheory.derivations import symbols as s
 from kvtheory.derivations.catalogue import catalogue
 
@@ -99,3 +99,68 @@ def test_the_dampers_of_a_contact_take_no_less_than_those_of_a_depth_that_follow
     assert abs(follows - (low + high) * slides) < mp.mpf(10) ** -15
     assert abs(power(follows) - least) < mp.mpf(10) ** -25
     assert min(power(follows + step) for step in (-1, -0.01, 0.01, 1)) > least
+
+
+RUBBER = (  # arms, velocity in m/s; critical stiffness in N/m^2 and frequency in rad/s, of another program
+    ([("50e9", "0.1")], "0.05", "4.533990e6", "66.6002"),
+    ([("50e9", "0.1")], "0.3", "146.7647e6", None),
+    ([("30e9", "0.01"), ("5e9", "0.5")], "0.2", "44.7401e6", None),
+)
+
+
+@pytest.mark.parametrize(("arms", "speed", "stiffness", "frequency"), RUBBER)
+def test_f24_gives_the_critical_stiffness_of_a_prony_series(arms, speed, stiffness, frequency):
+    K, R, M, V = mp.mpf("10e9"), mp.mpf("0.01"), mp.mpf(1000), mp.mpf(speed)
+    series = [(mp.mpf(k), mp.mpf(time)) for k, time in arms]
+    weight = M * mp.mpf("9.80665")
+
+    def moments(c):
+        """Return the moments of F17 of the whole series, by quadrature."""
+
+        def relaxation(w):
+            return K + sum(k * mp.exp(-w * c / (V * time)) for k, time in series)
+
+        return [mp.quad(lambda w, f=weight: f(w) * relaxation(w), [0, 1]) for weight in
+                (lambda w: 1 - w, lambda w: w, lambda w: w * (1 - w) / 2)]  # fmt: skip
+
+    def load(c):
+        P, Q, D = moments(c)
+        return c**3 / R * (D + (P - Q) / (2 * (P + Q)) * P)
+
+    with mp.workdps(15):
+        c = mp.findroot(lambda c: load(c) / weight - 1, mp.mpf("0.001"))
+        P, Q, _ = moments(c)
+        eta = (P - Q) / (2 * (P + Q))
+
+        def spring(omega):
+            """Return k_x at i omega from the proved forces."""
+            rate = mp.mpc(0, omega)
+            total = {name: mp.mpf(0) for name in rubber_drive.FORCES}
+            for k, time in series:
+                known = {
+                    s.arm_number: c / (V * time),
+                    s.rate_number: rate * c / V,
+                    s.excess_share: eta,
+                }
+                for kernels, m in (
+                    (s.kernels, known[s.arm_number] + known[s.rate_number]),
+                    (s.kernels_still, known[s.arm_number]),
+                ):
+                    for n, kernel in enumerate(kernels, 1):
+                        known[kernel] = mp.quad(
+                            lambda v, m=m, n=n: mp.exp(-m * v) * (1 - v) ** (n - 1) / mp.fac(n - 1),
+                            [0, 1],
+                        )
+                for name, form in rubber_drive.FORCES.items():
+                    total[name] += k * value(form, known)
+            A = c * (K + total[s.normal_per_depth])
+            B = c**2 / R * total[s.normal_per_drag]
+            C = c**2 / R * (K * eta + total[s.rubbing_per_depth])
+            D = c**3 / R**2 * total[s.rubbing_per_drag]
+            return D - M * rate**2 - B * C / (M * rate**2 + A)
+
+        guess = mp.mpf(frequency or mp.sqrt(mp.mpf(stiffness) / M))
+        omega = mp.findroot(lambda omega: mp.im(spring(omega)) / K, (guess, guess * mp.mpf("1.01")))
+        assert mp.re(spring(omega)) == pytest.approx(float(stiffness), rel=2e-6)
+        if frequency:
+            assert omega == pytest.approx(float(frequency), rel=2e-6)

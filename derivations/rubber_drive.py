@@ -1,0 +1,320 @@
+r"""Small motions of an indenter that slides on any Prony series, held by a spring (F24); temperature (F25).
+
+As in F17 everything is linear in the relaxation function, so that one arm is enough: G = K_i e^(-t/tau_i).
+To first order the edges do not matter, since the pressure vanishes at both.
+"""
+
+from functools import partial
+
+import sympy as sp
+
+from .groups import k_s
+from .record import Derivation
+from .step import Proof
+from .symbols import (
+    C_x,
+    M,
+    M_x,
+    R,
+    T_ref,
+    V,
+    activation,
+    age,
+    arm_number,
+    contact_length,
+    delta,
+    delta_swing,
+    excess_share,
+    fading_depth,
+    fading_drag,
+    forgotten,
+    gas_constant,
+    half_share,
+    k_x,
+    kernels,
+    kernels_still,
+    normal_per_depth,
+    normal_per_drag,
+    place,
+    rate_number,
+    rubbing_per_depth,
+    rubbing_per_drag,
+    shift_factor,
+    shifted_number,
+    small,
+    springpot,
+    swing_rate,
+    t,
+    tau,
+    tau_warm,
+    temperature,
+    time_back,
+    total_normal_per_depth,
+    total_normal_per_drag,
+    total_rubbing_per_depth,
+    total_rubbing_per_drag,
+    wlf_1,
+    wlf_2,
+    x,
+    x_swing,
+)  # fmt: skip
+
+SECTION = "A drive with a spring on rubber"
+_theorem = partial(Proof, equation=None, section=SECTION)
+
+z, y, b, e, c = arm_number, place, half_share, excess_share, contact_length
+sigma, m, v, s = rate_number, shifted_number, age, swing_rate
+HALF = sp.Rational(1, 2)
+ALPHA = (sigma + z * sp.exp(-m * y)) / m
+"""Pressure of an arm for a change of depth, in units of K_i; the next one for a displacement, in K_i c/R."""
+BETA = (
+    (y - b) * sigma / m - 1 / z + z / m**2
+    + (b + 1 / z) * sp.exp(-z * y) - (b + 1 / m) * z / m * sp.exp(-m * y)
+)  # fmt: skip
+
+
+def derive() -> tuple[Derivation, ...]:
+    """Derive the equation for the rates on a Prony series, and how temperature acts."""
+    return (
+        *(_compression(), _arm(), _kernels(), _forces(), _rates(), _kelvin_voigt()),
+        *(_temperature(), _wlf()),
+    )
+
+
+def _compression() -> Derivation:
+    proof = _theorem("F24-compression", title="Rubber: compression in small motions", text=_PATH)
+    place_then = x - V * time_back + small * x_swing * (sp.exp(s * t) - sp.exp(s * (t - time_back)))
+    then = delta + small * delta_swing * sp.exp(s * (t - time_back)) - place_then**2 / (2 * R)
+    first = sp.Subs(sp.Derivative(then, small), small, 0)
+    fall = sp.exp(-s * time_back)
+    result = delta_swing * fall - (x - V * time_back) / R * x_swing * (1 - fall)
+    proof.equal(first, result * sp.exp(s * t), r"the terms of first order in $\check \theta$")
+    return proof.done(first, result * sp.exp(s * t))
+
+
+_PATH = (
+    r"The depth is $\delta + \check \theta \tilde \delta e^{\tilde s t}$, and the indenter is at $\check "
+    r"\theta \tilde X e^{\tilde s t}$. The element that is now at $x$ was $\tilde t$ ago where the "
+    r"foundation and the indenter had then taken it, and was compressed by $\delta - x^2/2R$ of that place "
+    r"and that depth. All that follows is analytic in $\tilde s$: what is proved where it is positive "
+    "holds in the complex plane."
+)
+
+
+def _numbers(proof: Proof) -> None:
+    proof.define(
+        m, z + sigma, r"the decay of the arm and the rate $\tilde \sigma = \tilde s \breve c/V$"
+    )
+
+
+def _arm() -> Derivation:
+    proof = _theorem("F24-arm", title="Rubber: pressure of an arm in small motions", text=_ARM,
+                     uses=("F24-compression",))  # fmt: skip
+    _numbers(proof)
+    followed = z * sp.exp(-z * v) * sp.exp(-sigma * v)
+    lost = proof.integral(sp.Integral(followed, (v, 0, y)), followed, (v, 0, y),
+                          -z * sp.exp(-m * v) / m, "what the arm has forgotten of it",
+                          value=z * (1 - sp.exp(-m * y)) / m)  # fmt: skip
+    proof.define(fading_depth, 1 - lost, "the pressure for a change of depth")
+    proof.equal(fading_depth, ALPHA, "its value")
+    dragged = z * sp.exp(-z * v) * (y - b - v) * (1 - sp.exp(-sigma * v))
+    primitive = -(y - b - v - 1 / z) * sp.exp(-z * v) + z / m * (y - b - v - 1 / m) * sp.exp(-m * v)
+    proof.integral(fading_drag, dragged, (v, 0, y), primitive,
+                   "the pressure for a displacement", value=BETA)  # fmt: skip
+    return proof.done(fading_drag, BETA)
+
+
+_ARM = (
+    r"The pressure of an arm is $K_i [u(0) - \int_0^{\breve x} \breve z e^{-\breve z \tilde v}\, u(\tilde "
+    r"v)\, d\tilde v]$, with the time $\tilde v\, \breve c/V$ back. Since $u$ vanishes where an element "
+    "enters, the change of that time is of second order. With the compression of F24-compression the "
+    r"pressure changes by $K_i (\tilde \alpha \tilde \delta + \tilde \beta \tilde X \breve c/R) e^{\tilde "
+    "s t}$."
+)
+
+
+def _kernels() -> Derivation:
+    proof = _theorem("F24-kernels", title="Rubber: four functions of one argument", text=_PHI)
+    for number, found in ((m, kernels), (z, kernels_still)):
+        before = None
+        for n, kernel in enumerate(found, 1):
+            weight = (1 - v) ** (n - 1) / sp.factorial(n - 1)
+            integrand = weight * sp.exp(-number * v)
+            primitive = sp.expand(sp.integrate(sp.expand(integrand), v))
+            known = 1 / sp.factorial(n - 1)
+            value = (1 - sp.exp(-number)) / number if before is None else (known - before) / number
+            proof.integral(kernel, integrand, (v, 0, 1), primitive,
+                           "an exponential" if before is None else "by parts: from the one before",
+                           value=value)  # fmt: skip
+            before = kernel
+    return proof.done(kernels[3], (sp.Rational(1, 6) - kernels[2]) / m)
+
+
+_PHI = (
+    r"The functions of exponential integrators, at $-\tilde z$ ($\tilde \phi_1$ to $\tilde \phi_4$) and at "
+    r"$-\breve z$ ($\tilde \psi_1$ to $\tilde \psi_4$). The integrals lose no digits at small arguments, "
+    "the recurrence none at large ones."
+)
+
+
+def _recalled(proof: Proof) -> None:
+    """Let the kernels stand for their values."""
+    _numbers(proof)
+    for found in (kernels, kernels_still):
+        number, before = (m, None) if found is kernels else (z, None)
+        for n, kernel in enumerate(found, 1):
+            value = (
+                (1 - sp.exp(-number)) / number
+                if before is None
+                else (1 / sp.factorial(n - 1) - before) / number
+            )
+            proof.recall("F24-kernels", kernel, value)
+            before = kernel
+    proof.define(b, HALF + e, "F17-edge")
+
+
+_1, _2, _3, _4 = kernels
+_S1, _S2, _S3, _S4 = kernels_still
+FORCES = {
+    normal_per_depth: _1 + sigma * _2,
+    rubbing_per_depth: _2 + sigma * _3 - (HALF - e) * (_1 + sigma * _2),
+    normal_per_drag: z * (_S3 - _3 - (HALF + e) * (_S2 - _2)),
+    rubbing_per_drag: -z * (_S3 - _3 - (_S4 - _4) - (HALF - e) * (HALF + e) * (_S2 - _2)),
+}
+"""Changes of both forces of an arm, in units of K_i c, K_i c^2/R, K_i c^2/R and K_i c^3/R^2."""
+
+
+def _forces() -> Derivation:
+    proof = _theorem("F24-forces", title="Rubber: forces of an arm in small motions", text=_FORCES,
+                     uses=("F24-arm",))  # fmt: skip
+    _recalled(proof)
+    proof.recall("F24-arm", fading_depth, ALPHA)
+    proof.recall("F24-arm", fading_drag, BETA)
+    for name, pressure, form, lever in (
+        (normal_per_depth, fading_depth, ALPHA, 1), (rubbing_per_depth, fading_depth, ALPHA, b - y),
+        (normal_per_drag, fading_drag, BETA, 1), (rubbing_per_drag, fading_drag, BETA, b - y),
+    ):  # fmt: skip
+        primitive = sp.expand(sp.integrate(sp.expand(form * lever), y))
+        proof.integral(name, pressure * lever, (y, 0, 1), primitive,
+                       "the pressure" if lever == 1 else "the pressure times the slope",
+                       value=FORCES[name])  # fmt: skip
+    return proof.done(rubbing_per_drag, FORCES[rubbing_per_drag])
+
+
+_FORCES = (
+    r"In units of $K_i \breve c$, $K_i \breve c^2/R$, again $K_i \breve c^2/R$ and $K_i \breve c^3/R^2$. "
+    r"The spring $K$ is an arm with $\breve z = 0$: it adds $1$, $\breve \eta$, $0$ and $0$. A ball is the "
+    "sum of its strips."
+)
+
+
+def _rates() -> Derivation:
+    proof = _theorem("F24", title="Rates and critical stiffness on rubber", text=_RATES,
+                     uses=("F24-forces", "eq17", "F22-scaled"))  # fmt: skip
+    A, B, C, D = (
+        total_normal_per_depth, total_normal_per_drag, total_rubbing_per_depth, total_rubbing_per_drag,
+    )  # fmt: skip
+    up = M * s**2 + k_s + A
+    along = M_x * s**2 + C_x * s + k_x - D
+    across, lengthwise = up * delta_swing + B * x_swing, along * x_swing - C * delta_swing
+    both = (up * along + B * C) * delta_swing
+    proof.equal(along * across - B * lengthwise, both,
+                r"both equations of motion hold: $\tilde X$ is eliminated")  # fmt: skip
+    value = D - M_x * s**2 - C_x * s - B * C / up
+    proof.equal(sp.Subs(up * along + B * C, k_x, value), sp.S.Zero,
+                r"so $\tilde s$ is a rate for this stiffness")  # fmt: skip
+    return proof.done(along * across - B * lengthwise, both)
+
+
+_RATES = (
+    r"With the sums over the spring and all arms the forces change by $F_{z\delta} \tilde \delta + F_{zX} "
+    r"\tilde X$ and $F_{x\delta} \tilde \delta + F_{xX} \tilde X$, times $e^{\tilde s t}$. On the "
+    r"imaginary axis $k_x$ is explicit: $k_x = F_{xX} - M_x \tilde s^2 - C_x \tilde s - F_{zX} "
+    r"F_{x\delta}/(M \tilde s^2 + k_{\mathrm{s}} + F_{z\delta})$, and the critical stiffness is the "
+    "largest real value that it takes there."
+)
+
+
+def _kelvin_voigt() -> Derivation:
+    proof = _theorem("F24-kelvin-voigt", title="Rubber: a fast arm is a damper", text=_VOIGT,
+                     uses=("F24-forces", "F22-forces"))  # fmt: skip
+    _recalled(proof)
+    for name, form in FORCES.items():
+        proof.recall("F24-forces", name, form)
+    proof.define(
+        sp.exp(-z), forgotten / z**6, r"its memory decays faster than any power of $\breve z$"
+    )
+    far = {"variable": z, "point": sp.oo, "eps": 1 / z}
+    limits = {
+        normal_per_depth: 1 + sigma,
+        rubbing_per_depth: HALF + e + e * sigma,
+        normal_per_drag: -e * sigma,
+        rubbing_per_drag: -(sp.Rational(1, 12) + e**2) * sigma,
+    }
+    for name, limit in limits.items():
+        proof.leading_order(
+            name, limit / z, **far, reason=r"times $K_i \breve z = C V/\breve c$: a damper"
+        )
+    lam = springpot
+    proof.define(
+        e, lam / (2 * (1 + lam)), r"F17-kelvin-voigt, with $\breve \zeta = l_{\mathrm{r}}/\breve c$"
+    )
+    proof.equal(1 + lam, (HALF - e) + lam + (HALF + e),
+                r"$F_{z\delta}$ at $\tilde s = 0$: $r + \lambda + \hat a$ of F22")  # fmt: skip
+    proof.equal(
+        e + lam * (HALF + e), lam, r"$F_{x\delta}$ at $\tilde s = 0$: $\lambda (r + \hat a)$"
+    )
+    proof.equal(lam * e, lam * (HALF - (HALF - e)),
+                r"$-F_{zX}/\tilde s$ and $F_{x\delta}/\tilde s$")  # fmt: skip
+    proof.equal(3 * (sp.Rational(1, 12) + e**2), (HALF - e) ** 3 + (HALF + e) ** 3,
+                r"$-F_{xX}/\tilde s$: $r^3 + \hat a^3$")  # fmt: skip
+    return proof.done(3 * (sp.Rational(1, 12) + e**2), (HALF - e) ** 3 + (HALF + e) ** 3)
+
+
+_VOIGT = (
+    r"For $\breve z \to \infty$ with $K_i \tau_i = C$ the arm and the spring $K$ give the derivatives of "
+    r"F22, lengths in units of $\breve c$ and forces in those of $K \breve c^3/R$: $\hat a = \frac{1}{2} + "
+    r"\breve \eta$, $r = \frac{1}{2} - \breve \eta$, $\lambda = \breve \zeta$. They are approached at "
+    r"first order in $\tau_i$."
+)
+
+
+def _temperature() -> Derivation:
+    proof = _theorem("F25", title="Temperature is velocity", text=_SHIFT,
+                     uses=("F17-pressure", "F17-load", "F17"))  # fmt: skip
+    proof.define(tau_warm, shift_factor * tau, "all times are shifted alike")
+    number = c / (V * tau_warm)
+    proof.equal(number, c / ((V * shift_factor) * tau),
+                r"$\breve z$ of an arm is that at the velocity $V a_T$")  # fmt: skip
+    return proof.done(number, c / ((V * shift_factor) * tau))
+
+
+_SHIFT = (
+    "The whole steady state follows from the relaxation at a distance behind the leading edge: for an arm "
+    r"from $\breve z$, for a springpot or a dashpot from $V \tau/\breve c$. If temperature multiplies all "
+    "times by $a_T$ and leaves the moduli, then steady sliding at the velocity $V$ is that at the "
+    "reference temperature and the velocity $V a_T$, for every shape and support. Moduli that change by a "
+    "factor change $K$ and $W$ by it."
+)
+
+
+def _wlf() -> Derivation:
+    proof = _theorem(
+        "F25-activation", title="Two laws of the shift factor", text=_WLF, uses=("F25",)
+    )
+    T, T_r = temperature, T_ref
+    proof.where(sp.Gt(wlf_2 + T - T_r, 0), "above the pole of the equation")
+    exponent = -sp.log(10) * wlf_1 * (T - T_r) / (wlf_2 + T - T_r)
+    apparent = -gas_constant * T**2 * sp.Derivative(exponent, T)
+    value = sp.log(10) * gas_constant * wlf_1 * wlf_2 * T**2 / (wlf_2 + T - T_r) ** 2
+    proof.equal(apparent, value, "the apparent activation energy of Williams, Landel and Ferry")
+    arrhenius = activation / gas_constant * (1 / T - 1 / T_r)
+    proof.equal(-gas_constant * T**2 * sp.Derivative(arrhenius, T), activation, "that of Arrhenius")
+    return proof.done(apparent, value)
+
+
+_WLF = (
+    r"Williams, Landel and Ferry: $\log_{10} a_T = -C_1 (T - T_{\mathrm{r}})/(C_2 + T - T_{\mathrm{r}})$. "
+    r"Arrhenius: $\ln a_T = (E_{\mathrm{A}}/R_{\mathrm{g}})(1/T - 1/T_{\mathrm{r}})$. Both fall where the "
+    "temperature rises, so that the velocity of the friction maximum rises by $1/a_T$."
+)
