@@ -198,7 +198,7 @@ def test_limits_and_maximum_are_those_of_python(browser, support, indenter):
     assert [low, high] == pytest.approx([line.value for line in report.lines[:2]], rel=1e-12)
     assert critical == pytest.approx(report.critical_velocity, rel=1e-12)
     if np.isfinite(report.peak_velocity):
-        top = browser.run(f"curve_data({given}).top")
+        top = browser.run(f"curve_data({given}).tops[0]")
         assert top["friction"] == pytest.approx(report.peak_friction_coefficient, rel=1e-12)
         assert top["V"] == pytest.approx(report.peak_velocity, rel=1e-5)
 
@@ -295,6 +295,72 @@ def test_stability_on_a_spring_is_that_of_python(browser, family):
             (scene.support.kind, stable, math.isnan(right.critical_stiffness), bool(numbers[1]))
         )
     assert {(True, True), (True, False), (False, False)} <= {kind[1:3] for kind in kinds}
+
+
+def scenes_on_rubber():
+    """Parabolas and balls on up to three arms, on every support, with a spring in the drive."""
+    random = np.random.default_rng(24)
+    for k in range(24):
+        count = 1 + k % 3
+        arms = np.transpose(
+            [10 ** random.uniform(9, 11, count), 10 ** random.uniform(-3, 0, count)]
+        )
+        line = k % 2 == 0
+        unit, depth = (1000.0, 1e-4) if line else (1.0, 3e-4)
+        mass, soft = unit * 10 ** random.uniform(-1.0, 1.0), 1e6 if line else 1e4
+        supports = (
+            kv.Fixed(depth),
+            kv.DeadWeight(mass, load=10.0 * unit),
+            kv.Suspended(mass, soft, load=10.0 * unit),
+        )
+        yield kv.Scene(
+            kv.Parabola(0.01) if line else kv.Sphere(0.01, radius_across=0.02),
+            kv.GeneralizedMaxwell(1e10, arms=arms.tolist()),
+            supports[k // 2 % 3],
+            kv.Drive(
+                float(10 ** random.uniform(-3.0, 1.0)),
+                stiffness=float(soft * 10 ** random.uniform(-2.0, 3.0)),
+                damping=float(random.choice([0.0, 0.1 * mass])),
+                mass=mass,
+            ),
+        )
+
+
+def test_stability_on_rubber_is_that_of_python(browser):
+    scenes = list(scenes_on_rubber())
+    given = json.dumps([in_javascript(scene) for scene in scenes])
+    found = browser.run(
+        f"{given}.map(s => [s, onset_of(s, slide(s))]).map(([s, o]) => "
+        "[o.stable(s.drive.stiffness), o.upper.stiffness, o.lower.stiffness, o.upper.frequency])"
+    )
+    names = ("critical_stiffness", "lower_critical_stiffness", "frequency")
+    right = [kv.stability(scene, quantity=("stable", *names)) for scene in scenes]
+    assert {(each.stable, bool(each.critical_stiffness > 0)) for each in right} >= {
+        (True, True),
+        (False, True),
+    }
+    for scene, each, (stable, *numbers) in zip(scenes, right, found, strict=True):
+        assert stable == each.stable, scene
+        for name, number in zip(names, numbers, strict=True):
+            known = math.nan if number is None else number
+            allowed = 1e-8 + 2.0 * float(np.nan_to_num(each.certificate.relative_error[name]))
+            assert known == pytest.approx(getattr(each, name), rel=allowed, nan_ok=True), (
+                name,
+                scene,
+            )
+
+
+def test_every_maximum_on_rubber_is_that_of_python(browser):
+    arms = [[3e10, 1e-4], [2e10, 3.0]]
+    scene = kv.Scene(foundation=kv.GeneralizedMaxwell(1e10, arms=arms))
+    right = kv.asymptotes(scene).maxima
+    tops = browser.run(f"curve_data({json.dumps(in_javascript(scene))}).tops")
+    assert len(tops) == len(right) == 2
+    for top, (velocity, friction) in zip(
+        tops, sorted(right, key=lambda each: -each[1]), strict=True
+    ):
+        assert top["friction"] == pytest.approx(friction, rel=1e-10)
+        assert top["V"] == pytest.approx(velocity, rel=1e-4)
 
 
 @pytest.mark.parametrize("velocity", [0.001, 0.1, 0.3])

@@ -147,13 +147,13 @@ function show_stability(scene, state) {
     return;
   }
   if (!has_stability(scene)) {
-    place.innerHTML = "<p>Known in closed form for a parabola and for a ball on Kelvin\u2013Voigt elements.</p>";
+    place.innerHTML = "<p>Known for a parabola and for a ball that slide on Kelvin\u2013Voigt elements or on a Prony series.</p>";
     return;
   }
-  const onset = onsets(stability_numbers(scene, state)), { lower, upper } = onset, pairs = rates(scene, state);
-  const stable = !drive || is_stable(drive.stiffness, onset), some = Number.isFinite(upper.stiffness);
+  const { lower, upper, stable: on } = onset_of(scene, state), pairs = scene.arms ? [] : rates(scene, state);
+  const stable = !drive || on(drive.stiffness), some = Number.isFinite(upper.stiffness);
   const on_spring = stable ? "Stable on this spring: small disturbances decay" : "Unstable on this spring: small disturbances grow";
-  const told = drive ? `${on_spring} (derivation F22).` : "Stable under a rigid drive (derivation F12).";
+  const told = drive ? `${on_spring} (derivation ${scene.arms ? "F24" : "F22"}).` : "Stable under a rigid drive.";
   const rows = drive ? [["spring of the drive", stiffness_text(scene, drive.stiffness)]] : [];
   if (some) {
     rows.push([drive ? "stable above" : "a spring in the drive would have to exceed", stiffness_text(scene, upper.stiffness)]);

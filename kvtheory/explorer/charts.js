@@ -75,22 +75,24 @@ const dot = (kind, text) => sample(14, 14, mark(7, 7, kind), text);
 const mark = (x, y, kind) => (kind === "top"
   ? `<path class="top" d="M${x} ${y - 7}l6 7l-6 7l-6 -7z"/>` : `<circle class="present" cx="${x}" cy="${y}" r="6"/>`);
 
-const POINTS = 80, SPAN = 3;
+const PER_DECADE = 14, SPAN = 3;
 
 /** What the curve of friction over velocity is made of: found anew only when more than V has changed. */
 function curve_data(scene) {
-  const known = limits(scene), decades = SPAN + (scene.arms ? 1 : 0);
-  const centre = known.critical || (at_rest(scene).half_length || scene.shape[1]) / mean_time(scene);
+  const known = limits(scene), length = at_rest(scene).half_length || scene.shape[1];
+  const centre = known.critical || length / mean_time(scene);
+  const far = (scene.arms || []).map(([, time]) => Math.abs(Math.log10(length / time / centre)));
+  const decades = Math.max(SPAN, ...far.map((each) => each + 1)), POINTS = Math.ceil(2 * PER_DECADE * decades);
   const rising = scene.kelvin_voigt && (scene.depth !== undefined || scene.shape[2] === 1);
   const speeds = Array.from({ length: POINTS + 1 }, (_, k) => centre * 10 ** (decades * (2 * k / POINTS - 1)));
   const drawn = { ...scene, rough: true }, states = speeds.map((V) => slide({ ...drawn, V }));
   const exact = states.map((state, k) => [speeds[k], state.friction_coefficient]);
-  return { known, centre, decades, top: rising ? null : maximum(drawn, exact), exact, ...unstable_speeds(scene, speeds, states) };
+  return { known, centre, decades, tops: rising ? [] : maxima(drawn, exact), exact, ...unstable_speeds(scene, speeds, states) };
 }
 
 function draw_curve(scene, state, data) {
   const speed = Math.abs(scene.V), friction = Math.abs(state.friction_coefficient);
-  const { known, centre, decades, top, exact, unstable, from } = data;
+  const { known, centre, decades, tops, exact, unstable, from } = data;
   const ends = [centre * 10 ** -decades, centre * 10 ** decades];
   const low = speed > 0 ? Math.min(ends[0], speed / 2) : ends[0], high = Math.max(ends[1], speed * 2);
   const values = exact.map(([, mu]) => mu).filter((mu) => mu > 0), most = Math.max(...values);
@@ -108,7 +110,7 @@ function draw_curve(scene, state, data) {
       const V = x.at(known.critical * 1e3);
       marks += line([[V, box[1]], [V, box[3]]], "critical") + words(V + 5, box[3] - 8, "V*", 'class="title"');
     }
-    if (top) marks += mark(...at([top.V, top.friction]), "top");
+    for (const top of tops) marks += mark(...at([top.V, top.friction]), "top");
     if (speed > 0 && friction > 0) marks += mark(...at([speed, friction]), "present");
     const name = box[3] - box[1] > 150 ? "friction coefficient" : "\u03bc";
     return frame(x, y, box, "velocity [mm/s]", name) + `<g ${clip}>${drawn}</g>${marks}`;
@@ -117,7 +119,7 @@ function draw_curve(scene, state, data) {
   if (unstable.some(Boolean)) parts.push(swatch("unstable", `unstable on this spring${from ? `, from ${short(from * 1e3)} mm/s` : ""}`));
   if (known.low) parts.push(swatch("low", "limit at low velocity"), swatch("high", "limit at high velocity"));
   if (known.critical) parts.push(swatch("critical", `V* = ${short(known.critical * 1e3)} mm/s`));
-  if (top) parts.push(dot("top", `maximum ${short(top.friction)} at ${short(top.V * 1e3)} mm/s`));
+  tops.forEach((top, k) => parts.push(dot("top", `${k ? "another" : "maximum"} ${short(top.friction)} at ${short(top.V * 1e3)} mm/s`)));
   parts.push(dot("present", "this scene"));
   document.getElementById("curve-legend").innerHTML = parts.join("");
 }

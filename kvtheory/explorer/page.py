@@ -20,6 +20,7 @@ SCRIPTS = (
         "ball.js",
         "circle.js",
         "stability.js",
+        "rubber.js",
         "motion.js",
         "scene.js",
     ),

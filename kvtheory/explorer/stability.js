@@ -109,18 +109,28 @@ function start_places(P, degree) {
   return sizes.map((size, k) => [size * Math.cos(1 + 2.4 * k), size * Math.sin(1 + 2.4 * k)]);
 }
 
+/** The stiffnesses and frequencies between which sliding is unstable, and whether it is stable on a spring. */
+function onset_of(scene, state, how) {
+  if (scene.arms) return rubber_onset(scene, state, how);
+  const onset = onsets(stability_numbers(scene, state));
+  return { ...onset, stable: (stiffness) => is_stable(stiffness, onset) };
+}
+
+const ROUGHLY = { per_decade: 10, count: 6 };
+
 /** At which of several speeds the steady state is unstable on the spring of the drive, and from which speed on. */
 function unstable_speeds(scene, speeds, states) {
   if (!has_stability(scene) || !scene.drive) return { unstable: speeds.map(() => false) };
-  const slips = (state) => !is_stable(scene.drive.stiffness, onsets(stability_numbers(scene, state)));
-  const unstable = states.map(slips), first = unstable.indexOf(true);
+  const slips = (V, state) => !onset_of({ ...scene, V }, state, ROUGHLY).stable(scene.drive.stiffness);
+  const unstable = speeds.map((V, k) => slips(V, states[k])), first = unstable.indexOf(true);
   if (first < 1) return { unstable };
   let [low, high] = [speeds[first - 1], speeds[first]];
-  for (let k = 0; k < 50; k++) {
+  for (let k = 0; k < (scene.arms ? 16 : 50); k++) {
     const middle = Math.sqrt(low * high);
-    if (slips(slide({ ...scene, V: middle }))) high = middle; else low = middle;
+    if (slips(middle, slide({ ...scene, V: middle }))) high = middle; else low = middle;
   }
   return { unstable, from: high };
 }
 
-const has_stability = (scene) => scene.kelvin_voigt && ["parabola", "sphere"].includes(scene.indenter);
+const has_stability = (scene) =>
+  (scene.kelvin_voigt || (scene.arms && scene.V !== 0)) && ["parabola", "sphere"].includes(scene.indenter);

@@ -297,17 +297,20 @@ function line_limits(scene) {
   return { low: (V) => low * V, high: (V) => high / V, critical: Math.sqrt(high / low), glassy: [a, slope_0 / glassy] };
 }
 
-/** Speed and friction at the maximum, from points of the curve: parabolas over ever closer speeds. */
-function maximum(scene, points) {
+/** Speed and friction at each maximum, the highest first: parabolas over ever closer speeds from points of the curve. */
+function maxima(scene, points) {
   const friction = (V) => slide({ ...scene, V }).friction_coefficient;
-  const best = points.reduce((top, [, mu], k) => (mu > points[top][1] ? k : top), 0);
-  if (best === 0 || best === points.length - 1) return null;
-  let place = Math.log(points[best][0]);
-  for (let h = Math.log(points[best + 1][0]) - place, k = 0; k < 4; k++, h /= 8) {
-    const [low, top, high] = [-h, 0, h].map((step) => friction(Math.exp(place + step)));
-    const off = 0.5 * h * (high - low) / (2 * top - low - high);
-    place += Math.min(h, Math.max(-h, off)) || 0;
+  const found = [];
+  for (let best = 1; best < points.length - 1; best++) {
+    if (!(points[best][1] > points[best - 1][1] && points[best][1] >= points[best + 1][1])) continue;
+    let place = Math.log(points[best][0]);
+    for (let h = Math.log(points[best + 1][0]) - place, k = 0; k < 4; k++, h /= 8) {
+      const [low, top, high] = [-h, 0, h].map((step) => friction(Math.exp(place + step)));
+      const off = 0.5 * h * (high - low) / (2 * top - low - high);
+      place += Math.min(h, Math.max(-h, off)) || 0;
+    }
+    const V = Math.exp(place);
+    found.push({ V, friction: friction(V) });
   }
-  const V = Math.exp(place);
-  return { V, friction: friction(V) };
+  return found.sort((a, b) => b.friction - a.friction);
 }
