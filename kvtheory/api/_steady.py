@@ -108,6 +108,6 @@ def method_for(scene: Scene, method: str | None) -> str:
     method = method or ("quadrature" if lacking["exact"] else "exact")
     if lacking[method]:
         others = [name for name in ("exact", "quadrature") if not lacking[name]]
-        hint = f'; use method = "{others[0]}"' if others else ""
+        hint = f'; use `method` = "{others[0]}"' if others else ""
         raise ValueError(f'`method` = "{method}" {lacking[method]}{hint}')
     return method

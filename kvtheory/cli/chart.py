@@ -7,14 +7,12 @@ from pathlib import Path
 import click
 
 from kvtheory.cli.console import (
-    Examples,
     json_option,
     print_json,
     print_table,
     progress_bar,
     scene_options,
     split,
-    teaching,
 )
 from kvtheory.cli.group import main
 from kvtheory.cli.outputs import PICTURES, check_output, overwrite_option, path_option
@@ -34,12 +32,11 @@ def chart() -> None:
     """Chart speed against accuracy, stability, and the ways in which methods fail."""
 
 
-@chart.command(cls=Examples, example="kvtheory chart failures -o failures.html")
+@chart.command(example="kvtheory chart failures -o failures.html")
 @click.option("--only", metavar="KEY,...", help="Entries to compute; default: all of them.")
 @path_option("-o", "--output", help="Write the atlas as one self-contained FILE.html.")
 @json_option
 @overwrite_option
-@teaching
 def failures(only: str | None, output: Path | None, as_json: bool) -> None:
     """Show how methods fail: wrong numbers, computed beside the right ones."""
     check_output("-o", output, [".html"])
@@ -71,14 +68,13 @@ def failures(only: str | None, output: Path | None, as_json: bool) -> None:
         click.echo(f"\n{output}")
 
 
-@chart.command(cls=Examples, example="kvtheory chart stability -o stability.png")
+@chart.command(example="kvtheory chart stability -o stability.png")
 @path_option(
     "-o", "--output", default=Path("stability.png"), show_default=True,
     help="Picture; its data go to FILE.json beside it.",
 )  # fmt: skip
 @click.option("--quick", is_flag=True, help="Coarser maps.")
 @overwrite_option
-@teaching
 def stability(output: Path, quick: bool) -> None:
     """Map where each scheme of the elements is stable: predicted over measured."""
     check_chart(output)
@@ -92,7 +88,6 @@ def stability(output: Path, quick: bool) -> None:
 
 @chart.command(
     "work-precision",
-    cls=Examples,
     example="kvtheory chart work-precision my-scene.toml --quick -o speed.png",
 )
 @scene_options
@@ -107,7 +102,6 @@ def stability(output: Path, quick: bool) -> None:
     help="Picture, or a directory for it; its data go to FILE.json beside it.",
 )  # fmt: skip
 @overwrite_option
-@teaching
 def work_precision(
     scene: str | None, overrides: Sequence[str], standard: str | None, quick: bool, output: Path
 ) -> None:

@@ -1,21 +1,18 @@
 """`kvtheory compare`: a simulation against theory."""
 
-import sys
 from collections.abc import Sequence
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
 
 from kvtheory.cli.console import print_table, progress_bar, scene_command
-from kvtheory.cli.group import main
+from kvtheory.cli.group import DISAGREES, main
 from kvtheory.cli.outputs import PICTURES, check_output, deliver, overwrite_option, path_option
 
 if TYPE_CHECKING:
     from kvtheory.results.comparison import Check
-
-DISAGREES = 1
-"""Exit status where a check found disagreement."""
 
 
 @scene_command(main, "kvtheory compare --data mine.csv --per-length '200 /mm' --report mine.html")
@@ -57,14 +54,19 @@ def compare(
     checked = load_scene(scene, overrides)
     with progress_bar("compare") as progress:
         found = hold_against(checked, data, **how, progress=progress)
-    if not deliver(found, None, plot, as_json=as_json, report=(report, checked)):
+    pages = {}
+    if report:
+        from kvtheory.plots.comparison import save_comparison_report
+
+        pages[report] = partial(save_comparison_report, found, checked)
+    if not deliver(found, None, plot, as_json=as_json, more=pages):
         tells = "cannot tell" if found.verdict == "cannot tell" else f"{found.verdict} with theory"
         click.echo(f"{found.source}: {tells}\n")
         heads = ("check", "measured", "allowed", "", "equation", "what is measured")
         print_table(heads, [_row(check) for check in found.checks])
         click.echo(f"\n{found.diagnosis}")
     if found.verdict == "disagrees":
-        sys.exit(DISAGREES)
+        click.get_current_context().exit(DISAGREES)
 
 
 def _row(check: "Check") -> tuple[str, ...]:

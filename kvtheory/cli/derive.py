@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from kvtheory.cli.console import Examples, print_json, print_table, progress_bar, split, teaching
+from kvtheory.cli.console import print_json, print_table, progress_bar, set_option, split
 from kvtheory.cli.group import main
 from kvtheory.cli.outputs import check_output, overwrite_option
 
@@ -31,9 +31,7 @@ UNUSUAL = re.compile(r"[^\w .,()+-]")
 """What the name of a scene may not hold inside a document, where it could be mathematics or markup."""
 
 
-@main.command(
-    cls=Examples, example="kvtheory derive -o my-thesis --format tex --only eq27,F3 --closure"
-)
+@main.command(example="kvtheory derive -o my-thesis --format tex --only eq27,F3 --closure")
 @click.argument("scene", required=False, type=click.Path(exists=True, dir_okay=False))
 @click.option(
     "-o", "--output", type=click.Path(file_okay=False, path_type=Path),
@@ -59,10 +57,7 @@ UNUSUAL = re.compile(r"[^\w .,()+-]")
     "--notation", type=click.Path(exists=True, dir_okay=False, path_type=Path), default=None,
     metavar="FILE.toml", help='Your symbols, as in l_r = "\\\\ell_r"; --symbols lists the names.',
 )  # fmt: skip
-@click.option(
-    "--set", "overrides", multiple=True, metavar="KEY=VALUE",
-    help="Override a key of the scene; repeatable.",
-)  # fmt: skip
+@set_option
 @click.option("--list", "listing", is_flag=True, help="List the labels, one line each, and stop.")
 @click.option(
     "--symbols", is_flag=True, help="List the names of the symbols for --notation, and stop."
@@ -71,7 +66,6 @@ UNUSUAL = re.compile(r"[^\w .,()+-]")
     "--json", "as_json", is_flag=True, help="Print one JSON object about what was written."
 )
 @overwrite_option
-@teaching
 def derive(
     scene: str | None, output: Path, formats: str | None, only: str, closure: bool, numbers: bool,
     shape: str | None, notation: Path | None, overrides: Sequence[str], listing: bool, symbols: bool,

@@ -1,6 +1,5 @@
 """`kvtheory solve`: the cheapest sufficient model."""
 
-import math
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -8,8 +7,9 @@ from typing import TYPE_CHECKING
 import click
 
 from kvtheory.cli.console import (
+    error_text,
+    print_quantities,
     print_series,
-    print_steady,
     print_table,
     progress_bar,
     scene_command,
@@ -59,7 +59,7 @@ def solve(
     if at is not None or over_time:
         print_series(found, whole=at is not None, remedy="Take a smaller --rtol.")
     else:
-        print_steady(found, found.values)
+        print_quantities(found, {name: found.units[name] for name in found.values})
     worst = max(found.certificate.relative_error.values())
     click.echo(
         f"\nmodel: {found.model}; error {found.certificate.kind} at {worst:.1e} or less: "
@@ -73,14 +73,10 @@ def _explain(found: "Solution") -> None:
         ("model", "assumes", "error", "margin", "time [ms]", "outcome"),
         [
             (
-                step.rung, step.assumed, _number(step.error), _number(step.margin),
+                step.rung, step.assumed, error_text(step.error), error_text(step.margin),
                 f"{(step.choosing + step.solving) * 1e3:.3f}", step.outcome,
             )
             for step in found.climb
         ],
     )  # fmt: skip
     click.echo(f"\ntolerance {found.rtol:g}; {found.choosing_share:.1%} of the time to choose\n")
-
-
-def _number(value: float) -> str:
-    return f"{value:.1e}" if math.isfinite(value) else "-"

@@ -9,14 +9,14 @@ from kvtheory.results.errors import (
     TransientError,
 )
 from kvtheory.results.solution import ClimbStep, Solution
-from kvtheory.results.stability import Stability
-from kvtheory.results.steady import AsymptoteLine, AsymptoteReport, SteadyState
+from kvtheory.results.steady import AsymptoteLine, AsymptoteReport, Stability, SteadyState
 from kvtheory.results.sweep import Axis, Failure, Sweep
 from kvtheory.results.table import (
     QUANTITIES,
     SERIES_UNITS,
     SHOWN_UNITS,
     SPRING_UNITS,
+    STABILITY_UNITS,
     STEADY_UNITS,
     TRANSIENT_UNITS,
     units_for,
@@ -35,6 +35,7 @@ __all__ = [
     "SERIES_UNITS",
     "SHOWN_UNITS",
     "SPRING_UNITS",
+    "STABILITY_UNITS",
     "STEADY_UNITS",
     "TRANSIENT_UNITS",
     "AsymptoteLine",
