@@ -5,12 +5,10 @@ from kvtheory.cli import (  # noqa: F401  # each adds its command to `main`
     compare,
     derive,
     elements,
-    explore,
     scene,
     solve,
     steady,
     sweep,
-    transient,
 )
 from kvtheory.cli.group import main
 

@@ -42,9 +42,9 @@ def compare(
     report: Path | None,
     **how: Any,
 ) -> None:
-    """Compare a simulation of SCENE with theory, and diagnose a disagreement.
+    """Compare a simulation with theory, and diagnose a disagreement.
 
-    Exit status: 0 it agrees, or the data cannot tell; 1 it disagrees; 2 bad input.
+    Exit status: 0 if it agrees or the data cannot tell, 1 if it disagrees, 2 for bad input.
     """
     from kvtheory.api._compare import compare as hold_against
     from kvtheory.scene import load_scene

@@ -32,14 +32,14 @@ def scene_command(
 
 def scene_options(command: Callable[..., Any]) -> Callable[..., Any]:
     """Give a command an optional scene file, and `--set`."""
+    command = click.option(
+        "--set", "overrides", multiple=True, metavar="KEY=VALUE",
+        help='Override a key of the scene, such as drive.velocity="50 mm/s"; repeatable.',
+    )(command)  # fmt: skip
     path = click.Path(exists=True, dir_okay=False)
-    return click.argument("scene", required=False, type=path)(set_option(command))
+    return click.argument("scene", required=False, type=path)(command)
 
 
-set_option = click.option(
-    "--set", "overrides", multiple=True, metavar="KEY=VALUE",
-    help='Override a key of the scene, such as drive.velocity="50 mm/s"; repeatable.',
-)  # fmt: skip
 json_option = click.option(
     "--json", "as_json", is_flag=True, help="Print one JSON object, in SI units."
 )

@@ -150,17 +150,19 @@ def in_options(message: str, command: click.Command) -> str:
 def main() -> None:
     """Sliding friction of a rigid indenter on a viscoelastic foundation.
 
-    Without a scene file, each command works on Table 1 of Nakano and Kono (2020) with a dead
-    weight. Exit status: 0 done, 1 a check found disagreement, 2 bad input, 130 interrupted.
+    SCENE is a TOML file that describes what is modelled; `kvtheory scene` prints a template. Without it,
+    commands use Table 1 of Nakano and Kono (2020) with a dead weight.
 
-    No command overwrites a file that it reads. A file of another kind than the command
-    writes is overwritten only if --overwrite is given.
+    No command overwrites a file that it reads. It overwrites a file of another kind than it writes only
+    with --overwrite.
+
+    Exit status: 0 done, 1 a check found disagreement, 2 bad input, 70 internal error, 130 interrupted.
     """
 
 
 @main.command(example="kvtheory cite >> references.bib")
 def cite() -> None:
-    """Print BibTeX entries for this version of the package, and for the paper it rests on."""
+    """Print BibTeX entries for this version and for the paper."""
     from kvtheory import __version__
 
     click.echo(CITATION % __version__)

@@ -32,8 +32,8 @@ BEGINNINGS = {
 """How the files that commands write begin; a sweep recognises its own files."""
 STEADY_HEADER = b"depth [m],half_length [m],"
 """In the first line of a CSV of steady sliding, after the keys of what varies."""
-MOST = 2**16
-"""Bytes of a first line that are read."""
+BYTES = 2**14
+"""How much of a file is read to recognise it: more than the longest header."""
 OVERWRITE = "kvtheory.overwrite"
 
 
@@ -149,7 +149,7 @@ def check_not_an_input(option: str, path: Path) -> None:
 def _is_ours(path: Path) -> bool:
     """Whether a file begins like those that commands write; an empty file may be overwritten."""
     with path.open("rb") as file:
-        start = file.readline(MOST)
-    if path.suffix.lower() == ".csv" and STEADY_HEADER in start:
+        start = file.read(BYTES)
+    if path.suffix.lower() == ".csv" and STEADY_HEADER in start.partition(b"\n")[0]:
         return True
     return not start or start.startswith(BEGINNINGS.get(path.suffix.lower(), (b"",)))

@@ -38,7 +38,7 @@ def steady(
     scene: str | None, overrides: Sequence[str], as_json: bool, method: str | None,
     output: Path | None, plot: Path | None,
 ) -> None:  # fmt: skip
-    """Print the state of steady sliding: depth, edges, load, friction, peak pressure."""
+    """Print the state of steady sliding: depth, forces, edges."""
     check_results(output, plot)
     with progress_bar("steady"):
         from kvtheory.api import steady as solve
@@ -68,7 +68,10 @@ def steady(
 def asymptotes(
     scene: str | None, overrides: Sequence[str], as_json: bool, tolerance: float
 ) -> None:
-    """Print which asymptote holds, its error, and over which velocities it holds."""
+    """Print which asymptotes of friction hold, and their errors.
+
+    Beside them the velocities over which each holds, and the maxima of friction over velocity.
+    """
     with progress_bar("asymptotes"):
         from kvtheory.api import asymptotes as examine
         from kvtheory.scene import load_scene
@@ -87,8 +90,9 @@ def asymptotes(
     'kvtheory stability --set drive.velocity="91 mm/s" --set drive.stiffness="1 MN/m^2"',
 )
 def stability(scene: str | None, overrides: Sequence[str], as_json: bool) -> None:
-    """Print whether steady sliding is stable, and the critical stiffness of the drive.
+    """Print whether steady sliding on a spring is stable.
 
+    Beside that the critical stiffness of the spring, and the velocity at the onset of instability.
     The spring drive.stiffness holds the indenter in the sliding direction, with drive.damping and
     drive.mass; without a stiffness the drive is rigid. Stable means against small disturbances: a large
     one, such as a sudden start, may still end in stick-slip.

@@ -25,6 +25,9 @@ def above(module: str) -> Any:
 class Exported:
     """A result with columns that can be written to files."""
 
+    over: Mapping[str, Any] = {}
+    """The values that vary over the states of the result, by key of the scene."""
+
     def _columns(self) -> Columns:
         """Return values and SI unit of each column by name."""
         raise NotImplementedError
@@ -34,14 +37,14 @@ class Exported:
         raise NotImplementedError
 
     def to_xarray(self) -> Any:
-        """Return an `xarray.Dataset` with units.
+        """Return an `xarray.Dataset` with units; what varies over the states is among its coordinates.
 
         Raises
         ------
         ValueError
             If xarray is missing.
         """
-        return dataset(self._columns(), self._attributes())
+        return dataset(self._columns(), self._attributes()).set_coords(list(self.over))
 
     def to_csv(self, path: str | Path) -> None:
         """Write one row for each time, or for each state, with units in the header, in SI."""
@@ -85,25 +88,14 @@ class Presented(Exported):
         return f"{type(self).__name__} by {self.model}"
 
     def _columns(self) -> Columns:
-        over = getattr(self, "over", {})
         held = {name: getattr(self, name) for name in self.units if hasattr(self, name)}
-        return {name: (values, self.units[name]) for name, values in {**over, **held}.items()}
+        return {name: (values, self.units[name]) for name, values in {**self.over, **held}.items()}
 
     def _attributes(self) -> Mapping[str, str]:
         attributes = {"model": self.model, "certificate": self.certificate.statement}
         if hasattr(self, "events"):
             attributes["events"] = json.dumps([event._asdict() for event in self.events])
         return attributes
-
-    def to_xarray(self) -> Any:
-        """Return an `xarray.Dataset` with units; what varies over the states is among its coordinates.
-
-        Raises
-        ------
-        ValueError
-            If xarray is missing.
-        """
-        return super().to_xarray().set_coords(list(getattr(self, "over", ())))
 
     def _shown(self) -> Iterator[tuple[str, str, str, str]]:
         """Yield name, value, unit and error of each quantity as text."""
