@@ -91,24 +91,22 @@ def test_steady_sliding_is_drawn_as_a_curve_or_as_its_pressure():
 SPEEDS, TIMES, RADII = (np.linspace(1.0, 2.0, n) for n in (12, 9, 3))
 
 
+MU = "friction"
+
+
 @pytest.mark.parametrize(
     ("over", "axes"),
     [
-        ({"foundation.retardation_time": TIMES}, ("retardation time", "friction")),
-        ({"indenter.radius": RADII, "drive.velocity": RADII}, ("drive velocity", "friction")),
-        (
-            {"drive.velocity": SPEEDS[:, None], "indenter.radius": RADII},
-            ("drive velocity", "friction"),
-        ),
-        (
-            {"foundation.retardation_time": TIMES[:, None], "drive.velocity": SPEEDS},
-            ("drive velocity", "retardation time"),
-        ),
+        ({"foundation.retardation_time": TIMES}, ("retardation time", MU)),
+        ({"indenter.radius": RADII, "drive.velocity": RADII}, ("drive velocity", MU)),
+        ({"drive.velocity": SPEEDS[:, None], "indenter.radius": RADII}, ("drive velocity", MU)),
+        ({"foundation.retardation_time": TIMES[:, None], "drive.velocity": SPEEDS},
+         ("drive velocity", "retardation time")),
         ({"drive.velocity": RADII + 0.1 * RADII[:, None]}, None),
         ({"drive.velocity": np.empty(0)}, None),
         ({"drive.velocity": np.ones((2, 2, 2)) * RADII[:2]}, None),
     ],
-)
+)  # fmt: skip
 def test_steady_sliding_is_drawn_over_what_varies(over, axes):
     state = kv.steady(over=over)
     if axes is None:
