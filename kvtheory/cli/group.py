@@ -85,22 +85,18 @@ class Group(click.Group):
                 stream.reconfigure(errors="backslashreplace")
         try:
             status = run(*args, standalone_mode=False, **kwargs) or 0
-            _flush()
         except click.ClickException as error:
             status = _exit_code(error)
         except click.Abort:
             status = INTERRUPTED
-        except BrokenPipeError:
-            status = BROKEN_PIPE
         except OSError as error:
             status = _exit_code(Failure(f"error: the output cannot be written: {error.strerror}"))
-        except SystemExit as end:  # of click, which replaces the output if a reader closes the pipe
+        except SystemExit as end:  # of click, which replaces the output if its reader has closed the pipe
             status = end.code if sys.stdout is output else BROKEN_PIPE
         try:
-            _flush()
+            for stream in filter(None, (output, sys.stderr)):
+                stream.flush()
         except OSError:
-            _discard()
-        if status == BROKEN_PIPE:
             _discard()
         sys.exit(status)
 
@@ -110,11 +106,6 @@ def _exit_code(error: click.ClickException) -> int:
     with suppress(OSError):
         error.show()
     return error.status if isinstance(error, Failure) else error.exit_code
-
-
-def _flush() -> None:
-    for stream in filter(None, (sys.stdout, sys.stderr)):
-        stream.flush()
 
 
 def _discard() -> None:
