@@ -13,9 +13,8 @@ Progress = Callable[[float, str], object]
 """Called repeatedly with the share of the work done, from 0 to 1, and a text such as
 ``"600 of 1,000 points"``, which may be empty."""
 
-
 COMPILING = "compiling, once for this installation"
-"""What is reported before kernels are compiled, which takes half a minute."""
+"""Reported before kernels are compiled, which takes half a minute."""
 _LISTENER: ContextVar[Callable[[], object]] = ContextVar("_LISTENER", default=lambda: None)
 
 PATIENCE = 1.0
@@ -23,9 +22,9 @@ PATIENCE = 1.0
 ON_TERMINAL, IN_LOG = 0.2, 10.0
 """Seconds between two reports."""
 BEAT = 1.0
-"""Seconds between two signs of life on a terminal, where nothing is reported."""
-SETTLING = 0.5
-"""Seconds before the remaining time is shown."""
+"""Seconds between two updates of a terminal while nothing is reported."""
+UNTIL_RATE = 0.5
+"""Seconds before the remaining time is extrapolated."""
 
 
 def silent(share: float, words: str) -> None:
@@ -34,7 +33,7 @@ def silent(share: float, words: str) -> None:
 
 @contextmanager
 def listening(progress: Progress) -> Iterator[Progress]:
-    """Provide a progress that is also told, by `compiling`, that kernels are being compiled."""
+    """Provide a progress function to which `compiling` reports, too."""
     reached = 0.0
 
     def report(share: float, words: str) -> None:
@@ -85,9 +84,9 @@ class ProgressLine:
 
     def __call__(self, share: float, words: str = "") -> None:
         """Report, unless the last report is recent."""
-        now, (_, before, told) = self._clock(), self._last
+        now, (_, before, reported) = self._clock(), self._last
         start, since = self._rated or (share, now)
-        self._rated = start, since + (now - told if before == COMPILING else 0.0)
+        self._rated = start, since + (now - reported if before == COMPILING else 0.0)
         self._last, self._current = (share, words, now), False
         if now >= self._due or (words == COMPILING and self._terminal):
             self._due = now + (ON_TERMINAL if self._terminal else IN_LOG)
@@ -117,7 +116,7 @@ class ProgressLine:
         """Show the last report, with the remaining time once it is known."""
         (share, words, _), (start, since) = self._last, self._rated or (0.0, now)
         left = ""
-        if start < share < 1.0 and now - since > SETTLING and words != COMPILING:
+        if start < share < 1.0 and now - since > UNTIL_RATE and words != COMPILING:
             left = f"{duration((1.0 - share) * (now - since) / (share - start))} left"
         self._show(f"{int(100 * share)} %", left, words)
         self._current = True

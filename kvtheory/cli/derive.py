@@ -182,8 +182,8 @@ def _quantities(path: str | None, overrides: Sequence[str]) -> tuple[dict[str, f
         if not at_rest.fixed:
             quantities |= {"epsilon": at_rest.inertia_number, "kappa": at_rest.support_number}
     where = UNUSUAL.sub("_", Path(path).name) if path else "Table 1"
-    told = ", ".join([f"{scene.support.kind} support", *([] if line else ["ball"])])
-    return quantities, scene.indenter.shape, f"{where} ({told})"
+    parts = ", ".join([f"{scene.support.kind} support", *([] if line else ["ball"])])
+    return quantities, scene.indenter.shape, f"{where} ({parts})"
 
 
 def _edition(request: Request, report: Callable[[float, str], None]) -> "Edition":

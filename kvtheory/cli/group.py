@@ -63,8 +63,8 @@ class Command(click.Command):
             head = "error:" if count == 1 else f"{count:,} mistakes:\n "
             raise Failure(f"{head} " + "\n  ".join(lines)) from None
         except Exception:
-            told = f"internal error, please report it:\n{traceback.format_exc()}"
-            raise Failure(told, INTERNAL_ERROR) from None
+            report = f"internal error, please report it:\n{traceback.format_exc()}"
+            raise Failure(report, INTERNAL_ERROR) from None
 
 
 class Group(click.Group):
@@ -91,7 +91,9 @@ class Group(click.Group):
             status = INTERRUPTED
         except OSError as error:
             status = _exit_code(Failure(f"error: the output cannot be written: {error.strerror}"))
-        except SystemExit as end:  # of click, which replaces the output if its reader has closed the pipe
+        except (
+            SystemExit
+        ) as end:  # of click, which replaces the output if its reader has closed the pipe
             status = end.code if sys.stdout is output else BROKEN_PIPE
         try:
             for stream in filter(None, (output, sys.stderr)):

@@ -168,19 +168,19 @@ class AsymptoteReport:
     def __repr__(self) -> str:
         """Return what to use, and a table of the asymptotes."""
         table = ["", *aligned(self._heads(), self._rows())] if self.lines else []
-        return "\n".join([*self._told(), *table])
+        return "\n".join([*self._summary(), *table])
 
     def _repr_html_(self) -> str:
         """Return the same for notebooks."""
         if not self.lines:
-            return "".join(f"<p>{escape(line)}</p>" for line in self._told())
-        return html_table("; ".join(self._told()), self._heads(), self._rows())
+            return "".join(f"<p>{escape(line)}</p>" for line in self._summary())
+        return html_table("; ".join(self._summary()), self._heads(), self._rows())
 
     def as_dict(self) -> dict[str, Any]:
         """Return plain Python values, ready for JSON; what does not exist is None."""
         return {f.name: record(getattr(self, f.name)) for f in fields(self) if f.repr}
 
-    def _told(self) -> list[str]:
+    def _summary(self) -> list[str]:
         velocity, maxima = with_unit(self.velocity, "m/s"), self._maxima()
         if not self.lines:
             return [f"V = {velocity}", maxima, *self.notes]
