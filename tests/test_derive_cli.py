@@ -146,17 +146,24 @@ def test_numbers_are_those_of_the_scene(tmp_path):
     assert numbers["eq28"]["unit"] == "m"
 
 
-@pytest.mark.parametrize("support", ["fixed", "dead-weight", "suspended"])
+POWER = {"shape": "power-law", "length": "10 mm"}
+WEDGE = {"shape": "wedge", "inclination": "0.1"}
+SUPPORTS = ("fixed", "dead-weight", "suspended")
+
+
+CASES = (
+    (SUPPORTS, {"shape": "parabola", "radius": "10 mm"}, "100 mm/s", "coefficient", None),
+    (SUPPORTS, {"shape": "sphere", "radius": "10 mm"}, "100 mm/s", "F20", "a/R"),
+    (SUPPORTS[:2], {**POWER, "exponent": "3"}, "100 mm/s", "F19", "d/a"),
+    (SUPPORTS[2:], {**POWER, "exponent": "1.5"}, "0.1 um/s", "F19", "d/a"),
+    (SUPPORTS, WEDGE, "1 mm/s", "wedge-peeling", "d/a"),
+    (SUPPORTS, WEDGE, "100 mm/s", "wedge-peeled", "d/a"),
+)
+
+
 @pytest.mark.parametrize(
-    ("shape", "velocity", "label", "scale"),
-    [
-        ({"shape": "parabola", "radius": "10 mm"}, "100 mm/s", "coefficient", None),
-        ({"shape": "sphere", "radius": "10 mm"}, "100 mm/s", "F20", "a/R"),
-        ({"shape": "power-law", "length": "10 mm", "exponent": "3"}, "100 mm/s", "F19", "d/a"),
-        ({"shape": "power-law", "length": "10 mm", "exponent": "1.5"}, "0.1 um/s", "F19", "d/a"),
-        ({"shape": "wedge", "inclination": "0.1"}, "1 mm/s", "wedge-peeling", "d/a"),
-        ({"shape": "wedge", "inclination": "0.1"}, "100 mm/s", "wedge-peeled", "d/a"),
-    ],
+    ("support", "shape", "velocity", "label", "scale"),
+    [(support, *case) for supports, *case in CASES for support in supports],
 )
 def test_every_closed_form_takes_numbers(tmp_path, support, shape, velocity, label, scale):
     """Each shape on each support: the friction coefficient of its own records is that of `steady`."""
