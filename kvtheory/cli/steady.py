@@ -24,9 +24,6 @@ if TYPE_CHECKING:
     from kvtheory.results import Stability
     from kvtheory.scene import Scene
 
-LONGER = {"critical_velocity": "velocity at the onset of instability"}
-"""Names in the table of `stability`: to `asymptotes` the critical velocity is V*, another one."""
-
 
 @scene_command(main, 'kvtheory steady --set drive.velocity="50 mm/s" --json')
 @click.option(
@@ -99,7 +96,7 @@ def stability(scene: str | None, overrides: Sequence[str], as_json: bool) -> Non
     """
     with progress_bar("stability"):
         from kvtheory.api import stability as examine
-        from kvtheory.results import STABILITY_UNITS, units_for
+        from kvtheory.results import QUANTITIES, STABILITY_UNITS, units_for
         from kvtheory.scene import load_scene
 
         checked = load_scene(scene, overrides)
@@ -114,7 +111,8 @@ def stability(scene: str | None, overrides: Sequence[str], as_json: bool) -> Non
         print_scenes(checked, found, {"stable": "1", **units})
         return
     click.echo(f"Steady sliding, {kind} support: {_verdict(found)}\n")
-    print_quantities(found, units, LONGER)
+    key = "critical_velocity"  # not V* of `asymptotes`, which has the same name
+    print_quantities(found, units, {key: QUANTITIES[key].words})
     if found.rates.size:
         click.echo()
         _print_rates(found)
