@@ -13,9 +13,8 @@ Progress = Callable[[float, str], object]
 """Called repeatedly with the share of the work done, from 0 to 1, and a text such as
 ``"600 of 1,000 points"``, which may be empty."""
 
-
 COMPILING = "compiling, once for this installation"
-"""What is reported before kernels are compiled, which takes half a minute."""
+"""Reported before kernels are compiled, which takes half a minute."""
 _LISTENER: ContextVar[Callable[[], object]] = ContextVar("_LISTENER", default=lambda: None)
 
 PATIENCE = 1.0
@@ -23,9 +22,9 @@ PATIENCE = 1.0
 ON_TERMINAL, IN_LOG = 0.2, 10.0
 """Seconds between two reports."""
 BEAT = 1.0
-"""Seconds between two signs of life on a terminal, where nothing is reported."""
-SETTLING = 0.5
-"""Seconds before the remaining time is shown."""
+"""Seconds between two updates of a terminal while nothing is reported."""
+UNTIL_RATE = 0.5
+"""Seconds before the remaining time is extrapolated."""
 
 
 def silent(share: float, words: str) -> None:
@@ -34,7 +33,7 @@ def silent(share: float, words: str) -> None:
 
 @contextmanager
 def listening(progress: Progress) -> Iterator[Progress]:
-    """Provide a progress that is also told, by `compiling`, that kernels are being compiled."""
+    """Provide a progress function to which `compiling` reports, too."""
     reached = 0.0
 
     def report(share: float, words: str) -> None:
@@ -78,62 +77,59 @@ class ProgressLine:
         self._terminal = self._stream.isatty()
         self._begun = clock()
         self._due = self._begun + (patience if self._terminal else IN_LOG)
-        self._first: tuple[float, float] | None = None
-        self._last: tuple[float, str] | None = None
-        self._told = 0.0
-        self._width = 0
-        self._stale = False
+        self._rated: tuple[float, float] | None = None
+        """Share and time from which the remaining time is extrapolated."""
+        self._last = 0.0, "", self._begun
+        self._width, self._current = 0, True
 
     def __call__(self, share: float, words: str = "") -> None:
         """Report, unless the last report is recent."""
-        now = self._clock()
-        if self._first and self._last and self._last[1] == COMPILING:  # takes no part in the rate
-            self._first = self._first[0], self._first[1] + now - self._told
-        self._first, self._told = self._first or (share, now), now
-        self._last, self._stale = (share, words), True
+        now, (_, before, reported) = self._clock(), self._last
+        start, since = self._rated or (share, now)
+        self._rated = start, since + (now - reported if before == COMPILING else 0.0)
+        self._last, self._current = (share, words, now), False
         if now >= self._due or (words == COMPILING and self._terminal):
             self._due = now + (ON_TERMINAL if self._terminal else IN_LOG)
-            self._write(now)
+            self._report(now)
 
     def beat(self) -> None:
         """Show on a terminal that the work goes on, where nothing has been reported for a while."""
-        if not self._terminal or (now := self._clock()) < self._due:
+        now, (share, words, _) = self._clock(), self._last
+        if not self._terminal or now < self._due:
             return
         self._due = now + BEAT
-        share, words = self._last or (0.0, "")
-        known = [f"{int(100 * share)} %", words] if self._last else []
-        text = ", ".join(filter(None, (*known, f"{duration(now - self._begun)} so far")))
-        text = f"{self._label}: {text}"[: shutil.get_terminal_size().columns - 1]
-        self._stream.write("\r" + text.ljust(self._width))
-        self._stream.flush()
-        self._width, self._stale = len(text), True
+        known = [f"{int(100 * share)} %", words] if self._rated else []
+        self._show(*known, f"{duration(now - self._begun)} so far")
+        self._current = False
 
     def finish(self) -> None:
         """End the line on a terminal, and report for the last time, if anything was shown."""
         if not self._width:
             return
-        if self._stale:
-            self._write(self._clock())
+        if self._rated and not self._current:
+            self._report(self._clock())
         if self._terminal:
             self._stream.write("\n")
             self._stream.flush()
 
-    def _write(self, now: float) -> None:
-        if self._last is None or self._first is None:
-            return
-        share, words = self._last
-        done, seconds = share - self._first[0], now - self._first[1]
-        text = f"{self._label}: {int(100 * share)} %"
-        if done > 0.0 and share < 1.0 and seconds > SETTLING and words != COMPILING:
-            text += f", {duration((1.0 - share) * seconds / done)} left"
-        text += f", {words}" if words else ""
+    def _report(self, now: float) -> None:
+        """Show the last report, with the remaining time once it is known."""
+        (share, words, _), (start, since) = self._last, self._rated or (0.0, now)
+        left = ""
+        if start < share < 1.0 and now - since > UNTIL_RATE and words != COMPILING:
+            left = f"{duration((1.0 - share) * (now - since) / (share - start))} left"
+        self._show(f"{int(100 * share)} %", left, words)
+        self._current = True
+
+    def _show(self, *parts: str) -> None:
+        text = f"{self._label}: {', '.join(filter(None, parts))}"
         if self._terminal:
             text = text[: shutil.get_terminal_size().columns - 1]
             self._stream.write("\r" + text.ljust(self._width))
         else:
             self._stream.write(text + "\n")
-        self._width, self._stale = len(text), False
         self._stream.flush()
+        self._width = len(text)
 
 
 def duration(seconds: float) -> str:

@@ -1,9 +1,16 @@
-"""The commands, as a shell runs them."""
+"""The commands as a shell runs them: what they print and write, their mistakes and their exit status."""
 
 import json
+import os
+import shlex
+import subprocess
+import sys
+from pathlib import Path
 
+import click
 import pytest
 from click.testing import CliRunner
+from matplotlib.figure import Figure
 
 import kvtheory as kv
 from kvtheory.cli import main
@@ -13,39 +20,94 @@ from kvtheory.results import STEADY_UNITS
 def run(*arguments, status=0):
     result = CliRunner().invoke(main, arguments)
     assert result.exit_code == status, result.output
-    assert "Traceback" not in result.output
+    assert "Traceback" not in result.output or status == 70
     return result
 
 
+def printed(*arguments):
+    return json.loads(run(*arguments, "--json").stdout)
+
+
+def refused(arguments, words):
+    result = run(*arguments, status=2)
+    assert result.stdout == ""
+    for word in words:
+        assert word in result.stderr, result.stderr
+    return result.stderr
+
+
+@pytest.fixture(scope="module")
+def table(tmp_path_factory):
+    path = tmp_path_factory.mktemp("data") / "data.csv"
+    kv.transient(at=[0.002 * i for i in range(101)], certify=False).to_csv(path)
+    return path.read_bytes()
+
+
 @pytest.fixture
-def scene_file(tmp_path):
-    path = tmp_path / "scene.toml"
-    path.write_text(run("scene", "--support", "suspended").stdout, encoding="utf-8")
-    return str(path)
+def place(tmp_path, monkeypatch, table):
+    (tmp_path / "here").mkdir()
+    monkeypatch.chdir(tmp_path / "here")
+    (tmp_path / "data.csv").write_bytes(table)
+    return tmp_path / "here"
 
 
-@pytest.mark.parametrize("command", ["scene", "steady", "asymptotes", "derive", "transient"])
-def test_every_command_has_help_with_an_example(command):
-    shown = run(command, "--help").stdout
-    assert f"kvtheory {command}" in shown.split("Example")[1]
+# Help
 
 
-def test_scene_checks_a_file(scene_file):
-    shown = run("scene", scene_file).stdout
+def commands(group=main, path="kvtheory"):
+    for name, command in group.commands.items():
+        if isinstance(command, click.Group):
+            yield from commands(command, f"{path} {name}")
+        else:
+            yield f"{path} {name}", command
+
+
+COMMANDS = dict(commands())
+
+
+def test_the_list_of_commands_cuts_no_description_off():
+    for arguments in ([], ["chart"]):
+        assert "..." not in run(*arguments, "--help").stdout.split("Commands:")[1]
+
+
+@pytest.mark.parametrize("name", COMMANDS)
+def test_help_ends_with_an_example_that_runs(name, place, monkeypatch):
+    """What takes long is left out of three examples; that of `derive` runs in `test_derive_cli`."""
+    example = COMMANDS[name].example
+    assert run(*name.split()[1:], "--help").stdout.endswith(f"Example:\n  {example}\n")
+    (place / "my-scene.toml").write_text(kv.to_toml(kv.Scene()))
+    (place / "mine.csv").write_bytes((place.parent / "data.csv").read_bytes())
+    monkeypatch.setattr("kvtheory.charts.failures.findings", lambda _: [])
+    monkeypatch.setattr(
+        "kvtheory.charts.stability.stability_maps", lambda **_: {"velocity": (), "step": ()}
+    )
+    monkeypatch.setattr("kvtheory.plots.stability.draw_stability", lambda *_: Figure())
+    monkeypatch.setattr("kvtheory.charts.collection.measure", lambda *_, **__: ())
+    monkeypatch.setattr("kvtheory.plots.work_precision.save_work_precision", lambda *_: None)
+    for line in example.split(" && ") if name != "kvtheory derive" else ():
+        call, _, file = line.partition(" >")
+        assert call.startswith(name)
+        shown = run(*shlex.split(call)[1:]).stdout
+        if file:
+            Path(file.strip("> ")).write_text(shown)
+
+
+# What is printed
+
+
+def test_scene_checks_a_file(place):
+    Path("scene.toml").write_text(run("scene", "--support", "suspended").stdout, encoding="utf-8")
+    shown = run("scene", "scene.toml").stdout
     assert "suspended support" in shown
     assert "support_number" in shown
-    record = json.loads(run("scene", scene_file, "--json").stdout)
+    record = printed("scene", "scene.toml")
     assert record["support_stiffness"] == 3e7
     assert record["damping"] == 1e9
     assert record["drive_number"] == pytest.approx(4.0812765)
-
-
-@pytest.mark.parametrize("method", ["exact", "quadrature", "asymptote"])
-def test_steady_prints_one_json_object_in_si(scene_file, method):
-    record = json.loads(run("steady", scene_file, "--json", "--method", method).stdout)
-    state = kv.steady(kv.load_scene(scene_file), method=method)
-    assert record == state.as_dict()
-    assert set(STEADY_UNITS) | {"model", "certificate", "stable", "notes"} == set(record)
+    for method in ("exact", "quadrature", "asymptote"):
+        record = printed("steady", "scene.toml", "--method", method)
+        assert record == kv.steady(kv.load_scene("scene.toml"), method=method).as_dict()
+        assert set(STEADY_UNITS) | {"model", "certificate", "stable", "notes"} == set(record)
 
 
 ARRAYS = """
@@ -64,23 +126,20 @@ velocity = "1 mm/s:1 m/s:2:log"
 """
 
 
-def test_a_scene_of_arrays_is_many_scenes(tmp_path):
-    path, table = tmp_path / "many.toml", tmp_path / "many.csv"
+def test_a_scene_of_arrays_is_many_scenes(place):
+    path, table = place / "many.toml", place / "many.csv"
     path.write_text(ARRAYS, encoding="utf-8")
     scene = kv.load_scene(path)
-    text = kv.to_toml(scene)
-    path.write_text(text, encoding="utf-8")
+    path.write_text(kv.to_toml(scene), encoding="utf-8")
     assert kv.load_scene(path) == scene
-    record = json.loads(run("steady", str(path), "--json").stdout)
-    for i, (radius, glassy, load, velocity) in enumerate(
-        [(0.01, 3e10, 1.0, 1e-3), (0.02, 4e10, 2.0, 1.0)]
-    ):
-        one = kv.Scene(
-            kv.Sphere(radius), kv.GeneralizedMaxwell(1e10, arms=[(glassy, 0.01), (5e9, 1.0)]),
-            kv.DeadWeight(load=load), kv.Drive(velocity),
-        )  # fmt: skip
-        assert record["friction_force"][i] == kv.steady(one).friction_force
-    shown = run("steady", str(path), "-o", str(table)).stdout
+    forces = printed("steady", "many.toml")["friction_force"]
+    cases = [(0.01, 3e10, 1.0, 1e-3), (0.02, 4e10, 2.0, 1.0)]
+    for force, (radius, glassy, load, velocity) in zip(forces, cases, strict=True):
+        rubber = kv.GeneralizedMaxwell(1e10, arms=[(glassy, 0.01), (5e9, 1.0)])
+        one = kv.Scene(kv.Sphere(radius), rubber, kv.DeadWeight(load=load), kv.Drive(velocity))
+        assert force == kv.steady(one).friction_force
+    for _ in range(2):  # the second time it replaces its own file
+        shown = run("steady", "many.toml", "-o", "many.csv").stdout
     keys = ["indenter.radius [m]", "foundation.arms[0].stiffness [N/m^3]", "support.load [N]"]
     assert all(key in shown for key in keys)
     assert table.read_text("utf-8").startswith(",".join([*keys, "drive.velocity [m/s],depth [m]"]))
@@ -88,23 +147,25 @@ def test_a_scene_of_arrays_is_many_scenes(tmp_path):
 
 def test_commands_take_ranges_and_refuse_them_over_time():
     many = ("--set", "drive.velocity=1 mm/s:1 m/s:50:log")
-    assert "21 of 50 scenes" in run("steady", *many).stdout
+    lines = run("steady", *many).stdout.splitlines()
+    assert "21 of 50 scenes; --json prints all" in lines
+    assert [line.split()[0] for line in lines[3:24:10]] == ["0.001", "0.0294705", "1"]
     stable = run("stability", *many, "--set", "drive.stiffness=1 MN/m^2").stdout
     assert stable.splitlines()[2].startswith("drive.velocity [m/s]  stable  critical_stiffness")
     assert "V = 1 … 1000 mm/s" in run("asymptotes", *many).stdout
     for command in ("transient", "elements", "compare", "scene"):
-        told = run(command, *many, status=2).stderr
-        assert "arrays (drive.velocity); use `sweep`" in told
+        refused([command, *many], ["arrays (drive.velocity); use `sweep`"])
 
 
-def test_steady_prints_a_table_in_the_papers_units():
-    lines = run("steady").stdout.splitlines()
-    depth = next(line for line in lines if line.startswith("depth")).split()
-    assert depth[1:3] == ["0.0896613", "mm"]
-
-
-def test_a_large_error_stands_above_the_table():
-    """With its quantities and its remedy; a good result has no such line."""
+def test_tables_are_in_the_units_of_the_paper_and_a_large_error_stands_above():
+    shown = {
+        line.split()[0]: line.split()[1:3] for line in run("steady").stdout.splitlines() if line
+    }
+    assert shown["depth"] == ["0.0896613", "mm"]
+    series = run("transient", "--at", "0 ms,1 ms").stdout.splitlines()
+    assert series[0].split("  ")[0] == "time [ms]"
+    depth = kv.transient(at=["0 ms", "1 ms"]).depth[1]
+    assert series[2].split()[:3] == ["1", "100", f"{1e3 * depth:.6g}"]
     lines = run("elements", "--per-length", "5 /mm", "--at", "1 ms,10 ms").stdout.splitlines()
     assert lines[0].startswith("! Large error")
     assert "peak_pressure" in lines[0]
@@ -113,11 +174,13 @@ def test_a_large_error_stands_above_the_table():
     assert run("elements", "--at", "10 ms").stdout.startswith("time [ms]")
 
 
-def test_overrides():
-    record = json.loads(run("steady", "--json", "--set", 'drive.velocity="-50 mm/s"').stdout)
-    assert record["friction_force"] < 0
-    fixed = json.loads(run("steady", "--json", "--set", "support.kind=fixed").stdout)
-    assert fixed["depth"] == 3e-4
+def test_overrides_and_a_history():
+    assert printed("steady", "--set", 'drive.velocity="-50 mm/s"')["friction_force"] < 0
+    assert printed("steady", "--set", "support.kind=fixed")["depth"] == 3e-4
+    history = 'drive.history=[["0 s", "1 m/s"], ["1 s", "20 mm/s"]]'
+    for command in ("steady", "asymptotes", "stability"):
+        assert "final velocity, 20 mm/s" in run(command, "--set", history).stdout
+        printed(command, "--set", history)
 
 
 def test_asymptotes():
@@ -125,95 +188,257 @@ def test_asymptotes():
     assert shown == f"dead-weight support, {kv.asymptotes(tolerance=0.1)}\n"
     assert "use L2" in shown
     assert "friction maximum" in shown
-    record = json.loads(run("asymptotes", "--json").stdout)
+    record = printed("asymptotes")
     assert record["use"] == "exact"
     assert record["critical_velocity"] == pytest.approx(0.0205805, rel=1e-5)
-    at_rest = json.loads(run("asymptotes", "--json", "--set", "drive.velocity=0 m/s").stdout)
-    assert at_rest["lines"][3]["value"] is None
-    assert "nan" not in run("asymptotes", "--set", "drive.velocity=0 m/s").stdout
+    at_rest = ("asymptotes", "--set", "drive.velocity=0 m/s")
+    assert printed(*at_rest)["lines"][3]["value"] is None
+    assert "nan" not in run(*at_rest).stdout
+
+
+def test_transient_prints_series():
+    record = printed("transient", "--at", "0 ms, 1 ms,200 ms")
+    assert record["time"] == [0.0, 0.001, 0.2]
+    assert record["normal_force"] == pytest.approx([35367.19, 12732.9, 9806.65], rel=1e-4)
+    shown = run("transient").stdout
+    assert "right edge peels" in shown
+    assert "nan" not in shown
+
+
+def test_citing_names_version_and_paper():
+    told = run("cite").stdout
+    assert f"version = {{{kv.__version__}}}" in told
+    assert "10.3389/fmech.2020.00038" in told
+    assert told.count("@") == 2
+    assert told.count("{") == told.count("}")
+
+
+# Mistakes
+
+WEDGE = ["--set", "indenter.shape=wedge", "--set", "indenter.inclination=0.1"]
+CIRCLE = ["--set", "indenter.shape=circle"]
 
 
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
-        (["steady", "no-such-file.toml"], ["no-such-file.toml", "does not exist"]),
-        (["steady", "."], ["directory"]),
-        (["steady", "--method", "exat"], ['"exat"', 'did you mean "exact"']),
-        (
-            ["steady", "--set", "drive.velocity=fast"],
-            ["drive.velocity", '"fast"', "quantity in m/s"],
-        ),
-        (["steady", "--set", "drive.velocity=0.1"], ["drive.velocity", "no unit", "100 mm/s"]),
-        (["steady", "--set", "drive.velocity"], ["KEY=VALUE"]),
-        (["steady", "--set", "driv.velocity=1 m/s"], ["[driv]", 'did you mean "drive"']),
-        (["steady", "--set", "support.depth=1 mm"], ["support.depth", "dead-weight"]),
-        (["steady", "--set", "support.kind=floating"], ["support.kind", '"floating"', "fixed"]),
-        (["asymptotes", "--tolerance", "0"], ["tolerance"]),
-        (["asymptotes", "--tolerance", "little"], ["--tolerance", "little"]),
-        (
-            ["steady", "--set", "indenter.shape=circle", "--set", "indenter.radius=0.01 mm"],
-            ["reach"],
-        ),
-        (["scene", "--support", "floating"], ["--support", "floating"]),
-        (["scene", "--support", "fixed", "--json"], ["--support"]),
-        (["stady"], ["stady"]),
+        ("steady no-such-file.toml", ["no-such-file.toml", "does not exist"]),
+        ("steady .", ["directory"]),
+        ("steady --method exat", ['--method "exat"', 'did you mean "exact"']),
+        (["steady", "--method", "asymptote", *CIRCLE], ['use --method "quadrature"']),
+        ("steady --set drive.velocity=fast", ["drive.velocity", '"fast"', "quantity in m/s"]),
+        ("steady --set drive.velocity=0.1", ["drive.velocity", "no unit", "100 mm/s"]),
+        ("steady --set drive.velocity", ["KEY=VALUE"]),
+        ("steady --set 'driv.velocity=1 m/s'", ["[driv]", 'did you mean "drive"']),
+        ("steady --set 'support.depth=1 mm'", ["support.depth", "dead-weight"]),
+        ("steady --set support.kind=floating", ["support.kind", '"floating"', "fixed"]),
+        (["steady", *CIRCLE, "--set", "indenter.radius=0.01 mm"], ["reach"]),
+        ("asymptotes --tolerance 0", ["tolerance"]),
+        ("asymptotes --tolerance little", ["--tolerance", "little"]),
+        ("scene --support floating", ["--support", "floating"]),
+        ("scene --support fixed --json", ["--support"]),
+        ("stady", ["stady"]),
+        ("transient --at '1 furlong'", ["--at", "1 furlong", "quantity in s"]),
+        ("transient --at 5", ["--at", "no unit"]),
+        ("transient --at '1 s'", ["after the end", "run.duration"]),
+        ("transient --rtol 0", ["--rtol"]),
+        ("transient -o a.xls", ["a.xls", ".csv"]),
+        ("transient --plot a.doc", ["a.doc", ".png"]),
+        ("transient -o no/such/place.csv", ["no/such"]),
+        (["transient", *WEDGE], ["parabola only"]),
+        ("solve --quantity half_length --at '1 ms'", ["steady sliding; leave out the times"]),
     ],
-)
-def test_bad_input_costs_one_message_and_status_2(arguments, words):
-    result = run(*arguments, status=2)
-    assert result.stdout == ""
-    for word in words:
-        assert word in result.stderr, result.stderr
+)  # fmt: skip
+def test_bad_input_costs_one_message_and_status_2(arguments, words, place):
+    refused(shlex.split(arguments) if isinstance(arguments, str) else arguments, words)
+    assert not list(place.iterdir())
 
 
-def test_a_history_is_mentioned():
-    history = 'drive.history=[["0 s", "1 m/s"], ["1 s", "20 mm/s"]]'
-    for command in ("steady", "asymptotes"):
-        assert "final velocity, 20 mm/s" in run(command, "--set", history).stdout
-        json.loads(run(command, "--json", "--set", history).stdout)
-
-
-def test_all_mistakes_of_a_scene_are_listed_once(tmp_path):
-    path = tmp_path / "scene.toml"
-    path.write_text(
-        '[indenter]\nradius = 10\n[fundation]\n[support]\nkind = "fixed"\n', encoding="utf-8"
-    )
-    message = run("steady", str(path), status=2).stderr
+def test_all_mistakes_of_a_scene_are_listed_once(place):
+    text = '[indenter]\nradius = 10\n[fundation]\n[support]\nkind = "fixed"\n'
+    Path("scene.toml").write_text(text, encoding="utf-8")
+    message = refused(["steady", "scene.toml"], [])
     for key in ("indenter.radius", "[fundation]", "support.depth", "[drive]"):
         assert message.count(key) == 1
     assert message.startswith("kvtheory: 4 mistakes")
 
 
-def test_transient_prints_series_and_writes_files(tmp_path):
-    record = json.loads(run("transient", "--json", "--at", "0 ms, 1 ms,200 ms").stdout)
-    assert record["time"] == [0.0, 0.001, 0.2]
-    assert record["normal_force"] == pytest.approx([35367.19, 12732.9, 9806.65], rel=1e-4)
-    shown = run(
-        "transient", "-o", str(tmp_path / "a.csv"), "--plot", str(tmp_path / "a.png")
-    ).stdout
-    assert "right edge peels" in shown
-    assert "nan" not in shown
-    assert (tmp_path / "a.csv").read_text().startswith("time [s],velocity [m/s],depth [m]")
-    assert (tmp_path / "a.png").read_bytes().startswith(b"\x89PNG")
+def test_an_interrupt_is_130_and_nothing_but_disagreement_is_1(monkeypatch, place):
+    errors = {MemoryError: 2, TypeError: 70, RecursionError: 2, KeyError: 70, ArithmeticError: 2}
+    cases = [("steady", *case) for case in errors.items()]
+    names = ("transient", "steady", "elements", "solve", "asymptotes")
+    for name, error, status in [*((name, KeyboardInterrupt, 130) for name in names), *cases]:
+
+        def failing(*_, error=error, **__):
+            raise error
+
+        with monkeypatch.context() as patch:
+            patch.setattr(f"kvtheory.api.{name}", failing)
+            told = run(name, status=status).stderr
+            assert ("interrupted" in told) == (status == 130)
+            assert ("Traceback" in told) == (status == 70)
+    for verdict, status in {"agrees": 0, "cannot tell": 0, "disagrees": 1}.items():
+        found = kv.Comparison(verdict, (), "", (), "data", 1.0, {}, {}, {})
+        monkeypatch.setattr("kvtheory.api._compare.compare", lambda *_, found=found, **__: found)
+        assert json.loads(run("compare", "--json", status=status).stdout)["verdict"] == verdict
+
+
+# Files
+
+FOREIGN = b"precious,data\n1,2\n"
+SHORT = ["--at", "0 ms,1 ms"]
+OVER = ["--over", "drive.velocity=1 mm/s,1 m/s"]
+OUTPUTS = {
+    "transient -o a.csv": SHORT,
+    "transient -o a.nc": SHORT,
+    "transient --plot a.png": SHORT,
+    "transient --plot a.svg": SHORT,
+    "elements -o a.csv": ["--per-length", "20 /mm", *SHORT],
+    "solve -o a.csv": SHORT,
+    "solve --plot a.png": SHORT,
+    "steady -o a.csv": [],
+    "steady --plot a.svg": [],
+    "sweep -o a.csv": OVER,
+    "sweep -o a.nc": OVER,
+    "sweep --plot a.pdf": [*OVER, "-o", "b.csv"],
+    "compare --report a.html": ["--data", "../data.csv"],
+    "compare --plot a.png": ["--data", "../data.csv"],
+    "derive -o derivations.md": ["--only", "eq27", "--format", "md"],
+    "derive -o derivations.tex": ["--only", "eq27", "--format", "tex"],
+    "chart failures -o a.html": ["--only", "cancellation"],
+}
+
+
+@pytest.mark.parametrize("name", OUTPUTS)
+def test_files_of_another_kind_are_left_alone_unless_told(place, name):
+    *command, option, file = name.split()
+    path = place / file
+    arguments = [*command, option, "." if command == ["derive"] else file, *OUTPUTS[name]]
+    path.write_bytes(FOREIGN)
+    assert "overwrite" in refused(arguments, [f'"{file}"'])
+    assert path.read_bytes() == FOREIGN
+    assert list(place.iterdir()) == [path]
+    run(*arguments, "--overwrite")
+    assert path.read_bytes() != FOREIGN
+    run(*arguments)  # what the command wrote itself it may replace, or has nothing left to do
+    if name in ("transient -o a.csv", "derive -o derivations.md", "compare --plot a.png"):
+        path.write_bytes(b"")  # an empty file is free
+        run(*arguments)
 
 
 @pytest.mark.parametrize(
-    ("arguments", "words"),
+    "arguments",
     [
-        (["--at", "1 furlong"], ["at", "1 furlong", "quantity in s"]),
-        (["--at", "5"], ["at", "no unit"]),
-        (["--at", "1 s"], ["after the end", "run.duration"]),
-        (["--rtol", "0"], ["rtol"]),
-        (["-o", "a.xls"], ["a.xls", ".csv"]),
-        (["--plot", "a.doc"], ["a.doc", ".png"]),
-        (["-o", "no/such/place.csv"], ["no/such"]),
-        (["--set", "indenter.shape=wedge", "--set", "indenter.inclination=0.1"], ["parabola only"]),
+        ["steady", "-o", "a.csv", "--plot", "a.png", *WEDGE],
+        ["compare", "--data", "../data.csv", "--plot", "a.png", "--report", "a.html"],
+        ["chart", "stability", "--quick", "-o", "a.png"],
+    ],
+)  # fmt: skip
+def test_all_outputs_are_written_or_none(place, monkeypatch, arguments):
+    """The first is refused by its result; of the others the second file cannot be made."""
+
+    def refuse(*_):
+        raise ValueError("cannot be made")
+
+    monkeypatch.setattr("kvtheory.plots.comparison.save_comparison_report", refuse)
+    monkeypatch.setattr("kvtheory.plots.files.save_page", refuse)
+    monkeypatch.setattr(
+        "kvtheory.charts.stability.stability_maps", lambda **_: {"velocity": (), "step": ()}
+    )
+    monkeypatch.setattr("kvtheory.plots.stability.draw_stability", lambda *_: Figure())
+    run(*arguments, status=2)
+    assert list(place.iterdir()) == []
+
+
+@pytest.mark.parametrize("more", [[], ["--overwrite"]])
+def test_what_is_read_is_never_written_over(place, more):
+    Path("in.csv").write_text(kv.to_toml(kv.Scene()))
+    Path("link.csv").symlink_to(place / "in.csv")
+    Path("drive.csv").write_text("t [ms],V [mm/s]\n0,10\n5,20\n")
+    before = {path.name: path.read_bytes() for path in place.iterdir()}
+    for arguments in (
+        ["transient", "in.csv", "-o", "in.csv"],
+        ["transient", "in.csv", "-o", "./in.csv"],
+        ["transient", "in.csv", "-o", "link.csv"],
+        ["elements", "in.csv", "-o", "in.csv"],
+        ["solve", "in.csv", "-o", "in.csv"],
+        ["sweep", "in.csv", *OVER, "-o", "in.csv"],
+        ["transient", "--set", "drive.file=drive.csv", "-o", "drive.csv"],
+    ):
+        refused([*arguments, *more], ["is what this command reads"])
+    assert {path.name: path.read_bytes() for path in place.iterdir()} == before
+
+
+def test_a_picture_that_cannot_be_drawn_is_refused_before_the_sweep(place):
+    three = [*OVER, "--over", "support.mass=1 kg/m,2 kg/m", "--over", "indenter.radius=1 mm,2 mm"]
+    to = ["-o", "a.csv", "--plot", "a.png"]
+    refused(["sweep", *three, *to], ["two dimensions"])
+    refused(["sweep", *OVER, "--quantity", "events", *to], ["nothing can be drawn"])
+    assert not list(place.iterdir())
+
+
+@pytest.mark.parametrize("stem", ["a$b$ c^2", "d{e}_g%s", "ä ö [x]"])
+def test_names_with_signs_are_names(place, stem):
+    run("transient", *SHORT, "-o", f"{stem}.csv", "--plot", f"{stem}.png")
+    run("sweep", *OVER, "-o", f"{stem}-map.csv", "--plot", f"{stem}-map.svg")
+    assert len(list(place.iterdir())) == 4
+
+
+def test_capital_endings_are_endings(place):
+    run("transient", *SHORT, "-o", "A.CSV", "--plot", "A.PNG")
+    run("sweep", *OVER, "-o", "B.CSV")
+    assert Path("A.CSV").read_bytes().startswith(b"time [s]")
+    assert Path("A.PNG").read_bytes().startswith(b"\x89PNG")
+    assert Path("B.CSV").read_bytes().startswith(b"# kvtheory sweep")
+
+
+# Streams
+
+
+def shell(line, **environment):
+    done = subprocess.run(
+        ["bash", "-c", f"set -o pipefail; {line.replace('kvtheory', f'{sys.executable} -m kvtheory')}"],
+        capture_output=True, check=False, env={"PATH": os.defpath, **environment},
+        cwd=kv.__path__[0] + "/..",
+    )  # fmt: skip
+    return done.returncode, done.stdout, done.stderr
+
+
+@pytest.mark.parametrize(
+    ("line", "statuses"),
+    [
+        ("kvtheory steady | true", {0, 141}),
+        ("kvtheory transient | true", {0, 141}),
+        ("kvtheory compare --help | true", {0, 141}),
+        ("kvtheory transient --json --at '0 ms:200 ms:3000' | head -c 1", {141}),
+        ("kvtheory steady >&-", {0, 2, 141}),
+        ("kvtheory steady 2>&-", {0}),
+        ("kvtheory steady >&- 2>&-", {0, 2, 141}),
+        ("kvtheory steady > /dev/full", {2}),
+        ("kvtheory steady --set a=b 2> /dev/full", {2}),
+        ("kvtheory steady --nope 2> /dev/full", {2}),
+        ("kvtheory nope 2> /dev/full", {2}),
     ],
 )
-def test_bad_transient_input(arguments, words, tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    result = run("transient", *arguments, status=2)
-    assert result.stdout == ""
-    for word in words:
-        assert word in result.stderr, result.stderr
-    assert not list(tmp_path.iterdir())
+def test_streams_that_are_closed_or_full_end_in_no_traceback(line, statuses):
+    status, _, message = shell(line)
+    assert status in statuses
+    assert message == (
+        b"kvtheory: error: the output cannot be written: No space left on device\n"
+        if line.endswith(" > /dev/full") else b""
+    )  # fmt: skip
+
+
+@pytest.mark.parametrize("encoding", ["ascii", "cp1252", "utf-8"])
+def test_output_never_dies_of_the_encoding_of_the_console(encoding, tmp_path):
+    scene = tmp_path / "größe-µ-日本.toml"
+    scene.write_text(kv.to_toml(kv.Scene()), encoding="utf-8")
+    environment = {"PYTHONIOENCODING": encoding, "LC_ALL": "C.UTF-8"}
+    many = "--set 'drive.velocity=1 mm/s:1 m/s:3'"
+    for line in (f"kvtheory asymptotes '{scene}' {many}", f"kvtheory scene '{scene}'"):
+        status, out, message = shell(line, **environment)
+        assert (status, message) == (0, b""), message
+        assert out
+    line = f"kvtheory steady --set 'support.mass=5 µq' '{scene}'"
+    status, _, message = shell(line, **environment)
+    assert (status, b"support.mass" in message) == (2, True), message

@@ -228,9 +228,9 @@ def test_the_table_of_equations_has_all_of_them_with_a_test():
 def test_exit_statuses_are_those_of_the_commands():
     text = (DOCS / "reference" / "exit-status.md").read_text()
     assert CliRunner().invoke(main, ["scene", "--problem", "none"]).exit_code == 2
-    from kvtheory.cli import console, group
+    from kvtheory.cli import group as g
 
-    for status in (console.BAD_INPUT, console.FAULTY, group.INTERRUPTED, group.BROKEN_PIPE):
+    for status in (g.DISAGREES, g.BAD_INPUT, g.INTERNAL_ERROR, g.INTERRUPTED, g.BROKEN_PIPE):
         assert f"| {status} |" in text
 
 

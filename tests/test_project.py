@@ -12,7 +12,6 @@ import grimp
 import pytest
 
 import kvtheory
-from kvtheory.results.above import ABOVE, above
 
 ROOT = Path(__file__).parent.parent
 
@@ -87,11 +86,6 @@ def test_no_module_imports_itself_by_way_of_others():
         graphlib.TopologicalSorter(imports).prepare()
     except graphlib.CycleError as error:
         pytest.fail(f"a circle of imports: {' <- '.join(error.args[1])}")
-
-
-def test_what_results_offer_from_above_is_there():
-    for name in ABOVE:
-        assert above(name).__name__ == name
 
 
 def test_every_error_of_the_models_is_public():

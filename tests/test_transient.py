@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 
 import kvtheory as kv
-from kvtheory.export import save_result
 from kvtheory.models.continuum.solver import solve
 from kvtheory.results import TRANSIENT_UNITS
 from kvtheory.scene.base_motion import BaseMotion
@@ -148,20 +147,20 @@ def test_pressure_vanishes_outside_and_integrates_to_the_forces():
 
 
 def test_files(standard, tmp_path):
-    save_result(standard, tmp_path / "run.csv")
+    standard.save(tmp_path / "run.csv")
     with (tmp_path / "run.csv").open(newline="", encoding="utf-8") as file:
         head, *rows = csv.reader(file)
     assert head[:3] == ["time [s]", "velocity [m/s]", "depth [m]"]
     assert [float(row[2]) for row in rows] == standard.depth.tolist()
     import xarray
 
-    save_result(standard, tmp_path / "run.nc")
+    standard.save(tmp_path / "run.nc")
     with xarray.open_dataset(tmp_path / "run.nc") as data:
         assert data["normal_force"].attrs["units"] == "N/m"
         assert np.array_equal(data["friction_force"], standard.friction_force)
     assert sorted(path.name for path in tmp_path.iterdir()) == ["run.csv", "run.nc"]
     with pytest.raises(ValueError, match=r"\.csv or \.nc"):
-        save_result(standard, tmp_path / "run.xls")
+        standard.save(tmp_path / "run.xls")
 
 
 def test_results_become_json(standard):

@@ -8,39 +8,36 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kvtheory.api._edge import double_precision, one_scene
+from kvtheory.api._elements import elements
 from kvtheory.api._stability import stability
 from kvtheory.api._steady import steady
 from kvtheory.checks.theory import TRIAL_RTOL, Methods
 from kvtheory.progress import Progress
-from kvtheory.results import SERIES_UNITS, units_for
+from kvtheory.results import SERIES_UNITS, DivergenceError, units_for
 from kvtheory.results.comparison import Comparison
 from kvtheory.results.schemes import SCHEME_ROWS
 from kvtheory.scene.arguments import a_scene, callback, checked, choice, measured, number
 from kvtheory.scene.model import Scene
 from kvtheory.scene.quantities import Quantity
-from kvtheory.scene.requirements import (
-    lacks_quadratic_on_arms,
-    lacks_strips,
-    require,
-)
+from kvtheory.scene.requirements import lacks_quadratic_on_arms, lacks_strips, require
 from kvtheory.scene.static_state import StaticState
 
 EVEN, DENSE = 401, 60
-"""Samples of our own simulation: over the run, and in addition after each change of the drive."""
+"""Output times of our own simulation: evenly over the run, and more after each change of the drive."""
 SOONEST, SOON = 1e-4, 0.1
-"""Shares of the duration: where the additional samples begin and end after a change."""
-MOST_STEPS = 1e8
-"""Most steps of our own simulation, which take an hour or two."""
+"""Where the additional times begin and end after a change, as a fraction of the duration."""
+MAXIMUM_STEPS = 1e8
+"""Time steps of our own simulation at most; so many take an hour or two."""
 PER_HALF_LENGTH, OF_BALL = 400.0, 160.0
-"""Elements in the static half length that serve as theory: where the foundation has arms; of a ball."""
-COARSER = 4.0
-"""The trials of a diagnosis, of which only differences are needed, have so many times fewer elements."""
-FEWEST = 16
-"""Samples at least, even if the time step has to be shortened for them."""
+"""Elements per static half length where theory is a simulation: on a Prony series, and of a ball."""
+COARSENING = 4.0
+"""Factor by which the trials of a diagnosis have fewer elements, as only their differences count."""
+MINIMUM_TIMES = 16
+"""Output times at least, even if the time step has to be shortened for them."""
 PER_LENGTH = Quantity("1/m", "N, elements per unit length", 0.0, True)
 
 
-def _followed(scene: Scene, times: Sequence[float], rtol: float) -> Mapping[str, Any]:
+def _theory(scene: Scene, times: Sequence[float], rtol: float) -> Mapping[str, Any]:
     """Compute a transient without a certificate: theory is needed for many trial scenes.
 
     A foundation with arms and a ball are simulated by elements, checked at the end by exact steady sliding;
@@ -53,21 +50,19 @@ def _followed(scene: Scene, times: Sequence[float], rtol: float) -> Mapping[str,
     if ball and not lacks_strips(scene) and not held.remembers(scene):
         return vars(held.transient(scene, times, certify=False))
     if ball or scene.foundation.arms:
-        from kvtheory.api._elements import elements
-
         density = (OF_BALL if ball else PER_HALF_LENGTH) / StaticState.of(scene).half_length
         if rtol >= TRIAL_RTOL:
-            density /= COARSER
+            density /= COARSENING
         return vars(elements(scene, per_length=density, at=times, certify=False))
 
     with double_precision(scene):
         return solved_scene.certified(scene, times, rtol, certify=False)[0].series(times)
 
 
-def _mistaken(
+def _faulty_simulation(
     scene: Scene, spacing: float, time_step: float, times: Sequence[float], does: Mapping[str, Any]
 ) -> Mapping[str, Any]:
-    """Simulate a scene by the paper's scheme with a mistake in the rule of contact, or at the start."""
+    """Simulate a scene by the paper's scheme with a fault in the contact rule or the initial state."""
     from kvtheory.models.elements.law import ContactRule
     from kvtheory.models.elements.schemes import SCHEMES
     from kvtheory.models.elements.simulation import simulate
@@ -86,8 +81,8 @@ def _rates(scene: Scene) -> NDArray[np.complex128]:
     return np.asarray(pairs[:, 0] + 1j * pairs[:, 1])
 
 
-METHODS = Methods(_followed, steady, _rates, _mistaken)
-"""How theory enters, and what simulates a mistake."""
+METHODS = Methods(_theory, steady, _rates, _faulty_simulation)
+"""What computes theory, and what simulates a fault."""
 
 
 @checked(
@@ -159,48 +154,45 @@ def compare(
     scene = one_scene(scene, "a comparison")
     require(lacks_quadratic_on_arms, scene, "the theory of the transient")
     from kvtheory.checks.comparing import broken_off
-    from kvtheory.checks.comparing import compare as hold_against
+    from kvtheory.checks.comparing import compare as compare_series
     from kvtheory.checks.reading import read
-    from kvtheory.results.errors import DivergenceError
 
-    told = progress or METHODS.tell
+    report = progress or METHODS.tell
     own = 0.5 if data is None else 0.0
-    methods = METHODS._replace(tell=lambda share, words: told(own + (1.0 - own) * share, words))
+    methods = METHODS._replace(tell=lambda share, words: report(own + (1.0 - own) * share, words))
     try:
         found = data
         if data is None:
-            found = _simulated(
-                scene, per_length, scheme, lambda share, words: told(own * share, words)
+            found = _own_simulation(
+                scene, per_length, scheme, lambda share, words: report(own * share, words)
             )
     except DivergenceError as error:
         return broken_off(scene, error.rows, str(error), methods, scheme, tolerance)
     units = units_for(scene.indenter, SERIES_UNITS)
-    return hold_against(scene, read(found, units), methods, per_length, scheme, tolerance)
+    return compare_series(scene, read(found, units), methods, per_length, scheme, tolerance)
 
 
-def _simulated(scene: Scene, per_length: Any, scheme: str | None, progress: Progress) -> Any:
+def _own_simulation(scene: Scene, per_length: Any, scheme: str | None, progress: Progress) -> Any:
     """Simulate the scene by our own elements."""
-    from kvtheory.api._elements import elements
-
     given = {"per_length": per_length, "scheme": scheme}
     chosen = {key: value for key, value in given.items() if value is not None}
     step = elements(scene, at=0.0, certify=False, **chosen).time_step  # it has yet to take one
-    if scene.run.duration > MOST_STEPS * step:
+    if scene.run.duration > MAXIMUM_STEPS * step:
         raise ValueError(
             f"run.duration = {scene.run.duration!r} s is too long for our own simulation, by steps of "
             f"{step:.3g} s: give a shorter one, or `data`"
         )
-    times = _times(scene, step)
+    times = _output_times(scene, step)
     return elements(scene, at=times, certify=False, progress=progress, **chosen)
 
 
-def _times(scene: Scene, step: float) -> list[float]:
+def _output_times(scene: Scene, step: float) -> list[float]:
     """Return the times at which our own simulation is compared: dense after each change of the drive.
 
     After each change they are an even number of steps apart, so that no step is shortened for them.
     """
     end = scene.run.duration
-    stride = min(2.0 * step, end / FEWEST)
+    stride = min(2.0 * step, end / MINIMUM_TIMES)
     changes = [*(time for time in scene.drive.changes if time < end), end]
     ticks = np.concatenate([[0.0], np.geomspace(SOONEST, SOON, DENSE), np.linspace(0.0, 1.0, EVEN)])
     times = {end}

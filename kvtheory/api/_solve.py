@@ -21,17 +21,13 @@ from kvtheory.scene.quantities import SceneError, nearest, problem
 from kvtheory.scene.requirements import lacks_stability
 
 MINIMUM_RTOL, MAXIMUM_RTOL = 1e-14, 1.0
-"""Below, rounding dominates; above, any number would satisfy it."""
+"""Below this range rounding dominates; above it any number would do."""
 
 
 @checked(
-    scene=a_scene,
-    at=times,
-    quantity=names,
-    rtol=number(MINIMUM_RTOL, MAXIMUM_RTOL),
-    over_time=flag,
+    scene=a_scene, at=times, quantity=names, rtol=number(MINIMUM_RTOL, MAXIMUM_RTOL), over_time=flag,
     progress=callback,
-)
+)  # fmt: skip
 def solve(
     scene: Scene | None = None,
     *,
@@ -109,10 +105,8 @@ def solve(
         _refuse_unstable(scene)
         rungs = sliding.rungs(steady)
     else:
-        follow, simulate = (
-            partial(transient, progress=progress),
-            partial(elements, progress=progress),
-        )
+        follow = partial(transient, progress=progress)
+        simulate = partial(elements, progress=progress)
         rungs = series.rungs(series.Models(steady, follow, simulate))
     with double_precision(scene):
         return climb(scene, request, rungs)
@@ -124,8 +118,8 @@ def _refuse_unstable(scene: Scene) -> None:
         return
     known = not lacks_stability(scene)
     if not known or not stability(scene, quantity="stable").stable:
-        told = UNSTABLE.format("") if known else UNKNOWN
-        raise ToleranceError(f"{told} Ask for a series, with `at`.")
+        reason = UNSTABLE.format("") if known else UNKNOWN
+        raise ToleranceError(f"{reason} Ask for a series, with `at`.")
 
 
 def _names(

@@ -13,17 +13,10 @@ from kvtheory.results import SteadyState
 from kvtheory.scene.arguments import a_scene, checked, choice, replacements
 from kvtheory.scene.foundations import thick_layer
 from kvtheory.scene.model import Scene
-from kvtheory.scene.requirements import (
-    lacks_asymptotes,
-    lacks_closed_form,
-    lacks_quadrature,
-)
+from kvtheory.scene.requirements import lacks_asymptotes, lacks_closed_form, lacks_quadrature
 
-LACKS = {
-    "exact": lacks_closed_form,
-    "quadrature": lacks_quadrature,
-    "asymptote": lacks_asymptotes,
-}
+LACKS = {"exact": lacks_closed_form, "quadrature": lacks_quadrature, "asymptote": lacks_asymptotes}
+"""By method, why it does not apply to a scene."""
 
 
 @checked(scene=a_scene, over=replacements, method=choice(LACKS))
@@ -108,6 +101,6 @@ def method_for(scene: Scene, method: str | None) -> str:
     method = method or ("quadrature" if lacking["exact"] else "exact")
     if lacking[method]:
         others = [name for name in ("exact", "quadrature") if not lacking[name]]
-        hint = f'; use method = "{others[0]}"' if others else ""
+        hint = f'; use `method` = "{others[0]}"' if others else ""
         raise ValueError(f'`method` = "{method}" {lacking[method]}{hint}')
     return method

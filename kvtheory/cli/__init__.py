@@ -2,17 +2,13 @@
 
 from kvtheory.cli import (  # noqa: F401  # each adds its command to `main`
     chart,
-    cite,
     compare,
     derive,
     elements,
-    explore,
     scene,
     solve,
-    stability,
     steady,
     sweep,
-    transient,
 )
 from kvtheory.cli.group import main
 

@@ -1,4 +1,4 @@
-"""`kvtheory chart`: speed against accuracy, stability of schemes, and failures of methods."""
+"""`kvtheory chart` and `explore`: charts of methods, and an interactive page of a scene."""
 
 import os
 from collections.abc import Sequence
@@ -7,14 +7,12 @@ from pathlib import Path
 import click
 
 from kvtheory.cli.console import (
-    Examples,
     json_option,
     print_json,
     print_table,
     progress_bar,
     scene_options,
     split,
-    teaching,
 )
 from kvtheory.cli.group import main
 from kvtheory.cli.outputs import PICTURES, check_output, overwrite_option, path_option
@@ -31,17 +29,16 @@ def check_chart(output: Path) -> None:
 
 @main.group()
 def chart() -> None:
-    """Chart speed against accuracy, stability, and the ways in which methods fail."""
+    """Chart speed, accuracy, stability and failures of methods."""
 
 
-@chart.command(cls=Examples, example="kvtheory chart failures -o failures.html")
+@chart.command(example="kvtheory chart failures -o failures.html")
 @click.option("--only", metavar="KEY,...", help="Entries to compute; default: all of them.")
 @path_option("-o", "--output", help="Write the atlas as one self-contained FILE.html.")
 @json_option
 @overwrite_option
-@teaching
 def failures(only: str | None, output: Path | None, as_json: bool) -> None:
-    """Show how methods fail: wrong numbers, computed beside the right ones."""
+    """Show how methods fail, with wrong and right numbers."""
     check_output("-o", output, [".html"])
     found = []
     with progress_bar("entries") as report:  # what is imported takes a while, too
@@ -71,16 +68,15 @@ def failures(only: str | None, output: Path | None, as_json: bool) -> None:
         click.echo(f"\n{output}")
 
 
-@chart.command(cls=Examples, example="kvtheory chart stability -o stability.png")
+@chart.command(example="kvtheory chart stability -o stability.png")
 @path_option(
     "-o", "--output", default=Path("stability.png"), show_default=True,
     help="Picture; its data go to FILE.json beside it.",
 )  # fmt: skip
 @click.option("--quick", is_flag=True, help="Coarser maps.")
 @overwrite_option
-@teaching
 def stability(output: Path, quick: bool) -> None:
-    """Map where each scheme of the elements is stable: predicted over measured."""
+    """Map where each scheme is stable, predicted and measured."""
     check_chart(output)
     with progress_bar("maps") as report:
         from kvtheory.charts.stability import stability_maps
@@ -92,7 +88,6 @@ def stability(output: Path, quick: bool) -> None:
 
 @chart.command(
     "work-precision",
-    cls=Examples,
     example="kvtheory chart work-precision my-scene.toml --quick -o speed.png",
 )
 @scene_options
@@ -107,11 +102,10 @@ def stability(output: Path, quick: bool) -> None:
     help="Picture, or a directory for it; its data go to FILE.json beside it.",
 )  # fmt: skip
 @overwrite_option
-@teaching
 def work_precision(
     scene: str | None, overrides: Sequence[str], standard: str | None, quick: bool, output: Path
 ) -> None:
-    """Chart the speed of all methods against their accuracy, on SCENE."""
+    """Chart the speed of all methods against their accuracy."""
     os.environ.update(dict.fromkeys(THREADS, "1"))
     if output.is_dir():
         output /= "work_precision.png"
@@ -132,3 +126,25 @@ def work_precision(
         (error,) = default_errors([one])
         references, what = " and ".join(one.reference), error.split(",")[0]
         click.echo(f"{one.name}: {references} agree on {what} to {one.floor[error]:.1e}")
+
+
+@main.command(example="kvtheory explore my-scene.toml -o explorer.html")
+@scene_options
+@path_option(
+    "-o", "--output", default=Path("explorer.html"), show_default=True,
+    help="File to write; it needs no server and no network.",
+)  # fmt: skip
+@overwrite_option
+def explore(scene: str | None, overrides: Sequence[str], output: Path) -> None:
+    """Write an interactive HTML page of steady sliding.
+
+    It has a slider for every quantity of SCENE.
+    """
+    from kvtheory.explorer import save_explorer
+    from kvtheory.scene import load_scene
+
+    check_output("-o", output, [".html"])
+    with progress_bar("explore"):
+        checked = load_scene(scene, overrides)
+        save_explorer(checked, output)
+    click.echo(f"{output}: open it in any browser")

@@ -1,90 +1,22 @@
-"""The common parts of commands: error messages, options of a scene, tables and JSON."""
+"""The common parts of commands: the options of a scene, a progress bar, tables and JSON."""
 
 import json
 import math
-import re
 import sys
 import threading
 import time
-import traceback
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from contextlib import contextmanager, suppress
-from functools import wraps
+from contextlib import contextmanager
 from typing import Any
 
 import click
 
-from kvtheory.cli.group import INTERRUPTED, leave_quietly
-
 LARGE_ERROR = 0.05
 """Of the static state: a larger one is seen in any plot, and is beyond the scatter of a good measurement."""
+ROWS = 20
+"""Rows of a long table, about."""
 BEGUN = "kvtheory.begun"
 """When a command began to work, in the meta of its context."""
-BAD_INPUT, FAULTY = 2, 70
-"""Exit status for bad input, and for an internal error."""
-
-
-class Examples(click.Command):
-    """A command whose help ends with an example, printed as it stands."""
-
-    def __init__(self, *args: Any, example: str = "", **kwargs: Any) -> None:
-        super().__init__(*args, **kwargs)
-        self.example = example
-
-    def format_epilog(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
-        """Write the example below the options."""
-        with formatter.section("Example"):
-            formatter.write(f"{'':{formatter.current_indent}}{self.example}\n")  # never wrapped
-
-
-def teaching(command: Callable[..., None]) -> Callable[..., None]:
-    """Turn errors about the input into one message and exit status 2, which is never 1."""
-
-    @wraps(command)
-    def run(*args: Any, **kwargs: Any) -> None:
-        try:
-            command(*args, **kwargs)
-        except BrokenPipeError:
-            leave_quietly()
-        except KeyboardInterrupt as error:
-            complain(str(error) or "interrupted", INTERRUPTED)
-        except MemoryError as error:
-            complain(f"error: out of memory: {str(error) or 'ask for less at a time'}", BAD_INPUT)
-        except OSError as error:
-            if error.filename is None and error.errno is not None:
-                leave_quietly(f"the output cannot be written: {error.strerror}")
-            named = f'"{error.filename}": {error.strerror}' if error.filename else str(error)
-            complain(f"error: {in_options(named)}", BAD_INPUT)
-        except (ValueError, ArithmeticError, RuntimeError) as error:
-            lines = in_options(str(error)).splitlines() or [type(error).__name__]
-            count = len(getattr(error, "problems", lines))
-            head = "error:" if count == 1 else f"{count:,} mistakes:\n "
-            complain(f"{head} " + "\n  ".join(lines), BAD_INPUT)
-        except Exception:
-            complain(f"internal error, please report it:\n{traceback.format_exc()}", FAULTY)
-
-    return run
-
-
-def complain(message: str, status: int) -> None:
-    """Write a message to standard error, if that can be written, and exit."""
-    from kvtheory.scene.quantities import printable
-
-    with suppress(OSError):
-        click.echo("\n".join(map(printable, f"kvtheory: {message}".splitlines())), err=True)
-    sys.exit(status)
-
-
-def in_options(message: str) -> str:
-    """Replace the names of arguments in a message of the library by the options of this command.
-
-    >>> with click.Context(click.Command("a", params=[click.Option(["--per-length"])])):
-    ...     in_options("`per_length` = 3: expected a quantity in 1/m; see `h`")
-    '--per-length = 3: expected a quantity in 1/m; see `h`'
-    """
-    context = click.get_current_context(silent=True)
-    named = {p.name: p.opts[0] for p in context.command.params} if context else {}
-    return re.sub(r"`(\w+)`", lambda found: named.get(found[1], found[0]), message)
 
 
 def scene_command(
@@ -93,8 +25,7 @@ def scene_command(
     """Declare a command on an optional scene file, with `--set` and `--json`."""
 
     def decorate(function: Callable[..., None]) -> click.Command:
-        command = scene_options(json_option(teaching(function)))
-        return group.command(cls=Examples, example=example)(command)
+        return group.command(example=example)(scene_options(json_option(function)))
 
     return decorate
 
@@ -146,17 +77,16 @@ def split(text: str) -> list[str]:
     return [item.strip() for item in text.split(",") if item.strip()]
 
 
-def shown(value: float, unit: str) -> tuple[str, str]:
-    """Return an SI value as text in the unit of the tables, and that unit."""
-    from kvtheory.results import SHOWN_UNITS
-
-    name, factor = SHOWN_UNITS[unit]
-    return ("-" if math.isnan(value) else f"{value * factor:.6g}"), name
-
-
-def text(value: float, unit: str) -> str:
+def text(value: Any, unit: str) -> str:
     """Return an SI value with the unit of the tables; a value that does not exist is a dash."""
-    return "-" if math.isnan(value) else " ".join(shown(value, unit)).rstrip()
+    from kvtheory.results.presented import with_unit
+
+    return with_unit(value, unit)
+
+
+def error_text(error: float) -> str:
+    """Return a relative error; one that is not known is a dash."""
+    return "-" if math.isnan(error) else f"{error:.1e}"
 
 
 def print_json(result: Any) -> None:
@@ -168,58 +98,71 @@ def print_json(result: Any) -> None:
 def print_series(result: Any, *, whole: bool, remedy: str) -> None:
     """Print a time series as a table: every row, or about twenty of them with both ends.
 
-    Above it stands a large error, with its remedy.
+    A large error is printed above it, with its remedy.
     """
-    from kvtheory.results import SHOWN_UNITS
-
     errors = result.certificate.relative_error
     if large := {name: error for name, error in errors.items() if not error <= LARGE_ERROR}:
         named = ", ".join(f"{name} {error:.2g}" for name, error in large.items())
-        told = f"! Large error, relative to {result.certificate.relative_to}: {named}. {remedy}"
-        click.secho(told, bold=True)
-    last = result.time.size - 1
-    rows = range(last + 1) if whole else sorted({round(i * last / 20) for i in range(21)})
-    units = {name: unit for name, unit in result.units.items() if name != "depth_rate"}
-    print_table(
-        [f"{name} [{SHOWN_UNITS[unit][0]}]" for name, unit in units.items()],
-        [[shown(getattr(result, name)[i], unit)[0] for name, unit in units.items()] for i in rows],
-    )
+        scale = result.certificate.relative_to
+        click.secho(f"! Large error, relative to {scale}: {named}. {remedy}", bold=True)
+    names = [name for name in result.units if name != "depth_rate"]
+    columns = {name: (getattr(result, name), result.units[name]) for name in names}
+    count = result.time.size
+    _print_columns(columns, range(count) if whole else _spread_over(count))
 
 
 def print_scenes(scene: Any, result: Any, units: Mapping[str, str]) -> None:
     """Print some quantities of many scenes: a row for each, or about twenty with both ends."""
     import numpy as np  # as a help text needs none
 
-    specs = scene.replaceable
-    columns: dict[str, tuple[Any, str]] = {}
-    for key, values in scene.arrays().items():
-        columns[f"{key} [{specs[key].unit}]".removesuffix(" [1]")] = values, "1"
-    for name, unit in units.items():
-        columns[f"{name} [{shown(0.0, unit)[1]}]".removesuffix(" []")] = getattr(result, name), unit
-    flat = {name: np.broadcast_to(x, scene.shape).ravel() for name, (x, _) in columns.items()}
-    last = math.prod(scene.shape) - 1
-    rows = sorted({round(i * last / 20) for i in range(21)}) if last >= 0 else []
+    keys = {
+        f"{key} [{scene.replaceable[key].unit}]".removesuffix(" [1]"): (values, "1")
+        for key, values in scene.arrays().items()
+    }
+    columns = keys | {name: (getattr(result, name), unit) for name, unit in units.items()}
+    count, flat = math.prod(scene.shape), {}
+    for name, (values, unit) in columns.items():
+        flat[name] = np.broadcast_to(values, scene.shape).ravel(), unit
+    rows = _spread_over(count)
+    _print_columns(flat, rows)
+    if len(rows) < count:
+        click.echo(f"{len(rows)} of {count:,} scenes; --json prints all")
+
+
+def _spread_over(count: int) -> Sequence[int]:
+    """Return all rows of a table, or about twenty, with both ends."""
+    return sorted({round(i * (count - 1) / ROWS) for i in range(ROWS + 1)}) if count else []
+
+
+def _print_columns(columns: Mapping[str, tuple[Any, str]], rows: Iterable[int]) -> None:
+    """Print some rows of columns, in the units of the tables."""
+    from kvtheory.results import SHOWN_UNITS
+    from kvtheory.results.presented import in_shown_unit
+
+    heads = [f"{name} [{SHOWN_UNITS[unit][0]}]" for name, (_, unit) in columns.items()]
     print_table(
-        list(columns),
-        [
-            [shown(float(flat[name][i]), unit)[0] for name, (_, unit) in columns.items()]
-            for i in rows
-        ],
+        [head.removesuffix(" []") for head in heads],
+        [[in_shown_unit(values[i], unit)[0] for values, unit in columns.values()] for i in rows],
     )
-    if len(rows) <= last:
-        click.echo(f"{len(rows)} of {last + 1:,} scenes; --json prints all")
 
 
-def print_steady(result: Any, names: Iterable[str]) -> None:
-    """Print some quantities of steady sliding with their errors."""
+def print_quantities(
+    result: Any, units: Mapping[str, str], names: Mapping[str, str] | None = None
+) -> None:
+    """Print some quantities of one scene with their errors, under other names where these are given."""
+    from kvtheory.results.presented import in_shown_unit
+
     errors = result.certificate.relative_error
     print_table(
         ("quantity", "value", "unit", "relative error"),
         [
-            (name, *shown(getattr(result, name), result.units[name]), f"{errors[name]:.1e}")
-            for name in names
+            (
+                (names or {}).get(name, name), *in_shown_unit(getattr(result, name), unit),
+                error_text(errors.get(name, math.nan)),
+            )
+            for name, unit in units.items()
         ],
-    )
+    )  # fmt: skip
 
 
 def print_table(heads: Sequence[str], rows: Iterable[Sequence[str]]) -> None:

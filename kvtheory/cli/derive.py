@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from kvtheory.cli.console import Examples, print_json, print_table, progress_bar, split, teaching
+from kvtheory.cli.console import print_json, print_table, progress_bar, scene_options, split
 from kvtheory.cli.group import main
 from kvtheory.cli.outputs import check_output, overwrite_option
 
@@ -31,10 +31,8 @@ UNUSUAL = re.compile(r"[^\w .,()+-]")
 """What the name of a scene may not hold inside a document, where it could be mathematics or markup."""
 
 
-@main.command(
-    cls=Examples, example="kvtheory derive -o my-thesis --format tex --only eq27,F3 --closure"
-)
-@click.argument("scene", required=False, type=click.Path(exists=True, dir_okay=False))
+@main.command(example="kvtheory derive -o my-thesis --format tex --only eq27,F3 --closure")
+@scene_options
 @click.option(
     "-o", "--output", type=click.Path(file_okay=False, path_type=Path),
     default=Path("paper/derivations"), show_default=True, help="Directory to write to.",
@@ -59,10 +57,6 @@ UNUSUAL = re.compile(r"[^\w .,()+-]")
     "--notation", type=click.Path(exists=True, dir_okay=False, path_type=Path), default=None,
     metavar="FILE.toml", help='Your symbols, as in l_r = "\\\\ell_r"; --symbols lists the names.',
 )  # fmt: skip
-@click.option(
-    "--set", "overrides", multiple=True, metavar="KEY=VALUE",
-    help="Override a key of the scene; repeatable.",
-)  # fmt: skip
 @click.option("--list", "listing", is_flag=True, help="List the labels, one line each, and stop.")
 @click.option(
     "--symbols", is_flag=True, help="List the names of the symbols for --notation, and stop."
@@ -71,16 +65,15 @@ UNUSUAL = re.compile(r"[^\w .,()+-]")
     "--json", "as_json", is_flag=True, help="Print one JSON object about what was written."
 )
 @overwrite_option
-@teaching
 def derive(
     scene: str | None, output: Path, formats: str | None, only: str, closure: bool, numbers: bool,
     shape: str | None, notation: Path | None, overrides: Sequence[str], listing: bool, symbols: bool,
     as_json: bool,
 ) -> None:  # fmt: skip
-    """Derive the equations, check every step, and print them: LaTeX, HTML, PDF, notebook and more.
+    """Derive the equations, check every step, and print them.
 
-    A record rests on earlier ones: all up to the last of those asked for are derived. Without --only that
-    is everything, which takes a minute or two.
+    LaTeX, HTML, PDF, Markdown, a notebook, JSON and BibTeX. Each derivation uses earlier ones, so all up to
+    the last of --only are derived. Without --only all are, which takes a minute or two.
     """
     from kvtheory.derivations.contents import CONTENTS
     from kvtheory.derivations.labels import find
@@ -90,26 +83,28 @@ def derive(
     if listing or symbols:
         _print_symbols(as_json) if symbols else _print_labels(CONTENTS, as_json)
         return
-    _check_options(scene, only, closure, numbers, shape, overrides)
+    if (scene or overrides) and not numbers:
+        raise ValueError("SCENE and --set go with --numbers, which inserts their quantities")
+    if shape is not None and (only or numbers or closure):
+        raise ValueError(
+            "--shape derives a separate chapter; it does not go with --only, --closure or --numbers"
+        )
     wanted = _formats(formats)
-    labels = find(split(only), CONTENTS)
-    request = Request(labels, closure, shape, read_notation(notation) if notation else {})
-    if not (labels or shape):  # then every symbol is shown
+    request = Request(
+        find(split(only), CONTENTS), closure, shape, read_notation(notation) if notation else {}
+    )
+    if not (request.labels or shape):  # then every symbol is shown
         check_letters(request.notation, NAMES.values())
     if numbers:
         request.quantities, request.indenter, request.scene = _quantities(scene, overrides)
     check_directory(output)
     for name in wanted if output.is_dir() else ():
         check_output("-o", output / f"derivations.{name}", [f".{name}"])
-    if shape is None:
-        _announce(request)
     with progress_bar("derive") as report:
-        edition = _edition(request, lambda share, told: report(DERIVING * share, told))
+        edition = _edition(request, lambda share, words: report(DERIVING * share, words))
         writing = lambda share, name: report(DERIVING + (1.0 - DERIVING) * share, name)  # noqa: E731
         paths = write_edition(edition, output, wanted, writing)
-    if numbers:
-        _say_without_numbers(edition.derivations)
-    _report(edition.derivations, output, paths, as_json)
+    _report(edition.derivations, output, paths, as_json=as_json, numbers=numbers)
 
 
 @dataclass
@@ -125,19 +120,8 @@ class Request:
     scene: str = ""
 
 
-def _check_options(
-    scene: str | None, only: str, closure: bool, numbers: bool, shape: str | None,
-    overrides: Sequence[str],
-) -> None:  # fmt: skip
-    if (scene or overrides) and not numbers:
-        raise ValueError("SCENE and --set go with --numbers, which inserts their quantities")
-    if shape is not None and (only or numbers or closure):
-        raise ValueError(
-            "--shape derives a separate chapter; it does not go with --only, --closure or --numbers"
-        )
-
-
 def _formats(formats: str | None) -> list[str]:
+    """Return the formats asked for, or by default all that can be written."""
     from kvtheory.derivations.render import FORMATS, check_formats, latex_engine
 
     if formats is not None:
@@ -146,9 +130,7 @@ def _formats(formats: str | None) -> list[str]:
         return wanted
     if latex_engine():
         return list(FORMATS)
-    click.echo(
-        "kvtheory: no LaTeX engine (pdflatex) found, so no PDF; the rest is written", err=True
-    )
+    click.echo("kvtheory: no PDF, as there is no LaTeX engine (pdflatex)", err=True)
     return [name for name in FORMATS if name != "pdf"]
 
 
@@ -200,55 +182,31 @@ def _quantities(path: str | None, overrides: Sequence[str]) -> tuple[dict[str, f
         if not at_rest.fixed:
             quantities |= {"epsilon": at_rest.inertia_number, "kappa": at_rest.support_number}
     where = UNUSUAL.sub("_", Path(path).name) if path else "Table 1"
-    told = ", ".join([f"{scene.support.kind} support", *([] if line else ["ball"])])
-    return quantities, scene.indenter.shape, f"{where} ({told})"
-
-
-def _needed(request: Request) -> set[str]:
-    """Return the labels up to the last of which records are derived; none for everything."""
-    from kvtheory.derivations.calculation import FOLLOWING
-
-    following = {label for label, _ in FOLLOWING} if request.quantities else set()
-    return {*request.labels, *following} if request.labels else set()
-
-
-def _announce(request: Request) -> None:
-    """Say how much is derived."""
-    from kvtheory.derivations.catalogue import wanted_up_to
-
-    total, asked = wanted_up_to(_needed(request)), len(request.labels)
-    if asked:
-        told = f"{total} records for the {asked} asked for, since each rests on earlier ones"
-    else:
-        told = f"all {total} records; --only chooses some"
-    click.echo(f"kvtheory: deriving {told}", err=True)
-
-
-def _say_without_numbers(derived: Sequence["Derivation"]) -> None:
-    """Say which records have no number in the scene."""
-    if without := [each.label for each in derived if not each.numbers]:
-        named = ", ".join(without[:MOST_NAMED]) + (", ..." if len(without) > MOST_NAMED else "")
-        click.echo(f"kvtheory: no numbers of this scene in {len(without)}: {named}", err=True)
+    parts = ", ".join([f"{scene.support.kind} support", *([] if line else ["ball"])])
+    return quantities, scene.indenter.shape, f"{where} ({parts})"
 
 
 def _edition(request: Request, report: Callable[[float, str], None]) -> "Edition":
-    """Derive what was asked for."""
+    """Derive what was asked for, after a line that says how much that is."""
     from kvtheory import __version__
-    from kvtheory.derivations.calculation import shown_quantities, with_numbers
-    from kvtheory.derivations.catalogue import catalogue
+    from kvtheory.derivations.calculation import FOLLOWING, shown_quantities, with_numbers
+    from kvtheory.derivations.catalogue import catalogue, wanted_up_to
     from kvtheory.derivations.render import edition
     from kvtheory.derivations.shape import derive_shape, symbols, title
 
     about: dict[str, Any] = {
-        "command": _command(request),
-        "version": __version__,
-        "notation": request.notation,
-    }
+        "command": _command(), "version": __version__, "notation": request.notation
+    }  # fmt: skip
     if request.shape is not None:
-        chapter = derive_shape(request.shape)
-        own = symbols(request.shape)
+        chapter, own = derive_shape(request.shape), symbols(request.shape)
         return edition(chapter, **about, title=title(request.shape), symbols=own)
-    derived: Iterable[Derivation] = catalogue(_needed(request), report)
+    following = {label for label, _ in FOLLOWING} if request.quantities else set()
+    needed = {*request.labels, *following} if request.labels else set()
+    total, asked = wanted_up_to(needed), len(request.labels)
+    some = f"{total} records for the {asked} asked for, since each rests on earlier ones"
+    amount = some if asked else f"all {total} records; --only chooses some"
+    click.echo(f"kvtheory: deriving {amount}", err=True)
+    derived: Iterable[Derivation] = catalogue(needed, report)
     if request.quantities:
         given = request.quantities, request.indenter
         derived = with_numbers(derived, *given)
@@ -256,7 +214,7 @@ def _edition(request: Request, report: Callable[[float, str], None]) -> "Edition
     return edition(tuple(derived), request.labels, with_premises=request.closure, **about)
 
 
-def _command(request: Request) -> str:
+def _command() -> str:
     """Return the command that reproduces the content, wherever it is written."""
     context = click.get_current_context()
     given = {
@@ -274,10 +232,7 @@ def _command(request: Request) -> str:
 
 
 def _print_labels(contents: dict[str, str], as_json: bool) -> None:
-    if as_json:
-        print_json([{"label": label, "title": title} for label, title in contents.items()])
-        return
-    print_table(("label", "title"), contents.items())
+    _print_rows(("label", "title"), list(contents.items()), as_json)
 
 
 def _print_symbols(as_json: bool) -> None:
@@ -285,17 +240,25 @@ def _print_symbols(as_json: bool) -> None:
     from kvtheory.derivations.render.notation import plain
 
     rows = [(plain(each.latex), each.latex, each.meaning, each.unit) for each in SYMBOLS]
-    heads = "name", "latex", "meaning", "unit"
+    _print_rows(("name", "latex", "meaning", "unit"), rows, as_json)
+
+
+def _print_rows(heads: Sequence[str], rows: Sequence[Sequence[str]], as_json: bool) -> None:
     if as_json:
         print_json([dict(zip(heads, row, strict=True)) for row in rows])
-        return
-    print_table(heads, rows)
+    else:
+        print_table(heads, rows)
 
 
 def _report(
-    derived: Sequence["Derivation"], output: Path, paths: Sequence[Path], as_json: bool
-) -> None:
+    derived: Sequence["Derivation"], output: Path, paths: Sequence[Path], *,
+    as_json: bool, numbers: bool,
+) -> None:  # fmt: skip
     """Print what was derived and which files were written."""
+    without = [each.label for each in derived if not each.numbers] if numbers else []
+    if without:
+        named = ", ".join(without[:MOST_NAMED]) + (", ..." if len(without) > MOST_NAMED else "")
+        click.echo(f"kvtheory: no numbers of this scene in {len(without)}: {named}", err=True)
     counts = dict(Counter(each.status for each in derived))
     if as_json:
         files = [str(path) for path in paths]
@@ -305,8 +268,6 @@ def _report(
     for path in paths:
         if path.parent == output:
             click.echo(f"  {path}")
-    fragments = [path for path in paths if path.parent != output]
-    if fragments:
-        click.echo(
-            f"  {fragments[0].parent}{os.sep} ({len(derived)} equations for \\input, alone and with steps)"
-        )
+    if fragments := [path for path in paths if path.parent != output]:
+        count = f"{len(derived)} equations for \\input, alone and with steps"
+        click.echo(f"  {fragments[0].parent}{os.sep} ({count})")

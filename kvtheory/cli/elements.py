@@ -28,7 +28,7 @@ def elements(
     scene: str | None, overrides: Sequence[str], as_json: bool,
     output: Path | None, plot: Path | None, **how: Any,
 ) -> None:  # fmt: skip
-    """Simulate SCENE by point elements that move with the base: any shape, support and drive."""
+    """Simulate the motion from rest by point elements: any shape."""
     from kvtheory.api import elements as simulate
     from kvtheory.scene import load_scene
 

@@ -1,95 +1,179 @@
-"""The command `kvtheory`, to which the modules beside this one add theirs."""
+"""The command `kvtheory`: the group that the other modules add their commands to, errors and exit status."""
 
 import os
+import re
 import sys
+import traceback
 from contextlib import suppress
-from typing import Any, NoReturn
+from typing import Any
 
 import click
 
-BAD_OUTPUT, INTERRUPTED, BROKEN_PIPE = 2, 130, 141
-"""Exit status if the output cannot be written; after Ctrl-C, and if its reader has closed the pipe, as in
-shells."""
+DISAGREES, BAD_INPUT, INTERNAL_ERROR, INTERRUPTED, BROKEN_PIPE = 1, 2, 70, 130, 141
+"""Exit status beside 0; 2 also if the output cannot be written."""
 
 
-class Commands(click.Group):
-    """A group whose output survives the console: its encoding, or a reader that has closed the pipe."""
+class Failure(click.ClickException):
+    """An error message and its exit status."""
 
-    def main(self, *args: Any, **kwargs: Any) -> Any:
-        """Run a command; letters that the console lacks are written as escapes."""
+    def __init__(self, message: str, status: int = BAD_INPUT) -> None:
+        super().__init__(message)
+        self.status = status
+
+    def show(self, file: Any = None) -> None:
+        """Write the message to standard error, without control characters."""
+        from kvtheory.scene.quantities import printable
+
+        lines = map(printable, f"kvtheory: {self.message}".splitlines())
+        click.echo("\n".join(lines), file=file, err=True)
+
+
+class Command(click.Command):
+    """A command whose help ends with an example, and whose errors are messages."""
+
+    def __init__(self, *args: Any, example: str = "", **kwargs: Any) -> None:
+        super().__init__(*args, **kwargs)
+        self.example = example
+
+    def format_epilog(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        """Write the example below the options, on one line, to be copied."""
+        with formatter.section("Example"):
+            formatter.write(f"{'':{formatter.current_indent}}{self.example}\n")
+
+    def invoke(self, ctx: click.Context) -> Any:
+        """Run the command, and turn its errors into messages: bad input is status 2, never 1."""
+        try:
+            return super().invoke(ctx)
+        except (click.ClickException, click.Abort, click.exceptions.Exit, BrokenPipeError):
+            raise
+        except KeyboardInterrupt as error:
+            raise Failure(str(error) or "interrupted", INTERRUPTED) from None
+        except MemoryError as error:
+            raise Failure(
+                f"error: out of memory: {str(error) or 'ask for less at a time'}"
+            ) from None
+        except OSError as error:
+            if error.filename is None and error.errno is not None:  # of standard output
+                raise
+            named = f'"{error.filename}": {error.strerror}' if error.filename else str(error)
+            raise Failure(f"error: {in_options(named, self)}") from None
+        except (ValueError, ArithmeticError, RuntimeError) as error:
+            lines = in_options(str(error), self).splitlines() or [type(error).__name__]
+            count = len(getattr(error, "problems", lines))
+            head = "error:" if count == 1 else f"{count:,} mistakes:\n "
+            raise Failure(f"{head} " + "\n  ".join(lines)) from None
+        except Exception:
+            report = f"internal error, please report it:\n{traceback.format_exc()}"
+            raise Failure(report, INTERNAL_ERROR) from None
+
+
+class Group(click.Group):
+    """A group that exits with the status of the table above, whatever becomes of its output."""
+
+    command_class = Command
+    group_class = type
+
+    def main(self, *args: Any, standalone_mode: bool = True, **kwargs: Any) -> Any:
+        """Run a command and exit; characters that the console lacks are written as escapes."""
         run: Any = super().main
-        if not kwargs.pop("standalone_mode", True):
+        if not standalone_mode:
             return run(*args, standalone_mode=False, **kwargs)
         output = sys.stdout
+        status: Any = 0
         for stream in (sys.stdout, sys.stderr):
             if hasattr(stream, "reconfigure"):
                 stream.reconfigure(errors="backslashreplace")
         try:
-            status = run(*args, standalone_mode=False, **kwargs)
-            _flush()
+            status = run(*args, standalone_mode=False, **kwargs) or 0
         except click.ClickException as error:
-            with suppress(OSError):
-                error.show()
-            _flush_quietly()
-            sys.exit(error.exit_code)
+            status = _exit_code(error)
         except click.Abort:
-            sys.exit(INTERRUPTED)
-        except BrokenPipeError:
-            leave_quietly()
-        except OSError as error:  # of standard output: all else is told by the commands
-            leave_quietly(f"the output cannot be written: {error.strerror}")
-        except SystemExit:
-            if sys.stdout is not output:  # click's own way out of a broken pipe has status 1
-                leave_quietly()
-            _flush_quietly()
-            raise
-        sys.exit(status if isinstance(status, int) else 0)
+            status = INTERRUPTED
+        except OSError as error:
+            status = _exit_code(Failure(f"error: the output cannot be written: {error.strerror}"))
+        except (
+            SystemExit
+        ) as end:  # of click, which replaces the output if its reader has closed the pipe
+            status = end.code if sys.stdout is output else BROKEN_PIPE
+        try:
+            for stream in filter(None, (output, sys.stderr)):
+                stream.flush()
+        except OSError:
+            _discard()
+        sys.exit(status)
 
 
-def _flush() -> None:
-    for stream in (sys.stdout, sys.stderr):
-        if stream is not None:
-            stream.flush()
+def _exit_code(error: click.ClickException) -> int:
+    """Show an error, if standard error can be written, and return its exit status."""
+    with suppress(OSError):
+        error.show()
+    return error.status if isinstance(error, Failure) else error.exit_code
 
 
-def _flush_quietly() -> None:
-    """Write the rest of the output of a command that has already reported its error."""
-    try:
-        _flush()
-    except OSError:
-        _silence()
-
-
-def _silence() -> None:
-    """Discard what is still buffered."""
+def _discard() -> None:
+    """Discard what is still buffered, so that Python does not fail on it at its exit."""
     nowhere = os.open(os.devnull, os.O_WRONLY)
     for stream in (sys.stdout, sys.stderr):
-        try:
+        with suppress(AttributeError, OSError, ValueError):
             os.dup2(nowhere, stream.fileno())
-        except (AttributeError, OSError, ValueError):
-            continue
 
 
-def leave_quietly(message: str = "") -> NoReturn:
-    """Exit because the output cannot be written: its reader has closed the pipe, or the disk is full."""
-    if message:
-        with suppress(OSError):
-            click.echo(f"kvtheory: error: {message}", err=True)
-    _silence()
-    sys.exit(BAD_OUTPUT if message else BROKEN_PIPE)
+def in_options(message: str, command: click.Command) -> str:
+    """Replace the names of arguments in a message of the library by the options of a command.
+
+    >>> command = click.Command("a", params=[click.Option(["--per-length"])])
+    >>> in_options('`per_length` = 3: expected 1/m; see `h`, or give `per_length`', command)
+    '--per-length 3: expected 1/m; see `h`, or give --per-length'
+    """
+    options = {parameter.name: parameter.opts[0] for parameter in command.params}
+
+    def option(found: re.Match[str]) -> str:
+        if found[1] not in options:
+            return found[0]
+        return options[found[1]] + (" " if found[2] else "")
+
+    return re.sub(r"`(\w+)`( = )?", option, message)
 
 
 @click.group(
-    cls=Commands,
+    cls=Group,
     context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100},
 )
 @click.version_option(package_name="kvtheory")
 def main() -> None:
     """Sliding friction of a rigid indenter on a viscoelastic foundation.
 
-    Without a scene file, each command works on Table 1 of Nakano and Kono (2020) with a dead
-    weight. Exit status: 0 done, 1 a check found disagreement, 2 bad input, 130 interrupted.
+    SCENE is a TOML file that describes what is modelled; `kvtheory scene` prints a template. Without it,
+    commands use Table 1 of Nakano and Kono (2020) with a dead weight.
 
-    No command overwrites a file that it reads. A file of another kind than the command
-    writes is overwritten only if --overwrite is given.
+    No command overwrites a file that it reads. It overwrites a file of another kind than it writes only
+    with --overwrite.
+
+    Exit status: 0 done, 1 a check found disagreement, 2 bad input, 70 internal error, 130 interrupted.
     """
+
+
+@main.command(example="kvtheory cite >> references.bib")
+def cite() -> None:
+    """Print BibTeX entries for this version and for the paper."""
+    from kvtheory import __version__
+
+    click.echo(CITATION % __version__)
+
+
+CITATION = """@software{kvtheory,
+  author  = {{The kvtheory developers}},
+  title   = {kvtheory: the sliding friction of elastomers, derived, exact and checked},
+  version = {%s},
+  year    = {2026},
+}
+
+@article{NakanoKono2020,
+  author  = {Nakano, Ken and Kono, Masaharu},
+  title   = {Transient and Steady Sliding Friction of Elastomers: Impact of Vertical Lift},
+  journal = {Frontiers in Mechanical Engineering},
+  volume  = {6},
+  pages   = {38},
+  year    = {2020},
+  doi     = {10.3389/fmech.2020.00038},
+}"""

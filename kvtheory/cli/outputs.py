@@ -4,7 +4,7 @@ An output is never a file that the command reads. An existing file is replaced i
 command writes, and left unchanged if it holds anything else, unless ``--overwrite`` is given.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -12,12 +12,12 @@ from typing import Any
 import click
 
 from kvtheory.cli.console import print_json, progress_bar
-from kvtheory.export import PICTURES, SERIES_SUFFIXES, check_path, replace_files, save_result
+from kvtheory.export import PICTURES, SERIES_SUFFIXES, check_path, replace_files
 
 __all__ = ["PICTURES", "check_output"]
 
 BEGINNINGS = {
-    ".csv": (b"time [s],velocity [m/s],", b"depth [m],half_length [m],"),
+    ".csv": (b"time [s],velocity [m/s],",),
     ".nc": (b"CDF\x01", b"CDF\x02"),
     ".png": (b"\x89PNG",),
     ".svg": (b"<?xml", b"<svg"),
@@ -30,11 +30,15 @@ BEGINNINGS = {
     ".bib": (b"@article{NakanoKono2020,",),
 }
 """How the files that commands write begin; a sweep recognises its own files."""
+STEADY_HEADER = b"depth [m],half_length [m],"
+"""In the first line of a CSV of steady sliding, after the keys of what varies."""
+BYTES = 2**14
+"""How much of a file is read to recognise it: more than the longest header."""
 OVERWRITE = "kvtheory.overwrite"
 
 
 def overwrite_option(command: Callable[..., Any]) -> Callable[..., Any]:
-    """Give a command `--overwrite`, which `check_output` and `overwriting` read."""
+    """Give a command `--overwrite`, which `overwriting` reads."""
 
     def keep(context: click.Context, _: click.Parameter, value: bool) -> None:
         context.meta[OVERWRITE] = value
@@ -78,26 +82,21 @@ def check_results(output: Path | None, plot: Path | None) -> None:
 
 def deliver(
     result: Any, output: Path | None, plot: Path | None, *,
-    as_json: bool, report: tuple[Path | None, Any] = (None, None),
+    as_json: bool, more: Mapping[Path, Callable[[Path], Any]] | None = None,
 ) -> bool:  # fmt: skip
-    """Write a result to the files of `result_options`, or as JSON; return whether that is all.
+    """Write a result to the files of `result_options` and `more`, or as JSON; return whether that is all.
 
-    `report` is a page of it, and the scene that this names. All files are made before any is put in place.
+    All files are made before any is put in place.
     """
     writers: dict[Path, Callable[[Path], Any]] = {}
-    page, scene = report
     with progress_bar("writing"):
         if output:
-            writers[output] = partial(save_result, result)
+            writers[output] = result.save
         if plot:
-            from kvtheory.plots.result import save_plot
+            from kvtheory.plots import save_plot
 
             writers[plot] = partial(save_plot, result)
-        if page:
-            from kvtheory.plots.comparison import save_comparison_report
-
-            writers[page] = partial(save_comparison_report, result, scene)
-        replace_files(writers)
+        replace_files(writers | dict(more or {}))
     if as_json:
         print_json(result.as_dict())
     return as_json
@@ -150,5 +149,7 @@ def check_not_an_input(option: str, path: Path) -> None:
 def _is_ours(path: Path) -> bool:
     """Whether a file begins like those that commands write; an empty file may be overwritten."""
     with path.open("rb") as file:
-        start = file.read(128)
+        start = file.read(BYTES)
+    if path.suffix.lower() == ".csv" and STEADY_HEADER in start.partition(b"\n")[0]:
+        return True
     return not start or start.startswith(BEGINNINGS.get(path.suffix.lower(), (b"",)))

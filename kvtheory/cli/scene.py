@@ -34,7 +34,10 @@ def scene(
     support: str | None,
     problem: str | None,
 ) -> None:
-    """Print a commented scene template, or check SCENE and print its dimensionless numbers."""
+    """Print a scene template, or check SCENE.
+
+    A check lists every mistake, or prints the quantities and the dimensionless numbers.
+    """
     from kvtheory.scene import load_scene, template
     from kvtheory.scene.requirements import lacks_ball, lacks_quadratic
     from kvtheory.scene.static_state import StaticState

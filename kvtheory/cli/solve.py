@@ -1,6 +1,5 @@
-"""`kvtheory solve`: the cheapest sufficient model."""
+"""`kvtheory solve` and `transient`: the cheapest sufficient model, and the motion over time."""
 
-import math
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -8,12 +7,14 @@ from typing import TYPE_CHECKING
 import click
 
 from kvtheory.cli.console import (
+    error_text,
+    print_quantities,
     print_series,
-    print_steady,
     print_table,
     progress_bar,
     scene_command,
     split,
+    text,
 )
 from kvtheory.cli.group import main
 from kvtheory.cli.outputs import check_results, deliver, series_options
@@ -38,9 +39,9 @@ def solve(
     scene: str | None, overrides: Sequence[str], as_json: bool, rtol: float,
     quantity: str | None, explain: bool, at: str | None, output: Path | None, plot: Path | None,
 ) -> None:  # fmt: skip
-    """Solve SCENE by the cheapest model that is known to be within the tolerance.
+    """Solve SCENE by the cheapest model within the tolerance.
 
-    Steady sliding, or with --at, -o or --plot the motion from rest over time.
+    Without --at, -o and --plot the result is steady sliding, with them the motion from rest over time.
     """
     from kvtheory.api import solve as find
     from kvtheory.scene import load_scene
@@ -59,7 +60,7 @@ def solve(
     if at is not None or over_time:
         print_series(found, whole=at is not None, remedy="Take a smaller --rtol.")
     else:
-        print_steady(found, found.values)
+        print_quantities(found, {name: found.units[name] for name in found.values})
     worst = max(found.certificate.relative_error.values())
     click.echo(
         f"\nmodel: {found.model}; error {found.certificate.kind} at {worst:.1e} or less: "
@@ -73,7 +74,7 @@ def _explain(found: "Solution") -> None:
         ("model", "assumes", "error", "margin", "time [ms]", "outcome"),
         [
             (
-                step.rung, step.assumed, _number(step.error), _number(step.margin),
+                step.rung, step.assumed, error_text(step.error), error_text(step.margin),
                 f"{(step.choosing + step.solving) * 1e3:.3f}", step.outcome,
             )
             for step in found.climb
@@ -82,5 +83,37 @@ def _explain(found: "Solution") -> None:
     click.echo(f"\ntolerance {found.rtol:g}; {found.choosing_share:.1%} of the time to choose\n")
 
 
-def _number(value: float) -> str:
-    return f"{value:.1e}" if math.isfinite(value) else "-"
+@scene_command(
+    main,
+    'kvtheory transient --at "0 ms,1 ms,10 ms" && kvtheory transient -o run.csv --plot run.png',
+)
+@click.option(
+    "--rtol", type=float, default=1e-6, show_default=True, help="Error allowed in a step."
+)
+@click.option(
+    "--max-steps", type=click.IntRange(1),
+    help="Steps after which to give up; default: 300,000 plus 100 for each piece of the drive.",
+)  # fmt: skip
+@series_options
+def transient(
+    scene: str | None, overrides: Sequence[str], as_json: bool, rtol: float,
+    max_steps: int | None, at: str | None, output: Path | None, plot: Path | None,
+) -> None:  # fmt: skip
+    """Compute the motion from rest: depth, forces, edges, events."""
+    from kvtheory.api import transient as follow
+    from kvtheory.scene import load_scene
+
+    check_results(output, plot)
+    with progress_bar("transient") as progress:
+        checked = load_scene(scene, overrides)
+        result = follow(checked, at=at, rtol=rtol, max_steps=max_steps, progress=progress)
+    if deliver(result, output, plot, as_json=as_json):
+        return
+    print_series(result, whole=at is not None, remedy="Take a smaller --rtol.")
+    click.echo("\nevents:")
+    for event in result.events:
+        click.echo(f"  {text(event.time, 's')}: {event.kind}")
+    worst = max(result.certificate.relative_error.values())
+    click.echo(
+        f"\n{result.steps} steps; error estimated at {worst:.1e}: {result.certificate.statement}."
+    )

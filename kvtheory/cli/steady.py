@@ -1,5 +1,6 @@
-"""`kvtheory steady` and `kvtheory asymptotes`: steady sliding."""
+"""`kvtheory steady`, `asymptotes` and `stability`: steady sliding."""
 
+import math
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -7,9 +8,11 @@ from typing import TYPE_CHECKING
 import click
 
 from kvtheory.cli.console import (
+    error_text,
     print_json,
+    print_quantities,
     print_scenes,
-    print_steady,
+    print_table,
     progress_bar,
     scene_command,
     text,
@@ -18,6 +21,7 @@ from kvtheory.cli.group import main
 from kvtheory.cli.outputs import check_results, deliver, result_options
 
 if TYPE_CHECKING:
+    from kvtheory.results import Stability
     from kvtheory.scene import Scene
 
 
@@ -31,7 +35,7 @@ def steady(
     scene: str | None, overrides: Sequence[str], as_json: bool, method: str | None,
     output: Path | None, plot: Path | None,
 ) -> None:  # fmt: skip
-    """Print the state of steady sliding: depth, edges, load, friction, peak pressure."""
+    """Print the state of steady sliding: depth, forces, edges."""
     check_results(output, plot)
     with progress_bar("steady"):
         from kvtheory.api import steady as solve
@@ -42,12 +46,12 @@ def steady(
         state = solve(checked, method=method)
     if deliver(state, output, plot, as_json=as_json):
         return
-    note_history(checked)
+    _note_history(checked)
     click.echo(f"Steady sliding, {checked.support.kind} support, model: {state.model}\n")
     if checked.shape:
         print_scenes(checked, state, {name: state.units[name] for name in STEADY_UNITS})
     else:
-        print_steady(state, state.units)
+        print_quantities(state, state.units)
     click.echo(f"\nErrors are {state.certificate.kind}: {state.certificate.statement}.")
     for note in state.notes:
         click.echo(note)
@@ -61,7 +65,10 @@ def steady(
 def asymptotes(
     scene: str | None, overrides: Sequence[str], as_json: bool, tolerance: float
 ) -> None:
-    """Print which asymptote holds, its error, and over which velocities it holds."""
+    """Print which asymptotes of friction hold, and their errors.
+
+    Beside them the velocities over which each holds, and the maxima of friction over velocity.
+    """
     with progress_bar("asymptotes"):
         from kvtheory.api import asymptotes as examine
         from kvtheory.scene import load_scene
@@ -71,11 +78,73 @@ def asymptotes(
     if as_json:
         print_json(report.as_dict())
         return
-    note_history(checked)
+    _note_history(checked)
     click.echo(f"{checked.support.kind} support, {report}")
 
 
-def note_history(scene: "Scene") -> None:
+@scene_command(
+    main,
+    'kvtheory stability --set drive.velocity="91 mm/s" --set drive.stiffness="1 MN/m^2"',
+)
+def stability(scene: str | None, overrides: Sequence[str], as_json: bool) -> None:
+    """Print whether steady sliding on a spring is stable.
+
+    Beside that the critical stiffness of the spring, and the velocity at the onset of instability.
+    The spring drive.stiffness holds the indenter in the sliding direction, with drive.damping and
+    drive.mass; without a stiffness the drive is rigid. Stable means against small disturbances: a large
+    one, such as a sudden start, may still end in stick-slip.
+    """
+    with progress_bar("stability"):
+        from kvtheory.api import stability as examine
+        from kvtheory.results import QUANTITIES, STABILITY_UNITS, units_for
+        from kvtheory.scene import load_scene
+
+        checked = load_scene(scene, overrides)
+        found = examine(checked)
+    if as_json:
+        print_json(found.as_dict())
+        return
+    _note_history(checked)
+    units, kind = units_for(checked.indenter, STABILITY_UNITS), checked.support.kind
+    if checked.shape:
+        click.echo(f"Steady sliding, {kind} support\n")
+        print_scenes(checked, found, {"stable": "1", **units})
+        return
+    click.echo(f"Steady sliding, {kind} support: {_verdict(found)}\n")
+    key = "critical_velocity"  # not V* of `asymptotes`, which has the same name
+    print_quantities(found, units, {key: QUANTITIES[key].words})
+    if found.rates.size:
+        click.echo()
+        _print_rates(found)
+    click.echo(f"\nErrors are {found.certificate.kind}: {found.certificate.statement}.")
+
+
+def _verdict(found: "Stability") -> str:
+    """Return one line about the stability with this drive."""
+    if found.rigid_drive:
+        return "stable, for the drive is rigid; the critical stiffness is that of a spring in its place"
+    if not found.stable:
+        between = found.lower_critical_stiffness > 0.0
+        where = "between the critical stiffnesses" if between else "below the critical stiffness"
+        return f"unstable, {where} of the spring"
+    return "stable against small disturbances; a large one, such as a sudden start, may end in stick-slip"
+
+
+def _print_rates(found: "Stability") -> None:
+    """Print a row for each rate; the time constant of a growing motion is negative."""
+    errors = found.certificate.relative_error["rates"]
+    print_table(
+        ("rate [1/s]", "frequency [Hz]", "time constant [ms]", "relative error"),
+        [
+            (f"{real:.6g}", f"{imaginary / math.tau:.6g}", f"{1e3 * time:.6g}", error_text(error))
+            for (real, imaginary), time, error in zip(
+                found.rates, found.time_constants, errors, strict=True
+            )
+        ],
+    )
+
+
+def _note_history(scene: "Scene") -> None:
     """Print at which velocity of a history steady sliding is taken."""
     if scene.drive.history is not None:
         velocity = text(scene.drive.final_velocity, "m/s")

@@ -70,7 +70,10 @@ def sweep(
     output: Path, quantities: Sequence[str], jobs: int | None, executor: str | None,
     block: int | None, plot: Path | None, **how: Any,
 ) -> None:  # fmt: skip
-    """Solve SCENE for many values of its quantities; an interrupted sweep resumes from its file."""
+    """Solve SCENE for many values of its quantities.
+
+    The same command resumes an interrupted sweep from its file.
+    """
     from kvtheory.api import sweep as run
     from kvtheory.api._sweep import plan_of
     from kvtheory.scene import load_scene

@@ -9,14 +9,14 @@ from kvtheory.results.errors import (
     TransientError,
 )
 from kvtheory.results.solution import ClimbStep, Solution
-from kvtheory.results.stability import Stability
-from kvtheory.results.steady import AsymptoteLine, AsymptoteReport, SteadyState
+from kvtheory.results.steady import AsymptoteLine, AsymptoteReport, Stability, SteadyState
 from kvtheory.results.sweep import Axis, Failure, Sweep
 from kvtheory.results.table import (
     QUANTITIES,
     SERIES_UNITS,
     SHOWN_UNITS,
     SPRING_UNITS,
+    STABILITY_UNITS,
     STEADY_UNITS,
     TRANSIENT_UNITS,
     units_for,
@@ -30,35 +30,9 @@ from kvtheory.results.transient import (
 )
 
 __all__ = [
-    "AT_REST",
-    "QUANTITIES",
-    "SERIES_UNITS",
-    "SHOWN_UNITS",
-    "SPRING_UNITS",
-    "STEADY_UNITS",
-    "TRANSIENT_UNITS",
-    "AsymptoteLine",
-    "AsymptoteReport",
-    "Axis",
-    "Certificate",
-    "Check",
-    "ClimbStep",
-    "Comparison",
-    "DivergenceError",
-    "Event",
-    "Explanation",
-    "Failure",
-    "QuadratureError",
-    "Simulation",
-    "Solution",
-    "SprungSimulation",
-    "SprungTransient",
-    "Stability",
-    "SteadyState",
-    "Sweep",
-    "ToleranceError",
-    "Transient",
-    "TransientError",
-    "record",
-    "units_for",
-]
+    "AT_REST", "QUANTITIES", "SERIES_UNITS", "SHOWN_UNITS", "SPRING_UNITS", "STABILITY_UNITS",
+    "STEADY_UNITS", "TRANSIENT_UNITS", "AsymptoteLine", "AsymptoteReport", "Axis", "Certificate",
+    "Check", "ClimbStep", "Comparison", "DivergenceError", "Event", "Explanation", "Failure",
+    "QuadratureError", "Simulation", "Solution", "SprungSimulation", "SprungTransient", "Stability",
+    "SteadyState", "Sweep", "ToleranceError", "Transient", "TransientError", "record", "units_for",
+]  # fmt: skip

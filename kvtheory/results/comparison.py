@@ -2,12 +2,11 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, fields
-from pathlib import Path
 from typing import Any
 
-from kvtheory.results.above import above
+from kvtheory.export import Columns
 from kvtheory.results.certificate import record
-from kvtheory.results.presented import html_table
+from kvtheory.results.presented import Exported, above, html_table
 from kvtheory.results.table import SERIES_UNITS
 
 
@@ -56,7 +55,7 @@ HEADS = "check", "measured", "allowed", "", "equation", "what is measured"
 
 
 @dataclass(frozen=True, repr=False)
-class Comparison:
+class Comparison(Exported):
     """Whether a time series agrees with theory, check by check, and if not, why.
 
     `verdict` is ``"agrees"``, ``"disagrees"`` if one of the checks that could be made failed, or
@@ -86,8 +85,9 @@ class Comparison:
         failed = [check for check in self.checks if check.ok is False]
         rows = [f"{c.name}: {c.measured:.3g}, allowed {c.allowed:.3g}" for c in failed[:MOST_SHOWN]]
         more = [f"and {len(failed) - MOST_SHOWN} more"] if len(failed) > MOST_SHOWN else []
-        told = f"Comparison of {self.source}: {self.verdict}"
-        return "\n".join([told, self.diagnosis, *rows, *more])
+        return "\n".join(
+            [f"Comparison of {self.source}: {self.verdict}", self.diagnosis, *rows, *more]
+        )
 
     def _repr_html_(self) -> str:
         """Return a table of the checks for notebooks."""
@@ -100,23 +100,23 @@ class Comparison:
         ]  # fmt: skip
         return html_table(f"{self.source}: {self.verdict}. {self.diagnosis}", HEADS, rows)
 
-    def to_xarray(self) -> Any:
-        """Return data, theory and the allowed difference as an `xarray.Dataset` over time.
+    def _columns(self) -> Columns:
+        """Return data, theory and the allowed difference of each quantity."""
+        curves = {
+            f"{name}, {kind}": (values[name], self.units[name])
+            for name in self.allowed
+            for kind, values in (
+                ("data", self.series), ("theory", self.theory), ("allowed", self.allowed)
+            )
+        }  # fmt: skip
+        return {"time": (self.series["time"], "s"), **curves}
 
-        Raises
-        ------
-        ValueError
-            If xarray is missing.
-        """
-        return above("compared")(self)
-
-    def to_csv(self, path: str | Path) -> None:
-        """Write data, theory and the allowed difference as CSV in SI, with units in the header."""
-        above("save_compared")(self, Path(path))
+    def _attributes(self) -> Mapping[str, str]:
+        return {"verdict": self.verdict, "diagnosis": self.diagnosis}
 
     def plot(self) -> Any:
         """Draw data over theory, the residual, and the checks, and return the figure."""
-        return above("plot_result")(self)
+        return above("plots").plot_result(self)
 
     def as_dict(self) -> dict[str, Any]:
         """Return plain Python values, ready for JSON, without the series."""

@@ -1,4 +1,4 @@
-"""Errors other than bad input: one for each kind of failure, with a message.
+"""Errors other than bad input, one for each kind of failure.
 
 A wrong scene is a `kvtheory.scene.SceneError`, which lists every mistake.
 """

@@ -1,18 +1,75 @@
 """The presentation of a result: a few lines of text, a table in a notebook, a picture, a file."""
 
+import json
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from html import escape
+from importlib import import_module
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from kvtheory.results.above import above
+from kvtheory.export import SERIES_SUFFIXES, Columns, check_path, dataset, replace_file, save_csv
 from kvtheory.results.certificate import Certificate
 from kvtheory.results.table import QUANTITIES, SHOWN_UNITS
 
 
-class Presented:
+def above(module: str) -> Any:
+    """Return a module above the results, such as ``plots``, for methods that draw or write them.
+
+    It is imported on call, since it imports the results.
+    """
+    return import_module(f"kvtheory.{module}")
+
+
+class Exported:
+    """A result with columns that can be written to files."""
+
+    over: Mapping[str, Any] = {}
+    """The values that vary over the states of the result, by key of the scene."""
+
+    def _columns(self) -> Columns:
+        """Return values and SI unit of each column by name."""
+        raise NotImplementedError
+
+    def _attributes(self) -> Mapping[str, str]:
+        """Return what describes the columns as a whole."""
+        raise NotImplementedError
+
+    def to_xarray(self) -> Any:
+        """Return an `xarray.Dataset` with units; what varies over the states is among its coordinates.
+
+        Raises
+        ------
+        ValueError
+            If xarray is missing.
+        """
+        return dataset(self._columns(), self._attributes()).set_coords(list(self.over))
+
+    def to_csv(self, path: str | Path) -> None:
+        """Write one row for each time, or for each state, with units in the header, in SI."""
+        save_csv(Path(path), self._columns())
+
+    def save(self, path: str | Path) -> None:
+        """Write to ``.csv`` or ``.nc`` (needs xarray).
+
+        Raises
+        ------
+        ValueError
+            If the suffix is neither, or xarray is missing.
+        OSError
+            If the file cannot be written.
+        """
+        path = Path(path)
+        check_path(path, SERIES_SUFFIXES)
+        if path.suffix.lower() == ".csv":
+            self.to_csv(path)
+        else:
+            data = self.to_xarray()
+            replace_file(path, lambda part: data.to_netcdf(part, engine="scipy"))
+
+
+class Presented(Exported):
     """A result that holds quantities of the table as attributes, and a certificate.
 
     Examples
@@ -30,18 +87,22 @@ class Presented:
     def _title(self) -> str:
         return f"{type(self).__name__} by {self.model}"
 
-    @property
-    def _named(self) -> tuple[str, ...]:
-        """The quantities that this result holds, in order."""
-        return tuple(name for name in QUANTITIES if hasattr(self, name))
+    def _columns(self) -> Columns:
+        held = {name: getattr(self, name) for name in self.units if hasattr(self, name)}
+        return {name: (values, self.units[name]) for name, values in {**self.over, **held}.items()}
+
+    def _attributes(self) -> Mapping[str, str]:
+        attributes = {"model": self.model, "certificate": self.certificate.statement}
+        if hasattr(self, "events"):
+            attributes["events"] = json.dumps([event._asdict() for event in self.events])
+        return attributes
 
     def _shown(self) -> Iterator[tuple[str, str, str, str]]:
         """Yield name, value, unit and error of each quantity as text."""
-        for name in self._named:
-            unit, factor = SHOWN_UNITS[self.units[name]]
+        for name in filter(lambda name: hasattr(self, name), QUANTITIES):
             error = self.certificate.relative_error.get(name)
             worst = "" if error is None else f"{float(np.max(error, initial=0.0)):.1e}"
-            yield name, spread(getattr(self, name), factor=factor), unit, worst
+            yield name, *in_shown_unit(getattr(self, name), self.units[name]), worst
 
     def __repr__(self) -> str:
         """Return a summary in ten lines at most."""
@@ -51,16 +112,14 @@ class Presented:
         ]
         errors = self.certificate.relative_error.values()
         worst = max((float(np.max(error, initial=0.0)) for error in errors), default=0.0)
-        told = (
-            f"errors up to {worst:.1e} of {self.certificate.relative_to} ({self.certificate.kind})"
-        )
-        return "\n".join([self._title, *pairs, told])
+        scale, kind = self.certificate.relative_to, self.certificate.kind
+        return "\n".join([self._title, *pairs, f"errors up to {worst:.1e} of {scale} ({kind})"])
 
     def _repr_html_(self) -> str:
         """Return a table for notebooks, with units and certificate."""
         heads = ("quantity", "value", "unit", f"error, relative to {self.certificate.relative_to}")
-        told = f"Errors are {self.certificate.kind}: {self.certificate.statement}."
-        return f"{html_table(self._title, heads, self._shown())}<p>{escape(told)}</p>"
+        reason = f"Errors are {self.certificate.kind}: {self.certificate.statement}."
+        return f"{html_table(self._title, heads, self._shown())}<p>{escape(reason)}</p>"
 
     def plot(self, *, ax: Any = None, **style: Any) -> Any:
         """Draw the result and return the figure; `ax` is an axes or several, else they are new.
@@ -68,33 +127,7 @@ class Presented:
         A time series is drawn as in Fig. 3 of the paper; steady sliding as its friction coefficient over what
         varies, or, for a single parabola or ball, as its pressure over the contact.
         """
-        return above("plot_result")(self, ax, **style)
-
-    def to_xarray(self) -> Any:
-        """Return an `xarray.Dataset` with units.
-
-        Raises
-        ------
-        ValueError
-            If xarray is missing.
-        """
-        return above("dataset")(self)
-
-    def to_csv(self, path: str | Path) -> None:
-        """Write one row for each time, or for each state, with units in the header, in SI."""
-        above("save_csv")(self, Path(path))
-
-    def save(self, path: str | Path) -> None:
-        """Write to ``.csv`` or ``.nc`` (needs xarray).
-
-        Raises
-        ------
-        ValueError
-            If the suffix is neither, or xarray is missing.
-        OSError
-            If the file cannot be written.
-        """
-        above("save_result")(self, Path(path))
+        return above("plots").plot_result(self, ax, **style)
 
 
 def aligned(heads: Sequence[str], rows: Iterable[Sequence[str]]) -> list[str]:
@@ -108,15 +141,31 @@ def aligned(heads: Sequence[str], rows: Iterable[Sequence[str]]) -> list[str]:
     return ["  ".join(map(str.ljust, row, widths)).rstrip() for row in table]
 
 
+def in_shown_unit(value: Any, unit: str) -> tuple[str, str]:
+    """Return an SI value, or the range of several, as text in the unit of the tables, and that unit."""
+    name, factor = SHOWN_UNITS[unit]
+    return value_range(value, factor=factor), name
+
+
 def with_unit(value: Any, unit: str) -> str:
-    """Return an SI value, or the least and the largest of several, with the unit of the tables.
+    """Return an SI value, or the range of several, with the unit of the tables.
 
     >>> with_unit(0.05, "m/s"), with_unit([0.05, 2.0], "m/s"), with_unit(float("nan"), "m/s")
     ('50 mm/s', '50 … 2000 mm/s', '-')
     """
-    name, factor = SHOWN_UNITS[unit]
-    text = spread(value, factor=factor)
+    text, name = in_shown_unit(value, unit)
     return text if text == "-" else f"{text} {name}".rstrip()
+
+
+def value_range(value: Any, style: str = "", factor: float = 1.0) -> str:
+    """Return a number as text, or the least and the largest of several; a dash if there is none."""
+    array = np.asarray(value, dtype=float) * factor
+    known = array[~np.isnan(array)]
+    if not known.size:
+        return "-"
+    if known.min() == known.max():
+        return format(known.flat[0], style or ".6g")
+    return f"{known.min():{style or '.4g'}} … {known.max():{style or '.4g'}}"
 
 
 def html_table(caption: str, heads: Iterable[str], rows: Iterable[Iterable[str]]) -> str:
@@ -129,14 +178,3 @@ def html_table(caption: str, heads: Iterable[str], rows: Iterable[Iterable[str]]
         f"<table><caption>{escape(caption)}</caption>"
         f"<thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>"
     )
-
-
-def spread(value: Any, style: str = "", factor: float = 1.0) -> str:
-    """Return a number as text, or the least and the largest of several; a dash if there is none."""
-    array = np.asarray(value, dtype=float) * factor
-    known = array[~np.isnan(array)]
-    if not known.size:
-        return "-"
-    if known.min() == known.max():
-        return format(known.flat[0], style or ".6g")
-    return f"{known.min():{style or '.4g'}} … {known.max():{style or '.4g'}}"

@@ -1,4 +1,4 @@
-"""Steady sliding, and which asymptote of it holds."""
+"""Steady sliding: its state, its stability, and which asymptote of it holds."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, fields
@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from kvtheory.results.certificate import Certificate, Value, record
-from kvtheory.results.presented import Presented, aligned, html_table, spread, with_unit
+from kvtheory.results.presented import Presented, aligned, html_table, value_range, with_unit
 from kvtheory.results.table import STEADY_UNITS
 
 UNSTABLE = (
@@ -76,6 +76,37 @@ class SteadyState(Presented):
 
 
 @dataclass(frozen=True)
+class Stability:
+    """Stability of steady sliding: each quantity a value, or an array where the input was an array.
+
+    `stable` is meant against small disturbances: the real parts of all rates are negative.
+    `rates` holds, along its last axis but one, the rates of small motions in 1/s as pairs (real,
+    imaginary), fastest growth first, and `time_constants` -1/real of each in s: negative for a growing
+    motion. Above `critical_stiffness` (N/m^2, of a ball N/m) of the spring in the drive steady sliding is
+    stable, and below `lower_critical_stiffness`, too, which is 0 where friction falls with velocity.
+    `frequency` (Hz) is that of the motion at the onset of instability, at the upper critical stiffness.
+    `critical_velocity` (m/s) is that of the onset of instability: the smallest at which the present stiffness
+    becomes critical. It is not V* of `kvtheory.asymptotes`, where the asymptotes of friction cross.
+    Values that do not exist, or were not requested, are NaN.
+    """
+
+    stable: Any
+    rates: Value
+    time_constants: Value
+    critical_stiffness: Value
+    lower_critical_stiffness: Value
+    critical_velocity: Value
+    frequency: Value
+    rigid_drive: bool
+    model: str
+    certificate: Certificate
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return plain Python values, ready for JSON; a missing value is None."""
+        return record(self)
+
+
+@dataclass(frozen=True)
 class AsymptoteLine:
     """One asymptote of a scene: its value, the exact one, and its range.
 
@@ -137,19 +168,19 @@ class AsymptoteReport:
     def __repr__(self) -> str:
         """Return what to use, and a table of the asymptotes."""
         table = ["", *aligned(self._heads(), self._rows())] if self.lines else []
-        return "\n".join([*self._told(), *table])
+        return "\n".join([*self._summary(), *table])
 
     def _repr_html_(self) -> str:
         """Return the same for notebooks."""
         if not self.lines:
-            return "".join(f"<p>{escape(line)}</p>" for line in self._told())
-        return html_table("; ".join(self._told()), self._heads(), self._rows())
+            return "".join(f"<p>{escape(line)}</p>" for line in self._summary())
+        return html_table("; ".join(self._summary()), self._heads(), self._rows())
 
     def as_dict(self) -> dict[str, Any]:
         """Return plain Python values, ready for JSON; what does not exist is None."""
         return {f.name: record(getattr(self, f.name)) for f in fields(self) if f.repr}
 
-    def _told(self) -> list[str]:
+    def _summary(self) -> list[str]:
         velocity, maxima = with_unit(self.velocity, "m/s"), self._maxima()
         if not self.lines:
             return [f"V = {velocity}", maxima, *self.notes]
@@ -192,7 +223,7 @@ class AsymptoteReport:
                 (
                     line.name, f"({line.equation})" if line.equation else "", line.formula,
                     with_unit(line.value, unit), with_unit(line.exact, unit),
-                    spread(line.relative_error, "+.3g"),
+                    value_range(line.relative_error, "+.3g"),
                     _velocities(line.velocity_min, line.velocity_max),
                     *(() if self._proved else (_velocities(*proved),)),
                 )

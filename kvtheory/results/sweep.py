@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from kvtheory.results.above import above
 from kvtheory.results.certificate import Certificate, record
+from kvtheory.results.presented import above
 from kvtheory.scene.files import to_toml
 from kvtheory.scene.model import Scene
 
@@ -134,7 +134,7 @@ class Sweep:
         >>> ax.get_xlabel(), ax.get_xscale()
         ('drive velocity $V$ [mm/s]', 'log')
         """
-        return above("plot_sweep")(ax, self, quantity)
+        return above("plots").plot_sweep(ax, self, quantity)
 
     def save(self, path: str | Path) -> None:
         """Write to ``.csv`` (one row for each point) or ``.nc`` (needs netCDF4); see `kvtheory.sweep`.
@@ -146,7 +146,7 @@ class Sweep:
         OSError
             If the file cannot be written.
         """
-        above("save_sweep")(self, Path(path))
+        above("sweeps.files").save_sweep(self, Path(path))
 
     def as_dict(self) -> dict[str, Any]:
         """Return plain Python values, ready for JSON; a missing value is None."""

@@ -38,6 +38,10 @@ _ALL = (
     Row("trailing_edge", r"x_\mathrm{TE}", "m", "trailing edge", "half_length"),
     Row("peak_pressure", r"p_\mathrm{max}", "Pa", "peak pressure", "pressure"),
     Row("dissipated_in_contact", "", "1", "share dissipated in the contact", ""),
+    Row("critical_stiffness", r"k_\mathrm{c}", "N/m^2", "critical stiffness of the spring", ""),
+    Row("lower_critical_stiffness", "", "N/m^2", "lower critical stiffness of the spring", ""),
+    Row("frequency", "", "Hz", "frequency at the onset of instability", ""),
+    Row("critical_velocity", "", "m/s", "velocity at the onset of instability", ""),
 )
 QUANTITIES = {row.name: row for row in _ALL}
 """The quantities by name."""
@@ -59,6 +63,12 @@ TRANSIENT_UNITS = {
     )
 }  # fmt: skip
 """The quantities of a time series and their units, `time` first."""
+
+STABILITY_UNITS = {
+    name: QUANTITIES[name].unit
+    for name in ("critical_stiffness", "lower_critical_stiffness", "frequency", "critical_velocity")
+}
+"""The quantities of the stability of steady sliding and their units, beside its rates."""
 
 SPRING_UNITS = {name: QUANTITIES[name].unit for name in ("sliding_velocity", "spring_force")}
 """The additional quantities of a time series if the drive has a spring."""

@@ -157,7 +157,7 @@ def template(support: str = "dead-weight") -> str:
         "velocity": "100 mm/s", "duration": "200 ms",
     }  # fmt: skip
     scene = Scene.table1(support)
-    lines = ["# A scene for kvtheory: a rigid indenter slides on a Kelvin-Voigt foundation.", ""]
+    lines = ["# A scene for kvtheory: a rigid indenter slides on a viscoelastic foundation.", ""]
     for section in SECTIONS:
         part = getattr(scene, section)
         lines.append(f"[{section}]")
