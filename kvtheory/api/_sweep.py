@@ -132,16 +132,18 @@ def sweep(
     ----------
     Nakano and Kono (2020), doi:10.3389/fmech.2020.00038; see `steady` and `transient`.
     """
-    from kvtheory.sweeps import session  # what it needs takes a while to import
+    from kvtheory.sweeps import engine  # what it needs takes a while to import
     from kvtheory.sweeps.size import refuse_what_cannot_fit
 
     plan = plan_of(scene, over=over, quantities=quantities, at=at, method=method, rtol=rtol)
     file = None if output is None else Path(output)
     refuse_what_cannot_fit(plan, file, jobs)
-    walk = session.walker(plan, executor, jobs, in_flight, block, progress)
+    how: dict[str, Any] = {
+        "executor": executor, "jobs": jobs, "in_flight": in_flight, "block": block, "report": progress,
+    }  # fmt: skip
     if file is None:
-        return session.in_memory(plan, walk)
-    return session.into_file(plan, walk, file, overwrite=overwrite)
+        return engine.in_memory(plan, **how)
+    return engine.into_file(plan, file, overwrite=overwrite, **how)
 
 
 @checked(
@@ -159,8 +161,7 @@ def plan_of(
 ) -> "Plan":
     """Check the arguments of `sweep` together, and return the plan."""
     from kvtheory.sweeps.axes import axes_of
-    from kvtheory.sweeps.columns import OF_ELEMENTS, STABLE, columns_of
-    from kvtheory.sweeps.plan import Plan
+    from kvtheory.sweeps.plan import OF_ELEMENTS, STABLE, Plan, columns_of
 
     scene = scene_of(scene)
     method = method_for(scene, method)

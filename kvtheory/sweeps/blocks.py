@@ -1,12 +1,13 @@
 """One block of a sweep: a small task in, numbers out. The only place where scenes are solved.
 
-`compute` is a function of its argument alone, so every executor and every cut into blocks gives the
-same bits; a scene that fails is a missing value with its reason, and its neighbours are not touched.
+`compute` is a function of its argument alone, so that every executor and every size of block gives the
+same bits. A scene that fails is a missing value with its reason; the others are not affected.
 """
 
-from collections.abc import Mapping, Sequence
+import json
+from collections.abc import Iterable, Mapping
 from contextlib import suppress
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -14,54 +15,113 @@ from numpy.typing import NDArray
 
 from kvtheory.models.steady.methods import METHODS
 from kvtheory.models.steady.stable_sliding import lasts
+from kvtheory.results.certificate import Certificate
+from kvtheory.results.sweep import Failure
 from kvtheory.scene.model import Scene
-from kvtheory.sweeps.axes import narrowed, values_at
-from kvtheory.sweeps.columns import STABLE
-from kvtheory.sweeps.plan import Plan
+from kvtheory.sweeps.axes import values_at
+from kvtheory.sweeps.plan import STABLE, Plan
 
 Array = NDArray[np.float64]
 
 FAILS = (ValueError, ArithmeticError, RuntimeError)
-"""What a scene without an answer raises; anything else is a mistake of the program."""
+"""What a scene without an answer raises; anything else is a defect of the program."""
 
 INTERPRETED = 1.5
-"""Of the steps from which compiling pays: more are interpreted before the first block that is compiled."""
+"""Steps interpreted before the first block is compiled, over those from which compiling pays."""
 
 
 @dataclass(frozen=True)
 class Task:
-    """Points `start` to `stop` of a sweep; its plan holds only the values that they need."""
+    """Points of a sweep from `start` on: their swept values, and the plan without its axes."""
 
     plan: Plan
     start: int
-    stop: int
-    moved: int
+    over: Mapping[str, Array]
+    tries: int = 1
 
     @property
     def points(self) -> int:
-        """How many scenes it holds."""
-        return self.stop - self.start
+        """The number of scenes."""
+        return next(iter(self.over.values())).size
 
 
-@dataclass(frozen=True)
+@dataclass
+class Account:
+    """What is known of points besides their values: which failed and why, and the worst errors."""
+
+    points: int = 0
+    failed: int = 0
+    failures: dict[int, str] = field(default_factory=dict)
+    statements: set[str] = field(default_factory=set)
+    errors: dict[str, float] = field(default_factory=dict)
+
+    @classmethod
+    def of(cls, blocks: Iterable["Block"], most: int | None = None) -> "Account":
+        """Sum up blocks; `failures` lists at most the first `most`."""
+        total = cls()
+        for block in blocks:
+            total.add(block.account, most)
+        return total
+
+    def add(self, other: "Account", most: int | None = None) -> None:
+        """Add the account of other points."""
+        self.points += other.points
+        self.failed += other.failed
+        if most is None or len(self.failures) < most:
+            self.failures |= dict(list(other.failures.items())[:most])
+        self.statements |= other.statements
+        for name, error in other.errors.items():
+            self.worst(name, error)
+
+    def worst(self, name: str, errors: Any) -> None:
+        """Raise the error of a quantity to the largest of these."""
+        self.errors[name] = max(self.errors.get(name, 0.0), float(np.max(errors, initial=0.0)))
+
+    def fail(self, index: int, error: Exception) -> None:
+        """Note on one line why a scene has no answer."""
+        reason = "; ".join(str(error).splitlines()) or type(error).__name__
+        if isinstance(error, FloatingPointError | OverflowError | ZeroDivisionError):
+            reason = f"the scene leaves the range of double precision: {reason}"
+        self.failures[index] = reason
+
+    @property
+    def certificate(self) -> Certificate:
+        """The certificate of all points."""
+        return Certificate("estimated", "; ".join(sorted(self.statements)), self.errors)
+
+    def listed(self, plan: Plan) -> tuple[Failure, ...]:
+        """Return the failures with the swept values of their points."""
+        found = []
+        for index, reason in self.failures.items():
+            point = {key: float(a[0]) for key, a in values_at(plan.axes, index, index + 1).items()}
+            found.append(Failure(index, point, reason))
+        return tuple(found)
+
+    def to_json(self) -> str:
+        """Return the account as JSON."""
+        failures = list(self.failures.items())
+        return json.dumps([self.points, self.failed, failures, sorted(self.statements), self.errors])
+
+    @classmethod
+    def from_json(cls, text: str) -> "Account":
+        """Read what `to_json` gave."""
+        points, failed, failures, statements, errors = json.loads(text)
+        return cls(points, failed, dict(failures), set(statements), errors)
+
+
+@dataclass
 class Block:
-    """Results of the points `start` to `stop`: an array over them for each column, see `Plan.blank`.
-
-    `failures` are pairs of index and reason; `errors` is the certificate: the statements, and the
-    worst relative error of each quantity.
-    """
+    """Results of the points from `start` to `stop`: an array over them for each column (`Plan.blank`)."""
 
     start: int
     stop: int
-    values: Mapping[str, NDArray[Any]]
-    failures: Sequence[tuple[int, str]]
-    errors: tuple[Sequence[str], Mapping[str, float]]
+    values: dict[str, NDArray[Any]]
+    account: Account
 
 
 def task(plan: Plan, start: int, stop: int) -> Task:
     """Return the task for some points of a plan."""
-    axes, moved = narrowed(plan.axes, start, stop)
-    return Task(replace(plan, axes=axes), start, stop, moved)
+    return Task(replace(plan, axes=()), start, values_at(plan.axes, start, stop))
 
 
 def compute(given: Task) -> Block:
@@ -70,59 +130,46 @@ def compute(given: Task) -> Block:
     Examples
     --------
     >>> from kvtheory.sweeps.axes import axes_of
-    >>> from kvtheory.sweeps.columns import columns_of
+    >>> from kvtheory.sweeps.plan import columns_of
     >>> axes = axes_of(Scene(), {"drive.velocity": [0.1, 0.2, 0.4]})
     >>> plan = Plan(Scene(), axes, columns_of("depth", series=False), None, "exact", 1e-6)
     >>> compute(task(plan, 1, 3)).values["depth"].round(6).tolist()
     [4.7e-05, 2.4e-05]
     """
-    plan = given.plan
-    over = values_at(plan.axes, given.start - given.moved, given.stop - given.moved)
-    found = plan.blank(given.points)
-    reasons: dict[int, str] = {}
-    statements: set[str] = set()
-    errors: dict[str, float] = {}
-    needed = {column.base for column in plan.columns if column.steady} | plan.compared
-    steady: dict[str, Array] = {}
-    if needed:
-        told, worst_of = _steady(plan, over, sorted(needed), steady, reasons)
-        statements |= told
-        for column in plan.columns:
-            if column.steady:
-                found[column.name] = steady[column.base]
-                if column.base != STABLE:
-                    errors[column.name] = worst_of.get(column.base, 0.0)
+    plan, account = given.plan, Account(given.points)
+    values = plan.blank(given.points)
+    names = sorted({column.base for column in plan.columns if column.steady} | plan.compared)
+    steady, errors = _steady(given, names, account) if names else ({}, {})
+    for column in plan.columns:
+        if column.steady:
+            values[column.name] = steady[column.base]
+            if column.base != STABLE:
+                account.worst(column.name, errors.get(column.base, 0.0))
     if plan.transient:
-        statements |= _transients(given, over, steady, (found, reasons, errors))
-    blank = plan.blank(1)
-    for name, array in found.items():
-        array[list(reasons)] = blank[name][0]
-    failures = [(given.start + index, reasons[index]) for index in sorted(reasons)]
-    return Block(given.start, given.stop, found, failures, (sorted(statements), errors))
+        _transients(given, steady.get("friction_force"), values, account)
+    failed = sorted(account.failures)
+    for name, missing in plan.blank(1).items():
+        values[name][failed] = missing[0]
+    account.failed = len(failed)
+    account.failures = {given.start + index: account.failures[index] for index in failed}
+    return Block(given.start, given.start + given.points, values, account)
 
 
 def _steady(
-    plan: Plan,
-    over: Mapping[str, Array],
-    names: Sequence[str],
-    found: dict[str, Array],
-    reasons: dict[int, str],
-) -> tuple[set[str], dict[str, float]]:
-    """Find quantities of steady sliding; halve a block that fails until the scene at fault is alone.
+    given: Task, names: list[str], account: Account
+) -> tuple[dict[str, Array], dict[str, float]]:
+    """Return quantities of steady sliding and their worst errors.
 
-    Returns the statements of the certificates and the worst errors.
+    A part that fails is halved until the scene at fault is alone.
     """
-    count = next(iter(over.values())).size
-    found |= {name: np.full(count, np.nan) for name in names}
-    statements: set[str] = set()
-    errors: dict[str, float] = {}
-    waiting = [(0, count)]
+    plan, worst = given.plan, Account()
+    found = {name: np.full(given.points, np.nan) for name in names}
+    waiting = [(0, given.points)]
     while waiting:
         a, b = waiting.pop()
-        part = {key: array[a:b] for key, array in over.items()}
         try:
             with np.errstate(over="raise", invalid="raise", divide="raise"):
-                scene = plan.scene.replace(part)
+                scene = plan.scene.replace({key: array[a:b] for key, array in given.over.items()})
                 state = METHODS[plan.method](scene)
                 if STABLE in names:
                     state = replace(state, stable=lasts(scene))
@@ -131,54 +178,56 @@ def _steady(
                 middle = (a + b) // 2
                 waiting += [(middle, b), (a, middle)]
             else:
-                reasons[a] = reason(error)
+                account.fail(a, error)
             continue
-        statements.add(state.certificate.statement)
+        account.statements.add(state.certificate.statement)
         for name in names:
             found[name][a:b] = getattr(state, name)
             if name != STABLE:
-                worst(errors, name, state.certificate.relative_error[name])
-    return statements, errors
+                worst.worst(name, state.certificate.relative_error[name])
+    return found, worst.errors
 
 
 def _transients(
-    given: Task,
-    over: Mapping[str, Array],
-    steady: Mapping[str, Array],
-    into: tuple[Mapping[str, NDArray[Any]], dict[int, str], dict[str, float]],
-) -> set[str]:
-    """Follow the motions; return the statements of the certificates.
-
-    `into` is filled: the arrays of the columns, the reasons of failures, and the worst errors.
-    """
-    plan, (arrays, reasons, errors) = given.plan, into
-    # Imported here: the solver and the simulator take a while.
+    given: Task, friction: Array | None, values: dict[str, NDArray[Any]], account: Account
+) -> None:
+    """Follow the motions; `friction` is the steady friction force in N/m, where it is needed."""
+    plan = given.plan
+    # Imported here, as the solver and the simulator take a while to import.
     if plan.by_elements:
         from kvtheory.sweeps.simulated import measure
     else:
         from kvtheory.sweeps.measures import measure
 
     scenes: dict[int, Scene] = {}
-    for index in range(given.points):
-        if index in reasons:
-            continue
-        point = {key: float(array[index]) for key, array in over.items()}
+    for index in set(range(given.points)) - account.failures.keys():
         try:
-            scenes[index] = _in_time(plan, plan.scene.replace(point))
+            scenes[index] = _scene(given, index)
         except FAILS as error:
-            reasons[index] = reason(error)
-    friction = steady.get("friction_force", np.full(given.points, np.nan))
+            account.fail(index, error)
+    if friction is None:
+        friction = np.full(given.points, np.nan)
     with np.errstate(over="raise", invalid="raise", divide="raise"):
         found = measure(plan, scenes, friction, FAILS)
-    reasons.update((index, reason(error)) for index, error in found.reasons.items())
+    for index, error in found.reasons.items():
+        account.fail(index, error)
+    account.statements |= found.statements
+    kept = [index for index in scenes if index not in account.failures]
     columns = [column for column in plan.columns if not column.steady]
-    kept = [index for index in scenes if index not in reasons]
-    for name in {column.base for column in columns if column.base} | plan.compared:
-        worst(errors, name, found.errors[name][kept])
+    for name in sorted({column.base for column in columns if column.base} | plan.compared):
+        account.worst(name, found.errors[name][kept])
     for column in columns:
-        values = found.texts if column.text else found.values
-        arrays[column.name][:] = values[column.name]
-    return found.statements
+        values[column.name][:] = found.values[column.name]
+
+
+def _scene(given: Task, index: int) -> Scene:
+    """Return one scene of a task, whose run must be as long as the times that are asked for."""
+    point = {key: float(array[index]) for key, array in given.over.items()}
+    scene = given.plan.scene.replace(point)
+    if max(given.plan.times or (0.0,)) > scene.run.duration:
+        late = f"a time of `at` is after the end of the run, {scene.run.duration} s"
+        raise ValueError(late)
+    return scene
 
 
 def compile_ahead(plan: Plan, points: int, workers: int) -> None:
@@ -194,28 +243,6 @@ def compile_ahead(plan: Plan, points: int, workers: int) -> None:
     if not compiled.available() or STEPS * points < INTERPRETED * compiled.WORTHWHILE * workers:
         return
     for index in (0, plan.points - 1):  # the second, if the first has no answer
-        over = values_at(plan.axes, index, index + 1)
         with suppress(*FAILS):
-            point = {key: float(array[0]) for key, array in over.items()}
-            compile_ahead(plan, plan.scene.replace(point))
+            compile_ahead(plan, _scene(task(plan, index, index + 1), 0))
             break
-
-
-def _in_time(plan: Plan, scene: Scene) -> Scene:
-    """Return a scene whose run is as long as the times that are asked for."""
-    if max(plan.times or (0.0,)) > scene.run.duration:
-        late = f"a time of `at` is after the end of the run, {scene.run.duration} s"
-        raise ValueError(late)
-    return scene
-
-
-def reason(error: Exception) -> str:
-    """Say on one line why a scene has no answer."""
-    range_left = isinstance(error, FloatingPointError | OverflowError | ZeroDivisionError)
-    told = "; ".join(str(error).splitlines()) or type(error).__name__
-    return f"the scene leaves the range of double precision: {told}" if range_left else told
-
-
-def worst(errors: dict[str, float], name: str, error: Any) -> None:
-    """Raise the error of a quantity to the largest seen."""
-    errors[name] = max(errors.get(name, 0.0), float(np.max(error, initial=0.0)))

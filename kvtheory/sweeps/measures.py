@@ -6,7 +6,7 @@ nothing is compiled or events are asked for, are followed one by one, into the s
 
 import json
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -26,8 +26,7 @@ from kvtheory.results.table import QUANTITIES
 from kvtheory.scene.base_motion import BaseMotion
 from kvtheory.scene.model import Scene
 from kvtheory.scene.static_state import StaticState
-from kvtheory.sweeps.columns import CYCLE, Column
-from kvtheory.sweeps.plan import Plan
+from kvtheory.sweeps.plan import CYCLE, Column, Plan
 
 Array = NDArray[np.float64]
 
@@ -56,10 +55,9 @@ DOUBLINGS = 2
 
 @dataclass(frozen=True)
 class Measured:
-    """Values of each column, in the order of the scenes; texts; why a scene has none; and the errors."""
+    """Values of each column, in the order of the scenes; why a scene has none; and the errors."""
 
     values: Mapping[str, Any]
-    texts: Mapping[str, Sequence[str]]
     reasons: Mapping[int, Exception]
     statements: set[str]
     errors: Mapping[str, Array]
@@ -219,8 +217,8 @@ class _Block:
             for column in self.plan.columns
             if column.measure in _VALUES
         }
-        texts = {column.name: self.texts for column in self.plan.textual}
-        return Measured(values, texts, self.reasons, self.statements, self.errors)
+        values |= {column.name: self.texts for column in self.plan.textual}
+        return Measured(values, self.reasons, self.statements, self.errors)
 
     def scales(self, name: str) -> Array:
         """Return what measures a quantity of each scene, by the name of the scale or of the quantity."""

@@ -1,8 +1,13 @@
-"""The whole of a sweep before it is run: what decides every number in it."""
+"""What is asked of a sweep: its columns, and with scene, axes and method the plan that decides every number.
+
+A column NAME is a steady quantity, or with times a series; NAME.steady is always the steady one; NAME.end,
+NAME.max, NAME.min and NAME.time_of_max belong to a transient; so do those of `WHOLE` and `CYCLE`.
+"""
 
 import hashlib
 import json
-from collections.abc import Mapping
+import math
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from importlib.metadata import version
@@ -11,17 +16,99 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from kvtheory.results import SERIES_UNITS, SPRING_UNITS, STEADY_UNITS, TRANSIENT_UNITS, units_for
 from kvtheory.results.sweep import Axis
 from kvtheory.scene.files import to_toml
+from kvtheory.scene.indenters import Indenter, Parabola
 from kvtheory.scene.model import Scene
+from kvtheory.scene.quantities import SceneError, nearest, problem
 from kvtheory.scene.requirements import lacks_paper_model
-from kvtheory.sweeps.axes import size
-from kvtheory.sweeps.columns import Column
+
+MEASURES = ("end", "max", "min", "time_of_max")
+OF_ELEMENTS = ("steady", "series", "end", "max", "min", "peak_to_steady_friction")
+"""What elements can measure. The time of a maximum and short losses of contact need more resolution."""
+STABLE = "stable"
+"""Whether steady sliding is stable on the spring in the drive: 1 or 0."""
+WHOLE = {"peak_to_steady_friction": "1", "settling_time": "s", "hops": "1", "events": ""}
+"""Single values of a whole transient, and their units; `events` is text."""
+CYCLE = {
+    "stick_slip_settles": "1",
+    "stick_slip_amplitude": "m",
+    "stick_slip_period": "s",
+    "sliding_velocity.cycle_max": "m/s",
+    "sliding_velocity.cycle_min": "m/s",
+    "friction_force.cycle_max": "N/m",
+    "friction_force.cycle_min": "N/m",
+}
+"""Single values of the limit cycle of an indenter on a spring, in the order of `cycles.Cycle`."""
+
+
+@dataclass(frozen=True)
+class Column:
+    """A quantity of the result: `measure` says what is taken of the quantity `base`."""
+
+    name: str
+    unit: str
+    base: str
+    measure: str
+
+    @property
+    def steady(self) -> bool:
+        """Whether it belongs to steady sliding."""
+        return self.measure == "steady"
+
+    @property
+    def sprung(self) -> bool:
+        """Whether only a drive with a spring has it."""
+        return self.measure in CYCLE or self.base in SPRING_UNITS
+
+    @property
+    def text(self) -> bool:
+        """Whether it is text."""
+        return not self.unit
+
+
+def columns_of(
+    names: Sequence[str] | str | None, *, series: bool, indenter: Indenter = Parabola(1.0)
+) -> tuple[Column, ...]:
+    """Return the columns by name; None stands for all steady quantities, or all series.
+
+    Raises
+    ------
+    SceneError
+        Listing every name that does not exist, with the nearest that does.
+
+    Examples
+    --------
+    >>> [column.unit for column in columns_of(["load", "depth.time_of_max", "hops"], series=False)]
+    ['N/m', 's', '1']
+    """
+    over_time = {name: unit for name, unit in SERIES_UNITS.items() if name != "time"}
+    rows = [(name, unit, name, "steady") for name, unit in {**STEADY_UNITS, STABLE: "1"}.items()]
+    rows += [(name, unit, name, "series") for name, unit in over_time.items()] * series
+    rows += [(f"{name}.steady", unit, name, "steady") for name, unit in STEADY_UNITS.items()]
+    rows += [
+        (f"{name}.{measure}", "s" if measure == "time_of_max" else unit, name, measure)
+        for name, unit in over_time.items()
+        for measure in MEASURES
+    ]
+    rows += [(name, unit, "", name) for name, unit in (WHOLE | CYCLE).items()]
+    units = units_for(indenter, {name: unit for name, unit, *_ in rows})
+    known = {name: Column(name, units[name], *how) for name, _, *how in rows}
+    if names is None:
+        names = [name for name in (TRANSIENT_UNITS if series else STEADY_UNITS) if name != "time"]
+    names = list(dict.fromkeys([names] if isinstance(names, str) else names))
+    if not names:
+        raise SceneError(["`quantities` is empty: expected names such as friction_coefficient"])
+    if unknown := [name for name in names if name not in known]:
+        told = [problem("`quantities`", name, nearest(str(name), known)) for name in unknown]
+        raise SceneError(told)
+    return tuple(known[name] for name in names)
 
 
 @dataclass(frozen=True)
 class Plan:
-    """A scene, what is swept, what is asked, and how it is solved; small and picklable."""
+    """A scene, what varies, what is asked, and how it is solved."""
 
     scene: Scene
     axes: tuple[Axis, ...]
@@ -32,8 +119,13 @@ class Plan:
 
     @cached_property
     def points(self) -> int:
-        """How many scenes there are."""
-        return size(self.axes)
+        """The number of scenes."""
+        return math.prod(self.grid)
+
+    @property
+    def grid(self) -> tuple[int, ...]:
+        """The lengths of the axes."""
+        return tuple(axis.size for axis in self.axes)
 
     @property
     def numeric(self) -> tuple[Column, ...]:
@@ -47,18 +139,18 @@ class Plan:
 
     @property
     def transient(self) -> bool:
-        """Whether any column needs the motion to be followed."""
+        """Whether any column belongs to a transient."""
         return not all(column.steady for column in self.columns)
 
     @property
     def compared(self) -> set[str]:
-        """The steady quantities that columns of the transient are held against."""
+        """The steady quantities with which columns of the transient are compared."""
         against = ("peak_to_steady_friction", "settling_time")
         return {"friction_force"} if any(c.measure in against for c in self.columns) else set()
 
     @property
     def by_elements(self) -> bool:
-        """Whether elements follow the motion, for the solver does not hold for the scene."""
+        """Whether transients are simulated by elements, as the solver does not hold for the scene."""
         return bool(lacks_paper_model(self.scene))
 
     @property
@@ -68,15 +160,15 @@ class Plan:
 
     @property
     def series(self) -> bool:
-        """Whether any column has one value for each time."""
+        """Whether any column is a series, with one value for each time."""
         return any(column.measure == "series" for column in self.columns)
 
     def shape(self, column: Column) -> tuple[int, ...]:
-        """Return the shape of what a column holds for each point: of its times, or of one value."""
+        """Return the shape of a column at one point."""
         return (len(self.times or ()),) if column.measure == "series" else ()
 
     def blank(self, points: int) -> dict[str, NDArray[Any]]:
-        """Return an array for each column, first over `points`, without values: NaN or no text."""
+        """Return an array of missing values for each column, its first dimension over `points`."""
         return {
             c.name: np.full(
                 (points, *self.shape(c)), "" if c.text else np.nan, object if c.text else float
@@ -91,11 +183,9 @@ class Plan:
         swept = {key: specs[key].unit for axis in self.axes for key in axis.values}
         return swept | {column.name: column.unit for column in self.columns}
 
+    @cached_property
     def record(self) -> dict[str, Any]:
-        """Return what tells this sweep from every other one, ready for JSON.
-
-        Two sweeps with equal records give the same numbers; values are told apart by their digest.
-        """
+        """The identity of the sweep, ready for JSON: equal records mean equal numbers."""
         return {
             "kvtheory": version("kvtheory"),
             "scene": to_toml(self.scene),
@@ -108,18 +198,16 @@ class Plan:
             "rtol": self.rtol if self.transient else None,
         }
 
-
-def differences(found: str, plan: Plan) -> list[str]:
-    """Name what differs between the record of a file, as JSON text, and that of a plan."""
-    ours = plan.record()
-    try:
-        theirs = json.loads(found)
-        return [key for key in ours if theirs[key] != ours[key]]
-    except (ValueError, TypeError, KeyError):
-        return list(ours)
+    def differences(self, found: str) -> list[str]:
+        """Return the parts in which the record of a file, as JSON, differs from that of this sweep."""
+        try:
+            theirs = json.loads(found)
+            return [key for key, ours in self.record.items() if theirs[key] != ours]
+        except (ValueError, TypeError, KeyError):
+            return list(self.record)
 
 
-def _digest(array: Any) -> dict[str, Any]:
+def _digest(array: NDArray[np.float64]) -> dict[str, Any]:
     return {
         "count": int(array.size),
         "first": float(array[0]),

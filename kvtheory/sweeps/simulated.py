@@ -17,9 +17,8 @@ from kvtheory.models.elements.simulation import simulate
 from kvtheory.results import Simulation
 from kvtheory.results.table import scales
 from kvtheory.scene.model import Scene
-from kvtheory.sweeps.columns import Column
+from kvtheory.sweeps.plan import Column, Plan
 from kvtheory.sweeps.measures import Measured, relative
-from kvtheory.sweeps.plan import Plan
 
 Array = NDArray[np.float64]
 
@@ -42,7 +41,7 @@ def measure(
     """Simulate scenes one by one; as `measures.measure`, for the measures of `columns.OF_ELEMENTS`.
 
     >>> from kvtheory.scene import Circle, Foundation
-    >>> from kvtheory.sweeps.columns import columns_of
+    >>> from kvtheory.sweeps.plan import columns_of
     >>> circle = Scene(Circle(0.01))
     >>> plan = Plan(circle, (), columns_of("depth.end", series=False), None, "quadrature", 1e-6)
     >>> measure(plan, {0: circle}, np.zeros(1), ()).values["depth.end"].round(6)
@@ -75,7 +74,7 @@ def measure(
             own = found.certificate.relative_error[name] + between / scale[name]
             values[column.name][index] = value
             errors[name][index] = max(errors[name][index], own)
-    return Measured(values, {}, reasons, statements, errors)
+    return Measured(values, reasons, statements, errors)
 
 
 _TOP: Mapping[str, tuple[Callable[[Array], Array], float]] = {

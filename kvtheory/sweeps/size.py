@@ -1,4 +1,4 @@
-"""How large a sweep is, told before it begins; what cannot fit is refused."""
+"""The size of a sweep, announced before it begins; what cannot fit is refused."""
 
 import math
 import os
@@ -9,11 +9,11 @@ from kvtheory.progress import duration
 from kvtheory.sweeps.plan import Plan
 
 ON_ARRAYS, BY_QUADRATURE, IN_MOTION = 1e6, 1e5, 1e3
-"""Scenes that a core solves in a second, to a factor of some three: as measured for Table 1."""
+"""Scenes that a core solves in a second, within a factor of three: as measured for Table 1."""
 NUMBER, DIGITS = 8, 21
 """Bytes of a number, and of its decimals with a comma or an end of line."""
-TOLD = 10.0
-"""Seconds from which a sweep is worth announcing."""
+ANNOUNCED = 10.0
+"""Seconds from which a sweep is announced."""
 
 
 def seconds(plan: Plan, jobs: int = 1) -> float:
@@ -23,28 +23,29 @@ def seconds(plan: Plan, jobs: int = 1) -> float:
 
 
 def size(plan: Plan, path: Path | None) -> int:
-    """Return about how many bytes a sweep needs: in memory, or in a file and its work file."""
+    """Return about how many bytes a sweep needs: in memory with its blocks, or in a file and its work file."""
     width = sum(math.prod(plan.shape(column)) for column in plan.columns)
+    needed = plan.points * width * NUMBER
     if path is None or path.suffix.lower() != ".csv":
-        return plan.points * width * NUMBER * (1 if path is None else 2)
+        return 2 * needed
     rows = plan.points * (len(plan.times or ()) if plan.series else 1)
     keys = sum(len(axis.values) for axis in plan.axes) + plan.series
-    return plan.points * width * NUMBER + rows * (len(plan.columns) + keys) * DIGITS
+    return needed + rows * (len(plan.columns) + keys) * DIGITS
 
 
 def announcement(plan: Plan, path: Path | None, jobs: int = 1) -> str:
-    """Say how large a sweep is, if that is worth telling.
+    """Say how large a sweep is, if it takes a while.
 
     >>> from kvtheory.scene import Scene
     >>> from kvtheory.sweeps.axes import axes_of
-    >>> from kvtheory.sweeps.columns import columns_of
+    >>> from kvtheory.sweeps.plan import columns_of
     >>> over = {"drive.velocity": "1 mm/s:1 m/s:10000", "support.mass": "1 kg/m:2 kg/m:10000"}
     >>> columns = columns_of("load", series=False)
     >>> plan = Plan(Scene(), axes_of(Scene(), over), columns, None, "exact", 1e-6)
-    >>> announcement(plan, None)
-    '100,000,000 points: about 800 MB and 100 s'
+    >>> announcement(plan, Path("map.nc"))
+    '100,000,000 points: about 1.6 GB and 100 s'
     """
-    if seconds(plan, jobs) < TOLD:
+    if seconds(plan, jobs) < ANNOUNCED:
         return ""
     return f"{plan.points:,} points: {_about(size(plan, path), seconds(plan, jobs))}"
 
@@ -53,16 +54,20 @@ def refuse_what_cannot_fit(plan: Plan, path: Path | None, jobs: int = 1) -> None
     """Raise `ValueError` if a sweep needs more than the memory or the disk holds."""
     needed = size(plan, path)
     if path is None:
-        room, where = _memory(), "of memory; choose fewer points, or write to a file (`output`)"
+        try:
+            free = float(os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE"))
+        except (AttributeError, OSError, ValueError):  # not every system tells
+            free = math.inf
+        where = "of memory; choose fewer points, or write to a file (`output`)"
     else:
-        room = shutil.disk_usage(path.parent).free if path.parent.is_dir() else math.inf
+        free = shutil.disk_usage(path.parent).free if path.parent.is_dir() else math.inf
         where = f'free beside "{path}"; choose fewer points'
-    if needed > room:
+    if needed > free:
         about = _about(needed, seconds(plan, jobs))
-        raise ValueError(f"{plan.points:,} points need {about}; there are {_bytes(room)} {where}")
+        raise ValueError(f"{plan.points:,} points need {about}; there are {_bytes(free)} {where}")
 
 
-def _about(needed: int, time: float) -> str:
+def _about(needed: float, time: float) -> str:
     return f"about {_bytes(needed)} and {duration(time)}"
 
 
@@ -72,11 +77,3 @@ def _bytes(number: float) -> str:
             return f"{number:.3g} {unit}"
         number /= 1000.0
     return f"{number:,.3g} EB"
-
-
-def _memory() -> float:
-    """Return the bytes of memory, where the system tells."""
-    try:
-        return float(os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE"))
-    except (AttributeError, OSError, ValueError):
-        return math.inf
