@@ -9,7 +9,7 @@ from kvtheory.api._edge import scene_of, times_of
 from kvtheory.api._steady import LACKS, method_for
 from kvtheory.api._transient import MAXIMUM_RTOL, MINIMUM_RTOL
 from kvtheory.progress import Progress
-from kvtheory.results import STEADY_UNITS, Sweep
+from kvtheory.results import SPRING_UNITS, STEADY_UNITS, Sweep
 from kvtheory.scene.arguments import (
     a_scene,
     callback,
@@ -161,7 +161,7 @@ def plan_of(
 ) -> "Plan":
     """Check the arguments of `sweep` together, and return the plan."""
     from kvtheory.sweeps.axes import axes_of
-    from kvtheory.sweeps.plan import OF_ELEMENTS, STABLE, Plan, columns_of
+    from kvtheory.sweeps.plan import CYCLE, OF_ELEMENTS, STABLE, Plan, columns_of
 
     scene = scene_of(scene)
     method = method_for(scene, method)
@@ -179,7 +179,8 @@ def plan_of(
             names, why = ", ".join(lacking), lacks_paper_model(scene)
             raise SceneError([f"`quantities` {names}: {why}; `elements` gives {had}"])
     for column in columns:
-        if column.sprung and not sprung:
+        needs_spring = column.measure in CYCLE or column.base in SPRING_UNITS
+        if needs_spring and not sprung:
             raise SceneError([f"`quantities` {column.name}: needs drive.stiffness, of a spring"])
         if column.base == STABLE and sprung:
             require(lacks_stability, scene, "the stability of steady sliding")

@@ -1,7 +1,8 @@
 """Many scenes at once: labelled arrays over the values that were swept."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
 from pathlib import Path
 from typing import Any
 
@@ -53,7 +54,6 @@ class Sweep:
     scene: Scene
     axes: tuple[Axis, ...]
     time: Array | None
-    values: Mapping[str, Any]
     units: Mapping[str, str]
     points: int
     computed: int
@@ -64,6 +64,13 @@ class Sweep:
     path: Path | None = None
     plan: Any = field(default=None, repr=False, compare=False)
     """The request, from which files are written."""
+    read: Callable[[], Mapping[str, Any]] = field(default=dict, repr=False, compare=False)
+    """Gives the arrays."""
+
+    @cached_property
+    def values(self) -> Mapping[str, Any]:
+        """The array of each quantity."""
+        return self.read()
 
     def __getitem__(self, name: str) -> Any:
         """Return the array of a swept key or a quantity."""

@@ -32,15 +32,6 @@ def axes_of(scene: Scene, over: Mapping[Any, Any]) -> tuple[Axis, ...]:
     ------
     SceneError
         Listing every unknown key and every wrong value.
-
-    Examples
-    --------
-    >>> axes = axes_of(Scene(), {"drive.velocity": "1 mm/s:100 mm/s:3:log"})
-    >>> axes[0].values["drive.velocity"].round(6).tolist()
-    [0.001, 0.01, 0.1]
-    >>> pairs = {("drive.velocity", "foundation.retardation_time"): ([0.1, 1.0], ["1 s", "10 ms"])}
-    >>> axes_of(Scene(), pairs)[0].size
-    2
     """
     if not isinstance(over, Mapping) or not over:
         raise SceneError([f"`over` is empty: expected a key and its values, such as {EXAMPLE}"])

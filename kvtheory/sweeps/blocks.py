@@ -4,8 +4,7 @@
 same bits. A scene that fails is a missing value with its reason; the others are not affected.
 """
 
-import json
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from typing import Any
@@ -15,17 +14,14 @@ from numpy.typing import NDArray
 
 from kvtheory.models.steady.methods import METHODS
 from kvtheory.models.steady.stable_sliding import lasts
-from kvtheory.results.certificate import Certificate
-from kvtheory.results.sweep import Failure
 from kvtheory.scene.model import Scene
 from kvtheory.sweeps.axes import values_at
-from kvtheory.sweeps.plan import STABLE, Plan
+from kvtheory.sweeps.plan import STABLE, Plan, Table
 
 Array = NDArray[np.float64]
 
 FAILS = (ValueError, ArithmeticError, RuntimeError)
 """What a scene without an answer raises; anything else is a defect of the program."""
-
 INTERPRETED = 1.5
 """Steps interpreted before the first block is compiled, over those from which compiling pays."""
 
@@ -44,79 +40,14 @@ class Task:
         """The number of scenes."""
         return next(iter(self.over.values())).size
 
-
-@dataclass
-class Account:
-    """What is known of points besides their values: which failed and why, and the worst errors."""
-
-    points: int = 0
-    failed: int = 0
-    failures: dict[int, str] = field(default_factory=dict)
-    statements: set[str] = field(default_factory=set)
-    errors: dict[str, float] = field(default_factory=dict)
-
-    @classmethod
-    def of(cls, blocks: Iterable["Block"], most: int | None = None) -> "Account":
-        """Sum up blocks; `failures` lists at most the first `most`."""
-        total = cls()
-        for block in blocks:
-            total.add(block.account, most)
-        return total
-
-    def add(self, other: "Account", most: int | None = None) -> None:
-        """Add the account of other points."""
-        self.points += other.points
-        self.failed += other.failed
-        if most is None or len(self.failures) < most:
-            self.failures |= dict(list(other.failures.items())[:most])
-        self.statements |= other.statements
-        for name, error in other.errors.items():
-            self.worst(name, error)
-
-    def worst(self, name: str, errors: Any) -> None:
-        """Raise the error of a quantity to the largest of these."""
-        self.errors[name] = max(self.errors.get(name, 0.0), float(np.max(errors, initial=0.0)))
-
-    def fail(self, index: int, error: Exception) -> None:
-        """Note on one line why a scene has no answer."""
-        reason = "; ".join(str(error).splitlines()) or type(error).__name__
-        if isinstance(error, FloatingPointError | OverflowError | ZeroDivisionError):
-            reason = f"the scene leaves the range of double precision: {reason}"
-        self.failures[index] = reason
-
-    @property
-    def certificate(self) -> Certificate:
-        """The certificate of all points."""
-        return Certificate("estimated", "; ".join(sorted(self.statements)), self.errors)
-
-    def listed(self, plan: Plan) -> tuple[Failure, ...]:
-        """Return the failures with the swept values of their points."""
-        found = []
-        for index, reason in self.failures.items():
-            point = {key: float(a[0]) for key, a in values_at(plan.axes, index, index + 1).items()}
-            found.append(Failure(index, point, reason))
-        return tuple(found)
-
-    def to_json(self) -> str:
-        """Return the account as JSON."""
-        failures = list(self.failures.items())
-        return json.dumps([self.points, self.failed, failures, sorted(self.statements), self.errors])
-
-    @classmethod
-    def from_json(cls, text: str) -> "Account":
-        """Read what `to_json` gave."""
-        points, failed, failures, statements, errors = json.loads(text)
-        return cls(points, failed, dict(failures), set(statements), errors)
-
-
-@dataclass
-class Block:
-    """Results of the points from `start` to `stop`: an array over them for each column (`Plan.blank`)."""
-
-    start: int
-    stop: int
-    values: dict[str, NDArray[Any]]
-    account: Account
+    def scene(self, index: int) -> Scene:
+        """Return one of the scenes, whose run must be as long as the times that are asked for."""
+        point = {key: float(array[index]) for key, array in self.over.items()}
+        scene = self.plan.scene.replace(point)
+        if max(self.plan.times or (0.0,)) > scene.run.duration:
+            late = f"a time of `at` is after the end of the run, {scene.run.duration} s"
+            raise ValueError(late)
+        return scene
 
 
 def task(plan: Plan, start: int, stop: int) -> Task:
@@ -124,46 +55,71 @@ def task(plan: Plan, start: int, stop: int) -> Task:
     return Task(replace(plan, axes=()), start, values_at(plan.axes, start, stop))
 
 
+@dataclass
+class Measured:
+    """Values and errors by name, over the scenes of a block; why scenes have none; and statements."""
+
+    values: dict[str, Any] = field(default_factory=dict)
+    errors: dict[str, Array] = field(default_factory=dict)
+    reasons: dict[int, Exception] = field(default_factory=dict)
+    statements: set[str] = field(default_factory=set)
+
+
+@dataclass
+class Block:
+    """The table (`Plan.blank`) of the points from `start` to `stop`, and the errors of its columns.
+
+    `failures` are pairs of index and reason, `statements` those of the certificates.
+    """
+
+    start: int
+    stop: int
+    table: Table
+    failures: list[tuple[int, str]]
+    statements: list[str]
+    errors: dict[str, float]
+
+
 def compute(given: Task) -> Block:
-    """Solve the scenes of a task.
-
-    Examples
-    --------
-    >>> from kvtheory.sweeps.axes import axes_of
-    >>> from kvtheory.sweeps.plan import columns_of
-    >>> axes = axes_of(Scene(), {"drive.velocity": [0.1, 0.2, 0.4]})
-    >>> plan = Plan(Scene(), axes, columns_of("depth", series=False), None, "exact", 1e-6)
-    >>> compute(task(plan, 1, 3)).values["depth"].round(6).tolist()
-    [4.7e-05, 2.4e-05]
-    """
-    plan, account = given.plan, Account(given.points)
-    values = plan.blank(given.points)
-    names = sorted({column.base for column in plan.columns if column.steady} | plan.compared)
-    steady, errors = _steady(given, names, account) if names else ({}, {})
+    """Solve the scenes of a task."""
+    plan, points = given.plan, given.points
+    steady = _steady(given) if plan.steady else Measured()
+    motion = _transients(given, steady) if plan.transient else Measured()
+    table, told = plan.blank(points), []
     for column in plan.columns:
-        if column.steady:
-            values[column.name] = steady[column.base]
-            if column.base != STABLE:
-                account.worst(column.name, errors.get(column.base, 0.0))
-    if plan.transient:
-        _transients(given, steady.get("friction_force"), values, account)
-    failed = sorted(account.failures)
-    for name, missing in plan.blank(1).items():
-        values[name][failed] = missing[0]
-    account.failed = len(failed)
-    account.failures = {given.start + index: account.failures[index] for index in failed}
-    return Block(given.start, given.start + given.points, values, account)
+        if column.measure == "steady":
+            table[column.name] = steady.values[column.base]
+            told += [(column.name, steady.errors[column.base])] * (column.base != STABLE)
+        else:
+            table[column.name] = motion.values[column.name]
+    told += [(name, motion.errors[name]) for name in plan.followed]
+    reasons = steady.reasons | motion.reasons
+    failed = sorted(reasons)
+    table[failed] = plan.blank(len(failed))
+    errors: dict[str, float] = {}
+    for name, error in told:
+        error[failed] = 0.0
+        errors[name] = max(errors.get(name, 0.0), float(np.max(error)))
+    return Block(
+        given.start, given.start + points, table,
+        [(given.start + index, _reason(reasons[index])) for index in failed],
+        sorted(steady.statements | motion.statements), errors,
+    )  # fmt: skip
 
 
-def _steady(
-    given: Task, names: list[str], account: Account
-) -> tuple[dict[str, Array], dict[str, float]]:
-    """Return quantities of steady sliding and their worst errors.
+def _reason(error: Exception) -> str:
+    """Say on one line why a scene has no answer."""
+    reason = "; ".join(str(error).splitlines()) or type(error).__name__
+    if isinstance(error, FloatingPointError | OverflowError | ZeroDivisionError):
+        return f"the scene leaves the range of double precision: {reason}"
+    return reason
 
-    A part that fails is halved until the scene at fault is alone.
-    """
-    plan, worst = given.plan, Account()
-    found = {name: np.full(given.points, np.nan) for name in names}
+
+def _steady(given: Task) -> Measured:
+    """Solve steady sliding; a part that fails is halved until the scene at fault is alone."""
+    plan, names, found = given.plan, given.plan.steady, Measured()
+    found.values = {name: np.full(given.points, np.nan) for name in names}
+    found.errors = {name: np.zeros(given.points) for name in names}
     waiting = [(0, given.points)]
     while waiting:
         a, b = waiting.pop()
@@ -175,59 +131,37 @@ def _steady(
                     state = replace(state, stable=lasts(scene))
         except FAILS as error:
             if b - a > 1:
-                middle = (a + b) // 2
-                waiting += [(middle, b), (a, middle)]
+                waiting += [((a + b) // 2, b), (a, (a + b) // 2)]
             else:
-                account.fail(a, error)
+                found.reasons[a] = error
             continue
-        account.statements.add(state.certificate.statement)
+        found.statements.add(state.certificate.statement)
         for name in names:
-            found[name][a:b] = getattr(state, name)
-            if name != STABLE:
-                worst.worst(name, state.certificate.relative_error[name])
-    return found, worst.errors
+            found.values[name][a:b] = getattr(state, name)
+            found.errors[name][a:b] = state.certificate.relative_error.get(name, 0.0)
+    return found
 
 
-def _transients(
-    given: Task, friction: Array | None, values: dict[str, NDArray[Any]], account: Account
-) -> None:
-    """Follow the motions; `friction` is the steady friction force in N/m, where it is needed."""
-    plan = given.plan
+def _transients(given: Task, steady: Measured) -> Measured:
+    """Follow the motions of the scenes that slide steadily, if that is asked for."""
     # Imported here, as the solver and the simulator take a while to import.
-    if plan.by_elements:
+    if given.plan.by_elements:
         from kvtheory.sweeps.simulated import measure
     else:
         from kvtheory.sweeps.measures import measure
 
     scenes: dict[int, Scene] = {}
-    for index in set(range(given.points)) - account.failures.keys():
+    reasons: dict[int, Exception] = {}
+    for index in set(range(given.points)) - steady.reasons.keys():
         try:
-            scenes[index] = _scene(given, index)
+            scenes[index] = given.scene(index)
         except FAILS as error:
-            account.fail(index, error)
-    if friction is None:
-        friction = np.full(given.points, np.nan)
+            reasons[index] = error
+    friction = steady.values.get("friction_force", np.full(given.points, np.nan))
     with np.errstate(over="raise", invalid="raise", divide="raise"):
-        found = measure(plan, scenes, friction, FAILS)
-    for index, error in found.reasons.items():
-        account.fail(index, error)
-    account.statements |= found.statements
-    kept = [index for index in scenes if index not in account.failures]
-    columns = [column for column in plan.columns if not column.steady]
-    for name in sorted({column.base for column in columns if column.base} | plan.compared):
-        account.worst(name, found.errors[name][kept])
-    for column in columns:
-        values[column.name][:] = found.values[column.name]
-
-
-def _scene(given: Task, index: int) -> Scene:
-    """Return one scene of a task, whose run must be as long as the times that are asked for."""
-    point = {key: float(array[index]) for key, array in given.over.items()}
-    scene = given.plan.scene.replace(point)
-    if max(given.plan.times or (0.0,)) > scene.run.duration:
-        late = f"a time of `at` is after the end of the run, {scene.run.duration} s"
-        raise ValueError(late)
-    return scene
+        found = measure(given.plan, scenes, friction)
+    found.reasons |= reasons
+    return found
 
 
 def compile_ahead(plan: Plan, points: int, workers: int) -> None:
@@ -244,5 +178,5 @@ def compile_ahead(plan: Plan, points: int, workers: int) -> None:
         return
     for index in (0, plan.points - 1):  # the second, if the first has no answer
         with suppress(*FAILS):
-            compile_ahead(plan, _scene(task(plan, index, index + 1), 0))
+            compile_ahead(plan, task(plan, index, index + 1).scene(0))
             break

@@ -17,7 +17,7 @@ from concurrent.futures import (
     wait,
 )
 from concurrent.futures.process import BrokenProcessPool
-from contextlib import ExitStack
+from contextlib import ExitStack, suppress
 from dataclasses import replace
 from glob import escape
 from importlib.util import find_spec
@@ -28,9 +28,9 @@ from typing import Any
 from kvtheory.progress import Progress
 from kvtheory.results.sweep import Sweep
 from kvtheory.sweeps import files
-from kvtheory.sweeps.blocks import Account, Block, Task, compile_ahead, compute, task
+from kvtheory.sweeps.blocks import Block, Task, compile_ahead, compute, task
 from kvtheory.sweeps.plan import Plan
-from kvtheory.sweeps.store import Memory, Store, WorkFile
+from kvtheory.sweeps.store import WorkFile
 
 WORK = ".part"
 """What the name of a work file adds to that of the result."""
@@ -61,9 +61,9 @@ log = logging.getLogger(__name__)
 
 def in_memory(plan: Plan, **how: Any) -> Sweep:
     """Run a sweep and return its arrays."""
-    store = Memory()
-    run(plan, store, **how)
-    return files.from_memory(plan, store)
+    blocks: list[Block] = []
+    run(plan, [], blocks.append, **how)
+    return files.from_memory(plan, lambda **_: sorted(blocks, key=lambda block: block.start))
 
 
 def into_file(plan: Plan, path: Path, *, overwrite: bool, **how: Any) -> Sweep:
@@ -72,69 +72,64 @@ def into_file(plan: Plan, path: Path, *, overwrite: bool, **how: Any) -> Sweep:
     work = path.with_name(path.name + WORK)
     if not overwrite and files.finished(path, plan):
         if work.exists():  # of a run that was killed just before it removed this
-            WorkFile(work, plan).remove()
+            WorkFile(work, plan).close(remove=True)
         return files.from_file(path, plan)
     store = WorkFile(work, plan, anew=overwrite)
+    done = False
     try:
         for unfinished in path.parent.glob(f".{escape(path.stem)}.*.part{path.suffix}"):
             unfinished.unlink()  # of a run that was killed while it wrote the result
         try:
-            computed = run(plan, store, **how)
+            computed = run(plan, list(store.blocks(tables=False)), store.keep, **how)
         except KeyboardInterrupt:
-            files.write(plan, store, path)
+            files.write(plan, store.blocks, path)
             raise
-        files.write(plan, store, path)
+        files.write(plan, store.blocks, path)
+        done = True
     finally:
-        store.close()
-    store.remove()
+        store.close(remove=done)
     return files.from_file(path, plan, computed)
 
 
 def run(
-    plan: Plan, store: Store, *, executor: Executor | None, jobs: int, in_flight: int | None,
-    block: int | None, report: Progress | None,
+    plan: Plan, kept: list[Block], keep: Callable[[Block], None], *, executor: Executor | None,
+    jobs: int, in_flight: int | None, block: int | None, report: Progress | None,
 ) -> int:  # fmt: skip
-    """Compute the blocks that a store lacks, and return how many points these hold.
+    """Compute all blocks that are not `kept`, and return how many points these hold.
 
     An executor of the caller is not shut down.
     """
-    kept = list(store.blocks(numbers=False))
-    total = Account.of(kept)
-    before, begun = total.points, monotonic()
+    before = done = sum(one.stop - one.start for one in kept)
+    failed, begun = sum(len(one.failures) for one in kept), monotonic()
     workers = jobs
     if executor is not None:
         workers = getattr(executor, "_max_workers", None) or UNKNOWN_WORKERS
     compile_ahead(plan, plan.points - before, workers)
 
-    def keep(result: Block) -> None:
-        store.keep(result)
-        total.add(result.account)
+    def returned(result: Block) -> None:
+        nonlocal done, failed
+        keep(result)
+        done += result.stop - result.start
+        failed += len(result.failures)
 
     def show() -> None:
+        rate = (done - before) / max(monotonic() - begun, 1e-9)
+        text = f"{done:,} of {plan.points:,} points"
+        if rate > 0.0:
+            text += f", {rate:,.0f} a second" if rate >= 10.0 else f", {rate:.2g} a second"
         if report:
-            rate = (total.points - before) / max(monotonic() - begun, 1e-9)
-            report(total.points / plan.points, progress_text(plan, total, rate))
+            report(done / plan.points, text + (f", {failed:,} failed" if failed else ""))
 
     def pool() -> Executor:
-        if executor is not None:
-            return executor
-        return stack.enter_context(_own(jobs, threads=plan.vectorised))
+        return stack.enter_context(_own(jobs, plan)) if executor is None else executor
 
     show()
     tasks = remaining(plan, [(one.start, one.stop) for one in kept], block)
     with ExitStack() as stack:
         if executor is None and jobs == 1:
             in_flight = 1
-        _give_out(pool, tasks, keep, in_flight or AHEAD * workers, show)
-    return total.points - before
-
-
-def progress_text(plan: Plan, total: Account, rate: float) -> str:
-    """Return how far a sweep is, how fast, and how many scenes failed."""
-    text = f"{total.points:,} of {plan.points:,} points"
-    if rate > 0.0:
-        text += f", {rate:,.0f} a second" if rate >= 10.0 else f", {rate:.2g} a second"
-    return text + (f", {total.failed:,} failed" if total.failed else "")
+        _give_out(pool, tasks, returned, in_flight or AHEAD * workers, show)
+    return done - before
 
 
 def remaining(plan: Plan, done: list[tuple[int, int]], block: int | None = None) -> Iterator[Task]:
@@ -144,7 +139,7 @@ def remaining(plan: Plan, done: list[tuple[int, int]], block: int | None = None)
     """
     size = block or (VECTORISED_BLOCK if plan.vectorised else QUADRATURE_BLOCK)
     if plan.transient and not block:
-        together = find_spec("numba") is not None and not plan.textual
+        together = find_spec("numba") is not None and not plan.texts
         most = COMPILED_BLOCK if together else SINGLE_BLOCK
         size = min(most, max(SINGLE_BLOCK, plan.points // LEAST_BLOCKS))
     at = 0
@@ -178,7 +173,10 @@ def _give_out(
     again: list[Task] = []
     try:
         while True:
-            while len(flying) < in_flight and (given := _next(again, tasks)):
+            while len(flying) < in_flight:
+                given = again.pop() if again else next(tasks, None)
+                if given is None:
+                    break
                 try:
                     flying[executor.submit(compute, given)] = given
                 except BrokenExecutor as error:
@@ -189,44 +187,33 @@ def _give_out(
             if not flying:
                 return
             for future in wait(flying, REFRESH, FIRST_COMPLETED).done:
-                given = flying.pop(future)
-                if lost := _error(future):
-                    again.append(_once_more(given, lost))
-                else:
-                    keep(future.result())
+                again += _kept(future, flying.pop(future), keep)
             show()
     except BaseException:
         for future in flying:
             future.cancel()
-        for future in flying:
-            if future.done() and not _error(future):
-                try:
-                    keep(future.result())
-                except OSError:
-                    break
+        with suppress(OSError):  # if the disk is full, say
+            for future, given in flying.items():
+                if future.done() and not future.cancelled():
+                    _kept(future, replace(given, tries=0), keep)
         raise
 
 
-def _next(again: list[Task], tasks: Iterator[Task]) -> Task | None:
-    return again.pop() if again else next(tasks, None)
-
-
-def _error(future: Future[Block]) -> BaseException | None:
-    """Return what went wrong with a block; executors of clusters also cancel blocks themselves."""
+def _kept(future: Future[Block], given: Task, keep: Callable[[Block], None]) -> list[Task]:
+    """Keep a block that has returned, or give its task back if it was lost with its worker."""
     try:
-        return future.exception()
-    except CancelledError as error:
-        return error
-
-
-def _once_more(given: Task, lost: BaseException) -> Task:
-    """Return the task to give out again, or raise `RuntimeError` after too many tries."""
+        lost = future.exception()
+    except CancelledError as error:  # by the executor of a cluster
+        lost = error
+    if lost is None:
+        keep(future.result())
+        return []
     points = f"points {given.start} to {given.start + given.points - 1}"
     if given.tries == TRIES:
         told = f"{type(lost).__name__}: {lost}{HINT if isinstance(lost, BrokenProcessPool) else ''}"
         raise RuntimeError(f"{points} were lost {TRIES} times: {told}") from lost
     log.warning("%s are given out again: %r", points, lost)
-    return replace(given, tries=given.tries + 1)
+    return [replace(given, tries=given.tries + 1)]
 
 
 class _Here(Executor):
@@ -239,11 +226,11 @@ class _Here(Executor):
         return future
 
 
-def _own(jobs: int, *, threads: bool) -> Executor:
-    """Return an executor of this module."""
+def _own(jobs: int, plan: Plan) -> Executor:
+    """Return an executor of our own: of processes, unless NumPy spends the time."""
     if jobs == 1:
         return _Here()
-    if threads:
+    if plan.vectorised:
         return ThreadPoolExecutor(jobs)
     spawn = multiprocessing.get_context("spawn")
     return ProcessPoolExecutor(jobs, spawn, initializer=_follow_parent)

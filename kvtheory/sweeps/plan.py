@@ -11,18 +11,20 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from importlib.metadata import version
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from kvtheory.results import SERIES_UNITS, SPRING_UNITS, STEADY_UNITS, TRANSIENT_UNITS, units_for
+from kvtheory.results import SERIES_UNITS, STEADY_UNITS, TRANSIENT_UNITS, units_for
 from kvtheory.results.sweep import Axis
 from kvtheory.scene.files import to_toml
 from kvtheory.scene.indenters import Indenter, Parabola
 from kvtheory.scene.model import Scene
 from kvtheory.scene.quantities import SceneError, nearest, problem
 from kvtheory.scene.requirements import lacks_paper_model
+
+Table = NDArray[np.void]
 
 MEASURES = ("end", "max", "min", "time_of_max")
 OF_ELEMENTS = ("steady", "series", "end", "max", "min", "peak_to_steady_friction")
@@ -31,6 +33,7 @@ STABLE = "stable"
 """Whether steady sliding is stable on the spring in the drive: 1 or 0."""
 WHOLE = {"peak_to_steady_friction": "1", "settling_time": "s", "hops": "1", "events": ""}
 """Single values of a whole transient, and their units; `events` is text."""
+EVENTS = "events"
 CYCLE = {
     "stick_slip_settles": "1",
     "stick_slip_amplitude": "m",
@@ -43,29 +46,13 @@ CYCLE = {
 """Single values of the limit cycle of an indenter on a spring, in the order of `cycles.Cycle`."""
 
 
-@dataclass(frozen=True)
-class Column:
+class Column(NamedTuple):
     """A quantity of the result: `measure` says what is taken of the quantity `base`."""
 
     name: str
     unit: str
     base: str
     measure: str
-
-    @property
-    def steady(self) -> bool:
-        """Whether it belongs to steady sliding."""
-        return self.measure == "steady"
-
-    @property
-    def sprung(self) -> bool:
-        """Whether only a drive with a spring has it."""
-        return self.measure in CYCLE or self.base in SPRING_UNITS
-
-    @property
-    def text(self) -> bool:
-        """Whether it is text."""
-        return not self.unit
 
 
 def columns_of(
@@ -77,11 +64,6 @@ def columns_of(
     ------
     SceneError
         Listing every name that does not exist, with the nearest that does.
-
-    Examples
-    --------
-    >>> [column.unit for column in columns_of(["load", "depth.time_of_max", "hops"], series=False)]
-    ['N/m', 's', '1']
     """
     over_time = {name: unit for name, unit in SERIES_UNITS.items() if name != "time"}
     rows = [(name, unit, name, "steady") for name, unit in {**STEADY_UNITS, STABLE: "1"}.items()]
@@ -118,35 +100,65 @@ class Plan:
     rtol: float
 
     @cached_property
-    def points(self) -> int:
-        """The number of scenes."""
-        return math.prod(self.grid)
-
-    @property
     def grid(self) -> tuple[int, ...]:
         """The lengths of the axes."""
         return tuple(axis.size for axis in self.axes)
 
     @property
-    def numeric(self) -> tuple[Column, ...]:
-        """The columns of numbers."""
-        return tuple(column for column in self.columns if not column.text)
+    def points(self) -> int:
+        """The number of scenes."""
+        return math.prod(self.grid)
 
     @property
-    def textual(self) -> tuple[Column, ...]:
-        """The columns of text."""
-        return tuple(column for column in self.columns if column.text)
+    def numeric(self) -> list[Column]:
+        """The columns of numbers: all except `events`."""
+        return [column for column in self.columns if column.name != EVENTS]
+
+    @property
+    def texts(self) -> bool:
+        """Whether the column of texts, `events`, is asked for."""
+        return any(column.name == EVENTS for column in self.columns)
+
+    @property
+    def series(self) -> bool:
+        """Whether any column is a series, with one value for each time."""
+        return any(column.measure == "series" for column in self.columns)
+
+    def blank(self, points: int) -> Table:
+        """Return a table of missing values, NaN or no text: a row for each point, a field for each column."""
+        times = (len(self.times or ()),)
+        table = np.empty(
+            points,
+            [
+                (c.name, "<f8" if c.unit else object, times if c.measure == "series" else ())
+                for c in self.columns
+            ],
+        )
+        for column in self.columns:
+            table[column.name] = np.nan if column.unit else ""
+        return table
 
     @property
     def transient(self) -> bool:
         """Whether any column belongs to a transient."""
-        return not all(column.steady for column in self.columns)
+        return any(column.measure != "steady" for column in self.columns)
 
     @property
     def compared(self) -> set[str]:
-        """The steady quantities with which columns of the transient are compared."""
+        """The steady quantities with which a transient is compared."""
         against = ("peak_to_steady_friction", "settling_time")
         return {"friction_force"} if any(c.measure in against for c in self.columns) else set()
+
+    @property
+    def steady(self) -> list[str]:
+        """The quantities of steady sliding that are needed."""
+        return sorted({c.base for c in self.columns if c.measure == "steady"} | self.compared)
+
+    @property
+    def followed(self) -> list[str]:
+        """The quantities of transients that are needed."""
+        asked = {c.base for c in self.columns if c.base and c.measure != "steady"}
+        return sorted(asked | self.compared)
 
     @property
     def by_elements(self) -> bool:
@@ -157,24 +169,6 @@ class Plan:
     def vectorised(self) -> bool:
         """Whether a block is one call on arrays."""
         return not self.transient and self.method != "quadrature"
-
-    @property
-    def series(self) -> bool:
-        """Whether any column is a series, with one value for each time."""
-        return any(column.measure == "series" for column in self.columns)
-
-    def shape(self, column: Column) -> tuple[int, ...]:
-        """Return the shape of a column at one point."""
-        return (len(self.times or ()),) if column.measure == "series" else ()
-
-    def blank(self, points: int) -> dict[str, NDArray[Any]]:
-        """Return an array of missing values for each column, its first dimension over `points`."""
-        return {
-            c.name: np.full(
-                (points, *self.shape(c)), "" if c.text else np.nan, object if c.text else float
-            )
-            for c in self.columns
-        }
 
     @property
     def units(self) -> Mapping[str, str]:

@@ -10,8 +10,8 @@ from kvtheory.sweeps.plan import Plan
 
 ON_ARRAYS, BY_QUADRATURE, IN_MOTION = 1e6, 1e5, 1e3
 """Scenes that a core solves in a second, within a factor of three: as measured for Table 1."""
-NUMBER, DIGITS = 8, 21
-"""Bytes of a number, and of its decimals with a comma or an end of line."""
+DIGITS = 21
+"""Bytes of the decimals of a number with a comma or an end of line."""
 ANNOUNCED = 10.0
 """Seconds from which a sweep is announced."""
 
@@ -23,9 +23,8 @@ def seconds(plan: Plan, jobs: int = 1) -> float:
 
 
 def size(plan: Plan, path: Path | None) -> int:
-    """Return about how many bytes a sweep needs: in memory with its blocks, or in a file and its work file."""
-    width = sum(math.prod(plan.shape(column)) for column in plan.columns)
-    needed = plan.points * width * NUMBER
+    """Return about how many bytes a sweep needs: in memory, or in a file and its work file."""
+    needed = plan.points * plan.blank(0).itemsize
     if path is None or path.suffix.lower() != ".csv":
         return 2 * needed
     rows = plan.points * (len(plan.times or ()) if plan.series else 1)
@@ -34,17 +33,7 @@ def size(plan: Plan, path: Path | None) -> int:
 
 
 def announcement(plan: Plan, path: Path | None, jobs: int = 1) -> str:
-    """Say how large a sweep is, if it takes a while.
-
-    >>> from kvtheory.scene import Scene
-    >>> from kvtheory.sweeps.axes import axes_of
-    >>> from kvtheory.sweeps.plan import columns_of
-    >>> over = {"drive.velocity": "1 mm/s:1 m/s:10000", "support.mass": "1 kg/m:2 kg/m:10000"}
-    >>> columns = columns_of("load", series=False)
-    >>> plan = Plan(Scene(), axes_of(Scene(), over), columns, None, "exact", 1e-6)
-    >>> announcement(plan, Path("map.nc"))
-    '100,000,000 points: about 1.6 GB and 100 s'
-    """
+    """Say how large a sweep is, if it takes a while."""
     if seconds(plan, jobs) < ANNOUNCED:
         return ""
     return f"{plan.points:,} points: {_about(size(plan, path), seconds(plan, jobs))}"
