@@ -6,16 +6,8 @@ import os
 import signal
 import threading
 from collections.abc import Callable, Iterator
-from concurrent.futures import (
-    FIRST_COMPLETED,
-    BrokenExecutor,
-    CancelledError,
-    Executor,
-    Future,
-    ProcessPoolExecutor,
-    ThreadPoolExecutor,
-    wait,
-)
+from concurrent import futures
+from concurrent.futures import Executor, Future
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import ExitStack, suppress
 from dataclasses import replace
@@ -75,7 +67,7 @@ def into_file(plan: Plan, path: Path, *, overwrite: bool, **how: Any) -> Sweep:
             WorkFile(work, plan).close(remove=True)
         return files.from_file(path, plan)
     store = WorkFile(work, plan, anew=overwrite)
-    done = False
+    written = False
     try:
         for unfinished in path.parent.glob(f".{escape(path.stem)}.*.part{path.suffix}"):
             unfinished.unlink()  # of a run that was killed while it wrote the result
@@ -85,9 +77,9 @@ def into_file(plan: Plan, path: Path, *, overwrite: bool, **how: Any) -> Sweep:
             files.write(plan, store.blocks, path)
             raise
         files.write(plan, store.blocks, path)
-        done = True
+        written = True
     finally:
-        store.close(remove=done)
+        store.close(remove=written)
     return files.from_file(path, plan, computed)
 
 
@@ -101,9 +93,8 @@ def run(
     """
     before = done = sum(one.stop - one.start for one in kept)
     failed, begun = sum(len(one.failures) for one in kept), monotonic()
-    workers = jobs
-    if executor is not None:
-        workers = getattr(executor, "_max_workers", None) or UNKNOWN_WORKERS
+    told = jobs if executor is None else getattr(executor, "_max_workers", None)
+    workers = told or UNKNOWN_WORKERS
     compile_ahead(plan, plan.points - before, workers)
 
     def returned(result: Block) -> None:
@@ -125,10 +116,9 @@ def run(
 
     show()
     tasks = remaining(plan, [(one.start, one.stop) for one in kept], block)
+    most = 1 if executor is None and jobs == 1 else in_flight or AHEAD * workers
     with ExitStack() as stack:
-        if executor is None and jobs == 1:
-            in_flight = 1
-        _give_out(pool, tasks, returned, in_flight or AHEAD * workers, show)
+        _give_out(pool, tasks, returned, most, show)
     return done - before
 
 
@@ -179,14 +169,14 @@ def _give_out(
                     break
                 try:
                     flying[executor.submit(compute, given)] = given
-                except BrokenExecutor as error:
+                except futures.BrokenExecutor as error:
                     again.append(given)
                     broken, executor = executor, pool()
                     if executor is broken:
                         raise RuntimeError(f"the executor is broken: {error}") from error
             if not flying:
                 return
-            for future in wait(flying, REFRESH, FIRST_COMPLETED).done:
+            for future in futures.wait(flying, REFRESH, futures.FIRST_COMPLETED).done:
                 again += _kept(future, flying.pop(future), keep)
             show()
     except BaseException:
@@ -203,7 +193,7 @@ def _kept(future: Future[Block], given: Task, keep: Callable[[Block], None]) -> 
     """Keep a block that has returned, or give its task back if it was lost with its worker."""
     try:
         lost = future.exception()
-    except CancelledError as error:  # by the executor of a cluster
+    except futures.CancelledError as error:  # by the executor of a cluster
         lost = error
     if lost is None:
         keep(future.result())
@@ -231,19 +221,13 @@ def _own(jobs: int, plan: Plan) -> Executor:
     if jobs == 1:
         return _Here()
     if plan.vectorised:
-        return ThreadPoolExecutor(jobs)
+        return futures.ThreadPoolExecutor(jobs)
     spawn = multiprocessing.get_context("spawn")
-    return ProcessPoolExecutor(jobs, spawn, initializer=_follow_parent)
+    return futures.ProcessPoolExecutor(jobs, spawn, initializer=_follow_parent)
 
 
 def _follow_parent() -> None:
-    """Leave interrupts to the parent, and end with it, even if it is killed."""
+    """Leave interrupts to the parent process, and end with it, even if it is killed."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
-    threading.Thread(target=_end_with_parent, daemon=True).start()
-
-
-def _end_with_parent() -> None:
-    parent = multiprocessing.parent_process()
-    if parent is not None:
-        parent.join()
-        os._exit(1)
+    parent: Any = multiprocessing.parent_process()
+    threading.Thread(target=lambda: (parent.join(), os._exit(1)), daemon=True).start()
