@@ -151,23 +151,6 @@ def test_series_are_those_of_the_transient():
     assert mixed["load"].shape == (1,)
 
 
-@pytest.mark.parametrize("suffix", [".csv", ".nc"])
-def test_files_of_transients_hold_what_memory_holds(tmp_path, suffix):
-    asked = {
-        "over": {V: [0.0, 0.05, 1e200], TAU: [0.1, 1.0]},
-        "at": ["0 ms", "3 ms"],
-        "quantities": ["depth", "trailing_edge.max", "events", "load", "peak_to_steady_friction"],
-    }
-    held, stored = kv.sweep(**asked), kv.sweep(output=tmp_path / f"a{suffix}", block=2, **asked)
-    assert held.failed == 2
-    for name in held.values:
-        equal_nan = name != "events"
-        assert np.array_equal(stored[name], held[name], equal_nan=equal_nan), name
-    assert np.isnan(held["peak_to_steady_friction"][0]).all()  # at rest there is no friction
-    assert held["events"][2].tolist() == ["", ""]
-    assert json.loads(held["events"][1, 0])[0]["time"] == 0.0
-
-
 def test_a_motion_that_cannot_be_followed_is_told_and_the_others_are_not_touched():
     result = kv.sweep(over={V: [0.1, 1e200, 0.2]}, quantities="depth.end")
     assert [failure.index for failure in result.failures] == [1]

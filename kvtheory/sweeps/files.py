@@ -190,11 +190,13 @@ def _described(plan: Plan, summary: Mapping[str, Any]) -> dict[str, str]:
 
 def _values(path: Path, plan: Plan) -> dict[str, Any]:
     """Return the arrays of a file."""
+    kinds = {column.name: float if column.unit else object for column in plan.columns}
     if not is_csv(path):
         import xarray
 
         with xarray.open_dataset(path, engine="netcdf4") as data:
-            return {column.name: data[column.name].values for column in plan.columns}
+            arrays = {column.name: data[column.name].values for column in plan.columns}
+        return {name: array.astype(kinds[name], copy=False) for name, array in arrays.items()}
     with path.open(encoding="utf-8", newline="") as file:
         rows = csv.reader(line for line in file if not line.startswith("#"))
         table = dict(zip(next(rows), zip(*rows, strict=True), strict=True))
@@ -203,7 +205,7 @@ def _values(path: Path, plan: Plan) -> dict[str, Any]:
     for column in plan.columns:
         cells = table[_head(column.name, column.unit)]
         read = [float(cell or "nan") for cell in cells] if column.unit else cells
-        array = np.array(read, dtype=float if column.unit else object).reshape(shape)
+        array = np.array(read, dtype=kinds[column.name]).reshape(shape)
         found[column.name] = array if column.measure == "series" else array[..., 0]
     return found
 
