@@ -157,6 +157,25 @@ def test_a_motion_that_cannot_be_followed_is_told_and_the_others_are_not_touched
     assert result.failures[0].reason
     alone = kv.sweep(over={V: [0.2]}, quantities="depth.end")
     assert result["depth.end"][2] == alone["depth.end"][0]
+    asked = {"over": {DURATION: [0.2, 0.001]}, "at": ["0.1 s"], "quantities": ["depth", "load"]}
+    short = kv.sweep(**asked)  # of which the second run ends before that time
+    assert "after the end of the run" in short.failures[0].reason
+    assert (
+        np.isnan(short["load"]).tolist() == np.isnan(short["depth"][:, 0]).tolist() == [False, True]
+    )
+
+
+def test_other_times_and_another_tolerance_are_another_sweep(tmp_path):
+    asked = {
+        "over": {V: [0.1]},
+        "at": ["1 ms"],
+        "quantities": "depth",
+        "output": tmp_path / "a.csv",
+    }
+    kv.sweep(**asked)
+    for word, change in {"at": {"at": ["2 ms"]}, "rtol": {"rtol": 1e-5}}.items():
+        with pytest.raises(ValueError, match=f"differs in {word}"):
+            kv.sweep(**asked | change)
 
 
 def test_the_certificate_covers_the_error_of_measures():

@@ -118,11 +118,14 @@ def from_file(path: Path, plan: Plan, computed: int = 0) -> Sweep:
 
 def from_memory(plan: Plan, blocks: Blocks) -> Sweep:
     """Return blocks as arrays, in which points that were not computed are missing values."""
-    table = plan.blank(plan.points)
+    missing = plan.blank(1)
+    flat = {
+        name: np.repeat(missing[name], plan.points, axis=0) for name in missing.dtype.names or ()
+    }
     for block in blocks():
-        table[block.start : block.stop] = block.table
-    names = table.dtype.names or ()
-    values = {name: table[name].reshape(*plan.grid, *table[name].shape[1:]) for name in names}
+        for name, array in flat.items():
+            array[block.start : block.stop] = block.table[name]
+    values = {name: array.reshape(*plan.grid, *array.shape[1:]) for name, array in flat.items()}
     header = _summary(plan, blocks)
     return _sweep(plan, header, lambda: values, header["done"])
 
