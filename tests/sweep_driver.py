@@ -22,7 +22,7 @@ POINTS = 6000
 BLOCK = 20
 SLOW_POINTS = 60
 OVER = {"drive.velocity": f"1 mm/s:10 m/s:{POINTS}:log"}
-PAUSE = 0.01
+PAUSE = 0.02
 """Seconds; the blocks that a sweep is left with take some of them."""
 MOST_REPORTS, LONGEST_DELAY = 12, 2e-3
 """A child is killed after so many reports, of the 300 that a whole sweep makes, and so many seconds."""
