@@ -6,8 +6,7 @@ same bits. A scene that fails is a missing value with its reason; the others are
 
 from collections.abc import Mapping
 from contextlib import suppress
-from dataclasses import dataclass, field, replace
-from typing import Any
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,12 +15,10 @@ from kvtheory.models.steady.methods import METHODS
 from kvtheory.models.steady.stable_sliding import lasts
 from kvtheory.scene.model import Scene
 from kvtheory.sweeps.axes import values_at
-from kvtheory.sweeps.plan import STABLE, Plan, Table
+from kvtheory.sweeps.plan import FAILS, STABLE, Measured, Plan, Table
 
 Array = NDArray[np.float64]
 
-FAILS = (ValueError, ArithmeticError, RuntimeError)
-"""What a scene without an answer raises; anything else is a defect of the program."""
 INTERPRETED = 1.5
 """Steps interpreted before the first block is compiled, over those from which compiling pays."""
 
@@ -53,16 +50,6 @@ class Task:
 def task(plan: Plan, start: int, stop: int) -> Task:
     """Return the task for some points of a plan."""
     return Task(replace(plan, axes=()), start, values_at(plan.axes, start, stop))
-
-
-@dataclass
-class Measured:
-    """Values and errors by name, over the scenes of a block; why scenes have none; and statements."""
-
-    values: dict[str, Any] = field(default_factory=dict)
-    errors: dict[str, Array] = field(default_factory=dict)
-    reasons: dict[int, Exception] = field(default_factory=dict)
-    statements: set[str] = field(default_factory=set)
 
 
 @dataclass

@@ -25,8 +25,7 @@ from kvtheory.results.table import QUANTITIES
 from kvtheory.scene.base_motion import BaseMotion
 from kvtheory.scene.model import Scene
 from kvtheory.scene.static_state import StaticState
-from kvtheory.sweeps.blocks import FAILS, Measured
-from kvtheory.sweeps.plan import CYCLE, EVENTS, Column, Plan
+from kvtheory.sweeps.plan import CYCLE, EVENTS, FAILS, Column, Measured, Plan
 
 Array = NDArray[np.float64]
 

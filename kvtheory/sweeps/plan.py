@@ -8,7 +8,7 @@ import hashlib
 import json
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from importlib.metadata import version
 from typing import Any, NamedTuple
@@ -25,6 +25,9 @@ from kvtheory.scene.quantities import SceneError, nearest, problem
 from kvtheory.scene.requirements import lacks_paper_model
 
 Table = NDArray[np.void]
+
+FAILS = (ValueError, ArithmeticError, RuntimeError)
+"""What a scene without an answer raises; anything else is a defect of the program."""
 
 MEASURES = ("end", "max", "min", "time_of_max")
 OF_ELEMENTS = ("steady", "series", "end", "max", "min", "peak_to_steady_friction")
@@ -199,6 +202,16 @@ class Plan:
             return [key for key, ours in self.record.items() if theirs[key] != ours]
         except (ValueError, TypeError, KeyError):
             return list(self.record)
+
+
+@dataclass
+class Measured:
+    """Values and errors by name, over the scenes of a block; why scenes have none; and statements."""
+
+    values: dict[str, Any] = field(default_factory=dict)
+    errors: dict[str, NDArray[np.float64]] = field(default_factory=dict)
+    reasons: dict[int, Exception] = field(default_factory=dict)
+    statements: set[str] = field(default_factory=set)
 
 
 def _digest(array: NDArray[np.float64]) -> dict[str, Any]:

@@ -17,9 +17,8 @@ from kvtheory.models.elements.simulation import simulate
 from kvtheory.results import Simulation
 from kvtheory.results.table import scales
 from kvtheory.scene.model import Scene
-from kvtheory.sweeps.blocks import FAILS, Measured
 from kvtheory.sweeps.measures import relative
-from kvtheory.sweeps.plan import Column, Plan
+from kvtheory.sweeps.plan import FAILS, Column, Measured, Plan
 
 Array = NDArray[np.float64]
 
