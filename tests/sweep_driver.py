@@ -13,15 +13,16 @@ import signal
 import sqlite3
 import sys
 import time
+from contextlib import closing
 from pathlib import Path
 
 import kvtheory as kv
 
 POINTS = 6000
 BLOCK = 20
-SLOW_POINTS = 120
+SLOW_POINTS = 60
 OVER = {"drive.velocity": f"1 mm/s:10 m/s:{POINTS}:log"}
-PAUSE = 0.01
+PAUSE = 0.02
 """Seconds; the blocks that a sweep is left with take some of them."""
 MOST_REPORTS, LONGEST_DELAY = 12, 2e-3
 """A child is killed after so many reports, of the 300 that a whole sweep makes, and so many seconds."""
@@ -43,13 +44,10 @@ def kept(output):
     """Points in the work file, or None where there is none."""
     if not Path(f"{output}.part").exists():
         return None
-    base = sqlite3.connect(f"{output}.part")
-    try:
+    with closing(sqlite3.connect(f"{output}.part")) as base:
         tables = base.execute("SELECT count(*) FROM sqlite_master").fetchone()[0]
         asked = "SELECT coalesce(sum(stop - start), 0) FROM blocks" if tables else "SELECT 0"
         return base.execute(asked).fetchone()[0]
-    finally:
-        base.close()
 
 
 def tell(pipe):

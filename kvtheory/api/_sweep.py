@@ -9,21 +9,8 @@ from kvtheory.api._edge import scene_of, times_of
 from kvtheory.api._steady import LACKS, method_for
 from kvtheory.api._transient import MAXIMUM_RTOL, MINIMUM_RTOL
 from kvtheory.progress import Progress
-from kvtheory.results import STEADY_UNITS, Sweep
-from kvtheory.scene.arguments import (
-    a_scene,
-    callback,
-    checked,
-    choice,
-    count,
-    file_name,
-    flag,
-    names,
-    number,
-    pool,
-    replacements,
-    times,
-)
+from kvtheory.results import SPRING_UNITS, STEADY_UNITS, Sweep
+from kvtheory.scene import arguments as argument
 from kvtheory.scene.model import Scene
 from kvtheory.scene.quantities import SceneError
 from kvtheory.scene.requirements import lacks_arms, lacks_paper_model, lacks_stability, require
@@ -32,9 +19,9 @@ if TYPE_CHECKING:
     from kvtheory.sweeps.plan import Plan
 
 
-@checked(
-    executor=pool, jobs=count, in_flight=count, block=count, output=file_name, overwrite=flag,
-    progress=callback,
+@argument.checked(
+    executor=argument.pool, jobs=argument.count, in_flight=argument.count, block=argument.count,
+    output=argument.file_name, overwrite=argument.flag, progress=argument.callback,
 )  # fmt: skip
 def sweep(
     scene: Scene | None = None,
@@ -74,12 +61,11 @@ def sweep(
         ``peak_to_steady_friction``, the ratio of the largest |F_x| to the steady one; ``settling_time``,
         after which F_x stays within 1 % of the steady one; ``hops``, how often the indenter takes off;
         ``events``, as JSON. With a spring in the drive ``stick_slip_settles`` (1, or 0 where the run
-        shows neither steady sliding nor the limit of its cycles), ``stick_slip_amplitude`` (half the
-        stroke of the indenter along x), ``stick_slip_period``, and ``sliding_velocity`` and
-        ``friction_force`` with ``.cycle_max`` and ``.cycle_min``. With `at`, NAME is the time series;
-        ``NAME.steady`` is always the steady value. Transients of other shapes, and on Prony series,
-        are simulated by elements, in some seconds per scene: they give series, ``NAME.end``, ``NAME.max``,
-        ``NAME.min`` and ``peak_to_steady_friction`` only.
+        shows neither steady sliding nor a limit cycle), ``stick_slip_amplitude`` (half the stroke of the
+        indenter along x), ``stick_slip_period``, and ``sliding_velocity`` and ``friction_force`` with
+        ``.cycle_max`` and ``.cycle_min``. With `at`, NAME is the time series; ``NAME.steady`` is always the
+        steady value. Elements simulate transients of other shapes and on Prony series, in some seconds per
+        scene: series, ``NAME.end``, ``NAME.max``, ``NAME.min`` and ``peak_to_steady_friction`` only.
     at
         Times of the series, in s or as text with a unit.
     method, rtol
@@ -132,21 +118,23 @@ def sweep(
     ----------
     Nakano and Kono (2020), doi:10.3389/fmech.2020.00038; see `steady` and `transient`.
     """
-    from kvtheory.sweeps import session  # what it needs takes a while to import
+    from kvtheory.sweeps import engine  # what it needs takes a while to import
     from kvtheory.sweeps.size import refuse_what_cannot_fit
 
     plan = plan_of(scene, over=over, quantities=quantities, at=at, method=method, rtol=rtol)
     file = None if output is None else Path(output)
     refuse_what_cannot_fit(plan, file, jobs)
-    walk = session.walker(plan, executor, jobs, in_flight, block, progress)
+    how: dict[str, Any] = {
+        "executor": executor, "jobs": jobs, "in_flight": in_flight, "block": block, "report": progress,
+    }  # fmt: skip
     if file is None:
-        return session.in_memory(plan, walk)
-    return session.into_file(plan, walk, file, overwrite=overwrite)
+        return engine.in_memory(plan, **how)
+    return engine.into_file(plan, file, overwrite=overwrite, **how)
 
 
-@checked(
-    scene=a_scene, at=times, over=replacements, quantities=names, method=choice(LACKS),
-    rtol=number(MINIMUM_RTOL, MAXIMUM_RTOL),
+@argument.checked(
+    scene=argument.a_scene, at=argument.times, over=argument.replacements, quantities=argument.names,
+    method=argument.choice(LACKS), rtol=argument.number(MINIMUM_RTOL, MAXIMUM_RTOL),
 )  # fmt: skip
 def plan_of(
     scene: Scene | None = None,
@@ -159,8 +147,7 @@ def plan_of(
 ) -> "Plan":
     """Check the arguments of `sweep` together, and return the plan."""
     from kvtheory.sweeps.axes import axes_of
-    from kvtheory.sweeps.columns import OF_ELEMENTS, STABLE, columns_of
-    from kvtheory.sweeps.plan import Plan
+    from kvtheory.sweeps.plan import CYCLE, OF_ELEMENTS, STABLE, Plan, columns_of
 
     scene = scene_of(scene)
     method = method_for(scene, method)
@@ -175,10 +162,10 @@ def plan_of(
         require(lacks_arms, scene, "the transient")
         if lacking := [column.name for column in columns if column.measure not in OF_ELEMENTS]:
             had = "series, NAME.end, NAME.max, NAME.min and peak_to_steady_friction"
-            names, why = ", ".join(lacking), lacks_paper_model(scene)
-            raise SceneError([f"`quantities` {names}: {why}; `elements` gives {had}"])
+            why = f"{lacks_paper_model(scene)}; `elements` gives {had}"
+            raise SceneError([f"`quantities` {', '.join(lacking)}: {why}"])
     for column in columns:
-        if column.sprung and not sprung:
+        if not sprung and (column.measure in CYCLE or column.base in SPRING_UNITS):
             raise SceneError([f"`quantities` {column.name}: needs drive.stiffness, of a spring"])
         if column.base == STABLE and sprung:
             require(lacks_stability, scene, "the stability of steady sliding")

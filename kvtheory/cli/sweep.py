@@ -81,10 +81,9 @@ def sweep(
 
     check_not_an_input("-o", output)
     check_output("--plot", plot, PICTURES)
-    names = [name for text in quantities for name in split(text)]
     what: dict[str, Any] = {
-        "scene": load_scene(scene, overrides), "over": read_over(over), "quantities": names or None,
-        **how,
+        "scene": load_scene(scene, overrides), "over": read_over(over), **how,
+        "quantities": [name for text in quantities for name in split(text)] or None,
     }  # fmt: skip
     plan = plan_of(**what)
     if plot:
@@ -96,27 +95,25 @@ def sweep(
     began = time.perf_counter()
     with ExitStack() as stack:
         progress = stack.enter_context(progress_bar("sweep"))
+        pool = stack.enter_context(from_factory(executor, jobs)) if executor else None
         try:
             result = run(
-                **what, jobs=jobs or 1, block=block, output=output, overwrite=overwriting(),
-                executor=stack.enter_context(from_factory(executor, jobs)) if executor else None,
-                progress=progress,
+                **what, executor=pool, jobs=jobs or 1, block=block, output=output,
+                overwrite=overwriting(), progress=progress,
             )  # fmt: skip
         except KeyboardInterrupt:
-            told = (
-                f'interrupted; "{output}" holds the finished points, and the same command resumes'
-            )
-            raise KeyboardInterrupt(told) from None
+            left = f'"{output}" holds the finished points, and the same command resumes'
+            raise KeyboardInterrupt(f"interrupted; {left}") from None
     seconds = time.perf_counter() - began
     if plot:
         from kvtheory.plots.result import save_plot
 
         save_plot(result, plot)
-    _tell(result, seconds, as_json)
+    _print(result, seconds, as_json)
 
 
 def read_over(texts: Iterable[str]) -> dict[Any, Any]:
-    """Turn ``KEY=VALUES`` texts into `over`; ``KEY=VALUES & KEY=VALUES`` in one text are zipped.
+    """Turn ``KEY=VALUES`` texts into `over`; with ``KEY=VALUES & KEY=VALUES`` both vary together.
 
     >>> read_over(["drive.velocity=1 mm/s,2 mm/s & support.mass=1 kg/m:2 kg/m:2"])
     {('drive.velocity', 'support.mass'): ('1 mm/s,2 mm/s', '1 kg/m:2 kg/m:2')}
@@ -142,44 +139,38 @@ def read_over(texts: Iterable[str]) -> dict[Any, Any]:
 
 
 def from_factory(text: str, jobs: int | None) -> Executor:
-    """Call the factory ``module:name`` of executors, with the number of jobs if one is given.
-
-    Examples
-    --------
-    >>> with from_factory("concurrent.futures:ThreadPoolExecutor", 2) as executor:
-    ...     executor.submit(abs, -2).result()
-    2
-    """
+    """Call the factory ``module:name`` of executors, with the number of jobs if one is given."""
     from kvtheory.scene.quantities import nearest
 
-    given = f'--executor "{text}"'
     name, sign, factory = text.partition(":")
-    if not (name and sign and factory):
-        raise ValueError(
-            f"{given}: expected module:factory, such as concurrent.futures:ThreadPoolExecutor"
-        )
     sys.path.insert(0, "")  # a module in the working directory, as `python -m` finds it
     try:
-        module = importlib.import_module(name)
-    except (Exception, SystemExit) as error:  # whatever the module does when it is run
-        raise ValueError(f"{given}: the module cannot be imported: {_told(error)}") from None
-    if not hasattr(module, factory):
-        names = [known for known in dir(module) if not known.startswith("_")]
-        raise ValueError(f"{given}: {nearest(factory, names)}")
-    try:
-        executor = getattr(module, factory)(*([] if jobs is None else [jobs]))
-    except (Exception, SystemExit) as error:
-        raise ValueError(f"{given}: the factory cannot be called: {_told(error)}") from None
-    if not isinstance(executor, Executor) or type(executor) is Executor:
-        raise ValueError(f"{given}: expected a concurrent.futures.Executor, got {executor!r}")
+        if not (name and sign and factory):
+            raise ValueError(
+                "expected module:factory, such as concurrent.futures:ThreadPoolExecutor"
+            )
+        module = _call("the module cannot be imported", importlib.import_module, name)
+        if not hasattr(module, factory):
+            known = [each for each in dir(module) if not each.startswith("_")]
+            raise ValueError(nearest(factory, known))
+        given = [] if jobs is None else [jobs]
+        executor = _call("the factory cannot be called", getattr(module, factory), *given)
+        if not isinstance(executor, Executor) or type(executor) is Executor:
+            raise ValueError(f"expected a concurrent.futures.Executor, got {executor!r}")
+    except ValueError as error:
+        raise ValueError(f'--executor "{text}": {error}') from None
     return executor
 
 
-def _told(error: BaseException) -> str:
-    return f"{type(error).__name__}: {error}"
+def _call(failure: str, function: Any, *arguments: Any) -> Any:
+    """Call what a user gave, and report whatever it raises."""
+    try:
+        return function(*arguments)
+    except (Exception, SystemExit) as error:
+        raise ValueError(f"{failure}: {type(error).__name__}: {error}") from None
 
 
-def _tell(result: "Sweep", seconds: float, as_json: bool) -> None:
+def _print(result: "Sweep", seconds: float, as_json: bool) -> None:
     """Print the summary."""
     from kvtheory.results import record
 

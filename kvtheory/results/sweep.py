@@ -1,7 +1,8 @@
 """Many scenes at once: labelled arrays over the values that were swept."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
 from pathlib import Path
 from typing import Any
 
@@ -43,17 +44,16 @@ class Sweep:
     """Results of many scenes, as arrays over `axes` in SI; a missing value is NaN.
 
     `values` maps each quantity to an array with one dimension for each axis, and `time` as the last
-    one for a series; `events` is an array of JSON texts. If the sweep was written to the file
-    `path`, the arrays are read from there on access. `units` covers swept keys and
-    quantities. `computed` counts the points that this call solved; the others were in the file already.
-    `failures` lists scenes that failed: all of them, or for a file the first hundred;
-    `failed` counts them all. The errors in the certificate are the largest over the sweep.
+    one for a series; `events` is an array of JSON texts. If the sweep was written to the file `path`, the
+    arrays are read from there on access. `units` covers swept keys and quantities. `computed` counts the
+    points that this call solved; the others were in the file already. `failed` counts the scenes that
+    failed; `failures` lists them, for a file the first hundred. The errors in the certificate are the
+    largest over the sweep. `plan` and `read` belong to the package: the request, and what gives the arrays.
     """
 
     scene: Scene
     axes: tuple[Axis, ...]
     time: Array | None
-    values: Mapping[str, Any]
     units: Mapping[str, str]
     points: int
     computed: int
@@ -61,14 +61,23 @@ class Sweep:
     failures: tuple[Failure, ...]
     certificate: Certificate
     version: str
-    path: Path | None = None
-    plan: Any = field(default=None, repr=False, compare=False)
-    """The request, from which files are written."""
+    path: Path | None
+    plan: Any = field(repr=False, compare=False)
+    read: Callable[[], Mapping[str, Any]] = field(repr=False, compare=False)
+
+    @cached_property
+    def values(self) -> Mapping[str, Any]:
+        """The array of each quantity."""
+        return self.read()
+
+    @property
+    def swept(self) -> Mapping[str, Array]:
+        """The values of each swept key."""
+        return {key: array for axis in self.axes for key, array in axis.values.items()}
 
     def __getitem__(self, name: str) -> Any:
         """Return the array of a swept key or a quantity."""
-        swept = {key: array for axis in self.axes for key, array in axis.values.items()}
-        return swept[name] if name in swept else self.values[name]
+        return self.swept[name] if name in self.swept else self.values[name]
 
     @property
     def shape(self) -> tuple[int, ...]:
@@ -95,25 +104,24 @@ class Sweep:
         except ModuleNotFoundError:
             raise ValueError('this needs xarray: pip install ".[data]" in the checkout') from None
         dims = [axis.name for axis in self.axes]
-        coordinates: dict[str, Any] = {
-            key: (axis.name, array, {"units": self.units[key]})
-            for axis in self.axes
-            for key, array in axis.values.items()
+        units = {**self.units, "time": "s"}
+        labels = {
+            key: (axis.name, array) for axis in self.axes for key, array in axis.values.items()
         }
-        if self.time is not None:
-            coordinates["time"] = ("time", self.time, {"units": "s"})
-        columns = {}
-        for name in self.values:
-            array = np.asarray(self.values[name])
-            own = [*dims, "time"] if array.ndim > len(dims) else dims
-            units = {"units": self.units[name]} if self.units[name] else {}
-            columns[name] = (own, array, units)
-        attributes = {
-            "scene": to_toml(self.scene),
-            "kvtheory_version": self.version,
-            "certificate": self.certificate.statement,
-        }
-        return xarray.Dataset(columns, coordinates, attributes)
+        labels |= {} if self.time is None else {"time": ("time", self.time)}
+        data = xarray.Dataset(
+            {name: ([*dims, "time"][: array.ndim], array) for name, array in self.values.items()},
+            labels,
+            {
+                "scene": to_toml(self.scene),
+                "kvtheory_version": self.version,
+                "certificate": self.certificate.statement,
+            },
+        )
+        for name, unit in units.items():
+            if unit and name in data.variables:
+                data[name].attrs["units"] = unit
+        return data
 
     def plot(self, quantity: str | None = None, *, ax: Any = None) -> Any:
         """Draw a quantity as a curve, a family of curves, or a map.
@@ -150,12 +158,7 @@ class Sweep:
 
     def as_dict(self) -> dict[str, Any]:
         """Return plain Python values, ready for JSON; a missing value is None."""
-        swept = {key: array for axis in self.axes for key, array in axis.values.items()}
         time = {} if self.time is None else {"time": self.time}
-        values = {name: self.values[name] for name in self.values}
-        return record(
-            {
-                **swept, **time, **values, "points": self.points, "failed": self.failed,
-                "failures": self.failures, "certificate": self.certificate,
-            }
-        )  # fmt: skip
+        counts = {"points": self.points, "failed": self.failed}
+        told = {"failures": self.failures, "certificate": self.certificate}
+        return record({**self.swept, **time, **self.values, **counts, **told})

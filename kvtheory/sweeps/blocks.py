@@ -1,13 +1,12 @@
 """One block of a sweep: a small task in, numbers out. The only place where scenes are solved.
 
-`compute` is a function of its argument alone, so every executor and every cut into blocks gives the
-same bits; a scene that fails is a missing value with its reason, and its neighbours are not touched.
+`compute` is a function of its argument alone, so that every executor and every size of block gives the
+same bits. A scene that fails is a missing value with its reason; the others are not affected.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from contextlib import suppress
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,170 +14,141 @@ from numpy.typing import NDArray
 from kvtheory.models.steady.methods import METHODS
 from kvtheory.models.steady.stable_sliding import lasts
 from kvtheory.scene.model import Scene
-from kvtheory.sweeps.axes import narrowed, values_at
-from kvtheory.sweeps.columns import STABLE
-from kvtheory.sweeps.plan import Plan
+from kvtheory.sweeps.axes import values_at
+from kvtheory.sweeps.plan import FAILS, STABLE, Measured, Plan, Table
 
 Array = NDArray[np.float64]
 
-FAILS = (ValueError, ArithmeticError, RuntimeError)
-"""What a scene without an answer raises; anything else is a mistake of the program."""
-
 INTERPRETED = 1.5
-"""Of the steps from which compiling pays: more are interpreted before the first block that is compiled."""
+"""Steps interpreted before the first block is compiled, over those from which compiling pays."""
 
 
 @dataclass(frozen=True)
 class Task:
-    """Points `start` to `stop` of a sweep; its plan holds only the values that they need."""
+    """Points of a sweep from `start` on: their swept values, and the plan without its axes."""
 
     plan: Plan
     start: int
-    stop: int
-    moved: int
+    over: Mapping[str, Array]
+    tries: int = 1
 
     @property
     def points(self) -> int:
-        """How many scenes it holds."""
-        return self.stop - self.start
+        """The number of scenes."""
+        return next(iter(self.over.values())).size
 
-
-@dataclass(frozen=True)
-class Block:
-    """Results of the points `start` to `stop`: an array over them for each column, see `Plan.blank`.
-
-    `failures` are pairs of index and reason; `errors` is the certificate: the statements, and the
-    worst relative error of each quantity.
-    """
-
-    start: int
-    stop: int
-    values: Mapping[str, NDArray[Any]]
-    failures: Sequence[tuple[int, str]]
-    errors: tuple[Sequence[str], Mapping[str, float]]
+    def scene(self, index: int) -> Scene:
+        """Return one of the scenes, whose run must be as long as the times that are asked for."""
+        point = {key: float(array[index]) for key, array in self.over.items()}
+        scene = self.plan.scene.replace(point)
+        if max(self.plan.times or (0.0,)) > scene.run.duration:
+            late = f"a time of `at` is after the end of the run, {scene.run.duration} s"
+            raise ValueError(late)
+        return scene
 
 
 def task(plan: Plan, start: int, stop: int) -> Task:
     """Return the task for some points of a plan."""
-    axes, moved = narrowed(plan.axes, start, stop)
-    return Task(replace(plan, axes=axes), start, stop, moved)
+    return Task(replace(plan, axes=()), start, values_at(plan.axes, start, stop))
+
+
+@dataclass
+class Block:
+    """The table (`Plan.blank`) of the points from `start` to `stop`, and the errors of its columns.
+
+    `failures` are pairs of index and reason, `statements` those of the certificates.
+    """
+
+    start: int
+    stop: int
+    table: Table
+    failures: list[tuple[int, str]]
+    statements: list[str]
+    errors: dict[str, float]
 
 
 def compute(given: Task) -> Block:
-    """Solve the scenes of a task.
-
-    Examples
-    --------
-    >>> from kvtheory.sweeps.axes import axes_of
-    >>> from kvtheory.sweeps.columns import columns_of
-    >>> axes = axes_of(Scene(), {"drive.velocity": [0.1, 0.2, 0.4]})
-    >>> plan = Plan(Scene(), axes, columns_of("depth", series=False), None, "exact", 1e-6)
-    >>> compute(task(plan, 1, 3)).values["depth"].round(6).tolist()
-    [4.7e-05, 2.4e-05]
-    """
-    plan = given.plan
-    over = values_at(plan.axes, given.start - given.moved, given.stop - given.moved)
-    found = plan.blank(given.points)
-    reasons: dict[int, str] = {}
-    statements: set[str] = set()
+    """Solve the scenes of a task."""
+    plan, points = given.plan, given.points
+    steady = _steady(given) if plan.steady else Measured()
+    motion = _transients(given, steady) if plan.transient else Measured()
+    table, told = plan.blank(points), []
+    for column in plan.columns:
+        if column.measure == "steady":
+            table[column.name] = steady.values[column.base]
+            told += [(column.name, steady.errors[column.base])] * (column.base != STABLE)
+        else:
+            table[column.name] = motion.values[column.name]
+    told += [(name, motion.errors[name]) for name in plan.followed]
+    reasons = steady.reasons | motion.reasons
+    failed = sorted(reasons)
+    table[failed] = plan.blank(len(failed))
     errors: dict[str, float] = {}
-    needed = {column.base for column in plan.columns if column.steady} | plan.compared
-    steady: dict[str, Array] = {}
-    if needed:
-        told, worst_of = _steady(plan, over, sorted(needed), steady, reasons)
-        statements |= told
-        for column in plan.columns:
-            if column.steady:
-                found[column.name] = steady[column.base]
-                if column.base != STABLE:
-                    errors[column.name] = worst_of.get(column.base, 0.0)
-    if plan.transient:
-        statements |= _transients(given, over, steady, (found, reasons, errors))
-    blank = plan.blank(1)
-    for name, array in found.items():
-        array[list(reasons)] = blank[name][0]
-    failures = [(given.start + index, reasons[index]) for index in sorted(reasons)]
-    return Block(given.start, given.stop, found, failures, (sorted(statements), errors))
+    for name, error in told:
+        error[failed] = 0.0
+        errors[name] = max(errors.get(name, 0.0), float(np.max(error)))
+    return Block(
+        given.start, given.start + points, table,
+        [(given.start + index, _reason(reasons[index])) for index in failed],
+        sorted(steady.statements | motion.statements), errors,
+    )  # fmt: skip
 
 
-def _steady(
-    plan: Plan,
-    over: Mapping[str, Array],
-    names: Sequence[str],
-    found: dict[str, Array],
-    reasons: dict[int, str],
-) -> tuple[set[str], dict[str, float]]:
-    """Find quantities of steady sliding; halve a block that fails until the scene at fault is alone.
+def _reason(error: Exception) -> str:
+    """Say on one line why a scene has no answer."""
+    reason = "; ".join(str(error).splitlines()) or type(error).__name__
+    if isinstance(error, FloatingPointError | OverflowError | ZeroDivisionError):
+        return f"the scene leaves the range of double precision: {reason}"
+    return reason
 
-    Returns the statements of the certificates and the worst errors.
-    """
-    count = next(iter(over.values())).size
-    found |= {name: np.full(count, np.nan) for name in names}
-    statements: set[str] = set()
-    errors: dict[str, float] = {}
-    waiting = [(0, count)]
+
+def _steady(given: Task) -> Measured:
+    """Solve steady sliding; a part that fails is halved until the scene at fault is alone."""
+    plan, names, found = given.plan, given.plan.steady, Measured()
+    found.values = {name: np.full(given.points, np.nan) for name in names}
+    found.errors = {name: np.zeros(given.points) for name in names}
+    waiting = [(0, given.points)]
     while waiting:
         a, b = waiting.pop()
-        part = {key: array[a:b] for key, array in over.items()}
         try:
             with np.errstate(over="raise", invalid="raise", divide="raise"):
-                scene = plan.scene.replace(part)
+                scene = plan.scene.replace({key: array[a:b] for key, array in given.over.items()})
                 state = METHODS[plan.method](scene)
                 if STABLE in names:
                     state = replace(state, stable=lasts(scene))
         except FAILS as error:
             if b - a > 1:
-                middle = (a + b) // 2
-                waiting += [(middle, b), (a, middle)]
+                waiting += [((a + b) // 2, b), (a, (a + b) // 2)]
             else:
-                reasons[a] = reason(error)
+                found.reasons[a] = error
             continue
-        statements.add(state.certificate.statement)
+        found.statements.add(state.certificate.statement)
         for name in names:
-            found[name][a:b] = getattr(state, name)
-            if name != STABLE:
-                worst(errors, name, state.certificate.relative_error[name])
-    return statements, errors
+            found.values[name][a:b] = getattr(state, name)
+            found.errors[name][a:b] = state.certificate.relative_error.get(name, 0.0)
+    return found
 
 
-def _transients(
-    given: Task,
-    over: Mapping[str, Array],
-    steady: Mapping[str, Array],
-    into: tuple[Mapping[str, NDArray[Any]], dict[int, str], dict[str, float]],
-) -> set[str]:
-    """Follow the motions; return the statements of the certificates.
-
-    `into` is filled: the arrays of the columns, the reasons of failures, and the worst errors.
-    """
-    plan, (arrays, reasons, errors) = given.plan, into
-    # Imported here: the solver and the simulator take a while.
-    if plan.by_elements:
+def _transients(given: Task, steady: Measured) -> Measured:
+    """Follow the motions of the scenes that slide steadily, if that is asked for."""
+    # Imported here, as the solver and the simulator take a while to import.
+    if given.plan.by_elements:
         from kvtheory.sweeps.simulated import measure
     else:
         from kvtheory.sweeps.measures import measure
 
     scenes: dict[int, Scene] = {}
-    for index in range(given.points):
-        if index in reasons:
-            continue
-        point = {key: float(array[index]) for key, array in over.items()}
+    reasons: dict[int, Exception] = {}
+    for index in set(range(given.points)) - steady.reasons.keys():
         try:
-            scenes[index] = _in_time(plan, plan.scene.replace(point))
+            scenes[index] = given.scene(index)
         except FAILS as error:
-            reasons[index] = reason(error)
-    friction = steady.get("friction_force", np.full(given.points, np.nan))
+            reasons[index] = error
+    friction = steady.values.get("friction_force", np.full(given.points, np.nan))
     with np.errstate(over="raise", invalid="raise", divide="raise"):
-        found = measure(plan, scenes, friction, FAILS)
-    reasons.update((index, reason(error)) for index, error in found.reasons.items())
-    columns = [column for column in plan.columns if not column.steady]
-    kept = [index for index in scenes if index not in reasons]
-    for name in {column.base for column in columns if column.base} | plan.compared:
-        worst(errors, name, found.errors[name][kept])
-    for column in columns:
-        values = found.texts if column.text else found.values
-        arrays[column.name][:] = values[column.name]
-    return found.statements
+        found = measure(given.plan, scenes, friction)
+    found.reasons |= reasons
+    return found
 
 
 def compile_ahead(plan: Plan, points: int, workers: int) -> None:
@@ -194,28 +164,6 @@ def compile_ahead(plan: Plan, points: int, workers: int) -> None:
     if not compiled.available() or STEPS * points < INTERPRETED * compiled.WORTHWHILE * workers:
         return
     for index in (0, plan.points - 1):  # the second, if the first has no answer
-        over = values_at(plan.axes, index, index + 1)
         with suppress(*FAILS):
-            point = {key: float(array[0]) for key, array in over.items()}
-            compile_ahead(plan, plan.scene.replace(point))
+            compile_ahead(plan, task(plan, index, index + 1).scene(0))
             break
-
-
-def _in_time(plan: Plan, scene: Scene) -> Scene:
-    """Return a scene whose run is as long as the times that are asked for."""
-    if max(plan.times or (0.0,)) > scene.run.duration:
-        late = f"a time of `at` is after the end of the run, {scene.run.duration} s"
-        raise ValueError(late)
-    return scene
-
-
-def reason(error: Exception) -> str:
-    """Say on one line why a scene has no answer."""
-    range_left = isinstance(error, FloatingPointError | OverflowError | ZeroDivisionError)
-    told = "; ".join(str(error).splitlines()) or type(error).__name__
-    return f"the scene leaves the range of double precision: {told}" if range_left else told
-
-
-def worst(errors: dict[str, float], name: str, error: Any) -> None:
-    """Raise the error of a quantity to the largest seen."""
-    errors[name] = max(errors.get(name, 0.0), float(np.max(error, initial=0.0)))

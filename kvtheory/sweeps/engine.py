@@ -1,52 +1,137 @@
-"""The walk over the blocks of a sweep: here, or by an executor, with a bounded number in flight."""
+"""The run of a sweep: blocks given to an executor, a bounded number at a time, and kept as they return."""
 
 import logging
+import multiprocessing
+import os
+import signal
+import threading
 from collections.abc import Callable, Iterator
-from concurrent.futures import (
-    FIRST_COMPLETED,
-    BrokenExecutor,
-    CancelledError,
-    Executor,
-    Future,
-    wait,
-)
+from concurrent import futures
+from concurrent.futures import Executor, Future
 from concurrent.futures.process import BrokenProcessPool
+from contextlib import ExitStack, suppress
+from dataclasses import replace
+from glob import escape
 from importlib.util import find_spec
+from pathlib import Path
+from time import monotonic
+from typing import Any
 
-from kvtheory.sweeps.blocks import Block, Task, compute, task
+from kvtheory.progress import Progress
+from kvtheory.results.sweep import Sweep
+from kvtheory.sweeps import files
+from kvtheory.sweeps.blocks import Block, Task, compile_ahead, compute, task
 from kvtheory.sweeps.plan import Plan
+from kvtheory.sweeps.store import WorkFile
+
+WORK = ".part"
+"""What the name of a work file adds to that of the result."""
 
 VECTORISED_BLOCK = 65536
 """Steady states in a block: 5 MB of results in 20 ms; half as many cost a third of the speed."""
 QUADRATURE_BLOCK = 512
 """Scenes integrated in a block: as many as go through one column of nodes; 64 cost half the speed."""
 SINGLE_BLOCK, COMPILED_BLOCK = 64, 512
-"""Motions followed in a block, one by one or in one call: about 0.1 s to 1 s, of which passing it on takes a
-percent."""
+"""Motions in a block, one by one or in one call: 0.1 s to 1 s, of which the transfer takes a percent."""
 LEAST_BLOCKS = 16
 """Of a sweep of motions, so that a few workers share even a small one."""
 
+AHEAD = 2
+"""Blocks in flight for each worker: one that is computed and one that waits for it."""
+UNKNOWN_WORKERS = 16
+"""Assumed of an executor that does not tell; on a larger cluster give `in_flight`."""
 TRIES = 3
-"""Times that a block is given out; a worker may die under it, but not every time."""
+"""How often a block is given out: a worker may die under it, but not every time."""
 REFRESH = 0.5
-"""Seconds after which progress is shown anew, and an interrupt is heard, while nothing comes back."""
+"""Seconds after which progress is shown again, and an interrupt is noticed, if no block returns."""
 
 HINT = ' (a script that starts processes needs `if __name__ == "__main__":`)'
-"""Without it, each process runs the script anew, and ends at once."""
+"""Without it, each process runs the script again, and ends at once."""
 
 log = logging.getLogger(__name__)
 
-Workers = Callable[[], Executor]
-"""Gives the executor; called again, a new one, if the old one is broken."""
+
+def in_memory(plan: Plan, **how: Any) -> Sweep:
+    """Run a sweep and return its arrays."""
+    blocks: list[Block] = []
+    run(plan, [], blocks.append, **how)
+    return files.from_memory(plan, lambda **_: sorted(blocks, key=lambda block: block.start))
+
+
+def into_file(plan: Plan, path: Path, *, overwrite: bool, **how: Any) -> Sweep:
+    """Run a sweep into a file, or resume it; after an interrupt the file holds what was done."""
+    files.check(path)
+    work = path.with_name(path.name + WORK)
+    if not overwrite and files.finished(path, plan):
+        if work.exists():  # of a run that was killed just before it removed this
+            WorkFile(work, plan).close(remove=True)
+        return files.from_file(path, plan)
+    store = WorkFile(work, plan, anew=overwrite)
+    written = False
+    try:
+        for unfinished in path.parent.glob(f".{escape(path.stem)}.*.part{path.suffix}"):
+            unfinished.unlink()  # of a run that was killed while it wrote the result
+        try:
+            computed = run(plan, list(store.blocks(tables=False)), store.keep, **how)
+        except KeyboardInterrupt:
+            files.write(plan, store.blocks, path)
+            raise
+        files.write(plan, store.blocks, path)
+        written = True
+    finally:
+        store.close(remove=written)
+    return files.from_file(path, plan, computed)
+
+
+def run(
+    plan: Plan, kept: list[Block], keep: Callable[[Block], None], *, executor: Executor | None,
+    jobs: int, in_flight: int | None, block: int | None, report: Progress | None,
+) -> int:  # fmt: skip
+    """Compute all blocks that are not `kept`, and return how many points these hold.
+
+    An executor of the caller is not shut down.
+    """
+    before = done = sum(one.stop - one.start for one in kept)
+    failed, begun = sum(len(one.failures) for one in kept), monotonic()
+    told = jobs if executor is None else getattr(executor, "_max_workers", None)
+    workers = told or UNKNOWN_WORKERS
+    compile_ahead(plan, plan.points - before, workers)
+
+    def returned(result: Block) -> None:
+        nonlocal done, failed
+        keep(result)
+        done += result.stop - result.start
+        failed += len(result.failures)
+
+    def show() -> None:
+        rate = (done - before) / max(monotonic() - begun, 1e-9)
+        text = f"{done:,} of {plan.points:,} points"
+        if rate > 0.0:
+            text += f", {rate:,.0f} a second" if rate >= 10.0 else f", {rate:.2g} a second"
+        if report:
+            report(done / plan.points, text + (f", {failed:,} failed" if failed else ""))
+
+    def pool() -> Executor:
+        return stack.enter_context(_own(jobs, plan)) if executor is None else executor
+
+    show()
+    tasks = remaining(plan, [(one.start, one.stop) for one in kept], block)
+    most = 1 if executor is None and jobs == 1 else in_flight or AHEAD * workers
+    with ExitStack() as stack:
+        _give_out(pool, tasks, returned, most, show)
+    return done - before
 
 
 def remaining(plan: Plan, done: list[tuple[int, int]], block: int | None = None) -> Iterator[Task]:
     """Yield tasks for all points outside the `done` ranges, at most `block` points each.
 
-    Edges of blocks lie on multiples of `block`, but for those that earlier runs left.
+    Edges of blocks lie on multiples of `block`, except at the ends of those ranges.
     """
-    usual = _motions(plan) if plan.transient else QUADRATURE_BLOCK
-    size = block or (VECTORISED_BLOCK if plan.vectorised else usual)
+    size = block or (VECTORISED_BLOCK if plan.vectorised else QUADRATURE_BLOCK)
+    if plan.transient and not block:
+        together = find_spec("numba") is not None and not plan.texts
+        most = COMPILED_BLOCK if together else SINGLE_BLOCK
+        size = min(most, max(SINGLE_BLOCK, plan.points // LEAST_BLOCKS))
     at = 0
     for start, stop in [*done, (plan.points, plan.points)]:
         while at < start:
@@ -56,99 +141,93 @@ def remaining(plan: Plan, done: list[tuple[int, int]], block: int | None = None)
         at = max(at, stop)
 
 
-def _motions(plan: Plan) -> int:
-    """Return how many motions are followed in a block."""
-    together = find_spec("numba") is not None and not plan.textual
-    most = COMPILED_BLOCK if together else SINGLE_BLOCK
-    return min(most, max(SINGLE_BLOCK, plan.points // LEAST_BLOCKS))
-
-
-def run_here(tasks: Iterator[Task], keep: Callable[[Block], None]) -> None:
-    """Compute the blocks one after the other in this thread."""
-    for given in tasks:
-        keep(compute(given))
-
-
-def run_by(
-    workers: Workers,
+def _give_out(
+    pool: Callable[[], Executor],
     tasks: Iterator[Task],
     keep: Callable[[Block], None],
     in_flight: int,
-    idle: Callable[[], None],
+    show: Callable[[], None],
 ) -> None:
-    """Have an executor compute the blocks, `in_flight` of them at a time; it is not shut down.
+    """Have the blocks computed, `in_flight` of them at a time.
 
-    A block that is lost with its worker is given out again. On an interrupt, or an error in
-    keeping, blocks that wait are withdrawn; those that have come back are kept.
+    `pool` gives the executor, and a new one when it is broken. A block that is lost with its worker is
+    given out again. After an error or an interrupt, waiting blocks are withdrawn, those returned are kept.
 
     Raises
     ------
     RuntimeError
-        If a block was lost `TRIES` times.
+        If a block was lost `TRIES` times, or the executor of the caller is broken.
     """
-    executor = workers()
-    flying: dict[Future[Block], tuple[Task, int]] = {}
-    again: list[tuple[Task, int]] = []
+    executor = pool()
+    flying: dict[Future[Block], Task] = {}
+    again: list[Task] = []
     try:
         while True:
             while len(flying) < in_flight:
-                given, tries = again.pop() if again else (next(tasks, None), 1)
+                given = again.pop() if again else next(tasks, None)
                 if given is None:
                     break
                 try:
-                    flying[executor.submit(compute, given)] = given, tries
-                except BrokenExecutor as error:
-                    again.append((given, tries))
-                    executor = _renewed(workers, executor, error)
+                    flying[executor.submit(compute, given)] = given
+                except futures.BrokenExecutor as error:
+                    again.append(given)
+                    broken, executor = executor, pool()
+                    if executor is broken:
+                        raise RuntimeError(f"the executor is broken: {error}") from error
             if not flying:
                 return
-            done, _ = wait(flying, REFRESH, FIRST_COMPLETED)
-            idle()
-            for future in done:
-                given, tries = flying.pop(future)
-                lost = _error(future)
-                if lost is None:
-                    keep(future.result())
-                    continue
-                again.append(_once_more(given, tries, lost))
+            for future in futures.wait(flying, REFRESH, futures.FIRST_COMPLETED).done:
+                again += _kept(future, flying.pop(future), keep)
+            show()
     except BaseException:
-        _salvage(flying, keep)
+        for future in flying:
+            future.cancel()
+        with suppress(OSError):  # if the disk is full, say
+            for future, given in flying.items():
+                if future.done() and not future.cancelled():
+                    _kept(future, replace(given, tries=0), keep)
         raise
 
 
-def _once_more(given: Task, tries: int, lost: BaseException) -> tuple[Task, int]:
-    """Return what to give out again, or give up."""
-    points = f"points {given.start} to {given.stop - 1}"
-    if tries == TRIES:
+def _kept(future: Future[Block], given: Task, keep: Callable[[Block], None]) -> list[Task]:
+    """Keep a block that has returned, or give its task back if it was lost with its worker."""
+    try:
+        lost = future.exception()
+    except futures.CancelledError as error:  # by the executor of a cluster
+        lost = error
+    if lost is None:
+        keep(future.result())
+        return []
+    points = f"points {given.start} to {given.start + given.points - 1}"
+    if given.tries == TRIES:
         told = f"{type(lost).__name__}: {lost}{HINT if isinstance(lost, BrokenProcessPool) else ''}"
         raise RuntimeError(f"{points} were lost {TRIES} times: {told}") from lost
     log.warning("%s are given out again: %r", points, lost)
-    return given, tries + 1
+    return [replace(given, tries=given.tries + 1)]
 
 
-def _error(future: Future[Block]) -> BaseException | None:
-    """Return what went wrong with a block; executors of clusters also withdraw it by themselves."""
-    try:
-        return future.exception()
-    except CancelledError as error:
-        return error
+class _Here(Executor):
+    """Computes at once, in this thread."""
+
+    def submit(self, function: Any, /, *arguments: Any, **named: Any) -> Future[Any]:
+        """Return a future that has its result."""
+        future: Future[Any] = Future()
+        future.set_result(function(*arguments, **named))
+        return future
 
 
-def _renewed(workers: Workers, old: Executor, error: BrokenExecutor) -> Executor:
-    """Return a new executor for a broken one; that of the caller cannot be made anew."""
-    new = workers()
-    if new is old:
-        raise RuntimeError(f"the executor is broken: {error}") from error
-    return new
+def _own(jobs: int, plan: Plan) -> Executor:
+    """Return an executor of our own: of processes, unless NumPy spends the time."""
+    if jobs == 1:
+        return _Here()
+    if plan.vectorised:
+        return futures.ThreadPoolExecutor(jobs)
+    spawn = multiprocessing.get_context("spawn")
+    return futures.ProcessPoolExecutor(jobs, spawn, initializer=_follow_parent)
 
 
-def _salvage(flying: dict[Future[Block], tuple[Task, int]], keep: Callable[[Block], None]) -> None:
-    """Withdraw what has not begun, and keep what has come back, if keeping is still possible."""
-    for future in flying:
-        future.cancel()
-    for future in flying:
-        if future.done() and not future.cancelled() and future.exception() is None:
-            try:
-                keep(future.result())
-            except OSError:
-                return
+def _follow_parent() -> None:
+    """Leave interrupts to the parent process, and end with it, even if it is killed."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    parent: Any = multiprocessing.parent_process()
+    threading.Thread(target=lambda: (parent.join(), os._exit(1)), daemon=True).start()

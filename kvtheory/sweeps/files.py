@@ -1,84 +1,73 @@
-"""Sweeps as files: CSV in long form and NetCDF, written block by block, and read again.
+"""Sweeps as files: CSV in long form, written block by block, and NetCDF, written by xarray.
 
-A file holds the SHA-256 of all its other bytes, so that one in which anything was changed is not taken for
-this sweep: numbers, axes, units, texts, or their order. In CSV it stands in the second line, in NetCDF
-behind what its readers reach. A file that another program saved anew has lost it.
+CSV (RFC 4180) has one row for each point, or for each point and time; lines that begin with ``#`` above the
+table describe it. NetCDF has a dimension for each axis. Either file holds the SHA-256 of all its other bytes,
+so that one in which anything was changed is not taken for this sweep: in CSV it stands in the second line, in
+NetCDF behind what its readers reach. A file that another program saved again has lost it.
 """
 
+import csv
 import hashlib
 import json
-import os
-from collections.abc import Iterator, Mapping
-from importlib.metadata import version
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import asdict
+from functools import partial
+from itertools import takewhile
 from pathlib import Path
-from typing import Any, BinaryIO
+from typing import Any
 
 import numpy as np
+import orjson
 
 from kvtheory.export import check_path, replace_file
 from kvtheory.results.certificate import Certificate
 from kvtheory.results.sweep import Failure, Sweep
-from kvtheory.sweeps import csv_file, netcdf_file
+from kvtheory.sweeps.axes import values_at
 from kvtheory.sweeps.blocks import Block
-from kvtheory.sweeps.outcome import Outcome, outcome
-from kvtheory.sweeps.plan import Plan, differences
+from kvtheory.sweeps.plan import EVENTS, Plan
 
-FORMATS: Mapping[str, Any] = {".csv": csv_file, ".nc": netcdf_file}
-"""Modules with `check`, `write`, `header` and `values`, by the suffix that they serve; `SEAL` is the place of
-the digest, counted from the end if it is negative."""
-
+Blocks = Callable[..., Iterable[Block]]
+"""Gives the blocks in the order of their points, with `tables=False` without their tables."""
+FAILURES_LISTED = 100
+"""Failures that a result lists when it stays in a file; the file itself has them all."""
 WAYS_OUT = "remove it, choose another name, or overwrite it (`overwrite`)"
 
-
+END = "\r\n"
+DIGEST = f"# kvtheory sweep{END}# sha256 of the rest of this file: "
+"""The beginning of a CSV."""
 DIGITS = 64
 """Of a SHA-256."""
 PART = 2**20
 """Bytes read at a time."""
 
 
-def format_of(path: Path) -> Any:
-    """Return the module that serves a file of this name."""
-    return FORMATS[path.suffix.lower()]
-
-
 def check(path: Path) -> None:
     """Raise `ValueError` or `OSError` unless a sweep can be written to `path`."""
-    check_path(path, tuple(FORMATS))
-    format_of(path).check()
+    check_path(path, (".csv", ".nc"))
+    if not is_csv(path):
+        try:
+            import netCDF4  # noqa: F401
+        except ModuleNotFoundError:
+            told = 'NetCDF needs netCDF4: pip install ".[data]" in the checkout'
+            raise ValueError(told) from None
 
 
-def write(result: Outcome, path: Path) -> None:
-    """Write a result to `path` by a temporary name."""
-    form = format_of(path)
+def is_csv(path: Path) -> bool:
+    """Whether a file of this name is a CSV, and not NetCDF."""
+    return path.suffix.lower() == ".csv"
 
-    def sealed(part: Path) -> None:
-        form.write(result, part)
+
+def write(plan: Plan, blocks: Blocks, path: Path) -> None:
+    """Write what there is to `path`, by a temporary name."""
+
+    def write(part: Path) -> None:
+        (_write_csv if is_csv(path) else _write_netcdf)(plan, blocks, part)
+        place, digest = _digest(part)
         with part.open("r+b") as file:
-            digest = _digest(file, form.SEAL)
-            file.seek(-DIGITS, os.SEEK_CUR)
+            file.seek(place)
             file.write(digest)
 
-    replace_file(path, sealed)
-
-
-def _digest(file: BinaryIO, place: int) -> bytes:
-    """Return the digest of all bytes of a file but those of the digest itself, and stand behind these."""
-    size, digest = file.seek(0, os.SEEK_END), hashlib.sha256()
-    place = max(0, place if place >= 0 else size + place)
-    for start, stop in ((place + DIGITS, size), (0, place)):
-        file.seek(start)
-        while part := file.read(max(0, min(PART, stop - file.tell()))):
-            digest.update(part)
-    file.seek(place + DIGITS)
-    return digest.hexdigest().encode()
-
-
-def _whole(path: Path) -> bool:
-    """Whether every byte of a file is as it was written."""
-    with path.open("rb") as file:
-        digest = _digest(file, format_of(path).SEAL)
-        file.seek(-DIGITS, os.SEEK_CUR)
-        return digest == file.read(DIGITS)
+    replace_file(path, write)
 
 
 def finished(path: Path, plan: Plan) -> bool:
@@ -91,13 +80,16 @@ def finished(path: Path, plan: Plan) -> bool:
     """
     if not path.exists():
         return False
-    if not _whole(path):
-        raise ValueError(
-            f'"{path}" exists and is not a sweep as it was written: it is another file, or was changed, cut, '
-            f"or saved anew by another program; {WAYS_OUT}"
-        )
-    header = format_of(path).header(path)
-    if differing := differences(header["record"], plan):
+    place, digest = _digest(path)
+    with path.open("rb") as file:
+        file.seek(place)
+        if file.read(DIGITS) != digest:
+            raise ValueError(
+                f'"{path}" exists and is not a sweep as it was written: it is another file, or was changed, '
+                f"cut, or saved anew by another program; {WAYS_OUT}"
+            )
+    header = _header(path)
+    if differing := plan.differences(header["record"]):
         raise ValueError(
             f'"{path}" holds another sweep: it differs in {", ".join(differing)}; {WAYS_OUT}'
         )
@@ -105,73 +97,182 @@ def finished(path: Path, plan: Plan) -> bool:
     return bool(summary["done"] == summary["points"])
 
 
-class Stored(Mapping[str, Any]):
-    """Arrays of a sweep that are read from its file when they are asked for."""
-
-    def __init__(self, path: Path, plan: Plan) -> None:
-        self._path, self._plan = path, plan
-        self._read: dict[str, Any] = {}
-
-    def __getitem__(self, name: str) -> Any:
-        if name not in self._read:
-            if name not in list(self):
-                raise KeyError(name)
-            self._read |= format_of(self._path).values(self._path, self._plan, name)
-        return self._read[name]
-
-    def __iter__(self) -> Iterator[str]:
-        return iter([column.name for column in self._plan.columns])
-
-    def __len__(self) -> int:
-        return len(self._plan.columns)
+def _digest(path: Path) -> tuple[int, bytes]:
+    """Return where the digest of a file begins, and that of all its other bytes."""
+    size, digest = path.stat().st_size, hashlib.sha256()
+    place = len(DIGEST) if is_csv(path) else max(0, size - DIGITS)
+    with path.open("rb") as file:
+        for start, stop in ((place + DIGITS, size), (0, place)):
+            file.seek(start)
+            while part := file.read(max(0, min(PART, stop - file.tell()))):
+                digest.update(part)
+    return place, digest.hexdigest().encode()
 
 
 def from_file(path: Path, plan: Plan, computed: int = 0) -> Sweep:
     """Return the sweep that a finished file holds; its arrays stay there until they are wanted."""
-    summary = json.loads(format_of(path).header(path)["summary"])
-    failures = tuple(Failure(**failure) for failure in summary["failures"])
-    certificate = Certificate("estimated", summary["certificate"], summary["relative_error"])
-    told = computed, summary["failed"], failures, certificate
-    return _sweep(plan, Stored(path, plan), told, path)
+    header = json.loads(_header(path)["summary"])
+    header["failures"] = tuple(Failure(**failure) for failure in header["failures"])
+    return _sweep(plan, header, partial(_values, path, plan), computed, path)
 
 
-def from_memory(result: Outcome) -> Sweep:
-    """Return a sweep as arrays."""
-    (block,) = result.blocks()
-    shape = tuple(axis.size for axis in result.plan.axes)
-    arrays = {
-        column.name: block.values[column.name].reshape(*shape, *result.plan.shape(column))
-        for column in result.plan.columns
+def from_memory(plan: Plan, blocks: Blocks) -> Sweep:
+    """Return blocks as arrays, in which points that were not computed are missing values."""
+    missing = plan.blank(1)
+    flat = {
+        name: np.repeat(missing[name], plan.points, axis=0) for name in missing.dtype.names or ()
     }
-    told = result.done, result.failed, result.failures, result.certificate
-    return _sweep(result.plan, arrays, told, None)
+    for block in blocks():
+        for name, array in flat.items():
+            array[block.start : block.stop] = block.table[name]
+    values = {name: array.reshape(*plan.grid, *array.shape[1:]) for name, array in flat.items()}
+    header = _summary(plan, blocks)
+    return _sweep(plan, header, lambda: values, header["done"])
 
 
-def _sweep(
-    plan: Plan,
-    values: Mapping[str, Any],
-    told: tuple[int, int, tuple[Failure, ...], Certificate],
-    path: Path | None,
-) -> Sweep:
-    computed, failed, failures, certificate = told
+def _sweep(plan: Plan, header: Any, read: Any, computed: int, path: Path | None = None) -> Sweep:
+    """Return the result that a header describes."""
     return Sweep(
-        scene=plan.scene, axes=plan.axes, values=values, units=plan.units,
-        time=np.array(plan.times) if plan.series else None, points=plan.points,
-        computed=computed, failed=failed, failures=failures, certificate=certificate,
-        version=version("kvtheory"), path=path, plan=plan,
+        scene=plan.scene, axes=plan.axes, time=np.array(plan.times) if plan.series else None,
+        units=plan.units, points=plan.points, computed=computed, failed=header["failed"],
+        failures=header["failures"], version=plan.record["kvtheory"], path=path, plan=plan, read=read,
+        certificate=Certificate("estimated", header["certificate"], header["relative_error"]),
     )  # fmt: skip
 
 
 def save_sweep(result: Sweep, path: Path) -> None:
-    """Write a sweep that is in memory; `Sweep.save` documents it."""
+    """Write the sweep of a result; `Sweep.save` documents it."""
     check(path)
     plan: Plan = result.plan
-    points = plan.points
-    values = {
-        column.name: np.asarray(result.values[column.name]).reshape(points, *plan.shape(column))
-        for column in plan.columns
-    }
+    table = plan.blank(plan.points)
+    for name, values in result.values.items():
+        table[name] = values.reshape(table[name].shape)
     failures = [(failure.index, failure.reason) for failure in result.failures]
-    errors = [result.certificate.statement], result.certificate.relative_error
-    block = Block(0, points, values, failures, errors)
-    write(outcome(plan, lambda **_: iter([block])), path)
+    errors = dict(result.certificate.relative_error)
+    block = Block(0, plan.points, table, failures, [result.certificate.statement], errors)
+    write(plan, lambda **_: [block], path)
+
+
+def _summary(plan: Plan, blocks: Blocks) -> dict[str, Any]:
+    """Return how much was computed, which scenes failed and why, and the largest errors."""
+    done, failures, statements = 0, [], set[str]()
+    errors: dict[str, float] = {}
+    for block in blocks(tables=False):
+        done += block.stop - block.start
+        statements.update(block.statements)
+        for index, reason in block.failures:
+            point = values_at(plan.axes, index, index + 1).items()
+            failures.append(Failure(index, {key: float(a[0]) for key, a in point}, reason))
+        for name, error in block.errors.items():
+            errors[name] = max(errors.get(name, 0.0), error)
+    return {
+        "points": plan.points, "done": done, "failed": len(failures), "failures": tuple(failures),
+        "certificate": "; ".join(sorted(statements)), "relative_error": errors,
+    }  # fmt: skip
+
+
+def _header(path: Path) -> Mapping[str, Any]:
+    """Return what a file says about itself."""
+    if not is_csv(path):
+        import xarray
+
+        with xarray.open_dataset(path, engine="netcdf4") as data:
+            return dict(data.attrs)
+    with path.open(encoding="utf-8", newline="") as file:
+        comments = takewhile(lambda line: line.startswith("#"), file)
+        pairs = [line[1:].strip().partition(": ") for line in comments]
+    return {key: text for key, _, text in pairs}
+
+
+def _described(plan: Plan, summary: Mapping[str, Any]) -> dict[str, str]:
+    """Return what a file says about itself, as JSON."""
+    listed = [asdict(failure) for failure in summary["failures"][:FAILURES_LISTED]]
+    summary = {**summary, "failures": listed}
+    return {"record": json.dumps(plan.record), "summary": json.dumps(summary)}
+
+
+def _values(path: Path, plan: Plan) -> dict[str, Any]:
+    """Return the arrays of a file."""
+    kinds = {column.name: float if column.unit else object for column in plan.columns}
+    if not is_csv(path):
+        import xarray
+
+        with xarray.open_dataset(path, engine="netcdf4") as data:
+            arrays = {column.name: data[column.name].values for column in plan.columns}
+        return {name: array.astype(kinds[name], copy=False) for name, array in arrays.items()}
+    with path.open(encoding="utf-8", newline="") as file:
+        rows = csv.reader(line for line in file if not line.startswith("#"))
+        table = dict(zip(next(rows), zip(*rows, strict=True), strict=True))
+    shape = (*plan.grid, len(plan.times or ())) if plan.series else (*plan.grid, 1)
+    found = {}
+    for column in plan.columns:
+        cells = table[_head(column.name, column.unit)]
+        read = [float(cell or "nan") for cell in cells] if column.unit else cells
+        array = np.array(read, dtype=kinds[column.name]).reshape(shape)
+        found[column.name] = array if column.measure == "series" else array[..., 0]
+    return found
+
+
+def _write_csv(plan: Plan, blocks: Blocks, path: Path) -> None:
+    """Write header and rows; those of points that were not computed are left out."""
+    summary = _summary(plan, blocks)
+    swept = " x ".join(f"{axis.size} {' & '.join(axis.values)}" for axis in plan.axes)
+    lines = [
+        f"{DIGEST}{'0' * DIGITS}",
+        "# to read the table: pandas.read_csv(FILE, comment='#')",
+        f"# version: {plan.record['kvtheory']}",
+        f"# over: {swept}",
+    ]
+    if summary["done"] < plan.points:
+        lines.append(
+            f"# unfinished: {summary['done']} of {plan.points} points; the command resumes it"
+        )
+    lines += [f"#   {line}".rstrip() for line in plan.record["scene"].splitlines()]
+    lines += [f"# {key}: {text}" for key, text in _described(plan, summary).items()]
+    lines += [
+        f"# failed: point {failure.index}, {json.dumps(failure.reason, ensure_ascii=False)}"
+        for failure in summary["failures"]
+    ]
+    heads = [_head(key, plan.units[key]) for axis in plan.axes for key in axis.values]
+    heads += ["time [s]"] * plan.series
+    heads += [_head(column.name, column.unit) for column in plan.numeric] + [EVENTS] * plan.texts
+    with path.open("wb") as file:
+        file.write(END.join([*lines, ",".join(heads), ""]).encode())
+        for block in blocks():
+            file.write(_rows(plan, block))
+
+
+def _head(name: str, unit: str) -> str:
+    return f"{name} [{unit}]" if unit else name
+
+
+def _rows(plan: Plan, block: Block) -> bytes:
+    """Return the rows of a block; orjson prints the shortest decimals that read back the same."""
+    shape = block.stop - block.start, len(plan.times or ()) if plan.series else 1
+    swept = values_at(plan.axes, block.start, block.stop).values()
+    columns = [np.repeat(column, shape[1]) for column in swept]
+    columns += [np.tile(plan.times or (), shape[0])] * plan.series
+    for column in plan.numeric:
+        values = block.table[column.name].reshape(shape[0], -1)
+        columns.append(np.broadcast_to(values, shape).reshape(-1))
+    table = np.column_stack(columns)
+    text = orjson.dumps(table, option=orjson.OPT_SERIALIZE_NUMPY)[2:-2]
+    if not np.isfinite(table).all():
+        text = text.replace(b"null", b"")
+    if not plan.texts:
+        return text.replace(b"],[", END.encode()) + END.encode()
+    cells = ['"' + text.replace('"', '""') + '"' for text in block.table[EVENTS]]
+    lines = zip(text.split(b"],["), np.repeat(cells, shape[1]), strict=True)
+    return b"".join(b"%s,%s%s" % (line, cell.encode(), END.encode()) for line, cell in lines)
+
+
+def _write_netcdf(plan: Plan, blocks: Blocks, path: Path) -> None:
+    """Write what there is; points that were not computed are missing values."""
+    failures = (summary := _summary(plan, blocks))["failures"]
+    data = from_memory(plan, blocks).to_xarray()
+    data = data.assign_attrs(title="kvtheory sweep", **_described(plan, summary))
+    data["failure_index"] = "failure", np.array([f.index for f in failures], dtype=np.int64)
+    data["failure_reason"] = "failure", np.array([f.reason for f in failures], dtype=object)
+    data.to_netcdf(path, engine="netcdf4")
+    with path.open("ab") as file:
+        file.write(b"0" * DIGITS)

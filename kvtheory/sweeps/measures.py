@@ -6,8 +6,7 @@ nothing is compiled or events are asked for, are followed one by one, into the s
 
 import json
 import math
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping
 from typing import Any
 
 import numpy as np
@@ -26,8 +25,7 @@ from kvtheory.results.table import QUANTITIES
 from kvtheory.scene.base_motion import BaseMotion
 from kvtheory.scene.model import Scene
 from kvtheory.scene.static_state import StaticState
-from kvtheory.sweeps.columns import CYCLE, Column
-from kvtheory.sweeps.plan import Plan
+from kvtheory.sweeps.plan import CYCLE, EVENTS, FAILS, Column, Measured, Plan
 
 Array = NDArray[np.float64]
 
@@ -54,28 +52,14 @@ DOUBLINGS = 2
 """Of the room of a single motion: few scenes then need more, and are followed alone."""
 
 
-@dataclass(frozen=True)
-class Measured:
-    """Values of each column, in the order of the scenes; texts; why a scene has none; and the errors."""
-
-    values: Mapping[str, Any]
-    texts: Mapping[str, Sequence[str]]
-    reasons: Mapping[int, Exception]
-    statements: set[str]
-    errors: Mapping[str, Array]
-
-
-def measure(
-    plan: Plan, scenes: Mapping[int, Scene], friction: Array, fails: tuple[type[Exception], ...]
-) -> Measured:
-    """Follow scenes, by their index in a block; return the columns of the plan that are of transients.
+def measure(plan: Plan, scenes: Mapping[int, Scene], friction: Array) -> Measured:
+    """Follow scenes, by their index in a block; return the columns of the plan that belong to transients.
 
     The scenes differ in values, not in the kinds of their parts. `friction` is the steady friction force
-    in N/m at each index of the block, where it is asked for; `fails` are the exceptions that mean that a
-    scene has no answer. What is returned has rows for all indices. The errors are those of the series;
-    a maximum has that of the quantity itself.
+    in N/m at each index of the block, where it is needed. The result has rows for all indices. The errors
+    are those of the series; a maximum has that of the quantity itself.
     """
-    block = _Block(plan, len(friction), fails)
+    block = _Block(plan, len(friction))
     for index, scene in scenes.items():
         block.add(index, scene, friction[index])
     block.follow()
@@ -84,7 +68,7 @@ def measure(
 
 def compile_ahead(plan: Plan, scene: Scene) -> None:
     """Compile what `measure` calls for a plan, by beginning one of its scenes."""
-    block = _Block(plan, 1, ())
+    block = _Block(plan, 1)
     block.add(0, scene, math.nan)
     if block.alike:
         block.follow_together(1)
@@ -96,8 +80,8 @@ def compile_ahead(plan: Plan, scene: Scene) -> None:
 class _Block:
     """A block of scenes on its way: what is asked, and arrays with a row for each index."""
 
-    def __init__(self, plan: Plan, size: int, fails: tuple[type[Exception], ...]) -> None:
-        self.plan, self.fails = plan, fails
+    def __init__(self, plan: Plan, size: int) -> None:
+        self.plan = plan
         wanted = {(COLUMNS[c.base], SENSES[c.measure]) for c in plan.columns if c.measure in SENSES}
         if any(c.measure == "peak_to_steady_friction" for c in plan.columns):
             wanted.add(PEAK)
@@ -127,7 +111,7 @@ class _Block:
             units = StaticState.of(scene)
             self.scenes[index] = scene, units, scaled_drive(scene, units)
             self.friction[index] = friction / units.friction_force
-        except self.fails as error:
+        except FAILS as error:
             self.reasons[index] = error
 
     def follow(self) -> None:
@@ -139,14 +123,14 @@ class _Block:
             if not (self.found.status[index] == self.found.other[index] == DONE):
                 try:
                     self.follow_alone(index)
-                except self.fails as error:
+                except FAILS as error:
                     self.reasons[index] = error
 
     @property
     def alike(self) -> bool:
         """Whether one call follows all scenes: the drives are rigid, and no texts are asked for."""
         rigid = all(units.rigid_drive for _, units, _ in self.scenes.values())
-        return rigid and not self.plan.textual
+        return rigid and not self.plan.texts
 
     def follow_together(self, limit: int) -> None:
         """Follow all scenes in one call, each for so many steps at most."""
@@ -208,7 +192,7 @@ class _Block:
         found.take_offs[index] = sum(event.kind == "take-off" for event in motion.events)
         if not solution.units.rigid_drive:
             self.cycles[index] = cycle(motion)
-        if self.plan.textual:
+        if self.plan.texts:
             self.texts[index] = json.dumps([event._asdict() for event in solution.events])
         self.statements.add(relative(errors.statement))
 
@@ -219,8 +203,7 @@ class _Block:
             for column in self.plan.columns
             if column.measure in _VALUES
         }
-        texts = {column.name: self.texts for column in self.plan.textual}
-        return Measured(values, texts, self.reasons, self.statements, self.errors)
+        return Measured(values, self.errors, self.reasons, self.statements)
 
     def scales(self, name: str) -> Array:
         """Return what measures a quantity of each scene, by the name of the scale or of the quantity."""
@@ -281,7 +264,7 @@ def relative(statement: str) -> str:
     return f"{statement}; relative to {AT_REST}"
 
 
-_VALUES: Mapping[str, Callable[[_Block, Column], Array]] = {
+_VALUES: Mapping[str, Callable[[_Block, Column], Any]] = {
     "series": _series,
     "end": lambda block, of: block.found.last[:, COLUMNS[of.base]] * block.scales(of.base),
     "max": _largest,
@@ -290,6 +273,7 @@ _VALUES: Mapping[str, Callable[[_Block, Column], Array]] = {
     "peak_to_steady_friction": _peak_to_steady,
     "settling_time": _settling_time,
     "hops": lambda block, _: block.found.take_offs.astype(float),
+    EVENTS: lambda block, _: block.texts,
     **dict.fromkeys(CYCLE, _of_cycle),
 }
-"""Values of the columns, by their measure; the units of single ones are in `columns.WHOLE`."""
+"""Values of the columns, by their measure; the units of single ones are in `plan.WHOLE`."""

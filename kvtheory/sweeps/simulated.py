@@ -17,9 +17,8 @@ from kvtheory.models.elements.simulation import simulate
 from kvtheory.results import Simulation
 from kvtheory.results.table import scales
 from kvtheory.scene.model import Scene
-from kvtheory.sweeps.columns import Column
-from kvtheory.sweeps.measures import Measured, relative
-from kvtheory.sweeps.plan import Plan
+from kvtheory.sweeps.measures import relative
+from kvtheory.sweeps.plan import FAILS, Column, Measured, Plan
 
 Array = NDArray[np.float64]
 
@@ -36,21 +35,11 @@ BETWEEN = 0.25
 SAMPLED = f"; of largest and smallest values, and {BETWEEN:g} times what they differ from the next sample by"
 
 
-def measure(
-    plan: Plan, scenes: Mapping[int, Scene], friction: Array, fails: tuple[type[Exception], ...]
-) -> Measured:
-    """Simulate scenes one by one; as `measures.measure`, for the measures of `columns.OF_ELEMENTS`.
-
-    >>> from kvtheory.scene import Circle, Foundation
-    >>> from kvtheory.sweeps.columns import columns_of
-    >>> circle = Scene(Circle(0.01))
-    >>> plan = Plan(circle, (), columns_of("depth.end", series=False), None, "quadrature", 1e-6)
-    >>> measure(plan, {0: circle}, np.zeros(1), ()).values["depth.end"].round(6)
-    array([9.e-05])
-    """
+def measure(plan: Plan, scenes: Mapping[int, Scene], friction: Array) -> Measured:
+    """Simulate scenes one by one; as `measures.measure`, for the measures of `plan.OF_ELEMENTS`."""
     size = len(friction)
-    asked = [column for column in plan.columns if not column.steady]
-    values = {column.name: np.full((size, *plan.shape(column)), np.nan) for column in asked}
+    asked = [column for column in plan.columns if column.measure != "steady"]
+    values = plan.blank(size)
     errors = {column.base or "friction_force": np.zeros(size) for column in asked}
     reasons: dict[int, Exception] = {}
     statements: set[str] = set()
@@ -59,7 +48,7 @@ def measure(
         try:
             model = Model.of(scene, 0.0)
             found = _simulated(plan, scene, model.half_length / PER_HALF_LENGTH, sampled=sampled)
-        except fails as error:
+        except FAILS as error:
             reasons[index] = error
             continue
         statements.add(relative(found.certificate.statement + SAMPLED * sampled))
@@ -75,7 +64,9 @@ def measure(
             own = found.certificate.relative_error[name] + between / scale[name]
             values[column.name][index] = value
             errors[name][index] = max(errors[name][index], own)
-    return Measured(values, {}, reasons, statements, errors)
+    return Measured(
+        {column.name: values[column.name] for column in asked}, errors, reasons, statements
+    )
 
 
 _TOP: Mapping[str, tuple[Callable[[Array], Array], float]] = {

@@ -1,4 +1,4 @@
-"""How large a sweep is, told before it begins; what cannot fit is refused."""
+"""The size of a sweep: what cannot fit into memory or onto the disk is refused before it begins."""
 
 import math
 import os
@@ -6,77 +6,68 @@ import shutil
 from pathlib import Path
 
 from kvtheory.progress import duration
+from kvtheory.sweeps.files import is_csv
 from kvtheory.sweeps.plan import Plan
 
 ON_ARRAYS, BY_QUADRATURE, IN_MOTION = 1e6, 1e5, 1e3
-"""Scenes that a core solves in a second, to a factor of some three: as measured for Table 1."""
-NUMBER, DIGITS = 8, 21
-"""Bytes of a number, and of its decimals with a comma or an end of line."""
-TOLD = 10.0
-"""Seconds from which a sweep is worth announcing."""
+"""Scenes that a core solves in a second, within a factor of three: as measured for Table 1."""
+DIGITS = 21
+"""Bytes of the decimals of a number with a comma or an end of line."""
+ANNOUNCED = 10.0
+"""Seconds from which a sweep is announced."""
 
 
-def seconds(plan: Plan, jobs: int = 1) -> float:
-    """Return about how long a sweep takes."""
-    slow = IN_MOTION if plan.transient else BY_QUADRATURE
-    return plan.points / ((ON_ARRAYS if plan.vectorised else slow) * jobs)
-
-
-def size(plan: Plan, path: Path | None) -> int:
-    """Return about how many bytes a sweep needs: in memory, or in a file and its work file."""
-    width = sum(math.prod(plan.shape(column)) for column in plan.columns)
-    if path is None or path.suffix.lower() != ".csv":
-        return plan.points * width * NUMBER * (1 if path is None else 2)
-    rows = plan.points * (len(plan.times or ()) if plan.series else 1)
-    keys = sum(len(axis.values) for axis in plan.axes) + plan.series
-    return plan.points * width * NUMBER + rows * (len(plan.columns) + keys) * DIGITS
-
-
-def announcement(plan: Plan, path: Path | None, jobs: int = 1) -> str:
-    """Say how large a sweep is, if that is worth telling.
-
-    >>> from kvtheory.scene import Scene
-    >>> from kvtheory.sweeps.axes import axes_of
-    >>> from kvtheory.sweeps.columns import columns_of
-    >>> over = {"drive.velocity": "1 mm/s:1 m/s:10000", "support.mass": "1 kg/m:2 kg/m:10000"}
-    >>> columns = columns_of("load", series=False)
-    >>> plan = Plan(Scene(), axes_of(Scene(), over), columns, None, "exact", 1e-6)
-    >>> announcement(plan, None)
-    '100,000,000 points: about 800 MB and 100 s'
-    """
-    if seconds(plan, jobs) < TOLD:
-        return ""
-    return f"{plan.points:,} points: {_about(size(plan, path), seconds(plan, jobs))}"
+def announcement(plan: Plan, path: Path, jobs: int = 1) -> str:
+    """Say how large a sweep into a file is, if it takes a while."""
+    return (
+        f"{plan.points:,} points: {_needs(plan, path, jobs)}"
+        if _seconds(plan, jobs) > ANNOUNCED
+        else ""
+    )
 
 
 def refuse_what_cannot_fit(plan: Plan, path: Path | None, jobs: int = 1) -> None:
     """Raise `ValueError` if a sweep needs more than the memory or the disk holds."""
-    needed = size(plan, path)
-    if path is None:
-        room, where = _memory(), "of memory; choose fewer points, or write to a file (`output`)"
-    else:
-        room = shutil.disk_usage(path.parent).free if path.parent.is_dir() else math.inf
-        where = f'free beside "{path}"; choose fewer points'
-    if needed > room:
-        about = _about(needed, seconds(plan, jobs))
-        raise ValueError(f"{plan.points:,} points need {about}; there are {_bytes(room)} {where}")
+    limits = []
+    if path is None or not is_csv(path):
+        try:
+            memory = float(os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE"))
+        except (AttributeError, OSError, ValueError):  # not every system tells
+            memory = math.inf
+        limits.append((memory, "of memory; choose fewer points, or write to a CSV file (`output`)"))
+    if path is not None and path.parent.is_dir():
+        free = shutil.disk_usage(path.parent).free
+        limits.append((free, f'free beside "{path}"; choose fewer points'))
+    for limit, where in limits:
+        if _bytes(plan, path) > limit:
+            needs = _needs(plan, path, jobs)
+            raise ValueError(
+                f"{plan.points:,} points need {needs}; there are {_text(limit)} {where}"
+            )
 
 
-def _about(needed: int, time: float) -> str:
-    return f"about {_bytes(needed)} and {duration(time)}"
+def _seconds(plan: Plan, jobs: int) -> float:
+    slow = IN_MOTION if plan.transient else BY_QUADRATURE
+    return plan.points / ((ON_ARRAYS if plan.vectorised else slow) * jobs)
 
 
-def _bytes(number: float) -> str:
+def _bytes(plan: Plan, path: Path | None) -> float:
+    """Return about how many bytes a sweep needs: its blocks, and its arrays or its file."""
+    needed = plan.points * plan.blank(0).itemsize
+    if path is None or not is_csv(path):
+        return 2.0 * needed
+    rows = plan.points * (len(plan.times or ()) if plan.series else 1)
+    keys = sum(len(axis.values) for axis in plan.axes) + plan.series
+    return needed + rows * (len(plan.columns) + keys) * DIGITS
+
+
+def _needs(plan: Plan, path: Path | None, jobs: int) -> str:
+    return f"about {_text(_bytes(plan, path))} and {duration(_seconds(plan, jobs))}"
+
+
+def _text(number: float) -> str:
     for unit in ("bytes", "kB", "MB", "GB", "TB", "PB"):
         if number < 1000.0:
             return f"{number:.3g} {unit}"
         number /= 1000.0
     return f"{number:,.3g} EB"
-
-
-def _memory() -> float:
-    """Return the bytes of memory, where the system tells."""
-    try:
-        return float(os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE"))
-    except (AttributeError, OSError, ValueError):
-        return math.inf

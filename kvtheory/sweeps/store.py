@@ -1,204 +1,146 @@
-"""Where blocks are kept: in memory, or in a work file that outlives a killed process.
+"""The work file of a sweep: blocks that outlive a killed process.
 
-The work file is an SQLite database beside the result. A block is one row and one transaction, so
-that after `kill -9` at any moment, or a full disk, every block that was kept is whole.
+It is an SQLite database beside the result. A block is one row and one transaction, so that after
+`kill -9` at any moment, or with a full disk, every block that was kept is whole. A row is sealed by digests
+of its content and of the sweep, so that a damaged block, or one of another sweep, is noticed.
 """
 
+import hashlib
 import json
-import math
 import sqlite3
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any, Protocol
+from typing import Any
 
 import numpy as np
 
 from kvtheory.sweeps.blocks import Block
-from kvtheory.sweeps.plan import Plan, differences
+from kvtheory.sweeps.plan import Plan
 
-APPLICATION = 0x6B765357
-"""Marks the SQLite file as a work file of a sweep ("kvSW")."""
-
+APPLICATION = 0x6B765358
+"""Marks the SQLite file as a work file of a sweep ("kvSX")."""
 PAGE = 16384
 """Bytes; smaller pages make large blocks slow, larger ones small blocks."""
 CHECKPOINT = 2**26
-"""Bytes of the log after which it is worked into the file: only then the disk is waited for."""
+"""Bytes of the log after which it is written back to the file: only then the disk is waited for."""
 
 NOT_OURS = "is not a work file of a sweep; it is left as it is: remove it or choose another name"
-
-
-class Store(Protocol):
-    """Keeps blocks and gives them back."""
-
-    def done(self) -> list[tuple[int, int]]:
-        """Return the ranges of points that are kept, in order."""
-
-    def keep(self, block: Block) -> None:
-        """Keep a block; it is safe when this returns."""
-
-    def blocks(self, *, numbers: bool = True) -> Iterator[Block]:
-        """Yield the kept blocks in the order of their points, without their numbers on demand."""
-
-
-class Memory:
-    """Blocks put together in arrays, for a sweep without a file."""
-
-    def __init__(self, plan: Plan) -> None:
-        self._points, self._values = plan.points, plan.blank(plan.points)
-        self._failures: list[tuple[int, str]] = []
-        self._statements: set[str] = set()
-        self._errors: dict[str, float] = {}
-        self._done: list[tuple[int, int]] = []
-
-    def done(self) -> list[tuple[int, int]]:
-        """Return the ranges of points that are kept, in order."""
-        return sorted(self._done)
-
-    def keep(self, block: Block) -> None:
-        """Keep a block."""
-        part = slice(block.start, block.stop)
-        for name, whole in self._values.items():
-            whole[part] = block.values[name]
-        self._failures += block.failures
-        self._statements |= set(block.errors[0])
-        for name, error in block.errors[1].items():
-            self._errors[name] = max(self._errors.get(name, 0.0), error)
-        self._done.append((block.start, block.stop))
-
-    def blocks(self, *, numbers: bool = True) -> Iterator[Block]:
-        """Yield one block that holds everything."""
-        errors = sorted(self._statements), self._errors
-        yield Block(0, self._points, self._values, sorted(self._failures), errors)
 
 
 class WorkFile:
     """Blocks in an SQLite file, which one process at a time may have open.
 
-    With `anew`, what another sweep left in it is forgotten.
+    With `anew`, unfinished work of another sweep in it is dropped.
 
     Raises
     ------
     ValueError
         If the file belongs to another sweep, or to another program; it is left as it is.
     OSError
-        If it cannot be opened or written, or is in use.
+        If it is damaged, cannot be opened or written, or is in use.
     """
 
     def __init__(self, path: Path, plan: Plan, *, anew: bool = False) -> None:
-        self.path, self._plan = path, plan
-        existed = path.exists()
-        with _told(path):
+        self.path, self._plan, existed = path, plan, path.exists()
+        self._record = json.dumps(plan.record)
+        with _reported(path):
             self._base = sqlite3.connect(path, isolation_level=None, timeout=0.0)
         try:
-            self._open(plan, anew)
+            with _reported(path):
+                self._open(anew)
         except BaseException:
-            self._base.close()
-            if not existed:
-                self.remove()
+            self.close(remove=not existed)
             raise
 
-    def _open(self, plan: Plan, anew: bool) -> None:
-        with _told(self.path):
-            self._base.execute(f"PRAGMA page_size={PAGE}")
-            self._base.execute("PRAGMA locking_mode=EXCLUSIVE")
-            (application,) = self._base.execute("PRAGMA application_id").fetchone()
-            (tables,) = self._base.execute("SELECT count(*) FROM sqlite_master").fetchone()
-            if tables and application != APPLICATION:
-                raise ValueError(f'"{self.path}" {NOT_OURS}')
-            # A log written ahead costs 0.1 ms for each block. With exclusive locking it needs no
-            # shared memory, which network file systems lack.
-            self._base.execute("PRAGMA journal_mode=WAL")
-            # A power cut may spoil what takes seconds to compute again; nothing else does.
-            self._base.execute(f"PRAGMA synchronous={'OFF' if plan.vectorised else 'NORMAL'}")
-            self._base.execute(f"PRAGMA wal_autocheckpoint={CHECKPOINT // PAGE}")
-            self._base.execute("BEGIN EXCLUSIVE")
-            if not tables:
-                self._create(plan)
-            (found,) = self._base.execute("SELECT record FROM sweep").fetchone()
-            differing = differences(found, plan)
-            if differing and anew:
-                self._base.execute("DELETE FROM blocks")
-                self._base.execute("UPDATE sweep SET record = ?", (json.dumps(plan.record()),))
-            self._base.execute("COMMIT")
-        if differing and not anew:
-            raise ValueError(
-                f'"{self.path}" is the unfinished work of another sweep: it differs in '
-                f"{', '.join(differing)}; finish that one, remove the file, or choose another name"
+    def _open(self, anew: bool) -> None:
+        run = self._base.execute
+        run(f"PRAGMA page_size={PAGE}")
+        run("PRAGMA locking_mode=EXCLUSIVE")
+        (application,) = run("PRAGMA application_id").fetchone()
+        (tables,) = run("SELECT count(*) FROM sqlite_master").fetchone()
+        if tables and application != APPLICATION:
+            raise ValueError(f'"{self.path}" {NOT_OURS}')
+        # A log written ahead costs 0.1 ms for each block. With exclusive locking it needs no shared
+        # memory, which network file systems lack.
+        run("PRAGMA journal_mode=WAL")
+        # A power cut may spoil what takes seconds to compute again; nothing else does.
+        run(f"PRAGMA synchronous={'OFF' if self._plan.vectorised else 'NORMAL'}")
+        run(f"PRAGMA wal_autocheckpoint={CHECKPOINT // PAGE}")
+        run("BEGIN EXCLUSIVE")
+        if not tables:
+            run(f"PRAGMA application_id={APPLICATION}")
+            run("CREATE TABLE sweep (record TEXT)")
+            run(
+                "CREATE TABLE blocks"
+                " (start INTEGER PRIMARY KEY, stop, told TEXT, digest TEXT, seal TEXT, content BLOB)"
             )
-
-    def _create(self, plan: Plan) -> None:
-        self._base.execute(f"PRAGMA application_id={APPLICATION}")
-        self._base.execute("CREATE TABLE sweep (record TEXT)")
-        self._base.execute(
-            "CREATE TABLE blocks (start INTEGER PRIMARY KEY, stop INTEGER, told TEXT, numbers BLOB)"
-        )
-        self._base.execute("INSERT INTO sweep VALUES (?)", (json.dumps(plan.record()),))
-
-    def done(self) -> list[tuple[int, int]]:
-        """Return the ranges of points that are kept, in order."""
-        with _told(self.path):
-            return self._base.execute("SELECT start, stop FROM blocks ORDER BY start").fetchall()
+            run("INSERT INTO sweep VALUES (?)", (self._record,))
+        (found,) = run("SELECT record FROM sweep").fetchone() or ("",)
+        if differing := self._plan.differences(found):
+            if not anew:
+                raise ValueError(
+                    f'"{self.path}" is the unfinished work of another sweep: it differs in '
+                    f"{', '.join(differing)}; finish that one, remove the file, or choose another name"
+                )
+            run("DELETE FROM blocks")
+            run("UPDATE sweep SET record = ?", (self._record,))
+        run("COMMIT")
 
     def keep(self, block: Block) -> None:
         """Keep a block; it is safe when this returns."""
-        texts = [block.values[column.name].tolist() for column in self._plan.textual]
-        told = json.dumps([texts, block.failures, block.errors])
-        numbers = b"".join(
-            np.ascontiguousarray(block.values[column.name], dtype="<f8").tobytes()
-            for column in self._plan.numeric
-        )
-        with _told(self.path):
-            self._base.execute(
-                "INSERT INTO blocks VALUES (?, ?, ?, ?)", (block.start, block.stop, told, numbers)
-            )
+        table = block.table
+        content = table.tobytes()
+        if self._plan.texts:
+            content = json.dumps(table.tolist(), default=np.ndarray.tolist).encode()
+        told = json.dumps([block.failures, block.statements, block.errors])
+        row = block.start, block.stop, told, _digest(content)
+        with _reported(self.path):
+            insert = "INSERT INTO blocks VALUES (?, ?, ?, ?, ?, ?)"
+            self._base.execute(insert, (*row, self._seal(*row), content))
 
-    def blocks(self, *, numbers: bool = True) -> Iterator[Block]:
-        """Yield the kept blocks in the order of their points, without their numbers on demand."""
-        what = "numbers" if numbers else "x''"
-        with _told(self.path):
-            for start, stop, told, blob in self._base.execute(
-                f"SELECT start, stop, told, {what} FROM blocks ORDER BY start"
-            ):
-                texts, failures, errors = json.loads(told)
-                values = self._values(stop - start, blob, texts) if numbers else {}
-                pairs = [(index, reason) for index, reason in failures]
-                yield Block(start, stop, values, pairs, (errors[0], errors[1]))
+    def blocks(self, *, tables: bool = True) -> Iterator[Block]:
+        """Yield the kept blocks in the order of their points, on request without their tables."""
+        last = "content" if tables else "NULL"
+        select = f"SELECT start, stop, told, digest, seal, {last} FROM blocks ORDER BY start"
+        table = self._plan.blank(0)
+        with _reported(self.path):
+            for *row, seal, content in self._base.execute(select):
+                start, stop, told, digest = row
+                if seal != self._seal(*row) or (tables and digest != _digest(content)):
+                    raise sqlite3.DatabaseError(f"the block from point {start} on was changed")
+                if tables and self._plan.texts:
+                    table = np.array([tuple(each) for each in json.loads(content)], table.dtype)
+                elif tables:
+                    table = np.frombuffer(content, table.dtype)
+                yield Block(start, stop, table, *json.loads(told))
 
-    def _values(self, points: int, blob: bytes, texts: list[list[str]]) -> dict[str, Any]:
-        """Cut what was kept of a block into its columns."""
-        flat, at = np.frombuffer(blob, dtype="<f8"), 0
-        named = zip(self._plan.textual, texts, strict=True)
-        found = {column.name: np.array(text, dtype=object) for column, text in named}
-        for column in self._plan.numeric:
-            shape = (points, *self._plan.shape(column))
-            end = at + math.prod(shape)
-            found[column.name] = flat[at:end].reshape(shape)
-            at = end
-        return found
+    def _seal(self, *row: Any) -> str:
+        """Return the digest of a row and of the identity of the sweep."""
+        return _digest(json.dumps([self._record, *row]).encode())
 
-    def close(self) -> None:
-        """Let go of the file; what it keeps can be resumed."""
+    def close(self, *, remove: bool = False) -> None:
+        """Release the file, whose blocks remain for the next run; or remove it."""
         self._base.close()
-
-    def remove(self) -> None:
-        """Delete the file, once the result is written."""
-        self._base.close()
-        self.path.unlink(missing_ok=True)
-        self.path.with_name(self.path.name + "-wal").unlink(missing_ok=True)
+        if remove:
+            self.path.unlink(missing_ok=True)
+            self.path.with_name(f"{self.path.name}-wal").unlink(missing_ok=True)
 
 
 @contextmanager
-def _told(path: Path) -> Any:
-    """Turn what SQLite says into an error about the file."""
+def _reported(path: Path) -> Iterator[None]:
+    """Report errors of SQLite as errors of the file."""
     try:
         yield
     except sqlite3.DatabaseError as error:
-        code = getattr(error, "sqlite_errorcode", None)
+        code = (getattr(error, "sqlite_errorcode", None) or sqlite3.SQLITE_CORRUPT) & 0xFF
         if code == sqlite3.SQLITE_NOTADB:
             raise ValueError(f'"{path}" {NOT_OURS}') from None
         if code in (sqlite3.SQLITE_BUSY, sqlite3.SQLITE_LOCKED):
             raise OSError(f'"{path}" is in use: the same sweep is running') from None
-        raise OSError(f'"{path}" cannot be written or read: {error}') from None
-    except json.JSONDecodeError as error:
-        raise OSError(f'"{path}" is damaged, remove it: {error}') from None
+        damaged = "is damaged, remove it" if code == sqlite3.SQLITE_CORRUPT else "cannot be used"
+        raise OSError(f'"{path}" {damaged}: {error}') from None
+
+
+def _digest(content: bytes) -> str:
+    return hashlib.sha256(content).hexdigest()
