@@ -7,7 +7,6 @@ from kvtheory.api._edge import double_precision, scene_of
 from kvtheory.api._steady import method_for
 from kvtheory.results import AsymptoteReport
 from kvtheory.scene.arguments import a_scene, checked, number, replacements
-from kvtheory.scene.foundations import FractionalKelvinVoigt, GeneralizedMaxwell
 from kvtheory.scene.model import Scene
 from kvtheory.scene.requirements import lacks_limits
 
@@ -70,19 +69,10 @@ def asymptotes(
     """
     scene = scene_of(scene).replace(over or {})
     method = method_for(scene, None)
-    # SciPy takes a while to import
-    from kvtheory.models.steady import (
-        foundation_limits,
-        fractional_limits,
-        maxima,
-        prony_limits,
-        regimes,
-    )
+    from kvtheory.models.steady import maxima, regimes  # SciPy takes a while to import
 
-    reports = {GeneralizedMaxwell: prony_limits, FractionalKelvinVoigt: fractional_limits}
     with double_precision(scene):
         told = maxima.told(scene, method)
         if lacks_limits(scene):
-            return foundation_limits.unknown(scene, tolerance, told, method)
-        report = reports.get(type(scene.foundation), regimes).report
-        return report(scene, tolerance, told)
+            return regimes.unknown(scene, tolerance, told, method)
+        return regimes.report(scene, tolerance, told)

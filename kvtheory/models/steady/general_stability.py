@@ -16,6 +16,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from kvtheory.models.steady import ball_viscoelastic
 from kvtheory.models.steady.small_motions import Complex, Contact, contact
 from kvtheory.scene.model import Scene
 
@@ -30,7 +31,8 @@ TURN, REFINEMENTS, CLOSER = 0.4, 24, 3
 BISECTIONS = 52
 NEARBY = 1e-5
 """Relative difference of frequencies, of rates and of velocities for slopes."""
-ROUNDING = 16 * 2.0**-52
+ROUNDING, IN_STRIPS = 16 * 2.0**-52, ball_viscoelastic.RELATIVE_ERROR
+"""Relative error of the response of a parabola, and of a ball in any number of strips."""
 STRIPS, MORE, MOST = 24, 4, 384
 """Strips of half a ball, the factor by which they grow until the error is small, and the most of them. Twice
 as many show the error."""
@@ -102,7 +104,7 @@ def _crossings(given: Contact, finer: Contact, row: Any, log: Array, way: Any) -
     k, _, size = stiffness(given, row, log)
     near = [stiffness(given, row, log + step)[0] for step in (-NEARBY, NEARBY)]
     slope = (near[1] - near[0]) / (2.0 * NEARBY)
-    doubt = ROUNDING * size + 2.0 * np.abs(stiffness(finer, row, log)[0] - k)
+    doubt = _rounding(given) * size + 2.0 * np.abs(stiffness(finer, row, log)[0] - k)
     omega = np.exp(log)
     with np.errstate(divide="ignore"):
         off = doubt / np.abs(slope.imag) + ROUNDING
@@ -112,6 +114,10 @@ def _crossings(given: Contact, finer: Contact, row: Any, log: Array, way: Any) -
     parts = row, k.real, omega, way, wrong / np.abs(k.real), off
     chosen: list[Any] = [each[some] for each in parts]
     return Crossings(*chosen)
+
+
+def _rounding(given: Contact) -> float:
+    return ROUNDING if len(given.c) == 1 else IN_STRIPS
 
 
 def stiffness(given: Contact, row: Any, log: Array) -> tuple[Complex, Complex, Array]:
@@ -247,7 +253,7 @@ def _newton(
     s = s[kept]
     (f, size), h = value(s), NEARBY * s
     slope = (value(s + h)[0] - value(s - h)[0]) / (2.0 * h)
-    off = np.abs(f) + ROUNDING * size + 2.0 * np.abs(value(s, finer)[0] - f)
+    off = np.abs(f) + _rounding(given) * size + 2.0 * np.abs(value(s, finer)[0] - f)
     return s, off / np.abs(slope * s) + ROUNDING
 
 
