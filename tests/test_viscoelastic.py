@@ -12,8 +12,9 @@ from kvtheory.derivations import viscoelastic as theory
 import kvtheory as kv
 from kvtheory.models.steady import viscoelastic
 from kvtheory.models.steady.methods import solve_quadrature
-from kvtheory.models.steady.viscoelastic import Fractional, Prony
 from kvtheory.results import STEADY_UNITS
+from kvtheory.theory import laws
+from kvtheory.theory.laws import Fractional, Prony
 from tests import reference_viscoelastic
 
 SUPPORTS = ("fixed", "dead-weight", "suspended")
@@ -45,10 +46,10 @@ def test_the_peak_is_found_where_newtons_steps_go_to_and_fro():
     for _ in range(300):
         case = reference_viscoelastic.random_case(rng, "dead-weight")
         state = reference_viscoelastic.solved(case)
-        law, parameters, R, K, _, V = case[:6]
-        one = [np.array([value]) for value in (K, V, *parameters)]
+        R = case[2]
         X = state.half_length * np.geomspace(1e-14, 1.0, 4000)
-        M = law(one[0], one[1], tuple(one[2:])).moments(X)
+        here = reference_viscoelastic.scene_of(case)
+        M = viscoelastic.law(here.at(np.array([here.drive.velocity]))).moments(X)
         highest = ((state.half_length * (M.P + M.Q) - X * M.P) * X / R).max()
         assert highest <= state.peak_pressure * (1 + STATED)
         assert highest >= state.peak_pressure * (1 - 1e-3)
@@ -75,7 +76,7 @@ def test_a_springpot_of_low_order_says_how_badly_its_loss_is_known():
 
 @pytest.mark.parametrize("z", [0.0, 1e-9, 0.3, 3.999999, 4.000001, 60.0, 1e6])
 def test_moments_are_those_of_the_derivations(z):
-    P, Q, D, E, end = viscoelastic.exponential_moments(np.array([z]))
+    P, Q, D, E, end = laws.exponential_moments(np.array([z]))
     found = dict(zip((theory.P, theory.Q, theory.D, theory.E), (P, Q, D, E), strict=True))
     for name, (weight, form) in theory.MOMENTS.items():
         exactly = sp.Rational(z)

@@ -89,7 +89,9 @@ class Prony(NamedTuple):
 
     def at(self, *index: Any) -> "Prony":
         """Return the laws of some scenes, by an index of their last axis."""
-        return Prony(*(each if each is None else each[(..., *index)] for each in self))
+        K, stiffness, time = (each[(..., *index)] for each in self[:3])
+        damping = None if self.damping is None else self.damping[(..., *index)]
+        return Prony(K, stiffness, time, damping)
 
     def moments(self, c: Array) -> Moments:
         """Return the moments over a contact of length c."""

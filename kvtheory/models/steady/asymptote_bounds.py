@@ -11,13 +11,13 @@ lambda = V tau/a_0, q = x_TE/a and 1 + e the asymptote over the truth:
 The balance of forces is f + kappa (s^2 - 1) = 1, f the load in units of the static one; d ln f/d ln s is
 between 2 and 3 for a parabola and between 3 and 4 for a ball (derivations "scaled-load", "F20-balance"). From
 any s, whose total f + kappa s^2 is (1 + kappa) e^r, the root is therefore between s e^(-r/2) and s e^(-r/3),
-for a ball s e^(-r/4): r tells how far it is. One step of Newton's method leaves |r| below 5e-4, which the tests
-hold it to, but the bounds are right without it.
+for a ball s e^(-r/4): r tells how far it is. One step of Newton's method leaves |r| below 5e-4 for a ball,
+which the tests hold it to, but the bounds are right without it.
 
 The depth for high velocity has the error g(s)/(3/4 lambda) - 1, g = f/s^2 + kappa, which grows with s, and
-for a ball (1 + x)^(2/3) - 1, x = (3 pi/(8 lambda)) (s (1 + T/pi)/2 + kappa/s), as its W is (8 lambda/(3 pi)) s^3
-of the damper and s^4 (1 + T/pi)/2 in these units. What a ball dissipates behind the contact is 8 l D/(pi + T)
-of the power, and both D and T fall with l.
+for a ball (1 + x)^(2/3) - 1, x = (3 pi/(8 lambda)) (s (1 + T/pi)/2 + kappa/s), as its W is the damper's
+(8 lambda/(3 pi)) s^3 and s^4 (1 + T/pi)/2. Behind the contact a ball dissipates 8 l D/(pi + T) of the power;
+both D and T fall with l.
 """
 
 import math

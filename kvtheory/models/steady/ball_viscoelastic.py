@@ -90,7 +90,11 @@ def quantities(scene: Scene) -> tuple[Any, ...]:
     """
     row = viscoelastic.law(scene)
     c = contact_length(scene, row)
-    V, plane, found = scene.drive.final_velocity, viscoelastic.state(scene, row, c), _sums(scene, row, c)
+    V, plane, found = (
+        scene.drive.final_velocity,
+        viscoelastic.state(scene, row, c),
+        _sums(scene, row, c),
+    )
     side = np.where(V < 0.0, -1.0, 1.0)
     moving = found.friction > 0.0
     work = np.where(moving, found.friction, 1.0)

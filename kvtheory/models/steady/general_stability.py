@@ -1,4 +1,4 @@
-"""Stability of steady sliding on any law with a response to e^(st), the drive holding the indenter by a spring.
+"""Stability of steady sliding on any law with a response to e^(st), with a spring in the drive (theorem F24).
 
 A stiffness k_x(s) = D - M_x s^2 - c_x s - B C/(M s^2 + k_s + A) belongs to each rate s. A stiff spring
 keeps sliding stable. On the way to a soft one two rates enter or leave the right half plane at each frequency
@@ -232,7 +232,9 @@ def _newton(
     polar = radii[:, np.newaxis] * np.exp(1j * np.linspace(0.0, np.pi, ANGLES))
     passing = (given.V / given.c).min()
     chain = passing * (np.arange(-1.0, 12.0, 2.0)[:, np.newaxis] - 1j * np.linspace(0.0, 60.0, 16))
-    s = np.concatenate([polar.ravel(), *(-rate - chain.ravel() for rate in (given.V / given.law.time)[:, 0])])
+    s = np.concatenate(
+        [polar.ravel(), *(-rate - chain.ravel() for rate in (given.V / given.law.time)[:, 0])]
+    )
     moving = np.arange(s.size)
     for _ in range(NEWTON_STEPS):
         here = s[moving]

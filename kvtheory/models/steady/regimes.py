@@ -39,8 +39,7 @@ Formula = Callable[[Scene], Any]
 """A formula of a quantity, in the shape of the scene, for |V|."""
 
 DECADES, ON_ARMS, MOST_DECADES = 30.0, 15.0, 200.0
-"""How far from V*, in powers of ten, the end of a range is sought: on a springpot of order alpha 1/alpha times
-as far."""
+"""How far from V*, in powers of ten, the end of a range is sought; 1/alpha times as far for a springpot."""
 POINTS = 301
 """Velocities at which an error that may not be monotonic is evaluated, before the end is refined."""
 
@@ -263,7 +262,9 @@ def report(scene: Scene, tolerance: float, maxima: Mapping[str, Any]) -> Asympto
         truth = solve_exact(scene)
         ends = _ends(scene, shown, critical, tolerance, 2 if monotonic else POINTS)
         told = [
-            _told(scene, line, truth, edge, _proved(scene, line, critical, tolerance, edge, monotonic))
+            _told(
+                scene, line, truth, edge, _proved(scene, line, critical, tolerance, edge, monotonic)
+            )
             for line, edge in zip(shown, ends, strict=True)
         ]
     use = np.full(scene.shape, "exact", dtype=object)

@@ -40,7 +40,8 @@ class Contact(NamedTuple):
     def rows(self, index: Any) -> "Contact":
         """Return some of the scenes."""
         parts: list[Any] = [each[..., index] for each in self[:-2]]
-        return Contact(*parts, self.law.at(index), self.held)
+        parts += [self.law.at(index), self.held]
+        return Contact(*parts)
 
     def forces(self, s: Complex) -> tuple[Complex, ...]:
         """Return A, B, C, D, for one s of each scene."""
