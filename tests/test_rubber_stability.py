@@ -5,6 +5,7 @@ import pytest
 
 import kvtheory as kv
 from kvtheory.models.steady import general_stability
+from tests import stability_by_elements
 
 ZENER = [(5e10, 0.1)]
 TWO = [(3e10, 0.01), (5e9, 0.5)]
@@ -122,6 +123,16 @@ def test_onsets_and_rates_solve_the_linearised_equations(support, ball):
     for factor, side in () if ball else ((1.0 - 1e-4, 1.0), (1.0 + 1e-4, -1.0)):
         over = {"drive.stiffness": factor * found.critical_stiffness}
         assert np.sign(kv.stability(scene, over=over, quantity="rates").rates[0, 0]) == side
+
+
+@pytest.mark.parametrize(("place", "side"), [(5, 0.7), (5, 1.4), (2, 0.7)])
+def test_discrete_elements_grow_or_fade_at_the_rate_on_both_sides_of_the_critical_stiffness(
+    place, side
+):
+    _, rate, found = stability_by_elements.both(stability_by_elements.CASES[place], side)
+    assert (rate.real > 0.0) == (side < 1.0)
+    assert found.real == pytest.approx(rate.real, rel=0.02)
+    assert found.imag == pytest.approx(abs(rate.imag), rel=2e-3)
 
 
 @pytest.mark.parametrize("ball", [False, True])

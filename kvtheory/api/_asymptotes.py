@@ -26,10 +26,10 @@ def asymptotes(
     Parameters
     ----------
     scene, over
-        As in `steady`. The limits are known for a parabola, a power law, a wedge and a ball on a
-        Kelvin-Voigt foundation, and for a parabola on any foundation: on a Prony series those of F18, and
-        the exact state of the Kelvin-Voigt foundation with the same K and C. The maxima are found for every
-        scene; of a profile of revolution beyond Kelvin-Voigt they take minutes.
+        As in `steady`. The limits are known for a parabola and a ball on any foundation, and for a power law
+        and a wedge on Kelvin-Voigt; on a Prony series they are those of F18, and the exact state of the
+        Kelvin-Voigt foundation with the same K and C. The maxima are found for every scene; of a profile of
+        revolution beyond Kelvin-Voigt they take minutes.
     tolerance
         Relative error up to which an asymptote is accepted, from 1e-10 to 1.
 
