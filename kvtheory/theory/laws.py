@@ -182,19 +182,24 @@ def exponential_moments(z: Array) -> tuple[Array, Array, Array, Array, Array]:
 class Fractional:
     """G = K [1 + (t/tau)^(-alpha)/Gamma(1 - alpha)]: each moment is a Gamma function."""
 
-    def __init__(self, K: Array, time: Array, order: Array) -> None:
-        from scipy.special import rgamma
+    def __init__(
+        self, K: Array, time: Array, order: Array, rgamma: list[Array] | None = None
+    ) -> None:
+        from scipy.special import rgamma as reciprocal
 
         self.K, self.time, self.alpha = K, time, order
-        self.rgamma = [rgamma(n - order) for n in range(6)]
+        self.rgamma = rgamma or [reciprocal(n - order) for n in range(6)]
+        """1/Gamma(n - alpha), which does not depend on the velocity."""
 
     def over(self, V: Array) -> "Fractional":
         """Return the law in the distance travelled at a velocity V >= 0."""
-        return Fractional(self.K, self.time * V, self.alpha)
+        return Fractional(self.K, self.time * V, self.alpha, self.rgamma)
 
     def at(self, *index: Any) -> "Fractional":
         """Return the laws of some scenes, by an index of their last axis."""
-        return Fractional(*(each[(..., *index)] for each in (self.K, self.time, self.alpha)))
+        own = (self.K, self.time, self.alpha, *self.rgamma)
+        K, time, order, *rgamma = (each[(..., *index)] if np.ndim(each) else each for each in own)
+        return Fractional(K, time, order, rgamma)
 
     def moments(self, c: Array) -> Moments:
         """Return the moments over a contact of length c."""

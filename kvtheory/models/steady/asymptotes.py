@@ -23,6 +23,7 @@ import numpy as np
 from kvtheory.models.steady.power_law_contact import root, shape_of
 from kvtheory.results import SteadyState
 from kvtheory.scene.foundations import Foundation, FractionalKelvinVoigt
+from kvtheory.scene.indenters import Parabola, Sphere
 from kvtheory.scene.model import Scene
 from kvtheory.theory import closed_forms as cf
 
@@ -51,8 +52,6 @@ def limits(scene: Scene) -> tuple[Limit, Limit]:
 
 def of_line(scene: Scene) -> tuple[Limit, Limit]:
     """Return the limits of a line contact, for a strip of a ball those of its parabola."""
-    from scipy.special import rgamma  # it takes a while to import
-
     foundation = scene.foundation
     _, _, n = _shape(scene)
     static = cf.power_law_static_load(n)
@@ -60,6 +59,8 @@ def of_line(scene: Scene) -> tuple[Limit, Limit]:
     if isinstance(foundation, Foundation):
         return low, Limit(1.0, 1.0, cf.power_law_high(n), 0.0, slow=False)
     if isinstance(foundation, FractionalKelvinVoigt):
+        from scipy.special import rgamma  # it takes a while to import
+
         A = foundation.order
         share = 12.0 * A * rgamma(3.0 - A) / (4.0 - A) * 2.0**-A
         stiff = 2.0 * (2.0 - A) ** (2.0 - A) * rgamma(4.0 - A)
@@ -88,9 +89,9 @@ def _strips(p: Value) -> Value:
 
 
 def _shape(scene: Scene) -> tuple[Value, Value, Value]:
-    if scene.indenter.per_width:
-        return shape_of(scene.indenter)
-    return 1.0, scene.indenter.radius, 2.0
+    if isinstance(scene.indenter, Parabola | Sphere):
+        return 1.0, scene.indenter.radius, 2.0
+    return shape_of(scene.indenter)
 
 
 def _half_length(scene: Scene, depth: Value) -> Value:
@@ -112,17 +113,18 @@ def _retardation_length(scene: Scene) -> Value:
     return np.abs(scene.drive.final_velocity) * scene.foundation.retardation_time
 
 
-def at_rest(scene: Scene) -> tuple[Value, Value]:
-    """Return depth and half length at rest."""
+def at_rest(scene: Scene, low: Limit | None = None) -> tuple[Value, Value]:
+    """Return depth and half length at rest; `low` is the limit for V -> 0, if it is at hand."""
     if scene.held:
         return scene.support.depth, _half_length(scene, scene.support.depth)
-    return _carrying(scene, limits(scene)[0], scene.support.weight)
+    return _carrying(scene, low or limits(scene)[0], scene.support.weight)
 
 
 def contact(scene: Scene, limit: Limit) -> tuple[Value, Value, Value]:
     """Return depth, half length and load in a limit, on the support of a scene."""
     support = scene.support
-    depth, a = static = at_rest(scene)
+    low = limit if limit.slow else None
+    depth, a = static = at_rest(scene, low)
     if scene.held:
         viscous = (_retardation_length(scene) / a) ** limit.rise
         across = 1.0 if scene.indenter.per_width else a
@@ -149,10 +151,18 @@ def _glassy_lift(scene: Scene, limit: Limit, support_number: Value) -> Value:
     return elementwise.find_root(excess, (0.0, 1.0), args=(g, support_number)).x
 
 
+def quantity(scene: Scene, limit: Limit, name: str) -> Value:
+    """Return the limit of one of depth, load, friction force and friction coefficient, at |V| of a scene."""
+    depth, a, load = contact(scene, limit)
+    if name in ("depth", "load"):
+        return depth if name == "depth" else load
+    mu = depth / a * limit.friction * (_retardation_length(scene) / a) ** limit.slope
+    return mu if name == "friction_coefficient" else load * mu
+
+
 def friction_coefficient(scene: Scene, limit: Limit) -> Value:
     """Return the friction coefficient of a limit at the velocity |V| of a scene."""
-    depth, a, _ = contact(scene, limit)
-    return depth / a * limit.friction * (_retardation_length(scene) / a) ** limit.slope
+    return quantity(scene, limit, "friction_coefficient")
 
 
 def critical_velocity(scene: Scene) -> Value:
@@ -201,11 +211,11 @@ def error(limit: Value, exact: Value) -> Value:
     return np.where(limit == exact, 0.0, limit / exact - 1.0)
 
 
-def errors(scene: Scene, limit: Limit, exact: SteadyState) -> dict[str, Value]:
-    """Return limit/exact - 1 of each quantity."""
-    found = {
-        name: error(value, getattr(exact, name)) for name, value in quantities(scene, limit).items()
-    }
+def errors(
+    scene: Scene, limit: Limit, values: dict[str, Value], exact: SteadyState
+) -> dict[str, Value]:
+    """Return limit/exact - 1 of each quantity, of which the limits are `values`."""
+    found = {name: error(value, getattr(exact, name)) for name, value in values.items()}
     if (
         not limit.slow
     ):  # the limit is the tip, where only the edge of a wedge is; others may underflow

@@ -106,7 +106,10 @@ def solve_asymptote(scene: Scene) -> SteadyState:
     slow = np.abs(scene.drive.final_velocity) <= asymptotes.critical_velocity(scene)
     with np.errstate(divide="ignore", invalid="ignore"):  # at V = 0 the high one is not chosen
         low, high = (asymptotes.quantities(scene, limit) for limit in limits)
-        lows, highs = (asymptotes.errors(scene, limit, truth) for limit in limits)
+        lows, highs = (
+            asymptotes.errors(scene, limit, values, truth)
+            for limit, values in zip(limits, (low, high), strict=True)
+        )
     found: dict[str, Any] = {
         name: plain(np.broadcast_to(np.where(slow, low[name], high[name]), scene.shape))
         for name in STEADY_UNITS

@@ -207,10 +207,7 @@ def _of_friction(scene: Scene) -> list[Line]:
 
 
 def _limit(quantity: str, regime: str, scene: Scene) -> Any:
-    limit = asymptotes.limits(scene)[regime == "high"]
-    if quantity == "friction_coefficient":
-        return asymptotes.friction_coefficient(scene, limit)
-    return np.abs(asymptotes.quantities(scene, limit)[quantity])
+    return asymptotes.quantity(scene, asymptotes.limits(scene)[regime == "high"], quantity)
 
 
 def _voigt(scene: Scene) -> Array:

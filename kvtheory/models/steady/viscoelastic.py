@@ -55,7 +55,7 @@ def law(scene: Scene) -> Law:
     foundation, V = scene.foundation, np.abs(full(scene.drive.final_velocity))
     K = full(foundation.stiffness)
     if isinstance(foundation, FractionalKelvinVoigt):
-        return Fractional(K, full(foundation.retardation_time), full(foundation.order)).over(V)
+        return Fractional(K, foundation.retardation_time, foundation.order).over(V)
     damping = full(foundation.damping) if isinstance(foundation, Foundation) else None
     arms = [(full(arm.stiffness), full(arm.relaxation_time)) for arm in foundation.arms]
     stiffness, time = np.reshape(arms, (-1, 2, *scene.shape)).swapaxes(0, 1)
@@ -137,7 +137,7 @@ def state(scene: Scene, row: Law, c: Array) -> tuple[Array, ...]:
     A = M.P + M.Q
     a = c * (M.P / A) if delta is None else np.sqrt(2.0 * R * delta)
     delta = a * (a / (2.0 * R)) if delta is None else delta
-    eta = M.eta
+    eta = 0.5 * (M.P - M.Q) / A
     side = np.where(V < 0.0, -1.0, 1.0)  # a reversed drive is the mirror image
     slope = c / R
     load, work = M.D + eta * M.P, M.E + eta * eta * M.P
