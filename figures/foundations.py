@@ -15,8 +15,7 @@ from matplotlib.figure import Figure
 
 import kvtheory as kv
 from figures import drawing
-from kvtheory.models.steady import fractional_limits
-from kvtheory.models.steady.viscoelastic import Fractional, Prony
+from kvtheory.models.steady import asymptotes, viscoelastic
 from kvtheory.plots import BLACK
 from kvtheory.scene.foundations import Arm
 from kvtheory.theory.closed_forms import ALPHA
@@ -87,9 +86,9 @@ def _limits(family: dict[str, kv.Scene]) -> dict[str, tuple[np.ndarray, ...]]:
             glassy = kv.asymptotes(scene, over={"drive.velocity": 1.0}).lines[-1].value
             found[name] = (glassy / NUMBERS,)
         elif name == SHOWN:
-            found[name] = (
-                fractional_limits.low(scene, NUMBERS),
-                fractional_limits.high(scene, NUMBERS),
+            there = scene.at(NUMBERS)
+            found[name] = tuple(
+                asymptotes.friction_coefficient(there, limit) for limit in asymptotes.limits(there)
             )
     return found
 
@@ -99,15 +98,7 @@ def _profile(scene: kv.Scene) -> tuple[np.ndarray, np.ndarray]:
     state = kv.steady(replace(scene, drive=kv.Drive(PROFILE)))
     a = float(state.half_length)
     X = SHARES * (a + float(state.trailing_edge))
-    K, V = np.ones(1), np.full(1, PROFILE)
-    if scene.foundation.arms:
-        arm = scene.foundation.arms[0]
-        row: Prony | Fractional = Prony(
-            K, V, (np.array([arm.stiffness]), np.array([arm.relaxation_time]))
-        )
-    else:
-        row = Fractional(K, V, (K, np.array([getattr(scene.foundation, "order", 1.0)])))
-    M = row.moments(X)
+    M = viscoelastic.law(scene.at(np.full(1, PROFILE))).moments(X)
     return X - a, 2.0 * X * (a * (M.P + M.Q) - X * M.P)
 
 

@@ -15,9 +15,9 @@ import numpy as np
 from flint import arb, ctx
 
 import kvtheory as kv
-from kvtheory.models.steady import viscoelastic
 from kvtheory.models.steady.methods import solve_exact
-from tests import reference, steady
+from kvtheory.theory import laws
+from tests import reference
 
 BITS = 1100
 """The cancellation of G_4 takes four times the decades of the fastest arm over the contact."""
@@ -77,7 +77,7 @@ class Fractional:
         return self.K * (self.l / c) ** alpha * (c**2 / R) ** 2 * whole / 2
 
 
-LAWS = {viscoelastic.Prony: Prony, viscoelastic.Fractional: Fractional}
+LAWS = {laws.Prony: Prony, laws.Fractional: Fractional}
 
 
 def at_depth(law, parameters, radius, stiffness, retardation_time, velocity, depth):
@@ -163,9 +163,9 @@ def random_case(rng, kind):
     a = (1.5 * R * weight / K) ** (1 / 3)
     V = float(rng.choice([-1.0, 1.0]) * 10.0 ** rng.uniform(-6, 6) * a / time)
     if rng.random() < 0.2:
-        law, parameters = viscoelastic.Fractional, (time, float(rng.choice([rng.uniform(), 1.0])))
+        law, parameters = laws.Fractional, (time, float(rng.choice([rng.uniform(), 1.0])))
     else:
-        law, parameters = viscoelastic.Prony, []
+        law, parameters = laws.Prony, []
         for _ in range(rng.integers(1, 21)):
             parameters += [K * 10.0 ** rng.uniform(-3, 6), time * 10.0 ** rng.uniform(-5, 5)]
         parameters = tuple(map(float, parameters))
@@ -176,18 +176,25 @@ def random_case(rng, kind):
     return (*given, weight, spring)
 
 
-def solved(case, solve=solve_exact):
-    """Return what the package says."""
-    law, parameters, R, K, *given = case
-    if law is viscoelastic.Fractional:
+def scene_of(case):
+    """Return the scene of a case."""
+    law, parameters, R, K, _, V, *grip = case
+    if law is laws.Fractional:
         foundation = kv.FractionalKelvinVoigt(K, *parameters)
     else:
-        foundation = kv.GeneralizedMaxwell(
-            K, arms=list(zip(parameters[::2], parameters[1::2], strict=True))
-        )
-    return getattr(steady, "at_depth" if len(case) == 7 else "at_load")(
-        R, foundation, *given, solve=solve
-    )
+        pairs = zip(parameters[::2], parameters[1::2], strict=True)
+        foundation = kv.GeneralizedMaxwell(K, arms=list(pairs))
+    if len(grip) == 1:
+        support = kv.Fixed(*grip)
+    else:
+        load, spring = grip
+        support = kv.Suspended(load=load, stiffness=spring) if spring else kv.DeadWeight(load=load)
+    return kv.Scene(kv.Parabola(R), foundation, support, kv.Drive(V))
+
+
+def solved(case, solve=solve_exact):
+    """Return what the package says."""
+    return solve(scene_of(case))
 
 
 def errors(case):

@@ -12,8 +12,7 @@ import kvtheory as kv
 from kvtheory.cli import main
 from kvtheory.models.slow_manifold.start import half_length
 from kvtheory.models.steady import asymptote_bounds as asymptote
-from kvtheory.models.steady import ball, ball_bounds, exact
-from kvtheory.models.steady.parabola_bounds import enclose
+from kvtheory.models.steady import ball, exact
 from kvtheory.results import STEADY_UNITS, TRANSIENT_UNITS
 from kvtheory.results.errors import ToleranceError
 from tests.ladder_scenes import enclosed
@@ -23,23 +22,22 @@ NUMBERS = np.concatenate([[0.0], np.geomspace(1e-9, 1e9, 73)])
 SUPPORT_NUMBERS = (0.0, 1e-3, 1.0, 1e3)
 
 
+@pytest.mark.parametrize(
+    ("shape", "roots", "widest"), [("parabola", exact, 1.05), ("sphere", ball, 1.00013)]
+)
 @pytest.mark.parametrize("kappa", SUPPORT_NUMBERS)
-def test_the_half_length_is_enclosed(kappa):
-    roots = exact.scaled_root(NUMBERS, np.full_like(NUMBERS, kappa))
-    for number, root in zip(NUMBERS.tolist(), roots.tolist(), strict=True):
-        found = enclose(number, kappa)
+def test_the_half_length_is_enclosed(kappa, shape, roots, widest):
+    """Of a ball as closely as one Newton step leaves it, |r| < 5e-4."""
+    for number, root in zip(
+        NUMBERS.tolist(),
+        roots.scaled_root(NUMBERS, np.full_like(NUMBERS, kappa)).tolist(),
+        strict=True,
+    ):
+        found = asymptote.KNOWN[shape].enclose(number, kappa)
         assert found.low * (1 - 1e-15) <= root <= found.high * (1 + 1e-15)
-        assert found.high / found.low <= 1.05
-        assert half_length(number, kappa) == pytest.approx(root, rel=1e-14)
-
-
-@pytest.mark.parametrize("kappa", SUPPORT_NUMBERS)
-def test_the_half_length_of_a_ball_is_enclosed(kappa):
-    roots = ball.scaled_root(NUMBERS, np.full_like(NUMBERS, kappa))
-    for number, root in zip(NUMBERS.tolist(), roots.tolist(), strict=True):
-        found = ball_bounds.enclose(number, kappa)
-        assert found.low * (1 - 1e-15) <= root <= found.high * (1 + 1e-15)
-        assert found.high / found.low <= 1.00013  # from |r| < 5e-4
+        assert found.high / found.low <= widest
+        if shape == "parabola":
+            assert half_length(number, kappa) == pytest.approx(root, rel=1e-14)
 
 
 def scaled(number, kappa, shape="parabola"):

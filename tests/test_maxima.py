@@ -126,7 +126,7 @@ def test_a_fixed_indenter_has_a_maximum_for_each_of_two_distant_arms():
 def test_ball_arithmetic_proves_a_maximum_within_the_errors(kind):
     support = kv.Scene.table1(kind).support
     report = kv.asymptotes(kv.Scene(foundation=TWO_ARMS, support=support))
-    law = reference_viscoelastic.viscoelastic.Prony, (1e10, 1e-3, 1e10, 1.0), 0.01, 1e10, 1.001
+    law = reference_viscoelastic.laws.Prony, (1e10, 1e-3, 1e10, 1.0), 0.01, 1e10, 1.001
     errors = report.maxima_certificate.relative_error["maxima"]
     assert len(errors) == 2
     for (velocity, top), (off, own) in zip(report.maxima, errors, strict=True):

@@ -4,6 +4,8 @@ import numpy as np
 import pytest
 
 import kvtheory as kv
+from kvtheory.models.steady import general_stability
+from tests import stability_by_elements
 
 ZENER = [(5e10, 0.1)]
 TWO = [(3e10, 0.01), (5e9, 0.5)]
@@ -121,6 +123,62 @@ def test_onsets_and_rates_solve_the_linearised_equations(support, ball):
     for factor, side in () if ball else ((1.0 - 1e-4, 1.0), (1.0 + 1e-4, -1.0)):
         over = {"drive.stiffness": factor * found.critical_stiffness}
         assert np.sign(kv.stability(scene, over=over, quantity="rates").rates[0, 0]) == side
+
+
+@pytest.mark.parametrize(("place", "side"), [(5, 0.7), (5, 1.4), (2, 0.7)])
+def test_discrete_elements_grow_or_fade_at_the_rate_on_both_sides_of_the_critical_stiffness(
+    place, side
+):
+    _, rate, found = stability_by_elements.both(stability_by_elements.CASES[place], side)
+    assert (rate.real > 0.0) == (side < 1.0)
+    assert found.real == pytest.approx(rate.real, rel=0.02)
+    assert found.imag == pytest.approx(abs(rate.imag), rel=2e-3)
+
+
+@pytest.mark.parametrize("ball", [False, True])
+def test_the_general_way_agrees_with_the_closed_forms_on_kelvin_voigt(ball):
+    """F24 with a damper for the law, against the quartic of F22, each within its error."""
+    rng, unit = np.random.default_rng(3), 1e-3 if ball else 1.0
+    indenter, seen = kv.Sphere(0.01) if ball else kv.Parabola(0.01), 0
+    for _ in range(8):
+        load, mass = 9806.65 * unit, 1000.0 * unit * 10.0 ** rng.uniform(-1, 1)
+        support = kv.DeadWeight(mass=mass, load=load)
+        drive = kv.Drive(10.0 ** rng.uniform(-1.5, 1), stiffness=1e6 * unit, mass=2.0 * mass)
+        scene = kv.Scene(indenter, kv.Foundation(1e10, 0.1), support, drive)
+        closed = kv.stability(scene, quantity=[*QUICK, "rates"])
+        own = closed.certificate.relative_error
+        given, finer, crossings = general_stability.solve(scene.at(np.array([drive.velocity])))
+        values, _ = general_stability.critical(crossings, 1)
+        for name in ("critical_stiffness", "frequency"):
+            there = getattr(closed, name)
+            assert np.isnan(values[name][0]) == np.isnan(there)
+            if not np.isnan(there):
+                seen += 1
+                allowed = own[name] + crossings.error.max()
+                assert abs(values[name][0] / there - 1.0) <= allowed < 1e-7
+        found, _ = general_stability.rates(given, finer, drive.stiffness)
+        quartic = closed.rates @ [1.0, 1.0j]
+        assert np.sort_complex(found) == pytest.approx(np.sort_complex(quartic), rel=1e-7)
+    assert seen >= 6
+
+
+def test_a_ball_gets_as_many_strips_as_its_error_needs(monkeypatch):
+    """Arms so fast that they relax within the strips at the rim only."""
+    arms = [(2e12, 1.42e-5), (1.97e12, 3.12e-4)]
+    parts = {"indenter": kv.Sphere(0.01), "support": kv.DeadWeight(mass=4.5, load=9.8)}
+    scene = rubber(arms, np.array([0.049]), 1e3, **parts).flat()
+    monkeypatch.setattr(general_stability, "STRIPS", 6)
+    monkeypatch.setattr(general_stability, "ACCURATE", np.inf)
+    few = general_stability.solve(scene)[2]
+    monkeypatch.setattr(general_stability, "ACCURATE", 1e-8)
+    given, _, found = general_stability.solve(scene)
+    monkeypatch.setattr(general_stability, "STRIPS", 400)
+    truth = general_stability.solve(scene)[2]
+    assert len(given.c) > 6
+    for each in (few, found):
+        assert np.all(np.abs(each.stiffness / truth.stiffness - 1.0) <= each.error + truth.error)
+    assert np.all(found.error < 1e-8)
+    assert few.error.max() > 1e-8
 
 
 def test_the_critical_velocity_is_where_the_stiffness_is_critical():

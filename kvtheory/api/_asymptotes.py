@@ -7,7 +7,6 @@ from kvtheory.api._edge import double_precision, scene_of
 from kvtheory.api._steady import method_for
 from kvtheory.results import AsymptoteReport
 from kvtheory.scene.arguments import a_scene, checked, number, replacements
-from kvtheory.scene.foundations import FractionalKelvinVoigt, GeneralizedMaxwell
 from kvtheory.scene.model import Scene
 from kvtheory.scene.requirements import lacks_limits
 
@@ -27,10 +26,10 @@ def asymptotes(
     Parameters
     ----------
     scene, over
-        As in `steady`. The limits are known for a parabola, a power law, a wedge and a ball on a
-        Kelvin-Voigt foundation, and for a parabola on any foundation: on a Prony series those of F18, and
-        the exact state of the Kelvin-Voigt foundation with the same K and C. The maxima are found for every
-        scene; of a profile of revolution beyond Kelvin-Voigt they take minutes.
+        As in `steady`. The limits are known for a parabola and a ball on any foundation, and for a power law
+        and a wedge on Kelvin-Voigt; on a Prony series they are those of F18, and the exact state of the
+        Kelvin-Voigt foundation with the same K and C. The maxima are found for every scene; of a profile of
+        revolution beyond Kelvin-Voigt they take minutes.
     tolerance
         Relative error up to which an asymptote is accepted, from 1e-10 to 1.
 
@@ -70,19 +69,10 @@ def asymptotes(
     """
     scene = scene_of(scene).replace(over or {})
     method = method_for(scene, None)
-    # SciPy takes a while to import
-    from kvtheory.models.steady import (
-        foundation_limits,
-        fractional_limits,
-        maxima,
-        prony_limits,
-        regimes,
-    )
+    from kvtheory.models.steady import maxima, regimes  # SciPy takes a while to import
 
-    reports = {GeneralizedMaxwell: prony_limits, FractionalKelvinVoigt: fractional_limits}
     with double_precision(scene):
         told = maxima.told(scene, method)
         if lacks_limits(scene):
-            return foundation_limits.unknown(scene, tolerance, told, method)
-        report = reports.get(type(scene.foundation), regimes).report
-        return report(scene, tolerance, told)
+            return regimes.unknown(scene, tolerance, told, method)
+        return regimes.report(scene, tolerance, told)

@@ -74,7 +74,7 @@ def stability(
 
     References
     ----------
-    Fact F22 of the derivations; on a Prony series the formulas of `kvtheory.models.steady.rubber_response`,
+    Fact F22 of the derivations; on a Prony series the formulas of `kvtheory.theory.laws`,
     which are checked by quadrature and are not among the derivations yet.
     """
     scene = scene_of(scene).replace(over or {})

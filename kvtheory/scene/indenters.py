@@ -15,26 +15,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from kvtheory.scene.quantities import Part, SceneError, Value, mistake, quantity, settle
-
-SHORT_CUTS = ((2.0, np.square), (0.5, np.sqrt), (-1.0, np.reciprocal))
-"""Exponents for which NumPy may take another routine, which rounds otherwise."""
-
-
-def power(base: Value, exponent: Value) -> Value:
-    """Return base^exponent to the same bits however many scenes are in an array.
-
-    NumPy takes the short cuts where one exponent stands for all; here they are always taken.
-    """
-    if not isinstance(exponent, np.ndarray):
-        return base**exponent
-    cuts = [(exponent == special, routine) for special, routine in SHORT_CUTS]
-    for chosen, routine in cuts:
-        if chosen.all():
-            return routine(base)
-    found = base**exponent
-    for chosen, routine in cuts:
-        found = np.where(chosen, routine(base), found) if chosen.any() else found
-    return found
+from kvtheory.theory.powers import power
 
 
 class _Shape(Part):

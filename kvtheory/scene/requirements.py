@@ -105,7 +105,7 @@ def lacks_asymptotes(scene: Scene) -> str:
 
 def lacks_limits(scene: Scene) -> str:
     """Return why the limits of steady sliding are not known, or an empty text."""
-    return lacks_asymptotes(scene) if lacks_parabola(scene) else ""
+    return lacks_asymptotes(scene) if lacks_quadratic(scene) else ""
 
 
 def lacks_closed_form(scene: Scene) -> str:

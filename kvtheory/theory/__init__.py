@@ -1,1 +1,1 @@
-"""Functions of plain numbers and arrays that every room may use, written by `derivations` from its proofs."""
+"""Functions of plain numbers and arrays that every room may use: laws of the foundation, and closed forms."""

@@ -2,26 +2,38 @@ r"""The first rung: the asymptotes of a parabola and of a ball, where a bound of
 
 The error of each asymptote is a closed form that is monotonic in l = l_r/a (derivations "error-..." and
 "F20-error-..."). For a fixed indenter l is known and the error exact; an indenter that can move has its l
-within bounds (`parabola_bounds`, `ball_bounds`), at the worse end of which the error is taken. In units of
-the static state, with s = a/a_0, lambda = V tau/a_0, q = x_TE/a and 1 + e the asymptote over the truth:
+within bounds, at the worse end of which the error is taken. In units of the static state, with s = a/a_0,
+lambda = V tau/a_0, q = x_TE/a and 1 + e the asymptote over the truth:
 
     low V:   depth s^-2, half length s^-1, trailing edge 1/(s q), peak pressure 1/(s^2 + lambda^2)
     high V:  load (1 + kappa)/(1 + kappa - kappa s^2)
+
+The balance of forces is f + kappa (s^2 - 1) = 1, f the load in units of the static one; d ln f/d ln s is
+between 2 and 3 for a parabola and between 3 and 4 for a ball (derivations "scaled-load", "F20-balance"). From
+any s, whose total f + kappa s^2 is (1 + kappa) e^r, the root is therefore between s e^(-r/2) and s e^(-r/3),
+for a ball s e^(-r/4): r tells how far it is. One step of Newton's method leaves |r| below 5e-4 for a ball,
+which the tests hold it to, but the bounds are right without it.
+
+The depth for high velocity has the error g(s)/(3/4 lambda) - 1, g = f/s^2 + kappa, which grows with s, and
+for a ball (1 + x)^(2/3) - 1, x = (3 pi/(8 lambda)) (s (1 + T/pi)/2 + kappa/s), as its W is the damper's
+(8 lambda/(3 pi)) s^3 and s^4 (1 + T/pi)/2. Behind the contact a ball dissipates 8 l D/(pi + T) of the power;
+both D and T fall with l.
 """
 
 import math
-from functools import cache
+from collections.abc import Callable
+from functools import cache, partial
 from itertools import compress
 from typing import NamedTuple
 
-from kvtheory.models.steady.ball_bounds import BALL
+import numpy as np
+
+from kvtheory.models.steady import asymptotes
+from kvtheory.models.steady.ball import NEAR, SQUARES, WEIGHTS
 from kvtheory.models.steady.enclosure import Bound, Enclosure, Known
-from kvtheory.models.steady.parabola_bounds import PARABOLA
 from kvtheory.scene.model import Scene
 from kvtheory.scene.static_state import StaticState
-
-KNOWN = {"parabola": PARABOLA, "sphere": BALL}
-"""By the name of the shape."""
+from kvtheory.theory import closed_forms as cf
 
 ROUNDING = 16 * 2.0**-52
 """Rounding of the formulas themselves: 32 operations, half a unit in the last place each."""
@@ -41,6 +53,105 @@ class Choice(NamedTuple):
     error: float
 
 
+DAMPER = {"parabola": 0.75, "sphere": 8.0 / (3.0 * math.pi)}
+"""f/(lambda s^2) of a parabola for high velocity, f/(lambda s^3) of a ball."""
+NODES = tuple(zip(SQUARES.tolist(), WEIGHTS.tolist(), strict=True))
+
+Balance = Callable[[float, float], tuple[float, float]]
+"""Of s and lambda: f and df/d ln s."""
+
+
+def enclose(
+    shape: str, balance: Balance, steepest: int, number: float, support_number: float
+) -> Enclosure:
+    """Return bounds of a/a_0 for an indenter that can move, with d ln f/d ln s up to `steepest`.
+
+    >>> found = KNOWN["sphere"].enclose(4.0, 0.0)
+    >>> print(f"{found.low:.6f} to {found.high:.6f}")
+    0.644511 to 0.644514
+    """
+    kappa, yielding = support_number, 1.0 + support_number
+    s = (yielding / (kappa + math.hypot(1.0, DAMPER[shape] * number))) ** (1.0 / (steepest - 1.0))
+    load, slope = balance(s, number)
+    held = kappa * s * s
+    s *= math.exp(-math.log((load + held) / yielding) * ((load + held) / (slope + 2.0 * held)))
+    off = math.log((balance(s, number)[0] + kappa * s * s) / yielding)
+    low, high = sorted((s * math.exp(-off / 2.0), s * math.exp(-off / steepest)))
+    return Enclosure(number, kappa, low, min(high, 1.0), shape)
+
+
+def _of_parabola(s: float, number: float) -> tuple[float, float]:
+    return cf.scaled_load(s, number), s * cf.scaled_load_slope(s, number)
+
+
+def _of_ball(s: float, number: float) -> tuple[float, float]:
+    load = cf.ball_scaled_load(s, number, tail(number / s))
+    return load, cf.ball_scaled_load_slope(s, number, math.atan2(s, number))
+
+
+def tail(l: float) -> float:
+    """Return T as `ball.angle_and_tail` does, of a float.
+
+    >>> round(tail(0.0), 12), round(tail(1e8), 12)
+    (3.14159265359, 1.0667e-08)
+    """
+    if l <= NEAR:
+        return cf.ball_tail(l, math.atan2(1.0, l))
+    square = 1.0 / (l * l)
+    return sum(weight / (1.0 + square * node) for node, weight in NODES) / l
+
+
+def _dissipated(b: Enclosure) -> float:
+    """1/(fraction) - 1 = (3/4) t/(1 - t), t = q (1 - q), which is largest at q = 1/2 (theorem F6)."""
+    nearest = min(max(0.5, b.q_least), b.q_largest)
+    t = nearest * (1.0 - nearest)
+    return 0.75 * t / (1.0 - t)
+
+
+def _dissipated_by_ball(b: Enclosure) -> float:
+    behind = 8.0 * b.largest * cf.ball_loss(b.least, tail(b.least))
+    return behind / (math.pi + tail(b.largest) - behind)
+
+
+def _high_depth(b: Enclosure) -> float:
+    g = cf.scaled_load(b.high, b.number) / (b.high * b.high)
+    return (g + b.support_number) / (DAMPER["parabola"] * b.number) - 1.0
+
+
+def _high_depth_of_ball(b: Enclosure) -> float:
+    spring = 0.5 * b.high * (1.0 + tail(b.least) / math.pi) + b.support_number / b.low
+    return math.cbrt(1.0 + spring / (DAMPER["sphere"] * b.number)) ** 2 - 1.0
+
+
+KNOWN = {
+    "parabola": Known(
+        asymptotes=asymptotes,
+        enclose=partial(enclose, "parabola", _of_parabola, 3),
+        low_coefficient=lambda b: cf.error_l1(b.largest, b.q_least),
+        high_coefficient=lambda b: cf.error_l2_fixed(b.q_largest, b.least),
+        high_depth=_high_depth,
+        low_load=lambda b: abs(cf.error_load_low(b.largest, b.q_least)),
+        low_friction=lambda b: abs(cf.error_friction_force_low(b.largest, b.q_least)),
+        high_load=lambda b: abs(cf.error_load_high(b.q_least)),
+        high_friction=lambda b: abs(cf.error_friction_force_high(b.q_least)),
+        dissipated=_dissipated,
+    ),
+    "sphere": Known(
+        asymptotes=asymptotes,
+        enclose=partial(enclose, "sphere", _of_ball, 4),
+        low_coefficient=lambda b: cf.ball_error_l1(b.largest, tail(b.largest)),
+        high_coefficient=lambda b: cf.ball_error_l2(b.least, tail(b.least)),
+        high_depth=_high_depth_of_ball,
+        low_load=lambda b: abs(cf.ball_error_load_low(b.largest, tail(b.largest))),
+        low_friction=lambda b: cf.ball_error_friction_low(b.largest, tail(b.largest)),
+        high_load=lambda b: abs(cf.ball_error_load_high(b.least, tail(b.least))),
+        high_friction=lambda b: abs(cf.ball_error_friction_high(b.least, tail(b.least))),
+        dissipated=_dissipated_by_ball,
+    ),
+}
+"""By the name of the shape."""
+
+
 def enclosure_of(scene: Scene) -> Enclosure:
     """Return the bounds of s for a scene with a parabola or a ball; a fixed indenter has s = 1."""
     at_rest, shape = StaticState.of(scene), scene.indenter.shape
@@ -57,7 +168,7 @@ def choose(bounds: Enclosure, quantities: tuple[str, ...], enough: float = math.
 
     Examples
     --------
-    >>> found = choose(PARABOLA.enclose(1e-3, 0.0), ("friction_coefficient",))
+    >>> found = choose(KNOWN["parabola"].enclose(1e-3, 0.0), ("friction_coefficient",))
     >>> found.regime, round(found.error, 7)
     ('low', 0.0007506)
     """
@@ -87,10 +198,9 @@ def _distinct(
 
 def values(scene: Scene, regime: str, quantities: tuple[str, ...]) -> dict[str, float]:
     """Return the asymptotes of the quantities, in SI."""
-    side = -1.0 if scene.drive.final_velocity < 0.0 else 1.0
-    asymptotes = KNOWN[scene.indenter.shape].asymptotes
-    limits = asymptotes.limits(scene)
-    found = asymptotes.quantities(limits, regime, side)
+    limit = asymptotes.limits(scene)[regime == "high"]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        found = asymptotes.quantities(scene, limit)
     return {name: float(found[name]) for name in quantities}
 
 

@@ -1,217 +1,224 @@
-r"""The asymptotes of steady sliding of h = slope |x|^n/(n L^(n-1)): parabola, power law and wedge.
+r"""The limits of steady sliding at low and at high velocity: one table over law and shape.
 
-For l_r << a nothing peels and the foundation is a spring, mu -> (delta/a) l n (n + 1)/(2 n - 1); for
-l_r >> a the outlet side has peeled completely and it is a damper, W -> C V delta and
-mu -> (delta/a) n^2/(2 n - 1) (derivations "F19-low" and "F19-high"). With n = 2 these are the paper's
-(Eqs. 38-49). The relative errors are closed forms in l = l_r/a and q = x_TE/a that fall monotonically
-towards either limit (derivations "F19-error-..."): "within a tolerance" is a half-line of velocities.
+In a limit load and friction coefficient are powers. With the half length a of the contact at rest, the depth
+delta that belongs to it and l = V tau/a,
+
+    W = load K delta a l^rise,    mu = friction (delta/a) l^slope.
+
+`of_line` has these numbers for h = slope |x|^n/(n L^(n-1)) on Kelvin-Voigt (derivations "F19-low" and
+"F19-high"; with n = 2 the paper's Eqs. 38-49) and for a parabola on the other laws: at low velocity a
+Kelvin-Voigt foundation with C = int (G - K) dt (F18), or a power of its own for a springpot
+(F18-springpot); at high velocity a spring of the glassy stiffness G(0), whose friction follows from -G'(0)
+(F18), or a springpot. A ball is the sum of its strips: a power p of their half length becomes
+S(p) = int cos(t)^(p+1) dt over the half circle, for every law.
+
+The support closes the balance. For V -> 0 it is that at rest. For V -> oo a spring has lifted the indenter by
+its whole static depth, W -> M g + k_s delta_0, unless the foundation is a glassy spring itself.
 """
 
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from kvtheory.models.steady.power_law_contact import root, shape_of, trailing_edge
+from kvtheory.models.steady.power_law_contact import root, shape_of
 from kvtheory.results import SteadyState
+from kvtheory.scene.foundations import Foundation, FractionalKelvinVoigt
+from kvtheory.scene.indenters import Parabola, Sphere
 from kvtheory.scene.model import Scene
 from kvtheory.theory import closed_forms as cf
 
 Value = Any
 """An array, or a float."""
 
-PROVED = "F19-error-L1, F19-error-L2, F19-error-monotonic and others"
-"""The derivations of the errors."""
 
-SMALL = 0.5
-"""Up to this z = n l Q the peeled parts follow from z, beyond from q and Q themselves."""
-TERMS = tuple(1.0 / float(np.prod(np.arange(1, k + 3))) for k in range(16))
-"""Coefficients of phi_2(x) = sum x^k/(k + 2)!; for |x| <= ln 2 the next is below rounding."""
-PEAK_BRACKET = 0.5, 4.0
-"""The maximum of a dead weight is at l between 1 (n -> 1) and 2 (n -> oo)."""
+class Limit(NamedTuple):
+    """The numbers of a limit: W = load K delta a l^rise and mu = friction (delta/a) l^slope."""
 
-
-class Limits(NamedTuple):
-    """The input of the asymptotes from a scene, in SI, all arrays of one shape, with V >= 0.
-
-    `static_depth`, `static_half_length` and `static_load` belong to V = 0. `lift_load` is the load for
-    V -> oo: under a spring the indenter is lifted by its whole static depth, W -> M g + k_s delta_0.
-    """
-
+    load: Value
+    rise: Value
+    friction: Value
     slope: Value
-    length: Value
-    exponent: Value
-    stiffness: Value
-    retardation_length: Value
-    static_depth: Value
-    static_half_length: Value
-    static_load: Value
-    lift_load: Value
-    fixed: bool
+    slow: bool
 
 
-def limits(scene: Scene) -> Limits:
-    """Collect the limits of a scene."""
-    slope, L, n = shape = shape_of(scene.indenter)
-    K, support = scene.foundation.stiffness, scene.support
-    l_r = np.abs(scene.drive.final_velocity) * scene.foundation.retardation_time
+def limits(scene: Scene) -> tuple[Limit, Limit]:
+    """Return the limits for V -> 0 and for V -> oo."""
+    both = of_line(scene)
+    if scene.indenter.per_width:
+        return both
+    low, high = (_of_ball(limit, scene.indenter.stretch) for limit in both)
+    return low, high
+
+
+def of_line(scene: Scene) -> tuple[Limit, Limit]:
+    """Return the limits of a line contact, for a strip of a ball those of its parabola."""
+    foundation = scene.foundation
+    _, _, n = _shape(scene)
+    static = cf.power_law_static_load(n)
+    low = Limit(static, 0.0, cf.power_law_low(n), 1.0, slow=True)
+    if isinstance(foundation, Foundation):
+        return low, Limit(1.0, 1.0, cf.power_law_high(n), 0.0, slow=False)
+    if isinstance(foundation, FractionalKelvinVoigt):
+        from scipy.special import rgamma  # it takes a while to import
+
+        A = foundation.order
+        share = 12.0 * A * rgamma(3.0 - A) / (4.0 - A) * 2.0**-A
+        stiff = 2.0 * (2.0 - A) ** (2.0 - A) * rgamma(4.0 - A)
+        fast = Limit(stiff, A, 2.0 * A * (3.0 - A) / (4.0 - A), 0.0, slow=False)
+        return low._replace(friction=share, slope=A), fast
+    glassy = foundation.stiffness + sum(arm.stiffness for arm in foundation.arms)
+    falls = sum(arm.stiffness / arm.relaxation_time for arm in foundation.arms)  # -G'(0)
+    friction = 0.8 * falls / glassy * foundation.retardation_time
+    return low, Limit(static * glassy / foundation.stiffness, 0.0, friction, -1.0, slow=False)
+
+
+def _of_ball(strip: Limit, stretch: Value) -> Limit:
+    load, push = _strips(3.0 - strip.rise), _strips(4.0 - strip.rise - strip.slope)
+    return strip._replace(load=strip.load * stretch * load, friction=strip.friction * push / load)
+
+
+def _strips(p: Value) -> Value:
+    """Return S(p) = int cos(t)^(p+1) dt over the half circle.
+
+    >>> round(float(_strips(1.0) / np.pi), 12)
+    0.5
+    """
+    from scipy.special import beta
+
+    return beta(0.5, 0.5 * p + 1.0)
+
+
+def _shape(scene: Scene) -> tuple[Value, Value, Value]:
+    if isinstance(scene.indenter, Parabola | Sphere):
+        return 1.0, scene.indenter.radius, 2.0
+    return shape_of(scene.indenter)
+
+
+def _half_length(scene: Scene, depth: Value) -> Value:
+    slope, L, n = _shape(scene)
+    return L * root(n * depth / (slope * L), n)
+
+
+def _carrying(scene: Scene, limit: Limit, load: Value) -> tuple[Value, Value]:
+    """Return depth and half length at which the foundation of a limit carries a load."""
+    slope, L, n = _shape(scene)
+    across = 0.0 if scene.indenter.per_width else 1.0
+    number = _retardation_length(scene) / L
+    unit = limit.load * scene.foundation.stiffness * slope * L ** (2.0 + across)
+    a = L * root(n * load / (unit * number**limit.rise), n + 1.0 + across - limit.rise)
+    return slope * L / n * (a / L) ** n, a
+
+
+def _retardation_length(scene: Scene) -> Value:
+    return np.abs(scene.drive.final_velocity) * scene.foundation.retardation_time
+
+
+def at_rest(scene: Scene, low: Limit | None = None) -> tuple[Value, Value]:
+    """Return depth and half length at rest; `low` is the limit for V -> 0, if it is at hand."""
     if scene.held:
-        a = _half_length(*shape, support.depth)
-        load = K * support.depth * a * cf.power_law_static_load(n)  # Eq. 40
-        return Limits(*shape, K, l_r, support.depth, a, load, load, fixed=True)
-    a_0 = L * root((n + 1.0) * (support.weight / K) / (2.0 * slope * L * L), n + 1.0)
-    delta_0 = support.weight / (K * a_0 * cf.power_law_static_load(n))
-    lift = support.weight + support.spring * delta_0
-    return Limits(*shape, K, l_r, delta_0, a_0, support.weight, lift, fixed=False)
+        return scene.support.depth, _half_length(scene, scene.support.depth)
+    return _carrying(scene, low or limits(scene)[0], scene.support.weight)
 
 
-def _half_length(slope: Value, length: Value, exponent: Value, depth: Value) -> Value:
-    return length * root(exponent * depth / (slope * length), exponent)
+def contact(scene: Scene, limit: Limit) -> tuple[Value, Value, Value]:
+    """Return depth, half length and load in a limit, on the support of a scene."""
+    support = scene.support
+    low = limit if limit.slow else None
+    depth, a = static = at_rest(scene, low)
+    if scene.held:
+        viscous = (_retardation_length(scene) / a) ** limit.rise
+        across = 1.0 if scene.indenter.per_width else a
+        return *static, limit.load * scene.foundation.stiffness * depth * a * across * viscous
+    if limit.slow:
+        return *static, support.weight
+    lift = support.weight + support.spring * depth
+    if np.all(limit.rise > 0.0):
+        return *_carrying(scene, limit, lift), lift
+    s = _glassy_lift(scene, limit, support.spring * depth / support.weight)
+    return s * s * depth, s * a, lift - support.spring * s * s * depth
 
 
-def critical_velocity(scene: Limits, retardation_time: Value) -> Value:
-    """Return V*, where the two asymptotes of the friction coefficient meet, exactly.
-
-    V* tau = a n/(n + 1) for a fixed indenter, a_0 2^((n-1)/(2n-1)) n/(n + 1) for a dead weight
-    (derivations "F19-crossing" and "F19-crossing-weight"; Eqs. 47, 48 with their coefficients).
-    """
-    n, a_0 = scene.exponent, scene.static_half_length
-    if scene.fixed:
-        return a_0 * cf.power_law_crossing(n) / retardation_time
-    kappa = scene.lift_load / scene.static_load - 1.0
-    return a_0 * cf.power_law_crossing_at_load(n, kappa) / retardation_time
-
-
-def peak(scene: Limits, retardation_time: Value) -> tuple[Value, Value]:
-    """Return velocity and friction coefficient at the one maximum of a dead weight.
-
-    A wedge has none: from l_r = a on its friction coefficient is its slope. The values are NaN.
-    """
+def _glassy_lift(scene: Scene, limit: Limit, support_number: Value) -> Value:
+    """Return a/a_0 on a glassy spring: g s^p + kappa (s^2 - 1) = 1, p = 3, or 4 for a ball."""
     from scipy.optimize import elementwise  # it takes a while to import
 
-    n = scene.exponent + 0.0 * scene.static_depth
+    g = limit.load / limits(scene)[0].load
+    power = 3 if scene.indenter.per_width else 4
 
-    def rise(l: Value, n: Value) -> Value:
-        return cf.power_law_friction_rise(n, l, *trailing_edge(n, l))
+    def excess(s: Value, g: Value, kappa: Value) -> Value:
+        return g * s**power + kappa * (s * s - 1.0) - 1.0
 
-    ends = tuple(np.full_like(n, end) for end in PEAK_BRACKET)
-    l = np.where(n > 1.0, elementwise.find_root(rise, ends, args=(n,)).x, np.nan)
-    q, Q = trailing_edge(n, l)
-    ratio = cf.power_law_static_load(n) / cf.power_law_load(n, l, q, Q)
-    s = ratio ** (1.0 / (n + 1.0))  # s^(n+1) w = w at rest
-    velocity = l * s * scene.static_half_length / retardation_time
-    slope = scene.static_depth / scene.static_half_length * s ** (n - 1.0)
-    return velocity, slope * cf.power_law_friction_coefficient(n, l, q, Q)
+    return elementwise.find_root(excess, (0.0, 1.0), args=(g, support_number)).x
 
 
-def quantities(scene: Limits, regime: str, side: Value = 1.0) -> dict[str, Value]:
-    """Return the asymptote of every quantity of steady sliding, by `regime`: ``"low"`` or ``"high"``.
+def quantity(scene: Scene, limit: Limit, name: str) -> Value:
+    """Return the limit of one of depth, load, friction force and friction coefficient, at |V| of a scene."""
+    depth, a, load = contact(scene, limit)
+    if name in ("depth", "load"):
+        return depth if name == "depth" else load
+    mu = depth / a * limit.friction * (_retardation_length(scene) / a) ** limit.slope
+    return mu if name == "friction_coefficient" else load * mu
 
-    `side` is -1 for a reversed drive. At V = 0 those for high velocity are infinite or zero.
+
+def friction_coefficient(scene: Scene, limit: Limit) -> Value:
+    """Return the friction coefficient of a limit at the velocity |V| of a scene."""
+    return quantity(scene, limit, "friction_coefficient")
+
+
+def critical_velocity(scene: Scene) -> Value:
+    """Return V*, where both limits of the friction coefficient meet: each is a power of V.
+
+    On Kelvin-Voigt these are Eqs. 47 and 48 with their coefficients, for every power law and for a ball
+    (derivations "F19-crossing", "F19-crossing-weight" and "F20-crossing").
     """
-    n, l_r, slow = scene.exponent, scene.retardation_length, regime == "low"
-    viscous = scene.stiffness * l_r  # C V
-    if slow:
-        depth, load, a = scene.static_depth, scene.static_load, scene.static_half_length
-        mu = depth / a * (l_r / a) * cf.power_law_low(n)  # Eq. 42
-    else:
-        if scene.fixed:
-            depth, load = scene.static_depth, viscous * scene.static_depth  # Eq. 43
-        else:
-            depth, load = scene.lift_load / viscous, scene.lift_load  # Eq. 49
-        a = _half_length(scene.slope, scene.length, n, depth)
-        mu = depth / a * cf.power_law_high(n)  # Eqs. 45, 46
-    pressure = scene.stiffness * depth
+    _, _, n = _shape(scene)
+    low, high = limits(scene)
+    unit = at_rest(scene)[1] / scene.foundation.retardation_time
+    there = scene.at(unit)
+    ratio = friction_coefficient(there, high) / friction_coefficient(there, low)
+    across = 1.0 if scene.indenter.per_width else 2.0
+    shrinks = 0.0 if scene.held else high.rise / (n + across - high.rise)
+    falls = high.slope - (n - 1.0 - high.slope) * shrinks
+    return unit * ratio ** (1.0 / (low.slope - falls))
+
+
+def quantities(scene: Scene, limit: Limit) -> dict[str, Value]:
+    """Return the limit of every quantity of steady sliding on Kelvin-Voigt.
+
+    At V = 0 those for high velocity are infinite or zero.
+    """
+    _, _, n = _shape(scene)
+    K, side = scene.foundation.stiffness, np.where(scene.drive.final_velocity < 0.0, -1.0, 1.0)
+    l_r = _retardation_length(scene)
+    depth, a, load = contact(scene, limit)
+    mu = depth / a * limit.friction * (l_r / a) ** limit.slope
     return {
         "depth": depth,
         "half_length": a,
         "retardation_length": l_r,
         "leading_edge": -side * a,
-        "trailing_edge": side * a if slow else 0.0 * a,  # Eqs. 38, 39
+        "trailing_edge": side * a if limit.slow else 0.0 * a,  # Eqs. 38, 39
         "load": load,
         "friction_force": side * (load * mu) + 0.0,  # no negative zero
         "friction_coefficient": side * mu + 0.0,
-        "peak_pressure": pressure if slow else pressure * (n * l_r / a),
+        "peak_pressure": K * depth if limit.slow else K * depth * (n * l_r / a),
         "dissipated_in_contact": np.ones_like(a),
     }
 
 
-def errors(scene: Limits, regime: str, state: SteadyState) -> dict[str, Value]:
-    """Return asymptote/exact - 1 of each quantity, given the exact state; V > 0 if `regime` is high.
-
-    Ratios multiply by their logarithms: products of relative errors lose all digits where one nears -1.
-    """
-    n, half = scene.exponent, np.asarray(state.half_length)
-    l, q = state.retardation_length / half, np.abs(state.trailing_edge) / half
-    contact = n, l, q, 1.0 / (q + n * l)
-    found = (_low_errors if regime == "low" else _high_errors)(scene, state, *contact)
-    return {
-        **found,
-        "retardation_length": np.zeros_like(l),
-        "leading_edge": found["half_length"],
-        "dissipated_in_contact": 1 / cf.power_law_dissipated_in_contact(*contact) - 1,
-    }
+def error(limit: Value, exact: Value) -> Value:
+    """Return limit/exact - 1, none where both are zero."""
+    return np.where(limit == exact, 0.0, limit / exact - 1.0)
 
 
-def _low_errors(
-    scene: Limits, state: SteadyState, n: Value, l: Value, q: Value, Q: Value
+def errors(
+    scene: Scene, limit: Limit, values: dict[str, Value], exact: SteadyState
 ) -> dict[str, Value]:
-    peeled, drop, bend = _peeled(n, l, q, Q)
-    depth = np.log(scene.static_depth / state.depth)
-    mu = np.log1p(cf.power_law_error_l1(n, l, q, Q, drop)) + (1.0 - 2.0 / n) * depth
-    if scene.fixed:
-        load = cf.power_law_error_load_low(l, q, Q, bend)
-        friction = cf.power_law_error_friction_low(n, l, q, Q, peeled, drop)
-    else:
-        load = scene.static_load / state.load - 1
-        friction = np.expm1(np.log(scene.static_load / state.load) + mu)
-    with np.errstate(divide="ignore", over="ignore"):  # a sharp tip has x_TE = 0, or nearly
-        trailing = np.expm1(depth / n + np.log1p(peeled / q))
-    return {
-        "depth": np.expm1(depth),
-        "half_length": np.expm1(depth / n),
-        "trailing_edge": trailing,
-        "load": load,
-        "friction_force": friction,
-        "friction_coefficient": np.expm1(mu),
-        "peak_pressure": np.expm1(depth - np.log(cf.power_law_peak_pressure(n, l))),
-    }
-
-
-def _high_errors(
-    scene: Limits, state: SteadyState, n: Value, l: Value, q: Value, Q: Value
-) -> dict[str, Value]:
-    mu = np.log1p(cf.power_law_error_l2(n, l, q, Q))
-    if scene.fixed:
-        depth, load = np.zeros_like(l), cf.power_law_error_load_high(n, l, q, Q)
-        friction = cf.power_law_error_friction_high(n, l, q, Q)
-    else:
-        # The spring still carries k_s delta: lift_load - W = k_s delta.
-        lifted = state.depth / scene.static_depth
-        load = (scene.lift_load - scene.static_load) * lifted / state.load
-        depth = np.log1p(cf.power_law_error_depth_high(n, l, q, Q)) + np.log1p(load)
-        mu = mu + (1.0 - 1.0 / n) * depth
-        friction = np.expm1(np.log1p(load) + mu)
-    peak = np.log(n * l / cf.power_law_peak_pressure(n, l))
-    return {
-        "depth": np.expm1(depth),
-        "half_length": np.expm1(depth / n),
-        # The asymptote is the tip, where that of a wedge is from l = 1 on.
-        "trailing_edge": np.where((q == 0.0) & (n == 1.0), 0.0, -1.0),
-        "load": load,
-        "friction_force": friction,
-        "friction_coefficient": np.expm1(mu),
-        "peak_pressure": np.expm1((1.0 - 1.0 / n) * depth + peak),
-    }
-
-
-def _peeled(n: Value, l: Value, q: Value, Q: Value) -> tuple[Value, Value, Value]:
-    """Return 1 - q, 1 - Q and l - (1 - q) without cancellation where they are small."""
-    small = n * l * Q <= SMALL
-    z = np.where(small, n * l * Q, 0.0)
-    y = -np.log1p(-z) / n
-    rise, fall = (np.polyval(TERMS[::-1], x) for x in ((n - 1.0) * y, -y))
-    return (
-        np.where(small, cf.power_law_peeled(n, z), 1.0 - q),
-        np.where(small, cf.power_law_slope_drop(n, z), 1.0 - Q),
-        np.where(small, cf.power_law_bend(n, y, rise, fall), l - (1.0 - q)),
-    )
+    """Return limit/exact - 1 of each quantity, of which the limits are `values`."""
+    found = {name: error(value, getattr(exact, name)) for name, value in values.items()}
+    if (
+        not limit.slow
+    ):  # the limit is the tip, where only the edge of a wedge is; others may underflow
+        at_tip = (_shape(scene)[2] == 1.0) & (np.asarray(exact.trailing_edge) == 0.0)
+        found["trailing_edge"] = np.where(at_tip, 0.0, -1.0)
+    return found

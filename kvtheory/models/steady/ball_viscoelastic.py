@@ -24,6 +24,7 @@ from kvtheory.models.steady.blockwise import converge
 from kvtheory.results import STEADY_UNITS, Certificate
 from kvtheory.scene.model import Scene
 from kvtheory.scene.static_state import ball_stiffness
+from kvtheory.theory.laws import Law
 
 Array = NDArray[np.float64]
 
@@ -89,7 +90,11 @@ def quantities(scene: Scene) -> tuple[Any, ...]:
     """
     row = viscoelastic.law(scene)
     c = contact_length(scene, row)
-    V, plane, found = scene.drive.final_velocity, viscoelastic.state(scene, row, c), _sums(scene, c)
+    V, plane, found = (
+        scene.drive.final_velocity,
+        viscoelastic.state(scene, row, c),
+        _sums(scene, row, c),
+    )
     side = np.where(V < 0.0, -1.0, 1.0)
     moving = found.friction > 0.0
     work = np.where(moving, found.friction, 1.0)
@@ -104,7 +109,7 @@ def quantities(scene: Scene) -> tuple[Any, ...]:
     )
 
 
-def contact_length(scene: Scene, row: Any) -> Array:
+def contact_length(scene: Scene, row: Law) -> Array:
     """Return the length of the contact in the middle plane, on every support.
 
     At a load by Newton's method in logarithms, from rest. The load is positive and its growth between 2
@@ -119,7 +124,7 @@ def contact_length(scene: Scene, row: Any) -> Array:
     first = np.broadcast_to(2.0 * np.sqrt(2.0 * R * static), scene.shape)
 
     def step(c: Array) -> Array:
-        found = _sums(scene, c)
+        found = _sums(scene, row, c)
         held = spring * found.a * (found.a / (2.0 * R))
         total = found.load + held
         share, slope, _ = viscoelastic.growth(row.moments(c))
@@ -129,24 +134,24 @@ def contact_length(scene: Scene, row: Any) -> Array:
     return converge(step, first, LAST_STEP, MOST_STEPS)
 
 
-def _sums(scene: Scene, c: Array) -> Sums:
+def _sums(scene: Scene, row: Law, c: Array) -> Sums:
     """Return the sums over strips, a part of the scenes at a time."""
     parts = []
     for i in range(0, c.size, PART):
         part = slice(i, i + PART)
-        parts.append(_part(scene.rows((part, None)), c[part, None]))
+        parts.append(_part(scene.rows((part, None)), row.at(part, None), c[part, None]))
     return Sums(*(np.concatenate(rows) for rows in zip(*parts, strict=True)))
 
 
-def _part(scene: Scene, middle: Array) -> Sums:
-    row, R, stretch = viscoelastic.law(scene), scene.indenter.radius, scene.indenter.stretch
+def _part(scene: Scene, row: Law, middle: Array) -> Sums:
+    R, stretch = scene.indenter.radius, scene.indenter.stretch
     first = row.moments(middle)
     share, slope, bend = viscoelastic.growth(first)
     a_0 = middle * share
     c = middle * NODES
     M = row.moments(c)
     ratio, rise, _ = viscoelastic.growth(M)
-    a, eta = c * ratio, 0.5 * (M.P - M.Q) / (M.P + M.Q)
+    a, eta = c * ratio, M.eta
     away = middle * GAPS
     gap = np.where(GAPS < CLOSE, away * (slope - 0.5 * bend * GAPS), a_0 - a)
     y = np.sqrt(gap * (a_0 + a))

@@ -5,16 +5,13 @@ not always monotonic: a damper or a suspension makes steady sliding stable again
 heavy indenter may flutter at a low one. The first change is therefore found on a grid, then bisected.
 """
 
-from collections.abc import Callable
-
 import numpy as np
 from numpy.typing import NDArray
 
-from kvtheory.models.steady.stability import Numbers, onsets
+from kvtheory.models.steady.stability import numbers, onsets
 from kvtheory.scene.model import Scene
 
 Array = NDArray[np.float64]
-NumbersOf = Callable[[Scene], Numbers]
 
 DECADES = (-8.0, 20.0)
 """Powers of ten of the drive number V tau/a_0 between which a change is sought."""
@@ -27,11 +24,8 @@ SOFT, UNSTABLE, STIFF, NEVER = -1, 0, 1, 2
 """The stiffness of the spring relative to the critical ones: below both, between, above, or none exists."""
 
 
-def critical_velocity(scene: Scene, numbers: NumbersOf) -> tuple[Array, Array]:
-    """Return the velocity in m/s for each of flat scenes, NaN if there is none, and its error.
-
-    `numbers` are those of the shape.
-    """
+def critical_velocity(scene: Scene) -> tuple[Array, Array]:
+    """Return the velocity in m/s for each of flat scenes, NaN if there is none, and its error."""
     if scene.held:
         nothing = np.full(scene.shape, np.nan)
         return nothing, nothing
@@ -61,10 +55,10 @@ def critical_velocity(scene: Scene, numbers: NumbersOf) -> tuple[Array, Array]:
         stays = np.where(across, now == was, now != UNSTABLE)
         low, high = np.where(stays, middle, low), np.where(stays, high, middle)
     velocity = np.where(some, np.exp(high[:, 0]), np.nan)
-    return velocity, np.where(some, _error(column, high, numbers)[:, 0], np.nan)
+    return velocity, np.where(some, _error(column, high)[:, 0], np.nan)
 
 
-def _error(column: Scene, log_velocity: Array, numbers: NumbersOf) -> Array:
+def _error(column: Scene, log_velocity: Array) -> Array:
     """Return the relative error of a velocity: that of the stiffness over its logarithmic derivative.
 
     It is not known where both critical stiffnesses meet.

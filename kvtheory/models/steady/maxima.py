@@ -15,10 +15,14 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import elementwise
 
-from kvtheory.models.steady.methods import CLOSED, METHODS, asymptotes_of, plain
+from kvtheory.models.steady import asymptotes
+from kvtheory.models.steady.ball import angle_and_tail
+from kvtheory.models.steady.methods import CLOSED, METHODS, plain
+from kvtheory.models.steady.power_law_contact import shape_of, trailing_edge
 from kvtheory.results import Certificate
 from kvtheory.scene.model import Scene
 from kvtheory.scene.requirements import lacks_kelvin_voigt
+from kvtheory.theory import closed_forms as cf
 
 Array = NDArray[np.float64]
 Friction = Callable[[Array, Array], tuple[Array, Array]]
@@ -55,8 +59,7 @@ def told(scene: Scene, method: str) -> dict[str, Any]:
     if closed and (scene.held or scene.indenter.shape == "wedge"):
         found = np.empty((*base.shape, 0, 4))
     elif closed and np.all(scene.support.spring == 0.0):
-        asymptotes = asymptotes_of(scene)
-        V, mu = asymptotes.peak(asymptotes.limits(base), scene.foundation.retardation_time)
+        V, mu = _peak_of_weight(base)
         errors = np.full(base.shape, CLOSED_ERROR)
         found = np.stack(np.broadcast_arrays(V, mu, errors, errors), axis=-1)[..., None, :]
     else:
@@ -79,6 +82,39 @@ def told(scene: Scene, method: str) -> dict[str, Any]:
             },
         ),
     }
+
+
+PEAK_BRACKET = 0.5, 4.0
+"""The maximum of a dead weight is at l between 1 (n -> 1) and 2 (n -> oo), that of a ball at 1.842345."""
+
+
+def _peak_of_weight(scene: Scene) -> tuple[Array, Array]:
+    """Return velocity and friction coefficient at the one maximum of a dead weight on Kelvin-Voigt.
+
+    With l = l_r/a, s = a/a_0 and the power p of a with which the load grows, s^p w = w at rest.
+    """
+    line = scene.indenter.per_width
+    slope = shape_of(scene.indenter)[2] if line else np.asarray(2.0)
+    n = np.broadcast_to(slope, scene.shape).astype(float)
+
+    def contact(l: Array, n: Array) -> tuple[Array, ...]:
+        """Return the sign of dmu/dl, the load over that at rest, and mu a/delta."""
+        if line:
+            q = trailing_edge(n, l)
+            load = cf.power_law_load(n, l, *q) / cf.power_law_static_load(n)
+            mu = cf.power_law_friction_coefficient(n, l, *q)
+            return cf.power_law_friction_rise(n, l, *q), load, mu
+        tail = angle_and_tail(l)[1]
+        load = cf.ball_load_factor(l, tail) / (0.5 * np.pi)
+        mu = 2.0 * cf.ball_friction_coefficient_factor(l, tail)
+        return cf.ball_friction_rise(l, tail), load, mu
+
+    ends = tuple(np.full_like(n, end) for end in PEAK_BRACKET)
+    l = elementwise.find_root(lambda l, n: contact(l, n)[0], ends, args=(n,)).x
+    _, load, mu = contact(l, n)
+    depth, a = asymptotes.at_rest(scene)
+    s = load ** (-1.0 / (n + (1.0 if line else 2.0)))
+    return l * s * a / scene.foundation.retardation_time, depth / a * s ** (n - 1.0) * mu
 
 
 PEAK = "peak_velocity", "peak_friction_coefficient"

@@ -1,32 +1,61 @@
-"""Which asymptote holds for a scene, its error, and over which velocities it holds."""
+r"""Which limit of steady sliding holds for a scene, its error, and over which velocities it holds.
 
-from collections.abc import Mapping
+Every formula is compared with the exact state, and its range ends where the error passes the tolerance. On
+Kelvin-Voigt, and for a parabola on a springpot, the errors are monotonic in V (derivations "F19-error-...",
+"F20-error-...", "F18-springpot"), so that a range has one end. Otherwise the error is evaluated at `POINTS`
+velocities from the limit on, and the range ends where it first passes the tolerance.
+
+For a parabola on a Prony series a shorter range is also proved: with C = sum K_i tau_i and the length c of
+the contact, mu is within 7 V t/c of Kelvin-Voigt, t = sum K_i tau_i^2/C, where V t/c <= 1/20 (theorem
+F18-voigt), and within 2 c/(V s) of the glassy limit, s = (sum K_i/tau_i)/(sum K_i/tau_i^2), where
+c/(V s) <= 1/5 (theorem F18-glassy). On every support V/c grows with V (theorem F17-growth).
+"""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
+from functools import partial
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.optimize import elementwise
 
-from kvtheory.models.steady.foundation_limits import sought
-from kvtheory.models.steady.methods import ROUNDING, asymptotes_of, plain, solve_exact
+from kvtheory.models.steady import asymptotes
+from kvtheory.models.steady.methods import ROUNDING, plain, solve_exact
 from kvtheory.results import (
     STEADY_UNITS,
     AsymptoteLine,
     AsymptoteReport,
     Certificate,
+    SteadyState,
     units_for,
 )
+from kvtheory.scene.foundations import Foundation, FractionalKelvinVoigt
 from kvtheory.scene.model import Scene
+from kvtheory.scene.requirements import lacks_kelvin_voigt
 
 Array = NDArray[np.float64]
+Formula = Callable[[Scene], Any]
+"""A formula of a quantity, in the shape of the scene, for |V|."""
 
-DECADES = 30.0
-"""How far from V*, in powers of ten, the end of a range is sought."""
+DECADES, ON_ARMS, MOST_DECADES = 30.0, 15.0, 200.0
+"""How far from V*, in powers of ten, the end of a range is sought; 1/alpha times as far for a springpot."""
+POINTS = 301
+"""Velocities at which an error that may not be monotonic is evaluated, before the end is refined."""
 
-STATEMENT = (
-    "the relative errors e are closed forms (derivations {}), monotonic in V, "
-    "evaluated to 2e-14 (1 + |e|)"
+MONOTONIC = (
+    "limit over exact state, less one, to {:g} (1 + |e|) of the relative error e, which is monotonic in V "
+    "(derivations F19-error-..., F20-error-..., F18-springpot)"
 )
-
+SCANNED = (
+    "differences to the exact state; a range ends where the error first passes the tolerance between the "
+    "limit and the far side of V*, if it grows all the way; up to (high: from) `velocity_proved` it is "
+    "proved (derivations F18-voigt, F18-glassy)"
+)
+VOIGT, MOST_DELAY = 7.0, 0.05
+"""Relative error over V t/c, and the largest V t/c (theorem F18-voigt)."""
+GLASSY, MOST_HASTE = 2.0, 0.2
+"""Relative error over c/(V s), and the largest c/(V s) (theorem F18-glassy)."""
 
 LISTED = {
     "fixed": ("friction_coefficient", "load", "friction_force"),
@@ -113,23 +142,37 @@ OF_BALL = {
 }
 """With a radius R' across, K and C are multiplied by sqrt(R'/R) in formulas that contain W or give W or F."""
 
+ON_SPRINGPOT = (
+    "6 A/((4-A) Gamma(3-A)) (a/R) (V tau/(2 a))^A, A = order",
+    "A (3-A)/(4-A) a/R",
+)
+ON_SPRINGPOT_BALL = (
+    "6 A/((4-A) Gamma(3-A)) S(4-A)/S(3) (a/R) (V tau/(2 a))^A, A = order",
+    "A (3-A)/(4-A) S(4-A)/S(3-A) a/R, S(p) = B(1/2, 1 + p/2)",
+)
 
-class Row(NamedTuple):
-    """One asymptote of one quantity, as it is listed for a support."""
+
+class Line(NamedTuple):
+    """A formula of a quantity, as it is listed, with a proved bound of its error if one is known."""
 
     name: str
     quantity: str
     regime: str
     equation: int | None
     formula: str
+    at: Formula
+    bound: Formula | None = None
 
 
-def rows(shape: str, support: str) -> list[Row]:
-    """Return what is listed for a shape and a support, the friction coefficient first.
+def lines(scene: Scene) -> list[Line]:
+    """Return what is listed for a scene, the friction coefficient first.
 
-    >>> rows("parabola", "dead-weight")[3]
-    Row(name='depth, high V', quantity='depth', regime='high', equation=49, formula='W/(C V)')
+    >>> lines(Scene())[3][:5]
+    ('depth, high V', 'depth', 'high', 49, 'W/(C V)')
     """
+    if lacks_kelvin_voigt(scene):
+        return _of_friction(scene)
+    shape, support = scene.indenter.shape, scene.support.kind
     places = [(quantity, regime) for quantity in LISTED[support] for regime in ("low", "high")]
     names = ["L1", "L2"]
     names += [f"{name.removesuffix('_force')}, {regime} V" for name, regime in places[2:]]
@@ -137,73 +180,233 @@ def rows(shape: str, support: str) -> list[Row]:
     formulas = {"parabola": OF_PARABOLA, "sphere": OF_BALL}.get(shape, OF_POWER_LAW)[support]
     equations = EQUATIONS[support] if parabola else [None] * len(formulas)
     return [
-        Row(name, *place, equation, formula)
+        Line(name, *place, equation, formula, partial(_limit, *place))
         for name, place, equation, formula in zip(names, places, equations, formulas, strict=True)
     ]
 
 
+def _of_friction(scene: Scene) -> list[Line]:
+    """Return what is listed beyond Kelvin-Voigt, for a parabola or a ball."""
+    line = scene.indenter.per_width
+    mu = "friction_coefficient"
+    low, high = (partial(_limit, mu, regime) for regime in ("low", "high"))
+    if isinstance(scene.foundation, FractionalKelvinVoigt):
+        formulas = ON_SPRINGPOT if line else ON_SPRINGPOT_BALL
+        return [
+            Line("L1", mu, "low", None, formulas[0], low),
+            Line("L2", mu, "high", None, formulas[1], high),
+        ]
+    bounds = (_slow_bound, _voigt_bound, _glassy_bound) if line else (None, None, None)
+    factor = "2/5" if line else "1/3"
+    glassy = f"{factor} (a^2/R) (-G'(0)/G(0))/V, a of G(0)"
+    return [
+        Line("L1", mu, "low", 42 if line else None, "C V/(R K), C = sum K_i tau_i", low, bounds[0]),
+        Line("Kelvin-Voigt", mu, "low", None, "exact with K and C", _voigt, bounds[1]),
+        Line("glassy", mu, "high", None, glassy, high, bounds[2]),
+    ]
+
+
+def _limit(quantity: str, regime: str, scene: Scene) -> Any:
+    return asymptotes.quantity(scene, asymptotes.limits(scene)[regime == "high"], quantity)
+
+
+def _voigt(scene: Scene) -> Array:
+    """Return the friction coefficient on the Kelvin-Voigt foundation with the same K and C."""
+    own = scene.foundation
+    plain_scene = replace(scene, foundation=Foundation(own.stiffness, own.retardation_time))
+    return np.abs(solve_exact(plain_scene).friction_coefficient)
+
+
+def _sum(scene: Scene, power: int) -> Any:
+    """Return sum K_i tau_i^power."""
+    return sum(arm.stiffness * arm.relaxation_time**power for arm in scene.foundation.arms)
+
+
+def _length(scene: Scene) -> Array:
+    state = solve_exact(scene)
+    return np.asarray(state.half_length + np.abs(state.trailing_edge))
+
+
+def _within(off: Array, most: float, factor: float) -> Array:
+    """Return the bound of limit/exact - 1 from factor times `off`; infinite where none holds."""
+    wrong = factor * np.minimum(off, most)
+    return np.where(off <= most, wrong / (1.0 - wrong), np.inf)
+
+
+def _voigt_bound(scene: Scene) -> Array:
+    delay = np.abs(scene.drive.final_velocity) * (_sum(scene, 2) / _sum(scene, 1)) / _length(scene)
+    return _within(delay, MOST_DELAY, VOIGT)
+
+
+def _slow_bound(scene: Scene) -> Array:
+    slow = _limit("friction_coefficient", "low", scene)
+    return slow / _voigt(scene) * (1.0 + _voigt_bound(scene)) - 1.0
+
+
+def _glassy_bound(scene: Scene) -> Array:
+    haste = _length(scene) * (_sum(scene, -2) / _sum(scene, -1))
+    return _within(haste / np.abs(scene.drive.final_velocity), MOST_HASTE, GLASSY)
+
+
 def report(scene: Scene, tolerance: float, maxima: Mapping[str, Any]) -> AsymptoteReport:
     """Make the report of `kvtheory.asymptotes`, which documents it."""
-    V, tau = np.asarray(scene.drive.final_velocity), scene.foundation.retardation_time
-    asymptotes = asymptotes_of(scene)
-    limits = asymptotes.limits(scene)
-    critical = np.broadcast_to(asymptotes.critical_velocity(limits, tau), scene.shape)
-    truth, side = solve_exact(scene), np.where(V < 0.0, -1.0, 1.0)
-    with np.errstate(divide="ignore", invalid="ignore"):  # no high asymptote at V = 0
-        found = {name: asymptotes.quantities(limits, name, side) for name in ("low", "high")}
-        errors = {name: asymptotes.errors(limits, name, truth) for name in found}
-    lines = []
-    for row in rows(scene.indenter.shape, scene.support.kind):
-        error = errors[row.regime][row.quantity]
-        edge = _range_edge(scene, critical, row, tolerance)
-        lines.append(
-            AsymptoteLine(
-                *row,
-                value=_finite(found[row.regime][row.quantity]),
-                exact=getattr(truth, row.quantity),
-                relative_error=_finite(error),
-                velocity_min=plain(edge if row.regime == "high" else np.zeros_like(edge)),
-                velocity_max=plain(edge if row.regime == "low" else np.full_like(edge, np.inf)),
-                velocity_proved=plain(edge),
+    signed = np.broadcast_to(scene.drive.final_velocity, scene.shape)
+    V, shown = np.abs(signed), lines(scene)
+    springpot = isinstance(scene.foundation, FractionalKelvinVoigt)
+    monotonic = not scene.foundation.arms and (scene.indenter.per_width or not springpot)
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+        critical = np.broadcast_to(asymptotes.critical_velocity(scene), scene.shape)
+        truth = solve_exact(scene)
+        ends = _ends(scene, shown, critical, tolerance, 2 if monotonic else POINTS)
+        told = [
+            _told(
+                scene, line, truth, edge, _proved(scene, line, critical, tolerance, edge, monotonic)
             )
-        )
-    l1, l2 = (np.abs(line.relative_error) <= tolerance for line in lines[:2])
+            for line, edge in zip(shown, ends, strict=True)
+        ]
+    use = np.full(scene.shape, "exact", dtype=object)
+    for line in reversed(told):
+        if line.quantity == "friction_coefficient":
+            use = np.where(np.abs(line.relative_error) <= tolerance, line.name, use)
+    certificate = Certificate("estimated", SCANNED, {})
+    if monotonic:
+        certificate = Certificate("proved", MONOTONIC.format(2e-14), {})
     return AsymptoteReport(
-        velocity=plain(V),
+        velocity=plain(signed),
         critical_velocity=plain(critical),
         **maxima,
-        regime=plain(np.where(np.abs(V) <= critical, "low", "high")),
-        use=plain(np.where(l1, "L1", np.where(l2, "L2", "exact"))),
+        regime=plain(np.where(critical >= V, "low", "high")),
+        use=plain(use),
         tolerance=tolerance,
-        lines=tuple(lines),
+        lines=tuple(told),
         model="asymptote",
-        certificate=Certificate("proved", STATEMENT.format(asymptotes.PROVED), {}),
+        certificate=certificate,
         units=units_for(scene.indenter, STEADY_UNITS),
     )
 
 
-def _range_edge(scene: Scene, critical: Array, row: Row, tolerance: float) -> Array:
-    """Return the velocity at which the error of an asymptote passes the tolerance.
+def _told(
+    scene: Scene, line: Line, truth: SteadyState, edge: Array, proved: Array
+) -> AsymptoteLine:
+    exact, low = np.asarray(getattr(truth, line.quantity)), line.regime == "low"
+    value = np.broadcast_to(line.at(scene), scene.shape)
+    side = np.where(np.signbit(exact), -1.0, 1.0)
+    return AsymptoteLine(
+        *line[:5],
+        value=_finite(side * value),
+        exact=plain(exact),
+        relative_error=_finite(asymptotes.error(value, np.abs(exact))),
+        velocity_min=plain(np.zeros_like(edge) if low else edge),
+        velocity_max=plain(edge if low else np.full_like(edge, np.inf)),
+        velocity_proved=plain(proved),
+    )
 
-    The error is monotonic in V: a sign change within `DECADES` of V* is the edge. If the error is within
-    the tolerance at the far end too, where it has reached its limit, the asymptote holds at every velocity
-    (such as the load on a soft spring). Otherwise nothing is claimed.
+
+def _proved(
+    scene: Scene, line: Line, critical: Array, tolerance: float, edge: Array, monotonic: bool
+) -> Array:
+    """Return the velocity up to which, or from which on, a range is proved."""
+    if monotonic:
+        return edge
+    if line.bound is None:
+        return np.full_like(edge, 0.0 if line.regime == "low" else np.inf)
+    bound = line.bound
+
+    def excess(scene: Scene) -> Array:
+        return np.minimum(bound(scene), 2.0) - tolerance
+
+    far = np.broadcast_to(_far(scene), critical.shape)
+    return _crossing(scene, excess, critical, (-far, far), 0.0 if line.regime == "low" else np.inf)
+
+
+def _far(scene: Scene) -> Any:
+    order = getattr(scene.foundation, "order", 1.0)
+    return np.minimum((ON_ARMS if scene.foundation.arms else DECADES) / order, MOST_DECADES)
+
+
+def _ends(
+    scene: Scene, shown: Sequence[Line], critical: Array, tolerance: float, points: int
+) -> list[Array]:
+    """Return the velocities at which the error of each line first passes the tolerance, from its limit on.
+
+    If it does not on the way to the far end, the limit holds at every velocity (such as the load on a soft
+    spring). If it is above the tolerance at the limit already, nothing is claimed.
     """
-    asymptotes = asymptotes_of(scene)
+    far = np.broadcast_to(_far(scene), critical.shape)[..., np.newaxis]
+    grid = far * np.linspace(-1.0, 1.0, points)
+    wide = scene.mapped(lambda x: np.broadcast_to(x, scene.shape)[..., np.newaxis])
+    wide = wide.at(critical[..., np.newaxis] * 10.0**grid)
+    exact = solve_exact(wide)
+    ends = []
+    for line in shown:
 
-    def excess(scene: Scene, V: Array) -> Array:
-        point = scene.at(V)
-        truth, limits = solve_exact(point), asymptotes.limits(point)
-        with np.errstate(divide="ignore", invalid="ignore"):
-            found = asymptotes.errors(limits, row.regime, truth)
-        error = np.broadcast_to(np.abs(found[row.quantity]), V.shape)
-        return error + ROUNDING * (1.0 + error) - tolerance
+        def excess(scene: Scene, exact: SteadyState | None = None, line: Line = line) -> Array:
+            exact = solve_exact(scene) if exact is None else exact
+            truth = np.abs(getattr(exact, line.quantity))
+            doubt = ROUNDING + exact.certificate.relative_error[line.quantity]
+            error = np.abs(asymptotes.error(line.at(scene), truth))
+            return np.broadcast_to(error + doubt * (1.0 + error), scene.shape) - tolerance
 
-    bracket = (np.full_like(critical, -DECADES), np.full_like(critical, DECADES))
-    found = sought(excess, scene, critical, bracket)
-    nowhere, everywhere, far = (0.0, np.inf, 1) if row.regime == "low" else (np.inf, 0.0, 0)
-    without = np.where(found.f_bracket[far] <= 0.0, everywhere, nowhere)
-    return np.where(found.success, critical * 10.0**found.x, without)
+        low = line.regime == "low"
+        order = slice(None, None, 1 if low else -1)
+        wrong, steps = (excess(wide, exact) > 0.0)[..., order], grid[..., order]
+        first = wrong.argmax(axis=-1)[..., np.newaxis]
+        bracket = tuple(
+            np.take_along_axis(steps, np.maximum(first - 1 + next_, next_), axis=-1)[..., 0]
+            for next_ in (0, 1)
+        )
+        edge = _crossing(scene, excess, critical, bracket, np.nan)
+        nowhere, everywhere = (0.0, np.inf) if low else (np.inf, 0.0)
+        edge = np.where(first[..., 0] > 0, edge, nowhere)
+        ends.append(np.where(wrong.any(axis=-1), edge, everywhere))
+    return ends
+
+
+def _crossing(
+    scene: Scene,
+    excess: Formula,
+    critical: Array,
+    bracket: tuple[Array, ...],
+    otherwise: float,
+) -> Array:
+    """Return the velocity at which `excess` vanishes, between powers of ten away from V*."""
+    flat = scene.flat()
+
+    def at(decades: Array, index: Array, critical: Array) -> Array:
+        there = flat.rows(index) if scene.shape else flat
+        return excess(there.at(critical * 10.0**decades))
+
+    index = np.arange(critical.size).reshape(critical.shape)
+    found = elementwise.find_root(at, bracket, args=(index, critical))
+    return np.where(found.success, critical * 10.0**found.x, otherwise)
+
+
+NOTE = (
+    "The limits of friction at low and high velocity are known for a parabola and a ball on any foundation, "
+    "and for a power law and a wedge on Kelvin-Voigt; of this scene only the maxima are."
+)
+
+
+def unknown(
+    scene: Scene, tolerance: float, maxima: Mapping[str, Any], method: str
+) -> AsymptoteReport:
+    """Return the report of a scene whose limits are not known: its maxima, and a note."""
+
+    def each(value: Any) -> Any:
+        return plain(np.full(scene.shape, value))
+
+    return AsymptoteReport(
+        velocity=plain(np.broadcast_to(scene.drive.final_velocity, scene.shape)),
+        critical_velocity=each(np.nan),
+        **maxima,
+        regime=each(None),
+        use=each("exact"),
+        tolerance=tolerance,
+        lines=(),
+        model=method,
+        certificate=Certificate("none", "the limits of friction are not known", {}),
+        notes=(NOTE,),
+    )
 
 
 def _finite(array: Array) -> Any:

@@ -1,4 +1,4 @@
-"""Whether steady sliding is stable if the drive holds the indenter by a spring: closed forms (theorem F22).
+r"""Whether steady sliding is stable if the drive holds the indenter by a spring: closed forms (theorem F22).
 
 Small motions in the vertical and in the sliding direction, each divided by the damping of the contact, obey
 
@@ -7,6 +7,20 @@ Small motions in the vertical and in the sliding direction, each divided by the 
 with sigma in 1/tau. At the onset of instability Omega = omega^2, with omega the angular frequency, is a
 root of a quadratic without T_x and S_x; the critical stiffness is the one with this frequency for the mass
 along x.
+
+Per unit width a strip of half length A, with x_TE = sqrt(A^2 + l_r^2) - l_r, has
+
+    dW/d(delta) = K (A + x_TE + l_r),                 dF/d(delta) = K (l_r/R) (A + x_TE),
+    dW/d(ddelta/dt) = K tau (A + x_TE),               dF/dV = K tau (A^3 + x_TE^3)/(3 R^2),
+    dW/dV = dF/d(ddelta/dt) = K tau (l_r/R) x_TE.
+
+A parabola is one strip, a ball the sum of its strips. Strips that the motion lifts off or presses down carry
+nothing to first order. With l = l_r/a and the tail T of the load of a ball (derivation F20-tail), the sums
+on either side of its middle plane are, in units of a and a^3 (derivation F20-slopes),
+
+    A_1 = pi/4,    X_1 = (l/3 + T/4)/(1 + l^2),    A_3 = 3 pi/16,    X_3 = (3 T (1 + 5 l^2)/16 - l)/(1 + l^2).
+
+X_3 loses digits for l >> 1, where it does not count beside A_3.
 """
 
 from typing import Any, NamedTuple
@@ -14,7 +28,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from kvtheory.models.steady import exact
+from kvtheory.models.steady import ball, exact
 from kvtheory.scene.model import Scene
 from kvtheory.theory import closed_forms as cf
 
@@ -53,32 +67,33 @@ class Onset(NamedTuple):
 
 
 def numbers(scene: Scene) -> Numbers:
-    """Return the numbers of a scene that can be moved along x."""
+    """Return the numbers of a scene that can be moved along x: a parabola, or a ball, with `unit` in N/m."""
     foundation, support, drive = scene.foundation, scene.support, scene.drive
-    R, K, tau = scene.indenter.radius, foundation.stiffness, foundation.retardation_time
-    a = np.sqrt(2.0 * R * exact.depth(scene))
+    R, tau = scene.indenter.radius, foundation.retardation_time
+    line = scene.indenter.per_width
+    a = np.sqrt(2.0 * R * (exact if line else ball).depth(scene))
     l = np.abs(drive.final_velocity) * tau / a
-    q = cf.trailing_edge_ratio(l)
-    along = K * tau * cf.damping_along(a / R, q) * R / 3.0  # dF/dV, in N s/m^2
+    unit = foundation.stiffness * a
+    if line:
+        X_1 = cf.trailing_edge_ratio(l)
+        A_1, A_3, X_3 = 1.0, 1.0, X_1 * X_1 * X_1
+    else:
+        _, T = ball.angle_and_tail(l)
+        A_1, A_3 = np.pi / 4.0, 3.0 * np.pi / 16.0
+        X_1, X_3 = cf.ball_trailing_edges(l, T), cf.ball_cubed_trailing_edges(l, T)
+        unit = unit * 2.0 * a * scene.indenter.stretch
+    along = tau * unit * (a / R) ** 2 * ((A_3 + X_3) / 3.0)  # dF/dV
+    across = tau * unit * (A_1 + X_1)  # dW/d(ddelta/dt)
     damped = along + drive.damping
-    n_x = drive.damping / along
-    unit, T_x = damped / tau, scene.drive_mass / (damped * tau)
-    g, h, S_c = cf.coupling(l, q, n_x), cf.uncoupled(q, n_x), cf.coupling_rate(q)
+    T_x = scene.drive_mass / (damped * tau)
+    S_c = (A_1 + X_1) / X_1
+    g = l * X_1 / (A_1 + X_1) * (3.0 * l * X_1 / (A_3 + X_3)) * (along / damped)
     if scene.held:
-        endless = np.full_like(q, np.inf)
-        return Numbers(np.zeros_like(q), T_x, endless, S_c, g, h, endless, unit)
-    across = K * tau * cf.damping_across(a, q) * (4.0 / 3.0)  # dF_z/d(ddelta/dt), in N s/m^2
-    S_s = support.spring * tau / across
-    return Numbers(
-        T_z=support.mass / (across * tau),
-        T_x=T_x,
-        S_z=cf.relaxation_rate(q, S_s),
-        S_c=S_c,
-        g=g,
-        h=h,
-        e=cf.friction_rise(q, n_x, S_s),
-        unit=unit,
-    )
+        endless = np.full_like(g, np.inf)
+        return Numbers(np.zeros_like(g), T_x, endless, S_c, g, 1.0 - g, endless, damped / tau)
+    T_z = support.mass / (across * tau)
+    S_z = (A_1 + X_1 + l) / (A_1 + X_1) + support.spring * tau / across
+    return Numbers(T_z, T_x, S_z, S_c, g, 1.0 - g, S_z - g * S_c, damped / tau)
 
 
 def onsets(given: Numbers, tau: Array) -> tuple[Onset, Onset]:

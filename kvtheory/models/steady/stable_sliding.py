@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from kvtheory.models.steady import ball_stability, rubber_stability
+from kvtheory.models.steady import general_stability
 from kvtheory.models.steady.critical_velocity import critical_velocity
 from kvtheory.models.steady.rates import rates
 from kvtheory.models.steady.stability import Numbers, is_stable, numbers, onsets
@@ -77,8 +77,7 @@ def _block(scene: Scene, wanted: Set[str]) -> tuple[dict[str, Any], dict[str, An
     tau, spring = np.broadcast_to(scene.foundation.retardation_time, scene.shape), None
     if not scene.drive.rigid:
         spring = np.broadcast_to(scene.drive.stiffness, scene.shape)
-    numbers_of = numbers if scene.indenter.per_width else ball_stability.numbers
-    given = Numbers(*(np.broadcast_to(each, scene.shape) for each in numbers_of(scene)))
+    given = Numbers(*(np.broadcast_to(each, scene.shape) for each in numbers(scene)))
     lower, upper = onsets(given, tau)
     found = _unless_wanted(scene.shape) | {
         "critical_stiffness": upper.stiffness,
@@ -93,48 +92,49 @@ def _block(scene: Scene, wanted: Set[str]) -> tuple[dict[str, Any], dict[str, An
     if spring is not None:
         found["stable"] = is_stable(spring, lower, upper)
         if "critical_velocity" in wanted:
-            found["critical_velocity"], errors["critical_velocity"] = critical_velocity(
-                scene, numbers_of
-            )
+            found["critical_velocity"], errors["critical_velocity"] = critical_velocity(scene)
     if not wanted.isdisjoint(SLOW):
         sigma, error = rates(given, tau, spring)
-        found["rates"] = np.stack([sigma.real, sigma.imag], axis=-1)
-        with np.errstate(divide="ignore"):  # neither grows nor fades
-            found["time_constants"] = -1.0 / sigma.real
-            errors["rates"] = error
-            errors["time_constants"] = error * np.abs(sigma) / np.abs(sigma.real)
+        _add_rates(found, errors, sigma, error)
     return found, errors
 
 
 def _block_on_arms(scene: Scene, wanted: Set[str]) -> tuple[dict[str, Any], dict[str, Any]]:
     """Return what `_block` does for a Prony series."""
     found, errors = _unless_wanted(scene.shape), dict[str, Any]()
-    (given, finer), rigid = rubber_stability.both(scene), scene.drive.rigid
-    if not (rigid and scene.held):  # of which the mass is not known
-        crossings = rubber_stability.crossings(given, finer)
-        stiffnesses, errors = rubber_stability.critical(crossings, *scene.shape)
-        found |= stiffnesses
+    rigid, rows, spring = scene.drive.rigid, range(*scene.shape), None
+    if rigid and scene.held:  # nothing can move
+        _add_rates(found, errors, np.empty((*scene.shape, 0), complex), np.empty((*scene.shape, 0)))
+        return found, errors
+    given, finer, crossings = general_stability.solve(scene)
+    stiffnesses, errors = general_stability.critical(crossings, *scene.shape)
+    found |= stiffnesses
     if not rigid:
         spring = np.broadcast_to(scene.drive.stiffness, scene.shape)
         found["stable"] = ~crossings.unstable(spring)
-    each = [scene.rows(slice(i, i + 1)) for i in range(*scene.shape)]
-    if "critical_velocity" in wanted and not rigid:
-        pairs = [rubber_stability.critical_velocity(one) for one in each]
-        found["critical_velocity"], errors["critical_velocity"] = np.array(pairs).reshape(-1, 2).T
+        if "critical_velocity" in wanted:
+            each = [scene.rows(slice(i, i + 1)) for i in rows]
+            pairs = [general_stability.critical_velocity(one) for one in each]
+            found["critical_velocity"], errors["critical_velocity"] = np.reshape(pairs, (-1, 2)).T
     if not wanted.isdisjoint(SLOW):
-        rows = [
-            rubber_stability.rates(
-                given.rows([i]), finer.rows([i]), None if rigid else float(spring[i])
+        parts = [
+            general_stability.rates(
+                given.rows([i]), finer.rows([i]), None if spring is None else float(spring[i])
             )
-            for i in range(*scene.shape)
+            for i in rows
         ]
-        s, error = (np.array([row[which] for row in rows]) for which in (0, 1))
-        found["rates"] = np.stack([s.real, s.imag], axis=-1)
-        with np.errstate(divide="ignore", invalid="ignore"):
-            found["time_constants"] = -1.0 / s.real
-            errors["rates"] = error
-            errors["time_constants"] = error * np.abs(s) / np.abs(s.real)
+        s, error = (np.array([part[which] for part in parts]) for which in (0, 1))
+        _add_rates(found, errors, s, error)
     return found, errors
+
+
+def _add_rates(found: dict[str, Any], errors: dict[str, Any], s: Any, error: Any) -> None:
+    """Add rates and time constants; those that neither grow nor fade have an infinite one."""
+    found["rates"] = np.stack([s.real, s.imag], axis=-1)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        found["time_constants"] = -1.0 / s.real
+        errors["rates"] = error
+        errors["time_constants"] = error * np.abs(s) / np.abs(s.real)
 
 
 def _unless_wanted(shape: tuple[int, ...]) -> dict[str, Any]:

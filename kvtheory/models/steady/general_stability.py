@@ -1,4 +1,4 @@
-"""Stability of steady sliding on a Prony series, the drive holding the indenter by a spring.
+"""Stability of steady sliding on any law with a response to e^(st), with a spring in the drive (theorem F24).
 
 A stiffness k_x(s) = D - M_x s^2 - c_x s - B C/(M s^2 + k_s + A) belongs to each rate s. A stiff spring
 keeps sliding stable. On the way to a soft one two rates enter or leave the right half plane at each frequency
@@ -16,7 +16,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from kvtheory.models.steady.rubber_response import Complex, Contact, contact
+from kvtheory.models.steady import ball_viscoelastic
+from kvtheory.models.steady.small_motions import Complex, Contact, contact
 from kvtheory.scene.model import Scene
 
 Array = NDArray[np.float64]
@@ -30,9 +31,13 @@ TURN, REFINEMENTS, CLOSER = 0.4, 24, 3
 BISECTIONS = 52
 NEARBY = 1e-5
 """Relative difference of frequencies, of rates and of velocities for slopes."""
-ROUNDING = 16 * 2.0**-52
-CHECKED = 2
-"""So many times as many strips of a ball show the error of the sums."""
+ROUNDING, IN_STRIPS = 16 * 2.0**-52, ball_viscoelastic.RELATIVE_ERROR
+"""Relative error of the response of a parabola, and of a ball in any number of strips."""
+STRIPS, MORE, MOST = 24, 4, 384
+"""Strips of half a ball, the factor by which they grow until the error is small, and the most of them. Twice
+as many show the error."""
+ACCURATE = 1e-8
+"""Relative error of a critical stiffness that needs no more strips."""
 NEWTON_STEPS, SETTLED, SAME = 60, 1e-9, 1e-6
 ANGLES, RADII = 9, 5
 """Starts of Newton's method: directions in the upper half plane, and distances per decade."""
@@ -63,11 +68,13 @@ class Crossings(NamedTuple):
 
 def scales(given: Contact) -> Array:
     """Return the rates in 1/s that a scene brings along, on the first axis."""
-    passing = given.V / given.c
-    found = [*given.relaxed, passing.min(axis=0), passing.max(axis=0)]
+    passing, law = given.V / given.c, given.law
+    found = [*(given.V / law.time), passing.min(axis=0), passing.max(axis=0)]
+    if law.damping is not None:
+        found.append(given.V * law.K / law.damping)
     if not given.held:
-        soft = (given.c * given.width).sum(axis=0) * given.K
-        stiff = soft * (1.0 + given.arms.sum(axis=0) / given.K)
+        soft = (given.c * given.width).sum(axis=0) * law.K
+        stiff = soft * (1.0 + law.stiffness.sum(axis=0) / law.K)
         found += [np.sqrt((given.spring + each) / given.mass) for each in (soft, stiff)]
     return np.stack(found)
 
@@ -97,7 +104,7 @@ def _crossings(given: Contact, finer: Contact, row: Any, log: Array, way: Any) -
     k, _, size = stiffness(given, row, log)
     near = [stiffness(given, row, log + step)[0] for step in (-NEARBY, NEARBY)]
     slope = (near[1] - near[0]) / (2.0 * NEARBY)
-    doubt = ROUNDING * size + 2.0 * np.abs(stiffness(finer, row, log)[0] - k)
+    doubt = _rounding(given) * size + 2.0 * np.abs(stiffness(finer, row, log)[0] - k)
     omega = np.exp(log)
     with np.errstate(divide="ignore"):
         off = doubt / np.abs(slope.imag) + ROUNDING
@@ -107,6 +114,10 @@ def _crossings(given: Contact, finer: Contact, row: Any, log: Array, way: Any) -
     parts = row, k.real, omega, way, wrong / np.abs(k.real), off
     chosen: list[Any] = [each[some] for each in parts]
     return Crossings(*chosen)
+
+
+def _rounding(given: Contact) -> float:
+    return ROUNDING if len(given.c) == 1 else IN_STRIPS
 
 
 def stiffness(given: Contact, row: Any, log: Array) -> tuple[Complex, Complex, Array]:
@@ -155,10 +166,18 @@ def critical(found: Crossings, count: int) -> tuple[dict[str, Array], dict[str, 
     return dict(zip(names, values, strict=True)), dict(zip(names, errors, strict=True))
 
 
-def both(scene: Scene) -> tuple[Contact, Contact]:
-    """Return what small motions see, and for a ball the same in more strips."""
-    given = contact(scene)
-    return given, given if scene.indenter.per_width else contact(scene, CHECKED * len(given.c))
+def solve(scene: Scene) -> tuple[Contact, Contact, Crossings]:
+    """Return what small motions see, the same in twice as many strips of a ball, and all crossings."""
+    if scene.indenter.per_width:
+        given = contact(scene)
+        return given, given, crossings(given, given)
+    strips = STRIPS
+    while True:
+        given, finer = contact(scene, strips), contact(scene, 2 * strips)
+        found = crossings(given, finer)
+        if strips >= MOST or (found.error <= ACCURATE).all():
+            return given, finer, found
+        strips *= MORE
 
 
 def rates(given: Contact, finer: Contact, spring: float | None) -> tuple[Complex, Array]:
@@ -213,7 +232,9 @@ def _newton(
     polar = radii[:, np.newaxis] * np.exp(1j * np.linspace(0.0, np.pi, ANGLES))
     passing = (given.V / given.c).min()
     chain = passing * (np.arange(-1.0, 12.0, 2.0)[:, np.newaxis] - 1j * np.linspace(0.0, 60.0, 16))
-    s = np.concatenate([polar.ravel(), *(-rate - chain.ravel() for rate in given.relaxed[:, 0])])
+    s = np.concatenate(
+        [polar.ravel(), *(-rate - chain.ravel() for rate in (given.V / given.law.time)[:, 0])]
+    )
     moving = np.arange(s.size)
     for _ in range(NEWTON_STEPS):
         here = s[moving]
@@ -234,7 +255,7 @@ def _newton(
     s = s[kept]
     (f, size), h = value(s), NEARBY * s
     slope = (value(s + h)[0] - value(s - h)[0]) / (2.0 * h)
-    off = np.abs(f) + ROUNDING * size + 2.0 * np.abs(value(s, finer)[0] - f)
+    off = np.abs(f) + _rounding(given) * size + 2.0 * np.abs(value(s, finer)[0] - f)
     return s, off / np.abs(slope * s) + ROUNDING
 
 
@@ -258,19 +279,16 @@ def _count(given: Contact, value: Any, line: float, degree: int, spring: float |
 
 def critical_velocity(scene: Scene) -> tuple[float, float]:
     """Return the smallest velocity at which one scene becomes unstable, or NaN, and its error."""
-    given = contact(scene.at(np.ones(1)))
-    length = np.log10(given.c.max() * given.relaxed)
+    given = contact(scene.at(np.ones(1)), STRIPS)
+    length = np.log10(given.c.max() * given.V / given.law.time)
     low, high = length.min() - SPEED_DECADES, length.max() + SPEED_DECADES
     spring = np.broadcast_to(scene.drive.stiffness, (1,))
+    strips = STRIPS
 
-    def found(log: Array, strips: Any = lambda scene: 2 * (contact(scene),)) -> Crossings:
-        return crossings(*strips(scene.rows(np.zeros(log.size, int)).at(10.0**log)))
-
-    grid = np.linspace(low, high, 1 + int(SPEEDS * (high - low)))
-    now = found(grid).unstable(np.repeat(spring, grid.size))
-    (change,) = np.nonzero(now[1:] & ~now[:-1])
-    if not change.size:
-        return np.nan, np.nan
+    def found(log: Array, finer: int = 1) -> Crossings:
+        there = scene.rows(np.zeros(log.size, int)).at(10.0**log)
+        coarse = contact(there, strips)
+        return crossings(coarse, contact(there, finer * strips) if finer > 1 else coarse)
 
     def signed(log: float) -> float:
         each = found(np.array([log]))
@@ -279,15 +297,32 @@ def critical_velocity(scene: Scene) -> tuple[float, float]:
         distance = float(np.min(np.abs(np.log(each.stiffness / spring))))
         return distance if each.unstable(spring)[0] else -distance
 
+    grid = np.linspace(low, high, 1 + int(SPEEDS * (high - low)))
+    now = found(grid).unstable(np.repeat(spring, grid.size))
+    (change,) = np.nonzero(now[1:] & ~now[:-1])
+    if not change.size:
+        return np.nan, np.nan
+    bracket = grid[change[0] : change[0] + 2]
+
     from scipy.optimize import brentq
 
-    onset = brentq(signed, *grid[change[0] : change[0] + 2], xtol=1e-15)
-    step = NEARBY / np.log(10.0)
-    near = [found(np.array([onset + side * step]), both) for side in (-1.0, 1.0)]
+    while True:
+        onset = brentq(signed, *bracket, xtol=1e-15)
+        near = [found(np.array([onset + side * NEARBY]), 2) for side in (-1.0, 1.0)]
+        error = _velocity_error(near, spring) + ROUNDING * (1.0 + abs(onset))
+        if scene.indenter.per_width or strips >= MOST or error <= ACCURATE:
+            return 10.0**onset, error
+        strips *= MORE
+        if not signed(bracket[0]) < 0.0 < signed(bracket[1]):
+            return 10.0**onset, error
+
+
+def _velocity_error(near: list[Crossings], spring: Array) -> float:
+    """Return the error of the stiffness that is nearest to the spring over its logarithmic derivative."""
     if not all(each.row.size for each in near):
-        return 10.0**onset, np.inf
+        return np.inf
     at = [np.argmin(np.abs(each.stiffness / spring - 1.0)) for each in near]
     before, after = (np.log(each.stiffness[i]) for each, i in zip(near, at, strict=True))
     with np.errstate(divide="ignore"):
-        error = near[1].error[at[1]] * 2.0 * NEARBY / np.abs(after - before)
-    return 10.0**onset, error + ROUNDING * (1.0 + abs(onset))
+        steepness = np.abs(after - before) / (2.0 * NEARBY * np.log(10.0))
+        return float(near[1].error[at[1]] / steepness)

@@ -1,0 +1,291 @@
+r"""Laws of the foundation: what each question needs of a relaxation function G(t).
+
+`Prony` is a spring, a damper and Maxwell arms in parallel, G = K + C delta(t) + sum K_i e^(-t/tau_i); with a
+damper alone it is Kelvin-Voigt. `Fractional` is a spring and a springpot. `over` turns a law in time into one
+in the distance X = V t travelled in the contact, which all that follows is about.
+
+Steady sliding of a parabola needs four moments over a contact of length c (theorem F17): with w the distance
+to the trailing edge over c and g(w) = G(c w/V),
+
+    P = int g (1 - w),   Q = int g w,   D = int g w (1 - w)/2,   E = int g (1 - 3 w + 2 w^3)/12,
+
+all over 0 < w < 1, none negative if G falls and is convex. No sum in them cancels.
+
+Stability needs the response to small motions e^(st) (theorem F24). A depth delta_1 e^(st) and a displacement
+X_1 e^(st) along x change the forces of a parabola by
+
+    F_z1 = A delta_1 + B X_1,    F_x1 = C delta_1 + D X_1.
+
+With the half length at rest (1/2 + eta) c, sigma = s c/V, z = c/(V tau_i), m = z + sigma and
+phi_n(-m) = int_0^1 e^(-m v) (1 - v)^(n-1)/(n-1)! dv, each arm adds
+
+    A:   K_i c [phi_1 + sigma phi_2],
+    B:   K_i (c^2/R) z [Delta_3 - (1/2 + eta) Delta_2],
+    C:  -K_i (c^2/R) [(1/2 - eta) (phi_1 + sigma phi_2) - phi_2 - sigma phi_3],
+    D:  -K_i (c^3/R^2) z [Delta_3 - Delta_4 - (1/4 - eta^2) Delta_2],
+
+all phi at -m, Delta_n = phi_n(-z) - phi_n(-m), to K c in A and K eta c^2/R in C. Nothing cancels for stiff,
+fast arms; a small sigma is taken out of Delta_n as a factor. A damper is their limit.
+"""
+
+import math
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kvtheory.theory.powers import power
+
+Array = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+
+RELATIVE_ERROR = 24 * float(np.finfo(float).eps)
+"""5.3e-15, of what follows from the moments: twice the worst that the comparison with 50 digits has shown."""
+FRACTION_TERMS = 10
+"""Terms of the continued fraction for z <= 4: the next one is below rounding."""
+FAR = 1e150
+"""z of an arm that relaxes immediately: its square is still finite."""
+NEAR = 2.0
+"""Arguments of phi below which the recurrence upwards loses digits; Gauss's rule takes them."""
+NODES, WEIGHTS = (0.5 * each for each in np.polynomial.legendre.leggauss(14))
+NODES = 0.5 + NODES
+SHARES = [WEIGHTS * (1.0 - NODES) ** n / math.factorial(n) for n in range(4)]
+
+
+class Moments(NamedTuple):
+    """Moments of the relaxation function over a contact of length c, in N/m^3."""
+
+    P: Array
+    Q: Array
+    D: Array
+    E: Array
+    end: Array
+    """G at the trailing edge."""
+    end_slope: Array
+    """c dG/dc there."""
+
+    @property
+    def eta(self) -> Array:
+        """(P - Q)/(2 (P + Q)): the half length at rest is (1/2 + eta) c."""
+        return 0.5 * (self.P - self.Q) / (self.P + self.Q)
+
+
+class Prony(NamedTuple):
+    """G = K + C delta(t) + sum K_i e^(-t/tau_i); arms along the first axis of `stiffness` and `time`."""
+
+    K: Array
+    stiffness: Array
+    time: Array
+    """Relaxation times; lengths of a law in distance."""
+    damping: Any = None
+    """C, or None without a damper."""
+
+    def over(self, V: Array) -> "Prony":
+        """Return the law in the distance travelled at a velocity V >= 0; at rest all arms are relaxed."""
+        moving = V != 0.0
+        lengths = np.where(moving, V * self.time, 1.0)
+        damping = None if self.damping is None else self.damping * V
+        return Prony(self.K, self.stiffness * moving, lengths, damping)
+
+    def at(self, *index: Any) -> "Prony":
+        """Return the laws of some scenes, by an index of their last axis."""
+        K, stiffness, time = (each[(..., *index)] for each in self[:3])
+        damping = None if self.damping is None else self.damping[(..., *index)]
+        return Prony(K, stiffness, time, damping)
+
+    def moments(self, c: Array) -> Moments:
+        """Return the moments over a contact of length c."""
+        K, z = self.K, np.minimum(c / self.time, FAR)
+        P, Q, D, E, end = exponential_moments(z)
+        rows = self._sum(P), self._sum(Q), self._sum(D), self._sum(E)
+        first, last = 0.5 * K + rows[0], rows[3]
+        if self.damping is not None:
+            first, last = first + self.damping / c, last + self.damping / (12.0 * c)
+        second, third = 0.5 * K + rows[1], K / 12.0 + rows[2]
+        return Moments(first, second, third, last, K + self._sum(end), -self._sum(z * end))
+
+    def dissipated(self, c: Array, eta: Array, work: Array) -> tuple[Array, Array]:
+        """Return the share of the work that is lost in the contact, all terms positive, and its error."""
+        z = np.minimum(c / self.time, FAR)
+        P, Q, _, E, _ = exponential_moments(z)
+        A, B = P + Q, 0.5 * (P - Q)
+        lost = self._sum(E - 0.5 * B * B + eta * (A * B + eta * (B + 0.5 * A * z * P)))
+        if self.damping is not None:
+            lost = lost + self.damping / c * (1.0 / 12.0 + eta * eta)
+        return lost / work, np.full_like(work, RELATIVE_ERROR)
+
+    def modulus(self, X: Array) -> tuple[Array, Array, Array]:
+        """Return G, X dG/dX and the mean of G up to X > 0."""
+        z = np.minimum(X / self.time, FAR)
+        end = np.exp(-z)
+        mean = self.K + self._sum(-np.expm1(-z) / np.maximum(z, np.finfo(float).tiny))
+        mean = mean if self.damping is None else mean + self.damping / X
+        return self.K + self._sum(end), -self._sum(z * end), mean
+
+    def least_peak(self, a: Array) -> Array:
+        """Return a distance at which the pressure still rises, or at which it is its limit at X = 0."""
+        least = 0.25 * a if self.damping is None else np.finfo(float).eps * a
+        return np.minimum(least, 0.5 * self.time.min(axis=0, initial=np.inf))
+
+    def response(self, c: Array, eta: Array, sigma: Complex) -> tuple[Complex, ...]:
+        """Return A/c, B R/c^2, C R/c^2 and D R^2/c^3."""
+        A, C = self.K * np.ones_like(sigma), self.K * eta * np.ones_like(sigma)
+        B, D = np.zeros_like(sigma), np.zeros_like(sigma)
+        square = (0.5 - eta) * (0.5 + eta)
+        for stiffness, length in zip(self.stiffness, self.time, strict=True):
+            z = c / length
+            one, two, three, _ = phi(z + sigma)
+            second, third, fourth = differences(z, sigma)
+            whole = one + sigma * two
+            A += stiffness * whole
+            C -= stiffness * ((0.5 - eta) * whole - two - sigma * three)
+            B += stiffness * z * (third - (0.5 + eta) * second)
+            D -= stiffness * z * (third - fourth - square * second)
+        if self.damping is not None:
+            share = self.damping / c
+            A += share * (1.0 + sigma)
+            B -= share * eta * sigma
+            C += share * (0.5 + eta + eta * sigma)
+            D -= share * (1.0 / 12.0 + eta * eta) * sigma
+        return A, B, C, D
+
+    def _sum(self, rows: Array) -> Array:
+        total: Array = (self.stiffness * rows).sum(axis=0)
+        return total
+
+
+def exponential_moments(z: Array) -> tuple[Array, Array, Array, Array, Array]:
+    """Return P, Q, D, E and the end value of g = e^(-z w), z >= 0, to a few units in the last place.
+
+    With the modified spherical Bessel functions i_n(z/2) = i_(n-1)(z/2) (z/2) t_(n-1) they are
+
+        A = e^(-z/2) i_0,   P - Q = A y,   D = A t_0/4,   E = A t_0 (z/2) (1 + t_1 (1 + z/2))/24,
+
+    y = (z/2) t_0. For z <= 4 the t_n are continued fractions of positive terms; beyond, t_0 = (coth(z/2)
+    - 2/z) 2/z and what follows from it lose no digits (derivation F17-arm).
+    """
+    x, fall = 0.5 * z, np.expm1(-z)  # e^-z - 1
+    near = x <= 2.0
+    square, far = np.where(near, x * x, 0.0), np.where(near, 3.0, x)
+    t = np.full_like(x, 1.0 / (2.0 * FRACTION_TERMS + 3.0))
+    for n in range(FRACTION_TERMS - 1, 0, -1):
+        t = 1.0 / (2.0 * n + 3.0 + square * t)
+    rest = 1.0 / far + 2.0 * (1.0 + fall) / np.where(near, -1.0, fall)  # 1 - coth x + 1/x
+    t_0 = np.where(near, 1.0 / (3.0 + square * t), (1.0 - rest) / far)
+    t_1 = np.where(near, t, (1.0 / t_0 - 3.0) / (far * far))
+    A = np.where(z > 0.0, -fall / np.where(z > 0.0, z, 1.0), 1.0)
+    P = 0.5 * A * (1.0 + x * t_0)
+    Q = 0.5 * A * np.where(near, 1.0 - x * t_0, rest)
+    return P, Q, 0.25 * A * t_0, A * t_0 * x * (1.0 + t_1 * (1.0 + x)) / 24.0, 1.0 + fall
+
+
+class Fractional:
+    """G = K [1 + (t/tau)^(-alpha)/Gamma(1 - alpha)]: each moment is a Gamma function."""
+
+    def __init__(
+        self, K: Array, time: Array, order: Array, rgamma: list[Array] | None = None
+    ) -> None:
+        from scipy.special import rgamma as reciprocal
+
+        self.K, self.time, self.alpha = K, time, order
+        self.rgamma = rgamma or [reciprocal(n - order) for n in range(6)]
+        """1/Gamma(n - alpha), which does not depend on the velocity."""
+
+    def over(self, V: Array) -> "Fractional":
+        """Return the law in the distance travelled at a velocity V >= 0."""
+        return Fractional(self.K, self.time * V, self.alpha, self.rgamma)
+
+    def at(self, *index: Any) -> "Fractional":
+        """Return the laws of some scenes, by an index of their last axis."""
+        own = (self.K, self.time, self.alpha, *self.rgamma)
+        K, time, order, *rgamma = (each[(..., *index)] if np.ndim(each) else each for each in own)
+        return Fractional(K, time, order, rgamma)
+
+    def moments(self, c: Array) -> Moments:
+        """Return the moments over a contact of length c."""
+        K, alpha, part = self.K, self.alpha, self._part(c)
+        _, first, _, third, fourth, fifth = self.rgamma
+        return Moments(
+            *(0.5 * K + part * third, 0.5 * K + part * (1.0 - alpha) * third),
+            *(K / 12.0 + part * 0.5 * (1.0 - alpha) * fourth,),
+            *(part * 0.25 * alpha * (3.0 - alpha) * fifth,),
+            *(K + part * first, -alpha * part * first),
+        )
+
+    def dissipated(self, c: Array, eta: Array, work: Array) -> tuple[Array, Array]:
+        """Return the share of the work lost in the contact: that not stored at the trailing edge.
+
+        Towards order 0 almost nothing is lost, and the difference cancels; hence its separate error.
+        """
+        rest, two = 1.0 - self.alpha, 2.0**-self.alpha
+        third, fourth = self.rgamma[3:5]
+        none = 2.0 * np.expm1(rest * math.log(2.0)) * third  # (w + w')^-alpha over both w
+        once = rest * (4.0 * two - 1.0) * fourth  # and times w
+        both = 2.0 * (1.0 - 2.0 * two * self.alpha) * third / (4.0 - self.alpha)  # and times w w'
+        shift = eta - 0.5
+        stored = both + shift * (2.0 * once + shift * none)
+        size = 2.0 * third + np.abs(shift) * (2.0 * once + np.abs(shift) * none)
+        spring, part = 0.5 * self.K * eta * eta, 0.5 * self._part(c)
+        lost = 1.0 - (spring + part * stored) / work
+        least = np.maximum(lost, np.finfo(float).eps)
+        return lost, RELATIVE_ERROR * (1.0 + (spring + part * size) / (work * least))
+
+    def modulus(self, X: Array) -> tuple[Array, Array, Array]:
+        """Return G, X dG/dX and the mean of G up to X > 0."""
+        part, first = self._part(X), self.rgamma[1]
+        return (
+            self.K + part * first,
+            -self.alpha * part * first,
+            self.K + part * self.rgamma[2],
+        )
+
+    def least_peak(self, a: Array) -> Array:
+        """Return a distance at which the pressure still rises, or at which it is its limit at X = 0."""
+        return np.maximum((1.0 - self.alpha), np.finfo(float).eps) * 0.25 * a
+
+    def _part(self, X: Array) -> Array:
+        part: Array = self.K * power(self.time / X, self.alpha)
+        return part
+
+
+Law = Prony | Fractional
+
+
+def phi(m: Complex) -> list[Complex]:
+    """Return phi_1 to phi_4 at -m."""
+    near = np.abs(m) < NEAR
+    far = np.where(near, NEAR, m)
+    found: list[Complex] = [np.asarray(-np.expm1(-far) / far, complex)]
+    for n in range(1, 4):
+        found.append((1.0 / math.factorial(n) - found[-1]) / far)
+    if near.any():
+        fall = np.exp(-m[near][:, np.newaxis] * NODES)
+        for each, share in zip(found, SHARES, strict=True):
+            each[near] = fall @ share
+    return found
+
+
+def differences(z: Array, sigma: Complex) -> tuple[Complex, ...]:
+    """Return phi_n(-z) - phi_n(-z - sigma) for n = 2, 3, 4, relative to their own size."""
+    z = np.broadcast_to(z, sigma.shape)
+    m = z + sigma
+    fast = z >= np.abs(m)
+    pivot = np.where(fast, z, m)
+    near = np.abs(pivot) < NEAR
+    pivot = np.where(near, NEAR, pivot)
+    others = phi(np.where(fast, m, z).astype(complex))
+    small = np.abs(sigma) < 1.0
+    part = -np.expm1(-np.where(sigma == 0.0, 1.0, sigma)) / np.where(sigma == 0.0, 1.0, sigma)
+    slow = np.exp(-z) * np.where(sigma == 0.0, 1.0, np.where(small, part, 0.0))
+    apart = (np.exp(-z) - np.exp(-m)) / np.where(small, 1.0, sigma)
+    found = [np.where(small, slow, apart)]
+    for n in range(4):
+        found.append((others[n] - found[-1]) / pivot)
+    if near.any():
+        here, turn = z[near][:, np.newaxis] * NODES, sigma[near][:, np.newaxis] * NODES
+        zero = turn == 0.0
+        ratio = np.where(zero, 1.0, -np.expm1(-turn) / np.where(zero, 1.0, turn))
+        fall = NODES * np.exp(-here) * ratio
+        for n in (2, 3, 4):
+            found[n][near] = fall @ SHARES[n - 1]
+    return tuple(sigma * each for each in found[2:])
