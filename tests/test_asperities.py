@@ -5,17 +5,21 @@ import math
 import platform
 import subprocess
 import sys
+from functools import partial
 
 import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from kvtheory.models.steady.quadrature import at_depth, at_load
+from kvtheory.models.steady.methods import solve_quadrature
 from kvtheory.results import STEADY_UNITS
 from kvtheory.results.errors import QuadratureError
 from kvtheory.scene.indenters import Circle, Parabola, PowerLaw, Profile
-from tests import flushed
+from tests import flushed, steady
 
+at_depth, at_load = (
+    partial(each, solve=solve_quadrature) for each in (steady.at_depth, steady.at_load)
+)
 POINTS = 200_001
 
 

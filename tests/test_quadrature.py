@@ -1,4 +1,5 @@
 import math
+from functools import partial
 
 import mpmath
 import numpy as np
@@ -6,12 +7,15 @@ import pytest
 from scipy.integrate import quad
 
 import kvtheory as kv
-from kvtheory.models.steady.quadrature import at_depth, at_load
+from kvtheory.models.steady.methods import solve_quadrature
 from kvtheory.results import STEADY_UNITS
 from kvtheory.results.errors import QuadratureError
 from kvtheory.scene.indenters import Circle, Parabola, PowerLaw, Profile, Wedge
-from tests import reference
+from tests import reference, steady
 
+at_depth, at_load = (
+    partial(each, solve=solve_quadrature) for each in (steady.at_depth, steady.at_load)
+)
 K, TAU, DEPTH = 1e10, 0.1, 3e-4
 SCENES = 100
 """Random scenes for each support."""
