@@ -64,7 +64,7 @@ LIMIT = 1e-6
 
 
 class Contact:
-    """One contact, with the values at the nodes of both rules; pressures and forces are over the stiffness."""
+    """One contact, with the values at the nodes of both rules; pressures are over the stiffness."""
 
     load_curvature, guess, noise = None, (), 0.0
 

@@ -20,6 +20,7 @@ every load is carried at one depth, and the depth is relatively no less accurate
 """
 
 import math
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -106,12 +107,16 @@ def quantities(scene: Scene) -> tuple[Any, ...]:
     0.00029563, 35344.6, 5344.58, 0.151214
     """
     size = scene.shape
-    if size:
-        if scene.indenter.convex and scene.indenter.per_width and not lacks_kelvin_voigt(scene):
-            scene = scene.mapped(lambda x: x[:, None])
-        else:
-            rows = [quantities(scene.mapped(lambda x, i=i: float(x[i]))) for i in range(*size)]
-            return tuple(np.transpose(rows))
+    if (
+        size
+        and scene.indenter.convex
+        and scene.indenter.per_width
+        and not lacks_kelvin_voigt(scene)
+    ):
+        scene = scene.mapped(lambda x: x[:, None])
+    elif size:
+        rows = [scene.mapped(partial(_item, index=i)) for i in range(*size)]
+        return tuple(np.transpose([quantities(row) for row in rows]))
     support, V = scene.support, scene.drive.final_velocity
     l_r = abs(V) * scene.foundation.retardation_time  # Eq. 29
     K, V, l_r, load, spring, depth = (
@@ -148,10 +153,14 @@ def quantities(scene: Scene) -> tuple[Any, ...]:
     return tuple(np.broadcast_to(x, scene.shape).ravel() if size else x for x in found)
 
 
+def _item(values: Any, index: int) -> float:
+    return float(values[index])
+
+
 def _line(scene: Scene, l_r: Value) -> Any:
     """Return the method for the shape and the foundation of a scene."""
-    indenter = scene.indenter
-    shape: Any = indenter if indenter.per_width else indenter.profile
+    indenter: Any = scene.indenter
+    shape = indenter if indenter.per_width else indenter.profile
     # Strips are mirror images of each other, and a profile is given for both sides.
     side = (
         -1.0 if indenter.per_width and not scene.shape and scene.drive.final_velocity < 0.0 else 1.0

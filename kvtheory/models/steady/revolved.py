@@ -11,9 +11,9 @@ nothing: strips beyond `RIM` are omitted. The middle plane gives the edges and t
 """
 
 import math
-from collections.abc import Callable
+from dataclasses import dataclass
 from itertools import pairwise
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from numpy.polynomial.legendre import leggauss
@@ -93,7 +93,8 @@ class Strip:
         return 1.0 + (self.profile.bend(rho) - 1.0) * (x / rho) ** 2
 
 
-class Contact(NamedTuple):
+@dataclass(frozen=True)
+class Contact:
     """The sums over the strips of a contact, over the stiffness, and its middle plane."""
 
     middle: Any
@@ -103,9 +104,8 @@ class Contact(NamedTuple):
     lost: float
     load_error: float
     """Relative, of every sum."""
-
-    load_curvature = None
-    guess = ()
+    load_curvature: None = None
+    guess: tuple[()] = ()
 
     @property
     def depth(self) -> float:
@@ -163,7 +163,8 @@ class Strips:
                 "quadrature over the strips fails: the indenter's reach is too close"
             )
         error += SHARP if self.profile.kinks else LEAST * self.floor
-        return Contact(middle, *each[:4, 0].tolist(), error)
+        load, slope, friction, lost = each[:4, 0].tolist()
+        return Contact(middle, load, slope, friction, lost, error)
 
     def _rows(self, y: Array, depth: Array) -> Array:
         """Return load, its slope, friction, what is lost, and the errors of load and friction of strips."""
