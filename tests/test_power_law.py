@@ -55,6 +55,7 @@ def test_every_quantity_is_within_its_error_of_ball_arithmetic(n, kind):
                 assert claimed <= (1 + 1 / (n - 1)) * STATED[OWN] * (1 + 1e-12)
 
 
+@pytest.mark.processor
 @pytest.mark.parametrize("kind", SUPPORTS)
 @pytest.mark.parametrize(
     ("n", "profile"),
