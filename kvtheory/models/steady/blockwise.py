@@ -1,5 +1,6 @@
 """A formula of steady sliding on all scenes of arrays, block by block, with its certificate."""
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import Any
@@ -14,6 +15,7 @@ BLOCK = 16384
 """Scenes treated at a time: the intermediate arrays of a block stay in the processor's cache."""
 
 QUANTITIES = tuple(STEADY_UNITS)
+SMALLEST = float(np.finfo(float).tiny)
 ZERO_AT_REST = ("retardation_length", "friction_force", "friction_coefficient")
 
 Array = NDArray[np.float64]
@@ -54,7 +56,9 @@ def evaluate(
         else:
             one = scene.at(np.array([scene.drive.final_velocity]))
             rows = [float(np.ravel(each)[0]) for each in formula(one)]
-    _check_range(np.array(rows[: len(QUANTITIES)]), scene.drive.final_velocity, own_errors)
+    values = rows[: len(QUANTITIES)]
+    if shape or not all(SMALLEST <= abs(each) < math.inf for each in values):
+        _check_range(np.array(values), scene.drive.final_velocity, own_errors)
     quantities: dict[str, Any] = dict(zip(QUANTITIES, rows, strict=False))
     own = dict(zip(own_errors, rows[len(QUANTITIES) :], strict=True))
     certificate = replace(certificate, relative_error={**certificate.relative_error, **own})
@@ -106,7 +110,10 @@ def _check_range(values: Array, velocity: Any, own_errors: tuple[str, ...]) -> N
 
     Zero is correct only at rest, or where the value's own error covers it.
     """
-    lost = np.abs(values) < np.finfo(float).tiny
+    size = np.abs(values)
+    if not size.size or (size.min() >= SMALLEST and size.max() < math.inf):
+        return
+    lost = size < SMALLEST
     lost[[QUANTITIES.index(name) for name in ZERO_AT_REST]] &= velocity != 0.0
     lost[[QUANTITIES.index(name) for name in own_errors]] = False
     for wrong, what in ((~np.isfinite(values), "overflow"), (lost, "underflow")):

@@ -132,6 +132,9 @@ class Surface:
     def shallow(self, load: float, width: Callable[[float], float]) -> float:
         """Return a depth that, times a width which depends on the half length, is about the load."""
         x = self.first(lambda x, height: height * width(x) >= load)
+        near, far = (max(self.height(-y), self.height(y)) * width(y) for y in (0.5 * x, x))
+        if 0.0 < near < load <= far < math.inf:
+            x *= (load / far) ** (1.0 / math.log2(far / near))  # exact for a power
         return min(self.height(-x), self.height(x)) or load / x
 
     def cells(self, depth: float) -> Cells:
@@ -143,8 +146,7 @@ class Surface:
     @property
     def examined(self) -> float:
         """Where the last cell ends."""
-        assert self._cells
-        return float(self._cells[1].end.max())
+        return float(self._cells[1].end.max()) if self._cells else self.end
 
     def _grid(self, depth: float) -> Any:
         """Return intervals out to the reach, narrow where the contact is, cut at the kinks."""
