@@ -35,7 +35,7 @@ from kvtheory.models.steady.revolved import Strips
 from kvtheory.results import STEADY_UNITS, Certificate
 from kvtheory.results.errors import QuadratureError
 from kvtheory.scene.model import Scene
-from kvtheory.scene.requirements import lacks_kelvin_voigt
+from kvtheory.scene.requirements import lacks_kelvin_voigt, lacks_quadrature
 
 UNBALANCED = 1e-6
 """Relative error of the load carried above which the result is refused."""
@@ -49,6 +49,8 @@ ULPS = 2.0**-49
 """The least relative step of the depth."""
 SHALLOWER = 8.0
 """A depth without a solution is divided by this, if none is known to be too shallow."""
+NARROW = 1e-9
+"""It also ends this close, over the depth, between one without a solution and one too shallow."""
 SHALLOWEST = 1e-12
 """Share of the first trial depth below which the search ends."""
 
@@ -106,13 +108,8 @@ def quantities(scene: Scene) -> tuple[Any, ...]:
     >>> print(", ".join(f"{value:.6g}" for value in found[4:8]))
     0.00029563, 35344.6, 5344.58, 0.151214
     """
-    size = scene.shape
-    if (
-        size
-        and scene.indenter.convex
-        and scene.indenter.per_width
-        and not lacks_kelvin_voigt(scene)
-    ):
+    size, indenter = scene.shape, scene.indenter
+    if size and indenter.convex and indenter.per_width and not lacks_kelvin_voigt(scene):
         scene = scene.mapped(lambda x: x[:, None])
     elif size:
         rows = [scene.mapped(partial(_item, index=i)) for i in range(*size)]
@@ -130,14 +127,12 @@ def quantities(scene: Scene) -> tuple[Any, ...]:
         else:
             contact, depth_error = _carrying(line, load / K, spring / K)
         values, own, powers = line.quantities(contact)
-        values = {"depth": contact.depth, "retardation_length": l_r} | values
+        values["depth"], values["retardation_length"] = contact.depth, l_r
         values["friction_coefficient"] = values["friction_force"] / values["load"]
-        own = {"friction_coefficient": own["load"] + own["friction_force"]} | own
-        own = {"dissipated_in_contact": own["friction_force"]} | own
-        powers = {
-            "friction_coefficient": powers["friction_force"] - powers["load"],
-            "retardation_length": 0.0,
-        } | powers
+        own.setdefault("friction_coefficient", own["load"] + own["friction_force"])
+        own.setdefault("dissipated_in_contact", own["friction_force"])
+        powers.setdefault("friction_coefficient", powers["friction_force"] - powers["load"])
+        powers["retardation_length"] = 0.0
         noise = MARGIN * (depth_error + contact.noise)
         errors = {
             name: own.get(name, 0.0) + line.floor + noise * abs(power)
@@ -161,15 +156,16 @@ def _line(scene: Scene, l_r: Value) -> Any:
     """Return the method for the shape and the foundation of a scene."""
     indenter: Any = scene.indenter
     shape = indenter if indenter.per_width else indenter.profile
-    # Strips are mirror images of each other, and a profile is given for both sides.
-    side = (
-        -1.0 if indenter.per_width and not scene.shape and scene.drive.final_velocity < 0.0 else 1.0
-    )
-    if scene.foundation.kind != "kelvin-voigt":
-        shape = shape if shape.convex else ConvexProfile(shape, side)
+    if lacking := lacks_quadrature(scene):
+        raise QuadratureError(lacking)
+    remembers = lacks_kelvin_voigt(scene)
+    if not shape.convex:  # it may differ ahead and behind; a body of revolution does not
+        side = -1.0 if indenter.per_width and scene.drive.final_velocity < 0.0 else 1.0
+        shape = ConvexProfile(shape, side) if remembers else Surface(shape, side)
+    if remembers:
         line: Any = ViscoelasticLine(shape, memory_of(scene), l_r)
     else:
-        line = ConvexLine(shape, l_r) if shape.convex else AnyLine(Surface(shape, side), l_r)
+        line = (AnyLine if isinstance(shape, Surface) else ConvexLine)(shape, l_r)
     return line if indenter.per_width else Strips(indenter, line)
 
 
@@ -209,7 +205,7 @@ def _contact(line: Any, load: Value, spring: Value) -> Any:
             contact = line.at(depth, guess)
         except QuadratureError as error:  # perhaps only because this is too deep
             failure = failure or error
-            if isinstance(depth, np.ndarray) or depth < least:
+            if isinstance(depth, np.ndarray) or depth < least or depth < low * (1.0 + NARROW):
                 raise failure from None
             high, new, step = depth, math.inf, math.inf
         else:
