@@ -2,7 +2,6 @@
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -59,11 +58,12 @@ def evaluate(
     values = rows[: len(QUANTITIES)]
     if shape or not all(SMALLEST <= abs(each) < math.inf for each in values):
         _check_range(np.array(values), scene.drive.final_velocity, own_errors)
-    quantities: dict[str, Any] = dict(zip(QUANTITIES, rows, strict=False))
-    own = dict(zip(own_errors, rows[len(QUANTITIES) :], strict=True))
-    certificate = replace(certificate, relative_error={**certificate.relative_error, **own})
+    if own_errors:
+        own = dict(zip(own_errors, rows[len(QUANTITIES) :], strict=True))
+        errors = {**certificate.relative_error, **own}
+        certificate = Certificate(certificate.kind, certificate.statement, errors)
     units = units_for(scene.indenter, STEADY_UNITS)
-    return SteadyState(**quantities, model=model, certificate=certificate, units=units)
+    return SteadyState(*values, model=model, certificate=certificate, units=units)
 
 
 def converge(

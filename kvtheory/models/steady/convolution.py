@@ -157,7 +157,11 @@ class Contact:
 
     @property
     def edge_power(self) -> float:
-        """Relative shift of the trailing edge, over that of all pressures."""
+        """Relative shift of the trailing edge over that of all pressures: no less than over the depth's.
+
+        Ahead of the lowest point u' >= 0: the pressure there is at least delta times G/K at the trailing
+        edge, as G does not rise.
+        """
         x = self.x_te
         if x in (0.0, self.back):
             return 1.0
