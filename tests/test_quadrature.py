@@ -16,7 +16,7 @@ at_depth, at_load = (
     partial(each, solve=solve_quadrature) for each in (steady.at_depth, steady.at_load)
 )
 K, TAU, DEPTH = 1e10, 0.1, 3e-4
-SCENES = 100
+SCENES = 60
 """Random scenes for each support."""
 
 
@@ -299,28 +299,6 @@ def test_weight_that_the_reach_cannot_carry():
     for shape in (Circle(1e-3), short):
         with pytest.raises(QuadratureError, match="beyond the indenter's reach"):
             at_load(shape, K, TAU, 0.1, 1e6)
-
-
-@pytest.mark.parametrize(("position", "width"), [(-1e-3, 2e-5), (-7e-4, 1e-5)])
-def test_narrow_bumps_of_a_profile_are_seen(position, width):
-    """A bump of 1/200 and 1/400 of the contact, against a dense composite rule."""
-    R, A, depth, l_r, K = 0.01, 1e-6, 3e-4, 1e-3, 1e10
-
-    def bump(x):
-        return A * math.exp(-(((x - position) / width) ** 2))
-
-    profile = Profile(
-        lambda x: x * x / (2 * R) + bump(x) - bump(0.0),
-        lambda x: x / R - 2 * (x - position) / width**2 * bump(x),
-    )
-    state = at_depth(profile, K, 0.1, l_r / 0.1, depth)
-    x = np.linspace(state.leading_edge, state.trailing_edge, 400001)
-    slope = x / R - 2 * (x - position) / width**2 * A * np.exp(-(((x - position) / width) ** 2))
-    height = x * x / (2 * R) + A * np.exp(-(((x - position) / width) ** 2)) - bump(0.0)
-    p = K * (depth - height - l_r * slope)
-    assert state.load == pytest.approx(np.trapezoid(p, x), rel=1e-8)
-    assert state.friction_force == pytest.approx(np.trapezoid(-slope * p, x), rel=1e-7)
-    assert state.peak_pressure == pytest.approx(p.max(), rel=1e-6)
 
 
 SHAPES = [

@@ -132,13 +132,12 @@ def quantities(scene: Scene) -> tuple[Any, ...]:
         own.setdefault("friction_coefficient", own["load"] + own["friction_force"])
         own.setdefault("dissipated_in_contact", own["friction_force"])
         powers.setdefault("friction_coefficient", powers["friction_force"] - powers["load"])
-        powers["retardation_length"] = 0.0
         noise = MARGIN * (depth_error + contact.noise)
         errors = {
             name: own.get(name, 0.0) + line.floor + noise * abs(power)
             for name, power in powers.items()
         }
-    errors["depth"] = depth_error
+    errors["depth"], errors["retardation_length"] = depth_error, ROUNDING
     side = 1.0 - 2.0 * (V < 0.0)
     for name in ODD:
         values[name] = side * values[name] + 0.0  # no negative zero
