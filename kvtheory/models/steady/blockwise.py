@@ -63,7 +63,8 @@ def evaluate(
         errors = {**certificate.relative_error, **own}
         certificate = Certificate(certificate.kind, certificate.statement, errors)
     units = units_for(scene.indenter, STEADY_UNITS)
-    return SteadyState(*values, model=model, certificate=certificate, units=units)
+    named: dict[str, Any] = dict(zip(QUANTITIES, values, strict=True))
+    return SteadyState(**named, model=model, certificate=certificate, units=units)
 
 
 def converge(
