@@ -58,10 +58,9 @@ def evaluate(
     values = rows[: len(QUANTITIES)]
     if shape or not all(SMALLEST <= abs(each) < math.inf for each in values):
         _check_range(np.array(values), scene.drive.final_velocity, own_errors)
-    if own_errors:
-        own = dict(zip(own_errors, rows[len(QUANTITIES) :], strict=True))
-        errors = {**certificate.relative_error, **own}
-        certificate = Certificate(certificate.kind, certificate.statement, errors)
+    own = dict(zip(own_errors, rows[len(QUANTITIES) :], strict=True))
+    errors = {**certificate.relative_error, **own}  # not shared between results
+    certificate = Certificate(certificate.kind, certificate.statement, errors)
     units = units_for(scene.indenter, STEADY_UNITS)
     named: dict[str, Any] = dict(zip(QUANTITIES, values, strict=True))
     return SteadyState(**named, model=model, certificate=certificate, units=units)
