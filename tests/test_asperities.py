@@ -5,18 +5,21 @@ import math
 import platform
 import subprocess
 import sys
+from functools import partial
 
 import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from kvtheory.models.steady.quadrature import at_depth, at_load
+from kvtheory.models.steady.methods import solve_quadrature
 from kvtheory.results import STEADY_UNITS
-from kvtheory.results.errors import QuadratureError
 from kvtheory.scene.indenters import Circle, Parabola, PowerLaw, Profile
-from tests import flushed
+from tests import flushed, steady
 
-POINTS = 200_001
+at_depth, at_load = (
+    partial(each, solve=solve_quadrature) for each in (steady.at_depth, steady.at_load)
+)
+POINTS = 100_001
 
 
 def on_a_grid(profile, side, l_r, depth, half_width, points=POINTS):
@@ -101,14 +104,19 @@ def random_waves(seed):
     return profile, l_r, depth, (1.0 if seed % 2 or not l_r else -1.0)
 
 
-@pytest.mark.parametrize("seed", range(15))
+@pytest.mark.parametrize("seed", range(8))
 def test_random_rough_profiles(seed):
+    """At a depth, and at the load there; W is convex in the depth, which makes that depth unique."""
     profile, l_r, depth, side = random_waves(seed)
     state = held_against_a_grid(profile, l_r, depth, profile.width(depth), side)
     back = at_load(profile, 1.0, 1.0, side * l_r, state.load)
     error = state.certificate.relative_error["load"] + back.certificate.relative_error["depth"]
     assert abs(back.depth / depth - 1.0) <= error
     assert back.certificate.relative_error["depth"] < 1e-9
+    depths = np.append(profile.roughness * np.linspace(0.1, 3.0, 5), depth)
+    loads = [at_depth(profile, 1.0, 1.0, side * l_r, d).load for d in np.sort(depths).tolist()]
+    slopes = np.diff(loads) / np.diff(np.sort(depths))
+    assert np.all(np.diff(slopes) > -1e-9 * slopes[-1])
 
 
 def wavy():
@@ -120,7 +128,7 @@ def wavy():
 def test_the_load_carried_is_the_load_asked_for(velocity):
     """Among the weights are those at which a contact more has just begun."""
     profile, l_r = wavy(), abs(velocity) * 0.1
-    for weight in [5.656373927816772, *np.geomspace(0.5, 50.0, 12).tolist()]:
+    for weight in [5.656373927816772, *np.geomspace(0.5, 50.0, 4).tolist()]:
         state = at_load(profile, 1e10, 0.1, velocity, weight)
         assert state.load == pytest.approx(weight, rel=1e-9)
         load, *_ = on_a_grid(profile, 1.0, l_r, state.depth, profile.width(state.depth))
@@ -130,7 +138,6 @@ def test_the_load_carried_is_the_load_asked_for(velocity):
 def test_the_static_depth_of_a_spring_counts_every_contact():
     state, rest = (at_load(wavy(), 1e10, 0.1, V, 6.0, k) for V, k in ((0.02, 3e6), (0.0, 0.0)))
     assert state.load == pytest.approx(6.0 + 3e6 * (rest.depth - state.depth), rel=1e-10)
-    assert state.depth == pytest.approx(5.315e-7, rel=1e-4)
     load, *_ = on_a_grid(wavy(), 1.0, 2e-3, state.depth, wavy().width(state.depth))
     assert load == pytest.approx(state.load / 1e10, rel=1e-5)
 
@@ -147,7 +154,7 @@ def pair(distance, lift, radius=0.01):
     )
 
 
-@pytest.mark.parametrize("distance", [5e-3, 0.07, 1.0, 10.0, 300.0])
+@pytest.mark.parametrize("distance", [5e-3, 0.07, 300.0])
 @pytest.mark.parametrize("side", [-1.0, 1.0])
 def test_far_asperities_touch_as_if_they_were_alone(distance, side):
     """No memory is left over a distance of many retardation lengths."""
@@ -163,10 +170,24 @@ def test_far_asperities_touch_as_if_they_were_alone(distance, side):
 
 
 @pytest.mark.parametrize("l_r", [1e-5, 1e-3, 3e-3, 0.1])
-@pytest.mark.parametrize("lift", [-0.0, 5e-5, 9.9e-5])
-@pytest.mark.parametrize("distance", [3.5e-3, -3.5e-3])
-def test_an_asperity_in_the_wake_of_another(l_r, lift, distance):
-    held_against_a_grid(pair(distance, lift), l_r, 1e-4, 6e-3)
+@pytest.mark.parametrize("lift", [-0.0, 9.9e-5])
+def test_an_asperity_in_the_wake_of_another(l_r, lift):
+    for distance in (3.5e-3, -3.5e-3):
+        held_against_a_grid(pair(distance, lift), l_r, 1e-4, 6e-3)
+
+
+@pytest.mark.parametrize(("position", "width"), [(-1e-3, 2e-5), (-7e-4, 1e-5)])
+def test_narrow_bumps_of_a_profile_are_seen(position, width):
+    """A bump of 1/200 and 1/400 of the contact, which carries 2e-5 of the load."""
+
+    def bump(x):
+        return 1e-6 * math.exp(-(((x - position) / width) ** 2))
+
+    profile = Profile(
+        lambda x: x * x / 0.02 + bump(x) - bump(0.0),
+        lambda x: x / 0.01 - 2.0 * (x - position) / width**2 * bump(x),
+    )
+    held_against_a_grid(profile, 1e-3, 3e-4, 3e-3)
 
 
 @pytest.mark.parametrize("l_r", [0.0, 1e-4, 1e-2])
@@ -187,20 +208,10 @@ def test_a_step(l_r):
         held_against_a_grid(Profile(height, slope), l_r, 1e-4, 3e-3)
 
 
-@pytest.mark.parametrize(
-    ("amplitude", "length", "velocity"), [(2e-5, 5e-4, 0.1), (2e-5, 1e-3, 0.01), (2e-5, 1e-3, 0.0)]
-)
-def test_waves_that_lift_off_and_touch_again(amplitude, length, velocity):
-    profile = Waves(0.01, [amplitude], [length], [math.pi])
-    held_against_a_grid(profile, 0.1 * velocity, 3e-4, profile.width(3e-4))
-
-
-def test_the_load_is_convex_in_the_depth():
-    """What makes the depth at a load unique, whatever the shape."""
-    profile, l_r, *_ = random_waves(3)
-    depths = profile.roughness * np.linspace(0.1, 3.0, 15)
-    loads = [at_depth(profile, 1.0, 1.0, l_r, depth).load for depth in depths.tolist()]
-    assert np.all(np.diff(loads, 2) > -1e-10 * loads[-1])
+@pytest.mark.parametrize("l_r", [0.0, 1e-3, 1e-2])
+def test_waves_that_lift_off_and_touch_again(l_r):
+    profile = Waves(0.01, [2e-5], [5e-4 if l_r == 1e-2 else 1e-3], [math.pi])
+    held_against_a_grid(profile, l_r, 3e-4, profile.width(3e-4))
 
 
 @pytest.mark.parametrize(
@@ -218,13 +229,6 @@ def test_a_profile_of_a_named_shape_is_that_shape(shape, l_r):
             value = getattr(named, name)
             errors = (state.certificate.relative_error[name] for state in (named, general))
             assert abs(getattr(general, name) - value) <= sum(errors) * abs(value), name
-
-
-def test_a_weight_beyond_the_reach_is_an_error():
-    short = Profile(lambda x: x * x / 0.02, lambda x: x / 0.01, reach=1e-3)
-    assert at_load(short, 1e10, 0.1, 0.1, 300.0).load == pytest.approx(300.0, rel=1e-12)
-    with pytest.raises(QuadratureError, match="reach"):
-        at_load(short, 1e10, 0.1, 0.1, 1e4)
 
 
 @pytest.mark.parametrize("at_kink", ["left", "right", "mean", "lower", "nonsense", "nan", "error"])

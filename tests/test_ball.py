@@ -10,7 +10,7 @@ from scipy.optimize import brentq
 
 import kvtheory as kv
 from kvtheory.models.steady import ball
-from kvtheory.models.steady.equivalent_line import (
+from kvtheory.models.steady.footprint import (
     FRICTION_COEFFICIENT_ERROR,
     LOAD_ERROR,
     SHORTER,

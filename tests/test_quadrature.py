@@ -1,29 +1,33 @@
 import math
+from functools import partial
 
 import mpmath
 import numpy as np
 import pytest
-from scipy.integrate import quad
 
 import kvtheory as kv
-from kvtheory.models.steady.quadrature import at_depth, at_load
+from kvtheory.models.steady.methods import solve_quadrature
 from kvtheory.results import STEADY_UNITS
 from kvtheory.results.errors import QuadratureError
 from kvtheory.scene.indenters import Circle, Parabola, PowerLaw, Profile, Wedge
-from tests import reference
+from tests import reference, steady
 
+at_depth, at_load = (
+    partial(each, solve=solve_quadrature) for each in (steady.at_depth, steady.at_load)
+)
 K, TAU, DEPTH = 1e10, 0.1, 3e-4
-SCENES = 100
+SCENES = 60
 """Random scenes for each support."""
 
 
 def scenes(support, count, seed):
-    """Draw R, K, tau, V and the support, over 24 decades of drive number and 18 of everything else."""
+    """Draw R, K, tau, V and the support: rest, both ends, then 24 decades of drive number, 18 of the rest."""
     rng = np.random.default_rng(seed)
-    for _ in range(count):
+    for i in range(count):
         R, stiffness, weight = (10.0 ** rng.uniform(-9, 9, 3)).tolist()
         tau, number, kappa = (10.0 ** rng.uniform((-6, -12, -6), (6, 12, 6))).tolist()
-        V = rng.choice((-1.0, 1.0)).item() * number / tau * (R * weight / stiffness) ** (1 / 3)
+        number = {0: 0.0, 1: 1e-12, 2: 1e12}.get(i // 2, number)
+        V = (-1.0) ** i * number / tau * (R * weight / stiffness) ** (1 / 3)
         static = (9.0 * weight**2 / (32.0 * stiffness**2 * R)) ** (1 / 3)
         yield (R, stiffness, tau, V, *support(static, weight, kappa))
 
@@ -61,35 +65,14 @@ def test_parabola_agrees_with_the_rigorous_reference(support):
     assert max(stated.values()) < 1e-12
 
 
-@pytest.mark.parametrize("number", [1e-12, 1e12])
-@pytest.mark.parametrize("side", [-1.0, 1.0])
-def test_ends_of_the_range(number, side):
-    R, weight = 0.01, 9806.65
-    V = side * number / TAU * (R * weight / K) ** (1 / 3)
-    state, truth = at_load(Parabola(R), K, TAU, V, weight), reference.at_load(R, K, TAU, V, weight)
-    assert all(reference.relative_error(getattr(state, n), truth[n]) < 1e-12 for n in STEADY_UNITS)
-
-
 def test_reference_encloses_its_own_integrals():
-    for R, *rest in scenes(SUPPORTS["fixed"][2], 20, seed=7):
+    for R, *rest in list(scenes(SUPPORTS["fixed"][2], 22, seed=7))[2:]:  # without rest
         rest[2] = abs(rest[2])
         truth, (load, friction) = reference.at_depth(R, *rest), reference.integrals(R, *rest)
         assert load.overlaps(truth["load"])
         assert friction.overlaps(truth["friction_force"])
         assert load.rel_accuracy_bits() > 100
         assert friction.rel_accuracy_bits() > 100
-
-
-@pytest.mark.parametrize("V", [0.0, -0.0])
-@pytest.mark.parametrize("spring", [0.0, 3e7])
-def test_rest_is_the_symmetric_elastic_contact(V, spring):
-    state, truth = (
-        at_load(Parabola(0.01), K, TAU, V, 9806.65, spring),
-        reference.at_load(0.01, K, TAU, V, 9806.65, spring),
-    )
-    assert all(reference.relative_error(getattr(state, n), truth[n]) < 1e-14 for n in STEADY_UNITS)
-    assert state.friction_force == 0.0
-    assert state.leading_edge < 0.0
 
 
 @pytest.mark.parametrize("ratio", [1e-9, 0.2, 1.0 - 1e-9, 1.0, 1.0 + 1e-9, 5.0, 1e9])
@@ -139,22 +122,6 @@ def mp_parabola_like(height, slope, half_length, l_r, depth):
     }
 
 
-@pytest.mark.parametrize("n", [1.25, 1.5, 3.0, 8.0])
-@pytest.mark.parametrize("l_r", [1e-7, 1e-3, 1.0])
-def test_power_law(n, l_r):
-    L = 0.01
-    with mpmath.workdps(40):
-        length, exponent, depth = mpmath.mpf(L), mpmath.mpf(n), mpmath.mpf(DEPTH)
-        truth = mp_parabola_like(
-            lambda x: x**exponent / (exponent * length ** (exponent - 1)),
-            lambda x: (x / length) ** (exponent - 1),
-            (exponent * depth * length ** (exponent - 1)) ** (1 / exponent),
-            mpmath.mpf(l_r),
-            depth,
-        )
-        close(at_depth(PowerLaw(L, n), K, 1.0, l_r, DEPTH), truth)
-
-
 @pytest.mark.parametrize("fraction", [0.01, 0.5, 0.9])
 @pytest.mark.parametrize("l_r", [1e-6, 0.01, 10.0])
 def test_circle(fraction, l_r):
@@ -193,47 +160,6 @@ def test_a_nearly_vertical_circle_dissipates_what_it_says(l_r):
         close(state, {"dissipated_in_contact": truth}, rtol=1e-9)
 
 
-@pytest.mark.parametrize("q", [0.999, 0.5, 0.01])
-def test_circle_departs_from_the_parabola_with_the_square_of_the_half_length(q):
-    """To leading order in a/R, the circle is the parabola with x^4/(8 R^3) added to it."""
-    l = (1.0 - q * q) / (2.0 * q)
-    w = (1.0 + q) ** 2 * (q * q - 2.0 * q + 3.0) / (6.0 * q)
-    phi = (1.0 - q) * (1.0 + q) ** 2 * (q * q - q + 4.0) / (12.0 * q)
-    expected = {
-        "load": -((1.0 + q**5) / 20.0 + l * q**4 / 4.0) / w,
-        "friction_force": 0.15 * l * (1.0 + q**5) / phi,
-    }
-    slopes = np.array([0.04, 0.02, 0.01])
-    departures = {name: [] for name in expected}
-    for slope in slopes:
-        depth = 0.5 * slope**2  # R = 1
-        circle, parabola = (
-            at_depth(shape(1.0), K, 1.0, l * slope, depth) for shape in (Circle, Parabola)
-        )
-        for name, values in departures.items():
-            values.append(getattr(circle, name) / getattr(parabola, name) - 1.0)
-    for name, values in departures.items():
-        order, _ = np.polyfit(np.log(slopes), np.log(np.abs(values)), 1)
-        assert order == pytest.approx(2.0, abs=2e-3), name
-        assert values[-1] / slopes[-1] ** 2 == pytest.approx(expected[name], rel=1e-3), name
-
-
-@pytest.mark.parametrize("V", [0.0, 0.01, -3.0])
-def test_equal_shapes_have_equal_answers(V):
-    R = 0.01
-    states = [
-        at_load(shape, K, TAU, V, 9806.65, 3e7)
-        for shape in (
-            Parabola(R),
-            PowerLaw(R, 2.0),
-            Profile(lambda x: x * x / (2.0 * R), lambda x: x / R),
-        )
-    ]
-    for name in STEADY_UNITS:
-        values = [getattr(state, name) for state in states]
-        assert values == pytest.approx([values[0]] * 3, rel=2e-14), name
-
-
 def lopsided(sign):
     """A parabola with a cubic term: blunter on one side than on the other."""
     c = 40.0 * sign
@@ -256,19 +182,6 @@ def test_reversed_drive_is_the_mirror_image(V):
         assert mirrored.leading_edge == pytest.approx(-forward.trailing_edge, rel=1e-14)
     else:
         assert abs(other_way.friction_force / forward.friction_force + 1.0) > 1e-6
-
-
-def test_energy_identity_is_the_integral_of_the_friction():
-    for shape, V in ((Parabola(0.01), 0.1), (Circle(0.01), 0.02), (PowerLaw(0.01, 3.0), -0.3)):
-        state = at_depth(shape, K, TAU, V, DEPTH)
-
-        def drag(x, shape=shape, signed_length=V * TAU):
-            slope = shape.slope(x)
-            return -slope * K * (DEPTH - shape.height(x) - signed_length * slope)
-
-        edges = sorted((state.leading_edge, state.trailing_edge))
-        direct, _ = quad(drag, *edges, epsabs=0.0, epsrel=1e-12)
-        assert state.friction_force == pytest.approx(direct, rel=1e-11)
 
 
 def bent(declared):
@@ -358,6 +271,16 @@ FAILURES = {
         0.1,
         "contact lies beyond the indenter's reach",
     ),
+    "not zero at the origin": (
+        Profile(lambda x: plain(x) + 1e-5, lambda x: x / 0.01),
+        0.1,
+        "lowest point",
+    ),
+    "lower beside the origin": (
+        Profile(lambda x: plain(x - 1e-4) - plain(1e-4), lambda x: (x - 1e-4) / 0.01),
+        0.1,
+        "lowest point",
+    ),
     "circle too deep": (Circle(2e-4), 0.1, "beyond the indenter's reach"),
     "circle almost too deep": (Circle(DEPTH * (1.0 + 1e-9)), 0.1, "reach"),
 }
@@ -371,66 +294,11 @@ def test_failure_is_an_error_with_its_reason(name):
 
 
 def test_weight_that_the_reach_cannot_carry():
-    with pytest.raises(QuadratureError, match="beyond the indenter's reach"):
-        at_load(Circle(1e-3), K, TAU, 0.1, 1e6)
-
-
-@pytest.mark.parametrize(
-    ("changed", "name"),
-    [
-        ({"stiffness": 0.0}, "stiffness"),
-        ({"weight": -1.0}, "weight"),
-        ({"weight": math.nan}, "weight"),
-        ({"spring": -1.0}, "spring"),
-        ({"retardation_time": -1.0}, "retardation_time"),
-        ({"velocity": math.inf}, "velocity"),
-    ],
-)
-def test_bad_input_names_the_argument(changed, name):
-    scene = {"stiffness": K, "retardation_time": TAU, "velocity": 0.1, "weight": 9806.65}
-    with pytest.raises(ValueError, match=f"`{name}`"):
-        at_load(Parabola(0.01), **(scene | changed))
-
-
-def test_springs_join_the_two_limits():
-    soft, stiff = (at_load(Parabola(0.01), K, TAU, 0.1, 9806.65, k) for k in (1e-6, 1e24))
-    free, rest = (at_load(Parabola(0.01), K, TAU, V, 9806.65) for V in (0.1, 0.0))
-    assert soft.depth == pytest.approx(free.depth, rel=1e-12)
-    assert stiff.depth == pytest.approx(rest.depth, rel=1e-12)
-    assert stiff.load == pytest.approx(
-        at_depth(Parabola(0.01), K, TAU, 0.1, rest.depth).load, rel=1e-12
-    )
-
-
-@pytest.mark.parametrize(("position", "width"), [(-1e-3, 2e-5), (-7e-4, 1e-5)])
-def test_narrow_bumps_of_a_profile_are_seen(position, width):
-    """A bump of 1/200 and 1/400 of the contact, against a dense composite rule."""
-    R, A, depth, l_r, K = 0.01, 1e-6, 3e-4, 1e-3, 1e10
-
-    def bump(x):
-        return A * math.exp(-(((x - position) / width) ** 2))
-
-    profile = Profile(
-        lambda x: x * x / (2 * R) + bump(x) - bump(0.0),
-        lambda x: x / R - 2 * (x - position) / width**2 * bump(x),
-    )
-    state = at_depth(profile, K, 0.1, l_r / 0.1, depth)
-    x = np.linspace(state.leading_edge, state.trailing_edge, 400001)
-    slope = x / R - 2 * (x - position) / width**2 * A * np.exp(-(((x - position) / width) ** 2))
-    height = x * x / (2 * R) + A * np.exp(-(((x - position) / width) ** 2)) - bump(0.0)
-    p = K * (depth - height - l_r * slope)
-    assert state.load == pytest.approx(np.trapezoid(p, x), rel=1e-8)
-    assert state.friction_force == pytest.approx(np.trapezoid(-slope * p, x), rel=1e-7)
-    assert state.peak_pressure == pytest.approx(p.max(), rel=1e-6)
-
-
-def test_a_profile_has_its_lowest_point_at_the_origin():
-    for height, slope in (
-        (lambda x: x * x / 0.02 + 1e-5, lambda x: x / 0.01),
-        (lambda x: (x - 1e-4) ** 2 / 0.02 - 1e-8 / 0.02, lambda x: (x - 1e-4) / 0.01),
-    ):
-        with pytest.raises(QuadratureError, match="lowest point"):
-            at_depth(Profile(height, slope), 1e10, 0.1, 0.01, 3e-4)
+    short = Profile(plain, lambda x: x / 0.01, reach=1e-3)
+    assert at_load(short, K, TAU, 0.1, 300.0).load == pytest.approx(300.0, rel=1e-12)
+    for shape in (Circle(1e-3), short):
+        with pytest.raises(QuadratureError, match="beyond the indenter's reach"):
+            at_load(shape, K, TAU, 0.1, 1e6)
 
 
 SHAPES = [
@@ -477,38 +345,12 @@ def test_the_depth_under_a_load_carries_it(shape, side):
 
 
 @pytest.mark.processor
-@pytest.mark.parametrize("shape", SHAPES, ids=NAMED)
-def test_a_column_of_scenes_is_as_good_as_each_scene(shape):
-    V = np.array([0.0, -0.0, 1e-9, -3e-3, 0.02, 0.1, -7.0, 1e6])[:, None]
-    one = np.ones_like(V)
-    weight = one * np.geomspace(1.0, 1e4, V.size)[:, None]
-    column = at_load(shape, K * one, TAU * one, V, weight, 3e7 * one)
-    for i in range(V.size):
-        single = at_load(shape, K, TAU, V[i, 0].item(), weight[i, 0].item(), 3e7)
-        for name in STEADY_UNITS:
-            value = getattr(single, name)
-            allowed = single.certificate.relative_error[name]
-            assert isinstance(value, float), name
-            same = getattr(column, name)[i, 0] == value
-            assert same or abs(getattr(column, name)[i, 0] - value) <= allowed * abs(value), name
-
-
-def ratio_of(n, ratio):
-    """Solve (1 - q^n)/(n q^(n-1)) = l_r/a for q, by halves of its logarithm."""
-    low, high = -400 / (n - 1), mpmath.mpf(0)
-    for _ in range(260):
-        t = (low + high) / 2
-        falls = 1 - mpmath.exp(n * t) < n * ratio * mpmath.exp((n - 1) * t)
-        low, high = (low, t) if falls else (t, high)
-    return mpmath.exp(low)
-
-
-@pytest.mark.processor
 @pytest.mark.parametrize("shape", [*SHAPES, PowerLaw(0.01, 1.5), PowerLaw(0.01, 3.0)], ids=str)
 def test_no_scene_depends_on_those_beside_it(shape):
-    """For exponents 1.5 and 3 the slope is a root and a square."""
+    """Alone as a float it is as good; for exponents 1.5 and 3 the slope is a root and a square."""
     rng = np.random.default_rng(1)
     V, mass = 10.0 ** rng.uniform(-6, 0, 60), 10.0 ** rng.uniform(-1, 2, 60)
+    V[:3] = 0.0, -0.0, -0.02
     scene = kv.Scene(shape, kv.Foundation(K, TAU), kv.Suspended(mass=1.0, stiffness=3e7))
 
     def solved(part):
@@ -522,48 +364,12 @@ def test_no_scene_depends_on_those_beside_it(shape):
             cut = solved(part)
             for name in STEADY_UNITS:
                 assert np.array_equal(getattr(cut, name), getattr(whole, name)[part]), name
-
-
-POWERS = [1.0, 1.1, 1.5, 2.0, 4.0, 12.0]
-
-
-@pytest.mark.processor
-@pytest.mark.parametrize("n", POWERS)
-def test_power_laws_agree_with_their_closed_form(n):
-    """Fact F19, h = c |x|^n with q = x_TE/a, over ten decades of drive number on either side."""
-    rng = np.random.default_rng(int(100 * n))
-    for _ in range(40):
-        L, depth, l = 10.0 ** rng.uniform((-6, -6, -10), (3, 0, 10))
-        depth *= L
-        with mpmath.workdps(60):
-            m, d, scale = mpmath.mpf(n), mpmath.mpf(float(depth)), mpmath.mpf(float(L))
-            a = (m * d * scale ** (m - 1)) ** (1 / m)
-            l_r = float(l) * float(a)
-            ratio = mpmath.mpf(l_r) / a
-            if n == 1.0:
-                q = max(1 - ratio, mpmath.mpf(0))
-                w = 1 + ratio**2 / 2 if q else mpmath.mpf(1) / 2 + ratio
-                f = 2 * ratio - ratio**2 / 2 if q else mpmath.mpf(1) / 2 + ratio
-            else:
-                q = ratio_of(m, ratio)
-                rest = 1 - q**m
-                w = m / (m + 1) + q - q ** (m + 1) / (m + 1) + rest**2 / (m * q ** (m - 1))
-                f = rest**2 / 2
-                f += m * rest * (1 + q ** (2 * m - 1)) / ((2 * m - 1) * q ** (m - 1))
-            truth = {
-                "half_length": a,
-                "leading_edge": -a,
-                "trailing_edge": a * q,
-                "load": K * d * a * w,
-                "friction_force": K * d * d * f,
-                "friction_coefficient": d * f / (a * w),
-            }
-            state = at_depth(PowerLaw(float(L), n), K, 1.0, l_r, float(depth))
-            for name, value in truth.items():
-                error = abs(getattr(state, name) - value)
-                allowed = state.certificate.relative_error[name]
-                assert error <= allowed * abs(value), (name, l)
-                assert allowed < 1e-12, (name, l)
+    for i in range(8):
+        single = solved(i)
+        for name, allowed in single.certificate.relative_error.items():
+            value, same = getattr(single, name), getattr(whole, name)[i]
+            assert isinstance(value, float), name
+            assert same == value or abs(same - value) <= allowed * abs(value), name
 
 
 def test_one_scene_of_a_column_that_fails_fails_all():

@@ -112,7 +112,7 @@ def _print_problem(name: str, *, bare: bool) -> None:
 def _tell_line(scene: "Scene") -> None:
     """Print the line contact equivalent to a ball, and its error."""
     from kvtheory.api import steady
-    from kvtheory.models.steady.equivalent_line import (
+    from kvtheory.models.steady.footprint import (
         FRICTION_COEFFICIENT_ERROR,
         LOAD_ERROR,
         equivalent_line,

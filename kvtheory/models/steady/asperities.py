@@ -20,6 +20,7 @@ every load is carried at exactly one depth.
 import itertools
 import math
 from collections.abc import Callable
+from functools import cached_property
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -34,7 +35,12 @@ from kvtheory.models.steady.cells import (
     WEIGHTS,
     Surface,
 )
-from kvtheory.models.steady.contact import ROUNDING, SMALLEST
+from kvtheory.models.steady.double_exponential import (
+    ROUNDING,
+    SMALLEST,
+    Quantities,
+    share_lost,
+)
 from kvtheory.results.errors import QuadratureError
 from kvtheory.scene.indenters import beside
 
@@ -43,8 +49,6 @@ PEAK_BAND = 0.02
 PEAK_XTOL = 1e-8
 """Tolerance of the position of the peak, over the distance of two samples; the error of its value is of
 second order."""
-MOST_STEPS = 100
-"""Trial depths; they are a handful unless a contact begins at the very depth that is sought."""
 CORNER = 1e-10, 1e-290
 """Distances from a corner, over the length of the contact, between which the slope hardly changes ..."""
 AT_CORNER = 1e-9
@@ -55,12 +59,6 @@ which both agree unless the pressure jumps."""
 ONE_SIDED = 1e3
 """Difference of series and function at a kink, over the last coefficients, that even a singular slope does
 not exceed: beyond it, the function gives the slope of the other side."""
-SETTLED = 1e-9
-"""Last step of the depth, over the depth; the one after it is much smaller."""
-DEEPER = 8.0
-"""A depth without a solution is divided by this, if none is known to be too shallow."""
-SHALLOWEST = 1e-12
-"""Share of the first trial depth below which the search ends."""
 DEPTH_STEP = 2.0**-20
 """Relative step of the depth for derivatives, which are needed to a digit or two."""
 ROOT_RTOL = 4.0 * float(np.finfo(float).eps)
@@ -78,6 +76,10 @@ class Patch(NamedTuple):
 
 class Contact:
     """All contacts at one depth; forces are over the stiffness."""
+
+    load_curvature = None
+    """Not known: the load is not smooth where another contact begins."""
+    guess = ()
 
     def __init__(self, surface: Surface, l_r: float, depth: float) -> None:
         self.surface, self.l_r, self.depth = surface, l_r, depth
@@ -204,8 +206,14 @@ class Contact:
             error += (end - start) * tail[i] * power * math.sqrt(abs(mean)) ** (power - 1)
         return value, error
 
+    @cached_property
+    def half_length(self) -> float:
+        """Half the length of all contacts at rest."""
+        rest = self.patches_at(0.0)
+        return 0.5 * (rest[-1].x_te - rest[0].x_le)
+
     @property
-    def lost(self) -> float:
+    def edge_error(self) -> float:
         """Relative error of a trailing edge at the lowest point: all of it, unless that is a corner."""
         if abs(self.patches[-1].x_te) >= SMALLEST:
             return 0.0
@@ -279,83 +287,75 @@ def _root(function: Callable[[float], float], low: float, high: float, ends: Any
     return float(found)
 
 
-def at_depth(surface: Surface, l_r: float, depth: float) -> Contact:
-    """Return the contacts at a depth."""
-    return Contact(surface, l_r, depth)
+class AnyLine:
+    """A shape of any kind on Kelvin-Voigt; it may touch in several places."""
 
+    in_columns, floor, deepest = False, ROUNDING, math.inf
 
-def at_load(surface: Surface, l_r: float, load: float, spring: float) -> Contact:
-    """Return the contacts where W/K + spring * depth is the load.
+    def __init__(self, surface: Surface, l_r: float) -> None:
+        self.surface, self.l_r = surface, l_r
 
-    Newton's method in logarithms, kept between the depths that carry too little and too much.
-    """
-    x = surface.first(lambda x, height: height * (x + l_r + spring) >= load)
-    depth = start = min(surface.height(-x), surface.height(x)) or load / x
-    low, high = 0.0, math.inf
-    failure = QuadratureError("no depth was found that carries the weight")
-    for _ in range(MOST_STEPS):
-        try:
-            contact = Contact(surface, l_r, depth)
-        except QuadratureError as error:  # perhaps only because this is too deep
-            failure, high, step = error, depth, math.inf
-            if high < SHALLOWEST * start:
-                break
-        else:
-            total = contact.load + spring * depth
-            low, high = (depth, high) if total < load else (low, depth)
-            step = depth * (load / total) ** (total / (depth * (contact.load_slope + spring)))
-            if abs(step / depth - 1.0) < SETTLED:
-                return Contact(surface, l_r, step)
-        depth = step if low < step < high else math.sqrt(low * high) or high / DEEPER
-    raise failure
+    def at_rest(self) -> "AnyLine":
+        """Return the same at zero velocity."""
+        return AnyLine(self.surface, 0.0)
 
+    @property
+    def reach(self) -> float:
+        """How far the shape has been examined."""
+        return self.surface.examined
 
-def quantities(surface: Surface, l_r: float, contact: Contact) -> dict[str, tuple[float, ...]]:
-    """Return each quantity over the stiffness, its relative error at this depth, and d ln/d ln delta.
+    def strips(self, strip: Any) -> "AnyLine":
+        """Return the line contact of one strip."""
+        return AnyLine(Surface(strip, 1.0, strip.nearest), self.l_r)
 
-    The edges are those of all contacts together; the half length is that of all contacts at rest.
-    """
-    values, errors = integrals_of(contact)
-    shallower = Contact(surface, l_r, contact.depth * (1.0 - DEPTH_STEP))
-    nearby, _ = integrals_of(shallower)
-    values["peak_pressure"], nearby["peak_pressure"] = contact.peak(), shallower.peak()
-    return {
-        name: (
-            value,
-            errors.get(name, 0.0),
-            (1.0 - nearby[name] / value) / DEPTH_STEP if value else 0.0,
-        )
-        for name, value in values.items()
-    }
+    def shallow(self, load: float, width: Callable[[float], float]) -> float:
+        """Return a depth that, times a width which depends on its half length, is about the load."""
+        return self.surface.shallow(load, width)
 
+    def first(self, load: float, spring: float) -> tuple[float, tuple[()]]:
+        """Return about the depth at a load."""
+        return self.shallow(load, lambda x: x + self.l_r + spring), ()
 
-def integrals_of(contact: Contact) -> tuple[dict[str, float], dict[str, float]]:
-    """Return each quantity but the peak over the stiffness, and the errors of those that are integrals."""
-    l_r, patches = contact.l_r, contact.patches
-    drag = drag_error = left = 0.0
-    for patch in patches:
-        value, error = contact.integral(patch, contact.surface.slope, 2)
-        drag, drag_error = drag + value, drag_error + error
-        left += 0.5 * (patch.u_te**2 - patch.u_le**2)
-    friction = left + l_r * drag
-    rest = contact.patches_at(0.0)
-    values = {
-        "depth": contact.depth,
-        "half_length": 0.5 * (rest[-1].x_te - rest[0].x_le),
-        "retardation_length": l_r,
-        "leading_edge": patches[0].x_le,
-        "trailing_edge": patches[-1].x_te,
-        "load": contact.load,
-        "friction_force": friction,
-        "friction_coefficient": friction / contact.load,
-        "dissipated_in_contact": l_r * drag / friction if friction else 1.0,
-    }
-    own = drag_error / drag
-    errors = {
-        "trailing_edge": contact.lost,
-        "load": contact.load_error,
-        "friction_force": own,
-        "friction_coefficient": own + contact.load_error,
-        "dissipated_in_contact": own,
-    }
-    return values, errors
+    def at(self, depth: float, guess: tuple[()] = ()) -> Contact:
+        """Return the contacts at a depth."""
+        return Contact(self.surface, self.l_r, depth)
+
+    def friction(self, contact: Contact) -> tuple[float, float, float]:
+        """Return the friction over K, the part of it lost in the contact, and the relative error."""
+        drag = drag_error = left = 0.0
+        for patch in contact.patches:
+            value, error = contact.integral(patch, self.surface.slope, 2)
+            drag, drag_error = drag + value, drag_error + error
+            left += 0.5 * (patch.u_te**2 - patch.u_le**2)
+        return left + self.l_r * drag, self.l_r * drag, drag_error / drag
+
+    def quantities(self, contact: Contact) -> Quantities:
+        """Return quantities over the stiffness, their errors at this depth, and d ln/d ln delta.
+
+        The edges are those of all contacts together.
+        """
+        values, own = self._values(contact)
+        nearby, _ = self._values(self.at(contact.depth * (1.0 - DEPTH_STEP)))
+        powers = {
+            name: (1.0 - nearby[name] / value) / DEPTH_STEP if value else 0.0
+            for name, value in values.items()
+        }
+        return values, own, powers
+
+    def _values(self, contact: Contact) -> tuple[dict[str, float], dict[str, float]]:
+        friction, lost, error = self.friction(contact)
+        values = {
+            "half_length": contact.half_length,
+            "leading_edge": contact.patches[0].x_le,
+            "trailing_edge": contact.patches[-1].x_te,
+            "load": contact.load,
+            "friction_force": friction,
+            "peak_pressure": contact.peak(),
+            "dissipated_in_contact": share_lost(friction, lost),
+        }
+        own = {
+            "trailing_edge": contact.edge_error,
+            "load": contact.load_error,
+            "friction_force": error,
+        }
+        return values, own

@@ -2,7 +2,6 @@
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -15,24 +14,30 @@ BLOCK = 16384
 """Scenes treated at a time: the intermediate arrays of a block stay in the processor's cache."""
 
 QUANTITIES = tuple(STEADY_UNITS)
+SMALLEST = float(np.finfo(float).tiny)
 ZERO_AT_REST = ("retardation_length", "friction_force", "friction_coefficient")
 
 Array = NDArray[np.float64]
 
 
+Formula = Callable[[Scene], Sequence[Any]]
+
+
 def evaluate(
-    formula: Callable[[Scene], Sequence[Any]],
+    formula: Formula,
     scene: Scene,
     certificate: Certificate,
     own_errors: tuple[str, ...] = (),
     *,
     floats: bool = False,
+    model: str = "exact",
+    block: int | None = None,
 ) -> SteadyState:
     """Return the steady state that `formula` gives for a scene, or for each of its arrays.
 
     The formula returns the quantities in the order of `STEADY_UNITS` and then the relative errors
     of those in `own_errors`, which replace what the certificate says of them. With `floats` it takes
-    floats as well as arrays.
+    floats as well as arrays, which hold at most `block` scenes.
 
     Raises
     ------
@@ -43,20 +48,22 @@ def evaluate(
     shape = scene.shape
     with np.errstate(over="raise", divide="raise", invalid="raise", under="ignore"):
         if shape:
-            flat = _arrays(formula, scene.flat(), own_errors)
+            flat = _arrays(formula, scene.flat(), own_errors, block or BLOCK)
             rows: list[Any] = [row.reshape(shape) for row in flat]
         elif floats:
             rows = [float(each) for each in formula(scene)]
         else:
             one = scene.at(np.array([scene.drive.final_velocity]))
             rows = [float(np.ravel(each)[0]) for each in formula(one)]
-    if not shape:
-        _check_range(rows, scene.drive.final_velocity, own_errors)
-    quantities: dict[str, Any] = dict(zip(QUANTITIES, rows, strict=False))
+    values = rows[: len(QUANTITIES)]
+    if shape or not all(SMALLEST <= abs(each) < math.inf for each in values):
+        _check_range(np.array(values), scene.drive.final_velocity, own_errors)
     own = dict(zip(own_errors, rows[len(QUANTITIES) :], strict=True))
-    certificate = replace(certificate, relative_error={**certificate.relative_error, **own})
+    errors = {**certificate.relative_error, **own}  # not shared between results
+    certificate = Certificate(certificate.kind, certificate.statement, errors)
     units = units_for(scene.indenter, STEADY_UNITS)
-    return SteadyState(**quantities, model="exact", certificate=certificate, units=units)
+    named: dict[str, Any] = dict(zip(QUANTITIES, values, strict=True))
+    return SteadyState(**named, model=model, certificate=certificate, units=units)
 
 
 def converge(
@@ -87,35 +94,29 @@ def cube_root(value: Array) -> Array:
     return root - (root - value / (root * root)) / 3.0
 
 
-def _arrays(formula: Any, flat: Scene, own_errors: tuple[str, ...]) -> Array:
+def _arrays(formula: Formula, flat: Scene, own_errors: tuple[str, ...], block: int) -> Array:
     """Return what the formula gives for flat scenes, block by block."""
     (size,) = flat.shape
     result = np.empty((len(QUANTITIES) + len(own_errors), size))
-    for start in range(0, size, BLOCK):
-        part = slice(start, start + BLOCK)
+    for start in range(0, size, block):
+        part = slice(start, start + block)
         for row, found in zip(result, formula(flat.rows(part)), strict=True):
             row[part] = found
-    _check_underflow(result[: len(QUANTITIES)], flat.drive.final_velocity, own_errors)
     return result
 
 
-def _check_range(values: Sequence[float], velocity: float, own_errors: tuple[str, ...]) -> None:
-    """Raise if a value is not finite, or lost digits below the smallest normal number."""
-    for name, value in zip(QUANTITIES, values, strict=False):
-        if not math.isfinite(value):
-            raise FloatingPointError(f"overflow in {name}")
-        small = abs(value) < SMALLEST and name not in own_errors
-        if small and (name not in ZERO_AT_REST or velocity != 0.0):
-            raise FloatingPointError(f"underflow in {name}")
+def _check_range(values: Array, velocity: Any, own_errors: tuple[str, ...]) -> None:
+    """Raise if a value is not finite, or lost digits below the smallest normal number.
 
-
-SMALLEST = float(np.finfo(float).tiny)
-
-
-def _check_underflow(result: Array, velocity: Any, own_errors: tuple[str, ...]) -> None:
-    """Raise if digits were lost below the smallest normal number; zero is correct only at rest."""
-    lost = np.abs(result) < SMALLEST
+    Zero is correct only at rest, or where the value's own error covers it.
+    """
+    size = np.abs(values)
+    if not size.size or (size.min() >= SMALLEST and size.max() < math.inf):
+        return
+    lost = size < SMALLEST
     lost[[QUANTITIES.index(name) for name in ZERO_AT_REST]] &= velocity != 0.0
     lost[[QUANTITIES.index(name) for name in own_errors]] = False
-    if lost.any():
-        raise FloatingPointError(f"underflow in {QUANTITIES[int(lost.any(axis=1).argmax())]}")
+    for wrong, what in ((~np.isfinite(values), "overflow"), (lost, "underflow")):
+        if wrong.any():
+            row = wrong.reshape(len(values), -1).any(axis=1).argmax()
+            raise FloatingPointError(f"{what} in {QUANTITIES[int(row)]}")

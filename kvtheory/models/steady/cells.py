@@ -129,11 +129,24 @@ class Surface:
             x *= 2.0
         return x if x < last else self.end
 
+    def shallow(self, load: float, width: Callable[[float], float]) -> float:
+        """Return a depth that, times a width which depends on the half length, is about the load."""
+        x = self.first(lambda x, height: height * width(x) >= load)
+        near, far = (max(self.height(-y), self.height(y)) * width(y) for y in (0.5 * x, x))
+        if 0.0 < near < load <= far < math.inf:
+            x *= (load / far) ** (1.0 / math.log2(far / near))  # exact for a power
+        return min(self.height(-x), self.height(x)) or load / x
+
     def cells(self, depth: float) -> Cells:
         """Return the cells in which h may be below a depth; they serve for others near it."""
         if self._cells is None or not self._cells[0] / AHEAD**2 <= depth <= self._cells[0]:
             self._cells = AHEAD * depth, self._resolved(AHEAD * depth)
         return self._cells[1]
+
+    @property
+    def examined(self) -> float:
+        """Where the last cell ends."""
+        return float(self._cells[1].end.max()) if self._cells else self.end
 
     def _grid(self, depth: float) -> Any:
         """Return intervals out to the reach, narrow where the contact is, cut at the kinks."""

@@ -13,6 +13,9 @@ One contact: e^(x/l_r) u rises where p > 0, for its derivative is e^(x/l_r) p/(K
 that is left behind relaxes as e^(-x/l_r), and is met again only where e^(x/l_r) u exceeds its running
 maximum. As h is convex, log u + x/l_r is concave: there is one maximum, the trailing edge.
 
+The pressure vanishes at a root of the trailing edge, and the leading edge moves by d(-x_LE) = d(delta)/|h'|
+with p_LE = K l_r |h'|; hence dW/d(delta) = K (x_TE - x_LE + l_r) and dF/d(delta) = K u_TE + p_LE.
+
 Roots are found by Newton's method for ln h as a function of ln x, which is exact for a power. For powers and
 for the circle, ln(h + l_r h') is convex in ln x, so that the steps converge to the root from above.
 All operations work for floats and for columns, of shape (n, 1).
@@ -20,11 +23,14 @@ All operations work for floats and for columns, of shape (n, 1).
 
 import math
 from collections.abc import Callable
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from kvtheory.models.steady.double_exponential import (
+    ROUNDING,
+    SMALLEST,
+    Quantities,
     Value,
     integral,
     largest,
@@ -36,15 +42,12 @@ from kvtheory.results.errors import QuadratureError
 from kvtheory.scene.indenters import Convex
 
 EPS = float(np.finfo(float).eps)
-SMALLEST = float(np.finfo(float).tiny)
-ULPS = 8.0 * EPS
-"""The least relative step of x, and of the depth."""
 LINEAR = 1e-8
 """Newton's method squares an error: after a step of this size the error is below rounding."""
-CUBIC = 1e-5
-"""The same for the depth, whose steps converge cubically."""
-STRIDES = tuple(4.0 ** (2**power) for power in range(6, -1, -1))
+STRIDES = tuple(4.0 ** (2.0**power) for power in range(6, -9, -1))
 """Factors by which a half length far too short is widened at first, as long as it stays too short."""
+COARSE = 7
+"""How many of them are enough for a scene whose first depth is refined by `CLOSER`."""
 CLOSER = 3
 """Newton steps on the load of a parabola as blunt as the shape, for the first depth."""
 NEAR_REACH = 0.5
@@ -61,10 +64,6 @@ PEAK_STEPS = 8
 """Secant steps towards the peak: one for a power, more for a circle."""
 TINY = 1e-300
 """Added to a divisor that may vanish together with its dividend."""
-
-
-ROUNDING = 5e-15
-"""Relative rounding of an edge or of a formula, the shape function included."""
 
 
 class Contact(NamedTuple):
@@ -88,101 +87,170 @@ class Contact(NamedTuple):
     """d(W/K)/d(delta)."""
 
     @property
+    def half_length(self) -> Value:
+        """Half the length of the contact at rest."""
+        return self.a
+
+    @property
+    def load_curvature(self) -> Value:
+        """d^2(W/K)/d(delta)^2."""
+        return self.a_moves + self.x_moves
+
+    @property
+    def guess(self) -> tuple[Value, ...]:
+        """Edges from which those at another depth are found."""
+        return self.a, self.x
+
+    @property
     def noise(self) -> Value:
         """Relative error of the depth equivalent to rounding: of x_LE, and of u."""
         return ROUNDING * (1.0 + self.a / (self.a_moves * self.depth))
 
 
-def at_depth(shape: Convex, l_r: Value, depth: Value) -> Contact:
-    """Return the contact at a depth."""
-    a = _start(shape, depth)
-    return _at_depth(shape, l_r, depth, a, a)
+class ConvexLine:
+    """A convex, even shape on Kelvin-Voigt: one scene or a column of them."""
+
+    in_columns = True
+    """Many depths are solved at once."""
+    floor = ROUNDING
+    """Relative error of every quantity by rounding."""
+
+    def __init__(self, shape: Any, l_r: Value) -> None:
+        self.shape, self.l_r, self.reach = shape, l_r, shape.reach
+
+    def at_rest(self) -> "ConvexLine":
+        """Return the same at zero velocity."""
+        return ConvexLine(self.shape, 0.0 * self.l_r)
+
+    def strips(self, strip: Any) -> "ConvexLine":
+        """Return the line contacts of strips, in a column."""
+        return ConvexLine(strip, np.full(strip.y.shape, self.l_r))
+
+    @property
+    def deepest(self) -> Value:
+        """The depth at which the contact is as wide as the reach."""
+        reach = self.reach
+        return math.inf if reach is math.inf else self.shape.height(reach * (1.0 - EPS))
+
+    def shallow(self, load: Value, width: Callable[[float], float]) -> Value:
+        """Return a depth that, times a width which depends on its half length, is about the load."""
+        return self.shape.height(_spaced(self.shape, load**0.5, load, width, STRIDES))
+
+    def first(self, load: Value, spring: Value) -> tuple[Value, tuple[Value, ...]]:
+        """Return about the depth at a load, and its edges: of a parabola as blunt as the shape."""
+        shape, l_r = self.shape, self.l_r
+        extra = l_r + spring
+        a = _spaced(shape, load**0.5, load, lambda x: x + extra)
+        for _ in range(CLOSER):
+            depth, slope = shape.height(a), shape.slope(a)
+            beyond = l_r + abs(a + 1j * l_r)
+            x = a * (a / beyond)
+            width = (a + x + l_r + l_r * (l_r / beyond)) / 1.5 + spring
+            power = a * slope * (a + x + extra) / (depth * width)
+            a = _within(shape, a, (load / (depth * width)) ** (1.0 / power))
+        return shape.height(a), (a, x)
+
+    def at(self, depth: Value, guess: tuple[Value, ...] = ()) -> Contact:
+        """Return the contact at a depth, from guesses of its edges."""
+        start, x = guess or (_start(self.shape, depth, self.deepest),) * 2
+        shape, l_r = self.shape, self.l_r
+        a, a_moves = _half_length(shape, depth, start)
+        rolls = (l_r * shape.slope(VERTEX * a) < depth) * 1.0
+        x, x_moves = _trailing(shape, l_r * rolls, depth, a, x * (a / start))
+        below, error = integral(shape.height, (a, x), (a, rolls * x), not shape.kinks)
+        # Where p = 0, u_TE = l_r h', which does not cancel for a small l_r.
+        u_te = l_r * rolls * shape.slope(x) + (1.0 - rolls) * depth
+        length = a + rolls * x
+        load = depth * length - below + l_r * u_te
+        error = error * below / load
+        return Contact(
+            depth, a, x, a_moves, rolls * x_moves, rolls, u_te, load, error, length + l_r
+        )  # fmt: skip
+
+    def friction(self, contact: Contact) -> tuple[Value, Value, Value]:
+        """Return the friction over K, the part of it lost in the contact, and the relative error."""
+        drag, error, left = self._drag(contact)
+        return self.l_r * (drag + 0.5 * contact.u_te * left), self.l_r * drag, error
+
+    def _drag(self, contact: Contact) -> tuple[Value, Value, Value]:
+        """Return int h'^2 dx with its relative error, and u_TE/l_r."""
+        shape, rolls, a, x = self.shape, contact.rolls, contact.a, contact.x
+        drag, error = integral(
+            lambda x: shape.slope(x) ** 2, (a, x), (a, rolls * x), not shape.kinks
+        )
+        left = rolls * shape.slope(x) + (1.0 - rolls) * contact.depth / (self.l_r + rolls)
+        return drag, error, left
+
+    def quantities(self, contact: Contact) -> Quantities:
+        """Return quantities over the stiffness, their errors at this depth, and d ln/d ln delta.
+
+        The friction is l_r times the sum of int h'^2 dx and of u_TE^2/(2 l_r).
+        """
+        shape, l_r = self.shape, self.l_r
+        depth, a, x, a_moves, x_moves, rolls, u_te, load, load_error, load_slope = contact
+        drag, drag_error, left = self._drag(contact)
+        at_a, at_x = shape.slope(a), shape.slope(x)
+        total = drag + 0.5 * u_te * left
+        # Both edges are rounded independently: what they contribute to the share of the drag does not cancel.
+        by_a = at_a * (0.5 * u_te * left / drag)
+        by_x = left - at_x * at_x * x_moves * (total / drag)
+        peak = _peak(shape, l_r, contact)
+        edge = depth * a_moves / a
+        # Zero is the trailing edge at a corner; of a rounded tip it says that the edge is too close to tell.
+        lost = pick((rolls * x < SMALLEST) & (shape.bend(x) != 0.0), math.inf, 0.0)
+        values = {
+            "half_length": a,
+            "leading_edge": -a,
+            "trailing_edge": rolls * x,
+            "load": load,
+            "friction_force": l_r * total,
+            "peak_pressure": peak,
+            "dissipated_in_contact": drag / total,
+        }
+        own = {"trailing_edge": lost, "load": load_error, "friction_force": drag_error}
+        powers = {
+            "half_length": edge,
+            "leading_edge": edge,
+            "trailing_edge": depth * x_moves / x,
+            "load": depth * load_slope / load,
+            "friction_force": depth * (left + at_a) / total,
+            "peak_pressure": depth / peak * -least(-1.0 + 0.0 * l_r, -l_r * shape.bend(a) / a),
+            "dissipated_in_contact": depth * (by_a + abs(by_x)) / total,
+        }
+        return values, own, powers
 
 
 def half_length(shape: Convex, depth: Value) -> Value:
     """Return a > 0 with h(a) = depth."""
-    return _half_length(shape, depth, _start(shape, depth))[0]
+    return _half_length(shape, depth, _start(shape, depth, ConvexLine(shape, 0.0).deepest))[0]
 
 
-def _start(shape: Convex, depth: Value) -> Value:
+def _start(shape: Convex, depth: Value, deepest: Value) -> Value:
     """Return where the search for the half length of a contact at a depth begins."""
-    if not largest(depth - _deepest(shape)) < 0.0:
+    if not largest(depth - deepest) < 0.0:
         raise QuadratureError("the leading edge lies beyond the indenter's reach")
-    return _first(shape, depth, depth, lambda x: 1.0)
+    return _spaced(shape, depth, depth, lambda x: 1.0)
 
 
-def at_load(shape: Convex, l_r: Value, load: Value, spring: Value) -> Contact:
-    """Return the contact where W/K + spring * depth is the load.
-
-    d ln W/d ln delta lies between 1 and 2: above, because W is convex in delta; below, because u is
-    concave, so that W/K is at least half of delta d(W/K)/d(delta). Newton's method in logarithms
-    therefore converges from any start; the second derivative of W makes it cubic (Chebyshev).
-    """
-    deepest, extra = _deepest(shape), l_r + spring
-    a = _first(shape, load**0.5, load, lambda x: x + extra)
-    for _ in range(CLOSER):
-        depth, slope = shape.height(a), shape.slope(a)
-        beyond = l_r + abs(a + 1j * l_r)
-        x = a * (a / beyond)
-        width = (a + x + l_r + l_r * (l_r / beyond)) / 1.5 + spring
-        power = a * slope * (a + x + extra) / (depth * width)
-        a = _within(shape, a, (load / (depth * width)) ** (1.0 / power))
-    depth = shape.height(a)
-    active, step = load > 0.0, math.inf
-    for _ in range(MOST_STEPS):
-        contact = _at_depth(shape, l_r, depth, a, x)
-        total, slope = contact.load + spring * depth, contact.load_slope + spring
-        power = depth * slope / total
-        bend = 1.0 - power + depth * (contact.a_moves + contact.x_moves) / slope
-        missing = (load - total) / (0.5 * (load + total))  # nearly the logarithm of the quotient
-        share = 1.0 - 0.5 * missing / (1.0 + missing * missing) * bend / power
-        factor = (load / total) ** (share / power)
-        step, last = abs(factor - 1.0), step
-        active = active & (last >= CUBIC) & (step >= ULPS)
-        if not some(active):
-            return contact  # converged values were evaluated again from the same guesses
-        depth = pick(active, least(depth * factor, 0.5 * (depth + deepest)), depth)
-        a, x = pick(active, contact.a, a), pick(active, contact.x, x)
-    raise QuadratureError(
-        "no depth was found that carries the weight: it lies beyond the indenter's reach"
-    )
-
-
-def _deepest(shape: Convex) -> Value:
-    """Return the depth at which the contact is as wide as the reach."""
-    return math.inf if shape.reach is math.inf else shape.height(shape.reach * (1.0 - EPS))
-
-
-def _first(shape: Convex, scale: Value, wanted: Value, width: Callable[[Value], Value]) -> Value:
+def _spaced(
+    shape: Convex,
+    scale: Value,
+    wanted: Value,
+    width: Callable[[Value], Value],
+    strides: tuple[float, ...] = STRIDES[:COARSE],
+) -> Value:
     """Return the first of spaced points x where h times a width is as wanted, or the last."""
     most = NEAR_REACH * shape.reach
-    x = least(scale / STRIDES[0], most)
-    for stride in STRIDES:
+    x = least(scale / strides[0], most)
+    for stride in strides:
         wider = least(x * stride, most)
         x = pick(shape.height(wider) * width(wider) < wanted, wider, x)
-    return least(x * STRIDES[-1], most)
+    return least(x * strides[-1], most)
 
 
 def _within(shape: Convex, a: Value, factor: Value) -> Value:
     """Return a half length times a factor, at most halfway to the reach."""
     return least(a * factor, 0.5 * (a + shape.reach))
-
-
-def _at_depth(shape: Convex, l_r: Value, depth: Value, a: Value, x: Value) -> Contact:
-    """Return the contact at a depth, from guesses of a and x."""
-    start = a
-    a, a_moves = _half_length(shape, depth, start)
-    rolls = (l_r * shape.slope(VERTEX * a) < depth) * 1.0
-    x, x_moves = _trailing(shape, l_r * rolls, depth, a, x * (a / start))
-    below, error = integral(shape.height, (a, x), (a, rolls * x), not shape.kinks)
-    # Where p = 0, u_TE = l_r h', which does not cancel for a small l_r.
-    u_te = l_r * rolls * shape.slope(x) + (1.0 - rolls) * depth
-    length = a + rolls * x
-    load = depth * length - below + l_r * u_te
-    error = error * below / load
-    return Contact(
-        depth, a, x, a_moves, rolls * x_moves, rolls, u_te, load, error, length + l_r
-    )  # fmt: skip
 
 
 def _half_length(shape: Convex, depth: Value, a: Value) -> tuple[Value, Value]:
@@ -236,43 +304,3 @@ def _peak(shape: Convex, l_r: Value, contact: Contact) -> Value:
             break
         y = pick(active, least(abs((to - gain * y) / (1.0 - gain + TINY)), contact.a), y)
     return found
-
-
-def quantities(shape: Convex, l_r: Value, contact: Contact) -> dict[str, tuple[Value, ...]]:
-    """Return each quantity over the stiffness, its relative error at this depth, and d ln/d ln delta.
-
-    The friction is l_r times the sum of int h'^2 dx and of u_TE^2/(2 l_r).
-    """
-    depth, a, x, a_moves, x_moves, rolls, u_te, load, load_error, load_slope = contact
-    drag, drag_error = integral(
-        lambda x: shape.slope(x) ** 2, (a, x), (a, rolls * x), not shape.kinks
-    )
-    at_a, at_x = shape.slope(a), shape.slope(x)
-    left = rolls * at_x + (1.0 - rolls) * depth / (l_r + rolls)  # u_TE/l_r
-    total = drag + 0.5 * u_te * left
-    load_power, friction_power = depth * load_slope / load, depth * (left + at_a) / total
-    # Both edges are rounded independently: what they contribute to the share of the drag does not cancel.
-    by_a = at_a * (0.5 * u_te * left / drag)
-    by_x = left - at_x * at_x * x_moves * (total / drag)
-    share_power = depth * (by_a + abs(by_x)) / total
-    peak = _peak(shape, l_r, contact)
-    peak_power = depth / peak * -least(-1.0 + 0.0 * l_r, -l_r * shape.bend(a) / a)
-    edge = depth * a_moves / a
-    # Zero is the trailing edge at a corner; of a rounded tip it says that the edge is too close to tell.
-    lost = pick((rolls * x < SMALLEST) & (shape.bend(x) != 0.0), math.inf, 0.0)
-    return {
-        "depth": (depth, 0.0, 0.0),
-        "half_length": (a, 0.0, edge),
-        "retardation_length": (l_r, 0.0, 0.0),
-        "leading_edge": (-a, 0.0, edge),
-        "trailing_edge": (rolls * x, lost, depth * x_moves / x),
-        "load": (load, load_error, load_power),
-        "friction_force": (l_r * total, drag_error, friction_power),
-        "friction_coefficient": (
-            l_r * total / load,
-            load_error + drag_error,
-            friction_power - load_power,
-        ),
-        "peak_pressure": (peak, 0.0, peak_power),
-        "dissipated_in_contact": (drag / total, drag_error, share_power),
-    }

@@ -13,6 +13,12 @@ from kvtheory.results.errors import QuadratureError
 
 Value = Any
 """A float, or a column of them."""
+Quantities = tuple[dict[str, Value], dict[str, Value], dict[str, Value]]
+"""Quantities over the stiffness, their relative errors at a depth, and d ln/d ln delta of each."""
+
+SMALLEST = float(np.finfo(float).tiny)
+ROUNDING = 5e-15
+"""Relative rounding of an edge or of a formula, the shape function included."""
 
 COARSEST, LEVELS, LAST = 0.125, 5, 3.3
 """Step of the first rule, number of rules (each halves it), and where the weights vanish."""
@@ -125,3 +131,19 @@ def pick(condition: Any, chosen: Value, other: Value) -> Value:
     if isinstance(condition, np.ndarray):
         return np.where(condition, chosen, other)
     return chosen if condition else other
+
+
+def share_lost(friction: Value, lost: Value) -> Value:
+    """Return the share of the friction that is lost in the contact, 1 where there is no friction."""
+    none = (friction == 0.0) * 1.0
+    return (lost + none) / (friction + none)
+
+
+def power_bounds(contact: Any) -> dict[str, float]:
+    """Return d ln W/d ln delta and, where it is not known, the most that d ln/d ln delta can be of others.
+
+    At a given retardation length the friction coefficient changes no faster than the depth.
+    """
+    load = contact.depth * contact.load_slope / contact.load
+    others = {"friction_coefficient": 1.0, "dissipated_in_contact": 1.0}
+    return {"load": load, "friction_force": load + 1.0, **others}

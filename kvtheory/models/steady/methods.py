@@ -1,8 +1,6 @@
 """The methods of steady sliding, and the choice among them."""
 
-import math
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import replace
+from collections.abc import Callable, Mapping
 from typing import Any
 
 import numpy as np
@@ -49,59 +47,22 @@ def solve_exact(scene: Scene) -> SteadyState:
 
 
 def solve_quadrature(scene: Scene) -> SteadyState:
-    """Integrate the pressure of any indenter: in columns if it is a convex line, else scene by scene.
+    """Integrate the pressure of any indenter; a scene that fails fails the call."""
+    from kvtheory.models.steady import quadrature  # slow to import
 
-    A scene that fails fails the call.
-    """
-    shape = scene.shape
-    if not shape:
-        return _integrated(scene)
-    if 0 in shape:
-        return solve_exact(Scene().at(np.empty(shape)))
-    flat, count = scene.flat(), math.prod(shape)
-    line = scene.indenter.per_width and scene.indenter.convex
-    if line and not lacks_kelvin_voigt(scene):
-        parts = [
-            flat.rows(slice(i, i + COLUMN)).mapped(lambda x: x.reshape(-1, 1))
-            for i in range(0, count, COLUMN)
-        ]
-    else:
-        parts = [_one(flat, i) for i in range(count)]
-    return _joined(parts, [_integrated(part) for part in parts], shape)
-
-
-def _one(flat: Scene, index: int) -> Scene:
-    return flat.mapped(lambda x: float(x[index]))
-
-
-def _integrated(scene: Scene) -> SteadyState:
-    """Integrate one scene of floats, or a column of scenes."""
-    # Not needed by the other methods, and slow to import
-    from kvtheory.models.steady import convolution, quadrature, revolved, revolved_convolution
-
-    foundation, support = scene.foundation, scene.support
-    if foundation.kind == "kelvin-voigt":
-        method: Any = quadrature if scene.indenter.per_width else revolved
-        law: tuple[Any, ...] = ()
-    else:
-        method = convolution if scene.indenter.per_width else revolved_convolution
-        law = (convolution.memory_of(scene),)
-    grip = (support.depth,) if scene.held else (support.weight, support.spring)
-    given: tuple[Any, ...] = (
-        foundation.stiffness,
-        foundation.retardation_time,
-        scene.drive.final_velocity,
-        *grip,
+    return evaluate(
+        quadrature.quantities,
+        scene,
+        quadrature.certificate(scene),
+        quadrature.OWN_ERRORS,
+        floats=True,
+        model="quadrature",
+        block=COLUMN,
     )
-    if scene.shape:
-        given = tuple(np.broadcast_to(each, scene.shape) for each in given)
-    solve = method.at_depth if scene.held else method.at_load
-    state = solve(*law, scene.indenter, *given)
-    return replace(state, units=units_for(scene.indenter, STEADY_UNITS))
 
 
 def solve_asymptote(scene: Scene) -> SteadyState:
-    """Evaluate the asymptote of the regime in which each velocity lies, with its error in closed form."""
+    """Evaluate the asymptote of the regime in which each velocity lies; its error is known from the exact state."""
     truth, limits = solve_exact(scene), asymptotes.limits(scene)
     slow = np.abs(scene.drive.final_velocity) <= asymptotes.critical_velocity(scene)
     with np.errstate(divide="ignore", invalid="ignore"):  # at V = 0 the high one is not chosen
@@ -115,10 +76,14 @@ def solve_asymptote(scene: Scene) -> SteadyState:
         for name in STEADY_UNITS
     }
     wrong = {name: np.abs(np.where(slow, lows[name], highs[name])) for name in STEADY_UNITS}
+    own = truth.certificate
     certificate = Certificate(
-        "proved",
-        "asymptote over exact state, which is known to 1e-14",
-        {name: plain(error + ROUNDING * (1.0 + error)) for name, error in wrong.items()},
+        own.kind,
+        f"asymptote over exact state, whose own error counts too: {own.statement}",
+        {
+            name: plain(error + (ROUNDING + own.relative_error[name]) * (1.0 + error))
+            for name, error in wrong.items()
+        },
     )
     units = units_for(scene.indenter, STEADY_UNITS)
     return SteadyState(**found, model="asymptote", certificate=certificate, units=units)
@@ -134,28 +99,3 @@ METHODS: dict[str, Callable[[Scene], SteadyState]] = {
 def plain(array: Any) -> Any:
     """Return an array without dimensions as a plain value."""
     return array if array.ndim else array.item()
-
-
-def _joined(
-    scenes: Sequence[Scene], states: Sequence[SteadyState], shape: tuple[int, ...]
-) -> SteadyState:
-    """Join the states of single scenes or of columns into one of arrays."""
-
-    def joined(parts: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
-        return {
-            name: np.concatenate(
-                [
-                    np.broadcast_to(p[name], s.shape).ravel()
-                    for p, s in zip(parts, scenes, strict=True)
-                ]
-            ).reshape(shape)
-            for name in STEADY_UNITS
-        }
-
-    own = states[0].certificate
-    errors = joined([state.certificate.relative_error for state in states])
-    return replace(
-        states[0],
-        **joined([vars(state) for state in states]),
-        certificate=replace(own, relative_error=errors),
-    )

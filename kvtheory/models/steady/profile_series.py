@@ -98,11 +98,6 @@ class ConvexProfile:
             raise QuadratureError("the contact lies beyond the indenter's reach")
         return float(brentq(excess, 0.0, far, xtol=TINY, rtol=ROOT, maxiter=2000))
 
-    def shallow(self, load: float) -> float:
-        """Return a depth that carries about this load per stiffness."""
-        x = self.surface.first(lambda x, height: height * x >= load)
-        return min(self.surface.height(-x), self.surface.height(x)) or load / x
-
     @property
     def noise(self) -> float:
         """Relative error of the series, by its last coefficients, over the depth."""

@@ -1,181 +1,230 @@
-r"""Steady sliding of an indenter of any shape, by quadrature and root finding.
+r"""Steady sliding of any shape on any foundation, by quadrature and root finding.
 
-Integrated over the contact (see `kvtheory.models.steady.contact` for its geometry, and
-`kvtheory.models.steady.asperities` for shapes that may touch in several places),
+Integrated over the contact of a line,
 
-    W = int p dx = K (int u dx + l_r u_TE),
-    F = int -h' p dx = K (u_TE^2/2 + l_r int h'^2 dx),
+    W = int p dx,    F = int -h' p dx,
 
-by -h' = u' and u_LE = 0. No term of either sum is negative, so nothing cancels, whereas -h' p changes
-its sign and integrates to a small difference where l_r is small; and h', which may grow without bound
-towards an edge, does not occur in W. Of the power F V, the last term is dissipated inside the contact;
-K u_TE^2/2 is dissipated in the surface that relaxes behind it.
+in forms without cancellation. The line contact is solved by one of three methods, which have the same
+interface: `ConvexLine` (`contact`) and `AnyLine` (`asperities`) on Kelvin-Voigt, `ViscoelasticLine`
+(`convolution`) beyond it. A ball is a sum of their strips (`revolved`). For Kelvin-Voigt
 
-Depth at a load: dW/d(delta) = K (x_TE - x_LE + l_r), because the pressure vanishes at a root of the
-trailing edge, and the leading edge moves by d(-x_LE) = d(delta)/|h'| with p_LE = K l_r |h'|; likewise
-dF/d(delta) = K (u_TE + p_LE/K). As W is convex in the depth and vanishes with it,
-d ln W/d ln delta >= 1: the root is single, and the depth is relatively no less accurate than the load.
+    W = K (int u dx + l_r u_TE),    F = K (u_TE^2/2 + l_r int h'^2 dx),
+
+by -h' = u' and u_LE = 0. No term of either sum is negative, whereas -h' p changes its sign and integrates to
+a small difference where l_r is small; and h', which may grow without bound towards an edge, does not occur
+in W. Of the power F V, the last term is dissipated inside the contact; K u_TE^2/2 is dissipated in the
+surface that relaxes behind it.
+
+The support closes the balance. W is convex in the depth and vanishes with it, so that d ln W/d ln delta >= 1:
+every load is carried at one depth, and the depth is relatively no less accurate than the load.
 """
 
 import math
+from functools import partial
 from typing import Any
 
 import numpy as np
 
-from kvtheory.models.steady import asperities, contact
+from kvtheory.models.steady.asperities import AnyLine
 from kvtheory.models.steady.cells import Surface
-from kvtheory.models.steady.contact import ROUNDING
-from kvtheory.models.steady.double_exponential import Value, largest
-from kvtheory.results import Certificate, SteadyState
+from kvtheory.models.steady.contact import ConvexLine
+from kvtheory.models.steady.convolution import ViscoelasticLine, memory_of
+from kvtheory.models.steady.double_exponential import ROUNDING, Value, largest, pick, some
+from kvtheory.models.steady.profile_series import ConvexProfile
+from kvtheory.models.steady.revolved import Strips
+from kvtheory.results import STEADY_UNITS, Certificate
 from kvtheory.results.errors import QuadratureError
-from kvtheory.scene.indenters import Indenter
+from kvtheory.scene.model import Scene
+from kvtheory.scene.requirements import lacks_kelvin_voigt, lacks_quadrature
 
-CARRIED = 1e-6
+UNBALANCED = 1e-6
 """Relative error of the load carried above which the result is refused."""
 MARGIN = 2.0
 """Safety factor on errors propagated by derivatives, which hold for small errors."""
+MOST_STEPS = 200
+"""Trial depths; they are a handful unless the reach or the beginning of another contact is close."""
+LAST_STEP = {True: 1e-5, False: 3e-8}
+"""Step of the depth, over the depth, after which a cubic method has converged, and a quadratic one."""
+ULPS = 2.0**-49
+"""The least relative step of the depth."""
+SHALLOWER = 8.0
+"""A depth without a solution is divided by this, if none is known to be too shallow."""
+NARROW = 1e-9
+"""It also ends this close, over the depth, between one without a solution and one too shallow."""
+SHALLOWEST = 1e-12
+"""Share of the first trial depth below which the search ends."""
 
-STATEMENT = (
-    "error estimates of the quadratures and tolerances of the roots, carried to each quantity by its "
-    "derivative to the depth; for shapes computed to a few units in the last place"
-)
-OF_ANY_SHAPE = (
-    f"{STATEMENT}, smooth between the kinks that they name, without details that are narrower than "
-    "1/100 of the contact or of their distance from the lowest point, or a million times its length "
-    "away; all contacts are summed"
-)
 ODD = {"leading_edge", "trailing_edge", "friction_force", "friction_coefficient"}
 """Quantities that change their sign with the velocity."""
 FORCES = {"load", "friction_force", "peak_pressure"}
 """Quantities proportional to the stiffness."""
+OWN_ERRORS = tuple(STEADY_UNITS)
+
+OF_LINES = (
+    "error estimates of the quadratures and tolerances of the roots, carried to each quantity by its "
+    "derivative to the depth; for shapes computed to a few units in the last place"
+)
+OF_ANY_SHAPE = (
+    f"{OF_LINES}, smooth between the kinks that they name, without details that are narrower than "
+    "1/100 of the contact or of their distance from the lowest point, or a million times its length "
+    "away; all contacts are summed"
+)
+OF_CONVOLUTION = (
+    "differences of two double-exponential rules, for the memory and for the contact, carried to each "
+    "quantity; for shapes computed to a few units in the last place"
+)
+OF_STRIPS = (
+    "quadrature over strips, each by {}; the estimate compares two rules, and what the strips "
+    "estimate of themselves"
+)
 
 
-def at_depth(
-    indenter: Indenter, stiffness: Value, retardation_time: Value, velocity: Value, depth: Value
-) -> SteadyState:
-    """Return the steady state at a given indentation depth (the paper's FI model).
+def certificate(scene: Scene) -> Certificate:
+    """Return what the errors of a scene rest on."""
+    remembers = bool(lacks_kelvin_voigt(scene))
+    if not scene.indenter.per_width:
+        text = OF_STRIPS.format("convolution" if remembers else "its own quadrature")
+    elif remembers:
+        text = OF_CONVOLUTION
+    else:
+        text = OF_LINES if scene.indenter.convex else OF_ANY_SHAPE
+    return Certificate("estimated", text, {})
 
-    Parameters
-    ----------
-    indenter
-        Its shape; see `kvtheory.scene.indenters`. Its parameters may be columns too.
-    stiffness, retardation_time, velocity, depth
-        K in N/m^3, tau in s, V in m/s (any sign, or zero), delta in m: plain floats, or, for the
-        shapes that are convex, all of them columns of floats, of shape (n, 1).
 
-    Returns
-    -------
-    SteadyState
-        With an estimate of the relative error of each quantity.
+def quantities(scene: Scene) -> tuple[Any, ...]:
+    """Return the quantities in the order of `STEADY_UNITS`, and the relative error of each.
+
+    Scenes of arrays are solved in columns where the shape is a convex line on Kelvin-Voigt, else one by one.
 
     Raises
     ------
     QuadratureError
-        If a quadrature or a root fails, the contact goes beyond the indenter's reach, or a callable
-        shape is not smooth where it touches. Such a shape may touch in several places: they are
-        summed, and the edges and the half length are the outermost.
+        If a quadrature or a root fails, the contact goes beyond the indenter's reach, no depth within the
+        reach carries the load, or a callable shape is not smooth where it touches.
 
     Examples
     --------
-    >>> from kvtheory.scene.indenters import Parabola
-    >>> state = at_depth(Parabola(0.01), 1e10, 0.1, 0.1, 3e-4)
-    >>> print(f"{state.load:.6g} {state.friction_force:.6g} {state.trailing_edge:.6g}")
-    35344.6 5344.58 0.00029563
+    >>> found = quantities(Scene.table1("fixed"))
+    >>> print(", ".join(f"{value:.6g}" for value in found[4:8]))
+    0.00029563, 35344.6, 5344.58, 0.151214
     """
-    _require_positive(stiffness=stiffness, depth=depth)
-    l_r = _retardation_length(retardation_time, velocity)
-    shape, model = _model(indenter, velocity)
+    size, indenter = scene.shape, scene.indenter
+    if size and indenter.convex and indenter.per_width and not lacks_kelvin_voigt(scene):
+        scene = scene.mapped(lambda x: x[:, None])
+    elif size:
+        rows = [scene.mapped(partial(_item, index=i)) for i in range(*size)]
+        return tuple(np.transpose([quantities(row) for row in rows]))
+    support, V = scene.support, scene.drive.final_velocity
+    l_r = abs(V) * scene.foundation.retardation_time  # Eq. 29
+    K, V, l_r, load, spring, depth = (
+        np.broadcast_to(x, scene.shape) if scene.shape else x
+        for x in (scene.foundation.stiffness, V, l_r, support.weight, support.spring, support.depth)
+    )
     with np.errstate(all="ignore"):
-        found = model.at_depth(shape, l_r, depth)
-        return _state(model, shape, stiffness, velocity, l_r, found, 0.0 * depth)
-
-
-def at_load(
-    indenter: Indenter,
-    stiffness: Value,
-    retardation_time: Value,
-    velocity: Value,
-    weight: Value,
-    spring: Value = 0.0,
-) -> SteadyState:
-    """Return the steady state under a weight (the paper's MI model), on a spring or without.
-
-    The weight M g is in N/m, the stiffness of the suspension in N/m^2: it is relaxed at the static depth,
-    and 0 for a dead weight. The other arguments, the state and the errors are as in `at_depth`; it is an
-    error, too, if no depth within the indenter's reach carries the weight.
-
-    Examples
-    --------
-    >>> from kvtheory.scene.indenters import Parabola
-    >>> state = at_load(Parabola(0.01), 1e10, 0.1, 0.1, 9806.65)
-    >>> print(f"{1e3 * state.depth:.6f} mm, mu = {state.friction_coefficient:.6f}")
-    0.089661 mm, mu = 0.085709
-    """
-    _require_positive(stiffness=stiffness, weight=weight)
-    if not (largest(-spring) <= 0.0 and largest(spring) < math.inf):
-        raise ValueError(f"`spring` must be finite and not negative, not {spring}")
-    l_r = _retardation_length(retardation_time, velocity)
-    shape, model = _model(indenter, velocity)
-    with np.errstate(all="ignore"):
-        load, k, static_error = weight / stiffness, spring / stiffness, 0.0
-        if largest(k) > 0.0:
-            static = model.at_load(shape, 0.0 * l_r, load, 0.0 * k)
-            static_error = static.load_error + abs(static.load / load - 1.0) + ROUNDING
-            load = load + k * static.depth
-        found = model.at_load(shape, l_r, load, k)
-        # d ln W/d ln delta >= 1: the depth is no less accurate than the load that it carries.
-        error = found.load_error + abs((found.load + k * found.depth) / load - 1.0)
-        error = error + static_error + ROUNDING
-        if not largest(error) < CARRIED:
-            raise QuadratureError("the depth that was found does not carry the weight")
-        return _state(model, shape, stiffness, velocity, l_r, found, error)
-
-
-def _require_positive(**arguments: Value) -> None:
-    for name, value in arguments.items():
-        if not (largest(-value) < 0.0 and largest(value) < math.inf):
-            raise ValueError(f"`{name}` must be positive and finite, not {value}")
-
-
-def _retardation_length(retardation_time: Value, velocity: Value) -> Value:
-    l_r = abs(velocity) * retardation_time  # Eq. 29
-    if not (largest(-l_r) <= 0.0 and largest(l_r) < math.inf):
-        raise ValueError(
-            "`velocity` must be finite and `retardation_time` finite and not negative, "
-            f"not {velocity} and {retardation_time}"
-        )
-    return l_r
-
-
-def _model(indenter: Indenter, velocity: Value) -> tuple[Any, Any]:
-    """Return the shape, and the module that computes its contacts."""
-    if indenter.convex:
-        return indenter, contact
-    return Surface(indenter, -1.0 if velocity < 0.0 else 1.0), asperities
-
-
-def _state(
-    model: Any,
-    shape: Any,
-    stiffness: Value,
-    velocity: Value,
-    l_r: Value,
-    found: Any,
-    depth_error: Value,
-) -> SteadyState:
-    """Give every quantity its unit and sign, and propagate the errors of depth and of rounding to it."""
-    side = 1.0 - 2.0 * (velocity < 0.0)
-    noise = MARGIN * (depth_error + found.noise)
-    values, errors = {}, {}
-    for name, (value, own, power) in model.quantities(shape, l_r, found).items():
-        values[name] = value
-        errors[name] = own + ROUNDING + noise * abs(power)
+        line = _line(scene, l_r)
+        if scene.held:
+            contact, depth_error = line.at(depth), 0.0 * depth
+        else:
+            contact, depth_error = _carrying(line, load / K, spring / K)
+        values, own, powers = line.quantities(contact)
+        values["depth"], values["retardation_length"] = contact.depth, l_r
+        values["friction_coefficient"] = values["friction_force"] / values["load"]
+        own.setdefault("friction_coefficient", own["load"] + own["friction_force"])
+        own.setdefault("dissipated_in_contact", own["friction_force"])
+        powers.setdefault("friction_coefficient", powers["friction_force"] - powers["load"])
+        noise = MARGIN * (depth_error + contact.noise)
+        errors = {
+            name: own.get(name, 0.0) + line.floor + noise * abs(power)
+            for name, power in powers.items()
+        }
+    errors["depth"], errors["retardation_length"] = depth_error, ROUNDING
+    side = 1.0 - 2.0 * (V < 0.0)
     for name in ODD:
         values[name] = side * values[name] + 0.0  # no negative zero
     for name in FORCES:
-        values[name] = stiffness * values[name]
-    errors["depth"] = depth_error
-    statement = STATEMENT if model is contact else OF_ANY_SHAPE
-    return SteadyState(
-        **values, model="quadrature", certificate=Certificate("estimated", statement, errors)
+        values[name] = K * values[name]
+    found = [each[name] for each in (values, errors) for name in STEADY_UNITS]
+    return tuple(np.broadcast_to(x, scene.shape).ravel() if size else x for x in found)
+
+
+def _item(values: Any, index: int) -> float:
+    return float(values[index])
+
+
+def _line(scene: Scene, l_r: Value) -> Any:
+    """Return the method for the shape and the foundation of a scene."""
+    indenter: Any = scene.indenter
+    shape = indenter if indenter.per_width else indenter.profile
+    if lacking := lacks_quadrature(scene):
+        raise QuadratureError(lacking)
+    remembers = lacks_kelvin_voigt(scene)
+    if not shape.convex:  # it may differ ahead and behind; a body of revolution does not
+        side = -1.0 if indenter.per_width and scene.drive.final_velocity < 0.0 else 1.0
+        shape = ConvexProfile(shape, side) if remembers else Surface(shape, side)
+    if remembers:
+        line: Any = ViscoelasticLine(shape, memory_of(scene), l_r)
+    else:
+        line = (AnyLine if isinstance(shape, Surface) else ConvexLine)(shape, l_r)
+    return line if indenter.per_width else Strips(indenter, line)
+
+
+def _carrying(line: Any, load: Value, spring: Value) -> tuple[Any, Value]:
+    """Return the contact that carries a load, on a spring or without, and the error of its depth.
+
+    The spring is relaxed at the static depth. d ln W/d ln delta >= 1: the depth is no less accurate than the
+    load.
+    """
+    relaxed_error = 0.0
+    if largest(spring) > 0.0:
+        rest = _contact(line.at_rest(), load, 0.0 * spring)
+        relaxed = spring * rest.depth
+        relaxed_error = relaxed * (rest.load_error + abs(rest.load / load - 1.0) + ROUNDING)
+        load = load + relaxed
+    contact = _contact(line, load, spring)
+    carried = contact.load + spring * contact.depth
+    error = (contact.load * contact.load_error + relaxed_error) / load
+    error = error + abs(carried / load - 1.0) + ROUNDING
+    if not largest(error) < UNBALANCED:
+        raise QuadratureError("load balance not converged")
+    return contact, error
+
+
+def _contact(line: Any, load: Value, spring: Value) -> Any:
+    """Return the contact where W/K + spring * depth is the load.
+
+    As d ln W/d ln delta >= 1, and at most 2 for a convex line, Newton's method in logarithms converges, kept
+    between depths that carry too little and too much; the second derivative of W, where it is known, makes
+    it cubic (Chebyshev).
+    """
+    depth, guess = line.first(load, spring)
+    low, high, least = 0.0 * depth, line.deepest, SHALLOWEST * depth
+    active, step, failure = load > 0.0, math.inf, None
+    for _ in range(MOST_STEPS):
+        try:
+            contact = line.at(depth, guess)
+        except QuadratureError as error:  # perhaps only because this is too deep
+            failure = failure or error
+            if isinstance(depth, np.ndarray) or depth < least or depth < low * (1.0 + NARROW):
+                raise failure from None
+            high, new, step = depth, math.inf, math.inf
+        else:
+            total, slope = contact.load + spring * depth, contact.load_slope + spring
+            power = depth * slope / total
+            share, cubic = 1.0, contact.load_curvature is not None
+            if cubic:
+                bend = 1.0 - power + depth * contact.load_curvature / slope
+                missing = (load - total) / (0.5 * (load + total))  # nearly ln(load/total)
+                share = 1.0 - 0.5 * missing / (1.0 + missing * missing) * bend / power
+            factor = (load / total) ** (share / power)
+            step, last = abs(factor - 1.0), step
+            active = active & (last >= LAST_STEP[cubic]) & (step >= ULPS)
+            if not some(active):
+                return contact  # converged values were evaluated again from the same guesses
+            new, light = depth * factor, total < load
+            low, high = pick(light, depth, low), pick(light, high, depth)
+            guess = tuple(map(lambda now, was: pick(active, now, was), contact.guess, guess))
+        between = pick(low > 0.0, (low * high) ** 0.5, high / SHALLOWER)
+        depth = pick(active, pick((low < new) & (new < high), new, between), depth)
+    raise failure or QuadratureError(
+        "no depth was found that carries the weight: it lies beyond the indenter's reach"
     )
