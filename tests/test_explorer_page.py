@@ -10,7 +10,7 @@ from click.testing import CliRunner
 import kvtheory as kv
 from kvtheory.cli import main
 from kvtheory.explorer import explorer_page, save_explorer
-from kvtheory.explorer.controls import controls
+from kvtheory.explorer.controls import controls, quantities
 from kvtheory.explorer.page import formulas
 
 TABLE1 = kv.Scene()
@@ -68,7 +68,7 @@ def test_every_quantity_of_a_scene_has_a_slider():
     ):
         for name, model in models.items():
             sliders = sections[section]["choices"][name]
-            assert set(sliders) == set(kv.scene.quantities.quantities(model))
+            assert set(sliders) == set(quantities(model))
             assert all(slider["unit"] or slider["exponent"] == 0 for slider in sliders.values())
             asked = sections[section]["alternatives"][name]
             assert set().union(*(each["names"] for each in asked)) == set(sliders)

@@ -2,15 +2,17 @@
 
 import math
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from decimal import Decimal
 from typing import Any
 
 from kvtheory.results import SHOWN_UNITS
 from kvtheory.scene.drives import Drive
-from kvtheory.scene.foundations import FOUNDATIONS, THIN, Arm
+from kvtheory.scene.foundations import FOUNDATIONS, THERMAL, THIN, Arm
 from kvtheory.scene.indenters import SHAPES, Circle
 from kvtheory.scene.model import SUPPORTS, Run, Scene
-from kvtheory.scene.quantities import Quantity, given, quantities, required
+from kvtheory.scene.quantities import Quantity, given, required
+from kvtheory.scene.quantities import quantities as declared
 from kvtheory.scene.requirements import lacks_closed_form, lacks_kelvin_voigt, lacks_shape
 
 SECTIONS: dict[str, tuple[str, dict[str, Any]]] = {
@@ -56,6 +58,12 @@ ENDS = "The drive of the scene varies in time; the page takes the velocity that 
 UNITS = SHOWN_UNITS | {"N*s/m": ("N*s/m", 1.0), "N*s/m^2": ("kN*s/m^2", 1e-3)}
 
 
+def quantities(cls: Any) -> dict[str, Quantity]:
+    """Return the quantities that have sliders: all but temperatures, and the moduli of arms."""
+    modulus = {"modulus"} if cls is Arm else set()
+    return {name: spec for name, spec in declared(cls).items() if name not in {*THERMAL, *modulus}}
+
+
 def lacks_scripts(scene: Scene) -> str:
     """Say why the scripts of the page cannot compute a scene; nothing if they can.
 
@@ -77,6 +85,9 @@ def controls(scene: Scene) -> dict[str, Any]:
     >>> found["unit"], found["start"], found["exponent"]
     ('mm', '10', -3)
     """
+    foundation = scene.foundation
+    if foundation.shift_factor != 1.0 or (foundation.arms and foundation.modulus is not None):
+        scene = replace(scene, foundation=foundation.plain())
     return {
         "sections": {
             section: {

@@ -11,7 +11,16 @@ import numpy as np
 from kvtheory.scene.arguments import a_scene, checked, file_name, names
 from kvtheory.scene.drive_file import history_from
 from kvtheory.scene.drives import SPRING
-from kvtheory.scene.foundations import FOUNDATIONS, PAIRS, Foundation, GeneralizedMaxwell, arms_of
+from kvtheory.scene.foundations import (
+    FOUNDATIONS,
+    LAYER,
+    OF_LAYER,
+    PAIRS,
+    WLF_PAIR,
+    Foundation,
+    GeneralizedMaxwell,
+    arms_of,
+)
 from kvtheory.scene.indenters import SHAPES
 from kvtheory.scene.model import SUPPORTS, WEIGHED, Drive, Run, Scene, lacks_mass
 from kvtheory.scene.quantities import (
@@ -19,6 +28,7 @@ from kvtheory.scene.quantities import (
     Quantity,
     SceneError,
     absent,
+    as_given,
     closest,
     collecting,
     converted,
@@ -45,7 +55,7 @@ CHOICES = {
 }
 """Sections in which one key selects the model; the other keys depend on it."""
 DEFAULTS = {"indenter": "parabola", "foundation": "kelvin-voigt"}
-LISTS = {("foundation", "arms"), ("drive", "history")}
+LISTS = {("foundation", "arms"), ("foundation", "wlf"), ("drive", "history")}
 """Keys whose values are lists of pairs."""
 PER_WIDTH = {
     key for cls in SUPPORTS.values() for key, spec in quantities(cls).items() if spec.per_width
@@ -73,8 +83,13 @@ NOTES = {
         "# poisson_ratio = 0.3",
         "# or another foundation:",
         '# kind = "generalized-maxwell" with arms = [["30 GN/m^3", "10 ms"], ["5 GN/m^3", "1 s"]]',
-        "#     instead of the retardation time: stiffness and relaxation time of each arm",
+        "#     instead of the retardation time: stiffness and relaxation time of each arm, or, of a",
+        '#     layer, modulus and relaxation time: arms = [["30 MPa", "10 ms"]]',
         '# kind = "fractional-kelvin-voigt" with order = 0.5',
+        "# at another temperature than that at which its times were measured, which shifts them:",
+        '# temperature = "60 degC"',
+        '# reference_temperature = "23 degC"',
+        '# wlf = ["17.44", "51.6 K"]            # C_1 and C_2; or activation_energy = "80 kJ/mol"',
     ],
 }
 """What the template says about keys that can be given instead of others."""
@@ -196,14 +211,19 @@ def _tables(scene: Scene) -> dict[str, dict[str, Any]]:
             table[CHOICES[section][0]] = getattr(type(part), CHOICES[section][0])
         for name, spec in given(part).items():
             unit = spec.fitting(scene.indenter.per_width).unit
-            table[name] = _text(getattr(part, name), unit)
+            table[name] = _text(as_given(getattr(part, name)), unit)
         if section == "drive" and part.history is not None:
             table["history"] = [[_text(t, "s"), _text(v, "m/s")] for t, v in part.history]
         if section == "foundation" and part.arms:
+            first, unit = (
+                ("modulus", "N/m^2") if part.modulus is not None else ("stiffness", "N/m^3")
+            )
             table["arms"] = [
-                [_text(arm.stiffness, "N/m^3"), _text(arm.relaxation_time, "s")]
+                [_text(getattr(arm, first), unit), _text(as_given(arm.relaxation_time), "s")]
                 for arm in part.arms
             ]
+        if section == "foundation" and part.wlf is not None:
+            table["wlf"] = [part.wlf.c_1, _text(part.wlf.c_2, "K")]
         tables[section] = table
     if tables["indenter"]["shape"] not in SHAPES:
         raise ValueError(
@@ -294,6 +314,8 @@ def _override(tables: dict[str, Any], overrides: list[str], *, embedded: bool) -
             for other in specs[name].excludes:
                 if (section, other) not in keys:
                     table.pop(other, None)
+        if (section, name) == ("foundation", "wlf") and (section, "activation_energy") not in keys:
+            table.pop("activation_energy", None)
         try:
             listed = (section, name) in LISTS or value.startswith("[")
             table[name] = tomllib.loads(f"v = {value}")["v"] if listed else value
@@ -431,8 +453,10 @@ def _values(
     for name in (name for name in absent(valid, table) if name in needed):
         spec = specs[name].fitting(per_width)
         problems.append(missing(section, name, spec, of + ("" if spec == specs[name] else BALL)))
+    layer = any(name in table for name in LAYER) and "stiffness" not in table
+    pairs = OF_LAYER if layer else PAIRS
     if "arms" in absent(valid, table):
-        problems.append(f"{section}.arms: missing{of}; expected {PAIRS}")
+        problems.append(f"{section}.arms: missing{of}; expected {pairs}")
     values: dict[str, Any] = {}
     for key, value in table.items():
         if key not in valid:
@@ -444,7 +468,16 @@ def _values(
             if cls is Drive and key == "file":
                 values["history"] = history_from(Path(str(value)))
             elif key == "arms":
-                values["arms"] = arms_of(_pairs(value, PAIRS))
+                values["arms"] = arms_of(_pairs(value, pairs), layer=layer)
+            elif key == "wlf":
+                bare = (
+                    isinstance(value, list)
+                    and len(value) == 2
+                    and isinstance(value[1], int | float)
+                )
+                if bare:
+                    raise ValueError(f"has numbers without a unit; expected {WLF_PAIR}")
+                values["wlf"] = value
             else:
                 values[key] = _value(value, specs[key]) if key in specs else _pairs(value, POINTS)
     if problems:
@@ -484,8 +517,8 @@ def _pairs(value: Any, told: str) -> Any:
 def _keys(cls: Any) -> list[str]:
     """Return the keys of a model: its quantities, and its other keys, such as lists of pairs."""
     lists: tuple[str, ...] = DRIVES if cls is Drive else ()
-    if cls is GeneralizedMaxwell:
-        lists = ("arms",)
+    if cls in FOUNDATIONS.values():
+        lists = ("arms", "wlf") if cls is GeneralizedMaxwell else ("wlf",)
     elif cls in WAVEFORMS.values():
         lists = SPRING
     return list(dict.fromkeys((*quantities(cls), *lists)))

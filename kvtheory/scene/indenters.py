@@ -14,7 +14,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from kvtheory.scene.quantities import Part, SceneError, Value, mistake, quantity, settle
+from kvtheory.scene.quantities import Part, SceneError, Value, mistake, quantity, validate
 
 SHORT_CUTS = ((2.0, np.square), (0.5, np.sqrt), (-1.0, np.reciprocal))
 """Exponents for which NumPy may take another routine, which rounds otherwise."""
@@ -44,7 +44,7 @@ class _Shape(Part):
     per_width: ClassVar[bool] = True
 
     def __post_init__(self) -> None:
-        settle(self, "indenter")
+        validate(self, "indenter")
 
 
 @dataclass(frozen=True, eq=False)

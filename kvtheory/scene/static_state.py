@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from kvtheory.scene.model import TABLE1_SUPPORTS, Scene
-from kvtheory.scene.quantities import given
+from kvtheory.scene.quantities import as_given, given
 from kvtheory.scene.requirements import lacks_one_scene, lacks_quadratic, require
 
 
@@ -195,10 +195,13 @@ def _sizes(scene: Scene) -> Iterator[tuple[str, float, str]]:
     parts = {**scene.parts(), "run": scene.run, "drive": scene.drive.waveform or scene.drive}
     for section, part in parts.items():
         for name, spec in given(part).items():
-            sizes = np.abs(getattr(part, name))
+            sizes = np.abs(as_given(getattr(part, name)))
             unit = "" if spec.unit == "1" else spec.unit
             for size in (np.min(sizes, initial=math.inf), np.max(sizes, initial=0.0)):
                 yield f"{section}.{name}", float(size), unit
+    shift = np.ravel(scene.foundation.shift_factor)
+    for size in (shift.min(initial=1.0), shift.max(initial=1.0)):
+        yield "a_T of foundation.temperature", float(size), ""
     speeds = [abs(velocity) for _, velocity in scene.drive.history or ()]
     if speeds:
         yield "drive.history", max(speeds), "m/s"
