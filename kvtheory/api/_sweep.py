@@ -24,9 +24,9 @@ from kvtheory.scene.arguments import (
     replacements,
     times,
 )
+from kvtheory.scene.capabilities import lacks_arms, lacks_paper_model, lacks_stability, require
 from kvtheory.scene.model import Scene
 from kvtheory.scene.quantities import SceneError
-from kvtheory.scene.requirements import lacks_arms, lacks_paper_model, lacks_stability, require
 
 if TYPE_CHECKING:
     from kvtheory.sweeps.plan import Plan

@@ -36,7 +36,7 @@ def scene(
 ) -> None:
     """Print a commented scene template, or check SCENE and print its dimensionless numbers."""
     from kvtheory.scene import load_scene, template
-    from kvtheory.scene.requirements import lacks_ball, lacks_quadratic
+    from kvtheory.scene.capabilities import lacks_ball, lacks_quadratic
     from kvtheory.scene.static_state import StaticState
 
     if problem:

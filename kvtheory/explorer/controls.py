@@ -7,13 +7,13 @@ from decimal import Decimal
 from typing import Any
 
 from kvtheory.results import SHOWN_UNITS
+from kvtheory.scene.capabilities import lacks_scripts
 from kvtheory.scene.drives import Drive
 from kvtheory.scene.foundations import FOUNDATIONS, THERMAL, THIN, Arm
-from kvtheory.scene.indenters import SHAPES, Circle
+from kvtheory.scene.indenters import SHAPES
 from kvtheory.scene.model import SUPPORTS, Run, Scene
 from kvtheory.scene.quantities import Quantity, given, required
 from kvtheory.scene.quantities import quantities as declared
-from kvtheory.scene.requirements import lacks_closed_form, lacks_kelvin_voigt, lacks_shape
 
 SECTIONS: dict[str, tuple[str, dict[str, Any]]] = {
     "indenter": ("shape", SHAPES),
@@ -62,20 +62,6 @@ def quantities(cls: Any) -> dict[str, Quantity]:
     """Return the quantities that have sliders: all but temperatures, and the moduli of arms."""
     modulus = {"modulus"} if cls is Arm else set()
     return {name: spec for name, spec in declared(cls).items() if name not in {*THERMAL, *modulus}}
-
-
-def lacks_scripts(scene: Scene) -> str:
-    """Say why the scripts of the page cannot compute a scene; nothing if they can.
-
-    >>> lacks_scripts(Scene(indenter=Circle("10 mm")))
-    ''
-    """
-    if lacking := lacks_shape(scene, tuple(SHAPES.values()), ", ".join(SHAPES)):
-        return lacking
-    if isinstance(scene.indenter, Circle):
-        lacking = lacks_kelvin_voigt(scene)
-        return lacking and f'of indenter.shape = "circle" {lacking}'
-    return lacks_closed_form(scene)
 
 
 def controls(scene: Scene) -> dict[str, Any]:

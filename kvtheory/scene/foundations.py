@@ -159,6 +159,7 @@ class _Relaxed(Part):
         default=None, beside=("reference_temperature",), excludes=("wlf",),
     )  # fmt: skip
     wlf: WLF | None = None
+    arms: ClassVar[Any] = ()
 
     def __post_init__(self) -> None:
         problems: list[str] = []
@@ -279,7 +280,6 @@ class Foundation(_Relaxed):
     """
 
     kind: ClassVar[str] = "kelvin-voigt"
-    arms: ClassVar[tuple["Arm", ...]] = ()
     retardation_time: Value = quantity(
         "s", "tau = C/K, retardation time of the foundation (Eq. 22)", default=None, needed=True
     )
@@ -334,7 +334,7 @@ class GeneralizedMaxwell(_Relaxed):
     """
 
     kind: ClassVar[str] = "generalized-maxwell"
-    arms: tuple[Arm, ...] = ()
+    arms: tuple[Arm, ...] = ()  # type: ignore[misc]
 
     def _arms(self, problems: list[str]) -> list[Any]:
         with collecting(problems, "foundation.arms", self.arms):
@@ -366,7 +366,6 @@ class FractionalKelvinVoigt(_Relaxed):
     """
 
     kind: ClassVar[str] = "fractional-kelvin-voigt"
-    arms: ClassVar[tuple[Arm, ...]] = ()
     retardation_time: Value = quantity(
         "s", "tau, time scale of the springpot", default=None, needed=True
     )

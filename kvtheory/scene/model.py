@@ -330,7 +330,7 @@ class Scene(Part):
                 own[name] = (*old[:i], changed(old[i], **values), *old[i + 1 :])
             else:
                 own[name] = changed(old, **values)
-        made = {
+        made: dict[str, Any] = {
             part: self.drive.changed(**own)
             if part == "drive"
             else changed(getattr(self, part), **own)

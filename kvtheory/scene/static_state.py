@@ -7,9 +7,9 @@ from typing import Any
 
 import numpy as np
 
+from kvtheory.scene.capabilities import lacks_one_scene, lacks_quadratic, require
 from kvtheory.scene.model import TABLE1_SUPPORTS, Scene
 from kvtheory.scene.quantities import as_given, given
-from kvtheory.scene.requirements import lacks_one_scene, lacks_quadratic, require
 
 
 @dataclass(frozen=True)

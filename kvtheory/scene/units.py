@@ -216,8 +216,8 @@ def _scaled(number: str | float, written: str, unit: str) -> float:
         raise ValueError(f"has no unit; expected {expected(unit)}")
     if unit == "K" and written in TEMPERATURES:
         degree, zero = TEMPERATURES[written]
-        exact = 1e-9 < abs(approximate) < 1e9  # beyond, a power of ten would be huge
-        return float(Fraction(number if exact else approximate) * degree + zero)
+        usual = 1e-9 < abs(approximate) < 1e9  # beyond, a power of ten would be huge
+        return float(Fraction(number if usual else approximate) * degree + zero)
     factor = _factor(written, unit)
     # A value that underflows is zero, before a huge power of ten is formed.
     exact = Fraction(number) * factor if approximate else Fraction(0)

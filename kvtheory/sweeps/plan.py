@@ -12,9 +12,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kvtheory.results.sweep import Axis
+from kvtheory.scene.capabilities import lacks_paper_model
 from kvtheory.scene.files import to_toml
 from kvtheory.scene.model import Scene
-from kvtheory.scene.requirements import lacks_paper_model
 from kvtheory.sweeps.axes import size
 from kvtheory.sweeps.columns import Column
 

@@ -17,8 +17,8 @@ from scipy.optimize import elementwise
 
 from kvtheory.models.steady.methods import CLOSED, METHODS, asymptotes_of, plain
 from kvtheory.results import Certificate
+from kvtheory.scene.capabilities import lacks_kelvin_voigt
 from kvtheory.scene.model import Scene
-from kvtheory.scene.requirements import lacks_kelvin_voigt
 
 Array = NDArray[np.float64]
 Friction = Callable[[Array, Array], tuple[Array, Array]]

@@ -19,8 +19,8 @@ from kvtheory.models.steady import (
 )
 from kvtheory.models.steady.blockwise import evaluate
 from kvtheory.results import STEADY_UNITS, Certificate, SteadyState, units_for
+from kvtheory.scene.capabilities import lacks_kelvin_voigt
 from kvtheory.scene.model import Scene
-from kvtheory.scene.requirements import lacks_kelvin_voigt
 
 CLOSED: Mapping[str, Any] = {
     "parabola": exact,
@@ -28,7 +28,7 @@ CLOSED: Mapping[str, Any] = {
     "wedge": power_law,
     "sphere": ball,
 }
-"""The closed forms on Kelvin-Voigt by shape; `kvtheory.scene.requirements` lists the same shapes."""
+"""The closed forms on Kelvin-Voigt by shape; `kvtheory.scene.capabilities` lists the same shapes."""
 MOMENTS: Mapping[str, Any] = {"parabola": viscoelastic, "sphere": ball_viscoelastic}
 """The shapes that need no more than the moments of the relaxation function, on any foundation."""
 
