@@ -139,7 +139,7 @@ def test_a_scene_that_the_page_does_not_know_is_refused_and_nothing_written(tmp_
     scene.write_text(kv.scene.files.to_toml(rubber), encoding="utf-8")
     done = CliRunner().invoke(main, ["explore", str(scene), "-o", str(path)])
     assert done.exit_code == 2
-    assert 'circle" holds for foundation.kind = "kelvin-voigt" only' in done.output
+    assert 'the explorer holds for foundation.kind = "kelvin-voigt" only' in done.output
     assert not path.exists()
     with pytest.raises(
         ValueError, match="the explorer holds for parabola, circle, power-law, wedge, sphere"

@@ -12,9 +12,9 @@ from kvtheory.cli.console import (
     print_json,
     print_table,
     progress_bar,
+    report_errors,
     scene_options,
     split,
-    teaching,
 )
 from kvtheory.cli.group import main
 from kvtheory.cli.outputs import PICTURES, check_output, overwrite_option, path_option
@@ -39,7 +39,7 @@ def chart() -> None:
 @path_option("-o", "--output", help="Write the atlas as one self-contained FILE.html.")
 @json_option
 @overwrite_option
-@teaching
+@report_errors
 def failures(only: str | None, output: Path | None, as_json: bool) -> None:
     """Show how methods fail: wrong numbers, computed beside the right ones."""
     check_output("-o", output, [".html"])
@@ -78,7 +78,7 @@ def failures(only: str | None, output: Path | None, as_json: bool) -> None:
 )  # fmt: skip
 @click.option("--quick", is_flag=True, help="Coarser maps.")
 @overwrite_option
-@teaching
+@report_errors
 def stability(output: Path, quick: bool) -> None:
     """Map where each scheme of the elements is stable: predicted over measured."""
     check_chart(output)
@@ -107,7 +107,7 @@ def stability(output: Path, quick: bool) -> None:
     help="Picture, or a directory for it; its data go to FILE.json beside it.",
 )  # fmt: skip
 @overwrite_option
-@teaching
+@report_errors
 def work_precision(
     scene: str | None, overrides: Sequence[str], standard: str | None, quick: bool, output: Path
 ) -> None:

@@ -2,7 +2,7 @@
 
 import click
 
-from kvtheory.cli.console import Examples, teaching
+from kvtheory.cli.console import Examples, report_errors
 from kvtheory.cli.group import main
 
 PAPER = """@article{nakano2020,
@@ -23,7 +23,7 @@ SOFTWARE = """@software{{kvtheory,
 
 
 @main.command(cls=Examples, example="kvtheory cite >> references.bib")
-@teaching
+@report_errors
 def cite() -> None:
     """Print BibTeX entries for this version of the package, and for the paper it rests on."""
     from kvtheory import __version__

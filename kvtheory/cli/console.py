@@ -37,7 +37,7 @@ class Examples(click.Command):
             formatter.write(f"{'':{formatter.current_indent}}{self.example}\n")  # never wrapped
 
 
-def teaching(command: Callable[..., None]) -> Callable[..., None]:
+def report_errors(command: Callable[..., None]) -> Callable[..., None]:
     """Turn errors about the input into one message and exit status 2, which is never 1."""
 
     @wraps(command)
@@ -47,26 +47,26 @@ def teaching(command: Callable[..., None]) -> Callable[..., None]:
         except BrokenPipeError:
             leave_quietly()
         except KeyboardInterrupt as error:
-            complain(str(error) or "interrupted", INTERRUPTED)
+            exit_with(str(error) or "interrupted", INTERRUPTED)
         except MemoryError as error:
-            complain(f"error: out of memory: {str(error) or 'ask for less at a time'}", BAD_INPUT)
+            exit_with(f"error: out of memory: {str(error) or 'ask for less at a time'}", BAD_INPUT)
         except OSError as error:
             if error.filename is None and error.errno is not None:
                 leave_quietly(f"the output cannot be written: {error.strerror}")
             named = f'"{error.filename}": {error.strerror}' if error.filename else str(error)
-            complain(f"error: {in_options(named)}", BAD_INPUT)
+            exit_with(f"error: {in_options(named)}", BAD_INPUT)
         except (ValueError, ArithmeticError, RuntimeError) as error:
             lines = in_options(str(error)).splitlines() or [type(error).__name__]
             count = len(getattr(error, "problems", lines))
             head = "error:" if count == 1 else f"{count:,} mistakes:\n "
-            complain(f"{head} " + "\n  ".join(lines), BAD_INPUT)
+            exit_with(f"{head} " + "\n  ".join(lines), BAD_INPUT)
         except Exception:
-            complain(f"internal error, please report it:\n{traceback.format_exc()}", FAULTY)
+            exit_with(f"internal error, please report it:\n{traceback.format_exc()}", FAULTY)
 
     return run
 
 
-def complain(message: str, status: int) -> None:
+def exit_with(message: str, status: int) -> None:
     """Write a message to standard error, if that can be written, and exit."""
     from kvtheory.scene.quantities import printable
 
@@ -93,7 +93,7 @@ def scene_command(
     """Declare a command on an optional scene file, with `--set` and `--json`."""
 
     def decorate(function: Callable[..., None]) -> click.Command:
-        command = scene_options(json_option(teaching(function)))
+        command = scene_options(json_option(report_errors(function)))
         return group.command(cls=Examples, example=example)(command)
 
     return decorate

@@ -12,7 +12,14 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from kvtheory.cli.console import Examples, print_json, print_table, progress_bar, split, teaching
+from kvtheory.cli.console import (
+    Examples,
+    print_json,
+    print_table,
+    progress_bar,
+    report_errors,
+    split,
+)
 from kvtheory.cli.group import main
 from kvtheory.cli.outputs import check_output, overwrite_option
 
@@ -71,7 +78,7 @@ UNUSUAL = re.compile(r"[^\w .,()+-]")
     "--json", "as_json", is_flag=True, help="Print one JSON object about what was written."
 )
 @overwrite_option
-@teaching
+@report_errors
 def derive(
     scene: str | None, output: Path, formats: str | None, only: str, closure: bool, numbers: bool,
     shape: str | None, notation: Path | None, overrides: Sequence[str], listing: bool, symbols: bool,

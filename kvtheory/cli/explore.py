@@ -5,7 +5,7 @@ from pathlib import Path
 
 import click
 
-from kvtheory.cli.console import Examples, progress_bar, scene_options, teaching
+from kvtheory.cli.console import Examples, progress_bar, report_errors, scene_options
 from kvtheory.cli.group import main
 from kvtheory.cli.outputs import check_output, overwrite_option, path_option
 
@@ -17,7 +17,7 @@ from kvtheory.cli.outputs import check_output, overwrite_option, path_option
     help="File to write; it needs no server and no network.",
 )  # fmt: skip
 @overwrite_option
-@teaching
+@report_errors
 def explore(scene: str | None, overrides: Sequence[str], output: Path) -> None:
     """Write one HTML page with a slider for every number of a scene, which shows steady sliding at once."""
     from kvtheory.explorer import save_explorer

@@ -36,42 +36,45 @@ class Scenes:
     drives: tuple[str, ...] = DRIVES
     why: str = ""
 
-    def lacking(self, scene: Scene) -> list[str]:
+    def lacking(self, shape: str, law: str, support: str, drive: str) -> list[str]:
         """Return what keeps a scene from being one of these, in words."""
-        shape, law = shape_of(scene), scene.foundation.kind
         found = []
         if shape not in self.shapes:
             named = _listed([SHAPES[name] for name in self.shapes], "and")
-            found.append(
-                f'holds for {named} only, not for indenter.shape = "{scene.indenter.shape}"'
-            )
+            told = f'holds for {named} only, not for indenter.shape = "{shape.removesuffix("-callable")}"'
+            found.append(told)
         if law not in self.laws:
             named = _listed([f'"{name}"' for name in self.laws], "or")
             found.append(f'holds for foundation.kind = {named} only, not for "{law}"')
-        if scene.support.kind not in self.supports:
+        if support not in self.supports:
             named = _listed([f'"{name}"' for name in self.supports], "or")
-            told = f'holds for support.kind = {named} only, not for "{scene.support.kind}"'
-            found.append(told + (f": {self.why}" if self.why else ""))
-        if not scene.drive.rigid and "spring" not in self.drives:
+            why = f": {self.why}" if self.why else ""
+            found.append(f'holds for support.kind = {named} only, not for "{support}"{why}')
+        if drive not in self.drives:
             found.append("holds for a rigid drive only, not with drive.stiffness")
         return found
 
 
-def shape_of(scene: Scene) -> str:
-    """Return the shape of the indenter by its name in the table.
+Kind = tuple[str, str, str, str]
 
-    >>> shape_of(Scene())
-    'parabola'
+
+def kind_of(scene: Scene) -> Kind:
+    """Return shape, law, support and drive of a scene by their names in the table.
+
+    >>> kind_of(Scene())
+    ('parabola', 'kelvin-voigt', 'dead-weight', 'rigid')
     """
-    shape, body = scene.indenter.shape, scene.indenter
-    return shape if shape != "revolved" or body.convex else "revolved-callable"
+    body, drive = scene.indenter, "rigid" if scene.drive.rigid else "spring"
+    functions = body.shape == "revolved" and not body.convex
+    shape = "revolved-callable" if functions else body.shape
+    return shape, scene.foundation.kind, scene.support.kind, drive
 
 
 class Needs:
     """A requirement on a scene, which is met by any of several sets of scenes.
 
-    Called with a scene, it returns why the scene does not meet it, or an empty text: what is lacking to the
-    set that the scene comes nearest to.
+    Called with a scene, it returns an empty text if the scene meets it; else what the scene lacks, compared
+    with the set that it comes nearest to.
 
     >>> lacks_parabola(Scene())
     ''
@@ -79,12 +82,15 @@ class Needs:
 
     def __init__(self, *sets: Scenes) -> None:
         self.sets = sets
+        self.told: dict[Kind, str] = {}
 
     def __call__(self, scene: Scene) -> str:
         """Return what the scene lacks."""
-        lacking = [each.lacking(scene) for each in reversed(self.sets)]
-        nearest = min(lacking, key=len)
-        return nearest[0] if nearest else ""
+        kind = kind_of(scene)
+        if kind not in self.told:
+            nearest = min((each.lacking(*kind) for each in reversed(self.sets)), key=len)
+            self.told[kind] = nearest[0] if nearest else ""
+        return self.told[kind]
 
     def laws(self, shape: str, support: str, drive: str) -> list[str]:
         """Return the laws on which a shape, on a support and a drive, meets the requirement."""
@@ -112,6 +118,7 @@ lacks_asymptotes = Needs(Scenes(CLOSED, KELVIN_VOIGT))
 lacks_limits = Needs(Scenes(("parabola",)), *lacks_asymptotes.sets)
 lacks_closed_form = Needs(Scenes(QUADRATIC), *lacks_asymptotes.sets)
 lacks_quadrature = Needs(Scenes(tuple(SHAPES)[:-1]), Scenes(laws=KELVIN_VOIGT))
+lacks_swept_transient = Needs(Scenes(laws=KELVIN_VOIGT), Scenes(tuple(SHAPES)[:-1], ARMS))
 lacks_scripts = Needs(Scenes(QUADRATIC), Scenes((*CLOSED, "circle"), KELVIN_VOIGT))
 
 
@@ -167,7 +174,7 @@ QUESTIONS = {
     ),
     "sweep": Question("sweeps of steady sliding", "sweep(scene, over=...)", lacks_quadrature),
     "sweep over time": Question(
-        "sweeps of transients", "sweep(scene, over=..., at=...)", lacks_arms, _NO_ELEMENTS
+        "sweeps of transients", "sweep(scene, over=..., at=...)", lacks_swept_transient, _NO_ELEMENTS
     ),
     "footprint": Question(
         "the footprint", "footprint(scene)", lacks_ball, "Pressure over an area is in closed form here."

@@ -163,22 +163,21 @@ class _Relaxed(Part):
 
     def __post_init__(self) -> None:
         problems: list[str] = []
-        lawless, held = (
-            self.wlf is None and self.activation_energy is None,
-            [self, *self._arms(problems)],
-        )
-        times = [(part, name) for part in held for name in TIMES if name in quantities(part)]
+        lawless = self.wlf is None and self.activation_energy is None
+        held = [self, *self._arms(problems)]
+        times = [(part, name) for part in held for name in TIMES if name in vars(part)]
         if self.modulus is None and isinstance(self.stiffness, Derived | DerivedArray):
             object.__setattr__(self, "stiffness", +self.stiffness)  # that of another foundation
         for part, name in times:  # one that was shifted stays as it is where there is no law
             time = getattr(part, name)
-            if as_given(time) is not time:
+            if isinstance(time, Derived | DerivedArray):
                 object.__setattr__(part, name, +time if lawless else as_given(time))
         with collecting(problems, "foundation", self):
             validate(self, "foundation")
-        with collecting(problems, "foundation.wlf", self.wlf):
-            object.__setattr__(self, "wlf", _wlf(self.wlf))
-        problems += self._mistakes_of_law()
+        if not (lawless and self.temperature is None and self.reference_temperature is None):
+            with collecting(problems, "foundation.wlf", self.wlf):
+                object.__setattr__(self, "wlf", _wlf(self.wlf))
+            problems += self._mistakes_of_law(lawless)
         if problems:
             raise SceneError(problems)
         if self.modulus is not None:
@@ -194,16 +193,14 @@ class _Relaxed(Part):
         """Read the arms of a Prony series; other foundations have none."""
         return []
 
-    def _mistakes_of_law(self) -> list[str]:
-        T_ref, given = self.reference_temperature, [
-            name for name in ("temperature", "reference_temperature") if getattr(self, name) is not None
-        ]  # fmt: skip
-        if self.wlf is None and self.activation_energy is None:
-            told = f"needs a law that shifts times; expected foundation.wlf = {WLF_PAIR}, or "
-            return [f"foundation.{name}: {told}foundation.activation_energy" for name in given[:1]]
+    def _mistakes_of_law(self, lawless: bool) -> list[str]:
+        if lawless:
+            key = "temperature" if self.temperature is not None else "reference_temperature"
+            told = "needs a law that shifts times; expected foundation.wlf ="
+            return [f"foundation.{key}: {told} {WLF_PAIR}, or foundation.activation_energy"]
         if self.wlf is not None and self.activation_energy is not None:
             return ["foundation.wlf: cannot be given beside foundation.activation_energy"]
-        if self.wlf is not None and T_ref is None and not given:
+        if self.reference_temperature is None and self.temperature is None and self.wlf is not None:
             return [f"foundation.reference_temperature: missing; expected {expected('K')}"]
         return []
 

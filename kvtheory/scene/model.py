@@ -171,21 +171,23 @@ class Scene(Part):
     run: Run = Run()
 
     def __post_init__(self) -> None:
-        parts: dict[str, Any] = {
-            "indenter": Indenter, "foundation": AnyFoundation, "support": Support, "drive": Drive, "run": Run,
-        }  # fmt: skip
+        parts = vars(self)
         problems = []
-        for name, kind in parts.items():
-            if not isinstance(getattr(self, name), kind):
-                told = getattr(kind, "__name__", f"one of {kind}")
-                problems.append(problem(f"`{name}`", getattr(self, name), f"expected {told}"))
+        for name, kinds in PARTS.items():
+            if parts[name].__class__ not in kinds:
+                told = " or ".join(kind.__name__ for kind in kinds)
+                problems.append(problem(f"`{name}`", parts[name], f"expected {told}"))
         for name in () if problems else WEIGHED:
-            problems += misfits(name, getattr(self, name), self.indenter)
+            if "written" in vars(parts[name]):
+                problems += misfits(name, parts[name], self.indenter)
         problems = problems or lacks_mass(self.support, self.drive, self.indenter.per_width)
         if problems:
             raise SceneError(problems)
-        self.mark(getattr(self, name) for name in parts)
-        _ = self.shape  # or raise
+        for name in PARTS:
+            if parts[name].arrayed:
+                object.__setattr__(self, "arrayed", True)
+                _ = self.shape  # or raise
+                break
 
     @cached_property
     def shape(self) -> tuple[int, ...]:
@@ -337,6 +339,15 @@ class Scene(Part):
             for part, own in parts.items()
         }
         return replace(self, **made) if made else self
+
+
+PARTS: dict[str, frozenset[type]] = {
+    name: frozenset(kind.__args__ if hasattr(kind, "__args__") else (kind,))
+    for name, kind in {
+        "indenter": Indenter, "foundation": AnyFoundation, "support": Support, "drive": Drive, "run": Run,
+    }.items()
+}  # fmt: skip
+"""The parts of a scene, and what each can be."""
 
 
 def lacks_mass(support: Support, drive: Drive, per_width: bool) -> list[str]:

@@ -271,19 +271,23 @@ def required(cls: Any, names: Iterable[str] = ()) -> list[str]:
 
     One that another excludes requires nothing more: that is a separate mistake.
     """
-    specs = quantities(cls)
-    names = set(names)
+    return list(_required(cls, tuple(names)))
+
+
+@cache
+def _required(cls: Any, given: tuple[str, ...]) -> tuple[str, ...]:
+    specs, names = quantities(cls), set(given)
     for name in specs:
         if name in names:
             names -= set(specs[name].excludes)
     beside = {other for name in specs.keys() & names for other in specs[name].beside}
     first = {f.name for f in dataclasses.fields(cls) if f.default is dataclasses.MISSING}
-    return [
+    return tuple(
         name
         for name, spec in specs.items()
         if name not in names
         and (name in beside or ((spec.needed or name in first) and spec.instead not in names))
-    ]
+    )
 
 
 def missing(section: str, name: str, spec: Quantity, of: str = "") -> str:
@@ -403,17 +407,19 @@ def validate(instance: Any, section: str) -> None:
     A derived quantity is removed, to be recomputed. Values whose unit tells whether they are per unit
     width are kept in `written`, for the scene to check.
     """
-    specs, written = quantities(instance), {}
-    values = {name: as_given(getattr(instance, name)) for name in specs}
-    values = {
-        name: None if isinstance(v, Derived | DerivedArray) else v for name, v in values.items()
-    }
-    here = [name for name, value in values.items() if value is not None]
-    problems = [missing(section, name, specs[name]) for name in required(type(instance), here)]
+    specs, written, values = quantities(instance), {}, {}
+    for name in specs:
+        value = as_given(getattr(instance, name))
+        if isinstance(value, Derived | DerivedArray):
+            object.__setattr__(instance, name, None)
+        elif value is not None:
+            values[name] = value
+    here = tuple(values)
+    problems = [missing(section, name, specs[name]) for name in _required(type(instance), here)]
     for name, value in values.items():
         try:
             spec = written_as(value, specs[name])
-            number = None if value is None else converted(value, spec)
+            number = converted(value, spec)
             object.__setattr__(instance, name, number)
             if number.__class__ is np.ndarray:
                 object.__setattr__(instance, "arrayed", True)
@@ -422,10 +428,11 @@ def validate(instance: Any, section: str) -> None:
         except ValueError as error:
             problems.append(problem(f"{section}.{name}", value, str(error)))
     for place, name in enumerate(here):  # a pair is one mistake, not two
-        others = [f"{section}.{other}" for other in here[place:] if other in specs[name].excludes]
-        if others:
-            told = f"cannot be given beside {', '.join(others)}"
-            problems.append(problem(f"{section}.{name}", values[name], told))
+        if excludes := specs[name].excludes:
+            others = [f"{section}.{other}" for other in here[place:] if other in excludes]
+            if others:
+                told = f"cannot be given beside {', '.join(others)}"
+                problems.append(problem(f"{section}.{name}", values[name], told))
     if problems:
         raise SceneError(problems)
     if written:
@@ -449,8 +456,7 @@ def written_as(value: Any, spec: Quantity) -> Quantity:
     >>> written_as("3 N", Quantity("N/m", "W, load", 0.0, True, per_width=True)).unit
     'N'
     """
-    value = sample(value)
-    if not (spec.per_width and _has_unit(value)):
+    if not (spec.per_width and _has_unit(value := sample(value))):
         return spec
     kinds = spec, spec.fitting(False)
     for kind in kinds:
