@@ -142,7 +142,7 @@ def test_a_scene_that_the_page_does_not_know_is_refused_and_nothing_written(tmp_
     assert 'the explorer holds for foundation.kind = "kelvin-voigt" only' in done.output
     assert not path.exists()
     with pytest.raises(
-        ValueError, match="the explorer holds for parabola, circle, power-law, wedge, sphere"
+        ValueError, match="the explorer holds for the parabola, the power law, the wedge, the ball"
     ):
         explorer_page(kv.Scene(kv.Revolved(kv.Wedge(0.1)), support=kv.Fixed(1e-4)))
 

@@ -9,7 +9,6 @@ from typing import Any
 import numpy as np
 
 from kvtheory.scene.arguments import a_scene, checked, file_name, names
-from kvtheory.scene.drive_file import history_from
 from kvtheory.scene.drives import SPRING
 from kvtheory.scene.foundations import (
     FOUNDATIONS,
@@ -43,7 +42,7 @@ from kvtheory.scene.quantities import (
     shown,
     written_as,
 )
-from kvtheory.scene.texts import read_text
+from kvtheory.scene.tables import history_from, read_text
 from kvtheory.scene.units import expected
 from kvtheory.scene.waveforms import WAVEFORMS
 

@@ -8,7 +8,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any, ClassVar
+from typing import Any, ClassVar, get_args
 
 import numpy as np
 
@@ -341,11 +341,9 @@ class Scene(Part):
         return replace(self, **made) if made else self
 
 
-PARTS: dict[str, frozenset[type]] = {
-    name: frozenset(kind.__args__ if hasattr(kind, "__args__") else (kind,))
-    for name, kind in {
-        "indenter": Indenter, "foundation": AnyFoundation, "support": Support, "drive": Drive, "run": Run,
-    }.items()
+PARTS: dict[str, tuple[Any, ...]] = {
+    "indenter": get_args(Indenter), "foundation": get_args(AnyFoundation), "support": get_args(Support),
+    "drive": (Drive,), "run": (Run,),
 }  # fmt: skip
 """The parts of a scene, and what each can be."""
 

@@ -266,12 +266,12 @@ def changed(instance: Any, **values: Any) -> Any:
     return dataclasses.replace(instance, **{**dropped, **values})
 
 
-def required(cls: Any, names: Iterable[str] = ()) -> list[str]:
+def required(cls: Any, names: Iterable[str] = ()) -> tuple[str, ...]:
     """Return the quantities that must be given where those of the `names` are.
 
     One that another excludes requires nothing more: that is a separate mistake.
     """
-    return list(_required(cls, tuple(names)))
+    return _required(cls, tuple(names))
 
 
 @cache
@@ -415,7 +415,7 @@ def validate(instance: Any, section: str) -> None:
         elif value is not None:
             values[name] = value
     here = tuple(values)
-    problems = [missing(section, name, specs[name]) for name in _required(type(instance), here)]
+    problems = [missing(section, name, specs[name]) for name in required(type(instance), here)]
     for name, value in values.items():
         try:
             spec = written_as(value, specs[name])
