@@ -60,7 +60,7 @@ PER_WIDTH = {
     key for cls in SUPPORTS.values() for key, spec in quantities(cls).items() if spec.per_width
 }
 """Keys of a support that are masses, loads and springs."""
-BALL = " with a ball, whose support is in kg, N and N/m, and not per unit width"
+BALL = " (a sphere takes total mass in kg, load in N and stiffness in N/m)"
 POINTS = 'points such as ["50 ms", "100 mm/s"]'
 DRIVES = ("velocity", "history", "waveform", "file")
 """Keys that define the motion of a drive; a scene has one of them."""
@@ -393,12 +393,14 @@ def _part(section: str, table: Any, per_width: bool) -> Any:
     if section == "drive" and "waveform" in table:
         return _waveform(table, per_width)
     if section not in CHOICES:
-        return _make(PLAIN[section], section, table, per_width)
+        return PLAIN[section](**_values(PLAIN[section], section, table, per_width))
     chooser, models = CHOICES[section]
     rest = {key: value for key, value in table.items() if key != chooser}
     name = table.get(chooser, DEFAULTS.get(section))
     if isinstance(name, str) and name in models:
-        return _make(models[name], section, rest, per_width, f'{chooser} = "{name}"')
+        return models[name](
+            **_values(models[name], section, rest, per_width, f'{chooser} = "{name}"')
+        )
     problems = []
     if chooser not in table and absent([chooser], table):
         problems.append(f"{section}.{chooser}: missing; expected one of: {', '.join(models)}")
@@ -416,7 +418,9 @@ def _part(section: str, table: Any, per_width: bool) -> Any:
         ]
     else:
         with collecting(problems, section, table):
-            _make(models[meant], section, rest, per_width, f'{chooser} = "{meant}"')
+            models[meant](
+                **_values(models[meant], section, rest, per_width, f'{chooser} = "{meant}"')
+            )
     raise SceneError(problems)
 
 
@@ -431,15 +435,8 @@ def _waveform(table: Mapping[str, Any], per_width: bool) -> Drive:
     return Drive(waveform=WAVEFORMS[name](**values), **spring)
 
 
-def _make(
-    cls: Any, section: str, table: Mapping[str, Any], per_width: bool, choice: str = ""
-) -> Any:
-    """Construct `cls` from TOML values, in which a bare number is a mistake."""
-    return cls(**_values(cls, section, table, per_width, choice))
-
-
 def _values(
-    cls: Any, section: str, table: Mapping[str, Any], per_width: bool, choice: str
+    cls: Any, section: str, table: Mapping[str, Any], per_width: bool, choice: str = ""
 ) -> dict[str, Any]:
     """Return the arguments of `cls`; for a waveform they include the spring of its drive."""
     specs, valid = quantities(cls), _keys(cls)
@@ -469,13 +466,7 @@ def _values(
             elif key == "arms":
                 values["arms"] = arms_of(_pairs(value, pairs), layer=layer)
             elif key == "wlf":
-                bare = (
-                    isinstance(value, list)
-                    and len(value) == 2
-                    and isinstance(value[1], int | float)
-                )
-                if bare:
-                    raise ValueError(f"has numbers without a unit; expected {WLF_PAIR}")
+                _pairs([value[1:]] if isinstance(value, list) else value, WLF_PAIR)
                 values["wlf"] = value
             else:
                 values[key] = _value(value, specs[key]) if key in specs else _pairs(value, POINTS)

@@ -294,12 +294,12 @@ class Revolved(Part):
 
     @property
     def reach(self) -> float:
-        """That of the profile."""
+        """Largest |x| of the profile, in m."""
         return self.profile.reach
 
     @property
     def kinks(self) -> tuple[float, ...]:
-        """Those of the profile."""
+        """Points of the profile where h' jumps or a derivative is singular, in m."""
         return self.profile.kinks
 
     def height(self, x: Value, y: Value = 0.0) -> Value:
