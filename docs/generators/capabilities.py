@@ -6,9 +6,9 @@ SHORT = dict(zip(LAWS, ("KV", "Prony", "springpot"), strict=True))
 _HEAD = """# What works with what
 
 A scene has an indenter shape, a law of the foundation (KV: `kelvin-voigt`, Prony: `generalized-maxwell`,
-springpot: `fractional-kelvin-voigt`), a support and a drive. Each row is a question, each cell lists the laws
-on which it is answered for a shape, with any support and any drive unless a remark restricts them. A cell is
-empty where theory is missing. The messages of the functions come from the same table."""
+springpot: `fractional-kelvin-voigt`; all: these three), a support and a drive. Each row is a question, each
+cell lists the laws on which it is answered for a shape, with any support and any drive unless a remark
+restricts them. A cell is empty where theory is missing. The messages of the functions come from the same table."""
 
 
 def pages() -> dict[str, str]:
@@ -42,4 +42,5 @@ def _cell(needs: Needs, shape: str) -> str:
 
 
 def _told(laws: list[str], remarks: tuple[str, ...]) -> str:
-    return ", ".join(laws) + (f" ({'; '.join(remarks)})" if remarks else "")
+    named = "all" if len(laws) == len(LAWS) else ", ".join(laws)
+    return named + (f" ({'; '.join(remarks)})" if remarks else "")

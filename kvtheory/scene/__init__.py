@@ -3,7 +3,14 @@
 from kvtheory.scene.files import load_scene, template, to_toml
 from kvtheory.scene.foundations import Foundation, FractionalKelvinVoigt, GeneralizedMaxwell
 from kvtheory.scene.indenters import (
-    Circle, Indenter, Parabola, PowerLaw, Profile, Revolved, Sphere, Wedge,
+    Circle,
+    Indenter,
+    Parabola,
+    PowerLaw,
+    Profile,
+    Revolved,
+    Sphere,
+    Wedge,
 )  # fmt: skip
 from kvtheory.scene.model import DeadWeight, Drive, Fixed, Run, Scene, Support, Suspended
 from kvtheory.scene.quantities import SceneError

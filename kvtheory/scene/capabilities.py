@@ -58,18 +58,6 @@ class Scenes:
 Kind = tuple[str, str, str, str]
 
 
-def kind_of(scene: Scene) -> Kind:
-    """Return shape, law, support and drive of a scene by their names in the table.
-
-    >>> kind_of(Scene())
-    ('parabola', 'kelvin-voigt', 'dead-weight', 'rigid')
-    """
-    body, drive = scene.indenter, "rigid" if scene.drive.rigid else "spring"
-    functions = body.shape == "revolved" and not body.convex
-    shape = "revolved-callable" if functions else body.shape
-    return shape, scene.foundation.kind, scene.support.kind, drive
-
-
 class Needs:
     """A requirement on a scene, which is met by any of several sets of scenes.
 
@@ -86,7 +74,7 @@ class Needs:
 
     def __call__(self, scene: Scene) -> str:
         """Return what the scene lacks."""
-        kind = kind_of(scene)
+        kind = scene.kind
         if kind not in self.told:
             nearest = min((each.lacking(*kind) for each in reversed(self.sets)), key=len)
             self.told[kind] = nearest[0] if nearest else ""
@@ -110,6 +98,7 @@ lacks_ball = Needs(Scenes(("sphere",), KELVIN_VOIGT))
 lacks_rigid_drive = Needs(Scenes(drives=("rigid",)))
 lacks_paper_model = Needs(Scenes(("parabola",), KELVIN_VOIGT))
 lacks_rigid_paper_model = Needs(Scenes(("parabola",), KELVIN_VOIGT, drives=("rigid",)))
+lacks_slow_manifold = Needs(Scenes(("parabola",), KELVIN_VOIGT, SUPPORTS[1:], ("rigid",)))
 lacks_strips = Needs(Scenes(("sphere",), KELVIN_VOIGT, ("fixed",), ("rigid",), TRACE))
 lacks_transient = Needs(*lacks_paper_model.sets, *lacks_strips.sets)
 lacks_quadratic_on_arms = Needs(Scenes(QUADRATIC, ARMS))
@@ -163,7 +152,7 @@ QUESTIONS = {
         "answer.",
     ),
     "slow manifold": Question(
-        "the slow manifold", "solve(scene, at=...)", lacks_rigid_paper_model,
+        "the slow manifold", "solve(scene, at=...)", lacks_slow_manifold,
         "It is derived for the paper's model; a fixed indenter does not move, and has none.",
     ),
     "elements": Question("the simulator", "elements(scene)", lacks_arms, _NO_ELEMENTS),
@@ -177,7 +166,8 @@ QUESTIONS = {
         "sweeps of transients", "sweep(scene, over=..., at=...)", lacks_swept_transient, _NO_ELEMENTS
     ),
     "footprint": Question(
-        "the footprint", "footprint(scene)", lacks_ball, "Pressure over an area is in closed form here."
+        "the footprint", "footprint(scene)", lacks_ball,
+        "The pressure over the area of other contacts is not in closed form."
     ),
     "explorer": Question(
         "the explorer", "kvtheory explore", lacks_scripts,

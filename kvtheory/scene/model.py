@@ -14,7 +14,7 @@ import numpy as np
 
 from kvtheory.scene.drives import SPRING, VELOCITY, Drive
 from kvtheory.scene.foundations import AnyFoundation, Arm, Foundation
-from kvtheory.scene.indenters import Indenter, Parabola
+from kvtheory.scene.indenters import Indenter, Parabola, Revolved
 from kvtheory.scene.quantities import (
     Part,
     Quantity,
@@ -225,6 +225,18 @@ class Scene(Part):
         if not self.arrayed:
             vars(scene)["shape"] = np.shape(velocity)
         return scene
+
+    @cached_property
+    def kind(self) -> tuple[str, str, str, str]:
+        """Shape, law, support and drive by the names of the table `capabilities`.
+
+        >>> Scene().kind
+        ('parabola', 'kelvin-voigt', 'dead-weight', 'rigid')
+        """
+        body, drive = self.indenter, "rigid" if self.drive.rigid else "spring"
+        functions = isinstance(body, Revolved) and not body.convex
+        shape = "revolved-callable" if functions else body.shape
+        return shape, self.foundation.kind, self.support.kind, drive
 
     @property
     def held(self) -> bool:
