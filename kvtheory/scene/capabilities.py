@@ -174,7 +174,7 @@ QUESTIONS = {
         "The scripts of the page know closed forms, and the integral of the circle.",
     ),
     "numbers": Question(
-        "derivations with numbers", "kvtheory derive --numbers", lacks_asymptotes,
+        "derivations with numbers", "kvtheory derive, with numbers", lacks_asymptotes,
         "The derivations are of Kelvin-Voigt closed forms.",
     ),
 }  # fmt: skip

@@ -237,7 +237,7 @@ def _factor(written: str, unit: str) -> Fraction:
     written = re.sub(r"^(1\s*)?/", "dimensionless/", written)
     if len(written) > LONGEST_UNIT or not _UNIT.fullmatch(written):
         raise ValueError(f'"{written}" is not a unit; expected {expected(unit)}')
-    if unit == "delta K" and written in TEMPERATURES:
+    if unit == "delta K" and TEMPERATURES.get(written, (1, 0))[1]:  # a scale with another zero
         raise ValueError(
             f'"{written}" is the unit of a temperature, not of a difference; expected {expected(unit)}'
         )
