@@ -10,7 +10,7 @@ from click.testing import CliRunner
 import kvtheory as kv
 from kvtheory.cli import main
 from kvtheory.explorer import explorer_page, save_explorer
-from kvtheory.explorer.controls import controls
+from kvtheory.explorer.controls import controls, quantities
 from kvtheory.explorer.page import formulas
 
 TABLE1 = kv.Scene()
@@ -68,7 +68,7 @@ def test_every_quantity_of_a_scene_has_a_slider():
     ):
         for name, model in models.items():
             sliders = sections[section]["choices"][name]
-            assert set(sliders) == set(kv.scene.quantities.quantities(model))
+            assert set(sliders) == set(quantities(model))
             assert all(slider["unit"] or slider["exponent"] == 0 for slider in sliders.values())
             asked = sections[section]["alternatives"][name]
             assert set().union(*(each["names"] for each in asked)) == set(sliders)
@@ -139,10 +139,10 @@ def test_a_scene_that_the_page_does_not_know_is_refused_and_nothing_written(tmp_
     scene.write_text(kv.scene.files.to_toml(rubber), encoding="utf-8")
     done = CliRunner().invoke(main, ["explore", str(scene), "-o", str(path)])
     assert done.exit_code == 2
-    assert 'circle" holds for foundation.kind = "kelvin-voigt" only' in done.output
+    assert 'the explorer holds for foundation.kind = "kelvin-voigt" only' in done.output
     assert not path.exists()
     with pytest.raises(
-        ValueError, match="the explorer holds for parabola, circle, power-law, wedge, sphere"
+        ValueError, match="the explorer holds for the parabola, the power law, the wedge, the ball"
     ):
         explorer_page(kv.Scene(kv.Revolved(kv.Wedge(0.1)), support=kv.Fixed(1e-4)))
 

@@ -1,6 +1,8 @@
 """A load instead of a weight, and a thin layer instead of a stiffness: one scene in other words."""
 
+import copy
 import json
+import pickle
 from dataclasses import replace
 
 import numpy as np
@@ -18,6 +20,12 @@ G = 9.80665
 SUPPORTS = {"dead-weight": {}, "suspended": {"stiffness": 3e7}}
 KINDS = {"dead-weight": kv.DeadWeight, "suspended": kv.Suspended}
 LAYER = kv.Foundation(modulus="5 MPa", thickness="2 mm", poisson_ratio=0.45, retardation_time=0.1)
+
+MODULI = [["30 MPa", "10 ms"], ["5 MPa", "1 s"]]
+SOLID = {"modulus": "5 MPa", "thickness": "0.2 mm", "poisson_ratio": 0.3}
+SOFT = kv.GeneralizedMaxwell(**SOLID, arms=MODULI)
+ROOM = {"reference_temperature": "23 degC"}
+LAWS = {"wlf": {"wlf": ["17.44", "51.6 K"]}, "arrhenius": {"activation_energy": "80 kJ/mol"}}
 
 
 def scene(kind, **support):
@@ -185,6 +193,13 @@ def test_a_layer_is_swept_by_its_own_keys_or_gives_way_to_a_stiffness():
         kv.Scene(support=kv.DeadWeight(mass=2.0, load=3e3)),
         kv.Scene(support=kv.Suspended(load=3e3, stiffness=1e6, gravity=1.6)),
         kv.Scene(foundation=LAYER),
+        kv.Scene(foundation=replace(SOFT, **ROOM, **LAWS["wlf"], temperature="60 degC")),
+        kv.Scene(foundation=kv.FractionalKelvinVoigt(1e9, 0.1, 0.5, **ROOM, **LAWS["arrhenius"])),
+        kv.Scene(
+            foundation=kv.Foundation(
+                1e9, [0.1, 0.2], temperature=[[280.0], [300.0]], **ROOM, **LAWS["wlf"]
+            )
+        ),
     ],
 )
 def test_files_hold_what_was_given(tmp_path, scene):
@@ -302,12 +317,168 @@ def test_every_shape_and_method_carries_the_load_of_a_load(indenter, kind):
     )
 
 
+def test_the_arms_of_a_layer_are_moduli_and_follow_it():
+    per_modulus = layer_stiffness(1.0, 2e-4, 0.3)
+    assert [arm.stiffness for arm in SOFT.arms] == pytest.approx(
+        [3e7 * per_modulus, 5e6 * per_modulus]
+    )
+    plain = kv.GeneralizedMaxwell(
+        float(SOFT.stiffness),
+        arms=[(arm.stiffness * 1.0, arm.relaxation_time) for arm in SOFT.arms],
+    )
+    thickness, moduli = np.array([1e-4, 2e-4, 4e-4]), [[6e6], [7e6]]
+    by_layer, by_stiffness = kv.Scene(foundation=SOFT), kv.Scene(foundation=plain)
+    assert kv.steady(by_layer) == kv.steady(by_stiffness)
+    assert kv.asymptotes(by_layer).maxima == kv.asymptotes(by_stiffness).maxima
+    over = {"foundation.thickness": thickness, "foundation.arms[1].modulus": moduli}
+    many = by_layer.replace(over)
+    assert many.shape == (2, 3)
+    found = kv.steady(many).friction_coefficient
+    for i, j in np.ndindex(2, 3):
+        arms = [["30 MPa", "10 ms"], [moduli[i][0], "1 s"]]
+        alone = kv.GeneralizedMaxwell(**{**SOLID, "thickness": thickness[j]}, arms=arms)
+        assert kv.steady(kv.Scene(foundation=alone)).friction_coefficient == found[i, j]
+    swept = kv.sweep(by_layer, over={"foundation.thickness": thickness}, quantities="depth")
+    assert np.array_equal(
+        swept["depth"], kv.steady(by_layer, over={"foundation.thickness": thickness}).depth
+    )
+
+
+@pytest.mark.parametrize(
+    ("law", "foundation"),
+    [
+        ("wlf", kv.Foundation(1e10, 0.1)),
+        ("arrhenius", SOFT),
+        ("wlf", kv.FractionalKelvinVoigt(1e10, 0.1, 0.5)),
+    ],
+    ids=["kelvin-voigt", "generalized-maxwell", "fractional-kelvin-voigt"],
+)
+def test_temperature_is_velocity(law, foundation):
+    """F25: steady sliding at T and V is that at T_ref and V a_T, for every shape and support."""
+    cold = replace(foundation, **ROOM, **LAWS[law])
+    warm = replace(cold, temperature="40 degC")
+    a_T = warm.shift_factor
+    T, T_ref = 313.15, 296.15
+    if law == "wlf":
+        assert a_T == pytest.approx(10 ** (-17.44 * 17 / 68.6), rel=1e-12)
+    else:
+        assert a_T == pytest.approx(np.exp(8e4 / 8.31446261815324 * (1 / T - 1 / T_ref)), rel=1e-12)
+    shapes = [
+        kv.Parabola(0.01), kv.Circle(0.01), kv.PowerLaw(0.01, 3.0), kv.Wedge(0.05), kv.Sphere(0.01),
+        kv.Revolved(kv.Wedge(0.05)), kv.Profile(lambda x: 50.0 * x * x, lambda x: 100.0 * x),
+    ]  # fmt: skip
+    for shape in shapes:
+        quick = shape.shape in ("parabola", "sphere") or foundation.kind == "kelvin-voigt"
+        for support in (kv.Fixed(1e-5), kv.DeadWeight(10.0))[: 1 + quick]:
+            scene = kv.Scene(shape, cold, support, kv.Drive(0.1 * a_T))
+            there = kv.steady(scene)
+            here = kv.steady(replace(scene, foundation=warm, drive=kv.Drive(0.1)))
+            for name in ("depth", "load", "friction_force", "half_length", "peak_pressure"):
+                error = here.certificate.relative_error.get(name, 1e-12) + 1e-12
+                wanted = getattr(there, name)
+                assert getattr(here, name) == pytest.approx(wanted, rel=4 * error), (shape, name)
+
+
+def test_temperatures_are_swept_and_everything_sees_the_shifted_times_only():
+    law = {**ROOM, **LAWS["wlf"]}
+    rubber = kv.GeneralizedMaxwell(1e10, arms=[(3e10, 0.01), (5e9, 1.0)], **law)
+    scene = kv.Scene(foundation=rubber, run=kv.Run(1e-3))
+    swept = kv.sweep(
+        scene,
+        over={"foundation.temperature": "0 degC:80 degC:3"},
+        quantities="friction_coefficient",
+    )
+    over = {"foundation.temperature": ["0 degC", "104 degF", 353.15]}
+    many = scene.replace(over)
+    assert swept["friction_coefficient"].tolist() == kv.steady(many).friction_coefficient.tolist()
+    for i in range(3):
+        alone = scene.replace({"foundation.temperature": [273.15, 313.15, 353.15][i]})
+        plain = replace(scene, foundation=alone.foundation.plain())
+        assert plain.foundation.arms[0].relaxation_time == 0.01 * alone.foundation.shift_factor
+        assert kv.steady(plain).friction_force == kv.steady(many).friction_force[i]
+        assert kv.steady(many.flat().rows(slice(i, i + 1))).depth[0] == kv.steady(plain).depth
+        if i == 0:  # warmer, the times are too short for elements
+            assert_same_motion(kv.elements(alone, at="1 ms"), kv.elements(plain, at="1 ms"))
+    twice = alone.replace({"foundation.temperature": 300.0}).replace(
+        {"foundation.temperature": alone.foundation.temperature}
+    )
+    assert twice == alone
+    both = many.replace({"foundation.arms[0].relaxation_time": [[0.01], [0.02]]})
+    assert both.shape == (2, 3)
+    assert pickle.loads(pickle.dumps(both)) == both == copy.deepcopy(both)
+    moved = pickle.loads(pickle.dumps(both)).replace({"foundation.temperature": 353.15})
+    assert moved.foundation.arms[0].relaxation_time[0] == alone.foundation.arms[0].relaxation_time
+
+
+THERMAL_MISTAKES = [
+    ({"temperature": "60 degC", **ROOM}, "foundation.temperature: needs a law"),
+    ({"temperature": "60 degC", **LAWS["wlf"]}, "foundation.reference_temperature: missing"),
+    ({"temperature": 1.0, **LAWS["arrhenius"]}, "foundation.reference_temperature: missing"),
+    (LAWS["wlf"], "foundation.reference_temperature: missing"),
+    ({**ROOM, **LAWS["wlf"], **LAWS["arrhenius"]}, "foundation.wlf: cannot be given beside"),
+    ({"temperature": "-274 degC", **ROOM, **LAWS["wlf"]}, "foundation.temperature = .*above 0"),
+    (
+        {"temperature": "-29 degC", **ROOM, **LAWS["wlf"]},
+        "above T_ref - C_2 = 244.55 K, the pole",
+    ),
+    (
+        {"temperature": [300.0, 244.0], **ROOM, **LAWS["wlf"]},
+        "above T_ref - C_2 = 244.55 K, the pole",
+    ),
+    (
+        {"temperature": "-28.5 degC", **ROOM, **LAWS["wlf"]},
+        "double precision; check foundation.temp",
+    ),
+    ({"temperature": "1 K", **ROOM, **LAWS["arrhenius"]}, "foundation.activation_energy"),
+    ({"temperature": "60 degC", **ROOM, "wlf": ["17.44", "51.6 degC"]}, "not of a difference"),
+    ({"temperature": "60 degC", **ROOM, "wlf": ["17.44 K", "51.6 K"]}, "dimensionless"),
+    ({"temperature": "60 degC", **ROOM, "wlf": ["17.44"]}, "expected C_1 and C_2"),
+]
+
+
+@pytest.mark.parametrize(("given", "words"), THERMAL_MISTAKES)
+def test_a_wrong_temperature_is_told_by_its_key(given, words):
+    for make in (
+        lambda **law: kv.Foundation(1e10, 0.1, **law),
+        lambda **law: kv.GeneralizedMaxwell(**SOLID, arms=MODULI, **law),
+    ):
+        with pytest.raises(kv.SceneError, match=words):
+            make(**given)
+
+
+def test_a_shift_that_leaves_double_precision_later_is_named():
+    cold = kv.Foundation(1e10, 0.1, temperature=250.0, **ROOM, wlf=(20.0, 51.6))
+    with pytest.raises(ValueError, match=r"a_T of foundation\.temperature = 2\.\d+e\+169"):
+        kv.transient(kv.Scene(foundation=cold))
+
+
+@pytest.mark.parametrize(
+    ("make", "words"),
+    [
+        (lambda: kv.GeneralizedMaxwell(1e10, arms=MODULI), r"arms\[0\] .*only a layer"),
+        (
+            lambda: kv.GeneralizedMaxwell(**SOLID, arms=[["1 GN/m^3", "1 s"]]),
+            "has arms with moduli",
+        ),
+        (lambda: replace(SOFT, arms=[MODULI[0], ["1 GN/m^3", "1 s"]]), r"arms\[1\] .*with moduli"),
+        (lambda: kv.GeneralizedMaxwell(1e10, arms=SOFT.arms), "only a layer"),
+        (lambda: kv.Scene(foundation=SOFT).replace({"foundation.stiffness": 1e9}), "only a layer"),
+    ],
+)
+def test_mixed_units_of_arms_are_one_message(make, words):
+    with pytest.raises(kv.SceneError, match=words) as caught:
+        make()
+    assert len(caught.value.problems) == 1
+
+
 SPRUNG = kv.Drive(velocity=0.1, stiffness=1e6)
 FOLLOWING = (
     kv.Scene(drive=SPRUNG),
     kv.Scene(support=kv.DeadWeight(load=3e3), drive=SPRUNG),
     kv.Scene(support=kv.Suspended(mass=2.0, load=3e3, stiffness=1e6)),
     kv.Scene(foundation=LAYER),
+    kv.Scene(foundation=SOFT),
+    kv.Scene(foundation=replace(SOFT, **ROOM, **LAWS["wlf"], temperature="25 degC")),
     kv.Scene.table1("fixed"),
 )
 
@@ -315,6 +486,8 @@ FOLLOWING = (
 @pytest.mark.parametrize("given", FOLLOWING)
 def test_what_follows_from_a_replaced_value_is_as_in_a_scene_made_with_it(given):
     for key in sorted(given.replaceable.keys() & given.values().keys()):
+        if key == "foundation.stiffness" and given.foundation.arms:
+            continue  # the arms of a layer have moduli
         value = 1.05 * given.values()[key]
         made = given.replace({key: value}).values()
         arrays = given.replace({key: [value, value]}).values()

@@ -14,7 +14,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import kvtheory as kv
-from kvtheory.scene import template, texts
+from kvtheory.scene import tables, template
 from kvtheory.scene.static_state import StaticState
 
 TABLE_1 = """
@@ -346,7 +346,7 @@ def test_devices_and_files_that_are_too_large_are_not_read(tmp_path, monkeypatch
     if not device:
         path, told = tmp_path / "large.csv", "holds more than 0 MB"
         path.write_text("t [s],V [m/s]\n0,1\n1,1\n")
-        monkeypatch.setattr(texts, "MOST", 10)
+        monkeypatch.setattr(tables, "MOST", 10)
     elif not path.exists():
         pytest.skip("this system has no such device")
     for read in (

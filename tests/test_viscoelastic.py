@@ -217,7 +217,7 @@ def test_mistakes_of_a_foundation_are_told(overrides, told):
     ],
 )  # fmt: skip
 def test_what_cannot_follow_a_springpot_refuses_it_in_one_wording(call):
-    with pytest.raises((ValueError, kv.ToleranceError), match=r"only, not for foundation\.kind"):
+    with pytest.raises((ValueError, kv.ToleranceError), match=r"holds for foundation\.kind"):
         call(scene(HALF))
 
 

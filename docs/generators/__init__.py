@@ -3,9 +3,19 @@
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from pathlib import Path
 
-from generators import api, atlas, commands, derivations, equations, gallery, keys, problems
+from generators import (
+    api,
+    atlas,
+    capabilities,
+    commands,
+    derivations,
+    equations,
+    gallery,
+    keys,
+    problems,
+)
 
-QUICK = (api, commands, equations, keys)
+QUICK = (api, capabilities, commands, equations, keys)
 ROOT = Path(__file__).parents[2]
 
 

@@ -67,7 +67,14 @@ same dimension; dimensionless quantities are bare numbers. A quantity without it
 mistakes in a file are reported at once. These tables are generated from the code. Without a file the scene
 is Table 1 of the paper, with `{Scene().support.kind}` support."""
 _ARMS = """`arms` of a `generalized-maxwell` foundation is a list of pairs of stiffness and relaxation time,
-`[["30 GN/m^3", "10 ms"], ["5 GN/m^3", "1 s"]]`."""
+`[["30 GN/m^3", "10 ms"], ["5 GN/m^3", "1 s"]]`. In a layer, given by `modulus`, `thickness` and
+`poisson_ratio`, they are pairs of modulus and relaxation time, `[["30 MPa", "10 ms"]]`, and their stiffness
+follows from the layer as that of the foundation does.
+
+`temperature` multiplies every time of a foundation by a_T. The times in the file are those at the
+`reference_temperature`; the law is `wlf = ["17.44", "51.6 K"]`, the constants C_1 and C_2 of
+log10 a_T = -C_1 (T - T_ref)/(C_2 + T - T_ref), or an `activation_energy`. Without `temperature` the
+foundation is at its reference temperature."""
 _DRIVES = """A drive has one of {ways}. A `history` is a list of pairs of time and velocity, linear between
 its points, with a jump where a time is repeated. A `file` is a table with the columns `t [ms]` and
 `V [mm/s]`; its path is relative to the scene file."""

@@ -7,8 +7,8 @@ from kvtheory.api._edge import double_precision, scene_of
 from kvtheory.api._steady import method_for
 from kvtheory.results import AsymptoteReport
 from kvtheory.scene.arguments import a_scene, checked, number, replacements
+from kvtheory.scene.capabilities import lacks_limits
 from kvtheory.scene.model import Scene
-from kvtheory.scene.requirements import lacks_limits
 
 MINIMUM_TOLERANCE = 1e-10
 """Smallest tolerance: below it an asymptote cannot be distinguished from rounding."""

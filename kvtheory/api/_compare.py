@@ -17,9 +17,9 @@ from kvtheory.results import SERIES_UNITS, DivergenceError, units_for
 from kvtheory.results.comparison import Comparison
 from kvtheory.results.schemes import SCHEME_ROWS
 from kvtheory.scene.arguments import a_scene, callback, checked, choice, measured, number
+from kvtheory.scene.capabilities import lacks_quadratic_on_arms, lacks_strips, require
 from kvtheory.scene.model import Scene
 from kvtheory.scene.quantities import Quantity
-from kvtheory.scene.requirements import lacks_quadratic_on_arms, lacks_strips, require
 from kvtheory.scene.static_state import StaticState
 
 EVEN, DENSE = 401, 60

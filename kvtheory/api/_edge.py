@@ -7,9 +7,9 @@ from typing import Any
 
 import numpy as np
 
+from kvtheory.scene.capabilities import lacks_one_scene, require
 from kvtheory.scene.model import Scene
 from kvtheory.scene.quantities import SceneError, problem
-from kvtheory.scene.requirements import lacks_one_scene, require
 from kvtheory.scene.static_state import out_of_range
 
 

@@ -7,8 +7,8 @@ from kvtheory.api._edge import one_scene, scene_of
 from kvtheory.api._steady import steady
 from kvtheory.models.steady.footprint import Footprint
 from kvtheory.scene.arguments import a_scene, checked, replacements
+from kvtheory.scene.capabilities import lacks_ball, require
 from kvtheory.scene.model import Scene
-from kvtheory.scene.requirements import lacks_ball, require
 
 
 @checked(scene=a_scene, over=replacements)

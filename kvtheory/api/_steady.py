@@ -11,9 +11,9 @@ from kvtheory.models.steady.methods import METHODS
 from kvtheory.models.steady.stable_sliding import lasts
 from kvtheory.results import SteadyState
 from kvtheory.scene.arguments import a_scene, checked, choice, replacements
+from kvtheory.scene.capabilities import lacks_asymptotes, lacks_closed_form, lacks_quadrature
 from kvtheory.scene.foundations import thick_layer
 from kvtheory.scene.model import Scene
-from kvtheory.scene.requirements import lacks_asymptotes, lacks_closed_form, lacks_quadrature
 
 LACKS = {"exact": lacks_closed_form, "quadrature": lacks_quadrature, "asymptote": lacks_asymptotes}
 """By method, why it does not apply to a scene."""

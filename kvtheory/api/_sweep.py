@@ -11,9 +11,9 @@ from kvtheory.api._transient import MAXIMUM_RTOL, MINIMUM_RTOL
 from kvtheory.progress import Progress
 from kvtheory.results import SPRING_UNITS, STEADY_UNITS, Sweep
 from kvtheory.scene import arguments as argument
+from kvtheory.scene.capabilities import lacks_arms, lacks_paper_model, lacks_stability, require
 from kvtheory.scene.model import Scene
 from kvtheory.scene.quantities import SceneError
-from kvtheory.scene.requirements import lacks_arms, lacks_paper_model, lacks_stability, require
 
 if TYPE_CHECKING:
     from kvtheory.sweeps.plan import Plan

@@ -6,8 +6,8 @@ from kvtheory.api._edge import double_precision, one_scene, times_of
 from kvtheory.progress import Progress
 from kvtheory.results import Transient
 from kvtheory.scene.arguments import a_scene, callback, checked, count, flag, number, times
+from kvtheory.scene.capabilities import lacks_transient, require
 from kvtheory.scene.model import Scene
-from kvtheory.scene.requirements import lacks_ball, lacks_paper_model, lacks_strips, require
 
 MINIMUM_RTOL, MAXIMUM_RTOL = 1e-12, 1e-2
 """Beyond these, rounding or the first step would dominate."""
@@ -90,13 +90,12 @@ def transient(
     Nakano and Kono (2020), doi:10.3389/fmech.2020.00038, Eqs. 1-33 and Figs. 3, 4.
     """
     scene = one_scene(scene, "a transient")
-    if not lacks_ball(scene):
-        require(lacks_strips, scene, "the transient")
+    require(lacks_transient, scene, "the transient")
+    if not scene.indenter.per_width:
         from kvtheory.models.strips import held
 
         with double_precision(scene):
             return held.transient(scene, times_of(scene, at), certify=certify)
-    require(lacks_paper_model, scene, "the transient")
     from kvtheory.models.continuum import solved_scene
 
     with double_precision(scene):

@@ -7,10 +7,10 @@ from kvtheory.charts.problems import STANDARD, Problem, standard_scene
 from kvtheory.charts.steady_precision import VELOCITIES, steady_chart, suits
 from kvtheory.charts.work_precision import FULL, QUICK, Chart, transient_chart
 from kvtheory.progress import Progress, silent
+from kvtheory.scene.capabilities import lacks_rigid_paper_model, require
 from kvtheory.scene.drives import Drive
 from kvtheory.scene.model import Scene
 from kvtheory.scene.quantities import nearest
-from kvtheory.scene.requirements import lacks_rigid_paper_model, require
 
 Job = Callable[..., Chart]
 """Makes one chart, with an `effort`, and reports its `progress`."""

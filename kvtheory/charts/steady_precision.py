@@ -16,8 +16,8 @@ from kvtheory.charts.methods import DENSITIES, Clock
 from kvtheory.charts.work_precision import FULL, Chart, Effort, Point, Series, attempt, repeat
 from kvtheory.models.elements.schemes import DEFAULT
 from kvtheory.progress import Progress, silent
+from kvtheory.scene.capabilities import lacks_paper_model
 from kvtheory.scene.model import Run, Scene
-from kvtheory.scene.requirements import lacks_paper_model
 
 DIGITS = 40
 """Correct digits of the reference solutions; they are computed with three times as many decimals."""

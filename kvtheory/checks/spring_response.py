@@ -19,9 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kvtheory.checks.theory import CURVES, Curves, Theory
-from kvtheory.scene.foundations import Arm, GeneralizedMaxwell
 from kvtheory.scene.model import Fixed, Scene
-from kvtheory.scene.quantities import changed
 
 Array = NDArray[np.float64]
 
@@ -62,11 +60,7 @@ def _disturbed(scene: Scene, share: float, step: float) -> Iterator[Scene]:
     support, foundation = scene.support, scene.foundation
     if isinstance(support, Fixed):
         factor = 1.0 + share
-        stiffer = changed(foundation, stiffness=factor * foundation.stiffness)
-        if isinstance(foundation, GeneralizedMaxwell):
-            arms = [Arm(factor * arm.stiffness, arm.relaxation_time) for arm in foundation.arms]
-            stiffer = GeneralizedMaxwell(stiffer.stiffness, arms=tuple(arms))
-        yield replace(scene, foundation=stiffer)
+        yield replace(scene, foundation=foundation.plain(factor))
     else:
         yield replace(scene, support=replace(support, load=(1.0 + share) * support.weight))
     if step > 0.0:

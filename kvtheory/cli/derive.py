@@ -142,7 +142,7 @@ def _quantities(path: str | None, overrides: Sequence[str]) -> tuple[dict[str, f
     """
     from kvtheory.api import steady
     from kvtheory.scene import load_scene
-    from kvtheory.scene.requirements import lacks_asymptotes, lacks_quadratic
+    from kvtheory.scene.capabilities import lacks_asymptotes, lacks_quadratic
     from kvtheory.scene.static_state import StaticState
 
     scene = load_scene(path, overrides)

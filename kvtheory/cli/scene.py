@@ -3,7 +3,7 @@
 import math
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -39,7 +39,7 @@ def scene(
     A check lists every mistake, or prints the quantities and the dimensionless numbers.
     """
     from kvtheory.scene import load_scene, template
-    from kvtheory.scene.requirements import lacks_ball, lacks_quadratic
+    from kvtheory.scene.capabilities import lacks_ball, lacks_quadratic
     from kvtheory.scene.static_state import StaticState
 
     if problem:
@@ -59,7 +59,12 @@ def scene(
         for key, value in checked.values().items()
     }
     damping = {"damping": checked.foundation.damping}
-    quantities = {**named, **(damping if math.isfinite(damping["damping"]) else {}), **numbers}
+    quantities = {
+        **named,
+        **(damping if math.isfinite(damping["damping"]) else {}),
+        **_shifted(checked.foundation),
+        **numbers,
+    }
     notes = _notes(checked)
     if as_json:
         kinds = checked.indenter.shape, checked.foundation.kind, checked.support.kind
@@ -83,6 +88,19 @@ def scene(
         click.echo("\nThe dimensionless numbers are defined for a parabola and a ball only.")
     for note in notes:
         click.echo(f"\n{note}")
+
+
+def _shifted(foundation: Any) -> dict[str, float]:
+    """Return a_T and the times that it shifts, at the temperature of the foundation."""
+    if foundation.temperature is None:
+        return {}
+    found = {"shift_factor": foundation.shift_factor}
+    if foundation.arms:
+        return found | {
+            f"shifted_arms[{i}].relaxation_time": arm.relaxation_time
+            for i, arm in enumerate(foundation.arms)
+        }
+    return found | {"shifted_retardation_time": foundation.retardation_time}
 
 
 def _notes(scene: "Scene") -> tuple[str, ...]:

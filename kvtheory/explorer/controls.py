@@ -2,16 +2,18 @@
 
 import math
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from decimal import Decimal
 from typing import Any
 
 from kvtheory.results import SHOWN_UNITS
+from kvtheory.scene.capabilities import lacks_scripts
 from kvtheory.scene.drives import Drive
-from kvtheory.scene.foundations import FOUNDATIONS, THIN, Arm
-from kvtheory.scene.indenters import SHAPES, Circle
+from kvtheory.scene.foundations import FOUNDATIONS, THERMAL, THIN, Arm
+from kvtheory.scene.indenters import SHAPES
 from kvtheory.scene.model import SUPPORTS, Run, Scene
-from kvtheory.scene.quantities import Quantity, given, quantities, required
-from kvtheory.scene.requirements import lacks_closed_form, lacks_kelvin_voigt, lacks_shape
+from kvtheory.scene.quantities import Quantity, given, required
+from kvtheory.scene.quantities import quantities as declared
 
 SECTIONS: dict[str, tuple[str, dict[str, Any]]] = {
     "indenter": ("shape", SHAPES),
@@ -56,18 +58,10 @@ ENDS = "The drive of the scene varies in time; the page takes the velocity that 
 UNITS = SHOWN_UNITS | {"N*s/m": ("N*s/m", 1.0), "N*s/m^2": ("kN*s/m^2", 1e-3)}
 
 
-def lacks_scripts(scene: Scene) -> str:
-    """Say why the scripts of the page cannot compute a scene; nothing if they can.
-
-    >>> lacks_scripts(Scene(indenter=Circle("10 mm")))
-    ''
-    """
-    if lacking := lacks_shape(scene, tuple(SHAPES.values()), ", ".join(SHAPES)):
-        return lacking
-    if isinstance(scene.indenter, Circle):
-        lacking = lacks_kelvin_voigt(scene)
-        return lacking and f'of indenter.shape = "circle" {lacking}'
-    return lacks_closed_form(scene)
+def quantities(cls: Any) -> dict[str, Quantity]:
+    """Return the quantities that have sliders: all but temperatures, and the moduli of arms."""
+    modulus = {"modulus"} if cls is Arm else set()
+    return {name: spec for name, spec in declared(cls).items() if name not in {*THERMAL, *modulus}}
 
 
 def controls(scene: Scene) -> dict[str, Any]:
@@ -77,6 +71,9 @@ def controls(scene: Scene) -> dict[str, Any]:
     >>> found["unit"], found["start"], found["exponent"]
     ('mm', '10', -3)
     """
+    foundation = scene.foundation
+    if foundation.shift_factor != 1.0 or (foundation.arms and foundation.modulus is not None):
+        scene = replace(scene, foundation=foundation.plain())
     return {
         "sections": {
             section: {

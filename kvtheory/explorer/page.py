@@ -10,8 +10,8 @@ from typing import Any
 
 from kvtheory.explorer.controls import controls, lacks_scripts
 from kvtheory.export import check_path, replace_file
+from kvtheory.scene.capabilities import require
 from kvtheory.scene.model import Scene
-from kvtheory.scene.requirements import require
 
 SCRIPTS = (
     *(

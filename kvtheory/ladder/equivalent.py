@@ -18,10 +18,10 @@ import numpy as np
 from kvtheory.ladder.climbing import Judgement, Request
 from kvtheory.results import SteadyState
 from kvtheory.results.table import scales
+from kvtheory.scene.capabilities import lacks_parabola
 from kvtheory.scene.drives import Drive
 from kvtheory.scene.foundations import Foundation
 from kvtheory.scene.model import Scene
-from kvtheory.scene.requirements import lacks_parabola
 from kvtheory.scene.static_state import StaticState
 
 SAFETY = 4.0

@@ -17,9 +17,7 @@ from kvtheory.models.strips import held
 from kvtheory.results import TRANSIENT_UNITS, Certificate, Simulation, SteadyState, Transient
 from kvtheory.results.certificate import AT_REST
 from kvtheory.results.table import scales
-from kvtheory.scene.model import Scene
-from kvtheory.scene.quantities import Derived
-from kvtheory.scene.requirements import (
+from kvtheory.scene.capabilities import (
     lacks_arms,
     lacks_kelvin_voigt,
     lacks_paper_model,
@@ -28,6 +26,8 @@ from kvtheory.scene.requirements import (
     lacks_rigid_paper_model,
     lacks_strips,
 )
+from kvtheory.scene.model import Scene
+from kvtheory.scene.quantities import Derived
 from kvtheory.scene.static_state import StaticState
 
 Array = NDArray[np.float64]

@@ -7,13 +7,13 @@ from typing import Any
 from kvtheory.ladder.climbing import Answer, Judgement, Request, Rung
 from kvtheory.models.steady import asymptote_bounds as asy
 from kvtheory.results import Certificate, SteadyState
-from kvtheory.scene.model import Scene
-from kvtheory.scene.requirements import (
+from kvtheory.scene.capabilities import (
     lacks_closed_form,
     lacks_kelvin_voigt,
     lacks_quadratic,
     lacks_quadrature,
 )
+from kvtheory.scene.model import Scene
 
 Steady = Callable[..., SteadyState]
 """`kvtheory.steady`."""

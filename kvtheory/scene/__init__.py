@@ -11,43 +11,14 @@ from kvtheory.scene.indenters import (
     Revolved,
     Sphere,
     Wedge,
-)
-from kvtheory.scene.model import (
-    DeadWeight,
-    Drive,
-    Fixed,
-    Run,
-    Scene,
-    Support,
-    Suspended,
-)
+)  # fmt: skip
+from kvtheory.scene.model import DeadWeight, Drive, Fixed, Run, Scene, Support, Suspended
 from kvtheory.scene.quantities import SceneError
 from kvtheory.scene.waveforms import Sine, SmoothRamp, Triangle
 
 __all__ = [
-    "Circle",
-    "DeadWeight",
-    "Drive",
-    "Fixed",
-    "Foundation",
-    "FractionalKelvinVoigt",
-    "GeneralizedMaxwell",
-    "Indenter",
-    "Parabola",
-    "PowerLaw",
-    "Profile",
-    "Revolved",
-    "Run",
-    "Scene",
-    "SceneError",
-    "Sine",
-    "SmoothRamp",
-    "Sphere",
-    "Support",
-    "Suspended",
-    "Triangle",
-    "Wedge",
-    "load_scene",
-    "template",
-    "to_toml",
-]
+    "Circle", "DeadWeight", "Drive", "Fixed", "Foundation", "FractionalKelvinVoigt",
+    "GeneralizedMaxwell", "Indenter", "Parabola", "PowerLaw", "Profile", "Revolved", "Run", "Scene",
+    "SceneError", "Sine", "SmoothRamp", "Sphere", "Support", "Suspended", "Triangle", "Wedge",
+    "load_scene", "template", "to_toml",
+]  # fmt: skip

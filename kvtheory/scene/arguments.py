@@ -143,32 +143,27 @@ def count(value: Any) -> int:
     return found
 
 
-def flag(value: Any) -> bool:
-    """Read True or False."""
-    if not isinstance(value, (bool, np.bool_)):
-        raise ValueError("expected True or False")
-    return bool(value)
+def _accepting(said: str, fits: Callable[[Any], bool]) -> Kind:
+    """Return the kind of a value that fits, which is passed on as it is."""
+
+    def read(value: Any) -> Any:
+        if not fits(value):
+            raise ValueError(f"expected {said}")
+        return value
+
+    return read
 
 
-def callback(value: Any) -> Any:
-    """Read a function that reports something."""
-    if not callable(value) or isinstance(value, type):
-        raise ValueError("expected a function")
-    return value
-
-
-def pool(value: Any) -> Any:
-    """Read an executor."""
-    if isinstance(value, type) or not callable(getattr(value, "submit", None)):
-        raise ValueError("expected a concurrent.futures.Executor")
-    return value
-
-
-def file_name(value: Any) -> Any:
-    """Read the name of a file."""
-    if not isinstance(value, (str, PathLike)) or "\0" in str(value) or not str(value):
-        raise ValueError("expected the name of a file")
-    return value
+flag = _accepting("True or False", lambda value: isinstance(value, bool | np.bool_))
+callback = _accepting("a function", lambda value: callable(value) and not isinstance(value, type))
+pool = _accepting(
+    "a concurrent.futures.Executor",
+    lambda value: not isinstance(value, type) and callable(getattr(value, "submit", None)),
+)
+file_name = _accepting(
+    "the name of a file",
+    lambda value: isinstance(value, str | PathLike) and str(value) != "" and "\0" not in str(value),
+)
 
 
 def choice(options: Iterable[str]) -> Kind:

@@ -24,7 +24,7 @@ from kvtheory.scene.quantities import (
     problem,
     quantities,
     quantity,
-    settle,
+    validate,
 )
 from kvtheory.scene.waveforms import AT_LAST, Sine, SmoothRamp, Triangle
 
@@ -108,7 +108,7 @@ class Drive(Part):
             object.__setattr__(self, "function", self.waveform)
             self.mark([self.waveform])
         with collecting(problems, "drive", self):
-            settle(self, "drive")
+            validate(self, "drive")
         problems += _without_spring(self)
         if self.damping is None:
             object.__setattr__(self, "damping", Derived(0.0))

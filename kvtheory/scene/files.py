@@ -9,9 +9,17 @@ from typing import Any
 import numpy as np
 
 from kvtheory.scene.arguments import a_scene, checked, file_name, names
-from kvtheory.scene.drive_file import history_from
 from kvtheory.scene.drives import SPRING
-from kvtheory.scene.foundations import FOUNDATIONS, PAIRS, Foundation, GeneralizedMaxwell, arms_of
+from kvtheory.scene.foundations import (
+    FOUNDATIONS,
+    LAYER,
+    OF_LAYER,
+    PAIRS,
+    WLF_PAIR,
+    Foundation,
+    GeneralizedMaxwell,
+    arms_of,
+)
 from kvtheory.scene.indenters import SHAPES
 from kvtheory.scene.model import SUPPORTS, WEIGHED, Drive, Run, Scene, lacks_mass
 from kvtheory.scene.quantities import (
@@ -19,6 +27,7 @@ from kvtheory.scene.quantities import (
     Quantity,
     SceneError,
     absent,
+    as_given,
     closest,
     collecting,
     converted,
@@ -33,7 +42,7 @@ from kvtheory.scene.quantities import (
     shown,
     written_as,
 )
-from kvtheory.scene.texts import read_text
+from kvtheory.scene.tables import history_from, read_text
 from kvtheory.scene.units import expected
 from kvtheory.scene.waveforms import WAVEFORMS
 
@@ -45,13 +54,13 @@ CHOICES = {
 }
 """Sections in which one key selects the model; the other keys depend on it."""
 DEFAULTS = {"indenter": "parabola", "foundation": "kelvin-voigt"}
-LISTS = {("foundation", "arms"), ("drive", "history")}
+LISTS = {("foundation", "arms"), ("foundation", "wlf"), ("drive", "history")}
 """Keys whose values are lists of pairs."""
 PER_WIDTH = {
     key for cls in SUPPORTS.values() for key, spec in quantities(cls).items() if spec.per_width
 }
 """Keys of a support that are masses, loads and springs."""
-BALL = " with a ball, whose support is in kg, N and N/m, and not per unit width"
+BALL = " (a sphere takes total mass in kg, load in N and stiffness in N/m)"
 POINTS = 'points such as ["50 ms", "100 mm/s"]'
 DRIVES = ("velocity", "history", "waveform", "file")
 """Keys that define the motion of a drive; a scene has one of them."""
@@ -73,8 +82,13 @@ NOTES = {
         "# poisson_ratio = 0.3",
         "# or another foundation:",
         '# kind = "generalized-maxwell" with arms = [["30 GN/m^3", "10 ms"], ["5 GN/m^3", "1 s"]]',
-        "#     instead of the retardation time: stiffness and relaxation time of each arm",
+        "#     instead of the retardation time: stiffness and relaxation time of each arm, or, of a",
+        '#     layer, modulus and relaxation time: arms = [["30 MPa", "10 ms"]]',
         '# kind = "fractional-kelvin-voigt" with order = 0.5',
+        "# at another temperature than that at which its times were measured, which shifts them:",
+        '# temperature = "60 degC"',
+        '# reference_temperature = "23 degC"',
+        '# wlf = ["17.44", "51.6 K"]            # C_1 and C_2; or activation_energy = "80 kJ/mol"',
     ],
 }
 """What the template says about keys that can be given instead of others."""
@@ -196,14 +210,19 @@ def _tables(scene: Scene) -> dict[str, dict[str, Any]]:
             table[CHOICES[section][0]] = getattr(type(part), CHOICES[section][0])
         for name, spec in given(part).items():
             unit = spec.fitting(scene.indenter.per_width).unit
-            table[name] = _text(getattr(part, name), unit)
+            table[name] = _text(as_given(getattr(part, name)), unit)
         if section == "drive" and part.history is not None:
             table["history"] = [[_text(t, "s"), _text(v, "m/s")] for t, v in part.history]
         if section == "foundation" and part.arms:
+            first, unit = (
+                ("modulus", "N/m^2") if part.modulus is not None else ("stiffness", "N/m^3")
+            )
             table["arms"] = [
-                [_text(arm.stiffness, "N/m^3"), _text(arm.relaxation_time, "s")]
+                [_text(getattr(arm, first), unit), _text(as_given(arm.relaxation_time), "s")]
                 for arm in part.arms
             ]
+        if section == "foundation" and part.wlf is not None:
+            table["wlf"] = [part.wlf.c_1, _text(part.wlf.c_2, "K")]
         tables[section] = table
     if tables["indenter"]["shape"] not in SHAPES:
         raise ValueError(
@@ -294,6 +313,8 @@ def _override(tables: dict[str, Any], overrides: list[str], *, embedded: bool) -
             for other in specs[name].excludes:
                 if (section, other) not in keys:
                     table.pop(other, None)
+        if (section, name) == ("foundation", "wlf") and (section, "activation_energy") not in keys:
+            table.pop("activation_energy", None)
         try:
             listed = (section, name) in LISTS or value.startswith("[")
             table[name] = tomllib.loads(f"v = {value}")["v"] if listed else value
@@ -372,12 +393,14 @@ def _part(section: str, table: Any, per_width: bool) -> Any:
     if section == "drive" and "waveform" in table:
         return _waveform(table, per_width)
     if section not in CHOICES:
-        return _make(PLAIN[section], section, table, per_width)
+        return PLAIN[section](**_values(PLAIN[section], section, table, per_width))
     chooser, models = CHOICES[section]
     rest = {key: value for key, value in table.items() if key != chooser}
     name = table.get(chooser, DEFAULTS.get(section))
     if isinstance(name, str) and name in models:
-        return _make(models[name], section, rest, per_width, f'{chooser} = "{name}"')
+        return models[name](
+            **_values(models[name], section, rest, per_width, f'{chooser} = "{name}"')
+        )
     problems = []
     if chooser not in table and absent([chooser], table):
         problems.append(f"{section}.{chooser}: missing; expected one of: {', '.join(models)}")
@@ -395,7 +418,9 @@ def _part(section: str, table: Any, per_width: bool) -> Any:
         ]
     else:
         with collecting(problems, section, table):
-            _make(models[meant], section, rest, per_width, f'{chooser} = "{meant}"')
+            models[meant](
+                **_values(models[meant], section, rest, per_width, f'{chooser} = "{meant}"')
+            )
     raise SceneError(problems)
 
 
@@ -410,15 +435,8 @@ def _waveform(table: Mapping[str, Any], per_width: bool) -> Drive:
     return Drive(waveform=WAVEFORMS[name](**values), **spring)
 
 
-def _make(
-    cls: Any, section: str, table: Mapping[str, Any], per_width: bool, choice: str = ""
-) -> Any:
-    """Construct `cls` from TOML values, in which a bare number is a mistake."""
-    return cls(**_values(cls, section, table, per_width, choice))
-
-
 def _values(
-    cls: Any, section: str, table: Mapping[str, Any], per_width: bool, choice: str
+    cls: Any, section: str, table: Mapping[str, Any], per_width: bool, choice: str = ""
 ) -> dict[str, Any]:
     """Return the arguments of `cls`; for a waveform they include the spring of its drive."""
     specs, valid = quantities(cls), _keys(cls)
@@ -431,8 +449,10 @@ def _values(
     for name in (name for name in absent(valid, table) if name in needed):
         spec = specs[name].fitting(per_width)
         problems.append(missing(section, name, spec, of + ("" if spec == specs[name] else BALL)))
+    layer = any(name in table for name in LAYER) and "stiffness" not in table
+    pairs = OF_LAYER if layer else PAIRS
     if "arms" in absent(valid, table):
-        problems.append(f"{section}.arms: missing{of}; expected {PAIRS}")
+        problems.append(f"{section}.arms: missing{of}; expected {pairs}")
     values: dict[str, Any] = {}
     for key, value in table.items():
         if key not in valid:
@@ -444,7 +464,10 @@ def _values(
             if cls is Drive and key == "file":
                 values["history"] = history_from(Path(str(value)))
             elif key == "arms":
-                values["arms"] = arms_of(_pairs(value, PAIRS))
+                values["arms"] = arms_of(_pairs(value, pairs), layer=layer)
+            elif key == "wlf":
+                _pairs([value[1:]] if isinstance(value, list) else value, WLF_PAIR)
+                values["wlf"] = value
             else:
                 values[key] = _value(value, specs[key]) if key in specs else _pairs(value, POINTS)
     if problems:
@@ -484,8 +507,8 @@ def _pairs(value: Any, told: str) -> Any:
 def _keys(cls: Any) -> list[str]:
     """Return the keys of a model: its quantities, and its other keys, such as lists of pairs."""
     lists: tuple[str, ...] = DRIVES if cls is Drive else ()
-    if cls is GeneralizedMaxwell:
-        lists = ("arms",)
+    if cls in FOUNDATIONS.values():
+        lists = ("arms", "wlf") if cls is GeneralizedMaxwell else ("wlf",)
     elif cls in WAVEFORMS.values():
         lists = SPRING
     return list(dict.fromkeys((*quantities(cls), *lists)))

@@ -5,23 +5,32 @@ foundation has its `kind`; the relaxed `stiffness` K; the `arms` of a Prony seri
 it; and the `damping` C = int (G - K) dt, which governs slow sliding, with `retardation_time` C/K.
 """
 
+import copy
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import KW_ONLY, dataclass
 from typing import Any, ClassVar
 
 import numpy as np
 
 from kvtheory.scene.quantities import (
+    Derived,
+    DerivedArray,
     Part,
     SceneError,
     Value,
+    as_given,
     collecting,
     derive,
+    mistake,
     problem,
+    quantities,
     quantity,
-    settle,
+    sample,
+    validate,
 )
+from kvtheory.scene.units import expected, to_si
 
 LAYER = ("modulus", "thickness", "poisson_ratio")
 THIN = 0.1
@@ -30,8 +39,21 @@ and 11 % for a ball, and the length of the contact to 15 %: measured by solving 
 compliance of the layer, for nu from 0 to nearly 1/2."""
 MOST_ARMS = 100
 PAIRS = 'pairs of stiffness and relaxation time, such as ["30 GN/m^3", "10 ms"]'
+OF_LAYER = 'pairs of modulus and relaxation time, such as ["30 MPa", "10 ms"]'
 DISTINCT = 1e-6
 """Relative difference of relaxation times below which two arms count as the same."""
+STIFFNESS_UNIT, MODULUS_UNIT = "N/m^3", "N/m^2"
+MIXED = {
+    True: f"a layer with foundation.modulus has arms with moduli too; expected {OF_LAYER}",
+    False: f"only a layer, with foundation.modulus, has arms with moduli; expected {PAIRS}",
+}
+"""What is said of arms with stiffnesses in a layer, and of those with moduli elsewhere."""
+TIMES = "retardation_time", "relaxation_time"
+"""The quantities that temperature shifts."""
+THERMAL = "temperature", "reference_temperature", "activation_energy", "wlf"
+GAS_CONSTANT = 8.31446261815324
+"""R, in J/(mol K), exact."""
+WLF_PAIR = 'C_1 and C_2, such as ["17.44", "51.6 K"]'
 
 
 def layer_stiffness(modulus: Any, thickness: Any, poisson_ratio: Any) -> Any:
@@ -88,8 +110,24 @@ def thick_layer(thickness: Any, half_length: Any, poisson_ratio: Any) -> str:
 
 
 @dataclass(frozen=True, eq=False)
+class WLF(Part):
+    """The law of Williams, Landel and Ferry: log10 a_T = -C_1 (T - T_ref)/(C_2 + T - T_ref)."""
+
+    c_1: Value = quantity("1", "C_1 of the WLF law, for the decadic logarithm")
+    c_2: Value = quantity("K", "C_2 of the WLF law", difference=True)
+
+    def __post_init__(self) -> None:
+        validate(self, "foundation.wlf")
+
+
+@dataclass(frozen=True, eq=False)
 class _Relaxed(Part):
-    """The common part of all foundations: a stiffness, or a thin bonded layer that determines it."""
+    """The common part of all foundations: a stiffness, or the layer it follows from; and temperature.
+
+    At a `temperature` every time of the foundation is a_T times that at the `reference_temperature`
+    (`shift_factor`); the moduli stay (fact F25). What is given are the times at the reference temperature,
+    what the attributes hold are those at the temperature.
+    """
 
     stiffness: Value = quantity(
         "N/m^3", "K, stiffness of the foundation per unit area",
@@ -108,12 +146,117 @@ class _Relaxed(Part):
         "1", "nu, Poisson's ratio of the layer", default=None, exclusive=False, below=0.5,
         beside=("modulus", "thickness"), excludes=("stiffness",),
     )  # fmt: skip
+    temperature: Value = quantity(
+        "K", "T, temperature of the foundation; the reference temperature if not given",
+        default=None, beside=("reference_temperature",),
+    )  # fmt: skip
+    reference_temperature: Value = quantity(
+        "K", "T_ref, temperature at which the times of the foundation were measured",
+        default=None, beside=("wlf",),
+    )  # fmt: skip
+    activation_energy: Value = quantity(
+        "J/mol", "E_a of Arrhenius' law, ln a_T = (E_a/R) (1/T - 1/T_ref), instead of wlf",
+        default=None, beside=("reference_temperature",), excludes=("wlf",),
+    )  # fmt: skip
+    wlf: WLF | None = None
+    arms: ClassVar[Any] = ()
 
     def __post_init__(self) -> None:
-        settle(self, "foundation")
+        problems: list[str] = []
+        lawless = self.wlf is None and self.activation_energy is None
+        held = [self, *self._arms(problems)]
+        times = [(part, name) for part in held for name in TIMES if name in vars(part)]
+        if self.modulus is None and isinstance(self.stiffness, Derived | DerivedArray):
+            object.__setattr__(self, "stiffness", +self.stiffness)  # that of another foundation
+        for part, name in times:  # one that was shifted stays as it is where there is no law
+            time = getattr(part, name)
+            if isinstance(time, Derived | DerivedArray):
+                object.__setattr__(part, name, +time if lawless else as_given(time))
+        with collecting(problems, "foundation", self):
+            validate(self, "foundation")
+        if not (lawless and self.temperature is None and self.reference_temperature is None):
+            with collecting(problems, "foundation.wlf", self.wlf):
+                object.__setattr__(self, "wlf", _wlf(self.wlf))
+            problems += self._mistakes_of_law(lawless)
+        if problems:
+            raise SceneError(problems)
         if self.modulus is not None:
-            stiffness = layer_stiffness(self.modulus, self.thickness, self.poisson_ratio)
-            derive(self, "foundation", "stiffness", stiffness, "the layer")
+            for i, part in enumerate(held):
+                stiffness = layer_stiffness(part.modulus, self.thickness, self.poisson_ratio)
+                section = f"foundation.arms[{i - 1}]" if i else "foundation"
+                derive(part, section, "stiffness", stiffness, "the layer")
+        if not lawless:
+            self._shift(times)
+        self.mark(held[1:] if self.wlf is None else [*held[1:], self.wlf])
+
+    def _arms(self, problems: list[str]) -> list[Any]:
+        """Read the arms of a Prony series; other foundations have none."""
+        return []
+
+    def _mistakes_of_law(self, lawless: bool) -> list[str]:
+        if lawless:
+            key = "temperature" if self.temperature is not None else "reference_temperature"
+            told = "needs a law that shifts times; expected foundation.wlf ="
+            return [f"foundation.{key}: {told} {WLF_PAIR}, or foundation.activation_energy"]
+        if self.wlf is not None and self.activation_energy is not None:
+            return ["foundation.wlf: cannot be given beside foundation.activation_energy"]
+        if self.reference_temperature is None and self.temperature is None and self.wlf is not None:
+            return [f"foundation.reference_temperature: missing; expected {expected('K')}"]
+        return []
+
+    @property
+    def shift_factor(self) -> Value:
+        """a_T, by which temperature multiplies every time of the foundation; 1 without a law."""
+        T, T_ref = self.temperature, self.reference_temperature
+        if T is None or T_ref is None:
+            return 1.0
+        with np.errstate(all="ignore"):  # what leaves double precision is reported by the keys
+            if self.wlf is None:
+                return np.exp(self.activation_energy / GAS_CONSTANT * (T_ref - T) / T / T_ref)[()]
+            return np.power(10.0, -self.wlf.c_1 * (T - T_ref) / (self.wlf.c_2 + T - T_ref))[()]
+
+    def _shift(self, times: Iterable[tuple[Any, str]]) -> None:
+        """Multiply every time by a_T, and keep beside it what was given."""
+        T, key = self.temperature, "foundation.temperature"
+        shown = f"{T:.10g} K" if isinstance(T, float) else T
+        if T is not None and self.wlf is not None:
+            pole = self.reference_temperature - self.wlf.c_2
+            if np.any(pole >= T):
+                told = f"expected above T_ref - C_2 = {np.max(pole):g} K, the pole of the WLF law"
+                raise mistake(key, shown, told)
+        a_T = self.shift_factor
+        for part, name in times:
+            given = getattr(part, name)
+            with np.errstate(all="ignore"):
+                shifted = given * a_T
+            if not quantities(part)[name].admits(shifted):
+                law = "wlf" if self.wlf is not None else "activation_energy"
+                keys = f"foundation.reference_temperature and foundation.{law}"
+                told = f"shifts times by a_T = {np.ravel(a_T)[0]:g}, beyond double precision; check {key}, "
+                raise mistake(key, shown, told + keys)
+            derive(part, "foundation", name, shifted, key, given)
+
+    def plain(self, factor: float = 1.0) -> Any:
+        """Return it as it is at its temperature, without layer and law, `factor` times as stiff."""
+        names = {"retardation_time", "order"} & set(quantities(self))
+        own: dict[str, Any] = {name: +getattr(self, name) for name in names}
+        if self.arms:
+            own["arms"] = [(factor * arm.stiffness, +arm.relaxation_time) for arm in self.arms]
+        return type(self)(factor * self.stiffness, **own)
+
+    def mapped(self, function: Any) -> Any:
+        """Return a copy with a function applied to every array; its times are those at its temperature."""
+        found = super().mapped(function)
+        vars(found).update(dict.fromkeys(THERMAL))
+        return found
+
+
+def _wlf(given: Any) -> WLF | None:
+    if given is None or isinstance(given, WLF):
+        return given
+    if not isinstance(given, Sequence) or isinstance(given, str) or len(given) != 2:
+        raise ValueError(f"expected {WLF_PAIR}")
+    return WLF(*given)
 
 
 @dataclass(frozen=True, eq=False)
@@ -121,15 +264,19 @@ class Foundation(_Relaxed):
     """Independent Kelvin-Voigt elements: G = K + C delta(t), C = K tau, all per unit area.
 
     A thin bonded layer is given by `modulus`, `thickness` and `poisson_ratio` instead of `stiffness`,
-    which then follows from them; see `layer_stiffness` for where that holds.
+    which then follows from them; see `layer_stiffness` for where that holds. A `temperature` shifts the
+    retardation time from that at the `reference_temperature`, by `wlf` or an `activation_energy`.
 
     >>> layer = Foundation(modulus="5 MPa", thickness="2 mm", poisson_ratio=0.45, retardation_time=0.1)
     >>> round(layer.stiffness / 1e9, 4)
     9.4828
+    >>> warm = Foundation("10 GN/m^3", "100 ms", temperature="60 degC",
+    ...                   reference_temperature="23 degC", wlf=["17.44", "51.6 K"])
+    >>> print(f"{warm.shift_factor:.4g} {warm.retardation_time:.4g}")
+    5.211e-08 5.211e-09
     """
 
     kind: ClassVar[str] = "kelvin-voigt"
-    arms: ClassVar[tuple["Arm", ...]] = ()
     retardation_time: Value = quantity(
         "s", "tau = C/K, retardation time of the foundation (Eq. 22)", default=None, needed=True
     )
@@ -142,39 +289,56 @@ class Foundation(_Relaxed):
 
 @dataclass(frozen=True, eq=False)
 class Arm(Part):
-    """A Maxwell arm, spring and damper in series: K_i e^(-t/tau_i), a term of a Prony series."""
+    """A Maxwell arm, spring and damper in series: K_i e^(-t/tau_i), a term of a Prony series.
 
-    stiffness: Value = quantity("N/m^3", "K_i, stiffness of the arm per unit area")
-    relaxation_time: Value = quantity("s", "tau_i, relaxation time of the arm")
+    An arm of a layer has a `modulus`, from which its stiffness follows as that of the layer does.
+    """
+
+    stiffness: Value = quantity(
+        "N/m^3", "K_i, stiffness of the arm per unit area",
+        default=None, needed=True, instead="modulus", excludes=("modulus",),
+    )  # fmt: skip
+    relaxation_time: Value = quantity(
+        "s", "tau_i, relaxation time of the arm", default=None, needed=True
+    )
+    _: KW_ONLY
+    modulus: Value = quantity(
+        "N/m^2", "E_i, modulus of the arm of a layer, instead of its stiffness",
+        default=None, excludes=("stiffness",),
+    )  # fmt: skip
 
     def __post_init__(self) -> None:
-        settle(self, "arm")
+        time = self.relaxation_time
+        validate(self, "arm")
+        if as_given(time) is not time:  # for the foundation to unshift, or to keep
+            object.__setattr__(self, "relaxation_time", time)
 
 
 @dataclass(frozen=True, eq=False)
 class GeneralizedMaxwell(_Relaxed):
     """A spring in parallel with Maxwell arms: G = K + sum K_i e^(-t/tau_i), a Prony series.
 
-    `arms` are pairs of stiffness and relaxation time, one to a hundred, with different times. One arm
-    is the standard linear solid (Zener).
+    `arms` are pairs of stiffness and relaxation time, one to a hundred, with different times; those of a
+    layer are pairs of modulus and relaxation time. One arm is the standard linear solid (Zener).
 
     >>> zener = GeneralizedMaxwell("10 GN/m^3", arms=[["30 GN/m^3", "10 ms"]])
     >>> zener.arms[0].relaxation_time, zener.damping, zener.retardation_time
     (0.01, 300000000.0, 0.03)
+    >>> layer = GeneralizedMaxwell(modulus="5 MPa", thickness="2 mm", poisson_ratio=0.45,
+    ...                            arms=[["30 MPa", "10 ms"]])
+    >>> round(layer.arms[0].stiffness / layer.stiffness, 12)
+    6.0
     """
 
     kind: ClassVar[str] = "generalized-maxwell"
-    arms: tuple[Arm, ...] = ()
+    arms: tuple[Arm, ...] = ()  # type: ignore[misc]
 
-    def __post_init__(self) -> None:
-        problems: list[str] = []
-        with collecting(problems, "foundation", self):
-            super().__post_init__()
+    def _arms(self, problems: list[str]) -> list[Any]:
         with collecting(problems, "foundation.arms", self.arms):
-            object.__setattr__(self, "arms", arms_of(self.arms))
-            self.mark(self.arms)
-        if problems:
-            raise SceneError(problems)
+            arms = arms_of(self.arms, layer=self.modulus is not None)
+            object.__setattr__(self, "arms", tuple(map(copy.copy, arms)))
+            return list(self.arms)
+        return []
 
     @property
     def damping(self) -> Value:
@@ -199,7 +363,6 @@ class FractionalKelvinVoigt(_Relaxed):
     """
 
     kind: ClassVar[str] = "fractional-kelvin-voigt"
-    arms: ClassVar[tuple[Arm, ...]] = ()
     retardation_time: Value = quantity(
         "s", "tau, time scale of the springpot", default=None, needed=True
     )
@@ -223,34 +386,50 @@ FOUNDATIONS: dict[str, Any] = {
 """The kinds that a scene file can name."""
 
 
-def arms_of(given: Any) -> tuple[Arm, ...]:
-    """Make the arms of a Prony series from pairs of stiffness and relaxation time, or from arms.
+def arms_of(given: Any, *, layer: bool = False) -> tuple[Arm, ...]:
+    """Make the arms of a Prony series from pairs, or from arms; those of a layer have moduli.
 
     Raises
     ------
     SceneError
         Listing every mistake.
     """
+    expected_pairs = OF_LAYER if layer else PAIRS
     pairs = given if isinstance(given, Sequence) and not isinstance(given, str) else ()
     if not 1 <= len(pairs) <= MOST_ARMS:
-        raise ValueError(f"expected 1 to {MOST_ARMS} {PAIRS}")
+        raise ValueError(f"expected 1 to {MOST_ARMS} {expected_pairs}")
     problems: list[str] = []
     arms: dict[int, Arm] = {}
+    first = "modulus" if layer else "stiffness"
     for number, pair in enumerate(pairs):
         key = f"foundation.arms[{number}]"
         if isinstance(pair, Arm):
+            if (pair.modulus is not None) != layer:
+                raise mistake(key, pair, MIXED[layer])
             arms[number] = pair
         elif isinstance(pair, Sequence) and not isinstance(pair, str) and len(pair) == 2:
+            if _reads(pair[0], MODULUS_UNIT if not layer else STIFFNESS_UNIT):
+                raise mistake(key, pair, MIXED[layer])
             try:
-                arms[number] = Arm(*pair)
+                arms[number] = Arm(relaxation_time=pair[1], **{first: pair[0]})
             except SceneError as error:
                 problems += [line.replace("arm", key, 1) for line in error.problems]
         else:
-            problems.append(problem(key, pair, f"expected one of {PAIRS}"))
+            problems.append(problem(key, pair, f"expected one of {expected_pairs}"))
     problems += _equal_times(arms)
     if problems:
         raise SceneError(problems)
     return tuple(arms.values())
+
+
+def _reads(value: Any, unit: str) -> bool:
+    """Whether a value with a unit is of this dimension."""
+    value = sample(value)
+    if isinstance(value, str) or hasattr(value, "units"):
+        with suppress(ValueError):
+            to_si(value, unit)
+            return True
+    return False
 
 
 def _equal_times(arms: Mapping[int, Arm]) -> list[str]:

@@ -14,7 +14,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from kvtheory.scene.quantities import Part, SceneError, Value, mistake, quantity, settle
+from kvtheory.scene.quantities import Part, SceneError, Value, mistake, quantity, validate
 from kvtheory.theory.powers import power
 
 
@@ -25,7 +25,7 @@ class _Shape(Part):
     per_width: ClassVar[bool] = True
 
     def __post_init__(self) -> None:
-        settle(self, "indenter")
+        validate(self, "indenter")
 
 
 @dataclass(frozen=True, eq=False)
@@ -275,12 +275,12 @@ class Revolved(Part):
 
     @property
     def reach(self) -> float:
-        """That of the profile."""
+        """Largest |x| of the profile, in m."""
         return self.profile.reach
 
     @property
     def kinks(self) -> tuple[float, ...]:
-        """Those of the profile."""
+        """Points of the profile where h' jumps or a derivative is singular, in m."""
         return self.profile.kinks
 
     def height(self, x: Value, y: Value = 0.0) -> Value:

@@ -5,34 +5,35 @@ holds an SI float or an array of them afterwards. The arrays of a scene broadcas
 """
 
 import math
-import re
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any, ClassVar
+from typing import Any, ClassVar, get_args
 
 import numpy as np
 
 from kvtheory.scene.drives import SPRING, VELOCITY, Drive
-from kvtheory.scene.foundations import AnyFoundation, Foundation
+from kvtheory.scene.foundations import AnyFoundation, Arm, Foundation
 from kvtheory.scene.indenters import Indenter, Parabola, Revolved
 from kvtheory.scene.quantities import (
     Part,
     Quantity,
     SceneError,
     Value,
+    as_given,
     changed,
     collecting,
     converted,
     derive,
     free,
+    given,
     misfits,
     missing,
     nearest,
     problem,
     quantities,
     quantity,
-    settle,
+    validate,
 )
 
 STANDARD_GRAVITY = 9.80665
@@ -54,7 +55,7 @@ class Fixed(Part):
     depth: Value = quantity("m", "delta, indentation depth, held constant")
 
     def __post_init__(self) -> None:
-        settle(self, "support")
+        validate(self, "support")
 
 
 MASS: dict[str, Any] = {"default": None, "needed": True, "instead": "load", "per_width": True}
@@ -68,7 +69,7 @@ class _Loaded(Part):
     load: Value
 
     def __post_init__(self) -> None:
-        settle(self, "support")
+        validate(self, "support")
         if self.load is not None and self.mass is None:
             mass = self.load / self.gravity
             derive(self, "support", "mass", mass, "support.load/support.gravity")
@@ -136,7 +137,7 @@ class Run(Part):
     duration: Value = quantity("s", "duration of the transient", default=0.2)
 
     def __post_init__(self) -> None:
-        settle(self, "run")
+        validate(self, "run")
 
 
 WEIGHED = ("support", "drive")
@@ -170,21 +171,23 @@ class Scene(Part):
     run: Run = Run()
 
     def __post_init__(self) -> None:
-        parts: dict[str, Any] = {
-            "indenter": Indenter, "foundation": AnyFoundation, "support": Support, "drive": Drive, "run": Run,
-        }  # fmt: skip
+        parts = vars(self)
         problems = []
-        for name, kind in parts.items():
-            if not isinstance(getattr(self, name), kind):
-                told = getattr(kind, "__name__", f"one of {kind}")
-                problems.append(problem(f"`{name}`", getattr(self, name), f"expected {told}"))
+        for name, kinds in PARTS.items():
+            if parts[name].__class__ not in kinds:
+                told = " or ".join(kind.__name__ for kind in kinds)
+                problems.append(problem(f"`{name}`", parts[name], f"expected {told}"))
         for name in () if problems else WEIGHED:
-            problems += misfits(name, getattr(self, name), self.indenter)
+            if "written" in vars(parts[name]):
+                problems += misfits(name, parts[name], self.indenter)
         problems = problems or lacks_mass(self.support, self.drive, self.indenter.per_width)
         if problems:
             raise SceneError(problems)
-        self.mark(getattr(self, name) for name in parts)
-        _ = self.shape  # or raise
+        for name in PARTS:
+            if parts[name].arrayed:
+                object.__setattr__(self, "arrayed", True)
+                _ = self.shape  # or raise
+                break
 
     @cached_property
     def shape(self) -> tuple[int, ...]:
@@ -223,6 +226,18 @@ class Scene(Part):
             vars(scene)["shape"] = np.shape(velocity)
         return scene
 
+    @cached_property
+    def kind(self) -> tuple[str, str, str, str]:
+        """Shape, law, support and drive by the names of the table `capabilities`.
+
+        >>> Scene().kind
+        ('parabola', 'kelvin-voigt', 'dead-weight', 'rigid')
+        """
+        body, drive = self.indenter, "rigid" if self.drive.rigid else "spring"
+        functions = isinstance(body, Revolved) and not body.convex
+        shape = "revolved-callable" if functions else body.shape
+        return shape, self.foundation.kind, self.support.kind, drive
+
     @property
     def held(self) -> bool:
         """Whether the support holds the indenter at its depth, so that it cannot move."""
@@ -246,24 +261,20 @@ class Scene(Part):
 
     def parts(self) -> dict[str, Any]:
         """Return what holds the quantities of the scene at rest, by its dotted name, each arm by its own."""
-        arms = enumerate(self.foundation.arms)
-        body: Any = self.indenter
-        return {
-            "indenter": body,
-            **({"indenter.profile": body.profile} if isinstance(body, Revolved) else {}),
-            "foundation": self.foundation,
-            **{f"foundation.arms[{number}]": arm for number, arm in arms},
-            "support": self.support,
-        }
+        found: dict[str, Any] = {}
+        for name in ("indenter", "foundation", "support"):
+            found[name] = part = getattr(self, name)
+            found |= {f"{name}.{inner}": each for inner, each in part.nested()}
+        return found
 
     def values(self) -> Mapping[str, float]:
         """Return every quantity of the scene in SI by its dotted key, as ``"drive.velocity"``.
 
-        The stiffness of a layer and the mass of a load are there too. A drive that is a function has no
-        velocity to give.
+        The stiffness of a layer and the mass of a load are there too, the times of a foundation at its
+        reference temperature. A drive that is a function has no velocity to give.
         """
         flat = {
-            f"{section}.{name}": getattr(part, name)
+            f"{section}.{name}": as_given(getattr(part, name))
             for section, part in self.parts().items()
             for name in quantities(part)
             if getattr(part, name) is not None
@@ -281,7 +292,7 @@ class Scene(Part):
         found = {
             f"{section}.{name}": spec
             for section, part in self.parts().items()
-            for name, spec in free(part).items()
+            for name, spec in (given if isinstance(part, Arm) else free)(part).items()
         }
         own = {} if self.drive.waveform is None else quantities(self.drive.waveform)
         springs = SPRING[:1] if self.drive.rigid else SPRING  # damper and mass need a stiffness
@@ -319,27 +330,34 @@ class Scene(Part):
                 sections.setdefault(section, {})[name] = converted(value, specs[key])
         if problems:
             raise SceneError(problems)
-        arms = list(self.foundation.arms)
-        parts: dict[str, Any] = {}
+        parts: dict[str, dict[str, Any]] = {}
         for section, values in sections.items():
-            if match := ARM.fullmatch(section):
-                arms[int(match[1])] = changed(arms[int(match[1])], **values)
-            elif section == "indenter.profile":
-                body: Any = self.indenter
-                parts["indenter"] = replace(body, profile=changed(body.profile, **values))
-            elif section == "drive":
-                parts[section] = self.drive.changed(**values)
+            part, _, within = section.partition(".")
+            own = parts.setdefault(part, {})
+            if not within:
+                own |= values
+                continue
+            name, _, index = within.rstrip("]").partition("[")
+            old = own.get(name, getattr(getattr(self, part), name))
+            if index:
+                i = int(index)
+                own[name] = (*old[:i], changed(old[i], **values), *old[i + 1 :])
             else:
-                parts[section] = changed(getattr(self, section), **values)
-        if arms != list(self.foundation.arms):
-            parts["foundation"] = replace(
-                parts.get("foundation", self.foundation), arms=tuple(arms)
-            )
-        return replace(self, **parts) if parts else self
+                own[name] = changed(old, **values)
+        made: dict[str, Any] = {
+            part: self.drive.changed(**own)
+            if part == "drive"
+            else changed(getattr(self, part), **own)
+            for part, own in parts.items()
+        }
+        return replace(self, **made) if made else self
 
 
-ARM = re.compile(r"foundation\.arms\[(\d+)\]")
-"""The key of an arm of a Prony series."""
+PARTS: dict[str, tuple[Any, ...]] = {
+    "indenter": get_args(Indenter), "foundation": get_args(AnyFoundation), "support": get_args(Support),
+    "drive": (Drive,), "run": (Run,),
+}  # fmt: skip
+"""The parts of a scene, and what each can be."""
 
 
 def lacks_mass(support: Support, drive: Drive, per_width: bool) -> list[str]:

@@ -46,16 +46,41 @@ class SceneError(ValueError):
 
 
 class Derived(float):
-    """A quantity derived from others: when these are replaced, it is recomputed."""
+    """A quantity derived from others: when these are replaced, it is recomputed.
+
+    `given` is the value from which it follows, of a time that temperature shifts; None of other quantities.
+    """
+
+    given: Any = None
 
 
 class DerivedArray(np.ndarray):
     """An array of derived quantities; what is computed from it is a plain array."""
 
+    given: Any = None
+
     def __array_ufunc__(self, ufunc: Any, method: str, *inputs: Any, **options: Any) -> Any:
         """Apply a function to plain arrays."""
         plain = [np.asarray(x) if isinstance(x, DerivedArray) else x for x in inputs]
         return getattr(ufunc, method)(*plain, **options)
+
+    def __reduce__(self) -> Any:
+        return _derived, (np.asarray(self), self.given)
+
+    def __deepcopy__(self, memo: Any) -> "DerivedArray":
+        return _derived(np.array(self), self.given)
+
+
+def _derived(value: Any, given: Any = None) -> Any:
+    found: Any = Derived(value) if np.ndim(value) == 0 else np.asarray(value).view(DerivedArray)
+    found.given = given
+    return found
+
+
+def as_given(value: Any) -> Any:
+    """Return a quantity as it was given: before its shift by temperature, if it is a time."""
+    derived = isinstance(value, Derived | DerivedArray) and value.given is not None
+    return value.given if derived else value
 
 
 class Part:
@@ -68,7 +93,7 @@ class Part:
         return hash(_content(self))
 
     arrayed: ClassVar[bool] = False
-    """Whether a quantity is an array; set by `settle`, as scenes are made by the thousand."""
+    """Whether a quantity is an array; set by `validate`, as scenes are made by the thousand."""
 
     def mapped(self, function: Callable[[Any], Any]) -> Any:
         """Return a copy with a function applied to every array, which is not checked again."""
@@ -80,18 +105,25 @@ class Part:
         vars(copy).update(values)
         return copy
 
+    def nested(self) -> Iterator[tuple[str, "Part"]]:
+        """Yield the parts within it and the ends of their dotted names, such as "arms[0]"."""
+        for name in _names(self.__class__):
+            value = getattr(self, name)
+            if isinstance(value, Part):
+                yield name, value
+            elif isinstance(value, tuple) and value and isinstance(value[0], Part):
+                yield from ((f"{name}[{i}]", part) for i, part in enumerate(value))
+
     def arrays(self) -> dict[str, NDArray[np.float64]]:
         """Return the arrays among the given quantities, those of parts within it by dotted name."""
         found: dict[str, Any] = {}
-        for name in _names(self.__class__) if self.arrayed else ():
-            value = getattr(self, name)
-            if type(value) is np.ndarray:  # and not derived
-                found[name] = value
-            elif isinstance(value, Part):
-                found |= {f"{name}.{inner}": each for inner, each in value.arrays().items()}
-            elif isinstance(value, tuple) and value and isinstance(value[0], Part):
-                for i, part in enumerate(value):
-                    found |= {f"{name}[{i}].{inner}": x for inner, x in part.arrays().items()}
+        if self.arrayed:
+            for name in _names(self.__class__):
+                value = as_given(getattr(self, name))
+                if type(value) is np.ndarray:  # and not derived
+                    found[name] = value
+            for name, part in self.nested():
+                found |= {f"{name}.{inner}": each for inner, each in part.arrays().items()}
         return found
 
     def mark(self, parts: Iterable["Part"]) -> None:
@@ -125,7 +157,8 @@ class Quantity:
 
     `needed` says that it must be given, unless the one named by `instead` is; `beside` names those that
     it must be given with, and `excludes` those that it cannot be given with. `per_width` says that it is
-    per unit width for a line contact, in `unit`, and a total for a ball: see `fitting`.
+    per unit width for a line contact, in `unit`, and a total for a ball: see `fitting`. `difference` says
+    that it is a difference of temperatures.
     """
 
     unit: str
@@ -139,12 +172,18 @@ class Quantity:
     beside: tuple[str, ...] = ()
     excludes: tuple[str, ...] = ()
     per_width: bool = False
+    difference: bool = False
 
     def fitting(self, per_width: bool) -> "Quantity":
         """Return this quantity for a line contact, per unit width, or for a ball, as a total."""
         if per_width or not self.per_width:
             return self
         return dataclasses.replace(self, unit=WHOLE[self.unit], per_width=False)
+
+    @property
+    def dimension(self) -> str:
+        """The unit for `to_si`, which distinguishes temperatures from their differences."""
+        return f"delta {self.unit}" if self.difference else self.unit
 
     @property
     def words(self) -> str:
@@ -206,7 +245,7 @@ def given(instance: Any) -> dict[str, Quantity]:
     return {
         name: spec
         for name, spec in quantities(instance).items()
-        if not isinstance(getattr(instance, name), Derived | DerivedArray | None)
+        if not isinstance(as_given(getattr(instance, name)), Derived | DerivedArray | None)
     }
 
 
@@ -215,46 +254,53 @@ def free(instance: Any) -> dict[str, Quantity]:
     return {
         name: spec
         for name, spec in quantities(instance).items()
-        if getattr(instance, name) is not None or not spec.beside
+        if getattr(instance, name) is not None
+        or all(getattr(instance, other) is not None for other in spec.beside)
     }
 
 
-def changed(instance: Any, **values: float) -> Any:
+def changed(instance: Any, **values: Any) -> Any:
     """Return a copy with some quantities replaced; what these exclude is left out."""
     specs = quantities(instance)
-    dropped = {other: None for name in values for other in specs[name].excludes}
+    dropped = {other: None for name in specs.keys() & values for other in specs[name].excludes}
     return dataclasses.replace(instance, **{**dropped, **values})
 
 
-def required(cls: Any, names: Iterable[str] = ()) -> list[str]:
+def required(cls: Any, names: Iterable[str] = ()) -> tuple[str, ...]:
     """Return the quantities that must be given where those of the `names` are.
 
     One that another excludes requires nothing more: that is a separate mistake.
     """
-    names, found = set(names), []
-    for name, given_first in quantities(cls).items():
+    return _required(cls, tuple(names))
+
+
+@cache
+def _required(cls: Any, given: tuple[str, ...]) -> tuple[str, ...]:
+    specs, names = quantities(cls), set(given)
+    for name in specs:
         if name in names:
-            names -= set(given_first.excludes)
-    for f in dataclasses.fields(cls):
-        spec = f.metadata.get("quantity")
-        if spec and f.name not in names and (f.default is dataclasses.MISSING or spec.needed):
-            found += [f.name] * (spec.instead not in names)
-        elif spec and f.name not in names and set(spec.beside) & names:
-            found.append(f.name)
-    return found
+            names -= set(specs[name].excludes)
+    beside = {other for name in specs.keys() & names for other in specs[name].beside}
+    first = {f.name for f in dataclasses.fields(cls) if f.default is dataclasses.MISSING}
+    return tuple(
+        name
+        for name, spec in specs.items()
+        if name not in names
+        and (name in beside or ((spec.needed or name in first) and spec.instead not in names))
+    )
 
 
 def missing(section: str, name: str, spec: Quantity, of: str = "") -> str:
     """Return the message that a quantity is missing, and what may be given instead."""
     instead = f"; or {section}.{spec.instead}" if spec.instead else ""
-    return f"{section}.{name}: missing{of}; expected {expected(spec.unit)}{instead}"
+    return f"{section}.{name}: missing{of}; expected {expected(spec.dimension)}{instead}"
 
 
 def convert(value: Any, spec: Quantity) -> float:
     """Return one `value` in SI, or raise `ValueError` saying what is wrong with it."""
-    number = to_si(value, spec.unit)
+    number = to_si(value, spec.dimension)
     if not spec.admits(number):
-        raise ValueError(f"is out of range; expected {spec.range}, {expected(spec.unit)}")
+        raise ValueError(f"is out of range; expected {spec.range}, {expected(spec.dimension)}")
     return number
 
 
@@ -355,35 +401,38 @@ def item_values(item: str, spec: Quantity) -> NDArray[np.float64]:
     return array
 
 
-def settle(instance: Any, section: str) -> None:
+def validate(instance: Any, section: str) -> None:
     """Convert and check every quantity of a frozen dataclass; for use in ``__post_init__``.
 
     A derived quantity is removed, to be recomputed. Values whose unit tells whether they are per unit
     width are kept in `written`, for the scene to check.
     """
-    specs, written = quantities(instance), {}
-    values = {name: getattr(instance, name) for name in specs}
-    values = {
-        name: None if isinstance(v, Derived | DerivedArray) else v for name, v in values.items()
-    }
-    here = [name for name, value in values.items() if value is not None]
+    specs, written, values = quantities(instance), {}, {}
+    for name in specs:
+        value = as_given(getattr(instance, name))
+        if isinstance(value, Derived | DerivedArray):
+            object.__setattr__(instance, name, None)
+        elif value is not None:
+            values[name] = value
+    here = tuple(values)
     problems = [missing(section, name, specs[name]) for name in required(type(instance), here)]
     for name, value in values.items():
         try:
             spec = written_as(value, specs[name])
-            number = None if value is None else converted(value, spec)
+            number = converted(value, spec)
             object.__setattr__(instance, name, number)
             if number.__class__ is np.ndarray:
                 object.__setattr__(instance, "arrayed", True)
-            if specs[name].per_width and _has_unit(_sample(value)):
+            if specs[name].per_width and _has_unit(sample(value)):
                 written[name] = value, spec.per_width
         except ValueError as error:
             problems.append(problem(f"{section}.{name}", value, str(error)))
     for place, name in enumerate(here):  # a pair is one mistake, not two
-        others = [f"{section}.{other}" for other in here[place:] if other in specs[name].excludes]
-        if others:
-            told = f"cannot be given beside {', '.join(others)}"
-            problems.append(problem(f"{section}.{name}", values[name], told))
+        if excludes := specs[name].excludes:
+            others = [f"{section}.{other}" for other in here[place:] if other in excludes]
+            if others:
+                told = f"cannot be given beside {', '.join(others)}"
+                problems.append(problem(f"{section}.{name}", values[name], told))
     if problems:
         raise SceneError(problems)
     if written:
@@ -394,7 +443,7 @@ def _has_unit(value: Any) -> bool:
     return isinstance(value, str) or hasattr(value, "units")
 
 
-def _sample(value: Any) -> Any:
+def sample(value: Any) -> Any:
     """Return one item of a list, or one end of a range; the others have the same unit."""
     while isinstance(value, list | tuple) and value:
         value = value[0]
@@ -407,8 +456,7 @@ def written_as(value: Any, spec: Quantity) -> Quantity:
     >>> written_as("3 N", Quantity("N/m", "W, load", 0.0, True, per_width=True)).unit
     'N'
     """
-    value = _sample(value)
-    if not (spec.per_width and _has_unit(value)):
+    if not (spec.per_width and _has_unit(value := sample(value))):
         return spec
     kinds = spec, spec.fitting(False)
     for kind in kinds:
@@ -434,12 +482,13 @@ def misfits(section: str, part: Any, indenter: Any) -> list[str]:
     return found
 
 
-def derive(instance: Any, section: str, name: str, value: float, of: str) -> None:
-    """Set a quantity derived from others; for use in ``__post_init__`` after `settle`."""
+def derive(instance: Any, section: str, name: str, value: Any, of: str, given: Any = None) -> None:
+    """Set a quantity derived from others; for use in ``__post_init__`` after `validate`."""
     if not quantities(instance)[name].admits(value):
         raise mistake(f"{section}.{name}", value, f"follows from {of}, and is out of range")
-    whole = Derived(value) if np.ndim(value) == 0 else np.asarray(value).view(DerivedArray)
-    object.__setattr__(instance, name, whole)
+    object.__setattr__(instance, name, _derived(value, given))
+    if np.ndim(value):
+        object.__setattr__(instance, "arrayed", True)
 
 
 def problem(key: str, given: Any, what: str) -> str:
@@ -488,6 +537,9 @@ MEANT = {
     symbol: name
     for name, symbols in {
         "modulus": "E young youngs_modulus elastic_modulus shear_modulus",
+        "temperature": "T temp",
+        "reference_temperature": "T_ref T_0 T_r",
+        "activation_energy": "E_a Q arrhenius",
         "poisson_ratio": "nu ν poisson",
         "thickness": "h height",
         "stiffness": "K rigidity k_s k_x spring",

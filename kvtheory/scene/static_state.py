@@ -7,9 +7,9 @@ from typing import Any
 
 import numpy as np
 
+from kvtheory.scene.capabilities import lacks_one_scene, lacks_quadratic, require
 from kvtheory.scene.model import TABLE1_SUPPORTS, Scene
-from kvtheory.scene.quantities import given
-from kvtheory.scene.requirements import lacks_one_scene, lacks_quadratic, require
+from kvtheory.scene.quantities import as_given, given
 
 
 @dataclass(frozen=True)
@@ -56,7 +56,7 @@ class StaticState:
         require(lacks_one_scene, scene, "the static state")
         require(lacks_quadratic, scene, "the static state in closed form")
         try:
-            found = _parabolic(scene) if scene.indenter.per_width else _round(scene)
+            found = _at_rest(scene)
         except ArithmeticError:
             found = None
         if found is None or not found.in_range:
@@ -139,15 +139,6 @@ class StaticState:
         return shown | {name: found[name] for name in numbers if math.isfinite(found[name])}
 
 
-def _parabolic(scene: Scene) -> StaticState:
-    R, K, support = scene.indenter.radius, scene.foundation.stiffness, scene.support
-    if support.depth is not None:
-        a_0 = math.sqrt(2 * R * support.depth)
-        return StaticState.at(scene, support.depth, a_0, 4 / 3 * K * a_0 * support.depth)
-    a_0 = (1.5 * R * support.weight / K) ** (1 / 3)
-    return StaticState.at(scene, a_0**2 / (2 * R), a_0, support.weight)
-
-
 def ball_stiffness(stiffness: Any, radius: Any, stretch: Any) -> Any:
     """Return W_0/delta_0^2 = pi K R sqrt(R'/R) of a ball at rest in N/m^2, of floats or arrays (theorem F20).
 
@@ -157,14 +148,23 @@ def ball_stiffness(stiffness: Any, radius: Any, stretch: Any) -> Any:
     return math.pi * stiffness * radius * stretch
 
 
-def _round(scene: Scene) -> StaticState:
-    R, support = scene.indenter.radius, scene.support
-    stiffness = ball_stiffness(scene.foundation.stiffness, R, scene.indenter.stretch)
-    if support.depth is not None:
-        load = stiffness * support.depth**2
-        return StaticState.at(scene, support.depth, math.sqrt(2 * R * support.depth), load)
-    depth = math.sqrt(support.weight / stiffness)
-    return StaticState.at(scene, depth, math.sqrt(2 * R * depth), support.weight)
+def _at_rest(scene: Scene) -> StaticState:
+    """Return the static state of a parabola or a ball from its load or its depth."""
+    R, K, support = scene.indenter.radius, scene.foundation.stiffness, scene.support
+    depth, load = support.depth, support.weight
+    if scene.indenter.per_width:
+        half_length = (1.5 * R * load / K) ** (1 / 3) if depth is None else math.sqrt(2 * R * depth)
+        if depth is None:
+            depth = half_length**2 / (2 * R)
+        else:
+            load = 4 / 3 * K * half_length * depth
+    else:
+        stiffness = ball_stiffness(K, R, scene.indenter.stretch)
+        depth, load = (
+            (math.sqrt(load / stiffness), load) if depth is None else (depth, stiffness * depth**2)
+        )
+        half_length = math.sqrt(2 * R * depth)
+    return StaticState.at(scene, depth, half_length, load)
 
 
 FAR = 10.0
@@ -195,10 +195,13 @@ def _sizes(scene: Scene) -> Iterator[tuple[str, float, str]]:
     parts = {**scene.parts(), "run": scene.run, "drive": scene.drive.waveform or scene.drive}
     for section, part in parts.items():
         for name, spec in given(part).items():
-            sizes = np.abs(getattr(part, name))
+            sizes = np.abs(as_given(getattr(part, name)))
             unit = "" if spec.unit == "1" else spec.unit
             for size in (np.min(sizes, initial=math.inf), np.max(sizes, initial=0.0)):
                 yield f"{section}.{name}", float(size), unit
+    shift = np.ravel(scene.foundation.shift_factor)
+    for size in (shift.min(initial=1.0), shift.max(initial=1.0)):
+        yield "a_T of foundation.temperature", float(size), ""
     speeds = [abs(velocity) for _, velocity in scene.drive.history or ()]
     if speeds:
         yield "drive.history", max(speeds), "m/s"

@@ -1,17 +1,30 @@
-"""Tables of numbers in text, as programs and spreadsheets write them.
+"""Text files, and tables of numbers in them, as programs and spreadsheets write them.
 
 Separators are commas, semicolons, tabs or as given by a ``sep=`` line; a decimal comma is read where the
 comma is not the separator; ``#`` begins a comment; a column header holds a name and a unit.
 """
 
+import codecs
 import csv
+import errno
+import os
 import re
+import stat
 from pathlib import Path
 from typing import NamedTuple
 
-from kvtheory.scene.quantities import shown
-from kvtheory.scene.texts import read_text
+from kvtheory.scene.drives import history_points
+from kvtheory.scene.quantities import mistake, shown
+from kvtheory.scene.units import to_si
 
+MARKS = {
+    codecs.BOM_UTF8: "utf-8-sig",
+    codecs.BOM_UTF16_LE: "utf-16",
+    codecs.BOM_UTF16_BE: "utf-16",
+}
+"""Byte order marks, by which a file tells its encoding."""
+MOST = 2**28
+"""Bytes of a text; a million rows of ten columns are fewer."""
 SEPARATORS = "\t;,"
 SEPARATED = re.compile(r"^\s*\"?sep=(.)\"?\s*$", re.IGNORECASE)
 """The line that tells a spreadsheet the separator."""
@@ -138,3 +151,83 @@ def parts(head: str) -> tuple[str, str]:
         if match := pattern.match(head):
             return match["name"].rstrip(" /"), match["unit"].strip(" ()[]")
     return head, ""
+
+
+def read_text(path: Path) -> str:
+    r"""Return the text of a file in UTF-8, UTF-16 (of a Windows shell) or Windows-1252 (of Excel).
+
+    UTF-16 is recognised by its mark or by the zeros between its letters. Text that is not UTF-8 is read as
+    Windows-1252, in which all letters of units have the same codes as in Latin-1.
+
+    Raises
+    ------
+    UnicodeDecodeError
+        If it is none of these.
+    OSError
+        If it cannot be read, is a device, or holds more than `MOST` bytes.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> path = Path(tempfile.mkdtemp()) / "scene.toml"
+    >>> for encoding in ("utf-8", "utf-16", "utf-16-le", "latin-1"):
+    ...     _ = path.write_text('radius = "5 µm"', encoding=encoding)
+    ...     assert read_text(path) == 'radius = "5 µm"'
+    """
+    with path.open("rb") as file:
+        if stat.S_ISCHR(os.fstat(file.fileno()).st_mode):
+            raise OSError(errno.EINVAL, "is a device; expected a file", str(path))
+        data = file.read(MOST + 1)
+    if len(data) > MOST:
+        told = f"holds more than {MOST / 1e6:.0f} MB, the most that is read"
+        raise OSError(errno.EFBIG, told, str(path))
+    encodings = [name for mark, name in MARKS.items() if data.startswith(mark)]
+    if not encodings and b"\0" in data[:2]:
+        encodings = ["utf-16-be" if data.startswith(b"\0") else "utf-16-le"]
+    try:
+        text = data.decode(encodings[0] if encodings else "utf-8")
+    except UnicodeDecodeError:
+        if encodings:
+            raise
+        text = data.decode("cp1252")
+    return text.replace("\r\n", "\n")
+
+
+KEY = "drive.file"
+EXPECTED = 'expected a first line such as "t [ms],V [mm/s]", and then numbers'
+NAMES = {
+    "s": ("t", "time", "zeit"),
+    "m/s": ("v", "velocity", "speed", "drivevelocity", "vdrive", "geschwindigkeit"),
+}
+"""Possible names of the columns of time and velocity, by their units."""
+
+
+def history_from(path: Path) -> tuple[tuple[float, float], ...]:
+    """Return the points (t, V) in SI of a CSV whose header names the units; other columns are ignored.
+
+    Raises
+    ------
+    SceneError
+        If the file cannot be read; the message says in which line.
+    """
+    try:
+        table = read_table(path)
+        heads = [parts(head) for head in table.heads]
+        at, factors = [], []
+        for unit, names in NAMES.items():
+            found = [i for i, (name, _) in enumerate(heads) if plain(name) in names]
+            if len(found) != 1:
+                told = "no column" if not found else "more than one column"
+                raise ValueError(f"{told} is named {' or '.join(names[:2])}")
+            at += found
+            factors.append(to_si(f"1 {heads[found[0]][1]}", unit))
+        used = [i in at for i in range(len(heads))]
+        rows = [numbers(path, table, line, cells, used) for line, cells in table.rows]
+    except OSError as error:
+        raise mistake(KEY, str(path), f"cannot be read: {error.strerror}") from None
+    except ValueError as error:
+        told = str(error).removeprefix(f"{path}: ")
+        raise mistake(KEY, str(path), f"{told}; {EXPECTED}") from None
+    (t, V), (of_t, of_V) = at, factors
+    points = [(row[t] * of_t, row[V] * of_V) for row in rows]
+    return history_points(points, f"{KEY} ({path.name})")

@@ -30,8 +30,12 @@ EXAMPLES = {
     "1/s": ("5 Hz", "300 /min", "5 s^-1"),
     "1/m": ("200 /mm", "200 mm^-1", "2e5 /m"),
     "N/m^3": ("10 GN/m^3", "10 N/mm^3", "10 MPa/mm"),
+    "K": ("23 degC", "296.15 K", "73.4 degF"),
+    "delta K": ("51.6 K", "51.6 delta_degC"),
+    "J/mol": ("80 kJ/mol", "8e4 J/mol"),
 }
-"""Ways to write a quantity of each SI unit that a scene uses; messages show the first one."""
+"""Ways to write a quantity of each SI unit that a scene uses; messages show the first one. The unit of a
+difference of temperatures is "delta K", as "20 degC" is no difference."""
 
 WHOLE = {"kg/m": "kg", "N/m": "N", "N/m^2": "N/m", "N*s/m^2": "N*s/m", "J/m": "J"}
 """For each unit of a quantity per unit width, the unit of the total quantity of a ball."""
@@ -64,9 +68,20 @@ USUAL = {
     "N/m^2": _ratios(_NEWTONS, _METRES, 2) | _PASCALS,
     "N/m^3": _ratios(_NEWTONS, _METRES, 3),
     "1/m": _ratios({"": 0}, _METRES, 1),
+    "delta K": dict.fromkeys(("K", "kelvin", "delta_degC", "delta_degree_Celsius"), 0),
+    "J/mol": {"J/mol": 0, "kJ/mol": 3},
 }
 """The usual ways to write each unit, and the power of ten to SI: for them pint is not needed, whose import
 takes longer than most computations."""
+
+_FAHRENHEIT = Fraction(5, 9), Fraction(45967, 180)
+_CELSIUS = Fraction(1), Fraction(27315, 100)
+TEMPERATURES = (
+    dict.fromkeys(("K", "kelvin"), (Fraction(1), Fraction(0)))
+    | dict.fromkeys(("degC", "°C", "℃", "celsius", "degree_Celsius"), _CELSIUS)
+    | dict.fromkeys(("degF", "°F", "℉", "fahrenheit", "degree_Fahrenheit"), _FAHRENHEIT)
+)
+"""Scales of temperature: the size of a degree in K, and the zero of the scale in K."""
 
 LONGEST_UNIT = 60
 _NUMBER = re.compile(
@@ -171,6 +186,8 @@ def expected(unit: str) -> str:
     """Describe in words how a quantity of `unit` is written."""
     if unit == "1":
         return "a dimensionless number"
+    if unit == "delta K":
+        return f'a difference of temperatures in K, such as "{EXAMPLES[unit][0]}"'
     return f'a quantity in {unit}, such as "{EXAMPLES[unit][0]}"'
 
 
@@ -197,6 +214,10 @@ def _scaled(number: str | float, written: str, unit: str) -> float:
         return approximate
     if not written:
         raise ValueError(f"has no unit; expected {expected(unit)}")
+    if unit == "K" and written in TEMPERATURES:
+        degree, zero = TEMPERATURES[written]
+        usual = 1e-9 < abs(approximate) < 1e9  # beyond, a power of ten would be huge
+        return float(Fraction(number if usual else approximate) * degree + zero)
     factor = _factor(written, unit)
     # A value that underflows is zero, before a huge power of ten is formed.
     exact = Fraction(number) * factor if approximate else Fraction(0)
@@ -216,11 +237,17 @@ def _factor(written: str, unit: str) -> Fraction:
     written = re.sub(r"^(1\s*)?/", "dimensionless/", written)
     if len(written) > LONGEST_UNIT or not _UNIT.fullmatch(written):
         raise ValueError(f'"{written}" is not a unit; expected {expected(unit)}')
-    registry = _registry()
+    if unit == "delta K" and TEMPERATURES.get(written, (1, 0))[1]:  # a scale with another zero
+        raise ValueError(
+            f'"{written}" is the unit of a temperature, not of a difference; expected {expected(unit)}'
+        )
+    registry, si = _registry(), unit.removeprefix("delta ")
     try:
         quantity = registry.Quantity(Fraction(1), written)
-        fits = quantity.check(registry.Quantity(Fraction(1), unit).dimensionality)
-        factor = Fraction(quantity.to(unit).magnitude) if fits else None
+        fits = quantity.check(registry.Quantity(Fraction(1), si).dimensionality)
+        factor = Fraction(quantity.to(si).magnitude) if fits else None
+        if fits and registry.Quantity(Fraction(0), written).to(si).magnitude:
+            raise ValueError("a unit with another zero")
     except Exception:  # pint raises many kinds, none of them documented as the only one
         raise ValueError(
             f'"{written}" is not a known unit{_nearest(written, unit)}; expected {expected(unit)}'

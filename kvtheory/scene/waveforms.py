@@ -4,7 +4,7 @@ import math
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
-from kvtheory.scene.quantities import Part, Value, quantity, settle
+from kvtheory.scene.quantities import Part, Value, quantity, validate
 
 AT_LAST = 20.0
 """Rise times after which tanh is 1 to the last digit."""
@@ -16,7 +16,7 @@ class _Waveform(Part):
     final_velocity: ClassVar[float | None] = None
 
     def __post_init__(self) -> None:
-        settle(self, "drive")
+        validate(self, "drive")
 
 
 @dataclass(frozen=True, eq=False)

@@ -135,7 +135,7 @@ def _sweep(plan: Plan, header: Any, read: Any, computed: int, path: Path | None 
     return Sweep(
         scene=plan.scene, axes=plan.axes, time=np.array(plan.times) if plan.series else None,
         units=plan.units, points=plan.points, computed=computed, failed=header["failed"],
-        failures=header["failures"], version=plan.record["kvtheory"], path=path, plan=plan, read=read,
+        failures=header["failures"], version=plan.version, path=path, plan=plan, read=read,
         certificate=Certificate("estimated", header["certificate"], header["relative_error"]),
     )  # fmt: skip
 
@@ -220,7 +220,7 @@ def _write_csv(plan: Plan, blocks: Blocks, path: Path) -> None:
     lines = [
         f"{DIGEST}{'0' * DIGITS}",
         "# to read the table: pandas.read_csv(FILE, comment='#')",
-        f"# version: {plan.record['kvtheory']}",
+        f"# version: {plan.version}",
         f"# over: {swept}",
     ]
     if summary["done"] < plan.points:

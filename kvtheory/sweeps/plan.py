@@ -18,11 +18,11 @@ from numpy.typing import NDArray
 
 from kvtheory.results import SERIES_UNITS, STEADY_UNITS, TRANSIENT_UNITS, units_for
 from kvtheory.results.sweep import Axis
+from kvtheory.scene.capabilities import lacks_paper_model
 from kvtheory.scene.files import to_toml
 from kvtheory.scene.indenters import Indenter, Parabola
 from kvtheory.scene.model import Scene
 from kvtheory.scene.quantities import SceneError, nearest, problem
-from kvtheory.scene.requirements import lacks_paper_model
 
 Table = NDArray[np.void]
 
@@ -181,10 +181,15 @@ class Plan:
         return swept | {column.name: column.unit for column in self.columns}
 
     @cached_property
+    def version(self) -> str:
+        """Of the package that computes the numbers."""
+        return version("kvtheory")
+
+    @cached_property
     def record(self) -> dict[str, Any]:
         """The identity of the sweep, ready for JSON: equal records mean equal numbers."""
         return {
-            "kvtheory": version("kvtheory"),
+            "kvtheory": self.version,
             "scene": to_toml(self.scene),
             "over": [
                 {key: _digest(array) for key, array in axis.values.items()} for axis in self.axes

@@ -16,9 +16,9 @@ from kvtheory.models.elements.edges import BEYOND, kink_area, runs_of
 from kvtheory.models.elements.law import RIGHT, Array, ContactRule, Law
 from kvtheory.models.elements.strips import FEWEST_STRIPS, PER_STRIP, total, weights_across
 from kvtheory.scene.base_motion import BaseMotion
+from kvtheory.scene.capabilities import lacks_arms, require
 from kvtheory.scene.indenters import Indenter
 from kvtheory.scene.model import Scene
-from kvtheory.scene.requirements import lacks_arms, require
 from kvtheory.scene.static_state import StaticState, out_of_range
 
 LEVEL = 1.1

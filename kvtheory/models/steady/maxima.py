@@ -20,8 +20,8 @@ from kvtheory.models.steady.ball import angle_and_tail
 from kvtheory.models.steady.methods import CLOSED, METHODS, plain
 from kvtheory.models.steady.power_law_contact import shape_of, trailing_edge
 from kvtheory.results import Certificate
+from kvtheory.scene.capabilities import lacks_kelvin_voigt
 from kvtheory.scene.model import Scene
-from kvtheory.scene.requirements import lacks_kelvin_voigt
 from kvtheory.theory import closed_forms as cf
 
 Array = NDArray[np.float64]

@@ -15,8 +15,8 @@ from kvtheory.models.steady import (
 )
 from kvtheory.models.steady.blockwise import evaluate
 from kvtheory.results import STEADY_UNITS, Certificate, SteadyState, units_for
+from kvtheory.scene.capabilities import lacks_kelvin_voigt
 from kvtheory.scene.model import Scene
-from kvtheory.scene.requirements import lacks_kelvin_voigt
 
 CLOSED: Mapping[str, Any] = {
     "parabola": exact,
@@ -24,14 +24,14 @@ CLOSED: Mapping[str, Any] = {
     "wedge": power_law,
     "sphere": ball,
 }
-"""The closed forms on Kelvin-Voigt by shape; `kvtheory.scene.requirements` lists the same shapes."""
+"""The closed forms on Kelvin-Voigt by shape; `kvtheory.scene.capabilities` lists the same shapes."""
 MOMENTS: Mapping[str, Any] = {"parabola": viscoelastic, "sphere": ball_viscoelastic}
 """The shapes that need no more than the moments of the relaxation function, on any foundation."""
 
 COLUMN = 256
 """Scenes that are integrated at once: their nodes then fit into the second-level cache of a core."""
 ROUNDING = 64 * 2.0**-52
-"""Rounding error of an asymptote and of the exact state that tells its error, about twenty operations each."""
+"""Rounding error of an asymptote and of the exact state it is compared with, about twenty operations each."""
 
 
 def solve_exact(scene: Scene) -> SteadyState:

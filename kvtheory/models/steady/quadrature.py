@@ -34,8 +34,8 @@ from kvtheory.models.steady.profile_series import ConvexProfile
 from kvtheory.models.steady.revolved import Strips
 from kvtheory.results import STEADY_UNITS, Certificate
 from kvtheory.results.errors import QuadratureError
+from kvtheory.scene.capabilities import lacks_kelvin_voigt, lacks_quadrature
 from kvtheory.scene.model import Scene
-from kvtheory.scene.requirements import lacks_kelvin_voigt, lacks_quadrature
 
 UNBALANCED = 1e-6
 """Relative error of the load carried above which the result is refused."""

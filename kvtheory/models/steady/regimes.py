@@ -30,9 +30,9 @@ from kvtheory.results import (
     SteadyState,
     units_for,
 )
+from kvtheory.scene.capabilities import lacks_kelvin_voigt
 from kvtheory.scene.foundations import Foundation, FractionalKelvinVoigt
 from kvtheory.scene.model import Scene
-from kvtheory.scene.requirements import lacks_kelvin_voigt
 
 Array = NDArray[np.float64]
 Formula = Callable[[Scene], Any]

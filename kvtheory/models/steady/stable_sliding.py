@@ -12,8 +12,8 @@ from kvtheory.models.steady.critical_velocity import critical_velocity
 from kvtheory.models.steady.rates import rates
 from kvtheory.models.steady.stability import Numbers, is_stable, numbers, onsets
 from kvtheory.results import Certificate, Stability
+from kvtheory.scene.capabilities import lacks_stability
 from kvtheory.scene.model import Scene
-from kvtheory.scene.requirements import lacks_stability
 
 BLOCK = 8192
 """Scenes treated at a time: the intermediate arrays of a block stay in the processor's cache."""

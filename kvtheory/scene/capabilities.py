@@ -1,0 +1,218 @@
+"""What works with what: the scenes that each question is answered for, and the wording where it is not.
+
+A scene has a shape, a law of the foundation, a support and a drive. A question is answered for sets of these;
+messages, tests and a page of the documentation are made from the table `QUESTIONS`.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from kvtheory.scene.model import Scene
+
+SHAPES = {
+    "parabola": "the parabola", "circle": "the circle", "power-law": "the power law", "wedge": "the wedge",
+    "callable": "a profile of functions", "sphere": "the ball", "revolved": "a revolved profile",
+    "revolved-callable": "a revolved profile of functions",
+}  # fmt: skip
+"""The shapes of the table, in words; a revolved profile of functions is not known to be convex."""
+LAWS = "kelvin-voigt", "generalized-maxwell", "fractional-kelvin-voigt"
+SUPPORTS = "fixed", "dead-weight", "suspended"
+DRIVES = "rigid", "spring"
+
+KELVIN_VOIGT, ARMS = LAWS[:1], LAWS[:2]
+CLOSED = "parabola", "power-law", "wedge", "sphere"
+"""Shapes whose steady sliding on a Kelvin-Voigt foundation is in closed form, with one root at most."""
+QUADRATIC = "parabola", "sphere"
+TRACE = "a ball that rises lifts its rim off the ground and meets its own trace again"
+
+
+@dataclass(frozen=True)
+class Scenes:
+    """The scenes with one of these shapes, laws, supports and drives."""
+
+    shapes: tuple[str, ...] = tuple(SHAPES)
+    laws: tuple[str, ...] = LAWS
+    supports: tuple[str, ...] = SUPPORTS
+    drives: tuple[str, ...] = DRIVES
+    why: str = ""
+
+    def lacking(self, shape: str, law: str, support: str, drive: str) -> list[str]:
+        """Return what keeps a scene from being one of these, in words."""
+        found = []
+        if shape not in self.shapes:
+            named = _listed([SHAPES[name] for name in self.shapes], "and")
+            told = f'holds for {named} only, not for indenter.shape = "{shape.removesuffix("-callable")}"'
+            found.append(told)
+        if law not in self.laws:
+            named = _listed([f'"{name}"' for name in self.laws], "or")
+            found.append(f'holds for foundation.kind = {named} only, not for "{law}"')
+        if support not in self.supports:
+            named = _listed([f'"{name}"' for name in self.supports], "or")
+            why = f": {self.why}" if self.why else ""
+            found.append(f'holds for support.kind = {named} only, not for "{support}"{why}')
+        if drive not in self.drives:
+            found.append("holds for a rigid drive only, not with drive.stiffness")
+        return found
+
+
+Kind = tuple[str, str, str, str]
+
+
+class Needs:
+    """A requirement on a scene, which is met by any of several sets of scenes.
+
+    Called with a scene, it returns an empty text if the scene meets it; else what the scene lacks, compared
+    with the set that it comes nearest to.
+
+    >>> lacks_parabola(Scene())
+    ''
+    """
+
+    def __init__(self, *sets: Scenes) -> None:
+        self.sets = sets
+        self.told: dict[Kind, str] = {}
+
+    def __call__(self, scene: Scene) -> str:
+        """Return what the scene lacks."""
+        kind = scene.kind
+        if kind not in self.told:
+            nearest = min((each.lacking(*kind) for each in reversed(self.sets)), key=len)
+            self.told[kind] = nearest[0] if nearest else ""
+        return self.told[kind]
+
+    def laws(self, shape: str, support: str, drive: str) -> list[str]:
+        """Return the laws on which a shape, on a support and a drive, meets the requirement."""
+        met = [
+            s
+            for s in self.sets
+            if shape in s.shapes and support in s.supports and drive in s.drives
+        ]
+        return [law for law in LAWS if any(law in each.laws for each in met)]
+
+
+lacks_parabola = Needs(Scenes(("parabola",)))
+lacks_quadratic = Needs(Scenes(QUADRATIC))
+lacks_kelvin_voigt = Needs(Scenes(laws=KELVIN_VOIGT))
+lacks_arms = Needs(Scenes(laws=ARMS))
+lacks_ball = Needs(Scenes(("sphere",), KELVIN_VOIGT))
+lacks_rigid_drive = Needs(Scenes(drives=("rigid",)))
+lacks_paper_model = Needs(Scenes(("parabola",), KELVIN_VOIGT))
+lacks_rigid_paper_model = Needs(Scenes(("parabola",), KELVIN_VOIGT, drives=("rigid",)))
+lacks_slow_manifold = Needs(Scenes(("parabola",), KELVIN_VOIGT, SUPPORTS[1:], ("rigid",)))
+lacks_strips = Needs(Scenes(("sphere",), KELVIN_VOIGT, ("fixed",), ("rigid",), TRACE))
+lacks_transient = Needs(*lacks_paper_model.sets, *lacks_strips.sets)
+lacks_quadratic_on_arms = Needs(Scenes(QUADRATIC, ARMS))
+lacks_stability = lacks_quadratic_on_arms
+lacks_asymptotes = Needs(Scenes(CLOSED, KELVIN_VOIGT))
+lacks_limits = lacks_closed_form = Needs(Scenes(QUADRATIC), *lacks_asymptotes.sets)
+lacks_quadrature = Needs(Scenes(tuple(SHAPES)[:-1]), Scenes(laws=KELVIN_VOIGT))
+lacks_swept_transient = Needs(Scenes(laws=KELVIN_VOIGT), Scenes(tuple(SHAPES)[:-1], ARMS))
+lacks_scripts = Needs(Scenes(QUADRATIC), Scenes((*CLOSED, "circle"), KELVIN_VOIGT))
+
+
+@dataclass(frozen=True)
+class Question:
+    """A question about a scene: what it is called, how it is asked, what it needs, and what is missing."""
+
+    what: str
+    call: str
+    needs: Needs
+    missing: str = ""
+
+
+_NO_ELEMENTS = "A springpot has no finite state; a Prony series that comes near it has one."
+QUESTIONS = {
+    "exact": Question(
+        "steady sliding in closed form", 'steady(scene, method="exact")', lacks_closed_form,
+        "On other laws only the parabola, and with it the strips of a ball, have a pressure explicit in the "
+        "length of the contact. The circle has no closed form.",
+    ),
+    "quadrature": Question(
+        "steady sliding by integration", 'steady(scene, method="quadrature")', lacks_quadrature,
+        "Beyond Kelvin-Voigt one interval of contact in every strip is proved for convex profiles only.",
+    ),
+    "asymptote": Question(
+        "steady sliding by asymptotes", 'steady(scene, method="asymptote")', lacks_asymptotes,
+        "Other laws have other limits, which `asymptotes` gives without errors that are proved.",
+    ),
+    "limits": Question(
+        "limits of steady sliding", "asymptotes(scene)", lacks_limits,
+        "The limits of other shapes on other laws are not derived; their maxima of friction are given.",
+    ),
+    "maxima": Question("maxima of friction", "asymptotes(scene).maxima", lacks_quadrature),
+    "stability": Question(
+        "the stability of steady sliding", "stability(scene)", lacks_stability,
+        "The response of the contact to small motions is derived for the parabola, for the strips of a ball, "
+        "and for laws with a finite state.",
+    ),
+    "transient": Question(
+        "the transient", "transient(scene)", lacks_transient,
+        f"Without elements the contact has to be known as one interval in every strip: {TRACE}. Elements "
+        "answer.",
+    ),
+    "slow manifold": Question(
+        "the slow manifold", "solve(scene, at=...)", lacks_slow_manifold,
+        "It is derived for the paper's model; a fixed indenter does not move, and has none.",
+    ),
+    "elements": Question("the simulator", "elements(scene)", lacks_arms, _NO_ELEMENTS),
+    "series": Question("the cheapest transient", "solve(scene, at=...)", lacks_arms, _NO_ELEMENTS),
+    "compare": Question(
+        "the theory of the transient", "compare(scene, data)", lacks_quadratic_on_arms,
+        "The static state of other shapes, whose scales the comparison uses, is not in closed form.",
+    ),
+    "sweep": Question("sweeps of steady sliding", "sweep(scene, over=...)", lacks_quadrature),
+    "sweep over time": Question(
+        "sweeps of transients", "sweep(scene, over=..., at=...)", lacks_swept_transient, _NO_ELEMENTS
+    ),
+    "footprint": Question(
+        "the footprint", "footprint(scene)", lacks_ball,
+        "The pressure over the area of other contacts is not in closed form."
+    ),
+    "explorer": Question(
+        "the explorer", "kvtheory explore", lacks_scripts,
+        "The scripts of the page know closed forms, and the integral of the circle.",
+    ),
+    "numbers": Question(
+        "derivations with numbers", "kvtheory derive, with numbers", lacks_asymptotes,
+        "The derivations are of Kelvin-Voigt closed forms.",
+    ),
+}  # fmt: skip
+"""What works with what: the one table. A scene that is not covered is one for which theory is missing."""
+
+IN_MOTION = (
+    lacks_parabola, lacks_paper_model, lacks_rigid_paper_model, lacks_arms, lacks_quadratic_on_arms,
+    lacks_strips, lacks_transient,
+)  # fmt: skip
+"""The requirements of methods for transients; where one is not met, another method may apply."""
+
+
+def lacks_one_scene(scene: Scene) -> str:
+    """Return why what is made for one scene does not take arrays of them, or an empty text.
+
+    >>> lacks_one_scene(Scene())
+    ''
+    """
+    keys = ", ".join(scene.arrays())
+    return f"is for one scene, not for arrays ({keys}); use `sweep`, or one value" if keys else ""
+
+
+def require(lacks: Callable[[Scene], str], scene: Scene, what: str) -> None:
+    """Raise `ValueError` if the scene does not meet a requirement of `what`, naming an alternative."""
+    if lacking := lacks(scene):
+        raise ValueError(f"{what} {lacking}{_instead(lacks, scene)}")
+
+
+def _instead(lacks: object, scene: Scene) -> str:
+    """Return the methods for a scene in motion that the paper's model does not cover."""
+    if lacks not in IN_MOTION:
+        return ""
+    if lacks_arms(scene):
+        return (
+            '; `steady` holds for it, and `elements` follows a Prony series (foundation.kind = "'
+            f'{LAWS[1]}") that comes near it'
+        )
+    return "; `elements`, or `solve` with `at`, follows any shape and any Prony series"
+
+
+def _listed(names: list[str], word: str) -> str:
+    return f"{', '.join(names[:-1])} {word} {names[-1]}" if len(names) > 1 else names[0]
