@@ -53,8 +53,8 @@ def certificate(
     `tolerance` is that of the polynomials that stand for a drive.
     """
     if other is None:
-        return unknown(NOTHING, sprung=fine.rows.given.sprung)
-    given, whole = fine.rows.given, fine.deviations(other)
+        return unknown(NOTHING, sprung=fine.given.sprung)
+    given, whole = fine.given, fine.deviations(other)
     here = whole if times is None else fine.deviations(other, times)
     told = errors(here, whole, given.rtol, given.fixed, sprung=given.sprung, tolerance=tolerance)
     return Certificate(
