@@ -175,7 +175,7 @@ class _Block:
         for whole, part in zip(self.found, found, strict=True):
             whole[indices] = part
         told = found.deviations.T
-        given = readable(fine.given, GIVEN)
+        given = readable(fine.given[0], GIVEN)
         tolerance = max(self.scenes[index][0].drive.tolerance for index in indices)
         errors = estimate.errors(
             told, told, given.rtol, given.fixed, sprung=False, tolerance=tolerance

@@ -125,12 +125,14 @@ WALK, STATES, NATURAL, DEVIATIONS, SAMPLE, LARGEST, SETTLED, FOLLOW = range(8)
 
 
 def perform(
-    task: int, one: Run, two: Run, times: Any, states: Any, rows: Any, values: Any, count: int, bulk: Bulk
+    task: int, first: Run, second: Run, times: Any, states: Any, rows: Any, values: Any, count: int, bulk: Bulk
 ) -> int:
     """Perform a task: the entry of all kernels, so that each of them is compiled once.
 
     What a task does not need is blank. `values` are those that go in and come out.
     """
+    one = Run(first.given[0], first.method[0], first.now[0], *first[3:])
+    two = Run(second.given[0], second.method[0], second.now[0], *second[3:])
     if task == WALK:
         return walk(one, count)
     if task == STATES:
@@ -142,8 +144,11 @@ def perform(
     elif task == SAMPLE:
         return m_.sample(one, times, states)
     elif task == LARGEST:
-        column, sense = int(values[0]), int(values[1])
-        values[0], values[1] = m_.largest(one, times, states, count, column, sense, rows[0])
+        for i in range(0, len(values), 2):
+            column, sense = int(values[i]), int(values[i + 1])
+            values[i], values[i + 1] = m_.largest(
+                one, times, states, count, column, sense, rows[0]
+            )
     elif task == SETTLED:
         values[0] = m_.settled(one, times, states, count, values[0], values[1], rows[0])
     elif task == FOLLOW:

@@ -18,9 +18,9 @@ DEPTH, RATE, NORMAL_FORCE, FRICTION_FORCE, EDGES, PEAK_PRESSURE, HOPS = range(7)
 EDGE_ROUNDING, NORMAL_ROUNDING, FRICTION_ROUNDING, PEAK_ROUNDING, HOP_ROUNDING = range(7, 12)
 """What rounding of the edges may do to them, and to the forces, for the pressure there acts, and to the
 pressure at them; and that of the gap, to the time of a landing."""
-NUMBER, SPRING_FORCE, ALONG = range(12, 15)
-"""How fast the base slides; the force of a spring in the drive, and how far it is stretched."""
-SIZES = 15
+NUMBER, SPRING_FORCE, ALONG, DRIVE = range(12, 16)
+"""Sliding velocity of the base; force and elongation of a spring in the drive; the drive itself."""
+SIZES = 16
 """From here on, the largest magnitude of each quantity; of those that stand for rounding it stays zero."""
 SIZE = 2 * SIZES
 
@@ -100,6 +100,7 @@ def _raise(worst: Any, row: Any, one: Any, two: Any) -> None:
         (NUMBER, e_.NUMBER),
         (SPRING_FORCE, e_.SPRING_FORCE),
         (ALONG, e_.ALONG),
+        (DRIVE, e_.DRIVE),
     ):
         value = _known(row[i])
         worst[SIZES + k] = max(worst[SIZES + k], abs(value))

@@ -66,12 +66,9 @@ def unknown(why: str, *, sprung: bool = False) -> Certificate:
     """Return the certificate of a transient of whose error nothing is known."""
     nothing = [0.0] * d_.SIZE
     names = errors(nothing, nothing, 1.0, False, sprung=sprung, tolerance=1.0)
-    given = dict.fromkeys(EXACT, 0.0)
-    return Certificate("estimated", why, dict.fromkeys(names, math.inf) | given, AT_REST)
+    return Certificate("estimated", why, dict.fromkeys(names, math.inf) | {"time": 0.0}, AT_REST)
 
 
-EXACT = ("time", "velocity")
-"""Quantities that are given, not solved for."""
 
 
 def errors(
@@ -90,12 +87,13 @@ def errors(
     at_times, ever = (np.maximum(MARGIN * np.asarray(of[: d_.SIZES]), luck) for of in (here, whole))
     edges = at_times[d_.EDGES] + here[d_.EDGE_ROUNDING]
     depth, arm = moves * ever[d_.DEPTH], sizes[d_.EDGES]
-    drive = tolerance * (1.0 + sizes[d_.NUMBER])
+    drive = tolerance * (1.0 + sizes[d_.DRIVE])
     way = slides * 2.0 * ever[d_.ALONG] + drive + 2.0 * whole[d_.EDGE_ROUNDING]
-    spring = {"sliding_velocity": at_times[d_.NUMBER], "spring_force": at_times[d_.SPRING_FORCE]}
+    sliding = at_times[d_.NUMBER] + drive
+    spring = {"sliding_velocity": sliding, "spring_force": at_times[d_.SPRING_FORCE]}
     return {
         "time": 0.0,
-        "velocity": 0.0,
+        "velocity": drive,
         "depth": moves * at_times[d_.DEPTH],
         "depth_rate": moves * at_times[d_.RATE],
         "normal_force": at_times[d_.NORMAL_FORCE] + here[d_.NORMAL_ROUNDING],

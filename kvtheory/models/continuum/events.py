@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.polynomial import polynomial
 
-from kvtheory.models.continuum import evaluation, stepping
+from kvtheory.models.continuum import stepping
 from kvtheory.models.continuum.contact import TOUCHING
 from kvtheory.models.continuum.run import EVENT, structured
 from kvtheory.scene import base_motion as b_
@@ -28,7 +28,7 @@ def events_of(motion: Any) -> tuple[ScaledEvent, ...]:
     """Return the events of a `solver.Trajectory`."""
     found = [
         ScaledEvent(s, stepping.KINDS[kind])
-        for s, kind in structured(motion.run.events[: motion.now.events], EVENT).tolist()
+        for s, kind in structured(motion.run.events[: motion.count("events")], EVENT).tolist()
     ]
     return tuple(sorted([*found, *_memory(motion), *_reversals(motion)], key=lambda event: event.s))
 
@@ -49,13 +49,12 @@ def _reversals(motion: Any) -> Iterator[ScaledEvent]:
     before = 0.0
     if not motion.given.sprung:
         return
-    run = motion.interpreted
-    for index in range(motion.steps):
-        start, span = run.steps[index].start, run.steps[index].span
-        row = run.pieces[run.steps[index].piece]
+    steps, ends = motion.records, [*motion.starts[1:], motion.end]
+    spans, rows = steps["span"].tolist(), motion.pieces[steps["piece"]].tolist()
+    for start, end, span, row in zip(motion.starts, ends, spans, rows, strict=True):
         powers = [c * span**k for k, c in enumerate(row[b_.POWERS :])]
         roots = polynomial.polyroots(np.trim_zeros(powers, "b") or [1.0])
-        share = (evaluation.natural_step(run, index)[1] - start) / span
+        share = (end - start) / span
         within = sorted(x for x in roots.real.tolist() if 0.0 < x < share)
         for low, high in pairwise([0.0, *within, share]):
             number = b_.evaluate(row, start + 0.5 * (low + high) * span)[1]

@@ -100,6 +100,7 @@ RIGID = Spring(1.0, 0.0, 0.0)
 class Run(NamedTuple):
     """A transient in progress; `steps`, `nodes` and `events` are its outcome.
 
+    Outside the kernels `given`, `method` and `now` are rows of one record, inside they are the record itself.
     With a spring, `along` holds the motion along x for each step, and `pieces` continues behind those of
     the drive with how the base slides under the indenter.
     """
@@ -131,16 +132,15 @@ def begin(
         wider = max(pieces.shape[1], b_.POWERS + 1 + stages) - pieces.shape[1]
         pieces = np.pad(pieces, ((0, room), (0, wider)))
     sizes = {"steps": room, "nodes": 3 * room // 2, "events": room, "along": room if sprung else 1}
-    matrix = np.zeros((unknowns + 3, unknowns + 1))
+    matrix, method = np.zeros((unknowns + 3, unknowns + 1)), method_of(stages, arrays=arrays)
     if arrays:
-        now = _one(np.zeros((), NOW), NOW)
-        many = {name: np.zeros(count, MANY[name]) for name, count in sizes.items()}
-        return Run(_one(given, GIVEN), method_of(stages), now, pieces, matrix=matrix, **many)
-    many = {name: _more([], count, MANY[name]) for name, count in sizes.items()}
+        many = {name: np.zeros(count, KINDS[name]) for name, count in sizes.items()}
+        one = np.array([given], GIVEN), method, np.zeros(1, NOW)
+        return Run(*one, pieces, matrix=matrix, **many)
+    many = {name: _more([], count, KINDS[name]) for name, count in sizes.items()}
     return Run(
-        new(GIVEN, *given), _method(stages), _blank(NOW)(), pieces.tolist(),
-        matrix=matrix.tolist(), **many,
-    )  # fmt: skip
+        [new(GIVEN, *given)], method, _more([], 1, NOW), pieces.tolist(), matrix=matrix.tolist(), **many
+    )
 
 
 def rest(run: Run) -> None:
@@ -172,7 +172,7 @@ def has_room(run: Run) -> bool:
 def with_more_room(run: Run) -> Run:
     """Return the run with room for twice as much."""
     names = ("steps", "nodes", "events")
-    wider = {name: _more(getattr(run, name), len(getattr(run, name)), MANY[name]) for name in names}
+    wider = {name: _more(getattr(run, name), len(getattr(run, name)), KINDS[name]) for name in names}
     if len(run.along) > 1:  # on a spring
         count = len(run.steps)
         wider |= {"along": _more(run.along, count, STEP), "pieces": _more(run.pieces, count)}
@@ -180,23 +180,22 @@ def with_more_room(run: Run) -> Run:
 
 
 def as_arrays(run: Run) -> Run:
-    """Return a run of objects, however far it has come, with records for compiled kernels."""
-    single = {name: _one(plain(getattr(run, name)), kind) for name, kind in SINGLE.items()}
-    many = {name: structured(getattr(run, name), kind) for name, kind in MANY.items()}
-    rows = {"pieces": np.array(run.pieces), "matrix": np.array(run.matrix)}
-    return Run(**single, **many, **rows)
+    """Return a run of objects, however far it has come, with arrays for compiled kernels."""
+    records = {name: structured(getattr(run, name), kind) for name, kind in KINDS.items()}
+    return Run(**records, pieces=np.array(run.pieces), matrix=np.array(run.matrix))
 
 
 def as_objects(run: Run) -> Run:
     """Return a run with objects for interpreted kernels, however far it has come."""
-    rows = {name: getattr(run, name).tolist() for name in ("pieces", "matrix")}
-    kinds = {**SINGLE, **MANY}
-    records = {name: getattr(run, name).tolist() for name in kinds}
-    return Run(**{name: _filled(kinds[name], records[name]) for name in kinds}, **rows)
+    records = {name: _filled(kind, getattr(run, name).tolist()) for name, kind in KINDS.items()}
+    return Run(**records, pieces=run.pieces.tolist(), matrix=run.matrix.tolist())
 
 
-SINGLE = {"given": GIVEN, "method": METHOD, "now": NOW}
-MANY = {"steps": STEP, "nodes": NODE, "events": EVENT, "along": STEP}
+KINDS = {
+    "given": GIVEN, "method": METHOD, "now": NOW,
+    "steps": STEP, "nodes": NODE, "events": EVENT, "along": STEP,
+}  # fmt: skip
+"""Of the records of a run."""
 
 
 def structured(rows: Any, kind: np.dtype[Any]) -> Any:
@@ -217,26 +216,26 @@ def readable(record: Any, kind: np.dtype[Any]) -> Any:
     return _filled(kind, record.tolist()) if isinstance(record, np.void) else record
 
 
+def value(record: Any, name: str) -> Any:
+    """Return one field of a record."""
+    return record[name] if isinstance(record, np.void) else getattr(record, name)
+
+
 def new(kind: np.dtype[Any], *values: Any) -> Any:
     """Return one object with the fields of a record."""
     return _filled(kind, values)
 
 
 @cache
-def method_of(stages: int) -> Any:
-    """Return the Radau IIA method as a record."""
-    method, found = radau(stages), np.zeros((), METHOD)
+def method_of(stages: int, *, arrays: bool) -> Any:
+    """Return the Radau IIA method as the record of a run."""
+    method = radau(stages)
+    found: Any = np.zeros(1, METHOD)
     found["stages"], found["probe_count"] = stages, len(method.probes)
     for name, rows in method._asdict().items():
         array = np.array(rows)
-        found[name][tuple(slice(size) for size in array.shape)] = array
-    return _one(found, METHOD)
-
-
-@cache
-def _method(stages: int) -> Any:
-    """Return the Radau IIA method as an object."""
-    return _filled(METHOD, method_of(stages).tolist())
+        found[name][0][tuple(slice(size) for size in array.shape)] = array
+    return found if arrays else _filled(METHOD, found.tolist())
 
 
 @cache
@@ -275,11 +274,6 @@ def _filled(kind: np.dtype[Any], values: Any) -> Any:
     for name, value in zip(kind.names, values, strict=True):
         setattr(record, name, _filled(kind[name], value))
     return record
-
-
-def _one(values: Any, kind: np.dtype[Any]) -> Any:
-    """Return one record, which a compiled kernel may change."""
-    return np.array([values], dtype=kind)[0]
 
 
 def _more(rows: Any, count: int, kind: np.dtype[Any] | None = None) -> Any:

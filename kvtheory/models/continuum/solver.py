@@ -20,7 +20,7 @@ from kvtheory.models.continuum import bulk, compiled, deviation, evaluation, max
 from kvtheory.models.continuum import run as r_
 from kvtheory.models.continuum.contact import FREE, PEELING, TOUCHING
 from kvtheory.models.continuum.events import ScaledEvent, events_of
-from kvtheory.models.continuum.run import Run, Spring, StepControl, begin, readable, structured
+from kvtheory.models.continuum.run import Run, Spring, StepControl, begin, readable, structured, value
 from kvtheory.results.errors import TransientError
 from kvtheory.scene.base_motion import BaseMotion
 
@@ -66,17 +66,16 @@ class Trajectory:
     @cached_property
     def given(self) -> Any:
         """What was given: inertia, support, spring, tolerance, see `run.GIVEN`."""
-        return readable(self.run.given, r_.GIVEN)
+        return readable(self.run.given[0], r_.GIVEN)
 
-    @cached_property
-    def now(self) -> Any:
-        """The state at the end, and the numbers of steps, nodes and so on, see `run.NOW`."""
-        return readable(self.run.now, r_.NOW)
+    def count(self, name: str) -> int:
+        """Return how many steps, nodes, events and so on there are, see `run.NOW`."""
+        return int(value(self.run.now[0], name))
 
     @property
     def end(self) -> float:
         """The time at which the motion ends."""
-        return float(self.given.end)
+        return float(value(self.run.given[0], "end"))
 
     @property
     def compiled(self) -> bool:
@@ -86,17 +85,17 @@ class Trajectory:
     @property
     def steps(self) -> int:
         """Number of steps taken."""
-        return int(self.now.steps)
+        return self.count("steps")
 
     @property
     def rejected(self) -> int:
         """Number of steps repeated."""
-        return int(self.now.rejected)
+        return self.count("rejected")
 
     @property
     def evaluations(self) -> int:
         """Number of evaluations of the equation of motion."""
-        return int(self.now.evaluations)
+        return self.count("evaluations")
 
     @cached_property
     def events(self) -> tuple[ScaledEvent, ...]:
@@ -111,12 +110,13 @@ class Trajectory:
     @cached_property
     def nodes(self) -> NDArray[Any]:
         """What the edges left behind, as a structured array, see `run.NODE`."""
-        return np.asarray(structured(self.run.nodes[: self.now.nodes], r_.NODE))
+        return np.asarray(structured(self.run.nodes[: self.count("nodes")], r_.NODE))
 
     @cached_property
     def interpreted(self) -> Run:
-        """The run with objects for records."""
-        return r_.as_objects(self.run) if self.compiled else self.run
+        """The run with objects for records, as kernels see it."""
+        run = r_.as_objects(self.run) if self.compiled else self.run
+        return run._replace(given=run.given[0], method=run.method[0], now=run.now[0])
 
     @cached_property
     def pieces(self) -> NDArray[np.float64]:
@@ -185,10 +185,14 @@ class Trajectory:
 
     def largest(self, column: int, sense: int = maxima.LARGEST) -> tuple[float, float]:
         """Return when a column of the states is largest, and its value, see `maxima`."""
+        return self.extremes((column, sense))[0]
+
+    def extremes(self, *objectives: tuple[int, int]) -> list[tuple[float, float]]:
+        """Return when columns of the states are largest in a sense, and their values, see `maxima`."""
         times, found, count = self.samples
-        values = self._rows(np.array([column, sense], dtype=float))
+        values = self._rows(np.array(objectives, dtype=float).reshape(-1))
         self._perform(bulk.LARGEST, times, found, values, count)
-        return float(values[0]), float(values[1])
+        return [(float(values[i]), float(values[i + 1])) for i in range(0, len(values), 2)]
 
     def settled(self, force: float, share: float) -> float:
         """Return since when the friction force is settled, see `maxima`."""
@@ -208,11 +212,16 @@ class Trajectory:
         self, task: int, times: Any, found: Any, values: Any = None, count: int = 0, other: Any = None
     ) -> int:
         """Perform a task of the kernels."""
-        rows = self._rows(np.zeros((2, evaluation.SIZE)))
-        values = self._rows(np.zeros(2)) if values is None else values
+        rows = self._workspace
+        values = rows[0] if values is None else values
         return compiled.chosen(self.run)(
             task, self.run, other or self.run, times, found, rows, values, count, bulk.NO_BULK
         )
+
+    @cached_property
+    def _workspace(self) -> Any:
+        """Room for two states."""
+        return self._rows(np.zeros((2, evaluation.SIZE)))
 
     def _room(self, count: int) -> tuple[Any, Any]:
         """Return room for times, and for the states there."""
@@ -295,10 +304,10 @@ def solve(
         if not compiled.in_use(run) and (compiled.worthwhile() if fast is None else fast):
             run = r_.as_arrays(run)
         status = walk(run, min(ATTEMPTS, left))
-        now = readable(run.now, r_.NOW)
-        before, left = left, max_steps - (now.steps + now.rejected)
+        now = run.now[0]
+        before, left = left, max_steps - int(value(now, "steps") + value(now, "rejected"))
         compiled.Tally.steps += 0 if compiled.in_use(run) else before - left
-        s = now.s
+        s = float(value(now, "s"))
         if status in REASONS:
             raise TransientError(REASONS[status], s)
         if status == stepping.FULL:
