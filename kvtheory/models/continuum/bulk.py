@@ -97,7 +97,12 @@ def follow(bulk: Bulk, fine: Run, other: Run, steps: int) -> None:
 def _walk_along(run: Run, scenes: Scenes, i: int, steps: int) -> int:
     """Follow one scene from rest."""
     given = run.given
-    given.eps, given.kappa, given.end, run.now.nodes = scenes.eps[i], scenes.kappa[i], scenes.end[i], 0
+    given.eps, given.kappa, given.end, run.now.nodes = (
+        scenes.eps[i],
+        scenes.kappa[i],
+        scenes.end[i],
+        0,
+    )
     return walk(run, steps)
 
 
@@ -108,7 +113,13 @@ def _measure(
     count = m_.sample(run, room.times, room.samples)
     for k in range(len(request.columns)):
         results.largest[i][k][0], results.largest[i][k][1] = m_.largest(
-            run, room.times, room.samples, count, request.columns[k], request.senses[k], room.rows[0]
+            run,
+            room.times,
+            room.samples,
+            count,
+            request.columns[k],
+            request.senses[k],
+            room.rows[0],
         )
     results.settled[i] = m_.settled(
         run, room.times, room.samples, count, friction, request.share, room.rows[0]
@@ -125,7 +136,15 @@ WALK, STATES, NATURAL, DEVIATIONS, SAMPLE, LARGEST, SETTLED, FOLLOW = range(8)
 
 
 def perform(
-    task: int, first: Run, second: Run, times: Any, states: Any, rows: Any, values: Any, count: int, bulk: Bulk
+    task: int,
+    first: Run,
+    second: Run,
+    times: Any,
+    states: Any,
+    rows: Any,
+    values: Any,
+    count: int,
+    bulk: Bulk,
 ) -> int:
     """Perform a task: the entry of all kernels, so that each of them is compiled once.
 
@@ -146,9 +165,7 @@ def perform(
     elif task == LARGEST:
         for i in range(0, len(values), 2):
             column, sense = int(values[i]), int(values[i + 1])
-            values[i], values[i + 1] = m_.largest(
-                one, times, states, count, column, sense, rows[0]
-            )
+            values[i], values[i + 1] = m_.largest(one, times, states, count, column, sense, rows[0])
     elif task == SETTLED:
         values[0] = m_.settled(one, times, states, count, values[0], values[1], rows[0])
     elif task == FOLLOW:

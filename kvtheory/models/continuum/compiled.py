@@ -1,9 +1,8 @@
 """The kernels, compiled by numba from the very source that is also interpreted.
 
 Nothing here computes. Numba is told that the functions of the kernel modules may be compiled; one entry,
-`bulk.perform`, calls them, and only it is cached: each kernel is compiled once. Numba would not notice that a
-function in another file has changed, so the entry is named by a digest of all kernel sources: after any change
-it is compiled anew.
+`bulk.perform`, calls them, and only it is cached: each kernel is compiled once. Numba would not notice a
+change of a function in another file, so the entry is named by a digest of all kernel sources.
 """
 
 import hashlib
@@ -98,7 +97,15 @@ def kernel() -> Any:
     _register()
 
     def entry(
-        task: int, one: Any, two: Any, times: Any, states: Any, rows: Any, values: Any, count: int, bulk: Any
+        task: int,
+        one: Any,
+        two: Any,
+        times: Any,
+        states: Any,
+        rows: Any,
+        values: Any,
+        count: int,
+        bulk: Any,
     ) -> int:
         return perform(task, one, two, times, states, rows, values, count, bulk)
 

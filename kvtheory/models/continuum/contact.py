@@ -38,7 +38,7 @@ SWEEP_ERROR = 1e-15
 FARTHEST_GUESS = 0.75
 """Share of a sweep from its outer end: keeps the linear first guess away from the inner end."""
 SWEEP_STEPS, NEWTON_ALONE = 150, 20
-"""Bisection alone needs less than 60; after so many, every other step bisects, as Newton's method may cycle."""
+"""Bisection alone needs less than 60; after `NEWTON_ALONE`, every other step bisects: Newton's may cycle."""
 
 ROUNDING = 1e-15
 """Rounding of an edge on ground that was left just now, times the age of that ground, relative to 1 + |Y|."""

@@ -3,8 +3,8 @@ r"""An indenter that its drive holds by a spring: both equations of motion in on
     eps d'' = F = 1 - f_z - kappa (d - 1),    eps_x x'' = G = f_x - c_x x' - kappa_x x,
 
 x(0) = x'(0) = 0. The base under the indenter slides with lambda = lambda_0 - x', by Y = Y_0 - x. For each
-step, x' is a polynomial like d', kept in the record `along`, which is like that of the step; the difference of
-drive and indenter is one more piece in `Run.pieces`, so that edges and memory are computed as for a rigid drive.
+step, x' is a polynomial like d', kept in the record `along`, which is like that of the step; the difference
+of drive and indenter is one more piece in `Run.pieces`: edges and memory are computed as for a rigid drive.
 """
 
 import math

@@ -165,7 +165,9 @@ def _narrowed(
         if not start <= s - 2.0 * h < s + 2.0 * h <= end:
             break
         left, right = _at(run, index, s - h, objective, row), _at(run, index, s + h, objective, row)
-        far = _at(run, index, s + 2.0 * h, objective, row) - _at(run, index, s - 2.0 * h, objective, row)
+        far = _at(run, index, s + 2.0 * h, objective, row) - _at(
+            run, index, s - 2.0 * h, objective, row
+        )
         curvature = (left - 2.0 * best + right) / h
         if not curvature < 0.0:
             break

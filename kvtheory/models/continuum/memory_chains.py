@@ -147,7 +147,9 @@ def slope(side: float, X: float, s: float, Y: float, s_0: float, Y_0: float) -> 
     return -side * (X + Y - math.exp(s_0 - s) * (X + Y_0))
 
 
-def _peak(run: Run, side: float, node: Any, s: float, Y: float) -> tuple[float, float, float, float]:
+def _peak(
+    run: Run, side: float, node: Any, s: float, Y: float
+) -> tuple[float, float, float, float]:
     """Return X, sigma, d, Y of the largest margin on one node, whose outer end it does not exceed."""
     at, inner, outer = node.inner, node.inner.s, node.outer.s
     if rise(side, at, s, Y) <= 0.0:

@@ -42,7 +42,7 @@ NEWTON_SHARE = 1e-3
 NEWTON_STALL = 0.5
 """Of the tolerance, for a correction that rounding keeps from becoming smaller."""
 ROUNDING = 1e-15
-"""Of F, relative to its terms and its largest derivative: a stiff spring feels the last digit of the depth."""
+"""Of F, relative to its terms and its largest derivative: a stiff spring multiplies rounding of the depth."""
 PLACES = (0.08, 0.25, 0.55)
 """About where the defect of each step is probed, besides its end."""
 

@@ -22,7 +22,7 @@ PER_STEP, EVENTS_PER_STEP = 8, 8
 """Nodes and events that one step may add; a landing may also double the nodes."""
 
 EVENT_SHARE, EVENT_FLOOR = 1e-4, 1e-12
-"""Share of the tolerance by which the state of an edge must be violated, so that rounding does not toggle it."""
+"""Share of the tolerance by which the state of an edge must be violated: rounding must not toggle it."""
 
 
 def _record(**fields: Any) -> np.dtype[Any]:
@@ -47,19 +47,19 @@ NOW = _record(
     piece="i8", slide="i8", met="?", smooth="?", toggles="i8",
     steps="i8", nodes="i8", events="i8", rejected="i8", evaluations="i8", sides=(SIDE, (2,)),
 )  # fmt: skip
-"""Time, depth, depth rate, length of the next step, last kink or jump of the drive; on a spring the position of
-the indenter along x and its rate. The piece of the drive, the piece by which the base slides under the indenter
-(the same one for a rigid drive), whether the start of the piece was handled, whether the last step continues
-smoothly, the changes of state at this instant; the numbers of steps, nodes, events, rejected steps and
-evaluations; and both sides."""
+"""Time, depth, depth rate, length of the next step, last kink or jump of the drive; on a spring the position
+of the indenter along x and its rate. The piece of the drive, the piece by which the base slides under the
+indenter (the same one for a rigid drive), whether the start of the piece was handled, whether the last step
+continues smoothly, the changes of state at this instant; the numbers of steps, nodes, events, rejected steps
+and evaluations; and both sides."""
 GIVEN = _record(
     eps="f8", kappa="f8", end="f8", fixed="?", rtol="f8", allowed="f8",
     first_step="f8", longest="f8", grow="f8", straight="f8",
     eps_x="f8", damping="f8", spring="f8", sprung="?", drives="i8",
 )  # fmt: skip
 """Inertia number, support number, the time at which to stop, whether the indenter is fixed, tolerance of a
-step, how far the state of an edge may be violated; step-size controls; inertia, damping and stiffness of a spring
-along x, whether there is one; the number of pieces of the drive."""
+step, how far the state of an edge may be violated; step-size controls; inertia, damping and stiffness of a
+spring along x, whether there is one; the number of pieces of the drive."""
 _SQUARE = "f8", (MOST_STAGES, MOST_STAGES)
 METHOD = _record(
     stages="i8", nodes=("f8", (MOST_STAGES,)), A=_SQUARE, inverse=_SQUARE, powers=_SQUARE,
@@ -122,12 +122,20 @@ def begin(
 ) -> Run:  # fmt: skip
     """Return a run that has not begun; `numbers` are eps and kappa. Its records are objects or `arrays`."""
     eps, kappa = numbers
-    fixed, stages, sprung = math.isinf(kappa), control.stages or stages_for(rtol), spring is not None
+    fixed, stages, sprung = (
+        math.isinf(kappa),
+        control.stages or stages_for(rtol),
+        spring is not None,
+    )
     given = (
         eps, 0.0 if fixed else kappa, end, fixed, rtol, max(EVENT_SHARE * rtol, EVENT_FLOOR),
         *control[:4], *(spring or RIGID), sprung, len(drive.pieces),
     )  # fmt: skip
-    room, unknowns, pieces = ROOM if arrays else ROOM // 2, 2 * stages if sprung else stages, drive.rows
+    room, unknowns, pieces = (
+        ROOM if arrays else ROOM // 2,
+        2 * stages if sprung else stages,
+        drive.rows,
+    )
     if sprung:  # as long as those by which the base slides, and room for these
         wider = max(pieces.shape[1], b_.POWERS + 1 + stages) - pieces.shape[1]
         pieces = np.pad(pieces, ((0, room), (0, wider)))
@@ -139,7 +147,12 @@ def begin(
         return Run(*one, pieces, matrix=matrix, **many)
     many = {name: _more([], count, KINDS[name]) for name, count in sizes.items()}
     return Run(
-        [new(GIVEN, *given)], method, _more([], 1, NOW), pieces.tolist(), matrix=matrix.tolist(), **many
+        [new(GIVEN, *given)],
+        method,
+        _more([], 1, NOW),
+        pieces.tolist(),
+        matrix=matrix.tolist(),
+        **many,
     )
 
 
@@ -172,7 +185,9 @@ def has_room(run: Run) -> bool:
 def with_more_room(run: Run) -> Run:
     """Return the run with room for twice as much."""
     names = ("steps", "nodes", "events")
-    wider = {name: _more(getattr(run, name), len(getattr(run, name)), KINDS[name]) for name in names}
+    wider = {
+        name: _more(getattr(run, name), len(getattr(run, name)), KINDS[name]) for name in names
+    }
     if len(run.along) > 1:  # on a spring
         count = len(run.steps)
         wider |= {"along": _more(run.along, count, STEP), "pieces": _more(run.pieces, count)}

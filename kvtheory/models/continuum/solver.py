@@ -20,7 +20,15 @@ from kvtheory.models.continuum import bulk, compiled, deviation, evaluation, max
 from kvtheory.models.continuum import run as r_
 from kvtheory.models.continuum.contact import FREE, PEELING, TOUCHING
 from kvtheory.models.continuum.events import ScaledEvent, events_of
-from kvtheory.models.continuum.run import Run, Spring, StepControl, begin, readable, structured, value
+from kvtheory.models.continuum.run import (
+    Run,
+    Spring,
+    StepControl,
+    begin,
+    readable,
+    structured,
+    value,
+)
 from kvtheory.results.errors import TransientError
 from kvtheory.scene.base_motion import BaseMotion
 
@@ -209,7 +217,13 @@ class Trajectory:
         return row
 
     def _perform(
-        self, task: int, times: Any, found: Any, values: Any = None, count: int = 0, other: Any = None
+        self,
+        task: int,
+        times: Any,
+        found: Any,
+        values: Any = None,
+        count: int = 0,
+        other: Any = None,
     ) -> int:
         """Perform a task of the kernels."""
         rows = self._workspace

@@ -12,7 +12,7 @@ from kvtheory.scene import base_motion as b_
 
 SAFETY = 0.9
 SHORTEST = 1e-14
-"""Least first step after a jump, relative to 1 + s: a shorter one would be lost in the rounding of the time."""
+"""Least first step after a jump, relative to 1 + s: a shorter one would be lost in rounding."""
 SHRINK, TINY = 0.2, 1e-12
 OVERRUN = 1e-4
 """Share of a step that may lie beyond an event: the states of the edges change there, and a step that
@@ -100,7 +100,7 @@ def _start_piece(run: Run) -> None:
 
 
 def _begin_briefly(run: Run, number: float, slope: float) -> None:
-    """Limit the step after a kink or jump by the time in which lambda changes, and by that since the last one.
+    """Limit the step after a kink by the time in which lambda changes, and by the time since the last kink.
 
     A steep ramp from rest, and ground that was left in a short pulse, make the forces change in so short a
     time that a longer step would not see it.
@@ -321,7 +321,7 @@ def _change(run: Run, violated: Monitors) -> int:
 
 
 def _change_side(run: Run, k: int, Y: float, number: float) -> None:
-    """Turn a peeling edge, or let a touching one peel; take off where the pressure is zero beyond the peak."""
+    """Turn a peeling edge, or let a touching one peel; take off at a root of p on the other side."""
     side = run.now.sides[k]
     if side.state == PEELING:
         _turn(run, k)

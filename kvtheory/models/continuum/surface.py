@@ -47,7 +47,7 @@ def _chain(motion: Trajectory, k: int, s: float, edge: float) -> Iterator[Any]:
 
 
 def _front(motion: Trajectory, k: int, s: float, edge: float) -> tuple[list[Any], int]:
-    """Return the nodes that exist only in part at `s`, where xi of the edge is `edge`, and the next whole one."""
+    """Return the nodes that exist in part at `s`, with the edge at xi = `edge`, and the next whole one."""
     run = motion.interpreted
     index = evaluation.step_at(run, s)
     d, v, _, Y, number, _ = instant(run, index, s)

@@ -21,13 +21,13 @@ LOW = 0.5
 """A monitor may be zero between three probes if its smallest value there is below this share of the largest;
 a parabola that is zero between them has at most 0.33."""
 EVALUATIONS, CLOSE = 6, 1e-7
-"""Most evaluations in the search of one minimum, and the least distance between two, as a share of the step."""
+"""Most evaluations in the search of a minimum, and their least distance, as a share of the step."""
 ROUNDING = 1e-15
-"""Of an edge, whose material coordinate is xi - Y, relative to Y and to the effect of a rounded time on it."""
+"""Of an edge, whose material coordinate is xi - Y, relative to Y and to the effect of a rounded time."""
 
 Monitors = tuple[float, float, float, float, float]
-"""Event functions, which stay positive until an event: the width (in flight, the gap), state and ground of the
-left edge, and of the right one."""
+"""Event functions, which stay positive until an event: the width (in flight, the gap), state and ground of
+the left edge, and of the right one."""
 
 NO_EVENT = (math.inf, math.inf, math.inf, math.inf, math.inf)
 
@@ -245,7 +245,9 @@ def _locate(run: Run, step: Any, low: float, high: float) -> tuple[float, Monito
             low, at_low = middle, value
     if low == run.now.s:
         return low, violated
-    return (_touchdown(run, step, earliest, high) if run.now.sides[0].state == FREE else high), violated
+    return (
+        _touchdown(run, step, earliest, high) if run.now.sides[0].state == FREE else high
+    ), violated
 
 
 def _touchdown(run: Run, step: Any, earliest: float, s: float) -> float:
