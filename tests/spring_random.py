@@ -84,7 +84,7 @@ def random_case(seed, sign=1):
 def balances(motion):
     """Return by how much energy and both impulses do not balance at four times, over what was turned over."""
     times = np.linspace(0.0, motion.end, 5)[1:]
-    given, states = motion.rows.given, motion.states(times)
+    given, states = motion.given, motion.states(times)
     books = ledger(motion, times)
     starts = np.array(motion.starts)
 

@@ -363,7 +363,7 @@ def test_a_transient_at_a_constant_depth_is_steady_at_every_instant():
 
 @pytest.mark.parametrize(
     ("end", "words"),
-    [("0 m/s", "stops"), ("-10 mm/s", "turns round"), ("1 mm/s", "too fast")],
+    [("0 m/s", "stops"), ("-10 mm/s", "reverses"), ("1 mm/s", "too fast")],
 )
 def test_a_drive_that_the_foundation_remembers_is_refused(end, words):
     drive = kv.Drive(history=[["0 s", "100 mm/s"], ["100 ms", "100 mm/s"], ["100.1 ms", end]])

@@ -39,6 +39,17 @@ def test_a_ramp_is_the_ramp(support):
     assert [event.kind for event in found.events] == [event.kind for event in ramp.events]
 
 
+@pytest.mark.parametrize("spring", [{}, {"stiffness": 1e6}])
+def test_the_certificate_covers_how_far_the_velocity_is_from_the_function(spring):
+    def V(t):
+        return 0.05 * math.sin(60.0 * t)
+
+    one = scene(function=V, tolerance=1e-4, **spring)
+    found = kv.transient(one, at=TIMES)
+    error = np.abs(found.velocity - np.vectorize(V)(TIMES)).max() / StaticState.of(one).velocity
+    assert 1e-9 < error <= found.certificate.relative_error["velocity"] < 1e-3
+
+
 @pytest.mark.parametrize("at_the_jump", [0.1, -0.03])
 def test_a_jump_may_take_either_value_where_it_is(at_the_jump):
     """A time that is put into units of tau and back need not be the same."""

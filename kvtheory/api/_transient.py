@@ -43,7 +43,8 @@ def transient(
         trace again (`elements` simulates any ball). At t < 0 it rests at its static depth. With
         `drive.stiffness` it is held along x by a spring that is then relaxed, and the mass that moves
         along x must be above zero. A drive that is a function of time is replaced by polynomials
-        within its own tolerance, which the certificate does not cover.
+        within its own tolerance; the certificate adds that to the errors of the velocities, the pressure
+        and the surface, but does not follow it into the other quantities.
     at
         Output times, in s or as text with a unit, such as ``"0 ms, 1 ms"`` or
         ``"0 ms:200 ms:201"`` (START:STOP:COUNT, both ends included); without it, the steps of

@@ -16,7 +16,7 @@ from kvtheory.models.continuum import bulk, compiled, deviation, maxima
 from kvtheory.models.continuum import error_estimate as estimate
 from kvtheory.models.continuum import evaluation as e_
 from kvtheory.models.continuum.cycles import cycle
-from kvtheory.models.continuum.run import ROOM, Run, begin, with_more_room
+from kvtheory.models.continuum.run import GIVEN, ROOM, Run, begin, readable, with_more_room
 from kvtheory.models.continuum.solved_scene import certified, left_leads, scaled_drive
 from kvtheory.models.continuum.solver import STEP_LIMIT
 from kvtheory.models.continuum.stepping import DONE
@@ -94,7 +94,7 @@ class _Block:
         known = estimate.unknown("", sprung=True).relative_error
         self.errors = {name: np.zeros(size) for name in known}
         self.cycles = np.full((size, len(CYCLE)), np.nan)
-        self.found = bulk.Found(
+        self.found = bulk.Results(
             status=np.full(size, -1),
             other=np.full(size, -1),
             deviations=np.zeros((size, deviation.SIZE)),
@@ -149,19 +149,20 @@ class _Block:
             np.concatenate([drive.rows for drive in drives]),
         )
         columns = np.array(self.wanted, dtype=np.int64).reshape(-1, 2).T.copy()
-        asked = bulk.Asked(columns[0], columns[1], times, SETTLED)
+        request = bulk.Request(columns[0], columns[1], times, SETTLED)
         samples = (maxima.SAMPLES + 1) * ROOM * 2**DOUBLINGS
         one, two = (np.zeros((samples, e_.SIZE)) for _ in range(2))
         rows = np.zeros((2, e_.SIZE))
-        room = bulk.Room(np.zeros(samples), one, np.zeros(samples), two, rows)
-        found = bulk.Found(*(array[indices] for array in self.found))
-        compiled.kernel(bulk.follow)(scenes, fine, other, asked, room, found, limit)
+        room = bulk.Workspace(np.zeros(samples), one, np.zeros(samples), two, rows)
+        found = bulk.Results(*(array[indices] for array in self.found))
+        compiled.follow(bulk.Bulk(scenes, request, room, found), fine, other, limit)
         for whole, part in zip(self.found, found, strict=True):
             whole[indices] = part
         told = found.deviations.T
+        given = readable(fine.given[0], GIVEN)
         tolerance = max(self.scenes[index][0].drive.tolerance for index in indices)
         errors = estimate.errors(
-            told, told, fine.given.rtol, fine.given.fixed, sprung=False, tolerance=tolerance
+            told, told, given.rtol, given.fixed, sprung=False, tolerance=tolerance
         )
         for name, error in errors.items():
             self.errors[name][indices] = error

@@ -1,12 +1,13 @@
-"""Many transients in one call of a kernel: each is followed, compared, and measured, in the same room."""
+"""Every task of the compiled kernel by one entry, and the task of following many transients in one call."""
 
 from typing import Any, NamedTuple
+
+import numpy as np
 
 from kvtheory.models.continuum import deviation as d_
 from kvtheory.models.continuum import evaluation as e_
 from kvtheory.models.continuum import maxima as m_
-from kvtheory.models.continuum import run as r_
-from kvtheory.models.continuum.run import Given, Run, rest
+from kvtheory.models.continuum.run import Run
 from kvtheory.models.continuum.stepping import DONE, TAKE_OFF, walk
 
 
@@ -24,10 +25,11 @@ class Scenes(NamedTuple):
     pieces: Any
 
 
-class Asked(NamedTuple):
-    """What is measured of each: the largest of columns in a sense (see `maxima`), the states at times.
+class Request(NamedTuple):
+    """What is measured of each scene: extremes of columns in a sense (see `maxima`), the states at times.
 
-    Each scene has a row of scaled `times`; settled is what stays within a `share` of the steady friction.
+    Each scene has a row of scaled `times`; the motion is settled while the friction force is within a `share`
+    of the steady one.
     """
 
     columns: Any
@@ -36,8 +38,8 @@ class Asked(NamedTuple):
     share: float
 
 
-class Room(NamedTuple):
-    """What is overwritten by each scene: the samples, the natural times with their states, and two states."""
+class Workspace(NamedTuple):
+    """What each scene overwrites: samples and natural times, each with their states, and two states."""
 
     times: Any
     samples: Any
@@ -46,8 +48,8 @@ class Room(NamedTuple):
     rows: Any
 
 
-class Found(NamedTuple):
-    """The outcome: how the walks ended, deviations, largest values with their times, and the rest.
+class Results(NamedTuple):
+    """The status of both walks, deviations, extremes with their times, states at the times, and so on.
 
     `last` holds the state at the end, the leading and the trailing edge behind it.
     """
@@ -62,52 +64,122 @@ class Found(NamedTuple):
     last: Any
 
 
-def follow(
-    scenes: Scenes, fine: Run, other: Run, asked: Asked, room: Room, found: Found, steps: int
-) -> None:
-    """Follow the scenes; `fine` and `other` hold the two methods and room for a motion each.
+class Bulk(NamedTuple):
+    """All that `follow` needs beside two runs."""
 
-    A scene that is not followed to its end, be it for want of room, leaves its status.
+    scenes: Scenes
+    request: Request
+    workspace: Workspace
+    results: Results
+
+
+def follow(bulk: Bulk, fine: Run, other: Run, steps: int) -> None:
+    """Follow the scenes by two methods, whose records `fine` and `other` hold, and measure them.
+
+    A scene that does not reach its end in so many steps, or has not enough room, leaves its status.
     """
+    scenes, room, results = bulk.scenes, bulk.workspace, bulk.results
     for i in range(len(scenes.eps)):
-        one, two = _begun(fine, scenes, i), _begun(other, scenes, i)
-        found.status[i] = walk(one, steps)
-        if found.status[i] != DONE:
+        pieces = scenes.pieces[scenes.first[i] : scenes.first[i + 1]]
+        one = Run(*fine[:3], pieces, *fine[4:])
+        two = Run(*other[:3], pieces, *other[4:])
+        results.status[i] = _walk_along(one, scenes, i, steps)
+        if results.status[i] != DONE:
             continue
-        found.other[i] = walk(two, steps)
-        if found.other[i] == DONE:
+        results.other[i] = _walk_along(two, scenes, i, steps)
+        if results.other[i] == DONE:
             count = e_.natural(one, room.natural, room.states)
             times, states = room.natural[:count], room.states[:count]
-            d_.deviations(times, states, one, two, room.rows, found.deviations[i])
-        _measure(one, i, scenes.friction[i], asked, room, found)
+            d_.deviations(times, states, one, two, room.rows, results.deviations[i])
+        _measure(one, i, scenes.friction[i], bulk.request, room, results)
 
 
-def _begun(run: Run, scenes: Scenes, i: int) -> Run:
-    g, pieces = run.given, scenes.pieces[scenes.first[i] : scenes.first[i + 1]]
-    given = Given(
-        scenes.eps[i], scenes.kappa[i], scenes.end[i],
-        g.fixed, g.rtol, g.allowed, g.control, g.method,
-        g.eps_x, g.damping, g.spring, g.sprung, g.drives,
-    )  # fmt: skip
-    begun = Run(
-        given, pieces, run.now, run.counts, run.states, run.tops, run.edges,
-        run.records, run.nodes, run.events, run.matrix, run.along,
-    )  # fmt: skip
-    rest(begun)
-    return begun
-
-
-def _measure(run: Run, i: int, friction: float, asked: Asked, room: Room, found: Found) -> None:
-    count = m_.sample(run, room.times, room.samples)
-    for k in range(len(asked.columns)):
-        found.largest[i][k][0], found.largest[i][k][1] = m_.largest(
-            run, room.times, room.samples, count, asked.columns[k], asked.senses[k], room.rows[0]
-        )
-    found.settled[i] = m_.settled(
-        run, room.times, room.samples, count, friction, asked.share, room.rows[0]
+def _walk_along(run: Run, scenes: Scenes, i: int, steps: int) -> int:
+    """Follow one scene from rest."""
+    given = run.given
+    given.eps, given.kappa, given.end, run.now.nodes = (
+        scenes.eps[i],
+        scenes.kappa[i],
+        scenes.end[i],
+        0,
     )
-    e_.states(asked.times[i], found.states[i], run)
-    m_.last(room.samples, count, found.last[i])
-    for k in range(run.counts[r_.EVENTS]):
-        if run.events[k][1] == TAKE_OFF:
-            found.take_offs[i] += 1
+    return walk(run, steps)
+
+
+def _measure(
+    run: Run, i: int, friction: float, request: Request, room: Workspace, results: Results
+) -> None:
+    """Write the results of one scene."""
+    count = m_.sample(run, room.times, room.samples)
+    for k in range(len(request.columns)):
+        results.largest[i][k][0], results.largest[i][k][1] = m_.largest(
+            run,
+            room.times,
+            room.samples,
+            count,
+            request.columns[k],
+            request.senses[k],
+            room.rows[0],
+        )
+    results.settled[i] = m_.settled(
+        run, room.times, room.samples, count, friction, request.share, room.rows[0]
+    )
+    e_.states(request.times[i], results.states[i], run)
+    m_.last(room.samples, count, results.last[i])
+    for k in range(run.now.events):
+        if run.events[k].kind == TAKE_OFF:
+            results.take_offs[i] += 1
+
+
+WALK, STATES, NATURAL, DEVIATIONS, SAMPLE, LARGEST, SETTLED, FOLLOW = range(8)
+"""Tasks."""
+
+
+def perform(
+    task: int,
+    first: Run,
+    second: Run,
+    times: Any,
+    states: Any,
+    rows: Any,
+    values: Any,
+    count: int,
+    bulk: Bulk,
+) -> int:
+    """Perform a task: the entry of all kernels, so that each of them is compiled once.
+
+    What a task does not need is blank. `values` are those that go in and come out.
+    """
+    one = Run(first.given[0], first.method[0], first.now[0], *first[3:])
+    two = Run(second.given[0], second.method[0], second.now[0], *second[3:])
+    if task == WALK:
+        return walk(one, count)
+    if task == STATES:
+        e_.states(times, states, one)
+    elif task == NATURAL:
+        return e_.natural(one, times, states)
+    elif task == DEVIATIONS:
+        d_.deviations(times, states, one, two, rows, values)
+    elif task == SAMPLE:
+        return m_.sample(one, times, states)
+    elif task == LARGEST:
+        for i in range(0, len(values), 2):
+            column, sense = int(values[i]), int(values[i + 1])
+            values[i], values[i + 1] = m_.largest(one, times, states, count, column, sense, rows[0])
+    elif task == SETTLED:
+        values[0] = m_.settled(one, times, states, count, values[0], values[1], rows[0])
+    elif task == FOLLOW:
+        follow(bulk, one, two, count)
+    return 0
+
+
+_ROW, _ROWS, _COUNTS = np.zeros(0), np.zeros((0, 0)), np.zeros(0, dtype=np.int64)
+NO_BULK = Bulk(
+    Scenes(_ROW, _ROW, _ROW, _ROW, _COUNTS, _ROWS),
+    Request(_COUNTS, _COUNTS, _ROWS, 0.0),
+    Workspace(_ROW, _ROWS, _ROW, _ROWS, _ROWS),
+    Results(
+        _COUNTS, _COUNTS, _ROWS, np.zeros((0, 0, 2)), np.zeros((0, 0, 0)), _ROW, _COUNTS, _ROWS
+    ),
+)
+"""In the place of scenes for the other tasks."""

@@ -1,9 +1,8 @@
 """The kernels, compiled by numba from the very source that is also interpreted.
 
-Nothing here computes. Numba is told that the functions of the kernel modules may be compiled; entries
-call them, and only these entries are cached. Numba would not notice that a function in another file
-has changed, so the entries are named by a digest of all kernel sources: after any change they are
-compiled anew.
+Nothing here computes. Numba is told that the functions of the kernel modules may be compiled; one entry,
+`bulk.perform`, calls them, and only it is cached: each kernel is compiled once. Numba would not notice a
+change of a function in another file, so the entry is named by a digest of all kernel sources.
 """
 
 import hashlib
@@ -21,7 +20,6 @@ from kvtheory.models.continuum import (
     bulk,
     contact,
     coupled,
-    dense_output,
     deviation,
     evaluation,
     maxima,
@@ -31,39 +29,26 @@ from kvtheory.models.continuum import (
     stepping,
     trial_step,
 )
+from kvtheory.models.continuum.bulk import perform
 from kvtheory.progress import compiling
 from kvtheory.scene import base_motion
 
 MODULES = (
-    base_motion,
-    dense_output,
-    contact,
-    coupled,
-    radau_iia,
-    run,
-    memory_chains,
-    trial_step,
-    stepping,
-    evaluation,
-    maxima,
-    deviation,
-    bulk,
+    *(base_motion, contact, coupled, radau_iia, run, memory_chains, trial_step, stepping),
+    *(evaluation, maxima, deviation, bulk),
 )
 """Where the kernels are."""
 
-UNCOUNTED: Any = {"_nrt": False}
+OPTIONS: Any = {"_nrt": False}
 """Kernels allocate nothing, so that numba need not count references to rows: it takes half the time."""
-INLINED = base_motion, dense_output, contact, radau_iia, evaluation
-"""Kernels that are short and called most. A run is handed to a function as some hundred numbers, which costs
-more than what is computed: with these inlined a motion takes half the time, and compiling a third more. With
-all of them, it would take a quarter less, and compiling three times as long."""
+INLINED = base_motion, contact, radau_iia
+"""Modules of short kernels that are called most."""
 SHORT = ("sliding_now", "_slack", "_probe")
-"""Functions of the other modules that are inlined, too: called once or twice, or with little to do beside
-being handed a run. A rigid drive gets back what a spring, which makes a run longer, takes from it."""
+"""Functions of the other modules that are inlined, too."""
 
 WORTHWHILE = 4000
-"""Steps that are interpreted before it pays to compile: about a second. To load compiled kernels takes
-half a second, to compile them, once for an installation, a quarter of a minute."""
+"""Steps that are interpreted before it pays to compile: about a second. To load the compiled kernels takes
+half a second, to compile them, once for an installation, half a minute."""
 
 
 class Tally:
@@ -91,18 +76,18 @@ def sources(modules: tuple[ModuleType, ...] = MODULES) -> str:
 
 
 def in_use(run: Any) -> bool:
-    """Whether a run has arrays for rows, as compiled kernels want them."""
-    return isinstance(run.records, np.ndarray)
+    """Whether a run has arrays for records, as compiled kernels need them."""
+    return isinstance(run.steps, np.ndarray)
 
 
-def chosen(function: Callable[..., Any], run: Any) -> Any:
-    """Return a function of the kernels, compiled if they are in use."""
-    return kernel(function) if in_use(run) else function
+def chosen(run: Any) -> Callable[..., int]:
+    """Return the entry of the kernels, compiled if the run needs that."""
+    return kernel() if in_use(run) else bulk.perform
 
 
 @cache
-def kernel(function: Callable[..., Any]) -> Any:
-    """Return a function of the kernels, compiled; it runs without the interpreter lock.
+def kernel() -> Any:
+    """Return the entry of the kernels, compiled; it runs without the interpreter lock.
 
     Raises
     ------
@@ -111,11 +96,29 @@ def kernel(function: Callable[..., Any]) -> Any:
     """
     _register()
 
-    def entry(*given: Any) -> Any:
-        return function(*given)
+    def entry(
+        task: int,
+        one: Any,
+        two: Any,
+        times: Any,
+        states: Any,
+        rows: Any,
+        values: Any,
+        count: int,
+        bulk: Any,
+    ) -> int:
+        return perform(task, one, two, times, states, rows, values, count, bulk)
 
-    entry.__qualname__ = f"{function.__name__}_{sources()}"
+    entry.__qualname__ = f"perform_{sources()}"
     return _kept(entry)
+
+
+def follow(all_of: bulk.Bulk, fine: Any, other: Any, steps: int) -> None:
+    """Follow many scenes by compiled kernels: `bulk.follow`."""
+    room = all_of.workspace
+    kernel()(
+        bulk.FOLLOW, fine, other, room.times, room.samples, room.rows, np.zeros(2), steps, all_of
+    )
 
 
 @cache
@@ -127,18 +130,18 @@ def _register() -> None:
         for function in vars(module).values():
             if inspect.isfunction(function) and function.__module__ == module.__name__:
                 inlined = module in INLINED or function.__name__ in SHORT
-                register_jitable(**UNCOUNTED, forceinline=inlined)(function)
+                register_jitable(**OPTIONS, no_cfunc_wrapper=True, forceinline=inlined)(function)
 
 
 def _kept(entry: Any) -> Any:
-    """Return an entry that is compiled when it is called, and kept on the disk if there is a place."""
+    """Return an entry that is compiled on its first call, and cached on disk if there is a writable place."""
     from numba import njit
 
     try:
-        compiled = njit(entry, cache=True, nogil=True, **UNCOUNTED)
-    except RuntimeError:  # no place to keep it: the package and the home are read-only
+        compiled = njit(entry, cache=True, nogil=True, **OPTIONS)
+    except RuntimeError:  # the package and the home are read-only
         compiling()
-        return njit(entry, nogil=True, **UNCOUNTED)
+        return njit(entry, nogil=True, **OPTIONS)
     kept = compiled._cache
     load = kept.load_overload
 

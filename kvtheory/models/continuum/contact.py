@@ -1,7 +1,7 @@
-r"""Edges of the contact, what they leave behind (facts F8 to F11).
+r"""The motion of a step, the edges of the contact, and what they leave behind (facts F8 to F11).
 
 Scaled form: depth d, depth rate v, drive number lambda = Y', surface compression u = g in contact,
-g = d - xi^2, at the material coordinate X = xi - Y. Outside, u e^s keeps A(X), the largest
+g = d - xi^2, at the material coordinate X = xi - Y. Outside the contact u e^s keeps A(X), the largest
 e^sigma g(X, sigma) of the past.
 
 Each past instant sigma confines the contact to the interval where e^s g(X, s) >= e^sigma g(X, sigma),
@@ -11,54 +11,59 @@ Each past instant sigma confines the contact to the interval where e^s g(X, s) >
 
 with the ends -b -+ sqrt(b^2 + c). In the limit sigma -> s they are the roots of p = 0 (Eq. 33):
 b -> lambda, c -> d + v. In the limit sigma -> -oo they are the edges on undisturbed ground, -+ sqrt(d)
-(Eq. 32). An edge peels (the first limit binds) or touches what some past instant left.
+(Eq. 32). An edge peels (the first limit binds) or touches ground that was left at some past instant.
 
 The memory of a side is a chain of nodes, the innermost first. The ground of a node was left at one
 instant (a strip, when lambda jumped; undisturbed ground, at sigma = -oo), or swept by a peeling edge
-during one record of the motion: at sigma the edge was at X_e(sigma), a root of p = 0.
-Nodes are never changed, so that the chain of any past time can still be walked. `side` is -1 for the
-left edge and +1 for the right one.
+during one step: at sigma the edge was at X_e(sigma), a root of p = 0. A node on a chain never
+changes, so that the chain of any past time can still be walked. Side 0 is the left edge, side 1 the
+right one; `run` describes the records.
 """
 
 import math
-from collections.abc import Sequence
 from typing import Any
 
-from kvtheory.models.continuum.dense_output import Instant, Past, instant
+from kvtheory.scene.base_motion import evaluate
 
-PEELING, TOUCHING, FREE = 0.0, 1.0, 2.0
+PEELING, TOUCHING, FREE = 0, 1, 2
 """States of an edge; both are free while the indenter flies."""
 
-IN_X, IN_S, IN_D, IN_Y = 0, 1, 2, 3
-OUT_X, OUT_S, OUT_D, OUT_Y = 4, 5, 6, 7
-RECORD, BRANCH, NEXT, JOINED = 8, 9, 10, 11
-SIZE = 12
-"""Layout of a node: X, sigma, d, Y at its inner end and at its outer end; the record during which it
-was swept, or -1; the sign of the root of p = 0 that swept it; the next node outward; and whether A
-continues smoothly there."""
-
+SIDES = (-1.0, 1.0)
+"""Outward directions."""
 FAR = 1e150
-"""Where undisturbed ground ends: its square is still a number."""
+"""Where undisturbed ground ends: its square is still finite."""
 
 SWEEP_ERROR = 1e-15
-"""Of an edge, from that of sigma: the edge is stationary where sigma is right."""
+"""Error allowed in an edge from that of sigma: the edge is stationary in the right sigma."""
 FARTHEST_GUESS = 0.75
-"""Share of a sweep from its outer end: the guess by linear interpolation keeps off the inner end."""
+"""Share of a sweep from its outer end: keeps the linear first guess away from the inner end."""
 SWEEP_STEPS, NEWTON_ALONE = 150, 20
-"""Bisection alone needs less than 60; after so many, every other step is one, for Newton's may go round."""
+"""Bisection alone needs less than 60; after `NEWTON_ALONE`, every other step bisects: Newton's may cycle."""
 
 ROUNDING = 1e-15
-"""Of an edge on ground that was left just now, times the age of that ground, relative to 1 + |Y|."""
+"""Rounding of an edge on ground that was left just now, times the age of that ground, relative to 1 + |Y|."""
 
-Node = Sequence[float]
+Instant = tuple[float, float, float, float, float, float]
+"""d, v, v', Y, lambda, lambda' at one time."""
+Run = Any
+"""A `run.Run`; here its steps, its nodes and the pieces of its drive are read."""
 
 
-def undisturbed(side: float, row: Any) -> None:
-    """Write the node of ground that was never touched."""
-    for i in range(SIZE):
-        row[i] = 0.0
-    row[IN_S] = row[OUT_S] = -math.inf
-    row[OUT_X], row[RECORD], row[NEXT] = side * FAR, -1.0, -1.0
+def motion(step: Any, s: float) -> tuple[float, float, float]:
+    """Return depth, depth rate and its derivative at `s` from the polynomial of a step."""
+    powers, theta = step.rate, (s - step.start) / step.span
+    depth = rate = slope = 0.0
+    for k in range(len(powers) - 1, -1, -1):
+        slope = slope * theta + rate
+        rate = rate * theta + powers[k]
+        depth = depth * theta + powers[k] / (k + 1)
+    return step.depth + depth * theta * step.span, rate, slope / step.span
+
+
+def instant(run: Run, index: int, s: float) -> Instant:
+    """Return the motion at `s` from the step `index`."""
+    step = run.steps[index]
+    return motion(step, s) + evaluate(run.pieces[step.piece], s)
 
 
 def root(side: float, b: float, c: float) -> tuple[float, float]:
@@ -102,41 +107,43 @@ def forces(l: float, r: float, d: float, v: float, number: float) -> tuple[float
     return f_z, f_x
 
 
-def edge(
-    run: Past, side: float, state: float, node: int, s: float, now: Instant
-) -> tuple[float, float, float, int]:
-    """Return xi of an edge, d(xi)/dd and d(xi)/dY for the force (a peeling edge adds none), and its node."""
+def edge(run: Run, k: int, held: Any, s: float, now: Instant) -> tuple[float, float, float, int]:
+    """Return xi of an edge, d(xi)/dd and d(xi)/dY for the force (zero for a peeling edge), and its node.
+
+    `held` has the state and the node of the edge.
+    """
     d, v, _, Y, number, _ = now
-    if state == PEELING:
-        return root(side, number, d + v)[0], 0.0, 0.0, node
-    node = reached(run, side, node, s, d, Y)
-    row = run.nodes[node]
-    s_0, d_0, Y_0 = row[IN_S], row[IN_D], row[IN_Y]
-    if row[RECORD] >= 0.0:
-        s_0, d_0, Y_0 = sweep(run, side, row, s, d, Y)
+    side = SIDES[k]
+    if held.state == PEELING:
+        return root(side, number, d + v)[0], 0.0, 0.0, held.node
+    reached_node = reached(run, side, held.node, s, d, Y)
+    node = run.nodes[reached_node]
+    s_0, d_0, Y_0 = node.inner.s, node.inner.d, node.inner.Y
+    if node.step >= 0:
+        s_0, d_0, Y_0 = sweep(run, side, node, s, d, Y)
     b, c, m = secant(s, d, Y, s_0, d_0, Y_0)
     xi, half = root(side, b, c)
     xi_d = side / (2.0 * m * max(half, 1e-300))
-    return xi, xi_d, 2.0 * (1.0 - m) * xi_d * (Y - Y_0 - xi), node
+    return xi, xi_d, 2.0 * (1.0 - m) * xi_d * (Y - Y_0 - xi), reached_node
 
 
-def reached(run: Past, side: float, node: int, s: float, d: float, Y: float) -> int:
-    """Return the node that an edge has reached, as far as A is smooth from `node` on."""
-    row = run.nodes[node]
-    while row[JOINED] != 0.0 and overrun(side, row, s, d, Y) > 0.0:
-        node = int(row[NEXT])
-        row = run.nodes[node]
-    return node
+def reached(run: Run, side: float, index: int, s: float, d: float, Y: float) -> int:
+    """Return the node that an edge has reached, as far as A is smooth from node `index` on."""
+    node = run.nodes[index]
+    while node.joined and overrun(side, node.outer, s, d, Y) > 0.0:
+        index = node.next
+        node = run.nodes[index]
+    return index
 
 
-def overrun(side: float, row: Node, s: float, d: float, Y: float) -> float:
-    """Return how far the contact that the outer end of a node permits goes beyond that end."""
-    b, c, _ = secant(s, d, Y, row[OUT_S], row[OUT_D], row[OUT_Y])
-    return side * (root(side, b, c)[0] - Y - row[OUT_X])
+def overrun(side: float, end: Any, s: float, d: float, Y: float) -> float:
+    """Return how far the contact permitted by the outer end of a node extends beyond that end."""
+    b, c, _ = secant(s, d, Y, end.s, end.d, end.Y)
+    return side * (root(side, b, c)[0] - Y - end.X)
 
 
 def sweep(
-    run: Past, side: float, row: Node, s: float, d: float, Y: float
+    run: Run, side: float, node: Any, s: float, d: float, Y: float
 ) -> tuple[float, float, float]:
     """Return sigma, d, Y of the instant at which the ground at the edge was left.
 
@@ -144,24 +151,24 @@ def sweep(
     divided by s - sigma, where both agree trivially. Where the edge is beyond the outer end of the
     node, that end confines it.
     """
-    inner, outer = row[IN_S], row[OUT_S]
-    ahead = overrun(side, row, s, d, Y)
+    end, inner, outer = node.outer, node.inner.s, node.outer.s
+    ahead = overrun(side, end, s, d, Y)
     if ahead >= 0.0:
-        return outer, row[OUT_D], row[OUT_Y]
-    share = -ahead / (abs(row[OUT_X] - row[IN_X]) or math.inf)
+        return outer, end.d, end.Y
+    share = -ahead / (abs(end.X - node.inner.X) or math.inf)
     sigma = outer + min(share, FARTHEST_GUESS) * (inner - outer)
     for turn in range(SWEEP_STEPS):
-        d_0, v_0, dv_0, Y_0, number, slope = instant(run, int(row[RECORD]), sigma)
+        d_0, v_0, dv_0, Y_0, number, slope = instant(run, node.step, sigma)
         b, c, m = secant(s, d, Y, sigma, d_0, Y_0)
         xi, half = root(side, b, c)
-        left_at, half_0 = root(row[BRANCH], number, d_0 + v_0)
+        left_at, half_0 = root(node.branch, number, d_0 + v_0)
         gap = left_at - Y_0 - (xi - Y)
         if side * gap < 0.0:
             inner = sigma
         else:
             outer = sigma
         if half > 0.0 and half_0 > 0.0:
-            rate = pressure_rate(left_at, v_0, dv_0, number, slope) / (row[BRANCH] * 2.0 * half_0)
+            rate = pressure_rate(left_at, v_0, dv_0, number, slope) / (node.branch * 2.0 * half_0)
             end_rate = (
                 (m - 1.0) * pressure(xi - Y + Y_0, d_0, v_0, number) / (2.0 * m * side * half)
             )
@@ -180,7 +187,7 @@ def sweep(
 
 
 def slack(
-    side: float, state: float, row: Node, s: float, xi: float, now: Instant
+    side: float, state: int, node: Any, s: float, xi: float, now: Instant
 ) -> tuple[float, float]:
     """Return two numbers that are positive as long as an edge may keep its state and its node.
 
@@ -193,5 +200,5 @@ def slack(
         terms = 1.0 + abs(v) + abs(dv) + number * number + abs(slope * xi)
         return -pressure_rate(xi, v, dv, number, slope) / terms, math.inf
     p = pressure(xi, d, v, number) / (1.0 + abs(v) + abs(number * xi))
-    rounding = ROUNDING * (1.0 + abs(Y)) / (s - row[IN_S])
-    return p + rounding, side * (row[OUT_X] - (xi - Y)) + rounding
+    rounding = ROUNDING * (1.0 + abs(Y)) / (s - node.inner.s)
+    return p + rounding, side * (node.outer.X - (xi - Y)) + rounding

@@ -3,30 +3,26 @@ r"""An indenter that its drive holds by a spring: both equations of motion in on
     eps d'' = F = 1 - f_z - kappa (d - 1),    eps_x x'' = G = f_x - c_x x' - kappa_x x,
 
 x(0) = x'(0) = 0. The base under the indenter slides with lambda = lambda_0 - x', by Y = Y_0 - x. For each
-step, x' is a polynomial like d', kept in a row `along` that is laid out as a record; the difference of
-drive and indenter is one more piece in `Run.pieces`, so that edges and memory need not know that it was
-solved for.
+step, x' is a polynomial like d', kept in the record `along`, which is like that of the step; the difference
+of drive and indenter is one more piece in `Run.pieces`: edges and memory are computed as for a rigid drive.
 """
 
 import math
-from collections.abc import Sequence
 from typing import Any
 
-from kvtheory.models.continuum import dense_output as h_
-from kvtheory.models.continuum.contact import FREE, edge, forces, pressure
-from kvtheory.models.continuum.dense_output import Instant, Past
+from kvtheory.models.continuum.contact import FREE, Instant, Run, edge, forces, pressure
 from kvtheory.scene import base_motion as b_
 
 Balance = tuple[float, float, float, float, float]
-"""A force that is left over, and its derivatives by d, d', x and x'."""
+"""A residual force, and its derivatives by d, d', x and x'."""
 
 
-def slide(run: Past, along: Any, row: Any) -> None:
+def slide(run: Run, along: Any, row: Any) -> None:
     """Write how the base slides under the indenter: the drive of a step less the motion along x."""
-    piece, start = run.pieces[int(along[h_.PIECE])], along[h_.START]
-    after, count = start - piece[b_.START], len(row)
-    row[b_.START], row[b_.END] = start, start + along[h_.SPAN]
-    row[b_.DISPLACEMENT] = b_.evaluate(piece, start)[0] - along[h_.DEPTH]
+    piece = run.pieces[along.piece]
+    after, count = along.start - piece[b_.START], len(row)
+    row[b_.START], row[b_.END] = along.start, along.start + along.span
+    row[b_.DISPLACEMENT] = b_.evaluate(piece, along.start)[0] - along.depth
     for k in range(b_.POWERS, count):
         row[k] = piece[k]
     if after != 0.0:
@@ -34,13 +30,13 @@ def slide(run: Past, along: Any, row: Any) -> None:
             for k in range(count - 2, first - 1, -1):
                 row[k] += after * row[k + 1]
     scale = 1.0
-    for k in range(len(along) - h_.POWERS):
-        row[b_.POWERS + k] -= along[h_.POWERS + k] / scale
-        scale *= along[h_.SPAN]
+    for k in range(run.method.stages + 1):
+        row[b_.POWERS + k] -= along.rate[k] / scale
+        scale *= along.span
 
 
 def balances(
-    run: Past, sides: Sequence[float], s: float, now: Instant, x: float, w: float
+    run: Run, step: Any, s: float, now: Instant, x: float, w: float
 ) -> tuple[Balance, Balance]:
     """Return F and G, each with its derivatives.
 
@@ -51,9 +47,10 @@ def balances(
     F, F_d, F_v, F_x, F_w = 1.0 - given.kappa * (d - 1.0), -given.kappa, 0.0, 0.0, 0.0
     G, G_d, G_v = -given.damping * w - given.spring * x, 0.0, 0.0
     G_x, G_w = -given.spring, -given.damping
-    if sides[0] != FREE:
-        l, l_d, l_Y, _ = edge(run, -1.0, sides[0], int(sides[1]), s, now)
-        r, r_d, r_Y, _ = edge(run, 1.0, sides[2], int(sides[3]), s, now)
+    left, right = step.sides[0], step.sides[1]
+    if left.state != FREE:
+        l, l_d, l_Y, _ = edge(run, 0, left, s, now)
+        r, r_d, r_Y, _ = edge(run, 1, right, s, now)
         if l < r:
             f_z, f_x = forces(l, r, d, v, number)
             p_l, p_r = pressure(l, d, v, number), pressure(r, d, v, number)
@@ -73,21 +70,19 @@ def balances(
     return (F, F_d, F_v, F_x, F_w), (G, G_d, G_v, G_x, G_w)
 
 
-def linearize(run: Past, record: Any, along: Any) -> bool:
-    """Write the equations of Newton's method for all stages; say whether they are finite.
+def linearize(run: Run, step: Any, along: Any) -> bool:
+    """Write the equations of Newton's method for all stages; return whether they are finite.
 
     The unknowns are the corrections of d' at the stages, then those of x'.
     """
-    given, method, matrix = run.given, run.given.method, run.matrix
-    stages = len(method.nodes)
+    given, method, matrix, stages = run.given, run.method, run.matrix, run.method.stages
     change, places, numbers = matrix[2 * stages], matrix[2 * stages + 1], matrix[2 * stages + 2]
-    start, span, v_0, w_0 = record[h_.START], record[h_.SPAN], record[h_.POWERS], along[h_.POWERS]
-    sides = record[h_.LEFT_STATE : h_.LEFT_X]
+    span, v_0, w_0 = step.span, step.rate[0], along.rate[0]
     eps, eps_x = 1.0 if given.fixed else given.eps, given.eps_x
     for i in range(stages):
         a, inverse, F_row, G_row = method.A[i], method.inverse[i], matrix[i], matrix[stages + i]
-        d = record[h_.DEPTH] + span * method.nodes[i] * v_0
-        x = along[h_.DEPTH] + span * method.nodes[i] * w_0
+        d = step.depth + span * method.nodes[i] * v_0
+        x = along.depth + span * method.nodes[i] * w_0
         inertia = inertia_x = 0.0
         for j in range(stages):
             d += span * a[j] * change[j]
@@ -96,8 +91,8 @@ def linearize(run: Past, record: Any, along: Any) -> bool:
             inertia_x += eps_x * inverse[j] * change[stages + j]
         w = w_0 + change[stages + i]
         now = d, v_0 + change[i], 0.0, places[i] - x, numbers[i] - w, 0.0
-        s = start + span * method.nodes[i]
-        (F, F_d, F_v, F_x, F_w), (G, G_d, G_v, G_x, G_w) = balances(run, sides, s, now, x, w)
+        s = step.start + span * method.nodes[i]
+        (F, F_d, F_v, F_x, F_w), (G, G_d, G_v, G_x, G_w) = balances(run, step, s, now, x, w)
         if not (math.isfinite(F) and math.isfinite(G)):
             return False
         for j in range(stages):

@@ -93,7 +93,7 @@ def cycle(motion: Trajectory) -> Cycle:
     >>> cycle(solve(given, 0.04, 0.0, end=20.0, rtol=1e-6, spring=Spring(0.5, 0.0, 5.0))).settles
     1.0
     """
-    if not motion.rows.given.sprung:
+    if not motion.given.sprung:
         raise ValueError("a cycle needs a drive with a spring: `drive.stiffness`")
     times, found, count = motion.samples
     s, states = np.array(times[:count]), np.array(found[:count])

@@ -8,9 +8,7 @@ other solution counts as far from its own jump as the instant is from the first 
 import math
 from typing import Any
 
-from kvtheory.models.continuum import dense_output as h_
 from kvtheory.models.continuum import evaluation as e_
-from kvtheory.models.continuum import run as r_
 from kvtheory.models.continuum.run import Run
 from kvtheory.models.continuum.stepping import TAKE_OFF
 from kvtheory.models.continuum.trial_step import EVENT_RESOLUTION
@@ -20,9 +18,9 @@ DEPTH, RATE, NORMAL_FORCE, FRICTION_FORCE, EDGES, PEAK_PRESSURE, HOPS = range(7)
 EDGE_ROUNDING, NORMAL_ROUNDING, FRICTION_ROUNDING, PEAK_ROUNDING, HOP_ROUNDING = range(7, 12)
 """What rounding of the edges may do to them, and to the forces, for the pressure there acts, and to the
 pressure at them; and that of the gap, to the time of a landing."""
-NUMBER, SPRING_FORCE, ALONG = range(12, 15)
-"""How fast the base slides; the force of a spring in the drive, and how far it is stretched."""
-SIZES = 15
+NUMBER, SPRING_FORCE, ALONG, DRIVE = range(12, 16)
+"""Sliding velocity of the base; force and elongation of a spring in the drive; the drive itself."""
+SIZES = 16
 """From here on, the largest magnitude of each quantity; of those that stand for rounding it stays zero."""
 SIZE = 2 * SIZES
 
@@ -38,53 +36,53 @@ def deviations(times: Any, found: Any, fine: Run, other: Run, rows: Any, worst: 
     last_f, last_o, next_f, next_o = -1, -1, next_hop(fine, 0), next_hop(other, 0)
     for i in range(len(times)):
         s = times[i]
-        while alike and next_f >= 0 and fine.events[next_f][0] <= s:
+        while alike and next_f >= 0 and fine.events[next_f].s <= s:
             worst[HOP_ROUNDING] = max(
-                worst[HOP_ROUNDING], hop_rounding(fine, fine.events[next_f][0], rows[1])
+                worst[HOP_ROUNDING], hop_rounding(fine, fine.events[next_f].s, rows[1])
             )
             last_f, last_o = next_f, next_o
             next_f, next_o = next_hop(fine, next_f + 1), next_hop(other, next_o + 1)
-        e_.state_at(other, e_.record_at(other, s), s, rows[0])
+        e_.state_at(other, e_.step_at(other, s), s, rows[0])
         shifted = 0
         if alike:
             for f, o in ((last_f, last_o), (next_f, next_o)):
                 if f < 0:
                     continue
-                here, there = fine.events[f][0], other.events[o][0]
+                here, there = fine.events[f].s, other.events[o].s
                 worst[HOPS] = max(worst[HOPS], abs(there - here))
                 if abs(s - here) <= abs(there - here):
-                    then = min(max(there + (s - here), 0.0), other.now[r_.S])
-                    e_.state_at(other, e_.record_at(other, then), then, rows[1])
+                    then = min(max(there + (s - here), 0.0), other.now.s)
+                    e_.state_at(other, e_.step_at(other, then), then, rows[1])
                     shifted = 1
         _raise(worst, found[i], rows[0], rows[shifted])
         if not alike:
             _raise(worst, found[i], found[0], found[0])
-            worst[HOPS] = max(worst[HOPS], other.now[r_.S])
+            worst[HOPS] = max(worst[HOPS], other.now.s)
 
 
 def hops(run: Run) -> int:
     """Return how many take-offs and landings there are."""
     count = 0
-    for i in range(run.counts[r_.EVENTS]):
-        if run.events[i][1] >= TAKE_OFF:
+    for i in range(run.now.events):
+        if run.events[i].kind >= TAKE_OFF:
             count += 1
     return count
 
 
 def next_hop(run: Run, index: int) -> int:
     """Return the index of the next take-off or landing from the event `index` on; -1 if there is none."""
-    for i in range(index, run.counts[r_.EVENTS]):
-        if run.events[i][1] >= TAKE_OFF:
+    for i in range(index, run.now.events):
+        if run.events[i].kind >= TAKE_OFF:
             return i
     return -1
 
 
 def hop_rounding(run: Run, s: float, row: Any) -> float:
     """Return what rounding may do to the time of a hop: at a landing, the gap closes by the pressure."""
-    index, found = e_.record_at(run, s), EVENT_RESOLUTION * (1.0 + s)
+    index, found = e_.step_at(run, s), EVENT_RESOLUTION * (1.0 + s)
     e_.state_at(run, index, s, row)
     if row[e_.PEAK_PRESSURE] > 0.0:
-        Y = row[e_.LEFT] - run.records[index][h_.LEFT_X]
+        Y = row[e_.LEFT] - run.steps[index].sides[0].X
         found += e_.UNIT * (1.0 + abs(Y)) / row[e_.PEAK_PRESSURE]
     return found
 
@@ -102,6 +100,7 @@ def _raise(worst: Any, row: Any, one: Any, two: Any) -> None:
         (NUMBER, e_.NUMBER),
         (SPRING_FORCE, e_.SPRING_FORCE),
         (ALONG, e_.ALONG),
+        (DRIVE, e_.DRIVE),
     ):
         value = _known(row[i])
         worst[SIZES + k] = max(worst[SIZES + k], abs(value))

@@ -97,7 +97,7 @@ def ledger(motion: Trajectory, s: ArrayLike) -> Ledger:
 def _entries(
     motion: Trajectory, now: Moment, free: float, spent: Array, along: Array
 ) -> list[float]:
-    given = motion.rows.given
+    given = motion.given
     eps, kappa = 0.0 if given.fixed else given.eps, given.kappa
     work, in_contact, in_surface, in_damper = spent.tolist()
     x, w = along.tolist()
@@ -126,7 +126,7 @@ def _powers(motion: Trajectory, times: Array, memory: list[tuple[float, float]])
     inside = 0.75 * (r - l) * (v * v - 2.0 * number * v * (r + l) + thirds)
     behind = 0.75 * relaxing(motion, flat.tolist(), 2, memory)
     work = found[evaluation.DRIVE] * found[evaluation.FRICTION_FORCE]
-    in_damper = motion.rows.given.damping * found[evaluation.ALONG_RATE] ** 2
+    in_damper = motion.given.damping * found[evaluation.ALONG_RATE] ** 2
     in_contact = np.where(np.isnan(l), 0.0, inside)  # in flight there are no edges
     powers = np.stack([work, in_contact, behind, in_damper], axis=-1)
     return powers.reshape(*times.shape, powers.shape[-1])

@@ -14,10 +14,10 @@ from kvtheory.results.certificate import AT_REST, Certificate
 Array = NDArray[np.float64]
 
 LOOSEST = 1e-4
-"""Looser tolerances save no more steps."""
+"""Looser tolerances would save no steps."""
 TIGHTER = 100.0
-"""The tolerance of the solution that this one is compared with is so many times smaller; less, and in
-three of a thousand scenes it would be no better ..."""
+"""Factor between the tolerances of the solution and of the one it is compared with; with a smaller one, the
+latter would be no better in three of a thousand scenes ..."""
 TIGHTEST = 1e-13
 COMPARISON = StepControl(first_step=0.17, longest=0.3, grow=6.0, straight=0.85)
 """... and it takes other steps where the tolerance does not set them: after a jump, on the pieces of the
@@ -26,8 +26,8 @@ MARGIN = 10.0
 """The difference is multiplied by this: in one of a thousand scenes with hops it is so many times smaller
 than the error."""
 FLOOR = 1e-2
-"""In units of the tolerance, which is relative to 1 + a quantity where it is largest: what lies below it is
-luck, for then the error of the solution compared with may be as large."""
+"""In units of the tolerance, which is relative to 1 + the largest magnitude of a quantity: a smaller
+difference is a coincidence, for the error of the other solution may be as large."""
 
 STATEMENT = (
     f"{MARGIN:g} times the difference to a solution with {1 / TIGHTER:g} times the tolerance and other "
@@ -53,12 +53,12 @@ def certificate(
     `tolerance` is that of the polynomials that stand for a drive.
     """
     if other is None:
-        return unknown(NOTHING, sprung=fine.rows.given.sprung)
-    given, whole = fine.rows.given, fine.deviations(other)
+        return unknown(NOTHING, sprung=fine.given.sprung)
+    given, whole = fine.given, fine.deviations(other)
     here = whole if times is None else fine.deviations(other, times)
-    told = errors(here, whole, given.rtol, given.fixed, sprung=given.sprung, tolerance=tolerance)
+    found = errors(here, whole, given.rtol, given.fixed, sprung=given.sprung, tolerance=tolerance)
     return Certificate(
-        "estimated", STATEMENT, {k: float(error) for k, error in told.items()}, AT_REST
+        "estimated", STATEMENT, {k: float(error) for k, error in found.items()}, AT_REST
     )
 
 
@@ -66,12 +66,7 @@ def unknown(why: str, *, sprung: bool = False) -> Certificate:
     """Return the certificate of a transient of whose error nothing is known."""
     nothing = [0.0] * d_.SIZE
     names = errors(nothing, nothing, 1.0, False, sprung=sprung, tolerance=1.0)
-    given = dict.fromkeys(EXACT, 0.0)
-    return Certificate("estimated", why, dict.fromkeys(names, math.inf) | given, AT_REST)
-
-
-EXACT = ("time", "velocity")
-"""Quantities that are given, not solved for."""
+    return Certificate("estimated", why, dict.fromkeys(names, math.inf) | {"time": 0.0}, AT_REST)
 
 
 def errors(
@@ -86,16 +81,19 @@ def errors(
     """
     moves, slides = 0.0 if fixed else 1.0, 1.0 if sprung else 0.0
     sizes = np.asarray(whole[d_.SIZES :])
-    luck = FLOOR * rtol * (1.0 + sizes)
-    at_times, ever = (np.maximum(MARGIN * np.asarray(of[: d_.SIZES]), luck) for of in (here, whole))
+    floor = FLOOR * rtol * (1.0 + sizes)
+    at_times, ever = (
+        np.maximum(MARGIN * np.asarray(of[: d_.SIZES]), floor) for of in (here, whole)
+    )
     edges = at_times[d_.EDGES] + here[d_.EDGE_ROUNDING]
     depth, arm = moves * ever[d_.DEPTH], sizes[d_.EDGES]
-    drive = tolerance * (1.0 + sizes[d_.NUMBER])
+    drive = tolerance * (1.0 + sizes[d_.DRIVE])
     way = slides * 2.0 * ever[d_.ALONG] + drive + 2.0 * whole[d_.EDGE_ROUNDING]
-    spring = {"sliding_velocity": at_times[d_.NUMBER], "spring_force": at_times[d_.SPRING_FORCE]}
+    sliding = at_times[d_.NUMBER] + drive
+    spring = {"sliding_velocity": sliding, "spring_force": at_times[d_.SPRING_FORCE]}
     return {
         "time": 0.0,
-        "velocity": 0.0,
+        "velocity": drive,
         "depth": moves * at_times[d_.DEPTH],
         "depth_rate": moves * at_times[d_.RATE],
         "normal_force": at_times[d_.NORMAL_FORCE] + here[d_.NORMAL_ROUNDING],

@@ -1,39 +1,38 @@
 """When a quantity of a solved transient is largest, and when its friction settles.
 
-A motion is sampled densely, for it is smooth between the steps of the solver and known everywhere; what
-is looked for is then narrowed down between two samples.
+A motion is smooth within a step and known everywhere. It is sampled densely; a maximum is then narrowed down
+between two samples.
 """
 
 import math
 from typing import Any
 
 from kvtheory.models.continuum import evaluation as e_
-from kvtheory.models.continuum import run as r_
 from kvtheory.models.continuum.run import Run
 
 SAMPLES = 12
 """Parts of each step, on which the depth is a polynomial of degree 8."""
 JUST_BEFORE = 1.0 - 2.0**-53
-"""Times this factor, a number is the one before it."""
+"""Factor from a number to the next smaller one."""
 SAME = 1e-10
-"""Relative; of values as equal as this, as in steady sliding, the first is the largest."""
+"""Relative difference of values that count as equal, as in steady sliding; the first is then the largest."""
 GOLDEN, SECTIONS = 0.6180339887498949, 18
-"""Of an interval, so often: down to a thousandth of a step; then Newton's method on central differences."""
+"""Golden-section steps, down to a thousandth of a step; then Newton's method on central differences."""
 NEWTON_STEPS, DIFFERENCE = 3, 1e-3
 """The difference is this share of a step: its fourth power, and rounding over it, are both small."""
 BISECTIONS = 60
 LEADING_EDGE, TRAILING_EDGE = e_.SIZE, e_.SIZE + 1
 """Columns beyond those of a state: which edge leads depends on the drive."""
 LARGEST, SMALLEST, MAGNITUDE = 1, -1, 0
-"""In which sense a quantity is to be large."""
-What = tuple[int, int, bool]
-"""Which column, in which sense, and whether the left edge leads, or led before a rest."""
+"""Senses of an extreme."""
+Objective = tuple[int, int, bool]
+"""What is maximized: a column, the sense, and whether the left edge leads, or led before a rest."""
 
 
 def sample(run: Run, times: Any, found: Any) -> int:
     """Write times and states: those of `SAMPLES` parts of each step, the last one just before its end."""
     count = 0
-    for index in range(run.counts[r_.RECORDS]):
+    for index in range(run.now.steps):
         start, end = _step(run, index)
         for k in range(SAMPLES + 1):
             times[count] = end if k == SAMPLES else start + (end - start) * (k / SAMPLES)
@@ -57,20 +56,20 @@ def largest(
     highest, leads = top, True
     for i in range(count):
         leads = leads_at(found[i], leads)
-        what = column, sense, leads
-        value = measured(found[i], what)
-        if not highest - SAME * abs(highest) <= value + _rise(found, i, what):
+        objective = column, sense, leads
+        value = measured(found[i], objective)
+        if not highest - SAME * abs(highest) <= value + _rise(found, i, objective):
             continue
         for k in range(3):
             s, there = times[i], value
             if k != 1:
                 if not 0 <= i % (SAMPLES + 1) + k - 1 <= SAMPLES or not highest > -math.inf:
                     continue
-                neighbour = measured(found[i + k - 1], what)
+                neighbour = measured(found[i + k - 1], objective)
                 if abs(value - neighbour) <= SAME * abs(value):
                     continue
                 near, far = times[min(i, i + k - 1)], times[max(i, i + k - 1)]
-                s, there = _narrowed(run, i // (SAMPLES + 1), near, far, what, row)
+                s, there = _narrowed(run, i // (SAMPLES + 1), near, far, objective, row)
             top = max(top, there)
             if not best >= top - SAME * abs(top) and there >= top - SAME * abs(top):
                 best_s, best = s, there
@@ -115,9 +114,9 @@ def leads_at(row: Any, leads: bool) -> bool:
     return leads if row[e_.NUMBER] == 0.0 else row[e_.NUMBER] > 0.0
 
 
-def measured(row: Any, what: What) -> float:
-    """Return what is to be large, from a state."""
-    column, sense, leads = what
+def measured(row: Any, objective: Objective) -> float:
+    """Return the value of the objective in a state."""
+    column, sense, leads = objective
     if column >= LEADING_EDGE:
         left = leads_at(row, leads) == (column == LEADING_EDGE)
         value = row[e_.LEFT] if left else row[e_.RIGHT]
@@ -129,15 +128,15 @@ def measured(row: Any, what: What) -> float:
 def _step(run: Run, index: int) -> tuple[float, float]:
     """Return when a step begins, and the last instant that belongs to it."""
     start, end = e_.natural_step(run, index)
-    return start, end if index + 1 == run.counts[r_.RECORDS] else end * JUST_BEFORE
+    return start, end if index + 1 == run.now.steps else end * JUST_BEFORE
 
 
-def _rise(found: Any, i: int, what: What) -> float:
+def _rise(found: Any, i: int, objective: Objective) -> float:
     """Return how far a sample stands out from its neighbours in the step; less is missed beside it."""
-    value, rise = measured(found[i], what), 0.0
+    value, rise = measured(found[i], objective), 0.0
     for k in (-1, 1):
         if 0 <= i % (SAMPLES + 1) + k <= SAMPLES:
-            over = value - measured(found[i + k], what)
+            over = value - measured(found[i + k], objective)
             if over < -SAME * abs(value):
                 return 0.0
             rise = max(rise, over)
@@ -145,39 +144,41 @@ def _rise(found: Any, i: int, what: What) -> float:
 
 
 def _narrowed(
-    run: Run, index: int, a: float, b: float, what: What, row: Any
+    run: Run, index: int, a: float, b: float, objective: Objective, row: Any
 ) -> tuple[float, float]:
     """Return where a quantity is largest on [a, b], within one step, and the value."""
     start, end = _step(run, index)
     low, high = b - GOLDEN * (b - a), a + GOLDEN * (b - a)
-    at_low, at_high = _at(run, index, low, what, row), _at(run, index, high, what, row)
+    at_low, at_high = _at(run, index, low, objective, row), _at(run, index, high, objective, row)
     for _ in range(SECTIONS):
         if at_low >= at_high:
             b, high, at_high = high, low, at_low
             low = b - GOLDEN * (b - a)
-            at_low = _at(run, index, low, what, row)
+            at_low = _at(run, index, low, objective, row)
         else:
             a, low, at_low = low, high, at_high
             high = a + GOLDEN * (b - a)
-            at_high = _at(run, index, high, what, row)
+            at_high = _at(run, index, high, objective, row)
     s, best = (low, at_low) if at_low >= at_high else (high, at_high)
     h = DIFFERENCE * (end - start)
     for _ in range(NEWTON_STEPS):
         if not start <= s - 2.0 * h < s + 2.0 * h <= end:
             break
-        left, right = _at(run, index, s - h, what, row), _at(run, index, s + h, what, row)
-        far = _at(run, index, s + 2.0 * h, what, row) - _at(run, index, s - 2.0 * h, what, row)
+        left, right = _at(run, index, s - h, objective, row), _at(run, index, s + h, objective, row)
+        far = _at(run, index, s + 2.0 * h, objective, row) - _at(
+            run, index, s - 2.0 * h, objective, row
+        )
         curvature = (left - 2.0 * best + right) / h
         if not curvature < 0.0:
             break
         moved = s - (8.0 * (right - left) - far) / (12.0 * curvature)
-        there = _at(run, index, min(max(moved, start), end), what, row)
+        there = _at(run, index, min(max(moved, start), end), objective, row)
         if not (start <= moved <= end and there >= best - SAME * abs(best)):
             break
         s, best = moved, there
     return s, best
 
 
-def _at(run: Run, index: int, s: float, what: What, row: Any) -> float:
+def _at(run: Run, index: int, s: float, objective: Objective, row: Any) -> float:
     e_.state_at(run, index, s, row)
-    return measured(row, what)
+    return measured(row, objective)

@@ -4,121 +4,109 @@ import math
 from typing import Any
 
 from kvtheory.models.continuum import contact as c_
-from kvtheory.models.continuum import run as r_
-from kvtheory.models.continuum.contact import FREE, TOUCHING
-from kvtheory.models.continuum.dense_output import instant
-from kvtheory.models.continuum.run import SIDES, Run
+from kvtheory.models.continuum.contact import FREE, SIDES, TOUCHING, instant
+from kvtheory.models.continuum.run import Run
 
 SUMMIT_RTOL = 1e-9
 """For sigma; the margin is stationary there, so that its error is of the order of the square."""
 
 
-def set_end(row: Any, end: int, X: float, s: float, d: float, Y: float) -> None:
-    """Set X, sigma, d, Y of the inner end of a node (`end` = IN_X) or of its outer one (OUT_X)."""
-    row[end], row[end + 1], row[end + 2], row[end + 3] = X, s, d, Y
+def set_place(place: Any, X: float, s: float, d: float, Y: float) -> None:
+    """Write an end of a node."""
+    place.X, place.s, place.d, place.Y = X, s, d, Y
 
 
-def copy_end(row: Any, end: int, other: Any, other_end: int) -> None:
-    """Set an end of a node to an end of another."""
-    for i in range(4):
-        row[end + i] = other[other_end + i]
+def copy(node: Any, inner: Any, outer: Any, old: Any) -> None:
+    """Write a node with these ends, else like `old`."""
+    set_place(node.inner, inner.X, inner.s, inner.d, inner.Y)
+    set_place(node.outer, outer.X, outer.s, outer.d, outer.Y)
+    node.step, node.branch, node.next, node.joined = old.step, old.branch, old.next, old.joined
 
 
-def free_row(run: Run) -> int:
-    """Return the index of the row in which the next node is written."""
-    return run.counts[r_.NODES]
-
-
-def push(run: Run, k: int, record: float, branch: float) -> None:
-    """Put the node whose ends are in the free row on a chain.
+def push(run: Run, k: int, step: int, branch: float) -> None:
+    """Put the node whose ends are in the first unused record on a chain.
 
     A is smooth across to the next node if one edge swept both, smoothly.
     """
-    row, top = run.nodes[free_row(run)], run.tops[k]
-    below = run.nodes[int(top)]
-    joined = (
-        record >= 0.0
-        and below[c_.RECORD] >= 0.0
-        and row[c_.OUT_S] == below[c_.IN_S]
-        and branch == below[c_.BRANCH]
-        and row[c_.OUT_S] != run.now[r_.KINK]
+    node, top = run.nodes[run.now.nodes], run.now.sides[k].node
+    below = run.nodes[top]
+    node.joined = (
+        step >= 0
+        and below.step >= 0
+        and node.outer.s == below.inner.s
+        and branch == below.branch
+        and node.outer.s != run.now.kink
     )
-    row[c_.RECORD], row[c_.BRANCH] = record, branch
-    row[c_.NEXT], row[c_.JOINED] = top, 1.0 if joined else 0.0
+    node.step, node.branch, node.next = step, branch, top
     put(run, k)
 
 
 def put(run: Run, k: int) -> None:
-    """Let the free row be the innermost node of a chain."""
-    run.tops[k] = run.counts[r_.NODES]
-    run.counts[r_.NODES] += 1
+    """Make the first unused record the innermost node of a chain."""
+    run.now.sides[k].node = run.now.nodes
+    run.now.nodes += 1
 
 
 def push_strip(run: Run, k: int, inner: float, outer: float, Y: float) -> None:
     """Put a strip on a chain that is left as a whole now."""
-    row, s, d = run.nodes[free_row(run)], run.now[r_.S], run.now[r_.D]
-    set_end(row, c_.IN_X, inner, s, d, Y)
-    set_end(row, c_.OUT_X, outer, s, d, Y)
-    push(run, k, -1.0, 0.0)
+    node, s, d = run.nodes[run.now.nodes], run.now.s, run.now.d
+    set_place(node.inner, inner, s, d, Y)
+    set_place(node.outer, outer, s, d, Y)
+    push(run, k, -1, 0.0)
 
 
 def trim(run: Run, k: int, Y: float) -> None:
-    """Let the chain of a touching side begin at the edge."""
-    now, row = run.now, run.nodes[free_row(run)]
-    old = run.nodes[run.tops[k]]
-    for i in range(c_.SIZE):
-        row[i] = old[i]
-    if row[c_.RECORD] >= 0.0:
-        row[c_.IN_S], row[c_.IN_D], row[c_.IN_Y] = c_.sweep(
-            run, SIDES[k], old, now[r_.S], now[r_.D], Y
-        )
-    row[c_.IN_X] = run.edges[k]
+    """Cut the chain of a touching side so that it begins at the edge."""
+    now, side = run.now, run.now.sides[k]
+    old, node = run.nodes[side.node], run.nodes[now.nodes]
+    copy(node, old.inner, old.outer, old)
+    if node.step >= 0:
+        s, d, left_at = c_.sweep(run, SIDES[k], old, now.s, now.d, Y)
+        set_place(node.inner, side.X, s, d, left_at)
+    node.inner.X = side.X
     put(run, k)
 
 
 def leave(run: Run, Y: float) -> None:
     """Take off: all ground is memory."""
+    left, right = run.now.sides[0], run.now.sides[1]
     for k in range(2):
-        if run.states[k] == TOUCHING:
+        if run.now.sides[k].state == TOUCHING:
             trim(run, k, Y)
-    if run.edges[0] < run.edges[1]:
-        push_strip(run, 1, run.edges[0], run.edges[1], Y)
-    run.states[0] = run.states[1] = FREE
+    if left.X < right.X:
+        push_strip(run, 1, left.X, right.X, Y)
+    left.state = right.state = FREE
 
 
 def land(run: Run, Y: float) -> None:
-    """Touch down: part the chains at the landing point, and let both edges touch."""
+    """Touch down: split the chains at the landing point, where both edges touch."""
     now = run.now
-    _, X, side, node, sigma = summit(run, now[r_.S], now[r_.D], Y)
+    _, X, side, index, sigma = summit(run, now.s, now.d, Y)
     near = 1 if side > 0.0 else 0
     far = 1 - near
-    inner = run.tops[near]
-    while inner != node:
-        row = run.nodes[inner]
-        push_reversed(run, far, row)
-        inner = int(row[c_.NEXT])
-    old = run.nodes[node]
-    d_0, Y_0 = old[c_.IN_D], old[c_.IN_Y]
-    if old[c_.RECORD] >= 0.0:
-        d_0, _, _, Y_0, _, _ = instant(run, int(old[c_.RECORD]), sigma)
-    if old[c_.IN_X] != X:
+    inner = now.sides[near].node
+    while inner != index:
+        push_reversed(run, far, run.nodes[inner])
+        inner = run.nodes[inner].next
+    old = run.nodes[index]
+    d_0, Y_0 = old.inner.d, old.inner.Y
+    if old.step >= 0:
+        d_0, _, _, Y_0, _, _ = instant(run, old.step, sigma)
+    if old.inner.X != X:
         push_reversed(run, far, old)
-        set_end(run.nodes[run.tops[far]], c_.IN_X, X, sigma, d_0, Y_0)
-    row = run.nodes[free_row(run)]
-    for i in range(c_.SIZE):
-        row[i] = old[i]
-    set_end(row, c_.IN_X, X, sigma, d_0, Y_0)
+        set_place(run.nodes[now.sides[far].node].inner, X, sigma, d_0, Y_0)
+    node = run.nodes[now.nodes]
+    copy(node, old.inner, old.outer, old)
+    set_place(node.inner, X, sigma, d_0, Y_0)
     put(run, near)
     for k in range(2):
-        run.states[k], run.edges[k] = TOUCHING, X
+        now.sides[k].state, now.sides[k].X = TOUCHING, X
 
 
 def push_reversed(run: Run, k: int, old: Any) -> None:
     """Put a node on the chain of the other side."""
-    row = run.nodes[free_row(run)]
-    copy_end(row, c_.IN_X, old, c_.OUT_X)
-    copy_end(row, c_.OUT_X, old, c_.IN_X)
-    push(run, k, old[c_.RECORD], old[c_.BRANCH])
+    copy(run.nodes[run.now.nodes], old.outer, old.inner, old)
+    push(run, k, old.step, old.branch)
 
 
 def summit(run: Run, s: float, d: float, Y: float) -> tuple[float, float, float, int, float]:
@@ -128,20 +116,19 @@ def summit(run: Run, s: float, d: float, Y: float) -> tuple[float, float, float,
     is a supremum of functions with the same curvature at earlier, smaller weights; so its largest value
     is found by walking outward while it rises.
     """
-    for side in (1.0, -1.0):
-        node = run.tops[1 if side > 0.0 else 0]
-        row = run.nodes[node]
-        if rise(side, row[c_.IN_X], s, Y, row[c_.IN_S], row[c_.IN_Y]) <= 0.0:
+    for k in (1, 0):
+        side, index = SIDES[k], run.now.sides[k].node
+        node = run.nodes[index]
+        if rise(side, node.inner, s, Y) <= 0.0:
             continue
-        while rise(side, row[c_.OUT_X], s, Y, row[c_.OUT_S], row[c_.OUT_Y]) > 0.0:
-            node = int(row[c_.NEXT])
-            row = run.nodes[node]
-        X, sigma, d_0, Y_0 = _peak(run, side, row, s, Y)
-        return margin(X, s, d, Y, sigma, d_0, Y_0), X, side, node, sigma
-    right = run.tops[1]
-    row = run.nodes[right]
-    value = margin(row[c_.IN_X], s, d, Y, row[c_.IN_S], row[c_.IN_D], row[c_.IN_Y])
-    return value, row[c_.IN_X], 1.0, right, row[c_.IN_S]
+        while rise(side, node.outer, s, Y) > 0.0:
+            index = node.next
+            node = run.nodes[index]
+        X, sigma, d_0, Y_0 = _peak(run, side, node, s, Y)
+        return margin(X, s, d, Y, sigma, d_0, Y_0), X, side, index, sigma
+    index = run.now.sides[1].node
+    at = run.nodes[index].inner
+    return margin(at.X, s, d, Y, at.s, at.d, at.Y), at.X, 1.0, index, at.s
 
 
 def margin(X: float, s: float, d: float, Y: float, s_0: float, d_0: float, Y_0: float) -> float:
@@ -150,26 +137,33 @@ def margin(X: float, s: float, d: float, Y: float, s_0: float, d_0: float, Y_0: 
     return d - xi * xi - math.exp(s_0 - s) * (d_0 - xi_0 * xi_0)
 
 
-def rise(side: float, X: float, s: float, Y: float, s_0: float, Y_0: float) -> float:
+def rise(side: float, at: Any, s: float, Y: float) -> float:
+    """Return half the outward slope of the margin over X, at a place."""
+    return slope(side, at.X, s, Y, at.s, at.Y)
+
+
+def slope(side: float, X: float, s: float, Y: float, s_0: float, Y_0: float) -> float:
     """Return half the outward slope of the margin over X."""
     return -side * (X + Y - math.exp(s_0 - s) * (X + Y_0))
 
 
-def _peak(run: Run, side: float, row: Any, s: float, Y: float) -> tuple[float, float, float, float]:
+def _peak(
+    run: Run, side: float, node: Any, s: float, Y: float
+) -> tuple[float, float, float, float]:
     """Return X, sigma, d, Y of the largest margin on one node, whose outer end it does not exceed."""
-    inner, outer = row[c_.IN_S], row[c_.OUT_S]
-    if rise(side, row[c_.IN_X], s, Y, inner, row[c_.IN_Y]) <= 0.0:
-        return row[c_.IN_X], inner, row[c_.IN_D], row[c_.IN_Y]
-    if row[c_.RECORD] < 0.0:
+    at, inner, outer = node.inner, node.inner.s, node.outer.s
+    if rise(side, at, s, Y) <= 0.0:
+        return at.X, inner, at.d, at.Y
+    if node.step < 0:
         q = math.exp(inner - s)
-        return (q * row[c_.IN_Y] - Y) / -math.expm1(inner - s), inner, row[c_.IN_D], row[c_.IN_Y]
+        return (q * at.Y - Y) / -math.expm1(inner - s), inner, at.d, at.Y
     while True:
         sigma = 0.5 * (inner + outer)
-        d_0, v_0, _, Y_0, number, _ = instant(run, int(row[c_.RECORD]), sigma)
-        X = c_.root(row[c_.BRANCH], number, d_0 + v_0)[0] - Y_0
+        d_0, v_0, _, Y_0, number, _ = instant(run, node.step, sigma)
+        X = c_.root(node.branch, number, d_0 + v_0)[0] - Y_0
         if abs(inner - outer) <= SUMMIT_RTOL * (s - sigma) or sigma in (inner, outer):
             return X, sigma, d_0, Y_0
-        if rise(side, X, s, Y, sigma, Y_0) > 0.0:
+        if slope(side, X, s, Y, sigma, Y_0) > 0.0:
             inner = sigma
         else:
             outer = sigma

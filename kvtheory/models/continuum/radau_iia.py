@@ -21,7 +21,6 @@ Beyond seven, the linear algebra takes what the evaluations save. `make benchmar
 """
 
 import math
-from collections.abc import Sequence
 from fractions import Fraction
 from functools import cache
 from typing import Any, NamedTuple
@@ -30,13 +29,12 @@ import numpy as np
 from numpy.polynomial import Legendre, Polynomial
 
 from kvtheory.models.continuum import coupled
-from kvtheory.models.continuum import dense_output as h_
-from kvtheory.models.continuum.contact import FREE, edge, forces, pressure
-from kvtheory.models.continuum.dense_output import Instant, Past
+from kvtheory.models.continuum.contact import FREE, Instant, Run, edge, forces, pressure
 from kvtheory.scene.base_motion import evaluate
 
 STAGES = ((1e-3, 4), (1e-6, 5), (0.0, 7))
 """Number of stages for tolerances above each of these: the cheapest, as measured."""
+MOST_STAGES, MOST_PROBES = 7, 3
 
 NEWTON_STEPS = 8
 NEWTON_SHARE = 1e-3
@@ -44,9 +42,9 @@ NEWTON_SHARE = 1e-3
 NEWTON_STALL = 0.5
 """Of the tolerance, for a correction that rounding keeps from becoming smaller."""
 ROUNDING = 1e-15
-"""Of F, by its terms and its largest derivative: a stiff spring feels the last digit of the depth."""
+"""Of F, relative to its terms and its largest derivative: a stiff spring multiplies rounding of the depth."""
 PLACES = (0.08, 0.25, 0.55)
-"""About where each step is examined, besides its end."""
+"""About where the defect of each step is probed, besides its end."""
 
 
 Matrix = list[list[float]]
@@ -76,11 +74,11 @@ def _tableau(stages: int) -> tuple[list[float], Matrix, Matrix, Matrix]:
 
 
 def _probes(c: list[float]) -> list[float]:
-    """Return where each step is examined: where the defect is largest, between the stages."""
+    """Return the extremes of the defect between the stages that are nearest to `PLACES`."""
     M = Polynomial.fromroots(c)
     turns = np.sort(np.real(M.deriv().roots()))
     nearest = [float(turns[np.argmin(np.abs(turns - place))]) for place in PLACES]
-    return sorted(set(nearest))  # of few stages, one may be the nearest of two
+    return sorted(set(nearest))  # with few stages, one may be the nearest to two places
 
 
 def _scales(c: list[float], probes: list[float]) -> list[list[float]]:
@@ -120,19 +118,19 @@ def stages_for(rtol: float) -> int:
 
 
 def imbalance(
-    run: Past, sides: Sequence[float], s: float, now: Instant
+    run: Run, step: Any, s: float, now: Instant
 ) -> tuple[float, float, float, float, float]:
-    """Return F = 1 - f_z - kappa (d - 1), dF/dd, dF/dv, and both edges.
+    """Return F = 1 - f_z - kappa (d - 1), dF/dd, dF/dv, and both edges, which have the states of `step`.
 
-    `sides` holds state and node of the left edge, then of the right one. The pressure vanishes at a
-    peeling edge and does not move a touching one, so that dF/dv is only the width.
+    The pressure vanishes at a peeling edge and does not move a touching one, so that dF/dv is only the width.
     """
     d, v, kappa = now[0], now[1], run.given.kappa
     F, F_d, F_v = 1.0 - kappa * (d - 1.0), -kappa, 0.0
-    if sides[0] == FREE:
+    left, right = step.sides[0], step.sides[1]
+    if left.state == FREE:
         return F, F_d, F_v, math.nan, math.nan
-    l, l_d, _, _ = edge(run, -1.0, sides[0], int(sides[1]), s, now)
-    r, r_d, _, _ = edge(run, 1.0, sides[2], int(sides[3]), s, now)
+    l, l_d, _, _ = edge(run, 0, left, s, now)
+    r, r_d, _, _ = edge(run, 1, right, s, now)
     if l < r:
         f_z, _ = forces(l, r, d, v, now[4])
         F -= f_z
@@ -143,26 +141,26 @@ def imbalance(
     return F, F_d, F_v, l, r
 
 
-def collocate(run: Past, record: Any, along: Any) -> int:
-    """Solve for the stages of the step that `record` begins, and write its powers of v.
+def collocate(run: Run, step: Any, along: Any) -> int:
+    """Solve for the stages of a step that has begun, and write its powers of v.
 
     Of n unknowns, v at the stages, row n of `matrix` holds a guess of them less v at the start; the rest is
     work space. With a spring there are as many unknowns along x, and the powers of x' are written to
     `along`. Newton's method with the exact Jacobian of all stages; return the number of evaluations of
     F, or 0 if it does not converge.
     """
-    method, matrix, sprung = run.given.method, run.matrix, run.given.sprung
-    stages, unknowns = len(method.nodes), len(matrix[0]) - 1
+    method, matrix, sprung, stages = run.method, run.matrix, run.given.sprung, run.method.stages
+    unknowns = len(matrix[0]) - 1
     change, places, numbers = matrix[unknowns], matrix[unknowns + 1], matrix[unknowns + 2]
-    start, span, size = record[h_.START], record[h_.SPAN], 1.0 + abs(record[h_.POWERS])
-    drive = int(along[h_.PIECE]) if sprung else int(record[h_.PIECE])
-    for i in range(stages):
-        places[i], numbers[i], _ = evaluate(run.pieces[drive], start + span * method.nodes[i])
+    size, drive = 1.0 + abs(step.rate[0]), step.piece
     if sprung:
-        size += abs(along[h_.POWERS])
+        size, drive = size + abs(along.rate[0]), along.piece
+    for i in range(stages):
+        s = step.start + step.span * method.nodes[i]
+        places[i], numbers[i], _ = evaluate(run.pieces[drive], s)
     allowed, previous = run.given.rtol * size, math.inf
     for iteration in range(1, NEWTON_STEPS + 1):
-        finite = coupled.linearize(run, record, along) if sprung else linearize(run, record)
+        finite = coupled.linearize(run, step, along) if sprung else linearize(run, step)
         if not finite:
             return 0
         largest = eliminate(matrix)
@@ -170,9 +168,9 @@ def collocate(run: Past, record: Any, along: Any) -> int:
             change[i] += matrix[i][unknowns]
         stalled = 0.5 * previous <= largest <= NEWTON_STALL * allowed
         if largest <= NEWTON_SHARE * allowed or stalled:
-            _write_powers(method, change, 0, record)
+            _write_powers(method, change, 0, step.rate)
             if sprung:
-                _write_powers(method, change, stages, along)
+                _write_powers(method, change, stages, along.rate)
             return iteration * stages
         if not largest < math.inf:
             return 0
@@ -180,22 +178,19 @@ def collocate(run: Past, record: Any, along: Any) -> int:
     return 0
 
 
-def linearize(run: Past, record: Any) -> bool:
-    """Write the equations of Newton's method for all stages; say whether they are finite."""
-    eps, method, matrix = run.given.eps, run.given.method, run.matrix
-    stages = len(method.nodes)
+def linearize(run: Run, step: Any) -> bool:
+    """Write the equations of Newton's method for all stages; return whether they are finite."""
+    eps, method, matrix, stages = run.given.eps, run.method, run.matrix, run.method.stages
     change, places, numbers = matrix[stages], matrix[stages + 1], matrix[stages + 2]
-    start, span, depth = record[h_.START], record[h_.SPAN], record[h_.DEPTH]
-    rate = record[h_.POWERS]
-    sides = record[h_.LEFT_STATE : h_.LEFT_X]
+    span, rate = step.span, step.rate[0]
     for i in range(stages):
         a, inverse, row = method.A[i], method.inverse[i], matrix[i]
-        d, inertia = depth + span * method.nodes[i] * rate, 0.0
+        d, inertia = step.depth + span * method.nodes[i] * rate, 0.0
         for j in range(stages):
             d += span * a[j] * change[j]
             inertia += eps * inverse[j] * change[j]
         now = d, rate + change[i], 0.0, places[i], numbers[i], 0.0
-        F, F_d, F_v, _, _ = imbalance(run, sides, start + span * method.nodes[i], now)
+        F, F_d, F_v, _, _ = imbalance(run, step, step.start + span * method.nodes[i], now)
         if not math.isfinite(F):
             return False
         for j in range(stages):
@@ -205,12 +200,13 @@ def linearize(run: Past, record: Any) -> bool:
     return True
 
 
-def _write_powers(method: Method, change: Any, first: int, record: Any) -> None:
-    for k in range(len(method.nodes)):
+def _write_powers(method: Any, change: Any, first: int, rate: Any) -> None:
+    """Write the powers of a rate, from its changes at the stages."""
+    for k in range(method.stages):
         power, powers = 0.0, method.powers[k]
-        for j in range(len(method.nodes)):
+        for j in range(method.stages):
             power += powers[j] * change[first + j]
-        record[h_.POWERS + 1 + k] = power
+        rate[1 + k] = power
 
 
 def eliminate(matrix: Any) -> float:
@@ -244,13 +240,13 @@ def eliminate(matrix: Any) -> float:
 
 def defect_error(
     span: float, eps: float, dv: float, F: float, F_d: float, F_v: float,
-    rounding: float, scales: Sequence[float],
+    rounding: float, scales: Any,
 ) -> float:  # fmt: skip
     """Estimate the error of v over the step from the defect eps v' - F at one of the probes.
 
     The error e obeys eps e' = F_v e + F_d int e - defect. It is the integral of the defect where
-    inertia rules, the defect itself where damping does, its derivative where stiffness does. A defect
-    may be `rounding` of the terms of F.
+    inertia dominates, the defect itself where damping does, its derivative where stiffness does.
+    `rounding` is the size of the terms of F.
     """
     integral, value, derivative = scales[0], scales[1], scales[2]
     defect = max(abs(eps * dv - F) - ROUNDING * rounding, 0.0)

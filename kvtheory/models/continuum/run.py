@@ -1,48 +1,79 @@
-"""A transient in progress: rows of floats, so that one source can be interpreted and compiled.
+"""A transient in progress: records with named fields, so that one source can be interpreted and compiled.
 
-Interpreted, rows are lists; compiled, they are arrays. Both have room for more than is there, and the
-walk stops before the room runs out.
+Interpreted, a record is an object with attributes, and many of them are a list; compiled, they are
+structured arrays. Both have more room than is used; `stepping.walk` stops before it is full.
 """
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable
 from functools import cache
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from kvtheory.models.continuum import contact as c_
-from kvtheory.models.continuum import dense_output as h_
-from kvtheory.models.continuum.contact import TOUCHING
-from kvtheory.models.continuum.radau_iia import Method, radau, stages_for
+from kvtheory.models.continuum.contact import FAR, FREE, SIDES, TOUCHING
+from kvtheory.models.continuum.radau_iia import MOST_PROBES, MOST_STAGES, radau, stages_for
 from kvtheory.scene import base_motion as b_
 from kvtheory.scene.base_motion import BaseMotion
 
-S, D, V, SPAN, KINK, X, W = range(7)
-"""Indices of `now`: time, depth, depth rate, the length of the next step, the last kink or jump of the
-drive, and on a spring the place of the indenter along x and its rate."""
-PIECE, SLIDE, MET, SMOOTH, TOGGLES, RECORDS, NODES, EVENTS, REJECTED, EVALUATIONS = range(10)
-"""Indices of `counts`: the piece of the drive, the piece by which the base slides under the indenter (the
-same one for a rigid drive), whether its beginning was dealt with, whether the motion goes on smoothly from
-the last record, the changes of state at this instant; then how many there are."""
-
-SIDES = (-1.0, 1.0)
-
 ROOM = 64
-"""Records at first; a start from rest takes some thirty."""
+"""Steps at first; a start from rest takes some thirty."""
 PER_STEP, EVENTS_PER_STEP = 8, 8
 """Nodes and events that one step may add; a landing may also double the nodes."""
 
 EVENT_SHARE, EVENT_FLOOR = 1e-4, 1e-12
-"""Share of the tolerance by which a state of an edge must be violated, or rounding would toggle it."""
+"""Share of the tolerance by which the state of an edge must be violated: rounding must not toggle it."""
+
+
+def _record(**fields: Any) -> np.dtype[Any]:
+    return np.dtype(list(fields.items()), align=True)
+
+
+PLACE = _record(X="f8", s="f8", d="f8", Y="f8")
+"""Ground at X, left at the time s when depth and displacement of the base were d and Y."""
+NODE = _record(inner=PLACE, outer=PLACE, step="i8", branch="f8", next="i8", joined="?")
+"""Ground between two places; the step in which it was swept, or -1; the sign of the root of p = 0 that swept
+it; the next node outward, and whether A is smooth there."""
+SIDE = _record(state="i8", node="i8", X="f8")
+"""State of an edge, its innermost node, and its material coordinate."""
+STEP = _record(
+    start="f8", span="f8", depth="f8", piece="i8", sides=(SIDE, (2,)), rate=("f8", (MOST_STAGES + 1,))
+)  # fmt: skip
+"""Start and span of a step, depth and both sides at its start, the piece of the base motion, and the depth
+rate as powers of (s - start)/span; the depth is its exact integral."""
+EVENT = _record(s="f8", kind="i8")
+NOW = _record(
+    s="f8", d="f8", v="f8", span="f8", kink="f8", x="f8", w="f8",
+    piece="i8", slide="i8", met="?", smooth="?", toggles="i8",
+    steps="i8", nodes="i8", events="i8", rejected="i8", evaluations="i8", sides=(SIDE, (2,)),
+)  # fmt: skip
+"""Time, depth, depth rate, length of the next step, last kink or jump of the drive; on a spring the position
+of the indenter along x and its rate. The piece of the drive, the piece by which the base slides under the
+indenter (the same one for a rigid drive), whether the start of the piece was handled, whether the last step
+continues smoothly, the changes of state at this instant; the numbers of steps, nodes, events, rejected steps
+and evaluations; and both sides."""
+GIVEN = _record(
+    eps="f8", kappa="f8", end="f8", fixed="?", rtol="f8", allowed="f8",
+    first_step="f8", longest="f8", grow="f8", straight="f8",
+    eps_x="f8", damping="f8", spring="f8", sprung="?", drives="i8",
+)  # fmt: skip
+"""Inertia number, support number, the time at which to stop, whether the indenter is fixed, tolerance of a
+step, how far the state of an edge may be violated; step-size controls; inertia, damping and stiffness of a
+spring along x, whether there is one; the number of pieces of the drive."""
+_SQUARE = "f8", (MOST_STAGES, MOST_STAGES)
+METHOD = _record(
+    stages="i8", nodes=("f8", (MOST_STAGES,)), A=_SQUARE, inverse=_SQUARE, powers=_SQUARE,
+    probe_count="i8", probes=("f8", (MOST_PROBES,)), scales=("f8", (MOST_PROBES, 3)),
+)  # fmt: skip
+"""A `radau_iia.Method`, padded with zeros."""
 
 
 class StepControl(NamedTuple):
-    """What sets the steps beside the tolerance.
+    """Step-size controls beside the tolerance.
 
     `first_step` is in units of the fastest time constant, after a jump; if it is too long it is
-    rejected. `longest` is in units of tau: what the foundation forgets does not hide between the
-    probes of a step. A step grows by no more than `grow`; the first step after an event, or on a piece
+    rejected. `longest` is in units of tau, so that fading memory is seen by the probes of a step. A step
+    grows by no more than `grow`; the first step after an event, or on a piece
     of the drive, takes at most `straight` of the way to the next event or the end of the piece.
     `stages` of the Radau IIA method, if they are zero, are as many as is cheapest for the tolerance.
     """
@@ -55,7 +86,7 @@ class StepControl(NamedTuple):
 
 
 class Spring(NamedTuple):
-    """What holds the indenter along x: its inertia number there, damping number and stiffness number."""
+    """The spring along x: inertia number, damping number and stiffness number."""
 
     eps: float
     damping: float
@@ -63,48 +94,22 @@ class Spring(NamedTuple):
 
 
 RIGID = Spring(1.0, 0.0, 0.0)
-"""In the place of a spring that is not there."""
-
-
-class Given(NamedTuple):
-    """What never changes in a run, beside the drive.
-
-    Inertia number, support number, the time at which to stop; whether the indenter is fixed, tolerance
-    of a step, how far a state of an edge may be violated. Of a drive with a spring: inertia, damping and
-    stiffness along x. Then whether there is one, and how many pieces the drive has.
-    """
-
-    eps: float
-    kappa: float
-    end: float
-    fixed: bool
-    rtol: float
-    allowed: float
-    control: StepControl
-    method: Method
-    eps_x: float
-    damping: float
-    spring: float
-    sprung: bool
-    drives: int
+"""Stands for a spring that is absent."""
 
 
 class Run(NamedTuple):
-    """A transient in progress; `records`, `nodes` and `events` are its outcome.
+    """A transient in progress; `steps`, `nodes` and `events` are its outcome.
 
-    Of each edge, the left one first, there are its state, its innermost node and its material coordinate.
-    With a spring, `along` holds the motion along x for each record, and `pieces` goes on behind those of
+    Outside the kernels `given`, `method` and `now` are rows of one record, inside they are the record itself.
+    With a spring, `along` holds the motion along x for each step, and `pieces` continues behind those of
     the drive with how the base slides under the indenter.
     """
 
-    given: Given
-    pieces: Any
+    given: Any
+    method: Any
     now: Any
-    counts: Any
-    states: Any
-    tops: Any
-    edges: Any
-    records: Any
+    pieces: Any
+    steps: Any
     nodes: Any
     events: Any
     matrix: Any
@@ -112,101 +117,183 @@ class Run(NamedTuple):
 
 
 def begin(
-    drive: BaseMotion,
-    numbers: tuple[float, float],
-    spring: Spring | None,
-    end: float,
-    rtol: float,
-    control: StepControl,
-    *,
-    arrays: bool = False,
-) -> Run:
-    """Return a run at rest: the stationary contact at d = 1; `numbers` are eps and kappa.
-
-    Its rows are lists, or arrays for compiled kernels.
-    """
+    drive: BaseMotion, numbers: tuple[float, float], spring: Spring | None, end: float,
+    rtol: float, control: StepControl, *, arrays: bool = False,
+) -> Run:  # fmt: skip
+    """Return a run that has not begun; `numbers` are eps and kappa. Its records are objects or `arrays`."""
     eps, kappa = numbers
-    fixed, stages = math.isinf(kappa), control.stages or stages_for(rtol)
-    allowed = max(EVENT_SHARE * rtol, EVENT_FLOOR)
-    method = _arrays_of(stages) if arrays else radau(stages)
-    sprung, count = spring is not None, len(drive.pieces)
-    given = Given(
-        eps, 0.0 if fixed else kappa, end, fixed, rtol, allowed, control, method,
-        *(spring or RIGID), sprung, count,
+    fixed, stages, sprung = (
+        math.isinf(kappa),
+        control.stages or stages_for(rtol),
+        spring is not None,
+    )
+    given = (
+        eps, 0.0 if fixed else kappa, end, fixed, rtol, max(EVENT_SHARE * rtol, EVENT_FLOOR),
+        *control[:4], *(spring or RIGID), sprung, len(drive.pieces),
     )  # fmt: skip
-    small: Any = [0.0] * 7, [0] * 10, [0.0] * 2, [0] * 2, [0.0] * 2
-    unknowns, row = 2 * stages if sprung else stages, h_.POWERS + 1 + stages
-    sizes = (
-        (ROOM, row), (3 * ROOM, c_.SIZE), (ROOM, 2), (unknowns + 3, unknowns + 1),
-        (ROOM, row) if sprung else (1, 1),
-    )  # fmt: skip
-    pieces = np.array(with_slides(drive.pieces, stages)) if sprung else drive.rows
+    room, unknowns, pieces = (
+        ROOM if arrays else ROOM // 2,
+        2 * stages if sprung else stages,
+        drive.rows,
+    )
+    if sprung:  # as long as those by which the base slides, and room for these
+        wider = max(pieces.shape[1], b_.POWERS + 1 + stages) - pieces.shape[1]
+        pieces = np.pad(pieces, ((0, room), (0, wider)))
+    sizes = {"steps": room, "nodes": 3 * room // 2, "events": room, "along": room if sprung else 1}
+    matrix, method = np.zeros((unknowns + 3, unknowns + 1)), method_of(stages, arrays=arrays)
     if arrays:
-        large: Any = map(np.zeros, sizes)
-        run = Run(given, pieces, *map(np.array, small), *large)
-    else:
-        run = Run(given, pieces.tolist(), *small, *(_lists(*size) for size in sizes))
-    rest(run)
-    return run
-
-
-def with_slides(pieces: Sequence[Sequence[float]], stages: int) -> list[list[float]]:
-    """Return the pieces of a drive, as long as those by which the base slides, and room for these."""
-    size = max(len(pieces[0]), b_.POWERS + 1 + stages)
-    return [[*piece, *[0.0] * (size - len(piece))] for piece in pieces] + _lists(ROOM, size)
+        many = {name: np.zeros(count, KINDS[name]) for name, count in sizes.items()}
+        one = np.array([given], GIVEN), method, np.zeros(1, NOW)
+        return Run(*one, pieces, matrix=matrix, **many)
+    many = {name: _more([], count, KINDS[name]) for name, count in sizes.items()}
+    return Run(
+        [new(GIVEN, *given)],
+        method,
+        _more([], 1, NOW),
+        pieces.tolist(),
+        matrix=matrix.tolist(),
+        **many,
+    )
 
 
 def rest(run: Run) -> None:
-    """Put a run at rest at its beginning."""
-    for i in range(len(run.counts)):
-        run.counts[i] = 0
-    run.counts[NODES] = 2
+    """Put a run at rest at its beginning: the stationary contact at d = 1."""
     now = run.now
-    now[S], now[D], now[V], now[SPAN], now[KINK] = 0.0, 1.0, 0.0, math.inf, 0.0
-    now[X] = now[W] = 0.0
+    now.s, now.d, now.v, now.span, now.kink, now.x, now.w = 0.0, 1.0, 0.0, math.inf, 0.0, 0.0, 0.0
+    now.piece, now.slide, now.met, now.smooth, now.toggles = 0, 0, False, False, 0
+    now.steps, now.nodes, now.events, now.rejected, now.evaluations = 0, 2, 0, 0, 0
     for k in range(2):
-        run.states[k], run.tops[k], run.edges[k] = TOUCHING, k, SIDES[k]
-        c_.undisturbed(SIDES[k], run.nodes[k])
+        side, node = now.sides[k], run.nodes[k]
+        side.state, side.node, side.X = TOUCHING, k, SIDES[k]
+        for place in (node.inner, node.outer):
+            place.X, place.s, place.d, place.Y = 0.0, -math.inf, 0.0, 0.0
+        node.outer.X = SIDES[k] * FAR
+        node.step, node.branch, node.next, node.joined = -1, 0.0, -1, False
 
 
 def has_room(run: Run) -> bool:
     """Whether one more step surely fits."""
+    now = run.now
+    doubles = 2 if now.sides[0].state == FREE else 1
     return (
-        run.counts[RECORDS] < len(run.records)
-        and 2 * run.counts[NODES] + PER_STEP <= len(run.nodes)
-        and run.counts[EVENTS] + EVENTS_PER_STEP <= len(run.events)
+        now.steps < len(run.steps)
+        and doubles * now.nodes + PER_STEP <= len(run.nodes)
+        and now.events + EVENTS_PER_STEP <= len(run.events)
     )
 
 
 def with_more_room(run: Run) -> Run:
     """Return the run with room for twice as much."""
-    wider = run._replace(
-        records=_doubled(run.records), nodes=_doubled(run.nodes), events=_doubled(run.events)
-    )
-    if not run.given.sprung:
-        return wider
-    return wider._replace(along=_doubled(run.along), pieces=_longer(run.pieces, len(run.records)))
+    names = ("steps", "nodes", "events")
+    wider = {
+        name: _more(getattr(run, name), len(getattr(run, name)), KINDS[name]) for name in names
+    }
+    if len(run.along) > 1:  # on a spring
+        count = len(run.steps)
+        wider |= {"along": _more(run.along, count, STEP), "pieces": _more(run.pieces, count)}
+    return run._replace(**wider)
 
 
 def as_arrays(run: Run) -> Run:
-    """Return the run, however far it has come, with arrays for rows."""
-    given = run.given._replace(method=_arrays_of(len(run.given.method.nodes)))
-    return Run(given, *map(np.array, run[1:]))
+    """Return a run of objects, however far it has come, with arrays for compiled kernels."""
+    records = {name: structured(getattr(run, name), kind) for name, kind in KINDS.items()}
+    return Run(**records, pieces=np.array(run.pieces), matrix=np.array(run.matrix))
+
+
+def as_objects(run: Run) -> Run:
+    """Return a run with objects for interpreted kernels, however far it has come."""
+    records = {name: _filled(kind, getattr(run, name).tolist()) for name, kind in KINDS.items()}
+    return Run(**records, pieces=run.pieces.tolist(), matrix=run.matrix.tolist())
+
+
+KINDS = {
+    "given": GIVEN, "method": METHOD, "now": NOW,
+    "steps": STEP, "nodes": NODE, "events": EVENT, "along": STEP,
+}  # fmt: skip
+"""Of the records of a run."""
+
+
+def structured(rows: Any, kind: np.dtype[Any]) -> Any:
+    """Return records as a structured array; `rows` may be one already."""
+    return rows if isinstance(rows, np.ndarray) else np.array(plain(rows), dtype=kind)
+
+
+def plain(record: Any) -> Any:
+    """Return an object, or a list of them, as tuples."""
+    if isinstance(record, list):
+        return [plain(each) for each in record]
+    names = getattr(record, "names", None)
+    return record if names is None else tuple([plain(getattr(record, name)) for name in names])
+
+
+def readable(record: Any, kind: np.dtype[Any]) -> Any:
+    """Return a record with attributes."""
+    return _filled(kind, record.tolist()) if isinstance(record, np.void) else record
+
+
+def value(record: Any, name: str) -> Any:
+    """Return one field of a record."""
+    return record[name] if isinstance(record, np.void) else getattr(record, name)
+
+
+def new(kind: np.dtype[Any], *values: Any) -> Any:
+    """Return one object with the fields of a record."""
+    return _filled(kind, values)
 
 
 @cache
-def _arrays_of(stages: int) -> Method:
-    return Method(*map(np.array, radau(stages)))
+def method_of(stages: int, *, arrays: bool) -> Any:
+    """Return the Radau IIA method as the record of a run."""
+    method = radau(stages)
+    found: Any = np.zeros(1, METHOD)
+    found["stages"], found["probe_count"] = stages, len(method.probes)
+    for name, rows in method._asdict().items():
+        array = np.array(rows)
+        found[name][0][tuple(slice(size) for size in array.shape)] = array
+    return found if arrays else _filled(METHOD, found.tolist())
 
 
-def _lists(count: int, size: int) -> list[list[float]]:
-    return [[0.0] * size for _ in range(count)]
+@cache
+def _blank(kind: np.dtype[Any]) -> Callable[[], Any]:
+    """Return a function that makes a blank object, number or list."""
+    if kind.subdtype is not None:
+        base, (count, *rest) = kind.subdtype
+        part = _blank(np.dtype((base, tuple(rest))))
+        return lambda: [part() for _ in range(count)]
+    if kind.names is None:
+        zero = kind.type(0).item()
+        return lambda: zero
+    parts = {name: _blank(kind[name]) for name in kind.names}
+    nested = [(name, parts[name]) for name in kind.names if kind[name].shape or kind[name].names]
+    zeros = {name: part() for name, part in parts.items()}
+    Record = type("Record", (), {**zeros, "names": kind.names})
+
+    def make() -> Any:
+        record = Record()
+        for name, part in nested:
+            setattr(record, name, part())
+        return record
+
+    return make
 
 
-def _doubled(rows: Any) -> Any:
-    return _longer(rows, len(rows))
+def _filled(kind: np.dtype[Any], values: Any) -> Any:
+    """Return an object or a list with these values."""
+    if isinstance(values, np.ndarray):
+        values = values.tolist()
+    if isinstance(values, list):
+        return [_filled(kind.base, value) for value in values]
+    if kind.names is None:
+        return values
+    record = _blank(kind)()
+    for name, value in zip(kind.names, values, strict=True):
+        setattr(record, name, _filled(kind[name], value))
+    return record
 
 
-def _longer(rows: Any, count: int) -> Any:
-    more = _lists(count, len(rows[0]))
-    return np.concatenate([rows, more]) if isinstance(rows, np.ndarray) else rows + more
+def _more(rows: Any, count: int, kind: np.dtype[Any] | None = None) -> Any:
+    """Return rows with so many more that are blank."""
+    if isinstance(rows, np.ndarray):
+        return np.concatenate([rows, np.zeros((count, *rows.shape[1:]), rows.dtype)])
+    make = _blank(kind or np.dtype(("f8", len(rows[0]))))
+    return rows + [make() for _ in range(count)]

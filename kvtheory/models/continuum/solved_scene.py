@@ -169,8 +169,8 @@ def transient(
 def force_maxima(motion: Trajectory) -> tuple[float, float]:
     """Return when f_z and |f_x| are largest: the first time of the largest value from s = 0 on."""
     columns = evaluation.NORMAL_FORCE, evaluation.FRICTION_FORCE
-    normal, friction = (motion.largest(column, maxima.MAGNITUDE)[0] for column in columns)
-    return normal, friction
+    normal, friction = motion.extremes(*((column, maxima.MAGNITUDE) for column in columns))
+    return normal[0], friction[0]
 
 
 def certified(

@@ -16,8 +16,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from kvtheory.models.continuum import compiled, deviation, evaluation, maxima, stepping
-from kvtheory.models.continuum import dense_output as h_
+from kvtheory.models.continuum import bulk, compiled, deviation, evaluation, maxima, stepping
 from kvtheory.models.continuum import run as r_
 from kvtheory.models.continuum.contact import FREE, PEELING, TOUCHING
 from kvtheory.models.continuum.events import ScaledEvent, events_of
@@ -25,9 +24,10 @@ from kvtheory.models.continuum.run import (
     Run,
     Spring,
     StepControl,
-    as_arrays,
     begin,
-    with_more_room,
+    readable,
+    structured,
+    value,
 )
 from kvtheory.results.errors import TransientError
 from kvtheory.scene.base_motion import BaseMotion
@@ -66,35 +66,44 @@ STATE_NAMES = {PEELING: "peeling", TOUCHING: "touching", FREE: "free"}
 class Trajectory:
     """A solved transient: evaluate it anywhere in [0, end] with `at` or `states`.
 
-    `rows` is the finished run, with arrays for rows if its kernels were compiled.
+    `run` is the finished run, with arrays for records if its kernels were compiled.
     """
 
-    rows: Run
+    run: Run
+
+    @cached_property
+    def given(self) -> Any:
+        """What was given: inertia, support, spring, tolerance, see `run.GIVEN`."""
+        return readable(self.run.given[0], r_.GIVEN)
+
+    def count(self, name: str) -> int:
+        """Return how many steps, nodes, events and so on there are, see `run.NOW`."""
+        return int(value(self.run.now[0], name))
 
     @property
     def end(self) -> float:
         """The time at which the motion ends."""
-        return float(self.rows.given.end)
+        return float(value(self.run.given[0], "end"))
 
     @property
     def compiled(self) -> bool:
         """Whether the kernels were compiled, at last."""
-        return compiled.in_use(self.rows)
+        return compiled.in_use(self.run)
 
     @property
     def steps(self) -> int:
         """Number of steps taken."""
-        return int(self.rows.counts[r_.RECORDS])
+        return self.count("steps")
 
     @property
     def rejected(self) -> int:
         """Number of steps repeated."""
-        return int(self.rows.counts[r_.REJECTED])
+        return self.count("rejected")
 
     @property
     def evaluations(self) -> int:
         """Number of evaluations of the equation of motion."""
-        return int(self.rows.counts[r_.EVALUATIONS])
+        return self.count("evaluations")
 
     @cached_property
     def events(self) -> tuple[ScaledEvent, ...]:
@@ -102,36 +111,41 @@ class Trajectory:
         return events_of(self)
 
     @cached_property
-    def records(self) -> list[list[float]]:
-        """The polynomials of the steps, as lists."""
-        return np.array(self.rows.records[: self.steps]).tolist()
+    def records(self) -> NDArray[Any]:
+        """The steps as a structured array, see `run.STEP`."""
+        return np.asarray(structured(self.run.steps[: self.steps], r_.STEP))
 
     @cached_property
-    def nodes(self) -> list[list[float]]:
-        """What the edges left behind, as lists."""
-        return np.array(self.rows.nodes[: self.rows.counts[r_.NODES]]).tolist()
+    def nodes(self) -> NDArray[Any]:
+        """What the edges left behind, as a structured array, see `run.NODE`."""
+        return np.asarray(structured(self.run.nodes[: self.count("nodes")], r_.NODE))
 
     @cached_property
-    def pieces(self) -> list[list[float]]:
-        """The pieces of the drive, as lists."""
-        return np.array(self.rows.pieces).tolist()
+    def interpreted(self) -> Run:
+        """The run with objects for records, as kernels see it."""
+        run = r_.as_objects(self.run) if self.compiled else self.run
+        return run._replace(given=run.given[0], method=run.method[0], now=run.now[0])
+
+    @cached_property
+    def pieces(self) -> NDArray[np.float64]:
+        """The pieces of the base motion, a row for each."""
+        return np.array(self.run.pieces)
 
     @cached_property
     def starts(self) -> list[float]:
         """The times at which the steps begin."""
-        return [row[h_.START] for row in self.records]
+        return list(self.records["start"].tolist())
 
     @property
     def natural(self) -> NDArray[np.float64]:
-        """Times that show all that happens: those of the steps, subdivided."""
+        """Times at which to show the motion: those of the steps, subdivided."""
         return np.asarray(self._natural[0])
 
     @cached_property
     def _natural(self) -> tuple[Any, Any]:
         """The natural times, and the states there, as rows for the kernels."""
-        count = evaluation.SUBDIVISIONS * self.steps + 1
-        times, found = self._room(count)
-        count = self._kernel(evaluation.natural)(self.rows, times, found)
+        times, found = self._room(evaluation.SUBDIVISIONS * self.steps + 1)
+        count = self._perform(bulk.NATURAL, times, found)
         return times[:count], found[:count]
 
     def at(self, s: float) -> Moment:
@@ -142,15 +156,15 @@ class Trajectory:
         return Moment(s, *row[: evaluation.PEAK_PRESSURE])
 
     def states(self, s: ArrayLike) -> NDArray[np.float64]:
-        """Return the states at an array of times: a row for each, laid out as in `states`."""
+        """Return the states at an array of times: a row for each, with the columns of `evaluation`."""
         times = np.asarray(s, dtype=float)
         if not np.all((times >= 0.0) & (times <= self.end)):
             raise ValueError(f"`s` must lie in [0, {self.end!r}], got {s!r}")
-        return np.array(self._states(self._rows(times))).reshape(-1, evaluation.SIZE)
+        return np.array(self._states(times)).reshape(-1, evaluation.SIZE)
 
-    def _states(self, times: Any) -> Any:
+    def _states(self, times: NDArray[np.float64]) -> Any:
         found = self._rows(np.empty((len(times), evaluation.SIZE)))
-        self._kernel(evaluation.states)(times, found, self.rows)
+        self._perform(bulk.STATES, self._rows(times), found)
         return found
 
     def deviations(
@@ -161,36 +175,39 @@ class Trajectory:
         See `deviation`.
         """
         if self.compiled != other.compiled:
-            one, two = (Trajectory(as_arrays(motion.rows)) for motion in (self, other))
+            one, two = (Trajectory(r_.as_arrays(motion.run)) for motion in (self, other))
             return one.deviations(two, times)
         if times is None:
             at, found = self._natural
         else:
-            at = self._rows(np.sort(times))
-            found = self._states(at)
-        worst, room = (
-            self._rows(np.zeros(size)) for size in (deviation.SIZE, (2, evaluation.SIZE))
-        )
-        self._kernel(deviation.deviations)(at, found, self.rows, other.rows, room, worst)
+            at, found = np.sort(times), self._states(np.sort(times))
+        worst = self._rows(np.zeros(deviation.SIZE))
+        self._perform(bulk.DEVIATIONS, self._rows(at), found, worst, other=other.run)
         return [float(x) for x in worst]
 
     @cached_property
     def samples(self) -> tuple[Any, Any, int]:
-        """Dense times and the states there, and how many they are, see `maxima`."""
-        count = (maxima.SAMPLES + 1) * self.steps
-        times, found = self._room(count)
-        return times, found, self._kernel(maxima.sample)(self.rows, times, found)
+        """Dense times and the states there, and their number, see `maxima`."""
+        times, found = self._room((maxima.SAMPLES + 1) * self.steps)
+        return times, found, self._perform(bulk.SAMPLE, times, found)
 
     def largest(self, column: int, sense: int = maxima.LARGEST) -> tuple[float, float]:
         """Return when a column of the states is largest, and its value, see `maxima`."""
-        room = self._rows(np.empty(evaluation.SIZE))
-        s, value = self._kernel(maxima.largest)(self.rows, *self.samples, column, sense, room)
-        return float(s), float(value)
+        return self.extremes((column, sense))[0]
+
+    def extremes(self, *objectives: tuple[int, int]) -> list[tuple[float, float]]:
+        """Return when columns of the states are largest in a sense, and their values, see `maxima`."""
+        times, found, count = self.samples
+        values = self._rows(np.array(objectives, dtype=float).reshape(-1))
+        self._perform(bulk.LARGEST, times, found, values, count)
+        return [(float(values[i]), float(values[i + 1])) for i in range(0, len(values), 2)]
 
     def settled(self, force: float, share: float) -> float:
         """Return since when the friction force is settled, see `maxima`."""
-        room = [0.0] * evaluation.SIZE
-        return float(maxima.settled(self.rows, *self.samples, force, share, room))
+        times, found, count = self.samples
+        values = self._rows(np.array([force, share], dtype=float))
+        self._perform(bulk.SETTLED, times, found, values, count)
+        return float(values[0])
 
     @property
     def last(self) -> list[float]:
@@ -199,15 +216,36 @@ class Trajectory:
         maxima.last(*self.samples[1:], row)
         return row
 
-    def _kernel(self, function: Callable[..., Any]) -> Any:
-        return compiled.chosen(function, self.rows)
+    def _perform(
+        self,
+        task: int,
+        times: Any,
+        found: Any,
+        values: Any = None,
+        count: int = 0,
+        other: Any = None,
+    ) -> int:
+        """Perform a task of the kernels."""
+        rows = self._workspace
+        values = rows[0] if values is None else values
+        return compiled.chosen(self.run)(
+            task, self.run, other or self.run, times, found, rows, values, count, bulk.NO_BULK
+        )
+
+    @cached_property
+    def _workspace(self) -> Any:
+        """Room for two states."""
+        return self._rows(np.zeros((2, evaluation.SIZE)))
 
     def _room(self, count: int) -> tuple[Any, Any]:
         """Return room for times, and for the states there."""
         return self._rows(np.empty(count)), self._rows(np.empty((count, evaluation.SIZE)))
 
-    def _rows(self, array: NDArray[np.float64]) -> Any:
-        return array if self.compiled else array.tolist()
+    def _rows(self, array: Any) -> Any:
+        """Return an array as the kernels need it: as lists if they are interpreted."""
+        if self.compiled:
+            return np.ascontiguousarray(array)
+        return array if isinstance(array, list) else array.tolist()
 
 
 def solve(
@@ -278,17 +316,26 @@ def solve(
     left, status = max_steps, stepping.PAUSED
     while status != stepping.DONE:
         if not compiled.in_use(run) and (compiled.worthwhile() if fast is None else fast):
-            run = as_arrays(run)
-        status = compiled.chosen(stepping.walk, run)(run, min(ATTEMPTS, left))
-        before, left = left, max_steps - int(run.counts[r_.RECORDS] + run.counts[r_.REJECTED])
+            run = r_.as_arrays(run)
+        status = walk(run, min(ATTEMPTS, left))
+        now = run.now[0]
+        before, left = left, max_steps - int(value(now, "steps") + value(now, "rejected"))
         compiled.Tally.steps += 0 if compiled.in_use(run) else before - left
-        s = float(run.now[r_.S])
+        s = float(value(now, "s"))
         if status in REASONS:
             raise TransientError(REASONS[status], s)
         if status == stepping.FULL:
-            run = with_more_room(run)
+            run = r_.with_more_room(run)
         if left <= 0 and status != stepping.DONE:
             raise TransientError(f"more than {max_steps} steps (`max_steps`)", s)
         if progress is not None:
             progress(s)
     return Trajectory(run)
+
+
+def walk(run: Run, attempts: int) -> int:
+    """Walk on by the kernels that fit the run, see `stepping`."""
+    room = bulk.NO_BULK.workspace
+    return compiled.chosen(run)(
+        bulk.WALK, run, run, room.times, room.samples, room.rows, room.times, attempts, bulk.NO_BULK
+    )

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Callable, Iterator, Sequence
+from copy import copy
 from typing import Any
 
 import numpy as np
@@ -9,11 +10,10 @@ from numpy.polynomial import polynomial
 from numpy.typing import ArrayLike, NDArray
 
 from kvtheory.models.continuum import contact as c_
-from kvtheory.models.continuum import dense_output as h_
 from kvtheory.models.continuum import evaluation
-from kvtheory.models.continuum.dense_output import instant
-from kvtheory.models.continuum.memory_chains import SIDES
+from kvtheory.models.continuum.contact import SIDES, instant
 from kvtheory.models.continuum.quadrature import integrals
+from kvtheory.models.continuum.run import NODE, PLACE, new, structured
 from kvtheory.models.continuum.solver import Trajectory
 from kvtheory.scene import base_motion as drive_
 
@@ -35,44 +35,42 @@ ROUNDING = 1e-15
 """Of an edge in units of 1 + |Y|, for it is kept as X = xi - Y."""
 
 
-def _chain(motion: Trajectory, k: int, s: float, edge: float) -> Iterator[list[float]]:
+def _chain(motion: Trajectory, k: int, s: float, edge: float) -> Iterator[Any]:
     """Yield the nodes of ground that was touched, outward from an edge, where the first one begins."""
-    front, node = _front(motion, k, s, edge)
+    front, index = _front(motion, k, s, edge)
     yield from front
-    while node >= 0:
-        row = list(motion.nodes[node])
-        if row[c_.IN_S] > -math.inf:
-            yield row
-        node = int(row[c_.NEXT])
+    while index >= 0:
+        node = motion.interpreted.nodes[index]
+        if node.inner.s > -math.inf:
+            yield node
+        index = node.next
 
 
-def _front(motion: Trajectory, k: int, s: float, edge: float) -> tuple[list[list[float]], int]:
-    """Return the nodes that do not yet, or no longer, exist as a whole, and the first that does.
-
-    `edge` is xi of the edge at `s`.
-    """
-    index = evaluation.record_at(motion.rows, s)
-    d, v, _, Y, number, _ = instant(motion, index, s)
-    record, side = motion.records[index], SIDES[k]
-    state, top = record[h_.LEFT_STATE + 2 * k], int(record[h_.LEFT_NODE + 2 * k])
-    X = record[h_.LEFT_X + k]
-    if state == c_.FREE or (state == c_.PEELING and s == record[h_.START]):
+def _front(motion: Trajectory, k: int, s: float, edge: float) -> tuple[list[Any], int]:
+    """Return the nodes that exist in part at `s`, with the edge at xi = `edge`, and the next whole one."""
+    run = motion.interpreted
+    index = evaluation.step_at(run, s)
+    d, v, _, Y, number, _ = instant(run, index, s)
+    step, held, side = run.steps[index], run.steps[index].sides[k], SIDES[k]
+    top = held.node
+    if held.state == c_.FREE or (held.state == c_.PEELING and s == step.start):
         return [], top
-    if state == c_.PEELING:
-        then = instant(motion, index, record[h_.START])
-        now = [c_.root(side, number, d + v)[0] - Y, s, d, Y]
-        return [[*now, X, record[h_.START], then[0], then[3], float(index), side]], top
-    if motion.nodes[top][c_.IN_S] < s:  # else it was left just now
-        top = c_.reached(motion, side, top, s, d, Y)
-    row = list(motion.nodes[top])
-    if s > record[h_.START]:
-        X = edge - Y
-    if row[c_.IN_S] == -math.inf:
+    if held.state == c_.PEELING:
+        then = instant(run, index, step.start)
+        inner = c_.root(side, number, d + v)[0] - Y, s, d, Y
+        outer = held.X, step.start, then[0], then[3]
+        return [new(NODE, inner, outer, index, side, -1, False)], top
+    if run.nodes[top].inner.s < s:  # else it was left just now
+        top = c_.reached(run, side, top, s, d, Y)
+    node = run.nodes[top]
+    if node.inner.s == -math.inf:
         return [], top
-    if row[c_.RECORD] >= 0.0 and row[c_.IN_S] < s:
-        row[c_.IN_S], row[c_.IN_D], row[c_.IN_Y] = c_.sweep(motion, side, row, s, d, Y)
-    row[c_.IN_X] = X
-    return [row], int(row[c_.NEXT])
+    place = node.inner.s, node.inner.d, node.inner.Y
+    if node.step >= 0 and node.inner.s < s:
+        place = c_.sweep(run, side, node, s, d, Y)
+    cut = copy(node)
+    cut.inner = new(PLACE, edge - Y if s > step.start else held.X, *place)
+    return [cut], node.next
 
 
 def height(motion: Trajectory, xi: ArrayLike, s: float) -> Array:
@@ -90,16 +88,17 @@ def height(motion: Trajectory, xi: ArrayLike, s: float) -> Array:
     >>> height(motion, [-1.0, 0.0, 1.0, 3.0], 1.0).round(6)
     array([0.      , 0.307843, 0.23703 , 0.23551 ])
     """
-    now, Y = motion.at(s), instant(motion, evaluation.record_at(motion.rows, s), s)[3]
+    run, now = motion.interpreted, motion.at(s)
+    Y = instant(run, evaluation.step_at(run, s), s)[3]
     xi = np.asarray(xi, dtype=float)
     X, slack = xi - Y, ROUNDING * (1.0 + abs(Y))
     inside = (now.left - slack <= xi) & (xi <= now.right + slack)  # false in flight: edges are NaN
     u = np.where(inside, now.depth - xi * xi, 0.0)
     for k, edge in enumerate((now.left, now.right)):
-        for row in _chain(motion, k, s, edge):
-            here = (X - row[c_.IN_X]) * (X - row[c_.OUT_X]) <= 0.0
+        for node in _chain(motion, k, s, edge):
+            here = (X - node.inner.X) * (X - node.outer.X) <= 0.0
             if here.any():
-                u[here] = np.maximum(u[here], _left(motion, row, X[here], s))
+                u[here] = np.maximum(u[here], _left(motion, node, X[here], s))
     return u
 
 
@@ -117,29 +116,31 @@ def relaxing(
 ) -> Array:
     """Return the integral of u^`power` outside the contact at each time; `memory` is `kept` for it."""
     total = np.zeros(len(times))
-    rows, owners = [], []
+    nodes, owners = [], []
     edges = motion.states(times)[:, [evaluation.LEFT, evaluation.RIGHT]].tolist()
     for i, s in enumerate(times):
         for k in range(2):
-            front, node = _front(motion, k, s, edges[i][k])
-            rows += front
+            front, index = _front(motion, k, s, edges[i][k])
+            nodes += front
             owners += [i] * len(front)
-            if node >= 0:
-                when, integral = memory[node]
+            if index >= 0:
+                when, integral = memory[index]
                 total[i] += integral * math.exp(power * (when - s))
-    np.add.at(total, owners, _integrals(motion, rows, np.asarray(times)[owners], power))
+    ages = np.asarray(times)[owners]
+    np.add.at(total, owners, _integrals(motion, structured(nodes, NODE), ages, power))
     return total
 
 
 def kept(motion: Trajectory, power: int) -> list[tuple[float, float]]:
     """Return, for each node, when it was complete, and the integral of u^power from there outward."""
-    complete = np.array([max(row[c_.IN_S], row[c_.OUT_S]) for row in motion.nodes])
+    nodes = motion.nodes
+    complete = np.maximum(nodes["inner"]["s"], nodes["outer"]["s"])
     own, touched = np.zeros(complete.size), complete > -math.inf
-    rows = [row for row, one in zip(motion.nodes, touched, strict=True) if one]
-    own[touched] = _integrals(motion, rows, complete[touched], power)
+    own[touched] = _integrals(motion, nodes[touched], complete[touched], power)
     memory: list[tuple[float, float]] = []
-    for row, since, integral in zip(motion.nodes, complete.tolist(), own.tolist(), strict=True):
-        when, total = memory[int(row[c_.NEXT])] if row[c_.NEXT] >= 0.0 else (-math.inf, 0.0)
+    rows = nodes["next"].tolist(), complete.tolist(), own.tolist()
+    for outward, since, integral in zip(*rows, strict=True):
+        when, total = memory[outward] if outward >= 0 else (-math.inf, 0.0)
         latest = max(when, since)
         if latest > -math.inf:
             total *= math.exp(power * (when - latest))
@@ -148,14 +149,14 @@ def kept(motion: Trajectory, power: int) -> list[tuple[float, float]]:
     return memory
 
 
-def _sweep_of(motion: Trajectory, rows: Array) -> Callable[[Any, Array], tuple[Array, ...]]:
-    """Return a function of `which` nodes among `rows`, and times sigma of shape (which, points).
+def _sweep_of(motion: Trajectory, nodes: NDArray[Any]) -> Callable[[Any, Array], tuple[Array, ...]]:
+    """Return a function of `which` nodes, and times sigma of shape (which, points).
 
     It returns xi, d, Y and dX/dsigma of the edges that swept these nodes.
     """
-    records = np.array(motion.records)[rows[:, c_.RECORD].astype(int)].T
-    pieces = np.array(motion.pieces)[records[h_.PIECE].astype(int)].T
-    rates, numbers = records[h_.POWERS :], pieces[drive_.POWERS :]
+    steps = motion.records[nodes["step"]]
+    pieces = motion.pieces[steps["piece"]].T
+    rates, numbers = steps["rate"].T, pieces[drive_.POWERS :]
     depths, slopes = polynomial.polyint(rates), polynomial.polyder(rates)
     travels, number_slopes = polynomial.polyint(numbers), polynomial.polyder(numbers)
 
@@ -163,12 +164,10 @@ def _sweep_of(motion: Trajectory, rows: Array) -> Callable[[Any, Array], tuple[A
         def value(coefficients: Array, x: Array) -> Array:
             return np.asarray(polynomial.polyval(x, coefficients[:, which, None], tensor=False))
 
-        record, piece, branch = (
-            records[:, which, None], pieces[:, which, None], rows[which, c_.BRANCH, None]
-        )  # fmt: skip
-        span, t = record[h_.SPAN], sigma - piece[drive_.START]
-        theta = (sigma - record[h_.START]) / span
-        d = record[h_.DEPTH] + span * value(depths, theta)
+        step, piece = steps[which, None], pieces[:, which, None]
+        branch, span, t = nodes["branch"][which, None], step["span"], sigma - piece[drive_.START]
+        theta = (sigma - step["start"]) / span
+        d = step["depth"] + span * value(depths, theta)
         Y = piece[drive_.DISPLACEMENT] + value(travels, t)
         v, number = value(rates, theta), value(numbers, t)
         half = np.sqrt(np.maximum(d + v + number * number, 0.0))
@@ -182,13 +181,13 @@ def _sweep_of(motion: Trajectory, rows: Array) -> Callable[[Any, Array], tuple[A
     return at
 
 
-def _left(motion: Trajectory, row: list[float], X: Array, s: float) -> Array:
+def _left(motion: Trajectory, node: Any, X: Array, s: float) -> Array:
     """Return u at the points `X` of one node."""
-    inner: Any = np.full(X.shape, row[c_.IN_S])
-    if row[c_.RECORD] < 0.0:
-        return np.exp(inner - s) * (row[c_.IN_D] - (X + row[c_.IN_Y]) ** 2)
-    outer, outward = np.full(X.shape, row[c_.OUT_S]), row[c_.OUT_X] - row[c_.IN_X]
-    swept = _sweep_of(motion, np.array([row]))
+    inner: Any = np.full(X.shape, node.inner.s)
+    if node.step < 0:
+        return np.exp(inner - s) * (node.inner.d - (X + node.inner.Y) ** 2)
+    outer, outward = np.full(X.shape, node.outer.s), node.outer.X - node.inner.X
+    swept = _sweep_of(motion, structured([node], NODE))
     for _ in range(HALVINGS):
         sigma = 0.5 * (inner + outer)
         xi, _, Y, _ = swept([0], sigma)
@@ -198,35 +197,33 @@ def _left(motion: Trajectory, row: list[float], X: Array, s: float) -> Array:
     return (np.exp(inner - s) * (d - (X + Y) ** 2))[0]
 
 
-def _integrals(motion: Trajectory, nodes: Sequence[Sequence[float]], s: Array, power: int) -> Array:
+def _integrals(motion: Trajectory, nodes: NDArray[Any], s: Array, power: int) -> Array:
     """Return the integrals of [e^-(s - sigma) g(X, sigma)]^power over X on nodes, each at its time s."""
-    rows = np.array([row[: c_.NEXT] for row in nodes]).reshape(-1, c_.NEXT)
-    found, strip = np.empty(len(rows)), rows[:, c_.RECORD] < 0.0
-    found[strip] = _of_strips(rows[strip], s[strip], power)
-    found[~strip] = _of_sweeps(motion, rows[~strip], s[~strip], power)
+    found, strip = np.empty(len(nodes)), nodes["step"] < 0
+    found[strip] = _of_strips(nodes[strip], s[strip], power)
+    found[~strip] = _of_sweeps(motion, nodes[~strip], s[~strip], power)
     return found
 
 
-def _of_strips(rows: Array, s: Array, power: int) -> Array:
-    inner, d, Y = rows[:, c_.IN_S, None], rows[:, c_.IN_D, None], rows[:, c_.IN_Y, None]
-    middle = 0.5 * (rows[:, c_.OUT_X] + rows[:, c_.IN_X])
-    half = 0.5 * np.abs(rows[:, c_.OUT_X] - rows[:, c_.IN_X])
+def _of_strips(nodes: NDArray[Any], s: Array, power: int) -> Array:
+    inner, outer = nodes["inner"][:, None], nodes["outer"][:, None]
+    middle, half = 0.5 * (outer["X"] + inner["X"]), 0.5 * np.abs(outer["X"] - inner["X"])
     x, weights = STRIP
-    u = np.exp(inner - s[:, None]) * (d - (middle[:, None] + half[:, None] * x + Y) ** 2)
-    return half * (u**power @ weights)
+    u = np.exp(inner["s"] - s[:, None]) * (inner["d"] - (middle + half * x + inner["Y"]) ** 2)
+    return half[:, 0] * (u**power @ weights)
 
 
-def _of_sweeps(motion: Trajectory, rows: Array, s: Array, power: int) -> Array:
-    inner, outer = rows[:, c_.IN_S], rows[:, c_.OUT_S]
-    swept = _sweep_of(motion, rows)
+def _of_sweeps(motion: Trajectory, nodes: NDArray[Any], s: Array, power: int) -> Array:
+    inner, outer = nodes["inner"], nodes["outer"]
+    swept = _sweep_of(motion, nodes)
 
     def flux(which: Any, sigma: Array) -> Array:
         xi, d, _, rate = swept(which, sigma)
         return (np.exp(sigma - s[which, None]) * (d - xi * xi)) ** power * rate
 
-    whole = np.abs(integrals(flux, inner, outer))
-    # sigma follows from an edge that is stationary in it: it may be off by the root of rounding
-    xi = rows[:, c_.IN_X] + rows[:, c_.IN_Y]
-    sliver = swept(slice(None), inner[:, None])[0][:, 0] - xi
-    u_in = np.exp(inner - s) * (rows[:, c_.IN_D] - xi * xi)
-    return whole + np.sign(rows[:, c_.OUT_X] - rows[:, c_.IN_X]) * sliver * u_in**power
+    whole = np.abs(integrals(flux, inner["s"], outer["s"]))
+    # sigma follows from an edge that is stationary in it: its error may be the root of rounding
+    xi = inner["X"] + inner["Y"]
+    sliver = swept(slice(None), inner["s"][:, None])[0][:, 0] - xi
+    u_in = np.exp(inner["s"] - s) * (inner["d"] - xi * xi)
+    return whole + np.sign(outer["X"] - inner["X"]) * sliver * u_in**power

@@ -27,6 +27,7 @@ from numpy.polynomial import chebyshev
 from numpy.typing import NDArray
 
 from kvtheory.models.slow_manifold.start import Start, depth_slope, outruns
+from kvtheory.theory.closed_forms import trailing_edge_ratio
 
 Array = NDArray[np.float64]
 
@@ -112,7 +113,7 @@ def _manifold(given: Start, moved: Array) -> tuple[Array, Array, Array, Array, A
     Both b and G are computed as differences to steady sliding, to avoid cancellation near it.
     """
     number, kappa, a_0 = given.number, given.kappa, given.steady
-    r_0 = a_0 * a_0 / (math.hypot(a_0, number) + number)
+    r_0 = a_0 * trailing_edge_ratio(number / a_0)
     b_0 = a_0 + r_0
     a = a_0 + moved
     grown = _widths(a, number, kappa) - b_0

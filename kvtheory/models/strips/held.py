@@ -26,6 +26,7 @@ from numpy.typing import ArrayLike, NDArray
 from kvtheory.results import AT_REST, TRANSIENT_UNITS, Certificate, Event, Transient, units_for
 from kvtheory.scene.model import Scene
 from kvtheory.scene.static_state import StaticState
+from kvtheory.theory.closed_forms import trailing_edge_ratio
 
 Array = NDArray[np.float64]
 
@@ -73,7 +74,7 @@ def transient(scene: Scene, at: ArrayLike | None, *, certify: bool = True) -> Tr
     Raises
     ------
     ValueError
-        If the drive slows down so fast, or stops, or turns round, that the foundation remembers.
+        If the drive slows down so fast, or stops, or reverses, that an edge meets its own trace.
 
     Examples
     --------
@@ -99,7 +100,7 @@ def transient(scene: Scene, at: ArrayLike | None, *, certify: bool = True) -> Tr
         "normal_force": load,
         "friction_force": side * friction + 0.0,
         "leading_edge": -side * a,
-        "trailing_edge": side * a * (a / (np.hypot(a, l_r) + l_r)),
+        "trailing_edge": side * a * trailing_edge_ratio(l_r / a),
         "peak_pressure": units.pressure * np.where(l_r < a, 1.0 + (l_r / a) ** 2, 2.0 * l_r / a),
     }
     kind, errors = ("estimated", dict.fromkeys(series, ROUNDING)) if certify else ("none", {})
@@ -128,13 +129,13 @@ FORCES = {"normal_force": "load", "friction_force": "friction_force"}
 
 
 def refuse_memory(scene: Scene) -> None:
-    """Raise `ValueError` if the foundation remembers somewhere along the drive."""
+    """Raise `ValueError` if an edge meets its own trace somewhere along the drive."""
     if why := remembers(scene):
         raise ValueError(f"the transient of a ball {why}; `elements` follows it")
 
 
 def remembers(scene: Scene) -> str:
-    """Say where along the drive the foundation remembers; nothing if it does not."""
+    """Return why and when an edge meets its own trace; an empty text if it does not."""
     if scene.drive.function is not None:
         return "follows a drive with a velocity or a history only"
     a, tau = StaticState.of(scene).half_length, scene.foundation.retardation_time
@@ -146,7 +147,7 @@ def remembers(scene: Scene) -> str:
         if fast * slow <= 0.0 or tau * rate * (1.0 - l_r / math.hypot(a, l_r)) > abs(slow):
             return (
                 "holds while no edge runs back over ground that it left: the drive slows down too fast, "
-                f"stops or turns round before t = {after:.6g} s"
+                f"stops or reverses before t = {after:.6g} s"
             )
     return ""
 
@@ -158,7 +159,7 @@ def _forces(scene: Scene, units: StaticState, l_r: Array, nodes: int) -> tuple[A
     t, w = 0.5 * np.pi * place, np.pi * weight
     A = units.half_length * np.cos(t)
     l = l_r[:, None]
-    right = A * (A / (np.hypot(A, l) + l))
+    right = A * trailing_edge_ratio(l / A)
     sums = [(right**n - (-A) ** n) / n for n in range(1, 5)]
     strips = 0.5 * w * 2.0 * units.half_length * stretch * np.cos(t)
     bent = 0.5 * scene.foundation.stiffness / R
