@@ -22,8 +22,9 @@ docs: $(VENV)/.installed-docs
 	$(BIN)/python docs/check_site.py docs/_build/html
 	@echo "Done: open docs/_build/html/index.html"
 
+# The figures and pages that the tests make are those of the site, as long as the code is the same.
 test: $(VENV)/.installed-test
-	$(BIN)/python -m pytest -n auto --dist loadscope
+	KVTHEORY_SITE=docs/generated $(BIN)/python -m pytest -n auto --dist loadscope
 
 # What depends on NumPy, SciPy, SymPy and the others at run time, with the oldest of them.
 LOWEST := .venv-lowest

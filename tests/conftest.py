@@ -8,10 +8,14 @@ tests, so other scopes are files. Kernels that are compiled in one process are l
 
 import os
 import shutil
+import sys
 from functools import cache
 from pathlib import Path
 
 import pytest
+
+ROOT = Path(__file__).parents[1]
+sys.path.insert(0, str(ROOT / "docs"))  # the generators of the site
 
 FIRST = (
     *("test_figures", "derivations", "test_compare_faults", "test_docs", "test_viscoelastic"),
@@ -32,6 +36,13 @@ def required(program: str) -> str:
     if found is None:
         (pytest.fail if os.environ.get("CI") else pytest.skip)(MISSING.format(program))
     return found
+
+
+@pytest.fixture(scope="session")
+def site(tmp_path_factory):
+    """The directory in which `make docs` looks for what need not be made again."""
+    given = os.environ.get("KVTHEORY_SITE")
+    return ROOT / given if given else tmp_path_factory.mktemp("site")
 
 
 def pytest_terminal_summary(terminalreporter):

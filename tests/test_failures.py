@@ -8,9 +8,11 @@ import math
 import re
 from html.parser import HTMLParser
 
+import generators
 import numpy as np
 import pytest
 from click.testing import CliRunner
+from generators import atlas
 
 import kvtheory as kv
 from kvtheory.charts import naive
@@ -37,6 +39,14 @@ KNOWN = {
 @pytest.fixture(scope="module")
 def found():
     return {finding.entry.key: finding for finding in findings()}
+
+
+def test_the_page_of_the_site_has_a_row_and_an_article_for_each(found, site):
+    atlas.write(site, list(found.values()))
+    generators.made("atlas", site)
+    page, whole = (site / "atlas.md").read_text("utf-8"), site / "extra" / "failures.html"
+    assert re.findall(r"^\| <a href=\"\.\./failures\.html#([^\"]+)", page, re.M) == list(ATLAS)
+    assert whole.read_text("utf-8").count("<article") == len(ATLAS)
 
 
 def test_the_lists_are_complete():
