@@ -4,6 +4,7 @@ Units: K = R = 1. The parabola with half length 1 has the depth 1/2, so that l =
 """
 
 from dataclasses import replace
+from functools import cache
 
 import mpmath as mp
 import pytest
@@ -30,14 +31,19 @@ def proved():
     return {proof.label: proof for proof in catalogue(until=["circle-peak"])}
 
 
+@cache
+def compiled(label, symbol, names):
+    """Return the last form of a quantity as a function of these and of its other parts, and those parts."""
+    form = established(label, symbol)
+    parts = tuple(form.free_symbols - set(names))
+    return sp.lambdify([*names, *parts], form, "mpmath"), parts
+
+
 def exact(label, symbol, known):
     """Evaluate the last form of a quantity, and so on for what it is made of, from known values."""
-    form = established(label, symbol)
-    parts = {
-        part: exact(OWNER.get(part, label), part, known) for part in form.free_symbols - set(known)
-    }
-    values = {**known, **parts}
-    return mp.mpmathify(sp.lambdify(list(values), form, "mpmath")(*values.values()))
+    function, parts = compiled(label, symbol, tuple(known))
+    more = [exact(OWNER.get(part, label), part, known) for part in parts]
+    return mp.mpmathify(function(*known.values(), *more))
 
 
 def state(number):
