@@ -88,11 +88,11 @@ $(VENV)/.installed $(VENV)/.installed-test $(VENV)/.installed-docs: pyproject.to
 ifdef UV
 	$(UV) pip install --quiet --python $(BIN)/python --constraint constraints.txt --editable '.[fast,data,benchmark$(EXTRAS)]'
 else
-	$(BIN)/python -m pip install --quiet --constraint constraints.txt --editable '.[fast,data,benchmark$(EXTRAS)]'
+	$(BIN)/python -m pip install --quiet --no-compile --constraint constraints.txt --editable '.[fast,data,benchmark$(EXTRAS)]'
 endif
 	@touch $(HELD) $@
 
 $(LOWEST)/.installed: pyproject.toml constraints-lowest.txt
 	$(PYTHON) -m venv $(LOWEST)
-	$(LOWEST)/bin/python -m pip install --quiet --constraint constraints-lowest.txt --editable '.[fast,data,test]'
+	$(LOWEST)/bin/python -m pip install --quiet --no-compile --constraint constraints-lowest.txt --editable '.[fast,data,test]'
 	@touch $@

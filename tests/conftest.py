@@ -12,6 +12,7 @@ import sys
 from functools import cache
 from pathlib import Path
 
+import mpmath as mp
 import pytest
 
 ROOT = Path(__file__).parents[1]
@@ -22,7 +23,7 @@ FIRST = (
     *("test_sweep_lasting", "test_transient_random", "test_compare", "test_balance", "test_shape"),
 )
 """Scopes in the order in which they begin, then all others; the first of them compiles all kernels."""
-DERIVING = "derivations.catalogue import", "derivations import emit", "derivations import ball"
+DERIVING = "derivations.catalogue import", "(by_label)"
 """In the text of a file whose tests derive everything, or most of it."""
 
 PACKAGES = {"chromium": "chromium", "pdflatex": "texlive-latex-base"}
@@ -36,6 +37,21 @@ def required(program: str) -> str:
     if found is None:
         (pytest.fail if os.environ.get("CI") else pytest.skip)(MISSING.format(program))
     return found
+
+
+@pytest.fixture(scope="session")
+def by_label():
+    """All derivations by their labels."""
+    from kvtheory.derivations.catalogue import catalogue
+
+    return {derivation.label: derivation for derivation in catalogue()}
+
+
+@pytest.fixture
+def fifty_digits():
+    """Let mpmath compute with 50 digits."""
+    with mp.workdps(50):
+        yield
 
 
 @pytest.fixture(scope="session")

@@ -19,9 +19,9 @@ def _each_mistake_is_simulated_once():
     def once(scene, spacing, step, times, does):
         if times[1] % step == 0.0:  # the steps themselves are compared
             return simulated(scene, spacing, step, times, does)
-        key = repr(scene), spacing, step, times[-1], tuple(does.items())
+        key = repr(scene), spacing, step, times[-1], len(times), tuple(does.items())
         if key not in known:
-            at = np.linspace(0.0, times[-1], 2001)
+            at = np.linspace(0.0, times[-1], len(times))
             known[key] = at, simulated(scene, spacing, step, at.tolist(), does)
         at, found = known[key]
         return {

@@ -8,19 +8,10 @@ from kvtheory.derivations import symbols as s
 from kvtheory.derivations.catalogue import SECTIONS, catalogue
 from kvtheory.derivations.record import STATUSES
 
+pytestmark = pytest.mark.usefixtures("fifty_digits")
+
 DIGITS = 50
 SCENE = {s.R: "0.013", s.K: "2.1e9", s.C: "3.7e8", s.delta: "1.9e-4"}
-
-
-@pytest.fixture(scope="module")
-def by_label():
-    return {derivation.label: derivation for derivation in catalogue()}
-
-
-@pytest.fixture(autouse=True)
-def _fifty_digits():
-    with mp.workdps(DIGITS):
-        yield
 
 
 def test_labels_are_unique_and_every_equation_is_there_once(by_label):

@@ -15,15 +15,11 @@ from kvtheory.derivations.book import StepError, established
 from kvtheory.derivations.catalogue import catalogue
 from kvtheory.derivations.symbols import kappa, l, lam, q, s, xi
 
+pytestmark = pytest.mark.usefixtures("fifty_digits")
+
 OWNER = {form.symbol: form.label for form in emit.FORMS}
 NUMBERS = ("1e-4", "0.1", "0.75", "1", "1.7", "30", "1e5")
 """Retardation length over half length."""
-
-
-@pytest.fixture(autouse=True)
-def _fifty_digits():
-    with mp.workdps(50):
-        yield
 
 
 @pytest.fixture(scope="module", autouse=True)
