@@ -202,18 +202,3 @@ def test_json():
     assert entry["wrong_value"] == pytest.approx(0.20580506)
     assert entry["right_value"] == pytest.approx(0.1008743)
     assert 'use "exact"' in entry["said"]
-
-
-@pytest.mark.parametrize(
-    ("arguments", "message"),
-    [
-        (("--only", "sawtoth"), 'did you mean "sawtooth"?'),
-        (("-o", "atlas.pdf"), "expected a name that ends in .html"),
-    ],
-)
-def test_mistakes(arguments, message, tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    done = invoke(*arguments)
-    assert done.exit_code == 2
-    assert message in done.output
-    assert not list(tmp_path.iterdir())
