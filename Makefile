@@ -5,6 +5,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 UV := $(shell command -v uv 2>/dev/null)
 OUT ?= paper
+WORKERS ?= auto
 
 .PHONY: paper docs test test-lowest test-processors package lint format benchmark clean
 
@@ -22,21 +23,23 @@ docs: $(VENV)/.installed-docs
 	$(BIN)/python docs/check_site.py docs/_build/html
 	@echo "Done: open docs/_build/html/index.html"
 
+# The figures and pages that the tests make are those of the site, as long as the code is the same.
 test: $(VENV)/.installed-test
-	$(BIN)/python -m pytest -n auto --dist loadscope
+	KVTHEORY_SITE=docs/generated $(BIN)/python -m pytest -n auto --dist loadscope
 
-# What depends on NumPy, SciPy, SymPy and the others at run time, with the oldest of them.
+# What depends on NumPy, SciPy, SymPy and the others at run time, with the oldest of them. Their Numba keeps its own
+# kernels: two versions with one cache would each compile everything anew.
 LOWEST := .venv-lowest
 LOWEST_TESTS := test_api test_asymptotes test_exact test_quadrature test_transient test_drive_function \
-	test_elements test_compare test_sweep test_cli test_scene test_units test_emit test_presented
+	test_elements test_compare_spring test_sweep test_cli test_scene test_units test_emit test_presented
 
 test-lowest: $(LOWEST)/.installed
-	$(LOWEST)/bin/python -m pytest -n auto --dist loadscope -W "ignore:numpy.ndarray size changed" \
-		$(LOWEST_TESTS:%=tests/%.py)
+	NUMBA_CACHE_DIR=$(CURDIR)/$(LOWEST)/kernels $(LOWEST)/bin/python -m pytest -n $(WORKERS) --dist loadscope \
+		-W "ignore:numpy.ndarray size changed" $(LOWEST_TESTS:%=tests/%.py)
 
 # What may depend on the processor: without what NumPy, OpenBLAS and the C library gain from AVX2 and FMA; then
 # with AVX-512, where there is any.
-PROCESSOR_TESTS = $(BIN)/python -m pytest -n 2 -m processor $$(grep -l mark.processor tests/test_*.py)
+PROCESSOR_TESTS = $(BIN)/python -m pytest -n $(WORKERS) -m processor $$(grep -l mark.processor tests/test_*.py)
 GAINED := import numpy._core._multiarray_umath as m; print(*[f for f in m.__cpu_dispatch__ if m.__cpu_features__[f]])
 
 test-processors: $(VENV)/.installed-test
@@ -85,11 +88,11 @@ $(VENV)/.installed $(VENV)/.installed-test $(VENV)/.installed-docs: pyproject.to
 ifdef UV
 	$(UV) pip install --quiet --python $(BIN)/python --constraint constraints.txt --editable '.[fast,data,benchmark$(EXTRAS)]'
 else
-	$(BIN)/python -m pip install --quiet --constraint constraints.txt --editable '.[fast,data,benchmark$(EXTRAS)]'
+	$(BIN)/python -m pip install --quiet --no-compile --constraint constraints.txt --editable '.[fast,data,benchmark$(EXTRAS)]'
 endif
 	@touch $(HELD) $@
 
 $(LOWEST)/.installed: pyproject.toml constraints-lowest.txt
 	$(PYTHON) -m venv $(LOWEST)
-	$(LOWEST)/bin/python -m pip install --quiet --constraint constraints-lowest.txt --editable '.[fast,data,test]'
+	$(LOWEST)/bin/python -m pip install --quiet --no-compile --constraint constraints-lowest.txt --editable '.[fast,data,test]'
 	@touch $@

@@ -41,7 +41,7 @@ nb_execution_show_tb = True
 
 html_theme = "pydata_sphinx_theme"
 html_title = "kvtheory"
-html_static_path = ["_static", "generated/static"]
+html_static_path = ["_static"]
 html_css_files = ["site.css"]
 html_extra_path = ["generated/extra"]
 html_theme_options = {

@@ -19,7 +19,7 @@ PATIENCE = 60.0
 
 
 class Browser:
-    """One page; `errors` collects what the console and the scripts complained of."""
+    """One page; `errors` collects those of the console and of the scripts."""
 
     def __init__(self, profile):
         chromium = required("chromium")

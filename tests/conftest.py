@@ -8,17 +8,23 @@ tests, so other scopes are files. Kernels that are compiled in one process are l
 
 import os
 import shutil
+import sys
 from functools import cache
 from pathlib import Path
 
+import mpmath as mp
 import pytest
 
+ROOT = Path(__file__).parents[1]
+sys.path.insert(0, str(ROOT / "docs"))  # the generators of the site
+
 FIRST = (
-    *("test_figures", "derivations", "test_compare_faults", "test_docs", "test_viscoelastic"),
-    *("test_sweep_lasting", "test_transient_random", "test_compare", "test_balance", "test_shape"),
+    *("test_figures", "derivations", "test_compare", "test_compare_faults", "test_viscoelastic"),
+    *("test_docs", "test_compare_spring", "test_shape", "test_elements", "test_charts_stability"),
+    *("test_explorer", "test_sweep_lasting", "test_transient_random", "test_balance"),
 )
 """Scopes in the order in which they begin, then all others; the first of them compiles all kernels."""
-DERIVING = "derivations.catalogue import", "derivations import emit", "derivations import ball"
+DERIVING = "derivations.catalogue import", "(by_label)"
 """In the text of a file whose tests derive everything, or most of it."""
 
 PACKAGES = {"chromium": "chromium", "pdflatex": "texlive-latex-base"}
@@ -32,6 +38,28 @@ def required(program: str) -> str:
     if found is None:
         (pytest.fail if os.environ.get("CI") else pytest.skip)(MISSING.format(program))
     return found
+
+
+@pytest.fixture(scope="session")
+def by_label():
+    """All derivations by their labels."""
+    from kvtheory.derivations.catalogue import catalogue
+
+    return {derivation.label: derivation for derivation in catalogue()}
+
+
+@pytest.fixture
+def fifty_digits():
+    """Let mpmath compute with 50 digits."""
+    with mp.workdps(50):
+        yield
+
+
+@pytest.fixture(scope="session")
+def site(tmp_path_factory):
+    """The directory in which `make docs` looks for what need not be made again."""
+    given = os.environ.get("KVTHEORY_SITE")
+    return ROOT / given if given else tmp_path_factory.mktemp("site")
 
 
 def pytest_terminal_summary(terminalreporter):

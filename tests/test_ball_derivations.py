@@ -34,6 +34,7 @@ def strip(x, y, power):
 
 
 @pytest.mark.parametrize("number", ["0.3", "20"])
+@mp.workdps(16)
 def test_load_and_friction_are_sums_over_strips(number):
     x = mp.mpf(number)
     known = {l: x, sym.ball_tail: tail(x)}

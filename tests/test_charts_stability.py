@@ -130,6 +130,3 @@ def test_command(tmp_path, monkeypatch):
     data = json.loads(path.with_suffix(".json").read_text())
     assert [found["scheme"] for found in data["maps"]["step"]] == list(SCHEMES)
     assert data["environment"]["kvtheory"] == kv.__version__
-    refused = CliRunner().invoke(main, ["chart", "stability", "-o", str(tmp_path / "map.txt")])
-    assert refused.exit_code == 2
-    assert "expected a name that ends in" in refused.output

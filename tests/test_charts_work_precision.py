@@ -246,23 +246,6 @@ def test_command(tmp_path, monkeypatch):
     assert "agree on depth to" in done.output
 
 
-@pytest.mark.parametrize(
-    ("arguments", "message"),
-    [
-        (("--standard", "hopp"), 'did you mean "hop"?'),
-        (("--standard", "hop", "--set", "drive.velocity=1 m/s"), "does not go with SCENE"),
-        (("-o", "chart.txt"), "expected a name that ends in"),
-        (("--set", "indenter.shape=circle"), "parabola only"),
-    ],
-)
-def test_mistakes(arguments, message, tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    done = invoke(*arguments)
-    assert done.exit_code == 2
-    assert message in done.output
-    assert not list(tmp_path.iterdir())
-
-
 def test_all_standard_scenes_have_a_chart():
     jobs = chosen(kv.Scene(), ["all"], quick=True)
     assert len(jobs) == len(STANDARD) + 3

@@ -1,29 +1,17 @@
 """The catalogue is complete, sound and agrees with independent numerical work."""
 
-import re
-from pathlib import Path
-
 import mpmath as mp
 import pytest
 import sympy as sp
-from kvtheory.derivations import asymptotics, emit_javascript, groups, steady, tables
+from kvtheory.derivations import asymptotics, groups, steady, tables
 from kvtheory.derivations import symbols as s
 from kvtheory.derivations.catalogue import SECTIONS, catalogue
 from kvtheory.derivations.record import STATUSES
 
+pytestmark = pytest.mark.usefixtures("fifty_digits")
+
 DIGITS = 50
 SCENE = {s.R: "0.013", s.K: "2.1e9", s.C: "3.7e8", s.delta: "1.9e-4"}
-
-
-@pytest.fixture(scope="module")
-def by_label():
-    return {derivation.label: derivation for derivation in catalogue()}
-
-
-@pytest.fixture(autouse=True)
-def _fifty_digits():
-    with mp.workdps(DIGITS):
-        yield
 
 
 def test_labels_are_unique_and_every_equation_is_there_once(by_label):
@@ -212,12 +200,3 @@ def test_table_2_refers_to_the_equations(by_label):
     rows = by_label["table2"].table.rows
     numbers = [[cell.split("(")[-1].rstrip(")") for cell in row[1:]] for row in rows]
     assert numbers == [["47", "48"], ["42", "42"], ["45", "46"]]
-
-
-def test_the_closed_forms_in_javascript_are_generated_anew_letter_by_letter():
-    constraints = (Path(__file__).parents[1] / "constraints.txt").read_text(encoding="utf-8")
-    if sp.__version__ != re.search(r"^sympy==(.+)$", constraints, re.MULTILINE)[1]:
-        pytest.skip("the text depends on SymPy's order of terms")
-    catalogue()
-    written = emit_javascript.TARGET.read_text(encoding="utf-8")
-    assert written == emit_javascript.closed_forms_source()

@@ -3,12 +3,13 @@
 import json
 import re
 import shlex
-import sys
 from pathlib import Path
 
+import check_site
 import matplotlib as mpl
 import pytest
 from click.testing import CliRunner
+from generators import api, commands, equations, gallery, keys, labels
 from kvtheory.derivations.contents import CONTENTS
 
 import kvtheory as kv
@@ -24,10 +25,6 @@ from kvtheory.scene.quantities import quantities
 ROOT = Path(__file__).parent.parent
 DOCS = ROOT / "docs"
 NOTEBOOKS = sorted((DOCS / "gallery" / "notebooks").glob("*.ipynb"))
-sys.path.insert(0, str(DOCS))
-
-import check_site  # noqa: E402
-from generators import api, commands, equations, gallery, keys, labels  # noqa: E402
 
 
 @pytest.fixture

@@ -8,7 +8,6 @@ from kvtheory.derivations import element_arms as arms
 from kvtheory.derivations import element_edges as edges
 from kvtheory.derivations import element_schemes as schemes
 from kvtheory.derivations import element_strips as strips
-from kvtheory.derivations.catalogue import catalogue
 
 from kvtheory.models.elements import schemes as simulator
 from kvtheory.models.elements.edges import kink_area
@@ -20,11 +19,6 @@ LABELS = {
     "element-stability", "element-orders", "element-kink",
     "element-trapezoids", "element-bent", "element-arms", "strips-rim", "strips-rule",
 }  # fmt: skip
-
-
-@pytest.fixture(scope="module")
-def by_label():
-    return {derivation.label: derivation for derivation in catalogue()}
 
 
 def test_all_are_in_the_document_and_none_is_sampled(by_label):

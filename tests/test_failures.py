@@ -8,9 +8,11 @@ import math
 import re
 from html.parser import HTMLParser
 
+import generators
 import numpy as np
 import pytest
 from click.testing import CliRunner
+from generators import atlas
 
 import kvtheory as kv
 from kvtheory.charts import naive
@@ -37,6 +39,14 @@ KNOWN = {
 @pytest.fixture(scope="module")
 def found():
     return {finding.entry.key: finding for finding in findings()}
+
+
+def test_the_page_of_the_site_has_a_row_and_an_article_for_each(found, site):
+    atlas.write(site, list(found.values()))
+    generators.made("atlas", site)
+    page, whole = (site / "atlas.md").read_text("utf-8"), site / "extra" / "failures.html"
+    assert re.findall(r"^\| <a href=\"\.\./failures\.html#([^\"]+)", page, re.M) == list(ATLAS)
+    assert whole.read_text("utf-8").count("<article") == len(ATLAS)
 
 
 def test_the_lists_are_complete():
@@ -192,18 +202,3 @@ def test_json():
     assert entry["wrong_value"] == pytest.approx(0.20580506)
     assert entry["right_value"] == pytest.approx(0.1008743)
     assert 'use "exact"' in entry["said"]
-
-
-@pytest.mark.parametrize(
-    ("arguments", "message"),
-    [
-        (("--only", "sawtoth"), 'did you mean "sawtooth"?'),
-        (("-o", "atlas.pdf"), "expected a name that ends in .html"),
-    ],
-)
-def test_mistakes(arguments, message, tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    done = invoke(*arguments)
-    assert done.exit_code == 2
-    assert message in done.output
-    assert not list(tmp_path.iterdir())

@@ -7,9 +7,11 @@ import subprocess
 import sys
 from pathlib import Path
 
+import generators
 import matplotlib as mpl
 import numpy as np
 import pytest
+from generators import gallery
 
 import kvtheory as kv
 from figures import __main__ as every
@@ -23,41 +25,34 @@ from kvtheory.scene.static_state import StaticState
 ROOT = Path(__file__).parent.parent
 
 
-COARSE = {
-    "regime_map": {"NUMBERS": 6, "INERTIAS": 6},
-    "onset_maps": {"NUMBERS": 4, "INERTIAS": 3},
-    "spring_stability": {"VELOCITIES": 4, "STIFFNESSES": 4},
-    "stick_slip_amplitude": {"VELOCITIES": 7},
-    "ladder": {"TOLERANCES": 4, "NUMBERS": 4, "INERTIAS": 4},
-}
-"""Of these axes the tests take one in so many values: points do not know of each other."""
 BRIEF = (
+    (onset_maps, "NUMBERS", onset_maps.NUMBERS[::4]),
+    (onset_maps, "INERTIAS", onset_maps.INERTIAS[::3]),
     (stability, "QUICK_POINTS", (3, 3)),
     (collection, "QUICK", Effort(repeats=1, longest=0.1, whole=0.5, every=5)),
-    (drawing, "STYLE", {**STYLE, "savefig.dpi": 50}),
+    (drawing, "STYLE", {**STYLE, "savefig.dpi": gallery.DPI}),
 )
-"""`test_charts_stability` and `test_charts_work_precision` test what these maps and charts hold."""
+"""Coarse where it takes minutes. `test_charts_stability` and `test_charts_work_precision` test the charts."""
 
 
 @pytest.fixture(scope="module")
-def made(tmp_path_factory):
-    """Every figure, drawn once: its data, its axes and its directory."""
-    directory = tmp_path_factory.mktemp("figures")
+def made(site):
+    """Every figure, drawn once: its data, its axes and its files, which the site takes over."""
     result = {}
     with pytest.MonkeyPatch.context() as patch:
         for brief in BRIEF:
             patch.setattr(*brief)
         for name in FIGURES:
             script = importlib.import_module(f"figures.{name}")
-            for axis, step in COARSE.get(name, {}).items():
-                patch.setattr(script, axis, getattr(script, axis)[::step])
             data = script.compute()
             with mpl.rc_context(drawing.STYLE):
                 drawn = script.draw(data)
             paths = drawing.produce(
-                name, lambda data=data: data, lambda _, drawn=drawn: drawn, directory
+                name, lambda data=data: data, lambda _, drawn=drawn: drawn, site / "pictures"
             )
             result[name] = data, drawn, paths
+            if name in gallery.HERE:
+                generators.made(f"figure {name}", site)
         yield result
 
 

@@ -162,7 +162,7 @@ def test_a_reason_is_given_once_for_all_models_that_it_holds_for():
         ({"at": "1 s"}, "after the end of the run"),
     ],
 )
-def test_bad_requests_teach(request_, message):
+def test_bad_requests_name_what_is_expected(request_, message):
     with pytest.raises(ValueError, match=message):
         kv.solve(**request_)
 

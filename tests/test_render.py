@@ -7,7 +7,10 @@ import xml.etree.ElementTree as ET
 from html.parser import HTMLParser
 from pathlib import Path
 
+import generators
 import pytest
+from generators import derivations as site_derivations
+from generators.labels import anchor_of
 from kvtheory.derivations.atoms import atoms
 from kvtheory.derivations.catalogue import catalogue
 from kvtheory.derivations.letters import letters
@@ -186,6 +189,20 @@ def test_a_recalled_statement_of_two_relations_is_not_cut():
     step = Step("F", "=", r"K u, \quad u = \delta", "", "proved", "load")
     given, _ = blocks(Derivation("z", None, "S", "T", "", "z = 1", "proved", (step,)))
     assert told(given) == r"With $F = K u, \quad u = \delta$ (load),"
+
+
+# The site
+
+
+def test_the_pages_of_the_site_have_each_derivation_once(everything, site):
+    pages = site_derivations.pages()
+    assert {
+        f"theory/{name}.md" for name in re.findall(r"^[a-z0-9-]+$", pages["theory/index.md"], re.M)
+    } == (set(pages) - {"theory/index.md"})
+    anchors = re.findall(r"^\((\S+)\)=$", "\n".join(pages.values()), re.MULTILINE)
+    assert sorted(anchors) == sorted(anchor_of(each.label) for each in everything)
+    site_derivations.write(site)
+    generators.made("derivations", site)
 
 
 # JSON

@@ -12,18 +12,8 @@ from kvtheory.derivations import (
     wedge,
 )
 from kvtheory.derivations import symbols as s
-from kvtheory.derivations.catalogue import catalogue
 
-
-@pytest.fixture(scope="module")
-def by_label():
-    return {derivation.label: derivation for derivation in catalogue()}
-
-
-@pytest.fixture(autouse=True)
-def _fifty_digits():
-    with mp.workdps(50):
-        yield
+pytestmark = pytest.mark.usefixtures("fifty_digits")
 
 
 class Contact:

@@ -4,6 +4,7 @@ Units: K = R = 1. The parabola with half length 1 has the depth 1/2, so that l =
 """
 
 from dataclasses import replace
+from functools import cache
 
 import mpmath as mp
 import pytest
@@ -14,15 +15,11 @@ from kvtheory.derivations.book import StepError, established
 from kvtheory.derivations.catalogue import catalogue
 from kvtheory.derivations.symbols import kappa, l, lam, q, s, xi
 
+pytestmark = pytest.mark.usefixtures("fifty_digits")
+
 OWNER = {form.symbol: form.label for form in emit.FORMS}
 NUMBERS = ("1e-4", "0.1", "0.75", "1", "1.7", "30", "1e5")
 """Retardation length over half length."""
-
-
-@pytest.fixture(autouse=True)
-def _fifty_digits():
-    with mp.workdps(50):
-        yield
 
 
 @pytest.fixture(scope="module", autouse=True)
@@ -30,14 +27,19 @@ def proved():
     return {proof.label: proof for proof in catalogue(until=["circle-peak"])}
 
 
+@cache
+def compiled(label, symbol, names):
+    """Return the last form of a quantity as a function of these and of its other parts, and those parts."""
+    form = established(label, symbol)
+    parts = tuple(form.free_symbols - set(names))
+    return sp.lambdify([*names, *parts], form, "mpmath"), parts
+
+
 def exact(label, symbol, known):
     """Evaluate the last form of a quantity, and so on for what it is made of, from known values."""
-    form = established(label, symbol)
-    parts = {
-        part: exact(OWNER.get(part, label), part, known) for part in form.free_symbols - set(known)
-    }
-    values = {**known, **parts}
-    return mp.mpmathify(sp.lambdify(list(values), form, "mpmath")(*values.values()))
+    function, parts = compiled(label, symbol, tuple(known))
+    more = [exact(OWNER.get(part, label), part, known) for part in parts]
+    return mp.mpmathify(function(*known.values(), *more))
 
 
 def state(number):

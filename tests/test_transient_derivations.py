@@ -10,19 +10,10 @@ from kvtheory.derivations.catalogue import catalogue
 from kvtheory.derivations.step import Proof, StepError
 from kvtheory.derivations.transient_scaling import LEADING, PRESSURE, SECTION, TRAILING
 
+pytestmark = pytest.mark.usefixtures("fifty_digits")
+
 DIGITS = 50
 CLOSE = mp.mpf("1e-40")
-
-
-@pytest.fixture(scope="module")
-def by_label():
-    return {derivation.label: derivation for derivation in catalogue()}
-
-
-@pytest.fixture(autouse=True)
-def _fifty_digits():
-    with mp.workdps(DIGITS):
-        yield
 
 
 def value(expr, point):

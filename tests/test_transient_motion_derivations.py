@@ -7,20 +7,10 @@ import sympy as sp
 from kvtheory.derivations import symbols as s
 from kvtheory.derivations import theorems, transient_balance, transient_motion, transient_rates
 from kvtheory.derivations.book import StepError, established
-from kvtheory.derivations.catalogue import catalogue
 
-from tests.test_transient_derivations import CLOSE, DIGITS, close, value
+from tests.test_transient_derivations import CLOSE, close, value
 
-
-@pytest.fixture(scope="module")
-def by_label():
-    return {derivation.label: derivation for derivation in catalogue()}
-
-
-@pytest.fixture(autouse=True)
-def _fifty_digits():
-    with mp.workdps(DIGITS):
-        yield
+pytestmark = pytest.mark.usefixtures("fifty_digits")
 
 
 def force(d, rate, lam, weight):

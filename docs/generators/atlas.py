@@ -1,19 +1,18 @@
 """The atlas of failures as a page, recomputed, with the machine and the versions that computed it."""
 
+from collections.abc import Sequence
 from pathlib import Path
 
-from kvtheory.charts.failures import ATLAS, findings
+from generators.files import put
+from kvtheory.charts.failures import Finding, findings
 from kvtheory.plots.failures import save_failures, shown
 from kvtheory.plots.files import environment
 
 
-def write(directory: Path) -> dict[str, str]:
-    """Write the atlas as it is into the site, and return its page."""
+def write(directory: Path, found: Sequence[Finding] = ()) -> None:
+    """Write the atlas as it is into the site, and its page, from these findings or computed anew."""
+    found = found or list(findings())
     target = directory / "extra" / "failures.html"
-    page = directory / "atlas.md"
-    if page.exists() and target.exists():
-        return {}
-    found = list(findings(list(ATLAS)))
     target.parent.mkdir(parents=True, exist_ok=True)
     save_failures(found, target)
     roles = ("wrong", "right", "package")
@@ -31,7 +30,7 @@ def write(directory: Path) -> dict[str, str]:
         ]
     )
     machine = "\n".join(f"- {name}: {value}" for name, value in environment().items())
-    return {"atlas.md": f"{_HEAD}\n{table}\n\n## Machine and versions\n\n{machine}\n"}
+    put(directory / "atlas.md", f"{_HEAD}\n{table}\n\n## Machine and versions\n\n{machine}\n")
 
 
 _HEAD = """# Atlas of failures

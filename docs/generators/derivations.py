@@ -1,6 +1,7 @@
 """The derivations as pages: one for each section, linked with the functions that compute them."""
 
 import re
+from pathlib import Path
 
 from kvtheory.derivations.catalogue import catalogue
 from kvtheory.derivations.emit import FORMS
@@ -8,11 +9,18 @@ from kvtheory.derivations.render import edition, markdown
 from kvtheory.derivations.render.text import by_section
 
 from generators.equations import place_of, users
+from generators.files import put
 from generators.labels import anchor_of
 from kvtheory import __version__
 
 MOST = 6
 """Functions that are named below one derivation, those of the interface first."""
+
+
+def write(directory: Path) -> None:
+    """Derive everything and write the pages."""
+    for path, text in pages().items():
+        put(directory / path, text)
 
 
 def pages() -> dict[str, str]:

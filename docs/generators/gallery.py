@@ -8,12 +8,14 @@ from typing import Any
 
 from figures import drawing
 from figures.__main__ import FIGURES, TOPICS
+from generators.files import put
 
 ROOT = Path(__file__).parents[2]
 DRAWN = ("onset_maps", "stability_map", "work_precision")
 """Copied from the folder of the scripts: they take minutes, or are measurements of time."""
 HERE = [name for name in FIGURES if name not in DRAWN]
-"""Drawn when the site is built."""
+"""Drawn for the site."""
+DPI = 130
 _made: list[Path] = []
 
 
@@ -27,17 +29,16 @@ def patch(directory: Path) -> None:
     drawing.run = run
 
 
-def draw(name: str, directory: Path) -> None:
-    """Draw one figure, unless it is there and younger than its script."""
+def draw(directory: Path, name: str) -> None:
+    """Draw one figure."""
     import matplotlib as mpl
 
     from kvtheory.plots import STYLE
 
-    script, path = import_module(f"figures.{name}"), directory / "pictures" / f"{name}.png"
-    if not path.exists() or path.stat().st_mtime < Path(script.__file__).stat().st_mtime:
-        path.parent.mkdir(exist_ok=True)
-        with mpl.rc_context({**STYLE}):
-            script.draw(script.compute()).savefig(path, dpi=130)
+    script, folder = import_module(f"figures.{name}"), directory / "pictures"
+    folder.mkdir(parents=True, exist_ok=True)
+    with mpl.rc_context({**STYLE, "savefig.dpi": DPI}):
+        script.draw(script.compute()).savefig(folder / f"{name}.png")
 
 
 def pictures(block: Any, variables: dict[str, Any], settings: dict[str, Any]) -> str:
@@ -54,14 +55,14 @@ def pictures(block: Any, variables: dict[str, Any], settings: dict[str, Any]) ->
 
 def write(directory: Path) -> None:
     """Write the scripts that have changed, titled as the gallery requires, in a folder for each topic."""
-    _put(directory / "scripts" / "README.rst", _HEAD)
+    put(directory / "scripts" / "README.rst", _HEAD)
     for number, (topic, names) in enumerate(TOPICS.items(), start=1):
         folder = directory / "scripts" / f"{number}-{topic.split()[-1].lower()}"
-        _put(folder / "README.rst", f"{topic}\n{'-' * len(topic)}\n")
+        put(folder / "README.rst", f"{topic}\n{'-' * len(topic)}\n")
         for name in names:
             text = (ROOT / "figures" / f"{name}.py").read_text(encoding="utf-8")
             titled = re.sub(r'\A"""(.*?)"""', _titled, text, count=1, flags=re.DOTALL)
-            _put(folder / f"{name}.py", titled)
+            put(folder / f"{name}.py", titled)
 
 
 def order(file: str) -> int:
@@ -74,12 +75,6 @@ def _titled(found: re.Match[str]) -> str:
     title = title.replace("\n", " ").rstrip(".")
     rest = re.sub(r"`([^`]+)`", r"``\1``", rest)
     return f'"""\n{title}\n{"=" * len(title)}\n\n{rest}\n"""'
-
-
-def _put(path: Path, text: str) -> None:
-    path.parent.mkdir(parents=True, exist_ok=True)
-    if not path.exists() or path.read_text(encoding="utf-8") != text:
-        path.write_text(text, encoding="utf-8")
 
 
 _HEAD = """Figures

@@ -5,6 +5,7 @@ import re
 from kvtheory.derivations.contents import CONTENTS
 
 _MENTION = re.compile(r"(?<![\w-])(?:Eqs?\. (\d+)|(F\d+(?:-[A-Za-z0-9]+)*))(?![\w-])")
+_QUOTED = re.compile(r'["“]([\w-]+)(?=["”])')
 
 
 def mentioned(text: str) -> set[str]:
@@ -16,8 +17,7 @@ def mentioned(text: str) -> set[str]:
     found = {_label(match) for match in _MENTION.finditer(text)}
     for first, last in re.findall(r"Eqs\. (\d+)-(\d+)", text):
         found |= {f"eq{number}" for number in range(int(first), int(last) + 1)}
-    named = {label for label in CONTENTS if re.search(rf'["“]{re.escape(label)}["”]', text)}
-    return (found | named) & set(CONTENTS)
+    return (found | set(_QUOTED.findall(text))) & set(CONTENTS)
 
 
 def linked(text: str) -> str:

@@ -6,29 +6,30 @@ from pathlib import Path
 
 import kvtheory as kv
 from figures.reference_problems import write as write_folder
+from generators.files import put
 from kvtheory.explorer import save_explorer
 
 
-def write(directory: Path) -> dict[str, str]:
-    """Write the folders that are missing, and return the texts of the pages."""
-    extra = directory / "extra"
-    extra.mkdir(parents=True, exist_ok=True)
-    (directory / "static").mkdir(exist_ok=True)
-    save_explorer(kv.Scene(), extra / "explorer.html")
-    texts = {"problems/index.md": _index()}
-    for name in kv.problems():
-        folder, archive = directory / "folders" / name, extra / "problems" / f"{name}.zip"
-        if not archive.exists():
-            write_folder(name, folder.parent)
-            archive.parent.mkdir(exist_ok=True)
-            shutil.make_archive(str(archive.with_suffix("")), "zip", folder.parent, name)
-        page = (folder / "README.md").read_text(encoding="utf-8")
-        picture = os.path.relpath(folder / "reference.png", directory / "problems")
-        texts[f"problems/{name}.md"] = (
-            page.replace("(reference.png)", f"({Path(picture).as_posix()})")
-            + f'\n<a href="../../problems/{name}.zip">The folder as an archive</a>\n'
-        )
-    return texts
+def write(directory: Path, name: str) -> None:
+    """Write the folder of a problem, its archive and its page."""
+    folder, archive = directory / "folders" / name, directory / "extra" / "problems" / f"{name}.zip"
+    write_folder(name, folder.parent)
+    archive.parent.mkdir(parents=True, exist_ok=True)
+    shutil.make_archive(str(archive.with_suffix("")), "zip", folder.parent, name)
+    page = (folder / "README.md").read_text(encoding="utf-8")
+    picture = Path(os.path.relpath(folder / "reference.png", directory / "problems")).as_posix()
+    link = f'\n<a href="../../problems/{name}.zip">The folder as an archive</a>\n'
+    put(
+        directory / "problems" / f"{name}.md",
+        page.replace("(reference.png)", f"({picture})") + link,
+    )
+
+
+def write_index(directory: Path) -> None:
+    """Write the list of all problems, and the explorer."""
+    (directory / "extra").mkdir(parents=True, exist_ok=True)
+    save_explorer(kv.Scene(), directory / "extra" / "explorer.html")
+    put(directory / "problems" / "index.md", _index())
 
 
 def _index() -> str:
