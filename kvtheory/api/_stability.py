@@ -74,8 +74,7 @@ def stability(
 
     References
     ----------
-    Fact F22 of the derivations; on a Prony series the formulas of `kvtheory.theory.laws`,
-    which are checked by quadrature and are not among the derivations yet.
+    Facts F22 and, on a Prony series, F24 of the derivations.
     """
     scene = scene_of(scene).replace(over or {})
     require(lacks_stability, scene, "the stability of steady sliding")

@@ -22,8 +22,8 @@ from kvtheory.scene.model import Scene
 
 Array = NDArray[np.float64]
 
-PER_DECADE, BEYOND = 48, 2.0
-"""Frequencies of the grid, and its decades beyond the shortest and longest times of a scene."""
+PER_DECADE, ROUGHLY, BEYOND = 48, 20, 2.0
+"""Frequencies per decade, of one velocity and of many; and decades beyond the times of a scene."""
 LOWER, LOWER_COUNT = 10.0, 16
 """Further decades for soft springs next to the maximum of friction, where nothing else changes."""
 TURN, REFINEMENTS, CLOSER = 0.4, 24, 3
@@ -36,8 +36,12 @@ ROUNDING, IN_STRIPS = 16 * 2.0**-52, ball_viscoelastic.RELATIVE_ERROR
 STRIPS, MORE, MOST = 24, 4, 384
 """Strips of half a ball, the factor by which they grow until the error is small, and the most of them. Twice
 as many show the error."""
+FEW = 6
+"""Strips in which rates and unstable velocities are looked for, before they are followed into more."""
 ACCURATE = 1e-8
 """Relative error of a critical stiffness that needs no more strips."""
+POLISHING, MOVED = 4, 0.1
+"""Newton steps from the roots in few strips to those in more, and how far a logarithm may move."""
 NEWTON_STEPS, SETTLED, SAME = 60, 1e-9, 1e-6
 ANGLES, RADII = 9, 5
 """Starts of Newton's method: directions in the upper half plane, and distances per decade."""
@@ -79,12 +83,16 @@ def scales(given: Contact) -> Array:
     return np.stack(found)
 
 
-def crossings(given: Contact, finer: Contact) -> Crossings:
-    """Return every crossing at a positive stiffness; `finer` has more strips, for the errors."""
+Places = tuple[NDArray[np.int_], Array, NDArray[np.int_]]
+"""Scenes, logarithms of frequencies, and ways of crossings."""
+
+
+def places(given: Contact, per_decade: int = PER_DECADE) -> Places:
+    """Return where the imaginary part of the stiffness changes its sign, by bisection on a grid."""
     own = scales(given)
     low, high = (np.log(own.min(axis=0)), np.log(own.max(axis=0)))
     low, high = low - BEYOND * np.log(10.0), high + BEYOND * np.log(10.0)
-    fine = np.linspace(low, high, 2 + int(PER_DECADE * np.max(high - low) / np.log(10.0)))
+    fine = np.linspace(low, high, 2 + int(per_decade * np.max(high - low) / np.log(10.0)))
     soft = np.linspace(low - LOWER * np.log(10.0), low, LOWER_COUNT, endpoint=False)
     log = np.concatenate([soft, fine]).T
     rows = np.broadcast_to(np.arange(len(log))[:, np.newaxis], log.shape).ravel()
@@ -96,11 +104,25 @@ def crossings(given: Contact, finer: Contact) -> Crossings:
         middle = 0.5 * (start + end)
         before = (stiffness(given, row, middle)[0].imag > 0.0) == (way > 0)
         start, end = np.where(before, middle, start), np.where(before, end, middle)
-    return _crossings(given, finer, row, 0.5 * (start + end), way)
+    return row, 0.5 * (start + end), way
 
 
-def _crossings(given: Contact, finer: Contact, row: Any, log: Array, way: Any) -> Crossings:
-    """Return those at a positive stiffness, with their errors to first order."""
+def moved(given: Contact, found: Places) -> Places:
+    """Return the places in other strips, by Newton's method from those in fewer; NaN where they are lost."""
+    row, start, way = found
+    log = start.copy()
+    for _ in range(POLISHING):
+        low, here, high = (
+            stiffness(given, row, log + step)[0].imag for step in (-NEARBY, 0.0, NEARBY)
+        )
+        with np.errstate(all="ignore"):
+            log = log - 2.0 * NEARBY * here / (high - low)
+    return row, np.where(np.abs(log - start) < MOVED, log, np.nan), way
+
+
+def crossings(given: Contact, finer: Contact, found: Places) -> Crossings:
+    """Return those at a positive stiffness, with errors to first order; `finer` has twice as many strips."""
+    row, log, way = found
     k, _, size = stiffness(given, row, log)
     near = [stiffness(given, row, log + step)[0] for step in (-NEARBY, NEARBY)]
     slope = (near[1] - near[0]) / (2.0 * NEARBY)
@@ -166,22 +188,34 @@ def critical(found: Crossings, count: int) -> tuple[dict[str, Array], dict[str, 
     return dict(zip(names, values, strict=True)), dict(zip(names, errors, strict=True))
 
 
-def solve(scene: Scene) -> tuple[Contact, Contact, Crossings]:
-    """Return what small motions see, the same in twice as many strips of a ball, and all crossings."""
+def solve(scene: Scene) -> tuple[Contact, Contact, Contact, Crossings]:
+    """Return what small motions see in few strips, in enough, and in twice as many, and all crossings.
+
+    They are found in few strips and followed into more; where one is lost on the way, all are sought again.
+    """
+    given = contact(scene, STRIPS)
     if scene.indenter.per_width:
-        given = contact(scene)
-        return given, given, crossings(given, given)
-    strips = STRIPS
+        return given, given, given, crossings(given, given, places(given))
+    few, strips, known = contact(scene, FEW), STRIPS, places(given)
     while True:
-        given, finer = contact(scene, strips), contact(scene, 2 * strips)
-        found = crossings(given, finer)
+        finer = contact(scene, 2 * strips)
+        found = crossings(given, finer, known)
         if strips >= MOST or (found.error <= ACCURATE).all():
-            return given, finer, found
+            return few, given, finer, found
         strips *= MORE
+        given = contact(scene, strips)
+        known = moved(given, known)
+        if np.isnan(known[1]).any():
+            known = places(given)
 
 
-def rates(given: Contact, finer: Contact, spring: float | None) -> tuple[Complex, Array]:
+def rates(
+    given: Contact, fine: Contact, finer: Contact, spring: float | None
+) -> tuple[Complex, Array]:
     """Return the least stable rates of one scene and their relative errors: as many as on Kelvin-Voigt.
+
+    They are sought and counted in the strips of `given`, and followed into those of `fine`; those of `finer`
+    show the error.
 
     These are four, or two for a rigid drive or a fixed indenter, and none for both; NaN where fewer are
     found, as next to rest, where those left of -1/tau_i of the slowest arm do not exist. An infinite error
@@ -198,7 +232,7 @@ def rates(given: Contact, finer: Contact, spring: float | None) -> tuple[Complex
         return across * (spring - k), np.abs(across) * (spring + np.abs(k) + size)
 
     with np.errstate(all="ignore"):
-        found, error = _newton(given, finer, value, spring)
+        found, error = _newton((given, fine, finer), value, spring)
     upper = found.imag > SAME * np.abs(found)
     found = np.concatenate([found, found[upper].conj()])
     error = np.concatenate([error, error[upper]])
@@ -223,9 +257,10 @@ def _range(given: Contact, spring: float | None) -> Array:
 
 
 def _newton(
-    given: Contact, finer: Contact, value: Any, spring: float | None
+    strips: tuple[Contact, Contact, Contact], value: Any, spring: float | None
 ) -> tuple[Complex, Array]:
     """Return the roots in the closed upper half plane that Newton's method reaches, and their errors."""
+    given, fine, finer = strips
     own = np.log10(_range(given, spring))
     low, high = own.min() - BEYOND, own.max() + BEYOND
     radii = np.logspace(low, high, int(RADII * (high - low)))
@@ -253,8 +288,12 @@ def _newton(
         if all(abs(s[i] - s[j]) > SAME * abs(s[i]) for j in kept):
             kept.append(i)
     s = s[kept]
-    (f, size), h = value(s), NEARBY * s
-    slope = (value(s + h)[0] - value(s - h)[0]) / (2.0 * h)
+    for _ in range(POLISHING if fine is not given else 0):
+        h = NEARBY * s
+        s = s - 2.0 * h * value(s, fine)[0] / (value(s + h, fine)[0] - value(s - h, fine)[0])
+    s = s[np.isfinite(s)]
+    (f, size), h = value(s, fine), NEARBY * s
+    slope = (value(s + h, fine)[0] - value(s - h, fine)[0]) / (2.0 * h)
     off = np.abs(f) + _rounding(given) * size + 2.0 * np.abs(value(s, finer)[0] - f)
     return s, off / np.abs(slope * s) + ROUNDING
 
@@ -283,12 +322,13 @@ def critical_velocity(scene: Scene) -> tuple[float, float]:
     length = np.log10(given.c.max() * given.V / given.law.time)
     low, high = length.min() - SPEED_DECADES, length.max() + SPEED_DECADES
     spring = np.broadcast_to(scene.drive.stiffness, (1,))
-    strips = STRIPS
 
-    def found(log: Array, finer: int = 1) -> Crossings:
-        there = scene.rows(np.zeros(log.size, int)).at(10.0**log)
-        coarse = contact(there, strips)
-        return crossings(coarse, contact(there, finer * strips) if finer > 1 else coarse)
+    def there(log: Array, strips: int) -> Contact:
+        return contact(scene.rows(np.zeros(log.size, int)).at(10.0**log), strips)
+
+    def found(log: Array, strips: int = STRIPS, per_decade: int = PER_DECADE) -> Crossings:
+        coarse = there(log, strips)
+        return crossings(coarse, coarse, places(coarse, per_decade))
 
     def signed(log: float) -> float:
         each = found(np.array([log]))
@@ -298,31 +338,50 @@ def critical_velocity(scene: Scene) -> tuple[float, float]:
         return distance if each.unstable(spring)[0] else -distance
 
     grid = np.linspace(low, high, 1 + int(SPEEDS * (high - low)))
-    now = found(grid).unstable(np.repeat(spring, grid.size))
+    now = found(grid, FEW, ROUGHLY).unstable(np.repeat(spring, grid.size))
     (change,) = np.nonzero(now[1:] & ~now[:-1])
     if not change.size:
         return np.nan, np.nan
-    bracket = grid[change[0] : change[0] + 2]
+    bracket = grid[change[0]], grid[change[0] + 1]
+    if (
+        not signed(bracket[0]) < 0.0 < signed(bracket[1])
+    ):  # in more strips it is next to a point of the grid
+        bracket = bracket[0] - 1.0 / SPEEDS, bracket[1] + 1.0 / SPEEDS
 
     from scipy.optimize import brentq
 
+    onset = brentq(signed, *bracket, xtol=1e-15)
+    strips = STRIPS
+    own = found(np.array([onset]))
+    if not own.row.size:
+        return 10.0**onset, np.inf
+    log = np.log(own.omega[[np.argmin(np.abs(own.stiffness / spring - 1.0))]])
+
+    def crossing(onset: float, finer: int = 1) -> Crossings:
+        """Return the crossing at a velocity, followed from the one at the onset in few strips."""
+        here = there(np.array([onset]), strips)
+        place = moved(here, (np.zeros(1, int), log, np.ones(1, int)))
+        return crossings(here, there(np.array([onset]), finer * strips), place)
+
     while True:
-        onset = brentq(signed, *bracket, xtol=1e-15)
-        near = [found(np.array([onset + side * NEARBY]), 2) for side in (-1.0, 1.0)]
-        error = _velocity_error(near, spring) + ROUNDING * (1.0 + abs(onset))
+        for _ in range(0 if scene.indenter.per_width or strips == STRIPS else POLISHING):
+            k = [crossing(onset + side * NEARBY).stiffness for side in (-1.0, 1.0)]
+            if not all(each.size for each in k):
+                return 10.0**onset, np.inf
+            low, high = (float(np.log(each / spring)[0]) for each in k)
+            onset -= NEARBY * (low + high) / (high - low)
+        near = [crossing(onset + side * NEARBY, 2) for side in (-1.0, 1.0)]
+        error = _velocity_error(near) + ROUNDING * (1.0 + abs(onset))
         if scene.indenter.per_width or strips >= MOST or error <= ACCURATE:
             return 10.0**onset, error
         strips *= MORE
-        if not signed(bracket[0]) < 0.0 < signed(bracket[1]):
-            return 10.0**onset, error
 
 
-def _velocity_error(near: list[Crossings], spring: Array) -> float:
-    """Return the error of the stiffness that is nearest to the spring over its logarithmic derivative."""
+def _velocity_error(near: list[Crossings]) -> float:
+    """Return the error of the critical stiffness over its logarithmic derivative."""
     if not all(each.row.size for each in near):
         return np.inf
-    at = [np.argmin(np.abs(each.stiffness / spring - 1.0)) for each in near]
-    before, after = (np.log(each.stiffness[i]) for each, i in zip(near, at, strict=True))
+    before, after = (float(np.log(each.stiffness[0])) for each in near)
     with np.errstate(divide="ignore"):
         steepness = np.abs(after - before) / (2.0 * NEARBY * np.log(10.0))
-        return float(near[1].error[at[1]] / steepness)
+        return float(near[1].error[0] / steepness)

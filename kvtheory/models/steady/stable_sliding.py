@@ -106,7 +106,7 @@ def _block_on_arms(scene: Scene, wanted: Set[str]) -> tuple[dict[str, Any], dict
     if rigid and scene.held:  # nothing can move
         _add_rates(found, errors, np.empty((*scene.shape, 0), complex), np.empty((*scene.shape, 0)))
         return found, errors
-    given, finer, crossings = general_stability.solve(scene)
+    few, fine, finer, crossings = general_stability.solve(scene)
     stiffnesses, errors = general_stability.critical(crossings, *scene.shape)
     found |= stiffnesses
     if not rigid:
@@ -119,7 +119,10 @@ def _block_on_arms(scene: Scene, wanted: Set[str]) -> tuple[dict[str, Any], dict
     if not wanted.isdisjoint(SLOW):
         parts = [
             general_stability.rates(
-                given.rows([i]), finer.rows([i]), None if spring is None else float(spring[i])
+                few.rows([i]),
+                fine.rows([i]),
+                finer.rows([i]),
+                None if spring is None else float(spring[i]),
             )
             for i in rows
         ]
