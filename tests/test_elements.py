@@ -123,7 +123,7 @@ def test_memory_does_not_grow_with_time(monkeypatch):
 
     def recorded(elements, *arguments):
         move(elements, *arguments)
-        sizes.append(elements.touched.size)
+        sizes.append(elements.stored.u.size)
 
     monkeypatch.setattr(ElementRow, "_move", recorded)
     swing = kv.Drive(function=lambda t: 0.05 + 0.1 * math.cos(50.0 * t))
@@ -304,7 +304,7 @@ def test_steps_that_find_no_element_fly():
     for scheme in SCHEMES.values():
         model = Model.of(kv.Scene(), 5e-6, parts=scheme.row.parts_of_elements)
         elements = ElementRow(model, kv.Drive(0.1).motion(1.0, least=0.1))
-        new = scheme.step(elements, IndenterState(0.0, -1e-3, 0.0), 1e-4)
+        new = elements.step(scheme, IndenterState(0.0, -1e-3, 0.0), 1e-4)
         assert new.rate == pytest.approx(9.80665e-4, rel=1e-9)
 
 
