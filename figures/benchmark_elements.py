@@ -16,6 +16,7 @@ import time
 from collections.abc import Callable
 from functools import partial
 from pathlib import Path
+from typing import Any
 
 os.environ.setdefault("OMP_NUM_THREADS", "1")
 
@@ -30,8 +31,9 @@ END = 0.2
 DENSITIES = (200, 800)
 """Elements per mm."""
 BALL = kv.Scene(kv.Sphere("10 mm"), support=kv.DeadWeight(mass="1 kg"))
-ARMS = kv.Scene(foundation=kv.GeneralizedMaxwell(1e10, arms=[(3e10, 10.0**-k) for k in range(5)]))
-SPRING = kv.Scene(drive=kv.Drive(velocity="100 mm/s", stiffness="1 MN/m^2"))
+FIVE: Any = [(3e10, 10.0**-k) for k in range(5)]
+ARMS = kv.Scene(foundation=kv.GeneralizedMaxwell(1e10, arms=FIVE))
+SPRING = kv.Scene(drive=kv.Drive(velocity=0.1, stiffness=1e6))
 
 
 def c_loop() -> Callable[[int], float] | None:
@@ -46,7 +48,7 @@ def c_loop() -> Callable[[int], float] | None:
         subprocess.run(command, check=True)
         run = ctypes.CDLL(library).run
     run.restype, run.argtypes = ctypes.c_double, [ctypes.c_double] * 8 + [ctypes.c_long]
-    scene = kv.Scene()
+    scene: Any = kv.Scene()
     R, K, tau = scene.indenter.radius, scene.foundation.stiffness, scene.foundation.retardation_time
     M, W, V = scene.support.mass, scene.support.weight, scene.drive.velocity
     depth = float(kv.transient(at=0.0).depth[0])

@@ -8,6 +8,9 @@ from typing import Any
 
 from kvtheory.progress import compiling
 
+OPTIONS: Any = {"error_model": "numpy"}
+"""Divisions are those of NumPy: by zero, they give infinity, and need no check."""
+
 
 def available() -> bool:
     """Whether numba is installed: the extra `fast`."""
@@ -27,13 +30,13 @@ def kept(entry: Callable[..., Any], module: ModuleType) -> Any:
 
     for function in vars(module).values():
         if inspect.isfunction(function) and function.__module__ == module.__name__:
-            register_jitable(function)
+            register_jitable(**OPTIONS)(function)
     try:
-        compiled = njit(entry, cache=True, nogil=True)
+        compiled = njit(entry, cache=True, nogil=True, **OPTIONS)
     except RuntimeError:  # no place to keep it: the package and the home are read-only
         compiling()
-        return njit(entry, nogil=True)
-    disk = compiled._cache
+        return njit(entry, nogil=True, **OPTIONS)
+    disk: Any = compiled._cache  # type: ignore[attr-defined]
     load = disk.load_overload
 
     def load_or_forget(*key: Any) -> Any:

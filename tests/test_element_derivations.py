@@ -12,7 +12,10 @@ from kvtheory.derivations.catalogue import catalogue
 
 from kvtheory.models.elements import schemes as simulator
 from kvtheory.models.elements.kernels import (
-    exponential_fit, kink_area, ramp_functions, weights_across,
+    exponential_fit,
+    kink_area,
+    ramp_functions,
+    weights_across,
 )  # fmt: skip
 
 LABELS = {

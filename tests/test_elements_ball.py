@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 
 import kvtheory as kv
+from kvtheory.models.elements.kernels import weights_across
 from kvtheory.models.elements.model import Model
 from kvtheory.models.elements.row import ElementRow, IndenterState
 from kvtheory.models.elements.schemes import SCHEMES
-from kvtheory.models.elements.kernels import weights_across
 from kvtheory.results import TRANSIENT_UNITS
 from kvtheory.results.table import scales
 from kvtheory.scene.static_state import StaticState

@@ -182,7 +182,7 @@ def ledger(scene, density, end):
     for _ in range(round(end * density)):
         risen, stored = model.depth - state.depth, row.stored
         u, s = (each[..., 0, :] for each in row.states(state.time))  # of the one strip
-        x = kernels.positions(row.constants, stored, 0, u.size, row.path.displacement(state.time))
+        x = kernels.positions(stored, 0, u.size, row.path.displacement(state.time))
         p = law.pressure(state.depth - model.height(x), 0.0) + s.sum(axis=0)
         friction = -model.slope(x) @ np.where(stored.touched[0], p, 0.0)
         kinetic = 0.5 * model.mass * state.rate**2

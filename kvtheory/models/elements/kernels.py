@@ -24,9 +24,9 @@ from kvtheory.models.elements.law import Array, ContactRule, Law
 PARABOLA, CIRCLE, WEDGE, POWER_LAW = range(4)
 """Kinds of profiles."""
 DEPTH, RATE, ALONG, ALONG_RATE, IMBALANCE, FORCE, LAST = range(7)
-"""The indenter: depth (m) and rate, the same along x, two forces to judge an explicit step by, the last step."""
+"""The indenter: depth and rate, the same along x, two forces to judge an explicit step by, its last step."""
 FIRST, LOW, HIGH, STRIPS, UPDATES = range(5)
-"""Counts of a row: its first element, the elements and strips that it lacks, and updates of single elements."""
+"""Counts: the first element, the elements that are lacking, strips near the indenter, updates of elements."""
 DONE, LACKING, OUTGROWN, THROWN_UP, THROWN_ALONG, UNBALANCED = range(6)
 """How a run ended, or why it paused."""
 
@@ -35,7 +35,7 @@ FAR = 1e300
 SPARE, UNMET = 7, 3
 """Elements beyond those that can be met: the surface is extended from three, and three more never are met."""
 SMALL_FIT, SMALL_RAMP = 1e-2, 2e-2
-"""Below these, θ(z) and the mean of a ramp are taken from their series, where the closed forms would cancel."""
+"""Below these, θ(z) and the mean of a ramp are taken from series, where the closed forms would cancel."""
 NEWTON_STEPS, SLIDE_STEPS = 60, 30
 """The iterations end after two or three."""
 SLIDE_RTOL = 1e-9
@@ -72,39 +72,13 @@ class Surface(NamedTuple):
     stretch: float
 
 
-class Constants(NamedTuple):
-    """What stays as it is in a run, in SI; the symbols are those of `Model` and `Law`."""
+class Elements(NamedTuple):
+    """The stored elements, and what stays as it is in a run, in SI; symbols as in `Model` and `Law`.
 
-    surface: Surface
-    spacing: float
-    shift: float
-    across: float
-    parts: bool
-    per_width: bool
-    mass: float
-    weight: float
-    spring: float
-    mass_along: float
-    spring_along: float
-    damping_along: float
-    depth: float
-    deepest: float
-    half_length: float
-    at_rest_velocity: float
-    kinks: Array
-    law: Law
-    fitted: bool
-    explicit: bool
-    tableau: Array
-    rule: ContactRule
-
-
-class Row(NamedTuple):
-    """The stored elements: arrays over strips and elements.
-
-    `u` is the compression; of an element in contact, `arms` are the forces s_i of its arms, of a free one its
-    modes. Those of a strip from `low` to `high` are near the indenter and up to date; a free one elsewhere is
-    as it was at the time `since`. `rest`, `height`, `meets`, `slope` and `pressed` are work space of a step.
+    Arrays over strips and elements: `u` is the compression; of an element in contact, which is `touched`,
+    `arms` are the forces s_i of its arms, of a free one its modes. Those of a strip from `low` to `high` are
+    near the indenter and up to date; a free one elsewhere is as it was at the time `since`. `rest`, `height`,
+    `meets`, `slope` and `pressed` are work space of a step.
     """
 
     u: Array
@@ -119,6 +93,29 @@ class Row(NamedTuple):
     meets: Array
     slope: Array
     pressed: NDArray[np.bool_]
+    surface: Surface
+    profile: Any
+    law: Law
+    rule: ContactRule
+    tableau: Array
+    fitted: bool
+    explicit: bool
+    spacing: float
+    shift: float
+    across: float
+    parts: bool
+    per_width: bool
+    mass: float
+    weight: float
+    spring: float
+    mass_along: float
+    spring_along: float
+    damping_along: float
+    depth: float
+    deepest: float
+    half_length: float
+    rest_velocity: float
+    kinks: Array
 
 
 class StepLaw(NamedTuple):
@@ -223,61 +220,57 @@ def weights_across(dy: float, count: int, rim: float) -> Array:
     return weights
 
 
-def _weights(c: Constants, profile: Any, depth: float, strips: int) -> Array:
+def _weights(e: Elements, depth: float, strips: int) -> Array:
     """Return by what the force of each strip counts: 1, or its width in m."""
-    if not c.across:
+    if not e.across:
         return np.ones(strips)
-    rim = c.surface.stretch * extent(c.surface, profile, depth, 1.0) if c.parts else 0.0
-    return weights_across(c.across, strips, rim)
+    rim = e.surface.stretch * extent(e.surface, e.profile, depth, 1.0) if e.parts else 0.0
+    return weights_across(e.across, strips, rim)
 
 
 # The row
 
 
-def attend(
-    c: Constants, profile: Any, row: Row, now: float, places: tuple[float, float], depth: float
-) -> int:
+def attend(e: Elements, now: float, places: tuple[float, float], depth: float) -> int:
     """Bring up to date the elements that an indenter of at most this depth can meet at both places."""
-    if not (depth < c.deepest and math.isfinite(places[0]) and math.isfinite(places[1])):
+    if not (depth < e.deepest and math.isfinite(places[0]) and math.isfinite(places[1])):
         return OUTGROWN
-    s, dx, first, (stored, width) = c.surface, c.spacing, row.counts[FIRST], row.u.shape
-    left, right = extent(s, profile, depth, -1.0), extent(s, profile, depth, 1.0)
-    strips = 1 + int(s.stretch * right / c.across) if c.across else 1
+    s, dx, first, (stored, width) = e.surface, e.spacing, e.counts[FIRST], e.u.shape
+    left, right = extent(s, e.profile, depth, -1.0), extent(s, e.profile, depth, 1.0)
+    strips = 1 + int(s.stretch * right / e.across) if e.across else 1
     for j in range(stored):
-        low = high = row.low[j]
+        low = high = e.low[j]
         if j < strips:
-            bent = 1.0
-            if j:
-                share = j * c.across / (s.stretch * right)
-                bent = math.sqrt(max(1.0 - share * share, 0.0))
+            share = j * e.across / (s.stretch * right) if j else 0.0
+            bent = math.sqrt(max(1.0 - share * share, 0.0))
             low = math.floor((-left * bent - max(places[0], places[1])) / dx) - SPARE - first
             high = math.ceil((right * bent - min(places[0], places[1])) / dx) + SPARE + 1 - first
             if j == 0 and (low < 0 or high > width or strips > stored):
-                row.counts[LOW], row.counts[HIGH] = low + first, high + first
-                row.counts[STRIPS] = strips
+                e.counts[LOW], e.counts[HIGH], e.counts[STRIPS] = low + first, high + first, strips
                 return LACKING
-            row.counts[UPDATES] += high - low
-        before, after = row.low[j], row.high[j]
-        row.since[j, before : min(low, after)] = now
-        row.since[j, max(high, before) : after] = now
-        _relax(c, row, j, low, min(before, high), now)
-        _relax(c, row, j, max(after, low), high, now)
-        row.low[j], row.high[j] = low, high
+            e.counts[UPDATES] += high - low
+        before, after = e.low[j], e.high[j]
+        e.since[j, before : min(low, after)] = now
+        e.since[j, max(high, before) : after] = now
+        _relax(e, j, low, min(before, high), now)
+        _relax(e, j, max(after, low), high, now)
+        e.low[j], e.high[j] = low, high
+    e.counts[STRIPS] = strips
     return DONE
 
 
-def _relax(c: Constants, row: Row, j: int, low: int, high: int, now: float) -> None:
+def _relax(e: Elements, j: int, low: int, high: int, now: float) -> None:
     """Bring free elements up to date that were left alone for a while."""
     if low >= high:
         return
-    past, u = now - row.since[j, low:high], row.u[j, low:high]
-    if not row.arms.shape[0]:
-        u *= np.exp(-c.law.rates[0] * past)
+    past, u = now - e.since[j, low:high], e.u[j, low:high]
+    if not e.arms.shape[0]:
+        u *= np.exp(-e.law.rates[0] * past)
         return
     u[:] = 0.0
-    for k in range(row.arms.shape[0]):
-        row.arms[k, j, low:high] *= np.exp(-c.law.rates[k] * past)
-        u += c.law.shares[k] * row.arms[k, j, low:high]
+    for k in range(e.arms.shape[0]):
+        e.arms[k, j, low:high] *= np.exp(-e.law.rates[k] * past)
+        u += e.law.shares[k] * e.arms[k, j, low:high]
 
 
 def runs_of(flags: NDArray[np.bool_], low: Any, high: Any) -> NDArray[np.int64]:
@@ -348,80 +341,77 @@ def law_of(law: Law, h: float) -> StepLaw:
     )  # fmt: skip
 
 
-def _left(c: Constants, row: Row, law: StepLaw, j: int, i: Any) -> Any:
+def _left(e: Elements, law: StepLaw, j: int, i: Any) -> Any:
     """Return u of elements at the end of a step, had they been left alone from its start."""
-    if not row.arms.shape[0]:
-        return law.fall[0] * row.u[j, i]
-    left = (c.law.shares[0] * law.fall[0]) * row.arms[0, j, i]
-    for k in range(1, row.arms.shape[0]):
-        left = left + (c.law.shares[k] * law.fall[k]) * row.arms[k, j, i]
+    if not e.arms.shape[0]:
+        return law.fall[0] * e.u[j, i]
+    left = (e.law.shares[0] * law.fall[0]) * e.arms[0, j, i]
+    for k in range(1, e.arms.shape[0]):
+        left = left + (e.law.shares[k] * law.fall[k]) * e.arms[k, j, i]
     return left
 
 
-def _release(c: Constants, row: Row, j: int, i: int) -> None:
+def _release(e: Elements, j: int, i: int) -> None:
     """Take an element out of contact: its arms become modes."""
-    y = row.u[j, i] - row.arms[:, j, i] / c.law.arm_stiffness
+    y = e.u[j, i] - e.arms[:, j, i] / e.law.arm_stiffness
     for k in range(y.size):
-        row.arms[k, j, i] = (c.law.to_modes[k] * y).sum()
+        e.arms[k, j, i] = (e.law.to_modes[k] * y).sum()
 
 
-def _enter(c: Constants, row: Row, j: int, i: int, within: float, rise: float) -> None:
+def _enter(e: Elements, j: int, i: int, within: float, rise: float) -> None:
     """Take a free element into contact: its modes become arms, which are then loaded within the step."""
-    modes = row.arms[:, j, i].copy()
-    u = (c.law.shares * modes).sum()
-    phi_1, _ = ramp_functions(within / c.law.arm_time)
+    modes = e.arms[:, j, i].copy()
+    u = (e.law.shares * modes).sum()
+    phi_1, _ = ramp_functions(within / e.law.arm_time)
     for k in range(modes.size):
-        y = (c.law.from_modes[k] * modes).sum()
-        row.arms[k, j, i] = c.law.arm_stiffness[k] * (u - y + phi_1[k] * rise)
+        y = (e.law.from_modes[k] * modes).sum()
+        e.arms[k, j, i] = e.law.arm_stiffness[k] * (u - y + phi_1[k] * rise)
 
 
-def settle(
-    c: Constants, profile: Any, row: Row, law: StepLaw, place: float, travel: float, depths: tuple[float, float]
-) -> None:  # fmt: skip
-    """Let a step pass: `pressed` elements are where the indenter is at its end, all others were left alone."""
-    for j in range(row.u.shape[0]):
-        low, high = row.low[j], row.high[j]
-        if low == high:
-            continue
-        u, pressed, touched = row.u[j, low:high], row.pressed[j, low:high], row.touched[j, low:high]
-        g = depths[1] - row.height[j, low:high]
-        if not row.arms.shape[0]:
+def settle(e: Elements, law: StepLaw, before: float, depths: tuple[float, float]) -> None:
+    """Let a step pass: `pressed` elements end where the indenter is, all others were left alone.
+
+    `before` is where the base was under the indenter at its start.
+    """
+    for j in range(e.counts[STRIPS]):
+        low, high = e.low[j], e.high[j]
+        u, pressed, touched = e.u[j, low:high], e.pressed[j, low:high], e.touched[j, low:high]
+        g = depths[1] - e.height[j, low:high]
+        if not e.arms.shape[0]:
             u[:] = np.where(pressed, g, law.fall[0] * u)
         else:
             for i in np.flatnonzero(touched & ~pressed):
-                _release(c, row, j, low + i)
+                _release(e, j, low + i)
             new = np.flatnonzero(pressed & ~touched)
             gaps = np.empty(new.size)
             for k in range(new.size):
-                gaps[k] = gap_before(c, profile, row, j, low + new[k], place - travel, depths[0])
+                gaps[k] = gap_before(e, j, low + new[k], before, depths[0])
             kept = touched & pressed
             left = np.zeros(high - low)
-            for k in range(row.arms.shape[0]):
-                arm = row.arms[k, j, low:high]
+            for k in range(e.arms.shape[0]):
+                arm = e.arms[k, j, low:high]
                 arm[:] = np.where(
                     kept, law.held[k] * arm + law.ramp[k] * (g - u), law.fall[k] * arm
                 )
-                left += c.law.shares[k] * arm
+                left += e.law.shares[k] * arm
             for k in range(new.size):
                 rise = g[new[k]] - left[new[k]]
                 within = law.h * rise / (rise - min(gaps[k], 0.0)) if rise > 0.0 else 0.0
-                _enter(c, row, j, low + new[k], within, rise)
+                _enter(e, j, low + new[k], within, rise)
             u[:] = np.where(pressed, g, left)
         touched[:] = pressed
 
 
-def gap_before(
-    c: Constants, profile: Any, row: Row, j: int, i: int, place: float, depth: float
-) -> float:
+def gap_before(e: Elements, j: int, i: int, place: float, depth: float) -> float:
     """Return how far the indenter was below an element at the start of a step."""
-    x = c.spacing * (row.counts[FIRST] + i + c.shift) + place
-    return depth - height_at(c.surface, profile, x, j * c.across) - row.u[j, i]  # type: ignore[no-any-return]
+    x = e.spacing * (e.counts[FIRST] + i + e.shift) + place
+    return depth - height_at(e.surface, e.profile, x, j * e.across) - e.u[j, i]
 
 
-def positions(c: Constants, row: Row, low: int, high: int, place: float) -> Array:
+def positions(e: Elements, low: int, high: int, place: float) -> Array:
     """Return x of elements when the base has moved by `place` under the indenter."""
-    first = row.counts[FIRST]
-    x: Array = c.spacing * (np.arange(first + low, first + high) + c.shift) + place
+    first = e.counts[FIRST]
+    x: Array = e.spacing * (np.arange(first + low, first + high) + e.shift) + place
     return x
 
 
@@ -464,14 +454,14 @@ def kink_area(overlap: Any) -> Any:
     return half * within * w + rise / 12.0, half * (within + w), 2.0 * half, rise
 
 
-def sinking(c: Constants, state: Array, h: float) -> float:
+def sinking(e: Elements, state: Array, h: float) -> float:
     """Return how far the indenter could sink in a step without a foundation, at any θ from 1/2 to 1."""
-    if math.isinf(c.mass):
+    if math.isinf(e.mass):
         return 0.0
-    q = c.spring * h * h / c.mass
-    pull = max(c.weight + c.spring * (c.depth - state[DEPTH]), 0.0)
+    q = e.spring * h * h / e.mass
+    pull = max(e.weight + e.spring * (e.depth - state[DEPTH]), 0.0)
     most = 1.0 / (1.0 + q) if q < 1.0 else 0.5 / math.sqrt(q)
-    return float(h * max(state[RATE], 0.0) / (1.0 + 0.25 * q) + most * pull * h * h / c.mass)
+    return float(h * max(state[RATE], 0.0) / (1.0 + 0.25 * q) + most * pull * h * h / e.mass)
 
 
 class Step(NamedTuple):
@@ -495,7 +485,7 @@ class Step(NamedTuple):
 
 
 def implicit_step(
-    c: Constants, profile: Any, row: Row, law: StepLaw, begun: NDArray[np.int64], state: Array,
+    e: Elements, law: StepLaw, begun: NDArray[np.int64], state: Array,
     now: float, Y: tuple[float, float],
 ) -> tuple[int, NDArray[np.int64]]:  # fmt: skip
     """Take a step in which the depth at its end is the root of the balance of momentum.
@@ -503,54 +493,63 @@ def implicit_step(
     On a spring, so is the place along x: for every place there is one depth. Return the status, and the
     runs in contact at the end.
     """
-    h, sprung = law.h, math.isfinite(c.mass_along)
+    h, sprung = law.h, math.isfinite(e.mass_along)
     depth, rate = state[DEPTH], state[RATE]
     along, along_rate = state[ALONG], state[ALONG_RATE]
-    slid = h * along_rate / (1.0 + 0.25 * c.spring_along * h * h / c.mass_along)
-    most = sinking(c, state, h)
-    falling = np.zeros((row.u.shape[0], 3), dtype=np.bool_)
-    sunk, new_rate, new_along_rate, tilt = 0.0, rate, along_rate, -1.0
+    slid = h * along_rate / (1.0 + 0.25 * e.spring_along * h * h / e.mass_along)
+    most = sinking(e, state, h)
+    falling = np.zeros((e.u.shape[0], 3), dtype=np.bool_)
+    sunk, new_rate, new_along_rate = 0.0, rate, along_rate
     runs, place, travel = begun, 0.0, 0.0
     for _ in range(SLIDE_STEPS):
         place = Y[1] - (along + slid)
         travel = place - (Y[0] - along)
-        sinks = min(most, ROOM * c.depth)
+        sinks = min(most, ROOM * e.depth)
         while True:
-            status = attend(c, profile, row, now, (place, place - travel), depth + sinks)
+            status = attend(e, now, (place, place - travel), depth + sinks)
             if status != DONE:
                 return status, begun
-            _lay(c, profile, row, law, begun, place, travel, depth)
+            _lay(e, law, begun, place, travel, depth)
             first = min(h * rate, sinks)
             runs = begun.copy()
             for k in range(runs.shape[0]):  # none is outside but where a caller changed the depth
-                low, high = row.low[runs[k, 0]] + UNMET, row.high[runs[k, 0]] - UNMET
+                low, high = e.low[runs[k, 0]] + UNMET, e.high[runs[k, 0]] - UNMET
                 runs[k, 1], runs[k, 2] = (
                     min(max(runs[k, 1], low), high),
                     max(min(runs[k, 2], high), low),
                 )
-            sums = _sums(row, runs)
-            runs, sums, _ = _walk(row, runs, sums, first)
-            weights = _weights(c, profile, depth + 0.5 * h * rate, row.u.shape[0])
-            late, lack = _late(c, profile, row, law, runs, weights, place - travel, depth, first)
-            step = Step(place, travel, first, _theta(c, law, runs, begun, weights), weights, begun,
-                        _bends(c, row, law, begun), falling, late, lack)  # fmt: skip
-            runs, sums, sunk = _sink(c, profile, row, law, step, runs, sums, state)
+            runs, sums, _ = _walk(e, runs, _sums(e, runs), first)
+            weights = _weights(e, depth + 0.5 * h * rate, e.u.shape[0])
+            late, lack = _late(e, law, runs, weights, place - travel, depth, first)
+            wide = e.spacing * max(_extent(runs, weights), _extent(begun, weights))
+            theta = exponential_fit(h * law.damping * wide / e.mass) if e.fitted else 1.0
+            step = Step(
+                place,
+                travel,
+                first,
+                theta,
+                weights,
+                begun,
+                _bends(e, law, begun),
+                falling,
+                late,
+                lack,
+            )
+            runs, sums, sunk = _sink(e, law, step, runs, sums, state)
             if not sunk > sinks or sinks == most:
                 break
             # Elements may have been missed, without which it sinks too deep, never too little.
             sinks = min(most, MORE_ROOM * sinks)
             falling[:] = False
-        if math.isfinite(c.mass):
+        if math.isfinite(e.mass):
             new_rate = _velocity(sunk, rate, h, step.theta)
         if not sprung:
             break
-        if tilt < 0.0:
-            tilt = _tilt(c, profile, row, step)
         before = slid
-        slid, new_along_rate = _slide(c, profile, row, law, step, runs, state, sunk, slid, tilt)
-        if not abs(slid - before) > SLIDE_RTOL * c.half_length:
+        slid, new_along_rate = _slide(e, law, step, runs, state, sunk, slid)
+        if not abs(slid - before) > SLIDE_RTOL * e.half_length:
             break
-    settle(c, profile, row, law, place, travel, (depth, depth + sunk))
+    settle(e, law, place - travel, (depth, depth + sunk))
     state[DEPTH], state[RATE] = depth + sunk, new_rate
     if sprung:
         state[ALONG], state[ALONG_RATE] = along + slid, new_along_rate
@@ -558,78 +557,64 @@ def implicit_step(
 
 
 def _lay(
-    c: Constants, profile: Any, row: Row, law: StepLaw, begun: NDArray[np.int64], place: float, travel: float,
+    e: Elements, law: StepLaw, begun: NDArray[np.int64], place: float, travel: float,
     depth: float,
 ) -> None:  # fmt: skip
     """Find how far the indenter must sink from `depth` to press each element at the end of the step.
 
     That is to where the mean pressure would vanish: where a free element is then, and above where one in
-    contact is now.
+    contact is now. An element that passes a kink of the shape is pressed as far as that pressed it.
     """
-    for j in range(row.u.shape[0]):
-        low, high = row.low[j], row.high[j]
-        if low < high:
-            x = positions(c, row, low, high, place)
-            row.height[j, low:high] = height_at(c.surface, profile, x, j * c.across)
-            row.rest[j, low:high] = _left(c, row, law, j, slice(low, high))
-    if row.arms.shape[0]:
+    for j in range(e.counts[STRIPS]):
+        low, high = e.low[j], e.high[j]
+        x = positions(e, low, high, place)
+        e.height[j, low:high] = height_at(e.surface, e.profile, x, j * e.across)
+        e.rest[j, low:high] = _left(e, law, j, slice(low, high))
+    if e.arms.shape[0]:
         for k in range(begun.shape[0]):
             j, low, high = begun[k, 0], begun[k, 1], begun[k, 2]
-            p = c.law.stiffness * row.u[j, low:high]
-            for i in range(row.arms.shape[0]):
-                p += law.weights[i] * row.arms[i, j, low:high]
-            row.rest[j, low:high] = row.u[j, low:high] - p / law.stiffness
-    elif c.per_width:
-        _pass_kinks(c, profile, row, law, place, travel, depth)
-    for j in range(row.u.shape[0]):
-        low, high = row.low[j], row.high[j]
-        if low < high:
-            row.meets[j, low:high] = row.height[j, low:high] + row.rest[j, low:high] - depth
-            row.meets[j, low : low + UNMET] = math.inf
-            row.meets[j, high - UNMET : high] = math.inf
+            p = e.law.stiffness * e.u[j, low:high]
+            for i in range(e.arms.shape[0]):
+                p += law.weights[i] * e.arms[i, j, low:high]
+            e.rest[j, low:high] = e.u[j, low:high] - p / law.stiffness
+    elif e.per_width:
+        for kink in e.kinks:
+            # What a damper has of the compression by the tip is left at the end of the step, and so is its
+            # mean pressure; without this, a wedge stands on its tip at the first order in the spacing.
+            for i in _passed(e, kink, place, travel):
+                since = law.h * (positions(e, i, i + 1, place)[0] - kink) / travel
+                g = depth - height_at(e.surface, e.profile, float(kink), 0.0)
+                pressed = depth - g * math.exp(-since * e.law.rates[0])
+                e.height[0, i] = min(e.height[0, i], pressed)
+    for j in range(e.counts[STRIPS]):
+        low, high = e.low[j], e.high[j]
+        e.meets[j, low:high] = e.height[j, low:high] + e.rest[j, low:high] - depth
+        e.meets[j, low : low + UNMET] = math.inf
+        e.meets[j, high - UNMET : high] = math.inf
 
 
-def _pass_kinks(
-    c: Constants, profile: Any, row: Row, law: StepLaw, place: float, travel: float, depth: float
-) -> None:
-    """Let elements that pass a kink of the shape in the step be pressed as far as it pressed them.
-
-    What a damper has of that compression until the end of the step, g e^(-t/τ), is left, and so is its
-    mean pressure; without this, a wedge stands on its tip at the first order in the spacing.
-    """
-    for kink in c.kinks:
-        low, high = _passed(c, row, kink, place, travel)
-        for i in range(low, high):
-            x = c.spacing * (row.counts[FIRST] + i + c.shift) + place
-            if (x - kink) * (x - travel - kink) < 0.0:
-                tip = height_at(c.surface, profile, float(kink), 0.0)
-                g = (depth - tip) * math.exp(-law.h * (x - kink) / travel * c.law.rates[0])
-                row.height[0, i] = min(row.height[0, i], depth - g)
+def _passed(e: Elements, kink: float, place: float, travel: float) -> NDArray[np.int64]:
+    """Return the elements that pass a kink of the shape in a step."""
+    x = positions(e, e.low[0], e.high[0], place) - kink
+    return e.low[0] + np.flatnonzero(x * (x - travel) < 0.0)
 
 
-def _passed(c: Constants, row: Row, kink: float, place: float, travel: float) -> tuple[int, int]:
-    """Return a range that holds all elements that pass a kink in a step."""
-    start = (kink + min(travel, 0.0) - place) / c.spacing - row.counts[FIRST]
-    stop = (kink + max(travel, 0.0) - place) / c.spacing - row.counts[FIRST]
-    return max(math.floor(start) - 1, row.low[0]), min(math.ceil(stop) + 2, row.high[0])
-
-
-def _sums(row: Row, runs: NDArray[np.int64]) -> Array:
+def _sums(e: Elements, runs: NDArray[np.int64]) -> Array:
     """Return the sum of `meets` over each run."""
     sums = np.zeros(runs.shape[0])
     for k in range(runs.shape[0]):
-        sums[k] = row.meets[runs[k, 0], runs[k, 1] : runs[k, 2]].sum()
+        sums[k] = e.meets[runs[k, 0], runs[k, 1] : runs[k, 2]].sum()
     return sums
 
 
 def _walk(
-    row: Row, runs: NDArray[np.int64], sums: Array, sunk: float
+    e: Elements, runs: NDArray[np.int64], sums: Array, sunk: float
 ) -> tuple[NDArray[np.int64], Array, bool]:
     """Move the ends of runs to where elements begin and cease to be pressed; tell whether any moved.
 
     If runs met, or others appeared, they are all found anew.
     """
-    meets, moved, count = row.meets, False, 0
+    meets, moved, count = e.meets, False, 0
     for k in range(runs.shape[0]):
         j, low, high, total = runs[k, 0], runs[k, 1], runs[k, 2], sums[k]
         while meets[j, low - 1] <= sunk:
@@ -648,43 +633,40 @@ def _walk(
         runs[k, 1], runs[k, 2], sums[k] = low, high, total
         count += high - low
     found = 0
-    for j in range(row.u.shape[0]):
-        low, high = row.low[j], row.high[j]
-        row.pressed[j, low:high] = meets[j, low:high] <= sunk
-        found += row.pressed[j, low:high].sum()
+    for j in range(e.counts[STRIPS]):
+        low, high = e.low[j], e.high[j]
+        e.pressed[j, low:high] = meets[j, low:high] <= sunk
+        found += e.pressed[j, low:high].sum()
     if found == count:
         return runs, sums, moved
-    runs = runs_of(row.pressed, row.low, row.high)
-    return runs, _sums(row, runs), True
+    runs = runs_of(e.pressed, e.low, e.high)
+    return runs, _sums(e, runs), True
 
 
 def _late(
-    c: Constants, profile: Any, row: Row, law: StepLaw, runs: NDArray[np.int64], weights: Array, place: float,
+    e: Elements, law: StepLaw, runs: NDArray[np.int64], weights: Array, place: float,
     depth: float, first: float,
 ) -> tuple[NDArray[np.int64], Array]:  # fmt: skip
     """Return the elements that are entered within the step, and what they lack of their weight.
 
     Their arms are loaded for a part of it only.
     """
-    late, lack = np.empty((0, 2), dtype=np.int64), np.empty(0)
-    if not row.arms.shape[0]:
-        return late, lack
     count = 0
-    for fill in (False, True):
-        if fill:
-            late, lack, count = np.empty((count, 2), dtype=np.int64), np.empty(count), 0
-        for k in range(runs.shape[0]):
-            j, low = runs[k, 0], runs[k, 1]
-            for i in np.flatnonzero(~row.touched[j, low : runs[k, 2]]):
-                if fill:
-                    rise = first - row.meets[j, low + i]
-                    gap = gap_before(c, profile, row, j, low + i, place, depth)
-                    share = rise / (rise - min(gap, 0.0))
-                    _, phi_2 = ramp_functions(law.h * share / c.law.arm_time)
-                    stiff = 0.5 * c.law.stiffness + (c.law.arm_stiffness * phi_2).sum()
-                    late[count, 0], late[count, 1] = j, low + i
-                    lack[count] = (1.0 - share * stiff / law.stiffness) * weights[j]
-                count += 1
+    for k in range(runs.shape[0] if e.arms.shape[0] else 0):
+        count += (~e.touched[runs[k, 0], runs[k, 1] : runs[k, 2]]).sum()
+    late, lack = np.empty((count, 2), dtype=np.int64), np.empty(count)
+    for k in range(runs.shape[0] if count else 0):
+        j, low = runs[k, 0], runs[k, 1]
+        for i in low + np.flatnonzero(~e.touched[j, low : runs[k, 2]]):
+            count -= 1
+            rise = first - e.meets[j, i]
+            share = (
+                rise / (rise - min(gap_before(e, j, i, place, depth), 0.0)) if rise > 0.0 else 0.0
+            )
+            _, phi_2 = ramp_functions(law.h * share / e.law.arm_time)
+            stiff = 0.5 * e.law.stiffness + (e.law.arm_stiffness * phi_2).sum()
+            late[count, 0], late[count, 1] = j, i
+            lack[count] = (1.0 - share * stiff / law.stiffness) * weights[j]
     return late, lack
 
 
@@ -695,32 +677,23 @@ def _extent(runs: NDArray[np.int64], weights: Array) -> float:
     return total
 
 
-def _theta(
-    c: Constants, law: StepLaw, runs: NDArray[np.int64], begun: NDArray[np.int64], weights: Array
-) -> float:
-    if not c.fitted:
-        return 1.0
-    wide = max(_extent(runs, weights), _extent(begun, weights))
-    return exponential_fit(law.h * law.damping * c.spacing * wide / c.mass)
-
-
-def _bends(c: Constants, row: Row, law: StepLaw, begun: NDArray[np.int64]) -> Array:
+def _bends(e: Elements, law: StepLaw, begun: NDArray[np.int64]) -> Array:
     """Return by how much the mean force of arms bends at each edge of the runs."""
     bends = np.zeros((begun.shape[0], 2))
-    if not row.arms.shape[0]:
+    if not e.arms.shape[0]:
         return bends
     for k in range(begun.shape[0]):
         for side in range(2):
             j, out = begun[k, 0], 1 - 2 * side
             inner = begun[k, 1] if side == 0 else begun[k, 2] - 1
-            held = row.arms[:, j, inner + out] - row.arms[:, j, inner]
-            free = row.arms[:, j, inner - out] - row.arms[:, j, inner - 2 * out]
+            held = e.arms[:, j, inner + out] - e.arms[:, j, inner]
+            free = e.arms[:, j, inner - out] - e.arms[:, j, inner - 2 * out]
             bends[k, side] = (law.weights * held).sum() - (law.free * free).sum()
     return bends
 
 
 def _sink(
-    c: Constants, profile: Any, row: Row, law: StepLaw, step: Step, runs: NDArray[np.int64], sums: Array,
+    e: Elements, law: StepLaw, step: Step, runs: NDArray[np.int64], sums: Array,
     state: Array,
 ) -> tuple[NDArray[np.int64], Array, float]:  # fmt: skip
     """Solve M (v_1 - v_0)/h = W - k_s (d - δ_0) - F_z for how far the indenter sinks.
@@ -728,8 +701,8 @@ def _sink(
     While no element is met or let go, F_z is of the second order in the depth: one step of Newton's
     method with the second derivative is exact.
     """
-    h, theta, k, sunk = law.h, step.theta, law.stiffness * c.spacing, step.first
-    if math.isinf(c.mass):
+    h, theta, k, sunk = law.h, step.theta, law.stiffness * e.spacing, step.first
+    if math.isinf(e.mass):
         return runs, sums, 0.0
     for _ in range(NEWTON_STEPS):
         width, area, bent = _extent(runs, step.weights), 0.0, 0.0
@@ -737,27 +710,27 @@ def _sink(
             area -= step.weights[runs[r, 0]] * sums[r]
         area += sunk * width
         for i in range(step.lack.size):
-            overlap = sunk - row.meets[step.late[i, 0], step.late[i, 1]]
+            overlap = sunk - e.meets[step.late[i, 0], step.late[i, 1]]
             if overlap > 0.0:
                 area -= step.lack[i] * overlap
                 width -= step.lack[i]
-        if c.parts:
-            added, wider, bent, _ = _kinks(c, profile, row, law, step, runs, sunk, state[DEPTH])
+        if e.parts:
+            added, wider, bent, _ = _kinks(e, law, step, runs, sunk, state[DEPTH])
             area, width = area + added, width + wider
-        mean = state[DEPTH] - c.depth + theta * sunk
+        mean = state[DEPTH] - e.depth + theta * sunk
         change_of_rate = _velocity(sunk, state[RATE], h, theta) - state[RATE]
-        residual = c.mass * change_of_rate / h - c.weight + c.spring * mean + k * area
-        slope = c.mass / (theta * h * h) + theta * c.spring + k * width
+        residual = e.mass * change_of_rate / h - e.weight + e.spring * mean + k * area
+        slope = e.mass / (theta * h * h) + theta * e.spring + k * width
         root = math.sqrt(max(slope * slope - 2.0 * residual * k * bent, 0.0))
         sunk -= 2.0 * residual / (slope + root)
-        runs, sums, moved = _walk(row, runs, sums, sunk)
+        runs, sums, moved = _walk(e, runs, sums, sunk)
         if not moved:
             break
     return runs, sums, sunk
 
 
 def _kinks(
-    c: Constants, profile: Any, row: Row, law: StepLaw, step: Step, runs: NDArray[np.int64], sunk: float,
+    e: Elements, law: StepLaw, step: Step, runs: NDArray[np.int64], sunk: float,
     depth: float,
 ) -> tuple[float, float, float, float]:  # fmt: skip
     """Return the area of the kinks at edges by dx less what relaxed, its derivatives by depth, and its push.
@@ -768,7 +741,7 @@ def _kinks(
     behind and relaxes like all that is free. Each side of each strip is asked for itself.
     """
     before, falling = step.place - step.travel, step.falling
-    met = np.zeros(row.u.shape[0], dtype=np.bool_)
+    met = np.zeros(e.u.shape[0], dtype=np.bool_)
     known = falling[0, 2]  # decided once in a step, so that no iteration can go to and fro
     falling[0, 2] = True
     area = wider = bent = push = 0.0
@@ -777,105 +750,86 @@ def _kinks(
         for side in range(2):
             if not known and low < high:
                 i = low - 1 if side == 0 else high
-                gap = gap_before(c, profile, row, j, i, before, depth)
-                falls = sunk - row.meets[j, i] - gap < -STANDS * c.depth
+                gap = gap_before(e, j, i, before, depth)
+                falls = sunk - e.meets[j, i] - gap < -STANDS * e.depth
                 falling[j, side] = falls and (falling[j, side] or not met[j])
         met[j] = met[j] or low < high
-    for r in range(runs.shape[0]):
-        j, low, high = runs[r, 0], runs[r, 1], runs[r, 2]
-        for side in range(2):
-            if low < high and not falling[j, side]:
+    for begun in (False, True):
+        ends = step.begun if begun else runs
+        for r in range(ends.shape[0]):
+            j, low, high = ends[r, 0], ends[r, 1], ends[r, 2]
+            for side in range(2):
+                if falling[j, side] or not met[j] or low == high:
+                    continue
                 i, out = (low - 1, -1) if side == 0 else (high, 1)
-                w = (
-                    sunk - row.meets[j, i],
-                    sunk - row.meets[j, i + out],
-                    sunk - row.meets[j, i + 2 * out],
+                w, far, farthest = (
+                    (
+                        gap_before(e, j, i, before, depth),
+                        gap_before(e, j, i + out, before, depth),
+                        gap_before(e, j, i + 2 * out, before, depth),
+                    )
+                    if begun
+                    else (
+                        sunk - e.meets[j, i],
+                        sunk - e.meets[j, i + out],
+                        sunk - e.meets[j, i + 2 * out],
+                    )
                 )
-                added, more, bend, _ = kink_area(w)
-                area += step.weights[j] * added
-                wider += step.weights[j] * more
-                bent += step.weights[j] * bend
-                if row.slope.size:
-                    push += step.weights[j] * added * row.slope[j, i - out]
-    for r in range(step.begun.shape[0]):
-        j, low, high = step.begun[r, 0], step.begun[r, 1], step.begun[r, 2]
-        for side in range(2):
-            if met[j] and not falling[j, side]:
-                i, out = (low - 1, -1) if side == 0 else (high, 1)
-                w = (gap_before(c, profile, row, j, i, before, depth),
-                     gap_before(c, profile, row, j, i + out, before, depth),
-                     gap_before(c, profile, row, j, i + 2 * out, before, depth))  # fmt: skip
-                added, _, _, rise = kink_area(w)
-                relaxed = (c.law.stiffness + step.bends[r, side] / rise) / law.stiffness - 1.0
-                area += step.weights[j] * added * relaxed
-                if row.slope.size:
-                    push += step.weights[j] * added * relaxed * row.slope[j, i - out]
+                added, more, bend, rise = kink_area((w, far, farthest))
+                weight = step.weights[j]
+                if begun:
+                    added *= (e.law.stiffness + step.bends[r, side] / rise) / law.stiffness - 1.0
+                else:
+                    wider += weight * more
+                    bent += weight * bend
+                area += weight * added
+                if e.slope.size:
+                    push += weight * added * e.slope[j, i - out]
     return area, wider, bent, push
 
 
-def _tilt(c: Constants, profile: Any, row: Row, step: Step) -> float:
-    """Find h'(x) halfway through the step, and return dx Σ h'² over elements that are or may be pressed."""
-    total = 0.0
-    for j in range(row.u.shape[0]):
-        low, high = row.low[j], row.high[j]
-        if low < high:
-            _incline(c, profile, row, j, step.place, step.travel)
-            steep = row.slope[j, low:high] * row.slope[j, low:high]
-            held = (row.meets[j, low:high] < step.first) | row.touched[j, low:high]
-            total += step.weights[j] * (steep * held).sum()
-    return c.spacing * total
-
-
-def _incline(c: Constants, profile: Any, row: Row, j: int, place: float, travel: float) -> None:
-    """Find h'(x) of a strip halfway through the step; of elements that pass a kink, before it."""
-    low, high, y = row.low[j], row.high[j], j * c.across
-    x = positions(c, row, low, high, place - 0.5 * travel)
-    row.slope[j, low:high] = slope_at(c.surface, profile, x, y)
-    if c.per_width and c.law.damping:
-        for kink in c.kinks:
-            start, stop = _passed(c, row, kink, place, travel)
-            for i in range(start, stop):
-                x_i = c.spacing * (row.counts[FIRST] + i + c.shift) + place
-                if (x_i - kink) * (x_i - travel - kink) < 0.0:
-                    row.slope[j, i] = slope_at(c.surface, profile, x_i - travel, y)
-
-
 def _slide(
-    c: Constants, profile: Any, row: Row, law: StepLaw, step: Step, runs: NDArray[np.int64], state: Array,
-    sunk: float, slid: float, tilt: float,
+    e: Elements, law: StepLaw, step: Step, runs: NDArray[np.int64], state: Array,
+    sunk: float, slid: float,
 ) -> tuple[float, float]:  # fmt: skip
     """Take a step of Newton's method to M_x (v_1 - v_0)/h = F_x - c_x (x_1 - x_0)/h - k_x x.
 
     An element pushes along x with its pressure times the slope halfway through the step, so that the
     mean forces do the very work by which elements of a parabola are compressed.
     """
-    h, M_x, c_x, k_x = law.h, c.mass_along, c.damping_along, c.spring_along
-    k, width, inclined, tilted, area = law.stiffness * c.spacing, 0.0, 0.0, 0.0, 0.0
-    for j in range(row.u.shape[0]):
-        if row.low[j] < row.high[j]:
-            _incline(c, profile, row, j, step.place, step.travel)
+    h, M_x, c_x, k_x = law.h, e.mass_along, e.damping_along, e.spring_along
+    k, width, inclined, tilted, area = law.stiffness * e.spacing, 0.0, 0.0, 0.0, 0.0
+    for j in range(e.counts[STRIPS]):
+        low, high = e.low[j], e.high[j]
+        x = positions(e, low, high, step.place - 0.5 * step.travel)
+        e.slope[j, low:high] = slope_at(e.surface, e.profile, x, j * e.across)
+    for kink in e.kinks:
+        if e.per_width and e.law.damping:  # pressed by the flank that they come from
+            for i in _passed(e, kink, step.place, step.travel):
+                x = positions(e, i, i + 1, step.place - step.travel)
+                e.slope[0, i] = slope_at(e.surface, e.profile, x, 0.0)[0]
     for r in range(runs.shape[0]):
         j, weight = runs[r, 0], step.weights[runs[r, 0]]
-        slope = row.slope[j, runs[r, 1] : runs[r, 2]]
+        slope = e.slope[j, runs[r, 1] : runs[r, 2]]
         width += weight * slope.size
         inclined += weight * slope.sum()
         tilted += weight * np.dot(slope, slope)
-        area -= weight * np.dot(slope, row.meets[j, runs[r, 1] : runs[r, 2]])
+        area -= weight * np.dot(slope, e.meets[j, runs[r, 1] : runs[r, 2]])
     area += sunk * inclined
     for i in range(step.lack.size):
-        j, e = step.late[i, 0], step.late[i, 1]
-        area -= step.lack[i] * max(sunk - row.meets[j, e], 0.0) * row.slope[j, e]
-    if c.parts:
-        area += _kinks(c, profile, row, law, step, runs, sunk, state[DEPTH])[3]
+        j, k_i = step.late[i, 0], step.late[i, 1]
+        area -= step.lack[i] * max(sunk - e.meets[j, k_i], 0.0) * e.slope[j, k_i]
+    if e.parts:
+        area += _kinks(e, law, step, runs, sunk, state[DEPTH])[3]
     # A ringing too fast for the step is damped; θ - 1/2 is of the third order in h, as on arms.
     swing = h * math.sqrt(k_x / M_x)
-    z = h * (c_x + law.damping * tilt) / M_x + swing * swing * swing
-    theta = exponential_fit(z) if c.fitted else 1.0
+    z = h * (c_x + law.damping * e.spacing * tilted) / M_x + swing * swing * swing
+    theta = exponential_fit(z) if e.fitted else 1.0
     change_of_rate = _velocity(slid, state[ALONG_RATE], h, theta) - state[ALONG_RATE]
     held = c_x * slid / h + k_x * (state[ALONG] + theta * slid)
     residual = M_x * change_of_rate / h + held + k * area
     # As the foundation gives way along x, the depth changes, too.
-    normal = c.mass / (h * h) + c.spring + k * width
+    normal = e.mass / (h * h) + e.spring + k * width
     stiff = k * tilted - (k * inclined) * (k * inclined) / normal
     slid -= residual / (M_x / (theta * h * h) + c_x / h + theta * k_x + stiff)
     return slid, _velocity(slid, state[ALONG_RATE], h, theta)
@@ -885,7 +839,7 @@ def _slide(
 
 
 def explicit_step(
-    c: Constants, profile: Any, row: Row, laws: tuple[StepLaw, StepLaw, StepLaw], state: Array, now: float,
+    e: Elements, laws: tuple[StepLaw, StepLaw, StepLaw], state: Array, now: float,
     Y: Array, V: Array,
 ) -> int:  # fmt: skip
     """Take a step of Runge and Kutta; which elements are in contact is settled at its end.
@@ -895,17 +849,17 @@ def explicit_step(
     as e^(-t/τ), and is in contact again where the indenter meets it (Eqs. 20-25). Arms are loaded along a
     straight line from the start of the step to each stage, which leaves the order two.
     """
-    h, M, M_x = laws[2].h, c.mass, c.mass_along
-    stages, begin = c.tableau.shape[0] - 1, Y[0] - state[ALONG]
+    h, M, M_x = laws[2].h, e.mass, e.mass_along
+    stages, begin = e.tableau.shape[0] - 1, Y[0] - state[ALONG]
     pulls, drags = np.zeros(stages + 1), np.zeros(stages + 1)
     rates, slides = np.zeros(stages + 1), np.zeros(stages + 1)
     depth = along = 0.0
     moves = math.isfinite(M) or math.isfinite(M_x)
     for i in range(stages + 1):
-        share = c.tableau[i, 0] if i < stages else 1.0
+        share = e.tableau[i, 0] if i < stages else 1.0
         depth, rate, along, along_rate = state[DEPTH], state[RATE], state[ALONG], state[ALONG_RATE]
         for k in range(i):
-            part = h * c.tableau[i, k + 1]
+            part = h * e.tableau[i, k + 1]
             depth += part * rates[k]
             rate += part * pulls[k] / M
             along += part * slides[k]
@@ -913,204 +867,186 @@ def explicit_step(
         rates[i], slides[i] = rate, along_rate
         if moves or i == stages:
             n = int(2.0 * share)
-            status = _press(c, profile, row, laws[n], state, (depth, rate, along, along_rate), now,
-                            (begin, Y[n] - along), V[n], 0.0 < share and i < stages)  # fmt: skip
+            status, pulls[i], drags[i] = _press(
+                e, laws[n], state, (depth, rate, along, along_rate), now, (begin, Y[n] - along), V[n],
+                share > 0.0 and i < stages,
+            )  # fmt: skip
             if status != DONE:
                 return status
-            pulls[i], drags[i] = _pull(c, profile, row, depth, along, along_rate)
-    settle(c, profile, row, laws[2], Y[2] - along, Y[2] - along - begin, (state[DEPTH], depth))
+    settle(e, laws[2], begin, (state[DEPTH], depth))
     state[DEPTH], state[RATE] = depth, rates[stages]
     state[ALONG], state[ALONG_RATE] = along, slides[stages]
     if math.isfinite(M):
         mean = 0.0
         for k in range(stages):
-            mean += c.tableau[stages, k + 1] * pulls[k]
+            mean += e.tableau[stages, k + 1] * pulls[k]
         state[IMBALANCE] = abs(mean - 0.5 * (pulls[0] + pulls[stages]))
-        state[FORCE] = c.weight + max(abs(pulls[0]), abs(pulls[stages]))
+        state[FORCE] = e.weight + max(abs(pulls[0]), abs(pulls[stages]))
     return DONE
 
 
 def _press(
-    c: Constants, profile: Any, row: Row, law: StepLaw, state: Array, at: tuple[float, float, float, float],
+    e: Elements, law: StepLaw, state: Array, at: tuple[float, float, float, float],
     now: float, places: tuple[float, float], velocity: float, within: bool,
-) -> int:  # fmt: skip
-    """Find which elements press at a stage, with what pressure (`rest`), and the slope there."""
-    place = places[0] if within and c.rule.still else places[1]
-    status = attend(c, profile, row, now, (places[0], place), max(at[0], state[DEPTH]))
+) -> tuple[int, float, float]:  # fmt: skip
+    """Find which elements press at a stage, and return M δ'' and M_x x'' there, after the status (Eq. 17)."""
+    place = places[0] if within and e.rule.still else places[1]
+    status = attend(e, now, (places[0], place), max(at[0], state[DEPTH]))
     if status != DONE:
-        return status
-    V = velocity - at[3]
-    for j in range(row.u.shape[0]):
-        low, high, y = row.low[j], row.high[j], j * c.across
-        if low == high:
-            continue
+        return status, 0.0, 0.0
+    V, weights = velocity - at[3], _weights(e, at[0], e.u.shape[0])
+    pull = e.weight - e.spring * (at[0] - e.depth)
+    drag = -e.spring_along * at[2] - e.damping_along * at[3]
+    for j in range(e.counts[STRIPS]):
+        low, high, y = e.low[j], e.high[j], j * e.across
         x, u, touched = (
-            positions(c, row, low, high, place),
-            row.u[j, low:high],
-            row.touched[j, low:high],
+            positions(e, low, high, place),
+            e.u[j, low:high],
+            e.touched[j, low:high],
         )
-        height, slope = height_at(c.surface, profile, x, y), slope_at(c.surface, profile, x, y)
-        g, left = at[0] - height, _left(c, row, law, j, slice(low, high))
-        p = c.law.stiffness * g + c.law.damping * (at[1] - V * slope)
-        for k in range(row.arms.shape[0]):
+        height, slope = height_at(e.surface, e.profile, x, y), slope_at(e.surface, e.profile, x, y)
+        g, left = at[0] - height, _left(e, law, j, slice(low, high))
+        p = e.law.stiffness * g + e.law.damping * (at[1] - V * slope)
+        for k in range(e.arms.shape[0]):
             p += np.where(
-                touched, law.held[k] * row.arms[k, j, low:high] + law.ramp[k] * (g - u), 0.0
+                touched, law.held[k] * e.arms[k, j, low:high] + law.ramp[k] * (g - u), 0.0
             )
-        if row.arms.shape[0]:
+        if e.arms.shape[0]:
             for i in np.flatnonzero((g > left) & ~touched):
-                gap = gap_before(c, profile, row, j, low + i, places[0], state[DEPTH])
+                gap = gap_before(e, j, low + i, places[0], state[DEPTH])
                 rise = g[i] - left[i]
-                phi_1, _ = ramp_functions(law.h * rise / (rise - min(gap, 0.0)) / c.law.arm_time)
-                p[i] += rise * (c.law.arm_stiffness * phi_1).sum() - c.law.stiffness * left[i]
-        if c.rule.remembers:
-            free = u if c.rule.stale and within else left
-            met = touched | (g > free) if c.rule.flags else g >= free * (1.0 - TIE)
-            pressed = met & ((g > 0.0) if c.rule.pulls else (p >= 0.0))
+                phi_1, _ = ramp_functions(law.h * rise / (rise - min(gap, 0.0)) / e.law.arm_time)
+                p[i] += rise * (e.law.arm_stiffness * phi_1).sum() - e.law.stiffness * left[i]
+        if e.rule.remembers:
+            free = u if e.rule.stale and within else left
+            met = touched | (g > free) if e.rule.flags else g >= free * (1.0 - TIE)
+            pressed = met & ((g > 0.0) if e.rule.pulls else (p >= 0.0))
         else:
             pressed = (g > 0.0) & (p >= 0.0)
-        row.height[j, low:high], row.slope[j, low:high] = height, slope
-        row.rest[j, low:high], row.pressed[j, low:high] = p, pressed
-    return DONE
-
-
-def _pull(
-    c: Constants, profile: Any, row: Row, depth: float, along: float, along_rate: float
-) -> tuple[float, float]:
-    """Return M δ'' and M_x x'' (Eq. 17)."""
-    pull = c.weight - c.spring * (depth - c.depth)
-    drag = -c.spring_along * along - c.damping_along * along_rate
-    weights = _weights(c, profile, depth, row.u.shape[0])
-    for j in range(row.u.shape[0]):
-        low, high = row.low[j], row.high[j]
-        if low < high:
-            each = np.where(row.pressed[j, low:high], row.rest[j, low:high], 0.0)
-            pull -= c.spacing * weights[j] * each.sum()
-            drag -= c.spacing * weights[j] * np.dot(row.slope[j, low:high], each)
-    return pull, drag
+        e.height[j, low:high], e.pressed[j, low:high] = height, pressed
+        each = np.where(pressed, p, 0.0)
+        pull -= e.spacing * weights[j] * each.sum()
+        drag -= e.spacing * weights[j] * np.dot(slope, each)
+    return DONE, pull, drag
 
 
 # Forces and edges at an instant
 
 
-def report(
-    c: Constants, profile: Any, row: Row, state: Array, now: float, about: Array, found: Array
-) -> int:
+def report(e: Elements, state: Array, now: float, about: Array, found: Array) -> int:
     """Put what is reported at an instant into `found`, in the order of `error_estimate.COLUMNS`.
 
     `about` is (time, V, V just before it, whether the base moves or moved last with V >= 0, Y). An element is
-    in contact if the indenter touches its surface and its pressure p >= 0 (Eq. 24).
+    in contact if the indenter touches its surface and its pressure p >= 0 (Eq. 24). Where the pressure is
+    highest at an edge, its doubt is how much it differs between the elements beside that.
     """
     time, V, V_before, forward, Y = about
-    depth, place = state[DEPTH], Y - state[ALONG]
-    status = attend(c, profile, row, now, (place, place), depth)
+    place = Y - state[ALONG]
+    status = attend(e, now, (place, place), state[DEPTH])
     if status != DONE:
         return status
     sliding, before = V - state[ALONG_RATE], V_before - state[ALONG_RATE]
-    weights = _weights(c, profile, depth, row.u.shape[0])
+    weights = _weights(e, state[DEPTH], e.u.shape[0])
     force = push = 0.0
     left = right = math.nan
-    peak, at_edge = (-math.inf, 0.0, 0.0), (-math.inf, 0.0, 0.0)
-    highest = -math.inf
-    for j in range(row.u.shape[0]):
-        low, high = row.low[j], row.high[j]
-        if low == high:
-            continue
-        touched = row.touched[j, low:high]
-        p, slope = _pressure(c, profile, row, state, j, place, sliding)
-        p_before = (
-            p if before == sliding else _pressure(c, profile, row, state, j, place, before)[0]
-        )
-        flags = (touched & ((p >= 0.0) | c.rule.pulls)).reshape(1, -1)
+    sums, peak, edge = np.zeros(4), np.zeros(3), np.zeros(3)
+    for j in range(e.counts[STRIPS]):
+        low, high = e.low[j], e.high[j]
+        p, slope = _pressure(e, state, j, place, sliding)
+        p_before = p if before == sliding else _pressure(e, state, j, place, before)[0]
+        flags = (e.touched[j, low:high] & ((p >= 0.0) | e.rule.pulls)).reshape(1, -1)
         runs = runs_of(flags, np.zeros(1, np.int64), np.full(1, high - low))
         for k in range(runs.shape[0]):
-            start, stop = runs[k, 1], runs[k, 2]
-            p_in = p[start:stop]
-            sums, pushed = p_in.sum(), 0.0
-            ends, reach = (0.0, 0.0), (1.0, 1.0)
-            top = start + np.argmax(p_in)
-            if c.parts:
-                pushed = np.dot(p_in, slope[start:stop])
-                for side in range(2):
-                    i = start if side == 0 else stop - 1
-                    share, p_edge, x = _edge(
-                        c, profile, row, j, low, i, p, p_before, depth, place, side
-                    )
-                    steep = slope_at(
-                        c.surface, profile, x - NEAR * c.spacing * (2 * side - 1), j * c.across
-                    )
-                    sums += 0.5 * (share * (p[i] + p_edge) - p[i])
-                    pushed += 0.5 * (share * (slope[i] * p[i] + steep * p_edge) - slope[i] * p[i])
-                    ends = (x, ends[1]) if side == 0 else (ends[0], x)
-                    if i == top:
-                        reach = (share, reach[1]) if side == 0 else (reach[0], share)
-                    if p_edge > at_edge[0]:
-                        out = i + 2 * side - 1
-                        at_edge = p_edge, 0.0, abs(p[i] - p[out])
-                if c.per_width:
-                    more = _split(
-                        c, profile, p, (start, stop), row.counts[FIRST] + low, place, sliding
-                    )
-                    sums, pushed = sums + more[0], pushed + more[1]
+            run = runs[k, 1], runs[k, 2]
+            if e.parts:
+                _parts(e, state, j, run, (p, p_before, slope), place, sliding, sums, peak, edge)
             else:
-                x = positions(c, row, low + start, low + stop, place)
-                pushed = np.dot(p_in, slope_at(c.surface, profile, x, j * c.across))
-                ends = x[0] - 0.5 * c.spacing, x[-1] + 0.5 * c.spacing
-            force += weights[j] * sums
-            push += weights[j] * pushed
+                _whole(e, j, run, p, place, sums, peak)
+            force += weights[j] * sums[0]
+            push += weights[j] * sums[1]
             if j == 0:
-                left = ends[0] if math.isnan(left) else left
-                right = ends[1]
-            if p[top] > highest:
-                highest = p[top]
-                peak = _peak(c, p, top, reach, flags[0]) if c.parts else (highest, 0.0, 0.0)
-    if highest == -math.inf:
-        peak = (0.0, 0.0, 0.0)
-    elif at_edge[0] > peak[0]:
-        peak = at_edge
-    if state[ALONG_RATE] and abs(sliding) > AT_REST * c.at_rest_velocity:
+                left = sums[2] if math.isnan(left) else left
+                right = sums[3]
+    if edge[0] > peak[0]:
+        peak = edge
+    if state[ALONG_RATE] and abs(sliding) > AT_REST * e.rest_velocity:
         forward = 1.0 if sliding > 0.0 else 0.0
-    held = c.spring_along * state[ALONG] + c.damping_along * state[ALONG_RATE]
+    held = e.spring_along * state[ALONG] + e.damping_along * state[ALONG_RATE]
     found[:] = np.array([
-        time, V, depth, state[RATE], c.spacing * force, -c.spacing * push,
+        time, V, state[DEPTH], state[RATE], e.spacing * force, -e.spacing * push,
         left if forward else right, right if forward else left,
         peak[0], sliding, held, peak[1], peak[2],
     ])  # fmt: skip
     return DONE
 
 
-def _behind(c: Constants, V: float) -> float:
+def _whole(
+    e: Elements, j: int, run: tuple[int, int], p: Array, place: float, sums: Array, peak: Array
+) -> None:
+    """Sum over the whole elements of a run, as in the paper (Eqs. 12-15)."""
+    x, inside = positions(e, e.low[j] + run[0], e.low[j] + run[1], place), p[run[0] : run[1]]
+    sums[0], sums[1] = inside.sum(), np.dot(inside, slope_at(e.surface, e.profile, x, j * e.across))
+    sums[2], sums[3] = x[0] - 0.5 * e.spacing, x[-1] + 0.5 * e.spacing
+    peak[0] = max(peak[0], inside.max())
+
+
+def _parts(
+    e: Elements, state: Array, j: int, run: tuple[int, int], fields: tuple[Array, Array, Array],
+    place: float, V: float, sums: Array, peak: Array, edge: Array,
+) -> None:  # fmt: skip
+    """Sum over a run by trapezoids up to its very edges."""
+    p, p_before, slope = fields
+    inside, reach = p[run[0] : run[1]], np.ones(2)
+    top = run[0] + int(np.argmax(inside))
+    sums[0], sums[1] = inside.sum(), np.dot(inside, slope[run[0] : run[1]])
+    for side in range(2):
+        i = run[0] if side == 0 else run[1] - 1
+        share, p_edge, x = _edge(e, j, e.low[j], i, p, p_before, state[DEPTH], place, side)
+        just_inside = x - NEAR * e.spacing * (2 * side - 1)
+        steep = slope_at(e.surface, e.profile, just_inside, j * e.across)
+        sums[0] += 0.5 * (share * (p[i] + p_edge) - p[i])
+        sums[1] += 0.5 * (share * (slope[i] * p[i] + steep * p_edge) - slope[i] * p[i])
+        sums[2 + side], reach[side] = x, share if i == top else 1.0
+        if p_edge > edge[0]:
+            edge[0], edge[2] = p_edge, abs(p[i] - p[i + 2 * side - 1])
+    if e.per_width:
+        more = _split(e, p, run, e.counts[FIRST] + e.low[j], place, V)
+        sums[0], sums[1] = sums[0] + more[0], sums[1] + more[1]
+    if p[top] > peak[0] or not peak[0]:
+        peak[0], peak[1] = _peak(e, p, top, reach, run)
+
+
+def _behind(e: Elements, V: float) -> float:
     """Return how far back the slope is taken: an element on a kink is still on the flank before it."""
-    return math.copysign(NEAR * c.spacing, V) if c.kinks.size and V else 0.0
+    return math.copysign(NEAR * e.spacing, V) if e.kinks.size and V else 0.0
 
 
-def _pressure(
-    c: Constants, profile: Any, row: Row, state: Array, j: int, place: float, V: float
-) -> tuple[Array, Array]:
+def _pressure(e: Elements, state: Array, j: int, place: float, V: float) -> tuple[Array, Array]:
     """Return p of the elements of a strip, g = δ - h(x), g' = δ' - V h'(x) (Eqs. 6, 7, 12), and the slope.
 
     Of one that is not in contact, it is what it would be had it followed the indenter in the last step: it
     is brought down by the gap at the start of that time, and then moves with the indenter.
     """
-    low, high, y = row.low[j], row.high[j], j * c.across
-    x, u = positions(c, row, low, high, place), row.u[j, low:high]
-    slope = slope_at(c.surface, profile, x - _behind(c, V), y)
-    g = state[DEPTH] - height_at(c.surface, profile, x, y)
+    low, high, y = e.low[j], e.high[j], j * e.across
+    x, u = positions(e, low, high, place), e.u[j, low:high]
+    slope = slope_at(e.surface, e.profile, x - _behind(e, V), y)
+    g = state[DEPTH] - height_at(e.surface, e.profile, x, y)
     g_rate = state[RATE] - V * slope
-    p = c.law.stiffness * g + c.law.damping * g_rate
-    if row.arms.shape[0]:
-        z = state[LAST] / c.law.arm_time
-        brought = (c.law.arm_stiffness * np.exp(-z)).sum()
-        moved = (c.law.arm_stiffness * ramp_functions(z)[0]).sum()
-        free = brought * (g - u) + (moved - brought) * state[LAST] * g_rate - c.law.stiffness * u
+    p = e.law.stiffness * g + e.law.damping * g_rate
+    if e.arms.shape[0]:
+        z = state[LAST] / e.law.arm_time
+        brought = (e.law.arm_stiffness * np.exp(-z)).sum()
+        moved = (e.law.arm_stiffness * ramp_functions(z)[0]).sum()
+        free = brought * (g - u) + (moved - brought) * state[LAST] * g_rate - e.law.stiffness * u
         arms = np.zeros(high - low)
-        for k in range(row.arms.shape[0]):
-            arms += row.arms[k, j, low:high]
-        p += np.where(row.touched[j, low:high], arms, free)
+        for k in range(e.arms.shape[0]):
+            arms += e.arms[k, j, low:high]
+        p += np.where(e.touched[j, low:high], arms, free)
     return p, slope
 
 
 def _edge(
-    c: Constants, profile: Any, row: Row, j: int, low: int, i: int, p: Array, p_before: Array, depth: float,
+    e: Elements, j: int, low: int, i: int, p: Array, p_before: Array, depth: float,
     place: float, side: int,
 ) -> tuple[float, float, float]:  # fmt: skip
     """Return how far outward of its last element i a run ends, of the spacing, p and x there.
@@ -1122,22 +1058,22 @@ def _edge(
     out = 2 * side - 1
     now = _peeling(p[i], p[i + out])
     before = _peeling(p_before[i], p_before[i + out])
-    w = (gap_before(c, profile, row, j, low + i + out, place, depth),
-         gap_before(c, profile, row, j, low + i + 2 * out, place, depth),
-         gap_before(c, profile, row, j, low + i + 3 * out, place, depth))  # fmt: skip
+    w = (gap_before(e, j, low + i + out, place, depth),
+         gap_before(e, j, low + i + 2 * out, place, depth),
+         gap_before(e, j, low + i + 3 * out, place, depth))  # fmt: skip
     if math.isinf(before) or straight(w):
-        before = 1.0 if row.touched[j, low + i + out] else 1.0 - touching(w)
+        before = 1.0 if e.touched[j, low + i + out] else 1.0 - touching(w)
     share = min(before, now, 1.0)
     p_edge = 0.0 if now <= share else p[i] + share * (p[i + out] - p[i])
-    x = c.spacing * (row.counts[FIRST] + low + i + c.shift) + place
-    if c.per_width:
-        for kink in c.kinks:
+    x = e.spacing * (e.counts[FIRST] + low + i + e.shift) + place
+    if e.per_width:
+        for kink in e.kinks:
             # There p falls at once, by -C V times the jump of h'.
-            ahead = (kink - x) / c.spacing * out
+            ahead = (kink - x) / e.spacing * out
             p_kink = p[i] + ahead * (p[i] - p[i - out])
             if -NEAR <= ahead < min(before, 1.0) and p[i + out] < 0.0 and p_kink > 0.0:
                 share, p_edge = ahead, p_kink
-    return share, p_edge, x + share * c.spacing * out
+    return share, p_edge, x + share * e.spacing * out
 
 
 def _peeling(inside: float, outside: float) -> float:
@@ -1171,56 +1107,53 @@ def _parabola(overlap: tuple[float, float, float]) -> tuple[float, float, float]
 
 
 def _split(
-    c: Constants, profile: Any, p: Array, run: tuple[int, int], first: int, place: float, V: float
+    e: Elements, p: Array, run: tuple[int, int], first: int, place: float, V: float
 ) -> tuple[float, float]:
     """Split the element in which a kink of the shape is: h' jumps there, and p by -C V times as much.
 
     Without this, the forces under a wedge are of the first order in the spacing.
     """
     force = push = 0.0
-    for kink in c.kinks:
-        x_0 = c.spacing * (first + c.shift) + place
-        k = round((kink - x_0) / c.spacing)
+    for kink in e.kinks:
+        x_0 = e.spacing * (first + e.shift) + place
+        k = round((kink - x_0) / e.spacing)
         if not run[0] < k < run[1] - 1:
             continue
-        x = x_0 + k * c.spacing
-        here = slope_at(c.surface, profile, x - _behind(c, V), 0.0)
-        back = slope_at(c.surface, profile, kink - NEAR * c.spacing, 0.0)
-        ahead = slope_at(c.surface, profile, kink + NEAR * c.spacing, 0.0)
+        x = x_0 + k * e.spacing
+        here = slope_at(e.surface, e.profile, x - _behind(e, V), 0.0)
+        back = slope_at(e.surface, e.profile, kink - NEAR * e.spacing, 0.0)
+        ahead = slope_at(e.surface, e.profile, kink + NEAR * e.spacing, 0.0)
         p_back, p_ahead = (
-            p[k] - c.law.damping * V * (back - here),
-            p[k] - c.law.damping * V * (ahead - here),
+            p[k] - e.law.damping * V * (back - here),
+            p[k] - e.law.damping * V * (ahead - here),
         )
-        share = (kink - x) / c.spacing + 0.5
+        share = (kink - x) / e.spacing + 0.5
         if p_back >= 0.0 and p_ahead >= 0.0:
             force += share * p_back + (1.0 - share) * p_ahead - p[k]
             push += share * p_back * back + (1.0 - share) * p_ahead * ahead - p[k] * here
     return force, push
 
 
-def _peak(
-    c: Constants, p: Array, k: int, reach: tuple[float, float], pressed: NDArray[np.bool_]
-) -> tuple[float, float, float]:
-    """Return the peak near element k, of the parabola through three, and both doubts.
+def _peak(e: Elements, p: Array, k: int, reach: Array, run: tuple[int, int]) -> tuple[float, float]:
+    """Return the peak near element k, of the parabola through three, and its doubt.
 
     A shape with kinks has no such parabola: there the peak is known to the next element. Arms remember
     where contact began, so that the pressure itself may have a kink between two elements.
     """
     before, here, after = p[k - 1], p[k], p[k + 1]
-    doubt = 0.5 * max(here - before, here - after) if c.law.arm_time.size else 0.0
-    if c.kinks.size:
-        return here, min(abs(here - before), abs(here - after)), 0.0
+    doubt = 0.5 * max(here - before, here - after) if e.law.arm_time.size else 0.0
+    if e.kinks.size:
+        return here, min(abs(here - before), abs(here - after))
     bend = 2.0 * here - before - after
     if not (here >= before and here >= after and bend > 0.0):
-        return here, 0.0, 0.0
-    if doubt and pressed[k - 3 : k + 4].all():
+        return here, 0.0
+    if doubt and run[0] + 3 <= k < run[1] - 3:
         smooth, ridge = _smooth(p[k - 3 : k + 4]), _ridge(p[k - 3 : k + 4])
-        best = smooth if smooth[1] <= ridge[1] else ridge
-        return best[0], best[1], 0.0
+        return smooth if smooth[1] <= ridge[1] else ridge
     ahead = 0.5 * (after - before) / bend
     if abs(ahead) > reach[1 if ahead > 0.0 else 0]:
-        return here, doubt, 0.0
-    return here + 0.25 * (after - before) * ahead, doubt, 0.0
+        return here, doubt
+    return here + 0.25 * (after - before) * ahead, doubt
 
 
 def _smooth(p: Array) -> tuple[float, float]:
@@ -1253,8 +1186,8 @@ def _ridge(p: Array) -> tuple[float, float]:
 class Course(NamedTuple):
     """The steps of a run, and what is reported.
 
-    `times` are those before the first step and after each; `steps` their lengths; `Y` and `V` are at the start
-    of each, halfway and at its end, V just before that. `after` says after which step an instant is
+    `times` are those before the first step and after each, `steps` their lengths, `Y` and `V` at the start of
+    each, halfway and at its end, V just before that. `after` says after which step an instant is
     reported, `about` what `report` wants to know of it. `limits` are the speeds, upward and along, that no
     stable run reaches, and the imbalance of the forces that it stays below.
     """
@@ -1269,16 +1202,16 @@ class Course(NamedTuple):
 
 
 def advance(
-    c: Constants, profile: Any, row: Row, state: Array, course: Course, balances: Array, found: Array,
+    e: Elements, state: Array, course: Course, balances: Array, found: Array,
     step: int, reported: int, until: int,
 ) -> tuple[int, int, int]:  # fmt: skip
     """Run from a step on; return why it ended, the steps done and the instants reported."""
-    law = half = none = law_of(c.law, 0.0)
-    begun = runs_of(row.touched, row.low, row.high)
+    law = half = none = law_of(e.law, 0.0)
+    begun = runs_of(e.touched, e.low, e.high)
     while True:
         while reported < course.after.size and course.after[reported] == step:
             about, now = course.about[reported], course.times[step]
-            status = report(c, profile, row, state, now, about, found[reported])
+            status = report(e, state, now, about, found[reported])
             if status != DONE:
                 return status, step, reported
             reported += 1
@@ -1286,26 +1219,26 @@ def advance(
             return DONE, step, reported
         h, now = course.steps[step], course.times[step]
         if h != law.h:
-            law = law_of(c.law, h)
-            if c.explicit:
-                half = law_of(c.law, 0.5 * h)
-        if c.explicit:
+            law = law_of(e.law, h)
+            if e.explicit:
+                half = law_of(e.law, 0.5 * h)
+        if e.explicit:
             Y, V = course.Y[step], course.V[step]
-            status = explicit_step(c, profile, row, (none, half, law), state, now, Y, V)
+            status = explicit_step(e, (none, half, law), state, now, Y, V)
         else:
             Y_ends = course.Y[step, 0], course.Y[step, 2]
-            status, begun = implicit_step(c, profile, row, law, begun, state, now, Y_ends)
+            status, begun = implicit_step(e, law, begun, state, now, Y_ends)
         if status != DONE:
             return status, step, reported
         state[LAST] = h
         balances[0, step % WINDOW], balances[1, step % WINDOW] = state[IMBALANCE], state[FORCE]
         step += 1
-        status = _watch(c, state, course.limits, balances)
+        status = _watch(e, state, course.limits, balances)
         if status != DONE:
             return status, step, reported
 
 
-def _watch(c: Constants, state: Array, limits: Array, balances: Array) -> int:
+def _watch(e: Elements, state: Array, limits: Array, balances: Array) -> int:
     """Tell whether the last step shows that the run is unstable.
 
     No element pulls, p >= 0, so that an indenter in contact rises at most with g/τ - V h'; beyond that
@@ -1318,6 +1251,6 @@ def _watch(c: Constants, state: Array, limits: Array, balances: Array) -> int:
         return THROWN_UP
     if not abs(state[ALONG_RATE]) <= limits[1]:
         return THROWN_ALONG
-    if c.explicit and balances[1].min() > 0.0 and balances[0].sum() > limits[2] * balances[1].sum():
+    if e.explicit and balances[1].min() > 0.0 and balances[0].sum() > limits[2] * balances[1].sum():
         return UNBALANCED
     return DONE

@@ -46,6 +46,7 @@ class Law(NamedTuple):
         y_i' = (u - y_i)/tau_i is symmetric with the weights sqrt(K_i tau_i); its inverse has the
         retardation times for eigenvalues, each longer than that of an arm.
         """
+        stiffness, damping = float(stiffness), float(damping)
         K_i, tau_i = np.array(arms, dtype=float).reshape(-1, 2).T.copy()
         if not K_i.size:
             one = np.ones(1)

@@ -22,7 +22,7 @@ from kvtheory.scene.requirements import lacks_arms, require
 from kvtheory.scene.static_state import StaticState, out_of_range
 
 LEVEL = 1.1
-"""Ratio of the depths for which the span of a Python function is kept; between, it is a power of the depth."""
+"""Ratio of the depths at which the span of a Python function is found; between, a power of the depth."""
 PER_STRIP = 6.0
 """Elements along as wide as a strip, on a ball that is round: then both spacings matter about as much."""
 FEWEST_STRIPS = 16
@@ -163,16 +163,17 @@ class Model:
         line = self.indenter.profile if isinstance(self.indenter, Revolved) else self.indenter
         return PythonProfile(line, self.depth) if isinstance(line, Profile) else None
 
-    def constants(self, scheme: Scheme, deepest: float) -> kernels.Constants:
-        """Return the model as the kernels know it, for a scheme, of an indenter less deep than `deepest`."""
-        law = self.law if self.rule.relaxes else self.law._replace(rates=0.0 * self.law.rates)
-        return kernels.Constants(
-            self.surface, self.spacing, float(self.shift), float(self.across), self.parts,
-            self.indenter.per_width, self.mass, self.weight, self.spring, self.mass_along,
-            self.spring_along, self.damping_along, self.depth, deepest, self.half_length,
-            self.at_rest.velocity, np.array(self.indenter.kinks, dtype=float), law,
-            scheme.fitted, bool(scheme.tableau), scheme.table, self.rule,
-        )  # fmt: skip
+    def constants(self, scheme: Scheme, deepest: float) -> dict[str, Any]:
+        """Return the fields of `kernels.Elements` that stay as they are, for indenters above `deepest`."""
+        names = "spacing shift across mass weight spring depth half_length".split()
+        names += ["mass_along", "spring_along", "damping_along"]
+        return {name: float(getattr(self, name)) for name in names} | {
+            "surface": self.surface, "profile": self.profile, "rule": self.rule, "parts": self.parts,
+            "law": self.law if self.rule.relaxes else self.law._replace(rates=0.0 * self.law.rates),
+            "tableau": scheme.table, "fitted": scheme.fitted, "explicit": bool(scheme.tableau),
+            "per_width": self.indenter.per_width, "deepest": deepest,
+            "rest_velocity": self.at_rest.velocity, "kinks": np.array(self.indenter.kinks, dtype=float),
+        }  # fmt: skip
 
     def height(self, x: Any, y: Any = 0.0) -> Any:
         """Return h(x, y), huge where the indenter has no surface."""
@@ -194,7 +195,7 @@ class Model:
         ) + kernels.SPARE
 
     def weights(self, depth: float) -> Array:
-        """Return by what the force of the elements of each strip counts: 1, or the width of the strip in m."""
+        """Return the weight of the force of each strip: 1, or its width in m."""
         if not self.across:
             return np.ones(1)
         rim = self.half_width(depth) if self.parts else 0.0

@@ -14,7 +14,7 @@ import numpy as np
 
 from kvtheory import compilation
 from kvtheory.models.elements import kernels
-from kvtheory.models.elements.kernels import Course, Row
+from kvtheory.models.elements.kernels import Course, Elements
 from kvtheory.models.elements.law import Array
 from kvtheory.models.elements.model import Model, span
 from kvtheory.models.elements.schemes import DEFAULT, SCHEMES, Scheme
@@ -85,35 +85,35 @@ class ElementRow:
 
         In contact are those where `contact`(x) or, without it, those that are compressed.
         """
-        c, near = self.constants, (0.0, (0.0, 0.0), depth)
-        while kernels.attend(c, self.model.profile, self.stored, *near) == kernels.LACKING:
+        while kernels.attend(self.stored, 0.0, (0.0, 0.0), depth) == kernels.LACKING:
             self._move(0.0)
         row = self.stored
         for j in range(row.u.shape[0]):
             part = slice(row.low[j], row.high[j])
-            x, y = kernels.positions(c, row, row.low[j], row.high[j], 0.0), j * c.across
+            x, y = kernels.positions(row, row.low[j], row.high[j], 0.0), j * row.across
             row.u[j, part] = surface(x, y)
             row.touched[j, part] = contact(x) if contact else row.u[j, part] > 0.0
         row.arms[:] = 0.0
 
-    def _empty(self, first: int, width: int, strips: int) -> Row:
-        arms, shape = self.model.law.arm_stiffness.size, (strips, width)
-        counts = np.zeros(kernels.UPDATES + 1, dtype=np.int64)
+    def _empty(self, first: int, width: int, strips: int) -> Elements:
+        shape = strips, width
+        ends, work = np.zeros((2, strips), dtype=np.int64), np.zeros((5, *shape))
+        counts, flags = (
+            np.zeros(kernels.UPDATES + 1, dtype=np.int64),
+            np.zeros((2, *shape), dtype=bool),
+        )
         counts[kernels.FIRST] = first
-        inclined = self.model.sprung or self.constants.explicit
-        work = [np.zeros(shape) for _ in range(3)]
-        return Row(
-            np.zeros(shape), np.zeros((arms, *shape)), np.zeros(shape), np.zeros(shape, dtype=bool),
-            np.zeros(strips, dtype=np.int64), np.zeros(strips, dtype=np.int64), counts,
-            *work, np.zeros(shape if inclined else (0, 0)), np.zeros(shape, dtype=bool),
+        return Elements(
+            u=work[0], arms=np.zeros((self.model.law.arm_stiffness.size, *shape)), since=work[1],
+            touched=flags[0], pressed=flags[1], low=ends[0], high=ends[1], counts=counts, rest=work[2],
+            height=work[3], meets=work[4], slope=np.zeros(shape if self.model.sprung else (0, 0)),
+            **self.constants,
         )  # fmt: skip
 
     def use(self, scheme: Scheme) -> None:
         """Take the steps from here on by a scheme."""
         self.constants = self.model.constants(scheme, self.deepest)
-        row = self.stored
-        inclined = self.model.sprung or self.constants.explicit
-        self.stored = row._replace(slope=np.zeros(row.u.shape if inclined else (0, 0)))
+        self.stored = self.stored._replace(**self.constants)
 
     def run(
         self, course: Course, found: Array, balances: Array, begin: tuple[int, int], until: int
@@ -123,9 +123,8 @@ class ElementRow:
         step, reported = begin
         while True:
             status, step, reported = advance(
-                self.constants, self.model.profile, self.stored, self.state, course, balances, found,
-                step, reported, until,
-            )  # fmt: skip
+                self.stored, self.state, course, balances, found, step, reported, until
+            )
             if status != kernels.LACKING:
                 return status, step, reported
             self._move(float(course.times[step]))
@@ -138,10 +137,7 @@ class ElementRow:
         OutgrownError
             If the indenter sinks deeper than the row was made for.
         """
-        if (
-            self.constants.explicit != bool(scheme.tableau)
-            or self.constants.fitted != scheme.fitted
-        ):
+        if self.stored.tableau.shape != scheme.table.shape or self.stored.fitted != scheme.fitted:
             self.use(scheme)
         self.state[:4] = state[1:]
         course = course_of(self.path, np.array([state.time, state.time + h]), np.array([h]))
@@ -192,7 +188,7 @@ class ElementRow:
 
     def states(self, t: float) -> tuple[Array, Array]:
         """Return u of all stored elements at a time, and the forces of their arms."""
-        row, law = self.stored, self.constants.law
+        row, law = self.stored, self.stored.law
         past = t - row.since
         for j in range(past.shape[0]):
             past[j, row.low[j] : row.high[j]] = 0.0
@@ -220,5 +216,7 @@ def course_of(
 def motion(path: BaseMotion, times: Array) -> tuple[Array, Array]:
     """Return Y and V at all these times."""
     k = np.maximum(np.searchsorted(path.starts, times, side="right") - 1, 0)
-    Y, V, _ = evaluate(path.rows.T[:, k], times)
+    pieces: Any = path.rows.T[:, k]
+    at: Any = times
+    Y, V, _ = evaluate(pieces, at)
     return np.asarray(Y, dtype=float), np.asarray(V, dtype=float)

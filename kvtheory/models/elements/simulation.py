@@ -13,7 +13,12 @@ from kvtheory.models.elements.error_estimate import COLUMNS, SHIFTS, UNKNOWN, Ro
 from kvtheory.models.elements.law import RIGHT, ContactRule
 from kvtheory.models.elements.model import Model
 from kvtheory.models.elements.row import (
-    KEPT_DEPTH, WORTHWHILE, ElementRow, OutgrownError, Tally, course_of,
+    KEPT_DEPTH,
+    WORTHWHILE,
+    ElementRow,
+    OutgrownError,
+    Tally,
+    course_of,
 )  # fmt: skip
 from kvtheory.models.elements.schemes import DEFAULT, SCHEMES, Scheme
 from kvtheory.models.elements.stability import (
