@@ -310,27 +310,7 @@ def test_a_stiff_and_fast_arm_tends_to_kelvin_voigt_in_first_order():
     assert off[0] / off[1] == pytest.approx(2.0, abs=0.2)
 
 
-# Symmetry, rest, extremes
-
-
-@pytest.mark.parametrize("scheme", SCHEMES)
-def test_a_reversed_drive_is_the_mirror_image(scheme):
-    options = {"per_length": "50 /mm", "scheme": scheme, "certify": False, "at": [0.01, 0.04, 0.1]}
-    history = np.array([(0.0, 0.1), (0.03, 0.1), (0.03, -0.05), (0.1, -0.05)])
-    drives = (kv.Drive(history=(history * [1, side]).tolist()) for side in (1, -1))
-    scenes = (kv.Scene(foundation=RUBBER, drive=drive, run=kv.Run(0.1)) for drive in drives)
-    forth, back = (kv.elements(scene, **options) for scene in scenes)
-    np.testing.assert_allclose(back.depth, forth.depth, rtol=1e-9)
-    np.testing.assert_allclose(back.friction_force, -forth.friction_force, rtol=1e-5)
-
-
-@pytest.mark.parametrize("support", SUPPORTS)
-@pytest.mark.parametrize("scheme", [name for name in SCHEMES if name != "paper"])
-def test_rest_stays_rest(support, scheme):
-    scene = replace(kv.Scene.table1(support), foundation=RUBBER, drive=kv.Drive(0.0))
-    result = kv.elements(scene, scheme=scheme, per_length="50 /mm", certify=False, at=[0.0, 0.2])
-    assert np.ptp(result.depth) <= 1e-12 * result.depth[0]
-    assert np.all(np.abs(result.friction_force) < 1e-9 * result.normal_force)
+# Extremes
 
 
 def test_no_force_jumps_with_the_drive():

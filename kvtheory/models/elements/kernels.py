@@ -77,8 +77,9 @@ class Elements(NamedTuple):
 
     Arrays over strips and elements: `u` is the compression; of an element in contact, which is `touched`,
     `arms` are the forces s_i of its arms, of a free one its modes. Those of a strip from `low` to `high` are
-    near the indenter and up to date; a free one elsewhere is as it was at the time `since`. `rest`, `height`,
-    `meets`, `slope` and `pressed` are work space of a step.
+    near the indenter and up to date; a free one elsewhere is as it was at the time `since`. With arms, and by
+    explicit schemes, an element may stay in contact above the plane z = 0: all that are in contact are then
+    from `first` to before `last`. `rest`, `height`, `meets`, `slope` and `pressed` are work space of a step.
     """
 
     u: Array
@@ -87,6 +88,8 @@ class Elements(NamedTuple):
     touched: NDArray[np.bool_]
     low: NDArray[np.int64]
     high: NDArray[np.int64]
+    first: NDArray[np.int64]
+    last: NDArray[np.int64]
     counts: NDArray[np.int64]
     rest: Array
     height: Array
@@ -238,14 +241,18 @@ def attend(e: Elements, now: float, places: tuple[float, float], depth: float) -
     s, dx, first, (stored, width) = e.surface, e.spacing, e.counts[FIRST], e.u.shape
     left, right = extent(s, e.profile, depth, -1.0), extent(s, e.profile, depth, 1.0)
     strips = 1 + int(s.stretch * right / e.across) if e.across else 1
+    for j in range(strips, stored):
+        strips = j + 1 if e.first[j] < e.last[j] else strips
     for j in range(stored):
         low = high = e.low[j]
         if j < strips:
-            share = j * e.across / (s.stretch * right) if j else 0.0
+            share = j * e.across / (s.stretch * right) if right > 0.0 else 1.0
             bent = math.sqrt(max(1.0 - share * share, 0.0))
             low = math.floor((-left * bent - max(places[0], places[1])) / dx) - SPARE - first
             high = math.ceil((right * bent - min(places[0], places[1])) / dx) + SPARE + 1 - first
-            if j == 0 and (low < 0 or high > width or strips > stored):
+            if e.first[j] < e.last[j]:
+                low, high = min(low, e.first[j] - SPARE), max(high, e.last[j] + SPARE)
+            if low < 0 or high > width or strips > stored:
                 e.counts[LOW], e.counts[HIGH], e.counts[STRIPS] = low + first, high + first, strips
                 return LACKING
             e.counts[UPDATES] += high - low
@@ -400,6 +407,9 @@ def settle(e: Elements, law: StepLaw, before: float, depths: tuple[float, float]
                 _enter(e, j, low + new[k], within, rise)
             u[:] = np.where(pressed, g, left)
         touched[:] = pressed
+        if e.explicit or e.arms.shape[0]:
+            inside = low + np.flatnonzero(pressed)
+            e.first[j], e.last[j] = (inside[0], inside[-1] + 1) if inside.size else (0, 0)
 
 
 def gap_before(e: Elements, j: int, i: int, place: float, depth: float) -> float:

@@ -165,7 +165,7 @@ class Model:
 
     def constants(self, scheme: Scheme, deepest: float) -> dict[str, Any]:
         """Return the fields of `kernels.Elements` that stay as they are, for indenters above `deepest`."""
-        names = "spacing shift across mass weight spring depth half_length".split()
+        names = ["spacing", "shift", "across", "mass", "weight", "spring", "depth", "half_length"]
         names += ["mass_along", "spring_along", "damping_along"]
         return {name: float(getattr(self, name)) for name in names} | {
             "surface": self.surface, "profile": self.profile, "rule": self.rule, "parts": self.parts,

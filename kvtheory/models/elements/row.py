@@ -97,7 +97,7 @@ class ElementRow:
 
     def _empty(self, first: int, width: int, strips: int) -> Elements:
         shape = strips, width
-        ends, work = np.zeros((2, strips), dtype=np.int64), np.zeros((5, *shape))
+        ends, work = np.zeros((4, strips), dtype=np.int64), np.zeros((5, *shape))
         counts, flags = (
             np.zeros(kernels.UPDATES + 1, dtype=np.int64),
             np.zeros((2, *shape), dtype=bool),
@@ -105,7 +105,8 @@ class ElementRow:
         counts[kernels.FIRST] = first
         return Elements(
             u=work[0], arms=np.zeros((self.model.law.arm_stiffness.size, *shape)), since=work[1],
-            touched=flags[0], pressed=flags[1], low=ends[0], high=ends[1], counts=counts, rest=work[2],
+            touched=flags[0], pressed=flags[1], low=ends[0], high=ends[1],
+            first=ends[2], last=ends[3], counts=counts, rest=work[2],
             height=work[3], meets=work[4], slope=np.zeros(shape if self.model.sprung else (0, 0)),
             **self.constants,
         )  # fmt: skip
@@ -166,8 +167,9 @@ class ElementRow:
             )
             for name in ("u", "arms", "since", "touched"):
                 getattr(new, name)[..., :rows, to] = getattr(old, name)[..., of]
-            for ends, before in ((new.low, old.low), (new.high, old.high)):
-                ends[:rows] = np.clip(before + first - start, 0, stop - start)
+            for name in ("low", "high", "first", "last"):
+                moved = getattr(old, name) + first - start
+                getattr(new, name)[:rows] = np.clip(moved, 0, stop - start)
         self.stored = new
 
     def _useful(self, t: float) -> tuple[int, int]:
