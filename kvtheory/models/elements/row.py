@@ -88,12 +88,13 @@ class ElementRow:
         while kernels.attend(self.stored, 0.0, (0.0, 0.0), depth) == kernels.LACKING:
             self._move(0.0)
         row = self.stored
+        for each in (row.u, row.arms, row.touched):
+            each[...] = 0
         for j in range(row.u.shape[0]):
             part = slice(row.low[j], row.high[j])
             x, y = kernels.positions(row, row.low[j], row.high[j], 0.0), j * row.across
             row.u[j, part] = surface(x, y)
             row.touched[j, part] = contact(x) if contact else row.u[j, part] > 0.0
-        row.arms[:] = 0.0
 
     def _empty(self, first: int, width: int, strips: int) -> Elements:
         shape = strips, width
