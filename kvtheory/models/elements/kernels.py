@@ -80,6 +80,7 @@ class Elements(NamedTuple):
     near the indenter and up to date; a free one elsewhere is as it was at the time `since`. With arms, and by
     explicit schemes, an element may stay in contact above the plane z = 0: all that are in contact are then
     from `first` to before `last`. `rest`, `height`, `meets`, `slope` and `pressed` are work space of a step.
+    `numbers` holds i + shift of the elements of a strip.
     """
 
     u: Array
@@ -96,6 +97,7 @@ class Elements(NamedTuple):
     meets: Array
     slope: Array
     pressed: NDArray[np.bool_]
+    numbers: Array
     surface: Surface
     profile: Any
     law: Law
@@ -152,7 +154,7 @@ def height_at(s: Surface, profile: Any, x: Any, y: float) -> Any:
 
 def _height(s: Surface, profile: Any, r: Any) -> Any:
     if s.kind == PARABOLA and profile is None:
-        return r * (r / (2.0 * s.size))
+        return r * r * (0.5 / s.size)
     near = np.minimum(np.maximum(r, -s.inside), s.inside)
     if profile is not None:
         h = profile.height(near)
@@ -175,7 +177,7 @@ def slope_at(s: Surface, profile: Any, x: Any, y: float) -> Any:
 
 def _slope(s: Surface, profile: Any, r: Any) -> Any:
     if s.kind == PARABOLA and profile is None:
-        return r / s.size
+        return r * (1.0 / s.size)
     near = np.minimum(np.maximum(r, -s.inside), s.inside)
     if profile is not None:
         slope = profile.slope(near)
@@ -414,14 +416,13 @@ def settle(e: Elements, law: StepLaw, before: float, depths: tuple[float, float]
 
 def gap_before(e: Elements, j: int, i: int, place: float, depth: float) -> float:
     """Return how far the indenter was below an element at the start of a step."""
-    x = e.spacing * (e.counts[FIRST] + i + e.shift) + place
+    x = e.spacing * e.numbers[i] + place
     return depth - height_at(e.surface, e.profile, x, j * e.across) - e.u[j, i]
 
 
 def positions(e: Elements, low: int, high: int, place: float) -> Array:
     """Return x of elements when the base has moved by `place` under the indenter."""
-    first = e.counts[FIRST]
-    x: Array = e.spacing * (np.arange(first + low, first + high) + e.shift) + place
+    x: Array = e.spacing * e.numbers[low:high] + place
     return x
 
 
@@ -559,6 +560,10 @@ def implicit_step(
         slid, new_along_rate = _slide(e, law, step, runs, state, sunk, slid)
         if not abs(slid - before) > SLIDE_RTOL * e.half_length:
             break
+    for j in range(e.counts[STRIPS]):
+        e.pressed[j, e.low[j] : e.high[j]] = False
+    for k in range(runs.shape[0]):
+        e.pressed[runs[k, 0], runs[k, 1] : runs[k, 2]] = True
     settle(e, law, place - travel, (depth, depth + sunk))
     state[DEPTH], state[RATE] = depth + sunk, new_rate
     if sprung:
@@ -644,11 +649,11 @@ def _walk(
         count += high - low
     found = 0
     for j in range(e.counts[STRIPS]):
-        low, high = e.low[j], e.high[j]
-        e.pressed[j, low:high] = meets[j, low:high] <= sunk
-        found += e.pressed[j, low:high].sum()
+        found += int(np.count_nonzero(meets[j, e.low[j] : e.high[j]] <= sunk))
     if found == count:
         return runs, sums, moved
+    for j in range(e.counts[STRIPS]):
+        e.pressed[j, e.low[j] : e.high[j]] = meets[j, e.low[j] : e.high[j]] <= sunk
     runs = runs_of(e.pressed, e.low, e.high)
     return runs, _sums(e, runs), True
 

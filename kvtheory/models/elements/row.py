@@ -107,7 +107,8 @@ class ElementRow:
         return Elements(
             u=work[0], arms=np.zeros((self.model.law.arm_stiffness.size, *shape)), since=work[1],
             touched=flags[0], pressed=flags[1], low=ends[0], high=ends[1],
-            first=ends[2], last=ends[3], counts=counts, rest=work[2],
+            first=ends[2], last=ends[3], counts=counts,
+            numbers=np.arange(float(first), first + width) + self.model.shift, rest=work[2],
             height=work[3], meets=work[4], slope=np.zeros(shape if self.model.sprung else (0, 0)),
             **self.constants,
         )  # fmt: skip
