@@ -10,9 +10,12 @@ from kvtheory.derivations import element_schemes as schemes
 from kvtheory.derivations import element_strips as strips
 
 from kvtheory.models.elements import schemes as simulator
-from kvtheory.models.elements.edges import kink_area
-from kvtheory.models.elements.law import ramp_functions
-from kvtheory.models.elements.strips import weights_across
+from kvtheory.models.elements.kernels import (
+    exponential_fit,
+    kink_area,
+    ramp_functions,
+    weights_across,
+)  # fmt: skip
 
 LABELS = {
     "F15-runge-kutta", "F15-euler", "F15-sawtooth", "element-mean-force", "element-fit",
@@ -47,8 +50,8 @@ def test_stability_polynomials_are_those_of_the_tableaus(name):
 def test_exponential_fit_of_the_code_is_the_derived_one(z):
     with mp.workdps(40):
         exact = 1 / (1 - mp.exp(-mp.mpf(z))) - 1 / mp.mpf(z)
-        assert simulator.exponential_fit(z) == pytest.approx(float(exact), rel=1e-12)
-    assert 0.5 <= simulator.exponential_fit(z) <= 1.0
+        assert exponential_fit(z) == pytest.approx(float(exact), rel=1e-12)
+    assert 0.5 <= exponential_fit(z) <= 1.0
 
 
 @pytest.mark.parametrize("z", [1e-6, 0.019, 0.021, 3.0, 1e4])
@@ -75,7 +78,7 @@ def test_no_implicit_step_amplifies():
     rng = np.random.default_rng(4)
     for _ in range(2000):
         epsilon, b, kappa, h = 10.0 ** rng.uniform([-6, -2, -3, -4], [3, 1, 3, 3])
-        for theta in (1.0, simulator.exponential_fit(h * b / epsilon)):
+        for theta in (1.0, exponential_fit(h * b / epsilon)):
             radius = np.abs(np.linalg.eigvals(step_matrix(epsilon, b, kappa, h, theta))).max()
             assert radius <= 1.0 + 1e-12
 
@@ -86,7 +89,7 @@ def test_orders_by_the_eigenvalues_of_a_step(fitted, order):
     exact = max(np.roots([epsilon, b, b + kappa]), key=lambda rate: rate.imag)
     errors = []
     for h in (0.04, 0.02, 0.01):
-        theta = simulator.exponential_fit(h * b / epsilon) if fitted else 1.0
+        theta = exponential_fit(h * b / epsilon) if fitted else 1.0
         values = np.linalg.eigvals(step_matrix(epsilon, b, kappa, h, theta)).astype(complex)
         errors.append(min(abs(np.log(values) / h - exact)))
     assert np.log2(errors[1] / errors[2]) == pytest.approx(order, abs=0.05)

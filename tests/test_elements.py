@@ -3,6 +3,8 @@
 import csv
 import json
 import math
+import sys
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -11,8 +13,8 @@ from click.testing import CliRunner
 import kvtheory as kv
 from kvtheory.charts.stability import contact_lengths
 from kvtheory.cli import main
-from kvtheory.models.elements import row, simulation
-from kvtheory.models.elements.model import Model
+from kvtheory.models.elements import kernels, row, simulation
+from kvtheory.models.elements.model import Model, surface_of
 from kvtheory.models.elements.row import ElementRow, IndenterState
 from kvtheory.models.elements.schemes import SCHEMES
 from kvtheory.models.elements.stability import limit_at
@@ -123,7 +125,7 @@ def test_memory_does_not_grow_with_time(monkeypatch):
 
     def recorded(elements, *arguments):
         move(elements, *arguments)
-        sizes.append(elements.touched.size)
+        sizes.append(elements.stored.u.size)
 
     monkeypatch.setattr(ElementRow, "_move", recorded)
     swing = kv.Drive(function=lambda t: 0.05 + 0.1 * math.cos(50.0 * t))
@@ -236,15 +238,21 @@ def test_other_shapes_end_in_the_steady_state_of_quadrature(shape, bound, suppor
     assert end.trailing_edge == pytest.approx([steady.trailing_edge] * 2, abs=3e-3 * edge + 1e-5)
 
 
+FOUNDATIONS = {
+    "Kelvin-Voigt": kv.Foundation(1e10, 0.1),
+    "Prony": kv.GeneralizedMaxwell(1e10, arms=[(3e10, 0.01), (1e10, 0.1)]),
+}
+
+
+@pytest.mark.parametrize("foundation", FOUNDATIONS)
 @pytest.mark.parametrize("scheme", SCHEMES)
-def test_reversal_of_the_drive_is_the_mirror_image(scheme):
+def test_reversal_of_the_drive_is_the_mirror_image(scheme, foundation):
     history = np.array([(0.0, 0.1), (0.03, 0.1), (0.03, -0.05), (0.1, -0.05)])
+    drives = (kv.Drive(history=(history * [1, sign]).tolist()) for sign in (1, -1))
+    options = {"per_length": "50 /mm", "scheme": scheme, "certify": False}
     forth, back = (
-        kv.elements(
-            kv.Scene(drive=kv.Drive(history=(history * [1, sign]).tolist()), run=kv.Run(0.1)),
-            per_length="50 /mm", scheme=scheme, certify=False,
-        )
-        for sign in (1, -1)
+        kv.elements(kv.Scene(foundation=FOUNDATIONS[foundation], drive=drive, run=kv.Run(0.1)), **options)
+        for drive in drives
     )  # fmt: skip
     np.testing.assert_allclose(back.depth, forth.depth, rtol=1e-9)
     scale = np.abs(forth.friction_force).max()
@@ -252,16 +260,82 @@ def test_reversal_of_the_drive_is_the_mirror_image(scheme):
     np.testing.assert_allclose(back.leading_edge, -forth.leading_edge, atol=1e-8)
 
 
+@pytest.mark.parametrize("foundation", FOUNDATIONS)
 @pytest.mark.parametrize("support", ["fixed", "dead-weight", "suspended"])
 @pytest.mark.parametrize("scheme", [name for name in SCHEMES if name != "paper"])
-def test_rest_stays_rest(support, scheme):
-    scene = sliding(0.0, support=support)
-    result = kv.elements(scene, scheme=scheme, certify=False)
+def test_rest_stays_rest(support, scheme, foundation):
+    scene = replace(sliding(0.0, support=support), foundation=FOUNDATIONS[foundation])
+    result = kv.elements(scene, scheme=scheme, per_length="50 /mm", certify=False)
     assert np.ptp(result.depth) <= 1e-12 * result.depth[0]
     assert np.all(np.abs(result.friction_force) < 1e-9 * result.normal_force)
-    assert result.normal_force == pytest.approx(
-        kv.transient(scene, at=0.0).normal_force[0], rel=1e-3
-    )
+    expected = kv.transient(sliding(0.0, support=support), at=0.0).normal_force[0]
+    assert result.normal_force == pytest.approx(expected, rel=2e-3)
+
+
+# Compiled and interpreted
+
+
+BALL = kv.Scene(
+    kv.Sphere("10 mm"), support=kv.DeadWeight(mass="1 kg"),
+    drive=kv.Drive(history=[(0.0, 0.1), (0.01, 0.1), (0.01, -0.05)]), run=kv.Run(0.02),
+)  # fmt: skip
+BOTH_WAYS = {
+    "edge-corrected": (kv.Scene(), "edge-corrected"),
+    "paper": (kv.Scene(), "paper"),
+    "fixed": (kv.Scene.table1("fixed"), "exponential"),
+    "arms": (kv.Scene(foundation=FOUNDATIONS["Prony"]), "edge-corrected"),
+    "arms, explicit": (kv.Scene(foundation=FOUNDATIONS["Prony"]), "paper"),
+    "ball": (BALL, "edge-corrected"),
+    "ball on arms": (replace(BALL, foundation=FOUNDATIONS["Prony"]), "edge-corrected"),
+    "wedge on a spring": (
+        kv.Scene(kv.Wedge(0.1), drive=kv.Drive(0.1, stiffness=1e6)),
+        "edge-corrected",
+    ),
+    "power law": (kv.Scene(kv.PowerLaw(0.01, 3.3)), "semi-implicit"),
+    "cone": (replace(BALL, indenter=kv.Revolved(kv.Wedge(0.1))), "edge-corrected"),
+}
+
+
+@pytest.mark.parametrize("name", BOTH_WAYS)
+def test_compiled_kernels_give_what_interpreted_ones_give(name, monkeypatch):
+    pytest.importorskip("numba")
+    (scene, scheme), found = BOTH_WAYS[name], []
+    for enough in (sys.maxsize, -1):
+        monkeypatch.setattr(simulation, "WORTHWHILE", enough)
+        options = {"scheme": scheme, "per_length": "30 /mm", "certify": False}
+        found.append(kv.elements(scene, at=[0.0, 0.003, 0.011, 0.02], **options))
+    slow, fast = found
+    assert (slow.compiled, fast.compiled) == (False, True)
+    for quantity in TRANSIENT_UNITS:
+        one, other = getattr(slow, quantity), getattr(fast, quantity)
+        scale = np.nanmax(np.abs(one))
+        np.testing.assert_allclose(other, one, atol=1e-7 * scale, err_msg=quantity)
+
+
+@pytest.mark.parametrize(
+    "shape",
+    [
+        kv.Parabola(0.01),
+        kv.Circle(0.01),
+        kv.PowerLaw(0.01, 4.0),
+        kv.PowerLaw(0.01, 1.5),
+        kv.Wedge(0.1),
+    ],
+)
+def test_kernels_know_the_shapes_of_the_scene(shape):
+    x = np.linspace(-0.0099, 0.0099, 23)
+    for body in (shape, kv.Revolved(shape)):
+        surface = surface_of(body)
+        where = (x,) if body is shape else (x, 0.001)
+        np.testing.assert_allclose(
+            kernels.height_at(surface, None, x, 0.001), body.height(*where), rtol=1e-13
+        )
+        np.testing.assert_allclose(
+            kernels.slope_at(surface, None, x, 0.001), body.slope(*where), rtol=1e-12, atol=1e-15
+        )
+    depth = 0.4 * float(shape.height(0.005))
+    reached = kernels.extent(surface_of(shape), None, depth, 1.0)
+    assert shape.height(reached) == pytest.approx(depth, rel=1e-13)
 
 
 def test_a_function_moves_the_base_as_the_same_history_does():
@@ -304,7 +378,7 @@ def test_steps_that_find_no_element_fly():
     for scheme in SCHEMES.values():
         model = Model.of(kv.Scene(), 5e-6, parts=scheme.row.parts_of_elements)
         elements = ElementRow(model, kv.Drive(0.1).motion(1.0, least=0.1))
-        new = scheme.step(elements, IndenterState(0.0, -1e-3, 0.0), 1e-4)
+        new = elements.step(scheme, IndenterState(0.0, -1e-3, 0.0), 1e-4)
         assert new.rate == pytest.approx(9.80665e-4, rel=1e-9)
 
 
@@ -348,6 +422,7 @@ def test_progress_counts_to_the_end():
     ("options", "words"),
     [
         ({"scheme": "papper"}, ['"papper"', 'did you mean "paper"']),
+        ({"scheme": "rk4"}, ["scheme", '"rk4"', "edge-corrected"]),
         ({"per_length": "200"}, ["per_length", "no unit", "/mm"]),
         ({"per_length": -1.0}, ["per_length", "range"]),
         ({"per_length": "1 /m"}, ["per_length", "expected"]),

@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 
 import kvtheory as kv
+from kvtheory.models.elements.kernels import weights_across
 from kvtheory.models.elements.model import Model
 from kvtheory.models.elements.row import ElementRow, IndenterState
 from kvtheory.models.elements.schemes import SCHEMES
-from kvtheory.models.elements.strips import weights_across
 from kvtheory.results import TRANSIENT_UNITS
 from kvtheory.results.table import scales
 from kvtheory.scene.static_state import StaticState
@@ -216,11 +216,14 @@ def test_strips_are_added_where_the_ball_sinks():
     scene = ball(GRIPS["dead-weight"], 0.0, 0.5)
     model = replace(Model.of(scene, 2e-5, parts=True), start=0.2)
     row, scheme = ElementRow(model, model.path(scene)), SCHEMES["edge-corrected"]
-    state, begun = IndenterState(0.0, 0.2 * model.depth, 0.0), row.touched.shape[0]
+    state, begun = (
+        IndenterState(0.0, 0.2 * model.depth, 0.0),
+        int((row.stored.low < row.stored.high).sum()),
+    )
     for _ in range(500):
-        state = scheme.step(row, state, 1e-3)
-    assert begun == model.strips(0.2 * model.depth) < model.strips(model.depth)
-    assert row.touched.shape[0] >= model.strips(model.depth)
+        state = row.step(scheme, state, 1e-3)
+    assert model.strips(0.2 * model.depth) <= begun <= model.strips(model.depth)
+    assert (row.stored.low < row.stored.high).sum() >= model.strips(model.depth)
     assert state.depth == pytest.approx(model.depth, rel=1e-6)
 
 

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import kvtheory as kv
-from kvtheory.models.elements.edges import gaps, straight, touching
+from kvtheory.models.elements.kernels import straight, touching
 from kvtheory.models.elements.model import Model
 from kvtheory.results import TRANSIENT_UNITS
 from kvtheory.results.table import scales
@@ -158,10 +158,9 @@ def test_where_an_edge_is_between_two_elements():
     x = np.arange(8.0)
     for place in (3.1, 3.5, 3.9):
         line = 2.0 * (place - x)
-        assert 1.0 - touching(gaps(*line[4:7])) == pytest.approx(place - 3.0)
-        assert straight(gaps(*line[4:7]))
+        assert 1.0 - touching(line[4:7]) == pytest.approx(place - 3.0)
+        assert straight(line[4:7])
         square = -((x - place) ** 2)
-        assert not straight(gaps(*square[4:7]))
+        assert not straight(square[4:7])
         curved = (place - x) * (4.0 + x)
-        assert 1.0 - touching(gaps(*curved[4:7])) == pytest.approx(place - 3.0)
-    assert touching((math.nan, 1.0, 0.0)) == 1.0
+        assert 1.0 - touching(curved[4:7]) == pytest.approx(place - 3.0)

@@ -104,9 +104,11 @@ def energies(row, state, h, count):
         moving = model.mass * state.rate**2 if math.isfinite(model.mass) else 0.0
         moving += model.mass_along * state.along_rate**2 + model.spring_along * state.along**2
         lifted = model.weight * risen if math.isfinite(model.mass) else 0.0
-        springs = model.law.stiffness * model.spacing * float(row.states[0, 0] @ row.states[0, 0])
+        springs = (
+            model.law.stiffness * model.spacing * float(np.square(row.states(state.time)[0]).sum())
+        )
         found.append(0.5 * (moving + model.spring * risen**2 + springs) + lifted)
-        state = SCHEMES["exponential"].step(row, state, h)
+        state = row.step(SCHEMES["exponential"], state, h)
     return np.array(found)
 
 
@@ -138,7 +140,7 @@ def test_the_energy_of_arms_on_a_spring_is_balanced(shape):
         state, rows = IndenterState(0.0, model.depth, 0.0), []
         K_i, tau = model.law.arm_stiffness[:, None], model.law.arm_time[:, None]
         for _ in range(round(0.04 / h) + 1):
-            u, s = row.states[0, 0], row.states[1:, 0]
+            u, s = (each[..., 0, :] for each in row.states(state.time))
             springs = model.law.stiffness * u @ u + (s * s / K_i).sum()
             moving = model.mass * state.rate**2 + model.mass_along * state.along_rate**2
             held = 1e6 * state.along + 1e3 * state.along_rate
@@ -148,7 +150,7 @@ def test_the_energy_of_arms_on_a_spring_is_balanced(shape):
                 model.spacing * (s * s / (K_i * tau)).sum() + 1e3 * state.along_rate**2,
                 0.1 * held,
             ))  # fmt: skip
-            last, state = state, SCHEMES["exponential"].step(row, state, h)
+            last, state = state, row.step(SCHEMES["exponential"], state, h)
         stored, lost, power = np.array(rows).T
         # That of friction on the base, F_x = k_x x + c_x x' + M_x x''.
         work = np.trapezoid(power, dx=h) + 0.1 * model.mass_along * last.along_rate

@@ -7,7 +7,7 @@ from typing import Any
 from kvtheory.api._edge import double_precision, one_scene, times_of
 from kvtheory.progress import Progress
 from kvtheory.results import Simulation
-from kvtheory.results.schemes import SCHEME_ROWS
+from kvtheory.results.schemes import SIMULATED
 from kvtheory.scene.arguments import a_scene, callback, checked, choice, flag, measured, times
 from kvtheory.scene.model import Scene
 from kvtheory.scene.quantities import Quantity
@@ -19,7 +19,7 @@ TIME_STEP = Quantity("s", "time step", 0.0, True)
 
 
 @checked(
-    scene=a_scene, at=times, per_length=measured(PER_LENGTH), scheme=choice(SCHEME_ROWS),
+    scene=a_scene, at=times, per_length=measured(PER_LENGTH), scheme=choice(SIMULATED),
     time_step=measured(TIME_STEP), certify=flag, progress=callback, warn=callback,
 )  # fmt: skip
 def elements(

@@ -100,7 +100,7 @@ def walk(
     with np.errstate(all="ignore"):
         while True:
             try:
-                state = scheme.step(row, state, time_step)
+                state = row.step(scheme, state, time_step)
             except (OutgrownError, OverflowError, ValueError):  # of a depth that is not a number
                 return
             yield state
@@ -230,13 +230,19 @@ def _begin(
     if not steady:
         return row, scheme, start
     state = steady_sliding(scene)
-    under = row.under(start, start, 0.0, state.depth)
-    pressed = (under.x >= state.leading_edge) & (under.x <= state.trailing_edge)
-    left = state.depth - float(model.height(np.array(state.trailing_edge)))
-    behind = np.maximum(under.x - state.trailing_edge, 0.0) / state.retardation_length
-    relaxing = np.where(under.x > state.trailing_edge, left * np.exp(-behind), 0.0)
-    u = np.where(pressed, state.depth - under.height, relaxing)
-    row.settle(under, model.law.at_rest(u), pressed)
+    left = state.depth - float(model.height(state.trailing_edge))
+
+    def surface(x: Array, y: float) -> Array:
+        behind = np.maximum(x - state.trailing_edge, 0.0) / state.retardation_length
+        u = np.where(
+            x > state.trailing_edge, left * np.exp(-behind), state.depth - model.height(x, y)
+        )
+        return np.where(x < state.leading_edge, 0.0, u)
+
+    def contact(x: Array) -> NDArray[np.bool_]:
+        return np.asarray((x >= state.leading_edge) & (x <= state.trailing_edge))
+
+    row.lay(float(state.depth), surface, contact)
     return row, scheme, start._replace(depth=float(state.depth))
 
 

@@ -126,7 +126,8 @@ class Simulation(TimeSeries):
 
     At an instant where the drive jumps, values are those just after the jump. `per_length` is the
     number of elements per length (1/m), `time_step` the longest step (s), `element_updates` the number of
-    updates of single elements; `warning` says why the step may be too long, if so.
+    updates of single elements; `warning` says why the step may be too long, if so; `compiled` whether the
+    kernels were compiled (extra ``fast``).
     """
 
     scheme: str
@@ -137,6 +138,7 @@ class Simulation(TimeSeries):
     warning: str
     model: str
     certificate: Certificate
+    compiled: bool
 
 
 @dataclass(frozen=True, repr=False)

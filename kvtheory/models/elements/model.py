@@ -8,25 +8,27 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
-from kvtheory.models.elements.edges import BEYOND, kink_area, runs_of
+from kvtheory.models.elements import kernels
 from kvtheory.models.elements.law import RIGHT, Array, ContactRule, Law
-from kvtheory.models.elements.strips import FEWEST_STRIPS, PER_STRIP, total, weights_across
+from kvtheory.models.elements.schemes import Scheme
 from kvtheory.scene.base_motion import BaseMotion
 from kvtheory.scene.capabilities import lacks_arms, require
-from kvtheory.scene.indenters import Indenter
+from kvtheory.scene.indenters import Circle, Indenter, PowerLaw, Profile, Revolved, Sphere, Wedge
 from kvtheory.scene.model import Scene
 from kvtheory.scene.static_state import StaticState, out_of_range
 
 LEVEL = 1.1
-"""Ratio of the depths for which the span of the indenter is kept: a tenth more elements than needed."""
+"""Ratio of the depths at which the span of a Python function is found; between, a power of the depth."""
+PER_STRIP = 6.0
+"""Elements along as wide as a strip, on a ball that is round: then both spacings matter about as much."""
+FEWEST_STRIPS = 16
+"""From the middle plane to the rim at rest."""
 FEWEST, MOST = 8, 2_000_000
 """Elements in contact at rest: with fewer there is no contact to speak of, with more no memory."""
-SPARE = 7
-"""Elements beyond those that can be met: the surface is extended from three, and three more never are."""
 SAMPLES = 2049
 """Of the surface, where a depth is wanted to about a thousandth."""
 SAMPLES_ALONG, SAMPLES_ACROSS = 257, 16
@@ -78,7 +80,7 @@ class Model:
             double precision.
         """
         require(lacks_arms, scene, "the simulator")
-        support, law, fixed = scene.support, Law.of(scene.foundation), scene.held
+        support, law, fixed = scene.support, Law.of_foundation(scene.foundation), scene.held
         model = cls(
             scene.indenter, law, 1.0, support.mass, support.weight, 0.0,
             support.depth or 1.0, parts, shift,
@@ -148,80 +150,83 @@ class Model:
 
     def half_width(self, depth: float) -> float:
         """Return half the width of a ball at a height, in m."""
-        stretch: float = self.indenter.stretch  # type: ignore[union-attr]
-        return stretch * _extent(self.indenter, depth, 1.0) if depth > 0.0 else 0.0
+        return self.surface.stretch * span(self.indenter, depth)[1]
+
+    @cached_property
+    def surface(self) -> kernels.Surface:
+        """The indenter as the kernels know it."""
+        return surface_of(self.indenter)
+
+    @cached_property
+    def profile(self) -> "PythonProfile | None":
+        """The profile if it is a Python function, which is interpreted."""
+        line = self.indenter.profile if isinstance(self.indenter, Revolved) else self.indenter
+        return PythonProfile(line, self.depth) if isinstance(line, Profile) else None
+
+    def constants(self, scheme: Scheme, deepest: float) -> dict[str, Any]:
+        """Return the fields of `kernels.Elements` that stay as they are, for indenters above `deepest`."""
+        names = ["spacing", "shift", "across", "mass", "weight", "spring", "depth", "half_length"]
+        names += ["mass_along", "spring_along", "damping_along"]
+        return {name: float(getattr(self, name)) for name in names} | {
+            "surface": self.surface, "profile": self.profile, "rule": self.rule, "parts": self.parts,
+            "law": self.law if self.rule.relaxes else self.law._replace(rates=0.0 * self.law.rates),
+            "tableau": scheme.table, "fitted": scheme.fitted, "explicit": bool(scheme.tableau),
+            "per_width": self.indenter.per_width, "deepest": deepest,
+            "rest_velocity": self.at_rest.velocity, "kinks": np.array(self.indenter.kinks, dtype=float),
+        }  # fmt: skip
 
     def height(self, x: Any, y: Any = 0.0) -> Any:
-        """Return h(x, y), infinite where the indenter has no surface."""
-        return self._within_reach(self.indenter.height, (x, y), math.inf)
+        """Return h(x, y), huge where the indenter has no surface."""
+        return kernels.height_at(self.surface, self.profile, x, y)
 
     def slope(self, x: Any, y: Any = 0.0) -> Any:
         """Return dh/dx, zero where the indenter has no surface."""
-        return self._within_reach(self.indenter.slope, (x, y), 0.0)
-
-    def places(self, low: int, high: int, Y: float = 0.0) -> Array:
-        """Return x of the elements `low` to `high` when the base has moved by Y."""
-        x: Array = self.spacing * (np.arange(low, high, dtype=np.float64) + self.shift) + Y
-        return x
-
-    def grid(self, low: int, high: int, strips: int, Y: float = 0.0) -> tuple[Array, Array]:
-        """Return x of the elements `low` to `high`, as a row, and y of the strips, as a column."""
-        y = self.across * np.arange(strips, dtype=np.float64)
-        return self.places(low, high, Y)[None, :], y[:, None]
-
-    def level(self, depth: float) -> float:
-        """Return the next of a few depths, so that spans need not be found anew."""
-        level = math.ceil(math.log(max(depth / self.depth, 1e-6)) / math.log(LEVEL))
-        return self.depth * LEVEL**level
+        return kernels.slope_at(self.surface, self.profile, x, y)
 
     def strips(self, depth: float) -> int:
         """Return how many strips can be met at this depth."""
-        return 1 + int(self.half_width(self.level(depth)) / self.across) if self.across else 1
+        return 1 + int(self.half_width(depth) / self.across) if self.across else 1
 
-    def weights(self, depth: float, strips: int) -> Array:
-        """Return by what the force of the elements of each strip counts: 1, or the width of the strip in m.
+    def under(self, depth: float) -> tuple[int, int]:
+        """Return the range of elements, with some to spare, that can be met at this depth at Y = 0."""
+        low, high = span(self.indenter, depth)
+        return math.floor(low / self.spacing) - kernels.SPARE, math.ceil(
+            high / self.spacing
+        ) + kernels.SPARE
 
-        `depth` says where the rim is.
-        """
+    def weights(self, depth: float) -> Array:
+        """Return the weight of the force of each strip: 1, or its width in m."""
         if not self.across:
             return np.ones(1)
-        return weights_across(self.across, strips, self.half_width(depth) if self.parts else 0.0)
+        rim = self.half_width(depth) if self.parts else 0.0
+        return kernels.weights_across(self.across, self.strips(depth), rim)
 
-    def under(self, Y: float, before: float, depth: float) -> tuple[int, int]:
-        """Return the range of elements, with some to spare, that can be met at this depth at both places."""
-        low, high = span(self.indenter, self.level(depth))
-        dx = self.spacing
-        first = math.floor((low - max(Y, before)) / dx) - SPARE
-        return first, math.ceil((high - min(Y, before)) / dx) + SPARE + 1
-
-    @np.errstate(invalid="ignore")  # beyond the reach of a shape
     def static_load(self, depth: float) -> float:
         """Return K times the area of max(δ - h, 0), as the elements at rest carry it."""
-        low, high = (round(end / self.spacing) for end in span(self.indenter, depth))
-        strips = self.strips(depth)
-        overlap = depth - self.height(*self.grid(low - SPARE, high + SPARE + 1, strips))
-        weights = self.weights(depth, strips)
-        area = self.spacing * float(weights @ np.maximum(overlap, 0.0).sum(axis=1))
-        if self.parts:
-            runs = runs_of(overlap.ravel() > 0.0)
-            weight = weights[runs[:, :1] // overlap.shape[1]]
-            kinks = weight * kink_area(overlap.ravel()[runs + BEYOND])[0]
-            area += self.spacing * float(kinks.sum())
-        return self.law.stiffness * area
+        x, area = self.spacing * (np.arange(*self.under(depth)) + self.shift), 0.0
+        for j, weight in enumerate(self.weights(depth)):
+            overlap = depth - self.height(x, j * self.across)
+            sums = float(overlap[overlap > 0.0].sum())
+            runs = kernels.runs_of((overlap > 0.0)[None, :], [0], [x.size]) if self.parts else ()
+            for _, low, high in runs:
+                sums += kernels.kink_area(overlap[low - 3 : low][::-1])[0]
+                sums += kernels.kink_area(overlap[high : high + 3])[0]
+            area += weight * sums
+        return self.law.stiffness * self.spacing * float(area)
 
     def tilt(self, extent: float) -> float:
         """Return the integral of h'^2 over a contact of this length or area, as steep as the one at rest."""
         x, y, weight = self.samples(self.depth)
         inside = weight * (self.height(x, y) <= self.depth)
-        return extent * total(inside, np.square(self.slope(x, y))) / float(inside.sum())
+        return extent * float(inside @ np.square(self.slope(x, y))) / float(inside.sum())
 
     def sliding(self, depth: float, V: float) -> tuple[float, float]:
         """Return extent and normal force of a contact that slides steadily on a continuous foundation."""
         x, y, weight = self.samples(depth)
         g = depth - self.height(x, y)
-        p = self.law.pressure(self.law.at_rest(g), g, -V * self.slope(x, y))
+        p = self.law.pressure(g, -V * self.slope(x, y))
         pressed = (p > 0.0) & (g >= 0.0)
-        return total(weight, pressed), total(weight, np.where(pressed, p, 0.0))
+        return float(weight @ pressed), float(weight[pressed] @ p[pressed])
 
     def samples(self, depth: float) -> tuple[Array, Array, Array]:
         """Return x and y of places under the indenter, and for what length (m) or area (m^2) each counts."""
@@ -233,7 +238,7 @@ class Model:
         dx, dy = (high - low) / (along - 1), self.half_width(depth) / strips
         x = np.tile(np.linspace(low, high, along), strips)
         y = np.repeat(dy * np.arange(strips), along)
-        return x, y, dx * np.repeat(weights_across(dy, strips, 0.0), along)
+        return x, y, dx * np.repeat(kernels.weights_across(dy, strips, 0.0), along)
 
     def sliding_depth(self, V: float) -> float:
         """Return the depth at which that contact carries the load, to within a thousandth."""
@@ -243,15 +248,6 @@ class Model:
             return force / self.weight - 1.0
 
         return root(surplus, self.depth, 1e-9)
-
-    def _within_reach(
-        self, function: Callable[..., Any], place: tuple[Any, Any], beyond: float
-    ) -> Any:
-        needed = place[:1] if self.indenter.per_width else place
-        if math.isinf(self.indenter.reach):
-            return function(*needed)
-        inside = np.hypot(*place) < self.indenter.reach
-        return np.where(inside, function(*(np.where(inside, each, 0.0) for each in needed)), beyond)
 
 
 def root(function: Callable[[float], float], guess: float, rtol: float = 0.0) -> float:
@@ -289,21 +285,75 @@ def root(function: Callable[[float], float], guess: float, rtol: float = 0.0) ->
     return high
 
 
-@lru_cache(maxsize=512)
+@lru_cache(maxsize=64)
+def surface_of(indenter: Indenter) -> kernels.Surface:
+    """Return the indenter as the kernels know it.
+
+    >>> surface_of(Wedge(inclination=0.5)).kind == kernels.WEDGE
+    True
+    """
+    revolved = isinstance(indenter, Revolved)
+    line = indenter.profile if isinstance(indenter, (Revolved, Sphere)) else indenter
+    kind, size, exponent = kernels.PARABOLA, 1.0, 2.0
+    if isinstance(line, Wedge):
+        kind, size = kernels.WEDGE, line.inclination
+    elif isinstance(line, PowerLaw):
+        kind, size, exponent = kernels.POWER_LAW, line.length, line.exponent
+    elif not isinstance(line, Profile):
+        kind, size = kernels.CIRCLE if isinstance(line, Circle) else kernels.PARABOLA, line.radius
+    across, stretch = 0.0, 1.0
+    if isinstance(indenter, Sphere):
+        stretch = indenter.stretch
+        across = 0.5 / (indenter.radius_across or indenter.radius)
+    inside = math.nextafter(indenter.reach, 0.0) if math.isfinite(indenter.reach) else math.inf
+    return kernels.Surface(
+        kind, float(size), float(exponent), inside, float(across), revolved, float(stretch)
+    )
+
+
+class PythonProfile(NamedTuple):
+    """A profile of Python functions; how far out it has a height is found at some depths only."""
+
+    line: Profile
+    depth: float
+
+    def height(self, x: Any) -> Any:
+        """Return h(x)."""
+        return self.line.height(x)
+
+    def slope(self, x: Any) -> Any:
+        """Return h'(x)."""
+        return self.line.slope(x)
+
+    def extent(self, depth: float, side: float) -> float:
+        """Return about how far to one side h = `depth` is."""
+        level = math.log(max(depth / self.depth, 1e-6)) / math.log(LEVEL)
+        below = math.floor(level)
+        low, high = (
+            span(self.line, self.depth * LEVEL**k)[side > 0.0] * side for k in (below, below + 1)
+        )
+        return float(low * (high / low) ** (level - below))
+
+
+@lru_cache(maxsize=1024)
 def span(indenter: Indenter, depth: float) -> tuple[float, float]:
     """Return the two places, left and right of its lowest point, where h = `depth`.
 
     Beyond the reach of the shape there is no surface: then the reach counts.
 
-    >>> from kvtheory.scene.indenters import Wedge
     >>> span(Wedge(inclination=0.5), 0.25)
     (-0.5, 0.5)
     """
-    return -_extent(indenter, depth, -1.0), _extent(indenter, depth, 1.0)
-
-
-def _extent(indenter: Indenter, depth: float, side: float) -> float:
-    end = math.nextafter(indenter.reach, 0.0)
-    if math.isfinite(indenter.reach) and indenter.height(side * end) < depth:
-        return end
-    return root(lambda x: float(indenter.height(side * min(x, end))) - depth, min(depth, end))
+    surface = surface_of(indenter)
+    line = indenter.profile if isinstance(indenter, Revolved) else indenter
+    if not isinstance(line, Profile):
+        far = kernels.extent(surface, None, depth, 1.0)
+        return -far, far
+    end, ends = surface.inside, []
+    for side in (-1.0, 1.0):
+        if math.isfinite(end) and line.height(side * end) < depth:
+            ends.append(side * end)
+        else:
+            height = lambda x, side=side: float(line.height(side * min(x, end))) - depth  # noqa: E731
+            ends.append(side * root(height, min(depth, end)))
+    return ends[0], ends[1]

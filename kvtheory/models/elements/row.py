@@ -2,26 +2,31 @@
 
 Element i sits at x_i = (i + shift) dx + Y(t). It is stored while it is near the indenter, or while the
 drive will bring it there again before it has relaxed; every other element counts as undisturbed. A ball has a
-row for each strip, at y = 0, dy, ...; they are as long as each other, and one comes after the other.
+row for each strip, at y = 0, dy, ...
 """
 
 import math
 from collections.abc import Sequence
+from functools import cache
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from kvtheory.models.elements.law import Array, Step
+from kvtheory import compilation
+from kvtheory.models.elements import kernels
+from kvtheory.models.elements.kernels import Course, Elements
+from kvtheory.models.elements.law import Array
 from kvtheory.models.elements.model import Model, span
-from kvtheory.scene.base_motion import BaseMotion
+from kvtheory.models.elements.schemes import DEFAULT, SCHEMES, Scheme
+from kvtheory.scene.base_motion import SAME_TIME, BaseMotion, evaluate
 
 FORGOTTEN = 1e-12
 """A compression that has relaxed to this share counts as none."""
-MANY_ARMS = 12
-"""With so many, to relax an element that is left alone is most of the work: it is done where needed only."""
-KEPT_DEPTH = 16.0
+KEPT_DEPTH = 4.0
 """Elements are kept within the reach of an indenter this many times as deep as at rest."""
+WORTHWHILE = 10_000
+"""Steps of a strip that are interpreted before it pays to compile: about a second. To load what is compiled
+takes half a second; to compile it, once for an installation, a quarter of a minute."""
 
 
 class OutgrownError(ArithmeticError):
@@ -31,11 +36,9 @@ class OutgrownError(ArithmeticError):
 
 
 class IndenterState(NamedTuple):
-    """Time (s), depth (m) and its rate (m/s), and both along x; two forces to judge an explicit step by.
+    """Time (s), depth (m) and its rate (m/s), and both along x.
 
-    `along` is how far the base has dragged the indenter on its spring, 0 on a rigid drive. `imbalance`
-    says by how much M δ'' over the step differs from the mean of the forces at its ends, and `force` is
-    the larger of these and the weight (N/m).
+    `along` is how far the base has dragged the indenter on its spring, 0 on a rigid drive.
     """
 
     time: float
@@ -43,196 +46,181 @@ class IndenterState(NamedTuple):
     rate: float
     along: float = 0.0
     along_rate: float = 0.0
-    imbalance: float = 0.0
-    force: float = 0.0
 
 
-class Under(NamedTuple):
-    """The elements under the indenter at one instant, strip by strip.
+class Tally:
+    """How many steps of a strip were interpreted in this process."""
 
-    `along` are their x, a row, and `across` those y of their strips, a column. `state` is that of each at
-    the start of the step, `left` the one that it has now if it was left alone (with many arms, of those not
-    in contact at the start), `touched` whether it was in contact at the start; `travel` is the way of the
-    base under the indenter between, of the length `delay`, and `law` what the law says of it.
-    """
+    steps = 0
 
-    place: tuple[slice, slice]
-    along: Array
-    across: Array
-    height: Array
-    state: Array
-    left: Array
-    touched: NDArray[np.bool_]
-    travel: float
-    delay: float
-    law: Step
 
-    @property
-    def strips(self) -> int:
-        """How many strips there are."""
-        return self.across.size
-
-    @property
-    def x(self) -> Array:
-        """Return x of every element."""
-        return self._spread(self.along)
-
-    def at(self, elements: Any) -> tuple[Array, Array]:
-        """Return x and y of some elements."""
-        strip, element = np.divmod(elements, self.along.size)
-        return self.along[0, element], self.across[strip, 0]
-
-    def slope(self, model: Model, back: float = 0.0) -> Array:
-        """Return dh/dx at every element, so far back."""
-        return self._spread(model.slope(self.along - back, self.across))
-
-    def _spread(self, values: Array) -> Array:
-        everywhere = np.empty((self.strips, self.along.size))
-        everywhere[:] = values
-        return everywhere.reshape(-1)
-
-    def rest(self) -> Array:
-        """Return where the mean pressure would vanish: it is `law.stiffness` times how far g is below."""
-        # Without arms, an element held and one left alone come to the same.
-        if len(self.state) == 1:
-            return self.left[0]
-        held: Array = self.state[0] - self.law.held_pressure @ self.state / self.law.stiffness
-        return np.where(self.touched, held, self.left[0])
+@cache
+def compiled_advance() -> Any:
+    """Return `kernels.advance`, compiled."""
+    return compilation.kept(kernels.advance, kernels)
 
 
 class ElementRow:
-    """The states of the stored elements, first to last, and which of them are in contact.
+    """The stored elements, the motion of the base, and the indenter above them.
 
-    `last` is the length of the step by which they came there.
+    `compiled` says whether its steps are compiled.
     """
 
     def __init__(self, model: Model, path: BaseMotion, kept_depth: float = KEPT_DEPTH) -> None:
         self.model, self.path = model, path
-        slowest = model.law.slowest if model.rule.relaxes else math.inf
-        self.memory = -slowest * math.log(FORGOTTEN)
+        longest = model.law.longest_time if model.rule.relaxes else math.inf
+        self.memory = -longest * math.log(FORGOTTEN)
         self.deepest = kept_depth * model.depth
-        self.reach = span(model.indenter, self.deepest)
-        self.first, self.states = 0, np.zeros((1 + model.law.arm_stiffness.size, 1, 0))
-        self.touched = np.zeros((1, 0), dtype=bool)
-        self.updates, self.last = 0, 0.0
-        self.many = model.rule.flags and model.law.arm_stiffness.size >= MANY_ARMS
-        depth = model.start * model.depth
-        start = IndenterState(0.0, depth, 0.0)
-        rest = self.under(start, start, 0.0, depth)
-        self.settle(
-            rest, model.law.at_rest(np.maximum(depth - rest.height, 0.0)), rest.height <= depth
+        self.constants = model.constants(SCHEMES[DEFAULT], self.deepest)
+        self.state = np.zeros(kernels.LAST + 1)
+        self.state[kernels.DEPTH] = depth = model.start * model.depth
+        self.stored = self._empty(0, 1, 1)
+        rest = lambda x, y: np.maximum(depth - model.height(x, y), 0.0)  # noqa: E731
+        self.lay(max(depth, model.depth), rest)
+        self.state[kernels.DEPTH] = depth
+        self.compiled = False
+
+    def lay(self, depth: float, surface: Any, contact: Any = None) -> None:
+        """Compress the elements that an indenter of this depth meets at Y = 0 by `surface`(x, y).
+
+        In contact are those where `contact`(x) or, without it, those that are compressed.
+        """
+        while kernels.attend(self.stored, 0.0, (0.0, 0.0), depth) == kernels.LACKING:
+            self._move(0.0)
+        row = self.stored
+        for each in (row.u, row.arms, row.touched):
+            each[...] = 0
+        for j in range(row.u.shape[0]):
+            part = slice(row.low[j], row.high[j])
+            x, y = kernels.positions(row, row.low[j], row.high[j], 0.0), j * row.across
+            row.u[j, part] = surface(x, y)
+            row.touched[j, part] = contact(x) if contact else row.u[j, part] > 0.0
+
+    def _empty(self, first: int, width: int, strips: int) -> Elements:
+        shape = strips, width
+        ends, work = np.zeros((4, strips), dtype=np.int64), np.zeros((5, *shape))
+        counts, flags = (
+            np.zeros(kernels.UPDATES + 1, dtype=np.int64),
+            np.zeros((2, *shape), dtype=bool),
         )
+        counts[kernels.FIRST] = first
+        return Elements(
+            u=work[0], arms=np.zeros((self.model.law.arm_stiffness.size, *shape)), since=work[1],
+            touched=flags[0], pressed=flags[1], low=ends[0], high=ends[1],
+            first=ends[2], last=ends[3], counts=counts,
+            numbers=np.arange(float(first), first + width) + self.model.shift, rest=work[2],
+            height=work[3], meets=work[4], slope=np.zeros(shape if self.model.sprung else (0, 0)),
+            **self.constants,
+        )  # fmt: skip
 
-    def place(self, at: IndenterState) -> float:
-        """Return Y, by how far the base has moved under the indenter."""
-        return self.path.displacement(at.time) - at.along
+    def use(self, scheme: Scheme) -> None:
+        """Take the steps from here on by a scheme."""
+        self.constants = self.model.constants(scheme, self.deepest)
+        self.stored = self.stored._replace(**self.constants)
 
-    def under(self, now: IndenterState, at: IndenterState, delay: float, depth: float) -> Under:
-        """Return the elements that an indenter of at most this depth can meet, `now` and `delay` later.
+    def run(
+        self, course: Course, found: Array, balances: Array, begin: tuple[int, int], until: int
+    ) -> tuple[int, int, int]:
+        """Take steps until one of them, or until something is wrong; return what, and how far it came."""
+        advance = compiled_advance() if self.compiled else kernels.advance
+        step, reported = begin
+        while True:
+            status, step, reported = advance(
+                self.stored, self.state, course, balances, found, step, reported, until
+            )
+            if status != kernels.LACKING:
+                return status, step, reported
+            self._move(float(course.times[step]))
+
+    def step(self, scheme: Scheme, state: IndenterState, h: float) -> IndenterState:
+        """Take one step from a state.
 
         Raises
         ------
         OutgrownError
-            If that is deeper than the row was made for.
+            If the indenter sinks deeper than the row was made for.
         """
-        if not depth < self.deepest:
+        if self.stored.tableau.shape != scheme.table.shape or self.stored.fitted != scheme.fitted:
+            self.use(scheme)
+        self.state[:4] = state[1:]
+        course = course_of(self.path, np.array([state.time, state.time + h]), np.array([h]))
+        if (
+            self.run(course, np.zeros((0, 13)), np.zeros((2, kernels.WINDOW)), (0, 0), 1)[0]
+            != kernels.DONE
+        ):
             raise OutgrownError
-        Y = self.place(at)
-        before = self.place(now) if delay else Y
-        low, high = self.model.under(Y, before, depth)
-        strips, stored = self.model.strips(depth), self.touched.shape
-        if low < self.first or high > self.first + stored[1] or strips > stored[0]:
-            self._move(at.time, low, high, strips)
-        self.updates += strips * (high - low)
-        place = slice(strips), slice(low - self.first, high - self.first)
-        x, y = self.model.grid(low, high, strips, Y)
-        state = self.states[:, *place].reshape(len(self.states), -1)
-        touched, height = self.touched[place].reshape(-1), self.model.height(x, y).reshape(-1)
-        left = self._left(state, delay, ~touched if self.many else None)
-        law = self.model.law.step(delay)
-        return Under(place, x, y, height, state, left, touched, Y - before, delay, law)
+        return IndenterState(state.time + h, *map(float, self.state[:4]))
 
-    def before(self, under: Under, depth: float, elements: Any) -> Array:
-        """Return how far some elements were below the indenter at the start of a step, at this depth."""
-        x, y = under.at(elements)
-        gap: Array = depth - self.model.height(x - under.travel, y) - under.state[0, elements]
-        return gap
-
-    def entering(self, under: Under, depth: float, rise: Array) -> tuple[NDArray[np.intp], Array]:
-        """Return the elements that enter the contact in a step, and for how long each is in it.
-
-        `depth` is that at the start; `rise` says how far each is below its free surface at the end.
-        """
-        new = ((rise > 0.0) & ~under.touched).nonzero()[0]
-        gap = self.before(under, depth, new)
-        return new, under.delay * rise[new] / (rise[new] - np.minimum(gap, 0.0))
-
-    def pressed(self, under: Under, depth: float, g: Array) -> Array:
-        """Return the state of elements that the indenter presses to g, from a `depth` at the start."""
-        law, arms = under.law, self.model.law
-        if not arms.remembers:
-            return g[None, :]
-        base = np.where(under.touched, law.held[:, None] * under.state, under.left)
-        rise = g - base[0]
-        moved: Array = base + law.ramp[:, None] * rise
-        moved[0] = g
-        new, within = self.entering(under, depth, rise)
-        moved[1:, new] = base[1:, new] + arms.ramps(within)[0] * rise[new]
-        return moved
-
-    def settle(
-        self, under: Under, states: Array, touched: NDArray[np.bool_], delay: float = 0.0
-    ) -> None:
-        """Let `delay` pass: put in what has become of the elements under the indenter."""
-        flat, shape = self.states.reshape(len(self.states), -1), self.states.shape
-        elsewhere = None
-        if self.many:
-            elsewhere = np.ones(shape[1:], dtype=bool)
-            elsewhere[under.place] = False
-        self.states, self.last = self._left(flat, delay, elsewhere).reshape(shape), delay
-        if self.many and delay:
-            released = np.flatnonzero(under.touched & ~touched)
-            states[:, released] = self._left(under.state[:, released], delay)
-        shape = self.states[:, *under.place].shape
-        self.states[:, *under.place] = states.reshape(shape)
-        self.touched[:] = False
-        self.touched[under.place] = touched.reshape(shape[1:])
-
-    def _left(self, states: Array, delay: float, wanted: NDArray[np.bool_] | None = None) -> Array:
-        """Return what becomes of elements that are left alone; zero where not `wanted`, or undisturbed."""
-        if not (delay and self.model.rule.relaxes):
-            return states.copy()
-        law = self.model.law.step(delay)
-        if wanted is None:
-            return law.alone(states)
-        columns = np.flatnonzero(states[[0, -1]].any(axis=0) & wanted.ravel())
-        left = np.zeros_like(states)
-        left[:, columns] = law.alone(states[:, columns])
-        return left
-
-    def _move(self, t: float, low: int, high: int, strips: int) -> None:
-        """Move the window so that it holds the elements `low` to `high` of strips, and those still of use."""
-        spare, useful = high - low, self._useful(t)
-        first = min(low - spare, max(self.first, useful[0]))
-        rows, elements = self.touched.shape
-        last = max(high + spare, min(self.first + elements, useful[1]))
-        touched = np.zeros((max(strips, rows), last - first), dtype=bool)
-        states = np.zeros((len(self.states), *touched.shape))
-        start, stop = max(first, self.first), min(last, self.first + elements)
-        if start < stop:
-            new, old = (slice(start - f, stop - f) for f in (first, self.first))
-            states[:, :rows, new], touched[:rows, new] = (
-                self.states[:, :, old],
-                self.touched[:, old],
+    def _move(self, t: float) -> None:
+        """Move the window so that it holds the elements that are lacking, and those still of use."""
+        old = self.stored
+        first, low, high, strips, _ = old.counts.tolist()
+        spare, useful = (high - low) // 2, self._useful(t)
+        start = min(low - spare, max(first, useful[0]))
+        stop = max(high + spare, min(first + old.u.shape[1], useful[1]))
+        new = self._empty(start, stop - start, max(strips, old.u.shape[0]))
+        new.counts[kernels.UPDATES] = old.counts[kernels.UPDATES]
+        kept, last = max(start, first), min(stop, first + old.u.shape[1])
+        if kept < last:
+            rows, to, of = (
+                old.u.shape[0],
+                slice(kept - start, last - start),
+                slice(kept - first, last - first),
             )
-        self.first, self.states, self.touched = first, states, touched
+            for name in ("u", "arms", "since", "touched"):
+                getattr(new, name)[..., :rows, to] = getattr(old, name)[..., of]
+            for name in ("low", "high", "first", "last"):
+                moved = getattr(old, name) + first - start
+                getattr(new, name)[:rows] = np.clip(moved, 0, stop - start)
+        self.stored = new
 
     def _useful(self, t: float) -> tuple[int, int]:
         """Return which elements may be met again: where the drive leads; a spring, to any not forgotten."""
+        dx, row = self.model.spacing, self.stored
         if self.model.sprung:
-            compressed = np.abs(self.states[0]) > FORGOTTEN * self.model.depth
-            known = self.first + np.flatnonzero((compressed | self.touched).any(axis=0))
-            return (int(known[0]), int(known[-1]) + 1) if known.size else (self.first, self.first)
-        dx = self.model.spacing
+            compressed = np.abs(self.states(t)[0]) > FORGOTTEN * self.model.depth
+            known = np.flatnonzero((compressed | row.touched).any(axis=0))
+            first = int(row.counts[kernels.FIRST])
+            return (
+                (first + int(known[0]), first + int(known[-1]) + 1)
+                if known.size
+                else (first, first)
+            )
         back, ahead = self.path.extremes(t, min(t + self.memory, max(t, self.path.end)))
-        return math.floor((self.reach[0] - ahead) / dx), math.ceil((self.reach[1] - back) / dx)
+        low, high = span(self.model.indenter, self.deepest)
+        return math.floor((low - ahead) / dx), math.ceil((high - back) / dx)
+
+    def states(self, t: float) -> tuple[Array, Array]:
+        """Return u of all stored elements at a time, and the forces of their arms."""
+        row, law = self.stored, self.stored.law
+        past = t - row.since
+        for j in range(past.shape[0]):
+            past[j, row.low[j] : row.high[j]] = 0.0
+        if not row.arms.size:
+            return row.u * np.exp(-law.rates[0] * past), row.arms
+        modes = row.arms * np.exp(-law.rates[:, None, None] * past)
+        u = np.where(row.touched, row.u, np.tensordot(law.shares, modes, 1))
+        free = law.arm_stiffness[:, None, None] * (u - np.tensordot(law.from_modes, modes, 1))
+        return u, np.where(row.touched, row.arms, free)
+
+
+def course_of(
+    path: BaseMotion, times: Array, steps: Array, after: Sequence[int] = (), about: Any = (),
+    limits: Sequence[float] = (-math.inf, math.inf, math.inf),
+) -> Course:  # fmt: skip
+    """Return the course of steps between these times, with the motion of the base."""
+    t = np.stack([times[:-1], times[:-1] + 0.5 * steps, times[1:]], axis=1)
+    before = t.copy()
+    before[:, 2] -= SAME_TIME * np.spacing(t[:, 2])
+    Y, V = motion(path, t)[0], motion(path, before)[1]
+    reports = np.array(about, dtype=float).reshape(len(after), 5)
+    return Course(times, steps, Y, V, np.array(after, dtype=np.int64), reports, np.array(limits))
+
+
+def motion(path: BaseMotion, times: Array) -> tuple[Array, Array]:
+    """Return Y and V at all these times."""
+    k = np.maximum(np.searchsorted(path.starts, times, side="right") - 1, 0)
+    pieces: Any = path.rows.T[:, k]
+    at: Any = times
+    Y, V, _ = evaluate(pieces, at)
+    return np.asarray(Y, dtype=float), np.asarray(V, dtype=float)

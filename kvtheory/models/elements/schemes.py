@@ -3,50 +3,90 @@
 The indenter obeys M δ'' = W - k_s (δ - δ_0) - F_z (Eq. 17; a prime is d/dt), and on a spring in the drive
 M_x x'' = F_x - c_x x' - k_x x, while the base moves at V - x' under it. The schemes differ in how
 F_z is summed over the elements and over the step; what is known of each is in `results.schemes`.
+
+Explicit schemes are those of Runge and Kutta on F_z = dx Σ (K g + C g'), with the paper's rules of contact.
+They are stable up to dt C L/M = 2.785 (the paper's) or 2 (Euler), L the length of the contact; on arms, up to
+where the matrix of a step (`stability.amplification`) begins to grow.
+
+Implicit schemes stand on the exact memory of an element (F8 for Kelvin-Voigt), and need no rules of contact.
+The force, averaged over the step, is k Σ dx max(g - r, 0), r being where the mean pressure of an element
+would vanish; for Kelvin-Voigt, with the weight e^(t/τ),
+
+    F_z = K/(1 - e^(-h/τ)) Σ dx max(g - u e^(-h/τ), 0).
+
+It is never negative, free of elements that are left alone, and convex in the depth at the end of the step,
+which therefore is the one root of a monotone function. The depth advances with the mean velocity
+(1-θ) v_0 + θ v_1. With θ = 1 the damping is that of the backward Euler method; with the exponential
+fit θ = 1/(1 - e^(-z)) - 1/z, z = h C L/M, the velocity falls by e^(-z) exactly as it should, and the
+order is two. Both are stable at any step, since θ >= 1/2 (derivations, `element-stability`).
+
+On a spring the place along x is found in the same way, with M_x, k_x and c_x and the force of an element
+times its slope halfway through the step. The work of these forces on both motions is what elements of a
+parabola store and lose, so that no step gains energy, whatever comes into contact or leaves it in the step.
+
+On arms, an element in contact is a true element under a surface that moves along a straight line: its mean
+pressure times its way is the work done on it, what its springs store and its dampers lose. With θ = 1/2 the
+same holds of mass and spring, so that the energy of a step with the contact held can only fall, and more with
+θ > 1/2: every step is stable. C is here the damper which, beside a spring, does to a ramp as the arms do in a
+step, h Σ K_i (2 φ_2 - φ_1): K_i τ_i of fast arms, h² K_i/(6 τ_i) of slow ones; so θ - 1/2 is of the third
+order in h, and the scheme of the second (derivation `element-arms`). It is so in the spacing as well: the
+pressure of arms is continuous, and there is no sawtooth but that of arms faster than a step.
+
+Sums over whole elements carry the sawtooth of theorem F15-sawtooth: on Table 1 at the paper's density
+2e-3 of the force at the start, 1e-3 in steady sliding, halved with the spacing. With the kinks of the
+surface at edges between two elements (`parts` of the model), it is 1e-4 and 1e-6, and quartered; the
+depth is within 1e-5 of theory. Only at the very instant of a jump of the drive, where pressure is left
+on an edge, is the order one too.
 """
 
 import math
-from collections.abc import Callable
-from functools import partial
 from typing import NamedTuple
 
-from kvtheory.models.elements.exact_memory import exponential_fit, implicit_step
-from kvtheory.models.elements.explicit import Tableau, explicit_step
-from kvtheory.models.elements.row import ElementRow, IndenterState
+import numpy as np
+
+from kvtheory.models.elements.law import Array
 from kvtheory.results.schemes import SCHEME_ROWS, SchemeRow
 
 DEFAULT = "edge-corrected"
 
+Tableau = tuple[tuple[float, ...], ...]
+"""(c, a_1, a_2, …) for each stage, and then the weights."""
+RK4: Tableau = (
+    (0.0,),
+    (0.5, 0.5),
+    (0.5, 0.0, 0.5),
+    (1.0, 0.0, 0.0, 1.0),
+    (1 / 6, 1 / 3, 1 / 3, 1 / 6),
+)
+
 
 class Scheme(NamedTuple):
-    """A way to advance by one step: what is known of it, and the function that takes the step.
-
-    `tableau` is that of an explicit scheme.
-    """
+    """A scheme: what is known of it, the tableau of an explicit one, and whether θ is fitted or 1."""
 
     row: SchemeRow
-    step: Callable[[ElementRow, IndenterState, float], IndenterState]
     tableau: Tableau = ()
+    fitted: bool = False
 
     @property
     def stability_polynomial(self) -> tuple[float, ...]:
         """R(z) of an explicit scheme, constant first; empty for one that is stable at any step."""
         return tuple(1.0 / math.factorial(k) for k in range(len(self.tableau)))
 
+    @property
+    def table(self) -> Array:
+        """The tableau as an array, whose last row has c = 1."""
+        stages = [*self.tableau[:-1], (1.0, *self.tableau[-1])] if self.tableau else [(1.0,)]
+        table = np.zeros((len(stages), len(stages)))
+        for row, stage in zip(table, stages, strict=True):
+            row[: len(stage)] = stage
+        return table
 
-_TABLEAUX: dict[str, Tableau] = {
-    "paper": ((0.0,), (0.5, 0.5), (0.5, 0.0, 0.5), (1.0, 0.0, 0.0, 1.0), (1 / 6, 1 / 3, 1 / 3, 1 / 6)),
-    "explicit-euler": ((0.0,), (1.0,)),
-}  # fmt: skip
-_THETAS: dict[str, Callable[[float], float]] = {
-    "semi-implicit": lambda _: 1.0,  # that of the backward Euler method
-    "exponential": exponential_fit,
-    "edge-corrected": exponential_fit,
-}
+
 SCHEMES = {
-    **{name: Scheme(SCHEME_ROWS[name], partial(explicit_step, tableau=tableau), tableau)
-       for name, tableau in _TABLEAUX.items()},
-    **{name: Scheme(SCHEME_ROWS[name], partial(implicit_step, theta=theta))
-       for name, theta in _THETAS.items()},
-}  # fmt: skip
+    "paper": Scheme(SCHEME_ROWS["paper"], RK4),
+    "explicit-euler": Scheme(SCHEME_ROWS["explicit-euler"], ((0.0,), (1.0,))),
+    "semi-implicit": Scheme(SCHEME_ROWS["semi-implicit"]),
+    "exponential": Scheme(SCHEME_ROWS["exponential"], fitted=True),
+    "edge-corrected": Scheme(SCHEME_ROWS["edge-corrected"], fitted=True),
+}
 """The schemes by name."""

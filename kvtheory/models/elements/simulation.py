@@ -7,13 +7,28 @@ from dataclasses import replace
 
 import numpy as np
 
-from kvtheory.models.elements.contact import report
+from kvtheory import compilation
+from kvtheory.models.elements import kernels
 from kvtheory.models.elements.error_estimate import COLUMNS, SHIFTS, UNKNOWN, Rows, estimate
 from kvtheory.models.elements.law import RIGHT, ContactRule
 from kvtheory.models.elements.model import Model
-from kvtheory.models.elements.row import KEPT_DEPTH, ElementRow, IndenterState, OutgrownError
+from kvtheory.models.elements.row import (
+    KEPT_DEPTH,
+    WORTHWHILE,
+    ElementRow,
+    OutgrownError,
+    Tally,
+    course_of,
+)  # fmt: skip
 from kvtheory.models.elements.schemes import DEFAULT, SCHEMES, Scheme
-from kvtheory.models.elements.stability import Watch, doubts, lengths, limit_at, stability_text
+from kvtheory.models.elements.stability import (
+    divergence,
+    doubts,
+    lengths,
+    limit_at,
+    limits,
+    stability_text,
+)
 from kvtheory.progress import Progress
 from kvtheory.results import SERIES_UNITS, TRANSIENT_UNITS, Simulation, SprungSimulation, units_for
 from kvtheory.results.errors import DivergenceError
@@ -45,6 +60,8 @@ ROWS = 400
 """Instants reported where none are asked for, at most about so many."""
 MORE_ROOM = 16.0
 """Ratio of the depths for which elements are kept, from one attempt to the next."""
+PAUSE = {True: 3e7, False: 1e5}
+"""Elements times steps between two reports of progress, compiled and interpreted."""
 MOST_OF_ALL = 2e9
 """Elements under the contact at rest, times steps: so many take from some minutes to hours."""
 TOGETHER = 1e-6
@@ -89,7 +106,8 @@ def simulate(
     again = scheme is not best
     work = [1.0, *([COARSE] * len(SHIFTS) + [1.0] * again if certify else [])]
     parts = _parts(progress, work)
-    rows, updates = _with_room(model, path, scheme, legs, wanted, next(parts))
+    rows, row = _with_room(model, path, scheme, legs, wanted, next(parts))
+    updates, compiled = int(row.stored.counts[kernels.UPDATES]), row.compiled
     certificate = UNKNOWN
     if certify:
 
@@ -106,7 +124,7 @@ def simulate(
     return kind(
         **{name: rows[name] for name in names}, scheme=scheme.row.name, per_length=1.0 / spacing, time_step=h,
         steps=sum(count for _, _, count in legs), element_updates=updates, warning=warning,
-        model="elements", certificate=certificate,
+        model="elements", certificate=certificate, compiled=compiled,
         units=units_for(scene.indenter, names),
     )  # fmt: skip
 
@@ -217,12 +235,13 @@ def _instants(
 def _with_room(
     model: Model, path: BaseMotion, scheme: Scheme, legs: list[Leg], wanted: list[float],
     progress: Progress | None,
-) -> tuple[Rows, int]:  # fmt: skip
+) -> tuple[Rows, ElementRow]:  # fmt: skip
     """Run, and run again with more elements kept, should the indenter sink very deep."""
     kept = KEPT_DEPTH
     while True:
         try:
-            return _run(ElementRow(model, path, kept), scheme, legs, wanted, progress)
+            row = ElementRow(model, path, kept)
+            return _run(row, scheme, legs, wanted, progress), row
         except OutgrownError as outgrown:
             kept *= MORE_ROOM
             deepest = min(DEEPEST, BALL_DEEPEST if model.across else math.inf)
@@ -239,31 +258,56 @@ def _with_room(
 @np.errstate(all="ignore")  # the watch judges what comes of it
 def _run(
     row: ElementRow, scheme: Scheme, legs: list[Leg], wanted: list[float], progress: Progress | None
-) -> tuple[Rows, int]:
-    watch, done = Watch(row, scheme), 0
-    state = IndenterState(0.0, row.model.start * row.model.depth, 0.0)
-    total, asked = sum(count for _, _, count in legs), set(wanted)
-    found: dict[float, tuple[float, ...]] = {}
-    try:
-        for start, stop, count in legs:
-            h = (stop - start) / max(count, 1)
-            for k in range(1, count + 1):
-                time = stop if k == count else start + (stop - start) * k / count
-                state = scheme.step(row, state, h)._replace(time=time)
-                if row.model.rule == RIGHT:
-                    watch.see(state, h)
-                done += 1
-                if progress is not None:
-                    progress(done / total, f"{done:,} of {total:,} steps")
-            if not count and stop in row.path.changes:
-                state = state._replace(time=stop)
-            if stop in asked:
-                found[stop] = report(row, state, stop)
-    except (DivergenceError, OutgrownError) as error:
-        error.rows = tuple(row[: len(TRANSIENT_UNITS)] for row in found.values())
-        raise
-    columns = np.array([found[time] for time in wanted]).T
-    return dict(zip(COLUMNS, columns, strict=True)), row.updates
+) -> Rows:
+    row.use(scheme)
+    path, asked = row.path, set(wanted)
+    times, steps, after, about = [0.0], list[float](), list[int](), list[tuple[float, ...]]()
+    for start, stop, count in legs:
+        steps += [(stop - start) / max(count, 1)] * count
+        times += [start + (stop - start) * k / count for k in range(1, count)] + [stop] * (
+            count > 0
+        )
+        if not count and stop in path.changes:
+            times[-1] = stop
+        if stop in asked:
+            at, forward = times[-1], path.forward(stop)
+            before = path.velocity(at, before=True)
+            about.append((stop, path.velocity(stop), before, forward, path.displacement(at)))
+            after.append(len(steps))
+    course = course_of(
+        path, np.array(times), np.array(steps), after, about, limits(row.model, path)
+    )
+    balances, found = np.zeros((2, kernels.WINDOW)), np.full((len(after), len(COLUMNS)), math.nan)
+    row.compiled = row.model.profile is None and _worthwhile(row, len(steps))
+    pause = max(1, int(PAUSE[row.compiled] / (1.0 + row.stored.u.size)))
+    status, done, reported = kernels.DONE, 0, 0
+    while status == kernels.DONE:
+        until = min(done + pause, len(steps))
+        status, done, reported = row.run(course, found, balances, (done, reported), until)
+        if progress is not None and done:
+            progress(done / len(steps), f"{done:,} of {len(steps):,} steps")
+        if done == len(steps):
+            break
+    if status != kernels.DONE:
+        error: OutgrownError | DivergenceError = OutgrownError()
+        if status != kernels.OUTGROWN:
+            h = max(steps)
+            error = divergence(status, scheme, row.model, path, h, times[done], row.state, balances)
+        error.rows = tuple(map(tuple, found[:reported, : len(TRANSIENT_UNITS)].tolist()))
+        raise error
+    order = {time: k for k, (time, *_) in enumerate(about)}
+    columns = found[[order[time] for time in wanted]].T
+    return dict(zip(COLUMNS, columns, strict=True))
+
+
+def _worthwhile(row: ElementRow, steps: int) -> bool:
+    """Whether to compile: once so much was interpreted in this process, or will be in this run."""
+    work = steps * row.stored.u.shape[0]
+    if Tally.steps + work > WORTHWHILE and compilation.available():
+        Tally.steps = max(Tally.steps, WORTHWHILE)
+        return True
+    Tally.steps += work
+    return False
 
 
 def _legs(

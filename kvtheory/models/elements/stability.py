@@ -6,15 +6,14 @@ rates σ; for the fast rate, about -C L/M, this is fact F15, h C L/M <= 2.785 or
 """
 
 import math
-from collections import deque
 from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
 
-from kvtheory.models.elements.law import Array
+from kvtheory.models.elements import kernels
+from kvtheory.models.elements.law import RIGHT, Array
 from kvtheory.models.elements.model import Model, root, span
-from kvtheory.models.elements.row import ElementRow, IndenterState
 from kvtheory.models.elements.schemes import DEFAULT, Scheme
 from kvtheory.results.errors import DivergenceError
 from kvtheory.scene.base_motion import BaseMotion
@@ -25,8 +24,6 @@ ADVISED = 0.9
 """Of the stability limit, for the step that is advised."""
 RISE = 5.0
 """An indenter that leaves so many times faster than the foundation can throw it has diverged."""
-WINDOW = 40
-"""Steps over which the balance of forces is judged: a sudden change of the drive upsets only a few."""
 IMBALANCE = 0.05
 """Of the forces: a mean imbalance that a stable run stays below, besides that of single elements."""
 
@@ -72,7 +69,7 @@ def limit_at(scheme: Scheme, model: Model, length: float) -> float:
     limits = [_limit(scheme, model, length)]
     if model.sprung:
         tilt = model.tilt(length)
-        law = replace(model.law, damping=model.law.damping + model.damping_along / tilt)
+        law = model.law._replace(damping=model.law.damping + model.damping_along / tilt)
         along = replace(model, mass=model.mass_along, spring=model.spring_along, law=law)
         limits.append(_limit(scheme, along, tilt))
     return 1.0 / inverse if (inverse := sum(1.0 / h for h in limits)) else math.inf
@@ -83,7 +80,9 @@ def _limit(scheme: Scheme, model: Model, length: float) -> float:
     if math.isinf(model.mass):
         return math.inf
     law, M = model.law, model.mass
-    fastest = law.damping * length / M + math.sqrt((law.at_once * length + model.spring) / M)
+    fastest = law.damping * length / M + math.sqrt(
+        (law.glassy_stiffness * length + model.spring) / M
+    )
 
     def growth(h: float) -> float:
         step = amplification(scheme, model, length, h)
@@ -114,12 +113,13 @@ def amplification(scheme: Scheme, model: Model, length: float, h: float) -> Arra
         )
 
     def moved(c: float, depth: Array) -> Array:
-        step = law.step(c * h)
-        return step.held[:, None] * held + step.ramp[:, None] * (depth - u)
+        step = kernels.law_of(law, c * h)
+        kept, ramp = np.append(1.0, step.held), np.append(1.0, step.ramp)
+        return kept[:, None] * held + ramp[:, None] * (depth - u)
 
     for c, *a in stages:
         depth, rate = along(a)
-        p = law.pressure(moved(c, depth), depth, rate)
+        p = law.pressure(depth, rate) + moved(c, depth)[1:].sum(axis=0)
         rates.append(rate)
         pulls.append(-(length * p + k_s * depth) / M)
     depth, rate = along(weights)
@@ -158,54 +158,38 @@ def stability_text(scheme: Scheme, model: Model, path: BaseMotion, h: float) -> 
     )
 
 
-class Watch:
-    """Stops a run that has become unstable.
+def limits(model: Model, path: BaseMotion) -> tuple[float, float, float]:
+    """Return the speeds, upward and along, that no stable run reaches, and the imbalance that it stays below.
 
-    No element pulls, p >= 0, so that an indenter in contact rises at most with g/τ - V h'; beyond that
-    it has left the foundation, and only a spring can lift it faster. But an unstable step does not
-    always throw it off: when the contact gives way, the oscillation may settle at some amplitude, or
-    on a wrong state at rest, with forces that do not balance the motion. So the balance over each
-    step, M δ'' = W - k_s (δ - δ_0) - F_z, is checked too.
+    They are for `kernels.advance`; a run with a mistake in the rule of contact has none.
     """
+    if model.rule != RIGHT:
+        return -math.inf, math.inf, math.inf
+    thrown = (
+        model.depth / model.law.retardation_time
+        + model.fastest(path)
+        * float(abs(model.slope(np.array(span(model.indenter, model.depth)))).max())
+        + model.depth * math.sqrt(model.spring / model.mass)
+        + model.depth * math.sqrt(model.extent * float(model.law.arm_stiffness.sum()) / model.mass)
+    )
+    return (
+        -RISE * thrown if math.isfinite(model.mass) else -math.inf,
+        RISE * (model.fastest(path) + math.sqrt(model.at_rest.energy / model.mass_along)),
+        IMBALANCE + ELEMENTS * model.spacing / (2.0 * model.half_length),
+    )
 
-    def __init__(self, row: ElementRow, scheme: Scheme) -> None:
-        model = row.model
-        self._row, self._scheme = row, scheme
-        ends = np.array(span(model.indenter, model.depth))
-        arms = float(model.law.arm_stiffness.sum())
-        thrown = (
-            model.depth / model.law.retardation_time
-            + model.fastest(row.path) * float(abs(model.slope(ends)).max())
-            + model.depth * math.sqrt(model.spring / model.mass)
-            + model.depth * math.sqrt(model.extent * arms / model.mass)
-        )
-        self._limit = -RISE * thrown if math.isfinite(model.mass) else -math.inf
-        self._fastest = RISE * (
-            model.fastest(row.path) + math.sqrt(model.at_rest.energy / model.mass_along)
-        )
-        self._allowed = IMBALANCE + ELEMENTS * model.spacing / (2.0 * model.half_length)
-        self._balances: deque[tuple[float, float]] = deque(maxlen=WINDOW)
 
-    def see(self, motion: IndenterState, h: float) -> None:
-        """Judge a step.
-
-        Raises
-        ------
-        DivergenceError
-            If it shows that the run is unstable.
-        """
-        model, sign = self._row.model, ""
-        if not motion.rate >= self._limit:  # NaN is not above it either
-            sign = f"where the indenter is thrown upward with {-motion.rate:.3g} m/s"
-        elif not abs(motion.along_rate) <= self._fastest:
-            sign = f"where the indenter is thrown along x with {abs(motion.along_rate):.3g} m/s"
-        elif self._scheme.tableau:
-            self._balances.append((motion.imbalance, motion.force))
-            imbalance, force = map(sum, zip(*self._balances, strict=True))
-            if len(self._balances) == WINDOW and imbalance > self._allowed * force:
-                sign = f"where the forces fail to balance the motion by {imbalance / force:.0%}"
-        if sign:
-            raise DivergenceError(
-                f"the run diverged at t = {motion.time:.6g} s, {sign}: "
-                f"{stability_text(self._scheme, model, self._row.path, h)}"
-            )
+def divergence(
+    status: int, scheme: Scheme, model: Model, path: BaseMotion, h: float, time: float, state: Array,
+    balances: Array,
+) -> DivergenceError:  # fmt: skip
+    """Return the error about a run that `kernels.advance` found to be unstable."""
+    sign = f"where the indenter is thrown upward with {-state[kernels.RATE]:.3g} m/s"
+    if status == kernels.THROWN_ALONG:
+        sign = f"where the indenter is thrown along x with {abs(state[kernels.ALONG_RATE]):.3g} m/s"
+    elif status == kernels.UNBALANCED:
+        share = balances[0].sum() / balances[1].sum()
+        sign = f"where the forces fail to balance the motion by {share:.0%}"
+    return DivergenceError(
+        f"the run diverged at t = {time:.6g} s, {sign}: {stability_text(scheme, model, path, h)}"
+    )

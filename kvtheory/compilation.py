@@ -1,0 +1,53 @@
+"""Kernels compiled by numba, which is optional, and kept on the disk."""
+
+import inspect
+from collections.abc import Callable
+from importlib.util import find_spec
+from types import ModuleType
+from typing import Any
+
+from kvtheory.progress import compiling
+
+OPTIONS: Any = {"error_model": "numpy"}
+"""Divisions are those of NumPy: by zero, they give infinity, and need no check."""
+
+
+def available() -> bool:
+    """Whether numba is installed: the extra `fast`."""
+    return find_spec("numba") is not None
+
+
+def kept(entry: Callable[..., Any], module: ModuleType) -> Any:
+    """Return an entry of a module of kernels that is compiled when called, and kept if there is a place.
+
+    Raises
+    ------
+    ModuleNotFoundError
+        If numba is not installed.
+    """
+    from numba import njit
+    from numba.extending import register_jitable
+
+    for function in vars(module).values():
+        if inspect.isfunction(function) and function.__module__ == module.__name__:
+            register_jitable(**OPTIONS)(function)
+    try:
+        compiled = njit(entry, cache=True, nogil=True, **OPTIONS)
+    except RuntimeError:  # no place to keep it: the package and the home are read-only
+        compiling()
+        return njit(entry, nogil=True, **OPTIONS)
+    disk: Any = compiled._cache  # type: ignore[attr-defined]
+    load = disk.load_overload
+
+    def load_or_forget(*key: Any) -> Any:
+        found = None
+        try:
+            found = load(*key)
+        except Exception:  # whatever damaged files raise, or those of another version
+            disk.flush()
+        if found is None:
+            compiling()
+        return found
+
+    disk.load_overload = load_or_forget
+    return compiled
