@@ -1005,6 +1005,7 @@ SYMBOLS = tuple(
         (r"F_{xX}", "change of $F_x$ with the displacement", "N/m²", "F24"),
         ("a_T", "shift factor of all times by temperature", "1", ""),
         (r"\tau_T", "relaxation time at the temperature $T$", "s", "F25"),
+        ("T", "temperature", "K", ""),
         (r"T_{\mathrm{r}}", "temperature at which the times were measured", "K", ""),
         ("C_1", "first coefficient of Williams, Landel and Ferry", "1", ""),
         ("C_2", "second coefficient of Williams, Landel and Ferry", "K", ""),

@@ -179,7 +179,7 @@ FORCES = {
     normal_per_depth: _1 + sigma * _2,
     rubbing_per_depth: _2 + sigma * _3 - (HALF - e) * (_1 + sigma * _2),
     normal_per_drag: z * (_S3 - _3 - (HALF + e) * (_S2 - _2)),
-    rubbing_per_drag: -z * (_S3 - _3 - (_S4 - _4) - (HALF - e) * (HALF + e) * (_S2 - _2)),
+    rubbing_per_drag: -z * (_S3 - _3 - (_S4 - _4) - (sp.Rational(1, 4) - e**2) * (_S2 - _2)),
 }
 """Changes of both forces of an arm, in units of K_i c, K_i c^2/R, K_i c^2/R and K_i c^3/R^2."""
 
@@ -221,8 +221,8 @@ def _rates() -> Derivation:
     proof.equal(along * across - B * lengthwise, both,
                 r"both equations of motion hold: $\tilde X$ is eliminated")  # fmt: skip
     value = D - M_x * s**2 - C_x * s - B * C / up
-    proof.equal(sp.Subs(up * along + B * C, k_x, value), sp.S.Zero,
-                r"so $\tilde s$ is a rate for this stiffness")  # fmt: skip
+    proof.define(k_x, value, "the stiffness explicit in the rate")
+    proof.equal(up * along + B * C, sp.S.Zero, r"so $\tilde s$ is a rate for this stiffness")
     return proof.done(along * across - B * lengthwise, both)
 
 
@@ -230,7 +230,7 @@ _RATES = (
     r"With the sums over the spring and all arms the forces change by $F_{z\delta} \tilde \delta + F_{zX} "
     r"\tilde X$ and $F_{x\delta} \tilde \delta + F_{xX} \tilde X$, times $e^{\tilde s t}$. On the "
     r"imaginary axis $k_x$ is explicit: $k_x = F_{xX} - M_x \tilde s^2 - C_x \tilde s - F_{zX} "
-    r"F_{x\delta}/(M \tilde s^2 + k_{\mathrm{s}} + F_{z\delta})$, and the critical stiffness is the "
+    r"F_{x\delta}/(M \tilde s^2 + k_s + F_{z\delta})$, and the critical stiffness is the "
     "largest real value that it takes there."
 )
 

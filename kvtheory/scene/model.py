@@ -174,7 +174,7 @@ class Scene(Part):
         parts = vars(self)
         problems = []
         for name, kinds in PARTS.items():
-            if parts[name].__class__ not in kinds:
+            if not isinstance(parts[name], kinds):
                 told = " or ".join(kind.__name__ for kind in kinds)
                 problems.append(problem(f"`{name}`", parts[name], f"expected {told}"))
         for name in () if problems else WEIGHED:
