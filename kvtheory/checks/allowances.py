@@ -77,8 +77,8 @@ class Allowance:
         with np.errstate(invalid="ignore"):
             return np.maximum(np.maximum(self.low[name] - values, values - self.high[name]), 0.0)
 
-    def most(self, name: str) -> Array:
-        """Return what a single value may lie outside the band."""
+    def limit(self, name: str) -> Array:
+        """Return how far a single value may lie outside the band."""
         return self.systematic[name] + extreme(self.systematic[name].size) * self.noise[name]
 
     def rows(self, rows: Array) -> "Allowance":

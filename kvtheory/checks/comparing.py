@@ -56,7 +56,7 @@ def _compare(
         several = series.ignored[:MOST_NAMED]
         more = f" and {len(series.ignored) - len(several)} more" * (several != series.ignored)
         text += f" Columns that were not used: {', '.join(several)}{more}."
-    allowed = {name: case.most(name) * case.theory.scales[name] for name in case.names}
+    allowed = {name: case.limit(name) * case.theory.scales[name] for name in case.names}
     return Comparison(
         verdict(checks), checks, text, explanations, series.source, tolerance,
         dict(series.columns), dict(case.now), allowed, theory.units,

@@ -1,8 +1,9 @@
 """A series beside theory: all that the checks and the diagnosis look at."""
 
 import math
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import wraps
 
 import numpy as np
 from numpy.typing import NDArray
@@ -56,6 +57,13 @@ class Case:
         """The curves that the series holds."""
         return tuple(name for name in CURVES if name in self.series.columns)
 
+    def columns(self, *names: str) -> tuple[Array, ...]:
+        """Return columns of the data, without which a check is not made."""
+        for name in names:
+            if name not in self.series.columns:
+                raise NotMade(f"the data hold no {name.replace('_', ' ')}")
+        return tuple(self.series.columns[name] for name in names)
+
     def rows(self, rows: Array) -> "Case":
         """Return the case of some of its rows."""
         columns = {name: values[rows] for name, values in self.series.columns.items()}
@@ -72,36 +80,53 @@ class Case:
         values = self.allowance.excess(name, self.series.columns[name])
         return np.asarray(np.nan_to_num(values) / self.theory.scales[name])
 
-    def most(self, name: str) -> Array:
-        """Return what one value may lie outside, relative to the scale."""
-        scale = self.theory.scales[name]
-        values = np.nan_to_num(self.allowance.most(name), nan=0.0) / scale
+    def limit(self, name: str) -> Array:
+        """Return how far a single value may lie outside the band, relative to the scale."""
+        values = np.nan_to_num(self.allowance.limit(name), nan=0.0) / self.theory.scales[name]
         return np.asarray(self.tolerance * (values + SMALLEST))
 
-    def together(self, name: str) -> float:
-        """Return what the root mean square of a curve may be, relative to the scale."""
+    def rms_limit(self, name: str) -> float:
+        """Return the largest root mean square of a curve that is allowed, relative to the scale."""
         scale = self.theory.scales[name]
         smooth = rms(self.allowance.systematic[name]) / scale
         sigma = rms(self.allowance.noise[name]) / scale
         random = sigma * (1.0 + SURE * math.sqrt(2.0 / self.series.time.size))
         return self.tolerance * (smooth + random + SMALLEST)
 
-    @cached_property
-    def random_force(self) -> float:
-        """Standard deviation of the noise of the normal force, in N/m: the median over time."""
-        return float(np.median(self.allowance.noise["normal_force"]))
 
-    def check(
-        self, name: str, measured: float, allowed: float, equation: str, unit: str, note: str = ""
-    ) -> Check:
-        """Return a check that was made; `allowed` includes the tolerance."""
-        ok = bool(measured <= allowed)
-        return Check(name, float(measured), float(allowed), ok, equation, unit, note)
+Measured = tuple[float, float, str]
+"""What a check measures, what is allowed (with the tolerance), and a note."""
 
 
-def not_made(name: str, equation: str, why: str) -> Check:
-    """Return a check that could not be made."""
-    return Check(name, None, None, None, equation, "", f"not made: {why}")
+class NotMade(Exception):  # noqa: N818
+    """A check cannot be made, for the reason that its text gives."""
+
+
+def made(
+    name: str, equation: str, unit: str, measured: float, allowed: float, note: str = ""
+) -> Check:
+    """Return a check that was made."""
+    ok = bool(measured <= allowed)
+    return Check(name, float(measured), float(allowed), ok, equation, unit, note)
+
+
+def check(
+    name: str, equation: str | Callable[[Case], str], unit: str
+) -> Callable[[Callable[[Case], Measured]], Callable[[Case], Iterator[Check]]]:
+    """Make a check of a function that returns what it measured or raises `NotMade`."""
+
+    def of(measure: Callable[[Case], Measured]) -> Callable[[Case], Iterator[Check]]:
+        @wraps(measure)
+        def checked(case: Case) -> Iterator[Check]:
+            basis = equation if isinstance(equation, str) else equation(case)
+            try:
+                yield made(name, basis, unit, *measure(case))
+            except NotMade as reason:
+                yield Check(name, None, None, None, basis, "", f"not made: {reason}")
+
+        return checked
+
+    return of
 
 
 def make_case(
