@@ -90,14 +90,14 @@ def balance(case: Case) -> Measured:
         raise NotMade("it needs the depth and the normal force")
     smear = np.nan_to_num(allowed.high["normal_force"] - allowed.low["normal_force"])
     smooth = np.nan_to_num(allowed.systematic["normal_force"]) + 0.5 * smear
-    sigmas = allowed.noise["depth"], allowed.noise["normal_force"]
     found = []
     for window in windows(case.series.time):
         part = slice(window.start, window.stop)
         lacks, sampled = (
             abs(missing_force(window, c, support, static.depth)) for c in (columns, now)
         )
-        random = random_part(window, *(sigma[part] for sigma in sigmas), support.mass)
+        sigmas = allowed.noise["depth"][part], allowed.noise["normal_force"][part]
+        random = random_part(window, *sigmas, support.mass)
         steady = float(
             np.abs(window.force) @ smooth[part]
             + support.mass * np.abs(window.inertia) @ allowed.rounding["depth"][part]

@@ -89,11 +89,12 @@ def mistakes(bench: Bench) -> Iterator[Hypothesis]:
 
     def changed(wrong: Curves | None, share: float = 1.0) -> Pair | None:
         """Return theory plus a share of the change that a mistake makes."""
-        return wrong and (bench.columns, {
-            name: bench.now[name]
-            + share * np.where(bench.time >= 0.0, np.nan_to_num(wrong[name] - right[name]), 0.0)
-            for name in CURVES
-        })  # fmt: skip
+        if wrong is None:
+            return None
+        moving = bench.time >= 0.0
+        change = {name: np.nan_to_num(wrong[name] - right[name]) for name in CURVES}
+        shares = {name: share * np.where(moving, change[name], 0.0) for name in CURVES}
+        return bench.columns, {name: bench.now[name] + shares[name] for name in CURVES}
 
     def made(x: float, mistake: Mistake) -> Pair | None:
         if not mistake.by_step:

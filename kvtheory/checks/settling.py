@@ -97,8 +97,6 @@ def steady_limit(case: Case) -> Measured:
     theory, time, columns = case.theory, case.series.time, case.series.columns
     if math.isinf(theory.last_change):
         raise NotMade("the drive is a function, which need not settle")
-    if theory.by_elements and not theory.scene.drive.rigid:
-        raise NotMade("steady sliding on a spring is compared for a parabola on Kelvin-Voigt only")
     if theory.rates is not None:
         slow = theory.rates.settling
     else:

@@ -17,6 +17,7 @@ from kvtheory.results.table import QUANTITIES, SERIES_UNITS, units_for
 from kvtheory.scene import Drive, Sphere
 from kvtheory.scene.model import Scene
 from kvtheory.scene.static_state import StaticState
+from kvtheory.theory.closed_forms import trailing_edge_ratio
 
 Array = NDArray[np.float64]
 Curves = Mapping[str, Array]
@@ -152,28 +153,26 @@ class Theory:
     def rates(self) -> Rates | None:
         """The time constants at the steady state; None if the indenter cannot move.
 
-        On a spring they follow from the quartic of F22. With a rigid drive, A = sqrt(a^2 + l_r^2) + a and
-        B = x_TE + a, M s^2 + C B s + K A + k_s = 0 (F12); with arms, they are those of the damping that slow
-        sliding feels, and measure what is allowed. So do those of a ball, by its mean width. Whether steady
-        sliding of these is stable on a spring, and when it is there, is not known.
+        On a spring they follow from the rates of F22. With a rigid drive, A = sqrt(a^2 + l_r^2) + a and
+        B = x_TE + a, M s^2 + C B s + K A + k_s = 0 (F12). For arms the damping is that of slow sliding, and
+        for a ball the width is the mean one: they set windows and allowances, and no series is compared with
+        them. Of a parabola on Kelvin-Voigt it is; their code is that of `steady`, which makes no series.
         """
         support, foundation = self.scene.support, self.scene.foundation
-        if not self.scene.drive.rigid and not self.by_elements:
+        if not self.scene.drive.rigid:
             steady = self.scene.drive.changed(velocity=self.final_velocity)
             rates = self.methods.rates(replace(self.scene, drive=steady))
             return Rates.of((-1.0 / rates[rates != 0.0]).tolist())
         if self.scene.held:
             return None
         a, l_r = self.steady_state.half_length, self.steady_state.retardation_length
-        x_te = a * a / (l_r + math.hypot(a, l_r))
         width = float(self.width(self.steady_state.depth))
         stiffness = foundation.stiffness * width * (math.hypot(a, l_r) + a) + support.spring
-        damping = foundation.damping * width * (x_te + a)
+        damping = foundation.damping * width * a * (trailing_edge_ratio(l_r / a) + 1.0)
         root = complex(damping * damping - 4.0 * support.mass * stiffness) ** 0.5
-        found = Rates.of(
+        return Rates.of(
             [2.0 * support.mass / (damping + root), (damping + root) / (2.0 * stiffness)]
         )
-        return found if self.scene.drive.rigid else replace(found, settling=math.inf)
 
     def at(self, times: Array, rtol: float = 1e-6) -> dict[str, Array]:
         """Return the curves at `times` (s): at rest before t = 0, just after a jump of the drive."""
