@@ -3,35 +3,27 @@
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 
+from kvtheory.checks import faults
 from kvtheory.checks.checklist import SAMPLING
 from kvtheory.checks.comparison_case import Case
 from kvtheory.checks.contact_rules import mistakes
-from kvtheory.checks.faults import (
-    WRONG,
-    damper,
-    direction,
-    other_scenes,
-    parameters,
-    scales_and_offsets,
-    signs_and_units,
-    time_offset,
-    time_units,
-)
 from kvtheory.checks.fitting import Bench, Hypothesis, Trial, bench
 from kvtheory.checks.settling import PHASE
-from kvtheory.checks.symptoms import coarser, growing, in_failed_checks
+from kvtheory.checks.symptoms import growing, in_failed_checks
 from kvtheory.results.comparison import Check, Explanation
 
 Family = Callable[[Bench], Iterator[Hypothesis]]
 
 FAMILIES: tuple[tuple[Family, float], ...] = (
-    (signs_and_units, 0.5), (other_scenes, 0.97), (time_units, 0.5), (time_offset, 0.97),
-    (parameters, 0.9), (direction, 0.9), (damper, 0.9), (scales_and_offsets, 0.97), (mistakes, 1.0),
+    (faults.signs_and_units, 0.5), (faults.other_scenes, 0.97), (faults.time_units, 0.5),
+    (faults.time_offset, 0.97), (faults.parameters, 0.9), (faults.direction, 0.9), (faults.damper, 0.9),
+    (faults.scales_and_offsets, 0.97), (mistakes, 1.0),
 )  # fmt: skip
 """The families in the order in which they are tried, and the part of the difference that one of their faults
 must explain to end the search: a sign or a unit is not fitted, so that little is enough."""
 BY_ELEMENTS: tuple[tuple[Family, float], ...] = (
-    (signs_and_units, 0.5), (other_scenes, 0.9), (scales_and_offsets, 0.97), (parameters, 0.9),
+    (faults.signs_and_units, 0.5), (faults.other_scenes, 0.9), (faults.scales_and_offsets, 0.97),
+    (faults.parameters, 0.9),
 )  # fmt: skip
 """Those where each theory is a run of many elements."""
 NOT_TRIED = (
@@ -71,8 +63,6 @@ def diagnose(case: Case, checks: Sequence[Check]) -> tuple[str, tuple[Explanatio
         why = "; ".join(INCONCLUSIVE[check.name] for check in failed)
         return f"{why}; all of the other {made - len(failed)} checks that could be made passed.", ()
     found = explanations(case)
-    if not any(each.enough for each in found[:1]):
-        found = [*found, *coarser(case, failed)]
     found = sorted([*in_failed_checks(case, failed), *growing(case), *found], key=lambda e: -e.rank)
     named = [each for each in found if each.rank >= NAMED]
     return _words(case, failed, named), tuple((named or found)[:SHOWN])
@@ -112,7 +102,7 @@ def _with_alike(rows: Bench, tried: list[Trial]) -> list[Trial]:
         return tried
     others = [t.hypothesis for t in tried if t.hypothesis.powers and t is not best]
     alike = rows.indistinguishable(best, others)
-    symbols = tuple(name.removeprefix(WRONG) for name in alike)
+    symbols = tuple(name.removeprefix(faults.WRONG) for name in alike)
     return [replace(each, alike=symbols) if each is best else each for each in tried]
 
 
@@ -130,10 +120,10 @@ def _words(case: Case, failed: Sequence[Check], named: Sequence[Explanation]) ->
     equal = [
         e
         for e in rest
-        if e.enough and first.enough and e.name.removeprefix(WRONG) not in first.alike
+        if e.enough and first.enough and e.name.removeprefix(faults.WRONG) not in first.alike
     ]
     also = f" Also possible: {'; '.join(each.text for each in equal)}." if equal else ""
     if first.alike:
-        together = f"{first.name.removeprefix(WRONG)} and {' or '.join(first.alike)}"
+        together = f"{first.name.removeprefix(faults.WRONG)} and {' or '.join(first.alike)}"
         also = f" {together} cannot be told apart by these data.{also}"
     return f"{text}.{also} Failed: {which}."

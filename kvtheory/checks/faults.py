@@ -229,24 +229,18 @@ def _factors(bench: Bench) -> Iterator[tuple[str, float, float, Pair]]:
     for title, group in GROUPS.items():
         if not all(name in bench.names for name in group):
             continue
-        factor = _least_squares(bench, group)
+        limits = [bench.case.limit(n) * bench.case.theory.scales[n] for n in group]
+        data, theory = (
+            np.array([c[n] for n in group]) / limits for c in (bench.columns, bench.now)
+        )
+        known = np.isfinite(data) & np.isfinite(theory)
+        square = float(data[known] @ data[known])
+        factor = float(data[known] @ theory[known]) / square if square else math.nan
         if math.isfinite(factor) and factor != 0.0:
             power = _power_of_ten(factor)
             exact = factor if power is None else math.copysign(10.0**power, factor)
             changed = {**bench.columns, **{name: exact * bench.columns[name] for name in group}}
             yield title, factor, exact, (changed, bench.now)
-
-
-def _least_squares(bench: Bench, group: tuple[str, ...]) -> float:
-    """Return the factor by which columns fit theory best, weighted by their allowances."""
-    top = bottom = 0.0
-    for name in group:
-        limit = bench.case.limit(name) * bench.case.theory.scales[name]
-        data, theory = bench.columns[name] / limit, bench.now[name] / limit
-        known = np.isfinite(data) & np.isfinite(theory)
-        top += float(data[known] @ theory[known])
-        bottom += float(data[known] @ data[known])
-    return top / bottom if bottom else math.nan
 
 
 def time_units(bench: Bench) -> Iterator[Hypothesis]:

@@ -1,31 +1,25 @@
 """Faults that show by themselves: in a failed check, in the noise, in growth beyond all bounds."""
 
 from collections.abc import Iterator, Sequence
-from dataclasses import replace
 
 import numpy as np
 
 from kvtheory.checks.allowances import contact_extent
-from kvtheory.checks.checklist import judge
 from kvtheory.checks.comparison_case import (
-    COARSEST,
     COMMON,
     IN_STEP,
     LARGEST_SAWTOOTH,
     Case,
     common_noise,
-    make_case,
 )
-from kvtheory.checks.discretization import COARSE, NOISE, NUMBER
+from kvtheory.checks.discretization import COARSE, NUMBER
 from kvtheory.checks.noise import noise
 from kvtheory.results.comparison import Check, Explanation
 from kvtheory.results.schemes import SCHEME_ROWS
 
-COARSER = 2.0
-"""Factor by which the spacing may be wider than assumed: data that are coarser show a sawtooth."""
-LIKELY, READ, POSSIBLE = 0.8, 0.75, 0.55
-"""Ranks of what is seen but cannot be tried: a step that is not known, a spacing that is estimated from the
-sawtooth, and one that is not known."""
+LIKELY, READ = 0.8, 0.75
+"""Ranks of what is seen but cannot be tried: a step that is not known, and a spacing that is estimated from
+the sawtooth."""
 LARGE, MANY = 10.0, 30.0
 """Of a scale, and of what it was at first: a difference beyond both has grown."""
 UNSTABLE, FEW = "unstable time step", "too few elements"
@@ -93,24 +87,3 @@ def _grows(case: Case) -> bool:
             if off[late:].max() > max(LARGE, MANY * off[:early].max()):
                 return True
     return False
-
-
-def coarser(case: Case, failed: Sequence[Check]) -> Iterator[Explanation]:
-    """Say so if the data are as theory allows for fewer elements than assumed, and the forces show it."""
-    shown = any(check.name.startswith(("normal", "friction", "discretization")) for check in failed)
-    if case.resolution.spacing_known or not shown:
-        return
-    spacing = COARSER * case.resolution.spacing
-    wider = make_case(case.theory, case.series, 1.0 / spacing, case.tolerance, COARSEST)
-    wider = replace(wider, resolution=wider.resolution._replace(spacing_known=False))
-    if {check.name for check in judge(wider) if check.ok is False} - {NOISE}:
-        return
-    shared = (common_noise(case) or 0.0) >= COMMON
-    note = ", and their noise is common to both forces as that of elements" if shared else ""
-    yield Explanation(
-        FEW,
-        f"too few elements (F15): the differences are as those of about {1e-3 / spacing:.3g} /mm, where "
-        f"{1e-3 / case.resolution.spacing:.3g} /mm are assumed{note}; if that is the density, give it as "
-        "`per_length`",
-        POSSIBLE, True,
-    )  # fmt: skip
