@@ -64,6 +64,8 @@ SIGNS = {
     "normal_force": ": F_z on the indenter is positive (Eqs. 12 and 14)",
 }
 """What fixes the sign of a column."""
+DRIFTS = "depth", "normal_force", "friction_force", "spring_force"
+"""Columns that a sensor measures, and whose zero may be off."""
 
 FACTORS = (1.0, 0.5, 2.0, 0.1, 10.0, 1e-3, 1e3)
 """Factors of a parameter from which the fit may start: near 1, where mistakes are, and wrong units."""
@@ -201,7 +203,7 @@ def scales_and_offsets(bench: Bench) -> Iterator[Hypothesis]:
     def shifted(x: float, name: str, by: object) -> Pair:
         return {**columns, name: columns[name] - x * np.asarray(by)}, bench.now
 
-    for name in bench.names:
+    for name in (name for name in bench.names if name in DRIFTS):
         scale, unit = theory.scales[name], theory.units[name]
         yield Hypothesis(
             f"offset of {name}",

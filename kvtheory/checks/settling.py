@@ -1,13 +1,18 @@
-"""Checks of how the data settle: the two time constants of F12, the steady limit, or the phase of a cycle."""
+"""Checks of how the data settle: the two time constants of F12, the steady limit, or the phase of a cycle.
+
+Near steady sliding the depth settles with the slow time constant alone, and what is left of the force
+balance right after a jump decays with the fast one. The same fit is made to theory at the same times, so
+that the error of the fit itself cancels.
+"""
 
 import math
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.optimize import minimize_scalar
 
 from kvtheory.checks.comparison_case import SMALLEST, Case, Measured, NotMade, check, rms
 from kvtheory.checks.noise import SURE
-from kvtheory.checks.relaxation import FEWEST, fit, uncertainty
 from kvtheory.checks.theory import Rates
 
 Array = NDArray[np.float64]
@@ -26,6 +31,12 @@ PHASE = "phase of the cycle"
 """The check whose failure alone says nothing against the data: theory cannot predict the phase."""
 LOST = 0.25
 """Of the sliding velocity: where so much is allowed, the phase is lost."""
+FEWEST = 6
+"""Samples for three unknowns."""
+LOG_PRECISE = 1e-6
+"""Of the logarithm of a time constant: far closer than any data fix it."""
+RANGE = 5.0
+"""Factor up and down from the expected time constant in which to look."""
 OF_FITS = "relative difference of the fits"
 
 
@@ -84,6 +95,47 @@ def _fitted(case: Case, curve: str, use: NDArray[np.intp], exact: float) -> Meas
         f"F12: {exact * 1e3:.4g} ms"
     )
     return abs(data / theory - 1.0), case.tolerance * limit, note
+
+
+def _basis(time: Array, T: float) -> Array:
+    """Return the columns 1 and exp(-t/T)."""
+    return np.stack([np.ones_like(time), np.exp((time[0] - time) / T)], axis=1)
+
+
+def fit(time: Array, values: Array, expected: float) -> float:
+    """Return T of the best c_0 + c_1 exp(-t/T), for T within a factor of five of the expected one.
+
+    Examples
+    --------
+    >>> t = np.linspace(0.0, 3.0, 50)
+    >>> round(fit(t, 2.0 - 0.5 * np.exp(-t / 0.7), 1.0), 6)
+    0.7
+    """
+
+    def left(log_T: float) -> float:
+        basis = _basis(time, np.exp(log_T))
+        rest = values - basis @ np.linalg.lstsq(basis, values, rcond=None)[0]
+        return float(rest @ rest)
+
+    bounds = np.log(expected) - np.log(RANGE), np.log(expected) + np.log(RANGE)
+    options = {"xatol": LOG_PRECISE}
+    return float(np.exp(minimize_scalar(left, bounds=bounds, method="bounded", options=options).x))
+
+
+def uncertainty(
+    time: Array, values: Array, T: float, offset: Array, digits: Array, sigma: Array
+) -> float:
+    """Return the uncertainty of T, relative to T.
+
+    `offset` bounds a smooth error of the values, `digits` one of any sign at each of them, and `sigma` are
+    the standard deviations of a random one; all go through the linear least squares about the fit.
+    """
+    age, basis = time - time[0], _basis(time, T)
+    amplitude = np.linalg.lstsq(basis, values, rcond=None)[0][1]
+    to_parameter = np.linalg.pinv(np.column_stack([basis, amplitude * basis[:, 1] * age / T]))[2]
+    smooth = abs(to_parameter @ offset) + abs(to_parameter @ (offset * age / age[-1]))
+    rough = np.abs(to_parameter) @ digits + SURE * np.linalg.norm(sigma * to_parameter)
+    return float(smooth + rough)
 
 
 def _steady_equation(case: Case) -> str:
