@@ -18,16 +18,13 @@ from collections.abc import Mapping
 from dataclasses import dataclass, fields
 
 import numpy as np
-from numpy.typing import NDArray
 
 from kvtheory.checks.noise import extreme, noise, rounded, time_rounding
 from kvtheory.checks.reading import Series
 from kvtheory.checks.resolution import Resolution
 from kvtheory.checks.spring_response import spring_response
-from kvtheory.checks.theory import CURVES, SHALLOWEST, Curves, Theory
+from kvtheory.checks.theory import CURVES, SHALLOWEST, Array, Curves, Theory
 from kvtheory.results.schemes import SCHEME_ROWS
-
-Array = NDArray[np.float64]
 
 STEPS_SMEARED = 2.0
 """Steps within which theory may lead or lag: a first-order scheme lags by one, and its start by one more."""

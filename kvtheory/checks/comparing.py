@@ -16,7 +16,7 @@ from kvtheory.results.comparison import Check, Comparison, Explanation
 from kvtheory.scene.model import Scene
 
 MOST_NAMED = 20
-"""Columns that were not used, and are named."""
+"""Unused columns that are named in the diagnosis."""
 
 
 @np.errstate(over="ignore", invalid="ignore")  # data that diverge overflow when squared

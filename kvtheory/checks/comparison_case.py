@@ -1,4 +1,4 @@
-"""A series beside theory: all that the checks and the diagnosis look at."""
+"""A series beside theory, and what all checks have in common."""
 
 import math
 from collections.abc import Callable, Iterator
@@ -6,44 +6,41 @@ from dataclasses import dataclass, replace
 from functools import wraps
 
 import numpy as np
-from numpy.typing import NDArray
 
 from kvtheory.checks.allowances import Allowance, allowance
 from kvtheory.checks.noise import SURE, gaps
 from kvtheory.checks.reading import Series
 from kvtheory.checks.resolution import Resolution, resolution
-from kvtheory.checks.theory import CURVES, Curves, Theory
+from kvtheory.checks.theory import CURVES, Array, Curves, Theory
 from kvtheory.results.comparison import Check
-
-Array = NDArray[np.float64]
 
 THEORY_RTOL = 1e-7
 """Tolerance of the theory: its error is far below every allowance."""
 SMALLEST = 1e-9
-"""Of a scale: below this, theory and data are not told apart."""
+"""Of a scale: smaller differences are ignored."""
 LARGEST_SAWTOOTH = 0.025
-"""Of the load: elements so coarse that half of one at the edge matters more do not resolve the contact."""
+"""Of the load: if half an element at the edge matters more, the contact is not resolved."""
 COARSEST = 0.1
-"""Of the load: data whose half element is more are not called coarse, but wrong."""
+"""Of the load: if half an element would have to matter more, the data are wrong rather than coarse."""
 SOME, IN_STEP = 1.4, 1.75
-"""Elements may be so much fewer than assumed, or than their noise shows where it is even; and where it is
-not, for samples that are nearly in step with the elements that enter see little of the sawtooth."""
+"""Elements may be so much fewer than assumed, or than an even sawtooth shows; and than an uneven one shows,
+for samples that are nearly in step with the elements that enter see little of it."""
 USUAL, LARGE, OFTEN = 0.43, 1.08, 0.95
 """Of b: median and 95th percentile of the gaps of a sawtooth of +-b that is sampled at random."""
 EVEN = 0.6
-"""Of what these say of each other: with less, a part of the samples is in step."""
+"""Of the ratio of both that is expected: below it, a part of the samples is in step."""
 FINEST = 0.1
 """Of the spacing assumed: a smaller sawtooth is that of samples all in step, and of the digits if these leave
 out as much."""
 COMMON = 0.5
-"""Correlation of the noise of both forces, squared, from which on it is taken for the sawtooth of F15."""
+"""Squared correlation of the noise of both forces, from which on it is taken for the sawtooth of F15."""
 LOUD = 4.0
 """Times the median: larger differences are jumps, which count as much as this."""
 
 
 @dataclass(frozen=True)
 class Case:
-    """A series, theory at its times, and what is allowed between them."""
+    """A series, theory at its times (`now`), and the allowed differences."""
 
     theory: Theory
     series: Series
@@ -132,7 +129,7 @@ def check(
 def make_case(
     theory: Theory, series: Series, per_length: float | None, tolerance: float, coarsest: float
 ) -> Case:
-    """Hold a series against theory.
+    """Compare a series with theory.
 
     Where the element density is not known, and the noise is that of elements, it is estimated from that:
     up to a force of half an element of `coarsest`, relative to the load.
@@ -188,6 +185,6 @@ def common_noise(case: Case) -> float | None:
 
 
 def rms(values: Array) -> float:
-    """Return the root mean square of what exists."""
+    """Return the root mean square of the finite values."""
     known = values[np.isfinite(values)]
     return float(np.sqrt(np.mean(known * known))) if known.size else 0.0

@@ -9,13 +9,10 @@ from functools import partial
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from kvtheory.checks.fitting import Bench, Hypothesis, Pair
-from kvtheory.checks.theory import CURVES, Curves, curves
+from kvtheory.checks.theory import CURVES, Array, Curves, curves
 from kvtheory.results.schemes import RK4_LIMIT
-
-Array = NDArray[np.float64]
 
 
 class Mistake(NamedTuple):
@@ -72,7 +69,7 @@ SPAN, LONGEST_SEARCHED = 8.0, 5000
 """A time step that is not known is sought up to so many times longer and shorter than the one assumed, with
 so many steps."""
 INSTANTS = 400
-"""At which it is reported, about."""
+"""Output times, about."""
 STABLE = 0.5
 """Of the largest stable step of the paper's scheme."""
 PASSED = 1.618

@@ -84,7 +84,7 @@ SHIFTS = (0.002, 0.005, 0.012, 0.03, 0.08, 0.2, 0.5)
 HUNDREDTH = 0.01
 """Of the span: the unit in which an offset of the time is fitted."""
 ONSET = 0.1
-"""Of the range of a force: where it has changed by as much, the drive has started."""
+"""Of the range of a force: once it has changed by as much, the drive has started."""
 
 
 def _power_of_ten(factor: float) -> int | None:

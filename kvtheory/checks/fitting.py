@@ -12,14 +12,12 @@ from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.optimize import least_squares, minimize_scalar
 
 from kvtheory.checks.comparison_case import Case
-from kvtheory.checks.theory import TRIAL_RTOL, Curves
+from kvtheory.checks.theory import TRIAL_RTOL, Array, Curves
 from kvtheory.scene import Scene
 
-Array = NDArray[np.float64]
 Pair = tuple[Curves, Curves]
 """Data and theory to hold against each other, in SI."""
 

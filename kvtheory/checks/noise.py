@@ -5,7 +5,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from kvtheory.checks.theory import Array
 
 SMALLEST = 1e-300
 """Magnitude that stands for zero where digits are counted."""

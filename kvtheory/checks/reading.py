@@ -7,14 +7,12 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from kvtheory.checks.columns import PRESSURE, SHOWN, SI_UNITS, Column, recognise
+from kvtheory.checks.theory import Array
 from kvtheory.scene.quantities import shown
 from kvtheory.scene.tables import numbers, read_table
 from kvtheory.scene.units import bare
-
-Array = NDArray[np.float64]
 
 SHORTEST = 8
 """Rows: fewer cannot show a jump, a transient of two time constants and a limit."""

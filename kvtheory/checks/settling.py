@@ -13,9 +13,7 @@ from scipy.optimize import minimize_scalar
 
 from kvtheory.checks.comparison_case import SMALLEST, Case, Measured, NotMade, check, rms
 from kvtheory.checks.noise import SURE
-from kvtheory.checks.theory import Rates
-
-Array = NDArray[np.float64]
+from kvtheory.checks.theory import Array, Rates
 
 SETTLED = 7.0
 """Slow time constants after the last change of the drive: e^-7 is below a thousandth."""
