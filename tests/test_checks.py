@@ -8,8 +8,11 @@ import pytest
 
 import kvtheory as kv
 from kvtheory.api._compare import METHODS
+from kvtheory.checks.checklist import judge
 from kvtheory.checks.columns import recognise
+from kvtheory.checks.comparison_case import COARSEST, make_case
 from kvtheory.checks.fitting import scaled_scene
+from kvtheory.checks.reading import read
 from kvtheory.checks.theory import Rates, Theory
 
 BALL = kv.Scene(
@@ -146,3 +149,44 @@ def test_the_time_constants_of_fast_sliding_do_not_cancel(l):
 def test_a_unit_that_is_that_of_the_table_is_read_exactly():
     assert recognise("F_z [N/m]").factor == 1.0
     assert recognise("z_A [m]").factor == -1.0
+
+
+DENSE = np.unique([*np.linspace(0.0, 0.01, 300), *np.linspace(0.0, 0.2, 300)])
+
+
+def exact(scene):
+    found = kv.transient(scene, at=DENSE, certify=False)
+    return {name: getattr(found, name) for name in MEASURED}
+
+
+def with_noise(size):
+    data = exact(kv.Scene())
+    noise = size * np.random.default_rng(1).normal(size=DENSE.size)
+    return {**data, "normal_force": data["normal_force"] * (1.0 + noise)}
+
+
+UNSOUND = {
+    "sampling": lambda: {
+        k: v[np.searchsorted(DENSE, np.linspace(0.0, 0.2, 9))] for k, v in exact(kv.Scene()).items()
+    },
+    "initial rest state": lambda: exact(kv.Scene(kv.Parabola(0.012))),
+    "jump at t = 0+": lambda: exact(kv.Scene(foundation=kv.Foundation(1e10, 0.13))),
+    "impulse balance": lambda: {
+        **exact(kv.Scene()),
+        "depth": exact(kv.Scene())["depth"] ** 2 / 3e-4,
+    },
+    "depth, largest": lambda: exact(kv.Scene(drive=kv.Drive(0.12))),
+    "depth, RMS": lambda: exact(kv.Scene(drive=kv.Drive(0.12))),
+    "fast time constant": lambda: exact(kv.Scene(support=kv.DeadWeight(1500.0, load=9806.65))),
+    "slow time constant": lambda: exact(kv.Scene(foundation=kv.Foundation(1e10, 0.13))),
+    "steady limit": lambda: exact(kv.Scene(drive=kv.Drive(0.12))),
+    "discretization noise": lambda: with_noise(0.2),
+}
+
+
+@pytest.mark.parametrize("name", UNSOUND)
+def test_each_check_fails_for_some_data_and_passes_for_sound_ones(name):
+    theory = Theory(kv.Scene(), METHODS)
+    for data, ok in ((exact(kv.Scene()), True), (UNSOUND[name](), False)):
+        case = make_case(theory, read(data), None, 1.0, COARSEST)
+        assert {check.name: check.ok for check in judge(case)}[name] is ok

@@ -59,8 +59,8 @@ def elements(case: Case) -> Measured:
     b = float(np.median(case.allowance.force)) / case.theory.static.load
     if not case.theory.scene.indenter.per_width:
         raise NotMade(
-            f"the strips of a ball do not gain their elements at once; if they did, half an element of each "
-            f"would make {b:.2g} of the load"
+            f"for a ball only an upper bound is known, {b:.2g} of the load if all strips gain an element at "
+            "the same time"
         )
     if known:
         return b, case.tolerance * LARGEST_SAWTOOTH, ""
