@@ -101,6 +101,15 @@ def test_the_lever_arm_is_measured_with_its_sign(arm):
     assert first.factor == pytest.approx(arm, rel=2e-2)
 
 
+def test_a_wrong_sign_of_friction_may_be_that_of_the_drive():
+    """Where no edges are given, both say the same."""
+    data = simulated(kv.Scene(), "200 /mm")
+    found = kv.compare(data={**data, "friction_force": -data["friction_force"]})
+    names = [each.name for each in found.explanations if each.enough]
+    assert names == ["sign of friction_force", "direction of the drive"]
+    assert "Also possible: the base moves in the other direction" in found.diagnosis
+
+
 def test_what_was_not_tried_is_said():
     """Noise that grows is no fault of the list."""
     data = simulated(RUBBER)

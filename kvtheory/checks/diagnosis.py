@@ -16,7 +16,7 @@ Family = Callable[[Bench], Iterator[Hypothesis]]
 
 FAMILIES: tuple[tuple[Family, float], ...] = (
     (faults.signs_and_units, 0.5), (faults.other_scenes, 0.97), (faults.time_units, 0.5),
-    (faults.time_offset, 0.97), (faults.parameters, 0.9), (faults.direction, 0.9), (faults.damper, 0.9),
+    (faults.time_offset, 0.97), (faults.parameters, 0.9), (faults.damper, 0.9),
     (faults.scales_and_offsets, 0.97), (mistakes, 1.0),
 )  # fmt: skip
 """The families in the order in which they are tried, and the part of the difference that one of their faults

@@ -144,13 +144,6 @@ def other_scenes(bench: Bench) -> Iterator[Hypothesis]:
         yield fixed(name, text, bench.against(other))
 
 
-def direction(bench: Bench) -> Iterator[Hypothesis]:
-    """Reverse the drive."""
-    backward = scaled_scene(bench.case.theory.scene, {"drive.velocity": 1.0}, -1.0)
-    text = "the base moves in the other direction: x and V have the other sign"
-    yield fixed("direction of the drive", text, bench.against(backward), -1.0)
-
-
 def damper(bench: Bench) -> Iterator[Hypothesis]:
     """Fit a damper beside a spring that has none."""
     scene = bench.case.theory.scene
@@ -170,7 +163,7 @@ def damper(bench: Bench) -> Iterator[Hypothesis]:
 
 
 def signs_and_units(bench: Bench) -> Iterator[Hypothesis]:
-    """Change signs and units back, and exchange the edges."""
+    """Change signs and units back, exchange the edges, and reverse the drive."""
     for title, factor, exact, pair in _factors(bench):
         power, names = _power_of_ten(factor), title.replace("_", " ")
         if power == 0 and exact < 0.0:
@@ -188,6 +181,9 @@ def signs_and_units(bench: Bench) -> Iterator[Hypothesis]:
             "x < 0 for V > 0"
         )
         yield fixed("edges exchanged", text, (swapped, bench.now))
+    backward = scaled_scene(bench.case.theory.scene, {"drive.velocity": 1.0}, -1.0)
+    text = "the base moves in the other direction: x and V have the other sign"
+    yield fixed("direction of the drive", text, bench.against(backward), -1.0)
 
 
 def scales_and_offsets(bench: Bench) -> Iterator[Hypothesis]:
