@@ -14,7 +14,7 @@ from kvtheory.checks.balance import missing_force, windows
 from kvtheory.checks.columns import SPELLINGS, recognise
 from kvtheory.checks.noise import noise
 from kvtheory.checks.reading import MOST_ROWS, read
-from kvtheory.checks.relaxation import fit, uncertainty
+from kvtheory.checks.settling import fit, uncertainty
 from kvtheory.cli import main
 from kvtheory.models.elements.schemes import SCHEMES
 from kvtheory.results.schemes import SCHEME_ROWS

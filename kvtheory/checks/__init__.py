@@ -1,1 +1,1 @@
-"""Any time series held against theory: reading it, what may differ and why, checks, diagnosis."""
+"""Any time series compared with theory: reading it, error budget, checks, diagnosis."""

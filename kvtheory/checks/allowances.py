@@ -1,11 +1,11 @@
-r"""By how much a sound simulation may differ from theory, and its data from itself.
+"""Error budget of a correct simulation: by how much it may differ from theory.
 
-Four things make a difference without a mistake, each from theory or from the data:
+Four effects make a difference without a mistake, each known from theory or from the data:
 
 - an element at an edge counts as a whole or not at all (F15): the normal force is off by up to
-  b = p dx/2, p the pressure at that edge, and what follows from b by the linear response of F12, on a
-  spring also what theory says of the motion along x (`spring_response`);
-- a time step smears the curves: theory within two steps before and after is as good; and unless the
+  b = p dx/2, p the pressure at that edge, the motion by the linear response to b (F12), and on a spring
+  also by a disturbed motion along x (`spring_response`);
+- a time step shifts the curves: theory within two steps before and after is as good; and unless the
   scheme is known to be of higher order, the rate may lag behind the depth by one step, and with it the
   force by h C L d'', which is the share z = h C L/M of the force that is not balanced;
 - the data are noisy: sigma is measured by their second differences to theory, in which everything
@@ -18,46 +18,41 @@ from collections.abc import Mapping
 from dataclasses import dataclass, fields
 
 import numpy as np
-from numpy.typing import NDArray
 
-from kvtheory.checks.noise import extreme, noise, rounded, unsure
+from kvtheory.checks.noise import extreme, noise, rounded, time_rounding
 from kvtheory.checks.reading import Series
 from kvtheory.checks.resolution import Resolution
 from kvtheory.checks.spring_response import spring_response
-from kvtheory.checks.theory import CURVES, SHALLOWEST, Curves, Theory
+from kvtheory.checks.theory import CURVES, SHALLOWEST, Array, Curves, Theory
 from kvtheory.results.schemes import SCHEME_ROWS
 
-Array = NDArray[np.float64]
-
 STEPS_SMEARED = 2.0
-"""Steps of the time within which theory is as good as at the instant: a first-order scheme lags by one,
-and its start by one more."""
+"""Steps within which theory may lead or lag: a first-order scheme lags by one, and its start by one more."""
 ELEMENTS_AT_AN_EDGE = 2.0
 """An edge is reported to the element, and two enter in a step of the paper's scheme."""
 LARGEST_NOISE = 0.1
-"""Of a curve or its scale: louder data cannot be judged, and their noise does not excuse them."""
+"""Of a curve or its scale: the part of louder noise that is allowed for."""
 WHOLE_EDGE = 2.0
 """Half an element is the mean error of an edge, a whole one the largest."""
 AN_EIGHTH, LAGGING = 0.25 / math.e, 0.25
-"""Of the band, what a lag of first order is, and what is allowed of the rate: more, for what long steps add
-of the next order in h/T."""
+"""Of the band: the lag of a first-order scheme, and what is allowed of the rate, for long steps add terms of
+the next order in h/T."""
 SWING = 2.0
 """An oscillation overshoots at most by this factor."""
-GIVEN = 1e-3
+INITIAL = 1e-3
 """Of the static depth: an initial depth may have been typed in with three digits."""
-SAME = 1e-6
+INPUT = 1e-6
 """Relative: what is given, not computed, agrees to the digits of a file."""
-
-
 EXACT = {"velocity": 3, "sliding_velocity": 3}
-"""Fewest significant digits that speak for rounding: a velocity of 0.1 m/s is exact."""
+"""Fewest significant digits that are taken for rounding: a velocity of 0.1 m/s is exact."""
 
 
 @dataclass(frozen=True)
 class Allowance:
     """By name: theory's `low` and `high` within the smear, `systematic` and random (`noise`) parts.
 
-    `edge` has one curve, `normal_force`: b in N/m; `rounding` is what the digits add to `systematic`.
+    `edge` has one curve, `normal_force`: the force b of half an element at an edge, in N/m. `rounding` is
+    the part of `systematic` that comes from the digits.
     """
 
     low: Curves
@@ -69,7 +64,7 @@ class Allowance:
 
     @property
     def force(self) -> Array:
-        """The force b of half an element at an edge, in N/m."""
+        """The force b, in N/m."""
         return self.edge["normal_force"]
 
     def excess(self, name: str, values: Array) -> Array:
@@ -77,8 +72,8 @@ class Allowance:
         with np.errstate(invalid="ignore"):
             return np.maximum(np.maximum(self.low[name] - values, values - self.high[name]), 0.0)
 
-    def most(self, name: str) -> Array:
-        """Return what a single value may lie outside the band."""
+    def limit(self, name: str) -> Array:
+        """Return how far a single value may lie outside the band."""
         return self.systematic[name] + extreme(self.systematic[name].size) * self.noise[name]
 
     def rows(self, rows: Array) -> "Allowance":
@@ -119,26 +114,21 @@ def allowance(
 
 def _bands(theory: Theory, time: Array, step: float, rtol: float) -> tuple[Curves, ...]:
     """Return theory now, at both ends of the smear, and its least and largest within it."""
-    smear, count = STEPS_SMEARED * step + unsure(time), time.size
-    jumps = np.array(
-        [(np.nextafter(t, -1.0), t) for t in theory.scene.drive.jumps if t < time[-1]]
-    ).reshape(-1)
-    curves = theory.at(np.concatenate([time, time - smear, time + smear, jumps]), rtol)
-    now, before, after = (
-        {name: curves[name][k * count : (k + 1) * count] for name in CURVES} for k in range(3)
-    )
-    near = np.abs(time[:, None] - jumps) <= smear[:, None]  # a window over a jump holds both sides
+    smear = STEPS_SMEARED * step + time_rounding(time)
+    jumps = [t for t in theory.scene.drive.jumps if t < time[-1]]
+    sides = np.ravel([(np.nextafter(t, -1.0), t) for t in jumps])
+    found = theory.at(np.concatenate([time, time - smear, time + smear, sides]), rtol)
+    parts = {name: [*found[name][: 3 * time.size].reshape(3, -1)] for name in CURVES}
+    near = np.abs(time[:, None] - sides) <= smear[:, None]  # a window over a jump holds both sides
     low, high = {}, {}
     for name in CURVES:
-        sides = np.where(near, curves[name][3 * count :], np.nan)
-        parts = [part[name] for part in (now, before, after)]
-        low[name] = np.fmin.reduce([*parts, np.fmin.reduce(sides, axis=1, initial=np.nan)])
-        high[name] = np.fmax.reduce([*parts, np.fmax.reduce(sides, axis=1, initial=np.nan)])
-    return now, before, after, low, high
+        over = [*np.where(near, found[name][3 * time.size :], np.nan).T]
+        low[name], high[name] = (f.reduce([*parts[name], *over]) for f in (np.fmin, np.fmax))
+    return *({name: parts[name][k] for name in CURVES} for k in range(3)), low, high
 
 
 def _lag(theory: Theory, curves: Curves, time: Array, width: Array) -> Array:
-    """Return what a scheme of first order still lacks of a fast change of the rate, after its band is over.
+    """Return by how much the rate of a first-order scheme still lags after the band of a fast change.
 
     Euler's method errs in exp(-t/T) by (h/2T)(t/T) exp(-t/T): an eighth of the width of the band, times
     t/T, and the rate soon turns, where the band is narrow. T = M/(C L) is that of the contact at the time;
@@ -169,7 +159,7 @@ def _first_order(
 ) -> tuple[Array, Array]:
     """Return z = h C L/M and z |M d''|, by which the force may lag in a scheme of first order (Eq. 17).
 
-    An element that enters is answered to within a step by the rate, with the share z of its force.
+    Within a step, the rate responds to an element that enters, with the share z of its force.
     """
     support, foundation = theory.scene.support, theory.scene.foundation
     if theory.scene.held or _higher_order(series):
@@ -230,13 +220,13 @@ def _systematic(
     edge = ELEMENTS_AT_AN_EDGE * dx + R / a * depth
     carried = 1.5 * depth * 2.0 * R / (a * a) * np.abs(curves["friction_force"])
     slope = foundation.stiffness * (a + np.abs(l_r)) / R
-    given = np.full_like(force, SAME * theory.scales["velocity"])
+    given = np.full_like(force, INPUT * theory.scales["velocity"])
     friction = (WHOLE_EDGE * force + lagging) * a / R + carried
     return {
         "velocity": given,
         "sliding_velocity": given,
-        "depth": depth + SAME * theory.scales["depth"],
-        "depth_rate": depth_rate + SAME * theory.scales["depth_rate"],
+        "depth": depth + INPUT * theory.scales["depth"],
+        "depth_rate": depth_rate + INPUT * theory.scales["depth_rate"],
         "normal_force": WHOLE_EDGE * force + lagging,
         "friction_force": friction,
         "spring_force": friction,
@@ -269,7 +259,7 @@ def _response(
     at_rest = foundation.stiffness * fine.spacing**2 * theory.static.half_length
     at_rest *= float(theory.width(theory.static.depth))
     at_rest /= theory.scene.indenter.radius * float(stiffness[0])  # type: ignore[union-attr]
-    depth, rate = [at_rest + GIVEN * theory.static.depth], [0.0]
+    depth, rate = [at_rest + INITIAL * theory.static.depth], [0.0]
     swing = SWING if theory.rates.oscillates else 1.0
     kick = force * (1.0 / damping + fine.time_step / support.mass)
     rows = zip(

@@ -5,23 +5,21 @@ of M z'' = F_z - W - k_s (z - z_0), with z = -delta, gives
 
     int phi'' M delta dt = int phi (W - F_z - k_s (delta - delta_0)) dt.
 
-The difference of both sides over int phi dt is a mean force that the data lack.
+The difference of both sides, over int phi dt, is the mean force that is missing in the data.
 """
 
 from collections.abc import Iterator, Mapping
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from kvtheory.checks.theory import Array
 from kvtheory.scene.model import Support
-
-Array = NDArray[np.float64]
 
 SHORTEST_WINDOW = 16
 """Samples: phi'' has to be resolved."""
 OVERLAP = 2
-"""Windows begin at every half of their length."""
+"""Windows start at every half of their length."""
 LONGEST_WINDOWS = 6
 """Lengths tried, each half the one before, from the whole series down."""
 
@@ -64,7 +62,7 @@ def windows(time: Array) -> Iterator[Window]:
 def missing_force(
     window: Window, columns: Mapping[str, Array], support: Support, depth_0: float
 ) -> float:
-    """Return the mean force in N/m that the balance lacks in a window."""
+    """Return the mean force in N/m that is missing from the balance in a window."""
     part = slice(window.start, window.stop)
     depth = columns["depth"][part] - depth_0
     spring = support.spring

@@ -88,7 +88,8 @@ def recognise(header: str, units: Mapping[str, str] = SI_UNITS) -> Column | None
     if not unit:
         raise ValueError(f'column "{header}": has no unit; expected "{name} [{si}]" or the like')
     try:
-        return Column(header, quantity, sign * to_si(f"1 {unit}", si))
+        factor = 1.0 if unit == si else to_si(f"1 {unit}", si)
+        return Column(header, quantity, sign * factor)
     except ValueError as error:
         raise ValueError(f'column "{header}": {error}') from None
 

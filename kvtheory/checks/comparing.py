@@ -16,9 +16,10 @@ from kvtheory.results.comparison import Check, Comparison, Explanation
 from kvtheory.scene.model import Scene
 
 MOST_NAMED = 20
-"""Columns that were not used, and are named."""
+"""Unused columns that are named in the diagnosis."""
 
 
+@np.errstate(over="ignore", invalid="ignore")  # data that diverge overflow when squared
 def compare(
     scene: Scene,
     series: Series,
@@ -27,24 +28,14 @@ def compare(
     scheme: str | None,
     tolerance: float,
 ) -> Comparison:
-    """Hold a series against theory; `kvtheory.compare` documents it."""
-    series = replace(series, scheme=scheme or series.scheme)
-    with np.errstate(over="ignore", invalid="ignore"):  # data that diverge overflow when squared
-        return _compare(Theory(scene, methods), series, per_length, tolerance)
-
-
-def _compare(
-    theory: Theory,
-    series: Series,
-    per_length: float | None,
-    tolerance: float,
-) -> Comparison:
+    """Compare a series with theory; `kvtheory.compare` documents it."""
+    theory, series = Theory(scene, methods), replace(series, scheme=scheme or series.scheme)
     try:
         case = make_case(theory, series, per_length, tolerance, COARSEST)
     except ArithmeticError as error:
         raise ArithmeticError(
-            f"{series.source}: the theory cannot be followed to t = {series.time[-1]:.6g} s, where the data "
-            f"end ({error}); is the unit of the time right?"
+            f"{series.source}: the theory cannot be computed up to t = {series.time[-1]:.6g} s, where the "
+            f"data end ({error}); is the unit of the time right?"
         ) from None
     checks = judge(case)
     others = {check.name for check in checks if check.ok is False} - {COARSE}
@@ -56,7 +47,7 @@ def _compare(
         several = series.ignored[:MOST_NAMED]
         more = f" and {len(series.ignored) - len(several)} more" * (several != series.ignored)
         text += f" Columns that were not used: {', '.join(several)}{more}."
-    allowed = {name: case.most(name) * case.theory.scales[name] for name in case.names}
+    allowed = {name: case.limit(name) * case.theory.scales[name] for name in case.names}
     return Comparison(
         verdict(checks), checks, text, explanations, series.source, tolerance,
         dict(series.columns), dict(case.now), allowed, theory.units,
@@ -71,16 +62,16 @@ def broken_off(
     scheme: str | None,
     tolerance: float,
 ) -> Comparison:
-    """Return the verdict on a simulation that diverged: it is not held against theory, for it has no end.
+    """Return the verdict on a simulation that diverged, which is not compared with theory.
 
-    `rows` are what it found until then, in the order of `TRANSIENT_UNITS`.
+    `rows` are its results until then, in the order of `TRANSIENT_UNITS`.
     """
     series = dict(zip(TRANSIENT_UNITS, np.array(rows).T, strict=True))
     judge_of = Theory(scene, methods)
     theory = dict(judge_of.at(series["time"]))
-    lacking = 1.0 - float(series["time"][-1]) / scene.run.duration
-    unit = "part of the duration that is lacking"
-    check = Check("run to the end", lacking, 0.0, False, "F15", unit)
+    missing = 1.0 - float(series["time"][-1]) / scene.run.duration
+    unit = "part of the duration that is missing"
+    check = Check("run to the end", missing, 0.0, False, "F15", unit)
     name = "unstable time step"
     fault = Explanation(name, f"the time step is unstable (F15): {reason}", 1.0, True)
     text = f"{fault.text[0].upper()}{fault.text[1:]}. Failed: {check.name} (F15)."

@@ -1,48 +1,46 @@
-"""A series beside theory: all that the checks and the diagnosis look at."""
+"""A series beside theory, and what all checks have in common."""
 
 import math
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import wraps
 
 import numpy as np
-from numpy.typing import NDArray
 
 from kvtheory.checks.allowances import Allowance, allowance
 from kvtheory.checks.noise import SURE, gaps
 from kvtheory.checks.reading import Series
 from kvtheory.checks.resolution import Resolution, resolution
-from kvtheory.checks.theory import CURVES, Curves, Theory
+from kvtheory.checks.theory import CURVES, Array, Curves, Theory
 from kvtheory.results.comparison import Check
-
-Array = NDArray[np.float64]
 
 THEORY_RTOL = 1e-7
 """Tolerance of the theory: its error is far below every allowance."""
 SMALLEST = 1e-9
-"""Of a scale: below this, theory and data are not told apart."""
+"""Of a scale: smaller differences are ignored."""
 LARGEST_SAWTOOTH = 0.025
-"""Of the load: elements so coarse that half of one at the edge matters more do not resolve the contact."""
+"""Of the load: if half an element at the edge matters more, the contact is not resolved."""
 COARSEST = 0.1
-"""Of the load: data whose half element is more are not called coarse, but wrong."""
+"""Of the load: if half an element would have to matter more, the data are wrong rather than coarse."""
 SOME, IN_STEP = 1.4, 1.75
-"""Elements may be so much fewer than assumed, or than their noise shows where it is even; and where it is
-not, for samples that are nearly in step with the elements that enter see little of the sawtooth."""
+"""Elements may be so much fewer than assumed, or than an even sawtooth shows; and than an uneven one shows,
+for samples that are nearly in step with the elements that enter see little of it."""
 USUAL, LARGE, OFTEN = 0.43, 1.08, 0.95
 """Of b: median and 95th percentile of the gaps of a sawtooth of +-b that is sampled at random."""
 EVEN = 0.6
-"""Of what these say of each other: with less, a part of the samples is in step."""
+"""Of the ratio of both that is expected: below it, a part of the samples is in step."""
 FINEST = 0.1
 """Of the spacing assumed: a smaller sawtooth is that of samples all in step, and of the digits if these leave
 out as much."""
 COMMON = 0.5
-"""Correlation of the noise of both forces, squared, from which on it is taken for the sawtooth of F15."""
+"""Squared correlation of the noise of both forces, from which on it is taken for the sawtooth of F15."""
 LOUD = 4.0
 """Times the median: larger differences are jumps, which count as much as this."""
 
 
 @dataclass(frozen=True)
 class Case:
-    """A series, theory at its times, and what is allowed between them."""
+    """A series, theory at its times (`now`), and the allowed differences."""
 
     theory: Theory
     series: Series
@@ -55,6 +53,13 @@ class Case:
     def names(self) -> tuple[str, ...]:
         """The curves that the series holds."""
         return tuple(name for name in CURVES if name in self.series.columns)
+
+    def columns(self, *names: str) -> tuple[Array, ...]:
+        """Return columns of the data, without which a check is not made."""
+        for name in names:
+            if name not in self.series.columns:
+                raise NotMade(f"the data hold no {name.replace('_', ' ')}")
+        return tuple(self.series.columns[name] for name in names)
 
     def rows(self, rows: Array) -> "Case":
         """Return the case of some of its rows."""
@@ -72,42 +77,59 @@ class Case:
         values = self.allowance.excess(name, self.series.columns[name])
         return np.asarray(np.nan_to_num(values) / self.theory.scales[name])
 
-    def most(self, name: str) -> Array:
-        """Return what one value may lie outside, relative to the scale."""
-        scale = self.theory.scales[name]
-        values = np.nan_to_num(self.allowance.most(name), nan=0.0) / scale
+    def limit(self, name: str) -> Array:
+        """Return how far a single value may lie outside the band, relative to the scale."""
+        values = np.nan_to_num(self.allowance.limit(name), nan=0.0) / self.theory.scales[name]
         return np.asarray(self.tolerance * (values + SMALLEST))
 
-    def together(self, name: str) -> float:
-        """Return what the root mean square of a curve may be, relative to the scale."""
+    def rms_limit(self, name: str) -> float:
+        """Return the largest root mean square of a curve that is allowed, relative to the scale."""
         scale = self.theory.scales[name]
         smooth = rms(self.allowance.systematic[name]) / scale
         sigma = rms(self.allowance.noise[name]) / scale
         random = sigma * (1.0 + SURE * math.sqrt(2.0 / self.series.time.size))
         return self.tolerance * (smooth + random + SMALLEST)
 
-    @cached_property
-    def random_force(self) -> float:
-        """Standard deviation of the noise of the normal force, in N/m: the median over time."""
-        return float(np.median(self.allowance.noise["normal_force"]))
 
-    def check(
-        self, name: str, measured: float, allowed: float, equation: str, unit: str, note: str = ""
-    ) -> Check:
-        """Return a check that was made; `allowed` includes the tolerance."""
-        ok = bool(measured <= allowed)
-        return Check(name, float(measured), float(allowed), ok, equation, unit, note)
+Measured = tuple[float, float, str]
+"""What a check measures, what is allowed (with the tolerance), and a note."""
 
 
-def not_made(name: str, equation: str, why: str) -> Check:
-    """Return a check that could not be made."""
-    return Check(name, None, None, None, equation, "", f"not made: {why}")
+class NotMade(Exception):  # noqa: N818
+    """A check cannot be made, for the reason that its text gives."""
+
+
+def made(
+    name: str, equation: str, unit: str, measured: float, allowed: float, note: str = ""
+) -> Check:
+    """Return a check that was made."""
+    ok = bool(measured <= allowed)
+    return Check(name, float(measured), float(allowed), ok, equation, unit, note)
+
+
+def check(
+    name: str, equation: str | Callable[[Case], str], unit: str
+) -> Callable[[Callable[[Case], Measured]], Callable[[Case], Iterator[Check]]]:
+    """Make a check of a function that returns what it measured or raises `NotMade`."""
+
+    def of(measure: Callable[[Case], Measured]) -> Callable[[Case], Iterator[Check]]:
+        @wraps(measure)
+        def checked(case: Case) -> Iterator[Check]:
+            basis = equation if isinstance(equation, str) else equation(case)
+            try:
+                yield made(name, basis, unit, *measure(case))
+            except NotMade as reason:
+                yield Check(name, None, None, None, basis, "", f"not made: {reason}")
+
+        return checked
+
+    return of
 
 
 def make_case(
     theory: Theory, series: Series, per_length: float | None, tolerance: float, coarsest: float
 ) -> Case:
-    """Hold a series against theory.
+    """Compare a series with theory.
 
     Where the element density is not known, and the noise is that of elements, it is estimated from that:
     up to a force of half an element of `coarsest`, relative to the load.
@@ -163,6 +185,6 @@ def common_noise(case: Case) -> float | None:
 
 
 def rms(values: Array) -> float:
-    """Return the root mean square of what exists."""
+    """Return the root mean square of the finite values."""
     known = values[np.isfinite(values)]
     return float(np.sqrt(np.mean(known * known))) if known.size else 0.0

@@ -1,29 +1,21 @@
-"""The faults that the diagnosis knows, as data: what to vary, and what to say when it fits.
+"""The faults that the diagnosis knows and that are not contact rules, as hypotheses.
 
-A fault is a parameter of the scene that the data were not made with, a column that has to be undone
-(its sign, its unit, the point that a force acts about), times that are off, or what `mistakes` holds.
+A fault is a parameter of the scene that the data were not made with, another scene, a column that has to be
+changed back (its sign, unit, scale, offset, or the point that a force acts about), or times that are off.
 """
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Iterator, Mapping
+from dataclasses import replace
+from functools import partial
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from kvtheory.checks.fitting import (
-    NO_FIT,
-    STEP,
-    Bench,
-    Fitted,
-    Pair,
-    scaled_scene,
-    uncertainty,
-)
+from kvtheory.checks.fitting import Bench, Hypothesis, Pair, fixed, scaled_scene
 from kvtheory.checks.theory import CURVES
-
-Array = NDArray[np.float64]
+from kvtheory.scene import Scene
+from kvtheory.scene.foundations import Foundation
 
 
 class Parameter(NamedTuple):
@@ -51,9 +43,9 @@ PARAMETERS = (
     Parameter("M_x", {"drive.mass": 1.0}, "kg/mm", 1e-3, " (what moves along x)"),
     Parameter("c_x", {"drive.damping": 1.0}, "N s/m^2", 1.0, " (beside the spring in the drive)"),
 )  # fmt: skip
-"""What may be wrong in a scene; those that the scene has not are passed over."""
-OF_SPRING = PARAMETERS[-3:]
-"""Those of the spring in the drive."""
+"""What may be wrong in a scene; those that the scene does not have are left out."""
+PER_WIDTH = {"kg/mm": ("kg", 1.0), "MN/m^2": ("MN/m", 1e-6), "N s/m^2": ("N s/m", 1.0)}
+"""Units of a line contact, and those of a ball in their place."""
 
 WRONG = "wrong "
 """How the names of faults begin that are a parameter."""
@@ -65,156 +57,122 @@ GROUPS = {
     "the lengths": ("depth", "leading_edge", "trailing_edge"),
 }
 """Columns that may share a wrong sign, unit or scale."""
-
+SIGNS = {
+    "friction_force": ": F_x on the indenter is positive for V > 0 (Eqs. 13 and 15)",
+    "depth": ": delta = -z_A is positive (Eq. 18)",
+    "spring_force": ": the spring force balances F_x, and has its sign",
+    "normal_force": ": F_z on the indenter is positive (Eqs. 12 and 14)",
+}
+"""What fixes the sign of a column."""
+DRIFTS = "depth", "normal_force", "friction_force", "spring_force"
+"""Columns that a sensor measures, and whose zero may be off."""
 
 FACTORS = (1.0, 0.5, 2.0, 0.1, 10.0, 1e-3, 1e3)
 """Factors of a parameter from which the fit may start: near 1, where mistakes are, and wrong units."""
+WILDEST = 2e3
+"""Factor up and down beyond which a fitted parameter explains nothing: it is farther than a wrong unit."""
+DAMPING_SHARES = (0.01, 0.1, 1.0)
+"""Of critical damping: from where the fit of a damper may start."""
 POWER_OF_TEN = 0.02
 """In the decadic logarithm: nearer to a whole number, a factor is a power of ten."""
 DECADES = (-6, -3, -2, -1, 1, 2, 3)
 """Powers of ten by which the times may be off."""
 LONGEST = 30.0
-"""Times the run of the scene, or the data: farther no motion on a spring is followed to try a unit."""
+"""Times the run of the scene, or the data: a motion on a spring is followed no longer to try a unit."""
 SHIFTS = (0.002, 0.005, 0.012, 0.03, 0.08, 0.2, 0.5)
 """Of the span of the data: offsets of the time from which the fit may start, in both directions."""
 HUNDREDTH = 0.01
 """Of the span: the unit in which an offset of the time is fitted."""
 ONSET = 0.1
-"""Of the range of the normal force: where it has changed by as much, the drive has started."""
+"""Of the range of a force: once it has changed by as much, the drive has started."""
 
 
-@dataclass(frozen=True)
-class Trial:
-    """A fault tried: how it fits, what to say, and the factor or shift that was found.
-
-    `alike` are the parameters that the data do not tell from the one that it names.
-    """
-
-    name: str
-    text: str
-    fitted: Fitted
-    factor: float | None = None
-    alike: tuple[str, ...] = ()
+def _power_of_ten(factor: float) -> int | None:
+    """Return the power if a factor is a power of ten, or its negative."""
+    power = math.log10(abs(factor))
+    return round(power) if abs(power - round(power)) < POWER_OF_TEN else None
 
 
-def parameters(bench: Bench) -> Iterator[Trial]:
-    """Fit each parameter of the scene, and try the direction of the drive."""
-    yield from _fitted(bench, PARAMETERS, FACTORS)
-    backward = _scaled(bench, {"drive.velocity": 1.0}, -1.0)
-    text = "the base moves in the other direction: x and V have the other sign"
-    yield Trial("direction of the drive", text, judged(bench, backward), -1.0)
-
-
-def spring(bench: Bench) -> Iterator[Trial]:
-    """Fit the parameters of the spring alone, from what the scene says: where each theory takes a while."""
-    if not bench.case.theory.scene.drive.rigid:
-        yield from _fitted(bench, OF_SPRING, FACTORS[:1])
-
-
-def _scaled(bench: Bench, powers: Mapping[str, float], factor: float) -> Pair | None:
-    curves = bench.solved(scaled_scene(bench.case.theory.scene, powers, factor))
-    return None if curves is None else (bench.columns, curves)
-
-
-def _fitted(
-    bench: Bench, several: Sequence[Parameter], factors: Sequence[float]
-) -> Iterator[Trial]:
-    """Fit each of several parameters that the scene has, starting from the best of some factors."""
-    values = dict(bench.case.theory.scene.values())
-    values.setdefault("drive.velocity", bench.case.theory.final_velocity)
-    there = [each for each in several if all(values.get(name) for name in each.powers)]
-    trials: list[Trial] = []
-    for symbol, powers, unit, per_si, words in there:
-        key, starts = next(iter(powers)), np.log(factors).tolist()
-        found = bench.fitted(lambda x, p=powers: _scaled(bench, p, math.exp(x)), starts)  # type: ignore[misc]
-        factor = math.exp(found.value)
-        old, new = values[key] * per_si, factor * values[key] * per_si
-        size = f"{new:.4g} {unit} rather than {old:.4g} {unit}"
-        text = f"the data fit {symbol} = {size}, {factor:.4g} times{words}{_ten(factor)}"
-        trials.append(Trial(f"{WRONG}{symbol}", text, found, factor))
-    best = min(range(len(there)), key=lambda k: trials[k].fitted.fit.score)
-    if trials[best].fitted.fit.enough:
-        trials[best] = replace(
-            trials[best], alike=_alike(bench, there, best, trials[best].fitted.value)
-        )
-    yield from trials
-
-
-def _alike(bench: Bench, there: list[Parameter], best: int, value: float) -> tuple[str, ...]:
-    """Return the parameters that the data do not tell from the best one, whose logarithm is off by `value`.
-
-    With such a one free beside it, the fit leaves that logarithm uncertain by more than it is off: the
-    data do not need it. The slopes are those of theory at the best fit.
-    """
-    scene = scaled_scene(bench.case.theory.scene, there[best].powers, math.exp(value))
-    here, slopes = bench.solved(scene), []
-    for parameter in there:
-        curves = bench.solved(scaled_scene(scene, parameter.powers, math.exp(STEP)))
-        if here is None or curves is None:
-            return ()
-        slopes.append(bench.effect(curves, here) / STEP)
-    return tuple(
-        other.symbol
-        for k, other in enumerate(there)
-        if k != best and uncertainty(slopes[best], slopes[k]) >= abs(value)
-    )
-
-
-def judged(bench: Bench, pair: Pair | None) -> Fitted:
-    """Judge a fault without an unknown."""
-    return NO_FIT if pair is None else Fitted(bench.fit(*pair))
-
-
-def undone(bench: Bench) -> Iterator[Trial]:
-    """Undo signs, units and an exchange of the edges."""
-    return (trial for trial in _columns(bench) if not trial.name.startswith(SCALE))
-
-
-def scales(bench: Bench) -> Iterator[Trial]:
-    """Multiply columns by what fits best, and shift the point that the friction force acts about."""
-    yield from (trial for trial in _columns(bench) if trial.name.startswith(SCALE))
-    if "friction_force" not in bench.names:
-        return
+def parameters(bench: Bench) -> Iterator[Hypothesis]:
+    """Fit each parameter of the scene; from near 1 alone where each theory is a run of many elements."""
     theory = bench.case.theory
-    half, R = theory.static.half_length, theory.scene.indenter.radius  # type: ignore[union-attr]
-    F_z = bench.columns.get("normal_force", bench.now["normal_force"])
+    values = dict(theory.scene.values())
+    values.setdefault("drive.velocity", theory.final_velocity)
+    starts = [0.0] if theory.by_elements else np.log(FACTORS).tolist()
 
-    def about(x: float) -> Pair:
-        shifted = bench.columns["friction_force"] - x * half / R * F_z
-        return {**bench.columns, "friction_force": shifted}, bench.now
+    def scaled(x: float, powers: Mapping[str, float]) -> Pair | None:
+        if abs(x) > math.log(WILDEST):
+            return None
+        return bench.against(scaled_scene(theory.scene, powers, math.exp(x)))
 
-    found = bench.fitted(about, [0.0])
-    arm = found.value * half
-    text = (
-        f"friction force: its lever arm is off by {arm * 1e3:.3g} mm, F_x being the moment of the pressure "
-        "about another point than the lowest of the indenter (Eqs. 13 and 15)"
-    )
-    yield Trial("lever arm of friction_force", text, found, arm)
+    def text(x: float, parameter: Parameter) -> str:
+        unit, per_si = parameter.unit, parameter.per_si
+        if not theory.scene.indenter.per_width:
+            unit, per_si = PER_WIDTH.get(unit, (unit, per_si))
+        old, factor = values[next(iter(parameter.powers))] * per_si, math.exp(x)
+        ten = " (a power of ten: check its unit)" if _power_of_ten(factor) else ""
+        size = f"{factor * old:.4g} {unit} rather than {old:.4g} {unit}, {factor:.4g} times"
+        return f"the data fit {parameter.symbol} = {size}{parameter.words}{ten}"
+
+    for each in PARAMETERS:
+        if all(values.get(name) for name in each.powers):
+            yield Hypothesis(
+                f"{WRONG}{each.symbol}", partial(text, parameter=each),
+                partial(scaled, powers=each.powers), starts, factor=math.exp, powers=each.powers,
+            )  # fmt: skip
 
 
-def _columns(bench: Bench) -> Iterator[Trial]:
-    """Multiply columns by what fits best, and exchange the edges."""
-    for title, group in GROUPS.items():
-        if not all(name in bench.names for name in group):
-            continue
-        factor = _least_squares(bench, group)
-        if not math.isfinite(factor) or factor == 0.0:
-            continue
-        decades = round(math.log10(abs(factor)))
-        whole = abs(math.log10(abs(factor)) - decades) < POWER_OF_TEN
-        exact = math.copysign(10.0**decades, factor) if whole else factor
-        changed = {**bench.columns, **{name: exact * bench.columns[name] for name in group}}
-        found, names = Fitted(bench.fit(changed, bench.now)), title.replace("_", " ")
-        if whole and decades == 0 and exact < 0.0:
+def other_scenes(bench: Bench) -> Iterator[Hypothesis]:
+    """Replace arms by a damper, the spring in the drive by a rigid drive."""
+    scene = bench.case.theory.scene
+    simpler: list[tuple[str, str, Scene]] = []
+    if scene.foundation.arms:
+        plain = Foundation(scene.foundation.stiffness, scene.foundation.retardation_time)
+        text = (
+            "the foundation of the data is Kelvin-Voigt, with the damping C = sum K_i tau_i: its arms have "
+            "no stiffness and no relaxation times, which count unless the motion is slow (F18)"
+        )
+        simpler.append(("Kelvin-Voigt instead of arms", text, replace(scene, foundation=plain)))
+    if not scene.drive.rigid:
+        text = (
+            "the drive of the data is rigid: the indenter slides at the velocity of the drive, while it "
+            "oscillates on the spring of the scene (F22)"
+        )
+        rigid = replace(scene.drive, stiffness=None, damping=None, mass=None)
+        simpler.append(("rigid drive instead of a spring", text, replace(scene, drive=rigid)))
+    for name, text, other in simpler:
+        yield fixed(name, text, bench.against(other))
+
+
+def damper(bench: Bench) -> Iterator[Hypothesis]:
+    """Fit a damper beside a spring that has none."""
+    scene = bench.case.theory.scene
+    if scene.drive.stiffness is None or scene.drive.damping:
+        return
+    critical = 2.0 * math.sqrt(scene.drive.stiffness * scene.drive_mass)
+
+    def damped(x: float) -> Pair | None:
+        drive = scene.drive.changed(damping=math.exp(x) * critical)
+        return bench.against(replace(scene, drive=drive))
+
+    def text(x: float) -> str:
+        size = f"{math.exp(x) * critical:.4g} N s/m^2"
+        return f"the data fit a damper c_x = {size} beside the spring in the drive, which has none"
+
+    yield Hypothesis(f"{WRONG}c_x", text, damped, np.log(DAMPING_SHARES).tolist())
+
+
+def signs_and_units(bench: Bench) -> Iterator[Hypothesis]:
+    """Change signs and units back, exchange the edges, and reverse the drive."""
+    for title, factor, exact, pair in _factors(bench):
+        power, names = _power_of_ten(factor), title.replace("_", " ")
+        if power == 0 and exact < 0.0:
             text = f"{names}: has the wrong sign{SIGNS.get(title, '')}"
-            yield Trial(f"sign of {title}", text, found, exact)
-        elif whole and decades:
+            yield fixed(f"sign of {title}", text, pair, exact)
+        elif power:
             sign = "" if exact > 0.0 else " and has the wrong sign"
-            text = f"{names}: off by a power of ten, 10^{-decades}{sign}; check the unit"
-            yield Trial(f"unit of {title}", text, found, 1.0 / exact)
-        elif not whole:
-            text = f"{names}: {1.0 / exact:.4g} times theory, while the rest agrees"
-            yield Trial(f"{SCALE} of {title}", text, found, 1.0 / exact)
+            text = f"{names}: off by a power of ten, 10^{-power}{sign}; check the unit"
+            yield fixed(f"unit of {title}", text, pair, 1.0 / exact)
     if all(name in bench.names for name in GROUPS["both edges"]):
         first, last = (bench.columns[name] for name in GROUPS["both edges"])
         swapped = {**bench.columns, "leading_edge": last, "trailing_edge": first}
@@ -222,71 +180,93 @@ def _columns(bench: Bench) -> Iterator[Trial]:
             "leading and trailing edge are exchanged: the leading edge is where the foundation enters, at "
             "x < 0 for V > 0"
         )
-        yield Trial("edges exchanged", text, Fitted(bench.fit(swapped, bench.now)))
+        yield fixed("edges exchanged", text, (swapped, bench.now))
+    backward = scaled_scene(bench.case.theory.scene, {"drive.velocity": 1.0}, -1.0)
+    text = "the base moves in the other direction: x and V have the other sign"
+    yield fixed("direction of the drive", text, bench.against(backward), -1.0)
 
 
-SCALE = "scale"
-"""How the names of faults begin that multiply a column by a fitted factor."""
-SIGNS = {
-    "friction_force": ": F_x on the indenter is positive for V > 0 (Eqs. 13 and 15)",
-    "depth": ": delta = -z_A is positive (Eq. 18)",
-    "spring_force": ": the spring holds the indenter against F_x, and counts as F_x does",
-    "normal_force": ": F_z on the indenter is positive (Eqs. 12 and 14)",
-}
-"""What fixes the sign of a column."""
+def scales_and_offsets(bench: Bench) -> Iterator[Hypothesis]:
+    """Multiply columns by what fits best, shift them, and shift the point that friction acts about."""
+    for title, factor, exact, pair in _factors(bench):
+        if _power_of_ten(factor) is None:
+            text = (
+                f"{title.replace('_', ' ')}: {1.0 / exact:.4g} times theory, while the rest agrees"
+            )
+            yield fixed(f"scale of {title}", text, pair, 1.0 / exact)
+    theory, columns = bench.case.theory, bench.columns
+
+    def shifted(x: float, name: str, by: object) -> Pair:
+        return {**columns, name: columns[name] - x * np.asarray(by)}, bench.now
+
+    for name in (name for name in bench.names if name in DRIFTS):
+        scale, unit = theory.scales[name], theory.units[name]
+        yield Hypothesis(
+            f"offset of {name}",
+            lambda x, n=name, s=scale, u=unit: (  # type: ignore[misc]
+                f"{n.replace('_', ' ')}: off by {x * s:.4g} {u} throughout, while the rest agrees"
+            ),
+            partial(shifted, name=name, by=scale), [0.0], factor=partial(float.__mul__, scale),
+        )  # fmt: skip
+    if "friction_force" in bench.names:
+        half, R = theory.static.half_length, theory.scene.indenter.radius  # type: ignore[union-attr]
+        F_z = columns.get("normal_force", bench.now["normal_force"])
+        yield Hypothesis(
+            "lever arm of friction_force",
+            lambda x: (
+                f"friction force: its lever arm is off by {x * half * 1e3:.3g} mm, F_x being the moment "
+                "of the pressure about another point than the lowest of the indenter (Eqs. 13 and 15)"
+            ),
+            partial(shifted, name="friction_force", by=half / R * F_z), [0.0],
+            factor=partial(float.__mul__, half),
+        )  # fmt: skip
 
 
-def _least_squares(bench: Bench, group: tuple[str, ...]) -> float:
-    """Return the factor by which columns fit theory best, by their allowances."""
-    top = bottom = 0.0
-    for name in group:
-        most = bench.case.most(name) * bench.case.theory.scales[name]
-        data, theory = bench.columns[name] / most, bench.now[name] / most
+def _factors(bench: Bench) -> Iterator[tuple[str, float, float, Pair]]:
+    """Yield by group of columns the factor that fits best, the one to try, and the pair that it gives."""
+    for title, group in GROUPS.items():
+        if not all(name in bench.names for name in group):
+            continue
+        limits = [bench.case.limit(n) * bench.case.theory.scales[n] for n in group]
+        data, theory = (
+            np.array([c[n] for n in group]) / limits for c in (bench.columns, bench.now)
+        )
         known = np.isfinite(data) & np.isfinite(theory)
-        top += float(data[known] @ theory[known])
-        bottom += float(data[known] @ data[known])
-    return top / bottom if bottom else math.nan
+        square = float(data[known] @ data[known])
+        factor = float(data[known] @ theory[known]) / square if square else math.nan
+        if math.isfinite(factor) and factor != 0.0:
+            power = _power_of_ten(factor)
+            exact = factor if power is None else math.copysign(10.0**power, factor)
+            changed = {**bench.columns, **{name: exact * bench.columns[name] for name in group}}
+            yield title, factor, exact, (changed, bench.now)
 
 
-def decades(bench: Bench) -> Iterator[Trial]:
+def time_units(bench: Bench) -> Iterator[Hypothesis]:
     """Multiply the times by powers of ten; a cycle on a spring goes on, and is not followed for too long."""
     scene, end = bench.case.theory.scene, float(bench.time[-1])
     longest = math.inf if scene.drive.rigid else LONGEST * max(scene.run.duration, end)
     for power in (power for power in DECADES if end * 10.0**power <= longest):
         text = f"time: off by a power of ten, 10^{-power}; check the unit"
-        pair = _timed(bench, bench.time * 10.0**power)
-        yield Trial("unit of time", text, judged(bench, pair), 10.0**-power)
+        yield fixed(
+            "unit of time", text, bench.against(scene, bench.time * 10.0**power), 10.0**-power
+        )
 
 
-def offset(bench: Bench) -> Iterator[Trial]:
+def time_offset(bench: Bench) -> Iterator[Hypothesis]:
     """Shift the times: from none, from the start of the data, and from where the force changes first."""
     unit = HUNDREDTH * float(bench.time[-1] - bench.time[0])
-    known = [0.0, float(bench.time[0]), _onset(bench)]
-    starts = [*(t / unit for t in known), *(s / HUNDREDTH for p in SHIFTS for s in (p, -p))]
-    found = bench.fitted(lambda x: _timed(bench, bench.time - x * unit), starts)
-    shift = found.value * unit
-    text = f"the times are off by {shift * 1e3:.6g} ms: in the data the drive starts at that time"
-    yield Trial("time offset", text, found, shift)
-
-
-def _onset(bench: Bench) -> float:
-    """Return when a force of the data changes first, in s."""
-    name = next(
-        name
-        for name in ("normal_force", "friction_force", "spring_force", "depth")
-        if name in bench.columns
-    )
+    name = next(n for n in ("normal_force", "friction_force", "spring_force", "depth")
+                if n in bench.columns)  # fmt: skip
     change = np.abs(bench.columns[name] - bench.columns[name][0])
-    return float(bench.time[np.argmax(change >= ONSET * np.nanmax(change))])
-
-
-def _timed(bench: Bench, moments: Array) -> Pair | None:
-    curves = bench.solved(bench.case.theory.scene, moments)
-    return None if curves is None else (bench.columns, curves)
-
-
-def _ten(factor: float) -> str:
-    """Say so if a factor is a power of ten."""
-    power = math.log10(abs(factor))
-    near = round(power)
-    return " (a power of ten: check its unit)" if near and abs(power - near) < POWER_OF_TEN else ""
+    onset = bench.time[np.argmax(change >= ONSET * np.nanmax(change))]
+    known = [0.0, float(bench.time[0]) / unit, float(onset) / unit]
+    scene = bench.case.theory.scene
+    yield Hypothesis(
+        "time offset",
+        lambda x: (
+            f"the times are off by {x * unit * 1e3:.6g} ms: in the data the drive starts at that time"
+        ),
+        lambda x: bench.against(scene, bench.time - x * unit),
+        [*known, *(s / HUNDREDTH for p in SHIFTS for s in (p, -p))],
+        factor=partial(float.__mul__, unit),
+    )

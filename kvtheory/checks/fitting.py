@@ -1,7 +1,8 @@
-"""How well a changed theory, or changed data, fits, and what has to be changed by how much.
+"""Hypotheses about a fault, and how well they fit.
 
-The unknown of a fault is fitted by nonlinear least squares on the differences in units of what is allowed
-for them; the covariance of a fit of two unknowns says whether the data tell them apart.
+A hypothesis changes the data or the theory. Its unknown, if it has one, is found by nonlinear least squares
+on the differences in units of what is allowed; the covariance of a fit of two unknowns says whether the
+data can distinguish them.
 """
 
 import math
@@ -11,14 +12,12 @@ from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
-from scipy.optimize import least_squares
+from scipy.optimize import least_squares, minimize_scalar
 
 from kvtheory.checks.comparison_case import Case
-from kvtheory.checks.theory import TRIAL_RTOL, Curves
+from kvtheory.checks.theory import TRIAL_RTOL, Array, Curves
 from kvtheory.scene import Scene
 
-Array = NDArray[np.float64]
 Pair = tuple[Curves, Curves]
 """Data and theory to hold against each other, in SI."""
 
@@ -26,33 +25,55 @@ ROWS = 160
 """Rows of the data on which faults are tried: half of them spread evenly, half right after the start."""
 LARGEST = 1e3
 """A single value counts at most this many times what it is allowed."""
-MOST_OF_THEM = 0.98
+SHARE_OF_VALUES = 0.98
 """Share of the values that must be as allowed for a fault to explain the data; the rest are at jumps."""
 LEFT_OVER = 1.5
 """Times what is allowed: a fitted fault reproduces the method's own errors only about so well."""
-FITTED_TO = 1e-5
-"""Accuracy of a fitted unknown."""
+PRECISION = 1e-5
+"""Of a fitted unknown."""
 STEP = 1e-3
-"""By which an unknown is changed to see what it does: the theory of trials is smooth far below that."""
-MOST_TRIALS = 30
-"""Of one unknown; from a near start, five are enough."""
+"""Difference of an unknown for slopes: the theory of trials is smooth far below that."""
+MAXIMUM_TRIALS, BY_ELEMENTS = 30, 8
+"""Of one unknown; from a near start, five are enough. Fewer where theory is a run of many elements."""
+WORTH_SEARCHING, SEARCH_PRECISION = 0.3, 0.01
+"""Part of the difference that x = 0 must explain for a search to begin, and the precision of the search."""
 
 
-class Fit(NamedTuple):
-    """Root mean square of the differences relative to what is allowed, and whether the rest is allowed."""
+class Hypothesis(NamedTuple):
+    """A possible fault: its name, its description, and the data and theory that it compares.
 
-    score: float
-    enough: bool
+    With `starts` it has an unknown x, fitted by least squares from the best of them. With `span`, x is
+    searched for from -span to span, for what is not smooth in x. Otherwise x is 0. `factor` is the number
+    that is reported for x. `powers` are those of the quantities of the scene that scale with e^x, if any.
+    """
+
+    name: str
+    text: Callable[[float], str]
+    make: Callable[[float], Pair | None]
+    starts: Sequence[float] = ()
+    span: float = 0.0
+    factor: Callable[[float], float | None] = lambda _x: None
+    powers: Mapping[str, float] | None = None
 
 
-class Fitted(NamedTuple):
-    """A fault fitted, and its unknown."""
+def fixed(name: str, text: str, pair: Pair | None, factor: float | None = None) -> Hypothesis:
+    """Return a hypothesis without an unknown."""
+    return Hypothesis(name, lambda _x: text, lambda _x: pair, factor=lambda _x: factor)
 
-    fit: Fit
+
+@dataclass(frozen=True)
+class Trial:
+    """How a hypothesis fits: the root mean square of the differences relative to what is allowed.
+
+    `enough` says whether what is left is allowed, `value` is the unknown, and `alike` are the parameters
+    that the data cannot distinguish from the one that it names.
+    """
+
+    hypothesis: Hypothesis
+    score: float = math.inf
+    enough: bool = False
     value: float = 0.0
-
-
-NO_FIT = Fitted(Fit(math.inf, False))
+    alike: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -77,88 +98,135 @@ class Bench:
         """The theory of the scene as it is given, in SI."""
         return self.case.now
 
+    @cached_property
+    def _units(self) -> tuple[Array, Array]:
+        """By curve: the width of theory's band, and what is allowed outside of it."""
+        allowed, scales = self.case.allowance, self.case.theory.scales
+        bands = [np.nan_to_num(allowed.high[name] - allowed.low[name]) for name in self.names]
+        return np.array(bands), np.array([self.case.limit(n) * scales[n] for n in self.names])
+
+    def _gaps(self, one: Curves, other: Curves) -> Array:
+        """Return the differences of the curves that count; zero where one side does not exist."""
+        return np.nan_to_num(np.array([one[name] - other[name] for name in self.names]))
+
     def ratios(self, columns: Curves, curves: Curves) -> Array:
-        """Return how far data lie outside the band of theory, by what is allowed for the unchanged ones.
+        """Return how far data lie outside the band of theory, relative to what is allowed, by curve."""
+        (band, limit), gap = self._units, self._gaps(columns, curves)
+        ratios = np.sign(gap) * np.maximum(np.abs(gap) - band, 0.0) / limit
+        return np.clip(ratios, -LARGEST, LARGEST)
 
-        There is a row for each curve; what does not exist on one of the sides counts nothing.
-        """
-        allowed, found = self.case.allowance, []
-        for name in self.names:
-            band = np.nan_to_num(allowed.high[name] - allowed.low[name])
-            most = self.case.most(name) * self.case.theory.scales[name]
-            gap = np.nan_to_num(columns[name] - curves[name])
-            found.append(np.sign(gap) * np.maximum(np.abs(gap) - band, 0.0) / most)
-        return np.clip(found, -LARGEST, LARGEST)
+    def effect(self, one: Curves, other: Curves) -> Array:
+        """Return how far two theories are from each other, in units of the errors that data may have."""
+        return np.asarray((self._gaps(one, other) / sum(self._units)).reshape(-1))
 
-    def fit(self, columns: Curves, curves: Curves) -> Fit:
-        """Judge changed data and a changed theory."""
-        ratios = np.abs(self.ratios(columns, curves))
-        most = np.quantile(ratios, MOST_OF_THEM, axis=1)
-        return Fit(math.sqrt(float(np.mean(ratios * ratios))), bool(most.max() <= LEFT_OVER))
+    @cached_property
+    def start(self) -> float:
+        """The score of the data as they are."""
+        return self._rated(fixed("", "", None), (self.columns, self.now), 0.0).score
 
-    def fitted(self, make: Callable[[float], Pair | None], starts: Sequence[float]) -> Fitted:
-        """Return the unknown x at which `make(x)` fits best, sought from the best of `starts`."""
+    def _rated(self, hypothesis: Hypothesis, pair: Pair | None, x: float) -> Trial:
+        if pair is None:
+            return Trial(hypothesis)
+        ratios = np.abs(self.ratios(*pair))
+        largest = np.quantile(ratios, SHARE_OF_VALUES, axis=1).max()
+        score = math.sqrt(float(np.mean(ratios * ratios)))
+        return Trial(hypothesis, score, bool(largest <= LEFT_OVER), x)
+
+    def tried(self, hypothesis: Hypothesis, best: float = math.inf) -> Trial:
+        """Return how a hypothesis fits; a search is made only where it begins below the score `best`."""
+        if hypothesis.starts:
+            return self._fitted(hypothesis)
+        trials = [self._rated(hypothesis, hypothesis.make(0.0), 0.0)]
+        if hypothesis.span and trials[0].score < min((1.0 - WORTH_SEARCHING) * self.start, best):
+
+            def score(x: float) -> float:
+                trials.append(self._rated(hypothesis, hypothesis.make(x), x))
+                return min(trials[-1].score, LARGEST)
+
+            bounds, options = (-hypothesis.span, hypothesis.span), {"xatol": SEARCH_PRECISION}
+            minimize_scalar(score, bounds=bounds, method="bounded", options=options)
+        return min(trials, key=lambda trial: trial.score)
+
+    def _fitted(self, hypothesis: Hypothesis) -> Trial:
+        """Fit the unknown by least squares, from the best of the starts."""
         made: dict[float, Pair | None] = {}
 
-        def ratios(x: float) -> Array:
+        def pair(x: float) -> Pair | None:
             if x not in made:
-                made[x] = make(x)
-            pair = made[x]
-            if pair is None:
+                made[x] = hypothesis.make(x)
+            return made[x]
+
+        def ratios(x: float) -> Array:
+            found = pair(x)
+            if found is None:
                 return np.full(len(self.names) * self.time.size, LARGEST)
-            return self.ratios(*pair).reshape(-1)
+            return self.ratios(*found).reshape(-1)
 
         def slope(x: Array) -> Array:
             return ((ratios(float(x[0]) + STEP) - ratios(float(x[0]))) / STEP)[:, None]
 
-        def size(x: float) -> float:
+        def robust(x: float) -> float:
             return float(np.sum(np.log1p(ratios(x) ** 2)))
 
-        start = min(starts, key=size)
+        start = hypothesis.starts[0]
+        if len(hypothesis.starts) > 1:
+            start = min(hypothesis.starts, key=robust)
         # Without a bound on what one value counts, what a fault cannot explain would bend the fit.
         found = least_squares(
-            lambda x: ratios(float(x[0])), [start], jac=slope, loss="soft_l1", xtol=FITTED_TO,
-            max_nfev=MOST_TRIALS,
+            lambda x: ratios(float(x[0])), [start], jac=slope, loss="soft_l1", xtol=PRECISION,
+            max_nfev=BY_ELEMENTS if self.case.theory.by_elements else MAXIMUM_TRIALS,
         )  # fmt: skip
         value = float(found.x[0])
-        pair = made[value] if value in made else make(value)
-        return NO_FIT if pair is None else Fitted(self.fit(*pair), value)
-
-    def effect(self, one: Curves, other: Curves) -> Array:
-        """Return how far two theories are from each other, in units of what data may be off."""
-        allowed, found = self.case.allowance, []
-        for name in self.names:
-            band = np.nan_to_num(allowed.high[name] - allowed.low[name])
-            most = self.case.most(name) * self.case.theory.scales[name]
-            found.append(np.nan_to_num(one[name] - other[name]) / (most + band))
-        return np.concatenate(found)
+        return self._rated(hypothesis, pair(value), value)
 
     def solved(self, scene: Scene, times: Array | None = None) -> Curves | None:
         """Return the theory of another scene at the times of the rows, or None where it has none."""
-        theory, moments = (
-            replace(self.case.theory, scene=scene),
-            self.time if times is None else times,
-        )
+        theory = replace(self.case.theory, scene=scene)
         try:
-            found = theory.at(moments, TRIAL_RTOL)
+            found = theory.at(self.time if times is None else times, TRIAL_RTOL)
         except (ValueError, ArithmeticError):
             return None
         if not theory.by_elements or times is not None:
             return found
         return {name: self.now[name] + found[name] - self._coarse[name] for name in self.now}
 
+    def against(self, scene: Scene, times: Array | None = None) -> Pair | None:
+        """Return the data and the theory of another scene, or None where it has none."""
+        curves = self.solved(scene, times)
+        return None if curves is None else (self.columns, curves)
+
     @cached_property
     def _coarse(self) -> Curves:
         """The theory of the scene as it is given by as few elements as in trials, whose errors cancel."""
         return self.case.theory.at(self.time, TRIAL_RTOL)
+
+    def indistinguishable(self, best: Trial, others: Sequence[Hypothesis]) -> tuple[str, ...]:
+        """Return the names of the parameters that the data cannot distinguish from the best one.
+
+        With such a one free beside it, the fit leaves the unknown uncertain by more than it is off: the
+        data do not need it. The slopes are those of theory at the best fit.
+        """
+        at = best.hypothesis
+        scene = scaled_scene(self.case.theory.scene, at.powers or {}, math.exp(best.value))
+        here, slopes = self.solved(scene), []
+        for other in (at, *others):
+            curves = self.solved(scaled_scene(scene, other.powers or {}, math.exp(STEP)))
+            if here is None or curves is None:
+                return ()
+            slopes.append(self.effect(curves, here) / STEP)
+        return tuple(
+            other.name
+            for other, slope in zip(others, slopes[1:], strict=True)
+            if uncertainty(slopes[0], slope) >= abs(best.value)
+        )
 
 
 def uncertainty(slope: Array, other: Array) -> float:
     """Return the standard deviation of an unknown while another is free too, by the slopes of n values.
 
     It is the root of the first entry of n (J^T J)^-1, and infinite if the matrix is singular. The slopes
-    are in units of what is allowed: that bounds what is off in all values together, so that many of them
-    know no more than one; hence the n.
+    are in units of what is allowed, which is a bound on an error that all values may share, so that many
+    values know no more than one; hence the n.
 
     >>> uncertainty(np.array([1.0, 1.0]), np.array([0.0, 2.0]))
     1.4142135623730951
@@ -177,12 +245,12 @@ def bench(case: Case) -> Bench:
         np.minimum(first + np.arange(ROWS // 2), count - 1),
     ]))  # fmt: skip
     drive = "velocity"
-    drives = drive in case.names and bool((case.excess(drive) > case.most(drive)).any())
+    drives = drive in case.names and bool((case.excess(drive) > case.limit(drive)).any())
     names = tuple(name for name in case.names if name != drive or drives)
     return Bench(case.rows(rows), names)
 
 
-FASTER = "drive.velocity"
+VELOCITY = "drive.velocity"
 """Of a drive, the velocity stands for all its velocities."""
 
 
@@ -193,7 +261,7 @@ def scaled_scene(scene: Scene, powers: Mapping[str, float], factor: float) -> Sc
     2000.0
     """
     values = scene.values()
-    over = {key: factor**power * values[key] for key, power in powers.items() if key != FASTER}
-    if FASTER in powers:
-        scene = replace(scene, drive=scene.drive.faster(factor ** powers[FASTER]))
+    over = {key: factor**power * values[key] for key, power in powers.items() if key != VELOCITY}
+    if VELOCITY in powers:
+        scene = replace(scene, drive=scene.drive.faster(factor ** powers[VELOCITY]))
     return scene.replace(over)

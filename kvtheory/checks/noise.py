@@ -5,10 +5,10 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from kvtheory.checks.theory import Array
 
-LEAST = 1e-300
-"""Magnitude that a zero counts for, where digits are counted."""
+SMALLEST = 1e-300
+"""Magnitude that stands for zero where digits are counted."""
 NORMAL_MAD = 0.6745
 """Median of the magnitude of a normal variate of variance one."""
 FEWEST = 5
@@ -23,9 +23,9 @@ them fewer than one run of twenty checks in a thousand raises a false alarm."""
 FROM_FEW = 2.0
 """A standard deviation from n values is known to this many 1/sqrt(n) at worst, relative."""
 SURE = 4.5
-"""Standard deviations that a single normal error almost never exceeds."""
+"""Standard deviations that a single normal error almost never exceeds (once in 150,000)."""
 FEW_DIGITS = (2, 3, 4, 5)
-"""Significant digits to which a column may have been written; more do not matter."""
+"""Significant digits to which a column may be rounded; more do not matter."""
 SEVERAL = 10
 """Distinct values from which on their smallest distance says how finely they were written."""
 ON_GRID = 1e-3
@@ -96,7 +96,7 @@ def rounded(values: Array, fewest: int = FEW_DIGITS[0]) -> Array:
     step = float(np.diff(distinct).min()) if distinct.size >= SEVERAL else 0.0
     on_grid = step > 0.0 and np.abs(distinct / step - np.round(distinct / step)).max() <= ON_GRID
     half = 0.5 * step if on_grid else 0.0
-    size = 10.0 ** np.floor(np.log10(np.maximum(np.abs(np.nan_to_num(values)), LEAST)))
+    size = 10.0 ** np.floor(np.log10(np.maximum(np.abs(np.nan_to_num(values)), SMALLEST)))
     for digits in (d for d in FEW_DIGITS if d >= fewest):
         last = size * 10.0 ** (1 - digits)
         off = np.abs(values / last - np.round(values / last))
@@ -105,10 +105,10 @@ def rounded(values: Array, fewest: int = FEW_DIGITS[0]) -> Array:
     return np.full_like(values, half)
 
 
-def unsure(time: Array) -> Array:
-    """Return how far each time may be off, in s, where so many are repeated that they must be rounded.
+def time_rounding(time: Array) -> Array:
+    """Return the rounding error of each time in s, if so many are repeated that they must be rounded.
 
-    >>> unsure(np.array([0.0, 0.1, 0.1, 0.1, 0.2])).tolist()
+    >>> time_rounding(np.array([0.0, 0.1, 0.1, 0.1, 0.2])).tolist()
     [0.1, 0.1, 0.1, 0.1, 0.1]
     """
     distinct = np.unique(time)

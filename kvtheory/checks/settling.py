@@ -1,17 +1,19 @@
-"""Checks of how the data settle: the two time constants of F12, the steady limit, or the phase of a cycle."""
+"""Checks of how the data settle: the two time constants of F12, the steady limit, or the phase of a cycle.
+
+Near steady sliding the depth settles with the slow time constant alone, and what is left of the force
+balance right after a jump decays with the fast one. The same fit is made to theory at the same times, so
+that the error of the fit itself cancels.
+"""
 
 import math
-from collections.abc import Iterator
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.optimize import minimize_scalar
 
-from kvtheory.checks.comparison_case import SMALLEST, Case, not_made, rms
+from kvtheory.checks.comparison_case import SMALLEST, Case, Measured, NotMade, check, rms
 from kvtheory.checks.noise import SURE
-from kvtheory.checks.relaxation import FEWEST, fit, uncertainty
-from kvtheory.results.comparison import Check
-
-Array = NDArray[np.float64]
+from kvtheory.checks.theory import Array, Rates
 
 SETTLED = 7.0
 """Slow time constants after the last change of the drive: e^-7 is below a thousandth."""
@@ -22,57 +24,60 @@ FAST_SPAN = 4.0
 LAST_PART, FEWEST_LATE = 0.75, 3
 """Of the data: the mean of the rest is taken for the limit, if it has so many samples."""
 FITTED = 0.5
-"""A time constant that the data fix no better than this, relative, is not judged."""
+"""A time constant that is less certain than this, relative, is not judged."""
 PHASE = "phase of the cycle"
-"""The check whose failure alone says nothing against the data: theory cannot say where they should be."""
+"""The check whose failure alone says nothing against the data: theory cannot predict the phase."""
 LOST = 0.25
 """Of the sliding velocity: where so much is allowed, the phase is lost."""
+FEWEST = 6
+"""Samples for three unknowns."""
+LOG_PRECISE = 1e-6
+"""Of the logarithm of a time constant: far closer than any data fix it."""
+RANGE = 5.0
+"""Factor up and down from the expected time constant in which to look."""
+OF_FITS = "relative difference of the fits"
 
 
-def slow_constant(case: Case) -> Iterator[Check]:
+@check("slow time constant", "F12", OF_FITS)
+def slow_constant(case: Case) -> Measured:
     """Fit the slow time constant to the depth as it settles."""
-    name, rates = "slow time constant", case.theory.rates
-    why = _why_not(case, "depth")
-    if why or rates is None:
-        yield not_made(name, "F12", why)
-        return
+    rates = _rates(case, "depth")
     off = np.abs(case.now["depth"] / case.theory.steady_state.depth - 1.0)
     late = np.flatnonzero((off > NEAR) | (case.series.time < case.theory.last_change))
     start = int(late[-1]) + 1 if late.size else 0
     use = np.flatnonzero(off[start:] > FAR) + start
-    yield _fitted(case, name, "depth", use, rates.slow.real)
+    return _fitted(case, "depth", use, rates.slow.real)
 
 
-def fast_constant(case: Case) -> Iterator[Check]:
+@check("fast time constant", "F12", OF_FITS)
+def fast_constant(case: Case) -> Measured:
     """Fit the fast time constant to the normal force after the start."""
-    name, rates, time = "fast time constant", case.theory.rates, case.series.time
-    why = _why_not(case, "normal_force")
-    if not why and 0.0 not in case.theory.scene.drive.jumps:
-        why = "there is no such decay in this scene"
-    if why or rates is None:
-        yield not_made(name, "F12", why)
-        return
+    rates, time = _rates(case, "normal_force"), case.series.time
+    if 0.0 not in case.theory.scene.drive.jumps:
+        raise NotMade("there is no such decay in this scene")
     use = np.flatnonzero((time > 0.0) & (time < FAST_SPAN * rates.fast.real))
-    yield _fitted(case, name, "normal_force", use, rates.fast.real)
+    return _fitted(case, "normal_force", use, rates.fast.real)
 
 
-def _why_not(case: Case, curve: str) -> str:
-    """Say why a curve has no time constants to fit; nothing if it has."""
-    if curve not in case.series.columns:
-        return f"the data hold no {curve.replace('_', ' ')}"
-    if case.theory.rates is None:
-        return "a fixed indenter has none"
-    if case.theory.scene.foundation.arms:
-        return "F12 holds for Kelvin-Voigt"
-    if not (case.theory.scene.drive.rigid and case.theory.scene.indenter.per_width):
-        return "F12 holds for a line contact on a rigid drive"
-    return "the indenter oscillates" if case.theory.rates.oscillates else ""
+def _rates(case: Case, curve: str) -> Rates:
+    """Return the time constants, if a curve has some that can be fitted."""
+    scene, rates = case.theory.scene, case.theory.rates
+    case.columns(curve)
+    if rates is None:
+        raise NotMade("a fixed indenter has none")
+    if scene.foundation.arms:
+        raise NotMade("F12 holds for Kelvin-Voigt")
+    if not (scene.drive.rigid and scene.indenter.per_width):
+        raise NotMade("F12 holds for a line contact on a rigid drive")
+    if rates.oscillates:
+        raise NotMade("the indenter oscillates")
+    return rates
 
 
-def _fitted(case: Case, name: str, curve: str, use: NDArray[np.intp], exact: float) -> Check:
+def _fitted(case: Case, curve: str, use: NDArray[np.intp], exact: float) -> Measured:
     """Fit a time constant to rows of a curve, of data and of theory, unless the data do not fix it."""
     if use.size < FEWEST:
-        return not_made(name, "F12", f"fewer than {FEWEST} samples while the {curve} settles")
+        raise NotMade(f"fewer than {FEWEST} samples while the {curve} settles")
     t, allowed = case.series.time[use], case.allowance
     theory, data = (fit(t, c[curve][use], exact) for c in (case.now, case.series.columns))
     offset = np.nan_to_num(
@@ -80,42 +85,78 @@ def _fitted(case: Case, name: str, curve: str, use: NDArray[np.intp], exact: flo
         + 0.5 * (allowed.high[curve] - allowed.low[curve])
     )[use]  # fmt: skip
     errors = offset, allowed.rounding[curve][use], allowed.noise[curve][use]
-    most = uncertainty(t, case.now[curve][use], theory, *errors)
-    if not most < FITTED:
-        return not_made(name, "F12", "the data do not fix it")
+    limit = uncertainty(t, case.now[curve][use], theory, *errors)
+    if not limit < FITTED:
+        raise NotMade("the data do not fix it")
     note = (
         f"{data * 1e3:.4g} ms from the data, {theory * 1e3:.4g} ms from theory by the same fit, "
         f"F12: {exact * 1e3:.4g} ms"
     )
-    off, unit = abs(data / theory - 1.0), "relative difference of the fits"
-    return case.check(name, off, case.tolerance * most, "F12", unit, note)
+    return abs(data / theory - 1.0), case.tolerance * limit, note
 
 
-def steady_limit(case: Case) -> Iterator[Check]:
+def _basis(time: Array, T: float) -> Array:
+    """Return the columns 1 and exp(-t/T)."""
+    return np.stack([np.ones_like(time), np.exp((time[0] - time) / T)], axis=1)
+
+
+def fit(time: Array, values: Array, expected: float) -> float:
+    """Return T of the best c_0 + c_1 exp(-t/T), for T within a factor of five of the expected one.
+
+    Examples
+    --------
+    >>> t = np.linspace(0.0, 3.0, 50)
+    >>> round(fit(t, 2.0 - 0.5 * np.exp(-t / 0.7), 1.0), 6)
+    0.7
+    """
+
+    def left(log_T: float) -> float:
+        basis = _basis(time, np.exp(log_T))
+        rest = values - basis @ np.linalg.lstsq(basis, values, rcond=None)[0]
+        return float(rest @ rest)
+
+    bounds = np.log(expected) - np.log(RANGE), np.log(expected) + np.log(RANGE)
+    options = {"xatol": LOG_PRECISE}
+    return float(np.exp(minimize_scalar(left, bounds=bounds, method="bounded", options=options).x))
+
+
+def uncertainty(
+    time: Array, values: Array, T: float, offset: Array, digits: Array, sigma: Array
+) -> float:
+    """Return the uncertainty of T, relative to T.
+
+    `offset` bounds a smooth error of the values, `digits` one of any sign at each of them, and `sigma` are
+    the standard deviations of a random one; all go through the linear least squares about the fit.
+    """
+    age, basis = time - time[0], _basis(time, T)
+    amplitude = np.linalg.lstsq(basis, values, rcond=None)[0][1]
+    to_parameter = np.linalg.pinv(np.column_stack([basis, amplitude * basis[:, 1] * age / T]))[2]
+    smooth = abs(to_parameter @ offset) + abs(to_parameter @ (offset * age / age[-1]))
+    rough = np.abs(to_parameter) @ digits + SURE * np.linalg.norm(sigma * to_parameter)
+    return float(smooth + rough)
+
+
+def _steady_equation(case: Case) -> str:
+    scene = case.theory.scene
+    return "F17" if scene.foundation.arms else "F1" if scene.indenter.per_width else "F20"
+
+
+@check("steady limit", _steady_equation, "relative to the static state")
+def steady_limit(case: Case) -> Measured:
     """Compare the end of the data with exact steady sliding."""
     theory, time, columns = case.theory, case.series.time, case.series.columns
-    ours = "F1" if theory.scene.indenter.per_width else "F20"
-    name, equation = "steady limit", "F17" if theory.scene.foundation.arms else ours
     if math.isinf(theory.last_change):
-        yield not_made(name, equation, "the drive is a function, which need not settle")
-        return
-    if theory.by_elements and not theory.scene.drive.rigid:
-        why = "steady sliding on a spring is compared for a parabola on Kelvin-Voigt only"
-        yield not_made(name, equation, why)
-        return
+        raise NotMade("the drive is a function, which need not settle")
     if theory.rates is not None:
         slow = theory.rates.settling
     else:
         slow = theory.scene.foundation.retardation_time if theory.last_change else 0.0
     if math.isinf(slow):
-        yield not_made(name, equation, "steady sliding is unstable on this spring (F22)")
-        return
+        raise NotMade("steady sliding is unstable on this spring (F22)")
     settled = theory.last_change + SETTLED * slow
     late = time > max(settled, LAST_PART * time[-1])
     if late.sum() < FEWEST_LATE:
-        why = f"the data end before {settled * 1e3:.4g} ms, when the transient is over"
-        yield not_made(name, equation, why)
-        return
+        raise NotMade(f"the data end before {settled * 1e3:.4g} ms, when the transient is over")
     friction = theory.steady_state.friction_force
     exact = {"depth": theory.steady_state.depth, "normal_force": theory.steady_state.load,
              "friction_force": friction, "spring_force": friction}  # fmt: skip
@@ -128,22 +169,20 @@ def steady_limit(case: Case) -> Iterator[Check]:
         allowed = case.tolerance * ((smooth + left + SURE * random) / scale + SMALLEST)
         note = f"{curve} {mean:.6g}, exact {exact[curve]:.6g} in SI"
         found.append((abs(mean - exact[curve]) / scale, allowed, note))
-    off, allowed, note = max(found, key=lambda each: each[0] / each[1])
-    yield case.check(name, off, allowed, equation, "relative to the static state", note)
+    return max(found, key=lambda each: each[0] / each[1])
 
 
-def phase(case: Case) -> Iterator[Check]:
+@check(
+    PHASE, "F22", "error that elements and steps may make in the sliding velocity, relative to it"
+)
+def phase(case: Case) -> Measured:
     """Compare what is allowed of the sliding velocity with itself, where steady sliding is unstable.
 
-    A disturbance shifts the phase of a cycle for good: where that may be half of a swing that is half of the
-    mean, no agreement says anything.
+    A disturbance shifts the phase of a cycle for good: if that may be half of an oscillation whose amplitude
+    is half of the mean, no agreement says anything.
     """
     theory, curve = case.theory, "sliding_velocity"
-    if theory.scene.drive.rigid:
-        return
     if theory.rates is not None and math.isfinite(theory.rates.settling):
-        yield not_made(PHASE, "F22", "steady sliding is stable")
-        return
+        raise NotMade("steady sliding is stable")
     may_be = case.tolerance * rms(case.allowance.systematic[curve])
-    unit = "what elements and steps may change of the sliding velocity, relative to it"
-    yield case.check(PHASE, may_be / rms(case.now[curve]), LOST, "F22", unit)
+    return may_be / rms(case.now[curve]), LOST, ""

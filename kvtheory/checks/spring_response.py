@@ -1,14 +1,13 @@
-"""By how much elements and steps may move an indenter on a spring, by theory itself.
+"""The part of the error budget that is due to motion along x, by theory of a disturbed scene.
 
-Motions along x last long, and grow where steady sliding is unstable (F22), until they are a cycle in which a
-disturbance shifts the phase more and more. How far that goes, no linear response knows, but theory of a
-disturbed scene does:
+Motions along x last long, and grow if steady sliding is unstable (F22), up to a cycle in which a disturbance
+shifts the phase more and more. No linear response covers that, but theory of a disturbed scene does:
 
 - the force b at an edge acts as a load that is larger by b; on a fixed indenter, whose forces are in
   proportion to the stiffness of the foundation, as one that is stiffer;
-- a step h of first order takes from a swing, or adds to it, what a damper c_x = h k_x takes;
-- the friction b a/R that goes with b acts on the spring at once: by so much it is stretched, and the
-  indenter kicked.
+- a first-order step h damps an oscillation, or excites it, as a damper c_x = h k_x;
+- the friction b a/R that goes with b acts on the spring at once: it stretches the spring, and accelerates
+  the indenter.
 """
 
 import math
@@ -16,15 +15,12 @@ from collections.abc import Iterator
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
-from kvtheory.checks.theory import CURVES, Curves, Theory
+from kvtheory.checks.theory import CURVES, Array, Curves, Theory
 from kvtheory.scene.model import Fixed, Scene
 
-Array = NDArray[np.float64]
-
 QUARTER = 0.5 * math.pi
-"""Of a period, in radians: a disturbed swing meets the undisturbed one, and is far off so much later."""
+"""Of a period, in radians: a disturbed oscillation crosses the other, and is far off so much later."""
 SWING = 2.0
 """A sudden force stretches a spring by up to so many times what the force does if it lasts."""
 
@@ -34,7 +30,7 @@ def spring_response(
 ) -> Curves:
     """Return by how much the force b (N/m) at an edge, and steps of `step` s, move each curve.
 
-    `step` is 0 of a scheme of higher order, whose error is far smaller.
+    `step` is 0 for a scheme of higher order, whose error is far smaller.
     """
     scene, static = theory.scene, theory.static
     inertia, stiffness = scene.drive_mass, float(scene.drive.stiffness or 0.0)
@@ -56,7 +52,7 @@ def spring_response(
 
 
 def _disturbed(scene: Scene, share: float, step: float) -> Iterator[Scene]:
-    """Yield the scene with a load that is larger by its share, and with what steps of first order add."""
+    """Yield the scene with a load that is larger by a share, and with the damping of first-order steps."""
     support, foundation = scene.support, scene.foundation
     if isinstance(support, Fixed):
         factor = 1.0 + share

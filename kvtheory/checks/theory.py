@@ -1,7 +1,6 @@
-"""What theory says at the times of a series, the rest before t = 0 included.
+"""Theory at the times of a series, including the rest before t = 0.
 
-What solves a scene comes in as functions, so that this package holds two things against each other
-without being a part of either.
+The solvers come in as functions (`Methods`), so that this package depends on none of them.
 """
 
 import math
@@ -17,17 +16,18 @@ from kvtheory.results.table import QUANTITIES, SERIES_UNITS, units_for
 from kvtheory.scene import Drive, Sphere
 from kvtheory.scene.model import Scene
 from kvtheory.scene.static_state import StaticState
+from kvtheory.theory.closed_forms import trailing_edge_ratio
 
 Array = NDArray[np.float64]
 Curves = Mapping[str, Array]
 
 CURVES = tuple(name for name in SERIES_UNITS if name != "time")
-"""The curves of a series. A rigid drive slides at V, and what stands for its spring feels the friction."""
+"""The curves of a series. With a rigid drive the sliding velocity is V, and the spring force the friction."""
 TRIAL_RTOL = 1e-5
 """Tolerance of the theory in the trials of a diagnosis."""
-FOR_GOOD = 40.0
-"""Time constants after which what is left of a change is below rounding."""
-FOREVER = 1e9
+DECAYED = 40.0
+"""Time constants after which a change has decayed below rounding."""
+LONGEST = 1e9
 """Retardation times: no series is so long."""
 SHALLOWEST = 1e-3
 """Of the static depth: where the contact vanishes, its length and width are those of this depth."""
@@ -36,7 +36,7 @@ NO_VELOCITY = 1e-9
 
 
 def curves(found: Mapping[str, Any], scene: Scene) -> dict[str, Array]:
-    """Return every curve of what was found for a scene, those of a spring for a rigid drive too."""
+    """Return every curve of a solution, including those of a spring for a rigid drive."""
     if scene.drive.rigid:
         found = {
             **found, "sliding_velocity": found["velocity"], "spring_force": found["friction_force"],
@@ -49,9 +49,8 @@ class Methods(NamedTuple):
 
     `transient` returns the curves of theory by name, for a scene, times (s, increasing) and a tolerance;
     `steady` its exact steady sliding; `rates` the rates (1/s) of small motions about it, for a scene on a
-    spring; `elements` the curves of a simulation, for a scene, spacing (m),
-    time step (s), times, and what it is to do wrong by name. `tell` is told the share of the work done, and
-    words.
+    spring; `elements` the curves of a simulation, for a scene, spacing (m), time step (s), times, and its
+    mistakes by name. `tell` reports the share of the work that is done, and words.
     """
 
     transient: Callable[[Scene, Sequence[float], float], Mapping[str, Any]]
@@ -65,8 +64,8 @@ class Methods(NamedTuple):
 class Rates:
     """The shortest and the longest time constant near steady sliding, in s; complex if it oscillates.
 
-    With a rigid drive these are the two of F12, on a spring two of those of F22. After `settling` (s) what
-    lasts longest has fallen to 1/e; where steady sliding is unstable it is infinite.
+    With a rigid drive these are the two of F12, on a spring two of those of F22. `settling` (s) is the time
+    in which the slowest motion decays to 1/e, infinite if steady sliding is unstable.
     """
 
     fast: complex
@@ -82,7 +81,7 @@ class Rates:
 
     @property
     def oscillates(self) -> bool:
-        """Whether the indenter swings about its steady depth."""
+        """Whether the indenter oscillates about its steady state."""
         return self.slow.imag != 0.0
 
 
@@ -100,7 +99,7 @@ class Theory:
 
     @cached_property
     def scales(self) -> Mapping[str, float]:
-        """What a difference is compared with: the static state, and its products."""
+        """The scales of differences: the static state, and its products."""
         measures = {name: getattr(self.static, QUANTITIES[name].scale) for name in SERIES_UNITS}
         speed = max(self.motion.highest_speed, NO_VELOCITY * self.static.velocity)
         return {**measures, "velocity": speed, "sliding_velocity": speed}
@@ -134,7 +133,7 @@ class Theory:
 
     @cached_property
     def last_change(self) -> float:
-        """The time in s after which the drive keeps its velocity; infinite if it never does, or may not."""
+        """The time in s after which the drive keeps its velocity; infinite if it need not."""
         drive = self.scene.drive
         return drive.last_change if drive.ends else math.inf
 
@@ -152,28 +151,26 @@ class Theory:
     def rates(self) -> Rates | None:
         """The time constants at the steady state; None if the indenter cannot move.
 
-        On a spring they follow from the quartic of F22. With a rigid drive, A = sqrt(a^2 + l_r^2) + a and
-        B = x_TE + a, M s^2 + C B s + K A + k_s = 0 (F12); with arms, they are those of the damping that slow
-        sliding feels, and measure what is allowed. So do those of a ball, by its mean width. Whether steady
-        sliding of these is stable on a spring, and when it is there, is not known.
+        On a spring they follow from the rates of F22. With a rigid drive, A = sqrt(a^2 + l_r^2) + a and
+        B = x_TE + a, M s^2 + C B s + K A + k_s = 0 (F12). For arms the damping is that of slow sliding, and
+        for a ball the width is the mean one: they set windows and allowances, and no series is compared with
+        them. Of a parabola on Kelvin-Voigt it is; their code is that of `steady`, which makes no series.
         """
         support, foundation = self.scene.support, self.scene.foundation
-        if not self.scene.drive.rigid and not self.by_elements:
+        if not self.scene.drive.rigid:
             steady = self.scene.drive.changed(velocity=self.final_velocity)
             rates = self.methods.rates(replace(self.scene, drive=steady))
             return Rates.of((-1.0 / rates[rates != 0.0]).tolist())
         if self.scene.held:
             return None
         a, l_r = self.steady_state.half_length, self.steady_state.retardation_length
-        x_te = a * a / (l_r + math.hypot(a, l_r))
         width = float(self.width(self.steady_state.depth))
         stiffness = foundation.stiffness * width * (math.hypot(a, l_r) + a) + support.spring
-        damping = foundation.damping * width * (x_te + a)
+        damping = foundation.damping * width * a * (trailing_edge_ratio(l_r / a) + 1.0)
         root = complex(damping * damping - 4.0 * support.mass * stiffness) ** 0.5
-        found = Rates.of(
+        return Rates.of(
             [2.0 * support.mass / (damping + root), (damping + root) / (2.0 * stiffness)]
         )
-        return found if self.scene.drive.rigid else replace(found, settling=math.inf)
 
     def at(self, times: Array, rtol: float = 1e-6) -> dict[str, Array]:
         """Return the curves at `times` (s): at rest before t = 0, just after a jump of the drive."""
@@ -195,13 +192,13 @@ class Theory:
         if foundation.arms:  # no retardation takes longer than this
             glassy = 1.0 + sum(arm.stiffness for arm in foundation.arms) / foundation.stiffness
             slow = glassy * max(arm.relaxation_time for arm in foundation.arms)
-        if end > FOREVER * slow:
+        if end > LONGEST * slow:
             raise ArithmeticError(f"that is after {end / slow:.3g} retardation times")
-        if end <= self.last_change + FOR_GOOD * slow or not self.scene.drive.rigid:
+        if end <= self.last_change + DECAYED * slow or not self.scene.drive.rigid:
             return end
         if self.rates is not None:
             slow = max(slow, self.rates.settling)
-        return min(end, self.last_change + FOR_GOOD * slow)
+        return min(end, self.last_change + DECAYED * slow)
 
     @cached_property
     def rest(self) -> Mapping[str, float]:

@@ -1,0 +1,155 @@
+"""Mistakes in a simulation itself, as data: a wrong contact rule, or a wrong start.
+
+Our paper's scheme makes the mistake, and what that changes is added to theory.
+"""
+
+import math
+from collections.abc import Iterator, Mapping
+from functools import partial
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from kvtheory.checks.fitting import Bench, Hypothesis, Pair
+from kvtheory.checks.theory import CURVES, Array, Curves, curves
+from kvtheory.results.schemes import RK4_LIMIT
+
+
+class Mistake(NamedTuple):
+    """What a simulator does wrong: the name of the fault, its description, and the fields of the rule.
+
+    `comes_back` says that it shows only where the indenter re-enters deformed foundation, as where the drive
+    does not keep its velocity, or has a spring. `by_step` says that what it does depends on the time step,
+    which is searched for where it is not known.
+    """
+
+    name: str
+    text: str
+    does: Mapping[str, Any]
+    comes_back: bool = False
+    by_step: bool = False
+
+
+LOST, UNRELAXED = "contact lost while rising", "no relaxation of the free surface"
+MISTAKES = (
+    Mistake("tension allowed at the trailing edge",
+            "the foundation stays attached where it would pull (no peeling): an element must detach where "
+            "its pressure vanishes (Eqs. 23, 24 and 33)", {"pulls": True}),
+    Mistake(LOST,
+            "elements lose contact where the indenter rises, for the surface of the last step is taken for "
+            "the present one: a free surface relaxes within the step too (Eqs. 20 and 25, F8)",
+            {"flags": False, "stale": True}),
+    Mistake(LOST,
+            "contact is lost from the equation of motion while the indenter rises, as where an element "
+            "counts as free once the indenter is above where the last step left it (Eqs. 24 and 25, F8)",
+            {"flags": False, "stale": True, "still": True}, by_step=True),
+    Mistake(UNRELAXED,
+            "the free surface does not relax, so that the contact ends where the indenter recedes from it: "
+            "it decays as exp(-t/tau) (Eqs. 20 and 25, F8)", {"flags": False, "relaxes": False}),
+    Mistake(UNRELAXED,
+            "the free surface does not relax where the indenter comes back to it: it decays as exp(-t/tau) "
+            "(Eqs. 20 and 25, F8)", {"relaxes": False}, comes_back=True),
+    Mistake("memory forgotten where sliding reverses",
+            "the indenter meets an undeformed foundation where it re-enters ground that it left: the surface "
+            "there is still compressed, and relaxes as exp(-t/tau) (Eq. 20, F8)",
+            {"remembers": False}, comes_back=True),
+    Mistake("undeformed at the start",
+            "at t = 0 the indenter touches an undeformed foundation, where theory has it at rest at its "
+            "static depth (Eq. 40)", {"start": 0.0}),
+)  # fmt: skip
+
+MORE = 0.05
+"""By which the initial depth is changed to see what it does."""
+PER_HALF_LENGTH = 250.0
+"""Elements in the static half length of a simulation with a mistake: its difference to one without is used,
+in which most discretization errors cancel."""
+LONGEST_RUN = 1500
+"""Steps of such a simulation; its later curves are taken as constant."""
+SPAN, LONGEST_SEARCHED = 8.0, 5000
+"""A time step that is not known is sought up to so many times longer and shorter than the one assumed, with
+so many steps."""
+INSTANTS = 400
+"""Output times, about."""
+STABLE = 0.5
+"""Of the largest stable step of the paper's scheme."""
+PASSED = 1.618
+"""Elements that pass in a step: about as in the paper, but never in step with those that enter."""
+
+
+def mistakes(bench: Bench) -> Iterator[Hypothesis]:
+    """Let a simulator make each mistake, and add to theory what that changes."""
+    right = _simulated(bench, {})
+    if right is None:
+        return
+    scene, resolution = bench.case.theory.scene, bench.case.resolution
+    span = 0.0 if resolution.step_known else math.log(SPAN)
+
+    def changed(wrong: Curves | None, share: float = 1.0) -> Pair | None:
+        """Return theory plus a share of the change that a mistake makes."""
+        if wrong is None:
+            return None
+        moving = bench.time >= 0.0
+        change = {name: np.nan_to_num(wrong[name] - right[name]) for name in CURVES}
+        shares = {name: share * np.where(moving, change[name], 0.0) for name in CURVES}
+        return bench.columns, {name: bench.now[name] + shares[name] for name in CURVES}
+
+    def made(x: float, mistake: Mistake) -> Pair | None:
+        if not mistake.by_step:
+            return changed(_simulated(bench, mistake.does))
+        return changed(_by_steps(bench, mistake.does, resolution.time_step * math.exp(x)))
+
+    for mistake in MISTAKES:
+        never = mistake.comes_back and scene.drive.constant and scene.drive.rigid
+        if not never and not (mistake.by_step and scene.held):
+            yield Hypothesis(
+                mistake.name, lambda _x, text=mistake.text: text,  # type: ignore[misc]
+                partial(made, mistake=mistake), span=span * mistake.by_step,
+            )  # fmt: skip
+    deeper = None if scene.held else _simulated(bench, {"start": 1.0 + MORE})
+    if deeper is not None:
+        yield Hypothesis(
+            "wrong initial depth",
+            lambda x: (
+                f"the depth at t = 0 is {1.0 + x:.4g} times the static depth, at which theory has the "
+                "indenter at rest (Eq. 40)"
+            ),
+            lambda x: changed(deeper, x / MORE),
+            [0.0],
+            factor=lambda x: 1.0 + x,
+        )
+
+
+def _simulated(bench: Bench, does: Mapping[str, Any]) -> Curves | None:
+    """Return the curves of elements that make a mistake, at the times of the rows."""
+    half, speed = bench.case.theory.static.half_length, bench.case.theory.motion.highest_speed
+    step = min(PASSED * half / PER_HALF_LENGTH / speed if speed else math.inf, _stable(bench))
+    times, index = np.unique(np.clip(bench.time, 0.0, LONGEST_RUN * step), return_inverse=True)
+    found = _elements(bench, step, times, does)
+    return found and {name: values[index] for name, values in found.items()}
+
+
+def _by_steps(bench: Bench, does: Mapping[str, Any], step: float) -> Curves | None:
+    """Return the same by this time step (s), or the longest that is stable, with none shortened."""
+    step = min(step, _stable(bench))
+    end = min(float(bench.time[-1]), LONGEST_SEARCHED * step)
+    apart = 2.0 * step * math.ceil(end / (2.0 * step * INSTANTS))
+    times = np.minimum(apart * np.arange(math.ceil(end / apart) + 1), end)
+    found = _elements(bench, step, times, does)
+    return found and {name: np.interp(bench.time, times, values) for name, values in found.items()}
+
+
+def _stable(bench: Bench) -> float:
+    """Return a time step in s at which the paper's scheme is stable."""
+    scene, half = bench.case.theory.scene, bench.case.theory.static.half_length
+    contact = 2.0 * half * scene.foundation.damping
+    return math.inf if scene.held else STABLE * RK4_LIMIT * scene.support.mass / contact
+
+
+def _elements(bench: Bench, step: float, times: Array, does: Mapping[str, Any]) -> Curves | None:
+    """Return the curves of elements that make a mistake, or None where they have none."""
+    theory = bench.case.theory
+    scene, spacing = theory.scene, theory.static.half_length / PER_HALF_LENGTH
+    try:
+        return curves(theory.methods.elements(scene, spacing, step, times.tolist(), does), scene)
+    except (ValueError, ArithmeticError):
+        return None
