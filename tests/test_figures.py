@@ -171,6 +171,16 @@ def test_gauss_by_hand_converges_on_one_arm_and_not_on_twenty(made):
     assert all(each["quadrature"][0][0] < 1e-12 for each in series.values())
 
 
+def test_curves_of_all_temperatures_lie_on_the_master_curve(made):
+    data, _, _ = made["temperature"]
+    script = importlib.import_module("figures.temperature")
+    for celsius, mu in data.curves.items():
+        shifted = script.SPEEDS * data.shift_factors[celsius]
+        right = kv.steady(script.scene(script.REFERENCE), over={"drive.velocity": shifted})
+        assert mu == pytest.approx(right.friction_coefficient, rel=1e-9)
+    assert data.shift_factors[0.0] > 1.0 > data.shift_factors[40.0] > data.shift_factors[80.0]
+
+
 def test_table2_carries_the_papers_coefficients(made):
     columns = made["table2"][0].columns
     alpha, R, K, C, delta, W = 2 * np.sqrt(2) / 3, 0.01, 1e10, 1e9, 3e-4, 9806.65
