@@ -30,8 +30,8 @@ test: $(VENV)/.installed-test
 # What depends on NumPy, SciPy, SymPy and the others at run time, with the oldest of them. Their Numba keeps its own
 # kernels: two versions with one cache would each compile everything anew.
 LOWEST := .venv-lowest
-LOWEST_TESTS := test_api test_asymptotes test_exact test_quadrature test_transient test_drive_function \
-	test_elements test_compare_spring test_sweep test_cli test_scene test_units test_emit test_presented
+LOWEST_TESTS := test_api test_transient test_elements test_sweep test_cli test_scene test_units test_emit \
+	test_presented
 
 test-lowest: $(LOWEST)/.installed
 	NUMBA_CACHE_DIR=$(CURDIR)/$(LOWEST)/kernels $(LOWEST)/bin/python -m pytest -n $(WORKERS) --dist loadscope \

@@ -272,7 +272,7 @@ def _write_netcdf(plan: Plan, blocks: Blocks, path: Path) -> None:
     data = from_memory(plan, blocks).to_xarray()
     data = data.assign_attrs(title="kvtheory sweep", **_described(plan, summary))
     data["failure_index"] = "failure", np.array([f.index for f in failures], dtype=np.int64)
-    data["failure_reason"] = "failure", np.array([f.reason for f in failures], dtype=object)
+    data["failure_reason"] = "failure", np.array([f.reason for f in failures], dtype=str)
     data.to_netcdf(path, engine="netcdf4")
     with path.open("ab") as file:
         file.write(b"0" * DIGITS)
