@@ -24,8 +24,8 @@ FIRST = (
     *("test_explorer", "test_sweep_lasting", "test_transient_random", "test_balance"),
 )
 """Scopes in the order in which they begin, then all others; the first of them compiles all kernels."""
-DERIVING = "derivations.catalogue import", "(by_label)"
-"""In the text of a file whose tests derive everything, or most of it."""
+DERIVING = "derivations.catalogue import", "(by_label)", "$ kvtheory derive"
+"""In the text of a file of tests, or of a page, that derives everything or most of it."""
 
 PACKAGES = {"chromium": "chromium", "pdflatex": "texlive-latex-base"}
 """Programs that are not Python's, and the packages of Debian that hold them."""
@@ -75,17 +75,24 @@ def pytest_terminal_summary(terminalreporter):
 
 
 @cache
-def scope_of(path: Path) -> str:
-    """Return the name of the scope of the tests of a file."""
-    text = path.read_text(encoding="utf-8") if path.suffix == ".py" else ""
-    deriving = path.parent == Path(__file__).parent and any(part in text for part in DERIVING)
-    return "derivations" if deriving else path.stem
+def derives(path: Path) -> bool:
+    """Whether a file of tests or a page of the site derives most of the catalogue."""
+    text = path.read_text(encoding="utf-8") if path.is_file() else ""
+    return any(part in text for part in DERIVING)
+
+
+def scope_of(nodeid: str) -> str:
+    """Return the name of the scope of a test: its file, or what shares the derivations."""
+    path, _, name = nodeid.partition("::")
+    page = ROOT / "docs" / name.partition("[")[2].rstrip("]")
+    deriving = path.startswith("tests/") and (derives(ROOT / path) or derives(page))
+    return "derivations" if deriving else Path(path).stem
 
 
 def pytest_collection_modifyitems(items):
     """Put scopes in order."""
     ranks = {scope: rank for rank, scope in enumerate(FIRST)}
-    items.sort(key=lambda item: ranks.get(scope_of(item.path), len(FIRST)))
+    items.sort(key=lambda item: ranks.get(scope_of(item.nodeid), len(FIRST)))
 
 
 @pytest.hookimpl(optionalhook=True)
@@ -95,7 +102,7 @@ def pytest_xdist_make_scheduler(config, log):
 
     class Scheduling(LoadScopeScheduling):
         def _split_scope(self, nodeid):
-            return scope_of(config.rootpath / nodeid.partition("::")[0])
+            return scope_of(nodeid)
 
     config.option.loadscopereorder = False
     return Scheduling(config, log)
