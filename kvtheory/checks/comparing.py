@@ -13,10 +13,9 @@ from kvtheory.checks.discretization import COARSE, UNSTABLE, symptoms
 from kvtheory.checks.fitting import Bench, Hypothesis, Trial, bench
 from kvtheory.checks.reading import Series
 from kvtheory.checks.settling import PHASE
-from kvtheory.checks.theory import Methods, Theory
-from kvtheory.results import TRANSIENT_UNITS
+from kvtheory.checks.theory import Theory
+from kvtheory.results import TRANSIENT_UNITS, DivergenceError
 from kvtheory.results.comparison import Check, Comparison, Explanation
-from kvtheory.scene.model import Scene
 
 Family = Callable[[Bench], Iterator[Hypothesis]]
 
@@ -54,15 +53,10 @@ MEMORY_UNUSED = (
 
 @np.errstate(over="ignore", invalid="ignore")  # data that diverge overflow when squared
 def compare(
-    scene: Scene,
-    series: Series,
-    methods: Methods,
-    per_length: float | None,
-    scheme: str | None,
-    tolerance: float,
+    theory: Theory, series: Series, per_length: float | None, scheme: str | None, tolerance: float
 ) -> Comparison:
     """Compare a series with theory; `kvtheory.compare` documents it."""
-    theory, series = Theory(scene, methods), replace(series, scheme=scheme or series.scheme)
+    series = replace(series, scheme=scheme or series.scheme)
     try:
         case = make_case(theory, series, per_length, tolerance, COARSEST)
     except ArithmeticError as error:
@@ -77,9 +71,9 @@ def compare(
         checks = judge(case)
     text, explanations = diagnose(case, checks)
     if series.ignored:
-        several = series.ignored[:MOST_NAMED]
-        more = f" and {len(series.ignored) - len(several)} more" * (several != series.ignored)
-        text += f" Columns that were not used: {', '.join(several)}{more}."
+        unnamed = len(series.ignored) - MOST_NAMED
+        more = f" and {unnamed} more" if unnamed > 0 else ""
+        text += f" Columns that were not used: {', '.join(series.ignored[:MOST_NAMED])}{more}."
     allowed = {name: case.allowed(name) for name in case.names}
     return Comparison(
         verdict(checks), checks, text, explanations, series.source, tolerance,
@@ -88,24 +82,15 @@ def compare(
 
 
 def broken_off(
-    scene: Scene,
-    rows: Sequence[Sequence[float]],
-    reason: str,
-    methods: Methods,
-    scheme: str | None,
-    tolerance: float,
+    theory: Theory, error: DivergenceError, scheme: str | None, tolerance: float
 ) -> Comparison:
-    """Return the verdict on a simulation that diverged, which is not compared with theory.
-
-    `rows` are its results until then, in the order of `TRANSIENT_UNITS`.
-    """
-    series = dict(zip(TRANSIENT_UNITS, np.array(rows).T, strict=True))
-    theory = Theory(scene, methods)
+    """Return the verdict on a simulation of ours that diverged, which is not compared with theory."""
+    series = dict(zip(TRANSIENT_UNITS, np.array(error.rows).T, strict=True))
     now = theory.at(series["time"])
-    missing = 1.0 - float(series["time"][-1]) / scene.run.duration
+    missing = 1.0 - float(series["time"][-1]) / theory.scene.run.duration
     unit = "part of the duration that is missing"
     check = Check("run to the end", missing, 0.0, False, "F15", unit)
-    text = f"the time step is unstable (F15): {reason}"
+    text = f"the time step is unstable (F15): {error}"
     allowed = {name: np.zeros_like(now[name]) for name in series if name in now}
     return Comparison(
         "disagrees", (check,), f"{_sentence(text)}. Failed: {check.name} (F15).",
@@ -148,10 +133,10 @@ def explanations(case: Case) -> list[Explanation]:
             tried.append(rows.tried(hypothesis, min((t.score for t in tried), default=np.inf)))
             count = len(trials) + len(tried)
             case.theory.methods.tell(number / len(families), f"{count} faults tried")
-        fitted = sorted((t for t in tried if t.hypothesis.powers), key=lambda t: t.score)
-        if fitted and fitted[0].enough:
-            best, *others = fitted
-            alike = rows.indistinguishable(best, [t.hypothesis for t in others])
+        fitted = [trial for trial in tried if trial.hypothesis.powers]
+        best = min(fitted, key=lambda trial: trial.score, default=None)
+        if best and best.enough:
+            alike = rows.indistinguishable(best, [t.hypothesis for t in fitted if t is not best])
             symbols = tuple(name.removeprefix(faults.WRONG) for name in alike)
             tried = [t._replace(alike=symbols) if t is best else t for t in tried]
         trials += tried

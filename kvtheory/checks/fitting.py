@@ -16,7 +16,7 @@ from scipy.optimize import least_squares, minimize_scalar
 
 from kvtheory.checks.allowances import Band
 from kvtheory.checks.comparison_case import Case
-from kvtheory.checks.theory import TRIAL_RTOL, Array, Curves
+from kvtheory.checks.theory import TRIAL_RTOL, Array, Curves, Theory
 from kvtheory.scene import Scene
 
 Pair = tuple[Curves, Curves]
@@ -150,8 +150,8 @@ class Bench(Case):
 
     def solved(self, scene: Scene, times: Array | None = None) -> Curves | None:
         """Return the theory of another scene at the times of the rows, or None where it has none."""
-        theory = replace(self.theory, scene=scene)
         try:
+            theory = Theory(scene, self.theory.methods)
             found = theory.at(self.time if times is None else times, TRIAL_RTOL)
         except (ValueError, ArithmeticError):
             return None

@@ -61,7 +61,7 @@ BRIEFEST = 1e-30
 """Seconds: no contact changes in a shorter time, of which squares and cubes would be zero."""
 MOST_ROWS = 2000
 """Longer series are thinned to about this many rows: more of them would not change a verdict."""
-MAY_BE_ABSENT = ("leading_edge", "trailing_edge", "peak_pressure")
+MAY_BE_ABSENT = "leading_edge", "trailing_edge", "peak_pressure"
 """What does not exist in flight, so that some of its cells may be empty or NaN."""
 JUDGED = ("depth", "normal_force", "friction_force", "spring_force")
 """At least one of these is needed."""

@@ -5,7 +5,7 @@ The solvers come in as functions (`Methods`), so that this package depends on no
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property
 from typing import Any, NamedTuple
 
@@ -84,39 +84,29 @@ class Rates(NamedTuple):
         return self.slow.imag != 0.0
 
 
-@dataclass(frozen=True)
 class Theory:
-    """A scene and the methods that solve it."""
+    """A scene and the methods that solve it.
 
-    scene: Scene
-    methods: Methods
+    `static` is the scene at rest, `radius` is R in m, `units` are the SI units of the curves, and
+    `last_change` is the time in s after which the drive keeps its velocity, infinite if it need not.
+    `by_elements` says whether the transient is that of many elements: of a ball, and on arms.
+    """
 
-    @cached_property
-    def static(self) -> StaticState:
-        """The scene at rest, and its scaled numbers."""
-        return StaticState.of(self.scene)
+    def __init__(self, scene: Scene, methods: Methods) -> None:
+        self.scene, self.methods = scene, methods
+        self.static = StaticState.of(scene)
+        self.radius = float(scene.indenter.radius)  # type: ignore[union-attr]
+        self.units = units_for(scene.indenter, SERIES_UNITS)
+        self.by_elements = bool(scene.foundation.arms) or not scene.indenter.per_width
+        self.last_change = scene.drive.last_change if scene.drive.ends else math.inf
+        self._known: dict[tuple[float, bytes], dict[str, Array]] = {}
 
     @cached_property
     def scales(self) -> Mapping[str, float]:
         """The scales of differences: the static state, and its products."""
         speed = max(self.motion.highest_speed, NO_VELOCITY * self.static.velocity)
-        measures = {name: getattr(self.static, QUANTITIES[name].scale) for name in SERIES_UNITS}
-        return {**measures, "velocity": speed, "sliding_velocity": speed}
-
-    @property
-    def units(self) -> Mapping[str, str]:
-        """The SI unit of each curve."""
-        return units_for(self.scene.indenter, SERIES_UNITS)
-
-    @property
-    def by_elements(self) -> bool:
-        """Whether the transient is that of many elements: of a ball, and on arms."""
-        return bool(self.scene.foundation.arms) or not self.scene.indenter.per_width
-
-    @property
-    def radius(self) -> float:
-        """R in m."""
-        return float(self.scene.indenter.radius)  # type: ignore[union-attr]
+        scales = {name: getattr(self.static, QUANTITIES[name].scale) for name in SERIES_UNITS}
+        return {**scales, "velocity": speed, "sliding_velocity": speed}
 
     def width(self, depth: Any) -> Any:
         """Return the mean width of a contact (m) at depths: 1 for a line contact, which is per unit width.
@@ -141,12 +131,6 @@ class Theory:
     def motion(self) -> Any:
         """V(t) and Y(t) until the end of the run."""
         return self.scene.drive.motion(self.scene.run.duration, self.static.velocity)
-
-    @property
-    def last_change(self) -> float:
-        """The time in s after which the drive keeps its velocity; infinite if it need not."""
-        drive = self.scene.drive
-        return drive.last_change if drive.ends else math.inf
 
     @property
     def final_velocity(self) -> float:
@@ -183,6 +167,9 @@ class Theory:
 
     def at(self, times: Array, rtol: float = 1e-6) -> dict[str, Array]:
         """Return the curves at `times` (s): at rest before t = 0, just after a jump of the drive."""
+        key = rtol, times.tobytes()
+        if key in self._known:
+            return self._known[key]
         moving = np.clip(times, 0.0, self._settled(float(times.max())))
         unique, index = np.unique(moving, return_inverse=True)
         end = float(unique[-1]) or self.scene.run.duration
@@ -194,7 +181,10 @@ class Theory:
             "leading_edge": -self.static.half_length, "trailing_edge": self.static.half_length,
             "peak_pressure": self.static.pressure,
         }  # fmt: skip
-        return {name: np.where(times < 0.0, rest[name], found[name][index]) for name in CURVES}
+        self._known[key] = {
+            name: np.where(times < 0.0, rest[name], found[name][index]) for name in CURVES
+        }
+        return self._known[key]
 
     def _settled(self, end: float) -> float:
         """Return a time in s after which nothing changes, or `end` if that is sooner.
