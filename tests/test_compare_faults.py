@@ -157,12 +157,11 @@ def test_the_lever_arm_is_measured_with_its_sign():
 
 def test_a_wrong_sign_of_friction_may_be_that_of_the_drive():
     """Where no edges are given, both say the same. Progress is told for the faults that are tried."""
-    told = []
-    data = by_elements(TABLE_1, "200 /mm")
-    kv.compare(TABLE_1, data, progress=lambda *report: told.append(report))
+    told, data = [], by_elements(kv.Scene(), "200 /mm")
+    kv.compare(data=data, progress=lambda *report: told.append(report))
     assert not told
     wrong = {**data, "friction_force": -data["friction_force"]}
-    found = kv.compare(TABLE_1, wrong, progress=lambda *report: told.append(report))
+    found = kv.compare(data=wrong, progress=lambda *report: told.append(report))
     names = [each.name for each in found.explanations if each.enough]
     assert names == ["sign of friction_force", "direction of the drive"]
     assert "Also possible: the base moves in the other direction" in found.diagnosis
