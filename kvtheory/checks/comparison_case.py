@@ -14,10 +14,9 @@ THEORY_RTOL = 1e-7
 """Tolerance of the theory: its error is far below every allowance."""
 SMALLEST = 1e-9
 """Of a scale: smaller differences are ignored."""
-LARGEST_SAWTOOTH = 0.025
-"""Of the load: if half an element at the edge matters more, the contact is not resolved."""
-COARSEST = 0.1
-"""Of the load: if half an element would have to matter more, the data are wrong rather than coarse."""
+LARGEST_SAWTOOTH, COARSEST = 0.025, 0.1
+"""Of the load: if half an element at the edge matters more, the contact is not resolved; if it would have to
+matter more than the second, the data are wrong rather than coarse."""
 SOME, IN_STEP = 1.4, 1.75
 """Elements may be so much fewer than assumed, or than an even sawtooth shows; and than an uneven one shows,
 for samples that are nearly in step with the elements that enter see little of it."""

@@ -19,12 +19,10 @@ from kvtheory.checks.noise import noise
 from kvtheory.results.comparison import Check, Explanation
 from kvtheory.results.schemes import SCHEME_ROWS
 
-ROUNDED = 1e-9
-"""Of the load: smaller noise is none."""
 NOISE, COARSE, NUMBER = "discretization noise", "elements enough", "stability number"
 """The names of the checks."""
-LARGEST_UNCORRELATED = 0.09
-"""Of the load: a little below where noise ceases to be allowed for."""
+ROUNDED, LARGEST_UNCORRELATED = 1e-9, 0.09
+"""Of the load: smaller noise is none; and a little below where noise ceases to be allowed for."""
 LIKELY, READ = 0.8, 0.75
 """Ranks of what is seen but cannot be tried: a step that is not known, and a spacing that is estimated from
 the sawtooth."""

@@ -30,14 +30,12 @@ SHARE_OF_VALUES = 0.98
 """Fraction of the values that must be as allowed for a fault to explain the data; the rest are at jumps."""
 LEFT_OVER = 1.5
 """Times what is allowed: a fitted fault reproduces the method's own errors only about so well."""
-PRECISION = 1e-5
-"""Of a fitted unknown."""
-STEP = 1e-3
-"""Difference of an unknown for slopes: the theory of trials is smooth far below that."""
+PRECISION, STEP = 1e-5, 1e-3
+"""Of a fitted unknown, and its difference for slopes: the theory of trials is smooth far below that."""
 MAXIMUM_TRIALS, BY_ELEMENTS = 30, 8
 """Of one unknown; from a near start, five are enough. Fewer where theory is a run of many elements."""
 WORTH_SEARCHING, SEARCH_PRECISION = 0.3, 0.01
-"""Part of the difference that x = 0 must explain for a search to begin, and the precision of the search."""
+"""Part of the difference that x = 0 must explain for a search to begin, and its precision."""
 VELOCITY = "drive.velocity"
 """Of a drive, the velocity stands for all its velocities."""
 
@@ -94,7 +92,7 @@ class Bench(Case):
 
     def ratios(self, pair: Pair | None) -> Array:
         """Return how far data lie outside the band of theory, relative to what is allowed, by curve."""
-        (band, limit) = self._units
+        band, limit = self._units
         if pair is None:
             return np.full(limit.shape, LARGEST)
         gap = self._gaps(*pair)
@@ -104,9 +102,9 @@ class Bench(Case):
     @cached_property
     def start(self) -> float:
         """The score of the data as they are."""
-        return self._rated(fixed("", "", None), (self.columns, self.now), 0.0).score
+        return self._rated(fixed("", "", None), (self.columns, self.now)).score
 
-    def _rated(self, hypothesis: Hypothesis, pair: Pair | None, x: float) -> Trial:
+    def _rated(self, hypothesis: Hypothesis, pair: Pair | None, x: float = 0.0) -> Trial:
         if pair is None:
             return Trial(hypothesis)
         ratios = np.abs(self.ratios(pair))
@@ -118,7 +116,7 @@ class Bench(Case):
         """Return how a hypothesis fits; a search is made only where it begins below the score `best`."""
         make = cache(hypothesis.make)
         if not hypothesis.starts:
-            trials = [self._rated(hypothesis, make(0.0), 0.0)]
+            trials = [self._rated(hypothesis, make(0.0))]
             if hypothesis.span and trials[0].score < min(
                 (1.0 - WORTH_SEARCHING) * self.start, best
             ):
@@ -148,26 +146,17 @@ class Bench(Case):
         value = float(found.x[0])
         return self._rated(hypothesis, make(value), value)
 
-    def solved(self, scene: Scene, times: Array | None = None) -> Curves | None:
-        """Return the theory of another scene at the times of the rows, or None where it has none."""
+    def against(self, scene: Scene, times: Array | None = None) -> Pair | None:
+        """Return the data and the theory of another scene, or None where it has none."""
         try:
             theory = Theory(scene, self.theory.methods)
             found = theory.at(self.time if times is None else times, TRIAL_RTOL)
         except (ValueError, ArithmeticError):
             return None
-        if not theory.by_elements or times is not None:
-            return found
-        return {name: self.now[name] + found[name] - self._coarse[name] for name in self.now}
-
-    def against(self, scene: Scene, times: Array | None = None) -> Pair | None:
-        """Return the data and the theory of another scene, or None where it has none."""
-        curves = self.solved(scene, times)
-        return None if curves is None else (self.columns, curves)
-
-    @cached_property
-    def _coarse(self) -> Curves:
-        """The theory of the scene as it is given by as few elements as in trials, whose errors cancel."""
-        return self.theory.at(self.time, TRIAL_RTOL)
+        if theory.by_elements and times is None:  # the errors of few elements cancel
+            coarse = self.theory.at(self.time, TRIAL_RTOL)
+            found = {name: self.now[name] + found[name] - coarse[name] for name in self.now}
+        return self.columns, found
 
     def indistinguishable(self, best: Trial, others: Sequence[Hypothesis]) -> tuple[str, ...]:
         """Return the names of the parameters that the data cannot distinguish from the best one.
@@ -177,12 +166,13 @@ class Bench(Case):
         """
         at = best.hypothesis
         scene = scaled_scene(self.theory.scene, at.powers or {}, math.exp(best.value))
-        here, slopes = self.solved(scene), []
+        here, slopes = self.against(scene), []
         for other in (at, *others):
-            curves = self.solved(scaled_scene(scene, other.powers or {}, math.exp(STEP)))
-            if here is None or curves is None:
+            there = self.against(scaled_scene(scene, other.powers or {}, math.exp(STEP)))
+            if here is None or there is None:
                 return ()
-            slopes.append((self._gaps(curves, here) / sum(self._units)).reshape(-1) / STEP)
+            gaps = self._gaps(there[1], here[1]) / sum(self._units)
+            slopes.append(gaps.reshape(-1) / STEP)
         pairs = zip(others, slopes[1:], strict=True)
         return tuple(o.name for o, s in pairs if uncertainty(slopes[0], s) >= abs(best.value))
 

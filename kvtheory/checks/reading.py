@@ -55,12 +55,11 @@ SHOWN = (
 )
 MISSPELT = 0.8
 """Likeness of a name to a known one from which on it is taken for misspelt, and not for something else."""
-SHORTEST = 8
-"""Rows: fewer cannot show a jump, a transient of two time constants and a limit."""
+SHORTEST, MOST_ROWS = 8, 2000
+"""Rows: fewer cannot show a jump, a transient of two time constants and a limit; longer series are thinned to
+about the most, for more of them would not change a verdict."""
 BRIEFEST = 1e-30
 """Seconds: no contact changes in a shorter time, of which squares and cubes would be zero."""
-MOST_ROWS = 2000
-"""Longer series are thinned to about this many rows: more of them would not change a verdict."""
 MAY_BE_ABSENT = "leading_edge", "trailing_edge", "peak_pressure"
 """What does not exist in flight, so that some of its cells may be empty or NaN."""
 JUDGED = ("depth", "normal_force", "friction_force", "spring_force")
@@ -211,7 +210,6 @@ def _recognised(
 
 
 def _raise(source: str, problems: Sequence[str]) -> None:
-    """Raise with all problems, if there are any."""
     if problems:
         raise ValueError("\n".join(f"{source}: {problem}" for problem in problems))
 
@@ -248,23 +246,19 @@ def _checked(
                 f'column "{column.header}": {bad.size} of {array.size} values are missing, NaN or infinite, '
                 f"the first in {places[bad[0]]}; a simulation that diverges ends like this"
             )
-    _raise(source, problems or _order(values["time"], places))
-    step = -(-values["time"].size // MOST_ROWS)
+    _raise(source, problems)
+    time = values["time"]
+    steps = np.diff(time)
+    if time.size < SHORTEST:
+        problems = [f"holds {time.size} rows; at least {SHORTEST} are needed to judge a transient"]
+    elif steps.min() < 0.0:
+        k = int(np.argmax(steps < 0.0)) + 1
+        follows = f"{time[k]:.9g} s in {places[k]} follows {time[k - 1]:.9g} s"
+        problems = [f"the time must increase, but {follows}"]
+    elif np.count_nonzero(steps) < SHORTEST - 1 or time[-1] < BRIEFEST:
+        problems = [f"the times do not span a transient: {time[0]:.9g} s to {time[-1]:.9g} s"]
+    _raise(source, problems)
+    step = -(-time.size // MOST_ROWS)
     thinned = {name: values[name][::step] for name in SI_UNITS if name in values}
     ignored = (shown(head) for head, c in zip(heads, columns, strict=True) if c is None)
     return Series(thinned, source, **known, ignored=tuple(ignored))
-
-
-def _order(time: Array, places: Sequence[str]) -> list[str]:
-    """Say why the times cannot be used."""
-    if time.size < SHORTEST:
-        return [f"holds {time.size} rows; at least {SHORTEST} are needed to judge a transient"]
-    steps = np.diff(time)
-    if steps.min() < 0.0:
-        k = int(np.argmax(steps < 0.0)) + 1
-        return [
-            f"the time must increase, but {time[k]:.9g} s in {places[k]} follows {time[k - 1]:.9g} s"
-        ]
-    if np.count_nonzero(steps) < SHORTEST - 1 or time[-1] < BRIEFEST:
-        return [f"the times do not span a transient: {time[0]:.9g} s to {time[-1]:.9g} s"]
-    return []

@@ -17,10 +17,9 @@ from kvtheory.checks.theory import Array, Rates
 
 SETTLED = 7.0
 """Slow time constants after the last change of the drive: e^-7 is below a thousandth."""
-NEAR, FAR = 0.3, 1e-3
-"""Of the steady depth: the slow time constant is fitted while the depth is this far from it."""
-FAST_SPAN = 4.0
-"""Fast time constants after the start within which the fast one is fitted."""
+NEAR, FAR, FAST_SPAN = 0.3, 1e-3, 4.0
+"""The slow time constant is fitted while the depth is so far from the steady one, relative to it, and the
+fast one within so many of it after the start."""
 LAST_PART, FEWEST_LATE = 0.75, 3
 """Of the data: the mean of the rest is taken for the limit, if it has so many samples."""
 FITTED = 0.5
@@ -29,12 +28,9 @@ PHASE = "phase of the cycle"
 """The check whose failure alone is no evidence against the data: theory cannot predict the phase."""
 LOST = 0.25
 """Of the sliding velocity: where so much is allowed, the phase is lost."""
-FEWEST = 6
-"""Samples for three unknowns."""
-LOG_PRECISE = 1e-6
-"""Of the logarithm of a time constant: far closer than any data fix it."""
-RANGE = 5.0
-"""Factor up and down from the expected time constant in which to look."""
+FEWEST, RANGE, LOG_PRECISE = 6, 5.0, 1e-6
+"""Samples for the three unknowns of a fit, the factor up and down from the expected time constant in which to
+look, and the precision of its logarithm, far finer than any data fix it."""
 
 
 def slow_constant(case: Case) -> tuple[float, float, str]:

@@ -25,10 +25,8 @@ CURVES = tuple(name for name in SERIES_UNITS if name != "time")
 """The curves of a series. With a rigid drive the sliding velocity is V, and the spring force the friction."""
 TRIAL_RTOL = 1e-5
 """Tolerance of the theory in the trials of a diagnosis."""
-DECAYED = 40.0
-"""Time constants after which a change has decayed below rounding."""
-LONGEST = 1e9
-"""Retardation times: longer series are refused."""
+DECAYED, LONGEST = 40.0, 1e9
+"""Time constants after which a change has decayed below rounding, and beyond which series are refused."""
 SHALLOWEST = 1e-3
 """Fraction of the static depth used for the length and the width of a contact that vanishes."""
 NO_VELOCITY = 1e-9
