@@ -6,11 +6,13 @@ is disturbed in so many ways.
 
 import sys
 from collections import Counter
+from functools import partial
 
 import numpy as np
 
 import kvtheory as kv
 from kvtheory.checks.fitting import scaled_scene
+from tests.confusion import Plant, report
 from tests.continuous_row import run
 from tests.faulty_simulator import drive
 
@@ -71,42 +73,44 @@ def seeds(count):
 
 
 def sound():
-    """Yield a name, a scene and a sound series: every scene, resolved and written in several ways."""
+    """Yield sound series: every scene, resolved and written in several ways."""
     rng = np.random.default_rng(11)
     for where, scene in SCENES.items():
         full = simulated(where)
         rows = np.sort(rng.choice(full["time"].size, 200, replace=False))
         thin = {name: full[name][rows] for name in FEW}
-        noise = {name: 1.0 + 0.01 * rng.standard_normal(rows.size) for name in FEW[1:]}
+        noisy = {n: thin[n] * (1.0 + 0.01 * rng.standard_normal(rows.size)) for n in FEW[1:]}
         digits = {name: np.array([float(f"{v:.2g}") for v in full[name]]) for name in FEW[1:]}
-        yield f"{where}, all", where, full, {}
-        yield f"{where}, thinned", where, thin, {}
-        yield f"{where}, noisy", where, {**thin, **{n: thin[n] * f for n, f in noise.items()}}, {}
-        yield f"{where}, two digits", where, {"time": full["time"], **digits}, {}
         half = np.sqrt(2.0 * scene.indenter.radius * full["depth"][0])
         coarse = simulated(where, points=200, steps=2000)
-        yield f"{where}, coarse, known", where, coarse, {"per_length": 200 / half}
+        for title, data, known in (
+            ("all", full, {}),
+            ("thinned", thin, {}),
+            ("noisy", {**thin, **noisy}, {}),
+            ("two digits", {"time": full["time"], **digits}, {}),
+            ("coarse, known", coarse, {"per_length": 200 / half}),
+        ):
+            yield Plant(title, where, lambda data=data: data, "agrees", known=known)
 
 
 KEYS = {"K": "foundation.stiffness", "tau": "foundation.retardation_time", "R": "indenter.radius",
-        "M": "support.mass", "V": "drive.velocity"}  # fmt: skip
-HOLDS = {"k_s": "support.stiffness", "delta": "support.depth"}
+        "M": "support.mass", "V": "drive.velocity", "k_s": "support.stiffness",
+        "delta": "support.depth"}  # fmt: skip
 
 
 def faults():
-    """Yield a name, the scene, the series, and the name that is right, if any is."""
-    scaled = [("Table 1", symbol, factor) for symbol in KEYS for factor in (0.9, 1.01, 1.3)]
+    """Yield faults; of some there is no name."""
+    scaled = [("Table 1", symbol, factor) for symbol in [*KEYS][:5] for factor in (0.9, 1.01, 1.3)]
     for where in ("sine", "ramp"):
         scaled += [(where, "K", 1.1), (where, "tau", 1.1), (where, "V", 0.9)]
-    scaled += [("suspended", "k_s", 1.3), ("fixed", "delta", 1.05)]
-    for where, symbol, factor in scaled:
-        data = simulated(where, key={**KEYS, **HOLDS}[symbol], factor=factor)
-        yield f"{symbol} x {factor}", where, data, f"wrong {symbol}"
+    for where, symbol, factor in [*scaled, ("suspended", "k_s", 1.3), ("fixed", "delta", 1.05)]:
+        data = partial(simulated, where, key=KEYS[symbol], factor=factor)
+        yield Plant(f"{symbol} x {factor}", where, data, f"wrong {symbol}")
     planted = [
         ("reversal", "no relaxation", 0.0, "no relaxation of the free surface"),
         ("Table 1", "radius at the right depth", 1.05, "wrong R"),
-        ("Table 1", "no damping", 0.0, None),
-        ("Table 1", "shape", 2.2, None),
+        ("Table 1", "no damping", 0.0, "none"),
+        ("Table 1", "shape", 2.2, "none"),
     ]
     for where in ("Table 1", "reversal", "soft"):
         plain = simulated(where)
@@ -122,31 +126,14 @@ def faults():
             edits += [("time offset", {"time": plain["time"] + late}) for late in (3e-3, 1e3)]
             edits += [("unit of normal_force", {"normal_force": 1e3 * plain["normal_force"]})]
         for name, edit in edits:
-            yield name, where, {**plain, **edit}, name
+            yield Plant(name, where, lambda data={**plain, **edit}: data, name)
     for where, plant, value, name in planted:
-        yield plant, where, simulated(where, plant=plant, value=value), name
-
-
-def main():
-    """Print what is found in each."""
-    agree = named = seen = count = number = 0
-    for title, where, data, known in sound():
-        found = kv.compare(SCENES[where], data, **known)
-        agree, number = agree + (found.verdict == "agrees"), number + 1
-        failed = [f"{c.name} {c.measured / c.allowed:.2f}" for c in found.checks if c.ok is False]
-        print(f"{'ok' if not failed else 'NO'}  {title:26s} {found.verdict} {failed}", flush=True)
-    for title, where, data, name in faults():
-        found = kv.compare(SCENES[where], data)
-        seen, count = seen + (found.verdict == "disagrees"), count + 1
-        first = found.explanations[0] if found.explanations else None
-        hit = first is not None and first.name == name
-        named += hit
-        others = [(each.name, each.factor) for each in found.explanations if each.enough]
-        shown = None if first is None else (first.name, round(first.rank, 2), first.factor)
-        row = f"{where:10s} {title:22s} {found.verdict} {shown} {others}"
-        print("ok " if hit else "NO ", row, flush=True)
-    print(f"sound: {agree} of {number} agree; faults: {seen} of {count} seen, {named} named first")
+        yield Plant(plant, where, partial(simulated, where, plant=plant, value=value), name)
 
 
 if __name__ == "__main__":
-    seeds(int(sys.argv[2])) if len(sys.argv) > 2 else main()
+    if len(sys.argv) > 2:
+        seeds(int(sys.argv[2]))
+    else:
+        report([*sound()], SCENES)
+        report([*faults()], SCENES)

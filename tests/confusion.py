@@ -147,21 +147,21 @@ def quick():
     ]
 
 
-def main():
-    """Print the confusion table: what was planted, what is named first, and what else is possible."""
+def report(trials, scenes):
+    """Print what was planted, what is named first, and what else is possible; and the counts."""
     right = 0
-    for plant in plants():
-        found = kv.compare(SCENES[plant.scene], plant.data(), **plant.known)
+    for plant in trials:
+        found = kv.compare(scenes[plant.scene], plant.data(), **plant.known)
         first, *rest = found.explanations or [None]
-        hit = found.verdict == "disagrees" and first is not None and first.name == plant.fault
-        right += hit
+        named = found.verdict if first is None else first.name
+        right += named == plant.fault
         factor = "" if first is None or first.factor is None else f" {first.factor:.4g}"
+        share = "" if first is None else f" ({first.rank:.0%})"
         also = ", ".join(each.name for each in rest if each.enough)
-        name = "nothing" if first is None else f"{first.name}{factor} ({first.rank:.0%})"
-        row = f"{'ok' if hit else 'NO'}  {plant.scene:18s} {plant.name:24s} {found.verdict:9s}"
-        print(f"{row} {name:52s} {also}", flush=True)
-    print(f"{right} of {len(plants())} named first")
+        row = f"{'ok' if named == plant.fault else 'NO'}  {plant.scene:18s} {plant.name:26s}"
+        print(f"{row} {found.verdict:9s} {named + factor + share:52s} {also}", flush=True)
+    print(f"{right} of {len(trials)} named first")
 
 
 if __name__ == "__main__":
-    main()
+    report(plants(), SCENES)

@@ -130,17 +130,13 @@ def test_theory_agrees_with_itself_noisy_and_rounded_too(name):
 
 
 UNHURRIED = {
-    "gentle": kv.Scene(drive=kv.Drive(velocity=0.05)),
+    "gentle": scene(velocity=0.05),
     "soft": kv.Scene(
-        kv.Parabola(0.02),
-        kv.Foundation(2e8, 0.02),
-        kv.DeadWeight(40.0),
-        kv.Drive(0.5),
-        kv.Run(0.15),
+        kv.Parabola(0.02), kv.Foundation(2e8, 0.02), kv.DeadWeight(40.0), kv.Drive(0.5), kv.Run(0.15)
     ),
     "to and fro": scene(history=[(0.0, 0.08), (0.07, 0.08), (0.07, -0.04)]),
     "stop and go": scene(history=[(0.0, 0.1), (0.06, 0.1), (0.06, 0.0), (0.15, 0.0), (0.15, 0.1)]),
-}
+}  # fmt: skip
 
 
 @pytest.mark.parametrize("method", ["euler", "semi-implicit"])
