@@ -64,8 +64,11 @@ def test_the_balance_finds_a_force_that_is_lacking():
     for window in (next(windows(time)), last):
         lacking = window.missing_force(columns, support, depth)
         assert lacking == pytest.approx(200.0, abs=40.0)
-    uniform = {"depth": 3e-4 - 1e-3 * time, "normal_force": np.full(time.size, support.weight)}
-    assert last.missing_force(uniform, support, 3e-4) == pytest.approx(0.0, abs=1e-4)
+    for held in (support, kv.Suspended(mass=1000.0, stiffness=1e8)):
+        rises = 3e-4 - 1e-3 * time
+        force = held.weight - held.spring * (rises - 3e-4)
+        uniform = {"depth": rises, "normal_force": np.broadcast_to(force, time.shape)}
+        assert last.missing_force(uniform, held, 3e-4) == pytest.approx(0.0, abs=1e-4)
 
 
 def test_a_time_constant_is_fitted_and_its_uncertainty_covers_noise():
