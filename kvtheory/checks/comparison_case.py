@@ -17,10 +17,10 @@ SMALLEST = 1e-9
 LARGEST_SAWTOOTH, COARSEST = 0.025, 0.1
 """Of the load: if half an element at the edge matters more, the contact is not resolved; if it would have to
 matter more than the second, the data are wrong rather than coarse."""
-SOME, IN_STEP = 1.4, 1.75
-"""Elements may be so much fewer than assumed, or than an even sawtooth shows; and than an uneven one shows,
-for samples that are nearly in step with the elements that enter see little of it."""
-USUAL, LARGE, OFTEN = 0.43, 1.08, 0.95
+MARGIN, IN_STEP = 1.4, 1.75
+"""Factors by which the spacing may exceed the one assumed, or that of an even sawtooth; and that of an uneven
+one, for samples that are nearly in step with the elements that enter see little of it."""
+MEDIAN_GAP, LARGE_GAP, QUANTILE = 0.43, 1.08, 0.95
 """Of b: median and 95th percentile of the gaps of a sawtooth of +-b that is sampled at random."""
 EVEN = 0.6
 """Of the ratio of both that is expected: below it, a part of the samples is in step."""
@@ -109,9 +109,9 @@ def make_case(
     if fine.spacing_known:
         return case
     largest = coarsest * theory.static.load / float(np.median(case.edge_force))
-    seen = _coarser(case) if (common_noise(case) or 0.0) >= COMMON else SOME
-    wider = min(seen, max(largest, SOME))
-    return of(fine._replace(spacing=wider * fine.spacing, spacing_read=wider != SOME))
+    seen = _coarser(case) if (common_noise(case) or 0.0) >= COMMON else MARGIN
+    wider = min(seen, max(largest, MARGIN))
+    return of(fine._replace(spacing=wider * fine.spacing, spacing_read=wider != MARGIN))
 
 
 def _coarser(case: Case) -> float:
@@ -124,11 +124,11 @@ def _coarser(case: Case) -> float:
     gap, rows = gaps(case.time, case.columns[force] - case.now[force])
     b, digits = case.edge_force[rows], case.bands[force].rounding[rows]
     gap = np.maximum(gap - ROUNDED * digits, 0.0)
-    usual, large = np.quantile(gap[b > 0.0] / b[b > 0.0], [0.5, OFTEN])
-    usual, large = float(usual) / USUAL, float(large) / LARGE
+    median, large = np.quantile(gap[b > 0.0] / b[b > 0.0], [0.5, QUANTILE])
+    median, large = float(median) / MEDIAN_GAP, float(large) / LARGE_GAP
     shown = float(np.median(digits)) <= FINEST * float(np.median(b))
-    even = shown and FINEST <= EVEN * large <= usual
-    return SOME * max(usual, large) if even else max(IN_STEP * large, SOME)
+    even = shown and FINEST <= EVEN * large <= median
+    return MARGIN * max(median, large) if even else max(IN_STEP * large, MARGIN)
 
 
 def common_noise(case: Case) -> float | None:

@@ -58,7 +58,7 @@ MISTAKES = (
             "static depth (Eq. 40)", {"start": 0.0}),
 )  # fmt: skip
 
-MORE = 0.05
+DEEPER = 0.05
 """Relative change of the initial depth that is simulated to see its effect."""
 PER_HALF_LENGTH = 250.0
 """Elements in the static half length of a simulation with a mistake: its difference to one without is used,
@@ -103,7 +103,7 @@ def mistakes(bench: Bench) -> Iterator[Hypothesis]:
                 mistake.name, lambda _x, text=mistake.text: text,  # type: ignore[misc]
                 partial(made, mistake=mistake), span=span * mistake.by_step,
             )  # fmt: skip
-    deeper = None if scene.held else _simulated(bench, {"start": 1.0 + MORE})
+    deeper = None if scene.held else _simulated(bench, {"start": 1.0 + DEEPER})
     if deeper is not None:
         yield Hypothesis(
             "wrong initial depth",
@@ -111,7 +111,7 @@ def mistakes(bench: Bench) -> Iterator[Hypothesis]:
                 f"the depth at t = 0 is {1.0 + x:.4g} times the static depth, at which theory has the "
                 "indenter at rest (Eq. 40)"
             ),
-            lambda x: changed(deeper, x / MORE),
+            lambda x: changed(deeper, x / DEEPER),
             [0.0],
             factor=lambda x: 1.0 + x,
         )
