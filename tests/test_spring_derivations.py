@@ -110,6 +110,9 @@ def test_f24_gives_the_critical_stiffness_of_a_prony_series(arms, speed, stiffne
         return [mp.quad(lambda w, f=weight: f(w) * relaxation(w), [0, 1]) for weight in
                 (lambda w: 1 - w, lambda w: w, lambda w: w * (1 - w) / 2)]  # fmt: skip
 
+    def kernel(n, m):
+        return mp.quad(lambda v: mp.exp(-m * v) * (1 - v) ** (n - 1) / mp.fac(n - 1), [0, 1])
+
     def load(c):
         P, Q, D = moments(c)
         return c**3 / R * (D + (P - Q) / (2 * (P + Q)) * P)
@@ -124,20 +127,12 @@ def test_f24_gives_the_critical_stiffness_of_a_prony_series(arms, speed, stiffne
             rate = mp.mpc(0, omega)
             total = {name: mp.mpf(0) for name in rubber_drive.FORCES}
             for k, time in series:
+                z, w = c / (V * time), rate * c / V
                 known = {
-                    s.arm_number: c / (V * time),
-                    s.rate_number: rate * c / V,
-                    s.excess_share: eta,
-                }
-                for kernels, m in (
-                    (s.kernels, known[s.arm_number] + known[s.rate_number]),
-                    (s.kernels_still, known[s.arm_number]),
-                ):
-                    for n, kernel in enumerate(kernels, 1):
-                        known[kernel] = mp.quad(
-                            lambda v, m=m, n=n: mp.exp(-m * v) * (1 - v) ** (n - 1) / mp.fac(n - 1),
-                            [0, 1],
-                        )
+                    s.arm_number: z, s.rate_number: w, s.excess_share: eta,
+                    **{name: kernel(n, z + w) for n, name in enumerate(s.kernels, 1)},
+                    **{name: kernel(n, z) for n, name in enumerate(s.kernels_still, 1)},
+                }  # fmt: skip
                 for name, form in rubber_drive.FORCES.items():
                     total[name] += k * value(form, known)
             A = c * (K + total[s.normal_per_depth])
