@@ -66,13 +66,17 @@ def test_each_planted_fault_is_named_and_measured(plant):
         ("wrong initial depth", {"plant": "initial depth", "value": 1.05}),
         ("undeformed at the start", {"plant": "undeformed"}),
         ("lever arm of friction_force", {"plant": "lever arm", "value": 2e-4}),
-        ("wrong R", {"plant": "radius at the right depth", "value": 1.05}),
+        (
+            "wrong R",
+            {"plant": "radius at the right depth", "value": 1.05, "points": 500, "steps": 2000},
+        ),
         ("wrong K", {"key": "foundation.stiffness", "factor": 1.01}),
         ("wrong tau", {"key": "foundation.retardation_time", "factor": 0.99}),
     ],
 )
 def test_faults_of_a_simulator_written_without_looking_are_named(name, options):
     """All of them: `python -m tests.blind_trial`."""
+    options = {"points": 400, "steps": 1200, **options}
     first_of(kv.compare(data=simulated("Table 1", **options)), name)
 
 
