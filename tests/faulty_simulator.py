@@ -9,8 +9,6 @@ import math
 
 import numpy as np
 
-from kvtheory.scene.model import Fixed, Suspended
-
 REACH = 1.3
 """Elements within this multiple of the static half length are looked at; the indenter sinks no deeper."""
 SWING = 3.0
@@ -52,87 +50,6 @@ RULES = {
 two leave the free surface as it is: the one with flags, the other by u <- max(g, u)."""
 
 
-class Simulator:
-    """State and forces of the elements under one indenter."""
-
-    def __init__(self, scene, per_length, rule, end):
-        self.R = scene.indenter.radius
-        self.K, self.tau = scene.foundation.stiffness, scene.foundation.retardation_time
-        self.dx, self.rule = 1.0 / per_length, rule
-        self.support = scene.support
-        if isinstance(self.support, Fixed):
-            self.depth_0 = self.support.depth
-        else:
-            W = self.support.weight
-            self.depth_0 = (3 * W / (4 * self.K * math.sqrt(2 * self.R))) ** (2 / 3)
-        self.reach = REACH * math.sqrt(2 * self.R * self.depth_0)
-        self.velocity = drive(scene)
-        self.drive, self.drive_mass = scene.drive, scene.drive_mass
-        travel = np.cumsum(self.velocity(np.linspace(0, end, 20001))) * end / 20000
-        swing = 0.0 if scene.drive.rigid else SWING * self.reach
-        low = -self.reach - max(travel.max(), 0) - swing
-        high = self.reach - min(travel.min(), 0) + swing
-        self.X = np.arange(math.floor(low / self.dx), math.ceil(high / self.dx)) * self.dx
-        self.X += 0.37 * self.dx
-        self.u = np.maximum(self.depth_0 - self.X**2 / (2 * self.R), 0.0)
-        self.touched = self.u > 0
-
-    def window(self, Y):
-        start = np.searchsorted(self.X, -self.reach - Y)
-        return slice(start, np.searchsorted(self.X, self.reach - Y))
-
-    def contact(self, sliding, Y, depth, rate, decay, window):
-        """Return x, p and which elements press, at a sliding velocity."""
-        x = self.X[window] + Y
-        g = depth - x * x / (2 * self.R)
-        p = self.K * (g + self.tau * (rate - x / self.R * sliding))
-        return x, p, g, RULES[self.rule](g, p, self.u[window], decay, self.touched[window])
-
-    def spring_force(self, along, along_rate):
-        """Return what holds the indenter along x, dragged so far and so fast."""
-        return self.drive.stiffness * along + self.drive.damping * along_rate
-
-    def slope(self, t, state, decay, window):
-        """Return the rates of Y, depth, depth rate, and on a spring of x and x'."""
-        Y, depth, rate, along, along_rate = state
-        sliding = self.velocity(t) - along_rate
-        x, p, _, on = self.contact(sliding, Y, depth, rate, decay, window)
-        if self.rule == "dropped" and decay < 1 and rate < 0:
-            on = np.zeros_like(on)
-        lift = drag = 0.0
-        if not isinstance(self.support, Fixed):
-            spring = self.support.stiffness if isinstance(self.support, Suspended) else 0.0
-            pull = self.support.weight - spring * (depth - self.depth_0)
-            lift = (pull - self.dx * p[on].sum()) / self.support.mass
-        if not self.drive.rigid:
-            friction = -self.dx * (x[on] @ p[on]) / self.R
-            drag = (friction - self.spring_force(along, along_rate)) / self.drive_mass
-        return np.array([sliding, rate, lift, along_rate, drag])
-
-    def step(self, t, h, state):
-        """Return the state after one step of RK4, and update the elements."""
-        window, k = self.window(state[0]), [np.zeros(5)]
-        for part in (0.0, 0.5, 0.5, 1.0):
-            decay = math.exp(-part * h / self.tau)
-            k.append(self.slope(t + part * h, state + part * h * k[-1], decay, window))
-        state = state + h * (k[1] + 2 * k[2] + 2 * k[3] + k[4]) / 6
-        self.settle(self.velocity(t + h) - state[4], *state[:3], math.exp(-h / self.tau))
-        return state
-
-    def settle(self, sliding, Y, depth, rate, decay):
-        """Let the free elements relax (Eq. 25) and the others follow the indenter."""
-        x = self.X + Y
-        g = depth - x * x / (2 * self.R)
-        if self.rule == "unrelaxed":
-            self.u = np.maximum(g, self.u)
-        elif self.rule == "frozen":
-            p = self.K * (g + self.tau * (rate - x / self.R * sliding))
-            self.touched = flagged(g, p, self.u, decay, self.touched)
-            self.u = np.where(self.touched, g, self.u)
-        else:
-            self.u = np.maximum(g, self.u * decay)
-
-
 def drive(scene):
     """Return V(t), just after a jump."""
     if scene.drive.history is None:
@@ -149,32 +66,80 @@ def drive(scene):
     return velocity
 
 
-def simulate(scene, per_length=200e3, time_step=None, rule="peel", end=None):
+def simulate(scene, per_length=200e3, time_step=None, rule="peel"):
     """Return a time series in SI, from t = 0 on; the step is 2 dx/V as in the paper, or as given."""
-    end = scene.run.duration if end is None else end
-    V = scene.drive.final_velocity
-    h = time_step or 2.0 / (per_length * abs(V))
-    count = math.ceil(end / h - 1e-9)
-    model = Simulator(scene, per_length, rule, end + h)
-    state, rows, forward = np.array([0.0, model.depth_0, 0.0, 0.0, 0.0]), [], V >= 0
-    for n in range(count + 1):
-        t = n * h
-        Y, depth, rate, along, along_rate = state
-        V_now = float(model.velocity(t))
-        sliding = V_now - along_rate
-        x, p, _, on = model.contact(sliding, Y, depth, rate, 1.0, model.window(Y))
-        f = p[on] * model.dx
+    R, K, tau = scene.indenter.radius, scene.foundation.stiffness, scene.foundation.retardation_time
+    held, rigid, spring = scene.support.kind == "fixed", scene.drive.rigid, scene.drive
+    W, k_s = (
+        (0.0, 0.0) if held else (scene.support.weight, getattr(scene.support, "stiffness", 0.0))
+    )
+    depth_0 = scene.support.depth if held else (3 * W / (4 * K * math.sqrt(2 * R))) ** (2 / 3)
+    velocity, dx, end = drive(scene), 1.0 / per_length, scene.run.duration
+    h = time_step or 2.0 * dx / abs(scene.drive.final_velocity)
+    reach = REACH * math.sqrt(2 * R * depth_0)
+    room = reach if rigid else (1 + SWING) * reach
+    travel = np.cumsum(velocity(np.linspace(0, end + h, 20001))) * (end + h) / 20000
+    ends = -room - max(travel.max(), 0), room - min(travel.min(), 0)
+    X = (np.arange(math.floor(ends[0] / dx), math.ceil(ends[1] / dx)) + 0.37) * dx
+    u = np.maximum(depth_0 - X**2 / (2 * R), 0.0)
+    touched = u > 0
+
+    def contact(t, state, decay, near):
+        """Return the sliding velocity, and x and the forces of the elements that press."""
+        Y, depth, rate, _, along_rate = state
+        sliding, x = velocity(t) - along_rate, X[near] + Y
+        g = depth - x * x / (2 * R)
+        p = K * (g + tau * (rate - x / R * sliding))
+        on = RULES[rule](g, p, u[near], decay, touched[near])
+        if rule == "dropped" and decay < 1 and rate < 0:
+            on[:] = False
+        return sliding, x[on], dx * p[on]
+
+    def slope(state, sliding, x, f):
+        """Return the rates of Y, depth, depth rate, and on a spring of x and x'."""
+        _, depth, rate, along, along_rate = state
+        lift = 0.0 if held else (W - k_s * (depth - depth_0) - f.sum()) / scene.support.mass
+        drag = 0.0
+        if not rigid:
+            pull_back = spring.stiffness * along + spring.damping * along_rate
+            drag = (-(x @ f) / R - pull_back) / scene.drive_mass
+        return np.array([sliding, rate, lift, along_rate, drag])
+
+    state, rows, forward = np.array([0.0, depth_0, 0.0, 0.0, 0.0]), [], True
+    for n in range(math.ceil(end / h - 1e-9) + 1):
+        t, (Y, depth, rate, along, along_rate) = n * h, state
+        near = slice(*np.searchsorted(X, [-reach - Y, reach - Y]))
+        sliding, x, f = contact(t, state, 1.0, near)
         forward = sliding > 0 if sliding else forward
-        ends = x[on][[0, -1]] if on.any() else (math.nan, math.nan)
-        edges = (*(ends if forward else ends[::-1]), p[on].max(initial=0.0))
-        held = () if scene.drive.rigid else (sliding, model.spring_force(along, along_rate))
-        rows.append((t, V_now, depth, rate, f.sum(), -(x[on] @ f) / model.R, *edges, *held))
-        state = model.step(t, h, state)
-        if not abs(state[1]) < DIVERGED * model.depth_0:
+        edges = (x[0], x[-1])[:: 1 if forward else -1] if x.size else (math.nan, math.nan)
+        forces = f.sum(), -(x @ f) / R
+        held_by = () if rigid else (sliding, spring.stiffness * along + spring.damping * along_rate)
+        peak = f.max(initial=0.0) / dx
+        rows.append((t, velocity(t), depth, rate, *forces, *edges, peak, *held_by))
+        k = [slope(state, sliding, x, f)]
+        for part in (0.5, 0.5, 1.0):
+            between = state + part * h * k[-1]
+            k.append(
+                slope(between, *contact(t + part * h, between, math.exp(-part * h / tau), near))
+            )
+        state = state + h * (k[0] + 2 * k[1] + 2 * k[2] + k[3]) / 6
+        if not abs(state[1]) < DIVERGED * depth_0:
             break
+        Y, depth, rate, _, along_rate = state  # free elements relax (Eq. 25), the others follow
+        x = X + Y
+        g = depth - x * x / (2 * R)
+        if rule == "unrelaxed":
+            u = np.maximum(g, u)
+        elif rule == "frozen":
+            sliding = velocity(t + h) - along_rate
+            p = K * (g + tau * (rate - x / R * sliding))
+            touched = flagged(g, p, u, 1.0, touched)
+            u = np.where(touched, g, u)
+        else:
+            u = np.maximum(g, u * math.exp(-h / tau))
     names = (
         *("time", "velocity", "depth", "depth_rate", "normal_force", "friction_force"),
         *("leading_edge", "trailing_edge", "peak_pressure"),
-        *(() if scene.drive.rigid else ("sliding_velocity", "spring_force")),
+        *(() if rigid else ("sliding_velocity", "spring_force")),
     )
     return dict(zip(names, np.array(rows).T, strict=True))

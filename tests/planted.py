@@ -18,47 +18,36 @@ half = sp.Rational(1, 2)
 E = {"eps": h}
 
 
-def earlier(label, *steps):
-    """Finish a proof from which a later one may recall."""
-    proof = Proof(label, None, section="Trial", title="Earlier")
-    for step in steps:
-        step(proof)
-    return proof
+def finished(label, *definitions):
+    """Finish a proof whose last definition is its result, and from which a later one may recall."""
+    source = Proof(label, None, section="Trial", title="Earlier")
+    for name, value, *_ in definitions:
+        source.define(name, value)
+    name, value, result = definitions[-1]
+    source.equal(name, result, "its value")
+    source.done(name, result)
 
 
-def _fixed_at_one():
-    source = Proof("at-one", None, section="Trial", title="A load at q = 1")
-    source.define(y, sp.S.One)
-    source.equal(z, z * y, "only for y = 1")
-    source.define(b, 4 * y / 3)
-    source.equal(b, sp.Rational(4, 3), "at y = 1")
-    source.done(b, sp.Rational(4, 3))
+def fixed_at_one():
+    """Finish a load that holds for y = 1 only."""
+    finished("at-one", (y, sp.S.One), (b, 4 * y / 3, sp.Rational(4, 3)))
 
 
 def _two_values(p):
-    for label, value in (("one-way", 1), ("other-way", 2)):
-        source = Proof(label, None, section="Trial", title="A value")
-        source.define(y, sp.Integer(value))
-        source.define(a if value == 1 else b, 3 * y)
-        source.equal(a if value == 1 else b, sp.Integer(3 * value), "its value")
-        source.done(a if value == 1 else b, sp.Integer(3 * value))
-    p.recall("one-way", a, sp.Integer(3))
-    p.recall("other-way", b, sp.Integer(6))
+    for label, name, value in (("one-way", a, 1), ("other-way", b, 2)):
+        finished(label, (y, sp.Integer(value)), (name, 3 * y, sp.Integer(3 * value)))
+        p.recall(label, name, sp.Integer(3 * value))
     p.equal(a / b, half, "from premises that exclude each other")
 
 
 def _sweep_what_is_fixed(p):
-    _fixed_at_one()
+    fixed_at_one()
     p.recall("at-one", b, sp.Rational(4, 3))
     p.sign(b - y, ">", 0, (y, 0, 1), "for every y, though the load was that of y = 1")
 
 
 def _hidden_in_recalled(p):
-    source = Proof("radius", None, section="Trial", title="A radius")
-    source.define(r, sp.sqrt(s**2 + lam**2))
-    source.define(a, r * s)
-    source.equal(a, s * r, "its product")
-    source.done(a, s * r)
+    finished("radius", (r, sp.sqrt(s**2 + lam**2)), (a, r * s, s * r))
     p.recall("radius", a, s * r)
     p.equal(sp.Derivative(a, s), r, "r depends on s")
 

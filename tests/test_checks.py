@@ -1,130 +1,105 @@
-"""Series of balls and on rubber held against theory, and the faults that are found by a fit."""
+"""The parts of a comparison: each check, noise, fits, balances and time constants."""
 
+import math
 from dataclasses import replace
-from functools import cache
 
+import mpmath as mp
 import numpy as np
 import pytest
 
 import kvtheory as kv
 from kvtheory.api._compare import METHODS
-from kvtheory.checks.checklist import judge
-from kvtheory.checks.columns import recognise
+from kvtheory.checks import fitting
+from kvtheory.checks.checklist import judge, windows
 from kvtheory.checks.comparison_case import COARSEST, make_case
-from kvtheory.checks.fitting import scaled_scene
+from kvtheory.checks.noise import noise
 from kvtheory.checks.reading import read
+from kvtheory.checks.settling import fit, uncertainty
 from kvtheory.checks.theory import Rates, Theory
+from tests.test_compare import BALL
 
-BALL = kv.Scene(
-    indenter=kv.Sphere(0.01),
-    support=kv.DeadWeight(mass=1.0),
-    drive=kv.Drive(0.1),
-    run=kv.Run(0.016),
-)
-DEPTH = 1.7667919077651083e-4
-"""The static depth of the ball in m."""
-BALLS = {
-    "dead-weight": BALL,
-    "fixed": replace(BALL, support=kv.Fixed(DEPTH)),
-    "suspended": replace(BALL, support=kv.Suspended(mass=1.0, stiffness=3e4)),
+DENSE = np.unique([*np.linspace(0.0, 0.01, 300), *np.linspace(0.0, 0.2, 300)])
+
+
+def exact(*parts, **given):
+    found = kv.transient(kv.Scene(*parts, **given), at=DENSE, certify=False)
+    return {n: getattr(found, n) for n in ("time", "depth", "normal_force", "friction_force")}
+
+
+def with_noise(size):
+    noisy = 1.0 + size * np.random.default_rng(1).normal(size=DENSE.size)
+    return {**exact(), "normal_force": exact()["normal_force"] * noisy}
+
+
+SLOWER, FASTER = {"foundation": kv.Foundation(1e10, 0.13)}, {"drive": kv.Drive(0.12)}
+UNSOUND = {
+    "sampling": lambda: {
+        name: x[np.searchsorted(DENSE, np.linspace(0.0, 0.2, 9))] for name, x in exact().items()
+    },
+    "initial rest state": lambda: exact(kv.Parabola(0.012)),
+    "jump at t = 0+": lambda: exact(**SLOWER),
+    "impulse balance": lambda: {**exact(), "depth": exact()["depth"] ** 2 / 3e-4},
+    "depth, largest": lambda: exact(**FASTER),
+    "depth, RMS": lambda: exact(**FASTER),
+    "fast time constant": lambda: exact(support=kv.DeadWeight(1500.0, load=9806.65)),
+    "slow time constant": lambda: exact(**SLOWER),
+    "steady limit": lambda: exact(**FASTER),
+    "discretization noise": lambda: with_noise(0.2),
 }
-RUBBER = kv.Scene(foundation=kv.GeneralizedMaxwell(1e10, [(3e10, 0.01)]), run=kv.Run(0.008))
-MEASURED = "time", "depth", "normal_force", "friction_force"
 
 
-@cache
-def simulated(scene, per_length="60 /mm"):
-    at = np.linspace(0.0, scene.run.duration, 81)
-    found = kv.elements(scene, per_length=per_length, at=at.tolist(), certify=False)
-    return {name: getattr(found, name) for name in MEASURED}
+@pytest.mark.parametrize("name", UNSOUND)
+def test_each_check_fails_for_some_data_and_passes_for_sound_ones(name):
+    theory = Theory(kv.Scene(), METHODS)
+    for data, ok in ((exact(), True), (UNSOUND[name](), False)):
+        case = make_case(theory, read(data), None, 1.0, COARSEST)
+        assert {check.name: check.ok for check in judge(case)}[name] is ok
 
 
-def failed(found):
-    return [check.name for check in found.checks if check.ok is False]
+def test_the_balance_finds_a_force_that_is_lacking():
+    support, data = kv.Scene().support, exact()
+    time, depth = data["time"], data["depth"][0]
+    columns = {"depth": data["depth"], "normal_force": data["normal_force"] + 200.0}
+    *_, last = windows(time)
+    for window in (next(windows(time)), last):
+        lacking = window.missing_force(columns, support, depth)
+        assert lacking == pytest.approx(200.0, abs=40.0)
+    for held in (support, kv.Suspended(mass=1000.0, stiffness=1e8)):
+        rises = 3e-4 - 1e-3 * time
+        force = held.weight - held.spring * (rises - 3e-4)
+        uniform = {"depth": rises, "normal_force": np.broadcast_to(force, time.shape)}
+        assert last.missing_force(uniform, held, 3e-4) == pytest.approx(0.0, abs=1e-4)
 
 
-@pytest.mark.parametrize("per_length", ["20 /mm", "40 /mm", "60 /mm"])
-@pytest.mark.parametrize("name", BALLS)
-def test_a_correct_ball_agrees_however_coarse_its_elements(name, per_length):
-    """An upper bound of the force of an element is told in the note, and decides nothing."""
-    found = kv.compare(BALLS[name], per_length=per_length)
-    assert (found.verdict, failed(found)) == ("agrees", [])
-    enough = next(check for check in found.checks if check.name == "elements enough")
-    assert enough.ok is None
-    assert "of the load" in enough.note
+def test_a_time_constant_is_fitted_and_its_uncertainty_covers_noise():
+    rng, t = np.random.default_rng(3), np.linspace(0.0, 5.0, 100)
+    values = 1.0 + 0.4 * np.exp(-t / 1.3)
+    none = np.zeros(100)
+    bound = uncertainty(t, values, 1.3, none, none, np.full(100, 0.01))
+    fits = [fit(t, values + 0.01 * rng.standard_normal(100), 1.0) for _ in range(50)]
+    assert fit(t, values, 1.0) == pytest.approx(1.3, rel=1e-4)
+    assert np.max(np.abs(np.array(fits) / 1.3 - 1.0)) < 1.2 * bound
+    assert bound < 0.3
 
 
-def test_coarse_elements_do_not_hide_a_fault_of_a_ball():
-    data = simulated(scaled_scene(BALL, {"foundation.stiffness": 1.0}, 1.1), "20 /mm")
-    assert kv.compare(BALL, data, per_length="20 /mm").verdict == "disagrees"
+@pytest.mark.parametrize("scale", [1e-300, 1e-200, 1.0, 1e200])
+def test_noise_is_measured_at_any_scale(scale):
+    t, r = np.linspace(0.0, 1.0, 400), np.random.default_rng(0).normal(size=400)
+    assert noise(t, scale * r, np.full(400, scale)) / scale == pytest.approx(1.0, rel=0.2)
 
 
-def test_too_few_elements_of_a_line_are_still_an_error():
-    data = kv.elements(per_length="10 /mm", scheme="paper", certify=False, at="0 ms:200 ms:201")
-    assert "elements enough" in failed(kv.compare(data=data, per_length="10 /mm"))
+def test_the_uncertainty_is_the_covariance_of_a_fit_of_both():
+    slopes = np.random.default_rng(3).normal(size=(50, 2))
+    expected = 50 * np.linalg.inv(slopes.T @ slopes)[0, 0]
+    assert fitting.uncertainty(*slopes.T) ** 2 == pytest.approx(expected, rel=1e-12)
+    assert fitting.uncertainty(slopes[:, 0], 2.0 * slopes[:, 0]) > 1e6
 
 
-@pytest.mark.parametrize(
-    ("scene", "key", "symbol", "factor"),
-    [(BALL, "support.mass", "M", 1.2), (RUBBER, "foundation.stiffness", "K", 1.1)],
-    ids=["ball", "rubber"],
-)  # fmt: skip
-def test_a_parameter_is_named_where_theory_is_a_simulation(scene, key, symbol, factor):
-    found = kv.compare(scene, simulated(scaled_scene(scene, {key: 1.0}, factor)))
-    assert found.verdict == "disagrees"
-    assert found.explanations[0].name == f"wrong {symbol}", found.diagnosis
-    assert found.explanations[0].factor == pytest.approx(factor, rel=1e-2)
-    unit = {"M": "kg rather than 1 kg,", "K": "GN/m^3 rather than 10 GN/m^3,"}[symbol]
-    assert unit in found.diagnosis
-
-
-@pytest.mark.parametrize("scene", [BALL, RUBBER, kv.Scene()], ids=["ball", "rubber", "line"])
-def test_a_scale_and_an_offset_of_a_column_are_named_and_measured(scene):
-    data = simulated(scene, "200 /mm")
-    half = kv.compare(scene, {**data, "friction_force": 0.5 * data["friction_force"]})
-    assert half.explanations[0].name == "scale of friction_force", half.diagnosis
-    assert half.explanations[0].factor == pytest.approx(0.5, rel=1e-2)
-    drift = 0.2 * data["normal_force"][0]
-    off = kv.compare(scene, {**data, "normal_force": data["normal_force"] + drift})
-    assert off.explanations[0].name == "offset of normal_force", off.diagnosis
-    assert off.explanations[0].factor == pytest.approx(drift, rel=3e-2)
-
-
-@pytest.mark.parametrize("arm", [2e-4, -2e-4])
-def test_the_lever_arm_is_measured_with_its_sign(arm):
-    """F_x of the data is the moment about a point that is off by `arm`."""
-    data = simulated(kv.Scene(), "200 /mm")
-    F_x = data["friction_force"] + arm / 0.01 * data["normal_force"]
-    found = kv.compare(data={**data, "friction_force": F_x}).explanations
-    first = next(each for each in found if each.name == "lever arm of friction_force")
-    assert first.enough
-    assert first.factor == pytest.approx(arm, rel=2e-2)
-
-
-def test_a_wrong_sign_of_friction_may_be_that_of_the_drive():
-    """Where no edges are given, both say the same."""
-    data = simulated(kv.Scene(), "200 /mm")
-    found = kv.compare(data={**data, "friction_force": -data["friction_force"]})
-    names = [each.name for each in found.explanations if each.enough]
-    assert names == ["sign of friction_force", "direction of the drive"]
-    assert "Also possible: the base moves in the other direction" in found.diagnosis
-
-
-def test_what_was_not_tried_is_said():
-    """Noise that grows is no fault of the list."""
-    data = simulated(RUBBER)
-    waves = 1.0 + 0.3 * np.sin(np.linspace(0.0, 40.0, 81)) * np.linspace(0.0, 1.0, 81) ** 2
-    found = kv.compare(RUBBER, {**data, "depth": data["depth"] * waves})
-    assert found.verdict == "disagrees"
-    assert "contact rules, are not tried" in found.diagnosis
-
-
-def test_agreement_says_where_the_memory_was_not_tested():
-    to_and_fro = kv.Scene(drive=kv.Drive(history=[(0.0, 0.1), (0.05, 0.1), (0.05, -0.1)]))
-    for scene, untested in ((kv.Scene(), True), (to_and_fro, False)):
-        found = kv.compare(scene, kv.transient(scene, at="0 ms:200 ms:201"))
-        assert found.verdict == "agrees"
-        assert ("memory of the free surface was not tested" in found.diagnosis) == untested
+def test_time_constants_of_any_number_of_motions():
+    rates = Rates.of([2.0, 0.1, 4.0 + 3.0j, 4.0 - 3.0j])
+    assert (rates.fast, abs(rates.slow)) == (0.1, 5.0)
+    assert rates.settling == pytest.approx(25.0 / 4.0)
+    assert math.isinf(Rates.of([1.0, -2.0]).settling)
 
 
 def test_a_ball_on_a_spring_has_the_rates_of_its_own_stability():
@@ -133,69 +108,18 @@ def test_a_ball_on_a_spring_has_the_rates_of_its_own_stability():
     found = Theory(scene, METHODS).rates
     assert abs(found.slow) == pytest.approx(1.0 / np.hypot(*rates.T).min())
     assert np.isinf(found.settling) == (rates[:, 0].max() > 0.0)
-    assert isinstance(found, Rates)
 
 
 @pytest.mark.parametrize("l", [1e-3, 1.0, 1e6])
 def test_the_time_constants_of_fast_sliding_do_not_cancel(l):
     """A and B of F12 with 50 digits; x_TE = sqrt(a^2 + l_r^2) - l_r cancels as written in Eq. 27."""
-    import mpmath as mp
-
-    state = kv.steady(kv.Scene())
-    scene = kv.Scene(drive=kv.Drive(l * state.half_length / 0.1))
+    scene = kv.Scene(drive=kv.Drive(l * kv.steady(kv.Scene()).half_length / 0.1))
     theory = Theory(scene, METHODS)
     with mp.workdps(50):
-        a, l_r = (
-            mp.mpf(getattr(theory.steady_state, n)) for n in ("half_length", "retardation_length")
-        )
+        state = theory.steady_state
+        a, l_r = mp.mpf(state.half_length), mp.mpf(state.retardation_length)
         root = mp.sqrt(a**2 + l_r**2)
         M, K, C = 1000, mp.mpf(10) ** 10, mp.mpf(10) ** 9
         A, B = K * (root + a), C * (root - l_r + a)
         slow = (B + mp.sqrt(B**2 - 4 * M * A)) / (2 * A)
     assert theory.rates.slow == pytest.approx(complex(slow), rel=1e-12)
-
-
-def test_a_unit_that_is_that_of_the_table_is_read_exactly():
-    assert recognise("F_z [N/m]").factor == 1.0
-    assert recognise("z_A [m]").factor == -1.0
-
-
-DENSE = np.unique([*np.linspace(0.0, 0.01, 300), *np.linspace(0.0, 0.2, 300)])
-
-
-def exact(scene):
-    found = kv.transient(scene, at=DENSE, certify=False)
-    return {name: getattr(found, name) for name in MEASURED}
-
-
-def with_noise(size):
-    data = exact(kv.Scene())
-    noise = size * np.random.default_rng(1).normal(size=DENSE.size)
-    return {**data, "normal_force": data["normal_force"] * (1.0 + noise)}
-
-
-UNSOUND = {
-    "sampling": lambda: {
-        k: v[np.searchsorted(DENSE, np.linspace(0.0, 0.2, 9))] for k, v in exact(kv.Scene()).items()
-    },
-    "initial rest state": lambda: exact(kv.Scene(kv.Parabola(0.012))),
-    "jump at t = 0+": lambda: exact(kv.Scene(foundation=kv.Foundation(1e10, 0.13))),
-    "impulse balance": lambda: {
-        **exact(kv.Scene()),
-        "depth": exact(kv.Scene())["depth"] ** 2 / 3e-4,
-    },
-    "depth, largest": lambda: exact(kv.Scene(drive=kv.Drive(0.12))),
-    "depth, RMS": lambda: exact(kv.Scene(drive=kv.Drive(0.12))),
-    "fast time constant": lambda: exact(kv.Scene(support=kv.DeadWeight(1500.0, load=9806.65))),
-    "slow time constant": lambda: exact(kv.Scene(foundation=kv.Foundation(1e10, 0.13))),
-    "steady limit": lambda: exact(kv.Scene(drive=kv.Drive(0.12))),
-    "discretization noise": lambda: with_noise(0.2),
-}
-
-
-@pytest.mark.parametrize("name", UNSOUND)
-def test_each_check_fails_for_some_data_and_passes_for_sound_ones(name):
-    theory = Theory(kv.Scene(), METHODS)
-    for data, ok in ((exact(kv.Scene()), True), (UNSOUND[name](), False)):
-        case = make_case(theory, read(data), None, 1.0, COARSEST)
-        assert {check.name: check.ok for check in judge(case)}[name] is ok

@@ -42,16 +42,14 @@ def no_work(monkeypatch):
 
 
 def test_the_contents_are_those_of_the_catalogue():
-    assert {each.label: each.title for each in catalogue()} == CONTENTS
-    assert list(CONTENTS) == [each.label for each in catalogue()]
+    assert [*CONTENTS.items()] == [(each.label, each.title) for each in catalogue()]
 
 
 def test_labels_and_symbols_are_listed_and_nothing_is_derived(no_work, tmp_path):
     lines = run("--list").output.splitlines()
     assert [line.split()[0] for line in lines[1:]] == list(CONTENTS)
-    assert [entry["label"] for entry in json.loads(run("--list", "--json").output)] == list(
-        CONTENTS
-    )
+    listed = json.loads(run("--list", "--json").output)
+    assert [entry["label"] for entry in listed] == list(CONTENTS)
     names = [line.split()[0] for line in run("--symbols").stdout.splitlines()[1:]]
     assert {"R", "l_r", "x_TE", "delta_0"} <= set(names)
     listed = json.loads(run("--symbols", "--json").stdout)
@@ -84,28 +82,22 @@ def test_labels_are_understood_as_people_write_them():
         (["--format", ","], "no format"),
         (["--format", "pfd"], "unknown format 'pfd'; the nearest is 'pdf'"),
         (["-o", "/proc/nothing/here"], "cannot write to"),
+        (["-o", f"{__file__}/out"], "cannot write to"),
         (["--shape", "c*x**3"], "is not even"),
         (["--shape", "__import__('os')"], "is not read"),
         (["--shape", "c*x**4", "--only", "eq27"], "does not go with --only"),
         (["--set", "drive.velocity=1 m/s"], "go with --numbers"),
         (["--numbers", "--set", "drive.velocity=0 m/s"], "drive.velocity is 0"),
-        (
-            ["--numbers", "--set", "indenter.shape=circle"],
-            "the parabola, the power law, the wedge and the ball only",
-        ),
+        (["--numbers", "--set", "indenter.shape=circle"],
+         "the parabola, the power law, the wedge and the ball only"),
     ],
-)
+)  # fmt: skip
 def test_a_mistake_costs_one_message_and_no_work(no_work, tmp_path, arguments, message):
     where = [] if "-o" in arguments else ["-o", str(tmp_path / "out")]
     result = run(*arguments, *where, code=2)
     assert message in result.stderr
     assert not (tmp_path / "out").exists()
     assert "Traceback" not in result.output
-
-
-def test_a_file_in_the_place_of_the_directory_is_found_first(no_work, tmp_path):
-    (tmp_path / "file").write_text("")
-    assert "cannot write to" in run("-o", str(tmp_path / "file" / "out"), code=2).stderr
 
 
 def test_only_what_is_needed_is_derived_and_how_much_that_is(monkeypatch, tmp_path):
@@ -149,8 +141,6 @@ def test_numbers_are_those_of_the_scene(tmp_path):
 POWER = {"shape": "power-law", "length": "10 mm"}
 WEDGE = {"shape": "wedge", "inclination": "0.1"}
 SUPPORTS = ("fixed", "dead-weight", "suspended")
-
-
 CASES = (
     (SUPPORTS, {"shape": "parabola", "radius": "10 mm"}, "100 mm/s", "coefficient", None),
     (SUPPORTS, {"shape": "sphere", "radius": "10 mm"}, "100 mm/s", "F20", "a/R"),
@@ -203,8 +193,9 @@ def test_numbers_hold_far_from_the_scale_of_a_contact(tmp_path):
     """The trailing edge is 1e-294 m, where its closed form cancels to hundreds of digits."""
     overrides = ["foundation.stiffness=1e300 N/m^3"]
     found = derived(tmp_path, "eq27,F3", "--numbers", overrides=overrides)
-    load, damping, speed = 1000 * 9.80665, 1e299, 0.1
-    expected = load / (damping * speed)  # W -> C V delta and x_TE -> a^2/(2 l_r) = R delta/l_r
+    expected = (
+        1000 * 9.80665 / (1e299 * 0.1)
+    )  # W -> C V delta and x_TE -> a^2/(2 l_r) = R delta/l_r
     assert found["eq27"]["numbers"][-1]["value"] == pytest.approx(expected, rel=1e-12)
 
 
@@ -215,8 +206,7 @@ def test_the_name_of_a_scene_is_no_markup(tmp_path):
     html, md, tex = (
         (tmp_path / f"derivations.{kind}").read_text() for kind in ("html", "md", "tex")
     )
-    assert "<script" not in html
-    assert "<script" not in tex
+    assert "<script" not in html + tex
     lines = [line for line in md.splitlines() if "<script" in line]
     assert lines
     assert all(line.startswith("Made by") and ": `` " in line for line in lines)

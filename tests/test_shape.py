@@ -36,30 +36,32 @@ def results(text):
 
 
 def numbers(rise, forms, point):
-    """Return l_r, W and F of the closed forms, and W and F by quadrature of the elements' law."""
+    """Return W and F by quadrature of the elements' law, and by the closed forms."""
     values = {symbol: sp.Rational(value) for symbol, value in point.items()}
-    closed = {name: mp.mpf(sp.N(form.subs(values).subs(values), DIGITS)) for name, form in forms.items()
-              if name == "trailing"}  # fmt: skip
-    l_r = closed["trailing"]
+
+    def closed(name):
+        return mp.mpf(sp.N(forms[name].subs(values).subs(values), DIGITS))
+
+    l_r = closed("trailing")
     values[s.l_r] = sp.Float(str(l_r), DIGITS)
-    h = sp.lambdify(s.distance, rise.subs(values), "mpmath")
-    slope = sp.lambdify(s.distance, sp.diff(rise, s.distance).subs(values), "mpmath")
+    h, slope = (
+        sp.lambdify(s.distance, each.subs(values), "mpmath")
+        for each in (rise, sp.diff(rise, s.distance))
+    )
     K, a, b = (mp.mpf(sp.N(values[x], DIGITS)) for x in (s.K, s.a, s.q))
-    depth = h(a)
+
+    def pressure(x, side):
+        return K * (h(a) - h(x) + side * l_r * slope(x))
 
     def force(weight):
-        ahead = mp.quad(lambda x: weight(x, 1) * K * (depth - h(x) + l_r * slope(x)), [0, a])
-        return ahead + mp.quad(
-            lambda x: weight(x, -1) * K * (depth - h(x) - l_r * slope(x)), [0, a * b]
+        ahead, behind = (
+            mp.quad(lambda x, side=side: weight(x, side) * pressure(x, side), [0, end])
+            for side, end in ((1, a), (-1, a * b))
         )
+        return ahead + behind
 
-    load = force(lambda x, side: mp.mpf(1))
-    friction = force(lambda x, side: side * slope(x))
-    return (
-        load,
-        friction,
-        [mp.mpf(sp.N(forms[name].subs(values), DIGITS)) for name in ("load", "friction")],
-    )
+    load, friction = force(lambda x, side: 1), force(lambda x, side: side * slope(x))
+    return load, friction, [closed(name) for name in ("load", "friction")]
 
 
 POINT = {s.K: "3.1", s.a: "0.7", s.q: "0.36", s.q_root: "0.6", s.C: "1", s.V: "1"}
@@ -86,7 +88,7 @@ def test_the_parabola_is_the_one_of_the_paper():
     assert sp.simplify(forms["coefficient"] - steady.friction_coefficient) == 0
 
 
-@pytest.mark.parametrize("n", [2, 3, 4, 6])
+@pytest.mark.parametrize("n", [2, 3, 4])
 def test_the_limits_of_a_power_are_the_known_ones(n):
     found, _ = results(f"c*abs(x)**{n}")
     slope = sp.Symbol("c", positive=True) * s.a ** (n - 1)

@@ -5,7 +5,6 @@ import pytest
 import sympy as sp
 from kvtheory.derivations import rubber_drive, spring_drive, spring_ringing, spring_stability
 from kvtheory.derivations import symbols as s
-from kvtheory.derivations.catalogue import catalogue
 
 from tests import reference_stability as reference
 
@@ -22,11 +21,6 @@ def _digits():
         yield
 
 
-@pytest.fixture(scope="module")
-def proved():
-    return {each.label: each for each in catalogue(until=["F22-ringing"])}
-
-
 def contact(scene):
     """Return the numbers of a scene, and its steady contact: depth, half length and edge."""
     lam, eps, kappa, eps_x, c_x, kappa_x = map(mp.mpf, scene)
@@ -37,10 +31,10 @@ def contact(scene):
         s.lam: lam, s.eps: eps, s.kappa: kappa, s.eps_x: eps_x, s.damper: c_x, s.kappa_x: kappa_x,
         s.a: half, s.right: edge, s.per_depth: edge + lam + half, s.per_rate: edge + half,
     }  # fmt: skip
-    given = dict(
-        zip(("lam", "eps", "kappa", "eps_x", "c_x", "kappa_x"), map(mp.mpf, scene), strict=True)
+    truth = reference.quartic(
+        lam=lam, eps=eps, kappa=kappa, eps_x=eps_x, c_x=c_x, kappa_x=kappa_x, guess=depth
     )
-    return known, reference.quartic(**given, guess=depth)
+    return known, truth
 
 
 def value(expr, known):
@@ -77,13 +71,6 @@ def test_falling_friction_is_the_slope_of_the_steady_curve(scene):
     )
     stiffness = (mp.mpf(3) / 4 * known[s.per_depth] + kappa) / across
     assert abs(found - stiffness * slope / (along + damper)) <= abs(found) * mp.mpf(10) ** -15
-
-
-def test_every_derivation_is_proved(proved):
-    labels = [label for label in proved if label.startswith("F22")]
-    assert len(labels) == 15
-    assert {proved[label].status for label in labels} <= {"proved", "definition"}
-    assert proved["F22-soft"].steps[-1].domain == "0 < q < 1"
 
 
 @pytest.mark.parametrize(("left", "right"), [("-1.2", "0.1"), ("0.3", "0.9"), ("-1", "1")])
@@ -123,6 +110,9 @@ def test_f24_gives_the_critical_stiffness_of_a_prony_series(arms, speed, stiffne
         return [mp.quad(lambda w, f=weight: f(w) * relaxation(w), [0, 1]) for weight in
                 (lambda w: 1 - w, lambda w: w, lambda w: w * (1 - w) / 2)]  # fmt: skip
 
+    def kernel(n, m):
+        return mp.quad(lambda v: mp.exp(-m * v) * (1 - v) ** (n - 1) / mp.fac(n - 1), [0, 1])
+
     def load(c):
         P, Q, D = moments(c)
         return c**3 / R * (D + (P - Q) / (2 * (P + Q)) * P)
@@ -137,20 +127,12 @@ def test_f24_gives_the_critical_stiffness_of_a_prony_series(arms, speed, stiffne
             rate = mp.mpc(0, omega)
             total = {name: mp.mpf(0) for name in rubber_drive.FORCES}
             for k, time in series:
+                z, w = c / (V * time), rate * c / V
                 known = {
-                    s.arm_number: c / (V * time),
-                    s.rate_number: rate * c / V,
-                    s.excess_share: eta,
-                }
-                for kernels, m in (
-                    (s.kernels, known[s.arm_number] + known[s.rate_number]),
-                    (s.kernels_still, known[s.arm_number]),
-                ):
-                    for n, kernel in enumerate(kernels, 1):
-                        known[kernel] = mp.quad(
-                            lambda v, m=m, n=n: mp.exp(-m * v) * (1 - v) ** (n - 1) / mp.fac(n - 1),
-                            [0, 1],
-                        )
+                    s.arm_number: z, s.rate_number: w, s.excess_share: eta,
+                    **{name: kernel(n, z + w) for n, name in enumerate(s.kernels, 1)},
+                    **{name: kernel(n, z) for n, name in enumerate(s.kernels_still, 1)},
+                }  # fmt: skip
                 for name, form in rubber_drive.FORCES.items():
                     total[name] += k * value(form, known)
             A = c * (K + total[s.normal_per_depth])

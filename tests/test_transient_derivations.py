@@ -1,14 +1,22 @@
-"""The derivations of scaled form, memory and edges, against quadrature, roots and elements."""
+"""The derivations of the transient against quadrature, roots, elements and numerical derivatives."""
+
+from itertools import pairwise
 
 import mpmath as mp
 import numpy as np
 import pytest
 import sympy as sp
 from kvtheory.derivations import symbols as s
-from kvtheory.derivations import transient_edges, transient_motion
-from kvtheory.derivations.catalogue import catalogue
+from kvtheory.derivations import (
+    theorems,
+    transient_balance,
+    transient_edges,
+    transient_motion,
+    transient_rates,
+)
+from kvtheory.derivations.book import established
 from kvtheory.derivations.step import Proof, StepError
-from kvtheory.derivations.transient_scaling import LEADING, PRESSURE, SECTION, TRAILING
+from kvtheory.derivations.transient_scaling import LEADING, PRESSURE, TRAILING
 
 pytestmark = pytest.mark.usefixtures("fifty_digits")
 
@@ -26,60 +34,40 @@ def close(one, other, scale=1):
     return abs(one - other) <= CLOSE * max(abs(one), abs(other), scale)
 
 
-def test_all_facts_are_there_and_none_is_sampled(by_label):
-    own = [each for each in catalogue() if each.section.startswith("Transient")]
-    assert own[0].section == SECTION
-    groups = {"eq33", "scaled", "F8", "F9", "F10", "F11", "F12", "F13", "F14"}
-    assert {each.label.split("-")[0] for each in own} == groups
-    assert all(step.status != "sampled" for each in own for step in each.steps)
-    assert by_label["eq33"].status == by_label["scaled-form"].status == "proved"
-
-
 # The scaled form and Eq. 33
 
 SCENE = {s.R: "0.013", s.K: "2.1e9", s.tau: "0.17", s.V: "0.021", s.M: "730"}
 DEPTH, RATE, STATIC = mp.mpf("1.9e-4"), mp.mpf("-3.1e-4"), mp.mpf("2.7e-4")
 
 
-class Dimensional:
-    """Pressure and forces of the contact in SI units, from Eqs. 3, 6 and 7 alone."""
-
-    def __init__(self):
-        self.R, self.K, self.tau, self.V, self.M = (mp.mpf(number) for number in SCENE.values())
-
-    def pressure(self, x):
-        u, rate = DEPTH - x**2 / (2 * self.R), RATE - x / self.R * self.V
-        return self.K * (u + self.tau * rate)
-
-    def edges(self):
-        peak = -self.V * self.tau
-        width = mp.sqrt(2 * self.R * DEPTH)
-        ends = ((peak - width, peak), (peak, peak + width))
-        return [mp.findroot(self.pressure, end, solver="anderson", tol=1e-70) for end in ends]
+R, K, TAU, V = (mp.mpf(SCENE[symbol]) for symbol in (s.R, s.K, s.tau, s.V))
 
 
-def test_both_roots_of_equation_33():
-    scene = Dimensional()
-    point = {
-        s.a: mp.sqrt(2 * scene.R * DEPTH), s.tau: scene.tau, s.l_r: scene.V * scene.tau,
-    }  # fmt: skip
+def dimensional_pressure(x):
+    """The pressure in SI units, from Eqs. 3, 6 and 7 alone."""
+    u, rate = DEPTH - x**2 / (2 * R), RATE - x / R * V
+    return K * (u + TAU * rate)
+
+
+def test_both_roots_of_equation_33_and_the_scaled_forces():
+    peak, width, a_0 = -V * TAU, mp.sqrt(2 * R * DEPTH), mp.sqrt(2 * R * STATIC)
+    leading, trailing = (
+        mp.findroot(dimensional_pressure, end, solver="anderson", tol=1e-70)
+        for end in ((peak - width, peak), (peak, peak + width))
+    )
+    point = {s.a: width, s.tau: TAU, s.l_r: V * TAU, s.d: DEPTH, s.d_s: RATE}
     named = {s.delta_t.diff(s.t): s.d_s, s.delta_t: s.d}
-    point |= {s.d: DEPTH, s.d_s: RATE}
-    for found, expr in zip(scene.edges(), (LEADING, TRAILING), strict=True):
+    for found, expr in zip((leading, trailing), (LEADING, TRAILING), strict=True):
         assert close(found, value(expr.subs(named), point), mp.mpf("1e-3"))
-
-
-def test_scaled_forces_are_the_dimensional_ones():
-    scene = Dimensional()
-    leading, trailing = scene.edges()
-    a_0 = mp.sqrt(2 * scene.R * STATIC)
-    w_0 = mp.mpf(4) / 3 * scene.K * a_0 * STATIC
     point = {
-        s.d: DEPTH / STATIC, s.d_s: scene.tau * RATE / STATIC, s.lam: scene.V * scene.tau / a_0,
+        s.d: DEPTH / STATIC, s.d_s: TAU * RATE / STATIC, s.lam: V * TAU / a_0,
         s.left: leading / a_0, s.right: trailing / a_0,
     }  # fmt: skip
-    load = mp.quad(scene.pressure, [leading, trailing])
-    friction = mp.quad(lambda x: -x / scene.R * scene.pressure(x), [leading, trailing])
+    load, friction = (
+        mp.quad(lambda x, arm=arm: arm(x) * dimensional_pressure(x), [leading, trailing])
+        for arm in (lambda x: 1, lambda x: -x / R)
+    )
+    w_0 = mp.mpf(4) / 3 * K * a_0 * STATIC
     assert close(load / w_0, value(transient_motion.NORMAL_FORCE, point))
     scaled = friction / (w_0 * STATIC / a_0)
     assert close(scaled, value(transient_motion.FRICTION_FORCE, point))
@@ -105,8 +93,8 @@ def test_memory_is_a_running_maximum(phase):
     duration = 2.7
     instants = np.linspace(0, duration, 400_001)
     exact = np.exp(-duration) * max(0.0, np.max(np.exp(instants) * g(instants)))
-    errors = [element(g, steps, duration) - exact for steps in (2000, 4000, 8000)]
-    extrapolated = exact + 2 * errors[2] - errors[1]
+    errors = [element(g, steps, duration) - exact for steps in (4000, 8000)]
+    extrapolated = exact + 2 * errors[1] - errors[0]
     assert extrapolated == pytest.approx(exact, rel=1e-5)
 
 
@@ -181,11 +169,6 @@ class Slowing:
         return mp.findroot(meeting, turn - (now - turn) / 2)
 
 
-def test_the_turn_is_a_leading_order_and_says_so(by_label):
-    assert by_label["F10-turn"].status == "proved-leading-order"
-    assert by_label["F10-instant-limits"].status == "proved-leading-order"
-
-
 def test_an_edge_turns_onto_ground_that_it_left_half_as_long_ago():
     slowing = Slowing()
     turn = slowing.turn()
@@ -237,7 +220,8 @@ def test_edges_on_ground_that_was_left_at_once(moved):
 @pytest.mark.parametrize(("kind", "right"), [(sp.Max, True), (sp.Min, False)])
 def test_the_update_holds_with_max_and_not_with_min(kind, right):
     """F8-update anew, in other letters: free until the end of the step, or in contact there."""
-    h, decay = sp.Symbol("h", positive=True), sp.exp(-sp.Symbol("h", positive=True))
+    h = sp.Symbol("h", positive=True)
+    decay = sp.exp(-h)
     before, after, now = sp.symbols("u_0 u_1 g_1", real=True)
     clearance, impulse = sp.symbols("c_1 J_1", nonnegative=True)
     proof = Proof("planted-update", None, section="Test", title="Test")
@@ -249,3 +233,211 @@ def test_the_update_holds_with_max_and_not_with_min(kind, right):
     else:
         with pytest.raises(StepError):
             proof.equal(after, kind(decay * before, now), "update", cases=cases)
+
+
+# Forces, rates and the slow manifold
+
+
+def force(d, rate, lam, weight):
+    """Integrate weight(xi) times the pressure after a start from rest, by quadrature."""
+    trailing = mp.sqrt(d + rate + lam**2) - lam
+    return mp.quad(
+        lambda xi: weight(xi) * (d - xi**2 + rate - 2 * lam * xi), [-mp.sqrt(d), trailing]
+    )
+
+
+def normal(d, rate, lam):
+    return force(d, rate, lam, lambda xi: mp.mpf(3) / 4)
+
+
+def friction(d, rate, lam):
+    return force(d, rate, lam, lambda xi: -3 * xi / 2)
+
+
+MOTION = mp.mpf("0.6"), mp.mpf("-0.2"), mp.mpf("0.7")
+
+
+def test_forces_while_the_right_edge_peels():
+    d, rate, lam = MOTION
+    radius = mp.sqrt(d + rate + lam**2)
+    point = {s.right: radius - lam, s.rho: radius, s.b: radius - lam + mp.sqrt(d)}
+    assert close(normal(*MOTION), value(transient_motion.PEELING_NORMAL_FORCE, point))
+    assert close(friction(*MOTION), value(transient_motion.PEELING_FRICTION_FORCE, point))
+
+
+def test_jacobian_after_a_start_from_rest():
+    d, rate, lam = MOTION
+    trailing = mp.sqrt(d + rate + lam**2) - lam
+    point = {s.d_s: rate, s.lam: lam, s.right: trailing, s.a: mp.sqrt(d)}
+    slopes = iter(transient_motion.JACOBIAN)
+    for measured in (normal, friction):
+        for order in ((1, 0), (0, 1)):
+            found = mp.diff(lambda one, two, f=measured: f(one, two, lam), (d, rate), order)
+            assert abs(found - value(next(slopes), point)) < mp.mpf("1e-20")
+
+
+@pytest.mark.usefixtures("by_label")
+def test_an_edge_that_touches_moves_with_the_depth_as_derived():
+    then, moved, decay = mp.mpf("0.9"), mp.mpf("0.3"), mp.mpf("0.6")
+
+    def edge(d):
+        return mp.findroot(lambda xi: d - xi**2 - decay * (then - (xi - moved) ** 2), 1)
+
+    d = mp.mpf("0.7")
+    place = edge(d)
+    (call,) = transient_motion._touching.atoms(sp.core.function.AppliedUndef)
+    slope = established("F11-edges", sp.Derivative(call, s.d)).subs(call, s.xi)
+    found = value(slope, {s.xi: place, s.eta: place - moved, s.E: decay})
+    assert abs(mp.diff(edge, d) - found) < mp.mpf("1e-20")
+
+
+def steady_state(lam, kappa):
+    return mp.findroot(lambda d: 1 - normal(d, mp.mpf(0), lam) - kappa * (d - 1), 0.5)
+
+
+def eigenvalues(lam, inertia, kappa):
+    """Return the rates of the two-state motion at its steady state, from numerical derivatives."""
+    d = steady_state(lam, kappa)
+    slopes = [mp.diff(lambda x, y: normal(x, y, lam), (d, 0), order) for order in ((1, 0), (0, 1))]
+    jacobian = mp.matrix([[0, 1], [-(slopes[0] + kappa) / inertia, -slopes[1] / inertia]])
+    return sorted(mp.eig(jacobian, left=False, right=False), key=mp.re)
+
+
+@pytest.mark.parametrize(("lam", "kappa"), [("0.4", "0"), ("3", "0.8")])
+def test_rates_are_eigenvalues(lam, kappa):
+    lam, kappa, inertia = mp.mpf(lam), mp.mpf(kappa), mp.mpf("0.004")
+    half = mp.sqrt(steady_state(lam, kappa))
+    point = {
+        s.eps: inertia, s.kappa: kappa, s.per_depth: mp.sqrt(half**2 + lam**2) + half,
+        s.per_rate: mp.sqrt(half**2 + lam**2) - lam + half,
+    }  # fmt: skip
+    formulas = [value(expr, point) for expr in (transient_rates.FAST, transient_rates.SLOW)]
+    for found, formula in zip(eigenvalues(lam, inertia, kappa), formulas, strict=True):
+        assert abs(found - formula) < mp.mpf("1e-15") * abs(formula)
+
+
+def test_oscillation_begins_at_the_boundary():
+    q = mp.mpf("0.3")
+    half = mp.cbrt(4 / (3 * value(theorems.LOAD, {s.q: q})))
+    lam, critical = half * (1 - q**2) / (2 * q), 3 * half * q / 8
+    below, above = (eigenvalues(lam, critical * (1 + sign), mp.mpf(0)) for sign in (-1e-6, 1e-6))
+    assert all(abs(mp.im(rate)) < mp.mpf("1e-15") for rate in below)
+    assert all(abs(mp.im(rate)) > mp.mpf("1e-4") for rate in above)
+
+
+def test_the_two_time_constants_of_table_1(by_label):
+    """Linearize the motion in SI units in floats: the paper's "1 ms" and "10 ms"."""
+    R, K, tau, V, M, weight = 0.01, 1e10, 0.1, 0.1, 1000.0, 9806.65
+
+    def load(depth, rate):
+        leading = -np.sqrt(2 * R * depth)
+        trailing = np.sqrt(2 * R * (depth + tau * rate) + (V * tau) ** 2) - V * tau
+        x = np.polynomial.Polynomial([0, 1])
+        pressure = K * (depth - x**2 / (2 * R) + tau * (rate - x * V / R))
+        primitive = pressure.integ()
+        return primitive(trailing) - primitive(leading)
+
+    low, high = 1e-6, 3e-4
+    for _ in range(60):
+        middle = (low + high) / 2
+        low, high = (middle, high) if load(middle, 0) < weight else (low, middle)
+    per_depth = (load(low * 1.0001, 0) - load(low * 0.9999, 0)) / (2e-4 * low)
+    per_rate = (load(low, 1e-7) - load(low, -1e-7)) / 2e-7
+    times = sorted(-1e3 / np.roots([M, per_rate, per_depth]).real)
+    printed = {row[1]: row[2] for row in by_label["F12-table1"].table.rows}
+    assert [float(printed["$T_1$"]), float(printed["$T_2$"])] == pytest.approx(times, rel=5e-4)
+    assert float(printed[r"$\delta/\delta_0$"]) == pytest.approx(low / 300.177e-6, rel=5e-4)
+    assert times == pytest.approx([0.744, 11.75], rel=1e-3)
+
+
+@pytest.mark.parametrize(("d", "lam"), [("0.9", "0.05"), ("0.4", "3"), ("0.7", "0.8367")])
+def test_slow_manifold_balances_the_weight(d, lam):
+    d, lam, carried = mp.mpf(d), mp.mpf(lam), mp.mpf("0.93")
+    half, unit = mp.sqrt(d), mp.cbrt(2 * carried)
+    roots = mp.polyroots([2, 3 * (lam - half) / unit, 0, -2], maxsteps=500, extraprec=300)
+    (beta,) = [mp.re(x) for x in roots if abs(mp.im(x)) < mp.mpf("1e-30") and mp.re(x) > 0]
+    assert abs(value(transient_rates.EXCESS, {s.beta: beta}) - (lam - half) / unit) < CLOSE
+    right = unit * beta - half
+    rate = value(transient_rates.SLOW_RATE, {s.right: right, s.lam: lam, s.d: d})
+    assert abs(normal(d, rate, lam) - carried) < CLOSE
+
+
+# Balances
+
+
+@pytest.mark.parametrize("label", ["F14-surface", "F14-force", "F14", "F14-power", "F14-energy"])
+def test_a_balance_rests_on_names_and_laws_alone(by_label, label):
+    """No premise of a balance is itself a sum over all elements or a power of the drive."""
+    assert by_label[label].status == "proved"
+    sums = [each for each in by_label[label].premises if r"\int" in each]
+    named = ("E_{\\mathrm{s}}", "\\bar U", "f_z", "f_x")
+    assert all(each.startswith(named) for each in sums)
+    assert not any(
+        each.startswith((r"\lambda f_x", r"d'' = \frac{1")) for each in by_label[label].premises
+    )
+
+
+@pytest.mark.parametrize(
+    ("name", "prove"),
+    [
+        ("_share", "_force"), ("_height", "_force"), ("_rate", "_power"), ("_height", "_energy"),
+        ("_rate", "_energy"), ("_share", "_energy"), ("_speed", "_momentum"),
+    ],
+)  # fmt: skip
+def test_a_slightly_wrong_balance_is_refused(monkeypatch, by_label, name, prove):
+    assert "F14-energy" in by_label
+    wrong = getattr(transient_balance, name) * (1 + sp.Rational(1, 10**9))
+    monkeypatch.setattr(transient_balance, name, wrong)
+    with pytest.raises(StepError):
+        getattr(transient_balance, prove)()
+
+
+DRIVE, NOW = mp.mpf("0.6"), mp.mpf("0.8")
+with mp.workdps(DIGITS + 10):
+    EDGE = mp.sqrt(1 + DRIVE**2) - DRIVE
+
+
+def over(time, density, parts=slice(None)):
+    """Integrate density(u, u') over the surface after a start of a fixed indenter, d = 1, from rest.
+
+    Its parts are the contact, the wake, and the ground that was left at once.
+    """
+
+    def wake(xi):
+        return (1 - EDGE**2) * mp.exp(-(xi - EDGE) / DRIVE)
+
+    def at_once(xi):
+        return (1 - (xi - DRIVE * time) ** 2) * mp.exp(-time)
+
+    ends = -1, EDGE, EDGE + DRIVE * time, 1 + DRIVE * time
+    surface = (
+        (lambda xi: 1 - xi**2, lambda xi: -2 * DRIVE * xi),
+        (wake, lambda xi: -wake(xi)),
+        (at_once, lambda xi: -at_once(xi)),
+    )
+    intervals = [*zip(pairwise(ends), surface, strict=True)]
+    return sum(
+        mp.quad(lambda xi, u=u, rate=rate: density(u(xi), rate(xi)), interval)
+        for interval, (u, rate) in intervals[parts]
+    )
+
+
+def change_of(density, parts=slice(None)):
+    return mp.diff(lambda time: over(time, density, parts), NOW)
+
+
+def test_momentum_and_energy_of_all_elements():
+    total, change = over(NOW, lambda u, _: u), change_of(lambda u, _: u)
+    motion = mp.mpf(1), mp.mpf(0), DRIVE
+    assert abs(normal(*motion) - 3 * (total + change) / 4) < 1e-20
+    stored = 3 * change_of(lambda u, _: u**2) / 8
+    lost = 3 * over(NOW, lambda _, rate: rate**2) / 4
+    assert abs(DRIVE * friction(*motion) - stored - lost) < 1e-20
+
+
+def test_what_the_contact_hands_over_is_lost_in_the_free_surface():
+    outside = slice(1, None)
+    stored = 3 * over(NOW, lambda u, _: u**2, outside) / 8
+    change = 3 * change_of(lambda u, _: u**2, outside) / 8
+    handed_over = 3 * (1 - EDGE**2) ** 2 * DRIVE / 8
+    assert abs(change + 2 * stored - handed_over) < 1e-20

@@ -11,7 +11,7 @@ from kvtheory.api._edge import double_precision, one_scene
 from kvtheory.api._elements import elements
 from kvtheory.api._stability import stability
 from kvtheory.api._steady import steady
-from kvtheory.checks.theory import TRIAL_RTOL, Methods
+from kvtheory.checks.theory import TRIAL_RTOL, Methods, Theory
 from kvtheory.progress import Progress
 from kvtheory.results import SERIES_UNITS, DivergenceError, units_for
 from kvtheory.results.comparison import Comparison
@@ -160,6 +160,7 @@ def compare(
     report = progress or METHODS.tell
     own = 0.5 if data is None else 0.0
     methods = METHODS._replace(tell=lambda share, words: report(own + (1.0 - own) * share, words))
+    theory = Theory(scene, methods)
     try:
         found = data
         if data is None:
@@ -167,9 +168,9 @@ def compare(
                 scene, per_length, scheme, lambda share, words: report(own * share, words)
             )
     except DivergenceError as error:
-        return broken_off(scene, error.rows, str(error), methods, scheme, tolerance)
+        return broken_off(theory, error, scheme, tolerance)
     units = units_for(scene.indenter, SERIES_UNITS)
-    return compare_series(scene, read(found, units), methods, per_length, scheme, tolerance)
+    return compare_series(theory, read(found, units), per_length, scheme, tolerance)
 
 
 def _own_simulation(scene: Scene, per_length: Any, scheme: str | None, progress: Progress) -> Any:

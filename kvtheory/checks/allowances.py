@@ -4,28 +4,37 @@ Four effects make a difference without a mistake, each known from theory or from
 
 - an element at an edge counts as a whole or not at all (F15): the normal force is off by up to
   b = p dx/2, p the pressure at that edge, the motion by the linear response to b (F12), and on a spring
-  also by a disturbed motion along x (`spring_response`);
+  also by a disturbed motion along x (`_spring_response`);
 - a time step shifts the curves: theory within two steps before and after is as good; and unless the
   scheme is known to be of higher order, the rate may lag behind the depth by one step, and with it the
-  force by h C L d'', which is the share z = h C L/M of the force that is not balanced;
-- the data are noisy: sigma is measured by their second differences to theory, in which everything
+  force by h C L d'', which is the fraction z = h C L/M of the unbalanced force;
+- the data are noisy: sigma is estimated from their second differences to theory, in which everything
   smooth cancels; it counts up to a limit only;
 - the data are rounded: half their last digit, and times to the next one.
 """
 
 import math
-from collections.abc import Mapping
-from dataclasses import dataclass, fields
+from collections.abc import Iterator, Mapping
+from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 
 from kvtheory.checks.noise import extreme, noise, rounded, time_rounding
 from kvtheory.checks.reading import Series
-from kvtheory.checks.resolution import Resolution
-from kvtheory.checks.spring_response import spring_response
 from kvtheory.checks.theory import CURVES, SHALLOWEST, Array, Curves, Theory
 from kvtheory.results.schemes import SCHEME_ROWS
+from kvtheory.scene.model import Fixed, Scene
 
+STANDARD = 200e3
+FEWEST_ASSUMED, MOST_ASSUMED = 200.0, 490.0
+"""Elements per m where the density is not known: the paper's 200 /mm, but at least and at most so many in
+the static half length as here, the most being those of Table 1."""
+UNKNOWN_STEP = 0.25
+"""Of the fast time constant: the longest time step that is assumed, unless the data are sampled more
+coarsely than that."""
+MOST_STEPS, FEWEST_STEPS = 1000.0, 20.0
+"""Steps assumed for a base that never moves; and for any run at least, so that not all of it is smeared."""
 STEPS_SMEARED = 2.0
 """Steps within which theory may lead or lag: a first-order scheme lags by one, and its start by one more."""
 ELEMENTS_AT_AN_EDGE = 2.0
@@ -37,83 +46,107 @@ WHOLE_EDGE = 2.0
 AN_EIGHTH, LAGGING = 0.25 / math.e, 0.25
 """Of the band: the lag of a first-order scheme, and what is allowed of the rate, for long steps add terms of
 the next order in h/T."""
-SWING = 2.0
-"""An oscillation overshoots at most by this factor."""
+OVERSHOOT = 2.0
+"""An oscillation overshoots at most by this factor, and so does a spring that is loaded suddenly."""
 INITIAL = 1e-3
 """Of the static depth: an initial depth may have been typed in with three digits."""
 INPUT = 1e-6
 """Relative: what is given, not computed, agrees to the digits of a file."""
 EXACT = {"velocity": 3, "sliding_velocity": 3}
 """Fewest significant digits that are taken for rounding: a velocity of 0.1 m/s is exact."""
+QUARTER = 0.5 * math.pi
+"""Of a period, in radians: a disturbed oscillation is far off so much after it crosses the other one."""
 
 
-@dataclass(frozen=True)
-class Allowance:
-    """By name: theory's `low` and `high` within the smear, `systematic` and random (`noise`) parts.
+class Resolution(NamedTuple):
+    """Spacing of the elements (m) and time step (s), and whether they are known or assumed.
 
-    `edge` has one curve, `normal_force`: the force b of half an element at an edge, in N/m. `rounding` is
-    the part of `systematic` that comes from the digits.
+    `spacing_read` says that the spacing was estimated from the sawtooth of the data.
     """
 
-    low: Curves
-    high: Curves
-    systematic: Curves
-    noise: Curves
-    rounding: Curves
-    edge: Curves
+    spacing: float
+    time_step: float
+    spacing_known: bool
+    step_known: bool
+    spacing_read: bool = False
 
-    @property
-    def force(self) -> Array:
-        """The force b, in N/m."""
-        return self.edge["normal_force"]
 
-    def excess(self, name: str, values: Array) -> Array:
+def resolution(theory: Theory, series: Series, per_length: float | None) -> Resolution:
+    """Return the spacing and the step, known or else those of the paper for this scene."""
+    given = per_length or series.per_length
+    half, scheme = theory.static.half_length, SCHEME_ROWS.get(series.scheme or "")
+    spacing = 1.0 / (given or min(max(STANDARD, FEWEST_ASSUMED / half), MOST_ASSUMED / half))
+    speed, span = theory.motion.highest_speed, float(series.time[-1] - series.time[0])
+    step = 2.0 * spacing / speed if speed else span / MOST_STEPS
+    if series.time_step is not None:
+        return Resolution(spacing, float(series.time_step), bool(given), True)
+    paper = scheme is not None and scheme.papers_step and bool(given)
+    if not paper and theory.rates is not None:
+        sampled = float(np.median(np.diff(series.time)))
+        step = min(step, max(UNKNOWN_STEP * abs(theory.rates.fast), sampled))
+    return Resolution(spacing, min(step, span / FEWEST_STEPS), bool(given), paper)
+
+
+class Band(NamedTuple):
+    """Theory of a curve within the smear, and the errors that are allowed outside of it.
+
+    `systematic` bounds a smooth error, of which `rounding` is the part that comes from the digits; `noise`
+    is the standard deviation of a random one.
+    """
+
+    low: Array
+    high: Array
+    systematic: Array
+    noise: Array
+    rounding: Array
+
+    def excess(self, values: Array) -> Array:
         """Return how far values lie outside the band of theory."""
-        with np.errstate(invalid="ignore"):
-            return np.maximum(np.maximum(self.low[name] - values, values - self.high[name]), 0.0)
+        return np.maximum(np.maximum(self.low - values, values - self.high), 0.0)
 
-    def limit(self, name: str) -> Array:
+    def limit(self) -> Array:
         """Return how far a single value may lie outside the band."""
-        return self.systematic[name] + extreme(self.systematic[name].size) * self.noise[name]
-
-    def rows(self, rows: Array) -> "Allowance":
-        """Return some rows of it."""
-        parts = (getattr(self, field.name) for field in fields(self))
-        return Allowance(*({name: v[rows] for name, v in part.items()} for part in parts))
+        return self.systematic + extreme(self.systematic.size) * self.noise
 
 
 def allowance(
     theory: Theory, series: Series, fine: Resolution, rtol: float
-) -> tuple[Curves, Allowance]:
-    """Return theory at the times of the series, and by how much the series may differ from it."""
-    now, before, after, low, high = _bands(theory, series.time, fine.time_step, rtol)
-    force = np.fmax.reduce([edge_force(theory, c, fine.spacing) for c in (now, before, after)])
-    lags = [_first_order(theory, part, series, fine) for part in (now, before, after)]
-    share, lagging = np.fmax.reduce([z for z, _ in lags]), np.fmax.reduce([f for _, f in lags])
-    late = _lag(theory, now, series.time, high["depth_rate"] - low["depth_rate"])
-    rest = AN_EIGHTH / LAGGING * late * (share > 0.0)
-    lagging = lagging + theory.scene.foundation.damping * contact_extent(theory, now) * rest
-    forces = (1.0 + share) * force, lagging
-    smooth = _systematic(theory, now, series.time, forces, late, fine)
+) -> tuple[Curves, dict[str, Band], Array]:
+    """Return theory at the times of the series, the band of each curve, and the force b at the edge."""
+    time, support, C = series.time, theory.scene.support, theory.scene.foundation.damping
+    scheme = SCHEME_ROWS.get(series.scheme or "")
+    first_order = scheme is None or scheme.order_in_time <= 1
+    now, before, after, low, high = _bands(theory, time, fine.time_step, rtol)
+    share, lagging, late = (np.zeros_like(time) for _ in range(3))
+    if not theory.scene.held:
+        late = _lag(theory, now, time, high["depth_rate"] - low["depth_rate"])
+    if first_order and not theory.scene.held:
+        for part in (now, before, after):
+            sunk = part["depth"] - theory.static.depth
+            unbalanced = support.weight - support.spring * sunk - part["normal_force"]
+            z = np.minimum(fine.time_step * C * contact_extent(theory, part) / support.mass, 1.0)
+            share, lagging = np.fmax(share, z), np.fmax(lagging, z * np.abs(unbalanced))
+        lagging += AN_EIGHTH / LAGGING * C * contact_extent(theory, now) * late
+    force = np.fmax.reduce([_edge_force(theory, c, fine.spacing) for c in (now, before, after)])
+    smooth = _systematic(theory, now, time, ((1.0 + share) * force, lagging), late, fine)
     if not theory.scene.drive.rigid:
-        step = 0.0 if _higher_order(series) else fine.time_step
-        moved = spring_response(theory, now, series.time, force, step, rtol)
-        smooth = {name: smooth[name] + moved[name] for name in CURVES}
-    given = {name: series.columns[name] for name in CURVES if name in series.columns}
-    rounding = {name: rounded(values, EXACT.get(name, 0)) for name, values in given.items()}
-    spread = {name: smooth[name] + rounding.get(name, 0.0) for name in CURVES}
-    random = {
-        name: np.minimum(
-            noise(series.time, values - now[name], now[name]),
-            LARGEST_NOISE * np.fmax(theory.scales[name], np.abs(now[name])),
-        )
-        for name, values in given.items()
-    }
-    return now, Allowance(low, high, spread, random, rounding, {"normal_force": force})
+        step = fine.time_step if first_order else 0.0
+        for name, moved in _spring_response(theory, now, time, force, step, rtol).items():
+            smooth[name] = smooth[name] + moved
+    bands = {}
+    for name in CURVES:
+        rounding = sigma = np.zeros_like(time)
+        if name in series.columns:
+            values = series.columns[name]
+            rounding = rounded(values, EXACT.get(name, 0))
+            loudest = LARGEST_NOISE * np.fmax(theory.scales[name], np.abs(now[name]))
+            sigma = np.minimum(noise(time, values - now[name], now[name]), loudest)
+        bands[name] = Band(low[name], high[name], smooth[name] + rounding, sigma, rounding)
+    return now, bands, force
 
 
 def _bands(theory: Theory, time: Array, step: float, rtol: float) -> tuple[Curves, ...]:
-    """Return theory now, at both ends of the smear, and its least and largest within it."""
+    """Return theory now, at both ends of the smear, and its least and greatest values within it."""
     smear = STEPS_SMEARED * step + time_rounding(time)
     jumps = [t for t in theory.scene.drive.jumps if t < time[-1]]
     sides = np.ravel([(np.nextafter(t, -1.0), t) for t in jumps])
@@ -134,67 +167,39 @@ def _lag(theory: Theory, curves: Curves, time: Array, width: Array) -> Array:
     t/T, and the rate soon turns, where the band is narrow. T = M/(C L) is that of the contact at the time;
     (t/T) exp(-t/T) is at most (2/e) exp(-t/2T).
     """
-    support, foundation = theory.scene.support, theory.scene.foundation
-    if theory.scene.held:
-        return np.zeros_like(width)
-    rate = 0.5 * foundation.damping * contact_extent(theory, curves) / support.mass
+    damping, mass = theory.scene.foundation.damping, theory.scene.support.mass
+    rate = 0.5 * damping * contact_extent(theory, curves) / mass
     ages = np.concatenate([[0.0], np.cumsum(0.5 * (rate[1:] + rate[:-1]) * np.diff(time))])
     with np.errstate(divide="ignore"):
         left = np.maximum.accumulate(np.log(width) + ages) - ages
     return np.asarray(LAGGING * np.exp(left))
 
 
-def contact_length(curves: Mapping[str, Array]) -> Array:
+def _contact_length(curves: Mapping[str, Array]) -> Array:
     """Return the length of the contact in m; zero in flight."""
     return np.asarray(np.nan_to_num(np.abs(curves["trailing_edge"] - curves["leading_edge"])))
 
 
 def contact_extent(theory: Theory, curves: Mapping[str, Array]) -> Array:
-    """Return what the damping of the foundation acts over: a length in m, of a ball an area in m^2."""
-    return np.asarray(theory.width(curves["depth"]) * contact_length(curves))
+    """Return what the damping of the foundation acts over: a length in m, for a ball an area in m^2."""
+    return np.asarray(theory.width(curves["depth"]) * _contact_length(curves))
 
 
-def _first_order(
-    theory: Theory, curves: Curves, series: Series, fine: Resolution
-) -> tuple[Array, Array]:
-    """Return z = h C L/M and z |M d''|, by which the force may lag in a scheme of first order (Eq. 17).
-
-    Within a step, the rate responds to an element that enters, with the share z of its force.
-    """
-    support, foundation = theory.scene.support, theory.scene.foundation
-    if theory.scene.held or _higher_order(series):
-        none = np.zeros_like(curves["depth"])
-        return none, none
-    sunk = curves["depth"] - theory.static.depth
-    net = support.weight - support.spring * sunk - curves["normal_force"]
-    rate = foundation.damping * contact_extent(theory, curves) / support.mass
-    z = np.minimum(fine.time_step * rate, 1.0)
-    return z, z * np.abs(net)
-
-
-def _higher_order(series: Series) -> bool:
-    """Whether the scheme of the simulation is known to be of higher than first order."""
-    scheme = SCHEME_ROWS.get(series.scheme or "")
-    return scheme is not None and scheme.order_in_time > 1
-
-
-def edge_force(theory: Theory, curves: Curves, spacing: float) -> Array:
+def _edge_force(theory: Theory, curves: Curves, spacing: float) -> Array:
     """Return b = p dx/2 at the edge of larger pressure, p = K g + C g' (Eq. 12); zero in flight.
 
-    Of a ball it is that of the middle plane times the mean width: no more than this even if all strips agree.
-
-    At rest p = 0 at both edges and the sum over elements is off by the second order K dx^2 a/R.
+    For a ball it is that of the middle plane times the mean width, an upper bound if all strips agree. At
+    rest p = 0 at both edges and the sum over elements is off by the second order K dx^2 a/R.
     """
-    foundation = theory.scene.foundation
-    R, K = theory.scene.indenter.radius, foundation.stiffness  # type: ignore[union-attr]
-    pressures = []
+    R, foundation = theory.radius, theory.scene.foundation
+    p = np.zeros_like(curves["depth"])
     for name in ("leading_edge", "trailing_edge"):
         x = curves[name]
         rate = curves["depth_rate"] - x / R * curves["sliding_velocity"]
-        pressures.append(K * (curves["depth"] - x * x / (2.0 * R)) + foundation.damping * rate)
-    p = np.nan_to_num(np.fmax(np.maximum(pressures[0], 0.0), pressures[1]), nan=0.0)
-    width = theory.width(curves["depth"])
-    return np.asarray(width * (0.5 * p * spacing + K * spacing**2 * theory.static.half_length / R))
+        overlap = curves["depth"] - x * x / (2.0 * R)
+        p = np.fmax(p, foundation.stiffness * overlap + foundation.damping * rate)
+    at_rest = foundation.stiffness * spacing**2 * theory.static.half_length / R
+    return np.asarray(theory.width(curves["depth"]) * (0.5 * p * spacing + at_rest))
 
 
 def _systematic(
@@ -209,17 +214,19 @@ def _systematic(
     tau delta') (Eq. 33): R/(x + l_r) times both; friction: b at x = a, and F_x in proportion to
     delta^(3/2).
     """
-    foundation, dx, (force, lagging) = theory.scene.foundation, fine.spacing, forces
-    R, tau = theory.scene.indenter.radius, foundation.retardation_time  # type: ignore[union-attr]
+    K, tau = theory.scene.foundation.stiffness, theory.scene.foundation.retardation_time
+    R, dx, (force, lagging) = theory.radius, fine.spacing, forces
     a = np.sqrt(2.0 * R * np.maximum(curves["depth"], SHALLOWEST * theory.static.depth))
     l_r = curves["sliding_velocity"] * tau
-    depth, depth_rate = _response(theory, curves, time, force, a, fine)
-    depth_rate = depth_rate + late
+    depth, depth_rate = np.zeros_like(time), late
+    if theory.rates is not None and not theory.scene.held:
+        depth, depth_rate = _response(theory, curves, time, force, a, fine)
+        depth_rate = depth_rate + late
     both = depth + tau * depth_rate
     slant = np.maximum(np.abs(curves["trailing_edge"] + l_r), dx)
     edge = ELEMENTS_AT_AN_EDGE * dx + R / a * depth
     carried = 1.5 * depth * 2.0 * R / (a * a) * np.abs(curves["friction_force"])
-    slope = foundation.stiffness * (a + np.abs(l_r)) / R
+    slope = K * (a + np.abs(l_r)) / R
     given = np.full_like(force, INPUT * theory.scales["velocity"])
     friction = (WHOLE_EDGE * force + lagging) * a / R + carried
     return {
@@ -232,7 +239,7 @@ def _systematic(
         "spring_force": friction,
         "leading_edge": edge,
         "trailing_edge": edge + np.nan_to_num(R * both / slant),
-        "peak_pressure": slope * (edge + dx) + foundation.stiffness * both,
+        "peak_pressure": slope * (edge + dx) + K * both,
     }
 
 
@@ -245,26 +252,21 @@ def _response(
     constant T = C L/(K A + k_s) of the contact at the time. In flight nothing relaxes: the rate keeps what
     it had when the contact was lost, and the depth drifts with it.
     """
-    support, foundation = theory.scene.support, theory.scene.foundation
-    if theory.scene.held or theory.rates is None:
-        return np.zeros_like(force), np.zeros_like(force)
+    foundation, static = theory.scene.foundation, theory.static
+    length = _contact_length(curves)
     l_r = np.abs(curves["sliding_velocity"]) * foundation.retardation_time
-    width = theory.width(curves["depth"])
-    stiffness = foundation.stiffness * width * (np.hypot(a, l_r) + a) + support.spring
-    damping = foundation.damping * width * np.maximum(contact_length(curves), a)
+    stiffness = theory.stiffness(curves["depth"], a, l_r)
+    damping = foundation.damping * theory.width(curves["depth"]) * np.maximum(length, a)
     still = force / stiffness
     larger = np.maximum(still, np.append(still[0], still[:-1]))
     ages = np.maximum(np.diff(time, prepend=0.0), 0.0)
     left = np.exp(-ages * stiffness / damping)
-    at_rest = foundation.stiffness * fine.spacing**2 * theory.static.half_length
-    at_rest *= float(theory.width(theory.static.depth))
-    at_rest /= theory.scene.indenter.radius * float(stiffness[0])  # type: ignore[union-attr]
-    depth, rate = [at_rest + INITIAL * theory.static.depth], [0.0]
-    swing = SWING if theory.rates.oscillates else 1.0
-    kick = force * (1.0 / damping + fine.time_step / support.mass)
-    rows = zip(
-        *(larger, left, ages, kick, stiffness / damping, contact_length(curves) == 0.0), strict=True
-    )
+    at_rest = foundation.stiffness * fine.spacing**2 * static.half_length / theory.radius
+    at_rest *= float(theory.width(static.depth)) / float(stiffness[0])
+    depth, rate = [at_rest + INITIAL * static.depth], [0.0]
+    swing = OVERSHOOT if theory.rates and theory.rates.oscillates else 1.0
+    kick = force * (1.0 / damping + fine.time_step / theory.scene.support.mass)
+    rows = zip(larger, left, ages, kick, stiffness / damping, length == 0.0, strict=True)
     for most, share, age, step, decay, flies in rows:
         if flies:
             depth.append(depth[-1] + rate[-1] * age / swing)
@@ -273,3 +275,49 @@ def _response(
             depth.append(most + share * (depth[-1] - most))
             rate.append(step + swing * depth[-1] * decay)
     return swing * np.array(depth[1:]), np.array(rate[1:])
+
+
+def _spring_response(
+    theory: Theory, now: Curves, time: Array, force: Array, step: float, rtol: float
+) -> Curves:
+    """Return by how much the force b (N/m) at an edge, and steps of `step` s, move each curve on a spring.
+
+    Motions along x last long, and grow if steady sliding is unstable (F22), up to a cycle in which a
+    disturbance shifts the phase more and more. No linear response covers that, but theory of a disturbed
+    scene does (`_disturbed`). The friction b a/R that goes with b acts on the spring at once: it stretches
+    the spring, and accelerates the indenter. `step` is 0 for a scheme of higher order, whose error is far
+    smaller.
+    """
+    inertia, stiffness = theory.scene.drive_mass, float(theory.scene.drive.stiffness or 0.0)
+    swing = math.sqrt(inertia / stiffness)  # the period over 2 pi, in s
+    first = np.searchsorted(time, time - QUARTER * swing, side="left")
+    after = np.searchsorted(time, time + QUARTER * swing, side="right")
+    ends = np.stack([first, after], axis=1).reshape(-1)
+    moved = {name: np.zeros_like(time) for name in CURVES}
+    lasting = float(np.trapezoid(force, time)) / float(time[-1] - time[0]) / theory.static.load
+    for other in _disturbed(theory.scene, lasting, step):
+        found = Theory(other, theory.methods).at(time, rtol)
+        for name in CURVES:  # the largest difference within a quarter of a period
+            off = np.append(np.nan_to_num(np.abs(found[name] - now[name])), 0.0)
+            moved[name] += np.maximum.reduceat(off, ends)[::2]
+    kick = OVERSHOOT * force * theory.static.half_length / theory.radius
+    turned = np.clip(time / swing, 0.0, 1.0)  # a force needs time to move a mass
+    moved["spring_force"] += kick * turned**2
+    moved["sliding_velocity"] += kick * turned * swing / inertia
+    return moved
+
+
+def _disturbed(scene: Scene, share: float, step: float) -> Iterator[Scene]:
+    """Yield the scene with a load that is larger by a share, and with the damping of first-order steps.
+
+    On a fixed indenter, whose forces are in proportion to the stiffness of the foundation, b acts as one that
+    is stiffer. A first-order step h damps an oscillation, or excites it, as a damper c_x = h k_x.
+    """
+    support = scene.support
+    if isinstance(support, Fixed):
+        yield replace(scene, foundation=scene.foundation.plain(1.0 + share))
+    else:
+        yield replace(scene, support=replace(support, load=(1.0 + share) * support.weight))
+    if step > 0.0:
+        damping = scene.drive.damping + step * float(scene.drive.stiffness or 0.0)
+        yield replace(scene, drive=scene.drive.changed(damping=damping))

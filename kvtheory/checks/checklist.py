@@ -1,18 +1,22 @@
 """The checks: each compares one number with what theory allows for it.
 
-`CHECKS` lists them in the order in which they are shown. A check that cannot be made says why.
+A check is a row: its name, the equation that it rests on, what it measures, and a function of a `Case` that
+returns the measured number, the allowed one and a note, or raises `NotMade` with the reason.
 """
 
 from collections.abc import Callable, Iterator
+from functools import partial
+from typing import NamedTuple
 
 import numpy as np
 
-from kvtheory.checks.balance import missing_force, random_part, windows
-from kvtheory.checks.comparison_case import Case, Measured, NotMade, check, made, rms
-from kvtheory.checks.discretization import elements, sawtooth, stability
+from kvtheory.checks.comparison_case import Case, NotMade, rms
+from kvtheory.checks.discretization import COARSE, NOISE, NUMBER, elements, sawtooth, stability
 from kvtheory.checks.noise import SURE, extreme
-from kvtheory.checks.settling import fast_constant, phase, slow_constant, steady_limit
+from kvtheory.checks.settling import PHASE, fast_constant, phase, slow_constant, steady_limit
+from kvtheory.checks.theory import Array, Curves
 from kvtheory.results.comparison import Check
+from kvtheory.scene.model import Support
 
 EQUATIONS = {"depth": "Eq. 17", "depth_rate": "Eq. 17", "normal_force": "Eq. 14",
              "friction_force": "Eq. 15", "leading_edge": "Eq. 32", "trailing_edge": "Eq. 33",
@@ -20,31 +24,43 @@ EQUATIONS = {"depth": "Eq. 17", "depth_rate": "Eq. 17", "normal_force": "Eq. 14"
              "spring_force": "F22"}  # fmt: skip
 """The equation behind each curve."""
 RELATIVE = "relative to the static state"
-
 TRANSIENT = 3.0
 """Slow time constants after the last change of the drive: three samples in them show the transient."""
 SAMPLING = "sampling"
-"""The check whose failure alone says nothing against the data."""
+"""The check whose failure alone is no evidence against the data."""
+SHORTEST_WINDOW, LONGEST_WINDOWS, OVERLAP = 16, 6, 2
+"""Samples in a window of the impulse balance, for phi'' has to be resolved; the number of lengths tried, each
+half the one before, from the whole series down; and the windows of a length that cover a sample."""
+
+Measured = tuple[float, float, str]
+"""What a check measures, what is allowed (with the tolerance), and a note."""
 
 
-@check("initial rest state", "Eq. 40", "depth, relative to the static depth")
+class Row(NamedTuple):
+    """A check; `columns` are those that the data must hold for it."""
+
+    name: str
+    equation: str
+    unit: str
+    measure: Callable[[Case], Measured]
+    columns: tuple[str, ...] = ()
+
+
 def initial_rest(case: Case) -> Measured:
-    """Compare the depth at t <= 0 with the static depth."""
-    time, depth_0 = case.series.time, case.theory.static.depth
-    (depth,) = case.columns("depth")
+    """Compare the depth at t <= 0 with the static depth (Eq. 40)."""
+    time, depth_0 = case.time, case.theory.static.depth
     before = time <= 0.0
     if not before.any():
         raise NotMade(f"the data begin at {time[0] * 1e3:.4g} ms, after the start")
-    off = abs(float(depth[before].mean()) / depth_0 - 1.0)
-    sigma = float(case.allowance.noise["depth"][before].max()) / depth_0
+    off = abs(float(case.columns["depth"][before].mean()) / depth_0 - 1.0)
+    sigma = float(case.bands["depth"].noise[before].max()) / depth_0
     random = SURE * sigma / np.sqrt(before.sum())
     return off, case.tolerance * random + case.limit("depth")[before].max(), ""
 
 
-@check("jump at t = 0+", "F11", f"distance from theory, {RELATIVE}")
 def jump(case: Case) -> Measured:
     """Compare the force right after the start with the jump that theory gives."""
-    time, theory = case.series.time, case.theory
+    time, theory = case.time, case.theory
     force = next((n for n in ("normal_force", "friction_force") if n in case.names), None)
     if 0.0 not in theory.scene.drive.jumps:
         raise NotMade("the drive does not jump at t = 0")
@@ -53,25 +69,17 @@ def jump(case: Case) -> Measured:
     fast = np.inf if theory.rates is None else abs(theory.rates.fast)
     first, after = (int(np.searchsorted(time, 0.0, side=side)) for side in ("left", "right"))
     if after == time.size or time[after] > fast:
-        raise NotMade(
-            f"no sample within the fast time constant, {fast * 1e3:.3g} ms, after the start"
-        )
+        raise NotMade(f"no sample in the fast time constant, {fast * 1e3:.3g} ms, after the start")
     excess, limit = case.excess(force), case.limit(force)
     k = max((first, after), key=lambda row: excess[row] / limit[row])
     return excess[k], limit[k], f"{force} at {time[k] * 1e3:.4g} ms"
 
 
-@check(
-    SAMPLING,
-    lambda case: "F12" if case.theory.scene.drive.rigid else "F22",
-    "s, mean distance of samples",
-)
 def sampling(case: Case) -> Measured:
     """Compare the mean distance of the samples during the transient with the slow time constant."""
-    rates, time = case.theory.rates, case.series.time
+    rates, time, changed = case.theory.rates, case.time, case.theory.last_change
     if rates is None:
         raise NotMade("a fixed indenter has no transient of its own")
-    changed = case.theory.last_change
     slow, start = abs(rates.slow), changed if changed < time[-1] else 0.0
     window = min(TRANSIENT * slow, time[-1] - start)
     inside = int(np.count_nonzero((time > start) & (time <= start + window)))
@@ -79,65 +87,140 @@ def sampling(case: Case) -> Measured:
     return window / max(inside, 1), case.tolerance * slow, note
 
 
-@check("impulse balance", "Eq. 17", "mean force that is missing, relative to the load")
+class Window(NamedTuple):
+    """The samples of a window, weights of force and inertia, and int phi dt."""
+
+    rows: slice
+    force: Array
+    inertia: Array
+    impulse: float
+
+    def missing_force(self, columns: Curves, support: Support, depth_0: float) -> float:
+        """Return the mean force in N/m that is missing from the balance."""
+        depth = columns["depth"][self.rows] - depth_0
+        force = support.weight - columns["normal_force"][self.rows] - support.spring * depth
+        return float(support.mass * (self.inertia @ depth) - self.force @ force) / self.impulse
+
+
+def windows(time: Array) -> Iterator[Window]:
+    """Yield windows of falling lengths with phi = (1 - s^2)^3, s from -1 to 1.
+
+    The weights of the inertia give exactly nothing for a uniform motion, as the integral does.
+    """
+    for length in (time.size >> halving for halving in range(LONGEST_WINDOWS)):
+        if length < SHORTEST_WINDOW:
+            return
+        for start in range(0, time.size - length + 1, max(length // OVERLAP, 1)):
+            rows = slice(start, start + length)
+            t = time[rows]
+            half = 0.5 * (t[-1] - t[0])
+            if half <= 0.0:
+                continue
+            s = (t - t[0]) / half - 1.0
+            rest = 1.0 - s * s
+            weight = np.gradient(t)  # of the trapezoidal rule: phi is zero at both ends
+            bend = weight * 6.0 * rest * (5.0 * s * s - 1.0) / half**2
+            line = np.stack([np.ones_like(s), s])
+            bend -= weight * (np.linalg.solve((line * weight) @ line.T, line @ bend) @ line)
+            force = weight * rest**3
+            yield Window(rows, force, bend, float(force.sum()))
+
+
 def balance(case: Case) -> Measured:
-    """Compare M z'' with F_z - W, of the data alone, over windows."""
-    columns, now = case.series.columns, case.now
-    support, static, allowed = case.theory.scene.support, case.theory.static, case.allowance
+    """Compare M z'' with F_z - W, of the data alone, over windows, without differentiating noisy data.
+
+    For a test function phi that vanishes at both ends of a window with its derivative, partial integration
+    of M z'' = F_z - W - k_s (z - z_0), with z = -delta, gives
+
+        int phi'' M delta dt = int phi (W - F_z - k_s (delta - delta_0)) dt.
+
+    The difference of both sides, over int phi dt, is the mean force that is missing in the data.
+    """
+    depth, force = case.bands["depth"], case.bands["normal_force"]
+    support, static, M = (
+        case.theory.scene.support,
+        case.theory.static,
+        case.theory.scene.support.mass,
+    )
     if case.theory.scene.held:
         raise NotMade("the indenter is fixed")
-    if "depth" not in columns or "normal_force" not in columns:
-        raise NotMade("it needs the depth and the normal force")
-    smear = np.nan_to_num(allowed.high["normal_force"] - allowed.low["normal_force"])
-    smooth = np.nan_to_num(allowed.systematic["normal_force"]) + 0.5 * smear
+    smooth = np.nan_to_num(force.systematic) + 0.5 * np.nan_to_num(force.high - force.low)
     found = []
-    for window in windows(case.series.time):
-        part = slice(window.start, window.stop)
+    for window in windows(case.time):
+        rows, inertia = window.rows, M * window.inertia
         lacks, sampled = (
-            abs(missing_force(window, c, support, static.depth)) for c in (columns, now)
+            abs(window.missing_force(c, support, static.depth)) for c in (case.columns, case.now)
         )
-        sigmas = allowed.noise["depth"][part], allowed.noise["normal_force"][part]
-        random = random_part(window, *sigmas, support.mass)
-        steady = float(
-            np.abs(window.force) @ smooth[part]
-            + support.mass * np.abs(window.inertia) @ allowed.rounding["depth"][part]
+        steady = np.abs(window.force) @ smooth[rows] + np.abs(inertia) @ depth.rounding[rows]
+        sigma = np.hypot(
+            np.linalg.norm(depth.noise[rows] * inertia),
+            np.linalg.norm(force.noise[rows] * window.force),
         )
-        limit = case.tolerance * (
-            2.0 * sampled + steady / window.impulse + extreme(case.series.time.size) * random
-        )
-        span = case.series.time[[window.start, window.stop - 1]] * 1e3
-        found.append((lacks, limit, f"worst from {span[0]:.4g} to {span[1]:.4g} ms"))
+        random = extreme(case.time.size) * float(sigma)
+        limit = case.tolerance * (2.0 * sampled + (float(steady) + random) / window.impulse)
+        first, last = case.time[rows][[0, -1]] * 1e3
+        found.append((lacks, limit, f"worst from {first:.4g} to {last:.4g} ms"))
     if not found:
         raise NotMade("too few samples for a window")
     lacks, limit, note = max(found, key=lambda each: each[0] / each[1])
     return lacks / static.load, limit / static.load, note
 
 
-def curves(case: Case) -> Iterator[Check]:
-    """Each curve against theory: the value that is worst for what is allowed, and all together."""
+def largest(case: Case, name: str) -> Measured:
+    """Compare the value of a curve that is worst for what is allowed."""
+    excess, limit, time = case.excess(name), case.limit(name), case.time * 1e3
+    ratio = excess / limit
+    k, wrong = int(np.argmax(ratio)), np.flatnonzero(ratio > 1.0)
+    first = f", first disagreement at {time[wrong[0]]:.4g} ms" if wrong.size else ""
+    return excess[k], limit[k], f"worst at {time[k]:.4g} ms{first}"
+
+
+def root_mean_square(case: Case, name: str) -> Measured:
+    """Compare all values of a curve together."""
+    return rms(case.excess(name)), case.rms_limit(name), ""
+
+
+def rows_of(case: Case) -> Iterator[Row]:
+    """Yield the checks for a case in the order in which they are shown."""
+    scene = case.theory.scene
+    yield Row(
+        SAMPLING, "F12" if scene.drive.rigid else "F22", "s, mean distance of samples", sampling
+    )
+    rest = "depth, relative to the static depth"
+    yield Row("initial rest state", "Eq. 40", rest, initial_rest, ("depth",))
+    yield Row("jump at t = 0+", "F11", f"distance from theory, {RELATIVE}", jump)
+    missing = "mean force that is missing, relative to the load"
+    yield Row("impulse balance", "Eq. 17", missing, balance, ("depth", "normal_force"))
     for name in case.names:
-        title, excess, limit = name.replace("_", " "), case.excess(name), case.limit(name)
-        ratio = excess / limit
-        k = int(np.argmax(ratio))
-        wrong = np.flatnonzero(ratio > 1.0)
-        time = case.series.time * 1e3
-        note = f"worst at {time[k]:.4g} ms"
-        if wrong.size:
-            note += f", first disagreement at {time[wrong[0]]:.4g} ms"
-        for kind, measured, allowed, words in (
-            ("largest", excess[k], limit[k], note), ("RMS", rms(excess), case.rms_limit(name), "")
-        ):  # fmt: skip
-            yield made(f"{title}, {kind}", EQUATIONS[name], RELATIVE, measured, allowed, words)
-
-
-CHECKS: tuple[Callable[[Case], Iterator[Check]], ...] = (
-    sampling, initial_rest, jump, balance, curves, fast_constant, slow_constant, steady_limit, phase,
-    sawtooth, elements, stability,
-)  # fmt: skip
-"""In the order in which they are shown."""
+        title, equation = name.replace("_", " "), EQUATIONS[name]
+        yield Row(f"{title}, largest", equation, RELATIVE, partial(largest, name=name))
+        yield Row(f"{title}, RMS", equation, RELATIVE, partial(root_mean_square, name=name))
+    fits = "relative difference of the fits"
+    yield Row("fast time constant", "F12", fits, fast_constant, ("normal_force",))
+    yield Row("slow time constant", "F12", fits, slow_constant, ("depth",))
+    limit = "F17" if scene.foundation.arms else "F1" if scene.indenter.per_width else "F20"
+    yield Row("steady limit", limit, RELATIVE, steady_limit)
+    if not scene.drive.rigid:
+        error = "error that elements and steps may make in the sliding velocity, relative to it"
+        yield Row(PHASE, "F22", error, phase)
+    sigma = "standard deviation, relative to the load"
+    yield Row(NOISE, "F15", sigma, sawtooth, ("normal_force",))
+    yield Row(COARSE, "F15", "half an element's force, relative to the load", elements)
+    yield Row(NUMBER, "F15", "dt C L/M", stability)
 
 
 def judge(case: Case) -> tuple[Check, ...]:
-    """Make every check; that of the phase of a cycle where the drive has a spring."""
-    rigid = case.theory.scene.drive.rigid
-    return tuple(c for make in CHECKS if make is not phase or not rigid for c in make(case))
+    """Make every check."""
+    checks = []
+    for name, equation, unit, measure, columns in rows_of(case):
+        try:
+            for column in columns:
+                if column not in case.columns:
+                    raise NotMade(f"the data hold no {column.replace('_', ' ')}")
+            measured, allowed, note = measure(case)
+        except NotMade as reason:
+            checks.append(Check(name, None, None, None, equation, "", f"not made: {reason}"))
+        else:
+            ok = bool(measured <= allowed)
+            checks.append(Check(name, float(measured), float(allowed), ok, equation, unit, note))
+    return tuple(checks)

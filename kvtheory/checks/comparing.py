@@ -1,35 +1,62 @@
-"""Reading, theory, checks and diagnosis put together."""
+"""A series compared with theory: the checks, the verdict, and the fault that explains a disagreement best."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 
 import numpy as np
 
-from kvtheory.checks.checklist import judge
-from kvtheory.checks.comparison_case import COARSEST, LARGEST_SAWTOOTH, make_case
-from kvtheory.checks.diagnosis import diagnose, verdict
-from kvtheory.checks.discretization import COARSE
+from kvtheory.checks import faults
+from kvtheory.checks.checklist import SAMPLING, judge
+from kvtheory.checks.comparison_case import COARSEST, LARGEST_SAWTOOTH, Case, make_case
+from kvtheory.checks.contact_rules import mistakes
+from kvtheory.checks.discretization import COARSE, UNSTABLE, symptoms
+from kvtheory.checks.fitting import Bench, Hypothesis, Trial, bench
 from kvtheory.checks.reading import Series
-from kvtheory.checks.theory import Methods, Theory
-from kvtheory.results import TRANSIENT_UNITS
+from kvtheory.checks.settling import PHASE
+from kvtheory.checks.theory import Theory
+from kvtheory.results import TRANSIENT_UNITS, DivergenceError
 from kvtheory.results.comparison import Check, Comparison, Explanation
-from kvtheory.scene.model import Scene
 
+Family = Callable[[Bench], Iterator[Hypothesis]]
+
+FAMILIES: tuple[tuple[Family, float], ...] = (
+    (faults.signs_and_units, 0.5), (faults.other_scenes, 0.97), (faults.time_units, 0.5),
+    (faults.time_offset, 0.97), (faults.parameters, 0.9), (faults.damper, 0.9),
+    (faults.scales_and_offsets, 0.97), (mistakes, 1.0),
+)  # fmt: skip
+"""The families in the order in which they are tried, and the part of the difference that one of their faults
+must explain to end the search: a sign or a unit is not fitted, so that little is enough."""
+BY_ELEMENTS: tuple[tuple[Family, float], ...] = (
+    (faults.signs_and_units, 0.5), (faults.other_scenes, 0.9), (faults.scales_and_offsets, 0.97),
+    (faults.parameters, 0.9),
+)  # fmt: skip
+"""Those where each theory is a run of many elements."""
+NOT_TRIED = (
+    "; other units and offsets of the time, and wrong contact rules, are not tried where theory is a "
+    "simulation"
+)
+NAMED = 0.4
+"""Part of the difference that a fault must explain to be named."""
+SHOWN = 4
+"""Explanations that are kept."""
 MOST_NAMED = 20
 """Unused columns that are named in the diagnosis."""
+INCONCLUSIVE = {
+    SAMPLING: "The data are sampled too coarsely to show the transient",
+    PHASE: "Theory cannot say where the cycle of this motion is by now, for such elements and steps",
+}
+"""Checks whose failure is no evidence against the data, and what it does say."""
+MEMORY_UNUSED = (
+    " The sliding never reverses, so that the memory of the free surface was not tested."
+)
 
 
 @np.errstate(over="ignore", invalid="ignore")  # data that diverge overflow when squared
 def compare(
-    scene: Scene,
-    series: Series,
-    methods: Methods,
-    per_length: float | None,
-    scheme: str | None,
-    tolerance: float,
+    theory: Theory, series: Series, per_length: float | None, scheme: str | None, tolerance: float
 ) -> Comparison:
     """Compare a series with theory; `kvtheory.compare` documents it."""
-    theory, series = Theory(scene, methods), replace(series, scheme=scheme or series.scheme)
+    series = replace(series, scheme=scheme or series.scheme)
     try:
         case = make_case(theory, series, per_length, tolerance, COARSEST)
     except ArithmeticError as error:
@@ -44,10 +71,10 @@ def compare(
         checks = judge(case)
     text, explanations = diagnose(case, checks)
     if series.ignored:
-        several = series.ignored[:MOST_NAMED]
-        more = f" and {len(series.ignored) - len(several)} more" * (several != series.ignored)
-        text += f" Columns that were not used: {', '.join(several)}{more}."
-    allowed = {name: case.limit(name) * case.theory.scales[name] for name in case.names}
+        unnamed = len(series.ignored) - MOST_NAMED
+        more = f" and {unnamed} more" if unnamed > 0 else ""
+        text += f" Columns that were not used: {', '.join(series.ignored[:MOST_NAMED])}{more}."
+    allowed = {name: case.allowed(name) for name in case.names}
     return Comparison(
         verdict(checks), checks, text, explanations, series.source, tolerance,
         dict(series.columns), dict(case.now), allowed, theory.units,
@@ -55,28 +82,97 @@ def compare(
 
 
 def broken_off(
-    scene: Scene,
-    rows: Sequence[Sequence[float]],
-    reason: str,
-    methods: Methods,
-    scheme: str | None,
-    tolerance: float,
+    theory: Theory, error: DivergenceError, scheme: str | None, tolerance: float
 ) -> Comparison:
-    """Return the verdict on a simulation that diverged, which is not compared with theory.
-
-    `rows` are its results until then, in the order of `TRANSIENT_UNITS`.
-    """
-    series = dict(zip(TRANSIENT_UNITS, np.array(rows).T, strict=True))
-    judge_of = Theory(scene, methods)
-    theory = dict(judge_of.at(series["time"]))
-    missing = 1.0 - float(series["time"][-1]) / scene.run.duration
+    """Return the verdict on a simulation of ours that diverged, which is not compared with theory."""
+    series = dict(zip(TRANSIENT_UNITS, np.array(error.rows).T, strict=True))
+    now = theory.at(series["time"])
+    missing = 1.0 - float(series["time"][-1]) / theory.scene.run.duration
     unit = "part of the duration that is missing"
     check = Check("run to the end", missing, 0.0, False, "F15", unit)
-    name = "unstable time step"
-    fault = Explanation(name, f"the time step is unstable (F15): {reason}", 1.0, True)
-    text = f"{fault.text[0].upper()}{fault.text[1:]}. Failed: {check.name} (F15)."
-    allowed = {name: np.zeros_like(theory[name]) for name in series if name in theory}
+    text = f"the time step is unstable (F15): {error}"
+    allowed = {name: np.zeros_like(now[name]) for name in series if name in now}
     return Comparison(
-        "disagrees", (check,), text, (fault,), scheme or "our own simulation", tolerance,
-        series, theory, allowed, judge_of.units,
+        "disagrees", (check,), f"{_sentence(text)}. Failed: {check.name} (F15).",
+        (Explanation(UNSTABLE, text, 1.0, True),), scheme or "our own simulation", tolerance,
+        series, now, allowed, theory.units,
     )  # fmt: skip
+
+
+def verdict(checks: Sequence[Check]) -> str:
+    """Return whether the data agree; if only sampling or the phase of a cycle fails, that is not known."""
+    failed = [check.name for check in checks if check.ok is False]
+    if not failed:
+        return "agrees"
+    return "cannot tell" if all(name in INCONCLUSIVE for name in failed) else "disagrees"
+
+
+def diagnose(case: Case, checks: Sequence[Check]) -> tuple[str, tuple[Explanation, ...]]:
+    """Return the diagnosis in words, and the faults behind it, the best first."""
+    failed, known = [check for check in checks if check.ok is False], verdict(checks)
+    made = sum(check.ok is not None for check in checks)
+    if known == "agrees":
+        one_way = case.theory.scene.drive.constant and case.theory.scene.drive.rigid
+        return f"All {made} checks that could be made passed.{MEMORY_UNUSED * one_way}", ()
+    if known == "cannot tell":
+        why = "; ".join(INCONCLUSIVE[check.name] for check in failed)
+        return f"{why}; all of the other {made - len(failed)} checks that could be made passed.", ()
+    found = sorted([*symptoms(case, failed), *explanations(case)], key=lambda each: -each.rank)
+    named = [each for each in found if each.rank >= NAMED]
+    return _words(case, failed, named), tuple((named or found)[:SHOWN])
+
+
+def explanations(case: Case) -> list[Explanation]:
+    """Try every fault and order them: those that explain the data first, then by what they leave."""
+    rows = bench(case)
+    trials: list[Trial] = []
+    families = BY_ELEMENTS if case.theory.by_elements else FAMILIES
+    for number, (family, good) in enumerate(families):
+        tried: list[Trial] = []
+        for hypothesis in family(rows):
+            tried.append(rows.tried(hypothesis, min((t.score for t in tried), default=np.inf)))
+            count = len(trials) + len(tried)
+            case.theory.methods.tell(number / len(families), f"{count} faults tried")
+        fitted = [trial for trial in tried if trial.hypothesis.powers]
+        best = min(fitted, key=lambda trial: trial.score, default=None)
+        if best and best.enough:
+            alike = rows.indistinguishable(best, [t.hypothesis for t in fitted if t is not best])
+            symbols = tuple(name.removeprefix(faults.WRONG) for name in alike)
+            tried = [t._replace(alike=symbols) if t is best else t for t in tried]
+        trials += tried
+        if any(trial.enough and trial.score <= (1.0 - good) * rows.start for trial in trials):
+            break
+    found: dict[str, Explanation] = {}
+    for fault, score, enough, x, alike in sorted(trials, key=lambda trial: trial.score):
+        explained = 1.0 - score / rows.start if rows.start else 0.0
+        found.setdefault(fault.name, Explanation(
+            fault.name, fault.text(x), explained, enough and explained >= NAMED,
+            fault.factor(x), explained, alike,
+        ))  # fmt: skip
+    return [each for each in found.values() if each.rank > 0.0]
+
+
+def _words(case: Case, failed: Sequence[Check], named: Sequence[Explanation]) -> str:
+    """Say what explains the disagreement, what else would, and which checks failed."""
+    which = "; ".join(f"{check.name} ({check.equation})" for check in failed)
+    if not named:
+        not_tried = NOT_TRIED * case.theory.by_elements
+        return f"No single known fault explains most of the difference{not_tried}. Failed: {which}."
+    first, *rest = named
+    symbol, text, also = first.name.removeprefix(faults.WRONG), _sentence(first.text), ""
+    if first.enough:
+        others = [
+            e for e in rest if e.enough and e.name.removeprefix(faults.WRONG) not in first.alike
+        ]
+        also = f" Also possible: {'; '.join(each.text for each in others)}." if others else ""
+    else:
+        part = "" if first.explained is None else f", {first.explained:.0%} of the difference"
+        text = f"Closest, but not all{part}: {first.text}"
+    if first.alike:
+        together = f"{symbol} and {' or '.join(first.alike)}"
+        also = f" {together} cannot be told apart by these data.{also}"
+    return f"{text}.{also} Failed: {which}."
+
+
+def _sentence(text: str) -> str:
+    return text[0].upper() + text[1:]

@@ -58,16 +58,16 @@ MISTAKES = (
             "static depth (Eq. 40)", {"start": 0.0}),
 )  # fmt: skip
 
-MORE = 0.05
-"""By which the initial depth is changed to see what it does."""
+DEEPER = 0.05
+"""Relative change of the initial depth that is simulated to see its effect."""
 PER_HALF_LENGTH = 250.0
 """Elements in the static half length of a simulation with a mistake: its difference to one without is used,
 in which most discretization errors cancel."""
 LONGEST_RUN = 1500
 """Steps of such a simulation; its later curves are taken as constant."""
 SPAN, LONGEST_SEARCHED = 8.0, 5000
-"""A time step that is not known is sought up to so many times longer and shorter than the one assumed, with
-so many steps."""
+"""A time step that is not known is searched for up to so many times longer and shorter than the one assumed,
+with at most so many steps."""
 INSTANTS = 400
 """Output times, about."""
 STABLE = 0.5
@@ -81,22 +81,20 @@ def mistakes(bench: Bench) -> Iterator[Hypothesis]:
     right = _simulated(bench, {})
     if right is None:
         return
-    scene, resolution = bench.case.theory.scene, bench.case.resolution
+    scene, resolution = bench.theory.scene, bench.resolution
     span = 0.0 if resolution.step_known else math.log(SPAN)
 
     def changed(wrong: Curves | None, share: float = 1.0) -> Pair | None:
         """Return theory plus a share of the change that a mistake makes."""
         if wrong is None:
             return None
-        moving = bench.time >= 0.0
-        change = {name: np.nan_to_num(wrong[name] - right[name]) for name in CURVES}
-        shares = {name: share * np.where(moving, change[name], 0.0) for name in CURVES}
-        return bench.columns, {name: bench.now[name] + shares[name] for name in CURVES}
+        moving = share * (bench.time >= 0.0)
+        change = {name: moving * np.nan_to_num(wrong[name] - right[name]) for name in CURVES}
+        return bench.columns, {name: bench.now[name] + change[name] for name in CURVES}
 
     def made(x: float, mistake: Mistake) -> Pair | None:
-        if not mistake.by_step:
-            return changed(_simulated(bench, mistake.does))
-        return changed(_by_steps(bench, mistake.does, resolution.time_step * math.exp(x)))
+        step = resolution.time_step * math.exp(x) if mistake.by_step else None
+        return changed(_simulated(bench, mistake.does, step))
 
     for mistake in MISTAKES:
         never = mistake.comes_back and scene.drive.constant and scene.drive.rigid
@@ -105,7 +103,7 @@ def mistakes(bench: Bench) -> Iterator[Hypothesis]:
                 mistake.name, lambda _x, text=mistake.text: text,  # type: ignore[misc]
                 partial(made, mistake=mistake), span=span * mistake.by_step,
             )  # fmt: skip
-    deeper = None if scene.held else _simulated(bench, {"start": 1.0 + MORE})
+    deeper = None if scene.held else _simulated(bench, {"start": 1.0 + DEEPER})
     if deeper is not None:
         yield Hypothesis(
             "wrong initial depth",
@@ -113,43 +111,34 @@ def mistakes(bench: Bench) -> Iterator[Hypothesis]:
                 f"the depth at t = 0 is {1.0 + x:.4g} times the static depth, at which theory has the "
                 "indenter at rest (Eq. 40)"
             ),
-            lambda x: changed(deeper, x / MORE),
+            lambda x: changed(deeper, x / DEEPER),
             [0.0],
             factor=lambda x: 1.0 + x,
         )
 
 
-def _simulated(bench: Bench, does: Mapping[str, Any]) -> Curves | None:
-    """Return the curves of elements that make a mistake, at the times of the rows."""
-    half, speed = bench.case.theory.static.half_length, bench.case.theory.motion.highest_speed
-    step = min(PASSED * half / PER_HALF_LENGTH / speed if speed else math.inf, _stable(bench))
-    times, index = np.unique(np.clip(bench.time, 0.0, LONGEST_RUN * step), return_inverse=True)
-    found = _elements(bench, step, times, does)
-    return found and {name: values[index] for name, values in found.items()}
+def _simulated(bench: Bench, does: Mapping[str, Any], step: float | None = None) -> Curves | None:
+    """Return the curves of elements that make a mistake, or None where they have none.
 
-
-def _by_steps(bench: Bench, does: Mapping[str, Any], step: float) -> Curves | None:
-    """Return the same by this time step (s), or the longest that is stable, with none shortened."""
-    step = min(step, _stable(bench))
-    end = min(float(bench.time[-1]), LONGEST_SEARCHED * step)
-    apart = 2.0 * step * math.ceil(end / (2.0 * step * INSTANTS))
-    times = np.minimum(apart * np.arange(math.ceil(end / apart) + 1), end)
-    found = _elements(bench, step, times, does)
-    return found and {name: np.interp(bench.time, times, values) for name, values in found.items()}
-
-
-def _stable(bench: Bench) -> float:
-    """Return a time step in s at which the paper's scheme is stable."""
-    scene, half = bench.case.theory.scene, bench.case.theory.static.half_length
-    contact = 2.0 * half * scene.foundation.damping
-    return math.inf if scene.held else STABLE * RK4_LIMIT * scene.support.mass / contact
-
-
-def _elements(bench: Bench, step: float, times: Array, does: Mapping[str, Any]) -> Curves | None:
-    """Return the curves of elements that make a mistake, or None where they have none."""
-    theory = bench.case.theory
-    scene, spacing = theory.scene, theory.static.half_length / PER_HALF_LENGTH
+    With a `step` (s), all time steps are that long, or the longest that is stable; without, the outputs
+    are at the times of the rows, for which steps may be shortened.
+    """
+    theory, now = bench.theory, bench.time
+    scene, half = theory.scene, theory.static.half_length
+    spacing, speed = half / PER_HALF_LENGTH, theory.motion.highest_speed
+    damping = 2.0 * half * scene.foundation.damping
+    stable = math.inf if scene.held else STABLE * RK4_LIMIT * scene.support.mass / damping
+    if step is None:
+        step = min(PASSED * spacing / speed if speed else math.inf, stable)
+        now = np.clip(now, 0.0, LONGEST_RUN * step)
+        times: Array = np.unique(now)
+    else:
+        step = min(step, stable)
+        end = min(float(now[-1]), LONGEST_SEARCHED * step)
+        apart = 2.0 * step * math.ceil(end / (2.0 * step * INSTANTS))
+        times = np.minimum(apart * np.arange(math.ceil(end / apart) + 1), end)
     try:
-        return curves(theory.methods.elements(scene, spacing, step, times.tolist(), does), scene)
+        found = theory.methods.elements(scene, spacing, step, times.tolist(), does)
     except (ValueError, ArithmeticError):
         return None
+    return {name: np.interp(now, times, values) for name, values in curves(found, scene).items()}

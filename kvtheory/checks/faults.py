@@ -14,7 +14,6 @@ import numpy as np
 
 from kvtheory.checks.fitting import Bench, Hypothesis, Pair, fixed, scaled_scene
 from kvtheory.checks.theory import CURVES
-from kvtheory.scene import Scene
 from kvtheory.scene.foundations import Foundation
 
 
@@ -46,7 +45,6 @@ PARAMETERS = (
 """What may be wrong in a scene; those that the scene does not have are left out."""
 PER_WIDTH = {"kg/mm": ("kg", 1.0), "MN/m^2": ("MN/m", 1e-6), "N s/m^2": ("N s/m", 1.0)}
 """Units of a line contact, and those of a ball in their place."""
-
 WRONG = "wrong "
 """How the names of faults begin that are a parameter."""
 GROUPS = {
@@ -64,12 +62,11 @@ SIGNS = {
     "normal_force": ": F_z on the indenter is positive (Eqs. 12 and 14)",
 }
 """What fixes the sign of a column."""
-DRIFTS = "depth", "normal_force", "friction_force", "spring_force"
+MEASURED = "normal_force", "friction_force", "spring_force", "depth"
 """Columns that a sensor measures, and whose zero may be off."""
-
 FACTORS = (1.0, 0.5, 2.0, 0.1, 10.0, 1e-3, 1e3)
 """Factors of a parameter from which the fit may start: near 1, where mistakes are, and wrong units."""
-WILDEST = 2e3
+LARGEST_FACTOR = 2e3
 """Factor up and down beyond which a fitted parameter explains nothing: it is farther than a wrong unit."""
 DAMPING_SHARES = (0.01, 0.1, 1.0)
 """Of critical damping: from where the fit of a damper may start."""
@@ -95,19 +92,18 @@ def _power_of_ten(factor: float) -> int | None:
 
 def parameters(bench: Bench) -> Iterator[Hypothesis]:
     """Fit each parameter of the scene; from near 1 alone where each theory is a run of many elements."""
-    theory = bench.case.theory
-    values = dict(theory.scene.values())
-    values.setdefault("drive.velocity", theory.final_velocity)
+    theory, scene = bench.theory, bench.theory.scene
+    values = {"drive.velocity": theory.final_velocity, **scene.values()}
     starts = [0.0] if theory.by_elements else np.log(FACTORS).tolist()
 
     def scaled(x: float, powers: Mapping[str, float]) -> Pair | None:
-        if abs(x) > math.log(WILDEST):
+        if abs(x) > math.log(LARGEST_FACTOR):
             return None
-        return bench.against(scaled_scene(theory.scene, powers, math.exp(x)))
+        return bench.against(scaled_scene(scene, powers, math.exp(x)))
 
     def text(x: float, parameter: Parameter) -> str:
         unit, per_si = parameter.unit, parameter.per_si
-        if not theory.scene.indenter.per_width:
+        if not scene.indenter.per_width:
             unit, per_si = PER_WIDTH.get(unit, (unit, per_si))
         old, factor = values[next(iter(parameter.powers))] * per_si, math.exp(x)
         ten = " (a power of ten: check its unit)" if _power_of_ten(factor) else ""
@@ -124,42 +120,42 @@ def parameters(bench: Bench) -> Iterator[Hypothesis]:
 
 def other_scenes(bench: Bench) -> Iterator[Hypothesis]:
     """Replace arms by a damper, the spring in the drive by a rigid drive."""
-    scene = bench.case.theory.scene
-    simpler: list[tuple[str, str, Scene]] = []
+    scene = bench.theory.scene
     if scene.foundation.arms:
         plain = Foundation(scene.foundation.stiffness, scene.foundation.retardation_time)
         text = (
             "the foundation of the data is Kelvin-Voigt, with the damping C = sum K_i tau_i: its arms have "
             "no stiffness and no relaxation times, which count unless the motion is slow (F18)"
         )
-        simpler.append(("Kelvin-Voigt instead of arms", text, replace(scene, foundation=plain)))
+        pair = bench.against(replace(scene, foundation=plain))
+        yield fixed("Kelvin-Voigt instead of arms", text, pair)
     if not scene.drive.rigid:
+        rigid = replace(scene.drive, stiffness=None, damping=None, mass=None)
         text = (
             "the drive of the data is rigid: the indenter slides at the velocity of the drive, while it "
             "oscillates on the spring of the scene (F22)"
         )
-        rigid = replace(scene.drive, stiffness=None, damping=None, mass=None)
-        simpler.append(("rigid drive instead of a spring", text, replace(scene, drive=rigid)))
-    for name, text, other in simpler:
-        yield fixed(name, text, bench.against(other))
+        pair = bench.against(replace(scene, drive=rigid))
+        yield fixed("rigid drive instead of a spring", text, pair)
 
 
 def damper(bench: Bench) -> Iterator[Hypothesis]:
     """Fit a damper beside a spring that has none."""
-    scene = bench.case.theory.scene
+    scene = bench.theory.scene
     if scene.drive.stiffness is None or scene.drive.damping:
         return
     critical = 2.0 * math.sqrt(scene.drive.stiffness * scene.drive_mass)
-
-    def damped(x: float) -> Pair | None:
-        drive = scene.drive.changed(damping=math.exp(x) * critical)
-        return bench.against(replace(scene, drive=drive))
-
-    def text(x: float) -> str:
-        size = f"{math.exp(x) * critical:.4g} N s/m^2"
-        return f"the data fit a damper c_x = {size} beside the spring in the drive, which has none"
-
-    yield Hypothesis(f"{WRONG}c_x", text, damped, np.log(DAMPING_SHARES).tolist())
+    yield Hypothesis(
+        f"{WRONG}c_x",
+        lambda x: (
+            f"the data fit a damper c_x = {math.exp(x) * critical:.4g} N s/m^2 beside the spring in the "
+            "drive, which has none"
+        ),
+        lambda x: bench.against(
+            replace(scene, drive=scene.drive.changed(damping=math.exp(x) * critical))
+        ),
+        np.log(DAMPING_SHARES).tolist(),
+    )
 
 
 def signs_and_units(bench: Bench) -> Iterator[Hypothesis]:
@@ -173,61 +169,59 @@ def signs_and_units(bench: Bench) -> Iterator[Hypothesis]:
             sign = "" if exact > 0.0 else " and has the wrong sign"
             text = f"{names}: off by a power of ten, 10^{-power}{sign}; check the unit"
             yield fixed(f"unit of {title}", text, pair, 1.0 / exact)
-    if all(name in bench.names for name in GROUPS["both edges"]):
-        first, last = (bench.columns[name] for name in GROUPS["both edges"])
-        swapped = {**bench.columns, "leading_edge": last, "trailing_edge": first}
+    edges = GROUPS["both edges"]
+    if set(edges) <= set(bench.names):
+        exchanged = dict(zip(edges, [bench.columns[name] for name in reversed(edges)], strict=True))
         text = (
             "leading and trailing edge are exchanged: the leading edge is where the foundation enters, at "
             "x < 0 for V > 0"
         )
-        yield fixed("edges exchanged", text, (swapped, bench.now))
-    backward = scaled_scene(bench.case.theory.scene, {"drive.velocity": 1.0}, -1.0)
+        yield fixed("edges exchanged", text, ({**bench.columns, **exchanged}, bench.now))
+    backward = scaled_scene(bench.theory.scene, {"drive.velocity": 1.0}, -1.0)
     text = "the base moves in the other direction: x and V have the other sign"
     yield fixed("direction of the drive", text, bench.against(backward), -1.0)
 
 
 def scales_and_offsets(bench: Bench) -> Iterator[Hypothesis]:
     """Multiply columns by what fits best, shift them, and shift the point that friction acts about."""
+    theory, columns = bench.theory, bench.columns
     for title, factor, exact, pair in _factors(bench):
         if _power_of_ten(factor) is None:
-            text = (
-                f"{title.replace('_', ' ')}: {1.0 / exact:.4g} times theory, while the rest agrees"
+            scale = f"{1.0 / exact:.4g} times theory, while the rest agrees"
+            yield fixed(
+                f"scale of {title}", f"{title.replace('_', ' ')}: {scale}", pair, 1.0 / exact
             )
-            yield fixed(f"scale of {title}", text, pair, 1.0 / exact)
-    theory, columns = bench.case.theory, bench.columns
 
-    def shifted(x: float, name: str, by: object) -> Pair:
-        return {**columns, name: columns[name] - x * np.asarray(by)}, bench.now
+    def shifted(title: str, name: str, by: object, words: str, unit: float) -> Hypothesis:
+        """Return the fault of a column that is off by x times `by`; the text shows x times `unit`."""
+        return Hypothesis(
+            f"{title} of {name}",
+            lambda x: words.format(x * unit, 1e3 * x * unit),
+            lambda x: ({**columns, name: columns[name] - x * np.asarray(by)}, bench.now),
+            [0.0],
+            factor=partial(float.__mul__, unit),
+        )
 
-    for name in (name for name in bench.names if name in DRIFTS):
-        scale, unit = theory.scales[name], theory.units[name]
-        yield Hypothesis(
-            f"offset of {name}",
-            lambda x, n=name, s=scale, u=unit: (  # type: ignore[misc]
-                f"{n.replace('_', ' ')}: off by {x * s:.4g} {u} throughout, while the rest agrees"
-            ),
-            partial(shifted, name=name, by=scale), [0.0], factor=partial(float.__mul__, scale),
-        )  # fmt: skip
+    for name in (name for name in bench.names if name in MEASURED):
+        off = f"off by {{:.4g}} {theory.units[name]} throughout, while the rest agrees"
+        words = f"{name.replace('_', ' ')}: {off}"
+        yield shifted("offset", name, theory.scales[name], words, theory.scales[name])
     if "friction_force" in bench.names:
-        half, R = theory.static.half_length, theory.scene.indenter.radius  # type: ignore[union-attr]
-        F_z = columns.get("normal_force", bench.now["normal_force"])
-        yield Hypothesis(
-            "lever arm of friction_force",
-            lambda x: (
-                f"friction force: its lever arm is off by {x * half * 1e3:.3g} mm, F_x being the moment "
-                "of the pressure about another point than the lowest of the indenter (Eqs. 13 and 15)"
-            ),
-            partial(shifted, name="friction_force", by=half / R * F_z), [0.0],
-            factor=partial(float.__mul__, half),
-        )  # fmt: skip
+        half = theory.static.half_length
+        moment = half / theory.radius * columns.get("normal_force", bench.now["normal_force"])
+        words = (
+            "friction force: its lever arm is off by {1:.3g} mm, F_x being the moment of the pressure about "
+            "another point than the lowest of the indenter (Eqs. 13 and 15)"
+        )
+        yield shifted("lever arm", "friction_force", moment, words, half)
 
 
 def _factors(bench: Bench) -> Iterator[tuple[str, float, float, Pair]]:
     """Yield by group of columns the factor that fits best, the one to try, and the pair that it gives."""
     for title, group in GROUPS.items():
-        if not all(name in bench.names for name in group):
+        if not set(group) <= set(bench.names):
             continue
-        limits = [bench.case.limit(n) * bench.case.theory.scales[n] for n in group]
+        limits = [bench.allowed(n) for n in group]
         data, theory = (
             np.array([c[n] for n in group]) / limits for c in (bench.columns, bench.now)
         )
@@ -243,24 +237,21 @@ def _factors(bench: Bench) -> Iterator[tuple[str, float, float, Pair]]:
 
 def time_units(bench: Bench) -> Iterator[Hypothesis]:
     """Multiply the times by powers of ten; a cycle on a spring goes on, and is not followed for too long."""
-    scene, end = bench.case.theory.scene, float(bench.time[-1])
+    scene, end = bench.theory.scene, float(bench.time[-1])
     longest = math.inf if scene.drive.rigid else LONGEST * max(scene.run.duration, end)
     for power in (power for power in DECADES if end * 10.0**power <= longest):
         text = f"time: off by a power of ten, 10^{-power}; check the unit"
-        yield fixed(
-            "unit of time", text, bench.against(scene, bench.time * 10.0**power), 10.0**-power
-        )
+        pair = bench.against(scene, bench.time * 10.0**power)
+        yield fixed("unit of time", text, pair, 10.0**-power)
 
 
 def time_offset(bench: Bench) -> Iterator[Hypothesis]:
     """Shift the times: from none, from the start of the data, and from where the force changes first."""
-    unit = HUNDREDTH * float(bench.time[-1] - bench.time[0])
-    name = next(n for n in ("normal_force", "friction_force", "spring_force", "depth")
-                if n in bench.columns)  # fmt: skip
-    change = np.abs(bench.columns[name] - bench.columns[name][0])
+    scene, unit = bench.theory.scene, HUNDREDTH * float(bench.time[-1] - bench.time[0])
+    values = bench.columns[next(name for name in MEASURED if name in bench.columns)]
+    change = np.abs(values - values[0])
     onset = bench.time[np.argmax(change >= ONSET * np.nanmax(change))]
     known = [0.0, float(bench.time[0]) / unit, float(onset) / unit]
-    scene = bench.case.theory.scene
     yield Hypothesis(
         "time offset",
         lambda x: (

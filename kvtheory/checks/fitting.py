@@ -7,36 +7,37 @@ data can distinguish them.
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
-from functools import cached_property
+from dataclasses import dataclass, fields, replace
+from functools import cache, cached_property
 from typing import NamedTuple
 
 import numpy as np
 from scipy.optimize import least_squares, minimize_scalar
 
+from kvtheory.checks.allowances import Band
 from kvtheory.checks.comparison_case import Case
-from kvtheory.checks.theory import TRIAL_RTOL, Array, Curves
+from kvtheory.checks.theory import TRIAL_RTOL, Array, Curves, Theory
 from kvtheory.scene import Scene
 
 Pair = tuple[Curves, Curves]
-"""Data and theory to hold against each other, in SI."""
+"""Data and theory to compare with each other, in SI."""
 
 ROWS = 160
 """Rows of the data on which faults are tried: half of them spread evenly, half right after the start."""
 LARGEST = 1e3
 """A single value counts at most this many times what it is allowed."""
 SHARE_OF_VALUES = 0.98
-"""Share of the values that must be as allowed for a fault to explain the data; the rest are at jumps."""
+"""Fraction of the values that must be as allowed for a fault to explain the data; the rest are at jumps."""
 LEFT_OVER = 1.5
 """Times what is allowed: a fitted fault reproduces the method's own errors only about so well."""
-PRECISION = 1e-5
-"""Of a fitted unknown."""
-STEP = 1e-3
-"""Difference of an unknown for slopes: the theory of trials is smooth far below that."""
+PRECISION, STEP = 1e-5, 1e-3
+"""Of a fitted unknown, and its difference for slopes: the theory of trials is smooth far below that."""
 MAXIMUM_TRIALS, BY_ELEMENTS = 30, 8
 """Of one unknown; from a near start, five are enough. Fewer where theory is a run of many elements."""
 WORTH_SEARCHING, SEARCH_PRECISION = 0.3, 0.01
-"""Part of the difference that x = 0 must explain for a search to begin, and the precision of the search."""
+"""Part of the difference that x = 0 must explain for a search to begin, and its precision."""
+VELOCITY = "drive.velocity"
+"""Of a drive, the velocity stands for all its velocities."""
 
 
 class Hypothesis(NamedTuple):
@@ -61,8 +62,7 @@ def fixed(name: str, text: str, pair: Pair | None, factor: float | None = None) 
     return Hypothesis(name, lambda _x: text, lambda _x: pair, factor=lambda _x: factor)
 
 
-@dataclass(frozen=True)
-class Trial:
+class Trial(NamedTuple):
     """How a hypothesis fits: the root mean square of the differences relative to what is allowed.
 
     `enough` says whether what is left is allowed, `value` is the unknown, and `alike` are the parameters
@@ -77,128 +77,86 @@ class Trial:
 
 
 @dataclass(frozen=True)
-class Bench:
-    """The rows on which faults are tried, and the curves that count."""
-
-    case: Case
-    names: tuple[str, ...]
-
-    @property
-    def time(self) -> Array:
-        """The times of the rows in s."""
-        return self.case.series.time
-
-    @property
-    def columns(self) -> Curves:
-        """The data of the rows, in SI."""
-        return self.case.series.columns
-
-    @property
-    def now(self) -> Curves:
-        """The theory of the scene as it is given, in SI."""
-        return self.case.now
+class Bench(Case):
+    """A case cut down to the rows and the curves on which faults are tried."""
 
     @cached_property
     def _units(self) -> tuple[Array, Array]:
         """By curve: the width of theory's band, and what is allowed outside of it."""
-        allowed, scales = self.case.allowance, self.case.theory.scales
-        bands = [np.nan_to_num(allowed.high[name] - allowed.low[name]) for name in self.names]
-        return np.array(bands), np.array([self.case.limit(n) * scales[n] for n in self.names])
+        bands = [np.nan_to_num(self.bands[n].high - self.bands[n].low) for n in self.names]
+        return np.array(bands), np.array([self.allowed(name) for name in self.names])
 
     def _gaps(self, one: Curves, other: Curves) -> Array:
         """Return the differences of the curves that count; zero where one side does not exist."""
         return np.nan_to_num(np.array([one[name] - other[name] for name in self.names]))
 
-    def ratios(self, columns: Curves, curves: Curves) -> Array:
+    def ratios(self, pair: Pair | None) -> Array:
         """Return how far data lie outside the band of theory, relative to what is allowed, by curve."""
-        (band, limit), gap = self._units, self._gaps(columns, curves)
+        band, limit = self._units
+        if pair is None:
+            return np.full(limit.shape, LARGEST)
+        gap = self._gaps(*pair)
         ratios = np.sign(gap) * np.maximum(np.abs(gap) - band, 0.0) / limit
         return np.clip(ratios, -LARGEST, LARGEST)
-
-    def effect(self, one: Curves, other: Curves) -> Array:
-        """Return how far two theories are from each other, in units of the errors that data may have."""
-        return np.asarray((self._gaps(one, other) / sum(self._units)).reshape(-1))
 
     @cached_property
     def start(self) -> float:
         """The score of the data as they are."""
-        return self._rated(fixed("", "", None), (self.columns, self.now), 0.0).score
+        return self._rated(fixed("", "", None), (self.columns, self.now)).score
 
-    def _rated(self, hypothesis: Hypothesis, pair: Pair | None, x: float) -> Trial:
+    def _rated(self, hypothesis: Hypothesis, pair: Pair | None, x: float = 0.0) -> Trial:
         if pair is None:
             return Trial(hypothesis)
-        ratios = np.abs(self.ratios(*pair))
+        ratios = np.abs(self.ratios(pair))
         largest = np.quantile(ratios, SHARE_OF_VALUES, axis=1).max()
         score = math.sqrt(float(np.mean(ratios * ratios)))
         return Trial(hypothesis, score, bool(largest <= LEFT_OVER), x)
 
-    def tried(self, hypothesis: Hypothesis, best: float = math.inf) -> Trial:
+    def tried(self, hypothesis: Hypothesis, best: float) -> Trial:
         """Return how a hypothesis fits; a search is made only where it begins below the score `best`."""
-        if hypothesis.starts:
-            return self._fitted(hypothesis)
-        trials = [self._rated(hypothesis, hypothesis.make(0.0), 0.0)]
-        if hypothesis.span and trials[0].score < min((1.0 - WORTH_SEARCHING) * self.start, best):
+        make = cache(hypothesis.make)
+        if not hypothesis.starts:
+            trials = [self._rated(hypothesis, make(0.0))]
+            if hypothesis.span and trials[0].score < min(
+                (1.0 - WORTH_SEARCHING) * self.start, best
+            ):
 
-            def score(x: float) -> float:
-                trials.append(self._rated(hypothesis, hypothesis.make(x), x))
-                return min(trials[-1].score, LARGEST)
+                def score(x: float) -> float:
+                    trials.append(self._rated(hypothesis, make(x), x))
+                    return min(trials[-1].score, LARGEST)
 
-            bounds, options = (-hypothesis.span, hypothesis.span), {"xatol": SEARCH_PRECISION}
-            minimize_scalar(score, bounds=bounds, method="bounded", options=options)
-        return min(trials, key=lambda trial: trial.score)
-
-    def _fitted(self, hypothesis: Hypothesis) -> Trial:
-        """Fit the unknown by least squares, from the best of the starts."""
-        made: dict[float, Pair | None] = {}
-
-        def pair(x: float) -> Pair | None:
-            if x not in made:
-                made[x] = hypothesis.make(x)
-            return made[x]
+                bounds, options = (-hypothesis.span, hypothesis.span), {"xatol": SEARCH_PRECISION}
+                minimize_scalar(score, bounds=bounds, method="bounded", options=options)
+            return min(trials, key=lambda trial: trial.score)
 
         def ratios(x: float) -> Array:
-            found = pair(x)
-            if found is None:
-                return np.full(len(self.names) * self.time.size, LARGEST)
-            return self.ratios(*found).reshape(-1)
+            return self.ratios(make(x)).reshape(-1)
 
         def slope(x: Array) -> Array:
             return ((ratios(float(x[0]) + STEP) - ratios(float(x[0]))) / STEP)[:, None]
 
-        def robust(x: float) -> float:
-            return float(np.sum(np.log1p(ratios(x) ** 2)))
-
-        start = hypothesis.starts[0]
+        first = hypothesis.starts[0]
         if len(hypothesis.starts) > 1:
-            start = min(hypothesis.starts, key=robust)
+            first = min(hypothesis.starts, key=lambda x: float(np.sum(np.log1p(ratios(x) ** 2))))
         # Without a bound on what one value counts, what a fault cannot explain would bend the fit.
         found = least_squares(
-            lambda x: ratios(float(x[0])), [start], jac=slope, loss="soft_l1", xtol=PRECISION,
-            max_nfev=BY_ELEMENTS if self.case.theory.by_elements else MAXIMUM_TRIALS,
+            lambda x: ratios(float(x[0])), [first], jac=slope, loss="soft_l1", xtol=PRECISION,
+            max_nfev=BY_ELEMENTS if self.theory.by_elements else MAXIMUM_TRIALS,
         )  # fmt: skip
         value = float(found.x[0])
-        return self._rated(hypothesis, pair(value), value)
-
-    def solved(self, scene: Scene, times: Array | None = None) -> Curves | None:
-        """Return the theory of another scene at the times of the rows, or None where it has none."""
-        theory = replace(self.case.theory, scene=scene)
-        try:
-            found = theory.at(self.time if times is None else times, TRIAL_RTOL)
-        except (ValueError, ArithmeticError):
-            return None
-        if not theory.by_elements or times is not None:
-            return found
-        return {name: self.now[name] + found[name] - self._coarse[name] for name in self.now}
+        return self._rated(hypothesis, make(value), value)
 
     def against(self, scene: Scene, times: Array | None = None) -> Pair | None:
         """Return the data and the theory of another scene, or None where it has none."""
-        curves = self.solved(scene, times)
-        return None if curves is None else (self.columns, curves)
-
-    @cached_property
-    def _coarse(self) -> Curves:
-        """The theory of the scene as it is given by as few elements as in trials, whose errors cancel."""
-        return self.case.theory.at(self.time, TRIAL_RTOL)
+        try:
+            theory = Theory(scene, self.theory.methods)
+            found = theory.at(self.time if times is None else times, TRIAL_RTOL)
+        except (ValueError, ArithmeticError):
+            return None
+        if theory.by_elements and times is None:  # the errors of few elements cancel
+            coarse = self.theory.at(self.time, TRIAL_RTOL)
+            found = {name: self.now[name] + found[name] - coarse[name] for name in self.now}
+        return self.columns, found
 
     def indistinguishable(self, best: Trial, others: Sequence[Hypothesis]) -> tuple[str, ...]:
         """Return the names of the parameters that the data cannot distinguish from the best one.
@@ -207,18 +165,16 @@ class Bench:
         data do not need it. The slopes are those of theory at the best fit.
         """
         at = best.hypothesis
-        scene = scaled_scene(self.case.theory.scene, at.powers or {}, math.exp(best.value))
-        here, slopes = self.solved(scene), []
+        scene = scaled_scene(self.theory.scene, at.powers or {}, math.exp(best.value))
+        here, slopes = self.against(scene), []
         for other in (at, *others):
-            curves = self.solved(scaled_scene(scene, other.powers or {}, math.exp(STEP)))
-            if here is None or curves is None:
+            there = self.against(scaled_scene(scene, other.powers or {}, math.exp(STEP)))
+            if here is None or there is None:
                 return ()
-            slopes.append(self.effect(curves, here) / STEP)
-        return tuple(
-            other.name
-            for other, slope in zip(others, slopes[1:], strict=True)
-            if uncertainty(slopes[0], slope) >= abs(best.value)
-        )
+            gaps = self._gaps(there[1], here[1]) / sum(self._units)
+            slopes.append(gaps.reshape(-1) / STEP)
+        pairs = zip(others, slopes[1:], strict=True)
+        return tuple(o.name for o, s in pairs if uncertainty(slopes[0], s) >= abs(best.value))
 
 
 def uncertainty(slope: Array, other: Array) -> float:
@@ -238,20 +194,21 @@ def uncertainty(slope: Array, other: Array) -> float:
 
 def bench(case: Case) -> Bench:
     """Choose the rows on which faults are tried."""
-    count = case.series.time.size
-    first = int(np.searchsorted(case.series.time, 0.0))
+    count, first = case.time.size, int(np.searchsorted(case.time, 0.0))
     rows = np.unique(np.concatenate([
         np.linspace(0, count - 1, min(count, ROWS // 2)).round().astype(int),
         np.minimum(first + np.arange(ROWS // 2), count - 1),
     ]))  # fmt: skip
     drive = "velocity"
     drives = drive in case.names and bool((case.excess(drive) > case.limit(drive)).any())
-    names = tuple(name for name in case.names if name != drive or drives)
-    return Bench(case.rows(rows), names)
-
-
-VELOCITY = "drive.velocity"
-"""Of a drive, the velocity stands for all its velocities."""
+    cut = {field.name: getattr(case, field.name) for field in fields(case)} | {
+        "names": tuple(name for name in case.names if name != drive or drives),
+        "series": replace(case.series, columns={n: v[rows] for n, v in case.columns.items()}),
+        "now": {name: values[rows] for name, values in case.now.items()},
+        "bands": {n: Band(*(part[rows] for part in band)) for n, band in case.bands.items()},
+        "edge_force": case.edge_force[rows],
+    }
+    return Bench(**cut)
 
 
 def scaled_scene(scene: Scene, powers: Mapping[str, float], factor: float) -> Scene:

@@ -12,26 +12,24 @@ SMALLEST = 1e-300
 NORMAL_MAD = 0.6745
 """Median of the magnitude of a normal variate of variance one."""
 FEWEST = 5
-"""Values from whose neighbours noise can be told."""
+"""Values needed to estimate noise from neighbours."""
 MIXES = (0.0, 0.5, 0.9, 0.99, 0.999)
 """Parts of the noise that may be in proportion to the value, the rest being the same everywhere."""
 DOUBT = 5.0
-"""Difference of logarithms of likelihoods: the less likely is not ruled out."""
-RARE = 2.0
-"""Standard deviations allowed beyond sqrt(2 ln n), where the largest of n normal errors is expected. With
-them fewer than one run of twenty checks in a thousand raises a false alarm."""
-FROM_FEW = 2.0
-"""A standard deviation from n values is known to this many 1/sqrt(n) at worst, relative."""
+"""Difference of log-likelihoods: the less likely is not ruled out."""
+RARE, FROM_FEW = 2.0, 2.0
+"""Standard deviations allowed beyond sqrt(2 ln n), where the largest of n normal errors is expected: with
+them fewer than one run of twenty checks in a thousand raises a false alarm. And the relative uncertainty, in
+units of 1/sqrt(n), of a standard deviation that is estimated from n values."""
 SURE = 4.5
 """Standard deviations that a single normal error almost never exceeds (once in 150,000)."""
 FEW_DIGITS = (2, 3, 4, 5)
 """Significant digits to which a column may be rounded; more do not matter."""
-SEVERAL = 10
-"""Distinct values from which on their smallest distance says how finely they were written."""
-ON_GRID = 1e-3
-"""Of the smallest distance: how near to its multiples all values have to be."""
+SEVERAL, ON_GRID = 10, 1e-3
+"""Distinct values whose smallest distance shows how finely they were written, and how near to its multiples,
+relative to it, all values have to be."""
 SAME = 1e-6
-"""Of the last digit: so near to it is on it."""
+"""Of the last digit: a value so near to it is on it."""
 REPEATED = 0.1
 """Of the rows: where as many have the time of the row before them, times are rounded."""
 
@@ -60,9 +58,9 @@ def gaps(time: Array, residual: Array) -> tuple[Array, NDArray[np.intp]]:
 def noise(time: Array, residual: Array, curve: Array) -> Array:
     """Return sigma of the random part of a residual for each value, from its differences to its neighbours.
 
-    The median of magnitudes is robust against jumps. Of sigmas that are the same everywhere, in proportion
-    to the curve, or mixed, the likeliest counts, by the law of Laplace, or the largest of those hardly less
-    likely: few values tell what the noise is where the curve is large.
+    The median of magnitudes is robust against jumps. Of sigmas that are constant, in proportion to the curve,
+    or mixed, the most likely by Laplace's law counts, or the largest of those that are hardly less likely,
+    for few values show what the noise is where the curve is large.
     """
     gap, rows = gaps(time, residual)
     size = np.nan_to_num(np.abs(curve))
@@ -73,19 +71,17 @@ def noise(time: Array, residual: Array, curve: Array) -> Array:
     sigmas = []
     for mix in MIXES:
         shape = np.hypot(1.0 - mix, mix * size)
-        inner = shape[rows]
-        sigma = float(np.median(gap / inner)) / NORMAL_MAD
-        if sigma == 0.0:
-            continue
-        unlikely = float(np.sum(np.log(sigma * inner) + gap / (sigma * inner)))
-        sigmas.append((unlikely, sigma * shape))
+        sigma = float(np.median(gap / shape[rows])) / NORMAL_MAD
+        if sigma > 0.0:
+            inner = sigma * shape[rows]
+            sigmas.append((float(np.sum(np.log(inner) + gap / inner)), sigma * shape))
     likeliest = min((unlikely for unlikely, _ in sigmas), default=0.0)
     found = [sigma for unlikely, sigma in sigmas if unlikely <= likeliest + DOUBT]
     return np.max(found, axis=0) if found else np.zeros_like(residual)
 
 
 def rounded(values: Array, fewest: int = FEW_DIGITS[0]) -> Array:
-    """Return what rounding leaves: half the smallest step between values, or half their last digit.
+    """Return the rounding error: half the smallest step between values, or half their last digit.
 
     With fewer digits than `fewest` they are taken for exact.
 
@@ -114,6 +110,6 @@ def time_rounding(time: Array) -> Array:
     distinct = np.unique(time)
     if distinct.size < 2 or time.size - distinct.size < REPEATED * time.size:
         return np.zeros_like(time)
-    gaps = np.diff(distinct)
-    nearest = np.fmax(np.append(gaps, 0.0), np.append(0.0, gaps))
+    steps = np.diff(distinct)
+    nearest = np.fmax(np.append(steps, 0.0), np.append(0.0, steps))
     return np.asarray(nearest[np.searchsorted(distinct, time)])

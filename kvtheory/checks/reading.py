@@ -1,29 +1,114 @@
-"""A time series from anybody's program: a CSV, a result with our names, or a mapping of arrays."""
+"""A time series from anybody's program: a CSV, a result with our names, or a mapping of arrays.
+
+Columns are recognised by name and unit, as people write them: ``t [ms]``, ``Time (s)``, ``t/ms``,
+``z_A [mm]``, ``F_z in N/mm``, ``Zeit [ms]``; a height of the indenter, z_A = -depth (Eq. 18), becomes a
+depth.
+"""
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from difflib import get_close_matches
 from os import PathLike
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
-from kvtheory.checks.columns import PRESSURE, SHOWN, SI_UNITS, Column, recognise
 from kvtheory.checks.theory import Array
+from kvtheory.results.table import SERIES_UNITS
 from kvtheory.scene.quantities import shown
-from kvtheory.scene.tables import numbers, read_table
-from kvtheory.scene.units import bare
+from kvtheory.scene.tables import numbers, parts, plain, read_table
+from kvtheory.scene.units import bare, to_si
 
-SHORTEST = 8
-"""Rows: fewer cannot show a jump, a transient of two time constants and a limit."""
+PRESSURE = {"peak_pressure": "N/m^2"}
+"""As `kvtheory.scene.units` spells its unit."""
+SI_UNITS: Mapping[str, str] = {**SERIES_UNITS, **PRESSURE}
+"""The units of the series of a line contact as they are spelt there."""
+
+SPELLINGS = {
+    "time": "time, t, Zeit",
+    "velocity": "velocity, V, drive velocity, v_drive, Geschwindigkeit",
+    "sliding_velocity": "sliding_velocity, sliding velocity, v_s, v_slide, slip velocity, "
+    "Gleitgeschwindigkeit",
+    "depth": "depth, delta, δ, indentation, indentation depth, penetration, Tiefe, Eindringtiefe",
+    "-depth": "z_A, z, position, indenter position, height, Höhe, Hoehe, Lage",
+    "depth_rate": "depth_rate, delta_dot, ddelta/dt, depth velocity",
+    "-depth_rate": "v_z, vz_A, dz_A/dt, z_A_dot, vertical velocity",
+    "normal_force": "normal_force, F_z, F_n, normal load, vertical force, Normalkraft, Vertikalkraft",
+    "friction_force": "friction_force, F_x, F_t, F, friction, tangential force, horizontal force, "
+    "Reibkraft, Reibungskraft, Tangentialkraft",
+    "spring_force": "spring_force, spring force, F_s, F_spring, drive force, pulling force, Federkraft, "
+    "Zugkraft",
+    "leading_edge": "leading_edge, x_LE, Vorderkante",
+    "trailing_edge": "trailing_edge, x_TE, Hinterkante",
+    "peak_pressure": "peak_pressure, p_max, maximum pressure, pressure maximum, Druckmaximum, Maximaldruck",
+}
+"""How each quantity may be named; a minus sign marks those that point the other way."""
+KNOWN = {
+    plain(spelling): (quantity, spelling)
+    for quantity, spellings in SPELLINGS.items()
+    for spelling in spellings.split(", ")
+}
+"""The quantity and the spelling of each name, in lower case and without marks."""
+SHOWN = (
+    "time, depth (or z_A), normal_force, friction_force, spring_force, leading_edge, trailing_edge"
+)
+MISSPELT = 0.8
+"""Likeness of a name to a known one from which on it is taken for misspelt, and not for something else."""
+SHORTEST, MOST_ROWS = 8, 2000
+"""Rows: fewer cannot show a jump, a transient of two time constants and a limit; longer series are thinned to
+about the most, for more of them would not change a verdict."""
 BRIEFEST = 1e-30
 """Seconds: no contact changes in a shorter time, of which squares and cubes would be zero."""
-MOST_ROWS = 2000
-"""Longer series are thinned to about this many rows: more of them would not change a verdict."""
-MAY_BE_ABSENT = ("leading_edge", "trailing_edge", "peak_pressure")
+MAY_BE_ABSENT = "leading_edge", "trailing_edge", "peak_pressure"
 """What does not exist in flight, so that some of its cells may be empty or NaN."""
 JUDGED = ("depth", "normal_force", "friction_force", "spring_force")
-"""One of these there must be."""
+"""At least one of these is needed."""
+
+
+class Column(NamedTuple):
+    """What a column of a file holds: `quantity` = `factor` times its numbers, in SI."""
+
+    header: str
+    quantity: str
+    factor: float
+
+
+def recognise(header: str, units: Mapping[str, str] = SI_UNITS) -> Column | None:
+    """Return what a column holds; None if its name is of no quantity, nor nearly.
+
+    `units` are those of the scene: the forces of a ball are whole.
+
+    Raises
+    ------
+    ValueError
+        Naming the column, what it lacks or which unit is expected, and the nearest known name.
+
+    Examples
+    --------
+    >>> recognise("z_A [mm]")
+    Column(header='z_A [mm]', quantity='depth', factor=-0.001)
+    """
+    header = header.strip()
+    name, unit = (header, "") if plain(header) in KNOWN else parts(header)  # "dz_A/dt" is a name
+    if plain(name) not in KNOWN:
+        near = get_close_matches(plain(name), KNOWN, n=1, cutoff=MISSPELT)
+        if not near:
+            return None
+        known = "; ".join(f"{q.lstrip('-')}: {names}" for q, names in SPELLINGS.items())
+        raise ValueError(
+            f'column "{header}": unknown name, did you mean "{KNOWN[near[0]][1]}"?; known names are '
+            f"{known}; rename a column that is something else"
+        )
+    quantity = KNOWN[plain(name)][0]
+    sign, quantity = (-1.0, quantity[1:]) if quantity[0] == "-" else (1.0, quantity)
+    si = units[quantity]
+    if not unit:
+        raise ValueError(f'column "{header}": has no unit; expected "{name} [{si}]" or the like')
+    try:
+        return Column(header, quantity, sign * (1.0 if unit == si else to_si(f"1 {unit}", si)))
+    except ValueError as error:
+        raise ValueError(f'column "{header}": {error}') from None
 
 
 @dataclass(frozen=True)
@@ -47,7 +132,8 @@ class Series:
 def read(data: Any, units: Mapping[str, str] = SI_UNITS) -> Series:
     """Return the series that `data` holds: a path to a CSV, a result, or a mapping of arrays.
 
-    `units` are those of the quantities of the scene, in SI.
+    In a CSV ``#`` begins a comment, then comes a header with names and units, then numbers. `units` are
+    those of the quantities of the scene, in SI.
 
     Raises
     ------
@@ -64,7 +150,15 @@ def read(data: Any, units: Mapping[str, str] = SI_UNITS) -> Series:
     """
     units = {**units, **PRESSURE}
     if isinstance(data, (str, PathLike)):
-        return _from_file(Path(data), units)
+        path = Path(data)
+        table = read_table(path)
+        columns = _recognised(table.heads, units, [], str(path))
+        if not table.rows:
+            raise ValueError(f"{path}: holds a header and no rows")
+        used = [column is not None for column in columns]
+        values = [numbers(path, table, line, cells, used) for line, cells in table.rows]
+        lines = [f"line {line}" for line, _ in table.rows]
+        return _checked(columns, table.heads, np.array(values, dtype=float).T, str(path), lines)
     source, known = "arrays", {}
     if not (isinstance(data, Mapping) or (hasattr(data, "columns") and not isinstance(data, type))):
         known = {key: getattr(data, key, None) for key in ("per_length", "time_step", "scheme")}
@@ -80,7 +174,7 @@ def read(data: Any, units: Mapping[str, str] = SI_UNITS) -> Series:
     arrays: list[Array] = []
     problems: list[str] = []
     for key in data:
-        array, unit = None, None
+        unit = None
         try:
             array, unit = bare(data[key])
             arrays.append(np.atleast_1d(np.asarray(array, dtype=float)))
@@ -89,19 +183,8 @@ def read(data: Any, units: Mapping[str, str] = SI_UNITS) -> Series:
         unit = unit or (units.get(key, "") if isinstance(key, str) else "")
         heads.append(f"{key} [{unit}]" if unit else str(key))
     columns = _recognised(heads, units, problems, "`data`")
-    return _checked(columns, heads, arrays, source, **known)
-
-
-def _from_file(path: Path, units: Mapping[str, str]) -> Series:
-    """Read a CSV: ``#`` begins a comment, then a header with names and units, then numbers."""
-    table = read_table(path)
-    columns = _recognised(table.heads, units, [], str(path))
-    if not table.rows:
-        raise ValueError(f"{path}: holds a header and no rows")
-    used = [column is not None for column in columns]
-    values = [numbers(path, table, line, cells, used) for line, cells in table.rows]
-    arrays = np.array(values, dtype=float).T
-    return _checked(columns, table.heads, arrays, str(path), [line for line, _ in table.rows])
+    rows = [f"row {k + 1}" for k in range(max(map(len, arrays), default=0))]
+    return _checked(columns, heads, arrays, source, rows, **known)
 
 
 def _recognised(
@@ -117,17 +200,16 @@ def _recognised(
             problems.append(str(error))
             continue
         columns.append(column)
-        if column is not None and column.quantity in seen:
-            both = f'columns "{seen[column.quantity]}" and "{head}"'
-            problems.append(f"{both} are both the {column.quantity}; keep one of them")
         if column is not None:
+            if column.quantity in seen:
+                both = f'columns "{seen[column.quantity]}" and "{head}"'
+                problems.append(f"{both} are both the {column.quantity}; keep one of them")
             seen[column.quantity] = head
     _raise(source, problems)
     return columns
 
 
 def _raise(source: str, problems: Sequence[str]) -> None:
-    """Raise with all problems, if there are any."""
     if problems:
         raise ValueError("\n".join(f"{source}: {problem}" for problem in problems))
 
@@ -137,7 +219,7 @@ def _checked(
     heads: Sequence[str],
     arrays: Iterable[Array],
     source: str,
-    lines: Sequence[int] | None = None,
+    places: Sequence[str],
     **known: Any,
 ) -> Series:
     """Return the series of the columns that are known, or raise with every reason why it cannot be judged."""
@@ -156,38 +238,27 @@ def _checked(
         shapes = ", ".join(f"{name} {array.shape}" for name, array in values.items())
         problems.append(f"the columns differ in length: {shapes}")
     _raise(source, problems)
-    problems = [p for column, _ in pairs for p in _missing(column, values[column.quantity], lines)]
-    _raise(source, problems or _order(values["time"], lines))
-    step = -(-values["time"].size // MOST_ROWS)
+    for column, _ in pairs:
+        array = values[column.quantity]
+        bad = np.flatnonzero(~np.isfinite(array))
+        if bad.size and not (column.quantity in MAY_BE_ABSENT and bad.size < array.size):
+            problems.append(
+                f'column "{column.header}": {bad.size} of {array.size} values are missing, NaN or infinite, '
+                f"the first in {places[bad[0]]}; a simulation that diverges ends like this"
+            )
+    _raise(source, problems)
+    time = values["time"]
+    steps = np.diff(time)
+    if time.size < SHORTEST:
+        problems = [f"holds {time.size} rows; at least {SHORTEST} are needed to judge a transient"]
+    elif steps.min() < 0.0:
+        k = int(np.argmax(steps < 0.0)) + 1
+        follows = f"{time[k]:.9g} s in {places[k]} follows {time[k - 1]:.9g} s"
+        problems = [f"the time must increase, but {follows}"]
+    elif np.count_nonzero(steps) < SHORTEST - 1 or time[-1] < BRIEFEST:
+        problems = [f"the times do not span a transient: {time[0]:.9g} s to {time[-1]:.9g} s"]
+    _raise(source, problems)
+    step = -(-time.size // MOST_ROWS)
     thinned = {name: values[name][::step] for name in SI_UNITS if name in values}
     ignored = (shown(head) for head, c in zip(heads, columns, strict=True) if c is None)
     return Series(thinned, source, **known, ignored=tuple(ignored))
-
-
-def _missing(column: Column, array: Array, lines: Sequence[int] | None) -> list[str]:
-    """Say where values are missing that must be there."""
-    bad = np.flatnonzero(~np.isfinite(array))
-    if not bad.size or (column.quantity in MAY_BE_ABSENT and bad.size < array.size):
-        return []
-    where = f"row {bad[0] + 1}" if lines is None else f"line {lines[bad[0]]}"
-    return [
-        f'column "{column.header}": {bad.size} of {array.size} values are missing, NaN or infinite, the '
-        f"first in {where}; a simulation that diverges ends like this"
-    ]
-
-
-def _order(time: Array, lines: Sequence[int] | None) -> list[str]:
-    """Say why the times cannot be used."""
-    if time.size < SHORTEST:
-        return [f"holds {time.size} rows; at least {SHORTEST} are needed to judge a transient"]
-    steps = np.diff(time)
-    back = np.flatnonzero(steps < 0.0)
-    if back.size:
-        k = int(back[0]) + 1
-        where = f"row {k + 1}" if lines is None else f"line {lines[k]}"
-        return [
-            f"the time must increase, but {time[k]:.9g} s in {where} follows {time[k - 1]:.9g} s"
-        ]
-    if np.count_nonzero(steps) < SHORTEST - 1 or time[-1] < BRIEFEST:
-        return [f"the times do not span a transient: {time[0]:.9g} s to {time[-1]:.9g} s"]
-    return []

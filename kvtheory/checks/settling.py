@@ -11,58 +11,50 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import minimize_scalar
 
-from kvtheory.checks.comparison_case import SMALLEST, Case, Measured, NotMade, check, rms
+from kvtheory.checks.comparison_case import SMALLEST, Case, NotMade, rms
 from kvtheory.checks.noise import SURE
 from kvtheory.checks.theory import Array, Rates
 
 SETTLED = 7.0
 """Slow time constants after the last change of the drive: e^-7 is below a thousandth."""
-NEAR, FAR = 0.3, 1e-3
-"""Of the steady depth: the slow time constant is fitted while the depth is this far from it."""
-FAST_SPAN = 4.0
-"""Fast time constants after the start within which the fast one is fitted."""
+NEAR, FAR, FAST_SPAN = 0.3, 1e-3, 4.0
+"""The slow time constant is fitted while the depth is so far from the steady one, relative to it, and the
+fast one within so many of it after the start."""
 LAST_PART, FEWEST_LATE = 0.75, 3
 """Of the data: the mean of the rest is taken for the limit, if it has so many samples."""
 FITTED = 0.5
 """A time constant that is less certain than this, relative, is not judged."""
 PHASE = "phase of the cycle"
-"""The check whose failure alone says nothing against the data: theory cannot predict the phase."""
+"""The check whose failure alone is no evidence against the data: theory cannot predict the phase."""
 LOST = 0.25
 """Of the sliding velocity: where so much is allowed, the phase is lost."""
-FEWEST = 6
-"""Samples for three unknowns."""
-LOG_PRECISE = 1e-6
-"""Of the logarithm of a time constant: far closer than any data fix it."""
-RANGE = 5.0
-"""Factor up and down from the expected time constant in which to look."""
-OF_FITS = "relative difference of the fits"
+FEWEST, RANGE, LOG_PRECISE = 6, 5.0, 1e-6
+"""Samples for the three unknowns of a fit, the factor up and down from the expected time constant in which to
+look, and the precision of its logarithm, far finer than any data fix it."""
 
 
-@check("slow time constant", "F12", OF_FITS)
-def slow_constant(case: Case) -> Measured:
+def slow_constant(case: Case) -> tuple[float, float, str]:
     """Fit the slow time constant to the depth as it settles."""
-    rates = _rates(case, "depth")
+    rates = _rates(case)
     off = np.abs(case.now["depth"] / case.theory.steady_state.depth - 1.0)
-    late = np.flatnonzero((off > NEAR) | (case.series.time < case.theory.last_change))
+    late = np.flatnonzero((off > NEAR) | (case.time < case.theory.last_change))
     start = int(late[-1]) + 1 if late.size else 0
     use = np.flatnonzero(off[start:] > FAR) + start
     return _fitted(case, "depth", use, rates.slow.real)
 
 
-@check("fast time constant", "F12", OF_FITS)
-def fast_constant(case: Case) -> Measured:
+def fast_constant(case: Case) -> tuple[float, float, str]:
     """Fit the fast time constant to the normal force after the start."""
-    rates, time = _rates(case, "normal_force"), case.series.time
+    rates = _rates(case)
     if 0.0 not in case.theory.scene.drive.jumps:
         raise NotMade("there is no such decay in this scene")
-    use = np.flatnonzero((time > 0.0) & (time < FAST_SPAN * rates.fast.real))
+    use = np.flatnonzero((case.time > 0.0) & (case.time < FAST_SPAN * rates.fast.real))
     return _fitted(case, "normal_force", use, rates.fast.real)
 
 
-def _rates(case: Case, curve: str) -> Rates:
-    """Return the time constants, if a curve has some that can be fitted."""
+def _rates(case: Case) -> Rates:
+    """Return the time constants, if they can be fitted."""
     scene, rates = case.theory.scene, case.theory.rates
-    case.columns(curve)
     if rates is None:
         raise NotMade("a fixed indenter has none")
     if scene.foundation.arms:
@@ -74,17 +66,16 @@ def _rates(case: Case, curve: str) -> Rates:
     return rates
 
 
-def _fitted(case: Case, curve: str, use: NDArray[np.intp], exact: float) -> Measured:
+def _fitted(
+    case: Case, curve: str, use: NDArray[np.intp], exact: float
+) -> tuple[float, float, str]:
     """Fit a time constant to rows of a curve, of data and of theory, unless the data do not fix it."""
     if use.size < FEWEST:
         raise NotMade(f"fewer than {FEWEST} samples while the {curve} settles")
-    t, allowed = case.series.time[use], case.allowance
-    theory, data = (fit(t, c[curve][use], exact) for c in (case.now, case.series.columns))
-    offset = np.nan_to_num(
-        allowed.systematic[curve] - allowed.rounding[curve]
-        + 0.5 * (allowed.high[curve] - allowed.low[curve])
-    )[use]  # fmt: skip
-    errors = offset, allowed.rounding[curve][use], allowed.noise[curve][use]
+    t, band = case.time[use], case.bands[curve]
+    theory, data = (fit(t, c[curve][use], exact) for c in (case.now, case.columns))
+    smooth = np.nan_to_num(band.systematic - band.rounding + 0.5 * (band.high - band.low))
+    errors = smooth[use], band.rounding[use], band.noise[use]
     limit = uncertainty(t, case.now[curve][use], theory, *errors)
     if not limit < FITTED:
         raise NotMade("the data do not fix it")
@@ -103,8 +94,6 @@ def _basis(time: Array, T: float) -> Array:
 def fit(time: Array, values: Array, expected: float) -> float:
     """Return T of the best c_0 + c_1 exp(-t/T), for T within a factor of five of the expected one.
 
-    Examples
-    --------
     >>> t = np.linspace(0.0, 3.0, 50)
     >>> round(fit(t, 2.0 - 0.5 * np.exp(-t / 0.7), 1.0), 6)
     0.7
@@ -136,15 +125,9 @@ def uncertainty(
     return float(smooth + rough)
 
 
-def _steady_equation(case: Case) -> str:
-    scene = case.theory.scene
-    return "F17" if scene.foundation.arms else "F1" if scene.indenter.per_width else "F20"
-
-
-@check("steady limit", _steady_equation, "relative to the static state")
-def steady_limit(case: Case) -> Measured:
+def steady_limit(case: Case) -> tuple[float, float, str]:
     """Compare the end of the data with exact steady sliding."""
-    theory, time, columns = case.theory, case.series.time, case.series.columns
+    theory, time = case.theory, case.time
     if math.isinf(theory.last_change):
         raise NotMade("the drive is a function, which need not settle")
     if theory.rates is not None:
@@ -157,32 +140,29 @@ def steady_limit(case: Case) -> Measured:
     late = time > max(settled, LAST_PART * time[-1])
     if late.sum() < FEWEST_LATE:
         raise NotMade(f"the data end before {settled * 1e3:.4g} ms, when the transient is over")
-    friction = theory.steady_state.friction_force
-    exact = {"depth": theory.steady_state.depth, "normal_force": theory.steady_state.load,
-             "friction_force": friction, "spring_force": friction}  # fmt: skip
+    steady = theory.steady_state
+    exact = {"depth": steady.depth, "normal_force": steady.load,
+             "friction_force": steady.friction_force, "spring_force": steady.friction_force}  # fmt: skip
     found = []
-    for curve in (name for name in exact if name in columns):
-        scale, mean = theory.scales[curve], float(columns[curve][late].mean())
+    for curve in (name for name in exact if name in case.columns):
+        scale, mean = theory.scales[curve], float(case.columns[curve][late].mean())
         left = abs(float(case.now[curve][late].mean()) - exact[curve])
-        random = rms(case.allowance.noise[curve][late]) / math.sqrt(late.sum())
-        smooth = float(case.allowance.systematic[curve][late].max())
+        random = rms(case.bands[curve].noise[late]) / math.sqrt(late.sum())
+        smooth = float(case.bands[curve].systematic[late].max())
         allowed = case.tolerance * ((smooth + left + SURE * random) / scale + SMALLEST)
         note = f"{curve} {mean:.6g}, exact {exact[curve]:.6g} in SI"
         found.append((abs(mean - exact[curve]) / scale, allowed, note))
     return max(found, key=lambda each: each[0] / each[1])
 
 
-@check(
-    PHASE, "F22", "error that elements and steps may make in the sliding velocity, relative to it"
-)
-def phase(case: Case) -> Measured:
+def phase(case: Case) -> tuple[float, float, str]:
     """Compare what is allowed of the sliding velocity with itself, where steady sliding is unstable.
 
     A disturbance shifts the phase of a cycle for good: if that may be half of an oscillation whose amplitude
-    is half of the mean, no agreement says anything.
+    is half of the mean, agreement proves nothing.
     """
     theory, curve = case.theory, "sliding_velocity"
     if theory.rates is not None and math.isfinite(theory.rates.settling):
         raise NotMade("steady sliding is stable")
-    may_be = case.tolerance * rms(case.allowance.systematic[curve])
+    may_be = case.tolerance * rms(case.bands[curve].systematic)
     return may_be / rms(case.now[curve]), LOST, ""

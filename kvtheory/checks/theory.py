@@ -5,7 +5,7 @@ The solvers come in as functions (`Methods`), so that this package depends on no
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property
 from typing import Any, NamedTuple
 
@@ -25,14 +25,12 @@ CURVES = tuple(name for name in SERIES_UNITS if name != "time")
 """The curves of a series. With a rigid drive the sliding velocity is V, and the spring force the friction."""
 TRIAL_RTOL = 1e-5
 """Tolerance of the theory in the trials of a diagnosis."""
-DECAYED = 40.0
-"""Time constants after which a change has decayed below rounding."""
-LONGEST = 1e9
-"""Retardation times: no series is so long."""
+DECAYED, LONGEST = 40.0, 1e9
+"""Time constants after which a change has decayed below rounding, and beyond which series are refused."""
 SHALLOWEST = 1e-3
-"""Of the static depth: where the contact vanishes, its length and width are those of this depth."""
+"""Fraction of the static depth used for the length and the width of a contact that vanishes."""
 NO_VELOCITY = 1e-9
-"""In units of a_0/tau: a slower drive does not move."""
+"""In units of a_0/tau: the smallest scale of the velocity."""
 
 
 def curves(found: Mapping[str, Any], scene: Scene) -> dict[str, Array]:
@@ -45,12 +43,12 @@ def curves(found: Mapping[str, Any], scene: Scene) -> dict[str, Array]:
 
 
 class Methods(NamedTuple):
-    """What solves a scene.
+    """The functions that solve a scene.
 
     `transient` returns the curves of theory by name, for a scene, times (s, increasing) and a tolerance;
     `steady` its exact steady sliding; `rates` the rates (1/s) of small motions about it, for a scene on a
-    spring; `elements` the curves of a simulation, for a scene, spacing (m), time step (s), times, and its
-    mistakes by name. `tell` reports the share of the work that is done, and words.
+    spring; `elements` the curves of a simulation, for a scene, spacing (m), time step (s), times, and the
+    fields of its contact rule that are wrong. `tell` reports progress: the fraction done, and a text.
     """
 
     transient: Callable[[Scene, Sequence[float], float], Mapping[str, Any]]
@@ -60,8 +58,7 @@ class Methods(NamedTuple):
     tell: Callable[[float, str], object] = lambda _share, _words: None
 
 
-@dataclass(frozen=True)
-class Rates:
+class Rates(NamedTuple):
     """The shortest and the longest time constant near steady sliding, in s; complex if it oscillates.
 
     With a rigid drive these are the two of F12, on a spring two of those of F22. `settling` (s) is the time
@@ -76,8 +73,8 @@ class Rates:
     def of(cls, time_constants: Sequence[complex]) -> "Rates":
         """Return those of all time constants T, of motions in proportion to exp(-t/T)."""
         fast, *_, slow = sorted(time_constants, key=abs)
-        fading = [(1.0 / T).real for T in time_constants]
-        return cls(fast, slow, 1.0 / min(fading) if min(fading) > 0.0 else math.inf)
+        slowest = min((1.0 / T).real for T in time_constants)
+        return cls(fast, slow, 1.0 / slowest if slowest > 0.0 else math.inf)
 
     @property
     def oscillates(self) -> bool:
@@ -85,34 +82,29 @@ class Rates:
         return self.slow.imag != 0.0
 
 
-@dataclass(frozen=True)
 class Theory:
-    """A scene and the methods that solve it."""
+    """A scene and the methods that solve it.
 
-    scene: Scene
-    methods: Methods
+    `static` is the scene at rest, `radius` is R in m, `units` are the SI units of the curves, and
+    `last_change` is the time in s after which the drive keeps its velocity, infinite if it need not.
+    `by_elements` says whether the transient is that of many elements: of a ball, and on arms.
+    """
 
-    @cached_property
-    def static(self) -> StaticState:
-        """The scene at rest, and its numbers."""
-        return StaticState.of(self.scene)
+    def __init__(self, scene: Scene, methods: Methods) -> None:
+        self.scene, self.methods = scene, methods
+        self.static = StaticState.of(scene)
+        self.radius = float(scene.indenter.radius)  # type: ignore[union-attr]
+        self.units = units_for(scene.indenter, SERIES_UNITS)
+        self.by_elements = bool(scene.foundation.arms) or not scene.indenter.per_width
+        self.last_change = scene.drive.last_change if scene.drive.ends else math.inf
+        self._known: dict[tuple[float, bytes], dict[str, Array]] = {}
 
     @cached_property
     def scales(self) -> Mapping[str, float]:
         """The scales of differences: the static state, and its products."""
-        measures = {name: getattr(self.static, QUANTITIES[name].scale) for name in SERIES_UNITS}
         speed = max(self.motion.highest_speed, NO_VELOCITY * self.static.velocity)
-        return {**measures, "velocity": speed, "sliding_velocity": speed}
-
-    @cached_property
-    def units(self) -> Mapping[str, str]:
-        """The SI unit of each curve."""
-        return units_for(self.scene.indenter, SERIES_UNITS)
-
-    @property
-    def by_elements(self) -> bool:
-        """Whether the transient is that of many elements: of a ball, and on arms."""
-        return bool(self.scene.foundation.arms) or not self.scene.indenter.per_width
+        scales = {name: getattr(self.static, QUANTITIES[name].scale) for name in SERIES_UNITS}
+        return {**scales, "velocity": speed, "sliding_velocity": speed}
 
     def width(self, depth: Any) -> Any:
         """Return the mean width of a contact (m) at depths: 1 for a line contact, which is per unit width.
@@ -126,18 +118,19 @@ class Theory:
         kept = np.maximum(depth, SHALLOWEST * static.depth) / static.depth
         return 0.5 * math.pi * static.half_length * indenter.stretch * np.sqrt(kept)
 
+    def stiffness(self, depth: Any, a: Any, l_r: Any) -> Any:
+        """Return the stiffness of a contact, K A + k_s with A = sqrt(a^2 + l_r^2) + a (F12)."""
+        along = np.hypot(a, l_r) + a
+        return (
+            self.scene.foundation.stiffness * self.width(depth) * along + self.scene.support.spring
+        )
+
     @cached_property
     def motion(self) -> Any:
         """V(t) and Y(t) until the end of the run."""
         return self.scene.drive.motion(self.scene.run.duration, self.static.velocity)
 
-    @cached_property
-    def last_change(self) -> float:
-        """The time in s after which the drive keeps its velocity; infinite if it need not."""
-        drive = self.scene.drive
-        return drive.last_change if drive.ends else math.inf
-
-    @cached_property
+    @property
     def final_velocity(self) -> float:
         """The velocity in m/s at the end of the run."""
         return float(self.motion.velocity(self.motion.end))
@@ -151,36 +144,45 @@ class Theory:
     def rates(self) -> Rates | None:
         """The time constants at the steady state; None if the indenter cannot move.
 
-        On a spring they follow from the rates of F22. With a rigid drive, A = sqrt(a^2 + l_r^2) + a and
-        B = x_TE + a, M s^2 + C B s + K A + k_s = 0 (F12). For arms the damping is that of slow sliding, and
-        for a ball the width is the mean one: they set windows and allowances, and no series is compared with
-        them. Of a parabola on Kelvin-Voigt it is; their code is that of `steady`, which makes no series.
+        On a spring they follow from the rates of F22. With a rigid drive, M s^2 + C B s + K A + k_s = 0 with
+        B = x_TE + a (F12). For arms the damping is that of slow sliding, and for a ball the width is the
+        mean one: there they only set windows and allowances, and no series is compared with them.
         """
-        support, foundation = self.scene.support, self.scene.foundation
+        M = self.scene.support.mass
         if not self.scene.drive.rigid:
             steady = self.scene.drive.changed(velocity=self.final_velocity)
             rates = self.methods.rates(replace(self.scene, drive=steady))
             return Rates.of((-1.0 / rates[rates != 0.0]).tolist())
         if self.scene.held:
             return None
-        a, l_r = self.steady_state.half_length, self.steady_state.retardation_length
-        width = float(self.width(self.steady_state.depth))
-        stiffness = foundation.stiffness * width * (math.hypot(a, l_r) + a) + support.spring
-        damping = foundation.damping * width * a * (trailing_edge_ratio(l_r / a) + 1.0)
-        root = complex(damping * damping - 4.0 * support.mass * stiffness) ** 0.5
-        return Rates.of(
-            [2.0 * support.mass / (damping + root), (damping + root) / (2.0 * stiffness)]
-        )
+        state = self.steady_state
+        a, l_r = state.half_length, state.retardation_length
+        stiffness = float(self.stiffness(state.depth, a, l_r))
+        extent = float(self.width(state.depth)) * a * (trailing_edge_ratio(l_r / a) + 1.0)
+        damping = self.scene.foundation.damping * extent
+        root = complex(damping * damping - 4.0 * M * stiffness) ** 0.5
+        return Rates.of([2.0 * M / (damping + root), (damping + root) / (2.0 * stiffness)])
 
     def at(self, times: Array, rtol: float = 1e-6) -> dict[str, Array]:
         """Return the curves at `times` (s): at rest before t = 0, just after a jump of the drive."""
+        key = rtol, times.tobytes()
+        if key in self._known:
+            return self._known[key]
         moving = np.clip(times, 0.0, self._settled(float(times.max())))
         unique, index = np.unique(moving, return_inverse=True)
         end = float(unique[-1]) or self.scene.run.duration
         scene = replace(self.scene, run=replace(self.scene.run, duration=end))
         found = curves(self.methods.transient(scene, unique.tolist(), rtol), scene)
-        rest = self.rest
-        return {name: np.where(times < 0.0, rest[name], found[name][index]) for name in CURVES}
+        rest = {
+            **dict.fromkeys(CURVES, 0.0),
+            "depth": self.static.depth, "normal_force": self.static.load,
+            "leading_edge": -self.static.half_length, "trailing_edge": self.static.half_length,
+            "peak_pressure": self.static.pressure,
+        }  # fmt: skip
+        self._known[key] = {
+            name: np.where(times < 0.0, rest[name], found[name][index]) for name in CURVES
+        }
+        return self._known[key]
 
     def _settled(self, end: float) -> float:
         """Return a time in s after which nothing changes, or `end` if that is sooner.
@@ -199,16 +201,3 @@ class Theory:
         if self.rates is not None:
             slow = max(slow, self.rates.settling)
         return min(end, self.last_change + DECAYED * slow)
-
-    @cached_property
-    def rest(self) -> Mapping[str, float]:
-        """The state before t = 0."""
-        at_rest = self.static
-        moving = dict.fromkeys(
-            ("velocity", "sliding_velocity", "depth_rate", "friction_force", "spring_force"), 0.0
-        )
-        edges = {"leading_edge": -at_rest.half_length, "trailing_edge": at_rest.half_length}
-        return {
-            **moving, **edges, "depth": at_rest.depth, "normal_force": at_rest.load,
-            "peak_pressure": at_rest.pressure,
-        }  # fmt: skip

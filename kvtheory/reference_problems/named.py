@@ -1,19 +1,13 @@
 """The reference problems by name: each is a scene file whose first lines describe it."""
 
-from functools import cache
-from importlib.resources import as_file, files
 from itertools import takewhile
+from pathlib import Path
 
 from kvtheory.scene import Scene, load_scene
 from kvtheory.scene.quantities import mistake, nearest
 
-SCENES = "scenes"
-
-
-@cache
-def _names() -> tuple[str, ...]:
-    paths = files("kvtheory.reference_problems").joinpath(SCENES).iterdir()
-    return tuple(sorted(path.name.removesuffix(".toml") for path in paths))
+SCENES = {path.stem: path for path in sorted(Path(__file__).with_name("scenes").glob("*.toml"))}
+"""The scene files by the names of the problems."""
 
 
 def problems() -> dict[str, str]:
@@ -26,7 +20,7 @@ def problems() -> dict[str, str]:
     >>> problems()["take-off"]
     'The indenter takes off'
     """
-    return {name: _told(problem_text(name))[0].removesuffix(".") for name in _names()}
+    return {name: _description(name)[0].removesuffix(".") for name in SCENES}
 
 
 def problem(name: str) -> Scene:
@@ -42,23 +36,12 @@ def problem(name: str) -> Scene:
     >>> problem("paper-fixed").support
     Fixed(depth=0.0003)
     """
-    problem_text(name)
-    with as_file(files("kvtheory.reference_problems").joinpath(SCENES, f"{name}.toml")) as path:
-        return load_scene(path)
+    return load_scene(_file(name))
 
 
 def problem_text(name: str) -> str:
-    """Return the text of the scene file of a reference problem, whose first lines describe it.
-
-    Raises
-    ------
-    ValueError
-        If there is no problem of this name.
-    """
-    if not (isinstance(name, str) and name in _names()):
-        raise mistake("`problem`", name, nearest(str(name), _names()))
-    found = files("kvtheory.reference_problems").joinpath(SCENES, f"{name}.toml")
-    return found.read_text(encoding="utf-8")
+    """Return the text of the scene file of a reference problem, or raise as `problem` does."""
+    return _file(name).read_text(encoding="utf-8")
 
 
 def about(name: str) -> str:
@@ -67,9 +50,15 @@ def about(name: str) -> str:
     >>> about("wedge")
     'Beyond its crossover the friction coefficient is the slope of the wedge exactly.'
     """
-    return " ".join(_told(problem_text(name))[1:])
+    return " ".join(_description(name)[1:])
 
 
-def _told(text: str) -> list[str]:
-    lines = takewhile(lambda line: line.startswith("#"), text.splitlines())
+def _description(name: str) -> list[str]:
+    lines = takewhile(lambda line: line.startswith("#"), problem_text(name).splitlines())
     return [line.removeprefix("# ") for line in lines]
+
+
+def _file(name: str) -> Path:
+    if not (isinstance(name, str) and name in SCENES):
+        raise mistake("`problem`", name, nearest(str(name), SCENES))
+    return SCENES[name]
