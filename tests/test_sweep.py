@@ -13,8 +13,7 @@ from kvtheory.progress import COMPILING, ProgressLine
 from kvtheory.results import STEADY_UNITS
 from kvtheory.scene.quantities import given
 from kvtheory.sweeps import engine
-from kvtheory.sweeps.axes import axes_of
-from kvtheory.sweeps.plan import Plan, columns_of
+from kvtheory.sweeps.plan import Plan, axes_of, columns_of
 
 V, TAU = "drive.velocity", "foundation.retardation_time"
 GRID = {V: "1 mm/s:10 m/s:7:log", TAU: ["10 ms", "1 s"]}

@@ -212,7 +212,7 @@ def test_many_scenes_in_one_call_have_the_bits_of_single_ones(monkeypatch):
     }
     monkeypatch.setattr(compiled, "WORTHWHILE", 1)
     together = kv.sweep(**asked)
-    monkeypatch.setattr(measures._Block, "follow_together", lambda self, limit: None)
+    monkeypatch.setattr(measures._Motions, "follow_together", lambda self: None)
     alone = kv.sweep(**asked)
     assert together["hops"].max() > 0
     for name in alone.values:

@@ -119,7 +119,7 @@ def sweep(
     Nakano and Kono (2020), doi:10.3389/fmech.2020.00038; see `steady` and `transient`.
     """
     from kvtheory.sweeps import engine  # what it needs takes a while to import
-    from kvtheory.sweeps.size import refuse_what_cannot_fit
+    from kvtheory.sweeps.plan import refuse_what_cannot_fit
 
     plan = plan_of(scene, over=over, quantities=quantities, at=at, method=method, rtol=rtol)
     file = None if output is None else Path(output)
@@ -146,8 +146,7 @@ def plan_of(
     rtol: float = 1e-6,
 ) -> "Plan":
     """Check the arguments of `sweep` together, and return the plan."""
-    from kvtheory.sweeps.axes import axes_of
-    from kvtheory.sweeps.plan import CYCLE, OF_ELEMENTS, STABLE, Plan, columns_of
+    from kvtheory.sweeps.plan import CYCLE, OF_ELEMENTS, STABLE, Plan, axes_of, columns_of
 
     scene = scene_of(scene)
     method = method_for(scene, method)

@@ -1,11 +1,10 @@
 """A time series compared with theory."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field
 from typing import Any
 
 from kvtheory.export import Columns
-from kvtheory.results.certificate import record
 from kvtheory.results.presented import Exported, above, html_table
 from kvtheory.results.table import SERIES_UNITS
 
@@ -49,7 +48,7 @@ class Explanation:
 
 
 MOST_SHOWN = 6
-"""Most failed checks in the text of a comparison."""
+"""Failed checks in the text of a comparison, at most."""
 MARKS = {True: "ok", False: "NO", None: "not made"}
 HEADS = "check", "measured", "allowed", "", "equation", "what is measured"
 
@@ -60,7 +59,8 @@ class Comparison(Exported):
 
     `verdict` is ``"agrees"``, ``"disagrees"`` if one of the checks that could be made failed, or
     ``"cannot tell"`` if only the check of the sampling, or of the phase of a cycle, failed. `diagnosis`
-    explains it in words; `explanations` are possible faults, the most likely first.
+    explains it in words; `explanations` are possible faults, the most likely first. `series` holds the data
+    as arrays in SI by name, `time` first; `theory`, and the `allowed` difference, are at the same times.
     """
 
     verdict: str
@@ -70,18 +70,13 @@ class Comparison(Exported):
     source: str
     tolerance: float
     series: Any = field(repr=False, compare=False)
-    """The data as arrays in SI by name, `time` first."""
     theory: Any = field(repr=False, compare=False)
-    """The theory at the times of the data."""
     allowed: Any = field(repr=False, compare=False)
-    """By how much the data may differ, by name, at the times of the data."""
     units: Mapping[str, str] = field(
         default_factory=lambda: SERIES_UNITS, repr=False, compare=False
     )
-    """The SI unit of each quantity."""
 
     def __repr__(self) -> str:
-        """Return the verdict, the diagnosis, and the failed checks as text."""
         failed = [check for check in self.checks if check.ok is False]
         rows = [f"{c.name}: {c.measured:.3g}, allowed {c.allowed:.3g}" for c in failed[:MOST_SHOWN]]
         more = [f"and {len(failed) - MOST_SHOWN} more"] if len(failed) > MOST_SHOWN else []
@@ -90,7 +85,6 @@ class Comparison(Exported):
         )
 
     def _repr_html_(self) -> str:
-        """Return a table of the checks for notebooks."""
         rows = [
             (
                 c.name, *("-" if c.ok is None else f"{x:.3g}" for x in (c.measured, c.allowed)),
@@ -117,10 +111,3 @@ class Comparison(Exported):
     def plot(self) -> Any:
         """Draw data over theory, the residual, and the checks, and return the figure."""
         return above("plots").plot_result(self)
-
-    def as_dict(self) -> dict[str, Any]:
-        """Return plain Python values, ready for JSON, without the series."""
-        left_out = ("series", "theory", "allowed", "units")
-        return {
-            f.name: record(getattr(self, f.name)) for f in fields(self) if f.name not in left_out
-        }

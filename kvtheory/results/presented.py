@@ -10,30 +10,25 @@ from typing import Any
 import numpy as np
 
 from kvtheory.export import SERIES_SUFFIXES, Columns, check_path, dataset, replace_file, save_csv
-from kvtheory.results.certificate import Certificate
+from kvtheory.results.certificate import Certificate, Recorded
 from kvtheory.results.table import QUANTITIES, SHOWN_UNITS
 
 
 def above(module: str) -> Any:
-    """Return a module above the results, such as ``plots``, for methods that draw or write them.
-
-    It is imported on call, since it imports the results.
-    """
+    """Return a module such as ``plots``, which imports the results, for a method that needs it."""
     return import_module(f"kvtheory.{module}")
 
 
-class Exported:
-    """A result with columns that can be written to files."""
+class Exported(Recorded):
+    """A result with columns that can be written to files; `units` are those of its quantities, in SI."""
 
     over: Mapping[str, Any] = {}
     """The values that vary over the states of the result, by key of the scene."""
 
     def _columns(self) -> Columns:
-        """Return values and SI unit of each column by name."""
         raise NotImplementedError
 
     def _attributes(self) -> Mapping[str, str]:
-        """Return what describes the columns as a whole."""
         raise NotImplementedError
 
     def to_xarray(self) -> Any:
@@ -70,14 +65,7 @@ class Exported:
 
 
 class Presented(Exported):
-    """A result that holds quantities of the table as attributes, and a certificate.
-
-    Examples
-    --------
-    >>> import kvtheory as kv
-    >>> print(repr(kv.steady()).splitlines()[1])
-    depth 0.0896613 mm                     half_length 1.33911 mm
-    """
+    """A result that holds quantities of the table as attributes, and a certificate."""
 
     model: str
     certificate: Certificate
@@ -105,7 +93,6 @@ class Presented(Exported):
             yield name, *in_shown_unit(getattr(self, name), self.units[name]), worst
 
     def __repr__(self) -> str:
-        """Return a summary in ten lines at most."""
         cells = [f"{name} {value} {unit}".rstrip() for name, value, unit, _ in self._shown()]
         pairs = [
             f"{a:38} {b}".rstrip() for a, b in zip(cells[::2], [*cells[1::2], ""], strict=False)
@@ -116,7 +103,6 @@ class Presented(Exported):
         return "\n".join([self._title, *pairs, f"errors up to {worst:.1e} of {scale} ({kind})"])
 
     def _repr_html_(self) -> str:
-        """Return a table for notebooks, with units and certificate."""
         heads = ("quantity", "value", "unit", f"error, relative to {self.certificate.relative_to}")
         reason = f"Errors are {self.certificate.kind}: {self.certificate.statement}."
         return f"{html_table(self._title, heads, self._shown())}<p>{escape(reason)}</p>"

@@ -51,7 +51,6 @@ class Solution(Presented):
     climb: tuple[ClimbStep, ...]
     answer: Any = field(default=None, repr=False, compare=False)
     units: Mapping[str, str] = field(default_factory=dict, repr=False, compare=False)
-    """The SI unit of each quantity."""
 
     def __getattr__(self, name: str) -> Value:
         if name.startswith("_") or name == "values" or name not in self.values:

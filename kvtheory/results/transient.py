@@ -1,10 +1,10 @@
 """Motions as time series: a transient, and a simulation by elements."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
-from kvtheory.results.certificate import Certificate, Value, record
+from kvtheory.results.certificate import Certificate, Value
 from kvtheory.results.presented import Presented
 from kvtheory.results.table import SERIES_UNITS, TRANSIENT_UNITS
 
@@ -32,16 +32,11 @@ class TimeSeries(Presented):
     units: Mapping[str, str] = field(
         default_factory=lambda: TRANSIENT_UNITS, repr=False, compare=False, kw_only=True
     )
-    """The SI unit of each quantity."""
 
     @property
     def _title(self) -> str:
         end, count = float(self.time[-1]) if len(self.time) else 0.0, len(self.time)
         return f"{super()._title}, {count} times up to {end * 1e3:.4g} ms"
-
-    def as_dict(self) -> dict[str, Any]:
-        """Return plain Python values, ready for JSON: `time` first; what does not exist is None."""
-        return {f.name: record(getattr(self, f.name)) for f in fields(self) if f.repr}
 
 
 @dataclass(frozen=True, repr=False)
@@ -117,7 +112,6 @@ class SprungTransient(Transient):
     units: Mapping[str, str] = field(
         default_factory=lambda: SERIES_UNITS, repr=False, compare=False, kw_only=True
     )
-    """The SI unit of each quantity."""
 
 
 @dataclass(frozen=True, repr=False)
@@ -150,4 +144,3 @@ class SprungSimulation(Simulation):
     units: Mapping[str, str] = field(
         default_factory=lambda: SERIES_UNITS, repr=False, compare=False, kw_only=True
     )
-    """The SI unit of each quantity."""
