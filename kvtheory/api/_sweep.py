@@ -157,7 +157,7 @@ def plan_of(
         quantities = [*STEADY_UNITS, STABLE]
     columns = columns_of(quantities, series=at is not None, indenter=scene.indenter)
     plan = Plan(scene, axes, columns, times, method, rtol)
-    if plan.transient and plan.by_elements:
+    if plan.transient and lacks_paper_model(scene):
         require(lacks_arms, scene, "the transient")
         if lacking := [column.name for column in columns if column.measure not in OF_ELEMENTS]:
             had = "series, NAME.end, NAME.max, NAME.min and peak_to_steady_friction"

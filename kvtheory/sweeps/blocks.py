@@ -6,11 +6,13 @@ same bits. A scene that fails is a missing value with its reason; the others are
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 
 from kvtheory.models.steady.methods import METHODS
 from kvtheory.models.steady.stable_sliding import lasts
+from kvtheory.scene.capabilities import lacks_paper_model
 from kvtheory.scene.model import Scene
 from kvtheory.sweeps.plan import FAILS, STABLE, Array, Measured, Plan, Table
 
@@ -18,8 +20,7 @@ INTERPRETED = 1.5
 """Steps interpreted before the first block is compiled, over those from which compiling pays."""
 
 
-@dataclass(frozen=True)
-class Task:
+class Task(NamedTuple):
     """Points of a sweep from `start` on: their swept values, and the plan without its axes."""
 
     plan: Plan
@@ -116,7 +117,7 @@ def _steady(given: Task) -> Measured:
 def _transients(given: Task, steady: Measured) -> Measured:
     """Compute the transients of the scenes whose steady sliding did not fail."""
     # Imported here, as the solver and the simulator take a while to import.
-    if given.plan.by_elements:
+    if lacks_paper_model(given.plan.scene):
         from kvtheory.sweeps.simulated import measure
     else:
         from kvtheory.sweeps.measures import measure
@@ -146,7 +147,7 @@ def compile_ahead(plan: Plan, points: int, workers: int) -> None:
 
     Workers load what is compiled from the disk, if they share it and have processors of the same kind.
     """
-    if not plan.transient or plan.by_elements:
+    if not plan.transient or lacks_paper_model(plan.scene):
         return
     from kvtheory.models.continuum import compiled
     from kvtheory.sweeps.measures import STEPS

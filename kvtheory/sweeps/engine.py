@@ -10,7 +10,6 @@ from concurrent import futures
 from concurrent.futures import Executor, Future
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import nullcontext, suppress
-from dataclasses import replace
 from glob import escape
 from importlib.util import find_spec
 from pathlib import Path
@@ -25,8 +24,7 @@ from kvtheory.sweeps.plan import Plan
 from kvtheory.sweeps.store import WorkFile
 
 WORK = ".part"
-"""What the name of a work file adds to that of the result."""
-
+"""Suffix of a work file, after the name of the result."""
 VECTORISED_BLOCK = 65536
 """Steady states in a block: 5 MB of results in 20 ms; half as many cost a third of the speed."""
 QUADRATURE_BLOCK = 512
@@ -34,8 +32,7 @@ QUADRATURE_BLOCK = 512
 SINGLE_BLOCK, COMPILED_BLOCK = 64, 512
 """Motions in a block, one by one or in one call: 0.1 s to 1 s, of which the transfer takes a percent."""
 LEAST_BLOCKS = 16
-"""Of a sweep of motions, so that a few workers share even a small one."""
-
+"""Blocks of a sweep of motions, at least, so that a few workers share even a small one."""
 AHEAD = 2
 """Blocks in flight per worker: one that is computed and one that waits."""
 UNKNOWN_WORKERS = 16
@@ -44,10 +41,8 @@ TRIES = 3
 """How often a block is given out, in case its worker dies."""
 REFRESH = 0.5
 """Seconds after which progress is shown again, and an interrupt is noticed, if no block returns."""
-
 HINT = ' (a script that starts processes needs `if __name__ == "__main__":`)'
 """Without it, each process runs the script again, and ends at once."""
-
 log = logging.getLogger(__name__)
 
 
@@ -125,13 +120,8 @@ def _give_out(
 ) -> None:  # fmt: skip
     """Have the blocks computed, `in_flight` of them at a time.
 
-    A block that is lost with its worker is given out again. After an error or an interrupt, waiting
-    blocks are withdrawn, and those returned are kept.
-
-    Raises
-    ------
-    RuntimeError
-        If a block was lost `TRIES` times, or the executor is broken.
+    A block that is lost with its worker is given out again, `TRIES` times in all. After an error or an
+    interrupt, waiting blocks are withdrawn, and those returned are kept.
     """
     flying: dict[Future[Block], Task] = {}
     again: list[Task] = []
@@ -152,7 +142,7 @@ def _give_out(
         with suppress(OSError):  # if the disk is full, say
             for future, given in flying.items():
                 if future.done() and not future.cancelled():
-                    _kept(future, replace(given, tries=0), keep)
+                    _kept(future, given._replace(tries=0), keep)
         if isinstance(error, futures.BrokenExecutor):
             raise RuntimeError(f"the executor is broken: {error}") from error
         raise
@@ -172,7 +162,7 @@ def _kept(future: Future[Block], given: Task, keep: Callable[[Block], None]) -> 
         told = f"{type(lost).__name__}: {lost}{HINT if isinstance(lost, BrokenProcessPool) else ''}"
         raise RuntimeError(f"{points} were lost {TRIES} times: {told}") from lost
     log.warning("%s are given out again: %r", points, lost)
-    return [replace(given, tries=given.tries + 1)]
+    return [given._replace(tries=given.tries + 1)]
 
 
 def remaining(plan: Plan, done: list[tuple[int, int]], block: int | None = None) -> Iterator[Task]:

@@ -56,7 +56,7 @@ def write(plan: Plan, blocks: Blocks, path: Path) -> None:
 
     def write(part: Path) -> None:
         (_write_csv if is_csv(path) else _write_netcdf)(plan, blocks, part)
-        place, digest = _digest(part)
+        place, digest, _ = _digest(part)
         with part.open("r+b") as file:
             file.seek(place)
             file.write(digest)
@@ -65,23 +65,15 @@ def write(plan: Plan, blocks: Blocks, path: Path) -> None:
 
 
 def finished(path: Path, plan: Plan) -> bool:
-    """Whether `path` holds the whole of this sweep, as it was written.
-
-    Raises
-    ------
-    ValueError
-        If it holds anything else but this sweep as it was written.
-    """
+    """Whether `path` holds the whole of this sweep; `ValueError` if it holds anything else, or was changed."""
     if not path.exists():
         return False
-    place, digest = _digest(path)
-    with path.open("rb") as file:
-        file.seek(place)
-        if file.read(DIGITS) != digest:
-            raise ValueError(
-                f'"{path}" exists and is not a sweep as it was written: it is another file, or was changed, '
-                f"cut, or saved anew by another program; {WAYS_OUT}"
-            )
+    _, digest, written = _digest(path)
+    if written != digest:
+        raise ValueError(
+            f'"{path}" exists and is not a sweep as it was written: it is another file, or was changed, '
+            f"cut, or saved anew by another program; {WAYS_OUT}"
+        )
     header = _header(path)
     if differing := plan.differences(header["record"]):
         raise ValueError(
@@ -91,8 +83,8 @@ def finished(path: Path, plan: Plan) -> bool:
     return bool(summary["done"] == summary["points"])
 
 
-def _digest(path: Path) -> tuple[int, bytes]:
-    """Return where the digest of a file begins, and that of all its other bytes."""
+def _digest(path: Path) -> tuple[int, bytes, bytes]:
+    """Return where the digest of a file stands, that of all its other bytes, and what stands there."""
     size, digest = path.stat().st_size, hashlib.sha256()
     place = len(DIGEST) if is_csv(path) else max(0, size - DIGITS)
     with path.open("rb") as file:
@@ -100,7 +92,7 @@ def _digest(path: Path) -> tuple[int, bytes]:
             file.seek(start)
             while part := file.read(max(0, min(PART, stop - file.tell()))):
                 digest.update(part)
-    return place, digest.hexdigest().encode()
+        return place, digest.hexdigest().encode(), file.read(DIGITS)
 
 
 def from_file(path: Path, plan: Plan, computed: int = 0) -> Sweep:
@@ -209,22 +201,19 @@ def _write_csv(plan: Plan, blocks: Blocks, path: Path) -> None:
     """Write header and rows; those of points that were not computed are left out."""
     summary, record = _summary(plan, blocks), plan.record
     swept = " x ".join(f"{axis.size} {' & '.join(axis.values)}" for axis in plan.axes)
+    done = f"{summary['done']} of {plan.points} points; the command resumes it"
     lines = [
         f"{DIGEST}{'0' * DIGITS}",
         "# to read the table: pandas.read_csv(FILE, comment='#')",
         f"# version: {record['kvtheory']}",
         f"# over: {swept}",
+        *[f"# unfinished: {done}"] * (summary["done"] < plan.points),
+        *(f"#   {line}".rstrip() for line in record["scene"].splitlines()),
+        *(f"# {key}: {text}" for key, text in _described(plan, summary).items()),
     ]
-    if summary["done"] < plan.points:
-        lines.append(
-            f"# unfinished: {summary['done']} of {plan.points} points; the command resumes it"
-        )
-    lines += [f"#   {line}".rstrip() for line in record["scene"].splitlines()]
-    lines += [f"# {key}: {text}" for key, text in _described(plan, summary).items()]
-    lines += [
-        f"# failed: point {failure.index}, {json.dumps(failure.reason, ensure_ascii=False)}"
-        for failure in summary["failures"]
-    ]
+    for failure in summary["failures"]:
+        reason = json.dumps(failure.reason, ensure_ascii=False)
+        lines.append(f"# failed: point {failure.index}, {reason}")
     heads = [_head(key, plan.units[key]) for axis in plan.axes for key in axis.values]
     heads += ["time [s]"] * plan.series
     heads += [_head(column.name, column.unit) for column in plan.numeric] + [EVENTS] * plan.texts

@@ -22,7 +22,6 @@ from numpy.typing import NDArray
 from kvtheory.progress import duration
 from kvtheory.results import SERIES_UNITS, STEADY_UNITS, TRANSIENT_UNITS, units_for
 from kvtheory.results.sweep import Axis
-from kvtheory.scene.capabilities import lacks_paper_model
 from kvtheory.scene.files import to_toml
 from kvtheory.scene.indenters import Indenter, Parabola
 from kvtheory.scene.model import Scene
@@ -88,25 +87,19 @@ class Column(NamedTuple):
 def columns_of(
     names: Sequence[str] | str | None, *, series: bool, indenter: Indenter = Parabola(1.0)
 ) -> tuple[Column, ...]:
-    """Return columns by name; None stands for all steady quantities, or for all series.
-
-    Raises
-    ------
-    SceneError
-        Listing every name that does not exist, with the nearest that does.
-    """
-    over_time = {name: unit for name, unit in SERIES_UNITS.items() if name != "time"}
-    rows = [(name, unit, name, "steady") for name, unit in {**STEADY_UNITS, STABLE: "1"}.items()]
-    rows += [(name, unit, name, "series") for name, unit in over_time.items()] * series
-    rows += [(f"{name}.steady", unit, name, "steady") for name, unit in STEADY_UNITS.items()]
-    rows += [
-        (f"{name}.{measure}", "s" if measure == "time_of_max" else unit, name, measure)
-        for name, unit in over_time.items()
-        for measure in MEASURES
-    ]
-    rows += [(name, unit, "", name) for name, unit in (WHOLE | CYCLE).items()]
-    units = units_for(indenter, {name: unit for name, unit, *_ in rows})
-    known = {name: Column(name, units[name], *how) for name, _, *how in rows}
+    """Return columns by name, or report every wrong one; None is all steady quantities, or all series."""
+    steady = STEADY_UNITS | {STABLE: "1"}
+    rows = [Column(name, unit, name, "steady") for name, unit in steady.items()]
+    for name, unit in SERIES_UNITS.items():
+        rows += [Column(name, unit, name, "series")] * series
+        for measure in MEASURES:
+            of = "s" if measure == "time_of_max" else unit
+            rows.append(Column(f"{name}.{measure}", of, name, measure))
+    rows += [Column(f"{name}.steady", unit, name, "steady") for name, unit in STEADY_UNITS.items()]
+    rows += [Column(name, unit, "", name) for name, unit in (WHOLE | CYCLE).items()]
+    rows = [row for row in rows if row.base != "time"]
+    units = units_for(indenter, {row.name: row.unit for row in rows})
+    known = {row.name: row._replace(unit=units[row.name]) for row in rows}
     if names is None:
         names = [name for name in (TRANSIENT_UNITS if series else STEADY_UNITS) if name != "time"]
     names = list(dict.fromkeys([names] if isinstance(names, str) else names))
@@ -118,13 +111,7 @@ def columns_of(
 
 
 def axes_of(scene: Scene, over: Mapping[Any, Any]) -> tuple[Axis, ...]:
-    """Return the axes of a sweep, in the order given; `kvtheory.sweep` describes `over`.
-
-    Raises
-    ------
-    SceneError
-        Listing every unknown key and every wrong value.
-    """
+    """Return the axes of a sweep, or report every mistake; `kvtheory.sweep` describes `over`."""
     if not isinstance(over, Mapping) or not over:
         raise SceneError([f"`over` is empty: expected a key and its values, such as {EXAMPLE}"])
     specs, problems = scene.replaceable, []
@@ -140,7 +127,9 @@ def axes_of(scene: Scene, over: Mapping[Any, Any]) -> tuple[Axis, ...]:
             with collecting(problems, f"`over` {key}", value):
                 if key in swept:
                     raise SceneError([f"`over` {key} is swept twice"])
-                swept[key] = arrays[key] = _values(key, value, specs)
+                if key not in specs:
+                    raise ValueError(f"unknown key for this scene; {nearest(str(key), specs)}")
+                swept[key] = arrays[key] = _values(value, specs[key])
         if len({array.size for array in arrays.values()}) > 1:
             sizes = ", ".join(f"{key} {array.size}" for key, array in arrays.items())
             problems.append(f"`over`: values that vary together must be equally many, got {sizes}")
@@ -159,13 +148,11 @@ def axes_of(scene: Scene, over: Mapping[Any, Any]) -> tuple[Axis, ...]:
     )
 
 
-def _values(key: str, value: Any, specs: Mapping[str, Quantity]) -> Array:
+def _values(value: Any, spec: Quantity) -> Array:
     """Return the values of a key in SI."""
-    if key not in specs:
-        raise ValueError(f"unknown key for this scene; {nearest(str(key), specs)}")
     if isinstance(value, str) and items(value):
-        return np.concatenate([item_values(item, specs[key]) for item in items(value)])
-    array = np.atleast_1d(array_of(value, specs[key]))
+        return np.concatenate([item_values(item, spec) for item in items(value)])
+    array = np.atleast_1d(array_of(value, spec))
     if array.ndim > 1:
         raise ValueError("expected one list; give pairs as a tuple of keys with a list for each")
     if array.size == 0:
@@ -208,11 +195,6 @@ class Plan:
     def transient(self) -> bool:
         """Whether any column belongs to a transient."""
         return any(column.measure != "steady" for column in self.columns)
-
-    @property
-    def by_elements(self) -> bool:
-        """Whether elements simulate transients, as the solver does not hold for the scene."""
-        return bool(lacks_paper_model(self.scene))
 
     @property
     def vectorised(self) -> bool:
@@ -305,7 +287,7 @@ def is_csv(path: Path) -> bool:
 
 
 def refuse_what_cannot_fit(plan: Plan, path: Path | None, jobs: int = 1) -> None:
-    """Raise `ValueError` if a sweep needs more than the memory or the disk holds."""
+    """Raise `ValueError` if a sweep needs more than memory or disk hold."""
     limits = []
     if path is None or not is_csv(path):
         try:
@@ -316,31 +298,28 @@ def refuse_what_cannot_fit(plan: Plan, path: Path | None, jobs: int = 1) -> None
     if path is not None and path.parent.is_dir():
         free = shutil.disk_usage(path.parent).free
         limits.append((free, f'free beside "{path}"; choose fewer points'))
-    needed, _, told = _size(plan, path, jobs)
+    needed, _, size = _size(plan, path, jobs)
     for limit, where in limits:
         if needed > limit:
             raise ValueError(
-                f"{plan.points:,} points need {told}; there are {_text(limit)} {where}"
+                f"{plan.points:,} points need {size}; there are {_text(limit)} {where}"
             )
 
 
 def announcement(plan: Plan, path: Path, jobs: int = 1) -> str:
     """Return the size of a sweep into a file in words, if it takes a while."""
-    _, seconds, told = _size(plan, path, jobs)
-    return f"{plan.points:,} points: {told}" if seconds > ANNOUNCED else ""
+    _, seconds, size = _size(plan, path, jobs)
+    return f"{plan.points:,} points: {size}" if seconds > ANNOUNCED else ""
 
 
 def _size(plan: Plan, path: Path | None, jobs: int) -> tuple[float, float, str]:
     """Return about how many bytes and seconds a sweep needs, and both in words."""
     slow = IN_MOTION if plan.transient else BY_QUADRATURE
     seconds = plan.points / ((ON_ARRAYS if plan.vectorised else slow) * jobs)
-    blocks = plan.points * plan.blank(0).itemsize
-    if path is None or not is_csv(path):
-        needed = 2.0 * blocks
-    else:
+    needed = 2.0 * plan.points * plan.blank(0).itemsize
+    if path is not None and is_csv(path):
         rows = plan.points * (len(plan.times or ()) if plan.series else 1)
-        keys = sum(len(axis.values) for axis in plan.axes) + plan.series
-        needed = blocks + rows * (len(plan.columns) + keys) * CELL
+        needed = 0.5 * needed + rows * (len(plan.units) + plan.series) * CELL
     return needed, seconds, f"about {_text(needed)} and {duration(seconds)}"
 
 

@@ -30,14 +30,8 @@ NOT_OURS = "is not a work file of a sweep; it is left as it is: remove it or cho
 class WorkFile:
     """Blocks in an SQLite file, which one process at a time may have open.
 
-    With `anew`, unfinished work of another sweep in it is dropped.
-
-    Raises
-    ------
-    ValueError
-        If the file belongs to another sweep, or to another program; it is left as it is.
-    OSError
-        If it is damaged, cannot be opened or written, or is in use.
+    A file of another sweep or program raises `ValueError` and is left as it is; with `anew`, unfinished work
+    of another sweep is dropped. A file that is damaged, unusable or in use raises `OSError`.
     """
 
     def __init__(self, path: Path, plan: Plan, *, anew: bool = False) -> None:
