@@ -36,10 +36,9 @@ MINIMUM_TIMES = 16
 
 
 def _theory(scene: Scene, times: Sequence[float], rtol: float) -> Mapping[str, Any]:
-    """Compute a transient without a certificate: theory is needed for many trial scenes.
+    """Compute a transient without a certificate, as theory is needed for many trial scenes.
 
-    A foundation with arms and a ball are simulated by elements, and exact steady sliding checks the end. A
-    ball at constant depth that does not re-enter deformed foundation needs no elements.
+    Arms and a ball need elements, except for a ball at constant depth that does not re-enter its trace.
     """
     from kvtheory.models.continuum import solved_scene
     from kvtheory.models.strips import held
@@ -69,7 +68,7 @@ def _faulty_simulation(
 
 
 def _rates(scene: Scene) -> NDArray[np.complex128]:
-    """Return the rates of small motions about steady sliding on a spring (F22), in 1/s."""
+    """Return the rates of small motions about steady sliding (F22), in 1/s."""
     pairs = stability(scene, quantity="rates").rates
     return np.asarray(pairs[:, 0] + 1j * pairs[:, 1])
 

@@ -73,7 +73,7 @@ def elements(
         If the scheme does not exist, the density or the step does not suit the scene, or the foundation is a
         springpot, which has no finite state.
     DivergenceError
-        If the run becomes unstable; the message says when, why, and which step would be stable.
+        If the run becomes unstable, with when, why, and which step would be stable.
 
     Examples
     --------
@@ -81,15 +81,10 @@ def elements(
     >>> run = kv.elements(at=["0 ms", "1 ms", "200 ms"])
     >>> (run.normal_force / 1e3).round(2).tolist()
     [35.37, 12.73, 9.81]
-    >>> run.certificate.relative_error["depth"] < 1e-3
-    True
     >>> rubber = kv.GeneralizedMaxwell("10 GN/m^3", arms=[["30 GN/m^3", "10 ms"]])
     >>> run = kv.elements(kv.Scene(foundation=rubber), at=["0 ms", "1 ms", "200 ms"])
     >>> (run.normal_force / 1e3).round(2).tolist()
     [9.81, 9.93, 9.81]
-    >>> hung = kv.Scene(drive=kv.Drive(velocity="91 mm/s", stiffness="1 MN/m^2"))
-    >>> (kv.elements(hung, at=["0 ms", "20 ms"], certify=False).spring_force / 1e3).round(2).tolist()
-    [0.0, 0.33]
     >>> ball = kv.Scene(kv.Sphere("10 mm"), support=kv.DeadWeight(mass="1 kg"))
     >>> kv.elements(ball, per_length="50 /mm", at=["0 ms", "200 ms"]).normal_force.round(2).tolist()
     [49.48, 9.81]

@@ -11,11 +11,10 @@ from kvtheory.results.table import SERIES_UNITS
 
 @dataclass(frozen=True)
 class Check:
-    """One check.
+    """One check: `measured` must not exceed `allowed`; both are in `unit`, which says what is measured.
 
-    `measured` must not exceed `allowed`; both are in `unit`, which says what is measured. `equation`
-    is the basis of the check. A check that cannot be made has no numbers, `ok` is None, and `note` says
-    why.
+    `equation` is the basis of the check. One that cannot be made has no numbers, `ok` is None, and `note`
+    says why.
     """
 
     name: str
@@ -31,11 +30,11 @@ class Check:
 class Explanation:
     """A fault that would explain a disagreement.
 
-    `rank` orders them, from 0 to 1. For a fault that was simulated, `rank` equals `explained`, the part of
-    the difference (root mean square, relative to the allowance) that it removes; for one that is
-    inferred from a symptom in the data, it is an assumed strength of the evidence, and `explained` is None.
-    `enough` says whether the remaining difference is allowed; `factor` is the fitted factor or shift, if any.
-    `alike` are the parameters that the data cannot distinguish from the one that this fault names.
+    `rank` orders them, from 0 to 1. For a fault that was simulated it equals `explained`, the part of the
+    difference (root mean square, relative to the allowance) that it removes; for one inferred from a symptom
+    it is an assumed strength of the evidence, and `explained` is None. `enough` says whether the remaining
+    difference is allowed; `factor` is the fitted factor or shift, if any. `alike` are the parameters that
+    the data cannot distinguish from the one that this fault names.
     """
 
     name: str
@@ -72,17 +71,13 @@ class Comparison(Exported):
     series: Any = field(repr=False, compare=False)
     theory: Any = field(repr=False, compare=False)
     allowed: Any = field(repr=False, compare=False)
-    units: Mapping[str, str] = field(
-        default_factory=lambda: SERIES_UNITS, repr=False, compare=False
-    )
+    units: Mapping[str, str] = field(default_factory=SERIES_UNITS.copy, repr=False, compare=False)
 
     def __repr__(self) -> str:
         failed = [check for check in self.checks if check.ok is False]
         rows = [f"{c.name}: {c.measured:.3g}, allowed {c.allowed:.3g}" for c in failed[:MOST_SHOWN]]
-        more = [f"and {len(failed) - MOST_SHOWN} more"] if len(failed) > MOST_SHOWN else []
-        return "\n".join(
-            [f"Comparison of {self.source}: {self.verdict}", self.diagnosis, *rows, *more]
-        )
+        rows += [f"and {len(failed) - MOST_SHOWN} more"] * (len(failed) > MOST_SHOWN)
+        return "\n".join([f"Comparison of {self.source}: {self.verdict}", self.diagnosis, *rows])
 
     def _repr_html_(self) -> str:
         rows = [
@@ -96,14 +91,12 @@ class Comparison(Exported):
 
     def _columns(self) -> Columns:
         """Return data, theory and the allowed difference of each quantity."""
-        curves = {
-            f"{name}, {kind}": (values[name], self.units[name])
-            for name in self.allowed
-            for kind, values in (
-                ("data", self.series), ("theory", self.theory), ("allowed", self.allowed)
-            )
-        }  # fmt: skip
-        return {"time": (self.series["time"], "s"), **curves}
+        columns = {"time": (self.series["time"], "s")}
+        kinds = {"data": self.series, "theory": self.theory, "allowed": self.allowed}
+        for name in self.allowed:
+            for kind, values in kinds.items():
+                columns[f"{name}, {kind}"] = values[name], self.units[name]
+        return columns
 
     def _attributes(self) -> Mapping[str, str]:
         return {"verdict": self.verdict, "diagnosis": self.diagnosis}

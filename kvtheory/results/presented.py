@@ -32,13 +32,7 @@ class Exported(Recorded):
         raise NotImplementedError
 
     def to_xarray(self) -> Any:
-        """Return an `xarray.Dataset` with units; what varies over the states is among its coordinates.
-
-        Raises
-        ------
-        ValueError
-            If xarray is missing.
-        """
+        """Return an `xarray.Dataset` with units; what varies is a coordinate. Needs xarray."""
         return dataset(self._columns(), self._attributes()).set_coords(list(self.over))
 
     def to_csv(self, path: str | Path) -> None:
@@ -46,15 +40,7 @@ class Exported(Recorded):
         save_csv(Path(path), self._columns())
 
     def save(self, path: str | Path) -> None:
-        """Write to ``.csv`` or ``.nc`` (needs xarray).
-
-        Raises
-        ------
-        ValueError
-            If the suffix is neither, or xarray is missing.
-        OSError
-            If the file cannot be written.
-        """
+        """Write to ``.csv``, or to ``.nc`` with xarray; raise `ValueError` for any other suffix."""
         path = Path(path)
         check_path(path, SERIES_SUFFIXES)
         if path.suffix.lower() == ".csv":
@@ -117,11 +103,7 @@ class Presented(Exported):
 
 
 def aligned(heads: Sequence[str], rows: Iterable[Sequence[str]]) -> list[str]:
-    """Return the lines of a table with columns as wide as they need to be.
-
-    >>> aligned(("a", "b"), [("12", "3")])
-    ['a   b', '12  3']
-    """
+    """Return the lines of a table with columns as wide as they need to be."""
     table = [heads, *rows]
     widths = [max(len(row[i]) for row in table) for i in range(len(heads))]
     return ["  ".join(map(str.ljust, row, widths)).rstrip() for row in table]

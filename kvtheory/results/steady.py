@@ -45,9 +45,7 @@ class SteadyState(Presented):
     dissipated_in_contact: Value
     model: str
     certificate: Certificate
-    units: Mapping[str, str] = field(
-        default_factory=lambda: STEADY_UNITS, repr=False, compare=False
-    )
+    units: Mapping[str, str] = field(default_factory=STEADY_UNITS.copy, repr=False, compare=False)
     stable: Any = True
     over: Mapping[str, Any] = field(default_factory=dict, repr=False, compare=False)
     notes: tuple[str, ...] = field(default=(), compare=False)
@@ -147,9 +145,7 @@ class AsymptoteReport(Recorded):
     certificate: Certificate
     maxima_certificate: Certificate
     notes: tuple[str, ...] = field(default=(), compare=False)
-    units: Mapping[str, str] = field(
-        default_factory=lambda: STEADY_UNITS, repr=False, compare=False
-    )
+    units: Mapping[str, str] = field(default_factory=STEADY_UNITS.copy, repr=False, compare=False)
 
     def __repr__(self) -> str:
         return "\n".join(

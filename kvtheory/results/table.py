@@ -9,10 +9,7 @@ from kvtheory.scene.units import WHOLE
 
 
 class Row(NamedTuple):
-    """A quantity: its name, symbol (TeX), SI unit and description.
-
-    `scale` names the attribute of `kvtheory.scene.static_state.StaticState` that is its scale in a series.
-    """
+    """A quantity: name, symbol (TeX), SI unit, description, and its scale, a value of the `StaticState`."""
 
     name: str
     symbol: str
@@ -84,12 +81,7 @@ SHOWN_UNITS = {
 
 
 def units_for(indenter: Indenter, units: Mapping[str, str]) -> Mapping[str, str]:
-    """Return the units of quantities of a result: per unit width for a line contact, total for a ball.
-
-    >>> from kvtheory.scene import Sphere
-    >>> units_for(Sphere(radius=0.01), STEADY_UNITS)["load"]
-    'N'
-    """
+    """Return the units of quantities of a result: per unit width for a line contact, total for a ball."""
     if indenter.per_width:
         return units
     return {name: WHOLE.get(unit, unit) for name, unit in units.items()}
@@ -101,11 +93,6 @@ def series_units(*, rigid_drive: bool) -> Mapping[str, str]:
 
 
 def scales(at_rest: StaticState) -> dict[str, float]:
-    """Return the scale of each quantity of a series: a value of the static state, or a product of these.
-
-    >>> from kvtheory.scene import Scene
-    >>> round(scales(StaticState.of(Scene()))["normal_force"], 2)
-    9806.65
-    """
+    """Return the scale of each quantity of a series, from the static state."""
     names = series_units(rigid_drive=at_rest.rigid_drive)
     return {name: getattr(at_rest, QUANTITIES[name].scale) for name in names}

@@ -59,23 +59,24 @@ def compute(given: Task) -> Block:
     plan, table = given.plan, given.plan.blank(given.points)
     steady = _steady(given) if plan.needed(steady=True) else Measured()
     motion = _transients(given, steady) if plan.transient else Measured()
-    errors = {name: motion.errors[name] for name in plan.needed(steady=False) if plan.transient}
+    told = [(name, motion.errors[name]) for name in plan.needed(steady=False) if plan.transient]
     for column in plan.columns:
         if column.measure != "steady":
             table[column.name] = motion.values[column.name]
             continue
         table[column.name] = steady.values[column.base]
-        if column.base != STABLE:
-            error = steady.errors[column.base]
-            errors[column.name] = np.maximum(error, errors.get(column.name, 0.0))
+        told += [(column.name, steady.errors[column.base])] * (column.base != STABLE)
     reasons = steady.reasons | motion.reasons
     failed = sorted(reasons)
     table[failed] = plan.blank(len(failed))
+    errors: dict[str, float] = {}
+    for name, error in told:
+        error[failed] = 0.0
+        errors[name] = max(errors.get(name, 0.0), float(np.max(error)))
     return Block(
         given.start, given.start + given.points, table,
         [(given.start + index, _reason(reasons[index])) for index in failed],
-        sorted(steady.statements | motion.statements),
-        {name: float(np.max(np.delete(error, failed), initial=0.0)) for name, error in errors.items()},
+        sorted(steady.statements | motion.statements), errors,
     )  # fmt: skip
 
 

@@ -65,7 +65,7 @@ def write(plan: Plan, blocks: Blocks, path: Path) -> None:
 
 
 def finished(path: Path, plan: Plan) -> bool:
-    """Whether `path` holds the whole of this sweep; `ValueError` if it holds anything else, or was changed."""
+    """Whether `path` holds the whole of this sweep; raise if it holds anything else, or was changed."""
     if not path.exists():
         return False
     _, digest, written = _digest(path)
