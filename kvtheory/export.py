@@ -49,12 +49,8 @@ def xarray() -> Any:
 def check_path(path: Path, suffixes: Sequence[str]) -> None:
     """Raise unless a file of this name can be written, judging by its name and directory.
 
-    Raises
-    ------
-    ValueError
-        If the name does not end in one of the `suffixes`, in upper or lower case, or xarray is missing.
-    OSError
-        If there is no such directory, or the name is that of a directory.
+    `ValueError` if the suffix is none of these, in upper or lower case, or xarray is missing; `OSError` if
+    there is no such directory, or the name is that of a directory.
     """
     if path.suffix.lower() not in suffixes:
         expected = " or ".join(filter(None, (", ".join(suffixes[:-1]), suffixes[-1])))

@@ -89,10 +89,8 @@ def main(output, jobs, *limit):
         resource.setrlimit(resource.RLIMIT_FSIZE, (int(limit[0]),) * 2)
     try:
         (run if jobs == "1" else run_slowly)(Path(output), jobs=int(jobs), progress=tell)
-    except (OSError, RuntimeError) as error:
+    except OSError as error:
         sys.exit(f"{type(error).__name__}: {error}")
-    except KeyboardInterrupt:
-        sys.exit(130)
 
 
 if __name__ == "__main__":
