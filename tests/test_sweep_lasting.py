@@ -14,7 +14,7 @@ import psutil
 import pytest
 
 import kvtheory as kv
-from tests.sweep_driver import BLOCK, OVER, POINTS, SLOW_POINTS, done_of, kept, run, run_slowly
+from tests.sweep_driver import OVER, POINTS, SLOW_POINTS, done_of, kept, run, run_slowly
 
 ROOT = Path(__file__).parent.parent
 V, TAU = "drive.velocity", "foundation.retardation_time"

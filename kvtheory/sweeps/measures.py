@@ -26,17 +26,11 @@ from kvtheory.scene.static_state import StaticState
 from kvtheory.sweeps.plan import CYCLE, EVENTS, FAILS, Array, Column, Measured, Plan
 
 COLUMNS = {
-    "velocity": e_.DRIVE,
-    "sliding_velocity": e_.NUMBER,
-    "spring_force": e_.SPRING_FORCE,
-    "depth": e_.DEPTH,
-    "depth_rate": e_.RATE,
-    "normal_force": e_.NORMAL_FORCE,
-    "friction_force": e_.FRICTION_FORCE,
-    "peak_pressure": e_.PEAK_PRESSURE,
-    "leading_edge": maxima.LEADING_EDGE,
-    "trailing_edge": maxima.TRAILING_EDGE,
-}
+    "velocity": e_.DRIVE, "sliding_velocity": e_.NUMBER, "spring_force": e_.SPRING_FORCE,
+    "depth": e_.DEPTH, "depth_rate": e_.RATE, "normal_force": e_.NORMAL_FORCE,
+    "friction_force": e_.FRICTION_FORCE, "peak_pressure": e_.PEAK_PRESSURE,
+    "leading_edge": maxima.LEADING_EDGE, "trailing_edge": maxima.TRAILING_EDGE,
+}  # fmt: skip
 """Column of each quantity in the states."""
 SENSES = {"max": maxima.LARGEST, "time_of_max": maxima.LARGEST, "min": maxima.SMALLEST}
 PEAK = e_.FRICTION_FORCE, maxima.MAGNITUDE
@@ -73,16 +67,14 @@ class _Motions:
     """The motions of a block: what is asked, and arrays with a row for each index."""
 
     def __init__(self, plan: Plan, scenes: Mapping[int, Scene], friction: Array) -> None:
-        size = len(friction)
+        size, measures = len(friction), {c.measure for c in plan.columns}
         wanted = {(COLUMNS[c.base], SENSES[c.measure]) for c in plan.columns if c.measure in SENSES}
-        if any(c.measure == "peak_to_steady_friction" for c in plan.columns):
-            wanted.add(PEAK)
+        wanted |= {PEAK} if "peak_to_steady_friction" in measures else set()
         self.plan, self.wanted = plan, sorted(wanted)
         self.scenes: dict[int, tuple[Scene, StaticState, BaseMotion]] = {}
         self.friction = np.full(size, np.nan)
         self.reasons: dict[int, Exception] = {}
-        self.statements: set[str] = set()
-        self.texts = [""] * size
+        self.statements, self.texts = set[str](), [""] * size
         self.cycles = np.full((size, len(CYCLE)), np.nan)
         known = estimate.unknown("", sprung=True).relative_error
         self.errors = {name: np.zeros(size) for name in known}

@@ -55,18 +55,13 @@ EVENTS = "events"
 WHOLE = {"peak_to_steady_friction": "1", "settling_time": "s", "hops": "1", EVENTS: ""}
 """Single values of a transient, and their units."""
 CYCLE = {
-    "stick_slip_settles": "1",
-    "stick_slip_amplitude": "m",
-    "stick_slip_period": "s",
-    "sliding_velocity.cycle_max": "m/s",
-    "sliding_velocity.cycle_min": "m/s",
-    "friction_force.cycle_max": "N/m",
-    "friction_force.cycle_min": "N/m",
-}
+    "stick_slip_settles": "1", "stick_slip_amplitude": "m", "stick_slip_period": "s",
+    "sliding_velocity.cycle_max": "m/s", "sliding_velocity.cycle_min": "m/s",
+    "friction_force.cycle_max": "N/m", "friction_force.cycle_min": "N/m",
+}  # fmt: skip
 """Single values of the limit cycle of an indenter on a spring, in the order of `cycles.Cycle`."""
 
 EXAMPLE = '{"drive.velocity": "1 mm/s:10 m/s:200:log"}'
-
 ON_ARRAYS, BY_QUADRATURE, IN_MOTION = 1e6, 1e5, 1e3
 """Scenes per second and core, within a factor of three: measured for Table 1."""
 CELL = 21
@@ -88,7 +83,7 @@ def columns_of(
     names: Sequence[str] | str | None, *, series: bool, indenter: Indenter = Parabola(1.0)
 ) -> tuple[Column, ...]:
     """Return columns by name, or report every wrong one; None is all steady quantities, or all series."""
-    steady = STEADY_UNITS | {STABLE: "1"}
+    steady = {**STEADY_UNITS, STABLE: "1"}
     rows = [Column(name, unit, name, "steady") for name, unit in steady.items()]
     for name, unit in SERIES_UNITS.items():
         rows += [Column(name, unit, name, "series")] * series
@@ -143,9 +138,7 @@ def axes_of(scene: Scene, over: Mapping[Any, Any]) -> tuple[Axis, ...]:
         raise SceneError([f"`over` drive.velocity: {why}"])
     joint = sum(len(arrays) > 1 for arrays in axes)
     names = iter(["point"] if joint == 1 else [f"point_{i + 1}" for i in range(joint)])
-    return tuple(
-        Axis(next(names) if len(arrays) > 1 else next(iter(arrays)), arrays) for arrays in axes
-    )
+    return tuple(Axis(next(names if len(each) > 1 else iter(each)), each) for each in axes)
 
 
 def _values(value: Any, spec: Quantity) -> Array:
@@ -208,13 +201,7 @@ class Plan:
         return sorted(bases | ({"friction_force"} if against else set()))
 
     def values_at(self, start: int, stop: int) -> dict[str, Array]:
-        """Return the swept values of the points from `start` to `stop`, in C order.
-
-        >>> axes = axes_of(Scene(), {"drive.velocity": [1.0, 2.0], "support.mass": [10.0, 20.0]})
-        >>> plan = Plan(Scene(), axes, (), None, "exact", 1e-6)
-        >>> {key: array.tolist() for key, array in plan.values_at(1, 3).items()}
-        {'drive.velocity': [1.0, 2.0], 'support.mass': [20.0, 10.0]}
-        """
+        """Return the swept values of the points from `start` to `stop`, in C order."""
         places = np.unravel_index(np.arange(start, stop), [axis.size for axis in self.axes])
         return {
             key: array[place]
