@@ -104,19 +104,13 @@ def from_file(path: Path, plan: Plan, computed: int = 0) -> Sweep:
 
 def from_memory(plan: Plan, blocks: Blocks) -> Sweep:
     """Return blocks as arrays, in which points that were not computed are missing values."""
-    missing, done, values = plan.blank(1), 0, {}
-    for column in plan.columns:
-        kind = missing[column.name]
-        values[column.name] = np.empty((plan.points, *kind.shape[1:]), kind.dtype)
+    missing = plan.blank(1)
+    flat = {c.name: np.repeat(missing[c.name], plan.points, axis=0) for c in plan.columns}
     for block in blocks():
-        for name, array in values.items():
-            array[done : block.start] = missing[name]
+        for name, array in flat.items():
             array[block.start : block.stop] = block.table[name]
-        done = block.stop
     grid = tuple(axis.size for axis in plan.axes)
-    for name, array in values.items():
-        array[done:] = missing[name]
-        values[name] = array.reshape(*grid, *array.shape[1:])
+    values = {name: array.reshape(*grid, *array.shape[1:]) for name, array in flat.items()}
     summary = _summary(plan, blocks)
     return _sweep(plan, summary, lambda: values, summary["done"])
 
