@@ -12,6 +12,7 @@ import json
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import asdict
 from functools import partial
+from importlib.metadata import version
 from itertools import takewhile
 from pathlib import Path
 from typing import Any
@@ -133,7 +134,7 @@ def _sweep(plan: Plan, summary: Any, read: Any, computed: int, path: Path | None
     return Sweep(
         scene=plan.scene, axes=plan.axes, time=np.array(plan.times) if plan.series else None,
         units=plan.units, points=plan.points, computed=computed, failed=summary["failed"],
-        failures=summary["failures"], version=plan.record["kvtheory"], path=path, plan=plan, read=read,
+        failures=summary["failures"], version=version("kvtheory"), path=path, plan=plan, read=read,
         certificate=Certificate("estimated", summary["certificate"], summary["relative_error"]),
     )  # fmt: skip
 

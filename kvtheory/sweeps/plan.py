@@ -92,9 +92,7 @@ def columns_of(
             rows.append(Column(f"{name}.{measure}", of, name, measure))
     rows += [Column(f"{name}.steady", unit, name, "steady") for name, unit in STEADY_UNITS.items()]
     rows += [Column(name, unit, "", name) for name, unit in (WHOLE | CYCLE).items()]
-    rows = [row for row in rows if row.base != "time"]
-    units = units_for(indenter, {row.name: row.unit for row in rows})
-    known = {row.name: row._replace(unit=units[row.name]) for row in rows}
+    known = {row.name: row for row in rows if row.base != "time"}
     if names is None:
         names = [name for name in (TRANSIENT_UNITS if series else STEADY_UNITS) if name != "time"]
     names = list(dict.fromkeys([names] if isinstance(names, str) else names))
@@ -102,7 +100,8 @@ def columns_of(
         raise SceneError(["`quantities` is empty: expected names such as friction_coefficient"])
     if unknown := [name for name in names if name not in known]:
         raise SceneError([problem("`quantities`", name, nearest(name, known)) for name in unknown])
-    return tuple(known[name] for name in names)
+    units = units_for(indenter, {name: known[name].unit for name in names})
+    return tuple(known[name]._replace(unit=unit) for name, unit in units.items())
 
 
 def axes_of(scene: Scene, over: Mapping[Any, Any]) -> tuple[Axis, ...]:
