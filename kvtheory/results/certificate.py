@@ -24,10 +24,6 @@ class Certificate:
     explains it. `relative_error` maps the name of a quantity to a bound of |computed - true| over the scale
     that `relative_to` names: for steady sliding the true value; for a time series, which may pass through
     zero, the state at rest, with the scale of each quantity from `kvtheory.results.table.scales`.
-
-    >>> import kvtheory as kv
-    >>> kv.steady().certificate.kind
-    'estimated'
     """
 
     kind: str

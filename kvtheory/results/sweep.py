@@ -86,12 +86,7 @@ class Sweep(Recorded):
         return tuple(axis.size for axis in self.axes)
 
     def to_xarray(self) -> Any:
-        """Return an `xarray.Dataset` with labels, units, and the scene in its attributes.
-
-        Raises
-        ------
-        ValueError
-            If xarray is missing.
+        """Return an `xarray.Dataset` with labels, units, and the scene in its attributes. Needs xarray.
 
         Examples
         --------
@@ -119,12 +114,7 @@ class Sweep(Recorded):
         """Draw a quantity as a curve, a family of curves, or a map, and return the matplotlib axes.
 
         Without a name it is the friction coefficient, or else the first quantity; without `ax` it is drawn on
-        a new figure.
-
-        Raises
-        ------
-        ValueError
-            If the quantity does not exist, is text, or has more than two dimensions.
+        a new figure. `ValueError` if it does not exist, is text, or has more than two dimensions.
 
         Examples
         --------
@@ -136,15 +126,7 @@ class Sweep(Recorded):
         return above("plots").plot_sweep(ax, self, quantity)
 
     def save(self, path: str | Path) -> None:
-        """Write to ``.csv`` (one row for each point) or ``.nc`` (needs netCDF4); see `kvtheory.sweep`.
-
-        Raises
-        ------
-        ValueError
-            If the suffix is neither, or netCDF4 is missing.
-        OSError
-            If the file cannot be written.
-        """
+        """Write to ``.csv`` (one row for each point), or to ``.nc`` with netCDF4; see `kvtheory.sweep`."""
         above("sweeps.files").save_sweep(self, Path(path))
 
     def as_dict(self) -> dict[str, Any]:

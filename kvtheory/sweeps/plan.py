@@ -10,6 +10,7 @@ import math
 import os
 import shutil
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field
 from functools import cached_property
 from importlib.metadata import version
@@ -274,18 +275,16 @@ def is_csv(path: Path) -> bool:
 
 def refuse_what_cannot_fit(plan: Plan, path: Path | None, jobs: int = 1) -> None:
     """Raise `ValueError` if a sweep needs more than memory or disk hold."""
-    limits = []
+    limits = {}
     if path is None or not is_csv(path):
-        try:
-            memory = float(os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE"))
-        except (AttributeError, OSError, ValueError):  # unknown on some systems
-            memory = math.inf
-        limits.append((memory, "of memory; choose fewer points, or write to a CSV file (`output`)"))
+        with suppress(AttributeError, OSError, ValueError):  # unknown on some systems
+            memory = os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
+            limits["of memory; choose fewer points, or write to a CSV file (`output`)"] = memory
     if path is not None and path.parent.is_dir():
         free = shutil.disk_usage(path.parent).free
-        limits.append((free, f'free beside "{path}"; choose fewer points'))
+        limits[f'free beside "{path}"; choose fewer points'] = free
     needed, _, size = _size(plan, path, jobs)
-    for limit, where in limits:
+    for where, limit in limits.items():
         if needed > limit:
             raise ValueError(
                 f"{plan.points:,} points need {size}; there are {_text(limit)} {where}"
