@@ -87,9 +87,8 @@ def run(
     """
     before = done = sum(one.stop - one.start for one in kept)
     failed, begun = sum(len(one.failures) for one in kept), monotonic()
-    workers = (
-        jobs if executor is None else getattr(executor, "_max_workers", 0)
-    ) or UNKNOWN_WORKERS
+    known = jobs if executor is None else getattr(executor, "_max_workers", None)
+    workers = known or UNKNOWN_WORKERS
     compile_ahead(plan, plan.points - before, workers)
 
     def returned(result: Block) -> None:
