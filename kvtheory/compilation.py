@@ -1,4 +1,4 @@
-"""Kernels compiled by numba, which is optional, and kept on the disk."""
+"""Kernels compiled by numba, which is optional, and cached on disk."""
 
 import inspect
 from collections.abc import Callable
@@ -9,7 +9,7 @@ from typing import Any
 from kvtheory.progress import compiling
 
 OPTIONS: Any = {"error_model": "numpy"}
-"""Divisions are those of NumPy: by zero, they give infinity, and need no check."""
+"""Division by zero gives infinity, as in NumPy, and needs no check."""
 
 
 def available() -> bool:
@@ -18,13 +18,7 @@ def available() -> bool:
 
 
 def kept(entry: Callable[..., Any], module: ModuleType) -> Any:
-    """Return an entry of a module of kernels that is compiled when called, and kept if there is a place.
-
-    Raises
-    ------
-    ModuleNotFoundError
-        If numba is not installed.
-    """
+    """Return an entry of a module of kernels that is compiled when called, and cached on disk if possible."""
     from numba import njit
     from numba.extending import register_jitable
 
@@ -33,7 +27,7 @@ def kept(entry: Callable[..., Any], module: ModuleType) -> Any:
             register_jitable(**OPTIONS)(function)
     try:
         compiled = njit(entry, cache=True, nogil=True, **OPTIONS)
-    except RuntimeError:  # no place to keep it: the package and the home are read-only
+    except RuntimeError:  # package and home are read-only
         compiling()
         return njit(entry, nogil=True, **OPTIONS)
     disk: Any = compiled._cache  # type: ignore[attr-defined]

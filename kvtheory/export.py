@@ -3,6 +3,7 @@
 import csv
 import os
 from collections.abc import Callable, Mapping, Sequence
+from importlib import import_module
 from pathlib import Path
 from typing import Any
 
@@ -11,9 +12,7 @@ import numpy as np
 Columns = Mapping[str, tuple[Any, str]]
 """Values and SI unit of each column by name; `time` first in a time series."""
 SERIES_SUFFIXES = (".csv", ".nc")
-"""Suffixes of files that hold a table."""
 PICTURES = (".png", ".svg", ".pdf")
-"""Suffixes of files that hold a picture."""
 
 
 def save_csv(path: Path, columns: Columns) -> None:
@@ -32,47 +31,32 @@ def save_csv(path: Path, columns: Columns) -> None:
 
 def dataset(columns: Columns, attributes: Mapping[str, str]) -> Any:
     """Return columns as an `xarray.Dataset` with units: over time, or over dimensions without a name."""
-    data = {
-        name: (
-            ("time",) if "time" in columns else tuple(f"dim_{i}" for i in range(np.ndim(values))),
-            np.asarray(values),
-            {"units": unit},
-        )
-        for name, (values, unit) in columns.items()
-    }
-    return _xarray().Dataset(data, attrs=attributes)
+    data = {}
+    for name, (values, unit) in columns.items():
+        dims = ["time"] if "time" in columns else [f"dim_{i}" for i in range(np.ndim(values))]
+        data[name] = dims, np.asarray(values), {"units": unit}
+    return xarray().Dataset(data, attrs=attributes)
 
 
-def _xarray() -> Any:
+def xarray() -> Any:
+    """Return the library, or raise `ValueError` saying how to install it."""
     try:
-        import xarray
+        return import_module("xarray")
     except ModuleNotFoundError:
         raise ValueError('this needs xarray: pip install ".[data]" in the checkout') from None
-    return xarray
 
 
 def check_path(path: Path, suffixes: Sequence[str]) -> None:
     """Raise unless a file of this name can be written, judging by its name and directory.
 
-    Raises
-    ------
-    ValueError
-        If the name does not end in one of the `suffixes`, in upper or lower case, or xarray is missing.
-    OSError
-        If there is no such directory, or the name is that of a directory.
-
-    Examples
-    --------
-    >>> check_path(Path("a.PDF"), [".png", ".pdf"])
-    >>> check_path(Path("a.txt"), [".png", ".svg", ".pdf"])
-    Traceback (most recent call last):
-    ValueError: "a.txt": expected a name that ends in .png, .svg or .pdf
+    `ValueError` if the suffix is none of these, in upper or lower case, or xarray is missing; `OSError` if
+    there is no such directory, or the name is that of a directory.
     """
     if path.suffix.lower() not in suffixes:
         expected = " or ".join(filter(None, (", ".join(suffixes[:-1]), suffixes[-1])))
         raise ValueError(f'"{path}": expected a name that ends in {expected}')
     if path.suffix.lower() == ".nc":
-        _xarray()
+        xarray()
     if not path.parent.is_dir():
         raise OSError(f'"{path}": there is no directory "{path.parent}"')
     if path.is_dir():
@@ -80,13 +64,7 @@ def check_path(path: Path, suffixes: Sequence[str]) -> None:
 
 
 def replace_file(path: Path, write: Callable[[Path], Any]) -> None:
-    """Write to a temporary file beside `path` and rename it, so that no incomplete file is ever visible.
-
-    Raises
-    ------
-    OSError
-        If the file cannot be written; the message names it.
-    """
+    """Write to a temporary file beside `path` and rename it; raise `OSError` that names it if that fails."""
     replace_files({path: write})
 
 

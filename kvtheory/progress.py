@@ -17,14 +17,10 @@ COMPILING = "compiling, once for this installation"
 """Reported before kernels are compiled, which takes half a minute."""
 _LISTENER: ContextVar[Callable[[], object]] = ContextVar("_LISTENER", default=lambda: None)
 
-PATIENCE = 1.0
-"""Seconds before anything is shown."""
-ON_TERMINAL, IN_LOG = 0.2, 10.0
-"""Seconds between two reports."""
-BEAT = 1.0
-"""Seconds between two updates of a terminal while nothing is reported."""
-UNTIL_RATE = 0.5
-"""Seconds before the remaining time is extrapolated."""
+PATIENCE, UNTIL_RATE = 1.0, 0.5
+"""Seconds before anything is shown, and before the remaining time is extrapolated."""
+ON_TERMINAL, IN_LOG, BEAT = 0.2, 10.0, 1.0
+"""Seconds between two reports; and between two updates of a terminal while nothing is reported."""
 
 
 def silent(share: float, words: str) -> None:
@@ -49,7 +45,7 @@ def listening(progress: Progress) -> Iterator[Progress]:
 
 
 def compiling() -> None:
-    """Report to whoever follows the work of this thread that kernels are being compiled."""
+    """Report to the progress function of this thread that kernels are being compiled."""
     _LISTENER.get()()
 
 
@@ -66,19 +62,15 @@ class ProgressLine:
     """
 
     def __init__(
-        self,
-        label: str,
-        stream: TextIO | None = None,
-        clock: Callable[[], float] = time.monotonic,
-        patience: float = PATIENCE,
-    ) -> None:
-        self._label, self._clock = label, clock
+        self, label: str, stream: TextIO | None = None,
+        clock: Callable[[], float] = time.monotonic, patience: float = PATIENCE,
+    ) -> None:  # fmt: skip
+        self._label, self._clock, self._begun = label, clock, clock()
         self._stream = stream or sys.stderr or io.StringIO()  # standard error may be closed
         self._terminal = self._stream.isatty()
-        self._begun = clock()
         self._due = self._begun + (patience if self._terminal else IN_LOG)
+        # Share and time from which the remaining time is extrapolated.
         self._rated: tuple[float, float] | None = None
-        """Share and time from which the remaining time is extrapolated."""
         self._last = 0.0, "", self._begun
         self._width, self._current = 0, True
 
@@ -93,7 +85,7 @@ class ProgressLine:
             self._report(now)
 
     def beat(self) -> None:
-        """Show on a terminal that the work goes on, where nothing has been reported for a while."""
+        """Show on a terminal that the work goes on if nothing has been reported for a while."""
         now, (share, words, _) = self._clock(), self._last
         if not self._terminal or now < self._due:
             return
@@ -103,12 +95,10 @@ class ProgressLine:
         self._current = False
 
     def finish(self) -> None:
-        """End the line on a terminal, and report for the last time, if anything was shown."""
-        if not self._width:
-            return
-        if self._rated and not self._current:
+        """End the line on a terminal with a last report, if anything was shown."""
+        if self._width and self._rated and not self._current:
             self._report(self._clock())
-        if self._terminal:
+        if self._width and self._terminal:
             self._stream.write("\n")
             self._stream.flush()
 

@@ -1,8 +1,8 @@
-"""Runs sweeps for the tests that disturb them; each tells how many points are kept, as it goes on.
+"""Runs sweeps for the tests that disturb them; each reports how many points are kept, as it goes on.
 
 `python -m tests.sweep_driver OUTPUT JOBS [FILE_SIZE_LIMIT]` runs one, by processes if JOBS > 1.
 `... kill OUTPUT` runs it in children that are killed at random moments, until one comes to the end,
-and prints for each what it told first and last, and what was in the work file afterwards.
+and prints for each its first and last report, and what was in the work file afterwards.
 """
 
 import json
@@ -18,14 +18,12 @@ from pathlib import Path
 
 import kvtheory as kv
 
-POINTS = 6000
-BLOCK = 20
-SLOW_POINTS = 60
+POINTS, BLOCK, SLOW_POINTS = 3000, 20, 60
 OVER = {"drive.velocity": f"1 mm/s:10 m/s:{POINTS}:log"}
 PAUSE = 0.02
-"""Seconds; the blocks that a sweep is left with take some of them."""
-MOST_REPORTS, LONGEST_DELAY = 12, 2e-3
-"""A child is killed after so many reports, of the 300 that a whole sweep makes, and so many seconds."""
+"""Seconds after each block, so that there is time to disturb the sweep."""
+MOST_REPORTS, LONGEST_DELAY = 8, 2e-3
+"""A child is killed after so many reports, of the 150 that a whole sweep makes, and so many seconds."""
 
 
 def run(output, **more):
@@ -50,30 +48,21 @@ def kept(output):
         return base.execute(asked).fetchone()[0]
 
 
-def tell(pipe):
-    """Return what writes the number of points that are done, with which its words begin."""
-    return lambda share, words: os.write(pipe, f"{done_of(words)}\n".encode())
-
-
-def tell_slowly(pipe):
-    """Return the same with a pause after each block, so that there is time to disturb the sweep."""
-    told = tell(pipe)
-    return lambda share, words: (told(share, words), time.sleep(PAUSE))
-
-
 def done_of(words):
     return int(words.partition(" ")[0].replace(",", ""))
 
 
 def kill(output):
     kv.sweep(over={"drive.velocity": "1 mm/s:1 m/s:2"})  # imports once what every child needs
-    chance = random.Random(0)
-    lives = []
+    chance, lives = random.Random(0), []
     while True:
         ours, theirs = os.pipe()
         child = os.fork()
         if not child:
-            run(output, progress=tell(theirs))
+            run(
+                output,
+                progress=lambda _, words, pipe=theirs: os.write(pipe, b"%d\n" % done_of(words)),
+            )
             os._exit(0)
         os.close(theirs)
         told, reports = b"", chance.randint(1, MOST_REPORTS)
@@ -91,16 +80,18 @@ def kill(output):
             return lives
 
 
-if __name__ == "__main__":
-    if sys.argv[1] == "kill":
-        print(json.dumps(kill(sys.argv[2])))
-        sys.exit()
-    if len(sys.argv) > 3:
-        resource.setrlimit(resource.RLIMIT_FSIZE, (int(sys.argv[3]),) * 2)
+def main(output, jobs, *limit):
+    def tell(share, words):
+        print(done_of(words), flush=True)
+        time.sleep(PAUSE)
+
+    if limit:
+        resource.setrlimit(resource.RLIMIT_FSIZE, (int(limit[0]),) * 2)
     try:
-        jobs = int(sys.argv[2])
-        (run if jobs == 1 else run_slowly)(Path(sys.argv[1]), jobs=jobs, progress=tell_slowly(1))
-    except (OSError, RuntimeError) as error:
+        (run if jobs == "1" else run_slowly)(Path(output), jobs=int(jobs), progress=tell)
+    except OSError as error:
         sys.exit(f"{type(error).__name__}: {error}")
-    except KeyboardInterrupt:
-        sys.exit(130)
+
+
+if __name__ == "__main__":
+    print(json.dumps(kill(sys.argv[2]))) if sys.argv[1] == "kill" else main(*sys.argv[1:])

@@ -87,9 +87,6 @@ def test_a_value_of_a_wrong_kind_is_refused_by_the_name_of_its_argument(function
             given = {"over": {"drive.velocity": [0.1]}} if function is kv.sweep else {}
             with pytest.raises((ValueError, TypeError), match=told):
                 function(**{**given, name: value})
-
-
-def test_every_wrong_argument_is_listed():
     with pytest.raises(kv.SceneError) as caught:
         kv.transient(rtol="small", certify=None)
     assert [text.split(" = ")[0] for text in caught.value.problems] == ["`rtol`", "`certify`"]
@@ -156,44 +153,14 @@ def test_states_of_no_scenes_of_a_history_and_with_certificates_of_their_own():
 def test_results_become_json_and_what_does_not_exist_is_null():
     record = kv.steady(over={"drive.velocity": [0.1, 0.2]}).as_dict()
     assert json.loads(json.dumps(record, allow_nan=False)) == record
-    assert (record["model"], record["certificate"]["kind"], len(record["depth"])) == (
-        "exact",
-        "estimated",
-        2,
-    )
+    found = record["model"], record["certificate"]["kind"], len(record["depth"])
+    assert found == ("exact", "estimated", 2)
+    assert record.keys().isdisjoint({"units", "over"})
     report = kv.asymptotes(over={"drive.velocity": 0.0})
     (line,) = (line for line in report.lines if line.equation == 49)
     assert np.isnan(line.value)
     record = json.loads(json.dumps(report.as_dict(), allow_nan=False))
     assert record["lines"][3]["value"] is None
-
-
-@pytest.mark.parametrize("support", ["fixed", "dead-weight", "suspended"])
-@pytest.mark.parametrize("tolerance", [1e-8, 1e-3, 0.05, 0.4])
-def test_asymptotes_hold_exactly_in_their_ranges(support, tolerance):
-    scene = kv.Scene.table1(support)
-    report = kv.asymptotes(scene, tolerance=tolerance)
-    edges = {
-        i: (edge, 0.999 if line.regime == "low" else 1.001)
-        for i, line in enumerate(report.lines)
-        for edge in [line.velocity_max if line.regime == "low" else line.velocity_min]
-        if 0 < edge < np.inf
-    }
-    velocities = [
-        [edge, edge * inward, edge / inward, (edge / report.critical_velocity) ** 0.5 * edge]
-        for edge, inward in edges.values()
-    ]
-    lines = kv.asymptotes(scene, over={"drive.velocity": velocities}, tolerance=tolerance).lines
-    for row, i in enumerate(edges):
-        line = lines[i]
-        value, exact = (
-            np.broadcast_to(x, line.relative_error.shape)[row] for x in (line.value, line.exact)
-        )
-        error = line.relative_error[row]
-        assert abs(error[0]) == pytest.approx(tolerance, rel=1e-6)
-        assert abs(error[1]) <= tolerance <= abs(error[2])
-        assert value / exact - 1 == pytest.approx(error, rel=1e-5, abs=1e-14)
-    assert edges
 
 
 def test_regime_and_advice():
@@ -203,16 +170,3 @@ def test_regime_and_advice():
     backwards = kv.asymptotes(over={"drive.velocity": [-1e-5, -10.0]})
     assert backwards.lines[0].value[0] == -report.lines[0].value[0]
     assert backwards.use.tolist() == ["L1", "L2"]
-
-
-def test_the_asymptotes_meet_at_the_critical_velocity_and_the_peak_is_the_maximum():
-    for support in ("fixed", "dead-weight", "suspended"):
-        scene = kv.Scene.table1(support)
-        critical = kv.asymptotes(scene).critical_velocity
-        low, high = kv.asymptotes(scene, over={"drive.velocity": critical}).lines[:2]
-        assert low.value == pytest.approx(high.value, rel=1e-14)
-    report = kv.asymptotes()
-    V = report.peak_velocity * np.array([0.99, 1.0, 1.01])
-    mu = kv.steady(over={"drive.velocity": V}).friction_coefficient
-    assert mu[1] == pytest.approx(report.peak_friction_coefficient, rel=1e-14)
-    assert mu[1] > max(mu[0], mu[2])

@@ -11,11 +11,8 @@ import kvtheory as kv
 from kvtheory.cli import main
 
 OVER = [
-    "--over",
-    "drive.velocity=1 mm/s:10 m/s:4:log",
-    "--over",
-    "foundation.retardation_time=10 ms,1 s",
-]
+    "--over", "drive.velocity=1 mm/s:10 m/s:4:log", "--over", "foundation.retardation_time=10 ms,1 s",
+]  # fmt: skip
 THREADS = "concurrent.futures:ThreadPoolExecutor"
 TWICE = ["--over", "drive.velocity=1 m/s", "--over", "drive.velocity=2 m/s"]
 
@@ -60,18 +57,13 @@ def test_zipped_points_options_and_scene(place):
     assert result["depth"].tolist() == [1e-4, 1e-4]
 
 
-@pytest.mark.parametrize(
-    "more",
-    [
-        ["--jobs", "2"],
-        ["--executor", THREADS, "--block", "3"],
-        ["--executor", THREADS, "--jobs", "1"],
-    ],
-)
-def test_workers_give_the_same_file(place, more):
-    run(*OVER, "-o", "one.csv")
-    run(*OVER, "-o", "two.csv", *more)
-    assert (place / "one.csv").read_bytes() == (place / "two.csv").read_bytes()
+def test_workers_give_the_same_file(place):
+    threads = ["--executor", THREADS]
+    for number, more in enumerate(
+        [[], ["--jobs", "2"], [*threads, "--block", "3"], [*threads, "--jobs", "1"]]
+    ):
+        run(*OVER, "-o", f"{number}.csv", *more)
+    assert len({file.read_bytes() for file in place.iterdir()}) == 1
 
 
 def test_a_factory_may_lie_in_the_working_directory(place, monkeypatch):
@@ -94,11 +86,9 @@ def test_failures_are_counted_and_told(place):
     assert "7 failed" in result.stdout
     assert "range of double precision" in result.stdout
     assert "... the others are in map.csv" in result.stdout
-    record = json.loads(
-        run("--over", "drive.velocity=1e-320 m/s", "-o", "one.csv", "--json").stdout
-    )
-    assert record["failures"][0]["point"] == {"drive.velocity": 1e-320}
-    assert record["failures"][0]["index"] == 0
+    record = run("--over", "drive.velocity=1e-320 m/s", "-o", "one.csv", "--json").stdout
+    (failure,) = json.loads(record)["failures"]
+    assert (failure["index"], failure["point"]) == (0, {"drive.velocity": 1e-320})
 
 
 def test_transients_by_measures_and_series(place):
@@ -137,10 +127,8 @@ def test_an_interrupt_is_told_and_the_command_goes_on(place, monkeypatch):
         (["-o", "a.csv"], ["--over"]),
         (["--over", "drive.velocity=1 m/s"], ["-o"]),
         (["--over", "drive.velocity", "-o", "a.csv"], ["KEY=VALUES", "drive.velocity=1 mm/s"]),
-        (["--over", "drive.velocity=", "-o", "a.csv"], ["KEY=VALUES"]),
         ([*TWICE, "-o", "a.csv"], ["swept already"]),
         (["--over", "drive.velocty=1 m/s", "-o", "a.csv"], ['did you mean "drive.velocity"']),
-        (["--over", "drive.velocity=1 mm/s:2 mm/s", "-o", "a.csv"], ["START:STOP:COUNT"]),
         ([*OVER, "-o", "a.xls"], ["a.xls", ".csv", ".nc"]),
         ([*OVER, "-o", "no/such/a.csv"], ["no/such"]),
         ([*OVER, "-o", "a.csv", "--quantity", "friction"], ['"friction"', "did you mean"]),
@@ -150,7 +138,6 @@ def test_an_interrupt_is_told_and_the_command_goes_on(place, monkeypatch):
         ([*OVER, "-o", "a.csv", "--executor", THREADS[:-8]], ['did you mean "ThreadPoolExecutor"']),
         ([*OVER, "-o", "a.csv", "--executor", "builtins:list"], ["Executor"]),
         ([*OVER, "-o", "a.csv", "--plot", "a.doc"], ["a.doc", ".png"]),
-        ([*OVER, "-o", "a.csv", "--rtol", "1"], ["rtol"]),
     ],
 )  # fmt: skip
 def test_bad_input_costs_one_message_and_status_2_and_nothing_is_written(place, arguments, words):

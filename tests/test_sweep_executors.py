@@ -12,27 +12,18 @@ import pytest
 
 import kvtheory as kv
 from kvtheory.models.continuum import compiled
-from kvtheory.sweeps import measures
-from kvtheory.sweeps.axes import axes_of
-from kvtheory.sweeps.blocks import compute, task
-from kvtheory.sweeps.plan import Plan, columns_of
+from kvtheory.sweeps import blocks
+from kvtheory.sweeps.blocks import compile_ahead, compute, task
+from kvtheory.sweeps.plan import Plan, axes_of, columns_of
 from tests.sweep_driver import done_of
 
 V, TAU = "drive.velocity", "foundation.retardation_time"
 OVER = {V: "10 mm/s:1 m/s:5:log", TAU: ["50 ms", "0.2 s", "1 s"]}
 STEADY = {"quantities": ["depth", "friction_coefficient"], "method": "quadrature"}
+WHOLE = ["peak_to_steady_friction", "settling_time", "hops", "events"]
 MOTION = {
-    "quantities": [
-        "peak_to_steady_friction",
-        "settling_time",
-        "hops",
-        "events",
-        "depth.end",
-        "depth",
-    ],
-    "at": ["0 ms", "7 ms", "0.2 s"],
-    "rtol": 1e-5,
-}
+    "quantities": [*WHOLE, "depth.end", "depth"], "at": ["0 ms", "7 ms", "0.2 s"], "rtol": 1e-5,
+}  # fmt: skip
 KINDS = {"steady": STEADY, "motion": MOTION}
 
 
@@ -49,6 +40,22 @@ def assert_same(a, b):
 def here():
     """Each sweep, done in this thread."""
     return {kind: kv.sweep(over=OVER, **asked) for kind, asked in KINDS.items()}
+
+
+class Killer:
+    """As `progress` of a sweep, kills one of the processes of `pids` after the first block."""
+
+    def __init__(self, pids):
+        self.pids, self.done = pids, []
+
+    def __call__(self, share, words):
+        if share and not self.done:
+            self.done.append(done_of(words))
+            os.kill(self.pids()[0], signal.SIGKILL)
+
+
+def children():
+    return [child.pid for child in active_children()]
 
 
 class Backwards(Executor):
@@ -83,49 +90,30 @@ def test_blocks_in_any_order(here, kind):
     assert not executor.down
 
 
-@pytest.mark.parametrize(
-    "pool", [lambda: ThreadPoolExecutor(2), lambda: ProcessPoolExecutor(2, get_context("spawn"))]
-)
-def test_threads_and_processes_of_the_caller(here, pool):
-    with pool() as executor:
+def test_threads_of_the_caller(here):
+    with ThreadPoolExecutor(2) as executor:
         for kind, asked in KINDS.items():
             assert_same(kv.sweep(over=OVER, executor=executor, block=4, **asked), here[kind])
         assert executor.submit(abs, -1).result() == 1  # it was not shut down
 
 
 def test_own_processes_survive_a_worker_that_is_killed(here, tmp_path):
-    killed = []
-
-    def kill(share, words):
-        if share and not killed:
-            killed.append(active_children()[0].pid)
-            os.kill(killed[0], signal.SIGKILL)
-
-    output = tmp_path / "map.nc"
+    kill, output = Killer(children), tmp_path / "map.nc"
     result = kv.sweep(over=OVER, jobs=2, block=1, output=output, progress=kill, **STEADY)
-    assert killed
+    assert kill.done
     assert_same(result, here["steady"])
 
 
-def test_the_callers_pool_that_breaks_is_told_and_the_file_resumes(here, tmp_path):
-    output = tmp_path / "map.nc"
-    killed = []
-
-    def kill(share, words):
-        if share and not killed:
-            killed.append(done_of(words))
-            for child in active_children():
-                os.kill(child.pid, signal.SIGKILL)
-
-    arguments = {"over": OVER, "block": 1, "output": output, **STEADY}
-    with (
-        ProcessPoolExecutor(1, get_context("spawn")) as executor,
-        pytest.raises(RuntimeError, match=r"broken|lost"),
-    ):
-        kv.sweep(executor=executor, progress=kill, **arguments)
-    before = []
+def test_the_callers_pool_that_breaks_is_reported_and_the_file_resumes(here, tmp_path):
+    arguments = {"over": OVER, "block": 1, "output": tmp_path / "map.nc", **STEADY}
+    before, kill = [], Killer(children)
+    with ProcessPoolExecutor(1, get_context("spawn")) as executor:
+        # The motions in one block of a process of the caller; then the steady states, whose process dies.
+        assert_same(kv.sweep(over=OVER, executor=executor, **MOTION), here["motion"])
+        with pytest.raises(RuntimeError, match=r"broken|lost"):
+            kv.sweep(executor=executor, progress=kill, **arguments)
     result = kv.sweep(progress=lambda share, words: before.append(done_of(words)), **arguments)
-    assert before[0] >= killed[0] > 0
+    assert before[0] >= kill.done[0] > 0
     assert_same(result, here["steady"])
 
 
@@ -153,20 +141,12 @@ def test_dask_on_a_cluster_of_processes(here, tmp_path):
             Client(cluster) as client,
         ):  # fmt: skip
             executor = client.get_executor(pure=False)
-            for kind, asked in KINDS.items():
-                assert_same(kv.sweep(over=OVER, executor=executor, block=4, **asked), here[kind])
-            pids = set(client.run(os.getpid).values())
-            assert len(pids) == 2
-            assert os.getpid() not in pids
-            killed = []
-
-            def kill(share, words):
-                if share and not killed:
-                    killed.append(pids.pop())
-                    os.kill(killed[0], signal.SIGKILL)
-
+            assert_same(kv.sweep(over=OVER, executor=executor, block=4, **MOTION), here["motion"])
+            pids = list(client.run(os.getpid).values())
+            assert len({*pids, os.getpid()}) == 3
+            kill = Killer(lambda: pids)
             again = kv.sweep(over=OVER, executor=executor, block=1, progress=kill, **STEADY)
-            assert killed
+            assert kill.done
             assert_same(again, here["steady"])
             assert client.submit(abs, -1).result() == 1
 
@@ -190,11 +170,11 @@ def test_kernels_are_compiled_once_before_work_is_given_out(monkeypatch, quantit
             told.append("block")
             return super().submit(function, given)
 
-    monkeypatch.setattr(measures, "compile_ahead", lambda plan, scene: told.append(scene))
+    monkeypatch.setattr(blocks, "compute", lambda given: told.append(given.start))
     with Recording(2) as executor:
         kv.sweep(over={V: f"10 mm/s:1 m/s:{points}"}, quantities=quantity, executor=executor)
-    first = [kv.Scene(drive=kv.Drive(0.01))] if (quantity, points) == ("hops", 320) else []
-    assert told[: len(first) + 1] == [*first, "block"]
+    first = [0, 319] if (quantity, points) == ("hops", 320) else []
+    assert sorted(told[: len(first)]) == first
     assert set(told[len(first) :]) == {"block"}
 
 
@@ -204,7 +184,7 @@ def test_what_is_compiled_ahead_is_all_that_a_block_calls(monkeypatch, names):
     columns = columns_of(names, series="depth" in names)
     axes = axes_of(kv.Scene(), {V: [0.1, 0.2]})
     plan = Plan(kv.Scene(), axes, columns, (0.0, 0.1), "exact", 1e-6)
-    measures.compile_ahead(plan, kv.Scene())
+    compile_ahead(plan, 10**6, 2)
     assert len(compiled.kernel().signatures) == 1
     assert compute(task(plan, 0, 2)).failures == []
     assert kv.transient(at=[0.1]).compiled

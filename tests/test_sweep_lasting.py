@@ -1,8 +1,8 @@
-"""Sweeps outlive kills, interrupts, full disks and lost workers, and never write over another file."""
+"""Sweeps survive kills, interrupts and full disks, never write over another file, and notice damage."""
 
 import json
 import os
-import signal
+import random
 import sqlite3
 import subprocess
 import sys
@@ -14,26 +14,50 @@ import psutil
 import pytest
 
 import kvtheory as kv
-from tests.sweep_driver import (
-    BLOCK,
-    OVER,
-    POINTS,
-    SLOW_POINTS,
-    done_of,
-    kept,
-    run,
-    run_slowly,
-)
+from tests.sweep_driver import OVER, POINTS, SLOW_POINTS, done_of, kept, run, run_slowly
 
 ROOT = Path(__file__).parent.parent
-V = "drive.velocity"
+V, TAU = "drive.velocity", "foundation.retardation_time"
+SMALL = {V: "1 mm/s:10 m/s:40:log", TAU: ["50 ms", "0.2 s", "1 s"]}
+REFUSED = r"not a sweep as it was written.*overwrite"
+SUFFIXES = pytest.mark.parametrize("suffix", [".csv", ".nc"])
 
 
-def start(output, jobs=1, *more):
+def driver(*arguments):
     return subprocess.Popen(
-        [sys.executable, "-W", "error", "-m", "tests.sweep_driver", str(output), str(jobs), *more],
+        [sys.executable, "-W", "error", "-m", "tests.sweep_driver", *map(str, arguments)],
         stdout=subprocess.PIPE, stderr=subprocess.PIPE, cwd=ROOT,
+        env=os.environ | {"OPENBLAS_NUM_THREADS": "1"},
     )  # fmt: skip
+
+
+def wait_for(process, count):
+    while int(process.stdout.readline()) < count:
+        pass
+
+
+def small(path, **more):
+    return kv.sweep(output=path, **{"over": SMALL, **more})
+
+
+def stop(share, words):
+    """Stop a sweep after its first block."""
+    if " a second" in words:
+        raise OSError("enough")
+
+
+def flipped(content, at):
+    return content[:at] + bytes([content[at] ^ 1]) + content[at + 1 :]
+
+
+def names(folder):
+    return [item.name for item in folder.iterdir()]
+
+
+def same(a, b):
+    for name in b.values:
+        assert a[name].dtype == b[name].dtype
+        assert np.array_equal(a[name], b[name], equal_nan=b.units[name] != ""), name
 
 
 @pytest.fixture(scope="module")
@@ -46,92 +70,70 @@ def whole(tmp_path_factory):
 
 def test_a_sweep_killed_at_random_moments_resumes_to_the_same_bytes(tmp_path, whole):
     output = tmp_path / "map.csv"
-    done = subprocess.run(
-        [sys.executable, "-m", "tests.sweep_driver", "kill", str(output)],
-        check=True, capture_output=True, text=True, cwd=ROOT, env={**os.environ, "OPENBLAS_NUM_THREADS": "1"},
-    )  # fmt: skip
-    lives = json.loads(done.stdout)
-    assert len(lives) > 20  # it was killed all but the last time
+    told, errors = driver("kill", output).communicate()
+    lives = json.loads(told or errors.decode())
+    assert len(lives) > 12  # it was killed all but the last time
     earlier = 0
     for first, last, found in lives[:-1]:
         assert first >= earlier, "blocks were lost"
         assert found is None or found >= last
         earlier = last if found is None else found
     assert output.read_bytes() == whole
-    assert [item.name for item in tmp_path.iterdir()] == ["map.csv"]
+    assert names(tmp_path) == ["map.csv"]
 
 
 def test_workers_end_with_a_killed_parent_and_their_sweep_resumes(tmp_path):
-    output = tmp_path / "map.csv"
-    for count in (10, 30):
-        process = start(output, 2)
-        while int(process.stdout.readline()) < count:
-            pass
-        workers = [
-            p for p in psutil.Process(process.pid).children() if "spawn_main" in str(p.cmdline())
-        ]
-        assert len(workers) == 2
-        process.kill()
-        process.communicate()
-        assert not psutil.wait_procs(workers, timeout=10)[1]
-        assert count <= kept(output) < SLOW_POINTS
-    run_slowly(output, jobs=2)
-    undisturbed = tmp_path / "undisturbed.csv"
+    output, undisturbed = tmp_path / "map.csv", tmp_path / "undisturbed.csv"
+    process = driver(output, 2)
+    wait_for(process, 20)
+    children = psutil.Process(process.pid).children()
+    workers = [child for child in children if "spawn_main" in str(child.cmdline())]
+    assert len(workers) == 2
+    process.kill()
+    process.communicate()
+    assert not psutil.wait_procs(workers, timeout=10)[1]
+    assert 20 <= kept(output) < SLOW_POINTS
+    run_slowly(output)
     run_slowly(undisturbed)
     assert output.read_bytes() == undisturbed.read_bytes()
 
 
-def test_an_interrupt_leaves_a_file_with_what_there_is_and_the_rest_follows(tmp_path, whole):
-    output = tmp_path / "map.csv"
-    process = start(output)
-    while int(process.stdout.readline()) < 10 * BLOCK:
-        pass
-    process.send_signal(signal.SIGINT)
-    process.communicate()
-    assert process.returncode == 130
-    text = output.read_text(encoding="utf-8")
-    rows = [line for line in text.splitlines() if not line.startswith("#")][1:]
-    assert 10 * BLOCK <= len(rows) < POINTS
-    assert f"# unfinished: {len(rows)} of {POINTS} points" in text
-    assert set(rows) < set(whole.decode().splitlines())
-    before = []
-    run(output, progress=lambda share, words: before.append(done_of(words)))
-    assert before[0] == len(rows)
-    assert output.read_bytes() == whole
-
-
-def test_an_interrupted_netcdf_holds_nan_where_nothing_is_yet(tmp_path):
+@SUFFIXES
+def test_an_interrupt_leaves_a_file_with_what_there_is_and_the_rest_follows(tmp_path, suffix):
     import xarray
 
-    output = tmp_path / "map.nc"
+    path, before = tmp_path / f"map{suffix}", []
 
     def interrupt(share, words):
-        if done_of(words) >= 2 * BLOCK:
+        if done_of(words) >= 60:
             raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):
-        run(output, progress=interrupt)
-    with xarray.open_dataset(output) as data:
-        assert np.isfinite(data["load"].values).sum() == 2 * BLOCK
-    assert np.isfinite(run(output)["load"]).all()
+        small(path, block=30, progress=interrupt)
+    if suffix == ".csv":
+        text = path.read_text(encoding="utf-8")
+        assert "# unfinished: 60 of 120 points" in text
+        assert sum(line[0] != "#" for line in text.splitlines()) == 61
+    else:
+        with xarray.open_dataset(path) as data:
+            assert (
+                np.isfinite(data["load"].values.reshape(-1)).tolist() == [True] * 60 + [False] * 60
+            )
+    found = small(path, progress=lambda share, words: before.append(done_of(words)))
+    assert (before[0], found.computed) == (60, 60)
+    same(found, kv.sweep(over=SMALL))
+    assert names(tmp_path) == [path.name]
 
 
-def test_a_full_disk_is_told_and_nothing_kept_is_lost(tmp_path, whole):
+def test_a_full_disk_is_reported_and_nothing_kept_is_lost(tmp_path, whole, monkeypatch):
     output = tmp_path / "map.csv"
-    for limit in (1_000_000, 2_000_000):
-        process = start(output, 1, str(limit))
-        _, message = process.communicate()
-        assert process.returncode == 1
-        assert b"OSError" in message
-        assert b"map.csv.part" in message
-        assert not output.exists()
-        assert kept(output) > 0
-    run(output)
-    assert output.read_bytes() == whole
-
-
-def test_a_disk_that_is_full_when_the_result_is_written_keeps_the_work(tmp_path, monkeypatch):
-    output = tmp_path / "map.csv"
+    process = driver(output, 1, 1_000_000)
+    _, message = process.communicate()
+    assert process.returncode == 1
+    assert b"OSError" in message
+    assert b"map.csv.part" in message
+    assert not output.exists()
+    assert kept(output) > 0
 
     def full(plan, block):
         raise OSError(28, "No space left on device")
@@ -140,111 +142,211 @@ def test_a_disk_that_is_full_when_the_result_is_written_keeps_the_work(tmp_path,
         patch.setattr("kvtheory.sweeps.files._rows", full)
         with pytest.raises(OSError, match="No space"):
             run(output)
-    assert [item.name for item in tmp_path.iterdir()] == ["map.csv.part"]
+    assert names(tmp_path) == ["map.csv.part"]
     assert kept(output) == POINTS
     run(output)
-    assert output.exists()
+    assert output.read_bytes() == whole
 
 
-@pytest.mark.parametrize("suffix", [".csv", ".nc"])
+@SUFFIXES
 def test_another_sweep_in_the_file_is_refused_and_left(tmp_path, suffix, monkeypatch):
     output = tmp_path / f"map{suffix}"
-    asked = {"over": OVER, "quantities": ["load", "depth"], "output": output}
-    first = kv.sweep(**asked)
-    before = output.read_bytes()
+    asked = {"over": OVER, "quantities": "depth", "output": output}
+    series = {"at": ["1 ms"], "over": {V: [0.1]}}
+    first, before = kv.sweep(**asked), output.read_bytes()
     changes = {
         "scene": {"scene": kv.Scene.table1("fixed")},
         "over": {"over": {V: [1.0, 2.0]}},
-        "quantities": {"quantities": "depth"},
+        "quantities": {"quantities": "load"},
         "method": {"method": "asymptote"},
+        "at": series,
+        "rtol": {**series, "rtol": 1e-5},
     }
     for word, change in changes.items():
-        with pytest.raises(ValueError, match=f"differs in {word}"):
+        with pytest.raises(ValueError, match=f"differs in .*{word}"):
             kv.sweep(**asked | change)
     with monkeypatch.context() as patch:
         patch.setattr("kvtheory.sweeps.plan.version", lambda name: "9.9.9")
         with pytest.raises(ValueError, match="differs in kvtheory"):
             kv.sweep(**asked)
     monkeypatch.setattr("kvtheory.sweeps.engine.compute", None)  # nothing is computed again
-    assert np.array_equal(kv.sweep(**asked)["load"], first["load"])
+    assert np.array_equal(kv.sweep(**asked)["depth"], first["depth"])
     assert output.read_bytes() == before
-    assert [item.name for item in tmp_path.iterdir()] == [output.name]
-
-
-def test_an_unfinished_work_file_of_another_sweep_is_refused(tmp_path):
-    output = tmp_path / "map.csv"
-
-    def stop(share, words):
-        if share:
-            raise OSError("enough")
-
-    with pytest.raises(OSError, match="enough"):
-        run(output, progress=stop)
-    with pytest.raises(ValueError, match=r"map.csv.part.*differs in over"):
-        kv.sweep(over={V: [1.0]}, quantities=["load", "depth"], output=output)
-    assert kept(output) == BLOCK
-    assert not output.exists()
+    assert names(tmp_path) == [output.name]
 
 
 @pytest.mark.parametrize("name", ["map.csv", "map.nc", "map.csv.part", "map.nc.part"])
 @pytest.mark.parametrize("content", [b"", b"time [s],depth [m]\r\n0,1\r\n", b"\x00\xff" * 5000])
 def test_files_of_others_are_left_alone(tmp_path, name, content):
     foreign = tmp_path / name
+    if not content and name.endswith(".part"):  # SQLite begins with an empty file
+        with closing(sqlite3.connect(foreign)) as base:
+            base.execute("CREATE TABLE precious (thing TEXT)")
+        content = foreign.read_bytes()
     foreign.write_bytes(content)
-    if not content and name.endswith(".part"):
-        return  # an empty file is what SQLite begins with
     with pytest.raises(ValueError, match=r"is not a (work file of a )?sweep"):
         kv.sweep(over={V: [1.0]}, output=tmp_path / name.removesuffix(".part"))
     assert foreign.read_bytes() == content
     assert list(tmp_path.iterdir()) == [foreign]
 
 
-def test_another_database_is_left_alone(tmp_path):
-    work = tmp_path / "map.csv.part"
-    with closing(sqlite3.connect(work)) as base:
-        base.execute("CREATE TABLE precious (thing TEXT)")
-    before = work.read_bytes()
-    with pytest.raises(ValueError, match="is not a work file"):
-        kv.sweep(over={V: [1.0]}, output=tmp_path / "map.csv")
-    assert work.read_bytes() == before
-
-
 def test_the_same_sweep_cannot_run_twice_at_a_time(tmp_path):
-    output = tmp_path / "map.csv"
-    told = []
+    refused = []
 
     def second(share, words):
-        if not told:
+        if not refused:
             with pytest.raises(OSError, match="in use") as error:
-                run(output)
-            told.append(error)
+                small(tmp_path / "map.csv")
+            refused.append(error)
 
-    run(output, progress=second)
-    assert told
+    small(tmp_path / "map.csv", progress=second)
+    assert refused
 
 
-def test_an_unwritable_place_is_told(tmp_path):
+def test_an_unwritable_place_is_reported(tmp_path):
     with pytest.raises(OSError, match="no directory"):
-        run(tmp_path / "nowhere" / "map.csv")
+        small(tmp_path / "nowhere" / "map.csv")
     (tmp_path / "map.csv.part").mkdir()
     with pytest.raises(OSError, match=r"map\.csv\.part"):
-        run(tmp_path / "map.csv")
-    assert [item.name for item in tmp_path.iterdir()] == ["map.csv.part"]
+        small(tmp_path / "map.csv")
+    assert names(tmp_path) == ["map.csv.part"]
 
 
-@pytest.mark.skipif(sys.platform != "linux", reason="asks Linux for the peak of the memory")
+@pytest.mark.skipif(sys.platform != "linux", reason="reads the peak of the memory from /proc")
 def test_memory_is_bounded_by_the_block(tmp_path):
     code = (
         "import sys, kvtheory as kv\n"
         "kv.sweep(over={'drive.velocity': f'1 mm/s:10 m/s:{sys.argv[1]}:log',"
         " 'foundation.retardation_time': '10 ms:1 s:100'}, output='map.csv', block=10000, overwrite=True)\n"
-        # The peak that getrusage tells is that of the parent, if that was larger.
+        # The peak of getrusage is that of the parent, if that was larger.
         "print(next(l.split()[1] for l in open('/proc/self/status') if l.startswith('VmHWM')))"
     )
     few, many = (
-        int(subprocess.run(
-            [sys.executable, "-c", code, count], check=True, capture_output=True, text=True, cwd=tmp_path,
-        ).stdout) / 1024
-        for count in ("100", "5000")
-    )  # fmt: skip
-    assert many < few + 15.0, (few, many)  # The results of half a million scenes are 40 MB.
+        int(subprocess.check_output([sys.executable, "-c", code, count], cwd=tmp_path)) / 1024
+        for count in ("100", "4000")
+    )
+    assert many < few + 15.0, (few, many)  # The results of 400,000 scenes are 32 MB.
+
+
+@SUFFIXES
+def test_a_file_of_which_any_byte_was_lost_or_changed_is_never_taken_for_whole(tmp_path, suffix):
+    path, chance = tmp_path / f"map{suffix}", random.Random(1)
+    small(path)
+    content = path.read_bytes()
+    last = len(content) - 1
+    damaged = [
+        b"",
+        content + b"\n",
+        *(content[:end] for end in np.linspace(1, last, 13).astype(int)),
+    ]
+    damaged += [flipped(content, at) for at in [0, 100, last, *chance.sample(range(last), 27)]]
+    for spoilt in damaged:
+        path.write_bytes(spoilt)
+        with pytest.raises(ValueError, match=REFUSED):
+            small(path)
+        assert path.read_bytes() == spoilt
+    small(path, overwrite=True)
+    assert small(path).computed == 0
+    assert names(tmp_path) == [path.name]
+
+
+def test_netcdf_may_be_read_but_not_saved_again_by_another_program(tmp_path):
+    import xarray
+
+    path = tmp_path / "map.nc"
+    small(path)
+    with xarray.open_dataset(path) as data:
+        copy = data.load()
+    assert small(path).computed == 0
+    copy.to_netcdf(path)
+    with pytest.raises(ValueError, match="saved anew by another program"):
+        small(path)
+
+
+@pytest.mark.parametrize(
+    "asked", [{}, {"quantities": ["load", "events"], "over": {V: [0.05, 0.1]}}]
+)
+def test_a_damaged_block_of_the_work_file_is_noticed(tmp_path, asked):
+    path, chance = tmp_path / "map.csv", random.Random(2)
+    whole = small(tmp_path / "whole.csv", **asked).path.read_bytes()
+    with pytest.raises(OSError, match="enough"):
+        small(path, block=1, progress=stop, **asked)
+    with closing(sqlite3.connect(f"{path}.part")) as base:  # works the log into the file
+        base.execute("PRAGMA journal_mode=DELETE")
+        assert base.execute("SELECT count(*) FROM blocks").fetchone() == (1,)
+    work, noticed = path.with_name("map.csv.part"), 0
+    content = work.read_bytes()
+    for at in chance.sample([at for at, byte in enumerate(content) if byte], 24):
+        work.write_bytes(flipped(content, at))
+        try:
+            small(path, **asked)
+        except (ValueError, OSError):
+            assert not path.exists()
+            noticed += 1
+        else:  # counters of SQLite, and what is computed again
+            assert path.read_bytes() == whole
+            path.unlink()
+    assert noticed > 12
+
+
+def test_overwriting_computes_anew_and_drops_the_unfinished_work_of_another_sweep_only(tmp_path):
+    path, other = tmp_path / "map.csv", {V: [0.1, 0.2]}
+    path.write_text("time [s],depth [m]\n0,1\n")
+    assert small(path, overwrite=True).computed == 120
+    assert small(path).computed == 0
+    for _ in range(2):
+        assert small(path, over=other, overwrite=True).computed == 2
+    path.unlink()
+    for overwrite, found in ((False, 30), (False, 60), (True, 90)):
+        with pytest.raises(OSError, match="enough"):
+            small(path, block=30, progress=stop, overwrite=overwrite)
+        assert kept(path) == found
+        with pytest.raises(ValueError, match=r"map.csv.part.*differs in over"):
+            small(path, over=other)
+    assert small(path, overwrite=True).computed == 30
+    with pytest.raises(OSError, match="enough"):
+        small(path, block=30, progress=stop, overwrite=True)
+    assert small(path, over=other, overwrite=True).computed == 2
+
+
+@SUFFIXES
+def test_every_mixture_of_columns_is_kept_written_and_read(tmp_path, suffix):
+    """Numbers, series and texts, alone or together, of scenes of which one fails and one is at rest."""
+    kinds = {
+        "steady": "load",
+        "series": "depth",
+        "peak": "peak_to_steady_friction",
+        "text": "events",
+    }
+    for number, chosen in enumerate([*((name,) for name in kinds), ("series", "text"), kinds]):
+        asked = {"over": {V: [0.05, 0.0, 1e200]}, "quantities": [kinds[name] for name in chosen]}
+        asked |= {"rtol": 1e-4} | ({"at": "0 ms:200 ms:3"} if "series" in chosen else {})
+        held = kv.sweep(**asked)
+        path, copy = (tmp_path / f"{of}{number}{suffix}" for of in ("stored", "saved"))
+        with pytest.raises(OSError, match="enough"):
+            kv.sweep(output=path, block=1, progress=stop, **asked)
+        stored = kv.sweep(output=path, **asked)
+        held.save(copy)
+        saved = kv.sweep(output=copy, **asked)
+        assert (held.failed, stored.computed, saved.computed) == (1, 2, 0)
+        for other in (stored, saved):
+            same(other, held)
+        if "peak" in chosen:
+            assert np.isnan(
+                held["peak_to_steady_friction"][1:]
+            ).all()  # at rest there is no friction
+        if "text" in chosen:
+            assert json.loads(held["events"][0])[0]["time"] == 0.0
+            assert held["events"][2] == ""
+
+
+def test_what_cannot_fit_is_refused_with_its_size_before_anything_is_done(tmp_path):
+    over = {
+        V: "1 mm/s:1 m/s:1000000",
+        TAU: "1 ms:1 s:1000000",
+        "support.mass": "1 kg/m:2 kg/m:10000",
+    }
+    for output in (None, tmp_path / "map.csv", tmp_path / "map.nc"):
+        with pytest.raises(ValueError, match=r"10,000,000,000,000,000 points need .* years; there"):
+            kv.sweep(over=over, output=output)
+    assert not list(tmp_path.iterdir())

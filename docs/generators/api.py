@@ -66,7 +66,11 @@ def _entry(kind: str, signature: str, thing: object, fence: str) -> str:
     if kind == "class":
         if fields := _fields(thing):
             body.append(fields)
-        for name, member in vars(thing).items():
+        shared = [
+            cls for cls in thing.__mro__[1:] if cls.__module__.startswith("kvtheory.results.")
+        ]
+        members = {k: v for cls in [*reversed(shared), thing] for k, v in vars(cls).items()}
+        for name, member in members.items():
             function = (
                 member.__func__ if isinstance(member, (classmethod, staticmethod)) else member
             )

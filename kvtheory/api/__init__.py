@@ -3,21 +3,13 @@
 from kvtheory.api._asymptotes import asymptotes
 from kvtheory.api._compare import compare
 from kvtheory.api._elements import elements
-from kvtheory.api._footprint import footprint
 from kvtheory.api._solve import solve
 from kvtheory.api._stability import stability
-from kvtheory.api._steady import steady
+from kvtheory.api._steady import footprint, steady
 from kvtheory.api._sweep import sweep
 from kvtheory.api._transient import transient
 
 __all__ = [
-    "asymptotes",
-    "compare",
-    "elements",
-    "footprint",
-    "solve",
-    "stability",
-    "steady",
-    "sweep",
+    "asymptotes", "compare", "elements", "footprint", "solve", "stability", "steady", "sweep",
     "transient",
-]
+]  # fmt: skip

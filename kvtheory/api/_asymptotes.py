@@ -11,7 +11,7 @@ from kvtheory.scene.capabilities import lacks_limits
 from kvtheory.scene.model import Scene
 
 MINIMUM_TOLERANCE = 1e-10
-"""Smallest tolerance: below it an asymptote cannot be distinguished from rounding."""
+"""Below it an asymptote cannot be distinguished from rounding."""
 
 
 @checked(scene=a_scene, over=replacements, tolerance=number(MINIMUM_TOLERANCE, 1.0))
@@ -28,18 +28,16 @@ def asymptotes(
     scene, over
         As in `steady`. The limits are known for a parabola and a ball on any foundation, and for a power law
         and a wedge on Kelvin-Voigt; on a Prony series they are those of F18, and the exact state of the
-        Kelvin-Voigt foundation with the same K and C. The maxima are found for every scene; of a profile of
-        revolution beyond Kelvin-Voigt they take minutes.
+        Kelvin-Voigt foundation with the same K and C. The maxima are found for every scene; those of a
+        profile of revolution beyond Kelvin-Voigt take minutes.
     tolerance
         Relative error up to which an asymptote is accepted, from 1e-10 to 1.
 
     Returns
     -------
     AsymptoteReport
-        The velocity V* at which the asymptotes cross (Eqs. 47, 48; F5, F19-crossing), the regime, and a line
-        for each asymptote: its value, the exact value, the relative error and the velocities where that is
-        within the tolerance. Where the limits are not known there are no lines, and `notes` say so. `maxima`
-        are all maxima of friction over velocity, with their errors.
+        The velocity V* at which the asymptotes cross (Eqs. 47, 48; F5, F19-crossing), the regime, a line for
+        each asymptote, and all maxima of friction over velocity, with their errors.
 
     Raises
     ------

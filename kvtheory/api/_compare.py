@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kvtheory.api._edge import double_precision, one_scene
-from kvtheory.api._elements import elements
+from kvtheory.api._elements import PER_LENGTH, elements
 from kvtheory.api._stability import stability
 from kvtheory.api._steady import steady
 from kvtheory.checks.theory import TRIAL_RTOL, Methods, Theory
@@ -19,29 +19,26 @@ from kvtheory.results.schemes import SCHEME_ROWS
 from kvtheory.scene.arguments import a_scene, callback, checked, choice, measured, number
 from kvtheory.scene.capabilities import lacks_quadratic_on_arms, lacks_strips, require
 from kvtheory.scene.model import Scene
-from kvtheory.scene.quantities import Quantity
 from kvtheory.scene.static_state import StaticState
 
 EVEN, DENSE = 401, 60
-"""Output times of our own simulation: evenly over the run, and more after each change of the drive."""
+"""Output times of our simulation: evenly over the run, and more after each change of the drive."""
 SOONEST, SOON = 1e-4, 0.1
-"""Where the additional times begin and end after a change, as a fraction of the duration."""
+"""First and last of the additional times after a change, as fractions of the duration."""
 MAXIMUM_STEPS = 1e8
-"""Time steps of our own simulation at most; so many take an hour or two."""
+"""Time steps of our simulation, at most: an hour or two."""
 PER_HALF_LENGTH, OF_BALL = 400.0, 160.0
 """Elements per static half length where theory is a simulation: on a Prony series, and for a ball."""
 COARSENING = 4.0
-"""Factor by which the trials of a diagnosis have fewer elements, as only their differences count."""
+"""Trials of a diagnosis have so many times fewer elements, as only their differences count."""
 MINIMUM_TIMES = 16
 """Output times at least, even if the time step has to be shortened for them."""
-PER_LENGTH = Quantity("1/m", "N, elements per unit length", 0.0, True)
 
 
 def _theory(scene: Scene, times: Sequence[float], rtol: float) -> Mapping[str, Any]:
-    """Compute a transient without a certificate: theory is needed for many trial scenes.
+    """Compute a transient without a certificate, as theory is needed for many trial scenes.
 
-    A foundation with arms and a ball are simulated by elements, and exact steady sliding checks the end. A
-    ball at constant depth that does not re-enter deformed foundation needs no elements.
+    Arms and a ball need elements, except for a ball at constant depth that does not re-enter its trace.
     """
     from kvtheory.models.continuum import solved_scene
     from kvtheory.models.strips import held
@@ -51,10 +48,8 @@ def _theory(scene: Scene, times: Sequence[float], rtol: float) -> Mapping[str, A
         return vars(held.transient(scene, times, certify=False))
     if ball or scene.foundation.arms:
         density = (OF_BALL if ball else PER_HALF_LENGTH) / StaticState.of(scene).half_length
-        if rtol >= TRIAL_RTOL:
-            density /= COARSENING
+        density /= COARSENING if rtol >= TRIAL_RTOL else 1.0
         return vars(elements(scene, per_length=density, at=times, certify=False))
-
     with double_precision(scene):
         return solved_scene.certified(scene, times, rtol, certify=False)[0].series(times)
 
@@ -68,15 +63,12 @@ def _faulty_simulation(
     from kvtheory.models.elements.simulation import simulate
 
     rule = ContactRule(**{name: value for name, value in does.items() if name != "start"})
-    found = simulate(
-        scene, spacing, SCHEMES["paper"], at=times, time_step=time_step, certify=False,
-        rule=rule, start=does.get("start", 1.0),
-    )  # fmt: skip
-    return vars(found)
+    how = {"time_step": time_step, "rule": rule, "start": does.get("start", 1.0)}
+    return vars(simulate(scene, spacing, SCHEMES["paper"], at=times, certify=False, **how))
 
 
 def _rates(scene: Scene) -> NDArray[np.complex128]:
-    """Return the rates of small motions about steady sliding on a spring (F22), in 1/s."""
+    """Return the rates of small motions about steady sliding (F22), in 1/s."""
     pairs = stability(scene, quantity="rates").rates
     return np.asarray(pairs[:, 0] + 1j * pairs[:, 1])
 
@@ -103,15 +95,14 @@ def compare(
     Parameters
     ----------
     scene
-        What is modelled; without it, the paper's Table 1 with a dead weight. The indenter must be a
-        parabola or a ball. For a ball, and on a Prony series, theory is a simulation with many elements,
-        and `steady` at the end. Of the faults, wrong contact rules and wrong times are then not tried, and
-        a diagnosis takes about ten seconds. With a spring in the drive the data may also hold
-        ``sliding_velocity`` and ``spring_force``.
+        What is modelled; without it, the paper's Table 1 with a dead weight. The indenter must be a parabola
+        or a ball. For a ball, and on a Prony series, theory is a simulation with many elements, and `steady`
+        at the end; wrong contact rules and wrong times are then not tried, and a diagnosis takes about ten
+        seconds. With a spring in the drive the data may also hold ``sliding_velocity`` and ``spring_force``.
     data
-        A path to a CSV with named columns and bracketed units (``t [ms], z_A [mm], F_z [N/mm]``), a
-        result with the names of `kvtheory.transient`, or a mapping of arrays (by those names in SI,
-        or with a bracketed unit). Without it, `kvtheory.elements` simulates the scene.
+        A path to a CSV with named columns and bracketed units (``t [ms], z_A [mm], F_z [N/mm]``), a result
+        with the names of `transient`, or a mapping of arrays (by those names in SI, or with a bracketed
+        unit). Without it, `elements` simulates the scene.
     per_length
         Elements per unit length of the simulation, in 1/m or as text such as ``"200 /mm"``, if known.
     scheme
@@ -119,8 +110,7 @@ def compare(
     tolerance
         Factor on the differences that theory allows, above 0.
     progress
-        Called as in `transient`: during our own simulation, if there are no data, and then for the
-        faults that are tried.
+        Called as in `transient`, for our simulation and then for the faults that are tried.
 
     Returns
     -------
@@ -161,12 +151,12 @@ def compare(
     own = 0.5 if data is None else 0.0
     methods = METHODS._replace(tell=lambda share, words: report(own + (1.0 - own) * share, words))
     theory = Theory(scene, methods)
+
+    def begun(share: float, words: str) -> None:
+        report(own * share, words)
+
     try:
-        found = data
-        if data is None:
-            found = _own_simulation(
-                scene, per_length, scheme, lambda share, words: report(own * share, words)
-            )
+        found = _own_simulation(scene, per_length, scheme, begun) if data is None else data
     except DivergenceError as error:
         return broken_off(theory, error, scheme, tolerance)
     units = units_for(scene.indenter, SERIES_UNITS)
@@ -174,31 +164,24 @@ def compare(
 
 
 def _own_simulation(scene: Scene, per_length: Any, scheme: str | None, progress: Progress) -> Any:
-    """Simulate the scene by our own elements."""
-    given = {"per_length": per_length, "scheme": scheme}
-    chosen = {key: value for key, value in given.items() if value is not None}
-    step = elements(scene, at=0.0, certify=False, **chosen).time_step  # it has yet to take one
-    if scene.run.duration > MAXIMUM_STEPS * step:
-        raise ValueError(
-            f"run.duration = {scene.run.duration!r} s is too long for our own simulation, by steps of "
-            f"{step:.3g} s: give a shorter one, or `data`"
-        )
-    times = _output_times(scene, step)
-    return elements(scene, at=times, certify=False, progress=progress, **chosen)
-
-
-def _output_times(scene: Scene, step: float) -> list[float]:
-    """Return the times at which our own simulation is compared: dense after each change of the drive.
+    """Simulate the scene by elements, at times that are dense after each change of the drive.
 
     After each change they are an even number of steps apart, so that no step is shortened for them.
     """
+    given = {"per_length": per_length, "scheme": scheme}
+    chosen = {key: value for key, value in given.items() if value is not None}
+    step = elements(scene, at=0.0, certify=False, **chosen).time_step  # it has yet to take one
     end = scene.run.duration
+    if end > MAXIMUM_STEPS * step:
+        raise ValueError(
+            f"run.duration = {end!r} s is too long for our own simulation, by steps of "
+            f"{step:.3g} s: give a shorter one, or `data`"
+        )
     stride = min(2.0 * step, end / MINIMUM_TIMES)
     changes = [*(time for time in scene.drive.changes if time < end), end]
     ticks = np.concatenate([[0.0], np.geomspace(SOONEST, SOON, DENSE), np.linspace(0.0, 1.0, EVEN)])
     times = {end}
     for start, stop in pairwise(changes):
-        counts = np.unique(np.round(ticks * end / stride))
-        after = start + stride * counts
+        after = start + stride * np.unique(np.round(ticks * end / stride))
         times.update(after[after < stop - 0.5 * stride].tolist())
-    return sorted(times)
+    return elements(scene, at=sorted(times), certify=False, progress=progress, **chosen)

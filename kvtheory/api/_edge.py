@@ -2,7 +2,6 @@
 
 from collections.abc import Iterator
 from contextlib import contextmanager
-from functools import cache
 from typing import Any
 
 import numpy as np
@@ -12,10 +11,12 @@ from kvtheory.scene.model import Scene
 from kvtheory.scene.quantities import SceneError, problem
 from kvtheory.scene.static_state import out_of_range
 
+TABLE1 = Scene()
+
 
 def scene_of(scene: Scene | None) -> Scene:
     """Return the scene, or that of Table 1."""
-    return _table1() if scene is None else scene
+    return TABLE1 if scene is None else scene
 
 
 def one_scene(scene: Scene | None, what: str) -> Scene:
@@ -25,17 +26,8 @@ def one_scene(scene: Scene | None, what: str) -> Scene:
     return scene
 
 
-@cache
-def _table1() -> Scene:
-    """Return the default scene, made once: it is frozen, and making it is slow."""
-    return Scene()
-
-
 def times_of(scene: Scene, at: list[float] | None, problems: list[str] | None = None) -> Any:
-    """Return the times in s, checked against the duration of the run; None stays None.
-
-    Mistakes are appended to `problems`, if given; else they are raised.
-    """
+    """Return the times in s, or None; those after the end are reported to `problems`, or else raised."""
     late = f"is after the end of the run, run.duration = {scene.run.duration} s"
     found = [problem("`at`", time, late) for time in at or () if time > scene.run.duration]
     if problems is not None:

@@ -44,14 +44,14 @@ def solve(
     scene
         What is modelled; without it, the paper's Table 1 with a dead weight.
     quantity
-        Name of a quantity, or a list of names: of steady sliding as in `SteadyState`, or of a time series
-        as in `Transient`, with a spring in the drive as in `SprungTransient`; without it, all of them.
+        Name of a quantity, or a list of names: of steady sliding as in `SteadyState`, or of a time series as
+        in `Transient` or `SprungTransient`; without it, all of them.
     at
-        Times of a series, in s or as text with a unit; without it, steady sliding is solved, for a drive
-        with a history at its final velocity.
+        Times of a series, in s or as text with a unit; without it, steady sliding at the final velocity of
+        the drive is solved.
     rtol
         Largest error allowed, from 1e-14 to 1: for steady sliding relative to the true value; for a series
-        relative to the static depth, half length and load (the static state), as in `transient`.
+        relative to the static depth, half length and load.
     over_time
         Solve for a time series even without `at`, at times chosen by the model.
     progress
@@ -70,9 +70,8 @@ def solve(
     ValueError
         If `rtol` is out of range.
     ToleranceError
-        If no model is known to be within the tolerance; the message says how close each came. Also if
-        steady sliding is asked for and not known to be stable, against small disturbances, on the spring in
-        the drive.
+        If no model is known to be within the tolerance, with how close each came; or if steady sliding is
+        asked for and not known to be stable on the spring in the drive.
 
     Examples
     --------
@@ -99,33 +98,25 @@ def solve(
     times = times_of(scene, at, problems)
     if problems:
         raise SceneError(problems)
-    request = Request(names, rtol, times, units)
-    if not over_time:
-        scene.drive.final_velocity  # noqa: B018  # it raises if the drive has none
-        _refuse_unstable(scene)
-        rungs = sliding.rungs(steady)
-    else:
+    if over_time:
         follow = partial(transient, progress=progress)
         simulate = partial(elements, progress=progress)
         rungs = series.rungs(series.Models(steady, follow, simulate))
+    else:
+        scene.drive.final_velocity  # noqa: B018  # it raises if the drive has none
+        known = not lacks_stability(scene)
+        if not (scene.drive.rigid or (known and stability(scene, quantity="stable").stable)):
+            reason = UNSTABLE.format("") if known else UNKNOWN
+            raise ToleranceError(f"{reason} Ask for a series, with `at`.")
+        rungs = sliding.rungs(steady)
     with double_precision(scene):
-        return climb(scene, request, rungs)
-
-
-def _refuse_unstable(scene: Scene) -> None:
-    """Raise unless steady sliding on the spring in the drive is known to be linearly stable."""
-    if scene.drive.rigid:
-        return
-    known = not lacks_stability(scene)
-    if not known or not stability(scene, quantity="stable").stable:
-        reason = UNSTABLE.format("") if known else UNKNOWN
-        raise ToleranceError(f"{reason} Ask for a series, with `at`.")
+        return climb(scene, Request(names, rtol, times, units), rungs)
 
 
 def _names(
     names: Sequence[str] | None, units: Mapping[str, str], over_time: bool, problems: list[str]
 ) -> tuple[str, ...]:
-    """Return the names of the quantities asked for, and append mistakes to the problems."""
+    """Return the requested quantities, and append mistakes to the problems."""
     if names is None:
         return tuple(units)
     if not names:

@@ -25,14 +25,12 @@ def stability(
 ) -> Stability:
     """Return whether steady sliding is stable, and the critical stiffness of the spring in the drive.
 
-    The spring is `drive.stiffness`, with `drive.damping` and `drive.mass`. With a rigid drive steady
-    sliding is stable: the rates are the two of the vertical motion (theorem F12), and the critical
-    stiffness is that of a spring, without damper and with the mass of the support, in place of the
-    rigid drive. With a spring the rates are the roots of the quartic of theorem F22.
-
-    On a Prony series the equation for the rates is transcendental: the least stable ones are
-    returned, as many as on Kelvin-Voigt, and a fixed indenter may be unstable too. Between the lower and
-    the upper critical stiffness there may be stable ranges; `stable` holds for the given stiffness.
+    The spring is `drive.stiffness`, with `drive.damping` and `drive.mass`; the rates are the roots of the
+    quartic of theorem F22. With a rigid drive steady sliding is stable: the rates are the two of the vertical
+    motion (theorem F12), and the critical stiffness is that of a spring, without damper and with the mass of
+    the support, in place of the rigid drive. On a Prony series the equation for the rates is transcendental:
+    the least stable ones are returned, as many as on Kelvin-Voigt, a fixed indenter may be unstable too, and
+    between the lower and the upper critical stiffness there may be stable ranges.
 
     Stable is meant against small disturbances. After a large one, such as a sudden start, the motion may
     end in stick-slip all the same (hard excitation): `transient` and `sweep` follow it.
@@ -40,14 +38,13 @@ def stability(
     Parameters
     ----------
     scene, over
-        As in `steady`; the indenter must be a parabola or a ball, on a Kelvin-Voigt foundation or on a Prony
-        series; it is not known for a springpot. `over` may give ``"drive.stiffness"`` also where the
-        drive of the scene is rigid.
+        As in `steady`; the indenter must be a parabola or a ball, on Kelvin-Voigt or a Prony series. `over`
+        may give ``"drive.stiffness"`` also where the drive of the scene is rigid.
     quantity
-        Name of a quantity, or several; without it, all. The critical stiffness alone takes
-        less than a microsecond for each scene of an array; the critical velocity, that of the onset of
-        instability, and the rates take longer. On a Prony series a scene takes some 30 ms, the
-        critical velocity and the rates about a second each, those of a ball a few.
+        Name of a quantity, or several; without it, all. The critical stiffness alone takes less than a
+        microsecond for each scene of an array; the critical velocity and the rates take longer. On a Prony
+        series a scene takes some 30 ms, the critical velocity and the rates about a second each, those of a
+        ball a few.
 
     Returns
     -------

@@ -1,4 +1,4 @@
-"""Steady sliding: `steady`."""
+"""Steady sliding: `steady`, and the footprint of a ball: `footprint`."""
 
 from collections.abc import Mapping
 from dataclasses import replace
@@ -6,12 +6,19 @@ from typing import Any
 
 import numpy as np
 
-from kvtheory.api._edge import double_precision, scene_of
+from kvtheory.api._edge import double_precision, one_scene, scene_of
+from kvtheory.models.steady.footprint import Footprint
 from kvtheory.models.steady.methods import METHODS
 from kvtheory.models.steady.stable_sliding import lasts
 from kvtheory.results import SteadyState
 from kvtheory.scene.arguments import a_scene, checked, choice, replacements
-from kvtheory.scene.capabilities import lacks_asymptotes, lacks_closed_form, lacks_quadrature
+from kvtheory.scene.capabilities import (
+    lacks_asymptotes,
+    lacks_ball,
+    lacks_closed_form,
+    lacks_quadrature,
+    require,
+)
 from kvtheory.scene.foundations import thick_layer
 from kvtheory.scene.model import Scene
 
@@ -34,25 +41,24 @@ def steady(
     Parameters
     ----------
     scene
-        What is modelled; without it, the paper's Table 1 with a dead weight. A drive with a history
-        is taken at its final velocity; for one that is a function, `over` must give the velocity.
+        What is modelled; without it, the paper's Table 1 with a dead weight. A history counts by its final
+        velocity; for a drive that is a function, `over` must give the velocity.
     over
         Values that replace those of the scene, by dotted key as in the scene file, such as
-        ``{"drive.velocity": np.geomspace(1e-3, 10)}``: SI numbers, arrays of them, or text with a
-        unit. Arrays broadcast against each other.
+        ``{"drive.velocity": np.geomspace(1e-3, 10)}``: SI numbers, arrays of them, or text with a unit.
+        Arrays broadcast against each other.
     method
-        ``"exact"`` (parabola, power law, wedge and ball on Kelvin-Voigt, parabola and ball on any
-        foundation; the default for them), ``"quadrature"`` (any shape on Kelvin-Voigt; beyond it line
-        contacts that are convex where they touch, the ball, and shapes of this package turned around their
-        lowest point; the default for the others) or ``"asymptote"`` (of the
-        regime in which the velocity lies; for the same shapes as ``"exact"``, on Kelvin-Voigt).
+        ``"exact"`` (parabola and ball on any foundation, power law and wedge on Kelvin-Voigt; the default for
+        them), ``"quadrature"`` (any shape on Kelvin-Voigt; beyond it line contacts that are convex where they
+        touch, the ball, and shapes of this package turned around their lowest point; the default for the
+        others) or ``"asymptote"`` (of the regime of the velocity; shapes as ``"exact"``, on Kelvin-Voigt).
 
     Returns
     -------
     SteadyState
-        Floats, or arrays of the broadcast shape, in SI units, with a certificate; with a spring in the drive
-        also whether steady sliding is stable against small disturbances, as in `stability`. Its `notes` say
-        if it is not, and if a foundation given as a layer is not thin for its contact.
+        Floats, or arrays of the broadcast shape, in SI, with a certificate; with a spring in the drive also
+        whether steady sliding is stable, as in `stability`. Its `notes` say if it is not, and if a foundation
+        given as a layer is not thin for its contact.
 
     Raises
     ------
@@ -93,6 +99,47 @@ def steady(
         shortest = state.half_length * np.minimum(1.0, getattr(scene.indenter, "stretch", 1.0))
         note = thick_layer(foundation.thickness, shortest, foundation.poisson_ratio)
         return replace(state, notes=(*state.notes, note)) if note else state
+
+
+@checked(scene=a_scene, over=replacements)
+def footprint(scene: Scene | None = None, *, over: Mapping[str, Any] | None = None) -> Footprint:
+    """Return the contact area of a ball in steady sliding, and the pressure in it.
+
+    Parameters
+    ----------
+    scene, over
+        As in `steady`, without arrays; the indenter must be a ball on a Kelvin-Voigt foundation.
+
+    Returns
+    -------
+    Footprint
+        With `edges(y)`, the leading and trailing edge of the strip at y, and `pressure` at any point, in SI.
+
+    Raises
+    ------
+    SceneError, ValueError
+        As in `steady`, or if the indenter is not a ball.
+
+    Examples
+    --------
+    >>> import kvtheory as kv
+    >>> ball = kv.Scene(indenter=kv.Sphere("10 mm"), support=kv.DeadWeight(mass="1 kg"))
+    >>> found = kv.footprint(ball)
+    >>> [f"{float(edge) * 1e3:.4f} mm" for edge in found.edges(0.5 * found.half_width)]
+    ['-0.9636 mm', '0.0463 mm']
+
+    References
+    ----------
+    Theorem F20 of the derivations.
+    """
+    scene = one_scene(scene_of(scene).replace(over or {}), "the footprint")
+    require(lacks_ball, scene, "the footprint")
+    state, sign = steady(scene), -1.0 if scene.drive.final_velocity < 0.0 else 1.0
+    return Footprint(
+        radius=scene.indenter.radius, stiffness=scene.foundation.stiffness,
+        half_length=state.half_length, half_width=state.half_length * scene.indenter.stretch,
+        retardation_length=state.retardation_length * sign,
+    )  # fmt: skip
 
 
 def method_for(scene: Scene, method: str | None) -> str:

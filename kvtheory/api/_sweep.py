@@ -50,42 +50,37 @@ def sweep(
         What is modelled; without it, the paper's Table 1 with a dead weight.
     over
         Maps a dotted key to its values: an array in SI, a list such as ``["10 ms", "1 s"]``, or a text
-        ``"1 mm/s:10 m/s:200:log"``. Each key is an axis, and the sweep is over all combinations. A
-        tuple of keys with a tuple of lists is one axis on which these values vary together. A
-        ``drive.velocity`` replaces a history or a waveform; the keys of a waveform, such as
-        ``drive.frequency``, change it.
+        ``"1 mm/s:10 m/s:200:log"``. Each key is an axis, and the sweep is over all combinations. A tuple of
+        keys with a tuple of lists is one axis on which these values vary together. A ``drive.velocity``
+        replaces a history or a waveform; the keys of a waveform, such as ``drive.frequency``, change it.
     quantities
         Steady quantities by name (default: all of them), and ``stable``: 1, or 0 where steady sliding is
         unstable on the spring in the drive (included by default with a spring). Of a transient:
         ``NAME.end``, ``NAME.max``, ``NAME.min`` and ``NAME.time_of_max``, with NAME as in `Transient`;
         ``peak_to_steady_friction``, the ratio of the largest |F_x| to the steady one; ``settling_time``,
         after which F_x stays within 1 % of the steady one; ``hops``, how often the indenter takes off;
-        ``events``, as JSON. With a spring in the drive ``stick_slip_settles`` (1, or 0 where the run
-        shows neither steady sliding nor a limit cycle), ``stick_slip_amplitude`` (half the stroke of the
-        indenter along x), ``stick_slip_period``, and ``sliding_velocity`` and ``friction_force`` with
-        ``.cycle_max`` and ``.cycle_min``. With `at`, NAME is the time series; ``NAME.steady`` is always the
-        steady value. Elements simulate transients of other shapes and on Prony series, in some seconds per
-        scene: series, ``NAME.end``, ``NAME.max``, ``NAME.min`` and ``peak_to_steady_friction`` only.
-    at
-        Times of the series, in s or as text with a unit.
-    method, rtol
-        As in `steady` and `transient`.
+        ``events``, as JSON. With a spring in the drive ``stick_slip_settles`` (1, or 0 where the run shows
+        neither steady sliding nor a limit cycle), ``stick_slip_amplitude`` (half the stroke of the indenter
+        along x), ``stick_slip_period``, and ``sliding_velocity`` and ``friction_force`` with ``.cycle_max``
+        and ``.cycle_min``. With `at`, NAME is the time series; ``NAME.steady`` is always the steady value.
+        Elements simulate other shapes and Prony series, in some seconds per scene: series, ``NAME.end``,
+        ``NAME.max``, ``NAME.min`` and ``peak_to_steady_friction`` only.
+    at, method, rtol
+        As in `transient` and `steady`; with `at`, the times of the series.
     executor
-        Any `concurrent.futures.Executor`, also of Dask (``Client.get_executor(pure=False)``) or MPI.
-        It is not shut down.
+        Any `concurrent.futures.Executor`, also of Dask (``Client.get_executor(pure=False)``) or MPI. It is
+        not shut down.
     jobs
-        Without `executor`, the number of workers: threads or spawned processes, whichever is
-        faster. With more than one, a script needs the usual ``if __name__ == "__main__"``.
-    in_flight
-        Blocks submitted at a time; default two for each worker. It bounds the memory.
-    block
-        Points in a block.
+        Without `executor`, the number of workers: threads or spawned processes, whichever is faster. With
+        more than one, a script needs the usual ``if __name__ == "__main__"``.
+    in_flight, block
+        Blocks submitted at a time, which bounds the memory (default: two for each worker); points in a block.
     output
-        A file ``.csv`` or ``.nc``. Finished blocks are kept beside it, in ``FILE.part``, so that the
-        same call resumes a sweep that was killed. After an interrupt the file holds what was done.
+        A file ``.csv`` or ``.nc``. Finished blocks are kept beside it, in ``FILE.part``, so that the same
+        call resumes a sweep that was killed. After an interrupt the file holds what was done.
     overwrite
-        Overwrite whatever `output` and its unfinished work hold, including this sweep itself, which is
-        then recomputed. Without it, a file that holds anything else is left unchanged.
+        Whether to overwrite whatever `output` and its unfinished work hold, including this sweep itself.
+        Without it, a file that holds anything else is left unchanged.
     progress
         Called as in `transient`, with the points done, their rate and the failures as text.
 
@@ -99,8 +94,8 @@ def sweep(
     SceneError
         If a key, value, quantity or time is wrong; every mistake is listed.
     ValueError
-        If another argument is wrong, if `output` holds anything other than this sweep, or a sweep
-        in which anything was changed since it was written; or if memory or disk cannot hold the result.
+        If another argument is wrong, if `output` holds anything other than this sweep, or was changed since
+        it was written, or if memory or disk cannot hold the result.
     OSError
         If a file cannot be written; finished blocks are kept, and the same call resumes.
     RuntimeError
@@ -119,14 +114,13 @@ def sweep(
     Nakano and Kono (2020), doi:10.3389/fmech.2020.00038; see `steady` and `transient`.
     """
     from kvtheory.sweeps import engine  # what it needs takes a while to import
-    from kvtheory.sweeps.size import refuse_what_cannot_fit
+    from kvtheory.sweeps.plan import refuse_what_cannot_fit
 
     plan = plan_of(scene, over=over, quantities=quantities, at=at, method=method, rtol=rtol)
     file = None if output is None else Path(output)
     refuse_what_cannot_fit(plan, file, jobs)
-    how: dict[str, Any] = {
-        "executor": executor, "jobs": jobs, "in_flight": in_flight, "block": block, "report": progress,
-    }  # fmt: skip
+    how: Any = {"executor": executor, "jobs": jobs, "in_flight": in_flight, "block": block}
+    how["report"] = progress
     if file is None:
         return engine.in_memory(plan, **how)
     return engine.into_file(plan, file, overwrite=overwrite, **how)
@@ -137,17 +131,11 @@ def sweep(
     method=argument.choice(LACKS), rtol=argument.number(MINIMUM_RTOL, MAXIMUM_RTOL),
 )  # fmt: skip
 def plan_of(
-    scene: Scene | None = None,
-    *,
-    over: Mapping[Any, Any],
-    quantities: Sequence[str] | str | None = None,
-    at: Any = None,
-    method: str | None = None,
-    rtol: float = 1e-6,
-) -> "Plan":
+    scene: Scene | None = None, *, over: Mapping[Any, Any], quantities: Any = None, at: Any = None,
+    method: str | None = None, rtol: float = 1e-6,
+) -> "Plan":  # fmt: skip
     """Check the arguments of `sweep` together, and return the plan."""
-    from kvtheory.sweeps.axes import axes_of
-    from kvtheory.sweeps.plan import CYCLE, OF_ELEMENTS, STABLE, Plan, columns_of
+    from kvtheory.sweeps.plan import CYCLE, OF_ELEMENTS, STABLE, Plan, axes_of, columns_of
 
     scene = scene_of(scene)
     method = method_for(scene, method)
@@ -158,7 +146,7 @@ def plan_of(
         quantities = [*STEADY_UNITS, STABLE]
     columns = columns_of(quantities, series=at is not None, indenter=scene.indenter)
     plan = Plan(scene, axes, columns, times, method, rtol)
-    if plan.transient and plan.by_elements:
+    if plan.transient and lacks_paper_model(scene):
         require(lacks_arms, scene, "the transient")
         if lacking := [column.name for column in columns if column.measure not in OF_ELEMENTS]:
             had = "series, NAME.end, NAME.max, NAME.min and peak_to_steady_friction"

@@ -14,13 +14,9 @@ MINIMUM_RTOL, MAXIMUM_RTOL = 1e-12, 1e-2
 
 
 @checked(
-    scene=a_scene,
-    at=times,
-    rtol=number(MINIMUM_RTOL, MAXIMUM_RTOL),
-    certify=flag,
-    max_steps=count,
+    scene=a_scene, at=times, rtol=number(MINIMUM_RTOL, MAXIMUM_RTOL), certify=flag, max_steps=count,
     progress=callback,
-)
+)  # fmt: skip
 def transient(
     scene: Scene | None = None,
     *,
@@ -38,22 +34,20 @@ def transient(
     Parameters
     ----------
     scene
-        What is modelled; without it, the paper's Table 1 with a dead weight. The indenter must be
-        a parabola, or a ball at constant depth that does not slow down so fast that it meets its own
-        trace again (`elements` simulates any ball). At t < 0 it rests at its static depth. With
-        `drive.stiffness` it is held along x by a spring that is then relaxed, and the mass that moves
-        along x must be above zero. A drive that is a function of time is replaced by polynomials
-        within its own tolerance; the certificate adds that to the errors of the velocities, the pressure
-        and the surface, but does not follow it into the other quantities.
+        What is modelled; without it, the paper's Table 1 with a dead weight. The indenter must be a
+        parabola, or a ball at constant depth that does not re-enter its own trace (`elements` simulates any
+        ball). At t < 0 it rests at its static depth. With `drive.stiffness` it is held along x by a spring
+        that is then relaxed; the mass that moves along x must be above zero. A drive that is a function of
+        time is replaced by polynomials within its tolerance, which the certificate adds to the errors of the
+        velocities, the pressure and the surface, but not of the other quantities.
     at
-        Output times, in s or as text with a unit, such as ``"0 ms, 1 ms"`` or
-        ``"0 ms:200 ms:201"`` (START:STOP:COUNT, both ends included); without it, the steps of
-        the solver, subdivided.
+        Output times, in s or as text with a unit, such as ``"0 ms, 1 ms"`` or ``"0 ms:200 ms:201"``
+        (START:STOP:COUNT, both ends included); without it, the steps of the solver, subdivided.
     rtol
         Error allowed in a step, relative to the static state, from 1e-12 to 1e-2.
     certify
-        Whether to estimate the error, by a second run with a tighter tolerance; if not, the
-        errors in the certificate are infinite.
+        Whether to estimate the error, by a second run with a tighter tolerance; if not, the errors in the
+        certificate are infinite.
     max_steps
         Steps after which to give up; by default 300,000 plus 100 for each piece of the drive.
     progress
@@ -63,17 +57,16 @@ def transient(
     Returns
     -------
     Transient
-        Arrays over time in SI, the events of the contact, and a certificate whose errors are
-        relative to the static depth, half length and load. With a spring, a `SprungTransient` that also
-        holds `sliding_velocity` and `spring_force`.
+        Arrays over time in SI, the events of the contact, and a certificate whose errors are relative to the
+        static depth, half length and load. With a spring, a `SprungTransient`.
 
     Raises
     ------
     SceneError
         If a time is wrong; every mistake is listed.
     ValueError
-        If the indenter is neither a parabola nor such a ball, a time or `rtol` is out of range, or a
-        function that drives the foundation fails, is not finite, or is not smooth between its breaks.
+        If the indenter is neither a parabola nor such a ball, an argument is out of range, or a function
+        that drives the foundation fails, is not finite, or is not smooth between its breaks.
     ArithmeticError
         If the motion cannot be computed to its end; the message says when and why.
 
@@ -92,19 +85,13 @@ def transient(
     """
     scene = one_scene(scene, "a transient")
     require(lacks_transient, scene, "the transient")
-    if not scene.indenter.per_width:
-        from kvtheory.models.strips import held
-
-        with double_precision(scene):
-            return held.transient(scene, times_of(scene, at), certify=certify)
-    from kvtheory.models.continuum import solved_scene
-
     with double_precision(scene):
+        if not scene.indenter.per_width:
+            from kvtheory.models.strips import held
+
+            return held.transient(scene, times_of(scene, at), certify=certify)
+        from kvtheory.models.continuum import solved_scene
+
         return solved_scene.transient(
-            scene,
-            times_of(scene, at),
-            rtol,
-            progress,
-            certify=certify,
-            max_steps=max_steps,
+            scene, times_of(scene, at), rtol, progress, certify=certify, max_steps=max_steps
         )

@@ -77,7 +77,7 @@ def sweep(
     from kvtheory.api import sweep as run
     from kvtheory.api._sweep import plan_of
     from kvtheory.scene import load_scene
-    from kvtheory.sweeps.size import announcement
+    from kvtheory.sweeps.plan import announcement
 
     check_not_an_input("-o", output)
     check_output("--plot", plot, PICTURES)

@@ -1,22 +1,20 @@
 """A time series compared with theory."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field
 from typing import Any
 
 from kvtheory.export import Columns
-from kvtheory.results.certificate import record
 from kvtheory.results.presented import Exported, above, html_table
 from kvtheory.results.table import SERIES_UNITS
 
 
 @dataclass(frozen=True)
 class Check:
-    """One check.
+    """One check: `measured` must not exceed `allowed`; both are in `unit`, which says what is measured.
 
-    `measured` must not exceed `allowed`; both are in `unit`, which says what is measured. `equation`
-    is the basis of the check. A check that cannot be made has no numbers, `ok` is None, and `note` says
-    why.
+    `equation` is the basis of the check. One that cannot be made has no numbers, `ok` is None, and `note`
+    says why.
     """
 
     name: str
@@ -32,11 +30,11 @@ class Check:
 class Explanation:
     """A fault that would explain a disagreement.
 
-    `rank` orders them, from 0 to 1. For a fault that was simulated, `rank` equals `explained`, the part of
-    the difference (root mean square, relative to the allowance) that it removes; for one that is
-    inferred from a symptom in the data, it is an assumed strength of the evidence, and `explained` is None.
-    `enough` says whether the remaining difference is allowed; `factor` is the fitted factor or shift, if any.
-    `alike` are the parameters that the data cannot distinguish from the one that this fault names.
+    `rank` orders them, from 0 to 1. For a fault that was simulated it equals `explained`, the part of the
+    difference (root mean square, relative to the allowance) that it removes; for one inferred from a symptom
+    it is an assumed strength of the evidence, and `explained` is None. `enough` says whether the remaining
+    difference is allowed; `factor` is the fitted factor or shift, if any. `alike` are the parameters that
+    the data cannot distinguish from the one that this fault names.
     """
 
     name: str
@@ -49,7 +47,7 @@ class Explanation:
 
 
 MOST_SHOWN = 6
-"""Most failed checks in the text of a comparison."""
+"""Failed checks in the text of a comparison, at most."""
 MARKS = {True: "ok", False: "NO", None: "not made"}
 HEADS = "check", "measured", "allowed", "", "equation", "what is measured"
 
@@ -60,7 +58,8 @@ class Comparison(Exported):
 
     `verdict` is ``"agrees"``, ``"disagrees"`` if one of the checks that could be made failed, or
     ``"cannot tell"`` if only the check of the sampling, or of the phase of a cycle, failed. `diagnosis`
-    explains it in words; `explanations` are possible faults, the most likely first.
+    explains it in words; `explanations` are possible faults, the most likely first. `series` holds the data
+    as arrays in SI by name, `time` first; `theory`, and the `allowed` difference, are at the same times.
     """
 
     verdict: str
@@ -70,27 +69,17 @@ class Comparison(Exported):
     source: str
     tolerance: float
     series: Any = field(repr=False, compare=False)
-    """The data as arrays in SI by name, `time` first."""
     theory: Any = field(repr=False, compare=False)
-    """The theory at the times of the data."""
     allowed: Any = field(repr=False, compare=False)
-    """By how much the data may differ, by name, at the times of the data."""
-    units: Mapping[str, str] = field(
-        default_factory=lambda: SERIES_UNITS, repr=False, compare=False
-    )
-    """The SI unit of each quantity."""
+    units: Mapping[str, str] = field(default_factory=SERIES_UNITS.copy, repr=False, compare=False)
 
     def __repr__(self) -> str:
-        """Return the verdict, the diagnosis, and the failed checks as text."""
         failed = [check for check in self.checks if check.ok is False]
         rows = [f"{c.name}: {c.measured:.3g}, allowed {c.allowed:.3g}" for c in failed[:MOST_SHOWN]]
-        more = [f"and {len(failed) - MOST_SHOWN} more"] if len(failed) > MOST_SHOWN else []
-        return "\n".join(
-            [f"Comparison of {self.source}: {self.verdict}", self.diagnosis, *rows, *more]
-        )
+        rows += [f"and {len(failed) - MOST_SHOWN} more"] * (len(failed) > MOST_SHOWN)
+        return "\n".join([f"Comparison of {self.source}: {self.verdict}", self.diagnosis, *rows])
 
     def _repr_html_(self) -> str:
-        """Return a table of the checks for notebooks."""
         rows = [
             (
                 c.name, *("-" if c.ok is None else f"{x:.3g}" for x in (c.measured, c.allowed)),
@@ -102,14 +91,12 @@ class Comparison(Exported):
 
     def _columns(self) -> Columns:
         """Return data, theory and the allowed difference of each quantity."""
-        curves = {
-            f"{name}, {kind}": (values[name], self.units[name])
-            for name in self.allowed
-            for kind, values in (
-                ("data", self.series), ("theory", self.theory), ("allowed", self.allowed)
-            )
-        }  # fmt: skip
-        return {"time": (self.series["time"], "s"), **curves}
+        columns = {"time": (self.series["time"], "s")}
+        kinds = {"data": self.series, "theory": self.theory, "allowed": self.allowed}
+        for name in self.allowed:
+            for kind, values in kinds.items():
+                columns[f"{name}, {kind}"] = values[name], self.units[name]
+        return columns
 
     def _attributes(self) -> Mapping[str, str]:
         return {"verdict": self.verdict, "diagnosis": self.diagnosis}
@@ -117,10 +104,3 @@ class Comparison(Exported):
     def plot(self) -> Any:
         """Draw data over theory, the residual, and the checks, and return the figure."""
         return above("plots").plot_result(self)
-
-    def as_dict(self) -> dict[str, Any]:
-        """Return plain Python values, ready for JSON, without the series."""
-        left_out = ("series", "theory", "allowed", "units")
-        return {
-            f.name: record(getattr(self, f.name)) for f in fields(self) if f.name not in left_out
-        }

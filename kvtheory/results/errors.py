@@ -1,7 +1,4 @@
-"""Errors other than bad input, one for each kind of failure.
-
-A wrong scene is a `kvtheory.scene.SceneError`, which lists every mistake.
-"""
+"""Errors other than bad input, which is a `kvtheory.scene.SceneError` that lists every mistake."""
 
 from collections.abc import Sequence
 

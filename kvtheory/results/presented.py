@@ -10,40 +10,29 @@ from typing import Any
 import numpy as np
 
 from kvtheory.export import SERIES_SUFFIXES, Columns, check_path, dataset, replace_file, save_csv
-from kvtheory.results.certificate import Certificate
+from kvtheory.results.certificate import Certificate, Recorded
 from kvtheory.results.table import QUANTITIES, SHOWN_UNITS
 
 
 def above(module: str) -> Any:
-    """Return a module above the results, such as ``plots``, for methods that draw or write them.
-
-    It is imported on call, since it imports the results.
-    """
+    """Return a module such as ``plots``, which imports the results, for a method that needs it."""
     return import_module(f"kvtheory.{module}")
 
 
-class Exported:
-    """A result with columns that can be written to files."""
+class Exported(Recorded):
+    """A result with columns that can be written to files; `units` are those of its quantities, in SI."""
 
     over: Mapping[str, Any] = {}
     """The values that vary over the states of the result, by key of the scene."""
 
     def _columns(self) -> Columns:
-        """Return values and SI unit of each column by name."""
         raise NotImplementedError
 
     def _attributes(self) -> Mapping[str, str]:
-        """Return what describes the columns as a whole."""
         raise NotImplementedError
 
     def to_xarray(self) -> Any:
-        """Return an `xarray.Dataset` with units; what varies over the states is among its coordinates.
-
-        Raises
-        ------
-        ValueError
-            If xarray is missing.
-        """
+        """Return an `xarray.Dataset` with units; what varies is a coordinate. Needs xarray."""
         return dataset(self._columns(), self._attributes()).set_coords(list(self.over))
 
     def to_csv(self, path: str | Path) -> None:
@@ -51,15 +40,7 @@ class Exported:
         save_csv(Path(path), self._columns())
 
     def save(self, path: str | Path) -> None:
-        """Write to ``.csv`` or ``.nc`` (needs xarray).
-
-        Raises
-        ------
-        ValueError
-            If the suffix is neither, or xarray is missing.
-        OSError
-            If the file cannot be written.
-        """
+        """Write to ``.csv``, or to ``.nc`` with xarray; raise `ValueError` for any other suffix."""
         path = Path(path)
         check_path(path, SERIES_SUFFIXES)
         if path.suffix.lower() == ".csv":
@@ -70,14 +51,7 @@ class Exported:
 
 
 class Presented(Exported):
-    """A result that holds quantities of the table as attributes, and a certificate.
-
-    Examples
-    --------
-    >>> import kvtheory as kv
-    >>> print(repr(kv.steady()).splitlines()[1])
-    depth 0.0896613 mm                     half_length 1.33911 mm
-    """
+    """A result that holds quantities of the table as attributes, and a certificate."""
 
     model: str
     certificate: Certificate
@@ -105,7 +79,6 @@ class Presented(Exported):
             yield name, *in_shown_unit(getattr(self, name), self.units[name]), worst
 
     def __repr__(self) -> str:
-        """Return a summary in ten lines at most."""
         cells = [f"{name} {value} {unit}".rstrip() for name, value, unit, _ in self._shown()]
         pairs = [
             f"{a:38} {b}".rstrip() for a, b in zip(cells[::2], [*cells[1::2], ""], strict=False)
@@ -116,7 +89,6 @@ class Presented(Exported):
         return "\n".join([self._title, *pairs, f"errors up to {worst:.1e} of {scale} ({kind})"])
 
     def _repr_html_(self) -> str:
-        """Return a table for notebooks, with units and certificate."""
         heads = ("quantity", "value", "unit", f"error, relative to {self.certificate.relative_to}")
         reason = f"Errors are {self.certificate.kind}: {self.certificate.statement}."
         return f"{html_table(self._title, heads, self._shown())}<p>{escape(reason)}</p>"
@@ -131,11 +103,7 @@ class Presented(Exported):
 
 
 def aligned(heads: Sequence[str], rows: Iterable[Sequence[str]]) -> list[str]:
-    """Return the lines of a table with columns as wide as they need to be.
-
-    >>> aligned(("a", "b"), [("12", "3")])
-    ['a   b', '12  3']
-    """
+    """Return the lines of a table with columns as wide as they need to be."""
     table = [heads, *rows]
     widths = [max(len(row[i]) for row in table) for i in range(len(heads))]
     return ["  ".join(map(str.ljust, row, widths)).rstrip() for row in table]

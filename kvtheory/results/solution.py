@@ -13,8 +13,8 @@ class ClimbStep:
     """One rung that was tried.
 
     `assumed` states the assumptions of the model, `outcome` is ``"used"`` or why it was not, `error` the
-    largest relative error that it may have (NaN if not known), `margin` the ratio of the tolerance to
-    it; `choosing` and `solving` are the seconds spent on judging the model and on running it.
+    largest relative error that it may have (NaN if not known), `margin` the tolerance over it; `choosing`
+    and `solving` are the seconds spent on judging the model and on running it.
     """
 
     rung: str
@@ -32,16 +32,7 @@ class Solution(Presented):
 
     `values` maps the name of each quantity to a float (steady sliding) or to an array (a time series,
     `time` first); each is also an attribute: ``solution.friction_force``. Quantities of a series that were
-    not requested are NaN. `certificate` holds the errors of those that were: relative to the true value, in
-    a series to the static depth, half length and load. `answer` is the full result of the model, if it has
-    one.
-
-    Examples
-    --------
-    >>> import kvtheory as kv
-    >>> solution = kv.solve(quantity="friction_coefficient", rtol=1e-6)
-    >>> solution.model, round(solution.friction_coefficient, 6)
-    ('exact', 0.085709)
+    not requested are NaN. `answer` is the full result of the model, if it has one.
     """
 
     values: Mapping[str, Value]
@@ -51,7 +42,6 @@ class Solution(Presented):
     climb: tuple[ClimbStep, ...]
     answer: Any = field(default=None, repr=False, compare=False)
     units: Mapping[str, str] = field(default_factory=dict, repr=False, compare=False)
-    """The SI unit of each quantity."""
 
     def __getattr__(self, name: str) -> Value:
         if name.startswith("_") or name == "values" or name not in self.values:
@@ -68,4 +58,4 @@ class Solution(Presented):
     def as_dict(self) -> dict[str, Any]:
         """Return plain Python values, ready for JSON; a missing value is None."""
         rest = {"model": self.model, "certificate": self.certificate, "climb": self.climb}
-        return record({**self.values, **rest})
+        return dict(record({**self.values, **rest}))

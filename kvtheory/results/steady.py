@@ -1,13 +1,13 @@
 """Steady sliding: its state, its stability, and which asymptote of it holds."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field
 from html import escape
 from typing import Any
 
 import numpy as np
 
-from kvtheory.results.certificate import Certificate, Value, record
+from kvtheory.results.certificate import Certificate, Recorded, Value
 from kvtheory.results.presented import Presented, aligned, html_table, value_range, with_unit
 from kvtheory.results.table import STEADY_UNITS
 
@@ -24,13 +24,13 @@ UNKNOWN = (
 class SteadyState(Presented):
     """Steady sliding: each quantity a float, or an array where the input was an array.
 
-    The edges are coordinates in the frame of the indenter, in which the foundation moves through
-    x with the drive velocity: the leading edge is at x < 0 for a positive velocity. For a ball they are
-    those of its middle plane; its contact extends over |y| < a sqrt(R'/R), and its forces are in N, see
-    `units`.
+    The edges are coordinates in the frame of the indenter, through which the foundation moves with the drive
+    velocity: the leading edge is at x < 0 for a positive velocity. For a ball they are those of its middle
+    plane; its contact extends over |y| < a sqrt(R'/R), and its forces are in N, see `units`.
 
-    `stable` says whether steady sliding is stable: it is with a rigid drive; with a spring in the drive it
-    is None if not known. `notes` are sentences about limits of the model that this scene exceeds.
+    `stable` says whether steady sliding is stable (None: not known), as it is with a rigid drive. `over`
+    holds the values that vary, by key of the scene, in SI; each has the shape of the quantities. `notes` are
+    sentences about limits of the model that this scene exceeds.
     """
 
     depth: Value
@@ -45,18 +45,14 @@ class SteadyState(Presented):
     dissipated_in_contact: Value
     model: str
     certificate: Certificate
-    units: Mapping[str, str] = field(
-        default_factory=lambda: STEADY_UNITS, repr=False, compare=False
-    )
-    """The SI unit of each quantity."""
+    units: Mapping[str, str] = field(default_factory=STEADY_UNITS.copy, repr=False, compare=False)
     stable: Any = True
     over: Mapping[str, Any] = field(default_factory=dict, repr=False, compare=False)
-    """The values that vary, by key of the scene, in SI; each has the shape of the quantities."""
     notes: tuple[str, ...] = field(default=(), compare=False)
 
     @property
     def unstable(self) -> str:
-        """Return one line if steady sliding is unstable, or if its stability is not known; else nothing."""
+        """One line if steady sliding is unstable, or if its stability is not known; else empty."""
         if self.stable is None:
             return UNKNOWN
         count = np.size(self.stable) - np.count_nonzero(self.stable)
@@ -64,30 +60,24 @@ class SteadyState(Presented):
         return UNSTABLE.format(of) if count else ""
 
     def __repr__(self) -> str:
-        """Return a summary in a few lines, with the notes."""
         return "\n".join([super().__repr__(), *self.notes])
 
     def _repr_html_(self) -> str:
         return super()._repr_html_() + "".join(f"<p>{escape(note)}</p>" for note in self.notes)
 
-    def as_dict(self) -> dict[str, Any]:
-        """Return plain Python values, ready for JSON; what does not exist is None."""
-        return {f.name: record(getattr(self, f.name)) for f in fields(self) if f.repr}
-
 
 @dataclass(frozen=True)
-class Stability:
+class Stability(Recorded):
     """Stability of steady sliding: each quantity a value, or an array where the input was an array.
 
-    `stable` is meant against small disturbances: the real parts of all rates are negative.
-    `rates` holds, along its last axis but one, the rates of small motions in 1/s as pairs (real,
-    imaginary), fastest growth first, and `time_constants` -1/real of each in s: negative for a growing
-    motion. Above `critical_stiffness` (N/m^2, of a ball N/m) of the spring in the drive steady sliding is
-    stable, and below `lower_critical_stiffness`, too, which is 0 where friction falls with velocity.
-    `frequency` (Hz) is that of the motion at the onset of instability, at the upper critical stiffness.
-    `critical_velocity` (m/s) is that of the onset of instability: the smallest at which the present stiffness
-    becomes critical. It is not V* of `kvtheory.asymptotes`, where the asymptotes of friction cross.
-    Values that do not exist, or were not requested, are NaN.
+    `stable` is meant against small disturbances: the real parts of all rates are negative. `rates` holds,
+    along its last axis but one, the rates of small motions in 1/s as pairs (real, imaginary), fastest growth
+    first, and `time_constants` -1/real of each in s: negative for a growing motion. Steady sliding is stable
+    if the spring in the drive is stiffer than `critical_stiffness` (N/m^2, of a ball N/m), or softer than
+    `lower_critical_stiffness`, which is 0 where friction falls with velocity. `frequency` (Hz) is that of the
+    motion at the upper critical stiffness. `critical_velocity` (m/s) is the smallest velocity at which the
+    present stiffness is critical; V* of `kvtheory.asymptotes`, where the asymptotes of friction cross, is
+    another one. Values that do not exist, or were not requested, are NaN.
     """
 
     stable: Any
@@ -101,19 +91,15 @@ class Stability:
     model: str
     certificate: Certificate
 
-    def as_dict(self) -> dict[str, Any]:
-        """Return plain Python values, ready for JSON; a missing value is None."""
-        return record(self)
-
 
 @dataclass(frozen=True)
 class AsymptoteLine:
     """One asymptote of a scene: its value, the exact one, and its range.
 
-    `relative_error` is asymptote/exact - 1; `velocity_min` and `velocity_max` bound the drive
-    velocities |V| in m/s at which its magnitude is within the tolerance of the report. Values that do
-    not exist (the high asymptote of the depth at V = 0) are NaN. Up to `velocity_proved`, or from it on for
-    the high-velocity asymptote, a theorem guarantees this; for Kelvin-Voigt that is the whole range.
+    `relative_error` is asymptote/exact - 1; its magnitude is within the tolerance of the report for drive
+    velocities |V| from `velocity_min` to `velocity_max` in m/s. Up to `velocity_proved`, or from it on for
+    the high-velocity asymptote, a theorem guarantees this; for Kelvin-Voigt that is the whole range. Values
+    that do not exist (the high asymptote of the depth at V = 0) are NaN.
     """
 
     name: str
@@ -130,18 +116,17 @@ class AsymptoteLine:
 
 
 @dataclass(frozen=True, repr=False)
-class AsymptoteReport:
+class AsymptoteReport(Recorded):
     """Which asymptote of the friction coefficient holds.
 
-    `critical_velocity` is V* of the paper (Eqs. 47, 48), where both asymptotes cross; the velocity at which
-    a spring in the drive becomes unstable is another, see `kvtheory.stability`. `regime` is ``"low"`` or
-    ``"high"`` (V below or above V*); `use` names the asymptote that is
-    within the tolerance, ``"L1"`` or ``"L2"``, or else ``"exact"``.
-    `maxima` are all local maxima of the friction coefficient over V > 0, as pairs of velocity and friction
-    coefficient in the order of velocity; `peak_velocity` and `peak_friction_coefficient` are the highest,
-    NaN if there is none. For arrays of scenes they are arrays, padded with NaN. Their relative errors have
-    the same names and form in `maxima_certificate`; a maximum that does not stand out by more than the error
-    of friction is not listed.
+    `critical_velocity` is V* of the paper (Eqs. 47, 48), where both asymptotes cross, not the one at which
+    sliding on a spring becomes unstable (`kvtheory.stability`). `regime` is ``"low"`` or ``"high"`` (V below
+    or above V*); `use` names the asymptote that is within the tolerance, ``"L1"`` or ``"L2"``, or else
+    ``"exact"``. `maxima` are all local maxima of the friction coefficient over V > 0 that stand out by more
+    than the error of friction, as pairs of velocity and friction coefficient in the order of velocity;
+    `peak_velocity` and `peak_friction_coefficient` are the highest, NaN if there is none. For arrays of
+    scenes they are arrays, padded with NaN. Their relative errors have the same names and form in
+    `maxima_certificate`.
 
     Where the limits of friction are not known there are no `lines`, no V* (NaN) and no regime (None), and
     `notes` say so.
@@ -160,28 +145,25 @@ class AsymptoteReport:
     certificate: Certificate
     maxima_certificate: Certificate
     notes: tuple[str, ...] = field(default=(), compare=False)
-    units: Mapping[str, str] = field(
-        default_factory=lambda: STEADY_UNITS, repr=False, compare=False
-    )
-    """The SI unit of each quantity."""
+    units: Mapping[str, str] = field(default_factory=STEADY_UNITS.copy, repr=False, compare=False)
 
     def __repr__(self) -> str:
-        """Return what to use, and a table of the asymptotes."""
-        table = ["", *aligned(self._heads(), self._rows())] if self.lines else []
-        return "\n".join([*self._summary(), *table])
+        return "\n".join(
+            [*self._summary(), *(["", *aligned(*self._table())] if self.lines else [])]
+        )
 
     def _repr_html_(self) -> str:
-        """Return the same for notebooks."""
         if not self.lines:
             return "".join(f"<p>{escape(line)}</p>" for line in self._summary())
-        return html_table("; ".join(self._summary()), self._heads(), self._rows())
-
-    def as_dict(self) -> dict[str, Any]:
-        """Return plain Python values, ready for JSON; what does not exist is None."""
-        return {f.name: record(getattr(self, f.name)) for f in fields(self) if f.repr}
+        return html_table("; ".join(self._summary()), *self._table())
 
     def _summary(self) -> list[str]:
-        velocity, maxima = with_unit(self.velocity, "m/s"), self._maxima()
+        """Return what to use, and the maxima: of several scenes the range of the highest."""
+        velocity, several = with_unit(self.velocity, "m/s"), np.ndim(self.peak_velocity) > 0
+        pairs = [(self.peak_velocity, self.peak_friction_coefficient)] if several else self.maxima
+        places = (f"mu = {with_unit(mu, '1')} at V = {with_unit(V, 'm/s')}" for V, mu in pairs)
+        name = "highest friction maximum" if several else "friction maximum"
+        maxima = f"{name}: {'; '.join(places)}" if self.maxima else "no friction maximum"
         if not self.lines:
             return [f"V = {velocity}", maxima, *self.notes]
         regimes = " or ".join(f"{each}-velocity" for each in np.unique(self.regime))
@@ -194,41 +176,26 @@ class AsymptoteReport:
             f"for the friction coefficient to within {self.tolerance:g}, use {use}",
         ]
 
-    def _maxima(self) -> str:
-        """Return the maxima of one scene, or the range of the highest of several."""
-        if not self.maxima:
-            return "no friction maximum"
-        several = np.ndim(self.peak_velocity) > 0
-        pairs = [(self.peak_velocity, self.peak_friction_coefficient)] if several else self.maxima
-        name = "highest friction maximum" if several else "friction maximum"
-        places = (f"mu = {with_unit(mu, '1')} at V = {with_unit(V, 'm/s')}" for V, mu in pairs)
-        return f"{name}: {'; '.join(places)}"
-
-    @property
-    def _proved(self) -> bool:
-        """Whether the whole range is proved."""
-        return self.certificate.kind == "proved"
-
-    def _heads(self) -> tuple[str, ...]:
-        proved = () if self._proved else ("proved for",)
-        heads = "asymptote", "Eq.", "formula", "value", "exact", "relative error"
-        return (*heads, f"within {self.tolerance:g} for", *proved)
-
-    def _rows(self) -> list[tuple[str, ...]]:
-        rows = []
+    def _table(self) -> tuple[tuple[str, ...], list[tuple[str, ...]]]:
+        """Return heads and rows; a column for the proved range only where that is not the whole one."""
+        partly, rows = self.certificate.kind != "proved", []
+        heads = (
+            "asymptote", "Eq.", "formula", "value", "exact", "relative error",
+            f"within {self.tolerance:g} for", *["proved for"] * partly,
+        )  # fmt: skip
         for line in self.lines:
-            unit, low = self.units[line.quantity], line.regime == "low"
-            proved = (0.0, line.velocity_proved) if low else (line.velocity_proved, np.inf)
+            unit, known = self.units[line.quantity], line.velocity_proved
+            proved = (0.0, known) if line.regime == "low" else (known, np.inf)
             rows.append(
                 (
                     line.name, f"({line.equation})" if line.equation else "", line.formula,
                     with_unit(line.value, unit), with_unit(line.exact, unit),
                     value_range(line.relative_error, "+.3g"),
                     _velocities(line.velocity_min, line.velocity_max),
-                    *(() if self._proved else (_velocities(*proved),)),
+                    *[_velocities(*proved)] * partly,
                 )
             )  # fmt: skip
-        return rows
+        return heads, rows
 
 
 def _velocities(low: Value, high: Value) -> str:

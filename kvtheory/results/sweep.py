@@ -9,7 +9,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from kvtheory.results.certificate import Certificate, record
+from kvtheory.export import xarray
+from kvtheory.results.certificate import Certificate, Recorded, record
 from kvtheory.results.presented import above
 from kvtheory.scene.files import to_toml
 from kvtheory.scene.model import Scene
@@ -40,15 +41,15 @@ class Failure:
 
 
 @dataclass(frozen=True)
-class Sweep:
+class Sweep(Recorded):
     """Results of many scenes, as arrays over `axes` in SI; a missing value is NaN.
 
-    `values` maps each quantity to an array with one dimension for each axis, and `time` as the last
-    one for a series; `events` is an array of JSON texts. If the sweep was written to the file `path`, the
-    arrays are read from there on access. `units` covers swept keys and quantities. `computed` counts the
-    points that this call solved; the others were in the file already. `failed` counts the scenes that
-    failed; `failures` lists them, for a file the first hundred. The errors in the certificate are the
-    largest over the sweep. `plan` and `read` belong to the package: the request, and what gives the arrays.
+    `values` maps each quantity to an array with one dimension for each axis, and `time` as the last one for a
+    series; `events` is an array of JSON texts. The arrays of a sweep in a file (`path`) are read on access.
+    `units` covers swept keys and quantities. `computed` counts the points that this call solved; the others
+    were in the file already. `failed` counts the scenes that failed; `failures` lists them, for a file the
+    first hundred. The errors in the certificate are the largest over the sweep. `plan` and `read` belong to
+    the package: the request, and what reads the arrays.
     """
 
     scene: Scene
@@ -85,12 +86,7 @@ class Sweep:
         return tuple(axis.size for axis in self.axes)
 
     def to_xarray(self) -> Any:
-        """Return an `xarray.Dataset` with labels, units, and the scene in its attributes.
-
-        Raises
-        ------
-        ValueError
-            If xarray is missing.
+        """Return an `xarray.Dataset` with labels, units, and the scene in its attributes. Needs xarray.
 
         Examples
         --------
@@ -99,41 +95,26 @@ class Sweep:
         >>> data["friction_coefficient"].sel({"drive.velocity": 1.0}).round(4).item()
         0.0294
         """
-        try:
-            import xarray
-        except ModuleNotFoundError:
-            raise ValueError('this needs xarray: pip install ".[data]" in the checkout') from None
-        dims = [axis.name for axis in self.axes]
+        dims = [*(axis.name for axis in self.axes), "time"]
         units = {**self.units, "time": "s"}
+        held = {name: (dims[: array.ndim], array) for name, array in self.values.items()}
         labels = {
             key: (axis.name, array) for axis in self.axes for key, array in axis.values.items()
         }
         labels |= {} if self.time is None else {"time": ("time", self.time)}
-        data = xarray.Dataset(
-            {name: ([*dims, "time"][: array.ndim], array) for name, array in self.values.items()},
-            labels,
-            {
-                "scene": to_toml(self.scene),
-                "kvtheory_version": self.version,
-                "certificate": self.certificate.statement,
-            },
-        )
-        for name, unit in units.items():
-            if unit and name in data.variables:
-                data[name].attrs["units"] = unit
+        attributes = {"scene": to_toml(self.scene), "kvtheory_version": self.version}
+        attributes["certificate"] = self.certificate.statement
+        data = xarray().Dataset(held, labels, attributes)
+        for name in data.variables:
+            if units[name]:
+                data[name].attrs["units"] = units[name]
         return data
 
     def plot(self, quantity: str | None = None, *, ax: Any = None) -> Any:
-        """Draw a quantity as a curve, a family of curves, or a map.
+        """Draw a quantity as a curve, a family of curves, or a map, and return the matplotlib axes.
 
-        Without a name it is the friction coefficient, or else the first quantity.
-
-        Returns the matplotlib axes; without `ax`, on a new figure.
-
-        Raises
-        ------
-        ValueError
-            If the quantity does not exist, is text, or has more than two dimensions.
+        Without a name it is the friction coefficient, or else the first quantity; without `ax` it is drawn on
+        a new figure. `ValueError` if it does not exist, is text, or has more than two dimensions.
 
         Examples
         --------
@@ -145,20 +126,12 @@ class Sweep:
         return above("plots").plot_sweep(ax, self, quantity)
 
     def save(self, path: str | Path) -> None:
-        """Write to ``.csv`` (one row for each point) or ``.nc`` (needs netCDF4); see `kvtheory.sweep`.
-
-        Raises
-        ------
-        ValueError
-            If the suffix is neither, or netCDF4 is missing.
-        OSError
-            If the file cannot be written.
-        """
+        """Write to ``.csv`` (one row for each point), or to ``.nc`` with netCDF4; see `kvtheory.sweep`."""
         above("sweeps.files").save_sweep(self, Path(path))
 
     def as_dict(self) -> dict[str, Any]:
         """Return plain Python values, ready for JSON; a missing value is None."""
         time = {} if self.time is None else {"time": self.time}
-        counts = {"points": self.points, "failed": self.failed}
-        told = {"failures": self.failures, "certificate": self.certificate}
-        return record({**self.swept, **time, **self.values, **counts, **told})
+        names = "points", "failed", "failures", "certificate"
+        rest = {name: getattr(self, name) for name in names}
+        return dict(record({**self.swept, **time, **self.values, **rest}))

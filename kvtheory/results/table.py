@@ -9,10 +9,7 @@ from kvtheory.scene.units import WHOLE
 
 
 class Row(NamedTuple):
-    """A quantity: its name, symbol (TeX), SI unit and description.
-
-    `scale` names the attribute of `kvtheory.scene.static_state.StaticState` that is its scale in a series.
-    """
+    """A quantity: name, symbol (TeX), SI unit, description, and its scale, a value of the `StaticState`."""
 
     name: str
     symbol: str
@@ -21,7 +18,7 @@ class Row(NamedTuple):
     scale: str
 
 
-_ALL = (
+_ROWS = (
     Row("time", "t", "s", "time", "time"),
     Row("velocity", "V", "m/s", "drive velocity", "velocity"),
     Row("sliding_velocity", r"v", "m/s", "sliding velocity", "velocity"),
@@ -43,34 +40,25 @@ _ALL = (
     Row("frequency", "", "Hz", "frequency at the onset of instability", ""),
     Row("critical_velocity", "", "m/s", "velocity at the onset of instability", ""),
 )
-QUANTITIES = {row.name: row for row in _ALL}
-"""The quantities by name."""
+QUANTITIES = {row.name: row for row in _ROWS}
 
-STEADY_UNITS = {
-    name: QUANTITIES[name].unit
-    for name in (
-        "depth", "half_length", "retardation_length", "leading_edge", "trailing_edge", "load",
-        "friction_force", "friction_coefficient", "peak_pressure", "dissipated_in_contact",
-    )
-}  # fmt: skip
+
+def _units(names: str) -> dict[str, str]:
+    return {name: QUANTITIES[name].unit for name in names.split()}
+
+
+STEADY_UNITS = _units(
+    "depth half_length retardation_length leading_edge trailing_edge load"
+    " friction_force friction_coefficient peak_pressure dissipated_in_contact"
+)
 """The quantities of steady sliding and their units, in the order in which they are shown."""
-
-TRANSIENT_UNITS = {
-    name: QUANTITIES[name].unit
-    for name in (
-        "time", "velocity", "depth", "depth_rate", "normal_force", "friction_force",
-        "leading_edge", "trailing_edge", "peak_pressure",
-    )
-}  # fmt: skip
+TRANSIENT_UNITS = _units(
+    "time velocity depth depth_rate normal_force friction_force leading_edge trailing_edge peak_pressure"
+)
 """The quantities of a time series and their units, `time` first."""
-
-STABILITY_UNITS = {
-    name: QUANTITIES[name].unit
-    for name in ("critical_stiffness", "lower_critical_stiffness", "frequency", "critical_velocity")
-}
+STABILITY_UNITS = _units("critical_stiffness lower_critical_stiffness frequency critical_velocity")
 """The quantities of the stability of steady sliding and their units, beside its rates."""
-
-SPRING_UNITS = {name: QUANTITIES[name].unit for name in ("sliding_velocity", "spring_force")}
+SPRING_UNITS = _units("sliding_velocity spring_force")
 """The additional quantities of a time series if the drive has a spring."""
 SERIES_UNITS = TRANSIENT_UNITS | SPRING_UNITS
 
@@ -89,17 +77,11 @@ SHOWN_UNITS = {
     "kg/m": ("kg/mm", 1e-3),
     "Hz": ("Hz", 1.0),
 }
-"""The unit in which tables show each SI unit, as in the paper, and the factor to it; JSON and CSV are in
-SI."""
+"""The unit in which tables show each SI unit, as in the paper, and the factor to it."""
 
 
 def units_for(indenter: Indenter, units: Mapping[str, str]) -> Mapping[str, str]:
-    """Return the units of quantities of a result: per unit width for a line contact, total for a ball.
-
-    >>> from kvtheory.scene import Sphere
-    >>> units_for(Sphere(radius=0.01), STEADY_UNITS)["load"]
-    'N'
-    """
+    """Return the units of quantities of a result: per unit width for a line contact, total for a ball."""
     if indenter.per_width:
         return units
     return {name: WHOLE.get(unit, unit) for name, unit in units.items()}
@@ -111,11 +93,6 @@ def series_units(*, rigid_drive: bool) -> Mapping[str, str]:
 
 
 def scales(at_rest: StaticState) -> dict[str, float]:
-    """Return the scale of each quantity of a series: a value of the static state, or a product of these.
-
-    >>> from kvtheory.scene import Scene
-    >>> round(scales(StaticState.of(Scene()))["normal_force"], 2)
-    9806.65
-    """
+    """Return the scale of each quantity of a series, from the static state."""
     names = series_units(rigid_drive=at_rest.rigid_drive)
     return {name: getattr(at_rest, QUANTITIES[name].scale) for name in names}

@@ -1,10 +1,10 @@
 """Motions as time series: a transient, and a simulation by elements."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
-from kvtheory.results.certificate import Certificate, Value, record
+from kvtheory.results.certificate import Certificate, Value
 from kvtheory.results.presented import Presented
 from kvtheory.results.table import SERIES_UNITS, TRANSIENT_UNITS
 
@@ -16,7 +16,7 @@ class Event(NamedTuple):
     kind: str
 
 
-@dataclass(frozen=True, repr=False)
+@dataclass(frozen=True, repr=False, kw_only=True)
 class TimeSeries(Presented):
     """Arrays in SI over `time`, as `TRANSIENT_UNITS` names them; in flight the edges are NaN."""
 
@@ -29,29 +29,26 @@ class TimeSeries(Presented):
     leading_edge: Value
     trailing_edge: Value
     peak_pressure: Value
+    model: str
+    certificate: Certificate
     units: Mapping[str, str] = field(
-        default_factory=lambda: TRANSIENT_UNITS, repr=False, compare=False, kw_only=True
+        default_factory=TRANSIENT_UNITS.copy, repr=False, compare=False
     )
-    """The SI unit of each quantity."""
 
     @property
     def _title(self) -> str:
         end, count = float(self.time[-1]) if len(self.time) else 0.0, len(self.time)
         return f"{super()._title}, {count} times up to {end * 1e3:.4g} ms"
 
-    def as_dict(self) -> dict[str, Any]:
-        """Return plain Python values, ready for JSON: `time` first; what does not exist is None."""
-        return {f.name: record(getattr(self, f.name)) for f in fields(self) if f.repr}
 
-
-@dataclass(frozen=True, repr=False)
+@dataclass(frozen=True, repr=False, kw_only=True)
 class Transient(TimeSeries):
     """A transient as a time series: arrays in SI over `time`; in flight the edges are NaN.
 
     `leading_state` and `trailing_state` say whether an edge is ``"peeling"`` (its pressure is zero),
-    ``"touching"`` (it meets the free surface) or ``"free"`` (the indenter flies). At an instant where
-    the drive jumps, values are those just after the jump. `compiled` says whether the kernels were
-    compiled (extra ``fast``) or interpreted; the numbers are the same.
+    ``"touching"`` (it meets the free surface) or ``"free"`` (the indenter flies). Where the drive jumps,
+    values are those just after the jump. `compiled` says whether the kernels were compiled (extra ``fast``)
+    or interpreted; the numbers are the same.
     """
 
     leading_state: tuple[str, ...]
@@ -60,10 +57,7 @@ class Transient(TimeSeries):
     steps: int
     evaluations: int
     compiled: bool
-    model: str
-    certificate: Certificate
     solution: Any = field(repr=False, compare=False)
-    """The solved motion, from which `pressure` is evaluated."""
 
     def pressure(self, x: Any, time: float) -> Any:
         """Return the contact pressure in Pa at the positions `x` (m) and one `time` (s)."""
@@ -89,9 +83,9 @@ class Transient(TimeSeries):
         The work of the drive, int F_x V dt, and the energy stored at rest equal the sum of the kinetic
         energy, the potential energies -M g (delta - delta_0) and k_s (delta - delta_0)^2/2, the stored
         energy, int K u^2/2 dx, and the dissipated energy, int int C (du/dt)^2 dx dt; the last two are split
-        into the contact (`..._contact`) and the relaxing surface (`..._surface`). With a spring in the drive
-        there are also `kinetic_along`, `stored_drive` and `dissipated_drive`. `balance` is the residual, a
-        measure of the error.
+        into `..._contact` and `..._surface`, the relaxing surface. A spring in the drive adds
+        `kinetic_along`, `stored_drive` and `dissipated_drive`. `balance` is the residual, a measure of the
+        error.
 
         Examples
         --------
@@ -103,31 +97,27 @@ class Transient(TimeSeries):
         return self.solution.energy(time)
 
 
-@dataclass(frozen=True, repr=False)
+@dataclass(frozen=True, repr=False, kw_only=True)
 class SprungTransient(Transient):
-    """A transient whose drive holds the indenter by a spring: two series more, `SPRING_UNITS`.
+    """A transient with a spring in the drive: also `sliding_velocity` and `spring_force`.
 
-    `sliding_velocity` is that of the base under the indenter, V - dx/dt, and `spring_force` the force of
-    spring and damper, k_x x + c_x dx/dt, with x the displacement of the indenter. Leading and
-    trailing edge follow the sign of the sliding velocity.
+    The sliding velocity is that of the base under the indenter, V - dx/dt, with x the displacement of the
+    indenter; leading and trailing edge follow its sign. `spring_force` is that of spring and damper,
+    k_x x + c_x dx/dt.
     """
 
     sliding_velocity: Value
     spring_force: Value
-    units: Mapping[str, str] = field(
-        default_factory=lambda: SERIES_UNITS, repr=False, compare=False, kw_only=True
-    )
-    """The SI unit of each quantity."""
+    units: Mapping[str, str] = field(default_factory=SERIES_UNITS.copy, repr=False, compare=False)
 
 
-@dataclass(frozen=True, repr=False)
+@dataclass(frozen=True, repr=False, kw_only=True)
 class Simulation(TimeSeries):
     """A run of the elements as a time series: arrays in SI over `time`; in flight the edges are NaN.
 
-    At an instant where the drive jumps, values are those just after the jump. `per_length` is the
-    number of elements per length (1/m), `time_step` the longest step (s), `element_updates` the number of
-    updates of single elements; `warning` says why the step may be too long, if so; `compiled` whether the
-    kernels were compiled (extra ``fast``).
+    Where the drive jumps, values are those just after the jump. `per_length` is the number of elements per
+    length (1/m), `time_step` the longest step (s), `element_updates` the number of updates of single
+    elements; `warning` says why the step may be too long, if so; `compiled` is as in `Transient`.
     """
 
     scheme: str
@@ -136,18 +126,13 @@ class Simulation(TimeSeries):
     steps: int
     element_updates: int
     warning: str
-    model: str
-    certificate: Certificate
     compiled: bool
 
 
-@dataclass(frozen=True, repr=False)
+@dataclass(frozen=True, repr=False, kw_only=True)
 class SprungSimulation(Simulation):
-    """A run of the elements on a spring: two series more, `SPRING_UNITS`, as in a `SprungTransient`."""
+    """A run of the elements on a spring, with the two series more of a `SprungTransient`."""
 
     sliding_velocity: Value
     spring_force: Value
-    units: Mapping[str, str] = field(
-        default_factory=lambda: SERIES_UNITS, repr=False, compare=False, kw_only=True
-    )
-    """The SI unit of each quantity."""
+    units: Mapping[str, str] = field(default_factory=SERIES_UNITS.copy, repr=False, compare=False)

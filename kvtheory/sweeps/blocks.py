@@ -5,26 +5,22 @@ same bits. A scene that fails is a missing value with its reason; the others are
 """
 
 from collections.abc import Mapping
-from contextlib import suppress
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from kvtheory.models.steady.methods import METHODS
 from kvtheory.models.steady.stable_sliding import lasts
+from kvtheory.scene.capabilities import lacks_paper_model
 from kvtheory.scene.model import Scene
-from kvtheory.sweeps.axes import values_at
-from kvtheory.sweeps.plan import FAILS, STABLE, Measured, Plan, Table
-
-Array = NDArray[np.float64]
+from kvtheory.sweeps.plan import FAILS, STABLE, Array, Measured, Plan, Table
 
 INTERPRETED = 1.5
 """Steps interpreted before the first block is compiled, over those from which compiling pays."""
 
 
-@dataclass(frozen=True)
-class Task:
+class Task(NamedTuple):
     """Points of a sweep from `start` on: their swept values, and the plan without its axes."""
 
     plan: Plan
@@ -37,19 +33,10 @@ class Task:
         """The number of scenes."""
         return next(iter(self.over.values())).size
 
-    def scene(self, index: int) -> Scene:
-        """Return one of the scenes, whose run must be as long as the times that are asked for."""
-        point = {key: float(array[index]) for key, array in self.over.items()}
-        scene = self.plan.scene.replace(point)
-        if max(self.plan.times or (0.0,)) > scene.run.duration:
-            late = f"a time of `at` is after the end of the run, {scene.run.duration} s"
-            raise ValueError(late)
-        return scene
-
 
 def task(plan: Plan, start: int, stop: int) -> Task:
     """Return the task for some points of a plan."""
-    return Task(replace(plan, axes=()), start, values_at(plan.axes, start, stop))
+    return Task(replace(plan, axes=()), start, plan.values_at(start, stop))
 
 
 @dataclass
@@ -69,17 +56,16 @@ class Block:
 
 def compute(given: Task) -> Block:
     """Solve the scenes of a task."""
-    plan, points = given.plan, given.points
-    steady = _steady(given) if plan.steady else Measured()
+    plan, table = given.plan, given.plan.blank(given.points)
+    steady = _steady(given) if plan.needed(steady=True) else Measured()
     motion = _transients(given, steady) if plan.transient else Measured()
-    table, told = plan.blank(points), []
+    told = [(name, motion.errors[name]) for name in plan.needed(steady=False) if plan.transient]
     for column in plan.columns:
-        if column.measure == "steady":
-            table[column.name] = steady.values[column.base]
-            told += [(column.name, steady.errors[column.base])] * (column.base != STABLE)
-        else:
+        if column.measure != "steady":
             table[column.name] = motion.values[column.name]
-    told += [(name, motion.errors[name]) for name in plan.followed]
+            continue
+        table[column.name] = steady.values[column.base]
+        told += [(column.name, steady.errors[column.base])] * (column.base != STABLE)
     reasons = steady.reasons | motion.reasons
     failed = sorted(reasons)
     table[failed] = plan.blank(len(failed))
@@ -88,7 +74,7 @@ def compute(given: Task) -> Block:
         error[failed] = 0.0
         errors[name] = max(errors.get(name, 0.0), float(np.max(error)))
     return Block(
-        given.start, given.start + points, table,
+        given.start, given.start + given.points, table,
         [(given.start + index, _reason(reasons[index])) for index in failed],
         sorted(steady.statements | motion.statements), errors,
     )  # fmt: skip
@@ -104,7 +90,7 @@ def _reason(error: Exception) -> str:
 
 def _steady(given: Task) -> Measured:
     """Solve steady sliding; a part that fails is halved until the scene at fault is alone."""
-    plan, names, found = given.plan, given.plan.steady, Measured()
+    plan, names, found = given.plan, given.plan.needed(steady=True), Measured()
     found.values = {name: np.full(given.points, np.nan) for name in names}
     found.errors = {name: np.zeros(given.points) for name in names}
     waiting = [(0, given.points)]
@@ -130,18 +116,24 @@ def _steady(given: Task) -> Measured:
 
 
 def _transients(given: Task, steady: Measured) -> Measured:
-    """Follow the motions of the scenes that slide steadily, if that is asked for."""
+    """Compute the transients of the scenes whose steady sliding did not fail."""
     # Imported here, as the solver and the simulator take a while to import.
-    if given.plan.by_elements:
+    if lacks_paper_model(given.plan.scene):
         from kvtheory.sweeps.simulated import measure
     else:
         from kvtheory.sweeps.measures import measure
 
+    latest = max(given.plan.times or (0.0,))
     scenes: dict[int, Scene] = {}
     reasons: dict[int, Exception] = {}
     for index in set(range(given.points)) - steady.reasons.keys():
         try:
-            scenes[index] = given.scene(index)
+            point = {key: float(array[index]) for key, array in given.over.items()}
+            scene = given.plan.scene.replace(point)
+            if latest > scene.run.duration:
+                end = scene.run.duration
+                raise ValueError(f"a time of `at` is after the end of the run, {end} s")
+            scenes[index] = scene
         except FAILS as error:
             reasons[index] = error
     friction = steady.values.get("friction_force", np.full(given.points, np.nan))
@@ -156,14 +148,12 @@ def compile_ahead(plan: Plan, points: int, workers: int) -> None:
 
     Workers load what is compiled from the disk, if they share it and have processors of the same kind.
     """
-    if not plan.transient or plan.by_elements:
+    if not plan.transient or lacks_paper_model(plan.scene):
         return
     from kvtheory.models.continuum import compiled
-    from kvtheory.sweeps.measures import STEPS, compile_ahead
+    from kvtheory.sweeps.measures import STEPS
 
-    if not compiled.available() or STEPS * points < INTERPRETED * compiled.WORTHWHILE * workers:
-        return
-    for index in (0, plan.points - 1):  # the second, if the first has no answer
-        with suppress(*FAILS):
-            compile_ahead(plan, task(plan, index, index + 1).scene(0))
-            break
+    if compiled.available() and STEPS * points >= INTERPRETED * compiled.WORTHWHILE * workers:
+        compiled.Tally.steps += compiled.WORTHWHILE
+        for index in {0, plan.points - 1}:  # one of the two may fail
+            compute(task(plan, index, index + 1))

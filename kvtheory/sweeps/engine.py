@@ -1,4 +1,4 @@
-"""The run of a sweep: blocks given to an executor, a bounded number at a time, and kept as they return."""
+"""Runs a sweep: gives blocks to an executor, a bounded number at a time, and keeps what returns."""
 
 import logging
 import multiprocessing
@@ -9,8 +9,7 @@ from collections.abc import Callable, Iterator
 from concurrent import futures
 from concurrent.futures import Executor, Future
 from concurrent.futures.process import BrokenProcessPool
-from contextlib import ExitStack, suppress
-from dataclasses import replace
+from contextlib import nullcontext, suppress
 from glob import escape
 from importlib.util import find_spec
 from pathlib import Path
@@ -25,8 +24,7 @@ from kvtheory.sweeps.plan import Plan
 from kvtheory.sweeps.store import WorkFile
 
 WORK = ".part"
-"""What the name of a work file adds to that of the result."""
-
+"""Suffix of a work file, after the name of the result."""
 VECTORISED_BLOCK = 65536
 """Steady states in a block: 5 MB of results in 20 ms; half as many cost a third of the speed."""
 QUADRATURE_BLOCK = 512
@@ -34,20 +32,17 @@ QUADRATURE_BLOCK = 512
 SINGLE_BLOCK, COMPILED_BLOCK = 64, 512
 """Motions in a block, one by one or in one call: 0.1 s to 1 s, of which the transfer takes a percent."""
 LEAST_BLOCKS = 16
-"""Of a sweep of motions, so that a few workers share even a small one."""
-
+"""Blocks of a sweep of motions, at least, so that a few workers share even a small one."""
 AHEAD = 2
-"""Blocks in flight for each worker: one that is computed and one that waits for it."""
+"""Blocks in flight per worker: one that is computed and one that waits."""
 UNKNOWN_WORKERS = 16
-"""Assumed of an executor that does not tell; on a larger cluster give `in_flight`."""
+"""Assumed where an executor does not say; on a larger cluster give `in_flight`."""
 TRIES = 3
-"""How often a block is given out: a worker may die under it, but not every time."""
+"""How often a block is given out, in case its worker dies."""
 REFRESH = 0.5
 """Seconds after which progress is shown again, and an interrupt is noticed, if no block returns."""
-
 HINT = ' (a script that starts processes needs `if __name__ == "__main__":`)'
 """Without it, each process runs the script again, and ends at once."""
-
 log = logging.getLogger(__name__)
 
 
@@ -61,13 +56,12 @@ def in_memory(plan: Plan, **how: Any) -> Sweep:
 def into_file(plan: Plan, path: Path, *, overwrite: bool, **how: Any) -> Sweep:
     """Run a sweep into a file, or resume it; after an interrupt the file holds what was done."""
     files.check(path)
-    work = path.with_name(path.name + WORK)
+    work, written = path.with_name(path.name + WORK), False
     if not overwrite and files.finished(path, plan):
         if work.exists():  # of a run that was killed just before it removed this
             WorkFile(work, plan).close(remove=True)
         return files.from_file(path, plan)
     store = WorkFile(work, plan, anew=overwrite)
-    written = False
     try:
         for unfinished in path.parent.glob(f".{escape(path.stem)}.*.part{path.suffix}"):
             unfinished.unlink()  # of a run that was killed while it wrote the result
@@ -93,8 +87,8 @@ def run(
     """
     before = done = sum(one.stop - one.start for one in kept)
     failed, begun = sum(len(one.failures) for one in kept), monotonic()
-    told = jobs if executor is None else getattr(executor, "_max_workers", None)
-    workers = told or UNKNOWN_WORKERS
+    known = jobs if executor is None else getattr(executor, "_max_workers", None)
+    workers = known or UNKNOWN_WORKERS
     compile_ahead(plan, plan.points - before, workers)
 
     def returned(result: Block) -> None:
@@ -111,15 +105,63 @@ def run(
         if report:
             report(done / plan.points, text + (f", {failed:,} failed" if failed else ""))
 
-    def pool() -> Executor:
-        return stack.enter_context(_own(jobs, plan)) if executor is None else executor
-
     show()
     tasks = remaining(plan, [(one.start, one.stop) for one in kept], block)
     most = 1 if executor is None and jobs == 1 else in_flight or AHEAD * workers
-    with ExitStack() as stack:
+    with _Workers(jobs, plan) if executor is None else nullcontext(executor) as pool:
         _give_out(pool, tasks, returned, most, show)
     return done - before
+
+
+def _give_out(
+    executor: Executor, tasks: Iterator[Task], keep: Callable[[Block], None], in_flight: int,
+    show: Callable[[], None],
+) -> None:  # fmt: skip
+    """Have the blocks computed, `in_flight` of them at a time.
+
+    A block that is lost with its worker is given out again, `TRIES` times in all. After an error or an
+    interrupt, waiting blocks are withdrawn, and those returned are kept.
+    """
+    flying: dict[Future[Block], Task] = {}
+    again: list[Task] = []
+    try:
+        while True:
+            while len(flying) < in_flight and (
+                given := again.pop() if again else next(tasks, None)
+            ):
+                flying[executor.submit(compute, given)] = given
+            if not flying:
+                return
+            for future in futures.wait(flying, REFRESH, futures.FIRST_COMPLETED).done:
+                again += _kept(future, flying.pop(future), keep)
+            show()
+    except BaseException as error:
+        for future in flying:
+            future.cancel()
+        with suppress(OSError):  # if the disk is full, say
+            for future, given in flying.items():
+                if future.done() and not future.cancelled():
+                    _kept(future, given._replace(tries=0), keep)
+        if isinstance(error, futures.BrokenExecutor):
+            raise RuntimeError(f"the executor is broken: {error}") from error
+        raise
+
+
+def _kept(future: Future[Block], given: Task, keep: Callable[[Block], None]) -> list[Task]:
+    """Keep a block that has returned, or give its task back if it was lost with its worker."""
+    try:
+        lost = future.exception()
+    except futures.CancelledError as error:  # by the executor of a cluster
+        lost = error
+    if lost is None:
+        keep(future.result())
+        return []
+    points = f"points {given.start} to {given.start + given.points - 1}"
+    if given.tries == TRIES:
+        told = f"{type(lost).__name__}: {lost}{HINT if isinstance(lost, BrokenProcessPool) else ''}"
+        raise RuntimeError(f"{points} were lost {TRIES} times: {told}") from lost
+    log.warning("%s are given out again: %r", points, lost)
+    return [given._replace(tries=given.tries + 1)]
 
 
 def remaining(plan: Plan, done: list[tuple[int, int]], block: int | None = None) -> Iterator[Task]:
@@ -141,89 +183,35 @@ def remaining(plan: Plan, done: list[tuple[int, int]], block: int | None = None)
         at = max(at, stop)
 
 
-def _give_out(
-    pool: Callable[[], Executor],
-    tasks: Iterator[Task],
-    keep: Callable[[Block], None],
-    in_flight: int,
-    show: Callable[[], None],
-) -> None:
-    """Have the blocks computed, `in_flight` of them at a time.
+class _Workers(Executor):
+    """Our own workers: this thread if it is one, threads if NumPy takes the time, or else processes.
 
-    `pool` gives the executor, and a new one when it is broken. A block that is lost with its worker is
-    given out again. After an error or an interrupt, waiting blocks are withdrawn, those returned are kept.
-
-    Raises
-    ------
-    RuntimeError
-        If a block was lost `TRIES` times, or the executor of the caller is broken.
+    Where a process dies, and its pool with it, a new pool takes over.
     """
-    executor = pool()
-    flying: dict[Future[Block], Task] = {}
-    again: list[Task] = []
-    try:
-        while True:
-            while len(flying) < in_flight:
-                given = again.pop() if again else next(tasks, None)
-                if given is None:
-                    break
-                try:
-                    flying[executor.submit(compute, given)] = given
-                except futures.BrokenExecutor as error:
-                    again.append(given)
-                    broken, executor = executor, pool()
-                    if executor is broken:
-                        raise RuntimeError(f"the executor is broken: {error}") from error
-            if not flying:
-                return
-            for future in futures.wait(flying, REFRESH, futures.FIRST_COMPLETED).done:
-                again += _kept(future, flying.pop(future), keep)
-            show()
-    except BaseException:
-        for future in flying:
-            future.cancel()
-        with suppress(OSError):  # if the disk is full, say
-            for future, given in flying.items():
-                if future.done() and not future.cancelled():
-                    _kept(future, replace(given, tries=0), keep)
-        raise
 
+    def __init__(self, jobs: int, plan: Plan) -> None:
+        self.here, self.jobs, self.threads = jobs == 1, jobs, plan.vectorised
+        self.pool = self.fresh()
 
-def _kept(future: Future[Block], given: Task, keep: Callable[[Block], None]) -> list[Task]:
-    """Keep a block that has returned, or give its task back if it was lost with its worker."""
-    try:
-        lost = future.exception()
-    except futures.CancelledError as error:  # by the executor of a cluster
-        lost = error
-    if lost is None:
-        keep(future.result())
-        return []
-    points = f"points {given.start} to {given.start + given.points - 1}"
-    if given.tries == TRIES:
-        told = f"{type(lost).__name__}: {lost}{HINT if isinstance(lost, BrokenProcessPool) else ''}"
-        raise RuntimeError(f"{points} were lost {TRIES} times: {told}") from lost
-    log.warning("%s are given out again: %r", points, lost)
-    return [replace(given, tries=given.tries + 1)]
+    def fresh(self) -> Executor:
+        if self.threads or self.here:  # which start with the first task
+            return futures.ThreadPoolExecutor(self.jobs)
+        spawn = multiprocessing.get_context("spawn")
+        return futures.ProcessPoolExecutor(self.jobs, spawn, initializer=_follow_parent)
 
+    def submit(self, function: Any, /, *given: Any, **named: Any) -> Future[Any]:
+        if self.here:
+            future: Future[Any] = Future()
+            future.set_result(function(*given, **named))
+            return future
+        try:
+            return self.pool.submit(function, *given, **named)
+        except futures.BrokenExecutor:
+            self.pool = self.fresh()
+            return self.pool.submit(function, *given, **named)
 
-class _Here(Executor):
-    """Computes at once, in this thread."""
-
-    def submit(self, function: Any, /, *arguments: Any, **named: Any) -> Future[Any]:
-        """Return a future that has its result."""
-        future: Future[Any] = Future()
-        future.set_result(function(*arguments, **named))
-        return future
-
-
-def _own(jobs: int, plan: Plan) -> Executor:
-    """Return an executor of our own: of processes, unless NumPy spends the time."""
-    if jobs == 1:
-        return _Here()
-    if plan.vectorised:
-        return futures.ThreadPoolExecutor(jobs)
-    spawn = multiprocessing.get_context("spawn")
-    return futures.ProcessPoolExecutor(jobs, spawn, initializer=_follow_parent)
+    def shutdown(self, wait: bool = True, *, cancel_futures: bool = False) -> None:
+        self.pool.shutdown(wait, cancel_futures=cancel_futures)
 
 
 def _follow_parent() -> None:

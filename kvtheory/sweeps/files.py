@@ -2,8 +2,8 @@
 
 CSV (RFC 4180) has one row for each point, or for each point and time; lines that begin with ``#`` above the
 table describe it. NetCDF has a dimension for each axis. Either file holds the SHA-256 of all its other bytes,
-so that one in which anything was changed is not taken for this sweep: in CSV it stands in the second line, in
-NetCDF behind what its readers reach. A file that another program saved again has lost it.
+so that one in which anything was changed is not taken for this sweep: in CSV in the second line, in NetCDF
+behind what its readers reach. A file that another program saved again has lost it.
 """
 
 import csv
@@ -12,6 +12,7 @@ import json
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import asdict
 from functools import partial
+from importlib.metadata import version
 from itertools import takewhile
 from pathlib import Path
 from typing import Any
@@ -22,9 +23,8 @@ import orjson
 from kvtheory.export import check_path, replace_file
 from kvtheory.results.certificate import Certificate
 from kvtheory.results.sweep import Failure, Sweep
-from kvtheory.sweeps.axes import values_at
 from kvtheory.sweeps.blocks import Block
-from kvtheory.sweeps.plan import EVENTS, Plan
+from kvtheory.sweeps.plan import EVENTS, Plan, is_csv
 
 Blocks = Callable[..., Iterable[Block]]
 """Gives the blocks in the order of their points, with `tables=False` without their tables."""
@@ -36,7 +36,7 @@ END = "\r\n"
 DIGEST = f"# kvtheory sweep{END}# sha256 of the rest of this file: "
 """The beginning of a CSV."""
 DIGITS = 64
-"""Of a SHA-256."""
+"""Digits of a SHA-256."""
 PART = 2**20
 """Bytes read at a time."""
 
@@ -52,17 +52,12 @@ def check(path: Path) -> None:
             raise ValueError(told) from None
 
 
-def is_csv(path: Path) -> bool:
-    """Whether a file of this name is a CSV, and not NetCDF."""
-    return path.suffix.lower() == ".csv"
-
-
 def write(plan: Plan, blocks: Blocks, path: Path) -> None:
-    """Write what there is to `path`, by a temporary name."""
+    """Write the blocks to a temporary file, seal it, and rename it to `path`."""
 
     def write(part: Path) -> None:
         (_write_csv if is_csv(path) else _write_netcdf)(plan, blocks, part)
-        place, digest = _digest(part)
+        place, digest, _ = _digest(part)
         with part.open("r+b") as file:
             file.seek(place)
             file.write(digest)
@@ -71,23 +66,15 @@ def write(plan: Plan, blocks: Blocks, path: Path) -> None:
 
 
 def finished(path: Path, plan: Plan) -> bool:
-    """Whether `path` holds the whole of this sweep, as it was written.
-
-    Raises
-    ------
-    ValueError
-        If it holds anything else but this sweep as it was written.
-    """
+    """Whether `path` holds the whole of this sweep; raise if it holds anything else, or was changed."""
     if not path.exists():
         return False
-    place, digest = _digest(path)
-    with path.open("rb") as file:
-        file.seek(place)
-        if file.read(DIGITS) != digest:
-            raise ValueError(
-                f'"{path}" exists and is not a sweep as it was written: it is another file, or was changed, '
-                f"cut, or saved anew by another program; {WAYS_OUT}"
-            )
+    _, digest, written = _digest(path)
+    if written != digest:
+        raise ValueError(
+            f'"{path}" exists and is not a sweep as it was written: it is another file, or was changed, '
+            f"cut, or saved anew by another program; {WAYS_OUT}"
+        )
     header = _header(path)
     if differing := plan.differences(header["record"]):
         raise ValueError(
@@ -97,8 +84,8 @@ def finished(path: Path, plan: Plan) -> bool:
     return bool(summary["done"] == summary["points"])
 
 
-def _digest(path: Path) -> tuple[int, bytes]:
-    """Return where the digest of a file begins, and that of all its other bytes."""
+def _digest(path: Path) -> tuple[int, bytes, bytes]:
+    """Return where the digest of a file stands, that of all its other bytes, and what stands there."""
     size, digest = path.stat().st_size, hashlib.sha256()
     place = len(DIGEST) if is_csv(path) else max(0, size - DIGITS)
     with path.open("rb") as file:
@@ -106,38 +93,27 @@ def _digest(path: Path) -> tuple[int, bytes]:
             file.seek(start)
             while part := file.read(max(0, min(PART, stop - file.tell()))):
                 digest.update(part)
-    return place, digest.hexdigest().encode()
+        return place, digest.hexdigest().encode(), file.read(DIGITS)
 
 
 def from_file(path: Path, plan: Plan, computed: int = 0) -> Sweep:
-    """Return the sweep that a finished file holds; its arrays stay there until they are wanted."""
-    header = json.loads(_header(path)["summary"])
-    header["failures"] = tuple(Failure(**failure) for failure in header["failures"])
-    return _sweep(plan, header, partial(_values, path, plan), computed, path)
+    """Return the sweep that a finished file holds; its arrays stay there until they are used."""
+    summary = json.loads(_header(path)["summary"])
+    summary["failures"] = tuple(Failure(**failure) for failure in summary["failures"])
+    return _sweep(plan, summary, partial(_values, path, plan), computed, path)
 
 
 def from_memory(plan: Plan, blocks: Blocks) -> Sweep:
     """Return blocks as arrays, in which points that were not computed are missing values."""
     missing = plan.blank(1)
-    flat = {
-        name: np.repeat(missing[name], plan.points, axis=0) for name in missing.dtype.names or ()
-    }
+    flat = {c.name: np.repeat(missing[c.name], plan.points, axis=0) for c in plan.columns}
     for block in blocks():
         for name, array in flat.items():
             array[block.start : block.stop] = block.table[name]
-    values = {name: array.reshape(*plan.grid, *array.shape[1:]) for name, array in flat.items()}
-    header = _summary(plan, blocks)
-    return _sweep(plan, header, lambda: values, header["done"])
-
-
-def _sweep(plan: Plan, header: Any, read: Any, computed: int, path: Path | None = None) -> Sweep:
-    """Return the result that a header describes."""
-    return Sweep(
-        scene=plan.scene, axes=plan.axes, time=np.array(plan.times) if plan.series else None,
-        units=plan.units, points=plan.points, computed=computed, failed=header["failed"],
-        failures=header["failures"], version=plan.version, path=path, plan=plan, read=read,
-        certificate=Certificate("estimated", header["certificate"], header["relative_error"]),
-    )  # fmt: skip
+    grid = tuple(axis.size for axis in plan.axes)
+    values = {name: array.reshape(*grid, *array.shape[1:]) for name, array in flat.items()}
+    summary = _summary(plan, blocks)
+    return _sweep(plan, summary, lambda: values, summary["done"])
 
 
 def save_sweep(result: Sweep, path: Path) -> None:
@@ -153,6 +129,16 @@ def save_sweep(result: Sweep, path: Path) -> None:
     write(plan, lambda **_: [block], path)
 
 
+def _sweep(plan: Plan, summary: Any, read: Any, computed: int, path: Path | None = None) -> Sweep:
+    """Return the result that a summary describes."""
+    return Sweep(
+        scene=plan.scene, axes=plan.axes, time=np.array(plan.times) if plan.series else None,
+        units=plan.units, points=plan.points, computed=computed, failed=summary["failed"],
+        failures=summary["failures"], version=version("kvtheory"), path=path, plan=plan, read=read,
+        certificate=Certificate("estimated", summary["certificate"], summary["relative_error"]),
+    )  # fmt: skip
+
+
 def _summary(plan: Plan, blocks: Blocks) -> dict[str, Any]:
     """Return how much was computed, which scenes failed and why, and the largest errors."""
     done, failures, statements = 0, [], set[str]()
@@ -161,7 +147,7 @@ def _summary(plan: Plan, blocks: Blocks) -> dict[str, Any]:
         done += block.stop - block.start
         statements.update(block.statements)
         for index, reason in block.failures:
-            point = values_at(plan.axes, index, index + 1).items()
+            point = plan.values_at(index, index + 1).items()
             failures.append(Failure(index, {key: float(a[0]) for key, a in point}, reason))
         for name, error in block.errors.items():
             errors[name] = max(errors.get(name, 0.0), error)
@@ -171,8 +157,14 @@ def _summary(plan: Plan, blocks: Blocks) -> dict[str, Any]:
     }  # fmt: skip
 
 
+def _described(plan: Plan, summary: Mapping[str, Any]) -> dict[str, str]:
+    """Return what a file states about itself, as JSON; `_header` reads it."""
+    listed = [asdict(failure) for failure in summary["failures"][:FAILURES_LISTED]]
+    summary = {**summary, "failures": listed}
+    return {"record": json.dumps(plan.record), "summary": json.dumps(summary)}
+
+
 def _header(path: Path) -> Mapping[str, Any]:
-    """Return what a file says about itself."""
     if not is_csv(path):
         import xarray
 
@@ -184,13 +176,6 @@ def _header(path: Path) -> Mapping[str, Any]:
     return {key: text for key, _, text in pairs}
 
 
-def _described(plan: Plan, summary: Mapping[str, Any]) -> dict[str, str]:
-    """Return what a file says about itself, as JSON."""
-    listed = [asdict(failure) for failure in summary["failures"][:FAILURES_LISTED]]
-    summary = {**summary, "failures": listed}
-    return {"record": json.dumps(plan.record), "summary": json.dumps(summary)}
-
-
 def _values(path: Path, plan: Plan) -> dict[str, Any]:
     """Return the arrays of a file."""
     kinds = {column.name: float if column.unit else object for column in plan.columns}
@@ -198,41 +183,38 @@ def _values(path: Path, plan: Plan) -> dict[str, Any]:
         import xarray
 
         with xarray.open_dataset(path, engine="netcdf4") as data:
-            arrays = {column.name: data[column.name].values for column in plan.columns}
-        return {name: array.astype(kinds[name], copy=False) for name, array in arrays.items()}
+            return {
+                name: data[name].values.astype(kind, copy=False) for name, kind in kinds.items()
+            }
     with path.open(encoding="utf-8", newline="") as file:
         rows = csv.reader(line for line in file if not line.startswith("#"))
         table = dict(zip(next(rows), zip(*rows, strict=True), strict=True))
-    shape = (*plan.grid, len(plan.times or ())) if plan.series else (*plan.grid, 1)
-    found = {}
+    found, grid = {}, tuple(axis.size for axis in plan.axes)
     for column in plan.columns:
         cells = table[_head(column.name, column.unit)]
         read = [float(cell or "nan") for cell in cells] if column.unit else cells
-        array = np.array(read, dtype=kinds[column.name]).reshape(shape)
+        array = np.array(read, dtype=kinds[column.name]).reshape(*grid, -1)
         found[column.name] = array if column.measure == "series" else array[..., 0]
     return found
 
 
 def _write_csv(plan: Plan, blocks: Blocks, path: Path) -> None:
     """Write header and rows; those of points that were not computed are left out."""
-    summary = _summary(plan, blocks)
+    summary, record = _summary(plan, blocks), plan.record
     swept = " x ".join(f"{axis.size} {' & '.join(axis.values)}" for axis in plan.axes)
+    done = f"{summary['done']} of {plan.points} points; the command resumes it"
     lines = [
         f"{DIGEST}{'0' * DIGITS}",
         "# to read the table: pandas.read_csv(FILE, comment='#')",
-        f"# version: {plan.version}",
+        f"# version: {record['kvtheory']}",
         f"# over: {swept}",
+        *[f"# unfinished: {done}"] * (summary["done"] < plan.points),
+        *(f"#   {line}".rstrip() for line in record["scene"].splitlines()),
+        *(f"# {key}: {text}" for key, text in _described(plan, summary).items()),
     ]
-    if summary["done"] < plan.points:
-        lines.append(
-            f"# unfinished: {summary['done']} of {plan.points} points; the command resumes it"
-        )
-    lines += [f"#   {line}".rstrip() for line in plan.record["scene"].splitlines()]
-    lines += [f"# {key}: {text}" for key, text in _described(plan, summary).items()]
-    lines += [
-        f"# failed: point {failure.index}, {json.dumps(failure.reason, ensure_ascii=False)}"
-        for failure in summary["failures"]
-    ]
+    for failure in summary["failures"]:
+        reason = json.dumps(failure.reason, ensure_ascii=False)
+        lines.append(f"# failed: point {failure.index}, {reason}")
     heads = [_head(key, plan.units[key]) for axis in plan.axes for key in axis.values]
     heads += ["time [s]"] * plan.series
     heads += [_head(column.name, column.unit) for column in plan.numeric] + [EVENTS] * plan.texts
@@ -249,7 +231,7 @@ def _head(name: str, unit: str) -> str:
 def _rows(plan: Plan, block: Block) -> bytes:
     """Return the rows of a block; orjson prints the shortest decimals that read back the same."""
     shape = block.stop - block.start, len(plan.times or ()) if plan.series else 1
-    swept = values_at(plan.axes, block.start, block.stop).values()
+    swept = plan.values_at(block.start, block.stop).values()
     columns = [np.repeat(column, shape[1]) for column in swept]
     columns += [np.tile(plan.times or (), shape[0])] * plan.series
     for column in plan.numeric:
@@ -267,7 +249,7 @@ def _rows(plan: Plan, block: Block) -> bytes:
 
 
 def _write_netcdf(plan: Plan, blocks: Blocks, path: Path) -> None:
-    """Write what there is; points that were not computed are missing values."""
+    """Write all points; those that were not computed are missing values."""
     failures = (summary := _summary(plan, blocks))["failures"]
     data = from_memory(plan, blocks).to_xarray()
     data = data.assign_attrs(title="kvtheory sweep", **_described(plan, summary))

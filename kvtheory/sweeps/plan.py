@@ -1,56 +1,78 @@
-"""What is asked of a sweep: its columns, and with scene, axes and method the plan that decides every number.
+"""The request of a sweep: scene, axes, columns and method, and how large the result is.
 
-A column NAME is a steady quantity, or with times a series; NAME.steady is always the steady one; NAME.end,
-NAME.max, NAME.min and NAME.time_of_max belong to a transient; so do those of `WHOLE` and `CYCLE`.
+A column NAME is a steady quantity, or with times a series. NAME.steady is always the steady value. NAME.end,
+NAME.max, NAME.min and NAME.time_of_max belong to a transient, as do the columns in `WHOLE` and `CYCLE`.
 """
 
 import hashlib
 import json
 import math
+import os
+import shutil
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field
 from functools import cached_property
 from importlib.metadata import version
+from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from kvtheory.progress import duration
 from kvtheory.results import SERIES_UNITS, STEADY_UNITS, TRANSIENT_UNITS, units_for
 from kvtheory.results.sweep import Axis
-from kvtheory.scene.capabilities import lacks_paper_model
 from kvtheory.scene.files import to_toml
 from kvtheory.scene.indenters import Indenter, Parabola
 from kvtheory.scene.model import Scene
-from kvtheory.scene.quantities import SceneError, nearest, problem
+from kvtheory.scene.quantities import (
+    Quantity,
+    SceneError,
+    array_of,
+    collecting,
+    item_values,
+    items,
+    nearest,
+    problem,
+    quantities,
+)
 
+Array = NDArray[np.float64]
 Table = NDArray[np.void]
 
 FAILS = (ValueError, ArithmeticError, RuntimeError)
-"""What a scene without an answer raises; anything else is a defect of the program."""
+"""Errors of a scene without an answer; any other is a defect of the program."""
 
 MEASURES = ("end", "max", "min", "time_of_max")
 OF_ELEMENTS = ("steady", "series", "end", "max", "min", "peak_to_steady_friction")
-"""What elements can measure. The time of a maximum and short losses of contact need more resolution."""
+"""Measures that elements can give. Times of maxima and short losses of contact need more resolution."""
+AGAINST_STEADY = ("peak_to_steady_friction", "settling_time")
+"""Measures that need the steady friction force."""
 STABLE = "stable"
 """Whether steady sliding is stable on the spring in the drive: 1 or 0."""
-WHOLE = {"peak_to_steady_friction": "1", "settling_time": "s", "hops": "1", "events": ""}
-"""Single values of a whole transient, and their units; `events` is text."""
 EVENTS = "events"
+"""The only column of text (JSON)."""
+WHOLE = {"peak_to_steady_friction": "1", "settling_time": "s", "hops": "1", EVENTS: ""}
+"""Single values of a transient, and their units."""
 CYCLE = {
-    "stick_slip_settles": "1",
-    "stick_slip_amplitude": "m",
-    "stick_slip_period": "s",
-    "sliding_velocity.cycle_max": "m/s",
-    "sliding_velocity.cycle_min": "m/s",
-    "friction_force.cycle_max": "N/m",
-    "friction_force.cycle_min": "N/m",
-}
+    "stick_slip_settles": "1", "stick_slip_amplitude": "m", "stick_slip_period": "s",
+    "sliding_velocity.cycle_max": "m/s", "sliding_velocity.cycle_min": "m/s",
+    "friction_force.cycle_max": "N/m", "friction_force.cycle_min": "N/m",
+}  # fmt: skip
 """Single values of the limit cycle of an indenter on a spring, in the order of `cycles.Cycle`."""
+
+EXAMPLE = '{"drive.velocity": "1 mm/s:10 m/s:200:log"}'
+ON_ARRAYS, BY_QUADRATURE, IN_MOTION = 1e6, 1e5, 1e3
+"""Scenes per second and core, within a factor of three: measured for Table 1."""
+CELL = 21
+"""Bytes of a number in a CSV, with its comma or end of line."""
+ANNOUNCED = 10.0
+"""Seconds from which a sweep is announced."""
 
 
 class Column(NamedTuple):
-    """A quantity of the result: `measure` says what is taken of the quantity `base`."""
+    """A column of the result: a `measure` of the quantity `base`."""
 
     name: str
     unit: str
@@ -61,39 +83,79 @@ class Column(NamedTuple):
 def columns_of(
     names: Sequence[str] | str | None, *, series: bool, indenter: Indenter = Parabola(1.0)
 ) -> tuple[Column, ...]:
-    """Return the columns by name; None stands for all steady quantities, or all series.
-
-    Raises
-    ------
-    SceneError
-        Listing every name that does not exist, with the nearest that does.
-    """
-    over_time = {name: unit for name, unit in SERIES_UNITS.items() if name != "time"}
-    rows = [(name, unit, name, "steady") for name, unit in {**STEADY_UNITS, STABLE: "1"}.items()]
-    rows += [(name, unit, name, "series") for name, unit in over_time.items()] * series
-    rows += [(f"{name}.steady", unit, name, "steady") for name, unit in STEADY_UNITS.items()]
-    rows += [
-        (f"{name}.{measure}", "s" if measure == "time_of_max" else unit, name, measure)
-        for name, unit in over_time.items()
-        for measure in MEASURES
-    ]
-    rows += [(name, unit, "", name) for name, unit in (WHOLE | CYCLE).items()]
-    units = units_for(indenter, {name: unit for name, unit, *_ in rows})
-    known = {name: Column(name, units[name], *how) for name, _, *how in rows}
+    """Return columns by name, or report every wrong one; None is all steady quantities, or all series."""
+    steady = {**STEADY_UNITS, STABLE: "1"}
+    rows = [Column(name, unit, name, "steady") for name, unit in steady.items()]
+    for name, unit in SERIES_UNITS.items():
+        rows += [Column(name, unit, name, "series")] * series
+        for measure in MEASURES:
+            of = "s" if measure == "time_of_max" else unit
+            rows.append(Column(f"{name}.{measure}", of, name, measure))
+    rows += [Column(f"{name}.steady", unit, name, "steady") for name, unit in STEADY_UNITS.items()]
+    rows += [Column(name, unit, "", name) for name, unit in (WHOLE | CYCLE).items()]
+    known = {row.name: row for row in rows if row.base != "time"}
     if names is None:
         names = [name for name in (TRANSIENT_UNITS if series else STEADY_UNITS) if name != "time"]
     names = list(dict.fromkeys([names] if isinstance(names, str) else names))
     if not names:
         raise SceneError(["`quantities` is empty: expected names such as friction_coefficient"])
     if unknown := [name for name in names if name not in known]:
-        told = [problem("`quantities`", name, nearest(str(name), known)) for name in unknown]
-        raise SceneError(told)
-    return tuple(known[name] for name in names)
+        raise SceneError([problem("`quantities`", name, nearest(name, known)) for name in unknown])
+    units = units_for(indenter, {name: known[name].unit for name in names})
+    return tuple(known[name]._replace(unit=unit) for name, unit in units.items())
+
+
+def axes_of(scene: Scene, over: Mapping[Any, Any]) -> tuple[Axis, ...]:
+    """Return the axes of a sweep, or report every mistake; `kvtheory.sweep` describes `over`."""
+    if not isinstance(over, Mapping) or not over:
+        raise SceneError([f"`over` is empty: expected a key and its values, such as {EXAMPLE}"])
+    specs, problems = scene.replaceable, []
+    swept: dict[str, Array] = {}
+    axes: list[dict[str, Array]] = []
+    for given, values in over.items():
+        keys, lists = (given, values) if isinstance(given, tuple) else ((given,), (values,))
+        if not isinstance(lists, (tuple, list, np.ndarray)) or len(keys) != len(lists):
+            problems.append(problem(f"`over` {given}", values, "expected a list for each key"))
+            continue
+        arrays: dict[str, Array] = {}
+        for key, value in zip(keys, lists, strict=True):
+            with collecting(problems, f"`over` {key}", value):
+                if key in swept:
+                    raise SceneError([f"`over` {key} is swept twice"])
+                if key not in specs:
+                    raise ValueError(f"unknown key for this scene; {nearest(str(key), specs)}")
+                swept[key] = arrays[key] = _values(value, specs[key])
+        if len({array.size for array in arrays.values()}) > 1:
+            sizes = ", ".join(f"{key} {array.size}" for key, array in arrays.items())
+            problems.append(f"`over`: values that vary together must be equally many, got {sizes}")
+        axes.append(arrays)
+    if problems:
+        raise SceneError(problems)
+    waveform = scene.drive.waveform
+    own = {f"drive.{name}" for name in (quantities(waveform) if waveform else ())} & swept.keys()
+    if own and "drive.velocity" in swept.keys() - own:
+        why = f"it replaces the waveform, of which {', '.join(sorted(own))} is swept"
+        raise SceneError([f"`over` drive.velocity: {why}"])
+    joint = sum(len(arrays) > 1 for arrays in axes)
+    names = iter(["point"] if joint == 1 else [f"point_{i + 1}" for i in range(joint)])
+    return tuple(Axis(next(names if len(each) > 1 else iter(each)), each) for each in axes)
+
+
+def _values(value: Any, spec: Quantity) -> Array:
+    """Return the values of a key in SI."""
+    if isinstance(value, str) and items(value):
+        return np.concatenate([item_values(item, spec) for item in items(value)])
+    array = np.atleast_1d(array_of(value, spec))
+    if array.ndim > 1:
+        raise ValueError("expected one list; give pairs as a tuple of keys with a list for each")
+    if array.size == 0:
+        raise ValueError("is empty; expected at least one value")
+    return array
 
 
 @dataclass(frozen=True)
 class Plan:
-    """A scene, what varies, what is asked, and how it is solved."""
+    """A scene, what varies, the columns, and how it is solved."""
 
     scene: Scene
     axes: tuple[Axis, ...]
@@ -103,14 +165,9 @@ class Plan:
     rtol: float
 
     @cached_property
-    def grid(self) -> tuple[int, ...]:
-        """The lengths of the axes."""
-        return tuple(axis.size for axis in self.axes)
-
-    @property
     def points(self) -> int:
         """The number of scenes."""
-        return math.prod(self.grid)
+        return math.prod(axis.size for axis in self.axes)
 
     @property
     def numeric(self) -> list[Column]:
@@ -119,27 +176,13 @@ class Plan:
 
     @property
     def texts(self) -> bool:
-        """Whether the column of texts, `events`, is asked for."""
-        return any(column.name == EVENTS for column in self.columns)
+        """Whether the column of text is asked for."""
+        return len(self.numeric) < len(self.columns)
 
     @property
     def series(self) -> bool:
         """Whether any column is a series, with one value for each time."""
         return any(column.measure == "series" for column in self.columns)
-
-    def blank(self, points: int) -> Table:
-        """Return a table of missing values, NaN or no text: a row for each point, a field for each column."""
-        times = (len(self.times or ()),)
-        table = np.empty(
-            points,
-            [
-                (c.name, "<f8" if c.unit else object, times if c.measure == "series" else ())
-                for c in self.columns
-            ],
-        )
-        for column in self.columns:
-            table[column.name] = np.nan if column.unit else ""
-        return table
 
     @property
     def transient(self) -> bool:
@@ -147,52 +190,58 @@ class Plan:
         return any(column.measure != "steady" for column in self.columns)
 
     @property
-    def compared(self) -> set[str]:
-        """The steady quantities with which a transient is compared."""
-        against = ("peak_to_steady_friction", "settling_time")
-        return {"friction_force"} if any(c.measure in against for c in self.columns) else set()
-
-    @property
-    def steady(self) -> list[str]:
-        """The quantities of steady sliding that are needed."""
-        return sorted({c.base for c in self.columns if c.measure == "steady"} | self.compared)
-
-    @property
-    def followed(self) -> list[str]:
-        """The quantities of transients that are needed."""
-        asked = {c.base for c in self.columns if c.base and c.measure != "steady"}
-        return sorted(asked | self.compared)
-
-    @property
-    def by_elements(self) -> bool:
-        """Whether transients are simulated by elements, as the solver does not hold for the scene."""
-        return bool(lacks_paper_model(self.scene))
-
-    @property
     def vectorised(self) -> bool:
         """Whether a block is one call on arrays."""
         return not self.transient and self.method != "quadrature"
 
+    def needed(self, *, steady: bool) -> list[str]:
+        """Return the quantities that are needed of steady sliding, or of transients."""
+        bases = {c.base for c in self.columns if c.base and (c.measure == "steady") == steady}
+        against = any(c.measure in AGAINST_STEADY for c in self.columns)
+        return sorted(bases | ({"friction_force"} if against else set()))
+
+    def values_at(self, start: int, stop: int) -> dict[str, Array]:
+        """Return the swept values of the points from `start` to `stop`, in C order."""
+        places = np.unravel_index(np.arange(start, stop), [axis.size for axis in self.axes])
+        return {
+            key: array[place]
+            for axis, place in zip(self.axes, places, strict=True)
+            for key, array in axis.values.items()
+        }
+
+    def blank(self, points: int) -> Table:
+        """Return a table of missing values, NaN or no text: a row for each point, a field for each column."""
+        times = (len(self.times or ()),)
+        kinds = [
+            (c.name, "<f8" if c.unit else object, times if c.measure == "series" else ())
+            for c in self.columns
+        ]
+        table = np.empty(points, kinds)
+        for column in self.columns:
+            table[column.name] = np.nan if column.unit else ""
+        return table
+
     @property
     def units(self) -> Mapping[str, str]:
-        """The unit of each swept key and of each quantity; that of a text is empty."""
+        """The unit of each swept key and of each column; that of text is empty."""
         specs = self.scene.replaceable
         swept = {key: specs[key].unit for axis in self.axes for key in axis.values}
         return swept | {column.name: column.unit for column in self.columns}
 
     @cached_property
-    def version(self) -> str:
-        """Of the package that computes the numbers."""
-        return version("kvtheory")
-
-    @cached_property
     def record(self) -> dict[str, Any]:
         """The identity of the sweep, ready for JSON: equal records mean equal numbers."""
+
+        def digest(array: Array) -> dict[str, Any]:
+            sha256 = hashlib.sha256(array.astype("<f8").tobytes()).hexdigest()
+            ends = {"first": float(array[0]), "last": float(array[-1])}
+            return {"count": int(array.size), **ends, "sha256": sha256}
+
         return {
-            "kvtheory": self.version,
+            "kvtheory": version("kvtheory"),
             "scene": to_toml(self.scene),
             "over": [
-                {key: _digest(array) for key, array in axis.values.items()} for axis in self.axes
+                {key: digest(each) for key, each in axis.values.items()} for axis in self.axes
             ],
             "quantities": [column.name for column in self.columns],
             "at": None if self.times is None else list(self.times),
@@ -211,18 +260,57 @@ class Plan:
 
 @dataclass
 class Measured:
-    """Values and errors by name, over the scenes of a block; why scenes have none; and statements."""
+    """Values and errors by name over the scenes of a block, the reasons of failures, and statements."""
 
     values: dict[str, Any] = field(default_factory=dict)
-    errors: dict[str, NDArray[np.float64]] = field(default_factory=dict)
+    errors: dict[str, Array] = field(default_factory=dict)
     reasons: dict[int, Exception] = field(default_factory=dict)
     statements: set[str] = field(default_factory=set)
 
 
-def _digest(array: NDArray[np.float64]) -> dict[str, Any]:
-    return {
-        "count": int(array.size),
-        "first": float(array[0]),
-        "last": float(array[-1]),
-        "sha256": hashlib.sha256(array.astype("<f8").tobytes()).hexdigest(),
-    }
+def is_csv(path: Path) -> bool:
+    """Whether a file of this name is a CSV, and not NetCDF."""
+    return path.suffix.lower() == ".csv"
+
+
+def refuse_what_cannot_fit(plan: Plan, path: Path | None, jobs: int = 1) -> None:
+    """Raise `ValueError` if a sweep needs more than memory or disk hold."""
+    limits = {}
+    if path is None or not is_csv(path):
+        with suppress(AttributeError, OSError, ValueError):  # unknown on some systems
+            memory = os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
+            limits["of memory; choose fewer points, or write to a CSV file (`output`)"] = memory
+    if path is not None and path.parent.is_dir():
+        free = shutil.disk_usage(path.parent).free
+        limits[f'free beside "{path}"; choose fewer points'] = free
+    needed, _, size = _size(plan, path, jobs)
+    for where, limit in limits.items():
+        if needed > limit:
+            raise ValueError(
+                f"{plan.points:,} points need {size}; there are {_text(limit)} {where}"
+            )
+
+
+def announcement(plan: Plan, path: Path, jobs: int = 1) -> str:
+    """Return the size of a sweep into a file in words, if it takes a while."""
+    _, seconds, size = _size(plan, path, jobs)
+    return f"{plan.points:,} points: {size}" if seconds > ANNOUNCED else ""
+
+
+def _size(plan: Plan, path: Path | None, jobs: int) -> tuple[float, float, str]:
+    """Return about how many bytes and seconds a sweep needs, and both in words."""
+    slow = IN_MOTION if plan.transient else BY_QUADRATURE
+    seconds = plan.points / ((ON_ARRAYS if plan.vectorised else slow) * jobs)
+    needed = 2.0 * plan.points * plan.blank(0).itemsize
+    if path is not None and is_csv(path):
+        rows = plan.points * (len(plan.times or ()) if plan.series else 1)
+        needed = 0.5 * needed + rows * (len(plan.units) + plan.series) * CELL
+    return needed, seconds, f"about {_text(needed)} and {duration(seconds)}"
+
+
+def _text(size: float) -> str:
+    for unit in ("bytes", "kB", "MB", "GB", "TB", "PB"):
+        if size < 1000.0:
+            return f"{size:.3g} {unit}"
+        size /= 1000.0
+    return f"{size:,.3g} EB"

@@ -1,4 +1,4 @@
-"""The work file of a sweep: blocks that outlive a killed process.
+"""The work file of a sweep: blocks that survive a killed process.
 
 It is an SQLite database beside the result. A block is one row and one transaction, so that after
 `kill -9` at any moment, or with a full disk, every block that was kept is whole. A row is sealed by digests
@@ -23,22 +23,15 @@ APPLICATION = 0x6B765358
 PAGE = 16384
 """Bytes; smaller pages make large blocks slow, larger ones small blocks."""
 CHECKPOINT = 2**26
-"""Bytes of the log after which it is written back to the file: only then the disk is waited for."""
-
+"""Bytes of the log after which it is written back to the file: only then is the disk waited for."""
 NOT_OURS = "is not a work file of a sweep; it is left as it is: remove it or choose another name"
 
 
 class WorkFile:
     """Blocks in an SQLite file, which one process at a time may have open.
 
-    With `anew`, unfinished work of another sweep in it is dropped.
-
-    Raises
-    ------
-    ValueError
-        If the file belongs to another sweep, or to another program; it is left as it is.
-    OSError
-        If it is damaged, cannot be opened or written, or is in use.
+    A file of another sweep or program raises `ValueError` and is left as it is; with `anew`, unfinished work
+    of another sweep is dropped. A file that is damaged, unusable or in use raises `OSError`.
     """
 
     def __init__(self, path: Path, plan: Plan, *, anew: bool = False) -> None:
@@ -46,12 +39,11 @@ class WorkFile:
         self._record = json.dumps(plan.record)
         with _reported(path):
             self._base = sqlite3.connect(path, isolation_level=None, timeout=0.0)
-        try:
-            with _reported(path):
+            try:
                 self._open(anew)
-        except BaseException:
-            self.close(remove=not existed)
-            raise
+            except BaseException:
+                self.close(remove=not existed)
+                raise
 
     def _open(self, anew: bool) -> None:
         run = self._base.execute
@@ -64,17 +56,17 @@ class WorkFile:
         # A log written ahead costs 0.1 ms for each block. With exclusive locking it needs no shared
         # memory, which network file systems lack.
         run("PRAGMA journal_mode=WAL")
-        # A power cut may spoil what takes seconds to compute again; nothing else does.
+        # Only a power cut can spoil the file then; steady states take seconds to compute again.
         run(f"PRAGMA synchronous={'OFF' if self._plan.vectorised else 'NORMAL'}")
         run(f"PRAGMA wal_autocheckpoint={CHECKPOINT // PAGE}")
         run("BEGIN EXCLUSIVE")
         if not tables:
             run(f"PRAGMA application_id={APPLICATION}")
             run("CREATE TABLE sweep (record TEXT)")
-            run(
-                "CREATE TABLE blocks"
-                " (start INTEGER PRIMARY KEY, stop, told TEXT, digest TEXT, seal TEXT, content BLOB)"
+            columns = (
+                "start INTEGER PRIMARY KEY, stop, told TEXT, digest TEXT, seal TEXT, content BLOB"
             )
+            run(f"CREATE TABLE blocks ({columns})")
             run("INSERT INTO sweep VALUES (?)", (self._record,))
         (found,) = run("SELECT record FROM sweep").fetchone() or ("",)
         if differing := self._plan.differences(found):
@@ -91,7 +83,7 @@ class WorkFile:
         """Keep a block; it is safe when this returns."""
         table = block.table
         content = table.tobytes()
-        if self._plan.texts:
+        if table.dtype.hasobject:
             content = json.dumps(table.tolist(), default=np.ndarray.tolist).encode()
         told = json.dumps([block.failures, block.statements, block.errors])
         row = block.start, block.stop, told, _digest(content)
@@ -109,7 +101,7 @@ class WorkFile:
                 start, stop, told, digest = row
                 if seal != self._seal(*row) or (tables and digest != _digest(content)):
                     raise sqlite3.DatabaseError(f"the block from point {start} on was changed")
-                if tables and self._plan.texts:
+                if tables and table.dtype.hasobject:
                     table = np.array([tuple(each) for each in json.loads(content)], table.dtype)
                 elif tables:
                     table = np.frombuffer(content, table.dtype)
@@ -123,8 +115,8 @@ class WorkFile:
         """Release the file, whose blocks remain for the next run; or remove it."""
         self._base.close()
         if remove:
-            self.path.unlink(missing_ok=True)
-            self.path.with_name(f"{self.path.name}-wal").unlink(missing_ok=True)
+            for path in (self.path, self.path.with_name(f"{self.path.name}-wal")):
+                path.unlink(missing_ok=True)
 
 
 @contextmanager
