@@ -147,18 +147,18 @@ def test_the_general_way_agrees_with_the_closed_forms_on_kelvin_voigt(ball):
         scene = kv.Scene(indenter, kv.Foundation(1e10, 0.1), support, drive)
         closed = kv.stability(scene, quantity=[*QUICK, "rates"])
         own = closed.certificate.relative_error
-        *strips, crossings = general_stability.solve(scene.at(np.array([drive.velocity])))
-        values, _ = general_stability.critical(crossings, 1)
+        motions = general_stability.SmallMotions(scene.at(np.array([drive.velocity])).flat())
+        values, _ = motions.critical()
         for name in ("critical_stiffness", "frequency"):
             there = getattr(closed, name)
             assert np.isnan(values[name][0]) == np.isnan(there)
             if not np.isnan(there):
                 seen += 1
-                allowed = own[name] + crossings.error.max()
+                allowed = own[name] + motions.crossings.error.max()
                 assert abs(values[name][0] / there - 1.0) <= allowed < 1e-7
-        found, _ = general_stability.rates(*strips, drive.stiffness)
+        found, _ = motions.rates(np.array([drive.stiffness]))
         quartic = closed.rates @ [1.0, 1.0j]
-        assert np.sort_complex(found) == pytest.approx(np.sort_complex(quartic), rel=1e-7)
+        assert np.sort_complex(found[0]) == pytest.approx(np.sort_complex(quartic), rel=1e-7)
     assert seen >= 6
 
 
@@ -169,12 +169,13 @@ def test_a_ball_gets_as_many_strips_as_its_error_needs(monkeypatch):
     scene = rubber(arms, np.array([0.049]), 1e3, **parts).flat()
     monkeypatch.setattr(general_stability, "STRIPS", 6)
     monkeypatch.setattr(general_stability, "ACCURATE", np.inf)
-    few = general_stability.solve(scene)[-1]
+    few = general_stability.SmallMotions(scene).crossings
     monkeypatch.setattr(general_stability, "ACCURATE", 1e-8)
-    _, given, _, found = general_stability.solve(scene)
+    motions = general_stability.SmallMotions(scene)
+    found = motions.crossings
     monkeypatch.setattr(general_stability, "STRIPS", 400)
-    truth = general_stability.solve(scene)[-1]
-    assert len(given.c) > 6
+    truth = general_stability.SmallMotions(scene).crossings
+    assert len(motions.fine.c) > 6
     for each in (few, found):
         assert np.all(np.abs(each.stiffness / truth.stiffness - 1.0) <= each.error + truth.error)
     assert np.all(found.error < 1e-8)

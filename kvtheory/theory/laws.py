@@ -34,6 +34,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from kvtheory.theory import closed_forms as cf
 from kvtheory.theory.powers import power
 
 Array = NDArray[np.float64]
@@ -108,8 +109,7 @@ class Prony(NamedTuple):
         """Return the share of the work that is lost in the contact, all terms positive, and its error."""
         z = np.minimum(c / self.time, FAR)
         P, Q, _, E, _ = exponential_moments(z)
-        A, B = P + Q, 0.5 * (P - Q)
-        lost = self._sum(E - 0.5 * B * B + eta * (A * B + eta * (B + 0.5 * A * z * P)))
+        lost = self._sum(cf.arm_lost(P + Q, 0.5 * (P - Q), E, P, eta, z))
         if self.damping is not None:
             lost = lost + self.damping / c * (1.0 / 12.0 + eta * eta)
         return lost / work, np.full_like(work, RELATIVE_ERROR)
@@ -157,26 +157,31 @@ class Prony(NamedTuple):
 def exponential_moments(z: Array) -> tuple[Array, Array, Array, Array, Array]:
     """Return P, Q, D, E and the end value of g = e^(-z w), z >= 0, to a few units in the last place.
 
-    With the modified spherical Bessel functions i_n(z/2) = i_(n-1)(z/2) (z/2) t_(n-1) they are
-
-        A = e^(-z/2) i_0,   P - Q = A y,   D = A t_0/4,   E = A t_0 (z/2) (1 + t_1 (1 + z/2))/24,
-
-    y = (z/2) t_0. For z <= 4 the t_n are continued fractions of positive terms; beyond, t_0 = (coth(z/2)
-    - 2/z) 2/z and what follows from it lose no digits (derivation F17-arm).
+    They follow from A = e^(-z/2) i_0 and t_n, where i_n(z/2) = i_(n-1)(z/2) (z/2) t_(n-1) are the modified
+    spherical Bessel functions. For z <= 4 the t_n are continued fractions of positive terms; beyond, t_0 =
+    (coth(z/2) - 2/z) 2/z and what follows from it lose no digits (derivation F17-arm).
     """
     x, fall = 0.5 * z, np.expm1(-z)  # e^-z - 1
     near = x <= 2.0
     square, far = np.where(near, x * x, 0.0), np.where(near, 3.0, x)
     t = np.full_like(x, 1.0 / (2.0 * FRACTION_TERMS + 3.0))
     for n in range(FRACTION_TERMS - 1, 0, -1):
-        t = 1.0 / (2.0 * n + 3.0 + square * t)
+        np.multiply(square, t, out=t)
+        t += 2.0 * n + 3.0
+        np.reciprocal(t, out=t)
     rest = 1.0 / far + 2.0 * (1.0 + fall) / np.where(near, -1.0, fall)  # 1 - coth x + 1/x
     t_0 = np.where(near, 1.0 / (3.0 + square * t), (1.0 - rest) / far)
     t_1 = np.where(near, t, (1.0 / t_0 - 3.0) / (far * far))
-    A = np.where(z > 0.0, -fall / np.where(z > 0.0, z, 1.0), 1.0)
-    P = 0.5 * A * (1.0 + x * t_0)
-    Q = 0.5 * A * np.where(near, 1.0 - x * t_0, rest)
-    return P, Q, 0.25 * A * t_0, A * t_0 * x * (1.0 + t_1 * (1.0 + x)) / 24.0, 1.0 + fall
+    moving = z > 0.0
+    A = np.where(moving, -fall / np.where(moving, z, 1.0), 1.0)
+    Q = np.where(near, cf.arm_behind(A, t_0, x), 0.5 * A * rest)
+    return (
+        cf.arm_ahead(A, t_0, x),
+        Q,
+        cf.arm_bulge(A, t_0),
+        cf.arm_twist(A, t_0, t_1, x),
+        1.0 + fall,
+    )
 
 
 class Fractional:
@@ -203,13 +208,15 @@ class Fractional:
 
     def moments(self, c: Array) -> Moments:
         """Return the moments over a contact of length c."""
-        K, alpha, part = self.K, self.alpha, self._part(c)
-        _, first, _, third, fourth, fifth = self.rgamma
+        K, nu, part = self.K, 1.0 - self.alpha, self._part(c)
+        scale, end = part * self.rgamma[2], part * self.rgamma[1]
         return Moments(
-            *(0.5 * K + part * third, 0.5 * K + part * (1.0 - alpha) * third),
-            *(K / 12.0 + part * 0.5 * (1.0 - alpha) * fourth,),
-            *(part * 0.25 * alpha * (3.0 - alpha) * fifth,),
-            *(K + part * first, -alpha * part * first),
+            0.5 * K + scale * cf.springpot_ahead(nu),
+            0.5 * K + scale * cf.springpot_behind(nu),
+            K / 12.0 + scale * cf.springpot_bulge(nu),
+            scale * cf.springpot_twist(nu),
+            K + end,
+            -self.alpha * end,
         )
 
     def dissipated(self, c: Array, eta: Array, work: Array) -> tuple[Array, Array]:
