@@ -35,14 +35,18 @@ STATEMENT = (
 )
 
 
-def foundation(scene: Scene, rate: float = 0.0) -> Foundation:
-    """Return the Kelvin-Voigt foundation whose damper stands for the arms at this rate (1/s)."""
-    damping = sum(
+def damping(scene: Scene, rate: float = 0.0) -> float:
+    """Return that of the damper that stands for the arms in a motion at this rate (1/s)."""
+    return sum(
         arm.stiffness * arm.relaxation_time / (1.0 + rate * arm.relaxation_time)
         for arm in scene.foundation.arms
     )
+
+
+def foundation(scene: Scene, rate: float = 0.0) -> Foundation:
+    """Return the Kelvin-Voigt foundation with this damping."""
     K = scene.foundation.stiffness
-    return Foundation(K, damping / K)
+    return Foundation(K, damping(scene, rate) / K)
 
 
 def fastest_rate(steady: Callable[..., SteadyState], scene: Scene, times: Any) -> float:
@@ -60,8 +64,7 @@ def fastest_rate(steady: Callable[..., SteadyState], scene: Scene, times: Any) -
     swing = 0.0 if scene.drive.rigid else math.sqrt(scene.drive.stiffness / scene.drive_mass)
     passing = fastest / float(sliding.half_length)
     rate = passing + swing + (1.0 / shortest if shortest > 0.0 else np.inf)
-    slow, fast = (foundation(scene, each).retardation_time for each in (0.0, rate))
-    if fast < LEAST_DAMPING * slow:
+    if damping(scene, rate) < LEAST_DAMPING * damping(scene):
         raise ValueError("the motion changes as fast as arms relax")
     return rate
 

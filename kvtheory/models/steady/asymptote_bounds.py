@@ -21,29 +21,66 @@ both D and T fall with l.
 """
 
 import math
-from collections.abc import Callable
-from functools import cache, partial
+from collections.abc import Callable, Mapping
+from functools import cache
 from itertools import compress
 from typing import NamedTuple
 
-import numpy as np
-
 from kvtheory.models.steady import asymptotes
 from kvtheory.models.steady.ball import NEAR, SQUARES, WEIGHTS
-from kvtheory.models.steady.enclosure import Bound, Enclosure, Known
 from kvtheory.scene.model import Scene
 from kvtheory.scene.static_state import StaticState
 from kvtheory.theory import closed_forms as cf
 
 ROUNDING = 16 * 2.0**-52
 """Rounding of the formulas themselves: 32 operations, half a unit in the last place each."""
-
 UNIT = 4 * 2.0**-52
 """Rounding of s^2 where it is subtracted from 1."""
-
 LOW_UP_TO, HIGH_FROM = 2.0, 0.5
 """Drive numbers, the first in units of 1 + kappa, beyond which the asymptotes of one regime have errors of
 the order of one and are not tried."""
+DAMPER = {"parabola": 0.75, "sphere": 8.0 / (3.0 * math.pi)}
+"""f/(lambda s^2) of a parabola for high velocity, f/(lambda s^3) of a ball."""
+STEEPEST = {"parabola": 3, "sphere": 4}
+"""The largest d ln f/d ln s."""
+NODES = tuple(zip(SQUARES.tolist(), WEIGHTS.tolist(), strict=True))
+
+
+class Enclosure(NamedTuple):
+    """lambda, kappa, and bounds of s = a/a_0; kappa is infinite and s = 1 for a fixed indenter.
+
+    From these follow bounds of l = l_r/a and of q = x_TE/a.
+    """
+
+    number: float
+    support_number: float
+    low: float
+    high: float
+    shape: str = "parabola"
+
+    @property
+    def least(self) -> float:
+        """The least l."""
+        return self.number / self.high
+
+    @property
+    def largest(self) -> float:
+        """The largest l."""
+        return self.number / self.low
+
+    @property
+    def q_least(self) -> float:
+        """The least q."""
+        return 1.0 / (self.largest + math.hypot(1.0, self.largest))  # Eq. 27
+
+    @property
+    def q_largest(self) -> float:
+        """The largest q."""
+        return 1.0 / (self.least + math.hypot(1.0, self.least))
+
+
+Bound = Callable[[Enclosure], float]
+"""Of the relative error of an asymptote, for all l of an enclosure."""
 
 
 class Choice(NamedTuple):
@@ -53,40 +90,39 @@ class Choice(NamedTuple):
     error: float
 
 
-DAMPER = {"parabola": 0.75, "sphere": 8.0 / (3.0 * math.pi)}
-"""f/(lambda s^2) of a parabola for high velocity, f/(lambda s^3) of a ball."""
-NODES = tuple(zip(SQUARES.tolist(), WEIGHTS.tolist(), strict=True))
+def enclosure_of(scene: Scene) -> Enclosure:
+    """Return the bounds of s for a scene with a parabola or a ball; a fixed indenter has s = 1."""
+    at_rest, shape = StaticState.of(scene), scene.indenter.shape
+    number = abs(at_rest.drive_number)
+    if at_rest.fixed:
+        return Enclosure(number, math.inf, 1.0, 1.0, shape)
+    return enclose(shape, number, at_rest.support_number)
 
-Balance = Callable[[float, float], tuple[float, float]]
-"""Of s and lambda: f and df/d ln s."""
 
+def enclose(shape: str, number: float, kappa: float) -> Enclosure:
+    """Return bounds of a/a_0 for an indenter that can move, from its drive number and support number.
 
-def enclose(
-    shape: str, balance: Balance, steepest: int, number: float, support_number: float
-) -> Enclosure:
-    """Return bounds of a/a_0 for an indenter that can move, with d ln f/d ln s up to `steepest`.
-
-    >>> found = KNOWN["sphere"].enclose(4.0, 0.0)
+    >>> found = enclose("sphere", 4.0, 0.0)
     >>> print(f"{found.low:.6f} to {found.high:.6f}")
     0.644511 to 0.644514
     """
-    kappa, yielding = support_number, 1.0 + support_number
+    steepest, yielding = STEEPEST[shape], 1.0 + kappa
     s = (yielding / (kappa + math.hypot(1.0, DAMPER[shape] * number))) ** (1.0 / (steepest - 1.0))
-    load, slope = balance(s, number)
     held = kappa * s * s
-    s *= math.exp(-math.log((load + held) / yielding) * ((load + held) / (slope + 2.0 * held)))
-    off = math.log((balance(s, number)[0] + kappa * s * s) / yielding)
+    if shape == "parabola":
+        total, slope = cf.scaled_load(s, number) + held, s * cf.scaled_load_slope(s, number)
+    else:
+        total = cf.ball_scaled_load(s, number, tail(number / s)) + held
+        slope = cf.ball_scaled_load_slope(s, number, math.atan2(s, number))
+    s *= math.exp(-math.log(total / yielding) * (total / (slope + 2.0 * held)))
+    load = (
+        cf.scaled_load(s, number)
+        if shape == "parabola"
+        else cf.ball_scaled_load(s, number, tail(number / s))
+    )
+    off = math.log((load + kappa * s * s) / yielding)
     low, high = sorted((s * math.exp(-off / 2.0), s * math.exp(-off / steepest)))
     return Enclosure(number, kappa, low, min(high, 1.0), shape)
-
-
-def _of_parabola(s: float, number: float) -> tuple[float, float]:
-    return cf.scaled_load(s, number), s * cf.scaled_load_slope(s, number)
-
-
-def _of_ball(s: float, number: float) -> tuple[float, float]:
-    load = cf.ball_scaled_load(s, number, tail(number / s))
-    return load, cf.ball_scaled_load_slope(s, number, math.atan2(s, number))
 
 
 def tail(l: float) -> float:
@@ -101,66 +137,6 @@ def tail(l: float) -> float:
     return sum(weight / (1.0 + square * node) for node, weight in NODES) / l
 
 
-def _dissipated(b: Enclosure) -> float:
-    """1/(fraction) - 1 = (3/4) t/(1 - t), t = q (1 - q), which is largest at q = 1/2 (theorem F6)."""
-    nearest = min(max(0.5, b.q_least), b.q_largest)
-    t = nearest * (1.0 - nearest)
-    return 0.75 * t / (1.0 - t)
-
-
-def _dissipated_by_ball(b: Enclosure) -> float:
-    behind = 8.0 * b.largest * cf.ball_loss(b.least, tail(b.least))
-    return behind / (math.pi + tail(b.largest) - behind)
-
-
-def _high_depth(b: Enclosure) -> float:
-    g = cf.scaled_load(b.high, b.number) / (b.high * b.high)
-    return (g + b.support_number) / (DAMPER["parabola"] * b.number) - 1.0
-
-
-def _high_depth_of_ball(b: Enclosure) -> float:
-    spring = 0.5 * b.high * (1.0 + tail(b.least) / math.pi) + b.support_number / b.low
-    return math.cbrt(1.0 + spring / (DAMPER["sphere"] * b.number)) ** 2 - 1.0
-
-
-KNOWN = {
-    "parabola": Known(
-        asymptotes=asymptotes,
-        enclose=partial(enclose, "parabola", _of_parabola, 3),
-        low_coefficient=lambda b: cf.error_l1(b.largest, b.q_least),
-        high_coefficient=lambda b: cf.error_l2_fixed(b.q_largest, b.least),
-        high_depth=_high_depth,
-        low_load=lambda b: abs(cf.error_load_low(b.largest, b.q_least)),
-        low_friction=lambda b: abs(cf.error_friction_force_low(b.largest, b.q_least)),
-        high_load=lambda b: abs(cf.error_load_high(b.q_least)),
-        high_friction=lambda b: abs(cf.error_friction_force_high(b.q_least)),
-        dissipated=_dissipated,
-    ),
-    "sphere": Known(
-        asymptotes=asymptotes,
-        enclose=partial(enclose, "sphere", _of_ball, 4),
-        low_coefficient=lambda b: cf.ball_error_l1(b.largest, tail(b.largest)),
-        high_coefficient=lambda b: cf.ball_error_l2(b.least, tail(b.least)),
-        high_depth=_high_depth_of_ball,
-        low_load=lambda b: abs(cf.ball_error_load_low(b.largest, tail(b.largest))),
-        low_friction=lambda b: cf.ball_error_friction_low(b.largest, tail(b.largest)),
-        high_load=lambda b: abs(cf.ball_error_load_high(b.least, tail(b.least))),
-        high_friction=lambda b: abs(cf.ball_error_friction_high(b.least, tail(b.least))),
-        dissipated=_dissipated_by_ball,
-    ),
-}
-"""By the name of the shape."""
-
-
-def enclosure_of(scene: Scene) -> Enclosure:
-    """Return the bounds of s for a scene with a parabola or a ball; a fixed indenter has s = 1."""
-    at_rest, shape = StaticState.of(scene), scene.indenter.shape
-    number = abs(at_rest.drive_number)
-    if at_rest.fixed:
-        return Enclosure(number, math.inf, 1.0, 1.0, shape)
-    return KNOWN[shape].enclose(number, at_rest.support_number)
-
-
 def choose(bounds: Enclosure, quantities: tuple[str, ...], enough: float = math.inf) -> Choice:
     """Return the better regime for all `quantities`, with a proved bound of their relative error.
 
@@ -168,7 +144,7 @@ def choose(bounds: Enclosure, quantities: tuple[str, ...], enough: float = math.
 
     Examples
     --------
-    >>> found = choose(KNOWN["parabola"].enclose(1e-3, 0.0), ("friction_coefficient",))
+    >>> found = choose(enclose("parabola", 1e-3, 0.0), ("friction_coefficient",))
     >>> found.regime, round(found.error, 7)
     ('low', 0.0007506)
     """
@@ -198,19 +174,63 @@ def _distinct(
 
 def values(scene: Scene, regime: str, quantities: tuple[str, ...]) -> dict[str, float]:
     """Return the asymptotes of the quantities, in SI."""
-    limit = asymptotes.limits(scene)[regime == "high"]
-    with np.errstate(divide="ignore", invalid="ignore"):
-        found = asymptotes.quantities(scene, limit)
+    found = asymptotes.quantities(scene, asymptotes.limits(scene)[regime == "high"])
     return {name: float(found[name]) for name in quantities}
+
+
+def _high_depth(b: Enclosure) -> float:
+    g = cf.scaled_load(b.high, b.number) / (b.high * b.high)
+    return (g + b.support_number) / (DAMPER["parabola"] * b.number) - 1.0
+
+
+def _high_depth_of_ball(b: Enclosure) -> float:
+    spring = 0.5 * b.high * (1.0 + tail(b.least) / math.pi) + b.support_number / b.low
+    return math.cbrt(1.0 + spring / (DAMPER["sphere"] * b.number)) ** 2 - 1.0
+
+
+def _dissipated(b: Enclosure) -> float:
+    """1/(fraction) - 1 = (3/4) t/(1 - t), t = q (1 - q), which is largest at q = 1/2 (theorem F6)."""
+    nearest = min(max(0.5, b.q_least), b.q_largest)
+    t = nearest * (1.0 - nearest)
+    return 0.75 * t / (1.0 - t)
+
+
+def _dissipated_by_ball(b: Enclosure) -> float:
+    behind = 8.0 * b.largest * cf.ball_loss(b.least, tail(b.least))
+    return behind / (math.pi + tail(b.largest) - behind)
+
+
+OF_SHAPE: Mapping[str, Mapping[str, Bound]] = {
+    "parabola": {
+        "low coefficient": lambda b: cf.error_l1(b.largest, b.q_least),
+        "high coefficient": lambda b: cf.error_l2_fixed(b.q_largest, b.least),
+        "high depth": _high_depth,
+        "low load": lambda b: abs(cf.error_load_low(b.largest, b.q_least)),
+        "low friction": lambda b: abs(cf.error_friction_force_low(b.largest, b.q_least)),
+        "high load": lambda b: abs(cf.error_load_high(b.q_least)),
+        "high friction": lambda b: abs(cf.error_friction_force_high(b.q_least)),
+        "dissipated": _dissipated,
+    },
+    "sphere": {
+        "low coefficient": lambda b: cf.ball_error_l1(b.largest, tail(b.largest)),
+        "high coefficient": lambda b: cf.ball_error_l2(b.least, tail(b.least)),
+        "high depth": _high_depth_of_ball,
+        "low load": lambda b: abs(cf.ball_error_load_low(b.largest, tail(b.largest))),
+        "low friction": lambda b: cf.ball_error_friction_low(b.largest, tail(b.largest)),
+        "high load": lambda b: abs(cf.ball_error_load_high(b.least, tail(b.least))),
+        "high friction": lambda b: abs(cf.ball_error_friction_high(b.least, tail(b.least))),
+        "dissipated": _dissipated_by_ball,
+    },
+}
+"""Bounds that depend on the shape: of the forces and of the friction coefficient at a given depth, of the
+depth for high velocity of an indenter that can move."""
 
 
 def _low_peak(b: Enclosure) -> float:
     """1/(s^2 + lambda^2) while the peak is inside the contact, 1/(2 lambda s) from then on (F7)."""
-    return max(abs(1.0 / _peak(b.low, b.number) - 1.0), abs(1.0 / _peak(b.high, b.number) - 1.0))
-
-
-def _peak(s: float, number: float) -> float:
-    return s * s + number * number if number < s else 2.0 * number * s
+    n = b.number
+    peaks = (s * s + n * n if n < s else 2.0 * n * s for s in (b.low, b.high))
+    return max(abs(1.0 / peak - 1.0) for peak in peaks)
 
 
 def _low_length(b: Enclosure) -> float:
@@ -227,14 +247,14 @@ def _high_load(b: Enclosure) -> float:
     return held / (1.0 + b.support_number - held)
 
 
-def _table(known: Known, fixed: bool) -> dict[str, dict[str, tuple[Bound, ...]]]:
-    """Return the bounds by regime and quantity."""
+def _table(of: Mapping[str, Bound], fixed: bool) -> dict[str, dict[str, tuple[Bound, ...]]]:
+    """Return the bounds by regime and quantity, for one shape of the indenter."""
 
     def high_length(b: Enclosure) -> float:
-        return math.sqrt(1.0 + known.high_depth(b)) - 1.0
+        return math.sqrt(1.0 + of["high depth"](b)) - 1.0
 
     def high_coefficient(b: Enclosure) -> float:
-        at_depth = known.high_coefficient(b)
+        at_depth = of["high coefficient"](b)
         return at_depth + high_length(b) * (1.0 + at_depth)
 
     def high_friction(b: Enclosure) -> float:
@@ -248,13 +268,13 @@ def _table(known: Known, fixed: bool) -> dict[str, dict[str, tuple[Bound, ...]]]
         "trailing_edge": (lambda b: 1.0 / (b.low * b.q_least) - 1.0,),
         "load": (_low_load,),
         # Of the product: the errors of load and coefficient have opposite signs.
-        "friction_force": (_low_load, known.low_coefficient),
-        "friction_coefficient": (known.low_coefficient,),
+        "friction_force": (_low_load, of["low coefficient"]),
+        "friction_coefficient": (of["low coefficient"],),
         "peak_pressure": (_low_peak,),
-        "dissipated_in_contact": (known.dissipated,),
+        "dissipated_in_contact": (of["dissipated"],),
     }
     high: dict[str, tuple[Bound, ...]] = {
-        "depth": (known.high_depth,),
+        "depth": (of["high depth"],),
         "half_length": (high_length,),
         "retardation_length": (),
         "leading_edge": (high_length,),
@@ -264,26 +284,22 @@ def _table(known: Known, fixed: bool) -> dict[str, dict[str, tuple[Bound, ...]]]
         "friction_coefficient": (high_coefficient,),
         # Exact in the depth once the peak is at the leading edge, l >= 1 (F7).
         "peak_pressure": (lambda b: high_length(b) if b.least >= 1.0 else math.inf,),
-        "dissipated_in_contact": (known.dissipated,),
+        "dissipated_in_contact": (of["dissipated"],),
     }
     if fixed:  # the errors of the forces are known exactly, and the depth has none
-        exact = dict.fromkeys(("depth", "half_length", "leading_edge"), ())
-        low |= {"load": (known.low_load,), "friction_force": (known.low_friction,)}
-        high |= exact | {
-            "load": (known.high_load,),
-            "friction_force": (known.high_friction,),
-            "friction_coefficient": (known.high_coefficient,),
+        low |= {"load": (of["low load"],), "friction_force": (of["low friction"],)}
+        high |= {
+            **dict.fromkeys(("depth", "half_length", "leading_edge"), ()),
+            "load": (of["high load"],),
+            "friction_force": (of["high friction"],),
+            "friction_coefficient": (of["high coefficient"],),
             "peak_pressure": (lambda b: 0.0 if b.least >= 1.0 else math.inf,),
         }
     return {"low": low, "high": high}
 
 
 ERRORS = {
-    (shape, fixed): _table(known, fixed)
-    for shape, known in KNOWN.items()
-    for fixed in (True, False)
+    (shape, fixed): _table(of, fixed) for shape, of in OF_SHAPE.items() for fixed in (True, False)
 }
-"""Bounds of |asymptote/truth - 1| by regime and quantity, of which the largest counts.
-
-The key is the shape, and whether the indenter is fixed.
-"""
+"""Bounds of |asymptote/truth - 1| by shape and whether it is fixed, then by regime and quantity; the largest
+of several counts."""

@@ -46,8 +46,8 @@ NEARBY = 1e-5
 ROUNDING, IN_STRIPS = 16 * 2.0**-52, ball_viscoelastic.RELATIVE_ERROR
 """Relative error of the response of a parabola, and of a ball in any number of strips."""
 FEW, STRIPS, MORE, MOST = 6, 24, 4, 384
-"""Strips of half a ball: those in which rates and unstable velocities are sought, those into which they are
-followed, the factor by which these grow until the error is small, and the most. Twice as many show it."""
+"""Strips of half a ball: those in which rates and unstable velocities are sought, those for crossings, the
+factor by which these grow until the error is small, and the most. Twice as many show it."""
 ACCURATE = 1e-8
 """Relative error of a critical stiffness that needs no more strips."""
 POLISHING, MOVED = 4, 0.1
@@ -82,7 +82,8 @@ class Contact(NamedTuple):
     def rows(self, index: Any) -> "Contact":
         """Return some of the scenes."""
         parts: list[Any] = [each[..., index] for each in self[:-2]]
-        return Contact(*parts, self.law.at(index), self.held)
+        parts += [self.law.at(index), self.held]
+        return Contact(*parts)
 
     def stiffness(self, s: Complex) -> tuple[Complex, Complex, Array]:
         """Return the k_x for which s is a rate, what resists vertical motion, and the size of its terms."""
@@ -250,7 +251,7 @@ class Crossings(NamedTuple):
 class SmallMotions:
     """What small motions of flat scenes see in few strips, in enough and in twice as many; all crossings.
 
-    They are found in few strips and followed into more; where one is lost on the way, all are sought again.
+    Crossings are followed into more strips until these are enough; where one is lost, all are sought again.
     """
 
     def __init__(self, scene: Scene) -> None:
@@ -260,7 +261,7 @@ class SmallMotions:
             self.crossings = Crossings.at(self.few, self.few, Places.sought(self.few))
             return
         self.few, self.fine, strips = contact(scene, FEW), contact(scene, STRIPS), STRIPS
-        known = Places.sought(self.few)
+        known = Places.sought(self.fine)
         while True:
             self.finer = contact(scene, 2 * strips)
             self.crossings = Crossings.at(self.fine, self.finer, known)
@@ -302,8 +303,8 @@ class SmallMotions:
         """
         pairs = []
         for i in range(self.size):
-            strips = [each.rows([i]) for each in (self.few, self.fine, self.finer)]
-            pairs.append(_rates(*strips, None if spring is None else float(spring[i])))
+            few, fine, finer = (each.rows([i]) for each in (self.few, self.fine, self.finer))
+            pairs.append(_rates(few, fine, finer, None if spring is None else float(spring[i])))
         s, errors = zip(*pairs, strict=True)
         return np.array(s), np.array(errors)
 

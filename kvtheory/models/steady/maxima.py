@@ -55,32 +55,35 @@ def told(scene: Scene, method: str) -> dict[str, Any]:
     """Return what an `AsymptoteReport` says of the maxima, by a method of steady sliding."""
     base = scene.at(1.0)  # the maxima do not depend on the velocity of the drive
     closed = scene.indenter.shape in CLOSED and not lacks_kelvin_voigt(scene)
-    certificate = CLOSED_STATEMENT
+    statement = CLOSED_STATEMENT
     if closed and (scene.held or scene.indenter.shape == "wedge"):
         found = np.empty((*base.shape, 0, 4))
     elif closed and np.all(scene.support.spring == 0.0):
-        V, mu = _peak_of_weight(base)
         errors = np.full(base.shape, CLOSED_ERROR)
-        found = np.stack(np.broadcast_arrays(V, mu, errors, errors), axis=-1)[..., None, :]
+        parts = np.broadcast_arrays(*_peak_of_weight(base), errors, errors)
+        found = np.stack(parts, axis=-1)[..., None, :]
     else:
-        scan = _scan(scene, method)
-        found, certificate = _sought(base, method, *scan), STATEMENT.format(*scan)
+        scan = FINE
+        if method != "exact" and (lacks_kelvin_voigt(scene) or not scene.indenter.convex):
+            scan = INTEGRATED if scene.indenter.per_width else IN_STRIPS
+        found, statement = _sought(base, method, *scan), STATEMENT.format(*scan)
     found = np.broadcast_to(found, (*scene.shape, *found.shape[-2:]))
-    pairs, wrong = (
-        tuple((plain(top[..., 0]), plain(top[..., 1])) for top in np.moveaxis(rows, -2, 0))
-        for rows in (found[..., :2], found[..., 2:])
-    )
+    certificate = Certificate("estimated", statement, _named(found, slice(2, 4)))
+    return {**_named(found, slice(2)), "maxima_certificate": certificate}
+
+
+def _named(found: Array, columns: slice) -> dict[str, Any]:
+    """Return columns of the maxima by name, those of the highest ahead; NaN if there is none."""
+    padded = np.concatenate([found, np.full((*found.shape[:-2], 1, 4), np.nan)], axis=-2)
+    heights = np.nan_to_num(padded[..., 1], nan=-1.0)
+    heights[..., -1] = 0.0
+    best = heights.argmax(axis=-1)[..., None, None]
+    peak = np.take_along_axis(padded, best, axis=-2)[..., 0, columns]
+    every = np.moveaxis(found[..., columns], -2, 0)
     return {
-        **dict(zip(PEAK, highest(found[..., :2], found[..., 1]), strict=True)),
-        "maxima": pairs,
-        "maxima_certificate": Certificate(
-            "estimated",
-            certificate,
-            {
-                **dict(zip(PEAK, highest(found[..., 2:], found[..., 1]), strict=True)),
-                "maxima": wrong,
-            },
-        ),
+        "peak_velocity": plain(peak[..., 0]),
+        "peak_friction_coefficient": plain(peak[..., 1]),
+        "maxima": tuple((plain(each[..., 0]), plain(each[..., 1])) for each in every),
     }
 
 
@@ -115,24 +118,6 @@ def _peak_of_weight(scene: Scene) -> tuple[Array, Array]:
     depth, a = asymptotes.at_rest(scene)
     s = load ** (-1.0 / (n + (1.0 if line else 2.0)))
     return l * s * a / scene.foundation.retardation_time, depth / a * s ** (n - 1.0) * mu
-
-
-PEAK = "peak_velocity", "peak_friction_coefficient"
-
-
-def highest(rows: Array, friction: Array) -> list[Any]:
-    """Return the pair of the highest maximum, NaN if there is none."""
-    padded = np.concatenate([rows, np.full((*rows.shape[:-2], 1, 2), np.nan)], axis=-2)
-    heights = np.concatenate([friction, np.zeros((*friction.shape[:-1], 1))], axis=-1)
-    best = np.nan_to_num(heights, nan=-1.0).argmax(axis=-1)[..., None, None]
-    pair = np.take_along_axis(padded, best, axis=-2)[..., 0, :]
-    return [plain(pair[..., 0]), plain(pair[..., 1])]
-
-
-def _scan(scene: Scene, method: str) -> tuple[float, int, float]:
-    if method == "exact" or (scene.indenter.convex and not lacks_kelvin_voigt(scene)):
-        return FINE
-    return INTEGRATED if scene.indenter.per_width else IN_STRIPS
 
 
 def _sought(base: Scene, method: str, decades: float, per_decade: int, tolerance: float) -> Array:

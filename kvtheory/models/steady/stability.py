@@ -149,6 +149,7 @@ class SmallMotions:
         Without a spring, in N/m^2, the drive is rigid.
         """
         T_z, T_x, S_z, e = self.T_z, self.T_x, self.S_z, self.e
+        terms: tuple[Array, ...]
         sizes: tuple[Array, ...] = ()
         if spring is None:
             terms = S_z, np.ones_like(T_z), T_z
