@@ -35,7 +35,7 @@ l = l_r/a >= 0 (retardation length over half length) and q = x_TE/a in (0, 1] (t
 length); for a power law h = |x|^n/(n L^(n-1)) with Q = q^(n-1), and for the wedge, which is n = 1, with
 q = max(0, 1 - l) and Q = 1/(q + l); for a ball with theta_b = arctan(1/l) and its tail T_b; for a Maxwell
 arm with z_v = 2 x_v = c/(V tau_i), c the length of the contact, and A_v, t_v0, t_v1 as in `theory.laws`.
-Floats and arrays alike; an asymptote for high velocity has no error at l = 0.
+Floats and arrays alike.
 """
 
 from typing import TypeVar
@@ -85,12 +85,6 @@ FORMS: tuple[Form, ...] = (
     Form("scaled_load", "scaled-load", sym.f, (s, lam), "f = W/W_0 at s = a/a_0, lam = V tau/a_0"),
     Form("scaled_load_slope", "scaled-load", sym.f_s, (s, lam), "df/ds at fixed lam"),
     Form("scaled_load_curvature", "scaled-load", sym.f_ss, (s, lam), "d2f/ds2 at fixed lam"),
-    Form("error_l1", "error-L1", sym.e_l1, (l, q), "L1/mu - 1 (Eq. 42)"),
-    Form("error_l2_fixed", "error-L2-fixed", sym.e_l2_fixed, (q, l), "L2/mu - 1, fixed depth (Eq. 45)"),
-    Form("error_load_low", "error-load-low", sym.e_load_low, (l, q), "(Eq. 40)/W - 1"),
-    Form("error_load_high", "error-load-high", sym.e_load_high, (q,), "(Eq. 43)/W - 1"),
-    Form("error_friction_force_low", "error-friction-low", sym.e_friction_low, (l, q), "(Eq. 41)/F - 1"),
-    Form("error_friction_force_high", "error-friction-high", sym.e_friction_high, (q,), "(Eq. 44)/F - 1"),
     Form("circle_load", "circle-fixed", sym.c_w, (q,), "c in circle/parabola = 1 + c (a/R)^2, for W"),
     Form("circle_friction_force", "circle-fixed", sym.c_f, (q,),
          "c in circle/parabola = 1 + c (a/R)^2, for F"),
@@ -155,16 +149,6 @@ FORMS += (
          "d2f/d(ln s)2 at fixed lam"),
     Form("ball_friction_rise", "F20-peak", sym.ball_slip, BALL,
          "what has the sign of dmu/dV under a dead weight"),
-    Form("ball_error_l1", "F20-error-L1", sym.ball_l1, BALL, "L1/mu - 1"),
-    Form("ball_error_l2", "F20-error-L2", sym.ball_l2, BALL, "L2/mu - 1, fixed depth"),
-    Form("ball_error_load_low", "F20-error-load-low", sym.ball_load_low, BALL,
-         "load for l -> 0 over W, - 1"),
-    Form("ball_error_load_high", "F20-error-load-high", sym.ball_load_high, BALL,
-         "load for l -> oo over W, - 1"),
-    Form("ball_error_friction_low", "F20-error-friction-low", sym.ball_friction_low, BALL,
-         "friction force for l -> 0 over F, - 1"),
-    Form("ball_error_friction_high", "F20-error-friction-high", sym.ball_friction_high, BALL,
-         "friction force for l -> oo over F, - 1"),
 )  # fmt: skip
 
 _mean, _first, _rest = sym.moment_mean, sym.ratio_first, sym.spring_share

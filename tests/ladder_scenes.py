@@ -16,7 +16,7 @@ from scipy.integrate import quad
 from scipy.optimize import brentq
 
 import kvtheory as kv
-from kvtheory.ladder.series import SOLVED
+from kvtheory.ladder.series import ODD, SOLVED
 from kvtheory.models.slow_manifold import motion as slow_motion
 from kvtheory.models.slow_manifold import start as slow_start
 from kvtheory.models.steady import asymptote_bounds as asymptote
@@ -216,26 +216,23 @@ def series_truth(case, model, truer=TRUER):
                     return _in_si(
                         case, transient_closed_form.two_states(scaled, tolerance)
                     ), "two states"
-            return _in_si(case, remembered(scaled, tolerance)), "whole past"
+            # with an explicit method: not where the inertia is next to nothing
+            if scaled.epsilon is None or scaled.epsilon >= LEAST_INERTIA:
+                past = transient_history.history(scaled, tolerance, LONGEST_STEP)
+                return _in_si(case, past), "whole past"
         except ArithmeticError:
             pass
     found = kv.transient(case.scene, at=case.request["at"], rtol=max(0.1 * tolerance, 1e-12))
     return {name: getattr(found, name) for name in SOLVED}, "continuum"
 
 
-def remembered(scaled, tolerance):
-    """Solve from the whole past, with an explicit method: not where the inertia is next to nothing."""
-    if scaled.epsilon is not None and scaled.epsilon < LEAST_INERTIA:
-        raise ArithmeticError("too stiff for the solution from the whole past")
-    return transient_history.history(scaled, tolerance, LONGEST_STEP)
-
-
 def _in_si(case, found):
     """Put the scaled solution for a positive first velocity into the units and signs of the scene."""
     side = math.copysign(1.0, case.scene.drive.points[0][1])
     left, right = found["left"], found["right"]
-    numbers = _numbers(case)
-    leads = _leads(case, numbers)
+    drive = case.scaled.drive
+    numbers = np.array([[n for s, n in drive if s <= time][-1] for time in case.scaled.times])
+    leads = numbers >= 0.0  # whether the left edge leads; at rest, as it did before
     d, v = found["d"], found["v"]
     top = np.clip(-numbers, left, right)
     p = np.nan_to_num(d + v - top * (top + 2 * numbers))
@@ -247,17 +244,6 @@ def _in_si(case, found):
         "peak_pressure": np.maximum(p, 0.0),
     }  # fmt: skip
     return {name: value * measures[name] for name, value in scaled.items()}
-
-
-def _numbers(case):
-    """Return lambda at the times, in the mirror image that moves forward first."""
-    drive = case.scaled.drive
-    return np.array([[n for s, n in drive if s <= time][-1] for time in case.scaled.times])
-
-
-def _leads(case, numbers):
-    """Whether the left edge leads; at rest, as it did before."""
-    return numbers >= 0.0
 
 
 def cheaper_would_do(case, model):
@@ -272,18 +258,14 @@ def cheaper_would_do(case, model):
     moving = case.kind == "start" and case.scaled.epsilon is not None
     if not (moving and model == "continuum"):
         return False
-    scaled = case.scaled
     try:
-        given = slow_start.start(scaled.drive[0][1], scaled.epsilon, scaled.kappa)
-        found = slow_motion.follow(given, np.array(scaled.times), case.request["rtol"]).values
+        given = slow_start.start(case.scaled.drive[0][1], case.scaled.epsilon, case.scaled.kappa)
+        times = np.array(case.scaled.times)
+        found = slow_motion.follow(given, times, case.request["rtol"]).values
     except ArithmeticError:
         return False
-    side, measures = (
-        math.copysign(1.0, case.scene.drive.velocity),
-        scales(StaticState.of(case.scene)),
-    )
-    odd = ("friction_force", "leading_edge", "trailing_edge")
+    side, measures = np.sign(case.scene.drive.velocity), scales(StaticState.of(case.scene))
     values = {
-        name: (side if name in odd else 1.0) * measures[name] * found[name] for name in case.names
+        name: (side if name in ODD else 1.0) * measures[name] * found[name] for name in case.names
     }
     return true_error(case, values, "slow manifold")[0] <= case.request["rtol"]

@@ -89,7 +89,7 @@ def test_slow_sliding_is_stable_for_every_stiffness():
 def test_a_fast_stiff_arm_is_a_damper(ball):
     """To first order in its relaxation time: ten times as fast, a tenth of the difference."""
     parts = {"indenter": kv.Sphere(0.01), "support": kv.DeadWeight(mass=1.0)} if ball else {}
-    velocity = np.array([0.039, 0.091, 0.214])
+    velocity = np.array([0.039, 0.214])
     scenes = [rubber([(1e9 / t, t)], velocity, **parts) for t in (1e-6, 1e-7)]
     damper = kv.Scene(drive=kv.Drive(velocity=velocity), **parts)
     truth, *found = (
@@ -100,8 +100,10 @@ def test_a_fast_stiff_arm_is_a_damper(ball):
     assert off[1] == pytest.approx(0.1 * off[0], rel=0.1)
 
 
-@pytest.mark.parametrize("support", ["dead-weight", "suspended", "fixed"])
-@pytest.mark.parametrize("ball", [False, True])
+@pytest.mark.parametrize(
+    ("support", "ball"),
+    [("dead-weight", False), ("suspended", False), ("fixed", False), ("suspended", True)],
+)
 def test_onsets_and_rates_solve_the_linearised_equations(support, ball):
     mass = 1.0 if ball else 1000.0
     kinds = {
@@ -125,7 +127,7 @@ def test_onsets_and_rates_solve_the_linearised_equations(support, ball):
         assert np.sign(kv.stability(scene, over=over, quantity="rates").rates[0, 0]) == side
 
 
-@pytest.mark.parametrize(("place", "side"), [(5, 0.7), (5, 1.4), (2, 0.7)])
+@pytest.mark.parametrize(("place", "side"), [(5, 1.4), (2, 0.7)])
 def test_discrete_elements_grow_or_fade_at_the_rate_on_both_sides_of_the_critical_stiffness(
     place, side
 ):
@@ -173,7 +175,7 @@ def test_a_ball_gets_as_many_strips_as_its_error_needs(monkeypatch):
     monkeypatch.setattr(general_stability, "ACCURATE", 1e-8)
     motions = general_stability.SmallMotions(scene)
     found = motions.crossings
-    monkeypatch.setattr(general_stability, "STRIPS", 400)
+    monkeypatch.setattr(general_stability, "STRIPS", 192)
     truth = general_stability.SmallMotions(scene).crossings
     assert len(motions.fine.c) > 6
     for each in (few, found):

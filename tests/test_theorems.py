@@ -17,11 +17,12 @@ from kvtheory.derivations.symbols import kappa, l, lam, q, s, xi
 
 pytestmark = pytest.mark.usefixtures("fifty_digits")
 
-ERRORS = {form.label: form.symbol for form in emit.FORMS if form.label.startswith("error-")} | {
-    "error-L2-dead-weight": sym.e_l2_weight,
-    "error-depth-low": sym.e_depth_low,
-    "error-depth-high": sym.e_depth_high,
-}
+ERRORS = {
+    "error-load-low": sym.e_load_low, "error-friction-low": sym.e_friction_low, "error-L1": sym.e_l1,
+    "error-load-high": sym.e_load_high, "error-friction-high": sym.e_friction_high,
+    "error-L2-fixed": sym.e_l2_fixed, "error-L2-dead-weight": sym.e_l2_weight,
+    "error-depth-low": sym.e_depth_low, "error-depth-high": sym.e_depth_high,
+}  # fmt: skip
 OWNER = {form.symbol: form.label for form in emit.FORMS} | {
     symbol: label for label, symbol in ERRORS.items()
 }

@@ -63,38 +63,6 @@ function scaled_load_curvature(s, lam) {
   return 3 * (r + s) * (r + s) / (2 * r);
 }
 
-/** L1/mu - 1 (Eq. 42); theorem error-L1. */
-function error_l1(l, q) {
-  return 6 * l / ((q + 1) * (q * q - q + 4));
-}
-
-/** L2/mu - 1, fixed depth (Eq. 45); theorem error-L2-fixed. */
-function error_l2_fixed(q, l) {
-  return (q + 1) * (3 * q * q - 2 * q + 7) / (6 * l * (q * q - q + 4));
-}
-
-/** (Eq. 40)/W - 1; theorem error-load-low. */
-function error_load_low(l, q) {
-  const gap = 2 * l * q / (q + 1);
-  return -gap * gap * (q * q + 2 * q + 3) / ((q + 1) * (q + 1) * ((1 - q) * (1 - q) + 2));
-}
-
-/** (Eq. 43)/W - 1; theorem error-load-high. */
-function error_load_high(q) {
-  return -q * (q * q - q + 4) / ((q + 1) * ((1 - q) * (1 - q) + 2));
-}
-
-/** (Eq. 41)/F - 1; theorem error-friction-low. */
-function error_friction_force_low(l, q) {
-  const gap = 2 * l * q / (q + 1);
-  return gap * (q * q + q + 4) / ((q + 1) * (q * q - q + 4));
-}
-
-/** (Eq. 44)/F - 1; theorem error-friction-high. */
-function error_friction_force_high(q) {
-  return -q * (q * q + 3) / ((q + 1) * (q * q - q + 4));
-}
-
 /** c in circle/parabola = 1 + c (a/R)^2, for W; theorem circle-fixed. */
 function circle_load(q) {
   return -3 * q * ((1 - q) * (-3 * q * (1 - q) + 1) + 1) / (20 * (1 - q) * (1 - q) + 40);
@@ -272,36 +240,6 @@ function ball_friction_rise(l, T_b) {
   const D_b = ball_loss(l, T_b);
   const w_b = ball_load_factor(l, T_b);
   return -5 * l * (4 / 3 - 2 * D_b) / 4 + w_b * (-8 * D_b * l / (T_b + Math.PI) + 1);
-}
-
-/** L1/mu - 1; theorem F20-error-L1. */
-function ball_error_l1(l, T_b) {
-  return 4 * l / (3 * T_b / 4 + 3 * Math.PI / 4);
-}
-
-/** L2/mu - 1, fixed depth; theorem F20-error-L2. */
-function ball_error_l2(l, T_b) {
-  return -T_b / (T_b + Math.PI) + 3 * Math.PI / (16 * l);
-}
-
-/** load for l -> 0 over W, - 1; theorem F20-error-load-low. */
-function ball_error_load_low(l, T_b) {
-  return (-T_b - 16 * l / 3 + Math.PI) / (T_b + 16 * l / 3 + Math.PI);
-}
-
-/** load for l -> oo over W, - 1; theorem F20-error-load-high. */
-function ball_error_load_high(l, T_b) {
-  return (-T_b - Math.PI) / (T_b + 16 * l / 3 + Math.PI);
-}
-
-/** friction force for l -> 0 over F, - 1; theorem F20-error-friction-low. */
-function ball_error_friction_low(l, T_b) {
-  return (Math.PI - T_b) / (T_b + Math.PI);
-}
-
-/** friction force for l -> oo over F, - 1; theorem F20-error-friction-high. */
-function ball_error_friction_high(l, T_b) {
-  return -T_b / (T_b + Math.PI);
 }
 
 /** f_x of a peeling contact from the width b, the right edge and rho; theorem F11-peel. */

@@ -5,7 +5,7 @@ l = l_r/a >= 0 (retardation length over half length) and q = x_TE/a in (0, 1] (t
 length); for a power law h = |x|^n/(n L^(n-1)) with Q = q^(n-1), and for the wedge, which is n = 1, with
 q = max(0, 1 - l) and Q = 1/(q + l); for a ball with theta_b = arctan(1/l) and its tail T_b; for a Maxwell
 arm with z_v = 2 x_v = c/(V tau_i), c the length of the contact, and A_v, t_v0, t_v1 as in `theory.laws`.
-Floats and arrays alike; an asymptote for high velocity has no error at l = 0.
+Floats and arrays alike.
 """
 
 from typing import TypeVar
@@ -75,38 +75,6 @@ def scaled_load_curvature(s: Value, lam: Value) -> Value:
     """Return d2f/ds2 at fixed lam; theorem scaled-load."""
     r = np.hypot(lam, s)
     return 3 * (r + s) * (r + s) / (2 * r)
-
-
-def error_l1(l: Value, q: Value) -> Value:
-    """Return L1/mu - 1 (Eq. 42); theorem error-L1."""
-    return 6 * l / ((q + 1) * (q * q - q + 4))
-
-
-def error_l2_fixed(q: Value, l: Value) -> Value:
-    """Return L2/mu - 1, fixed depth (Eq. 45); theorem error-L2-fixed."""
-    return (q + 1) * (3 * q * q - 2 * q + 7) / (6 * l * (q * q - q + 4))
-
-
-def error_load_low(l: Value, q: Value) -> Value:
-    """Return (Eq. 40)/W - 1; theorem error-load-low."""
-    gap = 2 * l * q / (q + 1)
-    return -gap * gap * (q * q + 2 * q + 3) / ((q + 1) * (q + 1) * ((1 - q) * (1 - q) + 2))
-
-
-def error_load_high(q: Value) -> Value:
-    """Return (Eq. 43)/W - 1; theorem error-load-high."""
-    return -q * (q * q - q + 4) / ((q + 1) * ((1 - q) * (1 - q) + 2))
-
-
-def error_friction_force_low(l: Value, q: Value) -> Value:
-    """Return (Eq. 41)/F - 1; theorem error-friction-low."""
-    gap = 2 * l * q / (q + 1)
-    return gap * (q * q + q + 4) / ((q + 1) * (q * q - q + 4))
-
-
-def error_friction_force_high(q: Value) -> Value:
-    """Return (Eq. 44)/F - 1; theorem error-friction-high."""
-    return -q * (q * q + 3) / ((q + 1) * (q * q - q + 4))
 
 
 def circle_load(q: Value) -> Value:
@@ -286,36 +254,6 @@ def ball_friction_rise(l: Value, T_b: Value) -> Value:
     D_b = ball_loss(l, T_b)
     w_b = ball_load_factor(l, T_b)
     return -5 * l * (4 / 3 - 2 * D_b) / 4 + w_b * (-8 * D_b * l / (T_b + np.pi) + 1)
-
-
-def ball_error_l1(l: Value, T_b: Value) -> Value:
-    """Return L1/mu - 1; theorem F20-error-L1."""
-    return 4 * l / (3 * T_b / 4 + 3 * np.pi / 4)
-
-
-def ball_error_l2(l: Value, T_b: Value) -> Value:
-    """Return L2/mu - 1, fixed depth; theorem F20-error-L2."""
-    return -T_b / (T_b + np.pi) + 3 * np.pi / (16 * l)
-
-
-def ball_error_load_low(l: Value, T_b: Value) -> Value:
-    """Return load for l -> 0 over W, - 1; theorem F20-error-load-low."""
-    return (-T_b - 16 * l / 3 + np.pi) / (T_b + 16 * l / 3 + np.pi)
-
-
-def ball_error_load_high(l: Value, T_b: Value) -> Value:
-    """Return load for l -> oo over W, - 1; theorem F20-error-load-high."""
-    return (-T_b - np.pi) / (T_b + 16 * l / 3 + np.pi)
-
-
-def ball_error_friction_low(l: Value, T_b: Value) -> Value:
-    """Return friction force for l -> 0 over F, - 1; theorem F20-error-friction-low."""
-    return (np.pi - T_b) / (T_b + np.pi)
-
-
-def ball_error_friction_high(l: Value, T_b: Value) -> Value:
-    """Return friction force for l -> oo over F, - 1; theorem F20-error-friction-high."""
-    return -T_b / (T_b + np.pi)
 
 
 def peeling_friction_force(b: Value, r: Value, rho: Value) -> Value:

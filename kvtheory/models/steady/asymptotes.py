@@ -100,7 +100,7 @@ def _carrying(scene: Scene, limit: Limit, load: Value) -> tuple[Value, Value]:
 
 
 def _retardation_length(scene: Scene) -> Value:
-    return abs(scene.drive.final_velocity) * scene.foundation.retardation_time
+    return np.abs(scene.drive.final_velocity) * scene.foundation.retardation_time
 
 
 def at_rest(scene: Scene, low: Limit | None = None) -> tuple[Value, Value]:

@@ -15,6 +15,7 @@ whether any is missing.
 """
 
 from collections.abc import Callable
+from functools import cache
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -413,20 +414,21 @@ def _critical_velocity(scene: Scene) -> tuple[float, float]:
     """Return that of one scene: the first change on a grid of velocities, then Brent's method."""
     from scipy.optimize import brentq
 
-    line, spring = scene.indenter.per_width, np.broadcast_to(scene.drive.stiffness, (1,))
+    spring = np.broadcast_to(scene.drive.stiffness, (1,))
     given = contact(scene.at(np.ones(1)), STRIPS)
     length = np.log10(given.c.max() * given.V / given.law.time)
     low, high = length.min() - SPEED_DECADES, length.max() + SPEED_DECADES
 
-    def there(log: Array, strips: int) -> Contact:
-        return contact(scene.rows(np.zeros(log.size, int)).at(10.0**log), strips)
+    def there(log: Array) -> Scene:
+        return scene.rows(np.zeros(log.size, int)).at(10.0**log)
 
-    def found(log: Array, strips: int = STRIPS, per_decade: int = PER_DECADE) -> Crossings:
-        coarse = there(log, strips)
+    def found(log: Array, strips: int, per_decade: int) -> Crossings:
+        coarse = contact(there(log), strips)
         return Crossings.at(coarse, coarse, Places.sought(coarse, per_decade))
 
+    @cache
     def signed(log: float) -> float:
-        each = found(np.array([log]))
+        each = found(np.array([log]), STRIPS, PER_DECADE)
         if not each.row.size:
             return -FAR
         distance = float(np.min(np.abs(np.log(each.stiffness / spring))))
@@ -437,38 +439,25 @@ def _critical_velocity(scene: Scene) -> tuple[float, float]:
     (change,) = np.nonzero(now[1:] & ~now[:-1])
     if not change.size:
         return np.nan, np.nan
-    bracket = grid[change[0]], grid[change[0] + 1]
+    bracket = float(grid[change[0]]), float(grid[change[0] + 1])
     if not signed(bracket[0]) < 0.0 < signed(bracket[1]):  # in more strips it is next to the cell
         bracket = bracket[0] - 1.0 / SPEEDS, bracket[1] + 1.0 / SPEEDS
-    onset, strips = brentq(signed, *bracket, xtol=1e-15), STRIPS
-    own = found(np.array([onset]))
-    if not own.row.size:
-        return 10.0**onset, np.inf
-    log = np.log(own.omega[[np.argmin(np.abs(own.stiffness / spring - 1.0))]])
-
-    def both(finer: int) -> list[Crossings]:
-        """Return the crossings on both sides of the onset, followed from the one in few strips."""
-        pair = []
-        for side in (-1.0, 1.0):
-            log_velocity = np.array([onset + side * NEARBY])
-            here = there(log_velocity, strips)
-            place = Places(np.zeros(1, int), log, np.ones(1, int)).moved(here)
-            pair.append(Crossings.at(here, there(log_velocity, finer * strips), place))
-        return pair
-
-    while True:
-        for _ in range(0 if line or strips == STRIPS else POLISHING):
-            near = both(1)
-            if not all(each.row.size for each in near):
+    onset = brentq(signed, *bracket, xtol=1e-15)
+    for _ in range(POLISHING):
+        near = SmallMotions(there(onset + NEARBY * np.array([-1.0, 1.0])))
+        each, off, error = near.crossings, [], np.inf
+        for side in (0, 1):
+            (here,) = np.nonzero(each.row == side)
+            if not here.size:
                 return 10.0**onset, np.inf
-            low, high = (float(np.log(each.stiffness / spring)[0]) for each in near)
-            onset -= NEARBY * (low + high) / (high - low)
-        near, error = both(2), np.inf
-        if all(each.row.size for each in near):  # the error of the stiffness over its slope
-            before, after = (float(np.log(each.stiffness[0])) for each in near)
-            with np.errstate(divide="ignore"):
-                steepness = np.abs(after - before) / (2.0 * NEARBY * np.log(10.0))
-                error = float(near[1].error[0] / steepness) + ROUNDING * (1.0 + abs(onset))
-        if line or strips >= MOST or error <= ACCURATE:
-            return 10.0**onset, error
-        strips *= MORE
+            distance = np.log(each.stiffness[here] / spring)
+            nearest = np.argmin(np.abs(distance))
+            off.append(float(distance[nearest]))
+            error = float(each.error[here[nearest]])
+        rise = (off[1] - off[0]) / (2.0 * NEARBY)
+        miss = 0.5 * (off[0] + off[1]) / rise if rise else 0.0
+        error = error / abs(rise * np.log(10.0)) if rise else np.inf
+        if len(near.fine.c) <= STRIPS or abs(miss) <= NEARBY * ACCURATE:
+            break
+        onset -= miss  # in more strips than those of `signed`
+    return 10.0**onset, error + ROUNDING * (1.0 + abs(onset))
