@@ -7,7 +7,7 @@ was the cheapest that would have passed, and the share of the time that went int
 import signal
 import sys
 import time
-from collections import Counter, defaultdict
+from collections import defaultdict
 from contextlib import contextmanager, nullcontext
 from dataclasses import dataclass
 
@@ -40,8 +40,6 @@ class Outcome:
     rtol: float
     model: str
     error: float
-    truth: str
-    """What tells the true error."""
     cheapest: bool
     choosing: float
     """Seconds on rungs that were not used, and to judge the one that was."""
@@ -83,12 +81,12 @@ def outcome(kind, seed, patience=nullcontext()):  # noqa: B008 - immutable
     *vain, last = found.climb
     lost = sum(step.choosing + step.solving for step in vain)
     with patience:
-        error, truth = scenes.true_error(case, found.values, found.model)
+        error = scenes.true_error(case, found.values, found.model)
         if error > case.request["rtol"]:
-            error, truth = scenes.true_error(case, found.values, found.model, scenes.TRUEST)
+            error = scenes.true_error(case, found.values, found.model, scenes.TRUEST)
     cheapest = not scenes.cheaper_would_do(case, found.model)
     return Outcome(
-        kind, seed, case.request["rtol"], found.model, error, truth, cheapest,
+        kind, seed, case.request["rtol"], found.model, error, cheapest,
         lost + last.choosing, lost, wall,
     )  # fmt: skip
 
@@ -134,8 +132,6 @@ def main():
     """Measure, and print the table and the exceptions."""
     found, refused, failed = measure(int(sys.argv[1]) if len(sys.argv) > 1 else 10_000)
     table(found)
-    counts = Counter((one.kind, one.truth) for one in found)
-    print("\ntruth: " + ", ".join(f"{kind} by {how} {n}" for (kind, how), n in counts.items()))
     print("\nnot within the tolerance:")
     for one in found:
         if not one.within:

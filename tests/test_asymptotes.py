@@ -216,25 +216,6 @@ def test_the_bound_of_kelvin_voigt_is_not_idle():
     assert 0.002 < errors(scene, regimes.lines(scene)[1], proved) < 0.01
 
 
-@pytest.mark.parametrize("n", [1.05, 1.2, 2.0, 6.0, 20.0])
-def test_the_friction_maximum_of_a_dead_weight(n):
-    scene = kv.Scene(kv.PowerLaw(0.01, n))
-    report = kv.asymptotes(scene)
-    velocity, top = report.peak_velocity, report.peak_friction_coefficient
-    at_peak = kv.steady(scene, over={V: velocity})
-    assert at_peak.friction_coefficient == pytest.approx(top, rel=1e-14)
-    assert 1.0 < at_peak.retardation_length / at_peak.half_length < 2.0
-    around = velocity * np.geomspace(1e-6, 1e6, 1001)
-    mu = kv.steady(scene, over={V: around}).friction_coefficient
-    assert np.all(mu <= top * (1 + 1e-15))
-    assert np.all(np.diff(mu[:499]) > 0)  # no second one
-    assert np.all(np.diff(mu[502:]) < 0)
-    if n == 2.0:
-        parabola = kv.asymptotes(kv.Scene(kv.Parabola(0.01)))
-        assert parabola.peak_velocity == pytest.approx(velocity, rel=1e-7)
-        assert parabola.peak_friction_coefficient == pytest.approx(top, rel=1e-14)
-
-
 @pytest.mark.parametrize("n", [1.0, 1.3, 2.0, 4.0, 10.0])
 def test_under_a_dead_weight_friction_falls_with_its_own_power(n):
     mu = kv.steady(kv.Scene(power_law(n)), over={V: [1e8, 1e9]}).friction_coefficient

@@ -188,7 +188,7 @@ def _stiff(models: Models, scene: Scene, request: Request) -> Offer:
         found = stiff_drive.neglected(solution.series(times), at_rest)
         wanted = np.searchsorted(times, asked)
         more = {name: float(np.max(error[wanted])) for name, error in found.items()}
-        return _less_sure(answer, stiff_drive.STATEMENT, more)
+        return _widened(answer, stiff_drive.STATEMENT, more)
 
     return Offer(error, run)
 
@@ -210,12 +210,12 @@ def _equivalent(models: Models, scene: Scene, request: Request) -> Offer:
         )
         more = equivalent.neglected(slow.result, fast.result, scene, solved)
         more = {name: error + sliding[name] for name, error in more.items()}
-        return _less_sure(slow, equivalent.STATEMENT, more)
+        return _widened(slow, equivalent.STATEMENT, more)
 
     return Offer(max(sliding.get(name, 0.0) for name in request.quantities), run)
 
 
-def _less_sure(answer: Answer, statement: str, more: dict[str, float]) -> Answer:
+def _widened(answer: Answer, statement: str, more: dict[str, float]) -> Answer:
     """Add to the errors of an answer what its model neglects."""
     own = answer.certificate
     errors = {name: error + more.get(name, 0.0) for name, error in own.relative_error.items()}

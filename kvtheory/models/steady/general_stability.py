@@ -274,8 +274,8 @@ class SmallMotions:
             if np.isnan(known.log).any():
                 known = Places.sought(self.fine)
 
-    def critical(self) -> tuple[dict[str, Array], dict[str, Array]]:
-        """Return the critical stiffnesses and the frequency of the upper one by name, and their errors.
+    def critical(self) -> tuple[tuple[Array, ...], tuple[Array, ...]]:
+        """Return upper and lower critical stiffness, the frequency at the upper one, and their errors.
 
         Between the lower and the upper one there may be stable ranges too.
         """
@@ -287,9 +287,7 @@ class SmallMotions:
             for i in places:
                 each[:, found.row[i]] = known[:, i]
         lower[:, found.unstable(np.zeros(self.size))] = 0.0
-        names = "critical_stiffness", "lower_critical_stiffness", "frequency"
-        values, errors = (upper[0], lower[0], upper[1]), (upper[2], lower[2], upper[3])
-        return dict(zip(names, values, strict=True)), dict(zip(names, errors, strict=True))
+        return (upper[0], lower[0], upper[1]), (upper[2], lower[2], upper[3])
 
     def stable(self, spring: Array) -> NDArray[np.bool_]:
         """Return whether sliding on a spring of each scene is stable."""

@@ -217,24 +217,24 @@ def report(scene: Scene, tolerance: float, maxima: Mapping[str, Any]) -> Asympto
         truth = solve_exact(scene)
         ends = _ends(scene, shown, critical, tolerance, 2 if monotonic else POINTS)
         proved = ends if monotonic else [_proved(scene, one, critical, tolerance) for one in shown]
-        told = [
-            _told(scene, line, truth, *pair)
+        found = [
+            _line(scene, line, truth, *pair)
             for line, *pair in zip(shown, ends, proved, strict=True)
         ]
     use = np.full(scene.shape, "exact", dtype=object)
-    for line in reversed(told):
+    for line in reversed(found):
         if line.quantity == MU:
             use = np.where(np.abs(line.relative_error) <= tolerance, line.name, use)
     kind, statement = ("proved", MONOTONIC) if monotonic else ("estimated", SCANNED)
     return AsymptoteReport(
         velocity=plain(signed), critical_velocity=plain(critical), **maxima,
         regime=plain(np.where(critical >= V, "low", "high")), use=plain(use), tolerance=tolerance,
-        lines=tuple(told), model="asymptote", certificate=Certificate(kind, statement, {}),
+        lines=tuple(found), model="asymptote", certificate=Certificate(kind, statement, {}),
         units=units_for(scene.indenter, STEADY_UNITS),
     )  # fmt: skip
 
 
-def _told(
+def _line(
     scene: Scene, line: Line, truth: SteadyState, edge: Array, proved: Array
 ) -> AsymptoteLine:
     exact, low = np.asarray(getattr(truth, line.quantity)), line.regime == "low"

@@ -129,15 +129,13 @@ class SmallMotions:
             frequency = np.sqrt(Omega) / (2.0 * np.pi * self.tau)
         return Onset(*(np.where(falls, 0.0, x) for x in (stiffness, frequency, error))), upper
 
-    def critical(self) -> tuple[dict[str, Array], dict[str, Array]]:
-        """Return the critical stiffnesses and the frequency of the upper one by name, and their errors."""
+    def critical(self) -> tuple[tuple[Array, ...], tuple[Array, ...]]:
+        """Return upper and lower critical stiffness, the frequency at the upper one, and their errors."""
         self.lower, self.upper = (
             Onset(*(np.broadcast_to(each, self.shape) for each in one)) for one in self.onsets()
         )
-        names = "critical_stiffness", "lower_critical_stiffness", "frequency"
         values = self.upper.stiffness, self.lower.stiffness, self.upper.frequency
-        errors = self.upper.error, self.lower.error, self.upper.error
-        return dict(zip(names, values, strict=True)), dict(zip(names, errors, strict=True))
+        return values, (self.upper.error, self.lower.error, self.upper.error)
 
     def stable(self, spring: Array) -> Any:
         """Return whether a stiffness is outside the interval in which steady sliding is unstable."""

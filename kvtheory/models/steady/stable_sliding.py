@@ -70,8 +70,9 @@ def _block(scene: Scene, wanted: Set[str]) -> tuple[dict[str, Any], dict[str, An
         spring = None if rigid else np.broadcast_to(scene.drive.stiffness, scene.shape)
         module = general_stability if scene.foundation.arms else stability
         motions = module.SmallMotions(scene)
-        stiffnesses, errors = motions.critical()
-        found |= stiffnesses
+        values, wrong = motions.critical()
+        found |= zip(CRITICAL, values, strict=True)
+        errors |= zip(CRITICAL, wrong, strict=True)
         if spring is not None:
             found["stable"] = motions.stable(spring)
             if "critical_velocity" in wanted:
