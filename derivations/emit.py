@@ -152,10 +152,11 @@ FORMS += (
 )  # fmt: skip
 
 _mean, _first, _rest = sym.moment_mean, sym.ratio_first, sym.spring_share
-_half = sp.Symbol("x_v", positive=True)
+HALF = sp.Symbol("x_v", positive=True)
+OF_ARM = {"at": ((sym.arm_number, 2 * HALF),)}
 _ARGUMENTS = {
-    sym.moment_ahead: (_mean, _first, _half), sym.moment_behind: (_mean, _first, _half),
-    sym.moment_bulge: (_mean, _first), sym.moment_twist: (_mean, _first, sym.ratio_second, _half),
+    sym.moment_ahead: (_mean, _first, HALF), sym.moment_bulge: (_mean, _first),
+    sym.moment_twist: (_mean, _first, sym.ratio_second, HALF),
 }  # fmt: skip
 _NAMES = dict(zip(MOMENTS, ("ahead", "behind", "bulge", "twist"), strict=True))
 FORMS += (
@@ -164,9 +165,9 @@ FORMS += (
     Form("force_per_depth", "F11-start", sp.Derivative(NORMAL_FORCE.subs(START), d), (a, right, lam, d_s),
          "df_z/dd after a start"),
     *(
-        Form(f"arm_{name}", "F17-arm", moment, _ARGUMENTS[moment],
-             f"the moment {str(moment)[0]} of an arm", at=((sym.arm_number, 2 * _half),))
-        for moment, name in _NAMES.items()
+        Form(f"arm_{_NAMES[moment]}", "F17-arm", moment, arguments,
+             f"the moment {str(moment)[0]} of an arm", **OF_ARM)
+        for moment, arguments in _ARGUMENTS.items()
     ),
     Form("arm_lost", "F17-energy", sym.arm_lost,
          (_mean, sym.moment_slant, sym.moment_twist, sym.moment_ahead, sym.excess_share, sym.arm_number),

@@ -12,7 +12,7 @@ import sympy as sp
 from . import symbols as sym
 from .catalogue import catalogue
 from .code_printer import CodePrinter
-from .emit import FORMS, Form, number, parts, replace, sentence
+from .emit import FORMS, HALF, OF_ARM, Form, number, parts, replace, sentence
 from .symbols import E, a, b, d, d_s, kappa, l, lam, q, rho, right
 from .symbols import exponent as n
 from .transient_edges import RIGHT_AT_ONCE
@@ -65,6 +65,8 @@ FOUNDATIONS = (
     Form("arm_ratio", "F17-arm", sym.ratio_first, (_arm,), "t_0 of an arm, for z > 4"),
     Form("arm_next_ratio", "F17-arm", sym.ratio_second, (sym.ratio_first, _arm), "t_1 of an arm, for z > 4"),
     Form("arm_rest", "F17-arm", 1 - _arm * sym.ratio_first / 2, (_arm,), "1 - (z/2) t_0, for z > 4"),
+    Form("arm_behind", "F17-arm", sym.moment_behind, (sym.moment_mean, sym.ratio_first, HALF),
+         "the moment Q of an arm, for z <= 4", **OF_ARM),
     Form("moments_load", "F17-load", sym.arm_load,
          (sym.moment_bulge, sym.moment_ahead, sym.excess_share), "the load from the moments"),
     Form("moments_work", "F17", sym.arm_work,

@@ -110,7 +110,7 @@ def test_a_limit_is_within_the_tolerance_over_its_range(shape, law, kind):
     scene, tolerance = of(shape, kind, law), 0.01
     order, report = getattr(law, "order", 1.0), reported(scene, tolerance)
     there = scene.at(report.critical_velocity)
-    meeting = [asymptotes.friction_coefficient(there, each) for each in asymptotes.limits(there)]
+    meeting = [asymptotes.quantity(there, each) for each in asymptotes.limits(there)]
     assert meeting[0] == pytest.approx(meeting[1], rel=1e-14)
     for line, told in zip(regimes.lines(scene), report.lines, strict=True):
         state = kv.steady(scene)

@@ -31,7 +31,6 @@ EXPONENTS = (1.0, 1.0001, 1.3, 2.0, 3.0, 7.5, 20.0)
 TERMS = {
     **dict.fromkeys(("ball_friction_rise", "ball_cubed_trailing_edges", "ball_tail"), lambda *_: 1.0),
     "power_law_friction_rise": lambda n, l, *_: 1.0 + l,
-    "arm_behind": lambda A, t, x: A * (1.0 + t * x),
     "arm_lost": lambda A, B, E, P, eta, z: B * B + E + eta * (A * B + eta * (A * P * z + B)),
     "peeling_friction_force": lambda b, r, rho: b * b * (b * (b + rho) + r * (b + rho)),
     "onset_square": lambda T, g, S, h, e: (h + T * g * S) ** 2 + 4.0 * T * abs(e) * h,

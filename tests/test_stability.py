@@ -63,7 +63,7 @@ def test_critical_stiffness_of_table_1(velocity, stiffness):
 @pytest.mark.parametrize(("decades", "seed"), [(0.5, 1), (1.5, 2), (3.0, 3)])
 def test_everything_agrees_with_the_equations_of_motion_and_errors_cover(decades, seed):
     unstable = 0
-    for values in reference.random_scenes(25, seed, decades):
+    for values in reference.random_scenes(15, seed, decades):
         numbers = reference.scaled(values)
         along, tau = numbers.pop("along"), mp.mpf(values["foundation.retardation_time"])
         found = kv.stability(scene_of(values), quantity=["stable", "rates", "critical_stiffness"])
@@ -87,7 +87,7 @@ def test_everything_agrees_with_the_equations_of_motion_and_errors_cover(decades
             nearest = min(true, key=lambda each: abs(each - rate))
             assert abs(rate - nearest) <= error * abs(nearest), (values, rate)
         assert found.stable == (max(each.real for each in true) < 0), values
-    assert 5 <= unstable < 25
+    assert 3 <= unstable < 15
 
 
 @pytest.mark.parametrize("decades", [1.0, 4.0])

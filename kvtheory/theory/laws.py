@@ -174,7 +174,7 @@ def exponential_moments(z: Array) -> tuple[Array, Array, Array, Array, Array]:
     t_1 = np.where(near, t, (1.0 / t_0 - 3.0) / (far * far))
     moving = z > 0.0
     A = np.where(moving, -fall / np.where(moving, z, 1.0), 1.0)
-    Q = np.where(near, cf.arm_behind(A, t_0, x), 0.5 * A * rest)
+    Q = 0.5 * A * np.where(near, 1.0 - x * t_0, rest)
     return (
         cf.arm_ahead(A, t_0, x),
         Q,

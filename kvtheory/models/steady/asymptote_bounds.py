@@ -186,7 +186,7 @@ def errors(bounds: Enclosure, regime: str, quantities: tuple[str, ...]) -> dict[
         "peak_pressure": lambda: off(1.0 if slow else 2.0 * number * s, peak(low), peak(high)),
         "dissipated_in_contact": lambda: _dissipated(shape, number / high, number / low) + ROUNDING,
     }
-    return {name: table[name]() for name in quantities}
+    return {name: float(table[name]()) for name in quantities}
 
 
 def _dissipated(shape: str, least: float, largest: float) -> float:

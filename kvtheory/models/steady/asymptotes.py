@@ -137,12 +137,7 @@ def contact(scene: Scene, limit: Limit) -> tuple[Value, Value, Value]:
     return s * s * depth, s * a, lift - support.spring * s * s * depth
 
 
-def friction_coefficient(scene: Scene, limit: Limit) -> Value:
-    """Return the friction coefficient of a limit at the velocity |V| of a scene."""
-    return quantity(scene, limit, "friction_coefficient")
-
-
-def quantity(scene: Scene, limit: Limit, name: str) -> Value:
+def quantity(scene: Scene, limit: Limit, name: str = "friction_coefficient") -> Value:
     """Return the limit of one of depth, load, friction force and friction coefficient, at |V| of a scene."""
     depth, a, load = contact(scene, limit)
     if name in ("depth", "load"):
@@ -161,7 +156,7 @@ def critical_velocity(scene: Scene) -> Value:
     low, high = limits(scene)
     unit = at_rest(scene)[1] / scene.foundation.retardation_time
     there = scene.at(unit)
-    ratio = friction_coefficient(there, high) / friction_coefficient(there, low)
+    ratio = quantity(there, high) / quantity(there, low)
     across = 1.0 if scene.indenter.per_width else 2.0
     shrinks = 0.0 if scene.held else high.rise / (n + across - high.rise)
     falls = high.slope - (n - 1.0 - high.slope) * shrinks

@@ -176,6 +176,8 @@ def peaks(mu: Array, error: Array) -> Array:
     array([[0, 1, 0, 1, 0]])
     >>> peaks(np.array([[0.1, 1.0, 0.8, 0.9, 0.1]]), np.full((1, 5), 0.1)).astype(int)
     array([[0, 1, 0, 0, 0]])
+    >>> bool(peaks(np.array([[1.0, 0.5, 0.1]]), np.zeros((1, 3))).any())  # it falls from the start
+    False
     """
     found, row = np.zeros(mu.shape, dtype=bool), np.arange(len(mu))
     rising, last = np.ones(len(mu), dtype=bool), np.zeros(len(mu), dtype=int)

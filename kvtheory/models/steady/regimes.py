@@ -239,16 +239,13 @@ def _line(
 ) -> AsymptoteLine:
     exact, low = np.asarray(getattr(truth, line.quantity)), line.regime == "low"
     value = np.broadcast_to(line.at(scene), scene.shape)
-    signed, error = (
+    value, error = (
         plain(np.where(np.isfinite(each), each, np.nan))
-        for each in (
-            np.where(np.signbit(exact), -1.0, 1.0) * value,
-            asymptotes.error(value, np.abs(exact)),
-        )
+        for each in (np.copysign(value, exact), asymptotes.error(value, np.abs(exact)))
     )
     return AsymptoteLine(
         *line[:5],
-        value=signed,
+        value=value,
         exact=plain(exact),
         relative_error=error,
         velocity_min=plain(np.zeros_like(edge) if low else edge),
