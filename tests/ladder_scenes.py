@@ -88,6 +88,17 @@ def shape_case(rng):
     return Case("other shape", scene, _request(rng, names, one=True))
 
 
+def scaled_scene(drive, eps, kappa, end=1.0, ball=False):
+    """Return a scene whose scales are all 1; an infinite kappa is a fixed indenter."""
+    support = kv.DeadWeight(mass=eps, gravity=1 / eps)
+    if kappa:
+        support = kv.Suspended(mass=eps, stiffness=kappa, gravity=1 / eps)
+    if math.isinf(kappa):
+        support = kv.Fixed(1.0)
+    shape, K = (kv.Sphere(0.5), 2.0 / math.pi) if ball else (kv.Parabola(0.5), 0.75)
+    return kv.Scene(shape, kv.Foundation(K, 1.0), support, drive, kv.Run(end))
+
+
 def start_case(rng, memory=False):
     """Draw a start from rest, or a drive that changes once; all scales are 1, but for the sign of V."""
     eps = 10 ** rng.uniform(-2.5, 1) if memory else 10 ** rng.uniform(-7, 1)
@@ -102,15 +113,8 @@ def start_case(rng, memory=False):
         points = [(s, side * level) for s, level in drive]
         times = times[np.abs(times - change) > 1e-6]
         times = np.append(times, end)
-    support = (
-        kv.Fixed(1.0)
-        if math.isinf(kappa)
-        else kv.Suspended(mass=eps, stiffness=kappa, gravity=1 / eps)
-        if kappa
-        else kv.DeadWeight(mass=eps, gravity=1 / eps)
-    )
     given = kv.Drive(history=points) if memory else kv.Drive(side * number)
-    scene = kv.Scene(kv.Parabola(0.5), kv.Foundation(0.75, 1.0), support, given, kv.Run(end))
+    scene = scaled_scene(given, eps, kappa, end)
     fixed = math.isinf(kappa)
     scaled = ScaledScene(drive, None if fixed else eps, tuple(times), 0.0 if fixed else kappa)
     request = {**_request(rng, SOLVED), "at": times.tolist()}

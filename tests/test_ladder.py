@@ -16,7 +16,7 @@ from kvtheory.models.steady import asymptote_bounds as asymptote
 from kvtheory.models.steady import ball, exact
 from kvtheory.results import STEADY_UNITS, TRANSIENT_UNITS
 from kvtheory.results.errors import ToleranceError
-from tests.ladder_scenes import enclosed
+from tests.ladder_scenes import enclosed, scaled_scene
 from tests.reference import relative_error
 
 NUMBERS = np.concatenate([[0.0], np.geomspace(1e-9, 1e9, 73)])
@@ -41,29 +41,13 @@ def test_the_half_length_is_enclosed(kappa, shape, roots, widest):
             assert half_length(number, kappa) == pytest.approx(root, rel=1e-14)
 
 
-def scaled(number, kappa, shape="parabola"):
-    """Return a scene in scaled units; an infinite kappa is a fixed indenter."""
-    support = (
-        kv.Fixed(1.0)
-        if math.isinf(kappa)
-        else kv.Suspended(mass=1.0, stiffness=kappa, gravity=1.0)
-        if kappa
-        else kv.DeadWeight(mass=1.0, gravity=1.0)
-    )
-    if shape == "sphere":
-        return kv.Scene(
-            kv.Sphere(0.5), kv.Foundation(2.0 / math.pi, 1.0), support, kv.Drive(number)
-        )
-    return kv.Scene(kv.Parabola(0.5), kv.Foundation(0.75, 1.0), support, kv.Drive(number))
-
-
 @pytest.mark.parametrize("shape", asymptote.STEEPEST)
 @pytest.mark.parametrize("kappa", [*SUPPORT_NUMBERS, math.inf])
 def test_each_bound_covers_the_error_of_its_asymptote_and_is_not_far_above(kappa, shape):
     """Held against ball arithmetic."""
     far = []
     for number in NUMBERS.tolist():
-        scene = scaled(number, kappa, shape)
+        scene = scaled_scene(kv.Drive(number), 1.0, kappa, ball=shape == "sphere")
         exact, bounds = enclosed(scene), asymptote.enclosure_of(scene)
         for regime in ("low", "high"):
             if regime == "high" and number == 0.0:

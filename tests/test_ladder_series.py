@@ -18,17 +18,12 @@ from kvtheory.results.table import scales as scales_of
 from kvtheory.scene.base_motion import BaseMotion
 from kvtheory.scene.static_state import StaticState
 from tests import slow_manifold_by_radau as slow_manifold
+from tests.ladder_scenes import scaled_scene
 
 
 def light(number=4.0, eps=1e-6, kappa=0.0, end=3.0):
     """Return a start from rest in scaled units."""
-    support = (
-        kv.Suspended(mass=eps, stiffness=kappa, gravity=1 / eps)
-        if kappa
-        else kv.DeadWeight(mass=eps, gravity=1 / eps)
-    )
-    drive, run = kv.Drive(number), kv.Run(end)
-    return kv.Scene(kv.Parabola(0.5), kv.Foundation(0.75, 1.0), support, drive, run)
+    return scaled_scene(kv.Drive(number), eps, kappa, end)
 
 
 @pytest.mark.parametrize(("number", "kappa"), [(0.1, 0.0), (4.0, 0.0), (100.0, 0.0), (2.0, 0.3)])

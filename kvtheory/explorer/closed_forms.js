@@ -257,11 +257,6 @@ function arm_ahead(A_v, t_v0, x_v) {
   return A_v * (t_v0 * x_v + 1) / 2;
 }
 
-/** the moment Q of an arm; theorem F17-arm. */
-function arm_behind(A_v, t_v0, x_v) {
-  return A_v * (-t_v0 * x_v + 1) / 2;
-}
-
 /** the moment D of an arm; theorem F17-arm. */
 function arm_bulge(A_v, t_v0) {
   return A_v * t_v0 / 4;
@@ -384,6 +379,11 @@ function arm_next_ratio(t_v0, z_v) {
 /** 1 - (z/2) t_0, for z > 4; theorem F17-arm. */
 function arm_rest(z_v) {
   return -2 * Math.exp(-z_v) / (1 - Math.exp(-z_v)) + 2 / z_v;
+}
+
+/** the moment Q of an arm, for z <= 4; theorem F17-arm. */
+function arm_behind(A_v, t_v0, x_v) {
+  return A_v * (-t_v0 * x_v + 1) / 2;
 }
 
 /** the load from the moments; theorem F17-load. */

@@ -271,11 +271,6 @@ def arm_ahead(A_v: Value, t_v0: Value, x_v: Value) -> Value:
     return A_v * (t_v0 * x_v + 1) / 2
 
 
-def arm_behind(A_v: Value, t_v0: Value, x_v: Value) -> Value:
-    """Return the moment Q of an arm; theorem F17-arm."""
-    return A_v * (-t_v0 * x_v + 1) / 2
-
-
 def arm_bulge(A_v: Value, t_v0: Value) -> Value:
     """Return the moment D of an arm; theorem F17-arm."""
     return A_v * t_v0 / 4

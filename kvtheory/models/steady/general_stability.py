@@ -162,7 +162,7 @@ class Places(NamedTuple):
     way: NDArray[np.int_]
 
     @classmethod
-    def sought(cls, given: Contact, per_decade: int = PER_DECADE) -> "Places":
+    def search(cls, given: Contact, per_decade: int = PER_DECADE) -> "Places":
         """Return the places of all scenes, by bisection on a grid that is refined at resonances."""
         own = given.scales()
         low = np.log(own.min(axis=0)) - BEYOND * np.log(10.0)
@@ -259,10 +259,10 @@ class SmallMotions:
         self.size = scene.shape[0]
         if scene.indenter.per_width:
             self.few = self.fine = self.finer = contact(scene)
-            self.crossings = Crossings.at(self.few, self.few, Places.sought(self.few))
+            self.crossings = Crossings.at(self.few, self.few, Places.search(self.few))
             return
         self.few, self.fine, strips = contact(scene, FEW), contact(scene, STRIPS), STRIPS
-        known = Places.sought(self.fine)
+        known = Places.search(self.fine)
         while True:
             self.finer = contact(scene, 2 * strips)
             self.crossings = Crossings.at(self.fine, self.finer, known)
@@ -272,7 +272,7 @@ class SmallMotions:
             self.fine = contact(scene, strips)
             known = known.moved(self.fine)
             if np.isnan(known.log).any():
-                known = Places.sought(self.fine)
+                known = Places.search(self.fine)
 
     def critical(self) -> tuple[tuple[Array, ...], tuple[Array, ...]]:
         """Return upper and lower critical stiffness, the frequency at the upper one, and their errors.
@@ -422,7 +422,7 @@ def _critical_velocity(scene: Scene) -> tuple[float, float]:
 
     def found(log: Array, strips: int, per_decade: int) -> Crossings:
         coarse = contact(there(log), strips)
-        return Crossings.at(coarse, coarse, Places.sought(coarse, per_decade))
+        return Crossings.at(coarse, coarse, Places.search(coarse, per_decade))
 
     @cache
     def signed(log: float) -> float:
