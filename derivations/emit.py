@@ -15,9 +15,8 @@ from . import symbols as sym
 from .book import established
 from .catalogue import catalogue
 from .code_printer import CodePrinter
-from .symbols import Q, a, b, d, d_s, kappa, l, lam, q, r, rho, right, s
+from .symbols import Q, b, kappa, l, lam, q, r, rho, right, s
 from .symbols import exponent as n
-from .transient_motion import NORMAL_FORCE, START
 from .viscoelastic import MOMENTS
 
 TARGET = Path(__file__).parents[1] / "kvtheory" / "theory" / "closed_forms.py"
@@ -162,8 +161,6 @@ _NAMES = dict(zip(MOMENTS, ("ahead", "behind", "bulge", "twist"), strict=True))
 FORMS += (
     Form("peeling_friction_force", "F11-peel", sym.f_friction, (b, right, rho),
          "f_x of a peeling contact from the width b, the right edge and rho"),
-    Form("force_per_depth", "F11-start", sp.Derivative(NORMAL_FORCE.subs(START), d), (a, right, lam, d_s),
-         "df_z/dd after a start"),
     *(
         Form(f"arm_{_NAMES[moment]}", "F17-arm", moment, arguments,
              f"the moment {str(moment)[0]} of an arm", **OF_ARM)

@@ -56,6 +56,8 @@ TRANSIENT = (
          "p/(K delta) at x = y a; with -l for l, at x = -y a"),
     Form("peeling_edge", "F10-instant", RIGHT_AT_ONCE, (d, d_s, lam), "the right edge while it peels", _now),
     Form("peeling_normal_force", "F11-peel", sym.f_normal, (b, rho), "f_z from the width b and rho"),
+    Form("force_per_depth", "F11-start", sp.Derivative(NORMAL_FORCE.subs(START), d), (a, right, lam, d_s),
+         "df_z/dd after a start"),
     Form("force_per_rate", "F11-start", sp.Derivative(NORMAL_FORCE.subs(START), d_s), (a, right),
          "df_z/dd' after a start"),
 )  # fmt: skip

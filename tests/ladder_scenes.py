@@ -91,10 +91,10 @@ def shape_case(rng):
 def scaled_scene(drive, eps, kappa, end=1.0, ball=False):
     """Return a scene whose scales are all 1; an infinite kappa is a fixed indenter."""
     support = kv.DeadWeight(mass=eps, gravity=1 / eps)
-    if kappa:
-        support = kv.Suspended(mass=eps, stiffness=kappa, gravity=1 / eps)
     if math.isinf(kappa):
         support = kv.Fixed(1.0)
+    elif kappa:
+        support = kv.Suspended(mass=eps, stiffness=kappa, gravity=1 / eps)
     shape, K = (kv.Sphere(0.5), 2.0 / math.pi) if ball else (kv.Parabola(0.5), 0.75)
     return kv.Scene(shape, kv.Foundation(K, 1.0), support, drive, kv.Run(end))
 

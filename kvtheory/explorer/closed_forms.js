@@ -247,11 +247,6 @@ function peeling_friction_force(b, r, rho) {
   return b * b * (b * (-3 * b + 8 * rho) + 4 * r * (b - 3 * rho)) / 8;
 }
 
-/** df_z/dd after a start; theorem F11-start. */
-function force_per_depth(a, r, lam, d_s) {
-  return 3 * a / 4 + 3 * lam / 4 + 3 * r / 4 + 3 * d_s / (8 * a);
-}
-
 /** the moment P of an arm; theorem F17-arm. */
 function arm_ahead(A_v, t_v0, x_v) {
   return A_v * (t_v0 * x_v + 1) / 2;
@@ -359,6 +354,11 @@ function peeling_edge(d, d_s, lam) {
 /** f_z from the width b and rho; theorem F11-peel. */
 function peeling_normal_force(b, rho) {
   return b * b * (-b + 3 * rho) / 4;
+}
+
+/** df_z/dd after a start; theorem F11-start. */
+function force_per_depth(a, r, lam, d_s) {
+  return 3 * a / 4 + 3 * lam / 4 + 3 * r / 4 + 3 * d_s / (8 * a);
 }
 
 /** df_z/dd' after a start; theorem F11-start. */

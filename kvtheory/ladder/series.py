@@ -106,7 +106,7 @@ def _exact(models: Models, scene: Scene, request: Request) -> Offer:
         }
         rounding = max(state.certificate.relative_error.values())
         errors = {name: rounding * abs(constant[name]) / measures[name] for name in SOLVED}
-        own = replace(state.certificate, relative_error=errors, relative_to=AT_REST)
+        own = Certificate(state.certificate.kind, state.certificate.statement, errors, AT_REST)
         return _series(scene, {"velocity": velocity, **constant}, own, request, state)
 
     return Offer(0.0, run)

@@ -261,11 +261,6 @@ def peeling_friction_force(b: Value, r: Value, rho: Value) -> Value:
     return b * b * (b * (-3 * b + 8 * rho) + 4 * r * (b - 3 * rho)) / 8
 
 
-def force_per_depth(a: Value, r: Value, lam: Value, d_s: Value) -> Value:
-    """Return df_z/dd after a start; theorem F11-start."""
-    return 3 * a / 4 + 3 * lam / 4 + 3 * r / 4 + 3 * d_s / (8 * a)
-
-
 def arm_ahead(A_v: Value, t_v0: Value, x_v: Value) -> Value:
     """Return the moment P of an arm; theorem F17-arm."""
     return A_v * (t_v0 * x_v + 1) / 2

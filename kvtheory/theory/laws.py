@@ -188,36 +188,39 @@ class Fractional:
     """G = K [1 + (t/tau)^(-alpha)/Gamma(1 - alpha)]: each moment is a Gamma function."""
 
     def __init__(
-        self, K: Array, time: Array, order: Array, rgamma: list[Array] | None = None
+        self, K: Array, time: Array, order: Array, known: list[Array] | None = None
     ) -> None:
-        from scipy.special import rgamma as reciprocal
-
         self.K, self.time, self.alpha = K, time, order
-        self.rgamma = rgamma or [reciprocal(n - order) for n in range(6)]
-        """1/Gamma(n - alpha), which does not depend on the velocity."""
+        if known is None:
+            from scipy.special import rgamma
+
+            known = [rgamma(n - order) for n in range(1, 5)]
+            moments = (
+                cf.springpot_ahead,
+                cf.springpot_behind,
+                cf.springpot_bulge,
+                cf.springpot_twist,
+            )
+            known += [known[1] * moment(1.0 - order) for moment in moments]
+        self.known = known
+        """1/Gamma(n - alpha) for n = 1 to 4, and the moments P, Q, D, E over K (tau/c)^alpha."""
 
     def over(self, V: Array) -> "Fractional":
         """Return the law in the distance travelled at a velocity V >= 0."""
-        return Fractional(self.K, self.time * V, self.alpha, self.rgamma)
+        return Fractional(self.K, self.time * V, self.alpha, self.known)
 
     def at(self, *index: Any) -> "Fractional":
         """Return the laws of some scenes, by an index of their last axis."""
-        own = (self.K, self.time, self.alpha, *self.rgamma)
-        K, time, order, *rgamma = (each[(..., *index)] if np.ndim(each) else each for each in own)
-        return Fractional(K, time, order, rgamma)
+        own = (self.K, self.time, self.alpha, *self.known)
+        K, time, order, *known = (each[(..., *index)] if np.ndim(each) else each for each in own)
+        return Fractional(K, time, order, known)
 
     def moments(self, c: Array) -> Moments:
         """Return the moments over a contact of length c."""
-        K, nu, part = self.K, 1.0 - self.alpha, self._part(c)
-        scale, end = part * self.rgamma[2], part * self.rgamma[1]
-        return Moments(
-            0.5 * K + scale * cf.springpot_ahead(nu),
-            0.5 * K + scale * cf.springpot_behind(nu),
-            K / 12.0 + scale * cf.springpot_bulge(nu),
-            scale * cf.springpot_twist(nu),
-            K + end,
-            -self.alpha * end,
-        )
+        K, part = self.K, self._part(c)
+        P, Q, D, E = (part * share for share in self.known[4:])
+        end = part * self.known[0]
+        return Moments(0.5 * K + P, 0.5 * K + Q, K / 12.0 + D, E, K + end, -self.alpha * end)
 
     def dissipated(self, c: Array, eta: Array, work: Array) -> tuple[Array, Array]:
         """Return the share of the work lost in the contact: that not stored at the trailing edge.
@@ -225,7 +228,7 @@ class Fractional:
         Towards order 0 almost nothing is lost, and the difference cancels; hence its separate error.
         """
         rest, two = 1.0 - self.alpha, 2.0**-self.alpha
-        third, fourth = self.rgamma[3:5]
+        third, fourth = self.known[2:4]
         none = 2.0 * np.expm1(rest * math.log(2.0)) * third  # (w + w')^-alpha over both w
         once = rest * (4.0 * two - 1.0) * fourth  # and times w
         both = 2.0 * (1.0 - 2.0 * two * self.alpha) * third / (4.0 - self.alpha)  # and times w w'
@@ -239,11 +242,11 @@ class Fractional:
 
     def modulus(self, X: Array) -> tuple[Array, Array, Array]:
         """Return G, X dG/dX and the mean of G up to X > 0."""
-        part, first = self._part(X), self.rgamma[1]
+        part, first = self._part(X), self.known[0]
         return (
             self.K + part * first,
             -self.alpha * part * first,
-            self.K + part * self.rgamma[2],
+            self.K + part * self.known[1],
         )
 
     def least_peak(self, a: Array) -> Array:

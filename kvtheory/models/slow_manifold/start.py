@@ -10,8 +10,6 @@ from typing import Any
 
 import numpy as np
 
-from kvtheory.theory.closed_forms import force_per_depth
-
 NEWTON_STEPS = 60
 """Iterations: Newton's method converges from above in less than ten."""
 
@@ -119,7 +117,7 @@ def _width(number: float) -> float:
 
 def depth_slope(a: Any, b: Any, v: Any, number: float) -> Any:
     """Return f_d = df_z/dd at given d': (3/4)(b + p_left/(2 a)), the leading edge touching."""
-    return force_per_depth(a, b - a, number, v)
+    return 0.75 * (b + (v + 2.0 * number * a) / (2.0 * a))
 
 
 def outruns(a: Any, b: Any, rate: Any, slope: Any, number: float) -> Any:

@@ -98,7 +98,11 @@ class SmallMotions:
             self.T_z = support.mass / (across * self.tau)
             self.S_z = (A_1 + X_1 + l) / (A_1 + X_1) + support.spring * self.tau / across
             self.e = self.S_z - self.g * self.S_c  # its sign is that of dF/dV + c_x
-        self.shape = np.broadcast_shapes(*map(np.shape, (self.T_x, self.g, self.S_z, self.T_z)))
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """Of the scenes."""
+        return np.broadcast_shapes(*map(np.shape, (self.T_x, self.g, self.S_z, self.T_z)))
 
     def onsets(self) -> tuple[Onset, Onset]:
         """Return between which stiffnesses steady sliding is unstable: the lower one and the upper one.
@@ -239,10 +243,11 @@ def critical_velocity(scene: Scene) -> tuple[Array, Array]:
         np.take_along_axis(each, first, axis=1)
         for each in (grid[:, :-1], grid[:, 1:], before, after)
     )
+    across = now != UNSTABLE
     for _ in range(BISECTIONS):
         middle = 0.5 * (low + high)
         here = state(middle)
-        stays = np.where(now != UNSTABLE, here == was, here != UNSTABLE)
+        stays = np.where(across, here == was, here != UNSTABLE)
         low, high = np.where(stays, middle, low), np.where(stays, high, middle)
 
     # The error is that of the stiffness over its slope; it is not known where both stiffnesses meet.
