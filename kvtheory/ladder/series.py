@@ -267,7 +267,10 @@ def _series(
 ) -> Answer:
     """Return what was requested of constants or of values at the times of the request."""
     times = _times(scene, request)
-    held = {name: np.full(times.shape, value) for name, value in values.items()}
+    held = {
+        name: value if isinstance(value, np.ndarray) else np.full(times.shape, value)
+        for name, value in values.items()
+    }
     return _answer({"time": times, **held}, own, request, result)
 
 
@@ -281,8 +284,10 @@ def _answer(series: Any, own: Certificate, request: Request, result: Any) -> Ans
     known = {**own.relative_error, **dict.fromkeys(GIVEN, 0.0)}
     wanted = [name for name in request.units if name in (*GIVEN, *request.quantities)]
     source = {name: name if name in series else ON_RIGID[name] for name in wanted}
-    values = {name: np.full(np.size(series["time"]), np.nan) for name in request.units}
-    values |= {name: series[source[name]] for name in wanted}
+    values = {
+        name: series[source[name]] if name in source else np.full(np.size(series["time"]), np.nan)
+        for name in request.units
+    }
     errors = {name: known[source[name]] for name in wanted}
     return Answer(values, replace(own, relative_error=errors), result)
 

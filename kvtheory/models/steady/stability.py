@@ -135,8 +135,9 @@ class SmallMotions:
 
     def critical(self) -> tuple[tuple[Array, ...], tuple[Array, ...]]:
         """Return upper and lower critical stiffness, the frequency at the upper one, and their errors."""
+        shape = self.shape
         self.lower, self.upper = (
-            Onset(*(np.broadcast_to(each, self.shape) for each in one)) for one in self.onsets()
+            Onset(*(np.broadcast_to(each, shape) for each in one)) for one in self.onsets()
         )
         values = self.upper.stiffness, self.lower.stiffness, self.upper.frequency
         return values, (self.upper.error, self.lower.error, self.upper.error)
@@ -162,13 +163,14 @@ class SmallMotions:
             middle = T_z * S_x + self.h + S_z * T_x
             terms = S_z * S_x, S_x + e, middle, T_z + T_x, T_z * T_x
             sizes = terms[0], S_x + S_z + self.g * self.S_c, *terms[2:]  # e is a small difference
+        shape = self.shape
         found, error = _roots(
             *(
-                np.stack([np.broadcast_to(x, self.shape) for x in each], axis=-1)
-                for each in (terms, sizes or terms)
+                np.stack([np.broadcast_to(each, shape) for each in group], axis=-1)
+                for group in (terms, sizes or terms)
             )
         )
-        return found / np.broadcast_to(self.tau, self.shape)[..., np.newaxis], error
+        return found / np.broadcast_to(self.tau, shape)[..., np.newaxis], error
 
 
 def _roots(coefficients: Array, sizes: Array) -> tuple[NDArray[np.complex128], Array]:
