@@ -1,8 +1,7 @@
 """Write the closed forms for the explorer, in JavaScript, from the same proved expressions.
 
 ``python -m derivations.emit_javascript`` rewrites `kvtheory/explorer/closed_forms.js`: the functions of
-`emit.FORMS`, and those that Python has by other means, of the transient, of the moments of an arm,
-of the strips of a ball and of a circle.
+`emit.FORMS`, and those that Python computes in another way: crossings, stability, the transient, the circle.
 """
 
 from functools import partial
@@ -13,11 +12,11 @@ import sympy as sp
 from . import symbols as sym
 from .catalogue import catalogue
 from .code_printer import CodePrinter
-from .emit import FORMS, Form, number, parts, replace, sentence
-from .symbols import E, a, b, d, d_s, lam, rho, right
+from .emit import FORMS, HALF, OF_ARM, Form, number, parts, replace, sentence
+from .symbols import E, a, b, d, d_s, kappa, l, lam, q, rho, right
+from .symbols import exponent as n
 from .transient_edges import RIGHT_AT_ONCE
 from .transient_motion import NORMAL_FORCE, START
-from .viscoelastic import MOMENTS
 
 TARGET = Path(__file__).parents[1] / "kvtheory" / "explorer" / "closed_forms.js"
 
@@ -29,47 +28,51 @@ _HEADER = """\
 // and arguments are those of kvtheory/theory/closed_forms.py where that has the same.
 """
 
-_force = NORMAL_FORCE.subs(START)
 _now = ((E, sp.S.One), (sym.lift, d + d_s), (sym.drift, lam))
-_arm, _mean, _first, _second = sym.arm_number, sym.moment_mean, sym.ratio_first, sym.ratio_second
-_rest, _eta = sym.spring_share, sym.excess_share
+
+STEADY = (
+    Form("power_law_crossing", "F19-crossing", sym.l_cross, (n,), "l where the asymptotes of mu meet"),
+    Form("power_law_crossing_at_load", "F19-crossing-weight", sym.lam_cross, (n, kappa),
+         "V tau/a_0 where they meet, at a load"),
+    Form("BALL_CROSSING", "F20-crossing", sym.ball_cross, (), "l where the asymptotes of mu meet"),
+    Form("ball_crossing_at_load", "F20-crossing", sym.ball_lam_cross, (kappa,),
+         "V tau/a_0 where they meet, at a load"),
+)  # fmt: skip
+
+STABILITY = (
+    Form("damping_across", "F22-numbers", sym.B_z, (a, q), "df_z/dd' at the half length a, in units of a_0"),
+    Form("damping_along", "F22-numbers", sym.B_x, (a, q), "df_x/dlam at the half length a, in units of a_0"),
+    Form("relaxation_rate", "F22-numbers", sym.S_z, (q, sym.support_rate), "df_z/dd + kappa over df_z/dd'"),
+    Form("coupling_rate", "F22-numbers", sym.S_c, (q,), "df_x/dd over df_x/dd'"),
+    Form("coupling", "F22-numbers", sym.coupling, (l, q, sym.damper_share),
+         "how strongly the motions across and along are coupled"),
+    Form("uncoupled", "F22-numbers", sym.uncoupled, (q, sym.damper_share), "1 - coupling"),
+    Form("friction_rise", "F22-numbers", sym.rise, (q, sym.damper_share, sym.support_rate),
+         "what has the sign of dF/dV + c_x"),
+)  # fmt: skip
 
 TRANSIENT = (
-    Form("pressure_behind", "F19-pressure", sym.P, (sym.exponent, sym.l, sym.y),
+    Form("pressure_behind", "F19-pressure", sym.P, (n, l, sym.y),
          "p/(K delta) at x = y a; with -l for l, at x = -y a"),
     Form("peeling_edge", "F10-instant", RIGHT_AT_ONCE, (d, d_s, lam), "the right edge while it peels", _now),
     Form("peeling_normal_force", "F11-peel", sym.f_normal, (b, rho), "f_z from the width b and rho"),
-    Form("peeling_friction_force", "F11-peel", sym.f_friction, (b, right, rho), "f_x, likewise"),
-    Form("force_per_depth", "F11-start", sp.Derivative(_force, d), (a, right, lam, d_s),
+    Form("force_per_depth", "F11-start", sp.Derivative(NORMAL_FORCE.subs(START), d), (a, right, lam, d_s),
          "df_z/dd after a start"),
-    Form("force_per_rate", "F11-start", sp.Derivative(_force, d_s), (a, right), "df_z/dd' after a start"),
+    Form("force_per_rate", "F11-start", sp.Derivative(NORMAL_FORCE.subs(START), d_s), (a, right),
+         "df_z/dd' after a start"),
 )  # fmt: skip
 
-MOMENTS_OF = dict(zip(MOMENTS, ("ahead", "behind", "bulge", "twist"), strict=True))
-_ARGUMENTS = {
-    sym.moment_ahead: (_mean, _first, _arm), sym.moment_behind: (_mean, _first, _arm),
-    sym.moment_bulge: (_mean, _first), sym.moment_twist: (_mean, _first, _second, _arm),
-}  # fmt: skip
+_arm = sym.arm_number
 FOUNDATIONS = (
-    Form("arm_ratio", "F17-arm", _first, (_arm,), "t_0 of an arm, for z > 4"),
-    Form("arm_next_ratio", "F17-arm", _second, (_first, _arm), "t_1 of an arm, for z > 4"),
-    Form("arm_rest", "F17-arm", 1 - _arm * _first / 2, (_arm,), "1 - (z/2) t_0, for z > 4"),
-    *(
-        Form(f"arm_{name}", "F17-arm", moment, _ARGUMENTS[moment], f"the moment {moment} of an arm")
-        for moment, name in MOMENTS_OF.items()
-    ),
-    *(
-        Form(f"springpot_{name}", "F17-springpot", moment, (_rest,),
-             f"the moment {moment} of a springpot of order 1 - nu, times nu", times=_rest)
-        for moment, name in MOMENTS_OF.items()
-    ),
+    Form("arm_ratio", "F17-arm", sym.ratio_first, (_arm,), "t_0 of an arm, for z > 4"),
+    Form("arm_next_ratio", "F17-arm", sym.ratio_second, (sym.ratio_first, _arm), "t_1 of an arm, for z > 4"),
+    Form("arm_rest", "F17-arm", 1 - _arm * sym.ratio_first / 2, (_arm,), "1 - (z/2) t_0, for z > 4"),
+    Form("arm_behind", "F17-arm", sym.moment_behind, (sym.moment_mean, sym.ratio_first, HALF),
+         "the moment Q of an arm, for z <= 4", **OF_ARM),
     Form("moments_load", "F17-load", sym.arm_load,
-         (sym.moment_bulge, sym.moment_ahead, _eta), "the load from the moments"),
+         (sym.moment_bulge, sym.moment_ahead, sym.excess_share), "the load from the moments"),
     Form("moments_work", "F17", sym.arm_work,
-         (sym.moment_twist, sym.moment_ahead, _eta), "the friction force from the moments"),
-    Form("arm_lost", "F17-energy", sym.arm_lost,
-         (_mean, sym.moment_slant, sym.moment_twist, sym.moment_ahead, _eta, _arm),
-         "the energy that an arm dissipates in the contact"),
+         (sym.moment_twist, sym.moment_ahead, sym.excess_share), "the friction force from the moments"),
 )  # fmt: skip
 
 CIRCLE = (
@@ -79,7 +82,7 @@ CIRCLE = (
          "-x/R of the peak pressure of a circle; the sine of thrice this angle is 3 sqrt(3) l_r/(2 R)"),
 )  # fmt: skip
 
-EMITTED = (*FORMS, *TRANSIENT, *FOUNDATIONS, *CIRCLE)
+EMITTED = (*FORMS, *STEADY, *STABILITY, *TRANSIENT, *FOUNDATIONS, *CIRCLE)
 _parts = partial(parts, forms=FORMS, printer=JAVASCRIPT)
 
 

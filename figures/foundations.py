@@ -88,7 +88,7 @@ def _limits(family: dict[str, kv.Scene]) -> dict[str, tuple[np.ndarray, ...]]:
         elif name == SHOWN:
             there = scene.at(NUMBERS)
             found[name] = tuple(
-                asymptotes.friction_coefficient(there, limit) for limit in asymptotes.limits(there)
+                asymptotes.quantity(there, limit) for limit in asymptotes.limits(there)
             )
     return found
 

@@ -13,17 +13,11 @@ DIGITS = 80
 def forces(d, rate, lam):
     """Return f_z and f_x in units of the static state: pressure integrated from edge to edge."""
     left, right = -mp.sqrt(d), mp.sqrt(d + rate + lam**2) - lam
-    level = d + rate
+    pressure = (0, d + rate), (1, -2 * lam), (2, -1)  # powers of x and their factors
 
-    def moment(n):  # of the pressure level - x^2 - 2 lam x
-        def primitive(x):
-            return (
-                level * x ** (n + 1) / (n + 1)
-                - x ** (n + 3) / (n + 3)
-                - 2 * lam * x ** (n + 2) / (n + 2)
-            )
-
-        return primitive(right) - primitive(left)
+    def moment(n):
+        powers = ((n + power + 1, factor) for power, factor in pressure)
+        return sum(factor * (right**k - left**k) / k for k, factor in powers)
 
     return mp.mpf(3) / 4 * moment(0), -mp.mpf(3) / 2 * moment(1)
 
@@ -67,10 +61,8 @@ def quartic(lam, eps, kappa, eps_x, c_x, kappa_x, guess):
 def scaled(values):
     """Return drive number, inertia, support, inertia, damper and spring numbers along x of SI values."""
     of = {key: mp.mpf(float(value)) for key, value in values.items()}
-    K, R, tau = (
-        of[f"{key}"]
-        for key in ("foundation.stiffness", "indenter.radius", "foundation.retardation_time")
-    )
+    K, tau = of["foundation.stiffness"], of["foundation.retardation_time"]
+    R = of["indenter.radius"]
     W = of["support.load"]
     a_0 = mp.cbrt(mp.mpf(3) / 2 * R * W / K)
     delta_0 = a_0**2 / (2 * R)

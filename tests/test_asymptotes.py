@@ -10,7 +10,7 @@ from tests import reference, reference_ball, reference_power_law
 from tests.test_power_law import random_case
 
 SUPPORTS = "fixed", "dead-weight", "suspended"
-SCENES = 20
+SCENES = 10
 V = "drive.velocity"
 ZENER = kv.GeneralizedMaxwell(1e10, arms=[["30 GN/m^3", "10 ms"], ["5 GN/m^3", "1 s"]])
 UNSOUGHT = {"peak_velocity": np.nan, "peak_friction_coefficient": np.nan, "maxima": ()}
@@ -41,6 +41,12 @@ def reported(scene, tolerance=0.05, velocity=None):
     """Return the report of the limits, without the maxima."""
     scene = scene if velocity is None else scene.replace({V: velocity})
     return regimes.report(scene, tolerance, UNSOUGHT | {"maxima_certificate": None})
+
+
+def errors(scene, line, velocities):
+    """Return how far a line is from the exact state, at other velocities."""
+    exact = np.abs(getattr(kv.steady(scene, over={V: velocities}), line.quantity))
+    return np.abs(np.abs(line.at(scene.replace({V: velocities}))) / exact - 1.0)
 
 
 def random_scene(rng, n, kind):
@@ -97,42 +103,33 @@ LIMITS = [
 @pytest.mark.parametrize("kind", SUPPORTS)
 @pytest.mark.parametrize(("shape", "law"), LIMITS, ids=str)
 def test_a_limit_is_within_the_tolerance_over_its_range(shape, law, kind):
-    """Off by the tolerance at its end, by less within and more beyond, by hardly anything far inside."""
+    """Off by the tolerance at its end, by less within and more beyond, by hardly anything far inside.
+
+    The limits of friction meet at V*.
+    """
     scene, tolerance = of(shape, kind, law), 0.01
-    order = getattr(law, "order", 1.0)
-    for line in reported(scene, tolerance).lines:
+    order, report = getattr(law, "order", 1.0), reported(scene, tolerance)
+    there = scene.at(report.critical_velocity)
+    meeting = [asymptotes.quantity(there, each) for each in asymptotes.limits(there)]
+    assert meeting[0] == pytest.approx(meeting[1], rel=1e-14)
+    for line, told in zip(regimes.lines(scene), report.lines, strict=True):
+        state = kv.steady(scene)
+        assert told.exact == pytest.approx(getattr(state, line.quantity), rel=1e-15)
+        off = abs(told.value) / abs(told.exact) - 1.0
+        assert told.relative_error == pytest.approx(off, rel=1e-9, abs=1e-11)
         low = line.regime == "low"
-        edge, inward = (line.velocity_max, -1) if low else (line.velocity_min, 1)
+        edge, inward = (told.velocity_max, -1) if low else (told.velocity_min, 1)
         if not 0.0 < edge < np.inf:  # the load on a soft spring hardly changes
             assert line.quantity == "load"
             rest = kv.steady(scene, over={V: 0.0})
             assert scene.support.spring * rest.depth < rest.load * tolerance
             continue
         places = np.array([0.0, 1e-6, 0.01, 0.3, 1.0, 3.0, 5.0, -0.05]) / order
-        velocities = edge * 10.0 ** (inward * places)
-        exact = np.abs(getattr(kv.steady(scene, over={V: velocities}), line.quantity))
-        (found,) = (
-            each
-            for each in reported(scene, tolerance, velocities).lines
-            if (each.name, each.quantity) == (line.name, line.quantity)
-        )
-        off = np.abs(np.abs(found.value) / exact - 1.0)
-        assert found.exact == pytest.approx(exact, rel=1e-15)
-        assert np.abs(found.relative_error) == pytest.approx(off, rel=1e-9, abs=1e-11)
+        off = errors(scene, line, edge * 10.0 ** (inward * places))
         assert off[0] == pytest.approx(tolerance, rel=1e-6)
         assert np.all(off[1:-1] < tolerance)
         assert off[-1] > tolerance
         assert off[6] < 1e-2 * tolerance or line.quantity == "load"
-
-
-@pytest.mark.parametrize("kind", SUPPORTS)
-@pytest.mark.parametrize(("shape", "law"), LIMITS, ids=str)
-def test_the_limits_of_friction_meet_at_the_critical_velocity(shape, law, kind):
-    scene = of(shape, kind, law)
-    critical = asymptotes.critical_velocity(scene)
-    there = scene.at(critical)
-    low, high = (asymptotes.friction_coefficient(there, each) for each in asymptotes.limits(there))
-    assert low == pytest.approx(high, rel=1e-14)
 
 
 @pytest.mark.parametrize("kind", SUPPORTS)
@@ -199,44 +196,24 @@ def test_what_is_proved_of_a_foundation_covers_its_error(kind):
     scene = of(kv.Parabola(0.01), kind, ZENER)
     for number in range(2):
         key = f"foundation.arms[{number}]."
-        over[key + "stiffness"] = 1e10 * 10 ** rng.uniform(-3, 5, 12)
-        over[key + "relaxation_time"] = 10 ** rng.uniform(-4, 2, 12)
+        over[key + "stiffness"] = 1e10 * 10 ** rng.uniform(-3, 5, 6)
+        over[key + "relaxation_time"] = 10 ** rng.uniform(-4, 2, 6)
     scene = scene.replace(over)
-    for place, line in enumerate(reported(scene, tolerance).lines):
+    shown = zip(regimes.lines(scene), reported(scene, tolerance).lines, strict=True)
+    for line, told in shown:
         low = line.regime == "low"
-        edge, proved = line.velocity_max if low else line.velocity_min, line.velocity_proved
+        edge, proved = told.velocity_max if low else told.velocity_min, told.velocity_proved
         assert np.all((proved > 0) & (proved < np.inf))
         assert np.all((proved <= edge) if low else (proved >= edge))
         there = proved * 10.0 ** ((-1 if low else 1) * np.array([[0.0], [0.1], [1.0]]))
-        report = reported(scene, tolerance, there)
-        assert np.all(np.abs(report.lines[place].relative_error) <= tolerance)
+        assert np.all(errors(scene, line, there) <= tolerance)
 
 
 def test_the_bound_of_kelvin_voigt_is_not_idle():
     """Of 7 V t/c, more than a third is reached, so that a smaller factor would not cover."""
     scene = of(kv.Parabola(0.01), "dead-weight", kv.GeneralizedMaxwell(1e10, arms=[[1e13, 1e-5]]))
-    line = reported(scene, 0.01).lines[1]
-    report = reported(scene, 0.01, line.velocity_proved)
-    assert 0.002 < abs(report.lines[1].relative_error) < 0.01
-
-
-@pytest.mark.parametrize("n", [1.05, 1.2, 2.0, 6.0, 20.0])
-def test_the_friction_maximum_of_a_dead_weight(n):
-    scene = kv.Scene(kv.PowerLaw(0.01, n))
-    report = kv.asymptotes(scene)
-    velocity, top = report.peak_velocity, report.peak_friction_coefficient
-    at_peak = kv.steady(scene, over={V: velocity})
-    assert at_peak.friction_coefficient == pytest.approx(top, rel=1e-14)
-    assert 1.0 < at_peak.retardation_length / at_peak.half_length < 2.0
-    around = velocity * np.geomspace(1e-6, 1e6, 4001)
-    mu = kv.steady(scene, over={V: around}).friction_coefficient
-    assert np.all(mu <= top * (1 + 1e-15))
-    assert np.all(np.diff(mu[:1990]) > 0)  # no second one
-    assert np.all(np.diff(mu[2010:]) < 0)
-    if n == 2.0:
-        parabola = kv.asymptotes(kv.Scene(kv.Parabola(0.01)))
-        assert parabola.peak_velocity == pytest.approx(velocity, rel=1e-7)
-        assert parabola.peak_friction_coefficient == pytest.approx(top, rel=1e-14)
+    proved = reported(scene, 0.01).lines[1].velocity_proved
+    assert 0.002 < errors(scene, regimes.lines(scene)[1], proved) < 0.01
 
 
 @pytest.mark.parametrize("n", [1.0, 1.3, 2.0, 4.0, 10.0])

@@ -9,7 +9,7 @@ import pytest
 import kvtheory as kv
 from kvtheory.ladder import stiff_drive
 from kvtheory.ladder.climbing import Request
-from kvtheory.ladder.series import ON_RIGID, SOLVED, Models, rungs
+from kvtheory.ladder.series import ODD, ON_RIGID, SOLVED, Models, rungs
 from kvtheory.models.continuum.solver import solve
 from kvtheory.models.slow_manifold import motion as slow_motion
 from kvtheory.models.slow_manifold import start as slow_start
@@ -18,17 +18,12 @@ from kvtheory.results.table import scales as scales_of
 from kvtheory.scene.base_motion import BaseMotion
 from kvtheory.scene.static_state import StaticState
 from tests import slow_manifold_by_radau as slow_manifold
+from tests.ladder_scenes import scaled_scene
 
 
 def light(number=4.0, eps=1e-6, kappa=0.0, end=3.0):
     """Return a start from rest in scaled units."""
-    support = (
-        kv.Suspended(mass=eps, stiffness=kappa, gravity=1 / eps)
-        if kappa
-        else kv.DeadWeight(mass=eps, gravity=1 / eps)
-    )
-    drive, run = kv.Drive(number), kv.Run(end)
-    return kv.Scene(kv.Parabola(0.5), kv.Foundation(0.75, 1.0), support, drive, run)
+    return scaled_scene(kv.Drive(number), eps, kappa, end)
 
 
 @pytest.mark.parametrize(("number", "kappa"), [(0.1, 0.0), (4.0, 0.0), (100.0, 0.0), (2.0, 0.3)])
@@ -44,18 +39,14 @@ def test_the_quadrature_of_the_slow_manifold_agrees_with_its_integration(number,
 
 def random_start(rng):
     kappa = float(rng.choice([0.0, 10 ** rng.uniform(-2, 1.5)]))
-    number, eps, end = (
-        10 ** rng.uniform(-2, 2),
-        10 ** rng.uniform(-8, -1),
-        10 ** rng.uniform(-1, 1.3),
-    )
+    number, eps, end = (10 ** rng.uniform(*decades) for decades in ((-2, 2), (-8, -1), (-1, 1.3)))
     return number, eps, kappa, np.sort(end * 10 ** rng.uniform(-3, 0, 12))
 
 
 def test_the_estimate_covers_what_the_slow_manifold_neglects():
-    """Against the continuum with a far smaller tolerance, on a hundred starts."""
+    """Against the continuum with a far smaller tolerance."""
     rng, close, tried = np.random.default_rng(5), [], 0
-    for _ in range(160):
+    for _ in range(40):
         number, eps, kappa, times = random_start(rng)
         try:
             given = slow_start.start(number, eps, kappa)
@@ -74,7 +65,7 @@ def test_the_estimate_covers_what_the_slow_manifold_neglects():
             np.max(np.abs(found.values["depth"] - truth.depth)) / found.errors["depth"].max()
         )
         tried += 1
-    assert tried >= 80
+    assert tried >= 20
     assert np.median(close) > 0.3
 
 
@@ -89,16 +80,19 @@ def test_the_neglected_inertia_is_of_first_order():
 
 
 def test_the_slow_manifold_is_used_where_it_is_enough_and_only_there():
-    at = [0.1, 1.0]
-    assert kv.solve(light(), at=at, rtol=1e-3).model == "slow manifold"
-    assert kv.solve(light(), at=at, rtol=1e-8).model == "continuum"
-    assert kv.solve(light(eps=0.1), at=at, rtol=1e-3).model == "continuum"
-    assert kv.solve(light(), at=[0.0, 1.0], rtol=1e-3).model == "continuum"  # the layer
-    assert kv.solve(light(), at=[0.0, 1.0], quantity="depth", rtol=1e-3).model == "slow manifold"
-
-
-def test_ground_that_was_left_needs_the_continuum():
-    """A stiff spring unloads: the trailing edge moves out again, over ground that it left."""
+    late, early = [0.1, 1.0], [0.0, 1.0]
+    slow = kv.solve(light(), at=late, rtol=1e-3)
+    mirror = kv.solve(light(-4.0), at=late, rtol=1e-3)
+    assert slow.model == mirror.model == "slow manifold"
+    for name in SOLVED:
+        side = -1 if name in ODD else 1
+        np.testing.assert_array_equal(getattr(mirror, name), side * getattr(slow, name))
+    assert kv.solve(light(), at=late, rtol=1e-8).model == "continuum"
+    assert kv.solve(light(eps=0.1), at=late, rtol=1e-3).model == "continuum"
+    assert kv.solve(light(), at=early, rtol=1e-3).model == "continuum"  # the layer
+    depth = kv.solve(light(), at=early, quantity="depth", rtol=1e-3)
+    assert depth.model == "slow manifold"
+    # A stiff spring unloads: the trailing edge moves out again, over ground that it left.
     found = kv.solve(light(0.35, 1e-7, 24.0), at=[0.5], rtol=1e-2)
     assert found.model == "continuum"
     assert "back over ground" in found.climb[1].outcome
@@ -115,43 +109,21 @@ def test_what_is_steady_at_once_is_the_continuum_too(support, velocity):
     assert found.model == ("exact" if support == "fixed" or velocity == 0.0 else "continuum")
     truth, scales = kv.transient(scene, at=at, rtol=1e-9), scales_of(StaticState.of(scene))
     for name in SOLVED:
-        np.testing.assert_allclose(
-            getattr(found, name),
-            getattr(truth, name),
-            rtol=0,
-            atol=1e-6 * scales[name],
-            err_msg=name,
-        )
-
-
-def test_the_mirror_image():
-    at = [0.1, 1.0]
-    right, left = (kv.solve(light(side * 4.0), at=at, rtol=1e-3) for side in (1, -1))
-    assert right.model == left.model == "slow manifold"
-    for name in SOLVED:
-        odd = name in ("friction_force", "leading_edge", "trailing_edge")
-        np.testing.assert_array_equal(
-            getattr(left, name), (-1 if odd else 1) * getattr(right, name)
-        )
+        error = np.abs(getattr(found, name) - getattr(truth, name)).max() / scales[name]
+        assert error <= 1e-6, name
 
 
 def test_a_history_climbs_to_the_continuum_and_what_is_not_asked_for_is_not_given():
     history = [(0.0, 0.1), (0.05, 0.1), (0.05, 0.0)]
     scene = kv.Scene(drive=kv.Drive(history=history))
-    found = kv.solve(scene, at=[0.1], quantity=["depth", "friction_force"], rtol=1e-5)
-    assert found.model == "continuum"
+    found = kv.solve(scene, at=[0.1], quantity=["depth", "friction_force"], rtol=1e-9)
+    assert found.model == "continuum"  # with steps that are tightened until the certificate is met
     assert [step.outcome for step in found.climb[:2]] == ["the drive changes"] * 2
     assert np.isnan(found.normal_force).all()
     assert set(found.certificate.relative_error) == {"time", "velocity", "depth", "friction_force"}
-    assert max(found.certificate.relative_error.values()) <= 1e-5
+    assert max(found.certificate.relative_error.values()) <= 1e-9
     with pytest.raises(AttributeError, match="no `load`"):
         found.load  # noqa: B018
-
-
-def test_the_steps_are_tightened_until_the_certificate_is_met():
-    found = kv.solve(at=[1e-3, 0.2], rtol=1e-9)
-    assert found.model == "continuum"
-    assert max(found.certificate.relative_error.values()) <= 1e-9
 
 
 @pytest.mark.parametrize("rtol", [1e-1, 1e-2])
@@ -160,7 +132,7 @@ def test_the_elements_are_as_good_as_they_say(rtol):
     at = [1e-3, 5e-3, 0.05]
     request = Request(SOLVED, rtol, at, TRANSIENT_UNITS)
     scene = kv.Scene(run=kv.Run(0.05))
-    answer = rungs(Models(kv.steady, kv.transient, kv.elements))[-1].solve(scene, request, None)
+    answer = rungs(Models(kv.steady, kv.transient, kv.elements))[-1].judge(scene, request).run()
     truth, scales = kv.transient(scene, at=at, rtol=1e-9), scales_of(StaticState.of(scene))
     for name in SOLVED:
         error = np.max(np.abs(answer.values[name] - getattr(truth, name))) / scales[name]
@@ -168,12 +140,15 @@ def test_the_elements_are_as_good_as_they_say(rtol):
 
 
 def test_other_shapes_climb_to_the_elements():
-    scene = kv.Scene(kv.Wedge(inclination=0.05), run=kv.Run(0.02))
-    found = kv.solve(scene, at=[0.01, 0.02], quantity="depth", rtol=1e-2)
+    scene, at = kv.Scene(kv.Wedge(inclination=0.05), run=kv.Run(0.02)), [0.01, 0.02]
+    found = kv.solve(scene, at=at, quantity="depth", rtol=1e-2)
     assert found.model == "elements"
-    finer = kv.elements(scene, at=[0.01, 0.02], per_length=4.0 * found.answer.per_length)
+    finer = kv.elements(scene, at=at, per_length=4.0 * found.answer.per_length)
     assert found.depth == pytest.approx(finer.depth, rel=1e-2)
     assert math.isnan(found.climb[-2].error)
+    drive = kv.Drive(velocity="91 mm/s", stiffness="1 MN/m^2")
+    sprung = kv.Scene(kv.Circle(0.01), drive=drive, run=kv.Run(0.01))
+    assert kv.solve(sprung, at=[0.005], rtol=0.05).model == "elements"
 
 
 def stiff_case(seed):
@@ -188,9 +163,9 @@ def stiff_case(seed):
 
 
 def test_the_estimate_covers_what_a_rigid_drive_neglects():
-    """Against the continuum on the spring, on thirty starts; the bound is no more than it need be."""
+    """Against the continuum on the spring, on a dozen starts; the bound is not far above."""
     close, tried = [], 0
-    for seed in range(40):
+    for seed in range(16):
         sprung, rigid, at = stiff_case(seed)
         scales = scales_of(StaticState.of(sprung))
         on_rigid = kv.transient(rigid, at=at, rtol=1e-9, certify=False)
@@ -208,7 +183,7 @@ def test_the_estimate_covers_what_a_rigid_drive_neglects():
             if name == "friction_force":
                 close.append(error / largest)
         tried += 1
-    assert tried >= 25
+    assert tried >= 10
     assert np.median(close) > 0.03
 
 
@@ -230,7 +205,7 @@ def test_a_stiff_spring_counts_as_rigid_only_where_it_does():
     )
 
 
-@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize("seed", range(3))
 def test_what_the_spring_does_is_within_its_tolerance(seed):
     """Its force and the sliding velocity, by both models of a parabola, against a tight transient."""
     sprung, _, at = stiff_case(seed)
@@ -244,11 +219,3 @@ def test_what_the_spring_does_is_within_its_tolerance(seed):
 def test_a_rigid_drive_has_no_force_of_a_spring():
     with pytest.raises(ValueError, match=r"`quantity` = \"spring_force\": needs drive.stiffness"):
         kv.solve(quantity="spring_force", at="1 ms")
-
-
-def test_elements_follow_a_spring_under_what_is_no_parabola():
-    drive = kv.Drive(velocity="91 mm/s", stiffness="1 MN/m^2")
-    found = kv.solve(
-        kv.Scene(kv.Circle(0.01), drive=drive, run=kv.Run(0.01)), at=[0.005], rtol=0.05
-    )
-    assert found.model == "elements"

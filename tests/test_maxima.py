@@ -1,5 +1,7 @@
 """The maxima of friction over velocity: closed forms against the search, the search against dense scans."""
 
+import os
+
 import numpy as np
 import pytest
 
@@ -10,6 +12,7 @@ from tests import reference_viscoelastic
 V = "drive.velocity"
 TWO_ARMS = kv.GeneralizedMaxwell(1e10, arms=[["10 GN/m^3", "1 ms"], ["10 GN/m^3", "1 s"]])
 KINDS = "fixed", "dead-weight", "suspended"
+MANY = max(1, int(os.environ.get("KVTHEORY_TEST_SCENES", "200")) // 200)
 F3 = 3 * (np.sqrt(3) - 1) / 4 * (3 - np.sqrt(3)) ** (-1 / 3)
 """mu (K R^2/W)^(1/3) at the maximum."""
 
@@ -60,13 +63,13 @@ def random_scene(rng, shape, kind):
 
 
 @pytest.mark.parametrize(
-    ("shape", "count", "noise"), [(kv.Parabola, 85, 1e-13), (kv.Sphere, 15, 4e-11)]
+    ("shape", "count", "noise"), [(kv.Parabola, 24 * MANY, 1e-13), (kv.Sphere, 3 * MANY, 4e-11)]
 )
 def test_random_prony_series_have_the_maxima_of_a_scan_ten_times_denser(shape, count, noise):
     rng = np.random.default_rng(7)
     for number in range(count):
         scene = random_scene(rng, shape, KINDS[number % 3])
-        found = maxima.told(scene, "exact")
+        found = maxima.report(scene, "exact")
         errors = found["maxima_certificate"].relative_error["maxima"]
         agree(found["maxima"], errors, *scanned(scene, 3.5, noise=noise))
 
@@ -85,24 +88,29 @@ def test_the_known_maxima_of_a_dead_weight():
 
 
 @pytest.mark.parametrize(
-    "indenter", [kv.Parabola(0.01), kv.PowerLaw(0.01, 1.2), kv.PowerLaw(0.01, 6.0), kv.Sphere(0.01)]
-)
+    "indenter",
+    [kv.Parabola(0.01), kv.Sphere(0.01), *(kv.PowerLaw(0.01, n) for n in (1.05, 1.2, 2.0, 6.0, 20.0))],
+    ids=str,
+)  # fmt: skip
 def test_the_search_finds_what_the_closed_forms_say(indenter):
     scene = kv.Scene(indenter, support=kv.DeadWeight(load=3e3))
     (closed,) = kv.asymptotes(scene).maxima
-    rows = maxima._sought(scene.at(1.0), "exact", *maxima.FINE)
+    at_peak = kv.steady(scene, over={V: closed[0]})
+    assert at_peak.friction_coefficient == pytest.approx(closed[1], rel=1e-14)
+    assert 1.0 < at_peak.retardation_length / at_peak.half_length < 2.0
+    rows = maxima._search(scene.at(1.0), "exact", *maxima.FINE)
     assert rows.shape == (1, 4)
     assert abs(rows[0, :2] / closed - 1.0) == pytest.approx(0.0, abs=1e-4)
     assert np.all(abs(rows[0, :2] / closed - 1.0) <= rows[0, 2:] + maxima.CLOSED_ERROR)
     held = kv.Scene(indenter, support=kv.Fixed(depth=1e-4))
     assert kv.asymptotes(held).maxima == ()
-    assert maxima._sought(held.at(1.0), "exact", *maxima.FINE).shape == (0, 4)
+    assert maxima._search(held.at(1.0), "exact", *maxima.FINE).shape == (0, 4)
 
 
 @pytest.mark.parametrize("kind", KINDS)
 def test_a_plateau_and_a_limit_are_no_maxima(kind):
     wedge = kv.Scene(kv.Wedge(0.1), support=kv.Scene.table1(kind).support)
-    assert maxima._sought(wedge.at(1.0), "exact", *maxima.FINE).shape == (0, 4)
+    assert maxima._search(wedge.at(1.0), "exact", *maxima.FINE).shape == (0, 4)
     report = kv.asymptotes(wedge)
     assert report.maxima == ()
     assert np.isnan([report.peak_velocity, report.peak_friction_coefficient]).all()

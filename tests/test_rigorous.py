@@ -38,7 +38,6 @@ def scaled_velocity(q):
 
 def test_the_friction_maximum_is_enclosed():
     peak = 2 - arb(3).sqrt()
-    assert covers(2e-16, cf.PEAK_TRAILING_EDGE_RATIO, peak)
     assert covers(2e-16, cf.PEAK_DRIVE_NUMBER, scaled_velocity(peak))
     assert covers(2e-16, cf.PEAK_FRICTION, scaled_friction(peak))
     # A maximum: the centred slope changes its sign over an interval of 1e-20 around q.
@@ -58,7 +57,7 @@ def test_no_other_velocity_has_more_friction():
         if i == 0:
             continue  # below q = 1/4000 friction is under its asymptote, tested next
         value = scaled_friction(ball)
-        assert value < top or abs(float(centre) - cf.PEAK_TRAILING_EDGE_RATIO) < 0.02
+        assert value < top or abs(float(centre) - (2 - 3**0.5)) < 0.02
     assert scaled_friction(arb(1) / count) < top / 2
 
 

@@ -89,7 +89,7 @@ def test_slow_sliding_is_stable_for_every_stiffness():
 def test_a_fast_stiff_arm_is_a_damper(ball):
     """To first order in its relaxation time: ten times as fast, a tenth of the difference."""
     parts = {"indenter": kv.Sphere(0.01), "support": kv.DeadWeight(mass=1.0)} if ball else {}
-    velocity = np.array([0.039, 0.091, 0.214])
+    velocity = np.array([0.039, 0.214])
     scenes = [rubber([(1e9 / t, t)], velocity, **parts) for t in (1e-6, 1e-7)]
     damper = kv.Scene(drive=kv.Drive(velocity=velocity), **parts)
     truth, *found = (
@@ -100,8 +100,10 @@ def test_a_fast_stiff_arm_is_a_damper(ball):
     assert off[1] == pytest.approx(0.1 * off[0], rel=0.1)
 
 
-@pytest.mark.parametrize("support", ["dead-weight", "suspended", "fixed"])
-@pytest.mark.parametrize("ball", [False, True])
+@pytest.mark.parametrize(
+    ("support", "ball"),
+    [("dead-weight", False), ("suspended", False), ("fixed", False), ("suspended", True)],
+)
 def test_onsets_and_rates_solve_the_linearised_equations(support, ball):
     mass = 1.0 if ball else 1000.0
     kinds = {
@@ -125,7 +127,7 @@ def test_onsets_and_rates_solve_the_linearised_equations(support, ball):
         assert np.sign(kv.stability(scene, over=over, quantity="rates").rates[0, 0]) == side
 
 
-@pytest.mark.parametrize(("place", "side"), [(5, 0.7), (5, 1.4), (2, 0.7)])
+@pytest.mark.parametrize(("place", "side"), [(5, 1.4), (2, 0.7)])
 def test_discrete_elements_grow_or_fade_at_the_rate_on_both_sides_of_the_critical_stiffness(
     place, side
 ):
@@ -147,18 +149,18 @@ def test_the_general_way_agrees_with_the_closed_forms_on_kelvin_voigt(ball):
         scene = kv.Scene(indenter, kv.Foundation(1e10, 0.1), support, drive)
         closed = kv.stability(scene, quantity=[*QUICK, "rates"])
         own = closed.certificate.relative_error
-        *strips, crossings = general_stability.solve(scene.at(np.array([drive.velocity])))
-        values, _ = general_stability.critical(crossings, 1)
-        for name in ("critical_stiffness", "frequency"):
+        motions = general_stability.SmallMotions(scene.at(np.array([drive.velocity])).flat())
+        (upper, _, frequency), _ = motions.critical()
+        for name, (value,) in (("critical_stiffness", upper), ("frequency", frequency)):
             there = getattr(closed, name)
-            assert np.isnan(values[name][0]) == np.isnan(there)
+            assert np.isnan(value) == np.isnan(there)
             if not np.isnan(there):
                 seen += 1
-                allowed = own[name] + crossings.error.max()
-                assert abs(values[name][0] / there - 1.0) <= allowed < 1e-7
-        found, _ = general_stability.rates(*strips, drive.stiffness)
+                allowed = own[name] + motions.crossings.error.max()
+                assert abs(value / there - 1.0) <= allowed < 1e-7
+        found, _ = motions.rates(np.array([drive.stiffness]))
         quartic = closed.rates @ [1.0, 1.0j]
-        assert np.sort_complex(found) == pytest.approx(np.sort_complex(quartic), rel=1e-7)
+        assert np.sort_complex(found[0]) == pytest.approx(np.sort_complex(quartic), rel=1e-7)
     assert seen >= 6
 
 
@@ -169,12 +171,13 @@ def test_a_ball_gets_as_many_strips_as_its_error_needs(monkeypatch):
     scene = rubber(arms, np.array([0.049]), 1e3, **parts).flat()
     monkeypatch.setattr(general_stability, "STRIPS", 6)
     monkeypatch.setattr(general_stability, "ACCURATE", np.inf)
-    few = general_stability.solve(scene)[-1]
+    few = general_stability.SmallMotions(scene).crossings
     monkeypatch.setattr(general_stability, "ACCURATE", 1e-8)
-    _, given, _, found = general_stability.solve(scene)
-    monkeypatch.setattr(general_stability, "STRIPS", 400)
-    truth = general_stability.solve(scene)[-1]
-    assert len(given.c) > 6
+    motions = general_stability.SmallMotions(scene)
+    found = motions.crossings
+    monkeypatch.setattr(general_stability, "STRIPS", 192)
+    truth = general_stability.SmallMotions(scene).crossings
+    assert len(motions.fine.c) > 6
     for each in (few, found):
         assert np.all(np.abs(each.stiffness / truth.stiffness - 1.0) <= each.error + truth.error)
     assert np.all(found.error < 1e-8)

@@ -18,7 +18,15 @@ from kvtheory.derivations.symbols import kappa, l, lam, q, s, xi
 
 pytestmark = pytest.mark.usefixtures("fifty_digits")
 
-OWNER = {form.symbol: form.label for form in emit.FORMS}
+ERRORS = {
+    "error-load-low": sym.e_load_low, "error-friction-low": sym.e_friction_low, "error-L1": sym.e_l1,
+    "error-load-high": sym.e_load_high, "error-friction-high": sym.e_friction_high,
+    "error-L2-fixed": sym.e_l2_fixed, "error-L2-dead-weight": sym.e_l2_weight,
+    "error-depth-low": sym.e_depth_low, "error-depth-high": sym.e_depth_high,
+}  # fmt: skip
+OWNER = {form.symbol: form.label for form in emit.FORMS} | {
+    symbol: label for label, symbol in ERRORS.items()
+}
 NUMBERS = ("1e-4", "0.1", "0.75", "1", "1.7", "30", "1e5")
 """Retardation length over half length."""
 
@@ -245,9 +253,6 @@ def asymptotes(number):
         "error-depth-low": mp.cbrt(load / (2 * alpha)) ** 2 / depth,
         "error-depth-high": load / viscous / depth,
     }
-
-
-ERRORS = {form.label: form.symbol for form in emit.FORMS if form.label.startswith("error-")}
 
 
 @pytest.mark.parametrize("number", NUMBERS)

@@ -70,7 +70,7 @@ def asymptotes(
     from kvtheory.models.steady import maxima, regimes  # SciPy takes a while to import
 
     with double_precision(scene):
-        told = maxima.told(scene, method)
+        found = maxima.report(scene, method)
         if lacks_limits(scene):
-            return regimes.unknown(scene, tolerance, told, method)
-        return regimes.report(scene, tolerance, told)
+            return regimes.unknown(scene, tolerance, found, method)
+        return regimes.report(scene, tolerance, found)

@@ -8,9 +8,6 @@ const ALPHA = 0.9428090415820634;
 /** V tau (K/(R W))^(1/3) at the crossing velocity, dead weight; theorem F5. */
 const CRITICAL_DRIVE_NUMBER = 0.9614997135382722;
 
-/** q at the friction maximum of a dead weight; theorem F3. */
-const PEAK_TRAILING_EDGE_RATIO = 0.2679491924311227;
-
 /** V tau (K/(R W))^(1/3) at the friction maximum of a dead weight; theorem F3-values. */
 const PEAK_DRIVE_NUMBER = 1.6002702943554925;
 
@@ -35,11 +32,6 @@ function friction_force_factor(l, q) {
 /** m = mu R/a; theorem F16. */
 function friction_coefficient_factor(l, q) {
   return l * q * (q * q - q + 4) / ((q + 1) * ((1 - q) * (1 - q) + 2));
-}
-
-/** p/(K delta) at x = xi a; theorem F16. */
-function pressure_factor(q, xi) {
-  return (q - xi) * (q * xi + 1) / q;
 }
 
 /** the maximum of p/(K delta); theorem F7. */
@@ -71,59 +63,6 @@ function scaled_load_curvature(s, lam) {
   return 3 * (r + s) * (r + s) / (2 * r);
 }
 
-/** L1/mu - 1 (Eq. 42); theorem error-L1. */
-function error_l1(l, q) {
-  return 6 * l / ((q + 1) * (q * q - q + 4));
-}
-
-/** L2/mu - 1, fixed depth (Eq. 45); theorem error-L2-fixed. */
-function error_l2_fixed(q, l) {
-  return (q + 1) * (3 * q * q - 2 * q + 7) / (6 * l * (q * q - q + 4));
-}
-
-/** L2/mu - 1, dead weight (Eq. 46); theorem error-L2-dead-weight. */
-function error_l2_dead_weight(l, q) {
-  const e_depth_high = error_depth_high(l, q);
-  const S = e_depth_high / (Math.sqrt(e_depth_high + 1) + 1);
-  const e_L2 = error_l2_fixed(q, l);
-  return S * (e_L2 + 1) + e_L2;
-}
-
-/** (Eq. 40)/W - 1; theorem error-load-low. */
-function error_load_low(l, q) {
-  const gap = 2 * l * q / (q + 1);
-  return -gap * gap * (q * q + 2 * q + 3) / ((q + 1) * (q + 1) * ((1 - q) * (1 - q) + 2));
-}
-
-/** (Eq. 43)/W - 1; theorem error-load-high. */
-function error_load_high(q) {
-  return -q * (q * q - q + 4) / ((q + 1) * ((1 - q) * (1 - q) + 2));
-}
-
-/** (Eq. 41)/F - 1; theorem error-friction-low. */
-function error_friction_force_low(l, q) {
-  const gap = 2 * l * q / (q + 1);
-  return gap * (q * q + q + 4) / ((q + 1) * (q * q - q + 4));
-}
-
-/** (Eq. 44)/F - 1; theorem error-friction-high. */
-function error_friction_force_high(q) {
-  return -q * (q * q + 3) / ((q + 1) * (q * q - q + 4));
-}
-
-/** delta_0/delta - 1, dead weight; theorem error-depth-low. */
-function error_depth_low(l, q) {
-  const gap = 2 * l * q / (q + 1);
-  const E = gap * gap * (q * q + 2 * q + 3) / (8 * q);
-  const b = Math.cbrt(E + 1);
-  return E * (b + 1) / (b * b + b + 1);
-}
-
-/** (Eq. 49)/delta - 1, dead weight; theorem error-depth-high. */
-function error_depth_high(l, q) {
-  return (q + 1) * (q * q - q + 4) / (6 * l);
-}
-
 /** c in circle/parabola = 1 + c (a/R)^2, for W; theorem circle-fixed. */
 function circle_load(q) {
   return -3 * q * ((1 - q) * (-3 * q * (1 - q) + 1) + 1) / (20 * (1 - q) * (1 - q) + 40);
@@ -144,12 +83,6 @@ function circle_friction_coefficient(q) {
 /** c in circle/parabola = 1 + c (a/R)^2, for mu at given load; theorem circle-dead-weight. */
 function circle_friction_coefficient_at_load(q) {
   return 3 * (q + 1) * (2 * q + 3 * (1 - q) * (1 - q)) / (10 * (q * q - q + 4));
-}
-
-/** c in circle/parabola = 1 + c (a/R)^2, for delta at given load; theorem circle-dead-weight. */
-function circle_depth_at_load(q) {
-  const c_W = circle_load(q);
-  return -c_W * ((1 - q) * (1 - q) / 3 + 2 / 3);
 }
 
 /** w = W/(K delta a); theorem F19-load. */
@@ -193,16 +126,6 @@ function power_law_high(n) {
   return n * n / (2 * n - 1);
 }
 
-/** l where the asymptotes of mu meet; theorem F19-crossing. */
-function power_law_crossing(n) {
-  return n / (n + 1);
-}
-
-/** V tau/a_0 where they meet, at a load; theorem F19-crossing-weight. */
-function power_law_crossing_at_load(n, kappa) {
-  return 2 ** ((n - 1) / (2 * n - 1)) * n * (kappa + 1) ** ((n - 1) / (2 * n - 1)) / (n + 1);
-}
-
 /** f = W/W_0 at s = a/a_0, r = x_TE/a_0, lam = V tau/a_0; theorem F19-scaled-load. */
 function power_law_scaled_load(n, s, r, lam) {
   return s ** n * (lam * lam / (lam * n + r) + lam + r + s) / 2;
@@ -218,66 +141,6 @@ function power_law_friction_rise(n, l, q, Q) {
   return -Q * Q * Q * l * l * l * n * (2 * n - 1) + (Q * Q * q + 1) * (-Q * l * l * (2 * n - 1) + l + q + 1);
 }
 
-/** 1 - q from z = n l Q; theorem F19-peeled. */
-function power_law_peeled(n, peeled) {
-  return -Math.expm1(Math.log1p(-peeled) / n);
-}
-
-/** 1 - Q from z = n l Q; theorem F19-peeled. */
-function power_law_slope_drop(n, peeled) {
-  return -Math.expm1((n - 1) * Math.log1p(-peeled) / n);
-}
-
-/** l - (1 - q) from y = -ln q, phi_2((n - 1) y) and phi_2(-y); theorem F19-bend. */
-function power_law_bend(n, y, phi_rise, phi_fall) {
-  return y * y * (n - 1) * (phi_fall + phi_rise * (n - 1)) / n;
-}
-
-/** L1/mu - 1; theorem F19-error-L1. */
-function power_law_error_l1(n, l, q, Q, gap_Q) {
-  const damped = Q * Q * l * (2 * n - 1) / 2 + Q * Q * q + 1;
-  return (-Q * Q * l * (2 * n - 1) / 2 + Q * l * l + gap_Q * q * (Q + 1) + l) / damped;
-}
-
-/** L2/mu - 1, fixed depth; theorem F19-error-L2. */
-function power_law_error_l2(n, l, q, Q) {
-  const blunt = (n - 1) * (2 * n * n + q * (Q + n) * (2 * n + 2) - 1) / (2 * n * n * (n + 1));
-  const damped = Q * Q * l * (2 * n - 1) / 2 + Q * Q * q + 1;
-  const sharp = Q * q * q * (Q + 2 * n / (n + 1)) / (2 * n * n);
-  return (blunt + sharp) / (damped * l);
-}
-
-/** load for l -> 0 over W, - 1; theorem F19-error-load-low. */
-function power_law_error_load_low(l, q, Q, bend) {
-  const whole = Q * l * l + l + q + 1;
-  return (-Q * l * l - bend) / whole;
-}
-
-/** C V delta/W - 1; theorem F19-error-load-high. */
-function power_law_error_load_high(n, l, q, Q) {
-  const tip = n * n + q * (Q * q + n * n - 1);
-  const whole = Q * l * l + l + q + 1;
-  return -tip / (n * n * whole);
-}
-
-/** friction force for l -> 0 over F, - 1; theorem F19-error-friction-low. */
-function power_law_error_friction_low(n, l, q, Q, gap_q, gap_Q) {
-  const damped = Q * Q * l * (2 * n - 1) / 2 + Q * Q * q + 1;
-  return (-Q * Q * l * (2 * n - 1) / 2 + gap_Q * q * (Q + 1) + gap_q) / damped;
-}
-
-/** friction force for l -> oo over F, - 1; theorem F19-error-friction-high. */
-function power_law_error_friction_high(n, l, q, Q) {
-  const damped = Q * Q * l * (2 * n - 1) / 2 + Q * Q * q + 1;
-  return (-Q * Q * l * (2 * n - 1) / 2 - Q * Q * q) / damped;
-}
-
-/** W/(C V delta) - 1, dead weight; theorem F19-error-depth-high. */
-function power_law_error_depth_high(n, l, q, Q) {
-  const tip = n * n + q * (Q * q + n * n - 1);
-  return tip / (l * n * (n + 1));
-}
-
 /** delta/delta_0 of a wedge while lam < s; theorem wedge-weight-peeling. */
 function wedge_scaled_depth_peeling(kappa, lam) {
   const held = kappa - lam * lam / 2 + 1;
@@ -287,42 +150,6 @@ function wedge_scaled_depth_peeling(kappa, lam) {
 /** delta/delta_0 of a wedge from lam = s on; theorem wedge-weight-peeled. */
 function wedge_scaled_depth_peeled(kappa, lam) {
   return (2 * kappa + 2) / (kappa + lam + Math.sqrt(2 * kappa + (kappa + lam) * (kappa + lam) + 2));
-}
-
-/** df_z/dd' at the half length a, in units of a_0; theorem F22-numbers. */
-function damping_across(a, q) {
-  return 3 * a * (q + 1) / 4;
-}
-
-/** df_x/dlam at the half length a, in units of a_0; theorem F22-numbers. */
-function damping_along(a, q) {
-  return a * a * a * (q + 1) * (q + (1 - q) * (1 - q));
-}
-
-/** df_z/dd + kappa over df_z/dd'; theorem F22-numbers. */
-function relaxation_rate(q, S_s) {
-  return S_s + (q + 1) / (2 * q);
-}
-
-/** df_x/dd over df_x/dd'; theorem F22-numbers. */
-function coupling_rate(q) {
-  return (q + 1) / q;
-}
-
-/** how strongly the motions across and along are coupled; theorem F22-numbers. */
-function coupling(l, q, n_x) {
-  return 3 * l * l * q * q / ((n_x + 1) * (q + 1) * (q + 1) * (q + (1 - q) * (1 - q)));
-}
-
-/** 1 - coupling; theorem F22-numbers. */
-function uncoupled(q, n_x) {
-  return (n_x + (q + 1) * (q + 1) / (4 * q + 4 * (1 - q) * (1 - q))) / (n_x + 1);
-}
-
-/** what has the sign of dF/dV + c_x; theorem F22-numbers. */
-function friction_rise(q, n_x, S_s) {
-  const e_0 = (q + 1) * (-q * q + 4 * q - 1) / (4 * q * (q + (1 - q) * (1 - q)));
-  return S_s + (e_0 + n_x * (q + 1) / (2 * q)) / (n_x + 1);
 }
 
 /** the square of T_z^2 times the difference of both Omega; theorem F22-critical. */
@@ -408,6 +235,68 @@ function ball_scaled_load_curvature(s, lam, theta_b) {
   return 8 * s * s * (2 * lam * s + Math.PI * s * s + theta_b * (lam * lam + 2 * s * s)) / Math.PI;
 }
 
+/** what has the sign of dmu/dV under a dead weight; theorem F20-peak. */
+function ball_friction_rise(l, T_b) {
+  const D_b = ball_loss(l, T_b);
+  const w_b = ball_load_factor(l, T_b);
+  return -5 * l * (4 / 3 - 2 * D_b) / 4 + w_b * (-8 * D_b * l / (T_b + Math.PI) + 1);
+}
+
+/** f_x of a peeling contact from the width b, the right edge and rho; theorem F11-peel. */
+function peeling_friction_force(b, r, rho) {
+  return b * b * (b * (-3 * b + 8 * rho) + 4 * r * (b - 3 * rho)) / 8;
+}
+
+/** the moment P of an arm; theorem F17-arm. */
+function arm_ahead(A_v, t_v0, x_v) {
+  return A_v * (t_v0 * x_v + 1) / 2;
+}
+
+/** the moment D of an arm; theorem F17-arm. */
+function arm_bulge(A_v, t_v0) {
+  return A_v * t_v0 / 4;
+}
+
+/** the moment E of an arm; theorem F17-arm. */
+function arm_twist(A_v, t_v0, t_v1, x_v) {
+  return A_v * t_v0 * x_v * (t_v1 * (x_v + 1) + 1) / 24;
+}
+
+/** the energy that an arm dissipates in the contact; theorem F17-energy. */
+function arm_lost(A_v, B_v, E_v, P_v, eta_v, z_v) {
+  return -B_v * B_v / 2 + E_v + eta_v * (A_v * B_v + eta_v * (A_v * P_v * z_v / 2 + B_v));
+}
+
+/** the moment P of a springpot of order 1 - nu_v, times nu_v; theorem F17-springpot. */
+function springpot_ahead(nu_v) {
+  return 1 / (nu_v + 1);
+}
+
+/** the moment Q of a springpot of order 1 - nu_v, times nu_v; theorem F17-springpot. */
+function springpot_behind(nu_v) {
+  return nu_v / (nu_v + 1);
+}
+
+/** the moment D of a springpot of order 1 - nu_v, times nu_v; theorem F17-springpot. */
+function springpot_bulge(nu_v) {
+  return nu_v / ((nu_v + 2) * (2 * nu_v + 2));
+}
+
+/** the moment E of a springpot of order 1 - nu_v, times nu_v; theorem F17-springpot. */
+function springpot_twist(nu_v) {
+  return (1 - nu_v) / (4 * (nu_v + 1) * (nu_v + 3));
+}
+
+/** l where the asymptotes of mu meet; theorem F19-crossing. */
+function power_law_crossing(n) {
+  return n / (n + 1);
+}
+
+/** V tau/a_0 where they meet, at a load; theorem F19-crossing-weight. */
+function power_law_crossing_at_load(n, kappa) {
+  return 2 ** ((n - 1) / (2 * n - 1)) * n * (kappa + 1) ** ((n - 1) / (2 * n - 1)) / (n + 1);
+}
+
 /** l where the asymptotes of mu meet; theorem F20-crossing. */
 const BALL_CROSSING = 0.5890486225480862;
 
@@ -416,41 +305,40 @@ function ball_crossing_at_load(kappa) {
   return 3 * Math.PI * Math.sqrt(Math.sqrt(2 * kappa + 2)) / 16;
 }
 
-/** what has the sign of dmu/dV under a dead weight; theorem F20-peak. */
-function ball_friction_rise(l, T_b) {
-  const D_b = ball_loss(l, T_b);
-  const w_b = ball_load_factor(l, T_b);
-  return -5 * l * (4 / 3 - 2 * D_b) / 4 + w_b * (-8 * D_b * l / (T_b + Math.PI) + 1);
+/** df_z/dd' at the half length a, in units of a_0; theorem F22-numbers. */
+function damping_across(a, q) {
+  return 3 * a * (q + 1) / 4;
 }
 
-/** L1/mu - 1; theorem F20-error-L1. */
-function ball_error_l1(l, T_b) {
-  return 4 * l / (3 * T_b / 4 + 3 * Math.PI / 4);
+/** df_x/dlam at the half length a, in units of a_0; theorem F22-numbers. */
+function damping_along(a, q) {
+  return a * a * a * (q + 1) * (q + (1 - q) * (1 - q));
 }
 
-/** L2/mu - 1, fixed depth; theorem F20-error-L2. */
-function ball_error_l2(l, T_b) {
-  return -T_b / (T_b + Math.PI) + 3 * Math.PI / (16 * l);
+/** df_z/dd + kappa over df_z/dd'; theorem F22-numbers. */
+function relaxation_rate(q, S_s) {
+  return S_s + (q + 1) / (2 * q);
 }
 
-/** load for l -> 0 over W, - 1; theorem F20-error-load-low. */
-function ball_error_load_low(l, T_b) {
-  return (-T_b - 16 * l / 3 + Math.PI) / (T_b + 16 * l / 3 + Math.PI);
+/** df_x/dd over df_x/dd'; theorem F22-numbers. */
+function coupling_rate(q) {
+  return (q + 1) / q;
 }
 
-/** load for l -> oo over W, - 1; theorem F20-error-load-high. */
-function ball_error_load_high(l, T_b) {
-  return (-T_b - Math.PI) / (T_b + 16 * l / 3 + Math.PI);
+/** how strongly the motions across and along are coupled; theorem F22-numbers. */
+function coupling(l, q, n_x) {
+  return 3 * l * l * q * q / ((n_x + 1) * (q + 1) * (q + 1) * (q + (1 - q) * (1 - q)));
 }
 
-/** friction force for l -> 0 over F, - 1; theorem F20-error-friction-low. */
-function ball_error_friction_low(l, T_b) {
-  return (Math.PI - T_b) / (T_b + Math.PI);
+/** 1 - coupling; theorem F22-numbers. */
+function uncoupled(q, n_x) {
+  return (n_x + (q + 1) * (q + 1) / (4 * q + 4 * (1 - q) * (1 - q))) / (n_x + 1);
 }
 
-/** friction force for l -> oo over F, - 1; theorem F20-error-friction-high. */
-function ball_error_friction_high(l, T_b) {
-  return -T_b / (T_b + Math.PI);
+/** what has the sign of dF/dV + c_x; theorem F22-numbers. */
+function friction_rise(q, n_x, S_s) {
+  const e_0 = (q + 1) * (-q * q + 4 * q - 1) / (4 * q * (q + (1 - q) * (1 - q)));
+  return S_s + (e_0 + n_x * (q + 1) / (2 * q)) / (n_x + 1);
 }
 
 /** p/(K delta) at x = y a; with -l for l, at x = -y a; theorem F19-pressure. */
@@ -466,11 +354,6 @@ function peeling_edge(d, d_s, lam) {
 /** f_z from the width b and rho; theorem F11-peel. */
 function peeling_normal_force(b, rho) {
   return b * b * (-b + 3 * rho) / 4;
-}
-
-/** f_x, likewise; theorem F11-peel. */
-function peeling_friction_force(b, r, rho) {
-  return b * b * (b * (-3 * b + 8 * rho) + 4 * r * (b - 3 * rho)) / 8;
 }
 
 /** df_z/dd after a start; theorem F11-start. */
@@ -498,44 +381,9 @@ function arm_rest(z_v) {
   return -2 * Math.exp(-z_v) / (1 - Math.exp(-z_v)) + 2 / z_v;
 }
 
-/** the moment P_v of an arm; theorem F17-arm. */
-function arm_ahead(A_v, t_v0, z_v) {
-  return A_v * (t_v0 * z_v / 2 + 1) / 2;
-}
-
-/** the moment Q_v of an arm; theorem F17-arm. */
-function arm_behind(A_v, t_v0, z_v) {
-  return A_v * (-t_v0 * z_v / 2 + 1) / 2;
-}
-
-/** the moment D_v of an arm; theorem F17-arm. */
-function arm_bulge(A_v, t_v0) {
-  return A_v * t_v0 / 4;
-}
-
-/** the moment E_v of an arm; theorem F17-arm. */
-function arm_twist(A_v, t_v0, t_v1, z_v) {
-  return A_v * t_v0 * z_v * (t_v1 * (z_v / 2 + 1) + 1) / 48;
-}
-
-/** the moment P_v of a springpot of order 1 - nu, times nu; theorem F17-springpot. */
-function springpot_ahead(nu_v) {
-  return 1 / (nu_v + 1);
-}
-
-/** the moment Q_v of a springpot of order 1 - nu, times nu; theorem F17-springpot. */
-function springpot_behind(nu_v) {
-  return nu_v / (nu_v + 1);
-}
-
-/** the moment D_v of a springpot of order 1 - nu, times nu; theorem F17-springpot. */
-function springpot_bulge(nu_v) {
-  return nu_v / ((nu_v + 2) * (2 * nu_v + 2));
-}
-
-/** the moment E_v of a springpot of order 1 - nu, times nu; theorem F17-springpot. */
-function springpot_twist(nu_v) {
-  return (1 - nu_v) / (4 * (nu_v + 1) * (nu_v + 3));
+/** the moment Q of an arm, for z <= 4; theorem F17-arm. */
+function arm_behind(A_v, t_v0, x_v) {
+  return A_v * (-t_v0 * x_v + 1) / 2;
 }
 
 /** the load from the moments; theorem F17-load. */
@@ -546,11 +394,6 @@ function moments_load(D_v, P_v, eta_v) {
 /** the friction force from the moments; theorem F17. */
 function moments_work(E_v, P_v, eta_v) {
   return E_v + P_v * eta_v * eta_v;
-}
-
-/** the energy that an arm dissipates in the contact; theorem F17-energy. */
-function arm_lost(A_v, B_v, E_v, P_v, eta_v, z_v) {
-  return -B_v * B_v / 2 + E_v + eta_v * (A_v * B_v + eta_v * (A_v * P_v * z_v / 2 + B_v));
 }
 
 /** int h'^2 dx/R of a circle, from the lowest point to where the slope is this; theorem circle-steepness. */

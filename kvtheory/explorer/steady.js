@@ -92,8 +92,8 @@ function arm_moments(z) {
   if (!near) t_1 = arm_next_ratio(t_0, z);
   const A = z > 0 ? -fall / z : 1;
   return {
-    P: arm_ahead(A, t_0, z), Q: near ? arm_behind(A, t_0, z) : 0.5 * A * arm_rest(z),
-    D: arm_bulge(A, t_0), E: arm_twist(A, t_0, t_1, z), end: 1 + fall, A,
+    P: arm_ahead(A, t_0, x), Q: near ? arm_behind(A, t_0, x) : 0.5 * A * arm_rest(z),
+    D: arm_bulge(A, t_0), E: arm_twist(A, t_0, t_1, x), end: 1 + fall, A,
   };
 }
 

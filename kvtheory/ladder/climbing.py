@@ -11,6 +11,9 @@ from kvtheory.results.certificate import Value
 from kvtheory.results.errors import ToleranceError
 from kvtheory.scene.model import Scene
 
+TOO_LARGE, USED = "error too large", "used"
+"""Outcomes of a rung; any other is the reason why it does not apply."""
+
 
 @dataclass(frozen=True)
 class Request:
@@ -26,42 +29,41 @@ class Request:
     units: Mapping[str, str] = field(default_factory=lambda: STEADY_UNITS)
 
 
-class Judgement(NamedTuple):
-    """What is known of a model before it runs.
-
-    `reason` is not empty where it does not apply; `error` is a bound or an estimate of its error, NaN
-    where only running it tells; `known` is handed on to the run.
-    """
-
-    reason: str = ""
-    error: float = math.nan
-    known: Any = None
-
-
 class Answer(NamedTuple):
-    """What a model found, with an error for each of the quantities that were asked for."""
+    """The values of a model, with an error for each of the requested quantities."""
 
     values: Mapping[str, Value]
     certificate: Certificate
     result: Any = None
 
 
+class Offer(NamedTuple):
+    """What a model offers before it runs: a bound or an estimate of its error, NaN where only running tells.
+
+    `run` may raise ValueError or ArithmeticError where an assumption turns out to be wrong.
+    """
+
+    error: float
+    run: Callable[[], Answer]
+
+
 @dataclass(frozen=True)
 class Rung:
-    """One model: what it assumes, how that is judged, and how it runs.
+    """A model: its name, its assumptions, and its offer for a scene and a request.
 
-    `judge` costs little, whatever the scene; `solve` may raise ValueError or ArithmeticError where an
-    assumption turns out wrong on the way.
+    `judge` costs little for any scene; it raises ValueError or ArithmeticError, which say why, where the
+    model does not apply.
     """
 
     name: str
     assumed: str
-    judge: Callable[[Scene, Request], Judgement]
-    solve: Callable[[Scene, Request, Any], Answer]
+    judge: Callable[[Scene, Request], Offer]
 
 
-TOO_LARGE = "error too large"
-USED = "used"
+def need(*reasons: str) -> None:
+    """Raise ValueError with the first reason that is not empty."""
+    for reason in filter(None, reasons):
+        raise ValueError(reason)
 
 
 def climb(scene: Scene, request: Request, rungs: Sequence[Rung]) -> Solution:
@@ -74,9 +76,24 @@ def climb(scene: Scene, request: Request, rungs: Sequence[Rung]) -> Solution:
     """
     steps: list[ClimbStep] = []
     for rung in rungs:
-        step, answer = _try(rung, scene, request)
-        steps.append(step)
-        if answer is not None:
+        begun = judged = perf_counter()
+        answer, error, outcome = None, math.nan, TOO_LARGE
+        try:
+            error, run = rung.judge(scene, request)
+            judged = perf_counter()
+            if not error > request.rtol:  # it may be NaN
+                error = math.nan
+                answer = run()
+                errors = answer.certificate.relative_error
+                error = max(errors[name] for name in request.quantities)
+                outcome = USED if error <= request.rtol else TOO_LARGE
+        except (ValueError, ArithmeticError) as failed:
+            outcome = str(failed)
+            judged = judged if judged > begun else perf_counter()
+        margin = math.inf if error == 0.0 else request.rtol / error
+        times = judged - begun, perf_counter() - judged
+        steps.append(ClimbStep(rung.name, rung.assumed, outcome, error, margin, *times))
+        if answer is not None and outcome == USED:
             return Solution(
                 values=answer.values, rtol=request.rtol, model=rung.name,
                 certificate=answer.certificate, climb=tuple(steps), answer=answer.result,
@@ -85,45 +102,17 @@ def climb(scene: Scene, request: Request, rungs: Sequence[Rung]) -> Solution:
     raise ToleranceError(_failure(request, steps))
 
 
-def _try(rung: Rung, scene: Scene, request: Request) -> tuple[ClimbStep, Answer | None]:
-    """Judge a model and, if it may be enough, run it; give its answer only if it is enough."""
-
-    def step(outcome: str, error: float, solving: float = 0.0) -> ClimbStep:
-        margin = math.inf if error == 0.0 else request.rtol / error
-        return ClimbStep(
-            rung.name, rung.assumed, outcome, error, margin, judged_at - begun, solving
-        )
-
-    begun = perf_counter()
-    try:
-        judged = rung.judge(scene, request)
-    except (ValueError, ArithmeticError) as failed:
-        judged = Judgement(str(failed))
-    judged_at = perf_counter()
-    if judged.reason:
-        return step(judged.reason, judged.error), None
-    if judged.error > request.rtol:
-        return step(TOO_LARGE, judged.error), None
-    try:
-        answer = rung.solve(scene, request, judged.known)
-    except (ValueError, ArithmeticError) as failed:
-        return step(str(failed), math.nan, perf_counter() - judged_at), None
-    solving = perf_counter() - judged_at
-    error = max(answer.certificate.relative_error[name] for name in request.quantities)
-    if error <= request.rtol:  # never with a NaN
-        return step(USED, error, solving), answer
-    return step(TOO_LARGE, error, solving), None
-
-
 def _failure(request: Request, steps: Sequence[ClimbStep]) -> str:
-    reached = [step.error for step in steps if step.outcome == TOO_LARGE and step.error < math.inf]
-    hint = f"; try a tolerance from {min(reached):.1e}" if reached else ""
-    reasons: dict[str, list[str]] = {}  # each once, with the models that it holds for
+    """Say how close each model came, and each reason once, with the models that it holds for."""
+    reached, reasons = [], dict[str, list[str]]()
     for step in steps:
-        known = step.outcome == TOO_LARGE and step.error < math.inf
-        reached_by = f" ({step.error:.1e})" if known else ""
-        models = reasons.setdefault(step.outcome + reached_by, [])
+        reason = step.outcome
+        if reason == TOO_LARGE and step.error < math.inf:
+            reached.append(step.error)
+            reason += f" ({step.error:.1e})"
+        models = reasons.setdefault(reason, [])
         if step.rung not in models:
             models.append(step.rung)
+    hint = f"; try a tolerance from {min(reached):.1e}" if reached else ""
     tried = "; ".join(f"{', '.join(models)}: {reason}" for reason, models in reasons.items())
     return f"no model is known to be within rtol = {request.rtol:g}{hint}; {tried}"

@@ -1,4 +1,4 @@
-"""A Prony series that slow motion cannot tell from Kelvin-Voigt: the continuum, and what that neglects.
+"""A Prony series that slow motion cannot tell from Kelvin-Voigt: what the equivalent damper neglects.
 
 To a motion that changes at the rate sigma, an arm answers as a damper C_i/(1 + sigma tau_i), C_i = K_i tau_i,
 which is between C_i and that of the fastest change. So the answer of the Kelvin-Voigt foundation with C =
@@ -15,10 +15,8 @@ from typing import Any
 
 import numpy as np
 
-from kvtheory.ladder.climbing import Judgement, Request
 from kvtheory.results import SteadyState
 from kvtheory.results.table import scales
-from kvtheory.scene.capabilities import lacks_parabola
 from kvtheory.scene.drives import Drive
 from kvtheory.scene.foundations import Foundation
 from kvtheory.scene.model import Scene
@@ -27,7 +25,7 @@ from kvtheory.scene.static_state import StaticState
 SAFETY = 4.0
 """Of the estimate: the largest error on random scenes was 0.6 of the estimate with it."""
 LEAST_DAMPING = 0.7
-"""Of C: where a change is so fast that less is felt, an estimate of first order is none."""
+"""Of C: an arm that gives less than this at the fastest change makes a first-order estimate meaningless."""
 STEADY_NAMES = {"normal_force": "load", "spring_force": "friction_force"}
 """Names of steady sliding that differ from those of a series."""
 STATEMENT = (
@@ -51,62 +49,50 @@ def foundation(scene: Scene, rate: float = 0.0) -> Foundation:
     return Foundation(K, damping(scene, rate) / K)
 
 
-def judge(
-    steady: Callable[..., SteadyState], scene: Scene, request: Request, solved: tuple[str, ...]
-) -> Judgement:
-    """Judge by steady sliding at the velocities of the drive; the fastest rate is what is known."""
-    if not scene.foundation.arms:
-        return Judgement("the foundation has no arms")
-    if reason := lacks_parabola(scene) or (
-        "the drive is a function" if scene.drive.function else ""
-    ):
-        return Judgement(reason)
-    if request.times is None:
-        return Judgement("no times are given: at the first instant it is wrong")
-    known = rate(steady, scene, request.times)
-    if damping(scene, known) < LEAST_DAMPING * damping(scene):
-        return Judgement("the motion changes as fast as arms relax")
-    errors = in_steady_sliding(steady, scene, solved)
-    return Judgement(error=max(errors.get(name, 0.0) for name in request.quantities), known=known)
+def fastest_rate(steady: Callable[..., SteadyState], scene: Scene, times: Any) -> float:
+    """Return the fastest rate of the motion at the times (1/s).
 
-
-def rate(steady: Callable[..., SteadyState], scene: Scene, times: Any) -> float:
-    """Return the fastest rate of the motion at the times (1/s)."""
+    Raises
+    ------
+    ValueError
+        If the arms are too slow for it.
+    """
     changes = np.array([0.0, *scene.drive.changes])
-    since = [t - changes[changes <= t].max(initial=0.0) for t in times]
-    fastest = max(map(abs, velocities(scene)))
+    shortest = min(t - changes[changes <= t].max(initial=0.0) for t in times)
+    fastest = max(map(abs, _velocities(scene)))
     sliding = steady(replace(scene, foundation=foundation(scene), drive=Drive(fastest)))
-    shortest = min(since)
-    passing = fastest / float(sliding.half_length)
     swing = 0.0 if scene.drive.rigid else math.sqrt(scene.drive.stiffness / scene.drive_mass)
-    return passing + swing + (1.0 / shortest if shortest > 0.0 else np.inf)
+    passing = fastest / float(sliding.half_length)
+    rate = passing + swing + (1.0 / shortest if shortest > 0.0 else np.inf)
+    if damping(scene, rate) < LEAST_DAMPING * damping(scene):
+        raise ValueError("the motion changes as fast as arms relax")
+    return rate
 
 
-def velocities(scene: Scene) -> list[float]:
+def _velocities(scene: Scene) -> list[float]:
     """Return the velocities of the drive, between which it is linear."""
     return list(scene.drive.motion(scene.run.duration, 1.0).velocities)
 
 
 def in_steady_sliding(
-    steady: Callable[..., SteadyState], scene: Scene, solved: tuple[str, ...]
+    steady: Callable[..., SteadyState], scene: Scene, names: tuple[str, ...]
 ) -> dict[str, float]:
     """Return how wrong the equivalent foundation is in steady sliding, by its scales, with `SAFETY`."""
-    measures, errors = scales(StaticState.of(scene)), dict.fromkeys(solved, 0.0)
-    for V in velocities(scene):
+    measures, errors = scales(StaticState.of(scene)), dict.fromkeys(names, 0.0)
+    for V in _velocities(scene):
         sliding = replace(scene, drive=Drive(V))
         pair = steady(sliding), steady(replace(sliding, foundation=foundation(scene)))
-        for name in solved:
+        for name in names:
             values = [getattr(each, STEADY_NAMES.get(name, name), 0.0) for each in pair]
             errors[name] = max(errors[name], SAFETY * abs(values[0] - values[1]) / measures[name])
     return errors
 
 
-def neglected(one: Any, other: Any, scene: Scene, solved: tuple[str, ...]) -> dict[str, float]:
-    """Return what the series of two dampings differ by, by its scales, with `SAFETY`."""
+def neglected(one: Any, other: Any, scene: Scene, names: tuple[str, ...]) -> dict[str, float]:
+    """Return the difference between the series of two dampings, by its scales, with `SAFETY`."""
     measures = scales(StaticState.of(scene))
+    apart = {name: np.abs(getattr(one, name) - getattr(other, name)) for name in names}
     return {
-        name: SAFETY
-        * float(np.nanmax(np.abs(getattr(one, name) - getattr(other, name)), initial=0.0))
-        / measures[name]
-        for name in solved
+        name: SAFETY * float(np.nanmax(off, initial=0.0)) / measures[name]
+        for name, off in apart.items()
     }

@@ -27,7 +27,7 @@ FASTER = 3.0
 """Rate, in 1/tau, at which the depth recovers at most: A/B of fact F12, near 2 or less where it counts."""
 TINY = 1e-300
 SMALL = 0.3
-"""Of the sliding velocity: where w is more, or where it flies, an estimate of first order is none."""
+"""Of the sliding velocity: where w is more, or where it flies, an estimate of first order is meaningless."""
 STATEMENT = (
     f"of the rigid drive, beside the error of its solution: {SAFETY:g} times what the stiff spring changes "
     "to first order"
@@ -49,7 +49,24 @@ def neglected(series: dict[str, Array], at_rest: StaticState) -> dict[str, Array
     edges = np.array([series["leading_edge"], series["trailing_edge"]]) / at_rest.half_length
     left, right = np.sort(edges, axis=0)
     length, tilt = right - left, np.abs(right + left)
-    speed, place, depth, ring = _felt(s, force, length, tilt, at_rest)
+    inertia, stiffness = at_rest.drive_inertia_number, at_rest.drive_stiffness_number
+    steps, jumps = np.diff(s, prepend=s[0]), np.abs(np.diff(force, prepend=0.0))
+    slope = np.divide(jumps, steps, out=np.zeros_like(s), where=steps > 0.0)
+    kinks = np.abs(np.diff(slope, prepend=0.0)) / stiffness
+    kinks[0] = math.inf  # there it jumps
+    wave, sunk, found = 0.0, 0.0, []
+    for k, step in enumerate(steps.tolist()):
+        resistance = at_rest.drive_damping_number + 0.25 * float(length[k]) ** 3
+        stiff = 4.0 * inertia * stiffness
+        bend = math.sqrt(max(resistance * resistance - stiff, 0.0))
+        fall = 2.0 * stiffness / (resistance + bend) if bend else 0.5 * resistance / inertia
+        swing = max(0.5 * math.sqrt(stiff), resistance)
+        wave = wave * math.exp(-fall * step) + min(float(jumps[k]) / swing, float(kinks[k]))
+        sunk = sunk * math.exp(-step) + float(tilt[k] * jumps[k]) / stiffness
+        sunk += 0.5 * step * wave * wave
+        found.append((wave, wave * swing, sunk + float(tilt[k]) * wave * swing / stiffness))
+    wave, ring, depth = np.array(found).T  # w, ε_x x'' and the error of the depth
+    speed, place = wave + slope / stiffness, (ring + np.abs(force)) / stiffness
     rate = tilt * speed + FASTER * depth
     far, near = np.maximum(-left, right), np.minimum(-left, right) + np.abs(number)
     edge = speed + place + 0.5 * (depth + rate) / np.maximum(near, TINY)
@@ -66,26 +83,3 @@ def neglected(series: dict[str, Array], at_rest: StaticState) -> dict[str, Array
     errors["spring_force"] = errors["friction_force"] + ring  # f_s = f - ε_x x''
     least = 0.0 if np.all(speed <= SMALL * np.abs(number)) else math.inf
     return {name: SAFETY * error + least for name, error in errors.items()}
-
-
-def _felt(s: Array, force: Array, length: Array, tilt: Array, at_rest: StaticState) -> list[Array]:
-    """Return bounds of velocity and displacement along x, of the depth error, and of ε_x x''."""
-    inertia, stiffness = at_rest.drive_inertia_number, at_rest.drive_stiffness_number
-    steps, jumps = np.diff(s, prepend=s[0]), np.abs(np.diff(force, prepend=0.0))
-    slope = np.divide(jumps, steps, out=np.zeros_like(s), where=steps > 0.0)
-    kinks = np.abs(np.diff(slope, prepend=0.0)) / stiffness
-    kinks[0] = math.inf  # there it jumps
-    wave, sunk, found = 0.0, 0.0, []
-    for k, step in enumerate(steps.tolist()):
-        resistance = at_rest.drive_damping_number + 0.25 * float(length[k]) ** 3
-        stiff = 4.0 * inertia * stiffness
-        bend = math.sqrt(max(resistance * resistance - stiff, 0.0))
-        fall = 2.0 * stiffness / (resistance + bend) if bend else 0.5 * resistance / inertia
-        swing = max(0.5 * math.sqrt(stiff), resistance)
-        wave = wave * math.exp(-fall * step) + min(float(jumps[k]) / swing, float(kinks[k]))
-        sunk = sunk * math.exp(-step) + float(tilt[k] * jumps[k]) / stiffness
-        sunk += 0.5 * step * wave * wave
-        ring = wave * swing
-        found.append((wave, ring, sunk + float(tilt[k]) * ring / stiffness))
-    wave, ring, sunk = np.array(found).T
-    return [wave + slope / stiffness, (ring + np.abs(force)) / stiffness, sunk, ring]

@@ -3,8 +3,9 @@
 Each function is the form for floating-point numbers of an expression proved in `derivations`, with
 l = l_r/a >= 0 (retardation length over half length) and q = x_TE/a in (0, 1] (trailing edge over half
 length); for a power law h = |x|^n/(n L^(n-1)) with Q = q^(n-1), and for the wedge, which is n = 1, with
-q = max(0, 1 - l) and Q = 1/(q + l); for a ball with theta_b = arctan(1/l) and its tail T_b. Floats and
-arrays alike; an asymptote for high velocity has no error at l = 0.
+q = max(0, 1 - l) and Q = 1/(q + l); for a ball with theta_b = arctan(1/l) and its tail T_b; for a Maxwell
+arm with z_v = 2 x_v = c/(V tau_i), c the length of the contact, and A_v, t_v0, t_v1 as in `theory.laws`.
+Floats and arrays alike.
 """
 
 from typing import TypeVar
@@ -20,17 +21,11 @@ ALPHA = 0.9428090415820634
 CRITICAL_DRIVE_NUMBER = 0.9614997135382722
 """V tau (K/(R W))^(1/3) at the crossing velocity, dead weight; theorem F5."""
 
-PEAK_TRAILING_EDGE_RATIO = 0.2679491924311227
-"""q at the friction maximum of a dead weight; theorem F3."""
-
 PEAK_DRIVE_NUMBER = 1.6002702943554925
 """V tau (K/(R W))^(1/3) at the friction maximum of a dead weight; theorem F3-values."""
 
 PEAK_FRICTION = 0.5072653568498905
 """mu (K R^2/W)^(1/3) at the friction maximum of a dead weight; theorem F3-values."""
-
-BALL_CROSSING = 0.5890486225480862
-"""l where the asymptotes of mu meet; theorem F20-crossing."""
 
 
 def trailing_edge_ratio(l: Value) -> Value:
@@ -51,11 +46,6 @@ def friction_force_factor(l: Value, q: Value) -> Value:
 def friction_coefficient_factor(l: Value, q: Value) -> Value:
     """Return m = mu R/a; theorem F16."""
     return l * q * (q * q - q + 4) / ((q + 1) * ((1 - q) * (1 - q) + 2))
-
-
-def pressure_factor(q: Value, xi: Value) -> Value:
-    """Return p/(K delta) at x = xi a; theorem F16."""
-    return (q - xi) * (q * xi + 1) / q
 
 
 def peak_pressure_factor(l: Value) -> Value:
@@ -87,59 +77,6 @@ def scaled_load_curvature(s: Value, lam: Value) -> Value:
     return 3 * (r + s) * (r + s) / (2 * r)
 
 
-def error_l1(l: Value, q: Value) -> Value:
-    """Return L1/mu - 1 (Eq. 42); theorem error-L1."""
-    return 6 * l / ((q + 1) * (q * q - q + 4))
-
-
-def error_l2_fixed(q: Value, l: Value) -> Value:
-    """Return L2/mu - 1, fixed depth (Eq. 45); theorem error-L2-fixed."""
-    return (q + 1) * (3 * q * q - 2 * q + 7) / (6 * l * (q * q - q + 4))
-
-
-def error_l2_dead_weight(l: Value, q: Value) -> Value:
-    """Return L2/mu - 1, dead weight (Eq. 46); theorem error-L2-dead-weight."""
-    e_depth_high = error_depth_high(l, q)
-    S = e_depth_high / (np.sqrt(e_depth_high + 1) + 1)
-    e_L2 = error_l2_fixed(q, l)
-    return S * (e_L2 + 1) + e_L2
-
-
-def error_load_low(l: Value, q: Value) -> Value:
-    """Return (Eq. 40)/W - 1; theorem error-load-low."""
-    gap = 2 * l * q / (q + 1)
-    return -gap * gap * (q * q + 2 * q + 3) / ((q + 1) * (q + 1) * ((1 - q) * (1 - q) + 2))
-
-
-def error_load_high(q: Value) -> Value:
-    """Return (Eq. 43)/W - 1; theorem error-load-high."""
-    return -q * (q * q - q + 4) / ((q + 1) * ((1 - q) * (1 - q) + 2))
-
-
-def error_friction_force_low(l: Value, q: Value) -> Value:
-    """Return (Eq. 41)/F - 1; theorem error-friction-low."""
-    gap = 2 * l * q / (q + 1)
-    return gap * (q * q + q + 4) / ((q + 1) * (q * q - q + 4))
-
-
-def error_friction_force_high(q: Value) -> Value:
-    """Return (Eq. 44)/F - 1; theorem error-friction-high."""
-    return -q * (q * q + 3) / ((q + 1) * (q * q - q + 4))
-
-
-def error_depth_low(l: Value, q: Value) -> Value:
-    """Return delta_0/delta - 1, dead weight; theorem error-depth-low."""
-    gap = 2 * l * q / (q + 1)
-    E = gap * gap * (q * q + 2 * q + 3) / (8 * q)
-    b = np.cbrt(E + 1)
-    return E * (b + 1) / (b * b + b + 1)
-
-
-def error_depth_high(l: Value, q: Value) -> Value:
-    """Return (Eq. 49)/delta - 1, dead weight; theorem error-depth-high."""
-    return (q + 1) * (q * q - q + 4) / (6 * l)
-
-
 def circle_load(q: Value) -> Value:
     """Return c in circle/parabola = 1 + c (a/R)^2, for W; theorem circle-fixed."""
     return -3 * q * ((1 - q) * (-3 * q * (1 - q) + 1) + 1) / (20 * (1 - q) * (1 - q) + 40)
@@ -160,12 +97,6 @@ def circle_friction_coefficient(q: Value) -> Value:
 def circle_friction_coefficient_at_load(q: Value) -> Value:
     """Return c in circle/parabola = 1 + c (a/R)^2, for mu at given load; theorem circle-dead-weight."""
     return 3 * (q + 1) * (2 * q + 3 * (1 - q) * (1 - q)) / (10 * (q * q - q + 4))
-
-
-def circle_depth_at_load(q: Value) -> Value:
-    """Return c in circle/parabola = 1 + c (a/R)^2, for delta at given load; theorem circle-dead-weight."""
-    c_W = circle_load(q)
-    return -c_W * ((1 - q) * (1 - q) / 3 + 2 / 3)
 
 
 def power_law_load(n: Value, l: Value, q: Value, Q: Value) -> Value:
@@ -209,16 +140,6 @@ def power_law_high(n: Value) -> Value:
     return n * n / (2 * n - 1)
 
 
-def power_law_crossing(n: Value) -> Value:
-    """Return l where the asymptotes of mu meet; theorem F19-crossing."""
-    return n / (n + 1)
-
-
-def power_law_crossing_at_load(n: Value, kappa: Value) -> Value:
-    """Return V tau/a_0 where they meet, at a load; theorem F19-crossing-weight."""
-    return 2 ** ((n - 1) / (2 * n - 1)) * n * (kappa + 1) ** ((n - 1) / (2 * n - 1)) / (n + 1)
-
-
 def power_law_scaled_load(n: Value, s: Value, r: Value, lam: Value) -> Value:
     """Return f = W/W_0 at s = a/a_0, r = x_TE/a_0, lam = V tau/a_0; theorem F19-scaled-load."""
     return s ** n * (lam * lam / (lam * n + r) + lam + r + s) / 2
@@ -234,66 +155,6 @@ def power_law_friction_rise(n: Value, l: Value, q: Value, Q: Value) -> Value:
     return -Q * Q * Q * l * l * l * n * (2 * n - 1) + (Q * Q * q + 1) * (-Q * l * l * (2 * n - 1) + l + q + 1)
 
 
-def power_law_peeled(n: Value, peeled: Value) -> Value:
-    """Return 1 - q from z = n l Q; theorem F19-peeled."""
-    return -np.expm1(np.log1p(-peeled) / n)
-
-
-def power_law_slope_drop(n: Value, peeled: Value) -> Value:
-    """Return 1 - Q from z = n l Q; theorem F19-peeled."""
-    return -np.expm1((n - 1) * np.log1p(-peeled) / n)
-
-
-def power_law_bend(n: Value, y: Value, phi_rise: Value, phi_fall: Value) -> Value:
-    """Return l - (1 - q) from y = -ln q, phi_2((n - 1) y) and phi_2(-y); theorem F19-bend."""
-    return y * y * (n - 1) * (phi_fall + phi_rise * (n - 1)) / n
-
-
-def power_law_error_l1(n: Value, l: Value, q: Value, Q: Value, gap_Q: Value) -> Value:
-    """Return L1/mu - 1; theorem F19-error-L1."""
-    damped = Q * Q * l * (2 * n - 1) / 2 + Q * Q * q + 1
-    return (-Q * Q * l * (2 * n - 1) / 2 + Q * l * l + gap_Q * q * (Q + 1) + l) / damped
-
-
-def power_law_error_l2(n: Value, l: Value, q: Value, Q: Value) -> Value:
-    """Return L2/mu - 1, fixed depth; theorem F19-error-L2."""
-    blunt = (n - 1) * (2 * n * n + q * (Q + n) * (2 * n + 2) - 1) / (2 * n * n * (n + 1))
-    damped = Q * Q * l * (2 * n - 1) / 2 + Q * Q * q + 1
-    sharp = Q * q * q * (Q + 2 * n / (n + 1)) / (2 * n * n)
-    return (blunt + sharp) / (damped * l)
-
-
-def power_law_error_load_low(l: Value, q: Value, Q: Value, bend: Value) -> Value:
-    """Return load for l -> 0 over W, - 1; theorem F19-error-load-low."""
-    whole = Q * l * l + l + q + 1
-    return (-Q * l * l - bend) / whole
-
-
-def power_law_error_load_high(n: Value, l: Value, q: Value, Q: Value) -> Value:
-    """Return C V delta/W - 1; theorem F19-error-load-high."""
-    tip = n * n + q * (Q * q + n * n - 1)
-    whole = Q * l * l + l + q + 1
-    return -tip / (n * n * whole)
-
-
-def power_law_error_friction_low(n: Value, l: Value, q: Value, Q: Value, gap_q: Value, gap_Q: Value) -> Value:
-    """Return friction force for l -> 0 over F, - 1; theorem F19-error-friction-low."""
-    damped = Q * Q * l * (2 * n - 1) / 2 + Q * Q * q + 1
-    return (-Q * Q * l * (2 * n - 1) / 2 + gap_Q * q * (Q + 1) + gap_q) / damped
-
-
-def power_law_error_friction_high(n: Value, l: Value, q: Value, Q: Value) -> Value:
-    """Return friction force for l -> oo over F, - 1; theorem F19-error-friction-high."""
-    damped = Q * Q * l * (2 * n - 1) / 2 + Q * Q * q + 1
-    return (-Q * Q * l * (2 * n - 1) / 2 - Q * Q * q) / damped
-
-
-def power_law_error_depth_high(n: Value, l: Value, q: Value, Q: Value) -> Value:
-    """Return W/(C V delta) - 1, dead weight; theorem F19-error-depth-high."""
-    tip = n * n + q * (Q * q + n * n - 1)
-    return tip / (l * n * (n + 1))
-
-
 def wedge_scaled_depth_peeling(kappa: Value, lam: Value) -> Value:
     """Return delta/delta_0 of a wedge while lam < s; theorem wedge-weight-peeling."""
     held = kappa - lam * lam / 2 + 1
@@ -303,42 +164,6 @@ def wedge_scaled_depth_peeling(kappa: Value, lam: Value) -> Value:
 def wedge_scaled_depth_peeled(kappa: Value, lam: Value) -> Value:
     """Return delta/delta_0 of a wedge from lam = s on; theorem wedge-weight-peeled."""
     return (2 * kappa + 2) / (kappa + lam + np.sqrt(2 * kappa + (kappa + lam) * (kappa + lam) + 2))
-
-
-def damping_across(a: Value, q: Value) -> Value:
-    """Return df_z/dd' at the half length a, in units of a_0; theorem F22-numbers."""
-    return 3 * a * (q + 1) / 4
-
-
-def damping_along(a: Value, q: Value) -> Value:
-    """Return df_x/dlam at the half length a, in units of a_0; theorem F22-numbers."""
-    return a * a * a * (q + 1) * (q + (1 - q) * (1 - q))
-
-
-def relaxation_rate(q: Value, S_s: Value) -> Value:
-    """Return df_z/dd + kappa over df_z/dd'; theorem F22-numbers."""
-    return S_s + (q + 1) / (2 * q)
-
-
-def coupling_rate(q: Value) -> Value:
-    """Return df_x/dd over df_x/dd'; theorem F22-numbers."""
-    return (q + 1) / q
-
-
-def coupling(l: Value, q: Value, n_x: Value) -> Value:
-    """Return how strongly the motions across and along are coupled; theorem F22-numbers."""
-    return 3 * l * l * q * q / ((n_x + 1) * (q + 1) * (q + 1) * (q + (1 - q) * (1 - q)))
-
-
-def uncoupled(q: Value, n_x: Value) -> Value:
-    """Return 1 - coupling; theorem F22-numbers."""
-    return (n_x + (q + 1) * (q + 1) / (4 * q + 4 * (1 - q) * (1 - q))) / (n_x + 1)
-
-
-def friction_rise(q: Value, n_x: Value, S_s: Value) -> Value:
-    """Return what has the sign of dF/dV + c_x; theorem F22-numbers."""
-    e_0 = (q + 1) * (-q * q + 4 * q - 1) / (4 * q * (q + (1 - q) * (1 - q)))
-    return S_s + (e_0 + n_x * (q + 1) / (2 * q)) / (n_x + 1)
 
 
 def onset_square(T_z: Value, g_c: Value, S_c: Value, h_c: Value, e_c: Value) -> Value:
@@ -424,11 +249,6 @@ def ball_scaled_load_curvature(s: Value, lam: Value, theta_b: Value) -> Value:
     return 8 * s * s * (2 * lam * s + np.pi * s * s + theta_b * (lam * lam + 2 * s * s)) / np.pi
 
 
-def ball_crossing_at_load(kappa: Value) -> Value:
-    """Return V tau/a_0 where they meet, at a load; theorem F20-crossing."""
-    return 3 * np.pi * np.sqrt(np.sqrt(2 * kappa + 2)) / 16
-
-
 def ball_friction_rise(l: Value, T_b: Value) -> Value:
     """Return what has the sign of dmu/dV under a dead weight; theorem F20-peak."""
     D_b = ball_loss(l, T_b)
@@ -436,31 +256,46 @@ def ball_friction_rise(l: Value, T_b: Value) -> Value:
     return -5 * l * (4 / 3 - 2 * D_b) / 4 + w_b * (-8 * D_b * l / (T_b + np.pi) + 1)
 
 
-def ball_error_l1(l: Value, T_b: Value) -> Value:
-    """Return L1/mu - 1; theorem F20-error-L1."""
-    return 4 * l / (3 * T_b / 4 + 3 * np.pi / 4)
+def peeling_friction_force(b: Value, r: Value, rho: Value) -> Value:
+    """Return f_x of a peeling contact from the width b, the right edge and rho; theorem F11-peel."""
+    return b * b * (b * (-3 * b + 8 * rho) + 4 * r * (b - 3 * rho)) / 8
 
 
-def ball_error_l2(l: Value, T_b: Value) -> Value:
-    """Return L2/mu - 1, fixed depth; theorem F20-error-L2."""
-    return -T_b / (T_b + np.pi) + 3 * np.pi / (16 * l)
+def arm_ahead(A_v: Value, t_v0: Value, x_v: Value) -> Value:
+    """Return the moment P of an arm; theorem F17-arm."""
+    return A_v * (t_v0 * x_v + 1) / 2
 
 
-def ball_error_load_low(l: Value, T_b: Value) -> Value:
-    """Return load for l -> 0 over W, - 1; theorem F20-error-load-low."""
-    return (-T_b - 16 * l / 3 + np.pi) / (T_b + 16 * l / 3 + np.pi)
+def arm_bulge(A_v: Value, t_v0: Value) -> Value:
+    """Return the moment D of an arm; theorem F17-arm."""
+    return A_v * t_v0 / 4
 
 
-def ball_error_load_high(l: Value, T_b: Value) -> Value:
-    """Return load for l -> oo over W, - 1; theorem F20-error-load-high."""
-    return (-T_b - np.pi) / (T_b + 16 * l / 3 + np.pi)
+def arm_twist(A_v: Value, t_v0: Value, t_v1: Value, x_v: Value) -> Value:
+    """Return the moment E of an arm; theorem F17-arm."""
+    return A_v * t_v0 * x_v * (t_v1 * (x_v + 1) + 1) / 24
 
 
-def ball_error_friction_low(l: Value, T_b: Value) -> Value:
-    """Return friction force for l -> 0 over F, - 1; theorem F20-error-friction-low."""
-    return (np.pi - T_b) / (T_b + np.pi)
+def arm_lost(A_v: Value, B_v: Value, E_v: Value, P_v: Value, eta_v: Value, z_v: Value) -> Value:
+    """Return the energy that an arm dissipates in the contact; theorem F17-energy."""
+    return -B_v * B_v / 2 + E_v + eta_v * (A_v * B_v + eta_v * (A_v * P_v * z_v / 2 + B_v))
 
 
-def ball_error_friction_high(l: Value, T_b: Value) -> Value:
-    """Return friction force for l -> oo over F, - 1; theorem F20-error-friction-high."""
-    return -T_b / (T_b + np.pi)
+def springpot_ahead(nu_v: Value) -> Value:
+    """Return the moment P of a springpot of order 1 - nu_v, times nu_v; theorem F17-springpot."""
+    return 1 / (nu_v + 1)
+
+
+def springpot_behind(nu_v: Value) -> Value:
+    """Return the moment Q of a springpot of order 1 - nu_v, times nu_v; theorem F17-springpot."""
+    return nu_v / (nu_v + 1)
+
+
+def springpot_bulge(nu_v: Value) -> Value:
+    """Return the moment D of a springpot of order 1 - nu_v, times nu_v; theorem F17-springpot."""
+    return nu_v / ((nu_v + 2) * (2 * nu_v + 2))
+
+
+def springpot_twist(nu_v: Value) -> Value:
+    """Return the moment E of a springpot of order 1 - nu_v, times nu_v; theorem F17-springpot."""
+    return (1 - nu_v) / (4 * (nu_v + 1) * (nu_v + 3))

@@ -34,6 +34,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from kvtheory.theory import closed_forms as cf
 from kvtheory.theory.powers import power
 
 Array = NDArray[np.float64]
@@ -108,8 +109,7 @@ class Prony(NamedTuple):
         """Return the share of the work that is lost in the contact, all terms positive, and its error."""
         z = np.minimum(c / self.time, FAR)
         P, Q, _, E, _ = exponential_moments(z)
-        A, B = P + Q, 0.5 * (P - Q)
-        lost = self._sum(E - 0.5 * B * B + eta * (A * B + eta * (B + 0.5 * A * z * P)))
+        lost = self._sum(cf.arm_lost(P + Q, 0.5 * (P - Q), E, P, eta, z))
         if self.damping is not None:
             lost = lost + self.damping / c * (1.0 / 12.0 + eta * eta)
         return lost / work, np.full_like(work, RELATIVE_ERROR)
@@ -157,60 +157,70 @@ class Prony(NamedTuple):
 def exponential_moments(z: Array) -> tuple[Array, Array, Array, Array, Array]:
     """Return P, Q, D, E and the end value of g = e^(-z w), z >= 0, to a few units in the last place.
 
-    With the modified spherical Bessel functions i_n(z/2) = i_(n-1)(z/2) (z/2) t_(n-1) they are
-
-        A = e^(-z/2) i_0,   P - Q = A y,   D = A t_0/4,   E = A t_0 (z/2) (1 + t_1 (1 + z/2))/24,
-
-    y = (z/2) t_0. For z <= 4 the t_n are continued fractions of positive terms; beyond, t_0 = (coth(z/2)
-    - 2/z) 2/z and what follows from it lose no digits (derivation F17-arm).
+    They follow from A = e^(-z/2) i_0 and t_n, where i_n(z/2) = i_(n-1)(z/2) (z/2) t_(n-1) are the modified
+    spherical Bessel functions. For z <= 4 the t_n are continued fractions of positive terms; beyond, t_0 =
+    (coth(z/2) - 2/z) 2/z and what follows from it lose no digits (derivation F17-arm).
     """
     x, fall = 0.5 * z, np.expm1(-z)  # e^-z - 1
     near = x <= 2.0
     square, far = np.where(near, x * x, 0.0), np.where(near, 3.0, x)
     t = np.full_like(x, 1.0 / (2.0 * FRACTION_TERMS + 3.0))
     for n in range(FRACTION_TERMS - 1, 0, -1):
-        t = 1.0 / (2.0 * n + 3.0 + square * t)
+        np.multiply(square, t, out=t)
+        t += 2.0 * n + 3.0
+        np.reciprocal(t, out=t)
     rest = 1.0 / far + 2.0 * (1.0 + fall) / np.where(near, -1.0, fall)  # 1 - coth x + 1/x
     t_0 = np.where(near, 1.0 / (3.0 + square * t), (1.0 - rest) / far)
     t_1 = np.where(near, t, (1.0 / t_0 - 3.0) / (far * far))
-    A = np.where(z > 0.0, -fall / np.where(z > 0.0, z, 1.0), 1.0)
-    P = 0.5 * A * (1.0 + x * t_0)
+    moving = z > 0.0
+    A = np.where(moving, -fall / np.where(moving, z, 1.0), 1.0)
     Q = 0.5 * A * np.where(near, 1.0 - x * t_0, rest)
-    return P, Q, 0.25 * A * t_0, A * t_0 * x * (1.0 + t_1 * (1.0 + x)) / 24.0, 1.0 + fall
+    return (
+        cf.arm_ahead(A, t_0, x),
+        Q,
+        cf.arm_bulge(A, t_0),
+        cf.arm_twist(A, t_0, t_1, x),
+        1.0 + fall,
+    )
 
 
 class Fractional:
     """G = K [1 + (t/tau)^(-alpha)/Gamma(1 - alpha)]: each moment is a Gamma function."""
 
     def __init__(
-        self, K: Array, time: Array, order: Array, rgamma: list[Array] | None = None
+        self, K: Array, time: Array, order: Array, known: list[Array] | None = None
     ) -> None:
-        from scipy.special import rgamma as reciprocal
-
         self.K, self.time, self.alpha = K, time, order
-        self.rgamma = rgamma or [reciprocal(n - order) for n in range(6)]
-        """1/Gamma(n - alpha), which does not depend on the velocity."""
+        if known is None:
+            from scipy.special import rgamma
+
+            known = [rgamma(n - order) for n in range(1, 5)]
+            moments = (
+                cf.springpot_ahead,
+                cf.springpot_behind,
+                cf.springpot_bulge,
+                cf.springpot_twist,
+            )
+            known += [known[1] * moment(1.0 - order) for moment in moments]
+        self.known = known
+        """1/Gamma(n - alpha) for n = 1 to 4, and the moments P, Q, D, E over K (tau/c)^alpha."""
 
     def over(self, V: Array) -> "Fractional":
         """Return the law in the distance travelled at a velocity V >= 0."""
-        return Fractional(self.K, self.time * V, self.alpha, self.rgamma)
+        return Fractional(self.K, self.time * V, self.alpha, self.known)
 
     def at(self, *index: Any) -> "Fractional":
         """Return the laws of some scenes, by an index of their last axis."""
-        own = (self.K, self.time, self.alpha, *self.rgamma)
-        K, time, order, *rgamma = (each[(..., *index)] if np.ndim(each) else each for each in own)
-        return Fractional(K, time, order, rgamma)
+        own = (self.K, self.time, self.alpha, *self.known)
+        K, time, order, *known = (each[(..., *index)] if np.ndim(each) else each for each in own)
+        return Fractional(K, time, order, known)
 
     def moments(self, c: Array) -> Moments:
         """Return the moments over a contact of length c."""
-        K, alpha, part = self.K, self.alpha, self._part(c)
-        _, first, _, third, fourth, fifth = self.rgamma
-        return Moments(
-            *(0.5 * K + part * third, 0.5 * K + part * (1.0 - alpha) * third),
-            *(K / 12.0 + part * 0.5 * (1.0 - alpha) * fourth,),
-            *(part * 0.25 * alpha * (3.0 - alpha) * fifth,),
-            *(K + part * first, -alpha * part * first),
-        )
+        K, part = self.K, self._part(c)
+        P, Q, D, E = (part * share for share in self.known[4:])
+        end = part * self.known[0]
+        return Moments(0.5 * K + P, 0.5 * K + Q, K / 12.0 + D, E, K + end, -self.alpha * end)
 
     def dissipated(self, c: Array, eta: Array, work: Array) -> tuple[Array, Array]:
         """Return the share of the work lost in the contact: that not stored at the trailing edge.
@@ -218,7 +228,7 @@ class Fractional:
         Towards order 0 almost nothing is lost, and the difference cancels; hence its separate error.
         """
         rest, two = 1.0 - self.alpha, 2.0**-self.alpha
-        third, fourth = self.rgamma[3:5]
+        third, fourth = self.known[2:4]
         none = 2.0 * np.expm1(rest * math.log(2.0)) * third  # (w + w')^-alpha over both w
         once = rest * (4.0 * two - 1.0) * fourth  # and times w
         both = 2.0 * (1.0 - 2.0 * two * self.alpha) * third / (4.0 - self.alpha)  # and times w w'
@@ -232,11 +242,11 @@ class Fractional:
 
     def modulus(self, X: Array) -> tuple[Array, Array, Array]:
         """Return G, X dG/dX and the mean of G up to X > 0."""
-        part, first = self._part(X), self.rgamma[1]
+        part, first = self._part(X), self.known[0]
         return (
             self.K + part * first,
             -self.alpha * part * first,
-            self.K + part * self.rgamma[2],
+            self.K + part * self.known[1],
         )
 
     def least_peak(self, a: Array) -> Array:

@@ -27,7 +27,7 @@ from numpy.polynomial import chebyshev
 from numpy.typing import NDArray
 
 from kvtheory.models.slow_manifold.start import Start, depth_slope, outruns
-from kvtheory.theory.closed_forms import trailing_edge_ratio
+from kvtheory.theory.closed_forms import peeling_friction_force, trailing_edge_ratio
 
 Array = NDArray[np.float64]
 
@@ -228,7 +228,7 @@ def _values(given: Start, a: Array, b: Array, v: Array) -> dict[str, Array]:
         "depth": a * a,
         "depth_rate": v,
         "normal_force": 1.0 - given.kappa * (a * a - 1.0),
-        "friction_force": 0.125 * b * b * (4.0 * r * (b - 3.0 * rho) + b * (8.0 * rho - 3.0 * b)),
+        "friction_force": peeling_friction_force(b, r, rho),
         "leading_edge": -a,
         "trailing_edge": r,
         "peak_pressure": np.where(number < a, a * a + v + number**2, v + 2.0 * number * a),

@@ -1,49 +1,53 @@
 r"""The first rung: the asymptotes of a parabola and of a ball, where a bound of their error allows it.
 
-The error of each asymptote is a closed form that is monotonic in l = l_r/a (derivations "error-..." and
-"F20-error-..."). For a fixed indenter l is known and the error exact; an indenter that can move has its l
-within bounds, at the worse end of which the error is taken. In units of the static state, with s = a/a_0,
-lambda = V tau/a_0, q = x_TE/a and 1 + e the asymptote over the truth:
+The balance of forces is f + kappa (s^2 - 1) = 1, with s = a/a_0, lambda = V tau/a_0 and the load f in units
+of the static one; d ln f/d ln s is between 2 and 3 for a parabola and between 3 and 4 for a ball (derivations
+"scaled-load", "F20-balance"). From any s, whose total f + kappa s^2 is (1 + kappa) e^r, the root is therefore
+between s e^(-r/2) and s e^(-r/3), for a ball s e^(-r/4): r tells how far it is. One step of Newton's method
+leaves |r| below 5e-4 for a ball, which the tests hold it to, but the bounds are right without it.
 
-    low V:   depth s^-2, half length s^-1, trailing edge 1/(s q), peak pressure 1/(s^2 + lambda^2)
-    high V:  load (1 + kappa)/(1 + kappa - kappa s^2)
-
-The balance of forces is f + kappa (s^2 - 1) = 1, f the load in units of the static one; d ln f/d ln s is
-between 2 and 3 for a parabola and between 3 and 4 for a ball (derivations "scaled-load", "F20-balance"). From
-any s, whose total f + kappa s^2 is (1 + kappa) e^r, the root is therefore between s e^(-r/2) and s e^(-r/3),
-for a ball s e^(-r/4): r tells how far it is. One step of Newton's method leaves |r| below 5e-4 for a ball,
-which the tests hold it to, but the bounds are right without it.
-
-The depth for high velocity has the error g(s)/(3/4 lambda) - 1, g = f/s^2 + kappa, which grows with s, and
-for a ball (1 + x)^(2/3) - 1, x = (3 pi/(8 lambda)) (s (1 + T/pi)/2 + kappa/s), as its W is the damper's
-(8 lambda/(3 pi)) s^3 and s^4 (1 + T/pi)/2. Behind the contact a ball dissipates 8 l D/(pi + T) of the power;
-both D and T fall with l.
+At a given lambda every quantity but the friction force and the dissipated part is monotonic in s: depth and
+half length, x_TE = sqrt(lambda^2 + s^2) - lambda, the peak pressure s^2 + lambda^2 or 2 lambda s (F7), the
+load 1 + kappa - kappa s^2, and the friction coefficient, as l/m grows with l = lambda/s (derivations
+"error-L1", "F20-error-L1"). So the asymptotes are compared with the exact values at both ends. The friction
+force is the product of two of them; the dissipated part has its own bound.
 """
 
 import math
 from collections.abc import Callable
-from functools import cache, partial
 from itertools import compress
 from typing import NamedTuple
 
-import numpy as np
-
 from kvtheory.models.steady import asymptotes
 from kvtheory.models.steady.ball import NEAR, SQUARES, WEIGHTS
-from kvtheory.models.steady.enclosure import Bound, Enclosure, Known
 from kvtheory.scene.model import Scene
 from kvtheory.scene.static_state import StaticState
 from kvtheory.theory import closed_forms as cf
 
-ROUNDING = 16 * 2.0**-52
-"""Rounding of the formulas themselves: 32 operations, half a unit in the last place each."""
-
+ROUNDING = 32 * 2.0**-52
+"""Rounding of an asymptote and of the exact value that it is compared with."""
 UNIT = 4 * 2.0**-52
 """Rounding of s^2 where it is subtracted from 1."""
-
 LOW_UP_TO, HIGH_FROM = 2.0, 0.5
 """Drive numbers, the first in units of 1 + kappa, beyond which the asymptotes of one regime have errors of
 the order of one and are not tried."""
+STEEPEST = {"parabola": 3, "sphere": 4}
+"""The largest d ln f/d ln s; for high velocity it is one less."""
+DAMPER = {"parabola": 0.75, "sphere": 8.0 / (3.0 * math.pi)}
+"""f/(lambda s^2) of a parabola for high velocity, f/(lambda s^3) of a ball."""
+PLATEAU = {"parabola": 4.0 / 3.0, "sphere": 3.0 * math.pi / 8.0}
+"""mu/(s delta_0/a_0) for high velocity."""
+NODES = tuple(zip(SQUARES.tolist(), WEIGHTS.tolist(), strict=True))
+
+
+class Enclosure(NamedTuple):
+    """lambda, kappa, and bounds of s = a/a_0; kappa is infinite and s = 1 for a fixed indenter."""
+
+    number: float
+    support_number: float
+    low: float
+    high: float
+    shape: str = "parabola"
 
 
 class Choice(NamedTuple):
@@ -53,40 +57,44 @@ class Choice(NamedTuple):
     error: float
 
 
-DAMPER = {"parabola": 0.75, "sphere": 8.0 / (3.0 * math.pi)}
-"""f/(lambda s^2) of a parabola for high velocity, f/(lambda s^3) of a ball."""
-NODES = tuple(zip(SQUARES.tolist(), WEIGHTS.tolist(), strict=True))
+def enclosure_of(scene: Scene) -> Enclosure:
+    """Return the bounds of s for a scene with a parabola or a ball."""
+    at_rest, shape = StaticState.of(scene), scene.indenter.shape
+    number = abs(at_rest.drive_number)
+    if at_rest.fixed:
+        return Enclosure(number, math.inf, 1.0, 1.0, shape)
+    return enclose(shape, number, at_rest.support_number)
 
-Balance = Callable[[float, float], tuple[float, float]]
-"""Of s and lambda: f and df/d ln s."""
 
+def enclose(shape: str, number: float, kappa: float) -> Enclosure:
+    """Return bounds of s for an indenter that can move, from its drive number and support number.
 
-def enclose(
-    shape: str, balance: Balance, steepest: int, number: float, support_number: float
-) -> Enclosure:
-    """Return bounds of a/a_0 for an indenter that can move, with d ln f/d ln s up to `steepest`.
-
-    >>> found = KNOWN["sphere"].enclose(4.0, 0.0)
+    >>> found = enclose("sphere", 4.0, 0.0)
     >>> print(f"{found.low:.6f} to {found.high:.6f}")
     0.644511 to 0.644514
     """
-    kappa, yielding = support_number, 1.0 + support_number
+    steepest, yielding = STEEPEST[shape], 1.0 + kappa
     s = (yielding / (kappa + math.hypot(1.0, DAMPER[shape] * number))) ** (1.0 / (steepest - 1.0))
-    load, slope = balance(s, number)
+    if shape == "parabola":
+        slope = s * cf.scaled_load_slope(s, number)
+    else:
+        slope = cf.ball_scaled_load_slope(s, number, math.atan2(s, number))
     held = kappa * s * s
-    s *= math.exp(-math.log((load + held) / yielding) * ((load + held) / (slope + 2.0 * held)))
-    off = math.log((balance(s, number)[0] + kappa * s * s) / yielding)
+    total = _load(shape, number, s) + held
+    s *= math.exp(-math.log(total / yielding) * (total / (slope + 2.0 * held)))
+    off = math.log((_load(shape, number, s) + kappa * s * s) / yielding)
     low, high = sorted((s * math.exp(-off / 2.0), s * math.exp(-off / steepest)))
     return Enclosure(number, kappa, low, min(high, 1.0), shape)
 
 
-def _of_parabola(s: float, number: float) -> tuple[float, float]:
-    return cf.scaled_load(s, number), s * cf.scaled_load_slope(s, number)
+def _load(shape: str, number: float, s: float) -> float:
+    if shape == "parabola":
+        return cf.scaled_load(s, number)
+    return cf.ball_scaled_load(s, number, tail(number / s))
 
 
-def _of_ball(s: float, number: float) -> tuple[float, float]:
-    load = cf.ball_scaled_load(s, number, tail(number / s))
-    return load, cf.ball_scaled_load_slope(s, number, math.atan2(s, number))
+def _edge_ratio(l: float) -> float:
+    return 1.0 / (l + math.hypot(1.0, l))  # Eq. 27 of a float, faster than of an array
 
 
 def tail(l: float) -> float:
@@ -101,74 +109,14 @@ def tail(l: float) -> float:
     return sum(weight / (1.0 + square * node) for node, weight in NODES) / l
 
 
-def _dissipated(b: Enclosure) -> float:
-    """1/(fraction) - 1 = (3/4) t/(1 - t), t = q (1 - q), which is largest at q = 1/2 (theorem F6)."""
-    nearest = min(max(0.5, b.q_least), b.q_largest)
-    t = nearest * (1.0 - nearest)
-    return 0.75 * t / (1.0 - t)
-
-
-def _dissipated_by_ball(b: Enclosure) -> float:
-    behind = 8.0 * b.largest * cf.ball_loss(b.least, tail(b.least))
-    return behind / (math.pi + tail(b.largest) - behind)
-
-
-def _high_depth(b: Enclosure) -> float:
-    g = cf.scaled_load(b.high, b.number) / (b.high * b.high)
-    return (g + b.support_number) / (DAMPER["parabola"] * b.number) - 1.0
-
-
-def _high_depth_of_ball(b: Enclosure) -> float:
-    spring = 0.5 * b.high * (1.0 + tail(b.least) / math.pi) + b.support_number / b.low
-    return math.cbrt(1.0 + spring / (DAMPER["sphere"] * b.number)) ** 2 - 1.0
-
-
-KNOWN = {
-    "parabola": Known(
-        asymptotes=asymptotes,
-        enclose=partial(enclose, "parabola", _of_parabola, 3),
-        low_coefficient=lambda b: cf.error_l1(b.largest, b.q_least),
-        high_coefficient=lambda b: cf.error_l2_fixed(b.q_largest, b.least),
-        high_depth=_high_depth,
-        low_load=lambda b: abs(cf.error_load_low(b.largest, b.q_least)),
-        low_friction=lambda b: abs(cf.error_friction_force_low(b.largest, b.q_least)),
-        high_load=lambda b: abs(cf.error_load_high(b.q_least)),
-        high_friction=lambda b: abs(cf.error_friction_force_high(b.q_least)),
-        dissipated=_dissipated,
-    ),
-    "sphere": Known(
-        asymptotes=asymptotes,
-        enclose=partial(enclose, "sphere", _of_ball, 4),
-        low_coefficient=lambda b: cf.ball_error_l1(b.largest, tail(b.largest)),
-        high_coefficient=lambda b: cf.ball_error_l2(b.least, tail(b.least)),
-        high_depth=_high_depth_of_ball,
-        low_load=lambda b: abs(cf.ball_error_load_low(b.largest, tail(b.largest))),
-        low_friction=lambda b: cf.ball_error_friction_low(b.largest, tail(b.largest)),
-        high_load=lambda b: abs(cf.ball_error_load_high(b.least, tail(b.least))),
-        high_friction=lambda b: abs(cf.ball_error_friction_high(b.least, tail(b.least))),
-        dissipated=_dissipated_by_ball,
-    ),
-}
-"""By the name of the shape."""
-
-
-def enclosure_of(scene: Scene) -> Enclosure:
-    """Return the bounds of s for a scene with a parabola or a ball; a fixed indenter has s = 1."""
-    at_rest, shape = StaticState.of(scene), scene.indenter.shape
-    number = abs(at_rest.drive_number)
-    if at_rest.fixed:
-        return Enclosure(number, math.inf, 1.0, 1.0, shape)
-    return KNOWN[shape].enclose(number, at_rest.support_number)
-
-
 def choose(bounds: Enclosure, quantities: tuple[str, ...], enough: float = math.inf) -> Choice:
     """Return the better regime for all `quantities`, with a proved bound of their relative error.
 
-    A regime is judged by the first quantity whose bound is above `enough`: its bound is returned for all.
+    A regime whose bound is above `enough` may be left out.
 
     Examples
     --------
-    >>> found = choose(KNOWN["parabola"].enclose(1e-3, 0.0), ("friction_coefficient",))
+    >>> found = choose(enclose("parabola", 1e-3, 0.0), ("friction_coefficient",))
     >>> found.regime, round(found.error, 7)
     ('low', 0.0007506)
     """
@@ -177,113 +125,83 @@ def choose(bounds: Enclosure, quantities: tuple[str, ...], enough: float = math.
     near = bounds.number <= LOW_UP_TO * yielding, bounds.number >= HIGH_FROM
     best = Choice("", math.inf)
     for regime in compress(("low", "high"), near):
-        largest = 0.0
-        for bound in _distinct(bounds.shape, fixed, regime, quantities):
-            largest = max(largest, bound(bounds))
-            if largest > enough:
-                break
-        if not best.regime or largest + ROUNDING < best.error:
-            best = Choice(regime, largest + ROUNDING)
+        largest = max(errors(bounds, regime, quantities).values())
+        if not best.regime or largest < best.error:
+            best = Choice(regime, largest)
+        if largest <= enough:
+            break
     return best
-
-
-@cache
-def _distinct(
-    shape: str, fixed: bool, regime: str, quantities: tuple[str, ...]
-) -> tuple[Bound, ...]:
-    """Return the bounds of the quantities, of which several share one."""
-    table = ERRORS[shape, fixed][regime]
-    return tuple(dict.fromkeys(bound for name in quantities for bound in table[name]))
 
 
 def values(scene: Scene, regime: str, quantities: tuple[str, ...]) -> dict[str, float]:
     """Return the asymptotes of the quantities, in SI."""
-    limit = asymptotes.limits(scene)[regime == "high"]
-    with np.errstate(divide="ignore", invalid="ignore"):
-        found = asymptotes.quantities(scene, limit)
+    found = asymptotes.quantities(scene, asymptotes.limits(scene)[regime == "high"])
     return {name: float(found[name]) for name in quantities}
 
 
-def _low_peak(b: Enclosure) -> float:
-    """1/(s^2 + lambda^2) while the peak is inside the contact, 1/(2 lambda s) from then on (F7)."""
-    return max(abs(1.0 / _peak(b.low, b.number) - 1.0), abs(1.0 / _peak(b.high, b.number) - 1.0))
+def errors(bounds: Enclosure, regime: str, quantities: tuple[str, ...]) -> dict[str, float]:
+    """Return bounds of |asymptote/truth - 1| by quantity, `ROUNDING` included."""
+    number, kappa, low, high, shape = bounds
+    fixed, slow = math.isinf(kappa), regime == "low"
+    s = 1.0  # of the asymptote
+    if not (slow or fixed):
+        s = ((1.0 + kappa) / (DAMPER[shape] * number)) ** (1.0 / (STEEPEST[shape] - 1.0))
+    load = 1.0 if slow else DAMPER[shape] * number if fixed else 1.0 + kappa
+    mu = 2.0 * number if slow else PLATEAU[shape] * s  # in units of delta_0/a_0
 
+    def off(asymptote: float, one: float, other: float) -> float:
+        return max(abs(asymptote / one - 1.0), abs(asymptote / other - 1.0)) + ROUNDING
 
-def _peak(s: float, number: float) -> float:
-    return s * s + number * number if number < s else 2.0 * number * s
+    def loads() -> tuple[float, float]:
+        if fixed:
+            return (_load(shape, number, 1.0),) * 2
+        return 1.0 + kappa * (1.0 - high**2 - UNIT), 1.0 + kappa * (1.0 - low**2 + UNIT)
 
+    def coefficient(s: float) -> float:
+        l = number / s
+        if shape == "parabola":
+            return 2.0 * s * cf.friction_coefficient_factor(l, _edge_ratio(l))
+        return 2.0 * s * cf.ball_friction_coefficient_factor(l, tail(l))
 
-def _low_length(b: Enclosure) -> float:
-    return 1.0 / b.low - 1.0
+    def edge(s: float) -> float:
+        return s * _edge_ratio(number / s)
 
+    def peak(s: float) -> float:
+        return s * s + number * number if number < s else 2.0 * number * s  # F7
 
-def _low_load(b: Enclosure) -> float:
-    lifted = b.support_number * (1.0 - b.low**2 + UNIT)
-    return lifted / (1.0 + lifted)
+    def force() -> float:
+        less, more = loads()
+        return off(load * mu, less * coefficient(low), more * coefficient(high))
 
+    def length() -> float:
+        return off(s, low, high)
 
-def _high_load(b: Enclosure) -> float:
-    held = b.support_number * b.high**2
-    return held / (1.0 + b.support_number - held)
-
-
-def _table(known: Known, fixed: bool) -> dict[str, dict[str, tuple[Bound, ...]]]:
-    """Return the bounds by regime and quantity."""
-
-    def high_length(b: Enclosure) -> float:
-        return math.sqrt(1.0 + known.high_depth(b)) - 1.0
-
-    def high_coefficient(b: Enclosure) -> float:
-        at_depth = known.high_coefficient(b)
-        return at_depth + high_length(b) * (1.0 + at_depth)
-
-    def high_friction(b: Enclosure) -> float:
-        return (1.0 + _high_load(b)) * (1.0 + high_coefficient(b)) - 1.0
-
-    low: dict[str, tuple[Bound, ...]] = {
-        "depth": (lambda b: 1.0 / b.low**2 - 1.0,),
-        "half_length": (_low_length,),
-        "retardation_length": (),
-        "leading_edge": (_low_length,),
-        "trailing_edge": (lambda b: 1.0 / (b.low * b.q_least) - 1.0,),
-        "load": (_low_load,),
-        # Of the product: the errors of load and coefficient have opposite signs.
-        "friction_force": (_low_load, known.low_coefficient),
-        "friction_coefficient": (known.low_coefficient,),
-        "peak_pressure": (_low_peak,),
-        "dissipated_in_contact": (known.dissipated,),
+    table: dict[str, Callable[[], float]] = {
+        "depth": lambda: off(s * s, low * low, high * high),
+        "half_length": length,
+        "retardation_length": lambda: ROUNDING,
+        "leading_edge": length,
+        "trailing_edge": lambda: off(1.0, edge(low), edge(high)) if slow else math.inf,  # Eq. 39
+        "load": lambda: off(load, *loads()),
+        "friction_force": lambda: force() if number else ROUNDING,
+        "friction_coefficient": lambda: (
+            off(mu, coefficient(low), coefficient(high)) if number else ROUNDING
+        ),
+        "peak_pressure": lambda: off(1.0 if slow else 2.0 * number * s, peak(low), peak(high)),
+        "dissipated_in_contact": lambda: _dissipated(shape, number / high, number / low) + ROUNDING,
     }
-    high: dict[str, tuple[Bound, ...]] = {
-        "depth": (known.high_depth,),
-        "half_length": (high_length,),
-        "retardation_length": (),
-        "leading_edge": (high_length,),
-        "trailing_edge": (lambda b: math.inf,),  # Eq. 39 is zero
-        "load": (_high_load,),
-        "friction_force": (high_friction,),
-        "friction_coefficient": (high_coefficient,),
-        # Exact in the depth once the peak is at the leading edge, l >= 1 (F7).
-        "peak_pressure": (lambda b: high_length(b) if b.least >= 1.0 else math.inf,),
-        "dissipated_in_contact": (known.dissipated,),
-    }
-    if fixed:  # the errors of the forces are known exactly, and the depth has none
-        exact = dict.fromkeys(("depth", "half_length", "leading_edge"), ())
-        low |= {"load": (known.low_load,), "friction_force": (known.low_friction,)}
-        high |= exact | {
-            "load": (known.high_load,),
-            "friction_force": (known.high_friction,),
-            "friction_coefficient": (known.high_coefficient,),
-            "peak_pressure": (lambda b: 0.0 if b.least >= 1.0 else math.inf,),
-        }
-    return {"low": low, "high": high}
+    return {name: float(table[name]()) for name in quantities}
 
 
-ERRORS = {
-    (shape, fixed): _table(known, fixed)
-    for shape, known in KNOWN.items()
-    for fixed in (True, False)
-}
-"""Bounds of |asymptote/truth - 1| by regime and quantity, of which the largest counts.
+def _dissipated(shape: str, least: float, largest: float) -> float:
+    """Return a bound of 1/(fraction) - 1, for l between two values.
 
-The key is the shape, and whether the indenter is fixed.
-"""
+    For a parabola it is (3/4) t/(1 - t), t = q (1 - q), which is largest at q = 1/2 (theorem F6). Behind the
+    contact a ball dissipates 8 l D/(pi + T) of the power; both D and T fall with l (theorem F20-energy).
+    """
+    if shape == "parabola":
+        q = min(max(0.5, _edge_ratio(largest)), _edge_ratio(least))
+        t = q * (1.0 - q)
+        return 0.75 * t / (1.0 - t)
+    behind = 8.0 * largest * cf.ball_loss(least, tail(least))
+    return behind / (math.pi + tail(largest) - behind)

@@ -44,10 +44,7 @@ class Limit(NamedTuple):
 def limits(scene: Scene) -> tuple[Limit, Limit]:
     """Return the limits for V -> 0 and for V -> oo."""
     both = of_line(scene)
-    if scene.indenter.per_width:
-        return both
-    low, high = (_of_ball(limit, scene.indenter.stretch) for limit in both)
-    return low, high
+    return both if scene.indenter.per_width else _of_ball(both, scene.indenter.stretch)
 
 
 def of_line(scene: Scene) -> tuple[Limit, Limit]:
@@ -59,7 +56,7 @@ def of_line(scene: Scene) -> tuple[Limit, Limit]:
     if isinstance(foundation, Foundation):
         return low, Limit(1.0, 1.0, cf.power_law_high(n), 0.0, slow=False)
     if isinstance(foundation, FractionalKelvinVoigt):
-        from scipy.special import rgamma  # it takes a while to import
+        from scipy.special import rgamma  # slow to import
 
         A = foundation.order
         share = 12.0 * A * rgamma(3.0 - A) / (4.0 - A) * 2.0**-A
@@ -72,20 +69,18 @@ def of_line(scene: Scene) -> tuple[Limit, Limit]:
     return low, Limit(static * glassy / foundation.stiffness, 0.0, friction, -1.0, slow=False)
 
 
-def _of_ball(strip: Limit, stretch: Value) -> Limit:
-    load, push = _strips(3.0 - strip.rise), _strips(4.0 - strip.rise - strip.slope)
-    return strip._replace(load=strip.load * stretch * load, friction=strip.friction * push / load)
+def _of_ball(strips: tuple[Limit, Limit], stretch: Value) -> tuple[Limit, Limit]:
+    """Sum the strips, with S(p) = int cos(t)^(p+1) dt over the half circle."""
+    from scipy.special import beta  # slow to import
 
-
-def _strips(p: Value) -> Value:
-    """Return S(p) = int cos(t)^(p+1) dt over the half circle.
-
-    >>> round(float(_strips(1.0) / np.pi), 12)
-    0.5
-    """
-    from scipy.special import beta
-
-    return beta(0.5, 0.5 * p + 1.0)
+    found = []
+    for strip in strips:
+        load, push = (
+            beta(0.5, 0.5 * p + 1.0) for p in (3.0 - strip.rise, 4.0 - strip.rise - strip.slope)
+        )
+        friction = strip.friction * push / load
+        found.append(strip._replace(load=strip.load * stretch * load, friction=friction))
+    return found[0], found[1]
 
 
 def _shape(scene: Scene) -> tuple[Value, Value, Value]:
@@ -94,18 +89,13 @@ def _shape(scene: Scene) -> tuple[Value, Value, Value]:
     return shape_of(scene.indenter)
 
 
-def _half_length(scene: Scene, depth: Value) -> Value:
-    slope, L, n = _shape(scene)
-    return L * root(n * depth / (slope * L), n)
-
-
 def _carrying(scene: Scene, limit: Limit, load: Value) -> tuple[Value, Value]:
     """Return depth and half length at which the foundation of a limit carries a load."""
     slope, L, n = _shape(scene)
     across = 0.0 if scene.indenter.per_width else 1.0
-    number = _retardation_length(scene) / L
     unit = limit.load * scene.foundation.stiffness * slope * L ** (2.0 + across)
-    a = L * root(n * load / (unit * number**limit.rise), n + 1.0 + across - limit.rise)
+    unit = unit if limit.slow else unit * (_retardation_length(scene) / L) ** limit.rise
+    a = L * root(n * load / unit, n + 1.0 + across - limit.rise)
     return slope * L / n * (a / L) ** n, a
 
 
@@ -116,15 +106,15 @@ def _retardation_length(scene: Scene) -> Value:
 def at_rest(scene: Scene, low: Limit | None = None) -> tuple[Value, Value]:
     """Return depth and half length at rest; `low` is the limit for V -> 0, if it is at hand."""
     if scene.held:
-        return scene.support.depth, _half_length(scene, scene.support.depth)
+        depth, (slope, L, n) = scene.support.depth, _shape(scene)
+        return depth, L * root(n * depth / (slope * L), n)
     return _carrying(scene, low or limits(scene)[0], scene.support.weight)
 
 
 def contact(scene: Scene, limit: Limit) -> tuple[Value, Value, Value]:
     """Return depth, half length and load in a limit, on the support of a scene."""
     support = scene.support
-    low = limit if limit.slow else None
-    depth, a = static = at_rest(scene, low)
+    depth, a = static = at_rest(scene, limit if limit.slow else None)
     if scene.held:
         viscous = (_retardation_length(scene) / a) ** limit.rise
         across = 1.0 if scene.indenter.per_width else a
@@ -134,35 +124,26 @@ def contact(scene: Scene, limit: Limit) -> tuple[Value, Value, Value]:
     lift = support.weight + support.spring * depth
     if np.all(limit.rise > 0.0):
         return *_carrying(scene, limit, lift), lift
-    s = _glassy_lift(scene, limit, support.spring * depth / support.weight)
-    return s * s * depth, s * a, lift - support.spring * s * s * depth
 
+    from scipy.optimize import elementwise  # slow to import
 
-def _glassy_lift(scene: Scene, limit: Limit, support_number: Value) -> Value:
-    """Return a/a_0 on a glassy spring: g s^p + kappa (s^2 - 1) = 1, p = 3, or 4 for a ball."""
-    from scipy.optimize import elementwise  # it takes a while to import
-
-    g = limit.load / limits(scene)[0].load
-    power = 3 if scene.indenter.per_width else 4
-
+    # A glassy spring: s = a/a_0 from g s^p + kappa (s^2 - 1) = 1.
     def excess(s: Value, g: Value, kappa: Value) -> Value:
         return g * s**power + kappa * (s * s - 1.0) - 1.0
 
-    return elementwise.find_root(excess, (0.0, 1.0), args=(g, support_number)).x
+    power = 3 if scene.indenter.per_width else 4
+    given = limit.load / limits(scene)[0].load, support.spring * depth / support.weight
+    s = elementwise.find_root(excess, (0.0, 1.0), args=given).x
+    return s * s * depth, s * a, lift - support.spring * s * s * depth
 
 
-def quantity(scene: Scene, limit: Limit, name: str) -> Value:
+def quantity(scene: Scene, limit: Limit, name: str = "friction_coefficient") -> Value:
     """Return the limit of one of depth, load, friction force and friction coefficient, at |V| of a scene."""
     depth, a, load = contact(scene, limit)
     if name in ("depth", "load"):
         return depth if name == "depth" else load
     mu = depth / a * limit.friction * (_retardation_length(scene) / a) ** limit.slope
     return mu if name == "friction_coefficient" else load * mu
-
-
-def friction_coefficient(scene: Scene, limit: Limit) -> Value:
-    """Return the friction coefficient of a limit at the velocity |V| of a scene."""
-    return quantity(scene, limit, "friction_coefficient")
 
 
 def critical_velocity(scene: Scene) -> Value:
@@ -175,7 +156,7 @@ def critical_velocity(scene: Scene) -> Value:
     low, high = limits(scene)
     unit = at_rest(scene)[1] / scene.foundation.retardation_time
     there = scene.at(unit)
-    ratio = friction_coefficient(there, high) / friction_coefficient(there, low)
+    ratio = quantity(there, high) / quantity(there, low)
     across = 1.0 if scene.indenter.per_width else 2.0
     shrinks = 0.0 if scene.held else high.rise / (n + across - high.rise)
     falls = high.slope - (n - 1.0 - high.slope) * shrinks
@@ -188,7 +169,8 @@ def quantities(scene: Scene, limit: Limit) -> dict[str, Value]:
     At V = 0 those for high velocity are infinite or zero.
     """
     _, _, n = _shape(scene)
-    K, side = scene.foundation.stiffness, np.where(scene.drive.final_velocity < 0.0, -1.0, 1.0)
+    K, V = scene.foundation.stiffness, scene.drive.final_velocity
+    side = (V >= 0.0) * 2.0 - 1.0
     l_r = _retardation_length(scene)
     depth, a, load = contact(scene, limit)
     mu = depth / a * limit.friction * (l_r / a) ** limit.slope
@@ -202,7 +184,7 @@ def quantities(scene: Scene, limit: Limit) -> dict[str, Value]:
         "friction_force": side * (load * mu) + 0.0,  # no negative zero
         "friction_coefficient": side * mu + 0.0,
         "peak_pressure": K * depth if limit.slow else K * depth * (n * l_r / a),
-        "dissipated_in_contact": np.ones_like(a),
+        "dissipated_in_contact": 0.0 * a + 1.0,
     }
 
 

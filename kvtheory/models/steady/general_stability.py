@@ -1,4 +1,7 @@
-"""Stability of steady sliding on any law with a response to e^(st), with a spring in the drive (theorem F24).
+"""Stability of steady sliding on any law with a response to e^(st), on a spring in the drive (theorem F24).
+
+The law of the foundation gives the response of a parabola (`kvtheory.theory.laws`); a ball is the sum of
+its strips, by Gauss's rule in the angle whose cosine is the half length of a strip over the largest.
 
 A stiffness k_x(s) = D - M_x s^2 - c_x s - B C/(M s^2 + k_s + A) belongs to each rate s. A stiff spring
 keeps sliding stable. On the way to a soft one two rates enter or leave the right half plane at each frequency
@@ -11,17 +14,27 @@ line. The least stable ones are found by Newton's method from many starts; the a
 whether any is missing.
 """
 
+from collections.abc import Callable
+from functools import cache
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from kvtheory.models.steady import ball_viscoelastic
-from kvtheory.models.steady.small_motions import Complex, Contact, contact
+from kvtheory.models.steady import ball_viscoelastic, viscoelastic
 from kvtheory.scene.model import Scene
+from kvtheory.theory.laws import Law
 
 Array = NDArray[np.float64]
+Complex = NDArray[np.complex128]
 
+STATEMENT = (
+    "memory integrals in closed form, checked by quadrature, with what rounding and sums over strips make "
+    "of them to first order; critical stiffnesses from a grid of frequencies that follows resonances; "
+    "the least stable rates, counted by the argument principle (an error of infinity: the count differs)"
+)
+AT_REST = 1e-9
+"""V tau_i/c of the slowest arm, of the slow sliding that stands for rest."""
 PER_DECADE, ROUGHLY, BEYOND = 48, 20, 2.0
 """Frequencies per decade, of one velocity and of many; and decades beyond the times of a scene."""
 LOWER, LOWER_COUNT = 10.0, 16
@@ -33,16 +46,15 @@ NEARBY = 1e-5
 """Relative difference of frequencies, of rates and of velocities for slopes."""
 ROUNDING, IN_STRIPS = 16 * 2.0**-52, ball_viscoelastic.RELATIVE_ERROR
 """Relative error of the response of a parabola, and of a ball in any number of strips."""
-STRIPS, MORE, MOST = 24, 4, 384
-"""Strips of half a ball, the factor by which they grow until the error is small, and the most of them. Twice
-as many show the error."""
-FEW = 6
-"""Strips in which rates and unstable velocities are looked for, before they are followed into more."""
+FEW, STRIPS, MORE, MOST = 6, 24, 4, 384
+"""Strips of half a ball: those in which rates and unstable velocities are sought, those for crossings, the
+factor by which these grow until the error is small, and the most. Twice as many show it."""
 ACCURATE = 1e-8
 """Relative error of a critical stiffness that needs no more strips."""
 POLISHING, MOVED = 4, 0.1
 """Newton steps from the roots in few strips to those in more, and how far a logarithm may move."""
 NEWTON_STEPS, SETTLED, SAME = 60, 1e-9, 1e-6
+"""Most Newton steps, the last relative step, and the relative distance below which two roots are one."""
 ANGLES, RADII = 9, 5
 """Starts of Newton's method: directions in the upper half plane, and distances per decade."""
 FAR = 100.0
@@ -51,105 +63,139 @@ SPEEDS, SPEED_DECADES = 6, 4.0
 """Velocities per decade, and decades beyond c/V = tau_i, among which the critical velocity is sought."""
 
 
-class Crossings(NamedTuple):
-    """Where two rates cross the imaginary axis, with relative errors.
+class Contact(NamedTuple):
+    """Flat scenes in steady sliding, as small motions see them: all of one row each, strips ahead."""
 
-    `way` is 1 where softer springs have two more unstable rates, and -1 where they have two fewer.
+    V: Array
+    R: Array
+    c: Array
+    eta: Array
+    width: Array
+    """Of the strips; 1 for a line."""
+    mass: Array
+    spring: Array
+    mass_along: Array
+    damping: Array
+    law: Law
+    """Over the distance travelled."""
+    held: bool
+
+    def rows(self, index: Any) -> "Contact":
+        """Return some of the scenes."""
+        parts: list[Any] = [each[..., index] for each in self[:-2]]
+        parts += [self.law.at(index), self.held]
+        return Contact(*parts)
+
+    def stiffness(self, s: Complex) -> tuple[Complex, Complex, Array]:
+        """Return the k_x for which s is a rate, what resists vertical motion, and the size of its terms."""
+        slope, share = self.c / self.R, self.c * self.width
+        A, B, C, D = self.law.response(self.c, self.eta, s * (self.c / self.V))
+        each = A, slope * B, slope * C, slope * slope * D
+        A, B, C, D = ((share * term).sum(axis=0) for term in each)
+        along = D - s * (self.mass_along * s + self.damping)
+        if self.held:
+            return along, np.ones_like(s), np.abs(D)
+        across = s * s * self.mass + self.spring + A
+        coupled = B * C / across
+        size = np.abs(s * s) * self.mass + self.spring + np.abs(A)
+        return along - coupled, across, np.abs(D) + np.abs(coupled) * (1.0 + size / np.abs(across))
+
+    def on_axis(self, row: Any, log: Array) -> tuple[Complex, Complex, Array]:
+        """Return the same of some scenes at the frequencies e^log."""
+        return self.rows(row).stiffness(1j * np.exp(log))
+
+    @property
+    def rounding(self) -> float:
+        """Relative error of the response."""
+        return ROUNDING if len(self.c) == 1 else IN_STRIPS
+
+    def scales(self) -> Array:
+        """Return the rates in 1/s that a scene brings along, on the first axis."""
+        passing, law = self.V / self.c, self.law
+        found = [*(self.V / law.time), passing.min(axis=0), passing.max(axis=0)]
+        if law.damping is not None:
+            found.append(self.V * law.K / law.damping)
+        if not self.held:
+            soft = (self.c * self.width).sum(axis=0) * law.K
+            stiff = soft * (1.0 + law.stiffness.sum(axis=0) / law.K)
+            found += [np.sqrt((self.spring + each) / self.mass) for each in (soft, stiff)]
+        return np.stack(found)
+
+
+def contact(scene: Scene, strips: int = 1) -> Contact:
+    """Return what small motions of flat scenes see: a parabola, or a ball in strips."""
+    shape, support, foundation = scene.shape, scene.support, scene.foundation
+    law = viscoelastic.law(scene)
+    if scene.indenter.per_width:
+        c = viscoelastic.contact_length(scene, law)[np.newaxis]
+        width = np.ones_like(c)
+    else:
+        middle = ball_viscoelastic.contact_length(scene, law)
+        half = middle * viscoelastic.growth(law.moments(middle))[0]
+        angles, weights = (0.25 * np.pi * x for x in np.polynomial.legendre.leggauss(strips))
+        cosines = np.cos(0.25 * np.pi + angles)
+        c = np.stack([viscoelastic.length_at_half(law, half * cosine) for cosine in cosines])
+        width = 2.0 * scene.indenter.stretch * half * (cosines * weights)[:, np.newaxis]
+    eta = np.stack([law.moments(each).eta for each in c])
+
+    def full(value: Any) -> Array:
+        return np.broadcast_to(value, shape).astype(float)
+
+    times = [full(arm.relaxation_time) for arm in foundation.arms]
+    slowest = np.maximum.reduce(times or [full(foundation.retardation_time)])
+    V = np.maximum(np.abs(scene.drive.final_velocity), AT_REST * c.max(axis=0) / slowest)
+    return Contact(
+        full(V), full(scene.indenter.radius), c, eta, width,
+        full(support.mass), full(support.spring), full(scene.drive_mass), full(scene.drive.damping),
+        viscoelastic.law(scene.at(V)), held=scene.held,
+    )  # fmt: skip
+
+
+class Places(NamedTuple):
+    """Where the imaginary part of k_x changes its sign: scenes, logarithms of frequencies, and ways.
+
+    A way is 1 where softer springs have two more unstable rates, and -1 where they have two fewer.
     """
 
     row: NDArray[np.int_]
-    stiffness: Array
-    omega: Array
+    log: Array
     way: NDArray[np.int_]
-    error: Array
-    omega_error: Array
 
-    def unstable(self, stiffness: Array) -> NDArray[np.bool_]:
-        """Return whether a spring of each scene has rates in the right half plane."""
-        beyond = self.stiffness > stiffness[self.row]
-        return np.bincount(self.row, self.way * beyond, len(stiffness)) > 0.5
+    @classmethod
+    def search(cls, given: Contact, per_decade: int = PER_DECADE) -> "Places":
+        """Return the places of all scenes, by bisection on a grid that is refined at resonances."""
+        own = given.scales()
+        low = np.log(own.min(axis=0)) - BEYOND * np.log(10.0)
+        high = np.log(own.max(axis=0)) + BEYOND * np.log(10.0)
+        fine = np.linspace(low, high, 2 + int(per_decade * np.max(high - low) / np.log(10.0)))
+        soft = np.linspace(low - LOWER * np.log(10.0), low, LOWER_COUNT, endpoint=False)
+        grid = np.concatenate([soft, fine]).T
+        rows = np.broadcast_to(np.arange(len(grid))[:, np.newaxis], grid.shape).ravel()
+        rows, log, k = _refined(given, rows, grid.ravel())
+        cell = (rows[1:] == rows[:-1]) & ((k.imag[1:] > 0.0) != (k.imag[:-1] > 0.0))
+        row, start, end = rows[:-1][cell], log[:-1][cell], log[1:][cell]
+        way = np.where(k.imag[:-1][cell] > 0.0, 1, -1)
+        for _ in range(BISECTIONS):
+            middle = 0.5 * (start + end)
+            before = (given.on_axis(row, middle)[0].imag > 0.0) == (way > 0)
+            start, end = np.where(before, middle, start), np.where(before, end, middle)
+        return cls(row, 0.5 * (start + end), way)
 
-
-def scales(given: Contact) -> Array:
-    """Return the rates in 1/s that a scene brings along, on the first axis."""
-    passing, law = given.V / given.c, given.law
-    found = [*(given.V / law.time), passing.min(axis=0), passing.max(axis=0)]
-    if law.damping is not None:
-        found.append(given.V * law.K / law.damping)
-    if not given.held:
-        soft = (given.c * given.width).sum(axis=0) * law.K
-        stiff = soft * (1.0 + law.stiffness.sum(axis=0) / law.K)
-        found += [np.sqrt((given.spring + each) / given.mass) for each in (soft, stiff)]
-    return np.stack(found)
-
-
-Places = tuple[NDArray[np.int_], Array, NDArray[np.int_]]
-"""Scenes, logarithms of frequencies, and ways of crossings."""
-
-
-def places(given: Contact, per_decade: int = PER_DECADE) -> Places:
-    """Return where the imaginary part of the stiffness changes its sign, by bisection on a grid."""
-    own = scales(given)
-    low, high = (np.log(own.min(axis=0)), np.log(own.max(axis=0)))
-    low, high = low - BEYOND * np.log(10.0), high + BEYOND * np.log(10.0)
-    fine = np.linspace(low, high, 2 + int(per_decade * np.max(high - low) / np.log(10.0)))
-    soft = np.linspace(low - LOWER * np.log(10.0), low, LOWER_COUNT, endpoint=False)
-    log = np.concatenate([soft, fine]).T
-    rows = np.broadcast_to(np.arange(len(log))[:, np.newaxis], log.shape).ravel()
-    rows, log, k, _ = refined(given, rows, log.ravel())
-    cell = (rows[1:] == rows[:-1]) & ((k.imag[1:] > 0.0) != (k.imag[:-1] > 0.0))
-    row, start, end = rows[:-1][cell], log[:-1][cell], log[1:][cell]
-    way = np.where(k.imag[:-1][cell] > 0.0, 1, -1)
-    for _ in range(BISECTIONS):
-        middle = 0.5 * (start + end)
-        before = (stiffness(given, row, middle)[0].imag > 0.0) == (way > 0)
-        start, end = np.where(before, middle, start), np.where(before, end, middle)
-    return row, 0.5 * (start + end), way
+    def moved(self, given: Contact) -> "Places":
+        """Return them in other strips, by Newton's method from those in fewer; NaN where they are lost."""
+        log = self.log.copy()
+        for _ in range(POLISHING):
+            low, here, high = (
+                given.on_axis(self.row, log + step)[0].imag for step in (-NEARBY, 0.0, NEARBY)
+            )
+            with np.errstate(all="ignore"):
+                log = log - 2.0 * NEARBY * here / (high - low)
+        return self._replace(log=np.where(np.abs(log - self.log) < MOVED, log, np.nan))
 
 
-def moved(given: Contact, found: Places) -> Places:
-    """Return the places in other strips, by Newton's method from those in fewer; NaN where they are lost."""
-    row, start, way = found
-    log = start.copy()
-    for _ in range(POLISHING):
-        low, here, high = (
-            stiffness(given, row, log + step)[0].imag for step in (-NEARBY, 0.0, NEARBY)
-        )
-        with np.errstate(all="ignore"):
-            log = log - 2.0 * NEARBY * here / (high - low)
-    return row, np.where(np.abs(log - start) < MOVED, log, np.nan), way
-
-
-def crossings(given: Contact, finer: Contact, found: Places) -> Crossings:
-    """Return those at a positive stiffness, with errors to first order; `finer` has twice as many strips."""
-    row, log, way = found
-    k, _, size = stiffness(given, row, log)
-    near = [stiffness(given, row, log + step)[0] for step in (-NEARBY, NEARBY)]
-    slope = (near[1] - near[0]) / (2.0 * NEARBY)
-    doubt = _rounding(given) * size + 2.0 * np.abs(stiffness(finer, row, log)[0] - k)
-    omega = np.exp(log)
-    with np.errstate(divide="ignore"):
-        off = doubt / np.abs(slope.imag) + ROUNDING
-    inertia = given.mass_along[row] * omega * omega
-    wrong = np.abs(slope.real) * off + doubt + ROUNDING * inertia
-    some = k.real > 0.0
-    parts = row, k.real, omega, way, wrong / np.abs(k.real), off
-    chosen: list[Any] = [each[some] for each in parts]
-    return Crossings(*chosen)
-
-
-def _rounding(given: Contact) -> float:
-    return ROUNDING if len(given.c) == 1 else IN_STRIPS
-
-
-def stiffness(given: Contact, row: Any, log: Array) -> tuple[Complex, Complex, Array]:
-    """Return `Contact.stiffness` on the imaginary axis."""
-    return given.rows(row).stiffness(1j * np.exp(log))
-
-
-def refined(given: Contact, rows: Any, log: Array) -> tuple[Any, Array, Complex, Complex]:
+def _refined(given: Contact, rows: Any, log: Array) -> tuple[Any, Array, Complex]:
     """Halve cells until no resonance of the vertical motion is between two frequencies."""
-    k, across, _ = stiffness(given, rows, log)
+    k, across, _ = given.on_axis(rows, log)
     for turn in range(REFINEMENTS):
         same = rows[1:] == rows[:-1]
         wide = np.abs(np.angle(across[1:] / across[:-1])) > TURN
@@ -162,68 +208,118 @@ def refined(given: Contact, rows: Any, log: Array) -> tuple[Any, Array, Complex,
         if not at.size:
             break
         new, middle = rows[at], 0.5 * (log[at] + log[at + 1])
-        more = stiffness(given, new, middle)
+        more = given.on_axis(new, middle)
         rows, log, k, across = (
             np.insert(old, at + 1, add)
             for old, add in zip((rows, log, k, across), (new, middle, *more[:2]), strict=True)
         )
-    return rows, log, k, across
+    return rows, log, k
 
 
-def critical(found: Crossings, count: int) -> tuple[dict[str, Array], dict[str, Array]]:
-    """Return the critical stiffnesses and the frequency of the upper one by name, and their errors.
+class Crossings(NamedTuple):
+    """Where two rates cross the imaginary axis, with relative errors; ways as in `Places`."""
 
-    Between the lower and the upper one there may be stable ranges too.
+    row: NDArray[np.int_]
+    stiffness: Array
+    omega: Array
+    way: NDArray[np.int_]
+    error: Array
+    omega_error: Array
+
+    @classmethod
+    def at(cls, given: Contact, finer: Contact, found: Places) -> "Crossings":
+        """Return those at a positive stiffness, with errors to first order; `finer` has twice the strips."""
+        row, log, way = found
+        k, _, size = given.on_axis(row, log)
+        near = [given.on_axis(row, log + step)[0] for step in (-NEARBY, NEARBY)]
+        slope = (near[1] - near[0]) / (2.0 * NEARBY)
+        doubt = given.rounding * size + 2.0 * np.abs(finer.on_axis(row, log)[0] - k)
+        omega = np.exp(log)
+        with np.errstate(divide="ignore"):
+            off = doubt / np.abs(slope.imag) + ROUNDING
+        inertia = given.mass_along[row] * omega * omega
+        wrong = np.abs(slope.real) * off + doubt + ROUNDING * inertia
+        some = k.real > 0.0
+        parts: tuple[Any, ...] = (row, k.real, omega, way, wrong / np.abs(k.real), off)
+        return cls(*(each[some] for each in parts))
+
+    def unstable(self, spring: Array) -> NDArray[np.bool_]:
+        """Return whether a spring of each scene has rates in the right half plane."""
+        beyond = self.stiffness > spring[self.row]
+        return np.bincount(self.row, self.way * beyond, len(spring)) > 0.5
+
+
+class SmallMotions:
+    """What small motions of flat scenes see in few strips, in enough and in twice as many; all crossings.
+
+    Crossings are followed into more strips until these are enough; where one is lost, all are sought again.
     """
-    upper, lower = np.full((2, 4, count), np.nan)
-    order = np.argsort(found.stiffness)  # of several of a scene the last one written stays
-    known = np.stack([found.stiffness, found.omega / (2.0 * np.pi), found.error, found.omega_error])
-    for each, places in ((upper, order), (lower, order[::-1])):
-        for i in places:
-            each[:, found.row[i]] = known[:, i]
-    lower[:, found.unstable(np.zeros(count))] = 0.0
-    values = upper[0], lower[0], upper[1]
-    names = "critical_stiffness", "lower_critical_stiffness", "frequency"
-    errors = upper[2], lower[2], upper[3]
-    return dict(zip(names, values, strict=True)), dict(zip(names, errors, strict=True))
+
+    def __init__(self, scene: Scene) -> None:
+        self.size = scene.shape[0]
+        if scene.indenter.per_width:
+            self.few = self.fine = self.finer = contact(scene)
+            self.crossings = Crossings.at(self.few, self.few, Places.search(self.few))
+            return
+        self.few, self.fine, strips = contact(scene, FEW), contact(scene, STRIPS), STRIPS
+        known = Places.search(self.fine)
+        while True:
+            self.finer = contact(scene, 2 * strips)
+            self.crossings = Crossings.at(self.fine, self.finer, known)
+            if strips >= MOST or (self.crossings.error <= ACCURATE).all():
+                return
+            strips *= MORE
+            self.fine = contact(scene, strips)
+            known = known.moved(self.fine)
+            if np.isnan(known.log).any():
+                known = Places.search(self.fine)
+
+    def critical(self) -> tuple[tuple[Array, ...], tuple[Array, ...]]:
+        """Return upper and lower critical stiffness, the frequency at the upper one, and their errors.
+
+        Between the lower and the upper one there may be stable ranges too.
+        """
+        found, (upper, lower) = self.crossings, np.full((2, 4, self.size), np.nan)
+        hertz = found.omega / (2.0 * np.pi)
+        known = np.stack([found.stiffness, hertz, found.error, found.omega_error])
+        order = np.argsort(found.stiffness)  # of several of a scene the last one written stays
+        for each, places in ((upper, order), (lower, order[::-1])):
+            for i in places:
+                each[:, found.row[i]] = known[:, i]
+        lower[:, found.unstable(np.zeros(self.size))] = 0.0
+        return (upper[0], lower[0], upper[1]), (upper[2], lower[2], upper[3])
+
+    def stable(self, spring: Array) -> NDArray[np.bool_]:
+        """Return whether sliding on a spring of each scene is stable."""
+        return ~self.crossings.unstable(spring)
+
+    def rates(self, spring: Array | None) -> tuple[Complex, Array]:
+        """Return the least stable rates of each scene and their relative errors: as many as on Kelvin-Voigt.
+
+        These are four, or two for a rigid drive or a fixed indenter; NaN where fewer are found, as next to
+        rest, where those left of -1/tau_i of the slowest arm do not exist. An infinite error says that the
+        count of the argument principle differs.
+        """
+        pairs = []
+        for i in range(self.size):
+            few, fine, finer = (each.rows([i]) for each in (self.few, self.fine, self.finer))
+            pairs.append(_rates(few, fine, finer, None if spring is None else float(spring[i])))
+        s, errors = zip(*pairs, strict=True)
+        return np.array(s), np.array(errors)
 
 
-def solve(scene: Scene) -> tuple[Contact, Contact, Contact, Crossings]:
-    """Return what small motions see in few strips, in enough, and in twice as many, and all crossings.
-
-    They are found in few strips and followed into more; where one is lost on the way, all are sought again.
-    """
-    given = contact(scene, STRIPS)
-    if scene.indenter.per_width:
-        return given, given, given, crossings(given, given, places(given))
-    few, strips, known = contact(scene, FEW), STRIPS, places(given)
-    while True:
-        finer = contact(scene, 2 * strips)
-        found = crossings(given, finer, known)
-        if strips >= MOST or (found.error <= ACCURATE).all():
-            return few, given, finer, found
-        strips *= MORE
-        given = contact(scene, strips)
-        known = moved(given, known)
-        if np.isnan(known[1]).any():
-            known = places(given)
+Value = Callable[..., tuple[Any, Any]]
+"""Of rates, in the strips of a contact: what vanishes at a rate, and the size of its terms."""
 
 
-def rates(
+def _rates(
     given: Contact, fine: Contact, finer: Contact, spring: float | None
 ) -> tuple[Complex, Array]:
-    """Return the least stable rates of one scene and their relative errors: as many as on Kelvin-Voigt.
-
-    They are sought and counted in the strips of `given`, and followed into those of `fine`; those of `finer`
-    show the error.
-
-    These are four, or two for a rigid drive or a fixed indenter, and none for both; NaN where fewer are
-    found, as next to rest, where those left of -1/tau_i of the slowest arm do not exist. An infinite error
-    says that the count of the argument principle differs.
-    """
+    """Seek and count the rates of one scene in the strips of `given`; follow them into those of `fine`."""
     degree = 2 * ((spring is not None) + (not given.held))
-    if not degree:
-        return np.empty(0, complex), np.empty(0)
+    own = given.scales()[:, 0]
+    if spring is not None:
+        own = np.append(own, np.sqrt(spring / given.mass_along))
 
     def value(s: Complex, given: Contact = given) -> tuple[Any, Any]:
         k, across, size = given.rows(np.zeros(s.shape, int)).stiffness(s)
@@ -232,44 +328,41 @@ def rates(
         return across * (spring - k), np.abs(across) * (spring + np.abs(k) + size)
 
     with np.errstate(all="ignore"):
-        found, error = _newton((given, fine, finer), value, spring)
+        found = _newton(given, value, own)
+        for _ in range(POLISHING if fine is not given else 0):
+            h = NEARBY * found
+            rise = value(found + h, fine)[0] - value(found - h, fine)[0]
+            found = found - 2.0 * h * value(found, fine)[0] / rise
+        found = found[np.isfinite(found)]
+        (f, size), h = value(found, fine), NEARBY * found
+        slope = (value(found + h, fine)[0] - value(found - h, fine)[0]) / (2.0 * h)
+        off = np.abs(f) + given.rounding * size + 2.0 * np.abs(value(found, finer)[0] - f)
+        error = off / np.abs(slope * found) + ROUNDING
     upper = found.imag > SAME * np.abs(found)
     found = np.concatenate([found, found[upper].conj()])
     error = np.concatenate([error, error[upper]])
     order = np.lexsort((found.imag, -found.real))
     found, error = found[order], error[order]
-    if not found.size:
-        return np.full(degree, np.nan, complex), np.full(degree, np.inf)
-    last = found[min(degree, len(found)) - 1].real
-    left = found.real[found.real < last - SAME * abs(last)]
-    line = 0.5 * (last + left[0]) if left.size else 1.05 * last
-    if _count(given, value, line, degree, spring) != np.count_nonzero(found.real > line):
-        error = np.full_like(error, np.inf)
+    if found.size:
+        last = found[min(degree, len(found)) - 1].real
+        left = found.real[found.real < last - SAME * abs(last)]
+        line = 0.5 * (last + left[0]) if left.size else 1.05 * last
+        if _count(value, line, degree, own) != np.count_nonzero(found.real > line):
+            error = np.full_like(error, np.inf)
     short = max(degree - len(found), 0)
-    found = np.append(found, np.full(short, np.nan))
-    error = np.append(error, np.full(short, np.inf))
-    return found[:degree], error[:degree]
+    found = np.append(found, np.full(short, np.nan, complex))
+    return found[:degree], np.append(error, np.full(short, np.inf))[:degree]
 
 
-def _range(given: Contact, spring: float | None) -> Array:
-    own = scales(given)[:, 0]
-    return own if spring is None else np.append(own, np.sqrt(spring / given.mass_along))
-
-
-def _newton(
-    strips: tuple[Contact, Contact, Contact], value: Any, spring: float | None
-) -> tuple[Complex, Array]:
-    """Return the roots in the closed upper half plane that Newton's method reaches, and their errors."""
-    given, fine, finer = strips
-    own = np.log10(_range(given, spring))
-    low, high = own.min() - BEYOND, own.max() + BEYOND
+def _newton(given: Contact, value: Value, own: Array) -> Complex:
+    """Return the roots in the closed upper half plane that Newton's method reaches, each once."""
+    low, high = np.log10(own).min() - BEYOND, np.log10(own).max() + BEYOND
     radii = np.logspace(low, high, int(RADII * (high - low)))
     polar = radii[:, np.newaxis] * np.exp(1j * np.linspace(0.0, np.pi, ANGLES))
     passing = (given.V / given.c).min()
     chain = passing * (np.arange(-1.0, 12.0, 2.0)[:, np.newaxis] - 1j * np.linspace(0.0, 60.0, 16))
-    s = np.concatenate(
-        [polar.ravel(), *(-rate - chain.ravel() for rate in (given.V / given.law.time)[:, 0])]
-    )
+    arms = (given.V / given.law.time)[:, 0]
+    s = np.concatenate([polar.ravel(), *(-rate - chain.ravel() for rate in arms)])
     moving = np.arange(s.size)
     for _ in range(NEWTON_STEPS):
         here = s[moving]
@@ -287,21 +380,13 @@ def _newton(
     for i in np.argsort(-s.real):
         if all(abs(s[i] - s[j]) > SAME * abs(s[i]) for j in kept):
             kept.append(i)
-    s = s[kept]
-    for _ in range(POLISHING if fine is not given else 0):
-        h = NEARBY * s
-        s = s - 2.0 * h * value(s, fine)[0] / (value(s + h, fine)[0] - value(s - h, fine)[0])
-    s = s[np.isfinite(s)]
-    (f, size), h = value(s, fine), NEARBY * s
-    slope = (value(s + h, fine)[0] - value(s - h, fine)[0]) / (2.0 * h)
-    off = np.abs(f) + _rounding(given) * size + 2.0 * np.abs(value(s, finer)[0] - f)
-    return s, off / np.abs(slope * s) + ROUNDING
+    return s[kept]
 
 
-def _count(given: Contact, value: Any, line: float, degree: int, spring: float | None) -> int:
+def _count(value: Value, line: float, degree: int, own: Array) -> int:
     """Return the number of roots right of a line by the argument principle."""
-    own = np.append(np.log(_range(given, spring)), np.log(abs(line)))
-    omega = np.exp(np.linspace(own.min() - 7.0, own.max() + 9.0, 2000))
+    logs = np.append(np.log(own), np.log(abs(line)))
+    omega = np.exp(np.linspace(logs.min() - 7.0, logs.max() + 9.0, 2000))
     omega = np.insert(omega, 0, 0.0)
     with np.errstate(all="ignore"):
         f = value(line + 1j * omega)[0]
@@ -316,22 +401,32 @@ def _count(given: Contact, value: Any, line: float, degree: int, spring: float |
     return round(0.5 * degree - turned / np.pi) if np.isfinite(turned) else -1
 
 
-def critical_velocity(scene: Scene) -> tuple[float, float]:
-    """Return the smallest velocity at which one scene becomes unstable, or NaN, and its error."""
+def critical_velocity(scene: Scene) -> tuple[Array, Array]:
+    """Return the smallest velocity at which each of flat scenes becomes unstable, or NaN, and its error."""
+    each = [_critical_velocity(scene.rows(slice(i, i + 1))) for i in range(*scene.shape)]
+    velocity, error = np.reshape(each, (-1, 2)).T
+    return velocity, error
+
+
+def _critical_velocity(scene: Scene) -> tuple[float, float]:
+    """Return that of one scene: the first change on a grid of velocities, then Brent's method."""
+    from scipy.optimize import brentq
+
+    spring = np.broadcast_to(scene.drive.stiffness, (1,))
     given = contact(scene.at(np.ones(1)), STRIPS)
     length = np.log10(given.c.max() * given.V / given.law.time)
     low, high = length.min() - SPEED_DECADES, length.max() + SPEED_DECADES
-    spring = np.broadcast_to(scene.drive.stiffness, (1,))
 
-    def there(log: Array, strips: int) -> Contact:
-        return contact(scene.rows(np.zeros(log.size, int)).at(10.0**log), strips)
+    def there(log: Array) -> Scene:
+        return scene.rows(np.zeros(log.size, int)).at(10.0**log)
 
-    def found(log: Array, strips: int = STRIPS, per_decade: int = PER_DECADE) -> Crossings:
-        coarse = there(log, strips)
-        return crossings(coarse, coarse, places(coarse, per_decade))
+    def found(log: Array, strips: int, per_decade: int) -> Crossings:
+        coarse = contact(there(log), strips)
+        return Crossings.at(coarse, coarse, Places.search(coarse, per_decade))
 
+    @cache
     def signed(log: float) -> float:
-        each = found(np.array([log]))
+        each = found(np.array([log]), STRIPS, PER_DECADE)
         if not each.row.size:
             return -FAR
         distance = float(np.min(np.abs(np.log(each.stiffness / spring))))
@@ -342,46 +437,25 @@ def critical_velocity(scene: Scene) -> tuple[float, float]:
     (change,) = np.nonzero(now[1:] & ~now[:-1])
     if not change.size:
         return np.nan, np.nan
-    bracket = grid[change[0]], grid[change[0] + 1]
-    if (
-        not signed(bracket[0]) < 0.0 < signed(bracket[1])
-    ):  # in more strips it is next to a point of the grid
+    bracket = float(grid[change[0]]), float(grid[change[0] + 1])
+    if not signed(bracket[0]) < 0.0 < signed(bracket[1]):  # in more strips it is next to the cell
         bracket = bracket[0] - 1.0 / SPEEDS, bracket[1] + 1.0 / SPEEDS
-
-    from scipy.optimize import brentq
-
     onset = brentq(signed, *bracket, xtol=1e-15)
-    strips = STRIPS
-    own = found(np.array([onset]))
-    if not own.row.size:
-        return 10.0**onset, np.inf
-    log = np.log(own.omega[[np.argmin(np.abs(own.stiffness / spring - 1.0))]])
-
-    def crossing(onset: float, finer: int = 1) -> Crossings:
-        """Return the crossing at a velocity, followed from the one at the onset in few strips."""
-        here = there(np.array([onset]), strips)
-        place = moved(here, (np.zeros(1, int), log, np.ones(1, int)))
-        return crossings(here, there(np.array([onset]), finer * strips), place)
-
-    while True:
-        for _ in range(0 if scene.indenter.per_width or strips == STRIPS else POLISHING):
-            k = [crossing(onset + side * NEARBY).stiffness for side in (-1.0, 1.0)]
-            if not all(each.size for each in k):
+    for _ in range(POLISHING):
+        near = SmallMotions(there(onset + NEARBY * np.array([-1.0, 1.0])))
+        each, off, error = near.crossings, [], np.inf
+        for side in (0, 1):
+            (here,) = np.nonzero(each.row == side)
+            if not here.size:
                 return 10.0**onset, np.inf
-            low, high = (float(np.log(each / spring)[0]) for each in k)
-            onset -= NEARBY * (low + high) / (high - low)
-        near = [crossing(onset + side * NEARBY, 2) for side in (-1.0, 1.0)]
-        error = _velocity_error(near) + ROUNDING * (1.0 + abs(onset))
-        if scene.indenter.per_width or strips >= MOST or error <= ACCURATE:
-            return 10.0**onset, error
-        strips *= MORE
-
-
-def _velocity_error(near: list[Crossings]) -> float:
-    """Return the error of the critical stiffness over its logarithmic derivative."""
-    if not all(each.row.size for each in near):
-        return np.inf
-    before, after = (float(np.log(each.stiffness[0])) for each in near)
-    with np.errstate(divide="ignore"):
-        steepness = np.abs(after - before) / (2.0 * NEARBY * np.log(10.0))
-        return float(near[1].error[0] / steepness)
+            distance = np.log(each.stiffness[here] / spring)
+            nearest = np.argmin(np.abs(distance))
+            off.append(float(distance[nearest]))
+            error = float(each.error[here[nearest]])
+        rise = (off[1] - off[0]) / (2.0 * NEARBY)
+        miss = 0.5 * (off[0] + off[1]) / rise if rise else 0.0
+        error = error / abs(rise * np.log(10.0)) if rise else np.inf
+        if len(near.fine.c) <= STRIPS or abs(miss) <= NEARBY * ACCURATE:
+            break
+        onset -= miss  # in more strips than those of `signed`
+    return 10.0**onset, error + ROUNDING * (1.0 + abs(onset))

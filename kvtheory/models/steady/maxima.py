@@ -2,10 +2,9 @@ r"""The maxima of friction over velocity, of every scene for which steady slidin
 
 On Kelvin-Voigt a dead weight has one in closed form (theorems F3, F19, F20); a fixed indenter, whose
 friction rises to a limit, and a wedge, whose friction coefficient reaches a plateau, have none. Otherwise
-mu(V) is evaluated at equal steps of ln V over all time scales of the scene, more closely on shoulders, and
-each maximum is refined by a bracketing optimiser. It counts only where mu has fallen by more than its errors
-on both sides: between these two velocities there certainly is a maximum, and they are the error of its
-velocity.
+mu(V) is evaluated at equal steps of ln V over all time scales of the scene, more finely on shoulders, and
+each maximum is refined by a bracketing optimiser. It counts only where mu falls by more than its errors on
+both sides: a maximum is certain between these two velocities, and they give the error of its velocity.
 """
 
 from collections.abc import Callable, Sequence
@@ -29,58 +28,60 @@ Friction = Callable[[Array, Array], tuple[Array, Array]]
 """The friction coefficient and its relative error at ln V, of the scenes with some indices."""
 
 FINE = 3.0, 16, 0.0
-"""How many decades beyond the time scales maxima are sought, at how many velocities in a decade, and the
-least tolerance of ln V."""
+"""Decades searched beyond the time scales, velocities per decade, and the smallest tolerance of ln V."""
 INTEGRATED = 2.0, 6, 1e-4
 """The same where each velocity costs a quadrature of tens of milliseconds."""
 IN_STRIPS = 1.0, 3, 1e-2
 """The same where each costs a quadrature over strips of several seconds."""
 MOST_DECADES = 200.0
-"""The farthest that is sought: for a springpot of order alpha it is 1/alpha times as far."""
+"""Limit of the search: for a springpot of order alpha it extends 1/alpha times as far."""
 FLAT = 0.02
-"""Change of ln mu from one velocity to the next below which a shoulder is examined more closely. On two
-arms what is then still missed stands out by less than 3e-8, without this by 2e-4."""
+"""Change of ln mu from one velocity to the next below which a shoulder is searched more finely. On two arms
+a maximum that is still missed is less than 3e-8 above its surroundings, without this 2e-4."""
 WIDEST = 2.0
-"""Largest error of ln V; a flatter maximum is not told from a plateau."""
+"""Largest error of ln V; a flatter maximum cannot be distinguished from a plateau."""
 CLOSED_ERROR = 1e-14
 CLOSED_STATEMENT = "closed forms, with one well-conditioned root; that there is no other is proved"
 STATEMENT = (
-    "sought at {1} velocities in a decade, more closely on shoulders, up to {0:g} decades beyond the time "
+    "search at {1} velocities per decade, more finely on shoulders, up to {0:g} decades beyond the time "
     "scales of the scene; at both ends of the error of its velocity, friction is below a maximum by more "
     "than its own errors"
 )
 
 
-def told(scene: Scene, method: str) -> dict[str, Any]:
+def report(scene: Scene, method: str) -> dict[str, Any]:
     """Return what an `AsymptoteReport` says of the maxima, by a method of steady sliding."""
     base = scene.at(1.0)  # the maxima do not depend on the velocity of the drive
     closed = scene.indenter.shape in CLOSED and not lacks_kelvin_voigt(scene)
-    certificate = CLOSED_STATEMENT
+    statement = CLOSED_STATEMENT
     if closed and (scene.held or scene.indenter.shape == "wedge"):
         found = np.empty((*base.shape, 0, 4))
     elif closed and np.all(scene.support.spring == 0.0):
-        V, mu = _peak_of_weight(base)
         errors = np.full(base.shape, CLOSED_ERROR)
-        found = np.stack(np.broadcast_arrays(V, mu, errors, errors), axis=-1)[..., None, :]
+        parts = np.broadcast_arrays(*_peak_of_dead_weight(base), errors, errors)
+        found = np.stack(parts, axis=-1)[..., None, :]
     else:
-        scan = _scan(scene, method)
-        found, certificate = _sought(base, method, *scan), STATEMENT.format(*scan)
+        scan = FINE
+        if method != "exact" and (lacks_kelvin_voigt(scene) or not scene.indenter.convex):
+            scan = INTEGRATED if scene.indenter.per_width else IN_STRIPS
+        found, statement = _search(base, method, *scan), STATEMENT.format(*scan)
     found = np.broadcast_to(found, (*scene.shape, *found.shape[-2:]))
-    pairs, wrong = (
-        tuple((plain(top[..., 0]), plain(top[..., 1])) for top in np.moveaxis(rows, -2, 0))
-        for rows in (found[..., :2], found[..., 2:])
-    )
+    certificate = Certificate("estimated", statement, _named(found, slice(2, 4)))
+    return {**_named(found, slice(2)), "maxima_certificate": certificate}
+
+
+def _named(found: Array, columns: slice) -> dict[str, Any]:
+    """Return columns of the maxima by name, those of the highest ahead; NaN if there is none."""
+    padded = np.concatenate([found, np.full((*found.shape[:-2], 1, 4), np.nan)], axis=-2)
+    heights = np.nan_to_num(padded[..., 1], nan=-1.0)
+    heights[..., -1] = 0.0
+    best = heights.argmax(axis=-1)[..., None, None]
+    peak = np.take_along_axis(padded, best, axis=-2)[..., 0, columns]
+    every = np.moveaxis(found[..., columns], -2, 0)
     return {
-        **dict(zip(PEAK, highest(found[..., :2], found[..., 1]), strict=True)),
-        "maxima": pairs,
-        "maxima_certificate": Certificate(
-            "estimated",
-            certificate,
-            {
-                **dict(zip(PEAK, highest(found[..., 2:], found[..., 1]), strict=True)),
-                "maxima": wrong,
-            },
-        ),
+        "peak_velocity": plain(peak[..., 0]),
+        "peak_friction_coefficient": plain(peak[..., 1]),
+        "maxima": tuple((plain(each[..., 0]), plain(each[..., 1])) for each in every),
     }
 
 
@@ -88,7 +89,7 @@ PEAK_BRACKET = 0.5, 4.0
 """The maximum of a dead weight is at l between 1 (n -> 1) and 2 (n -> oo), that of a ball at 1.842345."""
 
 
-def _peak_of_weight(scene: Scene) -> tuple[Array, Array]:
+def _peak_of_dead_weight(scene: Scene) -> tuple[Array, Array]:
     """Return velocity and friction coefficient at the one maximum of a dead weight on Kelvin-Voigt.
 
     With l = l_r/a, s = a/a_0 and the power p of a with which the load grows, s^p w = w at rest.
@@ -117,25 +118,7 @@ def _peak_of_weight(scene: Scene) -> tuple[Array, Array]:
     return l * s * a / scene.foundation.retardation_time, depth / a * s ** (n - 1.0) * mu
 
 
-PEAK = "peak_velocity", "peak_friction_coefficient"
-
-
-def highest(rows: Array, friction: Array) -> list[Any]:
-    """Return the pair of the highest maximum, NaN if there is none."""
-    padded = np.concatenate([rows, np.full((*rows.shape[:-2], 1, 2), np.nan)], axis=-2)
-    heights = np.concatenate([friction, np.zeros((*friction.shape[:-1], 1))], axis=-1)
-    best = np.nan_to_num(heights, nan=-1.0).argmax(axis=-1)[..., None, None]
-    pair = np.take_along_axis(padded, best, axis=-2)[..., 0, :]
-    return [plain(pair[..., 0]), plain(pair[..., 1])]
-
-
-def _scan(scene: Scene, method: str) -> tuple[float, int, float]:
-    if method == "exact" or (scene.indenter.convex and not lacks_kelvin_voigt(scene)):
-        return FINE
-    return INTEGRATED if scene.indenter.per_width else IN_STRIPS
-
-
-def _sought(base: Scene, method: str, decades: float, per_decade: int, tolerance: float) -> Array:
+def _search(base: Scene, method: str, decades: float, per_decade: int, tolerance: float) -> Array:
     """Return velocity, friction coefficient and their errors: a row for each maximum of each scene."""
     start, end, steps = _ends(base, METHODS[method](base.at(0.0)), decades, per_decade)
     grid = np.linspace(start, end, steps, axis=-1).reshape(-1, steps)
@@ -147,14 +130,14 @@ def _sought(base: Scene, method: str, decades: float, per_decade: int, tolerance
         return state.friction_coefficient, np.broadcast_to(error, y.shape)
 
     mu, error = friction(grid, np.broadcast_to(np.arange(len(grid))[:, None], grid.shape))
-    row, place = np.nonzero(summits(mu, error))
+    row, place = np.nonzero(peaks(mu, error))
     brackets = [grid[row, place + side] for side in (-1, 0, 1)]
     shoulder, place = np.nonzero(_nearly_flat(mu, error))
     if shoulder.size:
         closer = np.linspace(
             grid[shoulder, place], grid[shoulder, place + 3], 4 * per_decade, axis=-1
         )
-        found = summits(*friction(closer, np.broadcast_to(shoulder[:, None], closer.shape)))
+        found = peaks(*friction(closer, np.broadcast_to(shoulder[:, None], closer.shape)))
         part, place = np.nonzero(found)
         row = np.concatenate([row, shoulder[part]])
         more = [closer[part, place + side] for side in (-1, 0, 1)]
@@ -186,13 +169,15 @@ def _ends(base: Scene, rest: Any, decades: float, per_decade: int) -> tuple[Arra
     return np.log(10.0) * start, np.log(10.0) * end, steps
 
 
-def summits(mu: Array, error: Array) -> Array:
+def peaks(mu: Array, error: Array) -> Array:
     """Return where each row of mu has a maximum that stands out by more than the errors on both sides.
 
-    >>> summits(np.array([[0.1, 1.0, 0.8, 0.9, 0.1]]), np.full((1, 5), 0.02)).astype(int)
+    >>> peaks(np.array([[0.1, 1.0, 0.8, 0.9, 0.1]]), np.full((1, 5), 0.02)).astype(int)
     array([[0, 1, 0, 1, 0]])
-    >>> summits(np.array([[0.1, 1.0, 0.8, 0.9, 0.1]]), np.full((1, 5), 0.1)).astype(int)
+    >>> peaks(np.array([[0.1, 1.0, 0.8, 0.9, 0.1]]), np.full((1, 5), 0.1)).astype(int)
     array([[0, 1, 0, 0, 0]])
+    >>> bool(peaks(np.array([[1.0, 0.5, 0.1]]), np.zeros((1, 3))).any())  # it falls from the start
+    False
     """
     found, row = np.zeros(mu.shape, dtype=bool), np.arange(len(mu))
     rising, last = np.ones(len(mu), dtype=bool), np.zeros(len(mu), dtype=int)
@@ -223,7 +208,7 @@ def _nearly_flat(mu: Array, error: Array) -> NDArray[np.bool_]:
 
 
 def _refined(friction: Friction, bracket: Sequence[Array], row: Any, tolerance: float) -> Array:
-    """Return the maxima within brackets in columns; NaN where one is not told from a plateau."""
+    """Return the maxima within brackets in columns; NaN where one cannot be distinguished from a plateau."""
 
     def depth(y: Array, row: Array) -> Array:
         return -friction(y, row)[0]

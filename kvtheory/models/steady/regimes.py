@@ -42,9 +42,12 @@ DECADES, ON_ARMS, MOST_DECADES = 30.0, 15.0, 200.0
 """How far from V*, in powers of ten, the end of a range is sought; 1/alpha times as far for a springpot."""
 POINTS = 301
 """Velocities at which an error that may not be monotonic is evaluated, before the end is refined."""
-
+VOIGT, MOST_DELAY = 7.0, 0.05
+"""Relative error over V t/c, and the largest V t/c (theorem F18-voigt)."""
+GLASSY, MOST_HASTE = 2.0, 0.2
+"""Relative error over c/(V s), and the largest c/(V s) (theorem F18-glassy)."""
 MONOTONIC = (
-    "limit over exact state, less one, to {:g} (1 + |e|) of the relative error e, which is monotonic in V "
+    "limit over exact state, less one, to 2e-14 (1 + |e|) of the relative error e, which is monotonic in V "
     "(derivations F19-error-..., F20-error-..., F18-springpot)"
 )
 SCANNED = (
@@ -52,15 +55,16 @@ SCANNED = (
     "limit and the far side of V*, if it grows all the way; up to (high: from) `velocity_proved` it is "
     "proved (derivations F18-voigt, F18-glassy)"
 )
-VOIGT, MOST_DELAY = 7.0, 0.05
-"""Relative error over V t/c, and the largest V t/c (theorem F18-voigt)."""
-GLASSY, MOST_HASTE = 2.0, 0.2
-"""Relative error over c/(V s), and the largest c/(V s) (theorem F18-glassy)."""
+NOTE = (
+    "The limits of friction at low and high velocity are known for a parabola and a ball on any foundation, "
+    "and for a power law and a wedge on Kelvin-Voigt; of this scene only the maxima are."
+)
 
+MU = "friction_coefficient"
 LISTED = {
-    "fixed": ("friction_coefficient", "load", "friction_force"),
-    "dead-weight": ("friction_coefficient", "depth"),
-    "suspended": ("friction_coefficient", "depth", "load"),
+    "fixed": (MU, "load", "friction_force"),
+    "dead-weight": (MU, "depth"),
+    "suspended": (MU, "depth", "load"),
 }
 """The quantities listed for each support, each at low and then at high velocity."""
 EQUATIONS = {
@@ -68,80 +72,46 @@ EQUATIONS = {
     "dead-weight": (42, 46, None, 49),
     "suspended": (42, None, None, None, None, None),
 }
-"""Their equation numbers in the paper."""
-OF_PARABOLA = {
-    "fixed": (
-        "C V/(R K)",
-        "alpha sqrt(delta/R)",
-        "2 alpha R^(1/2) K delta^(3/2)",
-        "C V delta",
-        "2 alpha R^(-1/2) C V delta^(3/2)",
-        "alpha R^(-1/2) C V delta^(3/2)",
+"""Their equation numbers in the paper, for a parabola."""
+LIFTED = "W/(C V)", "(M g + k_s delta_0)/(C V)", "M g", "M g + k_s delta_0"
+SLOPE_N = "n (n+1)/(2n-1) delta_0 C V/(K a_0^2)"
+FORMULAS = {
+    ("parabola", "fixed"): (
+        "C V/(R K)", "alpha sqrt(delta/R)", "2 alpha R^(1/2) K delta^(3/2)", "C V delta",
+        "2 alpha R^(-1/2) C V delta^(3/2)", "alpha R^(-1/2) C V delta^(3/2)",
     ),
-    "dead-weight": (
-        "C V/(R K)",
-        "alpha sqrt(W/(R C V))",
-        "delta_0 = (3 W/(4 K sqrt(2 R)))^(2/3)",
-        "W/(C V)",
+    ("parabola", "dead-weight"): (
+        "C V/(R K)", "alpha sqrt(W/(R C V))", "delta_0 = (3 W/(4 K sqrt(2 R)))^(2/3)", LIFTED[0],
     ),
-    "suspended": (
-        "C V/(R K)",
-        "alpha sqrt((M g + k_s delta_0)/(R C V))",
-        "delta_0 = (3 M g/(4 K sqrt(2 R)))^(2/3)",
-        "(M g + k_s delta_0)/(C V)",
-        "M g",
-        "M g + k_s delta_0",
+    ("parabola", "suspended"): (
+        "C V/(R K)", "alpha sqrt((M g + k_s delta_0)/(R C V))", "delta_0 = (3 M g/(4 K sqrt(2 R)))^(2/3)",
+        *LIFTED[1:],
     ),
-}
-OF_POWER_LAW = {
-    "fixed": (
-        "n (n+1)/(2n-1) delta C V/(K a^2)",
-        "n^2/(2n-1) delta/a",
-        "2n/(n+1) K delta a",
-        "C V delta",
-        "2n^2/(2n-1) C V delta^2/a",
-        "n^2/(2n-1) C V delta^2/a",
+    ("power-law", "fixed"): (
+        "n (n+1)/(2n-1) delta C V/(K a^2)", "n^2/(2n-1) delta/a", "2n/(n+1) K delta a", "C V delta",
+        "2n^2/(2n-1) C V delta^2/a", "n^2/(2n-1) C V delta^2/a",
     ),
-    "dead-weight": (
-        "n (n+1)/(2n-1) delta_0 C V/(K a_0^2)",
-        "n^2/(2n-1) delta/a, delta = W/(C V)",
-        "delta_0 = (n+1)/(2n) W/(K a_0)",
-        "W/(C V)",
+    ("power-law", "dead-weight"): (
+        SLOPE_N, "n^2/(2n-1) delta/a, delta = W/(C V)", "delta_0 = (n+1)/(2n) W/(K a_0)", LIFTED[0],
     ),
-    "suspended": (
-        "n (n+1)/(2n-1) delta_0 C V/(K a_0^2)",
-        "n^2/(2n-1) delta/a, delta as below",
-        "delta_0 = (n+1)/(2n) M g/(K a_0)",
-        *OF_PARABOLA["suspended"][3:],
+    ("power-law", "suspended"): (
+        SLOPE_N, "n^2/(2n-1) delta/a, delta as below", "delta_0 = (n+1)/(2n) M g/(K a_0)", *LIFTED[1:],
     ),
-}
-"""Their formulas; n = 1 for a wedge, W = M g is the load of a dead weight."""
-OF_BALL = {
-    "fixed": (
-        "C V/(R K)",
-        "(3 pi/16) a/R",
-        "pi K R delta^2",
-        "(4/3) C V delta a",
-        "pi C V delta^2",
+    ("sphere", "fixed"): (
+        "C V/(R K)", "(3 pi/16) a/R", "pi K R delta^2", "(4/3) C V delta a", "pi C V delta^2",
         "(pi/4) C V delta a^2/R",
     ),
-    "dead-weight": (
-        "C V/(R K)",
-        "(3 pi/16) a/R, a^3 = 3 R W/(2 C V)",
-        "delta_0 = (W/(pi K R))^(1/2)",
+    ("sphere", "dead-weight"): (
+        "C V/(R K)", "(3 pi/16) a/R, a^3 = 3 R W/(2 C V)", "delta_0 = (W/(pi K R))^(1/2)",
         "a^2/(2 R), a as above",
     ),
-    "suspended": (
-        "C V/(R K)",
-        "(3 pi/16) a/R, a^3 = 3 R (M g + k_s delta_0)/(2 C V)",
-        "delta_0 = (M g/(pi K R))^(1/2)",
-        "a^2/(2 R), a as above",
-        "M g",
-        "M g + k_s delta_0",
+    ("sphere", "suspended"): (
+        "C V/(R K)", "(3 pi/16) a/R, a^3 = 3 R (M g + k_s delta_0)/(2 C V)",
+        "delta_0 = (M g/(pi K R))^(1/2)", "a^2/(2 R), a as above", *LIFTED[2:],
     ),
-}
-"""With a radius R' across, K and C are multiplied by sqrt(R'/R) in formulas that contain W or give W or F."""
-
+}  # fmt: skip
+"""The formulas on Kelvin-Voigt by shape and support; n = 1 for a wedge, W = M g is the load of a dead weight.
+Of a ball with a radius R' across, K and C are multiplied by sqrt(R'/R) where W or F are involved."""
 ON_SPRINGPOT = (
     "6 A/((4-A) Gamma(3-A)) (a/R) (V tau/(2 a))^A, A = order",
     "A (3-A)/(4-A) a/R",
@@ -170,39 +140,29 @@ def lines(scene: Scene) -> list[Line]:
     >>> lines(Scene())[3][:5]
     ('depth, high V', 'depth', 'high', 49, 'W/(C V)')
     """
-    if lacks_kelvin_voigt(scene):
-        return _of_friction(scene)
     shape, support = scene.indenter.shape, scene.support.kind
+    line = scene.indenter.per_width
+    low, high = (partial(_limit, MU, regime) for regime in ("low", "high"))
+    if isinstance(scene.foundation, FractionalKelvinVoigt):
+        slow, fast = ON_SPRINGPOT if line else ON_SPRINGPOT_BALL
+        return [Line("L1", MU, "low", None, slow, low), Line("L2", MU, "high", None, fast, high)]
+    if lacks_kelvin_voigt(scene):
+        bounds = (_slow_bound, _voigt_bound, _glassy_bound) if line else (None, None, None)
+        glassy = f"{'2/5' if line else '1/3'} (a^2/R) (-G'(0)/G(0))/V, a of G(0)"
+        number = 42 if line else None
+        return [
+            Line("L1", MU, "low", number, "C V/(R K), C = sum K_i tau_i", low, bounds[0]),
+            Line("Kelvin-Voigt", MU, "low", None, "exact with K and C", _voigt, bounds[1]),
+            Line("glassy", MU, "high", None, glassy, high, bounds[2]),
+        ]
     places = [(quantity, regime) for quantity in LISTED[support] for regime in ("low", "high")]
-    names = ["L1", "L2"]
-    names += [f"{name.removesuffix('_force')}, {regime} V" for name, regime in places[2:]]
-    parabola = shape == "parabola"
-    formulas = {"parabola": OF_PARABOLA, "sphere": OF_BALL}.get(shape, OF_POWER_LAW)[support]
-    equations = EQUATIONS[support] if parabola else [None] * len(formulas)
+    formulas = FORMULAS[shape if shape in ("parabola", "sphere") else "power-law", support]
+    equations = EQUATIONS[support] if shape == "parabola" else (None,) * len(formulas)
+    names = [f"{name.removesuffix('_force')}, {regime} V" for name, regime in places]
+    names[:2] = "L1", "L2"
     return [
         Line(name, *place, equation, formula, partial(_limit, *place))
         for name, place, equation, formula in zip(names, places, equations, formulas, strict=True)
-    ]
-
-
-def _of_friction(scene: Scene) -> list[Line]:
-    """Return what is listed beyond Kelvin-Voigt, for a parabola or a ball."""
-    line = scene.indenter.per_width
-    mu = "friction_coefficient"
-    low, high = (partial(_limit, mu, regime) for regime in ("low", "high"))
-    if isinstance(scene.foundation, FractionalKelvinVoigt):
-        formulas = ON_SPRINGPOT if line else ON_SPRINGPOT_BALL
-        return [
-            Line("L1", mu, "low", None, formulas[0], low),
-            Line("L2", mu, "high", None, formulas[1], high),
-        ]
-    bounds = (_slow_bound, _voigt_bound, _glassy_bound) if line else (None, None, None)
-    factor = "2/5" if line else "1/3"
-    glassy = f"{factor} (a^2/R) (-G'(0)/G(0))/V, a of G(0)"
-    return [
-        Line("L1", mu, "low", 42 if line else None, "C V/(R K), C = sum K_i tau_i", low, bounds[0]),
-        Line("Kelvin-Voigt", mu, "low", None, "exact with K and C", _voigt, bounds[1]),
-        Line("glassy", mu, "high", None, glassy, high, bounds[2]),
     ]
 
 
@@ -212,9 +172,8 @@ def _limit(quantity: str, regime: str, scene: Scene) -> Any:
 
 def _voigt(scene: Scene) -> Array:
     """Return the friction coefficient on the Kelvin-Voigt foundation with the same K and C."""
-    own = scene.foundation
-    plain_scene = replace(scene, foundation=Foundation(own.stiffness, own.retardation_time))
-    return np.abs(solve_exact(plain_scene).friction_coefficient)
+    own = Foundation(scene.foundation.stiffness, scene.foundation.retardation_time)
+    return np.abs(solve_exact(replace(scene, foundation=own)).friction_coefficient)
 
 
 def _sum(scene: Scene, power: int) -> Any:
@@ -222,9 +181,11 @@ def _sum(scene: Scene, power: int) -> Any:
     return sum(arm.stiffness * arm.relaxation_time**power for arm in scene.foundation.arms)
 
 
-def _length(scene: Scene) -> Array:
+def _passing(scene: Scene) -> Array:
+    """Return the rate V/c at which elements pass the contact."""
     state = solve_exact(scene)
-    return np.asarray(state.half_length + np.abs(state.trailing_edge))
+    length = state.half_length + np.abs(state.trailing_edge)
+    return np.abs(scene.drive.final_velocity) / np.asarray(length)
 
 
 def _within(off: Array, most: float, factor: float) -> Array:
@@ -234,18 +195,15 @@ def _within(off: Array, most: float, factor: float) -> Array:
 
 
 def _voigt_bound(scene: Scene) -> Array:
-    delay = np.abs(scene.drive.final_velocity) * (_sum(scene, 2) / _sum(scene, 1)) / _length(scene)
-    return _within(delay, MOST_DELAY, VOIGT)
+    return _within(_passing(scene) * (_sum(scene, 2) / _sum(scene, 1)), MOST_DELAY, VOIGT)
 
 
 def _slow_bound(scene: Scene) -> Array:
-    slow = _limit("friction_coefficient", "low", scene)
-    return slow / _voigt(scene) * (1.0 + _voigt_bound(scene)) - 1.0
+    return _limit(MU, "low", scene) / _voigt(scene) * (1.0 + _voigt_bound(scene)) - 1.0
 
 
 def _glassy_bound(scene: Scene) -> Array:
-    haste = _length(scene) * (_sum(scene, -2) / _sum(scene, -1))
-    return _within(haste / np.abs(scene.drive.final_velocity), MOST_HASTE, GLASSY)
+    return _within(_sum(scene, -2) / _sum(scene, -1) / _passing(scene), MOST_HASTE, GLASSY)
 
 
 def report(scene: Scene, tolerance: float, maxima: Mapping[str, Any]) -> AsymptoteReport:
@@ -258,70 +216,60 @@ def report(scene: Scene, tolerance: float, maxima: Mapping[str, Any]) -> Asympto
         critical = np.broadcast_to(asymptotes.critical_velocity(scene), scene.shape)
         truth = solve_exact(scene)
         ends = _ends(scene, shown, critical, tolerance, 2 if monotonic else POINTS)
-        told = [
-            _told(
-                scene, line, truth, edge, _proved(scene, line, critical, tolerance, edge, monotonic)
-            )
-            for line, edge in zip(shown, ends, strict=True)
+        proved = ends if monotonic else [_proved(scene, one, critical, tolerance) for one in shown]
+        found = [
+            _line(scene, line, truth, *pair)
+            for line, *pair in zip(shown, ends, proved, strict=True)
         ]
     use = np.full(scene.shape, "exact", dtype=object)
-    for line in reversed(told):
-        if line.quantity == "friction_coefficient":
+    for line in reversed(found):
+        if line.quantity == MU:
             use = np.where(np.abs(line.relative_error) <= tolerance, line.name, use)
-    certificate = Certificate("estimated", SCANNED, {})
-    if monotonic:
-        certificate = Certificate("proved", MONOTONIC.format(2e-14), {})
+    kind, statement = ("proved", MONOTONIC) if monotonic else ("estimated", SCANNED)
     return AsymptoteReport(
-        velocity=plain(signed),
-        critical_velocity=plain(critical),
-        **maxima,
-        regime=plain(np.where(critical >= V, "low", "high")),
-        use=plain(use),
-        tolerance=tolerance,
-        lines=tuple(told),
-        model="asymptote",
-        certificate=certificate,
+        velocity=plain(signed), critical_velocity=plain(critical), **maxima,
+        regime=plain(np.where(critical >= V, "low", "high")), use=plain(use), tolerance=tolerance,
+        lines=tuple(found), model="asymptote", certificate=Certificate(kind, statement, {}),
         units=units_for(scene.indenter, STEADY_UNITS),
-    )
+    )  # fmt: skip
 
 
-def _told(
+def _line(
     scene: Scene, line: Line, truth: SteadyState, edge: Array, proved: Array
 ) -> AsymptoteLine:
     exact, low = np.asarray(getattr(truth, line.quantity)), line.regime == "low"
     value = np.broadcast_to(line.at(scene), scene.shape)
-    side = np.where(np.signbit(exact), -1.0, 1.0)
+    value, error = (
+        plain(np.where(np.isfinite(each), each, np.nan))
+        for each in (np.copysign(value, exact), asymptotes.error(value, np.abs(exact)))
+    )
     return AsymptoteLine(
         *line[:5],
-        value=_finite(side * value),
+        value=value,
         exact=plain(exact),
-        relative_error=_finite(asymptotes.error(value, np.abs(exact))),
+        relative_error=error,
         velocity_min=plain(np.zeros_like(edge) if low else edge),
         velocity_max=plain(edge if low else np.full_like(edge, np.inf)),
         velocity_proved=plain(proved),
     )
 
 
-def _proved(
-    scene: Scene, line: Line, critical: Array, tolerance: float, edge: Array, monotonic: bool
-) -> Array:
-    """Return the velocity up to which, or from which on, a range is proved."""
-    if monotonic:
-        return edge
-    if line.bound is None:
-        return np.full_like(edge, 0.0 if line.regime == "low" else np.inf)
-    bound = line.bound
-
-    def excess(scene: Scene) -> Array:
-        return np.minimum(bound(scene), 2.0) - tolerance
-
-    far = np.broadcast_to(_far(scene), critical.shape)
-    return _crossing(scene, excess, critical, (-far, far), 0.0 if line.regime == "low" else np.inf)
+def _proved(scene: Scene, line: Line, critical: Array, tolerance: float) -> Array:
+    """Return the velocity up to which, or from which on, a range is proved; none without a bound."""
+    none, bound = 0.0 if line.regime == "low" else np.inf, line.bound
+    if bound is None:
+        return np.full_like(critical, none)
+    far = _far(scene, critical)
+    return _crossing(
+        scene, lambda scene: np.minimum(bound(scene), 2.0) - tolerance, critical, (-far, far), none
+    )
 
 
-def _far(scene: Scene) -> Any:
+def _far(scene: Scene, critical: Array) -> Array:
+    """Return how far from V* the end of a range is sought, in powers of ten."""
     order = getattr(scene.foundation, "order", 1.0)
-    return np.minimum((ON_ARMS if scene.foundation.arms else DECADES) / order, MOST_DECADES)
+    decades = (ON_ARMS if scene.foundation.arms else DECADES) / order
+    return np.broadcast_to(np.minimum(decades, MOST_DECADES), critical.shape)
 
 
 def _ends(
@@ -332,8 +280,7 @@ def _ends(
     If it does not on the way to the far end, the limit holds at every velocity (such as the load on a soft
     spring). If it is above the tolerance at the limit already, nothing is claimed.
     """
-    far = np.broadcast_to(_far(scene), critical.shape)[..., np.newaxis]
-    grid = far * np.linspace(-1.0, 1.0, points)
+    grid = _far(scene, critical)[..., np.newaxis] * np.linspace(-1.0, 1.0, points)
     wide = scene.mapped(lambda x: np.broadcast_to(x, scene.shape)[..., np.newaxis])
     wide = wide.at(critical[..., np.newaxis] * 10.0**grid)
     exact = solve_exact(wide)
@@ -363,11 +310,7 @@ def _ends(
 
 
 def _crossing(
-    scene: Scene,
-    excess: Formula,
-    critical: Array,
-    bracket: tuple[Array, ...],
-    otherwise: float,
+    scene: Scene, excess: Formula, critical: Array, bracket: tuple[Array, ...], otherwise: float
 ) -> Array:
     """Return the velocity at which `excess` vanishes, between powers of ten away from V*."""
     flat = scene.flat()
@@ -381,12 +324,6 @@ def _crossing(
     return np.where(found.success, critical * 10.0**found.x, otherwise)
 
 
-NOTE = (
-    "The limits of friction at low and high velocity are known for a parabola and a ball on any foundation, "
-    "and for a power law and a wedge on Kelvin-Voigt; of this scene only the maxima are."
-)
-
-
 def unknown(
     scene: Scene, tolerance: float, maxima: Mapping[str, Any], method: str
 ) -> AsymptoteReport:
@@ -397,17 +334,7 @@ def unknown(
 
     return AsymptoteReport(
         velocity=plain(np.broadcast_to(scene.drive.final_velocity, scene.shape)),
-        critical_velocity=each(np.nan),
-        **maxima,
-        regime=each(None),
-        use=each("exact"),
-        tolerance=tolerance,
-        lines=(),
-        model=method,
-        certificate=Certificate("none", "the limits of friction are not known", {}),
-        notes=(NOTE,),
-    )
-
-
-def _finite(array: Array) -> Any:
-    return plain(np.where(np.isfinite(array), array, np.nan))
+        critical_velocity=each(np.nan), **maxima, regime=each(None), use=each("exact"),
+        tolerance=tolerance, lines=(), model=method,
+        certificate=Certificate("none", "the limits of friction are not known", {}), notes=(NOTE,),
+    )  # fmt: skip

@@ -1,4 +1,4 @@
-r"""Whether steady sliding is stable if the drive holds the indenter by a spring: closed forms (theorem F22).
+r"""Stability of steady sliding on Kelvin-Voigt, on a spring in the drive: closed forms (theorem F22).
 
 Small motions in the vertical and in the sliding direction, each divided by the damping of the contact, obey
 
@@ -6,7 +6,7 @@ Small motions in the vertical and in the sliding direction, each divided by the 
 
 with sigma in 1/tau. At the onset of instability Omega = omega^2, with omega the angular frequency, is a
 root of a quadratic without T_x and S_x; the critical stiffness is the one with this frequency for the mass
-along x.
+along x. With a rigid drive only the first factor is left (theorem F12).
 
 Per unit width a strip of half length A, with x_TE = sqrt(A^2 + l_r^2) - l_r, has
 
@@ -20,7 +20,7 @@ on either side of its middle plane are, in units of a and a^3 (derivation F20-sl
 
     A_1 = pi/4,    X_1 = (l/3 + T/4)/(1 + l^2),    A_3 = 3 pi/16,    X_3 = (3 T (1 + 5 l^2)/16 - l)/(1 + l^2).
 
-X_3 loses digits for l >> 1, where it does not count beside A_3.
+X_3 loses digits for l >> 1, where it is negligible beside A_3.
 """
 
 from typing import Any, NamedTuple
@@ -34,108 +34,232 @@ from kvtheory.theory import closed_forms as cf
 
 Array = NDArray[np.float64]
 
+STATEMENT = (
+    "closed forms (theorem F22) in double precision, with what rounding makes of them to first order; "
+    "rates by their polynomial, the velocity to where its stiffness is critical"
+)
 ROUNDING = 2.0 * 2.0**-52
-"""Relative error of each number of the rates; what follows from it for results is at least three times what
-the comparison with 80 digits has shown on five hundred scenes."""
-
-
-class Numbers(NamedTuple):
-    """The numbers of the rates (theorem F22-numbers); `unit` is the stiffness in N/m^2 of S_x = 1.
-
-    For a fixed indenter, which cannot move vertically, T_z is 0 and S_z infinite.
-    """
-
-    T_z: Array
-    T_x: Array
-    S_z: Array
-    S_c: Array
-    g: Array
-    h: Array
-    e: Array
-    unit: Array
+"""Relative error of each coefficient. The errors of results that follow from it are at least three times
+those found by comparison with 80 digits on five hundred scenes."""
+POLISHES = 3
+"""Newton steps after the eigenvalues of the companion matrix, which lose digits of the slow rates."""
+DECADES, PER_DECADE = (-8.0, 20.0), 16
+"""Powers of ten of the drive number V tau/a_0 between which the critical velocity is sought."""
+BISECTIONS = 60
+"""To the last digit of a velocity, from a cell of the grid."""
+NEARBY = 1e-5
+"""Relative difference of velocities for the slope of the critical stiffness."""
+SOFT, UNSTABLE, STIFF, NEVER = -1, 0, 1, 2
+"""The stiffness of the spring: below both critical ones, between them, above both, or there are none."""
 
 
 class Onset(NamedTuple):
-    """A stiffness in N/m^2 at which stability is lost, the frequency in Hz there, and the error of both.
-
-    Where there is none they are NaN.
-    """
+    """A critical stiffness in N/m^2, the frequency there in Hz, and their relative error; NaN without one."""
 
     stiffness: Array
     frequency: Array
     error: Array
 
 
-def numbers(scene: Scene) -> Numbers:
-    """Return the numbers of a scene that can be moved along x: a parabola, or a ball, with `unit` in N/m."""
-    foundation, support, drive = scene.foundation, scene.support, scene.drive
-    R, tau = scene.indenter.radius, foundation.retardation_time
-    line = scene.indenter.per_width
-    a = np.sqrt(2.0 * R * (exact if line else ball).depth(scene))
-    l = np.abs(drive.final_velocity) * tau / a
-    unit = foundation.stiffness * a
-    if line:
-        X_1 = cf.trailing_edge_ratio(l)
-        A_1, A_3, X_3 = 1.0, 1.0, X_1 * X_1 * X_1
-    else:
-        _, T = ball.angle_and_tail(l)
-        A_1, A_3 = np.pi / 4.0, 3.0 * np.pi / 16.0
-        X_1, X_3 = cf.ball_trailing_edges(l, T), cf.ball_cubed_trailing_edges(l, T)
-        unit = unit * 2.0 * a * scene.indenter.stretch
-    along = tau * unit * (a / R) ** 2 * ((A_3 + X_3) / 3.0)  # dF/dV
-    across = tau * unit * (A_1 + X_1)  # dW/d(ddelta/dt)
-    damped = along + drive.damping
-    T_x = scene.drive_mass / (damped * tau)
-    S_c = (A_1 + X_1) / X_1
-    g = l * X_1 / (A_1 + X_1) * (3.0 * l * X_1 / (A_3 + X_3)) * (along / damped)
+class SmallMotions:
+    """The coefficients of the small motions of flat scenes (theorem F22-numbers).
+
+    `unit` is the stiffness in N/m^2 (of a ball in N/m) for which S_x = 1. A fixed indenter cannot move
+    vertically: T_z is 0 and S_z infinite.
+    """
+
+    def __init__(self, scene: Scene) -> None:
+        foundation, support, drive = scene.foundation, scene.support, scene.drive
+        R, self.tau = scene.indenter.radius, foundation.retardation_time
+        line, self.held = scene.indenter.per_width, scene.held
+        a = np.sqrt(2.0 * R * (exact if line else ball).depth(scene))
+        l = np.abs(drive.final_velocity) * self.tau / a
+        unit = foundation.stiffness * a
+        if line:
+            X_1 = cf.trailing_edge_ratio(l)
+            A_1, A_3, X_3 = 1.0, 1.0, X_1 * X_1 * X_1
+        else:
+            _, T = ball.angle_and_tail(l)
+            A_1, A_3 = np.pi / 4.0, 3.0 * np.pi / 16.0
+            X_1, X_3 = cf.ball_trailing_edges(l, T), cf.ball_cubed_trailing_edges(l, T)
+            unit = unit * 2.0 * a * scene.indenter.stretch
+        along = self.tau * unit * (a / R) ** 2 * ((A_3 + X_3) / 3.0)  # dF/dV
+        across = self.tau * unit * (A_1 + X_1)  # dW/d(ddelta/dt)
+        damped = along + drive.damping
+        self.unit = damped / self.tau
+        self.T_x = scene.drive_mass / (damped * self.tau)
+        self.S_c = (A_1 + X_1) / X_1
+        self.g = l * X_1 / (A_1 + X_1) * (3.0 * l * X_1 / (A_3 + X_3)) * (along / damped)
+        self.h = 1.0 - self.g
+        if self.held:
+            self.T_z, self.S_z = np.zeros_like(self.g), np.full_like(self.g, np.inf)
+            self.e = self.S_z
+        else:
+            self.T_z = support.mass / (across * self.tau)
+            self.S_z = (A_1 + X_1 + l) / (A_1 + X_1) + support.spring * self.tau / across
+            self.e = self.S_z - self.g * self.S_c  # its sign is that of dF/dV + c_x
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """Of the scenes."""
+        return np.broadcast_shapes(*map(np.shape, (self.T_x, self.g, self.S_z, self.T_z)))
+
+    def onsets(self) -> tuple[Onset, Onset]:
+        """Return between which stiffnesses steady sliding is unstable: the lower one and the upper one.
+
+        Where friction falls with the velocity, every softer spring is unstable: the lower one is then 0.
+        """
+        T_z, T_x, S_z, S_c, g, h, e = (
+            self.T_z, self.T_x, self.S_z, self.S_c, self.g, self.h, self.e,
+        )  # fmt: skip
+        with np.errstate(invalid="ignore", divide="ignore"):  # of a fixed indenter, which is stable
+            square, n = (form(T_z, g, S_c, h, e) for form in (cf.onset_square, cf.onset_sum))
+            falls = e < 0.0
+            some = falls | ((n < 0.0) & (square >= 0.0))
+            s = np.sqrt(np.where(some, square, np.nan))
+            # Rounding to first order: without bound at an extremum of friction, and at a double root.
+            m, of_m, of_e = h - T_z * g * S_c, h + T_z * g * S_c, S_z + g * S_c
+            of_s = np.abs(m) * of_m / s + 2.0 * h * T_z * (of_e + np.abs(e)) / s
+            of_sum = (of_s + of_m + 2.0 * T_z * of_e) / s
+            error = 2.0 * ROUNDING * (4.0 + of_sum + np.where(n > 0.0, of_e / np.abs(e), 0.0))
+            slow = -2.0 * S_z * e / (s + n)  # without cancellation, of a light indenter
+            Omega = np.where(n > 0.0, slow, (s - n) / (2.0 * T_z * T_z))
+            lag = cf.onset_lag(T_z, g, S_c, h, S_z, s)
+            stiffness = self.unit * cf.onset_stiffness(T_x, S_c, Omega, lag)
+            upper = Onset(stiffness, np.sqrt(Omega) / (2.0 * np.pi * self.tau), error)
+            Omega = 2.0 * S_z * e / (s - n)
+            lag = cf.onset_lag_of_lower(T_z, g, S_c, h, s)
+            stiffness = self.unit * cf.onset_stiffness(T_x, S_c, Omega, lag)
+            frequency = np.sqrt(Omega) / (2.0 * np.pi * self.tau)
+        return Onset(*(np.where(falls, 0.0, x) for x in (stiffness, frequency, error))), upper
+
+    def critical(self) -> tuple[tuple[Array, ...], tuple[Array, ...]]:
+        """Return upper and lower critical stiffness, the frequency at the upper one, and their errors."""
+        shape = self.shape
+        self.lower, self.upper = (
+            Onset(*(np.broadcast_to(each, shape) for each in one)) for one in self.onsets()
+        )
+        values = self.upper.stiffness, self.lower.stiffness, self.upper.frequency
+        return values, (self.upper.error, self.lower.error, self.upper.error)
+
+    def stable(self, spring: Array) -> Any:
+        """Return whether a stiffness is outside the interval in which steady sliding is unstable."""
+        return ~((spring >= self.lower.stiffness) & (spring <= self.upper.stiffness))
+
+    def rates(self, spring: Array | None) -> tuple[NDArray[np.complex128], Array]:
+        """Return the rates in 1/s along a new last axis, fastest growth first, and their relative errors.
+
+        Without a spring, in N/m^2, the drive is rigid.
+        """
+        T_z, T_x, S_z, e = self.T_z, self.T_x, self.S_z, self.e
+        terms: tuple[Array, ...]
+        sizes: tuple[Array, ...] = ()
+        if spring is None:
+            terms = S_z, np.ones_like(T_z), T_z
+        elif self.held:
+            terms = spring / self.unit, np.ones_like(T_x), T_x
+        else:
+            S_x = spring / self.unit
+            middle = T_z * S_x + self.h + S_z * T_x
+            terms = S_z * S_x, S_x + e, middle, T_z + T_x, T_z * T_x
+            sizes = terms[0], S_x + S_z + self.g * self.S_c, *terms[2:]  # e is a small difference
+        shape = self.shape
+        found, error = _roots(
+            *(
+                np.stack([np.broadcast_to(each, shape) for each in group], axis=-1)
+                for group in (terms, sizes or terms)
+            )
+        )
+        return found / np.broadcast_to(self.tau, shape)[..., np.newaxis], error
+
+
+def _roots(coefficients: Array, sizes: Array) -> tuple[NDArray[np.complex128], Array]:
+    """Return the roots of polynomials, from the constant coefficient on, and their relative errors.
+
+    `sizes` are those of the terms of which each coefficient is a sum. A polynomial of degree n has a
+    root within n |P/P'| of any number; the rounding of P is added to |P|.
+    """
+    degree = coefficients.shape[-1] - 1
+    unit = (coefficients[..., :1] / coefficients[..., -1:]) ** (1.0 / degree)  # of the mean root
+    powers = unit ** np.arange(degree + 1)
+    scaled, bounds = (each * powers for each in (coefficients, sizes))
+    largest = np.max(bounds, axis=-1, keepdims=True)
+    scaled, bounds = scaled / largest, bounds / largest
+    companion = np.zeros((*scaled.shape[:-1], degree, degree))
+    companion[..., range(1, degree), range(degree - 1)] = 1.0
+    companion[..., -1] = -scaled[..., :-1] / scaled[..., -1:]
+    found = np.linalg.eigvals(companion).astype(complex)
+    for _ in range(POLISHES):
+        value, slope = _horner(scaled, found)
+        step = np.divide(value, slope, out=np.zeros_like(found), where=slope != 0.0)
+        better = np.abs(_horner(scaled, found - step)[0]) < np.abs(value)
+        found = np.where(better, found - step, found)
+    value, slope = map(np.abs, _horner(scaled, found))
+    value = value + ROUNDING * np.abs(_horner(bounds, np.abs(found))[0])
+    with np.errstate(divide="ignore", over="ignore"):  # of a double root nothing is known
+        error = degree * value / (slope * np.abs(found))
+    order = np.lexsort((found.imag, -found.real))
+    found, error = (np.take_along_axis(each, order, axis=-1) for each in (found, error))
+    return found * unit, error
+
+
+def _horner(coefficients: Array, places: NDArray[Any]) -> tuple[NDArray[Any], NDArray[Any]]:
+    """Return the values and derivatives of polynomials at given points, along the last axis."""
+    value, slope = np.zeros_like(places), np.zeros_like(places)
+    for each in np.moveaxis(coefficients, -1, 0)[::-1]:
+        slope = slope * places + value
+        value = value * places + each[..., np.newaxis]
+    return value, slope
+
+
+def critical_velocity(scene: Scene) -> tuple[Array, Array]:
+    """Return the smallest velocity in m/s at which each of flat scenes becomes unstable, and its error.
+
+    The critical stiffnesses are not always monotonic in the velocity: a damper or a suspension makes steady
+    sliding stable again at a high one, and a heavy indenter may flutter at a low one. The first change is
+    therefore found on a grid, then bisected; NaN if there is none.
+    """
     if scene.held:
-        endless = np.full_like(g, np.inf)
-        return Numbers(np.zeros_like(g), T_x, endless, S_c, g, 1.0 - g, endless, damped / tau)
-    T_z = support.mass / (across * tau)
-    S_z = (A_1 + X_1 + l) / (A_1 + X_1) + support.spring * tau / across
-    return Numbers(T_z, T_x, S_z, S_c, g, 1.0 - g, S_z - g * S_c, damped / tau)
+        nothing = np.full(scene.shape, np.nan)
+        return nothing, nothing
+    column = scene.flat().mapped(lambda x: x[:, np.newaxis])
+    spring, tau = column.drive.stiffness, column.foundation.retardation_time
+    load = column.support.weight / column.foundation.stiffness
+    unit = np.log(np.cbrt(1.5 * column.indenter.radius * load) / tau)
 
+    def onsets(log_velocity: Array) -> tuple[Onset, Onset]:
+        return SmallMotions(column.at(np.exp(log_velocity))).onsets()
 
-def onsets(given: Numbers, tau: Array) -> tuple[Onset, Onset]:
-    """Return between which stiffnesses steady sliding is unstable: the lower one and the upper one.
+    def state(log_velocity: Array) -> NDArray[np.int_]:
+        lower, upper = onsets(log_velocity)
+        places = [spring > upper.stiffness, spring < lower.stiffness, spring <= upper.stiffness]
+        return np.select(places, [STIFF, SOFT, UNSTABLE], NEVER)
 
-    Where friction falls with the velocity, every softer spring is unstable: the lower one is then 0.
-    """
-    T_z, T_x, S_z, S_c, g, h, e, unit = given
-    with np.errstate(invalid="ignore", divide="ignore"):  # of a fixed indenter, which is stable
-        square, n = (form(T_z, g, S_c, h, e) for form in (cf.onset_square, cf.onset_sum))
-        falls = e < 0.0
-        some = falls | ((n < 0.0) & (square >= 0.0))
-        s = np.sqrt(np.where(some, square, np.nan))
-        error = _error(given, s, n)
-        slow = -2.0 * S_z * e / (s + n)  # of a light indenter; else there is no difference below
-        Omega = np.where(n > 0.0, slow, (s - n) / (2.0 * T_z * T_z))
-        lag = cf.onset_lag(T_z, g, S_c, h, S_z, s)
-        upper = Onset(unit * cf.onset_stiffness(T_x, S_c, Omega, lag), _hertz(Omega, tau), error)
-        Omega = 2.0 * S_z * e / (s - n)
-        lag = cf.onset_lag_of_lower(T_z, g, S_c, h, s)
-        stiffness = unit * cf.onset_stiffness(T_x, S_c, Omega, lag)
-        stiffness, frequency = (np.where(falls, 0.0, x) for x in (stiffness, _hertz(Omega, tau)))
-    return Onset(stiffness, frequency, np.where(falls, 0.0, error)), upper
+    count = round((DECADES[1] - DECADES[0]) * PER_DECADE) + 1
+    grid = np.broadcast_to(unit, column.shape) + np.log(10.0) * np.linspace(*DECADES, count)
+    states = state(grid)
+    before, after = states[:, :-1], states[:, 1:]
+    changes = (after == UNSTABLE) | (before * after == SOFT * STIFF)
+    first, some = changes.argmax(axis=1)[:, np.newaxis], changes.any(axis=1)
+    low, high, was, now = (
+        np.take_along_axis(each, first, axis=1)
+        for each in (grid[:, :-1], grid[:, 1:], before, after)
+    )
+    across = now != UNSTABLE
+    for _ in range(BISECTIONS):
+        middle = 0.5 * (low + high)
+        here = state(middle)
+        stays = np.where(across, here == was, here != UNSTABLE)
+        low, high = np.where(stays, middle, low), np.where(stays, high, middle)
 
-
-def _hertz(Omega: Array, tau: Array) -> Array:
-    return np.sqrt(Omega) / (2.0 * np.pi * tau)
-
-
-def _error(given: Numbers, s: Array, n: Array) -> Array:
-    """Return the relative error of the roots by rounding, to first order, with a safety factor of two.
-
-    It grows without bound at a maximum or minimum of friction, and where both roots coincide.
-    """
-    T_z, _, S_z, S_c, g, h, e, _ = given
-    m = h - T_z * g * S_c
-    of_m, of_e = h + T_z * g * S_c, S_z + g * S_c
-    of_s = np.abs(m) * of_m / s + 2.0 * h * T_z * (of_e + np.abs(e)) / s
-    of_sum = (of_s + of_m + 2.0 * T_z * of_e) / s
-    return 2.0 * ROUNDING * (4.0 + of_sum + np.where(n > 0.0, of_e / np.abs(e), 0.0))
-
-
-def is_stable(stiffness: Array, lower: Onset, upper: Onset) -> Any:
-    """Return whether a stiffness is outside the interval in which steady sliding is unstable."""
-    return ~((stiffness >= lower.stiffness) & (stiffness <= upper.stiffness))
+    # The error is that of the stiffness over its slope; it is not known where both stiffnesses meet.
+    near = zip(*(onsets(high + step) for step in (-NEARBY, NEARBY)), strict=True)
+    pairs = []
+    with np.errstate(divide="ignore", invalid="ignore"):
+        for left, right in near:
+            steepness = np.abs(np.log(right.stiffness / left.stiffness)) / (2.0 * NEARBY)
+            pairs.append((np.abs(np.log(left.stiffness / spring)), left.error / steepness))
+    (of_lower, lower), (of_upper, upper) = pairs
+    error = np.where(of_lower < of_upper, lower, upper) + 4.0 * 2.0**-52 * np.abs(high)
+    error = np.where(np.isfinite(error), error, np.inf)
+    return tuple(np.where(some, each[:, 0], np.nan) for each in (np.exp(high), error))  # type: ignore[return-value]

@@ -1,38 +1,22 @@
-"""Stability of steady sliding on whole arrays of scenes, block by block, with its certificate."""
+"""Stability of steady sliding for arrays of scenes: `stability` on Kelvin-Voigt, else `general_stability`."""
 
 import math
-from collections.abc import Sequence, Set
+from collections.abc import Set
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from kvtheory.models.steady import general_stability
-from kvtheory.models.steady.critical_velocity import critical_velocity
-from kvtheory.models.steady.rates import rates
-from kvtheory.models.steady.stability import Numbers, is_stable, numbers, onsets
+from kvtheory.models.steady import general_stability, stability
 from kvtheory.results import Certificate, Stability
 from kvtheory.scene.capabilities import lacks_stability
 from kvtheory.scene.model import Scene
 
-BLOCK = 8192
-"""Scenes treated at a time: the intermediate arrays of a block stay in the processor's cache."""
-ON_GRID = 64
-"""Scenes treated at a time where each is evaluated on a grid of velocities."""
-
-STATEMENT = (
-    "closed forms (theorem F22) in double precision, with what rounding makes of them to first order; "
-    "rates by their polynomial, the velocity to where its stiffness is critical"
-)
-ON_ARMS = (
-    "memory integrals in closed form, checked by quadrature, with what rounding and sums over strips make "
-    "of them to first order; critical stiffnesses from a grid of frequencies that follows resonances; "
-    "the least stable rates, counted by the argument principle (an error of infinity: the count differs)"
-)
-FREQUENCIES = 64
-"""Scenes on arms treated at a time: each is evaluated on a grid of frequencies, a ball in each strip."""
-SLOW = "rates", "time_constants"
+BLOCK, ON_GRID, ON_ARMS, BALL_ON_ARMS = 8192, 64, 64, 4
+"""Scenes treated at a time, so that intermediate arrays stay in the cache: with closed forms alone, on a grid
+of velocities, on a grid of frequencies, and in each strip of a ball as well."""
+RATES = "rates", "time_constants"
 """The quantities with a last axis for the rates."""
+CRITICAL = "critical_stiffness", "lower_critical_stiffness", "frequency"
 
 
 def solve(scene: Scene, wanted: Set[str]) -> Stability:
@@ -44,21 +28,20 @@ def solve(scene: Scene, wanted: Set[str]) -> Stability:
     shape, on_arms = scene.shape, bool(scene.foundation.arms)
     size = ON_GRID if "critical_velocity" in wanted else BLOCK
     if on_arms:
-        size = FREQUENCIES if scene.indenter.per_width else FREQUENCIES // 16
+        size = ON_ARMS if scene.indenter.per_width else BALL_ON_ARMS
     flat = scene.at(np.broadcast_to(scene.drive.final_velocity, shape or (1,))).flat()
     starts = range(0, max(math.prod(shape), 1), size)
-    block = _block_on_arms if on_arms else _block
-    parts = [block(flat.rows(slice(start, start + size)), wanted) for start in starts]
-    found, errors = (
-        {name: _joined([part[which][name] for part in parts], shape) for name in parts[0][which]}
-        for which in (0, 1)
-    )
-    return Stability(
-        **found,
-        rigid_drive=scene.drive.rigid,
-        model="exact",
-        certificate=Certificate("estimated", ON_ARMS if on_arms else STATEMENT, errors),
-    )
+    parts = [_block(flat.rows(slice(start, start + size)), wanted) for start in starts]
+
+    def joined(which: int, name: str) -> Any:
+        whole = np.concatenate([part[which][name] for part in parts])
+        array = whole.reshape((*shape, *whole.shape[1:]))
+        return array if array.ndim else array.item()
+
+    found, errors = ({name: joined(i, name) for name in parts[0][i]} for i in (0, 1))
+    statement = (general_stability if on_arms else stability).STATEMENT
+    certificate = Certificate("estimated", statement, errors)
+    return Stability(**found, rigid_drive=scene.drive.rigid, model="exact", certificate=certificate)
 
 
 def lasts(scene: Scene) -> Any:
@@ -74,88 +57,32 @@ def lasts(scene: Scene) -> Any:
 
 def _block(scene: Scene, wanted: Set[str]) -> tuple[dict[str, Any], dict[str, Any]]:
     """Return the quantities of flat scenes by name, NaN where they are not wanted, and their errors."""
-    tau, spring = np.broadcast_to(scene.foundation.retardation_time, scene.shape), None
-    if not scene.drive.rigid:
-        spring = np.broadcast_to(scene.drive.stiffness, scene.shape)
-    given = Numbers(*(np.broadcast_to(each, scene.shape) for each in numbers(scene)))
-    lower, upper = onsets(given, tau)
-    found = _unless_wanted(scene.shape) | {
-        "critical_stiffness": upper.stiffness,
-        "lower_critical_stiffness": lower.stiffness,
-        "frequency": upper.frequency,
-    }
-    errors = {
-        "critical_stiffness": upper.error,
-        "lower_critical_stiffness": lower.error,
-        "frequency": upper.error,
-    }
-    if spring is not None:
-        found["stable"] = is_stable(spring, lower, upper)
-        if "critical_velocity" in wanted:
-            found["critical_velocity"], errors["critical_velocity"] = critical_velocity(scene)
-    if not wanted.isdisjoint(SLOW):
-        sigma, error = rates(given, tau, spring)
-        _add_rates(found, errors, sigma, error)
-    return found, errors
-
-
-def _block_on_arms(scene: Scene, wanted: Set[str]) -> tuple[dict[str, Any], dict[str, Any]]:
-    """Return what `_block` does for a Prony series."""
-    found, errors = _unless_wanted(scene.shape), dict[str, Any]()
-    rigid, rows, spring = scene.drive.rigid, range(*scene.shape), None
-    if rigid and scene.held:  # nothing can move
-        _add_rates(found, errors, np.empty((*scene.shape, 0), complex), np.empty((*scene.shape, 0)))
-        return found, errors
-    few, fine, finer, crossings = general_stability.solve(scene)
-    stiffnesses, errors = general_stability.critical(crossings, *scene.shape)
-    found |= stiffnesses
-    if not rigid:
-        spring = np.broadcast_to(scene.drive.stiffness, scene.shape)
-        found["stable"] = ~crossings.unstable(spring)
-        if "critical_velocity" in wanted:
-            each = [scene.rows(slice(i, i + 1)) for i in rows]
-            pairs = [general_stability.critical_velocity(one) for one in each]
-            found["critical_velocity"], errors["critical_velocity"] = np.reshape(pairs, (-1, 2)).T
-    if not wanted.isdisjoint(SLOW):
-        parts = [
-            general_stability.rates(
-                few.rows([i]),
-                fine.rows([i]),
-                finer.rows([i]),
-                None if spring is None else float(spring[i]),
-            )
-            for i in rows
-        ]
-        s, error = (np.array([part[which] for part in parts]) for which in (0, 1))
-        _add_rates(found, errors, s, error)
-    return found, errors
-
-
-def _add_rates(found: dict[str, Any], errors: dict[str, Any], s: Any, error: Any) -> None:
-    """Add rates and time constants; those that neither grow nor fade have an infinite one."""
-    found["rates"] = np.stack([s.real, s.imag], axis=-1)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        found["time_constants"] = -1.0 / s.real
-        errors["rates"] = error
-        errors["time_constants"] = error * np.abs(s) / np.abs(s.real)
-
-
-def _unless_wanted(shape: tuple[int, ...]) -> dict[str, Any]:
-    """Return what stands for the quantities of flat scenes that are not computed."""
-    nothing = np.full(shape, np.nan)
-    return {
-        "stable": np.full(shape, True),
+    nothing, rigid = np.full(scene.shape, np.nan), scene.drive.rigid
+    found: dict[str, Any] = {
+        "stable": np.full(scene.shape, True),
         "rates": nothing[:, np.newaxis, np.newaxis],
         "time_constants": nothing[:, np.newaxis],
-        **dict.fromkeys(
-            ("critical_stiffness", "lower_critical_stiffness", "critical_velocity", "frequency"),
-            nothing,
-        ),
+        **dict.fromkeys((*CRITICAL, "critical_velocity"), nothing),
     }
-
-
-def _joined(parts: Sequence[NDArray[Any]], shape: tuple[int, ...]) -> Any:
-    """Join the blocks of a quantity to the shape of the scenes; of one scene it is a plain value."""
-    whole = np.concatenate(parts)
-    array = whole.reshape((*shape, *whole.shape[1:]))
-    return array if array.ndim else array.item()
+    errors: dict[str, Any] = dict.fromkeys(CRITICAL, nothing)
+    s, error = np.empty((*scene.shape, 0), complex), np.empty((*scene.shape, 0))
+    if not (rigid and scene.held):  # else nothing can move
+        spring = None if rigid else np.broadcast_to(scene.drive.stiffness, scene.shape)
+        module = general_stability if scene.foundation.arms else stability
+        motions = module.SmallMotions(scene)
+        values, wrong = motions.critical()
+        found |= zip(CRITICAL, values, strict=True)
+        errors |= zip(CRITICAL, wrong, strict=True)
+        if spring is not None:
+            found["stable"] = motions.stable(spring)
+            if "critical_velocity" in wanted:
+                pair = module.critical_velocity(scene)
+                found["critical_velocity"], errors["critical_velocity"] = pair
+        if not wanted.isdisjoint(RATES):
+            s, error = motions.rates(spring)
+    if not wanted.isdisjoint(RATES):
+        found["rates"] = np.stack([s.real, s.imag], axis=-1)
+        with np.errstate(divide="ignore", invalid="ignore"):  # what neither grows nor decays
+            found["time_constants"] = -1.0 / s.real
+            errors |= {"rates": error, "time_constants": error * np.abs(s) / np.abs(s.real)}
+    return found, errors
