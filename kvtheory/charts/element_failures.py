@@ -5,8 +5,7 @@ from typing import Any
 import numpy as np
 
 from kvtheory.api import elements, steady, transient
-from kvtheory.charts.entry import Outcome, Picture
-from kvtheory.charts.naive import closed_forms, stale_elements
+from kvtheory.charts.naive import Outcome, closed_forms, stale_elements
 from kvtheory.charts.stability import PAPERS_DENSITY, unwatched
 from kvtheory.models.elements.schemes import DEFAULT
 from kvtheory.results.errors import DivergenceError
@@ -19,21 +18,6 @@ DETUNED = 2.02
 """Elements that pass between two samples, instead of 2: the sawtooth comes back every 50 samples."""
 
 
-def _instability() -> Outcome:
-    slow = Scene(drive=Drive(velocity=0.01), run=Run(0.1))
-    h = 2.0 / PAPERS_DENSITY / 0.01
-    steps = unwatched(slow, "paper", PAPERS_DENSITY, h)
-    t, d = np.array([(step.time, step.depth) for step in steps]).T
-    times = np.linspace(0.0, 0.1, 101)
-    ours = elements(slow, at=times, certify=False).depth
-    right = transient(slow, at=[0.1])
-    return Outcome(
-        float(d[-1]), float(right.depth[0]), float(ours[-1]),
-        Picture.of("t [ms]", "depth [mm]", (1e3 * t, 1e3 * d), (1e3 * times, 1e3 * ours)),
-        _refusal(slow),
-    )  # fmt: skip
-
-
 def _refusal(scene: Scene) -> str:
     """Return the message of the package where the paper's scheme does not work."""
     try:
@@ -43,20 +27,28 @@ def _refusal(scene: Scene) -> str:
     return ""
 
 
-def _fixed(scheme: str, times: Any, time_step: float) -> Any:
+def _instability() -> Outcome:
+    slow = Scene(drive=Drive(velocity=0.01), run=Run(0.1))
+    steps = unwatched(slow, "paper", PAPERS_DENSITY, 2.0 / PAPERS_DENSITY / 0.01)
+    t, d = np.array([(step.time, step.depth) for step in steps]).T
+    times = np.linspace(0.0, 0.1, 101)
+    ours = elements(slow, at=times, certify=False).depth
+    right = transient(slow, at=[0.1]).depth[0]
+    return Outcome(d[-1], right, ours[-1], (t, d), (times, ours), _refusal(slow))
+
+
+def _force(scheme: str, times: Any, time_step: float) -> Any:
     """Return the normal force on a fixed indenter, which should be constant."""
-    fixed = Scene.table1("fixed")
     return elements(
-        fixed, per_length=COARSE, scheme=scheme, at=times, time_step=time_step, certify=False
-    ).normal_force
+        Scene.table1("fixed"), per_length=COARSE, scheme=scheme, at=times, time_step=time_step,
+        certify=False,
+    ).normal_force  # fmt: skip
 
 
 def _forces(times: Any, time_step: float, said: str = "") -> Outcome:
     """Compare the forces of both schemes on a fixed indenter at these instants."""
-    naive, ours = (_fixed(scheme, times, time_step) for scheme in ("paper", DEFAULT))
-    curves = ((1e3 * times, 1e-3 * force) for force in (naive, ours))
-    picture = Picture.of("t [ms]", "normal force [N/mm]", *curves)
-    return Outcome(float(np.ptp(naive)), 0.0, float(np.ptp(ours)), picture, said)
+    naive, ours = (_force(scheme, times, time_step) for scheme in ("paper", DEFAULT))
+    return Outcome(np.ptp(naive), 0.0, np.ptp(ours), (times, naive), (times, ours), said)
 
 
 def _sawtooth() -> Outcome:
@@ -66,9 +58,9 @@ def _sawtooth() -> Outcome:
 def _grid_resonance() -> Outcome:
     """Sample the forces once for every 2.02 elements, each sample two steps after the last."""
     passing, samples = 1.0 / COARSE / 0.1, np.arange(151)
-    locked = _fixed("paper", 0.01 + 2.0 * passing * samples, passing)[-1]
+    locked = _force("paper", 0.01 + 2.0 * passing * samples, passing)[-1]
     wrong = locked / steady(Scene.table1("fixed")).load - 1.0
-    every = DETUNED / COARSE / 0.1
+    every = DETUNED * passing
     said = f"with exactly two elements in a step it stands still, wrong by {wrong:+.2%}"
     return _forces(0.01 + every * samples, 0.5 * every, said)
 
@@ -76,17 +68,14 @@ def _grid_resonance() -> Outcome:
 def _step_at_rest() -> Outcome:
     ramp = Scene(drive=Drive(history=[(0.0, 0.0), (0.02, 0.1)]), run=Run(0.04))
     times = np.linspace(0.0, 0.04, 81)
-    with np.errstate(divide="ignore"):
-        h = float(np.divide(2.0 / PAPERS_DENSITY, 0.0))  # 2 dx/V at the start of the ramp
-    steps = unwatched(ramp, "paper", PAPERS_DENSITY, h)
+    steps = unwatched(ramp, "paper", PAPERS_DENSITY, np.inf)  # 2 dx/V at the start of the ramp
     last = (steps[-1].depth, steps[-1].rate, 1.0) if steps else (1.0, 0.0, 0.0)
-    friction = abs(closed_forms(*last)[1])  # of no steps at all: still at rest
+    friction = abs(closed_forms(*last)[1])  # after no steps at all: still at rest
     ours = elements(ramp, at=times, certify=False).friction_force
     right = transient(ramp, at=[0.02]).friction_force[0]
     return Outcome(
-        friction, float(right), float(ours[np.searchsorted(times, 0.02)]),
-        Picture.of("t [ms]", "friction force [N/mm]",
-                   (1e3 * times, np.full_like(times, friction)), (1e3 * times, 1e-3 * ours)),
+        friction, right, ours[np.searchsorted(times, 0.02)],
+        (times, np.full_like(times, friction)), (times, ours),
         _refusal(Scene(drive=Drive(velocity=0.0))),
     )  # fmt: skip
 
@@ -94,5 +83,4 @@ def _step_at_rest() -> Outcome:
 def _stale_surface() -> Outcome:
     t, d = stale_elements(Scene(), PAPERS_DENSITY)
     ours = elements(at=t[::20], certify=False).depth
-    picture = Picture.of("t [ms]", "depth [mm]", (1e3 * t, 1e3 * d), (1e3 * t[::20], 1e3 * ours))
-    return Outcome(float(d[-1]), float(transient(at=[0.2]).depth[0]), float(ours[-1]), picture)
+    return Outcome(d[-1], transient(at=[0.2]).depth[0], ours[-1], (t, d), (t[::20], ours))

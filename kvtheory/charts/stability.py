@@ -18,18 +18,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kvtheory.api import steady as steady_sliding
+from kvtheory.charts.naive import Array, scaled_scene
 from kvtheory.models.elements.model import Model
 from kvtheory.models.elements.row import ElementRow, IndenterState, OutgrownError
-from kvtheory.models.elements.schemes import SCHEMES, Scheme
+from kvtheory.models.elements.schemes import SCHEMES
 from kvtheory.models.elements.simulation import ELEMENTS_PER_STEP
 from kvtheory.models.elements.stability import lengths, limit_at
 from kvtheory.progress import Progress, silent
+from kvtheory.results import SteadyState
 from kvtheory.scene.drives import Drive
-from kvtheory.scene.indenters import Parabola
-from kvtheory.scene.model import DeadWeight, Foundation, Run, Scene
+from kvtheory.scene.model import Foundation, Scene
 from kvtheory.scene.static_state import StaticState
-
-Array = NDArray[np.float64]
 
 STEPS = 30
 """Steps over which growth is measured: 2 % a step shows as a factor of 1.8."""
@@ -93,10 +92,31 @@ def contact_lengths(scene: Scene) -> tuple[float, float]:
     return lengths(model, model.path(scene))
 
 
-def walk(
-    row: ElementRow, scheme: Scheme, state: IndenterState, time_step: float
-) -> Iterator[IndenterState]:
-    """Step without checks for instability; ends if the indenter sinks too deep."""
+def _walk(
+    scene: Scene, name: str, per_length: float, time_step: float, *, nudge: float = 0.0,
+    steady: SteadyState | None = None,
+) -> Iterator[IndenterState]:  # fmt: skip
+    """Step from rest, or as steady sliding has left the elements, without checks for instability.
+
+    The first velocity is `nudge`. The steps end if the indenter sinks too deep.
+    """
+    scheme = SCHEMES[name]
+    model = Model.of(scene, 1.0 / per_length, parts=scheme.row.parts_of_elements)
+    row = ElementRow(model, model.path(scene), DEEP)
+    state = IndenterState(0.0, model.depth, nudge)
+    if steady is not None:
+        depth, front, back = (
+            float(x) for x in (steady.depth, steady.leading_edge, steady.trailing_edge)
+        )
+        left = depth - float(model.height(back))
+
+        def surface(x: Array, y: float) -> Array:
+            behind = left * np.exp(-np.maximum(x - back, 0.0) / steady.retardation_length)
+            u = np.where(x > back, behind, depth - model.height(x, y))
+            return np.where(x < front, 0.0, u)
+
+        row.lay(depth, surface, lambda x: np.asarray((x >= front) & (x <= back)))
+        state = state._replace(depth=depth)
     with np.errstate(all="ignore"):
         while True:
             try:
@@ -117,7 +137,7 @@ def unwatched(
     >>> print(len(steps), f"{steps[-1].depth * 1e3:.3f} mm")
     400 0.091 mm
     """
-    steps = walk(*_begin(scene, scheme, per_length), time_step)
+    steps = _walk(scene, scheme, per_length, time_step)
     return list(islice(steps, round(scene.run.duration / time_step)))
 
 
@@ -138,12 +158,11 @@ def growth(
     >>> growth(slow, "edge-corrected", 2e5, 1e-3, steady=True) < 1.0
     True
     """
-    ways = [_begin(scene, scheme, per_length, steady=steady) for _ in range(2)]
-    nudge = NUDGE * ways[0][2].depth / time_step
-    runs = [
-        walk(row, how, state._replace(rate=more), time_step)
-        for (row, how, state), more in zip(ways, (0.0, nudge), strict=True)
-    ]
+    sliding = steady_sliding(scene) if steady else None
+    depth = StaticState.of(scene).depth if sliding is None else float(sliding.depth)
+    nudge = NUDGE * depth / time_step
+    how = scene, scheme, per_length, time_step
+    runs = (_walk(*how, nudge=more, steady=sliding) for more in (0.0, nudge))
     apart: list[float] = []
     for one, other in islice(zip(*runs, strict=False), STEPS):
         apart.append(abs(one.rate - other.rate) / nudge)
@@ -167,11 +186,11 @@ def velocity_map(scheme: str, velocities: Array, retardation_times: Array) -> Ma
     >>> [CLASSES[k] for k in found.classes[0]]
     ['unstable in steady sliding', 'stable']
     """
-    step = ELEMENTS_PER_STEP / PAPERS_DENSITY
 
     def point(V: float, tau: float) -> tuple[Scene, float]:
         foundation = Foundation(Scene().foundation.stiffness, tau)
-        return Scene(foundation=foundation, drive=Drive(velocity=V)), step / V
+        scene = Scene(foundation=foundation, drive=Drive(velocity=V))
+        return scene, ELEMENTS_PER_STEP / PAPERS_DENSITY / V
 
     return _map(scheme, velocities, retardation_times, point, PAPERS_DENSITY)
 
@@ -189,15 +208,11 @@ def step_map(scheme: str, numbers: Array, steps: Array) -> Map:
     ['stable', 'unstable in steady sliding']
     """
     epsilon = StaticState.of(Scene()).inertia_number
-    # R = 1/2, K = tau = delta_0 = 1: the static half length is 1 and the static load 4/3.
-    support = DeadWeight(mass=4.0 / 3.0 * epsilon, gravity=1.0 / epsilon)
-    limited = scheme if SCHEMES[scheme].tableau else "paper"
+    limited = SCHEMES[scheme if SCHEMES[scheme].tableau else "paper"]
 
     def point(number: float, share: float) -> tuple[Scene, float]:
-        scene = Scene(
-            Parabola(0.5), Foundation(1.0, 1.0), support, Drive(velocity=number), Run(1.0)
-        )
-        return scene, share * limit_at(SCHEMES[limited], Model.of(scene), contact_lengths(scene)[0])
+        scene = scaled_scene([(0.0, 1.0, number)], epsilon)
+        return scene, share * limit_at(limited, Model.of(scene), contact_lengths(scene)[0])
 
     return _map(scheme, numbers, steps, point, KEPT_ROWS)
 
@@ -217,33 +232,6 @@ def _map(
 
     rows = np.array([[measured(*point(a, b)) for a in x] for b in y])
     return Map(scheme, x, y, *np.moveaxis(rows, -1, 0))
-
-
-def _begin(
-    scene: Scene, name: str, per_length: float, *, steady: bool = False
-) -> tuple[ElementRow, Scheme, IndenterState]:
-    """Return the elements, the scheme and the indenter at rest, or as steady sliding has left them."""
-    scheme = SCHEMES[name]
-    model = Model.of(scene, 1.0 / per_length, parts=scheme.row.parts_of_elements)
-    row = ElementRow(model, model.path(scene), DEEP)
-    start = IndenterState(0.0, model.depth, 0.0)
-    if not steady:
-        return row, scheme, start
-    state = steady_sliding(scene)
-    left = state.depth - float(model.height(state.trailing_edge))
-
-    def surface(x: Array, y: float) -> Array:
-        behind = np.maximum(x - state.trailing_edge, 0.0) / state.retardation_length
-        u = np.where(
-            x > state.trailing_edge, left * np.exp(-behind), state.depth - model.height(x, y)
-        )
-        return np.where(x < state.leading_edge, 0.0, u)
-
-    def contact(x: Array) -> NDArray[np.bool_]:
-        return np.asarray((x >= state.leading_edge) & (x <= state.trailing_edge))
-
-    row.lay(float(state.depth), surface, contact)
-    return row, scheme, start._replace(depth=float(state.depth))
 
 
 def stability_maps(*, quick: bool = False, progress: Progress = silent) -> dict[str, list[Map]]:
