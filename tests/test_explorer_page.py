@@ -46,7 +46,7 @@ def test_the_page_opens_at_a_ball_and_at_a_spring():
     )
     assert "drive.mass" not in values
     assert controls(spring)["scene"]["note"] == ""
-    assert "velocity that it ends with" in controls(kv.problem("stop-and-go"))["scene"]["note"]
+    assert "takes its final velocity" in controls(kv.problem("stop-and-go"))["scene"]["note"]
 
 
 def test_the_page_opens_at_its_scene():
