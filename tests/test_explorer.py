@@ -239,7 +239,7 @@ def on_springs(count, ball, rubber):
 
 
 @pytest.mark.parametrize("ball", [False, True])
-@pytest.mark.parametrize(("rubber", "count", "apart"), [(False, 120, 1e-12), (True, 8, 1e-8)])
+@pytest.mark.parametrize(("rubber", "count", "apart"), [(False, 120, 1e-12), (True, 6, 1e-8)])
 def test_stability_on_a_spring_is_that_of_python(browser, ball, rubber, count, apart):
     scenes = list(on_springs(count, ball, rubber))
     given = json.dumps([in_javascript(scene) for scene in scenes])
