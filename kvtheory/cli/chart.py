@@ -6,15 +6,7 @@ from pathlib import Path
 
 import click
 
-from kvtheory.cli.console import (
-    json_option,
-    overwrite_option,
-    print_json,
-    print_table,
-    progress_bar,
-    scene_options,
-    split,
-)
+from kvtheory.cli import console
 from kvtheory.cli.group import main
 from kvtheory.cli.outputs import PICTURES, OutputFile
 
@@ -33,26 +25,26 @@ def chart() -> None:
     "-o", "--output", type=OutputFile(".html"),
     help="Write the atlas as one self-contained FILE.html.",
 )  # fmt: skip
-@json_option
-@overwrite_option
+@console.json_option
+@console.overwrite_option
 def failures(only: str | None, output: Path | None, as_json: bool) -> None:
     """Show how methods fail, with wrong and right numbers."""
     found = []
-    with progress_bar("entries") as report:  # what is imported takes a while, too
+    with console.progress_bar("entries") as report:  # what is imported takes a while, too
         from kvtheory.charts.failures import ATLAS, ROLES, findings
         from kvtheory.plots.failures import save_failures, shown
 
-        keys = split(only) if only else list(ATLAS)
+        keys = console.split(only) if only else list(ATLAS)
         for finding in findings(keys):
             found.append(finding)
             report(len(found) / len(keys), f"{len(found)} of {len(keys)}")
         if output:
             save_failures(found, output)
     if as_json:
-        print_json({"failures": [finding.as_dict() for finding in found]})
+        console.print_json({"failures": [finding.as_dict() for finding in found]})
         return
     rows = [(f.entry.key, f.entry.quantity, *(shown(f, role) for role in ROLES)) for f in found]
-    print_table(("entry", "quantity", "wrong", "right", "this package"), rows)
+    console.print_table(("entry", "quantity", "wrong", "right", "this package"), rows)
     for finding in found if only else []:
         entry = finding.entry
         click.echo(f"\n{entry.title}. {entry.scene}.\n{entry.why}")
@@ -68,10 +60,10 @@ def failures(only: str | None, output: Path | None, as_json: bool) -> None:
     show_default=True, help="Picture; its data go to FILE.json beside it.",
 )  # fmt: skip
 @click.option("--quick", is_flag=True, help="Coarser maps.")
-@overwrite_option
+@console.overwrite_option
 def stability(output: Path, quick: bool) -> None:
     """Map where each scheme is stable, predicted and measured."""
-    with progress_bar("maps") as report:
+    with console.progress_bar("maps") as report:
         from kvtheory.charts.stability import stability_maps
         from kvtheory.plots.stability import save_stability
 
@@ -83,7 +75,7 @@ def stability(output: Path, quick: bool) -> None:
     "work-precision",
     example="kvtheory chart work-precision my-scene.toml --quick -o speed.png",
 )
-@scene_options
+@console.scene_options
 @click.option(
     "--standard", metavar="NAME,...",
     help="Instead of a scene: table-1, low-velocity, high-velocity, small-inertia, stop-and-go, "
@@ -95,7 +87,7 @@ def stability(output: Path, quick: bool) -> None:
     default="work_precision.png", show_default=True,
     help="Picture, or a directory for it; its data go to FILE.json beside it.",
 )  # fmt: skip
-@overwrite_option
+@console.overwrite_option
 def work_precision(
     scene: str | None, overrides: Sequence[str], standard: str | None, quick: bool, output: Path
 ) -> None:
@@ -103,12 +95,12 @@ def work_precision(
     os.environ.update(dict.fromkeys(THREADS, "1"))
     if standard and (scene or overrides):
         raise ValueError("--standard names its own scenes; it does not go with SCENE or --set")
-    with progress_bar("methods") as report:
+    with console.progress_bar("methods") as report:
         from kvtheory.charts.collection import chosen, measure
         from kvtheory.plots.work_precision import default_errors, save_work_precision
         from kvtheory.scene import load_scene
 
-        standards = split(standard) if standard else []
+        standards = console.split(standard) if standard else []
         jobs = chosen(load_scene(scene, overrides), standards, quick=quick)
         charts = measure(jobs, quick=quick, progress=report)
         save_work_precision(charts, output)
@@ -120,18 +112,18 @@ def work_precision(
 
 
 @main.command(example="kvtheory explore my-scene.toml -o explorer.html")
-@scene_options
+@console.scene_options
 @click.option(
     "-o", "--output", type=OutputFile(".html"), default="explorer.html", show_default=True,
     help="File to write; it needs no server and no network.",
 )  # fmt: skip
-@overwrite_option
+@console.overwrite_option
 def explore(scene: str | None, overrides: Sequence[str], output: Path) -> None:
     """Write an interactive HTML page of steady sliding.
 
     It has a slider for every quantity of SCENE.
     """
-    with progress_bar("explore"):
+    with console.progress_bar("explore"):
         from kvtheory.explorer import save_explorer
         from kvtheory.scene import load_scene
 

@@ -7,7 +7,7 @@ import threading
 import time
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from functools import partial
+from functools import partial, wraps
 from pathlib import Path
 from typing import Any
 
@@ -22,8 +22,6 @@ ROWS = 20
 """Rows of a long table, about."""
 BEGUN = "kvtheory.begun"
 """When a command began to work, in the meta of its context."""
-
-Decorator = Callable[[Callable[..., Any]], Any]
 
 json_option = click.option(
     "--json", "as_json", is_flag=True, help="Print one JSON object, in SI units."
@@ -62,9 +60,33 @@ def scene_options(command: Callable[..., Any]) -> Any:
     return click.argument("scene", required=False, type=path)(command)
 
 
-def scene_command(example: str) -> Decorator:
-    """Declare a command on an optional scene file, with `--set` and `--json`."""
-    return lambda command: main.command(example=example)(scene_options(json_option(command)))
+def scene_command(example: str) -> Callable[[Callable[..., Iterator[Any]]], click.Command]:
+    """Declare a command on an optional scene file, with `--set` and `--json`.
+
+    Its body gets the scene and a function that reports progress, and yields its result. This is written to
+    the files of `result_options`, all or none, or printed as JSON; else the body goes on, and prints it.
+    """
+
+    def declare(body: Callable[..., Iterator[Any]]) -> click.Command:
+        @wraps(body)
+        def command(
+            scene: str | None, overrides: Sequence[str], as_json: bool, output: Path | None = None,
+            plot: Path | None = None, **how: Any,
+        ) -> None:  # fmt: skip
+            with progress_bar(body.__name__) as progress:
+                from kvtheory.scene import load_scene
+
+                steps = body(load_scene(scene, overrides), progress, **how)
+                result = next(steps)
+            write_files({output: result.save} if output else {}, result, plot)
+            if as_json:
+                print_json(result.as_dict())
+            else:
+                next(steps, None)
+
+        return main.command(example=example)(scene_options(json_option(command)))
+
+    return declare
 
 
 @contextmanager
@@ -111,28 +133,18 @@ def error_text(error: float) -> str:
     return "-" if math.isnan(error) else f"{error:.1e}"
 
 
-def write_result(
-    result: Any, output: Path | None, plot: Path | None, *,
-    as_json: bool, more: Mapping[Path, Callable[[Path], Any]] | None = None,
-) -> bool:  # fmt: skip
-    """Write a result to the files of `result_options` and `more`, or as JSON; return whether that is all.
-
-    All files are made before any is put in place.
-    """
+def write_files(
+    writers: Mapping[Path, Callable[[Path], Any]], result: Any, plot: Path | None
+) -> None:
+    """Write files, and the picture of a result; all are made before any is put in place."""
     from kvtheory.export import replace_files
 
-    writers: dict[Path, Callable[[Path], Any]] = dict(more or {})
     with progress_bar("writing"):
-        if output:
-            writers[output] = result.save
         if plot:
             from kvtheory.plots import save_plot
 
-            writers[plot] = partial(save_plot, result)
+            writers = {**writers, plot: partial(save_plot, result)}
         replace_files(writers)
-    if as_json:
-        print_json(result.as_dict())
-    return as_json
 
 
 def print_json(result: Any) -> None:

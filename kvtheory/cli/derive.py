@@ -11,14 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from kvtheory.cli.console import (
-    overwrite_option,
-    print_json,
-    print_table,
-    progress_bar,
-    scene_options,
-    split,
-)
+from kvtheory.cli import console
 from kvtheory.cli.group import main
 from kvtheory.cli.outputs import check_output
 
@@ -38,7 +31,7 @@ UNUSUAL_CHARACTER = re.compile(r"[^\w .,()+-]")
 
 
 @main.command(example="kvtheory derive -o my-thesis --format tex --only eq27,F3 --closure")
-@scene_options
+@console.scene_options
 @click.option(
     "-o", "--output", type=click.Path(file_okay=False, path_type=Path),
     default=Path("paper/derivations"), show_default=True, help="Directory to write to.",
@@ -70,7 +63,7 @@ UNUSUAL_CHARACTER = re.compile(r"[^\w .,()+-]")
 @click.option(
     "--json", "as_json", is_flag=True, help="Print one JSON object about what was written."
 )
-@overwrite_option
+@console.overwrite_option
 def derive(
     scene: str | None, output: Path, formats: str | None, only: str, closure: bool, numbers: bool,
     shape: str | None, notation: Path | None, overrides: Sequence[str], listing: bool, symbols: bool,
@@ -101,7 +94,7 @@ def derive(
         raise ValueError(
             "--shape derives a separate chapter; it does not go with --only, --closure or --numbers"
         )
-    wanted, labels = _formats(formats), find(split(only), CONTENTS)
+    wanted, labels = _formats(formats), find(console.split(only), CONTENTS)
     letters = read_notation(notation) if notation else {}
     if not (labels or shape):  # then every symbol is shown
         check_letters(letters, NAMES.values())
@@ -109,7 +102,7 @@ def derive(
     check_directory(output)
     for name in wanted if output.is_dir() else ():
         check_output("-o", output / f"derivations.{name}", [f".{name}"])
-    with progress_bar("derive") as report:
+    with console.progress_bar("derive") as report:
         deriving = lambda share, words: report(DERIVING * share, words)  # noqa: E731
         writing = lambda share, name: report(DERIVING + (1.0 - DERIVING) * share, name)  # noqa: E731
         edition = _edition(labels, closure, shape, letters, given, deriving)
@@ -122,7 +115,7 @@ def _formats(formats: str | None) -> list[str]:
     from kvtheory.derivations.render import FORMATS, check_formats, latex_engine
 
     if formats is not None:
-        wanted = split(formats)
+        wanted = console.split(formats)
         check_formats(wanted)
         return wanted
     if latex_engine():
@@ -228,9 +221,9 @@ def _command() -> str:
 
 def _print_rows(heads: Sequence[str], rows: Sequence[Sequence[str]], as_json: bool) -> None:
     if as_json:
-        print_json([dict(zip(heads, row, strict=True)) for row in rows])
+        console.print_json([dict(zip(heads, row, strict=True)) for row in rows])
     else:
-        print_table(heads, rows)
+        console.print_table(heads, rows)
 
 
 def _report(
@@ -245,7 +238,7 @@ def _report(
     counts = dict(Counter(each.status for each in derived))
     if as_json:
         files = [str(path) for path in paths]
-        print_json({"directory": str(output), "files": files, "derivations": counts})
+        console.print_json({"directory": str(output), "files": files, "derivations": counts})
         return
     click.echo("Derived and checked: " + ", ".join(f"{status} {n}" for status, n in counts.items()))
     for path in paths:

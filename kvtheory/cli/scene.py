@@ -7,13 +7,18 @@ from typing import Any
 
 import click
 
-from kvtheory.cli.console import print_json, print_table, scene_command, text
+from kvtheory.cli import console
+from kvtheory.cli.group import main
 
 AMBIGUOUS = {"support.stiffness", "drive.stiffness", "drive.damping", "drive.mass"}
 """Keys whose last part occurs in another section too: they are printed with their section."""
 
 
-@scene_command("kvtheory scene --support fixed > my-scene.toml && kvtheory scene my-scene.toml")
+@main.command(
+    example="kvtheory scene --support fixed > my-scene.toml && kvtheory scene my-scene.toml"
+)
+@console.scene_options
+@console.json_option
 @click.option(
     "--support", type=click.Choice(["fixed", "dead-weight", "suspended"]),
     help="Support of the template.",
@@ -45,7 +50,7 @@ def scene(
             "--support chooses the template; it does not go with SCENE, --set or --json"
         )
     if problem == "list":
-        print_table(("problem", "what it is"), problems().items())
+        console.print_table(("problem", "what it is"), problems().items())
         return
     if not given:
         template_text = template(support or "dead-weight") + "\n"
@@ -77,13 +82,13 @@ def scene(
         "support": checked.support.kind,
     }  # fmt: skip
     if as_json:
-        print_json({**kinds, **quantities, "notes": notes})
+        console.print_json({**kinds, **quantities, "notes": notes})
         return
     click.echo(
         "Valid: {shape} indenter, {foundation} foundation, {support} support.\n".format(**kinds)
     )
     rows = [(name, f"{value:.6g}") for name, value in quantities.items()]
-    print_table(("quantity", "value in SI"), rows)
+    console.print_table(("quantity", "value in SI"), rows)
     if not lacks_ball(checked) and checked.drive.ends:
         _print_equivalent_line(checked)
     if not numbers:
@@ -98,11 +103,11 @@ def _print_equivalent_line(scene: Any) -> None:
     from kvtheory.models.steady import footprint
 
     line = footprint.equivalent_line(steady(scene), scene.indenter.stretch)
+    width, depth = console.text(line.width, "m"), console.text(line.depth, "m")
     click.echo(
         f"\nEquivalent line contact in steady sliding at this velocity: a parabola of the same radius, "
-        f"{text(line.width, 'm')} wide,\nunder {text(line.load, 'N/m')}, at the depth "
-        f"{text(line.depth, 'm')}. Its load is right within {footprint.LOAD_ERROR:.1%}, its friction\n"
-        f"coefficient within {footprint.FRICTION_COEFFICIENT_ERROR:.2%}. It is equivalent at every "
-        "velocity if the depth is kept; the depth\nof a dead weight changes with velocity, and with it "
-        "the width."
+        f"{width} wide,\nunder {console.text(line.load, 'N/m')}, at the depth {depth}. Its load is right "
+        f"within {footprint.LOAD_ERROR:.1%}, its friction\ncoefficient within "
+        f"{footprint.FRICTION_COEFFICIENT_ERROR:.2%}. It is equivalent at every velocity if the depth is "
+        "kept; the depth\nof a dead weight changes with velocity, and with it the width."
     )

@@ -1,30 +1,21 @@
 """`kvtheory solve`, `transient`, `elements` and `compare`: by the cheapest model, and over time."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 
-from kvtheory.cli.console import (
-    error_text,
-    overwrite_option,
-    print_quantities,
-    print_series,
-    print_table,
-    progress_bar,
-    scene_command,
-    series_options,
-    split,
-    text,
-    write_result,
-)
-from kvtheory.cli.group import DISAGREES
+from kvtheory.cli import console
+from kvtheory.cli.group import DISAGREES, main
 from kvtheory.cli.outputs import PICTURES, OutputFile
 
+if TYPE_CHECKING:
+    from kvtheory.scene import Scene
 
-@scene_command(
+
+@console.scene_command(
     "kvtheory solve --quantity friction_coefficient --rtol 1e-2 --explain && "
     'kvtheory solve --at "1 ms,200 ms"'
 )
@@ -34,41 +25,36 @@ from kvtheory.cli.outputs import PICTURES, OutputFile
 )  # fmt: skip
 @click.option("--quantity", metavar="NAME,...", help="Quantities to solve for; default: all.")
 @click.option("--explain", is_flag=True, help="Print which models were tried, and why.")
-@series_options
+@console.series_options
 def solve(
-    scene: str | None, overrides: Sequence[str], as_json: bool, rtol: float,
-    quantity: str | None, explain: bool, at: str | None, output: Path | None, plot: Path | None,
-) -> None:  # fmt: skip
+    scene: "Scene", progress: Any, rtol: float, quantity: str | None, explain: bool, at: str | None
+) -> Iterator[Any]:
     """Solve SCENE by the cheapest model within the tolerance.
 
     Without --at, -o and --plot the result is steady sliding, with them the motion from rest over time.
     """
     from kvtheory.api import solve as find
-    from kvtheory.scene import load_scene
 
-    names = None if quantity is None else split(quantity)
-    checked, over_time = load_scene(scene, overrides), bool(output or plot)
-    with progress_bar("solve") as progress:
-        found = find(
-            checked, quantity=names, at=at, rtol=rtol, over_time=over_time, progress=progress
-        )
-    if write_result(found, output, plot, as_json=as_json):
-        return
+    files = click.get_current_context().params
+    over_time = bool(files["output"] or files["plot"])
+    names = None if quantity is None else console.split(quantity)
+    found = find(scene, quantity=names, at=at, rtol=rtol, over_time=over_time, progress=progress)
+    yield found
     if explain:
         rows = [
             (
-                step.rung, step.assumed, error_text(step.error), error_text(step.margin),
+                step.rung, step.assumed, console.error_text(step.error), console.error_text(step.margin),
                 f"{(step.choosing + step.solving) * 1e3:.3f}", step.outcome,
             )
             for step in found.climb
         ]  # fmt: skip
-        print_table(("model", "assumes", "error", "margin", "time [ms]", "outcome"), rows)
+        console.print_table(("model", "assumes", "error", "margin", "time [ms]", "outcome"), rows)
         share = found.choosing_share
         click.echo(f"\ntolerance {found.rtol:g}; {share:.1%} of the time to choose\n")
     if at is not None or over_time:
-        print_series(found, whole=at is not None, remedy="Take a smaller --rtol.")
+        console.print_series(found, whole=at is not None, remedy="Take a smaller --rtol.")
     else:
-        print_quantities(found, {name: found.units[name] for name in found.values})
+        console.print_quantities(found, {name: found.units[name] for name in found.values})
     worst = max(found.certificate.relative_error.values())
     click.echo(
         f"\nmodel: {found.model}; error {found.certificate.kind} at {worst:.1e} or less: "
@@ -76,7 +62,7 @@ def solve(
     )
 
 
-@scene_command(
+@console.scene_command(
     'kvtheory transient --at "0 ms,1 ms,10 ms" && kvtheory transient -o run.csv --plot run.png'
 )
 @click.option(
@@ -86,30 +72,24 @@ def solve(
     "--max-steps", type=click.IntRange(1),
     help="Steps after which to give up; default: 300,000 plus 100 for each piece of the drive.",
 )  # fmt: skip
-@series_options
-def transient(
-    scene: str | None, overrides: Sequence[str], as_json: bool,
-    output: Path | None, plot: Path | None, **how: Any,
-) -> None:  # fmt: skip
+@console.series_options
+def transient(scene: "Scene", progress: Any, **how: Any) -> Iterator[Any]:
     """Compute the motion from rest: depth, forces, edges, events."""
     from kvtheory.api import transient as follow
-    from kvtheory.scene import load_scene
 
-    with progress_bar("transient") as progress:
-        result = follow(load_scene(scene, overrides), **how, progress=progress)
-    if write_result(result, output, plot, as_json=as_json):
-        return
-    print_series(result, whole=how["at"] is not None, remedy="Take a smaller --rtol.")
+    result = follow(scene, **how, progress=progress)
+    yield result
+    console.print_series(result, whole=how["at"] is not None, remedy="Take a smaller --rtol.")
     click.echo("\nevents:")
     for event in result.events:
-        click.echo(f"  {text(event.time, 's')}: {event.kind}")
+        click.echo(f"  {console.text(event.time, 's')}: {event.kind}")
     worst = max(result.certificate.relative_error.values())
     click.echo(
         f"\n{result.steps} steps; error estimated at {worst:.1e}: {result.certificate.statement}."
     )
 
 
-@scene_command(
+@console.scene_command(
     'kvtheory elements --at "0 ms,1 ms,10 ms" --scheme paper && kvtheory elements -o run.csv'
 )
 @click.option(
@@ -120,24 +100,18 @@ def transient(
     help="paper, explicit-euler, semi-implicit, exponential or edge-corrected.",
 )  # fmt: skip
 @click.option("--time-step", metavar='"10 us"', help="Default: 2 dx/V or less.")
-@series_options
-def elements(
-    scene: str | None, overrides: Sequence[str], as_json: bool,
-    output: Path | None, plot: Path | None, **how: Any,
-) -> None:  # fmt: skip
+@console.series_options
+def elements(scene: "Scene", progress: Any, **how: Any) -> Iterator[Any]:
     """Simulate the motion from rest by point elements: any shape."""
     from kvtheory.api import elements as simulate
-    from kvtheory.scene import load_scene
 
     def warn(message: str) -> None:
         click.echo(f"kvtheory: warning: {message}", err=True)
 
-    with progress_bar("elements") as progress:
-        result = simulate(load_scene(scene, overrides), **how, progress=progress, warn=warn)
-    if write_result(result, output, plot, as_json=as_json):
-        return
+    result = simulate(scene, **how, progress=progress, warn=warn)
+    yield result
     remedy = "Take more elements (--per-length), which also shortens the steps."
-    print_series(result, whole=how["at"] is not None, remedy=remedy)
+    console.print_series(result, whole=how["at"] is not None, remedy=remedy)
     worst = max(result.certificate.relative_error.values())
     click.echo(
         f"\n{result.scheme}, {result.per_length / 1e3:g} elements per mm, {result.steps} steps of at most "
@@ -146,7 +120,9 @@ def elements(
     )
 
 
-@scene_command("kvtheory compare --data mine.csv --per-length '200 /mm' --report mine.html")
+@main.command(example="kvtheory compare --data mine.csv --per-length '200 /mm' --report mine.html")
+@console.scene_options
+@console.json_option
 @click.option(
     "--data", type=click.Path(exists=True, dir_okay=False, path_type=Path),
     help="CSV of a simulation: t [ms],z_A [mm],F_z [N/mm],F_x [N/mm],... Default: our own.",
@@ -165,7 +141,7 @@ def elements(
     "--report", type=OutputFile(".html"),
     help="Write the comparison as one self-contained FILE.html.",
 )  # fmt: skip
-@overwrite_option
+@console.overwrite_option
 def compare(
     scene: str | None, overrides: Sequence[str], as_json: bool, data: Path | None, plot: Path | None,
     report: Path | None, **how: Any,
@@ -178,14 +154,17 @@ def compare(
     from kvtheory.scene import load_scene
 
     checked = load_scene(scene, overrides)
-    with progress_bar("compare") as progress:
+    with console.progress_bar("compare") as progress:
         found = compare_with_theory(checked, data, **how, progress=progress)
     pages = {}
     if report:
         from kvtheory.plots.comparison import save_comparison_report
 
         pages[report] = partial(save_comparison_report, found, checked)
-    if not write_result(found, None, plot, as_json=as_json, more=pages):
+    console.write_files(pages, found, plot)
+    if as_json:
+        console.print_json(found.as_dict())
+    else:
         theory = "" if found.verdict == "cannot tell" else " with theory"
         click.echo(f"{found.source}: {found.verdict}{theory}\n")
         rows = []
@@ -197,7 +176,7 @@ def compare(
                 note = f"{check.unit}; {check.note}" if check.note else check.unit
             rows.append((check.name, *numbers, check.equation, note))
         heads = ("check", "measured", "allowed", "", "equation", "what is measured")
-        print_table(heads, rows)
+        console.print_table(heads, rows)
         click.echo(f"\n{found.diagnosis}")
     if found.verdict == "disagrees":
         click.get_current_context().exit(DISAGREES)

@@ -11,17 +11,22 @@ from typing import Any
 
 import click
 
-from kvtheory.cli.console import overwrite_option, print_json, progress_bar, scene_command, split
+from kvtheory.cli import console
+from kvtheory.cli.group import main
 from kvtheory.cli.outputs import OVERWRITE, PICTURES, OutputFile
 
 SHOWN_FAILURES = 5
 EXAMPLE = '"drive.velocity=1 mm/s:10 m/s:200:log" or "foundation.retardation_time=10 ms,1 s"'
 
 
-@scene_command(
-    'kvtheory sweep --over "drive.velocity=1 mm/s:10 m/s:200:log" '
-    '--over "foundation.retardation_time=10 ms,100 ms,1 s" -o map.csv'
+@main.command(
+    example=(
+        'kvtheory sweep --over "drive.velocity=1 mm/s:10 m/s:200:log" '
+        '--over "foundation.retardation_time=10 ms,100 ms,1 s" -o map.csv'
+    )
 )
+@console.scene_options
+@console.json_option
 @click.option(
     "--over", multiple=True, required=True, metavar="KEY=VALUES",
     help="Sweep a key over START:STOP:COUNT[:log] or V1,V2,...; repeatable, for all combinations. "
@@ -51,7 +56,7 @@ EXAMPLE = '"drive.velocity=1 mm/s:10 m/s:200:log" or "foundation.retardation_tim
     help="Factory of a concurrent.futures.Executor; called with the number of jobs, if given.",
 )  # fmt: skip
 @click.option("--block", type=click.IntRange(1), help="Scenes in a block.")
-@overwrite_option
+@console.overwrite_option
 @click.option(
     "--plot", type=OutputFile(*PICTURES),
     help="Draw the first quantity to FILE.png, .svg or .pdf.",
@@ -73,7 +78,7 @@ def sweep(
 
     what: dict[str, Any] = {
         "scene": load_scene(scene, overrides), "over": read_over(over), **how,
-        "quantities": [name for text in quantities for name in split(text)] or None,
+        "quantities": [name for text in quantities for name in console.split(text)] or None,
     }  # fmt: skip
     plan = plan_of(**what)
     if plot:
@@ -84,7 +89,7 @@ def sweep(
         click.echo(f"kvtheory: {large}", err=True)
     began = time.perf_counter()
     with ExitStack() as stack:
-        progress = stack.enter_context(progress_bar("sweep"))
+        progress = stack.enter_context(console.progress_bar("sweep"))
         pool = stack.enter_context(from_factory(executor, jobs)) if executor else None
         try:
             result = run(
@@ -102,7 +107,9 @@ def sweep(
     if as_json:
         counts = {name: getattr(result, name) for name in ("points", "computed", "failed")}
         failures = record(result.failures)
-        print_json({"file": str(result.path), **counts, "failures": failures, "seconds": seconds})
+        console.print_json(
+            {"file": str(result.path), **counts, "failures": failures, "seconds": seconds}
+        )
         return
     click.echo(
         f"{output}: {result.points:,} points, {result.computed:,} of them computed now in "
