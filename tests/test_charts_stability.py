@@ -116,5 +116,8 @@ def test_command(tmp_path, monkeypatch):
     assert path.read_bytes().startswith(b"\x89PNG")
     data = json.loads(path.with_suffix(".json").read_text())
     assert [found["scheme"] for found in data["maps"]["step"]] == list(SCHEMES)
-    assert [np.unique(data["maps"]["velocity"][0][name]) for name in ("start", "steady")] == [1.1, 0.9]
+    assert [np.unique(data["maps"]["velocity"][0][name]) for name in ("start", "steady")] == [
+        1.1,
+        0.9,
+    ]
     assert data["environment"]["kvtheory"] == kv.__version__

@@ -20,12 +20,7 @@ from kvtheory.charts.problems import (
     errors,
     standard_scene,
 )
-from kvtheory.charts.steady_precision import (
-    SteadyProblem,
-    brentq_over_quad,
-    steady_methods,
-    suits,
-)
+from kvtheory.charts.steady_precision import SteadyProblem, brentq_over_quad, steady_methods, suits
 from kvtheory.charts.work_precision import (
     REASONS,
     Clock,
@@ -161,8 +156,7 @@ def test_a_run_that_takes_too_long_is_ended_and_the_dearer_ones_are_not_begun():
 
 
 @pytest.mark.parametrize(
-    ("error", "reason"),
-    [(ArithmeticError("no"), "not converged"), (ValueError("no"), "refused")],
+    ("error", "reason"), [(ArithmeticError("no"), "not converged"), (ValueError("no"), "refused")]
 )
 def test_reasons_of_failures_are_kept(error, reason):
     def fail(one, knob, clock):

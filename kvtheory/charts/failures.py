@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from kvtheory.charts import element_failures, motion_failures, steady_failures
+from kvtheory.charts import motion_failures, steady_failures
 from kvtheory.charts.naive import Outcome
 from kvtheory.scene.quantities import nearest
 
@@ -58,7 +58,7 @@ class Finding:
         }
 
 
-MEASURES = {**vars(element_failures), **vars(motion_failures), **vars(steady_failures)}
+MEASURES = {**vars(motion_failures), **vars(steady_failures)}
 """Each entry is computed by the function of its name."""
 ATLAS = {
     key: Entry(key=key, measure=MEASURES["_" + key.replace("-", "_")], **words)

@@ -31,13 +31,7 @@ REACH = 1.6
 
 
 def transient_methods() -> dict[str, Method]:
-    """Return the methods that can run here: what is not installed is left out.
-
-    Examples
-    --------
-    >>> [name for name in transient_methods() if name.startswith("elements")][0]
-    'elements, paper'
-    """
+    """Return the methods that can run here: what is not installed is left out."""
     found = [
         Method("slow manifold", "rtol", TOLERANCES[:9:2], "evaluations", _slow_manifold, "model",
                _starts_forward),

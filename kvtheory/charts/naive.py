@@ -76,13 +76,7 @@ def closed_forms(d: float, v: float, number: float) -> tuple[float, float]:
 
 
 def two_states(number: float | Callable[[float], float], epsilon: float, kappa: float = 0.0) -> Law:
-    """Return d' and d'' as a function of s and (d, d'): the equation of motion with `closed_forms`.
-
-    Examples
-    --------
-    >>> two_states(0.0, 0.1)(0.0, (1.0, 0.0))
-    (0.0, 0.0)
-    """
+    """Return d' and d'' as a function of s and (d, d'): the equation of motion with `closed_forms`."""
     rate = number if callable(number) else lambda _: number
 
     def law(s: float, y: Sequence[float]) -> tuple[float, float]:

@@ -148,13 +148,7 @@ class Problem:
 
 
 def standard_scene(name: str) -> Scene:
-    """Return a standard scene, in which R = 1/2, K = tau = delta_0 = 1 and so a_0 = 1.
-
-    Examples
-    --------
-    >>> Problem("hop", standard_scene("hop")).units.inertia_number
-    0.3
-    """
+    """Return a standard scene, in which R = 1/2, K = tau = delta_0 = 1 and so a_0 = 1."""
     return scaled_scene(*STANDARD[name])
 
 

@@ -2,12 +2,14 @@
 
 Predicted (derivations, F15): a step h is stable if |R(σ h)| <= 1 for both rates of the contact,
 M σ^2 + C L σ + K L + k_s = 0, with L of the contact at the static depth, where a start from rest
-begins, and with L in steady sliding. Measured: two runs that differ by a tiny velocity are made side by
-side for some steps; the factor by which their difference grows in a step is above 1 if the scheme is
-unstable. No stability theory enters the measurement. Up to about 1.5 times the limit the runs may leave
-steady sliding for a cycle with a shorter contact, in which their difference decays: there the result depends
-on where the elements are. Above lambda of about 20 a step near the limit passes much of the contact, which
-the prediction takes as fixed: there it is too optimistic.
+begins, and with L in steady sliding. Measured: two runs with a tiny difference in velocity; the scheme is
+unstable if their difference grows by more than a factor of 1 per step. No stability theory enters the
+measurement.
+
+Up to about 1.5 times the limit the runs may leave steady sliding for a cycle with a shorter contact, in
+which their difference decays: there the result depends on where the elements are. Above lambda of about
+20 a step near the limit passes much of the contact, which the prediction takes as fixed: there it is too
+optimistic.
 """
 
 from collections.abc import Callable, Iterator
@@ -129,14 +131,7 @@ def _walk(
 def unwatched(
     scene: Scene, scheme: str, per_length: float, time_step: float
 ) -> list[IndenterState]:
-    """Return the steps of a run from rest to the end of the scene, however unstable it is.
-
-    Examples
-    --------
-    >>> steps = unwatched(Scene(), "paper", 4e4, 5e-4)
-    >>> print(len(steps), f"{steps[-1].depth * 1e3:.3f} mm")
-    400 0.091 mm
-    """
+    """Return the steps of a run from rest to the end of the scene, however unstable it is."""
     steps = _walk(scene, scheme, per_length, time_step)
     return list(islice(steps, round(scene.run.duration / time_step)))
 
@@ -178,14 +173,7 @@ def growth(
 
 
 def velocity_map(scheme: str, velocities: Array, retardation_times: Array) -> Map:
-    """Return the map over V (m/s) and tau (s), else Table 1, at the paper's step and density.
-
-    Examples
-    --------
-    >>> found = velocity_map("paper", np.array([0.005, 0.1]), np.array([0.1]))
-    >>> [CLASSES[k] for k in found.classes[0]]
-    ['unstable in steady sliding', 'stable']
-    """
+    """Return the map over V (m/s) and tau (s), else Table 1, at the paper's step and density."""
 
     def point(V: float, tau: float) -> tuple[Scene, float]:
         foundation = Foundation(Scene().foundation.stiffness, tau)
@@ -200,12 +188,6 @@ def step_map(scheme: str, numbers: Array, steps: Array) -> Map:
 
     That limit is the one of the paper's scheme in steady sliding, or of Euler's method for that; the
     inertia number is that of Table 1.
-
-    Examples
-    --------
-    >>> found = step_map("explicit-euler", np.array([1.0]), np.array([0.5, 2.0]))
-    >>> [CLASSES[k] for k in found.classes[:, 0]]
-    ['stable', 'unstable in steady sliding']
     """
     epsilon = StaticState.of(Scene()).inertia_number
     limited = SCHEMES[scheme if SCHEMES[scheme].tableau else "paper"]

@@ -161,15 +161,6 @@ def make_chart(
 
     A problem has a `name` and a `reference()`; it can `assess(found, reference, tolerance)`, which gives the
     errors of a solution, and why it is wrong, if so, for a method with a tolerance.
-
-    Examples
-    --------
-    >>> from kvtheory.charts.methods import transient_methods
-    >>> from kvtheory.charts.problems import Problem, standard_scene
-    >>> one = transient_methods()["two states, LSODA"]
-    >>> chart = make_chart(Problem("table-1", standard_scene("table-1")), [one], effort=QUICK)
-    >>> all(point.errors["depth, maximum"] < 0.05 for point in chart.series[0].points)
-    True
     """
     right = problem.reference()
     chosen = [method for method in methods if method.suits(problem)]

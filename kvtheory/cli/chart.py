@@ -72,8 +72,7 @@ def stability(output: Path, quick: bool) -> None:
 
 
 @chart.command(
-    "work-precision",
-    example="kvtheory chart work-precision my-scene.toml --quick -o speed.png",
+    "work-precision", example="kvtheory chart work-precision my-scene.toml --quick -o speed.png"
 )
 @console.scene_options
 @click.option(

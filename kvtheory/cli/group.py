@@ -127,8 +127,7 @@ def in_options(message: str, command: click.Command) -> str:
 
 
 @click.group(
-    cls=Group,
-    context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100},
+    cls=Group, context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100}
 )
 @click.version_option(package_name="kvtheory")
 def main() -> None:
