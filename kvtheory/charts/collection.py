@@ -8,9 +8,8 @@ from kvtheory.charts.problems import STANDARD, Problem, standard_scene
 from kvtheory.charts.steady_precision import SteadyProblem, steady_methods, suits
 from kvtheory.charts.work_precision import FULL, QUICK, Chart, make_chart
 from kvtheory.progress import Progress, silent
+from kvtheory.scene import Drive, Scene
 from kvtheory.scene.capabilities import lacks_rigid_paper_model, require
-from kvtheory.scene.drives import Drive
-from kvtheory.scene.model import Scene
 from kvtheory.scene.quantities import nearest
 
 Job = Callable[..., Chart]

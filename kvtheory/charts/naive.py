@@ -13,9 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 
-from kvtheory.scene.drives import Drive
-from kvtheory.scene.indenters import Parabola
-from kvtheory.scene.model import DeadWeight, Foundation, Run, Scene
+from kvtheory.scene import DeadWeight, Drive, Foundation, Parabola, Run, Scene
 
 Array = NDArray[np.float64]
 Law = Callable[[float, Any], tuple[float, ...]]

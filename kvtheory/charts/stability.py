@@ -28,8 +28,7 @@ from kvtheory.models.elements.simulation import ELEMENTS_PER_STEP
 from kvtheory.models.elements.stability import lengths, limit_at
 from kvtheory.progress import Progress, silent
 from kvtheory.results import SteadyState
-from kvtheory.scene.drives import Drive
-from kvtheory.scene.model import Foundation, Scene
+from kvtheory.scene import Drive, Foundation, Scene
 from kvtheory.scene.static_state import StaticState
 
 STEPS = 30
