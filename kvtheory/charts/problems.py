@@ -22,11 +22,11 @@ from kvtheory.scene.base_motion import BaseMotion
 from kvtheory.scene.model import Scene
 from kvtheory.scene.static_state import StaticState
 
-EVENLY = 41
+UNIFORM_TIMES = 41
 """Instants over the run at which errors are measured."""
-SOON = np.geomspace(1e-4, 5e-2, 9)
+AFTER_JUMP = np.geomspace(1e-4, 5e-2, 9)
 """Further instants soon after each jump, as shares of the run."""
-APART = 1e-6
+LEAST_SPACING = 1e-6
 """Smallest distance of instants, as a share of the run."""
 REFERENCE_RTOL, INDEPENDENT_RTOL = 1e-12, 1e-10
 NO_MEMORY = 1e-7
@@ -35,9 +35,9 @@ DENSITIES = {False: 160.0, True: 60.0}
 """Elements per half length at rest of the finer reference by elements; for the quick form, fewer."""
 TABLE = "work_precision_reference.json"
 """Independent solutions of the standard scenes; its generator is among the tests."""
-MUCH = 1e-3
+LARGE_ERROR = 1e-3
 """Error of a curve at which a run that reported success is wrong, if it is also far beyond its tolerance."""
-BEYOND = 100.0
+FAR_BEYOND = 100.0
 """Multiple of its tolerance at which an error is far beyond it."""
 JUDGED = "depth, maximum", "friction, maximum"
 """Errors by which a run is called wrong."""
@@ -85,11 +85,12 @@ class Problem:
     def times(self) -> Array:
         """Instants (s) at which errors are measured; where the drive jumps, just after the jump."""
         end, jumps = self.scene.run.duration, self._jumps
-        soon = [t + x for t in jumps for x in SOON * end if t + x < end]
-        evenly = np.linspace(0.0, end, EVENLY).tolist()
-        apart = [t for t in (*evenly, *soon) if min(abs(t - x) for x in jumps) > APART * end]
-        found = np.array(sorted({*apart, *jumps}))
-        return found[np.diff(found, prepend=-1.0) > APART * end]
+        soon = [t + x for t in jumps for x in AFTER_JUMP * end if t + x < end]
+        evenly = np.linspace(0.0, end, UNIFORM_TIMES).tolist()
+        least = LEAST_SPACING * end
+        others = [t for t in (*evenly, *soon) if min(abs(t - x) for x in jumps) > least]
+        found = np.array(sorted({*others, *jumps}))
+        return found[np.diff(found, prepend=-1.0) > least]
 
     @cached_property
     def pieces(self) -> list[Piece]:
@@ -139,7 +140,7 @@ class Problem:
         """Return the errors, and why a run that reported success is wrong, or nothing."""
         measured = errors(found, right.solution)
         worst = max(measured[name] for name in JUDGED)
-        if tolerance is None or worst < max(MUCH, BEYOND * tolerance):
+        if tolerance is None or worst < max(LARGE_ERROR, FAR_BEYOND * tolerance):
             return measured, ""
         if not np.isfinite(worst):
             return measured, "not converged"

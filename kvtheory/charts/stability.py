@@ -39,11 +39,11 @@ NUDGE = 1e-9
 """Difference of both runs, in depths per step: no contact changes by it, and rounding is far below."""
 BLOWN_UP, DIED_OUT = 1e4, 0.1
 """Multiple of the first difference at which a measurement ends."""
-SWELLING = 1.08
+INITIAL_GROWTH = 1.08
 """Growth in the first steps that counts as unstable: stable runs diverge by up to 1.06, once."""
 DEEP = 1e6
 """Multiple of the static depth to which elements are kept: an unstable indenter may sink."""
-KEPT_ROWS = 100.0
+PER_HALF_LENGTH = 100.0
 """Elements in a static half length where the step is given in units of its limit."""
 PAPERS_DENSITY = 2e5
 """Elements per metre of the paper (Table 1)."""
@@ -77,7 +77,7 @@ class Map:
     @property
     def classes(self) -> NDArray[np.int64]:
         """Index of the class of every point, as measured."""
-        return np.where(self.steady > 1.0, 2, (self.start > SWELLING).astype(np.int64))
+        return np.where(self.steady > 1.0, 2, (self.start > INITIAL_GROWTH).astype(np.int64))
 
 
 def contact_lengths(scene: Scene) -> tuple[float, float]:
@@ -157,18 +157,18 @@ def growth(
     nudge = NUDGE * depth / time_step
     how = scene, scheme, per_length, time_step
     runs = (_walk(*how, nudge=more, steady=sliding) for more in (0.0, nudge))
-    apart: list[float] = []
+    differences: list[float] = []
     for one, other in islice(zip(*runs, strict=False), STEPS):
-        apart.append(abs(one.rate - other.rate) / nudge)
-        if not apart[-1] < BLOWN_UP or max([1.0, *apart][-LATEST:]) < DIED_OUT:
+        differences.append(abs(one.rate - other.rate) / nudge)
+        if not differences[-1] < BLOWN_UP or max([1.0, *differences][-LATEST:]) < DIED_OUT:
             break
     else:
-        if len(apart) < STEPS:  # it sank too deep
-            apart.append(BLOWN_UP)
-    apart[-1] = min(np.nan_to_num(apart[-1], nan=BLOWN_UP), BLOWN_UP)
-    first = min(LATEST, len(apart)) if steady else 1
-    count = np.arange(first, len(apart) + 1)
-    return float(max(np.array(apart[first - 1 :]) ** (1.0 / count)))
+        if len(differences) < STEPS:  # it sank too deep
+            differences.append(BLOWN_UP)
+    differences[-1] = min(np.nan_to_num(differences[-1], nan=BLOWN_UP), BLOWN_UP)
+    first = min(LATEST, len(differences)) if steady else 1
+    count = np.arange(first, len(differences) + 1)
+    return float(max(np.array(differences[first - 1 :]) ** (1.0 / count)))
 
 
 def velocity_map(scheme: str, velocities: Array, retardation_times: Array) -> Map:
@@ -195,7 +195,7 @@ def step_map(scheme: str, numbers: Array, steps: Array) -> Map:
         scene = scaled_scene([(0.0, 1.0, number)], epsilon)
         return scene, share * limit_at(limited, Model.of(scene), contact_lengths(scene)[0])
 
-    return _map(scheme, numbers, steps, point, KEPT_ROWS)
+    return _map(scheme, numbers, steps, point, PER_HALF_LENGTH)
 
 
 def _map(

@@ -20,8 +20,8 @@ LARGE_ERROR = 0.05
 """Of the static state: a larger one is seen in any plot, and is beyond the scatter of a good measurement."""
 ROWS = 20
 """Rows of a long table, about."""
-BEGUN = "kvtheory.begun"
-"""When a command began to work, in the meta of its context."""
+START_TIME = "kvtheory.begun"
+"""Start time of a command, in the meta of its context."""
 
 json_option = click.option(
     "--json", "as_json", is_flag=True, help="Print one JSON object, in SI units."
@@ -98,7 +98,7 @@ def progress_bar(label: str) -> Iterator[Callable[..., None]]:
     from kvtheory.progress import BEAT, PATIENCE, ProgressLine
 
     context = click.get_current_context(silent=True)
-    begun = context.meta.setdefault(BEGUN, time.monotonic()) if context else time.monotonic()
+    begun = context.meta.setdefault(START_TIME, time.monotonic()) if context else time.monotonic()
     patience = max(PATIENCE - (time.monotonic() - begun), 0.0)  # of all parts of a command together
     line, over = ProgressLine(label, patience=patience), threading.Event()
 
