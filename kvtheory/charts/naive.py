@@ -40,6 +40,10 @@ class Outcome:
     ours: tuple[Array, Array]
     said: str = ""
 
+    def __post_init__(self) -> None:
+        for name in ("wrong", "right", "package"):  # which may be numbers of NumPy
+            object.__setattr__(self, name, float(getattr(self, name)))
+
 
 def scaled_scene(pieces: Sequence[Piece], epsilon: float) -> Scene:
     """Return a dead weight with R = 1/2 and K = tau = delta_0 = 1, hence a_0 = 1, driven by lambda(s)."""
