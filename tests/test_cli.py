@@ -325,7 +325,8 @@ def test_files_of_another_kind_are_left_alone_unless_told(place, name):
     assert list(place.iterdir()) == [path]
     run(*arguments, "--overwrite")
     assert path.read_bytes() != FOREIGN
-    run(*arguments)  # what the command wrote itself it may replace, or has nothing left to do
+    if name not in ("compare --plot a.png", "solve --plot a.png"):  # as for `transient`
+        run(*arguments)  # what the command wrote itself it may replace, or has nothing left to do
     if name in ("transient -o a.csv", "steady --plot a.svg"):
         path.write_bytes(b"")  # an empty file is free
         run(*arguments)
