@@ -34,11 +34,8 @@ START = {
 
 Where a line contact has a quantity per unit width, a ball has the same digits in its own unit: 1 kg for
 1 kg/mm."""
-START_OF = {
-    ("suspended", "stiffness"): 3e7,
-    ("drive", "stiffness"): 1e6,
-    ("arm", "stiffness"): 3e10,
-}
+STIFFNESSES = {"suspended": 3e7, "drive": 1e6, "arm": 3e10}
+"""Start values of the stiffnesses that are not of a foundation."""
 LINEAR = {"exponent": (1.0, 8.0), "order": (0.05, 1.0), "poisson_ratio": (0.0, 0.49)}
 """Ranges of the sliders that are not logarithmic."""
 DECADES = 3
@@ -139,7 +136,7 @@ def _slider(
     of: str, spec: Quantity, name: str, value: float | None, per_width: bool
 ) -> dict[str, Any]:
     unit, whole = spec.unit, spec.fitting(False).unit
-    start = _text(START_OF.get((of, name), START[name]), unit)
+    start = _text(STIFFNESSES.get(of, START[name]) if name == "stiffness" else START[name], unit)
     if value:
         start = _text(value, spec.fitting(per_width).unit)
     return {
