@@ -1,6 +1,5 @@
 """A headless Chromium that is driven through its own pipes: real keys, real screens, no network."""
 
-import base64
 import json
 import os
 import subprocess
@@ -134,10 +133,3 @@ class Browser:
             )  # fmt: skip
         if settle:
             self.settle()
-
-    def picture(self, path: Path):
-        """Write what the whole page looks like."""
-        size = self.send("Page.getLayoutMetrics")["cssContentSize"]
-        clip = {"x": 0, "y": 0, "width": size["width"], "height": size["height"], "scale": 1}
-        data = self.send("Page.captureScreenshot", captureBeyondViewport=True, clip=clip)["data"]
-        path.write_bytes(base64.b64decode(data))

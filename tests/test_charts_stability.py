@@ -29,28 +29,6 @@ PAPERS_STEP = 1e-5
 """Times 1/V: 2 dx/V with the paper's elements."""
 
 
-def measured_boundary(scheme, tau):
-    """Return the velocity below which differences grow in steady sliding, by halves."""
-    foundation = kv.Foundation(1e10, tau)
-    low, high = 1e-4, 0.1
-    for _ in range(12):
-        V = np.sqrt(low * high)
-        scene = kv.Scene(foundation=foundation, drive=kv.Drive(velocity=V))
-        grows = growth(scene, scheme, 2e5, PAPERS_STEP / V, steady=True) > 1.0
-        low, high = (V, high) if grows else (low, V)
-    return low
-
-
-def predicted_boundary(scheme, tau):
-    velocities = np.geomspace(1e-3, 0.1, 200)
-    shares = []
-    for V in velocities:
-        scene = kv.Scene(foundation=kv.Foundation(1e10, tau), drive=kv.Drive(velocity=float(V)))
-        limit = limit_at(SCHEMES[scheme], Model.of(scene), contact_lengths(scene)[0])
-        shares.append(PAPERS_STEP / V / limit)
-    return float(np.exp(np.interp(0.0, -np.log(shares), np.log(velocities))))
-
-
 @pytest.mark.parametrize(
     ("scheme", "tau", "boundary"),
     [
@@ -58,9 +36,18 @@ def predicted_boundary(scheme, tau):
     ],
 )  # fmt: skip
 def test_growth_begins_where_it_is_predicted(scheme, tau, boundary):
-    measured = measured_boundary(scheme, tau)
-    assert measured == pytest.approx(predicted_boundary(scheme, tau), rel=0.015)
-    assert measured == pytest.approx(boundary, rel=0.01)
+    """Differences grow in steady sliding just below the boundary, and above it they do not."""
+
+    def moving(V):
+        return kv.Scene(foundation=kv.Foundation(1e10, tau), drive=kv.Drive(velocity=V))
+
+    for near, V in ((0.99, 0.99 * boundary), (1.01, 1.01 * boundary)):
+        grows = growth(moving(V), scheme, 2e5, PAPERS_STEP / V, steady=True) > 1.0
+        assert grows == (near < 1.0)
+    for near, V in ((0.985, 0.985 * boundary), (1.015, 1.015 * boundary)):
+        scene = moving(V)
+        limit = limit_at(SCHEMES[scheme], Model.of(scene), contact_lengths(scene)[0])
+        assert (limit < PAPERS_STEP / V) == (near < 1.0)
 
 
 def test_the_papers_scheme_diverges_on_its_own_parameters_at_low_velocity():
@@ -82,14 +69,14 @@ def test_the_papers_scheme_diverges_on_its_own_parameters_at_low_velocity():
 @pytest.mark.parametrize("scheme", EXPLICIT)
 def test_maps_of_explicit_schemes_agree_with_the_prediction(scheme):
     maps = [
-        velocity_map(scheme, np.geomspace(1e-3, 0.3, 6), np.geomspace(1e-2, 1.0, 4)),
-        step_map(scheme, np.geomspace(0.1, 10.0, 4), np.array([0.4, 0.8, 1.8, 2.5])),
+        velocity_map(scheme, np.geomspace(1e-3, 0.3, 6), np.geomspace(1e-2, 1.0, 3)),
+        step_map(scheme, np.geomspace(0.1, 10.0, 3), np.array([0.4, 0.8, 1.8, 2.5])),
     ]
     for found in maps:
         for growing, share, band in (
             (found.steady > 1.0, found.predicted_steady, 0.15),
             # From rest the contact is shorter already in the first step.
-            (found.start > stability.SWELLING, found.predicted_start, 0.5),
+            (found.start > stability.INITIAL_GROWTH, found.predicted_start, 0.5),
         ):
             clear = np.abs(np.log(share)) > band
             assert clear.sum() > 0.6 * clear.size
@@ -100,7 +87,7 @@ def test_maps_of_explicit_schemes_agree_with_the_prediction(scheme):
 
 @pytest.mark.parametrize("scheme", IMPLICIT)
 def test_other_schemes_are_stable_at_any_step(scheme):
-    found = velocity_map(scheme, np.geomspace(1e-4, 1.0, 4), np.geomspace(1e-2, 10.0, 3))
+    found = velocity_map(scheme, np.geomspace(1e-4, 1.0, 3), np.geomspace(1e-2, 10.0, 2))
     assert set(found.classes.reshape(-1)) == {0}
     assert np.all(found.predicted_steady == 0.0)
     assert step_map(scheme, np.array([0.1, 4.0]), np.array([1.0, 30.0])).classes.max() == 0
@@ -113,20 +100,24 @@ def test_unwatched_is_what_the_simulator_does():
     assert steps[-1].depth == pytest.approx(run.depth[0], rel=1e-12)
 
 
-def test_the_picture_shows_the_classes(monkeypatch):
+def test_the_picture_shows_the_classes():
     found = velocity_map("paper", np.array([0.003, 0.1]), np.array([0.1, 1.0]))
-    drawn = draw_stability([found], [found])
-    image = drawn.axes[0].collections[0]
+    image = draw_stability([found], [found]).axes[0].collections[0]
     assert np.array_equal(image.get_array(), found.classes)
     assert [CLASSES[k] for k in found.classes[0]] == ["unstable in steady sliding", "stable"]
 
 
 def test_command(tmp_path, monkeypatch):
     monkeypatch.setattr(stability, "QUICK_POINTS", (3, 3))
+    monkeypatch.setattr(stability, "growth", lambda *_, steady: 0.9 if steady else 1.1)
     path = tmp_path / "map.png"
     done = CliRunner().invoke(main, ["chart", "stability", "--quick", "-o", str(path)])
     assert done.exit_code == 0, done.output
     assert path.read_bytes().startswith(b"\x89PNG")
     data = json.loads(path.with_suffix(".json").read_text())
     assert [found["scheme"] for found in data["maps"]["step"]] == list(SCHEMES)
+    assert [np.unique(data["maps"]["velocity"][0][name]) for name in ("start", "steady")] == [
+        1.1,
+        0.9,
+    ]
     assert data["environment"]["kvtheory"] == kv.__version__

@@ -8,9 +8,9 @@ import pytest
 from click.testing import CliRunner
 
 import kvtheory as kv
-from kvtheory.charts import methods, work_precision
+from kvtheory.charts import methods
 from kvtheory.charts.collection import chosen, measure
-from kvtheory.charts.methods import Clock, Method, TimedOutError, transient_methods
+from kvtheory.charts.methods import transient_methods
 from kvtheory.charts.problems import (
     STANDARD,
     Curves,
@@ -18,36 +18,42 @@ from kvtheory.charts.problems import (
     by_continuum,
     by_two_states,
     errors,
-    reference,
     standard_scene,
 )
-from kvtheory.charts.steady_precision import (
-    Numbers,
-    brentq_over_quad,
-    by_ratio,
-    by_simpson,
-    steady_chart,
-    suits,
+from kvtheory.charts.steady_precision import SteadyProblem, brentq_over_quad, steady_methods, suits
+from kvtheory.charts.work_precision import (
+    REASONS,
+    Clock,
+    Effort,
+    Method,
+    Point,
+    TimedOutError,
+    make_chart,
 )
-from kvtheory.charts.work_precision import Effort, Point, transient_chart
 from kvtheory.cli import main
 from kvtheory.plots.work_precision import LOOKS, draw_work_precision
 from tests import work_precision_reference as stored
 
-BRIEF = Effort(repeats=1, longest=2.0, whole=1.0, every=5)
+BRIEF = Effort(repeats=1, longest=60.0, whole=1.0, every=5)
+METHODS = transient_methods()
 MEMORY = ("stop-and-go", "reversal", "hop")
 
 
-def problem(name, quick=True):
-    return Problem(name, standard_scene(name), quick)
+def problem(name):
+    return Problem(name, standard_scene(name), quick=True)
 
 
 @pytest.mark.parametrize("name", STANDARD)
-def test_two_independent_methods_agree_far_below_what_is_drawn(name):
-    found = reference(problem(name))
-    assert found.methods[1] == "stored solution, see the tests"
-    assert max(found.agreement.values()) < 2e-9
-    assert max(found.agreement[key] for key in ("depth, maximum", "depth, L2")) < 1e-10
+def test_references_agree_and_each_method_is_right_where_it_says_so(name):
+    right = problem(name).reference()
+    assert right.methods[1] == "stored solution, see the tests"
+    assert max(right.agreement.values()) < 2e-9
+    assert max(right.agreement[key] for key in ("depth, maximum", "depth, L2")) < 1e-10
+    found = by_continuum(problem(name), 1e-8)[0]
+    assert max(errors(found, right.solution).values()) < 1e-6
+    if name not in (*MEMORY, "high-velocity"):
+        found = by_two_states(problem(name), "LSODA", 1e-8)[0]
+        assert max(errors(found, right.solution).values()) < 1e-5
 
 
 @pytest.mark.parametrize("name", ["table-1", "hop"])
@@ -60,11 +66,11 @@ def test_stored_solutions_are_those_of_their_generator(name):
 
 
 def test_reference_of_a_users_scene_without_and_with_memory():
-    start = reference(Problem("mine", kv.Scene(), quick=True))
+    start = Problem("mine", kv.Scene(), quick=True).reference()
     assert start.methods[1].startswith("two states")
     assert max(start.agreement.values()) < 1e-8
     stop = kv.Scene(drive=kv.Drive(history=[(0.0, 0.1), (0.05, 0.1), (0.05, 0.0)]), run=kv.Run(0.1))
-    found = reference(Problem("mine", stop, quick=True))
+    found = Problem("mine", stop, quick=True).reference()
     assert found.methods[1].startswith("elements")
     assert 1e-9 < found.agreement["depth, maximum"] < 1e-3
 
@@ -81,32 +87,21 @@ def test_errors_by_hand():
     )  # fmt: skip
 
 
-def test_instants_hold_the_jumps_and_no_two_are_the_same():
+def test_instants_hold_the_jumps_and_drives_are_numbers_or_functions():
     one = problem("stop-and-go")
     assert {0.0, 0.5, 0.7, 1.5} <= set(one.times.tolist())
     assert np.diff(one.times).min() > 1e-7
     assert len(one.pieces) == 3
     assert one.pieces[1][2] == 0.0
-
-
-def test_a_drive_that_varies_is_a_function_for_the_peers():
-    scene = kv.Scene(drive=kv.Drive(history=[(0.0, 0.0), (0.1, 0.1)]))
-    ((_, _, rate), (_, _, held)) = Problem("ramp", scene).pieces
-    number = held if not callable(held) else held(1.5)
-    assert rate(0.5) == pytest.approx(0.5 * number)
-
-
-@pytest.mark.parametrize("name", [n for n in STANDARD if n not in (*MEMORY, "high-velocity")])
-def test_two_states_are_right_where_no_memory_is_needed(name):
-    right = reference(problem(name)).curves
-    found = errors(by_two_states(problem(name), "LSODA", 1e-8)[0], right)
-    assert max(found.values()) < 1e-5
+    scene = kv.Scene(drive=kv.Drive(history=[(0.0, 0.0), (0.1, 0.1), (0.1, 0.3)]))
+    ((_, end, rate), (_, _, held)) = Problem("ramp", scene).pieces
+    assert rate(0.5 * end) == pytest.approx(held / 6.0)
+    assert rate(end) == pytest.approx(held / 3.0)  # before the jump
 
 
 @pytest.mark.parametrize("name", MEMORY)
-def test_two_states_report_success_and_are_wrong_where_it_is(name):
-    only = [transient_methods()["two states, LSODA"]]
-    chart = transient_chart(problem(name), methods=only, effort=BRIEF)
+def test_two_states_report_success_and_are_wrong_where_memory_is_needed(name):
+    chart = make_chart(problem(name), [METHODS["two states, LSODA"]], effort=BRIEF)
     reasons = {point.reason for point in chart.series[0].points if point.knob < 1e-3}
     assert reasons <= {"wrong but reported success", "missed event"}
     assert reasons
@@ -114,37 +109,31 @@ def test_two_states_report_success_and_are_wrong_where_it_is(name):
         assert reasons == {"missed event"}
 
 
-def test_continuum_is_right_in_every_scene():
-    for name in STANDARD:
-        found = errors(by_continuum(problem(name), 1e-8)[0], reference(problem(name)).curves)
-        assert max(found.values()) < 1e-6
-
-
-@pytest.mark.parametrize("method", [name for name in transient_methods() if "lines" not in name])
+@pytest.mark.parametrize("method", [name for name in METHODS if "lines" not in name])
 def test_every_method_meets_its_own_accuracy_on_table_1(method):
-    chosen_method = transient_methods()[method]
-    one, clock = problem("table-1"), Clock()
-    knob = 1e-6 if chosen_method.knob == "rtol" else 40.0
-    curves, work = chosen_method.solve(one, knob, clock)
-    found = errors(curves, reference(one).curves)["depth, maximum"]
-    expected = {"rtol": 1e-5, "elements per a_0": 5e-3}[chosen_method.knob]
-    if chosen_method.kind == "model":
+    given, one = METHODS[method], problem("table-1")
+    knob = 1e-6 if given.knob == "rtol" else 40.0
+    curves, work = given.solve(one, knob, Clock())
+    found = errors(curves, one.reference().solution)["depth, maximum"]
+    if given.kind == "model":
         assert 5e-3 < found < 0.05
         assert work == 0
     else:
-        assert found < expected
+        assert found < {"rtol": 1e-5, "elements per a_0": 5e-3}[given.knob]
         assert work > 0
-    assert method in LOOKS
 
 
 def test_method_of_lines_converges_and_counts_its_updates():
     one = Problem("short", kv.Scene(run=kv.Run(0.02)), quick=True)
-    right, solve = reference(one).curves, transient_methods()["method of lines"].solve
-    found = [errors(solve(one, n, Clock())[0], right)["depth, maximum"] for n in (10.0, 40.0)]
+    right, solve = one.reference().solution, METHODS["method of lines"].solve
+    runs = [solve(one, density, Clock()) for density in (10.0, 40.0)]
+    found = [errors(curves, right)["depth, maximum"] for curves, _ in runs]
     assert found[1] < 0.5 * found[0] < 0.01
+    assert runs[1][1] > 3 * runs[0][1] > 0
 
 
-def test_cvode_is_a_peer_where_it_is_installed_and_left_out_where_not(monkeypatch):
+def test_every_method_has_a_look_and_cvode_is_left_out_where_it_is_not_installed(monkeypatch):
+    assert {*METHODS, *(method.name for method in steady_methods())} <= set(LOOKS)
     monkeypatch.setattr(methods, "find_spec", lambda name: None)
     assert "two states, CVODE" not in transient_methods()
 
@@ -159,7 +148,7 @@ def test_a_run_that_takes_too_long_is_ended_and_the_dearer_ones_are_not_begun():
         return by_continuum(one, 1e-3)
 
     only = Method("continuum, compiled", "rtol", (1e-2, 1e-3), "evaluations", slow)
-    chart = transient_chart(problem("table-1"), methods=[only], effort=Effort(1, 0.01, 1.0, 1))
+    chart = make_chart(problem("table-1"), [only], effort=Effort(1, 0.01, 1.0, 1))
     assert [point.reason for point in chart.series[0].points] == ["timed out"] * 2
     assert begun == [1e-2, 1e-2]
     with pytest.raises(TimedOutError):
@@ -167,28 +156,26 @@ def test_a_run_that_takes_too_long_is_ended_and_the_dearer_ones_are_not_begun():
 
 
 @pytest.mark.parametrize(
-    ("error", "reason"),
-    [(ArithmeticError("no"), "not converged"), (ValueError("no"), "refused")],
+    ("error", "reason"), [(ArithmeticError("no"), "not converged"), (ValueError("no"), "refused")]
 )
 def test_reasons_of_failures_are_kept(error, reason):
     def fail(one, knob, clock):
         raise error
 
     only = Method("method of lines", "rtol", (1e-2,), "evaluations", fail)
-    (point,) = transient_chart(problem("table-1"), methods=[only], effort=BRIEF).series[0].points
+    (point,) = make_chart(problem("table-1"), [only], effort=BRIEF).series[0].points
     assert (point.reason, point.message) == (reason, "no")
 
 
 def test_an_unstable_scheme_is_on_the_rail():
     slow = Problem("slow", kv.Scene(drive=kv.Drive(velocity=0.02), run=kv.Run(0.5)), quick=True)
     only = Method("elements, paper", "elements per a_0", (40.0,), "element updates",
-                  transient_methods()["elements, paper"].solve)  # fmt: skip
-    chart = transient_chart(slow, methods=[only], effort=BRIEF)
+                  METHODS["elements, paper"].solve)  # fmt: skip
+    chart = make_chart(slow, [only], effort=BRIEF)
     (point,) = chart.series[0].points
     assert point.reason == "unstable"
-    drawn = draw_work_precision([chart], ["depth, maximum"])
-    (marker,) = drawn.axes[1].get_lines()
-    assert marker.get_xdata()[0] == work_precision.REASONS.index("unstable")
+    (marker,) = draw_work_precision([chart], ["depth, maximum"]).axes[1].get_lines()
+    assert marker.get_xdata()[0] == REASONS.index("unstable")
 
 
 def test_repeats_give_the_least_time_and_the_quartiles():
@@ -199,31 +186,40 @@ def test_repeats_give_the_least_time_and_the_quartiles():
 
 @pytest.mark.parametrize("V", [1e-3, 0.1, 10.0])
 def test_both_references_of_steady_sliding_agree_to_forty_digits(V):
-    numbers = Numbers.of(kv.Scene(drive=kv.Drive(velocity=V)))
-    for one, other in zip(by_simpson(numbers), by_ratio(numbers), strict=True):
-        assert abs(one / other - 1) < 1e-40
-    state = kv.steady(kv.Scene(drive=kv.Drive(velocity=V)))
-    assert state.friction_coefficient == pytest.approx(float(by_simpson(numbers)[1]), rel=1e-15)
-    assert brentq_over_quad(numbers, 1e-12)[1] == pytest.approx(
-        state.friction_coefficient, rel=1e-9
-    )
+    one = SteadyProblem("steady", kv.Scene(drive=kv.Drive(velocity=V)))
+    depth, mu = one.by_simpson()
+    for value, other in zip((depth, mu), one.by_ratio(), strict=True):
+        assert abs(value / other - 1) < 1e-40
+    state = kv.steady(one.scene)
+    assert state.friction_coefficient == pytest.approx(float(mu), rel=1e-15)
+    found, count = brentq_over_quad(one, 1e-12, Clock())
+    assert found == pytest.approx((state.depth, state.friction_coefficient), rel=1e-9)
+    assert count > 100
 
 
 def test_steady_chart():
-    chart = steady_chart(kv.Scene(), "table-1", effort=BRIEF)
+    problem, densities = SteadyProblem("table-1", kv.Scene()), (10.0, 320.0)
+    only = [
+        method if "elements" not in method.name
+        else Method(method.name, method.knob, densities, method.work, method.solve)
+        for method in steady_methods()
+    ]  # fmt: skip
+    chart = make_chart(problem, only, effort=Effort(1, 60.0, 1.0, 1))
     found = {series.method: series for series in chart.series}
-    assert found["exact"].points[0].errors["friction coefficient"] < 1e-14
+    assert max(chart.floor.values()) < 1e-40
+    for name in ("exact", "exact, 10 000 at once"):
+        assert found[name].points[0].errors["friction coefficient"] < 1e-14
     assert found["asymptote"].kind == "model"
     assert found["asymptote"].points[0].errors["depth"] == pytest.approx(0.0937, abs=1e-3)
-    elements = [p.errors["depth"] for p in found["elements, edge-corrected"].points]
-    assert elements[-1] < 0.1 * elements[0] < 1e-3
+    coarse, fine = (p.errors["depth"] for p in found["elements, edge-corrected"].points)
+    assert fine < 0.1 * coarse < 1e-3
     assert not suits(kv.Scene.table1("fixed"))
     assert not suits(kv.Scene(drive=kv.Drive(velocity=-0.1)))
 
 
 def test_picture_shows_what_was_measured():
-    only = [transient_methods()[name] for name in ("slow manifold", "two states, LSODA")]
-    chart = transient_chart(problem("table-1"), methods=only, effort=BRIEF)
+    only = [METHODS[name] for name in ("slow manifold", "two states, LSODA")]
+    chart = make_chart(problem("table-1"), only, effort=BRIEF)
     drawn = draw_work_precision([chart], ["depth, maximum"])
     line = next(a for a in drawn.axes[0].get_lines() if a.get_label() == "two states, LSODA")
     points = chart.series[1].points
@@ -231,13 +227,10 @@ def test_picture_shows_what_was_measured():
     assert line.get_ydata().tolist() == [point.seconds for point in points]
 
 
-def invoke(*arguments):
-    return CliRunner().invoke(main, ["chart", "work-precision", *arguments])
-
-
 def test_command(tmp_path, monkeypatch):
     monkeypatch.setattr("kvtheory.charts.collection.QUICK", Effort(1, 0.3, 0.5, 6))
-    done = invoke("--quick", "--set", "run.duration=20 ms", "-o", str(tmp_path))
+    given = "--quick", "--set", "run.duration=20 ms", "-o", str(tmp_path)
+    done = CliRunner().invoke(main, ["chart", "work-precision", *given])
     assert done.exit_code == 0, done.output
     assert (tmp_path / "work_precision.png").read_bytes().startswith(b"\x89PNG")
     data = json.loads((tmp_path / "work_precision.json").read_text())
@@ -246,16 +239,12 @@ def test_command(tmp_path, monkeypatch):
     assert "agree on depth to" in done.output
 
 
-def test_all_standard_scenes_have_a_chart():
-    jobs = chosen(kv.Scene(), ["all"], quick=True)
-    assert len(jobs) == len(STANDARD) + 3
-
-
-def test_charts_tell_their_progress_by_share_and_words():
-    told = []
+def test_all_standard_scenes_have_a_chart_and_charts_report_their_progress():
+    assert len(chosen(kv.Scene(), ["all"], quick=True)) == len(STANDARD) + 3
+    reports = []
 
     def job(effort, progress):
         progress(0.5, "half")
 
-    measure([job, job], quick=True, progress=lambda *report: told.append(report))
-    assert told == [(0.25, "half"), (0.75, "half")]
+    measure([job, job], quick=True, progress=lambda *report: reports.append(report))
+    assert reports == [(0.25, "half"), (0.75, "half")]

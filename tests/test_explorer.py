@@ -2,6 +2,7 @@
 
 import json
 import math
+import os
 import re
 import tomllib
 from contextlib import contextmanager
@@ -21,8 +22,8 @@ from kvtheory.theory import closed_forms
 from tests.browser import Browser
 
 TABLE1 = kv.Scene()
-SCENES = 125
-"""Random scenes of each of nine families: more than a thousand points."""
+SCENES = max(30, int(os.environ.get("KVTHEORY_TEST_SCENES", "0")) // 8)
+"""Random scenes of each of nine families."""
 
 
 @pytest.fixture(scope="module")
@@ -58,61 +59,36 @@ def browser(session, page):
         yield opened
 
 
-def spread(random, low, high, count=SCENES):
-    return np.exp(random.uniform(np.log(low), np.log(high), count))
-
-
-def families(random):
-    """Yield the indenter and the foundation of each family as functions, and what they take."""
-
-    def parabola(R, **_):
-        return kv.Parabola(R)
-
-    def kelvin_voigt(K, tau, **_):
-        return kv.Foundation(K, tau)
-
-    exponents = iter(random.uniform(1.3, 8.0, SCENES).tolist())
-    orders = iter(random.uniform(0.05, 1.0, 2 * SCENES).tolist())
-    yield parabola, kelvin_voigt
-    yield lambda R, **_: kv.PowerLaw(R, next(exponents)), kelvin_voigt
-    yield lambda R, **_: kv.Wedge(R), kelvin_voigt
-    yield (
-        parabola,
-        lambda K, tau, **_: kv.GeneralizedMaxwell(K, arms=[[3 * K, tau], [K / 2, 50 * tau]]),
-    )
-    yield parabola, lambda K, tau, **_: kv.FractionalKelvinVoigt(K, tau, next(orders))
-    yield lambda R, **_: kv.Circle(R), kelvin_voigt
-
-    def ball(R, V, **_):
-        return kv.Sphere(R, radius_across=R * (1.0 + V % 7.0))
-
-    yield lambda R, **_: kv.Sphere(R), kelvin_voigt
-    yield ball, lambda K, tau, **_: kv.GeneralizedMaxwell(K, arms=[[3 * K, tau], [K / 2, 50 * tau]])
-    yield ball, lambda K, tau, **_: kv.FractionalKelvinVoigt(K, tau, next(orders))
-
-
 def random_scenes():
+    """Scenes of each shape and each foundation on every support, at rest and in both directions."""
     random = np.random.default_rng(16)
-    for indenter, foundation in families(random):
-        columns = {
-            "R": (1e-3, 0.1),
-            "K": (1e8, 1e12),
-            "tau": (1e-3, 10.0),
-            "V": (1e-7, 1e3),
-            "W": (10.0, 1e5),
-        }
-        drawn = {name: spread(random, *ends) for name, ends in columns.items()}
+
+    def between(low, high):
+        return float(np.exp(random.uniform(np.log(low), np.log(high))))
+
+    shapes = {
+        "parabola": kv.Parabola, "wedge": kv.Wedge, "circle": kv.Circle, "ball": kv.Sphere,
+        "power law": lambda R: kv.PowerLaw(R, random.uniform(1.3, 8.0)),
+        "paraboloid": lambda R: kv.Sphere(R, radius_across=R * random.uniform(1.0, 8.0)),
+    }  # fmt: skip
+    foundations = {
+        "kelvin-voigt": kv.Foundation,
+        "arms": lambda K, tau: kv.GeneralizedMaxwell(K, arms=[[3 * K, tau], [K / 2, 50 * tau]]),
+        "springpot": lambda K, tau: kv.FractionalKelvinVoigt(K, tau, random.uniform(0.05, 1.0)),
+    }
+    pairs = [(shape, "kelvin-voigt") for shape in list(shapes)[:5]]
+    pairs += [(shape, law) for shape in ("parabola", "paraboloid") for law in ("arms", "springpot")]
+    for shape, law in pairs:
         for k in range(SCENES):
-            own = {name: float(column[k]) for name, column in drawn.items()}
-            mass = own["W"] / 9.80665
-            support = (
-                kv.Fixed(own["R"] / 100),
-                kv.DeadWeight(mass),
-                kv.Suspended(mass, 1e3 * own["W"]),
-            )[k % 3]
-            speed = 0.0 if k % 25 == 7 else own["V"]
+            R, W = between(1e-3, 0.1), between(10.0, 1e5)
+            supports = (
+                kv.Fixed(R / 100), kv.DeadWeight(W / 9.80665),
+                kv.Suspended(W / 9.80665, 1e3 * W),
+            )  # fmt: skip
+            speed = 0.0 if k % 25 == 7 else between(1e-7, 1e3)
             drive = kv.Drive(speed if k % 5 else -speed)
-            yield kv.Scene(indenter(**own), foundation(**own), support, drive)
+            foundation = foundations[law](between(1e8, 1e12), between(1e-3, 10.0))
+            yield kv.Scene(shapes[shape](R), foundation, supports[k % 3], drive)
 
 
 def in_javascript(scene):
@@ -139,11 +115,18 @@ def in_javascript(scene):
     return found | {"weight": support.weight, "spring": support.spring, "mass": support.mass}
 
 
-def test_a_thousand_scenes_agree_with_python(browser):
+def ask(browser, function, scene):
+    """Return what a function of the scripts gives for a scene, or for each of a list."""
+    several = isinstance(scene, list)
+    given = [in_javascript(each) for each in (scene if several else [scene])]
+    found = browser.run(f"{json.dumps(given)}.map({function})")
+    return found if several else found[0]
+
+
+def test_random_scenes_agree_with_python(browser):
     scenes = list(random_scenes())
-    given = json.dumps([in_javascript(scene) for scene in scenes])
-    found = browser.run(f"{given}.map(slide).map(s => {list(STEADY_UNITS)}.map(n => s[n]))")
-    assert len(found) == 9 * SCENES > 1000
+    found = ask(browser, f"s => (t => {list(STEADY_UNITS)}.map(n => t[n]))(slide(s))", scenes)
+    assert len(found) == 9 * SCENES
     for scene, row in zip(scenes, found, strict=True):
         try:
             state = kv.steady(scene)
@@ -183,40 +166,39 @@ def test_every_closed_form_that_python_has_gives_the_same(browser):
     [kv.Parabola(0.01), kv.PowerLaw(0.01, 3.0), kv.Wedge(0.2), kv.Sphere(0.01, radius_across=0.03)],
 )
 def test_limits_and_maximum_are_those_of_python(browser, support, indenter):
-    supports = {
-        "fixed": kv.Fixed(3e-4),
-        "dead-weight": kv.DeadWeight(1.0),
-        "suspended": kv.Suspended(1.0, 3e4),
-    }
-    held = kv.Scene.table1(support).support if indenter.per_width else supports[support]
+    held = kv.Scene.table1(support).support
+    if not indenter.per_width and support != "fixed":
+        held = kv.DeadWeight(1.0) if support == "dead-weight" else kv.Suspended(1.0, 3e4)
     scene = kv.Scene(indenter, support=held, drive=kv.Drive(0.3))
     report = kv.asymptotes(scene)
-    given = json.dumps(in_javascript(scene))
-    low, high, critical = browser.run(
-        f"(k => [k.low(0.3), k.high(0.3), k.critical])(limits({given}))"
-    )
+    limits = "s => (k => [k.low(0.3), k.high(0.3), k.critical])(limits(s))"
+    low, high, critical = ask(browser, limits, scene)
     assert [low, high] == pytest.approx([line.value for line in report.lines[:2]], rel=1e-12)
     assert critical == pytest.approx(report.critical_velocity, rel=1e-12)
     if np.isfinite(report.peak_velocity):
-        top = browser.run(f"curve_data({given}).tops[0]")
+        (top,) = ask(browser, "s => curve_data(s).tops", scene)
         assert top["friction"] == pytest.approx(report.peak_friction_coefficient, rel=1e-12)
         assert top["V"] == pytest.approx(report.peak_velocity, rel=1e-5)
 
 
-def test_limits_of_a_prony_series_are_those_of_python(browser):
-    scene = kv.Scene(foundation=kv.GeneralizedMaxwell(1e10, arms=[[3e10, 0.01], [5e9, 1.0]]))
-    lines = kv.asymptotes(scene).lines
-    low, high = browser.run(
-        f"(k => [k.low(0.1), k.high(0.1)])(limits({json.dumps(in_javascript(scene))}))"
-    )
-    assert [low, high] == pytest.approx([lines[0].value, lines[2].value], rel=1e-12)
+def test_limits_and_every_maximum_of_a_prony_series_are_those_of_python(browser):
+    scene = kv.Scene(foundation=kv.GeneralizedMaxwell(1e10, arms=[[3e10, 1e-4], [2e10, 3.0]]))
+    report = kv.asymptotes(scene)
+    low, high = ask(browser, "s => (k => [k.low(0.1), k.high(0.1)])(limits(s))", scene)
+    assert [low, high] == pytest.approx([report.lines[0].value, report.lines[2].value], rel=1e-12)
+    tops = ask(browser, "s => curve_data(s).tops", scene)
+    right = sorted(report.maxima, key=lambda velocity_and_friction: -velocity_and_friction[1])
+    assert len(tops) == len(right) == 2
+    for top, (velocity, friction) in zip(tops, right, strict=True):
+        assert top["friction"] == pytest.approx(friction, rel=1e-10)
+        assert top["V"] == pytest.approx(velocity, rel=1e-4)
 
 
 @pytest.mark.parametrize("velocity", [0.003, 0.1, 0.4])
 @pytest.mark.parametrize("support", ["dead-weight", "suspended"])
 def test_rates_are_those_of_the_motion_linearised_by_differences(browser, support, velocity):
     scene = kv.Scene(support=kv.Scene.table1(support).support, drive=kv.Drive(velocity))
-    given, rest = json.dumps(in_javascript(scene)), StaticState.of(scene)
+    rest = StaticState.of(scene)
     law = two_states(rest.drive_number, rest.inertia_number, rest.support_number)
     d, h = kv.steady(scene).depth / rest.depth, 1e-6
     jacobian = np.array(
@@ -224,143 +206,67 @@ def test_rates_are_those_of_the_motion_linearised_by_differences(browser, suppor
             ((d + h, 0.0), (d - h, 0.0)), ((d, h), (d, -h)))]
     ).T  # fmt: skip
     right = np.sort_complex(np.linalg.eigvals(jacobian) / rest.time)
-    pairs = browser.run(f"rates({given}, slide({given}))")
+    pairs = ask(browser, "s => rates(s, slide(s))", scene)
     assert np.sort_complex([complex(*pair) for pair in pairs]) == pytest.approx(right, rel=1e-5)
 
 
-def scenes_on_springs():
-    """Scenes of Table 1 and around it, on every support, with a spring in the drive and without."""
+def on_springs(count, ball, rubber):
+    """Scenes on every support, around Table 1 or a ball of 10 N, on springs soft and stiff."""
     random = np.random.default_rng(22)
-    for k in range(200):
-        support = kv.Scene.table1(("fixed", "dead-weight", "suspended")[k % 3]).support
-        if k % 3 and k % 2:
-            support = replace(support, mass=float(10 ** random.uniform(1.0, 5.0)))
-        spring = {
-            "stiffness": float(10 ** random.uniform(4.0, 9.0)),
-            "damping": float(random.choice([0.0, 10 ** random.uniform(1.0, 5.0)])),
-            "mass": float(10 ** random.uniform(0.0, 5.0)),
-        }
-        velocity = float(10 ** random.uniform(-3.0, 1.5))
-        yield kv.Scene(support=support, drive=kv.Drive(velocity, **({} if k % 10 == 9 else spring)))
 
+    def power(low, high):
+        return float(10 ** random.uniform(low, high))
 
-def balls_on_springs():
-    """Balls around a weight of 10 N, on every support, with a spring in the drive and without."""
-    random = np.random.default_rng(23)
-    for k in range(120):
-        mass = float(10 ** random.uniform(-2.0, 2.0))
-        support = (
-            kv.Fixed(3e-4),
-            kv.DeadWeight(mass, load=10.0),
-            kv.Suspended(mass, 3e4, load=10.0),
-        )[k % 3]
+    unit, load = (1.0, 10.0) if ball else (1e3, 1e4)
+    for k in range(count):
+        mass = unit * power(-2.0, 2.0)
+        supports = (
+            kv.Fixed(3e-4 if ball else 1e-4), kv.DeadWeight(mass, load=load),
+            kv.Suspended(mass, 3e4 * unit, load=load),
+        )  # fmt: skip
         spring = {
-            "stiffness": float(10 ** random.uniform(0.0, 5.0)),
-            "damping": float(random.choice([0.0, 10 ** random.uniform(-2.0, 2.0)])),
-            "mass": float(10 ** random.uniform(-3.0, 2.0)),
-        }
-        velocity = 0.0 if k % 40 == 7 else float(10 ** random.uniform(-3.5, 3.0))
-        drive = kv.Drive(velocity, **({} if k % 10 == 9 else spring))
+            "stiffness": unit * power(0.5, 5.0), "mass": unit * power(-2.0, 2.0),
+            "damping": float(random.choice([0.0, unit * power(-2.0, 2.0)])),
+        }  # fmt: skip
+        velocity = 0.0 if k % 40 == 7 and not rubber else power(-3.0, 1.5)
+        arms = [[power(9.0, 11.0), power(-3.0, 0.0)] for _ in range(1 + k % 3)]
         yield kv.Scene(
-            kv.Sphere(0.01, radius_across=0.01 * (1 + k % 4)), support=support, drive=drive
+            kv.Sphere(0.01, radius_across=0.01 * (1 + k % 4)) if ball else kv.Parabola(0.01),
+            kv.GeneralizedMaxwell(1e10, arms=arms) if rubber else kv.Foundation(1e10, 0.1),
+            supports[k % 3],
+            kv.Drive(velocity, **({} if k % 10 == 9 and not rubber else spring)),
         )
 
 
-@pytest.mark.parametrize("family", [scenes_on_springs, balls_on_springs])
-def test_stability_on_a_spring_is_that_of_python(browser, family):
-    scenes = list(family())
-    given = json.dumps([in_javascript(scene) for scene in scenes])
-    found = browser.run(
-        f"{given}.map(s => [s, slide(s)]).map(([s, t]) => [onsets(stability_numbers(s, t)), s, rates(s, t)])"
-        ".map(([o, s, r]) => [!s.drive || is_stable(s.drive.stiffness, o), o.upper.stiffness,"
+@pytest.mark.parametrize(
+    ("ball", "rubber", "count"), [(False, False, 120), (True, False, 120), (False, True, 8), (True, True, 4)]
+)  # fmt: skip
+def test_stability_on_a_spring_is_that_of_python(browser, ball, rubber, count):
+    apart, scenes = 1e-8 if rubber else 1e-12, list(on_springs(count, ball, rubber))
+    function = (
+        "s => ((o, r) => [!s.drive || o.stable(s.drive.stiffness), o.upper.stiffness,"
         " o.lower.stiffness, o.upper.frequency, r])"
+        "(onset_of(s, slide(s)), s.arms ? [] : rates(s, slide(s)))"
     )
-    names = ("critical_stiffness", "lower_critical_stiffness", "frequency")
-    kinds = set()
+    found = ask(browser, function, scenes)
+    names, kinds = ("critical_stiffness", "lower_critical_stiffness", "frequency"), set()
     for scene, (stable, *numbers, pairs) in zip(scenes, found, strict=True):
-        right = kv.stability(scene, quantity=("stable", *names, "rates"))
+        right = kv.stability(scene, quantity=("stable", *names, *([] if rubber else ["rates"])))
         errors = right.certificate.relative_error
         assert stable == right.stable, scene
         for name, number in zip(names, numbers, strict=True):
-            expected = getattr(right, name)
-            allowed = 1e-12 + float(np.nan_to_num(errors[name]))
-            known = math.nan if number is None else number
-            assert known == pytest.approx(expected, rel=allowed, nan_ok=True), (name, scene)
-        rates = np.array([complex(*pair) for pair in pairs])
-        expected = np.array([complex(*pair) for pair in right.rates])
-        apart = np.abs(rates - expected[:, np.newaxis]).min(axis=1, initial=np.inf)
-        assert rates.shape == expected.shape
-        assert np.all(apart <= (1e-12 + 2.0 * errors["rates"]) * np.abs(expected)), scene
-        kinds.add(
-            (scene.support.kind, stable, math.isnan(right.critical_stiffness), bool(numbers[1]))
-        )
-    assert {(True, True), (True, False), (False, False)} <= {kind[1:3] for kind in kinds}
-
-
-def scenes_on_rubber():
-    """Parabolas and balls on up to three arms, on every support, with a spring in the drive."""
-    random = np.random.default_rng(24)
-    for k in range(24):
-        count = 1 + k % 3
-        arms = np.transpose(
-            [10 ** random.uniform(9, 11, count), 10 ** random.uniform(-3, 0, count)]
-        )
-        line = k % 2 == 0
-        unit, depth = (1000.0, 1e-4) if line else (1.0, 3e-4)
-        mass, soft = unit * 10 ** random.uniform(-1.0, 1.0), 1e6 if line else 1e4
-        supports = (
-            kv.Fixed(depth),
-            kv.DeadWeight(mass, load=10.0 * unit),
-            kv.Suspended(mass, soft, load=10.0 * unit),
-        )
-        yield kv.Scene(
-            kv.Parabola(0.01) if line else kv.Sphere(0.01, radius_across=0.02),
-            kv.GeneralizedMaxwell(1e10, arms=arms.tolist()),
-            supports[k // 2 % 3],
-            kv.Drive(
-                float(10 ** random.uniform(-3.0, 1.0)),
-                stiffness=float(soft * 10 ** random.uniform(-2.0, 3.0)),
-                damping=float(random.choice([0.0, 0.1 * mass])),
-                mass=mass,
-            ),
-        )
-
-
-def test_stability_on_rubber_is_that_of_python(browser):
-    scenes = list(scenes_on_rubber())
-    given = json.dumps([in_javascript(scene) for scene in scenes])
-    found = browser.run(
-        f"{given}.map(s => [s, onset_of(s, slide(s))]).map(([s, o]) => "
-        "[o.stable(s.drive.stiffness), o.upper.stiffness, o.lower.stiffness, o.upper.frequency])"
-    )
-    names = ("critical_stiffness", "lower_critical_stiffness", "frequency")
-    right = [kv.stability(scene, quantity=("stable", *names)) for scene in scenes]
-    assert {(each.stable, bool(each.critical_stiffness > 0)) for each in right} >= {
-        (True, True),
-        (False, True),
-    }
-    for scene, each, (stable, *numbers) in zip(scenes, right, found, strict=True):
-        assert stable == each.stable, scene
-        for name, number in zip(names, numbers, strict=True):
-            known = math.nan if number is None else number
-            allowed = 1e-8 + 2.0 * float(np.nan_to_num(each.certificate.relative_error[name]))
-            assert known == pytest.approx(getattr(each, name), rel=allowed, nan_ok=True), (
-                name,
-                scene,
-            )
-
-
-def test_every_maximum_on_rubber_is_that_of_python(browser):
-    arms = [[3e10, 1e-4], [2e10, 3.0]]
-    scene = kv.Scene(foundation=kv.GeneralizedMaxwell(1e10, arms=arms))
-    right = kv.asymptotes(scene).maxima
-    tops = browser.run(f"curve_data({json.dumps(in_javascript(scene))}).tops")
-    assert len(tops) == len(right) == 2
-    for top, (velocity, friction) in zip(
-        tops, sorted(right, key=lambda each: -each[1]), strict=True
-    ):
-        assert top["friction"] == pytest.approx(friction, rel=1e-10)
-        assert top["V"] == pytest.approx(velocity, rel=1e-4)
+            allowed = apart + 2.0 * float(np.nan_to_num(errors[name]))
+            known = pytest.approx(getattr(right, name), rel=allowed, nan_ok=True)
+            assert (math.nan if number is None else number) == known, (name, scene)
+        kinds.add((stable, bool(right.critical_stiffness > 0.0)))
+        if not rubber:
+            rates = np.array([complex(*pair) for pair in pairs])
+            expected = np.array([complex(*pair) for pair in right.rates])
+            off = np.abs(rates - expected[:, np.newaxis]).min(axis=1, initial=np.inf)
+            assert rates.shape == expected.shape
+            assert np.all(off <= (1e-12 + 2.0 * errors["rates"]) * np.abs(expected)), scene
+    assert {(True, True), (False, True), (True, False)} <= kinds or rubber
+    assert {(True, True), (False, True)} <= kinds or count < 8
 
 
 BACK = "the trailing edge comes back over ground that it left"
@@ -381,12 +287,14 @@ STARTS += [
 def test_the_start_from_rest_is_that_of_the_transient(browser, support, velocity, spring, why):
     drive = kv.Drive(velocity, **spring)
     scene = kv.Scene(support=kv.Scene.table1(support).support, drive=drive)
-    found = browser.run(
-        "(s => (rest => start_from_rest({ lam: s.V * s.tau / rest.half_length,"
+    found = ask(
+        browser,
+        "s => (rest => start_from_rest({ lam: s.V * s.tau / rest.half_length,"
         " along: s.drive && numbers_along(s, rest),"
         " kappa: s.depth === undefined ? s.spring * rest.depth / rest.load : Infinity,"
         " epsilon: s.depth === undefined ? s.mass * rest.depth / (rest.load * s.tau ** 2) : 1 }, 2))"
-        f"(at_rest(s)))({json.dumps(in_javascript(scene))})"
+        "(at_rest(s))",
+        scene,
     )
     rest = StaticState.of(scene)
     rows = [row for row in found["rows"][1:] if row["s"] * rest.time <= 0.2 * (1.0 + 1e-12)]
@@ -434,10 +342,8 @@ def test_keys_move_a_slider_and_the_answer_follows(browser):
     assert velocity > 100.0
     mu = kv.steady(over={"drive.velocity": velocity / 1e3}).friction_coefficient
     assert float(text(browser, "friction_coefficient")) == pytest.approx(mu, rel=1e-4)
-    assert (
-        float(browser.run("document.querySelector('[data-key=\"drive.velocity\"]').value"))
-        == velocity
-    )
+    shown = browser.run("document.querySelector('[data-key=\"drive.velocity\"]').value")
+    assert float(shown) == velocity
     assert "velocity" in browser.run("location.hash")
 
 
@@ -445,19 +351,10 @@ def test_every_control_can_be_reached_by_tab_and_says_what_it_is(browser):
     reached = set()
     for _ in range(60):
         browser.press("Tab", 9, settle=False)
-        reached.add(
-            browser.run(
-                "document.activeElement.id || document.activeElement.getAttribute('aria-label')"
-            )
-        )
-    assert {
-        "drive.velocity",
-        "indenter shape",
-        "support.mass",
-        "copy-toml",
-        "play",
-        "instant",
-    } <= reached
+        focus = "(e => e.id || e.getAttribute('aria-label'))(document.activeElement)"
+        reached.add(browser.run(focus))
+    names = {"drive.velocity", "indenter shape", "support.mass", "copy-toml", "play", "instant"}
+    assert names <= reached
     unnamed = browser.run(
         "[...document.querySelectorAll('input, select, button, textarea')]"
         ".filter(e => !(e.textContent.trim() || e.getAttribute('aria-label') ||"
@@ -466,7 +363,7 @@ def test_every_control_can_be_reached_by_tab_and_says_what_it_is(browser):
     assert unnamed == 0
 
 
-def test_a_choice_by_key_keeps_its_place(browser):
+def test_a_choice_by_key_keeps_its_place_and_enter_plays_the_start(browser):
     browser.run("document.querySelector('[data-section=support]').focus()")
     browser.press("ArrowDown", 40)
     assert browser.run("state.choices.support") == "suspended"
@@ -475,9 +372,7 @@ def test_a_choice_by_key_keeps_its_place(browser):
     browser.press("ArrowDown", 40)
     assert browser.run("state.values['drive.stiffness']") == "1"
     assert browser.run("document.activeElement.dataset.set") == "drive"
-
-
-def test_enter_plays_the_start(browser):
+    browser.run("restore('')")
     browser.run("document.getElementById('play').focus()")
     browser.press("Enter", 13)
     browser.run("new Promise(f => setTimeout(f, 200))")
@@ -520,19 +415,23 @@ def test_every_scene_fits_a_phone_and_its_copies_are_what_is_shown(session, page
         if scene.indenter.per_width:
             x, p = np.transpose(drawn)
             assert np.trapezoid(p, x) == pytest.approx(right.load, rel=1e-2)
+        browser.screen(1280, 900)  # where no formula is cut
+        widths = (
+            "[...document.querySelectorAll('.formula')].map(f => f.scrollWidth - f.clientWidth)"
+        )
+        assert max(browser.run(widths), default=0) <= 0
 
 
 @pytest.mark.parametrize("order", [0.3, 0.7, 1.0])
 def test_the_free_surface_of_a_springpot_bears_no_load(browser, order):
     """W = K int u dx over all elements, because a springpot that is left alone ends where it began."""
     foundation = kv.FractionalKelvinVoigt(1e10, 0.1, order)
-    given = in_javascript(kv.Scene(foundation=foundation, drive=kv.Drive(0.02)))
-    found = browser.run(
-        f"(s => {{ const state = slide(s), {{ touched }} = contact_shapes(s, state);"
+    function = (
+        "s => { const state = slide(s), { touched } = contact_shapes(s, state);"
         " const away = Array.from({ length: 300 }, (_, k) => 1e-6 * 1.08 ** k);"
-        " return [state.load, touched, away, relaxed(s, state, away, touched)]; })"
-        f"({json.dumps(given)})"
+        " return [state.load, touched, away, relaxed(s, state, away, touched)]; }"
     )
+    found = ask(browser, function, kv.Scene(foundation=foundation, drive=kv.Drive(0.02)))
     load, touched, away, left = found
     x, z = np.transpose(touched)
     under = np.trapezoid(-z, x) + 0.5 * away[0] * (-z[-1] + left[0])
@@ -543,19 +442,13 @@ def test_the_free_surface_of_a_springpot_bears_no_load(browser, order):
 def test_the_footprint_is_that_of_python(browser):
     ball = kv.Sphere("10 mm", radius_across="40 mm")
     scene = kv.Scene(ball, support=kv.DeadWeight(mass="1 kg"), drive=kv.Drive(0.02))
-    y, front, back = np.transpose(
-        browser.run(f"(s => footprint(s, slide(s)))({json.dumps(in_javascript(scene))})")
-    )
-    edges = kv.footprint(scene).edges(y[:-1])
-    assert front[:-1] == pytest.approx(edges[0], rel=1e-12)
-    assert back[:-1] == pytest.approx(edges[1], rel=1e-12)
-    nearly = replace(scene, foundation=kv.FractionalKelvinVoigt(1e10, 0.1, 1.0))
-    y, front, back = np.transpose(
-        browser.run(f"(s => footprint(s, slide(s)))({json.dumps(in_javascript(nearly))})")
-    )
-    edges = kv.footprint(scene).edges(y[:-1])
-    assert front[:-1] == pytest.approx(edges[0], rel=1e-6)
-    assert back[:-1] == pytest.approx(edges[1], rel=1e-6)
+    springpot = replace(scene, foundation=kv.FractionalKelvinVoigt(1e10, 0.1, 1.0))
+    for given, error in ((scene, 1e-12), (springpot, 1e-6)):
+        found = ask(browser, "s => footprint(s, slide(s))", given)
+        y, front, back = np.transpose(found)[:, :-1]
+        edges = kv.footprint(scene).edges(y)
+        assert front == pytest.approx(edges[0], rel=error)
+        assert back == pytest.approx(edges[1], rel=error)
 
 
 def test_a_ball_starts_at_a_fixed_depth_alone_and_the_others_say_why_not(browser):
@@ -663,22 +556,20 @@ def type_in(browser, key, text):
     )
 
 
-@pytest.mark.parametrize("text", TYPED)
-def test_a_typed_value_is_understood_or_refused_and_not_kept(browser, text):
-    value, invalid, told = type_in(browser, "drive.velocity", text)
-    browser.settle()
-    address = browser.run("decodeURIComponent(location.hash)")
-    if re.match(r"[a-z]", TYPED[text]):
-        assert (value, invalid) == ("100", "true")
-        assert TYPED[text] in told
-        assert address in ("", "#")
-        assert type_in(browser, "drive.velocity", "7 mm/s") == ["7", None, ""]
-    else:
-        assert (value, invalid, told) == (TYPED[text], None, "")
-        assert address == f"#drive.velocity={value}"
-
-
-def test_units_of_every_kind_are_converted(browser):
+def test_a_typed_value_is_understood_or_refused_and_not_kept(browser):
+    for text, expected in TYPED.items():
+        browser.run("restore('')")
+        value, invalid, told = type_in(browser, "drive.velocity", text)
+        browser.settle()
+        address = browser.run("decodeURIComponent(location.hash)")
+        if re.match(r"[a-z]", expected):
+            assert (value, invalid) == ("100", "true"), text
+            assert expected in told
+            assert address in ("", "#")
+            assert type_in(browser, "drive.velocity", "7 mm/s") == ["7", None, ""]
+        else:
+            assert (value, invalid, told) == (expected, None, ""), text
+            assert address == f"#drive.velocity={value}"
     for key, text, value in (
         ("support.mass", "2 g/m", "0.000002"), ("foundation.stiffness", "12 MPa/mm", "12"),
         ("foundation.stiffness", "3 kN m^-1/cm\u00b2", "0.03"), ("indenter.radius", "1,2 cm", "12"),
@@ -688,10 +579,8 @@ def test_units_of_every_kind_are_converted(browser):
         assert (float(shown), told) == (float(value), ""), text
     assert "out of range" in type_in(browser, "indenter.radius", "-1 mm")[2]
     browser.run("restore('#drive.velocity=fast&indenter.radius=-3&support.mass=2')")
-    assert browser.run("[state.values['drive.velocity'], as_hash(state)]") == [
-        "100",
-        "support.mass=2",
-    ]
+    kept = browser.run("[state.values['drive.velocity'], as_hash(state)]")
+    assert kept == ["100", "support.mass=2"]
 
 
 LAYER = (
@@ -706,11 +595,7 @@ LAYER = (
 )
 def test_a_layer_that_is_not_thin_is_said_to_be_so(session, page, modulus, thickness, ratio, thin):
     with watched(session, page, LAYER.format(modulus, thickness, ratio)) as browser:
-        layer = {
-            "modulus": f"{modulus} MPa",
-            "thickness": f"{thickness} mm",
-            "poisson_ratio": ratio,
-        }
+        layer = {"modulus": modulus * 1e6, "thickness": thickness * 1e-3, "poisson_ratio": ratio}
         state = kv.steady(kv.Scene(foundation=kv.Foundation(retardation_time="100 ms", **layer)))
         number = layer_number(thickness * 1e-3, state.half_length, ratio)
         assert thin == (number <= THIN) == (not state.notes)
@@ -740,22 +625,10 @@ def test_the_curve_stays_in_sight_on_a_phone_and_the_buttons_on_a_low_screen(ses
             assert 0 < top < bottom < 700
 
 
-@pytest.mark.parametrize("state", STATES)
-def test_no_formula_is_cut(session, page, state):
-    with watched(session, page, state) as browser:
-        widths = (
-            "[...document.querySelectorAll('.formula')].map(f => f.scrollWidth - f.clientWidth)"
-        )
-        assert max(browser.run(widths), default=0) <= 0
-
-
 EXTREME = (
-    "drive.velocity",
-    "indenter.radius",
-    "support.mass",
-    "foundation.stiffness",
+    "drive.velocity", "indenter.radius", "support.mass", "foundation.stiffness",
     "foundation.retardation_time",
-)
+)  # fmt: skip
 
 
 @pytest.mark.parametrize("family", ["", "indenter=sphere&", "foundation=generalized-maxwell&"])
@@ -767,14 +640,3 @@ def test_ten_decades_either_side_leave_no_gap(browser, family):
             html = browser.run("document.body.innerHTML.replace(/<script[^]*/, '')")
             assert not re.search("NaN|Infinity|undefined", html), (key, value)
             assert browser.run("document.querySelector('#problem').hidden"), (key, value)
-
-
-def test_how_long_a_frame_takes_is_measured(browser, record_property):
-    browser.run(
-        "(async () => { for (let k = 0; k < 20; k++) { set_value('drive.velocity', String(50 + k)); soon();"
-        "await new Promise(f => requestAnimationFrame(f)); } })()"
-    )
-    frames = sorted(browser.run("frames"))
-    record_property("milliseconds of a frame", frames[len(frames) // 2])
-    assert len(frames) > 10
-    assert all(frame > 0 for frame in frames)

@@ -21,17 +21,13 @@ TOLERANCE, LONGEST = 1e-11, 0.05
 
 def solve(name: str, tolerance: float = TOLERANCE) -> dict[str, list[float]]:
     """Return times, depth and friction force of a standard scene."""
-    points, epsilon, _ = STANDARD[name]
-    times = Problem(name, standard_scene(name)).times
-    scene = Scene(points, epsilon, tuple(times.tolist()))
-    found = (
-        two_states(scene, tolerance) if name in NO_MEMORY else history(scene, tolerance, LONGEST)
-    )
-    return {
-        "times": times.tolist(),
-        "depth": found["d"].tolist(),
-        "friction": found["f_x"].tolist(),
-    }
+    pieces, epsilon = STANDARD[name]
+    points = [(s, number) for start, end, number in pieces for s in (start, end)]
+    times = Problem(name, standard_scene(name)).times.tolist()
+    scene = Scene(points, epsilon, tuple(times))
+    memory = name not in NO_MEMORY
+    found = history(scene, tolerance, LONGEST) if memory else two_states(scene, tolerance)
+    return {"times": times, "depth": found["d"].tolist(), "friction": found["f_x"].tolist()}
 
 
 if __name__ == "__main__":

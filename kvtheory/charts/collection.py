@@ -3,18 +3,20 @@
 from collections.abc import Callable, Sequence
 from functools import partial
 
+from kvtheory.charts.methods import transient_methods
 from kvtheory.charts.problems import STANDARD, Problem, standard_scene
-from kvtheory.charts.steady_precision import VELOCITIES, steady_chart, suits
-from kvtheory.charts.work_precision import FULL, QUICK, Chart, transient_chart
+from kvtheory.charts.steady_precision import SteadyProblem, steady_methods, suits
+from kvtheory.charts.work_precision import FULL, QUICK, Chart, make_chart
 from kvtheory.progress import Progress, silent
+from kvtheory.scene import Drive, Scene
 from kvtheory.scene.capabilities import lacks_rigid_paper_model, require
-from kvtheory.scene.drives import Drive
-from kvtheory.scene.model import Scene
 from kvtheory.scene.quantities import nearest
 
 Job = Callable[..., Chart]
 """Makes one chart, with an `effort`, and reports its `progress`."""
 ALL = "all"
+VELOCITIES = {"table-1": 0.1, "low-velocity": 1e-3, "high-velocity": 10.0}
+"""Velocity (m/s) of the standard scenes that are Table 1 otherwise, in steady sliding."""
 
 
 def chosen(scene: Scene, standard: Sequence[str], *, quick: bool) -> list[Job]:
@@ -31,23 +33,17 @@ def chosen(scene: Scene, standard: Sequence[str], *, quick: bool) -> list[Job]:
         if name not in (*STANDARD, ALL):
             raise ValueError(f'`standard` "{name}": {nearest(name, (*STANDARD, ALL))}')
     require(lacks_rigid_paper_model, scene, "the chart of transients")
-    scenes = [("this scene", scene, scene)]
-    if standard:
-        names = list(STANDARD) if ALL in standard else standard
-        scenes = [(name, _sliding(name), standard_scene(name)) for name in names]
     jobs: list[Job] = []
-    for name, sliding, moving in scenes:
-        if suits(sliding):
-            jobs.append(partial(steady_chart, sliding, f"{name}, steady"))
-        jobs.append(partial(transient_chart, Problem(name, moving, quick)))
+    for name in STANDARD if ALL in standard else standard or ("this scene",):
+        sliding = scene if suits(scene) and not standard else None
+        if name in VELOCITIES:
+            sliding = Scene(drive=Drive(velocity=VELOCITIES[name]))
+        if sliding:
+            steady = SteadyProblem(f"{name}, steady", sliding)
+            jobs.append(partial(make_chart, steady, steady_methods()))
+        transient = Problem(name, standard_scene(name) if standard else scene, quick)
+        jobs.append(partial(make_chart, transient, transient_methods().values()))
     return jobs
-
-
-def _sliding(name: str) -> Scene:
-    """Return the scene of steady sliding for a standard scene, which may not be suitable."""
-    if name in VELOCITIES:
-        return Scene(drive=Drive(velocity=VELOCITIES[name]))
-    return standard_scene(name)
 
 
 def measure(jobs: Sequence[Job], *, quick: bool, progress: Progress = silent) -> list[Chart]:

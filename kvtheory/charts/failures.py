@@ -1,24 +1,70 @@
 """The atlas of failures: one entry for each way in which a method fails, computed on request."""
 
 import tomllib
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
 from importlib.resources import files
+from typing import Any
 
-from kvtheory.charts import element_failures, motion_failures, spring_failures, steady_failures
-from kvtheory.charts.entry import Entry, Finding
+import numpy as np
+
+from kvtheory.charts import motion_failures, steady_failures
+from kvtheory.charts.naive import Outcome
 from kvtheory.scene.quantities import nearest
 
-MEASURES = {
-    **vars(element_failures),
-    **vars(motion_failures),
-    **vars(spring_failures),
-    **vars(steady_failures),
-}
+ROLES = "wrong", "right", "package"
+TEXTS = "key", "title", "scene", "why", "quantity", "notice", "package"
+
+
+@dataclass(frozen=True)
+class Entry:
+    """One way in which a method fails.
+
+    `unit` and `factor` show the numbers, which are in SI; `x` and `y` are label, factor and scale of the
+    axes; `tolerance` is how far, as a share of the right number (or of `scale`, in SI, where that is
+    zero), the package may be off.
+    """
+
+    key: str
+    title: str
+    scene: str
+    why: str
+    quantity: str
+    unit: str
+    factor: float
+    notice: str
+    package: str
+    tolerance: float
+    x: tuple[str, float, str]
+    y: tuple[str, float, str]
+    measure: Callable[[], Outcome]
+    scale: float = 0.0
+
+
+@dataclass(frozen=True)
+class Finding:
+    """An entry with its outcome."""
+
+    entry: Entry
+    outcome: Outcome
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return plain Python values, ready for JSON; what does not exist is None."""
+        numbers = {role: getattr(self.outcome, role) for role in ROLES}
+        return {
+            **{name: getattr(self.entry, name) for name in TEXTS},
+            **{f"{role}_value": x if np.isfinite(x) else None for role, x in numbers.items()},
+            "said": self.outcome.said,
+        }
+
+
+MEASURES = {**vars(motion_failures), **vars(steady_failures)}
 """Each entry is computed by the function of its name."""
-WORDS = tomllib.loads(files("kvtheory.charts").joinpath("atlas.toml").read_text(encoding="utf-8"))
 ATLAS = {
     key: Entry(key=key, measure=MEASURES["_" + key.replace("-", "_")], **words)
-    for key, words in WORDS.items()
+    for key, words in tomllib.loads(
+        files("kvtheory.charts").joinpath("atlas.toml").read_text(encoding="utf-8")
+    ).items()
 }
 """The entries by their keys."""
 

@@ -1,156 +1,241 @@
-"""Entries of the atlas about the motion of the indenter.
+"""Entries of the atlas about motion: by elements, by two states without memory, and on a spring.
 
-Scaled scenes are run with R = 1/2, K = tau = delta_0 = 1: the static half length is 1, the static
-load 4/3, and so the unit of both forces is 4/3 N/m.
+In scaled scenes the unit of both forces is 4/3 N/m.
 """
 
-import itertools
 from collections.abc import Sequence
+from dataclasses import replace
+from functools import partial
+from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 
-from kvtheory.api import elements, transient
-from kvtheory.charts.entry import Outcome, Picture
-from kvtheory.charts.naive import closed_forms, two_states
+from kvtheory.api import elements, steady, transient
+from kvtheory.charts import naive
+from kvtheory.charts.stability import PAPERS_DENSITY, unwatched
+from kvtheory.models.elements.schemes import DEFAULT
 from kvtheory.models.slow_manifold.motion import follow
 from kvtheory.models.slow_manifold.start import start
-from kvtheory.scene.drives import Drive
-from kvtheory.scene.indenters import Parabola
-from kvtheory.scene.model import DeadWeight, Foundation, Run, Scene
+from kvtheory.results.errors import DivergenceError
+from kvtheory.scene import Drive, Run, Scene
 from kvtheory.scene.static_state import StaticState
 
-Array = NDArray[np.float64]
-
-LOAD = 4.0 / 3.0
 RTOL = 1e-9
 FINE = 120.0
 """Elements per unit length, of a static contact that is 2 long: the independent check of the right number."""
-
-FLIGHTS = "take-off", "landing"
-"""Kinds of events."""
-
-
-def _scaled(points: Sequence[tuple[float, float]], epsilon: float, end: float) -> Scene:
-    """Return a scene with this drive number over s, under a dead weight."""
-    support = DeadWeight(LOAD * epsilon, 1.0 / epsilon)
-    return Scene(Parabola(0.5), Foundation(1.0, 1.0), support, Drive(history=points), Run(end))
+TABLE1 = StaticState.of(Scene())
+PATH = 3000
+"""Points of the path along which elements are drawn."""
+COARSE = 2e4
+"""Elements per metre, a tenth of the paper's, so that single elements are seen in the forces."""
+DETUNED = 2.02
+"""Elements that pass between two samples, instead of 2: the sawtooth comes back every 50 samples."""
 
 
-def _without_past(
-    points: Sequence[tuple[float, float]], epsilon: float, s: Array
-) -> tuple[Array, Array, Array]:
+def _without_memory(pieces: Sequence[naive.Piece], epsilon: float, s: naive.Array) -> Any:
     """Return d, f_z and f_x by SciPy's Radau on the two states, with the edges of Eqs. 32 and 33."""
-    y, rows = (1.0, 0.0), []
-    for (a, number), (b, _) in itertools.pairwise([*points, (s[-1], 0.0)]):
-        if b == a:
-            continue
-        law = two_states(number, epsilon)
-        run = solve_ivp(law, (a, b), y, "Radau", dense_output=True, rtol=RTOL, atol=1e-2 * RTOL)
-        y = run.y[:, -1]
-        inside = s[(s >= a) & ((s < b) | (b == s[-1]))]
-        rows += [(d, *closed_forms(d, v, number)) for d, v in run.sol(inside).T]
-    d, f_z, f_x = np.array(rows).T
-    return d, f_z, f_x
+    return naive.without_memory(
+        pieces, s, partial(naive.two_states, epsilon=epsilon), "Radau", RTOL
+    )[0]
 
 
-def _leading_edge_peels() -> Outcome:
-    stop, points = 1.0, [(0.0, 4.0), (1.0, 4.0), (1.0, 0.1)]
-    s = np.append(np.linspace(0.5, stop, 101)[:-1], np.linspace(stop, 1.3, 121))
-    scene = _scaled(points, 3.0, 1.3)
-    ours = transient(scene, at=s, rtol=RTOL).normal_force
-    _, naive, _ = _without_past(points, 3.0, s)
-    at = int(np.argmin(naive))
-    right = elements(scene, per_length=FINE, at=[float(s[at])], certify=False)
-    return Outcome(
-        LOAD * float(naive[at]), float(right.normal_force[0]), float(ours[at]),
-        Picture.of("t/τ", "normal force / weight", (s, naive), (s, ours / LOAD)),
-    )  # fmt: skip
+def _compare(
+    scene: Scene, quantity: str, times: naive.Array, wrong: naive.Array, ours: Any, at: int, said: str = "",
+    **elements_options: float,
+) -> naive.Outcome:  # fmt: skip
+    """Return the outcome at one of the instants, where elements give the right number."""
+    right = elements(scene, at=[float(times[at])], certify=False, **elements_options)  # type: ignore[arg-type]
+    package = getattr(ours, quantity)
+    return naive.Outcome(
+        wrong[at], getattr(right, quantity)[0], package[at], (times, wrong), (times, package), said
+    )
 
 
-def _negative_radicand() -> Outcome:
-    points, end = [(0.0, 10.0)], 3.0
-    s = np.linspace(0.0, end, 301)
-    scene = _scaled(points, 0.3, end)
+def _leading_edge_peels() -> naive.Outcome:
+    pieces = [(0.0, 1.0, 4.0), (1.0, 1.3, 0.1)]
+    s = np.append(np.linspace(0.5, 1.0, 101)[:-1], np.linspace(1.0, 1.3, 121))
+    scene = naive.scaled_scene(pieces, 3.0)
     ours = transient(scene, at=s, rtol=RTOL)
-    d = _without_past(points, 0.3, s)[0]
-    last = int(np.argmax(np.abs(d - ours.depth)))
-    right = elements(scene, per_length=FINE, at=[float(s[last])], certify=False)
-    return Outcome(
-        float(d[last]), float(right.depth[0]), float(ours.depth[last]),
-        Picture.of("t/τ", "depth / static depth", (s, d), (s, ours.depth)),
-        "kv.transient: "
-        + ", ".join(f"{e.kind} at {e.time:.3f} τ" for e in ours.events if e.kind in FLIGHTS),
-    )  # fmt: skip
+    wrong = naive.LOAD * _without_memory(pieces, 3.0, s)[1]
+    at = int(np.argmin(wrong))
+    return _compare(scene, "normal_force", s, wrong, ours, at, per_length=FINE)
 
 
-def _memory_ignored() -> Outcome:
-    after = 0.058
+def _negative_radicand() -> naive.Outcome:
+    pieces, s = [(0.0, 3.0, 10.0)], np.linspace(0.0, 3.0, 301)
+    scene = naive.scaled_scene(pieces, 0.3)
+    ours = transient(scene, at=s, rtol=RTOL)
+    wrong = _without_memory(pieces, 0.3, s)[0]
+    at = int(np.argmax(np.abs(wrong - ours.depth)))
+    flights = [e for e in ours.events if e.kind in ("take-off", "landing")]
+    said = "kv.transient: " + ", ".join(f"{e.kind} at {e.time:.3f} τ" for e in flights)
+    return _compare(scene, "depth", s, wrong, ours, at, said, per_length=FINE)
+
+
+def _memory_ignored() -> naive.Outcome:
+    after, number = 0.058, TABLE1.drive_number
     scene = Scene(drive=Drive(history=[(0.0, 0.1), (0.05, 0.1), (0.05, 0.0)]), run=Run(0.15))
     t = np.append(np.linspace(0.02, 0.05, 121)[:-1], np.linspace(0.05, 0.15, 201))
     t = np.sort(np.append(t, after))
-    numbers = StaticState.of(Scene())
-    tau, number = 0.1, numbers.drive_number
-    points = [(0.0, number), (0.5, number), (0.5, 0.0)]
-    friction = numbers.load * numbers.depth / numbers.half_length
-    naive = friction * _without_past(points, numbers.inertia_number, t / tau)[2]
-    ours = transient(scene, at=t, rtol=RTOL).friction_force
+    pieces = [(0.0, 0.5, number), (0.5, 1.5, 0.0)]
+    scaled = _without_memory(pieces, TABLE1.inertia_number, t / TABLE1.time)[2]
+    ours = transient(scene, at=t, rtol=RTOL)
     at = int(np.searchsorted(t, after))
-    right = elements(scene, at=[after], certify=False)
-    return Outcome(
-        float(naive[at]), float(right.friction_force[0]), float(ours[at]),
-        Picture.of("t [ms]", "friction force [N/mm]", (1e3 * t, 1e-3 * naive), (1e3 * t, 1e-3 * ours)),
-    )  # fmt: skip
+    return _compare(scene, "friction_force", t, TABLE1.friction_force * scaled, ours, at)
 
 
-def _slow_manifold() -> Outcome:
-    number, epsilon, end = 4.0812765306, 0.306095740, 4.0
-    s = np.linspace(0.0, end, 241)
-    scene = _scaled([(0.0, number)], epsilon, end)
-    naive = follow(start(number, epsilon, 0.0), s, RTOL).values["depth"]
+def _slow_manifold() -> naive.Outcome:
+    number, epsilon = 4.0812765306, 0.306095740
+    s = np.linspace(0.0, 4.0, 241)
+    scene = naive.scaled_scene([(0.0, 4.0, number)], epsilon)
+    wrong = np.asarray(follow(start(number, epsilon, 0.0), s, RTOL).values["depth"])
     ours = transient(scene, at=s, rtol=RTOL)
     at = int(np.argmin(ours.depth))
-    right = elements(scene, per_length=FINE, at=[float(s[at])], certify=False)
-    return Outcome(
-        float(naive[at]), float(right.depth[0]), float(ours.depth[at]),
-        Picture.of("t/τ", "depth / static depth", (s, naive), (s, ours.depth)),
-    )  # fmt: skip
+    return _compare(scene, "depth", s, wrong, ours, at, per_length=FINE)
 
 
-def _event_missed() -> Outcome:
-    start, stop, fast = 0.15, 0.1502, 4.0
-    numbers = StaticState.of(Scene())
-    tau, number = 0.1, numbers.drive_number
-    unit = numbers.load * numbers.depth / numbers.half_length
+def _event_missed() -> naive.Outcome:
+    start, stop, fast, V = 0.15, 0.1502, 4.0, 0.1
+    tau, number, unit = TABLE1.time, TABLE1.drive_number, TABLE1.friction_force
 
     def rate(s: float) -> float:
         return fast * number if start <= s * tau < stop else number
 
     run = solve_ivp(
-        two_states(rate, numbers.inertia_number), (0.0, 2.0), (1.0, 0.0), "Radau",
+        naive.two_states(rate, TABLE1.inertia_number), (0.0, 2.0), (1.0, 0.0), "Radau",
         rtol=1e-6, atol=1e-9, events=lambda s, _: rate(s) - 2.0 * number,
     )  # fmt: skip
     t = run.t * tau
-    naive = np.array(
-        [unit * closed_forms(d, v, rate(s))[1] for s, d, v in zip(run.t, *run.y, strict=True)]
-    )
-    V = 0.1
+    states = zip(run.t, *run.y, strict=True)
+    wrong = unit * np.array([naive.closed_forms(d, v, rate(s))[1] for s, d, v in states])
     history = [(0.0, V), (start, V), (start, fast * V), (stop, fast * V), (stop, V)]
-    scene = Scene(drive=Drive(history=history))
     times = np.sort([*np.linspace(0.14, 0.17, 301), start, stop])
-    ours = transient(scene, at=times, rtol=RTOL).friction_force
+    ours = transient(Scene(drive=Drive(history=history)), at=times, rtol=RTOL).friction_force
     # Steady sliding at V until the pulse begins; then the closed forms at the same depth and 4 V.
-    d = transient(at=[start], rtol=RTOL)
-    late = t >= 0.14
-    drawn = late & (t <= 0.17)
-    right = unit * closed_forms(
-        float(d.depth[0]) / numbers.depth,
-        float(d.depth_rate[0]) * tau / numbers.depth, fast * number,
-    )[1]  # fmt: skip
-    return Outcome(
-        float(naive[late].max()), right, float(ours.max()),
-        Picture.of("t [ms]", "friction force [N/mm]",
-                   (1e3 * t[drawn], 1e-3 * naive[drawn]), (1e3 * times, 1e-3 * ours)),
-        f"solve_ivp: status {run.status}, events found: {run.t_events[0].size}",
+    now = transient(at=[start], rtol=RTOL)
+    d, v = now.depth[0] / TABLE1.depth, now.depth_rate[0] * tau / TABLE1.depth
+    right = unit * naive.closed_forms(d, v, fast * number)[1]
+    late, drawn = t >= 0.14, (t >= 0.14) & (t <= 0.17)
+    said = f"solve_ivp: status {run.status}, events found: {run.t_events[0].size}"
+    curves = (t[drawn], wrong[drawn]), (times, ours)
+    return naive.Outcome(wrong[late].max(), right, ours.max(), *curves, said)
+
+
+def _on_spring(rest: StaticState, s: naive.Array) -> naive.Array:
+    """Return (d, d', x, x') by SciPy's Radau, with edges that assume undisturbed ground."""
+
+    def law(_: float, y: Sequence[float]) -> tuple[float, ...]:
+        d, v, x, w = y
+        f_z, f_x = naive.closed_forms(d, v, rest.drive_number - w)
+        pull = f_x - rest.drive_stiffness_number * x
+        return v, (1.0 - f_z) / rest.inertia_number, w, pull / rest.drive_inertia_number
+
+    at_rest = (1.0, 0.0, 0.0, 0.0)
+    run = solve_ivp(law, (0.0, s[-1]), at_rest, "Radau", t_eval=s, rtol=1e-8, atol=1e-10)
+    return np.asarray(run.y)
+
+
+def _past_the_maximum() -> naive.Outcome:
+    V, t = 0.091, np.linspace(0.0, 0.8, 401)
+    scene = Scene(drive=Drive(velocity=V, stiffness=1e6), run=Run(0.8))
+    rest = StaticState.of(scene)
+    # Sliding goes on forward here, so that no ground is met again: closed forms are enough.
+    right = V - rest.velocity * _on_spring(rest, t / rest.time)[3]
+    slowest = int(np.argmin(right))
+    ours: Any = transient(scene, at=t, rtol=RTOL, certify=False)
+    force = steady(scene).friction_force / 1e3
+    return naive.Outcome(
+        V, right[slowest], ours.sliding_velocity[slowest],
+        (t, np.full(t.size, V)), (t, ours.sliding_velocity),
+        f"steady friction force {force:.3g} N/mm, on a curve that says nothing of its stability",
     )  # fmt: skip
+
+
+def _reversal_forgotten() -> naive.Outcome:
+    end, number, s = 1.4, 3.0, np.linspace(0.0, 1.4, 351)
+    rigid = naive.scaled_scene([(0.0, end, number)], 0.05)
+    scene = replace(
+        rigid, drive=replace(rigid.drive, stiffness=2.0 * naive.LOAD, mass=0.01 * naive.LOAD)
+    )
+    ours: Any = transient(scene, at=s, rtol=RTOL, certify=False)
+    d, v, _, w = _on_spring(StaticState.of(scene), s)
+    states = zip(d, v, number - w, strict=True)
+    wrong = naive.LOAD * np.array([naive.closed_forms(*state)[1] for state in states])
+    # Elements along the very path: they remember anyway.
+    fine = np.linspace(0.0, end, PATH)
+    path: Any = transient(scene, at=fine, rtol=RTOL, certify=False)
+    history = list(zip(fine.tolist(), path.sliding_velocity.tolist(), strict=True))
+    at = int(np.argmax(np.abs(wrong - ours.friction_force)))
+    reversals = [e for e in ours.events if e.kind == "sliding reverses"]
+    said = ", ".join(f"{e.kind} at {e.time:.3f} τ" for e in reversals)
+    along = replace(rigid, drive=Drive(history=history))
+    return _compare(along, "friction_force", s, wrong, ours, at, said, per_length=FINE)
+
+
+def _refusal(scene: Scene) -> str:
+    """Return the message of the package where the paper's scheme does not work."""
+    try:
+        elements(scene, scheme="paper", certify=False)
+    except (DivergenceError, ValueError) as error:
+        return f"kv.elements: {error}"
+    return ""
+
+
+def _instability() -> naive.Outcome:
+    slow = Scene(drive=Drive(velocity=0.01), run=Run(0.1))
+    steps = unwatched(slow, "paper", PAPERS_DENSITY, 2.0 / PAPERS_DENSITY / 0.01)
+    t, d = np.array([(step.time, step.depth) for step in steps]).T
+    times = np.linspace(0.0, 0.1, 101)
+    ours = elements(slow, at=times, certify=False).depth
+    right = transient(slow, at=[0.1]).depth[0]
+    return naive.Outcome(d[-1], right, ours[-1], (t, d), (times, ours), _refusal(slow))
+
+
+def _force(scheme: str, times: Any, time_step: float) -> Any:
+    """Return the normal force on a fixed indenter, which should be constant."""
+    return elements(
+        Scene.table1("fixed"), per_length=COARSE, scheme=scheme, at=times, time_step=time_step,
+        certify=False,
+    ).normal_force  # fmt: skip
+
+
+def _forces(times: Any, time_step: float, said: str = "") -> naive.Outcome:
+    """Compare the forces of both schemes on a fixed indenter at these instants."""
+    wrong, ours = (_force(scheme, times, time_step) for scheme in ("paper", DEFAULT))
+    return naive.Outcome(np.ptp(wrong), 0.0, np.ptp(ours), (times, wrong), (times, ours), said)
+
+
+def _sawtooth() -> naive.Outcome:
+    return _forces(np.linspace(0.01, 0.0125, 201), 1e-5)
+
+
+def _grid_resonance() -> naive.Outcome:
+    """Sample the forces once for every 2.02 elements, each sample two steps after the last."""
+    passing, samples = 1.0 / COARSE / 0.1, np.arange(151)
+    locked = _force("paper", 0.01 + 2.0 * passing * samples, passing)[-1]
+    wrong = locked / steady(Scene.table1("fixed")).load - 1.0
+    every = DETUNED * passing
+    said = f"with exactly two elements in a step it stands still, wrong by {wrong:+.2%}"
+    return _forces(0.01 + every * samples, 0.5 * every, said)
+
+
+def _step_at_rest() -> naive.Outcome:
+    ramp = Scene(drive=Drive(history=[(0.0, 0.0), (0.02, 0.1)]), run=Run(0.04))
+    times = np.linspace(0.0, 0.04, 81)
+    steps = unwatched(ramp, "paper", PAPERS_DENSITY, np.inf)  # 2 dx/V at the start of the ramp
+    last = (steps[-1].depth, steps[-1].rate, 1.0) if steps else (1.0, 0.0, 0.0)
+    friction = abs(naive.closed_forms(*last)[1])  # after no steps at all: still at rest
+    ours = elements(ramp, at=times, certify=False).friction_force
+    right = transient(ramp, at=[0.02]).friction_force[0]
+    return naive.Outcome(
+        friction, right, ours[np.searchsorted(times, 0.02)],
+        (times, np.full_like(times, friction)), (times, ours),
+        _refusal(Scene(drive=Drive(velocity=0.0))),
+    )  # fmt: skip
+
+
+def _stale_surface() -> naive.Outcome:
+    t, d = naive.stale_elements(Scene(), PAPERS_DENSITY)
+    ours = elements(at=t[::20], certify=False).depth
+    return naive.Outcome(d[-1], transient(at=[0.2]).depth[0], ours[-1], (t, d), (t[::20], ours))

@@ -5,45 +5,80 @@ a_0, forces by W_0 (f_x by W_0 delta_0/a_0).
 """
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.integrate import solve_ivp
 
-from kvtheory.scene.model import Scene
+from kvtheory.scene import DeadWeight, Drive, Foundation, Parabola, Run, Scene
 
 Array = NDArray[np.float64]
-Law = Callable[[float, Any], tuple[float, float]]
+Law = Callable[[float, Any], tuple[float, ...]]
+Piece = tuple[float, float, Any]
+"""Start, end, and lambda between them: a number, or a function of s."""
+
+LOAD = 4.0 / 3.0
+"""Static load (N/m) of a scaled scene, and its unit of both forces."""
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """The numbers of a failure in SI: the wrong one, the right one and that of the package.
+
+    `right` comes from a formula or a method that shares no code with that of `package`. A method without a
+    result gives NaN or infinity. The curves `naive` and `ours` are pairs x, y; `said` is the message of
+    the package, if any.
+    """
+
+    wrong: float
+    right: float
+    package: float
+    naive: tuple[Array, Array]
+    ours: tuple[Array, Array]
+    said: str = ""
+
+    def __post_init__(self) -> None:
+        for name in ("wrong", "right", "package"):  # which may be numbers of NumPy
+            object.__setattr__(self, name, float(getattr(self, name)))
+
+
+def scaled_scene(pieces: Sequence[Piece], epsilon: float) -> Scene:
+    """Return a dead weight with R = 1/2 and K = tau = delta_0 = 1, hence a_0 = 1, driven by lambda(s)."""
+    history = [(s, number) for start, end, number in pieces for s in (start, end)]
+    drive = Drive(history=history) if len(pieces) > 1 else Drive(velocity=pieces[0][2])
+    support = DeadWeight(LOAD * epsilon, 1.0 / epsilon)
+    return Scene(Parabola(0.5), Foundation(1.0, 1.0), support, drive, Run(pieces[-1][1]))
 
 
 def closed_forms(d: float, v: float, number: float) -> tuple[float, float]:
     """Return f_z and f_x with the edges of Eqs. 32 and 33 as written, which have no memory.
 
-    The radicand of Eq. 33 is taken as zero where it is negative, so that no square root fails.
+    The radicand of Eq. 33 is taken as zero where it is negative, so that no square root fails. Where the
+    drive number is negative, the forces are mirrored.
 
     Examples
     --------
     >>> closed_forms(1.0, 0.0, 0.0)  # at rest: the static load, no friction
     (1.0, -0.0)
+    >>> forward, back = (closed_forms(1.0, 0.0, number) for number in (0.5, -0.5))
+    >>> forward[0] == back[0], forward[1] == -back[1]
+    (True, True)
     """
-    l, r = -math.sqrt(max(d, 0.0)), math.sqrt(max(d + v + number * number, 0.0)) - number
+    speed = abs(number)
+    l, r = -math.sqrt(max(d, 0.0)), math.sqrt(max(d + v + speed * speed, 0.0)) - speed
     mean = d + v
     l2, r2 = l * l, r * r
     l3, r3 = l2 * l, r2 * r
-    f_z = 0.75 * (mean * (r - l) - (r3 - l3) / 3.0 - number * (r2 - l2))
-    moment = 0.5 * mean * (r2 - l2) - 0.25 * (r3 * r - l3 * l) - number * (r3 - l3) / 1.5
-    return f_z, -1.5 * moment
+    f_z = 0.75 * (mean * (r - l) - (r3 - l3) / 3.0 - speed * (r2 - l2))
+    moment = 0.5 * mean * (r2 - l2) - 0.25 * (r3 * r - l3 * l) - speed * (r3 - l3) / 1.5
+    return f_z, math.copysign(1.5, number) * -moment
 
 
 def two_states(number: float | Callable[[float], float], epsilon: float, kappa: float = 0.0) -> Law:
-    """Return d' and d'' as a function of s and (d, d'): the equation of motion with `closed_forms`.
-
-    Examples
-    --------
-    >>> two_states(0.0, 0.1)(0.0, (1.0, 0.0))
-    (0.0, 0.0)
-    """
+    """Return d' and d'' as a function of s and (d, d'): the equation of motion with `closed_forms`."""
     rate = number if callable(number) else lambda _: number
 
     def law(s: float, y: Sequence[float]) -> tuple[float, float]:
@@ -51,6 +86,42 @@ def two_states(number: float | Callable[[float], float], epsilon: float, kappa: 
         return v, (1.0 - closed_forms(d, v, rate(s))[0] - kappa * (d - 1.0)) / epsilon
 
     return law
+
+
+def solve_by_scipy(
+    law: Law, ends: tuple[float, float], y: Any, s: Array, method: str, rtol: float
+) -> tuple[Array, int]:
+    """Return the states at the instants and at the end by `solve_ivp`, and the evaluations.
+
+    Raises
+    ------
+    ArithmeticError
+        If it does not succeed.
+    """
+    tolerances = {"rtol": max(rtol, 3e-14), "atol": 0.01 * rtol}
+    with np.errstate(all="ignore"):
+        try:
+            run = solve_ivp(law, ends, y, method, dense_output=True, **tolerances)
+        except (ValueError, OverflowError) as error:  # from numbers that are not finite
+            raise ArithmeticError(str(error)) from None
+    if not run.success:
+        raise ArithmeticError(run.message)
+    return np.column_stack([run.sol(s), run.y[:, -1]]), run.nfev
+
+
+def without_memory(
+    pieces: Iterable[Piece], s: Array, law_of: Callable[[Any], Law], method: str, rtol: float,
+    solve: Callable[..., tuple[Array, int]] = solve_by_scipy,
+) -> tuple[Array, int]:  # fmt: skip
+    """Return d, f_z and f_x by the two states, restarted at each jump, and the number of evaluations."""
+    y, rows, evaluations, pieces = np.array([1.0, 0.0]), [], 0, list(pieces)
+    for a, b, number in pieces:
+        inside = s[(s >= a) & ((s < b) | (b == pieces[-1][1]))]
+        values, count = solve(law_of(number), (a, b), y, inside, method, rtol)
+        y, evaluations = values[:, -1], evaluations + count
+        for x, d, v in zip(inside.tolist(), *values[:, :-1].tolist(), strict=True):
+            rows.append((d, *closed_forms(d, v, number(x) if callable(number) else number)))
+    return np.array(rows).T, evaluations
 
 
 def stale_elements(scene: Scene, per_length: float) -> tuple[Array, Array]:
@@ -90,34 +161,3 @@ def stale_elements(scene: Scene, per_length: float) -> tuple[Array, Array]:
         time.append((k + 1) * h)
         depth.append(d)
     return np.array(time), np.array(depth)
-
-
-def mirrored_closed_forms(d: float, v: float, number: float) -> tuple[float, float]:
-    """Return f_z and f_x by `closed_forms` for either direction: its mirror image where lambda < 0.
-
-    Examples
-    --------
-    >>> forward, back = (mirrored_closed_forms(1.0, 0.0, number) for number in (0.5, -0.5))
-    >>> forward[0] == back[0], forward[1] == -back[1]
-    (True, True)
-    """
-    f_z, f_x = closed_forms(d, v, abs(number))
-    return f_z, math.copysign(1.0, number) * f_x
-
-
-def four_states(number: float, epsilon: float, spring: tuple[float, float]) -> Callable[..., Any]:
-    """Return the rates of (d, d', x, x') on a spring: `two_states` with lambda - x', and eps_x, kappa_x.
-
-    Examples
-    --------
-    >>> four_states(0.0, 0.1, (1.0, 2.0))(0.0, (1.0, 0.0, 0.0, 0.0))
-    (0.0, 0.0, 0.0, 0.0)
-    """
-    inertia, stiffness = spring
-
-    def law(s: float, y: Sequence[float]) -> tuple[float, float, float, float]:
-        d, v, x, w = y
-        f_z, f_x = mirrored_closed_forms(d, v, number - w)
-        return v, (1.0 - f_z) / epsilon, w, (f_x - stiffness * x) / inertia + 0.0
-
-    return law

@@ -5,34 +5,28 @@ Scenes for testing other simulations are in `kvtheory.reference_problems`.
 
 import json
 import math
-from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
 from importlib.resources import files
 from itertools import pairwise
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
-from scipy.integrate import solve_ivp
 
 from kvtheory.api import elements
-from kvtheory.charts.naive import Law, closed_forms, two_states
+from kvtheory.charts.naive import Array, Piece, scaled_scene, two_states, without_memory
+from kvtheory.charts.work_precision import MISSED, WRONG, Reference
 from kvtheory.models.continuum import evaluation, solver
 from kvtheory.models.continuum.solved_scene import scaled_drive
-from kvtheory.scene.base_motion import BaseMotion, evaluate
-from kvtheory.scene.drives import Drive
-from kvtheory.scene.indenters import Parabola
-from kvtheory.scene.model import DeadWeight, Foundation, Run, Scene
+from kvtheory.scene.base_motion import BaseMotion
+from kvtheory.scene.model import Scene
 from kvtheory.scene.static_state import StaticState
 
-Array = NDArray[np.float64]
-
-EVENLY, AFTER_JUMP = 41, 9
-"""Instants at which errors are measured: this many over the run, and this many soon after each jump."""
-SOON = np.geomspace(1e-4, 5e-2, AFTER_JUMP)
-"""Shares of the run after a jump."""
-APART = 1e-6
+UNIFORM_TIMES = 41
+"""Instants over the run at which errors are measured."""
+AFTER_JUMP = np.geomspace(1e-4, 5e-2, 9)
+"""Further instants soon after each jump, as shares of the run."""
+LEAST_SPACING = 1e-6
 """Smallest distance of instants, as a share of the run."""
 REFERENCE_RTOL, INDEPENDENT_RTOL = 1e-12, 1e-10
 NO_MEMORY = 1e-7
@@ -41,21 +35,25 @@ DENSITIES = {False: 160.0, True: 60.0}
 """Elements per half length at rest of the finer reference by elements; for the quick form, fewer."""
 TABLE = "work_precision_reference.json"
 """Independent solutions of the standard scenes; its generator is among the tests."""
+LARGE_ERROR = 1e-3
+"""Error of a curve at which a run that reported success is wrong, if it is also far beyond its tolerance."""
+FAR_BEYOND = 100.0
+"""Multiple of its tolerance at which an error is far beyond it."""
+JUDGED = "depth, maximum", "friction, maximum"
+"""Errors by which a run is called wrong."""
 
 LAMBDA, EPSILON = 4.0812765306, 0.0030609574
 """Of Table 1."""
-STANDARD: dict[str, tuple[list[tuple[float, float]], float, float]] = {
-    "table-1": ([(0.0, LAMBDA)], EPSILON, 2.0),
-    "low-velocity": ([(0.0, 0.04)], EPSILON, 2.0),
-    "high-velocity": ([(0.0, 40.0)], EPSILON, 0.25),
-    "small-inertia": ([(0.0, LAMBDA)], 1e-5, 2.0),
-    "stop-and-go": (
-        [(0.0, LAMBDA), (0.5, LAMBDA), (0.5, 0.0), (0.7, 0.0), (0.7, LAMBDA)], EPSILON, 1.5,
-    ),
-    "reversal": ([(0.0, LAMBDA), (0.5, LAMBDA), (0.5, -LAMBDA)], EPSILON, 1.5),
-    "hop": ([(0.0, 4.0)], 0.3, 4.0),
-}  # fmt: skip
-"""Drive points (s, lambda), inertia number and end of the standard scenes."""
+STANDARD: dict[str, tuple[list[Piece], float]] = {
+    "table-1": ([(0.0, 2.0, LAMBDA)], EPSILON),
+    "low-velocity": ([(0.0, 2.0, 0.04)], EPSILON),
+    "high-velocity": ([(0.0, 0.25, 40.0)], EPSILON),
+    "small-inertia": ([(0.0, 2.0, LAMBDA)], 1e-5),
+    "stop-and-go": ([(0.0, 0.5, LAMBDA), (0.5, 0.7, 0.0), (0.7, 1.5, LAMBDA)], EPSILON),
+    "reversal": ([(0.0, 0.5, LAMBDA), (0.5, 1.5, -LAMBDA)], EPSILON),
+    "hop": ([(0.0, 4.0, 4.0)], 0.3),
+}
+"""Drive (pieces of s, lambda) and inertia number of the standard scenes."""
 
 
 class Curves(NamedTuple):
@@ -63,15 +61,6 @@ class Curves(NamedTuple):
 
     depth: Array
     friction: Array
-
-
-@dataclass(frozen=True)
-class Reference:
-    """The reference solution; the difference of two independent methods in each error; and their names."""
-
-    curves: Curves
-    agreement: dict[str, float]
-    methods: tuple[str, str]
 
 
 @dataclass(frozen=True)
@@ -84,7 +73,7 @@ class Problem:
 
     @cached_property
     def units(self) -> StaticState:
-        """The scene at rest, the scale of all quantities."""
+        """The scene at rest, the scale of all quantities, with its dimensionless numbers."""
         return StaticState.of(self.scene)
 
     @cached_property
@@ -93,64 +82,75 @@ class Problem:
         return scaled_drive(self.scene, self.units)
 
     @cached_property
-    def epsilon(self) -> float:
-        """Inertia number."""
-        return self.units.inertia_number
+    def times(self) -> Array:
+        """Instants (s) at which errors are measured; where the drive jumps, just after the jump."""
+        end, jumps = self.scene.run.duration, self._jumps
+        soon = [t + x for t in jumps for x in AFTER_JUMP * end if t + x < end]
+        evenly = np.linspace(0.0, end, UNIFORM_TIMES).tolist()
+        least = LEAST_SPACING * end
+        others = [t for t in (*evenly, *soon) if min(abs(t - x) for x in jumps) > least]
+        found = np.array(sorted({*others, *jumps}))
+        return found[np.diff(found, prepend=-1.0) > least]
 
     @cached_property
-    def kappa(self) -> float:
-        """Support number."""
-        return self.units.support_number
+    def pieces(self) -> list[Piece]:
+        """The drive between jumps, in units of tau."""
+        ends, found = np.array([*self._jumps, self.scene.run.duration]) / self.units.time, []
+        for a, b in pairwise(ends.tolist()):
+            inside = [piece for piece in self.drive.pieces if piece[0] < b and piece[1] > a]
+            powers = inside[0][3:]
+            constant = len(inside) == 1 and not any(powers[1:])
+            last = math.nextafter(b, a)  # before a jump there
+            rate = partial(lambda last, s: self.drive.velocity(min(s, last)), last)
+            found.append((a, b, powers[0] if constant else rate))
+        return found
 
-    @cached_property
-    def jumps(self) -> list[float]:
+    @property
+    def _jumps(self) -> list[float]:
         """Times (s) at which the drive may have a kink or jump, 0 first."""
         return [t for t in self.scene.drive.changes if t < self.scene.run.duration]
 
-    @cached_property
-    def times(self) -> Array:
-        """Instants (s) at which errors are measured; where the drive jumps, just after the jump."""
-        end = self.scene.run.duration
-        soon = [t + x for t in self.jumps for x in SOON * end if t + x < end]
-        evenly = np.linspace(0.0, end, EVENLY).tolist()
-        apart = [t for t in (*evenly, *soon) if min(abs(t - x) for x in self.jumps) > APART * end]
-        found = np.array(sorted({*apart, *self.jumps}))
-        return found[np.diff(found, prepend=-1.0) > APART * end]
+    def reference(self) -> Reference:
+        """Return the solution by the continuum at a tight tolerance, compared with an independent one."""
+        first = by_continuum(self, REFERENCE_RTOL)[0]
+        other, name = self._independent(first)
+        return Reference(first, errors(other, first), ("continuum, rtol 1e-12", name))
 
-    @cached_property
-    def pieces(self) -> list[tuple[float, float, Any]]:
-        """Start and end in units of tau between jumps, and lambda there: a number, or a function of s."""
-        ends = [*self.jumps, self.scene.run.duration]
-        tau, found = self.units.time, []
-        for a, b in pairwise(ends):
-            inside = [p for p in self.drive.pieces if p[0] < b / tau and p[1] > a / tau]
-            powers = inside[0][3:]
-            constant = len(inside) == 1 and not any(powers[1:])
-            found.append((a / tau, b / tau, powers[0] if constant else _rate(inside)))
-        return found
+    def _independent(self, first: Curves) -> tuple[Curves, str]:
+        known = json.loads(files("kvtheory.charts").joinpath(TABLE).read_text()).get(self.name)
+        if known and np.array_equal(known["times"], self.times):
+            curves = Curves(np.array(known["depth"]), np.array(known["friction"]))
+            return curves, "stored solution, see the tests"
+        if not self.scene.held:  # else there is no equation of motion
+            try:
+                curves = by_two_states(self, "Radau", INDEPENDENT_RTOL)[0]
+            except ArithmeticError:
+                curves = Curves(np.full_like(first.depth, math.inf), first.friction)
+            if errors(curves, first)["depth, maximum"] < NO_MEMORY:
+                return curves, "two states by SciPy's Radau, rtol 1e-10"
+        fine = DENSITIES[self.quick]
+        coarse, better = (by_elements(self, n, "edge-corrected")[0] for n in (0.5 * fine, fine))
+        # Of second order: the error of the finer run is a third of the difference.
+        curves = Curves(*(b + (b - a) / 3.0 for a, b in zip(coarse, better, strict=True)))
+        return curves, f"elements, {0.5 * fine:g} and {fine:g} in a half length, extrapolated"
 
-
-def _rate(pieces: list[tuple[float, ...]]) -> Any:
-    starts = [piece[0] for piece in pieces]
-
-    def number(s: float) -> float:
-        k = max(int(np.searchsorted(starts, s, "right")) - 1, 0)
-        return evaluate(pieces[k], s)[1]
-
-    return number
+    def assess(
+        self, found: Curves, right: Reference, tolerance: float | None
+    ) -> tuple[dict[str, float], str]:
+        """Return the errors, and why a run that reported success is wrong, or nothing."""
+        measured = errors(found, right.solution)
+        worst = max(measured[name] for name in JUDGED)
+        if tolerance is None or worst < max(LARGE_ERROR, FAR_BEYOND * tolerance):
+            return measured, ""
+        if not np.isfinite(worst):
+            return measured, "not converged"
+        flying = (right.solution.friction == 0.0) & (right.solution.depth != 1.0)
+        return measured, MISSED if np.any(found.friction[flying] != 0.0) else WRONG
 
 
 def standard_scene(name: str) -> Scene:
-    """Return a standard scene, in which R = 1/2, K = tau = delta_0 = 1 and so a_0 = 1.
-
-    Examples
-    --------
-    >>> Problem("hop", standard_scene("hop")).epsilon
-    0.3
-    """
-    points, epsilon, end = STANDARD[name]
-    support = DeadWeight(4.0 / 3.0 * epsilon, 1.0 / epsilon)
-    return Scene(Parabola(0.5), Foundation(1.0, 1.0), support, Drive(history=points), Run(end))
+    """Return a standard scene, in which R = 1/2, K = tau = delta_0 = 1 and so a_0 = 1."""
+    return scaled_scene(*STANDARD[name])
 
 
 def errors(found: Curves, right: Curves) -> dict[str, float]:
@@ -178,51 +178,20 @@ def errors(found: Curves, right: Curves) -> dict[str, float]:
 
 def by_continuum(problem: Problem, rtol: float, **options: Any) -> tuple[Curves, int]:
     """Return the curves by the package's transient, and its evaluations of the equation of motion."""
-    motion = solver.solve(
-        problem.drive, problem.epsilon, problem.kappa, problem.drive.end, rtol, **options
-    )
-    s = np.minimum(problem.times / problem.units.time, motion.end)
-    found = motion.states(s).T
+    units, drive = problem.units, problem.drive
+    numbers = units.inertia_number, units.support_number
+    motion = solver.solve(drive, *numbers, drive.end, rtol, **options)
+    found = motion.states(np.minimum(problem.times / units.time, motion.end)).T
     return Curves(found[evaluation.DEPTH], found[evaluation.FRICTION_FORCE]), motion.evaluations
 
 
-def piece_by_scipy(
-    law: Law, ends: tuple[float, float], y: Array, s: Array, method: str, rtol: float
-) -> tuple[Array, int]:
-    """Return the two states at the instants and at the end of a piece by `solve_ivp`, and its evaluations.
-
-    Raises
-    ------
-    ArithmeticError
-        If it does not succeed.
-    """
-    tolerances = {"rtol": max(rtol, 3e-14), "atol": 0.01 * rtol}
-    with np.errstate(all="ignore"):
-        try:
-            run = solve_ivp(law, ends, y, method, dense_output=True, **tolerances)
-        except (ValueError, OverflowError) as error:  # of numbers that are not finite
-            raise ArithmeticError(str(error)) from None
-    if not run.success:
-        raise ArithmeticError(run.message)
-    return np.column_stack([run.sol(s), run.y[:, -1]]), run.nfev
-
-
-def by_two_states(
-    problem: Problem, method: str, rtol: float, law_of: Callable[..., Law] = two_states,
-    piece: Callable[..., tuple[Array, int]] = piece_by_scipy,
-) -> tuple[Curves, int]:  # fmt: skip
-    """Return the curves by the two states, restarted at each jump, and the evaluations."""
-    times, y, rows, count = problem.times / problem.units.time, np.array([1.0, 0.0]), [], 0
-    for a, b, number in problem.pieces:
-        law, s = law_of(number, problem.epsilon, problem.kappa), times[(times >= a) & (times < b)]
-        values, more = piece(law, (a, b), y, s, method, rtol)
-        y, count = values[:, -1], count + more
-        if b == problem.pieces[-1][1]:
-            s = times[times >= a]
-        for x, d, v in zip(s, *values[:, : s.size], strict=True):
-            rate = number(float(x)) if callable(number) else number
-            rows.append((d, closed_forms(float(d), float(v), rate)[1]))
-    return Curves(*np.array(rows).T), count
+def by_two_states(problem: Problem, method: str, rtol: float, **how: Any) -> tuple[Curves, int]:
+    """Return the curves by the two states with closed-form edges, and the evaluations."""
+    units = problem.units
+    numbers = {"epsilon": units.inertia_number, "kappa": units.support_number}
+    law_of, s = partial(how.pop("law_of", two_states), **numbers), problem.times / units.time
+    (d, _, f_x), evaluations = without_memory(problem.pieces, s, law_of, method, rtol, **how)
+    return Curves(d, f_x), evaluations
 
 
 def by_elements(
@@ -236,31 +205,3 @@ def by_elements(
     )  # fmt: skip
     scaled = Curves(run.depth / units.depth, run.friction_force / units.friction_force)
     return scaled, run.element_updates
-
-
-def reference(problem: Problem) -> Reference:
-    """Return the solution by the continuum at a tight tolerance, compared with an independent one."""
-    first = by_continuum(problem, REFERENCE_RTOL)[0]
-    other, name = _independent(problem, first)
-    return Reference(first, errors(other, first), ("continuum, rtol 1e-12", name))
-
-
-def _independent(problem: Problem, first: Curves) -> tuple[Curves, str]:
-    stored = json.loads(files("kvtheory.charts").joinpath(TABLE).read_text())
-    if problem.name in stored:
-        known = stored[problem.name]
-        if np.array_equal(known["times"], problem.times):
-            curves = Curves(np.array(known["depth"]), np.array(known["friction"]))
-            return curves, "stored solution, see the tests"
-    if not problem.scene.held:  # else there is no equation of motion
-        try:
-            curves = by_two_states(problem, "Radau", INDEPENDENT_RTOL)[0]
-        except ArithmeticError:
-            curves = Curves(np.full_like(first.depth, math.inf), first.friction)
-        if errors(curves, first)["depth, maximum"] < NO_MEMORY:
-            return curves, "two states by SciPy's Radau, rtol 1e-10"
-    fine = DENSITIES[problem.quick]
-    coarse, better = (by_elements(problem, n, "edge-corrected")[0] for n in (0.5 * fine, fine))
-    # Of second order: the error of the finer run is a third of the difference.
-    curves = Curves(*(b + (b - a) / 3.0 for a, b in zip(coarse, better, strict=True)))
-    return curves, f"elements, {0.5 * fine:g} and {fine:g} in a half length, extrapolated"

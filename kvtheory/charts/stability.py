@@ -2,12 +2,14 @@
 
 Predicted (derivations, F15): a step h is stable if |R(σ h)| <= 1 for both rates of the contact,
 M σ^2 + C L σ + K L + k_s = 0, with L of the contact at the static depth, where a start from rest
-begins, and with L in steady sliding. Measured: two runs that differ by a tiny velocity are made side by
-side for some steps; the factor by which their difference grows in a step is above 1 if the scheme is
-unstable. No stability theory enters the measurement. Up to about 1.5 times the limit the runs may leave
-steady sliding for a cycle with a shorter contact, in which their difference decays: there the result depends
-on where the elements are. Above lambda of about 20 a step near the limit passes much of the contact, which
-the prediction takes as fixed: there it is too optimistic.
+begins, and with L in steady sliding. Measured: two runs with a tiny difference in velocity; the scheme is
+unstable if their difference grows by more than a factor of 1 per step. No stability theory enters the
+measurement.
+
+Up to about 1.5 times the limit the runs may leave steady sliding for a cycle with a shorter contact, in
+which their difference decays: there the result depends on where the elements are. Above lambda of about
+20 a step near the limit passes much of the contact, which the prediction takes as fixed: there it is too
+optimistic.
 """
 
 from collections.abc import Callable, Iterator
@@ -18,18 +20,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kvtheory.api import steady as steady_sliding
+from kvtheory.charts.naive import Array, scaled_scene
 from kvtheory.models.elements.model import Model
 from kvtheory.models.elements.row import ElementRow, IndenterState, OutgrownError
-from kvtheory.models.elements.schemes import SCHEMES, Scheme
+from kvtheory.models.elements.schemes import SCHEMES
 from kvtheory.models.elements.simulation import ELEMENTS_PER_STEP
 from kvtheory.models.elements.stability import lengths, limit_at
 from kvtheory.progress import Progress, silent
-from kvtheory.scene.drives import Drive
-from kvtheory.scene.indenters import Parabola
-from kvtheory.scene.model import DeadWeight, Foundation, Run, Scene
+from kvtheory.results import SteadyState
+from kvtheory.scene import Drive, Foundation, Scene
 from kvtheory.scene.static_state import StaticState
-
-Array = NDArray[np.float64]
 
 STEPS = 30
 """Steps over which growth is measured: 2 % a step shows as a factor of 1.8."""
@@ -39,11 +39,11 @@ NUDGE = 1e-9
 """Difference of both runs, in depths per step: no contact changes by it, and rounding is far below."""
 BLOWN_UP, DIED_OUT = 1e4, 0.1
 """Multiple of the first difference at which a measurement ends."""
-SWELLING = 1.08
+INITIAL_GROWTH = 1.08
 """Growth in the first steps that counts as unstable: stable runs diverge by up to 1.06, once."""
 DEEP = 1e6
 """Multiple of the static depth to which elements are kept: an unstable indenter may sink."""
-KEPT_ROWS = 100.0
+PER_HALF_LENGTH = 100.0
 """Elements in a static half length where the step is given in units of its limit."""
 PAPERS_DENSITY = 2e5
 """Elements per metre of the paper (Table 1)."""
@@ -77,7 +77,7 @@ class Map:
     @property
     def classes(self) -> NDArray[np.int64]:
         """Index of the class of every point, as measured."""
-        return np.where(self.steady > 1.0, 2, (self.start > SWELLING).astype(np.int64))
+        return np.where(self.steady > 1.0, 2, (self.start > INITIAL_GROWTH).astype(np.int64))
 
 
 def contact_lengths(scene: Scene) -> tuple[float, float]:
@@ -93,10 +93,31 @@ def contact_lengths(scene: Scene) -> tuple[float, float]:
     return lengths(model, model.path(scene))
 
 
-def walk(
-    row: ElementRow, scheme: Scheme, state: IndenterState, time_step: float
-) -> Iterator[IndenterState]:
-    """Step without checks for instability; ends if the indenter sinks too deep."""
+def _walk(
+    scene: Scene, name: str, per_length: float, time_step: float, *, nudge: float = 0.0,
+    steady: SteadyState | None = None,
+) -> Iterator[IndenterState]:  # fmt: skip
+    """Step from rest, or as steady sliding has left the elements, without checks for instability.
+
+    The first velocity is `nudge`. The steps end if the indenter sinks too deep.
+    """
+    scheme = SCHEMES[name]
+    model = Model.of(scene, 1.0 / per_length, parts=scheme.row.parts_of_elements)
+    row = ElementRow(model, model.path(scene), DEEP)
+    state = IndenterState(0.0, model.depth, nudge)
+    if steady is not None:
+        depth, front, back = (
+            float(x) for x in (steady.depth, steady.leading_edge, steady.trailing_edge)
+        )
+        left = depth - float(model.height(back))
+
+        def surface(x: Array, y: float) -> Array:
+            behind = left * np.exp(-np.maximum(x - back, 0.0) / steady.retardation_length)
+            u = np.where(x > back, behind, depth - model.height(x, y))
+            return np.where(x < front, 0.0, u)
+
+        row.lay(depth, surface, lambda x: np.asarray((x >= front) & (x <= back)))
+        state = state._replace(depth=depth)
     with np.errstate(all="ignore"):
         while True:
             try:
@@ -109,15 +130,8 @@ def walk(
 def unwatched(
     scene: Scene, scheme: str, per_length: float, time_step: float
 ) -> list[IndenterState]:
-    """Return the steps of a run from rest to the end of the scene, however unstable it is.
-
-    Examples
-    --------
-    >>> steps = unwatched(Scene(), "paper", 4e4, 5e-4)
-    >>> print(len(steps), f"{steps[-1].depth * 1e3:.3f} mm")
-    400 0.091 mm
-    """
-    steps = walk(*_begin(scene, scheme, per_length), time_step)
+    """Return the steps of a run from rest to the end of the scene, however unstable it is."""
+    steps = _walk(scene, scheme, per_length, time_step)
     return list(islice(steps, round(scene.run.duration / time_step)))
 
 
@@ -138,40 +152,32 @@ def growth(
     >>> growth(slow, "edge-corrected", 2e5, 1e-3, steady=True) < 1.0
     True
     """
-    ways = [_begin(scene, scheme, per_length, steady=steady) for _ in range(2)]
-    nudge = NUDGE * ways[0][2].depth / time_step
-    runs = [
-        walk(row, how, state._replace(rate=more), time_step)
-        for (row, how, state), more in zip(ways, (0.0, nudge), strict=True)
-    ]
-    apart: list[float] = []
+    sliding = steady_sliding(scene) if steady else None
+    depth = StaticState.of(scene).depth if sliding is None else float(sliding.depth)
+    nudge = NUDGE * depth / time_step
+    how = scene, scheme, per_length, time_step
+    runs = (_walk(*how, nudge=more, steady=sliding) for more in (0.0, nudge))
+    differences: list[float] = []
     for one, other in islice(zip(*runs, strict=False), STEPS):
-        apart.append(abs(one.rate - other.rate) / nudge)
-        if not apart[-1] < BLOWN_UP or max([1.0, *apart][-LATEST:]) < DIED_OUT:
+        differences.append(abs(one.rate - other.rate) / nudge)
+        if not differences[-1] < BLOWN_UP or max([1.0, *differences][-LATEST:]) < DIED_OUT:
             break
     else:
-        if len(apart) < STEPS:  # it sank too deep
-            apart.append(BLOWN_UP)
-    apart[-1] = min(np.nan_to_num(apart[-1], nan=BLOWN_UP), BLOWN_UP)
-    first = min(LATEST, len(apart)) if steady else 1
-    count = np.arange(first, len(apart) + 1)
-    return float(max(np.array(apart[first - 1 :]) ** (1.0 / count)))
+        if len(differences) < STEPS:  # it sank too deep
+            differences.append(BLOWN_UP)
+    differences[-1] = min(np.nan_to_num(differences[-1], nan=BLOWN_UP), BLOWN_UP)
+    first = min(LATEST, len(differences)) if steady else 1
+    count = np.arange(first, len(differences) + 1)
+    return float(max(np.array(differences[first - 1 :]) ** (1.0 / count)))
 
 
 def velocity_map(scheme: str, velocities: Array, retardation_times: Array) -> Map:
-    """Return the map over V (m/s) and tau (s), else Table 1, at the paper's step and density.
-
-    Examples
-    --------
-    >>> found = velocity_map("paper", np.array([0.005, 0.1]), np.array([0.1]))
-    >>> [CLASSES[k] for k in found.classes[0]]
-    ['unstable in steady sliding', 'stable']
-    """
-    step = ELEMENTS_PER_STEP / PAPERS_DENSITY
+    """Return the map over V (m/s) and tau (s), else Table 1, at the paper's step and density."""
 
     def point(V: float, tau: float) -> tuple[Scene, float]:
         foundation = Foundation(Scene().foundation.stiffness, tau)
-        return Scene(foundation=foundation, drive=Drive(velocity=V)), step / V
+        scene = Scene(foundation=foundation, drive=Drive(velocity=V))
+        return scene, ELEMENTS_PER_STEP / PAPERS_DENSITY / V
 
     return _map(scheme, velocities, retardation_times, point, PAPERS_DENSITY)
 
@@ -181,25 +187,15 @@ def step_map(scheme: str, numbers: Array, steps: Array) -> Map:
 
     That limit is the one of the paper's scheme in steady sliding, or of Euler's method for that; the
     inertia number is that of Table 1.
-
-    Examples
-    --------
-    >>> found = step_map("explicit-euler", np.array([1.0]), np.array([0.5, 2.0]))
-    >>> [CLASSES[k] for k in found.classes[:, 0]]
-    ['stable', 'unstable in steady sliding']
     """
     epsilon = StaticState.of(Scene()).inertia_number
-    # R = 1/2, K = tau = delta_0 = 1: the static half length is 1 and the static load 4/3.
-    support = DeadWeight(mass=4.0 / 3.0 * epsilon, gravity=1.0 / epsilon)
-    limited = scheme if SCHEMES[scheme].tableau else "paper"
+    limited = SCHEMES[scheme if SCHEMES[scheme].tableau else "paper"]
 
     def point(number: float, share: float) -> tuple[Scene, float]:
-        scene = Scene(
-            Parabola(0.5), Foundation(1.0, 1.0), support, Drive(velocity=number), Run(1.0)
-        )
-        return scene, share * limit_at(SCHEMES[limited], Model.of(scene), contact_lengths(scene)[0])
+        scene = scaled_scene([(0.0, 1.0, number)], epsilon)
+        return scene, share * limit_at(limited, Model.of(scene), contact_lengths(scene)[0])
 
-    return _map(scheme, numbers, steps, point, KEPT_ROWS)
+    return _map(scheme, numbers, steps, point, PER_HALF_LENGTH)
 
 
 def _map(
@@ -217,33 +213,6 @@ def _map(
 
     rows = np.array([[measured(*point(a, b)) for a in x] for b in y])
     return Map(scheme, x, y, *np.moveaxis(rows, -1, 0))
-
-
-def _begin(
-    scene: Scene, name: str, per_length: float, *, steady: bool = False
-) -> tuple[ElementRow, Scheme, IndenterState]:
-    """Return the elements, the scheme and the indenter at rest, or as steady sliding has left them."""
-    scheme = SCHEMES[name]
-    model = Model.of(scene, 1.0 / per_length, parts=scheme.row.parts_of_elements)
-    row = ElementRow(model, model.path(scene), DEEP)
-    start = IndenterState(0.0, model.depth, 0.0)
-    if not steady:
-        return row, scheme, start
-    state = steady_sliding(scene)
-    left = state.depth - float(model.height(state.trailing_edge))
-
-    def surface(x: Array, y: float) -> Array:
-        behind = np.maximum(x - state.trailing_edge, 0.0) / state.retardation_length
-        u = np.where(
-            x > state.trailing_edge, left * np.exp(-behind), state.depth - model.height(x, y)
-        )
-        return np.where(x < state.leading_edge, 0.0, u)
-
-    def contact(x: Array) -> NDArray[np.bool_]:
-        return np.asarray((x >= state.leading_edge) & (x <= state.trailing_edge))
-
-    row.lay(float(state.depth), surface, contact)
-    return row, scheme, start._replace(depth=float(state.depth))
 
 
 def stability_maps(*, quick: bool = False, progress: Progress = silent) -> dict[str, list[Map]]:

@@ -5,30 +5,29 @@ one run of each setting gives the errors; then all settings are repeated in rand
 and the quartiles. Settings that fail are kept, with the reason.
 """
 
+import math
 import random
 import time
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field
 from functools import partial
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 
-from kvtheory.charts.methods import Clock, Method, TimedOutError, transient_methods
-from kvtheory.charts.problems import Problem, Reference, errors, reference
 from kvtheory.progress import Progress, silent
 from kvtheory.results.certificate import record
 from kvtheory.results.errors import DivergenceError
 
-WRONG = 1e-3
-"""Error of a curve at which a run that reported success is wrong, if it is also far beyond its tolerance."""
-BEYOND = 100.0
-"""Multiple of its tolerance at which an error is far beyond it."""
-JUDGED = "depth, maximum", "friction, maximum"
-"""Errors by which a run is called wrong."""
-REASONS = ("unstable", "not converged", "timed out", "refused", "missed event",
-           "wrong but reported success")  # fmt: skip
+MISSED, WRONG = "missed event", "wrong but reported success"
+REASONS = "unstable", "not converged", "timed out", "refused", MISSED, WRONG
+
+
+class TimedOutError(Exception):
+    """A run took longer than allowed."""
+
+
 REASON_OF: dict[type[BaseException], str] = {
     TimedOutError: "timed out",
     DivergenceError: "unstable",
@@ -39,8 +38,57 @@ REASON_OF: dict[type[BaseException], str] = {
 
 
 @dataclass(frozen=True)
+class Clock:
+    """Ends a run that takes too long, from within its right-hand side."""
+
+    seconds: float = math.inf
+    began: float = field(default_factory=time.perf_counter)
+
+    @property
+    def elapsed(self) -> float:
+        """Time since the clock was made."""
+        return time.perf_counter() - self.began
+
+    def check(self, *_: Any) -> None:
+        """Raise `TimedOutError` if the time is up."""
+        if self.elapsed > self.seconds:
+            raise TimedOutError
+
+
+@dataclass(frozen=True)
+class Reference:
+    """The reference solution; the difference of two independent methods in each error; and their names."""
+
+    solution: Any
+    agreement: dict[str, float]
+    methods: tuple[str, str]
+
+
+@dataclass(frozen=True)
+class Method:
+    """A way to solve a problem; `solve` returns what it found and the work that this took.
+
+    `kind` is ``"model"`` where the error is that of a simpler model, which no parameter can reduce; `work`
+    names the counted operations; `suits` says whether the method applies to a problem; `scenes` is how
+    many are solved at once.
+    """
+
+    name: str
+    knob: str
+    values: Sequence[float]
+    work: Literal["evaluations", "element updates"]
+    solve: Callable[[Any, float, Clock], tuple[Any, int]]
+    kind: Literal["numerical", "model"] = "numerical"
+    suits: Callable[[Any], bool] = lambda problem: True
+    scenes: int = 1
+
+
+@dataclass(frozen=True)
 class Effort:
-    """Limits of a chart: repeats of each setting, seconds for one run and for all repeats."""
+    """Limits of a chart: repeats of each setting, seconds for one run and for all repeats.
+
+    Only one of `every` settings of a parameter is taken.
+    """
 
     repeats: int
     longest: float
@@ -49,7 +97,6 @@ class Effort:
 
 
 FULL, QUICK = Effort(11, 20.0, 120.0, 1), Effort(3, 0.4, 3.0, 2)
-"""Only one of `every` settings of a parameter is taken."""
 
 
 @dataclass
@@ -106,94 +153,78 @@ class Chart:
         return found
 
 
-def transient_chart(
-    problem: Problem, *, methods: Iterable[Method] | None = None, effort: Effort = FULL,
+def make_chart(
+    problem: Any, methods: Iterable[Method], *, effort: Effort = FULL,
     progress: Progress = silent,
 ) -> Chart:  # fmt: skip
     """Measure every method that suits the problem.
 
-    Examples
-    --------
-    >>> from kvtheory.charts.problems import standard_scene
-    >>> one = transient_methods()["two states, LSODA"]
-    >>> chart = transient_chart(Problem("table-1", standard_scene("table-1")), methods=[one], effort=QUICK)
-    >>> all(point.errors["depth, maximum"] < 0.05 for point in chart.series[0].points)
-    True
+    A problem has a `name` and a `reference()`; it can `assess(found, reference, tolerance)`, which gives the
+    errors of a solution, and why it is wrong, if so, for a method with a tolerance.
     """
-    right = reference(problem)
-    chosen = [m for m in (methods or transient_methods().values()) if m.suits(problem)]
+    right = problem.reference()
+    chosen = [method for method in methods if method.suits(problem)]
     series: list[Series] = []
     jobs: list[tuple[Point, Callable[[], Any]]] = []
     for done, method in enumerate(chosen, 1):
         points = [Point(value) for value in method.values[:: effort.every]]
-        first = attempt(points, partial(_solve, problem, method, right), effort)
+        first = _attempt(problem, method, right, points, effort)
         series.append(Series(method.name, method.kind, method.knob, method.work, points, first))
-        good = [point for point in points if not point.reason or point.errors]
-        jobs += [(point, partial(method.solve, problem, point.knob, Clock())) for point in good]
+        for point in points:
+            if point.errors:
+                jobs.append((point, partial(method.solve, problem, point.knob, Clock())))
         progress(0.7 * done / len(chosen), method.name)
-    repeat(jobs, effort)
+    _repeat(jobs, effort)
+    for method, one in zip(chosen, series, strict=True):
+        for point in one.points:
+            point.times = [seconds / method.scenes for seconds in point.times]
+            point.first /= method.scenes
     progress(1.0, "")
     return Chart(problem.name, series, right.agreement, right.methods)
 
 
-def repeat(jobs: list[tuple[Point, Callable[[], Any]]], effort: Effort) -> None:
-    """Time the jobs repeatedly in random order, as far as the effort allows."""
-    order = random.Random(0)
-    began = time.perf_counter()
-    for _ in range(effort.repeats):
-        order.shuffle(jobs)
-        for point, run in jobs:
-            if time.perf_counter() - began > effort.whole and point.times:
-                continue
-            if point.first > effort.longest / 4.0 and point.times:
-                continue  # of long runs a second one is enough
-            start = time.perf_counter()
-            with np.errstate(all="ignore"):
-                run()
-            point.times.append(time.perf_counter() - start)
-
-
-def attempt(points: list[Point], solve: Callable[[Point, Clock], object], effort: Effort) -> float:
+def _attempt(
+    problem: Any, method: Method, right: Reference, points: list[Point], effort: Effort
+) -> float:
     """Run each setting once, the cheapest first, and keep why it failed; return the time of the first call.
 
     That call imports and compiles, and is made separately. Once a setting has timed out, the more expensive
     ones count as timed out and are not begun.
     """
-    first, clock = Clock(effort.longest), Clock(effort.longest)
-    first.start()
+    rated = method.kind == "numerical" and method.knob == "rtol"
+    clock = Clock(effort.longest)
     # What overflows is told below, by its error or its reason.
-    with np.errstate(all="ignore"), suppress(TimedOutError, ArithmeticError, ValueError):
-        solve(Point(points[0].knob), first)
-    seconds = time.perf_counter() - first.began
-    for point in points:
-        if any(other.reason == "timed out" for other in points):
-            point.reason = "timed out"
-            continue
-        clock.start()
-        try:
+    with np.errstate(all="ignore"):
+        with suppress(TimedOutError, ArithmeticError, ValueError):
+            method.solve(problem, points[0].knob, clock)
+        first = clock.elapsed
+        for before, point in zip([None, *points], points, strict=False):
+            if before and before.reason == "timed out":
+                point.reason = "timed out"
+                continue
+            clock = Clock(effort.longest)
+            try:
+                found, point.work = method.solve(problem, point.knob, clock)
+                tolerance = point.knob if rated else None
+                point.errors, point.reason = problem.assess(found, right, tolerance)
+            except tuple(REASON_OF) as error:
+                kinds = (kind for kind in type(error).mro() if kind in REASON_OF)
+                point.reason, point.message = REASON_OF[next(kinds)], str(error)
+            point.first = clock.elapsed
+    return first
+
+
+def _repeat(jobs: list[tuple[Point, Callable[[], Any]]], effort: Effort) -> None:
+    """Time the jobs repeatedly in random order, as far as the effort allows."""
+    order, whole = random.Random(0), Clock()
+    for _ in range(effort.repeats):
+        order.shuffle(jobs)
+        for point, run in jobs:
+            # Of long runs a second one is enough.
+            enough = whole.elapsed > effort.whole or point.first > effort.longest / 4.0
+            if enough and point.times:
+                continue
+            clock = Clock()
             with np.errstate(all="ignore"):
-                solve(point, clock)
-        except tuple(REASON_OF) as error:
-            point.reason = next(REASON_OF[kind] for kind in type(error).mro() if kind in REASON_OF)
-            point.message = str(error)
-        point.first = time.perf_counter() - clock.began
-    return seconds
-
-
-def _solve(problem: Problem, method: Method, right: Reference, point: Point, clock: Clock) -> None:
-    """Solve a problem with one setting, and judge the result."""
-    curves, point.work = method.solve(problem, point.knob, clock)
-    point.errors = errors(curves, right.curves)
-    if method.kind == "numerical" and method.knob == "rtol":
-        point.reason = _judge(point.errors, point.knob, curves, right)
-
-
-def _judge(found: dict[str, float], tolerance: float, curves: Any, right: Reference) -> str:
-    """Return why a run that reported success is wrong, or nothing."""
-    worst = max(found[name] for name in JUDGED)
-    if not np.isfinite(worst):
-        return "not converged"
-    if worst < WRONG or worst < BEYOND * tolerance:
-        return ""
-    flying = (right.curves.friction == 0.0) & (right.curves.depth != 1.0)
-    return "missed event" if np.any(curves.friction[flying] != 0.0) else REASONS[-1]
+                run()
+            point.times.append(clock.elapsed)

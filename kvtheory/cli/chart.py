@@ -6,25 +6,12 @@ from pathlib import Path
 
 import click
 
-from kvtheory.cli.console import (
-    json_option,
-    print_json,
-    print_table,
-    progress_bar,
-    scene_options,
-    split,
-)
+from kvtheory.cli import console
 from kvtheory.cli.group import main
-from kvtheory.cli.outputs import PICTURES, check_output, overwrite_option, path_option
+from kvtheory.cli.outputs import PICTURES, OutputFile
 
 THREADS = "OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"
 """Set to one before anything numerical is imported, so that times can be compared."""
-
-
-def check_chart(output: Path) -> None:
-    """Raise unless a picture and the data beside it can be written."""
-    check_output("-o", output, PICTURES)
-    check_output("-o", output.with_suffix(".json"), [".json"])
 
 
 @main.group()
@@ -34,31 +21,30 @@ def chart() -> None:
 
 @chart.command(example="kvtheory chart failures -o failures.html")
 @click.option("--only", metavar="KEY,...", help="Entries to compute; default: all of them.")
-@path_option("-o", "--output", help="Write the atlas as one self-contained FILE.html.")
-@json_option
-@overwrite_option
+@click.option(
+    "-o", "--output", type=OutputFile(".html"),
+    help="Write the atlas as one self-contained FILE.html.",
+)  # fmt: skip
+@console.json_option
+@console.overwrite_option
 def failures(only: str | None, output: Path | None, as_json: bool) -> None:
     """Show how methods fail, with wrong and right numbers."""
-    check_output("-o", output, [".html"])
     found = []
-    with progress_bar("entries") as report:  # what is imported takes a while, too
-        from kvtheory.charts.failures import ATLAS, findings
+    with console.progress_bar("entries") as report:  # what is imported takes a while, too
+        from kvtheory.charts.failures import ATLAS, ROLES, findings
         from kvtheory.plots.failures import save_failures, shown
 
-        keys = split(only) if only else list(ATLAS)
+        keys = console.split(only) if only else list(ATLAS)
         for finding in findings(keys):
             found.append(finding)
             report(len(found) / len(keys), f"{len(found)} of {len(keys)}")
         if output:
             save_failures(found, output)
     if as_json:
-        print_json({"failures": [finding.as_dict() for finding in found]})
+        console.print_json({"failures": [finding.as_dict() for finding in found]})
         return
-    roles = ("wrong", "right", "package")
-    print_table(
-        ("entry", "quantity", "wrong", "right", "this package"),
-        [(f.entry.key, f.entry.quantity, *(shown(f, role) for role in roles)) for f in found],
-    )
+    rows = [(f.entry.key, f.entry.quantity, *(shown(f, role) for role in ROLES)) for f in found]
+    console.print_table(("entry", "quantity", "wrong", "right", "this package"), rows)
     for finding in found if only else []:
         entry = finding.entry
         click.echo(f"\n{entry.title}. {entry.scene}.\n{entry.why}")
@@ -69,16 +55,15 @@ def failures(only: str | None, output: Path | None, as_json: bool) -> None:
 
 
 @chart.command(example="kvtheory chart stability -o stability.png")
-@path_option(
-    "-o", "--output", default=Path("stability.png"), show_default=True,
-    help="Picture; its data go to FILE.json beside it.",
+@click.option(
+    "-o", "--output", type=OutputFile(*PICTURES, beside=True), default="stability.png",
+    show_default=True, help="Picture; its data go to FILE.json beside it.",
 )  # fmt: skip
 @click.option("--quick", is_flag=True, help="Coarser maps.")
-@overwrite_option
+@console.overwrite_option
 def stability(output: Path, quick: bool) -> None:
     """Map where each scheme is stable, predicted and measured."""
-    check_chart(output)
-    with progress_bar("maps") as report:
+    with console.progress_bar("maps") as report:
         from kvtheory.charts.stability import stability_maps
         from kvtheory.plots.stability import save_stability
 
@@ -87,37 +72,34 @@ def stability(output: Path, quick: bool) -> None:
 
 
 @chart.command(
-    "work-precision",
-    example="kvtheory chart work-precision my-scene.toml --quick -o speed.png",
+    "work-precision", example="kvtheory chart work-precision my-scene.toml --quick -o speed.png"
 )
-@scene_options
+@console.scene_options
 @click.option(
     "--standard", metavar="NAME,...",
     help="Instead of a scene: table-1, low-velocity, high-velocity, small-inertia, stop-and-go, "
     "reversal, hop, or all.",
 )  # fmt: skip
 @click.option("--quick", is_flag=True, help="Fewer settings and repeats: some 15 s for a scene.")
-@path_option(
-    "-o", "--output", default=Path("work_precision.png"), show_default=True,
+@click.option(
+    "-o", "--output", type=OutputFile(*PICTURES, beside=True, inside="work_precision.png"),
+    default="work_precision.png", show_default=True,
     help="Picture, or a directory for it; its data go to FILE.json beside it.",
 )  # fmt: skip
-@overwrite_option
+@console.overwrite_option
 def work_precision(
     scene: str | None, overrides: Sequence[str], standard: str | None, quick: bool, output: Path
 ) -> None:
     """Chart the speed of all methods against their accuracy."""
     os.environ.update(dict.fromkeys(THREADS, "1"))
-    if output.is_dir():
-        output /= "work_precision.png"
-    check_chart(output)
     if standard and (scene or overrides):
         raise ValueError("--standard names its own scenes; it does not go with SCENE or --set")
-    with progress_bar("methods") as report:
+    with console.progress_bar("methods") as report:
         from kvtheory.charts.collection import chosen, measure
         from kvtheory.plots.work_precision import default_errors, save_work_precision
         from kvtheory.scene import load_scene
 
-        standards = split(standard) if standard else []
+        standards = console.split(standard) if standard else []
         jobs = chosen(load_scene(scene, overrides), standards, quick=quick)
         charts = measure(jobs, quick=quick, progress=report)
         save_work_precision(charts, output)
@@ -129,22 +111,20 @@ def work_precision(
 
 
 @main.command(example="kvtheory explore my-scene.toml -o explorer.html")
-@scene_options
-@path_option(
-    "-o", "--output", default=Path("explorer.html"), show_default=True,
+@console.scene_options
+@click.option(
+    "-o", "--output", type=OutputFile(".html"), default="explorer.html", show_default=True,
     help="File to write; it needs no server and no network.",
 )  # fmt: skip
-@overwrite_option
+@console.overwrite_option
 def explore(scene: str | None, overrides: Sequence[str], output: Path) -> None:
     """Write an interactive HTML page of steady sliding.
 
     It has a slider for every quantity of SCENE.
     """
-    from kvtheory.explorer import save_explorer
-    from kvtheory.scene import load_scene
+    with console.progress_bar("explore"):
+        from kvtheory.explorer import save_explorer
+        from kvtheory.scene import load_scene
 
-    check_output("-o", output, [".html"])
-    with progress_bar("explore"):
-        checked = load_scene(scene, overrides)
-        save_explorer(checked, output)
+        save_explorer(load_scene(scene, overrides), output)
     click.echo(f"{output}: open it in any browser")

@@ -1,4 +1,4 @@
-"""The common parts of commands: the options of a scene, a progress bar, tables and JSON."""
+"""The common parts of commands: options, a progress bar, what is printed and written."""
 
 import json
 import math
@@ -7,30 +7,50 @@ import threading
 import time
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
+from functools import partial, wraps
+from pathlib import Path
 from typing import Any
 
 import click
+
+from kvtheory.cli.group import main
+from kvtheory.cli.outputs import PICTURES, SERIES_SUFFIXES, OutputFile
 
 LARGE_ERROR = 0.05
 """Of the static state: a larger one is seen in any plot, and is beyond the scatter of a good measurement."""
 ROWS = 20
 """Rows of a long table, about."""
-BEGUN = "kvtheory.begun"
-"""When a command began to work, in the meta of its context."""
+START_TIME = "kvtheory.begun"
+"""Start time of a command, in the meta of its context."""
+
+json_option = click.option(
+    "--json", "as_json", is_flag=True, help="Print one JSON object, in SI units."
+)
+overwrite_option = click.option(
+    "--overwrite", is_flag=True, help="Overwrite files of another kind than this command writes."
+)
+plot_option = click.option(
+    "--plot", type=OutputFile(*PICTURES), help="Draw the result to FILE.png, .svg or .pdf."
+)
+at_option = click.option(
+    "--at", metavar='"0 ms,1 ms,..."', help="Times to report, or START:STOP:COUNT."
+)
 
 
-def scene_command(
-    group: click.Group, example: str
-) -> Callable[[Callable[..., None]], click.Command]:
-    """Declare a command on an optional scene file, with `--set` and `--json`."""
-
-    def decorate(function: Callable[..., None]) -> click.Command:
-        return group.command(example=example)(scene_options(json_option(function)))
-
-    return decorate
+def result_options(command: Callable[..., Any]) -> Any:
+    """Give a command `-o` for the file of its result, and `--plot` for its picture."""
+    return click.option(
+        "-o", "--output", type=OutputFile(*SERIES_SUFFIXES),
+        help="Write the result to FILE.csv or FILE.nc.",
+    )(plot_option(overwrite_option(command)))  # fmt: skip
 
 
-def scene_options(command: Callable[..., Any]) -> Callable[..., Any]:
+def series_options(command: Callable[..., Any]) -> Any:
+    """Give a command `--at` for the times of a series, `-o` for its file and `--plot`."""
+    return at_option(result_options(command))
+
+
+def scene_options(command: Callable[..., Any]) -> Any:
     """Give a command an optional scene file, and `--set`."""
     command = click.option(
         "--set", "overrides", multiple=True, metavar="KEY=VALUE",
@@ -40,9 +60,33 @@ def scene_options(command: Callable[..., Any]) -> Callable[..., Any]:
     return click.argument("scene", required=False, type=path)(command)
 
 
-json_option = click.option(
-    "--json", "as_json", is_flag=True, help="Print one JSON object, in SI units."
-)
+def scene_command(example: str) -> Callable[[Callable[..., Iterator[Any]]], click.Command]:
+    """Declare a command on an optional scene file, with `--set` and `--json`.
+
+    Its body gets the scene and a function that reports progress, and yields its result. This is written to
+    the files of `result_options`, all or none, or printed as JSON; else the body goes on, and prints it.
+    """
+
+    def declare(body: Callable[..., Iterator[Any]]) -> click.Command:
+        @wraps(body)
+        def command(
+            scene: str | None, overrides: Sequence[str], as_json: bool, output: Path | None = None,
+            plot: Path | None = None, **how: Any,
+        ) -> None:  # fmt: skip
+            with progress_bar(body.__name__) as progress:
+                from kvtheory.scene import load_scene
+
+                steps = body(load_scene(scene, overrides), progress, **how)
+                result = next(steps)
+            write_files({output: result.save} if output else {}, result, plot)
+            if as_json:
+                print_json(result.as_dict())
+            else:
+                next(steps, None)
+
+        return main.command(example=example)(scene_options(json_option(command)))
+
+    return declare
 
 
 @contextmanager
@@ -54,7 +98,7 @@ def progress_bar(label: str) -> Iterator[Callable[..., None]]:
     from kvtheory.progress import BEAT, PATIENCE, ProgressLine
 
     context = click.get_current_context(silent=True)
-    begun = context.meta.setdefault(BEGUN, time.monotonic()) if context else time.monotonic()
+    begun = context.meta.setdefault(START_TIME, time.monotonic()) if context else time.monotonic()
     patience = max(PATIENCE - (time.monotonic() - begun), 0.0)  # of all parts of a command together
     line, over = ProgressLine(label, patience=patience), threading.Event()
 
@@ -89,6 +133,20 @@ def error_text(error: float) -> str:
     return "-" if math.isnan(error) else f"{error:.1e}"
 
 
+def write_files(
+    writers: Mapping[Path, Callable[[Path], Any]], result: Any, plot: Path | None
+) -> None:
+    """Write files, and the picture of a result; all are made before any is put in place."""
+    from kvtheory.export import replace_files
+
+    with progress_bar("writing"):
+        if plot:
+            from kvtheory.plots import save_plot
+
+            writers = {**writers, plot: partial(save_plot, result)}
+        replace_files(writers)
+
+
 def print_json(result: Any) -> None:
     """Print the one JSON object of a command."""
     plain = "utf" not in (getattr(sys.stdout, "encoding", None) or "").lower()
@@ -105,64 +163,59 @@ def print_series(result: Any, *, whole: bool, remedy: str) -> None:
         named = ", ".join(f"{name} {error:.2g}" for name, error in large.items())
         scale = result.certificate.relative_to
         click.secho(f"! Large error, relative to {scale}: {named}. {remedy}", bold=True)
-    names = [name for name in result.units if name != "depth_rate"]
-    columns = {name: (getattr(result, name), result.units[name]) for name in names}
-    count = result.time.size
-    _print_columns(columns, range(count) if whole else _spread_over(count))
+    units = {name: unit for name, unit in result.units.items() if name != "depth_rate"}
+    columns = {name: (getattr(result, name), unit) for name, unit in units.items()}
+    _print_columns(columns, result.time.size, whole=whole)
 
 
 def print_scenes(scene: Any, result: Any, units: Mapping[str, str]) -> None:
     """Print some quantities of many scenes: a row for each, or about twenty with both ends."""
     import numpy as np  # as a help text needs none
 
-    keys = {
-        f"{key} [{scene.replaceable[key].unit}]".removesuffix(" [1]"): (values, "1")
-        for key, values in scene.arrays().items()
-    }
-    columns = keys | {name: (getattr(result, name), unit) for name, unit in units.items()}
-    count, flat = math.prod(scene.shape), {}
+    columns = {}
+    for key, values in scene.arrays().items():
+        columns[f"{key} [{scene.replaceable[key].unit}]".removesuffix(" [1]")] = values, "1"
+    columns |= {name: (getattr(result, name), unit) for name, unit in units.items()}
     for name, (values, unit) in columns.items():
-        flat[name] = np.broadcast_to(values, scene.shape).ravel(), unit
-    rows = _spread_over(count)
-    _print_columns(flat, rows)
-    if len(rows) < count:
-        click.echo(f"{len(rows)} of {count:,} scenes; --json prints all")
+        columns[name] = np.broadcast_to(values, scene.shape).ravel(), unit
+    count = math.prod(scene.shape)
+    if (rows := _print_columns(columns, count)) < count:
+        click.echo(f"{rows} of {count:,} scenes; --json prints all")
 
 
-def _spread_over(count: int) -> Sequence[int]:
-    """Return all rows of a table, or about twenty, with both ends."""
-    return sorted({round(i * (count - 1) / ROWS) for i in range(ROWS + 1)}) if count else []
-
-
-def _print_columns(columns: Mapping[str, tuple[Any, str]], rows: Iterable[int]) -> None:
-    """Print some rows of columns, in the units of the tables."""
+def _print_columns(
+    columns: Mapping[str, tuple[Any, str]], count: int, *, whole: bool = False
+) -> int:
+    """Print the rows of columns, or about twenty with both ends; return how many."""
     from kvtheory.results import SHOWN_UNITS
     from kvtheory.results.presented import in_shown_unit
 
+    rows = range(count)
+    if count and not whole:
+        rows = sorted({round(i * (count - 1) / ROWS) for i in range(ROWS + 1)})  # type: ignore[assignment]
     heads = [f"{name} [{SHOWN_UNITS[unit][0]}]" for name, (_, unit) in columns.items()]
     print_table(
         [head.removesuffix(" []") for head in heads],
         [[in_shown_unit(values[i], unit)[0] for values, unit in columns.values()] for i in rows],
     )
+    return len(rows)
 
 
 def print_quantities(
     result: Any, units: Mapping[str, str], names: Mapping[str, str] | None = None
 ) -> None:
-    """Print some quantities of one scene with their errors, under other names where these are given."""
+    """Print quantities of a result as a table, with their relative errors."""
     from kvtheory.results.presented import in_shown_unit
 
     errors = result.certificate.relative_error
-    print_table(
-        ("quantity", "value", "unit", "relative error"),
-        [
-            (
-                (names or {}).get(name, name), *in_shown_unit(getattr(result, name), unit),
-                error_text(errors.get(name, math.nan)),
-            )
-            for name, unit in units.items()
-        ],
-    )  # fmt: skip
+    rows = [
+        (
+            (names or {}).get(name, name), *in_shown_unit(getattr(result, name), unit),
+            error_text(errors.get(name, math.nan)),
+        )
+        for name, unit in units.items()
+    ]  # fmt: skip
+    print_table(("quantity", "value", "unit", "relative error"), rows)
 
 
 def print_table(heads: Sequence[str], rows: Iterable[Sequence[str]]) -> None:

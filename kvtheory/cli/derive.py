@@ -6,15 +6,14 @@ import re
 import shlex
 from collections import Counter
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
 
-from kvtheory.cli.console import print_json, print_table, progress_bar, scene_options, split
+from kvtheory.cli import console
 from kvtheory.cli.group import main
-from kvtheory.cli.outputs import check_output, overwrite_option
+from kvtheory.cli.outputs import check_output
 
 if TYPE_CHECKING:
     from kvtheory.derivations.record import Derivation
@@ -27,12 +26,12 @@ DERIVING = 0.7
 SHAPE_SYMBOLS = {"radius": "R", "length": "L", "exponent": "n", "inclination": "c_1"}
 SUPPORT_SYMBOLS = {"mass": "M", "gravity": "g", "stiffness": "k_s"}
 """Names of symbols by the keys of a scene."""
-UNUSUAL = re.compile(r"[^\w .,()+-]")
+UNUSUAL_CHARACTER = re.compile(r"[^\w .,()+-]")
 """What the name of a scene may not hold inside a document, where it could be mathematics or markup."""
 
 
 @main.command(example="kvtheory derive -o my-thesis --format tex --only eq27,F3 --closure")
-@scene_options
+@console.scene_options
 @click.option(
     "-o", "--output", type=click.Path(file_okay=False, path_type=Path),
     default=Path("paper/derivations"), show_default=True, help="Directory to write to.",
@@ -64,7 +63,7 @@ UNUSUAL = re.compile(r"[^\w .,()+-]")
 @click.option(
     "--json", "as_json", is_flag=True, help="Print one JSON object about what was written."
 )
-@overwrite_option
+@console.overwrite_option
 def derive(
     scene: str | None, output: Path, formats: str | None, only: str, closure: bool, numbers: bool,
     shape: str | None, notation: Path | None, overrides: Sequence[str], listing: bool, symbols: bool,
@@ -78,10 +77,16 @@ def derive(
     from kvtheory.derivations.contents import CONTENTS
     from kvtheory.derivations.labels import find
     from kvtheory.derivations.render import check_directory, write_edition
-    from kvtheory.derivations.render.notation import NAMES, check_letters, read_notation
+    from kvtheory.derivations.render.notation import NAMES, check_letters, plain, read_notation
 
-    if listing or symbols:
-        _print_symbols(as_json) if symbols else _print_labels(CONTENTS, as_json)
+    if symbols:
+        from kvtheory.derivations.nomenclature import SYMBOLS
+
+        rows = [(plain(each.latex), each.latex, each.meaning, each.unit) for each in SYMBOLS]
+        _print_rows(("name", "latex", "meaning", "unit"), rows, as_json)
+        return
+    if listing:
+        _print_rows(("label", "title"), list(CONTENTS.items()), as_json)
         return
     if (scene or overrides) and not numbers:
         raise ValueError("SCENE and --set go with --numbers, which inserts their quantities")
@@ -89,35 +94,20 @@ def derive(
         raise ValueError(
             "--shape derives a separate chapter; it does not go with --only, --closure or --numbers"
         )
-    wanted = _formats(formats)
-    request = Request(
-        find(split(only), CONTENTS), closure, shape, read_notation(notation) if notation else {}
-    )
-    if not (request.labels or shape):  # then every symbol is shown
-        check_letters(request.notation, NAMES.values())
-    if numbers:
-        request.quantities, request.indenter, request.scene = _quantities(scene, overrides)
+    wanted, labels = _formats(formats), find(console.split(only), CONTENTS)
+    letters = read_notation(notation) if notation else {}
+    if not (labels or shape):  # then every symbol is shown
+        check_letters(letters, NAMES.values())
+    given = _quantities(scene, overrides) if numbers else None
     check_directory(output)
     for name in wanted if output.is_dir() else ():
         check_output("-o", output / f"derivations.{name}", [f".{name}"])
-    with progress_bar("derive") as report:
-        edition = _edition(request, lambda share, words: report(DERIVING * share, words))
+    with console.progress_bar("derive") as report:
+        deriving = lambda share, words: report(DERIVING * share, words)  # noqa: E731
         writing = lambda share, name: report(DERIVING + (1.0 - DERIVING) * share, name)  # noqa: E731
+        edition = _edition(labels, closure, shape, letters, given, deriving)
         paths = write_edition(edition, output, wanted, writing)
     _report(edition.derivations, output, paths, as_json=as_json, numbers=numbers)
-
-
-@dataclass
-class Request:
-    """The derivations to print, and their notation."""
-
-    labels: list[str]
-    closure: bool
-    shape: str | None
-    notation: dict[str, str]
-    quantities: dict[str, float] = field(default_factory=dict)
-    indenter: str = "parabola"
-    scene: str = ""
 
 
 def _formats(formats: str | None) -> list[str]:
@@ -125,7 +115,7 @@ def _formats(formats: str | None) -> list[str]:
     from kvtheory.derivations.render import FORMATS, check_formats, latex_engine
 
     if formats is not None:
-        wanted = split(formats)
+        wanted = console.split(formats)
         check_formats(wanted)
         return wanted
     if latex_engine():
@@ -181,12 +171,15 @@ def _quantities(path: str | None, overrides: Sequence[str]) -> tuple[dict[str, f
             quantities["W_0"] = at_rest.load
         if not at_rest.fixed:
             quantities |= {"epsilon": at_rest.inertia_number, "kappa": at_rest.support_number}
-    where = UNUSUAL.sub("_", Path(path).name) if path else "Table 1"
+    where = UNUSUAL_CHARACTER.sub("_", Path(path).name) if path else "Table 1"
     parts = ", ".join([f"{scene.support.kind} support", *([] if line else ["ball"])])
     return quantities, scene.indenter.shape, f"{where} ({parts})"
 
 
-def _edition(request: Request, report: Callable[[float, str], None]) -> "Edition":
+def _edition(
+    labels: list[str], closure: bool, shape: str | None, notation: dict[str, str],
+    given: tuple[dict[str, float], str, str] | None, report: Callable[[float, str], None],
+) -> "Edition":  # fmt: skip
     """Derive what was asked for, after a line that says how much that is."""
     from kvtheory import __version__
     from kvtheory.derivations.calculation import FOLLOWING, shown_quantities, with_numbers
@@ -194,60 +187,43 @@ def _edition(request: Request, report: Callable[[float, str], None]) -> "Edition
     from kvtheory.derivations.render import edition
     from kvtheory.derivations.shape import derive_shape, symbols, title
 
-    about: dict[str, Any] = {
-        "command": _command(), "version": __version__, "notation": request.notation
-    }  # fmt: skip
-    if request.shape is not None:
-        chapter, own = derive_shape(request.shape), symbols(request.shape)
-        return edition(chapter, **about, title=title(request.shape), symbols=own)
-    following = {label for label, _ in FOLLOWING} if request.quantities else set()
-    needed = {*request.labels, *following} if request.labels else set()
-    total, asked = wanted_up_to(needed), len(request.labels)
-    some = f"{total} records for the {asked} asked for, since each rests on earlier ones"
-    amount = some if asked else f"all {total} records; --only chooses some"
-    click.echo(f"kvtheory: deriving {amount}", err=True)
+    about: dict[str, Any] = {"command": _command(), "version": __version__, "notation": notation}
+    if shape is not None:
+        return edition(derive_shape(shape), **about, title=title(shape), symbols=symbols(shape))
+    following = {label for label, _ in FOLLOWING} if given else set()
+    needed = {*labels, *following} if labels else set()
+    total, count = wanted_up_to(needed), len(labels)
+    some = f"{total} records for the {count} asked for, since each rests on earlier ones"
+    click.echo(
+        f"kvtheory: deriving {some if count else f'all {total} records; --only chooses some'}",
+        err=True,
+    )
     derived: Iterable[Derivation] = catalogue(needed, report)
-    if request.quantities:
-        given = request.quantities, request.indenter
-        derived = with_numbers(derived, *given)
-        about |= {"values": shown_quantities(*given), "scene": request.scene}
-    return edition(tuple(derived), request.labels, with_premises=request.closure, **about)
+    if given:
+        quantities, indenter, where = given
+        derived = with_numbers(derived, quantities, indenter)
+        about |= {"values": shown_quantities(quantities, indenter), "scene": where}
+    return edition(tuple(derived), labels, with_premises=closure, **about)
 
 
 def _command() -> str:
     """Return the command that reproduces the content, wherever it is written."""
-    context = click.get_current_context()
-    given = {
-        name: value for name, value in context.params.items()
-        if value and name not in {"output", "formats", "as_json"}
-    }  # fmt: skip
-    options = {option.name: option for option in context.command.params}
-    words = [context.command_path]
-    for name, value in given.items():
-        flag = options[name].opts[-1] if name != "scene" else ""
-        values = list(value) if isinstance(value, tuple) else [value]
-        for each in values:
-            words += [word for word in (flag, "" if each is True else str(each)) if word]
-    return " ".join([words[0], shlex.join(words[1:])]).strip()
-
-
-def _print_labels(contents: dict[str, str], as_json: bool) -> None:
-    _print_rows(("label", "title"), list(contents.items()), as_json)
-
-
-def _print_symbols(as_json: bool) -> None:
-    from kvtheory.derivations.nomenclature import SYMBOLS
-    from kvtheory.derivations.render.notation import plain
-
-    rows = [(plain(each.latex), each.latex, each.meaning, each.unit) for each in SYMBOLS]
-    _print_rows(("name", "latex", "meaning", "unit"), rows, as_json)
+    context, words = click.get_current_context(), []
+    options = {option.name: option.opts[-1] for option in context.command.params}
+    for name, value in context.params.items():
+        if not value or name in {"output", "formats", "as_json"}:
+            continue
+        for each in value if isinstance(value, tuple) else [value]:
+            words += [] if name == "scene" else [options[name]]
+            words += [] if each is True else [str(each)]
+    return f"{context.command_path} {shlex.join(words)}".strip()
 
 
 def _print_rows(heads: Sequence[str], rows: Sequence[Sequence[str]], as_json: bool) -> None:
     if as_json:
-        print_json([dict(zip(heads, row, strict=True)) for row in rows])
+        console.print_json([dict(zip(heads, row, strict=True)) for row in rows])
     else:
-        print_table(heads, rows)
+        console.print_table(heads, rows)
 
 
 def _report(
@@ -262,7 +238,7 @@ def _report(
     counts = dict(Counter(each.status for each in derived))
     if as_json:
         files = [str(path) for path in paths]
-        print_json({"directory": str(output), "files": files, "derivations": counts})
+        console.print_json({"directory": str(output), "files": files, "derivations": counts})
         return
     click.echo("Derived and checked: " + ", ".join(f"{status} {n}" for status, n in counts.items()))
     for path in paths:

@@ -9,6 +9,8 @@ from typing import Any
 
 import click
 
+from kvtheory.cli.outputs import check_outputs
+
 DISAGREES, BAD_INPUT, INTERNAL_ERROR, INTERRUPTED, BROKEN_PIPE = 1, 2, 70, 130, 141
 """Exit status beside 0; 2 also if the output cannot be written."""
 
@@ -18,7 +20,7 @@ class Failure(click.ClickException):
 
     def __init__(self, message: str, status: int = BAD_INPUT) -> None:
         super().__init__(message)
-        self.status = status
+        self.exit_code = status  # type: ignore[misc]
 
     def show(self, file: Any = None) -> None:
         """Write the message to standard error, without control characters."""
@@ -43,15 +45,15 @@ class Command(click.Command):
     def invoke(self, ctx: click.Context) -> Any:
         """Run the command, and turn its errors into messages: bad input is status 2, never 1."""
         try:
+            check_outputs(ctx)
             return super().invoke(ctx)
         except (click.ClickException, click.Abort, click.exceptions.Exit, BrokenPipeError):
             raise
         except KeyboardInterrupt as error:
             raise Failure(str(error) or "interrupted", INTERRUPTED) from None
         except MemoryError as error:
-            raise Failure(
-                f"error: out of memory: {str(error) or 'ask for less at a time'}"
-            ) from None
+            why = str(error) or "ask for less at a time"
+            raise Failure(f"error: out of memory: {why}") from None
         except OSError as error:
             if error.filename is None and error.errno is not None:  # of standard output
                 raise
@@ -78,44 +80,33 @@ class Group(click.Group):
         run: Any = super().main
         if not standalone_mode:
             return run(*args, standalone_mode=False, **kwargs)
-        output = sys.stdout
-        status: Any = 0
+        output, status = sys.stdout, 0
         for stream in (sys.stdout, sys.stderr):
             if hasattr(stream, "reconfigure"):
                 stream.reconfigure(errors="backslashreplace")
         try:
-            status = run(*args, standalone_mode=False, **kwargs) or 0
+            try:
+                status = run(*args, standalone_mode=False, **kwargs) or 0
+            except OSError as error:
+                why = f"error: the output cannot be written: {error.strerror}"
+                raise Failure(why) from None
         except click.ClickException as error:
-            status = _exit_code(error)
+            status = error.exit_code
+            with suppress(OSError):  # where standard error cannot be written either
+                error.show()
         except click.Abort:
             status = INTERRUPTED
-        except OSError as error:
-            status = _exit_code(Failure(f"error: the output cannot be written: {error.strerror}"))
-        except (
-            SystemExit
-        ) as end:  # of click, which replaces the output if its reader has closed the pipe
-            status = end.code if sys.stdout is output else BROKEN_PIPE
+        except SystemExit as end:  # of click, which replaces the output if its pipe is closed
+            status = end.code if sys.stdout is output else BROKEN_PIPE  # type: ignore[assignment]
         try:
             for stream in filter(None, (output, sys.stderr)):
                 stream.flush()
-        except OSError:
-            _discard()
+        except OSError:  # Python would fail at its exit on what is still buffered
+            nowhere = os.open(os.devnull, os.O_WRONLY)
+            for stream in (sys.stdout, sys.stderr):
+                with suppress(AttributeError, OSError, ValueError):
+                    os.dup2(nowhere, stream.fileno())
         sys.exit(status)
-
-
-def _exit_code(error: click.ClickException) -> int:
-    """Show an error, if standard error can be written, and return its exit status."""
-    with suppress(OSError):
-        error.show()
-    return error.status if isinstance(error, Failure) else error.exit_code
-
-
-def _discard() -> None:
-    """Discard what is still buffered, so that Python does not fail on it at its exit."""
-    nowhere = os.open(os.devnull, os.O_WRONLY)
-    for stream in (sys.stdout, sys.stderr):
-        with suppress(AttributeError, OSError, ValueError):
-            os.dup2(nowhere, stream.fileno())
 
 
 def in_options(message: str, command: click.Command) -> str:
@@ -136,8 +127,7 @@ def in_options(message: str, command: click.Command) -> str:
 
 
 @click.group(
-    cls=Group,
-    context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100},
+    cls=Group, context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100}
 )
 @click.version_option(package_name="kvtheory")
 def main() -> None:

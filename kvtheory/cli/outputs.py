@@ -4,17 +4,15 @@ An output is never a file that the command reads. An existing file is replaced i
 command writes, and left unchanged if it holds anything else, unless ``--overwrite`` is given.
 """
 
-from collections.abc import Callable, Mapping, Sequence
-from functools import partial
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
 import click
 
-from kvtheory.cli.console import print_json, progress_bar
-from kvtheory.export import PICTURES, SERIES_SUFFIXES, check_path, replace_files
+from kvtheory.export import PICTURES, SERIES_SUFFIXES, check_path
 
-__all__ = ["PICTURES", "check_output"]
+__all__ = ["PICTURES", "SERIES_SUFFIXES", "OutputFile", "check_output", "check_outputs"]
 
 BEGINNINGS = {
     ".csv": (b"time [s],velocity [m/s],",),
@@ -35,74 +33,43 @@ STEADY_HEADER = b"depth [m],half_length [m],"
 BYTES = 2**14
 """How much of a file is read to recognise it: more than the longest header."""
 OVERWRITE = "kvtheory.overwrite"
+"""Whether `--overwrite` was given, in the meta of a context."""
 
 
-def overwrite_option(command: Callable[..., Any]) -> Callable[..., Any]:
-    """Give a command `--overwrite`, which `overwriting` reads."""
+class OutputFile(click.Path):
+    """The name of a file to write, which ends in one of the `suffixes`.
 
-    def keep(context: click.Context, _: click.Parameter, value: bool) -> None:
-        context.meta[OVERWRITE] = value
-
-    return click.option(
-        "--overwrite", is_flag=True, expose_value=False, callback=keep,
-        help="Overwrite files of another kind than this command writes.",
-    )(command)  # fmt: skip
-
-
-def overwriting() -> bool:
-    """Whether the running command was given `--overwrite`."""
-    context = click.get_current_context(silent=True)
-    return bool(context and context.meta.get(OVERWRITE))
-
-
-def series_options(command: Callable[..., Any]) -> Callable[..., Any]:
-    """Give a command `--at` for the times of a series, `-o` for its file and `--plot`."""
-    return click.option(
-        "--at", metavar='"0 ms,1 ms,..."', help="Times to report, or START:STOP:COUNT."
-    )(result_options(command))
-
-
-def result_options(command: Callable[..., Any]) -> Callable[..., Any]:
-    """Give a command `-o` for the file of its result, and `--plot` for its picture."""
-    plot = path_option("--plot", help="Draw the result to FILE.png, .svg or .pdf.")
-    output = path_option("-o", "--output", help="Write the result to FILE.csv or FILE.nc.")
-    return output(plot(overwrite_option(command)))
-
-
-def path_option(*names: str, **how: Any) -> Callable[..., Any]:
-    """Return an option that takes the name of a file to write."""
-    return click.option(*names, type=click.Path(path_type=Path), **how)
-
-
-def check_results(output: Path | None, plot: Path | None) -> None:
-    """Raise unless the files of `result_options` can be written: before a run that may be long."""
-    check_output("-o", output, SERIES_SUFFIXES)
-    check_output("--plot", plot, PICTURES)
-
-
-def deliver(
-    result: Any, output: Path | None, plot: Path | None, *,
-    as_json: bool, more: Mapping[Path, Callable[[Path], Any]] | None = None,
-) -> bool:  # fmt: skip
-    """Write a result to the files of `result_options` and `more`, or as JSON; return whether that is all.
-
-    All files are made before any is put in place.
+    A chart has its data `beside` it, in FILE.json. In a directory the file has the name `inside`. Without
+    suffixes the command itself checks the name.
     """
-    writers: dict[Path, Callable[[Path], Any]] = {}
-    with progress_bar("writing"):
-        if output:
-            writers[output] = result.save
-        if plot:
-            from kvtheory.plots import save_plot
 
-            writers[plot] = partial(save_plot, result)
-        replace_files(writers | dict(more or {}))
-    if as_json:
-        print_json(result.as_dict())
-    return as_json
+    def __init__(self, *suffixes: str, beside: bool = False, inside: str = "") -> None:
+        super().__init__(path_type=Path)
+        self.suffixes, self.beside, self.inside = suffixes, beside, inside
+
+    def convert(self, value: Any, param: Any, ctx: Any) -> Any:
+        """Return the name as a path."""
+        path: Any = super().convert(value, param, ctx)
+        return path / self.inside if self.inside and path.is_dir() else path
 
 
-def check_output(option: str, path: Path | None, suffixes: Sequence[str]) -> None:
+def check_outputs(context: click.Context) -> None:
+    """Raise unless all files that a command was told to write can be written."""
+    context.meta[OVERWRITE] = context.params.pop("overwrite", False)
+    for parameter in context.command.params:
+        path, kind = context.params.get(parameter.name or ""), parameter.type
+        if path is None or not isinstance(kind, OutputFile):
+            continue
+        option = parameter.opts[0]
+        if not kind.suffixes:
+            _check_not_an_input(option, path)
+            continue
+        check_output(option, path, kind.suffixes)
+        if kind.beside:
+            check_output(option, path.with_suffix(".json"), [".json"])
+
+
+def check_output(option: str, path: Path, suffixes: Sequence[str]) -> None:
     """Raise unless a file of this name can be written, judging by its name, its directory and the rule.
 
     Examples
@@ -112,21 +79,20 @@ def check_output(option: str, path: Path | None, suffixes: Sequence[str]) -> Non
     Traceback (most recent call last):
     ValueError: --plot "a.txt": expected a name that ends in .png or .pdf
     """
-    if path is None:
-        return
     try:
         check_path(path, suffixes)
     except (ValueError, OSError) as error:
         raise type(error)(f"{option} {error}") from None
-    check_not_an_input(option, path)
-    if path.exists() and not (overwriting() or _is_ours(path)):
+    _check_not_an_input(option, path)
+    context = click.get_current_context(silent=True)
+    if path.exists() and not (context and context.meta[OVERWRITE]) and not _is_ours(path):
         raise ValueError(
             f'{option} "{path}" exists and is not what this command writes: remove it, choose another '
             "name, or give --overwrite"
         )
 
 
-def check_not_an_input(option: str, path: Path) -> None:
+def _check_not_an_input(option: str, path: Path) -> None:
     """Raise `ValueError` if the running command reads this file, also as the drive of its scene."""
     context = click.get_current_context(silent=True)
     if context is None or not path.exists():

@@ -7,40 +7,33 @@ from collections.abc import Iterable, Sequence
 from concurrent.futures import Executor
 from contextlib import ExitStack
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import click
 
-from kvtheory.cli.console import print_json, progress_bar, scene_command, split
+from kvtheory.cli import console
 from kvtheory.cli.group import main
-from kvtheory.cli.outputs import (
-    PICTURES,
-    check_not_an_input,
-    check_output,
-    overwrite_option,
-    overwriting,
-    path_option,
-)
-
-if TYPE_CHECKING:
-    from kvtheory.results import Sweep
+from kvtheory.cli.outputs import OVERWRITE, PICTURES, OutputFile
 
 SHOWN_FAILURES = 5
 EXAMPLE = '"drive.velocity=1 mm/s:10 m/s:200:log" or "foundation.retardation_time=10 ms,1 s"'
 
 
-@scene_command(
-    main,
-    'kvtheory sweep --over "drive.velocity=1 mm/s:10 m/s:200:log" '
-    '--over "foundation.retardation_time=10 ms,100 ms,1 s" -o map.csv',
+@main.command(
+    example=(
+        'kvtheory sweep --over "drive.velocity=1 mm/s:10 m/s:200:log" '
+        '--over "foundation.retardation_time=10 ms,100 ms,1 s" -o map.csv'
+    )
 )
+@console.scene_options
+@console.json_option
 @click.option(
     "--over", multiple=True, required=True, metavar="KEY=VALUES",
     help="Sweep a key over START:STOP:COUNT[:log] or V1,V2,...; repeatable, for all combinations. "
     "KEY=VALUES & KEY=VALUES in one option vary together.",
 )  # fmt: skip
-@path_option(
-    "-o", "--output", required=True,
+@click.option(
+    "-o", "--output", required=True, type=OutputFile(),
     help="FILE.csv or FILE.nc; until all is done, FILE.part keeps finished blocks. The same command resumes.",
 )  # fmt: skip
 @click.option(
@@ -63,8 +56,11 @@ EXAMPLE = '"drive.velocity=1 mm/s:10 m/s:200:log" or "foundation.retardation_tim
     help="Factory of a concurrent.futures.Executor; called with the number of jobs, if given.",
 )  # fmt: skip
 @click.option("--block", type=click.IntRange(1), help="Scenes in a block.")
-@overwrite_option
-@path_option("--plot", help="Draw the first quantity to FILE.png, .svg or .pdf.")
+@console.overwrite_option
+@click.option(
+    "--plot", type=OutputFile(*PICTURES),
+    help="Draw the first quantity to FILE.png, .svg or .pdf.",
+)  # fmt: skip
 def sweep(
     scene: str | None, overrides: Sequence[str], as_json: bool, over: Sequence[str],
     output: Path, quantities: Sequence[str], jobs: int | None, executor: str | None,
@@ -76,14 +72,13 @@ def sweep(
     """
     from kvtheory.api import sweep as run
     from kvtheory.api._sweep import plan_of
+    from kvtheory.results import record
     from kvtheory.scene import load_scene
     from kvtheory.sweeps.plan import announcement
 
-    check_not_an_input("-o", output)
-    check_output("--plot", plot, PICTURES)
     what: dict[str, Any] = {
         "scene": load_scene(scene, overrides), "over": read_over(over), **how,
-        "quantities": [name for text in quantities for name in split(text)] or None,
+        "quantities": [name for text in quantities for name in console.split(text)] or None,
     }  # fmt: skip
     plan = plan_of(**what)
     if plot:
@@ -94,22 +89,41 @@ def sweep(
         click.echo(f"kvtheory: {large}", err=True)
     began = time.perf_counter()
     with ExitStack() as stack:
-        progress = stack.enter_context(progress_bar("sweep"))
+        progress = stack.enter_context(console.progress_bar("sweep"))
         pool = stack.enter_context(from_factory(executor, jobs)) if executor else None
         try:
             result = run(
                 **what, executor=pool, jobs=jobs or 1, block=block, output=output,
-                overwrite=overwriting(), progress=progress,
+                overwrite=click.get_current_context().meta[OVERWRITE], progress=progress,
             )  # fmt: skip
         except KeyboardInterrupt:
             left = f'"{output}" holds the finished points, and the same command resumes'
             raise KeyboardInterrupt(f"interrupted; {left}") from None
     seconds = time.perf_counter() - began
     if plot:
-        from kvtheory.plots.result import save_plot
+        from kvtheory.plots import save_plot
 
         save_plot(result, plot)
-    _print(result, seconds, as_json)
+    if as_json:
+        counts = {name: getattr(result, name) for name in ("points", "computed", "failed")}
+        failures = record(result.failures)
+        console.print_json(
+            {"file": str(result.path), **counts, "failures": failures, "seconds": seconds}
+        )
+        return
+    click.echo(
+        f"{output}: {result.points:,} points, {result.computed:,} of them computed now in "
+        f"{seconds:.3g} s, {result.failed:,} failed."
+    )
+    if output.suffix.lower() == ".csv":
+        click.echo(
+            'The lines above the table describe it: read it by pandas.read_csv(FILE, comment="#").'
+        )
+    for failure in result.failures[:SHOWN_FAILURES]:
+        point = ", ".join(f"{key} = {value:.6g}" for key, value in failure.point.items())
+        click.echo(f"  {point}: {failure.reason}")
+    if result.failed > SHOWN_FAILURES:
+        click.echo(f"  ... the others are in {output}")
 
 
 def read_over(texts: Iterable[str]) -> dict[Any, Any]:
@@ -168,27 +182,3 @@ def _call(failure: str, function: Any, *arguments: Any) -> Any:
         return function(*arguments)
     except (Exception, SystemExit) as error:
         raise ValueError(f"{failure}: {type(error).__name__}: {error}") from None
-
-
-def _print(result: "Sweep", seconds: float, as_json: bool) -> None:
-    """Print the summary."""
-    from kvtheory.results import record
-
-    if as_json:
-        counts = {name: getattr(result, name) for name in ("points", "computed", "failed")}
-        failures = record(result.failures)
-        print_json({"file": str(result.path), **counts, "failures": failures, "seconds": seconds})
-        return
-    click.echo(
-        f"{result.path}: {result.points:,} points, {result.computed:,} of them computed now in "
-        f"{seconds:.3g} s, {result.failed:,} failed."
-    )
-    if result.path and result.path.suffix.lower() == ".csv":
-        click.echo(
-            'The lines above the table describe it: read it by pandas.read_csv(FILE, comment="#").'
-        )
-    for failure in result.failures[:SHOWN_FAILURES]:
-        point = ", ".join(f"{key} = {value:.6g}" for key, value in failure.point.items())
-        click.echo(f"  {point}: {failure.reason}")
-    if result.failed > SHOWN_FAILURES:
-        click.echo(f"  ... the others are in {result.path}")

@@ -1,4 +1,4 @@
-"""One page of HTML to play with: sliders for a scene, and what steady sliding answers."""
+"""An interactive page of steady sliding in one HTML file."""
 
 from kvtheory.explorer.page import explorer_page, save_explorer
 

@@ -1,7 +1,7 @@
-"""What the explorer has sliders for: the quantities of a scene, from the dataclasses that declare them."""
+"""The sliders of the explorer: the quantities of a scene, from the dataclasses that declare them."""
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import replace
 from decimal import Decimal
 from typing import Any
@@ -30,18 +30,16 @@ START = {
     "depth": 3e-4, "mass": 1000.0, "gravity": 9.80665, "load": 9806.65,
     "velocity": 0.1, "damping": 1000.0, "duration": 0.2, "relaxation_time": 0.01,
 }  # fmt: skip
-"""Where a slider stands that the scene says nothing about, in SI: Table 1, and what is usual.
+"""Start value, in SI, of a slider that the scene does not set: Table 1, and usual values.
 
-What a line contact has per unit width, a ball has with the same digits in its own unit: 1 kg for 1 kg/mm."""
-START_OF = {
-    ("suspended", "stiffness"): 3e7,
-    ("drive", "stiffness"): 1e6,
-    ("arm", "stiffness"): 3e10,
-}
+Where a line contact has a quantity per unit width, a ball has the same digits in its own unit: 1 kg for
+1 kg/mm."""
+STIFFNESSES = {"suspended": 3e7, "drive": 1e6, "arm": 3e10}
+"""Start values of the stiffnesses that are not of a foundation."""
 LINEAR = {"exponent": (1.0, 8.0), "order": (0.05, 1.0), "poisson_ratio": (0.0, 0.49)}
 """Ranges of the sliders that are not logarithmic."""
 DECADES = 3
-"""How far the others reach to either side of where they stand at first."""
+"""Range of the other sliders to either side of their start value."""
 ADDED: dict[tuple[str, str], list[tuple[str, list[str]]]] = {
     ("indenter", "sphere"): [
         ("one radius: a ball", []),
@@ -53,19 +51,21 @@ ADDED: dict[tuple[str, str], list[tuple[str, list[str]]]] = {
         ("with a spring and its own mass", ["stiffness", "damping", "mass"]),
     ],
 }
-"""By section and choice, what may be added to the quantities that are always there, and what it is called."""
-ENDS = "The drive of the scene varies in time; the page takes the velocity that it ends with."
+"""By section and choice: titles and names of the quantities that may be added to those always present."""
+VARIES = "The drive of the scene varies in time; the page takes its final velocity."
+RUBBER = Arm(3e10, 0.01), Arm(5e9, 1.0)
+"""Arms shown for a scene without any."""
 UNITS = SHOWN_UNITS | {"N*s/m": ("N*s/m", 1.0), "N*s/m^2": ("kN*s/m^2", 1e-3)}
 
 
 def quantities(cls: Any) -> dict[str, Quantity]:
     """Return the quantities that have sliders: all but temperatures, and the moduli of arms."""
-    modulus = {"modulus"} if cls is Arm else set()
-    return {name: spec for name, spec in declared(cls).items() if name not in {*THERMAL, *modulus}}
+    hidden = {*THERMAL, *(["modulus"] if cls is Arm else [])}
+    return {name: spec for name, spec in declared(cls).items() if name not in hidden}
 
 
 def controls(scene: Scene) -> dict[str, Any]:
-    """Return sections, choices and sliders as plain data, and where the scene puts them.
+    """Return sections, choices and sliders as plain data, and the values of the scene.
 
     >>> found = controls(Scene())["sections"]["indenter"]["choices"]["parabola"]["radius"]
     >>> found["unit"], found["start"], found["exponent"]
@@ -74,79 +74,69 @@ def controls(scene: Scene) -> dict[str, Any]:
     foundation = scene.foundation
     if foundation.shift_factor != 1.0 or (foundation.arms and foundation.modulus is not None):
         scene = replace(scene, foundation=foundation.plain())
-    return {
-        "sections": {
-            section: {
-                "chooser": chooser,
-                "choices": {name: _sliders(scene, section, cls) for name, cls in models.items()},
-                "alternatives": {
-                    name: _alternatives(section, name, cls) for name, cls in models.items()
-                },
-                "classes": {name: cls.__name__ for name, cls in models.items()},
-            }
-            for section, (chooser, models) in SECTIONS.items()
-        },
-        "arm": {
-            name: _slider("arm", spec, name, None, True) for name, spec in quantities(Arm).items()
-        },
-        "allowed": _allowed(),
-        "thin": THIN,
-        "whole": [name for name, cls in SHAPES.items() if not cls.per_width],
-        "scene": _scene(scene),
-    }
-
-
-def _values(scene: Scene, section: str) -> dict[str, float]:
-    """Return what a part of the scene gives, in SI; of a drive the velocity that it ends with."""
-    part = getattr(scene, section)
-    found = {name: getattr(part, name) for name in given(part)}
-    if section != "drive":
-        return found
-    damper = {} if part.rigid else {"damping": part.damping}
-    return {**found, "velocity": part.final_velocity, **damper}
-
-
-def _scene(scene: Scene) -> dict[str, Any]:
-    """Return what the scene chooses and gives, as texts in the units that are shown."""
-    per_width = scene.indenter.per_width
-    return {
+    values = {section: _values(scene, section) for section in SECTIONS}
+    line = scene.indenter.per_width
+    sections = {}
+    for section, (chooser, models) in SECTIONS.items():
+        part = getattr(scene, section)
+        sections[section] = {
+            "chooser": chooser,
+            "choices": {
+                kind: {
+                    name: _slider(
+                        getattr(cls, "kind", section), spec, name,
+                        values[section].get(name) if isinstance(part, cls) else None, line,
+                    )
+                    for name, spec in quantities(cls).items()
+                }
+                for kind, cls in models.items()
+            },
+            "alternatives": {
+                kind: _alternatives(section, kind, cls) for kind, cls in models.items()
+            },
+            "classes": {kind: cls.__name__ for kind, cls in models.items()},
+        }  # fmt: skip
+    shown = {
         "choices": {
             section: getattr(getattr(scene, section), chooser) if chooser else section
             for section, (chooser, _) in SECTIONS.items()
         },
         "values": {
             f"{section}.{name}": _text(
-                value, quantities(getattr(scene, section))[name].fitting(per_width).unit
+                value, quantities(getattr(scene, section))[name].fitting(line).unit
             )
-            for section in SECTIONS
-            for name, value in _values(scene, section).items()
+            for section, own in values.items()
+            for name, value in own.items()
         },
         "arms": [
             [_text(arm.stiffness, "N/m^3"), _text(arm.relaxation_time, "s")]
-            for arm in scene.foundation.arms or _arms()
+            for arm in scene.foundation.arms or RUBBER
         ],
-        "note": "" if scene.drive.constant else ENDS,
+        "note": "" if scene.drive.constant else VARIES,
     }
-
-
-def _arms() -> tuple[Arm, Arm]:
-    return Arm(3e10, 0.01), Arm(5e9, 1.0)
-
-
-def _sliders(scene: Scene, section: str, cls: Any) -> dict[str, Any]:
-    own = _values(scene, section) if isinstance(getattr(scene, section), cls) else {}
-    of = getattr(cls, "kind", section)
+    arm = {name: _slider("arm", spec, name, None, True) for name, spec in quantities(Arm).items()}
+    whole = [name for name, cls in SHAPES.items() if not cls.per_width]
     return {
-        name: _slider(of, spec, name, own.get(name), scene.indenter.per_width)
-        for name, spec in quantities(cls).items()
-    }
+        "sections": sections, "arm": arm, "allowed": _allowed(), "thin": THIN, "whole": whole,
+        "scene": shown,
+    }  # fmt: skip
+
+
+def _values(scene: Scene, section: str) -> dict[str, float]:
+    """Return the quantities that a part of the scene sets, in SI; of a drive its final velocity."""
+    part = getattr(scene, section)
+    found = {name: getattr(part, name) for name in given(part)}
+    if section == "drive":
+        found |= {"velocity": part.final_velocity}
+        found |= {} if part.rigid else {"damping": part.damping}
+    return found
 
 
 def _slider(
     of: str, spec: Quantity, name: str, value: float | None, per_width: bool
 ) -> dict[str, Any]:
     unit, whole = spec.unit, spec.fitting(False).unit
-    start = _text(START_OF.get((of, name), START[name]), unit)
+    start = _text(STIFFNESSES.get(of, START[name]) if name == "stiffness" else START[name], unit)
     if value:
         start = _text(value, spec.fitting(per_width).unit)
     return {
@@ -159,7 +149,7 @@ def _slider(
 
 
 def _alternatives(section: str, name: str, cls: Any) -> list[dict[str, Any]]:
-    """Return the sets of quantities of which one is to be given, and what each is called.
+    """Return the sets of quantities of which one is to be given, and the title of each.
 
     >>> [each["names"] for each in _alternatives("foundation", "kelvin-voigt", FOUNDATIONS["kelvin-voigt"])]
     [['stiffness', 'retardation_time'], ['modulus', 'thickness', 'poisson_ratio', 'retardation_time']]
@@ -169,18 +159,16 @@ def _alternatives(section: str, name: str, cls: Any) -> list[dict[str, Any]]:
     if (section, name) in ADDED:
         added = ADDED[section, name]
         always = [each for each in quantities(cls) if each not in added[-1][1]]
-        return [{"told": told, "names": [*always, *more]} for told, more in added]
-    sets = list(_sets(cls))
-    return [{"told": _told(names, sets), "names": names} for names in sets]
-
-
-def _told(names: Sequence[str], sets: Sequence[Sequence[str]]) -> str:
-    own = [name for name in names if not all(name in other for other in sets)]
-    return f"given by {', '.join(own)}".replace("_", " ")
+        return [{"told": title, "names": [*always, *more]} for title, more in added]
+    sets, found = list(_sets(cls)), []
+    for names in sets:
+        own = [name for name in names if not all(name in other for other in sets)]
+        found.append({"told": f"given by {', '.join(own)}".replace("_", " "), "names": names})
+    return found
 
 
 def _sets(cls: Any) -> Iterator[list[str]]:
-    """Yield what is to be given: the quantities that are needed, then others in their place."""
+    """Yield the sets of quantities that define a part: the required ones, then others in their place."""
     specs = quantities(cls)
     optional = {name for spec in specs.values() for name in (spec.instead, *spec.excludes)}
     first = [name for name in specs if name in required(cls) or name not in optional]
@@ -198,7 +186,7 @@ def _allowed() -> list[list[str]]:
     pairs = []
     for shape, indenter in SHAPES.items():
         for kind, foundation in FOUNDATIONS.items():
-            arms = {"arms": _arms()} if kind == "generalized-maxwell" else {}
+            arms = {"arms": RUBBER} if kind == "generalized-maxwell" else {}
             scene = Scene(
                 indenter(**{name: START[name] for name in quantities(indenter)}),
                 foundation(**{name: START[name] for name in required(foundation)}, **arms),

@@ -3,10 +3,8 @@
 import json
 import re
 import tomllib
-from collections.abc import Callable
 from importlib.resources import files
 from pathlib import Path
-from typing import Any
 
 from kvtheory.explorer.controls import controls, lacks_scripts
 from kvtheory.export import check_path, replace_file
@@ -14,18 +12,9 @@ from kvtheory.scene.capabilities import require
 from kvtheory.scene.model import Scene
 
 SCRIPTS = (
-    *(
-        "closed_forms.js",
-        "steady.js",
-        "ball.js",
-        "circle.js",
-        "stability.js",
-        "rubber.js",
-        "motion.js",
-        "scene.js",
-    ),
-    *("charts.js", "contact.js", "answers.js", "playing.js", "explorer.js"),
-)
+    "closed_forms", "steady", "ball", "circle", "stability", "rubber", "motion", "scene",
+    "charts", "contact", "answers", "playing", "explorer",
+)  # fmt: skip
 """In the order in which they build on each other."""
 QUANTITY = re.compile(r"@(\*|[A-Za-z]+(?:_[a-z0-9])?)")
 
@@ -36,7 +25,7 @@ def save_explorer(scene: Scene, path: str | Path) -> None:
     Raises
     ------
     ValueError
-        If the scripts of the page do not know steady sliding of the scene, or the name does not end in .html.
+        If the scripts of the page cannot compute the scene, or the name does not end in .html.
     OSError
         If the file cannot be written.
     """
@@ -52,7 +41,7 @@ def explorer_page(scene: Scene) -> str:
     Raises
     ------
     ValueError
-        If the scripts of the page do not know steady sliding of the scene.
+        If the scripts of the page cannot compute the scene.
 
     Examples
     --------
@@ -65,7 +54,7 @@ def explorer_page(scene: Scene) -> str:
     data = {"version": __version__, "formulas": formulas(), **controls(scene)}
     parts = {
         "style": _text("explorer.css"),
-        "script": "\n".join(map(_text, SCRIPTS)),
+        "script": "\n".join(_text(f"{name}.js") for name in SCRIPTS),
         "data": json.dumps(data, ensure_ascii=False).replace("</", r"<\/"),
         "version": __version__,
     }
@@ -81,7 +70,10 @@ def formulas() -> dict[str, dict[str, str]]:
     places = {**{name: rf"\text{{#{name}#}}" for name in symbols}, "*": r"\cdot "}
 
     def written(latex: str, names: dict[str, str]) -> str:
-        made = convert(QUANTITY.sub(_one_of(names), latex))
+        def name(found: re.Match[str]) -> str:
+            return names["*"] if found[1] == "*" else f"{{{names[found[1]]}}}"
+
+        made = convert(QUANTITY.sub(name, latex))
         return made.replace("<math ", '<math displaystyle="true" ', 1)
 
     return {
@@ -93,10 +85,6 @@ def formulas() -> dict[str, dict[str, str]]:
         }
         for key, row in table.items()
     }
-
-
-def _one_of(names: dict[str, Any]) -> Callable[[re.Match[str]], str]:
-    return lambda found: f"{{{names[found[1]]}}}" if found[1] != "*" else names["*"]
 
 
 def _text(name: str) -> str:

@@ -8,9 +8,8 @@ from typing import Any
 import numpy as np
 
 from kvtheory.plots.files import inline, save_page, template
-from kvtheory.plots.style import BLACK, BLUE, GREEN, RED, TRANSIENT_ROWS, with_unit
+from kvtheory.plots.style import BLACK, BLUE, GREEN, RED, TRANSIENT_ROWS, Picture, with_unit
 from kvtheory.results import Check, Comparison
-from kvtheory.results.comparison import Explanation
 from kvtheory.results.table import QUANTITIES, SPRING_UNITS
 from kvtheory.scene import Scene, to_toml
 
@@ -29,8 +28,13 @@ HTML_VERDICTS = {
     "cannot tell": ("#5c5c5c", "#f2f2f2", "Whether the data agree with theory cannot be told."),
 }
 """Colours of text and background, and the verdict in a sentence."""
-ROOM = 1.6
-"""Limit of the axis of residuals, relative to the band, with room for the legend above the band."""
+EXPLANATIONS = """<h2>What would explain it</h2>
+<div class="wide"><table>
+<thead><tr><th>fault</th><th>explains</th><th>enough</th><th>in words</th></tr></thead><tbody>
+{}
+</tbody></table></div>"""
+MARGIN = 1.6
+"""Limit of the axis of residuals, relative to the band, which leaves space for the legend above it."""
 LONGEST_NOTE = 74
 WIDTH = 7.2
 
@@ -69,7 +73,7 @@ def plot_comparison(axes: Sequence[Sequence[Any]], comparison: Comparison) -> li
         )
         # Limits that show nearly all of the residual, not only its jump.
         most = float(np.nanquantile(np.abs(left), 0.98))
-        top = ROOM * max(most, float(np.median(band)), 1e-300)
+        top = MARGIN * max(most, float(np.median(band)), 1e-300)
         rest.set_ylim(-top, top)
     for row in axes[len(names) :]:
         for ax in row:
@@ -83,8 +87,6 @@ def plot_comparison(axes: Sequence[Sequence[Any]], comparison: Comparison) -> li
 
 def draw_comparison(comparison: Comparison, *, checks: bool = True) -> Any:
     """Return a figure of the curves and, unless left out, the list of checks below them."""
-    from kvtheory.plots.canvas import Picture
-
     rows = sum(name in comparison.series for name in CURVES)
     height = 1.9 * rows
     table = 0.17 * (len(comparison.checks) + 3) if checks else 0.0
@@ -97,28 +99,26 @@ def draw_comparison(comparison: Comparison, *, checks: bool = True) -> Any:
     axes[0][0].set_title("data over theory", fontsize=9)
     axes[0][1].set_title("data less theory", fontsize=9)
     if checks:
-        _list(parts[1], comparison.checks)
+        _list_checks(parts[1].subplots(), comparison.checks)
     return figure
 
 
-def _list(part: Any, checks: Sequence[Check]) -> None:
+def _list_checks(ax: Any, checks: Sequence[Check]) -> None:
     """Write the checks as lines of text."""
-    ax = part.subplots()
     ax.set_axis_off()
     ax.set(xlim=(0, 1), ylim=(len(checks) + 0.5, -1.0))
-    columns = {
-        0.0: "check", 0.25: "measured", 0.355: "allowed", 0.455: "", 0.54: "equation, note",
-    }  # fmt: skip
-    for x, head in columns.items():
+    columns = 0.0, 0.25, 0.355, 0.455, 0.54
+    for x, head in zip(
+        columns, ("check", "measured", "allowed", "", "equation, note"), strict=True
+    ):
         ax.text(x, -0.6, head, fontsize=7, fontweight="bold", va="center")
     for row, check in enumerate(checks):
         mark, colour = MARKS[check.ok]
         values = () if check.ok is None else (check.measured, check.allowed)
         numbers = [f"{value:.2e}" for value in values] or ["", ""]
-        note = f"{check.equation}; {check.note}" if check.note else check.equation
+        note = "; ".join(filter(None, (check.equation, check.note)))
         short = note if len(note) <= LONGEST_NOTE else note[: LONGEST_NOTE - 3] + "..."
-        cells = (check.name, *numbers, mark, short)
-        for x, cell in zip(columns, cells, strict=True):
+        for x, cell in zip(columns, (check.name, *numbers, mark, short), strict=True):
             shade = colour if cell == mark else BLACK
             ax.text(x, row + 0.4, cell, fontsize=6.5, va="center", color=shade)
 
@@ -131,46 +131,34 @@ def save_comparison_report(comparison: Comparison, scene: Scene, path: Path) -> 
 def comparison_report(comparison: Comparison, scene: Scene) -> str:
     """Return a comparison as the text of one HTML page, with its picture as inline SVG."""
     colour, tint, sentence = HTML_VERDICTS[comparison.verdict]
-    factor = (
-        "" if comparison.tolerance == 1.0 else f", times the tolerance {comparison.tolerance:g}"
-    )
+    checks = []
+    for check in comparison.checks:
+        values = check.measured, check.allowed
+        numbers = ["" if value is None else f"{value:.3g}" for value in values]
+        kind, mark = HTML_MARKS[check.ok]
+        note = "; ".join(filter(None, (check.unit, check.note)))
+        cells = check.name, *numbers, mark, check.equation, note
+        checks.append(_row(cells, ("", "number", "number", kind, "", "")))
+    explanations = []
+    for each in comparison.explanations:
+        part = "a sign of it" if each.explained is None else f"{each.explained:.1%}"
+        cells = each.name, part, "yes" if each.enough else "no", each.text
+        explanations.append(_row(cells, ("", "number", "", "")))
+    tolerance = comparison.tolerance
     return template("comparison.html").format(
         title=f"{escape(Path(comparison.source).name)} against theory",
-        sentence=sentence,
+        sentence=sentence, colour=colour, tint=tint,
         diagnosis=escape(comparison.diagnosis),
-        explanations=_explanations(comparison),
+        explanations=EXPLANATIONS.format("\n".join(explanations)) if explanations else "",
         picture=inline(lambda: draw_comparison(comparison, checks=False)),
-        checks="\n".join(_row(check) for check in comparison.checks),
+        checks="\n".join(checks),
         scene=escape(to_toml(scene).strip()),
-        colour=colour, tint=tint, tolerance=factor,
+        tolerance="" if tolerance == 1.0 else f", times the tolerance {tolerance:g}",
     )  # fmt: skip
 
 
-def _part(each: Explanation) -> str:
-    return "a sign of it" if each.explained is None else f"{each.explained:.1%}"
-
-
-def _explanations(comparison: Comparison) -> str:
-    if not comparison.explanations:
-        return ""
-    rows = "\n".join(
-        f'<tr><td>{escape(each.name)}</td><td class="number">{_part(each)}</td>'
-        f"<td>{'yes' if each.enough else 'no'}</td><td>{escape(each.text)}</td></tr>"
-        for each in comparison.explanations
-    )
-    heads = "<th>fault</th><th>explains</th><th>enough</th><th>in words</th>"
-    return (
-        "<h2>What would explain it</h2>\n"
-        f'<div class="wide"><table><thead><tr>{heads}</tr></thead><tbody>\n{rows}\n</tbody></table></div>'
-    )
-
-
-def _row(check: Check) -> str:
-    kind, mark = HTML_MARKS[check.ok]
-    numbers = ["" if value is None else f"{value:.3g}" for value in (check.measured, check.allowed)]
-    cells = "".join(f'<td class="number">{number}</td>' for number in numbers)
-    what = "; ".join(filter(None, (check.unit, check.note)))
-    return (
-        f'<tr><td>{escape(check.name)}</td>{cells}<td class="{kind}">{mark}</td>'
-        f"<td>{escape(check.equation)}</td><td>{escape(what)}</td></tr>"
-    )
+def _row(cells: Sequence[str], classes: Sequence[str]) -> str:
+    """Return a row of an HTML table."""
+    named = [f' class="{name}"' if name else "" for name in classes]
+    pairs = zip(named, cells, strict=True)
+    return f"<tr>{''.join(f'<td{name}>{escape(cell)}</td>' for name, cell in pairs)}</tr>"

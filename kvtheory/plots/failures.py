@@ -7,9 +7,9 @@ from html import escape
 from pathlib import Path
 from typing import Any
 
-from kvtheory.charts.entry import TEXTS, Finding, Picture
+from kvtheory.charts.failures import TEXTS, Finding
 from kvtheory.plots.files import inline, save_page, template
-from kvtheory.plots.style import BLACK, BLUE, RED
+from kvtheory.plots.style import BLACK, BLUE, RED, Picture
 
 LOOKS: dict[str, dict[str, Any]] = {
     "wrong": {"color": RED, "linestyle": "-", "label": "naive"},
@@ -37,24 +37,29 @@ def failures_page(findings: Sequence[Finding]) -> str:
 def shown(found: Finding, role: str) -> str:
     """Return a number of an entry as text with its unit."""
     value, entry = getattr(found.outcome, role) * found.entry.factor, found.entry
-    if not math.isfinite(value):
-        return "none"
-    return f"{value:.4g} {entry.unit}".rstrip()
+    return f"{value:.4g} {entry.unit}".rstrip() if math.isfinite(value) else "none"
 
 
-def plot_failure(ax: Any, picture: Picture) -> list[Any]:
-    """Draw the curves of an entry and return them."""
-    artists = [
-        ax.plot(line.x, line.y, **LOOKS[line.role])[0] for line in picture.lines if line.x.size
-    ]
-    x, y = ("log" if logarithmic else "linear" for logarithmic in (picture.log_x, picture.log_y))
-    ax.set(xlabel=picture.x, ylabel=picture.y, xscale=x, yscale=y)
+def plot_failure(ax: Any, found: Finding) -> list[Any]:
+    """Draw the naive curve and that of the package, and return them."""
+    (x, x_factor, x_scale), (y, y_factor, y_scale) = found.entry.x, found.entry.y
+    artists = []
+    for role, curve in (("wrong", found.outcome.naive), ("package", found.outcome.ours)):
+        artists += ax.plot(curve[0] * x_factor, curve[1] * y_factor, **LOOKS[role])
+    ax.set(xlabel=x, ylabel=y, xscale=x_scale, yscale=y_scale)
     ax.legend(loc="best")
     return artists
 
 
 def _article(found: Finding) -> str:
+    def draw() -> Picture:
+        figure = Picture(*SIZE)
+        plot_failure(figure.subplots(), found)
+        return figure
+
     entry = found.entry
+    # No two pictures of the page may share an id.
+    picture = re.sub(r'(\bid="|href="#|url\(#)', rf"\g<1>{entry.key}-", inline(draw))
     numbers = "".join(
         f'<div class="{role}"><span>{look["label"]}</span><b>{_text(shown(found, role))}</b></div>'
         for role, look in LOOKS.items()
@@ -62,19 +67,7 @@ def _article(found: Finding) -> str:
     said = f'<p class="said">{escape(found.outcome.said)}</p>\n' if found.outcome.said else ""
     texts = {name: _text(getattr(entry, name)) for name in TEXTS}
     article = template("failure.html").strip()
-    return article.format(numbers=numbers, picture=_svg(found), said=said, **texts)
-
-
-def _svg(found: Finding) -> str:
-    from matplotlib.figure import Figure
-
-    def draw() -> Figure:
-        figure = Figure(figsize=SIZE, layout="constrained")
-        plot_failure(figure.subplots(), found.outcome.picture)
-        return figure
-
-    # No two pictures of the page may share an id.
-    return re.sub(r'(\bid="|href="#|url\(#)', rf"\g<1>{found.entry.key}-", inline(draw))
+    return article.format(numbers=numbers, picture=picture, said=said, **texts)
 
 
 def _text(words: str) -> str:

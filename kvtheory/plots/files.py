@@ -5,10 +5,13 @@ import json
 import os
 import platform
 from collections.abc import Callable, Mapping
+from contextlib import suppress
 from importlib import metadata
 from importlib.resources import files
 from pathlib import Path
 from typing import Any
+
+import matplotlib as mpl
 
 from kvtheory.export import PICTURES, check_path, replace_file, replace_files
 from kvtheory.plots.style import STYLE
@@ -25,8 +28,6 @@ def save_picture(draw: Callable[[], Any], path: Path) -> None:
     ValueError, OSError
         If the name does not end in .png, .svg or .pdf, or the file cannot be written.
     """
-    import matplotlib as mpl
-
     check_path(path, PICTURES)
     with mpl.rc_context({**STYLE}):
         replace_file(path, draw().savefig)
@@ -35,10 +36,9 @@ def save_picture(draw: Callable[[], Any], path: Path) -> None:
 def save_chart(draw: Callable[[], Any], data: Mapping[str, Any], path: Path) -> None:
     """Draw and write a picture, and its data as JSON beside it, with machine and versions."""
     text = json.dumps({"environment": environment(), **data}, indent=1, allow_nan=False)
-    picture, page = path, path.with_suffix(".json")
     replace_files({
-        picture: lambda part: save_picture(draw, part),
-        page: lambda part: save_page(text + "\n", part),
+        path: lambda part: save_picture(draw, part),
+        path.with_suffix(".json"): lambda part: save_page(text + "\n", part),
     })  # fmt: skip
 
 
@@ -48,37 +48,26 @@ def environment() -> dict[str, str | int]:
     >>> sorted(environment())[:3]
     ['kvtheory', 'machine', 'numba']
     """
+    versions, processor = dict.fromkeys(PACKAGES, "-"), platform.processor()
+    for name in PACKAGES:
+        with suppress(metadata.PackageNotFoundError):
+            versions[name] = metadata.version(name)
+    with suppress(OSError):
+        lines = Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines()
+        names = (line.partition(":")[2].strip() for line in lines if line.startswith("model name"))
+        processor = next(names, processor)
     return {
         "machine": platform.machine(),
         "system": platform.system(),
-        "processor": _processor(),
+        "processor": processor,
         "processors": os.cpu_count() or 1,
         "python": platform.python_version(),
-        **{name: _version(name) for name in PACKAGES},
+        **versions,
     }
-
-
-def _version(name: str) -> str:
-    try:
-        return metadata.version(name)
-    except metadata.PackageNotFoundError:
-        return "-"
-
-
-def _processor() -> str:
-    """Return the name of the processor, if the system provides it."""
-    try:
-        lines = Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines()
-    except OSError:
-        lines = []
-    names = (line.partition(":")[2].strip() for line in lines if line.startswith("model name"))
-    return next(names, platform.processor())
 
 
 def inline(draw: Callable[[], Any]) -> str:
     """Return the figure that `draw` makes as an SVG element."""
-    import matplotlib as mpl
-
     with mpl.rc_context({**STYLE}):
         text = io.StringIO()
         draw().savefig(text, format="svg", metadata={"Date": None})

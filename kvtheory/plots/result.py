@@ -12,7 +12,7 @@ from scipy.integrate import simpson
 from kvtheory.models.steady.ball import angle_and_tail
 from kvtheory.plots.comparison import draw_comparison
 from kvtheory.plots.files import save_picture
-from kvtheory.plots.style import BLUE, LABELS, RED, TRANSIENT_ROWS, label, with_unit
+from kvtheory.plots.style import BLUE, LABELS, RED, TRANSIENT_ROWS, Picture, label, with_unit
 from kvtheory.plots.sweep import plot_over, plot_sweep
 from kvtheory.results import QUANTITIES, AsymptoteReport, Comparison, SteadyState, Sweep, Transient
 from kvtheory.results.transient import TimeSeries
@@ -24,9 +24,9 @@ POINTS = 201
 """Points of the pressure over the contact."""
 BESIDE = {"velocity": "sliding_velocity", "friction_force": "spring_force"}
 """The quantity of a drive with a spring that is drawn beside another one."""
-NOT_ITS_LOAD = 1e-6
-"""If the integral of the pressure, by Simpson's rule, differs from the load by this much relative to it, the
-indenter is not a parabola; if a friction coefficient differs so from its closed form, it is no ball."""
+MISMATCH = 1e-6
+"""Relative difference of the integral of the pressure from the load beyond which the indenter is not a
+parabola, and of the friction coefficient from its closed form beyond which it is not a ball."""
 
 
 def plot_steady(
@@ -41,10 +41,8 @@ def plot_steady(
     >>> line.get_ydata().round(4).tolist()
     [0.2814, 0.0897, 0.0098]
     """
-    (x_label, x_factor), (y_label, y_factor) = (
-        LABELS["velocity"],
-        label(quantity, state.units[quantity]),
-    )
+    x_label, x_factor = LABELS["velocity"]
+    y_label, y_factor = label(quantity, state.units[quantity])
     x, y = np.asarray(velocity) * x_factor, np.asarray(getattr(state, quantity)) * y_factor
     ax.set(xlabel=x_label, ylabel=y_label, xscale="log", yscale="log")
     artists: list[Any] = ax.plot(x, y, **style)
@@ -108,23 +106,17 @@ def plot_result(result: Any, axes: Any = None, **style: Any) -> Any:
         return draw_comparison(result)
     if isinstance(result, Sweep):
         return plot_sweep(axes, result, **style).figure
-    steady = not hasattr(result, "time")
-    if steady and np.ndim(result.depth):
+    if hasattr(result, "time"):
+        if axes is None:
+            axes = Picture(*SERIES).subplots(len(TRANSIENT_ROWS), 1, sharex=True)
+        return plot_transient(axes, result, **{"color": BLUE, **style})[0].figure
+    if np.ndim(result.depth):
         return plot_over(axes, result, **style).figure
-    if axes is None:
-        from kvtheory.plots.canvas import Picture
-
-        figure = Picture(*(STEADY if steady else SERIES))
-        axes = figure.subplots() if steady else figure.subplots(len(TRANSIENT_ROWS), 1, sharex=True)
-    style = {"color": BLUE, **style}
-    if not steady:
-        plot_transient(axes, result, **style)
-        return axes[0].figure
-    _over_contact(axes, result, style)
-    return axes.figure
+    axes = Picture(*STEADY).subplots() if axes is None else axes
+    return _plot_contact_pressure(axes, result, {"color": BLUE, **style})
 
 
-def _over_contact(ax: Any, state: SteadyState, style: dict[str, Any]) -> None:
+def _plot_contact_pressure(ax: Any, state: SteadyState, style: dict[str, Any]) -> Any:
     """Draw p = K delta (1 - x^2/a^2 - 2 l_r x/a^2) from edge to edge (Eqs. 8 and 12, for V >= 0).
 
     Of a ball it is the pressure in the middle plane.
@@ -135,26 +127,24 @@ def _over_contact(ax: Any, state: SteadyState, style: dict[str, Any]) -> None:
     forward = -1.0 if state.leading_edge > 0.0 else 1.0
     peak = 1.0 + l * l if l < 1.0 else 2.0 * l  # theorem F7
     p = state.peak_pressure / peak * (1.0 - (x / a) ** 2 - 2.0 * l * forward * x / a)
-    whole = state.units["load"] == "N"
-    off = _unlike_ball(state, l) if whole else abs(simpson(p, x) / state.load - 1.0)
-    if off > NOT_ITS_LOAD:
+    sphere = state.units["load"] == "N"
+    if not sphere:
+        off = abs(simpson(p, x) / state.load - 1.0)
+    elif l == 0.0:  # there is no friction, and only a ball is exact
+        off = 0.0 if state.model == "exact" else math.inf
+    else:  # the friction coefficient of a ball is (a/R) m(l) (derivation F20)
+        _, tail = angle_and_tail(np.array([l]))
+        m = ball_friction_coefficient_factor(np.array([l]), tail)[0]
+        off = abs(abs(state.friction_coefficient) / (2.0 * state.depth / a * m) - 1.0)
+    if off > MISMATCH:
         raise ValueError(
             "the pressure is drawn for a parabola and for a ball on Kelvin-Voigt only; give several "
             "velocities to `over`"
         )
     ax.plot(x * 1e3, p * 1e-6, **style)
-    place = "pressure in the middle plane" if whole else "pressure"
+    place = "pressure in the middle plane" if sphere else "pressure"
     ax.set(xlabel=r"position $x$ [mm]", ylabel=rf"{place} $p$ [MPa]")
-
-
-def _unlike_ball(state: SteadyState, l: float) -> float:
-    """Return how far the friction coefficient is from (a/R) m(l), that of a ball (derivation F20)."""
-    if l == 0.0:  # there is none, and only a ball is exact
-        return 0.0 if state.model == "exact" else math.inf
-    _, tail = angle_and_tail(np.array([l]))
-    slope = 2.0 * float(state.depth / state.half_length)
-    own = slope * ball_friction_coefficient_factor(np.array([l]), tail)[0]
-    return abs(abs(float(state.friction_coefficient)) / own - 1.0)
+    return ax.figure
 
 
 def save_plot(result: Any, path: Path) -> None:

@@ -6,13 +6,12 @@ from typing import Any
 
 import numpy as np
 from matplotlib.colors import BoundaryNorm, ListedColormap
-from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from kvtheory.charts.stability import CLASSES, Map
 from kvtheory.plots.files import save_chart
-from kvtheory.plots.style import BLACK, BLUE
+from kvtheory.plots.style import BLACK, BLUE, Picture
 from kvtheory.results.certificate import record
 from kvtheory.scene.model import Scene
 from kvtheory.scene.static_state import StaticState
@@ -49,9 +48,9 @@ def plot_stability(ax: Any, found: Map, factors: tuple[float, float] = (1.0, 1.0
     return image
 
 
-def draw_stability(velocity_maps: Sequence[Map], step_maps: Sequence[Map]) -> Figure:
+def draw_stability(velocity_maps: Sequence[Map], step_maps: Sequence[Map]) -> Picture:
     """Return the picture: a column for each scheme, with the map over V and tau above the other."""
-    drawn = Figure(figsize=(11.0, 5.4), layout="constrained")
+    drawn = Picture(11.0, 5.4)
     rows = drawn.subplots(2, len(velocity_maps), sharex="row", sharey="row", squeeze=False)
     for ax, found in zip(rows[0], velocity_maps, strict=True):
         plot_stability(ax, found, (1e3, 1.0))
@@ -65,11 +64,6 @@ def draw_stability(velocity_maps: Sequence[Map], step_maps: Sequence[Map]) -> Fi
         ax.set(xlabel=r"drive number $\lambda$")
     rows[0][0].set_ylabel(r"retardation time $\tau$ [s]")
     rows[1][0].set_ylabel(r"step $\Delta t$ / limit")
-    drawn.legend(handles=_legend(), loc="outside lower center", ncols=4)
-    return drawn
-
-
-def _legend() -> list[Any]:
     measured = [
         Patch(facecolor=colour, edgecolor="#999999", label=f"measured: {name}")
         for colour, name in zip(COLOURS, CLASSES, strict=True)
@@ -81,7 +75,9 @@ def _legend() -> list[Any]:
     words = r"$\tau$ of Fig. 5, $\lambda$ of Table 1"
     papers = Line2D([], [], color=BLUE, linewidth=0.9, label=words)
     star = Line2D([], [], color=BLUE, marker="*", linestyle="", markersize=9, label="Table 1")
-    return [*measured, star, *predicted, papers]
+    handles = [*measured, star, *predicted, papers]
+    drawn.legend(handles=handles, loc="outside lower center", ncols=4)
+    return drawn
 
 
 def save_stability(maps: Mapping[str, Sequence[Map]], path: Path) -> None:

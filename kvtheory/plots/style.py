@@ -1,7 +1,11 @@
-"""Colours, sizes and axis labels of every picture."""
+"""Colours, sizes, axis labels and figures of every picture."""
 
+import io
 import re
 from typing import Any
+
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
 
 from kvtheory.results import QUANTITIES, SHOWN_UNITS
 
@@ -29,7 +33,6 @@ STYLE: Any = {
 }
 """For `matplotlib.rc_context`."""
 
-
 TRANSIENT_ROWS = (
     ("velocity", r"$V$", 1.0),
     ("depth", r"$z_\mathrm{A}$", -1.0),
@@ -37,6 +40,19 @@ TRANSIENT_ROWS = (
     ("friction_force", r"$F_x$", 1.0),
 )
 """The rows of Fig. 3 of the paper: quantity, symbol, sign."""
+
+
+class Picture(Figure):
+    """A figure without a window, which a notebook displays whether or not pyplot was imported."""
+
+    def __init__(self, width: float, height: float) -> None:
+        super().__init__(figsize=(width, height), layout="constrained")
+        FigureCanvasAgg(self)
+
+    def _repr_png_(self) -> bytes:
+        drawn = io.BytesIO()
+        self.savefig(drawn, format="png", dpi=100)
+        return drawn.getvalue()
 
 
 def with_unit(words: str, unit: str) -> tuple[str, float]:

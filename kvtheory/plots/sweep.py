@@ -4,9 +4,11 @@ from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
+from matplotlib import colormaps
+from matplotlib.colors import LogNorm
 from numpy.typing import NDArray
 
-from kvtheory.plots.style import BLUE, label, with_unit
+from kvtheory.plots.style import BLUE, Picture, label, with_unit
 from kvtheory.results import QUANTITIES, SteadyState, Sweep
 from kvtheory.scene.quantities import nearest
 from kvtheory.sweeps.plan import Plan
@@ -17,15 +19,6 @@ MOST_CURVES = 8
 """Values of the second dimension up to which curves are drawn; beyond, a map is easier to read."""
 DECADES = 1.5
 """Range of positive values, in powers of ten, from which an axis or colour scale is logarithmic."""
-
-
-class Side(NamedTuple):
-    """A dimension or a quantity as it is drawn."""
-
-    label: str
-    values: Array
-
-
 WORDS = {
     "foundation.retardation_time": r"retardation time $\tau$",
     "foundation.stiffness": r"stiffness of the foundation $K$",
@@ -42,6 +35,13 @@ FIRST = "friction_coefficient"
 VELOCITY = "drive.velocity"
 
 
+class Side(NamedTuple):
+    """A dimension or a quantity as it is drawn."""
+
+    label: str
+    values: Array
+
+
 def plot_sweep(ax: Any, result: Sweep, quantity: str | None = None, **style: Any) -> Any:
     """Draw one quantity of a sweep on `ax`, or on a new figure, and return the axes.
 
@@ -50,8 +50,14 @@ def plot_sweep(ax: Any, result: Sweep, quantity: str | None = None, **style: Any
     """
     numeric = [name for name, unit in result.units.items() if unit and name in result.values]
     name = _chosen(numeric, quantity)
-    sides, values = _drawn(result, name)
-    return _picture(ax, sides, _side(name, result.units[name], values), style)
+    sides, values = [], np.asarray(result.values[name])
+    for axis in result.axes:
+        key, *others = axis.values
+        words, along = _side(key, result.units[key], axis.values[key])
+        sides.append(Side(words + (f" (with {', '.join(others)})" if others else ""), along))
+    if result.time is not None and values.ndim > len(sides):
+        sides.append(_side("time", "s", result.time))
+    return _draw(ax, sides, _side(name, result.units[name], values), style)
 
 
 def plot_over(ax: Any, state: SteadyState, quantity: str = FIRST, **style: Any) -> Any:
@@ -69,37 +75,18 @@ def plot_over(ax: Any, state: SteadyState, quantity: str = FIRST, **style: Any) 
         raise ValueError("there are no values to draw: an array of `over` is empty")
     sides = []
     for axis in (axis for axis, size in enumerate(values.shape) if size > 1):
-        along = {
-            key: rows for key, array in state.over.items() if (rows := _along(array, axis)).size
-        }
+        along = {}
+        for key, array in state.over.items():
+            rows = np.moveaxis(array, axis, -1).reshape(-1, values.shape[axis])
+            if np.all(rows == rows[0]):  # it does not vary along another axis too
+                along[key] = rows[0]
         if not along:
             raise ValueError(
                 "two keys vary along the same two dimensions: draw one dimension at a time"
             )
         key = max(along, key=lambda key: (np.ptp(along[key]) > 0.0, key == VELOCITY))
         sides.append(_side(key, state.units[key], along[key]))
-    value = _side(quantity, state.units[quantity], values.reshape([s.values.size for s in sides]))
-    return _picture(ax, sides, value, style)
-
-
-def _along(values: Array, axis: int) -> Array:
-    """Return the values along an axis, or none if they vary along another one too."""
-    rows = np.moveaxis(values, axis, -1).reshape(-1, values.shape[axis])
-    return rows[0] if np.all(rows == rows[0]) else np.empty(0)
-
-
-def _picture(ax: Any, sides: list[Side], value: Side, style: Any) -> Any:
-    """Draw a curve, a family of curves or a map."""
-    _refuse_more_than_two([side.label for side in sides])
-    if ax is None:
-        from kvtheory.plots.canvas import Picture
-
-        ax = Picture(5.0, 3.8).subplots()
-    if len(sides) == 2 and min(side.values.size for side in sides) > MOST_CURVES:
-        _map(ax, sides, value, style)
-    else:
-        _curves(ax, sides, value, style)
-    return ax
+    return _draw(ax, sides, _side(quantity, state.units[quantity], values), style)
 
 
 def check_drawable(plan: Plan) -> None:
@@ -127,22 +114,7 @@ def _refuse_more_than_two(dimensions: Sequence[str]) -> None:
         )
 
 
-def _drawn(result: Sweep, name: str) -> tuple[list[Side], Array]:
-    """Return the dimensions with more than one value, and the values over them."""
-    values = np.asarray(result.values[name])
-    sides = []
-    for axis in result.axes:
-        key, array = next(iter(axis.values.items()))
-        side = _side(key, result.units[key], array)
-        together = ", ".join(other for other in axis.values if other != key)
-        sides.append(Side(f"{side.label} (with {together})", side.values) if together else side)
-    if result.time is not None and values.ndim > len(sides):
-        sides.append(_side("time", "s", result.time))
-    kept = [side for side in sides if side.values.size > 1]
-    return kept, values.reshape([side.values.size for side in kept])
-
-
-def _side(name: str, unit: str, values: Array) -> Side:
+def _side(name: str, unit: str, values: Any) -> Side:
     base = name.rpartition(".")[2]
     if base in QUANTITIES:
         words, factor = label(base, unit)
@@ -158,36 +130,36 @@ def _scale(values: Array) -> str:
     return "log" if 0.0 < low * 10.0**DECADES <= high else "linear"
 
 
-def _map(ax: Any, sides: Sequence[Side], value: Side, style: Any) -> None:
-    from matplotlib.colors import LogNorm
-
-    y, x = sides
-    norm = LogNorm() if _scale(value.values) == "log" else None
-    settings = {"cmap": "cividis", "norm": norm, "shading": "nearest", "rasterized": True, **style}
-    down, along = np.argsort(y.values), np.argsort(x.values)
-    shown = np.ma.masked_invalid(value.values[np.ix_(down, along)])
-    image = ax.pcolormesh(x.values[along], y.values[down], shown, **settings)
-    ax.set(xlabel=x.label, ylabel=y.label, xscale=_scale(x.values), yscale=_scale(y.values))
-    ax.grid(False)
-    ax.figure.colorbar(image, ax=ax, label=value.label)
-
-
-def _curves(ax: Any, sides: Sequence[Side], value: Side, style: Any) -> None:
-    from matplotlib import colormaps
-
-    sides = list(sides) or [Side("point", np.zeros(1))]
-    values = value.values
-    if len(sides) == 2 and sides[0].values.size >= sides[1].values.size:
-        sides, values = sides[::-1], values.T  # the shorter side tells the curves apart
-    x = sides[-1]
-    order = np.argsort(x.values)
+def _draw(ax: Any, sides: Sequence[Side], value: Side, style: Any) -> Any:
+    """Draw a curve, a family of curves or a map."""
+    sides = [side for side in sides if side.values.size > 1]
+    _refuse_more_than_two([side.label for side in sides])
+    ax = Picture(5.0, 3.8).subplots() if ax is None else ax
+    *beside, x = sides or [Side("point", np.zeros(1))]
+    values = value.values.reshape([side.values.size for side in (*beside, x)])
+    ax.set(xlabel=x.label)
+    if beside and min(values.shape) > MOST_CURVES:
+        (y,) = beside
+        down, along = np.argsort(y.values), np.argsort(x.values)
+        image = ax.pcolormesh(
+            x.values[along], y.values[down], np.ma.masked_invalid(values[np.ix_(down, along)]),
+            **{"cmap": "cividis", "norm": LogNorm() if _scale(values) == "log" else None,
+               "shading": "nearest", "rasterized": True, **style},
+        )  # fmt: skip
+        ax.set(ylabel=y.label, xscale=_scale(x.values), yscale=_scale(y.values))
+        ax.grid(False)
+        ax.figure.colorbar(image, ax=ax, label=value.label)
+        return ax
+    if beside and values.shape[0] >= values.shape[1]:
+        beside, x, values = [x], beside[0], values.T  # the shorter side tells the curves apart
+    order, rows = np.argsort(x.values), values.reshape(-1, x.values.size)
+    names: Any = [f"{v:.4g}" for side in beside for v in side.values] or [None]
+    shades = colormaps["viridis"](np.linspace(0.0, 0.85, len(rows))) if len(rows) > 1 else [BLUE]
     marker = "o" if x.values.size == 1 else ""
-    rows = values.reshape(-1, x.values.size)
-    names = [None] if len(sides) == 1 else [f"{v:.4g}" for v in sides[0].values]
-    shades = colormaps["viridis"](np.linspace(0.0, 0.85, len(rows)))
-    for row, name, shade in zip(rows, names, shades if len(rows) > 1 else [BLUE], strict=True):
+    for row, name, shade in zip(rows, names, shades, strict=True):
         look = {"label": name, "color": shade, "marker": marker, **style}
         ax.plot(x.values[order], row[order], **look)
     ax.set(xlabel=x.label, ylabel=value.label, xscale=_scale(x.values), yscale=_scale(values))
-    if len(sides) == 2:
-        ax.legend(title=sides[0].label)
+    if beside:
+        ax.legend(title=beside[0].label)
+    return ax

@@ -4,13 +4,12 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
-from kvtheory.charts.work_precision import REASONS, Chart, Point
+from kvtheory.charts.work_precision import REASONS, Chart
 from kvtheory.plots.files import save_chart
-from kvtheory.plots.style import BLACK, BLUE, GREEN, PURPLE, RED
+from kvtheory.plots.style import BLACK, BLUE, GREEN, PURPLE, RED, Picture
 
 RESOLVED = 100.0
 """Multiple of the floor above which an error is significant; points below it are hollow."""
@@ -45,24 +44,26 @@ def plot_work_precision(
     artists = []
     for series in chart.series:
         colour, marker = LOOKS[series.method]
-        good = [p for p in series.points if not p.reason and (p.work > 0 or not work)]
-        x = [max(p.errors[error], floor, LEAST) for p in good]
-        y = [_cost(p, work) for p in good]
-        style = {"color": colour, "marker": marker, "markersize": 4.5, "label": series.method}
-        dashes = ":" if series.kind == "model" else "-"
-        hollow = [
-            "white" if p.errors[error] < RESOLVED * floor or series.kind == "model" else colour
-            for p in good
-        ]
-        artists += ax.plot(x, y, linestyle=dashes, linewidth=1.0, **style, markerfacecolor="none")
-        for p, a, b, face in zip(good, x, y, hollow, strict=True):
+        style: Any = {"color": colour, "marker": marker, "markersize": 4.5}
+        x, y, good = [], [], []
+        for p in series.points:
+            cost = float(p.work) if work else p.seconds
+            if p.reason and cost > 0.0:
+                rail.plot(REASONS.index(p.reason), cost, **style)
+            elif not p.reason and (p.work > 0 or not work):
+                x.append(max(p.errors[error], floor, LEAST))
+                y.append(cost)
+                good.append(p)
+        model = series.kind == "model"
+        artists += ax.plot(
+            x, y, ":" if model else "-", linewidth=1.0, label=series.method,
+            markerfacecolor="white" if model else colour, **style,
+        )  # fmt: skip
+        for p, a, b in zip(good, x, y, strict=True):
             if not work:
                 ax.plot([a, a], p.quartiles, color=colour, linewidth=0.8)
-            ax.plot(a, b, marker=marker, color=colour, markersize=4.5, markerfacecolor=face)
-        for p in series.points:
-            if p.reason and _cost(p, work) > 0.0:
-                place = REASONS.index(p.reason)
-                rail.plot(place, _cost(p, work), marker=marker, color=colour, markersize=4.5)
+            if p.errors[error] < RESOLVED * floor:
+                ax.plot(a, b, markerfacecolor="white", **style)
     if floor > 0.0:
         ax.axvspan(LEAST, max(floor, LEAST), color="#dddddd", zorder=0)
     ax.set(xscale="log", yscale="log")
@@ -74,13 +75,9 @@ def plot_work_precision(
     return artists
 
 
-def _cost(point: Point, work: bool) -> float:
-    return float(point.work) if work else point.seconds
-
-
-def draw_work_precision(charts: Sequence[Chart], errors: Sequence[str]) -> Figure:
+def draw_work_precision(charts: Sequence[Chart], errors: Sequence[str]) -> Picture:
     """Return the picture: a row for each chart, the time on the left and the work on the right."""
-    drawn = Figure(figsize=(11.0, 1.9 + 2.9 * len(charts)), layout="constrained")
+    drawn = Picture(11.0, 1.9 + 2.9 * len(charts))
     grid = drawn.subplots(len(charts), 4, width_ratios=(5, 1.3, 5, 1.3), squeeze=False)
     methods: dict[str, Any] = {}
     for row, chart, error in zip(grid, charts, errors, strict=True):
@@ -96,15 +93,10 @@ def draw_work_precision(charts: Sequence[Chart], errors: Sequence[str]) -> Figur
                 rail.tick_params(labelbottom=False)
         row[0].set_title(f"{chart.name}: time", loc="left")
         row[2].set_title(f"{chart.name}: work", loc="left")
-    handles = [
-        Line2D([], [], color=LOOKS[name][0], marker=LOOKS[name][1], markersize=4.5,
-               linestyle=line.get_linestyle(), linewidth=1.0, label=name)
-        for name, line in methods.items()
-    ]  # fmt: skip
     hollow = Line2D([], [], color=BLACK, marker="o", linestyle="", markerfacecolor="white",
                     label="hollow: model error, or not resolved")  # fmt: skip
     grey = Patch(facecolor="#dddddd", label="grey: where the two references differ")
-    drawn.legend(handles=[*handles, hollow, grey], loc="outside lower center", ncols=5)
+    drawn.legend(handles=[*methods.values(), hollow, grey], loc="outside lower center", ncols=5)
     return drawn
 
 
