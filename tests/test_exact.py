@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import kvtheory as kv
-from kvtheory.models.steady import blockwise, exact
+from kvtheory.models.steady import methods, exact
 from kvtheory.results import STEADY_UNITS
 from tests import reference, steady
 from tests.rounding import Rounded
@@ -170,7 +170,7 @@ def test_a_suspension_joins_dead_weight_and_fixed():
 def test_arrays_broadcast_and_do_not_depend_on_the_blocks(monkeypatch):
     V, tau = np.geomspace(1e-3, 1e1, 7)[:, None], np.array([0.01, 0.1, 1.0])
     whole = at_load(0.01, 1e10, tau, V, 9806.65)
-    monkeypatch.setattr(blockwise, "BLOCK", 2)
+    monkeypatch.setattr(methods, "BLOCK", 2)
     blocks = at_load(0.01, 1e10, tau, V, 9806.65)
     single = at_load(0.01, 1e10, 0.1, float(V[3, 0]), 9806.65)
     for name in STEADY_UNITS:

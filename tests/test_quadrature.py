@@ -259,7 +259,7 @@ FAILURES = {
     "contacts without an end": (
         Profile(lambda x: 1e-3 * math.sin(x / 1e-3) ** 2, lambda x: math.sin(x / 5e-4)),
         0.1,
-        "too many places",
+        "search interval is too large",
     ),
     "flat": (
         Profile(lambda x: 1e-4 * math.tanh(x * x), lambda x: 2e-4 * x / math.cosh(x * x) ** 2),

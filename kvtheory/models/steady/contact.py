@@ -9,9 +9,9 @@ meets the indenter at the leading edge, x_LE < 0, and leaves it at the trailing 
 The leading edge is where h = delta on the entering side. The trailing edge is where p falls to zero,
 by a root of h + l_r h' = delta, or by the jump of h' at the vertex of a wedge.
 
-One contact: e^(x/l_r) u rises where p > 0, for its derivative is e^(x/l_r) p/(K l_r); the surface
-that is left behind relaxes as e^(-x/l_r), and is met again only where e^(x/l_r) u exceeds its running
-maximum. As h is convex, log u + x/l_r is concave: there is one maximum, the trailing edge.
+There is one contact: e^(x/l_r) u rises where p > 0, for its derivative is e^(x/l_r) p/(K l_r); the surface
+left behind relaxes as e^(-x/l_r), and is touched again only where e^(x/l_r) u exceeds its running maximum.
+As h is convex, log u + x/l_r is concave: there is one maximum, the trailing edge.
 
 The pressure vanishes at a root of the trailing edge, and the leading edge moves by d(-x_LE) = d(delta)/|h'|
 with p_LE = K l_r |h'|; hence dW/d(delta) = K (x_TE - x_LE + l_r) and dF/d(delta) = K u_TE + p_LE.
@@ -46,18 +46,15 @@ LINEAR = 1e-8
 """Newton's method squares an error: after a step of this size the error is below rounding."""
 STRIDES = tuple(4.0 ** (2.0**power) for power in range(6, -9, -1))
 """Factors by which a half length far too short is widened at first, as long as it stays too short."""
-COARSE = 7
-"""How many of them are enough for a scene whose first depth is refined by `CLOSER`."""
-CLOSER = 3
-"""Newton steps on the load of a parabola as blunt as the shape, for the first depth."""
+COARSE, CLOSER = 7, 3
+"""How many of them are enough where `CLOSER` Newton steps on the load of a parabola follow, as blunt as the
+shape."""
 NEAR_REACH = 0.5
 """Share of the reach at which the search for the half length starts at most."""
 MOST_STEPS = 200
 """Steps of a root; they are a handful unless a vertex or the reach of a circle is close."""
-VERTEX = 1e-290
-"""A trailing edge closer to the lowest point than this share of the half length is set to it."""
-FLOOR = 1e-20
-"""Share of the half length below which the peak is set to the lowest point."""
+VERTEX, FLOOR = 1e-290, 1e-20
+"""Shares of the half length below which the trailing edge, and the peak, are at the lowest point."""
 PEAK_RTOL = 1e-8
 """Tolerance of its position; the error of its value is the square of it, times the exponent of a power."""
 PEAK_STEPS = 8
@@ -70,8 +67,8 @@ class Contact(NamedTuple):
     """A contact at one depth; forces are over the stiffness."""
 
     depth: Value
-    a: Value
-    """Half the length of the contact at rest; x_LE = -a."""
+    half_length: Value
+    """At rest; it ends at the leading edge."""
     x: Value
     """The trailing edge, unless it is at the vertex."""
     a_moves: Value
@@ -82,14 +79,9 @@ class Contact(NamedTuple):
     u_te: Value
     load: Value
     load_error: Value
-    """Estimate of the relative error of the load at this very depth."""
+    """Relative error of the load at this very depth."""
     load_slope: Value
     """d(W/K)/d(delta)."""
-
-    @property
-    def half_length(self) -> Value:
-        """Half the length of the contact at rest."""
-        return self.a
 
     @property
     def load_curvature(self) -> Value:
@@ -99,12 +91,12 @@ class Contact(NamedTuple):
     @property
     def guess(self) -> tuple[Value, ...]:
         """Edges from which those at another depth are found."""
-        return self.a, self.x
+        return self.half_length, self.x
 
     @property
     def noise(self) -> Value:
         """Relative error of the depth equivalent to rounding: of x_LE, and of u."""
-        return ROUNDING * (1.0 + self.a / (self.a_moves * self.depth))
+        return ROUNDING * (1.0 + self.half_length / (self.a_moves * self.depth))
 
 
 class ConvexLine:
@@ -117,10 +109,6 @@ class ConvexLine:
 
     def __init__(self, shape: Any, l_r: Value) -> None:
         self.shape, self.l_r, self.reach = shape, l_r, shape.reach
-
-    def at_rest(self) -> "ConvexLine":
-        """Return the same at zero velocity."""
-        return ConvexLine(self.shape, 0.0 * self.l_r)
 
     def strips(self, strip: Any) -> "ConvexLine":
         """Return the line contacts of strips, in a column."""
@@ -152,9 +140,9 @@ class ConvexLine:
 
     def at(self, depth: Value, guess: tuple[Value, ...] = ()) -> Contact:
         """Return the contact at a depth, from guesses of its edges."""
-        start, x = guess or (_start(self.shape, depth, self.deepest),) * 2
         shape, l_r = self.shape, self.l_r
-        a, a_moves = _half_length(shape, depth, start)
+        start, x = guess or (self._start(depth),) * 2
+        a, a_moves = _leading(shape, depth, start)
         rolls = (l_r * shape.slope(VERTEX * a) < depth) * 1.0
         x, x_moves = _trailing(shape, l_r * rolls, depth, a, x * (a / start))
         below, error = integral(shape.height, (a, x), (a, rolls * x), not shape.kinks)
@@ -162,10 +150,18 @@ class ConvexLine:
         u_te = l_r * rolls * shape.slope(x) + (1.0 - rolls) * depth
         length = a + rolls * x
         load = depth * length - below + l_r * u_te
-        error = error * below / load
-        return Contact(
-            depth, a, x, a_moves, rolls * x_moves, rolls, u_te, load, error, length + l_r
-        )  # fmt: skip
+        slope, error = length + l_r, error * below / load
+        return Contact(depth, a, x, a_moves, rolls * x_moves, rolls, u_te, load, error, slope)
+
+    def half_length(self, depth: Value) -> Value:
+        """Return a > 0 with h(a) = depth."""
+        return _leading(self.shape, depth, self._start(depth))[0]
+
+    def _start(self, depth: Value) -> Value:
+        """Return where the search for the half length of a contact at a depth begins."""
+        if not largest(depth - self.deepest) < 0.0:
+            raise QuadratureError("the leading edge lies beyond the indenter's reach")
+        return _spaced(self.shape, depth, depth, lambda x: 1.0)
 
     def friction(self, contact: Contact) -> tuple[Value, Value, Value]:
         """Return the friction over K, the part of it lost in the contact, and the relative error."""
@@ -174,12 +170,10 @@ class ConvexLine:
 
     def _drag(self, contact: Contact) -> tuple[Value, Value, Value]:
         """Return int h'^2 dx with its relative error, and u_TE/l_r."""
-        shape, rolls, a, x = self.shape, contact.rolls, contact.a, contact.x
-        drag, error = integral(
-            lambda x: shape.slope(x) ** 2, (a, x), (a, rolls * x), not shape.kinks
-        )
+        shape, rolls, a, x = self.shape, contact.rolls, contact.half_length, contact.x
+        squared = integral(lambda x: shape.slope(x) ** 2, (a, x), (a, rolls * x), not shape.kinks)
         left = rolls * shape.slope(x) + (1.0 - rolls) * contact.depth / (self.l_r + rolls)
-        return drag, error, left
+        return *squared, left
 
     def quantities(self, contact: Contact) -> Quantities:
         """Return quantities over the stiffness, their errors at this depth, and d ln/d ln delta.
@@ -220,31 +214,19 @@ class ConvexLine:
         return values, own, powers
 
 
-def half_length(shape: Convex, depth: Value) -> Value:
-    """Return a > 0 with h(a) = depth."""
-    return _half_length(shape, depth, _start(shape, depth, ConvexLine(shape, 0.0).deepest))[0]
-
-
-def _start(shape: Convex, depth: Value, deepest: Value) -> Value:
-    """Return where the search for the half length of a contact at a depth begins."""
-    if not largest(depth - deepest) < 0.0:
-        raise QuadratureError("the leading edge lies beyond the indenter's reach")
-    return _spaced(shape, depth, depth, lambda x: 1.0)
-
-
 def _spaced(
     shape: Convex,
     scale: Value,
-    wanted: Value,
+    load: Value,
     width: Callable[[Value], Value],
     strides: tuple[float, ...] = STRIDES[:COARSE],
 ) -> Value:
-    """Return the first of spaced points x where h times a width is as wanted, or the last."""
+    """Return the first of spaced points x where h times a width is the load, or the last."""
     most = NEAR_REACH * shape.reach
     x = least(scale / strides[0], most)
     for stride in strides:
         wider = least(x * stride, most)
-        x = pick(shape.height(wider) * width(wider) < wanted, wider, x)
+        x = pick(shape.height(wider) * width(wider) < load, wider, x)
     return least(x * strides[-1], most)
 
 
@@ -253,7 +235,7 @@ def _within(shape: Convex, a: Value, factor: Value) -> Value:
     return least(a * factor, 0.5 * (a + shape.reach))
 
 
-def _half_length(shape: Convex, depth: Value, a: Value) -> tuple[Value, Value]:
+def _leading(shape: Convex, depth: Value, a: Value) -> tuple[Value, Value]:
     """Return a > 0 with h(a) = depth, and d a/d(delta)."""
     active, moves = depth > 0.0, a
     for _ in range(MOST_STEPS):
@@ -276,7 +258,7 @@ def _trailing(shape: Convex, l_r: Value, depth: Value, a: Value, x: Value) -> tu
         rise = slope * (x + l_r * shape.bend(x))
         factor = (depth / total) ** (total / rise)
         moves = pick(active, x / rise, moves)
-        # Where the slope hardly changes a step may overshoot the tip; it closes in from there.
+        # Where the slope hardly changes a step may overshoot the tip; the next ones approach from there.
         x = pick(active, least(-least(-x * factor, -VERTEX * a), a), x)
         active = active & (abs(factor - 1.0) + abs(depth / total - 1.0) >= LINEAR)
         if not some(active):
@@ -291,16 +273,17 @@ def _peak(shape: Convex, l_r: Value, contact: Contact) -> Value:
     for a power and rises with y for the circle, or else the peak is at the leading edge. Every iterate
     is a pressure of this contact, so that the highest of them is never too high.
     """
-    found, last = l_r * shape.slope(contact.a), (contact.a, 0.0 * l_r)
-    y, active = least(l_r, contact.a) + FLOOR * contact.a, l_r >= 0.0
+    a = contact.half_length
+    peak, last = l_r * shape.slope(a), (a, 0.0 * l_r)
+    y, active = least(l_r, a) + FLOOR * a, l_r >= 0.0
     for _ in range(PEAK_STEPS):
         slope = shape.slope(y)
-        found = -least(-found, -(contact.depth - shape.height(y) + l_r * slope))
-        to = l_r * shape.bend(y) + FLOOR * contact.a
+        peak = -least(-peak, -(contact.depth - shape.height(y) + l_r * slope))
+        to = l_r * shape.bend(y) + FLOOR * a
         gain = (to - last[1]) / (y - last[0] + TINY)
         last = y, to
-        active = active & (abs(least(to, contact.a) / y - 1.0) >= PEAK_RTOL)
+        active = active & (abs(least(to, a) / y - 1.0) >= PEAK_RTOL)
         if not some(active):
             break
-        y = pick(active, least(abs((to - gain * y) / (1.0 - gain + TINY)), contact.a), y)
-    return found
+        y = pick(active, least(abs((to - gain * y) / (1.0 - gain + TINY)), a), y)
+    return peak
