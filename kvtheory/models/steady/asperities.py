@@ -27,15 +27,19 @@ import numpy as np
 from scipy.optimize import brentq, minimize_scalar
 
 from kvtheory.models.steady.cells import DENSE, NODES, TAIL_MARGIN, VALUES, WEIGHTS, Surface
-from kvtheory.models.steady.double_exponential import ROUNDING, SMALLEST, Quantities, share_lost
+from kvtheory.models.steady.double_exponential import (
+    OF_LINE,
+    ROUNDING,
+    SMALLEST,
+    Quantities,
+    share_lost,
+)
 from kvtheory.results.errors import QuadratureError
 from kvtheory.scene.indenters import beside
 
-PEAK_BAND = 0.02
-"""Local maxima of the sampled pressure that are this close to the highest are searched."""
-PEAK_XTOL = 1e-8
-"""Tolerance of the position of the peak, over the distance of two samples; the error of its value is of
-second order."""
+PEAK_BAND, PEAK_XTOL = 0.02, 1e-8
+"""Local maxima of the sampled pressure this close to the highest are refined, with this tolerance of their
+position over the distance of two samples; the error of the value is of second order."""
 CORNER, AT_CORNER = (1e-10, 1e-290), 1e-9
 """Distances from a corner, over the length of the contact, between which the slope changes by no more."""
 HALF, BALANCED = 0.5, 1e-6
@@ -44,10 +48,9 @@ which both agree unless the pressure jumps."""
 ONE_SIDED = 1e3
 """Difference of series and function at a kink, over the last coefficients, that even a singular slope does
 not exceed: beyond it, the function gives the slope of the other side."""
-DEPTH_STEP = 2.0**-20
-"""Relative step of the depth for derivatives, which are needed to a digit or two."""
-ROOT_RTOL = 4.0 * float(np.finfo(float).eps)
-"""The smallest tolerance that `brentq` accepts."""
+DEPTH_STEP, ROOT_RTOL = 2.0**-20, 4.0 * float(np.finfo(float).eps)
+"""Relative step of the depth for derivatives, which are needed to a digit or two; the smallest tolerance that
+`brentq` accepts."""
 
 
 class Patch(NamedTuple):
@@ -303,14 +306,8 @@ class AnyLine:
 
     def _values(self, contact: Contact) -> tuple[dict[str, float], dict[str, float]]:
         friction, lost, error = self.friction(contact)
-        values = {
-            "half_length": contact.half_length,
-            "leading_edge": contact.patches[0].x_le,
-            "trailing_edge": contact.patches[-1].x_te,
-            "load": contact.load,
-            "friction_force": friction,
-            "peak_pressure": contact.peak(),
-            "dissipated_in_contact": share_lost(friction, lost),
-        }
+        edges = contact.patches[0].x_le, contact.patches[-1].x_te
+        share = share_lost(friction, lost)
+        values = contact.half_length, *edges, contact.load, friction, contact.peak(), share
         own = {"trailing_edge": contact.edge_error, "load": contact.load_error}
-        return values, own | {"friction_force": error}
+        return dict(zip(OF_LINE, values, strict=True)), own | {"friction_force": error}

@@ -46,12 +46,9 @@ AHEAD = 4.0
 CHECK_RTOL = 1e-11
 """Discrepancy between h and h' that a check allows, relative to the depth."""
 
-HOLLOW = 1e-9
-"""Decrease of the slope of a convex shape, over its greatest value, that rounding may cause."""
-BEND = 2.0**-5
-"""Width of a cell, over that of the contact, that only a jump of a higher derivative requires."""
-FLAT = 1e-15
-"""Last coefficients of a slope, over the slope, that are rounding."""
+HOLLOW, BEND = 1e-9, 2.0**-5
+"""Decrease of the slope of a convex shape, over its greatest value, that rounding may cause, and width of a
+cell, over that of the contact, that only a jump of a higher derivative requires."""
 
 
 class Cells(NamedTuple):
@@ -221,22 +218,14 @@ class Surface:
         return any(start <= kink <= end for kink in self.kinks)
 
     def bends(self, cells: Cells, narrow: float) -> list[float]:
-        """Return where the narrowest of narrow cells close in on a bend that no kink explains."""
-        width, found = cells.end - cells.start, []
+        """Return the ends of the narrowest of narrow cells, around each bend that no kink explains."""
+        width, found = cells.end - cells.start, list[float]()
         for run in np.split(np.arange(width.size), np.flatnonzero(np.diff(width)) + 1):
             start, end, size = cells.start[run[0]], cells.end[run[-1]], width[run[0]]
             neighbours = width[[max(run[0] - 1, 0), min(run[-1] + 1, width.size - 1)]]
-            if size >= narrow or size > neighbours.min() or self._kink_in(start - size, end + size):
-                continue
-            while True:  # halve it until both halves are resolved to rounding
-                middle = 0.5 * (start + end)
-                halves = np.array([[start, middle], [middle, end]])
-                slope = self.slope_series(halves)
-                tails = np.abs(slope[:, TAIL:]).sum(axis=1)
-                if tails.max() <= FLAT * np.abs(slope).max() or middle in (start, end):
-                    break
-                start, end = halves[np.argmax(tails)].tolist()
-            found.append(float(middle))
+            lone = size < narrow and size <= neighbours.min()
+            if lone and not self._kink_in(start - size, end + size):
+                found += [float(start), float(end)]
         return found
 
 
@@ -253,9 +242,7 @@ class ConvexProfile:
         self.shallow = self.surface.shallow
         self.declared = [side * kink for kink in profile.kinks]
         self.kinks: tuple[float, ...] = ()
-        """Those of the profile, and where a higher derivative jumps: the convolution is cut there."""
-        self.bent = False
-        """Whether there are any of the latter; they are not known to the last digit."""
+        """Those of the profile, and beside a jump of a higher derivative: the convolution is cut there."""
         self.noise = 0.0
         """Relative error of the series, by its last coefficients, over the depth."""
         self._cells: Any = None
@@ -280,9 +267,9 @@ class ConvexProfile:
         ends = self._end(depth, -1.0), self._end(depth, 1.0)
         if cells is not self._cells:
             self._cells = cells
-            bends = surface.bends(cells, BEND * sum(ends))
             tip = [0.0] if self._bent_at_zero() else []
-            self.kinks, self.bent = tuple(sorted({*self.declared, *bends, *tip})), bool(bends)
+            bends = surface.bends(cells, BEND * sum(ends))
+            self.kinks = tuple(sorted({*self.declared, *bends, *tip}))
         return ends
 
     def _bent_at_zero(self) -> bool:

@@ -28,6 +28,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from kvtheory.models.steady.double_exponential import (
+    OF_LINE,
     ROUNDING,
     SMALLEST,
     Quantities,
@@ -55,10 +56,9 @@ MOST_STEPS = 200
 """Steps of a root; they are a handful unless a vertex or the reach of a circle is close."""
 VERTEX, FLOOR = 1e-290, 1e-20
 """Shares of the half length below which the trailing edge, and the peak, are at the lowest point."""
-PEAK_RTOL = 1e-8
-"""Tolerance of its position; the error of its value is the square of it, times the exponent of a power."""
-PEAK_STEPS = 8
-"""Secant steps towards the peak: one for a power, more for a circle."""
+PEAK_RTOL, PEAK_STEPS = 1e-8, 8
+"""Tolerance of the position of the peak, whose value has an error of second order, and secant steps towards
+it: one for a power, more for a circle."""
 TINY = 1e-300
 """Added to a divisor that may vanish together with its dividend."""
 
@@ -81,31 +81,19 @@ class Contact(NamedTuple):
     load_error: Value
     """Relative error of the load at this very depth."""
     load_slope: Value
-    """d(W/K)/d(delta)."""
-
-    @property
-    def load_curvature(self) -> Value:
-        """d^2(W/K)/d(delta)^2."""
-        return self.a_moves + self.x_moves
-
-    @property
-    def guess(self) -> tuple[Value, ...]:
-        """Edges from which those at another depth are found."""
-        return self.half_length, self.x
-
-    @property
-    def noise(self) -> Value:
-        """Relative error of the depth equivalent to rounding: of x_LE, and of u."""
-        return ROUNDING * (1.0 + self.half_length / (self.a_moves * self.depth))
+    load_curvature: Value
+    """d(W/K)/d(delta), d^2(W/K)/d(delta)^2."""
+    guess: tuple[Value, Value]
+    """Edges from which those at another depth are found."""
+    noise: Value
+    """Relative error of the depth equivalent to rounding: of x_LE, and of u."""
 
 
 class ConvexLine:
     """A convex, even shape on Kelvin-Voigt: one scene or a column of them."""
 
-    in_columns = True
-    """Many depths are solved at once."""
-    floor = ROUNDING
-    """Relative error of every quantity by rounding."""
+    in_columns, floor = True, ROUNDING
+    """Whether many depths are solved at once, and the relative error of every quantity by rounding."""
 
     def __init__(self, shape: Any, l_r: Value) -> None:
         self.shape, self.l_r, self.reach = shape, l_r, shape.reach
@@ -148,10 +136,13 @@ class ConvexLine:
         below, error = integral(shape.height, (a, x), (a, rolls * x), not shape.kinks)
         # Where p = 0, u_TE = l_r h', which does not cancel for a small l_r.
         u_te = l_r * rolls * shape.slope(x) + (1.0 - rolls) * depth
-        length = a + rolls * x
+        length, x_moves = a + rolls * x, rolls * x_moves
         load = depth * length - below + l_r * u_te
-        slope, error = length + l_r, error * below / load
-        return Contact(depth, a, x, a_moves, rolls * x_moves, rolls, u_te, load, error, slope)
+        noise = ROUNDING * (1.0 + a / (a_moves * depth))
+        return Contact(
+            depth, a, x, a_moves, x_moves, rolls, u_te, load, error * below / load,
+            length + l_r, a_moves + x_moves, (a, x), noise,
+        )  # fmt: skip
 
     def half_length(self, depth: Value) -> Value:
         """Return a > 0 with h(a) = depth."""
@@ -181,7 +172,7 @@ class ConvexLine:
         The friction is l_r times the sum of int h'^2 dx and of u_TE^2/(2 l_r).
         """
         shape, l_r = self.shape, self.l_r
-        depth, a, x, a_moves, x_moves, rolls, u_te, load, load_error, load_slope = contact
+        depth, a, x, a_moves, x_moves, rolls, u_te, load, load_error, load_slope, *_ = contact
         drag, drag_error, left = self._drag(contact)
         at_a, at_x = shape.slope(a), shape.slope(x)
         total = drag + 0.5 * u_te * left
@@ -192,26 +183,18 @@ class ConvexLine:
         edge = depth * a_moves / a
         # Zero is the trailing edge at a corner; of a rounded tip it says that the edge is too close to tell.
         lost = pick((rolls * x < SMALLEST) & (shape.bend(x) != 0.0), math.inf, 0.0)
-        values = {
-            "half_length": a,
-            "leading_edge": -a,
-            "trailing_edge": rolls * x,
-            "load": load,
-            "friction_force": l_r * total,
-            "peak_pressure": peak,
-            "dissipated_in_contact": drag / total,
-        }
+        values = a, -a, rolls * x, load, l_r * total, peak, drag / total
         own = {"trailing_edge": lost, "load": load_error, "friction_force": drag_error}
-        powers = {
-            "half_length": edge,
-            "leading_edge": edge,
-            "trailing_edge": depth * x_moves / x,
-            "load": depth * load_slope / load,
-            "friction_force": depth * (left + at_a) / total,
-            "peak_pressure": depth / peak * -least(-1.0 + 0.0 * l_r, -l_r * shape.bend(a) / a),
-            "dissipated_in_contact": depth * (by_a + abs(by_x)) / total,
-        }
-        return values, own, powers
+        powers = (
+            edge,
+            edge,
+            depth * x_moves / x,
+            depth * load_slope / load,
+            depth * (left + at_a) / total,
+            depth / peak * -least(-1.0 + 0.0 * l_r, -l_r * shape.bend(a) / a),
+            depth * (by_a + abs(by_x)) / total,
+        )
+        return dict(zip(OF_LINE, values, strict=True)), own, dict(zip(OF_LINE, powers, strict=True))
 
 
 def _spaced(

@@ -24,7 +24,13 @@ from scipy.special import gamma
 
 from kvtheory.models.steady.cells import ConvexProfile
 from kvtheory.models.steady.contact import ConvexLine
-from kvtheory.models.steady.double_exponential import RULES, Quantities, power_bounds, share_lost
+from kvtheory.models.steady.double_exponential import (
+    OF_LINE,
+    RULES,
+    Quantities,
+    power_bounds,
+    share_lost,
+)
 from kvtheory.results.errors import QuadratureError
 from kvtheory.scene.foundations import FractionalKelvinVoigt
 from kvtheory.scene.indenters import Convex
@@ -39,17 +45,15 @@ NODES, BOTH = RULES[3]
 ROOT, TINY = 8.9e-16, 1e-300
 """Tolerances of edges: all digits, however small they are."""
 VERTEX = 1e-290
-"""Share of the half length at which the pressure is that behind the lowest point."""
-STRIDE = 1e-6
-"""Relative step of x for the slope of the pressure at its zero."""
-PEAK_RTOL = 1e-6
-"""Tolerance of the position of the peak between two nodes; the error of its value is of second order."""
-MARGIN, FLOOR = 8.0, 2e-13
-"""Safety factor on the differences of both rules; relative rounding of a result."""
+"""Share of the half length that is next to the lowest point."""
+STRIDE, PEAK_RTOL = 1e-6, 1e-6
+"""Relative step of x for the slope of the pressure at its zero, and tolerance of the position of the peak
+between two nodes; the error of its value is of second order."""
+MARGIN, FLOOR, LIMIT = 8.0, 2e-13, 1e-6
+"""Safety factor on the differences of both rules, relative rounding of a result, and the relative error from
+which it is refused."""
 JUMP = 1e-6
 """Pressure at the trailing edge, over that of the depth, from which it is a jump."""
-LIMIT = 1e-6
-"""Relative error above which a result is refused."""
 
 
 class Arms:
@@ -142,30 +146,24 @@ class Contact:
         cuts = sorted(x for x in {0.0, *shape.kinks} if -self.a < x < x_te)
         pieces = list(pairwise([-self.a, *cuts, x_te]))
         pieces += [] if x_te > 0.0 else [(0.0, 0.0)]
-        # Nodes are exact towards the end that is closer to the lowest point.
-        self.x = np.concatenate(
-            [
-                start + (end - start) * NODES
-                if abs(start) < abs(end)
-                else end - (end - start) * NODES[::-1]
-                for start, end in pieces
-            ]
-        )
-        self.ahead = np.concatenate(
-            [x_te - end + (end - start) * NODES[::-1] for start, end in pieces]
-        )
-        """Distances from the trailing edge: the rule is symmetric."""
-        self.weights = np.concatenate([(end - start) * BOTH for start, end in pieces], axis=1)
+        rows: list[list[Array]] = [[], [], []]
+        for (
+            start,
+            end,
+        ) in pieces:  # nodes are exact towards the end that is closer to the lowest point
+            forth, back = (end - start) * NODES, (end - start) * NODES[::-1]
+            rows[0].append(start + forth if abs(start) < abs(end) else end - back)
+            rows[1].append(x_te - end + back)
+            rows[2].append((end - start) * BOTH)
+        self.x, self.ahead, self.weights = (np.concatenate(each, axis=-1) for each in rows)
+        """Positions, distances from the trailing edge, and weights of both rules."""
         self.rate = -shape.slope(self.x)
         self.rows, apart = self.remembered(self.x)
         self.pressure = depth - shape.height(self.x) + self.rows.sum(axis=0)
         self.load, load_apart = self.total(self.pressure)
         error = apart + load_apart / self.load
-        if isinstance(shape, ConvexProfile):
-            error = error ** (1.0 if shape.bent else 1.5) + shape.noise
-        else:
-            error = error**1.5
-        self.load_error = MARGIN * error
+        noise = shape.noise if isinstance(shape, ConvexProfile) else 0.0
+        self.load_error = MARGIN * (error**1.5 + noise)
         if not self.load_error < LIMIT:
             raise QuadratureError(
                 "quadrature of the shape does not converge: the indenter's reach is too close, or "
@@ -293,20 +291,10 @@ class ViscoelasticLine:
     def quantities(self, contact: Contact) -> Quantities:
         """Return quantities over the stiffness, their errors at this depth, and d ln/d ln delta."""
         friction, lost, error = self.friction(contact)
-        values = {
-            "half_length": contact.half_length,
-            "leading_edge": -contact.a,
-            "trailing_edge": contact.x_te,
-            "load": contact.load,
-            "friction_force": friction,
-            "peak_pressure": contact.peak(),
-            "dissipated_in_contact": share_lost(friction, lost),
-        }
+        edges, share = (-contact.a, contact.x_te), share_lost(friction, lost)
+        values = contact.half_length, *edges, contact.load, friction, contact.peak(), share
         edge = contact.edge_power
-        own = dict.fromkeys((*values, "friction_coefficient"), error)
+        own = dict.fromkeys((*OF_LINE, "friction_coefficient"), error)
         own["trailing_edge"] += FLOOR * edge
-        return (
-            values,
-            own,
-            dict.fromkeys(values, 1.0) | power_bounds(contact) | {"trailing_edge": edge},
-        )
+        powers = dict.fromkeys(OF_LINE, 1.0) | power_bounds(contact) | {"trailing_edge": edge}
+        return dict(zip(OF_LINE, values, strict=True)), own, powers

@@ -15,6 +15,11 @@ Value = Any
 """A float, or a column of them."""
 Quantities = tuple[dict[str, Value], dict[str, Value], dict[str, Value]]
 """Quantities over the stiffness, their relative errors at a depth, and d ln/d ln delta of each."""
+OF_LINE = ("half_length", "leading_edge", "trailing_edge", "load", "friction_force",
+           "peak_pressure", "dissipated_in_contact")  # fmt: skip
+"""The quantities of a line contact."""
+SUMS = "load", "friction_force", "friction_coefficient", "dissipated_in_contact"
+"""Those that follow from sums over strips."""
 
 SMALLEST = float(np.finfo(float).tiny)
 ROUNDING = 5e-15
@@ -132,10 +137,10 @@ def share_lost(friction: Value, lost: Value) -> Value:
 
 
 def power_bounds(contact: Any) -> dict[str, float]:
-    """Return d ln W/d ln delta, and upper bounds of d ln/d ln delta of quantities for which it is not known.
+    """Return d ln W/d ln delta, and upper bounds of d ln/d ln delta where it is not known.
 
     At a given retardation length the friction coefficient changes no faster than the depth.
     """
     load = contact.depth * contact.load_slope / contact.load
-    others = {"friction_coefficient": 1.0, "dissipated_in_contact": 1.0}
-    return {"load": load, "friction_force": load + 1.0, **others}
+    bounds = load, load + 1.0, 1.0, 1.0
+    return dict(zip(SUMS, bounds, strict=True))

@@ -21,7 +21,6 @@ every load is carried at one depth, and the depth is relatively no less accurate
 
 import math
 from collections.abc import Callable
-from functools import partial
 from typing import Any
 
 import numpy as np
@@ -37,53 +36,45 @@ from kvtheory.results.errors import QuadratureError
 from kvtheory.scene.capabilities import lacks_kelvin_voigt, lacks_quadrature
 from kvtheory.scene.model import Scene
 
-UNBALANCED = 1e-6
-"""Relative error of the load carried above which the result is refused."""
-MARGIN = 2.0
-"""Safety factor on errors propagated by derivatives, which hold for small errors."""
+UNBALANCED, MARGIN = 1e-6, 2.0
+"""Relative error of the load above which a result is refused; safety factor on errors propagated by
+derivatives, which hold for small errors."""
 MOST_STEPS = 200
 """Trial depths; they are a handful unless the reach or the beginning of another contact is close."""
-LAST_STEP = {True: 1e-5, False: 3e-8}
-"""Step of the depth, over the depth, after which a cubic method has converged, and a quadratic one."""
-ULPS = 2.0**-49
-"""The least relative step of the depth."""
-SHALLOWER, SHALLOWEST = 8.0, 1e-12
-"""A depth without a solution is divided by this, if none is known to be too shallow; share of the first trial
-depth below which the search ends."""
-NARROW = 1e-9
-"""It also ends this close, over the depth, between one without a solution and one too shallow."""
+LAST_STEP, ULPS = {True: 1e-5, False: 3e-8}, 2.0**-49
+"""Relative step of the depth after which a cubic and a quadratic method have converged; the least step."""
+SHALLOWER, SHALLOWEST, NARROW = 8.0, 1e-12, 1e-9
+"""A depth without a solution is divided by the first, if none is known to be too shallow. The search ends at
+this share of the first trial depth, and this close between one without a solution and one too shallow."""
 
 FORCES = "load", "friction_force", "peak_pressure"
 """Quantities proportional to the stiffness."""
 
-OF_LINES = (
+LINE = (
     "error estimates of the quadratures and tolerances of the roots, carried to each quantity by its "
-    "derivative to the depth; for shapes computed to a few units in the last place"
+    "derivative with respect to the depth; for shapes computed to a few units in the last place"
 )
-OF_ANY_SHAPE = (
-    f"{OF_LINES}, smooth between the kinks that they name, without details that are narrower than "
+ANY_SHAPE = (
+    f"{LINE}, smooth between the kinks that they name, without details that are narrower than "
     "1/100 of the contact or of their distance from the lowest point, or a million times its length "
     "away; all contacts are summed"
 )
-OF_CONVOLUTION = (
+CONVOLUTION = (
     "differences of two double-exponential rules, for the memory and for the contact, carried to each "
     "quantity; for shapes computed to a few units in the last place"
 )
-OF_STRIPS = (
-    "quadrature over strips, each by {}; the estimate compares two rules, and what the strips "
-    "estimate of themselves"
-)
+STRIPS = "two rules compared over strips, and the estimate of each strip, by {}"
 
 
 def certificate(scene: Scene) -> Certificate:
-    """Return what the errors of a scene rest on."""
+    """Return the certificate of a scene, without errors."""
     remembers = bool(lacks_kelvin_voigt(scene))
     if not scene.indenter.per_width:
-        text = OF_STRIPS.format("convolution" if remembers else "its own quadrature")
+        text = STRIPS.format("convolution" if remembers else "its own quadrature")
     elif remembers:
-        text = OF_CONVOLUTION
+        text = CONVOLUTION
     else:
-        text = OF_LINES if scene.indenter.convex else OF_ANY_SHAPE
+        text = LINE if scene.indenter.convex else ANY_SHAPE
     return Certificate("estimated", text, {})
 
 
@@ -108,7 +99,7 @@ def quantities(scene: Scene) -> tuple[Any, ...]:
     if size and indenter.convex and indenter.per_width and not lacks_kelvin_voigt(scene):
         scene = scene.mapped(lambda x: x[:, None])
     elif size:
-        rows = [scene.mapped(partial(_item, index=i)) for i in range(*size)]
+        rows = [scene.mapped(lambda x, i=i: float(x[i])) for i in range(*size)]  # type: ignore[misc]
         return tuple(np.transpose([quantities(row) for row in rows]))
     support = scene.support
     l_r = abs(scene.drive.final_velocity) * scene.foundation.retardation_time  # Eq. 29
@@ -139,10 +130,6 @@ def quantities(scene: Scene) -> tuple[Any, ...]:
         values[name] = K * values[name]
     found = [each[name] for each in (values, errors) for name in STEADY_UNITS]
     return tuple(np.broadcast_to(x, scene.shape).ravel() if size else x for x in found)
-
-
-def _item(values: Any, index: int) -> float:
-    return float(values[index])
 
 
 def _lines(scene: Scene) -> Callable[[Value], Any]:

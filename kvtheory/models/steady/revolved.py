@@ -21,6 +21,7 @@ from numpy.typing import NDArray
 from kvtheory.models.steady.double_exponential import (
     RULES,
     SMALLEST,
+    SUMS,
     Quantities,
     power_bounds,
     share_lost,
@@ -41,15 +42,13 @@ NARROWEST = 1e-6
 """Half width of the narrowest strip that is sought, over that of the contact."""
 GAUSS = tuple((0.5 + 0.5 * s, 0.5 * w) for s, w in zip(*leggauss(4), strict=True))
 
-LEAST = 5.0
-"""Smallest relative error of a sum, over that of a strip."""
-SHARP = 4e-12
-"""Smallest error for a profile with a kink, whose strips next to the middle plane have a sharp tip."""
+LEAST, SHARP = 5.0, 4e-12
+"""Smallest relative error of a sum, over that of a strip, and for a profile with a kink, whose strips next to
+the middle plane have a sharp tip."""
 RTOL, LIMIT = {True: 1e-12, False: 1e-9}, 1e-6
 """Estimates above which the next rule is taken, and above which the last one is refused."""
 MARGIN = 4.0
-"""Factor on the ratio of the last two differences, by which the next one is estimated."""
-SUMS = ("load", "friction_force", "friction_coefficient", "dissipated_in_contact")
+"""Safety factor on the ratio of the last two differences, which estimates the next one."""
 BESIDE = 1e-9
 """Share of a radius at which the slopes on both sides of a kink are taken, to see where strips change."""
 
@@ -100,8 +99,7 @@ class Contact(NamedTuple):
     load_slope: float
     friction: float
     lost: float
-    load_error: float
-    """Relative, of every sum."""
+    load_error: float  # relative, of every sum
     load_curvature: None = None
     guess: tuple[()] = ()
 
