@@ -14,7 +14,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from kvtheory.models.steady.roots import converge
 from kvtheory.scene.indenters import Parabola, Wedge
 
 Array = NDArray[np.float64]
@@ -53,16 +52,18 @@ def trailing_edge(exponent: Array, number: Array) -> tuple[Array, Array]:
     ([0.5, 0.75, 0.0], [0.5, 1.0, 0.25])
     """
     c, m = exponent * number, exponent - 1.0
-
-    def step(q: Array) -> Array:
-        residual = np.log(q**m * (q + c))
-        final = (q == 0.0) | (np.abs(residual) <= LAST_RESIDUAL)
-        return np.where(final, 0.0, residual / (m + q / (q + c)))
-
     with np.errstate(divide="ignore", over="ignore", invalid="ignore"):
         start = np.where(c > 1.0, c ** (-1.0 / m), 1.0)
-        start = np.where((m > 0.0) & (start >= np.finfo(float).tiny), start, 0.0)
-        q = converge(step, start, LAST_STEP, MOST_STEPS)
+        active = (m > 0.0) & (start >= np.finfo(float).tiny)  # below, the digits are lost already
+        q = np.where(active, start, 0.0)
+        for _ in range(MOST_STEPS):
+            residual = np.log(q**m * (q + c))
+            step = np.where(active, residual / (m + q / (q + c)), 0.0)
+            q = q * np.exp(-step)
+            # Each is iterated separately, so that the result does not depend on the others in the array.
+            active &= (np.abs(step) > LAST_STEP) & (np.abs(residual) > LAST_RESIDUAL)
+            if not active.any():
+                break
         q = np.where(m > 0.0, q, np.maximum(0.0, 1.0 - number))
         return q, 1.0 / (q + c)
 
