@@ -46,9 +46,9 @@ AHEAD = 4.0
 CHECK_RTOL = 1e-11
 """Discrepancy between h and h' that a check allows, relative to the depth."""
 
-HOLLOW, BEND = 1e-9, 2.0**-5
-"""Decrease of the slope of a convex shape, over its greatest value, that rounding may cause, and width of a
-cell, over that of the contact, that only a jump of a higher derivative requires."""
+HOLLOW, FLAT, BEND = 1e-9, 1e-15, 2.0**-5
+"""Decrease of the slope of a convex shape, and its last coefficients, over the slope, that are rounding; width
+of a cell, over that of the contact, that only a jump of a higher derivative requires."""
 
 
 class Cells(NamedTuple):
@@ -218,15 +218,26 @@ class Surface:
         return any(start <= kink <= end for kink in self.kinks)
 
     def bends(self, cells: Cells, narrow: float) -> list[float]:
-        """Return the ends of the narrowest of narrow cells, around each bend that no kink explains."""
+        """Return where the narrowest of narrow cells close in on a bend that no kink explains."""
         width, found = cells.end - cells.start, list[float]()
         for run in np.split(np.arange(width.size), np.flatnonzero(np.diff(width)) + 1):
             start, end, size = cells.start[run[0]], cells.end[run[-1]], width[run[0]]
             neighbours = width[[max(run[0] - 1, 0), min(run[-1] + 1, width.size - 1)]]
             lone = size < narrow and size <= neighbours.min()
             if lone and not self._kink_in(start - size, end + size):
-                found += [float(start), float(end)]
+                found.append(self._bend(start, end))
         return found
+
+    def _bend(self, start: float, end: float) -> float:
+        """Return the bend in an interval: halved until no half is worse resolved than rounding."""
+        while True:
+            middle = 0.5 * (start + end)
+            halves = np.array([[start, middle], [middle, end]])
+            slope = self.slope_series(halves)
+            tails = np.abs(slope[:, TAIL:]).sum(axis=1)
+            if tails.max() <= FLAT * np.abs(slope).max() or middle in (start, end):
+                return float(middle)
+            start, end = halves[np.argmax(tails)].tolist()
 
 
 class ConvexProfile:
@@ -242,7 +253,9 @@ class ConvexProfile:
         self.shallow = self.surface.shallow
         self.declared = [side * kink for kink in profile.kinks]
         self.kinks: tuple[float, ...] = ()
-        """Those of the profile, and beside a jump of a higher derivative: the convolution is cut there."""
+        """Those of the profile, and where a higher derivative jumps: the convolution is cut there."""
+        self.bent = False
+        """Whether there are any of the latter; they are not known to the last digit."""
         self.noise = 0.0
         """Relative error of the series, by its last coefficients, over the depth."""
         self._cells: Any = None
@@ -269,7 +282,7 @@ class ConvexProfile:
             self._cells = cells
             tip = [0.0] if self._bent_at_zero() else []
             bends = surface.bends(cells, BEND * sum(ends))
-            self.kinks = tuple(sorted({*self.declared, *bends, *tip}))
+            self.kinks, self.bent = tuple(sorted({*self.declared, *bends, *tip})), bool(bends)
         return ends
 
     def _bent_at_zero(self) -> bool:

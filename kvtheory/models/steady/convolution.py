@@ -162,8 +162,11 @@ class Contact:
         self.pressure = depth - shape.height(self.x) + self.rows.sum(axis=0)
         self.load, load_apart = self.total(self.pressure)
         error = apart + load_apart / self.load
-        noise = shape.noise if isinstance(shape, ConvexProfile) else 0.0
-        self.load_error = MARGIN * (error**1.5 + noise)
+        if isinstance(shape, ConvexProfile):
+            error = error ** (1.0 if shape.bent else 1.5) + shape.noise
+        else:
+            error = error**1.5
+        self.load_error = MARGIN * error
         if not self.load_error < LIMIT:
             raise QuadratureError(
                 "quadrature of the shape does not converge: the indenter's reach is too close, or "
