@@ -17,7 +17,7 @@ from kvtheory.models.steady.footprint import (
     WIDTH,
 )
 from kvtheory.results import STEADY_UNITS
-from tests.steady import at_depth
+from tests.steady import agree, at_depth
 
 BALL = kv.Scene(indenter=kv.Sphere("10 mm"), support=kv.DeadWeight(mass="1 kg"))
 WIDER = kv.Sphere("10 mm", radius_across="25 mm")
@@ -28,17 +28,6 @@ GRIPS = {
 }
 V = "drive.velocity"
 SPEEDS = np.array([0.0, 1e-8, 1e-4, 1e-3, 1e-2, -0.03, 0.1, 1.0, -1e3, 1e8])
-
-
-def agree(found, truth, most=1.0):
-    """Hold all quantities of two states against the sum of their errors, those of the first below `most`."""
-    for name in STEADY_UNITS:
-        value, errors = (
-            getattr(truth, name),
-            [s.certificate.relative_error[name] for s in (found, truth)],
-        )
-        assert np.all(np.abs(getattr(found, name) - value) <= sum(errors) * np.abs(value)), name
-        assert np.max(errors[0]) < most, name
 
 
 @pytest.mark.parametrize("support", GRIPS)

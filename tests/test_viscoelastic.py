@@ -17,6 +17,7 @@ from kvtheory.results import STEADY_UNITS
 from kvtheory.theory import laws
 from kvtheory.theory.laws import Fractional, Prony
 from tests import reference_viscoelastic
+from tests.steady import agree
 
 SUPPORTS = ("fixed", "dead-weight", "suspended")
 STATED = viscoelastic.RELATIVE_ERROR
@@ -32,17 +33,6 @@ def scene(foundation, support="dead-weight", **parts):
 def by_quadrature(foundation, support, indenter, V):
     here = scene(foundation, support, indenter=indenter)
     return kv.steady(here, over={"drive.velocity": V}, method="quadrature")
-
-
-def agree(found, truth, most=1.0):
-    """Hold all quantities of two states against the sum of their errors, those of the first below `most`."""
-    for name in STEADY_UNITS:
-        value, errors = (
-            getattr(truth, name),
-            [each.certificate.relative_error[name] for each in (found, truth)],
-        )
-        assert abs(getattr(found, name) - value) <= sum(errors) * abs(value), name
-        assert errors[0] < most, name
 
 
 @pytest.mark.processor

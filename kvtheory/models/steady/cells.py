@@ -47,8 +47,8 @@ CHECK_RTOL = 1e-11
 """Discrepancy between h and h' that a check allows, relative to the depth."""
 
 HOLLOW, FLAT, BEND = 1e-9, 1e-15, 2.0**-5
-"""Decrease of the slope of a convex shape, and its last coefficients, over the slope, that are rounding; width
-of a cell, over that of the contact, that only a jump of a higher derivative requires."""
+"""Decrease of the slope of a convex shape, and its last coefficients, over the slope, that are rounding; and
+width of a cell, over that of the contact, that only a jump of a higher derivative requires."""
 
 
 class Cells(NamedTuple):

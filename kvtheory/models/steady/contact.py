@@ -93,7 +93,7 @@ class ConvexLine:
     """A convex, even shape on Kelvin-Voigt: one scene or a column of them."""
 
     in_columns, floor = True, ROUNDING
-    """Whether many depths are solved at once, and the relative error of every quantity by rounding."""
+    """Whether many depths are solved at once; the relative error of every quantity by rounding."""
 
     def __init__(self, shape: Any, l_r: Value) -> None:
         self.shape, self.l_r, self.reach = shape, l_r, shape.reach

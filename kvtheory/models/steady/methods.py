@@ -107,13 +107,7 @@ def _evaluate(
 
     The formula returns the quantities at |V|, in the order of `STEADY_UNITS`, and then the relative errors of
     those in `own_errors`, which replace what the certificate says of them. It takes flat arrays, and floats
-    too if `floats` says so.
-
-    Raises
-    ------
-    FloatingPointError
-        If a value leaves the range of double precision. A value with its own error may become
-        zero, as its error then says.
+    too if `floats` says so. `FloatingPointError` if a value leaves the range of double precision.
     """
     shape, V = scene.shape, scene.drive.final_velocity
     with np.errstate(over="raise", divide="raise", invalid="raise", under="ignore"):
@@ -121,9 +115,11 @@ def _evaluate(
             flat = _blocks(formula, scene.flat(), len(own_errors), block or BLOCK)
             rows: Any = flat.reshape(-1, *shape)
         elif floats:
-            rows = _mirrored([float(each) for each in formula(scene)], -1.0 if V < 0.0 else 1.0)
+            rows = [float(each) for each in formula(scene)]
         else:
-            rows = _blocks(formula, scene.at(np.array([V])), len(own_errors), 1)[:, 0].tolist()
+            rows = [float(np.ravel(each)[0]) for each in formula(scene.at(np.array([V])))]
+    if not shape and V < 0.0:
+        _mirror(rows, -1.0)
     values = rows[: len(QUANTITIES)]
     if shape or not all(SMALLEST <= abs(each) < math.inf for each in values):
         _check_range(np.asarray(values), V, own_errors)
@@ -146,21 +142,22 @@ def _blocks(formula: Formula, flat: Scene, own: int, block: int) -> Array:
         some = flat.rows(part)
         for row, values in zip(result, formula(some), strict=True):
             row[part] = values
-        _mirrored(result[:, part], np.where(some.drive.final_velocity < 0.0, -1.0, 1.0))
+        backwards = some.drive.final_velocity < 0.0
+        if np.any(backwards):
+            _mirror(result[:, part], np.where(backwards, -1.0, 1.0))
     return result
 
 
-def _mirrored(rows: Any, side: Any) -> Any:
-    """Return the rows with the sign of the velocity: a reversed drive is the mirror image."""
+def _mirror(rows: Any, side: Any) -> None:
+    """Give the odd rows the sign of the velocity: a reversed drive is the mirror image."""
     for row in ODD_ROWS:
         rows[row] = side * rows[row] + 0.0  # no negative zero
-    return rows
 
 
 def _check_range(values: Array, velocity: Any, own_errors: tuple[str, ...]) -> None:
     """Raise if a value is not finite, or lost digits below the smallest normal number.
 
-    Zero is correct only at rest, or where the value's own error covers it.
+    Zero is correct only at rest, or where the value has its own error, which then says so.
     """
     size = np.abs(values)
     if not size.size or (size.min() >= SMALLEST and size.max() < math.inf):

@@ -82,15 +82,9 @@ def quantities(scene: Scene) -> tuple[Any, ...]:
     """Return the quantities at |V| in the order of `STEADY_UNITS`, and the relative error of each.
 
     Scenes of arrays are solved in columns where the shape is a convex line on Kelvin-Voigt, else one by one.
+    `QuadratureError` if a quadrature or a root fails, the contact or the load goes beyond the indenter's reach,
+    or a callable shape is not smooth where it touches.
 
-    Raises
-    ------
-    QuadratureError
-        If a quadrature or a root fails, the contact goes beyond the indenter's reach, no depth within the
-        reach carries the load, or a callable shape is not smooth where it touches.
-
-    Examples
-    --------
     >>> found = quantities(Scene.table1("fixed"))
     >>> print(", ".join(f"{value:.6g}" for value in found[4:8]))
     0.00029563, 35344.6, 5344.58, 0.151214
