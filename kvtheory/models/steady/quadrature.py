@@ -82,7 +82,7 @@ def quantities(scene: Scene) -> tuple[Any, ...]:
     """Return the quantities at |V| in the order of `STEADY_UNITS`, and the relative error of each.
 
     Scenes of arrays are solved in columns where the shape is a convex line on Kelvin-Voigt, else one by one.
-    `QuadratureError` if a quadrature or a root fails, the contact or the load goes beyond the indenter's reach,
+    `QuadratureError` if a quadrature or a root fails, contact or load go beyond the reach of the indenter,
     or a callable shape is not smooth where it touches.
 
     >>> found = quantities(Scene.table1("fixed"))
