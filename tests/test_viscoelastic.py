@@ -120,29 +120,6 @@ def test_beyond_the_glass_transition_a_fixed_indenter_has_a_maximum():
     assert 0 < np.argmax(peak.friction_coefficient) < 199
 
 
-def test_the_pressure_carries_the_load_and_the_friction_force():
-    """By its own convolution on a fine grid, which knows nothing of moments."""
-    state = kv.steady(scene(ZENER))
-    a, c, R = state.half_length, state.half_length + state.trailing_edge, 0.01
-    edges = np.linspace(0.0, c, 4001)
-    rate = np.diff((a * edges - edges**2 / 2) / R)
-
-    def left(l):  # the mean over a cell of what earlier cells have left, exactly relaxed
-        h = edges[1]
-        decay, full = np.exp(-h / l), (np.sinh(h / (2 * l)) / (h / (2 * l))) ** 2
-        own = (1 - (1 - np.exp(-h / l)) / (h / l)) / (h / l)
-        return full * lfilter([0.0, decay], [1.0, -decay], rate) + own * rate
-
-    pressure = 1e10 * np.diff((a * edges**2 / 2 - edges**3 / 6) / R) / np.diff(edges)
-    for stiffness, time in ((3e10, 0.01), (5e9, 1.0)):
-        pressure += stiffness * left(0.1 * time)
-    load, friction = pressure.sum() * edges[1], (pressure * rate).sum()
-    assert load == pytest.approx(state.load, rel=1e-6)
-    assert friction == pytest.approx(state.friction_force, rel=1e-6)
-    assert pressure.max() == pytest.approx(state.peak_pressure, rel=1e-5)
-    assert abs(pressure[-1]) < 1e-3 * pressure.max()
-
-
 def test_arms_can_be_swept_and_broadcast():
     over = {"foundation.arms[0].stiffness": [1e9, 3e10], "drive.velocity": [[0.1], [0.2], [0.0]]}
     state = kv.steady(scene(ZENER), over=over)
