@@ -176,6 +176,7 @@ def test_arrays_broadcast_and_do_not_depend_on_the_blocks(monkeypatch):
     for name in STEADY_UNITS:
         assert getattr(whole, name).shape == (7, 3)
         assert np.array_equal(getattr(whole, name), getattr(blocks, name))
+    assert at_load(0.01, 1e10, 0.1, np.empty((0, 3)), 9806.65).depth.shape == (0, 3)
 
 
 KELVIN_VOIGT = kv.Scene().foundation

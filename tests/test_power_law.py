@@ -36,8 +36,8 @@ def random_case(rng, n, kind, decades=12):
 @pytest.mark.parametrize(
     ("n", "solve", "profile", "count"),
     [
-        *((n, solve_exact, False, 30) for n in EXPONENTS),
-        *((n, solve_quadrature, False, 15) for n in EXPONENTS),
+        *((n, solve_exact, False, 20) for n in EXPONENTS),
+        *((n, solve_quadrature, False, 10) for n in EXPONENTS),
         *((n, solve_quadrature, True, 2) for n in EXPONENTS if n == 1.0 or n > 1.01),
     ],
 )

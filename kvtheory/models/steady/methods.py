@@ -113,7 +113,7 @@ def _evaluate(
     with np.errstate(over="raise", divide="raise", invalid="raise", under="ignore"):
         if shape:
             flat = _blocks(formula, scene.flat(), len(own_errors), block or BLOCK)
-            rows: Any = flat.reshape(-1, *shape)
+            rows: Any = flat.reshape(len(flat), *shape)
         elif floats:
             rows = [float(each) for each in formula(scene)]
         else:
