@@ -303,3 +303,12 @@ def test_a_shape_that_may_touch_in_several_places_is_refused_beyond_kelvin_voigt
     here = scene(ZENER, "fixed", indenter=kv.Profile(height, slope))
     with pytest.raises(kv.QuadratureError, match="not convex down to"):
         kv.steady(here)
+
+
+def test_a_kink_that_is_not_declared_is_refused_beyond_kelvin_voigt():
+    def slope(x):
+        return math.copysign(0.1 if abs(x) < 1e-4 else 0.4, x)
+
+    bent = kv.Profile(lambda x: 0.1 * abs(x) + 0.3 * max(abs(x) - 1e-4, 0.0), slope)
+    with pytest.raises(kv.QuadratureError, match="the slope jumps where `kinks`"):
+        kv.steady(scene(ZENER, "fixed", indenter=bent))
