@@ -9,6 +9,7 @@ import math
 import mmap
 import sys
 from dataclasses import replace
+from itertools import product
 
 import kvtheory as kv
 
@@ -18,7 +19,7 @@ FLUSHED = 0x1F80 | 1 << 15 | 1 << 6
 """All exceptions masked; results and operands flushed."""
 
 
-def flush() -> None:
+def flush():
     """Set the processor of this thread."""
     page = mmap.mmap(-1, mmap.PAGESIZE, prot=mmap.PROT_READ | mmap.PROT_WRITE | mmap.PROT_EXEC)
     page.write(LDMXCSR)
@@ -46,22 +47,15 @@ def scenes():
               "power law": sharp, "own wedge": wedge, "own punch": blunt, "own power law": power,
               "ball": kv.Sphere(0.01), "cone": kv.Revolved(kv.Wedge(0.1)),
               "own cone": kv.Revolved(wedge)}  # fmt: skip
-    foundations = {
-        "kelvin-voigt": kv.Foundation(1e10, 0.1),
-        "maxwell": kv.GeneralizedMaxwell(1e10, arms=[[3e10, 0.01], [1e9, 3.0]]),
-    }
-    for shape, indenter in shapes.items():
-        for law, foundation in foundations.items():
-            if shape == "own cone" and law != "kelvin-voigt":
-                continue
-            for V in (1e-9, -0.1):
-                yield (
-                    f"{shape}, {law}, {V}",
-                    kv.Scene(indenter, foundation, kv.Fixed(1e-4), kv.Drive(velocity=V)),
-                )
-    weight = kv.DeadWeight(mass=1000.0)
-    for law, foundation in foundations.items():
-        yield f"weight, {law}", kv.Scene(foundation=foundation, support=weight)
+    maxwell = kv.GeneralizedMaxwell(1e10, arms=[[3e10, 0.01], [1e9, 3.0]])
+    laws = {"kelvin-voigt": kv.Foundation(1e10, 0.1), "maxwell": maxwell}
+    for (shape, indenter), (law, foundation) in product(shapes.items(), laws.items()):
+        if shape != "own cone" or law == "kelvin-voigt":
+            for V in (1e-9, -0.1) if law == "kelvin-voigt" else (1e-9,):
+                drive = kv.Drive(velocity=V)
+                yield f"{shape}, {law}, {V}", kv.Scene(indenter, foundation, kv.Fixed(1e-4), drive)
+    for law, foundation in laws.items():
+        yield f"weight, {law}", kv.Scene(foundation=foundation, support=kv.DeadWeight(mass=1000.0))
 
 
 def states():
@@ -75,13 +69,10 @@ def states():
         }
     rest = kv.Scene(run=kv.Run(duration=0.02))
     arms = kv.GeneralizedMaxwell(1e10, arms=[[3e10, 0.01]])
-    for name, solve, foundation in (
-        ("transient", kv.transient, rest.foundation),
-        ("elements", kv.elements, rest.foundation),
-        ("elements on arms", kv.elements, arms),
-    ):
-        run = solve(replace(rest, foundation=foundation), at=[1e-3, 0.02])
-        found[name] = {
+    runs = ("transient", rest.foundation), ("elements", rest.foundation), ("elements", arms)
+    for name, foundation in runs:
+        run = getattr(kv, name)(replace(rest, foundation=foundation), at=[1e-3, 0.02])
+        found[f"{name}, {type(foundation).__name__}"] = {
             key: [float(getattr(run, key)[-1]), 1e-9]
             for key in ("depth", "normal_force", "friction_force")
         }

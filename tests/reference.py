@@ -1,54 +1,126 @@
-"""Steady sliding of a parabola in ball arithmetic: rigorous enclosures to hold the package against.
+"""Steady sliding in ball arithmetic: rigorous enclosures to hold the package against.
 
-Everything follows from the definitions: the edges of Eqs. 26 and 27, the pressure
-p = K (delta - h - l_r h'), and W = int p dx, F = int -h' p dx. `at_depth` and `at_load` integrate the
-polynomials by their antiderivatives; `integrals` lets Arb enclose the integrals themselves. Arguments
-are the exact values of floats; the precision leaves 60 digits after the worst cancellation.
+A shape gives, over the stiffness and from the definitions, its static depth, its load and all that follows
+from a depth; `steady` adds the support. Arguments are the exact values of floats; the precision leaves 60
+digits after the worst cancellation.
 """
+
+from dataclasses import dataclass, fields
 
 from flint import acb, arb, ctx
 
 BITS = 600
 """Twelve decades of drive number either way cost up to 250 bits in differences."""
 WIDTH = arb(2) ** -420
-"""Relative half width of the interval in which the sign of the balance is shown to change; the
-static depth, which enters the balance on a spring, is enclosed more narrowly."""
+"""Relative half width of an interval in which a sign is shown to change."""
 
 
-def at_depth(radius, stiffness, retardation_time, velocity, depth):
-    """Enclose every steady quantity at a given depth; a float, an integer or a ball."""
-    with ctx.workprec(BITS):
-        return _quantities(*_exact(radius, stiffness, retardation_time, velocity, depth))
+def steady(shape):
+    """Return `at_depth(*shape, K, tau, V, depth)` and `at_load(*shape, K, tau, V, weight, spring=0)`.
+
+    Both enclose every steady quantity; the spring is relaxed at the static depth.
+    """
+    count = len(fields(shape))
+
+    def at_depth(*given):
+        with ctx.workprec(BITS):
+            given = list(map(arb, given))
+            return quantities(shape(*given[:count]), *given[count:])
+
+    def at_load(*given):
+        with ctx.workprec(BITS):
+            given = list(map(arb, given))
+            body, (K, tau, V, weight, *spring) = shape(*given[:count]), given[count:]
+            k = spring[0] / K if spring else arb(0)
+            depth = static = body.static_depth(weight / K)
+            if V != 0:
+                depth = _depth(body, abs(V) * tau, weight / K + k * static, k, static)
+            return quantities(body, K, tau, V, depth)
+
+    return at_depth, at_load
 
 
-def at_load(radius, stiffness, retardation_time, velocity, weight, spring=0.0):
-    """Enclose every steady quantity under a weight, on a spring relaxed at the static depth."""
-    with ctx.workprec(BITS):
-        R, K, tau, V, weight, k_s = _exact(
-            radius, stiffness, retardation_time, velocity, weight, spring
-        )
-        l_r = abs(V) * tau
-        guess = ((weight / K) ** 2 / R).root(3)
-        static = _depth(R, K, arb(0), weight, arb(0), guess, WIDTH / 2**60)
-        total = weight + k_s * static
-        depth = _depth(R, K, l_r, total, k_s, static, WIDTH) if l_r > 0 else static
-        return _quantities(R, K, tau, V, depth)
+def _depth(body, l_r, total, spring, guess):
+    """Enclose the root of W/K + k depth = total by Newton's method and a change of sign."""
+    depth, width = guess.mid(), WIDTH * 2**40
+    for _ in range(500):
+        load, slope = body.load(l_r, depth)
+        step = ((total - load - spring * depth) / (slope + spring)).mid()
+        depth = max((depth + step).mid(), (depth / 1000).mid())
+        if abs(step) < depth * WIDTH * 2**20:
+            break
+    low, high = depth * (1 - width), depth * (1 + width)
+    below, above = (body.load(l_r, d)[0] + spring * d for d in (low, high))
+    if not below < total < above:
+        raise ArithmeticError("the depth was not enclosed")
+    return arb(depth, depth * width)
+
+
+def quantities(body, K, tau, V, depth):
+    """Enclose every steady quantity at a depth."""
+    l_r, side = abs(V) * tau, -1 if V < 0 else 1
+    load, _ = body.load(l_r, depth)
+    a, x_te, friction, lost, peak = body.contact(l_r, depth, load)
+    moving = l_r > 0
+    return {
+        "depth": depth,
+        "half_length": a,
+        "retardation_length": l_r,
+        "leading_edge": -side * a,
+        "trailing_edge": side * x_te,
+        "load": K * load,
+        "friction_force": side * K * friction if moving else arb(0),
+        "friction_coefficient": side * friction / load if moving else arb(0),
+        "peak_pressure": K * peak,
+        "dissipated_in_contact": lost / friction if moving else arb(1),
+    }
+
+
+@dataclass
+class Parabola:
+    """Integrals of p = delta - h - l_r h' and of -h' p by their antiderivatives (Eqs. 26, 27)."""
+
+    radius: arb
+
+    def static_depth(self, weight):
+        return ((3 * weight / 4) ** 2 / (2 * self.radius)).root(3)
+
+    def edges(self, l_r, depth):
+        a_squared = 2 * self.radius * depth  # Eq. 28
+        return -a_squared.sqrt(), (a_squared + l_r * l_r).sqrt() - l_r
+
+    def powers(self, l_r, depth):
+        """Integrals of x^0 to x^3 over the contact."""
+        x_le, x_te = self.edges(l_r, depth)
+        return [(x_te**n - x_le**n) / n for n in range(1, 5)]
+
+    def load(self, l_r, depth):
+        one, x, square, _ = self.powers(l_r, depth)
+        return depth * one - (square / 2 + l_r * x) / self.radius, one + l_r
+
+    def contact(self, l_r, depth, load):
+        _, x, square, cube = self.powers(l_r, depth)
+        R, (x_le, x_te) = self.radius, self.edges(l_r, depth)
+        friction = -(depth * x - (cube / 2 + l_r * square) / R) / R
+        x_peak = x_le.max(-l_r)  # where p' = 0, or the edge beyond which it lies
+        peak = depth - x_peak**2 / (2 * R) - l_r * x_peak / R
+        return -x_le, x_te, friction, l_r * square / (R * R), peak  # lost: l_r int h'^2 dx
+
+
+at_depth, at_load = steady(Parabola)
 
 
 def integrals(radius, stiffness, retardation_time, velocity, depth):
-    """Enclose W and F of `at_depth` as integrals of the definitions, for V >= 0."""
+    """Enclose W and F of a parabola as integrals of the definitions, for V >= 0."""
     with ctx.workprec(BITS):
-        R, K, tau, V, depth = _exact(radius, stiffness, retardation_time, velocity, depth)
-        l_r = V * tau
-        x_le, x_te = _edges(R, l_r, depth)
+        R, K, tau, V, depth = map(arb, (radius, stiffness, retardation_time, velocity, depth))
+        ends = Parabola(R).edges(V * tau, depth)
 
         def pressure(x, _):
-            return K * (depth - x * x / (2 * R) - l_r * x / R)
+            return K * (depth - x * x / (2 * R) - V * tau * x / R)
 
-        def friction(x, _):
-            return -x / R * pressure(x, _)
-
-        return acb.integral(pressure, x_le, x_te).real, acb.integral(friction, x_le, x_te).real
+        friction = acb.integral(lambda x, _: -x / R * pressure(x, _), *ends)
+        return acb.integral(pressure, *ends).real, friction.real
 
 
 def relative_error(value, truth):
@@ -59,58 +131,8 @@ def relative_error(value, truth):
         return float((abs(arb(value) - truth) / abs(truth)).upper())
 
 
-def _exact(*values):
-    return [arb(value) for value in values]
-
-
-def _edges(R, l_r, depth):
-    a_squared = 2 * R * depth  # Eq. 28
-    return -a_squared.sqrt(), (a_squared + l_r * l_r).sqrt() - l_r  # Eqs. 26, 27
-
-
-def _load(R, K, l_r, depth):
-    """W and dW/d(delta), the pressure being zero at the one edge and K l_r |h'| at the other."""
-    x_le, x_te = _edges(R, l_r, depth)
-    width = x_te - x_le
-    squares, cubes = x_te**2 - x_le**2, x_te**3 - x_le**3
-    return K * (depth * width - cubes / (6 * R) - l_r * squares / (2 * R)), K * (width + l_r)
-
-
-def _depth(R, K, l_r, total, spring, guess, width):
-    """Enclose the root of W(delta) + k_s delta = total by Newton's method and a change of sign."""
-    depth = guess.mid()
-    for _ in range(200):
-        load, slope = _load(R, K, l_r, depth)
-        step = ((total - load - spring * depth) / (slope + spring)).mid()
-        depth = (depth + step).mid()
-        if abs(step) < depth * width:
-            break
-    low, high = depth * (1 - width), depth * (1 + width)
-    if not (
-        _load(R, K, l_r, low)[0] + spring * low < total < _load(R, K, l_r, high)[0] + spring * high
-    ):
-        raise ArithmeticError("the depth was not enclosed")
-    return arb(depth, depth * width)
-
-
-def _quantities(R, K, tau, V, depth):
-    l_r = abs(V) * tau  # Eq. 29
-    side = -1 if V < 0 else 1
-    x_le, x_te = _edges(R, l_r, depth)
-    load, _ = _load(R, K, l_r, depth)
-    squares, cubes, fourths = (x_te**n - x_le**n for n in (2, 3, 4))
-    friction = -K / R * (depth * squares / 2 - fourths / (8 * R) - l_r * cubes / (3 * R))
-    lost = K * l_r * cubes / (3 * R * R)  # C V int h'^2 dx
-    x_peak = x_le.max(-l_r)  # where p' = 0, or the edge beyond which it lies
-    return {
-        "depth": depth,
-        "half_length": -x_le,
-        "retardation_length": l_r,
-        "leading_edge": side * x_le,
-        "trailing_edge": side * x_te,
-        "load": load,
-        "friction_force": side * friction if l_r > 0 else arb(0),
-        "friction_coefficient": side * friction / load if l_r > 0 else arb(0),
-        "peak_pressure": K * (depth - x_peak**2 / (2 * R) - l_r * x_peak / R),
-        "dissipated_in_contact": lost / friction if l_r > 0 else arb(1),
-    }
+def excess(state, truth):
+    """Return the quantities of a state that are further from the truth than they claim, with both errors."""
+    claimed = state.certificate.relative_error
+    errors = {name: relative_error(float(getattr(state, name)), truth[name]) for name in truth}
+    return {name: (e, claimed[name]) for name, e in errors.items() if not e <= claimed[name]}

@@ -192,15 +192,9 @@ def scene_of(case):
     return kv.Scene(kv.Parabola(R), foundation, support, kv.Drive(V))
 
 
-def solved(case, solve=solve_exact):
-    """Return what the package says."""
-    return solve(scene_of(case))
-
-
 def errors(case):
     """The relative error of each quantity, over the one that is claimed."""
-    name = "at_depth" if len(case) == 7 else "at_load"
-    state, truth = solved(case), globals()[name](*case)
+    state, truth = solve_exact(scene_of(case)), (at_depth if len(case) == 7 else at_load)(*case)
     del truth["retardation_length"]  # of a time that the case gives
     claimed = state.certificate.relative_error
     return {

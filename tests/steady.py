@@ -3,6 +3,7 @@
 import numpy as np
 
 from kvtheory.models.steady.methods import solve_exact
+from kvtheory.results import STEADY_UNITS
 from kvtheory.scene import DeadWeight, Drive, Fixed, Foundation, Parabola, Scene, Suspended
 
 
@@ -22,3 +23,12 @@ def _scene(indenter, K, tau, V, support):
     shape = indenter if hasattr(indenter, "height") else Parabola(indenter)
     foundation = K if hasattr(K, "kind") else Foundation(K, tau)
     return Scene(shape, foundation, support, Drive(V))
+
+
+def agree(found, truth, most=1.0):
+    """Hold all quantities of two states against the sum of their errors, those of the first below `most`."""
+    for name in STEADY_UNITS:
+        value = getattr(truth, name)
+        one, other = (state.certificate.relative_error[name] for state in (found, truth))
+        assert np.all(np.abs(getattr(found, name) - value) <= (one + other) * np.abs(value)), name
+        assert np.max(one) < most or most == np.inf, name

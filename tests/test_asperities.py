@@ -12,14 +12,23 @@ import pytest
 from scipy.optimize import brentq
 
 from kvtheory.models.steady.methods import solve_quadrature
-from kvtheory.results import STEADY_UNITS
 from kvtheory.scene.indenters import Circle, Parabola, PowerLaw, Profile
 from tests import flushed, steady
 
 at_depth, at_load = (
     partial(each, solve=solve_quadrature) for each in (steady.at_depth, steady.at_load)
 )
-POINTS = 100_001
+POINTS = 50_001
+
+
+class Smooth(Profile):
+    """A profile whose functions take arrays too."""
+
+    def height(self, x):
+        return self.height_function(x)
+
+    def slope(self, x):
+        return self.slope_function(x)
 
 
 def on_a_grid(profile, side, l_r, depth, half_width, points=POINTS):
@@ -57,8 +66,8 @@ def held_against_a_grid(profile, l_r, depth, half_width, side=1.0):
     return state
 
 
-class Waves(Profile):
-    """x^2/(2R) and cosines, placed with the lowest point of their sum at zero; takes arrays too."""
+class Waves(Smooth):
+    """x^2/(2R) and cosines, placed with the lowest point of their sum at zero."""
 
     def __init__(self, radius, amplitudes, lengths, phases):
         numbers = (2.0 * np.pi / np.asarray(lengths)).tolist()
@@ -70,21 +79,15 @@ class Waves(Profile):
         def tilt(x):
             return x / radius - sum(a * k * np.sin(k * x + c) for a, k, c in terms)
 
-        self_width = math.sqrt(4.0 * radius * sum(a for a, _, _ in terms)) + 1e-6
-        x = np.linspace(-self_width, self_width, 200_001)
+        roughness = sum(a for a, _, _ in terms)
+        width = math.sqrt(4.0 * radius * roughness) + 1e-6
+        x, step = np.linspace(-width, width, 50_001, retstep=True)
         lowest = x[np.argmin(raw(x))]
-        step = x[1] - x[0]
-        origin = brentq(tilt, lowest - step, lowest + step, xtol=1e-18) if terms else 0.0
+        origin = brentq(tilt, lowest - step, lowest + step, xtol=1e-18)
         level = raw(origin)
         super().__init__(lambda x: raw(x + origin) - level, lambda x: tilt(x + origin))
-        object.__setattr__(self, "roughness", sum(a for a, _, _ in terms))
+        object.__setattr__(self, "roughness", roughness)
         object.__setattr__(self, "radius", radius)
-
-    def height(self, x):
-        return self.height_function(x)
-
-    def slope(self, x):
-        return self.slope_function(x)
 
     def width(self, depth):
         """Half of a width that holds every contact."""
@@ -104,7 +107,7 @@ def random_waves(seed):
     return profile, l_r, depth, (1.0 if seed % 2 or not l_r else -1.0)
 
 
-@pytest.mark.parametrize("seed", range(8))
+@pytest.mark.parametrize("seed", range(6))
 def test_random_rough_profiles(seed):
     """At a depth, and at the load there; W is convex in the depth, which makes that depth unique."""
     profile, l_r, depth, side = random_waves(seed)
@@ -113,9 +116,9 @@ def test_random_rough_profiles(seed):
     error = state.certificate.relative_error["load"] + back.certificate.relative_error["depth"]
     assert abs(back.depth / depth - 1.0) <= error
     assert back.certificate.relative_error["depth"] < 1e-9
-    depths = np.append(profile.roughness * np.linspace(0.1, 3.0, 5), depth)
-    loads = [at_depth(profile, 1.0, 1.0, side * l_r, d).load for d in np.sort(depths).tolist()]
-    slopes = np.diff(loads) / np.diff(np.sort(depths))
+    depths = np.sort(np.append(profile.roughness * np.linspace(0.1, 3.0, 5), depth))
+    loads = [at_depth(profile, 1.0, 1.0, side * l_r, d).load for d in depths.tolist()]
+    slopes = np.diff(loads) / np.diff(depths)
     assert np.all(np.diff(slopes) > -1e-9 * slopes[-1])
 
 
@@ -148,7 +151,7 @@ def pair(distance, lift, radius=0.01):
     def second(x):
         return (x - distance) ** 2 / (2.0 * radius) + lift < x * x / (2.0 * radius)
 
-    return Profile(
+    return Smooth(
         lambda x: (x - distance * second(x)) ** 2 / (2.0 * radius) + lift * second(x),
         lambda x: (x - distance * second(x)) / radius,
     )
@@ -181,9 +184,9 @@ def test_narrow_bumps_of_a_profile_are_seen(position, width):
     """A bump of 1/200 and 1/400 of the contact, which carries 2e-5 of the load."""
 
     def bump(x):
-        return 1e-6 * math.exp(-(((x - position) / width) ** 2))
+        return 1e-6 * np.exp(-(((x - position) / width) ** 2))
 
-    profile = Profile(
+    profile = Smooth(
         lambda x: x * x / 0.02 + bump(x) - bump(0.0),
         lambda x: x / 0.01 - 2.0 * (x - position) / width**2 * bump(x),
     )
@@ -191,21 +194,19 @@ def test_narrow_bumps_of_a_profile_are_seen(position, width):
 
 
 @pytest.mark.parametrize("l_r", [0.0, 1e-4, 1e-2])
-def test_a_step(l_r):
+@pytest.mark.parametrize("place", [-1.2e-3, 5e-4, 1e-3])
+def test_a_step(l_r, place):
     """A smooth step up, 20 um wide, within the contact and outside of it."""
-    for place in (-1.2e-3, 5e-4, 1e-3):
+    rise = math.copysign(2e-5, place)
 
-        def height(x, place=place):
-            t = math.tanh((x - place) / 1e-5) + math.tanh(place / 1e-5)
-            return x * x / 0.02 + math.copysign(2e-5, place) * t
+    def height(x):
+        t = np.tanh((x - place) / 1e-5) + math.tanh(place / 1e-5)
+        return x * x / 0.02 + rise * t
 
-        def slope(x, place=place):
-            return (
-                x / 0.01
-                + math.copysign(2.0, place) / math.cosh(min(abs(x - place) / 1e-5, 300.0)) ** 2
-            )
+    def slope(x):
+        return x / 0.01 + rise / 1e-5 / np.cosh(np.minimum(abs(x - place) / 1e-5, 300.0)) ** 2
 
-        held_against_a_grid(Profile(height, slope), l_r, 1e-4, 3e-3)
+    held_against_a_grid(Smooth(height, slope), l_r, 1e-4, 3e-3)
 
 
 @pytest.mark.parametrize("l_r", [0.0, 1e-3, 1e-2])
@@ -217,30 +218,22 @@ def test_waves_that_lift_off_and_touch_again(l_r):
 @pytest.mark.parametrize(
     "shape", [Parabola(1.0), Circle(1.0), PowerLaw(1.0, 1.28), PowerLaw(1.0, 3.3)], ids=str
 )
-@pytest.mark.parametrize("l_r", [0.0, 1e-9, 1e-4, 0.6, 100.0])
+@pytest.mark.parametrize("l_r", [0.0, 1e-9, 0.6, 100.0])
 def test_a_profile_of_a_named_shape_is_that_shape(shape, l_r):
     """Two ways without common code; for n = 1.28 the trailing edge is close to the kink."""
     profile = Profile(
         lambda x: float(shape.height(x)), lambda x: float(shape.slope(x)), shape.reach, (0.0,)
     )
     for depth in (2e-9, 1e-5, 0.05):
-        named, general = (at_depth(s, 1.0, 1.0, l_r, depth) for s in (shape, profile))
-        for name in STEADY_UNITS:
-            value = getattr(named, name)
-            errors = (state.certificate.relative_error[name] for state in (named, general))
-            assert abs(getattr(general, name) - value) <= sum(errors) * abs(value), name
+        steady.agree(*(at_depth(s, 1.0, 1.0, l_r, depth) for s in (profile, shape)), math.inf)
 
 
 @pytest.mark.parametrize("at_kink", ["left", "right", "mean", "lower", "nonsense", "nan", "error"])
 @pytest.mark.parametrize("side", [-1.0, 1.0])
 def test_what_the_slope_function_returns_at_a_kink_does_not_matter(at_kink, side):
     """Two contacts, the first ends at the kink. W and F are by mpmath, each piece in closed form."""
-    a, b, D, e = (
-        1.6610036122645326e-3,
-        6.424327871506451e-05,
-        -0.4051779669421389,
-        2.3919088664695193e-3,
-    )
+    a, b = 1.6610036122645326e-3, 6.424327871506451e-05
+    D, e = -0.4051779669421389, 2.3919088664695193e-3
     kink, depth, l_r = -0.26152387244755915, 1.1312568762807481e-04, 8.138962364733335e-4
 
     def height(x):
@@ -256,10 +249,8 @@ def test_what_the_slope_function_returns_at_a_kink_does_not_matter(at_kink, side
         return values[at_kink] if at_kink != "error" else 1.0 / (x - x)
 
     state = at_depth(Profile(height, slope, kinks=(side * kink,)), 1.0, 1.0, side * l_r, depth)
-    for name, value in (
-        ("load", 4.8681533963680223e-5),
-        ("friction_force", side * 1.42275496455146356e-10),
-    ):
+    truth = {"load": 4.8681533963680223e-5, "friction_force": side * 1.42275496455146356e-10}
+    for name, value in truth.items():
         error = state.certificate.relative_error[name]
         assert abs(getattr(state, name) / value - 1.0) <= error < 2e-13
 

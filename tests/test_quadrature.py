@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import kvtheory as kv
-from kvtheory.models.steady.methods import solve_quadrature
+from kvtheory.models.steady.methods import ODD, solve_quadrature
 from kvtheory.results import STEADY_UNITS
 from kvtheory.results.errors import QuadratureError
 from kvtheory.scene.indenters import Circle, Parabola, PowerLaw, Profile, Wedge
@@ -16,31 +16,6 @@ at_depth, at_load = (
     partial(each, solve=solve_quadrature) for each in (steady.at_depth, steady.at_load)
 )
 K, TAU, DEPTH = 1e10, 0.1, 3e-4
-SCENES = 60
-"""Random scenes for each support."""
-
-
-def scenes(support, count, seed):
-    """Draw R, K, tau, V and the support: rest, both ends, then 24 decades of drive number, 18 of the rest."""
-    rng = np.random.default_rng(seed)
-    for i in range(count):
-        R, stiffness, weight = (10.0 ** rng.uniform(-9, 9, 3)).tolist()
-        tau, number, kappa = (10.0 ** rng.uniform((-6, -12, -6), (6, 12, 6))).tolist()
-        number = {0: 0.0, 1: 1e-12, 2: 1e12}.get(i // 2, number)
-        V = (-1.0) ** i * number / tau * (R * weight / stiffness) ** (1 / 3)
-        static = (9.0 * weight**2 / (32.0 * stiffness**2 * R)) ** (1 / 3)
-        yield (R, stiffness, tau, V, *support(static, weight, kappa))
-
-
-SUPPORTS = {
-    "fixed": (at_depth, reference.at_depth, lambda static, weight, kappa: (static,)),
-    "dead-weight": (at_load, reference.at_load, lambda static, weight, kappa: (weight,)),
-    "suspended": (
-        at_load,
-        reference.at_load,
-        lambda static, weight, kappa: (weight, kappa * weight / static),
-    ),
-}
 
 
 def close(state, truth, rtol=1e-12):
@@ -51,28 +26,28 @@ def close(state, truth, rtol=1e-12):
         assert error <= state.certificate.relative_error[name] * abs(value), name
 
 
-@pytest.mark.parametrize("support", SUPPORTS)
+@pytest.mark.parametrize("support", ["fixed", "dead-weight", "suspended"])
 def test_parabola_agrees_with_the_rigorous_reference(support):
-    method, truth_of, arguments = SUPPORTS[support]
-    stated = dict.fromkeys(STEADY_UNITS, 0.0)
-    for R, *rest in scenes(arguments, SCENES, seed=len(support)):
-        state, truth = method(Parabola(R), *rest), truth_of(R, *rest)
-        for name in STEADY_UNITS:
-            error = reference.relative_error(getattr(state, name), truth[name])
-            assert error <= 1e-12, name
-            assert error <= state.certificate.relative_error[name], name
-            stated[name] = max(stated[name], state.certificate.relative_error[name])
-    assert max(stated.values()) < 1e-12
-
-
-def test_reference_encloses_its_own_integrals():
-    for R, *rest in list(scenes(SUPPORTS["fixed"][2], 22, seed=7))[2:]:  # without rest
-        rest[2] = abs(rest[2])
-        truth, (load, friction) = reference.at_depth(R, *rest), reference.integrals(R, *rest)
-        assert load.overlaps(truth["load"])
-        assert friction.overlaps(truth["friction_force"])
-        assert load.rel_accuracy_bits() > 100
-        assert friction.rel_accuracy_bits() > 100
+    """Rest, both ends, then 24 decades of drive number, 18 of all else."""
+    rng, method = (
+        np.random.default_rng(len(support)),
+        "at_depth" if support == "fixed" else "at_load",
+    )
+    for i in range(50):
+        R, stiffness, weight = (10.0 ** rng.uniform(-9, 9, 3)).tolist()
+        tau, number, kappa = (10.0 ** rng.uniform((-6, -12, -6), (6, 12, 6))).tolist()
+        number = {0: 0.0, 1: 1e-12, 2: 1e12}.get(i // 2, number)
+        V = (-1.0) ** i * number / tau * (R * weight / stiffness) ** (1 / 3)
+        static = (9.0 * weight**2 / (32.0 * stiffness**2 * R)) ** (1 / 3)
+        grips = {
+            "fixed": (static,),
+            "dead-weight": (weight,),
+            "suspended": (weight, kappa * weight / static),
+        }
+        given = stiffness, tau, V, *grips[support]
+        state = getattr(steady, method)(Parabola(R), *given, solve=solve_quadrature)
+        assert not reference.excess(state, getattr(reference, method)(R, *given))
+        assert max(state.certificate.relative_error.values()) < 1e-12
 
 
 @pytest.mark.parametrize("ratio", [1e-9, 0.2, 1.0 - 1e-9, 1.0, 1.0 + 1e-9, 5.0, 1e9])
@@ -99,65 +74,39 @@ def test_wedge(ratio):
     close(state, truth)
 
 
-def mp_parabola_like(height, slope, half_length, l_r, depth):
-    """W/K, F/K and x_TE of a symmetric shape with 40 digits, from the definitions."""
-    h, dh = (lambda x: height(abs(x))), (lambda x: mpmath.sign(x) * slope(abs(x)))
-    a = half_length
-    x_te = mpmath.findroot(
-        lambda x: depth - h(x) - l_r * dh(x), (0, a), solver="bisect", maxsteps=250, verify=False
-    )
-
-    def pressure(x):
-        return depth - h(x) - l_r * dh(x)
-
-    pieces = [-a, 0, x_te]
-    load = mpmath.quad(pressure, pieces)
-    friction = mpmath.quad(lambda x: -dh(x) * pressure(x), pieces)
-    return {
-        "leading_edge": -a,
-        "trailing_edge": x_te,
-        "load": K * load,
-        "friction_force": K * friction,
-        "friction_coefficient": friction / load,
-    }
-
-
-@pytest.mark.parametrize("fraction", [0.01, 0.5, 0.9])
-@pytest.mark.parametrize("l_r", [1e-6, 0.01, 10.0])
+@pytest.mark.parametrize("fraction", [0.01, 0.5, 0.9, 1.0 - 6.6e-5])
+@pytest.mark.parametrize("l_r", [1.01e-8, 1.05e-8, 1e-6, 0.01, 10.0])
 def test_circle(fraction, l_r):
+    """With 40 digits. Nearly vertical, the sensitivities to both edges cancel; their rounding does not."""
     R, depth = 0.01, fraction * 0.01
     with mpmath.workdps(40):
-        radius, d = mpmath.mpf(R), mpmath.mpf(depth)
-        truth = mp_parabola_like(
-            lambda x: radius - mpmath.sqrt(radius**2 - x**2),
-            lambda x: x / mpmath.sqrt(radius**2 - x**2),
-            mpmath.sqrt(2 * radius * d - d**2),
-            mpmath.mpf(l_r),
-            d,
-        )
-        close(at_depth(Circle(R), K, 1.0, l_r, depth), truth)
-
-
-@pytest.mark.parametrize("l_r", [1.01e-8, 1.03e-8, 1.05e-8])
-def test_a_nearly_vertical_circle_dissipates_what_it_says(l_r):
-    """Where the sensitivities to both edges cancel, their rounding does not."""
-    R, depth = 0.01, 0.01 * (1.0 - 6.6e-5)
-    with mpmath.workdps(40):
-        radius, d, l = mpmath.mpf(R), mpmath.mpf(depth), mpmath.mpf(l_r)
+        r, d, l = map(mpmath.mpf, (R, depth, l_r))
 
         def slope(x):
-            return x / mpmath.sqrt(radius**2 - x**2)
+            return x / mpmath.sqrt(r * r - x * x)
 
-        def height(x):
-            return radius - mpmath.sqrt(radius**2 - x**2)
+        def pressure(x):
+            return d - (r - mpmath.sqrt(r * r - x * x)) - l * slope(x)
 
-        a = mpmath.sqrt(2 * radius * d - d**2)
-        ends = {"solver": "bisect", "maxsteps": 250, "verify": False}
-        x = mpmath.findroot(lambda x: height(x) + l * slope(x) - d, (0, a), **ends)
-        drag = sum(radius * mpmath.atanh(end / radius) - end for end in (a, x))
-        truth = drag / (drag + l * slope(x) ** 2 / 2)
-        state = at_depth(Circle(R), K, 1.0, l_r, depth)
-        close(state, {"dissipated_in_contact": truth}, rtol=1e-9)
+        a = mpmath.sqrt(2 * r * d - d**2)
+        x = mpmath.findroot(pressure, (0, a), solver="bisect", maxsteps=250, verify=False)
+        below = sum(
+            r * e - (e * mpmath.sqrt(r * r - e * e) + r * r * mpmath.asin(e / r)) / 2
+            for e in (a, x)
+        )
+        load = d * (a + x) - below + l * l * slope(x)
+        drag = sum(r * mpmath.atanh(end / r) - end for end in (a, x))  # int h'^2 dx
+        friction = l * (drag + l * slope(x) ** 2 / 2)
+        assert mpmath.almosteq(load, mpmath.quad(pressure, [-a, 0, x]), 1e-9)
+        truth = {
+            "leading_edge": -a,
+            "trailing_edge": x,
+            "load": K * load,
+            "friction_force": K * friction,
+            "friction_coefficient": friction / load,
+            "dissipated_in_contact": l * drag / friction,
+        }
+        close(at_depth(Circle(R), K, 1.0, l_r, depth), truth, 1e-12 if fraction < 0.99 else 1e-5)
 
 
 def lopsided(sign):
@@ -174,8 +123,7 @@ def test_reversed_drive_is_the_mirror_image(V):
     for name in STEADY_UNITS:
         if V == 0.0 and name.endswith("edge"):
             continue
-        odd = name in {"leading_edge", "trailing_edge", "friction_force", "friction_coefficient"}
-        expected = (-1.0 if odd else 1.0) * getattr(forward, name)
+        expected = (-1.0 if name in ODD else 1.0) * getattr(forward, name)
         # At rest both are integrated in the same direction, and sums are rounded in another order.
         assert getattr(mirrored, name) == pytest.approx(expected, rel=0.0 if V else 1e-14), name
     if V == 0.0:
@@ -213,88 +161,61 @@ def test_kinks(V):
     assert state.friction_force == pytest.approx(K * (u * u / 2.0 + l_r * inside), rel=1e-13)
     peak = max(DEPTH + l_r * s, DEPTH - s * b + l_r * t)
     assert state.peak_pressure == pytest.approx(K * peak, rel=1e-12)
-
-
-@pytest.mark.parametrize("V", [1e-3, 1e-2, 0.2])
-def test_kink_that_is_not_declared(V):
     with pytest.raises(QuadratureError, match=r"the slope jumps .*`kinks`"):
         at_depth(bent(declared=False), K, TAU, V, DEPTH)
-
-
-def ripple(amplitude, length, radius=0.01):
-    """A parabola with waves on it."""
-    k = 2.0 * math.pi / length
-    return Profile(
-        lambda x: x * x / (2.0 * radius) + amplitude * (1.0 - math.cos(k * x)),
-        lambda x: x / radius + amplitude * k * math.sin(k * x),
-    )
 
 
 def plain(x):
     return x * x / 0.02
 
 
+def tilt(x):
+    return x / 0.01
+
+
 FAILURES = {
-    "height is nan": (
-        Profile(lambda x: math.nan if x > 1e-3 else plain(x), lambda x: x / 0.01),
-        0.1,
-        "nan at x = ",
-    ),
+    "height is nan": (Profile(lambda x: math.nan if x > 1e-3 else plain(x), tilt), "nan at x = "),
     "slope is nan": (
-        Profile(plain, lambda x: math.nan if 1e-4 < x < 2e-4 else x / 0.01),
-        0.1,
+        Profile(plain, lambda x: math.nan if 1e-4 < x < 2e-4 else tilt(x)),
         "nan at x = ",
     ),
     "outside the domain of a function": (
         Profile(lambda x: 0.01 - math.sqrt(1e-4 - x * x) if x < 1e-3 else math.log(-x), plain),
-        0.1,
         "shape failed at x",
     ),
-    "wrong slope": (Profile(plain, lambda x: x / 0.011), 0.1, "not the derivative"),
-    "noise": (
-        Profile(plain, lambda x: x / 0.01 * (1.0 + 1e-6 * math.sin(1e14 * x))),
-        0.1,
-        "not smooth",
-    ),
+    "wrong slope": (Profile(plain, lambda x: x / 0.011), "not the derivative"),
+    "noise": (Profile(plain, lambda x: tilt(x) * (1.0 + 1e-6 * math.sin(1e14 * x))), "not smooth"),
     "contacts without an end": (
         Profile(lambda x: 1e-3 * math.sin(x / 1e-3) ** 2, lambda x: math.sin(x / 5e-4)),
-        0.1,
-        "too many places",
+        "search interval is too large",
     ),
     "flat": (
         Profile(lambda x: 1e-4 * math.tanh(x * x), lambda x: 2e-4 * x / math.cosh(x * x) ** 2),
-        0.1,
         "does not rise|failed at",
     ),
     "reach too short": (
-        Profile(plain, lambda x: x / 0.01, reach=1e-3),
-        0.1,
+        Profile(plain, tilt, reach=1e-3),
         "contact lies beyond the indenter's reach",
     ),
-    "not zero at the origin": (
-        Profile(lambda x: plain(x) + 1e-5, lambda x: x / 0.01),
-        0.1,
-        "lowest point",
-    ),
+    "not zero at the origin": (Profile(lambda x: plain(x) + 1e-5, tilt), "lowest point"),
     "lower beside the origin": (
-        Profile(lambda x: plain(x - 1e-4) - plain(1e-4), lambda x: (x - 1e-4) / 0.01),
-        0.1,
+        Profile(lambda x: plain(x - 1e-4) - plain(1e-4), lambda x: tilt(x - 1e-4)),
         "lowest point",
     ),
-    "circle too deep": (Circle(2e-4), 0.1, "beyond the indenter's reach"),
-    "circle almost too deep": (Circle(DEPTH * (1.0 + 1e-9)), 0.1, "reach"),
+    "circle too deep": (Circle(2e-4), "beyond the indenter's reach"),
+    "circle almost too deep": (Circle(DEPTH * (1.0 + 1e-9)), "reach"),
 }
 
 
 @pytest.mark.parametrize("name", FAILURES)
 def test_failure_is_an_error_with_its_reason(name):
-    indenter, V, reason = FAILURES[name]
+    indenter, reason = FAILURES[name]
     with pytest.raises(QuadratureError, match=reason):
-        at_depth(indenter, K, TAU, V, DEPTH)
+        at_depth(indenter, K, TAU, 0.1, DEPTH)
 
 
 def test_weight_that_the_reach_cannot_carry():
-    short = Profile(plain, lambda x: x / 0.01, reach=1e-3)
+    short = Profile(plain, tilt, reach=1e-3)
     assert at_load(short, K, TAU, 0.1, 300.0).load == pytest.approx(300.0, rel=1e-12)
     for shape in (Circle(1e-3), short):
         with pytest.raises(QuadratureError, match="beyond the indenter's reach"):
@@ -336,9 +257,7 @@ def test_the_depth_under_a_load_carries_it(shape, side):
     assert held.load == pytest.approx(carried.load + spring * (rest.depth - held.depth), rel=1e-12)
     for state in (carried, free, held):
         errors = dict(state.certificate.relative_error)
-        seen = (
-            state.trailing_edge != 0.0
-        )  # of a tip that is nearly sharp it may be too close to tell
+        seen = state.trailing_edge != 0.0  # of a nearly sharp tip it may be too close to tell
         assert np.all(np.isinf(errors["trailing_edge"][~seen]) | (shape.bend(1.0) == 0.0))
         errors["trailing_edge"] = errors["trailing_edge"][seen]
         assert max(np.max(error) for error in errors.values()) < 1e-11
@@ -349,7 +268,7 @@ def test_the_depth_under_a_load_carries_it(shape, side):
 def test_no_scene_depends_on_those_beside_it(shape):
     """Alone as a float it is as good; for exponents 1.5 and 3 the slope is a root and a square."""
     rng = np.random.default_rng(1)
-    V, mass = 10.0 ** rng.uniform(-6, 0, 60), 10.0 ** rng.uniform(-1, 2, 60)
+    V, mass = 10.0 ** rng.uniform(-6, 0, 30), 10.0 ** rng.uniform(-1, 2, 30)
     V[:3] = 0.0, -0.0, -0.02
     scene = kv.Scene(shape, kv.Foundation(K, TAU), kv.Suspended(mass=1.0, stiffness=3e7))
 
@@ -357,9 +276,9 @@ def test_no_scene_depends_on_those_beside_it(shape):
         over = {"drive.velocity": V[part], "support.mass": mass[part]}
         return kv.steady(scene, over=over, method="quadrature")
 
-    whole = solved(slice(0, 60))
-    for size in (1, 7, 30):
-        for start in range(0, 60, size):
+    whole = solved(slice(0, 30))
+    for size in (1, 7):
+        for start in range(0, 30, size):
             part = slice(start, start + size)
             cut = solved(part)
             for name in STEADY_UNITS:

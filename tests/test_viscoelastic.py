@@ -12,22 +12,27 @@ from scipy.signal import lfilter
 
 import kvtheory as kv
 from kvtheory.models.steady import viscoelastic
-from kvtheory.models.steady.methods import solve_quadrature
+from kvtheory.models.steady.methods import ODD, solve_exact, solve_quadrature
 from kvtheory.results import STEADY_UNITS
 from kvtheory.theory import laws
 from kvtheory.theory.laws import Fractional, Prony
 from tests import reference_viscoelastic
+from tests.steady import agree
 
 SUPPORTS = ("fixed", "dead-weight", "suspended")
 STATED = viscoelastic.RELATIVE_ERROR
 ARMS = [["30 GN/m^3", "10 ms"], ["5 GN/m^3", "1 s"]]
 ZENER = kv.GeneralizedMaxwell(1e10, arms=ARMS)
 HALF = kv.FractionalKelvinVoigt(1e10, 0.1, 0.5)
-NAMES = [name for name in STEADY_UNITS if name != "retardation_length"]
 
 
 def scene(foundation, support="dead-weight", **parts):
     return replace(kv.Scene.table1(support), foundation=foundation, **parts)
+
+
+def by_quadrature(foundation, support, indenter, V):
+    here = scene(foundation, support, indenter=indenter)
+    return kv.steady(here, over={"drive.velocity": V}, method="quadrature")
 
 
 @pytest.mark.processor
@@ -35,7 +40,7 @@ def scene(foundation, support="dead-weight", **parts):
 def test_every_quantity_is_within_its_error_of_ball_arithmetic(kind):
     """1 to 20 arms over ten decades, and springpots; the module of the reference compares more of them."""
     rng = np.random.default_rng(SUPPORTS.index(kind))
-    for _ in range(60):
+    for _ in range(15):
         case = reference_viscoelastic.random_case(rng, kind)
         for name, error in reference_viscoelastic.errors(case).items():
             assert error <= 1.0, (name, case)
@@ -44,12 +49,11 @@ def test_every_quantity_is_within_its_error_of_ball_arithmetic(kind):
 def test_the_peak_is_found_where_newtons_steps_go_to_and_fro():
     """Arms far apart: the highest of many pressures of the same contact is not higher."""
     rng = np.random.default_rng(7)
-    for _ in range(300):
+    for _ in range(100):
         case = reference_viscoelastic.random_case(rng, "dead-weight")
-        state = reference_viscoelastic.solved(case)
-        R = case[2]
-        X = state.half_length * np.geomspace(1e-14, 1.0, 4000)
-        here = reference_viscoelastic.scene_of(case)
+        here, R = reference_viscoelastic.scene_of(case), case[2]
+        state = solve_exact(here)
+        X = state.half_length * np.geomspace(1e-14, 1.0, 1500)
         M = viscoelastic.law(here.at(np.array([here.drive.velocity]))).moments(X)
         highest = ((state.half_length * (M.P + M.Q) - X * M.P) * X / R).max()
         assert highest <= state.peak_pressure * (1 + STATED)
@@ -59,7 +63,7 @@ def test_the_peak_is_found_where_newtons_steps_go_to_and_fro():
 def test_the_reference_would_show_a_wrong_arm():
     """Its own check: a thousandth of one arm is seen."""
     case = (Prony, (3e10, 0.01), 0.01, 1e10, 0.1, 0.1, 9806.65)
-    state = reference_viscoelastic.solved(case)
+    state = solve_exact(reference_viscoelastic.scene_of(case))
     truth = reference_viscoelastic.at_load(Prony, (3.003e10, 0.01), *case[2:])
     assert abs(state.friction_force / float(truth["friction_force"]) - 1) > 1e-4
 
@@ -67,12 +71,9 @@ def test_the_reference_would_show_a_wrong_arm():
 def test_a_springpot_of_low_order_says_how_badly_its_loss_is_known():
     for order in (1e-8, 1e-6, 1e-3, 0.1, 0.999999):
         case = Fractional, (0.1, order), 0.01, 1e10, 0.1, 0.1, 9806.65
-        error = reference_viscoelastic.errors(case)["dissipated_in_contact"]
-        claimed = reference_viscoelastic.solved(case).certificate.relative_error[
-            "dissipated_in_contact"
-        ]
-        assert error <= 1.0
-        assert claimed < 1e-12 / order
+        state = solve_exact(reference_viscoelastic.scene_of(case))
+        assert reference_viscoelastic.errors(case)["dissipated_in_contact"] <= 1.0
+        assert state.certificate.relative_error["dissipated_in_contact"] < 1e-12 / order
 
 
 @pytest.mark.parametrize("z", [0.0, 1e-9, 0.3, 3.999999, 4.000001, 60.0, 1e6])
@@ -98,7 +99,8 @@ def test_kelvin_voigt_is_a_damper_and_the_springpot_of_order_one(support):
     truth = kv.steady(plain)
     for each in (plain, springpot):
         for name, value in zip(STEADY_UNITS, viscoelastic.quantities(each), strict=False):
-            assert value == pytest.approx(getattr(truth, name), rel=2e-14, abs=0), name
+            sign = np.where(plain.drive.velocity < 0.0, -1.0, 1.0) if name in ODD else 1.0
+            assert sign * value == pytest.approx(getattr(truth, name), rel=2e-14, abs=0), name
 
 
 @pytest.mark.parametrize("support", SUPPORTS)
@@ -113,50 +115,9 @@ def test_a_stiff_and_fast_arm_tends_to_kelvin_voigt_in_first_order(support):
     assert off[1] < 1e-3
 
 
-@pytest.mark.parametrize("foundation", [ZENER, HALF], ids=["zener", "springpot"])
-@pytest.mark.parametrize("support", SUPPORTS)
-def test_a_reversed_drive_is_the_mirror_image_and_rest_is_elastic(foundation, support):
-    V = np.geomspace(1e-6, 1e3, 19)
-    here = scene(foundation, support)
-    there, back = (kv.steady(here, over={"drive.velocity": side * V}) for side in (1, -1))
-    for name in NAMES:
-        odd = name in ("leading_edge", "trailing_edge", "friction_force", "friction_coefficient")
-        assert np.array_equal(getattr(back, name), (-1 if odd else 1) * getattr(there, name)), name
-    at_rest, plain = (
-        kv.steady(each, over={"drive.velocity": 0.0}) for each in (here, kv.Scene.table1(support))
-    )
-    for name in NAMES:
-        assert getattr(at_rest, name) == pytest.approx(getattr(plain, name), rel=1e-14), name
-
-
 def test_beyond_the_glass_transition_a_fixed_indenter_has_a_maximum():
     peak = kv.steady(scene(ZENER, "fixed"), over={"drive.velocity": np.geomspace(1e-3, 1e3, 200)})
     assert 0 < np.argmax(peak.friction_coefficient) < 199
-
-
-def test_the_pressure_carries_the_load_and_the_friction_force():
-    """By its own convolution on a fine grid, which knows nothing of moments."""
-    state = kv.steady(scene(ZENER))
-    a, c, R = state.half_length, state.half_length + state.trailing_edge, 0.01
-    edges = np.linspace(0.0, c, 4001)
-    X = 0.5 * (edges[1:] + edges[:-1])
-    rate = np.diff((a * edges - edges**2 / 2) / R)
-
-    def left(l):  # the mean over a cell of what earlier cells have left, exactly relaxed
-        h = edges[1]
-        decay = np.exp(-np.abs(X[:, None] - X[None, :]) / l) * (X[:, None] > X[None, :])
-        full = (np.sinh(h / (2 * l)) / (h / (2 * l))) ** 2
-        own = (1 - (1 - np.exp(-h / l)) / (h / l)) / (h / l)
-        return (decay * full + own * np.eye(X.size)) @ rate
-
-    pressure = 1e10 * np.diff((a * edges**2 / 2 - edges**3 / 6) / R) / np.diff(edges)
-    for stiffness, time in ((3e10, 0.01), (5e9, 1.0)):
-        pressure += stiffness * left(0.1 * time)
-    load, friction = pressure.sum() * edges[1], (pressure * rate).sum()
-    assert load == pytest.approx(state.load, rel=1e-6)
-    assert friction == pytest.approx(state.friction_force, rel=1e-6)
-    assert pressure.max() == pytest.approx(state.peak_pressure, rel=1e-5)
-    assert abs(pressure[-1]) < 1e-3 * pressure.max()
 
 
 def test_arms_can_be_swept_and_broadcast():
@@ -221,10 +182,6 @@ def test_what_cannot_follow_a_springpot_refuses_it_in_one_wording(call):
         call(scene(HALF))
 
 
-def test_the_certificate_is_that_of_the_moments():
-    assert kv.steady(scene(HALF)).certificate.relative_error["load"] == STATED
-
-
 SHAPES = {
     "parabola": kv.Parabola(0.01),
     "circle": kv.Circle(0.01),
@@ -238,31 +195,21 @@ SHAPES = {
 @pytest.mark.parametrize("support", SUPPORTS)
 def test_convolution_confirms_the_moments(support):
     rng = np.random.default_rng(SUPPORTS.index(support))
-    for _ in range(12):
-        law, *_ = case = reference_viscoelastic.random_case(rng, support)
-        truth = reference_viscoelastic.solved(case)
-        state = reference_viscoelastic.solved(case, solve_quadrature)
-        for name in STEADY_UNITS:
-            value, claimed = getattr(truth, name), state.certificate.relative_error[name]
-            assert abs(getattr(state, name) - value) <= (claimed + STATED) * abs(value), (name, law)
-            assert name == "trailing_edge" or claimed < 1e-12
+    for _ in range(8):
+        here = reference_viscoelastic.scene_of(reference_viscoelastic.random_case(rng, support))
+        state, truth = solve_quadrature(here), solve_exact(here)
+        agree(state, truth)
+        claimed = dict(state.certificate.relative_error)
+        assert claimed.pop("trailing_edge") < 1e-6
+        assert max(claimed.values()) < 1e-12
 
 
 @pytest.mark.parametrize("shape", SHAPES)
 @pytest.mark.parametrize("support", SUPPORTS)
 def test_convolution_of_any_shape_is_kelvin_voigt_for_order_one(shape, support):
-    springpot = scene(kv.FractionalKelvinVoigt(1e10, 0.1, 1.0), support, indenter=SHAPES[shape])
-    plain = kv.Scene.table1(support)
-    plain = replace(plain, indenter=SHAPES[shape])
-    for V in (-0.3, 0.0, 1e-4, 0.02, 5.0):
-        one, other = (
-            kv.steady(each, over={"drive.velocity": V}, method="quadrature")
-            for each in (springpot, plain)
-        )
-        for name in STEADY_UNITS:
-            claimed = sum(each.certificate.relative_error[name] for each in (one, other))
-            there = getattr(other, name)
-            assert abs(getattr(one, name) - there) <= claimed * abs(there) + 1e-300, (name, V)
+    laws = kv.FractionalKelvinVoigt(1e10, 0.1, 1.0), kv.Scene().foundation
+    for V in (-0.3, 0.0, 1e-4, 5.0):
+        agree(*(by_quadrature(law, support, SHAPES[shape], V) for law in laws))
 
 
 LOPSIDED = kv.Profile(
@@ -314,28 +261,14 @@ OWN = {
 @pytest.mark.parametrize("shape", OWN)
 def test_a_shape_of_python_functions_is_the_named_one(shape, support):
     for V, foundation in ((-0.3, ZENER), (0.02, HALF)):
-        own, named = (
-            kv.steady(
-                scene(foundation, support, indenter=indenter), over={"drive.velocity": V},
-                method="quadrature",
-            )
-            for indenter in (OWN[shape], SHAPES[shape])
-        )  # fmt: skip
-        for name in STEADY_UNITS:
-            there, claimed = getattr(named, name), own.certificate.relative_error[name]
-            allowed = claimed + named.certificate.relative_error[name]
-            assert abs(getattr(own, name) - there) <= allowed * abs(there), (name, V)
-            assert claimed < 1e-10
+        indenters = OWN[shape], SHAPES[shape]
+        agree(*(by_quadrature(foundation, support, each, V) for each in indenters), 1e-10)
 
 
 def test_a_node_that_rounds_to_before_the_leading_edge():
     """There a springpot raised a negative length to a broken power."""
-    R, kink, c, V = (
-        0.012405181050498832,
-        -8.297472106578946e-05,
-        376.6851309204793,
-        6.303886700724625,
-    )
+    R, kink = 0.012405181050498832, -8.297472106578946e-05
+    c, V = 376.6851309204793, 6.303886700724625
     own = kv.Profile(
         lambda x: x * x / 2.0 / R + c * max(kink - x, 0.0) ** 2,
         lambda x: x / R - 2.0 * c * max(kink - x, 0.0),
@@ -356,15 +289,8 @@ def test_a_jump_of_the_curvature_need_not_be_declared():
          lambda x: x / 0.01 + max(x - 2e-4, 0.0) / 0.002, (2e-4,)),
         (lambda x: x * x / (0.02 if x < 0.0 else 6e-3), lambda x: x / (0.01 if x < 0.0 else 3e-3), (0.0,)),
     ):  # fmt: skip
-        told, untold = (
-            kv.steady(scene(ZENER, "fixed", indenter=kv.Profile(height, slope, kinks=named)))
-            for named in (kinks, ())
-        )
-        for name, error in untold.certificate.relative_error.items():
-            value = getattr(told, name)
-            allowed = error + told.certificate.relative_error[name]
-            assert abs(getattr(untold, name) - value) <= allowed * abs(value), name
-            assert error < 1e-8
+        indenters = (kv.Profile(height, slope, kinks=named) for named in ((), kinks))
+        agree(*(by_quadrature(ZENER, "fixed", indenter, 0.1) for indenter in indenters), 1e-8)
 
 
 def test_a_shape_that_may_touch_in_several_places_is_refused_beyond_kelvin_voigt():
@@ -377,3 +303,12 @@ def test_a_shape_that_may_touch_in_several_places_is_refused_beyond_kelvin_voigt
     here = scene(ZENER, "fixed", indenter=kv.Profile(height, slope))
     with pytest.raises(kv.QuadratureError, match="not convex down to"):
         kv.steady(here)
+
+
+def test_a_kink_that_is_not_declared_is_refused_beyond_kelvin_voigt():
+    def slope(x):
+        return math.copysign(0.1 if abs(x) < 1e-4 else 0.4, x)
+
+    bent = kv.Profile(lambda x: 0.1 * abs(x) + 0.3 * max(abs(x) - 1e-4, 0.0), slope)
+    with pytest.raises(kv.QuadratureError, match="the slope jumps where `kinks`"):
+        kv.steady(scene(ZENER, "fixed", indenter=bent))

@@ -26,16 +26,9 @@ from typing import Any, NamedTuple
 import numpy as np
 from scipy.optimize import brentq, minimize_scalar
 
-from kvtheory.models.steady.cells import (
-    DENSE,
-    NODES,
-    SQUARED,
-    TAIL_MARGIN,
-    VALUES,
-    WEIGHTS,
-    Surface,
-)
+from kvtheory.models.steady.cells import DENSE, NODES, TAIL_MARGIN, VALUES, WEIGHTS, Surface
 from kvtheory.models.steady.double_exponential import (
+    OF_LINE,
     ROUNDING,
     SMALLEST,
     Quantities,
@@ -44,25 +37,20 @@ from kvtheory.models.steady.double_exponential import (
 from kvtheory.results.errors import QuadratureError
 from kvtheory.scene.indenters import beside
 
-PEAK_BAND = 0.02
-"""Local maxima of the sampled pressure that are this close to the highest are searched."""
-PEAK_XTOL = 1e-8
-"""Tolerance of the position of the peak, over the distance of two samples; the error of its value is of
-second order."""
-CORNER = 1e-10, 1e-290
-"""Distances from a corner, over the length of the contact, between which the slope hardly changes ..."""
-AT_CORNER = 1e-9
-"""... by no more than this."""
+PEAK_BAND, PEAK_XTOL = 0.02, 1e-8
+"""Local maxima of the sampled pressure this close to the highest are refined, with this tolerance of their
+position over the distance of two samples; the error of the value is of second order."""
+CORNER, AT_CORNER = (1e-10, 1e-290), 1e-9
+"""Distances from a corner, over the length of the contact, between which the slope changes by no more."""
 HALF, BALANCED = 0.5, 1e-6
 """Share of the depth below which u_TE is better taken from the slope than from the height, and within
 which both agree unless the pressure jumps."""
 ONE_SIDED = 1e3
 """Difference of series and function at a kink, over the last coefficients, that even a singular slope does
 not exceed: beyond it, the function gives the slope of the other side."""
-DEPTH_STEP = 2.0**-20
-"""Relative step of the depth for derivatives, which are needed to a digit or two."""
-ROOT_RTOL = 4.0 * float(np.finfo(float).eps)
-"""The smallest tolerance that `brentq` accepts."""
+DEPTH_STEP, ROOT_RTOL = 2.0**-20, 4.0 * float(np.finfo(float).eps)
+"""Relative step of the depth for derivatives, which are needed to a digit or two; the smallest tolerance that
+`brentq` accepts."""
 
 
 class Patch(NamedTuple):
@@ -91,11 +79,11 @@ class Contact:
                     f"the slope jumps near x = {surface.side * x:.6g} m of the contact, "
                     "where `kinks` does not say so"
                 )
-        ends = [patch.x_le for patch in self.patches[1:]] + [math.inf]
+        ends = [*(patch.x_le for patch in self.patches[1:]), math.inf]
         self.load = self.load_error = self.load_slope = 0.0
         for patch, end in zip(self.patches, ends, strict=True):
             length = patch.x_te - patch.x_le
-            below, error = self.integral(patch, surface.height, 1)
+            below, error = self.integral(patch, 1)
             self.load += depth * length - below + l_r * (patch.u_te - patch.u_le)
             self.load_error += error
             behind = -math.expm1((patch.x_te - end) / l_r) if l_r else 0.0
@@ -121,26 +109,25 @@ class Contact:
         turns = np.flatnonzero((p[1:] > 0.0) != (p[:-1] > 0.0)).tolist()
         turns = [-1, *turns] if p[0] > 0.0 else turns
         for begin, end in zip(turns[::2], turns[1::2], strict=False):
-            start, last = self._turn(x, p, begin, l_r), self._turn(x, p, end, l_r)
-            u_te = self.gap(last)
-            if u_te < HALF * self.depth and last not in self.surface.kinks:
-                rolling = l_r * self.surface.slope(last)  # where p = 0; it does not cancel
+            x_le, x_te = self._turn(x, p, begin, l_r), self._turn(x, p, end, l_r)
+            u_le, u_te = 0.0, self.gap(x_te)
+            if u_te < HALF * self.depth and x_te not in self.surface.kinks:
+                rolling = l_r * self.surface.slope(x_te)  # where p = 0; it does not cancel
                 u_te = rolling if abs(rolling - u_te) < BALANCED * self.depth else u_te
-            x_le, u_le = start, 0.0
             if l_r:
-                left = found[-1] if found else Patch(0.0, start, 0.0, 0.0)
+                last = found[-1] if found else Patch(0.0, x_le, 0.0, 0.0)
 
-                def level(y: Any, left: Patch = left) -> Any:
+                def level(y: Any, last: Patch = last) -> Any:
                     """Return the surface left by the previous contact."""
-                    return left.u_te * np.exp((left.x_te - y) / l_r)
+                    return last.u_te * np.exp((last.x_te - y) / l_r)
 
-                if u_te <= level(last):
+                if u_te <= level(x_te):
                     continue
                 inside = slice(begin + 1, end + 1)
-                highest = np.argmax(g[inside] - level(x[inside]))
-                x_le = _root(lambda y: self.gap(y) - level(y), start, float(x[inside][highest]))
+                highest = float(x[inside][np.argmax(g[inside] - level(x[inside]))])
+                x_le = _root(lambda y: self.gap(y) - level(y), x_le, highest)
                 u_le = float(level(x_le))
-            found.append(Patch(x_le, last, u_le, u_te))
+            found.append(Patch(x_le, x_te, u_le, u_te))
         return found
 
     def _sampled(self, l_r: float) -> tuple[Any, Any, Any]:
@@ -154,9 +141,8 @@ class Contact:
         tail = c.height_tail + l_r * c.slope_tail
         unsure = abs(p) <= TAIL_MARGIN * tail[:, None]
         # Beside a kink too, for its slope may be singular, unless that proves to be the other side.
-        kinks = np.zeros_like(unsure)
-        kinks[:, 0] = np.isin(c.start, self.surface.kinks)
-        kinks[:, -1] = np.isin(c.end, self.surface.kinks)
+        kinks = np.isin(x, self.surface.kinks)
+        kinks[:, 1:-1] = False
         for row, column in np.argwhere(unsure | kinks).tolist():
             point = self.surface.beside(x[row, column], 0.5 * (c.start[row] + c.end[row]))
             value = self.pressure(point, l_r)
@@ -187,24 +173,15 @@ class Contact:
         start, end = x[[low, high]].tolist()
         return _root(lambda y: self.pressure(y, l_r), start, end, p[[low, high]].tolist())
 
-    def integral(
-        self, patch: Patch, function: Callable[[float], float], power: int
-    ) -> tuple[float, float]:
-        """Integrate h or h'^2 over a contact; return also an estimate of the error."""
-        c, value, error = self.cells, 0.0, 0.0
+    def integral(self, patch: Patch, power: int) -> tuple[float, float]:
+        """Integrate h (power 1) or h'^2 (power 2) over a contact; return also an estimate of the error."""
+        c = self.cells.only((self.cells.end > patch.x_le) & (self.cells.start < patch.x_te))
         series, tail = (c.height, c.height_tail) if power == 1 else (c.slope, c.slope_tail)
-        for i in np.flatnonzero((c.end > patch.x_le) & (c.start < patch.x_te)).tolist():
-            start, end = max(c.start[i], patch.x_le), min(c.end[i], patch.x_te)
-            if end - start == c.end[i] - c.start[i]:
-                mean = series[i, 0] if power == 1 else series[i] ** 2 @ SQUARED
-            else:
-                x = 0.5 * (start + end) + 0.5 * (end - start) * NODES
-                mean = 0.5 * (
-                    WEIGHTS @ np.array([function(point) ** power for point in x.tolist()])
-                )
-            value += (end - start) * mean
-            error += (end - start) * tail[i] * power * math.sqrt(abs(mean)) ** (power - 1)
-        return value, error
+        start, end = np.maximum(c.start, patch.x_le), np.minimum(c.end, patch.x_te)
+        x = 0.5 * (start + end) + 0.5 * (end - start) * NODES[:, None]
+        means = 0.5 * (WEIGHTS @ c.values(series, slice(None), x) ** power)
+        error = tail * power * np.sqrt(abs(means)) ** (power - 1)
+        return float((end - start) @ means), float((end - start) @ error)
 
     @cached_property
     def half_length(self) -> float:
@@ -223,44 +200,40 @@ class Contact:
     @property
     def noise(self) -> float:
         """Relative error of the depth equivalent to rounding: of edges, of h and of h'."""
-        c = self.cells
-        low = (c.height @ VALUES).min(axis=1) < self.depth
-        edges = [x for patch in self.patches for x in (patch.x_le, patch.x_te)]
-        middle = 0.5 * (edges[0] + edges[-1])
-        shift = max(abs(x * self.surface.slope(self.surface.beside(x, middle))) for x in edges)
+        c, edges = self.cells, np.array(self.patches)[:, :2]
+        middle = 0.5 * (edges[0, 0] + edges[-1, 1])
+        beside, slope = self.surface.beside, self.surface.slope
+        shift = max(abs(x * slope(beside(x, middle))) for x in edges.ravel().tolist())
         # The slope counts where the pressure falls to zero.
-        ends = [(c.start <= patch.x_te) & (patch.x_te <= c.end) for patch in self.patches]
-        tail = c.height_tail[low].max() + self.l_r * c.slope_tail[np.any(ends, axis=0)].max()
+        ends = np.any([(c.start <= x) & (x <= c.end) for x in edges[:, 1]], axis=0)
+        tail = c.height_tail[c.lowest() < self.depth].max() + self.l_r * c.slope_tail[ends].max()
         return ROUNDING + (ROUNDING * shift + float(tail)) / self.depth
 
     def peak(self) -> float:
         """Return the highest p/K, with one-sided values at edges and kinks."""
         x, _, p = self._sampled(self.l_r)
         inside = [(x >= patch.x_le) & (x <= patch.x_te) for patch in self.patches]
-        beside = self.surface.beside
-        starts = [beside(patch.x_le, patch.x_te) for patch in self.patches]
+        somewhere, kinks = np.any(inside, axis=0), self.surface.kinks
+        starts = (self.surface.beside(patch.x_le, patch.x_te) for patch in self.patches)
         highest = max(self.pressure(start, self.l_r) for start in starts)
-        kinks = np.isin(x, self.surface.kinks) & np.any(inside, axis=0)
-        highest = max(highest, p[kinks].max(initial=0.0))
-        high = p > (1.0 - PEAK_BAND) * max(highest, p[np.any(inside, axis=0)].max(initial=0.0))
+        highest = max(highest, p[np.isin(x, kinks) & somewhere].max(initial=0.0))
+        high = p > (1.0 - PEAK_BAND) * max(highest, p[somewhere].max(initial=0.0))
         intervals = set()
         for patch, samples in zip(self.patches, inside, strict=True):
             for i in np.flatnonzero(samples & high).tolist():
                 # Where two cells meet there are two samples, and the peak may be on either side.
                 points = x[max(i - 2, 0) : i + 3].clip(patch.x_le, patch.x_te).tolist()
                 if p[i] >= max(p[i - 1 : i + 2]):
-                    intervals |= set(itertools.pairwise(points))
+                    intervals |= {ends for ends in itertools.pairwise(points) if ends[0] < ends[1]}
         for start, end in intervals:
-            if start < end:
-                found = minimize_scalar(
-                    lambda y: -self.pressure(y, self.l_r),
-                    bounds=(start, end),
-                    method="bounded",
-                    options={"xatol": PEAK_XTOL * (end - start)},
-                )
-                ends = {start, end}.difference(self.surface.kinks)
-                values = [self.pressure(y, self.l_r) for y in ends]
-                highest = max(highest, -float(found.fun), *values)
+            found = minimize_scalar(
+                lambda y: -self.pressure(y, self.l_r),
+                bounds=(start, end),
+                method="bounded",
+                options={"xatol": PEAK_XTOL * (end - start)},
+            )
+            values = [self.pressure(y, self.l_r) for y in (start, end) if y not in kinks]
+            highest = max(highest, -float(found.fun), *values)
         return float(highest)
 
 
@@ -270,16 +243,15 @@ def _root(function: Callable[[float], float], low: float, high: float, ends: Any
     `ends` are the values there, if they are not those of the function, which may jump at a kink.
     """
     low, high = low or beside(low, high), high or beside(high, low)
-    left, right = (function(low), function(high)) if ends is None else ends
+    left, right = ends or (function(low), function(high))
     if (left > 0.0) == (right > 0.0):
         return low if abs(left) < abs(right) else high
     known = {low: left, high: right}
     # The root may be close to a tip.
     while (low > 0.0) == (high > 0.0) and not 0.5 * abs(high) <= abs(low) <= 2.0 * abs(high):
         middle = math.copysign(math.sqrt(abs(low)) * math.sqrt(abs(high)), low)
-        value = function(middle)
-        known[middle] = value
-        low, high = (low, middle) if (value > 0.0) != (left > 0.0) else (middle, high)
+        known[middle] = function(middle)
+        low, high = (low, middle) if (known[middle] > 0.0) != (left > 0.0) else (middle, high)
     found = brentq(
         lambda x: known[x] if x in known else function(x),
         low, high, xtol=SMALLEST, rtol=ROOT_RTOL, maxiter=2000,
@@ -293,11 +265,7 @@ class AnyLine:
     in_columns, floor, deepest = False, ROUNDING, math.inf
 
     def __init__(self, surface: Surface, l_r: float) -> None:
-        self.surface, self.l_r = surface, l_r
-
-    def at_rest(self) -> "AnyLine":
-        """Return the same at zero velocity."""
-        return AnyLine(self.surface, 0.0)
+        self.surface, self.l_r, self.shallow = surface, l_r, surface.shallow
 
     @property
     def reach(self) -> float:
@@ -307,10 +275,6 @@ class AnyLine:
     def strips(self, strip: Any) -> "AnyLine":
         """Return the line contact of one strip."""
         return AnyLine(Surface(strip, 1.0, strip.nearest), self.l_r)
-
-    def shallow(self, load: float, width: Callable[[float], float]) -> float:
-        """Return a depth that, times a width which depends on its half length, is about the load."""
-        return self.surface.shallow(load, width)
 
     def first(self, load: float, spring: float) -> tuple[float, tuple[()]]:
         """Return about the depth at a load."""
@@ -322,12 +286,10 @@ class AnyLine:
 
     def friction(self, contact: Contact) -> tuple[float, float, float]:
         """Return the friction over K, the part of it lost in the contact, and the relative error."""
-        drag = drag_error = left = 0.0
-        for patch in contact.patches:
-            value, error = contact.integral(patch, self.surface.slope, 2)
-            drag, drag_error = drag + value, drag_error + error
-            left += 0.5 * (patch.u_te**2 - patch.u_le**2)
-        return left + self.l_r * drag, self.l_r * drag, drag_error / drag
+        drags = np.array([contact.integral(patch, 2) for patch in contact.patches])
+        drag, error = drags.sum(axis=0).tolist()
+        left = sum(0.5 * (patch.u_te**2 - patch.u_le**2) for patch in contact.patches)
+        return left + self.l_r * drag, self.l_r * drag, error / drag
 
     def quantities(self, contact: Contact) -> Quantities:
         """Return quantities over the stiffness, their errors at this depth, and d ln/d ln delta.
@@ -344,18 +306,8 @@ class AnyLine:
 
     def _values(self, contact: Contact) -> tuple[dict[str, float], dict[str, float]]:
         friction, lost, error = self.friction(contact)
-        values = {
-            "half_length": contact.half_length,
-            "leading_edge": contact.patches[0].x_le,
-            "trailing_edge": contact.patches[-1].x_te,
-            "load": contact.load,
-            "friction_force": friction,
-            "peak_pressure": contact.peak(),
-            "dissipated_in_contact": share_lost(friction, lost),
-        }
-        own = {
-            "trailing_edge": contact.edge_error,
-            "load": contact.load_error,
-            "friction_force": error,
-        }
-        return values, own
+        edges = contact.patches[0].x_le, contact.patches[-1].x_te
+        share = share_lost(friction, lost)
+        values = contact.half_length, *edges, contact.load, friction, contact.peak(), share
+        own = {"trailing_edge": contact.edge_error, "load": contact.load_error}
+        return dict(zip(OF_LINE, values, strict=True)), own | {"friction_force": error}

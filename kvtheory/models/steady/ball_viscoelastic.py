@@ -5,8 +5,8 @@ F_2 are explicit in the length c of its contact (theorem F17), and so is a(c): w
 
     W = int W_2(c) dy,    dy = - sqrt(R'/R) a a'(c)/y' dc,    y'^2 = a_0^2 - a(c)^2,
 
-no root is needed but that of the middle plane (derivation F17-growth). The double-exponential rule takes
-the square root at y' = 0 and what is singular at c = 0. Where c is next to that of the middle plane, a_0 - a
+no root is needed but that of the middle plane (derivation F17-growth). The double-exponential rule resolves
+the square root at y' = 0 and the singularity at c = 0. Where c is close to that of the middle plane, a_0 - a
 follows from the derivatives of a. The load grows with the depth as
 
     dW/da_0 = a_0 int (c^2 P/(R a)) dy,
@@ -20,7 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kvtheory.models.steady import viscoelastic
-from kvtheory.models.steady.blockwise import converge
+from kvtheory.models.steady.roots import converge
 from kvtheory.results import STEADY_UNITS, Certificate
 from kvtheory.scene.model import Scene
 from kvtheory.scene.static_state import ball_stiffness
@@ -30,14 +30,19 @@ Array = NDArray[np.float64]
 
 STEP, LAST = 0.0625, 3.9
 """Of the double-exponential rule, and where its weights vanish."""
+T = STEP * np.arange(-int(LAST / STEP), int(LAST / STEP) + 1)
+FALL = np.exp(-np.pi * np.sinh(T))
+NODES = 1.0 / (1.0 + FALL)
+GAPS = FALL * NODES
+"""Distances of the nodes from 1."""
+WEIGHTS = STEP * np.pi * np.cosh(T) * NODES * GAPS
 CLOSE = 1e-6
 """Relative distance from the middle plane's c below which a_0 - a is taken from its derivatives."""
-MOST_STEPS = 60
-"""Far more than are needed: some six."""
-LAST_STEP = 1e-8
-"""After a step as small as this the error, of the order of its square, is below rounding."""
+MOST_STEPS, LAST_STEP = 60, 1e-8
+"""Most iterations, of which some six are needed; after a step as small as this the error, of the order of its
+square, is below rounding."""
 PART = 256
-"""Scenes treated at a time: their nodes stay in the processor's cache."""
+"""Scenes evaluated together, so that their nodes stay in the cache."""
 
 RELATIVE_ERROR = 1e-11
 OWN_ERRORS = viscoelastic.OWN_ERRORS
@@ -48,37 +53,23 @@ CERTIFICATE = Certificate(
     "times, and of fractional orders",
     relative_error=dict.fromkeys(STEADY_UNITS, RELATIVE_ERROR),
 )
-HELD = CARRIED = CERTIFICATE
-"""At a depth, and at a load."""
-
-
-def _rule() -> tuple[Array, Array, Array]:
-    """Return nodes from 0 to 1, their distances from 1, and weights."""
-    t = STEP * np.arange(-int(LAST / STEP), int(LAST / STEP) + 1)
-    fall = np.exp(-np.pi * np.sinh(t))
-    nodes = 1.0 / (1.0 + fall)
-    gaps = fall * nodes
-    return nodes, gaps, STEP * np.pi * np.cosh(t) * nodes * gaps
-
-
-NODES, GAPS, WEIGHTS = _rule()
 
 
 class Sums(NamedTuple):
-    """Sums over the strips of a ball whose middle plane has a contact of a given length."""
+    """Sums over the strips of a ball, and the half length at rest of its middle plane."""
 
     a: Array
     load: Array
     friction: Array
     lost: Array
-    """What is dissipated inside the contact, over the drive velocity."""
+    """Energy dissipated inside the contact per sliding distance, with its relative error."""
     lost_error: Array
     growth: Array
     """d ln W/d ln c."""
 
 
 def quantities(scene: Scene) -> tuple[Any, ...]:
-    """Return the quantities in the order of `STEADY_UNITS`, and the error of the last one.
+    """Return the quantities at |V| in the order of `STEADY_UNITS`, and the error of the last one.
 
     Kelvin-Voigt is the springpot of order 1:
 
@@ -90,22 +81,16 @@ def quantities(scene: Scene) -> tuple[Any, ...]:
     """
     row = viscoelastic.law(scene)
     c = contact_length(scene, row)
-    V, plane, found = (
-        scene.drive.final_velocity,
-        viscoelastic.state(scene, row, c),
-        _sums(scene, row, c),
-    )
-    side = np.where(V < 0.0, -1.0, 1.0)
-    moving = found.friction > 0.0
-    work = np.where(moving, found.friction, 1.0)
+    plane, sums = viscoelastic.state(scene, row, c), _sums(scene, row, c)
+    moving = sums.friction > 0.0
     return (
         *plane[:5],
-        found.load,
-        side * found.friction + 0.0,
-        side * (found.friction / found.load) + 0.0,
+        sums.load,
+        sums.friction,
+        sums.friction / sums.load,
         plane[8],
-        np.where(moving, found.lost / work, 1.0),
-        np.where(moving, found.lost_error, 0.0) + RELATIVE_ERROR,
+        np.where(moving, sums.lost / np.where(moving, sums.friction, 1.0), 1.0),
+        np.where(moving, sums.lost_error, 0.0) + RELATIVE_ERROR,
     )
 
 
@@ -113,23 +98,23 @@ def contact_length(scene: Scene, row: Law) -> Array:
     """Return the length of the contact in the middle plane, on every support.
 
     At a load by Newton's method in logarithms, from rest. The load is positive and its growth between 2
-    and 5, so that the steps close in from everywhere.
+    and 5, so that the steps converge from everywhere.
     """
     R, load, spring = scene.indenter.radius, scene.support.weight, scene.support.spring
     if scene.held:
         half = np.broadcast_to(np.sqrt(2.0 * R * scene.support.depth), scene.shape)
         return viscoelastic.length_at_half(row, half)
     static = np.sqrt(load / ball_stiffness(scene.foundation.stiffness, R, scene.indenter.stretch))
-    wanted = load + spring * static
+    target = load + spring * static
     first = np.broadcast_to(2.0 * np.sqrt(2.0 * R * static), scene.shape)
 
     def step(c: Array) -> Array:
-        found = _sums(scene, row, c)
-        held = spring * found.a * (found.a / (2.0 * R))
-        total = found.load + held
+        sums = _sums(scene, row, c)
+        held = spring * sums.a * (sums.a / (2.0 * R))
+        total = sums.load + held
         share, slope, _ = viscoelastic.growth(row.moments(c))
-        rise = (found.growth * found.load + 2.0 * (slope / share) * held) / total
-        return np.log(total / wanted) / rise
+        rise = (sums.growth * sums.load + 2.0 * (slope / share) * held) / total
+        return np.log(total / target) / rise
 
     return converge(step, first, LAST_STEP, MOST_STEPS)
 
@@ -138,33 +123,28 @@ def _sums(scene: Scene, row: Law, c: Array) -> Sums:
     """Return the sums over strips, a part of the scenes at a time."""
     parts = []
     for i in range(0, c.size, PART):
-        part = slice(i, i + PART)
-        parts.append(_part(scene.rows((part, None)), row.at(part, None), c[part, None]))
-    return Sums(*(np.concatenate(rows) for rows in zip(*parts, strict=True)))
+        part = slice(i, i + PART), None
+        parts.append(_part(scene.rows(part), row.at(*part), c[part]))
+    return Sums(*np.concatenate(parts, axis=1))
 
 
 def _part(scene: Scene, row: Law, middle: Array) -> Sums:
-    R, stretch = scene.indenter.radius, scene.indenter.stretch
-    first = row.moments(middle)
-    share, slope, bend = viscoelastic.growth(first)
-    a_0 = middle * share
-    c = middle * NODES
+    R = scene.indenter.radius
+    share, slope, bend = viscoelastic.growth(row.moments(middle))
+    a_0, c = middle * share, middle * NODES
     M = row.moments(c)
     ratio, rise, _ = viscoelastic.growth(M)
     a, eta = c * ratio, M.eta
-    away = middle * GAPS
-    gap = np.where(GAPS < CLOSE, away * (slope - 0.5 * bend * GAPS), a_0 - a)
+    gap = np.where(GAPS < CLOSE, middle * GAPS * (slope - 0.5 * bend * GAPS), a_0 - a)
     y = np.sqrt(gap * (a_0 + a))
-    dy = 2.0 * stretch * a * rise * (middle * WEIGHTS) / y
+    dy = 2.0 * scene.indenter.stretch * a * rise * (middle * WEIGHTS) / y
     size = c * (c / R)
-    load = size * c * (M.D + eta * M.P)
     work = M.E + eta * eta * M.P
-    friction = size * size * work
+    friction = dy * (size * size * work)
     inside, error = row.dissipated(c, eta, np.where(work > 0.0, work, 1.0))
-    whole = (dy * load).sum(axis=1)
-    lost = (dy * friction * inside).sum(axis=1)
+    load = (dy * (size * c * (M.D + eta * M.P))).sum(axis=1)
+    lost = (friction * inside).sum(axis=1)
+    doubt = (friction * inside * error).sum(axis=1) / np.where(lost > 0.0, lost, 1.0)
     deeper = (dy * size * M.P / a).sum(axis=1) * a_0[:, 0]  # dW/da_0
-    rubbed = (dy * friction).sum(axis=1)
-    doubt = (dy * friction * inside * error).sum(axis=1) / np.where(lost > 0.0, lost, 1.0)
-    growth = deeper * (slope * middle)[:, 0] / whole
-    return Sums(a_0[:, 0], whole, rubbed, lost, doubt, growth)
+    growth = deeper * (slope * middle)[:, 0] / load
+    return Sums(a_0[:, 0], load, friction.sum(axis=1), lost, doubt, growth)

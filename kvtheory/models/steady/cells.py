@@ -1,4 +1,4 @@
-"""A shape of any kind as a series in cells: where it may touch, and the error of the series.
+"""A shape given by functions as a series in cells: where it may touch, and the error of the series.
 
 The shape is divided into cells, until it lies above the depth in a cell or is resolved there: the last
 coefficients of the Legendre series of h and h' are rounding. Details narrower than the spacing of the nodes
@@ -12,9 +12,10 @@ from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.polynomial import legendre
+from scipy.optimize import brentq
 
 from kvtheory.results.errors import QuadratureError
-from kvtheory.scene.indenters import beside
+from kvtheory.scene.indenters import Profile, beside
 
 DEGREE = 15
 """Degree of the series in a cell, with 16 nodes."""
@@ -24,26 +25,18 @@ SERIES = legendre.legvander(NODES, DEGREE).T * WEIGHTS * (np.arange(DEGREE + 1)[
 DENSE = np.linspace(-1.0, 1.0, 33)
 """Points at which the series is examined; a resolved cell holds hardly more than half a wave."""
 VALUES = legendre.legvander(DENSE, DEGREE).T
-TAIL = 13
-"""First of the coefficients that tell how well a cell is resolved."""
-RESOLVED = 1e-13
-"""A cell is resolved if its last coefficients, over the depth, are below this."""
-NOISE = 1e-9
-"""The same for a shape whose own rounding is more than that; the certificate says so."""
+TAIL, TAIL_MARGIN = 13, 4.0
+"""First of the last coefficients; truncation error of a series over their sum, in a cell not resolved."""
+RESOLVED, NOISE = 1e-13, 1e-9
+"""Last coefficients, over the depth, of a resolved cell, and of one limited by the rounding of the shape."""
 HELPS = 0.25
 """Largest share of the last coefficients of a smooth shape that remains after a cut."""
-WIDE = 1e3
-"""Height over the depth above which cells limited by rounding are divided, not accepted."""
+WIDE, FAR_ABOVE = 1e3, 1e9
+"""Height over the depth above which a cell limited by rounding is divided, and one is left unexamined."""
 JUMP, NARROW = 1e-3, 1e-9
 """Last coefficients of a slope, over the slope, that only a jump keeps in so narrow a cell."""
-TAIL_MARGIN = 4.0
-"""Truncation error of a series, over its last coefficients, in a cell that is not resolved."""
-FAR_ABOVE = 1e9
-"""Height over the depth from which a cell is not examined further."""
-PARTS = 8
-"""Cells of each octave of x at first: with their nodes, dips of 1/100 of their distance are seen."""
-OCTAVES = 20
-"""How far a shape without a reach is examined beyond the contact: a million times its length."""
+PARTS, OCTAVES = 8, 20
+"""Cells of each octave of x at first, and octaves beyond the contact that are examined without a reach."""
 MOST_CELLS = 2**14
 """Most cells; a shape that needs more is not smooth."""
 NEAREST, FARTHEST = 2.0**-200, 2.0**200
@@ -52,12 +45,14 @@ AHEAD = 4.0
 """Cells are made for a depth larger by this factor, and are used down to that depth over `AHEAD`."""
 CHECK_RTOL = 1e-11
 """Discrepancy between h and h' that a check allows, relative to the depth."""
-SQUARED = 1.0 / (2.0 * np.arange(DEGREE + 1) + 1.0)
-"""The mean of the square of each Legendre polynomial."""
+
+HOLLOW, FLAT, BEND = 1e-9, 1e-15, 2.0**-5
+"""Decrease of the slope of a convex shape, and its last coefficients, over the slope, that are rounding; and
+width of a cell, over that of the contact, that only a jump of a higher derivative requires."""
 
 
 class Cells(NamedTuple):
-    """Intervals of x in which h may be low, with the series of h and h' in each; one row for each."""
+    """Intervals of x in which h may be low, the series of h and h' in each, and the truncation errors."""
 
     start: Any
     end: Any
@@ -69,6 +64,16 @@ class Cells(NamedTuple):
     def only(self, rows: Any) -> "Cells":
         """Return some of the rows, or all of them in another order."""
         return Cells(*(part[rows] for part in self))
+
+    def lowest(self) -> Any:
+        """Return the lowest h in each cell."""
+        return (self.height @ VALUES).min(axis=1)
+
+    def values(self, series: Any, rows: Any, x: Any) -> Any:
+        """Return h or h', the one whose series is given, at the points x in some of the cells."""
+        start, end = self.start[rows], self.end[rows]
+        place = np.clip((2.0 * x - start - end) / (end - start), DENSE[0], DENSE[-1])
+        return legendre.legval(place, np.moveaxis(series[rows], -1, 0), tensor=False)
 
 
 class Surface:
@@ -107,16 +112,20 @@ class Surface:
             raise QuadratureError(f"the indenter's shape is nan at x = {x:.6g} m")
         return value
 
-    def _values(self, function: Callable[[Any], Any], x: Any, sign: float = 1.0) -> Any:
-        """Return the values of h or h' at an array of points."""
+    def _at_nodes(self, function: Callable[[Any], Any], cells: Any) -> Any:
+        """Return h or h' at the nodes of each cell."""
+        x = cells.mean(axis=1)[:, None] + 0.5 * np.diff(cells) * NODES
         try:
-            values = sign * np.asarray(function(self.side * x), dtype=float)
+            values = np.asarray(function(self.side * x), dtype=float)
         except (ArithmeticError, ValueError):
             values = np.full(1, math.nan)
         if np.isnan(values).any():  # one by one, for the message
-            flat = [sign * self._value(function, point) for point in x.ravel().tolist()]
-            values = np.array(flat).reshape(x.shape)
+            values = np.array([self._value(function, point) for point in x.flat]).reshape(x.shape)
         return values
+
+    def slope_series(self, cells: Any) -> Any:
+        """Return the coefficients of h' in each cell."""
+        return self.side * self._at_nodes(self.indenter.slope, cells) @ SERIES.T
 
     def beside(self, x: float, to: float) -> float:
         """Return x, or where it is a kink the next number towards `to`."""
@@ -153,29 +162,19 @@ class Surface:
         self._length = self.first(lambda _, height: height >= depth)
         if self._length == math.nextafter(math.inf, 0.0):
             raise QuadratureError(f"the indenter does not rise to {depth:.6g} m anywhere")
-        octaves = [0.0, *(self._length * 2.0 ** np.arange(OCTAVES + 1))]
-        side = np.concatenate(
-            [np.linspace(*ends, PARTS + 1) for ends in itertools.pairwise(octaves)]
-        )
-        side = np.append(side[side < self.end], min(self.end, octaves[-1]))
+        octaves = itertools.pairwise([0.0, *(self._length * 2.0 ** np.arange(OCTAVES + 1))])
+        side = np.concatenate([np.linspace(*ends, PARTS + 1) for ends in octaves])
+        side = np.append(side[side < self.end], min(self.end, side[-1]))
         kinks = [kink for kink in self.kinks if abs(kink) < side[-1]]
         cuts = np.unique(np.concatenate((-side, side, kinks)))
         return np.column_stack((cuts[:-1], cuts[1:]))
-
-    def _nodes(self, cells: Any) -> Any:
-        """Return the nodes of each cell."""
-        return cells.mean(axis=1)[:, None] + 0.5 * np.diff(cells) * NODES
-
-    def slope_series(self, cells: Any) -> Any:
-        """Return the coefficients of h' in each cell."""
-        return self._values(self.indenter.slope, self._nodes(cells), self.side) @ SERIES.T
 
     def _resolved(self, depth: float) -> Cells:
         """Cut the cells in which h may be below the depth until h and h' are resolved in each."""
         todo, tails, done = self._grid(depth / AHEAD), np.array(math.inf), []
         count = len(todo)
         while todo.size:
-            values = self._values(self.indenter.height, self._nodes(todo))
+            values = self._at_nodes(self.indenter.height, todo)
             height = values @ SERIES.T
             tail = np.abs(height[:, TAIL:]).sum(axis=1)
             low = (height @ VALUES).min(axis=1) - TAIL_MARGIN * tail
@@ -189,30 +188,20 @@ class Surface:
             noisy = worst > HELPS * np.broadcast_to(tails, near.shape)[near]
             noisy &= (slope_tail < NOISE * size) & (values[near].max(axis=1) < WIDE * depth)
             fine = (worst < RESOLVED * depth) | (noisy & (worst < NOISE * depth))
-            self._note_jumps(todo[(slope_tail > JUMP * size) & (width < NARROW * self._length)])
+            jumps = todo[(slope_tail > JUMP * size) & (width < NARROW * self._length)].tolist()
+            self.jumps += [x for y, x in jumps if x < self.end and not self._kink_in(y, x)]
             done.append(Cells(start, end, height, slope, tail, slope_tail).only(fine))
             start, end, middle = start[~fine], end[~fine], todo[~fine].mean(axis=1)
             count += middle.size
             if count > MOST_CELLS or np.any((middle == start) | (middle == end)):
                 raise QuadratureError(
-                    f"near x = {self.side * middle[0]:.6g} m the shape is not smooth, or there are too "
-                    "many places to look at; `reach` says where it ends"
+                    f"near x = {self.side * middle[0]:.6g} m the shape is not smooth, or the search "
+                    "interval is too large; `reach` says where it ends"
                 )
             todo = np.column_stack((start, middle, middle, end)).reshape(-1, 2)
             tails = np.repeat(worst[~fine], 2)
-        rows = [np.concatenate(parts) for parts in zip(*done, strict=True)]
-        cells = Cells(*rows).only(np.argsort(rows[0]))
-        self._check_slope(cells, depth)
-        return cells
-
-    def _note_jumps(self, cells: Any) -> None:
-        """Record where the slope jumps in a cell without a declared kink."""
-        for start, end in cells.tolist():
-            if end < self.end and not any(start <= kink <= end for kink in self.kinks):
-                self.jumps.append(end)
-
-    def _check_slope(self, cells: Cells, depth: float) -> None:
-        """Raise unless h' is the derivative of h, and h is nowhere negative."""
+        cells = Cells(*(np.concatenate(parts) for parts in zip(*done, strict=True)))
+        cells = cells.only(np.argsort(cells.start))
         width = cells.end - cells.start
         allowed = CHECK_RTOL * depth + TAIL_MARGIN * (cells.height_tail + cells.slope_tail * width)
         rise = 2.0 * cells.height[:, 1::2].sum(axis=1)
@@ -221,5 +210,110 @@ class Surface:
                 "the slope function is not the derivative of the height function, "
                 "or jumps where `kinks` does not say so"
             )
-        if np.any((cells.height @ VALUES).min(axis=1) < -allowed):
+        if np.any(cells.lowest() < -allowed):
             raise QuadratureError("h is negative somewhere: expected h(0) = 0, the lowest point")
+        return cells
+
+    def _kink_in(self, start: float, end: float) -> bool:
+        return any(start <= kink <= end for kink in self.kinks)
+
+    def bends(self, cells: Cells, narrow: float) -> list[float]:
+        """Return where the narrowest of narrow cells close in on a bend that no kink explains."""
+        width, found = cells.end - cells.start, list[float]()
+        for run in np.split(np.arange(width.size), np.flatnonzero(np.diff(width)) + 1):
+            start, end, size = cells.start[run[0]], cells.end[run[-1]], width[run[0]]
+            neighbours = width[[max(run[0] - 1, 0), min(run[-1] + 1, width.size - 1)]]
+            lone = size < narrow and size <= neighbours.min()
+            if lone and not self._kink_in(start - size, end + size):
+                found.append(self._bend(start, end))
+        return found
+
+    def _bend(self, start: float, end: float) -> float:
+        """Return the bend in an interval: halved until no half is worse resolved than rounding."""
+        while True:
+            middle = 0.5 * (start + end)
+            halves = np.array([[start, middle], [middle, end]])
+            slope = self.slope_series(halves)
+            tails = np.abs(slope[:, TAIL:]).sum(axis=1)
+            if tails.max() <= FLAT * np.abs(slope).max() or middle in (start, end):
+                return float(middle)
+            start, end = halves[np.argmax(tails)].tolist()
+
+
+class ConvexProfile:
+    """A convex profile in the direction of sliding, as a series, for the convolution.
+
+    So thousands of slopes need no call of a Python function. A shape that is not convex where it is below the
+    depth may touch in several places; the memory of the surface between them is not modelled here, and the
+    shape is refused.
+    """
+
+    def __init__(self, profile: Profile, side: float) -> None:
+        self.surface, self.reach = Surface(profile, side), profile.reach
+        self.shallow = self.surface.shallow
+        self.declared = [side * kink for kink in profile.kinks]
+        self.kinks: tuple[float, ...] = ()
+        """Those of the profile, and where a higher derivative jumps: the convolution is cut there."""
+        self.bent = False
+        """Whether there are any of the latter; they are not known to the last digit."""
+        self.noise = 0.0
+        """Relative error of the series, by its last coefficients, over the depth."""
+        self._cells: Any = None
+
+    def sides(self, depth: float) -> tuple[float, float]:
+        """Return the extent of the contact at rest, ahead and behind, after checking the shape."""
+        surface, cells = self.surface, self.surface.cells(depth)
+        low = cells.only(cells.lowest() < depth)
+        slopes = low.slope @ VALUES
+        rounding = HOLLOW * np.abs(slopes).max(initial=0.0) + TAIL_MARGIN * low.slope_tail
+        hollow = np.any(np.diff(slopes, axis=1) < -rounding[:, None])
+        hollow |= np.any(np.diff(slopes.mean(axis=1)) < -rounding[1:])
+        if hollow or np.any(low.start[1:] != low.end[:-1]):
+            raise QuadratureError(
+                f"the shape is not convex down to {depth:.6g} m: it may touch in several places, for "
+                'which quadrature needs foundation.kind = "kelvin-voigt"'
+            )
+        if surface.jumps:
+            raise QuadratureError("the slope jumps where `kinks` does not say so")
+        tails = low.height_tail + low.slope_tail * (low.end - low.start)
+        self.noise = float(TAIL_MARGIN * tails.max() / depth)
+        ends = self._end(depth, -1.0), self._end(depth, 1.0)
+        if cells is not self._cells:
+            self._cells = cells
+            tip = [0.0] if self._bent_at_zero() else []
+            bends = surface.bends(cells, BEND * sum(ends))
+            self.kinks, self.bent = tuple(sorted({*self.declared, *bends, *tip})), bool(bends)
+        return ends
+
+    def _bent_at_zero(self) -> bool:
+        """Return whether one series does not hold on both sides of the lowest point."""
+        i = int(np.searchsorted(self._cells.start, 0.0))
+        both = self._cells.only(slice(i - 1, i + 1))
+        half = 0.5 * (both.end - both.start).min()
+        series = SERIES @ self.slope(half * NODES)
+        rounding = RESOLVED * np.abs(series).sum() + TAIL_MARGIN * both.slope_tail.sum()
+        return bool(np.abs(series[TAIL:]).sum() > rounding)
+
+    def _end(self, depth: float, side: float) -> float:
+        """Return the distance at which the shape has risen to the depth."""
+
+        def excess(x: float) -> float:
+            return self.surface.height(side * x) - depth
+
+        far = self.surface.first(lambda x, _: excess(x) >= 0.0)
+        if excess(far) < 0.0:
+            raise QuadratureError("the contact lies beyond the indenter's reach")
+        return float(brentq(excess, 0.0, far, xtol=1e-300, rtol=8.9e-16, maxiter=2000))
+
+    def height(self, x: Any) -> Any:
+        """Return h(x), of an array by the series of the last depth, of a float by the function itself."""
+        return self._sum(self._cells.height, x) if np.ndim(x) else self.surface.height(x)
+
+    def slope(self, x: Any) -> Any:
+        """Return h'(x) likewise."""
+        return self._sum(self._cells.slope, x) if np.ndim(x) else self.surface.slope(x)
+
+    def _sum(self, series: Any, x: Any) -> Any:
+        start = self._cells.start
+        rows = np.clip(np.searchsorted(start, x, side="right") - 1, 0, start.size - 1)
+        return self._cells.values(series, rows, x)

@@ -9,9 +9,9 @@ meets the indenter at the leading edge, x_LE < 0, and leaves it at the trailing 
 The leading edge is where h = delta on the entering side. The trailing edge is where p falls to zero,
 by a root of h + l_r h' = delta, or by the jump of h' at the vertex of a wedge.
 
-One contact: e^(x/l_r) u rises where p > 0, for its derivative is e^(x/l_r) p/(K l_r); the surface
-that is left behind relaxes as e^(-x/l_r), and is met again only where e^(x/l_r) u exceeds its running
-maximum. As h is convex, log u + x/l_r is concave: there is one maximum, the trailing edge.
+There is one contact: e^(x/l_r) u rises where p > 0, for its derivative is e^(x/l_r) p/(K l_r); the surface
+left behind relaxes as e^(-x/l_r), and is touched again only where e^(x/l_r) u exceeds its running maximum.
+As h is convex, log u + x/l_r is concave: there is one maximum, the trailing edge.
 
 The pressure vanishes at a root of the trailing edge, and the leading edge moves by d(-x_LE) = d(delta)/|h'|
 with p_LE = K l_r |h'|; hence dW/d(delta) = K (x_TE - x_LE + l_r) and dF/d(delta) = K u_TE + p_LE.
@@ -28,6 +28,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from kvtheory.models.steady.double_exponential import (
+    OF_LINE,
     ROUNDING,
     SMALLEST,
     Quantities,
@@ -46,22 +47,18 @@ LINEAR = 1e-8
 """Newton's method squares an error: after a step of this size the error is below rounding."""
 STRIDES = tuple(4.0 ** (2.0**power) for power in range(6, -9, -1))
 """Factors by which a half length far too short is widened at first, as long as it stays too short."""
-COARSE = 7
-"""How many of them are enough for a scene whose first depth is refined by `CLOSER`."""
-CLOSER = 3
-"""Newton steps on the load of a parabola as blunt as the shape, for the first depth."""
+COARSE, CLOSER = 7, 3
+"""How many of them are enough where `CLOSER` Newton steps on the load of a parabola follow, as blunt as the
+shape."""
 NEAR_REACH = 0.5
 """Share of the reach at which the search for the half length starts at most."""
 MOST_STEPS = 200
 """Steps of a root; they are a handful unless a vertex or the reach of a circle is close."""
-VERTEX = 1e-290
-"""A trailing edge closer to the lowest point than this share of the half length is set to it."""
-FLOOR = 1e-20
-"""Share of the half length below which the peak is set to the lowest point."""
-PEAK_RTOL = 1e-8
-"""Tolerance of its position; the error of its value is the square of it, times the exponent of a power."""
-PEAK_STEPS = 8
-"""Secant steps towards the peak: one for a power, more for a circle."""
+VERTEX, FLOOR = 1e-290, 1e-20
+"""Shares of the half length below which the trailing edge, and the peak, are at the lowest point."""
+PEAK_RTOL, PEAK_STEPS = 1e-8, 8
+"""Tolerance of the position of the peak, whose value has an error of second order, and secant steps towards
+it: one for a power, more for a circle."""
 TINY = 1e-300
 """Added to a divisor that may vanish together with its dividend."""
 
@@ -70,8 +67,8 @@ class Contact(NamedTuple):
     """A contact at one depth; forces are over the stiffness."""
 
     depth: Value
-    a: Value
-    """Half the length of the contact at rest; x_LE = -a."""
+    half_length: Value
+    """At rest; it ends at the leading edge."""
     x: Value
     """The trailing edge, unless it is at the vertex."""
     a_moves: Value
@@ -82,45 +79,24 @@ class Contact(NamedTuple):
     u_te: Value
     load: Value
     load_error: Value
-    """Estimate of the relative error of the load at this very depth."""
+    """Relative error of the load at this very depth."""
     load_slope: Value
-    """d(W/K)/d(delta)."""
-
-    @property
-    def half_length(self) -> Value:
-        """Half the length of the contact at rest."""
-        return self.a
-
-    @property
-    def load_curvature(self) -> Value:
-        """d^2(W/K)/d(delta)^2."""
-        return self.a_moves + self.x_moves
-
-    @property
-    def guess(self) -> tuple[Value, ...]:
-        """Edges from which those at another depth are found."""
-        return self.a, self.x
-
-    @property
-    def noise(self) -> Value:
-        """Relative error of the depth equivalent to rounding: of x_LE, and of u."""
-        return ROUNDING * (1.0 + self.a / (self.a_moves * self.depth))
+    load_curvature: Value
+    """d(W/K)/d(delta), d^2(W/K)/d(delta)^2."""
+    guess: tuple[Value, Value]
+    """Edges from which those at another depth are found."""
+    noise: Value
+    """Relative error of the depth equivalent to rounding: of x_LE, and of u."""
 
 
 class ConvexLine:
     """A convex, even shape on Kelvin-Voigt: one scene or a column of them."""
 
-    in_columns = True
-    """Many depths are solved at once."""
-    floor = ROUNDING
-    """Relative error of every quantity by rounding."""
+    in_columns, floor = True, ROUNDING
+    """Whether many depths are solved at once; the relative error of every quantity by rounding."""
 
     def __init__(self, shape: Any, l_r: Value) -> None:
         self.shape, self.l_r, self.reach = shape, l_r, shape.reach
-
-    def at_rest(self) -> "ConvexLine":
-        """Return the same at zero velocity."""
-        return ConvexLine(self.shape, 0.0 * self.l_r)
 
     def strips(self, strip: Any) -> "ConvexLine":
         """Return the line contacts of strips, in a column."""
@@ -152,20 +128,31 @@ class ConvexLine:
 
     def at(self, depth: Value, guess: tuple[Value, ...] = ()) -> Contact:
         """Return the contact at a depth, from guesses of its edges."""
-        start, x = guess or (_start(self.shape, depth, self.deepest),) * 2
         shape, l_r = self.shape, self.l_r
-        a, a_moves = _half_length(shape, depth, start)
+        start, x = guess or (self._start(depth),) * 2
+        a, a_moves = _leading(shape, depth, start)
         rolls = (l_r * shape.slope(VERTEX * a) < depth) * 1.0
         x, x_moves = _trailing(shape, l_r * rolls, depth, a, x * (a / start))
         below, error = integral(shape.height, (a, x), (a, rolls * x), not shape.kinks)
         # Where p = 0, u_TE = l_r h', which does not cancel for a small l_r.
         u_te = l_r * rolls * shape.slope(x) + (1.0 - rolls) * depth
-        length = a + rolls * x
+        length, x_moves = a + rolls * x, rolls * x_moves
         load = depth * length - below + l_r * u_te
-        error = error * below / load
+        noise = ROUNDING * (1.0 + a / (a_moves * depth))
         return Contact(
-            depth, a, x, a_moves, rolls * x_moves, rolls, u_te, load, error, length + l_r
+            depth, a, x, a_moves, x_moves, rolls, u_te, load, error * below / load,
+            length + l_r, a_moves + x_moves, (a, x), noise,
         )  # fmt: skip
+
+    def half_length(self, depth: Value) -> Value:
+        """Return a > 0 with h(a) = depth."""
+        return _leading(self.shape, depth, self._start(depth))[0]
+
+    def _start(self, depth: Value) -> Value:
+        """Return where the search for the half length of a contact at a depth begins."""
+        if not largest(depth - self.deepest) < 0.0:
+            raise QuadratureError("the leading edge lies beyond the indenter's reach")
+        return _spaced(self.shape, depth, depth, lambda x: 1.0)
 
     def friction(self, contact: Contact) -> tuple[Value, Value, Value]:
         """Return the friction over K, the part of it lost in the contact, and the relative error."""
@@ -174,12 +161,10 @@ class ConvexLine:
 
     def _drag(self, contact: Contact) -> tuple[Value, Value, Value]:
         """Return int h'^2 dx with its relative error, and u_TE/l_r."""
-        shape, rolls, a, x = self.shape, contact.rolls, contact.a, contact.x
-        drag, error = integral(
-            lambda x: shape.slope(x) ** 2, (a, x), (a, rolls * x), not shape.kinks
-        )
+        shape, rolls, a, x = self.shape, contact.rolls, contact.half_length, contact.x
+        squared = integral(lambda x: shape.slope(x) ** 2, (a, x), (a, rolls * x), not shape.kinks)
         left = rolls * shape.slope(x) + (1.0 - rolls) * contact.depth / (self.l_r + rolls)
-        return drag, error, left
+        return *squared, left
 
     def quantities(self, contact: Contact) -> Quantities:
         """Return quantities over the stiffness, their errors at this depth, and d ln/d ln delta.
@@ -187,7 +172,7 @@ class ConvexLine:
         The friction is l_r times the sum of int h'^2 dx and of u_TE^2/(2 l_r).
         """
         shape, l_r = self.shape, self.l_r
-        depth, a, x, a_moves, x_moves, rolls, u_te, load, load_error, load_slope = contact
+        depth, a, x, a_moves, x_moves, rolls, u_te, load, load_error, load_slope, *_ = contact
         drag, drag_error, left = self._drag(contact)
         at_a, at_x = shape.slope(a), shape.slope(x)
         total = drag + 0.5 * u_te * left
@@ -198,53 +183,33 @@ class ConvexLine:
         edge = depth * a_moves / a
         # Zero is the trailing edge at a corner; of a rounded tip it says that the edge is too close to tell.
         lost = pick((rolls * x < SMALLEST) & (shape.bend(x) != 0.0), math.inf, 0.0)
-        values = {
-            "half_length": a,
-            "leading_edge": -a,
-            "trailing_edge": rolls * x,
-            "load": load,
-            "friction_force": l_r * total,
-            "peak_pressure": peak,
-            "dissipated_in_contact": drag / total,
-        }
+        values = a, -a, rolls * x, load, l_r * total, peak, drag / total
         own = {"trailing_edge": lost, "load": load_error, "friction_force": drag_error}
-        powers = {
-            "half_length": edge,
-            "leading_edge": edge,
-            "trailing_edge": depth * x_moves / x,
-            "load": depth * load_slope / load,
-            "friction_force": depth * (left + at_a) / total,
-            "peak_pressure": depth / peak * -least(-1.0 + 0.0 * l_r, -l_r * shape.bend(a) / a),
-            "dissipated_in_contact": depth * (by_a + abs(by_x)) / total,
-        }
-        return values, own, powers
-
-
-def half_length(shape: Convex, depth: Value) -> Value:
-    """Return a > 0 with h(a) = depth."""
-    return _half_length(shape, depth, _start(shape, depth, ConvexLine(shape, 0.0).deepest))[0]
-
-
-def _start(shape: Convex, depth: Value, deepest: Value) -> Value:
-    """Return where the search for the half length of a contact at a depth begins."""
-    if not largest(depth - deepest) < 0.0:
-        raise QuadratureError("the leading edge lies beyond the indenter's reach")
-    return _spaced(shape, depth, depth, lambda x: 1.0)
+        powers = (
+            edge,
+            edge,
+            depth * x_moves / x,
+            depth * load_slope / load,
+            depth * (left + at_a) / total,
+            depth / peak * -least(-1.0 + 0.0 * l_r, -l_r * shape.bend(a) / a),
+            depth * (by_a + abs(by_x)) / total,
+        )
+        return dict(zip(OF_LINE, values, strict=True)), own, dict(zip(OF_LINE, powers, strict=True))
 
 
 def _spaced(
     shape: Convex,
     scale: Value,
-    wanted: Value,
+    load: Value,
     width: Callable[[Value], Value],
     strides: tuple[float, ...] = STRIDES[:COARSE],
 ) -> Value:
-    """Return the first of spaced points x where h times a width is as wanted, or the last."""
+    """Return the first of spaced points x where h times a width is the load, or the last."""
     most = NEAR_REACH * shape.reach
     x = least(scale / strides[0], most)
     for stride in strides:
         wider = least(x * stride, most)
-        x = pick(shape.height(wider) * width(wider) < wanted, wider, x)
+        x = pick(shape.height(wider) * width(wider) < load, wider, x)
     return least(x * strides[-1], most)
 
 
@@ -253,7 +218,7 @@ def _within(shape: Convex, a: Value, factor: Value) -> Value:
     return least(a * factor, 0.5 * (a + shape.reach))
 
 
-def _half_length(shape: Convex, depth: Value, a: Value) -> tuple[Value, Value]:
+def _leading(shape: Convex, depth: Value, a: Value) -> tuple[Value, Value]:
     """Return a > 0 with h(a) = depth, and d a/d(delta)."""
     active, moves = depth > 0.0, a
     for _ in range(MOST_STEPS):
@@ -276,7 +241,7 @@ def _trailing(shape: Convex, l_r: Value, depth: Value, a: Value, x: Value) -> tu
         rise = slope * (x + l_r * shape.bend(x))
         factor = (depth / total) ** (total / rise)
         moves = pick(active, x / rise, moves)
-        # Where the slope hardly changes a step may overshoot the tip; it closes in from there.
+        # Where the slope hardly changes a step may overshoot the tip; the next ones approach from there.
         x = pick(active, least(-least(-x * factor, -VERTEX * a), a), x)
         active = active & (abs(factor - 1.0) + abs(depth / total - 1.0) >= LINEAR)
         if not some(active):
@@ -291,16 +256,17 @@ def _peak(shape: Convex, l_r: Value, contact: Contact) -> Value:
     for a power and rises with y for the circle, or else the peak is at the leading edge. Every iterate
     is a pressure of this contact, so that the highest of them is never too high.
     """
-    found, last = l_r * shape.slope(contact.a), (contact.a, 0.0 * l_r)
-    y, active = least(l_r, contact.a) + FLOOR * contact.a, l_r >= 0.0
+    a = contact.half_length
+    peak, last = l_r * shape.slope(a), (a, 0.0 * l_r)
+    y, active = least(l_r, a) + FLOOR * a, l_r >= 0.0
     for _ in range(PEAK_STEPS):
         slope = shape.slope(y)
-        found = -least(-found, -(contact.depth - shape.height(y) + l_r * slope))
-        to = l_r * shape.bend(y) + FLOOR * contact.a
+        peak = -least(-peak, -(contact.depth - shape.height(y) + l_r * slope))
+        to = l_r * shape.bend(y) + FLOOR * a
         gain = (to - last[1]) / (y - last[0] + TINY)
         last = y, to
-        active = active & (abs(least(to, contact.a) / y - 1.0) >= PEAK_RTOL)
+        active = active & (abs(least(to, a) / y - 1.0) >= PEAK_RTOL)
         if not some(active):
             break
-        y = pick(active, least(abs((to - gain * y) / (1.0 - gain + TINY)), contact.a), y)
-    return found
+        y = pick(active, least(abs((to - gain * y) / (1.0 - gain + TINY)), a), y)
+    return peak

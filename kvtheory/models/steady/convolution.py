@@ -5,8 +5,8 @@ With X the distance from the leading edge, where h = delta, and u' = -h' the rat
     p(X) = K u + sum over branches m(X) <u'>,   m = int_0^X g(s) ds,   g = G - K,
 
 where <u'> is the mean of u' over the memory of the branch: with v = (int_0^s g)/m in (0, 1) the past is
-u'(X - s(v)), however fast the branch relaxes, and the integrand has no boundary layer that the
-double-exponential rule would not resolve. The trailing edge is the first zero of the pressure, and
+u'(X - s(v)), however fast the branch relaxes, and the integrand has no boundary layer. The trailing edge is
+the first zero of the pressure, and
 
     W = int p dX,   F = int u' p dX,   dW/d(delta) = int_0^c G dX,
 
@@ -15,22 +15,22 @@ where p = 0 behind the lowest point, p' <= -|u'| G(X) < 0, because |u'| rises an
 """
 
 import math
-from functools import cached_property
 from itertools import pairwise
 from typing import Any
 
 import numpy as np
 from scipy.optimize import brentq, minimize_scalar
+from scipy.special import gamma
 
-from kvtheory.models.steady.branches import Arms, Memory, Springpot
-from kvtheory.models.steady.contact import ConvexLine, half_length
+from kvtheory.models.steady.cells import ConvexProfile
+from kvtheory.models.steady.contact import ConvexLine
 from kvtheory.models.steady.double_exponential import (
+    OF_LINE,
     RULES,
     Quantities,
     power_bounds,
     share_lost,
 )
-from kvtheory.models.steady.profile_series import ConvexProfile
 from kvtheory.results.errors import QuadratureError
 from kvtheory.scene.foundations import FractionalKelvinVoigt
 from kvtheory.scene.indenters import Convex
@@ -38,29 +38,95 @@ from kvtheory.scene.model import Scene
 
 Array = Any
 """Of floats."""
-
 Shape = Convex | ConvexProfile
 
-_NODES, _WEIGHTS = RULES[3][0], RULES[3][2]
-NODES = _NODES[: _NODES.size // 2]
-FINE, COARSE = _WEIGHTS
-"""A double-exponential rule from 0 to 1, and the one of twice its step."""
+NODES, BOTH = RULES[3]
+"""A double-exponential rule from 0 to 1: its nodes, with weights of it and of the one of twice its step."""
 ROOT, TINY = 8.9e-16, 1e-300
 """Tolerances of edges: all digits, however small they are."""
 VERTEX = 1e-290
-"""Share of the half length at which the pressure is that behind the lowest point."""
-STRIDE = 1e-6
-"""Relative step of x for the slope of the pressure at its zero."""
-PEAK_RTOL = 1e-6
-"""Tolerance of the position of the peak between two nodes; the error of its value is of second order."""
-MARGIN = 8.0
-"""Safety factor on the differences of both rules."""
-FLOOR = 2e-13
-"""Relative rounding of a result."""
+"""Share of the half length that is next to the lowest point."""
+STRIDE, PEAK_RTOL = 1e-6, 1e-6
+"""Relative step of x for the slope of the pressure at its zero, and tolerance of the position of the peak
+between two nodes; the error of its value is of second order."""
+MARGIN, FLOOR, LIMIT = 8.0, 2e-13, 1e-6
+"""Safety factor on the differences of both rules, relative rounding of a result, and the relative error from
+which it is refused."""
 JUMP = 1e-6
 """Pressure at the trailing edge, over that of the depth, from which it is a jump."""
-LIMIT = 1e-6
-"""Relative error above which a result is refused."""
+
+
+class Arms:
+    """Maxwell arms: K_i e^(-X/l_i), over K, with m the impulse of each arm up to X."""
+
+    def __init__(self, stiffness: Array, length: Array) -> None:
+        self.stiffness, self.length = (np.asarray(row)[:, None] for row in (stiffness, length))
+
+    def amount(self, X: Array) -> Array:
+        """Return m = K_i l_i (1 - e^(-X/l_i))."""
+        return -self.stiffness * self.length * np.expm1(-X / self.length)
+
+    def delay(self, v: Array, X: Array) -> Array:
+        """Return s at which the share v of m is reached: -l_i ln(1 - v (1 - e^(-X/l_i)))."""
+        l = self.length[..., None]
+        return -l * np.log1p(v * np.expm1(-X[..., None] / l))
+
+    def share(self, s: Array, X: Array) -> Array:
+        """Return the share of m that is reached at s."""
+        return np.expm1(-s / self.length) / np.expm1(-X / self.length)
+
+    def works(self, sliding: "Contact", left: Array) -> tuple[float, float]:
+        """Return the work of the arms over the contact, and the part lost in it: sums of squares.
+
+        `left` is what they press at the trailing edge.
+        """
+        lost, _ = sliding.total((sliding.rows**2 / (self.stiffness * self.length)).sum(axis=0))
+        return float((left**2 / (2.0 * self.stiffness)).sum()) + lost, lost
+
+
+class Springpot:
+    """A springpot, (X/l)^(-alpha)/Gamma(1 - alpha), likewise; for alpha = 1 nothing is remembered."""
+
+    def __init__(self, length: float, order: float) -> None:
+        self.scale, self.rest = length**order / gamma(2.0 - order), 1.0 - order
+
+    def amount(self, X: Array) -> Array:
+        """Return m = l^alpha X^(1 - alpha)/Gamma(2 - alpha)."""
+        return self.scale * X[None, :] ** self.rest
+
+    def delay(self, v: Array, X: Array) -> Array:
+        """Return X v^(1/(1 - alpha))."""
+        return X[..., None] * (v ** (1.0 / self.rest) if self.rest else 0.0 * v)
+
+    def share(self, s: Array, X: Array) -> Array:
+        """Return (s/X)^(1 - alpha)."""
+        return (s / X) ** self.rest if self.rest else np.ones_like(X)
+
+    def works(self, sliding: "Contact", left: Array) -> tuple[float, float]:
+        """Return the work, and the part lost: 1/2 int int G(s + s') u' u' ds ds' is stored at the end."""
+        work, _ = sliding.total(sliding.rate * sliding.rows.sum(axis=0))
+        if not self.rest:
+            return work, work
+        s = sliding.ahead
+        kernel = (s[:, None] + s[None, :]) ** (self.rest - 1.0) / gamma(self.rest)
+        scale = self.scale * gamma(1.0 + self.rest)
+        weighed = sliding.weights[0] * sliding.rate
+        return work, work - 0.5 * scale * float(weighed @ kernel @ weighed)
+
+
+Memory = Arms | Springpot | None
+"""Branches of a foundation beside its spring; none at rest."""
+
+
+def memory_of(scene: Scene) -> Memory:
+    """Return the branches of a foundation at the velocity of a scene, over its stiffness."""
+    foundation, speed = scene.foundation, abs(scene.drive.final_velocity)
+    if speed == 0.0:
+        return None
+    if isinstance(foundation, FractionalKelvinVoigt):
+        return Springpot(speed * foundation.retardation_time, foundation.order)
+    arms = np.array([(arm.stiffness, arm.relaxation_time) for arm in foundation.arms])
+    return Arms(arms[:, 0] / foundation.stiffness, speed * arms[:, 1])
 
 
 class Contact:
@@ -68,22 +134,29 @@ class Contact:
 
     load_curvature, guess, noise = None, (), 0.0
 
-    def __init__(self, shape: Shape, memory: Memory | None, depth: float) -> None:
+    def __init__(self, shape: Shape, memory: Memory, depth: float) -> None:
         self.shape, self.memory, self.depth = shape, memory, depth
-        self.a, self.back = _sides(shape, depth)
+        # The extent at rest: h(-a) = h(back) = depth.
+        if isinstance(shape, ConvexProfile):
+            self.a, self.back = shape.sides(depth)
+        else:
+            self.a = self.back = ConvexLine(shape, 0.0).half_length(depth)
         self.half_length = 0.5 * (self.a + self.back)
         self.x_te = x_te = self._trailing_edge()
-        cuts = sorted({0.0, *shape.kinks})
-        pieces = list(pairwise([-self.a, *(cut for cut in cuts if -self.a < cut < x_te), x_te]))
-        pieces = pieces if x_te > 0.0 else [*pieces, (0.0, 0.0)]
-        self.x = np.concatenate([_nodes(*piece) for piece in pieces])
-        self.ahead = np.concatenate(
-            [x_te - end + (end - start) * NODES[::-1] for start, end in pieces]
-        )
-        """Distances from the trailing edge: the rule is symmetric."""
-        self.weights = np.concatenate(
-            [(end - start) * np.stack((FINE, COARSE)) for start, end in pieces], axis=1
-        )
+        cuts = sorted(x for x in {0.0, *shape.kinks} if -self.a < x < x_te)
+        pieces = list(pairwise([-self.a, *cuts, x_te]))
+        pieces += [] if x_te > 0.0 else [(0.0, 0.0)]
+        rows: list[list[Array]] = [[], [], []]
+        for (
+            start,
+            end,
+        ) in pieces:  # nodes are exact towards the end that is closer to the lowest point
+            forth, back = (end - start) * NODES, (end - start) * NODES[::-1]
+            rows[0].append(start + forth if abs(start) < abs(end) else end - back)
+            rows[1].append(x_te - end + back)
+            rows[2].append((end - start) * BOTH)
+        self.x, self.ahead, self.weights = (np.concatenate(each, axis=-1) for each in rows)
+        """Positions, distances from the trailing edge, and weights of both rules."""
         self.rate = -shape.slope(self.x)
         self.rows, apart = self.remembered(self.x)
         self.pressure = depth - shape.height(self.x) + self.rows.sum(axis=0)
@@ -99,19 +172,14 @@ class Contact:
                 "quadrature of the shape does not converge: the indenter's reach is too close, or "
                 "`kinks` does not name every kink"
             )
+        self.load_slope = self.a + x_te  # dW/d(delta) over K
+        if memory is not None:
+            self.load_slope += float(memory.amount(np.array([self.a + x_te])).sum())
 
     def total(self, values: Array) -> tuple[float, float]:
         """Return the integral over the contact, and the difference of both rules."""
         fine, coarse = (float(weights @ values) for weights in self.weights)
         return fine, abs(fine - coarse)
-
-    @property
-    def load_slope(self) -> float:
-        """d(W/K)/d(delta), by the whole of the relaxation function."""
-        length = self.a + self.x_te
-        if self.memory is None:
-            return length
-        return length + float(self.memory.amount(np.array([length])).sum())
 
     def remembered(self, x: Array) -> tuple[Array, float]:
         """Return the pressure of each branch at the positions x, and the difference of both rules."""
@@ -128,11 +196,10 @@ class Contact:
         means = []
         for first, last in pairwise(cuts):
             width = last - first
-            if not width.any():
-                continue
-            past = memory.delay(first[..., None] + width[..., None] * NODES, X)
-            rate = -shape.slope(np.maximum(x[:, None] - past, -a))
-            means.append(width[..., None] * (rate @ np.column_stack((FINE, COARSE))))
+            if width.any():
+                past = memory.delay(first[..., None] + width[..., None] * NODES, X)
+                rate = -shape.slope(np.maximum(x[:, None] - past, -a))
+                means.append(width[..., None] * (rate @ BOTH.T))
         fine, coarse = np.moveaxis(sum(means), -1, 0)
         size = np.abs(amount * fine).sum(axis=0)
         apart = np.abs(amount * (fine - coarse)).sum(axis=0)
@@ -145,15 +212,14 @@ class Contact:
 
     def _trailing_edge(self) -> float:
         """Return the first zero of the pressure."""
-        back = self.back
+        near, back = VERTEX * self.back, self.back
         if self.memory is None:
             return back
-        if self.pressure_at(VERTEX * back) <= 0.0:  # beyond the vertex of a wedge
+        if self.pressure_at(near) <= 0.0:  # beyond the vertex of a wedge
             return 0.0
         if self.pressure_at(back) >= 0.0:  # the memory is below rounding
             return back
-        found = brentq(self.pressure_at, VERTEX * back, back, xtol=TINY, rtol=ROOT, maxiter=2000)
-        return float(found)
+        return float(brentq(self.pressure_at, near, back, xtol=TINY, rtol=ROOT, maxiter=2000))
 
     @property
     def edge_power(self) -> float:
@@ -168,9 +234,8 @@ class Contact:
         near, far = (self.pressure_at(x * (1.0 + side * STRIDE)) for side in (-1.0, 1.0))
         return float(np.abs(self.pressure).max() * STRIDE / (near - far))
 
-    @cached_property
     def peak(self) -> float:
-        """The greatest pressure: at the highest node, or between its neighbours."""
+        """Return the greatest pressure: at the highest node, or between its neighbours."""
         x, best = self.x, int(self.pressure.argmax())
         low, high = x[max(best - 1, 0)], x[min(best + 1, x.size - 1)]
         found = minimize_scalar(
@@ -187,12 +252,8 @@ class ViscoelasticLine:
 
     in_columns, floor = False, FLOOR
 
-    def __init__(self, shape: Shape, memory: Memory | None, l_r: float) -> None:
+    def __init__(self, shape: Shape, memory: Memory, l_r: float) -> None:
         self.shape, self.memory, self.l_r, self.reach = shape, memory, l_r, shape.reach
-
-    def at_rest(self) -> "ViscoelasticLine":
-        """Return the same at zero velocity."""
-        return ViscoelasticLine(self.shape, None, 0.0)
 
     def strips(self, strip: Any) -> "ViscoelasticLine":
         """Return the line contact of one strip."""
@@ -208,7 +269,7 @@ class ViscoelasticLine:
     def shallow(self, load: float, width: Any) -> float:
         """Return a depth that, times a width which depends on its half length, is about the load."""
         if isinstance(self.shape, ConvexProfile):
-            return self.shape.surface.shallow(load, width)
+            return self.shape.shallow(load, width)
         return float(ConvexLine(self.shape, self.l_r).shallow(load, width))
 
     def first(self, load: float, spring: float) -> tuple[float, tuple[()]]:
@@ -224,7 +285,7 @@ class ViscoelasticLine:
         if self.memory is None:
             return 0.0, 0.0, contact.load_error
         left, _ = contact.remembered(np.array([contact.x_te]))
-        work, lost = self.memory.works(contact, contact.rows, left)
+        work, lost = self.memory.works(contact, left)
         # K u = -(memory) at the trailing edge, unless the pressure jumps there.
         rest, held = -float(left.sum()), contact.depth - float(self.shape.height(contact.x_te))
         rest = held if abs(rest - held) > JUMP * contact.depth else rest
@@ -233,43 +294,10 @@ class ViscoelasticLine:
     def quantities(self, contact: Contact) -> Quantities:
         """Return quantities over the stiffness, their errors at this depth, and d ln/d ln delta."""
         friction, lost, error = self.friction(contact)
-        values = {
-            "half_length": contact.half_length,
-            "leading_edge": -contact.a,
-            "trailing_edge": contact.x_te,
-            "load": contact.load,
-            "friction_force": friction,
-            "peak_pressure": contact.peak,
-            "dissipated_in_contact": share_lost(friction, lost),
-        }
-        own = dict.fromkeys(values, error)
-        own["friction_coefficient"] = error
-        own["trailing_edge"] += FLOOR * contact.edge_power
-        powers = dict.fromkeys(values, 1.0) | power_bounds(contact)
-        return values, own, powers | {"trailing_edge": contact.edge_power}
-
-
-def _nodes(start: float, end: float) -> Array:
-    """Return the nodes from start to end, exact towards the end that is closer to the lowest point."""
-    if abs(start) < abs(end):
-        return start + (end - start) * NODES
-    return end - (end - start) * NODES[::-1]
-
-
-def memory_of(scene: Scene) -> Memory | None:
-    """Return the memory of the branches of a foundation at the velocity of a scene, over its stiffness."""
-    foundation, speed = scene.foundation, abs(scene.drive.final_velocity)
-    if speed == 0.0:
-        return None
-    if isinstance(foundation, FractionalKelvinVoigt):
-        return Springpot(1.0, speed * foundation.retardation_time, foundation.order)
-    arms = np.array([(arm.stiffness, arm.relaxation_time) for arm in foundation.arms])
-    return Arms(arms[:, 0] / foundation.stiffness, speed * arms[:, 1])
-
-
-def _sides(shape: Shape, depth: float) -> tuple[float, float]:
-    """Return the extent of the contact at rest ahead and behind: h(-a) = h(back) = depth."""
-    if isinstance(shape, ConvexProfile):
-        return shape.sides(depth)
-    a = half_length(shape, depth)
-    return a, a
+        edges, share = (-contact.a, contact.x_te), share_lost(friction, lost)
+        values = contact.half_length, *edges, contact.load, friction, contact.peak(), share
+        edge = contact.edge_power
+        own = dict.fromkeys((*OF_LINE, "friction_coefficient"), error)
+        own["trailing_edge"] += FLOOR * edge
+        powers = dict.fromkeys(OF_LINE, 1.0) | power_bounds(contact) | {"trailing_edge": edge}
+        return dict(zip(OF_LINE, values, strict=True)), own, powers

@@ -1,4 +1,4 @@
-"""Integrals from the lowest point to both edges by the double-exponential rule, for floats and for columns.
+"""Double-exponential rules, for floats and for columns of scenes.
 
 A float is one scene; a column, of shape (n, 1), is n of them, and broadcasts with nodes along a row.
 """
@@ -15,6 +15,11 @@ Value = Any
 """A float, or a column of them."""
 Quantities = tuple[dict[str, Value], dict[str, Value], dict[str, Value]]
 """Quantities over the stiffness, their relative errors at a depth, and d ln/d ln delta of each."""
+OF_LINE = ("half_length", "leading_edge", "trailing_edge", "load", "friction_force",
+           "peak_pressure", "dissipated_in_contact")  # fmt: skip
+"""The quantities of a line contact."""
+SUMS = "load", "friction_force", "friction_coefficient", "dissipated_in_contact"
+"""Those that follow from sums over strips."""
 
 SMALLEST = float(np.finfo(float).tiny)
 ROUNDING = 5e-15
@@ -23,17 +28,14 @@ ROUNDING = 5e-15
 COARSEST, LEVELS, LAST = 0.125, 5, 3.3
 """Step of the first rule, number of rules (each halves it), and where the weights vanish."""
 SMOOTH = 10
-"""Nodes of the rule for smooth functions, which then are series of Legendre polynomials."""
-RTOL = 1e-14
-"""Estimate above which the next rule is taken."""
-LIMIT = 1e-6
-"""Estimate above which the result of the last rule is refused."""
+"""Nodes of Gauss's rule for smooth functions, which then are series of Legendre polynomials."""
+RTOL, LIMIT = 1e-14, 1e-6
+"""Estimate above which the next rule is taken, and above which the last one is refused."""
 
 
-def _rule(step: float) -> tuple[Any, Any, Any]:
-    """Return nodes from 0 to 1 on the left, beside zeros; the same on the right; and weights.
+def _rule(step: float) -> tuple[Any, Any]:
+    """Return nodes from 0 to 1, and two rows of weights: for this step, and for twice that.
 
-    The two rows of weights are for this step and for twice that.
     Takahasi and Mori (1974), doi:10.2977/prims/1195192451: singular ends do not matter.
     """
     count = 2 * int(0.5 * LAST / step)
@@ -41,29 +43,24 @@ def _rule(step: float) -> tuple[Any, Any, Any]:
     decay = np.exp(-np.pi * np.sinh(t))
     nodes = 1.0 / (1.0 + decay)
     fine = step * np.pi * np.cosh(t) * nodes * decay / (1.0 + decay)
-    coarse = np.where(np.arange(t.size) % 2 == 0, 2.0 * fine, 0.0)
-    return _on_both_sides(nodes, fine, coarse)
+    return nodes, np.array((fine, np.where(np.arange(t.size) % 2 == 0, 2.0 * fine, 0.0)))
 
 
-def _gauss() -> tuple[Any, Any, Any]:
-    """Return Gauss's rule likewise, beside what it is without the last two terms of the series.
+def _gauss() -> tuple[Any, Any]:
+    """Return Gauss's rule likewise, beside itself without the last two terms of the Legendre series.
 
-    For an analytic function, the terms of the Legendre series fall geometrically, and the error is that of
-    the term of twice their order.
+    For an analytic function these terms fall geometrically, and the error is that of the term of twice their
+    order.
     """
     nodes, weights = legendre.leggauss(SMOOTH)
-    last = legendre.legvander(nodes, SMOOTH - 1)[:, -2:] @ (
-        2.0 * np.arange(SMOOTH - 2, SMOOTH) + 1.0
-    )
-    return _on_both_sides(0.5 + 0.5 * nodes, 0.5 * weights, 0.5 * weights * (1.0 - last))
-
-
-def _on_both_sides(nodes: Any, fine: Any, coarse: Any) -> tuple[Any, Any, Any]:
-    left, right = np.kron(np.eye(2), nodes)
-    return left, right, np.array((fine, coarse))
+    order = np.arange(SMOOTH - 2, SMOOTH)
+    last = legendre.legvander(nodes, SMOOTH - 1)[:, -2:] @ (2.0 * order + 1.0)
+    return 0.5 + 0.5 * nodes, 0.5 * weights * np.array((np.ones(SMOOTH), 1.0 - last))
 
 
 RULES = (_gauss(), *(_rule(COARSEST / 2**level) for level in range(LEVELS)))
+_SIDES = tuple((*np.kron(np.eye(2), nodes), weights) for nodes, weights in RULES)
+"""Nodes on the left, beside zeros; the same on the right; and weights."""
 
 
 def integral(
@@ -72,7 +69,7 @@ def integral(
     widths: tuple[Value, Value],
     smooth: bool = False,
 ) -> tuple[Value, Value]:
-    """Add the means of a positive function from 0 to either end, times the widths.
+    """Return the sum of the means of a positive function from 0 to either end, times the widths.
 
     If it is smooth, analytic at both ends of each interval, Gauss's rule is tried first.
 
@@ -86,7 +83,7 @@ def integral(
     """
     one, two = widths
     result, accuracy, active = 0.0, 0.0, one >= 0.0
-    for to_left, to_right, weights in RULES if smooth else RULES[1:]:
+    for to_left, to_right, weights in _SIDES if smooth else _SIDES[1:]:
         values = function(ends[0] * to_left + ends[1] * to_right)
         # Unlike a product of matrices, this sums in one order on every processor for any number of rows.
         sums = np.einsum("...j,kj->k...", values.reshape(*values.shape[:-1], 2, -1), weights)
@@ -125,8 +122,8 @@ def some(condition: Any) -> bool:
 def pick(condition: Any, chosen: Value, other: Value) -> Value:
     """Return one of two values, element by element.
 
-    Scenes that have converged stay unchanged while the rest of a column is iterated, so that no result
-    depends on the other scenes.
+    So converged scenes stay unchanged while the rest of a column is iterated, and no result depends on the
+    other scenes.
     """
     if isinstance(condition, np.ndarray):
         return np.where(condition, chosen, other)
@@ -140,10 +137,10 @@ def share_lost(friction: Value, lost: Value) -> Value:
 
 
 def power_bounds(contact: Any) -> dict[str, float]:
-    """Return d ln W/d ln delta and, where it is not known, the most that d ln/d ln delta can be of others.
+    """Return d ln W/d ln delta, and upper bounds of d ln/d ln delta where it is not known.
 
     At a given retardation length the friction coefficient changes no faster than the depth.
     """
     load = contact.depth * contact.load_slope / contact.load
-    others = {"friction_coefficient": 1.0, "dissipated_in_contact": 1.0}
-    return {"load": load, "friction_force": load + 1.0, **others}
+    bounds = load, load + 1.0, 1.0, 1.0
+    return dict(zip(SUMS, bounds, strict=True))

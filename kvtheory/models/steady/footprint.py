@@ -1,9 +1,8 @@
 r"""The footprint of a ball in steady sliding, and the line contact equivalent to it.
 
-In both limits of the velocity, a cylinder with the radius R of the ball has the forces of the ball if the
-half length of its contact at rest is (9 pi/32) a, with a that of the ball, and its width
-(4/3)(32/(9 pi))^2 a sqrt(R'/R) (derivation F20 with F1): two numbers satisfy four limits. In between the
-difference is small.
+At low and at high velocity a cylinder of the radius R has the forces of the ball if its half length at rest
+is (9 pi/32) a, with a that of the ball, and its width (4/3)(32/(9 pi))^2 a sqrt(R'/R) (derivations F20, F1):
+two numbers satisfy four limits. In between the difference is small.
 """
 
 import math
@@ -18,9 +17,8 @@ from kvtheory.results import SteadyState
 Array = NDArray[np.float64]
 
 SHORTER = 9.0 * math.pi / 32.0
-"""Its half length over that of the ball."""
 WIDTH = 4.0 / 3.0 / SHORTER**2
-"""Its width over the half width of the contact of the ball at rest."""
+"""Its half length over that of the ball, and its width over the ball's half width, both at rest."""
 LOAD_ERROR, FRICTION_COEFFICIENT_ERROR = 0.002, 0.0025
 """The largest differences relative to the ball, rounded up from 0.00192 and 0.00236."""
 
@@ -52,10 +50,9 @@ class Footprint:
         share = np.asarray(y, dtype=float) / self.half_width
         inside = np.abs(share) <= 1.0
         A = self.half_length * np.sqrt(np.where(inside, (1.0 - share) * (1.0 + share), np.nan))
-        l_r = abs(self.retardation_length)
-        side = -1.0 if self.retardation_length < 0.0 else 1.0
-        away = np.hypot(A, l_r) + l_r
-        return -side * A, side * A * (A / np.where(away > 0.0, away, 1.0))
+        l_r, side = abs(self.retardation_length), math.copysign(1.0, self.retardation_length)
+        beyond = np.hypot(A, l_r) + l_r
+        return -side * A, side * A * (A / np.where(beyond > 0.0, beyond, 1.0))
 
     def pressure(self, x: ArrayLike, y: ArrayLike) -> Any:
         """Return the pressure in Pa, zero outside; x and y broadcast.
@@ -65,11 +62,11 @@ class Footprint:
         >>> float(Footprint(1.0, 2.0, 1.0, 1.0, 0.5).pressure(-0.5, 0.0))
         1.25
         """
-        x, y = np.broadcast_arrays(np.asarray(x, dtype=float), np.asarray(y, dtype=float))
-        one, two = self.edges(y)
-        within = (x >= np.minimum(one, two)) & (x <= np.maximum(one, two))
-        bent = one * one - x * x - 2.0 * self.retardation_length * x
-        return np.where(within, 0.5 * self.stiffness / self.radius * bent, 0.0)
+        x = np.asarray(x, dtype=float)
+        leading, trailing = self.edges(y)
+        inside = (x >= np.minimum(leading, trailing)) & (x <= np.maximum(leading, trailing))
+        rise = leading * leading - x * x - 2.0 * self.retardation_length * x
+        return np.where(inside, 0.5 * self.stiffness / self.radius * rise, 0.0)
 
 
 class EquivalentLine(NamedTuple):
@@ -84,9 +81,9 @@ class EquivalentLine(NamedTuple):
 def equivalent_line(ball: SteadyState, stretch: float) -> EquivalentLine:
     """Return the line contact with the radius R equivalent to a ball in steady sliding.
 
-    `stretch` is sqrt(R'/R), 1 for a ball. Its friction coefficient is that of the ball, within
-    `FRICTION_COEFFICIENT_ERROR`, at every velocity if the depth is kept; under a dead weight depth and
-    width change with velocity.
+    `stretch` is sqrt(R'/R), 1 for a ball. The friction coefficient is that of the ball, within
+    `FRICTION_COEFFICIENT_ERROR`, at every velocity if the depth is kept; under a dead weight depth and width
+    change with velocity.
 
     >>> import kvtheory as kv
     >>> ball = kv.Scene(kv.Sphere("10 mm"), support=kv.DeadWeight(mass="1 kg"))

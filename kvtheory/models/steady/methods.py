@@ -1,9 +1,11 @@
-"""The methods of steady sliding, and the choice among them."""
+"""The methods of steady sliding, and how a formula is evaluated on a scene or on scenes of arrays."""
 
-from collections.abc import Callable, Mapping
+import math
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from kvtheory.models.steady import (
     asymptotes,
@@ -13,7 +15,6 @@ from kvtheory.models.steady import (
     power_law,
     viscoelastic,
 )
-from kvtheory.models.steady.blockwise import evaluate
 from kvtheory.results import STEADY_UNITS, Certificate, SteadyState, units_for
 from kvtheory.scene.capabilities import lacks_kelvin_voigt
 from kvtheory.scene.model import Scene
@@ -26,63 +27,63 @@ CLOSED: Mapping[str, Any] = {
 }
 """The closed forms on Kelvin-Voigt by shape; `kvtheory.scene.capabilities` lists the same shapes."""
 MOMENTS: Mapping[str, Any] = {"parabola": viscoelastic, "sphere": ball_viscoelastic}
-"""The shapes that need no more than the moments of the relaxation function, on any foundation."""
+"""The same on any foundation, by the moments of its relaxation function."""
 
-COLUMN = 256
-"""Scenes that are integrated at once: their nodes then fit into the second-level cache of a core."""
+BLOCK, COLUMN = 16384, 256
+"""Scenes evaluated together by formulas and by quadrature, so that intermediate arrays stay in the cache."""
 ROUNDING = 64 * 2.0**-52
 """Rounding error of an asymptote and of the exact state it is compared with, about twenty operations each."""
+
+QUANTITIES = tuple(STEADY_UNITS)
+ODD = "leading_edge", "trailing_edge", "friction_force", "friction_coefficient"
+"""Quantities that change their sign with the velocity."""
+ODD_ROWS = [QUANTITIES.index(name) for name in ODD]
+ZERO_AT_REST = "retardation_length", "friction_force", "friction_coefficient"
+SMALLEST = float(np.finfo(float).tiny)
+
+Array = NDArray[np.float64]
+Formula = Callable[[Scene], Sequence[Any]]
 
 
 def solve_exact(scene: Scene) -> SteadyState:
     """Evaluate the closed forms, or the moments of the relaxation function."""
     family = (MOMENTS if lacks_kelvin_voigt(scene) else CLOSED)[scene.indenter.shape]
-    return evaluate(
-        family.quantities,
-        scene,
-        family.HELD if scene.held else family.CARRIED,
-        family.OWN_ERRORS,
-        floats=family is exact,
-    )
+    parabola = family is exact
+    certificate = exact.HELD if parabola and scene.held else family.CERTIFICATE
+    return _evaluate(family.quantities, scene, certificate, family.OWN_ERRORS, floats=parabola)
 
 
 def solve_quadrature(scene: Scene) -> SteadyState:
     """Integrate the pressure of any indenter; a scene that fails fails the call."""
     from kvtheory.models.steady import quadrature  # slow to import
 
-    return evaluate(
-        quadrature.quantities,
-        scene,
-        quadrature.certificate(scene),
-        quadrature.OWN_ERRORS,
-        floats=True,
-        model="quadrature",
-        block=COLUMN,
+    certificate = quadrature.certificate(scene)
+    return _evaluate(
+        quadrature.quantities, scene, certificate, QUANTITIES, model="quadrature", block=COLUMN
     )
 
 
 def solve_asymptote(scene: Scene) -> SteadyState:
-    """Evaluate the asymptote of the regime of each velocity; the exact state tells its error."""
+    """Evaluate the asymptote of the regime of each velocity, with its error relative to the exact state."""
     truth, limits = solve_exact(scene), asymptotes.limits(scene)
     slow = np.abs(scene.drive.final_velocity) <= asymptotes.critical_velocity(scene)
-    with np.errstate(divide="ignore", invalid="ignore"):  # at V = 0 the high one is not chosen
+    with np.errstate(
+        divide="ignore", invalid="ignore"
+    ):  # the high-velocity limit at V = 0 is not used
         low, high = (asymptotes.quantities(scene, limit) for limit in limits)
-        lows, highs = (
+        low_error, high_error = (
             asymptotes.errors(scene, limit, values, truth)
             for limit, values in zip(limits, (low, high), strict=True)
         )
-    found: dict[str, Any] = {
-        name: plain(np.broadcast_to(np.where(slow, low[name], high[name]), scene.shape))
-        for name in STEADY_UNITS
-    }
-    wrong = {name: np.abs(np.where(slow, lows[name], highs[name])) for name in STEADY_UNITS}
-    certificate = Certificate(
-        truth.certificate.kind,
-        "asymptote over exact state, which is known to 1e-14",
-        {name: plain(error + ROUNDING * (1.0 + error)) for name, error in wrong.items()},
-    )
+    values, errors = {}, {}
+    for name in QUANTITIES:
+        values[name] = plain(np.broadcast_to(np.where(slow, low[name], high[name]), scene.shape))
+        error = np.abs(np.where(slow, low_error[name], high_error[name]))
+        errors[name] = plain(error + ROUNDING * (1.0 + error))
+    statement = "asymptote over exact state, which is known to 1e-14"
+    certificate = Certificate(truth.certificate.kind, statement, errors)
     units = units_for(scene.indenter, STEADY_UNITS)
-    return SteadyState(**found, model="asymptote", certificate=certificate, units=units)
+    return SteadyState(**values, model="asymptote", certificate=certificate, units=units)
 
 
 METHODS: dict[str, Callable[[Scene], SteadyState]] = {
@@ -90,6 +91,84 @@ METHODS: dict[str, Callable[[Scene], SteadyState]] = {
     "quadrature": solve_quadrature,
     "asymptote": solve_asymptote,
 }
+
+
+def _evaluate(
+    formula: Formula,
+    scene: Scene,
+    certificate: Certificate,
+    own_errors: tuple[str, ...],
+    *,
+    floats: bool = True,
+    model: str = "exact",
+    block: int | None = None,
+) -> SteadyState:
+    """Return the steady state that `formula` gives for a scene, or for each of its arrays.
+
+    The formula returns the quantities at |V|, in the order of `STEADY_UNITS`, and then the relative errors of
+    those in `own_errors`, which replace what the certificate says of them. It takes flat arrays, and floats
+    too if `floats` says so. `FloatingPointError` if a value leaves the range of double precision.
+    """
+    shape, V = scene.shape, scene.drive.final_velocity
+    with np.errstate(over="raise", divide="raise", invalid="raise", under="ignore"):
+        if shape:
+            flat = _blocks(formula, scene.flat(), len(own_errors), block or BLOCK)
+            rows: Any = flat.reshape(len(flat), *shape)
+        elif floats:
+            rows = [float(each) for each in formula(scene)]
+        else:
+            rows = [float(np.ravel(each)[0]) for each in formula(scene.at(np.array([V])))]
+    if not shape and V < 0.0:
+        _mirror(rows, -1.0)
+    values = rows[: len(QUANTITIES)]
+    if shape or not all(SMALLEST <= abs(each) < math.inf for each in values):
+        _check_range(np.asarray(values), V, own_errors)
+    errors = {
+        **certificate.relative_error,
+        **dict(zip(own_errors, rows[len(values) :], strict=True)),
+    }
+    certificate = Certificate(certificate.kind, certificate.statement, errors)
+    units = units_for(scene.indenter, STEADY_UNITS)
+    named: dict[str, Any] = dict(zip(QUANTITIES, values, strict=True))
+    return SteadyState(**named, model=model, certificate=certificate, units=units)
+
+
+def _blocks(formula: Formula, flat: Scene, own: int, block: int) -> Array:
+    """Return the rows of a formula for flat scenes, block by block."""
+    (size,) = flat.shape
+    result = np.empty((len(QUANTITIES) + own, size))
+    for start in range(0, size, block):
+        part = slice(start, start + block)
+        some = flat.rows(part)
+        for row, values in zip(result, formula(some), strict=True):
+            row[part] = values
+        backwards = some.drive.final_velocity < 0.0
+        if np.any(backwards):
+            _mirror(result[:, part], np.where(backwards, -1.0, 1.0))
+    return result
+
+
+def _mirror(rows: Any, side: Any) -> None:
+    """Give the odd rows the sign of the velocity: a reversed drive is the mirror image."""
+    for row in ODD_ROWS:
+        rows[row] = side * rows[row] + 0.0  # no negative zero
+
+
+def _check_range(values: Array, velocity: Any, own_errors: tuple[str, ...]) -> None:
+    """Raise if a value is not finite, or lost digits below the smallest normal number.
+
+    Zero is correct only at rest, or where the value has its own error, which then says so.
+    """
+    size = np.abs(values)
+    if not size.size or (size.min() >= SMALLEST and size.max() < math.inf):
+        return
+    lost = size < SMALLEST
+    lost[[QUANTITIES.index(name) for name in ZERO_AT_REST]] &= velocity != 0.0
+    lost[[QUANTITIES.index(name) for name in own_errors]] = False
+    for wrong, what in ((~np.isfinite(values), "overflow"), (lost, "underflow")):
+        if wrong.any():
+            row = wrong.reshape(len(values), -1).any(axis=1).argmax()
+            raise FloatingPointError(f"{what} in {QUANTITIES[int(row)]}")
 
 
 def plain(array: Any) -> Any:

@@ -1,8 +1,8 @@
 r"""Steady sliding of a power law h = slope |x|^n/(n L^(n-1)) and of a wedge, n = 1: closed forms, one root.
 
-Lengths are scaled by the half length a = L (n delta/(slope L))^(1/n) of the stationary contact, so that n
-and l = l_r/a determine the contact (derivations "F19" and "wedge"). For an indenter that can move, the depth
-follows from the balance of forces in units of the static state,
+Lengths are scaled by the half length a = L (n delta/(slope L))^(1/n) of the contact at rest, so that n
+and l = l_r/a determine the contact (derivations "F19" and "wedge"). An indenter that can move finds its depth
+from the balance of forces in units of the static state,
 
     f(s) + kappa (s^n - 1) = 1,    s = a/a_0 in (0, 1],    d = delta/delta_0 = s^n,
 
@@ -15,21 +15,18 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from kvtheory.models.steady.power_law_contact import edge_sensitivity, root, shape_of, trailing_edge
+from kvtheory.models.steady.power_law_contact import root, shape_of, trailing_edge
 from kvtheory.results import STEADY_UNITS, Certificate
 from kvtheory.scene.model import Scene
 from kvtheory.theory import closed_forms as cf
 
 Array = NDArray[np.float64]
 
-MOST_STEPS = 40
-"""Most iterations; three to six are needed."""
-LAST_STEP = 1e-8
-"""After a step as small as this the error, of the order of its square, is below rounding."""
-
+MOST_STEPS, LAST_STEP = 40, 1e-8
+"""Most iterations, of which three to six are needed; after a step as small as this the error, of the order of
+its square, is below rounding."""
 RELATIVE_ERROR = 36 * float(np.finfo(float).eps)
 """8.0e-15, twice the worst that the comparison with more than 50 digits has shown."""
-
 CERTIFICATE = Certificate(
     kind="estimated",
     statement="closed forms and well-conditioned roots in double precision; twice the worst difference "
@@ -37,13 +34,11 @@ CERTIFICATE = Certificate(
     "The trailing edge is less certain by d ln x_TE/d ln V, which grows as 1/(n - 1) for n close to 1",
     relative_error=dict.fromkeys(STEADY_UNITS, RELATIVE_ERROR),
 )
-HELD = CARRIED = CERTIFICATE
-"""At a depth, and at a load."""
 OWN_ERRORS = ("trailing_edge",)
 
 
 def quantities(scene: Scene) -> tuple[Any, ...]:
-    """Return the quantities in the order of `STEADY_UNITS`, and the error of the trailing edge.
+    """Return the quantities at |V| in the order of `STEADY_UNITS`, and the error of the trailing edge.
 
     W = K delta a w, F = K delta^2 phi and so on (derivation F19).
 
@@ -52,16 +47,34 @@ def quantities(scene: Scene) -> tuple[Any, ...]:
     >>> print(f"mu = {found[7][0]:.6f}, x_TE = {found[4][0]:.6g}")
     mu = 0.100000, x_TE = 0
     """
-    K, V, support = scene.foundation.stiffness, scene.drive.final_velocity, scene.support
-    l_r = np.abs(V) * scene.foundation.retardation_time
-    # NumPy takes a power otherwise where one exponent stands for all than where each has its own.
+    K, support = scene.foundation.stiffness, scene.support
+    l_r = np.abs(scene.drive.final_velocity) * scene.foundation.retardation_time
+    # Full arrays: NumPy rounds a power differently where one exponent stands for all.
     slope, L, n = (np.array(np.broadcast_to(x, scene.shape)) for x in shape_of(scene.indenter))
     if scene.held:
-        return _contact(n, K, l_r, V, support.depth, L * root(n * support.depth / (slope * L), n))
-    a_0 = L * root((n + 1.0) * (support.weight / K) / (2.0 * slope * L * L), n + 1.0)
-    delta_0 = support.weight / (K * a_0 * cf.power_law_static_load(n))  # F19-low
-    s, depth = scaled_root(n, l_r / a_0, support.spring * (delta_0 / support.weight))
-    return _contact(n, K, l_r, V, depth * delta_0, s * a_0)
+        delta = support.depth
+        a = L * root(n * delta / (slope * L), n)
+    else:
+        a_0 = L * root((n + 1.0) * (support.weight / K) / (2.0 * slope * L * L), n + 1.0)
+        delta_0 = support.weight / (K * a_0 * cf.power_law_static_load(n))  # F19-low
+        s, depth = scaled_root(n, l_r / a_0, support.spring * (delta_0 / support.weight))
+        delta, a = depth * delta_0, s * a_0
+    l = l_r / a
+    q, Q = trailing_edge(n, l)
+    pressure, x_te = K * delta, a * q
+    return (
+        delta,
+        a,
+        l_r,
+        -a,
+        x_te,
+        pressure * a * cf.power_law_load(n, l, q, Q),
+        pressure * delta * cf.power_law_friction_force(n, l, q, Q),
+        (delta / a) * cf.power_law_friction_coefficient(n, l, q, Q),
+        pressure * cf.power_law_peak_pressure(n, l),
+        cf.power_law_dissipated_in_contact(n, l, q, Q),
+        _edge_error(n, l, q, Q, x_te),
+    )
 
 
 def scaled_root(exponent: Array, drive_number: Array, support_number: Array) -> tuple[Array, Array]:
@@ -86,40 +99,19 @@ def scaled_root(exponent: Array, drive_number: Array, support_number: Array) -> 
         active &= np.abs(step) > LAST_STEP
         if not active.any():
             break
-    wedge = _wedge_root(lam, kappa)
+    peeling = lam * (1.5 * lam + kappa) < whole  # of a wedge; then lam < 1
+    slow = cf.wedge_scaled_depth_peeling(kappa, np.minimum(lam, 1.0))
+    wedge = np.where(peeling, slow, cf.wedge_scaled_depth_peeled(kappa, lam))
     return np.where(n > 1.0, s, wedge), np.where(n > 1.0, depth, wedge)
 
 
-def _wedge_root(lam: Array, kappa: Array) -> Array:
-    peeling = lam * (1.5 * lam + kappa) < 1.0 + kappa  # then lam < 1
-    slow = cf.wedge_scaled_depth_peeling(kappa, np.minimum(lam, 1.0))
-    return np.where(peeling, slow, cf.wedge_scaled_depth_peeled(kappa, lam))
-
-
-def _contact(n: Array, K: Array, l_r: Array, V: Array, delta: Array, a: Array) -> tuple[Array, ...]:
-    """Return the quantities in the order of `STEADY_UNITS`, and the error of the trailing edge."""
-    l = l_r / a
-    q, Q = trailing_edge(n, l)
-    side = np.where(V < 0.0, -1.0, 1.0)  # a reversed drive is the mirror image
-    pressure, x_te = K * delta, a * q
-    return (
-        delta,
-        a,
-        l_r,
-        -side * a,
-        side * x_te + 0.0,  # no negative zero
-        pressure * a * cf.power_law_load(n, l, q, Q),
-        side * pressure * delta * cf.power_law_friction_force(n, l, q, Q),
-        side * (delta / a) * cf.power_law_friction_coefficient(n, l, q, Q),
-        pressure * cf.power_law_peak_pressure(n, l),
-        cf.power_law_dissipated_in_contact(n, l, q, Q),
-        _edge_error(n, l, q, Q, x_te),
-    )
-
-
 def _edge_error(n: Array, l: Array, q: Array, Q: Array, x_te: Array) -> Array:
-    """Return the relative error of the trailing edge: none at the tip of a wedge, all below the range."""
-    amplified = RELATIVE_ERROR * (1.0 + edge_sensitivity(n, l, q, Q))
+    """Return the relative error of the trailing edge: none at the tip of a wedge, infinite below the range.
+
+    An error of l is amplified by -d ln q/d ln l, below 1/(n - 1) and l/q for a wedge.
+    """
+    with np.errstate(divide="ignore", invalid="ignore"):
+        amplified = RELATIVE_ERROR * (1.0 + n * l * Q / ((n - 1.0) + q * Q))
     at_tip = (n == 1.0) & (l > 1.0 + RELATIVE_ERROR)
     lost = x_te < np.finfo(float).tiny
     return np.where(at_tip, 0.0, np.where(lost, np.inf, amplified))

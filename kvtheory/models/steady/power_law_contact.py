@@ -18,10 +18,9 @@ from kvtheory.scene.indenters import Parabola, Wedge
 
 Array = NDArray[np.float64]
 
-MOST_STEPS = 80
-"""Most iterations; about seven are needed, and ln(1/(n - 1)) more if n is close to 1."""
-LAST_STEP = 1e-8
-"""After a step as small as this the error, its square, is below rounding."""
+MOST_STEPS, LAST_STEP = 80, 1e-8
+"""Most iterations; about seven are needed, and ln(1/(n - 1)) more if n is close to 1. After a step as small
+as this the error, its square, is below rounding."""
 LAST_RESIDUAL = 8 * 2.0**-52
 """Rounding of the residual, below which iteration does not improve it."""
 
@@ -48,8 +47,6 @@ def trailing_edge(exponent: Array, number: Array) -> tuple[Array, Array]:
     For n = 1, the wedge, q = max(0, 1 - l) and Q is its limit, min(1, 1/l). Where q is below the range
     of double precision it is 0, and Q is still correct.
 
-    Examples
-    --------
     >>> q, Q = trailing_edge(np.array([2.0, 1.0, 1.0]), np.array([0.75, 0.25, 4.0]))
     >>> q.round(12).tolist(), Q.round(12).tolist()
     ([0.5, 0.75, 0.0], [0.5, 1.0, 0.25])
@@ -57,39 +54,23 @@ def trailing_edge(exponent: Array, number: Array) -> tuple[Array, Array]:
     c, m = exponent * number, exponent - 1.0
     with np.errstate(divide="ignore", over="ignore", invalid="ignore"):
         start = np.where(c > 1.0, c ** (-1.0 / m), 1.0)
-        q = _descend(np.where(m > 0.0, start, 0.0), c, m)
+        active = (m > 0.0) & (start >= np.finfo(float).tiny)  # below, the digits are lost already
+        q = np.where(active, start, 0.0)
+        for _ in range(MOST_STEPS):
+            residual = np.log(q**m * (q + c))
+            step = np.where(active, residual / (m + q / (q + c)), 0.0)
+            q = q * np.exp(-step)
+            # Each is iterated separately, so that the result does not depend on the others in the array.
+            active &= (np.abs(step) > LAST_STEP) & (np.abs(residual) > LAST_RESIDUAL)
+            if not active.any():
+                break
         q = np.where(m > 0.0, q, np.maximum(0.0, 1.0 - number))
         return q, 1.0 / (q + c)
-
-
-def _descend(q: Array, c: Array, m: Array) -> Array:
-    active = q >= np.finfo(float).tiny  # below, the digits are lost already
-    q = np.where(active, q, 0.0)
-    for _ in range(MOST_STEPS):
-        residual = np.log(q**m * (q + c))
-        step = np.where(active, residual / (m + q / (q + c)), 0.0)
-        q = q * np.exp(-step)
-        # Each is iterated separately, so that the result does not depend on the others in the array.
-        active &= (np.abs(step) > LAST_STEP) & (np.abs(residual) > LAST_RESIDUAL)
-        if not active.any():
-            break
-    return q
-
-
-def edge_sensitivity(exponent: Array, number: Array, q: Array, Q: Array) -> Array:
-    """Return -d ln q/d ln l, the factor from the relative error of l to that of q.
-
-    It is below 1/(n - 1); for a wedge it is l/q.
-    """
-    with np.errstate(divide="ignore", invalid="ignore"):
-        return exponent * number * Q / ((exponent - 1.0) + q * Q)
 
 
 def root(base: Array, degree: Array) -> Array:
     """Return base^(1/degree), with a Newton step that corrects the rounding of 1/degree.
 
-    Examples
-    --------
     >>> float(root(np.array(1000.0), np.array(3.0)))
     10.0
     """

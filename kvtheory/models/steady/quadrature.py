@@ -20,90 +20,71 @@ every load is carried at one depth, and the depth is relatively no less accurate
 """
 
 import math
-from functools import partial
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 
 from kvtheory.models.steady.asperities import AnyLine
-from kvtheory.models.steady.cells import Surface
+from kvtheory.models.steady.cells import ConvexProfile, Surface
 from kvtheory.models.steady.contact import ConvexLine
 from kvtheory.models.steady.convolution import ViscoelasticLine, memory_of
 from kvtheory.models.steady.double_exponential import ROUNDING, Value, largest, pick, some
-from kvtheory.models.steady.profile_series import ConvexProfile
 from kvtheory.models.steady.revolved import Strips
 from kvtheory.results import STEADY_UNITS, Certificate
 from kvtheory.results.errors import QuadratureError
 from kvtheory.scene.capabilities import lacks_kelvin_voigt, lacks_quadrature
 from kvtheory.scene.model import Scene
 
-UNBALANCED = 1e-6
-"""Relative error of the load carried above which the result is refused."""
-MARGIN = 2.0
-"""Safety factor on errors propagated by derivatives, which hold for small errors."""
+UNBALANCED, MARGIN = 1e-6, 2.0
+"""Relative error of the load above which a result is refused; safety factor on errors propagated by
+derivatives, which hold for small errors."""
 MOST_STEPS = 200
 """Trial depths; they are a handful unless the reach or the beginning of another contact is close."""
-LAST_STEP = {True: 1e-5, False: 3e-8}
-"""Step of the depth, over the depth, after which a cubic method has converged, and a quadratic one."""
-ULPS = 2.0**-49
-"""The least relative step of the depth."""
-SHALLOWER = 8.0
-"""A depth without a solution is divided by this, if none is known to be too shallow."""
-NARROW = 1e-9
-"""It also ends this close, over the depth, between one without a solution and one too shallow."""
-SHALLOWEST = 1e-12
-"""Share of the first trial depth below which the search ends."""
+LAST_STEP, ULPS = {True: 1e-5, False: 3e-8}, 2.0**-49
+"""Relative step of the depth after which a cubic and a quadratic method have converged; the least step."""
+SHALLOWER, SHALLOWEST, NARROW = 8.0, 1e-12, 1e-9
+"""A depth without a solution is divided by the first, if none is known to be too shallow. The search ends at
+this share of the first trial depth, and this close between one without a solution and one too shallow."""
 
-ODD = {"leading_edge", "trailing_edge", "friction_force", "friction_coefficient"}
-"""Quantities that change their sign with the velocity."""
-FORCES = {"load", "friction_force", "peak_pressure"}
+FORCES = "load", "friction_force", "peak_pressure"
 """Quantities proportional to the stiffness."""
-OWN_ERRORS = tuple(STEADY_UNITS)
 
-OF_LINES = (
+LINE = (
     "error estimates of the quadratures and tolerances of the roots, carried to each quantity by its "
-    "derivative to the depth; for shapes computed to a few units in the last place"
+    "derivative with respect to the depth; for shapes computed to a few units in the last place"
 )
-OF_ANY_SHAPE = (
-    f"{OF_LINES}, smooth between the kinks that they name, without details that are narrower than "
+ANY_SHAPE = (
+    f"{LINE}, smooth between the kinks that they name, without details that are narrower than "
     "1/100 of the contact or of their distance from the lowest point, or a million times its length "
     "away; all contacts are summed"
 )
-OF_CONVOLUTION = (
+CONVOLUTION = (
     "differences of two double-exponential rules, for the memory and for the contact, carried to each "
     "quantity; for shapes computed to a few units in the last place"
 )
-OF_STRIPS = (
-    "quadrature over strips, each by {}; the estimate compares two rules, and what the strips "
-    "estimate of themselves"
-)
+STRIPS = "two rules compared over strips, and the estimate of each strip, by {}"
 
 
 def certificate(scene: Scene) -> Certificate:
-    """Return what the errors of a scene rest on."""
+    """Return the certificate of a scene, without errors."""
     remembers = bool(lacks_kelvin_voigt(scene))
     if not scene.indenter.per_width:
-        text = OF_STRIPS.format("convolution" if remembers else "its own quadrature")
+        text = STRIPS.format("convolution" if remembers else "its own quadrature")
     elif remembers:
-        text = OF_CONVOLUTION
+        text = CONVOLUTION
     else:
-        text = OF_LINES if scene.indenter.convex else OF_ANY_SHAPE
+        text = LINE if scene.indenter.convex else ANY_SHAPE
     return Certificate("estimated", text, {})
 
 
 def quantities(scene: Scene) -> tuple[Any, ...]:
-    """Return the quantities in the order of `STEADY_UNITS`, and the relative error of each.
+    """Return the quantities at |V| in the order of `STEADY_UNITS`, and the relative error of each.
 
     Scenes of arrays are solved in columns where the shape is a convex line on Kelvin-Voigt, else one by one.
+    `QuadratureError` if a quadrature or a root fails, contact or load go beyond the reach of the indenter,
+    or a callable shape is not smooth where it touches.
 
-    Raises
-    ------
-    QuadratureError
-        If a quadrature or a root fails, the contact goes beyond the indenter's reach, no depth within the
-        reach carries the load, or a callable shape is not smooth where it touches.
-
-    Examples
-    --------
     >>> found = quantities(Scene.table1("fixed"))
     >>> print(", ".join(f"{value:.6g}" for value in found[4:8]))
     0.00029563, 35344.6, 5344.58, 0.151214
@@ -112,22 +93,23 @@ def quantities(scene: Scene) -> tuple[Any, ...]:
     if size and indenter.convex and indenter.per_width and not lacks_kelvin_voigt(scene):
         scene = scene.mapped(lambda x: x[:, None])
     elif size:
-        rows = [scene.mapped(partial(_item, index=i)) for i in range(*size)]
+        rows = [scene.mapped(lambda x, i=i: float(x[i])) for i in range(*size)]  # type: ignore[misc]
         return tuple(np.transpose([quantities(row) for row in rows]))
-    support, V = scene.support, scene.drive.final_velocity
-    l_r = abs(V) * scene.foundation.retardation_time  # Eq. 29
-    K, V, l_r, load, spring, depth = (
+    support = scene.support
+    l_r = abs(scene.drive.final_velocity) * scene.foundation.retardation_time  # Eq. 29
+    K, l_r, load, spring, depth = (
         np.broadcast_to(x, scene.shape) if scene.shape else x
-        for x in (scene.foundation.stiffness, V, l_r, support.weight, support.spring, support.depth)
+        for x in (scene.foundation.stiffness, l_r, support.weight, support.spring, support.depth)
     )
     with np.errstate(all="ignore"):
-        line = _line(scene, l_r)
+        line_at = _lines(scene)
         if scene.held:
+            line = line_at(l_r)
             contact, depth_error = line.at(depth), 0.0 * depth
         else:
-            contact, depth_error = _carrying(line, load / K, spring / K)
+            line, contact, depth_error = _carrying(line_at, l_r, load / K, spring / K)
         values, own, powers = line.quantities(contact)
-        values["depth"], values["retardation_length"] = contact.depth, l_r
+        values |= {"depth": contact.depth, "retardation_length": l_r}
         values["friction_coefficient"] = values["friction_force"] / values["load"]
         own.setdefault("friction_coefficient", own["load"] + own["friction_force"])
         own.setdefault("dissipated_in_contact", own["friction_force"])
@@ -137,56 +119,54 @@ def quantities(scene: Scene) -> tuple[Any, ...]:
             name: own.get(name, 0.0) + line.floor + noise * abs(power)
             for name, power in powers.items()
         }
-    errors["depth"], errors["retardation_length"] = depth_error, ROUNDING
-    side = 1.0 - 2.0 * (V < 0.0)
-    for name in ODD:
-        values[name] = side * values[name] + 0.0  # no negative zero
+    errors |= {"depth": depth_error, "retardation_length": ROUNDING}
     for name in FORCES:
         values[name] = K * values[name]
     found = [each[name] for each in (values, errors) for name in STEADY_UNITS]
     return tuple(np.broadcast_to(x, scene.shape).ravel() if size else x for x in found)
 
 
-def _item(values: Any, index: int) -> float:
-    return float(values[index])
-
-
-def _line(scene: Scene, l_r: Value) -> Any:
-    """Return the method for the shape and the foundation of a scene."""
+def _lines(scene: Scene) -> Callable[[Value], Any]:
+    """Return the method for the shape and the foundation of a scene, as a function of l_r (0 for rest)."""
     indenter: Any = scene.indenter
     shape = indenter if indenter.per_width else indenter.profile
     if lacking := lacks_quadrature(scene):
         raise QuadratureError(lacking)
-    remembers = lacks_kelvin_voigt(scene)
+    memory = memory_of(scene) if (remembers := lacks_kelvin_voigt(scene)) else None
     if not shape.convex:  # it may differ ahead and behind; a body of revolution does not
         side = -1.0 if indenter.per_width and scene.drive.final_velocity < 0.0 else 1.0
         shape = ConvexProfile(shape, side) if remembers else Surface(shape, side)
-    if remembers:
-        line: Any = ViscoelasticLine(shape, memory_of(scene), l_r)
-    else:
-        line = (AnyLine if isinstance(shape, Surface) else ConvexLine)(shape, l_r)
-    return line if indenter.per_width else Strips(indenter, line)
+
+    def line_at(l_r: Value) -> Any:
+        if remembers:
+            line: Any = ViscoelasticLine(shape, memory if l_r else None, l_r)
+        else:
+            line = (AnyLine if isinstance(shape, Surface) else ConvexLine)(shape, l_r)
+        return line if indenter.per_width else Strips(indenter, line)
+
+    return line_at
 
 
-def _carrying(line: Any, load: Value, spring: Value) -> tuple[Any, Value]:
-    """Return the contact that carries a load, on a spring or without, and the error of its depth.
+def _carrying(line_at: Any, l_r: Value, load: Value, spring: Value) -> tuple[Any, Any, Value]:
+    """Return the line, its contact that carries a load, on a spring or without, and the error of the depth.
 
     The spring is relaxed at the static depth. d ln W/d ln delta >= 1: the depth is no less accurate than the
     load.
     """
     relaxed_error = 0.0
     if largest(spring) > 0.0:
-        rest = _contact(line.at_rest(), load, 0.0 * spring)
+        rest = _contact(line_at(0.0 * l_r), load, 0.0 * spring)
         relaxed = spring * rest.depth
         relaxed_error = relaxed * (rest.load_error + abs(rest.load / load - 1.0) + ROUNDING)
         load = load + relaxed
+    line = line_at(l_r)
     contact = _contact(line, load, spring)
     carried = contact.load + spring * contact.depth
     error = (contact.load * contact.load_error + relaxed_error) / load
     error = error + abs(carried / load - 1.0) + ROUNDING
     if not largest(error) < UNBALANCED:
         raise QuadratureError("load balance not converged")
-    return contact, error
+    return line, contact, error
 
 
 def _contact(line: Any, load: Value, spring: Value) -> Any:

@@ -11,9 +11,8 @@ nothing: strips beyond `RIM` are omitted. The middle plane gives the edges and t
 """
 
 import math
-from dataclasses import dataclass
 from itertools import pairwise
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.polynomial.legendre import leggauss
@@ -22,6 +21,7 @@ from numpy.typing import NDArray
 from kvtheory.models.steady.double_exponential import (
     RULES,
     SMALLEST,
+    SUMS,
     Quantities,
     power_bounds,
     share_lost,
@@ -42,17 +42,13 @@ NARROWEST = 1e-6
 """Half width of the narrowest strip that is sought, over that of the contact."""
 GAUSS = tuple((0.5 + 0.5 * s, 0.5 * w) for s, w in zip(*leggauss(4), strict=True))
 
-LEAST = 5.0
-"""Smallest relative error of a sum, over that of a strip."""
-SHARP = 4e-12
-"""Smallest error for a profile with a kink, whose strips next to the middle plane have a sharp tip."""
-RTOL = {True: 1e-12, False: 1e-9}
-"""Estimate above which the next rule is taken."""
-LIMIT = 1e-6
-"""Estimate above which the result of the last rule is refused."""
+LEAST, SHARP = 5.0, 4e-12
+"""Smallest relative error of a sum, over that of a strip, and for a profile with a kink, whose strips next to
+the middle plane have a sharp tip."""
+RTOL, LIMIT = {True: 1e-12, False: 1e-9}, 1e-6
+"""Estimates above which the next rule is taken, and above which the last one is refused."""
 MARGIN = 4.0
-"""Factor on the ratio of the last two differences, by which the next one is foreseen."""
-SUMS = ("load", "friction_force", "friction_coefficient", "dissipated_in_contact")
+"""Safety factor on the ratio of the last two differences, which estimates the next one."""
 BESIDE = 1e-9
 """Share of a radius at which the slopes on both sides of a kink are taken, to see where strips change."""
 
@@ -63,7 +59,7 @@ class Strip:
     def __init__(self, profile: Any, y: Any, reach: float, nearest: float) -> None:
         self.profile, self.y, self.convex = profile, y, profile.convex
         self.nearest = nearest
-        """Half width of a contact from which on one that is evaluated is sought."""
+        """Half width of a contact at which the search for one begins."""
         self.lowest = profile.height(y)
         radii = [kink for kink in profile.kinks if kink > 0.0]
         self.clear = np.min([y, *(abs(kink - y) for kink in radii)], axis=0)
@@ -93,29 +89,19 @@ class Strip:
         return 1.0 + (self.profile.bend(rho) - 1.0) * (x / rho) ** 2
 
 
-@dataclass(frozen=True)
-class Contact:
-    """The sums over the strips of a contact, over the stiffness, and its middle plane."""
+class Contact(NamedTuple):
+    """The middle plane of a contact, and the sums over its strips, over the stiffness."""
 
     middle: Any
+    depth: float
+    noise: float
     load: float
     load_slope: float
     friction: float
     lost: float
-    load_error: float
-    """Relative, of every sum."""
+    load_error: float  # relative, of every sum
     load_curvature: None = None
     guess: tuple[()] = ()
-
-    @property
-    def depth(self) -> float:
-        """The indentation depth."""
-        return float(self.middle.depth)
-
-    @property
-    def noise(self) -> float:
-        """Relative error of the depth equivalent to rounding."""
-        return float(self.middle.noise)
 
 
 class Strips:
@@ -125,10 +111,6 @@ class Strips:
         self.indenter, self.line, self.l_r = indenter, line, line.l_r
         self.profile: Any = indenter.profile
         self.deepest, self.floor = line.deepest, line.floor
-
-    def at_rest(self) -> "Strips":
-        """Return the same at zero velocity."""
-        return Strips(self.indenter, self.line.at_rest())
 
     def first(self, load: float, spring: float) -> tuple[float, tuple[()]]:
         """Return about the depth at a load: that of a ball as blunt as the profile."""
@@ -140,8 +122,10 @@ class Strips:
         middle, convex = self.line.at(depth), self.profile.convex
         half, rim = middle.half_length, RIM[convex]
         pieces = list(pairwise([0.0, *self._breaks(depth, half), 0.5 * math.pi]))
-        for number in range(1 + convex, len(RULES)):
-            nodes, rule = _rule(number)
+        for nodes, (fine, _) in RULES[1 + convex :]:
+            # Weights of the rule, and of those of twice and four times its step.
+            every = np.array([[1], [2], [4]])
+            rule = fine * np.where((np.arange(fine.size) - fine.size // 2) % every == 0, every, 0)
             t = np.concatenate([start + (end - start) * nodes for start, end in pieces])
             weights = np.concatenate([(end - start) * rule for start, end in pieces], axis=1)
             kept = np.cos(t) > rim
@@ -149,8 +133,7 @@ class Strips:
             y = half * np.maximum(np.sin(t), MIDDLE)
             deep = np.maximum(depth - self.profile.height(y), SMALLEST)
             weights *= 2.0 * half * self.indenter.stretch * np.cos(t)
-            rows = self._rows(y, deep)
-            each = np.einsum("ij,kj->ik", rows, weights)
+            each = np.einsum("ij,kj->ik", self._rows(y, deep), weights)
             sums = np.maximum(each[[0, 2]], SMALLEST)
             last, before = (np.abs(np.diff(each)[[0, 2]]) / sums[:, :1]).max(axis=0).tolist()
             # An analytic integrand squares its error with each rule; any other one divides it.
@@ -164,7 +147,8 @@ class Strips:
             )
         error += SHARP if self.profile.kinks else LEAST * self.floor
         load, slope, friction, lost = each[:4, 0].tolist()
-        return Contact(middle, load, slope, friction, lost, error)
+        noise = float(middle.noise)
+        return Contact(middle, middle.depth, noise, load, slope, friction, lost, error)
 
     def _rows(self, y: Array, depth: Array) -> Array:
         """Return load, its slope, friction, what is lost, and the errors of load and friction of strips."""
@@ -178,10 +162,8 @@ class Strips:
         line = self.line.strips(Strip(self.profile, y, self.line.reach, nearest))
         contact = line.at(depth)
         friction, lost, error = line.friction(contact)
-        load = contact.load
-        return np.array(
-            [load, contact.load_slope, friction, lost, load * contact.load_error, friction * error]
-        )
+        errors = contact.load * contact.load_error, friction * error
+        return np.array([contact.load, contact.load_slope, friction, lost, *errors])
 
     def _breaks(self, depth: float, half: float) -> list[float]:
         """Return t of the strips that touch a kink of the profile, or whose pressure vanishes there."""
@@ -195,10 +177,6 @@ class Strips:
                 breaks |= {math.asin(kink / half * math.sqrt(1.0 - share**2)) for share in shares}
         return sorted(breaks)
 
-    def friction(self, contact: Contact) -> tuple[float, float, float]:
-        """Return the friction over K, the part of it lost in the contact, and the relative error."""
-        return contact.friction, contact.lost, contact.load_error
-
     def quantities(self, contact: Contact) -> Quantities:
         """Return quantities over the stiffness, their errors at this depth, and d ln/d ln delta."""
         values, own, powers = self.line.quantities(contact.middle)
@@ -206,11 +184,3 @@ class Strips:
         values["dissipated_in_contact"] = share_lost(contact.friction, contact.lost)
         own |= dict.fromkeys(SUMS, contact.load_error)
         return values, own, powers | power_bounds(contact)
-
-
-def _rule(number: int) -> tuple[Array, Array]:
-    """Return nodes from 0 to 1, and weights of the rule, of its half and of its quarter."""
-    nodes, _, weights = RULES[number]
-    count, every = weights.shape[1], np.array([[1], [2], [4]])
-    taken = (np.arange(count) - count // 2) % every == 0
-    return nodes[:count], weights[0] * np.where(taken, every, 0)

@@ -1,8 +1,8 @@
 r"""Steady sliding of a parabola on any linear viscoelastic foundation: one scalar root.
 
-An element that has travelled a distance X in the contact has been compressed at the rate u' = (a - X)/R, so
-that p = int G((X - X')/V) u' dX'. The length c of the contact and the moments P, Q, D, E of the relaxation
-function over it (`kvtheory.theory.laws`) hold the whole steady state (theorem F17): with A = P + Q and
+At a distance X behind the leading edge an element is compressed at the rate u' = (a - X)/R, so that
+p = int G((X - X')/V) u' dX'. The length c of the contact and the moments P, Q, D, E of the relaxation
+function over it (`kvtheory.theory.laws`) give the whole steady state (theorem F17): with A = P + Q and
 eta = (P - Q)/(2 A)
 
     a = c P/A,   x_TE = c Q/A,   W = (c^3/R) (D + eta P),   F = (c^4/R^2) (E + eta^2 P).
@@ -19,7 +19,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from kvtheory.models.steady.blockwise import converge, cube_root
+from kvtheory.models.steady.roots import converge, cube_root
 from kvtheory.results import STEADY_UNITS, Certificate
 from kvtheory.scene.foundations import Foundation, FractionalKelvinVoigt
 from kvtheory.scene.model import Scene
@@ -27,10 +27,8 @@ from kvtheory.theory.laws import RELATIVE_ERROR, Fractional, Law, Moments, Prony
 
 Array = NDArray[np.float64]
 
-MOST_STEPS = 12
-"""Most iterations; three to six are needed."""
-LAST_STEP = 1e-6
-"""A step as small as this leaves an error of its cube."""
+MOST_STEPS, LAST_STEP = 12, 1e-6
+"""Most iterations, of which three to six are needed; a step as small as this leaves an error of its cube."""
 PEAK_STEP, PEAK_STEPS = 1e-8, 80
 """Tolerance and steps for the position of the peak, whose value has an error of second order; bisection alone
 would need as many steps."""
@@ -41,8 +39,6 @@ CERTIFICATE = Certificate(
     "over ten decades of relaxation times, and of fractional orders",
     relative_error=dict.fromkeys(STEADY_UNITS, RELATIVE_ERROR),
 )
-HELD = CARRIED = CERTIFICATE
-"""At a depth, and at a load."""
 OWN_ERRORS = ("dissipated_in_contact",)
 
 
@@ -63,9 +59,9 @@ def law(scene: Scene) -> Law:
 
 
 def quantities(scene: Scene) -> tuple[Any, ...]:
-    """Return the quantities in the order of `STEADY_UNITS`, and the error of the last one.
+    """Return the quantities at |V| in the order of `STEADY_UNITS`, and the error of the last one.
 
-    Kelvin-Voigt is the springpot of order 1, and an arm that is stiff and fast:
+    Kelvin-Voigt is the springpot of order 1, and a stiff, fast arm:
 
     >>> from kvtheory.scene import GeneralizedMaxwell
     >>> springpot = Scene(foundation=FractionalKelvinVoigt([1e10], 0.1, 1.0))
@@ -78,33 +74,17 @@ def quantities(scene: Scene) -> tuple[Any, ...]:
 
 
 def contact_length(scene: Scene, row: Law) -> Array:
-    """Return the length of the contact, on every support."""
-    support, R = scene.support, scene.indenter.radius
-    if scene.held:
-        return length_at_half(row, np.broadcast_to(np.sqrt(2.0 * R * support.depth), scene.shape))
-    return _length_at_load(row, R, support.weight, support.spring)
+    """Return the length of the contact, on every support.
 
-
-def length_at_half(row: Law, a: Array) -> Array:
-    """Return the length of the contact whose half length at rest is a: between a and 2 a."""
-
-    def step(c: Array) -> Array:
-        M = row.moments(c)
-        share, slope, bend = growth(M)
-        off = share - a / c
-        step = off / (slope - 0.5 * off * (bend / slope))  # of c, over c
-        return -np.log1p(-np.clip(step, 1.0 - 2.0 * a / c, 1.0 - a / c))
-
-    return converge(step, 1.5 * a, LAST_STEP, MOST_STEPS)
-
-
-def _length_at_load(row: Law, R: Array, load: Array, spring: Array) -> Array:
-    """Return the length of the contact under a load, on a spring that is relaxed at the static depth.
-
-    Halley's method for ln(W + k_s delta) against ln c, from the contact at rest.
+    At a load by Halley's method for ln(W + k_s delta) against ln c, from the contact at rest; the spring is
+    relaxed at the static depth.
     """
+    R, load, spring = scene.indenter.radius, scene.support.weight, scene.support.spring
+    if scene.held:
+        a = np.sqrt(2.0 * R * scene.support.depth)
+        return length_at_half(row, np.broadcast_to(a, scene.shape))
     a_0 = cube_root(1.5 * R * (load / row.K))
-    wanted = 1.0 + spring * (a_0 * a_0 / (2.0 * R)) / load
+    target = 1.0 + spring * (a_0 * a_0 / (2.0 * R)) / load
 
     def step(c: Array) -> Array:
         M = row.moments(c)
@@ -114,10 +94,22 @@ def _length_at_load(row: Law, R: Array, load: Array, spring: Array) -> Array:
         total = size * (M.D + (share - 0.5) * M.P) + 0.5 * k * share * share
         rise = (slope * (size * M.P + k * share)) / total
         curve = size * (bend * M.P + slope * (M.P + M.Q)) + k * (slope * slope + share * bend)
-        off = np.log(total / wanted)
+        off = np.log(total / target)
         return off / (rise - 0.5 * off * ((curve / total + rise) / rise - rise))
 
     return converge(step, 2.0 * a_0, LAST_STEP, MOST_STEPS)
+
+
+def length_at_half(row: Law, a: Array) -> Array:
+    """Return the length of the contact whose half length at rest is a: between a and 2 a."""
+
+    def step(c: Array) -> Array:
+        share, slope, bend = growth(row.moments(c))
+        off = share - a / c
+        step = off / (slope - 0.5 * off * (bend / slope))  # of c, over c
+        return -np.log1p(-np.clip(step, 1.0 - 2.0 * a / c, 1.0 - a / c))
+
+    return converge(step, 1.5 * a, LAST_STEP, MOST_STEPS)
 
 
 def growth(M: Moments) -> tuple[Array, Array, Array]:
@@ -132,25 +124,21 @@ def state(scene: Scene, row: Law, c: Array) -> tuple[Array, ...]:
 
     A given depth is kept to the last bit; otherwise it follows from the length of the contact.
     """
-    R, V, delta = scene.indenter.radius, scene.drive.final_velocity, scene.support.depth
+    R, delta = scene.indenter.radius, scene.support.depth
     M = row.moments(c)
-    A = M.P + M.Q
+    A, eta, slope = M.P + M.Q, M.eta, c / R
     a = c * (M.P / A) if delta is None else np.sqrt(2.0 * R * delta)
-    delta = a * (a / (2.0 * R)) if delta is None else delta
-    eta = 0.5 * (M.P - M.Q) / A
-    side = np.where(V < 0.0, -1.0, 1.0)  # a reversed drive is the mirror image
-    slope = c / R
     load, work = M.D + eta * M.P, M.E + eta * eta * M.P
     inside, error = row.dissipated(c, eta, np.where(work > 0.0, work, 1.0))
     return (
-        delta,
+        a * (a / (2.0 * R)) if delta is None else delta,
         a,
-        np.abs(V) * scene.foundation.retardation_time,
-        -side * a,
-        side * c * (M.Q / A) + 0.0,
+        np.abs(scene.drive.final_velocity) * scene.foundation.retardation_time,
+        -a,
+        c * (M.Q / A),
         c * c * slope * load,
-        side * (c * slope) ** 2 * work + 0.0,
-        side * slope * (work / load) + 0.0,
+        (c * slope) ** 2 * work,
+        slope * (work / load),
         _peak(R, row, a),
         np.where(work > 0.0, inside, 1.0),
         error,
@@ -160,7 +148,7 @@ def state(scene: Scene, row: Law, c: Array) -> tuple[Array, ...]:
 def _peak(R: Array, row: Law, a: Array) -> Array:
     """Return the greatest pressure: p' = (a G - X mean G)/R falls, and has one root at X <= a.
 
-    Newton's method for ln(a G/(X mean G)) against ln X, and bisection where its steps are long.
+    Newton's method for ln(a G/(X mean G)) against ln X, with bisection where its steps alternate.
     """
     low, high = np.log(row.least_peak(a)), np.log(a)
     y, active = high, np.full(a.shape, True)
@@ -170,7 +158,7 @@ def _peak(R: Array, row: Law, a: Array) -> Array:
         off = np.log(a * (end / (X * mean)))
         low, high = np.where(off > 0.0, y, low), np.where(off < 0.0, y, high)
         new = y - off / (end_slope / end - end / mean)
-        short = np.abs(new - y) <= 0.5 * (high - low)  # else the steps may go to and fro
+        short = np.abs(new - y) <= 0.5 * (high - low)
         new = np.where(short & (new >= low) & (new <= high), new, 0.5 * (low + high))
         active, y = active & (np.abs(new - y) >= PEAK_STEP), np.where(active, new, y)
         if not active.any():

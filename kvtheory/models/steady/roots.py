@@ -1,0 +1,36 @@
+"""Roots of arrays of scenes, element by element."""
+
+from collections.abc import Callable
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+
+def converge(
+    step_of: Callable[[Array], Array], value: Array, last_step: float, most_steps: int
+) -> Array:
+    """Return the roots from `value` by steps of the logarithm.
+
+    An element is final after its first step that is no longer than `last_step`, so that no result depends on
+    the others of its block.
+    """
+    active = np.full(value.shape, True)
+    for _ in range(most_steps):
+        step = step_of(value)
+        value = np.where(active, value * np.exp(-step), value)
+        active &= np.abs(step) > last_step
+        if not active.any():
+            break
+    return value
+
+
+def cube_root(value: Array) -> Array:
+    """Return the cube root to a unit in the last place: that of some C libraries is four off.
+
+    >>> float(cube_root(np.array(27.0)))
+    3.0
+    """
+    root = np.cbrt(value)
+    return root - (root - value / (root * root)) / 3.0
