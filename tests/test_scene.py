@@ -128,7 +128,7 @@ def test_python_functions_do_not_go_into_a_file():
         ('velocity = "100 mm/s"', 'velocity = "inf m/s"', ["drive.velocity", "finite"]),
         ('velocity = "100 mm/s"', "", ["drive", "velocity, history and waveform"]),
         ('velocity = "100 mm/s"', "history = []", ["drive.history", "expected points"]),
-        ('velocity = "100 mm/s"', 'history = [["0 s", 3]]', ["drive.history", "without a unit"]),
+        ('velocity = "100 mm/s"', 'history = [["0 s", 3]]', ["drive.history[0] = 3", "has no unit"]),
         (
             'velocity = "100 mm/s"',
             'history = [["1 s", "1 m/s"]]',

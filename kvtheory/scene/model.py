@@ -27,7 +27,6 @@ from kvtheory.scene.quantities import (
     derive,
     free,
     given,
-    misfits,
     missing,
     nearest,
     problem,
@@ -35,13 +34,18 @@ from kvtheory.scene.quantities import (
     quantity,
     validate,
 )
+from kvtheory.scene.units import expected
 
 STANDARD_GRAVITY = 9.80665
-LOAD = "W, load instead of mass times gravity; the mass is then inertia alone"
+
+
+class _Support(Part):
+    def __post_init__(self) -> None:
+        validate(self, "support")
 
 
 @dataclass(frozen=True, eq=False)
-class Fixed(Part):
+class Fixed(_Support):
     """The indenter cannot move (the paper's FI model): a constant depth is given.
 
     >>> Fixed(depth="300 um").depth
@@ -54,22 +58,31 @@ class Fixed(Part):
     spring: ClassVar[Value] = math.inf
     depth: Value = quantity("m", "delta, indentation depth, held constant")
 
-    def __post_init__(self) -> None:
-        validate(self, "support")
+
+def _mass() -> Any:
+    spec: dict[str, Any] = {"default": None, "needed": True, "instead": "load", "per_width": True}
+    return quantity("kg/m", "M, mass of the indenter", **spec)
 
 
-MASS: dict[str, Any] = {"default": None, "needed": True, "instead": "load", "per_width": True}
+def _gravity() -> Any:
+    return quantity("m/s^2", "g, gravity", default=STANDARD_GRAVITY)
 
 
-class _Loaded(Part):
-    """The common part of supports with a load: mass times gravity, or a load that is given."""
+def _load() -> Any:
+    words = "W, load instead of mass times gravity; the mass is then inertia alone"
+    return quantity("N/m", words, default=None, per_width=True)
 
+
+class _Loaded(_Support):
+    """What supports with a load have in common: mass times gravity, or a load that is given."""
+
+    depth: ClassVar[Value] = None
     mass: Value
     gravity: Value
     load: Value
 
     def __post_init__(self) -> None:
-        validate(self, "support")
+        super().__post_init__()
         if self.load is not None and self.mass is None:
             mass = self.load / self.gravity
             derive(self, "support", "mass", mass, "support.load/support.gravity")
@@ -92,10 +105,9 @@ class DeadWeight(_Loaded):
 
     kind: ClassVar[str] = "dead-weight"
     spring: ClassVar[Value] = 0.0
-    depth: ClassVar[Value] = None
-    mass: Value = quantity("kg/m", "M, mass of the indenter", **MASS)
-    gravity: Value = quantity("m/s^2", "g, gravity", default=STANDARD_GRAVITY)
-    load: Value = quantity("N/m", LOAD, default=None, per_width=True)
+    mass: Value = _mass()
+    gravity: Value = _gravity()
+    load: Value = _load()
 
 
 @dataclass(frozen=True, eq=False)
@@ -109,13 +121,12 @@ class Suspended(_Loaded):
     """
 
     kind: ClassVar[str] = "suspended"
-    depth: ClassVar[Value] = None
-    mass: Value = quantity("kg/m", "M, mass of the indenter", **MASS)
+    mass: Value = _mass()
     stiffness: Value = quantity(
         "N/m^2", "k_s, stiffness of the suspension", default=None, needed=True, per_width=True
     )
-    gravity: Value = quantity("m/s^2", "g, gravity", default=STANDARD_GRAVITY)
-    load: Value = quantity("N/m", LOAD, default=None, per_width=True)
+    gravity: Value = _gravity()
+    load: Value = _load()
 
     @property
     def spring(self) -> Value:
@@ -138,10 +149,6 @@ class Run(Part):
 
     def __post_init__(self) -> None:
         validate(self, "run")
-
-
-WEIGHED = ("support", "drive")
-"""Parts of a scene whose masses, loads and springs a line contact has per unit width."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -177,11 +184,7 @@ class Scene(Part):
             if not isinstance(parts[name], kinds):
                 told = " or ".join(kind.__name__ for kind in kinds)
                 problems.append(problem(f"`{name}`", parts[name], f"expected {told}"))
-        for name in () if problems else WEIGHED:
-            if "written" in vars(parts[name]):
-                problems += misfits(name, parts[name], self.indenter)
-        problems = problems or lacks_mass(self.support, self.drive, self.indenter.per_width)
-        if problems:
+        if problems := problems or inconsistencies(parts):
             raise SceneError(problems)
         for name in PARTS:
             if parts[name].arrayed:
@@ -240,7 +243,7 @@ class Scene(Part):
 
     @property
     def held(self) -> bool:
-        """Whether the support holds the indenter at its depth, so that it cannot move."""
+        """Whether the support holds the indenter at a depth."""
         return self.support.depth is not None
 
     @property
@@ -260,7 +263,7 @@ class Scene(Part):
         return cls(support=TABLE1_SUPPORTS[support])
 
     def parts(self) -> dict[str, Any]:
-        """Return what holds the quantities of the scene at rest, by its dotted name, each arm by its own."""
+        """Return the indenter, the foundation and the support, and the parts within them, by dotted name."""
         found: dict[str, Any] = {}
         for name in ("indenter", "foundation", "support"):
             found[name] = part = getattr(self, name)
@@ -334,23 +337,19 @@ class Scene(Part):
         for section, values in sections.items():
             part, _, within = section.partition(".")
             own = parts.setdefault(part, {})
+            name, _, index = within.rstrip("]").partition("[")
             if not within:
                 own |= values
                 continue
-            name, _, index = within.rstrip("]").partition("[")
             old = own.get(name, getattr(getattr(self, part), name))
             if index:
                 i = int(index)
                 own[name] = (*old[:i], changed(old[i], **values), *old[i + 1 :])
             else:
                 own[name] = changed(old, **values)
-        made: dict[str, Any] = {
-            part: self.drive.changed(**own)
-            if part == "drive"
-            else changed(getattr(self, part), **own)
-            for part, own in parts.items()
-        }
-        return replace(self, **made) if made else self
+        drive = {"drive": self.drive.changed(**parts.pop("drive"))} if "drive" in parts else {}
+        made = {part: changed(getattr(self, part), **own) for part, own in parts.items()}
+        return replace(self, **made, **drive)
 
 
 PARTS: dict[str, tuple[Any, ...]] = {
@@ -360,13 +359,29 @@ PARTS: dict[str, tuple[Any, ...]] = {
 """The parts of a scene, and what each can be."""
 
 
-def lacks_mass(support: Support, drive: Drive, per_width: bool) -> list[str]:
-    """Return that a fixed indenter on a spring needs a mass, as its support has none; or nothing."""
-    if drive.rigid or drive.mass is not None or support.depth is None:
-        return []
-    spec = quantities(drive)["mass"].fitting(per_width)
-    needed = missing("drive", "mass", spec, f' for support.kind = "{support.kind}"')
-    return [f"{needed}, which moves along x on the spring"]
+def inconsistencies(parts: Mapping[str, Any]) -> list[str]:
+    """Report where the parts of a scene, those that there are, do not fit each other.
+
+    The values of a ball are totals, those of a line contact are per unit width; and on a spring a fixed
+    indenter needs a mass, as its support has none.
+    """
+    found = []
+    indenter, support, drive = (parts.get(name) for name in ("indenter", "support", "drive"))
+    per_width = indenter is None or indenter.per_width
+    for section, part in (("support", support), ("drive", drive)):
+        for name, (value, given_per_width) in getattr(part, "written", {}).items():
+            if indenter is None or given_per_width == per_width:
+                continue
+            unit = quantities(part)[name].fitting(per_width).unit
+            what, contact = ("that of a ball", "line") if per_width else ("per unit width", "point")
+            shape = f'indenter.shape = "{indenter.shape}"'
+            told = f"is {what}, but {shape} has a {contact} contact; expected {expected(unit)}"
+            found.append(problem(f"{section}.{name}", value, told))
+    if support and drive and not drive.rigid and drive.mass is None and support.depth is not None:
+        spec = quantities(drive)["mass"].fitting(per_width)
+        needed = missing("drive", "mass", spec, f' for support.kind = "{support.kind}"')
+        found.append(f"{needed}, which moves along x on the spring")
+    return found
 
 
 TABLE1_SUPPORTS: dict[str, Support] = {
