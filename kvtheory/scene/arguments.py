@@ -40,10 +40,8 @@ Kind = Callable[[Any], Any]
 def checked(**kinds: Kind) -> Callable[[Function], Function]:
     """Have the named arguments of a function read by their kinds; an argument may be its default.
 
-    While the function runs, its `progress` is also told that kernels are being compiled.
+    While the function runs, its `progress` also learns that kernels are being compiled.
 
-    Examples
-    --------
     >>> @checked(jobs=count)
     ... def run(jobs=None):
     ...     return jobs
@@ -119,12 +117,11 @@ def times(value: Any) -> list[float]:
     for one in value if isinstance(value, (list, tuple)) else [value]:
         for given in items(one) if isinstance(one, str) else [one]:
             with collecting(problems, "`at`", given):
-                read = np.atleast_1d(
-                    (item_values if isinstance(given, str) else array_of)(given, TIME)
-                )
-                if read.ndim > 1:
+                read = item_values if isinstance(given, str) else array_of
+                array = np.atleast_1d(read(given, TIME))
+                if array.ndim > 1:
                     raise ValueError("expected one list of times")
-                found += read.tolist()
+                found += array.tolist()
     if not found and not problems:
         problems = ['`at` is empty: expected times such as "0 ms,1 ms"']
     if problems:
@@ -134,13 +131,10 @@ def times(value: Any) -> list[float]:
 
 def count(value: Any) -> int:
     """Read a whole number of at least 1."""
-    found = 0
-    if not isinstance(value, bool):
-        with suppress(TypeError):
-            found = index(value)
-    if found < 1:
-        raise ValueError("expected a whole number of at least 1")
-    return found
+    with suppress(TypeError):
+        if not isinstance(value, bool) and index(value) >= 1:
+            return index(value)
+    raise ValueError("expected a whole number of at least 1")
 
 
 def _accepting(said: str, fits: Callable[[Any], bool]) -> Kind:
@@ -171,9 +165,10 @@ def choice(options: Iterable[str]) -> Kind:
     options = list(options)
 
     def read(value: Any) -> str:
-        if not (isinstance(value, str) and value in options):
-            raise ValueError(nearest(value if isinstance(value, str) else "", options))
-        return value
+        name = value if isinstance(value, str) else ""
+        if name not in options:
+            raise ValueError(nearest(name, options))
+        return name
 
     return read
 

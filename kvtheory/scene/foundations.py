@@ -156,7 +156,7 @@ class _Relaxed(Part):
 
     def __post_init__(self) -> None:
         problems: list[str] = []
-        held = [self, *self._read_arms(problems)]
+        held: list[Any] = [self, *self._read_arms(problems)]
         lawless = self.wlf is None and self.activation_energy is None
         if self.modulus is None and is_derived(self.stiffness):
             object.__setattr__(self, "stiffness", +self.stiffness)  # that of another foundation

@@ -32,11 +32,8 @@ class _Shape(Part):
 class _Power(_Shape):
     """A line contact with h = x h'/n, n being constant."""
 
-    exponent: Value
-
-    def slope(self, x: Value) -> Value:
-        """Return h'(x)."""
-        raise NotImplementedError
+    exponent: Any
+    slope: Any
 
     def height(self, x: Value) -> Value:
         """Return h(x)."""
@@ -56,7 +53,7 @@ class Parabola(_Power):
     """
 
     shape: ClassVar[str] = "parabola"
-    exponent: ClassVar[float] = 2.0
+    exponent = 2.0
     radius: Value = quantity("m", "R, curvature radius of the indenter (Eq. 3)")
 
     def slope(self, x: Value) -> Value:
@@ -128,7 +125,7 @@ class Wedge(_Power):
     """
 
     shape: ClassVar[str] = "wedge"
-    exponent: ClassVar[float] = 1.0
+    exponent = 1.0
     kinks: ClassVar[tuple[float, ...]] = (0.0,)
     inclination: Value = quantity("1", "slope |h'| of the flanks")
 

@@ -347,9 +347,13 @@ class Scene(Part):
                 own[name] = (*old[:i], changed(old[i], **values), *old[i + 1 :])
             else:
                 own[name] = changed(old, **values)
-        drive = {"drive": self.drive.changed(**parts.pop("drive"))} if "drive" in parts else {}
-        made = {part: changed(getattr(self, part), **own) for part, own in parts.items()}
-        return replace(self, **made, **drive)
+        made: dict[str, Any] = {
+            part: self.drive.changed(**own)
+            if part == "drive"
+            else changed(getattr(self, part), **own)
+            for part, own in parts.items()
+        }
+        return replace(self, **made)
 
 
 PARTS: dict[str, tuple[Any, ...]] = {

@@ -159,11 +159,11 @@ _names: Any = cache(lambda cls: tuple(f.name for f in dataclasses.fields(cls)))
 
 @dataclass(frozen=True)
 class Quantity:
-    """A quantity: its SI unit, meaning, and range, from `minimum` (or above it) to `maximum`, less than `below`.
+    """A quantity: its SI unit, its meaning, and its range, from `minimum` to `maximum` and below `below`.
 
-    One that is `needed` must be given, unless the one named by `instead` is; it must be given with those
-    named in `beside`, and cannot be given with those in `excludes`. A `per_width` quantity is per unit width
-    for a line contact, in `unit`, and a total for a ball: see `fitting`. A `difference` is one of temperatures.
+    An `exclusive` range is above its minimum. A `needed` quantity must be given, unless the one named by
+    `instead` is; it must be given with those in `beside`, and not with those in `excludes`. One `per_width` is
+    so for a line contact, in `unit`, and a total for a ball. A `difference` is one of temperatures.
     """
 
     unit: str
@@ -381,7 +381,7 @@ def validate(instance: Any, section: str) -> None:
         elif value is not None:
             values[name] = value
     here = tuple(values)
-    problems = [missing(section, name, specs[name]) for name in required(type(instance), here)]
+    problems = [missing(section, name, specs[name]) for name in required(instance.__class__, here)]
     for place, (name, value) in enumerate(values.items()):
         with collecting(problems, f"{section}.{name}", value):
             sample = written_sample(value)
@@ -448,7 +448,7 @@ def problem(key: str, given: Any, what: str) -> str:
 def shown(text: str) -> str:
     """Return a text as a message quotes it: short, and without control characters."""
     if len(text) > LONGEST_SHOWN:
-        text = f"{text[: LONGEST_SHOWN // 2]}...{text[3 - LONGEST_SHOWN // 2 :]}"  # a path is known by its end
+        text = f"{text[: LONGEST_SHOWN // 2]}...{text[3 - LONGEST_SHOWN // 2 :]}"  # paths differ at the end
     return printable(text)
 
 

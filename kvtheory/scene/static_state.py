@@ -45,13 +45,9 @@ class StaticState:
 
     @classmethod
     def of(cls, scene: Scene) -> "StaticState":
-        """Return the static state of a scene.
+        """Return the static state of a scene with a parabola or a ball: other shapes have more numbers.
 
-        Raises
-        ------
-        ValueError
-            If the indenter is neither a parabola nor a ball (for other shapes these numbers do not
-            suffice), or if the scene leaves the range of double precision.
+        Other scenes, and those that leave the range of double precision, raise ValueError.
         """
         require(lacks_one_scene, scene, "the static state")
         require(lacks_quadratic, scene, "the static state in closed form")
@@ -131,39 +127,35 @@ class StaticState:
     def named(self) -> dict[str, float]:
         """Return the values that exist by plain names, as ``"static_depth"`` and ``"drive_number"``."""
         found = asdict(self)
-        names = {name: f"static_{name}" for name in ("depth", "half_length", "load")}
         numbers = ["drive_number", "inertia_number", "support_number"]
         if not self.rigid_drive:
             numbers += [f"drive_{name}_number" for name in ("inertia", "damping", "stiffness")]
-        shown = {names[name]: found[name] for name in names}
+        shown = {f"static_{name}": found[name] for name in ("depth", "half_length", "load")}
         return shown | {name: found[name] for name in numbers if math.isfinite(found[name])}
 
 
 def ball_stiffness(stiffness: Any, radius: Any, stretch: Any) -> Any:
-    """Return W_0/delta_0^2 = pi K R sqrt(R'/R) of a ball at rest in N/m^2, of floats or arrays (theorem F20).
-
-    >>> round(ball_stiffness(1e10, 0.01, 1.0))
-    314159265
-    """
+    """Return W_0/delta_0^2 = pi K R sqrt(R'/R) of a ball at rest in N/m^2, of floats or arrays (fact F20)."""
     return math.pi * stiffness * radius * stretch
 
 
 def _at_rest(scene: Scene) -> StaticState:
     """Return the static state of a parabola or a ball from its load or its depth."""
-    R, K, support = scene.indenter.radius, scene.foundation.stiffness, scene.support
-    depth, load = support.depth, support.weight
-    if scene.indenter.per_width:
-        half_length = (1.5 * R * load / K) ** (1 / 3) if depth is None else math.sqrt(2 * R * depth)
-        if depth is None:
-            depth = half_length**2 / (2 * R)
-        else:
-            load = 4 / 3 * K * half_length * depth
-    else:
+    R, K = scene.indenter.radius, scene.foundation.stiffness
+    depth, load = scene.support.depth, scene.support.weight
+    if not scene.indenter.per_width:
         stiffness = ball_stiffness(K, R, scene.indenter.stretch)
-        depth, load = (
-            (math.sqrt(load / stiffness), load) if depth is None else (depth, stiffness * depth**2)
-        )
+        if depth is None:
+            depth = math.sqrt(load / stiffness)
+        else:
+            load = stiffness * depth**2
         half_length = math.sqrt(2 * R * depth)
+    elif depth is None:
+        half_length = (1.5 * R * load / K) ** (1 / 3)
+        depth = half_length**2 / (2 * R)
+    else:
+        half_length = math.sqrt(2 * R * depth)
+        load = 4 / 3 * K * half_length * depth
     return StaticState.at(scene, depth, half_length, load)
 
 
@@ -191,7 +183,7 @@ def out_of_range(scene: Scene, why: str = "") -> str:
 
 
 def _sizes(scene: Scene) -> Iterator[tuple[str, float, str]]:
-    """Return the keys of a scene, the least and the largest magnitude of each in SI, and their units."""
+    """Yield the keys of a scene with the least and the largest magnitude of each in SI, and its unit."""
     parts = {**scene.parts(), "run": scene.run, "drive": scene.drive.waveform or scene.drive}
     for section, part in parts.items():
         for name, spec in given(part).items():
