@@ -37,6 +37,8 @@ from kvtheory.scene.quantities import (
 from kvtheory.scene.units import expected
 
 STANDARD_GRAVITY = 9.80665
+LOAD = "W, load instead of mass times gravity; the mass is then inertia alone"
+MASS: dict[str, Any] = {"default": None, "needed": True, "instead": "load", "per_width": True}
 
 
 class _Support(Part):
@@ -57,20 +59,6 @@ class Fixed(_Support):
     weight: ClassVar[Value] = 0.0
     spring: ClassVar[Value] = math.inf
     depth: Value = quantity("m", "delta, indentation depth, held constant")
-
-
-def _mass() -> Any:
-    spec: dict[str, Any] = {"default": None, "needed": True, "instead": "load", "per_width": True}
-    return quantity("kg/m", "M, mass of the indenter", **spec)
-
-
-def _gravity() -> Any:
-    return quantity("m/s^2", "g, gravity", default=STANDARD_GRAVITY)
-
-
-def _load() -> Any:
-    words = "W, load instead of mass times gravity; the mass is then inertia alone"
-    return quantity("N/m", words, default=None, per_width=True)
 
 
 class _Loaded(_Support):
@@ -105,9 +93,9 @@ class DeadWeight(_Loaded):
 
     kind: ClassVar[str] = "dead-weight"
     spring: ClassVar[Value] = 0.0
-    mass: Value = _mass()
-    gravity: Value = _gravity()
-    load: Value = _load()
+    mass: Value = quantity("kg/m", "M, mass of the indenter", **MASS)
+    gravity: Value = quantity("m/s^2", "g, gravity", default=STANDARD_GRAVITY)
+    load: Value = quantity("N/m", LOAD, default=None, per_width=True)
 
 
 @dataclass(frozen=True, eq=False)
@@ -121,12 +109,12 @@ class Suspended(_Loaded):
     """
 
     kind: ClassVar[str] = "suspended"
-    mass: Value = _mass()
+    mass: Value = quantity("kg/m", "M, mass of the indenter", **MASS)
     stiffness: Value = quantity(
         "N/m^2", "k_s, stiffness of the suspension", default=None, needed=True, per_width=True
     )
-    gravity: Value = _gravity()
-    load: Value = _load()
+    gravity: Value = quantity("m/s^2", "g, gravity", default=STANDARD_GRAVITY)
+    load: Value = quantity("N/m", LOAD, default=None, per_width=True)
 
     @property
     def spring(self) -> Value:

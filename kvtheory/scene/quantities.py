@@ -162,8 +162,8 @@ class Quantity:
     """A quantity: its SI unit, its meaning, and its range, from `minimum` to `maximum` and below `below`.
 
     An `exclusive` range is above its minimum. A `needed` quantity must be given, unless the one named by
-    `instead` is; it must be given with those in `beside`, and not with those in `excludes`. One `per_width` is
-    so for a line contact, in `unit`, and a total for a ball. A `difference` is one of temperatures.
+    `instead` is; it must be given with those in `beside`, and not with those in `excludes`. A `per_width`
+    quantity is a total for a ball. A `difference` is one of temperatures.
     """
 
     unit: str
