@@ -113,6 +113,9 @@ def test_a_table_is_a_history(tmp_path, text, encoding, points):
     found = np.array(kv.load_scene(scene).drive.history)
     assert found == pytest.approx(np.array(points))
     assert np.array_equal(np.array(kv.Drive(history=found).history), found)
+    scene.write_text(scene.read_text().replace("[run]", 'history = [["0 s", "1 m/s"]]\n[run]'))
+    with pytest.raises(kv.SceneError, match=r"drive\.file = .* beside drive\.history"):
+        kv.load_scene(scene)
 
 
 @pytest.mark.parametrize(
