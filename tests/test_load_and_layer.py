@@ -16,7 +16,6 @@ from kvtheory.cli import main
 from kvtheory.results import TRANSIENT_UNITS
 from kvtheory.scene import template
 from kvtheory.scene.foundations import THIN, layer_stiffness
-from kvtheory.scene.quantities import changed
 
 G = 9.80665
 SUPPORTS = {"dead-weight": {}, "suspended": {"stiffness": 3e7}}
@@ -208,7 +207,7 @@ def test_files_hold_what_was_given(tmp_path, scene):
     assert read == scene
     assert kv.to_toml(read) == kv.to_toml(scene)
     assert ("mass" in path.read_text()) == (scene.support.load is None or scene.support.mass == 2.0)
-    assert changed(read.support, gravity=1.0).weight == changed(scene.support, gravity=1.0).weight
+    assert read.support.changed(gravity=1.0).weight == scene.support.changed(gravity=1.0).weight
 
 
 @pytest.mark.parametrize("support", KINDS)

@@ -17,7 +17,6 @@ from kvtheory.scene.quantities import (
     SceneError,
     Value,
     array_of,
-    changed,
     collecting,
     convert,
     mistake,
@@ -227,11 +226,11 @@ class Drive(Part):
         >>> Drive(history=[(0.0, 0.1), (1.0, 0.2)], stiffness=1e6).changed(velocity=0.3).points
         ((0.0, 0.3),)
         """
-        own = () if self.waveform is None else quantities(self.waveform)
+        wave = self.waveform
         new: dict[str, Any] = {name: value for name, value in values.items() if name in SPRING}
         moves = {name: value for name, value in values.items() if name not in SPRING}
-        if moves and moves.keys() <= set(own):
-            new |= {"waveform": changed(self.waveform, **moves), "function": None}
+        if moves and wave is not None and moves.keys() <= quantities(wave).keys():
+            new |= {"waveform": wave.changed(**moves), "function": None}
         elif moves:
             new |= {"history": None, "function": None, "waveform": None, "breaks": (), **moves}
         return replace(self, **new)

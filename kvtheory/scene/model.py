@@ -6,7 +6,7 @@ holds an SI float or an array of them afterwards. The arrays of a scene broadcas
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, ClassVar, get_args
 
@@ -21,7 +21,6 @@ from kvtheory.scene.quantities import (
     SceneError,
     Value,
     as_given,
-    changed,
     collecting,
     converted,
     derive,
@@ -143,18 +142,12 @@ class Run(Part):
 class Scene(Part):
     """An indenter, a foundation, a support and a drive; without arguments, the paper's Table 1.
 
-    Examples
-    --------
-    >>> scene = Scene(drive=Drive(velocity="50 mm/s"))
-    >>> scene.drive.velocity
-    0.05
-    >>> scene.foundation.stiffness
-    10000000000.0
+    Arrays make many scenes of one.
+
+    >>> Scene(drive=Drive(velocity="50 mm/s")).drive.velocity, Scene().foundation.stiffness
+    (0.05, 10000000000.0)
     >>> Scene.table1("fixed").support
     Fixed(depth=0.0003)
-
-    Arrays make many scenes of one:
-
     >>> Scene(drive=Drive(velocity="1 mm/s:1 m/s:4:log")).shape
     (4,)
     """
@@ -174,11 +167,8 @@ class Scene(Part):
                 problems.append(problem(f"`{name}`", parts[name], f"expected {told}"))
         if problems := problems or inconsistencies(parts):
             raise SceneError(problems)
-        for name in PARTS:
-            if parts[name].arrayed:
-                object.__setattr__(self, "arrayed", True)
-                _ = self.shape  # or raise
-                break
+        self.mark(parts[name] for name in PARTS)
+        _ = self.arrayed and self.shape  # or raise
 
     @cached_property
     def shape(self) -> tuple[int, ...]:
@@ -297,51 +287,45 @@ class Scene(Part):
     def replace(self, over: Mapping[str, Any]) -> "Scene":
         """Return the scene with some quantities replaced; what follows from them follows.
 
-        A velocity replaces a history, a waveform or a function.
+        A velocity replaces a history, a waveform or a function. Unknown keys and values that are out of range
+        raise SceneError, which lists them all.
 
-        Raises
-        ------
-        SceneError
-            Listing every unknown key and every value that is out of range.
-
-        Examples
-        --------
         >>> Scene().replace({"drive.velocity": ["1 mm/s", "1 m/s"], "support.mass": 10.0}).shape
         (2,)
         """
         specs, problems = self.replaceable, []
-        sections: dict[str, dict[str, Any]] = {}
+        values: dict[str, Any] = {}
         for key, value in over.items():
             if key not in specs:
                 told = f"unknown key for this scene; {nearest(str(key), specs)}"
                 problems.append(problem(f"`over` {key}", value, told))
                 continue
             with collecting(problems, f"`over` {key}", value):
-                section, _, name = key.rpartition(".")
-                sections.setdefault(section, {})[name] = converted(value, specs[key])
+                values[key] = converted(value, specs[key])
         if problems:
             raise SceneError(problems)
-        parts: dict[str, dict[str, Any]] = {}
-        for section, values in sections.items():
-            part, _, within = section.partition(".")
-            own = parts.setdefault(part, {})
-            name, _, index = within.rstrip("]").partition("[")
-            if not within:
-                own |= values
-                continue
-            old = own.get(name, getattr(getattr(self, part), name))
-            if index:
-                i = int(index)
-                own[name] = (*old[:i], changed(old[i], **values), *old[i + 1 :])
-            else:
-                own[name] = changed(old, **values)
-        made: dict[str, Any] = {
-            part: self.drive.changed(**own)
-            if part == "drive"
-            else changed(getattr(self, part), **own)
-            for part, own in parts.items()
-        }
-        return replace(self, **made)
+        return _replaced(self, values)
+
+
+def _replaced(part: Any, values: Mapping[str, Any]) -> Any:
+    """Return a part with quantities replaced, by their dotted names within it."""
+    own: dict[str, Any] = {}
+    inner: dict[str, dict[str, Any]] = {}
+    for key, value in values.items():
+        first, _, rest = key.partition(".")
+        if rest:
+            inner.setdefault(first, {})[rest] = value
+        else:
+            own[first] = value
+    for key, changes in inner.items():
+        name, _, index = key.rstrip("]").partition("[")
+        old = own.get(name, getattr(part, name))
+        if index:
+            i = int(index)
+            own[name] = (*old[:i], _replaced(old[i], changes), *old[i + 1 :])
+        else:
+            own[name] = _replaced(old, changes)
+    return part.changed(**own)
 
 
 PARTS: dict[str, tuple[Any, ...]] = {

@@ -123,6 +123,12 @@ class Part:
         vars(copy).update(values)
         return copy
 
+    def changed(self, **values: Any) -> Any:
+        """Return a copy with some quantities replaced; what these exclude is left out."""
+        specs = quantities(self)
+        dropped = {other: None for name in specs.keys() & values for other in specs[name].excludes}
+        return dataclasses.replace(self, **{**dropped, **values})  # type: ignore[type-var]
+
     def nested(self) -> Iterator[tuple[str, "Part"]]:
         """Yield the parts within it and the ends of their dotted names, such as "arms[0]"."""
         for name in _names(self.__class__):
@@ -252,13 +258,6 @@ def free(instance: Any) -> dict[str, Quantity]:
     """Return the quantities that can be replaced by other values, one by one."""
     there = {name for name in quantities(instance) if getattr(instance, name) is not None}
     return {n: s for n, s in quantities(instance).items() if n in there or there >= {*s.beside}}
-
-
-def changed(instance: Any, **values: Any) -> Any:
-    """Return a copy with some quantities replaced; what these exclude is left out."""
-    specs = quantities(instance)
-    dropped = {other: None for name in specs.keys() & values for other in specs[name].excludes}
-    return dataclasses.replace(instance, **{**dropped, **values})
 
 
 @cache
