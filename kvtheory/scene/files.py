@@ -3,6 +3,7 @@
 import re
 import tomllib
 from collections.abc import Iterable, Mapping
+from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
@@ -52,49 +53,6 @@ PER_WIDTH = {
 BALL = " (a sphere takes total mass in kg, load in N and stiffness in N/m)"
 DRIVES = ("velocity", "history", "waveform", "file")
 """Keys that define the motion of a drive; a scene has one of them."""
-EXAMPLES = {
-    "radius": "10 mm", "stiffness": "10 GN/m^3", "retardation_time": "100 ms",
-    "depth": "0.3 mm", "mass": "1 kg/mm", "gravity": "9.80665 m/s^2",
-    "velocity": "100 mm/s", "duration": "200 ms",
-}  # fmt: skip
-"""How the template writes the quantities of Table 1."""
-NOTES = {
-    "indenter": [
-        '# or a ball: shape = "sphere"; masses, loads and springs are then totals: mass = "1 kg"',
-        '# radius_across = "20 mm"  of a ball with another radius across the sliding direction',
-    ],
-    "support": [
-        "# or, instead of mass times gravity, a load; the mass is then inertia alone (load/gravity):",
-        '# load = "9.80665 N/mm"',
-    ],
-    "foundation": [
-        "# or, instead of the stiffness, a thin layer bonded to a rigid base:",
-        '# modulus = "20 MPa"',
-        '# thickness = "0.2 mm"',
-        "# poisson_ratio = 0.3",
-        "# or another foundation:",
-        '# kind = "generalized-maxwell" with arms = [["30 GN/m^3", "10 ms"], ["5 GN/m^3", "1 s"]]',
-        "#     instead of the retardation time: stiffness and relaxation time of each arm, or, of a",
-        '#     layer, modulus and relaxation time: arms = [["30 MPa", "10 ms"]]',
-        '# kind = "fractional-kelvin-voigt" with order = 0.5',
-        "# at another temperature than that at which its times were measured, which shifts them:",
-        '# temperature = "60 degC"',
-        '# reference_temperature = "23 degC"',
-        '# wlf = ["17.44", "51.6 K"]            # C_1 and C_2; or activation_energy = "80 kJ/mol"',
-    ],
-    "drive": [
-        "# or a history, linear between its points, a jump where a time is repeated:",
-        '# history = [["0 ms", "100 mm/s"], ["50 ms", "100 mm/s"], ["50 ms", "0 mm/s"]]',
-        '# or from a table: file = "drive.csv", whose first line is t [ms],V [mm/s]',
-        '# or: waveform = "sine" or "triangle" with amplitude, frequency and mean,',
-        '#     waveform = "smooth-ramp" with velocity and rise_time',
-        "# and, if the drive holds the indenter by a spring along x:",
-        '# stiffness = "1 MN/m^2"',
-        '# damping = "0 N*s/m^2"             # beside the spring; this is the default',
-        '# mass = "1 kg/mm"                  # that moves along x; by default that of the support',
-    ],
-}
-"""What the template says about keys that can be given instead of others."""
 
 
 @checked(path=file_name, overrides=names)
@@ -174,22 +132,18 @@ def to_toml(scene: Scene) -> str:
 
 def template(support: str = "dead-weight") -> str:
     """Return Table 1 as a scene file with a comment on every key."""
-    scene = Scene.table1(support)
-    lines = ["# A scene for kvtheory: a rigid indenter slides on a viscoelastic foundation.", ""]
-    for section in SECTIONS:
-        part = getattr(scene, section)
-        lines.append(f"[{section}]")
-        if section in CHOICES:
-            key, models = CHOICES[section]
-            lines.append(
-                f'{key} = "{getattr(part, key)}"{" " * 12}# or one of: {", ".join(models)}'
-            )
-        for name, spec in given(part).items():
-            value = "30 MN/m^2" if spec.unit == "N/m^2" else EXAMPLES[name]
-            lines.append(f'{name} = "{value}"'.ljust(36) + f"# {spec.words}")
-        lines += NOTES.get(section, ()) if (section, support) != ("support", "fixed") else ()
-        lines.append("")
-    return "\n".join(lines)
+    part = Scene.table1(support).support
+    lines = [f'kind = "{support}"{" " * 12}# or one of: {", ".join(SUPPORTS)}']
+    usual = {"m": "0.3 mm", "kg/m": "1 kg/mm", "N/m^2": "30 MN/m^2", "m/s^2": "9.80665 m/s^2"}
+    for name, spec in given(part).items():
+        lines.append(f'{name} = "{usual[spec.unit]}"'.ljust(36) + f"# {spec.words}")
+    if support != "fixed":
+        told = (
+            "instead of mass times gravity, a load; the mass is then inertia alone (load/gravity)"
+        )
+        lines += [f"# or, {told}:", '# load = "9.80665 N/mm"']
+    text = files("kvtheory.scene").joinpath("template.toml").read_text(encoding="utf-8")
+    return text.replace("# SUPPORT", "\n".join(lines))
 
 
 def _tables(scene: Scene) -> dict[str, dict[str, Any]]:
