@@ -179,26 +179,6 @@ def test_steady_sliding_needs_a_velocity():
 
 
 @pytest.mark.parametrize(
-    ("given", "words"),
-    [
-        ({}, ["velocity, history and waveform", "function"]),
-        ({"velocity": 0.1, "function": math.sin}, ["one of velocity, history"]),
-        ({"function": 3.0}, ["drive.function = 3.0", "function V(t)"]),
-        ({"velocity": 0.1, "breaks": [0.1]}, ["drive.breaks", "needs a function"]),
-        ({"function": math.sin, "breaks": "soon"}, ["drive.breaks", '"soon"']),
-        ({"function": math.sin, "breaks": [0.1, "5 mm"]}, ["drive.breaks", "'5 mm'"]),
-        ({"function": math.sin, "breaks": [-0.1]}, ["drive.breaks = [-0.1]", "out of range"]),
-        ({"function": math.sin, "tolerance": 0.0}, ["drive.tolerance = 0.0", "1e-13 to 1"]),
-        ({"function": math.sin, "tolerance": "1e-9"}, ["drive.tolerance", "1e-13 to 1"]),
-    ],
-)
-def test_a_wrong_drive_is_named(given, words):
-    with pytest.raises(kv.SceneError) as caught:
-        kv.Drive(**given)
-    assert all(word in str(caught.value) for word in words)
-
-
-@pytest.mark.parametrize(
     ("function", "words"),
     [
         (lambda t: 1.0 / (t - t), ["drive.function", "ZeroDivisionError", "t = ", "division"]),

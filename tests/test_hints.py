@@ -1,5 +1,6 @@
-"""Messages that teach: hints near in meaning, what was given, files in any encoding, no foreign words."""
+"""Messages about wrong input: what they name, quote and suggest; and files in any encoding."""
 
+import math
 import sys
 from concurrent.futures import ThreadPoolExecutor
 
@@ -89,6 +90,12 @@ def test_a_message_is_short_and_only_shown_whatever_a_file_holds(tmp_path, text)
         ("indenter.R=1 mm", ['did you mean "radius"']),
         ("drive.V=1 m/s", ['did you mean "velocity"']),
         ("run.end=1 s", ['did you mean "duration"']),
+        ("drive.waveform=sinus", ['drive.waveform = "sinus"', 'did you mean "sine"']),
+        (["drive.waveform=sine", "drive.amplitude=1 mm/s"], ["drive.frequency: missing", "5 Hz"]),
+        (["drive.waveform=sine", "drive.amplitud=1 mm/s"], ["drive.amplitud", '"amplitude"']),
+        (["drive.waveform=triangle", "drive.amplitude=1 mm"], ["drive.amplitude", "m/s"]),
+        ("drive.file=none.csv", ["drive.file", "none.csv", "cannot be read"]),
+        (['drive.history=[["0 s", "1 m/s"]]', "drive.file=none.csv"], ["drive.file", "cannot be read"]),
         ("tau=3", ['did you mean "foundation.retardation_time"']),
         ("E=3", ['did you mean "foundation.modulus"']),
         ("V=3", ['did you mean "drive.velocity"']),
@@ -105,6 +112,63 @@ def test_hints_are_near_in_meaning_and_quote_what_was_given(override, words):
         kv.load_scene(overrides=overrides)
     for word in words:
         assert word in str(error.value), error.value
+
+
+LAYER = {"modulus": "5 MPa", "thickness": "0.2 mm", "poisson_ratio": 0.3}
+MODULI = [["30 MPa", "10 ms"], ["5 MPa", "1 s"]]
+
+
+def soft():
+    return kv.GeneralizedMaxwell(**LAYER, arms=MODULI)
+
+
+MISTAKES = [
+    (kv.DeadWeight, ["support.mass: missing", "or support.load"]),
+    (lambda: kv.DeadWeight(load="-3 N/mm"), ["support.load", "above 0"]),
+    (lambda: kv.DeadWeight(load="3 kg"), ["support.load", "wrong dimension", "N/m"]),
+    (lambda: kv.DeadWeight(load=1e300, gravity=1e-300), ["follows from support.load"]),
+    (lambda: kv.Suspended(load=1.0), ["support.stiffness: missing"]),
+    (lambda: kv.Foundation(1e9), ["retardation_time: missing"]),
+    (lambda: kv.Foundation(retardation_time=1.0), ["stiffness: missing", "foundation.modulus"]),
+    (lambda: kv.Foundation(1e9, 1.0, modulus=1e6, thickness=1e-3),
+     ["foundation.stiffness = 1000000000.0", "beside foundation.modulus, foundation.thickness"]),
+    (lambda: kv.Foundation(retardation_time=1.0, **{**LAYER, "poisson_ratio": 0.5}),
+     ["foundation.poisson_ratio", "at least 0 and below 0.5"]),
+    (lambda: kv.GeneralizedMaxwell(1e10), ["foundation.arms: missing; expected pairs of stiffness"]),
+    (lambda: kv.GeneralizedMaxwell(1e10, arms=MODULI), ["arms[0] ", "only a layer"]),
+    (lambda: kv.GeneralizedMaxwell(**LAYER, arms=[["1 GN/m^3", "1 s"]]), ["has arms with moduli"]),
+    (lambda: kv.GeneralizedMaxwell(**LAYER, arms=[MODULI[0], ["1 GN/m^3", "1 s"]]),
+     ["arms[1] ", "with moduli"]),
+    (lambda: kv.GeneralizedMaxwell(1e10, arms=soft().arms), ["only a layer"]),
+    (lambda: kv.Scene(foundation=soft()).replace({"foundation.stiffness": 1e9}), ["only a layer"]),
+    (kv.Drive, ["drive: expected one of velocity, history and waveform", "function"]),
+    (lambda: kv.Drive(0.1, function=math.sin), ["one of velocity, history"]),
+    (lambda: kv.Drive(0.1, waveform=kv.Sine(0.1, 5.0)), ["one of velocity, history"]),
+    (lambda: kv.Drive(waveform=math.sin), ["drive.waveform", "expected a Sine"]),
+    (lambda: kv.Drive(function=3.0), ["drive.function = 3.0", "function V(t)"]),
+    (lambda: kv.Drive(0.1, breaks=[0.1]), ["drive.breaks", "needs a function"]),
+    (lambda: kv.Drive(function=math.sin, breaks="soon"), ["drive.breaks", '"soon"']),
+    (lambda: kv.Drive(function=math.sin, breaks=[0.1, "5 mm"]), ["drive.breaks", "'5 mm'"]),
+    (lambda: kv.Drive(function=math.sin, breaks=[-0.1]), ["drive.breaks = [-0.1]", "out of range"]),
+    (lambda: kv.Drive(function=math.sin, tolerance=0.0), ["drive.tolerance = 0.0", "1e-13 to 1"]),
+    (lambda: kv.Drive(function=math.sin, tolerance="1e-9"), ["drive.tolerance", "1e-13 to 1"]),
+    (lambda: kv.PowerLaw(length="1 mm", exponent=0.5), ["indenter.exponent", "at least 1"]),
+    (lambda: kv.Profile(abs, abs, reach=float("nan")), ["indenter.reach", "above 0"]),
+    (lambda: kv.Profile(abs, abs, reach="10 mm"), ["indenter.reach", "above 0"]),
+    (lambda: kv.Profile(abs, abs, kinks=(float("nan"),)), ["indenter.kinks", "finite numbers"]),
+    (lambda: kv.Profile(abs, abs, kinks=1.0), ["indenter.kinks", "finite numbers"]),
+    (lambda: kv.Profile("x", abs), ["indenter", "functions h(x)"]),
+    (lambda: kv.Revolved(kv.Sphere(0.01)), ["indenter.profile", "line contact"]),
+    (lambda: kv.Drive(0.1, damping=1.0), ["drive.damping = 1.0", "needs drive.stiffness"]),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("make", "words"), MISTAKES)
+def test_a_mistake_in_python_is_one_message(make, words):
+    with pytest.raises(kv.SceneError) as error:
+        make()
+    (told,) = error.value.problems
+    assert all(word in told for word in words), told
 
 
 def test_what_is_meant_exists():
@@ -133,55 +197,79 @@ def test_a_density_is_blamed_only_where_it_was_given():
         kv.elements(large, per_length=200e3)
 
 
-def command(*arguments, status=2):
-    result = CliRunner().invoke(main, arguments)
-    assert result.exit_code == status, result.output
-    return result
-
-
-def test_the_command_line_names_its_options_where_the_library_names_arguments(tmp_path):
-    cases = {
-        "--at": ["transient", "--at", "1 furlong"],
-        "--rtol": ["transient", "--rtol", "5"],
-        "--per-length": ["elements", "--per-length", "-1 /mm"],
-        "--quantity": ["solve", "--quantity", "depht"],
-        "--set": ["steady", "--set", "nonsense"],
-        "--method": ["steady", "--method", "exat"],
-        "--over": ["sweep", "--over", "a.b=1", "-o", str(tmp_path / "a.csv")],
-        "--only": ["chart", "failures", "--only", "nothing"],
-        "--standard": ["chart", "work-precision", "--standard", "nothing"],
-    }
-    for option, arguments in cases.items():
-        told = command(*arguments).stderr
-        assert option in told, told
-        assert "`" not in told.replace("`kinds`", ""), told
-
-
-SWEEP = ["sweep", "--over", "drive.velocity=1 m/s", "-o", "a.csv"]
-
-
-@pytest.mark.parametrize(
-    "text", ["sys:exit", "sys:modules", "this_is:not", "os.path:join", "builtins:int", "json:", ":x",
-             "builtins:ThreadPoolExecutor", "concurrent.futures:Executor", "antigravity.no:x"],
+FAILURES, PRECISION = ("chart", "failures"), ("chart", "work-precision")
+COMPARE = ("compare", "--report", "r.html", "--plot", "p.png")
+RUBBER = {
+    "indenter.shape": "circle", "foundation.kind": "generalized-maxwell",
+    "foundation.arms": '[["30 GN/m^3", "10 ms"]]',
+}  # fmt: skip
+ON_RUBBER = [part for key, value in RUBBER.items() for part in ("--set", f"{key}={value}")]
+SWEEP = ("sweep", "-o", "a.csv", "--over")
+EXECUTORS = (
+    "sys:exit", "sys:modules", "this_is:not", "os.path:join", "builtins:int", "json:", ":x", "exits:make",
+    "builtins:ThreadPoolExecutor", "concurrent.futures:Executor", "antigravity.no:x", "fails:make",
+    "imports:make", "misspelt:make", "empty:make",
 )  # fmt: skip
-def test_what_makes_no_executor_is_told(tmp_path, monkeypatch, text):
-    monkeypatch.chdir(tmp_path)
-    assert f'--executor "{text}"' in command(*SWEEP, "--executor", text).stderr
-    assert not list(tmp_path.iterdir())
-    with pytest.raises(ValueError, match="`executor`"):  # nor is a class
-        kv.sweep(over={"drive.velocity": [1.0]}, executor=ThreadPoolExecutor)
+MODULES = {
+    "exits": "raise SystemExit(0)", "fails": "1/0", "imports": "import no_such",
+    "misspelt": "syntax error", "empty": "",
+}  # fmt: skip
 
 
 @pytest.mark.parametrize(
-    "code", ["raise SystemExit(0)", "1/0", "import no_such", "syntax error", ""]
+    ("arguments", "message"),
+    [
+        ([*FAILURES, "--only", "sawtoth"], 'did you mean "sawtooth"?'),
+        ([*FAILURES, "-o", "atlas.pdf"], "expected a name that ends in .html"),
+        ([*PRECISION, "--standard", "hopp"], 'did you mean "hop"?'),
+        (
+            [*PRECISION, "--standard", "hop", "--set", "drive.velocity=1 m/s"],
+            "does not go with SCENE",
+        ),
+        ([*PRECISION, "-o", "chart.txt"], "expected a name that ends in"),
+        ([*PRECISION, "--set", "indenter.shape=circle"], "parabola only"),
+        (["chart", "stability", "-o", "map.txt"], "expected a name that ends in"),
+        ([*COMPARE, "--plot", "nowhere/p.png"], 'there is no directory "'),
+        ([*COMPARE, "--plot", "p.xyz"], "ends in"),
+        ([*COMPARE, "--report", "r.txt"], "ends in .html"),
+        ([*COMPARE, "--report", "folder.html"], "is a directory"),
+        (["explore", *ON_RUBBER], 'the explorer holds for foundation.kind = "kelvin-voigt" only'),
+        (["transient", "--at", "1 furlong"], "--at"),
+        (["transient", "--rtol", "5"], "--rtol"),
+        (["elements", "--per-length", "-1 /mm"], "--per-length"),
+        (["solve", "--quantity", "depht"], "--quantity"),
+        (["steady", "--set", "nonsense"], "--set"),
+        (["steady", "--method", "exat"], "--method"),
+        ([*SWEEP, "a.b=1"], "--over"),
+        *(
+            ([*SWEEP, "drive.velocity=1 m/s", "--executor", text], f'--executor "{text}"')
+            for text in EXECUTORS
+        ),
+    ],
 )
-def test_a_module_that_does_not_import_is_told(tmp_path, monkeypatch, code):
-    (tmp_path / "broken_cluster.py").write_text(code)
+def test_a_command_refuses_in_one_message_and_writes_nothing(
+    arguments, message, tmp_path, monkeypatch
+):
+    (tmp_path / "modules").mkdir()
+    for name, code in MODULES.items():
+        (tmp_path / "modules" / f"{name}.py").write_text(code)
+    (tmp_path / "folder.html").mkdir()
     monkeypatch.chdir(tmp_path)
-    monkeypatch.syspath_prepend(str(tmp_path))
-    told = command(*SWEEP, "--executor", "broken_cluster:make").stderr
-    assert '--executor "broken_cluster:make"' in told
-    sys.modules.pop("broken_cluster", None)
+    monkeypatch.syspath_prepend(str(tmp_path / "modules"))
+    done = CliRunner().invoke(main, arguments)
+    assert done.exit_code == 2
+    assert message in done.stderr
+    if message.startswith("--"):  # where the library would name an argument
+        assert "`" not in done.stderr.replace("`kinds`", "")
+    assert done.stdout == ""
+    assert {path.name for path in tmp_path.iterdir()} == {"folder.html", "modules"}
+    for name in MODULES:
+        sys.modules.pop(name, None)
+
+
+def test_a_class_is_no_executor():
+    with pytest.raises(ValueError, match="`executor`"):
+        kv.sweep(over={"drive.velocity": [1.0]}, executor=ThreadPoolExecutor)
 
 
 def test_times_are_lists_and_ranges():

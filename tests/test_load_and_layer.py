@@ -228,34 +228,6 @@ def test_overrides_exchange_a_stiffness_for_a_layer_and_back(tmp_path):
     assert kv.load_scene(overrides=["support.load=3 N/mm"]).support.weight == 3000.0
 
 
-MISTAKES = [
-    (kv.DeadWeight, ["support.mass: missing", "or support.load"]),
-    (lambda: kv.DeadWeight(load="-3 N/mm"), ["support.load", "above 0"]),
-    (lambda: kv.DeadWeight(load="3 kg"), ["support.load", "wrong dimension", "N/m"]),
-    (lambda: kv.DeadWeight(load=1e300, gravity=1e-300), ["follows from support.load"]),
-    (lambda: kv.Suspended(load=1.0), ["support.stiffness: missing"]),
-    (lambda: kv.Foundation(1e9), ["retardation_time: missing"]),
-    (lambda: kv.Foundation(retardation_time=1.0), ["stiffness: missing", "foundation.modulus"]),
-    (lambda: kv.Foundation(1e9, 1.0, modulus=1e6, thickness=1e-3),
-     ["foundation.stiffness = 1000000000.0", "beside foundation.modulus, foundation.thickness"]),
-    (lambda: replace(LAYER, poisson_ratio=0.5), ["foundation.poisson_ratio", "at least 0 and below 0.5"]),
-    (lambda: kv.GeneralizedMaxwell(1e10), ["foundation.arms: missing; expected pairs of stiffness"]),
-    (lambda: kv.GeneralizedMaxwell(1e10, arms=MODULI), ["arms[0] ", "only a layer"]),
-    (lambda: kv.GeneralizedMaxwell(**SOLID, arms=[["1 GN/m^3", "1 s"]]), ["has arms with moduli"]),
-    (lambda: replace(SOFT, arms=[MODULI[0], ["1 GN/m^3", "1 s"]]), ["arms[1] ", "with moduli"]),
-    (lambda: kv.GeneralizedMaxwell(1e10, arms=SOFT.arms), ["only a layer"]),
-    (lambda: kv.Scene(foundation=SOFT).replace({"foundation.stiffness": 1e9}), ["only a layer"]),
-]  # fmt: skip
-
-
-@pytest.mark.parametrize(("make", "words"), MISTAKES)
-def test_what_is_missing_or_contradicts_is_one_message(make, words):
-    with pytest.raises(kv.SceneError) as error:
-        make()
-    (told,) = error.value.problems
-    assert all(word in told for word in words), told
-
-
 def test_files_that_lack_or_contradict_are_told_all_at_once(tmp_path):
     path = tmp_path / "scene.toml"
     path.write_text(
