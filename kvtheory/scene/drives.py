@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from itertools import pairwise
@@ -60,8 +61,6 @@ class Drive(Part):
     With a `stiffness` the drive holds the indenter along x by a spring, with a `damping` in parallel; the
     `mass` that moves along x is that of the support if not given. Without a stiffness the drive is rigid.
 
-    Examples
-    --------
     >>> Drive(history=[("0 s", "0 m/s"), ("50 ms", "0.1 m/s")]).final_velocity
     0.1
     >>> Drive(function=lambda t: 0.1 * math.sin(50.0 * t)).called(0.01)
@@ -157,7 +156,25 @@ class Drive(Part):
             raise SceneError([f"drive.{way}: {told}"])
         if self.history is None:
             return ((0.0, self.velocity),)  # type: ignore[return-value]
-        return _without_redundant(self.history)
+        history = self.history
+        if len(history) > 1 and history[1][0] == history[0][0]:
+            history = history[1:]  # a jump at t = 0 is one from rest
+        kept = [history[0]]
+        for point, (later, next_velocity) in pairwise(history[1:]):
+            (before, last), (time, velocity) = kept[-1], point
+            if point == kept[-1]:
+                continue
+            size = ON_LINE * max(abs(last), abs(velocity), abs(next_velocity))
+            if later > before and (before < time < later or last == velocity == next_velocity):
+                share = (time - before) / (later - before)
+                if abs(last + share * (next_velocity - last) - velocity) <= size:
+                    continue
+            kept.append(point)
+        if len(history) > 1:
+            kept.append(history[-1])
+        while len(kept) > 1 and kept[-1][1] == kept[-2][1]:
+            kept.pop()
+        return tuple(kept)
 
     @property
     def final_velocity(self) -> Any:
@@ -267,39 +284,14 @@ class Drive(Part):
         except Exception as error:
             told = f"drive.function raised {type(error).__name__} at t = {time!r} s: {error}"
             raise ValueError(told) from error
-        try:
-            value = math.nan if isinstance(given, str) else float(given)
-        except (TypeError, ValueError):
-            value = math.nan
+        value = math.nan
+        if not isinstance(given, str):
+            with suppress(TypeError, ValueError):
+                value = float(given)
         if not math.isfinite(value):
             key = f"drive.function({time!r})"
             raise ValueError(problem(key, given, "expected a finite number, in m/s"))
         return value
-
-
-def _without_redundant(
-    history: Sequence[tuple[float, float]],
-) -> tuple[tuple[float, float], ...]:
-    """Leave out the points of a history that change nothing."""
-    if len(history) > 1 and history[1][0] == history[0][0]:
-        history = history[1:]  # a jump at t = 0 is one from rest
-    kept = [history[0]]
-    for (time, velocity), (later, next_velocity) in pairwise(history[1:]):
-        before, last = kept[-1]
-        if (time, velocity) == kept[-1]:
-            continue
-        size = ON_LINE * max(abs(last), abs(velocity), abs(next_velocity))
-        if later > before:
-            share = (time - before) / (later - before)
-            straight = before < time < later or last == velocity == next_velocity
-            if straight and abs(last + share * (next_velocity - last) - velocity) <= size:
-                continue
-        kept.append((time, velocity))
-    if len(history) > 1:
-        kept.append(history[-1])
-    while len(kept) > 1 and kept[-1][1] == kept[-2][1]:
-        kept.pop()
-    return tuple(kept)
 
 
 def history_points(points: Any, key: str = "drive.history") -> tuple[tuple[float, float], ...]:
@@ -310,19 +302,17 @@ def history_points(points: Any, key: str = "drive.history") -> tuple[tuple[float
         told = 'expected points such as [["0 ms", "100 mm/s"], ["50 ms", "0 mm/s"]]'
         raise mistake(key, points, told)
     problems: list[str] = []
-    converted = []
+    values: list[float] = []
     for index, point in enumerate(points):
         if isinstance(point, str) or not isinstance(point, Sequence) or len(point) != 2:
             told = 'expected a pair ["time", "velocity"]'
             problems.append(problem(f"{key}[{index}]", point, told))
             continue
-        pair = []
         for value, spec in zip(point, (TIME, VELOCITY), strict=True):
             with collecting(problems, f"{key}[{index}]", value):
-                pair.append(convert(value, spec))
-        converted.append(tuple(pair))
+                values.append(convert(value, spec))
     if not problems:
-        times = [time for time, _ in converted]
+        times, velocities = values[::2], values[1::2]
         for i, (before, time) in enumerate(pairwise(times), start=1):
             if 0.0 < before - time <= SAME_TIME * math.ulp(before):
                 times[i] = before  # the same but for rounding, as in i * 0.1 + 0.1
@@ -336,4 +326,4 @@ def history_points(points: Any, key: str = "drive.history") -> tuple[tuple[float
         ]
     if problems:
         raise SceneError(problems)
-    return tuple(zip(times, (velocity for _, velocity in converted), strict=True))
+    return tuple(zip(times, velocities, strict=True))

@@ -157,23 +157,16 @@ class _Relaxed(Part):
                 object.__setattr__(part, name, +time if lawless else as_given(time))
         with collecting(problems, "foundation", self):
             validate(self, "foundation")
-        if not lawless:
-            with collecting(problems, "foundation.wlf", self.wlf):
-                object.__setattr__(self, "wlf", _wlf(self.wlf))
-            if self.wlf is not None and self.activation_energy is not None:
-                told = "cannot be given beside foundation.activation_energy"
-                problems.append(f"foundation.wlf: {told}")
-            elif (
-                self.reference_temperature is None
-                and self.temperature is None
-                and self.wlf is not None
-            ):
-                problems.append(missing("foundation", "reference_temperature", REFERENCE))
-        for key in ("temperature", "reference_temperature") if lawless else ():
-            if getattr(self, key) is not None:
-                told = f"needs a law that shifts times; expected foundation.wlf = {WLF_PAIR}"
-                problems.append(f"foundation.{key}: {told}, or foundation.activation_energy")
-                break
+        with collecting(problems, "foundation.wlf", self.wlf):
+            object.__setattr__(self, "wlf", _wlf(self.wlf))
+        given = [key for key in THERMAL[:2] if getattr(self, key) is not None]
+        if self.wlf is not None and self.activation_energy is not None:
+            problems.append("foundation.wlf: cannot be given beside foundation.activation_energy")
+        elif self.wlf is not None and not given:
+            problems.append(missing("foundation", "reference_temperature", REFERENCE))
+        elif lawless and given:
+            told = f"needs a law that shifts times; expected foundation.wlf = {WLF_PAIR}"
+            problems.append(f"foundation.{given[0]}: {told}, or foundation.activation_energy")
         if problems:
             raise SceneError(problems)
         for i, part in enumerate(held if self.modulus is not None else ()):

@@ -203,13 +203,10 @@ class Quantity:
 
     def admits(self, value: ArrayLike) -> bool:
         """Whether every `value` (in SI) is finite and in range."""
-        if isinstance(value, float):  # ten times as fast as NumPy
-            above = value > self.minimum if self.exclusive else value >= self.minimum
-            return math.isfinite(value) and above and value < self.below and value <= self.maximum
-        value = np.asarray(value)
+        value = value if isinstance(value, float) else np.asarray(value)
         above = value > self.minimum if self.exclusive else value >= self.minimum
-        under = (value < self.below) & (value <= self.maximum)
-        return bool(np.all(np.isfinite(value) & above & under))
+        inside = above & (abs(value) < math.inf) & (value < self.below) & (value <= self.maximum)
+        return bool(inside if isinstance(value, float) else inside.all())
 
     @property
     def range(self) -> str:
@@ -452,11 +449,7 @@ def shown(text: str) -> str:
 
 
 def printable(text: str) -> str:
-    r"""Write control characters and line breaks as escapes.
-
-    >>> printable("a\x1b[31m\nb")
-    'a\\x1b[31m\\nb'
-    """
+    r"""Write control characters and line breaks as escapes, such as \n."""
     return "".join(c if c.isprintable() else ascii(c)[1:-1] for c in text)
 
 
