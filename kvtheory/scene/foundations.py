@@ -157,8 +157,9 @@ class _Relaxed(Part):
                 object.__setattr__(part, name, +time if lawless else as_given(time))
         with collecting(problems, "foundation", self):
             validate(self, "foundation")
-        with collecting(problems, "foundation.wlf", self.wlf):
-            object.__setattr__(self, "wlf", _wlf(self.wlf))
+        if self.wlf is not None:
+            with collecting(problems, "foundation.wlf", self.wlf):
+                object.__setattr__(self, "wlf", _wlf(self.wlf))
         given = [key for key in THERMAL[:2] if getattr(self, key) is not None]
         if self.wlf is not None and self.activation_energy is not None:
             problems.append("foundation.wlf: cannot be given beside foundation.activation_energy")
@@ -175,7 +176,8 @@ class _Relaxed(Part):
             derive(part, section, "stiffness", stiffness, "the layer")
         if not lawless:
             self._shift(times)
-        self.mark(part for _, part in self.nested())
+        if not lawless or len(held) > 1:
+            self.mark(part for _, part in self.nested())
 
     def _read_arms(self, problems: list[str]) -> Sequence["Arm"]:
         """Return the arms of a Prony series, converted; other foundations have none."""
@@ -231,8 +233,8 @@ class _Relaxed(Part):
 REFERENCE = quantities(_Relaxed)["reference_temperature"]
 
 
-def _wlf(given: Any) -> WLF | None:
-    if given is None or isinstance(given, WLF):
+def _wlf(given: Any) -> WLF:
+    if isinstance(given, WLF):
         return given
     if not _is_pair(given):
         raise ValueError(f"expected {WLF_PAIR}")

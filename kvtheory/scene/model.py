@@ -167,8 +167,11 @@ class Scene(Part):
                 problems.append(problem(f"`{name}`", parts[name], f"expected {told}"))
         if problems := problems or inconsistencies(parts):
             raise SceneError(problems)
-        self.mark(parts[name] for name in PARTS)
-        _ = self.arrayed and self.shape  # or raise
+        for name in PARTS:
+            if parts[name].arrayed:
+                object.__setattr__(self, "arrayed", True)
+                _ = self.shape  # or raise
+                break
 
     @cached_property
     def shape(self) -> tuple[int, ...]:
@@ -304,7 +307,7 @@ class Scene(Part):
                 values[key] = converted(value, specs[key])
         if problems:
             raise SceneError(problems)
-        return _replaced(self, values)
+        return _replaced(self, values) if values else self
 
 
 def _replaced(part: Any, values: Mapping[str, Any]) -> Any:
@@ -342,7 +345,7 @@ def inconsistencies(parts: Mapping[str, Any]) -> list[str]:
     indenter needs a mass, as its support has none.
     """
     found = []
-    indenter, support, drive = (parts.get(name) for name in ("indenter", "support", "drive"))
+    indenter, support, drive = parts.get("indenter"), parts.get("support"), parts.get("drive")
     per_width = indenter is None or indenter.per_width
     for section, part in (("support", support), ("drive", drive)):
         for name, (value, given_per_width) in getattr(part, "written", {}).items():

@@ -379,15 +379,17 @@ def validate(instance: Any, section: str) -> None:
     here = tuple(values)
     problems = [missing(section, name, specs[name]) for name in required(instance.__class__, here)]
     for place, (name, value) in enumerate(values.items()):
-        with collecting(problems, f"{section}.{name}", value):
-            sample = written_sample(value)
-            spec = _written_as(sample, specs[name])
+        spec = specs[name]
+        try:
+            if spec.per_width and (sample := written_sample(value)) is not None:
+                spec = _written_as(sample, spec)
+                written[name] = value, spec.per_width
             number = converted(value, spec)
             object.__setattr__(instance, name, number)
             if number.__class__ is np.ndarray:
                 object.__setattr__(instance, "arrayed", True)
-            if specs[name].per_width and sample is not None:
-                written[name] = value, spec.per_width
+        except ValueError as error:
+            problems.append(problem(f"{section}.{name}", value, str(error)))
         if excludes := specs[name].excludes:  # a pair is one mistake, not two
             others = [f"{section}.{other}" for other in here[place:] if other in excludes]
             if others:
@@ -410,7 +412,7 @@ def written_sample(value: Any) -> Any:
 
 def _written_as(value: Any, spec: Quantity) -> Quantity:
     """Return the quantity that the unit of a value tells: per unit width, or that of a ball."""
-    kinds = (spec, spec.fitting(False)) if spec.per_width and value is not None else ()
+    kinds = spec, spec.fitting(False)
     for kind in kinds:
         if is_usual(value, kind.unit):  # without importing pint
             return kind
