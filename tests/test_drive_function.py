@@ -107,9 +107,9 @@ def test_a_change_right_before_the_end_is_resolved_within_its_error():
     base = kv.Parabola(0.5), kv.Foundation(1.0, 1.0), kv.DeadWeight(1.0, 1.0)
     found = []
     for ulps in (5000, 20000, 80000):
-        history = [(0.0, 1.0), (0.1 - ulps * math.ulp(0.1), 1.0), (0.1, -1.0)]
-        scene = kv.Scene(*base, kv.Drive(history=history), kv.Run(0.1))
-        found.append(kv.transient(scene, at=[0.1]))
+        points = [(0.0, 1.0), (0.1 - ulps * math.ulp(0.1), 1.0), (0.1, -1.0)]
+        each = kv.Scene(*base, kv.Drive(history=points), kv.Run(0.1))
+        found.append(kv.transient(each, at=[0.1]))
     quick, slower, slowest = (result.normal_force[0] for result in found)
     off = abs(quick - (slower - 0.5 * (slowest - slower)))
     assert abs(slower - quick) > 1e-7

@@ -37,9 +37,11 @@ def scene(kind, **support):
     return kv.Scene(support=KINDS[kind](**SUPPORTS[kind], **support))
 
 
-def assert_same_motion(a, b):
+def assert_same_motion(a, b, rtol=0.0):
     for name in TRANSIENT_UNITS:
-        assert np.array_equal(getattr(a, name), getattr(b, name), equal_nan=True), name
+        one, other = getattr(a, name), getattr(b, name)
+        atol = rtol * np.abs(other).max()
+        np.testing.assert_allclose(one, other, rtol=rtol, atol=atol, err_msg=name)
 
 
 @pytest.mark.parametrize("kind", KINDS)
@@ -61,11 +63,10 @@ def test_a_load_alone_is_the_weight_of_its_mass(kind):
 def test_with_a_load_the_mass_is_inertia_alone(kind, solver):
     """M and W are independent: gravity chosen for the same pair gives the same motion."""
     mass, load = 40.0, 3000.0
-    by_load, by_gravity = (
-        scene(kind, mass=mass, load=load),
-        scene(kind, mass=mass, gravity=load / mass),
-    )
-    assert_same_motion(*(solver(each, at="0 ms:20 ms:5") for each in (by_load, by_gravity)))
+    by_load = scene(kind, mass=mass, load=load)
+    by_gravity = scene(kind, mass=mass, gravity=load / mass)
+    found = (solver(each, at="0 ms:20 ms:5") for each in (by_load, by_gravity))
+    assert_same_motion(*found, rtol=0.0 if solver is kv.transient else 1e-13)  # one may be compiled
     heavy = scene(kind, mass=1e3 * mass, load=load)
     assert kv.steady(by_load).load == kv.steady(heavy).load
 
@@ -137,8 +138,7 @@ def test_a_layer_that_is_not_thin_for_its_contact_is_noted():
     thick = kv.Scene(foundation=LAYER)
     state = kv.steady(thick)
     (note,) = state.notes
-    number = (2e-3 / state.half_length) ** 2 / 0.1
-    assert f"= {number:.3g}, above 0.1" in note
+    assert f"= {(2e-3 / state.half_length) ** 2 / 0.1:.3g}, above 0.1" in note
     assert note in repr(state)
     assert note in state._repr_html_()
     assert state.as_dict()["notes"] == [note]
@@ -146,8 +146,8 @@ def test_a_layer_that_is_not_thin_for_its_contact_is_noted():
     (several,) = kv.steady(thick, over={"foundation.thickness": [1e-6, 1e-3, 2e-3]}).notes
     assert "in 2 of 3 scenes" in several
     assert kv.steady().notes == kv.steady(kv.problem("thin-layer")).notes == ()
-    narrow = {"radius": 1.0, "radius_across": 1e-4}  # thin for its length, not for its width
-    ball = replace(thick, indenter=kv.Sphere(**narrow), support=kv.Fixed(depth=1e-2))
+    narrow = kv.Sphere(radius=1.0, radius_across=1e-4)  # thin for its length, not for its width
+    ball = replace(thick, indenter=narrow, support=kv.Fixed(depth=1e-2))
     assert kv.steady(ball, over={"indenter.radius_across": 1.0}).notes == ()
     assert kv.steady(ball).notes
 
@@ -234,12 +234,12 @@ def test_files_that_lack_or_contradict_are_told_all_at_once(tmp_path):
         '[indenter]\nradius = "10 mm"\n[foundation]\nmodulus = "5 MPa"\nthickness = "2 mm"\n'
         '[support]\nkind = "dead-weight"\ngravity = "1 m/s^2"\n[drive]\nvelocity = "1 m/s"\n'
     )
-    with pytest.raises(kv.SceneError) as error:
+    with pytest.raises(kv.SceneError, match="or support.load") as error:
         kv.load_scene(path)
-    told = str(error.value)
-    for key in ("foundation.poisson_ratio", "foundation.retardation_time", "support.mass"):
-        assert told.count(f"{key}: missing") == 1
-    assert "or support.load" in told
+    missing = [told.partition(": missing for kind")[0] for told in error.value.problems]
+    assert missing == [
+        "foundation.poisson_ratio", "foundation.retardation_time", "support.mass",
+    ]  # fmt: skip
 
 
 def test_the_arms_of_a_layer_are_moduli_and_follow_it():
@@ -304,26 +304,21 @@ def test_temperature_is_velocity(law, foundation):
 def test_temperatures_are_swept_and_everything_sees_the_shifted_times_only():
     rubber = kv.GeneralizedMaxwell(1e10, arms=[(3e10, 0.01), (5e9, 1.0)], **LAW)
     scene = kv.Scene(foundation=rubber, run=kv.Run(1e-3))
-    swept = kv.sweep(
-        scene,
-        over={"foundation.temperature": "0 degC:80 degC:3"},
-        quantities="friction_coefficient",
-    )
-    over = {"foundation.temperature": ["0 degC", "104 degF", 353.15]}
-    many = scene.replace(over)
+    over = {"foundation.temperature": "0 degC:80 degC:3"}
+    swept = kv.sweep(scene, over=over, quantities="friction_coefficient")
+    many = scene.replace({"foundation.temperature": ["0 degC", "104 degF", 353.15]})
     assert swept["friction_coefficient"].tolist() == kv.steady(many).friction_coefficient.tolist()
-    for i in range(3):
-        alone = scene.replace({"foundation.temperature": [273.15, 313.15, 353.15][i]})
+    for i, temperature in enumerate((273.15, 313.15, 353.15)):
+        alone = scene.replace({"foundation.temperature": temperature})
         plain = replace(scene, foundation=alone.foundation.plain())
         assert plain.foundation.arms[0].relaxation_time == 0.01 * alone.foundation.shift_factor
         assert kv.steady(plain).friction_force == kv.steady(many).friction_force[i]
         assert kv.steady(many.flat().rows(slice(i, i + 1))).depth[0] == kv.steady(plain).depth
         if i == 0:  # warmer, the times are too short for elements
-            assert_same_motion(kv.elements(alone, at="1 ms"), kv.elements(plain, at="1 ms"))
-    twice = alone.replace({"foundation.temperature": 300.0}).replace(
-        {"foundation.temperature": alone.foundation.temperature}
-    )
-    assert twice == alone
+            found = (kv.elements(each, at="1 ms") for each in (alone, plain))
+            assert_same_motion(*found, rtol=1e-13)
+    cold = alone.replace({"foundation.temperature": 300.0})
+    assert cold.replace({"foundation.temperature": temperature}) == alone
     both = many.replace({"foundation.arms[0].relaxation_time": [[0.01], [0.02]]})
     assert both.shape == (2, 3)
     assert pickle.loads(pickle.dumps(both)) == both == copy.deepcopy(both)
