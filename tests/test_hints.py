@@ -53,6 +53,7 @@ def test_what_is_no_toml_is_told_with_its_name_or_its_line(tmp_path, content, wo
 
 HOSTILE = {
     "nested": "[run]\nduration = " + "[" * 90_000,
+    "an endless integer": "[run]\nduration = 0x" + "F" * 6000,
     "nested and closed": "[run]\nduration = " + "[" * 150 + "]" * 150,
     "a key of two lines": '[run]\n"a\\nb" = 1',
     "a key that steers a terminal": '[run]\n"\\u001b[31m" = 1',

@@ -234,7 +234,7 @@ def test_files_that_lack_or_contradict_are_told_all_at_once(tmp_path):
         '[indenter]\nradius = "10 mm"\n[foundation]\nmodulus = "5 MPa"\nthickness = "2 mm"\n'
         '[support]\nkind = "dead-weight"\ngravity = "1 m/s^2"\n[drive]\nvelocity = "1 m/s"\n'
     )
-    with pytest.raises(kv.SceneError, match="or support.load") as error:
+    with pytest.raises(kv.SceneError, match=r"or support\.load") as error:
         kv.load_scene(path)
     missing = [told.partition(": missing for kind")[0] for told in error.value.problems]
     assert missing == [

@@ -216,6 +216,8 @@ def test_overrides_replace_values_supports_shapes_and_drives(tmp_path):
     assert history.drive == kv.Drive(history=((0.0, 1.0), (1.0, 0.0)))
     assert history.drive.final_velocity == 0.0
     assert "support.depth" in problems(path, ["support.kind=fixed"])[0]
+    odd = write(tmp_path, TABLE_1.replace(VELOCITY, "waveform = []"))
+    assert kv.load_scene(odd, ["drive.velocity=1 m/s"]).drive.velocity == 1.0
 
 
 def test_python_takes_text_quantities_and_numbers():

@@ -51,6 +51,7 @@ PER_WIDTH = {
 }
 """Keys of a support that are masses, loads and springs."""
 BALL = " (a sphere takes total mass in kg, load in N and stiffness in N/m)"
+LARGEST = 10**400
 DRIVES = ("velocity", "history", "waveform", "file")
 """Keys that define the motion of a drive; a scene has one of them."""
 
@@ -258,7 +259,7 @@ def _excluded(section: str, name: str, table: Mapping[str, Any]) -> list[str]:
     if section == "foundation" and name in (specs := quantities(Foundation)):
         return list(specs[name].excludes)
     if section == "drive" and name in DRIVES and name not in table:
-        wave = WAVEFORMS.get(table.get("waveform", ""))
+        wave = WAVEFORMS.get(str(table.get("waveform")))
         if wave is None or name not in quantities(wave):  # another motion, on the same spring
             return [key for key in table if key not in SPRING]
     return []
@@ -288,27 +289,26 @@ def _part(section: str, table: Any, per_width: bool) -> Any:
     if not isinstance(table, dict):
         told = f"expected one table with this name, not {type(table).__name__}"
         raise SceneError([f"[{section}]: {told}"])
-    chooser, models = CHOOSERS.get(section, ""), MODELS[section]
+    chooser, models = CHOOSERS.get(section), MODELS[section]
     if section == "drive" and "waveform" in table:
         chooser, models = "waveform", WAVEFORMS
     name = table.get(chooser, DEFAULTS.get(section))
     rest = {key: value for key, value in table.items() if key != chooser}
     if isinstance(name, str) and name in models:
-        return _made(
-            models[name], section, rest, per_width, f'{chooser} = "{name}"' * bool(chooser)
-        )
+        choice = f'{chooser} = "{name}"' if chooser else ""
+        return _made(models[name], section, rest, per_width, choice)
     problems = []
     if chooser in table:
         one = f"expected exactly one of: {', '.join(models)}"
         what = nearest(name, models) if isinstance(name, str) else one
         problems.append(problem(f"{section}.{chooser}", name, what))
-    elif absent([chooser], table):
+    elif chooser is not None and absent([chooser], table):
         problems.append(f"{section}.{chooser}: missing; expected one of: {', '.join(models)}")
     meant = closest(name, models) if isinstance(name, str) else None
     if meant is not None:
         with collecting(problems, section, table):
             _made(models[meant], section, rest, per_width, f'{chooser} = "{meant}"')
-    elif section in CHOOSERS:
+    elif chooser is not None:
         valid = [chooser, *dict.fromkeys(key for model in models.values() for key in _keys(model))]
         problems += [
             problem(f"{section}.{key}", value, f"unknown key; {nearest(key, valid)}")
@@ -378,8 +378,9 @@ def _unitless(value: Any) -> Any:
     """Return the value of a key with its bare numbers as texts, which lack a unit unless they need none."""
     if isinstance(value, list):
         return [_unitless(item) for item in value]
-    bare = isinstance(value, int | float) and not isinstance(value, bool)
-    return Bare(repr(value)) if bare else value
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        return value
+    return Bare("inf" if value > LARGEST else repr(value))  # Python does not write endless integers
 
 
 def _keys(cls: Any) -> list[str]:
