@@ -1,6 +1,6 @@
-"""The arguments of the public functions: each function declares what each of them is, once.
+"""Arguments of the public functions: each function declares once what its arguments are.
 
-`checked` reads them before the function sees them, so that a wrong value is answered by its name.
+`checked` reads and checks them before the function runs, so that a message names the wrong one.
 """
 
 import inspect
@@ -38,7 +38,7 @@ Kind = Callable[[Any], Any]
 
 
 def checked(**kinds: Kind) -> Callable[[Function], Function]:
-    """Have the named arguments of a function read by their kinds; an argument may be its default.
+    """Decorate a function whose named arguments are read by their kinds; an argument may be its default.
 
     While the function runs, its `progress` also learns that kernels are being compiled.
 
@@ -111,7 +111,7 @@ def measured(spec: Quantity) -> Kind:
 
 
 def times(value: Any) -> list[float]:
-    """Read times in s: one or several, also as text; every mistake is reported by its value."""
+    """Read times in s: one or several, also as text; report every mistake with its value."""
     problems: list[str] = []
     found: list[float] = []
     for one in value if isinstance(value, (list, tuple)) else [value]:
@@ -138,7 +138,7 @@ def count(value: Any) -> int:
 
 
 def _accepting(said: str, fits: Callable[[Any], bool]) -> Kind:
-    """Return the kind of a value that fits, which is passed on as it is."""
+    """Return the kind of a value that is only checked."""
 
     def read(value: Any) -> Any:
         if not fits(value):
@@ -161,7 +161,7 @@ file_name = _accepting(
 
 
 def choice(options: Iterable[str]) -> Kind:
-    """Return the kind of a name out of several."""
+    """Return the kind of a name from a list."""
     options = list(options)
 
     def read(value: Any) -> str:
@@ -174,7 +174,7 @@ def choice(options: Iterable[str]) -> Kind:
 
 
 def names(value: Any) -> list[str]:
-    """Read a name, or several: in a list, or in an array of text."""
+    """Read one name, or a list or an array of names."""
     listed = [value]
     if not isinstance(value, (str, Mapping)):
         with suppress(TypeError):

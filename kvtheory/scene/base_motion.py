@@ -113,7 +113,7 @@ class BaseMotion:
             a, b = todo.pop()
             coefficients, error = _fit(value, a, b, least)
             if error <= tolerance:
-                # The very value of the function, so that what is at rest stays so.
+                # The exact value of the function at the start, so that what rests stays at rest.
                 found.append((a, b, (value(a), *coefficients[1:])))
                 if len(found) != EARLY or end - b <= PIECE_LIMIT * (b - a):
                     continue

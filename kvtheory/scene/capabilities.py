@@ -1,4 +1,4 @@
-"""What works with what: the scenes that each question is answered for, and the wording where it is not.
+"""What works with what: the scenes for which each question is answered, and what is said of the others.
 
 A scene has a shape, a law of the foundation, a support and a drive. A question is answered for sets of these;
 messages, tests and a page of the documentation are made from the table `QUESTIONS`.
@@ -61,8 +61,8 @@ Kind = tuple[str, str, str, str]
 class Needs:
     """A requirement on a scene, which is met by any of several sets of scenes.
 
-    Called with a scene, it returns an empty text if the scene meets it; else what the scene lacks, compared
-    with the set that it comes nearest to.
+    Called with a scene, it returns an empty text if the scene meets it; else what the scene lacks of the
+    nearest set.
 
     >>> lacks_parabola(Scene())
     ''
@@ -108,7 +108,7 @@ lacks_scripts = Needs(Scenes(QUADRATIC), Scenes((*CLOSED, "circle"), KELVIN_VOIG
 
 @dataclass(frozen=True)
 class Question:
-    """A question about a scene: what it is called, how it is asked, what it needs, and what is missing."""
+    """A question about a scene: its name, how it is asked, what it needs, and what theory is missing."""
 
     what: str
     call: str
@@ -173,7 +173,7 @@ QUESTIONS = {
         "The derivations are of Kelvin-Voigt closed forms.",
     ),
 }  # fmt: skip
-"""What works with what: the one table. A scene that is not covered is one for which theory is missing."""
+"""What works with what: the one table. For scenes that are not covered, theory is missing."""
 
 IN_MOTION = (
     lacks_parabola, lacks_paper_model, lacks_rigid_paper_model, lacks_arms, lacks_quadratic_on_arms,

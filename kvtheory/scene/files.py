@@ -1,5 +1,6 @@
 """Scene files: TOML in and out, overrides, and the commented template."""
 
+import json
 import re
 import tomllib
 from collections.abc import Iterable, Mapping
@@ -39,7 +40,7 @@ CHOICES = {
     "foundation": ("kind", FOUNDATIONS),
     "support": ("kind", SUPPORTS),
 }
-"""Sections in which one key selects the model; the other keys depend on it."""
+"""Sections in which one key selects the model, on which the other keys depend."""
 CHOOSERS = {section: chooser for section, (chooser, _) in CHOICES.items()}
 MODELS: dict[str, dict[str, Any]] = {section: models for section, (_, models) in CHOICES.items()}
 MODELS |= {"drive": {"": Drive}, "run": {"": Run}}
@@ -52,6 +53,7 @@ PER_WIDTH = {
 """Keys of a support that are masses, loads and springs."""
 BALL = " (a sphere takes total mass in kg, load in N and stiffness in N/m)"
 LARGEST = 10**400
+"""Larger integers of a file are infinite."""
 DRIVES = ("velocity", "history", "waveform", "file")
 """Keys that define the motion of a drive; a scene has one of them."""
 
@@ -126,7 +128,9 @@ def to_toml(scene: Scene) -> str:
     lines = []
     for section, table in _tables(scene).items():
         lines.append(f"[{section}]")
-        lines += [f"{key} = {_toml(value)}" for key, value in table.items()]
+        lines += [
+            f"{key} = {json.dumps(value, ensure_ascii=False)}" for key, value in table.items()
+        ]
         lines.append("")
     return "\n".join(lines)
 
@@ -185,12 +189,6 @@ def _text(value: Any, unit: str) -> Any:
     if isinstance(value, np.ndarray):
         return [_text(each, unit) for each in (value.tolist() if value.ndim == 1 else value)]
     return value if unit == "1" else f"{value!r} {unit}"
-
-
-def _toml(value: Any) -> str:
-    if isinstance(value, list):
-        return "[" + ", ".join(_toml(item) for item in value) + "]"
-    return f'"{value}"' if isinstance(value, str) else repr(value)
 
 
 def _read(path: Path) -> dict[str, Any]:
@@ -380,7 +378,7 @@ def _unitless(value: Any) -> Any:
         return [_unitless(item) for item in value]
     if isinstance(value, bool) or not isinstance(value, int | float):
         return value
-    return Bare("inf" if value > LARGEST else repr(value))  # Python does not write endless integers
+    return Bare("inf" if value > LARGEST else repr(value))
 
 
 def _keys(cls: Any) -> list[str]:

@@ -180,7 +180,7 @@ class Profile(Part):
 
 
 def beside(x: float, to: float) -> float:
-    """Return the next number towards another; beside 0, the next that no processor takes for 0."""
+    """Return the next number towards another; next to 0, the smallest that no processor flushes to 0."""
     return math.nextafter(x, to) if x else math.copysign(float(np.finfo(float).tiny), to)
 
 
@@ -193,10 +193,10 @@ def _pointwise(function: Callable[[float], float], x: Value) -> Value:
 
 @dataclass(frozen=True, eq=False)
 class Sphere(_Shape):
-    """A ball, h = x^2/(2R) + y^2/(2R'): a paraboloid, R' being R unless `radius_across` says otherwise.
+    """A ball, the paraboloid h = x^2/(2R) + y^2/(2R'), with R' = R unless `radius_across` is given.
 
-    It approximates a sphere as the parabola approximates a cylinder, with a relative error of the order of
-    (a/R)^2. Its strips along x are parabolas of depth delta - y^2/(2R').
+    It approximates a sphere as the parabola does a cylinder, to a relative error of the order of (a/R)^2. Its
+    strips along x are parabolas of depth delta - y^2/(2R').
 
     >>> Sphere(radius="10 mm").stretch, Sphere("10 mm", radius_across="40 mm").stretch
     (1.0, 2.0)
