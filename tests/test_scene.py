@@ -13,7 +13,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import kvtheory as kv
-from kvtheory.scene import tables, template
+from kvtheory.scene import files, tables, template
+from kvtheory.scene.quantities import given as given_quantities
 from kvtheory.scene.static_state import StaticState
 
 TABLE_1 = """
@@ -54,6 +55,12 @@ def test_the_template_is_table_1(tmp_path, support):
     assert kv.load_scene(write(tmp_path, text)) == kv.Scene.table1(support)
     assert all("#" in line for line in text.splitlines() if "=" in line)
     assert tomllib.loads(text)["support"]["kind"] == support
+    models = [known for _, known in files.CHOICES.values()]
+    names = [name for known in (*models, files.WAVEFORMS, files.DRIVES) for name in known]
+    parts = [getattr(kv.Scene.table1(support), section) for section in files.SECTIONS]
+    words = [spec.words for part in parts for spec in given_quantities(part).values()]
+    for told in (*names, *words):
+        assert told in text, told
 
 
 POSITIVE = st.floats(1e-300, 1e300)
