@@ -48,8 +48,24 @@ class StaticState:
         """
         require(lacks_one_scene, scene, "the static state")
         require(lacks_quadratic, scene, "the static state in closed form")
+        R, K = scene.indenter.radius, scene.foundation.stiffness
+        depth, load = scene.support.depth, scene.support.weight
         try:
-            found = _at_rest(scene)
+            if scene.indenter.per_width:
+                if depth is None:
+                    half_length = (1.5 * R * load / K) ** (1 / 3)
+                    depth = half_length**2 / (2 * R)
+                else:
+                    half_length = math.sqrt(2 * R * depth)
+                    load = 4 / 3 * K * half_length * depth
+            else:
+                stiffness = ball_stiffness(K, R, scene.indenter.stretch)
+                if depth is None:
+                    depth = math.sqrt(load / stiffness)
+                else:
+                    load = stiffness * depth**2
+                half_length = math.sqrt(2 * R * depth)
+            found = cls.at(scene, depth, half_length, load)
         except ArithmeticError:
             found = None
         if found is None or not found.in_range:
@@ -134,26 +150,6 @@ class StaticState:
 def ball_stiffness(stiffness: Any, radius: Any, stretch: Any) -> Any:
     """Return W_0/delta_0^2 = pi K R sqrt(R'/R) of a ball at rest in N/m^2, of floats or arrays (fact F20)."""
     return math.pi * stiffness * radius * stretch
-
-
-def _at_rest(scene: Scene) -> StaticState:
-    """Return the static state of a parabola or a ball from its load or its depth."""
-    R, K = scene.indenter.radius, scene.foundation.stiffness
-    depth, load = scene.support.depth, scene.support.weight
-    if not scene.indenter.per_width:
-        stiffness = ball_stiffness(K, R, scene.indenter.stretch)
-        if depth is None:
-            depth = math.sqrt(load / stiffness)
-        else:
-            load = stiffness * depth**2
-        half_length = math.sqrt(2 * R * depth)
-    elif depth is None:
-        half_length = (1.5 * R * load / K) ** (1 / 3)
-        depth = half_length**2 / (2 * R)
-    else:
-        half_length = math.sqrt(2 * R * depth)
-        load = 4 / 3 * K * half_length * depth
-    return StaticState.at(scene, depth, half_length, load)
 
 
 FAR = 10.0
