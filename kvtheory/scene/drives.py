@@ -212,7 +212,7 @@ class Drive(Part):
 
     @property
     def changes(self) -> tuple[float, ...]:
-        """The times in s at which V jumps or has a kink, in order, t = 0 among them; not those of a waveform."""
+        """The times in s at which V jumps or has a kink, in order, with t = 0; not those of a waveform."""
         times = self.breaks if self.function is not None else (time for time, _ in self.points)
         return tuple(sorted({0.0, *times}))
 
