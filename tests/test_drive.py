@@ -3,6 +3,7 @@
 import itertools
 import math
 import pickle
+from functools import partial
 
 import numpy as np
 import pytest
@@ -26,6 +27,9 @@ REDUNDANT = {
 TIMES = np.linspace(0.0, 0.2, 41)
 
 
+SPOKEN = ("last_change", "jumps", "changes", "constant", "final_velocity")
+
+
 @pytest.fixture(params=PLAIN)
 def pair(request):
     """The same drive with and without redundant points."""
@@ -33,56 +37,36 @@ def pair(request):
     return tuple(kv.Scene(drive=kv.Drive(history=history)) for history in points)
 
 
-def same(a, b):
-    for name in kv.results.TRANSIENT_UNITS:
-        np.testing.assert_allclose(getattr(a, name), getattr(b, name), rtol=1e-12, atol=1e-12)
-
-
-def test_redundant_points_do_not_change_the_drive(pair):
+def test_redundant_points_change_neither_the_drive_nor_a_motion(pair):
     plain, redundant = (scene.drive for scene in pair)
-    assert redundant.last_change == plain.last_change
-    assert redundant.jumps == plain.jumps
-    assert redundant.changes == plain.changes
-    assert redundant.constant == plain.constant
-    assert redundant.final_velocity == plain.final_velocity
+    for name in SPOKEN:
+        assert getattr(redundant, name) == getattr(plain, name), name
     assert redundant.history != plain.history  # what was given is kept, for a file
-
-
-def test_redundant_points_do_not_change_a_motion(pair):
-    plain, redundant = pair
-    same(kv.transient(plain, at=TIMES), kv.transient(redundant, at=TIMES))
-    same(*(kv.elements(scene, at=TIMES, per_length="50 /mm", certify=False) for scene in pair))
+    simulate = partial(kv.elements, at=TIMES, per_length="50 /mm", certify=False)
+    for solve in (partial(kv.transient, at=TIMES), simulate):
+        one, other = (solve(scene) for scene in pair)
+        for name in kv.results.TRANSIENT_UNITS:
+            a, b = getattr(one, name), getattr(other, name)
+            np.testing.assert_allclose(a, b, rtol=1e-12, atol=1e-12, err_msg=name)
 
 
 def test_redundant_points_do_not_change_what_is_said_of_a_motion(pair):
-    plain, redundant = pair
-    asked = {"quantities": ["settling_time", "peak_to_steady_friction"]}
+    names = ["settling_time", "peak_to_steady_friction"]
     over = {"run.duration": ["0.5 s"]}
-    measured = [kv.sweep(scene, over=over, **asked) for scene in pair]
-    for name in asked["quantities"]:
+    measured = [kv.sweep(scene, over=over, quantities=names) for scene in pair]
+    for name in names:
         assert measured[0][name] == pytest.approx(measured[1][name], rel=1e-9)
-    checks = [
-        {
-            check.name: check.ok
-            for check in kv.compare(scene, data=kv.transient(scene, at=TIMES)).checks
-        }
-        for scene in pair
-    ]
+    reports = [kv.compare(scene, data=kv.transient(scene, at=TIMES)) for scene in pair]
+    checks = [{check.name: check.ok for check in report.checks} for report in reports]
     assert checks[0] == checks[1]
-    request = {"at": TIMES[1:].tolist(), "rtol": 1e-2}
-    assert kv.solve(plain, **request).model == kv.solve(redundant, **request).model
+    models = [kv.solve(scene, at=TIMES[1:].tolist(), rtol=1e-2).model for scene in pair]
+    assert models[0] == models[1]
 
 
 def test_a_held_velocity_leaves_the_settling_time_alone():
-    over = {"run.duration": ["1 s"]}
-    found = [
-        float(
-            kv.sweep(kv.Scene(drive=drive), over=over, quantities="settling_time")["settling_time"][
-                0
-            ]
-        )
-        for drive in (kv.Drive(0.1), kv.Drive(history=[(0.0, 0.1), (0.25, 0.1)]))
-    ]
+    drives = kv.Drive(0.1), kv.Drive(history=[(0.0, 0.1), (0.25, 0.1)])
+    asked = {"over": {"run.duration": ["1 s"]}, "quantities": "settling_time"}
+    found = [kv.sweep(kv.Scene(drive=drive), **asked)["settling_time"][0] for drive in drives]
     assert found[0] == pytest.approx(found[1], rel=1e-12)
     assert found[0] > 0.01
 
@@ -142,13 +126,10 @@ def test_the_motion_of_a_drive_is_its_integral():
         assert scaled.at(t / 2.0) == pytest.approx((Y / 0.5, V * 4.0, slope * 8.0), rel=1e-14)
 
 
-def test_a_jump_at_the_very_end_counts():
+def test_a_jump_at_the_very_end_counts_and_so_does_the_speed_between_two_ends():
     motion = kv.Drive(history=[(0.0, 0.1), (1.0, 0.1), (1.0, 0.3)]).motion(1.0, least=0.1)
     assert motion.velocity(1.0) == 0.3
     assert motion.velocity(1.0, before=True) == 0.1
-
-
-def test_the_speed_of_a_function_is_found_between_its_ends():
     motion = kv.Drive(function=lambda t: math.sin(math.pi * t)).motion(1.0, least=1.0)
     assert motion.highest_speed == pytest.approx(1.0, rel=1e-3)
 
@@ -203,23 +184,13 @@ def test_the_limit_of_steps_grows_with_the_drive():
         kv.transient(scene, at=[0.2], max_steps=100)
 
 
-def test_a_function_jumps_at_breaks_that_are_no_kinks_and_at_the_start_unless_it_starts_at_rest():
-    def pulse(t):
-        return 0.1 * t if t < 0.5 else 0.3
-
-    assert kv.Drive(function=math.cos, breaks=[0.0, 0.5]).jumps == (0.0,)
-    assert kv.Drive(function=math.sin, breaks=[0.0, 0.5]).jumps == ()
-    assert kv.Drive(function=pulse, breaks=[0.0, 0.5]).jumps == (0.5,)
-
-
-def test_a_faster_drive_has_every_velocity_multiplied_whatever_it_is():
-    for drive in (
-        kv.Drive(0.1),
-        kv.Drive(history=[(0.0, 0.1), (0.1, -0.2)]),
-        kv.Drive(function=math.cos),
-    ):
-        motion, faster = (each.motion(0.1, 1.0) for each in (drive, drive.faster(3.0)))
-        assert faster.velocity(0.05) == pytest.approx(3.0 * motion.velocity(0.05), rel=1e-12)
+@pytest.mark.parametrize(
+    "given", [{"velocity": 0.1}, {"history": [(0.0, 0.1), (0.1, -0.2)]}, {"function": math.cos}]
+)
+def test_a_faster_drive_has_every_velocity_multiplied_whatever_it_is(given):
+    drive = kv.Drive(**given)
+    motion, faster = (each.motion(0.1, 1.0) for each in (drive, drive.faster(3.0)))
+    assert faster.velocity(0.05) == pytest.approx(3.0 * motion.velocity(0.05), rel=1e-12)
 
 
 @pytest.mark.parametrize("sign", [1.0, -1.0])

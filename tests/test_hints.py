@@ -1,11 +1,18 @@
-"""Messages that teach: hints near in meaning, what was given, files in any encoding, no foreign words."""
+"""Messages about wrong input: what they name, quote and suggest; and files in any encoding."""
+
+import math
+import sys
+from concurrent.futures import ThreadPoolExecutor
 
 import pytest
 from click.testing import CliRunner
 
 import kvtheory as kv
 from kvtheory.cli import main
+from kvtheory.results import QUANTITIES
 from kvtheory.scene import template
+from kvtheory.scene.indenters import SHAPES
+from kvtheory.scene.model import SUPPORTS
 from kvtheory.scene.quantities import MEANT, closest, quantities
 
 ENCODINGS = ("utf-8", "utf-8-sig", "utf-16", "utf-16-le", "utf-16-be", "cp1252", "latin-1")
@@ -22,26 +29,31 @@ def test_scenes_and_drives_are_read_in_the_encodings_of_shells_and_spreadsheets(
     assert kv.load_scene(path) == kv.Scene()
     table = tmp_path / "drive.csv"
     table.write_bytes(f"t [µs],V [mm/s]{end}0,0{end}1000,100{end}".encode(encoding))
-    path.write_bytes(
-        text.replace('velocity = "100 mm/s"', 'file = "drive.csv"')
-        .replace("\n", end)
-        .encode(encoding)
-    )
+    text = text.replace('velocity = "100 mm/s"', 'file = "drive.csv"')
+    path.write_bytes(text.replace("\n", end).encode(encoding))
     assert kv.load_scene(path).drive.history == ((0.0, 0.0), (0.001, 0.1))
 
 
 @pytest.mark.parametrize(
-    "content", [b"\xff\xfeA", b"\x00\x01\x02", b"\x81\x8d\x8f", b"PK\x03\x04\x00"]
+    ("content", "words"),
+    [
+        (b"\xff\xfeA", r"scene\.toml is not a TOML file"),
+        (b"\x00\x01\x02", r"scene\.toml is not a TOML file"),
+        (b"\x81\x8d\x8f", r"scene\.toml is not a TOML file"),
+        (b"PK\x03\x04\x00", r"scene\.toml is not a TOML file"),
+        (b'[run]\nduration = "1 s"\nduration = "2 s"\n', r'line 3, .*: duration = "2 s"'),
+    ],
 )
-def test_what_is_no_text_is_told_with_its_name(tmp_path, content):
+def test_what_is_no_toml_is_told_with_its_name_or_its_line(tmp_path, content, words):
     path = tmp_path / "scene.toml"
     path.write_bytes(content)
-    with pytest.raises(kv.SceneError, match=r"scene\.toml is not a TOML file"):
+    with pytest.raises(kv.SceneError, match=words):
         kv.load_scene(path)
 
 
 HOSTILE = {
     "nested": "[run]\nduration = " + "[" * 90_000,
+    "an endless integer": "[run]\nduration = 0x" + "F" * 6000,
     "nested and closed": "[run]\nduration = " + "[" * 150 + "]" * 150,
     "a key of two lines": '[run]\n"a\\nb" = 1',
     "a key that steers a terminal": '[run]\n"\\u001b[31m" = 1',
@@ -63,13 +75,6 @@ def test_a_message_is_short_and_only_shown_whatever_a_file_holds(tmp_path, text)
     assert "scene.toml" in found.output or "run." in found.output
 
 
-def test_a_mistake_of_toml_is_shown_with_its_line(tmp_path):
-    path = tmp_path / "scene.toml"
-    path.write_text('[run]\nduration = "1 s"\nduration = "2 s"\n')
-    with pytest.raises(kv.SceneError, match=r'line 3, .*: duration = "2 s"'):
-        kv.load_scene(path)
-
-
 @pytest.mark.parametrize(
     ("override", "words"),
     [
@@ -80,30 +85,95 @@ def test_a_mistake_of_toml_is_shown_with_its_line(tmp_path):
         ("foundation.tau=1 s", ['did you mean "retardation_time"', '"1 s"']),
         ("foundation.height=1 mm", ['did you mean "thickness"']),
         ("foundation.viscosity=1 Pa s", ['did you mean "retardation_time"']),
+        (["support.kind=fixed", "support.load=3 N/mm"],
+         ['load is of kind = "dead-weight" or "suspended"']),
         ("indenter.inclination=0.1", ['inclination is of shape = "wedge"']),
         ("indenter.R=1 mm", ['did you mean "radius"']),
         ("drive.V=1 m/s", ['did you mean "velocity"']),
         ("run.end=1 s", ['did you mean "duration"']),
+        ("drive.waveform=sinus", ['drive.waveform = "sinus"', 'did you mean "sine"']),
+        (["drive.waveform=sine", "drive.amplitude=1 mm/s"], ["drive.frequency: missing", "5 Hz"]),
+        (["drive.waveform=sine", "drive.amplitud=1 mm/s"], ["drive.amplitud", '"amplitude"']),
+        (["drive.waveform=triangle", "drive.amplitude=1 mm"], ["drive.amplitude", "m/s"]),
+        ("drive.file=none.csv", ["drive.file", "none.csv", "cannot be read"]),
+        (['drive.history=[["0 s", "1 m/s"]]', "drive.file=none.csv"], ["drive.file", "cannot be read"]),
+        ("tau=3", ['did you mean "foundation.retardation_time"']),
+        ("E=3", ['did you mean "foundation.modulus"']),
+        ("V=3", ['did you mean "drive.velocity"']),
+        ("R=3", ['did you mean "indenter.radius"']),
+        ("mass=3", ['did you mean "support.mass"']),
+        ("load=3", ['did you mean "support.load"']),
+        ("duration=3", ['did you mean "run.duration"']),
+        ("depth=3", ['did you mean "support.depth"']),
     ],
-)
+)  # fmt: skip
 def test_hints_are_near_in_meaning_and_quote_what_was_given(override, words):
+    overrides = [override] if isinstance(override, str) else override
     with pytest.raises(kv.SceneError) as error:
-        kv.load_scene(overrides=[override])
+        kv.load_scene(overrides=overrides)
     for word in words:
         assert word in str(error.value), error.value
 
 
-def test_a_load_on_what_is_held_is_told():
-    with pytest.raises(kv.SceneError, match='load is of kind = "dead-weight" or "suspended"'):
-        kv.load_scene(overrides=["support.kind=fixed", "support.load=3 N/mm"])
+LAYER = {"modulus": "5 MPa", "thickness": "0.2 mm", "poisson_ratio": 0.3}
+MODULI = [["30 MPa", "10 ms"], ["5 MPa", "1 s"]]
+
+
+def soft():
+    return kv.GeneralizedMaxwell(**LAYER, arms=MODULI)
+
+
+MISTAKES = [
+    (kv.DeadWeight, ["support.mass: missing", "or support.load"]),
+    (lambda: kv.DeadWeight(load="-3 N/mm"), ["support.load", "above 0"]),
+    (lambda: kv.DeadWeight(load="3 kg"), ["support.load", "wrong dimension", "N/m"]),
+    (lambda: kv.DeadWeight(load=1e300, gravity=1e-300), ["follows from support.load"]),
+    (lambda: kv.Suspended(load=1.0), ["support.stiffness: missing"]),
+    (lambda: kv.Foundation(1e9), ["retardation_time: missing"]),
+    (lambda: kv.Foundation(retardation_time=1.0), ["stiffness: missing", "foundation.modulus"]),
+    (lambda: kv.Foundation(1e9, 1.0, modulus=1e6, thickness=1e-3),
+     ["foundation.stiffness = 1000000000.0", "beside foundation.modulus, foundation.thickness"]),
+    (lambda: kv.Foundation(retardation_time=1.0, **{**LAYER, "poisson_ratio": 0.5}),
+     ["foundation.poisson_ratio", "at least 0 and below 0.5"]),
+    (lambda: kv.GeneralizedMaxwell(1e10), ["foundation.arms: missing; expected pairs of stiffness"]),
+    (lambda: kv.GeneralizedMaxwell(1e10, arms=MODULI), ["arms[0] ", "only a layer"]),
+    (lambda: kv.GeneralizedMaxwell(**LAYER, arms=[["1 GN/m^3", "1 s"]]), ["has arms with moduli"]),
+    (lambda: kv.GeneralizedMaxwell(**LAYER, arms=[MODULI[0], ["1 GN/m^3", "1 s"]]),
+     ["arms[1] ", "with moduli"]),
+    (lambda: kv.GeneralizedMaxwell(1e10, arms=soft().arms), ["only a layer"]),
+    (lambda: kv.Scene(foundation=soft()).replace({"foundation.stiffness": 1e9}), ["only a layer"]),
+    (kv.Drive, ["drive: expected one of velocity, history and waveform", "function"]),
+    (lambda: kv.Drive(0.1, function=math.sin), ["one of velocity, history"]),
+    (lambda: kv.Drive(0.1, waveform=kv.Sine(0.1, 5.0)), ["one of velocity, history"]),
+    (lambda: kv.Drive(waveform=math.sin), ["drive.waveform", "expected a Sine"]),
+    (lambda: kv.Drive(function=3.0), ["drive.function = 3.0", "function V(t)"]),
+    (lambda: kv.Drive(0.1, breaks=[0.1]), ["drive.breaks", "needs a function"]),
+    (lambda: kv.Drive(function=math.sin, breaks="soon"), ["drive.breaks", '"soon"']),
+    (lambda: kv.Drive(function=math.sin, breaks=[0.1, "5 mm"]), ["drive.breaks", "'5 mm'"]),
+    (lambda: kv.Drive(function=math.sin, breaks=[-0.1]), ["drive.breaks = [-0.1]", "out of range"]),
+    (lambda: kv.Drive(function=math.sin, tolerance=0.0), ["drive.tolerance = 0.0", "1e-13 to 1"]),
+    (lambda: kv.Drive(function=math.sin, tolerance="1e-9"), ["drive.tolerance", "1e-13 to 1"]),
+    (lambda: kv.PowerLaw(length="1 mm", exponent=0.5), ["indenter.exponent", "at least 1"]),
+    (lambda: kv.Profile(abs, abs, reach=float("nan")), ["indenter.reach", "above 0"]),
+    (lambda: kv.Profile(abs, abs, reach="10 mm"), ["indenter.reach", "above 0"]),
+    (lambda: kv.Profile(abs, abs, kinks=(float("nan"),)), ["indenter.kinks", "finite numbers"]),
+    (lambda: kv.Profile(abs, abs, kinks=1.0), ["indenter.kinks", "finite numbers"]),
+    (lambda: kv.Profile("x", abs), ["indenter", "functions h(x)"]),
+    (lambda: kv.Revolved(kv.Sphere(0.01)), ["indenter.profile", "line contact"]),
+    (lambda: kv.Drive(0.1, damping=1.0), ["drive.damping = 1.0", "needs drive.stiffness"]),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("make", "words"), MISTAKES)
+def test_a_mistake_in_python_is_one_message(make, words):
+    with pytest.raises(kv.SceneError) as error:
+        make()
+    (told,) = error.value.problems
+    assert all(word in told for word in words), told
 
 
 def test_what_is_meant_exists():
-    from kvtheory.results import QUANTITIES
-    from kvtheory.scene.indenters import SHAPES
-    from kvtheory.scene.model import SUPPORTS, Foundation, Run
-
-    models = [*SHAPES.values(), *SUPPORTS.values(), Foundation, Run, kv.Drive]
+    models = [*SHAPES.values(), *SUPPORTS.values(), kv.Foundation, kv.Run, kv.Drive]
     known = set(QUANTITIES) | {name for model in models for name in quantities(model)}
     assert set(MEANT.values()) <= known
     for symbol, name in MEANT.items():
@@ -120,69 +190,85 @@ def test_symbols_of_quantities_are_understood_in_hints(name):
 
 
 def test_a_density_is_blamed_only_where_it_was_given():
-    large = kv.Scene(
-        indenter=kv.Parabola(radius=1e6), support=kv.Fixed(depth=1e3), drive=kv.Drive(velocity=1e3)
-    )
-    with pytest.raises(
-        ValueError, match=r"default density, 200 elements per mm.*give `per_length`"
-    ):
+    large = kv.Scene(kv.Parabola(1e6), support=kv.Fixed(1e3), drive=kv.Drive(1e3))
+    own = r"default density, 200 elements per mm.*give `per_length`"
+    with pytest.raises(ValueError, match=own):
         kv.elements(large)
     with pytest.raises(ValueError, match=r"^`per_length` = 200000"):
         kv.elements(large, per_length=200e3)
 
 
-def command(*arguments, status=2):
-    result = CliRunner().invoke(main, arguments)
-    assert result.exit_code == status, result.output
-    return result
-
-
-def test_the_command_line_names_its_options_where_the_library_names_arguments(tmp_path):
-    cases = {
-        "--at": ["transient", "--at", "1 furlong"],
-        "--rtol": ["transient", "--rtol", "5"],
-        "--per-length": ["elements", "--per-length", "-1 /mm"],
-        "--quantity": ["solve", "--quantity", "depht"],
-        "--set": ["steady", "--set", "nonsense"],
-        "--method": ["steady", "--method", "exat"],
-        "--over": ["sweep", "--over", "a.b=1", "-o", str(tmp_path / "a.csv")],
-        "--only": ["chart", "failures", "--only", "nothing"],
-        "--standard": ["chart", "work-precision", "--standard", "nothing"],
-    }
-    for option, arguments in cases.items():
-        told = command(*arguments).stderr
-        assert option in told, told
-        assert "`" not in told.replace("`kinds`", ""), told
-
-
-@pytest.mark.parametrize(
-    "text", ["sys:exit", "sys:modules", "this_is:not", "os.path:join", "builtins:int", "json:", ":x",
-             "builtins:ThreadPoolExecutor", "concurrent.futures:Executor", "antigravity.no:x"],
+FAILURES, PRECISION = ("chart", "failures"), ("chart", "work-precision")
+COMPARE = ("compare", "--report", "r.html", "--plot", "p.png")
+RUBBER = {
+    "indenter.shape": "circle", "foundation.kind": "generalized-maxwell",
+    "foundation.arms": '[["30 GN/m^3", "10 ms"]]',
+}  # fmt: skip
+ON_RUBBER = [part for key, value in RUBBER.items() for part in ("--set", f"{key}={value}")]
+SWEEP = ("sweep", "-o", "a.csv", "--over")
+EXECUTORS = (
+    "sys:exit", "sys:modules", "this_is:not", "os.path:join", "builtins:int", "json:", ":x", "exits:make",
+    "builtins:ThreadPoolExecutor", "concurrent.futures:Executor", "antigravity.no:x", "fails:make",
+    "imports:make", "misspelt:make", "empty:make",
 )  # fmt: skip
-def test_what_makes_no_executor_is_told(tmp_path, text):
-    arguments = ["sweep", "--over", "drive.velocity=1 m/s", "-o", str(tmp_path / "a.csv")]
-    assert f'--executor "{text}"' in command(*arguments, "--executor", text).stderr
-    assert not list(tmp_path.iterdir())
+MODULES = {
+    "exits": "raise SystemExit(0)", "fails": "1/0", "imports": "import no_such",
+    "misspelt": "syntax error", "empty": "",
+}  # fmt: skip
 
 
 @pytest.mark.parametrize(
-    "code", ["raise SystemExit(0)", "1/0", "import no_such", "syntax error", ""]
+    ("arguments", "message"),
+    [
+        ([*FAILURES, "--only", "sawtoth"], 'did you mean "sawtooth"?'),
+        ([*FAILURES, "-o", "atlas.pdf"], "expected a name that ends in .html"),
+        ([*PRECISION, "--standard", "hopp"], 'did you mean "hop"?'),
+        (
+            [*PRECISION, "--standard", "hop", "--set", "drive.velocity=1 m/s"],
+            "does not go with SCENE",
+        ),
+        ([*PRECISION, "-o", "chart.txt"], "expected a name that ends in"),
+        ([*PRECISION, "--set", "indenter.shape=circle"], "parabola only"),
+        (["chart", "stability", "-o", "map.txt"], "expected a name that ends in"),
+        ([*COMPARE, "--plot", "nowhere/p.png"], 'there is no directory "'),
+        ([*COMPARE, "--plot", "p.xyz"], "ends in"),
+        ([*COMPARE, "--report", "r.txt"], "ends in .html"),
+        ([*COMPARE, "--report", "folder.html"], "is a directory"),
+        (["explore", *ON_RUBBER], 'the explorer holds for foundation.kind = "kelvin-voigt" only'),
+        (["transient", "--at", "1 furlong"], "--at"),
+        (["transient", "--rtol", "5"], "--rtol"),
+        (["elements", "--per-length", "-1 /mm"], "--per-length"),
+        (["solve", "--quantity", "depht"], "--quantity"),
+        (["steady", "--set", "nonsense"], "--set"),
+        (["steady", "--method", "exat"], "--method"),
+        ([*SWEEP, "a.b=1"], "--over"),
+        *(
+            ([*SWEEP, "drive.velocity=1 m/s", "--executor", text], f'--executor "{text}"')
+            for text in EXECUTORS
+        ),
+    ],
 )
-def test_a_module_that_does_not_import_is_told(tmp_path, monkeypatch, code):
-    (tmp_path / "broken_cluster.py").write_text(code)
+def test_a_command_refuses_in_one_message_and_writes_nothing(
+    arguments, message, tmp_path, monkeypatch
+):
+    (tmp_path / "modules").mkdir()
+    for name, code in MODULES.items():
+        (tmp_path / "modules" / f"{name}.py").write_text(code)
+    (tmp_path / "folder.html").mkdir()
     monkeypatch.chdir(tmp_path)
-    monkeypatch.syspath_prepend(str(tmp_path))
-    arguments = ["sweep", "--over", "drive.velocity=1 m/s", "-o", "a.csv"]
-    told = command(*arguments, "--executor", "broken_cluster:make").stderr
-    assert '--executor "broken_cluster:make"' in told
-    import sys
-
-    sys.modules.pop("broken_cluster", None)
+    monkeypatch.syspath_prepend(str(tmp_path / "modules"))
+    done = CliRunner().invoke(main, arguments)
+    assert done.exit_code == 2
+    assert message in done.stderr
+    if message.startswith("--"):  # where the library would name an argument
+        assert "`" not in done.stderr.replace("`kinds`", "")
+    assert done.stdout == ""
+    assert {path.name for path in tmp_path.iterdir()} == {"folder.html", "modules"}
+    for name in MODULES:
+        sys.modules.pop(name, None)
 
 
 def test_a_class_is_no_executor():
-    from concurrent.futures import ThreadPoolExecutor
-
     with pytest.raises(ValueError, match="`executor`"):
         kv.sweep(over={"drive.velocity": [1.0]}, executor=ThreadPoolExecutor)
 
@@ -197,19 +283,6 @@ def test_times_are_lists_and_ranges():
     for wrong in ("0 ms:1 s:5", "0 ms:1 ms", "1 ms:2 ms:0", "0:1:2", "1 ms:2 kg:3", ""):
         with pytest.raises(kv.SceneError, match="`at`"):
             kv.transient(at=wrong)
-
-
-@pytest.mark.parametrize(
-    ("name", "key"),
-    [
-        ("tau", "foundation.retardation_time"), ("E", "foundation.modulus"), ("V", "drive.velocity"),
-        ("R", "indenter.radius"), ("mass", "support.mass"), ("load", "support.load"),
-        ("duration", "run.duration"), ("depth", "support.depth"),
-    ],
-)  # fmt: skip
-def test_names_without_their_section_are_answered_with_the_key(name, key):
-    with pytest.raises(kv.SceneError, match=f'did you mean "{key}"'):
-        kv.load_scene(overrides=[f"{name}=3"])
 
 
 @pytest.mark.parametrize("command", [kv.transient, lambda s: kv.sweep(

@@ -18,22 +18,17 @@ X = np.array([-7e-3, -1e-3, -2e-5, 4e-5, 3e-3, 8e-3])
 
 
 @pytest.mark.parametrize("indenter", INDENTERS)
-def test_slope_is_the_derivative_of_the_height(indenter):
+def test_height_and_slope_belong_together_and_take_arrays(indenter):
     step = 1e-5 * np.abs(X)
     difference = (indenter.height(X + step) - indenter.height(X - step)) / (2.0 * step)
     np.testing.assert_allclose(indenter.slope(X), difference, rtol=1e-8)
-
-
-@pytest.mark.parametrize("indenter", INDENTERS)
-def test_floats_and_arrays_agree(indenter):
     for function in (indenter.height, indenter.slope):
         np.testing.assert_array_equal(function(X), [float(function(x)) for x in X.tolist()])
-
-
-@pytest.mark.parametrize("indenter", INDENTERS)
-def test_lowest_point_is_the_origin(indenter):
-    assert float(indenter.height(0.0)) == 0.0
+    assert float(indenter.height(0.0)) == 0.0  # the lowest point is the origin
     assert np.all(indenter.height(X) > 0.0)
+    if indenter.convex:
+        bend = (indenter.slope(X + step) - indenter.slope(X - step)) / (2.0 * step)
+        np.testing.assert_allclose(indenter.bend(X), X * bend / indenter.slope(X), rtol=1e-7)
 
 
 @pytest.mark.parametrize("fraction", [1e-12, 1e-6, 0.3, 0.999, 1.0 - 1e-12])

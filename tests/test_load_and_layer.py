@@ -3,6 +3,8 @@
 import copy
 import json
 import pickle
+import re
+import tomllib
 from dataclasses import replace
 
 import numpy as np
@@ -14,35 +16,46 @@ from kvtheory.cli import main
 from kvtheory.results import TRANSIENT_UNITS
 from kvtheory.scene import template
 from kvtheory.scene.foundations import THIN, layer_stiffness
-from kvtheory.scene.quantities import changed
 
 G = 9.80665
 SUPPORTS = {"dead-weight": {}, "suspended": {"stiffness": 3e7}}
 KINDS = {"dead-weight": kv.DeadWeight, "suspended": kv.Suspended}
 LAYER = kv.Foundation(modulus="5 MPa", thickness="2 mm", poisson_ratio=0.45, retardation_time=0.1)
+LAYER_KEYS = [
+    "foundation.modulus=5 MPa", "foundation.thickness=2 mm", "foundation.poisson_ratio=0.45",
+]  # fmt: skip
 
 MODULI = [["30 MPa", "10 ms"], ["5 MPa", "1 s"]]
 SOLID = {"modulus": "5 MPa", "thickness": "0.2 mm", "poisson_ratio": 0.3}
 SOFT = kv.GeneralizedMaxwell(**SOLID, arms=MODULI)
 ROOM = {"reference_temperature": "23 degC"}
 LAWS = {"wlf": {"wlf": ["17.44", "51.6 K"]}, "arrhenius": {"activation_energy": "80 kJ/mol"}}
+LAW = {**ROOM, **LAWS["wlf"]}
 
 
 def scene(kind, **support):
     return kv.Scene(support=KINDS[kind](**SUPPORTS[kind], **support))
 
 
-def assert_same_motion(a, b):
+def assert_same_motion(a, b, rtol=0.0):
     for name in TRANSIENT_UNITS:
-        assert np.array_equal(getattr(a, name), getattr(b, name), equal_nan=True), name
+        one, other = getattr(a, name), getattr(b, name)
+        atol = rtol * np.abs(other).max()
+        np.testing.assert_allclose(one, other, rtol=rtol, atol=atol, err_msg=name)
 
 
 @pytest.mark.parametrize("kind", KINDS)
 def test_a_load_alone_is_the_weight_of_its_mass(kind):
     by_load, by_mass = scene(kind, load=1000.0 * G), scene(kind, mass=1000.0)
     assert by_load.support.mass == 1000.0
-    assert kv.steady(by_load) == kv.steady(by_mass)
     assert_same_motion(kv.transient(by_load), kv.transient(by_mass))
+    for shape in (kv.Parabola(0.01), kv.Circle(0.01), kv.Wedge(0.05), kv.PowerLaw(0.01, 3.0)):
+        a, b = (replace(each, indenter=shape) for each in (by_load, by_mass))
+        for method in ("exact", "quadrature", "asymptote"):
+            if method == "quadrature" or shape.shape != "circle":
+                assert kv.steady(a, method=method) == kv.steady(b, method=method)
+        a, b = (kv.solve(each, quantity="friction_coefficient", rtol=1e-3) for each in (a, b))
+        assert a.friction_coefficient == pytest.approx(b.friction_coefficient, rel=1e-14)
 
 
 @pytest.mark.parametrize("kind", KINDS)
@@ -50,30 +63,26 @@ def test_a_load_alone_is_the_weight_of_its_mass(kind):
 def test_with_a_load_the_mass_is_inertia_alone(kind, solver):
     """M and W are independent: gravity chosen for the same pair gives the same motion."""
     mass, load = 40.0, 3000.0
-    at = "0 ms:20 ms:5"
-    by_load = solver(scene(kind, mass=mass, load=load), at=at)
-    by_gravity = solver(scene(kind, mass=mass, gravity=load / mass), at=at)
-    assert_same_motion(by_load, by_gravity)
-    assert kv.steady(scene(kind, mass=mass, load=load)).load == kv.steady(
-        scene(kind, mass=1e3 * mass, load=load)
-    ).load  # fmt: skip
+    by_load = scene(kind, mass=mass, load=load)
+    by_gravity = scene(kind, mass=mass, gravity=load / mass)
+    found = (solver(each, at="0 ms:20 ms:5") for each in (by_load, by_gravity))
+    assert_same_motion(*found, rtol=0.0 if solver is kv.transient else 1e-13)  # one may be compiled
+    heavy = scene(kind, mass=1e3 * mass, load=load)
+    assert kv.steady(by_load).load == kv.steady(heavy).load
 
 
 def test_a_load_can_be_swept_and_the_mass_follows_only_where_it_was_not_given():
     loads = np.array([1e3, 5e3, 2e4])
     over = {"support.load": loads}
     follows, stays = kv.Scene(support=kv.DeadWeight(load=1.0)), kv.Scene()
-    steady = kv.steady(follows, over=over)
-    assert steady.load == pytest.approx(loads, rel=1e-14)
+    assert kv.steady(follows, over=over).load == pytest.approx(loads, rel=1e-14)
     for base in (follows, stays):
         swept = kv.sweep(base, over=over, quantities=["load", "depth.min", "load.steady"])
         assert swept["load"] == pytest.approx(loads, rel=1e-14)
         for load, least in zip(loads, swept["depth.min"], strict=True):
-            mass = load / G if base is follows else 1000.0
-            alone = kv.sweep(
-                kv.Scene(support=kv.DeadWeight(mass=mass, load=load)),
-                over={"drive.velocity": [0.1]}, quantities="depth.min",
-            )  # fmt: skip
+            own = kv.DeadWeight(mass=load / G if base is follows else 1000.0, load=load)
+            velocity = {"drive.velocity": [0.1]}
+            alone = kv.sweep(kv.Scene(support=own), over=velocity, quantities="depth.min")
             assert least == pytest.approx(alone["depth.min"][0], rel=1e-9)
     inertia = kv.sweep(follows, over={"support.mass": [1.0, 1e3]}, quantities=["load", "depth.min"])
     assert inertia["load"].tolist() == pytest.approx([1.0, 1.0])
@@ -93,7 +102,7 @@ def compressed_layer(nu, thickness):
 
     By the exact compliance of a bonded layer in plane strain, without friction on its surface.
     """
-    dx, n, count = 0.01, 250, 4096
+    dx, n, count = 0.02, 125, 2048
     k = 2.0 * np.pi * np.fft.rfftfreq(count, dx)
     s = np.maximum(k * thickness, 1e-6)
     e = np.exp(-2.0 * s)
@@ -129,8 +138,7 @@ def test_a_layer_that_is_not_thin_for_its_contact_is_noted():
     thick = kv.Scene(foundation=LAYER)
     state = kv.steady(thick)
     (note,) = state.notes
-    number = (2e-3 / state.half_length) ** 2 / 0.1
-    assert f"= {number:.3g}, above 0.1" in note
+    assert f"= {(2e-3 / state.half_length) ** 2 / 0.1:.3g}, above 0.1" in note
     assert note in repr(state)
     assert note in state._repr_html_()
     assert state.as_dict()["notes"] == [note]
@@ -138,22 +146,20 @@ def test_a_layer_that_is_not_thin_for_its_contact_is_noted():
     (several,) = kv.steady(thick, over={"foundation.thickness": [1e-6, 1e-3, 2e-3]}).notes
     assert "in 2 of 3 scenes" in several
     assert kv.steady().notes == kv.steady(kv.problem("thin-layer")).notes == ()
-    narrow = {"radius": 1.0, "radius_across": 1e-4}  # thin for its length, not for its width
-    ball = replace(thick, indenter=kv.Sphere(**narrow), support=kv.Fixed(depth=1e-2))
+    narrow = kv.Sphere(radius=1.0, radius_across=1e-4)  # thin for its length, not for its width
+    ball = replace(thick, indenter=narrow, support=kv.Fixed(depth=1e-2))
     assert kv.steady(ball, over={"indenter.radius_across": 1.0}).notes == ()
     assert kv.steady(ball).notes
 
 
 @pytest.mark.parametrize("shape", ["parabola", "circle"])
 def test_the_scene_command_notes_a_thick_layer_for_the_contact_at_rest(shape):
-    layer = {"modulus": "5 MPa", "thickness": "2 mm", "poisson_ratio": "0.45"}
-    given = [f"foundation.{key}={value}" for key, value in layer.items()]
-    command = ["scene", *(f"--set={each}" for each in (*given, f"indenter.shape={shape}"))]
+    given = [*LAYER_KEYS, f"indenter.shape={shape}"]
+    command = ["scene", *(f"--set={each}" for each in given)]
     told = CliRunner().invoke(main, command, catch_exceptions=False).stdout
     (note,) = json.loads(CliRunner().invoke(main, [*command, "--json"]).stdout)["notes"]
     assert note in told
-    scene = kv.load_scene(overrides=[*given, f"indenter.shape={shape}"])
-    assert (note,) == kv.steady(scene, over={"drive.velocity": 0.0}).notes
+    assert (note,) == kv.steady(kv.load_scene(overrides=given), over={"drive.velocity": 0.0}).notes
 
 
 def test_a_layer_is_the_foundation_of_its_stiffness_in_every_function():
@@ -168,20 +174,16 @@ def test_a_layer_is_the_foundation_of_its_stiffness_in_every_function():
 
 def test_a_layer_is_swept_by_its_own_keys_or_gives_way_to_a_stiffness():
     by_layer = kv.Scene(foundation=LAYER)
-    thickness = np.array([1e-3, 2e-3, 4e-3])
-    over = {"foundation.thickness": thickness, "foundation.modulus": [5e6, 6e6, 7e6]}
+    over = {"foundation.thickness": [1e-3, 2e-3, 4e-3], "foundation.modulus": [5e6, 6e6, 7e6]}
     zipped = {tuple(over): tuple(over.values())}
-    steady = kv.steady(by_layer, over=over)
     swept = kv.sweep(by_layer, over=zipped, quantities=["depth", "depth.end"])
-    assert np.array_equal(swept["depth"], steady.depth)
-    for h, E, last in zip(thickness, over["foundation.modulus"], swept["depth.end"], strict=True):
-        K = layer_stiffness(E, h, 0.45)
-        alone = kv.transient(kv.Scene(foundation=kv.Foundation(K, 0.1)), at=0.2)
-        assert last == pytest.approx(alone.depth[0], rel=1e-12)
+    assert np.array_equal(swept["depth"], kv.steady(by_layer, over=over).depth)
+    for h, E, last in zip(*over.values(), swept["depth.end"], strict=True):
+        alone = kv.Scene(foundation=kv.Foundation(layer_stiffness(E, h, 0.45), 0.1))
+        assert last == pytest.approx(kv.transient(alone, at=0.2).depth[0], rel=1e-12)
     over = {"foundation.stiffness": [1e9, 1e10]}
     assert np.array_equal(kv.steady(by_layer, over=over).depth, kv.steady(over=over).depth)
-    swept = kv.sweep(by_layer, over=over, quantities="depth.end")
-    assert swept.failed == 0
+    assert kv.sweep(by_layer, over=over, quantities="depth.end").failed == 0
     with pytest.raises(kv.SceneError, match=r"foundation\.thickness = .*: unknown key"):
         kv.sweep(over={"foundation.thickness": [1e-3]})
 
@@ -193,13 +195,9 @@ def test_a_layer_is_swept_by_its_own_keys_or_gives_way_to_a_stiffness():
         kv.Scene(support=kv.DeadWeight(mass=2.0, load=3e3)),
         kv.Scene(support=kv.Suspended(load=3e3, stiffness=1e6, gravity=1.6)),
         kv.Scene(foundation=LAYER),
-        kv.Scene(foundation=replace(SOFT, **ROOM, **LAWS["wlf"], temperature="60 degC")),
+        kv.Scene(foundation=replace(SOFT, **LAW, temperature="60 degC")),
         kv.Scene(foundation=kv.FractionalKelvinVoigt(1e9, 0.1, 0.5, **ROOM, **LAWS["arrhenius"])),
-        kv.Scene(
-            foundation=kv.Foundation(
-                1e9, [0.1, 0.2], temperature=[[280.0], [300.0]], **ROOM, **LAWS["wlf"]
-            )
-        ),
+        kv.Scene(foundation=kv.Foundation(1e9, [0.1, 0.2], temperature=[[280.0], [300.0]], **LAW)),
     ],
 )
 def test_files_hold_what_was_given(tmp_path, scene):
@@ -209,77 +207,25 @@ def test_files_hold_what_was_given(tmp_path, scene):
     assert read == scene
     assert kv.to_toml(read) == kv.to_toml(scene)
     assert ("mass" in path.read_text()) == (scene.support.load is None or scene.support.mass == 2.0)
-    assert changed(read.support, gravity=1.0).weight == changed(scene.support, gravity=1.0).weight
+    assert read.support.changed(gravity=1.0).weight == scene.support.changed(gravity=1.0).weight
 
 
-def test_the_template_tells_of_both():
-    for support in KINDS:
-        text = template(support)
-        told = text.replace('# load = "', 'load = "').replace("# modulus", "modulus")
-        told = told.replace("# thickness", "thickness").replace("# poisson", "poisson")
-        told = "\n".join(
-            line for line in told.splitlines()
-            if not line.startswith(("mass", 'stiffness = "10 GN'))
-        )  # fmt: skip
-        assert told != text
-        import tomllib
-
-        tables = tomllib.loads(told)
-        assert tables["support"]["load"] == "9.80665 N/mm"
-        assert tables["foundation"]["poisson_ratio"] == 0.3
+@pytest.mark.parametrize("support", KINDS)
+def test_the_template_tells_of_both(support):
+    told = re.sub("# (load|modulus|thickness|poisson)", r"\1", template(support))
+    told = re.sub('^(mass|stiffness = "10 GN).*', "", told, flags=re.MULTILINE)
+    tables = tomllib.loads(told)
+    assert tables["support"]["load"] == "9.80665 N/mm"
+    assert tables["foundation"]["poisson_ratio"] == 0.3
 
 
 def test_overrides_exchange_a_stiffness_for_a_layer_and_back(tmp_path):
-    layer = [
-        "foundation.modulus=5 MPa",
-        "foundation.thickness=2 mm",
-        "foundation.poisson_ratio=0.45",
-    ]
-    read = kv.load_scene(overrides=layer)
+    read = kv.load_scene(overrides=LAYER_KEYS)
     assert read.foundation == replace(LAYER)
     path = tmp_path / "layer.toml"
     path.write_text(kv.to_toml(read))
     assert kv.load_scene(path, ["foundation.stiffness=1 GN/m^3"]).foundation.stiffness == 1e9
     assert kv.load_scene(overrides=["support.load=3 N/mm"]).support.weight == 3000.0
-
-
-@pytest.mark.parametrize(
-    ("make", "words"),
-    [
-        (kv.DeadWeight, ["support.mass: missing", "or support.load"]),
-        (lambda: kv.DeadWeight(load="-3 N/mm"), ["support.load", "above 0"]),
-        (lambda: kv.DeadWeight(load="3 kg"), ["support.load", "wrong dimension", "N/m"]),
-        (lambda: kv.DeadWeight(load=1e300, gravity=1e-300), ["follows from support.load"]),
-        (lambda: kv.Suspended(load=1.0), ["support.stiffness: missing"]),
-        (lambda: kv.Foundation(1e9), ["retardation_time: missing"]),
-        (lambda: kv.Foundation(retardation_time=1.0), ["stiffness: missing", "foundation.modulus"]),
-        (
-            lambda: kv.Foundation(modulus=1e6, retardation_time=1.0),
-            ["foundation.thickness: missing", "foundation.poisson_ratio: missing"],
-        ),
-        (
-            lambda: kv.Foundation(1e9, 1.0, thickness=1e-3),
-            ["foundation.stiffness = 1000000000.0: cannot be given beside foundation.thickness"],
-        ),
-        (
-            lambda: kv.Foundation(
-                modulus=1e6, thickness=1e-3, poisson_ratio=0.5, retardation_time=1.0
-            ),
-            ["foundation.poisson_ratio", "at least 0 and below 0.5"],
-        ),
-    ],
-)  # fmt: skip
-def test_what_is_missing_or_contradicts_is_told(make, words):
-    with pytest.raises(kv.SceneError) as error:
-        make()
-    for word in words:
-        assert word in str(error.value)
-
-
-def test_a_pair_that_excludes_each_other_is_one_mistake():
-    with pytest.raises(kv.SceneError) as error:
-        kv.Foundation(1e9, 1.0, modulus=1e6, thickness=1e-3)
-    assert len(error.value.problems) == 1
 
 
 def test_files_that_lack_or_contradict_are_told_all_at_once(tmp_path):
@@ -288,60 +234,32 @@ def test_files_that_lack_or_contradict_are_told_all_at_once(tmp_path):
         '[indenter]\nradius = "10 mm"\n[foundation]\nmodulus = "5 MPa"\nthickness = "2 mm"\n'
         '[support]\nkind = "dead-weight"\ngravity = "1 m/s^2"\n[drive]\nvelocity = "1 m/s"\n'
     )
-    with pytest.raises(kv.SceneError) as error:
+    with pytest.raises(kv.SceneError, match=r"or support\.load") as error:
         kv.load_scene(path)
-    told = str(error.value)
-    for key in ("foundation.poisson_ratio", "foundation.retardation_time", "support.mass"):
-        assert told.count(f"{key}: missing") == 1
-    assert "or support.load" in told
-
-
-@pytest.mark.parametrize(
-    "indenter",
-    [kv.Parabola(0.01), kv.Circle(0.01), kv.Wedge(0.05), kv.PowerLaw(0.01, 3.0)],
-    ids=lambda shape: shape.shape,
-)
-@pytest.mark.parametrize("kind", KINDS)
-def test_every_shape_and_method_carries_the_load_of_a_load(indenter, kind):
-    by_load = replace(scene(kind, load=1000.0 * G), indenter=indenter)
-    by_mass = replace(scene(kind, mass=1000.0), indenter=indenter)
-    for method in ("exact", "quadrature", "asymptote"):
-        try:
-            wanted = kv.steady(by_mass, method=method)
-        except ValueError:
-            continue  # the method is not for this shape
-        assert kv.steady(by_load, method=method) == wanted
-    asked = {"quantity": "friction_coefficient", "rtol": 1e-3}
-    assert kv.solve(by_load, **asked).friction_coefficient == pytest.approx(
-        kv.solve(by_mass, **asked).friction_coefficient, rel=1e-14
-    )
+    missing = [told.partition(": missing for kind")[0] for told in error.value.problems]
+    assert missing == [
+        "foundation.poisson_ratio", "foundation.retardation_time", "support.mass",
+    ]  # fmt: skip
 
 
 def test_the_arms_of_a_layer_are_moduli_and_follow_it():
+    arms = [(arm.stiffness * 1.0, arm.relaxation_time) for arm in SOFT.arms]
     per_modulus = layer_stiffness(1.0, 2e-4, 0.3)
-    assert [arm.stiffness for arm in SOFT.arms] == pytest.approx(
-        [3e7 * per_modulus, 5e6 * per_modulus]
-    )
-    plain = kv.GeneralizedMaxwell(
-        float(SOFT.stiffness),
-        arms=[(arm.stiffness * 1.0, arm.relaxation_time) for arm in SOFT.arms],
-    )
-    thickness, moduli = np.array([1e-4, 2e-4, 4e-4]), [[6e6], [7e6]]
+    assert [K for K, _ in arms] == pytest.approx([3e7 * per_modulus, 5e6 * per_modulus])
+    plain = kv.GeneralizedMaxwell(float(SOFT.stiffness), arms=arms)
     by_layer, by_stiffness = kv.Scene(foundation=SOFT), kv.Scene(foundation=plain)
     assert kv.steady(by_layer) == kv.steady(by_stiffness)
     assert kv.asymptotes(by_layer).maxima == kv.asymptotes(by_stiffness).maxima
-    over = {"foundation.thickness": thickness, "foundation.arms[1].modulus": moduli}
-    many = by_layer.replace(over)
+    over = {"foundation.thickness": np.array([1e-4, 2e-4, 4e-4])}
+    swept = kv.sweep(by_layer, over=over, quantities="depth")
+    assert np.array_equal(swept["depth"], kv.steady(by_layer, over=over).depth)
+    many = by_layer.replace({**over, "foundation.arms[1].modulus": [[6e6], [7e6]]})
     assert many.shape == (2, 3)
     found = kv.steady(many).friction_coefficient
     for i, j in np.ndindex(2, 3):
-        arms = [["30 MPa", "10 ms"], [moduli[i][0], "1 s"]]
-        alone = kv.GeneralizedMaxwell(**{**SOLID, "thickness": thickness[j]}, arms=arms)
+        layer = {**SOLID, "thickness": over["foundation.thickness"][j]}
+        alone = kv.GeneralizedMaxwell(**layer, arms=[MODULI[0], [[6e6, 7e6][i], "1 s"]])
         assert kv.steady(kv.Scene(foundation=alone)).friction_coefficient == found[i, j]
-    swept = kv.sweep(by_layer, over={"foundation.thickness": thickness}, quantities="depth")
-    assert np.array_equal(
-        swept["depth"], kv.steady(by_layer, over={"foundation.thickness": thickness}).depth
-    )
 
 
 @pytest.mark.parametrize(
@@ -364,10 +282,14 @@ def test_temperature_is_velocity(law, foundation):
     else:
         assert a_T == pytest.approx(np.exp(8e4 / 8.31446261815324 * (1 / T - 1 / T_ref)), rel=1e-12)
     shapes = [
-        kv.Parabola(0.01), kv.Circle(0.01), kv.PowerLaw(0.01, 3.0), kv.Wedge(0.05), kv.Sphere(0.01),
+        kv.Parabola(0.01), kv.Sphere(0.01), kv.Circle(0.01), kv.PowerLaw(0.01, 3.0), kv.Wedge(0.05),
         kv.Revolved(kv.Wedge(0.05)), kv.Profile(lambda x: 50.0 * x * x, lambda x: 100.0 * x),
     ]  # fmt: skip
-    for shape in shapes:
+    chosen = {
+        "generalized-maxwell": shapes[:3],
+        "fractional-kelvin-voigt": [*shapes[:2], shapes[4]],
+    }
+    for shape in chosen.get(foundation.kind, shapes):
         quick = shape.shape in ("parabola", "sphere") or foundation.kind == "kelvin-voigt"
         for support in (kv.Fixed(1e-5), kv.DeadWeight(10.0))[: 1 + quick]:
             scene = kv.Scene(shape, cold, support, kv.Drive(0.1 * a_T))
@@ -380,29 +302,23 @@ def test_temperature_is_velocity(law, foundation):
 
 
 def test_temperatures_are_swept_and_everything_sees_the_shifted_times_only():
-    law = {**ROOM, **LAWS["wlf"]}
-    rubber = kv.GeneralizedMaxwell(1e10, arms=[(3e10, 0.01), (5e9, 1.0)], **law)
+    rubber = kv.GeneralizedMaxwell(1e10, arms=[(3e10, 0.01), (5e9, 1.0)], **LAW)
     scene = kv.Scene(foundation=rubber, run=kv.Run(1e-3))
-    swept = kv.sweep(
-        scene,
-        over={"foundation.temperature": "0 degC:80 degC:3"},
-        quantities="friction_coefficient",
-    )
-    over = {"foundation.temperature": ["0 degC", "104 degF", 353.15]}
-    many = scene.replace(over)
+    over = {"foundation.temperature": "0 degC:80 degC:3"}
+    swept = kv.sweep(scene, over=over, quantities="friction_coefficient")
+    many = scene.replace({"foundation.temperature": ["0 degC", "104 degF", 353.15]})
     assert swept["friction_coefficient"].tolist() == kv.steady(many).friction_coefficient.tolist()
-    for i in range(3):
-        alone = scene.replace({"foundation.temperature": [273.15, 313.15, 353.15][i]})
+    for i, temperature in enumerate((273.15, 313.15, 353.15)):
+        alone = scene.replace({"foundation.temperature": temperature})
         plain = replace(scene, foundation=alone.foundation.plain())
         assert plain.foundation.arms[0].relaxation_time == 0.01 * alone.foundation.shift_factor
         assert kv.steady(plain).friction_force == kv.steady(many).friction_force[i]
         assert kv.steady(many.flat().rows(slice(i, i + 1))).depth[0] == kv.steady(plain).depth
         if i == 0:  # warmer, the times are too short for elements
-            assert_same_motion(kv.elements(alone, at="1 ms"), kv.elements(plain, at="1 ms"))
-    twice = alone.replace({"foundation.temperature": 300.0}).replace(
-        {"foundation.temperature": alone.foundation.temperature}
-    )
-    assert twice == alone
+            found = (kv.elements(each, at="1 ms") for each in (alone, plain))
+            assert_same_motion(*found, rtol=1e-13)
+    cold = alone.replace({"foundation.temperature": 300.0})
+    assert cold.replace({"foundation.temperature": temperature}) == alone
     both = many.replace({"foundation.arms[0].relaxation_time": [[0.01], [0.02]]})
     assert both.shape == (2, 3)
     assert pickle.loads(pickle.dumps(both)) == both == copy.deepcopy(both)
@@ -410,65 +326,39 @@ def test_temperatures_are_swept_and_everything_sees_the_shifted_times_only():
     assert moved.foundation.arms[0].relaxation_time[0] == alone.foundation.arms[0].relaxation_time
 
 
+POLE = "above T_ref - C_2 = 244.55 K, the pole"
+WARM = {"temperature": "60 degC", **ROOM}
 THERMAL_MISTAKES = [
-    ({"temperature": "60 degC", **ROOM}, "foundation.temperature: needs a law"),
+    (WARM, "foundation.temperature: needs a law"),
     ({"temperature": "60 degC", **LAWS["wlf"]}, "foundation.reference_temperature: missing"),
     ({"temperature": 1.0, **LAWS["arrhenius"]}, "foundation.reference_temperature: missing"),
     (LAWS["wlf"], "foundation.reference_temperature: missing"),
-    ({**ROOM, **LAWS["wlf"], **LAWS["arrhenius"]}, "foundation.wlf: cannot be given beside"),
-    ({"temperature": "-274 degC", **ROOM, **LAWS["wlf"]}, "foundation.temperature = .*above 0"),
-    (
-        {"temperature": "-29 degC", **ROOM, **LAWS["wlf"]},
-        "above T_ref - C_2 = 244.55 K, the pole",
-    ),
-    (
-        {"temperature": [300.0, 244.0], **ROOM, **LAWS["wlf"]},
-        "above T_ref - C_2 = 244.55 K, the pole",
-    ),
-    (
-        {"temperature": "-28.5 degC", **ROOM, **LAWS["wlf"]},
-        "double precision; check foundation.temp",
-    ),
+    ({**LAW, **LAWS["arrhenius"]}, "foundation.wlf: cannot be given beside"),
+    ({"temperature": "-274 degC", **LAW}, "foundation.temperature = .*above 0"),
+    ({"temperature": "-29 degC", **LAW}, POLE),
+    ({"temperature": [300.0, 244.0], **LAW}, POLE),
+    ({"temperature": "-28.5 degC", **LAW}, "precision; check foundation.temp"),
     ({"temperature": "1 K", **ROOM, **LAWS["arrhenius"]}, "foundation.activation_energy"),
-    ({"temperature": "60 degC", **ROOM, "wlf": ["17.44", "51.6 degC"]}, "not of a difference"),
-    ({"temperature": "60 degC", **ROOM, "wlf": ["17.44 K", "51.6 K"]}, "dimensionless"),
-    ({"temperature": "60 degC", **ROOM, "wlf": ["17.44"]}, "expected C_1 and C_2"),
+    ({**WARM, "wlf": ["17.44", "51.6 degC"]}, "not of a difference"),
+    ({**WARM, "wlf": ["17.44 K", "51.6 K"]}, "dimensionless"),
+    ({**WARM, "wlf": ["17.44"]}, "expected C_1 and C_2"),
 ]
 
 
 @pytest.mark.parametrize(("given", "words"), THERMAL_MISTAKES)
 def test_a_wrong_temperature_is_told_by_its_key(given, words):
-    for make in (
-        lambda **law: kv.Foundation(1e10, 0.1, **law),
-        lambda **law: kv.GeneralizedMaxwell(**SOLID, arms=MODULI, **law),
+    for cls, own in (
+        (kv.Foundation, {"stiffness": 1e10, "retardation_time": 0.1}),
+        (kv.GeneralizedMaxwell, {**SOLID, "arms": MODULI}),
     ):
         with pytest.raises(kv.SceneError, match=words):
-            make(**given)
+            cls(**own, **given)
 
 
 def test_a_shift_that_leaves_double_precision_later_is_named():
     cold = kv.Foundation(1e10, 0.1, temperature=250.0, **ROOM, wlf=(20.0, 51.6))
     with pytest.raises(ValueError, match=r"a_T of foundation\.temperature = 2\.\d+e\+169"):
         kv.transient(kv.Scene(foundation=cold))
-
-
-@pytest.mark.parametrize(
-    ("make", "words"),
-    [
-        (lambda: kv.GeneralizedMaxwell(1e10, arms=MODULI), r"arms\[0\] .*only a layer"),
-        (
-            lambda: kv.GeneralizedMaxwell(**SOLID, arms=[["1 GN/m^3", "1 s"]]),
-            "has arms with moduli",
-        ),
-        (lambda: replace(SOFT, arms=[MODULI[0], ["1 GN/m^3", "1 s"]]), r"arms\[1\] .*with moduli"),
-        (lambda: kv.GeneralizedMaxwell(1e10, arms=SOFT.arms), "only a layer"),
-        (lambda: kv.Scene(foundation=SOFT).replace({"foundation.stiffness": 1e9}), "only a layer"),
-    ],
-)
-def test_mixed_units_of_arms_are_one_message(make, words):
-    with pytest.raises(kv.SceneError, match=words) as caught:
-        make()
-    assert len(caught.value.problems) == 1
 
 
 SPRUNG = kv.Drive(velocity=0.1, stiffness=1e6)
@@ -478,7 +368,7 @@ FOLLOWING = (
     kv.Scene(support=kv.Suspended(mass=2.0, load=3e3, stiffness=1e6)),
     kv.Scene(foundation=LAYER),
     kv.Scene(foundation=SOFT),
-    kv.Scene(foundation=replace(SOFT, **ROOM, **LAWS["wlf"], temperature="25 degC")),
+    kv.Scene(foundation=replace(SOFT, **LAW, temperature="25 degC")),
     kv.Scene.table1("fixed"),
 )
 

@@ -2,7 +2,6 @@
 
 import copy
 import pickle
-import re
 import tomllib
 from dataclasses import replace
 from pathlib import Path
@@ -14,7 +13,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import kvtheory as kv
-from kvtheory.scene import tables, template
+from kvtheory.scene import files, tables, template
+from kvtheory.scene.quantities import given as given_quantities
 from kvtheory.scene.static_state import StaticState
 
 TABLE_1 = """
@@ -54,6 +54,13 @@ def test_the_template_is_table_1(tmp_path, support):
     text = template(support)
     assert kv.load_scene(write(tmp_path, text)) == kv.Scene.table1(support)
     assert all("#" in line for line in text.splitlines() if "=" in line)
+    assert tomllib.loads(text)["support"]["kind"] == support
+    models = [known for _, known in files.CHOICES.values()]
+    names = [name for known in (*models, files.WAVEFORMS, files.DRIVES) for name in known]
+    parts = [getattr(kv.Scene.table1(support), section) for section in files.SECTIONS]
+    words = [spec.words for part in parts for spec in given_quantities(part).values()]
+    for told in (*names, *words):
+        assert told in text, told
 
 
 POSITIVE = st.floats(1e-300, 1e300)
@@ -87,77 +94,74 @@ def test_a_scene_comes_back_from_its_file_to_the_last_bit(tmp_path_factory, scen
 
 def test_python_functions_do_not_go_into_a_file():
     flat = kv.Profile(lambda x: x * x, lambda x: 2 * x)
-    with pytest.raises(ValueError, match="Python functions"):
-        kv.to_toml(kv.Scene(indenter=flat))
+    for scene in (kv.Scene(indenter=flat), kv.Scene(drive=kv.Drive(function=abs))):
+        with pytest.raises(ValueError, match="Python function"):
+            kv.to_toml(scene)
+
+
+RADIUS, KIND, MASS = 'radius = "10 mm"', 'kind = "dead-weight"', 'mass = "1 kg/mm"'
+VELOCITY, SPRUNG = 'velocity = "100 mm/s"', 'velocity = "1 m/s"\nstiffness = "1 N/m^2"'
+SINE = 'waveform = "sine"\namplitude = "0.1 m/s"\nfrequency = "5 Hz"'
 
 
 @pytest.mark.parametrize(
-    ("line", "replacement", "words"),
+    ("line", "new", "words"),
     [
-        (
-            'radius = "10 mm"',
-            'radius = "1,5 mm"',
-            ["indenter.radius", "1,5 mm", "point", '"10 mm"'],
-        ),
-        ('radius = "10 mm"', "radius = 10", ["indenter.radius = 10", "no unit", "quantity in m"]),
-        ('radius = "10 mm"', 'radius = "10 s"', ["indenter.radius", "wrong dimension"]),
-        ('radius = "10 mm"', 'radius = "-10 mm"', ["indenter.radius", "above 0"]),
-        ('radius = "10 mm"', 'radius = "0 mm"', ["indenter.radius", "above 0"]),
-        ('radius = "10 mm"', 'radius = "inf mm"', ["indenter.radius", "finite"]),
-        ('radius = "10 mm"', 'radius = "nan mm"', ["indenter.radius", "finite"]),
-        ('radius = "10 mm"', "radius = true", ["indenter.radius", "quantity in m"]),
-        ('radius = "10 mm"', 'radius = ["10 mm", true]', ["indenter.radius", "quantity in m"]),
-        ('radius = "10 mm"', 'raduis = "10 mm"', ["indenter.raduis", 'did you mean "radius"']),
-        ('radius = "10 mm"', "", ["indenter.radius", "missing", '"10 mm"']),
-        (
-            'radius = "10 mm"',
-            'shape = "circel"\nradius = "1 m"',
-            ["circel", 'did you mean "circle"'],
-        ),
+        (RADIUS, 'radius = "1,5 mm"', ["indenter.radius", "1,5 mm", "point", '"10 mm"']),
+        (RADIUS, "radius = 10", ["indenter.radius = 10:", "no unit", "quantity in m"]),
+        (RADIUS, 'radius = "10 s"', ["indenter.radius", "wrong dimension"]),
+        (RADIUS, 'radius = "-10 mm"', ["indenter.radius", "above 0"]),
+        (RADIUS, 'radius = "0 mm"', ["indenter.radius", "above 0"]),
+        (RADIUS, 'radius = "inf mm"', ["indenter.radius", "finite"]),
+        (RADIUS, 'radius = "nan mm"', ["indenter.radius", "finite"]),
+        (RADIUS, "radius = true", ["indenter.radius", "quantity in m"]),
+        (RADIUS, 'radius = ["10 mm", true]', ["indenter.radius", "quantity in m"]),
+        (RADIUS, 'radius = ["10 mm", 3]', ["indenter.radius = ['10 mm', 3]", "no unit"]),
+        (RADIUS, 'raduis = "10 mm"', ["indenter.raduis", 'did you mean "radius"']),
+        (RADIUS, "", ["indenter.radius: missing for shape", '"10 mm"']),
+        (RADIUS, 'shape = "circel"\nradius = "1 m"', ["circel", 'did you mean "circle"']),
         ("[indenter]", "[indentor]", ["[indentor]", 'did you mean "indenter"']),
-        ('kind = "dead-weight"', 'kind = "deadweight"', ['did you mean "dead-weight"']),
-        ('kind = "dead-weight"', "", ["support.kind", "missing"]),
-        (
-            'kind = "dead-weight"',
-            'kind = ["fixed", "dead-weight"]',
-            ["support.kind", "exactly one of"],
-        ),
-        ('mass = "1 kg/mm"', 'mass = "1 kg/mm"\ndepth = "1 mm"', ["support.depth", "dead-weight"]),
-        ('mass = "1 kg/mm"', 'mass = "1 kg"', ["support.mass", "line contact", "kg/m"]),
+        (KIND, 'kind = "deadweight"', ['did you mean "dead-weight"']),
+        (KIND, "", ["support.kind", "missing"]),
+        (KIND, 'kind = ["fixed", "dead-weight"]', ["support.kind", "exactly one of"]),
+        (KIND, 'Kind = "dead-weight"', ["support.Kind", 'did you mean "kind"']),
+        (MASS, MASS + '\ndepth = "1 mm"', ["support.depth", "dead-weight"]),
+        (MASS, 'mass = "1 kg"', ["support.mass", "line contact", "kg/m"]),
         ("[support]", "[[support]]", ["[support]", "one table"]),
-        ('velocity = "100 mm/s"', 'velocity = "inf m/s"', ["drive.velocity", "finite"]),
-        ('velocity = "100 mm/s"', "", ["drive", "velocity, history and waveform"]),
-        ('velocity = "100 mm/s"', "history = []", ["drive.history", "expected points"]),
-        ('velocity = "100 mm/s"', 'history = [["0 s", 3]]', ["drive.history", "without a unit"]),
-        (
-            'velocity = "100 mm/s"',
-            'history = [["1 s", "1 m/s"]]',
-            ["drive.history[0]", "must be 0 s"],
-        ),
-        ('velocity = "100 mm/s"', 'history = [["0 s"]]', ["drive.history[0]", "expected a pair"]),
-        (
-            'velocity = "100 mm/s"',
-            'history = [["0 s", "1 m/s"], ["2 s", "1 m/s"], ["1 s", "1 m/s"]]',
-            ["drive.history[2]", "must not decrease"],
-        ),
-        (
-            'velocity = "100 mm/s"',
-            'history = [["0 s", "1 m/s"], ["0 s", "2 m/s"], ["0 s", "3 m/s"]]',
-            ["drive.history[2]", "at most twice"],
-        ),
+        (VELOCITY, 'velocity = "inf m/s"', ["drive.velocity", "finite"]),
+        (VELOCITY, "", ["drive", "velocity, history and waveform"]),
+        (VELOCITY, 'velocty = "1 m/s"', ["drive.velocty", 'did you mean "velocity"']),
+        (VELOCITY, "history = []", ["drive.history", "expected points"]),
+        (VELOCITY, 'history = [["0 s", 3]]', ["drive.history[0] = 3:", "no unit"]),
+        (VELOCITY, 'history = [["1 s", "1 m/s"]]', ["drive.history[0]", "must be 0 s"]),
+        (VELOCITY, 'history = [["0 s"]]', ["drive.history[0]", "expected a pair"]),
+        (VELOCITY, 'history = [["0 s", "1 m/s"], ["2 s", "1 m/s"], ["1 s", "1 m/s"]]',
+         ["drive.history[2]", "must not decrease"]),
+        (VELOCITY, 'history = [["0 s", "1 m/s"], ["0 s", "2 m/s"], ["0 s", "3 m/s"]]',
+         ["drive.history[2]", "at most twice"]),
+        (VELOCITY, VELOCITY + '\ndamping = "1 N*s/m^2"', ["drive.damping", "needs drive.stiffness"]),
+        (VELOCITY, VELOCITY + '\nmass = "1 kg/mm"', ["drive.mass", "needs drive.stiffness"]),
+        (VELOCITY, VELOCITY + '\nstiffness = "0 N/m^2"', ["drive.stiffness", "above 0"]),
+        (VELOCITY, SINE + '\nstiffness = "0 N/m^2"', ["drive.stiffness", "above 0"]),
+        (VELOCITY, VELOCITY + '\nstiffness = "1 N/m"', ["drive.stiffness", "that of a ball"]),
+        (VELOCITY, SINE + '\nstiffness = "1 N/m"', ["drive.stiffness", "that of a ball"]),
+        (VELOCITY, VELOCITY + "\nstiffness = 3", ["drive.stiffness", "no unit"]),
+        (VELOCITY, SPRUNG + '\ndamping = "-1 N*s/m^2"', ["drive.damping", "least 0"]),
+        (VELOCITY, SPRUNG + '\nmass = "0 kg/m"', ["drive.mass", "above 0"]),
+        (VELOCITY, VELOCITY + '\nstifness = "1 N/m^2"', ["drive.stifness", '"stiffness"']),
+        (VELOCITY, SINE + '\nstifness = "1 N/m^2"', ["drive.stifness", '"stiffness"']),
+        (f"{KIND}\n{MASS}\n[drive]\n{VELOCITY}", f'kind = "fixed"\ndepth = "1 mm"\n[drive]\n{SPRUNG}',
+         ["drive.mass: missing", 'support.kind = "fixed"', "kg/m"]),
+        (VELOCITY, VELOCITY + '\nk_x = "1 N/m^2"', ["drive.k_x", 'did you mean "stiffness"']),
         ('duration = "200 ms"', 'duration = "0 ms"', ["run.duration", "above 0"]),
         ("[run]", "[run", ["not a TOML file"]),
-        ('radius = "10 mm"', "radius = 10 mm", ["not a TOML file", "text in quotes"]),
-        ('kind = "dead-weight"', 'Kind = "dead-weight"', ["support.Kind", 'did you mean "kind"']),
+        (RADIUS, "radius = 10 mm", ["not a TOML file", "text in quotes"]),
     ],
-)
-def test_one_mistake_costs_one_clear_line(tmp_path, line, replacement, words):
+)  # fmt: skip
+def test_one_mistake_costs_one_clear_line(tmp_path, line, new, words):
     assert line in TABLE_1
-    path = write(tmp_path, TABLE_1.replace(line, replacement))
-    found = problems(path)
-    hits = [text for text in found if all(word in text for word in words)]
-    assert len(hits) == 1, found
-    assert len(found) == 1, found
+    (found,) = problems(write(tmp_path, TABLE_1.replace(line, new)))
+    assert all(word in found for word in words), found
 
 
 def test_all_mistakes_are_reported_together(tmp_path):
@@ -181,12 +185,6 @@ def test_a_wrong_support_does_not_hide_the_other_mistakes(tmp_path):
     assert any("support.stifness" in text for text in found)
 
 
-def test_a_byte_order_mark_is_no_mistake(tmp_path):
-    path = tmp_path / "scene.toml"
-    path.write_text(TABLE_1, encoding="utf-8-sig")
-    assert kv.load_scene(path) == kv.Scene()
-
-
 def test_what_an_old_section_has_in_common_with_the_new_one_stays(tmp_path):
     path = write(tmp_path, TABLE_1)
     assert kv.load_scene(path, ["support.kind=dead-weight"]) == kv.Scene()
@@ -201,16 +199,6 @@ def test_parts_of_the_wrong_kind_are_named():
     assert [text.split(" = ")[0] for text in caught.value.problems] == ["`indenter`", "`drive`"]
     with pytest.raises(ValueError, match='did you mean "fixed"'):
         kv.Scene.table1("Fixed")
-    for options in (
-        {"reach": float("nan")},
-        {"reach": "10 mm"},
-        {"kinks": (float("nan"),)},
-        {"kinks": 1.0},
-    ):
-        with pytest.raises(kv.SceneError, match=next(iter(options))):
-            kv.Profile(abs, abs, **options)
-    with pytest.raises(kv.SceneError, match="functions"):
-        kv.Profile("x", abs)
 
 
 def test_a_missing_section_is_named(tmp_path):
@@ -218,12 +206,6 @@ def test_a_missing_section_is_named(tmp_path):
         f"[{name}]: this section is missing"
         for name in ("indenter", "foundation", "support", "drive")
     )
-
-
-def test_a_file_that_is_not_text_is_refused(tmp_path):
-    path = tmp_path / "scene.toml"
-    path.write_bytes(b"\xff\xfe\x00")
-    assert "not a TOML file" in problems(path)[0]
 
 
 def test_overrides_replace_values_supports_shapes_and_drives(tmp_path):
@@ -241,6 +223,8 @@ def test_overrides_replace_values_supports_shapes_and_drives(tmp_path):
     assert history.drive == kv.Drive(history=((0.0, 1.0), (1.0, 0.0)))
     assert history.drive.final_velocity == 0.0
     assert "support.depth" in problems(path, ["support.kind=fixed"])[0]
+    odd = write(tmp_path, TABLE_1.replace(VELOCITY, "waveform = []"))
+    assert kv.load_scene(odd, ["drive.velocity=1 m/s"]).drive.velocity == 1.0
 
 
 def test_python_takes_text_quantities_and_numbers():
@@ -251,10 +235,6 @@ def test_python_takes_text_quantities_and_numbers():
     with pytest.raises(kv.SceneError) as caught:
         kv.Foundation(-1.0, "100 mm")
     assert len(caught.value.problems) == 2
-    with pytest.raises(kv.SceneError, match="velocity, history and waveform"):
-        kv.Drive()
-    with pytest.raises(kv.SceneError, match="exponent"):
-        kv.PowerLaw(length="1 mm", exponent=0.5)
 
 
 def test_quantities_are_replaced_by_arrays_that_broadcast_and_are_checked():
@@ -263,10 +243,8 @@ def test_quantities_are_replaced_by_arrays_that_broadcast_and_are_checked():
     assert many.shape == (2, 3)
     assert scene.replace({"support.mass": "1 kg/mm"}).support.mass == 1000.0
     millimetres = pint.UnitRegistry().Quantity([1.0, 2.0], "mm")
-    assert scene.replace({"indenter.radius": millimetres}).indenter.radius.tolist() == [
-        0.001,
-        0.002,
-    ]
+    thick = scene.replace({"indenter.radius": millimetres})
+    assert thick.indenter.radius.tolist() == [0.001, 0.002]
     with pytest.raises(kv.SceneError) as caught:
         scene.replace({"drive.velocty": 1.0, "support.mass": [1.0, -1.0], "support.depth": 1.0})
     assert len(caught.value.problems) == 3
@@ -332,12 +310,6 @@ def test_dimensionless_numbers_of_table_1():
             StaticState.of(kv.Scene(support=extreme))
     with pytest.raises(ValueError, match="parabola"):
         StaticState.of(kv.Scene(indenter=kv.Circle(radius=0.01)))
-
-
-def test_the_template_is_what_the_design_asks_for():
-    parsed = tomllib.loads(template("suspended"))
-    assert parsed["support"]["kind"] == "suspended"
-    assert re.fullmatch(r"[\d.]+ \S+", parsed["support"]["stiffness"])
 
 
 @pytest.mark.parametrize("device", [True, False])

@@ -54,91 +54,44 @@ def test_what_ends_with_a_velocity_slides_steadily_at_last():
             kv.steady(kv.Scene(drive=kv.Drive(waveform=WAVES[name])))
 
 
-@pytest.mark.parametrize("separator", [",", ";", "\t"])
-def test_a_table_is_a_history(tmp_path, separator):
-    (tmp_path / "drive.csv").write_text(
-        f"t [ms]{separator}V [mm/s]\n# a remark\n0{separator}0\n\n20{separator}90\n20{separator}-10\n"
-    )
-    scene = tmp_path / "scene.toml"
-    scene.write_text(kv.to_toml(kv.Scene()).replace('velocity = "0.1 m/s"', 'file = "drive.csv"'))
-    points = np.array(kv.load_scene(scene).drive.history)
-    assert points == pytest.approx(np.array([(0.0, 0.0), (0.02, 0.09), (0.02, -0.01)]))
-    assert np.array_equal(np.array(kv.Drive(history=points).history), points)
-
-
-@pytest.mark.parametrize(
-    ("overrides", "words"),
-    [
-        (["drive.waveform=sinus"], ['drive.waveform = "sinus"', 'did you mean "sine"']),
-        (["drive.waveform=sine", "drive.amplitude=1 mm/s"], ["drive.frequency: missing", "5 Hz"]),
-        (["drive.waveform=sine", "drive.amplitud=1 mm/s"], ["drive.amplitud", '"amplitude"']),
-        (["drive.waveform=triangle", "drive.amplitude=1 mm"], ["drive.amplitude", "m/s"]),
-        (["drive.file=none.csv"], ["drive.file", "none.csv", "cannot be read"]),
-    ],
-)
-def test_mistakes_are_named(overrides, words):
-    with pytest.raises(kv.SceneError) as caught:
-        kv.load_scene(overrides=overrides)
-    assert all(word in str(caught.value) for word in words), str(caught.value)
-
-
-@pytest.mark.parametrize(
-    "text",
-    [
-        "", "0,1\n", "t [ms],V [mm]\n0,1\n", "t [ms],V [mm/s]\n0,fast\n", "t [ms],V [mm/s]\n0\n",
-        "t [ms],V [mm/s]\n", "t [ms]\n0\n", "t [ms],V [mm/s]\n0,1\n1,nan\n", "t [ms],V [mm/s]\n5,1\n",
-        "t [ms],V [mm/s]\n0," + "1" * 200_000, "t [ms],V [mm/s]\n0,\"1\n", "\0", '"',
-    ],
-)  # fmt: skip
-def test_a_table_that_is_none_is_refused_in_one_line(tmp_path, text):
-    path = tmp_path / "drive.csv"
-    path.write_text(text)
-    with pytest.raises(kv.SceneError) as caught:
-        kv.load_scene(overrides=[f"drive.file={path}"])
-    (line,) = caught.value.problems
-    assert line.startswith("drive.file")
-    assert "drive.csv" in line
-    assert len(line) < 400
-
-
 def test_another_way_to_drive_replaces_the_one_before():
     wave = ["drive.waveform=sine", "drive.amplitude=1 mm/s", "drive.frequency=2 Hz"]
-    assert kv.load_scene(overrides=wave).drive.velocity is None
+    drive = kv.load_scene(overrides=wave).drive
+    assert drive.velocity is None
     assert kv.load_scene(overrides=[*wave, "drive.velocity=5 mm/s"]).drive.velocity == 0.005
-
-
-def test_ways_exclude_each_other():
-    with pytest.raises(kv.SceneError, match="one of velocity, history and waveform"):
-        kv.Drive(velocity=0.1, waveform=WAVES["sine"])
-    with pytest.raises(kv.SceneError, match="expected a Sine"):
-        kv.Drive(waveform=math.sin)
+    assert dataclasses.replace(drive, tolerance=1e-9).waveform == drive.waveform
 
 
 def test_a_long_history_is_read_in_time_that_grows_with_it():
     """Units are looked up once, not once for each point."""
-    points = [[f"{i} ms", f"{i % 7} mm/s"] for i in range(20_000)]
+    points = [[f"{i} ms", f"{i % 7} mm/s"] for i in range(5_000)]
     assert len(kv.Drive(history=points).history) == len(points)
 
 
-def test_a_waveform_survives_a_copy():
-    drive = kv.Drive(waveform=WAVES["sine"])
-    assert dataclasses.replace(drive, tolerance=1e-9).waveform == drive.waveform
+ROUND = [(0.0, 0.0), (0.0105, 0.0075)]
 
 
 @pytest.mark.parametrize(
-    ("text", "encoding"),
+    ("text", "encoding", "points"),
     [
-        ("t [ms];V [mm/s]\n0;0\n10,5;7,5\n", "cp1252"),
-        ("sep=;\nZeit (ms);Geschwindigkeit (mm/s);Kommentar\n0;0;a\n10,5;7,5;größer\n", "cp1252"),
-        ("V/(mm/s)\tt/ms\n0\t0\n7.5\t10.5\n", "utf-16"),
-        ("time [s],velocity [m/s],depth [m]\n0,0,\n0.0105,0.0075,1e-4\n", "utf-8-sig"),
+        ("t [ms];V [mm/s]\n0;0\n10,5;7,5\n", "cp1252", ROUND),
+        ("sep=;\nZeit (ms);Geschwindigkeit (mm/s);Kommentar\n0;0;a\n10,5;7,5;größer\n", "cp1252", ROUND),
+        ("V/(mm/s)\tt/ms\n0\t0\n7.5\t10.5\n", "utf-16", ROUND),
+        ("time [s],velocity [m/s],depth [m]\n0,0,\n0.0105,0.0075,1e-4\n", "utf-8-sig", ROUND),
+        ("t [ms],V [mm/s]\n# a remark\n0,0\n\n20,90\n20,-10\n", "ascii",
+         [(0.0, 0.0), (0.02, 0.09), (0.02, -0.01)]),
     ],
-)
-def test_a_drive_is_read_from_any_table(tmp_path, text, encoding):
-    path = tmp_path / "drive.CSV"
-    path.write_text(text, encoding=encoding)
-    found = kv.load_scene(overrides=[f"drive.file={path}"]).drive.history
-    assert np.array(found) == pytest.approx(np.array([(0.0, 0.0), (0.0105, 0.0075)]))
+)  # fmt: skip
+def test_a_table_is_a_history(tmp_path, text, encoding, points):
+    (tmp_path / "drive.CSV").write_text(text, encoding=encoding)
+    scene = tmp_path / "scene.toml"
+    scene.write_text(kv.to_toml(kv.Scene()).replace('velocity = "0.1 m/s"', 'file = "drive.CSV"'))
+    found = np.array(kv.load_scene(scene).drive.history)
+    assert found == pytest.approx(np.array(points))
+    assert np.array_equal(np.array(kv.Drive(history=found).history), found)
+    scene.write_text(scene.read_text().replace("[run]", 'history = [["0 s", "1 m/s"]]\n[run]'))
+    with pytest.raises(kv.SceneError, match=r"drive\.file = .* beside drive\.history"):
+        kv.load_scene(scene)
 
 
 @pytest.mark.parametrize(
@@ -146,23 +99,38 @@ def test_a_drive_is_read_from_any_table(tmp_path, text, encoding):
     [
         (b"t [ms],V [mm/s]\n0," + b"1" * 200_000 + b"\n", "field larger than field limit"),
         (bytes(range(256)), "not a text file"),
-        (b"t [ms],x [mm]\n0,1\n", "no column is named v or velocity"),
+        (b"\0", "not a text file"),
+        (b"", "holds no header"),
+        (b'"', "quotation mark"),
+        (b"0,1\n", "line 1 holds numbers"),
+        (b"t [ms],V [mm]\n0,1\n", "wrong dimension"),
+        (b"t [ms],V [mm/s]\n0,fast\n", '"fast" is not a number'),
+        (b"t [ms],V [mm/s]\n0\n", "has 1 cells, the header has 2"),
+        (b"t [ms],V [mm/s]\n", "expected points"),
+        (b"t [ms]\n0\n", "no column is named v or velocity"),
+        (b"t [ms],V [mm/s]\n0,1\n1,nan\n", "finite"),
+        (b"t [ms],V [mm/s]\n5,1\n", "first time must be 0 s"),
         (b"t [ms],V [mm/s],v [m/s]\n0,1,1\n", "more than one column"),
         (b't [ms],V [mm/s]\n0,"1\n1,1\n', "quotation mark"),
-        (b"t [ms],V [mm/s]\n0,\n1,1\n", "drive.file"),
+        (b"t [ms],V [mm/s]\n0,\n1,1\n", "finite"),
     ],
 )
-def test_a_table_that_is_damaged_is_named_as_what_it_is(tmp_path, text, words):
+def test_a_table_that_is_none_is_refused_in_one_line(tmp_path, text, words):
     path = tmp_path / "drive.csv"
     path.write_bytes(text)
-    with pytest.raises(kv.SceneError, match=words):
+    with pytest.raises(kv.SceneError) as caught:
         kv.load_scene(overrides=[f"drive.file={path}"])
+    (line,) = caught.value.problems
+    assert line.startswith("drive.file")
+    assert words in line
+    assert "drive.csv" in line
+    assert len(line) < 400
 
 
 def test_a_long_swing_is_followed_like_a_short_one():
     wave = kv.Sine(amplitude=0.1, frequency=900.0, mean=0.03)
-    motion = kv.Drive(waveform=wave).motion(10.0, 1e-3)
-    for t in np.random.default_rng(3).uniform(0.0, 10.0, 200).tolist():
+    motion = kv.Drive(waveform=wave).motion(2.0, 1e-3)
+    for t in np.random.default_rng(3).uniform(0.0, 2.0, 200).tolist():
         assert motion.velocity(t) == pytest.approx(wave(t), abs=1e-11)
         turned = (1.0 - math.cos(2.0 * math.pi * 900.0 * t)) / (2.0 * math.pi * 900.0)
         assert motion.displacement(t) == pytest.approx(0.03 * t + 0.1 * turned, abs=1e-12)

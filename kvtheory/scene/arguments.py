@@ -1,6 +1,6 @@
-"""The arguments of the public functions: each function declares what each of them is, once.
+"""Arguments of the public functions: each function declares once what its arguments are.
 
-`checked` reads them before the function sees them, so that a wrong value is answered by its name.
+`checked` reads and checks them before the function runs, so that a message names the wrong one.
 """
 
 import inspect
@@ -38,12 +38,10 @@ Kind = Callable[[Any], Any]
 
 
 def checked(**kinds: Kind) -> Callable[[Function], Function]:
-    """Have the named arguments of a function read by their kinds; an argument may be its default.
+    """Decorate a function whose named arguments are read by their kinds; an argument may be its default.
 
-    While the function runs, its `progress` is also told that kernels are being compiled.
+    While the function runs, its `progress` also learns that kernels are being compiled.
 
-    Examples
-    --------
     >>> @checked(jobs=count)
     ... def run(jobs=None):
     ...     return jobs
@@ -113,18 +111,17 @@ def measured(spec: Quantity) -> Kind:
 
 
 def times(value: Any) -> list[float]:
-    """Read times in s: one or several, also as text; every mistake is reported by its value."""
+    """Read times in s: one or several, also as text; report every mistake with its value."""
     problems: list[str] = []
     found: list[float] = []
     for one in value if isinstance(value, (list, tuple)) else [value]:
         for given in items(one) if isinstance(one, str) else [one]:
             with collecting(problems, "`at`", given):
-                read = np.atleast_1d(
-                    (item_values if isinstance(given, str) else array_of)(given, TIME)
-                )
-                if read.ndim > 1:
+                read = item_values if isinstance(given, str) else array_of
+                array = np.atleast_1d(read(given, TIME))
+                if array.ndim > 1:
                     raise ValueError("expected one list of times")
-                found += read.tolist()
+                found += array.tolist()
     if not found and not problems:
         problems = ['`at` is empty: expected times such as "0 ms,1 ms"']
     if problems:
@@ -134,17 +131,14 @@ def times(value: Any) -> list[float]:
 
 def count(value: Any) -> int:
     """Read a whole number of at least 1."""
-    found = 0
-    if not isinstance(value, bool):
-        with suppress(TypeError):
-            found = index(value)
-    if found < 1:
-        raise ValueError("expected a whole number of at least 1")
-    return found
+    with suppress(TypeError):
+        if not isinstance(value, bool) and index(value) >= 1:
+            return index(value)
+    raise ValueError("expected a whole number of at least 1")
 
 
 def _accepting(said: str, fits: Callable[[Any], bool]) -> Kind:
-    """Return the kind of a value that fits, which is passed on as it is."""
+    """Return the kind of a value that is only checked."""
 
     def read(value: Any) -> Any:
         if not fits(value):
@@ -167,19 +161,20 @@ file_name = _accepting(
 
 
 def choice(options: Iterable[str]) -> Kind:
-    """Return the kind of a name out of several."""
+    """Return the kind of a name from a list."""
     options = list(options)
 
     def read(value: Any) -> str:
-        if not (isinstance(value, str) and value in options):
-            raise ValueError(nearest(value if isinstance(value, str) else "", options))
-        return value
+        name = value if isinstance(value, str) else ""
+        if name not in options:
+            raise ValueError(nearest(name, options))
+        return name
 
     return read
 
 
 def names(value: Any) -> list[str]:
-    """Read a name, or several: in a list, or in an array of text."""
+    """Read one name, or a list or an array of names."""
     listed = [value]
     if not isinstance(value, (str, Mapping)):
         with suppress(TypeError):

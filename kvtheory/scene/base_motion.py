@@ -1,4 +1,4 @@
-"""How the base moves: its velocity V(t) as a piecewise polynomial, and the exact integral Y(t).
+"""Motion of the base: its velocity V(t) as a piecewise polynomial, and the exact integral Y(t).
 
 Every model takes V and Y from here; times and lengths may be in SI or scaled. At a jump, V is the value
 just after it.
@@ -6,7 +6,7 @@ just after it.
 
 import itertools
 import math
-from bisect import bisect_right
+from bisect import bisect_left, bisect_right
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -23,16 +23,12 @@ SHORTEST = 1e-12
 """Shortest piece, as a share of the whole motion; one that would have to be shorter has a jump or a kink."""
 PIECE_LIMIT = 100_000
 EARLY, LOOKS, WIDER = 500, 16, 4.0
-"""When this many pieces show that too many would be needed, the function is sampled at this many places: if
-pieces this much wider are sufficient nowhere, it is refused."""
-
+"""A function is refused early if `EARLY` pieces show that too many would be needed, and a piece `WIDER` times
+as long represents it at none of `LOOKS` places."""
 SAME_TIME = 1024.0
-"""Times that differ by this many units in the last place are one time: the difference is rounding, and a
-model could not step from one to the other."""
-
+"""Times that differ by this many units in the last place are equal but for rounding."""
 ON_REST = 16.0 * 2.0**-52
-"""Relative to the terms of a velocity: what rounding leaves where they cancel."""
-
+"""Rounding of a velocity whose terms cancel, relative to these terms."""
 START, END, DISPLACEMENT, POWERS = 0, 1, 2, 3
 """Layout of a piece: its times, Y at its start, then the coefficients of V in t - start."""
 
@@ -43,12 +39,12 @@ Span = tuple[float, float, tuple[float, ...]]
 
 @dataclass(frozen=True)
 class BaseMotion:
-    """V(t) of pieces that follow each other; V may jump between them, and passes through zero only there.
+    """V(t) in pieces, between which it may jump, and within which it does not pass through zero.
 
     Each piece is (start, end, Y(start), c_0, c_1, ...), V = sum c_k (t - start)^k, all of one length. On a
     piece the base moves one way: a model whose steps end with the pieces misses no reversal, however brief.
-    The last piece may have no length: it then says how the base moves just after a jump at the end.
-    `changes` are the times at which V may jump or have a kink. Before t = 0 the base rests.
+    A last piece without length gives V just after a jump at the end. `changes` are the times at which V may
+    jump or have a kink. Before t = 0 the base rests.
     """
 
     pieces: tuple[tuple[float, ...], ...]
@@ -65,8 +61,6 @@ class BaseMotion:
 
         It keeps its last velocity until `end`.
 
-        Examples
-        --------
         >>> motion = BaseMotion.from_points([(0.0, 0.0), (1.0, 2.0), (1.0, -1.0)], end=3.0)
         >>> [motion.at(t)[:2] for t in (0.5, 1.0, 3.0)]
         [(0.25, 1.0), (1.0, -1.0), (-1.0, -1.0)]
@@ -94,16 +88,10 @@ class BaseMotion:
     ) -> "BaseMotion":
         """Return a motion within `tolerance` x max(`least`, |V|) of `function` on [0, `end`].
 
-        Pieces are Chebyshev interpolants, halved until they agree with the function at points
-        between their nodes. `breaks` are the times at which the function jumps or has kinks.
+        Pieces are Chebyshev interpolants, halved until they agree with the function at points between their
+        nodes. `breaks` are the times at which the function jumps or has kinks; a function that needs too many
+        halvings raises ValueError, as it must jump elsewhere or change too fast.
 
-        Raises
-        ------
-        ValueError
-            If so many halvings are needed that the function must jump elsewhere than at `breaks`.
-
-        Examples
-        --------
         >>> motion = BaseMotion.from_function(math.sin, end=6.0)
         >>> abs(motion.at(5.0)[0] - (1.0 - math.cos(5.0))) < 1e-12
         True
@@ -118,14 +106,24 @@ class BaseMotion:
         def value(t: float) -> float:
             return function(_beside(min(t, latest), breaks))
 
+        def fits(a: float, b: float) -> bool:
+            return _fit(value, a, b, least)[1] <= tolerance
+
         while todo:
             a, b = todo.pop()
             coefficients, error = _fit(value, a, b, least)
             if error <= tolerance:
-                # The very value of the function, so that what is at rest stays so.
+                # The exact value of the function at the start, so that what rests stays at rest.
                 found.append((a, b, (value(a), *coefficients[1:])))
-                if len(found) == EARLY:
-                    _refuse_if_too_fast(value, b, end, b - a, tolerance, least)
+                if len(found) != EARLY or end - b <= PIECE_LIMIT * (b - a):
+                    continue
+                wide = WIDER * (b - a)
+                if not any(fits(t, t + wide) for t in np.linspace(b, end - wide, LOOKS).tolist()):
+                    raise ValueError(
+                        f"drive.function changes too fast: it would take polynomials as short as {b - a:.2g} "
+                        f"s, and more than {PIECE_LIMIT} of them until {end:.6g} s; give a shorter run or a "
+                        "larger `tolerance`"
+                    )
                 continue
             middle = 0.5 * (a + b)
             if b - a <= SHORTEST * end or len(found) + len(todo) > PIECE_LIMIT:
@@ -162,17 +160,16 @@ class BaseMotion:
 
     def scaled(self, time: float, length: float) -> "BaseMotion":
         """Return the motion in units of `time` and `length`."""
-        return BaseMotion(
-            tuple(
-                (
-                    *(t / time for t in piece[:DISPLACEMENT]),
-                    piece[DISPLACEMENT] / length,
-                    *(c * time ** (k + 1) / length for k, c in enumerate(piece[POWERS:])),
-                )
-                for piece in self.pieces
-            ),
-            tuple(t / time for t in self.changes),
-        )
+        pieces = [
+            (
+                a / time,
+                b / time,
+                Y / length,
+                *(c * time ** (k + 1) / length for k, c in enumerate(V)),
+            )
+            for a, b, Y, *V in self.pieces
+        ]
+        return BaseMotion(tuple(pieces), tuple(t / time for t in self.changes))
 
     @property
     def end(self) -> float:
@@ -211,15 +208,15 @@ class BaseMotion:
         return True
 
     def extremes(self, start: float, end: float) -> tuple[float, float]:
-        """Return the smallest and the largest Y between two times.
+        """Return the smallest and the largest Y between two times; Y turns where pieces meet.
 
         >>> BaseMotion.from_points([(0.0, 0.0), (1.0, 2.0), (1.0, -1.0)], 3.0).extremes(0.0, 3.0)
         (-1.0, 1.0)
         """
-        times, places = self._turns
-        first, last = np.searchsorted(times, [start, end])
-        found = [self.displacement(start), self.displacement(end), *places[first:last]]
-        return float(min(found)), float(max(found))
+        between = self.pieces[bisect_left(self.starts, start) : bisect_left(self.starts, end)]
+        found = [piece[DISPLACEMENT] for piece in between]
+        found += [self.displacement(start), self.displacement(end)]
+        return min(found), max(found)
 
     @cached_property
     def velocities(self) -> list[float]:
@@ -235,12 +232,6 @@ class BaseMotion:
     def highest_speed(self) -> float:
         """The largest |V|."""
         return max(map(abs, self.velocities))
-
-    @cached_property
-    def _turns(self) -> tuple[list[float], list[float]]:
-        """Times and places at which Y may turn: the ends of the pieces."""
-        times = [*self.starts, self.end]
-        return times, [self.displacement(t) for t in times]
 
     def _piece(self, t: float) -> Piece:
         return self.pieces[max(bisect_right(self.starts, t) - 1, 0)]
@@ -290,7 +281,7 @@ def _reversals(coefficients: Sequence[float], a: float, b: float) -> list[float]
 
 
 def _beside(t: float, breaks: Iterable[float]) -> float:
-    """Return `t`, or where that is a break but for rounding, a time that is beyond doubt on its side."""
+    """Return `t`, moved away from a break that it equals but for rounding, to the side on which it is."""
     near = next((b for b in breaks if abs(t - b) <= SAME_TIME * math.ulp(b)), None)
     return t if near is None else near + math.copysign(SAME_TIME * math.ulp(near), t - near)
 
@@ -300,35 +291,18 @@ def _fit(
 ) -> tuple[tuple[float, ...], float]:
     """Interpolate on [a, b]; return powers of t - a, and the error relative to max(`least`, |V|)."""
     open_end = math.nextafter(b, a)  # at a jump the value before it counts
-    fit = Chebyshev.interpolate(
-        lambda t: np.array([function(min(float(x), open_end)) for x in t]), DEGREE, [a, b]
-    )
+
+    def values_at(times: NDArray[np.float64]) -> NDArray[np.float64]:
+        return np.array([function(t) for t in np.minimum(times, open_end).tolist()])
+
+    fit = Chebyshev.interpolate(values_at, DEGREE, [a, b])
     coefficients = fit.convert(kind=Polynomial, domain=[a, a + 2.0], window=[0.0, 2.0]).coef
     t = np.linspace(a, open_end, CHECKS)
-    values = np.array([function(float(x)) for x in t])
+    values = values_at(t)
     error = np.abs(Polynomial(coefficients)(t - a) - values).max()
     padded = np.zeros(DEGREE + 1)
     padded[: coefficients.size] = coefficients
     return tuple(padded.tolist()), float(error / max(least, np.abs(values).max()))
-
-
-def _refuse_if_too_fast(
-    function: Callable[[float], float],
-    start: float,
-    end: float,
-    width: float,
-    tolerance: float,
-    least: float,
-) -> None:
-    """Raise an error if pieces as short as `width` would be needed everywhere, and are too many."""
-    if end - start <= PIECE_LIMIT * width:
-        return
-    places = np.linspace(start, end - WIDER * width, LOOKS).tolist()
-    if all(_fit(function, t, t + WIDER * width, least)[1] > tolerance for t in places):
-        raise ValueError(
-            f"drive.function changes too fast: it would take polynomials as short as {width:.2g} s, and "
-            f"more than {PIECE_LIMIT} of them until {end:.6g} s; give a shorter run or a larger `tolerance`"
-        )
 
 
 def _joined(found: Iterable[Span]) -> tuple[tuple[float, ...], ...]:

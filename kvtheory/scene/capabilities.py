@@ -1,4 +1,4 @@
-"""What works with what: the scenes that each question is answered for, and the wording where it is not.
+"""What works with what: the scenes for which each question is answered, and what is said of the others.
 
 A scene has a shape, a law of the foundation, a support and a drive. A question is answered for sets of these;
 messages, tests and a page of the documentation are made from the table `QUESTIONS`.
@@ -41,15 +41,15 @@ class Scenes:
         found = []
         if shape not in self.shapes:
             named = _listed([SHAPES[name] for name in self.shapes], "and")
-            told = f'holds for {named} only, not for indenter.shape = "{shape.removesuffix("-callable")}"'
-            found.append(told)
-        if law not in self.laws:
-            named = _listed([f'"{name}"' for name in self.laws], "or")
-            found.append(f'holds for foundation.kind = {named} only, not for "{law}"')
-        if support not in self.supports:
-            named = _listed([f'"{name}"' for name in self.supports], "or")
-            why = f": {self.why}" if self.why else ""
-            found.append(f'holds for support.kind = {named} only, not for "{support}"{why}')
+            told = f'indenter.shape = "{shape.removesuffix("-callable")}"'
+            found.append(f"holds for {named} only, not for {told}")
+        for key, valid, name in (
+            ("foundation.kind", self.laws, law), ("support.kind", self.supports, support)
+        ):  # fmt: skip
+            if name not in valid:
+                named = _listed([f'"{each}"' for each in valid], "or")
+                why = f": {self.why}" if self.why and key == "support.kind" else ""
+                found.append(f'holds for {key} = {named} only, not for "{name}"{why}')
         if drive not in self.drives:
             found.append("holds for a rigid drive only, not with drive.stiffness")
         return found
@@ -61,8 +61,8 @@ Kind = tuple[str, str, str, str]
 class Needs:
     """A requirement on a scene, which is met by any of several sets of scenes.
 
-    Called with a scene, it returns an empty text if the scene meets it; else what the scene lacks, compared
-    with the set that it comes nearest to.
+    Called with a scene, it returns an empty text if the scene meets it; else what the scene lacks of the
+    nearest set.
 
     >>> lacks_parabola(Scene())
     ''
@@ -82,12 +82,8 @@ class Needs:
 
     def laws(self, shape: str, support: str, drive: str) -> list[str]:
         """Return the laws on which a shape, on a support and a drive, meets the requirement."""
-        met = [
-            s
-            for s in self.sets
-            if shape in s.shapes and support in s.supports and drive in s.drives
-        ]
-        return [law for law in LAWS if any(law in each.laws for each in met)]
+        met = [s.laws for s in self.sets if not s.lacking(shape, s.laws[0], support, drive)]
+        return [law for law in LAWS if any(law in laws for laws in met)]
 
 
 lacks_parabola = Needs(Scenes(("parabola",)))
@@ -112,7 +108,7 @@ lacks_scripts = Needs(Scenes(QUADRATIC), Scenes((*CLOSED, "circle"), KELVIN_VOIG
 
 @dataclass(frozen=True)
 class Question:
-    """A question about a scene: what it is called, how it is asked, what it needs, and what is missing."""
+    """A question about a scene: its name, how it is asked, what it needs, and what theory is missing."""
 
     what: str
     call: str
@@ -177,7 +173,7 @@ QUESTIONS = {
         "The derivations are of Kelvin-Voigt closed forms.",
     ),
 }  # fmt: skip
-"""What works with what: the one table. A scene that is not covered is one for which theory is missing."""
+"""What works with what: the one table. For scenes that are not covered, theory is missing."""
 
 IN_MOTION = (
     lacks_parabola, lacks_paper_model, lacks_rigid_paper_model, lacks_arms, lacks_quadratic_on_arms,
@@ -187,31 +183,22 @@ IN_MOTION = (
 
 
 def lacks_one_scene(scene: Scene) -> str:
-    """Return why what is made for one scene does not take arrays of them, or an empty text.
-
-    >>> lacks_one_scene(Scene())
-    ''
-    """
+    """Return why what is made for one scene does not take arrays of them, or an empty text."""
     keys = ", ".join(scene.arrays())
     return f"is for one scene, not for arrays ({keys}); use `sweep`, or one value" if keys else ""
 
 
 def require(lacks: Callable[[Scene], str], scene: Scene, what: str) -> None:
     """Raise `ValueError` if the scene does not meet a requirement of `what`, naming an alternative."""
-    if lacking := lacks(scene):
-        raise ValueError(f"{what} {lacking}{_instead(lacks, scene)}")
-
-
-def _instead(lacks: object, scene: Scene) -> str:
-    """Return the methods for a scene in motion that the paper's model does not cover."""
-    if lacks not in IN_MOTION:
-        return ""
-    if lacks_arms(scene):
-        return (
-            '; `steady` holds for it, and `elements` follows a Prony series (foundation.kind = "'
-            f'{LAWS[1]}") that comes near it'
-        )
-    return "; `elements`, or `solve` with `at`, follows any shape and any Prony series"
+    if not (lacking := lacks(scene)):
+        return
+    instead = ""
+    if lacks in IN_MOTION and lacks_arms(scene):
+        prony = f'a Prony series (foundation.kind = "{LAWS[1]}") that comes near it'
+        instead = f"; `steady` holds for it, and `elements` follows {prony}"
+    elif lacks in IN_MOTION:
+        instead = "; `elements`, or `solve` with `at`, follows any shape and any Prony series"
+    raise ValueError(f"{what} {lacking}{instead}")
 
 
 def _listed(names: list[str], word: str) -> str:

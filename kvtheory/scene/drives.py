@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from itertools import pairwise
@@ -17,7 +18,6 @@ from kvtheory.scene.quantities import (
     SceneError,
     Value,
     array_of,
-    changed,
     collecting,
     convert,
     mistake,
@@ -36,14 +36,13 @@ SPRING = "stiffness", "damping", "mass"
 """The quantities of the spring between the drive and the indenter."""
 
 LEAST_TOLERANCE = 1e-13
-"""Smallest tolerance of a drive that is a function: closer, polynomials are limited by rounding."""
+"""Smallest tolerance of a drive that is a function; below it rounding limits the polynomials."""
 MOST_CYCLES = 10_000
 """Most periods of a waveform in a run, which follows them one by one."""
 SMOOTH = 1e-9
 """Largest relative change of a function across a break that is not a jump."""
 ON_LINE = 4.0 * 2.0**-52
-"""Relative to the velocity: a point of a history this near to the line between its neighbours is
-redundant."""
+"""A point of a history this near to the line between its neighbours, relative to V, is redundant."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,8 +61,6 @@ class Drive(Part):
     With a `stiffness` the drive holds the indenter along x by a spring, with a `damping` in parallel; the
     `mass` that moves along x is that of the support if not given. Without a stiffness the drive is rigid.
 
-    Examples
-    --------
     >>> Drive(history=[("0 s", "0 m/s"), ("50 ms", "0.1 m/s")]).final_velocity
     0.1
     >>> Drive(function=lambda t: 0.1 * math.sin(50.0 * t)).called(0.01)
@@ -109,14 +106,27 @@ class Drive(Part):
             self.mark([self.waveform])
         with collecting(problems, "drive", self):
             validate(self, "drive")
-        problems += _without_spring(self)
+        for name, value in {"damping": self.damping, "mass": self.mass}.items():
+            if self.rigid and value is not None:
+                told = "needs drive.stiffness, of the spring between drive and indenter"
+                problems.append(problem(f"drive.{name}", value, told))
         if self.damping is None:
             object.__setattr__(self, "damping", Derived(0.0))
         if self.history is not None:
             with collecting(problems, "drive.history", self.history):
                 object.__setattr__(self, "history", history_points(self.history))
+        if self.function is None:
+            if not (isinstance(self.breaks, tuple) and self.breaks == ()):
+                problems.append(problem("drive.breaks", self.breaks, "needs a function"))
+        elif not callable(self.function):
+            problems.append(problem("drive.function", self.function, "expected a function V(t)"))
         with collecting(problems, "drive.breaks", self.breaks):
-            object.__setattr__(self, "breaks", _breaks(self))
+            breaks = sorted(np.atleast_1d(array_of(self.breaks, TIME)).tolist())
+            object.__setattr__(self, "breaks", tuple(breaks))
+        given = self.tolerance
+        if not (isinstance(given, (int, float)) and LEAST_TOLERANCE <= given <= 1.0):
+            told = f"expected a number from {LEAST_TOLERANCE} to 1"
+            problems.append(problem("drive.tolerance", given, told))
         if problems:
             raise SceneError(problems)
 
@@ -132,18 +142,11 @@ class Drive(Part):
 
     @cached_property
     def points(self) -> tuple[tuple[float, float], ...]:
-        """The points (time, velocity) that matter, in SI.
+        """The points (time, velocity) that matter, in SI; a drive that is a function raises SceneError.
 
         A velocity has one; points of a history are left out if they lie on the line between their
         neighbours, or repeat the final velocity.
 
-        Raises
-        ------
-        SceneError
-            If the drive is a function.
-
-        Examples
-        --------
         >>> Drive(history=[(0.0, 0.1), (1.0, 0.1), (1.0, 0.2), (2.0, 0.2)]).points
         ((0.0, 0.1), (1.0, 0.1), (1.0, 0.2))
         """
@@ -153,7 +156,25 @@ class Drive(Part):
             raise SceneError([f"drive.{way}: {told}"])
         if self.history is None:
             return ((0.0, self.velocity),)  # type: ignore[return-value]
-        return _without_redundant(self.history)
+        history = self.history
+        if len(history) > 1 and history[1][0] == history[0][0]:
+            history = history[1:]  # a jump at t = 0 is one from rest
+        kept = [history[0]]
+        for point, (later, next_velocity) in pairwise(history[1:]):
+            (before, last), (time, velocity) = kept[-1], point
+            if point == kept[-1]:
+                continue
+            size = ON_LINE * max(abs(last), abs(velocity), abs(next_velocity))
+            if later > before and (before < time < later or last == velocity == next_velocity):
+                share = (time - before) / (later - before)
+                if abs(last + share * (next_velocity - last) - velocity) <= size:
+                    continue
+            kept.append(point)
+        if len(history) > 1:
+            kept.append(history[-1])
+        while len(kept) > 1 and kept[-1][1] == kept[-2][1]:
+            kept.pop()
+        return tuple(kept)
 
     @property
     def final_velocity(self) -> Any:
@@ -179,20 +200,19 @@ class Drive(Part):
         (1.0,)
         """
         if self.function is None:
-            points = self.points
-            first = (0.0,) if points[0][1] != 0.0 else ()
-            return (*first, *(b for (a, _), (b, _) in pairwise(points) if a == b))
-        # Nothing moves before t = 0; elsewhere a smooth function changes by no more than rounding.
-        moves = (0.0,) if self.called(0.0) != 0.0 else ()
-        return (*moves, *(t for t in sorted(set(self.breaks)) if t > 0.0 and self._steps(t)))
+            later = [b for (a, _), (b, _) in pairwise(self.points) if a == b]
+            return (*([0.0] if self.points[0][1] != 0.0 else []), *later)
 
-    def _steps(self, time: float) -> bool:
-        before, after = (self.called(math.nextafter(time, to)) for to in (0.0, math.inf))
-        return abs(after - before) > SMOOTH * max(abs(before), abs(after))
+        def jumps(time: float) -> bool:  # a smooth function changes by no more than rounding
+            before, after = (self.called(math.nextafter(time, to)) for to in (0.0, math.inf))
+            return abs(after - before) > SMOOTH * max(abs(before), abs(after))
+
+        later = [t for t in sorted(set(self.breaks)) if t > 0.0 and jumps(t)]
+        return (*([0.0] if self.called(0.0) != 0.0 else []), *later)
 
     @property
     def changes(self) -> tuple[float, ...]:
-        """The times in s at which the velocity jumps or has a kink, in order, t = 0 among them."""
+        """The times in s at which V jumps or has a kink, in order, with t = 0; not those of a waveform."""
         times = self.breaks if self.function is not None else (time for time, _ in self.points)
         return tuple(sorted({0.0, *times}))
 
@@ -223,130 +243,55 @@ class Drive(Part):
         >>> Drive(history=[(0.0, 0.1), (1.0, 0.2)], stiffness=1e6).changed(velocity=0.3).points
         ((0.0, 0.3),)
         """
-        own = () if self.waveform is None else quantities(self.waveform)
+        wave = self.waveform
+        new: dict[str, Any] = {name: value for name, value in values.items() if name in SPRING}
         moves = {name: value for name, value in values.items() if name not in SPRING}
-        way: dict[str, Any] = {}
-        if moves and all(name in own for name in moves):
-            way = {"waveform": changed(self.waveform, **moves), "function": None}
+        if moves and wave is not None and moves.keys() <= quantities(wave).keys():
+            new |= {"waveform": wave.changed(**moves), "function": None}
         elif moves:
-            way = {"history": None, "function": None, "waveform": None, "breaks": (), **moves}
-        springs = {name: value for name, value in values.items() if name in SPRING}
-        return replace(self, **springs, **way)  # type: ignore[arg-type]
+            new |= {"history": None, "function": None, "waveform": None, "breaks": (), **moves}
+        return replace(self, **new)
 
     def motion(self, end: float, least: float) -> BaseMotion:
-        """Return V(t) and Y(t) up to the time `end` (s), as polynomials.
+        """Return V(t) and Y(t) as polynomials, up to the time `end` (s) or the end of a longer history.
 
-        Parameters
-        ----------
-        end
-            Until when; a history that is longer is given whole.
-        least
-            A speed in m/s below which a function need not be followed relative to its own value: a_0/tau.
-
-        Raises
-        ------
-        ValueError
-            If a function is not smooth between its breaks, or not finite, or changes too often.
+        A function need not be followed relative to its own value below the speed `least` in m/s: a_0/tau. It
+        raises ValueError if it is not smooth between its breaks, or not finite, or changes too often.
         """
+        wave = self.waveform
         if self.function is None:
             return BaseMotion.from_points(self.points, end)
-        if (
-            isinstance(self.waveform, Sine | Triangle)
-            and self.waveform.frequency * end > MOST_CYCLES
-        ):
+        if isinstance(wave, Sine | Triangle) and wave.frequency * end > MOST_CYCLES:
             told = f"more than {MOST_CYCLES:,} cycles until {end:.6g} s; expected a shorter run"
-            raise mistake("drive.frequency", f"{self.waveform.frequency:g} Hz", told)
-        if isinstance(self.waveform, Triangle):
-            return BaseMotion.from_points(self.waveform.points(end), end)
+            raise mistake("drive.frequency", f"{wave.frequency:g} Hz", told)
+        if isinstance(wave, Triangle):
+            return BaseMotion.from_points(wave.points(end), end)
         first = end
-        if isinstance(self.waveform, Sine):
-            first = min(end, 1.0 / self.waveform.frequency)
-        elif isinstance(self.waveform, SmoothRamp):
+        if isinstance(wave, Sine):
+            first = min(end, 1.0 / wave.frequency)
+        elif isinstance(wave, SmoothRamp):
             first = min(end, self.last_change)
         motion = BaseMotion.from_function(
             self.called, first, tolerance=0.5 * self.tolerance, breaks=self.breaks, least=least
         )
-        return motion.repeated(end) if isinstance(self.waveform, Sine) else motion.kept(end)
+        return motion.repeated(end) if isinstance(wave, Sine) else motion.kept(end)
 
     def called(self, time: float) -> float:
-        """Return what `function` gives at `time` (s), in m/s.
-
-        Raises
-        ------
-        ValueError
-            If it raises an exception, or gives anything but one finite number.
-        """
+        """Return what `function` gives at `time` (s), in m/s; it must be one finite number."""
         try:
             with np.errstate(all="ignore"):  # an infinity is reported below
                 given = self.function(time)  # type: ignore[misc]
         except Exception as error:
-            raise ValueError(
-                f"drive.function raised {type(error).__name__} at t = {time!r} s: {error}"
-            ) from error
-        try:
-            value = math.nan if isinstance(given, str) else float(given)
-        except (TypeError, ValueError):
-            value = math.nan
+            told = f"drive.function raised {type(error).__name__} at t = {time!r} s: {error}"
+            raise ValueError(told) from error
+        value = math.nan
+        if not isinstance(given, str):
+            with suppress(TypeError, ValueError):
+                value = float(given)
         if not math.isfinite(value):
-            raise ValueError(
-                problem(f"drive.function({time!r})", given, "expected a finite number, in m/s")
-            )
+            key = f"drive.function({time!r})"
+            raise ValueError(problem(key, given, "expected a finite number, in m/s"))
         return value
-
-
-def _without_spring(drive: Drive) -> list[str]:
-    """Report the quantities of a spring that a rigid drive was given."""
-    told = "needs drive.stiffness, of the spring between drive and indenter"
-    given = {"damping": drive.damping, "mass": drive.mass} if drive.rigid else {}
-    return [
-        problem(f"drive.{name}", value, told) for name, value in given.items() if value is not None
-    ]
-
-
-def _without_redundant(
-    history: Sequence[tuple[float, float]],
-) -> tuple[tuple[float, float], ...]:
-    """Leave out the points of a history that change nothing."""
-    if len(history) > 1 and history[1][0] == history[0][0]:
-        history = history[1:]  # a jump at t = 0 is one from rest
-    kept = [history[0]]
-    for (time, velocity), (later, next_velocity) in pairwise(history[1:]):
-        before, last = kept[-1]
-        if (time, velocity) == kept[-1]:
-            continue
-        size = ON_LINE * max(abs(last), abs(velocity), abs(next_velocity))
-        if later > before:
-            share = (time - before) / (later - before)
-            straight = before < time < later or last == velocity == next_velocity
-            if straight and abs(last + share * (next_velocity - last) - velocity) <= size:
-                continue
-        kept.append((time, velocity))
-    if len(history) > 1:
-        kept.append(history[-1])
-    while len(kept) > 1 and kept[-1][1] == kept[-2][1]:
-        kept.pop()
-    return tuple(kept)
-
-
-def _breaks(drive: Drive) -> tuple[float, ...]:
-    """Return the breaks in s and in order, or report every mistake in a drive that is a function."""
-    problems: list[str] = []
-    times: list[float] = []
-    if drive.function is None:
-        if not (isinstance(drive.breaks, tuple) and drive.breaks == ()):
-            problems.append(problem("drive.breaks", drive.breaks, "needs a function"))
-    elif not callable(drive.function):
-        problems.append(problem("drive.function", drive.function, "expected a function V(t)"))
-    with collecting(problems, "drive.breaks", drive.breaks):
-        times = np.atleast_1d(array_of(drive.breaks, TIME)).tolist()
-    tolerance = drive.tolerance
-    if not (isinstance(tolerance, (int, float)) and LEAST_TOLERANCE <= tolerance <= 1.0):
-        problems.append(
-            problem("drive.tolerance", tolerance, f"expected a number from {LEAST_TOLERANCE} to 1")
-        )
-    if problems:
-        raise SceneError(problems)
-    return tuple(sorted(times))
 
 
 def history_points(points: Any, key: str = "drive.history") -> tuple[tuple[float, float], ...]:
@@ -357,19 +302,17 @@ def history_points(points: Any, key: str = "drive.history") -> tuple[tuple[float
         told = 'expected points such as [["0 ms", "100 mm/s"], ["50 ms", "0 mm/s"]]'
         raise mistake(key, points, told)
     problems: list[str] = []
-    converted = []
+    values: list[float] = []
     for index, point in enumerate(points):
         if isinstance(point, str) or not isinstance(point, Sequence) or len(point) != 2:
             told = 'expected a pair ["time", "velocity"]'
             problems.append(problem(f"{key}[{index}]", point, told))
             continue
-        pair = []
         for value, spec in zip(point, (TIME, VELOCITY), strict=True):
             with collecting(problems, f"{key}[{index}]", value):
-                pair.append(convert(value, spec))
-        converted.append(tuple(pair))
+                values.append(convert(value, spec))
     if not problems:
-        times = [time for time, _ in converted]
+        times, velocities = values[::2], values[1::2]
         for i, (before, time) in enumerate(pairwise(times), start=1):
             if 0.0 < before - time <= SAME_TIME * math.ulp(before):
                 times[i] = before  # the same but for rounding, as in i * 0.1 + 0.1
@@ -383,4 +326,4 @@ def history_points(points: Any, key: str = "drive.history") -> tuple[tuple[float
         ]
     if problems:
         raise SceneError(problems)
-    return tuple(zip(times, (velocity for _, velocity in converted), strict=True))
+    return tuple(zip(times, velocities, strict=True))

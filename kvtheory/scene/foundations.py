@@ -15,39 +15,32 @@ from typing import Any, ClassVar
 import numpy as np
 
 from kvtheory.scene.quantities import (
-    Derived,
-    DerivedArray,
     Part,
     SceneError,
     Value,
     as_given,
     collecting,
     derive,
+    is_derived,
+    missing,
     mistake,
     problem,
     quantities,
     quantity,
-    sample,
     validate,
+    written_sample,
 )
-from kvtheory.scene.units import expected, to_si
+from kvtheory.scene.units import to_si
 
 LAYER = ("modulus", "thickness", "poisson_ratio")
 THIN = 0.1
-"""Largest `layer_number` of a thin layer. Up to it K predicts the load at a given depth to 5 % for a parabola
-and 11 % for a ball, and the length of the contact to 15 %: measured by solving the contact with the exact
-compliance of the layer, for nu from 0 to nearly 1/2."""
+"""Largest `layer_number` of a thin layer. Up to it K predicts the load at a depth to 5 % for a parabola and
+11 % for a ball, and the length of the contact to 15 % (by the exact compliance, nu from 0 to nearly 1/2)."""
 MOST_ARMS = 100
 PAIRS = 'pairs of stiffness and relaxation time, such as ["30 GN/m^3", "10 ms"]'
 OF_LAYER = 'pairs of modulus and relaxation time, such as ["30 MPa", "10 ms"]'
 DISTINCT = 1e-6
 """Relative difference of relaxation times below which two arms count as the same."""
-STIFFNESS_UNIT, MODULUS_UNIT = "N/m^3", "N/m^2"
-MIXED = {
-    True: f"a layer with foundation.modulus has arms with moduli too; expected {OF_LAYER}",
-    False: f"only a layer, with foundation.modulus, has arms with moduli; expected {PAIRS}",
-}
-"""What is said of arms with stiffnesses in a layer, and of those with moduli elsewhere."""
 TIMES = "retardation_time", "relaxation_time"
 """The quantities that temperature shifts."""
 THERMAL = "temperature", "reference_temperature", "activation_energy", "wlf"
@@ -59,42 +52,32 @@ WLF_PAIR = 'C_1 and C_2, such as ["17.44", "51.6 K"]'
 def layer_stiffness(modulus: Any, thickness: Any, poisson_ratio: Any) -> Any:
     """Return K = E (1 - nu) / ((1 + nu) (1 - 2 nu) h) of a thin layer bonded to a rigid base, in N/m^3.
 
-    A layer of modulus E (Pa) and thickness h (m) that is thin for its contact is compressed without lateral
-    strain: K is its confined modulus over its thickness. `layer_number` says whether it is thin.
-
-    Numbers or arrays; Johnson, Contact Mechanics (1985), section 5.8.
+    The modulus is E (Pa), the thickness h (m), numbers or arrays. A layer that is thin for its contact (see
+    `layer_number`) is compressed without lateral strain: K is its confined modulus over its thickness
+    (Johnson, Contact Mechanics, 1985, section 5.8).
 
     >>> round(layer_stiffness(5e6, 2e-3, 0.45) / 1e9, 4)
     9.4828
     """
-    return (
-        modulus * (1 - poisson_ratio) / ((1 + poisson_ratio) * (1 - 2 * poisson_ratio)) / thickness
-    )
+    nu = poisson_ratio
+    return modulus * (1 - nu) / ((1 + nu) * (1 - 2 * nu)) / thickness
 
 
 def layer_number(thickness: Any, half_length: Any, poisson_ratio: Any) -> Any:
     """Return (h/a)^2/(1 - 2 nu): a layer is thin for a contact of half length a if it is below `THIN`.
 
-    Under a pressure of wave number k a bonded layer of thickness h without friction on its surface is
-    compressed by u = (p/K) [1 + c (k h)^2 + ...], c = nu (4 nu - 1)/(3 (1 - nu)(1 - 2 nu)). The first term
-    is the foundation. The second one is (k h)^2/(3 (1 - 2 nu)) near nu = 1/2, where the layer flows sideways
-    instead of being compressed: with L^2 = c h^2 a parabola at a given depth then carries
-    (1 - L^2/a^2)^(3/2) + L^3/a^3 of the load that K predicts.
-
-    The same parameter decides in Chandler and Vella (2020), Proc. R. Soc. A 476, arXiv:2010.11133.
-
-    >>> round(layer_number(2e-3, 1.6e-3, 0.45), 2)
-    15.63
+    Under a pressure of wave number k a bonded layer without friction on its surface is compressed by
+    u = (p/K) [1 + c (k h)^2 + ...], c = nu (4 nu - 1)/(3 (1 - nu)(1 - 2 nu)). The first term is the
+    foundation; the second is (k h)^2/(3 (1 - 2 nu)) near nu = 1/2, where the layer flows sideways instead of
+    being compressed. With L^2 = c h^2 a parabola at a given depth carries (1 - L^2/a^2)^(3/2) + L^3/a^3 of
+    the load that K predicts. Chandler and Vella (2020), Proc. R. Soc. A 476, arXiv:2010.11133, find the same
+    parameter.
     """
     return (thickness / half_length) ** 2 / (1 - 2 * poisson_ratio)
 
 
 def thick_layer(thickness: Any, half_length: Any, poisson_ratio: Any) -> str:
-    """Return a note if a layer is not thin for its contact, or an empty text; numbers or arrays.
-
-    >>> thick_layer(1e-4, 1.6e-3, 0.45)
-    ''
-    """
+    """Return a note if a layer is not thin for its contact, or an empty text; numbers or arrays."""
     number = np.asarray(layer_number(thickness, half_length, poisson_ratio))
     thick = np.count_nonzero(number > THIN)
     if not thick:
@@ -122,11 +105,11 @@ class WLF(Part):
 
 @dataclass(frozen=True, eq=False)
 class _Relaxed(Part):
-    """The common part of all foundations: a stiffness, or the layer it follows from; and temperature.
+    """What all foundations have in common: a stiffness, or the layer it follows from; and temperature.
 
     At a `temperature` every time of the foundation is a_T times that at the `reference_temperature`
-    (`shift_factor`); the moduli stay (fact F25). What is given are the times at the reference temperature,
-    what the attributes hold are those at the temperature.
+    (`shift_factor`); the moduli stay (fact F25). The times that are given are those at the reference
+    temperature, the attributes those at the temperature.
     """
 
     stiffness: Value = quantity(
@@ -163,46 +146,42 @@ class _Relaxed(Part):
 
     def __post_init__(self) -> None:
         problems: list[str] = []
+        held: list[Any] = [self, *self._read_arms(problems)]
         lawless = self.wlf is None and self.activation_energy is None
-        held = [self, *self._arms(problems)]
-        times = [(part, name) for part in held for name in TIMES if name in vars(part)]
-        if self.modulus is None and isinstance(self.stiffness, Derived | DerivedArray):
+        if self.modulus is None and is_derived(self.stiffness):
             object.__setattr__(self, "stiffness", +self.stiffness)  # that of another foundation
-        for part, name in times:  # one that was shifted stays as it is where there is no law
+        times = [(part, name) for part in held for name in TIMES if name in vars(part)]
+        for part, name in times:  # without a law, a time that was shifted stays as it is
             time = getattr(part, name)
-            if isinstance(time, Derived | DerivedArray):
+            if is_derived(time):
                 object.__setattr__(part, name, +time if lawless else as_given(time))
         with collecting(problems, "foundation", self):
             validate(self, "foundation")
-        if not (lawless and self.temperature is None and self.reference_temperature is None):
+        if self.wlf is not None:
             with collecting(problems, "foundation.wlf", self.wlf):
                 object.__setattr__(self, "wlf", _wlf(self.wlf))
-            problems += self._mistakes_of_law(lawless)
+        given = [key for key in THERMAL[:2] if getattr(self, key) is not None]
+        if self.wlf is not None and self.activation_energy is not None:
+            problems.append("foundation.wlf: cannot be given beside foundation.activation_energy")
+        elif self.wlf is not None and not given:
+            problems.append(missing("foundation", "reference_temperature", REFERENCE))
+        elif lawless and given:
+            told = f"needs a law that shifts times; expected foundation.wlf = {WLF_PAIR}"
+            problems.append(f"foundation.{given[0]}: {told}, or foundation.activation_energy")
         if problems:
             raise SceneError(problems)
-        if self.modulus is not None:
-            for i, part in enumerate(held):
-                stiffness = layer_stiffness(part.modulus, self.thickness, self.poisson_ratio)
-                section = f"foundation.arms[{i - 1}]" if i else "foundation"
-                derive(part, section, "stiffness", stiffness, "the layer")
+        for i, part in enumerate(held if self.modulus is not None else ()):
+            stiffness = layer_stiffness(part.modulus, self.thickness, self.poisson_ratio)
+            section = f"foundation.arms[{i - 1}]" if i else "foundation"
+            derive(part, section, "stiffness", stiffness, "the layer")
         if not lawless:
             self._shift(times)
-        self.mark(held[1:] if self.wlf is None else [*held[1:], self.wlf])
+        if not lawless or len(held) > 1:
+            self.mark(part for _, part in self.nested())
 
-    def _arms(self, problems: list[str]) -> list[Any]:
-        """Read the arms of a Prony series; other foundations have none."""
-        return []
-
-    def _mistakes_of_law(self, lawless: bool) -> list[str]:
-        if lawless:
-            key = "temperature" if self.temperature is not None else "reference_temperature"
-            told = "needs a law that shifts times; expected foundation.wlf ="
-            return [f"foundation.{key}: {told} {WLF_PAIR}, or foundation.activation_energy"]
-        if self.wlf is not None and self.activation_energy is not None:
-            return ["foundation.wlf: cannot be given beside foundation.activation_energy"]
-        if self.reference_temperature is None and self.temperature is None and self.wlf is not None:
-            return [f"foundation.reference_temperature: missing; expected {expected('K')}"]
-        return []
+    def _read_arms(self, problems: list[str]) -> Sequence["Arm"]:
+        """Return the arms of a Prony series, converted; other foundations have none."""
+        return ()
 
     @property
     def shift_factor(self) -> Value:
@@ -219,6 +198,7 @@ class _Relaxed(Part):
         """Multiply every time by a_T, and keep beside it what was given."""
         T, key = self.temperature, "foundation.temperature"
         shown = f"{T:.10g} K" if isinstance(T, float) else T
+        law = "activation_energy" if self.wlf is None else "wlf"
         if T is not None and self.wlf is not None:
             pole = self.reference_temperature - self.wlf.c_2
             if np.any(pole >= T):
@@ -230,14 +210,13 @@ class _Relaxed(Part):
             with np.errstate(all="ignore"):
                 shifted = given * a_T
             if not quantities(part)[name].admits(shifted):
-                law = "wlf" if self.wlf is not None else "activation_energy"
+                told = f"shifts times by a_T = {np.ravel(a_T)[0]:g}, beyond double precision; check {key}"
                 keys = f"foundation.reference_temperature and foundation.{law}"
-                told = f"shifts times by a_T = {np.ravel(a_T)[0]:g}, beyond double precision; check {key}, "
-                raise mistake(key, shown, told + keys)
+                raise mistake(key, shown, f"{told}, {keys}")
             derive(part, "foundation", name, shifted, key, given)
 
     def plain(self, factor: float = 1.0) -> Any:
-        """Return it as it is at its temperature, without layer and law, `factor` times as stiff."""
+        """Return the foundation at its temperature, without layer and law, `factor` times as stiff."""
         names = {"retardation_time", "order"} & set(quantities(self))
         own: dict[str, Any] = {name: +getattr(self, name) for name in names}
         if self.arms:
@@ -251,21 +230,28 @@ class _Relaxed(Part):
         return found
 
 
-def _wlf(given: Any) -> WLF | None:
-    if given is None or isinstance(given, WLF):
+REFERENCE = quantities(_Relaxed)["reference_temperature"]
+
+
+def _wlf(given: Any) -> WLF:
+    if isinstance(given, WLF):
         return given
-    if not isinstance(given, Sequence) or isinstance(given, str) or len(given) != 2:
+    if not _is_pair(given):
         raise ValueError(f"expected {WLF_PAIR}")
     return WLF(*given)
+
+
+def _is_pair(value: Any) -> bool:
+    return isinstance(value, Sequence) and not isinstance(value, str) and len(value) == 2
 
 
 @dataclass(frozen=True, eq=False)
 class Foundation(_Relaxed):
     """Independent Kelvin-Voigt elements: G = K + C delta(t), C = K tau, all per unit area.
 
-    A thin bonded layer is given by `modulus`, `thickness` and `poisson_ratio` instead of `stiffness`,
-    which then follows from them; see `layer_stiffness` for where that holds. A `temperature` shifts the
-    retardation time from that at the `reference_temperature`, by `wlf` or an `activation_energy`.
+    A thin bonded layer is given by `modulus`, `thickness` and `poisson_ratio` instead of `stiffness`, which
+    then follows from them. A `temperature` shifts the retardation time from that at the
+    `reference_temperature`, by `wlf` or an `activation_energy`.
 
     >>> layer = Foundation(modulus="5 MPa", thickness="2 mm", poisson_ratio=0.45, retardation_time=0.1)
     >>> round(layer.stiffness / 1e9, 4)
@@ -324,21 +310,16 @@ class GeneralizedMaxwell(_Relaxed):
     >>> zener = GeneralizedMaxwell("10 GN/m^3", arms=[["30 GN/m^3", "10 ms"]])
     >>> zener.arms[0].relaxation_time, zener.damping, zener.retardation_time
     (0.01, 300000000.0, 0.03)
-    >>> layer = GeneralizedMaxwell(modulus="5 MPa", thickness="2 mm", poisson_ratio=0.45,
-    ...                            arms=[["30 MPa", "10 ms"]])
-    >>> round(layer.arms[0].stiffness / layer.stiffness, 12)
-    6.0
     """
 
     kind: ClassVar[str] = "generalized-maxwell"
     arms: tuple[Arm, ...] = ()  # type: ignore[misc]
 
-    def _arms(self, problems: list[str]) -> list[Any]:
+    def _read_arms(self, problems: list[str]) -> Sequence[Arm]:
         with collecting(problems, "foundation.arms", self.arms):
-            arms = arms_of(self.arms, layer=self.modulus is not None)
-            object.__setattr__(self, "arms", tuple(map(copy.copy, arms)))
-            return list(self.arms)
-        return []
+            object.__setattr__(self, "arms", _arms_of(self.arms, layer=self.modulus is not None))
+            return self.arms
+        return ()
 
     @property
     def damping(self) -> Value:
@@ -386,49 +367,51 @@ FOUNDATIONS: dict[str, Any] = {
 """The kinds that a scene file can name."""
 
 
-def arms_of(given: Any, *, layer: bool = False) -> tuple[Arm, ...]:
-    """Make the arms of a Prony series from pairs, or from arms; those of a layer have moduli.
-
-    Raises
-    ------
-    SceneError
-        Listing every mistake.
-    """
-    expected_pairs = OF_LAYER if layer else PAIRS
-    pairs = given if isinstance(given, Sequence) and not isinstance(given, str) else ()
-    if not 1 <= len(pairs) <= MOST_ARMS:
-        raise ValueError(f"expected 1 to {MOST_ARMS} {expected_pairs}")
+def _arms_of(given: Any, *, layer: bool) -> tuple[Arm, ...]:
+    """Return the arms of a Prony series from pairs, or from arms; those of a layer have moduli."""
+    pairs_expected, own = (OF_LAYER, "modulus") if layer else (PAIRS, "stiffness")
+    if isinstance(given, tuple) and not given:
+        raise SceneError([f"foundation.arms: missing; expected {pairs_expected}"])
+    if (
+        not isinstance(given, Sequence)
+        or isinstance(given, str)
+        or not 1 <= len(given) <= MOST_ARMS
+    ):
+        raise ValueError(f"expected 1 to {MOST_ARMS} {pairs_expected}")
+    mixed = "only a layer, with foundation.modulus, has arms with moduli"
+    if layer:
+        mixed = "a layer with foundation.modulus has arms with moduli too"
     problems: list[str] = []
     arms: dict[int, Arm] = {}
-    first = "modulus" if layer else "stiffness"
-    for number, pair in enumerate(pairs):
+    for number, pair in enumerate(given):
         key = f"foundation.arms[{number}]"
         if isinstance(pair, Arm):
-            if (pair.modulus is not None) != layer:
-                raise mistake(key, pair, MIXED[layer])
-            arms[number] = pair
-        elif isinstance(pair, Sequence) and not isinstance(pair, str) and len(pair) == 2:
-            if _reads(pair[0], MODULUS_UNIT if not layer else STIFFNESS_UNIT):
-                raise mistake(key, pair, MIXED[layer])
-            try:
-                arms[number] = Arm(relaxation_time=pair[1], **{first: pair[0]})
-            except SceneError as error:
-                problems += [line.replace("arm", key, 1) for line in error.problems]
+            other = (pair.modulus is not None) != layer
+        elif _is_pair(pair):
+            other = _reads(pair[0], "N/m^3" if layer else "N/m^2")
         else:
-            problems.append(problem(key, pair, f"expected one of {expected_pairs}"))
-    problems += _equal_times(arms)
-    if problems:
+            problems.append(problem(key, pair, f"expected one of {pairs_expected}"))
+            continue
+        if other:
+            raise mistake(key, pair, f"{mixed}; expected {pairs_expected}")
+        try:
+            arms[number] = (
+                copy.copy(pair)
+                if isinstance(pair, Arm)
+                else Arm(relaxation_time=pair[1], **{own: pair[0]})
+            )
+        except SceneError as error:
+            problems += [line.replace("arm", key, 1) for line in error.problems]
+    if problems := problems + _equal_times(arms):
         raise SceneError(problems)
     return tuple(arms.values())
 
 
 def _reads(value: Any, unit: str) -> bool:
     """Whether a value with a unit is of this dimension."""
-    value = sample(value)
-    if isinstance(value, str) or hasattr(value, "units"):
-        with suppress(ValueError):
-            to_si(value, unit)
-            return True
+    sample = written_sample(value)
+    with suppress(ValueError):
+        return sample is not None and to_si(sample, unit) is not None
     return False
 
 
@@ -436,7 +419,7 @@ def _equal_times(arms: Mapping[int, Arm]) -> list[str]:
     """Report the arms that have a relaxation time in common."""
     if not arms:
         return []
-    numbers = np.array(list(arms))
+    numbers = list(arms)
     times = np.stack(np.broadcast_arrays(*(arm.relaxation_time for arm in arms.values())))
     times = times.reshape(len(arms), -1)
     order = np.argsort(times, axis=0, kind="stable")

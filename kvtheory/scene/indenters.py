@@ -1,10 +1,9 @@
 """Shapes of the indenter: the height h(x) of its surface above its lowest point, at x = 0 (Eq. 3).
 
-Every shape has `height` (h, in m) and `slope` (h', dimensionless), each for floats and arrays; its
-`reach`, in m: the surface is defined for |x| < reach; `kinks`, the points where h' jumps or a
-derivative is singular, in m; and `convex`, whether h is known to be convex: then it also has `bend`,
-x h''/h'. They form line contacts: forces are per unit width, `per_width`. A ball and other bodies of
-revolution form point contacts, with total forces; their shape is that of the middle plane, y = 0.
+Every shape has `height` (h, in m) and `slope` (h', dimensionless), for floats and arrays; `reach` (m): the
+surface is defined for |x| < reach; `kinks` (m), where h' jumps or a derivative is singular; and `convex`,
+whether h is known to be convex: then also `bend`, x h''/h'. Line contacts have forces `per_width`; balls and
+other bodies of revolution have total forces, and their shape is that of the middle plane, y = 0.
 """
 
 import math
@@ -19,17 +18,34 @@ from kvtheory.theory.powers import power
 
 
 class _Shape(Part):
-    """The common part of the shapes that a scene file can name."""
+    """What the shapes that a scene file can name have in common."""
 
     convex: ClassVar[bool] = True
     per_width: ClassVar[bool] = True
+    reach: ClassVar[float] = math.inf
+    kinks: ClassVar[tuple[float, ...]] = ()
 
     def __post_init__(self) -> None:
         validate(self, "indenter")
 
 
+class _Power(_Shape):
+    """A line contact with h = x h'/n, n being constant."""
+
+    exponent: Any
+    slope: Any
+
+    def height(self, x: Value) -> Value:
+        """Return h(x)."""
+        return x * self.slope(x) / self.exponent
+
+    def bend(self, x: Value) -> Value:
+        """Return x h''/h'."""
+        return self.exponent - 1.0
+
+
 @dataclass(frozen=True, eq=False)
-class Parabola(_Shape):
+class Parabola(_Power):
     """The paper's cylinder, h = x^2/(2R) (Eq. 3).
 
     >>> Parabola(radius=0.01).height(0.002)
@@ -37,38 +53,28 @@ class Parabola(_Shape):
     """
 
     shape: ClassVar[str] = "parabola"
-    reach: ClassVar[float] = math.inf
-    kinks: ClassVar[tuple[float, ...]] = ()
+    exponent = 2.0
     radius: Value = quantity("m", "R, curvature radius of the indenter (Eq. 3)")
-
-    def height(self, x: Value) -> Value:
-        """Return h(x)."""
-        return x * (x / (2.0 * self.radius))
 
     def slope(self, x: Value) -> Value:
         """Return h'(x)."""
         return x / self.radius
 
-    def bend(self, x: Value) -> Value:
-        """Return x h''/h'."""
-        return 1.0
-
 
 @dataclass(frozen=True, eq=False)
 class Circle(_Shape):
-    """A true cylinder, h = R - sqrt(R^2 - x^2), up to |x| = R.
+    """A true cylinder, h = R - sqrt(R^2 - x^2), up to |x| = R, where its surface is vertical.
 
     >>> print(f"{Circle(radius=0.01).height(0.006):.12g}")
     0.002
     """
 
     shape: ClassVar[str] = "circle"
-    kinks: ClassVar[tuple[float, ...]] = ()
     radius: Value = quantity("m", "R, curvature radius of the indenter (Eq. 3)")
 
     @property
-    def reach(self) -> float:
-        """The radius: the lower half of the cylinder ends there, with a vertical surface."""
+    def reach(self) -> float:  # type: ignore[override]
+        """The radius: the lower half of the cylinder ends there."""
         return self.radius
 
     def height(self, x: Value) -> Value:
@@ -91,7 +97,7 @@ class Circle(_Shape):
 
 
 @dataclass(frozen=True, eq=False)
-class PowerLaw(_Shape):
+class PowerLaw(_Power):
     """A blunt (n > 2) or pointed (n < 2) indenter, h = |x|^n/(n L^(n-1)), n >= 1.
 
     With n = 2 it is the parabola of radius L; the slope is 1 at |x| = L for every n.
@@ -101,48 +107,31 @@ class PowerLaw(_Shape):
     """
 
     shape: ClassVar[str] = "power-law"
-    reach: ClassVar[float] = math.inf
     kinks: ClassVar[tuple[float, ...]] = (0.0,)
     length: Value = quantity("m", "L, where |h'| = 1")
     exponent: Value = quantity("1", "n, at least 1", minimum=1.0, exclusive=False)
-
-    def height(self, x: Value) -> Value:
-        """Return h(x)."""
-        return x * self.slope(x) / self.exponent
 
     def slope(self, x: Value) -> Value:
         """Return h'(x)."""
         return np.sign(x) * power(np.abs(x) / self.length, self.exponent - 1.0)
 
-    def bend(self, x: Value) -> Value:
-        """Return x h''/h'."""
-        return self.exponent - 1.0
-
 
 @dataclass(frozen=True, eq=False)
-class Wedge(_Shape):
+class Wedge(_Power):
     """A wedge, h = slope |x|.
 
-    >>> Wedge(inclination=0.1).height(-0.02)
+    >>> float(Wedge(inclination=0.1).height(-0.02))
     0.002
     """
 
     shape: ClassVar[str] = "wedge"
-    reach: ClassVar[float] = math.inf
+    exponent = 1.0
     kinks: ClassVar[tuple[float, ...]] = (0.0,)
     inclination: Value = quantity("1", "slope |h'| of the flanks")
-
-    def height(self, x: Value) -> Value:
-        """Return h(x)."""
-        return self.inclination * abs(x)
 
     def slope(self, x: Value) -> Value:
         """Return h'(x)."""
         return self.inclination * np.sign(x)
-
-    def bend(self, x: Value) -> Value:
-        """Return x h''/h'."""
-        return 0.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -170,7 +159,8 @@ class Profile(Part):
             raise SceneError(["indenter: expected functions h(x) and h'(x) of one float"])
         if not (isinstance(self.reach, (int, float)) and self.reach > 0.0):
             raise mistake("indenter.reach", self.reach, "expected a number above 0, in m")
-        if not (isinstance(self.kinks, (tuple, list)) and all(map(_is_finite, self.kinks))):
+        listed = self.kinks if isinstance(self.kinks, (tuple, list)) else [None]
+        if not all(isinstance(x, (int, float)) and math.isfinite(x) for x in listed):
             raise mistake("indenter.kinks", self.kinks, "expected finite numbers, in m")
         object.__setattr__(self, "kinks", tuple(map(float, self.kinks)))
 
@@ -190,12 +180,8 @@ class Profile(Part):
 
 
 def beside(x: float, to: float) -> float:
-    """Return the next number towards another; beside 0, the next that no processor takes for 0."""
+    """Return the next number towards another; next to 0, the smallest that no processor flushes to 0."""
     return math.nextafter(x, to) if x else math.copysign(float(np.finfo(float).tiny), to)
-
-
-def _is_finite(value: Any) -> bool:
-    return isinstance(value, (int, float)) and math.isfinite(value)
 
 
 def _pointwise(function: Callable[[float], float], x: Value) -> Value:
@@ -207,10 +193,10 @@ def _pointwise(function: Callable[[float], float], x: Value) -> Value:
 
 @dataclass(frozen=True, eq=False)
 class Sphere(_Shape):
-    """A ball, h = x^2/(2R) + y^2/(2R'): a paraboloid, R' being R unless `radius_across` says otherwise.
+    """A ball, the paraboloid h = x^2/(2R) + y^2/(2R'), with R' = R unless `radius_across` is given.
 
-    It approximates a sphere as the parabola approximates a cylinder, with a relative error of the order of
-    (a/R)^2. Its strips along x are parabolas of depth delta - y^2/(2R').
+    It approximates a sphere as the parabola does a cylinder, to a relative error of the order of (a/R)^2. Its
+    strips along x are parabolas of depth delta - y^2/(2R').
 
     >>> Sphere(radius="10 mm").stretch, Sphere("10 mm", radius_across="40 mm").stretch
     (1.0, 2.0)
@@ -218,8 +204,6 @@ class Sphere(_Shape):
 
     shape: ClassVar[str] = "sphere"
     per_width: ClassVar[bool] = False
-    reach: ClassVar[float] = math.inf
-    kinks: ClassVar[tuple[float, ...]] = ()
     radius: Value = quantity("m", "R, radius of the ball, in the sliding direction")
     radius_across: Value = quantity(
         "m", "R', radius across the sliding direction; that of the ball if not given", default=None
@@ -263,9 +247,8 @@ class Revolved(Part):
 
     def __post_init__(self) -> None:
         if not isinstance(self.profile, Line):
-            raise mistake(
-                "indenter.profile", self.profile, "expected a shape h(x) of a line contact"
-            )
+            told = "expected a shape h(x) of a line contact"
+            raise mistake("indenter.profile", self.profile, told)
         self.mark([self.profile])
 
     @property

@@ -6,7 +6,7 @@ holds an SI float or an array of them afterwards. The arrays of a scene broadcas
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, ClassVar, get_args
 
@@ -21,13 +21,11 @@ from kvtheory.scene.quantities import (
     SceneError,
     Value,
     as_given,
-    changed,
     collecting,
     converted,
     derive,
     free,
     given,
-    misfits,
     missing,
     nearest,
     problem,
@@ -35,13 +33,20 @@ from kvtheory.scene.quantities import (
     quantity,
     validate,
 )
+from kvtheory.scene.units import expected
 
 STANDARD_GRAVITY = 9.80665
 LOAD = "W, load instead of mass times gravity; the mass is then inertia alone"
+MASS: dict[str, Any] = {"default": None, "needed": True, "instead": "load", "per_width": True}
+
+
+class _Support(Part):
+    def __post_init__(self) -> None:
+        validate(self, "support")
 
 
 @dataclass(frozen=True, eq=False)
-class Fixed(Part):
+class Fixed(_Support):
     """The indenter cannot move (the paper's FI model): a constant depth is given.
 
     >>> Fixed(depth="300 um").depth
@@ -54,22 +59,17 @@ class Fixed(Part):
     spring: ClassVar[Value] = math.inf
     depth: Value = quantity("m", "delta, indentation depth, held constant")
 
-    def __post_init__(self) -> None:
-        validate(self, "support")
 
+class _Loaded(_Support):
+    """What supports with a load have in common: mass times gravity, or a load that is given."""
 
-MASS: dict[str, Any] = {"default": None, "needed": True, "instead": "load", "per_width": True}
-
-
-class _Loaded(Part):
-    """The common part of supports with a load: mass times gravity, or a load that is given."""
-
+    depth: ClassVar[Value] = None
     mass: Value
     gravity: Value
     load: Value
 
     def __post_init__(self) -> None:
-        validate(self, "support")
+        super().__post_init__()
         if self.load is not None and self.mass is None:
             mass = self.load / self.gravity
             derive(self, "support", "mass", mass, "support.load/support.gravity")
@@ -92,7 +92,6 @@ class DeadWeight(_Loaded):
 
     kind: ClassVar[str] = "dead-weight"
     spring: ClassVar[Value] = 0.0
-    depth: ClassVar[Value] = None
     mass: Value = quantity("kg/m", "M, mass of the indenter", **MASS)
     gravity: Value = quantity("m/s^2", "g, gravity", default=STANDARD_GRAVITY)
     load: Value = quantity("N/m", LOAD, default=None, per_width=True)
@@ -109,7 +108,6 @@ class Suspended(_Loaded):
     """
 
     kind: ClassVar[str] = "suspended"
-    depth: ClassVar[Value] = None
     mass: Value = quantity("kg/m", "M, mass of the indenter", **MASS)
     stiffness: Value = quantity(
         "N/m^2", "k_s, stiffness of the suspension", default=None, needed=True, per_width=True
@@ -140,26 +138,16 @@ class Run(Part):
         validate(self, "run")
 
 
-WEIGHED = ("support", "drive")
-"""Parts of a scene whose masses, loads and springs a line contact has per unit width."""
-
-
 @dataclass(frozen=True, eq=False)
 class Scene(Part):
     """An indenter, a foundation, a support and a drive; without arguments, the paper's Table 1.
 
-    Examples
-    --------
-    >>> scene = Scene(drive=Drive(velocity="50 mm/s"))
-    >>> scene.drive.velocity
-    0.05
-    >>> scene.foundation.stiffness
-    10000000000.0
+    Arrays make many scenes of one.
+
+    >>> Scene(drive=Drive(velocity="50 mm/s")).drive.velocity, Scene().foundation.stiffness
+    (0.05, 10000000000.0)
     >>> Scene.table1("fixed").support
     Fixed(depth=0.0003)
-
-    Arrays make many scenes of one:
-
     >>> Scene(drive=Drive(velocity="1 mm/s:1 m/s:4:log")).shape
     (4,)
     """
@@ -177,11 +165,7 @@ class Scene(Part):
             if not isinstance(parts[name], kinds):
                 told = " or ".join(kind.__name__ for kind in kinds)
                 problems.append(problem(f"`{name}`", parts[name], f"expected {told}"))
-        for name in () if problems else WEIGHED:
-            if "written" in vars(parts[name]):
-                problems += misfits(name, parts[name], self.indenter)
-        problems = problems or lacks_mass(self.support, self.drive, self.indenter.per_width)
-        if problems:
+        if problems := problems or inconsistencies(parts):
             raise SceneError(problems)
         for name in PARTS:
             if parts[name].arrayed:
@@ -240,7 +224,7 @@ class Scene(Part):
 
     @property
     def held(self) -> bool:
-        """Whether the support holds the indenter at its depth, so that it cannot move."""
+        """Whether the support holds the indenter at a depth."""
         return self.support.depth is not None
 
     @property
@@ -260,7 +244,7 @@ class Scene(Part):
         return cls(support=TABLE1_SUPPORTS[support])
 
     def parts(self) -> dict[str, Any]:
-        """Return what holds the quantities of the scene at rest, by its dotted name, each arm by its own."""
+        """Return the indenter, the foundation and the support, and the parts within them, by dotted name."""
         found: dict[str, Any] = {}
         for name in ("indenter", "foundation", "support"):
             found[name] = part = getattr(self, name)
@@ -306,51 +290,45 @@ class Scene(Part):
     def replace(self, over: Mapping[str, Any]) -> "Scene":
         """Return the scene with some quantities replaced; what follows from them follows.
 
-        A velocity replaces a history, a waveform or a function.
+        A velocity replaces a history, a waveform or a function. Unknown keys and values that are out of range
+        raise SceneError, which lists them all.
 
-        Raises
-        ------
-        SceneError
-            Listing every unknown key and every value that is out of range.
-
-        Examples
-        --------
         >>> Scene().replace({"drive.velocity": ["1 mm/s", "1 m/s"], "support.mass": 10.0}).shape
         (2,)
         """
         specs, problems = self.replaceable, []
-        sections: dict[str, dict[str, Any]] = {}
+        values: dict[str, Any] = {}
         for key, value in over.items():
             if key not in specs:
                 told = f"unknown key for this scene; {nearest(str(key), specs)}"
                 problems.append(problem(f"`over` {key}", value, told))
                 continue
             with collecting(problems, f"`over` {key}", value):
-                section, _, name = key.rpartition(".")
-                sections.setdefault(section, {})[name] = converted(value, specs[key])
+                values[key] = converted(value, specs[key])
         if problems:
             raise SceneError(problems)
-        parts: dict[str, dict[str, Any]] = {}
-        for section, values in sections.items():
-            part, _, within = section.partition(".")
-            own = parts.setdefault(part, {})
-            if not within:
-                own |= values
-                continue
-            name, _, index = within.rstrip("]").partition("[")
-            old = own.get(name, getattr(getattr(self, part), name))
-            if index:
-                i = int(index)
-                own[name] = (*old[:i], changed(old[i], **values), *old[i + 1 :])
-            else:
-                own[name] = changed(old, **values)
-        made: dict[str, Any] = {
-            part: self.drive.changed(**own)
-            if part == "drive"
-            else changed(getattr(self, part), **own)
-            for part, own in parts.items()
-        }
-        return replace(self, **made) if made else self
+        return _replaced(self, values) if values else self
+
+
+def _replaced(part: Any, values: Mapping[str, Any]) -> Any:
+    """Return a part with quantities replaced, by their dotted names within it."""
+    own: dict[str, Any] = {}
+    inner: dict[str, dict[str, Any]] = {}
+    for key, value in values.items():
+        first, _, rest = key.partition(".")
+        if rest:
+            inner.setdefault(first, {})[rest] = value
+        else:
+            own[first] = value
+    for key, changes in inner.items():
+        name, _, index = key.rstrip("]").partition("[")
+        old = own.get(name, getattr(part, name))
+        if index:
+            i = int(index)
+            own[name] = (*old[:i], _replaced(old[i], changes), *old[i + 1 :])
+        else:
+            own[name] = _replaced(old, changes)
+    return part.changed(**own)
 
 
 PARTS: dict[str, tuple[Any, ...]] = {
@@ -360,13 +338,29 @@ PARTS: dict[str, tuple[Any, ...]] = {
 """The parts of a scene, and what each can be."""
 
 
-def lacks_mass(support: Support, drive: Drive, per_width: bool) -> list[str]:
-    """Return that a fixed indenter on a spring needs a mass, as its support has none; or nothing."""
-    if drive.rigid or drive.mass is not None or support.depth is None:
-        return []
-    spec = quantities(drive)["mass"].fitting(per_width)
-    needed = missing("drive", "mass", spec, f' for support.kind = "{support.kind}"')
-    return [f"{needed}, which moves along x on the spring"]
+def inconsistencies(parts: Mapping[str, Any]) -> list[str]:
+    """Report where the parts of a scene, those that there are, do not fit each other.
+
+    The values of a ball are totals, those of a line contact are per unit width; and on a spring a fixed
+    indenter needs a mass, as its support has none.
+    """
+    found = []
+    indenter, support, drive = parts.get("indenter"), parts.get("support"), parts.get("drive")
+    per_width = indenter is None or indenter.per_width
+    for section, part in (("support", support), ("drive", drive)):
+        for name, (value, given_per_width) in getattr(part, "written", {}).items():
+            if indenter is None or given_per_width == per_width:
+                continue
+            unit = quantities(part)[name].fitting(per_width).unit
+            what, contact = ("that of a ball", "line") if per_width else ("per unit width", "point")
+            shape = f'indenter.shape = "{indenter.shape}"'
+            told = f"is {what}, but {shape} has a {contact} contact; expected {expected(unit)}"
+            found.append(problem(f"{section}.{name}", value, told))
+    if support and drive and not drive.rigid and drive.mass is None and support.depth is not None:
+        spec = quantities(drive)["mass"].fitting(per_width)
+        needed = missing("drive", "mass", spec, f' for support.kind = "{support.kind}"')
+        found.append(f"{needed}, which moves along x on the spring")
+    return found
 
 
 TABLE1_SUPPORTS: dict[str, Support] = {

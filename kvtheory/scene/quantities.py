@@ -1,7 +1,7 @@
-"""Fields of a scene: each states its unit, range and meaning, once, for every use.
+"""Quantities of a scene: each field of a part declares its unit, range and meaning once, for every use.
 
-The reader of scene files, the template, the writer and the constructors work from this metadata. A
-quantity is a float or an array of floats, in SI.
+Constructors, scene files and the template work from these declarations. A quantity is a float or an array of
+floats, in SI. The messages about wrong values are made here too.
 """
 
 import dataclasses
@@ -20,11 +20,11 @@ from numpy.typing import ArrayLike, NDArray
 from kvtheory.scene.units import WHOLE, bare, expected, is_usual, to_si
 
 LONGEST_SHOWN = 60
-"""Characters of a key or of a value in a message."""
+"""Most characters of a key or a value in a message."""
 SHORT = reprlib.Repr()
-"""Shortens values, which may be nested too deeply to be shown whole."""
 SHORT.maxlist = SHORT.maxtuple = SHORT.maxdict = SHORT.maxstring = SHORT.maxother = LONGEST_SHOWN
-
+MOST = 10**8
+"""Most values of a range; more would be a typing error, and fill the memory."""
 
 Value = Any
 """A float, or an array of floats."""
@@ -41,14 +41,20 @@ class SceneError(ValueError):
         told = [f"and {more:,} more mistakes"] if more > 0 else []
         super().__init__("\n".join([*self.problems[: self.SHOWN], *told]))
 
-    def __reduce__(self) -> Any:  # from a worker of a sweep
+    def __reduce__(self) -> Any:  # pickled by the workers of a sweep
         return type(self), (self.problems,)
 
 
-class Derived(float):
-    """A quantity derived from others: when these are replaced, it is recomputed.
+class Bare(str):
+    """A number of a scene file as text, without a unit; messages show it without quotes."""
 
-    `given` is the value from which it follows, of a time that temperature shifts; None of other quantities.
+    __repr__ = str.__str__
+
+
+class Derived(float):
+    """A quantity that follows from others, and is computed again when these are replaced.
+
+    For a time that is shifted by temperature, `given` is its value before the shift; otherwise None.
     """
 
     given: Any = None
@@ -77,14 +83,21 @@ def _derived(value: Any, given: Any = None) -> Any:
     return found
 
 
+def is_derived(value: Any) -> bool:
+    """Whether a quantity follows from others."""
+    return isinstance(value, Derived | DerivedArray)
+
+
 def as_given(value: Any) -> Any:
-    """Return a quantity as it was given: before its shift by temperature, if it is a time."""
-    derived = isinstance(value, Derived | DerivedArray) and value.given is not None
-    return value.given if derived else value
+    """Return a quantity as it was given: a time before its shift by temperature."""
+    return value.given if is_derived(value) and value.given is not None else value
 
 
 class Part:
     """A frozen part of a scene, whose quantities are floats or arrays: equality, hash, and a map."""
+
+    arrayed: ClassVar[bool] = False
+    """Whether a quantity is an array; set on instances by `validate`, to be cheap to ask."""
 
     def __eq__(self, other: object) -> bool:
         return type(self) is type(other) and _content(self) == _content(other)
@@ -92,18 +105,29 @@ class Part:
     def __hash__(self) -> int:
         return hash(_content(self))
 
-    arrayed: ClassVar[bool] = False
-    """Whether a quantity is an array; set by `validate`, as scenes are made by the thousand."""
-
     def mapped(self, function: Callable[[Any], Any]) -> Any:
         """Return a copy with a function applied to every array, which is not checked again."""
+
+        def mapped(value: Any) -> Any:
+            if isinstance(value, np.ndarray):
+                return function(np.asarray(value))
+            if isinstance(value, Part):
+                return value.mapped(function)
+            parts = isinstance(value, tuple) and value and isinstance(value[0], Part)
+            return tuple(part.mapped(function) for part in value) if parts else value
+
         copy = object.__new__(self.__class__)
         values = {name: getattr(self, name) for name in _names(self.__class__)}
         if self.arrayed:
-            values = {name: _mapped(value, function) for name, value in values.items()}
-            values["arrayed"] = True
+            values = {name: mapped(value) for name, value in values.items()} | {"arrayed": True}
         vars(copy).update(values)
         return copy
+
+    def changed(self, **values: Any) -> Any:
+        """Return a copy with some quantities replaced; what these exclude is left out."""
+        specs = quantities(self)
+        dropped = {other: None for name in specs.keys() & values for other in specs[name].excludes}
+        return dataclasses.replace(self, **{**dropped, **values})  # type: ignore[type-var]
 
     def nested(self) -> Iterator[tuple[str, "Part"]]:
         """Yield the parts within it and the ends of their dotted names, such as "arms[0]"."""
@@ -118,10 +142,8 @@ class Part:
         """Return the arrays among the given quantities, those of parts within it by dotted name."""
         found: dict[str, Any] = {}
         if self.arrayed:
-            for name in _names(self.__class__):
-                value = as_given(getattr(self, name))
-                if type(value) is np.ndarray:  # and not derived
-                    found[name] = value
+            own = {name: as_given(getattr(self, name)) for name in _names(self.__class__)}
+            found |= {name: value for name, value in own.items() if type(value) is np.ndarray}
             for name, part in self.nested():
                 found |= {f"{name}.{inner}": each for inner, each in part.arrays().items()}
         return found
@@ -132,33 +154,22 @@ class Part:
             object.__setattr__(self, "arrayed", True)
 
 
-def _mapped(value: Any, function: Callable[[Any], Any]) -> Any:
-    if isinstance(value, np.ndarray):
-        return function(np.asarray(value))
-    if isinstance(value, Part):
-        return value.mapped(function)
-    if isinstance(value, tuple) and value and isinstance(value[0], Part):
-        return tuple(part.mapped(function) for part in value)
-    return value
-
-
 def _content(part: Part) -> tuple[Any, ...]:
     values = (getattr(part, name) for name in _names(part.__class__))
     return tuple((v.shape, v.tobytes()) if isinstance(v, np.ndarray) else v for v in values)
 
 
 _names: Any = cache(lambda cls: tuple(f.name for f in dataclasses.fields(cls)))
-"""Return the names of the fields of a dataclass, from a cache."""
+"""Return the names of the fields of a dataclass."""
 
 
 @dataclass(frozen=True)
 class Quantity:
-    """The range of a field of a scene: from `minimum`, or above it, to `maximum` and less than `below`.
+    """A quantity: its SI unit, its meaning, and its range, from `minimum` to `maximum` and below `below`.
 
-    `needed` says that it must be given, unless the one named by `instead` is; `beside` names those that
-    it must be given with, and `excludes` those that it cannot be given with. `per_width` says that it is
-    per unit width for a line contact, in `unit`, and a total for a ball: see `fitting`. `difference` says
-    that it is a difference of temperatures.
+    An `exclusive` range is above its minimum. A `needed` quantity must be given, unless the one named by
+    `instead` is; it must be given with those in `beside`, and not with those in `excludes`. A `per_width`
+    quantity is a total for a ball. A `difference` is one of temperatures.
     """
 
     unit: str
@@ -175,30 +186,27 @@ class Quantity:
     difference: bool = False
 
     def fitting(self, per_width: bool) -> "Quantity":
-        """Return this quantity for a line contact, per unit width, or for a ball, as a total."""
+        """Return this quantity of a line contact, per unit width, or of a ball, a total."""
         if per_width or not self.per_width:
             return self
         return dataclasses.replace(self, unit=WHOLE[self.unit], per_width=False)
 
     @property
     def dimension(self) -> str:
-        """The unit for `to_si`, which distinguishes temperatures from their differences."""
+        """The unit as `to_si` takes it, which distinguishes temperatures from their differences."""
         return f"delta {self.unit}" if self.difference else self.unit
 
     @property
     def words(self) -> str:
-        """What it means, and whether it is per unit width."""
+        """The meaning, and whether it is per unit width."""
         return f"{self.doc} per unit width" if self.per_width else self.doc
 
     def admits(self, value: ArrayLike) -> bool:
         """Whether every `value` (in SI) is finite and in range."""
-        if isinstance(value, float):  # the most frequent, and NumPy takes ten times as long for it
-            above = value > self.minimum if self.exclusive else value >= self.minimum
-            return math.isfinite(value) and above and value < self.below and value <= self.maximum
-        value = np.asarray(value)
+        value = value if isinstance(value, float) else np.asarray(value)
         above = value > self.minimum if self.exclusive else value >= self.minimum
-        under = (value < self.below) & (value <= self.maximum)
-        return bool(np.all(np.isfinite(value) & above & under))
+        inside = above & (abs(value) < math.inf) & (value < self.below) & (value <= self.maximum)
+        return bool(inside if isinstance(value, float) else inside.all())
 
     @property
     def range(self) -> str:
@@ -232,50 +240,29 @@ def quantities(cls: Any) -> dict[str, Quantity]:
 
 @cache
 def _declared(cls: type) -> tuple[tuple[str, Quantity], ...]:
-    """Return them from a cache; reading a dataclass field by field is slow."""
-    return tuple(
-        (f.name, f.metadata["quantity"])
-        for f in dataclasses.fields(cls)
-        if "quantity" in f.metadata
-    )
+    fields = dataclasses.fields(cls)
+    return tuple((f.name, f.metadata["quantity"]) for f in fields if "quantity" in f.metadata)
 
 
 def given(instance: Any) -> dict[str, Quantity]:
     """Return the quantities that an instance was given: those that exist and are not derived."""
-    return {
-        name: spec
-        for name, spec in quantities(instance).items()
-        if not isinstance(as_given(getattr(instance, name)), Derived | DerivedArray | None)
-    }
+    specs = quantities(instance)
+    values = {name: as_given(getattr(instance, name)) for name in specs}
+    return {n: s for n, s in specs.items() if values[n] is not None and not is_derived(values[n])}
 
 
 def free(instance: Any) -> dict[str, Quantity]:
     """Return the quantities that can be replaced by other values, one by one."""
-    return {
-        name: spec
-        for name, spec in quantities(instance).items()
-        if getattr(instance, name) is not None
-        or all(getattr(instance, other) is not None for other in spec.beside)
-    }
-
-
-def changed(instance: Any, **values: Any) -> Any:
-    """Return a copy with some quantities replaced; what these exclude is left out."""
-    specs = quantities(instance)
-    dropped = {other: None for name in specs.keys() & values for other in specs[name].excludes}
-    return dataclasses.replace(instance, **{**dropped, **values})
-
-
-def required(cls: Any, names: Iterable[str] = ()) -> tuple[str, ...]:
-    """Return the quantities that must be given where those of the `names` are.
-
-    One that another excludes requires nothing more: that is a separate mistake.
-    """
-    return _required(cls, tuple(names))
+    there = {name for name in quantities(instance) if getattr(instance, name) is not None}
+    return {n: s for n, s in quantities(instance).items() if n in there or there >= {*s.beside}}
 
 
 @cache
-def _required(cls: Any, given: tuple[str, ...]) -> tuple[str, ...]:
+def required(cls: Any, given: tuple[str, ...] = ()) -> tuple[str, ...]:
+    """Return the quantities that must be given beside those that are.
+
+    One that another excludes requires nothing more: that is a separate mistake.
+    """
     specs, names = quantities(cls), set(given)
     for name in specs:
         if name in names:
@@ -321,17 +308,9 @@ def converted(value: Any, spec: Quantity) -> Any:
 
 
 def array_of(value: Any, spec: Quantity) -> NDArray[np.float64]:
-    """Return a value, or an array or a list of values of any library, in SI, checked element by element.
+    """Return a value, an array of any library, or a list, in SI; each element is checked, none may be masked.
 
-    Raises
-    ------
-    ValueError
-        Saying what is wrong: with a value, or because values are masked.
-
-    Examples
-    --------
-    >>> from kvtheory.scene.drives import TIME
-    >>> array_of([["1 ms", 2.0], [3, "4 min"]], TIME).tolist()
+    >>> array_of([["1 ms", 2.0], [3, "4 min"]], Quantity("s", "time", 0.0, False)).tolist()
     [[0.001, 2.0], [3.0, 240.0]]
     """
     values, written = bare(value)
@@ -339,9 +318,8 @@ def array_of(value: Any, spec: Quantity) -> NDArray[np.float64]:
         if written is None and values.dtype.kind in "fiu":
             array = values.astype(float)
             if not spec.admits(array):
-                raise ValueError(
-                    f"is out of range; expected {spec.range} in {spec.unit} throughout"
-                )
+                told = f"is out of range; expected {spec.range} in {spec.unit} throughout"
+                raise ValueError(told)
             return array
         items = values.reshape(-1).tolist()
         if written is not None:
@@ -355,47 +333,31 @@ def array_of(value: Any, spec: Quantity) -> NDArray[np.float64]:
     return np.array(rows, dtype=float)
 
 
-RANGE = "START:STOP:COUNT or START:STOP:COUNT:log"
-MOST = 10**8
-"""Most values of a range, which are held in memory; more than this is a typing error."""
-
-
 def items(text: str) -> list[str]:
-    """Split a text at its commas.
-
-    >>> items("0 ms, 1 ms:3 ms:3")
-    ['0 ms', '1 ms:3 ms:3']
-    """
+    """Split a text at its commas."""
     return [item.strip() for item in text.split(",") if item.strip()]
 
 
 def item_values(item: str, spec: Quantity) -> NDArray[np.float64]:
-    """Return the values in SI of one item: a quantity, or a range with both ends.
+    """Return the values in SI of a text: one quantity, or a range with both ends.
 
-    Raises
-    ------
-    ValueError
-        If the item cannot be read; the message says why.
-
-    Examples
-    --------
-    >>> from kvtheory.scene.drives import TIME
-    >>> item_values("1 ms:3 ms:3", TIME).tolist()
+    >>> item_values("1 ms:3 ms:3", Quantity("s", "time", 0.0, False)).tolist()
     [0.001, 0.002, 0.003]
     """
     if ":" not in item:
         return np.array([convert(item, spec)])
     parts = [part.strip() for part in item.split(":")]
-    if len(parts) not in (3, 4) or (len(parts) == 4 and parts[3] != "log"):
-        raise ValueError(f'expected {RANGE}, such as "1 mm/s:10 m/s:200:log"')
+    if len(parts) not in (3, 4) or parts[3:] not in ([], ["log"]):
+        form = 'START:STOP:COUNT or START:STOP:COUNT:log, such as "1 mm/s:10 m/s:200:log"'
+        raise ValueError(f"expected {form}")
     start, stop = (convert(part, spec) for part in parts[:2])
     if not parts[2].isdecimal() or not 1 <= int(parts[2]) <= MOST:
         raise ValueError(f"COUNT must be a whole number from 1 to {MOST}; got {parts[2]}")
-    count = int(parts[2])
     if len(parts) == 4 and min(start, stop) <= 0.0 <= max(start, stop):
         raise ValueError("a logarithmic range needs START and STOP of one sign, neither zero")
     with np.errstate(over="ignore", invalid="ignore"):
-        array = (np.linspace if len(parts) == 3 else np.geomspace)(start, stop, count)
+        spaced = np.linspace if len(parts) == 3 else np.geomspace
+        array = spaced(start, stop, int(parts[2]))
     if not spec.admits(array):
         raise ValueError("the range leaves that of double precision")
     return array
@@ -404,63 +366,55 @@ def item_values(item: str, spec: Quantity) -> NDArray[np.float64]:
 def validate(instance: Any, section: str) -> None:
     """Convert and check every quantity of a frozen dataclass; for use in ``__post_init__``.
 
-    A derived quantity is removed, to be recomputed. Values whose unit tells whether they are per unit
+    A derived quantity is removed, to be computed again. Values whose unit tells whether they are per unit
     width are kept in `written`, for the scene to check.
     """
     specs, written, values = quantities(instance), {}, {}
     for name in specs:
         value = as_given(getattr(instance, name))
-        if isinstance(value, Derived | DerivedArray):
+        if is_derived(value):
             object.__setattr__(instance, name, None)
         elif value is not None:
             values[name] = value
     here = tuple(values)
-    problems = [missing(section, name, specs[name]) for name in required(type(instance), here)]
-    for name, value in values.items():
+    problems = [missing(section, name, specs[name]) for name in required(instance.__class__, here)]
+    for place, (name, value) in enumerate(values.items()):
+        spec = specs[name]
         try:
-            spec = written_as(value, specs[name])
+            if spec.per_width and (sample := written_sample(value)) is not None:
+                spec = _written_as(sample, spec)
+                written[name] = value, spec.per_width
             number = converted(value, spec)
             object.__setattr__(instance, name, number)
             if number.__class__ is np.ndarray:
                 object.__setattr__(instance, "arrayed", True)
-            if specs[name].per_width and _has_unit(sample(value)):
-                written[name] = value, spec.per_width
         except ValueError as error:
             problems.append(problem(f"{section}.{name}", value, str(error)))
-    for place, name in enumerate(here):  # a pair is one mistake, not two
-        if excludes := specs[name].excludes:
+        if excludes := specs[name].excludes:  # a pair is one mistake, not two
             others = [f"{section}.{other}" for other in here[place:] if other in excludes]
             if others:
                 told = f"cannot be given beside {', '.join(others)}"
-                problems.append(problem(f"{section}.{name}", values[name], told))
+                problems.append(problem(f"{section}.{name}", value, told))
     if problems:
         raise SceneError(problems)
     if written:
         object.__setattr__(instance, "written", written)
 
 
-def _has_unit(value: Any) -> bool:
-    return isinstance(value, str) or hasattr(value, "units")
-
-
-def sample(value: Any) -> Any:
-    """Return one item of a list, or one end of a range; the others have the same unit."""
+def written_sample(value: Any) -> Any:
+    """Return one item of a list, or one end of a range, if it has a unit; all have the same dimension."""
     while isinstance(value, list | tuple) and value:
         value = value[0]
-    return value.split(":")[0] if isinstance(value, str) else value
+    if isinstance(value, str):
+        return value.split(":")[0]
+    return value if hasattr(value, "units") else None
 
 
-def written_as(value: Any, spec: Quantity) -> Quantity:
-    """Return the quantity that a value with a unit is one of: per unit width, or that of a ball.
-
-    >>> written_as("3 N", Quantity("N/m", "W, load", 0.0, True, per_width=True)).unit
-    'N'
-    """
-    if not (spec.per_width and _has_unit(value := sample(value))):
-        return spec
+def _written_as(value: Any, spec: Quantity) -> Quantity:
+    """Return the quantity that the unit of a value tells: per unit width, or that of a ball."""
     kinds = spec, spec.fitting(False)
     for kind in kinds:
-        if is_usual(value, kind.unit):
+        if is_usual(value, kind.unit):  # without importing pint
             return kind
     for kind in kinds:
         with suppress(ValueError):
@@ -469,21 +423,8 @@ def written_as(value: Any, spec: Quantity) -> Quantity:
     return spec
 
 
-def misfits(section: str, part: Any, indenter: Any) -> list[str]:
-    """Report values given per unit width although the indenter is a ball, or the other way round."""
-    found, shape = [], f'indenter.shape = "{indenter.shape}"'
-    for name, (value, per_width) in getattr(part, "written", {}).items():
-        if per_width != indenter.per_width:
-            unit = quantities(part)[name].fitting(indenter.per_width).unit
-            what = "that of a ball" if indenter.per_width else "per unit width"
-            contact = "line" if indenter.per_width else "point"
-            told = f"is {what}, but {shape} has a {contact} contact; expected {expected(unit)}"
-            found.append(problem(f"{section}.{name}", value, told))
-    return found
-
-
 def derive(instance: Any, section: str, name: str, value: Any, of: str, given: Any = None) -> None:
-    """Set a quantity derived from others; for use in ``__post_init__`` after `validate`."""
+    """Set a quantity that follows from others; for use in ``__post_init__`` after `validate`."""
     if not quantities(instance)[name].admits(value):
         raise mistake(f"{section}.{name}", value, f"follows from {of}, and is out of range")
     object.__setattr__(instance, name, _derived(value, given))
@@ -497,34 +438,31 @@ def problem(key: str, given: Any, what: str) -> str:
     >>> problem("run.\n" + 60 * "a", [[[[[[[[5]]]]]]]], "unknown key")
     'run.\\naaaaaaaaaaaaaaaaaaaaaaaaa...aaaaaaaaaaaaaaaaaaaaaaaaaaa = [[[[[[[...]]]]]]]: unknown key'
     """
-    value = f'"{given}"' if isinstance(given, str) else SHORT.repr(given)
+    text = isinstance(given, str) and not isinstance(given, Bare)
+    value = f'"{given}"' if text else SHORT.repr(given)
     return f"{shown(key)} = {shown(value)}: {what}"
 
 
 def shown(text: str) -> str:
-    """Return text of a file in a form that a message can quote: short, without control characters."""
+    """Return a text as a message quotes it: short, and without control characters."""
     if len(text) > LONGEST_SHOWN:
-        text = f"{text[: LONGEST_SHOWN // 2]}...{text[3 - LONGEST_SHOWN // 2 :]}"  # paths count from the end
+        text = f"{text[: LONGEST_SHOWN // 2]}...{text[3 - LONGEST_SHOWN // 2 :]}"  # paths differ at the end
     return printable(text)
 
 
 def printable(text: str) -> str:
-    r"""Write control characters and line breaks as escapes.
-
-    >>> printable("a\x1b[31m\nb")
-    'a\\x1b[31m\\nb'
-    """
+    r"""Write control characters and line breaks as escapes, such as \n."""
     return "".join(c if c.isprintable() else ascii(c)[1:-1] for c in text)
 
 
 def mistake(key: str, given: Any, what: str) -> SceneError:
-    """Return the error about one mistake alone."""
+    """Return the error about one mistake."""
     return SceneError([problem(key, given, what)])
 
 
 @contextmanager
 def collecting(problems: list[str], key: str, given: Any) -> Iterator[None]:
-    """Append the mistake in a given value to `problems`, instead of raising it."""
+    """Append a mistake in a given value to `problems`, instead of raising it."""
     try:
         yield
     except SceneError as error:
@@ -562,11 +500,11 @@ MEANT = {
     }.items()
     for symbol in symbols.split()
 }
-"""Names by symbols and synonyms, which similarity of spelling would not find."""
+"""Names by their symbols and synonyms, which similarity of spelling would not find."""
 
 
 def closest(name: str, valid: Iterable[str]) -> str | None:
-    """Return the one of the `valid` names that was probably meant, if any.
+    """Return the one of the `valid` names that was probably meant, or None.
 
     Symbols and synonyms are recognised too, with or without the section before a dot.
 
@@ -594,7 +532,7 @@ def nearest(name: str, valid: Iterable[str]) -> str:
 
 
 def absent(wanted: Iterable[str], given: Iterable[str]) -> list[str]:
-    """Return the wanted names that are not given, not even misspelt."""
+    """Return the wanted names that are missing, and not just misspelt."""
     wanted, given = list(wanted), list(given)
     meant = {closest(name, wanted) for name in given if name not in wanted}
     return [name for name in wanted if name not in given and name not in meant]

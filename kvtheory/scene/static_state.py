@@ -21,11 +21,8 @@ class StaticState:
     velocity (NaN if the drive is a function), the inertia number epsilon = M delta_0/(W_0 tau^2) and the
     support number kappa = k_s delta_0/W_0, both infinite for a fixed indenter. A drive with a spring has
     three more, along x (fact F22): eps_x = M_x a_0^2/(W_0 delta_0 tau^2), c_x a_0^2/(W_0 delta_0 tau) and
-    kappa_x = k_x a_0^2/(W_0 delta_0), the last one infinite for a rigid drive. The other attributes are
-    products of these, the scales of other quantities.
+    kappa_x = k_x a_0^2/(W_0 delta_0), infinite for a rigid drive. The other attributes are products of these.
 
-    Examples
-    --------
     >>> at_rest = StaticState.of(Scene())
     >>> round(at_rest.drive_number, 5), round(at_rest.inertia_number, 5), at_rest.support_number
     (4.08128, 0.00306, 0.0)
@@ -45,18 +42,30 @@ class StaticState:
 
     @classmethod
     def of(cls, scene: Scene) -> "StaticState":
-        """Return the static state of a scene.
+        """Return the static state of a scene with a parabola or a ball: other shapes have more numbers.
 
-        Raises
-        ------
-        ValueError
-            If the indenter is neither a parabola nor a ball (for other shapes these numbers do not
-            suffice), or if the scene leaves the range of double precision.
+        Other scenes, and those that leave the range of double precision, raise ValueError.
         """
         require(lacks_one_scene, scene, "the static state")
         require(lacks_quadratic, scene, "the static state in closed form")
+        R, K = scene.indenter.radius, scene.foundation.stiffness
+        depth, load = scene.support.depth, scene.support.weight
         try:
-            found = _at_rest(scene)
+            if scene.indenter.per_width:
+                if depth is None:
+                    half_length = (1.5 * R * load / K) ** (1 / 3)
+                    depth = half_length**2 / (2 * R)
+                else:
+                    half_length = math.sqrt(2 * R * depth)
+                    load = 4 / 3 * K * half_length * depth
+            else:
+                stiffness = ball_stiffness(K, R, scene.indenter.stretch)
+                if depth is None:
+                    depth = math.sqrt(load / stiffness)
+                else:
+                    load = stiffness * depth**2
+                half_length = math.sqrt(2 * R * depth)
+            found = cls.at(scene, depth, half_length, load)
         except ArithmeticError:
             found = None
         if found is None or not found.in_range:
@@ -131,40 +140,16 @@ class StaticState:
     def named(self) -> dict[str, float]:
         """Return the values that exist by plain names, as ``"static_depth"`` and ``"drive_number"``."""
         found = asdict(self)
-        names = {name: f"static_{name}" for name in ("depth", "half_length", "load")}
         numbers = ["drive_number", "inertia_number", "support_number"]
         if not self.rigid_drive:
             numbers += [f"drive_{name}_number" for name in ("inertia", "damping", "stiffness")]
-        shown = {names[name]: found[name] for name in names}
+        shown = {f"static_{name}": found[name] for name in ("depth", "half_length", "load")}
         return shown | {name: found[name] for name in numbers if math.isfinite(found[name])}
 
 
 def ball_stiffness(stiffness: Any, radius: Any, stretch: Any) -> Any:
-    """Return W_0/delta_0^2 = pi K R sqrt(R'/R) of a ball at rest in N/m^2, of floats or arrays (theorem F20).
-
-    >>> round(ball_stiffness(1e10, 0.01, 1.0))
-    314159265
-    """
+    """Return W_0/delta_0^2 = pi K R sqrt(R'/R) of a ball at rest in N/m^2, of floats or arrays (fact F20)."""
     return math.pi * stiffness * radius * stretch
-
-
-def _at_rest(scene: Scene) -> StaticState:
-    """Return the static state of a parabola or a ball from its load or its depth."""
-    R, K, support = scene.indenter.radius, scene.foundation.stiffness, scene.support
-    depth, load = support.depth, support.weight
-    if scene.indenter.per_width:
-        half_length = (1.5 * R * load / K) ** (1 / 3) if depth is None else math.sqrt(2 * R * depth)
-        if depth is None:
-            depth = half_length**2 / (2 * R)
-        else:
-            load = 4 / 3 * K * half_length * depth
-    else:
-        stiffness = ball_stiffness(K, R, scene.indenter.stretch)
-        depth, load = (
-            (math.sqrt(load / stiffness), load) if depth is None else (depth, stiffness * depth**2)
-        )
-        half_length = math.sqrt(2 * R * depth)
-    return StaticState.at(scene, depth, half_length, load)
 
 
 FAR = 10.0
@@ -172,12 +157,7 @@ FAR = 10.0
 
 
 def out_of_range(scene: Scene, why: str = "") -> str:
-    """Return that a scene leaves the range of double precision, naming values far from those of Table 1.
-
-    >>> from kvtheory.scene import Drive, Run
-    >>> out_of_range(Scene(drive=Drive(1e300), run=Run(1.0)))
-    'the scene leaves the range of double precision: check drive.velocity = 1e+300 m/s'
-    """
+    """Return that a scene leaves the range of double precision, naming values far from those of Table 1."""
     usual: dict[str, float] = {}
     for support in TABLE1_SUPPORTS:
         usual |= {key: size for key, size, _ in _sizes(Scene.table1(support))}
@@ -191,7 +171,7 @@ def out_of_range(scene: Scene, why: str = "") -> str:
 
 
 def _sizes(scene: Scene) -> Iterator[tuple[str, float, str]]:
-    """Return the keys of a scene, the least and the largest magnitude of each in SI, and their units."""
+    """Yield the keys of a scene with the least and the largest magnitude of each in SI, and its unit."""
     parts = {**scene.parts(), "run": scene.run, "drive": scene.drive.waveform or scene.drive}
     for section, part in parts.items():
         for name, spec in given(part).items():

@@ -34,8 +34,8 @@ EXAMPLES = {
     "delta K": ("51.6 K", "51.6 delta_degC"),
     "J/mol": ("80 kJ/mol", "8e4 J/mol"),
 }
-"""Ways to write a quantity of each SI unit that a scene uses; messages show the first one. The unit of a
-difference of temperatures is "delta K", as "20 degC" is no difference."""
+"""Ways to write a quantity of each SI unit that a scene uses; messages show the first one. Differences of
+temperatures have the unit "delta K", as "20 degC" is none."""
 
 WHOLE = {"kg/m": "kg", "N/m": "N", "N/m^2": "N/m", "N*s/m^2": "N*s/m", "J/m": "J"}
 """For each unit of a quantity per unit width, the unit of the total quantity of a ball."""
@@ -71,8 +71,8 @@ USUAL = {
     "delta K": dict.fromkeys(("K", "kelvin", "delta_degC", "delta_degree_Celsius"), 0),
     "J/mol": {"J/mol": 0, "kJ/mol": 3},
 }
-"""The usual ways to write each unit, and the power of ten to SI: for them pint is not needed, whose import
-takes longer than most computations."""
+"""The usual ways to write each unit, and their powers of ten in SI. They spare importing pint, which takes
+longer than most computations."""
 
 _FAHRENHEIT = Fraction(5, 9), Fraction(45967, 180)
 _CELSIUS = Fraction(1), Fraction(27315, 100)
@@ -92,29 +92,23 @@ _UNIT = re.compile(r"(?:[a-zµμ_ ]|[*/()]|(?:\^|\*\*)-?[0-9](?![0-9^*])|[²³])
 
 
 def to_si(value: Any, unit: str) -> float:
-    """Return `value` as a float in the SI unit `unit`.
+    """Return text with a unit, a pint quantity, or a plain number in SI already, as a float in an SI unit.
 
-    Parameters
-    ----------
-    value
-        Text with a unit, a pint quantity, or a plain number that is in SI already.
-    unit
-        A key of `EXAMPLES`, or ``"1"`` for a dimensionless number.
+    `unit` is a key of `EXAMPLES`, or ``"1"`` for a dimensionless number. It raises ValueError if the text
+    cannot be read or has the wrong dimension; the message says what is expected.
 
-    Raises
-    ------
-    ValueError
-        If the text cannot be read or has the wrong dimension; the message says what is expected.
-
-    Examples
-    --------
-    >>> to_si("5 µm", "m")
-    5e-06
-    >>> to_si("10 GN/m^3", "N/m^3")
-    10000000000.0
+    >>> to_si("5 µm", "m"), to_si("10 GN/m^3", "N/m^3")
+    (5e-06, 10000000000.0)
     """
     if isinstance(value, str):
-        return _from_text(value, unit)
+        if "," in value:
+            told = "write the decimal mark as a point, and no thousands separator"
+            raise ValueError(f"{told}; expected {expected(unit)}")
+        text = value.strip()
+        digits = _NUMBER.match(text)
+        if digits is None:
+            raise ValueError(f"is not a number followed by a unit; expected {expected(unit)}")
+        return _scaled(digits.group(), text[digits.end() :].strip(), unit)
     value, written = bare(value)
     if getattr(value, "shape", None) == ():  # a NumPy scalar
         value = value.item()
@@ -130,19 +124,8 @@ def to_si(value: Any, unit: str) -> float:
 def bare(value: Any) -> tuple[Any, str | None]:
     """Return a number or an array without its unit, an array of any library as one of NumPy, and the unit.
 
-    The unit is that of pint, or the attribute ``units`` of xarray and pandas; None if there is none.
-
-    Raises
-    ------
-    ValueError
-        If values are masked, or an array of another library cannot be read.
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> bare(np.ma.masked_array([0.01, 0.02], mask=[0, 1]))
-    Traceback (most recent call last):
-    ValueError: has 1 masked value; leave masked values out (`.compressed()`), or fill them (`.filled()`)
+    The unit is that of pint, or the attribute ``units`` of xarray and pandas; None if there is none. Masked
+    values, and arrays of other libraries that cannot be read, raise ValueError.
     """
     written = None
     if type(value) in (float, int):
@@ -152,13 +135,10 @@ def bare(value: Any) -> tuple[Any, str | None]:
     elif isinstance(attributes := getattr(value, "attrs", None), dict):
         units = attributes.get("units")
         written = ("" if units == "1" else units) if isinstance(units, str) else None
-    masked = [
-        part for part in (value if isinstance(value, list) else [value]) if np.ma.is_masked(part)
-    ]
-    if masked:
-        count = int(sum(map(np.ma.count_masked, masked)))
+    parts = value if isinstance(value, list) else [value]
+    if masked := sum(int(np.ma.count_masked(part)) for part in parts if np.ma.is_masked(part)):
         raise ValueError(
-            f"has {count} masked value{'s' * (count > 1)}; leave masked values out "
+            f"has {masked} masked value{'s' * (masked > 1)}; leave masked values out "
             "(`.compressed()`), or fill them (`.filled()`)"
         )
     if hasattr(value, "__array__") and not isinstance(value, type):
@@ -172,35 +152,19 @@ def bare(value: Any) -> tuple[Any, str | None]:
 
 
 def is_usual(value: Any, unit: str) -> bool:
-    """Return whether a text is a number with a usual unit of this dimension, for which pint is not needed.
-
-    >>> is_usual("3 kN", "N"), is_usual("3 lbf", "N")
-    (True, False)
-    """
+    """Whether a text is a number with a usual unit of this dimension, for which pint is not needed."""
     text = value.strip() if isinstance(value, str) else ""
     number = _NUMBER.match(text)
     return number is not None and text[number.end() :].strip() in USUAL.get(unit, ())
 
 
 def expected(unit: str) -> str:
-    """Describe in words how a quantity of `unit` is written."""
+    """Return how a quantity of `unit` is written, in words and with an example."""
     if unit == "1":
         return "a dimensionless number"
     if unit == "delta K":
         return f'a difference of temperatures in K, such as "{EXAMPLES[unit][0]}"'
     return f'a quantity in {unit}, such as "{EXAMPLES[unit][0]}"'
-
-
-def _from_text(text: str, unit: str) -> float:
-    if "," in text:
-        raise ValueError(
-            "write the decimal mark as a point, and no thousands separator; "
-            f"expected {expected(unit)}"
-        )
-    number = _NUMBER.match(text.strip())
-    if number is None:
-        raise ValueError(f"is not a number followed by a unit; expected {expected(unit)}")
-    return _scaled(number.group(), text.strip()[number.end() :].strip(), unit)
 
 
 def _scaled(number: str | float, written: str, unit: str) -> float:
@@ -238,9 +202,8 @@ def _factor(written: str, unit: str) -> Fraction:
     if len(written) > LONGEST_UNIT or not _UNIT.fullmatch(written):
         raise ValueError(f'"{written}" is not a unit; expected {expected(unit)}')
     if unit == "delta K" and TEMPERATURES.get(written, (1, 0))[1]:  # a scale with another zero
-        raise ValueError(
-            f'"{written}" is the unit of a temperature, not of a difference; expected {expected(unit)}'
-        )
+        told = f'"{written}" is the unit of a temperature, not of a difference'
+        raise ValueError(f"{told}; expected {expected(unit)}")
     registry, si = _registry(), unit.removeprefix("delta ")
     try:
         quantity = registry.Quantity(Fraction(1), written)
@@ -249,19 +212,14 @@ def _factor(written: str, unit: str) -> Fraction:
         if fits and registry.Quantity(Fraction(0), written).to(si).magnitude:
             raise ValueError("a unit with another zero")
     except Exception:  # pint raises many kinds, none of them documented as the only one
-        raise ValueError(
-            f'"{written}" is not a known unit{_nearest(written, unit)}; expected {expected(unit)}'
-        ) from None
+        known = {example.split(" ", 1)[1].lower(): example for example in EXAMPLES[unit]}
+        near = difflib.get_close_matches(written.lower(), known, n=1, cutoff=0.5)
+        hint = f', did you mean "{known[near[0]].split(" ", 1)[1]}"?' if near else ""
+        told = f'"{written}" is not a known unit{hint}; expected {expected(unit)}'
+        raise ValueError(told) from None
     if factor is None:
         raise ValueError(f'the unit "{written}" has the wrong dimension; expected {expected(unit)}')
     return factor
-
-
-def _nearest(written: str, unit: str) -> str:
-    known = {example.split(" ", 1)[1] for example in EXAMPLES[unit]}
-    by_lower = {name.lower(): name for name in known}
-    match = difflib.get_close_matches(written.lower(), by_lower, n=1, cutoff=0.5)
-    return f', did you mean "{by_lower[match[0]]}"?' if match else ""
 
 
 @cache

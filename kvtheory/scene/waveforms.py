@@ -9,7 +9,7 @@ from kvtheory.scene.quantities import Part, Value, quantity, validate
 AT_LAST = 20.0
 """Rise times after which tanh is 1 to the last digit."""
 MOST_CORNERS = 100_000
-"""Most corners of one list, a guard against endless ones; a drive allows fewer, see `drives.MOST_CYCLES`."""
+"""Most corners of a list; a drive has fewer, see `drives.MOST_CYCLES`."""
 
 
 class _Waveform(Part):
@@ -43,7 +43,7 @@ class Sine(_Swing):
 
 @dataclass(frozen=True, eq=False)
 class Triangle(_Swing):
-    """V rises and falls in straight lines between mean + amplitude and mean - amplitude, from the mean.
+    """V rises and falls linearly between mean + amplitude and mean - amplitude, starting at the mean.
 
     >>> wave = Triangle(amplitude=0.1, frequency=5.0)
     >>> [round(wave(t), 12) for t in (0.025, 0.05, 0.1, 0.15)]
@@ -60,13 +60,7 @@ class Triangle(_Swing):
         return self.mean + sign * self.amplitude * (quarters - nearest)
 
     def points(self, end: float) -> list[tuple[float, float]]:
-        """Return the corners (t, V) up to the first one at or after `end`, between which it is linear.
-
-        Raises
-        ------
-        ValueError
-            If they are more than `MOST_CORNERS`.
-        """
+        """Return the corners (t, V), at most `MOST_CORNERS`, up to the first one at or after `end`."""
         if 2.0 * self.frequency * end > MOST_CORNERS:
             raise ValueError(f"more than {MOST_CORNERS} corners until {end!r} s")
         found, k = [(0.0, self.mean)], 0
