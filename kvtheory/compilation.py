@@ -1,7 +1,7 @@
 """Kernels compiled by numba, which is optional, and kept on the disk."""
 
 import inspect
-from collections.abc import Callable
+from collections.abc import Callable, Container
 from importlib.util import find_spec
 from types import ModuleType
 from typing import Any
@@ -25,18 +25,29 @@ def kept(entry: Callable[..., Any], module: ModuleType) -> Any:
     ModuleNotFoundError
         If numba is not installed.
     """
-    from numba import njit
+    register(module)
+    return cached(entry)
+
+
+def register(module: ModuleType, inlined: Container[str] = (), **options: Any) -> None:
+    """Tell numba that the functions of a module may be compiled; the names of some of them `inlined`."""
     from numba.extending import register_jitable
 
-    for function in vars(module).values():
+    for name, function in vars(module).items():
         if inspect.isfunction(function) and function.__module__ == module.__name__:
-            register_jitable(**OPTIONS)(function)
+            register_jitable(**OPTIONS, **options, forceinline=name in inlined)(function)
+
+
+def cached(entry: Callable[..., Any], **options: Any) -> Any:
+    """Return an entry that is compiled when called, and kept on the disk if there is a place."""
+    from numba import njit
+
     try:
-        compiled = njit(entry, cache=True, nogil=True, **OPTIONS)
+        compiled = njit(entry, cache=True, nogil=True, **OPTIONS, **options)
     except RuntimeError:  # no place to keep it: the package and the home are read-only
         compiling()
-        return njit(entry, nogil=True, **OPTIONS)
-    disk: Any = compiled._cache  # type: ignore[attr-defined]
+        return njit(entry, nogil=True, **OPTIONS, **options)
+    disk: Any = compiled._cache
     load = disk.load_overload
 
     def load_or_forget(*key: Any) -> Any:

@@ -183,7 +183,9 @@ def by_continuum(problem: Problem, rtol: float, **options: Any) -> tuple[Curves,
     )
     s = np.minimum(problem.times / problem.units.time, motion.end)
     found = motion.states(s).T
-    return Curves(found[evaluation.DEPTH], found[evaluation.FRICTION_FORCE]), motion.evaluations
+    return Curves(
+        found[evaluation.DEPTH], found[evaluation.FRICTION_FORCE]
+    ), motion.counts.evaluations
 
 
 def piece_by_scipy(

@@ -78,57 +78,35 @@ def follow(bulk: Bulk, fine: Run, other: Run, steps: int) -> None:
 
     A scene that does not reach its end in so many steps, or has not enough room, leaves its status.
     """
-    scenes, room, results = bulk.scenes, bulk.workspace, bulk.results
+    scenes, request, room, results = bulk.scenes, bulk.request, bulk.workspace, bulk.results
     for i in range(len(scenes.eps)):
         pieces = scenes.pieces[scenes.first[i] : scenes.first[i + 1]]
         one = Run(*fine[:3], pieces, *fine[4:])
         two = Run(*other[:3], pieces, *other[4:])
-        results.status[i] = _walk_along(one, scenes, i, steps)
+        for run in (one, two):
+            run.given.eps, run.given.kappa = scenes.eps[i], scenes.kappa[i]
+            run.given.end, run.now.nodes = scenes.end[i], 0
+        results.status[i] = walk(one, steps)
         if results.status[i] != DONE:
             continue
-        results.other[i] = _walk_along(two, scenes, i, steps)
+        results.other[i] = walk(two, steps)
         if results.other[i] == DONE:
             count = e_.natural(one, room.natural, room.states)
             times, states = room.natural[:count], room.states[:count]
             d_.deviations(times, states, one, two, room.rows, results.deviations[i])
-        _measure(one, i, scenes.friction[i], bulk.request, room, results)
-
-
-def _walk_along(run: Run, scenes: Scenes, i: int, steps: int) -> int:
-    """Follow one scene from rest."""
-    given = run.given
-    given.eps, given.kappa, given.end, run.now.nodes = (
-        scenes.eps[i],
-        scenes.kappa[i],
-        scenes.end[i],
-        0,
-    )
-    return walk(run, steps)
-
-
-def _measure(
-    run: Run, i: int, friction: float, request: Request, room: Workspace, results: Results
-) -> None:
-    """Write the results of one scene."""
-    count = m_.sample(run, room.times, room.samples)
-    for k in range(len(request.columns)):
-        results.largest[i][k][0], results.largest[i][k][1] = m_.largest(
-            run,
-            room.times,
-            room.samples,
-            count,
-            request.columns[k],
-            request.senses[k],
-            room.rows[0],
+        times, states, row = room.times, room.samples, room.rows[0]
+        count = m_.sample(one, times, states)
+        for k in range(len(request.columns)):
+            column, sense, found = request.columns[k], request.senses[k], results.largest[i][k]
+            found[0], found[1] = m_.largest(one, times, states, count, column, sense, row)
+        results.settled[i] = m_.settled(
+            one, times, states, count, scenes.friction[i], request.share, row
         )
-    results.settled[i] = m_.settled(
-        run, room.times, room.samples, count, friction, request.share, room.rows[0]
-    )
-    e_.states(request.times[i], results.states[i], run)
-    m_.last(room.samples, count, results.last[i])
-    for k in range(run.now.events):
-        if run.events[k].kind == TAKE_OFF:
-            results.take_offs[i] += 1
+        e_.states(request.times[i], results.states[i], one)
+        m_.last(states, count, results.last[i])
+        for k in range(one.now.events):
+            if one.events[k].kind == TAKE_OFF:
+                results.take_offs[i] += 1
 
 
 WALK, STATES, NATURAL, DEVIATIONS, SAMPLE, LARGEST, SETTLED, FOLLOW = range(8)
@@ -136,16 +114,9 @@ WALK, STATES, NATURAL, DEVIATIONS, SAMPLE, LARGEST, SETTLED, FOLLOW = range(8)
 
 
 def perform(
-    task: int,
-    first: Run,
-    second: Run,
-    times: Any,
-    states: Any,
-    rows: Any,
-    values: Any,
-    count: int,
-    bulk: Bulk,
-) -> int:
+    task: int, first: Run, second: Run, times: Any, states: Any, rows: Any, values: Any,
+    count: int, bulk: Bulk,
+) -> int:  # fmt: skip
     """Perform a task: the entry of all kernels, so that each of them is compiled once.
 
     What a task does not need is blank. `values` are those that go in and come out.

@@ -37,7 +37,7 @@ def natural(run: Run, times: Any, found: Any) -> int:
     """Write the steps, subdivided, as times at which to show a motion, and the states there."""
     count, index = 0, 0
     for index in range(run.now.steps):
-        start, end = natural_step(run, index)
+        start, end = run.steps[index].start, end_of(run, index)
         for k in range(SUBDIVISIONS):
             s = start + (end - start) * (k / SUBDIVISIONS)
             if s < end and (count == 0 or s > times[count - 1]):
@@ -49,10 +49,9 @@ def natural(run: Run, times: Any, found: Any) -> int:
     return count + 1
 
 
-def natural_step(run: Run, index: int) -> tuple[float, float]:
-    """Return when a step begins, and when the next one does."""
-    last = index + 1 == run.now.steps
-    return run.steps[index].start, run.now.s if last else run.steps[index + 1].start
+def end_of(run: Run, index: int) -> float:
+    """Return when a step ends, and the next one begins."""
+    return run.now.s if index + 1 == run.now.steps else run.steps[index + 1].start
 
 
 def step_at(run: Run, s: float) -> int:
@@ -93,5 +92,5 @@ def state_at(run: Run, index: int, s: float, found: Any) -> None:
         along = run.along[index]
         found[DRIVE] = evaluate(run.pieces[along.piece], s)[1]
         found[ALONG], found[ALONG_RATE], _ = motion(along, s)
-        force = run.given.spring * found[ALONG] + run.given.damping * found[ALONG_RATE]
-        found[SPRING_FORCE] = force
+        spring, damping = run.given.spring, run.given.damping
+        found[SPRING_FORCE] = spring * found[ALONG] + damping * found[ALONG_RATE]

@@ -1,7 +1,6 @@
 """When a quantity of a solved transient is largest, and when its friction settles.
 
-A motion is smooth within a step and known everywhere. It is sampled densely; a maximum is then narrowed down
-between two samples.
+A motion is smooth within a step. It is sampled densely; a maximum is then refined between two samples.
 """
 
 import math
@@ -18,9 +17,8 @@ SAME = 1e-10
 """Relative difference of values that count as equal, as in steady sliding; the first is then the largest."""
 GOLDEN, SECTIONS = 0.6180339887498949, 18
 """Golden-section steps, down to a thousandth of a step; then Newton's method on central differences."""
-NEWTON_STEPS, DIFFERENCE = 3, 1e-3
+NEWTON_STEPS, DIFFERENCE, BISECTIONS = 3, 1e-3, 60
 """The difference is this share of a step: its fourth power, and rounding over it, are both small."""
-BISECTIONS = 60
 LEADING_EDGE, TRAILING_EDGE = e_.SIZE, e_.SIZE + 1
 """Columns beyond those of a state: which edge leads depends on the drive."""
 LARGEST, SMALLEST, MAGNITUDE = 1, -1, 0
@@ -127,8 +125,8 @@ def measured(row: Any, objective: Objective) -> float:
 
 def _step(run: Run, index: int) -> tuple[float, float]:
     """Return when a step begins, and the last instant that belongs to it."""
-    start, end = e_.natural_step(run, index)
-    return start, end if index + 1 == run.now.steps else end * JUST_BEFORE
+    last = index + 1 == run.now.steps
+    return run.steps[index].start, e_.end_of(run, index) * (1.0 if last else JUST_BEFORE)
 
 
 def _rise(found: Any, i: int, objective: Objective) -> float:
@@ -165,9 +163,8 @@ def _narrowed(
         if not start <= s - 2.0 * h < s + 2.0 * h <= end:
             break
         left, right = _at(run, index, s - h, objective, row), _at(run, index, s + h, objective, row)
-        far = _at(run, index, s + 2.0 * h, objective, row) - _at(
-            run, index, s - 2.0 * h, objective, row
-        )
+        far = _at(run, index, s + 2.0 * h, objective, row)
+        far -= _at(run, index, s - 2.0 * h, objective, row)
         curvature = (left - 2.0 * best + right) / h
         if not curvature < 0.0:
             break
