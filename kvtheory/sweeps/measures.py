@@ -102,7 +102,7 @@ class _Block:
             states=np.full((size, times, e_.SIZE), np.nan),
             settled=np.full(size, np.nan),
             take_offs=np.zeros(size, dtype=np.int64),
-            last=np.full((size, e_.SIZE + 2), np.nan),
+            last=np.full((size, e_.SIZE), np.nan),
         )
 
     def add(self, index: int, scene: Scene, friction: float) -> None:

@@ -49,10 +49,7 @@ class Workspace(NamedTuple):
 
 
 class Results(NamedTuple):
-    """The status of both walks, deviations, extremes with their times, states at the times, and so on.
-
-    `last` holds the state at the end, the leading and the trailing edge behind it.
-    """
+    """The status of both walks, deviations, extremes with their times, states at the times and at the end."""
 
     status: Any
     other: Any
@@ -103,7 +100,7 @@ def follow(bulk: Bulk, fine: Run, other: Run, steps: int) -> None:
             one, times, states, count, scenes.friction[i], request.share, row
         )
         e_.states(request.times[i], results.states[i], one)
-        m_.last(states, count, results.last[i])
+        e_.state_at(one, one.now.steps - 1, one.now.s, results.last[i])
         for k in range(one.now.events):
             if one.events[k].kind == TAKE_OFF:
                 results.take_offs[i] += 1
@@ -134,9 +131,8 @@ def perform(
     elif task == SAMPLE:
         return m_.sample(one, times, states)
     elif task == LARGEST:
-        for i in range(0, len(values), 2):
-            column, sense = int(values[i]), int(values[i + 1])
-            values[i], values[i + 1] = m_.largest(one, times, states, count, column, sense, rows[0])
+        column, sense = int(values[0]), int(values[1])
+        values[0], values[1] = m_.largest(one, times, states, count, column, sense, rows[0])
     elif task == SETTLED:
         values[0] = m_.settled(one, times, states, count, values[0], values[1], rows[0])
     elif task == FOLLOW:

@@ -6,16 +6,15 @@ from typing import Any
 from kvtheory.models.continuum import contact as c_
 from kvtheory.models.continuum.contact import FREE, instant, motion
 from kvtheory.models.continuum.run import Run
-from kvtheory.scene.base_motion import evaluate
+from kvtheory.scene.base_motion import END, START, evaluate
 
 DEPTH, RATE, ACCELERATION, NUMBER, LEFT, RIGHT = range(6)
 LEFT_STATE, RIGHT_STATE, NORMAL_FORCE, FRICTION_FORCE, PEAK_PRESSURE, ROUNDING = range(6, 12)
-DRIVE, ALONG, ALONG_RATE, SPRING_FORCE = range(12, 16)
-SIZE = 16
+DRIVE, ALONG, ALONG_RATE, SPRING_FORCE, LEADING, TRAILING = range(12, 18)
+SIZE = 18
 """Columns of a state, in scaled form; edges are NaN in flight. `NUMBER` is the drive number of the base under
 the indenter, `ROUNDING` the rounding error of an edge, which is large on ground that was left just before.
-`DRIVE` is the drive number; the last three are x, x' and the force of spring and damper, which
-are zero for a rigid drive."""
+`DRIVE` is the drive number; x, x' and the force of spring and damper are zero for a rigid drive."""
 
 SUBDIVISIONS = 4
 """Points shown for each step; steps are long where the motion is steady."""
@@ -84,6 +83,7 @@ def state_at(run: Run, index: int, s: float, found: Any) -> None:
         p = max(c_.pressure(min(max(-number, l), r), d, v, number), 0.0)
     found[DEPTH], found[RATE], found[ACCELERATION], found[NUMBER] = d, v, dv, number
     found[LEFT], found[RIGHT] = l, r
+    found[LEADING], found[TRAILING] = (l, r) if forward(run, step, s, number) else (r, l)
     found[LEFT_STATE], found[RIGHT_STATE] = left.state, right.state
     found[NORMAL_FORCE], found[FRICTION_FORCE] = f_z, f_x
     found[PEAK_PRESSURE], found[ROUNDING] = p, rounding
@@ -94,3 +94,13 @@ def state_at(run: Run, index: int, s: float, found: Any) -> None:
         found[ALONG], found[ALONG_RATE], _ = motion(along, s)
         spring, damping = run.given.spring, run.given.damping
         found[SPRING_FORCE] = spring * found[ALONG] + damping * found[ALONG_RATE]
+
+
+def forward(run: Run, step: Any, s: float, number: float) -> bool:
+    """Whether the left edge leads; at rest, as it did before."""
+    k, first = step.piece, run.given.drives if run.given.sprung else 0
+    while number == 0.0 and k >= first:
+        piece = run.pieces[k]
+        number = evaluate(piece, 0.5 * (piece[START] + min(s, piece[END])))[1]
+        k -= 1
+    return number >= 0.0

@@ -18,6 +18,7 @@ from kvtheory.models.continuum.surface import height
 from kvtheory.progress import Progress
 from kvtheory.results import Certificate, Event, SprungTransient, Transient
 from kvtheory.results.errors import TransientError
+from kvtheory.results.table import scales
 from kvtheory.scene.base_motion import SAME_TIME, BaseMotion
 from kvtheory.scene.model import Scene
 from kvtheory.scene.static_state import StaticState
@@ -29,6 +30,13 @@ AFTER_END = 1e-12
 TO_A_CHANGE = 0.5 * AFTER_END
 """Share of the run by which it is followed beyond its end, if the drive changes so close to it that both
 count as one time: the solver then meets the change."""
+COLUMNS = {
+    "velocity": e_.DRIVE, "sliding_velocity": e_.NUMBER, "spring_force": e_.SPRING_FORCE,
+    "depth": e_.DEPTH, "depth_rate": e_.RATE, "normal_force": e_.NORMAL_FORCE,
+    "friction_force": e_.FRICTION_FORCE, "peak_pressure": e_.PEAK_PRESSURE,
+    "leading_edge": e_.LEADING, "trailing_edge": e_.TRAILING,
+}  # fmt: skip
+"""Column of each quantity in the states."""
 STEPS_A_PIECE = 100
 """More than a piece of a drive takes: a stop takes 25."""
 
@@ -76,29 +84,17 @@ class SolvedScene:
 
     def series(self, time: ArrayLike) -> dict[str, Any]:
         """Return the quantities and states at the given times (s)."""
-        s, u = self.scaled(time), self.units
-        found = self.motion.states(s).T
-        numbers, left, right = found[[e_.NUMBER, e_.LEFT, e_.RIGHT]]
-        forward = left_leads(numbers, self.drive, s)
+        found = self.states(time)
+        leads = found[e_.LEADING] == found[e_.LEFT]
         states = found[e_.LEFT_STATE], found[e_.RIGHT_STATE]
-        leading, trailing = np.where(forward, states, states[::-1]).tolist()
-        series = {
+        leading, trailing = np.where(leads, states, states[::-1]).tolist()
+        measures = {name: scale for name, scale in scales(self.units).items() if name != "time"}
+        return {
             "time": np.asarray(time, dtype=float),
-            "velocity": found[e_.DRIVE] * u.velocity,
-            "depth": found[e_.DEPTH] * u.depth,
-            "depth_rate": found[e_.RATE] * u.depth_rate,
-            "normal_force": found[e_.NORMAL_FORCE] * u.load,
-            "friction_force": found[e_.FRICTION_FORCE] * u.friction_force,
-            "leading_edge": np.where(forward, left, right) * u.half_length,
-            "trailing_edge": np.where(forward, right, left) * u.half_length,
-            "peak_pressure": found[e_.PEAK_PRESSURE] * u.pressure,
+            **{name: found[COLUMNS[name]] * scale for name, scale in measures.items()},
             "leading_state": tuple(STATE_NAMES[state] for state in leading),
             "trailing_state": tuple(STATE_NAMES[state] for state in trailing),
         }
-        if not u.rigid_drive:
-            series["sliding_velocity"] = numbers * u.velocity
-            series["spring_force"] = found[e_.SPRING_FORCE] * u.friction_force
-        return series
 
     def states(self, time: ArrayLike) -> Array:
         """Return the scaled states at the times (s): a row for each quantity of `states`."""

@@ -218,11 +218,9 @@ class Trajectory:
         return float(values[0])
 
     @property
-    def last(self) -> list[float]:
-        """The state at the end, with the leading and the trailing edge behind it."""
-        row = [0.0] * (evaluation.SIZE + 2)
-        maxima.last(*self.samples[1:], row)
-        return row
+    def last(self) -> NDArray[np.float64]:
+        """The state at the end."""
+        return self.states([self.end])[0]
 
     def _perform(
         self, task: int, times: Any, found: Any, values: Any = None, count: int = 0, other: Any = None
