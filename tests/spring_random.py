@@ -15,9 +15,9 @@ import kvtheory as kv
 from kvtheory.models.continuum import compiled
 from kvtheory.models.continuum import evaluation as e_
 from kvtheory.models.continuum.energy import ledger
-from kvtheory.models.continuum.quadrature import integrals
 from kvtheory.models.continuum.run import Spring
 from kvtheory.models.continuum.solver import Trajectory, solve
+from kvtheory.models.continuum.surface import integrals
 from kvtheory.results.errors import TransientError
 from kvtheory.scene.base_motion import BaseMotion
 

@@ -7,9 +7,8 @@ import pytest
 from scipy.integrate import quad
 
 import kvtheory as kv
-from kvtheory.models.continuum.quadrature import integrals
 from kvtheory.models.continuum.solver import solve
-from kvtheory.models.continuum.surface import height, volume
+from kvtheory.models.continuum.surface import height, integrals, volume
 from kvtheory.scene.base_motion import BaseMotion
 
 END = 2.0
