@@ -47,7 +47,7 @@ def cached(entry: Callable[..., Any], **options: Any) -> Any:
     except RuntimeError:  # no place to keep it: the package and the home are read-only
         compiling()
         return njit(entry, nogil=True, **OPTIONS, **options)
-    disk: Any = compiled._cache
+    disk: Any = compiled._cache  # type: ignore[attr-defined]
     load = disk.load_overload
 
     def load_or_forget(*key: Any) -> Any:

@@ -26,10 +26,9 @@ class Scenes(NamedTuple):
 
 
 class Request(NamedTuple):
-    """What is measured of each scene: extremes of columns in a sense (see `maxima`), the states at times.
+    """Extremes to measure of columns in a sense (see `maxima`), and scaled times, a row for each scene.
 
-    Each scene has a row of scaled `times`; the motion is settled while the friction force is within a `share`
-    of the steady one.
+    The motion is settled while the friction force is within a `share` of the steady one.
     """
 
     columns: Any
@@ -39,7 +38,7 @@ class Request(NamedTuple):
 
 
 class Workspace(NamedTuple):
-    """What each scene overwrites: samples and natural times, each with their states, and two states."""
+    """Samples and natural times, each with their states, and two states: overwritten by each scene."""
 
     times: Any
     samples: Any
@@ -116,7 +115,7 @@ def perform(
 ) -> int:  # fmt: skip
     """Perform a task: the entry of all kernels, so that each of them is compiled once.
 
-    What a task does not need is blank. `values` are those that go in and come out.
+    Arguments that a task does not need are blank. `values` are those that go in and come out.
     """
     one = Run(first.given[0], first.method[0], first.now[0], *first[3:])
     two = Run(second.given[0], second.method[0], second.now[0], *second[3:])

@@ -1,8 +1,7 @@
 """The kernels, compiled by numba from the very source that is also interpreted.
 
-Nothing here computes. Numba is told that the functions of the kernel modules may be compiled; one entry,
-`bulk.perform`, calls them, and only it is cached: each kernel is compiled once. Numba would not notice a
-change of a function in another file, so the entry is named by a digest of all kernel sources.
+Only one entry, `bulk.perform`, is cached: each kernel is compiled once. Numba would not notice a change of
+a function in another file, so the entry is named by a digest of all kernel sources.
 """
 
 import hashlib

@@ -72,10 +72,11 @@ def errors(
 ) -> dict[str, Any]:
     """Return the error of each quantity from the deviations at some times, and those over the whole run.
 
-    The error of the pressure inside the contact, d + d' - xi^2 - 2 lambda xi, follows from those of the depth,
-    its rate and lambda. The surface is the largest of e^-(s - sigma) (d - xi^2) over the past instants sigma
-    (fact F8): its error is at most the largest one of the depth so far, and that of the distance by which the
-    base has slid since, of which the position along x is a part. Deviations may be arrays over many scenes.
+    The error of the pressure inside the contact, d + d' - xi^2 - 2 lambda xi, follows from those of the
+    depth, its rate and lambda. The surface is the largest of e^-(s - sigma) (d - xi^2) over the past instants
+    sigma (fact F8): its error is at most the largest one of the depth so far, and that of the distance by
+    which the base has slid since, of which the position along x is a part. Deviations may be arrays over
+    many scenes.
     """
     moves, slides, sizes = 0.0 if fixed else 1.0, float(sprung), np.asarray(whole[d_.SIZES :])
     floor = FLOOR * rtol * (1.0 + sizes)

@@ -73,27 +73,21 @@ class StepControl(NamedTuple):
     `first_step`, after a jump, is in units of the fastest time constant; if it is too long it is rejected.
     `longest` is in units of tau, so that the probes of a step see fading memory. A step grows by no more
     than `grow`; the first step after an event, or on a piece of the drive, takes at most `straight` of the
-    way to the next event or the end of the piece. If `stages` of the Radau IIA method are zero, their
-    number is the cheapest for the tolerance.
+    way to the next event or the end of the piece.
     """
 
     first_step: float = 0.3
     longest: float = 0.5
     grow: float = 10.0
     straight: float = 1.0
-    stages: int = 0
 
 
 class Spring(NamedTuple):
-    """The spring along x: inertia number, damping number and stiffness number."""
+    """The spring along x: inertia number, damping number and stiffness number; a rigid drive by default."""
 
-    eps: float
-    damping: float
-    stiffness: float
-
-
-RIGID = Spring(1.0, 0.0, 0.0)
-"""Stands for a spring that is absent."""
+    eps: float = 1.0
+    damping: float = 0.0
+    stiffness: float = 0.0
 
 
 class Run(NamedTuple):
@@ -128,10 +122,10 @@ def begin(
 ) -> Run:  # fmt: skip
     """Return a run that has not begun; `numbers` are eps and kappa. Its records are objects or `arrays`."""
     (eps, kappa), sprung = numbers, spring is not None
-    fixed, stages = math.isinf(kappa), control.stages or stages_for(rtol)
+    fixed, stages = math.isinf(kappa), stages_for(rtol)
     given = (
         eps, 0.0 if fixed else kappa, end, fixed, rtol, max(EVENT_SHARE * rtol, EVENT_FLOOR),
-        *control[:4], *(spring or RIGID), sprung, len(drive.pieces),
+        *control, *(spring or Spring()), sprung, len(drive.pieces),
     )  # fmt: skip
     room, pieces = ROOM if arrays else ROOM // 2, drive.rows
     unknowns = 2 * stages if sprung else stages
@@ -180,16 +174,15 @@ def has_room(run: Run) -> bool:
 
 def with_more_room(run: Run) -> Run:
     """Return the run with room for twice as much."""
-    wider = {}
-    for name in ("steps", "nodes", "events", *(("along",) if len(run.along) > 1 else ())):
+    wider: dict[str, Any] = {}
+    objects, sprung = isinstance(run.steps, list), len(run.along) > 1
+    for name in ("steps", "nodes", "events", *(("along",) if sprung else ())):
         rows = getattr(run, name)
-        if isinstance(rows, list):
-            wider[name] = rows + _blanks(len(rows), KINDS[name])
-        else:
-            wider[name] = np.concatenate([rows, np.zeros_like(rows)])
-    if "along" in wider:
+        more = _blanks(len(rows), KINDS[name]) if objects else np.zeros_like(rows)
+        wider[name] = rows + more if objects else np.concatenate([rows, more])
+    if sprung:
         pieces = np.pad(run.pieces, ((0, len(run.steps)), (0, 0)))
-        wider["pieces"] = pieces.tolist() if isinstance(run.pieces, list) else pieces
+        wider["pieces"] = pieces.tolist() if objects else pieces
     return run._replace(**wider)
 
 

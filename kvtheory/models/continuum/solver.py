@@ -158,7 +158,6 @@ class Trajectory:
 
     @cached_property
     def _natural(self) -> tuple[Any, Any]:
-        """The natural times, and the states there, as rows for the kernels."""
         times, found = self._room(evaluation.SUBDIVISIONS * self.counts.steps + 1)
         count = self._perform(bulk.NATURAL, times, found)
         return times[:count], found[:count]
@@ -225,7 +224,6 @@ class Trajectory:
     def _perform(
         self, task: int, times: Any, found: Any, values: Any = None, count: int = 0, other: Any = None
     ) -> int:  # fmt: skip
-        """Perform a task of the kernels."""
         rows = self._workspace
         values = rows[0] if values is None else values
         return compiled.chosen(self.run)(
@@ -249,43 +247,18 @@ class Trajectory:
 
 
 def solve(
-    drive: BaseMotion,
-    inertia_number: float,
-    support_number: float,
-    end: float,
-    rtol: float = 1e-9,
-    *,
-    spring: Spring | None = None,
-    fast: bool | None = None,
+    drive: BaseMotion, inertia_number: float, support_number: float, end: float, rtol: float = 1e-9,
+    *, spring: Spring | None = None, fast: bool | None = None,
     control: StepControl = StepControl(),  # noqa: B008 - immutable
-    progress: Callable[[float], Any] | None = None,
-    max_steps: int = STEP_LIMIT,
-) -> Trajectory:
+    progress: Callable[[float], Any] | None = None, max_steps: int = STEP_LIMIT,
+) -> Trajectory:  # fmt: skip
     """Follow the transient of `drive` from rest until `end`, in scaled form.
 
-    Parameters
-    ----------
-    drive
-        The drive number lambda(s); it must reach `end`.
-    inertia_number
-        eps > 0; not used if the support is fixed.
-    support_number
-        kappa >= 0; infinity is the fixed indenter, d = 1.
-    end
-        Time until which to solve, in units of tau.
-    rtol
-        Error allowed in a step for d' relative to 1 + |d'|, and for x' likewise, all along the step.
-    spring
-        Holds the indenter along x; without it the drive is rigid.
-    fast
-        Whether the kernels are compiled; by default, if numba is installed and enough steps were
-        interpreted for that to pay. The numbers are the same.
-    control
-        Step-size controls beside the tolerance.
-    progress
-        Called with the time reached, now and then.
-    max_steps
-        Steps after which to give up; those that are repeated count, too.
+    The drive must reach `end`. Numbers are eps > 0 (not used if the support is fixed) and kappa >= 0, where
+    infinity is the fixed indenter, d = 1. `rtol` is the error allowed all along a step for d' relative to
+    1 + |d'|, and for x' likewise. By default the kernels are compiled (`fast`) if numba is there and enough
+    steps were interpreted for that to pay; the numbers are the same. `progress` is called with the time
+    reached. Steps that are repeated count for `max_steps`, too.
 
     Raises
     ------
@@ -300,12 +273,8 @@ def solve(
     """
     if not 0.0 < end <= drive.end:
         raise ValueError(f"`end` must be positive and within the drive, got {end!r}")
-    if spring is not None and not (
-        spring.eps > 0.0 and spring.damping >= 0.0 and spring.stiffness > 0.0
-    ):
-        raise ValueError(
-            "expected a `spring` with inertia and stiffness above 0, damping from 0 on"
-        )
+    if spring and not (spring.eps > 0.0 and spring.damping >= 0.0 and spring.stiffness > 0.0):
+        raise ValueError("expected a `spring` with inertia and stiffness > 0, damping >= 0")
     if not (inertia_number > 0.0 and support_number >= 0.0 and 1e-13 <= rtol <= 1e-2):
         raise ValueError(
             "expected `inertia_number` > 0, `support_number` >= 0, 1e-13 <= `rtol` <= 1e-2"

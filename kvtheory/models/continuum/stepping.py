@@ -18,12 +18,12 @@ OVERRUN = 1e-4
 """Share of a step that may lie beyond an event: the states of the edges change there, and a step that
 ran farther is repeated with the right length."""
 SEEN = 0.1
-"""Of a step, or of what may lie beyond an event: the shortest remainder that is worth a step. A step of which
-this share is lost in the rounding of the time cannot be made."""
+"""Of a step, or of its allowed overrun: the shortest remainder that is worth a step. A step of which this
+share is lost in the rounding of the time cannot be made."""
 BRIEF = 1e-10
 """An event this soon after the start of a step needs no repetition of the step."""
 REMAINDER = 1.1
-"""Of what the previous step left of its way to an event: a way no longer than this is taken in one step."""
+"""Of the distance to an event that the previous step left: one no longer than this is taken in one step."""
 DECAYED, STEADY = 40.0, 1e-3
 """Retardation times after which memory has decayed to the last digit; share of the tolerance below which a
 rate counts as zero."""
@@ -166,7 +166,6 @@ def _restart(run: Run) -> None:
 
 
 def _note(run: Run, kind: int) -> None:
-    """Note an event."""
     event = run.events[run.now.events]
     event.s, event.kind = run.now.s, kind
     run.now.events += 1
@@ -210,9 +209,9 @@ def _advance(run: Run, until: float) -> int:
 
 
 def _share(run: Run, way: float) -> float:
-    """Return the share of the way to an event, or to the end of a piece, that a step takes at most.
+    """Return the largest share of the time to an event, or to the end of a piece, that a step takes.
 
-    It is below 1 just after an event, on a new piece, or if the way is long.
+    It is below 1 just after an event, on a new piece, or if that time is long.
     """
     now, straight = run.now, run.given.straight
     at_piece = now.s == run.pieces[now.piece][b_.START]
