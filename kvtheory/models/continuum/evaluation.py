@@ -83,7 +83,8 @@ def state_at(run: Run, index: int, s: float, found: Any) -> None:
         p = max(c_.pressure(min(max(-number, l), r), d, v, number), 0.0)
     found[DEPTH], found[RATE], found[ACCELERATION], found[NUMBER] = d, v, dv, number
     found[LEFT], found[RIGHT] = l, r
-    found[LEADING], found[TRAILING] = (l, r) if forward(run, step, s, number) else (r, l)
+    leads = number > 0.0 or (number == 0.0 and forward(run, step, s))
+    found[LEADING], found[TRAILING] = (l, r) if leads else (r, l)
     found[LEFT_STATE], found[RIGHT_STATE] = left.state, right.state
     found[NORMAL_FORCE], found[FRICTION_FORCE] = f_z, f_x
     found[PEAK_PRESSURE], found[ROUNDING] = p, rounding
@@ -96,9 +97,9 @@ def state_at(run: Run, index: int, s: float, found: Any) -> None:
         found[SPRING_FORCE] = spring * found[ALONG] + damping * found[ALONG_RATE]
 
 
-def forward(run: Run, step: Any, s: float, number: float) -> bool:
-    """Whether the left edge leads; at rest, as it did before."""
-    k, first = step.piece, run.given.drives if run.given.sprung else 0
+def forward(run: Run, step: Any, s: float) -> bool:
+    """Whether the left edge led before a rest that lasts at `s`."""
+    number, k, first = 0.0, step.piece, run.given.drives if run.given.sprung else 0
     while number == 0.0 and k >= first:
         piece = run.pieces[k]
         number = evaluate(piece, 0.5 * (piece[START] + min(s, piece[END])))[1]

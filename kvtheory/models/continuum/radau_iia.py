@@ -132,19 +132,26 @@ def balances(
 
     The pressure vanishes at a peeling edge; a touching one moves with d and, over what was left, with Y.
     """
-    given = run.given
-    F, F_d, F_v, (l, l_d, l_Y, _), (r, r_d, r_Y, _) = imbalance(run, step, s, now)
-    F_x = F_w = G_d = G_v = 0.0
-    G, G_x, G_w = -given.damping * w - given.spring * x, -given.spring, -given.damping
-    if l < r:
-        d, v, _, _, number, _ = now
-        p_l, p_r = pressure(l, d, v, number), pressure(r, d, v, number)
-        G += forces(l, r, d, v, number)[1]
-        F_w = G_v = -0.75 * (r - l) * (r + l)
-        F_x = 0.75 * (p_r * r_Y - p_l * l_Y)
-        G_d = G_v - 1.5 * (r * p_r * r_d - l * p_l * l_d)
-        G_x += 1.5 * (r * p_r * r_Y - l * p_l * l_Y)
-        G_w -= (r - l) * (r * r + r * l + l * l)
+    given, (d, v, _, _, number, _) = run.given, now
+    F, F_d, F_v, F_x, F_w = 1.0 - given.kappa * (d - 1.0), -given.kappa, 0.0, 0.0, 0.0
+    G, G_d, G_v = -given.damping * w - given.spring * x, 0.0, 0.0
+    G_x, G_w = -given.spring, -given.damping
+    if step.sides[0].state != FREE:
+        l, l_d, l_Y, _ = edge(run, 0, step.sides[0], s, now)
+        r, r_d, r_Y, _ = edge(run, 1, step.sides[1], s, now)
+        if l < r:
+            f_z, f_x = forces(l, r, d, v, number)
+            p_l, p_r = pressure(l, d, v, number), pressure(r, d, v, number)
+            F, G, width, squares = F - f_z, G + f_x, r - l, (r - l) * (r + l)
+            F_d -= 0.75 * (width + p_r * r_d - p_l * l_d)
+            F_v, F_w = -0.75 * width, -0.75 * squares
+            F_x = 0.75 * (p_r * r_Y - p_l * l_Y)
+            G_v = -0.75 * squares
+            G_d = G_v - 1.5 * (r * p_r * r_d - l * p_l * l_d)
+            G_x += 1.5 * (r * p_r * r_Y - l * p_l * l_Y)
+            G_w -= width * (r * r + r * l + l * l)
+        elif not l >= r:
+            F = math.nan
     if given.fixed:
         F = F_d = F_v = F_x = F_w = 0.0
     return (F, F_d, F_v, F_x, F_w), (G, G_d, G_v, G_x, G_w)
@@ -193,48 +200,46 @@ def _linearize(run: Run, step: Any, along: Any) -> bool:
     change, places, numbers = matrix[unknowns], matrix[unknowns + 1], matrix[unknowns + 2]
     eps = 1.0 if given.fixed else given.eps  # a fixed indenter on a spring keeps d' = 0
     for i in range(stages):
-        s, row = step.start + span * method.nodes[i], matrix[i]
-        d, inertia = _at_stage(method, i, change, 0, step, eps)
-        v, G = step.rate[0] + change[i], 0.0
+        s, a, inverse, row = (
+            step.start + span * method.nodes[i],
+            method.A[i],
+            method.inverse[i],
+            matrix[i],
+        )
+        d, inertia = step.depth + span * method.nodes[i] * step.rate[0], 0.0
+        for j in range(stages):
+            d += span * a[j] * change[j]
+            inertia += eps * inverse[j] * change[j]
+        v = step.rate[0] + change[i]
         if given.sprung:
-            x, inertia_x = _at_stage(method, i, change, stages, along, given.eps_x)
-            w, row_x = along.rate[0] + change[stages + i], matrix[stages + i]
+            row_x, w = matrix[stages + i], along.rate[0] + change[stages + i]
+            x, inertia_x = along.depth + span * method.nodes[i] * along.rate[0], 0.0
+            for j in range(stages):
+                x += span * a[j] * change[stages + j]
+                inertia_x += given.eps_x * inverse[j] * change[stages + j]
             now = d, v, 0.0, places[i] - x, numbers[i] - w, 0.0
             (F, F_d, F_v, F_x, F_w), (G, G_d, G_v, G_x, G_w) = balances(run, step, s, now, x, w)
-            _write_block(method, i, row, stages, 0.0, span, F_x, F_w)
-            _write_block(method, i, row_x, 0, 0.0, span, G_d, G_v)
-            _write_block(method, i, row_x, stages, given.eps_x, span, G_x, G_w)
+            for j in range(stages):
+                squared = span * span * a[j]
+                row[stages + j], row_x[j] = -squared * F_x, -squared * G_d
+                row_x[stages + j] = given.eps_x * inverse[j] - squared * G_x
+            row[stages + i] -= span * F_w
+            row_x[i] -= span * G_v
+            row_x[stages + i] -= span * G_w
             row_x[unknowns] = span * G - inertia_x
+            if not math.isfinite(G):
+                return False
         else:
             now = d, v, 0.0, places[i], numbers[i], 0.0
             F, F_d, F_v, _, _ = imbalance(run, step, s, now)
-        if not (math.isfinite(F) and math.isfinite(G)):
+        if not math.isfinite(F):
             return False
-        _write_block(method, i, row, 0, eps, span, F_d, F_v)
+        factor = span * span * F_d
+        for j in range(stages):
+            row[j] = eps * inverse[j] - factor * a[j]
+        row[i] -= span * F_v
         row[unknowns] = span * F - inertia
     return True
-
-
-def _at_stage(
-    method: Any, i: int, change: Any, first: int, step: Any, eps: float
-) -> tuple[float, float]:
-    """Return the integral of a rate at a stage, from its changes, and the inertia force times the span."""
-    a, inverse, span = method.A[i], method.inverse[i], step.span
-    place, inertia = step.depth + span * method.nodes[i] * step.rate[0], 0.0
-    for j in range(method.stages):
-        place += span * a[j] * change[first + j]
-        inertia += eps * inverse[j] * change[first + j]
-    return place, inertia
-
-
-def _write_block(
-    method: Any, i: int, row: Any, first: int, eps: float, span: float, F_d: float, F_v: float
-) -> None:
-    """Write the derivatives of an equation of stage `i` by the rates at all stages."""
-    a, inverse, squared = method.A[i], method.inverse[i], span * span * F_d
-    for j in range(method.stages):
-        row[first + j] = eps * inverse[j] - squared * a[j]
-    row[first + i] -= span * F_v
 
 
 def _write_powers(method: Any, change: Any, first: int, rate: Any) -> None:

@@ -111,10 +111,11 @@ class Trajectory:
 
     def _reversals(self) -> Iterator[ScaledEvent]:
         """Yield when the indenter on a spring begins to slide the other way: where lambda changes sign."""
-        before, steps = 0.0, self.records
+        if not self.given.sprung:
+            return
+        before, steps, ends = 0.0, self.records, [*self.starts[1:], self.end]
         spans, rows = steps["span"].tolist(), self.pieces[steps["piece"]].tolist()
-        ends = [*self.starts[1:], self.end] if self.given.sprung else []
-        for start, end, span, row in zip(self.starts, ends, spans, rows, strict=False):
+        for start, end, span, row in zip(self.starts, ends, spans, rows, strict=True):
             powers = [c * span**k for k, c in enumerate(row[b_.POWERS :])]
             roots = polynomial.polyroots(np.trim_zeros(powers, "b") or [1.0])
             share = (end - start) / span
