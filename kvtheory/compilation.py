@@ -1,7 +1,7 @@
 """Kernels compiled by numba, which is optional, and cached on disk."""
 
 import inspect
-from collections.abc import Callable
+from collections.abc import Callable, Container
 from importlib.util import find_spec
 from types import ModuleType
 from typing import Any
@@ -18,18 +18,35 @@ def available() -> bool:
 
 
 def kept(entry: Callable[..., Any], module: ModuleType) -> Any:
-    """Return an entry of a module of kernels that is compiled when called, and cached on disk if possible."""
-    from numba import njit
+    """Return an entry of a module of kernels that is compiled when called, and kept if there is a place.
+
+    Raises
+    ------
+    ModuleNotFoundError
+        If numba is not installed.
+    """
+    register(module)
+    return cached(entry)
+
+
+def register(module: ModuleType, inlined: Container[str] = (), **options: Any) -> None:
+    """Tell numba that the functions of a module may be compiled; the names of some of them `inlined`."""
     from numba.extending import register_jitable
 
-    for function in vars(module).values():
+    for name, function in vars(module).items():
         if inspect.isfunction(function) and function.__module__ == module.__name__:
-            register_jitable(**OPTIONS)(function)
+            register_jitable(**OPTIONS, **options, forceinline=name in inlined)(function)
+
+
+def cached(entry: Callable[..., Any], **options: Any) -> Any:
+    """Return an entry that is compiled when called, and kept on the disk if there is a place."""
+    from numba import njit
+
     try:
-        compiled = njit(entry, cache=True, nogil=True, **OPTIONS)
+        compiled = njit(entry, cache=True, nogil=True, **OPTIONS, **options)
     except RuntimeError:  # package and home are read-only
         compiling()
-        return njit(entry, nogil=True, **OPTIONS)
+        return njit(entry, nogil=True, **OPTIONS, **options)
     disk: Any = compiled._cache  # type: ignore[attr-defined]
     load = disk.load_overload
 

@@ -15,13 +15,16 @@ import kvtheory as kv
 from kvtheory.models.continuum import compiled
 from kvtheory.models.continuum import evaluation as e_
 from kvtheory.models.continuum.energy import ledger
-from kvtheory.models.continuum.quadrature import integrals
 from kvtheory.models.continuum.run import Spring
 from kvtheory.models.continuum.solver import Trajectory, solve
+from kvtheory.models.continuum.surface import integrals
 from kvtheory.results.errors import TransientError
 from kvtheory.scene.base_motion import BaseMotion
 
-QUANTITIES = ("depth", "friction_force", "leading_edge", "sliding_velocity", "spring_force")
+COLUMNS = {
+    "depth": e_.DEPTH, "sliding_velocity": e_.NUMBER,
+    "spring_force": e_.SPRING_FORCE, "friction_force": e_.FRICTION_FORCE,
+}  # fmt: skip
 SWINGS = 30
 """That a run takes at most, along x."""
 
@@ -102,11 +105,13 @@ def balances(motion):
     up = given.eps * states[:, e_.RATE] - (times - f_z - given.kappa * (d - times))
     up = 0.0 * times if given.fixed else up
     size = 1.0 + np.abs(states[:, [e_.RATE, e_.NUMBER]]).max() + np.abs(f_x) + np.abs(f_z)
+    turned_over = 1.0 + np.abs(books.work) + books.kinetic_along
+    eps = 0.0 if given.fixed else given.eps
     return {
-        "energy": float(np.max(np.abs(books.balance) / (1.0 + np.abs(books.work) + books.kinetic_along))),
+        "energy": float(np.max(np.abs(books.balance) / turned_over)),
         "impulse along x": float(np.max(np.abs(along) / (size * max(1.0, given.eps_x)))),
-        "impulse along z": float(np.max(np.abs(up) / (size * (1.0 + (0 if given.fixed else given.eps))))),
-    }  # fmt: skip
+        "impulse along z": float(np.max(np.abs(up) / (size * (1.0 + eps)))),
+    }
 
 
 def survey(count, first=0):
@@ -125,13 +130,9 @@ def survey(count, first=0):
             if value > 1e-9:
                 print(seed, name, value, flush=True)
             worst[name] = max(worst[name], value)
-        one = truth.states(case.times)
-        right = {
-            "depth": one[:, e_.DEPTH], "sliding_velocity": one[:, e_.NUMBER],
-            "spring_force": one[:, e_.SPRING_FORCE], "friction_force": one[:, e_.FRICTION_FORCE],
-        }  # fmt: skip
-        for name, value in right.items():
-            error = np.abs(getattr(result, name) - value).max()
+        states = truth.states(case.times).T
+        for name, column in COLUMNS.items():
+            error = np.abs(getattr(result, name) - states[column]).max()
             if error > result.certificate.relative_error[name] + 1e-8:
                 dishonest.append((seed, name, error, result.certificate.relative_error[name]))
     print(f"{count} scenes: {len(failed)} errors {failed}; not covered: {dishonest}")

@@ -4,8 +4,7 @@ The scaled form is that of `tests.transient_reference`, with lambda = lambda_0 -
 
     x' = w,   eps_x w' = f_x - c w - k x,   f_x = -(3/2) int xi p dxi,   x = w = 0 at s = 0.
 
-- `history` finds the contact from what no past instant forbids, as `tests.transient_history` does, and
-  integrates (d, v, Y, x, w) by DOP853.
+- `tests.transient_history` finds the contact from what no past instant forbids, and integrates by DOP853.
 - `elements` takes the memory (F8) as it stands, on a row of points, and knows nothing of a contact.
 
 `python -m tests.spring_reference` writes the table, with the change from a coarser to a finer solution
@@ -16,27 +15,23 @@ as the error of each value, and the places of the elements beside it; it takes a
 
 import json
 import math
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
-from scipy.integrate import DOP853
 
-from tests.transient_history import Past, contact, forces
-from tests.transient_scenes import Scene, at_times
+from tests.transient_history import history
+from tests.transient_reference import entry, extrapolated
+from tests.transient_scenes import Scene
 
 TABLE = Path(__file__).parent / "data" / "spring_reference.json"
-QUANTITIES = ("d", "v", "x", "w", "f_z", "f_x", "left", "right")
 TOLERANCES = (1e-10, 1e-11)
 LONGEST = 0.02
-ROUNDING = 1e-14
 ELEMENTS = "damped", "stop", "fixed, stop", "stick-slip", "hop", "two hops"
 """Scenes in which elements confirm the history, memory and flights among them."""
 NEAR = 2.5
 """Farther from the axis, in half lengths, no element can be touched within a step."""
-SAFETY = 10.0
-"""Edges cross elements at irregular phases, so that one change of refinement can be small by luck."""
 SPACINGS = 0.004, 0.002, 0.001
 
 
@@ -90,42 +85,6 @@ SCENES = {
     ),
     "two hops": sprung(jump(0.5, 10.0, 0.0), 0.5, (0.02, 0.0, 2.0)),
 }
-
-
-def history(scene, tolerance, longest=LONGEST):
-    """Return the quantities at the times of the scene, just after a jump."""
-    past, y, before = Past(), np.array([1.0, 0.0, 0.0, 0.0, 0.0]), 0.0
-    rows = []
-
-    def law(s, y, start, rate):
-        d, v, _, x, w = y
-        now = rate(s) - w
-        rates = (now, before) if s == start else (now,)
-        f_z, f_x = forces(d, v, now, contact(s, y[:3], rates, past))
-        moves = scene.epsilon is not None
-        dv = (1.0 - f_z - scene.kappa * (d - 1.0)) / scene.epsilon if moves else 0.0
-        dw = (f_x - scene.damping * w - scene.stiffness * x) / scene.inertia
-        return np.array([v if moves else 0.0, dv, now, w, dw])
-
-    for start, stop, rate in scene.pieces():
-        d, v, _, x, w = y
-        now = rate(start) - w
-        edges = contact(start, y[:3], (now, before), past)
-        rows.append((start, d, v, x, w, *forces(d, v, now, edges), *edges))
-        if stop == start:
-            break
-        solver = DOP853(
-            lambda s, y, start=start, rate=rate: law(s, y, start, rate),
-            start, y, stop, longest, rtol=tolerance, atol=0.01 * tolerance,
-        )  # fmt: skip
-        while solver.status == "running":
-            message = solver.step()
-            if solver.status == "failed":
-                raise ArithmeticError(f"the integration failed at s = {solver.t}: {message}")
-            past.add(solver.dense_output())
-        y = solver.y
-        before = rate(stop) - y[4]
-    return at_times(scene, rows, QUANTITIES)
 
 
 def elements(scene, spacing):
@@ -207,30 +166,12 @@ def reach(scene):
     return travel + 6.0
 
 
-def _row(values):
-    return [None if math.isnan(value) else float(value) for value in values]
-
-
-def extrapolated(scene, spacings=SPACINGS):
-    """Return d and x by elements, each spacing half the one before, and their estimated error."""
-    found = [elements(scene, spacing) for spacing in spacings]
-    better = [fine + (fine - coarse) / 3.0 for coarse, fine in pairwise(found)]
-    return better[-1], SAFETY * np.abs(better[-1] - better[-2]) + ROUNDING
-
-
-def entry(scene, refined):
-    """Return what the table holds of a scene; in flight there is no edge, which is None."""
-    coarse, fine = (history(scene, tolerance) for tolerance in TOLERANCES)
-    held = {"values": {q: _row(fine[q]) for q in QUANTITIES},
-            "errors": {q: _row(np.abs(fine[q] - coarse[q]) + ROUNDING) for q in QUANTITIES}}  # fmt: skip
-    if not refined:
-        return asdict(scene) | held
-    values, errors = extrapolated(scene)
-    return (
-        asdict(scene) | held | {"elements": {"values": values.tolist(), "errors": errors.tolist()}}
-    )
-
-
 if __name__ == "__main__":
-    found = {name: entry(scene, name in ELEMENTS) for name, scene in SCENES.items()}
-    TABLE.write_text(json.dumps(found, indent=1) + "\n")
+    table = {}
+    for name, scene in SCENES.items():
+        coarse, fine = (history(scene, tolerance, LONGEST) for tolerance in TOLERANCES)
+        table[name] = entry(scene, "history", coarse, fine)
+        if name in ELEMENTS:
+            values, errors = extrapolated(elements, scene, SPACINGS)
+            table[name]["elements"] = {"values": values.tolist(), "errors": errors.tolist()}
+    TABLE.write_text(json.dumps(table, indent=1) + "\n")

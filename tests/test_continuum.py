@@ -1,6 +1,5 @@
 """The equation of motion: against an independent solution, and by the laws that it must obey."""
 
-import itertools
 import math
 
 import numpy as np
@@ -8,9 +7,9 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from kvtheory.models.continuum.radau_iia import STAGES, radau
-from kvtheory.models.continuum.run import StepControl
+from kvtheory.models.continuum.run import Spring, StepControl
 from kvtheory.models.continuum.solver import solve
-from kvtheory.models.continuum.surface import height, volume
+from kvtheory.models.continuum.surface import height
 from kvtheory.results.errors import TransientError
 from kvtheory.scene.base_motion import BaseMotion
 
@@ -40,24 +39,30 @@ def distance(motion, other, end, count=150):
     return worst
 
 
-@pytest.mark.parametrize("rtol", [1e-6, 1e-8, 1e-10])
 @pytest.mark.parametrize(
     ("number", "eps", "kappa"),
     [(*TABLE1, 0.0), (4.0, 1e-4, 0.0), (1.0, 1.0, 0.5), (0.1, 1e-6, 0.0), (4.0, 0.04, 3.0)],
 )
-def test_start_from_rest_agrees_with_scipy(number, eps, kappa, rtol):
+def test_start_from_rest_agrees_with_scipy(number, eps, kappa):
     end = 2.0
-    motion = solve(BaseMotion.constant(number, end), eps, kappa, end, rtol)
-    assert distance(motion, two_states(number, eps, kappa, end).sol, end) <= 2 * rtol
+    truth = two_states(number, eps, kappa, end).sol
+    loose = (1e-2, 1e-3, 1e-4, 1e-5) if (number, eps) == TABLE1 else ()
+    for rtol in (*loose, 1e-6, 1e-8, 1e-10):
+        motion = solve(BaseMotion.constant(number, end), eps, kappa, end, rtol)
+        assert distance(motion, truth, end) <= (2 if rtol < 1e-5 else 4) * rtol
 
 
-def test_error_falls_with_the_order_of_the_polynomial():
-    """The error is proportional to the tolerance, so that the steps must shrink as its eighth root."""
+def test_steps_and_evaluations():
+    """The error is proportional to the tolerance, so that the steps must shrink as its eighth root.
+
+    Without inertia the evaluations do not grow.
+    """
     number, eps = TABLE1
     given = BaseMotion.constant(number, 2.0)
-    steps = [solve(given, eps, 0.0, 2.0, rtol).steps for rtol in (1e-8, 1e-10, 1e-12)]
-    ratios = np.array(steps[1:]) / steps[:-1]
-    assert ratios == pytest.approx(100 ** (1 / 8), rel=0.2)
+    steps = [solve(given, eps, 0.0, 2.0, rtol).counts.steps for rtol in (1e-8, 1e-10, 1e-12)]
+    assert np.array(steps[1:]) / steps[:-1] == pytest.approx(100 ** (1 / 8), rel=0.2)
+    light = [solve(given, eps, 0.0, 2.0).counts.evaluations for eps in (1e-2, 1e-4, 1e-6, 1e-8)]
+    assert max(light) <= 3 * light[0]
 
 
 @pytest.mark.parametrize("stages", [count for _, count in STAGES])
@@ -70,13 +75,6 @@ def test_tableau_is_radau_iia(stages):
     for k in range(2 * stages - 1):
         assert A[-1] @ c**k == pytest.approx(1 / (k + 1), abs=1e-14)
     assert A @ np.array(method.inverse) == pytest.approx(np.eye(stages), abs=1e-13)
-
-
-@pytest.mark.parametrize("rtol", [1e-2, 1e-3, 1e-4, 1e-5])
-def test_loose_tolerances_are_met_too(rtol):
-    number, eps = TABLE1
-    motion = solve(BaseMotion.constant(number, 2.0), eps, 0.0, 2.0, rtol)
-    assert distance(motion, two_states(number, eps, 0.0, 2.0).sol, 2.0) <= 4 * rtol
 
 
 SCENES = {
@@ -103,25 +101,6 @@ def test_motion_obeys_its_equation_and_converges(name):
         balance = 1 - now.normal_force - kappa * (now.depth - 1)
         terms = 1 + abs(eps * now.acceleration)
         assert abs(eps * now.acceleration - balance) <= 3e-7 * max(terms, eps), s
-
-
-@pytest.mark.parametrize("name", SCENES)
-def test_impulse_balances_the_volume_of_the_whole_surface(name):
-    """U = U_0 e^-s + 4/3 int e^(t - s) f_z dt, the surface that relaxes behind the edges included."""
-    points, eps, kappa = SCENES[name]
-    motion = solve(BaseMotion.from_points(points, 2.0), eps, kappa, 2.0)
-    x, w = np.polynomial.legendre.leggauss(12)
-    ends = [*motion.starts, motion.end]
-    U = 4 / 3
-    for a, b in itertools.pairwise(ends):
-        for low, high in ((a, 0.5 * (a + b)), (0.5 * (a + b), b)):
-            share = 0.5 * (1 + x)  # a force may begin as a square root: times are its squares
-            times = low + (high - low) * share**2
-            f_z = [motion.at(s).normal_force for s in times]
-            impulse = (high - low) * (w @ (share * np.exp(times - high) * f_z))
-            U = U * math.exp(low - high) + 4 / 3 * impulse
-            if low == a:  # not where strips are left and edges land: U is the same on both sides
-                assert volume(motion, high) == pytest.approx(U, abs=2e-8), high
 
 
 def test_heights_of_hops_are_ballistic():
@@ -155,13 +134,6 @@ def test_at_rest_nothing_happens():
     assert motion.at(0.5).normal_force == pytest.approx(1, abs=1e-14)
 
 
-def test_cost_does_not_grow_without_inertia():
-    number, _ = TABLE1
-    given = BaseMotion.constant(number, 2.0)
-    evaluations = [solve(given, eps, 0.0, 2.0).evaluations for eps in (1e-2, 1e-4, 1e-6, 1e-8)]
-    assert max(evaluations) <= 3 * evaluations[0]
-
-
 def test_cost_grows_in_proportion_to_the_events_of_the_memory():
     def cycles(count):
         points = [(0, 4)]
@@ -169,7 +141,7 @@ def test_cost_grows_in_proportion_to_the_events_of_the_memory():
             points += [(k + 0.4, 4), (k + 0.4, -2), (k + 1, -2), (k + 1, 4)]
         motion = solve(BaseMotion.from_points(points, count), 0.04, 0.0, float(count))
         begun = sum(event.kind.startswith("memory begins") for event in motion.events)
-        return motion.evaluations, begun
+        return motion.counts.evaluations, begun
 
     few, many = cycles(20), cycles(40)
     assert many[1] == pytest.approx(2 * few[1], rel=0.1)
@@ -188,8 +160,9 @@ def test_memory_begins_where_an_edge_goes_back_and_ends_where_it_leaves():
 
 @pytest.mark.parametrize(
     "change",
-    [{"end": 0.0}, {"end": 3.0}, {"inertia_number": 0.0}, {"support_number": -1.0}, {"rtol": 0.0}],
-)
+    [{"end": 0.0}, {"end": 3.0}, {"inertia_number": 0.0}, {"support_number": -1.0}, {"rtol": 0.0},
+     {"spring": Spring(0.0, 0.0, 1.0)}, {"spring": Spring(1.0, -1.0, 1.0)}],
+)  # fmt: skip
 def test_what_makes_no_sense_is_refused(change):
     arguments = {"inertia_number": 0.04, "support_number": 0.0, "end": 2.0} | change
     with pytest.raises(ValueError, match="`"):
@@ -207,14 +180,6 @@ def test_drives_represent_functions_to_their_tolerance():
         assert given.at(s)[1] == pytest.approx(math.exp(-s) * math.sin(9 * s), abs=2e-10)
         exact = (9 - math.exp(-s) * (9 * math.cos(9 * s) + math.sin(9 * s))) / 82
         assert given.at(s)[0] == pytest.approx(exact, abs=1e-9)
-
-
-def test_a_callable_that_jumps_needs_its_breaks():
-    jump = lambda s: 1.0 if s < 0.3 else 2.0  # noqa: E731
-    with pytest.raises(ValueError, match="breaks"):
-        BaseMotion.from_function(jump, 1.0)
-    given = BaseMotion.from_function(jump, 1.0, breaks=[0.3])
-    assert [given.at(s)[1] for s in (0.0, 0.3, 1.0)] == pytest.approx([1, 2, 2], abs=1e-12)
 
 
 def triangle(levels, quarter, end):

@@ -17,6 +17,7 @@ STOP_AND_GO = [(0, 4), (0.3, 4), (0.3, 0), (0.6, 0), (0.6, 4), (0.9, 4), (0.9, 0
 REVERSAL = [(0, 4), (0.5, 4), (0.5, -4)]
 HISTORIES = {
     "start": ([(0, 4)], 0.003, 0.0),
+    "stop": ([(0, 4), (0.5, 4), (0.5, 0)], 0.04, 0.0),
     "stiff stop": ([(0, 4), (0.5, 4), (0.5, 0)], 1e-5, 0.0),
     "slow-down": ([(0, 4), (0.5, 4), (1.0, 1)], 0.04, 0.0),
     "reversal": (REVERSAL, 0.04, 0.5),
@@ -31,37 +32,34 @@ HISTORIES = {
 }
 
 
-def oscillation(s):
-    return 2 * math.sin(5 * s) + 1.5 * math.sin(13.7 * s)
+for kappa in (0.0, 0.5, math.inf):
+    HISTORIES[f"oscillation, kappa {kappa}"] = (
+        lambda s: 2 * math.sin(5 * s) + 1.5 * math.sin(13.7 * s), 0.04, kappa,
+    )  # fmt: skip
+    HISTORIES[f"one step sweeps much ground, kappa {kappa}"] = (
+        [(0, 0), (0.4, 3000), (1.0, -2000), (1.1, -2000), (1.4, 0)], 0.04, kappa,
+    )  # fmt: skip
+
+
+def of(name, rtol=1e-10):
+    """Return the drive and the motion of a history."""
+    drive, eps, kappa = HISTORIES[name]
+    made = BaseMotion.from_function if callable(drive) else BaseMotion.from_points
+    given = made(drive, END)
+    return given, solve(given, eps, kappa, END, rtol)
 
 
 @pytest.mark.parametrize("name", HISTORIES)
 def test_ledger_closes(name):
-    points, eps, kappa = HISTORIES[name]
-    motion = solve(BaseMotion.from_points(points, END), eps, kappa, END, 1e-10)
-    times = np.array([*motion.starts, *np.linspace(0, END, 23)])  # at jumps and landings as well
-    assert np.abs(ledger(motion, times).balance).max() <= 1e-9
-
-
-@pytest.mark.parametrize(("eps", "kappa"), [(0.04, 0.0), (1.0, 0.5), (1.0, math.inf)])
-def test_ledger_closes_in_an_oscillation(eps, kappa):
-    motion = solve(BaseMotion.from_function(oscillation, END), eps, kappa, END, 1e-10)
-    assert np.abs(ledger(motion, np.linspace(0, END, 41)).balance).max() <= 1e-10
-
-
-@pytest.mark.parametrize("kappa", [0.0, 0.5, math.inf])
-def test_ledger_closes_on_ramps_of_which_one_step_sweeps_much_ground(kappa):
-    points = [(0, 0), (0.4, 3000), (1.0, -2000), (1.1, -2000), (1.4, 0)]
-    motion = solve(BaseMotion.from_points(points, END), 0.04, kappa, END, 1e-10)
-    books = ledger(motion, [*motion.starts, *np.linspace(0, END, 23)])
+    _, motion = of(name)
+    books = ledger(motion, [*motion.starts, *np.linspace(0, END, 23)])  # at jumps and landings, too
     assert np.abs(books.balance / (1 + np.abs(books.work))).max() <= 1e-9
     assert books.stored_surface.max() >= 1e-3
 
 
 @pytest.mark.parametrize("name", ["stiff stop", "reversal", "hops", "fixed reversal"])
 def test_entries_are_the_energies_they_are_called(name):
-    points, eps, kappa = HISTORIES[name]
-    motion = solve(BaseMotion.from_points(points, END), eps, kappa, END, 1e-10)
+    (_, eps, kappa), (_, motion) = HISTORIES[name], of(name)
     xi = np.linspace(-12, 14, 100_001)
     for s in (0.35, 0.8, 1.3):
         books, now = ledger(motion, s), motion.at(s)
@@ -77,8 +75,7 @@ def test_entries_are_the_energies_they_are_called(name):
 
 
 def test_behind_the_contact_twice_what_is_stored_is_dissipated():
-    points, eps, kappa = HISTORIES["reversal"]
-    motion = solve(BaseMotion.from_points(points, END), eps, kappa, END, 1e-10)
+    _, motion = of("reversal")
     low, high = ledger(motion, 0.9), ledger(motion, 0.9002)
     rate = (high.dissipated_surface - low.dissipated_surface) / 2e-4
     assert rate == pytest.approx(low.stored_surface + high.stored_surface, rel=1e-6)
@@ -138,8 +135,7 @@ def test_the_largest_forces_within_a_step():
 
 @pytest.mark.parametrize("name", ["there and back", "hops"])
 def test_forces_are_stationary_at_their_maxima(name):
-    points, eps, kappa = HISTORIES[name]
-    motion = solve(BaseMotion.from_points(points, END), eps, kappa, END, 1e-12)
+    _, motion = of(name, 1e-12)
     grid = [motion.at(s) for s in np.linspace(0, END, 2001)]
     for k, s in enumerate(force_maxima(motion)):
         force = lambda moment, k=k: abs(moment[-2 + k])  # noqa: E731

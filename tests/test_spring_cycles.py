@@ -65,11 +65,9 @@ def test_a_rigid_drive_has_no_cycle():
 
 
 def test_series_of_a_spring_over_a_sweep_of_its_stiffness():
-    names = ["sliding_velocity", "spring_force", "velocity"]
+    names, over = ["sliding_velocity", "spring_force", "velocity"], {"drive.stiffness": [1e6, 1e7]}
     short = dataclasses.replace(SCENE, run=kv.Run("20 ms"))
-    found = kv.sweep(
-        short, over={"drive.stiffness": [1e6, 1e7]}, quantities=names, at="0 ms,10 ms", rtol=1e-5
-    )
+    found = kv.sweep(short, over=over, quantities=names, at="0 ms,10 ms", rtol=1e-5)
     assert found["velocity"] == pytest.approx(np.full((2, 2), 0.091))
     assert found["sliding_velocity"][:, 0] == pytest.approx([0.091, 0.091])
     assert found["spring_force"][1, 1] > found["spring_force"][0, 1] > 0.0

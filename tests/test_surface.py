@@ -7,28 +7,19 @@ import pytest
 from scipy.integrate import quad
 
 import kvtheory as kv
-from kvtheory.models.continuum.quadrature import integrals
+from kvtheory.models.continuum.evaluation import DEPTH
 from kvtheory.models.continuum.solver import solve
-from kvtheory.models.continuum.surface import height, volume
+from kvtheory.models.continuum.surface import height, integrals, volume
 from kvtheory.scene.base_motion import BaseMotion
+from tests.test_energy import END, of
 
-END = 2.0
-HISTORIES = {
-    "start": ([(0, 4)], 0.04, 0.0),
-    "stop": ([(0, 4), (0.5, 4), (0.5, 0)], 0.04, 0.0),
-    "reversal": ([(0, 4), (0.5, 4), (0.5, -4)], 0.04, 0.5),
-    "stop-and-go": ([(0, 4), (0.3, 4), (0.3, 0), (0.6, 0), (0.6, 4), (0.9, 0.5)], 1.0, 0.5),
-    "ramps": ([(0, 0), (0.5, 4), (1.5, -4), (2.0, 3)], 0.2, 0.0),
-    "hop": ([(0, 7.1)], 0.078, 0.12),
-    "fixed": ([(0, 4), (0.5, 4), (0.5, -4)], 1.0, math.inf),
-}
+NAMES = "start", "stop", "reversal", "suspended", "there and back", "hop", "fixed reversal"
 
 
-@pytest.fixture(scope="module", params=HISTORIES)
+@pytest.fixture(scope="module", params=NAMES)
 def solved(request):
-    points, eps, kappa = HISTORIES[request.param]
-    given = BaseMotion.from_points(points, END)
-    return given, solve(given, eps, kappa, END, 1e-10)
+    given, motion = of(request.param)
+    return given, motion
 
 
 def highest(motion, given, xi, s):
@@ -36,8 +27,9 @@ def highest(motion, given, xi, s):
     X = np.asarray(xi) - given.at(s)[0]
 
     def left(sigma):
-        d = np.vectorize(lambda t: motion.at(t).depth)(sigma)
-        Y = np.vectorize(lambda t: given.at(t)[0])(sigma)
+        flat = sigma.reshape(-1)
+        d = motion.states(flat)[:, DEPTH].reshape(sigma.shape)
+        Y = np.array([given.displacement(t) for t in flat]).reshape(sigma.shape)
         return np.exp(sigma - s) * (d - (X + Y) ** 2)
 
     jumps = [t for t in motion.starts if t <= s]
@@ -57,14 +49,14 @@ def highest(motion, given, xi, s):
     return top
 
 
-@pytest.mark.parametrize("s", [0.07, 0.55, 1.21, 1.9])
+@pytest.mark.parametrize("s", [0.07, 0.55, 1.9])
 def test_height_is_the_highest_of_all_past_instants(solved, s):
     given, motion = solved
     xi = np.random.default_rng(3).uniform(-4, 6, 40)
     assert height(motion, xi, s) == pytest.approx(highest(motion, given, xi, s), abs=1e-9)
 
 
-@pytest.mark.parametrize("s", [0.3, 0.55, 0.7, 1.37])
+@pytest.mark.parametrize("s", [0.3, 0.55, 1.37])
 def test_height_integrates_to_the_volume(solved, s):
     _, motion = solved
     xi = np.linspace(-12, 14, 100_001)
@@ -128,8 +120,7 @@ def test_surface_is_continuous_at_the_edges(solved):
 
 
 def test_under_a_flying_indenter_the_surface_relaxes():
-    points, eps, kappa = HISTORIES["hop"]
-    motion = solve(BaseMotion.from_points(points, END), eps, kappa, END, 1e-10)
+    _, motion = of("hop")
     times = {event.kind: event.s for event in motion.events}
     a, b = times["take-off"] + 0.01, times["landing"] - 0.01
     slide = 7.1 * (b - a)

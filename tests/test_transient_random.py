@@ -21,15 +21,15 @@ from kvtheory.models.continuum.solver import solve
 from kvtheory.results.errors import TransientError
 from kvtheory.scene.base_motion import BaseMotion
 
-SEEDS = range(63)
 SCENES = int(os.environ.get("KVTHEORY_TEST_SCENES", "200"))
-"""Random scenes of the longest tests."""
+"""Random scenes of the longest tests, which use a share of them."""
+SEEDS = range(SCENES // 5)
 RTOL, TRUTH = 1e-6, 1e-10
 HARMLESS = 1e-2 * RTOL
 """An error this small need not be covered: rounding, and states that change within their tolerance."""
 
 KNOWN_FAILURES: dict[int, str] = {}
-KNOWN_DISHONEST: dict[int, str] = {}
+KNOWN_DISHONEST: dict[tuple[int, str], str] = {}
 
 QUANTITIES = (
     "depth", "depth_rate", "normal_force", "friction_force",
@@ -92,16 +92,11 @@ def random_case(seed, sign):
 def random_points(rng, kind, number, end):
     """Return the times at which the drive changes, and its points."""
     factors = rng.choice((-1, 1, 1), 5) * 10 ** rng.uniform(-1.5, 0.5, 5)
-    levels = number * np.array(
-        {
-            "start": [],
-            "stop": [0],
-            "slow-down": [abs(factors[0]) % 1],
-            "stop-and-go": [0, 1],
-            "reversal": [-abs(factors[0])],
-            "jump missed by rounding": [0],
-        }.get(kind, factors)
-    )
+    few = {
+        "start": [], "stop": [0], "slow-down": [abs(factors[0]) % 1], "stop-and-go": [0, 1],
+        "reversal": [-abs(factors[0])], "jump missed by rounding": [0],
+    }  # fmt: skip
+    levels = number * np.array(few.get(kind, factors))
     changes = np.sort(rng.uniform(0, end, levels.size))
     if kind == "ramps":
         points = [(0, 0), *zip(changes, levels, strict=True)]
@@ -129,16 +124,8 @@ def transient_of(case, rtol):
         return kv.transient(case.scene(), at=case.times, rtol=rtol)
 
 
-def results(rtol):
-    """Yield seed, case and result of each scene that has one."""
-    for seed in SEEDS:
-        case, result = solved(seed, rtol)
-        if result is not None:
-            yield seed, case, result
-
-
-def test_every_scene_ends_in_finite_numbers():
-    failed = []
+def test_every_scene_ends_in_finite_numbers_and_its_estimate_covers_the_error():
+    failed, dishonest = [], []
     for seed in SEEDS:
         _, result = solved(seed, RTOL)
         if result is None:
@@ -149,21 +136,27 @@ def test_every_scene_ends_in_finite_numbers():
         assert np.all(np.isfinite(values[:, ~flying])), seed
         assert np.all(np.isfinite(result.depth)), seed
         assert np.all(result.normal_force >= -RTOL * (1 + np.abs(result.velocity))), seed
-    assert failed == list(KNOWN_FAILURES)
-
-
-def test_the_estimated_error_covers_the_true_one():
-    dishonest = []
-    for seed, _, result in results(RTOL):
         _, truth = solved(seed, TRUTH)
-        for name in QUANTITIES:
-            value, right = getattr(result, name), getattr(truth, name)
+        for name, value in zip(QUANTITIES, values, strict=True):
+            right = getattr(truth, name)
             same_flight = np.array_equal(np.isnan(value), np.isnan(right))
             error = np.nanmax(np.abs(value - right), initial=0.0) if same_flight else math.inf
             if error > result.certificate.relative_error[name] + HARMLESS:
-                dishonest.append(seed)
-                break
+                dishonest.append((seed, name))
+    assert failed == list(KNOWN_FAILURES)
     assert dishonest == list(KNOWN_DISHONEST)
+
+
+def test_a_reversed_drive_is_the_mirror_image():
+    for seed in SEEDS:
+        (_, result), (_, mirrored) = solved(seed, RTOL), solved(seed, RTOL, -1)
+        for name in QUANTITIES if result is not None else ():
+            value, image = getattr(result, name), getattr(mirrored, name)
+            sign = -1 if name in ODD else 1
+            allowed = sum(r.certificate.relative_error[name] for r in (result, mirrored))
+            np.testing.assert_allclose(
+                sign * image, value, rtol=0, atol=allowed, err_msg=f"{seed} {name}"
+            )
 
 
 TRUTH_CONTROL = StepControl(first_step=0.11, longest=0.37, grow=4.3, straight=0.37)
@@ -179,22 +172,18 @@ COLUMNS = {
 }
 
 
-def flies(case):
-    """Whether the indenter flies."""
-    motion = solve(
-        case.drive, case.eps, case.kappa, case.drive.end, 1e-4, fast=compiled.available()
-    )
-    return any(event.kind == "take-off" for event in motion.events)
-
-
 @functools.cache
-def scenes_of_which_a_third_hop():
+def scenes_of_which_a_third_hop(count):
     """Return so many scenes."""
     flying, resting, seeds = [], [], itertools.count(3000)
-    while len(flying) < SCENES // 3:
+    while len(flying) < count // 3:
         case = random_case(next(seeds), 1)
-        (flying if flies(case) else resting).append(case)
-    return flying + resting[: SCENES - SCENES // 3]
+        motion = solve(
+            case.drive, case.eps, case.kappa, case.drive.end, 1e-4, fast=compiled.available()
+        )
+        hops = any(event.kind == "take-off" for event in motion.events)
+        (flying if hops else resting).append(case)
+    return flying + resting[: count - count // 3]
 
 
 def stated_and_true(case, rtol):
@@ -216,7 +205,7 @@ def stated_and_true(case, rtol):
 def test_the_estimate_covers_the_error_where_a_third_hops(rtol):
     """In 99.8 % each error lies within its estimate, which in half of them is not 20 times the error."""
     covered, ratios, ended = [], [], 0
-    for case in scenes_of_which_a_third_hop():
+    for case in scenes_of_which_a_third_hop(SCENES // 2):
         try:
             stated, errors = stated_and_true(case, rtol)
         except TransientError:
@@ -245,22 +234,10 @@ def brief_case(seed):
 
 def test_the_estimate_covers_the_error_of_what_is_brief():
     exceeded = {}
-    for seed, rtol in itertools.product(range(SCENES // 2), (1e-4, 1e-6, 1e-9)):
+    for seed, rtol in itertools.product(range(SCENES // 4), (1e-4, 1e-6, 1e-9)):
         stated, errors = stated_and_true(brief_case(seed), rtol)
         ratio = max(error / stated[name] for name, error in errors.items() if error > 0.0)
         if ratio > 1.0:
             exceeded[seed, rtol] = ratio
     assert len(exceeded) <= 1, exceeded
     assert max(exceeded.values(), default=0.0) <= 2.0
-
-
-def test_a_reversed_drive_is_the_mirror_image():
-    for seed, _, result in results(RTOL):
-        _, mirrored = solved(seed, RTOL, -1)
-        for name in QUANTITIES:
-            value, image = getattr(result, name), getattr(mirrored, name)
-            sign = -1 if name in ODD else 1
-            allowed = sum(r.certificate.relative_error[name] for r in (result, mirrored))
-            np.testing.assert_allclose(
-                sign * image, value, rtol=0, atol=allowed, err_msg=f"{seed} {name}"
-            )

@@ -4,11 +4,10 @@ The scaled form is explained in `tests.transient_reference`.
 """
 
 import math
-from typing import Any
 
 import numpy as np
 
-from tests.transient_scenes import Array, Scene, Solution, at_times
+from tests.transient_scenes import at_times
 
 SPACING = 2e-3
 """Of elements and of their time steps, before refinement; it divides the static half length."""
@@ -19,7 +18,7 @@ MARGIN = 0.1
 NEWTON_STEPS = 50
 
 
-def elements(scene: Scene, refinement: int) -> Solution:
+def elements(scene, refinement):
     """Return d, U = int u dx and M = int xi u dx over all elements, of second order.
 
     The motion is written by the balance of impulse, so that it needs no pressure:
@@ -44,7 +43,7 @@ def elements(scene: Scene, refinement: int) -> Solution:
         others = total - old.sum()
         if scene.epsilon is not None and h > 0.0:
             free = dx * others / growth, old / growth
-            d, J = _trapezoidal(scene.epsilon, scene.kappa, d, J, U, h, dx, xi * xi, free)
+            d, J = _trapezoidal(scene, d, J, U, h, dx, xi * xi, free)
         if half > REACH or d > half * half:
             raise ArithmeticError(f"the contact outgrows the elements that it can touch at s = {s}")
         w[window] = np.maximum(old, growth * (d - xi * xi))
@@ -55,7 +54,7 @@ def elements(scene: Scene, refinement: int) -> Solution:
     return at_times(scene, rows, ("d", "U", "M"))
 
 
-def _steps(scene: Scene, refinement: int) -> list[tuple[float, float, float]]:
+def _steps(scene, refinement):
     """Return for each step its end, its length and the travel Y at its end; the first is s = 0."""
     steps = [(0.0, 0.0, 0.0)]
     for start, stop, rate in scene.pieces():
@@ -67,20 +66,10 @@ def _steps(scene: Scene, refinement: int) -> list[tuple[float, float, float]]:
     return steps
 
 
-def _trapezoidal(
-    epsilon: float,
-    kappa: float,
-    d: float,
-    J: float,
-    U: float,
-    h: float,
-    dx: float,
-    square: Array,
-    free: Any,
-) -> tuple[float, float]:
+def _trapezoidal(scene, d, J, U, h, dx, square, free):
     """Return d and J after a step, by Newton's method for the implicit trapezoidal rule."""
     others, surface = free
-    new = d
+    epsilon, kappa, new = scene.epsilon, scene.kappa, d
     for _ in range(NEWTON_STEPS):
         g = new - square
         U_new = others + dx * np.maximum(g, surface).sum()

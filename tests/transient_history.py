@@ -12,7 +12,7 @@ import numpy as np
 from scipy.integrate import DOP853
 from scipy.optimize import minimize_scalar
 
-from tests.transient_scenes import QUANTITIES, Array, Rate, Scene, Solution, at_times
+from tests.transient_scenes import QUANTITIES, Array, Rate, Solution, at_times
 
 PER_STEP = 4
 """Past instants kept for each step; the most forbidding one between them is found by a search."""
@@ -106,35 +106,45 @@ def forces(d: float, v: float, rate: float, edges: Array) -> tuple[float, float]
     return 0.75 * float(p.sum()), -1.5 * float(xi @ p)
 
 
-def history(scene: Scene, tolerance: float, longest_step: float) -> Solution:
-    """Return the quantities at the times of the scene, just after a jump."""
-    past, y, before = Past(), np.array([1.0, 0.0, 0.0]), 0.0
+def history(scene: Any, tolerance: float, longest_step: float) -> Solution:
+    """Return the quantities at the times of the scene, just after a jump.
+
+    With `inertia`, `damping` and `stiffness` a scene has a spring along x: (d, v, Y, x, w) are integrated.
+    """
+    sprung, moves = hasattr(scene, "inertia"), scene.epsilon is not None
+    past, y, before = Past(), np.array([1.0, 0.0, 0.0, *((0.0, 0.0) if sprung else ())]), 0.0
     rows = []
+
+    def law(s: float, y: Array, start: float, rate: Rate) -> list[float]:
+        d, v, _, *along = y
+        x, w = along or (0.0, 0.0)
+        now = rate(s) - w
+        if not (moves or sprung):
+            return [0.0, 0.0, now]
+        rates = (now, before) if s == start else (now,)
+        f_z, f_x = forces(d, v, now, contact(s, y[:3], rates, past))
+        dv = (1.0 - f_z - scene.kappa * (d - 1.0)) / scene.epsilon if moves else 0.0
+        found = [v if moves else 0.0, dv, now]
+        if sprung:
+            found += [w, (f_x - scene.damping * w - scene.stiffness * x) / scene.inertia]
+        return found
+
     for start, stop, rate in scene.pieces():
-        law = _motion(scene, start, rate, before, past)
-        edges = contact(start, y, (rate(start), before), past)
-        rows.append((start, *y[:2], *forces(y[0], y[1], rate(start), edges), *edges))
+        now = rate(start) - (y[4] if sprung else 0.0)
+        edges = contact(start, y[:3], (now, before), past)
+        rows.append((start, *y[:2], *y[3:], *forces(y[0], y[1], now, edges), *edges))
         if stop == start:
             break
-        solver = DOP853(law, start, y, stop, longest_step, tolerance, 0.01 * tolerance)
+        solver = DOP853(
+            lambda s, y, start=start, rate=rate: law(s, y, start, rate),
+            start, y, stop, longest_step, tolerance, 0.01 * tolerance,
+        )  # fmt: skip
         while solver.status == "running":
             message = solver.step()
             if solver.status == "failed":
                 raise ArithmeticError(f"the integration failed at s = {solver.t}: {message}")
             past.add(solver.dense_output())
-        y, before = solver.y, rate(stop)
-    return at_times(scene, rows, QUANTITIES)
-
-
-def _motion(scene: Scene, start: float, rate: Rate, before: float, past: Past) -> Any:
-    """Return the derivatives of (d, v, Y) after `start`, where lambda was `before`."""
-
-    def law(s: float, y: Array) -> tuple[float, float, float]:
-        d, v, _ = y
-        if scene.epsilon is None:
-            return 0.0, 0.0, rate(s)
-        rates = (rate(s), before) if s == start else (rate(s),)
-        f_z, _ = forces(d, v, rate(s), contact(s, y, rates, past))
-        return v, (1.0 - f_z - scene.kappa * (d - 1.0)) / scene.epsilon, rate(s)
-
-    return law
+        y = solver.y
+        before = rate(stop) - (y[4] if sprung else 0.0)
+    names = (*QUANTITIES[:2], *(("x", "w") if sprung else ()), *QUANTITIES[2:])
+    return at_times(scene, rows, names)

@@ -29,7 +29,7 @@ import numpy as np
 from tests.transient_closed_form import taylor, two_states
 from tests.transient_elements import elements
 from tests.transient_history import history
-from tests.transient_scenes import HISTORY, QUANTITIES, TAYLOR, TWO_STATES, Array, Scene, Solution
+from tests.transient_scenes import HISTORY, TAYLOR, TWO_STATES, Array, Scene, Solution
 
 TABLE = Path(__file__).parent / "data" / "transient_reference.json"
 
@@ -39,27 +39,33 @@ SAFETY = 10.0
 """Edges cross elements at irregular phases, so that one change of refinement can be small by luck."""
 
 
-def _row(values: Array) -> list[float | None]:
+def row(values: Array) -> list[float | None]:
+    """Return numbers for JSON, where NaN is None."""
     return [None if math.isnan(x) else float(x) for x in values]
 
 
 def entry(scene: Scene, method: str, coarse: Solution, fine: Solution) -> dict[str, Any]:
     """Return what the table holds of a scene; in flight there is no edge, which is None."""
-    for q in QUANTITIES:
+    for q in fine:
         if np.any(np.isnan(coarse[q]) != np.isnan(fine[q])):
             raise ArithmeticError("a coarse and a fine solution differ about a flight")
     return asdict(scene) | {
         "method": method,
-        "values": {q: _row(fine[q]) for q in QUANTITIES},
-        "errors": {q: _row(np.abs(fine[q] - coarse[q]) + ROUNDING) for q in QUANTITIES},
+        "values": {q: row(fine[q]) for q in fine},
+        "errors": {q: row(np.abs(fine[q] - coarse[q]) + ROUNDING) for q in fine},
     }
 
 
-def extrapolated(scene: Scene, refinements: Sequence[int]) -> tuple[Array, Array]:
-    """Return d by elements, each refinement twice the one before, and its estimated error."""
-    d = [elements(scene, refinement)["d"] for refinement in refinements]
+def extrapolated(by: Any, scene: Scene, refinements: Sequence[float]) -> tuple[Array, Array]:
+    """Return d, or d and x, by elements, and the estimated error; each refinement is twice the one before."""
+    d = [by(scene, refinement) for refinement in refinements]
     better = [fine + (fine - coarse) / 3.0 for coarse, fine in pairwise(d)]
     return better[-1], SAFETY * np.abs(better[-1] - better[-2]) + ROUNDING
+
+
+def depth_by_elements(scene: Scene, refinement: int) -> Array:
+    """Return d by elements."""
+    return elements(scene, refinement)["d"]
 
 
 def table() -> dict[str, Any]:
@@ -71,9 +77,9 @@ def table() -> dict[str, Any]:
         found[name] = entry(scene, "two_states", two_states(scene, 1e-10), two_states(scene, 1e-12))
     for name, scene in HISTORY.items():
         coarse, fine = history(scene, 1e-12, 0.05), history(scene, 1e-13, 0.025)
-        d, error = extrapolated(scene, REFINEMENTS)
+        d, error = extrapolated(depth_by_elements, scene, REFINEMENTS)
         found[name] = entry(scene, "history", coarse, fine) | {
-            "elements": {"d": _row(d), "errors": _row(error)}
+            "elements": {"d": row(d), "errors": row(error)}
         }
     return found
 

@@ -182,7 +182,8 @@ def by_continuum(problem: Problem, rtol: float, **options: Any) -> tuple[Curves,
     numbers = units.inertia_number, units.support_number
     motion = solver.solve(drive, *numbers, drive.end, rtol, **options)
     found = motion.states(np.minimum(problem.times / units.time, motion.end)).T
-    return Curves(found[evaluation.DEPTH], found[evaluation.FRICTION_FORCE]), motion.evaluations
+    curves = Curves(found[evaluation.DEPTH], found[evaluation.FRICTION_FORCE])
+    return curves, motion.counts.evaluations
 
 
 def by_two_states(problem: Problem, method: str, rtol: float, **how: Any) -> tuple[Curves, int]:

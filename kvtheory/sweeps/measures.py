@@ -86,7 +86,7 @@ class _Motions:
             states=np.full((size, len(plan.times or ()), e_.SIZE), np.nan),
             settled=np.full(size, np.nan),
             take_offs=np.zeros(size, dtype=np.int64),
-            last=np.full((size, e_.SIZE + 2), np.nan),
+            last=np.full((size, e_.SIZE), np.nan),
         )
         for index, scene in scenes.items():
             try:

@@ -26,10 +26,9 @@ class Scenes(NamedTuple):
 
 
 class Request(NamedTuple):
-    """What is measured of each scene: extremes of columns in a sense (see `maxima`), the states at times.
+    """Extremes to measure of columns in a sense (see `maxima`), and scaled times, a row for each scene.
 
-    Each scene has a row of scaled `times`; the motion is settled while the friction force is within a `share`
-    of the steady one.
+    The motion is settled while the friction force is within a `share` of the steady one.
     """
 
     columns: Any
@@ -39,7 +38,7 @@ class Request(NamedTuple):
 
 
 class Workspace(NamedTuple):
-    """What each scene overwrites: samples and natural times, each with their states, and two states."""
+    """Samples and natural times, each with their states, and two states: overwritten by each scene."""
 
     times: Any
     samples: Any
@@ -49,10 +48,7 @@ class Workspace(NamedTuple):
 
 
 class Results(NamedTuple):
-    """The status of both walks, deviations, extremes with their times, states at the times, and so on.
-
-    `last` holds the state at the end, the leading and the trailing edge behind it.
-    """
+    """The status of both walks, deviations, extremes with their times, states at the times and at the end."""
 
     status: Any
     other: Any
@@ -78,57 +74,35 @@ def follow(bulk: Bulk, fine: Run, other: Run, steps: int) -> None:
 
     A scene that does not reach its end in so many steps, or has not enough room, leaves its status.
     """
-    scenes, room, results = bulk.scenes, bulk.workspace, bulk.results
+    scenes, request, room, results = bulk.scenes, bulk.request, bulk.workspace, bulk.results
     for i in range(len(scenes.eps)):
         pieces = scenes.pieces[scenes.first[i] : scenes.first[i + 1]]
         one = Run(*fine[:3], pieces, *fine[4:])
         two = Run(*other[:3], pieces, *other[4:])
-        results.status[i] = _walk_along(one, scenes, i, steps)
+        for run in (one, two):
+            run.given.eps, run.given.kappa = scenes.eps[i], scenes.kappa[i]
+            run.given.end, run.now.nodes = scenes.end[i], 0
+        results.status[i] = walk(one, steps)
         if results.status[i] != DONE:
             continue
-        results.other[i] = _walk_along(two, scenes, i, steps)
+        results.other[i] = walk(two, steps)
         if results.other[i] == DONE:
             count = e_.natural(one, room.natural, room.states)
             times, states = room.natural[:count], room.states[:count]
             d_.deviations(times, states, one, two, room.rows, results.deviations[i])
-        _measure(one, i, scenes.friction[i], bulk.request, room, results)
-
-
-def _walk_along(run: Run, scenes: Scenes, i: int, steps: int) -> int:
-    """Follow one scene from rest."""
-    given = run.given
-    given.eps, given.kappa, given.end, run.now.nodes = (
-        scenes.eps[i],
-        scenes.kappa[i],
-        scenes.end[i],
-        0,
-    )
-    return walk(run, steps)
-
-
-def _measure(
-    run: Run, i: int, friction: float, request: Request, room: Workspace, results: Results
-) -> None:
-    """Write the results of one scene."""
-    count = m_.sample(run, room.times, room.samples)
-    for k in range(len(request.columns)):
-        results.largest[i][k][0], results.largest[i][k][1] = m_.largest(
-            run,
-            room.times,
-            room.samples,
-            count,
-            request.columns[k],
-            request.senses[k],
-            room.rows[0],
+        times, states, row = room.times, room.samples, room.rows[0]
+        count = m_.sample(one, times, states)
+        for k in range(len(request.columns)):
+            column, sense, found = request.columns[k], request.senses[k], results.largest[i][k]
+            found[0], found[1] = m_.largest(one, times, states, count, column, sense, row)
+        results.settled[i] = m_.settled(
+            one, times, states, count, scenes.friction[i], request.share, row
         )
-    results.settled[i] = m_.settled(
-        run, room.times, room.samples, count, friction, request.share, room.rows[0]
-    )
-    e_.states(request.times[i], results.states[i], run)
-    m_.last(room.samples, count, results.last[i])
-    for k in range(run.now.events):
-        if run.events[k].kind == TAKE_OFF:
-            results.take_offs[i] += 1
+        e_.states(request.times[i], results.states[i], one)
+        e_.state_at(one, one.now.steps - 1, one.now.s, results.last[i])
+        for k in range(one.now.events):
+            if one.events[k].kind == TAKE_OFF:
+                results.take_offs[i] += 1
 
 
 WALK, STATES, NATURAL, DEVIATIONS, SAMPLE, LARGEST, SETTLED, FOLLOW = range(8)
@@ -136,19 +110,12 @@ WALK, STATES, NATURAL, DEVIATIONS, SAMPLE, LARGEST, SETTLED, FOLLOW = range(8)
 
 
 def perform(
-    task: int,
-    first: Run,
-    second: Run,
-    times: Any,
-    states: Any,
-    rows: Any,
-    values: Any,
-    count: int,
-    bulk: Bulk,
-) -> int:
+    task: int, first: Run, second: Run, times: Any, states: Any, rows: Any, values: Any,
+    count: int, bulk: Bulk,
+) -> int:  # fmt: skip
     """Perform a task: the entry of all kernels, so that each of them is compiled once.
 
-    What a task does not need is blank. `values` are those that go in and come out.
+    Arguments that a task does not need are blank. `values` are those that go in and come out.
     """
     one = Run(first.given[0], first.method[0], first.now[0], *first[3:])
     two = Run(second.given[0], second.method[0], second.now[0], *second[3:])
@@ -163,9 +130,8 @@ def perform(
     elif task == SAMPLE:
         return m_.sample(one, times, states)
     elif task == LARGEST:
-        for i in range(0, len(values), 2):
-            column, sense = int(values[i]), int(values[i + 1])
-            values[i], values[i + 1] = m_.largest(one, times, states, count, column, sense, rows[0])
+        column, sense = int(values[0]), int(values[1])
+        values[0], values[1] = m_.largest(one, times, states, count, column, sense, rows[0])
     elif task == SETTLED:
         values[0] = m_.settled(one, times, states, count, values[0], values[1], rows[0])
     elif task == FOLLOW:

@@ -1,25 +1,23 @@
 """The kernels, compiled by numba from the very source that is also interpreted.
 
-Nothing here computes. Numba is told that the functions of the kernel modules may be compiled; one entry,
-`bulk.perform`, calls them, and only it is cached: each kernel is compiled once. Numba would not notice a
-change of a function in another file, so the entry is named by a digest of all kernel sources.
+Only one entry, `bulk.perform`, is cached: each kernel is compiled once. Numba would not notice a change of
+a function in another file, so the entry is named by a digest of all kernel sources.
 """
 
 import hashlib
-import inspect
 from collections.abc import Callable
 from functools import cache
-from importlib.util import find_spec
 from pathlib import Path
 from types import ModuleType
 from typing import Any
 
 import numpy as np
 
+from kvtheory import compilation
+from kvtheory.compilation import available
 from kvtheory.models.continuum import (
     bulk,
     contact,
-    coupled,
     deviation,
     evaluation,
     maxima,
@@ -29,12 +27,10 @@ from kvtheory.models.continuum import (
     stepping,
     trial_step,
 )
-from kvtheory.models.continuum.bulk import perform
-from kvtheory.progress import compiling
 from kvtheory.scene import base_motion
 
 MODULES = (
-    *(base_motion, contact, coupled, radau_iia, run, memory_chains, trial_step, stepping),
+    *(base_motion, contact, radau_iia, run, memory_chains, trial_step, stepping),
     *(evaluation, maxima, deviation, bulk),
 )
 """Where the kernels are."""
@@ -55,11 +51,6 @@ class Tally:
     """How many steps were interpreted in this process."""
 
     steps = 0
-
-
-def available() -> bool:
-    """Whether numba is installed: the extra `fast`."""
-    return find_spec("numba") is not None
 
 
 def worthwhile() -> bool:
@@ -94,23 +85,18 @@ def kernel() -> Any:
     ModuleNotFoundError
         If numba is not installed.
     """
-    _register()
+    for module in MODULES:
+        inlined = [*vars(module)] if module in INLINED else SHORT
+        compilation.register(module, inlined, **OPTIONS, no_cfunc_wrapper=True)
 
     def entry(
-        task: int,
-        one: Any,
-        two: Any,
-        times: Any,
-        states: Any,
-        rows: Any,
-        values: Any,
-        count: int,
-        bulk: Any,
-    ) -> int:
-        return perform(task, one, two, times, states, rows, values, count, bulk)
+        task: int, one: Any, two: Any, times: Any, states: Any, rows: Any, values: Any,
+        count: int, all_of: Any,
+    ) -> int:  # fmt: skip
+        return bulk.perform(task, one, two, times, states, rows, values, count, all_of)
 
     entry.__qualname__ = f"perform_{sources()}"
-    return _kept(entry)
+    return compilation.cached(entry, **OPTIONS)
 
 
 def follow(all_of: bulk.Bulk, fine: Any, other: Any, steps: int) -> None:
@@ -119,41 +105,3 @@ def follow(all_of: bulk.Bulk, fine: Any, other: Any, steps: int) -> None:
     kernel()(
         bulk.FOLLOW, fine, other, room.times, room.samples, room.rows, np.zeros(2), steps, all_of
     )
-
-
-@cache
-def _register() -> None:
-    """Tell numba that the functions of the kernel modules may be compiled."""
-    from numba.extending import register_jitable
-
-    for module in MODULES:
-        for function in vars(module).values():
-            if inspect.isfunction(function) and function.__module__ == module.__name__:
-                inlined = module in INLINED or function.__name__ in SHORT
-                register_jitable(**OPTIONS, no_cfunc_wrapper=True, forceinline=inlined)(function)
-
-
-def _kept(entry: Any) -> Any:
-    """Return an entry that is compiled on its first call, and cached on disk if there is a writable place."""
-    from numba import njit
-
-    try:
-        compiled = njit(entry, cache=True, nogil=True, **OPTIONS)
-    except RuntimeError:  # the package and the home are read-only
-        compiling()
-        return njit(entry, nogil=True, **OPTIONS)
-    kept = compiled._cache
-    load = kept.load_overload
-
-    def load_or_forget(*key: Any) -> Any:
-        found = None
-        try:
-            found = load(*key)
-        except Exception:  # whatever damaged files raise, or those of another version
-            kept.flush()
-        if found is None:
-            compiling()
-        return found
-
-    kept.load_overload = load_or_forget
-    return compiled

@@ -33,10 +33,9 @@ SIDES = (-1.0, 1.0)
 FAR = 1e150
 """Where undisturbed ground ends: its square is still finite."""
 
-SWEEP_ERROR = 1e-15
-"""Error allowed in an edge from that of sigma: the edge is stationary in the right sigma."""
-FARTHEST_GUESS = 0.75
-"""Share of a sweep from its outer end: keeps the linear first guess away from the inner end."""
+SWEEP_ERROR, FARTHEST_GUESS = 1e-15, 0.75
+"""Error allowed in an edge from that of sigma, in which the edge is stationary; largest share of a sweep,
+from its outer end, for the linear first guess, which must not lie at the inner end."""
 SWEEP_STEPS, NEWTON_ALONE = 150, 20
 """Bisection alone needs less than 60; after `NEWTON_ALONE`, every other step bisects: Newton's may cycle."""
 
@@ -129,10 +128,8 @@ def edge(run: Run, k: int, held: Any, s: float, now: Instant) -> tuple[float, fl
 
 def reached(run: Run, side: float, index: int, s: float, d: float, Y: float) -> int:
     """Return the node that an edge has reached, as far as A is smooth from node `index` on."""
-    node = run.nodes[index]
-    while node.joined and overrun(side, node.outer, s, d, Y) > 0.0:
-        index = node.next
-        node = run.nodes[index]
+    while run.nodes[index].joined and overrun(side, run.nodes[index].outer, s, d, Y) > 0.0:
+        index = run.nodes[index].next
     return index
 
 
@@ -169,9 +166,8 @@ def sweep(
             outer = sigma
         if half > 0.0 and half_0 > 0.0:
             rate = pressure_rate(left_at, v_0, dv_0, number, slope) / (node.branch * 2.0 * half_0)
-            end_rate = (
-                (m - 1.0) * pressure(xi - Y + Y_0, d_0, v_0, number) / (2.0 * m * side * half)
-            )
+            p_0 = pressure(xi - Y + Y_0, d_0, v_0, number)
+            end_rate = (m - 1.0) * p_0 / (2.0 * m * side * half)
             move = -gap * (s - sigma) / ((rate - end_rate) * (s - sigma) + gap or math.inf)
             if abs(end_rate * move) <= SWEEP_ERROR:
                 return sigma, d_0, Y_0
@@ -191,9 +187,8 @@ def slack(
 ) -> tuple[float, float]:
     """Return two numbers that are positive as long as an edge may keep its state and its node.
 
-    A peeling edge moves inward through the material; at a touching edge the pressure is positive
-    and the ground is that of its node. Both are relative to their terms, and as much larger as rounding
-    may make them smaller.
+    A peeling edge moves inward through the material; at a touching edge the pressure is positive and the
+    ground is that of its node. Both are relative to their terms, and allow for rounding.
     """
     d, v, dv, Y, number, slope = now
     if state == PEELING:

@@ -1,30 +1,25 @@
-"""The cycle in which an indenter on a spring ends: steady sliding, or stick-slip that repeats itself.
+"""The limit cycle of an indenter on a spring: steady sliding, or stick-slip that repeats itself.
 
-Nothing sticks: what is called so is the slow creep while the spring is stretched, and the fall of the
-friction force with the sliding velocity lets it go.
+Nothing sticks: "stick" is slow creep while the spring is stretched; "slip" follows from the fall of the
+friction force with the sliding velocity.
 
 A motion need not last until its cycle has settled. Near the limit of stability the amplitude A obeys
 dA/dn = g A - c A^3 over the number n of cycles, so that 1/A^2 tends to its limit as exp(-2 g n): three cycles
-that are equally far apart give that limit (Aitken). Near any cycle the way to it is geometric, too. The limit
-is told where two such triples agree. Cycles from rest until it is told, and until the amplitude is there to
-1 %, for Table 1, with g from F22; where it was told first, it was right to 1.1 %:
+at equal distances give that limit (Aitken). Near any cycle the approach is geometric, too. The limit is
+accepted where two such triples agree; it was then right to 1.1 %. Number of cycles from rest until it is
+accepted, and until the amplitude itself is within 1 % of it, for Table 1, with g from F22:
 
-    V (mm/s)   k_x (MN/m^2)   g        told   there
-          39        0.17      0.0043     68     456
-          54        1         0.0070     73     273
-          55        1         0.025      27      73
-          60        1         0.099       8      14
-          91        0.1       1.01        5       1
-          91        1         0.24        8       7
-          91        5         0.023      67      96
-          91        6.7       0.0016      8     971
-         214        1         0.13       25      19
-         214       10         0.035     117     101
+    V (mm/s)   k_x (MN/m^2)   g        accepted   reached
+          39        0.17      0.0043         68       456
+          55        1         0.025          27        73
+          91        0.1       1.01            5         1
+          91        1         0.24            8         7
+          91        6.7       0.0016          8       971
+         214       10         0.035         117       101
 
 A cycle costs 0.5 to 10 ms, compiled. Shooting, Newton's method on the map from peak to peak, would save no
-more. Far from the limit of stability there is little to save. Near it all but one direction of the map fades
-within a cycle, and in one direction Aitken's step is that of a secant; but shooting would have to begin anew
-with a state that holds the memory of the foundation.
+more: near the limit of stability all but one direction of the map fades within a cycle, and in one direction
+Aitken's step is that of a secant; but shooting would have to restart with the memory of the foundation.
 """
 
 import math
@@ -39,32 +34,28 @@ from kvtheory.models.continuum.solver import Trajectory
 
 Array = NDArray[np.float64]
 
-REPEATS = 0.01
-"""Share of the swing, and of the period, by which a cycle may differ from the one before it."""
-STEADY = 1e-3
-"""Of the largest sliding velocity: a rate along x that is as small is none ..."""
-LAST = 0.75
-"""... where it lasts from this share of the motion to its end."""
-MOST_PEAKS = 4
-"""In one cycle."""
+REPEATS, MOST_PEAKS = 0.01, 4
+"""Share of the swing, and of the period, by which a cycle may differ from the one before it; peaks in one."""
+STEADY, LAST = 1e-3, 0.75
+"""A rate along x below this share of the largest sliding velocity counts as zero, if it stays there from this
+share of the motion to its end."""
 FEWEST = 8
 """Cycles that two triples need, of which the wider one spans the last half of the motion."""
-AGREE = 1e-3
-"""Share of the amplitude by which both limits may differ: their error may be ten times that."""
-FAR = 1.5
-"""Factor between the amplitude and its limit: farther, a triple may see another stage of the motion."""
+AGREE, FAR = 1e-3, 1.5
+"""Share of the amplitude by which both limits may differ (their error may be ten times that), and largest
+factor between the amplitude and its limit: farther, a triple may see another stage of the motion."""
 QUIET = 1e-4
-"""Share of the amplitude: cycles that differ by less do so by the errors of the steps."""
+"""Share of the amplitude: smaller differences between cycles are errors of the steps."""
 POINTS = 4000
-"""On which the extremes of a cycle are looked for: a parabola between them is right to 1e-6."""
+"""For the extremes of a cycle: a parabola between them is right to 1e-6."""
 
 
 class Cycle(NamedTuple):
-    """The cycle at the end of a motion, in scaled form.
+    """The cycle at the end of a motion, in scaled form; its values are those of the limit.
 
     `settles` is 1 for steady sliding and for a cycle whose limit is known, else 0, and all other entries
-    are NaN. `amplitude` is half the way of the indenter along x; steady sliding has no `period`. The
-    others are the extremes of the sliding velocity and of the friction force. All are those of the limit.
+    are NaN. `amplitude` is half the travel of the indenter along x; steady sliding has no `period`. The
+    others are the extremes of the sliding velocity and of the friction force.
     """
 
     settles: float
@@ -115,7 +106,7 @@ def cycle(motion: Trajectory) -> Cycle:
 
 
 def _turns(motion: Trajectory, s: Array, rate: Array) -> tuple[Array, Array]:
-    """Return when x turns, and x there: maxima and minima by turns, a maximum first and last."""
+    """Return when x turns, and x there: maxima and minima alternate, a maximum is first and last."""
     up = rate > 0.0
     k = np.flatnonzero(up[:-1] != up[1:])
     k = k[np.argmax(up[k]) :] if up[k].any() else k[:0]
@@ -146,7 +137,7 @@ def _cycles(turns: Array, x: Array) -> tuple[Array, Array]:
 
 
 def _limit(sizes: Array) -> tuple[int, float]:
-    """Return the stride of the wider of two triples, and the amplitude to which both say that all tends.
+    """Return the stride of the wider of two triples, and the limit of the amplitude if both agree on it.
 
     >>> n = np.arange(40)
     >>> stride, limit = _limit(2.0 / np.sqrt(1.0 + 0.5 * np.exp(-0.02 * n)))
@@ -172,18 +163,15 @@ def _limit(sizes: Array) -> tuple[int, float]:
 
 
 def _aitken(values: Array) -> float:
-    """Return the limit of a sequence that tends to it geometrically, by its last three values."""
+    """Return the limit of a geometric approach from its last three values."""
     first, second = np.diff(values)
     turn = first - second
     return float(values[-1] + second * second / turn) if turn else math.nan
 
 
 def _measured(motion: Trajectory, start: float, end: float) -> Array:
-    """Return what `Cycle` says of a cycle."""
-    within = motion.states(np.linspace(start, end, POINTS))
-    x, number, force = (
-        within[:, column] for column in (e_.ALONG, e_.NUMBER, e_.FRICTION_FORCE)
-    )  # fmt: skip
-    return np.array([
-        0.5 * np.ptp(x), end - start, number.max(), number.min(), force.max(), force.min(),
-    ])  # fmt: skip
+    """Return the amplitude, the period and the extremes of one cycle."""
+    within = motion.states(np.linspace(start, end, POINTS)).T
+    x, number, force = within[[e_.ALONG, e_.NUMBER, e_.FRICTION_FORCE]]
+    extremes = number.max(), number.min(), force.max(), force.min()
+    return np.array([0.5 * np.ptp(x), end - start, *extremes])

@@ -1,8 +1,8 @@
-"""How far two solutions of one transient are from each other: what its error is estimated from.
+"""Deviation of two solutions of one transient, from which its error is estimated.
 
-Take-offs and landings are jumps in time: of the edges, and of the peak pressure. Two solutions find them
-at slightly different times; at instants between these, one has jumped and the other has not. There the
-other solution counts as far from its own jump as the instant is from the first one's.
+At a take-off or landing the edges and the peak pressure jump. Two solutions find it at slightly different
+times; between these, one has jumped and the other has not. There the other solution is taken as far from
+its own jump as the instant is from the first one's.
 """
 
 import math
@@ -16,13 +16,20 @@ from kvtheory.models.continuum.trial_step import EVENT_RESOLUTION
 DEPTH, RATE, NORMAL_FORCE, FRICTION_FORCE, EDGES, PEAK_PRESSURE, HOPS = range(7)
 """Layout of the deviations: of the quantities in scaled form, and of the times of take-offs and landings."""
 EDGE_ROUNDING, NORMAL_ROUNDING, FRICTION_ROUNDING, PEAK_ROUNDING, HOP_ROUNDING = range(7, 12)
-"""What rounding of the edges may do to them, and to the forces, for the pressure there acts, and to the
-pressure at them; and that of the gap, to the time of a landing."""
+"""Effects of rounding: on the edges, and through them on the forces and the peak pressure; through the gap,
+on the time of a landing."""
 NUMBER, SPRING_FORCE, ALONG, DRIVE = range(12, 16)
 """Sliding velocity of the base; force and elongation of a spring in the drive; the drive itself."""
 SIZES = 16
 """From here on, the largest magnitude of each quantity; of those that stand for rounding it stays zero."""
 SIZE = 2 * SIZES
+PAIRS = (
+    (DEPTH, e_.DEPTH), (RATE, e_.RATE), (NORMAL_FORCE, e_.NORMAL_FORCE),
+    (FRICTION_FORCE, e_.FRICTION_FORCE), (EDGES, e_.LEFT), (EDGES, e_.RIGHT),
+    (PEAK_PRESSURE, e_.PEAK_PRESSURE), (NUMBER, e_.NUMBER), (SPRING_FORCE, e_.SPRING_FORCE),
+    (ALONG, e_.ALONG), (DRIVE, e_.DRIVE),
+)  # fmt: skip
+"""Each quantity, and its column in a state."""
 
 
 def deviations(times: Any, found: Any, fine: Run, other: Run, rows: Any, worst: Any) -> None:
@@ -37,9 +44,8 @@ def deviations(times: Any, found: Any, fine: Run, other: Run, rows: Any, worst: 
     for i in range(len(times)):
         s = times[i]
         while alike and next_f >= 0 and fine.events[next_f].s <= s:
-            worst[HOP_ROUNDING] = max(
-                worst[HOP_ROUNDING], hop_rounding(fine, fine.events[next_f].s, rows[1])
-            )
+            rounding = _hop_rounding(fine, fine.events[next_f].s, rows[1])
+            worst[HOP_ROUNDING] = max(worst[HOP_ROUNDING], rounding)
             last_f, last_o = next_f, next_o
             next_f, next_o = next_hop(fine, next_f + 1), next_hop(other, next_o + 1)
         e_.state_at(other, e_.step_at(other, s), s, rows[0])
@@ -62,10 +68,9 @@ def deviations(times: Any, found: Any, fine: Run, other: Run, rows: Any, worst: 
 
 def hops(run: Run) -> int:
     """Return how many take-offs and landings there are."""
-    count = 0
-    for i in range(run.now.events):
-        if run.events[i].kind >= TAKE_OFF:
-            count += 1
+    count, index = 0, next_hop(run, 0)
+    while index >= 0:
+        count, index = count + 1, next_hop(run, index + 1)
     return count
 
 
@@ -77,7 +82,7 @@ def next_hop(run: Run, index: int) -> int:
     return -1
 
 
-def hop_rounding(run: Run, s: float, row: Any) -> float:
+def _hop_rounding(run: Run, s: float, row: Any) -> float:
     """Return what rounding may do to the time of a hop: at a landing, the gap closes by the pressure."""
     index, found = e_.step_at(run, s), EVENT_RESOLUTION * (1.0 + s)
     e_.state_at(run, index, s, row)
@@ -89,19 +94,7 @@ def hop_rounding(run: Run, s: float, row: Any) -> float:
 
 def _raise(worst: Any, row: Any, one: Any, two: Any) -> None:
     """Raise the deviations to those of `row` from the nearer of two other states, in each quantity."""
-    for k, i in (
-        (DEPTH, e_.DEPTH),
-        (RATE, e_.RATE),
-        (NORMAL_FORCE, e_.NORMAL_FORCE),
-        (FRICTION_FORCE, e_.FRICTION_FORCE),
-        (EDGES, e_.LEFT),
-        (EDGES, e_.RIGHT),
-        (PEAK_PRESSURE, e_.PEAK_PRESSURE),
-        (NUMBER, e_.NUMBER),
-        (SPRING_FORCE, e_.SPRING_FORCE),
-        (ALONG, e_.ALONG),
-        (DRIVE, e_.DRIVE),
-    ):
+    for k, i in PAIRS:
         value = _known(row[i])
         worst[SIZES + k] = max(worst[SIZES + k], abs(value))
         worst[k] = max(worst[k], min(abs(value - _known(one[i])), abs(value - _known(two[i]))))

@@ -13,15 +13,14 @@ from kvtheory.results.certificate import AT_REST, Certificate
 
 Array = NDArray[np.float64]
 
-LOOSEST = 1e-4
-"""Looser tolerances would save no steps."""
+LOOSEST, TIGHTEST = 1e-4, 1e-13
+"""Looser tolerances would save no steps; tighter ones would be rounding."""
 TIGHTER = 100.0
 """Factor between the tolerances of the solution and of the one it is compared with; with a smaller one, the
-latter would be no better in three of a thousand scenes ..."""
-TIGHTEST = 1e-13
+latter would be no better in three of a thousand scenes."""
 COMPARISON = StepControl(first_step=0.17, longest=0.3, grow=6.0, straight=0.85)
-"""... and it takes other steps where the tolerance does not set them: after a jump, on the pieces of the
-drive, and before an event, where a last short step takes in what is singular at a take-off."""
+"""Other steps where the tolerance does not set them: after a jump, on the pieces of the drive, and before an
+event, where a last short step covers the singularity of a take-off."""
 MARGIN = 10.0
 """The difference is multiplied by this: in one of a thousand scenes with hops it is so many times smaller
 than the error."""
@@ -57,13 +56,12 @@ def certificate(
     given, whole = fine.given, fine.deviations(other)
     here = whole if times is None else fine.deviations(other, times)
     found = errors(here, whole, given.rtol, given.fixed, sprung=given.sprung, tolerance=tolerance)
-    return Certificate(
-        "estimated", STATEMENT, {k: float(error) for k, error in found.items()}, AT_REST
-    )
+    numbers = {name: float(error) for name, error in found.items()}
+    return Certificate("estimated", STATEMENT, numbers, AT_REST)
 
 
 def unknown(why: str, *, sprung: bool = False) -> Certificate:
-    """Return the certificate of a transient of whose error nothing is known."""
+    """Return the certificate of a transient whose error is unknown."""
     nothing = [0.0] * d_.SIZE
     names = errors(nothing, nothing, 1.0, False, sprung=sprung, tolerance=1.0)
     return Certificate("estimated", why, dict.fromkeys(names, math.inf) | {"time": 0.0}, AT_REST)
@@ -74,13 +72,13 @@ def errors(
 ) -> dict[str, Any]:
     """Return the error of each quantity from the deviations at some times, and those over the whole run.
 
-    The pressure inside the contact, d + d' - xi^2 - 2 lambda xi, is wrong as the depth, its rate and lambda
-    are. The surface is the largest of what the past left, e^-(s - sigma) (d - xi^2) at sigma (fact F8): it is
-    no more wrong than the depth has ever been, and the way by which the base has slid since, of which the
-    place along x at both instants is a part. Deviations may be arrays of those of many scenes.
+    The error of the pressure inside the contact, d + d' - xi^2 - 2 lambda xi, follows from those of the
+    depth, its rate and lambda. The surface is the largest of e^-(s - sigma) (d - xi^2) over the past instants
+    sigma (fact F8): its error is at most the largest one of the depth so far, and that of the distance by
+    which the base has slid since, of which the position along x is a part. Deviations may be arrays over
+    many scenes.
     """
-    moves, slides = 0.0 if fixed else 1.0, 1.0 if sprung else 0.0
-    sizes = np.asarray(whole[d_.SIZES :])
+    moves, slides, sizes = 0.0 if fixed else 1.0, float(sprung), np.asarray(whole[d_.SIZES :])
     floor = FLOOR * rtol * (1.0 + sizes)
     at_times, ever = (
         np.maximum(MARGIN * np.asarray(of[: d_.SIZES]), floor) for of in (here, whole)

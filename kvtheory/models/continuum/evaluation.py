@@ -6,16 +6,15 @@ from typing import Any
 from kvtheory.models.continuum import contact as c_
 from kvtheory.models.continuum.contact import FREE, instant, motion
 from kvtheory.models.continuum.run import Run
-from kvtheory.scene.base_motion import evaluate
+from kvtheory.scene.base_motion import END, START, evaluate
 
 DEPTH, RATE, ACCELERATION, NUMBER, LEFT, RIGHT = range(6)
 LEFT_STATE, RIGHT_STATE, NORMAL_FORCE, FRICTION_FORCE, PEAK_PRESSURE, ROUNDING = range(6, 12)
-DRIVE, ALONG, ALONG_RATE, SPRING_FORCE = range(12, 16)
-SIZE = 16
+DRIVE, ALONG, ALONG_RATE, SPRING_FORCE, LEADING, TRAILING = range(12, 18)
+SIZE = 18
 """Columns of a state, in scaled form; edges are NaN in flight. `NUMBER` is the drive number of the base under
 the indenter, `ROUNDING` the rounding error of an edge, which is large on ground that was left just before.
-`DRIVE` is the drive number; the last three are x, x' and the force of spring and damper, which
-are zero for a rigid drive."""
+`DRIVE` is the drive number; x, x' and the force of spring and damper are zero for a rigid drive."""
 
 SUBDIVISIONS = 4
 """Points shown for each step; steps are long where the motion is steady."""
@@ -37,7 +36,7 @@ def natural(run: Run, times: Any, found: Any) -> int:
     """Write the steps, subdivided, as times at which to show a motion, and the states there."""
     count, index = 0, 0
     for index in range(run.now.steps):
-        start, end = natural_step(run, index)
+        start, end = run.steps[index].start, end_of(run, index)
         for k in range(SUBDIVISIONS):
             s = start + (end - start) * (k / SUBDIVISIONS)
             if s < end and (count == 0 or s > times[count - 1]):
@@ -49,10 +48,9 @@ def natural(run: Run, times: Any, found: Any) -> int:
     return count + 1
 
 
-def natural_step(run: Run, index: int) -> tuple[float, float]:
-    """Return when a step begins, and when the next one does."""
-    last = index + 1 == run.now.steps
-    return run.steps[index].start, run.now.s if last else run.steps[index + 1].start
+def end_of(run: Run, index: int) -> float:
+    """Return when a step ends, and the next one begins."""
+    return run.now.s if index + 1 == run.now.steps else run.steps[index + 1].start
 
 
 def step_at(run: Run, s: float) -> int:
@@ -85,6 +83,8 @@ def state_at(run: Run, index: int, s: float, found: Any) -> None:
         p = max(c_.pressure(min(max(-number, l), r), d, v, number), 0.0)
     found[DEPTH], found[RATE], found[ACCELERATION], found[NUMBER] = d, v, dv, number
     found[LEFT], found[RIGHT] = l, r
+    leads = number > 0.0 or (number == 0.0 and forward(run, step, s))
+    found[LEADING], found[TRAILING] = (l, r) if leads else (r, l)
     found[LEFT_STATE], found[RIGHT_STATE] = left.state, right.state
     found[NORMAL_FORCE], found[FRICTION_FORCE] = f_z, f_x
     found[PEAK_PRESSURE], found[ROUNDING] = p, rounding
@@ -93,5 +93,15 @@ def state_at(run: Run, index: int, s: float, found: Any) -> None:
         along = run.along[index]
         found[DRIVE] = evaluate(run.pieces[along.piece], s)[1]
         found[ALONG], found[ALONG_RATE], _ = motion(along, s)
-        force = run.given.spring * found[ALONG] + run.given.damping * found[ALONG_RATE]
-        found[SPRING_FORCE] = force
+        spring, damping = run.given.spring, run.given.damping
+        found[SPRING_FORCE] = spring * found[ALONG] + damping * found[ALONG_RATE]
+
+
+def forward(run: Run, step: Any, s: float) -> bool:
+    """Whether the left edge led before a rest that lasts at `s`."""
+    number, k, first = 0.0, step.piece, run.given.drives if run.given.sprung else 0
+    while number == 0.0 and k >= first:
+        piece = run.pieces[k]
+        number = evaluate(piece, 0.5 * (piece[START] + min(s, piece[END])))[1]
+        k -= 1
+    return number >= 0.0

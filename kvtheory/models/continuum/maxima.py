@@ -1,7 +1,6 @@
 """When a quantity of a solved transient is largest, and when its friction settles.
 
-A motion is smooth within a step and known everywhere. It is sampled densely; a maximum is then narrowed down
-between two samples.
+A motion is smooth within a step. It is sampled densely; a maximum is then refined between two samples.
 """
 
 import math
@@ -18,15 +17,11 @@ SAME = 1e-10
 """Relative difference of values that count as equal, as in steady sliding; the first is then the largest."""
 GOLDEN, SECTIONS = 0.6180339887498949, 18
 """Golden-section steps, down to a thousandth of a step; then Newton's method on central differences."""
-NEWTON_STEPS, DIFFERENCE = 3, 1e-3
+NEWTON_STEPS, DIFFERENCE, BISECTIONS = 3, 1e-3, 60
 """The difference is this share of a step: its fourth power, and rounding over it, are both small."""
-BISECTIONS = 60
-LEADING_EDGE, TRAILING_EDGE = e_.SIZE, e_.SIZE + 1
-"""Columns beyond those of a state: which edge leads depends on the drive."""
+LEADING_EDGE, TRAILING_EDGE = e_.LEADING, e_.TRAILING
 LARGEST, SMALLEST, MAGNITUDE = 1, -1, 0
 """Senses of an extreme."""
-Objective = tuple[int, int, bool]
-"""What is maximized: a column, the sense, and whether the left edge leads, or led before a rest."""
 
 
 def sample(run: Run, times: Any, found: Any) -> int:
@@ -46,30 +41,27 @@ def largest(
 ) -> tuple[float, float]:
     """Return when a quantity is largest in a `sense`, and its value; NaN if it never exists.
 
-    `times` and `found` hold the `count` samples, `row` is room for a state. All samples are candidates,
-    and what lies beside each one that might be topped between it and its neighbours.
+    `times` and `found` hold the `count` samples, `row` is room for a state. All samples are candidates, and
+    the maximum beside each one that might be exceeded between it and its neighbours.
     """
-    top, best_s, best, leads = -math.inf, math.nan, math.nan, True
+    top, best_s, best = -math.inf, math.nan, math.nan
     for i in range(count):
-        leads = leads_at(found[i], leads)
-        top = max(top, measured(found[i], (column, sense, leads)))
-    highest, leads = top, True
+        top = max(top, _measured(found[i], column, sense))
+    highest = top
     for i in range(count):
-        leads = leads_at(found[i], leads)
-        objective = column, sense, leads
-        value = measured(found[i], objective)
-        if not highest - SAME * abs(highest) <= value + _rise(found, i, objective):
+        value = _measured(found[i], column, sense)
+        if not highest - SAME * abs(highest) <= value + _rise(found, i, column, sense):
             continue
         for k in range(3):
             s, there = times[i], value
             if k != 1:
                 if not 0 <= i % (SAMPLES + 1) + k - 1 <= SAMPLES or not highest > -math.inf:
                     continue
-                neighbour = measured(found[i + k - 1], objective)
+                neighbour = _measured(found[i + k - 1], column, sense)
                 if abs(value - neighbour) <= SAME * abs(value):
                     continue
                 near, far = times[min(i, i + k - 1)], times[max(i, i + k - 1)]
-                s, there = _narrowed(run, i // (SAMPLES + 1), near, far, objective, row)
+                s, there = _refined(run, i // (SAMPLES + 1), near, far, column, sense, row)
             top = max(top, there)
             if not best >= top - SAME * abs(top) and there >= top - SAME * abs(top):
                 best_s, best = s, there
@@ -98,87 +90,66 @@ def settled(
     return inside
 
 
-def last(found: Any, count: int, row: Any) -> None:
-    """Write the last state, and behind it the leading and the trailing edge."""
-    leads = True
-    for i in range(count):
-        leads = leads_at(found[i], leads)
-    for k in range(e_.SIZE):
-        row[k] = found[count - 1][k]
-    for column in (LEADING_EDGE, TRAILING_EDGE):
-        row[column] = measured(row, (column, LARGEST, leads))
-
-
-def leads_at(row: Any, leads: bool) -> bool:
-    """Whether the left edge leads; at rest, as it did before."""
-    return leads if row[e_.NUMBER] == 0.0 else row[e_.NUMBER] > 0.0
-
-
-def measured(row: Any, objective: Objective) -> float:
-    """Return the value of the objective in a state."""
-    column, sense, leads = objective
-    if column >= LEADING_EDGE:
-        left = leads_at(row, leads) == (column == LEADING_EDGE)
-        value = row[e_.LEFT] if left else row[e_.RIGHT]
-    else:
-        value = row[column]
-    return abs(value) if sense == MAGNITUDE else sense * value
+def _measured(row: Any, column: int, sense: int) -> float:
+    """Return what is maximized."""
+    return abs(row[column]) if sense == MAGNITUDE else sense * row[column]
 
 
 def _step(run: Run, index: int) -> tuple[float, float]:
     """Return when a step begins, and the last instant that belongs to it."""
-    start, end = e_.natural_step(run, index)
-    return start, end if index + 1 == run.now.steps else end * JUST_BEFORE
+    last = index + 1 == run.now.steps
+    return run.steps[index].start, e_.end_of(run, index) * (1.0 if last else JUST_BEFORE)
 
 
-def _rise(found: Any, i: int, objective: Objective) -> float:
+def _rise(found: Any, i: int, column: int, sense: int) -> float:
     """Return how far a sample stands out from its neighbours in the step; less is missed beside it."""
-    value, rise = measured(found[i], objective), 0.0
+    value, rise = _measured(found[i], column, sense), 0.0
     for k in (-1, 1):
         if 0 <= i % (SAMPLES + 1) + k <= SAMPLES:
-            over = value - measured(found[i + k], objective)
+            over = value - _measured(found[i + k], column, sense)
             if over < -SAME * abs(value):
                 return 0.0
             rise = max(rise, over)
     return rise
 
 
-def _narrowed(
-    run: Run, index: int, a: float, b: float, objective: Objective, row: Any
+def _refined(
+    run: Run, index: int, a: float, b: float, column: int, sense: int, row: Any
 ) -> tuple[float, float]:
     """Return where a quantity is largest on [a, b], within one step, and the value."""
     start, end = _step(run, index)
     low, high = b - GOLDEN * (b - a), a + GOLDEN * (b - a)
-    at_low, at_high = _at(run, index, low, objective, row), _at(run, index, high, objective, row)
+    at_low = _at(run, index, low, column, sense, row)
+    at_high = _at(run, index, high, column, sense, row)
     for _ in range(SECTIONS):
         if at_low >= at_high:
             b, high, at_high = high, low, at_low
             low = b - GOLDEN * (b - a)
-            at_low = _at(run, index, low, objective, row)
+            at_low = _at(run, index, low, column, sense, row)
         else:
             a, low, at_low = low, high, at_high
             high = a + GOLDEN * (b - a)
-            at_high = _at(run, index, high, objective, row)
+            at_high = _at(run, index, high, column, sense, row)
     s, best = (low, at_low) if at_low >= at_high else (high, at_high)
     h = DIFFERENCE * (end - start)
     for _ in range(NEWTON_STEPS):
         if not start <= s - 2.0 * h < s + 2.0 * h <= end:
             break
-        left, right = _at(run, index, s - h, objective, row), _at(run, index, s + h, objective, row)
-        far = _at(run, index, s + 2.0 * h, objective, row) - _at(
-            run, index, s - 2.0 * h, objective, row
-        )
+        left = _at(run, index, s - h, column, sense, row)
+        right = _at(run, index, s + h, column, sense, row)
+        far = _at(run, index, s + 2.0 * h, column, sense, row)
+        far -= _at(run, index, s - 2.0 * h, column, sense, row)
         curvature = (left - 2.0 * best + right) / h
         if not curvature < 0.0:
             break
         moved = s - (8.0 * (right - left) - far) / (12.0 * curvature)
-        there = _at(run, index, min(max(moved, start), end), objective, row)
+        there = _at(run, index, min(max(moved, start), end), column, sense, row)
         if not (start <= moved <= end and there >= best - SAME * abs(best)):
             break
         s, best = moved, there
     return s, best
 
 
-def _at(run: Run, index: int, s: float, objective: Objective, row: Any) -> float:
+def _at(run: Run, index: int, s: float, column: int, sense: int, row: Any) -> float:
     e_.state_at(run, index, s, row)
-    return measured(row, objective)
+    return _measured(row, column, sense)

@@ -1,4 +1,4 @@
-"""Both sides of the contact in a run: what its edges leave behind, take-off, flight and landing."""
+"""Both sides of the contact in a run: the ground that its edges leave, take-off, flight and landing."""
 
 import math
 from typing import Any
@@ -30,13 +30,8 @@ def push(run: Run, k: int, step: int, branch: float) -> None:
     """
     node, top = run.nodes[run.now.nodes], run.now.sides[k].node
     below = run.nodes[top]
-    node.joined = (
-        step >= 0
-        and below.step >= 0
-        and node.outer.s == below.inner.s
-        and branch == below.branch
-        and node.outer.s != run.now.kink
-    )
+    meets = node.outer.s == below.inner.s and node.outer.s != run.now.kink
+    node.joined = step >= 0 and below.step >= 0 and branch == below.branch and meets
     node.step, node.branch, node.next = step, branch, top
     put(run, k)
 
@@ -118,13 +113,11 @@ def summit(run: Run, s: float, d: float, Y: float) -> tuple[float, float, float,
     """
     for k in (1, 0):
         side, index = SIDES[k], run.now.sides[k].node
-        node = run.nodes[index]
-        if rise(side, node.inner, s, Y) <= 0.0:
+        if rise(side, run.nodes[index].inner, s, Y) <= 0.0:
             continue
-        while rise(side, node.outer, s, Y) > 0.0:
-            index = node.next
-            node = run.nodes[index]
-        X, sigma, d_0, Y_0 = _peak(run, side, node, s, Y)
+        while rise(side, run.nodes[index].outer, s, Y) > 0.0:
+            index = run.nodes[index].next
+        X, sigma, d_0, Y_0 = _peak(run, side, run.nodes[index], s, Y)
         return margin(X, s, d, Y, sigma, d_0, Y_0), X, side, index, sigma
     index = run.now.sides[1].node
     at = run.nodes[index].inner

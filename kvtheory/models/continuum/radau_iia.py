@@ -1,9 +1,12 @@
-r"""One step of the equation of motion, eps v' = F(s, d, v), d' = v, by a Radau IIA method.
+r"""One step of the equations of motion by a Radau IIA method.
 
-The stages are collocation points, so that the step is one polynomial of v over the whole step. F has
-a known Jacobian, and eps d'' keeps the form in which eps -> 0 leaves F = 0 at every stage: the method
-is stiffly accurate (Hairer and Wanner, Solving Ordinary Differential Equations II, sections IV.5, IV.8
-and VI.1).
+    eps d'' = F = 1 - f_z - kappa (d - 1),    eps_x x'' = G = f_x - c_x x' - kappa_x x,
+
+the second one if a spring holds the indenter along x (fact F22): the base then slides under it with
+lambda = lambda_0 - x', by Y = Y_0 - x. The stages are collocation points, so that the step is one polynomial
+of v over the whole step. F has a known Jacobian, and eps d'' keeps the form in which eps -> 0 leaves F = 0 at
+every stage: the method is stiffly accurate (Hairer and Wanner, Solving Ordinary Differential Equations II,
+sections IV.5, IV.8 and VI.1).
 
 Why so many stages (`STAGES`): the error must be small all along the step, for memory is read off it, and
 a step costs much beside its stages. Steps and evaluations of F that the start from rest of Table 1 takes,
@@ -28,7 +31,6 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.polynomial import Legendre, Polynomial
 
-from kvtheory.models.continuum import coupled
 from kvtheory.models.continuum.contact import FREE, Instant, Run, edge, forces, pressure
 from kvtheory.scene.base_motion import evaluate
 
@@ -36,61 +38,18 @@ STAGES = ((1e-3, 4), (1e-6, 5), (0.0, 7))
 """Number of stages for tolerances above each of these: the cheapest, as measured."""
 MOST_STAGES, MOST_PROBES = 7, 3
 
-NEWTON_STEPS = 8
-NEWTON_SHARE = 1e-3
-"""Of the tolerance, for the last correction; convergence is quadratic, what is left is far below."""
-NEWTON_STALL = 0.5
-"""Of the tolerance, for a correction that rounding keeps from becoming smaller."""
+NEWTON_STEPS, NEWTON_SHARE, NEWTON_STALL = 8, 1e-3, 0.5
+"""Most iterations; shares of the tolerance below which a correction is the last one (convergence is
+quadratic, the error far smaller), or may be if rounding keeps it from becoming smaller."""
 ROUNDING = 1e-15
 """Of F, relative to its terms and its largest derivative: a stiff spring multiplies rounding of the depth."""
 PLACES = (0.08, 0.25, 0.55)
 """About where the defect of each step is probed, besides its end."""
 
-
-Matrix = list[list[float]]
-
-
-def _tableau(stages: int) -> tuple[list[float], Matrix, Matrix, Matrix]:
-    """Return nodes c, matrix A, its inverse, and the powers of theta of v from V_j - v_0.
-
-    In rational arithmetic, for the inverses are badly conditioned. L_j are the Lagrange polynomials of
-    the nodes: A_ij is the integral of L_j, its inverse the derivative of theta L_j/c_j.
-    """
-    radau = Legendre.basis(stages) - Legendre.basis(stages - 1)
-    roots = np.sort(np.real(radau.roots()))
-    roots[:-1] -= radau(roots[:-1]) / radau.deriv()(roots[:-1])
-    c = [*(Fraction(x) for x in (0.5 * (1.0 + roots[:-1])).tolist()), Fraction(1)]
-    A, inverse, powers = ([[0.0] * stages for _ in c] for _ in range(3))
-    for j, at in enumerate(c):
-        lagrange = np.array([Fraction(1)])
-        for other in c[:j] + c[j + 1 :]:
-            lagrange = np.convolve(lagrange, [-other, Fraction(1)]) / (at - other)
-        for i, theta in enumerate(c):
-            A[i][j] = float(sum(x * theta ** (k + 1) / (k + 1) for k, x in enumerate(lagrange)))
-            slope = sum(x * (k + 1) * theta**k for k, x in enumerate(lagrange))
-            inverse[i][j] = float(slope / at)
-            powers[i][j] = float(lagrange[i] / at)
-    return [float(x) for x in c], A, inverse, powers
-
-
-def _probes(c: list[float]) -> list[float]:
-    """Return the extremes of the defect between the stages that are nearest to `PLACES`."""
-    M = Polynomial.fromroots(c)
-    turns = np.sort(np.real(M.deriv().roots()))
-    nearest = [float(turns[np.argmin(np.abs(turns - place))]) for place in PLACES]
-    return sorted(set(nearest))  # with few stages, one may be the nearest to two places
-
-
-def _scales(c: list[float], probes: list[float]) -> list[list[float]]:
-    """For each probe: largest |int M|, |M| and |M'| of the step, by |M| at the probe.
-
-    The defect of a smooth step is a multiple of M = prod(theta - c_i).
-    """
-    theta = np.linspace(0.0, 1.0, 401)
-    M = Polynomial.fromroots(c)
-    inner = theta[theta >= c[0]]
-    largest = [np.abs(f).max() for f in (M.integ()(theta), M(inner), M.deriv()(inner))]
-    return [[float(x / abs(M(p))) for x in largest] for p in probes]
+Balance = tuple[float, float, float, float, float]
+"""A residual force, and its derivatives by d, d', x and x'."""
+IN_FLIGHT = math.nan, math.nan, math.nan, -1
+"""An edge of an indenter that flies, see `contact.edge`."""
 
 
 class Method(NamedTuple):
@@ -106,10 +65,37 @@ class Method(NamedTuple):
 
 @cache
 def radau(stages: int) -> Method:
-    """Return the Radau IIA method of so many stages."""
-    tableau = _tableau(stages)
-    probes = _probes(tableau[0])
-    return Method(*tableau, probes, _scales(tableau[0], probes))
+    """Return the Radau IIA method of so many stages.
+
+    In rational arithmetic, for the inverses are badly conditioned. L_j are the Lagrange polynomials of the
+    nodes: A_ij is the integral of L_j, its inverse the derivative of theta L_j/c_j; the powers of theta of
+    v are those of V_j - v_0. The defect of a smooth step is a multiple of M = prod(theta - c_i); it is
+    probed at its extremes nearest to `PLACES`, whose scales are the largest |int M|, |M| and |M'| of the
+    step by |M| there.
+    """
+    legendre = Legendre.basis(stages) - Legendre.basis(stages - 1)
+    roots = np.sort(np.real(legendre.roots()))[:-1]
+    roots -= legendre(roots) / legendre.deriv()(roots)
+    c = [*(Fraction(x) for x in (0.5 * (1.0 + roots)).tolist()), Fraction(1)]
+    A, inverse, powers = ([[0.0] * stages for _ in c] for _ in range(3))
+    for j, at in enumerate(c):
+        lagrange = np.array([Fraction(1)])
+        for other in c[:j] + c[j + 1 :]:
+            lagrange = np.convolve(lagrange, [-other, Fraction(1)]) / (at - other)
+        for i, place in enumerate(c):
+            A[i][j] = float(sum(x * place ** (k + 1) / (k + 1) for k, x in enumerate(lagrange)))
+            slope = sum(x * (k + 1) * place**k for k, x in enumerate(lagrange))
+            inverse[i][j] = float(slope / at)
+            powers[i][j] = float(lagrange[i] / at)
+    nodes = [float(x) for x in c]
+    M, theta = Polynomial.fromroots(nodes), np.linspace(0.0, 1.0, 401)
+    turns = np.sort(np.real(M.deriv().roots()))
+    # with few stages, one extreme may be the nearest to two places
+    probes = sorted({float(turns[np.argmin(np.abs(turns - place))]) for place in PLACES})
+    inner = theta[theta >= nodes[0]]
+    largest = [np.abs(f).max() for f in (M.integ()(theta), M(inner), M.deriv()(inner))]
+    scales = [[float(x / abs(M(p))) for x in largest] for p in probes]
+    return Method(nodes, A, inverse, powers, probes, scales)
 
 
 def stages_for(rtol: float) -> int:
@@ -117,28 +103,58 @@ def stages_for(rtol: float) -> int:
     return next(count for above, count in STAGES if rtol > above)
 
 
-def imbalance(
-    run: Run, step: Any, s: float, now: Instant
-) -> tuple[float, float, float, float, float]:
-    """Return F = 1 - f_z - kappa (d - 1), dF/dd, dF/dv, and both edges, which have the states of `step`.
+def imbalance(run: Run, step: Any, s: float, now: Instant) -> tuple[float, float, float, Any, Any]:
+    """Return F, dF/dd, dF/dv, and both edges as `contact.edge` gives them, with the states of `step`.
 
     The pressure vanishes at a peeling edge and does not move a touching one, so that dF/dv is only the width.
     """
     d, v, kappa = now[0], now[1], run.given.kappa
     F, F_d, F_v = 1.0 - kappa * (d - 1.0), -kappa, 0.0
-    left, right = step.sides[0], step.sides[1]
-    if left.state == FREE:
-        return F, F_d, F_v, math.nan, math.nan
-    l, l_d, _, _ = edge(run, 0, left, s, now)
-    r, r_d, _, _ = edge(run, 1, right, s, now)
+    if step.sides[0].state == FREE:
+        return F, F_d, F_v, IN_FLIGHT, IN_FLIGHT
+    left, right = edge(run, 0, step.sides[0], s, now), edge(run, 1, step.sides[1], s, now)
+    l, r = left[0], right[0]
     if l < r:
         f_z, _ = forces(l, r, d, v, now[4])
         F -= f_z
         F_v = -0.75 * (r - l)
-        F_d -= 0.75 * (r - l + pressure(r, d, v, now[4]) * r_d - pressure(l, d, v, now[4]) * l_d)
+        p_l, p_r = pressure(l, d, v, now[4]), pressure(r, d, v, now[4])
+        F_d -= 0.75 * (r - l + p_r * right[1] - p_l * left[1])
     elif not l >= r:
         F = math.nan
-    return F, F_d, F_v, l, r
+    return F, F_d, F_v, left, right
+
+
+def balances(
+    run: Run, step: Any, s: float, now: Instant, x: float, w: float
+) -> tuple[Balance, Balance]:
+    """Return F and G on a spring, each with its derivatives.
+
+    The pressure vanishes at a peeling edge; a touching one moves with d and, over what was left, with Y.
+    """
+    given, (d, v, _, _, number, _) = run.given, now
+    F, F_d, F_v, F_x, F_w = 1.0 - given.kappa * (d - 1.0), -given.kappa, 0.0, 0.0, 0.0
+    G, G_d, G_v = -given.damping * w - given.spring * x, 0.0, 0.0
+    G_x, G_w = -given.spring, -given.damping
+    if step.sides[0].state != FREE:
+        l, l_d, l_Y, _ = edge(run, 0, step.sides[0], s, now)
+        r, r_d, r_Y, _ = edge(run, 1, step.sides[1], s, now)
+        if l < r:
+            f_z, f_x = forces(l, r, d, v, number)
+            p_l, p_r = pressure(l, d, v, number), pressure(r, d, v, number)
+            F, G, width, squares = F - f_z, G + f_x, r - l, (r - l) * (r + l)
+            F_d -= 0.75 * (width + p_r * r_d - p_l * l_d)
+            F_v, F_w = -0.75 * width, -0.75 * squares
+            F_x = 0.75 * (p_r * r_Y - p_l * l_Y)
+            G_v = -0.75 * squares
+            G_d = G_v - 1.5 * (r * p_r * r_d - l * p_l * l_d)
+            G_x += 1.5 * (r * p_r * r_Y - l * p_l * l_Y)
+            G_w -= width * (r * r + r * l + l * l)
+        elif not l >= r:
+            F = math.nan
+    if given.fixed:
+        F = F_d = F_v = F_x = F_w = 0.0
+    return (F, F_d, F_v, F_x, F_w), (G, G_d, G_v, G_x, G_w)
 
 
 def collocate(run: Run, step: Any, along: Any) -> int:
@@ -160,8 +176,7 @@ def collocate(run: Run, step: Any, along: Any) -> int:
         places[i], numbers[i], _ = evaluate(run.pieces[drive], s)
     allowed, previous = run.given.rtol * size, math.inf
     for iteration in range(1, NEWTON_STEPS + 1):
-        finite = coupled.linearize(run, step, along) if sprung else linearize(run, step)
-        if not finite:
+        if not _linearize(run, step, along):
             return 0
         largest = eliminate(matrix)
         for i in range(unknowns):
@@ -178,25 +193,52 @@ def collocate(run: Run, step: Any, along: Any) -> int:
     return 0
 
 
-def linearize(run: Run, step: Any) -> bool:
+def _linearize(run: Run, step: Any, along: Any) -> bool:
     """Write the equations of Newton's method for all stages; return whether they are finite."""
-    eps, method, matrix, stages = run.given.eps, run.method, run.matrix, run.method.stages
-    change, places, numbers = matrix[stages], matrix[stages + 1], matrix[stages + 2]
-    span, rate = step.span, step.rate[0]
+    given, method, matrix, stages = run.given, run.method, run.matrix, run.method.stages
+    unknowns, span = len(matrix[0]) - 1, step.span
+    change, places, numbers = matrix[unknowns], matrix[unknowns + 1], matrix[unknowns + 2]
+    eps = 1.0 if given.fixed else given.eps  # a fixed indenter on a spring keeps d' = 0
     for i in range(stages):
-        a, inverse, row = method.A[i], method.inverse[i], matrix[i]
-        d, inertia = step.depth + span * method.nodes[i] * rate, 0.0
+        s, a, inverse, row = (
+            step.start + span * method.nodes[i],
+            method.A[i],
+            method.inverse[i],
+            matrix[i],
+        )
+        d, inertia = step.depth + span * method.nodes[i] * step.rate[0], 0.0
         for j in range(stages):
             d += span * a[j] * change[j]
             inertia += eps * inverse[j] * change[j]
-        now = d, rate + change[i], 0.0, places[i], numbers[i], 0.0
-        F, F_d, F_v, _, _ = imbalance(run, step, step.start + span * method.nodes[i], now)
+        v = step.rate[0] + change[i]
+        if given.sprung:
+            row_x, w = matrix[stages + i], along.rate[0] + change[stages + i]
+            x, inertia_x = along.depth + span * method.nodes[i] * along.rate[0], 0.0
+            for j in range(stages):
+                x += span * a[j] * change[stages + j]
+                inertia_x += given.eps_x * inverse[j] * change[stages + j]
+            now = d, v, 0.0, places[i] - x, numbers[i] - w, 0.0
+            (F, F_d, F_v, F_x, F_w), (G, G_d, G_v, G_x, G_w) = balances(run, step, s, now, x, w)
+            for j in range(stages):
+                squared = span * span * a[j]
+                row[stages + j], row_x[j] = -squared * F_x, -squared * G_d
+                row_x[stages + j] = given.eps_x * inverse[j] - squared * G_x
+            row[stages + i] -= span * F_w
+            row_x[i] -= span * G_v
+            row_x[stages + i] -= span * G_w
+            row_x[unknowns] = span * G - inertia_x
+            if not math.isfinite(G):
+                return False
+        else:
+            now = d, v, 0.0, places[i], numbers[i], 0.0
+            F, F_d, F_v, _, _ = imbalance(run, step, s, now)
         if not math.isfinite(F):
             return False
+        factor = span * span * F_d
         for j in range(stages):
-            row[j] = eps * inverse[j] - span * span * F_d * a[j]
+            row[j] = eps * inverse[j] - factor * a[j]
         row[i] -= span * F_v
-        row[stages] = span * F - inertia
+        row[unknowns] = span * F - inertia
     return True
 
 

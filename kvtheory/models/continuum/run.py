@@ -5,7 +5,6 @@ structured arrays. Both have more room than is used; `stepping.walk` stops befor
 """
 
 import math
-from collections.abc import Callable
 from functools import cache
 from typing import Any, NamedTuple
 
@@ -71,30 +70,24 @@ METHOD = _record(
 class StepControl(NamedTuple):
     """Step-size controls beside the tolerance.
 
-    `first_step` is in units of the fastest time constant, after a jump; if it is too long it is
-    rejected. `longest` is in units of tau, so that fading memory is seen by the probes of a step. A step
-    grows by no more than `grow`; the first step after an event, or on a piece
-    of the drive, takes at most `straight` of the way to the next event or the end of the piece.
-    `stages` of the Radau IIA method, if they are zero, are as many as is cheapest for the tolerance.
+    `first_step`, after a jump, is in units of the fastest time constant; if it is too long it is rejected.
+    `longest` is in units of tau, so that the probes of a step see fading memory. A step grows by no more
+    than `grow`; the first step after an event, or on a piece of the drive, takes at most `straight` of the
+    way to the next event or the end of the piece.
     """
 
     first_step: float = 0.3
     longest: float = 0.5
     grow: float = 10.0
     straight: float = 1.0
-    stages: int = 0
 
 
 class Spring(NamedTuple):
-    """The spring along x: inertia number, damping number and stiffness number."""
+    """The spring along x: inertia number, damping number and stiffness number; a rigid drive by default."""
 
-    eps: float
-    damping: float
-    stiffness: float
-
-
-RIGID = Spring(1.0, 0.0, 0.0)
-"""Stands for a spring that is absent."""
+    eps: float = 1.0
+    damping: float = 0.0
+    stiffness: float = 0.0
 
 
 class Run(NamedTuple):
@@ -116,43 +109,40 @@ class Run(NamedTuple):
     along: Any
 
 
+KINDS = {
+    "given": GIVEN, "method": METHOD, "now": NOW,
+    "steps": STEP, "nodes": NODE, "events": EVENT, "along": STEP,
+}  # fmt: skip
+"""Of the records of a run."""
+
+
 def begin(
     drive: BaseMotion, numbers: tuple[float, float], spring: Spring | None, end: float,
     rtol: float, control: StepControl, *, arrays: bool = False,
 ) -> Run:  # fmt: skip
     """Return a run that has not begun; `numbers` are eps and kappa. Its records are objects or `arrays`."""
-    eps, kappa = numbers
-    fixed, stages, sprung = (
-        math.isinf(kappa),
-        control.stages or stages_for(rtol),
-        spring is not None,
-    )
+    (eps, kappa), sprung = numbers, spring is not None
+    fixed, stages = math.isinf(kappa), stages_for(rtol)
     given = (
         eps, 0.0 if fixed else kappa, end, fixed, rtol, max(EVENT_SHARE * rtol, EVENT_FLOOR),
-        *control[:4], *(spring or RIGID), sprung, len(drive.pieces),
+        *control, *(spring or Spring()), sprung, len(drive.pieces),
     )  # fmt: skip
-    room, unknowns, pieces = (
-        ROOM if arrays else ROOM // 2,
-        2 * stages if sprung else stages,
-        drive.rows,
-    )
+    room, pieces = ROOM if arrays else ROOM // 2, drive.rows
+    unknowns = 2 * stages if sprung else stages
     if sprung:  # as long as those by which the base slides, and room for these
         wider = max(pieces.shape[1], b_.POWERS + 1 + stages) - pieces.shape[1]
         pieces = np.pad(pieces, ((0, room), (0, wider)))
-    sizes = {"steps": room, "nodes": 3 * room // 2, "events": room, "along": room if sprung else 1}
-    matrix, method = np.zeros((unknowns + 3, unknowns + 1)), method_of(stages, arrays=arrays)
-    if arrays:
-        many = {name: np.zeros(count, KINDS[name]) for name, count in sizes.items()}
-        one = np.array([given], GIVEN), method, np.zeros(1, NOW)
-        return Run(*one, pieces, matrix=matrix, **many)
-    many = {name: _more([], count, KINDS[name]) for name, count in sizes.items()}
+    make, matrix = np.zeros if arrays else _blanks, np.zeros((unknowns + 3, unknowns + 1))
     return Run(
-        [new(GIVEN, *given)],
-        method,
-        _more([], 1, NOW),
-        pieces.tolist(),
-        matrix=matrix.tolist(),
-        **many,
+        given=np.array([given], GIVEN) if arrays else [new(GIVEN, *given)],
+        method=_method(stages, arrays),
+        now=make(1, NOW),
+        pieces=pieces if arrays else pieces.tolist(),
+        steps=make(room, STEP),
+        nodes=make(3 * room // 2, NODE),
+        events=make(room, EVENT),
+        matrix=matrix if arrays else matrix.tolist(),
+        along=make(room if sprung else 1, STEP),
     )
 
 
@@ -184,13 +174,15 @@ def has_room(run: Run) -> bool:
 
 def with_more_room(run: Run) -> Run:
     """Return the run with room for twice as much."""
-    names = ("steps", "nodes", "events")
-    wider = {
-        name: _more(getattr(run, name), len(getattr(run, name)), KINDS[name]) for name in names
-    }
-    if len(run.along) > 1:  # on a spring
-        count = len(run.steps)
-        wider |= {"along": _more(run.along, count, STEP), "pieces": _more(run.pieces, count)}
+    wider: dict[str, Any] = {}
+    objects, sprung = isinstance(run.steps, list), len(run.along) > 1
+    for name in ("steps", "nodes", "events", *(("along",) if sprung else ())):
+        rows = getattr(run, name)
+        more = _blanks(len(rows), KINDS[name]) if objects else np.zeros_like(rows)
+        wider[name] = rows + more if objects else np.concatenate([rows, more])
+    if sprung:
+        pieces = np.pad(run.pieces, ((0, len(run.steps)), (0, 0)))
+        wider["pieces"] = pieces.tolist() if objects else pieces
     return run._replace(**wider)
 
 
@@ -206,24 +198,16 @@ def as_objects(run: Run) -> Run:
     return Run(**records, pieces=run.pieces.tolist(), matrix=run.matrix.tolist())
 
 
-KINDS = {
-    "given": GIVEN, "method": METHOD, "now": NOW,
-    "steps": STEP, "nodes": NODE, "events": EVENT, "along": STEP,
-}  # fmt: skip
-"""Of the records of a run."""
-
-
 def structured(rows: Any, kind: np.dtype[Any]) -> Any:
     """Return records as a structured array; `rows` may be one already."""
+
+    def plain(record: Any) -> Any:
+        if isinstance(record, list):
+            return [plain(each) for each in record]
+        names = getattr(record, "names", None)
+        return record if names is None else tuple([plain(getattr(record, name)) for name in names])
+
     return rows if isinstance(rows, np.ndarray) else np.array(plain(rows), dtype=kind)
-
-
-def plain(record: Any) -> Any:
-    """Return an object, or a list of them, as tuples."""
-    if isinstance(record, list):
-        return [plain(each) for each in record]
-    names = getattr(record, "names", None)
-    return record if names is None else tuple([plain(getattr(record, name)) for name in names])
 
 
 def readable(record: Any, kind: np.dtype[Any]) -> Any:
@@ -242,10 +226,9 @@ def new(kind: np.dtype[Any], *values: Any) -> Any:
 
 
 @cache
-def method_of(stages: int, *, arrays: bool) -> Any:
+def _method(stages: int, arrays: bool) -> Any:
     """Return the Radau IIA method as the record of a run."""
-    method = radau(stages)
-    found: Any = np.zeros(1, METHOD)
+    method, found = radau(stages), np.zeros(1, METHOD)
     found["stages"], found["probe_count"] = stages, len(method.probes)
     for name, rows in method._asdict().items():
         array = np.array(rows)
@@ -254,27 +237,25 @@ def method_of(stages: int, *, arrays: bool) -> Any:
 
 
 @cache
-def _blank(kind: np.dtype[Any]) -> Callable[[], Any]:
-    """Return a function that makes a blank object, number or list."""
-    if kind.subdtype is not None:
-        base, (count, *rest) = kind.subdtype
-        part = _blank(np.dtype((base, tuple(rest))))
-        return lambda: [part() for _ in range(count)]
+def _class(kind: np.dtype[Any]) -> tuple[type, list[tuple[str, np.dtype[Any], int]]]:
+    """Return the class of a record, whose plain fields are zero, and its other fields with their lengths."""
+    shapes = {name: kind[name].shape or (0,) for name in kind.names or ()}
+    nested = [(name, kind[name].base, count) for name, (count, *_) in shapes.items()
+              if count or kind[name].names]  # fmt: skip
+    plain = dict.fromkeys(shapes, 0) | {n: 0.0 for n in shapes if kind[n].kind == "f"}
+    return type("Record", (), {**plain, "names": kind.names}), nested
+
+
+def _blanks(count: int, kind: np.dtype[Any]) -> list[Any]:
+    """Return so many blank objects, or zeros."""
     if kind.names is None:
-        zero = kind.type(0).item()
-        return lambda: zero
-    parts = {name: _blank(kind[name]) for name in kind.names}
-    nested = [(name, parts[name]) for name in kind.names if kind[name].shape or kind[name].names]
-    zeros = {name: part() for name, part in parts.items()}
-    Record = type("Record", (), {**zeros, "names": kind.names})
-
-    def make() -> Any:
-        record = Record()
-        for name, part in nested:
-            setattr(record, name, part())
-        return record
-
-    return make
+        return [0.0] * count
+    make, nested = _class(kind)
+    found = [make() for _ in range(count)]
+    for record in found:
+        for name, part, many in nested:
+            setattr(record, name, _blanks(many, part) if many else _blanks(1, part)[0])
+    return found
 
 
 def _filled(kind: np.dtype[Any], values: Any) -> Any:
@@ -285,15 +266,7 @@ def _filled(kind: np.dtype[Any], values: Any) -> Any:
         return [_filled(kind.base, value) for value in values]
     if kind.names is None:
         return values
-    record = _blank(kind)()
+    record = _class(kind)[0]()
     for name, value in zip(kind.names, values, strict=True):
         setattr(record, name, _filled(kind[name], value))
     return record
-
-
-def _more(rows: Any, count: int, kind: np.dtype[Any] | None = None) -> Any:
-    """Return rows with so many more that are blank."""
-    if isinstance(rows, np.ndarray):
-        return np.concatenate([rows, np.zeros((count, *rows.shape[1:]), rows.dtype)])
-    make = _blank(kind or np.dtype(("f8", len(rows[0]))))
-    return rows + [make() for _ in range(count)]

@@ -3,13 +3,13 @@
 import math
 from contextlib import suppress
 from dataclasses import dataclass
-from operator import itemgetter
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from kvtheory.models.continuum import evaluation, maxima
+from kvtheory.models.continuum import evaluation as e_
+from kvtheory.models.continuum import maxima
 from kvtheory.models.continuum.energy import Ledger, ledger
 from kvtheory.models.continuum.error_estimate import NOT_ASKED, certificate, methods, unknown
 from kvtheory.models.continuum.run import Spring, StepControl
@@ -18,6 +18,7 @@ from kvtheory.models.continuum.surface import height
 from kvtheory.progress import Progress
 from kvtheory.results import Certificate, Event, SprungTransient, Transient
 from kvtheory.results.errors import TransientError
+from kvtheory.results.table import scales
 from kvtheory.scene.base_motion import SAME_TIME, BaseMotion
 from kvtheory.scene.model import Scene
 from kvtheory.scene.static_state import StaticState
@@ -27,12 +28,17 @@ Array = NDArray[np.float64]
 AFTER_END = 1e-12
 """Share of the run by which a time may lie after its end, from rounding."""
 TO_A_CHANGE = 0.5 * AFTER_END
-"""Share of the run by which it is followed beyond its end, if the drive changes so near to it that both were
-one time: the change is then met where it is."""
+"""Share of the run by which it is followed beyond its end, if the drive changes so close to it that both
+count as one time: the solver then meets the change."""
+COLUMNS = {
+    "velocity": e_.DRIVE, "sliding_velocity": e_.NUMBER, "spring_force": e_.SPRING_FORCE,
+    "depth": e_.DEPTH, "depth_rate": e_.RATE, "normal_force": e_.NORMAL_FORCE,
+    "friction_force": e_.FRICTION_FORCE, "peak_pressure": e_.PEAK_PRESSURE,
+    "leading_edge": e_.LEADING, "trailing_edge": e_.TRAILING,
+}  # fmt: skip
+"""Column of each quantity in the states."""
 STEPS_A_PIECE = 100
 """More than a piece of a drive takes: a stop takes 25."""
-FORCE_MAXIMA = "normal force maximum", "friction force maximum"
-"""Kinds of events."""
 
 
 def end_of(scene: Scene) -> float:
@@ -49,15 +55,6 @@ def scaled_drive(scene: Scene, units: StaticState) -> BaseMotion:
     return drive.motion(end, units.velocity).scaled(units.time, units.half_length)
 
 
-def spring_of(units: StaticState) -> Spring | None:
-    """Return what holds the indenter along x in scaled form; nothing if the drive is rigid."""
-    if units.rigid_drive:
-        return None
-    return Spring(
-        units.drive_inertia_number, units.drive_damping_number, units.drive_stiffness_number
-    )
-
-
 @dataclass(frozen=True)
 class SolvedScene:
     """A solved motion and its scales; evaluates every quantity of a transient in SI.
@@ -72,41 +69,31 @@ class SolvedScene:
 
     @property
     def natural_times(self) -> Array:
-        """Times (s) at which the series shows all that happens: the solver's steps, subdivided."""
+        """Times (s) that show the whole series: the solver's steps, subdivided."""
         return np.unique(np.minimum(self.motion.natural, self.end)) * self.units.time
 
     @property
     def events(self) -> tuple[Event, ...]:
-        """What happened to the contact, and when the forces are largest, in the order of time (s)."""
-        found = zip(force_maxima(self.motion), FORCE_MAXIMA, strict=True)
-        events = sorted([*self.motion.events, *found], key=itemgetter(0))
-        return tuple(Event(s * self.units.time, kind) for s, kind in events)
+        """The events of the contact, and when the forces are largest, in the order of time (s)."""
+        maxima = zip(force_maxima(self.motion), ("normal", "friction"), strict=True)
+        found = [*self.motion.events, *((s, f"{force} force maximum") for s, force in maxima)]
+        return tuple(
+            Event(s * self.units.time, kind)
+            for s, kind in sorted(found, key=lambda event: event[0])
+        )
 
     def series(self, time: ArrayLike) -> dict[str, Any]:
         """Return the quantities and states at the given times (s)."""
-        s, u = self.scaled(time), self.units
-        found = self.motion.states(s).T
-        numbers = found[evaluation.NUMBER]
-        forward = left_leads(numbers, self.drive, s)
-        left, right = found[evaluation.LEFT], found[evaluation.RIGHT]
-        states = found[evaluation.LEFT_STATE], found[evaluation.RIGHT_STATE]
-        spring = {
-            "sliding_velocity": numbers * u.velocity,
-            "spring_force": found[evaluation.SPRING_FORCE] * u.friction_force,
-        }
+        found = self.states(time)
+        leads = found[e_.LEADING] == found[e_.LEFT]
+        states = found[e_.LEFT_STATE], found[e_.RIGHT_STATE]
+        leading, trailing = np.where(leads, states, states[::-1]).tolist()
+        measures = {name: scale for name, scale in scales(self.units).items() if name != "time"}
         return {
             "time": np.asarray(time, dtype=float),
-            "velocity": found[evaluation.DRIVE] * u.velocity,
-            "depth": found[evaluation.DEPTH] * u.depth,
-            "depth_rate": found[evaluation.RATE] * u.depth_rate,
-            "normal_force": found[evaluation.NORMAL_FORCE] * u.load,
-            "friction_force": found[evaluation.FRICTION_FORCE] * u.friction_force,
-            "leading_edge": np.where(forward, left, right) * u.half_length,
-            "trailing_edge": np.where(forward, right, left) * u.half_length,
-            "peak_pressure": found[evaluation.PEAK_PRESSURE] * u.pressure,
-            "leading_state": _named(np.where(forward, *states)),
-            "trailing_state": _named(np.where(forward, *states[::-1])),
-            **({} if u.rigid_drive else spring),
+            **{name: found[COLUMNS[name]] * scale for name, scale in measures.items()},
+            "leading_state": tuple(STATE_NAMES[state] for state in leading),
+            "trailing_state": tuple(STATE_NAMES[state] for state in trailing),
         }
 
     def states(self, time: ArrayLike) -> Array:
@@ -140,14 +127,9 @@ class SolvedScene:
 
 
 def transient(
-    scene: Scene,
-    times: ArrayLike | None,
-    rtol: float,
-    progress: Progress | None = None,
-    *,
-    certify: bool = True,
-    max_steps: int | None = None,
-) -> Transient:
+    scene: Scene, times: ArrayLike | None, rtol: float, progress: Progress | None = None,
+    *, certify: bool = True, max_steps: int | None = None,
+) -> Transient:  # fmt: skip
     """Solve a scene; `kvtheory.transient` documents it."""
     solution, time, errors = certified(
         scene, times, rtol, progress, certify=certify, max_steps=max_steps
@@ -155,39 +137,32 @@ def transient(
     motion = solution.motion
     kind = Transient if solution.units.rigid_drive else SprungTransient
     return kind(
-        **solution.series(time),
-        events=solution.events,
-        steps=motion.steps,
-        evaluations=motion.evaluations,
-        compiled=motion.compiled,
-        model="continuum",
-        certificate=errors,
-        solution=solution,
-    )
+        **solution.series(time), events=solution.events, steps=motion.counts.steps,
+        evaluations=motion.counts.evaluations, compiled=motion.compiled, model="continuum",
+        certificate=errors, solution=solution,
+    )  # fmt: skip
 
 
 def force_maxima(motion: Trajectory) -> tuple[float, float]:
     """Return when f_z and |f_x| are largest: the first time of the largest value from s = 0 on."""
-    columns = evaluation.NORMAL_FORCE, evaluation.FRICTION_FORCE
-    normal, friction = motion.extremes(*((column, maxima.MAGNITUDE) for column in columns))
-    return normal[0], friction[0]
+    normal = motion.largest(e_.NORMAL_FORCE, maxima.MAGNITUDE)
+    return normal[0], motion.largest(e_.FRICTION_FORCE, maxima.MAGNITUDE)[0]
 
 
 def certified(
-    scene: Scene,
-    times: ArrayLike | None,
-    rtol: float,
-    progress: Progress | None = None,
-    *,
-    certify: bool = True,
-    max_steps: int | None = None,
-) -> tuple[SolvedScene, Array, Certificate]:
+    scene: Scene, times: ArrayLike | None, rtol: float, progress: Progress | None = None,
+    *, certify: bool = True, max_steps: int | None = None,
+) -> tuple[SolvedScene, Array, Certificate]:  # fmt: skip
     """Solve a scene, and with a tighter tolerance again; return the times (s) that are judged, too.
 
     Without `times`, these are the natural ones.
     """
     units = StaticState.of(scene)
-    drive, spring = scaled_drive(scene, units), spring_of(units)
+    drive, spring = scaled_drive(scene, units), None
+    if not units.rigid_drive:
+        spring = Spring(
+            units.drive_inertia_number, units.drive_damping_number, units.drive_stiffness_number
+        )
     limit = max_steps or STEP_LIMIT + STEPS_A_PIECE * len(drive.pieces)
     first, second = methods(rtol)
 
@@ -214,10 +189,6 @@ def certified(
         other = solved(1, *second)
     s = None if times is None else fine.scaled(time)
     return fine, time, certificate(fine.motion, other, s, scene.drive.tolerance)
-
-
-def _named(states: Array) -> tuple[str, ...]:
-    return tuple([STATE_NAMES[state] for state in states.tolist()])
 
 
 def left_leads(numbers: Array, drive: BaseMotion, s: Array) -> NDArray[np.bool_]:

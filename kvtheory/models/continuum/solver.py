@@ -3,44 +3,40 @@ r"""The whole transient without discretizing the foundation: one equation of mot
     eps d'' = 1 - f_z - kappa (d - 1),    d(0) = 1, d'(0) = 0, at rest for s < 0
 
 with f_z in closed form in d, d', lambda and the two edges (fact F11), and another equation along x if the
-drive has a spring (`coupled`). Between events the right-hand side is smooth; a step that runs over an
+drive has a spring (`radau_iia`). Between events the right-hand side is smooth; a step that runs over an
 event is cut there, for its polynomial continues the states of the edges that it began with. A fixed
 indenter, d = 1, needs no equation along z, only events.
 """
 
-from collections.abc import Callable
+import math
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import pairwise
 from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.polynomial import polynomial
 from numpy.typing import ArrayLike, NDArray
 
 from kvtheory.models.continuum import bulk, compiled, deviation, evaluation, maxima, stepping
 from kvtheory.models.continuum import run as r_
 from kvtheory.models.continuum.contact import FREE, PEELING, TOUCHING
-from kvtheory.models.continuum.events import ScaledEvent, events_of
-from kvtheory.models.continuum.run import (
-    Run,
-    Spring,
-    StepControl,
-    begin,
-    readable,
-    structured,
-    value,
-)
+from kvtheory.models.continuum.run import Run, Spring, StepControl, readable, structured, value
 from kvtheory.results.errors import TransientError
+from kvtheory.scene import base_motion as b_
 from kvtheory.scene.base_motion import BaseMotion
 
 STEP_LIMIT = 300_000
 ATTEMPTS = 1000
 """Between two looks at how far the run has come."""
-
-
 REASONS = {
     stepping.STUCK: "the step length went to zero",
     stepping.INCONSISTENT: "no consistent state of the edges",
 }
+STATE_NAMES = {PEELING: "peeling", TOUCHING: "touching", FREE: "free"}
+REVERSAL = "sliding reverses"
+"""The kind of an event that only an indenter on a spring has."""
 
 
 class Moment(NamedTuple):
@@ -59,7 +55,11 @@ class Moment(NamedTuple):
     friction_force: float
 
 
-STATE_NAMES = {PEELING: "peeling", TOUCHING: "touching", FREE: "free"}
+class ScaledEvent(NamedTuple):
+    """An event of the contact at the time `s`."""
+
+    s: float
+    kind: str
 
 
 @dataclass(frozen=True)
@@ -73,52 +73,68 @@ class Trajectory:
 
     @cached_property
     def given(self) -> Any:
-        """What was given: inertia, support, spring, tolerance, see `run.GIVEN`."""
+        """Inertia, support, spring, tolerance, see `run.GIVEN`."""
         return readable(self.run.given[0], r_.GIVEN)
 
-    def count(self, name: str) -> int:
-        """Return how many steps, nodes, events and so on there are, see `run.NOW`."""
-        return int(value(self.run.now[0], name))
+    @cached_property
+    def counts(self) -> Any:
+        """The numbers of steps, nodes, events and so on, see `run.NOW`."""
+        return readable(self.run.now[0], r_.NOW)
 
     @property
     def end(self) -> float:
         """The time at which the motion ends."""
-        return float(value(self.run.given[0], "end"))
+        return float(self.given.end)
 
     @property
     def compiled(self) -> bool:
         """Whether the kernels were compiled, at last."""
         return compiled.in_use(self.run)
 
-    @property
-    def steps(self) -> int:
-        """Number of steps taken."""
-        return self.count("steps")
-
-    @property
-    def rejected(self) -> int:
-        """Number of steps repeated."""
-        return self.count("rejected")
-
-    @property
-    def evaluations(self) -> int:
-        """Number of evaluations of the equation of motion."""
-        return self.count("evaluations")
-
     @cached_property
     def events(self) -> tuple[ScaledEvent, ...]:
-        """What happened to the contact, in the order of time."""
-        return events_of(self)
+        """The events of the contact, in the order of time."""
+        found = structured(self.run.events[: self.counts.events], r_.EVENT).tolist()
+        kinds = [ScaledEvent(s, stepping.KINDS[kind]) for s, kind in found]
+        return tuple(
+            sorted([*kinds, *self._memory(), *self._reversals()], key=lambda event: event.s)
+        )
+
+    def _memory(self) -> Iterator[ScaledEvent]:
+        """Yield when an edge begins to touch ground that was touched before, and when it ceases to."""
+        sides, left_at = self.records["sides"], self.nodes["inner"]["s"]
+        remembers = (sides["state"] == TOUCHING) & (left_at[sides["node"]] > -math.inf)
+        changes = np.diff(remembers, axis=0, prepend=False)
+        for at, k in np.argwhere(changes).tolist():
+            verb, name = "begins" if remembers[at, k] else "ends", ("left", "right")[k]
+            yield ScaledEvent(self.starts[at], f"memory {verb} at the {name} edge")
+
+    def _reversals(self) -> Iterator[ScaledEvent]:
+        """Yield when the indenter on a spring begins to slide the other way: where lambda changes sign."""
+        if not self.given.sprung:
+            return
+        before, steps, ends = 0.0, self.records, [*self.starts[1:], self.end]
+        spans, rows = steps["span"].tolist(), self.pieces[steps["piece"]].tolist()
+        for start, end, span, row in zip(self.starts, ends, spans, rows, strict=True):
+            powers = [c * span**k for k, c in enumerate(row[b_.POWERS :])]
+            roots = polynomial.polyroots(np.trim_zeros(powers, "b") or [1.0])
+            share = (end - start) / span
+            within = sorted(x for x in roots.real.tolist() if 0.0 < x < share)
+            for low, high in pairwise([0.0, *within, share]):
+                number = b_.evaluate(row, start + 0.5 * (low + high) * span)[1]
+                if number * before < 0.0:
+                    yield ScaledEvent(start + low * span, REVERSAL)
+                before = number or before
 
     @cached_property
     def records(self) -> NDArray[Any]:
         """The steps as a structured array, see `run.STEP`."""
-        return np.asarray(structured(self.run.steps[: self.steps], r_.STEP))
+        return np.asarray(structured(self.run.steps[: self.counts.steps], r_.STEP))
 
     @cached_property
     def nodes(self) -> NDArray[Any]:
-        """What the edges left behind, as a structured array, see `run.NODE`."""
-        return np.asarray(structured(self.run.nodes[: self.count("nodes")], r_.NODE))
+        """The ground that the edges left, as a structured array, see `run.NODE`."""
+        return np.asarray(structured(self.run.nodes[: self.counts.nodes], r_.NODE))
 
     @cached_property
     def interpreted(self) -> Run:
@@ -143,8 +159,7 @@ class Trajectory:
 
     @cached_property
     def _natural(self) -> tuple[Any, Any]:
-        """The natural times, and the states there, as rows for the kernels."""
-        times, found = self._room(evaluation.SUBDIVISIONS * self.steps + 1)
+        times, found = self._room(evaluation.SUBDIVISIONS * self.counts.steps + 1)
         count = self._perform(bulk.NATURAL, times, found)
         return times[:count], found[:count]
 
@@ -163,17 +178,14 @@ class Trajectory:
         return np.array(self._states(times)).reshape(-1, evaluation.SIZE)
 
     def _states(self, times: NDArray[np.float64]) -> Any:
-        found = self._rows(np.empty((len(times), evaluation.SIZE)))
+        _, found = self._room(len(times))
         self._perform(bulk.STATES, self._rows(times), found)
         return found
 
     def deviations(
         self, other: "Trajectory", times: NDArray[np.float64] | None = None
     ) -> list[float]:
-        """Return how far another solution is from this one at the natural `times`, or others.
-
-        See `deviation`.
-        """
+        """Return the `deviation` of another solution from this one at the natural `times`, or others."""
         if self.compiled != other.compiled:
             one, two = (Trajectory(r_.as_arrays(motion.run)) for motion in (self, other))
             return one.deviations(two, times)
@@ -188,19 +200,15 @@ class Trajectory:
     @cached_property
     def samples(self) -> tuple[Any, Any, int]:
         """Dense times and the states there, and their number, see `maxima`."""
-        times, found = self._room((maxima.SAMPLES + 1) * self.steps)
+        times, found = self._room((maxima.SAMPLES + 1) * self.counts.steps)
         return times, found, self._perform(bulk.SAMPLE, times, found)
 
     def largest(self, column: int, sense: int = maxima.LARGEST) -> tuple[float, float]:
         """Return when a column of the states is largest, and its value, see `maxima`."""
-        return self.extremes((column, sense))[0]
-
-    def extremes(self, *objectives: tuple[int, int]) -> list[tuple[float, float]]:
-        """Return when columns of the states are largest in a sense, and their values, see `maxima`."""
         times, found, count = self.samples
-        values = self._rows(np.array(objectives, dtype=float).reshape(-1))
+        values = self._rows(np.array([column, sense], dtype=float))
         self._perform(bulk.LARGEST, times, found, values, count)
-        return [(float(values[i]), float(values[i + 1])) for i in range(0, len(values), 2)]
+        return float(values[0]), float(values[1])
 
     def settled(self, force: float, share: float) -> float:
         """Return since when the friction force is settled, see `maxima`."""
@@ -210,22 +218,13 @@ class Trajectory:
         return float(values[0])
 
     @property
-    def last(self) -> list[float]:
-        """The state at the end, with the leading and the trailing edge behind it."""
-        row = [0.0] * (evaluation.SIZE + 2)
-        maxima.last(*self.samples[1:], row)
-        return row
+    def last(self) -> NDArray[np.float64]:
+        """The state at the end."""
+        return self.states([self.end])[0]
 
     def _perform(
-        self,
-        task: int,
-        times: Any,
-        found: Any,
-        values: Any = None,
-        count: int = 0,
-        other: Any = None,
-    ) -> int:
-        """Perform a task of the kernels."""
+        self, task: int, times: Any, found: Any, values: Any = None, count: int = 0, other: Any = None
+    ) -> int:  # fmt: skip
         rows = self._workspace
         values = rows[0] if values is None else values
         return compiled.chosen(self.run)(
@@ -235,11 +234,11 @@ class Trajectory:
     @cached_property
     def _workspace(self) -> Any:
         """Room for two states."""
-        return self._rows(np.zeros((2, evaluation.SIZE)))
+        return self._room(2)[1]
 
     def _room(self, count: int) -> tuple[Any, Any]:
         """Return room for times, and for the states there."""
-        return self._rows(np.empty(count)), self._rows(np.empty((count, evaluation.SIZE)))
+        return self._rows(np.zeros(count)), self._rows(np.zeros((count, evaluation.SIZE)))
 
     def _rows(self, array: Any) -> Any:
         """Return an array as the kernels need it: as lists if they are interpreted."""
@@ -249,43 +248,18 @@ class Trajectory:
 
 
 def solve(
-    drive: BaseMotion,
-    inertia_number: float,
-    support_number: float,
-    end: float,
-    rtol: float = 1e-9,
-    *,
-    spring: Spring | None = None,
-    fast: bool | None = None,
+    drive: BaseMotion, inertia_number: float, support_number: float, end: float, rtol: float = 1e-9,
+    *, spring: Spring | None = None, fast: bool | None = None,
     control: StepControl = StepControl(),  # noqa: B008 - immutable
-    progress: Callable[[float], Any] | None = None,
-    max_steps: int = STEP_LIMIT,
-) -> Trajectory:
+    progress: Callable[[float], Any] | None = None, max_steps: int = STEP_LIMIT,
+) -> Trajectory:  # fmt: skip
     """Follow the transient of `drive` from rest until `end`, in scaled form.
 
-    Parameters
-    ----------
-    drive
-        The drive number lambda(s); it must reach `end`.
-    inertia_number
-        eps > 0; not used if the support is fixed.
-    support_number
-        kappa >= 0; infinity is the fixed indenter, d = 1.
-    end
-        Time until which to solve, in units of tau.
-    rtol
-        Error allowed in a step for d' relative to 1 + |d'|, and for x' likewise, all along the step.
-    spring
-        What holds the indenter along x; without it the drive is rigid.
-    fast
-        Whether the kernels are compiled; by default, if numba is installed and enough steps were
-        interpreted for that to pay. The numbers are the same.
-    control
-        What sets the steps beside the tolerance.
-    progress
-        Called with the time reached, now and then.
-    max_steps
-        Steps after which to give up; those that are repeated count, too.
+    The drive must reach `end`. Numbers are eps > 0 (not used if the support is fixed) and kappa >= 0, where
+    infinity is the fixed indenter, d = 1. `rtol` is the error allowed all along a step for d' relative to
+    1 + |d'|, and for x' likewise. By default the kernels are compiled (`fast`) if numba is there and enough
+    steps were interpreted for that to pay; the numbers are the same. `progress` is called with the time
+    reached. Steps that are repeated count for `max_steps`, too.
 
     Raises
     ------
@@ -300,24 +274,23 @@ def solve(
     """
     if not 0.0 < end <= drive.end:
         raise ValueError(f"`end` must be positive and within the drive, got {end!r}")
-    if spring is not None and not (
-        spring.eps > 0.0 and spring.damping >= 0.0 and spring.stiffness > 0.0
-    ):
-        raise ValueError(
-            "expected a `spring` with inertia and stiffness above 0, damping from 0 on"
-        )
+    if spring and not (spring.eps > 0.0 and spring.damping >= 0.0 and spring.stiffness > 0.0):
+        raise ValueError("expected a `spring` with inertia and stiffness > 0, damping >= 0")
     if not (inertia_number > 0.0 and support_number >= 0.0 and 1e-13 <= rtol <= 1e-2):
         raise ValueError(
             "expected `inertia_number` > 0, `support_number` >= 0, 1e-13 <= `rtol` <= 1e-2"
         )
     numbers = float(inertia_number), float(support_number)
     arrays = compiled.worthwhile() if fast is None else fast
-    run = begin(drive, numbers, spring, float(end), rtol, control, arrays=arrays)
-    left, status = max_steps, stepping.PAUSED
+    run = r_.begin(drive, numbers, spring, float(end), rtol, control, arrays=arrays)
+    room, left, status = bulk.NO_BULK.workspace, max_steps, stepping.PAUSED
     while status != stepping.DONE:
         if not compiled.in_use(run) and (compiled.worthwhile() if fast is None else fast):
             run = r_.as_arrays(run)
-        status = walk(run, min(ATTEMPTS, left))
+        status = compiled.chosen(run)(
+            bulk.WALK, run, run, room.times, room.samples, room.rows, room.times,
+            min(ATTEMPTS, left), bulk.NO_BULK,
+        )  # fmt: skip
         now = run.now[0]
         before, left = left, max_steps - int(value(now, "steps") + value(now, "rejected"))
         compiled.Tally.steps += 0 if compiled.in_use(run) else before - left
@@ -331,11 +304,3 @@ def solve(
         if progress is not None:
             progress(s)
     return Trajectory(run)
-
-
-def walk(run: Run, attempts: int) -> int:
-    """Walk on by the kernels that fit the run, see `stepping`."""
-    room = bulk.NO_BULK.workspace
-    return compiled.chosen(run)(
-        bulk.WALK, run, run, room.times, room.samples, room.rows, room.times, attempts, bulk.NO_BULK
-    )

@@ -1,4 +1,4 @@
-"""Time stepping: step sizes, events, and what the edges leave behind."""
+"""Time stepping: step sizes, events, and the ground that the edges leave behind."""
 
 import math
 from typing import Any
@@ -7,7 +7,7 @@ from kvtheory.models.continuum import contact as c_
 from kvtheory.models.continuum import memory_chains as m_
 from kvtheory.models.continuum.contact import FREE, PEELING, SIDES, TOUCHING, motion
 from kvtheory.models.continuum.run import Run, has_room, rest
-from kvtheory.models.continuum.trial_step import Monitors, attempt, sliding_now, take_up
+from kvtheory.models.continuum.trial_step import Monitors, attempt, begin_along, sliding_now
 from kvtheory.scene import base_motion as b_
 
 SAFETY = 0.9
@@ -18,12 +18,12 @@ OVERRUN = 1e-4
 """Share of a step that may lie beyond an event: the states of the edges change there, and a step that
 ran farther is repeated with the right length."""
 SEEN = 0.1
-"""Of a step, or of what may lie beyond an event: the shortest remainder that is worth a step. A step of which
-this share is lost in the rounding of the time cannot be made."""
+"""Of a step, or of its allowed overrun: the shortest remainder that is worth a step. A step of which this
+share is lost in the rounding of the time cannot be made."""
 BRIEF = 1e-10
 """An event this soon after the start of a step needs no repetition of the step."""
 REMAINDER = 1.1
-"""Of what the previous step left of its way to an event: a way no longer than this is taken in one step."""
+"""Of the distance to an event that the previous step left: one no longer than this is taken in one step."""
 DECAYED, STEADY = 40.0, 1e-3
 """Retardation times after which memory has decayed to the last digit; share of the tolerance below which a
 rate counts as zero."""
@@ -40,12 +40,10 @@ of zero; without a consistent state of the edges."""
 
 PEELS, TOUCHES, CROSSES, TAKE_OFF, LANDING = 0, 2, 4, 6, 7
 """Kinds of events, those of the left edge; the right edge adds 1."""
-CHANGES = "peels", "touches", "crosses to older ground"
 KINDS = (
-    *(f"{side} edge {what}" for what in CHANGES for side in ("left", "right")),
-    "take-off",
-    "landing",
-)
+    "left edge peels", "right edge peels", "left edge touches", "right edge touches",
+    "left edge crosses to older ground", "right edge crosses to older ground", "take-off", "landing",
+)  # fmt: skip
 
 
 def walk(run: Run, attempts: int) -> int:
@@ -75,42 +73,36 @@ def walk(run: Run, attempts: int) -> int:
 
 
 def _start_piece(run: Run) -> None:
-    """Let a jump of lambda detach strips, or turn peeling edges where the pressure rises."""
+    """Let a jump of lambda detach strips, or turn peeling edges where the pressure rises.
+
+    The step after a kink is limited by the time in which lambda changes, and by the time since the last
+    kink: a steep ramp from rest, and ground that was left in a short pulse, make the forces change in so
+    short a time that a longer step would not see it.
+    """
     now, index = run.now, run.now.piece
     _, number, slope = b_.evaluate(run.pieces[index], now.s)
     last = last_slope = rate = 0.0
     if index > 0:
         _, last, last_slope = b_.evaluate(run.pieces[index - 1], now.s)
     jumps = abs(number - last) > SMOOTH * (1.0 + abs(number))
-    changes = jumps or abs(slope - last_slope) > SMOOTH * (1.0 + abs(slope))
     now.slide = index
     if run.given.sprung:
         if now.smooth:
             rate = motion(run.along[now.steps - 1], now.s)[2]
-        take_up(run, 1.0, rate)
+        begin_along(run, 1.0, rate)
     if jumps or index == 0:
         _restart(run)
-    if changes:
-        _begin_briefly(run, number, slope)
+    if jumps or abs(slope - last_slope) > SMOOTH * (1.0 + abs(slope)):
+        brief = (1.0 + abs(number)) / max(abs(slope), TINY)
+        if now.s > now.kink:
+            brief = min(brief, now.s - now.kink)
+        brief = max(run.given.first_step * brief, SHORTEST * (1.0 + now.s))
+        now.span, now.kink = min(now.span, brief), now.s
     Y, number, slope = sliding_now(run, now.s)
     if now.sides[0].state != FREE:
         _detach(run, Y, number)
     if now.smooth:
         _turn_at_kink(run, Y, number, slope)
-
-
-def _begin_briefly(run: Run, number: float, slope: float) -> None:
-    """Limit the step after a kink by the time in which lambda changes, and by the time since the last kink.
-
-    A steep ramp from rest, and ground that was left in a short pulse, make the forces change in so short a
-    time that a longer step would not see it.
-    """
-    now = run.now
-    brief = (1.0 + abs(number)) / max(abs(slope), TINY)
-    if now.s > now.kink:
-        brief = min(brief, now.s - now.kink)
-    brief = max(run.given.first_step * brief, SHORTEST * (1.0 + now.s))
-    now.span, now.kink = min(now.span, brief), now.s
 
 
 def _turn_at_kink(run: Run, Y: float, number: float, slope: float) -> None:
@@ -174,7 +166,6 @@ def _restart(run: Run) -> None:
 
 
 def _note(run: Run, kind: int) -> None:
-    """Note an event."""
     event = run.events[run.now.events]
     event.s, event.kind = run.now.s, kind
     run.now.events += 1
@@ -218,9 +209,9 @@ def _advance(run: Run, until: float) -> int:
 
 
 def _share(run: Run, way: float) -> float:
-    """Return the share of the way to an event, or to the end of a piece, that a step takes at most.
+    """Return the largest share of the time to an event, or to the end of a piece, that a step takes.
 
-    It is below 1 just after an event, on a new piece, or if the way is long.
+    It is below 1 just after an event, on a new piece, or if that time is long.
     """
     now, straight = run.now, run.given.straight
     at_piece = now.s == run.pieces[now.piece][b_.START]
@@ -255,18 +246,12 @@ def _steady(run: Run) -> bool:
     for k in range(b_.POWERS + 1, len(piece)):
         if piece[k] != 0.0:
             return False
-    rate = _fastest(run.steps[last])
-    if run.given.sprung:
-        rate = max(rate, _fastest(run.along[last]))
-    return rate <= STEADY * run.given.rtol
-
-
-def _fastest(step: Any) -> float:
-    """Return the largest of the powers of a rate."""
-    rate = 0.0
-    for power in step.rate:
-        rate = max(rate, abs(power))
-    return rate
+    fastest = 0.0
+    for k in range(len(run.steps[last].rate)):
+        fastest = max(fastest, abs(run.steps[last].rate[k]))
+        if run.given.sprung:
+            fastest = max(fastest, abs(run.along[last].rate[k]))
+    return fastest <= STEADY * run.given.rtol
 
 
 def _commit(run: Run, step: Any, end: float) -> None:
@@ -315,22 +300,17 @@ def _change(run: Run, violated: Monitors) -> int:
             if ground < 0.0:
                 side.node = run.nodes[side.node].next
                 _note(run, CROSSES + k)
-            elif state < 0.0 and side.state != FREE:
-                _change_side(run, k, Y, number)
+            elif not state < 0.0 or side.state == FREE:
+                continue
+            elif side.state == PEELING:
+                _turn(run, k)
+            elif SIDES[k] * (side.X + Y + number) <= 0.0:
+                _leave(run, Y)  # the pressure fell to zero at the root of the other side
+            else:
+                m_.trim(run, k, Y)
+                side.state = PEELING
+                _note(run, PEELS + k)
     return DONE
-
-
-def _change_side(run: Run, k: int, Y: float, number: float) -> None:
-    """Turn a peeling edge, or let a touching one peel; take off at a root of p on the other side."""
-    side = run.now.sides[k]
-    if side.state == PEELING:
-        _turn(run, k)
-    elif SIDES[k] * (side.X + Y + number) <= 0.0:
-        _leave(run, Y)  # the pressure fell to zero at the root of the other side
-    else:
-        m_.trim(run, k, Y)
-        side.state = PEELING
-        _note(run, PEELS + k)
 
 
 def _turn(run: Run, k: int) -> None:

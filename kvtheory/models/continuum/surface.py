@@ -1,7 +1,7 @@
 """The surface of the foundation at any time: under the indenter, and where it relaxes (fact F8)."""
 
 import math
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from copy import copy
 from typing import Any
 
@@ -12,65 +12,33 @@ from numpy.typing import ArrayLike, NDArray
 from kvtheory.models.continuum import contact as c_
 from kvtheory.models.continuum import evaluation
 from kvtheory.models.continuum.contact import SIDES, instant
-from kvtheory.models.continuum.quadrature import integrals
 from kvtheory.models.continuum.run import NODE, PLACE, new, structured
 from kvtheory.models.continuum.solver import Trajectory
 from kvtheory.scene import base_motion as drive_
 
 Array = NDArray[np.float64]
 
-
 HALVINGS = 40
 """For the instant at which ground was left; its height is stationary there (p = 0), so that half as
 many digits of the instant as of the height would do."""
-
 LEAST_HALF = 1e-9
 """Of half the width of the interval in which p > 0, relative to 1 + |lambda|: a smaller one is rounding.
 It is zero where an indenter takes off, which is found a little too late: nothing is swept in that while."""
-
-STRIP = np.polynomial.legendre.leggauss(3)
-"""Exact for u^2 on a strip."""
-
 ROUNDING = 1e-15
 """Of an edge in units of 1 + |Y|, for it is kept as X = xi - Y."""
 
-
-def _chain(motion: Trajectory, k: int, s: float, edge: float) -> Iterator[Any]:
-    """Yield the nodes of ground that was touched, outward from an edge, where the first one begins."""
-    front, index = _front(motion, k, s, edge)
-    yield from front
-    while index >= 0:
-        node = motion.interpreted.nodes[index]
-        if node.inner.s > -math.inf:
-            yield node
-        index = node.next
-
-
-def _front(motion: Trajectory, k: int, s: float, edge: float) -> tuple[list[Any], int]:
-    """Return the nodes that exist in part at `s`, with the edge at xi = `edge`, and the next whole one."""
-    run = motion.interpreted
-    index = evaluation.step_at(run, s)
-    d, v, _, Y, number, _ = instant(run, index, s)
-    step, held, side = run.steps[index], run.steps[index].sides[k], SIDES[k]
-    top = held.node
-    if held.state == c_.FREE or (held.state == c_.PEELING and s == step.start):
-        return [], top
-    if held.state == c_.PEELING:
-        then = instant(run, index, step.start)
-        inner = c_.root(side, number, d + v)[0] - Y, s, d, Y
-        outer = held.X, step.start, then[0], then[3]
-        return [new(NODE, inner, outer, index, side, -1, False)], top
-    if run.nodes[top].inner.s < s:  # else it was left just now
-        top = c_.reached(run, side, top, s, d, Y)
-    node = run.nodes[top]
-    if node.inner.s == -math.inf:
-        return [], top
-    place = node.inner.s, node.inner.d, node.inner.Y
-    if node.step >= 0 and node.inner.s < s:
-        place = c_.sweep(run, side, node, s, d, Y)
-    cut = copy(node)
-    cut.inner = new(PLACE, edge - Y if s > step.start else held.X, *place)
-    return [cut], node.next
+POINTS = 10
+"""Of Gauss's rule on one panel: most steps of a motion then need no more than their two halves."""
+TOLERANCE = 1e-12
+"""Of an integral, relative to 1 + its size, by how much a panel may differ from its halves. The halves
+are kept, whose error is smaller by many digits."""
+PANEL_LIMIT = 1000
+"""Of one integral at one level of halving. Four are needed where a drive passes, in one step, through
+rest to ten thousand half lengths in a retardation time."""
+ABSCISSAE, WEIGHTS = (np.polynomial.legendre.leggauss(POINTS) + np.array([[1.0], [0.0]])) * 0.5
+"""On [0, 1]."""
+STRIP = np.polynomial.legendre.leggauss(3)
+"""Exact for u^2 on a strip."""
 
 
 def height(motion: Trajectory, xi: ArrayLike, s: float) -> Array:
@@ -95,9 +63,13 @@ def height(motion: Trajectory, xi: ArrayLike, s: float) -> Array:
     inside = (now.left - slack <= xi) & (xi <= now.right + slack)  # false in flight: edges are NaN
     u = np.where(inside, now.depth - xi * xi, 0.0)
     for k, edge in enumerate((now.left, now.right)):
-        for node in _chain(motion, k, s, edge):
+        nodes, index = _front(motion, k, s, edge)
+        while index >= 0:
+            nodes.append(run.nodes[index])
+            index = run.nodes[index].next
+        for node in nodes:
             here = (X - node.inner.X) * (X - node.outer.X) <= 0.0
-            if here.any():
+            if node.inner.s > -math.inf and here.any():
                 u[here] = np.maximum(u[here], _left(motion, node, X[here], s))
     return u
 
@@ -147,6 +119,33 @@ def kept(motion: Trajectory, power: int) -> list[tuple[float, float]]:
             total += integral * math.exp(power * (since - latest))
         memory.append((latest, total))
     return memory
+
+
+def _front(motion: Trajectory, k: int, s: float, edge: float) -> tuple[list[Any], int]:
+    """Return the nodes that exist in part at `s`, with the edge at xi = `edge`, and the next whole one."""
+    run = motion.interpreted
+    index = evaluation.step_at(run, s)
+    d, v, _, Y, number, _ = instant(run, index, s)
+    step, held, side = run.steps[index], run.steps[index].sides[k], SIDES[k]
+    top = held.node
+    if held.state == c_.FREE or (held.state == c_.PEELING and s == step.start):
+        return [], top
+    if held.state == c_.PEELING:
+        then = instant(run, index, step.start)
+        inner = c_.root(side, number, d + v)[0] - Y, s, d, Y
+        outer = held.X, step.start, then[0], then[3]
+        return [new(NODE, inner, outer, index, side, -1, False)], top
+    if run.nodes[top].inner.s < s:  # else it was left just now
+        top = c_.reached(run, side, top, s, d, Y)
+    node = run.nodes[top]
+    if node.inner.s == -math.inf:
+        return [], top
+    place = node.inner.s, node.inner.d, node.inner.Y
+    if node.step >= 0 and node.inner.s < s:
+        place = c_.sweep(run, side, node, s, d, Y)
+    cut = copy(node)
+    cut.inner = new(PLACE, edge - Y if s > step.start else held.X, *place)
+    return [cut], node.next
 
 
 def _sweep_of(motion: Trajectory, nodes: NDArray[Any]) -> Callable[[Any, Array], tuple[Array, ...]]:
@@ -200,22 +199,14 @@ def _left(motion: Trajectory, node: Any, X: Array, s: float) -> Array:
 def _integrals(motion: Trajectory, nodes: NDArray[Any], s: Array, power: int) -> Array:
     """Return the integrals of [e^-(s - sigma) g(X, sigma)]^power over X on nodes, each at its time s."""
     found, strip = np.empty(len(nodes)), nodes["step"] < 0
-    found[strip] = _of_strips(nodes[strip], s[strip], power)
-    found[~strip] = _of_sweeps(motion, nodes[~strip], s[~strip], power)
-    return found
-
-
-def _of_strips(nodes: NDArray[Any], s: Array, power: int) -> Array:
-    inner, outer = nodes["inner"][:, None], nodes["outer"][:, None]
+    inner, outer = nodes[strip]["inner"][:, None], nodes[strip]["outer"][:, None]
     middle, half = 0.5 * (outer["X"] + inner["X"]), 0.5 * np.abs(outer["X"] - inner["X"])
     x, weights = STRIP
-    u = np.exp(inner["s"] - s[:, None]) * (inner["d"] - (middle + half * x + inner["Y"]) ** 2)
-    return half[:, 0] * (u**power @ weights)
+    u = np.exp(inner["s"] - s[strip, None]) * (inner["d"] - (middle + half * x + inner["Y"]) ** 2)
+    found[strip] = half[:, 0] * (u**power @ weights)
 
-
-def _of_sweeps(motion: Trajectory, nodes: NDArray[Any], s: Array, power: int) -> Array:
-    inner, outer = nodes["inner"], nodes["outer"]
-    swept = _sweep_of(motion, nodes)
+    nodes, s = nodes[~strip], s[~strip]
+    inner, outer, swept = nodes["inner"], nodes["outer"], _sweep_of(motion, nodes)
 
     def flux(which: Any, sigma: Array) -> Array:
         xi, d, _, rate = swept(which, sigma)
@@ -226,4 +217,62 @@ def _of_sweeps(motion: Trajectory, nodes: NDArray[Any], s: Array, power: int) ->
     xi = inner["X"] + inner["Y"]
     sliver = swept(slice(None), inner["s"][:, None])[0][:, 0] - xi
     u_in = np.exp(inner["s"] - s) * (inner["d"] - xi * xi)
-    return whole + np.sign(outer["X"] - inner["X"]) * sliver * u_in**power
+    found[~strip] = whole + np.sign(outer["X"] - inner["X"]) * sliver * u_in**power
+    return found
+
+
+def integrals(function: Callable[[Any, Array], Array], low: Array, high: Array) -> Array:
+    """Return the integral of each function k over s from `low[k]` to `high[k]`, by Gauss's rule.
+
+    An integrand may end in square roots, or in their reciprocals: with s = low + (high - low) x^2
+    (3 - 2 x), the integrand over x in [0, 1] is smooth at both ends. A panel of x is halved until its
+    rule agrees with that on its halves.
+
+    Parameters
+    ----------
+    function
+        Returns the values of the functions `which`, shape (n,), at the points `s`, shape (n, m); their
+        shape is (n, m), or (n, m, c) of c integrands each.
+    low, high
+        Limits, shape (count,).
+
+    Returns
+    -------
+    Array
+        Shape (count,) or (count, c).
+
+    Raises
+    ------
+    ArithmeticError
+        If an integral needs too many panels: its integrand is not piecewise smooth, or not finite.
+
+    Examples
+    --------
+    >>> ends = np.array([1.0, 4.0])
+    >>> integrals(lambda _, s: 1.0 / np.sqrt(s), 0.0 * ends, ends).round(12)
+    array([2., 4.])
+    """
+
+    def rule(which: Any, start: Array, width: float) -> Array:
+        x = start[:, None] + width * ABSCISSAE
+        span = (high - low)[which, None]
+        values = function(which, low[which, None] + span * (x * x * (3.0 - 2.0 * x)))
+        weights = (6.0 * width) * span * x * (1.0 - x) * WEIGHTS
+        return np.einsum("nm,nm...->n...", weights, values)
+
+    which, start, width = np.arange(low.size), np.zeros(low.size), 1.0
+    whole = rule(which, start, width)
+    total, size = np.zeros(whole.shape), 1.0 + np.abs(whole)
+    while which.size:
+        width *= 0.5
+        if 2 * np.bincount(which).max() > PANEL_LIMIT:
+            raise ArithmeticError(f"an integral of the motion needs over {PANEL_LIMIT} panels")
+        which, start = np.repeat(which, 2), np.stack([start, start + width], axis=-1).reshape(-1)
+        parts = rule(which, start, width)
+        halves = parts[::2] + parts[1::2]
+        agree = np.abs(halves - whole) <= TOLERANCE * size[which[::2]]  # never if they are NaN
+        again = ~np.all(agree.reshape(agree.shape[0], -1), axis=1)
+        np.add.at(total, which[::2][~again], halves[~again])
+        kept = np.repeat(again, 2)
+        which, start, whole = which[kept], start[kept], parts[kept]
+    return total

@@ -4,12 +4,11 @@ import math
 from typing import Any
 
 from kvtheory.models.continuum import contact as c_
-from kvtheory.models.continuum import coupled
 from kvtheory.models.continuum.contact import FREE, SIDES, TOUCHING, Instant, motion
 from kvtheory.models.continuum.memory_chains import summit
-from kvtheory.models.continuum.radau_iia import collocate, defect_error, imbalance
+from kvtheory.models.continuum.radau_iia import balances, collocate, defect_error, imbalance
 from kvtheory.models.continuum.run import Run
-from kvtheory.scene.base_motion import evaluate
+from kvtheory.scene import base_motion as b_
 
 EVENT_RESOLUTION = 1e-13
 """Of the time of an event, relative to 1 + s."""
@@ -34,18 +33,36 @@ NO_EVENT = (math.inf, math.inf, math.inf, math.inf, math.inf)
 
 def sliding_now(run: Run, s: float) -> tuple[float, float, float]:
     """Return Y, lambda, lambda' of the base under the indenter at present."""
-    return evaluate(run.pieces[run.now.slide], s)
+    return b_.evaluate(run.pieces[run.now.slide], s)
 
 
-def take_up(run: Run, span: float, rate: float) -> None:
-    """Let the base slide under a sprung indenter from now on, whose x' changes by `rate` in a `span`."""
+def begin_along(run: Run, span: float, rate: float) -> None:
+    """Begin the motion along x of a step, whose x' changes by `rate` in a `span`."""
     now, along = run.now, run.along[run.now.steps]
     along.start, along.span, along.depth, along.piece = now.s, span, now.x, now.piece
     for i in range(len(along.rate)):
         along.rate[i] = 0.0
     along.rate[0], along.rate[1] = now.w, rate
     now.slide = run.given.drives + now.steps
-    coupled.slide(run, along, run.pieces[now.slide])
+    slide(run, along, run.pieces[now.slide])
+
+
+def slide(run: Run, along: Any, row: Any) -> None:
+    """Write how the base slides under the indenter: the drive of a step less the motion along x."""
+    piece = run.pieces[along.piece]
+    after, count = along.start - piece[b_.START], len(row)
+    row[b_.START], row[b_.END] = along.start, along.start + along.span
+    row[b_.DISPLACEMENT] = b_.evaluate(piece, along.start)[0] - along.depth
+    for k in range(b_.POWERS, count):
+        row[k] = piece[k]
+    if after != 0.0:
+        for first in range(b_.POWERS, count - 1):
+            for k in range(count - 2, first - 1, -1):
+                row[k] += after * row[k + 1]
+    scale = 1.0
+    for k in range(run.method.stages + 1):
+        row[b_.POWERS + k] -= along.rate[k] / scale
+        scale *= along.span
 
 
 def attempt(run: Run, step: Any, span: float) -> tuple[float, float, Monitors]:
@@ -53,13 +70,9 @@ def attempt(run: Run, step: Any, span: float) -> tuple[float, float, Monitors]:
 
     The event is given by its time, infinite if there is none, and the monitors just after it.
     """
-    _begin(run, step, span)
     start = run.now.s
-    if run.given.sprung or not run.given.fixed:
-        evaluations = _solve(run, step)
-        run.now.evaluations += evaluations
-        if evaluations == 0:
-            return math.inf, math.inf, NO_EVENT
+    if not _solve(run, step, span):
+        return math.inf, math.inf, NO_EVENT
     size, before, found_after, found = 0.0, start, start, math.inf
     first = second = NO_EVENT
     for probe in range(run.method.probe_count + 1):
@@ -70,7 +83,7 @@ def attempt(run: Run, step: Any, span: float) -> tuple[float, float, Monitors]:
             return math.inf, math.inf, NO_EVENT
         if found == math.inf and slack < 0.0:
             found_after, found = before, s
-        if found == math.inf and _low(first, second, values):
+        if found == math.inf:
             found_after, found = _dip(run, step, probe, first, second, values)
         before, first, second = s, second, values
     if found == math.inf:
@@ -84,14 +97,6 @@ def _place(run: Run, probe: int) -> float:
     return run.method.probes[probe] if probe < run.method.probe_count else 1.0
 
 
-def _low(first: Monitors, second: Monitors, third: Monitors) -> bool:
-    """Whether a monitor is so low at one of three probes that it may be negative between them."""
-    low = False
-    for k in DIPPING:
-        low = low or min(first[k], second[k], third[k]) < LOW * max(first[k], third[k]) < math.inf
-    return low
-
-
 def _dip(
     run: Run, step: Any, probe: int, first: Monitors, second: Monitors, third: Monitors
 ) -> tuple[float, float]:
@@ -100,7 +105,6 @@ def _dip(
     The parabola through three points is lowest near where the monitor is: it is evaluated there, and the
     parabola drawn anew. The first three probes stand for what is before them, too.
     """
-    start, span = step.start, step.span
     for k in DIPPING:
         f, g, h = first[k], second[k], third[k]
         if not min(f, g, h) < LOW * max(f, h) < math.inf:
@@ -114,10 +118,10 @@ def _dip(
             nearest = min(abs(place - a), abs(place - b), abs(place - c))
             if not (earliest < place < c and nearest > CLOSE):
                 break
-            value = monitors(run, step, start + place * span)[0][k]
+            value = monitors(run, step, step.start + place * step.span)[0][k]
             if value < 0.0:
                 before = b if b < place else a if a < place else earliest
-                return start + before * span, start + place * span
+                return step.start + before * step.span, step.start + place * step.span
             if place < a:
                 a, b, c, f, g, h = place, a, b, value, f, g
             elif place < b:
@@ -132,11 +136,11 @@ def _dip(
     return math.inf, math.inf
 
 
-def _begin(run: Run, step: Any, span: float) -> None:
-    """Begin a step of the length `span`; its powers of v are still zero."""
-    now = run.now
-    if run.given.sprung:
-        take_up(run, span, 0.0)
+def _solve(run: Run, step: Any, span: float) -> bool:
+    """Solve for a step of the length `span` from the present state; return whether that succeeded."""
+    now, given, stages, last = run.now, run.given, run.method.stages, run.now.steps - 1
+    if given.sprung:
+        begin_along(run, span, 0.0)
     step.start, step.span, step.depth, step.piece = now.s, span, now.d, now.slide
     for k in range(2):
         here, side = now.sides[k], step.sides[k]
@@ -144,49 +148,41 @@ def _begin(run: Run, step: Any, span: float) -> None:
     for i in range(len(step.rate)):
         step.rate[i] = 0.0
     step.rate[0] = now.v
-
-
-def _solve(run: Run, step: Any) -> int:
-    """Solve for a step; return the number of evaluations, or 0 if that failed."""
-    now, stages, sprung = run.now, run.method.stages, run.given.sprung
-    guess, last = run.matrix[len(run.matrix) - 3], now.steps - 1
-    along = run.along[last + 1 if sprung else 0]
+    if given.fixed and not given.sprung:
+        return True
+    along, guess = run.along[last + 1 if given.sprung else 0], run.matrix[len(run.matrix) - 3]
     for i in range(len(guess) - 1):
         guess[i] = 0.0
     for i in range(stages if now.smooth else 0):
-        s = now.s + run.method.nodes[i] * step.span
+        s = now.s + run.method.nodes[i] * span
         guess[i] = motion(run.steps[last], s)[1] - now.v
-        if sprung:
+        if given.sprung:
             guess[stages + i] = motion(run.along[last], s)[1] - now.w
     evaluations = collocate(run, step, along)
-    if sprung and evaluations > 0:
-        coupled.slide(run, along, run.pieces[now.slide])
-    return evaluations
+    now.evaluations += evaluations
+    if given.sprung and evaluations > 0:
+        slide(run, along, run.pieces[now.slide])
+    return evaluations > 0
 
 
 def _probe(run: Run, step: Any, s: float, probe: int) -> tuple[Monitors, float]:
-    """Return the monitors at `s`, and the error there relative to the tolerance."""
+    """Return the monitors at `s`, and the error there of v and x' relative to the tolerance."""
     values, F, F_d, F_v, dv = monitors(run, step, s)
-    error = 0.0
+    error, now, given = 0.0, run.now, run.given
     if probe < run.method.probe_count:
         scales = run.method.scales[probe]
-        if not run.given.fixed:
-            run.now.evaluations += 1
-            error = defect_error(step.span, run.given.eps, dv, F, F_d, F_v, 1.0 - F_d, scales)
-            error /= run.given.rtol * (1.0 + abs(run.now.v))
-        if run.given.sprung:
-            error = max(error, _error_along(run, step, s, scales))
+        if not given.fixed:
+            now.evaluations += 1
+            error = defect_error(step.span, given.eps, dv, F, F_d, F_v, 1.0 - F_d, scales)
+            error /= given.rtol * (1.0 + abs(now.v))
+        if given.sprung:
+            instant = motion(step, s) + sliding_now(run, s)
+            x, w, dw = motion(run.along[now.steps], s)
+            _, (G, _, _, G_x, G_w) = balances(run, step, s, instant, x, w)
+            terms = 1.0 + given.spring * abs(x) + abs(w) * (given.damping - G_w) + abs(instant[4])
+            along = defect_error(step.span, given.eps_x, dw, G, G_x, G_w, terms, scales)
+            error = max(error, along / (given.rtol * (1.0 + abs(now.w))))
     return values, error
-
-
-def _error_along(run: Run, step: Any, s: float, scales: Any) -> float:
-    """Return the error of x' from the defect at `s`, relative to the tolerance."""
-    given, now = run.given, motion(step, s) + sliding_now(run, s)
-    x, w, dw = motion(run.along[run.now.steps], s)
-    _, (G, _, _, G_x, G_w) = coupled.balances(run, step, s, now, x, w)
-    rounding = 1.0 + given.spring * abs(x) + abs(w) * (given.damping - G_w) + abs(now[4])
-    error = defect_error(step.span, given.eps_x, dw, G, G_x, G_w, rounding, scales)
-    return error / (given.rtol * (1.0 + abs(run.now.w)))
 
 
 def smallest(values: Monitors) -> float:
@@ -202,19 +198,16 @@ def monitors(run: Run, step: Any, s: float) -> tuple[Monitors, float, float, flo
     now = motion(step, s) + sliding_now(run, s)
     d, v, dv, Y, number, _ = now
     allowed = run.given.allowed + ROUNDING * (abs(Y) + s * (abs(number) + abs(v)))
-    F, F_d, F_v, l, r = imbalance(run, step, s, now)
+    F, F_d, F_v, (l, _, _, _), (r, _, _, _) = imbalance(run, step, s, now)
     if step.sides[0].state == FREE:
         gap = -d if d < 0.0 else -summit(run, s, d, Y)[0]
         return (gap + allowed, math.inf, math.inf, math.inf, math.inf), F, F_d, F_v, dv
     left_state, left_ground = _slack(run, 0, s, l, now)
     right_state, right_ground = _slack(run, 1, s, r, now)
     values = (
-        r - l + allowed,
-        left_state + allowed,
-        left_ground + allowed,
-        right_state + allowed,
-        right_ground + allowed,
-    )
+        r - l + allowed, left_state + allowed, left_ground + allowed,
+        right_state + allowed, right_ground + allowed,
+    )  # fmt: skip
     return values, F, F_d, F_v, dv
 
 
@@ -245,9 +238,9 @@ def _locate(run: Run, step: Any, low: float, high: float) -> tuple[float, Monito
             low, at_low = middle, value
     if low == run.now.s:
         return low, violated
-    return (
-        _touchdown(run, step, earliest, high) if run.now.sides[0].state == FREE else high
-    ), violated
+    if run.now.sides[0].state == FREE:
+        high = _touchdown(run, step, earliest, high)
+    return high, violated
 
 
 def _touchdown(run: Run, step: Any, earliest: float, s: float) -> float:

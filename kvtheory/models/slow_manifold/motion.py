@@ -26,30 +26,23 @@ import numpy as np
 from numpy.polynomial import chebyshev
 from numpy.typing import NDArray
 
-from kvtheory.models.slow_manifold.start import Start, depth_slope, outruns
+from kvtheory.models.slow_manifold.start import NEWTON_STEPS, Start, depth_slope, outruns
 from kvtheory.theory.closed_forms import peeling_friction_force, trailing_edge_ratio
 
 Array = NDArray[np.float64]
 
 DEGREES = (24, 48, 96)
 """Degrees of the Chebyshev series, tried in turn; 24 is enough down to 1e-5, 48 at 1e-8, at any velocity."""
-SETTLED = 1e-2
-"""Share of the tolerance by which the path still differs from the steady half length at its end; from there
-on the remainder decays at one rate."""
-RESOLVED = 1e-2
-"""Share of the tolerance allowed for the truncation of the series."""
-INVERSIONS = 12
-"""Newton steps from times to u; four hundred random starts took at most four."""
+SETTLED, RESOLVED = 1e-2, 1e-2
+"""Shares of the tolerance: by which the path still differs from the steady half length at its end, from where
+on the remainder decays at one rate; and for the truncation of the series."""
 LARGEST_RATIO = 0.1
 """Ratio of slow to fast rate above which the first order in eps is unreliable."""
 SAFETY = 1.5
 """Safety factor on the first-order estimates; it also covers the second order at the largest ratio."""
-NEWTON_STEPS = 60
-"""Iterations for the contact length: Newton's method converges from above in less than ten."""
-CLOSE = 1e-7
-"""After a relative Newton step this small, the next one is rounding."""
-INVERTED = 1e-7
-"""After a step in u this small, the next one is rounding."""
+INVERSIONS, CLOSE = 12, 1e-7
+"""Most Newton steps from times to u (four hundred random starts took at most four), and a relative step after
+which the next one is rounding."""
 
 
 @dataclass(frozen=True)
@@ -79,11 +72,12 @@ def follow(given: Start, s: Array, tolerance: float) -> SlowMotion:
     """
     path = _path(given, tolerance)
     u = path.when(np.minimum(s, path.length))
-    fading = np.exp(-np.maximum(s - path.length, 0.0) / path.last_pace)
+    # beyond the end of the path, the remainder decays with ds/du there as its time constant
+    fading = np.exp(-np.maximum(s - path.length, 0.0) / float(path.pace.sum()))
     moved = (1.0 - given.steady) * np.exp(-u) * fading
     a, b, v, stiff, slope = _manifold(given, moved)
     values = _values(given, a, b, v)
-    delay = path.delay(u)
+    delay = path.at(u, path.delays)  # in units of eps
     least, most = 1.0 / given.stiffest, 1.0 / given.stiff
     apart = np.maximum(np.abs(delay - least), np.abs(delay - most))
     late = given.eps * (apart + path.ratio * (delay + most)) + path.error
@@ -160,25 +154,17 @@ class _Path:
     def when(self, s: Array) -> Array:
         """Return u at the times `s`, at most `end`."""
         nodes = np.linspace(0.0, self.end, self.times.size)
-        u = np.interp(s, self._series(self.times, nodes), nodes)
+        u = np.interp(s, self.at(nodes, self.times), nodes)
         for _ in range(INVERSIONS):
             basis = _basis(2.0 * u / self.end - 1.0, self.times.size)
             step = (basis @ self.times - s) / (basis[:, :-1] @ self.pace)
             u = np.minimum(np.maximum(u - step, 0.0), self.end)
-            if np.all((np.abs(step) <= INVERTED) | (s >= self.length)):
+            if np.all((np.abs(step) <= CLOSE) | (s >= self.length)):
                 return u
         raise ArithmeticError("the times on the slow manifold could not be inverted")
 
-    @property
-    def last_pace(self) -> float:
-        """ds/du at the end: the time constant with which what is left fades."""
-        return float(self.pace.sum())
-
-    def delay(self, u: Array) -> Array:
-        """Return the integral that delays the motion, in units of eps."""
-        return self._series(self.delays, u)
-
-    def _series(self, coefficients: Array, u: Array) -> Array:
+    def at(self, u: Array, coefficients: Array) -> Array:
+        """Return the value of a series at u."""
         return _basis(2.0 * u / self.end - 1.0, coefficients.size) @ coefficients
 
 

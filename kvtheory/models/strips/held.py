@@ -35,6 +35,8 @@ NODES = 128
 OWN_TIMES = 401
 """Times of the series if none are given."""
 ROUNDING = 1e-13
+FORCES = {"normal_force": "load", "friction_force": "friction_force"}
+"""The forces, and their scales in the static state."""
 
 STATEMENT = (
     "strips with edges in closed form, summed by Gauss's rule: ten times the difference to a rule with half "
@@ -60,11 +62,11 @@ class HeldBall:
         return stiffness * np.where((ahead >= -a) & (bent > 0.0), bent, 0.0)
 
     def surface(self, x: ArrayLike, time: float) -> Any:
-        """Refuse: the surface of a ball is not followed."""
+        """Refuse: the strips do not follow the surface."""
         raise ValueError("`surface` holds for line contacts only, not for a ball")
 
     def energy(self, time: ArrayLike) -> Any:
-        """Refuse: the energies of a ball are not followed."""
+        """Refuse: the strips do not follow the energies."""
         raise ValueError("`energy` holds for line contacts only, not for a ball")
 
 
@@ -83,7 +85,8 @@ def transient(scene: Scene, at: ArrayLike | None, *, certify: bool = True) -> Tr
     >>> found.normal_force.round(3).tolist()
     [113.283, 113.283]
     """
-    refuse_memory(scene)
+    if why := remembers(scene):
+        raise ValueError(f"the transient of a ball {why}; `elements` follows it")
     units = StaticState.of(scene)
     time = np.linspace(0.0, scene.run.duration, OWN_TIMES) if at is None else np.asarray(at, float)
     path = scene.drive.motion(scene.run.duration, 1.0)
@@ -91,8 +94,8 @@ def transient(scene: Scene, at: ArrayLike | None, *, certify: bool = True) -> Tr
     l_r = np.abs(velocity) * scene.foundation.retardation_time
     side = np.where(velocity < 0.0, -1.0, 1.0)
     load, friction = _forces(scene, units, l_r, NODES)
-    a = units.half_length
-    series = {
+    a, count = units.half_length, len(l_r)
+    series: dict[str, Any] = {
         "time": time,
         "velocity": velocity,
         "depth": np.full_like(l_r, units.depth),
@@ -109,29 +112,13 @@ def transient(scene: Scene, at: ArrayLike | None, *, certify: bool = True) -> Tr
         for name, fine, rough in zip(FORCES, (load, friction), coarse, strict=True):
             apart = float(np.max(np.abs(fine - rough), initial=0.0))
             errors[name] = 10.0 * apart / getattr(units, FORCES[name]) + ROUNDING
-    states = len(l_r)
-    moved = scene.drive.points[0][1] != 0.0
-    values: dict[str, Any] = series
     return Transient(
-        **values,
-        leading_state=("touching",) * states,
-        trailing_state=("peeling",) * states,
-        events=(Event(0.0, "drive jumps"),) if moved else (),
-        steps=0, evaluations=states * NODES, compiled=False, model="strips",
+        **series, leading_state=("touching",) * count, trailing_state=("peeling",) * count,
+        events=(Event(0.0, "drive jumps"),) if scene.drive.points[0][1] != 0.0 else (),
+        steps=0, evaluations=count * NODES, compiled=False, model="strips",
         certificate=Certificate(kind, STATEMENT, errors, AT_REST),
-        solution=HeldBall(scene, units),
-        units=units_for(scene.indenter, TRANSIENT_UNITS),
+        solution=HeldBall(scene, units), units=units_for(scene.indenter, TRANSIENT_UNITS),
     )  # fmt: skip
-
-
-FORCES = {"normal_force": "load", "friction_force": "friction_force"}
-"""The forces, and what of the static state measures them."""
-
-
-def refuse_memory(scene: Scene) -> None:
-    """Raise `ValueError` if an edge meets its own trace somewhere along the drive."""
-    if why := remembers(scene):
-        raise ValueError(f"the transient of a ball {why}; `elements` follows it")
 
 
 def remembers(scene: Scene) -> str:
