@@ -12,11 +12,11 @@ from dataclasses import replace
 import numpy as np
 
 from kvtheory.models.elements import kernels
-from kvtheory.models.elements.law import RIGHT, Array
-from kvtheory.models.elements.model import Model, root, span
-from kvtheory.models.elements.schemes import DEFAULT, Scheme
+from kvtheory.models.elements.model import Model, root
+from kvtheory.models.elements.schemes import DEFAULT, RIGHT, Scheme
 from kvtheory.results.errors import DivergenceError
 from kvtheory.scene.base_motion import BaseMotion
+from kvtheory.theory.laws import Array
 
 LONGEST_PASS = 0.25
 """Of the static half length, for the elements in a step; with more, some are pressed within a step."""
@@ -81,7 +81,7 @@ def _limit(scheme: Scheme, model: Model, length: float) -> float:
         return math.inf
     law, M = model.law, model.mass
     fastest = law.damping * length / M + math.sqrt(
-        (law.glassy_stiffness * length + model.spring) / M
+        (law.stiffness_within(0.0) * length + model.spring) / M
     )
 
     def growth(h: float) -> float:
@@ -113,7 +113,7 @@ def amplification(scheme: Scheme, model: Model, length: float, h: float) -> Arra
         )
 
     def moved(c: float, depth: Array) -> Array:
-        step = kernels.law_of(law, c * h)
+        step = law.step(c * h)
         kept, ramp = np.append(1.0, step.held), np.append(1.0, step.ramp)
         return kept[:, None] * held + ramp[:, None] * (depth - u)
 
@@ -167,8 +167,7 @@ def limits(model: Model, path: BaseMotion) -> tuple[float, float, float]:
         return -math.inf, math.inf, math.inf
     thrown = (
         model.depth / model.law.retardation_time
-        + model.fastest(path)
-        * float(abs(model.slope(np.array(span(model.indenter, model.depth)))).max())
+        + model.fastest(path) * model.steepest
         + model.depth * math.sqrt(model.spring / model.mass)
         + model.depth * math.sqrt(model.extent * float(model.law.arm_stiffness.sum()) / model.mass)
     )
