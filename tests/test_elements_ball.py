@@ -12,8 +12,8 @@ from kvtheory.models.elements.model import Model
 from kvtheory.models.elements.row import ElementRow, IndenterState
 from kvtheory.models.elements.schemes import SCHEMES
 from kvtheory.results import TRANSIENT_UNITS
-from kvtheory.results.table import scales
 from kvtheory.scene.static_state import StaticState
+from tests.test_elements_certificate import errors
 from tests.transient_ball import sheet, sheet_on_spring
 
 WIDER = kv.Sphere("10 mm", radius_across="25 mm")
@@ -26,21 +26,11 @@ RUBBER = kv.GeneralizedMaxwell("10 GN/m^3", arms=[["20 GN/m^3", "10 ms"]])
 STEADY = {"depth": "depth", "normal_force": "load", "friction_force": "friction_force",
           "leading_edge": "leading_edge", "trailing_edge": "trailing_edge",
           "peak_pressure": "peak_pressure"}  # fmt: skip
-COMPARED = [name for name in TRANSIENT_UNITS if name not in ("time", "velocity")]
 
 
 def ball(support, velocity=0.1, end=0.3, foundation=None):
     foundation = foundation or kv.Foundation("10 GN/m^3", "20 ms")
     return kv.Scene(WIDER, foundation, support, kv.Drive(velocity), kv.Run(end))
-
-
-def errors(run, expected, scene):
-    scale = scales(Model.of(scene, 1.0 / run.per_length).at_rest)
-    return {
-        name: float(np.nanmax(np.abs(getattr(run, name) - expected[name]), initial=0.0))
-        / scale[name]
-        for name in expected
-    }
 
 
 @pytest.mark.parametrize(
@@ -81,7 +71,7 @@ def test_strips_with_closed_form_edges_agree_at_constant_depth():
     scene = replace(ball(GRIPS["fixed"]), drive=kv.Drive(history=history), run=kv.Run(0.08))
     times = np.linspace(0.0, 0.08, 23)
     truth, run = kv.transient(scene, at=times), kv.elements(scene, per_length="80 /mm", at=times)
-    for name, error in errors(run, {n: getattr(truth, n) for n in COMPARED}, scene).items():
+    for name, error in errors(run, {n: getattr(truth, n) for n in TRANSIENT_UNITS}, scene).items():
         assert error <= max(run.certificate.relative_error[name], 1e-9), name
         assert error < (2e-3 if "edge" in name or "friction" in name else 4e-4), name
 
@@ -148,37 +138,6 @@ def test_order_in_both_spacings():
         ]
         left.append(max(abs(run.friction_force[0] / truth.friction_force[0] - 1.0) for run in runs))
     assert -np.polyfit(np.log(densities), np.log(left), 1)[0] > 1.8
-
-
-@pytest.mark.parametrize("seed", range(6))
-def test_the_certificate_covers_the_error_on_random_scenes(seed):
-    rng = np.random.default_rng(seed)
-    epsilon, kappa = 10.0 ** rng.uniform([-2.5, -1.0], [0.5, 1.0])
-    W = 0.5 * math.pi
-    supports = [
-        kv.DeadWeight(W * epsilon, 1.0 / epsilon),
-        kv.Suspended(W * epsilon, W * kappa, 1.0 / epsilon),
-    ]
-    top, end = 10.0 ** rng.uniform([-1.0, -0.5], [0.8, 0.3])
-    histories = [
-        [(0.0, top)],
-        [(0.0, top), (0.5 * end, top), (0.5 * end, 0.0)],
-        [(0.0, top), (0.5 * end, top), (0.5 * end, -0.6 * top)],
-        [(0.0, 0.0), (0.4 * end, top), (end, -top)],
-    ]
-    history = [(float(t), float(V)) for t, V in histories[seed % 4]]
-    scene = kv.Scene(
-        kv.Sphere(0.5), kv.Foundation(1.0, 1.0), supports[seed % 2], kv.Drive(history=history),
-        kv.Run(float(end)),
-    )  # fmt: skip
-    times = np.sort(rng.uniform(0.0, end, 6))
-    run = kv.elements(scene, per_length=rng.uniform(12.0, 30.0), at=times)
-    fine = kv.elements(scene, per_length=120.0, at=times, certify=False)
-    # Whether a ball that all but flies still touches decides about a pressure at an edge, which no run tells.
-    both = ~(np.isnan(run.leading_edge) ^ np.isnan(fine.leading_edge))
-    run = replace(run, **{name: getattr(run, name)[both] for name in TRANSIENT_UNITS})
-    for name, error in errors(run, {n: getattr(fine, n)[both] for n in COMPARED}, scene).items():
-        assert error <= max(run.certificate.relative_error[name], 1e-9), name
 
 
 def test_profiles_of_revolution():

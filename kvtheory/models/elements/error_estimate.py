@@ -39,7 +39,12 @@ beside its peak, inside the contact and at its edge (Pa)."""
 
 
 def estimate(
-    model: Model, path: BaseMotion, h: float, rows: Rows, coarse: Sequence[Rows], fine: Sequence[Rows]
+    model: Model,
+    path: BaseMotion,
+    h: float,
+    rows: Rows,
+    coarse: Sequence[Rows],
+    fine: Sequence[Rows],
 ) -> Certificate:
     """Compare with other runs of the best scheme; an edge that exists in one of two is not compared.
 

@@ -321,14 +321,16 @@ def left_alone(e: Elements, step: ElementStep, j: int, low: int, high: int) -> A
 def finish(
     e: Elements, step: ElementStep, runs: Runs, before: float, depths: tuple[float, float]
 ) -> None:
-    """Let a step pass: elements in `runs`, `pressed`, end on the indenter, all others were left alone.
+    """Let a step pass: elements in `runs` end on the indenter, all others were left alone.
 
     `before` is where the base was under the indenter at its start.
     """
     for j in range(e.counts[STRIPS]):
+        e.pressed[j, e.low[j] : e.high[j]] = False
         e.first[j] = e.last[j] = 0
     for r in range(runs.shape[0]):
         j, low, high = runs[r, 0], runs[r, 1], runs[r, 2]
+        e.pressed[j, low:high] = True
         if low < high:
             e.first[j], e.last[j] = e.first[j] if e.last[j] else low, high
     for j in range(e.counts[STRIPS]):
@@ -460,7 +462,8 @@ def implicit_step(
             status = attend(e, now, (place, place - travel), depth + sinks)
             if status != DONE:
                 return status, begun
-            step, runs, sums = _lay(e, law, step, state, (place, travel), min(h * state[RATE], sinks))
+            first = min(h * state[RATE], sinks)
+            step, runs, sums = _lay(e, law, step, state, (place, travel), first)
             runs, sunk = _sink(e, law, step, runs, sums, state)
             if not sunk > sinks or sinks == most:
                 break
@@ -595,10 +598,11 @@ def _walk(e: Elements, runs: Runs, sums: Array, sunk: float) -> tuple[Runs, Arra
         runs[r, 1], runs[r, 2], sums[r] = low, high, total
         count += high - low
     for j in range(e.counts[STRIPS]):
-        e.pressed[j, e.low[j] : e.high[j]] = e.meets[j, e.low[j] : e.high[j]] <= sunk
-        count -= e.pressed[j, e.low[j] : e.high[j]].sum()
+        count -= (meets[j, e.low[j] : e.high[j]] <= sunk).sum()
     if count == 0:
         return runs, sums, moved
+    for j in range(e.counts[STRIPS]):
+        e.pressed[j, e.low[j] : e.high[j]] = meets[j, e.low[j] : e.high[j]] <= sunk
     runs = runs_of(e.pressed, e.low, e.high)
     return runs, _sums(e, runs), True
 
@@ -662,9 +666,7 @@ def _sink(
     return runs, sunk
 
 
-def _relaxed_kinks(
-    e: Elements, law: ElementStep, begun: Runs, place: float, depth: float
-) -> Array:
+def _relaxed_kinks(e: Elements, law: ElementStep, begun: Runs, place: float, depth: float) -> Array:
     """Return the area of the kinks at both edges of each run, by dx, less what relaxes of it in the step.
 
     The mean force of arms bends at an edge, too.
@@ -716,9 +718,8 @@ def _kinks(
                 continue
             i, out = high if side else low - 1, 2 * side - 1
             if ended:
-                added, more, bend, _ = kink_area(
-                    (sunk - e.meets[j, i], sunk - e.meets[j, i + out], sunk - e.meets[j, i + 2 * out])
-                )
+                w, far = sunk - e.meets[j, i], sunk - e.meets[j, i + out]
+                added, more, bend, _ = kink_area((w, far, sunk - e.meets[j, i + 2 * out]))
                 wider += step.weights[j] * more
                 bent += step.weights[j] * bend
             else:
@@ -859,7 +860,9 @@ def _press(
 # Forces and edges at an instant
 
 
-def report(e: Elements, state: Array, law: ElementStep, now: float, about: Array, found: Array) -> int:
+def report(
+    e: Elements, state: Array, law: ElementStep, now: float, about: Array, found: Array
+) -> int:
     """Put what is reported at an instant into `found`, in the order of `error_estimate.COLUMNS`.
 
     `law` is that of the last step, `about` is (time, V, V just before it, whether the base moves or moved
@@ -867,7 +870,8 @@ def report(e: Elements, state: Array, law: ElementStep, now: float, about: Array
     p >= 0 (Eq. 24). Where the pressure is highest at an edge, its doubt is how much it differs between the
     elements beside that.
     """
-    time, V, V_before, forward, place = about[0], about[1], about[2], about[3], about[4] - state[ALONG]
+    time, V, V_before, forward = about[0], about[1], about[2], about[3]
+    place = about[4] - state[ALONG]
     status = attend(e, now, (place, place), state[DEPTH])
     if status != DONE:
         return status
@@ -937,8 +941,8 @@ def _pressure(e: Elements, state: Array, law: ElementStep, j: int, place: float,
     for k in range(e.arms.shape[0]):
         brought = e.law.arm_stiffness[k] * law.held[k]
         moved = (law.ramp[k] - brought) * law.h
-        touched = 1.0 * e.touched[j, low:high]
-        p += touched * e.arms[k, j, low:high] + (1.0 - touched) * (brought * (g - u) + moved * g_rate)
+        touched, followed = 1.0 * e.touched[j, low:high], brought * (g - u) + moved * g_rate
+        p += touched * e.arms[k, j, low:high] + (1.0 - touched) * followed
     if e.arms.shape[0]:
         p -= e.law.stiffness * (~e.touched[j, low:high] * u)
     e.slope[j, low:high] = slope
@@ -957,9 +961,9 @@ def _end(
     """
     i, out, p, slope = high - 1 if side else low, 2 * side - 1, e.meets[j], e.slope[j]
     now, before = _peeling(p[i], p[i + out]), _peeling(p_before[i], p_before[i + out])
-    w = gaps(e, j, i + out, out, place, depth)
-    if math.isinf(before) or straight(w):
-        before = 1.0 if e.touched[j, i + out] else 1.0 - touching(w)
+    touches, straight = touching(gaps(e, j, i + out, out, place, depth))
+    if math.isinf(before) or straight:
+        before = 1.0 if e.touched[j, i + out] else 1.0 - touches
     share = min(before, now, 1.0)
     p_edge = 0.0 if now <= share else p[i] + share * (p[i + out] - p[i])
     x = e.spacing * e.numbers[i] + place
@@ -989,29 +993,21 @@ def _peeling(inside: float, outside: float) -> float:
     return max(inside, 0.0) / (max(inside, 0.0) - outside) if outside < 0.0 else math.inf
 
 
-def touching(overlap: tuple[float, float, float]) -> float:
-    """Return how far inward of the first element outside w = 0 is, from 0 to 1 element.
+def touching(overlap: Any) -> tuple[float, bool]:
+    """Return how far inward of the first element outside w = 0 is, from 0 to 1 element, and how w falls.
 
-    w is that of the three nearest elements outside, and continued as their parabola.
+    w is that of the three nearest elements outside, and continued as their parabola. It falls in a straight
+    line, as on free ground, or as a square, where the edge peeled.
+
+    >>> touching((-0.5, -1.5, -2.5)), touching((-0.25, -2.25, -6.25))
+    ((0.5, True), (0.5, False))
     """
-    w, slope, bend = _parabola(overlap)
-    fall = slope + math.sqrt(max(slope * slope - 2.0 * w * bend, 0.0))
-    return min(max(-2.0 * w / fall, 0.0), 1.0) if fall else 1.0
-
-
-def straight(overlap: tuple[float, float, float]) -> bool:
-    """Whether w falls to the edge in a straight line, as on free ground, or as a square, where it peeled.
-
-    >>> straight((-0.5, -1.5, -2.5)), straight((-0.25, -2.25, -6.25))
-    (True, False)
-    """
-    w, slope, bend = _parabola(overlap)
-    return slope * slope - 2.0 * w * bend > STRAIGHT * slope * slope
-
-
-def _parabola(overlap: tuple[float, float, float]) -> tuple[float, float, float]:
     w, far, farthest = overlap
-    return w, 1.5 * w - 2.0 * far + 0.5 * farthest, w - 2.0 * far + farthest
+    slope, bend = 1.5 * w - 2.0 * far + 0.5 * farthest, w - 2.0 * far + farthest
+    square = slope * slope - 2.0 * w * bend
+    fall = slope + math.sqrt(max(square, 0.0))
+    share = min(max(-2.0 * w / fall, 0.0), 1.0) if fall else 1.0
+    return share, square > STRAIGHT * slope * slope
 
 
 def _split(e: Elements, low: int, high: int, place: float, V: float, sums: Array) -> None:
@@ -1028,7 +1024,8 @@ def _split(e: Elements, low: int, high: int, place: float, V: float, sums: Array
         here = _slope_of(e, x - _behind(e, V), 0)
         back = _slope_of(e, kink - NEAR * e.spacing, 0)
         ahead = _slope_of(e, kink + NEAR * e.spacing, 0)
-        p_back, p_ahead = p - e.law.damping * V * (back - here), p - e.law.damping * V * (ahead - here)
+        p_back = p - e.law.damping * V * (back - here)
+        p_ahead = p - e.law.damping * V * (ahead - here)
         share = (kink - x) / e.spacing + 0.5
         if p_back >= 0.0 and p_ahead >= 0.0:
             sums[0] += share * p_back + (1.0 - share) * p_ahead - p
@@ -1108,12 +1105,11 @@ def advance(
     step: int, reported: int, until: int,
 ) -> tuple[int, int, int]:  # fmt: skip
     """Run from a step on; return why it ended, the steps done and the instants reported."""
-    law = none = _law_at(course.law, 0)
+    none = _law_at(course.law, 0)
+    law = _law_at(course.law, 2 * course.which[step - 1] + 2) if step else none
     begun = runs_of(e.touched, e.low, e.high)
     while True:
         now = course.times[step]
-        if step:
-            law = _law_at(course.law, 2 * course.which[step - 1] + 2)
         while reported < course.after.size and course.after[reported] == step:
             status = report(e, state, law, now, course.about[reported], found[reported])
             if status != DONE:

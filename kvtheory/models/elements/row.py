@@ -86,7 +86,7 @@ class ElementRow:
         model, law, self.scheme = self.model, self.model.law, scheme
         names = ("spacing", "shift", "across", "mass", "weight", "spring", "depth", "half_length",
                  "mass_along", "spring_along", "damping_along")  # fmt: skip
-        self.constants = {name: float(getattr(model, name)) for name in names} | {
+        self.constants: dict[str, Any] = {name: float(getattr(model, name)) for name in names} | {
             "surface": model.surface, "profile": model.profile, "rule": model.rule, "parts": model.parts,
             "law": law if model.rule.relaxes else law._replace(rates=0.0 * law.rates),
             "tableau": scheme.table, "fitted": scheme.fitted, "explicit": bool(scheme.tableau),
@@ -161,14 +161,16 @@ class ElementRow:
     def _empty(self, first: int, width: int, strips: int) -> Elements:
         """Return elements that are undisturbed."""
         arms = np.zeros((self.model.law.arm_stiffness.size, strips, width))
-        u, since, height, meets, slope, before = np.zeros((6, strips, width))
-        touched, pressed = np.zeros((2, strips, width), dtype=bool)
+        work, flags = np.zeros((6, strips, width)), np.zeros((2, strips, width), dtype=bool)
         counts = np.zeros(kernels.UPDATES + 1, dtype=np.int64)
         counts[kernels.FIRST] = first
         numbers = np.arange(float(first), first + width) + self.model.shift
         ends = np.zeros((4, strips), dtype=np.int64)
-        return Elements(u, arms, since, touched, *ends, counts, height, meets, slope, before, pressed,
-                        numbers, **self.constants)  # fmt: skip
+        return Elements(
+            u=work[0], arms=arms, since=work[1], touched=flags[0], low=ends[0], high=ends[1], first=ends[2],
+            last=ends[3], counts=counts, height=work[2], meets=work[3], slope=work[4], before=work[5],
+            pressed=flags[1], numbers=numbers, **self.constants,
+        )  # fmt: skip
 
     def _move(self, t: float) -> None:
         """Move the window so that it holds the elements that are lacking, and those still of use."""
@@ -196,7 +198,7 @@ class ElementRow:
             compressed = np.abs(self.states(t)[0]) > FORGOTTEN * self.model.depth
             known = np.flatnonzero((compressed | row.touched).any(axis=0))
             first = int(row.counts[kernels.FIRST])
-            return (first + int(known[0]), first + int(known[-1]) + 1) if known.size else (first, first)
+            return first + int(known.min(initial=0)), first + int(known.max(initial=-1)) + 1
         back, ahead = self.path.extremes(t, min(t + self.memory, max(t, self.path.end)))
         low, high = span(self.model.indenter, self.deepest)
         return math.floor((low - ahead) / dx), math.ceil((high - back) / dx)

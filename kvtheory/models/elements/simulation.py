@@ -93,7 +93,8 @@ def simulate(
     path = model.path(scene)
     h = time_step or _default_step(model, path, scheme)
     stops, wanted = _instants(scene, path, h, at)
-    elements, count = model.strips(model.depth) * 2.0 * model.half_length / model.spacing, stops[-1] / h
+    count = stops[-1] / h
+    elements = model.strips(model.depth) * 2.0 * model.half_length / model.spacing
     if elements * count > MOST_OF_ALL:
         raise ValueError(
             f"`time_step` = {h:.6g} s: {count:,.3g} steps with {elements:,.3g} elements in the contact are "
@@ -116,7 +117,8 @@ def simulate(
         if progress is None:
             return None
         begun, own = work[k] / work[-1], (work[k + 1] - work[k]) / work[-1]
-        return lambda share, told: progress(float(begun + own * share), told + " for the error" * (k > 0))
+        words = " for the error" * (k > 0)
+        return lambda share, told: progress(float(begun + own * share), told + words)
 
     rows, row = _with_room(model, path, scheme, legs, wanted, part(0))
     updates, certificate = int(row.stored.counts[kernels.UPDATES]), UNKNOWN
@@ -126,7 +128,9 @@ def simulate(
             other = Model.of(scene, spacing, parts=True, shift=shift, coarser=coarser)
             others.append(_with_room(other, path, best, steps, wanted, part(k + 1))[0])
         certificate = estimate(model, path, h, rows, others[: len(SHIFTS)], others[len(SHIFTS) :])
-    kind, names = (SprungSimulation, SERIES_UNITS) if model.sprung else (Simulation, TRANSIENT_UNITS)
+    kind, names = (
+        (SprungSimulation, SERIES_UNITS) if model.sprung else (Simulation, TRANSIENT_UNITS)
+    )
     return kind(
         **{name: rows[name] for name in names}, scheme=scheme.row.name, per_length=1.0 / spacing, time_step=h,
         steps=sum(count for _, _, count in legs), element_updates=updates, warning=warning,
@@ -150,10 +154,10 @@ def _default_step(model: Model, path: BaseMotion, scheme: Scheme) -> float:
     while (shorter := _period(model, period)) < ROUGHLY * period:
         period = shorter
     # Along x, the dampers of the contact at rest may allow no swing.
-    resistance = model.damping_along + model.law.damping * model.tilt(model.extent)
-    stiff = model.spring_along * model.mass_along if model.sprung else 0.0
-    if resistance * resistance < 4.0 * stiff:
-        shorter = min(shorter, 2.0 * math.pi * math.sqrt(model.mass_along / model.spring_along))
+    if model.sprung:
+        resistance = model.damping_along + model.law.damping * model.tilt(model.extent)
+        if resistance * resistance < 4.0 * model.spring_along * model.mass_along:
+            shorter = min(shorter, 2.0 * math.pi * math.sqrt(model.mass_along / model.spring_along))
     resolved = min(model.law.retardation_time / PER_RELAXATION, shorter / PER_OSCILLATION)
     stable = limit_at(scheme, model, max(lengths(model, path)))
     return min(passing, max(resolved, path.end / MOST_STEPS), STABLE_SHARE * stable)
@@ -253,12 +257,16 @@ def _run(
     times, steps, after, about = [0.0], list[float](), list[int](), list[tuple[float, ...]]()
     for start, stop, count in legs:
         steps += [(stop - start) / max(count, 1)] * count
-        times += [start + (stop - start) * k / count for k in range(1, count)] + [stop] * (count > 0)
+        times += [start + (stop - start) * k / count for k in range(1, count)] + [stop] * (
+            count > 0
+        )
         if not count and stop in path.changes:
             times[-1] = stop
         if stop in asked:
             at, before = times[-1], path.velocity(times[-1], before=True)
-            about.append((stop, path.velocity(stop), before, path.forward(stop), path.displacement(at)))
+            about.append(
+                (stop, path.velocity(stop), before, path.forward(stop), path.displacement(at))
+            )
             after.append(len(steps))
     course = course_of(path, row.stored.law, np.array(times), np.array(steps), after, about,
                        limits(row.model, path))  # fmt: skip
