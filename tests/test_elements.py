@@ -322,16 +322,16 @@ def test_compiled_kernels_give_what_interpreted_ones_give(name, monkeypatch):
         np.testing.assert_allclose(other, one, atol=1e-7 * scale, err_msg=quantity)
 
 
-@pytest.mark.parametrize(
-    "shape",
-    [
-        kv.Parabola(0.01),
-        kv.Circle(0.01),
-        kv.PowerLaw(0.01, 4.0),
-        kv.PowerLaw(0.01, 1.5),
-        kv.Wedge(0.1),
-    ],
+SURFACES = (
+    kv.Parabola(0.01),
+    kv.Circle(0.01),
+    kv.PowerLaw(0.01, 4.0),
+    kv.PowerLaw(0.01, 1.5),
+    kv.Wedge(0.1),
 )
+
+
+@pytest.mark.parametrize("shape", SURFACES)
 def test_kernels_know_the_shapes_of_the_scene(shape):
     x = np.linspace(-0.0099, 0.0099, 23)
     for body in (shape, kv.Revolved(shape)):
@@ -380,6 +380,16 @@ def test_steps_that_find_no_element_fly():
         elements = ElementRow(model, kv.Drive(0.1).motion(1.0, least=0.1))
         new = elements.step(scheme, IndenterState(0.0, -1e-3, 0.0), 1e-4)
         assert new.rate == pytest.approx(9.80665e-4, rel=1e-9)
+
+
+def test_a_circle_pressed_in_almost_to_its_reach():
+    scene = sliding(0.1, indenter=kv.Circle(0.01), duration=0.02)
+    scene = replace(scene, support=kv.Fixed(0.0095))
+    edge = kv.steady(scene, method="quadrature").leading_edge
+    for scheme in SCHEMES:
+        result = kv.elements(scene, per_length="20 /mm", scheme=scheme, certify=False)
+        assert np.all(np.isfinite(result.friction_force))
+        assert result.leading_edge == pytest.approx(edge, rel=5e-3)
 
 
 # Use

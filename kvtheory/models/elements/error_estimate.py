@@ -39,13 +39,8 @@ beside its peak, inside the contact and at its edge (Pa)."""
 
 
 def estimate(
-    model: Model,
-    path: BaseMotion,
-    h: float,
-    rows: Rows,
-    coarse: Sequence[Rows],
-    fine: Sequence[Rows],
-) -> Certificate:
+    model: Model, path: BaseMotion, h: float, rows: Rows, coarse: Sequence[Rows], fine: Sequence[Rows]
+) -> Certificate:  # fmt: skip
     """Compare with other runs of the best scheme; an edge that exists in one of two is not compared.
 
     Let the error of this run be e and that of the best scheme at this density c, at half of it 4 c: the

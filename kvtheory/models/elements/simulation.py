@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from kvtheory import compilation
-from kvtheory.models.elements import kernels
+from kvtheory.models.elements import kernels, stability
 from kvtheory.models.elements.error_estimate import COLUMNS, SHIFTS, UNKNOWN, Rows, estimate
 from kvtheory.models.elements.model import Model
 from kvtheory.models.elements.row import (
@@ -20,14 +20,6 @@ from kvtheory.models.elements.row import (
     course_of,
 )
 from kvtheory.models.elements.schemes import DEFAULT, RIGHT, SCHEMES, ContactRule, Scheme
-from kvtheory.models.elements.stability import (
-    divergence,
-    doubts,
-    lengths,
-    limit_at,
-    limits,
-    stability_text,
-)
 from kvtheory.progress import Progress
 from kvtheory.results import SERIES_UNITS, TRANSIENT_UNITS, Simulation, SprungSimulation, units_for
 from kvtheory.results.errors import DivergenceError
@@ -104,7 +96,7 @@ def simulate(
     own_step = time_step is None and not scheme.tableau
     legs = _legs(stops, path.changes, h, _graded(model, path, h, stops[-1]) if own_step else {})
     h = max(((stop - start) / count for start, stop, count in legs if count), default=h)
-    warning = doubts(scheme, model, path, h)
+    warning = stability.doubts(scheme, model, path, h)
     if warning and warn is not None:
         warn(warning)
     best, half = SCHEMES[DEFAULT], [(start, stop, count // 2) for start, stop, count in legs]
@@ -159,7 +151,7 @@ def _default_step(model: Model, path: BaseMotion, scheme: Scheme) -> float:
         if resistance * resistance < 4.0 * model.spring_along * model.mass_along:
             shorter = min(shorter, 2.0 * math.pi * math.sqrt(model.mass_along / model.spring_along))
     resolved = min(model.law.retardation_time / PER_RELAXATION, shorter / PER_OSCILLATION)
-    stable = limit_at(scheme, model, max(lengths(model, path)))
+    stable = stability.limit_at(scheme, model, max(stability.lengths(model, path)))
     return min(passing, max(resolved, path.end / MOST_STEPS), STABLE_SHARE * stable)
 
 
@@ -241,7 +233,7 @@ def _with_room(
                 h = max((stop - start) / max(count, 1) for start, stop, count in legs)
                 error = DivergenceError(
                     f"the run diverged: the indenter sank to {deepest:g} times its static depth; "
-                    f"{stability_text(scheme, model, path, h)}"
+                    f"{stability.describe(scheme, model, path, h)}"
                 )
                 error.rows = outgrown.rows
                 raise error from None
@@ -269,7 +261,7 @@ def _run(
             )
             after.append(len(steps))
     course = course_of(path, row.stored.law, np.array(times), np.array(steps), after, about,
-                       limits(row.model, path))  # fmt: skip
+                       stability.limits(row.model, path))  # fmt: skip
     balances, found = np.zeros((2, kernels.WINDOW)), np.full((len(after), len(COLUMNS)), math.nan)
     row.compiled = row.model.profile is None and _worthwhile(row, len(steps))
     pause = max(1, int(PAUSE[row.compiled] / (1.0 + row.stored.u.size)))
@@ -283,7 +275,9 @@ def _run(
         error: OutgrownError | DivergenceError = OutgrownError()
         if status != kernels.OUTGROWN:
             h = max(steps)
-            error = divergence(status, scheme, row.model, path, h, times[done], row.state, balances)
+            error = stability.divergence(
+                status, scheme, row.model, path, h, times[done], row.state, balances
+            )
         error.rows = tuple(map(tuple, found[:reported, : len(TRANSIENT_UNITS)].tolist()))
         raise error
     order = {time: k for k, (time, *_) in enumerate(about)}

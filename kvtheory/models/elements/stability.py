@@ -121,7 +121,7 @@ def amplification(scheme: Scheme, model: Model, length: float, h: float) -> Arra
 def doubts(scheme: Scheme, model: Model, path: BaseMotion, h: float) -> str:
     """Return what is doubtful about a time step before the run begins, or nothing."""
     if h > limit_at(scheme, model, max(lengths(model, path))):
-        return f"the run may diverge: {stability_text(scheme, model, path, h)}"
+        return f"the run may diverge: {describe(scheme, model, path, h)}"
     passed = h * model.fastest(path) / model.half_length
     if passed > LONGEST_PASS:
         return (
@@ -131,7 +131,7 @@ def doubts(scheme: Scheme, model: Model, path: BaseMotion, h: float) -> str:
     return ""
 
 
-def stability_text(scheme: Scheme, model: Model, path: BaseMotion, h: float) -> str:
+def describe(scheme: Scheme, model: Model, path: BaseMotion, h: float) -> str:
     """Say how a step compares with the largest stable one, and what would do."""
     length = max(lengths(model, path))
     limit = limit_at(scheme, model, length)
@@ -178,5 +178,5 @@ def divergence(
         share = balances[0].sum() / balances[1].sum()
         sign = f"where the forces fail to balance the motion by {share:.0%}"
     return DivergenceError(
-        f"the run diverged at t = {time:.6g} s, {sign}: {stability_text(scheme, model, path, h)}"
+        f"the run diverged at t = {time:.6g} s, {sign}: {describe(scheme, model, path, h)}"
     )
