@@ -182,10 +182,8 @@ def weights_across(dy: float, count: int, rim: float) -> Array:
     >>> round(4.0 / 3.0 * b**3, 2)
     166.67
     """
-    weights = np.full(count, 2.0 * dy)
-    weights[0] = dy
-    last = math.floor(rim / dy)
-    s = rim / dy - last
+    weights, last = np.full(count, 2.0 * dy), math.floor(rim / dy)
+    weights[0], s = dy, rim / dy - last
     if 1 <= last <= count:
         weights[last - 1] += dy * (s * s - s + 1.0 / 6.0) / (1.0 + s)
     return weights
@@ -1137,6 +1135,6 @@ def advance(
             return THROWN_UP, step, reported
         if not abs(state[ALONG_RATE]) <= course.limits[1]:
             return THROWN_ALONG, step, reported
-        imbalance = balances[0].sum() - course.limits[2] * balances[1].sum()
-        if e.explicit and balances[1].min() > 0.0 and imbalance > 0.0:
+        forces = balances[1].sum() if e.explicit and balances[1].min() > 0.0 else 0.0
+        if forces and balances[0].sum() > course.limits[2] * forces:
             return UNBALANCED, step, reported

@@ -280,8 +280,10 @@ def surface_of(indenter: Indenter) -> kernels.Surface:
     if isinstance(indenter, Sphere):
         across, stretch = 0.5 / (indenter.radius_across or indenter.radius), indenter.stretch
     inside = math.nextafter(indenter.reach, 0.0) if math.isfinite(indenter.reach) else math.inf
-    numbers = map(float, (size, exponent, steep, inside, across))
-    return kernels.Surface(*numbers, isinstance(indenter, Revolved), float(stretch))
+    return kernels.Surface(
+        float(size), float(exponent), float(steep), inside, float(across),
+        isinstance(indenter, Revolved), float(stretch),
+    )  # fmt: skip
 
 
 class PythonProfile(NamedTuple):
