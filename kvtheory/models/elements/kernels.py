@@ -143,19 +143,17 @@ def height_at(s: Surface, profile: Any, x: Any, y: float) -> Any:
 
 def slope_at(s: Surface, profile: Any, x: Any, y: float) -> Any:
     """Return dh/dx, zero where the indenter has no surface."""
-    r = np.hypot(x, y) if s.revolved else x
+    if profile is None and s.exponent == 2.0:
+        return x * (1.0 / s.size)
+    r, side = np.hypot(x, y) if s.revolved else x, np.sign(x)
     near = np.minimum(np.abs(r), s.inside)
     if profile is not None:
         steep = profile.slope(np.copysign(near, r)) * np.copysign(1.0, r)
         side = np.copysign(1.0, x)
+    elif s.exponent == 0.0:
+        steep = near / np.sqrt((s.size - near) * (s.size + near))
     else:
-        side = np.sign(x)
-        if s.exponent == 2.0:
-            steep = near * (1.0 / s.size)
-        elif s.exponent == 0.0:
-            steep = near / np.sqrt((s.size - near) * (s.size + near))
-        else:
-            steep = s.steep * (near / s.size) ** (s.exponent - 1.0)
+        steep = s.steep * (near / s.size) ** (s.exponent - 1.0)
     steep = steep * (np.abs(r) <= s.inside)
     return steep * (x / np.maximum(r, 1e-300)) if s.revolved else steep * side
 
@@ -449,9 +447,8 @@ def implicit_step(
     guess = state[ALONG_RATE] + 0.5 * state[GAINED] * h / max(state[LAST], h)
     slid = h * guess / (1.0 + 0.25 * e.spring_along * h * h / e.mass_along)
     most, sunk, new_rate, new_along_rate = _deepest_fall(e, state, h), 0.0, state[RATE], 0.0
-    runs, step = begun, Step(0.0, 0.0, 0.0, 1.0, _weights(e, depth + 0.5 * h * state[RATE]), begun,
-                             np.empty((0, 2)), np.zeros((e.u.shape[0], 3), dtype=np.bool_),
-                             np.empty((0, 2), dtype=np.int64), np.empty(0))  # fmt: skip
+    weights = _weights(e, depth + 0.5 * h * state[RATE])
+    falling, runs = np.zeros((e.u.shape[0], 3), dtype=np.bool_), begun
     for _ in range(SLIDE_STEPS):
         place = Y[1] - (along + slid)
         travel = place - (Y[0] - along)
@@ -461,13 +458,13 @@ def implicit_step(
             if status != DONE:
                 return status, begun
             first = min(h * state[RATE], sinks)
-            step, runs, sums = _lay(e, law, step, state, (place, travel), first)
+            step, runs, sums = _lay(e, law, begun, falling, weights, state, (place, travel), first)
             runs, sunk = _sink(e, law, step, runs, sums, state)
             if not sunk > sinks or sinks == most:
                 break
             # Elements may have been missed, without which it sinks too deep, never too little.
             sinks = min(most, MORE_ROOM * sinks)
-            step.falling[:] = False
+            falling[:] = False
         if not sprung:
             break
         before = slid
@@ -500,15 +497,16 @@ def _deepest_fall(e: Elements, state: Array, h: float) -> float:
 
 
 def _lay(
-    e: Elements, law: ElementStep, step: Step, state: Array, way: tuple[float, float], first: float
-) -> tuple[Step, Runs, Array]:
+    e: Elements, law: ElementStep, begun: Runs, falling: Flags, weights: Array, state: Array,
+    way: tuple[float, float], first: float,
+) -> tuple[Step, Runs, Array]:  # fmt: skip
     """Find how far the indenter must sink to press each element at the end of the step: `meets`.
 
     That is to where the mean pressure would vanish: where a free element is then, and above where one in
     contact is now. An element that passes a kink of the shape is pressed as far as that pressed it. Return
     the step, the runs that are pressed if the indenter sinks by `first`, and the sums of `meets` over them.
     """
-    depth, (place, travel), begun = state[DEPTH], way, step.begun
+    depth, (place, travel) = state[DEPTH], way
     for j in range(e.counts[STRIPS]):
         low, high = e.low[j], e.high[j]
         x = positions(e, low, high, place)
@@ -541,12 +539,12 @@ def _lay(
         runs[r, 1] = min(max(runs[r, 1], low), high)
         runs[r, 2] = max(min(runs[r, 2], high), low)
     runs, sums, _ = _walk(e, runs, _sums(e, runs), first)
-    late, lack = _late(e, law, runs, step.weights, place - travel, depth, first)
-    wide = e.spacing * max(_extent(runs, step.weights), _extent(begun, step.weights))
+    late, lack = _late(e, law, runs, weights, place - travel, depth, first)
+    wide = e.spacing * max(_extent(runs, weights), _extent(begun, weights))
     theta = exponential_fit(law.h * law.damping * wide / e.mass) if e.fitted else 1.0
     relaxed = _relaxed_kinks(e, law, begun, place - travel, depth)
-    return Step(place, travel, first, theta, step.weights, begun, relaxed, step.falling, late,
-                lack), runs, sums  # fmt: skip
+    step = Step(place, travel, first, theta, weights, begun, relaxed, falling, late, lack)
+    return step, runs, sums
 
 
 def _passed(e: Elements, kink: float, place: float, travel: float) -> tuple[int, int]:
