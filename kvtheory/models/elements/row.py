@@ -26,7 +26,7 @@ KEPT_DEPTH = 4.0
 """Elements are kept within the reach of an indenter this many times as deep as at rest."""
 WORTHWHILE = 10_000
 """Steps of a strip that are interpreted before it pays to compile: about a second. To load what is compiled
-takes half a second; to compile it, once for an installation, a quarter of a minute."""
+takes half a second; to compile it, once for an installation, about a minute."""
 COLUMNS = 13
 """Numbers of a report, see `error_estimate.COLUMNS`."""
 
