@@ -7,38 +7,39 @@ import numpy as np
 import pytest
 
 import kvtheory as kv
-from kvtheory.models.elements.kernels import straight, touching
+from kvtheory.models.elements.kernels import touching
 from kvtheory.models.elements.model import Model
-from kvtheory.results import TRANSIENT_UNITS
 from kvtheory.results.table import scales
+from tests import prony_elements
+from tests.spring_random import random_case
+from tests.test_transient_random import SCENES
 
 LOAD = 4.0 / 3.0
-COMPARED = [name for name in TRANSIENT_UNITS if name not in ("time", "velocity")]
+SHARE = SCENES / 200
+"""Of the scenes below: `KVTHEORY_TEST_SCENES` asks for more."""
 LEAST = 1e-9
 """Relative: below it the theory is not known well enough."""
 
 
-def supports(rng):
+def supports(rng, per=LOAD):
+    """Return one support of each kind, with random inertia and stiffness."""
     epsilon, kappa = 10.0 ** rng.uniform([-4.0, -1.5], [1.0, 1.5])
-    mass, gravity = LOAD * epsilon, 1.0 / epsilon
-    return [
-        kv.Fixed(1.0),
-        kv.DeadWeight(mass, gravity),
-        kv.Suspended(mass, kappa * LOAD, gravity),
-    ]
+    mass, gravity = per * epsilon, 1.0 / epsilon
+    return [kv.Fixed(1.0), kv.DeadWeight(mass, gravity), kv.Suspended(mass, kappa * per, gravity)]
 
 
 def histories(rng, end, top):
     """Return drives with stops, reversals and ramps, in units of the retardation time."""
     a, b = np.sort(rng.uniform(0.1, 0.8, 2)) * end
     back = -top * rng.uniform(0.1, 1.5)
-    return [
+    ways = [
         [(0.0, top)],
         [(0.0, top), (a, top), (a, 0.0)],
         [(0.0, top), (a, top), (a, back)],
         [(0.0, top), (a, top), (a, 0.0), (b, 0.0), (b, top)],
         [(0.0, 0.0), (a, top), (b, top), (end, -top)],
     ]
+    return [[(float(t), float(V)) for t, V in way] for way in ways]
 
 
 def drawn(seed):
@@ -46,65 +47,126 @@ def drawn(seed):
     rng = np.random.default_rng(seed)
     end, top = 10.0 ** rng.uniform([-0.7, -1.5], [0.5, 1.3]) * [1.0, rng.choice([-1.0, 1.0])]
     support = supports(rng)[rng.integers(3)]
-    history = histories(rng, end, top)[rng.integers(5)]
+    drive = kv.Drive(history=histories(rng, end, top)[rng.integers(5)])
     times = np.sort(rng.uniform(0.0, end, rng.integers(2, 30)))
-    drive = kv.Drive(history=[(float(t), float(V)) for t, V in history])
     scene = kv.Scene(kv.Parabola(0.5), kv.Foundation(1.0, 1.0), support, drive, kv.Run(float(end)))
     return scene, times, 10.0 ** rng.uniform(0.9, 2.0)
 
 
-def errors(run, theory, scene):
+def plain(seed):
+    """Return a run of a Kelvin-Voigt scene, and the truth."""
+    scene, times, density = drawn(seed)
+    return (
+        kv.elements(scene, per_length=density, at=times),
+        kv.transient(scene, at=times, rtol=1e-9),
+        scene,
+    )
+
+
+def swinging(seed):
+    """Return the same under a drive that is a function, which leaves pressure on an edge as a jump does."""
+    scene, times, density = drawn(seed)
+    rng = np.random.default_rng(seed)
+    mean, rate = rng.uniform(-1.5, 1.5), 10.0 ** rng.uniform(-0.3, 1.2)
+    scene = replace(scene, drive=kv.Drive(function=lambda t: 3.0 * (mean + math.sin(rate * t))))
+    return (
+        kv.elements(scene, per_length=density, at=times),
+        kv.transient(scene, at=times, rtol=1e-9),
+        scene,
+    )
+
+
+def on_arms(seed):
+    """Return a run on one to three arms, and the truth by brute force, known to 1e-4."""
+    scene, times, density = drawn(seed)
+    rng = np.random.default_rng(seed)
+    arms = [
+        tuple(map(float, 10.0 ** rng.uniform([-1.0, -1.3], [1.0, 0.7])))
+        for _ in range(1 + seed % 3)
+    ]
+    support = [
+        kv.Fixed(1.0),
+        kv.DeadWeight(0.1 * LOAD, 10.0),
+        kv.Suspended(0.1 * LOAD, LOAD, 10.0),
+    ][seed % 3]
+    scene = replace(scene, foundation=kv.GeneralizedMaxwell(1.0, arms=arms), support=support)
+    times, density = times[-6:].tolist(), min(density, 80.0)
+    return kv.elements(scene, per_length=density, at=times), prony_elements.run(scene, times), scene
+
+
+def on_spring(seed):
+    """Return a run on a spring, and the truth by the continuum."""
+    case = random_case([1, 3, 6, 16][seed % 4] + 17 * (seed // 4))
+    scene, times = case.scene(), list(case.times)
+    truth = kv.transient(scene, at=times, rtol=1e-7, certify=False)
+    return kv.elements(scene, per_length=40.0, at=times), truth, scene
+
+
+def ball(seed):
+    """Return a run of a ball, and one with several times as many elements.
+
+    Whether a ball that all but flies still touches decides about a pressure at an edge, which no run tells.
+    """
+    rng = np.random.default_rng(seed)
+    end, top = 10.0 ** rng.uniform([-0.7, -1.0], [0.0, 0.8])
+    support = supports(rng, 0.5 * math.pi)[1 + seed % 2]
+    drive = kv.Drive(history=histories(rng, end, top)[seed % 5])
+    scene = kv.Scene(kv.Sphere(0.5), kv.Foundation(1.0, 1.0), support, drive, kv.Run(float(end)))
+    times = np.sort(rng.uniform(0.0, end, 6))
+    run = kv.elements(scene, per_length=rng.uniform(12.0, 22.0), at=times)
+    fine = kv.elements(scene, per_length=75.0, at=times, certify=False)
+    both = ~(np.isnan(run.leading_edge) ^ np.isnan(fine.leading_edge))
+    names = run.certificate.relative_error
+    return replace(run, **{name: getattr(run, name)[both] for name in names}), {
+        name: getattr(fine, name)[both] for name in names
+    }, scene  # fmt: skip
+
+
+def errors(run, truth, scene):
     """Return the largest error of each quantity by its scale, the edges from left to right."""
     scale = scales(Model.of(scene, 1.0 / run.per_length).at_rest)
-    edges = np.array([theory.leading_edge, theory.trailing_edge])
-    first = run.leading_edge < run.trailing_edge
-    expected = {name: getattr(theory, name) for name in COMPARED}
-    low, high = np.fmin(*edges), np.fmax(*edges)
-    expected["leading_edge"] = np.where(first, low, high)
-    expected["trailing_edge"] = np.where(first, high, low)
+    truth = truth if isinstance(truth, dict) else vars(truth)
+    expected = {
+        name: truth[name] for name in scale if name in truth and name not in ("time", "velocity")
+    }
+    if "leading_edge" in expected:
+        edges, first = (
+            (truth["leading_edge"], truth["trailing_edge"]),
+            run.leading_edge < run.trailing_edge,
+        )
+        low, high = np.fmin(*edges), np.fmax(*edges)
+        expected["leading_edge"] = np.where(first, low, high)
+        expected["trailing_edge"] = np.where(first, high, low)
     return {
-        name: np.nanmax(np.abs(getattr(run, name) - expected[name]), initial=0.0) / scale[name]
-        for name in COMPARED
+        name: np.nanmax(np.abs(getattr(run, name) - value), initial=0.0) / scale[name]
+        for name, value in expected.items()
     }
 
 
-@pytest.mark.parametrize("first", range(0, 80, 20))
-def test_the_certificate_covers_the_error_on_random_scenes(first):
-    for seed in range(first, first + 20):
-        scene, times, density = drawn(seed)
-        run = kv.elements(scene, per_length=density, at=times)
-        theory = kv.transient(scene, at=times, rtol=1e-9)
-        claimed = run.certificate.relative_error
-        for name, error in errors(run, theory, scene).items():
-            assert error <= max(claimed[name], LEAST), (seed, name)
+KINDS = {plain: 40, swinging: 12, on_arms: 9, on_spring: 4, ball: 4}
+"""How many scenes of each kind."""
 
 
-@pytest.mark.parametrize("seed", range(24))
-def test_the_certificate_covers_the_error_under_a_drive_that_is_a_function(seed):
-    """A swinging drive leaves pressure on an edge, as a jump does."""
-    plain, times, density = drawn(seed)
-    rng = np.random.default_rng(seed)
-    mean, rate = rng.uniform(-1.5, 1.5), 10.0 ** rng.uniform(-0.3, 1.2)
-    drive = kv.Drive(function=lambda t: 3.0 * (mean + math.sin(rate * t)))
-    scene = replace(plain, drive=drive)
-    run = kv.elements(scene, per_length=density, at=times)
-    theory = kv.transient(scene, at=times, rtol=1e-9)
-    for name, error in errors(run, theory, scene).items():
-        assert error <= max(run.certificate.relative_error[name], LEAST), name
+@pytest.mark.parametrize("kind", KINDS)
+def test_the_certificate_covers_the_error_on_random_scenes(kind):
+    for seed in range(math.ceil(SHARE * KINDS[kind])):
+        run, truth, scene = kind(seed)
+        found, known = errors(run, truth, scene), 1e-4 if kind is on_arms else LEAST
+        assert len(found) >= 5
+        for name, error in found.items():
+            assert error <= run.certificate.relative_error[name] + known, (seed, name)
 
 
 @pytest.mark.parametrize("density", [8.0, 11.7, 40.0])
 @pytest.mark.parametrize("support", ["fixed", "dead-weight"])
 def test_a_start_so_slow_that_elements_hardly_move_is_certified_too(density, support):
     """The leading edge then presses less than an element farther out, and yet it touches."""
-    mass = LOAD * 5.0
-    held = kv.Fixed(1.0) if support == "fixed" else kv.DeadWeight(mass, LOAD / mass)
+    held = kv.Fixed(1.0) if support == "fixed" else kv.DeadWeight(LOAD * 5.0, 0.2)
     for V in (0.01, -0.03, 0.06):
         scene = kv.Scene(kv.Parabola(0.5), kv.Foundation(1.0, 1.0), held, kv.Drive(V), kv.Run(0.5))
         times = np.linspace(0.0, 0.5, 7)
         run = kv.elements(scene, per_length=density, at=times)
-        theory = kv.transient(scene, at=times, rtol=1e-9)
-        found = errors(run, theory, scene)
+        found = errors(run, kv.transient(scene, at=times, rtol=1e-9), scene)
         assert found["leading_edge"] * density < 0.1  # of an element
         for name, error in found.items():
             assert error <= max(run.certificate.relative_error[name], LEAST), (V, name)
@@ -127,6 +189,19 @@ def test_the_peak_under_a_tip_is_known_to_the_next_element():
         run = kv.elements(scene, per_length="21.3 /mm", at=[0.0493, 0.05])
         difference = np.abs(run.peak_pressure - peak).max() / (1e10 * 3e-4)
         assert 0.0 < difference <= run.certificate.relative_error["peak_pressure"] < 0.5
+
+
+def test_a_kink_of_the_pressure_at_its_peak_is_known_to_second_order():
+    """There what lay in contact at the start meets what entered it: the pressure has a ridge."""
+    rubber = kv.GeneralizedMaxwell(1e10, arms=[(3e10, 0.01), (1e10, 0.1)])
+    scene, claims = kv.Scene(foundation=rubber, run=kv.Run(0.01)), []
+    scale = 1e10 * kv.steady(over={"drive.velocity": 0.0}).depth
+    truth = kv.elements(scene, per_length="1600 /mm", at=[0.01], certify=False).peak_pressure
+    for density in ("100 /mm", "400 /mm"):
+        run = kv.elements(scene, per_length=density, at=[0.01])
+        claims.append(run.certificate.relative_error["peak_pressure"])
+        assert abs(run.peak_pressure - truth) / scale <= claims[-1]
+    assert claims[1] < min(claims[0] / 8.0, 2e-3)
 
 
 def test_friction_is_certified_relative_to_what_the_statement_says():
@@ -157,10 +232,8 @@ def test_where_an_edge_is_between_two_elements():
     """On free ground w falls in a straight line; where contact peeled off, as a square."""
     x = np.arange(8.0)
     for place in (3.1, 3.5, 3.9):
-        line = 2.0 * (place - x)
-        assert 1.0 - touching(line[4:7]) == pytest.approx(place - 3.0)
-        assert straight(line[4:7])
-        square = -((x - place) ** 2)
-        assert not straight(square[4:7])
-        curved = (place - x) * (4.0 + x)
-        assert 1.0 - touching(curved[4:7]) == pytest.approx(place - 3.0)
+        for overlap in (2.0 * (place - x), (place - x) * (4.0 + x)):
+            share, straight = touching(overlap[4:7])
+            assert 1.0 - share == pytest.approx(place - 3.0)
+            assert straight
+        assert not touching(-((x - place) ** 2)[4:7])[1]

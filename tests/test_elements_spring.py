@@ -12,14 +12,13 @@ from kvtheory.models.elements.row import ElementRow, IndenterState
 from kvtheory.models.elements.schemes import SCHEMES
 from kvtheory.models.elements.stability import lengths, limit_at
 from kvtheory.results import SERIES_UNITS
-from kvtheory.results.table import scales
 from tests import spring_reference
-from tests.spring_random import Case, Spring, random_case
+from tests.spring_random import Case, Spring
+from tests.test_elements_certificate import errors
 
 TABLE_1 = kv.Scene(
     drive=kv.Drive(velocity="91 mm/s", stiffness="1 MN/m^2", damping="2 kN*s/m^2"), run=kv.Run(0.02)
 )
-NAMES = [name for name in SERIES_UNITS if name not in ("time", "velocity")]
 HARD = (
     "light along x", "overdamped", "suspended", "fixed, soft", "fixed, stop", "stop", "stop, soft",
     "reversal", "to and fro", "stick-slip", "hop",
@@ -34,15 +33,6 @@ def hard(name):
     spring = Spring(given.inertia, given.damping, given.stiffness)
     case = Case(given.drive, given.epsilon or 1.0, kappa, spring, given.times[-1])
     return case.scene(), list(given.times)
-
-
-def errors(run, truth, scene):
-    """Return the largest error of each quantity, by its scale."""
-    measures = scales(Model.of(scene).at_rest)
-    return {
-        name: np.nanmax(np.abs(getattr(run, name) - getattr(truth, name)), initial=0.0) / measures[name]
-        for name in NAMES
-    }  # fmt: skip
 
 
 @pytest.mark.parametrize("name", HARD)
@@ -64,16 +54,6 @@ def test_the_hard_scenes_slide_backwards():
         velocity = kv.transient(scene, at=times, rtol=1e-4, certify=False).sliding_velocity
         backward += velocity.min() < 0.0 < velocity.max()
     assert backward >= 4
-
-
-@pytest.mark.parametrize("seed", [1, 3, 6, 16])
-def test_random_scenes(seed):
-    case = random_case(seed)
-    scene, times = case.scene(), list(case.times)
-    run = kv.elements(scene, per_length=40.0, at=times)
-    truth = kv.transient(scene, at=times, rtol=1e-7, certify=False)
-    for quantity, error in errors(run, truth, scene).items():
-        assert error <= run.certificate.relative_error[quantity], quantity
 
 
 @pytest.mark.parametrize("scheme", SCHEMES)

@@ -58,8 +58,7 @@ def _faulty_simulation(
     scene: Scene, spacing: float, time_step: float, times: Sequence[float], does: Mapping[str, Any]
 ) -> Mapping[str, Any]:
     """Simulate a scene by the paper's scheme with a fault in the contact rule or the initial state."""
-    from kvtheory.models.elements.law import ContactRule
-    from kvtheory.models.elements.schemes import SCHEMES
+    from kvtheory.models.elements.schemes import SCHEMES, ContactRule
     from kvtheory.models.elements.simulation import simulate
 
     rule = ContactRule(**{name: value for name, value in does.items() if name != "start"})

@@ -299,3 +299,102 @@ def differences(z: Array, sigma: Complex) -> tuple[Complex, ...]:
         for n in (2, 3, 4):
             found[n][near] = fall @ SHARES[n - 1]
     return tuple(sigma * each for each in found[2:])
+
+
+class ElementStep(NamedTuple):
+    """What an element does in a step of the length h, or of several lengths along the first axis.
+
+    `fall` are the factors of the modes of a free element, `held` those of the arms of one that is held where
+    it is, `weights` those of the mean force of arms then; `free` gives the latter from the modes of a free
+    element. A unit ramp adds `ramp` to the arms and `stiffness` to the mean pressure; `damping` is that of
+    the damper which, beside a spring, does to a ramp as the step does.
+    """
+
+    h: Any
+    fall: Array
+    held: Array
+    weights: Array
+    ramp: Array
+    stiffness: Any
+    damping: Any
+    free: Array
+
+
+class Element(NamedTuple):
+    """One element of the foundation: a spring K (N/m^3), a damper C (N s/m^3), or arms K_i, tau_i (s) for it.
+
+    Compressed by u, it answers with the pressure p = K u + C u' + sum s_i, s_i' = K_i u' - s_i/tau_i. Left
+    alone, p vanishes and u is a sum of modes that decay at the `rates` with the `shares`; `to_modes` and
+    `from_modes` go between them and the compressions of the dampers of the arms, y_i = u - s_i/K_i. Without
+    arms, u itself is the one mode.
+
+    >>> element = Element.of(2.0, 0.2)
+    >>> element.retardation_time, element.longest_time, element.pressure(1.0, 5.0)
+    (0.1, 0.1, 3.0)
+    """
+
+    stiffness: float
+    damping: float
+    arm_stiffness: Array
+    arm_time: Array
+    rates: Array
+    shares: Array
+    to_modes: Array
+    from_modes: Array
+
+    @classmethod
+    def of(cls, stiffness: float, damping: float, arms: Any = ()) -> "Element":
+        """Return an element with a damper or, without it, with arms (K_i, tau_i).
+
+        y_i' = (u - y_i)/tau_i is symmetric with the weights sqrt(K_i tau_i); its inverse has the
+        retardation times for eigenvalues, each longer than that of an arm.
+        """
+        K, C, one = float(stiffness), float(damping), np.ones(1)
+        K_i, tau_i = np.array(arms, dtype=float).reshape(-1, 2).T.copy()
+        if not K_i.size:
+            return cls(K, C, K_i, tau_i, one * (K / C), one, np.eye(1), np.eye(1))
+        weight = np.sqrt(K_i * tau_i)
+        times, vectors = np.linalg.eigh(np.diag(tau_i) + np.outer(weight, weight) / K)
+        back, to_modes = vectors / weight[:, None], np.ascontiguousarray(vectors.T * weight)
+        shares, rates = K_i / (K + K_i.sum()) @ back, 1.0 / np.maximum(times, tau_i.min())
+        return cls(K, 0.0, K_i, tau_i, rates, shares, to_modes, back)
+
+    @property
+    def retardation_time(self) -> float:
+        """(C + sum K_i tau_i)/K, in s."""
+        return (self.damping + float(self.arm_stiffness @ self.arm_time)) / self.stiffness
+
+    @property
+    def longest_time(self) -> float:
+        """The longest retardation time, in s."""
+        return 1.0 / float(self.rates.min())
+
+    def stiffness_within(self, time: float) -> float:
+        """Return the effective stiffness for loading over this time; of faster arms the damping is left."""
+        return self.stiffness + float(self.arm_stiffness @ (self.arm_time / (self.arm_time + time)))
+
+    def pressure(self, g: Any, g_rate: Any) -> Any:
+        """Return p of elements on the indenter whose arms are relaxed (Eqs. 6, 7, 12)."""
+        return self.stiffness * g + self.damping * g_rate
+
+    def step(self, h: Any) -> ElementStep:
+        """Return the law over steps of the lengths h, exact for a compression that is linear in time.
+
+        The mean pressure of a damper is that with the weight e^(t/tau): k (g - u e^(-h/tau)), k =
+        K/(1 - e^(-h/tau)), whatever the history of u between. That of arms is the plain mean: with
+        z_i = h/tau_i, phi_1 = (1 - e^(-z))/z and phi_2 = (1 - phi_1)/z, an arm has over a ramp the mean
+        phi_1 s_i + phi_2 K_i (u_1 - u_0) and ends at e^(-z) s_i + phi_1 K_i (u_1 - u_0).
+        """
+        h = np.asarray(h, dtype=float)
+        z, K_i = h[..., None] / self.arm_time, self.arm_stiffness
+        phi_1, phi_2 = (each.real for each in phi(z.astype(complex))[:2])
+        ramp, stiffness = phi_1 * K_i, np.full(h.shape, 0.5 * self.stiffness)
+        if self.damping:
+            with np.errstate(divide="ignore"):
+                stiffness = -self.stiffness / np.expm1(-h * self.stiffness / self.damping)
+        return ElementStep(
+            h, np.exp(-h[..., None] * self.rates), np.exp(-z), phi_1, ramp,
+            stiffness + phi_2 @ K_i, self.damping + h * ((2.0 * phi_2 - phi_1) @ K_i),
+            ramp.sum(axis=-1)[..., None] * self.shares[: K_i.size] - ramp @ self.from_modes[: K_i.size]
+            if K_i.size else ramp,
+        )  # fmt: skip

@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from kvtheory.models.elements.model import Model, span
+from kvtheory.models.elements.model import Model
 from kvtheory.models.elements.schemes import DEFAULT
 from kvtheory.results import SERIES_UNITS, Certificate
 from kvtheory.results.certificate import AT_REST
@@ -39,8 +39,8 @@ beside its peak, inside the contact and at its edge (Pa)."""
 
 
 def estimate(
-    model: Model, path: BaseMotion, h: float, rows: Rows, coarse: Sequence[Rows], fine: Rows | None
-) -> Certificate:
+    model: Model, path: BaseMotion, h: float, rows: Rows, coarse: Sequence[Rows], fine: Sequence[Rows]
+) -> Certificate:  # fmt: skip
     """Compare with other runs of the best scheme; an edge that exists in one of two is not compared.
 
     Let the error of this run be e and that of the best scheme at this density c, at half of it 4 c: the
@@ -49,11 +49,11 @@ def estimate(
     scale = scales(model.at_rest)
     differences = {
         name: max(_apart(rows, other, name) for other in coarse)
-        + (0.0 if fine is None else _apart(rows, fine, name))
+        + sum(_apart(rows, other, name) for other in fine)
         for name in scale
     }
     changes = len(path.pieces) > 1 or any(path.pieces[0][POWERS + 1 :])
-    known = KNOWN if model.law.lags(h) else 0.0
+    known = KNOWN if (model.law.damping > 0.0 or (model.law.arm_time < h).any()) else 0.0
     jump = known if changes else 0.0
     # On a spring, edges stop and turn without a jump of the pressure.
     edge = (
@@ -61,15 +61,14 @@ def estimate(
     ) * model.spacing
     width = 1.0 if model.indenter.per_width else 2.0 * model.half_width(model.depth)
     force = jump * model.spacing * width * float(rows["peak_pressure"].max())
-    steepest = float(abs(model.slope(np.array(span(model.indenter, model.depth)))).max())
     differences["leading_edge"] += edge
     differences["trailing_edge"] += edge
     differences["normal_force"] += force
-    differences["friction_force"] += force * steepest
+    differences["friction_force"] += force * model.steepest
     differences["peak_pressure"] += float(
         rows["peak_doubt"].max() + jump * rows["edge_doubt"].max()
     )
-    runs = "half as many elements and steps" + ("" if fine is None else ", and as many")
+    runs = "half as many elements and steps" + ", and as many" * bool(fine)
     return Certificate(
         "estimated",
         f'{SAFETY:g} times the largest difference to the scheme "{DEFAULT}" with {runs}, {RELATIVE_TO}'

@@ -1,16 +1,12 @@
-"""The elements over a step: one source that runs interpreted and, where it pays, compiled by numba.
+"""The row of elements over a step: one source, interpreted or compiled by numba.
 
-Read it from top to bottom. The row: which elements are near the indenter, strip by strip. The law of one
-element over a step. What both kinds of schemes share: where elements are, and what is left of them at the end
-of a step. The implicit step: the balance of momentum, solved for the depth. The explicit step of Runge and
-Kutta. The sums over elements at an instant, whole elements or up to the very edges. Last, the run.
+Read from the top: the indenter; the row, strip by strip; an element over a step; the implicit step; the
+explicit step; sums over the elements at an instant, whole elements or up to the edges; the run.
 
-Loops over the elements of a strip are array expressions, which are fast both ways; loops over strips, edges
-and arms are scalar. Positions along a strip count from the first stored element. A run of elements in contact
-is (strip, first, one after the last). A line contact is one strip. `profile` is None but for a shape that is
-a Python function, which is interpreted.
-
-All that is compiled is in this file, since numba does not notice a change in another.
+Loops over elements are array expressions, fast both ways; loops over strips, edges and arms are scalar.
+A line contact is one strip. A run of elements in contact is (strip, first, one after the last), counted from
+the first stored element. All that is compiled is in this file, since numba does not notice a change in
+another. `profile` is None but for a shape given by Python functions, which is interpreted.
 """
 
 import math
@@ -19,53 +15,58 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from kvtheory.models.elements.law import Array, ContactRule, Law
+from kvtheory.models.elements.schemes import ContactRule
+from kvtheory.theory.laws import Array, Element, ElementStep
 
-PARABOLA, CIRCLE, WEDGE, POWER_LAW = range(4)
-"""Kinds of profiles."""
-DEPTH, RATE, ALONG, ALONG_RATE, IMBALANCE, FORCE, LAST = range(7)
-"""The indenter: depth and rate, the same along x, two forces to judge an explicit step by, its last step."""
+Runs = NDArray[np.int64]
+Flags = NDArray[np.bool_]
+
+DEPTH, RATE, ALONG, ALONG_RATE, IMBALANCE, FORCE, LAST, GAINED = range(8)
+"""The indenter: depth, its rate, both along x, the two forces that judge an explicit step, the last step and
+the change of the rate along x in it."""
 FIRST, LOW, HIGH, STRIPS, UPDATES = range(5)
-"""Counts: the first element, the elements that are lacking, strips near the indenter, updates of elements."""
+"""Counts: the first element stored, the range that is lacking, strips near the indenter, element updates."""
 DONE, LACKING, OUTGROWN, THROWN_UP, THROWN_ALONG, UNBALANCED = range(6)
 """How a run ended, or why it paused."""
 
-FAR = 1e300
-"""The height beyond the reach of a shape: no indenter is that deep."""
+FAR = 1e200
+"""Height (m) where the indenter has no surface."""
 SPARE, UNMET = 7, 3
-"""Elements beyond those that can be met: the surface is extended from three, and three more never are met."""
+"""Elements beyond those that can be met, and those at each end of the window that never are: edges are
+extrapolated from three."""
 SMALL_FIT, SMALL_RAMP = 1e-2, 2e-2
-"""Below these, θ(z) and the mean of a ramp are taken from series, where the closed forms would cancel."""
+"""Below these, the exponential fit and phi_2 are taken from series, where the closed forms cancel."""
 NEWTON_STEPS, SLIDE_STEPS = 60, 30
-"""The iterations end after two or three."""
+"""Limits that are never reached: the iterations end after two or three."""
 SLIDE_RTOL = 1e-9
-"""Of the static half length: a change so small was the last, and leaves far less."""
+"""Of the static half length: a smaller Newton step along x is the last one."""
 ROOM, MORE_ROOM = 0.25, 4.0
-"""Of the static depth: so far it is at first taken to sink in a step at most; then so many times farther."""
+"""Of the static depth: how far the indenter is first assumed to sink in a step at most, and the factor by
+which that grows where it sinks farther."""
 STANDS = 1e-12
-"""Of the static depth: an edge where the overlap falls by less in a step does not move inward."""
+"""Of the static depth: an edge whose overlap falls by less in a step does not move inward."""
 STRAIGHT = 0.25
-"""Of w'^2: the least w'^2 - 2 w w'', which is w'^2 where w is a straight line and 0 where it is a square."""
+"""Share of w'^2 below which w'^2 - 2 w w'' is that of a square (0), above which that of a line (1)."""
 NEAR = 1e-9
-"""Of the spacing: so far inside an edge is the slope there, which may jump at the edge."""
+"""Of the spacing: the distance inside an edge at which the slope is taken, which may jump at the edge."""
 TIE = 1e-9
 """Relative: an element in contact is on the surface, up to rounding."""
 AT_REST = 1e-12
-"""Of a_0/τ: slower on a spring, it stands but for rounding, and the edges are those of the drive."""
+"""Of a_0/tau: an indenter on a spring that slides slower stands, and its edges are named by the drive."""
 WINDOW = 40
-"""Steps over which the balance of forces is judged: a sudden change of the drive upsets only a few."""
+"""Steps over which the balance of forces is judged: a jump of the drive upsets only a few."""
 
 
 class Surface(NamedTuple):
-    """The indenter: h(r) of one of four kinds, r being x or, if `revolved`, sqrt(x² + y²).
+    """The indenter: h = `steep` r (r/`size`)^(n - 1)/n, n the exponent; a circle of radius `size` if n is 0.
 
-    `size` is R, L or the inclination, `inside` the last place that has a surface, `across` is 1/(2 R') of a
-    ball, `stretch` the ratio of width to length of a contact.
+    r is |x| or, if `revolved`, sqrt(x^2 + y^2); `inside` is the largest r of the surface, `across` 1/(2 R')
+    of a ball, `stretch` the ratio of width to length of a contact.
     """
 
-    kind: int
     size: float
     exponent: float
+    steep: float
     inside: float
     across: float
     revolved: bool
@@ -73,34 +74,33 @@ class Surface(NamedTuple):
 
 
 class Elements(NamedTuple):
-    """The stored elements, and what stays as it is in a run, in SI; symbols as in `Model` and `Law`.
+    """The stored elements, and what stays constant in a run, in SI; symbols as in `Model`.
 
-    Arrays over strips and elements: `u` is the compression; of an element in contact, which is `touched`,
-    `arms` are the forces s_i of its arms, of a free one its modes. Those of a strip from `low` to `high` are
-    near the indenter and up to date; a free one elsewhere is as it was at the time `since`. With arms, and by
-    explicit schemes, an element may stay in contact above the plane z = 0: all that are in contact are then
-    from `first` to before `last`. `rest`, `height`, `meets`, `slope` and `pressed` are work space of a step.
-    `numbers` holds i + shift of the elements of a strip.
+    Arrays over strips and elements: `u` is the compression, `touched` whether an element is in contact;
+    `arms` are then the forces of its arms, else its modes. Elements `low` to `high` of a strip are near the
+    indenter and up to date; one elsewhere is as it was at `since`. An element may stay in contact above the
+    plane z = 0, so that all in contact are in `first` to `last`. `height`, `meets`, `slope`, `before` and
+    `pressed` are work space. `numbers` holds i + shift of the elements of a strip.
     """
 
     u: Array
     arms: Array
     since: Array
-    touched: NDArray[np.bool_]
-    low: NDArray[np.int64]
-    high: NDArray[np.int64]
-    first: NDArray[np.int64]
-    last: NDArray[np.int64]
-    counts: NDArray[np.int64]
-    rest: Array
+    touched: Flags
+    low: Runs
+    high: Runs
+    first: Runs
+    last: Runs
+    counts: Runs
     height: Array
     meets: Array
     slope: Array
-    pressed: NDArray[np.bool_]
+    before: Array
+    pressed: Flags
     numbers: Array
     surface: Surface
     profile: Any
-    law: Law
+    law: Element
     rule: ContactRule
     tableau: Array
     fitted: bool
@@ -123,71 +123,39 @@ class Elements(NamedTuple):
     kinks: Array
 
 
-class StepLaw(NamedTuple):
-    """The law of an element over a step of the length h: all is linear in its state.
-
-    `fall` are the factors of the modes of a free element, `held` those of the arms of one that is held where
-    it is, `weights` those of the mean force of arms then; `free` gives the latter from the modes of a free
-    element. A unit ramp adds `ramp` to the arms and `stiffness` to the mean pressure; `damping` is that of
-    the damper which, beside a spring, does to a ramp as the step does.
-    """
-
-    h: float
-    fall: Array
-    held: Array
-    weights: Array
-    ramp: Array
-    stiffness: float
-    damping: float
-    free: Array
-
-
 # The indenter
 
 
 def height_at(s: Surface, profile: Any, x: Any, y: float) -> Any:
     """Return h(x, y), `FAR` where the indenter has no surface."""
-    if s.revolved:
-        return _height(s, profile, np.hypot(x, y))
-    return _height(s, profile, x) + s.across * (y * y)
-
-
-def _height(s: Surface, profile: Any, r: Any) -> Any:
-    if s.kind == PARABOLA and profile is None:
-        return r * r * (0.5 / s.size)
-    near = np.minimum(np.maximum(r, -s.inside), s.inside)
+    r = np.hypot(x, y) if s.revolved else x
+    if profile is None and s.exponent == 2.0:
+        return r * r * (0.5 / s.size) + s.across * (y * y)
+    near = np.minimum(np.abs(r), s.inside)
     if profile is not None:
-        h = profile.height(near)
-    elif s.kind == CIRCLE:
+        h = profile.height(np.copysign(near, r))
+    elif s.exponent == 0.0:
         h = near * (near / (s.size + np.sqrt((s.size - near) * (s.size + near))))
-    elif s.kind == WEDGE:
-        h = s.size * np.abs(near)
     else:
-        h = np.abs(near) * (np.abs(near) / s.size) ** (s.exponent - 1.0) / s.exponent
-    return h + FAR * (np.abs(r) > s.inside)
+        h = s.steep / s.exponent * near * (near / s.size) ** (s.exponent - 1.0)
+    return h + FAR * (np.abs(r) > s.inside) + s.across * (y * y)
 
 
 def slope_at(s: Surface, profile: Any, x: Any, y: float) -> Any:
     """Return dh/dx, zero where the indenter has no surface."""
-    if s.revolved:
-        r = np.hypot(x, y)
-        return _slope(s, profile, r) * (x / np.maximum(r, 1e-300))
-    return _slope(s, profile, x)
-
-
-def _slope(s: Surface, profile: Any, r: Any) -> Any:
-    if s.kind == PARABOLA and profile is None:
-        return r * (1.0 / s.size)
-    near = np.minimum(np.maximum(r, -s.inside), s.inside)
+    if profile is None and s.exponent == 2.0:
+        return x * (1.0 / s.size)
+    r, side = np.hypot(x, y) if s.revolved else x, np.sign(x)
+    near = np.minimum(np.abs(r), s.inside)
     if profile is not None:
-        slope = profile.slope(near)
-    elif s.kind == CIRCLE:
-        slope = near / np.sqrt((s.size - near) * (s.size + near))
-    elif s.kind == WEDGE:
-        slope = s.size * np.sign(near)
+        steep = profile.slope(np.copysign(near, r)) * np.copysign(1.0, r)
+        side = np.copysign(1.0, x)
+    elif s.exponent == 0.0:
+        steep = near / np.sqrt((s.size - near) * (s.size + near))
     else:
-        slope = np.sign(near) * (np.abs(near) / s.size) ** (s.exponent - 1.0)
-    return slope * (np.abs(r) <= s.inside)
+        steep = s.steep * (near / s.size) ** (s.exponent - 1.0)
+    steep = steep * (np.abs(r) <= s.inside)
+    return steep * (x / np.maximum(r, 1e-300)) if s.revolved else steep * side
 
 
 def extent(s: Surface, profile: Any, depth: float, side: float) -> float:
@@ -196,15 +164,11 @@ def extent(s: Surface, profile: Any, depth: float, side: float) -> float:
         return float(profile.extent(depth, side))
     if not depth > 0.0:
         return 0.0
-    if s.kind == PARABOLA:
-        far = math.sqrt(2.0 * s.size * depth)
-    elif s.kind == CIRCLE:
-        far = math.sqrt(min(depth, s.size) * (2.0 * s.size - min(depth, s.size)))
-    elif s.kind == WEDGE:
-        far = depth / s.size
-    else:
-        far = s.size * (s.exponent * (depth / s.size)) ** (1.0 / s.exponent)
-    return min(far, s.inside)
+    if s.exponent == 2.0:
+        return math.sqrt(2.0 * s.size * depth)
+    if s.exponent == 0.0:
+        return min(math.sqrt(min(depth, s.size) * (2.0 * s.size - min(depth, s.size))), s.inside)
+    return min(s.size * (s.exponent * (depth / s.size) / s.steep) ** (1.0 / s.exponent), s.inside)
 
 
 def weights_across(dy: float, count: int, rim: float) -> Array:
@@ -216,19 +180,18 @@ def weights_across(dy: float, count: int, rim: float) -> Array:
     >>> round(4.0 / 3.0 * b**3, 2)
     166.67
     """
-    weights = np.full(count, 2.0 * dy)
-    weights[0] = dy
-    last = math.floor(rim / dy)
-    s = rim / dy - last
+    weights, last = np.full(count, 2.0 * dy), math.floor(rim / dy)
+    weights[0], s = dy, rim / dy - last
     if 1 <= last <= count:
         weights[last - 1] += dy * (s * s - s + 1.0 / 6.0) / (1.0 + s)
     return weights
 
 
-def _weights(e: Elements, depth: float, strips: int) -> Array:
-    """Return by what the force of each strip counts: 1, or its width in m."""
+def _weights(e: Elements, depth: float) -> Array:
+    """Return the quadrature weight of each strip: 1, or its width in m."""
+    strips = e.u.shape[0]
     if not e.across:
-        return np.ones(strips)
+        return np.full(strips, 1.0)
     rim = e.surface.stretch * extent(e.surface, e.profile, depth, 1.0) if e.parts else 0.0
     return weights_across(e.across, strips, rim)
 
@@ -261,50 +224,59 @@ def attend(e: Elements, now: float, places: tuple[float, float], depth: float) -
         before, after = e.low[j], e.high[j]
         e.since[j, before : min(low, after)] = now
         e.since[j, max(high, before) : after] = now
-        _relax(e, j, low, min(before, high), now)
-        _relax(e, j, max(after, low), high, now)
+        for new in ((low, min(before, high)), (max(after, low), high)):
+            if new[0] < new[1]:  # these were left alone for a while
+                past, u = now - e.since[j, new[0] : new[1]], e.u[j, new[0] : new[1]]
+                if not e.arms.shape[0]:
+                    u *= np.exp(-e.law.rates[0] * past)
+                    continue
+                u[:] = 0.0
+                for k in range(e.arms.shape[0]):
+                    mode = e.arms[k, j, new[0] : new[1]]
+                    mode *= np.exp(-e.law.rates[k] * past)
+                    u += e.law.shares[k] * mode
         e.low[j], e.high[j] = low, high
     e.counts[STRIPS] = strips
     return DONE
 
 
-def _relax(e: Elements, j: int, low: int, high: int, now: float) -> None:
-    """Bring free elements up to date that were left alone for a while."""
-    if low >= high:
-        return
-    past, u = now - e.since[j, low:high], e.u[j, low:high]
-    if not e.arms.shape[0]:
-        u *= np.exp(-e.law.rates[0] * past)
-        return
-    u[:] = 0.0
-    for k in range(e.arms.shape[0]):
-        e.arms[k, j, low:high] *= np.exp(-e.law.rates[k] * past)
-        u += e.law.shares[k] * e.arms[k, j, low:high]
-
-
-def runs_of(flags: NDArray[np.bool_], low: Any, high: Any) -> NDArray[np.int64]:
+def runs_of(flags: Flags, low: Runs, high: Runs) -> Runs:
     """Return the runs of flagged elements; those at both ends of the strips are taken to be out of them.
 
-    >>> runs_of(np.array([[False, True, True, False]]), [0], [4]).tolist()
+    >>> runs_of(np.array([[False, True, True, False]]), np.array([0]), np.array([4])).tolist()
     [[0, 1, 3]]
     """
-    count = 0
-    for j in range(flags.shape[0]):
+    runs, k = np.empty((4, 3), dtype=np.int64), 0
+    for j in range(low.size):
         part = flags[j, low[j] : high[j]]
-        count += (part[1:] != part[:-1]).sum() // 2
-    runs = np.empty((count, 3), dtype=np.int64)
-    k = 0
-    for j in range(flags.shape[0]):
-        part = flags[j, low[j] : high[j]]
-        changes = np.flatnonzero(part[1:] != part[:-1])
+        changes = low[j] + 1 + np.flatnonzero(part[1:] != part[:-1])
         for i in range(0, changes.size - 1, 2):
-            runs[k, 0] = j
-            runs[k, 1], runs[k, 2] = low[j] + changes[i] + 1, low[j] + changes[i + 1] + 1
+            if k == runs.shape[0]:
+                more = np.empty((2 * k, 3), dtype=np.int64)
+                more[:k] = runs
+                runs = more
+            runs[k, 0], runs[k, 1], runs[k, 2] = j, changes[i], changes[i + 1]
             k += 1
-    return runs
+    return runs[:k]
 
 
-# The law of one element over a step
+def positions(e: Elements, low: int, high: int, place: float) -> Array:
+    """Return x of elements when the base has moved by `place` under the indenter."""
+    x: Array = e.spacing * e.numbers[low:high] + place
+    return x
+
+
+def gaps(
+    e: Elements, j: int, i: int, out: int, place: float, depth: float
+) -> tuple[float, float, float]:
+    """Return g - u of element i and the next two in the direction `out`, -1 or 1."""
+    first = min(i, i + 2 * out)
+    x = positions(e, first, first + 3, place)
+    w = depth - height_at(e.surface, e.profile, x, j * e.across) - e.u[j, first : first + 3]
+    return (w[0], w[1], w[2]) if out > 0 else (w[2], w[1], w[0])
+
+
+# An element over a step
 
 
 def ramp_functions(z: Array) -> tuple[Array, Array]:
@@ -313,7 +285,7 @@ def ramp_functions(z: Array) -> tuple[Array, Array]:
     >>> [value.round(6).tolist() for value in ramp_functions(np.array([0.0, 1.0, 1e9]))]
     [[1.0, 0.632121, 0.0], [0.5, 0.367879, 0.0]]
     """
-    phi_1, phi_2 = np.ones_like(z), np.full_like(z, 0.5)
+    phi_1, phi_2 = np.full(z.size, 1.0), np.full(z.size, 0.5)
     for i in range(z.size):
         if z[i] > 0.0:
             phi_1[i] = -math.expm1(-z[i]) / z[i]
@@ -326,107 +298,84 @@ def ramp_functions(z: Array) -> tuple[Array, Array]:
     return phi_1, phi_2
 
 
-def law_of(law: Law, h: float) -> StepLaw:
-    """Return the law of a step of the length h.
-
-    The mean pressure of a damper is that with the weight e^(t/tau): k (g - u e^(-h/tau)), k =
-    K/(1 - e^(-h/tau)), whatever the history of u between. That of arms is the plain mean: with
-    z_i = h/tau_i, phi_1 = (1 - e^(-z))/z and phi_2 = (1 - phi_1)/z, an arm has over a ramp the mean
-    phi_1 s_i + phi_2 K_i (u_1 - u_0) and ends at e^(-z) s_i + phi_1 K_i (u_1 - u_0).
-    """
-    z = h / law.arm_time
-    phi_1, phi_2 = ramp_functions(z)
-    stiffness = 0.5 * law.stiffness
-    if law.damping:
-        stiffness = -law.stiffness / math.expm1(-h * law.stiffness / law.damping) if h else math.inf
-    loaded = phi_1 * law.arm_stiffness
-    free = loaded.sum() * law.shares
-    for i in range(z.size):
-        free -= loaded[i] * law.from_modes[i]
-    return StepLaw(
-        h, np.exp(-h * law.rates), np.exp(-z), phi_1, loaded,
-        stiffness + (phi_2 * law.arm_stiffness).sum(),
-        law.damping + h * (law.arm_stiffness * (2.0 * phi_2 - phi_1)).sum(), free,
-    )  # fmt: skip
+def entered(gap: float, rise: float) -> float:
+    """Return for which share of the step an element was on the indenter that has risen so far above it."""
+    return rise / (rise - min(gap, 0.0)) if rise > 0.0 else 0.0
 
 
-def _left(e: Elements, law: StepLaw, j: int, i: Any) -> Any:
+def left_alone(e: Elements, step: ElementStep, j: int, low: int, high: int) -> Array:
     """Return u of elements at the end of a step, had they been left alone from its start."""
     if not e.arms.shape[0]:
-        return law.fall[0] * e.u[j, i]
-    left = (e.law.shares[0] * law.fall[0]) * e.arms[0, j, i]
+        u: Array = step.fall[0] * e.u[j, low:high]
+        return u
+    left = (e.law.shares[0] * step.fall[0]) * e.arms[0, j, low:high]
     for k in range(1, e.arms.shape[0]):
-        left = left + (e.law.shares[k] * law.fall[k]) * e.arms[k, j, i]
+        left += (e.law.shares[k] * step.fall[k]) * e.arms[k, j, low:high]
     return left
 
 
-def _release(e: Elements, j: int, i: int) -> None:
-    """Take an element out of contact: its arms become modes."""
-    y = e.u[j, i] - e.arms[:, j, i] / e.law.arm_stiffness
-    for k in range(y.size):
-        e.arms[k, j, i] = (e.law.to_modes[k] * y).sum()
-
-
-def _enter(e: Elements, j: int, i: int, within: float, rise: float) -> None:
-    """Take a free element into contact: its modes become arms, which are then loaded within the step."""
-    modes = e.arms[:, j, i].copy()
-    u = (e.law.shares * modes).sum()
-    phi_1, _ = ramp_functions(within / e.law.arm_time)
-    for k in range(modes.size):
-        y = (e.law.from_modes[k] * modes).sum()
-        e.arms[k, j, i] = e.law.arm_stiffness[k] * (u - y + phi_1[k] * rise)
-
-
-def settle(e: Elements, law: StepLaw, before: float, depths: tuple[float, float]) -> None:
-    """Let a step pass: `pressed` elements end where the indenter is, all others were left alone.
+def finish(
+    e: Elements, step: ElementStep, runs: Runs, before: float, depths: tuple[float, float]
+) -> None:
+    """Let a step pass: elements in `runs` end on the indenter, all others were left alone.
 
     `before` is where the base was under the indenter at its start.
     """
     for j in range(e.counts[STRIPS]):
+        e.pressed[j, e.low[j] : e.high[j]] = False
+        e.first[j] = e.last[j] = 0
+    for r in range(runs.shape[0]):
+        j, low, high = runs[r, 0], runs[r, 1], runs[r, 2]
+        e.pressed[j, low:high] = True
+        if low < high:
+            e.first[j], e.last[j] = e.first[j] if e.last[j] else low, high
+    for j in range(e.counts[STRIPS]):
         low, high = e.low[j], e.high[j]
-        u, pressed, touched = e.u[j, low:high], e.pressed[j, low:high], e.touched[j, low:high]
-        g = depths[1] - e.height[j, low:high]
-        if not e.arms.shape[0]:
-            u[:] = np.where(pressed, g, law.fall[0] * u)
+        if e.arms.shape[0]:
+            _pass_arms(e, step, j, before, depths)
         else:
-            for i in np.flatnonzero(touched & ~pressed):
-                _release(e, j, low + i)
-            new = np.flatnonzero(pressed & ~touched)
-            gaps = np.empty(new.size)
-            for k in range(new.size):
-                gaps[k] = gap_before(e, j, low + new[k], before, depths[0])
-            kept = touched & pressed
-            left = np.zeros(high - low)
-            for k in range(e.arms.shape[0]):
-                arm = e.arms[k, j, low:high]
-                arm[:] = np.where(
-                    kept, law.held[k] * arm + law.ramp[k] * (g - u), law.fall[k] * arm
-                )
-                left += e.law.shares[k] * arm
-            for k in range(new.size):
-                rise = g[new[k]] - left[new[k]]
-                within = law.h * rise / (rise - min(gaps[k], 0.0)) if rise > 0.0 else 0.0
-                _enter(e, j, low + new[k], within, rise)
-            u[:] = np.where(pressed, g, left)
-        touched[:] = pressed
-        if e.explicit or e.arms.shape[0]:
-            inside = low + np.flatnonzero(pressed)
-            e.first[j], e.last[j] = (inside[0], inside[-1] + 1) if inside.size else (0, 0)
+            e.u[j, low:high] *= step.fall[0]
+        e.touched[j, low:high] = e.pressed[j, low:high]
+    for r in range(runs.shape[0]):
+        j, low, high = runs[r, 0], runs[r, 1], runs[r, 2]
+        e.u[j, low:high] = depths[1] - e.height[j, low:high]
 
 
-def gap_before(e: Elements, j: int, i: int, place: float, depth: float) -> float:
-    """Return how far the indenter was below an element at the start of a step."""
-    x = e.spacing * e.numbers[i] + place
-    return depth - height_at(e.surface, e.profile, x, j * e.across) - e.u[j, i]
+def _pass_arms(
+    e: Elements, step: ElementStep, j: int, before: float, depths: tuple[float, float]
+) -> None:
+    """Let a step pass for the arms of a strip: held ones are loaded, those of free elements are modes."""
+    low, law = e.low[j], e.law
+    high, u = e.high[j], e.u[j, low : e.high[j]]
+    pressed, touched = e.pressed[j, low:high], e.touched[j, low:high]
+    changes = np.flatnonzero(pressed != touched)
+    gap = np.full(changes.size, 0.0)
+    for n in range(changes.size):
+        i = low + changes[n]
+        if pressed[changes[n]]:
+            gap[n] = gaps(e, j, i, 1, before, depths[0])[0]
+            continue
+        y = e.u[j, i] - e.arms[:, j, i] / law.arm_stiffness
+        for k in range(y.size):
+            e.arms[k, j, i] = (law.to_modes[k] * y).sum()
+    kept, rise = 1.0 * (pressed & touched), depths[1] - e.height[j, low : e.high[j]] - u
+    u[:] = 0.0
+    for k in range(law.shares.size):
+        arm = e.arms[k, j, low : e.high[j]]
+        arm *= step.fall[k] + (step.held[k] - step.fall[k]) * kept
+        arm += step.ramp[k] * (kept * rise)
+        u += law.shares[k] * arm
+    for n in range(changes.size):
+        i = low + changes[n]
+        if pressed[changes[n]]:
+            sunk, modes = depths[1] - e.height[j, i] - e.u[j, i], e.arms[:, j, i].copy()
+            phi_1, _ = ramp_functions(step.h * entered(gap[n], sunk) / law.arm_time)
+            for k in range(modes.size):
+                y_k = (law.from_modes[k] * modes).sum()
+                e.arms[k, j, i] = law.arm_stiffness[k] * (e.u[j, i] - y_k + phi_1[k] * sunk)
 
 
-def positions(e: Elements, low: int, high: int, place: float) -> Array:
-    """Return x of elements when the base has moved by `place` under the indenter."""
-    x: Array = e.spacing * e.numbers[low:high] + place
-    return x
-
-
-# Implicit schemes
+# The implicit step
 
 
 def exponential_fit(z: float) -> float:
@@ -465,7 +414,79 @@ def kink_area(overlap: Any) -> Any:
     return half * within * w + rise / 12.0, half * (within + w), 2.0 * half, rise
 
 
-def sinking(e: Elements, state: Array, h: float) -> float:
+class Step(NamedTuple):
+    """An implicit step: where the base is under the indenter at its end, and how far it moved there.
+
+    `first` is the first guess of how far the indenter sinks; `begun` are the runs in contact at the start,
+    `relaxed` the area of the kinks at their edges less what relaxes of it; `falling` says at which sides of
+    each strip the overlap falls; `late` are the elements (strip, element) that are entered within the step,
+    and `lack` what their weight lacks of that of the others.
+    """
+
+    place: float
+    travel: float
+    first: float
+    theta: float
+    weights: Array
+    begun: Runs
+    relaxed: Array
+    falling: Flags
+    late: Runs
+    lack: Array
+
+
+def implicit_step(
+    e: Elements, law: ElementStep, begun: Runs, state: Array, now: float, Y: tuple[float, float]
+) -> tuple[int, Runs]:
+    """Take a step in which the depth at its end is the root of the balance of momentum.
+
+    On a spring, so is the place along x: for every place there is one depth. Return the status, and the
+    runs in contact at the end.
+    """
+    h, sprung, depth, along = law.h, math.isfinite(e.mass_along), state[DEPTH], state[ALONG]
+    guess = state[ALONG_RATE] + 0.5 * state[GAINED] * h / max(state[LAST], h)
+    slid = h * guess / (1.0 + 0.25 * e.spring_along * h * h / e.mass_along)
+    most, sunk, new_rate, new_along_rate = _deepest_fall(e, state, h), 0.0, state[RATE], 0.0
+    weights = _weights(e, depth + 0.5 * h * state[RATE])
+    falling, runs = np.zeros((e.u.shape[0], 3), dtype=np.bool_), begun
+    for _ in range(SLIDE_STEPS):
+        place = Y[1] - (along + slid)
+        travel = place - (Y[0] - along)
+        sinks = min(most, ROOM * e.depth)
+        while True:
+            status = attend(e, now, (place, place - travel), depth + sinks)
+            if status != DONE:
+                return status, begun
+            first = min(h * state[RATE], sinks)
+            step, runs, sums = _lay(e, law, begun, falling, weights, state, (place, travel), first)
+            runs, sunk = _sink(e, law, step, runs, sums, state)
+            if not sunk > sinks or sinks == most:
+                break
+            # Elements may have been missed, without which it sinks too deep, never too little.
+            sinks = min(most, MORE_ROOM * sinks)
+            falling[:] = False
+        if not sprung:
+            break
+        before = slid
+        slid, new_along_rate = _slide(e, law, step, runs, state, sunk, slid)
+        if not abs(slid - before) > SLIDE_RTOL * e.half_length:
+            break
+    if math.isfinite(e.mass):
+        new_rate = _velocity(sunk, state[RATE], h, step.theta)
+    finish(e, law, runs, step.place - step.travel, (depth, depth + sunk))
+    state[DEPTH], state[RATE] = depth + sunk, new_rate
+    if sprung:
+        state[GAINED] = new_along_rate - state[ALONG_RATE]
+        state[ALONG], state[ALONG_RATE] = along + slid, new_along_rate
+    count = 0
+    for r in range(runs.shape[0]):
+        if runs[r, 1] < runs[r, 2]:
+            runs[count] = runs[r]
+            count += 1
+    return DONE, runs[:count]
+
+
+def _deepest_fall(e: Elements, state: Array, h: float) -> float:
     """Return how far the indenter could sink in a step without a foundation, at any θ from 1/2 to 1."""
     if math.isinf(e.mass):
         return 0.0
@@ -475,163 +496,88 @@ def sinking(e: Elements, state: Array, h: float) -> float:
     return float(h * max(state[RATE], 0.0) / (1.0 + 0.25 * q) + most * pull * h * h / e.mass)
 
 
-class Step(NamedTuple):
-    """A step of an implicit scheme: `place` of the base at its end, and how far it moved under the indenter.
-
-    `begun` are the runs in contact at its start; `bends` say how the mean pressure of arms bends at their
-    edges, `falling` whether the overlap falls at both sides of each strip, `late` are the elements that are
-    entered within the step, (strip, element), and `lack` what they lack of their weight.
-    """
-
-    place: float
-    travel: float
-    first: float
-    theta: float
-    weights: Array
-    begun: NDArray[np.int64]
-    bends: Array
-    falling: NDArray[np.bool_]
-    late: NDArray[np.int64]
-    lack: Array
-
-
-def implicit_step(
-    e: Elements, law: StepLaw, begun: NDArray[np.int64], state: Array,
-    now: float, Y: tuple[float, float],
-) -> tuple[int, NDArray[np.int64]]:  # fmt: skip
-    """Take a step in which the depth at its end is the root of the balance of momentum.
-
-    On a spring, so is the place along x: for every place there is one depth. Return the status, and the
-    runs in contact at the end.
-    """
-    h, sprung = law.h, math.isfinite(e.mass_along)
-    depth, rate = state[DEPTH], state[RATE]
-    along, along_rate = state[ALONG], state[ALONG_RATE]
-    slid = h * along_rate / (1.0 + 0.25 * e.spring_along * h * h / e.mass_along)
-    most = sinking(e, state, h)
-    falling = np.zeros((e.u.shape[0], 3), dtype=np.bool_)
-    sunk, new_rate, new_along_rate = 0.0, rate, along_rate
-    runs, place, travel = begun, 0.0, 0.0
-    for _ in range(SLIDE_STEPS):
-        place = Y[1] - (along + slid)
-        travel = place - (Y[0] - along)
-        sinks = min(most, ROOM * e.depth)
-        while True:
-            status = attend(e, now, (place, place - travel), depth + sinks)
-            if status != DONE:
-                return status, begun
-            _lay(e, law, begun, place, travel, depth)
-            first = min(h * rate, sinks)
-            runs = begun.copy()
-            for k in range(runs.shape[0]):  # none is outside but where a caller changed the depth
-                low, high = e.low[runs[k, 0]] + UNMET, e.high[runs[k, 0]] - UNMET
-                runs[k, 1], runs[k, 2] = (
-                    min(max(runs[k, 1], low), high),
-                    max(min(runs[k, 2], high), low),
-                )
-            runs, sums, _ = _walk(e, runs, _sums(e, runs), first)
-            weights = _weights(e, depth + 0.5 * h * rate, e.u.shape[0])
-            late, lack = _late(e, law, runs, weights, place - travel, depth, first)
-            wide = e.spacing * max(_extent(runs, weights), _extent(begun, weights))
-            theta = exponential_fit(h * law.damping * wide / e.mass) if e.fitted else 1.0
-            step = Step(
-                place,
-                travel,
-                first,
-                theta,
-                weights,
-                begun,
-                _bends(e, law, begun),
-                falling,
-                late,
-                lack,
-            )
-            runs, sums, sunk = _sink(e, law, step, runs, sums, state)
-            if not sunk > sinks or sinks == most:
-                break
-            # Elements may have been missed, without which it sinks too deep, never too little.
-            sinks = min(most, MORE_ROOM * sinks)
-            falling[:] = False
-        if math.isfinite(e.mass):
-            new_rate = _velocity(sunk, rate, h, step.theta)
-        if not sprung:
-            break
-        before = slid
-        slid, new_along_rate = _slide(e, law, step, runs, state, sunk, slid)
-        if not abs(slid - before) > SLIDE_RTOL * e.half_length:
-            break
-    for j in range(e.counts[STRIPS]):
-        e.pressed[j, e.low[j] : e.high[j]] = False
-    for k in range(runs.shape[0]):
-        e.pressed[runs[k, 0], runs[k, 1] : runs[k, 2]] = True
-    settle(e, law, place - travel, (depth, depth + sunk))
-    state[DEPTH], state[RATE] = depth + sunk, new_rate
-    if sprung:
-        state[ALONG], state[ALONG_RATE] = along + slid, new_along_rate
-    return DONE, runs[runs[:, 1] < runs[:, 2]]
-
-
 def _lay(
-    e: Elements, law: StepLaw, begun: NDArray[np.int64], place: float, travel: float,
-    depth: float,
-) -> None:  # fmt: skip
-    """Find how far the indenter must sink from `depth` to press each element at the end of the step.
+    e: Elements, law: ElementStep, begun: Runs, falling: Flags, weights: Array, state: Array,
+    way: tuple[float, float], first: float,
+) -> tuple[Step, Runs, Array]:  # fmt: skip
+    """Find how far the indenter must sink to press each element at the end of the step: `meets`.
 
     That is to where the mean pressure would vanish: where a free element is then, and above where one in
-    contact is now. An element that passes a kink of the shape is pressed as far as that pressed it.
+    contact is now. An element that passes a kink of the shape is pressed as far as that pressed it. Return
+    the step, the runs that are pressed if the indenter sinks by `first`, and the sums of `meets` over them.
     """
+    depth, (place, travel) = state[DEPTH], way
     for j in range(e.counts[STRIPS]):
         low, high = e.low[j], e.high[j]
         x = positions(e, low, high, place)
         e.height[j, low:high] = height_at(e.surface, e.profile, x, j * e.across)
-        e.rest[j, low:high] = _left(e, law, j, slice(low, high))
-    if e.arms.shape[0]:
-        for k in range(begun.shape[0]):
-            j, low, high = begun[k, 0], begun[k, 1], begun[k, 2]
-            p = e.law.stiffness * e.u[j, low:high]
-            for i in range(e.arms.shape[0]):
-                p += law.weights[i] * e.arms[i, j, low:high]
-            e.rest[j, low:high] = e.u[j, low:high] - p / law.stiffness
-    elif e.per_width:
-        for kink in e.kinks:
+        e.meets[j, low:high] = left_alone(e, law, j, low, high) - depth
+    for r in range(begun.shape[0] if e.arms.shape[0] else 0):
+        j, low, high = begun[r, 0], begun[r, 1], begun[r, 2]
+        p = e.law.stiffness * e.u[j, low:high]
+        for k in range(e.arms.shape[0]):
+            p += law.weights[k] * e.arms[k, j, low:high]
+        e.meets[j, low:high] = e.u[j, low:high] - p / law.stiffness - depth
+    if e.law.damping and e.per_width and travel:
+        for n in range(e.kinks.size):
             # What a damper has of the compression by the tip is left at the end of the step, and so is its
             # mean pressure; without this, a wedge stands on its tip at the first order in the spacing.
-            for i in _passed(e, kink, place, travel):
-                since = law.h * (positions(e, i, i + 1, place)[0] - kink) / travel
-                g = depth - height_at(e.surface, e.profile, float(kink), 0.0)
+            kink, passed = e.kinks[n], _passed(e, e.kinks[n], place, travel)
+            g = depth - height_at(e.surface, e.profile, np.full(1, kink), 0.0)[0]
+            for i in range(passed[0], passed[1]):
+                since = law.h * (e.spacing * e.numbers[i] + place - kink) / travel
                 pressed = depth - g * math.exp(-since * e.law.rates[0])
                 e.height[0, i] = min(e.height[0, i], pressed)
     for j in range(e.counts[STRIPS]):
         low, high = e.low[j], e.high[j]
-        e.meets[j, low:high] = e.height[j, low:high] + e.rest[j, low:high] - depth
+        e.meets[j, low:high] += e.height[j, low:high]
         e.meets[j, low : low + UNMET] = math.inf
         e.meets[j, high - UNMET : high] = math.inf
+    runs = begun.copy()
+    for r in range(runs.shape[0]):  # none is outside but where a caller changed the depth
+        low, high = e.low[runs[r, 0]] + UNMET, e.high[runs[r, 0]] - UNMET
+        runs[r, 1] = min(max(runs[r, 1], low), high)
+        runs[r, 2] = max(min(runs[r, 2], high), low)
+    runs, sums, _ = _walk(e, runs, _sums(e, runs), first)
+    late, lack = _late(e, law, runs, weights, place - travel, depth, first)
+    wide = e.spacing * max(_extent(runs, weights), _extent(begun, weights))
+    theta = exponential_fit(law.h * law.damping * wide / e.mass) if e.fitted else 1.0
+    relaxed = _relaxed_kinks(e, law, begun, place - travel, depth)
+    step = Step(place, travel, first, theta, weights, begun, relaxed, falling, late, lack)
+    return step, runs, sums
 
 
-def _passed(e: Elements, kink: float, place: float, travel: float) -> NDArray[np.int64]:
-    """Return the elements that pass a kink of the shape in a step."""
-    x = positions(e, e.low[0], e.high[0], place) - kink
-    return e.low[0] + np.flatnonzero(x * (x - travel) < 0.0)
+def _passed(e: Elements, kink: float, place: float, travel: float) -> tuple[int, int]:
+    """Return the range of elements that pass a kink of the shape in a step."""
+    at = (kink - place) / e.spacing - e.shift - e.counts[FIRST]
+    start, end = min(at, at + travel / e.spacing), max(at, at + travel / e.spacing)
+    return max(math.floor(start + NEAR) + 1, e.low[0]), min(math.ceil(end - NEAR), e.high[0])
 
 
-def _sums(e: Elements, runs: NDArray[np.int64]) -> Array:
+def _sums(e: Elements, runs: Runs) -> Array:
     """Return the sum of `meets` over each run."""
-    sums = np.zeros(runs.shape[0])
-    for k in range(runs.shape[0]):
-        sums[k] = e.meets[runs[k, 0], runs[k, 1] : runs[k, 2]].sum()
+    sums = np.full(runs.shape[0], 0.0)
+    for r in range(runs.shape[0]):
+        sums[r] = e.meets[runs[r, 0], runs[r, 1] : runs[r, 2]].sum()
     return sums
 
 
-def _walk(
-    e: Elements, runs: NDArray[np.int64], sums: Array, sunk: float
-) -> tuple[NDArray[np.int64], Array, bool]:
+def _extent(runs: Runs, weights: Array) -> float:
+    """Return the number of elements in runs, by the weights of their strips."""
+    total = 0.0
+    for r in range(runs.shape[0]):
+        total += weights[runs[r, 0]] * (runs[r, 2] - runs[r, 1])
+    return total
+
+
+def _walk(e: Elements, runs: Runs, sums: Array, sunk: float) -> tuple[Runs, Array, bool]:
     """Move the ends of runs to where elements begin and cease to be pressed; tell whether any moved.
 
     If runs met, or others appeared, they are all found anew.
     """
     meets, moved, count = e.meets, False, 0
-    for k in range(runs.shape[0]):
-        j, low, high, total = runs[k, 0], runs[k, 1], runs[k, 2], sums[k]
+    for r in range(runs.shape[0]):
+        j, low, high, total = runs[r, 0], runs[r, 1], runs[r, 2], sums[r]
         while meets[j, low - 1] <= sunk:
             low -= 1
             total += meets[j, low]
@@ -644,13 +590,12 @@ def _walk(
         while low < high and not meets[j, high - 1] <= sunk:
             high -= 1
             total -= meets[j, high]
-        moved = moved or low != runs[k, 1] or high != runs[k, 2]
-        runs[k, 1], runs[k, 2], sums[k] = low, high, total
+        moved = moved or low != runs[r, 1] or high != runs[r, 2]
+        runs[r, 1], runs[r, 2], sums[r] = low, high, total
         count += high - low
-    found = 0
     for j in range(e.counts[STRIPS]):
-        found += int(np.count_nonzero(meets[j, e.low[j] : e.high[j]] <= sunk))
-    if found == count:
+        count -= (meets[j, e.low[j] : e.high[j]] <= sunk).sum()
+    if count == 0:
         return runs, sums, moved
     for j in range(e.counts[STRIPS]):
         e.pressed[j, e.low[j] : e.high[j]] = meets[j, e.low[j] : e.high[j]] <= sunk
@@ -659,25 +604,21 @@ def _walk(
 
 
 def _late(
-    e: Elements, law: StepLaw, runs: NDArray[np.int64], weights: Array, place: float,
-    depth: float, first: float,
-) -> tuple[NDArray[np.int64], Array]:  # fmt: skip
+    e: Elements, law: ElementStep, runs: Runs, weights: Array, place: float, depth: float, first: float
+) -> tuple[Runs, Array]:  # fmt: skip
     """Return the elements that are entered within the step, and what they lack of their weight.
 
     Their arms are loaded for a part of it only.
     """
     count = 0
-    for k in range(runs.shape[0] if e.arms.shape[0] else 0):
-        count += (~e.touched[runs[k, 0], runs[k, 1] : runs[k, 2]]).sum()
+    for r in range(runs.shape[0] if e.arms.shape[0] else 0):
+        count += (~e.touched[runs[r, 0], runs[r, 1] : runs[r, 2]]).sum()
     late, lack = np.empty((count, 2), dtype=np.int64), np.empty(count)
-    for k in range(runs.shape[0] if count else 0):
-        j, low = runs[k, 0], runs[k, 1]
-        for i in low + np.flatnonzero(~e.touched[j, low : runs[k, 2]]):
+    for r in range(runs.shape[0] if count else 0):
+        j, low = runs[r, 0], runs[r, 1]
+        for i in low + np.flatnonzero(~e.touched[j, low : runs[r, 2]]):
             count -= 1
-            rise = first - e.meets[j, i]
-            share = (
-                rise / (rise - min(gap_before(e, j, i, place, depth), 0.0)) if rise > 0.0 else 0.0
-            )
+            share = entered(gaps(e, j, i, 1, place, depth)[0], first - e.meets[j, i])
             _, phi_2 = ramp_functions(law.h * share / e.law.arm_time)
             stiff = 0.5 * e.law.stiffness + (e.law.arm_stiffness * phi_2).sum()
             late[count, 0], late[count, 1] = j, i
@@ -685,32 +626,9 @@ def _late(
     return late, lack
 
 
-def _extent(runs: NDArray[np.int64], weights: Array) -> float:
-    total = 0.0
-    for k in range(runs.shape[0]):
-        total += weights[runs[k, 0]] * (runs[k, 2] - runs[k, 1])
-    return total
-
-
-def _bends(e: Elements, law: StepLaw, begun: NDArray[np.int64]) -> Array:
-    """Return by how much the mean force of arms bends at each edge of the runs."""
-    bends = np.zeros((begun.shape[0], 2))
-    if not e.arms.shape[0]:
-        return bends
-    for k in range(begun.shape[0]):
-        for side in range(2):
-            j, out = begun[k, 0], 1 - 2 * side
-            inner = begun[k, 1] if side == 0 else begun[k, 2] - 1
-            held = e.arms[:, j, inner + out] - e.arms[:, j, inner]
-            free = e.arms[:, j, inner - out] - e.arms[:, j, inner - 2 * out]
-            bends[k, side] = (law.weights * held).sum() - (law.free * free).sum()
-    return bends
-
-
 def _sink(
-    e: Elements, law: StepLaw, step: Step, runs: NDArray[np.int64], sums: Array,
-    state: Array,
-) -> tuple[NDArray[np.int64], Array, float]:  # fmt: skip
+    e: Elements, law: ElementStep, step: Step, runs: Runs, sums: Array, state: Array
+) -> tuple[Runs, float]:
     """Solve M (v_1 - v_0)/h = W - k_s (d - δ_0) - F_z for how far the indenter sinks.
 
     While no element is met or let go, F_z is of the second order in the depth: one step of Newton's
@@ -718,7 +636,7 @@ def _sink(
     """
     h, theta, k, sunk = law.h, step.theta, law.stiffness * e.spacing, step.first
     if math.isinf(e.mass):
-        return runs, sums, 0.0
+        return runs, 0.0
     for _ in range(NEWTON_STEPS):
         width, area, bent = _extent(runs, step.weights), 0.0, 0.0
         for r in range(runs.shape[0]):
@@ -730,8 +648,8 @@ def _sink(
                 area -= step.lack[i] * overlap
                 width -= step.lack[i]
         if e.parts:
-            added, wider, bent, _ = _kinks(e, law, step, runs, sunk, state[DEPTH])
-            area, width = area + added, width + wider
+            kinks = _kinks(e, step, runs, sunk, state[DEPTH])
+            area, width, bent = area + kinks[0], width + kinks[1], kinks[2]
         mean = state[DEPTH] - e.depth + theta * sunk
         change_of_rate = _velocity(sunk, state[RATE], h, theta) - state[RATE]
         residual = e.mass * change_of_rate / h - e.weight + e.spring * mean + k * area
@@ -741,13 +659,31 @@ def _sink(
         runs, sums, moved = _walk(e, runs, sums, sunk)
         if not moved:
             break
-    return runs, sums, sunk
+    return runs, sunk
+
+
+def _relaxed_kinks(e: Elements, law: ElementStep, begun: Runs, place: float, depth: float) -> Array:
+    """Return the area of the kinks at both edges of each run, by dx, less what relaxes of it in the step.
+
+    The mean force of arms bends at an edge, too.
+    """
+    relaxed = np.full((begun.shape[0], 2), 0.0)
+    for r in range(begun.shape[0] if e.parts else 0):
+        for side in range(2):
+            j, out = begun[r, 0], 2 * side - 1
+            i = begun[r, 2] if side else begun[r, 1] - 1
+            area, _, _, rise = kink_area(gaps(e, j, i, out, place, depth))
+            bend = 0.0
+            for k in range(e.arms.shape[0]):
+                bend += law.weights[k] * (e.arms[k, j, i - 2 * out] - e.arms[k, j, i - out])
+                bend -= law.free[k] * (e.arms[k, j, i] - e.arms[k, j, i + out])
+            relaxed[r, side] = area * ((e.law.stiffness + bend / rise) / law.stiffness - 1.0)
+    return relaxed
 
 
 def _kinks(
-    e: Elements, law: StepLaw, step: Step, runs: NDArray[np.int64], sunk: float,
-    depth: float,
-) -> tuple[float, float, float, float]:  # fmt: skip
+    e: Elements, step: Step, runs: Runs, sunk: float, depth: float
+) -> tuple[float, float, float, float]:
     """Return the area of the kinks at edges by dx less what relaxed, its derivatives by depth, and its push.
 
     A kink of the surface, at an edge between two elements, adds to the area that is pressed. It counts
@@ -755,58 +691,43 @@ def _kinks(
     just outside does not fall. Where the edge moves inward, the surface has no kink, or one that is left
     behind and relaxes like all that is free. Each side of each strip is asked for itself.
     """
-    before, falling = step.place - step.travel, step.falling
+    falling, place = step.falling, step.place - step.travel
     met = np.zeros(e.u.shape[0], dtype=np.bool_)
     known = falling[0, 2]  # decided once in a step, so that no iteration can go to and fro
     falling[0, 2] = True
     area = wider = bent = push = 0.0
     for r in range(runs.shape[0]):
         j, low, high = runs[r, 0], runs[r, 1], runs[r, 2]
-        for side in range(2):
-            if not known and low < high:
-                i = low - 1 if side == 0 else high
-                gap = gap_before(e, j, i, before, depth)
-                falls = sunk - e.meets[j, i] - gap < -STANDS * e.depth
-                falling[j, side] = falls and (falling[j, side] or not met[j])
+        for side in range(2 if not known and low < high else 0):
+            i = high if side else low - 1
+            gap = gaps(e, j, i, 2 * side - 1, place, depth)[0]
+            falls = sunk - e.meets[j, i] - gap < -STANDS * e.depth
+            falling[j, side] = falls and (falling[j, side] or not met[j])
         met[j] = met[j] or low < high
-    for begun in (False, True):
-        ends = step.begun if begun else runs
-        for r in range(ends.shape[0]):
-            j, low, high = ends[r, 0], ends[r, 1], ends[r, 2]
-            for side in range(2):
-                if falling[j, side] or not met[j] or low == high:
-                    continue
-                i, out = (low - 1, -1) if side == 0 else (high, 1)
-                w, far, farthest = (
-                    (
-                        gap_before(e, j, i, before, depth),
-                        gap_before(e, j, i + out, before, depth),
-                        gap_before(e, j, i + 2 * out, before, depth),
-                    )
-                    if begun
-                    else (
-                        sunk - e.meets[j, i],
-                        sunk - e.meets[j, i + out],
-                        sunk - e.meets[j, i + 2 * out],
-                    )
-                )
-                added, more, bend, rise = kink_area((w, far, farthest))
-                weight = step.weights[j]
-                if begun:
-                    added *= (e.law.stiffness + step.bends[r, side] / rise) / law.stiffness - 1.0
-                else:
-                    wider += weight * more
-                    bent += weight * bend
-                area += weight * added
-                if e.slope.size:
-                    push += weight * added * e.slope[j, i - out]
+    for r in range(runs.shape[0] + step.begun.shape[0]):
+        ended = r < runs.shape[0]
+        q = r if ended else r - runs.shape[0]
+        ends = runs[q] if ended else step.begun[q]
+        j, low, high = ends[0], ends[1], ends[2]
+        for side in range(2 if met[j] and low < high else 0):
+            if falling[j, side]:
+                continue
+            i, out = high if side else low - 1, 2 * side - 1
+            if ended:
+                w, far = sunk - e.meets[j, i], sunk - e.meets[j, i + out]
+                added, more, bend, _ = kink_area((w, far, sunk - e.meets[j, i + 2 * out]))
+                wider += step.weights[j] * more
+                bent += step.weights[j] * bend
+            else:
+                added = step.relaxed[q, side]
+            area += step.weights[j] * added
+            push += step.weights[j] * added * e.slope[j, i - out]
     return area, wider, bent, push
 
 
 def _slide(
-    e: Elements, law: StepLaw, step: Step, runs: NDArray[np.int64], state: Array,
-    sunk: float, slid: float,
-) -> tuple[float, float]:  # fmt: skip
+    e: Elements, law: ElementStep, step: Step, runs: Runs, state: Array, sunk: float, slid: float
+) -> tuple[float, float]:
     """Take a step of Newton's method to M_x (v_1 - v_0)/h = F_x - c_x (x_1 - x_0)/h - k_x x.
 
     An element pushes along x with its pressure times the slope halfway through the step, so that the
@@ -818,11 +739,11 @@ def _slide(
         low, high = e.low[j], e.high[j]
         x = positions(e, low, high, step.place - 0.5 * step.travel)
         e.slope[j, low:high] = slope_at(e.surface, e.profile, x, j * e.across)
-    for kink in e.kinks:
-        if e.per_width and e.law.damping:  # pressed by the flank that they come from
-            for i in _passed(e, kink, step.place, step.travel):
-                x = positions(e, i, i + 1, step.place - step.travel)
-                e.slope[0, i] = slope_at(e.surface, e.profile, x, 0.0)[0]
+    for n in range(e.kinks.size if e.per_width and e.law.damping and step.travel else 0):
+        passed = _passed(e, e.kinks[n], step.place, step.travel)
+        if passed[0] < passed[1]:  # pressed by the flank that they come from
+            x = positions(e, passed[0], passed[1], step.place - step.travel)
+            e.slope[0, passed[0] : passed[1]] = slope_at(e.surface, e.profile, x, 0.0)
     for r in range(runs.shape[0]):
         j, weight = runs[r, 0], step.weights[runs[r, 0]]
         slope = e.slope[j, runs[r, 1] : runs[r, 2]]
@@ -832,10 +753,10 @@ def _slide(
         area -= weight * np.dot(slope, e.meets[j, runs[r, 1] : runs[r, 2]])
     area += sunk * inclined
     for i in range(step.lack.size):
-        j, k_i = step.late[i, 0], step.late[i, 1]
-        area -= step.lack[i] * max(sunk - e.meets[j, k_i], 0.0) * e.slope[j, k_i]
+        place = step.late[i, 0], step.late[i, 1]
+        area -= step.lack[i] * max(sunk - e.meets[place], 0.0) * e.slope[place]
     if e.parts:
-        area += _kinks(e, law, step, runs, sunk, state[DEPTH])[3]
+        area += _kinks(e, step, runs, sunk, state[DEPTH])[3]
     # A ringing too fast for the step is damped; θ - 1/2 is of the third order in h, as on arms.
     swing = h * math.sqrt(k_x / M_x)
     z = h * (c_x + law.damping * e.spacing * tilted) / M_x + swing * swing * swing
@@ -850,14 +771,14 @@ def _slide(
     return slid, _velocity(slid, state[ALONG_RATE], h, theta)
 
 
-# Explicit schemes
+# The explicit step
 
 
 def explicit_step(
-    e: Elements, laws: tuple[StepLaw, StepLaw, StepLaw], state: Array, now: float,
+    e: Elements, laws: tuple[ElementStep, ElementStep, ElementStep], state: Array, now: float,
     Y: Array, V: Array,
 ) -> int:  # fmt: skip
-    """Take a step of Runge and Kutta; which elements are in contact is settled at its end.
+    """Take a step of Runge and Kutta; which elements are in contact is decided at its end.
 
     `laws` are those of no time, half the step and all of it; Y and V are at these times, V just before the
     end. F_z = dx Σ (K g + C g'). An element in contact detaches where its pressure would be negative, relaxes
@@ -866,80 +787,67 @@ def explicit_step(
     """
     h, M, M_x = laws[2].h, e.mass, e.mass_along
     stages, begin = e.tableau.shape[0] - 1, Y[0] - state[ALONG]
-    pulls, drags = np.zeros(stages + 1), np.zeros(stages + 1)
-    rates, slides = np.zeros(stages + 1), np.zeros(stages + 1)
-    depth = along = 0.0
-    moves = math.isfinite(M) or math.isfinite(M_x)
+    rates = np.zeros((stages + 1, 4))  # of depth, its rate, and both along x, at each stage
+    now_at = state[:4].copy()
     for i in range(stages + 1):
         share = e.tableau[i, 0] if i < stages else 1.0
-        depth, rate, along, along_rate = state[DEPTH], state[RATE], state[ALONG], state[ALONG_RATE]
+        now_at[:] = state[:4]
         for k in range(i):
-            part = h * e.tableau[i, k + 1]
-            depth += part * rates[k]
-            rate += part * pulls[k] / M
-            along += part * slides[k]
-            along_rate += part * drags[k] / M_x
-        rates[i], slides[i] = rate, along_rate
-        if moves or i == stages:
+            now_at += h * e.tableau[i, k + 1] * rates[k]
+        rates[i, DEPTH], rates[i, ALONG] = now_at[RATE], now_at[ALONG_RATE]
+        if i == stages or math.isfinite(M) or math.isfinite(M_x):
             n = int(2.0 * share)
-            status, pulls[i], drags[i] = _press(
-                e, laws[n], state, (depth, rate, along, along_rate), now, (begin, Y[n] - along), V[n],
-                share > 0.0 and i < stages,
-            )  # fmt: skip
+            places, within = (begin, Y[n] - now_at[ALONG]), share > 0.0 and i < stages
+            status, pull, drag = _press(e, laws[n], state, now_at, now, places, V[n], within)
             if status != DONE:
                 return status
-    settle(e, laws[2], begin, (state[DEPTH], depth))
-    state[DEPTH], state[RATE] = depth, rates[stages]
-    state[ALONG], state[ALONG_RATE] = along, slides[stages]
+            rates[i, RATE], rates[i, ALONG_RATE] = pull / M, drag / M_x
+    runs = runs_of(e.pressed, e.low, e.high)
+    finish(e, laws[2], runs, begin, (state[DEPTH], now_at[DEPTH]))
     if math.isfinite(M):
-        mean = 0.0
+        mean, first, last = 0.0, rates[0, RATE], rates[stages, RATE]
         for k in range(stages):
-            mean += e.tableau[stages, k + 1] * pulls[k]
-        state[IMBALANCE] = abs(mean - 0.5 * (pulls[0] + pulls[stages]))
-        state[FORCE] = e.weight + max(abs(pulls[0]), abs(pulls[stages]))
+            mean += e.tableau[stages, k + 1] * rates[k, RATE]
+        state[IMBALANCE] = M * abs(mean - 0.5 * (first + last))
+        state[FORCE] = e.weight + M * max(abs(first), abs(last))
+    state[:4] = now_at
     return DONE
 
 
 def _press(
-    e: Elements, law: StepLaw, state: Array, at: tuple[float, float, float, float],
-    now: float, places: tuple[float, float], velocity: float, within: bool,
+    e: Elements, law: ElementStep, state: Array, at: Array, now: float,
+    places: tuple[float, float], velocity: float, within: bool,
 ) -> tuple[int, float, float]:  # fmt: skip
     """Find which elements press at a stage, and return M δ'' and M_x x'' there, after the status (Eq. 17)."""
     place = places[0] if within and e.rule.still else places[1]
-    status = attend(e, now, (places[0], place), max(at[0], state[DEPTH]))
+    status = attend(e, now, (places[0], place), max(at[DEPTH], state[DEPTH]))
     if status != DONE:
         return status, 0.0, 0.0
-    V, weights = velocity - at[3], _weights(e, at[0], e.u.shape[0])
-    pull = e.weight - e.spring * (at[0] - e.depth)
-    drag = -e.spring_along * at[2] - e.damping_along * at[3]
+    V, weights = velocity - at[ALONG_RATE], _weights(e, at[DEPTH])
+    pull = e.weight - e.spring * (at[DEPTH] - e.depth)
+    drag = -e.spring_along * at[ALONG] - e.damping_along * at[ALONG_RATE]
     for j in range(e.counts[STRIPS]):
         low, high, y = e.low[j], e.high[j], j * e.across
-        x, u, touched = (
-            positions(e, low, high, place),
-            e.u[j, low:high],
-            e.touched[j, low:high],
-        )
+        u, touched = e.u[j, low:high], e.touched[j, low:high]
+        x = positions(e, low, high, place)
         height, slope = height_at(e.surface, e.profile, x, y), slope_at(e.surface, e.profile, x, y)
-        g, left = at[0] - height, _left(e, law, j, slice(low, high))
-        p = e.law.stiffness * g + e.law.damping * (at[1] - V * slope)
+        g, left = at[DEPTH] - height, left_alone(e, law, j, low, high)
+        p = e.law.stiffness * g + e.law.damping * (at[RATE] - V * slope)
         for k in range(e.arms.shape[0]):
-            p += np.where(
-                touched, law.held[k] * e.arms[k, j, low:high] + law.ramp[k] * (g - u), 0.0
-            )
+            p += touched * (law.held[k] * e.arms[k, j, low:high] + law.ramp[k] * (g - u))
         if e.arms.shape[0]:
             for i in np.flatnonzero((g > left) & ~touched):
-                gap = gap_before(e, j, low + i, places[0], state[DEPTH])
-                rise = g[i] - left[i]
-                phi_1, _ = ramp_functions(law.h * rise / (rise - min(gap, 0.0)) / e.law.arm_time)
+                gap, rise = gaps(e, j, low + i, 1, places[0], state[DEPTH])[0], g[i] - left[i]
+                phi_1, _ = ramp_functions(law.h * entered(gap, rise) / e.law.arm_time)
                 p[i] += rise * (e.law.arm_stiffness * phi_1).sum() - e.law.stiffness * left[i]
-        if e.rule.remembers:
-            free = u if e.rule.stale and within else left
-            met = touched | (g > free) if e.rule.flags else g >= free * (1.0 - TIE)
-            pressed = met & ((g > 0.0) if e.rule.pulls else (p >= 0.0))
-        else:
+        free = u if e.rule.stale and within else left
+        if not e.rule.remembers:
             pressed = (g > 0.0) & (p >= 0.0)
+        else:
+            pressed = g > 0.0 if e.rule.pulls else p >= 0.0
+            pressed &= touched | (g > free) if e.rule.flags else g >= free * (1.0 - TIE)
         e.height[j, low:high], e.pressed[j, low:high] = height, pressed
-        each = np.where(pressed, p, 0.0)
+        each = p * pressed
         pull -= e.spacing * weights[j] * each.sum()
         drag -= e.spacing * weights[j] * np.dot(slope, each)
     return DONE, pull, drag
@@ -948,87 +856,66 @@ def _press(
 # Forces and edges at an instant
 
 
-def report(e: Elements, state: Array, now: float, about: Array, found: Array) -> int:
+def report(
+    e: Elements, state: Array, law: ElementStep, now: float, about: Array, found: Array
+) -> int:
     """Put what is reported at an instant into `found`, in the order of `error_estimate.COLUMNS`.
 
-    `about` is (time, V, V just before it, whether the base moves or moved last with V >= 0, Y). An element is
-    in contact if the indenter touches its surface and its pressure p >= 0 (Eq. 24). Where the pressure is
-    highest at an edge, its doubt is how much it differs between the elements beside that.
+    `law` is that of the last step, `about` is (time, V, V just before it, whether the base moves or moved
+    last with V >= 0, Y). An element is in contact if the indenter touches its surface and its pressure
+    p >= 0 (Eq. 24). Where the pressure is highest at an edge, its doubt is how much it differs between the
+    elements beside that.
     """
-    time, V, V_before, forward, Y = about
-    place = Y - state[ALONG]
+    time, V, V_before, forward = about[0], about[1], about[2], about[3]
+    place = about[4] - state[ALONG]
     status = attend(e, now, (place, place), state[DEPTH])
     if status != DONE:
         return status
-    sliding, before = V - state[ALONG_RATE], V_before - state[ALONG_RATE]
-    weights = _weights(e, state[DEPTH], e.u.shape[0])
-    force = push = 0.0
-    left = right = math.nan
-    sums, peak, edge = np.zeros(4), np.zeros(3), np.zeros(3)
+    sliding, weights = V - state[ALONG_RATE], _weights(e, state[DEPTH])
     for j in range(e.counts[STRIPS]):
         low, high = e.low[j], e.high[j]
-        p, slope = _pressure(e, state, j, place, sliding)
-        p_before = p if before == sliding else _pressure(e, state, j, place, before)[0]
-        flags = (e.touched[j, low:high] & ((p >= 0.0) | e.rule.pulls)).reshape(1, -1)
-        runs = runs_of(flags, np.zeros(1, np.int64), np.full(1, high - low))
-        for k in range(runs.shape[0]):
-            run = runs[k, 1], runs[k, 2]
-            if e.parts:
-                _parts(e, state, j, run, (p, p_before, slope), place, sliding, sums, peak, edge)
-            else:
-                _whole(e, j, run, p, place, sums, peak)
-            force += weights[j] * sums[0]
-            push += weights[j] * sums[1]
-            if j == 0:
-                left = sums[2] if math.isnan(left) else left
-                right = sums[3]
-    if edge[0] > peak[0]:
-        peak = edge
+        if V_before != V:
+            e.before[j, low:high] = _pressure(e, state, law, j, place, V_before - state[ALONG_RATE])
+        p = _pressure(e, state, law, j, place, sliding)
+        e.meets[j, low:high] = p
+        e.pressed[j, low:high] = e.touched[j, low:high] & ((p >= 0.0) | e.rule.pulls)
+    runs = runs_of(e.pressed, e.low, e.high)
+    force, push, sums, peak, edge = 0.0, 0.0, np.zeros(4), np.zeros(2), np.zeros(2)
+    left = right = math.nan
+    for r in range(runs.shape[0]):
+        j, low, high = runs[r, 0], runs[r, 1], runs[r, 2]
+        p, slope = e.meets[j], e.slope[j]
+        sums[0], sums[1] = p[low:high].sum(), np.dot(p[low:high], slope[low:high])
+        top = low + np.argmax(p[low:high])
+        if e.parts:
+            reach = np.full(2, 1.0)
+            for side in range(2):
+                p_before = e.meets[j] if V_before == V else e.before[j]
+                share = _end(e, j, low, high, side, p_before, place, state[DEPTH], sums, edge)
+                reach[side] = share if top == (high - 1 if side else low) else 1.0
+            if e.per_width:
+                _split(e, low, high, place, sliding, sums)
+            if p[top] > peak[0] or not peak[0]:
+                peak[0], peak[1] = _peak(e, p, top, reach, low, high)
+        else:
+            x = positions(e, low, high, place)
+            sums[1] = np.dot(p[low:high], slope_at(e.surface, e.profile, x, j * e.across))
+            sums[2], sums[3] = x[0] - 0.5 * e.spacing, x[-1] + 0.5 * e.spacing
+            peak[0] = max(peak[0], p[top])
+        force += weights[j] * sums[0]
+        push += weights[j] * sums[1]
+        if j == 0:
+            left, right = sums[2] if math.isnan(left) else left, sums[3]
     if state[ALONG_RATE] and abs(sliding) > AT_REST * e.rest_velocity:
         forward = 1.0 if sliding > 0.0 else 0.0
-    held = e.spring_along * state[ALONG] + e.damping_along * state[ALONG_RATE]
-    found[:] = np.array([
-        time, V, state[DEPTH], state[RATE], e.spacing * force, -e.spacing * push,
-        left if forward else right, right if forward else left,
-        peak[0], sliding, held, peak[1], peak[2],
-    ])  # fmt: skip
+    found[0], found[1], found[2], found[3] = time, V, state[DEPTH], state[RATE]
+    found[4], found[5] = e.spacing * force, -e.spacing * push
+    found[6], found[7] = (left, right) if forward else (right, left)
+    found[8] = max(peak[0], edge[0])
+    found[9] = sliding
+    found[10] = e.spring_along * state[ALONG] + e.damping_along * state[ALONG_RATE]
+    found[11], found[12] = (0.0, edge[1]) if edge[0] > peak[0] else (peak[1], 0.0)
     return DONE
-
-
-def _whole(
-    e: Elements, j: int, run: tuple[int, int], p: Array, place: float, sums: Array, peak: Array
-) -> None:
-    """Sum over the whole elements of a run, as in the paper (Eqs. 12-15)."""
-    x, inside = positions(e, e.low[j] + run[0], e.low[j] + run[1], place), p[run[0] : run[1]]
-    sums[0], sums[1] = inside.sum(), np.dot(inside, slope_at(e.surface, e.profile, x, j * e.across))
-    sums[2], sums[3] = x[0] - 0.5 * e.spacing, x[-1] + 0.5 * e.spacing
-    peak[0] = max(peak[0], inside.max())
-
-
-def _parts(
-    e: Elements, state: Array, j: int, run: tuple[int, int], fields: tuple[Array, Array, Array],
-    place: float, V: float, sums: Array, peak: Array, edge: Array,
-) -> None:  # fmt: skip
-    """Sum over a run by trapezoids up to its very edges."""
-    p, p_before, slope = fields
-    inside, reach = p[run[0] : run[1]], np.ones(2)
-    top = run[0] + int(np.argmax(inside))
-    sums[0], sums[1] = inside.sum(), np.dot(inside, slope[run[0] : run[1]])
-    for side in range(2):
-        i = run[0] if side == 0 else run[1] - 1
-        share, p_edge, x = _edge(e, j, e.low[j], i, p, p_before, state[DEPTH], place, side)
-        just_inside = x - NEAR * e.spacing * (2 * side - 1)
-        steep = slope_at(e.surface, e.profile, just_inside, j * e.across)
-        sums[0] += 0.5 * (share * (p[i] + p_edge) - p[i])
-        sums[1] += 0.5 * (share * (slope[i] * p[i] + steep * p_edge) - slope[i] * p[i])
-        sums[2 + side], reach[side] = x, share if i == top else 1.0
-        if p_edge > edge[0]:
-            edge[0], edge[2] = p_edge, abs(p[i] - p[i + 2 * side - 1])
-    if e.per_width:
-        more = _split(e, p, run, e.counts[FIRST] + e.low[j], place, V)
-        sums[0], sums[1] = sums[0] + more[0], sums[1] + more[1]
-    if p[top] > peak[0] or not peak[0]:
-        peak[0], peak[1] = _peak(e, p, top, reach, run)
 
 
 def _behind(e: Elements, V: float) -> float:
@@ -1036,8 +923,8 @@ def _behind(e: Elements, V: float) -> float:
     return math.copysign(NEAR * e.spacing, V) if e.kinks.size and V else 0.0
 
 
-def _pressure(e: Elements, state: Array, j: int, place: float, V: float) -> tuple[Array, Array]:
-    """Return p of the elements of a strip, g = δ - h(x), g' = δ' - V h'(x) (Eqs. 6, 7, 12), and the slope.
+def _pressure(e: Elements, state: Array, law: ElementStep, j: int, place: float, V: float) -> Array:
+    """Return p of the elements of a strip, g = δ - h(x), g' = δ' - V h'(x) (Eqs. 6, 7, 12); set `slope`.
 
     Of one that is not in contact, it is what it would be had it followed the indenter in the last step: it
     is brought down by the gap at the start of that time, and then moves with the indenter.
@@ -1045,50 +932,56 @@ def _pressure(e: Elements, state: Array, j: int, place: float, V: float) -> tupl
     low, high, y = e.low[j], e.high[j], j * e.across
     x, u = positions(e, low, high, place), e.u[j, low:high]
     slope = slope_at(e.surface, e.profile, x - _behind(e, V), y)
-    g = state[DEPTH] - height_at(e.surface, e.profile, x, y)
-    g_rate = state[RATE] - V * slope
-    p = e.law.stiffness * g + e.law.damping * g_rate
+    g, g_rate = state[DEPTH] - height_at(e.surface, e.profile, x, y), state[RATE] - V * slope
+    p: Array = e.law.stiffness * g + e.law.damping * g_rate
+    for k in range(e.arms.shape[0]):
+        brought = e.law.arm_stiffness[k] * law.held[k]
+        moved = (law.ramp[k] - brought) * law.h
+        touched, followed = 1.0 * e.touched[j, low:high], brought * (g - u) + moved * g_rate
+        p += touched * e.arms[k, j, low:high] + (1.0 - touched) * followed
     if e.arms.shape[0]:
-        z = state[LAST] / e.law.arm_time
-        brought = (e.law.arm_stiffness * np.exp(-z)).sum()
-        moved = (e.law.arm_stiffness * ramp_functions(z)[0]).sum()
-        free = brought * (g - u) + (moved - brought) * state[LAST] * g_rate - e.law.stiffness * u
-        arms = np.zeros(high - low)
-        for k in range(e.arms.shape[0]):
-            arms += e.arms[k, j, low:high]
-        p += np.where(e.touched[j, low:high], arms, free)
-    return p, slope
+        p -= e.law.stiffness * (~e.touched[j, low:high] * u)
+    e.slope[j, low:high] = slope
+    return p
 
 
-def _edge(
-    e: Elements, j: int, low: int, i: int, p: Array, p_before: Array, depth: float,
-    place: float, side: int,
-) -> tuple[float, float, float]:  # fmt: skip
-    """Return how far outward of its last element i a run ends, of the spacing, p and x there.
+def _end(
+    e: Elements, j: int, low: int, high: int, side: int, p_before: Array, place: float, depth: float,
+    sums: Array, edge: Array,
+) -> float:  # fmt: skip
+    """Extend the sums over a run to its very edge; return how far outward of the last element that is.
 
     An edge peels where p falls to zero, between two elements by a straight line, and touches where
     the indenter meets the free surface. Where V jumps, an edge that peeled until then, by the pressure
-    before, `p_before`, is still where it was, or has gone further in.
+    before, is still where it was, or has gone further in.
     """
-    out = 2 * side - 1
-    now = _peeling(p[i], p[i + out])
-    before = _peeling(p_before[i], p_before[i + out])
-    w = (gap_before(e, j, low + i + out, place, depth),
-         gap_before(e, j, low + i + 2 * out, place, depth),
-         gap_before(e, j, low + i + 3 * out, place, depth))  # fmt: skip
-    if math.isinf(before) or straight(w):
-        before = 1.0 if e.touched[j, low + i + out] else 1.0 - touching(w)
+    i, out, p, slope = high - 1 if side else low, 2 * side - 1, e.meets[j], e.slope[j]
+    now, before = _peeling(p[i], p[i + out]), _peeling(p_before[i], p_before[i + out])
+    touches, straight = touching(gaps(e, j, i + out, out, place, depth))
+    if math.isinf(before) or straight:
+        before = 1.0 if e.touched[j, i + out] else 1.0 - touches
     share = min(before, now, 1.0)
     p_edge = 0.0 if now <= share else p[i] + share * (p[i + out] - p[i])
-    x = e.spacing * (e.counts[FIRST] + low + i + e.shift) + place
-    if e.per_width:
-        for kink in e.kinks:
-            # There p falls at once, by -C V times the jump of h'.
-            ahead = (kink - x) / e.spacing * out
-            p_kink = p[i] + ahead * (p[i] - p[i - out])
-            if -NEAR <= ahead < min(before, 1.0) and p[i + out] < 0.0 and p_kink > 0.0:
-                share, p_edge = ahead, p_kink
-    return share, p_edge, x + share * e.spacing * out
+    x = e.spacing * e.numbers[i] + place
+    for n in range(e.kinks.size if e.per_width else 0):
+        # There p falls at once, by -C V times the jump of h'.
+        ahead = (e.kinks[n] - x) / e.spacing * out
+        p_kink = p[i] + ahead * (p[i] - p[i - out])
+        if -NEAR <= ahead < min(before, 1.0) and p[i + out] < 0.0 and p_kink > 0.0:
+            share, p_edge = ahead, p_kink
+    x += share * e.spacing * out
+    steep = _slope_of(e, x - NEAR * e.spacing * out, j)
+    sums[0] += 0.5 * (share * (p[i] + p_edge) - p[i])
+    sums[1] += 0.5 * (share * (slope[i] * p[i] + steep * p_edge) - slope[i] * p[i])
+    sums[2 + side] = x
+    if p_edge > edge[0]:
+        edge[0], edge[1] = p_edge, abs(p[i] - p[i + out])
+    return float(share)
+
+
+def _slope_of(e: Elements, x: float, j: int) -> float:
+    """Return dh/dx at one place of a strip."""
+    return float(slope_at(e.surface, e.profile, np.full(1, x), j * e.across)[0])
 
 
 def _peeling(inside: float, outside: float) -> float:
@@ -1096,64 +989,51 @@ def _peeling(inside: float, outside: float) -> float:
     return max(inside, 0.0) / (max(inside, 0.0) - outside) if outside < 0.0 else math.inf
 
 
-def touching(overlap: tuple[float, float, float]) -> float:
-    """Return how far inward of the first element outside w = 0 is, from 0 to 1 element.
+def touching(overlap: Any) -> tuple[float, bool]:
+    """Return how far inward of the first element outside w = 0 is, from 0 to 1 element, and how w falls.
 
-    w is that of the three nearest elements outside, and continued as their parabola.
+    w is that of the three nearest elements outside, and continued as their parabola. It falls in a straight
+    line, as on free ground, or as a square, where the edge peeled.
+
+    >>> touching((-0.5, -1.5, -2.5)), touching((-0.25, -2.25, -6.25))
+    ((0.5, True), (0.5, False))
     """
-    w, slope, bend = _parabola(overlap)
-    fall = slope + math.sqrt(max(slope * slope - 2.0 * w * bend, 0.0))
-    return min(max(-2.0 * w / fall, 0.0), 1.0) if fall else 1.0
-
-
-def straight(overlap: tuple[float, float, float]) -> bool:
-    """Whether w falls to the edge in a straight line, as on free ground, or as a square, where it peeled.
-
-    >>> straight((-0.5, -1.5, -2.5)), straight((-0.25, -2.25, -6.25))
-    (True, False)
-    """
-    w, slope, bend = _parabola(overlap)
-    return slope * slope - 2.0 * w * bend > STRAIGHT * slope * slope
-
-
-def _parabola(overlap: tuple[float, float, float]) -> tuple[float, float, float]:
     w, far, farthest = overlap
-    return w, 1.5 * w - 2.0 * far + 0.5 * farthest, w - 2.0 * far + farthest
+    slope, bend = 1.5 * w - 2.0 * far + 0.5 * farthest, w - 2.0 * far + farthest
+    square = slope * slope - 2.0 * w * bend
+    fall = slope + math.sqrt(max(square, 0.0))
+    share = min(max(-2.0 * w / fall, 0.0), 1.0) if fall else 1.0
+    return share, square > STRAIGHT * slope * slope
 
 
-def _split(
-    e: Elements, p: Array, run: tuple[int, int], first: int, place: float, V: float
-) -> tuple[float, float]:
+def _split(e: Elements, low: int, high: int, place: float, V: float, sums: Array) -> None:
     """Split the element in which a kink of the shape is: h' jumps there, and p by -C V times as much.
 
     Without this, the forces under a wedge are of the first order in the spacing.
     """
-    force = push = 0.0
-    for kink in e.kinks:
-        x_0 = e.spacing * (first + e.shift) + place
+    for n in range(e.kinks.size):
+        kink, x_0 = e.kinks[n], e.spacing * e.numbers[0] + place
         k = round((kink - x_0) / e.spacing)
-        if not run[0] < k < run[1] - 1:
+        if not low < k < high - 1:
             continue
-        x = x_0 + k * e.spacing
-        here = slope_at(e.surface, e.profile, x - _behind(e, V), 0.0)
-        back = slope_at(e.surface, e.profile, kink - NEAR * e.spacing, 0.0)
-        ahead = slope_at(e.surface, e.profile, kink + NEAR * e.spacing, 0.0)
-        p_back, p_ahead = (
-            p[k] - e.law.damping * V * (back - here),
-            p[k] - e.law.damping * V * (ahead - here),
-        )
+        x, p = x_0 + k * e.spacing, e.meets[0, k]
+        here = _slope_of(e, x - _behind(e, V), 0)
+        back = _slope_of(e, kink - NEAR * e.spacing, 0)
+        ahead = _slope_of(e, kink + NEAR * e.spacing, 0)
+        p_back = p - e.law.damping * V * (back - here)
+        p_ahead = p - e.law.damping * V * (ahead - here)
         share = (kink - x) / e.spacing + 0.5
         if p_back >= 0.0 and p_ahead >= 0.0:
-            force += share * p_back + (1.0 - share) * p_ahead - p[k]
-            push += share * p_back * back + (1.0 - share) * p_ahead * ahead - p[k] * here
-    return force, push
+            sums[0] += share * p_back + (1.0 - share) * p_ahead - p
+            sums[1] += share * p_back * back + (1.0 - share) * p_ahead * ahead - p * here
 
 
-def _peak(e: Elements, p: Array, k: int, reach: Array, run: tuple[int, int]) -> tuple[float, float]:
+def _peak(e: Elements, p: Array, k: int, reach: Array, low: int, high: int) -> tuple[float, float]:
     """Return the peak near element k, of the parabola through three, and its doubt.
 
     A shape with kinks has no such parabola: there the peak is known to the next element. Arms remember
-    where contact began, so that the pressure itself may have a kink between two elements.
+    where contact began, so that the pressure itself may have a kink between two elements: then the better
+    of a parabola and a ridge counts.
     """
     before, here, after = p[k - 1], p[k], p[k + 1]
     doubt = 0.5 * max(here - before, here - after) if e.law.arm_time.size else 0.0
@@ -1162,23 +1042,14 @@ def _peak(e: Elements, p: Array, k: int, reach: Array, run: tuple[int, int]) -> 
     bend = 2.0 * here - before - after
     if not (here >= before and here >= after and bend > 0.0):
         return here, 0.0
-    if doubt and run[0] + 3 <= k < run[1] - 3:
-        smooth, ridge = _smooth(p[k - 3 : k + 4]), _ridge(p[k - 3 : k + 4])
-        return smooth if smooth[1] <= ridge[1] else ridge
     ahead = 0.5 * (after - before) / bend
-    if abs(ahead) > reach[1 if ahead > 0.0 else 0]:
-        return here, doubt
-    return here + 0.25 * (after - before) * ahead, doubt
-
-
-def _smooth(p: Array) -> tuple[float, float]:
-    """Return the peak of the parabola through the middle three of seven pressures, and its doubt.
-
-    A kink beside the middle adds to one or two of the second differences at the middle three.
-    """
-    peak = p[3] + 0.125 * (p[4] - p[2]) * (p[4] - p[2]) / (2.0 * p[3] - p[2] - p[4])
-    bends = p[1:4] - 2.0 * p[2:5] + p[3:6]
-    return peak, 0.5 * (bends.max() - bends.min())
+    height = here + 0.25 * (after - before) * ahead
+    if doubt and low + 3 <= k < high - 3:
+        # A kink beside the middle adds to one or two of the second differences at the middle three.
+        bends = (p[k - 2] - 2.0 * p[k - 1] + p[k], -bend, p[k] - 2.0 * p[k + 1] + p[k + 2])
+        smooth, ridge = 0.5 * (max(bends) - min(bends)), _ridge(p[k - 3 : k + 4])
+        return (height, smooth) if smooth <= ridge[1] else ridge
+    return (here, doubt) if abs(ahead) > reach[1 if ahead > 0.0 else 0] else (height, doubt)
 
 
 def _ridge(p: Array) -> tuple[float, float]:
@@ -1204,16 +1075,25 @@ class Course(NamedTuple):
     `times` are those before the first step and after each, `steps` their lengths, `Y` and `V` at the start of
     each, halfway and at its end, V just before that. `after` says after which step an instant is
     reported, `about` what `report` wants to know of it. `limits` are the speeds, upward and along, that no
-    stable run reaches, and the imbalance of the forces that it stays below.
+    stable run reaches, and the imbalance of the forces that it stays below. `law` is that of an element over
+    steps of no length, and over half and all of each length, numbered by `which`.
     """
 
     times: Array
     steps: Array
     Y: Array
     V: Array
-    after: NDArray[np.int64]
+    after: Runs
     about: Array
     limits: Array
+    law: ElementStep
+    which: Runs
+
+
+def _law_at(of: ElementStep, k: int) -> ElementStep:
+    """Return the law over one of several lengths."""
+    return ElementStep(of.h[k], of.fall[k], of.held[k], of.weights[k], of.ramp[k], of.stiffness[k],
+                       of.damping[k], of.free[k])  # fmt: skip
 
 
 def advance(
@@ -1221,51 +1101,38 @@ def advance(
     step: int, reported: int, until: int,
 ) -> tuple[int, int, int]:  # fmt: skip
     """Run from a step on; return why it ended, the steps done and the instants reported."""
-    law = half = none = law_of(e.law, 0.0)
+    none = _law_at(course.law, 0)
+    law = _law_at(course.law, 2 * course.which[step - 1] + 2) if step else none
     begun = runs_of(e.touched, e.low, e.high)
     while True:
+        now = course.times[step]
         while reported < course.after.size and course.after[reported] == step:
-            about, now = course.about[reported], course.times[step]
-            status = report(e, state, now, about, found[reported])
+            status = report(e, state, law, now, course.about[reported], found[reported])
             if status != DONE:
                 return status, step, reported
             reported += 1
         if step == until:
             return DONE, step, reported
-        h, now = course.steps[step], course.times[step]
-        if h != law.h:
-            law = law_of(e.law, h)
-            if e.explicit:
-                half = law_of(e.law, 0.5 * h)
+        law, Y = _law_at(course.law, 2 * course.which[step] + 2), course.Y[step]
         if e.explicit:
-            Y, V = course.Y[step], course.V[step]
-            status = explicit_step(e, (none, half, law), state, now, Y, V)
+            half = _law_at(course.law, 2 * course.which[step] + 1)
+            status = explicit_step(e, (none, half, law), state, now, Y, course.V[step])
         else:
-            Y_ends = course.Y[step, 0], course.Y[step, 2]
-            status, begun = implicit_step(e, law, begun, state, now, Y_ends)
+            status, begun = implicit_step(e, law, begun, state, now, (Y[0], Y[2]))
         if status != DONE:
             return status, step, reported
-        state[LAST] = h
+        state[LAST] = law.h
         balances[0, step % WINDOW], balances[1, step % WINDOW] = state[IMBALANCE], state[FORCE]
         step += 1
-        status = _watch(e, state, course.limits, balances)
-        if status != DONE:
-            return status, step, reported
-
-
-def _watch(e: Elements, state: Array, limits: Array, balances: Array) -> int:
-    """Tell whether the last step shows that the run is unstable.
-
-    No element pulls, p >= 0, so that an indenter in contact rises at most with g/τ - V h'; beyond that
-    it has left the foundation, and only a spring can lift it faster. But an unstable step does not
-    always throw it off: when the contact gives way, the oscillation may settle at some amplitude, or
-    on a wrong state at rest, with forces that do not balance the motion. So the balance over each
-    step, M δ'' = W - k_s (δ - δ_0) - F_z, is checked too.
-    """
-    if not state[RATE] >= limits[0]:  # NaN is not above it either
-        return THROWN_UP
-    if not abs(state[ALONG_RATE]) <= limits[1]:
-        return THROWN_ALONG
-    if e.explicit and balances[1].min() > 0.0 and balances[0].sum() > limits[2] * balances[1].sum():
-        return UNBALANCED
-    return DONE
+        # No element pulls, p >= 0, so that an indenter in contact rises at most with g/τ - V h'; beyond
+        # that it has left the foundation, and only a spring can lift it faster. But an unstable step does
+        # not always throw it off: when the contact gives way, the oscillation may settle at some amplitude,
+        # or on a wrong state at rest, with forces that do not balance the motion. So the balance over each
+        # step, M δ'' = W - k_s (δ - δ_0) - F_z, is checked too.
+        if not state[RATE] >= course.limits[0]:  # NaN is not above it either
+            return THROWN_UP, step, reported
+        if not abs(state[ALONG_RATE]) <= course.limits[1]:
+            return THROWN_ALONG, step, reported
+        forces = balances[1].sum() if e.explicit and balances[1].min() > 0.0 else 0.0
+        if forces and balances[0].sum() > course.limits[2] * forces:
+            return UNBALANCED, step, reported

@@ -1,7 +1,7 @@
 """The scene as the simulator sees it: plain numbers in SI, and an indenter as arrays.
 
 A line contact is one row of elements, and what acts on it is per unit width. A ball has a row, or strip,
-at each y = 0, dy, 2 dy, ..., and its forces are sums over strips (`strips`).
+at each y = 0, dy, 2 dy, ..., and its forces are sums over strips.
 """
 
 import math
@@ -13,18 +13,18 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from kvtheory.models.elements import kernels
-from kvtheory.models.elements.law import RIGHT, Array, ContactRule, Law
-from kvtheory.models.elements.schemes import Scheme
+from kvtheory.models.elements.schemes import RIGHT, ContactRule
 from kvtheory.scene.base_motion import BaseMotion
 from kvtheory.scene.capabilities import lacks_arms, require
 from kvtheory.scene.indenters import Circle, Indenter, PowerLaw, Profile, Revolved, Sphere, Wedge
 from kvtheory.scene.model import Scene
 from kvtheory.scene.static_state import StaticState, out_of_range
+from kvtheory.theory.laws import Array, Element
 
 LEVEL = 1.1
 """Ratio of the depths at which the span of a Python function is found; between, a power of the depth."""
 PER_STRIP = 6.0
-"""Elements along as wide as a strip, on a ball that is round: then both spacings matter about as much."""
+"""Width of a strip in elements, on a round ball: then both spacings matter about equally."""
 FEWEST_STRIPS = 16
 """From the middle plane to the rim at rest."""
 FEWEST, MOST = 8, 2_000_000
@@ -39,7 +39,7 @@ SAMPLES_ALONG, SAMPLES_ACROSS = 257, 16
 class Model:
     """An indenter (depth δ, mass M) over elements with the spacing dx, all in SI.
 
-    `mass` is infinite for a fixed indenter; `depth` is the static depth δ_0; `at_rest` measures errors.
+    `mass` is infinite for a fixed indenter; `depth` is the static depth δ_0; `at_rest` scales errors.
     Along x the indenter has `mass_along` M_x, infinite on a rigid drive, on a spring k_x and a damper c_x.
     At t = 0 an element is at x = `shift` dx; `parts` says whether the part of one at each edge counts.
     `across` is the distance dy of the strips of a ball, zero for a line contact.
@@ -47,7 +47,7 @@ class Model:
     """
 
     indenter: Indenter
-    law: Law
+    law: Element
     spacing: float
     mass: float
     weight: float
@@ -80,40 +80,36 @@ class Model:
             double precision.
         """
         require(lacks_arms, scene, "the simulator")
-        support, law, fixed = scene.support, Law.of_foundation(scene.foundation), scene.held
-        model = cls(
-            scene.indenter, law, 1.0, support.mass, support.weight, 0.0,
-            support.depth or 1.0, parts, shift,
-        )  # fmt: skip
+        support, given, drive = scene.support, scene.foundation, scene.drive
+        arms = [(arm.stiffness, arm.relaxation_time) for arm in given.arms]
+        law = Element.of(given.stiffness, 0.0 if arms else given.damping, arms)
+        along = {} if drive.rigid else {
+            "mass_along": scene.drive_mass, "spring_along": drive.stiffness or 0.0,
+            "damping_along": drive.damping,
+        }  # fmt: skip
+        model = cls(scene.indenter, law, 1.0, support.mass, support.weight, 0.0, support.depth or 1.0,
+                    parts, shift, **along)  # fmt: skip
         if not all(map(math.isfinite, span(model.indenter, model.depth))):
             raise ValueError(out_of_range(scene))
-        rough = model.depth if fixed else model.sliding_depth(0.0)
-        low, high = span(model.indenter, rough)
+        depth = model.depth if scene.held else model.sliding_depth(0.0)
+        low, high = span(model.indenter, depth)
         dx = spacing or (high - low) / SAMPLES
         if not FEWEST <= (high - low) / dx <= MOST:
             raise ValueError(
                 f"`per_length` = {1 / dx:.6g} 1/m: expected {FEWEST / (high - low):.3g} to "
                 f"{MOST / (high - low):.3g} 1/m, so that {FEWEST} to {MOST} elements carry the indenter"
             )
-        model = replace(model, spacing=coarser * dx, spring=0.0 if fixed else support.spring)
+        model = replace(model, spacing=coarser * dx, spring=0.0 if scene.held else support.spring)
         if not scene.indenter.per_width:
-            dy = model.half_width(rough) * min(PER_STRIP * dx / high, 1.0 / FEWEST_STRIPS)
+            dy = model.half_width(depth) * min(PER_STRIP * dx / high, 1.0 / FEWEST_STRIPS)
             model = replace(model, across=coarser * (1.0 + 0.5 * shift) * dy)
-        depth = rough if fixed else root(lambda d: model.static_load(d) - model.weight, rough)
+        if not scene.held:
+            depth = root(lambda d: model.static_load(d) - model.weight, depth)
         model = replace(model, depth=depth)
         at_rest = StaticState.at(scene, depth, model.half_length, model.static_load(depth))
-        model = replace(model, at_rest=at_rest)
-        return model if scene.drive.rigid else model.on_spring(scene)
+        return replace(model, at_rest=at_rest)
 
-    def on_spring(self, scene: Scene) -> "Model":
-        """Return the model with the indenter held along x as the drive of the scene does."""
-        drive = scene.drive
-        return replace(
-            self, mass_along=scene.drive_mass, spring_along=drive.stiffness or 0.0,
-            damping_along=drive.damping,
-        )  # fmt: skip
-
-    @cached_property
+    @property
     def sprung(self) -> bool:
         """Whether the indenter moves along x."""
         return math.isfinite(self.mass_along)
@@ -124,11 +120,11 @@ class Model:
         Friction throws the mass along x to about F/sqrt(k_x M_x), F = W_0 δ_0/a_0, and through the
         dampers of the contact no faster than about a_0/τ.
         """
-        at_rest, own = self.at_rest, 0.0
-        if self.sprung:
-            swing = math.sqrt(self.spring_along * self.mass_along)
-            own = min(at_rest.friction_force / swing if swing else math.inf, at_rest.velocity)
-        return path.highest_speed + own
+        if not self.sprung:
+            return path.highest_speed
+        swing = math.sqrt(self.spring_along * self.mass_along)
+        thrown = self.at_rest.friction_force / swing if swing else math.inf
+        return path.highest_speed + min(thrown, self.at_rest.velocity)
 
     def path(self, scene: Scene) -> BaseMotion:
         """Return the motion of the base until the end of the run."""
@@ -143,10 +139,13 @@ class Model:
     @property
     def extent(self) -> float:
         """The length (m) of the contact at rest, of a ball its area (m^2)."""
-        length = 2.0 * self.half_length
-        if self.indenter.per_width:
-            return length
-        return 0.5 * math.pi * length * self.half_width(self.depth)
+        across = 1.0 if self.indenter.per_width else 0.5 * math.pi * self.half_width(self.depth)
+        return 2.0 * self.half_length * across
+
+    @property
+    def steepest(self) -> float:
+        """The largest slope of the indenter at the edges of the contact at rest."""
+        return float(abs(self.slope(np.array(span(self.indenter, self.depth)))).max())
 
     def half_width(self, depth: float) -> float:
         """Return half the width of a ball at a height, in m."""
@@ -163,18 +162,6 @@ class Model:
         line = self.indenter.profile if isinstance(self.indenter, Revolved) else self.indenter
         return PythonProfile(line, self.depth) if isinstance(line, Profile) else None
 
-    def constants(self, scheme: Scheme, deepest: float) -> dict[str, Any]:
-        """Return the fields of `kernels.Elements` that stay as they are, for indenters above `deepest`."""
-        names = ["spacing", "shift", "across", "mass", "weight", "spring", "depth", "half_length"]
-        names += ["mass_along", "spring_along", "damping_along"]
-        return {name: float(getattr(self, name)) for name in names} | {
-            "surface": self.surface, "profile": self.profile, "rule": self.rule, "parts": self.parts,
-            "law": self.law if self.rule.relaxes else self.law._replace(rates=0.0 * self.law.rates),
-            "tableau": scheme.table, "fitted": scheme.fitted, "explicit": bool(scheme.tableau),
-            "per_width": self.indenter.per_width, "deepest": deepest,
-            "rest_velocity": self.at_rest.velocity, "kinks": np.array(self.indenter.kinks, dtype=float),
-        }  # fmt: skip
-
     def height(self, x: Any, y: Any = 0.0) -> Any:
         """Return h(x, y), huge where the indenter has no surface."""
         return kernels.height_at(self.surface, self.profile, x, y)
@@ -187,48 +174,49 @@ class Model:
         """Return how many strips can be met at this depth."""
         return 1 + int(self.half_width(depth) / self.across) if self.across else 1
 
-    def under(self, depth: float) -> tuple[int, int]:
-        """Return the range of elements, with some to spare, that can be met at this depth at Y = 0."""
-        low, high = span(self.indenter, depth)
-        return math.floor(low / self.spacing) - kernels.SPARE, math.ceil(
-            high / self.spacing
-        ) + kernels.SPARE
-
-    def weights(self, depth: float) -> Array:
-        """Return the weight of the force of each strip: 1, or its width in m."""
-        if not self.across:
-            return np.ones(1)
-        rim = self.half_width(depth) if self.parts else 0.0
-        return kernels.weights_across(self.across, self.strips(depth), rim)
-
     def static_load(self, depth: float) -> float:
         """Return K times the area of max(δ - h, 0), as the elements at rest carry it."""
-        x, area = self.spacing * (np.arange(*self.under(depth)) + self.shift), 0.0
-        for j, weight in enumerate(self.weights(depth)):
+        low, high = span(self.indenter, depth)
+        first = math.floor(low / self.spacing) - kernels.SPARE
+        numbers = np.arange(first, math.ceil(high / self.spacing) + kernels.SPARE)
+        x, area, weights = self.spacing * (numbers + self.shift), 0.0, np.ones(1)
+        if self.across:
+            rim = self.half_width(depth) if self.parts else 0.0
+            weights = kernels.weights_across(self.across, self.strips(depth), rim)
+        for j, weight in enumerate(weights):
             overlap = depth - self.height(x, j * self.across)
-            sums = float(overlap[overlap > 0.0].sum())
-            runs = kernels.runs_of((overlap > 0.0)[None, :], [0], [x.size]) if self.parts else ()
-            for _, low, high in runs:
-                sums += kernels.kink_area(overlap[low - 3 : low][::-1])[0]
-                sums += kernels.kink_area(overlap[high : high + 3])[0]
+            sums, flags = float(overlap[overlap > 0.0].sum()), (overlap > 0.0)[None, :]
+            ends = np.zeros(1, dtype=int), np.array([x.size])
+            for _, start, stop in kernels.runs_of(flags, *ends) if self.parts else ():
+                sums += kernels.kink_area(overlap[start - 3 : start][::-1])[0]
+                sums += kernels.kink_area(overlap[stop : stop + 3])[0]
             area += weight * sums
         return self.law.stiffness * self.spacing * float(area)
 
     def tilt(self, extent: float) -> float:
         """Return the integral of h'^2 over a contact of this length or area, as steep as the one at rest."""
-        x, y, weight = self.samples(self.depth)
+        x, y, weight = self._samples(self.depth)
         inside = weight * (self.height(x, y) <= self.depth)
         return extent * float(inside @ np.square(self.slope(x, y))) / float(inside.sum())
 
     def sliding(self, depth: float, V: float) -> tuple[float, float]:
         """Return extent and normal force of a contact that slides steadily on a continuous foundation."""
-        x, y, weight = self.samples(depth)
+        x, y, weight = self._samples(depth)
         g = depth - self.height(x, y)
         p = self.law.pressure(g, -V * self.slope(x, y))
         pressed = (p > 0.0) & (g >= 0.0)
         return float(weight @ pressed), float(weight[pressed] @ p[pressed])
 
-    def samples(self, depth: float) -> tuple[Array, Array, Array]:
+    def sliding_depth(self, V: float) -> float:
+        """Return the depth at which that contact carries the load, to within a thousandth."""
+
+        def surplus(depth: float) -> float:
+            force = self.sliding(depth, V)[1] + self.spring * (depth - self.depth)
+            return force / self.weight - 1.0
+
+        return root(surplus, self.depth, 1e-9)
+
+    def _samples(self, depth: float) -> tuple[Array, Array, Array]:
         """Return x and y of places under the indenter, and for what length (m) or area (m^2) each counts."""
         low, high = span(self.indenter, depth)
         if self.indenter.per_width:
@@ -240,23 +228,12 @@ class Model:
         y = np.repeat(dy * np.arange(strips), along)
         return x, y, dx * np.repeat(kernels.weights_across(dy, strips, 0.0), along)
 
-    def sliding_depth(self, V: float) -> float:
-        """Return the depth at which that contact carries the load, to within a thousandth."""
-
-        def surplus(depth: float) -> float:
-            force = self.sliding(depth, V)[1] + self.spring * (depth - self.depth)
-            return force / self.weight - 1.0
-
-        return root(surplus, self.depth, 1e-9)
-
 
 def root(function: Callable[[float], float], guess: float, rtol: float = 0.0) -> float:
     """Return where an increasing function of x > 0 becomes positive: to the last digit, or to `rtol`.
 
-    Infinite if it nowhere does.
-
-    By false position (Illinois), every fourth step by halves. SciPy's would be as fast, but takes longer to
-    import than most runs.
+    Infinite if it nowhere does. By false position (Illinois), every fourth step by halves: SciPy's would be
+    as fast, but takes longer to import than most runs.
 
     >>> root(lambda x: x * x - 2.0, 1.0)
     1.4142135623730951
@@ -289,26 +266,24 @@ def root(function: Callable[[float], float], guess: float, rtol: float = 0.0) ->
 def surface_of(indenter: Indenter) -> kernels.Surface:
     """Return the indenter as the kernels know it.
 
-    >>> surface_of(Wedge(inclination=0.5)).kind == kernels.WEDGE
-    True
+    >>> surface_of(Wedge(inclination=0.5))[:3]
+    (1.0, 1.0, 0.5)
     """
-    revolved = isinstance(indenter, Revolved)
     line = indenter.profile if isinstance(indenter, (Revolved, Sphere)) else indenter
-    kind, size, exponent = kernels.PARABOLA, 1.0, 2.0
+    size, exponent, steep, across, stretch = 1.0, 2.0, 1.0, 0.0, 1.0
     if isinstance(line, Wedge):
-        kind, size = kernels.WEDGE, line.inclination
+        exponent, steep = 1.0, line.inclination
     elif isinstance(line, PowerLaw):
-        kind, size, exponent = kernels.POWER_LAW, line.length, line.exponent
+        size, exponent = line.length, line.exponent
     elif not isinstance(line, Profile):
-        kind, size = kernels.CIRCLE if isinstance(line, Circle) else kernels.PARABOLA, line.radius
-    across, stretch = 0.0, 1.0
+        size, exponent = line.radius, 0.0 if isinstance(line, Circle) else 2.0
     if isinstance(indenter, Sphere):
-        stretch = indenter.stretch
-        across = 0.5 / (indenter.radius_across or indenter.radius)
+        across, stretch = 0.5 / (indenter.radius_across or indenter.radius), indenter.stretch
     inside = math.nextafter(indenter.reach, 0.0) if math.isfinite(indenter.reach) else math.inf
     return kernels.Surface(
-        kind, float(size), float(exponent), inside, float(across), revolved, float(stretch)
-    )
+        float(size), float(exponent), float(steep), inside, float(across),
+        isinstance(indenter, Revolved), float(stretch),
+    )  # fmt: skip
 
 
 class PythonProfile(NamedTuple):
@@ -329,9 +304,8 @@ class PythonProfile(NamedTuple):
         """Return about how far to one side h = `depth` is."""
         level = math.log(max(depth / self.depth, 1e-6)) / math.log(LEVEL)
         below = math.floor(level)
-        low, high = (
-            span(self.line, self.depth * LEVEL**k)[side > 0.0] * side for k in (below, below + 1)
-        )
+        ends = (span(self.line, self.depth * LEVEL**k)[side > 0.0] for k in (below, below + 1))
+        low, high = (side * end for end in ends)
         return float(low * (high / low) ** (level - below))
 
 

@@ -15,10 +15,10 @@ import numpy as np
 from kvtheory import compilation
 from kvtheory.models.elements import kernels
 from kvtheory.models.elements.kernels import Course, Elements
-from kvtheory.models.elements.law import Array
 from kvtheory.models.elements.model import Model, span
 from kvtheory.models.elements.schemes import DEFAULT, SCHEMES, Scheme
 from kvtheory.scene.base_motion import SAME_TIME, BaseMotion, evaluate
+from kvtheory.theory.laws import Array, Element
 
 FORGOTTEN = 1e-12
 """A compression that has relaxed to this share counts as none."""
@@ -26,7 +26,9 @@ KEPT_DEPTH = 4.0
 """Elements are kept within the reach of an indenter this many times as deep as at rest."""
 WORTHWHILE = 10_000
 """Steps of a strip that are interpreted before it pays to compile: about a second. To load what is compiled
-takes half a second; to compile it, once for an installation, a quarter of a minute."""
+takes half a second; to compile it, once for an installation, about a minute."""
+COLUMNS = 13
+"""Numbers of a report, see `error_estimate.COLUMNS`."""
 
 
 class OutgrownError(ArithmeticError):
@@ -67,18 +69,33 @@ class ElementRow:
     """
 
     def __init__(self, model: Model, path: BaseMotion, kept_depth: float = KEPT_DEPTH) -> None:
-        self.model, self.path = model, path
+        self.model, self.path, self.compiled = model, path, False
         longest = model.law.longest_time if model.rule.relaxes else math.inf
         self.memory = -longest * math.log(FORGOTTEN)
         self.deepest = kept_depth * model.depth
-        self.constants = model.constants(SCHEMES[DEFAULT], self.deepest)
-        self.state = np.zeros(kernels.LAST + 1)
-        self.state[kernels.DEPTH] = depth = model.start * model.depth
+        self.state = np.zeros(kernels.GAINED + 1)
+        self.use(SCHEMES[DEFAULT])
         self.stored = self._empty(0, 1, 1)
+        depth = model.start * model.depth
         rest = lambda x, y: np.maximum(depth - model.height(x, y), 0.0)  # noqa: E731
         self.lay(max(depth, model.depth), rest)
         self.state[kernels.DEPTH] = depth
-        self.compiled = False
+
+    def use(self, scheme: Scheme) -> None:
+        """Take the steps from here on by a scheme."""
+        model, law, self.scheme = self.model, self.model.law, scheme
+        names = ("spacing", "shift", "across", "mass", "weight", "spring", "depth", "half_length",
+                 "mass_along", "spring_along", "damping_along")  # fmt: skip
+        self.constants: dict[str, Any] = {name: float(getattr(model, name)) for name in names} | {
+            "surface": model.surface, "profile": model.profile, "rule": model.rule, "parts": model.parts,
+            "law": law if model.rule.relaxes else law._replace(rates=0.0 * law.rates),
+            "tableau": scheme.table, "fitted": scheme.fitted, "explicit": bool(scheme.tableau),
+            "per_width": model.indenter.per_width, "deepest": self.deepest,
+            "rest_velocity": model.at_rest.velocity,
+            "kinks": np.array(model.indenter.kinks, dtype=float),
+        }  # fmt: skip
+        if hasattr(self, "stored"):
+            self.stored = self.stored._replace(**self.constants)
 
     def lay(self, depth: float, surface: Any, contact: Any = None) -> None:
         """Compress the elements that an indenter of this depth meets at Y = 0 by `surface`(x, y).
@@ -92,45 +109,23 @@ class ElementRow:
             each[...] = 0
         for j in range(row.u.shape[0]):
             part = slice(row.low[j], row.high[j])
-            x, y = kernels.positions(row, row.low[j], row.high[j], 0.0), j * row.across
-            row.u[j, part] = surface(x, y)
+            x = kernels.positions(row, row.low[j], row.high[j], 0.0)
+            row.u[j, part] = surface(x, j * row.across)
             row.touched[j, part] = contact(x) if contact else row.u[j, part] > 0.0
-
-    def _empty(self, first: int, width: int, strips: int) -> Elements:
-        shape = strips, width
-        ends, work = np.zeros((4, strips), dtype=np.int64), np.zeros((5, *shape))
-        counts, flags = (
-            np.zeros(kernels.UPDATES + 1, dtype=np.int64),
-            np.zeros((2, *shape), dtype=bool),
-        )
-        counts[kernels.FIRST] = first
-        return Elements(
-            u=work[0], arms=np.zeros((self.model.law.arm_stiffness.size, *shape)), since=work[1],
-            touched=flags[0], pressed=flags[1], low=ends[0], high=ends[1],
-            first=ends[2], last=ends[3], counts=counts,
-            numbers=np.arange(float(first), first + width) + self.model.shift, rest=work[2],
-            height=work[3], meets=work[4], slope=np.zeros(shape if self.model.sprung else (0, 0)),
-            **self.constants,
-        )  # fmt: skip
-
-    def use(self, scheme: Scheme) -> None:
-        """Take the steps from here on by a scheme."""
-        self.constants = self.model.constants(scheme, self.deepest)
-        self.stored = self.stored._replace(**self.constants)
 
     def run(
         self, course: Course, found: Array, balances: Array, begin: tuple[int, int], until: int
     ) -> tuple[int, int, int]:
         """Take steps until one of them, or until something is wrong; return what, and how far it came."""
         advance = compiled_advance() if self.compiled else kernels.advance
-        step, reported = begin
-        while True:
+        status, (step, reported) = kernels.LACKING, begin
+        while status == kernels.LACKING:
             status, step, reported = advance(
                 self.stored, self.state, course, balances, found, step, reported, until
             )
-            if status != kernels.LACKING:
-                return status, step, reported
-            self._move(float(course.times[step]))
+            if status == kernels.LACKING:
+                self._move(float(course.times[step]))
+        return status, step, reported
 
     def step(self, scheme: Scheme, state: IndenterState, h: float) -> IndenterState:
         """Take one step from a state.
@@ -140,55 +135,15 @@ class ElementRow:
         OutgrownError
             If the indenter sinks deeper than the row was made for.
         """
-        if self.stored.tableau.shape != scheme.table.shape or self.stored.fitted != scheme.fitted:
+        if scheme is not self.scheme:
             self.use(scheme)
         self.state[:4] = state[1:]
-        course = course_of(self.path, np.array([state.time, state.time + h]), np.array([h]))
-        if (
-            self.run(course, np.zeros((0, 13)), np.zeros((2, kernels.WINDOW)), (0, 0), 1)[0]
-            != kernels.DONE
-        ):
+        times = np.array([state.time, state.time + h])
+        course = course_of(self.path, self.stored.law, times, np.array([h]))
+        nothing = np.zeros((0, COLUMNS)), np.zeros((2, kernels.WINDOW))
+        if self.run(course, *nothing, (0, 0), 1)[0] != kernels.DONE:
             raise OutgrownError
         return IndenterState(state.time + h, *map(float, self.state[:4]))
-
-    def _move(self, t: float) -> None:
-        """Move the window so that it holds the elements that are lacking, and those still of use."""
-        old = self.stored
-        first, low, high, strips, _ = old.counts.tolist()
-        spare, useful = (high - low) // 2, self._useful(t)
-        start = min(low - spare, max(first, useful[0]))
-        stop = max(high + spare, min(first + old.u.shape[1], useful[1]))
-        new = self._empty(start, stop - start, max(strips, old.u.shape[0]))
-        new.counts[kernels.UPDATES] = old.counts[kernels.UPDATES]
-        kept, last = max(start, first), min(stop, first + old.u.shape[1])
-        if kept < last:
-            rows, to, of = (
-                old.u.shape[0],
-                slice(kept - start, last - start),
-                slice(kept - first, last - first),
-            )
-            for name in ("u", "arms", "since", "touched"):
-                getattr(new, name)[..., :rows, to] = getattr(old, name)[..., of]
-            for name in ("low", "high", "first", "last"):
-                moved = getattr(old, name) + first - start
-                getattr(new, name)[:rows] = np.clip(moved, 0, stop - start)
-        self.stored = new
-
-    def _useful(self, t: float) -> tuple[int, int]:
-        """Return which elements may be met again: where the drive leads; a spring, to any not forgotten."""
-        dx, row = self.model.spacing, self.stored
-        if self.model.sprung:
-            compressed = np.abs(self.states(t)[0]) > FORGOTTEN * self.model.depth
-            known = np.flatnonzero((compressed | row.touched).any(axis=0))
-            first = int(row.counts[kernels.FIRST])
-            return (
-                (first + int(known[0]), first + int(known[-1]) + 1)
-                if known.size
-                else (first, first)
-            )
-        back, ahead = self.path.extremes(t, min(t + self.memory, max(t, self.path.end)))
-        low, high = span(self.model.indenter, self.deepest)
-        return math.floor((low - ahead) / dx), math.ceil((high - back) / dx)
 
     def states(self, t: float) -> tuple[Array, Array]:
         """Return u of all stored elements at a time, and the forces of their arms."""
@@ -203,24 +158,71 @@ class ElementRow:
         free = law.arm_stiffness[:, None, None] * (u - np.tensordot(law.from_modes, modes, 1))
         return u, np.where(row.touched, row.arms, free)
 
+    def _empty(self, first: int, width: int, strips: int) -> Elements:
+        """Return elements that are undisturbed."""
+        arms = np.zeros((self.model.law.arm_stiffness.size, strips, width))
+        work, flags = np.zeros((6, strips, width)), np.zeros((2, strips, width), dtype=bool)
+        counts = np.zeros(kernels.UPDATES + 1, dtype=np.int64)
+        counts[kernels.FIRST] = first
+        numbers = np.arange(float(first), first + width) + self.model.shift
+        ends = np.zeros((4, strips), dtype=np.int64)
+        return Elements(
+            u=work[0], arms=arms, since=work[1], touched=flags[0], low=ends[0], high=ends[1], first=ends[2],
+            last=ends[3], counts=counts, height=work[2], meets=work[3], slope=work[4], before=work[5],
+            pressed=flags[1], numbers=numbers, **self.constants,
+        )  # fmt: skip
+
+    def _move(self, t: float) -> None:
+        """Move the window so that it holds the elements that are lacking, and those still of use."""
+        old = self.stored
+        (first, low, high, strips, _), (rows, width) = old.counts.tolist(), old.u.shape
+        spare, useful = (high - low) // 2, self._useful(t)
+        start = min(low - spare, max(first, useful[0]))
+        stop = max(high + spare, min(first + width, useful[1]))
+        new = self._empty(start, stop - start, max(strips, rows))
+        new.counts[kernels.UPDATES] = old.counts[kernels.UPDATES]
+        kept, last = max(start, first), min(stop, first + width)
+        if kept < last:
+            to, of = slice(kept - start, last - start), slice(kept - first, last - first)
+            for name in ("u", "arms", "since", "touched"):
+                getattr(new, name)[..., :rows, to] = getattr(old, name)[..., of]
+            for name in ("low", "high", "first", "last"):
+                moved = getattr(old, name) + first - start
+                getattr(new, name)[:rows] = np.clip(moved, 0, stop - start)
+        self.stored = new
+
+    def _useful(self, t: float) -> tuple[int, int]:
+        """Return which elements may be met again: where the drive leads; a spring, to any not forgotten."""
+        dx, row = self.model.spacing, self.stored
+        if self.model.sprung:
+            compressed = np.abs(self.states(t)[0]) > FORGOTTEN * self.model.depth
+            known = np.flatnonzero((compressed | row.touched).any(axis=0))
+            first = int(row.counts[kernels.FIRST])
+            return first + int(known.min(initial=0)), first + int(known.max(initial=-1)) + 1
+        back, ahead = self.path.extremes(t, min(t + self.memory, max(t, self.path.end)))
+        low, high = span(self.model.indenter, self.deepest)
+        return math.floor((low - ahead) / dx), math.ceil((high - back) / dx)
+
 
 def course_of(
-    path: BaseMotion, times: Array, steps: Array, after: Sequence[int] = (), about: Any = (),
+    path: BaseMotion, law: Element, times: Array, steps: Array, after: Sequence[int] = (), about: Any = (),
     limits: Sequence[float] = (-math.inf, math.inf, math.inf),
 ) -> Course:  # fmt: skip
-    """Return the course of steps between these times, with the motion of the base."""
+    """Return the course of steps between these times, with the motion of the base and of an element."""
     t = np.stack([times[:-1], times[:-1] + 0.5 * steps, times[1:]], axis=1)
     before = t.copy()
     before[:, 2] -= SAME_TIME * np.spacing(t[:, 2])
-    Y, V = motion(path, t)[0], motion(path, before)[1]
+    Y, V = _motion(path, t)[0], _motion(path, before)[1]
     reports = np.array(about, dtype=float).reshape(len(after), 5)
-    return Course(times, steps, Y, V, np.array(after, dtype=np.int64), reports, np.array(limits))
+    lengths, which = np.unique(steps, return_inverse=True)
+    over = law.step(np.append(0.0, np.outer(lengths, (0.5, 1.0))))
+    return Course(times, steps, Y, V, np.array(after, dtype=np.int64), reports, np.array(limits), over,
+                  which)  # fmt: skip
 
 
-def motion(path: BaseMotion, times: Array) -> tuple[Array, Array]:
+def _motion(path: BaseMotion, times: Array) -> tuple[Array, Array]:
     """Return Y and V at all these times."""
     k = np.maximum(np.searchsorted(path.starts, times, side="right") - 1, 0)
     pieces: Any = path.rows.T[:, k]
-    at: Any = times
-    Y, V, _ = evaluate(pieces, at)
+    Y, V, _ = evaluate(pieces, times)  # type: ignore[arg-type]
     return np.asarray(Y, dtype=float), np.asarray(V, dtype=float)

@@ -44,8 +44,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from kvtheory.models.elements.law import Array
 from kvtheory.results.schemes import SCHEME_ROWS, SchemeRow
+from kvtheory.theory.laws import Array
 
 DEFAULT = "edge-corrected"
 
@@ -90,3 +90,24 @@ SCHEMES = {
     "edge-corrected": Scheme(SCHEME_ROWS["edge-corrected"], fitted=True),
 }
 """The schemes by name."""
+
+
+class ContactRule(NamedTuple):
+    """How an element is found to press in an explicit scheme; a field that is not the default is a mistake.
+
+    `flags`: an element in contact stays so until its pressure vanishes (Eqs. 23-25); without, it counts
+    only where the surface of the foundation is met. `stale`: within a step that surface is the one at its
+    start. `still`: elements stand still within it, and move at its end. `pulls`: an element below the plane
+    z = 0 is never let go. `relaxes`: the free surface decays as e^(-t/tau) (Eq. 20). `remembers`: it is
+    where the indenter left it; without, in the plane z = 0.
+    """
+
+    flags: bool = True
+    stale: bool = False
+    still: bool = False
+    pulls: bool = False
+    relaxes: bool = True
+    remembers: bool = True
+
+
+RIGHT = ContactRule()

@@ -2,15 +2,14 @@
 
 import itertools
 import math
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 import numpy as np
 
 from kvtheory import compilation
-from kvtheory.models.elements import kernels
+from kvtheory.models.elements import kernels, stability
 from kvtheory.models.elements.error_estimate import COLUMNS, SHIFTS, UNKNOWN, Rows, estimate
-from kvtheory.models.elements.law import RIGHT, ContactRule
 from kvtheory.models.elements.model import Model
 from kvtheory.models.elements.row import (
     KEPT_DEPTH,
@@ -19,16 +18,8 @@ from kvtheory.models.elements.row import (
     OutgrownError,
     Tally,
     course_of,
-)  # fmt: skip
-from kvtheory.models.elements.schemes import DEFAULT, SCHEMES, Scheme
-from kvtheory.models.elements.stability import (
-    divergence,
-    doubts,
-    lengths,
-    limit_at,
-    limits,
-    stability_text,
 )
+from kvtheory.models.elements.schemes import DEFAULT, RIGHT, SCHEMES, ContactRule, Scheme
 from kvtheory.progress import Progress
 from kvtheory.results import SERIES_UNITS, TRANSIENT_UNITS, Simulation, SprungSimulation, units_for
 from kvtheory.results.errors import DivergenceError
@@ -94,61 +85,50 @@ def simulate(
     path = model.path(scene)
     h = time_step or _default_step(model, path, scheme)
     stops, wanted = _instants(scene, path, h, at)
-    _refuse_what_takes_too_long(model, stops[-1], h)
+    count = stops[-1] / h
+    elements = model.strips(model.depth) * 2.0 * model.half_length / model.spacing
+    if elements * count > MOST_OF_ALL:
+        raise ValueError(
+            f"`time_step` = {h:.6g} s: {count:,.3g} steps with {elements:,.3g} elements in the contact are "
+            f"{elements * count:.2g} updates, expected at most {MOST_OF_ALL:g}; take longer steps, fewer "
+            "elements (`per_length`), or a shorter run"
+        )
     own_step = time_step is None and not scheme.tableau
-    graded = _graded(model, path, h, stops[-1]) if own_step else {}
-    legs = _legs(stops, path.changes, h, graded)
+    legs = _legs(stops, path.changes, h, _graded(model, path, h, stops[-1]) if own_step else {})
     h = max(((stop - start) / count for start, stop, count in legs if count), default=h)
-    warning = doubts(scheme, model, path, h)
+    warning = stability.doubts(scheme, model, path, h)
     if warning and warn is not None:
         warn(warning)
     best, half = SCHEMES[DEFAULT], [(start, stop, count // 2) for start, stop, count in legs]
-    again = scheme is not best
-    work = [1.0, *([COARSE] * len(SHIFTS) + [1.0] * again if certify else [])]
-    parts = _parts(progress, work)
-    rows, row = _with_room(model, path, scheme, legs, wanted, next(parts))
-    updates, compiled = int(row.stored.counts[kernels.UPDATES]), row.compiled
-    certificate = UNKNOWN
+    checks = [(half, 2.0, shift) for shift in SHIFTS] + [(legs, 1.0, 0.0)] * (scheme is not best)
+    checks = checks if certify else []
+    work = np.cumsum([0.0, 1.0, *(COARSE if coarser > 1.0 else 1.0 for _, coarser, _ in checks)])
+
+    def part(k: int) -> Progress | None:
+        """Return the progress of one of several runs by its share of the work; the later ones are checks."""
+        if progress is None:
+            return None
+        begun, own = work[k] / work[-1], (work[k + 1] - work[k]) / work[-1]
+        words = " for the error" * (k > 0)
+        return lambda share, told: progress(float(begun + own * share), told + words)
+
+    rows, row = _with_room(model, path, scheme, legs, wanted, part(0))
+    updates, certificate = int(row.stored.counts[kernels.UPDATES]), UNKNOWN
     if certify:
-
-        def by_best(legs: list[Leg], coarser: float = 1.0, shift: float = 0.0) -> Rows:
+        others = []
+        for k, (steps, coarser, shift) in enumerate(checks):
             other = Model.of(scene, spacing, parts=True, shift=shift, coarser=coarser)
-            return _with_room(other, path, best, legs, wanted, next(parts))[0]
-
-        coarse = [by_best(half, 2.0, shift) for shift in SHIFTS]
-        fine = by_best(legs) if again else None
-        certificate = estimate(model, path, h, rows, coarse, fine)
+            others.append(_with_room(other, path, best, steps, wanted, part(k + 1))[0])
+        certificate = estimate(model, path, h, rows, others[: len(SHIFTS)], others[len(SHIFTS) :])
     kind, names = (
         (SprungSimulation, SERIES_UNITS) if model.sprung else (Simulation, TRANSIENT_UNITS)
     )
     return kind(
         **{name: rows[name] for name in names}, scheme=scheme.row.name, per_length=1.0 / spacing, time_step=h,
         steps=sum(count for _, _, count in legs), element_updates=updates, warning=warning,
-        model="elements", certificate=certificate, compiled=compiled,
+        model="elements", certificate=certificate, compiled=row.compiled,
         units=units_for(scene.indenter, names),
     )  # fmt: skip
-
-
-def _parts(progress: Progress | None, work: Sequence[float]) -> Iterator[Progress | None]:
-    """Yield the progress of each of several runs, by its share of the work; those after one are checks."""
-    for k, part in enumerate(work):
-
-        def report(share: float, words: str, k: int = k, part: float = part) -> None:
-            assert progress is not None
-            told = words + (" for the error" if k else "")
-            progress((sum(work[:k]) + part * share) / sum(work), told)
-
-        yield report if progress else None
-
-
-def _refuse_what_takes_too_long(model: Model, end: float, h: float) -> None:
-    elements, steps = model.strips(model.depth) * 2.0 * model.half_length / model.spacing, end / h
-    if elements * steps > MOST_OF_ALL:
-        raise ValueError(
-            f"`time_step` = {h:.6g} s: {steps:,.3g} steps with {elements:,.3g} elements in the contact are "
-            f"{elements * steps:.2g} updates, expected at most {MOST_OF_ALL:g}; take longer steps, fewer "
-            "elements (`per_length`), or a shorter run"
-        )
 
 
 def _default_step(model: Model, path: BaseMotion, scheme: Scheme) -> float:
@@ -162,10 +142,23 @@ def _default_step(model: Model, path: BaseMotion, scheme: Scheme) -> float:
                 f'such as "{0.01 * model.law.retardation_time * 1e3:.4g} ms", or `scheme` = "{DEFAULT}"'
             )
         return passing
-    resolved = min(model.law.retardation_time / PER_RELAXATION, _period(model) / PER_OSCILLATION)
-    resolved = min(resolved, _swing(model) / PER_OSCILLATION)
-    stable = limit_at(scheme, model, max(lengths(model, path)))
+    period = math.inf
+    while (shorter := _period(model, period)) < ROUGHLY * period:
+        period = shorter
+    # Along x, the dampers of the contact at rest may allow no swing.
+    if model.sprung:
+        resistance = model.damping_along + model.law.damping * model.tilt(model.extent)
+        if resistance * resistance < 4.0 * model.spring_along * model.mass_along:
+            shorter = min(shorter, 2.0 * math.pi * math.sqrt(model.mass_along / model.spring_along))
+    resolved = min(model.law.retardation_time / PER_RELAXATION, shorter / PER_OSCILLATION)
+    stable = stability.limit_at(scheme, model, max(stability.lengths(model, path)))
     return min(passing, max(resolved, path.end / MOST_STEPS), STABLE_SHARE * stable)
+
+
+def _period(model: Model, period: float) -> float:
+    """Return the period of the mass on the contact at rest, as stiff as arms are within another, in s."""
+    foundation = model.extent * model.law.stiffness_within(period / (2.0 * math.pi))
+    return 2.0 * math.pi * math.sqrt(model.mass / (foundation + model.spring))
 
 
 def _graded(model: Model, path: BaseMotion, h: float, end: float) -> dict[float, float]:
@@ -176,43 +169,18 @@ def _graded(model: Model, path: BaseMotion, h: float, end: float) -> dict[float,
     resistance = model.law.damping * model.extent
     if not resistance or math.isinf(model.mass):
         return {}
-    stopping, steps = (
-        model.mass / resistance,
-        max(PER_STOPPING, FINER * model.half_length / model.spacing),
-    )
+    stopping = model.mass / resistance
+    steps = max(PER_STOPPING, FINER * model.half_length / model.spacing)
     count = math.ceil(math.log2(max(steps * h / stopping, 1.0)))
-    least = JUMP * path.highest_speed
-    jumps = [
-        t for t in path.changes if abs(path.velocity(t) - path.velocity(t, before=True)) > least
-    ]
-    found = {}
-    for jump, after in itertools.pairwise([0.0, *(t for t in jumps if 0.0 < t < end), end]):
-        for k in range(count):
+    least, found = JUMP * path.highest_speed, {}
+    jumps = [t for t in path.changes if 0.0 < t < end
+             and abs(path.velocity(t) - path.velocity(t, before=True)) > least]  # fmt: skip
+    for jump, after in itertools.pairwise([0.0, *jumps, end]):
+        for k in range(count + 1 if count else 0):
             start = jump + stopping * (2.0**k - 1.0)
             if start < after:
-                found[start] = min(h, stopping * 2.0**k / steps)
-        if count and (start := jump + stopping * (2.0**count - 1.0)) < after:
-            found[start] = h
+                found[start] = h if k == count else min(h, stopping * 2.0**k / steps)
     return found
-
-
-def _swing(model: Model) -> float:
-    """Return the period along x, in s; infinite where the dampers of the contact at rest allow none."""
-    resistance = model.damping_along + model.law.damping * model.tilt(model.extent)
-    stiff = model.spring_along * model.mass_along
-    swings = model.sprung and resistance * resistance < 4.0 * stiff
-    return 2.0 * math.pi * math.sqrt(model.mass_along / model.spring_along) if swings else math.inf
-
-
-def _period(model: Model) -> float:
-    """Return the period of the mass on the contact at rest, as stiff as arms are within it, in s."""
-    period = math.inf
-    while True:
-        foundation = model.extent * model.law.stiffness_within(period / (2.0 * math.pi))
-        shorter = 2.0 * math.pi * math.sqrt(model.mass / (foundation + model.spring))
-        if not shorter < ROUGHLY * period:
-            return shorter
-        period = shorter
 
 
 def _instants(
@@ -232,88 +200,10 @@ def _instants(
     return [*regular, end], [*regular, end]
 
 
-def _with_room(
-    model: Model, path: BaseMotion, scheme: Scheme, legs: list[Leg], wanted: list[float],
-    progress: Progress | None,
-) -> tuple[Rows, ElementRow]:  # fmt: skip
-    """Run, and run again with more elements kept, should the indenter sink very deep."""
-    kept = KEPT_DEPTH
-    while True:
-        try:
-            row = ElementRow(model, path, kept)
-            return _run(row, scheme, legs, wanted, progress), row
-        except OutgrownError as outgrown:
-            kept *= MORE_ROOM
-            deepest = min(DEEPEST, BALL_DEEPEST if model.across else math.inf)
-            if kept > deepest:
-                h = max((stop - start) / max(count, 1) for start, stop, count in legs)
-                error = DivergenceError(
-                    f"the run diverged: the indenter sank to {deepest:g} times its static depth; "
-                    f"{stability_text(scheme, model, path, h)}"
-                )
-                error.rows = outgrown.rows
-                raise error from None
-
-
-@np.errstate(all="ignore")  # the watch judges what comes of it
-def _run(
-    row: ElementRow, scheme: Scheme, legs: list[Leg], wanted: list[float], progress: Progress | None
-) -> Rows:
-    row.use(scheme)
-    path, asked = row.path, set(wanted)
-    times, steps, after, about = [0.0], list[float](), list[int](), list[tuple[float, ...]]()
-    for start, stop, count in legs:
-        steps += [(stop - start) / max(count, 1)] * count
-        times += [start + (stop - start) * k / count for k in range(1, count)] + [stop] * (
-            count > 0
-        )
-        if not count and stop in path.changes:
-            times[-1] = stop
-        if stop in asked:
-            at, forward = times[-1], path.forward(stop)
-            before = path.velocity(at, before=True)
-            about.append((stop, path.velocity(stop), before, forward, path.displacement(at)))
-            after.append(len(steps))
-    course = course_of(
-        path, np.array(times), np.array(steps), after, about, limits(row.model, path)
-    )
-    balances, found = np.zeros((2, kernels.WINDOW)), np.full((len(after), len(COLUMNS)), math.nan)
-    row.compiled = row.model.profile is None and _worthwhile(row, len(steps))
-    pause = max(1, int(PAUSE[row.compiled] / (1.0 + row.stored.u.size)))
-    status, done, reported = kernels.DONE, 0, 0
-    while status == kernels.DONE:
-        until = min(done + pause, len(steps))
-        status, done, reported = row.run(course, found, balances, (done, reported), until)
-        if progress is not None and done:
-            progress(done / len(steps), f"{done:,} of {len(steps):,} steps")
-        if done == len(steps):
-            break
-    if status != kernels.DONE:
-        error: OutgrownError | DivergenceError = OutgrownError()
-        if status != kernels.OUTGROWN:
-            h = max(steps)
-            error = divergence(status, scheme, row.model, path, h, times[done], row.state, balances)
-        error.rows = tuple(map(tuple, found[:reported, : len(TRANSIENT_UNITS)].tolist()))
-        raise error
-    order = {time: k for k, (time, *_) in enumerate(about)}
-    columns = found[[order[time] for time in wanted]].T
-    return dict(zip(COLUMNS, columns, strict=True))
-
-
-def _worthwhile(row: ElementRow, steps: int) -> bool:
-    """Whether to compile: once so much was interpreted in this process, or will be in this run."""
-    work = steps * row.stored.u.shape[0]
-    if Tally.steps + work > WORTHWHILE and compilation.available():
-        Tally.steps = max(Tally.steps, WORTHWHILE)
-        return True
-    Tally.steps += work
-    return False
-
-
 def _legs(
     stops: Sequence[float], breaks: Sequence[float], h: float, graded: dict[float, float]
 ) -> list[Leg]:
-    """Return for each stop whence the run comes and in how many steps; in none if it is there already."""
+    """Return for each stop the start and step count of the leg that ends there; no steps if it is there."""
     legs: list[Leg] = []
     start, step = 0.0, graded.get(0.0, h)
     for stop in sorted({*stops, *graded}):
@@ -325,3 +215,80 @@ def _legs(
             start = stop
         step = graded.get(stop, step)
     return legs
+
+
+def _with_room(
+    model: Model, path: BaseMotion, scheme: Scheme, legs: list[Leg], wanted: list[float],
+    progress: Progress | None,
+) -> tuple[Rows, ElementRow]:  # fmt: skip
+    """Run, and run again with more elements kept, should the indenter sink very deep."""
+    kept, deepest = KEPT_DEPTH, min(DEEPEST, BALL_DEEPEST if model.across else math.inf)
+    while True:
+        try:
+            row = ElementRow(model, path, kept)
+            return _run(row, scheme, legs, wanted, progress), row
+        except OutgrownError as outgrown:
+            kept *= MORE_ROOM
+            if kept > deepest:
+                h = max((stop - start) / max(count, 1) for start, stop, count in legs)
+                error = DivergenceError(
+                    f"the run diverged: the indenter sank to {deepest:g} times its static depth; "
+                    f"{stability.describe(scheme, model, path, h)}"
+                )
+                error.rows = outgrown.rows
+                raise error from None
+
+
+@np.errstate(all="ignore")  # the kernels judge what comes of it
+def _run(
+    row: ElementRow, scheme: Scheme, legs: list[Leg], wanted: list[float], progress: Progress | None
+) -> Rows:
+    """Take all steps, and return what is reported at the wanted instants."""
+    row.use(scheme)
+    path, asked = row.path, set(wanted)
+    times, steps, after, about = [0.0], list[float](), list[int](), list[tuple[float, ...]]()
+    for start, stop, count in legs:
+        steps += [(stop - start) / max(count, 1)] * count
+        times += [start + (stop - start) * k / count for k in range(1, count)] + [stop] * (
+            count > 0
+        )
+        if not count and stop in path.changes:
+            times[-1] = stop
+        if stop in asked:
+            at, before = times[-1], path.velocity(times[-1], before=True)
+            about.append(
+                (stop, path.velocity(stop), before, path.forward(stop), path.displacement(at))
+            )
+            after.append(len(steps))
+    course = course_of(path, row.stored.law, np.array(times), np.array(steps), after, about,
+                       stability.limits(row.model, path))  # fmt: skip
+    balances, found = np.zeros((2, kernels.WINDOW)), np.full((len(after), len(COLUMNS)), math.nan)
+    row.compiled = row.model.profile is None and _worthwhile(row, len(steps))
+    pause = max(1, int(PAUSE[row.compiled] / (1.0 + row.stored.u.size)))
+    status, done, reported, until = kernels.DONE, 0, 0, -1
+    while status == kernels.DONE and until < len(steps):
+        until = min(done + pause, len(steps))
+        status, done, reported = row.run(course, found, balances, (done, reported), until)
+        if progress is not None and done:
+            progress(done / len(steps), f"{done:,} of {len(steps):,} steps")
+    if status != kernels.DONE:
+        error: OutgrownError | DivergenceError = OutgrownError()
+        if status != kernels.OUTGROWN:
+            h = max(steps)
+            error = stability.divergence(
+                status, scheme, row.model, path, h, times[done], row.state, balances
+            )
+        error.rows = tuple(map(tuple, found[:reported, : len(TRANSIENT_UNITS)].tolist()))
+        raise error
+    order = {time: k for k, (time, *_) in enumerate(about)}
+    return dict(zip(COLUMNS, found[[order[time] for time in wanted]].T, strict=True))
+
+
+def _worthwhile(row: ElementRow, steps: int) -> bool:
+    """Whether to compile: once so much was interpreted in this process, or will be in this run."""
+    work = steps * row.stored.u.shape[0]
+    if Tally.steps + work > WORTHWHILE and compilation.available():
+        Tally.steps = max(Tally.steps, WORTHWHILE)
+        return True
+    Tally.steps += work
+    return False

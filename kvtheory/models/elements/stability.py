@@ -12,11 +12,11 @@ from dataclasses import replace
 import numpy as np
 
 from kvtheory.models.elements import kernels
-from kvtheory.models.elements.law import RIGHT, Array
-from kvtheory.models.elements.model import Model, root, span
-from kvtheory.models.elements.schemes import DEFAULT, Scheme
+from kvtheory.models.elements.model import Model, root
+from kvtheory.models.elements.schemes import DEFAULT, RIGHT, Scheme
 from kvtheory.results.errors import DivergenceError
 from kvtheory.scene.base_motion import BaseMotion
+from kvtheory.theory.laws import Array
 
 LONGEST_PASS = 0.25
 """Of the static half length, for the elements in a step; with more, some are pressed within a step."""
@@ -66,33 +66,25 @@ def limit_at(scheme: Scheme, model: Model, length: float) -> float:
     """
     if not scheme.tableau:
         return math.inf
-    limits = [_limit(scheme, model, length)]
+    inverse, axes = 0.0, [(model, length)]
     if model.sprung:
         tilt = model.tilt(length)
         law = model.law._replace(damping=model.law.damping + model.damping_along / tilt)
         along = replace(model, mass=model.mass_along, spring=model.spring_along, law=law)
-        limits.append(_limit(scheme, along, tilt))
-    return 1.0 / inverse if (inverse := sum(1.0 / h for h in limits)) else math.inf
+        axes.append((along, tilt))
+    for one, L in axes:
+        if math.isfinite(one.mass):
+            stiff = (one.law.stiffness_within(0.0) * L + one.spring) / one.mass
+            fastest = one.law.damping * L / one.mass + math.sqrt(stiff)
 
+            def growth(h: float, one: Model = one, L: float = L, fastest: float = fastest) -> float:
+                if h * fastest <= SHORTEST:
+                    return -1.0
+                rates = np.linalg.eigvals(amplification(scheme, one, L, h))
+                return float(abs(rates).max()) - 1.0 - GROWS
 
-def _limit(scheme: Scheme, model: Model, length: float) -> float:
-    """Return the largest stable step along one axis."""
-    if math.isinf(model.mass):
-        return math.inf
-    law, M = model.law, model.mass
-    fastest = law.damping * length / M + math.sqrt(
-        (law.glassy_stiffness * length + model.spring) / M
-    )
-
-    def growth(h: float) -> float:
-        step = amplification(scheme, model, length, h)
-        return (
-            float(abs(np.linalg.eigvals(step)).max()) - 1.0 - GROWS
-            if h * fastest > SHORTEST
-            else -1.0
-        )
-
-    return root(growth, 1.0 / fastest, LIMIT_RTOL)
+            inverse += 1.0 / root(growth, 1.0 / fastest, LIMIT_RTOL)
+    return 1.0 / inverse if inverse else math.inf
 
 
 def amplification(scheme: Scheme, model: Model, length: float, h: float) -> Array:
@@ -113,7 +105,7 @@ def amplification(scheme: Scheme, model: Model, length: float, h: float) -> Arra
         )
 
     def moved(c: float, depth: Array) -> Array:
-        step = kernels.law_of(law, c * h)
+        step = law.step(c * h)
         kept, ramp = np.append(1.0, step.held), np.append(1.0, step.ramp)
         return kept[:, None] * held + ramp[:, None] * (depth - u)
 
@@ -129,7 +121,7 @@ def amplification(scheme: Scheme, model: Model, length: float, h: float) -> Arra
 def doubts(scheme: Scheme, model: Model, path: BaseMotion, h: float) -> str:
     """Return what is doubtful about a time step before the run begins, or nothing."""
     if h > limit_at(scheme, model, max(lengths(model, path))):
-        return f"the run may diverge: {stability_text(scheme, model, path, h)}"
+        return f"the run may diverge: {describe(scheme, model, path, h)}"
     passed = h * model.fastest(path) / model.half_length
     if passed > LONGEST_PASS:
         return (
@@ -139,7 +131,7 @@ def doubts(scheme: Scheme, model: Model, path: BaseMotion, h: float) -> str:
     return ""
 
 
-def stability_text(scheme: Scheme, model: Model, path: BaseMotion, h: float) -> str:
+def describe(scheme: Scheme, model: Model, path: BaseMotion, h: float) -> str:
     """Say how a step compares with the largest stable one, and what would do."""
     length = max(lengths(model, path))
     limit = limit_at(scheme, model, length)
@@ -147,12 +139,10 @@ def stability_text(scheme: Scheme, model: Model, path: BaseMotion, h: float) -> 
         return f"its time step is {h * 1e3:.4g} ms"
     number = h * model.law.damping * length / model.mass
     has = f"has the stability number dt C L/M = {number:.3g}" if number else "is too long"
-    of = (
-        f"L = {length * 1e3:.4g} mm" if model.indenter.per_width else f"L = {length * 1e6:.4g} mm^2"
-    )
+    of = f"{length * 1e3:.4g} mm" if model.indenter.per_width else f"{length * 1e6:.4g} mm^2"
     return (
         f"its time step, {h * 1e3:.4g} ms, {has} for a contact "
-        f'of {of}, where the scheme "{scheme.row.name}" is stable up to '
+        f'of L = {of}, where the scheme "{scheme.row.name}" is stable up to '
         f"dt = {limit * 1e3:.4g} ms; a time step of {ADVISED * limit * 1e3:.3g} ms would do, or the scheme "
         f'"{DEFAULT}", which is stable at any step'
     )
@@ -165,13 +155,10 @@ def limits(model: Model, path: BaseMotion) -> tuple[float, float, float]:
     """
     if model.rule != RIGHT:
         return -math.inf, math.inf, math.inf
-    thrown = (
-        model.depth / model.law.retardation_time
-        + model.fastest(path)
-        * float(abs(model.slope(np.array(span(model.indenter, model.depth)))).max())
-        + model.depth * math.sqrt(model.spring / model.mass)
-        + model.depth * math.sqrt(model.extent * float(model.law.arm_stiffness.sum()) / model.mass)
-    )
+    arms = model.extent * float(model.law.arm_stiffness.sum())
+    rates = 1.0 / model.law.retardation_time
+    rates += math.sqrt(model.spring / model.mass) + math.sqrt(arms / model.mass)
+    thrown = model.depth * rates + model.fastest(path) * model.steepest
     return (
         -RISE * thrown if math.isfinite(model.mass) else -math.inf,
         RISE * (model.fastest(path) + math.sqrt(model.at_rest.energy / model.mass_along)),
@@ -191,5 +178,5 @@ def divergence(
         share = balances[0].sum() / balances[1].sum()
         sign = f"where the forces fail to balance the motion by {share:.0%}"
     return DivergenceError(
-        f"the run diverged at t = {time:.6g} s, {sign}: {stability_text(scheme, model, path, h)}"
+        f"the run diverged at t = {time:.6g} s, {sign}: {describe(scheme, model, path, h)}"
     )
