@@ -84,8 +84,10 @@ def derives(path: Path) -> bool:
 def scope_of(nodeid: str) -> str:
     """Return the name of the scope of a test: its file, or what shares the derivations."""
     path, _, name = nodeid.partition("::")
-    page = ROOT / "docs" / name.partition("[")[2].rstrip("]")
-    deriving = path.startswith("tests/") and (derives(ROOT / path) or derives(page))
+    page = name.partition("[")[2].rstrip("]")
+    deriving = path.startswith("tests/") and (
+        derives(ROOT / path) or (page.endswith(".md") and derives(ROOT / "docs" / page))
+    )
     return "derivations" if deriving else Path(path).stem
 
 
