@@ -15,7 +15,7 @@ from kvtheory.models.continuum import error_estimate as estimate
 from kvtheory.models.continuum import evaluation as e_
 from kvtheory.models.continuum.cycles import cycle
 from kvtheory.models.continuum.run import GIVEN, ROOM, begin, readable, with_more_room
-from kvtheory.models.continuum.solved_scene import certified, left_leads, scaled_drive
+from kvtheory.models.continuum.solved_scene import COLUMNS, certified, scaled_drive
 from kvtheory.models.continuum.solver import STEP_LIMIT
 from kvtheory.models.continuum.stepping import DONE
 from kvtheory.results.certificate import AT_REST
@@ -25,13 +25,6 @@ from kvtheory.scene.model import Scene
 from kvtheory.scene.static_state import StaticState
 from kvtheory.sweeps.plan import CYCLE, EVENTS, FAILS, Array, Column, Measured, Plan
 
-COLUMNS = {
-    "velocity": e_.DRIVE, "sliding_velocity": e_.NUMBER, "spring_force": e_.SPRING_FORCE,
-    "depth": e_.DEPTH, "depth_rate": e_.RATE, "normal_force": e_.NORMAL_FORCE,
-    "friction_force": e_.FRICTION_FORCE, "peak_pressure": e_.PEAK_PRESSURE,
-    "leading_edge": maxima.LEADING_EDGE, "trailing_edge": maxima.TRAILING_EDGE,
-}  # fmt: skip
-"""Column of each quantity in the states."""
 SENSES = {"max": maxima.LARGEST, "time_of_max": maxima.LARGEST, "min": maxima.SMALLEST}
 PEAK = e_.FRICTION_FORCE, maxima.MAGNITUDE
 CYCLE_SCALES = {"m": "half_length", "s": "time", "m/s": "velocity", "N/m": "friction_force"}
@@ -177,7 +170,7 @@ class _Motions:
         if measure == EVENTS:
             return self.texts
         if measure == "series":
-            values, scale = self.series(name), QUANTITIES[name].scale
+            values, scale = found.states[..., COLUMNS[name]], QUANTITIES[name].scale
         elif measure == "end":
             values, scale = found.last[:, COLUMNS[name]], QUANTITIES[name].scale
         elif measure in SENSES:
@@ -199,18 +192,6 @@ class _Motions:
         else:
             values = found.take_offs.astype(float)
         return (values.T * self.scales(scale)).T
-
-    def series(self, name: str) -> Array:
-        """Return a scaled quantity at the times: a row for each index."""
-        states = self.found.states
-        if COLUMNS[name] < e_.SIZE:
-            return np.asarray(states[..., COLUMNS[name]])
-        times, leads = np.array(self.plan.times), states[..., e_.NUMBER] >= 0.0
-        for index, (_, units, drive) in self.scenes.items():
-            leads[index] = left_leads(states[index, :, e_.NUMBER], drive, times / units.time)
-        return np.where(
-            leads == (name == "leading_edge"), states[..., e_.LEFT], states[..., e_.RIGHT]
-        )
 
     def scales(self, attribute: str) -> Array:
         """Return a scale of the static state at each index; without a name it is 1."""

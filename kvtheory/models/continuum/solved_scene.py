@@ -189,11 +189,3 @@ def certified(
         other = solved(1, *second)
     s = None if times is None else fine.scaled(time)
     return fine, time, certificate(fine.motion, other, s, scene.drive.tolerance)
-
-
-def left_leads(numbers: Array, drive: BaseMotion, s: Array) -> NDArray[np.bool_]:
-    """Whether the left edge leads, by the drive numbers at the times `s`; at rest, as it did before."""
-    leads = numbers >= 0.0
-    for k in np.flatnonzero(numbers == 0.0):
-        leads[k] = drive.forward(float(s[k]))
-    return leads
