@@ -14,7 +14,7 @@ from kvtheory.models.continuum import bulk, compiled, deviation, maxima
 from kvtheory.models.continuum import error_estimate as estimate
 from kvtheory.models.continuum import evaluation as e_
 from kvtheory.models.continuum.cycles import cycle
-from kvtheory.models.continuum.run import GIVEN, ROOM, begin, readable, with_more_room
+from kvtheory.models.continuum.run import ROOM, begin, readable, with_more_room
 from kvtheory.models.continuum.solved_scene import COLUMNS, certified, scaled_drive
 from kvtheory.models.continuum.solver import STEP_LIMIT
 from kvtheory.models.continuum.stepping import DONE
@@ -135,7 +135,7 @@ class _Motions:
         compiled.follow(bulk.Bulk(scenes, request, room, found), runs[0], runs[1], STEP_LIMIT)
         for whole, part in zip(self.found, found, strict=True):
             whole[indices] = part
-        deviations, given = found.deviations.T, readable(runs[0].given[0], GIVEN)
+        deviations, given = found.deviations.T, readable(runs[0].given[0])
         tolerance = max(scene.drive.tolerance for scene, _, _ in kept)
         errors = estimate.errors(
             deviations, deviations, given.rtol, given.fixed, sprung=False, tolerance=tolerance
@@ -151,12 +151,11 @@ class _Motions:
         motion, found = solution.motion, self.found
         for name, error in errors.relative_error.items():
             self.errors[name][index] = error
-        for k, (column, sense) in enumerate(self.wanted):
-            found.largest[index, k] = motion.largest(column, sense)
+        found.largest[index] = motion.largest(*self.wanted)
         found.settled[index] = motion.settled(self.friction[index], SETTLED)
         if self.plan.times:
             found.states[index] = solution.states(self.plan.times).T
-        found.last[index] = motion.last
+        found.last[index] = motion.states([motion.end])[0]
         found.take_offs[index] = sum(event.kind == "take-off" for event in motion.events)
         if not units.rigid_drive:
             self.cycles[index] = cycle(motion)

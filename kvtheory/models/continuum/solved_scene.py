@@ -145,8 +145,9 @@ def transient(
 
 def force_maxima(motion: Trajectory) -> tuple[float, float]:
     """Return when f_z and |f_x| are largest: the first time of the largest value from s = 0 on."""
-    normal = motion.largest(e_.NORMAL_FORCE, maxima.MAGNITUDE)
-    return normal[0], motion.largest(e_.FRICTION_FORCE, maxima.MAGNITUDE)[0]
+    forces = ((column, maxima.MAGNITUDE) for column in (e_.NORMAL_FORCE, e_.FRICTION_FORCE))
+    normal, friction = motion.largest(*forces)[:, 0].tolist()
+    return normal, friction
 
 
 def certified(
