@@ -14,7 +14,7 @@ from kvtheory.models.continuum.solver import solve
 from kvtheory.models.continuum.surface import volume
 from kvtheory.scene.base_motion import BaseMotion
 from tests import spring_reference as ref
-from tests.spring_random import balances, random_case
+from tests.spring_random import Case, balances, random_case
 from tests.test_transient_reference import drive, worst
 
 TABLE = json.loads(ref.TABLE.read_text())
@@ -135,13 +135,9 @@ def test_edges_follow_the_sign_of_the_sliding_velocity():
     name = "hop"
     motion = solved(name)
     given = ref.SCENES[name]
-    support = kv.DeadWeight(mass=given.epsilon, gravity=1 / given.epsilon)
-    spring = {"stiffness": given.stiffness, "mass": given.inertia}
-    scene = kv.Scene(
-        kv.Parabola(0.5), kv.Foundation(0.75, 1.0), support,
-        kv.Drive(history=given.drive, **spring), kv.Run(given.times[-1]),
-    )  # fmt: skip
-    result = kv.transient(scene, rtol=1e-8)
+    spring = Spring(given.inertia, given.damping, given.stiffness)
+    case = Case(given.drive, given.epsilon, given.kappa, spring, given.times[-1])
+    result = kv.transient(case.scene(), rtol=1e-8)
     touching = ~np.isnan(result.leading_edge)
     forward = result.sliding_velocity > 0.0
     left = np.minimum(result.leading_edge, result.trailing_edge)
