@@ -126,13 +126,3 @@ def test_an_edge_at_rest_on_ground_left_by_a_jump_follows_the_quadratic():
 def test_root_keeps_all_digits_where_the_formula_of_the_paper_cancels():
     assert contact.root(1.0, 1e9, 1.0)[0] == pytest.approx(5e-10, rel=1e-15)
     assert contact.root(-1.0, -1e9, 1.0)[0] == pytest.approx(-5e-10, rel=1e-15)
-
-
-def test_forces_are_the_integrals_of_the_pressure():
-    x, w = np.polynomial.legendre.leggauss(4)
-    l, r, d, v, number = -0.7, 0.3, 0.5, -0.2, 1.7
-    xi = 0.5 * (l + r) + 0.5 * (r - l) * x
-    p = contact.pressure(xi, d, v, number)
-    f_z, f_x = contact.forces(l, r, d, v, number)
-    assert f_z == pytest.approx(0.75 * 0.5 * (r - l) * (w @ p), rel=1e-14)
-    assert f_x == pytest.approx(-1.5 * 0.5 * (r - l) * (w @ (xi * p)), rel=1e-14)
