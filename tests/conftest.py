@@ -21,7 +21,7 @@ sys.path.insert(0, str(ROOT / "docs"))  # the generators of the site
 FIRST = (
     *("test_figures", "derivations", "test_compare", "test_compare_faults", "test_viscoelastic"),
     *("test_docs", "test_shape", "test_elements", "test_charts_stability"),
-    *("test_explorer", "test_sweep_lasting", "test_transient_random", "test_balance"),
+    *("test_explorer", "test_sweep_lasting", "test_transient_random", "test_energy"),
 )
 """Scopes in the order in which they begin, then all others; the first of them compiles all kernels."""
 DERIVING = "derivations.catalogue import", "(by_label)", "$ kvtheory derive"

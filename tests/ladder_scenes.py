@@ -25,8 +25,8 @@ from tests import (
     reference,
     reference_ball,
     reference_power_law,
-    transient_closed_form,
     transient_history,
+    transient_reference,
 )
 from tests.transient_scenes import Scene as ScaledScene
 
@@ -192,7 +192,7 @@ def series_truth(case, model, truer=TRUER):
         try:
             if case.kind == "start" and scaled.epsilon is not None:
                 with suppress(ValueError):  # it needs memory
-                    return _in_si(case, transient_closed_form.two_states(scaled, tolerance))
+                    return _in_si(case, transient_reference.two_states(scaled, tolerance))
             # with an explicit method: not where the inertia is next to nothing
             if scaled.epsilon is None or scaled.epsilon >= LEAST_INERTIA:
                 past = transient_history.history(scaled, tolerance, LONGEST_STEP)

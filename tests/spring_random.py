@@ -29,6 +29,16 @@ SWINGS = 30
 """That a run takes at most, along x."""
 
 
+def of_unit_scales(eps, kappa, drive, end):
+    """Return the scene whose scales R, K and tau make 1: its SI numbers are the scaled ones."""
+    support = kv.DeadWeight(mass=eps, gravity=1 / eps)
+    if math.isinf(kappa):
+        support = kv.Fixed(1.0)
+    elif kappa > 0.0:
+        support = kv.Suspended(mass=eps, stiffness=kappa, gravity=1 / eps)
+    return kv.Scene(kv.Parabola(0.5), kv.Foundation(0.75, 1.0), support, drive, kv.Run(end))
+
+
 @dataclass(frozen=True)
 class Case:
     """A scene in scaled form."""
@@ -50,17 +60,10 @@ class Case:
         return solve(given, self.eps, self.kappa, self.end, rtol, spring=self.spring, fast=fast)
 
     def scene(self):
-        """Return the scene whose scales R, K and tau make 1: its SI numbers are the scaled ones."""
-        support = kv.DeadWeight(mass=self.eps, gravity=1 / self.eps)
-        if math.isinf(self.kappa):
-            support = kv.Fixed(1.0)
-        elif self.kappa > 0.0:
-            support = kv.Suspended(mass=self.eps, stiffness=self.kappa, gravity=1 / self.eps)
+        """Return it in SI."""
         mass, damping, stiffness = self.spring
         drive = kv.Drive(history=self.history, stiffness=stiffness, damping=damping, mass=mass)
-        return kv.Scene(
-            kv.Parabola(0.5), kv.Foundation(0.75, 1.0), support, drive, kv.Run(self.end)
-        )
+        return of_unit_scales(self.eps, self.kappa, drive, self.end)
 
 
 def random_case(seed, sign=1):

@@ -12,6 +12,7 @@ from kvtheory.models.continuum.solver import solve
 from kvtheory.models.continuum.surface import height
 from kvtheory.results.errors import TransientError
 from kvtheory.scene.base_motion import BaseMotion
+from tests.test_energy import END, HISTORIES, of
 
 TABLE1 = 4.0812765306, 0.0030609574
 """lambda and eps of Table 1 under dead weight."""
@@ -77,26 +78,14 @@ def test_tableau_is_radau_iia(stages):
     assert A @ np.array(method.inverse) == pytest.approx(np.eye(stages), abs=1e-13)
 
 
-SCENES = {
-    "stop": ([(0, 4), (0.5, 4), (0.5, 0)], 0.04, 0.0),
-    "stiff stop": ([(0, 4), (0.5, 4), (0.5, 0)], 1e-5, 0.0),
-    "slow-down": ([(0, 4), (0.5, 4), (1.0, 1)], 0.04, 0.0),
-    "reversal": ([(0, 4), (0.5, 4), (0.5, -4)], 0.04, 0.5),
-    "there and back": ([(0, 0), (0.5, 4), (1.5, -4), (2.0, 3)], 0.2, 0.0),
-    "heavy": ([(0, 0.3), (1.0, 0.3), (1.0, 0)], 300.0, 0.0),
-    "hop": ([(0, 7.1)], 0.078, 0.12),
-    "two hops": ([(0, 2.0), (0.3, 8.0), (0.3, -5), (1.0, 0), (1.0, 9)], 0.2, 0.04),
-}
-
-
-@pytest.mark.parametrize("name", SCENES)
+@pytest.mark.parametrize(
+    "name",
+    ["stop", "stiff stop", "slow-down", "reversal", "there and back", "heavy", "hop", "hops"],
+)
 def test_motion_obeys_its_equation_and_converges(name):
-    points, eps, kappa = SCENES[name]
-    end = 2.0
-    given = BaseMotion.from_points(points, end)
-    motion, better = solve(given, eps, kappa, end), solve(given, eps, kappa, end, 1e-11)
-    assert distance(motion, lambda s: better.at(s)[1:3], end) <= 5e-9
-    for s in np.random.default_rng(1).uniform(0, end, 40):
+    (_, eps, kappa), (_, motion), (_, better) = HISTORIES[name], of(name, 1e-9), of(name, 1e-11)
+    assert distance(motion, lambda s: better.at(s)[1:3], END) <= 5e-9
+    for s in np.random.default_rng(1).uniform(0, END, 40):
         now = better.at(s)
         balance = 1 - now.normal_force - kappa * (now.depth - 1)
         terms = 1 + abs(eps * now.acceleration)
@@ -104,7 +93,7 @@ def test_motion_obeys_its_equation_and_converges(name):
 
 
 def test_heights_of_hops_are_ballistic():
-    points, eps, _ = SCENES["hop"]
+    points, eps, _ = HISTORIES["hop"]
     motion = solve(BaseMotion.from_points(points, 2.0), eps, 0.0, 2.0)
     times = {event.kind: event.s for event in motion.events}
     start = motion.at(times["take-off"])
@@ -119,7 +108,7 @@ def test_heights_of_hops_are_ballistic():
 
 
 def test_fixed_support_is_the_limit_of_a_stiff_spring():
-    points = SCENES["there and back"][0]
+    points = HISTORIES["there and back"][0]
     given = BaseMotion.from_points(points, 2.0)
     fixed, stiff = (solve(given, 1e-7, kappa, 2.0) for kappa in (math.inf, 1e6))
     for s in (0.2, 0.7, 1.3, 1.9):

@@ -1,17 +1,24 @@
-"""The energy ledger: it closes, its entries are what they are called, and steady sliding is F6."""
+"""The balance laws (fact F14): impulse, and the energy ledger, its entries and shares in steady sliding."""
 
+import itertools
 import math
 
 import numpy as np
 import pytest
 
 import kvtheory as kv
+from kvtheory.models.continuum import evaluation as e_
 from kvtheory.models.continuum.energy import ledger
 from kvtheory.models.continuum.solved_scene import force_maxima
 from kvtheory.models.continuum.solver import solve
-from kvtheory.models.continuum.surface import height
+from kvtheory.models.continuum.surface import height, volume
 from kvtheory.scene.base_motion import BaseMotion
+from tests.test_transient_random import KNOWN_FAILURES, SCENES, random_case
+from tests.test_transient_reference import TABLE, of_the_table
 
+RTOL, BALANCE, CHECKS = 1e-10, 1e-9, 6
+"""Of each law, relative to what it sums up, at so many times."""
+X, WEIGHTS = (np.polynomial.legendre.leggauss(12) + np.array([[1.0], [0.0]])) / 2
 END = 2.0
 STOP_AND_GO = [(0, 4), (0.3, 4), (0.3, 0), (0.6, 0), (0.6, 4), (0.9, 4), (0.9, 0.5)]
 REVERSAL = [(0, 4), (0.5, 4), (0.5, -4)]
@@ -47,6 +54,47 @@ def of(name, rtol=1e-10):
     made = BaseMotion.from_function if callable(drive) else BaseMotion.from_points
     given = made(drive, END)
     return given, solve(given, eps, kappa, END, rtol)
+
+
+def impulse(motion):
+    """Return how far U = U_0 e^-s + 4/3 int e^(t - s) f_z dt is from the volume, at the worst.
+
+    At the ends of a step f_z may be a square root of t: t = a + (b - a) x^2 (3 - 2 x), on two panels of x.
+    """
+    checked = {*np.linspace(1, len(motion.starts), CHECKS).astype(int).tolist()}
+    x = np.concatenate([X / 2, 0.5 + X / 2])
+    weights = np.tile(WEIGHTS / 2, 2) * 6 * x * (1 - x)
+    low, high = np.array([*itertools.pairwise([*motion.starts, motion.end])]).T[..., None]
+    t = np.minimum(low + (high - low) * x * x * (3 - 2 * x), high)
+    f_z = motion.states(t.reshape(-1))[:, e_.NORMAL_FORCE].reshape(t.shape)
+    gains = 4 / 3 * ((high - low) * np.exp(t - high) * f_z) @ weights
+    U = scale = 4 / 3
+    worst = 0.0
+    for step, (a, b, gain) in enumerate(zip(low[:, 0], high[:, 0], gains, strict=True), 1):
+        U, scale = U * math.exp(a - b) + gain, scale + gain
+        if step in checked:
+            worst = max(worst, abs(volume(motion, b) - U) / scale)
+    return worst
+
+
+def unbalanced(motion):
+    """Return how far the impulse balance and the ledger are from closing, at the worst."""
+    books = ledger(motion, np.linspace(0.0, motion.end, CHECKS))
+    scale = 1 + np.abs(books.work) + np.abs(books.potential_weight) + books.potential_spring
+    return float(np.max([impulse(motion), *np.abs(books.balance) / scale]))
+
+
+@pytest.mark.parametrize("name", TABLE)
+def test_both_laws_hold_in_each_scene_of_the_table(name):
+    assert unbalanced(of_the_table(name, RTOL)) <= BALANCE
+
+
+def test_both_laws_hold_in_each_random_scene():
+    worst = {}
+    for seed in set(range(SCENES // 5)) - KNOWN_FAILURES.keys():
+        case = random_case(seed, 1)
+        worst[seed] = unbalanced(solve(case.drive, case.eps, case.kappa, case.drive.end, RTOL))
+    assert {seed: value for seed, value in worst.items() if not value <= BALANCE} == {}
 
 
 @pytest.mark.parametrize("name", HISTORIES)

@@ -8,13 +8,15 @@ import pytest
 
 import kvtheory as kv
 from kvtheory.models.continuum import evaluation as e_
+from kvtheory.models.continuum.contact import motion
 from kvtheory.models.continuum.energy import ledger
+from kvtheory.models.continuum.radau_iia import balances as balances_at
 from kvtheory.models.continuum.run import Spring
 from kvtheory.models.continuum.solver import solve
 from kvtheory.models.continuum.surface import volume
-from kvtheory.scene.base_motion import BaseMotion
+from kvtheory.scene.base_motion import BaseMotion, evaluate
 from tests import spring_reference as ref
-from tests.spring_random import balances, random_case
+from tests.spring_random import Case, balances, random_case
 from tests.test_transient_reference import drive, worst
 
 TABLE = json.loads(ref.TABLE.read_text())
@@ -36,6 +38,28 @@ def solved(name, rtol=1e-9):
 def test_every_quantity_agrees_with_the_independent_table(name):
     states = solved(name).states(ref.SCENES[name].times)
     assert worst(states, COLUMNS, TABLE[name], times_stated=3.0) <= 1e-7
+
+
+@pytest.mark.parametrize("name", ["damped", "stop", "reversal"])
+def test_the_jacobian_is_that_of_both_forces(name):
+    """A wrong one would only slow Newton's method down."""
+    run, h = solved(name, 1e-6).interpreted, 1e-6
+    long = [
+        k for k in range(run.now.steps) if run.steps[k].span > 0.01
+    ]  # not on ground left just now
+    assert len(long) > 9
+    for step, along in ((run.steps[k], run.along[k]) for k in long[::3]):
+        s = step.start + 0.5 * step.span
+        state = np.array([*motion(step, s)[:2], *motion(along, s)[:2]])
+        Y, number, _ = evaluate(run.pieces[along.piece], s)
+
+        def forces(state, step=step, s=s, Y=Y, number=number):
+            d, v, x, w = state.tolist()
+            return np.array(balances_at(run, step, s, (d, v, 0.0, Y - x, number - w, 0.0), x, w))
+
+        for k, change in enumerate(h * np.eye(4), 1):
+            slope = (forces(state + change) - forces(state - change))[:, 0] / (2 * h)
+            assert forces(state)[:, k] == pytest.approx(slope, rel=1e-6, abs=1e-6)
 
 
 @pytest.mark.parametrize("name", ref.ELEMENTS)
@@ -135,13 +159,9 @@ def test_edges_follow_the_sign_of_the_sliding_velocity():
     name = "hop"
     motion = solved(name)
     given = ref.SCENES[name]
-    support = kv.DeadWeight(mass=given.epsilon, gravity=1 / given.epsilon)
-    spring = {"stiffness": given.stiffness, "mass": given.inertia}
-    scene = kv.Scene(
-        kv.Parabola(0.5), kv.Foundation(0.75, 1.0), support,
-        kv.Drive(history=given.drive, **spring), kv.Run(given.times[-1]),
-    )  # fmt: skip
-    result = kv.transient(scene, rtol=1e-8)
+    spring = Spring(given.inertia, given.damping, given.stiffness)
+    case = Case(given.drive, given.epsilon, given.kappa, spring, given.times[-1])
+    result = kv.transient(case.scene(), rtol=1e-8)
     touching = ~np.isnan(result.leading_edge)
     forward = result.sliding_velocity > 0.0
     left = np.minimum(result.leading_edge, result.trailing_edge)

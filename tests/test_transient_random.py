@@ -20,6 +20,7 @@ from kvtheory.models.continuum.run import StepControl
 from kvtheory.models.continuum.solver import solve
 from kvtheory.results.errors import TransientError
 from kvtheory.scene.base_motion import BaseMotion
+from tests.spring_random import of_unit_scales
 
 SCENES = int(os.environ.get("KVTHEORY_TEST_SCENES", "200"))
 """Random scenes of the longest tests, which use a share of them."""
@@ -54,16 +55,8 @@ class Case:
     times: np.ndarray
 
     def scene(self):
-        """Return the scene whose scales R, K and tau make 1: its SI numbers are the scaled ones."""
-        if math.isinf(self.kappa):
-            support = kv.Fixed(1.0)
-        elif self.kappa > 0:
-            support = kv.Suspended(mass=self.eps, stiffness=self.kappa, gravity=1 / self.eps)
-        else:
-            support = kv.DeadWeight(mass=self.eps, gravity=1 / self.eps)
-        return kv.Scene(
-            kv.Parabola(0.5), kv.Foundation(0.75, 1.0), support, run=kv.Run(self.drive.end)
-        )
+        """Return the scene; its drive is another, see `transient_of`."""
+        return of_unit_scales(self.eps, self.kappa, kv.Scene().drive, self.drive.end)
 
 
 def random_case(seed, sign):

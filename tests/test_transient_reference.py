@@ -14,7 +14,6 @@ import pytest
 from kvtheory.models.continuum import evaluation as e_
 from kvtheory.models.continuum.solver import solve
 from kvtheory.scene.base_motion import BaseMotion
-from tests import transient_elements
 from tests import transient_reference as ref
 from tests.transient_scenes import QUANTITIES
 
@@ -144,6 +143,6 @@ def test_steady_sliding_at_fixed_depth():
 def test_what_a_method_does_not_cover_is_refused(monkeypatch):
     with pytest.raises(ValueError, match="needs memory"):
         ref.two_states(ref.Scene([(0.0, 1.0)], 0.01, (0.0, 1.0), kappa=300.0), 1e-9)
-    monkeypatch.setattr(transient_elements, "REACH", 1.0)
+    monkeypatch.setattr(ref, "REACH", 1.0)
     with pytest.raises(ArithmeticError, match="outgrows"):
         ref.elements(SCENES["stop"], 1)

@@ -1,7 +1,7 @@
 """Independent solutions of the standard scenes of the work-precision charts.
 
 `python -m tests.work_precision_reference` writes them with the data of the package, in a minute or two:
-by `transient_history`, or where no memory is needed by `transient_closed_form`; they share no code with
+by `transient_history`, or where no memory is needed by `two_states`; they share no code with
 the package.
 """
 
@@ -10,8 +10,8 @@ from pathlib import Path
 
 import kvtheory
 from kvtheory.charts.problems import STANDARD, TABLE, Problem, standard_scene
-from tests.transient_closed_form import two_states
 from tests.transient_history import history
+from tests.transient_reference import two_states
 from tests.transient_scenes import Scene
 
 NO_MEMORY = ("table-1", "low-velocity", "small-inertia")

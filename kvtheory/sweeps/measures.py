@@ -14,8 +14,8 @@ from kvtheory.models.continuum import bulk, compiled, deviation, maxima
 from kvtheory.models.continuum import error_estimate as estimate
 from kvtheory.models.continuum import evaluation as e_
 from kvtheory.models.continuum.cycles import cycle
-from kvtheory.models.continuum.run import GIVEN, ROOM, begin, readable, with_more_room
-from kvtheory.models.continuum.solved_scene import certified, left_leads, scaled_drive
+from kvtheory.models.continuum.run import ROOM, begin, readable, with_more_room
+from kvtheory.models.continuum.solved_scene import COLUMNS, certified, scaled_drive
 from kvtheory.models.continuum.solver import STEP_LIMIT
 from kvtheory.models.continuum.stepping import DONE
 from kvtheory.results.certificate import AT_REST
@@ -25,13 +25,6 @@ from kvtheory.scene.model import Scene
 from kvtheory.scene.static_state import StaticState
 from kvtheory.sweeps.plan import CYCLE, EVENTS, FAILS, Array, Column, Measured, Plan
 
-COLUMNS = {
-    "velocity": e_.DRIVE, "sliding_velocity": e_.NUMBER, "spring_force": e_.SPRING_FORCE,
-    "depth": e_.DEPTH, "depth_rate": e_.RATE, "normal_force": e_.NORMAL_FORCE,
-    "friction_force": e_.FRICTION_FORCE, "peak_pressure": e_.PEAK_PRESSURE,
-    "leading_edge": maxima.LEADING_EDGE, "trailing_edge": maxima.TRAILING_EDGE,
-}  # fmt: skip
-"""Column of each quantity in the states."""
 SENSES = {"max": maxima.LARGEST, "time_of_max": maxima.LARGEST, "min": maxima.SMALLEST}
 PEAK = e_.FRICTION_FORCE, maxima.MAGNITUDE
 CYCLE_SCALES = {"m": "half_length", "s": "time", "m/s": "velocity", "N/m": "friction_force"}
@@ -142,7 +135,7 @@ class _Motions:
         compiled.follow(bulk.Bulk(scenes, request, room, found), runs[0], runs[1], STEP_LIMIT)
         for whole, part in zip(self.found, found, strict=True):
             whole[indices] = part
-        deviations, given = found.deviations.T, readable(runs[0].given[0], GIVEN)
+        deviations, given = found.deviations.T, readable(runs[0].given[0])
         tolerance = max(scene.drive.tolerance for scene, _, _ in kept)
         errors = estimate.errors(
             deviations, deviations, given.rtol, given.fixed, sprung=False, tolerance=tolerance
@@ -158,12 +151,11 @@ class _Motions:
         motion, found = solution.motion, self.found
         for name, error in errors.relative_error.items():
             self.errors[name][index] = error
-        for k, (column, sense) in enumerate(self.wanted):
-            found.largest[index, k] = motion.largest(column, sense)
+        found.largest[index] = motion.largest(*self.wanted)
         found.settled[index] = motion.settled(self.friction[index], SETTLED)
         if self.plan.times:
             found.states[index] = solution.states(self.plan.times).T
-        found.last[index] = motion.last
+        found.last[index] = motion.states([motion.end])[0]
         found.take_offs[index] = sum(event.kind == "take-off" for event in motion.events)
         if not units.rigid_drive:
             self.cycles[index] = cycle(motion)
@@ -177,7 +169,7 @@ class _Motions:
         if measure == EVENTS:
             return self.texts
         if measure == "series":
-            values, scale = self.series(name), QUANTITIES[name].scale
+            values, scale = found.states[..., COLUMNS[name]], QUANTITIES[name].scale
         elif measure == "end":
             values, scale = found.last[:, COLUMNS[name]], QUANTITIES[name].scale
         elif measure in SENSES:
@@ -199,18 +191,6 @@ class _Motions:
         else:
             values = found.take_offs.astype(float)
         return (values.T * self.scales(scale)).T
-
-    def series(self, name: str) -> Array:
-        """Return a scaled quantity at the times: a row for each index."""
-        states = self.found.states
-        if COLUMNS[name] < e_.SIZE:
-            return np.asarray(states[..., COLUMNS[name]])
-        times, leads = np.array(self.plan.times), states[..., e_.NUMBER] >= 0.0
-        for index, (_, units, drive) in self.scenes.items():
-            leads[index] = left_leads(states[index, :, e_.NUMBER], drive, times / units.time)
-        return np.where(
-            leads == (name == "leading_edge"), states[..., e_.LEFT], states[..., e_.RIGHT]
-        )
 
     def scales(self, attribute: str) -> Array:
         """Return a scale of the static state at each index; without a name it is 1."""

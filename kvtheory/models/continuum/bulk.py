@@ -130,8 +130,9 @@ def perform(
     elif task == SAMPLE:
         return m_.sample(one, times, states)
     elif task == LARGEST:
-        column, sense = int(values[0]), int(values[1])
-        values[0], values[1] = m_.largest(one, times, states, count, column, sense, rows[0])
+        for i in range(0, len(values), 2):
+            column, sense = int(values[i]), int(values[i + 1])
+            values[i], values[i + 1] = m_.largest(one, times, states, count, column, sense, rows[0])
     elif task == SETTLED:
         values[0] = m_.settled(one, times, states, count, values[0], values[1], rows[0])
     elif task == FOLLOW:

@@ -16,7 +16,7 @@ b -> lambda, c -> d + v. In the limit sigma -> -oo they are the edges on undistu
 The memory of a side is a chain of nodes, the innermost first. The ground of a node was left at one
 instant (a strip, when lambda jumped; undisturbed ground, at sigma = -oo), or swept by a peeling edge
 during one step: at sigma the edge was at X_e(sigma), a root of p = 0. A node on a chain never
-changes, so that the chain of any past time can still be walked. Side 0 is the left edge, side 1 the
+changes, so that the chain of any past time is still there. Side 0 is the left edge, side 1 the
 right one; `run` describes the records.
 """
 
@@ -31,16 +31,16 @@ PEELING, TOUCHING, FREE = 0, 1, 2
 SIDES = (-1.0, 1.0)
 """Outward directions."""
 FAR = 1e150
-"""Where undisturbed ground ends: its square is still finite."""
+"""Outer end of undisturbed ground; its square is finite."""
 
 SWEEP_ERROR, FARTHEST_GUESS = 1e-15, 0.75
-"""Error allowed in an edge from that of sigma, in which the edge is stationary; largest share of a sweep,
-from its outer end, for the linear first guess, which must not lie at the inner end."""
+"""Allowed error of an edge due to that of sigma, in which it is stationary; largest fraction of a sweep, from
+its outer end, for the linear first guess, which must stay off the inner end."""
 SWEEP_STEPS, NEWTON_ALONE = 150, 20
-"""Bisection alone needs less than 60; after `NEWTON_ALONE`, every other step bisects: Newton's may cycle."""
+"""Iteration limit (bisection alone needs fewer than 60); after `NEWTON_ALONE`, every other one bisects."""
 
 ROUNDING = 1e-15
-"""Rounding of an edge on ground that was left just now, times the age of that ground, relative to 1 + |Y|."""
+"""Rounding error of an edge on recently left ground, times the age of that ground, relative to 1 + |Y|."""
 
 Instant = tuple[float, float, float, float, float, float]
 """d, v, v', Y, lambda, lambda' at one time."""
@@ -68,7 +68,7 @@ def instant(run: Run, index: int, s: float) -> Instant:
 def root(side: float, b: float, c: float) -> tuple[float, float]:
     """Return -b + side sqrt(b^2 + c) without cancellation, and the square root.
 
-    Beyond the loss of contact, b^2 + c < 0, both go on continuously, with a negative root.
+    Without contact, b^2 + c < 0, both are continued with a negative square root.
     """
     radicand = b * b + c
     half = math.sqrt(radicand) if radicand >= 0.0 else -math.sqrt(-radicand)
@@ -127,7 +127,7 @@ def edge(run: Run, k: int, held: Any, s: float, now: Instant) -> tuple[float, fl
 
 
 def reached(run: Run, side: float, index: int, s: float, d: float, Y: float) -> int:
-    """Return the node that an edge has reached, as far as A is smooth from node `index` on."""
+    """Return the node that an edge has reached: the last one from `index` on across which A is smooth."""
     while run.nodes[index].joined and overrun(side, run.nodes[index].outer, s, d, Y) > 0.0:
         index = run.nodes[index].next
     return index

@@ -16,10 +16,6 @@ accepted, and until the amplitude itself is within 1 % of it, for Table 1, with 
           91        1         0.24            8         7
           91        6.7       0.0016          8       971
          214       10         0.035         117       101
-
-A cycle costs 0.5 to 10 ms, compiled. Shooting, Newton's method on the map from peak to peak, would save no
-more: near the limit of stability all but one direction of the map fades within a cycle, and in one direction
-Aitken's step is that of a secant; but shooting would have to restart with the memory of the foundation.
 """
 
 import math

@@ -19,7 +19,6 @@ GOLDEN, SECTIONS = 0.6180339887498949, 18
 """Golden-section steps, down to a thousandth of a step; then Newton's method on central differences."""
 NEWTON_STEPS, DIFFERENCE, BISECTIONS = 3, 1e-3, 60
 """The difference is this share of a step: its fourth power, and rounding over it, are both small."""
-LEADING_EDGE, TRAILING_EDGE = e_.LEADING, e_.TRAILING
 LARGEST, SMALLEST, MAGNITUDE = 1, -1, 0
 """Senses of an extreme."""
 

@@ -1,4 +1,4 @@
-"""Both sides of the contact in a run: the ground that its edges leave, take-off, flight and landing."""
+"""The memory of both sides: the ground that the edges leave behind, take-off, flight and landing."""
 
 import math
 from typing import Any
@@ -8,7 +8,7 @@ from kvtheory.models.continuum.contact import FREE, SIDES, TOUCHING, instant
 from kvtheory.models.continuum.run import Run
 
 SUMMIT_RTOL = 1e-9
-"""For sigma; the margin is stationary there, so that its error is of the order of the square."""
+"""Relative tolerance of sigma; the margin is stationary there, so that its error is of second order."""
 
 
 def set_place(place: Any, X: float, s: float, d: float, Y: float) -> None:
@@ -17,14 +17,14 @@ def set_place(place: Any, X: float, s: float, d: float, Y: float) -> None:
 
 
 def copy(node: Any, inner: Any, outer: Any, old: Any) -> None:
-    """Write a node with these ends, else like `old`."""
+    """Write a node with these ends, and otherwise a copy of `old`."""
     set_place(node.inner, inner.X, inner.s, inner.d, inner.Y)
     set_place(node.outer, outer.X, outer.s, outer.d, outer.Y)
     node.step, node.branch, node.next, node.joined = old.step, old.branch, old.next, old.joined
 
 
 def push(run: Run, k: int, step: int, branch: float) -> None:
-    """Put the node whose ends are in the first unused record on a chain.
+    """Add the node in the first unused record, where its ends are already written, to a chain.
 
     A is smooth across to the next node if one edge swept both, smoothly.
     """
@@ -43,7 +43,7 @@ def put(run: Run, k: int) -> None:
 
 
 def push_strip(run: Run, k: int, inner: float, outer: float, Y: float) -> None:
-    """Put a strip on a chain that is left as a whole now."""
+    """Add to a chain a strip of ground that is left as a whole at the present instant."""
     node, s, d = run.nodes[run.now.nodes], run.now.s, run.now.d
     set_place(node.inner, inner, s, d, Y)
     set_place(node.outer, outer, s, d, Y)
@@ -63,7 +63,7 @@ def trim(run: Run, k: int, Y: float) -> None:
 
 
 def leave(run: Run, Y: float) -> None:
-    """Take off: all ground is memory."""
+    """Take off: the ground under the contact joins the memory."""
     left, right = run.now.sides[0], run.now.sides[1]
     for k in range(2):
         if run.now.sides[k].state == TOUCHING:
@@ -99,13 +99,13 @@ def land(run: Run, Y: float) -> None:
 
 
 def push_reversed(run: Run, k: int, old: Any) -> None:
-    """Put a node on the chain of the other side."""
+    """Add a copy of a node to the chain of the other side, with its ends exchanged."""
     copy(run.nodes[run.now.nodes], old.outer, old.inner, old)
     push(run, k, old.step, old.branch)
 
 
 def summit(run: Run, s: float, d: float, Y: float) -> tuple[float, float, float, int, float]:
-    """Return the largest margin, its X, side and node, and the sigma at which X was left.
+    """Return the largest margin, its X, side and node, and the instant sigma at which X was left.
 
     The indenter lands when the margin reaches zero. The margin e^-s (e^s g - A) is concave in X, for A
     is a supremum of functions with the same curvature at earlier, smaller weights; so its largest value
@@ -143,7 +143,7 @@ def slope(side: float, X: float, s: float, Y: float, s_0: float, Y_0: float) -> 
 def _peak(
     run: Run, side: float, node: Any, s: float, Y: float
 ) -> tuple[float, float, float, float]:
-    """Return X, sigma, d, Y of the largest margin on one node, whose outer end it does not exceed."""
+    """Return X, sigma, d, Y of the largest margin on one node; it is not beyond the outer end."""
     at, inner, outer = node.inner, node.inner.s, node.outer.s
     if rise(side, at, s, Y) <= 0.0:
         return at.X, inner, at.d, at.Y

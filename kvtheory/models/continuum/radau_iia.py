@@ -133,25 +133,18 @@ def balances(
     The pressure vanishes at a peeling edge; a touching one moves with d and, over what was left, with Y.
     """
     given, (d, v, _, _, number, _) = run.given, now
-    F, F_d, F_v, F_x, F_w = 1.0 - given.kappa * (d - 1.0), -given.kappa, 0.0, 0.0, 0.0
-    G, G_d, G_v = -given.damping * w - given.spring * x, 0.0, 0.0
-    G_x, G_w = -given.spring, -given.damping
-    if step.sides[0].state != FREE:
-        l, l_d, l_Y, _ = edge(run, 0, step.sides[0], s, now)
-        r, r_d, r_Y, _ = edge(run, 1, step.sides[1], s, now)
-        if l < r:
-            f_z, f_x = forces(l, r, d, v, number)
-            p_l, p_r = pressure(l, d, v, number), pressure(r, d, v, number)
-            F, G, width, squares = F - f_z, G + f_x, r - l, (r - l) * (r + l)
-            F_d -= 0.75 * (width + p_r * r_d - p_l * l_d)
-            F_v, F_w = -0.75 * width, -0.75 * squares
-            F_x = 0.75 * (p_r * r_Y - p_l * l_Y)
-            G_v = -0.75 * squares
-            G_d = G_v - 1.5 * (r * p_r * r_d - l * p_l * l_d)
-            G_x += 1.5 * (r * p_r * r_Y - l * p_l * l_Y)
-            G_w -= width * (r * r + r * l + l * l)
-        elif not l >= r:
-            F = math.nan
+    F, F_d, F_v, (l, l_d, l_Y, _), (r, r_d, r_Y, _) = imbalance(run, step, s, now)
+    F_x = F_w = G_d = G_v = 0.0
+    G, G_x, G_w = -given.damping * w - given.spring * x, -given.spring, -given.damping
+    if l < r:  # false in flight, where both are NaN
+        _, f_x = forces(l, r, d, v, number)
+        p_l, p_r = pressure(l, d, v, number), pressure(r, d, v, number)
+        G, width, squares = G + f_x, r - l, (r - l) * (r + l)
+        F_w = G_v = -0.75 * squares
+        F_x = 0.75 * (p_r * r_Y - p_l * l_Y)
+        G_d = G_v - 1.5 * (r * p_r * r_d - l * p_l * l_d)
+        G_x += 1.5 * (r * p_r * r_Y - l * p_l * l_Y)
+        G_w -= width * (r * r + r * l + l * l)
     if given.fixed:
         F = F_d = F_v = F_x = F_w = 0.0
     return (F, F_d, F_v, F_x, F_w), (G, G_d, G_v, G_x, G_w)
@@ -200,12 +193,8 @@ def _linearize(run: Run, step: Any, along: Any) -> bool:
     change, places, numbers = matrix[unknowns], matrix[unknowns + 1], matrix[unknowns + 2]
     eps = 1.0 if given.fixed else given.eps  # a fixed indenter on a spring keeps d' = 0
     for i in range(stages):
-        s, a, inverse, row = (
-            step.start + span * method.nodes[i],
-            method.A[i],
-            method.inverse[i],
-            matrix[i],
-        )
+        s, row = step.start + span * method.nodes[i], matrix[i]
+        a, inverse = method.A[i], method.inverse[i]
         d, inertia = step.depth + span * method.nodes[i] * step.rate[0], 0.0
         for j in range(stages):
             d += span * a[j] * change[j]

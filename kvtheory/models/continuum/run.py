@@ -6,6 +6,7 @@ structured arrays. Both have more room than is used; `stepping.walk` stops befor
 
 import math
 from functools import cache
+from types import SimpleNamespace
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -210,9 +211,11 @@ def structured(rows: Any, kind: np.dtype[Any]) -> Any:
     return rows if isinstance(rows, np.ndarray) else np.array(plain(rows), dtype=kind)
 
 
-def readable(record: Any, kind: np.dtype[Any]) -> Any:
-    """Return a record with attributes."""
-    return _filled(kind, record.tolist()) if isinstance(record, np.void) else record
+def readable(record: Any) -> Any:
+    """Return a record whose plain fields are attributes."""
+    if not isinstance(record, np.void):
+        return record
+    return SimpleNamespace(**dict(zip(record.dtype.names or (), record.tolist(), strict=True)))
 
 
 def value(record: Any, name: str) -> Any:

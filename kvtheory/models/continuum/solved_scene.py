@@ -145,8 +145,9 @@ def transient(
 
 def force_maxima(motion: Trajectory) -> tuple[float, float]:
     """Return when f_z and |f_x| are largest: the first time of the largest value from s = 0 on."""
-    normal = motion.largest(e_.NORMAL_FORCE, maxima.MAGNITUDE)
-    return normal[0], motion.largest(e_.FRICTION_FORCE, maxima.MAGNITUDE)[0]
+    forces = ((column, maxima.MAGNITUDE) for column in (e_.NORMAL_FORCE, e_.FRICTION_FORCE))
+    normal, friction = motion.largest(*forces)[:, 0].tolist()
+    return normal, friction
 
 
 def certified(
@@ -189,11 +190,3 @@ def certified(
         other = solved(1, *second)
     s = None if times is None else fine.scaled(time)
     return fine, time, certificate(fine.motion, other, s, scene.drive.tolerance)
-
-
-def left_leads(numbers: Array, drive: BaseMotion, s: Array) -> NDArray[np.bool_]:
-    """Whether the left edge leads, by the drive numbers at the times `s`; at rest, as it did before."""
-    leads = numbers >= 0.0
-    for k in np.flatnonzero(numbers == 0.0):
-        leads[k] = drive.forward(float(s[k]))
-    return leads

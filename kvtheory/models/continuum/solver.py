@@ -74,17 +74,17 @@ class Trajectory:
     @cached_property
     def given(self) -> Any:
         """Inertia, support, spring, tolerance, see `run.GIVEN`."""
-        return readable(self.run.given[0], r_.GIVEN)
+        return readable(self.run.given[0])
 
     @cached_property
     def counts(self) -> Any:
         """The numbers of steps, nodes, events and so on, see `run.NOW`."""
-        return readable(self.run.now[0], r_.NOW)
+        return readable(self.run.now[0])
 
     @property
     def end(self) -> float:
-        """The time at which the motion ends."""
-        return float(self.given.end)
+        """The time at which it ends."""
+        return float(value(self.run.given[0], "end"))
 
     @property
     def compiled(self) -> bool:
@@ -104,8 +104,8 @@ class Trajectory:
         """Yield when an edge begins to touch ground that was touched before, and when it ceases to."""
         sides, left_at = self.records["sides"], self.nodes["inner"]["s"]
         remembers = (sides["state"] == TOUCHING) & (left_at[sides["node"]] > -math.inf)
-        changes = np.diff(remembers, axis=0, prepend=False)
-        for at, k in np.argwhere(changes).tolist():
+        changes, sides_of = np.nonzero(remembers[1:] != remembers[:-1])  # none at first
+        for at, k in zip((changes + 1).tolist(), sides_of.tolist(), strict=True):
             verb, name = "begins" if remembers[at, k] else "ends", ("left", "right")[k]
             yield ScaledEvent(self.starts[at], f"memory {verb} at the {name} edge")
 
@@ -175,12 +175,9 @@ class Trajectory:
         times = np.asarray(s, dtype=float)
         if not np.all((times >= 0.0) & (times <= self.end)):
             raise ValueError(f"`s` must lie in [0, {self.end!r}], got {s!r}")
-        return np.array(self._states(times)).reshape(-1, evaluation.SIZE)
-
-    def _states(self, times: NDArray[np.float64]) -> Any:
         _, found = self._room(len(times))
         self._perform(bulk.STATES, self._rows(times), found)
-        return found
+        return np.asarray(found).reshape(-1, evaluation.SIZE)
 
     def deviations(
         self, other: "Trajectory", times: NDArray[np.float64] | None = None
@@ -192,7 +189,8 @@ class Trajectory:
         if times is None:
             at, found = self._natural
         else:
-            at, found = np.sort(times), self._states(np.sort(times))
+            at = np.sort(times)
+            found = self._rows(self.states(at))
         worst = self._rows(np.zeros(deviation.SIZE))
         self._perform(bulk.DEVIATIONS, self._rows(at), found, worst, other=other.run)
         return [float(x) for x in worst]
@@ -203,12 +201,12 @@ class Trajectory:
         times, found = self._room((maxima.SAMPLES + 1) * self.counts.steps)
         return times, found, self._perform(bulk.SAMPLE, times, found)
 
-    def largest(self, column: int, sense: int = maxima.LARGEST) -> tuple[float, float]:
-        """Return when a column of the states is largest, and its value, see `maxima`."""
+    def largest(self, *wanted: tuple[int, int]) -> NDArray[np.float64]:
+        """Return for each column of the states and sense when it is largest, and its value, see `maxima`."""
         times, found, count = self.samples
-        values = self._rows(np.array([column, sense], dtype=float))
+        values = self._rows(np.array(wanted, dtype=float).reshape(-1))
         self._perform(bulk.LARGEST, times, found, values, count)
-        return float(values[0]), float(values[1])
+        return np.array(values).reshape(-1, 2)
 
     def settled(self, force: float, share: float) -> float:
         """Return since when the friction force is settled, see `maxima`."""
@@ -216,11 +214,6 @@ class Trajectory:
         values = self._rows(np.array([force, share], dtype=float))
         self._perform(bulk.SETTLED, times, found, values, count)
         return float(values[0])
-
-    @property
-    def last(self) -> NDArray[np.float64]:
-        """The state at the end."""
-        return self.states([self.end])[0]
 
     def _perform(
         self, task: int, times: Any, found: Any, values: Any = None, count: int = 0, other: Any = None
@@ -238,7 +231,7 @@ class Trajectory:
 
     def _room(self, count: int) -> tuple[Any, Any]:
         """Return room for times, and for the states there."""
-        return self._rows(np.zeros(count)), self._rows(np.zeros((count, evaluation.SIZE)))
+        return self._rows(np.empty(count)), self._rows(np.empty((count, evaluation.SIZE)))
 
     def _rows(self, array: Any) -> Any:
         """Return an array as the kernels need it: as lists if they are interpreted."""

@@ -34,15 +34,15 @@ Array = NDArray[np.float64]
 DEGREES = (24, 48, 96)
 """Degrees of the Chebyshev series, tried in turn; 24 is enough down to 1e-5, 48 at 1e-8, at any velocity."""
 SETTLED, RESOLVED = 1e-2, 1e-2
-"""Shares of the tolerance: by which the path still differs from the steady half length at its end, from where
-on the remainder decays at one rate; and for the truncation of the series."""
+"""Fractions of the tolerance: distance of the end of the path from the steady half length, beyond which the
+remainder decays at a single rate; truncation error of the series."""
 LARGEST_RATIO = 0.1
 """Ratio of slow to fast rate above which the first order in eps is unreliable."""
 SAFETY = 1.5
 """Safety factor on the first-order estimates; it also covers the second order at the largest ratio."""
 INVERSIONS, CLOSE = 12, 1e-7
-"""Most Newton steps from times to u (four hundred random starts took at most four), and a relative step after
-which the next one is rounding."""
+"""Most Newton iterations from times to u (four hundred random starts took at most four), and a step after
+which the next one would be rounding."""
 
 
 @dataclass(frozen=True)
@@ -61,7 +61,7 @@ def follow(given: Start, s: Array, tolerance: float) -> SlowMotion:
     Raises
     ------
     ArithmeticError
-        If the path is not resolved, or an edge would move back over its own trace.
+        If the path is not resolved, or an edge would re-enter deformed foundation.
 
     Examples
     --------
@@ -104,7 +104,7 @@ def depth_rate(depth: Array, number: float, support_number: float = 0.0) -> Arra
 def _manifold(given: Start, moved: Array) -> tuple[Array, Array, Array, Array, Array]:
     """Return a, b, d' = G, f_v and f_d where a exceeds its steady value by `moved`.
 
-    Both b and G are computed as differences to steady sliding, to avoid cancellation near it.
+    Near steady sliding b and G would cancel: they are computed as differences from it.
     """
     number, kappa, a_0 = given.number, given.kappa, given.steady
     r_0 = a_0 * trailing_edge_ratio(number / a_0)
@@ -195,7 +195,7 @@ def _path(given: Start, tolerance: float) -> _Path:
         pull = (slope + given.kappa) / (stiff * stiff)
         outrun = outruns(a, b, v, -pull * stiff, given.number)
         if np.any(outrun > 0.0) or np.any(v + 2.0 * given.number * a < 0.0):
-            raise ArithmeticError("an edge would move back over ground that it left")
+            raise ArithmeticError("an edge would re-enter deformed foundation")
         pace = 2.0 * a * moved / -v  # ds/du
         series = transform @ pace
         tail = 0.5 * end * float(np.sum(np.abs(series[-3:])))
