@@ -162,7 +162,7 @@ def test_mistakes_of_arms_are_listed_together():
         (["foundation.kind=generalized-maxwell"], "foundation.arms: missing"),
         (["foundation.arms=1"], 'arms is of kind = "generalized-maxwell"'),
         (["foundation.kind=fractional-kelvin-voigt", "foundation.order=1.5"], "of at most 1"),
-        (["foundation.kind=generalized-maxwell", "foundation.arms=[[1, 2]]"], "without a unit"),
+        (["foundation.kind=generalized-maxwell", "foundation.arms=[[1, 2]]"], "no unit"),
     ],
 )
 def test_mistakes_of_a_foundation_are_told(overrides, told):
@@ -280,14 +280,23 @@ def test_a_node_that_rounds_to_before_the_leading_edge():
     assert state.load == pytest.approx(230.92946340465673, rel=1e-12)
 
 
+def bend_at(x):
+    """Height and slope of a parabola that is steeper beyond x, and its kink."""
+
+    def height(y):
+        return y * y / 0.02 + 250.0 * max(y - x, 0.0) ** 2
+
+    return height, lambda y: y / 0.01 + 500.0 * max(y - x, 0.0), (x,)
+
+
 def test_a_jump_of_the_curvature_need_not_be_declared():
-    """A flat punch with rounded edges, and curvatures that change in the contact, and at its lowest point."""
+    """In the contact, at its lowest point, and, hard to see, on a border of cells or close to one."""
+    border = 2.0**-10 * 1.375
     for height, slope, kinks in (
         (lambda x: max(abs(x) - 1e-3, 0.0) ** 2 / 0.02,
          lambda x: math.copysign(max(abs(x) - 1e-3, 0.0) / 0.01, x), (-1e-3, 1e-3)),
-        (lambda x: x * x / 0.02 + max(x - 2e-4, 0.0) ** 2 / 0.004,
-         lambda x: x / 0.01 + max(x - 2e-4, 0.0) / 0.002, (2e-4,)),
         (lambda x: x * x / (0.02 if x < 0.0 else 6e-3), lambda x: x / (0.01 if x < 0.0 else 3e-3), (0.0,)),
+        *map(bend_at, (2e-4, border, border * (1.0 + 1e-9), border * (1.0 - 2e-4))),
     ):  # fmt: skip
         indenters = (kv.Profile(height, slope, kinks=named) for named in ((), kinks))
         agree(*(by_quadrature(ZENER, "fixed", indenter, 0.1) for indenter in indenters), 1e-8)
