@@ -129,6 +129,7 @@ def test_a_tolerance_that_nothing_meets_says_how_close_each_model_came(request_,
         ({"rtol": 0.0}, "`rtol` = 0.0"),
         ({"rtol": math.nan}, "`rtol` = nan"),
         ({"at": "1 s"}, "after the end of the run"),
+        ({"quantity": "spring_force", "at": "1 ms"}, r"\"spring_force\": needs drive.stiffness"),
     ],
 )
 def test_bad_requests_name_what_is_expected(request_, message):

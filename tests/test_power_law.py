@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import kvtheory as kv
-from kvtheory.models.steady import power_law, power_law_contact
+from kvtheory.models.steady import power_law
 from kvtheory.models.steady.methods import solve_exact, solve_quadrature
 from tests import reference_power_law, steady
 from tests.reference import excess
@@ -95,7 +95,7 @@ def test_friction_of_a_wedge_is_its_slope_from_its_crossover_on():
 def test_the_trailing_edge_solves_its_equation_in_any_corner():
     l = np.geomspace(1e-300, 1e300, 1201)
     for n in (1.0, 1.0 + 2e-16, 1.0 + 1e-10, 1.01, 2.0, 20.0, 1e4):
-        q, Q = power_law_contact.trailing_edge(np.full_like(l, n), l)
+        q, Q = power_law.trailing_edge(np.full_like(l, n), l)
         assert np.all((q >= 0.0) & (q <= 1.0) & (Q > 0.0) & (Q <= 1.0 + EPS))
         assert np.all(np.diff(q) <= 2 * EPS)
         assert np.all(np.diff(Q) <= 2 * EPS)
