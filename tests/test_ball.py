@@ -287,12 +287,6 @@ def test_what_is_not_covered_says_so():
         kv.transient(BALL)
     with pytest.raises(ValueError, match=r"parabola only.* `elements`"):
         kv.sweep(BALL, over={"drive.velocity": [0.1]}, quantities="settling_time")
-    with pytest.raises(ValueError, match="the parabola and the ball only"):
-        kv.compare(kv.Scene(kv.Revolved(kv.Wedge(0.1)), support=kv.Fixed(1e-4)))
-    maxwell = kv.GeneralizedMaxwell(1e10, arms=[["30 GN/m^3", "10 ms"]])
-    told = kv.Revolved(kv.Profile(lambda x: x * x / 0.02, lambda x: x / 0.01))
-    with pytest.raises(ValueError, match=r'foundation\.kind = "kelvin-voigt" only'):
-        kv.steady(kv.Scene(told, maxwell, BALL.support))
 
 
 @pytest.mark.parametrize(

@@ -25,8 +25,6 @@ REDUNDANT = {
     "ramp": [(0.0, 0.0), (0.02, 0.06), (0.04, 0.12), (0.065, 0.07), (0.09, 0.02), (0.34, 0.02)],
 }  # fmt: skip
 TIMES = np.linspace(0.0, 0.2, 41)
-
-
 SPOKEN = ("last_change", "jumps", "changes", "constant", "final_velocity")
 
 

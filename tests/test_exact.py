@@ -5,8 +5,6 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 
 import kvtheory as kv
 from kvtheory.models.steady import ball, exact, methods
@@ -97,26 +95,6 @@ def test_the_certificate_is_the_worst_case_of_rounding(support):
     assert support == "dead-weight" or worst > claimed - EPS
 
 
-POSITIVE = st.floats(-6, 6).map(lambda exponent: 10.0**exponent)
-
-
-@given(R=POSITIVE, K=POSITIVE, tau=POSITIVE, W=POSITIVE, number=POSITIVE)
-def test_one_number_determines_the_friction_coefficient(R, K, tau, W, number):
-    """Scale invariance: mu (K R^2/W)^(1/3) depends on Lambda alone, for any scene."""
-    V = number / tau * np.cbrt(R * W / K)
-    scaled = at_load(R, K, tau, V, W).friction_coefficient * np.cbrt(K * R * R / W)
-    unit = at_load(1.0, 1.0, 1.0, number, 1.0).friction_coefficient
-    assert scaled == pytest.approx(unit, rel=1e-13)
-
-
-def test_faster_lifts_the_indenter():
-    V = np.geomspace(1e-6, 1e6, 400)
-    for spring in (0.0, 1e5, 1e9):
-        depth = at_load(0.01, 1e10, 0.1, V, 9806.65, spring).depth
-        assert np.all(np.diff(depth) <= 0.0)
-        assert np.all(np.diff(depth[V > 1e-5]) < 0.0)
-
-
 def test_power_is_spent_inside_and_behind_the_contact():
     """Theorem F6, each loss from its definition: C V^2 int h'^2 dx and V K u_TE^2/2."""
     R, K, tau = 0.01, 1e10, 0.1
@@ -140,26 +118,6 @@ def test_rest_is_the_winkler_contact():
     assert state.leading_edge == -state.trailing_edge == pytest.approx(-a, rel=1e-14)
     assert state.peak_pressure == pytest.approx(1e10 * state.depth, rel=1e-14)
     assert state.dissipated_in_contact == 1.0
-
-
-@pytest.mark.parametrize("decades", [-10, 10])
-def test_limits_ten_decades_from_the_critical_velocity(decades):
-    V = 0.02 * 10.0**decades
-    state = at_load(0.01, 1e10, 0.1, V, 9806.65)
-    alpha = 2 * np.sqrt(2) / 3
-    limit = V * 0.1 / 0.01 if decades < 0 else alpha * np.sqrt(9806.65 / (0.01 * 1e9 * V))
-    assert state.friction_coefficient == pytest.approx(limit, rel=1e-9)
-
-
-def test_a_suspension_joins_dead_weight_and_fixed():
-    free = at_load(0.01, 1e10, 0.1, 0.1, 9806.65)
-    static = at_load(0.01, 1e10, 0.1, 0.0, 9806.65)
-    held = at_depth(0.01, 1e10, 0.1, 0.1, static.depth)
-    soft = at_load(0.01, 1e10, 0.1, 0.1, 9806.65, 1e-6)
-    stiff = at_load(0.01, 1e10, 0.1, 0.1, 9806.65, 1e22)
-    for name in STEADY_UNITS:
-        assert getattr(soft, name) == pytest.approx(getattr(free, name), rel=1e-12)
-        assert getattr(stiff, name) == pytest.approx(getattr(held, name), rel=1e-12)
 
 
 @pytest.mark.processor

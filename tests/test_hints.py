@@ -170,6 +170,7 @@ MISTAKES = [
     (lambda: kv.Profile("x", abs), ["indenter", "functions h(x)"]),
     (lambda: kv.Revolved(kv.Sphere(0.01)), ["indenter.profile", "line contact"]),
     (lambda: kv.Drive(0.1, damping=1.0), ["drive.damping = 1.0", "needs drive.stiffness"]),
+    (lambda: kv.stability(quantity="critical_stifness"), ["critical_stiffness"]),
     (lambda: kv.Scene(support=kv.DeadWeight(load="3 N")), ["support.load", "that of a ball"]),
     (lambda: kv.Scene(support=kv.Suspended(1.0, "1 N/mm")), ["support.stiffness", "that of a ball"]),
     (lambda: kv.Scene(kv.Sphere(0.01), support=kv.DeadWeight("1 kg/mm")), ["mass", "per unit width"]),

@@ -20,18 +20,15 @@ K, TAU, DEPTH = 1e10, 0.1, 3e-4
 def close(state, truth, rtol=1e-12):
     """Hold the errors against both the tolerance and the certificate."""
     for name, value in truth.items():
-        error = float(abs(getattr(state, name) - value))
-        assert error <= rtol * abs(value), name
-        assert error <= state.certificate.relative_error[name] * abs(value), name
+        allowed = min(rtol, state.certificate.relative_error[name]) * abs(value)
+        assert float(abs(getattr(state, name) - value)) <= allowed, name
 
 
 @pytest.mark.parametrize("support", ["fixed", "dead-weight", "suspended"])
 def test_parabola_agrees_with_the_rigorous_reference(support):
     """Rest, both ends, then 24 decades of drive number, 18 of all else."""
-    rng, method = (
-        np.random.default_rng(len(support)),
-        "at_depth" if support == "fixed" else "at_load",
-    )
+    rng, method = np.random.default_rng(len(support)), "at_depth"
+    method = method if support == "fixed" else "at_load"
     for i in range(50):
         R, stiffness, weight = (10.0 ** rng.uniform(-9, 9, 3)).tolist()
         tau, number, kappa = (10.0 ** rng.uniform((-6, -12, -6), (6, 12, 6))).tolist()

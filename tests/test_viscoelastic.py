@@ -102,23 +102,6 @@ def test_kelvin_voigt_is_a_damper_and_the_springpot_of_order_one(support):
             assert sign * value == pytest.approx(getattr(truth, name), rel=2e-14, abs=0), name
 
 
-@pytest.mark.parametrize("support", SUPPORTS)
-def test_a_stiff_and_fast_arm_tends_to_kelvin_voigt_in_first_order(support):
-    plain = kv.steady(kv.Scene.table1(support))
-    off = []
-    for tau in (1e-6, 1e-7):
-        arm = kv.GeneralizedMaxwell(1e10, arms=[(1e9 / tau, tau)])
-        state = kv.steady(scene(arm, support))
-        off.append(abs(state.friction_force / plain.friction_force - 1))
-    assert 9.0 < off[0] / off[1] < 11.0
-    assert off[1] < 1e-3
-
-
-def test_beyond_the_glass_transition_a_fixed_indenter_has_a_maximum():
-    peak = kv.steady(scene(ZENER, "fixed"), over={"drive.velocity": np.geomspace(1e-3, 1e3, 200)})
-    assert 0 < np.argmax(peak.friction_coefficient) < 199
-
-
 def test_arms_can_be_swept_and_broadcast():
     over = {"foundation.arms[0].stiffness": [1e9, 3e10], "drive.velocity": [[0.1], [0.2], [0.0]]}
     state = kv.steady(scene(ZENER), over=over)
@@ -145,18 +128,6 @@ def test_mistakes_of_arms_are_listed_together():
     for wrong in ([], "x", None, [[1.0, 1.0 + i] for i in range(101)]):
         with pytest.raises(kv.SceneError, match="1 to 100"):
             kv.GeneralizedMaxwell(1e10, arms=wrong)
-
-
-@pytest.mark.parametrize(
-    "call",
-    [
-        kv.transient, kv.elements, kv.compare,
-        lambda scene: kv.solve(scene, at=["1 ms"]),
-    ],
-)  # fmt: skip
-def test_what_cannot_follow_a_springpot_refuses_it_in_one_wording(call):
-    with pytest.raises((ValueError, kv.ToleranceError), match=r"holds for foundation\.kind"):
-        call(scene(HALF))
 
 
 SHAPES = {
