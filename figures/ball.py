@@ -14,7 +14,7 @@ from matplotlib.figure import Figure
 
 import kvtheory as kv
 from figures import drawing
-from kvtheory.models.steady.footprint import SHORTER, Footprint
+from kvtheory.models.steady.ball import SHORTER, Footprint
 from kvtheory.plots import BLACK, BLUE, RED
 
 NUMBERS = np.geomspace(1e-3, 1e3, 241)

@@ -214,10 +214,3 @@ def test_the_bound_of_kelvin_voigt_is_not_idle():
     scene = of(kv.Parabola(0.01), "dead-weight", kv.GeneralizedMaxwell(1e10, arms=[[1e13, 1e-5]]))
     proved = reported(scene, 0.01).lines[1].velocity_proved
     assert 0.002 < errors(scene, regimes.lines(scene)[1], proved) < 0.01
-
-
-@pytest.mark.parametrize("n", [1.0, 1.3, 2.0, 4.0, 10.0])
-def test_under_a_dead_weight_friction_falls_with_its_own_power(n):
-    mu = kv.steady(kv.Scene(power_law(n)), over={V: [1e8, 1e9]}).friction_coefficient
-    exponent = np.log(mu[1] / mu[0]) / np.log(10.0)
-    assert exponent == pytest.approx(-(1.0 - 1.0 / n), abs=1e-8)

@@ -10,7 +10,7 @@ from scipy.integrate import quad
 from scipy.optimize import brentq
 
 import kvtheory as kv
-from kvtheory.models.steady.footprint import (
+from kvtheory.models.steady.ball import (
     FRICTION_COEFFICIENT_ERROR,
     LOAD_ERROR,
     SHORTER,
@@ -287,59 +287,6 @@ def test_what_is_not_covered_says_so():
         kv.transient(BALL)
     with pytest.raises(ValueError, match=r"parabola only.* `elements`"):
         kv.sweep(BALL, over={"drive.velocity": [0.1]}, quantities="settling_time")
-    with pytest.raises(ValueError, match="the parabola and the ball only"):
-        kv.compare(kv.Scene(kv.Revolved(kv.Wedge(0.1)), support=kv.Fixed(1e-4)))
-    maxwell = kv.GeneralizedMaxwell(1e10, arms=[["30 GN/m^3", "10 ms"]])
-    told = kv.Revolved(kv.Profile(lambda x: x * x / 0.02, lambda x: x / 0.01))
-    with pytest.raises(ValueError, match=r'foundation\.kind = "kelvin-voigt" only'):
-        kv.steady(kv.Scene(told, maxwell, BALL.support))
-
-
-# What is per unit width, and what is whole
-
-FILE = """
-[indenter]
-shape = "sphere"
-radius = "10 mm"
-[foundation]
-stiffness = "10 GN/m^3"
-retardation_time = "100 ms"
-[support]
-kind = "suspended"
-mass = "1 kg"
-stiffness = "1 N/mm"
-[drive]
-velocity = "100 mm/s"
-"""
-
-
-def test_a_file_of_a_ball_is_read_and_written(tmp_path):
-    path = tmp_path / "ball.toml"
-    path.write_text(FILE, encoding="utf-8")
-    scene = kv.load_scene(path)
-    assert (scene.support.mass, scene.support.stiffness) == (1.0, 1000.0)
-    text = kv.to_toml(scene)
-    assert '"1.0 kg"' in text
-    assert '"1000.0 N/m"' in text
-    path.write_text(text, encoding="utf-8")
-    assert kv.load_scene(path) == scene
-
-
-@pytest.mark.parametrize(
-    ("overrides", "found"),
-    [
-        (["mass=1 kg/mm", "stiffness=1 N/mm^2"], ["mass", "stiffness"]),
-        (["load=3 N/mm"], ["load"]),
-    ],
-)
-def test_what_is_given_per_width_for_a_ball_costs_one_line_each(tmp_path, overrides, found):
-    path = tmp_path / "ball.toml"
-    path.write_text(FILE, encoding="utf-8")
-    with pytest.raises(kv.SceneError) as caught:
-        kv.load_scene(path, [f"support.{each}" for each in overrides])
-    lines = caught.value.problems
-    assert [line.split(" = ")[0] for line in lines] == [f"support.{key}" for key in found]
-    assert all("per unit width" in line and "point contact" in line for line in lines)
 
 
 @pytest.mark.parametrize(
@@ -365,19 +312,9 @@ def test_a_ball_on_the_built_in_scene_is_told_what_it_needs_and_nothing_that_it_
     assert enough.support == kv.DeadWeight(load=5.0)
 
 
-def test_what_is_given_whole_for_a_line_costs_one_line_each():
-    with pytest.raises(kv.SceneError, match="that of a ball") as caught:
-        kv.Scene(support=kv.Suspended(mass="1 kg", stiffness="1 N/mm", load="3 N"))
-    assert len(caught.value.problems) == 3
-    with pytest.raises(kv.SceneError, match="per unit width"):
-        kv.Scene(indenter=kv.Sphere(0.01), support=kv.DeadWeight(mass="1 kg/mm"))
-    with pytest.raises(kv.SceneError, match="expected a quantity in kg"):
-        kv.steady(BALL, over={"support.mass": ["1 kg/m"]})
-    assert kv.steady(BALL, over={"support.load": ["3 N"]}).load == pytest.approx([3.0])
-
-
 def test_every_output_is_in_whole_units(tmp_path):
     state = kv.steady(BALL)
+    assert kv.steady(BALL, over={"support.load": ["3 N"]}).load == pytest.approx([3.0])
     assert "load 9.80665 N" in repr(state)
     state.to_csv(tmp_path / "state.csv")
     head = (tmp_path / "state.csv").read_text(encoding="utf-8").splitlines()[0]

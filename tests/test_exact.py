@@ -5,8 +5,6 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 
 import kvtheory as kv
 from kvtheory.models.steady import ball, exact, methods
@@ -60,13 +58,8 @@ def test_error_stays_below_the_certificate(shape, support):
 def test_the_references_enclose_their_own_integrals():
     ends = np.array([[-4, 0], [6, 12], [-4, 2], [-8, -2], [-6, 6]]).T[..., None]
     for R, K, tau, depth, number in (10.0 ** np.random.default_rng(7).uniform(*ends, (5, 20))).T:
-        scene = (
-            float(R),
-            float(K),
-            float(tau),
-            float(number * np.sqrt(2 * R * depth) / tau),
-            float(depth),
-        )
+        V = number * np.sqrt(2 * R * depth) / tau
+        scene = tuple(map(float, (R, K, tau, V, depth)))
         truth = reference.at_depth(*scene)
         for enclosed, name in zip(
             reference.integrals(*scene), ("load", "friction_force"), strict=True
@@ -102,26 +95,6 @@ def test_the_certificate_is_the_worst_case_of_rounding(support):
     assert support == "dead-weight" or worst > claimed - EPS
 
 
-POSITIVE = st.floats(-6, 6).map(lambda exponent: 10.0**exponent)
-
-
-@given(R=POSITIVE, K=POSITIVE, tau=POSITIVE, W=POSITIVE, number=POSITIVE)
-def test_one_number_determines_the_friction_coefficient(R, K, tau, W, number):
-    """Scale invariance: mu (K R^2/W)^(1/3) depends on Lambda alone, for any scene."""
-    V = number / tau * np.cbrt(R * W / K)
-    scaled = at_load(R, K, tau, V, W).friction_coefficient * np.cbrt(K * R * R / W)
-    unit = at_load(1.0, 1.0, 1.0, number, 1.0).friction_coefficient
-    assert scaled == pytest.approx(unit, rel=1e-13)
-
-
-def test_faster_lifts_the_indenter():
-    V = np.geomspace(1e-6, 1e6, 400)
-    for spring in (0.0, 1e5, 1e9):
-        depth = at_load(0.01, 1e10, 0.1, V, 9806.65, spring).depth
-        assert np.all(np.diff(depth) <= 0.0)
-        assert np.all(np.diff(depth[V > 1e-5]) < 0.0)
-
-
 def test_power_is_spent_inside_and_behind_the_contact():
     """Theorem F6, each loss from its definition: C V^2 int h'^2 dx and V K u_TE^2/2."""
     R, K, tau = 0.01, 1e10, 0.1
@@ -147,26 +120,6 @@ def test_rest_is_the_winkler_contact():
     assert state.dissipated_in_contact == 1.0
 
 
-@pytest.mark.parametrize("decades", [-10, 10])
-def test_limits_ten_decades_from_the_critical_velocity(decades):
-    V = 0.02 * 10.0**decades
-    state = at_load(0.01, 1e10, 0.1, V, 9806.65)
-    alpha = 2 * np.sqrt(2) / 3
-    limit = V * 0.1 / 0.01 if decades < 0 else alpha * np.sqrt(9806.65 / (0.01 * 1e9 * V))
-    assert state.friction_coefficient == pytest.approx(limit, rel=1e-9)
-
-
-def test_a_suspension_joins_dead_weight_and_fixed():
-    free = at_load(0.01, 1e10, 0.1, 0.1, 9806.65)
-    static = at_load(0.01, 1e10, 0.1, 0.0, 9806.65)
-    held = at_depth(0.01, 1e10, 0.1, 0.1, static.depth)
-    soft = at_load(0.01, 1e10, 0.1, 0.1, 9806.65, 1e-6)
-    stiff = at_load(0.01, 1e10, 0.1, 0.1, 9806.65, 1e22)
-    for name in STEADY_UNITS:
-        assert getattr(soft, name) == pytest.approx(getattr(free, name), rel=1e-12)
-        assert getattr(stiff, name) == pytest.approx(getattr(held, name), rel=1e-12)
-
-
 @pytest.mark.processor
 def test_arrays_broadcast_and_do_not_depend_on_the_blocks(monkeypatch):
     V, tau = np.geomspace(1e-3, 1e1, 7)[:, None], np.array([0.01, 0.1, 1.0])
@@ -188,17 +141,23 @@ LINES = (
     *(kv.PowerLaw(0.01, n) for n in (1.0, 1.2, 1.5, 2.0, 3.0, 8.6)),
 )
 BALL = kv.Sphere(0.01)
-CLOSED_FORMS = (
-    *((line, KELVIN_VOIGT) for line in LINES),
-    *((LINES[0], MAXWELL), (LINES[0], FRACTIONAL)),
-    *((BALL, foundation) for foundation in (KELVIN_VOIGT, MAXWELL, FRACTIONAL)),
+SOLVED = (
+    *((line, KELVIN_VOIGT, "exact") for line in LINES),
+    *((LINES[0], MAXWELL, "exact"), (LINES[0], FRACTIONAL, "exact")),
+    *((BALL, foundation, "exact") for foundation in (KELVIN_VOIGT, MAXWELL, FRACTIONAL)),
+    *(
+        (line, KELVIN_VOIGT, "quadrature")
+        for line in (*LINES, kv.Circle(0.01), kv.PowerLaw(0.01, 20.0))
+    ),
 )
 
 
 @pytest.mark.processor
 @pytest.mark.parametrize("support", SUPPORTS)
-@pytest.mark.parametrize(("shape", "foundation"), CLOSED_FORMS, ids=str)
-def test_each_scene_of_an_array_is_solved_for_itself_and_mirrored(shape, foundation, support):
+@pytest.mark.parametrize(("shape", "foundation", "method"), SOLVED, ids=str)
+def test_each_scene_of_an_array_is_solved_for_itself_and_mirrored(
+    shape, foundation, method, support
+):
     """The same bits alone and among others; odd and even in the velocity; elastic at rest."""
     own = kv.Scene.table1(support).support
     if shape is BALL:
@@ -208,19 +167,24 @@ def test_each_scene_of_an_array_is_solved_for_itself_and_mirrored(shape, foundat
         ]
     scene = kv.Scene(shape, foundation, own)
     V = np.append(np.geomspace(1e-6, 1e3, 20), 0.0)
-    together, back = (kv.steady(scene, over={"drive.velocity": side * V}) for side in (1.0, -1.0))
+
+    def solved(V):
+        return kv.steady(scene, over={"drive.velocity": V}, method=method)
+
+    together, back = solved(V), solved(-V)
     rest = kv.steady(kv.Scene(shape, KELVIN_VOIGT, own), over={"drive.velocity": 0.0})
     for size in (1, 3, 8):
         for start in range(0, V.size, size):
             part = slice(start, start + size)
-            few = kv.steady(scene, over={"drive.velocity": V[part]})
+            few = solved(V[part])
             for name in STEADY_UNITS:
                 assert np.array_equal(getattr(few, name), getattr(together, name)[part]), name
-    alone = kv.steady(scene, over={"drive.velocity": float(V[9])})
+    alone = solved(float(V[9]))
     for name in STEADY_UNITS:
         value, there = getattr(alone, name), getattr(together, name)
         assert isinstance(value, float)
-        assert value == pytest.approx(there[9], rel=1e-14), name
+        claimed = alone.certificate.relative_error[name]
+        assert value == pytest.approx(there[9], rel=1e-14 if method == "exact" else claimed), name
         side = -1.0 if name in ODD else 1.0
         assert np.array_equal(getattr(back, name)[:-1], side * there[:-1]), name
         assert there[-1] == pytest.approx(getattr(rest, name), rel=1e-11, abs=0.0), name

@@ -97,6 +97,15 @@ def test_a_message_is_short_and_only_shown_whatever_a_file_holds(tmp_path, text)
         (["drive.waveform=triangle", "drive.amplitude=1 mm"], ["drive.amplitude", "m/s"]),
         ("drive.file=none.csv", ["drive.file", "none.csv", "cannot be read"]),
         (['drive.history=[["0 s", "1 m/s"]]', "drive.file=none.csv"], ["drive.file", "cannot be read"]),
+        ("foundation.kind=maxwell", ['did you mean "generalized-maxwell"']),
+        ("foundation.kind=generalized-maxwell", ["foundation.arms: missing"]),
+        ("foundation.arms=1", ['arms is of kind = "generalized-maxwell"']),
+        (["foundation.kind=fractional-kelvin-voigt", "foundation.order=1.5"], ["of at most 1"]),
+        (["foundation.kind=generalized-maxwell", "foundation.arms=[[1, 2]]"], ["no unit"]),
+        (["indenter.shape=sphere", "support.load=3 N/mm"],
+         ["support.load = ", "per unit width", "point contact"]),
+        (["indenter.shape=sphere", "support.mass=1 kg/mm"],
+         ["support.mass = ", "per unit width", "point contact"]),
         ("tau=3", ['did you mean "foundation.retardation_time"']),
         ("E=3", ['did you mean "foundation.modulus"']),
         ("V=3", ['did you mean "drive.velocity"']),
@@ -161,6 +170,12 @@ MISTAKES = [
     (lambda: kv.Profile("x", abs), ["indenter", "functions h(x)"]),
     (lambda: kv.Revolved(kv.Sphere(0.01)), ["indenter.profile", "line contact"]),
     (lambda: kv.Drive(0.1, damping=1.0), ["drive.damping = 1.0", "needs drive.stiffness"]),
+    (lambda: kv.stability(quantity="critical_stifness"), ["critical_stiffness"]),
+    (lambda: kv.Scene(support=kv.DeadWeight(load="3 N")), ["support.load", "that of a ball"]),
+    (lambda: kv.Scene(support=kv.Suspended(1.0, "1 N/mm")), ["support.stiffness", "that of a ball"]),
+    (lambda: kv.Scene(kv.Sphere(0.01), support=kv.DeadWeight("1 kg/mm")), ["mass", "per unit width"]),
+    (lambda: kv.steady(kv.Scene(kv.Sphere(0.01), support=kv.DeadWeight("1 kg")),
+                       over={"support.mass": ["1 kg/m"]}), ["expected a quantity in kg"]),
 ]  # fmt: skip
 
 

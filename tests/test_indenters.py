@@ -11,6 +11,7 @@ INDENTERS = [
     Circle(radius=0.01),
     PowerLaw(length=0.01, exponent=1.5),
     PowerLaw(length=0.01, exponent=4.0),
+    PowerLaw(length=0.01, exponent=20.0),
     Wedge(inclination=0.2),
     Profile(lambda x: 3.0 * x * x + x**3, lambda x: 6.0 * x + 3.0 * x * x),
 ]
@@ -26,7 +27,9 @@ def test_height_and_slope_belong_together_and_take_arrays(indenter):
         np.testing.assert_array_equal(function(X), [float(function(x)) for x in X.tolist()])
     assert float(indenter.height(0.0)) == 0.0  # the lowest point is the origin
     assert np.all(indenter.height(X) > 0.0)
-    if indenter.convex:
+    if indenter.convex:  # and even
+        np.testing.assert_array_equal(indenter.height(-X), indenter.height(X))
+        np.testing.assert_array_equal(indenter.slope(-X), -indenter.slope(X))
         bend = (indenter.slope(X + step) - indenter.slope(X - step)) / (2.0 * step)
         np.testing.assert_allclose(indenter.bend(X), X * bend / indenter.slope(X), rtol=1e-7)
 

@@ -77,6 +77,8 @@ CHOICES = [
     (FIXED, "depth", 1e-12, "asymptote"), (FIXED, "friction_force", 1e-12, "exact"),
     (RESTING, "friction_force", 1e-14, "asymptote"), (RESTING, "depth", 1e-14, "asymptote"),
     (CIRCLE, "load", 1e-8, "quadrature"),
+    *((kv.Scene(shape), "friction_coefficient", 1e-12, "exact")
+      for shape in (kv.Wedge(0.1), kv.PowerLaw(0.01, 1.2), kv.PowerLaw(0.01, 8.5))),
 ]  # fmt: skip
 """The depth of a fixed indenter is known at every velocity; at rest the asymptote is exact."""
 
@@ -98,6 +100,9 @@ def test_the_reasons_of_a_choice_are_told():
     assert "parabola and the ball only" in kv.solve(CIRCLE, rtol=1e-8).climb[0].outcome
     arms = kv.GeneralizedMaxwell(1e10, arms=[["30 GN/m^3", "10 ms"]])
     assert "kelvin-voigt" in kv.solve(replace(BALL, foundation=arms)).climb[0].outcome
+    springpot = kv.Scene(foundation=kv.FractionalKelvinVoigt(1e10, 0.1, 0.5))
+    with pytest.raises(ToleranceError, match=r"holds for foundation\.kind"):
+        kv.solve(springpot, at=["1 ms"])
     everything = kv.solve(FIXED)
     assert everything.climb[0].outcome == "error too large"
     assert list(everything.values) == list(STEADY_UNITS)
@@ -129,6 +134,7 @@ def test_a_tolerance_that_nothing_meets_says_how_close_each_model_came(request_,
         ({"rtol": 0.0}, "`rtol` = 0.0"),
         ({"rtol": math.nan}, "`rtol` = nan"),
         ({"at": "1 s"}, "after the end of the run"),
+        ({"quantity": "spring_force", "at": "1 ms"}, r"\"spring_force\": needs drive.stiffness"),
     ],
 )
 def test_bad_requests_name_what_is_expected(request_, message):

@@ -214,8 +214,3 @@ def test_what_the_spring_does_is_within_its_tolerance(seed):
         found = kv.solve(sprung, quantity=name, at=at, rtol=3e-2)
         error = np.abs(getattr(found, name) - getattr(truth, name)).max() / scales[name]
         assert error <= found.certificate.relative_error[name] + 1e-8 <= 3e-2 + 1e-8, name
-
-
-def test_a_rigid_drive_has_no_force_of_a_spring():
-    with pytest.raises(ValueError, match=r"`quantity` = \"spring_force\": needs drive.stiffness"):
-        kv.solve(quantity="spring_force", at="1 ms")

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import kvtheory as kv
-from kvtheory.models.steady import power_law, power_law_contact
+from kvtheory.models.steady import power_law
 from kvtheory.models.steady.methods import solve_exact, solve_quadrature
 from tests import reference_power_law, steady
 from tests.reference import excess
@@ -72,20 +72,6 @@ def test_the_trailing_edge_of_nearly_a_wedge_says_how_uncertain_it_is():
     assert state.certificate.relative_error["load"] == STATED["load"]
 
 
-@pytest.mark.parametrize("kind", SUPPORTS)
-@pytest.mark.parametrize(
-    ("one", "other"),
-    [(kv.Parabola(0.01), kv.PowerLaw(0.01, 2.0)), (kv.Wedge(1.0), kv.PowerLaw(0.37, 1.0))],
-)
-def test_parabola_and_wedge_are_power_laws(one, other, kind):
-    base, V = kv.Scene.table1(kind), np.geomspace(1e-9, 1e9, 61)
-    first, second = (
-        kv.steady(kv.Scene(shape, base.foundation, base.support), over={"drive.velocity": V})
-        for shape in (one, other)
-    )
-    steady.agree(first, second, np.inf)
-
-
 def test_friction_of_a_wedge_is_its_slope_from_its_crossover_on():
     fast = kv.steady(kv.Scene(kv.Wedge(0.07)), over={"drive.velocity": np.geomspace(0.05, 1e6, 30)})
     assert np.all(fast.trailing_edge == 0.0)
@@ -95,19 +81,8 @@ def test_friction_of_a_wedge_is_its_slope_from_its_crossover_on():
 def test_the_trailing_edge_solves_its_equation_in_any_corner():
     l = np.geomspace(1e-300, 1e300, 1201)
     for n in (1.0, 1.0 + 2e-16, 1.0 + 1e-10, 1.01, 2.0, 20.0, 1e4):
-        q, Q = power_law_contact.trailing_edge(np.full_like(l, n), l)
+        q, Q = power_law.trailing_edge(np.full_like(l, n), l)
         assert np.all((q >= 0.0) & (q <= 1.0) & (Q > 0.0) & (Q <= 1.0 + EPS))
         assert np.all(np.diff(q) <= 2 * EPS)
         assert np.all(np.diff(Q) <= 2 * EPS)
         assert q * Q + n * l * Q == pytest.approx(1.0, rel=1e-15)
-
-
-@pytest.mark.parametrize(
-    "shape", [kv.Wedge(0.1), kv.PowerLaw(0.01, 1.2), kv.PowerLaw(0.01, 8.5)], ids=str
-)
-def test_the_ladder_uses_the_closed_forms(shape):
-    assert kv.steady(kv.Scene(shape)).model == "exact"
-    found = kv.solve(kv.Scene(shape), quantity="friction_coefficient", rtol=1e-12)
-    assert [step.rung for step in found.climb] == ["asymptote", "exact"]
-    circle = kv.solve(kv.Scene(kv.Circle(0.01)), quantity="friction_coefficient", rtol=1e-9)
-    assert (found.model, circle.model) == ("exact", "quadrature")

@@ -5,7 +5,6 @@ import mpmath
 import numpy as np
 import pytest
 
-import kvtheory as kv
 from kvtheory.models.steady.methods import ODD, solve_quadrature
 from kvtheory.results import STEADY_UNITS
 from kvtheory.results.errors import QuadratureError
@@ -21,18 +20,15 @@ K, TAU, DEPTH = 1e10, 0.1, 3e-4
 def close(state, truth, rtol=1e-12):
     """Hold the errors against both the tolerance and the certificate."""
     for name, value in truth.items():
-        error = float(abs(getattr(state, name) - value))
-        assert error <= rtol * abs(value), name
-        assert error <= state.certificate.relative_error[name] * abs(value), name
+        allowed = min(rtol, state.certificate.relative_error[name]) * abs(value)
+        assert float(abs(getattr(state, name) - value)) <= allowed, name
 
 
 @pytest.mark.parametrize("support", ["fixed", "dead-weight", "suspended"])
 def test_parabola_agrees_with_the_rigorous_reference(support):
     """Rest, both ends, then 24 decades of drive number, 18 of all else."""
-    rng, method = (
-        np.random.default_rng(len(support)),
-        "at_depth" if support == "fixed" else "at_load",
-    )
+    rng, method = np.random.default_rng(len(support)), "at_depth"
+    method = method if support == "fixed" else "at_load"
     for i in range(50):
         R, stiffness, weight = (10.0 ** rng.uniform(-9, 9, 3)).tolist()
         tau, number, kappa = (10.0 ** rng.uniform((-6, -12, -6), (6, 12, 6))).tolist()
@@ -232,14 +228,6 @@ NAMED = [f"{shape.shape} {getattr(shape, 'exponent', '')}".strip() for shape in 
 
 
 @pytest.mark.parametrize("shape", SHAPES, ids=NAMED)
-def test_convex_shapes_are_even(shape):
-    """The half-length of one side stands for both."""
-    for x in (1e-9, 1e-5, 3e-3):
-        assert shape.height(-x) == shape.height(x)
-        assert shape.slope(-x) == -shape.slope(x)
-
-
-@pytest.mark.parametrize("shape", SHAPES, ids=NAMED)
 @pytest.mark.parametrize("side", [-1.0, 1.0])
 def test_the_depth_under_a_load_carries_it(shape, side):
     """Over twenty decades of l_r, without a spring and with one."""
@@ -261,34 +249,6 @@ def test_the_depth_under_a_load_carries_it(shape, side):
         assert np.all(np.isinf(errors["trailing_edge"][~seen]) | (shape.bend(1.0) == 0.0))
         errors["trailing_edge"] = errors["trailing_edge"][seen]
         assert max(np.max(error) for error in errors.values()) < 1e-11
-
-
-@pytest.mark.processor
-@pytest.mark.parametrize("shape", [*SHAPES, PowerLaw(0.01, 1.5), PowerLaw(0.01, 3.0)], ids=str)
-def test_no_scene_depends_on_those_beside_it(shape):
-    """Alone as a float it is as good; for exponents 1.5 and 3 the slope is a root and a square."""
-    rng = np.random.default_rng(1)
-    V, mass = 10.0 ** rng.uniform(-6, 0, 30), 10.0 ** rng.uniform(-1, 2, 30)
-    V[:3] = 0.0, -0.0, -0.02
-    scene = kv.Scene(shape, kv.Foundation(K, TAU), kv.Suspended(mass=1.0, stiffness=3e7))
-
-    def solved(part):
-        over = {"drive.velocity": V[part], "support.mass": mass[part]}
-        return kv.steady(scene, over=over, method="quadrature")
-
-    whole = solved(slice(0, 30))
-    for size in (1, 7):
-        for start in range(0, 30, size):
-            part = slice(start, start + size)
-            cut = solved(part)
-            for name in STEADY_UNITS:
-                assert np.array_equal(getattr(cut, name), getattr(whole, name)[part]), name
-    for i in range(8):
-        single = solved(i)
-        for name, allowed in single.certificate.relative_error.items():
-            value, same = getattr(single, name), getattr(whole, name)[i]
-            assert isinstance(value, float), name
-            assert same == value or abs(same - value) <= allowed * abs(value), name
 
 
 def test_one_scene_of_a_column_that_fails_fails_all():

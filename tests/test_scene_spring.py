@@ -55,7 +55,12 @@ def test_a_function_takes_a_spring_and_the_mass_is_that_of_the_support():
     assert moved.drive.function is math.sin
 
 
-def test_a_rigid_drive_has_no_spring_to_name():
+def test_scene_prints_the_spring_and_its_numbers_and_of_a_rigid_drive_none():
+    arguments = ["scene", "--set", "drive.stiffness=1 MN/m^2", "--json"]
+    printed = json.loads(CliRunner().invoke(main, arguments).stdout)
+    assert (printed["drive_stiffness"], printed["drive_mass"], printed["mass"]) == (1e6, 1e3, 1e3)
+    assert printed["drive_damping"] == 0.0
+    assert printed["drive_stiffness_number"] > 0.0
     assert "stiffness" not in kv.to_toml(kv.Scene()).partition("[drive]")[2]
     assert not any(key in kv.Scene().values() for key in ("drive.stiffness", "drive.damping"))
     at_rest = StaticState.of(kv.Scene())
@@ -92,14 +97,6 @@ def test_mistakes_beside_a_spring_are_told_together(tmp_path):
     assert keys == ["drive", *["drive.damping", "drive.mass"] * 2, "drive.tolerance"]
 
 
-def test_scene_prints_the_spring_and_its_numbers():
-    arguments = ["scene", "--set", "drive.stiffness=1 MN/m^2", "--json"]
-    printed = json.loads(CliRunner().invoke(main, arguments).stdout)
-    assert (printed["drive_stiffness"], printed["drive_mass"], printed["mass"]) == (1e6, 1e3, 1e3)
-    assert printed["drive_damping"] == 0.0
-    assert printed["drive_stiffness_number"] > 0.0
-
-
 def test_springs_are_swept_and_steady_sliding_does_not_depend_on_them():
     scene = kv.Scene(drive=kv.Drive(velocity=0.1, stiffness=1e6))
     over = {"drive.stiffness": [1e5, 1e7], "drive.mass": [1.0, 2.0], "drive.damping": [0.0, 3.0]}
@@ -111,11 +108,8 @@ def test_springs_are_swept_and_steady_sliding_does_not_depend_on_them():
         kv.sweep(over={"drive.damping": [0.0, 1.0]})
 
 
-def test_what_cannot_follow_a_spring_refuses_it():
+def test_solve_follows_a_spring():
     scene = kv.Scene(drive=kv.Drive(velocity=0.1, stiffness=1e6), run=kv.Run(1e-3))
-    sprung = kv.Drive(velocity=0.1, stiffness=1e4, mass=1.0)
-    with pytest.raises(ValueError, match=r"rigid drive only.*`elements`"):
-        kv.transient(kv.Scene(kv.Sphere("10 mm"), support=kv.Fixed("0.3 mm"), drive=sprung))
     assert kv.solve(scene, at="1 ms").model == "continuum"
     stiff = kv.Scene(drive=kv.Drive(velocity=0.1, stiffness=1e9))  # where steady sliding is stable
     assert kv.solve(stiff, quantity="friction_force").model == "exact"

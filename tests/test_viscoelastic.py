@@ -1,7 +1,6 @@
 """Steady sliding on any linear viscoelastic foundation: against balls, limits, identities, and mistakes."""
 
 import math
-import re
 from dataclasses import replace
 
 import numpy as np
@@ -103,23 +102,6 @@ def test_kelvin_voigt_is_a_damper_and_the_springpot_of_order_one(support):
             assert sign * value == pytest.approx(getattr(truth, name), rel=2e-14, abs=0), name
 
 
-@pytest.mark.parametrize("support", SUPPORTS)
-def test_a_stiff_and_fast_arm_tends_to_kelvin_voigt_in_first_order(support):
-    plain = kv.steady(kv.Scene.table1(support))
-    off = []
-    for tau in (1e-6, 1e-7):
-        arm = kv.GeneralizedMaxwell(1e10, arms=[(1e9 / tau, tau)])
-        state = kv.steady(scene(arm, support))
-        off.append(abs(state.friction_force / plain.friction_force - 1))
-    assert 9.0 < off[0] / off[1] < 11.0
-    assert off[1] < 1e-3
-
-
-def test_beyond_the_glass_transition_a_fixed_indenter_has_a_maximum():
-    peak = kv.steady(scene(ZENER, "fixed"), over={"drive.velocity": np.geomspace(1e-3, 1e3, 200)})
-    assert 0 < np.argmax(peak.friction_coefficient) < 199
-
-
 def test_arms_can_be_swept_and_broadcast():
     over = {"foundation.arms[0].stiffness": [1e9, 3e10], "drive.velocity": [[0.1], [0.2], [0.0]]}
     state = kv.steady(scene(ZENER), over=over)
@@ -130,13 +112,6 @@ def test_arms_can_be_swept_and_broadcast():
     assert swept["friction_force"][1] == kv.steady(scene(ZENER)).friction_force
     orders = kv.sweep(scene(HALF), over={"foundation.order": [0.5, 1.0]})
     assert orders["depth"][1] == pytest.approx(kv.steady().depth, rel=1e-14)
-
-
-def test_a_foundation_is_written_to_a_file_and_read_back(tmp_path):
-    for foundation in (ZENER, HALF):
-        path = tmp_path / "scene.toml"
-        path.write_text(kv.to_toml(scene(foundation)))
-        assert kv.load_scene(path) == scene(foundation)
 
 
 def test_mistakes_of_arms_are_listed_together():
@@ -153,33 +128,6 @@ def test_mistakes_of_arms_are_listed_together():
     for wrong in ([], "x", None, [[1.0, 1.0 + i] for i in range(101)]):
         with pytest.raises(kv.SceneError, match="1 to 100"):
             kv.GeneralizedMaxwell(1e10, arms=wrong)
-
-
-@pytest.mark.parametrize(
-    ("overrides", "told"),
-    [
-        (["foundation.kind=maxwell"], 'did you mean "generalized-maxwell"'),
-        (["foundation.kind=generalized-maxwell"], "foundation.arms: missing"),
-        (["foundation.arms=1"], 'arms is of kind = "generalized-maxwell"'),
-        (["foundation.kind=fractional-kelvin-voigt", "foundation.order=1.5"], "of at most 1"),
-        (["foundation.kind=generalized-maxwell", "foundation.arms=[[1, 2]]"], "without a unit"),
-    ],
-)
-def test_mistakes_of_a_foundation_are_told(overrides, told):
-    with pytest.raises(kv.SceneError, match=re.escape(told)):
-        kv.load_scene(overrides=overrides)
-
-
-@pytest.mark.parametrize(
-    "call",
-    [
-        kv.transient, kv.elements, kv.compare,
-        lambda scene: kv.solve(scene, at=["1 ms"]),
-    ],
-)  # fmt: skip
-def test_what_cannot_follow_a_springpot_refuses_it_in_one_wording(call):
-    with pytest.raises((ValueError, kv.ToleranceError), match=r"holds for foundation\.kind"):
-        call(scene(HALF))
 
 
 SHAPES = {
@@ -280,14 +228,23 @@ def test_a_node_that_rounds_to_before_the_leading_edge():
     assert state.load == pytest.approx(230.92946340465673, rel=1e-12)
 
 
+def bend_at(x):
+    """Height and slope of a parabola that is steeper beyond x, and its kink."""
+
+    def height(y):
+        return y * y / 0.02 + 250.0 * max(y - x, 0.0) ** 2
+
+    return height, lambda y: y / 0.01 + 500.0 * max(y - x, 0.0), (x,)
+
+
 def test_a_jump_of_the_curvature_need_not_be_declared():
-    """A flat punch with rounded edges, and curvatures that change in the contact, and at its lowest point."""
+    """In the contact, at its lowest point, and, hard to see, on a border of cells or close to one."""
+    border = 2.0**-10 * 1.375
     for height, slope, kinks in (
         (lambda x: max(abs(x) - 1e-3, 0.0) ** 2 / 0.02,
          lambda x: math.copysign(max(abs(x) - 1e-3, 0.0) / 0.01, x), (-1e-3, 1e-3)),
-        (lambda x: x * x / 0.02 + max(x - 2e-4, 0.0) ** 2 / 0.004,
-         lambda x: x / 0.01 + max(x - 2e-4, 0.0) / 0.002, (2e-4,)),
         (lambda x: x * x / (0.02 if x < 0.0 else 6e-3), lambda x: x / (0.01 if x < 0.0 else 3e-3), (0.0,)),
+        *map(bend_at, (2e-4, border, border * (1.0 + 1e-9), border * (1.0 - 2e-4))),
     ):  # fmt: skip
         indenters = (kv.Profile(height, slope, kinks=named) for named in ((), kinks))
         agree(*(by_quadrature(ZENER, "fixed", indenter, 0.1) for indenter in indenters), 1e-8)

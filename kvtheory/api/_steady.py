@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from kvtheory.api._edge import double_precision, one_scene, scene_of
-from kvtheory.models.steady.footprint import Footprint
+from kvtheory.models.steady.ball import Footprint
 from kvtheory.models.steady.methods import METHODS
 from kvtheory.models.steady.stable_sliding import lasts
 from kvtheory.results import SteadyState

@@ -100,14 +100,14 @@ def scene(
 def _print_equivalent_line(scene: Any) -> None:
     """Print the line contact equivalent to a ball, and its error."""
     from kvtheory.api import steady
-    from kvtheory.models.steady import footprint
+    from kvtheory.models.steady import ball
 
-    line = footprint.equivalent_line(steady(scene), scene.indenter.stretch)
+    line = ball.equivalent_line(steady(scene), scene.indenter.stretch)
     width, depth = console.text(line.width, "m"), console.text(line.depth, "m")
     click.echo(
         f"\nEquivalent line contact in steady sliding at this velocity: a parabola of the same radius, "
         f"{width} wide,\nunder {console.text(line.load, 'N/m')}, at the depth {depth}. Its load is right "
-        f"within {footprint.LOAD_ERROR:.1%}, its friction\ncoefficient within "
-        f"{footprint.FRICTION_COEFFICIENT_ERROR:.2%}. It is equivalent at every velocity if the depth is "
+        f"within {ball.LOAD_ERROR:.1%}, its friction\ncoefficient within "
+        f"{ball.FRICTION_COEFFICIENT_ERROR:.2%}. It is equivalent at every velocity if the depth is "
         "kept; the depth\nof a dead weight changes with velocity, and with it the width."
     )

@@ -159,7 +159,10 @@ class _Relaxed(Part):
             validate(self, "foundation")
         if self.wlf is not None:
             with collecting(problems, "foundation.wlf", self.wlf):
-                object.__setattr__(self, "wlf", _wlf(self.wlf))
+                if not isinstance(self.wlf, WLF) and not _is_pair(self.wlf):
+                    raise ValueError(f"expected {WLF_PAIR}")
+                law = self.wlf if isinstance(self.wlf, WLF) else WLF(*self.wlf)
+                object.__setattr__(self, "wlf", law)
         given = [key for key in THERMAL[:2] if getattr(self, key) is not None]
         if self.wlf is not None and self.activation_energy is not None:
             problems.append("foundation.wlf: cannot be given beside foundation.activation_energy")
@@ -231,14 +234,6 @@ class _Relaxed(Part):
 
 
 REFERENCE = quantities(_Relaxed)["reference_temperature"]
-
-
-def _wlf(given: Any) -> WLF:
-    if isinstance(given, WLF):
-        return given
-    if not _is_pair(given):
-        raise ValueError(f"expected {WLF_PAIR}")
-    return WLF(*given)
 
 
 def _is_pair(value: Any) -> bool:

@@ -283,3 +283,18 @@ Indenter = Line | Spot
 
 SHAPES: dict[str, Any] = {cls.shape: cls for cls in (Parabola, Circle, PowerLaw, Wedge, Sphere)}
 """The shapes that a scene file can name."""
+
+
+def power_of(indenter: Any) -> tuple[Any, ...]:
+    """Return slope, L and n of h = slope |x|^n/(n L^(n-1)).
+
+    >>> [float(each) for each in power_of(Wedge(inclination=0.1))]
+    [0.1, 1.0, 1.0]
+    """
+    if isinstance(indenter, Wedge):
+        shape = indenter.inclination, 1.0, 1.0
+    elif isinstance(indenter, Parabola):
+        shape = 1.0, indenter.radius, 2.0
+    else:
+        shape = 1.0, indenter.length, indenter.exponent
+    return tuple(map(np.asarray, shape))

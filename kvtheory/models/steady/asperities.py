@@ -26,7 +26,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from scipy.optimize import brentq, minimize_scalar
 
-from kvtheory.models.steady.cells import DENSE, NODES, TAIL_MARGIN, VALUES, WEIGHTS, Surface
+from kvtheory.models.steady.cells import DEGREE, DENSE, TAIL_MARGIN, VALUES, Surface
 from kvtheory.models.steady.double_exponential import (
     OF_LINE,
     ROUNDING,
@@ -37,6 +37,8 @@ from kvtheory.models.steady.double_exponential import (
 from kvtheory.results.errors import QuadratureError
 from kvtheory.scene.indenters import beside
 
+NODES, WEIGHTS = np.polynomial.legendre.leggauss(DEGREE + 1)
+"""Gauss's rule, exact for the square of a series."""
 PEAK_BAND, PEAK_XTOL = 0.02, 1e-8
 """Local maxima of the sampled pressure this close to the highest are refined, with this tolerance of their
 position over the distance of two samples; the error of the value is of second order."""

@@ -20,10 +20,10 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from kvtheory.models.steady.power_law_contact import root, shape_of
+from kvtheory.models.steady.roots import root
 from kvtheory.results import SteadyState
 from kvtheory.scene.foundations import Foundation, FractionalKelvinVoigt
-from kvtheory.scene.indenters import Parabola, Sphere
+from kvtheory.scene.indenters import Parabola, Sphere, power_of
 from kvtheory.scene.model import Scene
 from kvtheory.theory import closed_forms as cf
 
@@ -43,8 +43,19 @@ class Limit(NamedTuple):
 
 def limits(scene: Scene) -> tuple[Limit, Limit]:
     """Return the limits for V -> 0 and for V -> oo."""
-    both = of_line(scene)
-    return both if scene.indenter.per_width else _of_ball(both, scene.indenter.stretch)
+    strips = of_line(scene)
+    if scene.indenter.per_width:
+        return strips
+
+    from scipy.special import beta  # slow to import
+
+    found = []
+    for strip in strips:
+        powers = 3.0 - strip.rise, 4.0 - strip.rise - strip.slope
+        load, push = (beta(0.5, 0.5 * p + 1.0) for p in powers)  # S(p)
+        share = {"load": strip.load * scene.indenter.stretch * load}
+        found.append(strip._replace(**share, friction=strip.friction * push / load))
+    return found[0], found[1]
 
 
 def of_line(scene: Scene) -> tuple[Limit, Limit]:
@@ -69,24 +80,10 @@ def of_line(scene: Scene) -> tuple[Limit, Limit]:
     return low, Limit(static * glassy / foundation.stiffness, 0.0, friction, -1.0, slow=False)
 
 
-def _of_ball(strips: tuple[Limit, Limit], stretch: Value) -> tuple[Limit, Limit]:
-    """Sum the strips, with S(p) = int cos(t)^(p+1) dt over the half circle."""
-    from scipy.special import beta  # slow to import
-
-    found = []
-    for strip in strips:
-        load, push = (
-            beta(0.5, 0.5 * p + 1.0) for p in (3.0 - strip.rise, 4.0 - strip.rise - strip.slope)
-        )
-        friction = strip.friction * push / load
-        found.append(strip._replace(load=strip.load * stretch * load, friction=friction))
-    return found[0], found[1]
-
-
 def _shape(scene: Scene) -> tuple[Value, Value, Value]:
     if isinstance(scene.indenter, Parabola | Sphere):
         return 1.0, scene.indenter.radius, 2.0
-    return shape_of(scene.indenter)
+    return power_of(scene.indenter)
 
 
 def _carrying(scene: Scene, limit: Limit, load: Value) -> tuple[Value, Value]:
@@ -198,9 +195,7 @@ def errors(
 ) -> dict[str, Value]:
     """Return limit/exact - 1 of each quantity, of which the limits are `values`."""
     found = {name: error(value, getattr(exact, name)) for name, value in values.items()}
-    if (
-        not limit.slow
-    ):  # the limit is the tip, where only the edge of a wedge is; others may underflow
+    if not limit.slow:  # the tip, where only the edge of a wedge is; others may underflow
         at_tip = (_shape(scene)[2] == 1.0) & (np.asarray(exact.trailing_edge) == 0.0)
         found["trailing_edge"] = np.where(at_tip, 0.0, -1.0)
     return found

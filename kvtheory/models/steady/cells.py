@@ -17,10 +17,11 @@ from scipy.optimize import brentq
 from kvtheory.results.errors import QuadratureError
 from kvtheory.scene.indenters import Profile, beside
 
-DEGREE = 15
-"""Degree of the series in a cell, with 16 nodes."""
-NODES, WEIGHTS = legendre.leggauss(DEGREE + 1)
-SERIES = legendre.legvander(NODES, DEGREE).T * WEIGHTS * (np.arange(DEGREE + 1)[:, None] + 0.5)
+DEGREE, INSET = 15, 1e-6
+"""Degree of the series in a cell, and the distance of its last nodes from the ends, over half its width."""
+NODES = np.array([-1.0, *legendre.Legendre.basis(DEGREE).deriv().roots(), 1.0]) * (1.0 - INSET)
+"""Nodes of Lobatto's rule: no jump of the curvature hides beyond them. At an end there may be a kink."""
+SERIES = np.linalg.inv(legendre.legvander(NODES, DEGREE))
 """Matrix from values at the nodes to coefficients."""
 DENSE = np.linspace(-1.0, 1.0, 33)
 """Points at which the series is examined; a resolved cell holds hardly more than half a wave."""
@@ -280,19 +281,24 @@ class ConvexProfile:
         ends = self._end(depth, -1.0), self._end(depth, 1.0)
         if cells is not self._cells:
             self._cells = cells
-            tip = [0.0] if self._bent_at_zero() else []
             bends = surface.bends(cells, BEND * sum(ends))
-            self.kinks, self.bent = tuple(sorted({*self.declared, *bends, *tip})), bool(bends)
+            borders = self._bent_borders([*self.declared, *bends])
+            self.kinks = tuple(sorted({*self.declared, *bends, *borders}))
+            self.bent = bool({*bends, *borders} - {0.0})
         return ends
 
-    def _bent_at_zero(self) -> bool:
-        """Return whether one series does not hold on both sides of the lowest point."""
-        i = int(np.searchsorted(self._cells.start, 0.0))
-        both = self._cells.only(slice(i - 1, i + 1))
-        half = 0.5 * (both.end - both.start).min()
-        series = SERIES @ self.slope(half * NODES)
-        rounding = RESOLVED * np.abs(series).sum() + TAIL_MARGIN * both.slope_tail.sum()
-        return bool(np.abs(series[TAIL:]).sum() > rounding)
+    def _bent_borders(self, known: list[float]) -> list[float]:
+        """Return borders of cells across which one series does not hold, away from the known kinks."""
+        cells, border = self._cells, self._cells.start[1:]
+        width = cells.end - cells.start
+        half = 0.5 * np.minimum(width[1:], width[:-1])
+        series = self.slope(border[:, None] + half[:, None] * NODES) @ SERIES.T
+        rounding = RESOLVED * np.abs(series).sum(axis=1)
+        rounding += TAIL_MARGIN * (cells.slope_tail[1:] + cells.slope_tail[:-1])
+        bent = (np.abs(series[:, TAIL:]).sum(axis=1) > rounding) & (border == cells.end[:-1])
+        for kink in known:
+            bent &= np.abs(border - kink) >= half
+        return border[bent].tolist()
 
     def _end(self, depth: float, side: float) -> float:
         """Return the distance at which the shape has risen to the depth."""

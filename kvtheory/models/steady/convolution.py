@@ -147,10 +147,8 @@ class Contact:
         pieces = list(pairwise([-self.a, *cuts, x_te]))
         pieces += [] if x_te > 0.0 else [(0.0, 0.0)]
         rows: list[list[Array]] = [[], [], []]
-        for (
-            start,
-            end,
-        ) in pieces:  # nodes are exact towards the end that is closer to the lowest point
+        # Nodes are exact towards the end that is closer to the lowest point.
+        for start, end in pieces:
             forth, back = (end - start) * NODES, (end - start) * NODES[::-1]
             rows[0].append(start + forth if abs(start) < abs(end) else end - back)
             rows[1].append(x_te - end + back)
@@ -162,11 +160,8 @@ class Contact:
         self.pressure = depth - shape.height(self.x) + self.rows.sum(axis=0)
         self.load, load_apart = self.total(self.pressure)
         error = apart + load_apart / self.load
-        if isinstance(shape, ConvexProfile):
-            error = error ** (1.0 if shape.bent else 1.5) + shape.noise
-        else:
-            error = error**1.5
-        self.load_error = MARGIN * error
+        error = error ** (1.0 if getattr(shape, "bent", False) else 1.5)
+        self.load_error = MARGIN * (error + getattr(shape, "noise", 0.0))
         if not self.load_error < LIMIT:
             raise QuadratureError(
                 "quadrature of the shape does not converge: the indenter's reach is too close, or "

@@ -17,9 +17,10 @@ from scipy.optimize import elementwise
 from kvtheory.models.steady import asymptotes
 from kvtheory.models.steady.ball import angle_and_tail
 from kvtheory.models.steady.methods import CLOSED, METHODS, plain
-from kvtheory.models.steady.power_law_contact import shape_of, trailing_edge
+from kvtheory.models.steady.power_law import trailing_edge
 from kvtheory.results import Certificate
 from kvtheory.scene.capabilities import lacks_kelvin_voigt
+from kvtheory.scene.indenters import power_of
 from kvtheory.scene.model import Scene
 from kvtheory.theory import closed_forms as cf
 
@@ -95,7 +96,7 @@ def _peak_of_dead_weight(scene: Scene) -> tuple[Array, Array]:
     With l = l_r/a, s = a/a_0 and the power p of a with which the load grows, s^p w = w at rest.
     """
     line = scene.indenter.per_width
-    slope = shape_of(scene.indenter)[2] if line else np.asarray(2.0)
+    slope = power_of(scene.indenter)[2] if line else np.asarray(2.0)
     n = np.broadcast_to(slope, scene.shape).astype(float)
 
     def contact(l: Array, n: Array) -> tuple[Array, ...]:

@@ -20,11 +20,8 @@ from kvtheory.scene.capabilities import lacks_kelvin_voigt
 from kvtheory.scene.model import Scene
 
 CLOSED: Mapping[str, Any] = {
-    "parabola": exact,
-    "power-law": power_law,
-    "wedge": power_law,
-    "sphere": ball,
-}
+    "parabola": exact, "power-law": power_law, "wedge": power_law, "sphere": ball,
+}  # fmt: skip
 """The closed forms on Kelvin-Voigt by shape; `kvtheory.scene.capabilities` lists the same shapes."""
 MOMENTS: Mapping[str, Any] = {"parabola": viscoelastic, "sphere": ball_viscoelastic}
 """The same on any foundation, by the moments of its relaxation function."""
@@ -67,9 +64,7 @@ def solve_asymptote(scene: Scene) -> SteadyState:
     """Evaluate the asymptote of the regime of each velocity, with its error relative to the exact state."""
     truth, limits = solve_exact(scene), asymptotes.limits(scene)
     slow = np.abs(scene.drive.final_velocity) <= asymptotes.critical_velocity(scene)
-    with np.errstate(
-        divide="ignore", invalid="ignore"
-    ):  # the high-velocity limit at V = 0 is not used
+    with np.errstate(divide="ignore", invalid="ignore"):  # the limit V -> oo at rest, not used
         low, high = (asymptotes.quantities(scene, limit) for limit in limits)
         low_error, high_error = (
             asymptotes.errors(scene, limit, values, truth)
@@ -123,10 +118,8 @@ def _evaluate(
     values = rows[: len(QUANTITIES)]
     if shape or not all(SMALLEST <= abs(each) < math.inf for each in values):
         _check_range(np.asarray(values), V, own_errors)
-    errors = {
-        **certificate.relative_error,
-        **dict(zip(own_errors, rows[len(values) :], strict=True)),
-    }
+    own = dict(zip(own_errors, rows[len(values) :], strict=True))
+    errors = {**certificate.relative_error, **own}
     certificate = Certificate(certificate.kind, certificate.statement, errors)
     units = units_for(scene.indenter, STEADY_UNITS)
     named: dict[str, Any] = dict(zip(QUANTITIES, values, strict=True))

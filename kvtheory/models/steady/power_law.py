@@ -1,8 +1,16 @@
 r"""Steady sliding of a power law h = slope |x|^n/(n L^(n-1)) and of a wedge, n = 1: closed forms, one root.
 
 Lengths are scaled by the half length a = L (n delta/(slope L))^(1/n) of the contact at rest, so that n
-and l = l_r/a determine the contact (derivations "F19" and "wedge"). An indenter that can move finds its depth
-from the balance of forces in units of the static state,
+and l = l_r/a determine the contact (derivations "F19" and "wedge"). With c = n l the trailing edge
+q = x_TE/a is the root of q^n + c q^(n-1) = 1 (derivation "F19-edge"), in ln q the root of the increasing and
+convex function
+
+    G(t) = (n - 1) t + ln(e^t + c),
+
+so that Newton's method descends to it from q = min(1, c^(-1/(n-1))), where G >= 0. As G''/(2 G') <= 1/2,
+the error e of ln q becomes at most e^2/2. The last step multiplies q, to preserve its digits.
+
+An indenter that can move finds its depth from the balance of forces in units of the static state,
 
     f(s) + kappa (s^n - 1) = 1,    s = a/a_0 in (0, 1],    d = delta/delta_0 = s^n,
 
@@ -15,16 +23,20 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from kvtheory.models.steady.power_law_contact import root, shape_of, trailing_edge
+from kvtheory.models.steady.roots import root
 from kvtheory.results import STEADY_UNITS, Certificate
+from kvtheory.scene.indenters import power_of
 from kvtheory.scene.model import Scene
 from kvtheory.theory import closed_forms as cf
 
 Array = NDArray[np.float64]
 
-MOST_STEPS, LAST_STEP = 40, 1e-8
-"""Most iterations, of which three to six are needed; after a step as small as this the error, of the order of
-its square, is below rounding."""
+MOST_STEPS, EDGE_STEPS, LAST_STEP = 40, 80, 1e-8
+"""Most iterations for the depth, of which three to six are needed, and for the edge: about seven, and
+ln(1/(n - 1)) more if n is close to 1. After a step as small as the last the error, of the order of its
+square, is below rounding."""
+LAST_RESIDUAL = 8 * 2.0**-52
+"""Rounding of the residual of the edge, below which iteration does not improve it."""
 RELATIVE_ERROR = 36 * float(np.finfo(float).eps)
 """8.0e-15, twice the worst that the comparison with more than 50 digits has shown."""
 CERTIFICATE = Certificate(
@@ -50,7 +62,7 @@ def quantities(scene: Scene) -> tuple[Any, ...]:
     K, support = scene.foundation.stiffness, scene.support
     l_r = np.abs(scene.drive.final_velocity) * scene.foundation.retardation_time
     # Full arrays: NumPy rounds a power differently where one exponent stands for all.
-    slope, L, n = (np.array(np.broadcast_to(x, scene.shape)) for x in shape_of(scene.indenter))
+    slope, L, n = (np.array(np.broadcast_to(x, scene.shape)) for x in power_of(scene.indenter))
     if scene.held:
         delta = support.depth
         a = L * root(n * delta / (slope * L), n)
@@ -115,3 +127,30 @@ def _edge_error(n: Array, l: Array, q: Array, Q: Array, x_te: Array) -> Array:
     at_tip = (n == 1.0) & (l > 1.0 + RELATIVE_ERROR)
     lost = x_te < np.finfo(float).tiny
     return np.where(at_tip, 0.0, np.where(lost, np.inf, amplified))
+
+
+def trailing_edge(exponent: Array, number: Array) -> tuple[Array, Array]:
+    """Return q = x_TE/a and Q = q^(n-1) for n >= 1 and l = l_r/a >= 0.
+
+    For n = 1, the wedge, q = max(0, 1 - l) and Q is its limit, min(1, 1/l). Where q is below the range
+    of double precision it is 0, and Q is still correct.
+
+    >>> q, Q = trailing_edge(np.array([2.0, 1.0, 1.0]), np.array([0.75, 0.25, 4.0]))
+    >>> q.round(12).tolist(), Q.round(12).tolist()
+    ([0.5, 0.75, 0.0], [0.5, 1.0, 0.25])
+    """
+    c, m = exponent * number, exponent - 1.0
+    with np.errstate(divide="ignore", over="ignore", invalid="ignore"):
+        start = np.where(c > 1.0, c ** (-1.0 / m), 1.0)
+        active = (m > 0.0) & (start >= np.finfo(float).tiny)  # below, the digits are lost already
+        q = np.where(active, start, 0.0)
+        for _ in range(EDGE_STEPS):
+            residual = np.log(q**m * (q + c))
+            step = np.where(active, residual / (m + q / (q + c)), 0.0)
+            q = q * np.exp(-step)
+            # Each is iterated separately, so that the result does not depend on the others in the array.
+            active &= (np.abs(step) > LAST_STEP) & (np.abs(residual) > LAST_RESIDUAL)
+            if not active.any():
+                break
+        q = np.where(m > 0.0, q, np.maximum(0.0, 1.0 - number))
+        return q, 1.0 / (q + c)

@@ -34,3 +34,13 @@ def cube_root(value: Array) -> Array:
     """
     root = np.cbrt(value)
     return root - (root - value / (root * root)) / 3.0
+
+
+def root(base: Array, degree: Array) -> Array:
+    """Return base^(1/degree), with a Newton step that corrects the rounding of 1/degree.
+
+    >>> float(root(np.array(1000.0), np.array(3.0)))
+    10.0
+    """
+    found = base ** (1.0 / degree)
+    return found * (1.0 - (found**degree / base - 1.0) / degree)
