@@ -81,14 +81,7 @@ class Map:
 
 
 def contact_lengths(scene: Scene) -> tuple[float, float]:
-    """Return the contact lengths (m) that bound the step: in steady sliding, and at the static depth.
-
-    Examples
-    --------
-    >>> steady, first = contact_lengths(Scene())
-    >>> print(f"{steady * 1e3:.2f} {first * 1e3:.1f} mm")
-    1.43 2.7 mm
-    """
+    """Return the contact lengths (m) that bound the step: in steady sliding, and at the static depth."""
     model = Model.of(scene)
     return lengths(model, model.path(scene))
 
@@ -106,9 +99,7 @@ def _walk(
     row = ElementRow(model, model.path(scene), DEEP)
     state = IndenterState(0.0, model.depth, nudge)
     if steady is not None:
-        depth, front, back = (
-            float(x) for x in (steady.depth, steady.leading_edge, steady.trailing_edge)
-        )
+        depth, front, back = map(float, (steady.depth, steady.leading_edge, steady.trailing_edge))
         left = depth - float(model.height(back))
 
         def surface(x: Array, y: float) -> Array:
@@ -143,14 +134,6 @@ def growth(
     Above 1 the scheme is unstable, below 1 stable. The indenter is a parabola that is driven with one
     positive velocity. With `steady` it begins in steady sliding; else it begins at its static depth,
     where the very first steps count, for the contact soon changes.
-
-    Examples
-    --------
-    >>> slow = Scene(drive=Drive(velocity="10 mm/s"))
-    >>> growth(slow, "paper", 2e5, 1e-3, steady=True) > 1.0
-    True
-    >>> growth(slow, "edge-corrected", 2e5, 1e-3, steady=True) < 1.0
-    True
     """
     sliding = steady_sliding(scene) if steady else None
     depth = StaticState.of(scene).depth if sliding is None else float(sliding.depth)

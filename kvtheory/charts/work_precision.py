@@ -29,11 +29,9 @@ class TimedOutError(Exception):
 
 
 REASON_OF: dict[type[BaseException], str] = {
-    TimedOutError: "timed out",
-    DivergenceError: "unstable",
-    ArithmeticError: "not converged",
-    ValueError: "refused",
-}
+    TimedOutError: "timed out", DivergenceError: "unstable",
+    ArithmeticError: "not converged", ValueError: "refused",
+}  # fmt: skip
 """Why a run failed, by its exception."""
 
 
@@ -85,10 +83,7 @@ class Method:
 
 @dataclass(frozen=True)
 class Effort:
-    """Limits of a chart: repeats of each setting, seconds for one run and for all repeats.
-
-    Only one of `every` settings of a parameter is taken.
-    """
+    """Repeats of each setting, seconds for one run and for all repeats; one of `every` settings is taken."""
 
     repeats: int
     longest: float

@@ -96,10 +96,8 @@ def recognise(header: str, units: Mapping[str, str] = SI_UNITS) -> Column | None
         if not near:
             return None
         known = "; ".join(f"{q.lstrip('-')}: {names}" for q, names in SPELLINGS.items())
-        raise ValueError(
-            f'column "{header}": unknown name, did you mean "{KNOWN[near[0]][1]}"?; known names are '
-            f"{known}; rename a column that is something else"
-        )
+        told = f'column "{header}": unknown name, did you mean "{KNOWN[near[0]][1]}"?'
+        raise ValueError(f"{told}; known names are {known}; rename a column that is something else")
     quantity = KNOWN[plain(name)][0]
     sign, quantity = (-1.0, quantity[1:]) if quantity[0] == "-" else (1.0, quantity)
     si = units[quantity]
@@ -165,10 +163,8 @@ def read(data: Any, units: Mapping[str, str] = SI_UNITS) -> Series:
         source = str(known["scheme"] or getattr(data, "model", None) or type(data).__name__)
         found = {name: getattr(data, name, None) for name in SI_UNITS}
         if found["time"] is None:
-            raise TypeError(
-                "`data`: expected a path to a CSV, a mapping of arrays, or a result with "
-                f"time, depth, ...; got {type(data).__name__}"
-            )
+            what = "a path to a CSV, a mapping of arrays, or a result with time, depth, ..."
+            raise TypeError(f"`data`: expected {what}; got {type(data).__name__}")
         data = {name: values for name, values in found.items() if values is not None}
     heads: list[str] = []
     arrays: list[Array] = []
@@ -215,13 +211,9 @@ def _raise(source: str, problems: Sequence[str]) -> None:
 
 
 def _checked(
-    columns: Sequence[Column | None],
-    heads: Sequence[str],
-    arrays: Iterable[Array],
-    source: str,
-    places: Sequence[str],
-    **known: Any,
-) -> Series:
+    columns: Sequence[Column | None], heads: Sequence[str], arrays: Iterable[Array], source: str,
+    places: Sequence[str], **known: Any,
+) -> Series:  # fmt: skip
     """Return the series of the columns that are known, or raise with every reason why it cannot be judged."""
     pairs = [(c, array) for c, array in zip(columns, arrays, strict=True) if c is not None]
     if not pairs:
@@ -242,10 +234,9 @@ def _checked(
         array = values[column.quantity]
         bad = np.flatnonzero(~np.isfinite(array))
         if bad.size and not (column.quantity in MAY_BE_ABSENT and bad.size < array.size):
-            problems.append(
-                f'column "{column.header}": {bad.size} of {array.size} values are missing, NaN or infinite, '
-                f"the first in {places[bad[0]]}; a simulation that diverges ends like this"
-            )
+            count = f"{bad.size} of {array.size} values are missing, NaN or infinite"
+            first = f"the first in {places[bad[0]]}; a simulation that diverges ends like this"
+            problems.append(f'column "{column.header}": {count}, {first}')
     _raise(source, problems)
     time = values["time"]
     steps = np.diff(time)

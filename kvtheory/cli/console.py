@@ -38,7 +38,7 @@ at_option = click.option(
 
 
 def result_options(command: Callable[..., Any]) -> Any:
-    """Give a command `-o` for the file of its result, and `--plot` for its picture."""
+    """Give a command `-o` for the file of its result, and `--plot`."""
     return click.option(
         "-o", "--output", type=OutputFile(*SERIES_SUFFIXES),
         help="Write the result to FILE.csv or FILE.nc.",
@@ -168,6 +168,12 @@ def print_series(result: Any, *, whole: bool, remedy: str) -> None:
     _print_columns(columns, result.time.size, whole=whole)
 
 
+def print_error(about: str, result: Any) -> None:
+    """Print the last line of a result: about the model, then its largest error and what that covers."""
+    worst, given = max(result.certificate.relative_error.values()), result.certificate
+    click.echo(f"\n{about}; error {given.kind} at {worst:.1e} or less: {given.statement}.")
+
+
 def print_scenes(scene: Any, result: Any, units: Mapping[str, str]) -> None:
     """Print some quantities of many scenes: a row for each, or about twenty with both ends."""
     import numpy as np  # as a help text needs none
@@ -208,13 +214,11 @@ def print_quantities(
     from kvtheory.results.presented import in_shown_unit
 
     errors = result.certificate.relative_error
-    rows = [
-        (
-            (names or {}).get(name, name), *in_shown_unit(getattr(result, name), unit),
-            error_text(errors.get(name, math.nan)),
-        )
-        for name, unit in units.items()
-    ]  # fmt: skip
+    rows = []
+    for name, unit in units.items():
+        error = error_text(errors.get(name, math.nan))
+        shown = in_shown_unit(getattr(result, name), unit)
+        rows.append(((names or {}).get(name, name), *shown, error))
     print_table(("quantity", "value", "unit", "relative error"), rows)
 
 

@@ -71,15 +71,12 @@ def finished(path: Path, plan: Plan) -> bool:
         return False
     _, digest, written = _digest(path)
     if written != digest:
-        raise ValueError(
-            f'"{path}" exists and is not a sweep as it was written: it is another file, or was changed, '
-            f"cut, or saved anew by another program; {WAYS_OUT}"
-        )
+        why = "it is another file, or was changed, cut, or saved anew by another program"
+        raise ValueError(f'"{path}" exists and is not a sweep as it was written: {why}; {WAYS_OUT}')
     header = _header(path)
     if differing := plan.differences(header["record"]):
-        raise ValueError(
-            f'"{path}" holds another sweep: it differs in {", ".join(differing)}; {WAYS_OUT}'
-        )
+        why = f"it differs in {', '.join(differing)}"
+        raise ValueError(f'"{path}" holds another sweep: {why}; {WAYS_OUT}')
     summary = json.loads(header["summary"])
     return bool(summary["done"] == summary["points"])
 
@@ -183,9 +180,8 @@ def _values(path: Path, plan: Plan) -> dict[str, Any]:
         import xarray
 
         with xarray.open_dataset(path, engine="netcdf4") as data:
-            return {
-                name: data[name].values.astype(kind, copy=False) for name, kind in kinds.items()
-            }
+            held = ((name, data[name].values, kind) for name, kind in kinds.items())
+            return {name: values.astype(kind, copy=False) for name, values, kind in held}
     with path.open(encoding="utf-8", newline="") as file:
         rows = csv.reader(line for line in file if not line.startswith("#"))
         table = dict(zip(next(rows), zip(*rows, strict=True), strict=True))

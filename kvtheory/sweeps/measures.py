@@ -97,7 +97,7 @@ class _Motions:
                 self.reasons[index] = error
 
     def follow(self) -> None:
-        """Follow the scenes, as many as possible in one call."""
+        """Follow the scenes, in one call if they are rigid drives without texts and compiling pays."""
         rigid = all(units.rigid_drive for _, units, _ in self.scenes.values())
         worthwhile = compiled.worthwhile() or STEPS * len(self.scenes) >= compiled.WORTHWHILE
         together = rigid and not self.plan.texts and worthwhile and compiled.available()
@@ -144,9 +144,8 @@ class _Motions:
             whole[indices] = part
         deviations, given = found.deviations.T, readable(runs[0].given[0], GIVEN)
         tolerance = max(scene.drive.tolerance for scene, _, _ in kept)
-        errors = estimate.errors(
-            deviations, deviations, given.rtol, given.fixed, sprung=False, tolerance=tolerance
-        )
+        how = {"sprung": False, "tolerance": tolerance}
+        errors = estimate.errors(deviations, deviations, given.rtol, given.fixed, **how)
         for name, error in errors.items():
             self.errors[name][indices] = error
         self.statements.add(relative(estimate.STATEMENT))
@@ -208,9 +207,8 @@ class _Motions:
         times, leads = np.array(self.plan.times), states[..., e_.NUMBER] >= 0.0
         for index, (_, units, drive) in self.scenes.items():
             leads[index] = left_leads(states[index, :, e_.NUMBER], drive, times / units.time)
-        return np.where(
-            leads == (name == "leading_edge"), states[..., e_.LEFT], states[..., e_.RIGHT]
-        )
+        left = leads == (name == "leading_edge")
+        return np.where(left, states[..., e_.LEFT], states[..., e_.RIGHT])
 
     def scales(self, attribute: str) -> Array:
         """Return a scale of the static state at each index; without a name it is 1."""
