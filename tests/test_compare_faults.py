@@ -9,8 +9,7 @@ import pytest
 import kvtheory as kv
 from kvtheory.api import _compare
 from kvtheory.checks.fitting import scaled_scene
-from tests.blind_trial import simulated
-from tests.confusion import SCENES, quick, series
+from tests.confusion import SCENES, quick, series, simulated
 from tests.test_compare import BALL, SPRINGS, exact, failed
 
 RUBBER = kv.Scene(foundation=kv.GeneralizedMaxwell(1e10, [(3e10, 0.01)]), run=kv.Run(0.008))
@@ -75,7 +74,7 @@ def test_each_planted_fault_is_named_and_measured(plant):
     ],
 )
 def test_faults_of_a_simulator_written_without_looking_are_named(name, options):
-    """All of them: `python -m tests.blind_trial`."""
+    """All of them: `python -m tests.confusion`."""
     options = {"points": 400, "steps": 1200, **options}
     first_of(kv.compare(data=simulated("Table 1", **options)), name)
 

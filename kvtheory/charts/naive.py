@@ -112,9 +112,8 @@ def without_memory(
 def stale_elements(scene: Scene, per_length: float) -> tuple[Array, Array]:
     """Return t (s) and depth (m) by the paper's scheme, with surfaces kept fixed within a step.
 
-    In every stage of the Runge-Kutta method an element is taken to be in contact if the indenter is
-    below the surface that the element had at the end of the last step. The indenter must be a parabola
-    under a dead weight, driven with one velocity.
+    In each Runge-Kutta stage an element touches if the indenter is below where it was at the end of the last
+    step. For a parabola under a dead weight, driven with one velocity.
     """
     R: float = scene.indenter.radius  # type: ignore[union-attr]
     K, tau = scene.foundation.stiffness, scene.foundation.retardation_time

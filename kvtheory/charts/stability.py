@@ -90,10 +90,7 @@ def _walk(
     scene: Scene, name: str, per_length: float, time_step: float, *, nudge: float = 0.0,
     steady: SteadyState | None = None,
 ) -> Iterator[IndenterState]:  # fmt: skip
-    """Step from rest, or as steady sliding has left the elements, without checks for instability.
-
-    The first velocity is `nudge`. The steps end if the indenter sinks too deep.
-    """
+    """Step from rest or from steady sliding, with the first velocity `nudge`, until it sinks too deep."""
     scheme = SCHEMES[name]
     model = Model.of(scene, 1.0 / per_length, parts=scheme.row.parts_of_elements)
     row = ElementRow(model, model.path(scene), DEEP)
@@ -166,11 +163,7 @@ def velocity_map(scheme: str, velocities: Array, retardation_times: Array) -> Ma
 
 
 def step_map(scheme: str, numbers: Array, steps: Array) -> Map:
-    """Return the map over the drive number lambda and the step, in units of the limit of F15.
-
-    That limit is the one of the paper's scheme in steady sliding, or of Euler's method for that; the
-    inertia number is that of Table 1.
-    """
+    """Return the map over lambda and the step over the limit (F15) of the scheme, or else of the paper's."""
     epsilon = StaticState.of(Scene()).inertia_number
     limited = SCHEMES[scheme if SCHEMES[scheme].tableau else "paper"]
 

@@ -181,10 +181,9 @@ def make_chart(
 def _attempt(
     problem: Any, method: Method, right: Reference, points: list[Point], effort: Effort
 ) -> float:
-    """Run each setting once, the cheapest first, and keep why it failed; return the time of the first call.
+    """Run each setting once, and keep why it failed; return the time of a call before, which compiles.
 
-    That call imports and compiles, and is made separately. Once a setting has timed out, the more expensive
-    ones count as timed out and are not begun.
+    Once a setting has timed out, the more expensive ones count as timed out and are not begun.
     """
     rated = method.kind == "numerical" and method.knob == "rtol"
     clock = Clock(effort.longest)

@@ -21,15 +21,14 @@ LARGEST_SAWTOOTH, COARSEST = 0.025, 0.1
 """Of the load: if half an element at the edge matters more, the contact is not resolved; if it would have to
 matter more than the second, the data are wrong rather than coarse."""
 MARGIN, IN_STEP = 1.4, 1.75
-"""Factors by which the spacing may exceed the one assumed, or that of an even sawtooth; and that of an uneven
-one, for samples that are nearly in step with the elements that enter see little of it."""
+"""Factors by which the spacing may exceed the one assumed or that of an even sawtooth; and that of an uneven
+one, of which samples nearly in step with the elements see little."""
 MEDIAN_GAP, LARGE_GAP, QUANTILE = 0.43, 1.08, 0.95
 """Of b: median and 95th percentile of the gaps of a sawtooth of +-b that is sampled at random."""
 EVEN = 0.6
 """Of the ratio of both that is expected: below it, a part of the samples is in step."""
 FINEST = 0.1
-"""Of the spacing assumed: a smaller sawtooth is that of samples all in step, or of rounding if the digits are
-as coarse."""
+"""Of the spacing assumed: a smaller sawtooth is that of samples all in step, or of rounding."""
 ROUNDED = 1.64
 """Of half the last digit: how far rounding takes a value from its neighbours, in the units of `gaps`."""
 COMMON = 0.5
@@ -94,7 +93,7 @@ class Case:
         return np.asarray(self.tolerance * (values + SMALLEST))
 
     def allowed(self, name: str) -> Array:
-        """Return the same in the unit of the curve."""
+        """Return the limit in the unit of the curve."""
         return np.asarray(self.limit(name) * self.theory.scales[name])
 
     def rms_limit(self, name: str) -> float:
@@ -129,11 +128,7 @@ def make_case(
 
 
 def _coarser(case: Case) -> float:
-    """Return how much wider the spacing is than assumed, by the sawtooth of +-b in the normal force (F15).
-
-    A sawtooth of which samples in step with the elements show little is no evidence against as many as are
-    assumed, nor is the lack of one.
-    """
+    """Return how much wider the spacing is than assumed, by the sawtooth of +-b in the normal force (F15)."""
     force = "normal_force"
     gap, rows = gaps(case.time, case.columns[force] - case.now[force])
     b, digits = case.edge_force[rows], case.bands[force].rounding[rows]

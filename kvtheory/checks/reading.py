@@ -77,17 +77,8 @@ class Column(NamedTuple):
 def recognise(header: str, units: Mapping[str, str] = SI_UNITS) -> Column | None:
     """Return what a column holds; None if its name is of no quantity, nor nearly.
 
-    `units` are those of the scene: the forces of a ball are whole.
-
-    Raises
-    ------
-    ValueError
-        Naming the column, what it lacks or which unit is expected, and the nearest known name.
-
-    Examples
-    --------
-    >>> recognise("z_A [mm]")
-    Column(header='z_A [mm]', quantity='depth', factor=-0.001)
+    `units` are those of the scene: the forces of a ball are whole. `ValueError` names the column, what it
+    lacks or which unit is expected, and the nearest known name.
     """
     header = header.strip()
     name, unit = (header, "") if plain(header) in KNOWN else parts(header)  # "dz_A/dt" is a name
@@ -131,14 +122,8 @@ def read(data: Any, units: Mapping[str, str] = SI_UNITS) -> Series:
     """Return the series that `data` holds: a path to a CSV, a result, or a mapping of arrays.
 
     In a CSV ``#`` begins a comment, then comes a header with names and units, then numbers. `units` are
-    those of the quantities of the scene, in SI.
-
-    Raises
-    ------
-    ValueError
-        Saying what cannot be recognised or used: a column, a unit, a cell, the order of the times.
-    TypeError
-        If `data` is nothing that can hold a series.
+    those of the quantities of the scene, in SI. `ValueError` says what cannot be recognised or used: a
+    column, a unit, a cell, the order of the times; `TypeError`, that `data` cannot hold a series.
 
     Examples
     --------

@@ -117,7 +117,7 @@ def progress_bar(label: str) -> Iterator[Callable[..., None]]:
 
 
 def split(text: str) -> list[str]:
-    """Split a comma-separated option."""
+    """Return the items of a comma-separated option."""
     return [item.strip() for item in text.split(",") if item.strip()]
 
 
@@ -163,8 +163,8 @@ def print_series(result: Any, *, whole: bool, remedy: str) -> None:
         named = ", ".join(f"{name} {error:.2g}" for name, error in large.items())
         scale = result.certificate.relative_to
         click.secho(f"! Large error, relative to {scale}: {named}. {remedy}", bold=True)
-    units = {name: unit for name, unit in result.units.items() if name != "depth_rate"}
-    columns = {name: (getattr(result, name), unit) for name, unit in units.items()}
+    shown = ((name, unit) for name, unit in result.units.items() if name != "depth_rate")
+    columns = {name: (getattr(result, name), unit) for name, unit in shown}
     _print_columns(columns, result.time.size, whole=whole)
 
 
@@ -178,11 +178,14 @@ def print_scenes(scene: Any, result: Any, units: Mapping[str, str]) -> None:
     """Print some quantities of many scenes: a row for each, or about twenty with both ends."""
     import numpy as np  # as a help text needs none
 
+    held = {name: (getattr(result, name), unit) for name, unit in units.items()}
+    for key, values in reversed(scene.arrays().items()):
+        held = {
+            f"{key} [{scene.replaceable[key].unit}]".removesuffix(" [1]"): (values, "1"),
+            **held,
+        }
     columns = {}
-    for key, values in scene.arrays().items():
-        columns[f"{key} [{scene.replaceable[key].unit}]".removesuffix(" [1]")] = values, "1"
-    columns |= {name: (getattr(result, name), unit) for name, unit in units.items()}
-    for name, (values, unit) in columns.items():
+    for name, (values, unit) in held.items():
         columns[name] = np.broadcast_to(values, scene.shape).ravel(), unit
     count = math.prod(scene.shape)
     if (rows := _print_columns(columns, count)) < count:

@@ -119,11 +119,7 @@ def sweep(
 
 
 def read_over(texts: Iterable[str]) -> dict[Any, Any]:
-    """Turn ``KEY=VALUES`` texts into `over`; with ``KEY=VALUES & KEY=VALUES`` both vary together.
-
-    >>> read_over(["drive.velocity=1 mm/s,2 mm/s & support.mass=1 kg/m:2 kg/m:2"])
-    {('drive.velocity', 'support.mass'): ('1 mm/s,2 mm/s', '1 kg/m:2 kg/m:2')}
-    """
+    """Turn ``KEY=VALUES`` texts into `over`; with ``KEY=VALUES & KEY=VALUES`` both vary together."""
     from kvtheory.scene import SceneError
 
     over: dict[Any, Any] = {}

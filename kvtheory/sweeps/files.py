@@ -1,9 +1,8 @@
 """Sweeps as files: CSV in long form, written block by block, and NetCDF, written by xarray.
 
-CSV (RFC 4180) has one row for each point, or for each point and time; lines that begin with ``#`` above the
-table describe it. NetCDF has a dimension for each axis. Either file holds the SHA-256 of all its other bytes,
-so that one in which anything was changed is not taken for this sweep: in CSV in the second line, in NetCDF
-behind what its readers reach. A file that another program saved again has lost it.
+CSV (RFC 4180) has a row for each point, or each point and time, below lines of ``#`` that describe it; NetCDF
+a dimension for each axis. Either holds the SHA-256 of its other bytes, so that a changed file is noticed: in
+the second line, or behind what readers of NetCDF reach.
 """
 
 import csv

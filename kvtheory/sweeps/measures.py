@@ -45,11 +45,10 @@ DOUBLINGS = 2
 
 
 def measure(plan: Plan, scenes: Mapping[int, Scene], friction: Array) -> Measured:
-    """Follow scenes, by their index in a block; return the columns of the plan that belong to transients.
+    """Follow scenes, by their index in a block; return the columns of transients, with rows for all indices.
 
     The scenes differ in values, not in the kinds of their parts. `friction` is the steady friction force
-    in N/m at each index of the block, where it is needed. The result has rows for all indices. The errors
-    are those of the series; a maximum has that of the quantity itself.
+    (N/m) at each index. The errors are those of the series; a maximum has that of the quantity itself.
     """
     block = _Motions(plan, scenes, friction)
     block.follow()
