@@ -2,8 +2,6 @@
 
 import json
 import os
-import subprocess
-import sys
 from dataclasses import replace
 from functools import cache
 
@@ -289,7 +287,7 @@ def test_a_rigid_drive_slides_at_its_velocity_and_holds_the_friction():
 def test_tolerance_multiplies_what_is_allowed(sound):
     one, two = (kv.compare(data=sound, tolerance=factor) for factor in (1.0, 2.0))
     for a, b in zip(one.checks, two.checks, strict=True):
-        if a.ok is not None and a.name not in ("stability number",):
+        if a.ok is not None and a.name != "stability number":
             assert b.allowed == pytest.approx(2.0 * a.allowed, rel=0.3)
     off = {**sound, "depth": 1.004 * sound["depth"]}
     assert kv.compare(data=off).verdict == "disagrees"
@@ -299,8 +297,8 @@ def test_tolerance_multiplies_what_is_allowed(sound):
 def test_columns_that_are_not_there_are_not_passed(sound):
     found = kv.compare(data={name: sound[name] for name in ("time", "normal_force")})
     reasons = {check.name: check.note for check in found.checks if check.ok is None}
-    assert reasons["impulse balance"] == "not made: the data hold no depth"
-    assert reasons["initial rest state"] == "not made: the data hold no depth"
+    for name in ("impulse balance", "initial rest state"):
+        assert reasons[name] == "not made: the data hold no depth"
     assert reasons["elements enough"].startswith("not made: the element density is not given")
     assert found.as_dict()["checks"][1]["ok"] is None
 
@@ -460,19 +458,12 @@ def test_the_command(tmp_path, sound):
     assert "<svg" in page
     assert not any(word in page for word in ("<script", "src=", "@import", "<link"))
     assert plot.read_text(encoding="utf-8").startswith("<?xml")
-    again = CliRunner().invoke(
-        main, ["compare", "--data", str(path), "--set", "drive.velocity=-100 mm/s"]
-    )
+    backward = ["--data", str(path), "--set", "drive.velocity=-100 mm/s"]
+    again = CliRunner().invoke(main, ["compare", *backward])
     assert again.exit_code == 0, again.output
     assert "agrees with theory" in again.stdout
     shown = CliRunner().invoke(main, ["compare", "--help"])
     assert "kvtheory compare" in shown.stdout.split("Example")[1]
-
-
-def test_a_reader_that_goes_away_is_no_disagreement():
-    call = f"{sys.executable} -c 'from kvtheory.cli import main; main()' compare --json"
-    piped = subprocess.run(["bash", "-c", f"set -o pipefail; {call} | true"], check=False)
-    assert piped.returncode not in (1, 2)
 
 
 def test_the_table_of_schemes_says_what_their_polynomials_do():

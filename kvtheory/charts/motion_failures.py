@@ -193,7 +193,7 @@ def _instability() -> naive.Outcome:
 def _force(scheme: str, times: Any, time_step: float) -> Any:
     """Return the normal force on a fixed indenter, which should be constant."""
     how = {"per_length": COARSE, "scheme": scheme, "at": times, "time_step": time_step}
-    return elements(Scene.table1("fixed"), certify=False, **how).normal_force  # type: ignore[arg-type]
+    return elements(Scene.table1("fixed"), certify=False, **how).normal_force
 
 
 def _forces(times: Any, time_step: float, said: str = "") -> naive.Outcome:

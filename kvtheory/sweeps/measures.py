@@ -143,8 +143,9 @@ class _Motions:
             whole[indices] = part
         deviations, given = found.deviations.T, readable(runs[0].given[0], GIVEN)
         tolerance = max(scene.drive.tolerance for scene, _, _ in kept)
-        how = {"sprung": False, "tolerance": tolerance}
-        errors = estimate.errors(deviations, deviations, given.rtol, given.fixed, **how)
+        errors = estimate.errors(
+            deviations, deviations, given.rtol, given.fixed, sprung=False, tolerance=tolerance
+        )
         for name, error in errors.items():
             self.errors[name][indices] = error
         self.statements.add(relative(estimate.STATEMENT))
