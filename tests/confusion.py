@@ -221,12 +221,8 @@ def sound():
         half = np.sqrt(2.0 * scene.indenter.radius * full["depth"][0])
         coarse = simulated(where, points=200, steps=2000)
         written = {"time": full["time"], **digits}
-        for title, data in {
-            "all": full,
-            "thinned": thin,
-            "noisy": thin | noisy,
-            "two digits": written,
-        }.items():
+        titles = "all", "thinned", "noisy", "two digits"
+        for title, data in zip(titles, (full, thin, thin | noisy, written), strict=True):
             yield Plant(title, where, lambda data=data: data, "agrees")
         known = {"per_length": 200 / half}
         yield Plant("coarse, known", where, lambda data=coarse: data, "agrees", known=known)

@@ -37,7 +37,7 @@ LOUD = 4.0
 """Times the median: larger differences are jumps, and are clipped to this."""
 NOISE, COARSE, NUMBER = "discretization noise", "elements enough", "stability number"
 """The names of the checks."""
-ROUNDED, LARGEST_UNCORRELATED = 1e-9, 0.09
+NEGLIGIBLE, LARGEST_UNCORRELATED = 1e-9, 0.09
 """Of the load: smaller noise is none; and a little below where noise ceases to be allowed for."""
 LIKELY, READ = 0.8, 0.75
 """Ranks of what is seen but cannot be tried: a step that is not known, and a spacing that is estimated from
@@ -174,7 +174,7 @@ def sawtooth(case: Case) -> tuple[float, float, str]:
         kind = "not that of elements" if sound else "common to both forces, as that of elements"
         how = "estimated from them" if fine.spacing_read else "assumed"
         return sigma, case.tolerance * limit, f"{kind}; {density:.3g} elements per mm, {how}"
-    allowed = case.tolerance * (2.0 * float(case.edge_force.max()) / W + ROUNDED)
+    allowed = case.tolerance * (2.0 * float(case.edge_force.max()) / W + NEGLIGIBLE)
     b = float(np.median(case.edge_force)) / W
     return sigma, allowed, f"N = {density:.4g} /mm, sawtooth +-{b:.2g} of the load"
 
