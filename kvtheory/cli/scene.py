@@ -43,9 +43,11 @@ def scene(
     given = bool(scene or overrides or as_json)
     if (problem and (given or support)) or (support and given):
         option, others = (
-            ("--problem", "--json or --support") if problem else ("--support", "or --json")
+            ("--problem", "--set, --json or --support")
+            if problem
+            else ("--support", "--set or --json")
         )
-        raise ValueError(f"{option} prints a template; it does not go with SCENE, --set, {others}")
+        raise ValueError(f"{option} prints a template; it does not go with SCENE, {others}")
     if problem == "list":
         console.print_table(("problem", "what it is"), problems().items())
         return

@@ -287,7 +287,7 @@ def refuse_what_cannot_fit(plan: Plan, path: Path | None, jobs: int = 1) -> None
     for where, limit in limits.items():
         if needed > limit:
             told = f"{plan.points:,} points need {size}; there are"
-            raise ValueError(f"{told} {limit:.3g} GB {where}")
+            raise ValueError(f"{told} {limit:,.1f} GB {where}")
 
 
 def announcement(plan: Plan, path: Path, jobs: int = 1) -> str:
@@ -304,4 +304,4 @@ def _size(plan: Plan, path: Path | None, jobs: int) -> tuple[float, float, str]:
     if path is not None and is_csv(path):
         rows = plan.points * (len(plan.times or ()) if plan.series else 1)
         needed = 0.5 * needed + rows * (len(plan.units) + plan.series) * CELL
-    return needed / GB, seconds, f"about {needed / GB:,.3g} GB and {duration(seconds)}"
+    return needed / GB, seconds, f"about {needed / GB:,.1f} GB and {duration(seconds)}"
