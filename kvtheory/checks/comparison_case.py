@@ -180,10 +180,7 @@ def sawtooth(case: Case) -> tuple[float, float, str]:
 
 
 def elements(case: Case) -> tuple[float, float, str]:
-    """Compare one element at the leading edge with the load.
-
-    For a ball that force is known as an upper bound only, by which no simulation can be rejected.
-    """
+    """Compare one element at the leading edge with the load."""
     fine, b = case.resolution, float(np.median(case.edge_force)) / case.theory.static.load
     if not fine.spacing_known and not fine.spacing_read:
         told = (
