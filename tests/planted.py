@@ -52,31 +52,23 @@ def _hidden_in_recalled(p):
     p.equal(sp.Derivative(a, s), r, "r depends on s")
 
 
-def _hidden(p):
-    p.define(r, sp.sqrt(s**2 + lam**2))
-    p.equal(sp.Derivative(r * s, s), r, "r depends on s")
-
-
 def _hidden_twice(p):
     p.define(a, r * s)
     p.define(r, sp.sqrt(s**2 + lam**2))
     p.equal(sp.Derivative(a, s), r, "r depends on s, two names deep")
 
 
-def _defined(*definitions):
-    def step(p):
+def _after(definitions, step=lambda p: None):
+    def both(p):
         for lhs, rhs in definitions:
             p.define(lhs, rhs)
-
-    return step
-
-
-def _after(definitions, step):
-    def both(p):
-        _defined(*definitions)(p)
         step(p)
 
     return both
+
+
+def _defined(*definitions):
+    return _after(definitions)
 
 
 def _order(expr, leading, point=0, eps=h, variable=h):
@@ -147,7 +139,6 @@ FALSE = {
     ),
     # orders
     "half power hides in the remainder": _order(1 + h + h ** sp.Rational(3, 2), 1),
-    "quarter power hides in the remainder": _order(1 + h + h ** sp.Rational(5, 4), 1),
     "logarithm hides in the remainder": _order(1 + h + h**2 * sp.log(h), 1),
     "square root as the next term": _order(1 + sp.sqrt(h), 1),
     "logarithm as the next term": _order(1 + h * sp.log(h), 1),
@@ -162,7 +153,6 @@ FALSE = {
     "exact, so without a next term": _order(h, h),
     "oscillates": _order(1 + h * sp.sin(1 / h), 1),
     # roots
-    "the other root of the friction maximum": _root(parabola, h, 2 + sp.sqrt(3), over=(h, 0, 1)),
     "one of two roots without an interval": _root(parabola, h, 2 - sp.sqrt(3)),
     "negative root of a positive symbol": _root(a + 1, a, -1),
     "zero for a positive symbol": _root(a**2 - a, a, 0),
@@ -170,7 +160,6 @@ FALSE = {
     "root of what does not contain it": _root(y - y * 1, x, 3),
     "complex root": _root(x**2 + 1, x, sp.I),
     "root of the wrong sign": _root(x**2 + 2 * y * x - 1, x, sp.sqrt(1 + y**2) + y, over=(x, 0, sp.oo)),
-    "no root at all": _root(x**2 + x + 1, x, 1),
     "outside of the interval": _root(x**2 - 4, x, 2, over=(x, 0, 1)),
     "at the open end of the interval": _root(x**2 - x, x, 1, over=(x, 0, 1)),
     "root at a pole": _root((x - 1) ** 2 / (x - 1) ** 3, x, 1),
@@ -192,7 +181,6 @@ FALSE = {
     "defined as negative": _defined((a, -sp.S.One)),
     "a square that is negative": _defined((a**2, -sp.S.One)),
     "no common solution": _defined((x**2, sp.S.One), (x**3, sp.Integer(5))),
-    "no common solution of different kind": _defined((x**2, sp.S.One), (x, sp.Integer(2))),
     "the same in another order": _defined((x, sp.Integer(2)), (x**2, sp.S.One)),
     "twice itself": _defined((a, 2 * b), (b, 2 * a)),
     "a real that is not": _defined((x, sp.sqrt(-2))),
@@ -205,24 +193,18 @@ FALSE = {
     "a condition against the assumptions": lambda p: p.where(sp.Lt(a, -1)),
     "interval in which a name is negative": _after([(a, 1 - h)], _sign(2 - a, ">", (h, 0, 2))),
     "sweeping a variable that has a value": _after([(h, half)], _sign(h, ">", (h, 0, 1))),
-    "hidden dependence": _hidden,
     "hidden two names deep": _hidden_twice,
     "hidden in a recalled result": _hidden_in_recalled,
     # branches, signs, zero divisors
     "root of a square": _equal(sp.sqrt(x**2), x),
     "root of a product of reals": _equal(sp.sqrt(x * u), sp.sqrt(x) * sp.sqrt(u)),
-    "difference of roots": _equal(sp.sqrt(x**2 - 1), sp.sqrt(x - 1) * sp.sqrt(x + 1)),
     "cube root of a cube": _equal(sp.cbrt(x**3), x),
     "absolute value dropped": _equal(sp.Abs(x), x),
-    "absolute value of a sum": _equal(sp.Abs(x + u), sp.Abs(x) + sp.Abs(u)),
-    "minimum for maximum": _equal(sp.Min(x, u) + sp.Abs(x - u), sp.Min(x, u)),
     "larger of two is the first": _equal(sp.Max(x, u), x),
     "logarithm of a square": _equal(sp.log(x**2), 2 * sp.log(x)),
-    "logarithm of a product": _equal(sp.log(x * u), sp.log(x) + sp.log(u)),
     "arc tangent of the inverse": _equal(sp.atan(1 / x), sp.pi / 2 - sp.atan(x)),
     "sum of arc tangents": _equal(sp.atan(x) + sp.atan(u), sp.atan((x + u) / (1 - x * u))),
     "arc sine of a sine": _equal(sp.asin(sp.sin(x)), x),
-    "arc tangent of a tangent": _equal(sp.atan(sp.tan(x)), x),
     "true for integers only": _equal(sp.sin(sp.pi * x), 0),
     "true for even integers only": _equal((-1) ** n, 1),
     "true for reals only": _equal(sp.Abs(w) ** 2, w**2),
@@ -233,15 +215,12 @@ FALSE = {
     "nothing over nothing": _equal(sp.Mul(x - x, 1 / (x - 1), evaluate=False) / (x - 1) * (x - 1), 1),
     "zero to the power of zero": _equal(sp.Pow(x, 0, evaluate=False) + 1 / x - 1 / x, 2),
     "almost the same number": _equal(sp.sqrt(2), sp.Rational(141421356237309504880, 10**20)),
-    "almost the same function": _equal((1 + y) ** 2, 1 + 2 * y + y**2 + y / 10**40),
     "almost the same by a factor": _equal(2 * y, (y + y) * (1 + y / 10**60)),
     "signum squared": _equal(sp.sign(x) ** 2, 1),
     # signs
     "zero at an end that is inside": _sign(x * (1 - x), ">", (x, -1, 1)),
-    "changes its sign": _sign(2 * x - 1, ">", (x, 0, 1)),
     "changes its sign next to the end": _sign((x - sp.Rational(1, 10**9)) * (x + 1), ">=", (x, 0, 1)),
     "bound that is reached": _sign(x * (1 - x), "<", (x, 0, 1), sp.Rational(1, 4)),
-    "touches zero": _sign((2 * x - 1) ** 2, ">", (x, 0, 1)),
     "pole inside": _sign(1 / (2 * x - 1) ** 2, ">", (x, 0, 1)),
     "undefined inside": _sign((x**2 - 1) / (x - 1), ">", (x, 0, 2)),
     "factor of unknown sign": _sign(u * (x + 1), ">", (x, 0, 1)),
@@ -266,7 +245,6 @@ FALSE = {
     # integrals
     "value outside of the reals": _integral(-1 / sp.sqrt(1 - x**2), (x, 0, 2), sp.acos(x)),
     "across a pole": _integral(1 / x**2, (x, -1, 1), -1 / x),
-    "across a logarithmic pole": _integral(1 / x, (x, -1, 1), sp.log(x)),
     "divergent at infinity": _integral(1 / y, (y, 1, sp.oo), sp.log(y)),
     "divergent at zero": _integral(1 / y**2, (y, 0, 1), -1 / y),
     "wrong branch of the arc tangent": _integral(
@@ -274,7 +252,6 @@ FALSE = {
     ),
     "tangent across its pole": _integral(1 / sp.cos(x) ** 2, (x, 0, sp.pi), sp.tan(x)),
     "primitive with a jump": _integral(sp.S.Zero, (x, -1, 1), sp.sign(x)),
-    "primitive with a step": _integral(sp.S.Zero, (x, 0, 2), sp.floor(x)),
     "root of what turns negative": _integral(1 / (2 * sp.sqrt(x)), (x, -1, 1), sp.sqrt(x)),
     "wrong primitive": _integral(x, (x, 0, y), x**2),
     "wrong value": _integral(x, (x, 0, y), x**2 / 2, value=y**2),
@@ -286,7 +263,6 @@ FALSE = {
     "display of another right side": _equal((y + 1) ** 2, y**2 + 2 * y + 1, right="y^2 + 1"),
     "display of another left side": _equal(2 * y, y + y, left="3 y"),
     "display of another function": _equal(f(x) + 0 * y, f(x), left="f(y)"),
-    "display of another name": _equal(y + z, z + y, left="z + a"),
     "display with a chain that breaks": _equal(2 * y, y + y, right="2 y = 3 y"),
     "display that cannot be read": _equal(x, x, left=r"\ldots"),
     "display that hides in words": _equal(x, x, left=r"\text{anything}"),
@@ -314,21 +290,17 @@ TRUE = {
         x * sp.Derivative(f(x), (x, 2)), (x, 0, y), x * sp.Derivative(f(x), x) - f(x)
     ),
     # orders
-    "geometric series": _order(1 / (1 - h), 1),
-    "Taylor of a root": _order(sp.sqrt(1 + h), 1),
     "Taylor of an exponential": _order(sp.exp(h) - 1, h),
     "pole": _order(1 / (1 - sp.exp(-h)), 1 / h),
     "at infinity": _order(sp.sqrt(1 + h**2) - h, 1 / (2 * h), sp.oo, 1 / h),
     "at a point": _order((1 - h**3) / 3, 1 - h, 1, 1 - h),
     "in another small quantity": _order(h + h**3, h, 0, 4 * h**2),
-    "cube root of a series": _order(sp.cbrt(1 + h), 1),
     "logarithm of a series": _order(sp.log(1 + h), h),
     "with a parameter": _order(h / (a + h), h / a),
     # roots
     "friction maximum": _root(parabola, h, 2 - sp.sqrt(3), over=(h, 0, 1)),
     "quadratic with a symbol": _root(x**2 + 2 * y * x - 1, x, sp.sqrt(1 + y**2) - y, over=(x, 0, sp.oo)),
     "positive root of a positive symbol": _root(a**2 - 4, a, 2),
-    "linear": _root(y * x - z, x, z / y),
     "cubic with one positive root": _root(a**3 - b, a, sp.cbrt(b)),
     "fractional powers with one root": _root(h ** sp.Rational(3, 2) - b, h, b ** sp.Rational(2, 3)),
     "named": _root(x**2 - b, x, sp.sqrt(b), over=(x, 0, sp.oo), name=a),
@@ -343,9 +315,7 @@ TRUE = {
     "ends do not count": _unique(x * (2 * x - 1) * (x - 1), (x, 0, 1)),
     "triple root changes the sign": _unique((x - 1) ** 3, (x, 0, 2)),
     # premises
-    "definition": _defined((z, y**2)),
     "definitions in a row": _defined((z, y**2), (a, z + 1)),
-    "law": _defined((y + z, a * b)),
     "two laws": _defined((x**2, sp.S.One), (x**3, sp.S.One)),
     "square": _after([(z, y**2)], _equal(sp.sqrt(z), y)),
     "derivative of what is named": _after(
@@ -362,25 +332,20 @@ TRUE = {
     ),
     # identities
     "binomial": _equal((x + y) ** 2, x**2 + 2 * x * y + y**2),
-    "partial fractions": _equal(1 / (1 - x) - 1 / (1 + x), 2 * x / (1 - x**2)),
     "rationalised": _equal(1 / (sp.sqrt(1 + y) + sp.sqrt(y)), sp.sqrt(1 + y) - sp.sqrt(y)),
-    "nested root": _equal(sp.sqrt(5 + 2 * sp.sqrt(6)), sp.sqrt(2) + sp.sqrt(3)),
     "root of a square, positive": _equal(sp.sqrt(y**2), y),
     "root of a square, real": _equal(sp.sqrt(x**2), sp.Abs(x)),
     "root of a quotient": _equal(sp.sqrt(1 + (1 - y**2) ** 2 / (4 * y**2)), (1 + y**2) / (2 * y)),
     "root of a product": _equal(sp.sqrt(y * z), sp.sqrt(y) * sp.sqrt(z)),
     "Pythagoras": _equal(sp.sin(x) ** 2 + sp.cos(x) ** 2, 1),
-    "hyperbolic": _equal(sp.cosh(x) ** 2 - sp.sinh(x) ** 2, 1),
     "larger and smaller": _equal(sp.Max(x, u) + sp.Min(x, u), x + u),
     "logarithm of a product of positives": _equal(sp.log(y * z), sp.log(y) + sp.log(z)),
-    "exponents": _equal(sp.exp(x) * sp.exp(u), sp.exp(x + u)),
     "cancelled where it may be": _where(
         [x > 1], _equal((x**2 - 1) / (x - 1), x + 1)
     ),
     "tangent where it may be": _where([sp.cos(x) > 0], _equal(sp.tan(x) * sp.cos(x), sp.sin(x))),
     "derivative": _equal(sp.Derivative(sp.exp(-x / y), x), -sp.exp(-x / y) / y),
     "value at a place": _equal(sp.Subs(x**2 + x, x, y), y**2 + y),
-    "golden ratio": _equal(((1 + sp.sqrt(5)) / 2) ** 2, (3 + sp.sqrt(5)) / 2),
     "in each of two cases": lambda p: p.equal(
         x * (x - 1), sp.S.Zero, "at both", cases=(sp.Eq(x, 0), sp.Eq(x, 1))
     ),
@@ -389,7 +354,6 @@ TRUE = {
     "square with a touch": _sign((2 * x - 1) ** 2, ">=", (x, 0, 1)),
     "bound": _sign(x * (1 - x), "<=", (x, 0, 1), sp.Rational(1, 4)),
     "to an irrational end": _sign(2 - x**2, ">", (x, 0, sp.sqrt(2))),
-    "without ends": _sign(x**2 + x + 1, ">", (x, -sp.oo, sp.oo)),
     "with a positive factor": _sign(y * (x + 1), ">", (x, 0, 1)),
     "derivative of known sign": _sign(sp.Derivative(x**3 + x, x), ">", (x, -sp.oo, sp.oo)),
     "inequality": _holds(y**2 + y * z, ">"),
@@ -403,7 +367,6 @@ TRUE = {
     # integrals
     "power": _integral(3 * x**2, (x, 0, y), x**3),
     "to infinity": _integral(sp.exp(-x / y), (x, 0, sp.oo), -y * sp.exp(-x / y)),
-    "inverse between positive ends": _integral(1 / x, (x, 1, y + 1), sp.log(x)),
     "arc tangent": _integral(1 / (1 + x**2), (x, -1, 1), sp.atan(x)),
     "arc sine": _integral(1 / sp.sqrt(1 - x**2), (x, 0, half), sp.asin(x)),
     "root at its end": _integral(1 / (2 * sp.sqrt(x)), (x, 0, 1), sp.sqrt(x)),

@@ -33,9 +33,8 @@ def run(output, **more):
 def run_slowly(output, **more):
     """Run a sweep that is not done on arrays, for which own workers are processes."""
     over = {"drive.velocity": f"10 mm/s:1 m/s:{SLOW_POINTS}:log"}
-    return kv.sweep(
-        over=over, quantities="load", method="quadrature", output=output, block=2, **more
-    )
+    how = {"quantities": "load", "method": "quadrature", "block": 2}
+    return kv.sweep(over=over, output=output, **how, **more)
 
 
 def kept(output):
@@ -59,10 +58,8 @@ def kill(output):
         ours, theirs = os.pipe()
         child = os.fork()
         if not child:
-            run(
-                output,
-                progress=lambda _, words, pipe=theirs: os.write(pipe, b"%d\n" % done_of(words)),
-            )
+            tell = lambda _, words, pipe=theirs: os.write(pipe, b"%d\n" % done_of(words))  # noqa: E731
+            run(output, progress=tell)
             os._exit(0)
         os.close(theirs)
         told, reports = b"", chance.randint(1, MOST_REPORTS)

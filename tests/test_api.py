@@ -157,8 +157,7 @@ def test_results_become_json_and_what_does_not_exist_is_null():
     assert found == ("exact", "estimated", 2)
     assert record.keys().isdisjoint({"units", "over"})
     report = kv.asymptotes(over={"drive.velocity": 0.0})
-    (line,) = (line for line in report.lines if line.equation == 49)
-    assert np.isnan(line.value)
+    assert np.isnan(next(line.value for line in report.lines if line.equation == 49))
     record = json.loads(json.dumps(report.as_dict(), allow_nan=False))
     assert record["lines"][3]["value"] is None
 

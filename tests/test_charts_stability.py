@@ -8,14 +8,7 @@ from click.testing import CliRunner
 
 import kvtheory as kv
 from kvtheory.charts import stability
-from kvtheory.charts.stability import (
-    CLASSES,
-    contact_lengths,
-    growth,
-    step_map,
-    unwatched,
-    velocity_map,
-)
+from kvtheory.charts.stability import CLASSES, contact_lengths, step_map, unwatched, velocity_map
 from kvtheory.cli import main
 from kvtheory.models.elements.model import Model
 from kvtheory.models.elements.schemes import SCHEMES
@@ -42,7 +35,7 @@ def test_growth_begins_where_it_is_predicted(scheme, tau, boundary):
         return kv.Scene(foundation=kv.Foundation(1e10, tau), drive=kv.Drive(velocity=V))
 
     for near, V in ((0.99, 0.99 * boundary), (1.01, 1.01 * boundary)):
-        grows = growth(moving(V), scheme, 2e5, PAPERS_STEP / V, steady=True) > 1.0
+        grows = stability.growth(moving(V), scheme, 2e5, PAPERS_STEP / V, steady=True) > 1.0
         assert grows == (near < 1.0)
     for near, V in ((0.985, 0.985 * boundary), (1.015, 1.015 * boundary)):
         scene = moving(V)
@@ -116,8 +109,6 @@ def test_command(tmp_path, monkeypatch):
     assert path.read_bytes().startswith(b"\x89PNG")
     data = json.loads(path.with_suffix(".json").read_text())
     assert [found["scheme"] for found in data["maps"]["step"]] == list(SCHEMES)
-    assert [np.unique(data["maps"]["velocity"][0][name]) for name in ("start", "steady")] == [
-        1.1,
-        0.9,
-    ]
+    first = data["maps"]["velocity"][0]
+    assert [np.unique(first[name]) for name in ("start", "steady")] == [1.1, 0.9]
     assert data["environment"]["kvtheory"] == kv.__version__

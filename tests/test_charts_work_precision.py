@@ -77,14 +77,13 @@ def test_reference_of_a_users_scene_without_and_with_memory():
 
 def test_errors_by_hand():
     right = Curves(np.array([1.0, 0.5, 0.25]), np.array([-4.0, 2.0, 1.0]))
+    due = {
+        "depth, final": 0.0, "depth, maximum": 0.1, "depth, L2": 0.1 / math.sqrt(3.0),
+        "friction, final": 0.5, "friction, maximum": 0.5,
+        "friction, L2": math.sqrt((0.0625 + 0.25) / 3.0), "peak friction": 0.25,
+    }  # fmt: skip
     found = errors(Curves(np.array([1.0, 0.6, 0.25]), np.array([-3.0, 2.0, 3.0])), right)
-    assert found == pytest.approx(
-        {
-            "depth, final": 0.0, "depth, maximum": 0.1, "depth, L2": 0.1 / math.sqrt(3.0),
-            "friction, final": 0.5, "friction, maximum": 0.5,
-            "friction, L2": math.sqrt((0.0625 + 0.25) / 3.0), "peak friction": 0.25,
-        }
-    )  # fmt: skip
+    assert found == pytest.approx(due)
 
 
 def test_instants_hold_the_jumps_and_drives_are_numbers_or_functions():
@@ -155,19 +154,15 @@ def test_a_run_that_takes_too_long_is_ended_and_the_dearer_ones_are_not_begun():
         Clock(0.0, -1.0).check()
 
 
-@pytest.mark.parametrize(
-    ("error", "reason"), [(ArithmeticError("no"), "not converged"), (ValueError("no"), "refused")]
-)
-def test_reasons_of_failures_are_kept(error, reason):
-    def fail(one, knob, clock):
-        raise error
+def test_reasons_of_failures_are_kept_and_an_unstable_scheme_is_on_the_rail():
+    for error, reason in ((ArithmeticError("no"), "not converged"), (ValueError("no"), "refused")):
 
-    only = Method("method of lines", "rtol", (1e-2,), "evaluations", fail)
-    (point,) = make_chart(problem("table-1"), [only], effort=BRIEF).series[0].points
-    assert (point.reason, point.message) == (reason, "no")
+        def fail(one, knob, clock, error=error):
+            raise error
 
-
-def test_an_unstable_scheme_is_on_the_rail():
+        only = Method("method of lines", "rtol", (1e-2,), "evaluations", fail)
+        (point,) = make_chart(problem("table-1"), [only], effort=BRIEF).series[0].points
+        assert (point.reason, point.message) == (reason, "no")
     slow = Problem("slow", kv.Scene(drive=kv.Drive(velocity=0.02), run=kv.Run(0.5)), quick=True)
     only = Method("elements, paper", "elements per a_0", (40.0,), "element updates",
                   METHODS["elements, paper"].solve)  # fmt: skip
@@ -176,12 +171,6 @@ def test_an_unstable_scheme_is_on_the_rail():
     assert point.reason == "unstable"
     (marker,) = draw_work_precision([chart], ["depth, maximum"]).axes[1].get_lines()
     assert marker.get_xdata()[0] == REASONS.index("unstable")
-
-
-def test_repeats_give_the_least_time_and_the_quartiles():
-    point = Point(1.0, times=[4.0, 1.0, 2.0, 3.0, 5.0])
-    assert point.seconds == 1.0
-    assert point.quartiles == (2.0, 4.0)
 
 
 @pytest.mark.parametrize("V", [1e-3, 0.1, 10.0])
@@ -225,6 +214,8 @@ def test_picture_shows_what_was_measured():
     points = chart.series[1].points
     assert line.get_xdata().tolist() == [point.errors["depth, maximum"] for point in points]
     assert line.get_ydata().tolist() == [point.seconds for point in points]
+    point = Point(1.0, times=[4.0, 1.0, 2.0, 3.0, 5.0])
+    assert (point.seconds, point.quartiles) == (1.0, (2.0, 4.0))
 
 
 def test_command(tmp_path, monkeypatch):

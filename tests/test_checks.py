@@ -12,7 +12,7 @@ from kvtheory.api._compare import METHODS
 from kvtheory.checks import fitting
 from kvtheory.checks.checklist import judge, windows
 from kvtheory.checks.comparison_case import COARSEST, make_case
-from kvtheory.checks.noise import noise
+from kvtheory.checks.noise import noise, rounded, time_rounding
 from kvtheory.checks.reading import read
 from kvtheory.checks.settling import fit, uncertainty
 from kvtheory.checks.theory import Rates, Theory
@@ -86,6 +86,12 @@ def test_a_time_constant_is_fitted_and_its_uncertainty_covers_noise():
 def test_noise_is_measured_at_any_scale(scale):
     t, r = np.linspace(0.0, 1.0, 400), np.random.default_rng(0).normal(size=400)
     assert noise(t, scale * r, np.full(400, scale)) / scale == pytest.approx(1.0, rel=0.2)
+
+
+def test_rounding_is_read_from_digits_and_from_repeated_times():
+    digits = rounded(np.array([1.23e-4, 4.56e-4, 1.24e-3]))
+    assert digits == pytest.approx([5e-7, 5e-7, 5e-6])
+    assert time_rounding(np.array([0.0, 0.1, 0.1, 0.1, 0.2])).tolist() == [0.1] * 5
 
 
 def test_the_uncertainty_is_the_covariance_of_a_fit_of_both():

@@ -187,7 +187,7 @@ def test_overrides_and_a_history():
         printed(command, "--set", history)
 
 
-def test_asymptotes():
+def test_asymptotes_and_series_are_printed():
     shown = run("asymptotes", "--tolerance", "0.1").stdout
     assert shown == f"dead-weight support, {kv.asymptotes(tolerance=0.1)}\n"
     assert "use L2" in shown
@@ -198,9 +198,6 @@ def test_asymptotes():
     at_rest = ("asymptotes", "--set", "drive.velocity=0 m/s")
     assert printed(*at_rest)["lines"][3]["value"] is None
     assert "nan" not in run(*at_rest).stdout
-
-
-def test_transient_prints_series():
     record = printed("transient", "--at", "0 ms, 1 ms,200 ms")
     assert record["time"] == [0.0, 0.001, 0.2]
     assert record["normal_force"] == pytest.approx([35367.19, 12732.9, 9806.65], rel=1e-4)
@@ -308,10 +305,17 @@ OUTPUTS = {
     "sweep --plot a.pdf": [*OVER, "-o", "b.csv"],
     "compare --report a.html": DATA,
     "compare --plot a.png": DATA,
-    "derive -o derivations.md": ["--only", "eq27", "--format", "md"],
-    "derive -o derivations.tex": ["--only", "eq27", "--format", "tex"],
+    "derive -o derivations.md": ["--only", "eq3", "--format", "md"],
+    "derive -o derivations.tex": ["--only", "eq3", "--format", "tex"],
     "chart failures -o a.html": ["--only", "cancellation"],
 }
+ALIKE = {
+    "compare --plot a.png",
+    "solve --plot a.png",
+    "transient --plot a.svg",
+    "compare --report a.html",
+}
+"""Those whose files begin as others do."""
 
 
 @pytest.mark.parametrize("name", OUTPUTS)
@@ -325,7 +329,7 @@ def test_files_of_another_kind_are_left_alone_unless_told(place, name):
     assert list(place.iterdir()) == [path]
     run(*arguments, "--overwrite")
     assert path.read_bytes() != FOREIGN
-    if name not in ("compare --plot a.png", "solve --plot a.png"):  # as for `transient`
+    if name not in ALIKE:
         run(*arguments)  # what the command wrote itself it may replace, or has nothing left to do
     if name in ("transient -o a.csv", "steady --plot a.svg"):
         path.write_bytes(b"")  # an empty file is free
@@ -406,15 +410,12 @@ def shell(line, **environment):
 @pytest.mark.parametrize(
     ("line", "statuses"),
     [
-        ("kvtheory transient | true", {0, 141}),
-        ("kvtheory compare --help | true", {0, 141}),
+        ("kvtheory compare --json | true", {0, 141}),  # a reader that goes away is no disagreement
         ("kvtheory transient --json --at '0 ms:200 ms:3000' | head -c 1", {141}),
-        ("kvtheory steady >&-", {0, 2, 141}),
         ("kvtheory steady 2>&-", {0}),
         ("kvtheory steady >&- 2>&-", {0, 2, 141}),
         ("kvtheory steady > /dev/full", {2}),
         ("kvtheory steady --set a=b 2> /dev/full", {2}),
-        ("kvtheory steady --nope 2> /dev/full", {2}),
         ("kvtheory nope 2> /dev/full", {2}),
     ],
 )
@@ -427,15 +428,13 @@ def test_streams_that_are_closed_or_full_end_in_no_traceback(line, statuses):
     )  # fmt: skip
 
 
-@pytest.mark.parametrize("encoding", ["ascii", "cp1252"])
-def test_output_never_dies_of_the_encoding_of_the_console(encoding, tmp_path):
+def test_output_never_dies_of_the_encoding_of_the_console(tmp_path):
     scene = tmp_path / "größe-µ-日本.toml"
     scene.write_text(kv.to_toml(kv.Scene()), encoding="utf-8")
-    environment = {"PYTHONIOENCODING": encoding, "LC_ALL": "C.UTF-8"}
     line = f"kvtheory asymptotes '{scene}' --set 'drive.velocity=1 mm/s:1 m/s:3'"
-    status, out, message = shell(line, **environment)
+    status, out, message = shell(line, PYTHONIOENCODING="ascii", LC_ALL="C.UTF-8")
     assert (status, message) == (0, b""), message
     assert b"V = 1 " in out
     line = f"kvtheory steady --set 'support.mass=5 µq' '{scene}'"
-    status, _, message = shell(line, **environment)
+    status, _, message = shell(line, PYTHONIOENCODING="cp1252", LC_ALL="C.UTF-8")
     assert (status, b"support.mass" in message) == (2, True), message

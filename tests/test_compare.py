@@ -1,8 +1,7 @@
 """Anybody's time series, read and held against theory: what agrees, and what cannot be judged."""
 
 import json
-import subprocess
-import sys
+import os
 from dataclasses import replace
 from functools import cache
 
@@ -16,8 +15,7 @@ from kvtheory.cli import main
 from kvtheory.models.elements.schemes import SCHEMES
 from kvtheory.results.schemes import SCHEME_ROWS
 from tests import confusion
-from tests.blind_trial import SCENES as BLIND
-from tests.blind_trial import disturbed
+from tests.confusion import BLIND, disturbed
 from tests.faulty_simulator import simulate
 from tests.first_order import first_order
 
@@ -193,20 +191,17 @@ def test_our_own_run_is_judged_at_the_steps_of_its_scheme():
     assert found.verdict == "agrees"
 
 
-@pytest.mark.parametrize(("velocity", "reported"), [("12.5 mm/s", True), ("0.01 mm/s", False)])
-def test_our_own_run_that_diverges_disagrees(tmp_path, velocity, reported):
+def test_our_own_run_that_diverges_disagrees_and_is_written(tmp_path):
     report = tmp_path / "r.html"
-    given = ["compare", "--scheme", "paper", "--set", f"drive.velocity={velocity}", "--json"]
     pictures = ["--plot", str(tmp_path / "p.svg"), "--report", str(report)]
-    result = CliRunner().invoke(main, given + pictures * reported)
-    assert result.exit_code == 1, result.output
-    record = json.loads(result.stdout)
-    assert [check["name"] for check in record["checks"]] == ["run to the end"]
-    assert "The time step is unstable (F15): the run diverged at t = " in record["diagnosis"]
-    assert not reported or "unstable" in report.read_text(encoding="utf-8")
-
-
-def test_our_own_run_that_diverges_on_a_spring_is_written(tmp_path):
+    for velocity, outputs in (("12.5 mm/s", pictures), ("0.01 mm/s", [])):
+        given = ["compare", "--scheme", "paper", "--set", f"drive.velocity={velocity}", "--json"]
+        result = CliRunner().invoke(main, given + outputs)
+        assert result.exit_code == 1, result.output
+        record = json.loads(result.stdout)
+        assert [check["name"] for check in record["checks"]] == ["run to the end"]
+        assert "The time step is unstable (F15): the run diverged at t = " in record["diagnosis"]
+    assert "unstable" in report.read_text(encoding="utf-8")
     slow = kv.Scene(drive=kv.Drive("12 mm/s", stiffness="1 MN/m^2"))
     found = kv.compare(slow, scheme="paper", per_length="60 /mm")
     assert failed(found) == ["run to the end"]
@@ -229,25 +224,22 @@ def test_a_simulation_in_flight_keeps_the_error_with_which_it_took_off(velocity)
     assert held.verdict == "agrees", held.diagnosis
 
 
-@pytest.mark.parametrize(("name", "seeds"), [("Table 1", 10), ("sine", 3)])
-def test_noise_in_proportion_to_the_value_and_two_digits_agree(name, seeds):
-    """The full count of seeds is that of `python -m tests.blind_trial seeds`."""
-    given = BLIND[name]
-    theory = kv.transient(given, at=np.linspace(0.0, given.run.duration, 300).tolist())
-    for seed in range(seeds):
-        for level, digits in ((0.005, None), (0.02, None), (0.0, 2)):
-            assert failed(kv.compare(given, disturbed(theory, seed, level, digits))) == []
+SEEDS = max(5, int(os.environ.get("KVTHEORY_TEST_SCENES", "0")))
+EACH, NOISE, DIGITS = ((0.005, None), (0.02, None), (0.0, 2)), ((0.02, None),), ((0.0, 2),)
 
 
 @pytest.mark.parametrize(
-    ("name", "digits", "seeds"), [("Table 1", None, (755, 902)), ("suspended", 2, (17, 48, 51))]
-)
-def test_the_few_seeds_that_look_worst_agree_too(name, digits, seeds):
-    """Noise that is told from few large values, and rounding that looks like the sawtooth of elements."""
+    ("name", "seeds", "ways", "rows"),
+    [("Table 1", range(SEEDS), EACH, 300), ("sine", range(SEEDS // 3), EACH, 300),
+     ("Table 1", (755, 902), NOISE, 400), ("suspended", (17, 48, 51), DIGITS, 400)],
+)  # fmt: skip
+def test_noise_in_proportion_to_the_value_and_two_digits_agree(name, seeds, ways, rows):
+    """The last two look worst: noise told from few large values, and rounding that looks like elements."""
     given = BLIND[name]
-    theory = kv.transient(given, at=np.linspace(0.0, given.run.duration, 400).tolist())
+    theory = kv.transient(given, at=np.linspace(0.0, given.run.duration, rows).tolist())
     for seed in seeds:
-        assert failed(kv.compare(given, disturbed(theory, seed, 0.02, digits))) == []
+        for level, digits in ways:
+            assert failed(kv.compare(given, disturbed(theory, seed, level, digits))) == []
 
 
 @pytest.mark.parametrize(
@@ -295,7 +287,7 @@ def test_a_rigid_drive_slides_at_its_velocity_and_holds_the_friction():
 def test_tolerance_multiplies_what_is_allowed(sound):
     one, two = (kv.compare(data=sound, tolerance=factor) for factor in (1.0, 2.0))
     for a, b in zip(one.checks, two.checks, strict=True):
-        if a.ok is not None and a.name not in ("stability number",):
+        if a.ok is not None and a.name != "stability number":
             assert b.allowed == pytest.approx(2.0 * a.allowed, rel=0.3)
     off = {**sound, "depth": 1.004 * sound["depth"]}
     assert kv.compare(data=off).verdict == "disagrees"
@@ -305,8 +297,8 @@ def test_tolerance_multiplies_what_is_allowed(sound):
 def test_columns_that_are_not_there_are_not_passed(sound):
     found = kv.compare(data={name: sound[name] for name in ("time", "normal_force")})
     reasons = {check.name: check.note for check in found.checks if check.ok is None}
-    assert reasons["impulse balance"] == "not made: the data hold no depth"
-    assert reasons["initial rest state"] == "not made: the data hold no depth"
+    for name in ("impulse balance", "initial rest state"):
+        assert reasons[name] == "not made: the data hold no depth"
     assert reasons["elements enough"].startswith("not made: the element density is not given")
     assert found.as_dict()["checks"][1]["ok"] is None
 
@@ -436,20 +428,16 @@ def test_what_cannot_be_read_costs_one_message_and_writes_nothing(tmp_path, name
 
 @pytest.mark.parametrize(
     ("options", "message"),
-    [({"tolerance": 0.0}, "`tolerance`"), ({"tolerance": float("nan")}, "`tolerance`"),
+    [({"data": 3.0}, "expected a path to a CSV"),
+     ({"tolerance": 0.0}, "`tolerance`"), ({"tolerance": float("nan")}, "`tolerance`"),
      ({"scheme": "papper"}, 'did you mean "paper"'),
      ({"per_length": "200 mm"}, "`per_length`"), ({"per_length": -1.0}, "`per_length`"),
      ({"scene": kv.Scene(indenter=kv.Wedge(inclination=0.1))}, "parabola"),
      ({"scene": kv.Scene(drive=kv.Drive(function=lambda t: 1 / 0))}, "drive.function")],
 )  # fmt: skip
 def test_bad_arguments_are_named(sound, options, message):
-    with pytest.raises(ValueError, match=message):
+    with pytest.raises((ValueError, TypeError), match=message):
         kv.compare(**{"data": sound, **options})
-
-
-def test_data_of_another_kind_is_refused():
-    with pytest.raises(TypeError, match="expected a path to a CSV"):
-        kv.compare(data=3.0)
 
 
 # The command
@@ -470,19 +458,12 @@ def test_the_command(tmp_path, sound):
     assert "<svg" in page
     assert not any(word in page for word in ("<script", "src=", "@import", "<link"))
     assert plot.read_text(encoding="utf-8").startswith("<?xml")
-    again = CliRunner().invoke(
-        main, ["compare", "--data", str(path), "--set", "drive.velocity=-100 mm/s"]
-    )
+    backward = ["--data", str(path), "--set", "drive.velocity=-100 mm/s"]
+    again = CliRunner().invoke(main, ["compare", *backward])
     assert again.exit_code == 0, again.output
     assert "agrees with theory" in again.stdout
     shown = CliRunner().invoke(main, ["compare", "--help"])
     assert "kvtheory compare" in shown.stdout.split("Example")[1]
-
-
-def test_a_reader_that_goes_away_is_no_disagreement():
-    call = f"{sys.executable} -c 'from kvtheory.cli import main; main()' compare --json"
-    piped = subprocess.run(["bash", "-c", f"set -o pipefail; {call} | true"], check=False)
-    assert piped.returncode not in (1, 2)
 
 
 def test_the_table_of_schemes_says_what_their_polynomials_do():

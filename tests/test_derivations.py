@@ -51,15 +51,8 @@ def test_steady_sliding_is_proved(by_label):
 THEOREMS = {
     *("F1", "F3", "F5", "F6", "F7", "scaled-load", "balance", "energy-any-shape"),
     *("circle-fixed", "circle-dead-weight", "eq33", "scaled-form", "F11-edges", "F14-energy"),
-    *(
-        "F9-shapes",
-        "F9-power",
-        "F9-wedge",
-        "F9-catenary",
-        "F9-circle",
-        "F9-converse",
-        "F9-two-slopes",
-    ),
+    *("F9-shapes", "F9-power", "F9-wedge", "F9-catenary", "F9-circle", "F9-converse"),
+    "F9-two-slopes",
     *("F15-runge-kutta", "F15-euler", "F15-sawtooth", "element-stability", "element-kink"),
     *("element-trapezoids", "element-bent", "strips-rule"),
 }
@@ -74,9 +67,7 @@ def test_the_theorems_are_proved_and_none_is_sampled(by_label):
     weak = ("definition", "proved", "proved-leading-order")
     assert {label for label, each in by_label.items() if each.status not in weak} == set()
     assert set(by_label) >= THEOREMS | LIMITS
-    assert {label: by_label[label].status for label in THEOREMS} == dict.fromkeys(
-        THEOREMS, "proved"
-    )
+    assert {label for label in THEOREMS if by_label[label].status != "proved"} == set()
     assert {by_label[label].status for label in LIMITS} == {"proved-leading-order"}
     transient = [each for each in by_label.values() if each.section.startswith("Transient")]
     groups = {"eq33", "scaled", "F8", "F9", "F10", "F11", "F12", "F13", "F14"}
@@ -218,8 +209,7 @@ def test_table_1_against_floats(by_label):
     drive = 0.01 / (2 * 0.01 * 300e-6) ** 0.5
     q = (1 + drive**2) ** 0.5 - drive
     expected = {
-        "$R$": 10,
-        "$N$": 200,
+        "$R$": 10, "$N$": 200,
         r"$a$ (28)": (2 * 10 * 0.3) ** 0.5,
         r"$l_{\mathrm{r}}$ (29)": 100 * 0.1,
         "$W = M g$": weight / 1000,

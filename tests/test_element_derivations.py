@@ -15,7 +15,7 @@ from kvtheory.models.elements.kernels import (
     kink_area,
     ramp_functions,
     weights_across,
-)  # fmt: skip
+)
 
 
 def test_limit_of_the_papers_scheme():
@@ -57,9 +57,8 @@ def step_matrix(epsilon, b, kappa, h, theta):
     # epsilon (v1 - v0)/h = -b (d0 + eta (d1 - d0)) - kappa ((1-theta) d0 + theta d1)
     # d1 - d0 = h ((1-theta) v0 + theta v1)
     new = np.array([[b * eta + kappa * theta, epsilon / h], [1.0, -h * theta]])
-    old = np.array(
-        [[b * (eta - 1.0) - kappa * (1.0 - theta), epsilon / h], [1.0, h * (1.0 - theta)]]
-    )
+    held = b * (eta - 1.0) - kappa * (1.0 - theta)
+    old = np.array([[held, epsilon / h], [1.0, h * (1.0 - theta)]])
     return np.linalg.solve(new, old)
 
 

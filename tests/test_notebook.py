@@ -39,9 +39,8 @@ def test_every_step_is_checked_again():
 def test_a_wrong_step_stops_the_notebook():
     found = next(each for each in catalogue() if each.label == "eq27")
     *steps, last = found.steps
-    wrong = replace(
-        last, claim=replace(last.claim, arguments={**last.claim.arguments, "value": a - l_r})
-    )
+    claim = replace(last.claim, arguments={**last.claim.arguments, "value": a - l_r})
+    wrong = replace(last, claim=claim)
     altered = replace(found, steps=(*steps, wrong))
     assert rechecked.digests([altered]) != rechecked.digests([found])
     with pytest.raises(AssertionError, match="eq27"):

@@ -73,9 +73,8 @@ def test_steady_sliding_is_drawn_as_a_curve_or_as_its_pressure():
         single = kv.steady(over={"drive.velocity": velocity})
         x, p = single.plot().axes[0].lines[0].get_data()
         assert p.max() == pytest.approx(single.peak_pressure / 1e6, rel=1e-3)
-        assert sorted((x[0], x[-1])) == pytest.approx(
-            sorted((single.leading_edge * 1e3, single.trailing_edge * 1e3))
-        )
+        edges = sorted((single.leading_edge * 1e3, single.trailing_edge * 1e3))
+        assert sorted((x[0], x[-1])) == pytest.approx(edges)
         at_trailing = p[np.argmin(np.abs(x - single.trailing_edge * 1e3))]
         assert abs(at_trailing) < 1e-9 * p.max()
     with pytest.raises(ValueError, match="parabola and for a ball"):
@@ -122,9 +121,8 @@ def test_the_pressure_of_a_ball_is_that_of_its_middle_plane(velocity):
     assert p[inside] == pytest.approx(truth, rel=1e-9, abs=1e-12)
     refused = [kv.Scene(indenter=kv.Revolved(kv.Wedge(0.1)), **rest)]
     if scene.drive.velocity:  # at rest all foundations are springs
-        refused.append(
-            kv.Scene(ball, kv.GeneralizedMaxwell(1e10, arms=[["30 GN/m^3", "10 ms"]]), **rest)
-        )
+        rubber = kv.GeneralizedMaxwell(1e10, arms=[["30 GN/m^3", "10 ms"]])
+        refused.append(kv.Scene(ball, rubber, **rest))
     for other in refused:
         with pytest.raises(ValueError, match="give several velocities"):
             kv.steady(other).plot()

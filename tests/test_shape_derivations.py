@@ -4,12 +4,7 @@ import mpmath as mp
 import numpy as np
 import pytest
 import sympy as sp
-from kvtheory.derivations import (
-    friction_identity,
-    power_law,
-    power_law_weight,
-    wedge,
-)
+from kvtheory.derivations import friction_identity, power_law, power_law_weight, wedge
 from kvtheory.derivations import symbols as s
 
 pytestmark = pytest.mark.usefixtures("fifty_digits")
@@ -79,9 +74,8 @@ def test_the_depth_of_a_wedge_balances_its_weight(support, drive):
     peeling = 1.5 * lam**2 + kappa * lam < 1 + kappa
     form = wedge.SCALED_PEELING if peeling else wedge.SCALED_PEELED
     held = {s.held: 1 + s.kappa - s.lam**2 / 2}
-    depth = mp.mpf(
-        str(sp.N(form.subs(held).subs({s.lam: sp.Float(drive, 50), s.kappa: support}), 50))
-    )
+    numbers = {s.lam: sp.Float(drive, 50), s.kappa: support}
+    depth = mp.mpf(str(sp.N(form.subs(held).subs(numbers), 50)))
     number = lam / depth
     assert (number < 1) == peeling
     load = 1 + number**2 / 2 if number < 1 else number + mp.mpf(1) / 2
@@ -94,10 +88,8 @@ def test_friction_needs_no_integral_at_any_instant():
     R, K, tau = map(mp.mpf, ("0.013", "2.1e9", "0.17"))
     for _ in range(8):
         V, rate = (mp.mpf(float(x)) for x in rng.normal(size=2) * [0.1, 1e-3])
-        depth, left, right = (
-            mp.mpf("2e-4"),
-            *(mp.mpf(float(x)) for x in rng.uniform(-2e-3, 2e-3, 2)),
-        )
+        left, right = (mp.mpf(float(x)) for x in rng.uniform(-2e-3, 2e-3, 2))
+        depth = mp.mpf("2e-4")
 
         def pressure(x, V=V, rate=rate, depth=depth):
             return K * (depth - x**2 / (2 * R)) + K * tau * (rate - V * x / R)

@@ -31,9 +31,8 @@ def contact(scene):
         s.lam: lam, s.eps: eps, s.kappa: kappa, s.eps_x: eps_x, s.damper: c_x, s.kappa_x: kappa_x,
         s.a: half, s.right: edge, s.per_depth: edge + lam + half, s.per_rate: edge + half,
     }  # fmt: skip
-    truth = reference.quartic(
-        lam=lam, eps=eps, kappa=kappa, eps_x=eps_x, c_x=c_x, kappa_x=kappa_x, guess=depth
-    )
+    along = {"eps_x": eps_x, "c_x": c_x, "kappa_x": kappa_x}
+    truth = reference.quartic(lam=lam, eps=eps, kappa=kappa, guess=depth, **along)
     return known, truth
 
 
@@ -65,10 +64,8 @@ def test_falling_friction_is_the_slope_of_the_steady_curve(scene):
     along = known[s.a] ** 3 + known[s.right] ** 3
     across = mp.mpf(3) / 4 * known[s.per_rate]
     own = value(spring_stability.DEAD_WEIGHT_RISE, {s.q: q})
-    found = value(
-        spring_stability.RISE,
-        {s.q: q, s.own_rise: own, s.damper_share: damper / along, s.support_rate: kappa / across},
-    )
+    shares = {s.damper_share: damper / along, s.support_rate: kappa / across}
+    found = value(spring_stability.RISE, {s.q: q, s.own_rise: own, **shares})
     stiffness = (mp.mpf(3) / 4 * known[s.per_depth] + kappa) / across
     assert abs(found - stiffness * slope / (along + damper)) <= abs(found) * mp.mpf(10) ** -15
 

@@ -153,9 +153,8 @@ def test_a_result_carries_premises_and_domain_through_two_recalls():
 
 
 def test_a_sampled_step_stays_sampled_when_it_is_recalled_twice():
-    first, second, third = (
-        Proof(label, None, section="Trial", title=label) for label in ("first", "second", "third")
-    )
+    names = "first", "second", "third"
+    first, second, third = (Proof(name, None, section="Trial", title=name) for name in names)
     first.define(z, sp.exp(sp.log(y) / 3))
     first.sampled(z, y ** sp.Rational(1, 3), [(y, 1, 2)], "numbers")
     first.done(z, y ** sp.Rational(1, 3))

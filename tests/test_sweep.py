@@ -42,15 +42,13 @@ def test_a_grid_equals_the_steady_states_of_its_points():
 
 
 def test_zipped_points_lie_on_the_diagonal():
-    pairs = kv.sweep(
-        over={(V, TAU): ("1 mm/s:1 m/s:4:log", [0.1, 0.2, 0.3, 0.4])}, quantities="load"
-    )
+    over = {(V, TAU): ("1 mm/s:1 m/s:4:log", [0.1, 0.2, 0.3, 0.4])}
+    pairs = kv.sweep(over=over, quantities="load")
     grid = kv.sweep(over={V: pairs[V], TAU: pairs[TAU]}, quantities="load")
     assert np.array_equal(pairs["load"], np.diagonal(grid["load"]))
     assert [axis.name for axis in pairs.axes] == ["point"]
-    twice = kv.sweep(
-        over={(V, TAU): ([1.0], [1.0]), ("indenter.radius", "support.mass"): ([1.0], [1.0])}
-    )
+    two = (V, TAU), ("indenter.radius", "support.mass")
+    twice = kv.sweep(over={keys: ([1.0], [1.0]) for keys in two})
     assert [axis.name for axis in twice.axes] == ["point_1", "point_2"]
 
 
@@ -147,12 +145,9 @@ def test_netcdf_is_labelled_and_carries_units_scene_and_failures(tmp_path):
             assert found == kv.steady(over={V: 0.1, TAU: 0.1}).load
         assert data["failure_index"].values.tolist() == [f.index for f in result.failures]
         assert data["failure_reason"].values.tolist() == [f.reason for f in result.failures]
-
-
-def test_a_long_header_fits_into_netcdf(tmp_path):
     how = {"over": {V: [0.1, 0.2]}, "at": np.linspace(0.0, 0.2, 4_000), "quantities": "depth"}
-    kv.sweep(output=tmp_path / "long.nc", **how)
-    again = kv.sweep(output=tmp_path / "long.nc", **how)
+    for _ in range(2):
+        again = kv.sweep(output=tmp_path / "long.nc", **how)
     assert len(json.dumps(again.plan.record)) > 2**16  # more than HDF5 takes in one piece
     assert again["depth"].shape == (2, 4_000)
 
@@ -237,16 +232,16 @@ def test_remaining_blocks_fill_the_gaps_once():
     assert all(t.start % 16 == 0 or t.start in (7, 40) for t in tasks)
 
 
-def line_of(terminal, label="sweep"):
-    """A line of progress, what it writes, and its clock."""
-    stream, now = io.StringIO(), [0.0]
-    stream.isatty = lambda: terminal
-    return ProgressLine(label, stream, clock=lambda: now[0]), stream, now
-
-
 @pytest.mark.parametrize("terminal", [False, True])
-def test_progress_writes_lines_to_a_log_and_one_line_to_a_terminal(terminal):
-    progress, stream, now = line_of(terminal)
+def test_progress_is_lines_in_a_log_and_one_line_on_a_terminal(terminal):
+    """Compiling is shown at once on a terminal, which also shows that work goes on that reports nothing."""
+
+    def line_of(label):
+        stream, now = io.StringIO(), [0.0]
+        stream.isatty = lambda: terminal
+        return ProgressLine(label, stream, clock=lambda: now[0]), stream, now
+
+    progress, stream, now = line_of("sweep")
     for second in range(1, 101):
         now[0] = float(second)
         progress(second / 200, f"{10 * second} of 2000 points")
@@ -255,22 +250,16 @@ def test_progress_writes_lines_to_a_log_and_one_line_to_a_terminal(terminal):
     assert stream.getvalue().count("\n") == (1 if terminal else 10)
     assert stream.getvalue().count("\r") == (100 if terminal else 0)
 
-
-@pytest.mark.parametrize("terminal", [False, True])
-def test_compiling_is_shown_at_once_on_a_terminal_and_takes_no_part_in_the_time_left(terminal):
-    line, stream, now = line_of(terminal)
+    progress, stream, now = line_of("sweep")
     for second, share, words in (
         (0.5, 0.0, ""), (0.6, 0.0, COMPILING), (30.6, 0.0, COMPILING), (60.6, 0.0, ""), (70.6, 0.5, "half"),
     ):  # fmt: skip
         now[0] = second
-        line(share, words)
+        progress(share, words)
         assert second != 0.6 or (COMPILING in stream.getvalue()) == terminal
-    assert "sweep: 50 %, 10 s left, half" in stream.getvalue()
+    assert "sweep: 50 %, 10 s left, half" in stream.getvalue()  # in which compiling takes no part
 
-
-@pytest.mark.parametrize("terminal", [False, True])
-def test_a_terminal_shows_that_work_goes_on_that_reports_nothing(terminal):
-    progress, stream, now = line_of(terminal, "steady")
+    progress, stream, now = line_of("steady")
     for second in range(7):
         now[0] = 0.5 * second
         progress.beat()

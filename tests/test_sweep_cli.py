@@ -59,20 +59,16 @@ def test_zipped_points_options_and_scene(place):
 
 def test_workers_give_the_same_file(place):
     threads = ["--executor", THREADS]
-    for number, more in enumerate(
-        [[], ["--jobs", "2"], [*threads, "--block", "3"], [*threads, "--jobs", "1"]]
-    ):
+    ways = [], ["--jobs", "2"], [*threads, "--block", "3"], [*threads, "--jobs", "1"]
+    for number, more in enumerate(ways):
         run(*OVER, "-o", f"{number}.csv", *more)
     assert len({file.read_bytes() for file in place.iterdir()}) == 1
 
 
 def test_a_factory_may_lie_in_the_working_directory(place, monkeypatch):
     (place / "our_cluster.py").write_text(
-        "from concurrent.futures import ThreadPoolExecutor\n"
-        "made = []\n"
-        "def workers():\n"
-        "    made.append(ThreadPoolExecutor(1))\n"
-        "    return made[0]\n"
+        "from concurrent.futures import ThreadPoolExecutor\nmade = [ThreadPoolExecutor(1)]\n"
+        "def workers():\n    return made[0]\n"
     )
     monkeypatch.setattr(sys, "path", list(sys.path))
     run(*OVER, "-o", "map.csv", "--executor", "our_cluster:workers")

@@ -116,9 +116,8 @@ def test_an_interrupt_leaves_a_file_with_what_there_is_and_the_rest_follows(tmp_
         assert sum(line[0] != "#" for line in text.splitlines()) == 61
     else:
         with xarray.open_dataset(path) as data:
-            assert (
-                np.isfinite(data["load"].values.reshape(-1)).tolist() == [True] * 60 + [False] * 60
-            )
+            known = np.isfinite(data["load"].values.reshape(-1))
+            assert known.tolist() == [True] * 60 + [False] * 60
     found = small(path, progress=lambda share, words: before.append(done_of(words)))
     assert (before[0], found.computed) == (60, 60)
     same(found, kv.sweep(over=SMALL))
@@ -234,12 +233,9 @@ def test_a_file_of_which_any_byte_was_lost_or_changed_is_never_taken_for_whole(t
     small(path)
     content = path.read_bytes()
     last = len(content) - 1
-    damaged = [
-        b"",
-        content + b"\n",
-        *(content[:end] for end in np.linspace(1, last, 13).astype(int)),
-    ]
-    damaged += [flipped(content, at) for at in [0, 100, last, *chance.sample(range(last), 27)]]
+    damaged = [b"", content + b"\n"]
+    damaged += [content[:end] for end in np.linspace(1, last, 7).astype(int)]
+    damaged += [flipped(content, at) for at in [0, 100, last, *chance.sample(range(last), 13)]]
     for spoilt in damaged:
         path.write_bytes(spoilt)
         with pytest.raises(ValueError, match=REFUSED):
@@ -318,7 +314,7 @@ def test_every_mixture_of_columns_is_kept_written_and_read(tmp_path, suffix):
         "peak": "peak_to_steady_friction",
         "text": "events",
     }
-    for number, chosen in enumerate([*((name,) for name in kinds), ("series", "text"), kinds]):
+    for number, chosen in enumerate([("steady",), ("text",), ("series", "text"), kinds]):
         asked = {"over": {V: [0.05, 0.0, 1e200]}, "quantities": [kinds[name] for name in chosen]}
         asked |= {"rtol": 1e-4} | ({"at": "0 ms:200 ms:3"} if "series" in chosen else {})
         held = kv.sweep(**asked)
@@ -332,9 +328,7 @@ def test_every_mixture_of_columns_is_kept_written_and_read(tmp_path, suffix):
         for other in (stored, saved):
             same(other, held)
         if "peak" in chosen:
-            assert np.isnan(
-                held["peak_to_steady_friction"][1:]
-            ).all()  # at rest there is no friction
+            assert np.isnan(held["peak_to_steady_friction"][1:]).all()  # no friction at rest
         if "text" in chosen:
             assert json.loads(held["events"][0])[0]["time"] == 0.0
             assert held["events"][2] == ""

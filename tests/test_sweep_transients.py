@@ -119,9 +119,8 @@ def test_series_are_those_of_the_transient():
 
 
 def test_a_motion_that_cannot_be_followed_is_told_and_the_others_are_not_touched():
-    history = kv.Scene(
-        drive=kv.Drive(history=[(0.0, 1.0), (1.0, 0.5)])
-    )  # gives way to a swept velocity
+    # A history gives way to a swept velocity.
+    history = kv.Scene(drive=kv.Drive(history=[(0.0, 1.0), (1.0, 0.5)]))
     result = kv.sweep(history, over={V: [0.1, 1e200, 0.2]}, quantities="depth.end")
     assert [failure.index for failure in result.failures] == [1]
     assert result.failures[0].reason
@@ -130,17 +129,13 @@ def test_a_motion_that_cannot_be_followed_is_told_and_the_others_are_not_touched
     asked = {"over": {DURATION: [0.2, 0.001]}, "at": ["0.1 s"], "quantities": ["depth", "load"]}
     short = kv.sweep(**asked)  # of which the second run ends before that time
     assert "after the end of the run" in short.failures[0].reason
-    assert (
-        np.isnan(short["load"]).tolist() == np.isnan(short["depth"][:, 0]).tolist() == [False, True]
-    )
+    assert np.isnan([short["load"], short["depth"][:, 0]]).tolist() == [[False, True]] * 2
 
 
 def test_the_certificate_covers_the_error_of_measures():
     over = {V: "10 mm/s:1 m/s:5:log"}
-    loose, tight = (
-        kv.sweep(over=over, quantities=["depth.min", "friction_force.end"], rtol=rtol)
-        for rtol in (1e-4, 1e-10)
-    )
+    asked = {"over": over, "quantities": ["depth.min", "friction_force.end"]}
+    loose, tight = (kv.sweep(rtol=rtol, **asked) for rtol in (1e-4, 1e-10))
     scale = scales(StaticState.of(kv.Scene()))
     for name in loose.values:
         base = name.partition(".")[0]

@@ -79,10 +79,8 @@ def parabola(l_r, depth=0.5):
 
 
 def true_circle(l_r, depth):
-    edge = -mp.sqrt(1 - (1 - depth) ** 2)
-    return forces(
-        depth, mp.mpf(l_r), lambda x: 1 - mp.sqrt(1 - x * x), lambda x: x / mp.sqrt(1 - x * x), edge
-    )
+    height, slope = (lambda x: 1 - mp.sqrt(1 - x * x)), (lambda x: x / mp.sqrt(1 - x * x))
+    return forces(depth, mp.mpf(l_r), height, slope, -mp.sqrt(1 - (1 - depth) ** 2))
 
 
 @pytest.mark.parametrize(
@@ -316,11 +314,8 @@ def test_the_circle_at_given_load(number):
     def at_load(eps):
         l_r = known[l] * mp.sqrt(eps)
         load, friction = parabola(l_r, eps / 2)
-        depth = mp.findroot(
-            lambda d: true_circle(l_r, d)[0] / load - 1,
-            (eps / 2, eps / 1.98),
-            tol=mp.mpf(10) ** -60,
-        )
+        excess, guesses = (lambda d: true_circle(l_r, d)[0] / load - 1), (eps / 2, eps / 1.98)
+        depth = mp.findroot(excess, guesses, tol=mp.mpf(10) ** -60)
         return depth / (eps / 2) - 1, true_circle(l_r, depth)[1] / friction - 1
 
     for index, symbol in enumerate((sym.c_delta_load, sym.c_mu_load)):
@@ -349,9 +344,8 @@ def test_load_and_friction_are_sums_over_strips(number):
     known = {l: x, sym.ball_tail: tail(x)}
 
     def total(power):
-        return 2 * mp.quad(
-            lambda t: strip(x, mp.sin(t), power) * mp.cos(t), [0, 0.5, 1, 1.4, mp.pi / 2]
-        )
+        pieces = [0, 0.5, 1, 1.4, mp.pi / 2]
+        return 2 * mp.quad(lambda t: strip(x, mp.sin(t), power) * mp.cos(t), pieces)
 
     load, friction = total(0), total(1) / 2
     assert mp.almosteq(exact("F20-load", sym.ball_load, known), load, 1e-12)
@@ -400,9 +394,8 @@ def test_the_load_grows_between_its_third_and_fourth_power(drive):
     drive, place = mp.mpf(drive), mp.mpf("0.6")
 
     def load(at):
-        return exact(
-            "F20-balance", sym.ball_scaled, {s: at, lam: drive, sym.ball_tail: tail(drive / at)}
-        )
+        known = {s: at, lam: drive, sym.ball_tail: tail(drive / at)}
+        return exact("F20-balance", sym.ball_scaled, known)
 
     growth = mp.diff(lambda u: mp.log(load(mp.exp(u))), mp.log(place))
     known = {s: place, lam: drive, sym.ball_angle: mp.atan(place / drive)}

@@ -240,10 +240,8 @@ def test_the_update_holds_with_max_and_not_with_min(kind, right):
 
 def force(d, rate, lam, weight):
     """Integrate weight(xi) times the pressure after a start from rest, by quadrature."""
-    trailing = mp.sqrt(d + rate + lam**2) - lam
-    return mp.quad(
-        lambda xi: weight(xi) * (d - xi**2 + rate - 2 * lam * xi), [-mp.sqrt(d), trailing]
-    )
+    ends = [-mp.sqrt(d), mp.sqrt(d + rate + lam**2) - lam]
+    return mp.quad(lambda xi: weight(xi) * (d - xi**2 + rate - 2 * lam * xi), ends)
 
 
 def normal(d, rate, lam):
@@ -372,9 +370,8 @@ def test_a_balance_rests_on_names_and_laws_alone(by_label, label):
     sums = [each for each in by_label[label].premises if r"\int" in each]
     named = ("E_{\\mathrm{s}}", "\\bar U", "f_z", "f_x")
     assert all(each.startswith(named) for each in sums)
-    assert not any(
-        each.startswith((r"\lambda f_x", r"d'' = \frac{1")) for each in by_label[label].premises
-    )
+    laws = r"\lambda f_x", r"d'' = \frac{1"
+    assert not any(each.startswith(laws) for each in by_label[label].premises)
 
 
 @pytest.mark.parametrize(

@@ -22,12 +22,7 @@ VELOCITIES = {"table-1": 0.1, "low-velocity": 1e-3, "high-velocity": 10.0}
 def chosen(scene: Scene, standard: Sequence[str], *, quick: bool) -> list[Job]:
     """Return a job for each chart: of the standard scenes that are named, or else of the scene.
 
-    If a scene has a suitable steady state, its chart comes before that of the transient.
-
-    Raises
-    ------
-    ValueError
-        If there is no such standard scene, or the indenter is not a parabola.
+    The chart of steady sliding, where it suits the scene, comes before that of the transient.
     """
     for name in standard:
         if name not in (*STANDARD, ALL):

@@ -70,21 +70,7 @@ ATLAS = {
 
 
 def findings(only: Sequence[str] = ()) -> Iterator[Finding]:
-    """Compute the entries named in `only`, or all of them, one after the other.
-
-    Raises
-    ------
-    ValueError
-        If there is no such entry; before anything is computed.
-
-    Examples
-    --------
-    >>> (found,) = findings(["cancellation"])
-    >>> found.outcome.wrong
-    0.0
-    >>> print(f"{found.outcome.package:.12g}")
-    1.22474487139e-12
-    """
+    """Compute the entries named in `only`, or all of them; `ValueError` if there is no such entry."""
     for key in only:
         if key not in ATLAS:
             raise ValueError(f'`only` "{key}": {nearest(key, ATLAS)}')

@@ -50,7 +50,7 @@ def _moves(problem: Problem) -> bool:
 
 
 def _starts_forward(problem: Problem) -> bool:
-    """Return whether the drive number is positive and constant, as the slow manifold needs it."""
+    """Whether the drive number is positive and constant, as the slow manifold needs it."""
     numbers = [number for _, _, number in problem.pieces]
     return _moves(problem) and len(numbers) == 1 and not callable(numbers[0]) and numbers[0] > 0.0
 

@@ -35,9 +35,8 @@ DETUNED = 2.02
 
 def _without_memory(pieces: Sequence[naive.Piece], epsilon: float, s: naive.Array) -> Any:
     """Return d, f_z and f_x by SciPy's Radau on the two states, with the edges of Eqs. 32 and 33."""
-    return naive.without_memory(
-        pieces, s, partial(naive.two_states, epsilon=epsilon), "Radau", RTOL
-    )[0]
+    law_of = partial(naive.two_states, epsilon=epsilon)
+    return naive.without_memory(pieces, s, law_of, "Radau", RTOL)[0]
 
 
 def _compare(
@@ -155,9 +154,8 @@ def _past_the_maximum() -> naive.Outcome:
 def _reversal_forgotten() -> naive.Outcome:
     end, number, s = 1.4, 3.0, np.linspace(0.0, 1.4, 351)
     rigid = naive.scaled_scene([(0.0, end, number)], 0.05)
-    scene = replace(
-        rigid, drive=replace(rigid.drive, stiffness=2.0 * naive.LOAD, mass=0.01 * naive.LOAD)
-    )
+    drive = replace(rigid.drive, stiffness=2.0 * naive.LOAD, mass=0.01 * naive.LOAD)
+    scene = replace(rigid, drive=drive)
     ours: Any = transient(scene, at=s, rtol=RTOL, certify=False)
     d, v, _, w = _on_spring(StaticState.of(scene), s)
     states = zip(d, v, number - w, strict=True)
@@ -194,10 +192,8 @@ def _instability() -> naive.Outcome:
 
 def _force(scheme: str, times: Any, time_step: float) -> Any:
     """Return the normal force on a fixed indenter, which should be constant."""
-    return elements(
-        Scene.table1("fixed"), per_length=COARSE, scheme=scheme, at=times, time_step=time_step,
-        certify=False,
-    ).normal_force  # fmt: skip
+    how = {"per_length": COARSE, "scheme": scheme, "at": times, "time_step": time_step}
+    return elements(Scene.table1("fixed"), certify=False, **how).normal_force
 
 
 def _forces(times: Any, time_step: float, said: str = "") -> naive.Outcome:

@@ -56,16 +56,7 @@ def scaled_scene(pieces: Sequence[Piece], epsilon: float) -> Scene:
 def closed_forms(d: float, v: float, number: float) -> tuple[float, float]:
     """Return f_z and f_x with the edges of Eqs. 32 and 33 as written, which have no memory.
 
-    The radicand of Eq. 33 is taken as zero where it is negative, so that no square root fails. Where the
-    drive number is negative, the forces are mirrored.
-
-    Examples
-    --------
-    >>> closed_forms(1.0, 0.0, 0.0)  # at rest: the static load, no friction
-    (1.0, -0.0)
-    >>> forward, back = (closed_forms(1.0, 0.0, number) for number in (0.5, -0.5))
-    >>> forward[0] == back[0], forward[1] == -back[1]
-    (True, True)
+    A negative radicand of Eq. 33 is taken as zero; for a negative drive number the forces are mirrored.
     """
     speed = abs(number)
     l, r = -math.sqrt(max(d, 0.0)), math.sqrt(max(d + v + speed * speed, 0.0)) - speed
@@ -91,13 +82,7 @@ def two_states(number: float | Callable[[float], float], epsilon: float, kappa: 
 def solve_by_scipy(
     law: Law, ends: tuple[float, float], y: Any, s: Array, method: str, rtol: float
 ) -> tuple[Array, int]:
-    """Return the states at the instants and at the end by `solve_ivp`, and the evaluations.
-
-    Raises
-    ------
-    ArithmeticError
-        If it does not succeed.
-    """
+    """Return the states at the instants and at the end by `solve_ivp`, and the evaluations."""
     tolerances = {"rtol": max(rtol, 3e-14), "atol": 0.01 * rtol}
     with np.errstate(all="ignore"):
         try:
@@ -127,9 +112,8 @@ def without_memory(
 def stale_elements(scene: Scene, per_length: float) -> tuple[Array, Array]:
     """Return t (s) and depth (m) by the paper's scheme, with surfaces kept fixed within a step.
 
-    In every stage of the Runge-Kutta method an element is taken to be in contact if the indenter is
-    below the surface that the element had at the end of the last step. The indenter must be a parabola
-    under a dead weight, driven with one velocity.
+    In each Runge-Kutta stage an element touches if the indenter is below where it was at the end of the last
+    step. For a parabola under a dead weight, driven with one velocity.
     """
     R: float = scene.indenter.radius  # type: ignore[union-attr]
     K, tau = scene.foundation.stiffness, scene.foundation.retardation_time

@@ -158,12 +158,6 @@ def errors(found: Curves, right: Curves) -> dict[str, float]:
 
     Depths are relative to the static depth, forces to the largest friction force of the run; L2 is the
     root of the mean square over the instants.
-
-    Examples
-    --------
-    >>> right = Curves(np.array([1.0, 0.5]), np.array([2.0, 1.0]))
-    >>> errors(Curves(np.array([1.0, 0.4]), np.array([2.2, 1.0])), right)["peak friction"].__round__(6)
-    0.1
     """
     peaks = [float(np.abs(curves.friction).max()) for curves in (found, right)]
     largest = peaks[1] or 1.0

@@ -81,14 +81,7 @@ class Map:
 
 
 def contact_lengths(scene: Scene) -> tuple[float, float]:
-    """Return the contact lengths (m) that bound the step: in steady sliding, and at the static depth.
-
-    Examples
-    --------
-    >>> steady, first = contact_lengths(Scene())
-    >>> print(f"{steady * 1e3:.2f} {first * 1e3:.1f} mm")
-    1.43 2.7 mm
-    """
+    """Return the contact lengths (m) that bound the step: in steady sliding, and at the static depth."""
     model = Model.of(scene)
     return lengths(model, model.path(scene))
 
@@ -97,18 +90,13 @@ def _walk(
     scene: Scene, name: str, per_length: float, time_step: float, *, nudge: float = 0.0,
     steady: SteadyState | None = None,
 ) -> Iterator[IndenterState]:  # fmt: skip
-    """Step from rest, or as steady sliding has left the elements, without checks for instability.
-
-    The first velocity is `nudge`. The steps end if the indenter sinks too deep.
-    """
+    """Step from rest or from steady sliding, with the first velocity `nudge`, until it sinks too deep."""
     scheme = SCHEMES[name]
     model = Model.of(scene, 1.0 / per_length, parts=scheme.row.parts_of_elements)
     row = ElementRow(model, model.path(scene), DEEP)
     state = IndenterState(0.0, model.depth, nudge)
     if steady is not None:
-        depth, front, back = (
-            float(x) for x in (steady.depth, steady.leading_edge, steady.trailing_edge)
-        )
+        depth, front, back = map(float, (steady.depth, steady.leading_edge, steady.trailing_edge))
         left = depth - float(model.height(back))
 
         def surface(x: Array, y: float) -> Array:
@@ -143,14 +131,6 @@ def growth(
     Above 1 the scheme is unstable, below 1 stable. The indenter is a parabola that is driven with one
     positive velocity. With `steady` it begins in steady sliding; else it begins at its static depth,
     where the very first steps count, for the contact soon changes.
-
-    Examples
-    --------
-    >>> slow = Scene(drive=Drive(velocity="10 mm/s"))
-    >>> growth(slow, "paper", 2e5, 1e-3, steady=True) > 1.0
-    True
-    >>> growth(slow, "edge-corrected", 2e5, 1e-3, steady=True) < 1.0
-    True
     """
     sliding = steady_sliding(scene) if steady else None
     depth = StaticState.of(scene).depth if sliding is None else float(sliding.depth)
@@ -183,11 +163,7 @@ def velocity_map(scheme: str, velocities: Array, retardation_times: Array) -> Ma
 
 
 def step_map(scheme: str, numbers: Array, steps: Array) -> Map:
-    """Return the map over the drive number lambda and the step, in units of the limit of F15.
-
-    That limit is the one of the paper's scheme in steady sliding, or of Euler's method for that; the
-    inertia number is that of Table 1.
-    """
+    """Return the map over lambda and the step over the limit (F15) of the scheme, or else of the paper's."""
     epsilon = StaticState.of(Scene()).inertia_number
     limited = SCHEMES[scheme if SCHEMES[scheme].tableau else "paper"]
 

@@ -31,12 +31,8 @@ NAMES = "depth", "friction coefficient"
 
 def suits(scene: Scene) -> bool:
     """Return whether a scene has this chart: a parabola, a dead weight, a constant velocity above 0."""
-    return (
-        not lacks_paper_model(scene)
-        and scene.support.spring == 0.0
-        and scene.drive.velocity is not None
-        and scene.drive.velocity > 0.0
-    )
+    forward = (scene.drive.velocity or 0.0) > 0.0
+    return not lacks_paper_model(scene) and scene.support.spring == 0.0 and forward
 
 
 @dataclass(frozen=True)
@@ -91,9 +87,8 @@ class SteadyProblem:
     def reference(self) -> Reference:
         """Return the solution by Simpson's rule, compared with that from the ratio q."""
         right, other = self.by_simpson(), self.by_ratio()
-        return Reference(
-            right, _errors(other, right), ("Simpson's rule, 40 digits", "F2, 40 digits")
-        )
+        names = "Simpson's rule, 40 digits", "F2, 40 digits"
+        return Reference(right, _errors(other, right), names)
 
     def assess(self, found: Any, right: Reference, _: float | None) -> tuple[dict[str, float], str]:
         """Return the errors; how many of them a method may have is not known."""

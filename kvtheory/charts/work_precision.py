@@ -29,11 +29,9 @@ class TimedOutError(Exception):
 
 
 REASON_OF: dict[type[BaseException], str] = {
-    TimedOutError: "timed out",
-    DivergenceError: "unstable",
-    ArithmeticError: "not converged",
-    ValueError: "refused",
-}
+    TimedOutError: "timed out", DivergenceError: "unstable",
+    ArithmeticError: "not converged", ValueError: "refused",
+}  # fmt: skip
 """Why a run failed, by its exception."""
 
 
@@ -85,10 +83,7 @@ class Method:
 
 @dataclass(frozen=True)
 class Effort:
-    """Limits of a chart: repeats of each setting, seconds for one run and for all repeats.
-
-    Only one of `every` settings of a parameter is taken.
-    """
+    """Repeats of each setting, seconds for one run and for all repeats; one of `every` settings is taken."""
 
     repeats: int
     longest: float
@@ -186,10 +181,9 @@ def make_chart(
 def _attempt(
     problem: Any, method: Method, right: Reference, points: list[Point], effort: Effort
 ) -> float:
-    """Run each setting once, the cheapest first, and keep why it failed; return the time of the first call.
+    """Run each setting once, and keep why it failed; return the time of a call before, which compiles.
 
-    That call imports and compiles, and is made separately. Once a setting has timed out, the more expensive
-    ones count as timed out and are not begun.
+    Once a setting has timed out, the more expensive ones count as timed out and are not begun.
     """
     rated = method.kind == "numerical" and method.knob == "rtol"
     clock = Clock(effort.longest)

@@ -59,10 +59,7 @@ QUARTER = 0.5 * math.pi
 
 
 class Resolution(NamedTuple):
-    """Spacing of the elements (m) and time step (s), and whether they are known or assumed.
-
-    `spacing_read` says that the spacing was estimated from the sawtooth of the data.
-    """
+    """Spacing of elements (m) and time step (s): known or assumed, the spacing also read from a sawtooth."""
 
     spacing: float
     time_step: float
@@ -176,7 +173,6 @@ def _lag(theory: Theory, curves: Curves, time: Array, width: Array) -> Array:
 
 
 def _contact_length(curves: Mapping[str, Array]) -> Array:
-    """Return the length of the contact in m; zero in flight."""
     return np.asarray(np.nan_to_num(np.abs(curves["trailing_edge"] - curves["leading_edge"])))
 
 

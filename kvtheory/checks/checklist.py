@@ -1,17 +1,14 @@
-"""The checks: each compares one number with what theory allows for it.
+"""The checks: each compares one number with what theory allows, or raises `NotMade` with the reason."""
 
-A check is a row: its name, the equation that it rests on, what it measures, and a function of a `Case` that
-returns the measured number, the allowed one and a note, or raises `NotMade` with the reason.
-"""
-
+import math
 from collections.abc import Callable, Iterator
 from functools import partial
 from typing import NamedTuple
 
 import numpy as np
 
-from kvtheory.checks.comparison_case import Case, NotMade, rms
-from kvtheory.checks.discretization import COARSE, NOISE, NUMBER, elements, sawtooth, stability
+from kvtheory.checks import comparison_case as case_of
+from kvtheory.checks.comparison_case import COARSE, Case, NotMade, rms
 from kvtheory.checks.noise import SURE, extreme
 from kvtheory.checks.settling import PHASE, fast_constant, phase, slow_constant, steady_limit
 from kvtheory.checks.theory import Array, Curves
@@ -137,26 +134,21 @@ def balance(case: Case) -> Measured:
     The difference of both sides, over int phi dt, is the mean force that is missing in the data.
     """
     depth, force = case.bands["depth"], case.bands["normal_force"]
-    support, static, M = (
-        case.theory.scene.support,
-        case.theory.static,
-        case.theory.scene.support.mass,
-    )
+    support, static = case.theory.scene.support, case.theory.static
     if case.theory.scene.held:
         raise NotMade("the indenter is fixed")
     smooth = np.nan_to_num(force.systematic) + 0.5 * np.nan_to_num(force.high - force.low)
     found = []
     for window in windows(case.time):
-        rows, inertia = window.rows, M * window.inertia
+        rows, inertia = window.rows, support.mass * window.inertia
         lacks, sampled = (
             abs(window.missing_force(c, support, static.depth)) for c in (case.columns, case.now)
         )
         steady = np.abs(window.force) @ smooth[rows] + np.abs(inertia) @ depth.rounding[rows]
-        sigma = np.hypot(
-            np.linalg.norm(depth.noise[rows] * inertia),
-            np.linalg.norm(force.noise[rows] * window.force),
+        parts = depth.noise[rows] * inertia, force.noise[rows] * window.force
+        random = extreme(case.time.size) * math.hypot(
+            *(float(np.linalg.norm(part)) for part in parts)
         )
-        random = extreme(case.time.size) * float(sigma)
         limit = case.tolerance * (2.0 * sampled + (float(steady) + random) / window.impulse)
         first, last = case.time[rows][[0, -1]] * 1e3
         found.append((lacks, limit, f"worst from {first:.4g} to {last:.4g} ms"))
@@ -183,9 +175,8 @@ def root_mean_square(case: Case, name: str) -> Measured:
 def rows_of(case: Case) -> Iterator[Row]:
     """Yield the checks for a case in the order in which they are shown."""
     scene = case.theory.scene
-    yield Row(
-        SAMPLING, "F12" if scene.drive.rigid else "F22", "s, mean distance of samples", sampling
-    )
+    theorem = "F12" if scene.drive.rigid else "F22"
+    yield Row(SAMPLING, theorem, "s, mean distance of samples", sampling)
     rest = "depth, relative to the static depth"
     yield Row("initial rest state", "Eq. 40", rest, initial_rest, ("depth",))
     yield Row("jump at t = 0+", "F11", f"distance from theory, {RELATIVE}", jump)
@@ -204,9 +195,9 @@ def rows_of(case: Case) -> Iterator[Row]:
         error = "error that elements and steps may make in the sliding velocity, relative to it"
         yield Row(PHASE, "F22", error, phase)
     sigma = "standard deviation, relative to the load"
-    yield Row(NOISE, "F15", sigma, sawtooth, ("normal_force",))
-    yield Row(COARSE, "F15", "half an element's force, relative to the load", elements)
-    yield Row(NUMBER, "F15", "dt C L/M", stability)
+    yield Row(case_of.NOISE, "F15", sigma, case_of.sawtooth, ("normal_force",))
+    yield Row(COARSE, "F15", "half an element's force, relative to the load", case_of.elements)
+    yield Row(case_of.NUMBER, "F15", "dt C L/M", case_of.stability)
 
 
 def judge(case: Case) -> tuple[Check, ...]:

@@ -5,11 +5,11 @@ from dataclasses import replace
 
 import numpy as np
 
+from kvtheory.checks import comparison_case as case_of
 from kvtheory.checks import faults
 from kvtheory.checks.checklist import SAMPLING, judge
-from kvtheory.checks.comparison_case import COARSEST, LARGEST_SAWTOOTH, Case, make_case
+from kvtheory.checks.comparison_case import COARSE, UNSTABLE, Case, make_case
 from kvtheory.checks.contact_rules import mistakes
-from kvtheory.checks.discretization import COARSE, UNSTABLE, symptoms
 from kvtheory.checks.fitting import Bench, Hypothesis, Trial, bench
 from kvtheory.checks.reading import Series
 from kvtheory.checks.settling import PHASE
@@ -24,16 +24,15 @@ FAMILIES: tuple[tuple[Family, float], ...] = (
     (faults.time_offset, 0.97), (faults.parameters, 0.9), (faults.damper, 0.9),
     (faults.scales_and_offsets, 0.97), (mistakes, 1.0),
 )  # fmt: skip
-"""The families in the order in which they are tried, and the part of the difference that one of their faults
-must explain to end the search: a sign or a unit is not fitted, so that little is enough."""
+"""Families in the order in which they are tried, and the part of the difference that a fault must explain to
+end the search: a sign or a unit is not fitted, so that little is enough."""
 BY_ELEMENTS: tuple[tuple[Family, float], ...] = (
     (faults.signs_and_units, 0.5), (faults.other_scenes, 0.9), (faults.scales_and_offsets, 0.97),
     (faults.parameters, 0.9),
 )  # fmt: skip
 """Those where each theory is a run of many elements."""
 NOT_TRIED = (
-    "; other units and offsets of the time, and wrong contact rules, are not tried where theory is a "
-    "simulation"
+    "; units and offsets of the time, and contact rules, are not tried where theory is by elements"
 )
 NAMED = 0.4
 """Part of the difference that a fault must explain to be named."""
@@ -58,16 +57,15 @@ def compare(
     """Compare a series with theory; `kvtheory.compare` documents it."""
     series = replace(series, scheme=scheme or series.scheme)
     try:
-        case = make_case(theory, series, per_length, tolerance, COARSEST)
+        case = make_case(theory, series, per_length, tolerance, case_of.COARSEST)
     except ArithmeticError as error:
-        raise ArithmeticError(
-            f"{series.source}: the theory cannot be computed up to t = {series.time[-1]:.6g} s, where the "
-            f"data end ({error}); is the unit of the time right?"
-        ) from None
+        until = f"up to t = {series.time[-1]:.6g} s, where the data end ({error})"
+        told = f"{series.source}: the theory cannot be computed {until}; is the unit of the time right?"
+        raise ArithmeticError(told) from None
     checks = judge(case)
     others = {check.name for check in checks if check.ok is False} - {COARSE}
     if others and case.resolution.spacing_read:  # a large noise is then not that of elements alone
-        case = make_case(theory, series, per_length, tolerance, LARGEST_SAWTOOTH)
+        case = make_case(theory, series, per_length, tolerance, case_of.LARGEST_SAWTOOTH)
         checks = judge(case)
     text, explanations = diagnose(case, checks)
     if series.ignored:
@@ -117,7 +115,9 @@ def diagnose(case: Case, checks: Sequence[Check]) -> tuple[str, tuple[Explanatio
     if known == "cannot tell":
         why = "; ".join(INCONCLUSIVE[check.name] for check in failed)
         return f"{why}; all of the other {made - len(failed)} checks that could be made passed.", ()
-    found = sorted([*symptoms(case, failed), *explanations(case)], key=lambda each: -each.rank)
+    found = sorted(
+        [*case_of.symptoms(case, failed), *explanations(case)], key=lambda each: -each.rank
+    )
     named = [each for each in found if each.rank >= NAMED]
     return _words(case, failed, named), tuple((named or found)[:SHOWN])
 
@@ -161,10 +161,9 @@ def _words(case: Case, failed: Sequence[Check], named: Sequence[Explanation]) ->
     first, *rest = named
     symbol, text, also = first.name.removeprefix(faults.WRONG), _sentence(first.text), ""
     if first.enough:
-        others = [
-            e for e in rest if e.enough and e.name.removeprefix(faults.WRONG) not in first.alike
-        ]
-        also = f" Also possible: {'; '.join(each.text for each in others)}." if others else ""
+        alike = {faults.WRONG + name for name in first.alike} | {*first.alike}
+        others = [each.text for each in rest if each.enough and each.name not in alike]
+        also = f" Also possible: {'; '.join(others)}." if others else ""
     else:
         part = "" if first.explained is None else f", {first.explained:.0%} of the difference"
         text = f"Closest, but not all{part}: {first.text}"

@@ -1,14 +1,17 @@
-"""A series beside theory, and what all checks have in common."""
+"""A series beside theory: what all checks have in common, and what its elements and time steps do (F15)."""
 
 import math
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from kvtheory.checks.allowances import Band, Resolution, allowance, resolution
-from kvtheory.checks.noise import SURE, gaps
+from kvtheory.checks.allowances import Band, Resolution, allowance, contact_extent, resolution
+from kvtheory.checks.noise import SURE, gaps, noise
 from kvtheory.checks.reading import Series
 from kvtheory.checks.theory import CURVES, Array, Curves, Theory
+from kvtheory.results.comparison import Check, Explanation
+from kvtheory.results.schemes import SCHEME_ROWS
 
 THEORY_RTOL = 1e-7
 """Tolerance of the theory: its error is far below every allowance."""
@@ -18,21 +21,31 @@ LARGEST_SAWTOOTH, COARSEST = 0.025, 0.1
 """Of the load: if half an element at the edge matters more, the contact is not resolved; if it would have to
 matter more than the second, the data are wrong rather than coarse."""
 MARGIN, IN_STEP = 1.4, 1.75
-"""Factors by which the spacing may exceed the one assumed, or that of an even sawtooth; and that of an uneven
-one, for samples that are nearly in step with the elements that enter see little of it."""
+"""Factors by which the spacing may exceed the one assumed or that of an even sawtooth; and that of an uneven
+one, of which samples nearly in step with the elements see little."""
 MEDIAN_GAP, LARGE_GAP, QUANTILE = 0.43, 1.08, 0.95
 """Of b: median and 95th percentile of the gaps of a sawtooth of +-b that is sampled at random."""
 EVEN = 0.6
 """Of the ratio of both that is expected: below it, a part of the samples is in step."""
 FINEST = 0.1
-"""Of the spacing assumed: a smaller sawtooth is that of samples all in step, or of rounding if the digits are
-as coarse."""
+"""Of the spacing assumed: a smaller sawtooth is that of samples all in step, or of rounding."""
 ROUNDED = 1.64
 """Of half the last digit: how far rounding takes a value from its neighbours, in the units of `gaps`."""
 COMMON = 0.5
 """Squared correlation of the noise of both forces, from which on it is taken for the sawtooth of F15."""
 LOUD = 4.0
 """Times the median: larger differences are jumps, and are clipped to this."""
+NOISE, COARSE, NUMBER = "discretization noise", "elements enough", "stability number"
+"""The names of the checks."""
+NEGLIGIBLE, LARGEST_UNCORRELATED = 1e-9, 0.09
+"""Of the load: smaller noise is none; and a little below where noise ceases to be allowed for."""
+LIKELY, READ = 0.8, 0.75
+"""Ranks of what is seen but cannot be tried: a step that is not known, and a spacing that is estimated from
+the sawtooth."""
+LARGE, MANY = 10.0, 30.0
+"""Of a scale, and of what it was at first: a difference beyond both has grown."""
+UNSTABLE, FEW = "unstable time step", "too few elements"
+"""The names of the faults."""
 
 
 class NotMade(Exception):  # noqa: N818
@@ -80,7 +93,7 @@ class Case:
         return np.asarray(self.tolerance * (values + SMALLEST))
 
     def allowed(self, name: str) -> Array:
-        """Return the same in the unit of the curve."""
+        """Return the limit in the unit of the curve."""
         return np.asarray(self.limit(name) * self.theory.scales[name])
 
     def rms_limit(self, name: str) -> float:
@@ -115,11 +128,7 @@ def make_case(
 
 
 def _coarser(case: Case) -> float:
-    """Return how much wider the spacing is than assumed, by the sawtooth of +-b in the normal force (F15).
-
-    A sawtooth of which samples in step with the elements show little is no evidence against as many as are
-    assumed, nor is the lack of one.
-    """
+    """Return how much wider the spacing is than assumed, by the sawtooth of +-b in the normal force (F15)."""
     force = "normal_force"
     gap, rows = gaps(case.time, case.columns[force] - case.now[force])
     b, digits = case.edge_force[rows], case.bands[force].rounding[rows]
@@ -153,3 +162,110 @@ def rms(values: Array) -> float:
     """Return the root mean square of the finite values."""
     known = values[np.isfinite(values)]
     return float(np.sqrt(np.mean(known * known))) if known.size else 0.0
+
+
+def sawtooth(case: Case) -> tuple[float, float, str]:
+    """Compare the noise of the normal force with that of elements entering at the leading edge."""
+    W, fine = case.theory.static.load, case.resolution
+    sigma, density = float(np.median(case.bands["normal_force"].noise)) / W, 1e-3 / fine.spacing
+    if not fine.spacing_known:
+        sound = (common_noise(case) or 0.0) < COMMON
+        limit = LARGEST_UNCORRELATED if sound else COARSEST
+        kind = "not that of elements" if sound else "common to both forces, as that of elements"
+        how = "estimated from them" if fine.spacing_read else "assumed"
+        return sigma, case.tolerance * limit, f"{kind}; {density:.3g} elements per mm, {how}"
+    allowed = case.tolerance * (2.0 * float(case.edge_force.max()) / W + NEGLIGIBLE)
+    b = float(np.median(case.edge_force)) / W
+    return sigma, allowed, f"N = {density:.4g} /mm, sawtooth +-{b:.2g} of the load"
+
+
+def elements(case: Case) -> tuple[float, float, str]:
+    """Compare one element at the leading edge with the load."""
+    fine, b = case.resolution, float(np.median(case.edge_force)) / case.theory.static.load
+    if not fine.spacing_known and not fine.spacing_read:
+        told = (
+            "the element density is not given (per_length), and cannot be estimated from the forces"
+        )
+        raise NotMade(told)
+    if not case.theory.scene.indenter.per_width:
+        told = f"{b:.2g} of the load if all strips gain an element at the same time"
+        raise NotMade(f"for a ball only an upper bound is known, {told}")
+    if fine.spacing_known:
+        return b, case.tolerance * LARGEST_SAWTOOTH, ""
+    note = f"about {1e-3 * IN_STEP / fine.spacing:.2g} /mm, estimated from the sawtooth"
+    return b / IN_STEP, case.tolerance * LARGEST_SAWTOOTH, note
+
+
+def _stability_number(case: Case, step: float) -> float:
+    """Return dt C L/M of a time step in s, with the longest contact."""
+    extent = float(contact_extent(case.theory, case.now).max())
+    return step * case.theory.scene.foundation.damping * extent / case.theory.scene.support.mass
+
+
+def stability(case: Case) -> tuple[float, float, str]:
+    """Compare dt C L/M of an explicit scheme with its limit."""
+    scene, scheme = case.theory.scene, case.series.scheme or ""
+    limit = SCHEME_ROWS[scheme].stability_limit if scheme in SCHEME_ROWS else math.nan
+    for reason, holds in (
+        ("the indenter is fixed", scene.held),
+        ("F15 holds for Kelvin-Voigt", bool(scene.foundation.arms)),
+        ("the time step is not known", not case.resolution.step_known),
+        (f'the scheme "{scheme}" is stable at any time step', math.isinf(limit)),
+        (f'no limit is known of the scheme "{scheme}"', math.isnan(limit)),
+    ):
+        if holds:
+            raise NotMade(reason)
+    return _stability_number(case, case.resolution.time_step), limit, f"scheme {scheme}"
+
+
+def symptoms(case: Case, failed: Sequence[Check]) -> Iterator[Explanation]:
+    """Yield the faults that show by themselves: in a failed check of elements or steps, or in growth."""
+    known, density = case.resolution.spacing_known, 1e-3 / case.resolution.spacing
+    if not known:
+        density *= IN_STEP
+    for check in failed:
+        measured, allowed = check.measured or 0.0, check.allowed or 1.0
+        if check.name == NUMBER:
+            longest = case.resolution.time_step * allowed / measured
+            text = f"dt C L/M = {measured:.3g}, above {allowed:.4g}; take dt below {longest * 1e3:.3g} ms"
+            yield Explanation(UNSTABLE, f"the time step is unstable (F15): {text}", 1.0, True)
+        elif check.name == COARSE:
+            text = (
+                f"too few elements (F15): one that enters at the leading edge changes the normal force by "
+                f"{2.0 * measured:.2g} of the load; take {density * measured / allowed:.2g} /mm or more "
+                f"rather than {density:.3g} /mm"
+            )
+            yield Explanation(FEW, text, 1.0 if known else READ, True)
+    if case.theory.scene.held or case.resolution.step_known:
+        return
+    # Do the data look like an explicit scheme beyond its stability limit?
+    steps = np.diff(case.time)
+    h = float(steps[steps > 0.0].min())
+    number, force, loud = _stability_number(case, h), "normal_force", 0.0
+    if force in case.names:  # its noise is not capped here
+        loud = float(np.median(noise(case.time, case.residual(force), case.now[force])))
+    rough = loud > LARGEST_SAWTOOTH and (common_noise(case) or 0.0) > COMMON
+    limits = [row.stability_limit for row in SCHEME_ROWS.values() if row.stability_limit < np.inf]
+    needs = f"an explicit scheme needs dt C L/M below {max(limits):.4g}"
+    if number > min(limits) and rough:
+        now = f"{number:.3g} with their smallest interval of {h * 1e3:.3g} ms"
+        text = f"if the data hold every step: {needs}, and it is {now}"
+    elif _grows(case):
+        text = f"for the data grow beyond all bounds: {needs}"
+    else:
+        return
+    yield Explanation(UNSTABLE, f"the time step is unstable (F15), {text}", LIKELY, True)
+
+
+def _grows(case: Case) -> bool:
+    """Whether the difference to theory becomes large, and began small.
+
+    A depth may come back, for an indenter that was thrown off falls; a force jumps without growing.
+    """
+    quarter = max(case.time.size // 4, 1)
+    for name, late, early in (("depth", 0, 1), ("normal_force", -quarter, quarter)):
+        if name in case.names:
+            off = np.abs(case.residual(name))
+            if off[late:].max() > max(LARGE, MANY * off[:early].max()):
+                return True
+    return False

@@ -1,6 +1,6 @@
 """Mistakes in a simulation itself, as data: a wrong contact rule, or a wrong start.
 
-Our paper's scheme makes the mistake, and what that changes is added to theory.
+The paper's scheme makes the mistake, and what that changes is added to theory.
 """
 
 import math
@@ -85,7 +85,6 @@ def mistakes(bench: Bench) -> Iterator[Hypothesis]:
     span = 0.0 if resolution.step_known else math.log(SPAN)
 
     def changed(wrong: Curves | None, share: float = 1.0) -> Pair | None:
-        """Return theory plus a share of the change that a mistake makes."""
         if wrong is None:
             return None
         moving = share * (bench.time >= 0.0)
@@ -105,16 +104,13 @@ def mistakes(bench: Bench) -> Iterator[Hypothesis]:
             )  # fmt: skip
     deeper = None if scene.held else _simulated(bench, {"start": 1.0 + DEEPER})
     if deeper is not None:
-        yield Hypothesis(
-            "wrong initial depth",
-            lambda x: (
-                f"the depth at t = 0 is {1.0 + x:.4g} times the static depth, at which theory has the "
-                "indenter at rest (Eq. 40)"
-            ),
-            lambda x: changed(deeper, x / DEEPER),
-            [0.0],
-            factor=lambda x: 1.0 + x,
+        text = (
+            "the depth at t = 0 is {:.4g} times the static depth, at which theory starts (Eq. 40)"
         )
+        yield Hypothesis(
+            "wrong initial depth", lambda x: text.format(1.0 + x),
+            lambda x: changed(deeper, x / DEEPER), [0.0], factor=lambda x: 1.0 + x,
+        )  # fmt: skip
 
 
 def _simulated(bench: Bench, does: Mapping[str, Any], step: float | None = None) -> Curves | None:

@@ -145,17 +145,17 @@ def damper(bench: Bench) -> Iterator[Hypothesis]:
     if scene.drive.stiffness is None or scene.drive.damping:
         return
     critical = 2.0 * math.sqrt(scene.drive.stiffness * scene.drive_mass)
-    yield Hypothesis(
-        f"{WRONG}c_x",
-        lambda x: (
-            f"the data fit a damper c_x = {math.exp(x) * critical:.4g} N s/m^2 beside the spring in the "
-            "drive, which has none"
-        ),
-        lambda x: bench.against(
-            replace(scene, drive=scene.drive.changed(damping=math.exp(x) * critical))
-        ),
-        np.log(DAMPING_SHARES).tolist(),
+    text = (
+        "the data fit a damper c_x = {:.4g} N s/m^2 beside the spring in the drive, which has none"
     )
+
+    def damped(x: float) -> Pair | None:
+        drive = scene.drive.changed(damping=math.exp(x) * critical)
+        return bench.against(replace(scene, drive=drive))
+
+    starts = np.log(DAMPING_SHARES).tolist()
+    words = lambda x: text.format(math.exp(x) * critical)  # noqa: E731
+    yield Hypothesis(f"{WRONG}c_x", words, damped, starts)
 
 
 def signs_and_units(bench: Bench) -> Iterator[Hypothesis]:
@@ -172,10 +172,7 @@ def signs_and_units(bench: Bench) -> Iterator[Hypothesis]:
     edges = GROUPS["both edges"]
     if set(edges) <= set(bench.names):
         exchanged = dict(zip(edges, [bench.columns[name] for name in reversed(edges)], strict=True))
-        text = (
-            "leading and trailing edge are exchanged: the leading edge is where the foundation enters, at "
-            "x < 0 for V > 0"
-        )
+        text = "the edges are exchanged: the leading one is where the foundation enters, at x < 0 for V > 0"
         yield fixed("edges exchanged", text, ({**bench.columns, **exchanged}, bench.now))
     backward = scaled_scene(bench.theory.scene, {"drive.velocity": 1.0}, -1.0)
     text = "the base moves in the other direction: x and V have the other sign"
@@ -187,20 +184,18 @@ def scales_and_offsets(bench: Bench) -> Iterator[Hypothesis]:
     theory, columns = bench.theory, bench.columns
     for title, factor, exact, pair in _factors(bench):
         if _power_of_ten(factor) is None:
-            scale = f"{1.0 / exact:.4g} times theory, while the rest agrees"
-            yield fixed(
-                f"scale of {title}", f"{title.replace('_', ' ')}: {scale}", pair, 1.0 / exact
+            text = (
+                f"{title.replace('_', ' ')}: {1.0 / exact:.4g} times theory, while the rest agrees"
             )
+            yield fixed(f"scale of {title}", text, pair, 1.0 / exact)
 
     def shifted(title: str, name: str, by: object, words: str, unit: float) -> Hypothesis:
         """Return the fault of a column that is off by x times `by`; the text shows x times `unit`."""
         return Hypothesis(
-            f"{title} of {name}",
-            lambda x: words.format(x * unit, 1e3 * x * unit),
-            lambda x: ({**columns, name: columns[name] - x * np.asarray(by)}, bench.now),
-            [0.0],
+            f"{title} of {name}", lambda x: words.format(x * unit, 1e3 * x * unit),
+            lambda x: ({**columns, name: columns[name] - x * np.asarray(by)}, bench.now), [0.0],
             factor=partial(float.__mul__, unit),
-        )
+        )  # fmt: skip
 
     for name in (name for name in bench.names if name in MEASURED):
         off = f"off by {{:.4g}} {theory.units[name]} throughout, while the rest agrees"
@@ -222,9 +217,8 @@ def _factors(bench: Bench) -> Iterator[tuple[str, float, float, Pair]]:
         if not set(group) <= set(bench.names):
             continue
         limits = [bench.allowed(n) for n in group]
-        data, theory = (
-            np.array([c[n] for n in group]) / limits for c in (bench.columns, bench.now)
-        )
+        pair = bench.columns, bench.now
+        data, theory = (np.array([curves[n] for n in group]) / limits for curves in pair)
         known = np.isfinite(data) & np.isfinite(theory)
         square = float(data[known] @ data[known])
         factor = float(data[known] @ theory[known]) / square if square else math.nan
@@ -252,12 +246,10 @@ def time_offset(bench: Bench) -> Iterator[Hypothesis]:
     change = np.abs(values - values[0])
     onset = bench.time[np.argmax(change >= ONSET * np.nanmax(change))]
     known = [0.0, float(bench.time[0]) / unit, float(onset) / unit]
+    text = "the times are off by {:.6g} ms: in the data the drive starts at that time"
     yield Hypothesis(
-        "time offset",
-        lambda x: (
-            f"the times are off by {x * unit * 1e3:.6g} ms: in the data the drive starts at that time"
-        ),
+        "time offset", lambda x: text.format(x * unit * 1e3),
         lambda x: bench.against(scene, bench.time - x * unit),
         [*known, *(s / HUNDREDTH for p in SHIFTS for s in (p, -p))],
         factor=partial(float.__mul__, unit),
-    )
+    )  # fmt: skip

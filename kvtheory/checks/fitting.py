@@ -1,9 +1,4 @@
-"""Hypotheses about a fault, and how well they fit.
-
-A hypothesis changes the data or the theory. Its unknown, if it has one, is found by nonlinear least squares
-on the differences in units of what is allowed; the covariance of a fit of two unknowns says whether the
-data can distinguish them.
-"""
+"""Hypotheses about a fault: each changes the data or the theory, and is rated by how well these then fit."""
 
 import math
 from collections.abc import Callable, Mapping, Sequence
@@ -117,9 +112,8 @@ class Bench(Case):
         make = cache(hypothesis.make)
         if not hypothesis.starts:
             trials = [self._rated(hypothesis, make(0.0))]
-            if hypothesis.span and trials[0].score < min(
-                (1.0 - WORTH_SEARCHING) * self.start, best
-            ):
+            promising = trials[0].score < min((1.0 - WORTH_SEARCHING) * self.start, best)
+            if hypothesis.span and promising:
 
                 def score(x: float) -> float:
                     trials.append(self._rated(hypothesis, make(x), x))
@@ -180,12 +174,8 @@ class Bench(Case):
 def uncertainty(slope: Array, other: Array) -> float:
     """Return the standard deviation of an unknown while another is free too, by the slopes of n values.
 
-    It is the root of the first entry of n (J^T J)^-1, and infinite if the matrix is singular. The slopes
-    are in units of what is allowed, which is a bound on an error that all values may share, so that many
-    values know no more than one; hence the n.
-
-    >>> uncertainty(np.array([1.0, 1.0]), np.array([0.0, 2.0]))
-    1.4142135623730951
+    It is the root of the first entry of n (J^T J)^-1, infinite for a singular matrix. The slopes are in units
+    of what is allowed, an error that all n values may share: hence the n.
     """
     across = float(slope @ other)
     left = float(slope @ slope) - (across * across / float(other @ other) if across else 0.0)
@@ -212,11 +202,7 @@ def bench(case: Case) -> Bench:
 
 
 def scaled_scene(scene: Scene, powers: Mapping[str, float], factor: float) -> Scene:
-    """Return a scene with its quantities multiplied by powers of a factor.
-
-    >>> scaled_scene(Scene(), {"support.mass": 1.0, "support.gravity": -1.0}, 2.0).support.mass
-    2000.0
-    """
+    """Return a scene with its quantities multiplied by powers of a factor."""
     values = scene.values()
     over = {key: factor**power * values[key] for key, power in powers.items() if key != VELOCITY}
     if VELOCITY in powers:

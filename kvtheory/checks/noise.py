@@ -84,9 +84,6 @@ def rounded(values: Array, fewest: int = FEW_DIGITS[0]) -> Array:
     """Return the rounding error: half the smallest step between values, or half their last digit.
 
     With fewer digits than `fewest` they are taken for exact.
-
-    >>> rounded(np.array([1.23e-4, 4.56e-4, 1.24e-3])).round(9).tolist()
-    [5e-07, 5e-07, 5e-06]
     """
     distinct = np.unique(values[np.isfinite(values)])
     step = float(np.diff(distinct).min()) if distinct.size >= SEVERAL else 0.0
@@ -102,11 +99,7 @@ def rounded(values: Array, fewest: int = FEW_DIGITS[0]) -> Array:
 
 
 def time_rounding(time: Array) -> Array:
-    """Return the rounding error of each time in s, if so many are repeated that they must be rounded.
-
-    >>> time_rounding(np.array([0.0, 0.1, 0.1, 0.1, 0.2])).tolist()
-    [0.1, 0.1, 0.1, 0.1, 0.1]
-    """
+    """Return the rounding error of each time in s, if so many are repeated that they must be rounded."""
     distinct = np.unique(time)
     if distinct.size < 2 or time.size - distinct.size < REPEATED * time.size:
         return np.zeros_like(time)

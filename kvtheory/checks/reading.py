@@ -77,17 +77,8 @@ class Column(NamedTuple):
 def recognise(header: str, units: Mapping[str, str] = SI_UNITS) -> Column | None:
     """Return what a column holds; None if its name is of no quantity, nor nearly.
 
-    `units` are those of the scene: the forces of a ball are whole.
-
-    Raises
-    ------
-    ValueError
-        Naming the column, what it lacks or which unit is expected, and the nearest known name.
-
-    Examples
-    --------
-    >>> recognise("z_A [mm]")
-    Column(header='z_A [mm]', quantity='depth', factor=-0.001)
+    `units` are those of the scene: the forces of a ball are whole. `ValueError` names the column, what it
+    lacks or which unit is expected, and the nearest known name.
     """
     header = header.strip()
     name, unit = (header, "") if plain(header) in KNOWN else parts(header)  # "dz_A/dt" is a name
@@ -96,10 +87,8 @@ def recognise(header: str, units: Mapping[str, str] = SI_UNITS) -> Column | None
         if not near:
             return None
         known = "; ".join(f"{q.lstrip('-')}: {names}" for q, names in SPELLINGS.items())
-        raise ValueError(
-            f'column "{header}": unknown name, did you mean "{KNOWN[near[0]][1]}"?; known names are '
-            f"{known}; rename a column that is something else"
-        )
+        told = f'column "{header}": unknown name, did you mean "{KNOWN[near[0]][1]}"?'
+        raise ValueError(f"{told}; known names are {known}; rename a column that is something else")
     quantity = KNOWN[plain(name)][0]
     sign, quantity = (-1.0, quantity[1:]) if quantity[0] == "-" else (1.0, quantity)
     si = units[quantity]
@@ -133,14 +122,8 @@ def read(data: Any, units: Mapping[str, str] = SI_UNITS) -> Series:
     """Return the series that `data` holds: a path to a CSV, a result, or a mapping of arrays.
 
     In a CSV ``#`` begins a comment, then comes a header with names and units, then numbers. `units` are
-    those of the quantities of the scene, in SI.
-
-    Raises
-    ------
-    ValueError
-        Saying what cannot be recognised or used: a column, a unit, a cell, the order of the times.
-    TypeError
-        If `data` is nothing that can hold a series.
+    those of the quantities of the scene, in SI. `ValueError` says what cannot be recognised or used: a
+    column, a unit, a cell, the order of the times; `TypeError`, that `data` cannot hold a series.
 
     Examples
     --------
@@ -165,10 +148,8 @@ def read(data: Any, units: Mapping[str, str] = SI_UNITS) -> Series:
         source = str(known["scheme"] or getattr(data, "model", None) or type(data).__name__)
         found = {name: getattr(data, name, None) for name in SI_UNITS}
         if found["time"] is None:
-            raise TypeError(
-                "`data`: expected a path to a CSV, a mapping of arrays, or a result with "
-                f"time, depth, ...; got {type(data).__name__}"
-            )
+            what = "a path to a CSV, a mapping of arrays, or a result with time, depth, ..."
+            raise TypeError(f"`data`: expected {what}; got {type(data).__name__}")
         data = {name: values for name, values in found.items() if values is not None}
     heads: list[str] = []
     arrays: list[Array] = []
@@ -215,13 +196,9 @@ def _raise(source: str, problems: Sequence[str]) -> None:
 
 
 def _checked(
-    columns: Sequence[Column | None],
-    heads: Sequence[str],
-    arrays: Iterable[Array],
-    source: str,
-    places: Sequence[str],
-    **known: Any,
-) -> Series:
+    columns: Sequence[Column | None], heads: Sequence[str], arrays: Iterable[Array], source: str,
+    places: Sequence[str], **known: Any,
+) -> Series:  # fmt: skip
     """Return the series of the columns that are known, or raise with every reason why it cannot be judged."""
     pairs = [(c, array) for c, array in zip(columns, arrays, strict=True) if c is not None]
     if not pairs:
@@ -242,10 +219,9 @@ def _checked(
         array = values[column.quantity]
         bad = np.flatnonzero(~np.isfinite(array))
         if bad.size and not (column.quantity in MAY_BE_ABSENT and bad.size < array.size):
-            problems.append(
-                f'column "{column.header}": {bad.size} of {array.size} values are missing, NaN or infinite, '
-                f"the first in {places[bad[0]]}; a simulation that diverges ends like this"
-            )
+            count = f"{bad.size} of {array.size} values are missing, NaN or infinite"
+            first = f"the first in {places[bad[0]]}; a simulation that diverges ends like this"
+            problems.append(f'column "{column.header}": {count}, {first}')
     _raise(source, problems)
     time = values["time"]
     steps = np.diff(time)

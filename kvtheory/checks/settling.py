@@ -1,8 +1,7 @@
 """Checks of how the data settle: the two time constants of F12, the steady limit, or the phase of a cycle.
 
-Near steady sliding the depth settles with the slow time constant alone, and what is left of the force
-balance right after a jump decays with the fast one. The same fit is made to theory at the same times, so
-that the error of the fit itself cancels.
+The depth settles with the slow time constant, the force right after a jump with the fast one. The same fit is
+made to theory at the same times, so that its own error cancels.
 """
 
 import math
@@ -79,10 +78,8 @@ def _fitted(
     limit = uncertainty(t, case.now[curve][use], theory, *errors)
     if not limit < FITTED:
         raise NotMade("the data do not fix it")
-    note = (
-        f"{data * 1e3:.4g} ms from the data, {theory * 1e3:.4g} ms from theory by the same fit, "
-        f"F12: {exact * 1e3:.4g} ms"
-    )
+    note = f"{data * 1e3:.4g} ms from the data, {theory * 1e3:.4g} ms from theory by the same fit"
+    note += f", F12: {exact * 1e3:.4g} ms"
     return abs(data / theory - 1.0), case.tolerance * limit, note
 
 
@@ -92,12 +89,7 @@ def _basis(time: Array, T: float) -> Array:
 
 
 def fit(time: Array, values: Array, expected: float) -> float:
-    """Return T of the best c_0 + c_1 exp(-t/T), for T within a factor of five of the expected one.
-
-    >>> t = np.linspace(0.0, 3.0, 50)
-    >>> round(fit(t, 2.0 - 0.5 * np.exp(-t / 0.7), 1.0), 6)
-    0.7
-    """
+    """Return T of the best c_0 + c_1 exp(-t/T), for T within a factor of five of the expected one."""
 
     def left(log_T: float) -> float:
         basis = _basis(time, np.exp(log_T))

@@ -36,19 +36,18 @@ NO_VELOCITY = 1e-9
 def curves(found: Mapping[str, Any], scene: Scene) -> dict[str, Array]:
     """Return every curve of a solution, including those of a spring for a rigid drive."""
     if scene.drive.rigid:
-        found = {
-            **found, "sliding_velocity": found["velocity"], "spring_force": found["friction_force"],
-        }  # fmt: skip
+        along = {"sliding_velocity": found["velocity"], "spring_force": found["friction_force"]}
+        found = {**found, **along}
     return {name: np.asarray(found[name]) for name in CURVES}
 
 
 class Methods(NamedTuple):
-    """The functions that solve a scene.
+    """The functions that solve a scene; `tell` reports progress: the fraction done, and a text.
 
     `transient` returns the curves of theory by name, for a scene, times (s, increasing) and a tolerance;
     `steady` its exact steady sliding; `rates` the rates (1/s) of small motions about it, for a scene on a
     spring; `elements` the curves of a simulation, for a scene, spacing (m), time step (s), times, and the
-    fields of its contact rule that are wrong. `tell` reports progress: the fraction done, and a text.
+    fields of its contact rule that are wrong.
     """
 
     transient: Callable[[Scene, Sequence[float], float], Mapping[str, Any]]
@@ -120,10 +119,8 @@ class Theory:
 
     def stiffness(self, depth: Any, a: Any, l_r: Any) -> Any:
         """Return the stiffness of a contact, K A + k_s with A = sqrt(a^2 + l_r^2) + a (F12)."""
-        along = np.hypot(a, l_r) + a
-        return (
-            self.scene.foundation.stiffness * self.width(depth) * along + self.scene.support.spring
-        )
+        K, k_s = self.scene.foundation.stiffness, self.scene.support.spring
+        return K * self.width(depth) * (np.hypot(a, l_r) + a) + k_s
 
     @cached_property
     def motion(self) -> Any:

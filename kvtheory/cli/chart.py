@@ -3,6 +3,7 @@
 import os
 from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 
 import click
 
@@ -54,11 +55,17 @@ def failures(only: str | None, output: Path | None, as_json: bool) -> None:
         click.echo(f"\n{output}")
 
 
+def picture_option(default: str) -> Any:
+    """Return the option `-o` of a chart, whose data are written too."""
+    return click.option(
+        "-o", "--output", type=OutputFile(*PICTURES, beside=True, inside=default), default=default,
+        show_default=True,
+        help="Picture, or a directory for it; its data go to FILE.json beside it.",
+    )  # fmt: skip
+
+
 @chart.command(example="kvtheory chart stability -o stability.png")
-@click.option(
-    "-o", "--output", type=OutputFile(*PICTURES, beside=True), default="stability.png",
-    show_default=True, help="Picture; its data go to FILE.json beside it.",
-)  # fmt: skip
+@picture_option("stability.png")
 @click.option("--quick", is_flag=True, help="Coarser maps.")
 @console.overwrite_option
 def stability(output: Path, quick: bool) -> None:
@@ -81,11 +88,7 @@ def stability(output: Path, quick: bool) -> None:
     "reversal, hop, or all.",
 )  # fmt: skip
 @click.option("--quick", is_flag=True, help="Fewer settings and repeats: some 15 s for a scene.")
-@click.option(
-    "-o", "--output", type=OutputFile(*PICTURES, beside=True, inside="work_precision.png"),
-    default="work_precision.png", show_default=True,
-    help="Picture, or a directory for it; its data go to FILE.json beside it.",
-)  # fmt: skip
+@picture_option("work_precision.png")
 @console.overwrite_option
 def work_precision(
     scene: str | None, overrides: Sequence[str], standard: str | None, quick: bool, output: Path

@@ -38,7 +38,7 @@ at_option = click.option(
 
 
 def result_options(command: Callable[..., Any]) -> Any:
-    """Give a command `-o` for the file of its result, and `--plot` for its picture."""
+    """Give a command `-o` for the file of its result, and `--plot`."""
     return click.option(
         "-o", "--output", type=OutputFile(*SERIES_SUFFIXES),
         help="Write the result to FILE.csv or FILE.nc.",
@@ -117,7 +117,7 @@ def progress_bar(label: str) -> Iterator[Callable[..., None]]:
 
 
 def split(text: str) -> list[str]:
-    """Split a comma-separated option."""
+    """Return the items of a comma-separated option."""
     return [item.strip() for item in text.split(",") if item.strip()]
 
 
@@ -163,20 +163,29 @@ def print_series(result: Any, *, whole: bool, remedy: str) -> None:
         named = ", ".join(f"{name} {error:.2g}" for name, error in large.items())
         scale = result.certificate.relative_to
         click.secho(f"! Large error, relative to {scale}: {named}. {remedy}", bold=True)
-    units = {name: unit for name, unit in result.units.items() if name != "depth_rate"}
-    columns = {name: (getattr(result, name), unit) for name, unit in units.items()}
+    shown = ((name, unit) for name, unit in result.units.items() if name != "depth_rate")
+    columns = {name: (getattr(result, name), unit) for name, unit in shown}
     _print_columns(columns, result.time.size, whole=whole)
+
+
+def print_error(about: str, result: Any) -> None:
+    """Print the last line of a result: about the model, then its largest error and what that covers."""
+    worst, given = max(result.certificate.relative_error.values()), result.certificate
+    click.echo(f"\n{about}; error {given.kind} at {worst:.1e} or less: {given.statement}.")
 
 
 def print_scenes(scene: Any, result: Any, units: Mapping[str, str]) -> None:
     """Print some quantities of many scenes: a row for each, or about twenty with both ends."""
     import numpy as np  # as a help text needs none
 
+    held = {name: (getattr(result, name), unit) for name, unit in units.items()}
+    for key, values in reversed(scene.arrays().items()):
+        held = {
+            f"{key} [{scene.replaceable[key].unit}]".removesuffix(" [1]"): (values, "1"),
+            **held,
+        }
     columns = {}
-    for key, values in scene.arrays().items():
-        columns[f"{key} [{scene.replaceable[key].unit}]".removesuffix(" [1]")] = values, "1"
-    columns |= {name: (getattr(result, name), unit) for name, unit in units.items()}
-    for name, (values, unit) in columns.items():
+    for name, (values, unit) in held.items():
         columns[name] = np.broadcast_to(values, scene.shape).ravel(), unit
     count = math.prod(scene.shape)
     if (rows := _print_columns(columns, count)) < count:
@@ -208,13 +217,11 @@ def print_quantities(
     from kvtheory.results.presented import in_shown_unit
 
     errors = result.certificate.relative_error
-    rows = [
-        (
-            (names or {}).get(name, name), *in_shown_unit(getattr(result, name), unit),
-            error_text(errors.get(name, math.nan)),
-        )
-        for name, unit in units.items()
-    ]  # fmt: skip
+    rows = []
+    for name, unit in units.items():
+        error = error_text(errors.get(name, math.nan))
+        shown = in_shown_unit(getattr(result, name), unit)
+        rows.append(((names or {}).get(name, name), *shown, error))
     print_table(("quantity", "value", "unit", "relative error"), rows)
 
 

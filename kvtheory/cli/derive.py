@@ -91,9 +91,8 @@ def derive(
     if (scene or overrides) and not numbers:
         raise ValueError("SCENE and --set go with --numbers, which inserts their quantities")
     if shape is not None and (only or numbers or closure):
-        raise ValueError(
-            "--shape derives a separate chapter; it does not go with --only, --closure or --numbers"
-        )
+        told = "it does not go with --only, --closure or --numbers"
+        raise ValueError(f"--shape derives a separate chapter; {told}")
     wanted, labels = _formats(formats), find(console.split(only), CONTENTS)
     letters = read_notation(notation) if notation else {}
     if not (labels or shape):  # then every symbol is shown
@@ -145,13 +144,10 @@ def _quantities(path: str | None, overrides: Sequence[str]) -> tuple[dict[str, f
         )
     state, values, line = steady(scene), scene.values(), scene.indenter.per_width
     quantities = {
-        "K": scene.foundation.stiffness,
-        "tau": scene.foundation.retardation_time,
-        "C": scene.foundation.damping,
-        "V": velocity,
-        "delta": float(state.depth),
-        "mu": abs(float(state.friction_coefficient)),
-    }
+        "K": scene.foundation.stiffness, "tau": scene.foundation.retardation_time,
+        "C": scene.foundation.damping, "V": velocity,
+        "delta": float(state.depth), "mu": abs(float(state.friction_coefficient)),
+    }  # fmt: skip
     if line:
         quantities |= {"W": float(state.load), "F": abs(float(state.friction_force))}
     if small := [name for name, value in quantities.items() if not 0.0 < value < math.inf]:
@@ -162,11 +158,8 @@ def _quantities(path: str | None, overrides: Sequence[str]) -> tuple[dict[str, f
     quantities |= {name: values[key] for key, name in names.items() if key in values}
     if not lacks_quadratic(scene):
         at_rest = StaticState.of(scene)
-        quantities |= {
-            "delta_0": at_rest.depth,
-            "a_0": at_rest.half_length,
-            "lambda": abs(at_rest.drive_number),
-        }
+        quantities |= {"delta_0": at_rest.depth, "a_0": at_rest.half_length}
+        quantities["lambda"] = abs(at_rest.drive_number)
         if line:
             quantities["W_0"] = at_rest.load
         if not at_rest.fixed:
@@ -193,11 +186,10 @@ def _edition(
     following = {label for label, _ in FOLLOWING} if given else set()
     needed = {*labels, *following} if labels else set()
     total, count = wanted_up_to(needed), len(labels)
-    some = f"{total} records for the {count} asked for, since each rests on earlier ones"
-    click.echo(
-        f"kvtheory: deriving {some if count else f'all {total} records; --only chooses some'}",
-        err=True,
-    )
+    told = f"all {total} records; --only chooses some"
+    if count:
+        told = f"{total} records for the {count} asked for, since each rests on earlier ones"
+    click.echo(f"kvtheory: deriving {told}", err=True)
     derived: Iterable[Derivation] = catalogue(needed, report)
     if given:
         quantities, indenter, where = given
@@ -231,8 +223,7 @@ def _report(
     as_json: bool, numbers: bool,
 ) -> None:  # fmt: skip
     """Print what was derived and which files were written."""
-    without = [each.label for each in derived if not each.numbers] if numbers else []
-    if without:
+    if without := [each.label for each in derived if numbers and not each.numbers]:
         named = ", ".join(without[:MOST_NAMED]) + (", ..." if len(without) > MOST_NAMED else "")
         click.echo(f"kvtheory: no numbers of this scene in {len(without)}: {named}", err=True)
     counts = dict(Counter(each.status for each in derived))

@@ -37,10 +37,9 @@ OVERWRITE = "kvtheory.overwrite"
 
 
 class OutputFile(click.Path):
-    """The name of a file to write, which ends in one of the `suffixes`.
+    """The name of a file to write, with one of the `suffixes`; without any, the command checks the name.
 
-    A chart has its data `beside` it, in FILE.json. In a directory the file has the name `inside`. Without
-    suffixes the command itself checks the name.
+    A chart has its data `beside` it, in FILE.json. In a directory the file has the name `inside`.
     """
 
     def __init__(self, *suffixes: str, beside: bool = False, inside: str = "") -> None:
@@ -70,15 +69,7 @@ def check_outputs(context: click.Context) -> None:
 
 
 def check_output(option: str, path: Path, suffixes: Sequence[str]) -> None:
-    """Raise unless a file of this name can be written, judging by its name, its directory and the rule.
-
-    Examples
-    --------
-    >>> check_output("--plot", Path("a.pdf"), [".png", ".pdf"])
-    >>> check_output("--plot", Path("a.txt"), [".png", ".pdf"])
-    Traceback (most recent call last):
-    ValueError: --plot "a.txt": expected a name that ends in .png or .pdf
-    """
+    """Raise unless a file of this name can be written, judging by its name, its directory and the rule."""
     try:
         check_path(path, suffixes)
     except (ValueError, OSError) as error:

@@ -41,20 +41,21 @@ def scene(
     from kvtheory.scene.static_state import StaticState
 
     given = bool(scene or overrides or as_json)
-    if problem and (given or support):
-        raise ValueError(
-            "--problem prints a scene; it does not go with SCENE, --set, --json or --support"
+    if (problem and (given or support)) or (support and given):
+        option, others = (
+            ("--problem", "--set, --json or --support")
+            if problem
+            else ("--support", "--set or --json")
         )
-    if support and given:
-        raise ValueError(
-            "--support chooses the template; it does not go with SCENE, --set or --json"
-        )
+        raise ValueError(f"{option} prints a template; it does not go with SCENE, {others}")
     if problem == "list":
         console.print_table(("problem", "what it is"), problems().items())
         return
     if not given:
-        template_text = template(support or "dead-weight") + "\n"
-        click.echo(problem_text(problem) if problem else template_text, nl=False)
+        click.echo(
+            problem_text(problem) if problem else template(support or "dead-weight") + "\n",
+            nl=False,
+        )
         return
     checked = load_scene(scene, overrides)
     foundation = checked.foundation

@@ -9,7 +9,7 @@ import click
 
 from kvtheory.cli import console
 from kvtheory.cli.group import DISAGREES, main
-from kvtheory.cli.outputs import PICTURES, OutputFile
+from kvtheory.cli.outputs import OutputFile
 
 if TYPE_CHECKING:
     from kvtheory.scene import Scene
@@ -55,11 +55,7 @@ def solve(
         console.print_series(found, whole=at is not None, remedy="Take a smaller --rtol.")
     else:
         console.print_quantities(found, {name: found.units[name] for name in found.values})
-    worst = max(found.certificate.relative_error.values())
-    click.echo(
-        f"\nmodel: {found.model}; error {found.certificate.kind} at {worst:.1e} or less: "
-        f"{found.certificate.statement}."
-    )
+    console.print_error(f"model: {found.model}", found)
 
 
 @console.scene_command(
@@ -83,10 +79,7 @@ def transient(scene: "Scene", progress: Any, **how: Any) -> Iterator[Any]:
     click.echo("\nevents:")
     for event in result.events:
         click.echo(f"  {console.text(event.time, 's')}: {event.kind}")
-    worst = max(result.certificate.relative_error.values())
-    click.echo(
-        f"\n{result.steps} steps; error estimated at {worst:.1e}: {result.certificate.statement}."
-    )
+    console.print_error(f"{result.steps} steps", result)
 
 
 @console.scene_command(
@@ -112,12 +105,9 @@ def elements(scene: "Scene", progress: Any, **how: Any) -> Iterator[Any]:
     yield result
     remedy = "Take more elements (--per-length), which also shortens the steps."
     console.print_series(result, whole=how["at"] is not None, remedy=remedy)
-    worst = max(result.certificate.relative_error.values())
-    click.echo(
-        f"\n{result.scheme}, {result.per_length / 1e3:g} elements per mm, {result.steps} steps of at most "
-        f"{result.time_step * 1e3:.4g} ms; error estimated at {worst:.1e}: "
-        f"{result.certificate.statement}."
-    )
+    steps = f"{result.steps} steps of at most {result.time_step * 1e3:.4g} ms"
+    density = f"{result.per_length / 1e3:g} elements per mm"
+    console.print_error(f"{result.scheme}, {density}, {steps}", result)
 
 
 @main.command(example="kvtheory compare --data mine.csv --per-length '200 /mm' --report mine.html")
@@ -133,10 +123,7 @@ def elements(scene: "Scene", progress: Any, **how: Any) -> Iterator[Any]:
     "--tolerance", type=float, default=1.0, show_default=True,
     help="Factor on the differences that theory allows.",
 )  # fmt: skip
-@click.option(
-    "--plot", type=OutputFile(*PICTURES),
-    help="Draw data, theory and checks to FILE.png, .svg or .pdf.",
-)  # fmt: skip
+@console.plot_option
 @click.option(
     "--report", type=OutputFile(".html"),
     help="Write the comparison as one self-contained FILE.html.",

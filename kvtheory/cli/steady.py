@@ -87,20 +87,14 @@ def stability(scene: "Scene", progress: Any) -> Iterator[Any]:
     key = "critical_velocity"  # not V* of `asymptotes`, which has the same name
     console.print_quantities(found, units, {key: QUANTITIES[key].words})
     if found.rates.size:  # the time constant of a growing motion is negative
-        rates = zip(found.rates, found.certificate.relative_error["rates"], strict=True)
+        errors = found.certificate.relative_error["rates"]
         rows = [
-            (
-                f"{real:.6g}",
-                f"{imaginary / math.tau:.6g}",
-                f"{1e3 * time:.6g}",
-                console.error_text(error),
-            )
-            for ((real, imaginary), error), time in zip(rates, found.time_constants, strict=True)
-        ]
+            (f"{real:.6g}", f"{imaginary / math.tau:.6g}", f"{1e3 * time:.6g}", console.error_text(error))
+            for (real, imaginary), time, error in zip(found.rates, found.time_constants, errors, strict=True)
+        ]  # fmt: skip
+        heads = "rate [1/s]", "frequency [Hz]", "time constant [ms]", "relative error"
         click.echo()
-        console.print_table(
-            ("rate [1/s]", "frequency [Hz]", "time constant [ms]", "relative error"), rows
-        )
+        console.print_table(heads, rows)
     click.echo(f"\nErrors are {found.certificate.kind}: {found.certificate.statement}.")
 
 

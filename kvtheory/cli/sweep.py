@@ -13,7 +13,7 @@ import click
 
 from kvtheory.cli import console
 from kvtheory.cli.group import main
-from kvtheory.cli.outputs import OVERWRITE, PICTURES, OutputFile
+from kvtheory.cli.outputs import OVERWRITE, OutputFile
 
 SHOWN_FAILURES = 5
 EXAMPLE = '"drive.velocity=1 mm/s:10 m/s:200:log" or "foundation.retardation_time=10 ms,1 s"'
@@ -43,9 +43,7 @@ EXAMPLE = '"drive.velocity=1 mm/s:10 m/s:200:log" or "foundation.retardation_tim
     "settling_time, hops, events; with a spring stick_slip_settles, stick_slip_amplitude, "
     "stick_slip_period, sliding_velocity.cycle_max.",
 )  # fmt: skip
-@click.option(
-    "--at", metavar='"0 ms,1 ms,..."', help="Times of series of a transient, or START:STOP:COUNT."
-)
+@console.at_option
 @click.option(
     "--rtol", type=float, default=1e-6, show_default=True, help="Error allowed in a step."
 )
@@ -57,10 +55,7 @@ EXAMPLE = '"drive.velocity=1 mm/s:10 m/s:200:log" or "foundation.retardation_tim
 )  # fmt: skip
 @click.option("--block", type=click.IntRange(1), help="Scenes in a block.")
 @console.overwrite_option
-@click.option(
-    "--plot", type=OutputFile(*PICTURES),
-    help="Draw the first quantity to FILE.png, .svg or .pdf.",
-)  # fmt: skip
+@console.plot_option
 def sweep(
     scene: str | None, overrides: Sequence[str], as_json: bool, over: Sequence[str],
     output: Path, quantities: Sequence[str], jobs: int | None, executor: str | None,
@@ -82,6 +77,7 @@ def sweep(
     }  # fmt: skip
     plan = plan_of(**what)
     if plot:
+        from kvtheory.plots import save_plot
         from kvtheory.plots.sweep import check_drawable
 
         check_drawable(plan)
@@ -101,15 +97,11 @@ def sweep(
             raise KeyboardInterrupt(f"interrupted; {left}") from None
     seconds = time.perf_counter() - began
     if plot:
-        from kvtheory.plots import save_plot
-
         save_plot(result, plot)
     if as_json:
         counts = {name: getattr(result, name) for name in ("points", "computed", "failed")}
-        failures = record(result.failures)
-        console.print_json(
-            {"file": str(result.path), **counts, "failures": failures, "seconds": seconds}
-        )
+        told = {"failures": record(result.failures), "seconds": seconds}
+        console.print_json({"file": str(result.path), **counts, **told})
         return
     click.echo(
         f"{output}: {result.points:,} points, {result.computed:,} of them computed now in "
@@ -127,11 +119,7 @@ def sweep(
 
 
 def read_over(texts: Iterable[str]) -> dict[Any, Any]:
-    """Turn ``KEY=VALUES`` texts into `over`; with ``KEY=VALUES & KEY=VALUES`` both vary together.
-
-    >>> read_over(["drive.velocity=1 mm/s,2 mm/s & support.mass=1 kg/m:2 kg/m:2"])
-    {('drive.velocity', 'support.mass'): ('1 mm/s,2 mm/s', '1 kg/m:2 kg/m:2')}
-    """
+    """Turn ``KEY=VALUES`` texts into `over`; with ``KEY=VALUES & KEY=VALUES`` both vary together."""
     from kvtheory.scene import SceneError
 
     over: dict[Any, Any] = {}

@@ -70,22 +70,18 @@ def compute(given: Task) -> Block:
     failed = sorted(reasons)
     table[failed] = plan.blank(len(failed))
     errors: dict[str, float] = {}
-    for name, error in told:
-        error[failed] = 0.0
-        errors[name] = max(errors.get(name, 0.0), float(np.max(error)))
-    return Block(
-        given.start, given.start + given.points, table,
-        [(given.start + index, _reason(reasons[index])) for index in failed],
-        sorted(steady.statements | motion.statements), errors,
-    )  # fmt: skip
-
-
-def _reason(error: Exception) -> str:
-    """Say on one line why a scene has no answer."""
-    reason = "; ".join(str(error).splitlines()) or type(error).__name__
-    if isinstance(error, FloatingPointError | OverflowError | ZeroDivisionError):
-        return f"the scene leaves the range of double precision: {reason}"
-    return reason
+    for name, wrong in told:
+        wrong[failed] = 0.0
+        errors[name] = max(errors.get(name, 0.0), float(np.max(wrong)))
+    failures = []
+    for index in failed:
+        error = reasons[index]
+        reason = "; ".join(str(error).splitlines()) or type(error).__name__
+        if isinstance(error, FloatingPointError | OverflowError | ZeroDivisionError):
+            reason = f"the scene leaves the range of double precision: {reason}"
+        failures.append((given.start + index, reason))
+    statements = sorted(steady.statements | motion.statements)
+    return Block(given.start, given.start + given.points, table, failures, statements, errors)
 
 
 def _steady(given: Task) -> Measured:

@@ -81,10 +81,7 @@ def run(
     plan: Plan, kept: list[Block], keep: Callable[[Block], None], *, executor: Executor | None,
     jobs: int, in_flight: int | None, block: int | None, report: Progress | None,
 ) -> int:  # fmt: skip
-    """Compute all blocks that are not `kept`, and return how many points these hold.
-
-    An executor of the caller is not shut down.
-    """
+    """Compute all blocks that are not `kept`, and return their points; `executor` is not shut down."""
     before = done = sum(one.stop - one.start for one in kept)
     failed, begun = sum(len(one.failures) for one in kept), monotonic()
     known = jobs if executor is None else getattr(executor, "_max_workers", None)
@@ -99,9 +96,8 @@ def run(
 
     def show() -> None:
         rate = (done - before) / max(monotonic() - begun, 1e-9)
-        text = f"{done:,} of {plan.points:,} points"
-        if rate > 0.0:
-            text += f", {rate:,.0f} a second" if rate >= 10.0 else f", {rate:.2g} a second"
+        speed = f", {rate:,.0f} a second" if rate >= 10.0 else f", {rate:.2g} a second"
+        text = f"{done:,} of {plan.points:,} points{speed if rate else ''}"
         if report:
             report(done / plan.points, text + (f", {failed:,} failed" if failed else ""))
 
@@ -184,10 +180,7 @@ def remaining(plan: Plan, done: list[tuple[int, int]], block: int | None = None)
 
 
 class _Workers(Executor):
-    """Our own workers: this thread if it is one, threads if NumPy takes the time, or else processes.
-
-    Where a process dies, and its pool with it, a new pool takes over.
-    """
+    """Our workers: this thread if one is enough, threads for NumPy, else processes, anew if one dies."""
 
     def __init__(self, jobs: int, plan: Plan) -> None:
         self.here, self.jobs, self.threads = jobs == 1, jobs, plan.vectorised

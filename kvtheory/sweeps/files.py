@@ -1,9 +1,8 @@
 """Sweeps as files: CSV in long form, written block by block, and NetCDF, written by xarray.
 
-CSV (RFC 4180) has one row for each point, or for each point and time; lines that begin with ``#`` above the
-table describe it. NetCDF has a dimension for each axis. Either file holds the SHA-256 of all its other bytes,
-so that one in which anything was changed is not taken for this sweep: in CSV in the second line, in NetCDF
-behind what its readers reach. A file that another program saved again has lost it.
+CSV (RFC 4180) has a row for each point, or each point and time, below lines of ``#`` that describe it; NetCDF
+a dimension for each axis. Either holds the SHA-256 of its other bytes, so that a changed file is noticed: in
+the second line, or behind what readers of NetCDF reach.
 """
 
 import csv
@@ -71,15 +70,12 @@ def finished(path: Path, plan: Plan) -> bool:
         return False
     _, digest, written = _digest(path)
     if written != digest:
-        raise ValueError(
-            f'"{path}" exists and is not a sweep as it was written: it is another file, or was changed, '
-            f"cut, or saved anew by another program; {WAYS_OUT}"
-        )
+        why = "it is another file, or was changed, cut, or saved anew by another program"
+        raise ValueError(f'"{path}" exists and is not a sweep as it was written: {why}; {WAYS_OUT}')
     header = _header(path)
     if differing := plan.differences(header["record"]):
-        raise ValueError(
-            f'"{path}" holds another sweep: it differs in {", ".join(differing)}; {WAYS_OUT}'
-        )
+        why = f"it differs in {', '.join(differing)}"
+        raise ValueError(f'"{path}" holds another sweep: {why}; {WAYS_OUT}')
     summary = json.loads(header["summary"])
     return bool(summary["done"] == summary["points"])
 
@@ -183,9 +179,8 @@ def _values(path: Path, plan: Plan) -> dict[str, Any]:
         import xarray
 
         with xarray.open_dataset(path, engine="netcdf4") as data:
-            return {
-                name: data[name].values.astype(kind, copy=False) for name, kind in kinds.items()
-            }
+            held = ((name, data[name].values, kind) for name, kind in kinds.items())
+            return {name: values.astype(kind, copy=False) for name, values, kind in held}
     with path.open(encoding="utf-8", newline="") as file:
         rows = csv.reader(line for line in file if not line.startswith("#"))
         table = dict(zip(next(rows), zip(*rows, strict=True), strict=True))

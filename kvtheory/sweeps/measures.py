@@ -38,11 +38,10 @@ DOUBLINGS = 2
 
 
 def measure(plan: Plan, scenes: Mapping[int, Scene], friction: Array) -> Measured:
-    """Follow scenes, by their index in a block; return the columns of the plan that belong to transients.
+    """Follow scenes, by their index in a block; return the columns of transients, with rows for all indices.
 
     The scenes differ in values, not in the kinds of their parts. `friction` is the steady friction force
-    in N/m at each index of the block, where it is needed. The result has rows for all indices. The errors
-    are those of the series; a maximum has that of the quantity itself.
+    (N/m) at each index. The errors are those of the series; a maximum has that of the quantity itself.
     """
     block = _Motions(plan, scenes, friction)
     block.follow()
@@ -90,7 +89,7 @@ class _Motions:
                 self.reasons[index] = error
 
     def follow(self) -> None:
-        """Follow the scenes, as many as possible in one call."""
+        """Follow the scenes, in one call if they are rigid drives without texts and compiling pays."""
         rigid = all(units.rigid_drive for _, units, _ in self.scenes.values())
         worthwhile = compiled.worthwhile() or STEPS * len(self.scenes) >= compiled.WORTHWHILE
         together = rigid and not self.plan.texts and worthwhile and compiled.available()

@@ -67,6 +67,7 @@ ON_ARRAYS, BY_QUADRATURE, IN_MOTION = 1e6, 1e5, 1e3
 """Scenes per second and core, within a factor of three: measured for Table 1."""
 CELL = 21
 """Bytes of a number in a CSV, with its comma or end of line."""
+GB = 1e9
 ANNOUNCED = 10.0
 """Seconds from which a sweep is announced."""
 
@@ -237,12 +238,11 @@ class Plan:
             ends = {"first": float(array[0]), "last": float(array[-1])}
             return {"count": int(array.size), **ends, "sha256": sha256}
 
+        swept = [{key: digest(each) for key, each in axis.values.items()} for axis in self.axes]
         return {
             "kvtheory": version("kvtheory"),
             "scene": to_toml(self.scene),
-            "over": [
-                {key: digest(each) for key, each in axis.values.items()} for axis in self.axes
-            ],
+            "over": swept,
             "quantities": [column.name for column in self.columns],
             "at": None if self.times is None else list(self.times),
             "method": self.method,
@@ -278,17 +278,16 @@ def refuse_what_cannot_fit(plan: Plan, path: Path | None, jobs: int = 1) -> None
     limits = {}
     if path is None or not is_csv(path):
         with suppress(AttributeError, OSError, ValueError):  # unknown on some systems
-            memory = os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
+            memory = os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE") / GB
             limits["of memory; choose fewer points, or write to a CSV file (`output`)"] = memory
     if path is not None and path.parent.is_dir():
-        free = shutil.disk_usage(path.parent).free
+        free = shutil.disk_usage(path.parent).free / GB
         limits[f'free beside "{path}"; choose fewer points'] = free
     needed, _, size = _size(plan, path, jobs)
     for where, limit in limits.items():
         if needed > limit:
-            raise ValueError(
-                f"{plan.points:,} points need {size}; there are {_text(limit)} {where}"
-            )
+            told = f"{plan.points:,} points need {size}; there are"
+            raise ValueError(f"{told} {limit:,.1f} GB {where}")
 
 
 def announcement(plan: Plan, path: Path, jobs: int = 1) -> str:
@@ -298,19 +297,11 @@ def announcement(plan: Plan, path: Path, jobs: int = 1) -> str:
 
 
 def _size(plan: Plan, path: Path | None, jobs: int) -> tuple[float, float, str]:
-    """Return about how many bytes and seconds a sweep needs, and both in words."""
+    """Return about how many GB and seconds a sweep needs, and both in words."""
     slow = IN_MOTION if plan.transient else BY_QUADRATURE
     seconds = plan.points / ((ON_ARRAYS if plan.vectorised else slow) * jobs)
     needed = 2.0 * plan.points * plan.blank(0).itemsize
     if path is not None and is_csv(path):
         rows = plan.points * (len(plan.times or ()) if plan.series else 1)
         needed = 0.5 * needed + rows * (len(plan.units) + plan.series) * CELL
-    return needed, seconds, f"about {_text(needed)} and {duration(seconds)}"
-
-
-def _text(size: float) -> str:
-    for unit in ("bytes", "kB", "MB", "GB", "TB", "PB"):
-        if size < 1000.0:
-            return f"{size:.3g} {unit}"
-        size /= 1000.0
-    return f"{size:,.3g} EB"
+    return needed / GB, seconds, f"about {needed / GB:,.1f} GB and {duration(seconds)}"

@@ -63,18 +63,16 @@ class WorkFile:
         if not tables:
             run(f"PRAGMA application_id={APPLICATION}")
             run("CREATE TABLE sweep (record TEXT)")
-            columns = (
-                "start INTEGER PRIMARY KEY, stop, told TEXT, digest TEXT, seal TEXT, content BLOB"
-            )
-            run(f"CREATE TABLE blocks ({columns})")
+            columns = "stop, told TEXT, digest TEXT, seal TEXT, content BLOB"
+            run(f"CREATE TABLE blocks (start INTEGER PRIMARY KEY, {columns})")
             run("INSERT INTO sweep VALUES (?)", (self._record,))
         (found,) = run("SELECT record FROM sweep").fetchone() or ("",)
         if differing := self._plan.differences(found):
             if not anew:
-                raise ValueError(
-                    f'"{self.path}" is the unfinished work of another sweep: it differs in '
-                    f"{', '.join(differing)}; finish that one, remove the file, or choose another name"
-                )
+                why = f"it differs in {', '.join(differing)}"
+                what = "finish that one, remove the file, or choose another name"
+                told = f'"{self.path}" is the unfinished work of another sweep: {why}; {what}'
+                raise ValueError(told)
             run("DELETE FROM blocks")
             run("UPDATE sweep SET record = ?", (self._record,))
         run("COMMIT")
