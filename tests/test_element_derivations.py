@@ -103,7 +103,7 @@ def test_correction_of_the_code_is_the_derived_one(outside, inside):
     places = {edges._spacing: 0.02, edges._inside: inside, edges._outside: outside}
     correction = edges.KINK + edges.END
     rise = inside - outside
-    area, rate, bent, _ = (0.02 * each for each in kink_area(outside - rise * np.arange(3.0)))
+    area, rate, bent = (0.02 * each for each in kink_area(outside - rise * np.arange(3.0)))
     assert area == pytest.approx(float(correction.subs(places)), rel=1e-12)
     # With the depth the overlap rises by the same everywhere.
     rises = sp.diff(correction, edges._inside) + sp.diff(correction, edges._outside)

@@ -53,42 +53,28 @@ def drawn(seed):
     return scene, times, 10.0 ** rng.uniform(0.9, 2.0)
 
 
-def plain(seed):
+def plain(seed, drive=None):
     """Return a run of a Kelvin-Voigt scene, and the truth."""
     scene, times, density = drawn(seed)
-    return (
-        kv.elements(scene, per_length=density, at=times),
-        kv.transient(scene, at=times, rtol=1e-9),
-        scene,
-    )
+    scene = replace(scene, drive=drive or scene.drive)
+    truth = kv.transient(scene, at=times, rtol=1e-9)
+    return kv.elements(scene, per_length=density, at=times), truth, scene
 
 
 def swinging(seed):
     """Return the same under a drive that is a function, which leaves pressure on an edge as a jump does."""
-    scene, times, density = drawn(seed)
     rng = np.random.default_rng(seed)
     mean, rate = rng.uniform(-1.5, 1.5), 10.0 ** rng.uniform(-0.3, 1.2)
-    scene = replace(scene, drive=kv.Drive(function=lambda t: 3.0 * (mean + math.sin(rate * t))))
-    return (
-        kv.elements(scene, per_length=density, at=times),
-        kv.transient(scene, at=times, rtol=1e-9),
-        scene,
-    )
+    return plain(seed, kv.Drive(function=lambda t: 3.0 * (mean + math.sin(rate * t))))
 
 
 def on_arms(seed):
     """Return a run on one to three arms, and the truth by brute force, known to 1e-4."""
     scene, times, density = drawn(seed)
     rng = np.random.default_rng(seed)
-    arms = [
-        tuple(map(float, 10.0 ** rng.uniform([-1.0, -1.3], [1.0, 0.7])))
-        for _ in range(1 + seed % 3)
-    ]
-    support = [
-        kv.Fixed(1.0),
-        kv.DeadWeight(0.1 * LOAD, 10.0),
-        kv.Suspended(0.1 * LOAD, LOAD, 10.0),
-    ][seed % 3]
+    arms = (10.0 ** rng.uniform([-1.0, -1.3], [1.0, 0.7], (1 + seed % 3, 2))).tolist()
+    light = 0.1 * LOAD, 10.0
+    support = [kv.Fixed(1.0), kv.DeadWeight(*light), kv.Suspended(light[0], LOAD, 10.0)][seed % 3]
     scene = replace(scene, foundation=kv.GeneralizedMaxwell(1.0, arms=arms), support=support)
     times, density = times[-6:].tolist(), min(density, 80.0)
     return kv.elements(scene, per_length=density, at=times), prony_elements.run(scene, times), scene
@@ -126,15 +112,10 @@ def errors(run, truth, scene):
     """Return the largest error of each quantity by its scale, the edges from left to right."""
     scale = scales(Model.of(scene, 1.0 / run.per_length).at_rest)
     truth = truth if isinstance(truth, dict) else vars(truth)
-    expected = {
-        name: truth[name] for name in scale if name in truth and name not in ("time", "velocity")
-    }
+    expected = {name: truth[name] for name in scale.keys() & truth.keys() - {"time", "velocity"}}
     if "leading_edge" in expected:
-        edges, first = (
-            (truth["leading_edge"], truth["trailing_edge"]),
-            run.leading_edge < run.trailing_edge,
-        )
-        low, high = np.fmin(*edges), np.fmax(*edges)
+        edges = truth["leading_edge"], truth["trailing_edge"]
+        low, high, first = np.fmin(*edges), np.fmax(*edges), run.leading_edge < run.trailing_edge
         expected["leading_edge"] = np.where(first, low, high)
         expected["trailing_edge"] = np.where(first, high, low)
     return {

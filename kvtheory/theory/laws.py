@@ -305,9 +305,9 @@ class ElementStep(NamedTuple):
     """What an element does in a step of the length h, or of several lengths along the first axis.
 
     `fall` are the factors of the modes of a free element, `held` those of the arms of one that is held where
-    it is, `weights` those of the mean force of arms then; `free` gives the latter from the modes of a free
-    element. A unit ramp adds `ramp` to the arms and `stiffness` to the mean pressure; `damping` is that of
-    the damper which, beside a spring, does to a ramp as the step does.
+    it is, `weights` those of the mean force of arms then. A unit ramp adds `ramp` to the arms and `stiffness`
+    to the mean pressure; `damping` is that of the damper which, beside a spring, does to a ramp as the step
+    does.
     """
 
     h: Any
@@ -317,7 +317,6 @@ class ElementStep(NamedTuple):
     ramp: Array
     stiffness: Any
     damping: Any
-    free: Array
 
 
 class Element(NamedTuple):
@@ -395,6 +394,4 @@ class Element(NamedTuple):
         return ElementStep(
             h, np.exp(-h[..., None] * self.rates), np.exp(-z), phi_1, ramp,
             stiffness + phi_2 @ K_i, self.damping + h * ((2.0 * phi_2 - phi_1) @ K_i),
-            ramp.sum(axis=-1)[..., None] * self.shares[: K_i.size] - ramp @ self.from_modes[: K_i.size]
-            if K_i.size else ramp,
         )  # fmt: skip

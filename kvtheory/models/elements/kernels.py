@@ -172,14 +172,7 @@ def extent(s: Surface, profile: Any, depth: float, side: float) -> float:
 
 
 def weights_across(dy: float, count: int, rim: float) -> Array:
-    """Return the width for which each strip counts, on both sides, in m; corrected at a `rim` above zero.
-
-    >>> y, b = np.arange(8.0), 5.0
-    >>> [round(float(weights_across(1.0, 8, rim) @ np.maximum(b * b - y * y, 0.0)), 2) for rim in (0.0, b)]
-    [165.0, 166.5]
-    >>> round(4.0 / 3.0 * b**3, 2)
-    166.67
-    """
+    """Return the width for which each strip counts, on both sides, in m; corrected at a `rim` above zero."""
     weights, last = np.full(count, 2.0 * dy), math.floor(rim / dy)
     weights[0], s = dy, rim / dy - last
     if 1 <= last <= count:
@@ -191,7 +184,7 @@ def _weights(e: Elements, depth: float) -> Array:
     """Return the quadrature weight of each strip: 1, or its width in m."""
     strips = e.u.shape[0]
     if not e.across:
-        return np.full(strips, 1.0)
+        return np.ones(strips)
     rim = e.surface.stretch * extent(e.surface, e.profile, depth, 1.0) if e.parts else 0.0
     return weights_across(e.across, strips, rim)
 
@@ -241,11 +234,7 @@ def attend(e: Elements, now: float, places: tuple[float, float], depth: float) -
 
 
 def runs_of(flags: Flags, low: Runs, high: Runs) -> Runs:
-    """Return the runs of flagged elements; those at both ends of the strips are taken to be out of them.
-
-    >>> runs_of(np.array([[False, True, True, False]]), np.array([0]), np.array([4])).tolist()
-    [[0, 1, 3]]
-    """
+    """Return the runs of flagged elements; those at both ends of the strips are taken to be out of them."""
     runs, k = np.empty((4, 3), dtype=np.int64), 0
     for j in range(low.size):
         part = flags[j, low[j] : high[j]]
@@ -271,7 +260,7 @@ def gaps(
 ) -> tuple[float, float, float]:
     """Return g - u of element i and the next two in the direction `out`, -1 or 1."""
     first = min(i, i + 2 * out)
-    x = positions(e, first, first + 3, place)
+    x = e.spacing * e.numbers[first : first + 3] + place
     w = depth - height_at(e.surface, e.profile, x, j * e.across) - e.u[j, first : first + 3]
     return (w[0], w[1], w[2]) if out > 0 else (w[2], w[1], w[0])
 
@@ -280,11 +269,7 @@ def gaps(
 
 
 def ramp_functions(z: Array) -> tuple[Array, Array]:
-    """Return phi_1 = (1 - e^(-z))/z and phi_2 = (1 - phi_1)/z, from 1 and 1/2 at z = 0.
-
-    >>> [value.round(6).tolist() for value in ramp_functions(np.array([0.0, 1.0, 1e9]))]
-    [[1.0, 0.632121, 0.0], [0.5, 0.367879, 0.0]]
-    """
+    """Return phi_1 = (1 - e^(-z))/z and phi_2 = (1 - phi_1)/z, from 1 and 1/2 at z = 0."""
     phi_1, phi_2 = np.full(z.size, 1.0), np.full(z.size, 0.5)
     for i in range(z.size):
         if z[i] > 0.0:
@@ -393,34 +378,29 @@ def _velocity(way: float, before: float, h: float, theta: float) -> float:
 
 
 def kink_area(overlap: Any) -> Any:
-    """Return what trapezoids leave out of the area of u at an edge by dx, its d/dδ and d²/dδ², and the bend.
+    """Return what trapezoids leave out of the area of u at an edge by dx, and its d/dδ and d²/dδ².
 
     `overlap` is w at the three nearest elements outside. Between the first of them and the next inside, u
     is the larger of two nearly straight lines, which cross where w = 0; the trapezoid takes the chord
     (theorem `element-kink`). Besides, the jump of the slope leaves a twelfth of it times dx^2, as at every
-    end of a smooth piece (Euler-Maclaurin). The bend is that jump, as a difference of two elements.
-
-    >>> x = 0.1 * np.arange(-5.0, 6.0) + 0.03
-    >>> sums = 0.1 * np.maximum(x, 0.0).sum() - 0.05 * x[-1] - 0.01 / 12.0
-    >>> bool(abs(sums + 0.1 * kink_area(x[4:1:-1])[0] - 0.5 * x[-1] ** 2) < 1e-15)
-    True
+    end of a smooth piece (Euler-Maclaurin).
     """
     w, far, farthest = overlap
     rise = 2.0 * w - 3.0 * far + farthest
     within = w + rise
     if not (w < 0.0 and within >= 0.0):
-        return 0.0, 0.0, 0.0, math.inf
+        return 0.0, 0.0, 0.0
     half = 0.5 / rise
-    return half * within * w + rise / 12.0, half * (within + w), 2.0 * half, rise
+    return half * within * w + rise / 12.0, half * (within + w), 2.0 * half
 
 
 class Step(NamedTuple):
     """An implicit step: where the base is under the indenter at its end, and how far it moved there.
 
     `first` is the first guess of how far the indenter sinks; `begun` are the runs in contact at the start,
-    `relaxed` the area of the kinks at their edges less what relaxes of it; `falling` says at which sides of
-    each strip the overlap falls; `late` are the elements (strip, element) that are entered within the step,
-    and `lack` what their weight lacks of that of the others.
+    `relaxed` the area of the kinks at their edges less what relaxes of it, NaN where that was not needed yet;
+    `falling` says at which sides of each strip the overlap falls; `late` are the elements (strip, element)
+    that are entered within the step, and `lack` what their weight lacks of that of the others.
     """
 
     place: float
@@ -542,7 +522,7 @@ def _lay(
     late, lack = _late(e, law, runs, weights, place - travel, depth, first)
     wide = e.spacing * max(_extent(runs, weights), _extent(begun, weights))
     theta = exponential_fit(law.h * law.damping * wide / e.mass) if e.fitted else 1.0
-    relaxed = _relaxed_kinks(e, law, begun, place - travel, depth)
+    relaxed = np.full((begun.shape[0], 2), math.nan)
     step = Step(place, travel, first, theta, weights, begun, relaxed, falling, late, lack)
     return step, runs, sums
 
@@ -556,7 +536,7 @@ def _passed(e: Elements, kink: float, place: float, travel: float) -> tuple[int,
 
 def _sums(e: Elements, runs: Runs) -> Array:
     """Return the sum of `meets` over each run."""
-    sums = np.full(runs.shape[0], 0.0)
+    sums = np.zeros(runs.shape[0])
     for r in range(runs.shape[0]):
         sums[r] = e.meets[runs[r, 0], runs[r, 1] : runs[r, 2]].sum()
     return sums
@@ -594,7 +574,7 @@ def _walk(e: Elements, runs: Runs, sums: Array, sunk: float) -> tuple[Runs, Arra
         runs[r, 1], runs[r, 2], sums[r] = low, high, total
         count += high - low
     for j in range(e.counts[STRIPS]):
-        count -= (meets[j, e.low[j] : e.high[j]] <= sunk).sum()
+        count -= int(np.count_nonzero(meets[j, e.low[j] : e.high[j]] <= sunk))
     if count == 0:
         return runs, sums, moved
     for j in range(e.counts[STRIPS]):
@@ -648,7 +628,7 @@ def _sink(
                 area -= step.lack[i] * overlap
                 width -= step.lack[i]
         if e.parts:
-            kinks = _kinks(e, step, runs, sunk, state[DEPTH])
+            kinks = _kinks(e, law, step, runs, sunk, state[DEPTH])
             area, width, bent = area + kinks[0], width + kinks[1], kinks[2]
         mean = state[DEPTH] - e.depth + theta * sunk
         change_of_rate = _velocity(sunk, state[RATE], h, theta) - state[RATE]
@@ -662,27 +642,8 @@ def _sink(
     return runs, sunk
 
 
-def _relaxed_kinks(e: Elements, law: ElementStep, begun: Runs, place: float, depth: float) -> Array:
-    """Return the area of the kinks at both edges of each run, by dx, less what relaxes of it in the step.
-
-    The mean force of arms bends at an edge, too.
-    """
-    relaxed = np.full((begun.shape[0], 2), 0.0)
-    for r in range(begun.shape[0] if e.parts else 0):
-        for side in range(2):
-            j, out = begun[r, 0], 2 * side - 1
-            i = begun[r, 2] if side else begun[r, 1] - 1
-            area, _, _, rise = kink_area(gaps(e, j, i, out, place, depth))
-            bend = 0.0
-            for k in range(e.arms.shape[0]):
-                bend += law.weights[k] * (e.arms[k, j, i - 2 * out] - e.arms[k, j, i - out])
-                bend -= law.free[k] * (e.arms[k, j, i] - e.arms[k, j, i + out])
-            relaxed[r, side] = area * ((e.law.stiffness + bend / rise) / law.stiffness - 1.0)
-    return relaxed
-
-
 def _kinks(
-    e: Elements, step: Step, runs: Runs, sunk: float, depth: float
+    e: Elements, law: ElementStep, step: Step, runs: Runs, sunk: float, depth: float
 ) -> tuple[float, float, float, float]:
     """Return the area of the kinks at edges by dx less what relaxed, its derivatives by depth, and its push.
 
@@ -715,10 +676,13 @@ def _kinks(
             i, out = high if side else low - 1, 2 * side - 1
             if ended:
                 w, far = sunk - e.meets[j, i], sunk - e.meets[j, i + out]
-                added, more, bend, _ = kink_area((w, far, sunk - e.meets[j, i + 2 * out]))
+                added, more, bend = kink_area((w, far, sunk - e.meets[j, i + 2 * out]))
                 wider += step.weights[j] * more
                 bent += step.weights[j] * bend
             else:
+                if math.isnan(step.relaxed[q, side]):
+                    start = kink_area(gaps(e, j, i, out, place, depth))[0]
+                    step.relaxed[q, side] = start * (e.law.stiffness / law.stiffness - 1.0)
                 added = step.relaxed[q, side]
             area += step.weights[j] * added
             push += step.weights[j] * added * e.slope[j, i - out]
@@ -756,7 +720,7 @@ def _slide(
         place = step.late[i, 0], step.late[i, 1]
         area -= step.lack[i] * max(sunk - e.meets[place], 0.0) * e.slope[place]
     if e.parts:
-        area += _kinks(e, step, runs, sunk, state[DEPTH])[3]
+        area += _kinks(e, law, step, runs, sunk, state[DEPTH])[3]
     # A ringing too fast for the step is damped; θ - 1/2 is of the third order in h, as on arms.
     swing = h * math.sqrt(k_x / M_x)
     z = h * (c_x + law.damping * e.spacing * tilted) / M_x + swing * swing * swing
@@ -994,9 +958,6 @@ def touching(overlap: Any) -> tuple[float, bool]:
 
     w is that of the three nearest elements outside, and continued as their parabola. It falls in a straight
     line, as on free ground, or as a square, where the edge peeled.
-
-    >>> touching((-0.5, -1.5, -2.5)), touching((-0.25, -2.25, -6.25))
-    ((0.5, True), (0.5, False))
     """
     w, far, farthest = overlap
     slope, bend = 1.5 * w - 2.0 * far + 0.5 * farthest, w - 2.0 * far + farthest
@@ -1093,7 +1054,7 @@ class Course(NamedTuple):
 def _law_at(of: ElementStep, k: int) -> ElementStep:
     """Return the law over one of several lengths."""
     return ElementStep(of.h[k], of.fall[k], of.held[k], of.weights[k], of.ramp[k], of.stiffness[k],
-                       of.damping[k], of.free[k])  # fmt: skip
+                       of.damping[k])  # fmt: skip
 
 
 def advance(

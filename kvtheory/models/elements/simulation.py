@@ -142,9 +142,14 @@ def _default_step(model: Model, path: BaseMotion, scheme: Scheme) -> float:
                 f'such as "{0.01 * model.law.retardation_time * 1e3:.4g} ms", or `scheme` = "{DEFAULT}"'
             )
         return passing
-    period = math.inf
-    while (shorter := _period(model, period)) < ROUGHLY * period:
-        period = shorter
+    # That of the mass on the contact at rest, as stiff as arms are within such a period.
+    shorter = math.inf
+    while True:
+        period, within = shorter, shorter / (2.0 * math.pi)
+        stiffness = model.extent * model.law.stiffness_within(within) + model.spring
+        shorter = 2.0 * math.pi * math.sqrt(model.mass / stiffness)
+        if not shorter < ROUGHLY * period:
+            break
     # Along x, the dampers of the contact at rest may allow no swing.
     if model.sprung:
         resistance = model.damping_along + model.law.damping * model.tilt(model.extent)
@@ -153,12 +158,6 @@ def _default_step(model: Model, path: BaseMotion, scheme: Scheme) -> float:
     resolved = min(model.law.retardation_time / PER_RELAXATION, shorter / PER_OSCILLATION)
     stable = stability.limit_at(scheme, model, max(stability.lengths(model, path)))
     return min(passing, max(resolved, path.end / MOST_STEPS), STABLE_SHARE * stable)
-
-
-def _period(model: Model, period: float) -> float:
-    """Return the period of the mass on the contact at rest, as stiff as arms are within another, in s."""
-    foundation = model.extent * model.law.stiffness_within(period / (2.0 * math.pi))
-    return 2.0 * math.pi * math.sqrt(model.mass / (foundation + model.spring))
 
 
 def _graded(model: Model, path: BaseMotion, h: float, end: float) -> dict[float, float]:
