@@ -57,7 +57,7 @@ SCANNED = (
 )
 NOTE = (
     "The limits of friction at low and high velocity are known for a parabola and a ball on any foundation, "
-    "and for a power law and a wedge on Kelvin-Voigt; of this scene only the maxima are."
+    "and for a power law and a wedge on Kelvin-Voigt; for this scene only the maxima are."
 )
 
 MU = "friction_coefficient"
@@ -278,7 +278,7 @@ def _ends(
     """Return the velocities at which the error of each line first passes the tolerance, from its limit on.
 
     If it does not on the way to the far end, the limit holds at every velocity (such as the load on a soft
-    spring). If it is above the tolerance at the limit already, nothing is claimed.
+    spring). If it is above the tolerance at the limit already, the range is empty.
     """
     grid = _far(scene, critical)[..., np.newaxis] * np.linspace(-1.0, 1.0, points)
     wide = scene.mapped(lambda x: np.broadcast_to(x, scene.shape)[..., np.newaxis])

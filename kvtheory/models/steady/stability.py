@@ -35,8 +35,8 @@ from kvtheory.theory import closed_forms as cf
 Array = NDArray[np.float64]
 
 STATEMENT = (
-    "closed forms (theorem F22) in double precision, with what rounding makes of them to first order; "
-    "rates by their polynomial, the velocity to where its stiffness is critical"
+    "closed forms (theorem F22) in double precision, with first-order bounds of rounding; "
+    "rates from their polynomial; velocity by bisection on the critical stiffness"
 )
 ROUNDING = 2.0 * 2.0**-52
 """Relative error of each coefficient. The errors of results that follow from it are at least three times
@@ -46,7 +46,7 @@ POLISHES = 3
 DECADES, PER_DECADE = (-8.0, 20.0), 16
 """Powers of ten of the drive number V tau/a_0 between which the critical velocity is sought."""
 BISECTIONS = 60
-"""To the last digit of a velocity, from a cell of the grid."""
+"""Enough to find a velocity in a cell of the grid to the last digit."""
 NEARBY = 1e-5
 """Relative difference of velocities for the slope of the critical stiffness."""
 SOFT, UNSTABLE, STIFF, NEVER = -1, 0, 1, 2
@@ -196,7 +196,7 @@ def _roots(coefficients: Array, sizes: Array) -> tuple[NDArray[np.complex128], A
         found = np.where(better, found - step, found)
     value, slope = map(np.abs, _horner(scaled, found))
     value = value + ROUNDING * np.abs(_horner(bounds, np.abs(found))[0])
-    with np.errstate(divide="ignore", over="ignore"):  # of a double root nothing is known
+    with np.errstate(divide="ignore", over="ignore"):  # infinite for a double root
         error = degree * value / (slope * np.abs(found))
     order = np.lexsort((found.imag, -found.real))
     found, error = (np.take_along_axis(each, order, axis=-1) for each in (found, error))
