@@ -20,7 +20,7 @@ from kvtheory.scene.indenters import Profile, beside
 DEGREE, INSET = 15, 1e-6
 """Degree of the series in a cell, and the distance of its last nodes from the ends, over half its width."""
 NODES = np.array([-1.0, *legendre.Legendre.basis(DEGREE).deriv().roots(), 1.0]) * (1.0 - INSET)
-"""Nodes of Lobatto's rule: no jump of the curvature hides beyond them. At an end there may be a kink."""
+"""Nodes of Lobatto's rule, so that no jump of the curvature is missed near an end, which may be a kink."""
 SERIES = np.linalg.inv(legendre.legvander(NODES, DEGREE))
 """Matrix from values at the nodes to coefficients."""
 DENSE = np.linspace(-1.0, 1.0, 33)
@@ -41,7 +41,7 @@ PARTS, OCTAVES = 8, 20
 MOST_CELLS = 2**14
 """Most cells; a shape that needs more is not smooth."""
 NEAREST, FARTHEST = 2.0**-200, 2.0**200
-"""Where the search for the width of the contact begins and ends, in m."""
+"""Limits of the search for the width of the contact, in m."""
 AHEAD = 4.0
 """Cells are made for a depth larger by this factor, and are used down to that depth over `AHEAD`."""
 CHECK_RTOL = 1e-11

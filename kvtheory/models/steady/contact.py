@@ -46,16 +46,16 @@ EPS = float(np.finfo(float).eps)
 LINEAR = 1e-8
 """Newton's method squares an error: after a step of this size the error is below rounding."""
 STRIDES = tuple(4.0 ** (2.0**power) for power in range(6, -9, -1))
-"""Factors by which a half length far too short is widened at first, as long as it stays too short."""
+"""Factors by which a half length far too short is increased at first, while it remains too short."""
 COARSE, CLOSER = 7, 3
 """How many of them are enough where `CLOSER` Newton steps follow, on the load of a parabola as blunt as the
 shape."""
 NEAR_REACH = 0.5
-"""Share of the reach at which the search for the half length starts at most."""
+"""The search for the half length starts at no more than this share of the reach."""
 MOST_STEPS = 200
 """Most steps of a root; a few suffice unless a vertex or the reach of a circle is close."""
 VERTEX, FLOOR = 1e-290, 1e-20
-"""Shares of the half length below which the trailing edge and the peak are taken to be at the lowest point."""
+"""Shares of the half length below which the trailing edge and the peak count as at the lowest point."""
 PEAK_RTOL, PEAK_STEPS = 1e-8, 8
 """Tolerance of the position of the peak, whose value has an error of second order, and secant steps towards
 it: one for a power, more for a circle."""
@@ -93,7 +93,7 @@ class ConvexLine:
     """A convex, even shape on Kelvin-Voigt: one scene or a column of them."""
 
     in_columns, floor = True, ROUNDING
-    """Whether many depths are solved at once; the relative error of every quantity by rounding."""
+    """Whether columns of depths are solved together; relative rounding error of every quantity."""
 
     def __init__(self, shape: Any, l_r: Value) -> None:
         self.shape, self.l_r, self.reach = shape, l_r, shape.reach

@@ -26,7 +26,7 @@ ROUNDING = 5e-15
 """Relative rounding of an edge or of a formula, the shape function included."""
 
 COARSEST, LEVELS, LAST = 0.125, 5, 3.3
-"""Step of the first rule, number of rules (each halves it), and where the weights vanish."""
+"""Step of the first rule, number of rules (each halves the step), and t at which the weights vanish."""
 SMOOTH = 10
 """Nodes of Gauss's rule for smooth functions, which then are series of Legendre polynomials."""
 RTOL, LIMIT = 1e-14, 1e-6

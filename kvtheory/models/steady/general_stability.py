@@ -29,8 +29,8 @@ Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
 STATEMENT = (
-    "memory integrals in closed form, checked by quadrature, with first-order bounds of rounding and of sums "
-    "over strips; critical stiffnesses from a grid of frequencies that follows resonances; "
+    "memory integrals in closed form, checked by quadrature, with first-order bounds of rounding and of "
+    "sums over strips; critical stiffnesses from a grid of frequencies that follows resonances; "
     "the least stable rates, counted by the argument principle (an error of infinity: the count differs)"
 )
 AT_REST = 1e-9

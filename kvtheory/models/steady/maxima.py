@@ -3,7 +3,7 @@ r"""The maxima of friction over velocity, of every scene for which steady slidin
 On Kelvin-Voigt a dead weight has one in closed form (theorems F3, F19, F20); a fixed indenter, whose
 friction rises to a limit, and a wedge, whose friction coefficient reaches a plateau, have none. Otherwise
 mu(V) is evaluated at equal steps of ln V over all time scales of the scene, more finely on shoulders, and
-each maximum is refined by a bracketing optimiser. It counts only where mu falls by more than its errors on
+each maximum is refined by a bracketing optimiser. It is accepted only if mu falls by more than its errors on
 both sides: a maximum is certain between these two velocities, and they give the error of its velocity.
 """
 

@@ -37,7 +37,7 @@ sensitive to rounding: its fourth power is an upper bound of the share of the lo
 MIDDLE = 1e-10
 """Smallest y/b of a strip: closer to the middle plane, a sharper tip makes no difference."""
 NEAR = 0.02
-"""Rise over y up to which h is integrated from the lowest point of a strip, where its difference cancels."""
+"""Rise over y up to which h is integrated from the lowest point of a strip: a difference would cancel."""
 NARROWEST = 1e-6
 """Half width of the narrowest strip that is sought, over that of the contact."""
 GAUSS = tuple((0.5 + 0.5 * s, 0.5 * w) for s, w in zip(*leggauss(4), strict=True))
@@ -50,7 +50,7 @@ RTOL, LIMIT = {True: 1e-12, False: 1e-9}, 1e-6
 MARGIN = 4.0
 """Safety factor on the ratio of the last two differences, which estimates the next one."""
 BESIDE = 1e-9
-"""Share of a radius at which the slopes on both sides of a kink are taken, to see where strips change."""
+"""Relative distance from a kink at which the slopes on both sides are taken, to see where strips change."""
 
 
 class Strip:

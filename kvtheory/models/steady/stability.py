@@ -14,7 +14,7 @@ Per unit width a strip of half length A, with x_TE = sqrt(A^2 + l_r^2) - l_r, ha
     dW/d(ddelta/dt) = K tau (A + x_TE),               dF/dV = K tau (A^3 + x_TE^3)/(3 R^2),
     dW/dV = dF/d(ddelta/dt) = K tau (l_r/R) x_TE.
 
-A parabola is one strip, a ball the sum of its strips. Strips that the motion lifts off or presses down carry
+A parabola is one strip, a ball the sum of its strips. Strips that the motion detaches or attaches carry
 nothing to first order. With l = l_r/a and the tail T of the load of a ball (derivation F20-tail), the sums
 on either side of its middle plane are, in units of a and a^3 (derivation F20-slopes),
 
@@ -44,13 +44,13 @@ those found by comparison with 80 digits on five hundred scenes."""
 POLISHES = 3
 """Newton steps after the eigenvalues of the companion matrix, which lose digits of the slow rates."""
 DECADES, PER_DECADE = (-8.0, 20.0), 16
-"""Powers of ten of the drive number V tau/a_0 between which the critical velocity is sought."""
+"""Powers of ten of the drive number V tau/a_0 between which the critical velocity is searched for."""
 BISECTIONS = 60
 """Enough to find a velocity in a cell of the grid to the last digit."""
 NEARBY = 1e-5
-"""Relative difference of velocities for the slope of the critical stiffness."""
+"""Relative step of velocity in the difference quotient of the critical stiffness."""
 SOFT, UNSTABLE, STIFF, NEVER = -1, 0, 1, 2
-"""The stiffness of the spring: below both critical ones, between them, above both, or there are none."""
+"""Spring stiffness below both critical ones, between them, above both; or no critical stiffness exists."""
 
 
 class Onset(NamedTuple):
@@ -105,7 +105,7 @@ class SmallMotions:
         return np.broadcast_shapes(*map(np.shape, (self.T_x, self.g, self.S_z, self.T_z)))
 
     def onsets(self) -> tuple[Onset, Onset]:
-        """Return between which stiffnesses steady sliding is unstable: the lower one and the upper one.
+        """Return the lower and the upper critical stiffness, between which steady sliding is unstable.
 
         Where friction falls with the velocity, every softer spring is unstable: the lower one is then 0.
         """
