@@ -12,8 +12,8 @@ Kelvin-Voigt foundation with C = int (G - K) dt (F18), or a power of its own for
 (F18), or a springpot. A ball is the sum of its strips: a power p of their half length becomes
 S(p) = int cos(t)^(p+1) dt over the half circle, for every law.
 
-The support fixes depth or load. For V -> 0 both are as at rest. For V -> oo a spring lifts the indenter by
-its whole static depth, W -> M g + k_s delta_0, unless the foundation is a glassy spring itself.
+The balance of forces gives depth and load. For V -> 0 both are as at rest. For V -> oo a spring lifts the
+indenter by its whole static depth, W -> M g + k_s delta_0, unless the foundation is a glassy spring itself.
 """
 
 from typing import Any, NamedTuple
