@@ -15,7 +15,7 @@ a small difference where l_r is small; and h', which may grow without bound towa
 in W. Of the power F V, the last term is dissipated inside the contact; K u_TE^2/2 is dissipated in the
 surface that relaxes behind it.
 
-The balance of forces gives the depth. W is convex in the depth and zero without it: d ln W/d ln delta >= 1,
+The balance of forces gives the depth. W is convex in the depth, zero at zero depth: d ln W/d ln delta >= 1,
 so every load is carried at one depth, and the depth is relatively no less accurate than the load.
 """
 
