@@ -1,4 +1,4 @@
-r"""Laws of the foundation: what each question needs of a relaxation function G(t).
+r"""Laws of the foundation: moments and responses of a relaxation function G(t).
 
 `Prony` is a spring, a damper and Maxwell arms in parallel, G = K + C delta(t) + sum K_i e^(-t/tau_i); with a
 damper alone it is Kelvin-Voigt. `Fractional` is a spring and a springpot. `over` turns a law in time into one
@@ -41,7 +41,7 @@ Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
 RELATIVE_ERROR = 24 * float(np.finfo(float).eps)
-"""5.3e-15, of what follows from the moments: twice the worst that the comparison with 50 digits has shown."""
+"""5.3e-15, of results that follow from the moments: twice the largest error found against 50 digits."""
 FRACTION_TERMS = 10
 """Terms of the continued fraction for z <= 4: the next one is below rounding."""
 FAR = 1e150
@@ -302,12 +302,12 @@ def differences(z: Array, sigma: Complex) -> tuple[Complex, ...]:
 
 
 class ElementStep(NamedTuple):
-    """What an element does in a step of the length h, or of several lengths along the first axis.
+    """The response of an element over a time step h, or over several along the first axis.
 
-    `fall` are the factors of the modes of a free element, `held` those of the arms of one that is held where
-    it is, `weights` those of the mean force of arms then. A unit ramp adds `ramp` to the arms and `stiffness`
-    to the mean pressure; `damping` is that of the damper which, beside a spring, does to a ramp as the step
-    does.
+    `fall` are the decay factors of the modes of a free element, `held` those of the arms at constant
+    compression, `weights` the ratios of their mean to their initial force then. A unit ramp adds `ramp` to
+    the arms and `stiffness` to the mean pressure; `damping` is that of the damper which, beside a spring,
+    responds to a ramp in the same way.
     """
 
     h: Any
@@ -320,12 +320,12 @@ class ElementStep(NamedTuple):
 
 
 class Element(NamedTuple):
-    """One element of the foundation: a spring K (N/m^3), a damper C (N s/m^3), or arms K_i, tau_i (s) for it.
+    """One element of the foundation: a spring K (N/m^3) with a damper C (N s/m^3) or arms K_i, tau_i (s).
 
-    Compressed by u, it answers with the pressure p = K u + C u' + sum s_i, s_i' = K_i u' - s_i/tau_i. Left
-    alone, p vanishes and u is a sum of modes that decay at the `rates` with the `shares`; `to_modes` and
-    `from_modes` go between them and the compressions of the dampers of the arms, y_i = u - s_i/K_i. Without
-    arms, u itself is the one mode.
+    At a compression u its pressure is p = K u + C u' + sum s_i, s_i' = K_i u' - s_i/tau_i. Detached, p
+    vanishes and u is a sum of modes that decay at the `rates` with the `shares`; `to_modes` and `from_modes`
+    convert between them and the compressions of the dampers of the arms, y_i = u - s_i/K_i. Without arms, u
+    itself is the one mode.
 
     >>> element = Element.of(2.0, 0.2)
     >>> element.retardation_time, element.longest_time, element.pressure(1.0, 5.0)
@@ -369,7 +369,7 @@ class Element(NamedTuple):
         return 1.0 / float(self.rates.min())
 
     def stiffness_within(self, time: float) -> float:
-        """Return the effective stiffness for loading over this time; of faster arms the damping is left."""
+        """Return the effective stiffness for loading over this time; faster arms act as dampers."""
         return self.stiffness + float(self.arm_stiffness @ (self.arm_time / (self.arm_time + time)))
 
     def pressure(self, g: Any, g_rate: Any) -> Any:

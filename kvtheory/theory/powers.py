@@ -5,13 +5,13 @@ from typing import Any
 import numpy as np
 
 SPECIAL = ((2.0, np.square), (0.5, np.sqrt), (-1.0, np.reciprocal))
-"""Exponents for which NumPy may take another routine, which rounds otherwise."""
+"""Exponents for which NumPy may use a special routine, with other rounding."""
 
 
 def power(base: Any, exponent: Any) -> Any:
     """Return base^exponent, to the same bits however many scenes are in an array.
 
-    NumPy takes its special routines where one exponent stands for all; here they are always taken.
+    NumPy uses its special routines only where all exponents are one scalar; here they are always used.
     """
     if not isinstance(exponent, np.ndarray):
         return base**exponent

@@ -40,16 +40,16 @@ from kvtheory.scene.indenters import beside
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(DEGREE + 1)
 """Gauss's rule, exact for the square of a series."""
 PEAK_BAND, PEAK_XTOL = 0.02, 1e-8
-"""Local maxima of the sampled pressure this close to the highest are refined, with this tolerance of their
-position over the distance of two samples; the error of the value is of second order."""
+"""Local maxima of the sampled pressure within this share of the highest are refined; tolerance of their
+position, over the distance of two samples: the error of the value is of second order."""
 CORNER, AT_CORNER = (1e-10, 1e-290), 1e-9
-"""Distances from a corner, over the length of the contact, between which the slope changes by no more."""
+"""Distances from the lowest point, over that of x_LE; at a corner the slopes there agree to `AT_CORNER`."""
 HALF, BALANCED = 0.5, 1e-6
 """Share of the depth below which u_TE is better taken from the slope than from the height, and within
 which both agree unless the pressure jumps."""
 ONE_SIDED = 1e3
-"""Difference of series and function at a kink, over the last coefficients, that even a singular slope does
-not exceed: beyond it, the function gives the slope of the other side."""
+"""Upper bound, over the last coefficients, of the difference of series and function at a kink, even for a
+singular slope: if it is larger, the function gives the slope of the other side."""
 DEPTH_STEP, ROOT_RTOL = 2.0**-20, 4.0 * float(np.finfo(float).eps)
 """Relative step of the depth for derivatives, which are needed to a digit or two; the smallest tolerance that
 `brentq` accepts."""
@@ -68,7 +68,7 @@ class Contact:
     """All contacts at one depth; forces are over the stiffness."""
 
     load_curvature = None
-    """Not known: the load is not smooth where another contact begins."""
+    """None: the load is not smooth where another contact begins."""
     guess = ()
 
     def __init__(self, surface: Surface, l_r: float, depth: float) -> None:
@@ -142,7 +142,7 @@ class Contact:
         # Where the truncation error of the series could change the sign, the shape itself is evaluated.
         tail = c.height_tail + l_r * c.slope_tail
         unsure = abs(p) <= TAIL_MARGIN * tail[:, None]
-        # Beside a kink too, for its slope may be singular, unless that proves to be the other side.
+        # Likewise at a kink, where the slope may be singular, unless it is that of the other side.
         kinks = np.isin(x, self.surface.kinks)
         kinks[:, 1:-1] = False
         for row, column in np.argwhere(unsure | kinks).tolist():
@@ -150,7 +150,7 @@ class Contact:
             value = self.pressure(point, l_r)
             if not kinks[row, column] or abs(value - p[row, column]) <= ONE_SIDED * tail[row]:
                 p[row, column] = value
-        # Two roots may hide between samples: there the parabola through three of them crosses zero.
+        # Two roots may lie between samples: then the parabola through three samples crosses zero.
         left, middle, right = p[:, :-2], p[:, 1:-1], p[:, 2:]
         bend, tilt = left - 2.0 * middle + right, 0.5 * (right - left)
         shift, vertex = -tilt / bend, middle - 0.5 * tilt * tilt / bend
@@ -193,7 +193,7 @@ class Contact:
 
     @property
     def edge_error(self) -> float:
-        """Relative error of a trailing edge at the lowest point: all of it, unless that is a corner."""
+        """Relative error of the trailing edge: infinite at the lowest point, unless that is a corner."""
         if abs(self.patches[-1].x_te) >= SMALLEST:
             return 0.0
         near, nearer = (self.surface.slope(-share * self.patches[0].x_le) for share in CORNER)
@@ -240,7 +240,7 @@ class Contact:
 
 
 def _root(function: Callable[[float], float], low: float, high: float, ends: Any = None) -> float:
-    """Return a root between two points; one of them, if only rounding keeps the signs equal.
+    """Return a root between two points; one of them, if the signs are equal by rounding only.
 
     `ends` are the values there, if they are not those of the function, which may jump at a kink.
     """
@@ -271,7 +271,7 @@ class AnyLine:
 
     @property
     def reach(self) -> float:
-        """How far the shape has been examined."""
+        """The largest x at which the shape has been examined."""
         return self.surface.examined
 
     def strips(self, strip: Any) -> "AnyLine":
@@ -279,7 +279,7 @@ class AnyLine:
         return AnyLine(Surface(strip, 1.0, strip.nearest), self.l_r)
 
     def first(self, load: float, spring: float) -> tuple[float, tuple[()]]:
-        """Return about the depth at a load."""
+        """Return an initial guess of the depth at a load."""
         return self.shallow(load, lambda x: x + self.l_r + spring), ()
 
     def at(self, depth: float, guess: tuple[()] = ()) -> Contact:

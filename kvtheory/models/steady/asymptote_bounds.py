@@ -1,10 +1,10 @@
-r"""The first rung: the asymptotes of a parabola and of a ball, where a bound of their error allows it.
+r"""First rung of the ladder: asymptotes for a parabola and a ball, where the bound of their error allows it.
 
 The balance of forces is f + kappa (s^2 - 1) = 1, with s = a/a_0, lambda = V tau/a_0 and the load f in units
 of the static one; d ln f/d ln s is between 2 and 3 for a parabola and between 3 and 4 for a ball (derivations
 "scaled-load", "F20-balance"). From any s, whose total f + kappa s^2 is (1 + kappa) e^r, the root is therefore
-between s e^(-r/2) and s e^(-r/3), for a ball s e^(-r/4): r tells how far it is. One step of Newton's method
-leaves |r| below 5e-4 for a ball, which the tests hold it to, but the bounds are right without it.
+between s e^(-r/2) and s e^(-r/3), for a ball s e^(-r/4). One step of Newton's method leaves |r|
+below 5e-4 for a ball, as the tests check; the bounds hold for any r.
 
 At a given lambda every quantity but the friction force and the dissipated part is monotonic in s: depth and
 half length, x_TE = sqrt(lambda^2 + s^2) - lambda, the peak pressure s^2 + lambda^2 or 2 lambda s (F7), the

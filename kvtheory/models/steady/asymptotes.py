@@ -12,8 +12,8 @@ Kelvin-Voigt foundation with C = int (G - K) dt (F18), or a power of its own for
 (F18), or a springpot. A ball is the sum of its strips: a power p of their half length becomes
 S(p) = int cos(t)^(p+1) dt over the half circle, for every law.
 
-The support closes the balance. For V -> 0 it is that at rest. For V -> oo a spring has lifted the indenter by
-its whole static depth, W -> M g + k_s delta_0, unless the foundation is a glassy spring itself.
+The balance of forces gives depth and load. For V -> 0 both are as at rest. For V -> oo a spring lifts the
+indenter by its whole static depth, W -> M g + k_s delta_0, unless the foundation is a glassy spring itself.
 """
 
 from typing import Any, NamedTuple
@@ -101,7 +101,7 @@ def _retardation_length(scene: Scene) -> Value:
 
 
 def at_rest(scene: Scene, low: Limit | None = None) -> tuple[Value, Value]:
-    """Return depth and half length at rest; `low` is the limit for V -> 0, if it is at hand."""
+    """Return depth and half length at rest; `low` is the limit for V -> 0, if already known."""
     if scene.held:
         depth, (slope, L, n) = scene.support.depth, _shape(scene)
         return depth, L * root(n * depth / (slope * L), n)
@@ -186,16 +186,16 @@ def quantities(scene: Scene, limit: Limit) -> dict[str, Value]:
 
 
 def error(limit: Value, exact: Value) -> Value:
-    """Return limit/exact - 1, none where both are zero."""
+    """Return limit/exact - 1, or 0 where both are zero."""
     return np.where(limit == exact, 0.0, limit / exact - 1.0)
 
 
 def errors(
     scene: Scene, limit: Limit, values: dict[str, Value], exact: SteadyState
 ) -> dict[str, Value]:
-    """Return limit/exact - 1 of each quantity, of which the limits are `values`."""
+    """Return limit/exact - 1 of each quantity; `values` are the limits."""
     found = {name: error(value, getattr(exact, name)) for name, value in values.items()}
-    if not limit.slow:  # the tip, where only the edge of a wedge is; others may underflow
+    if not limit.slow:  # only a wedge has its edge at the tip; others may underflow
         at_tip = (_shape(scene)[2] == 1.0) & (np.asarray(exact.trailing_edge) == 0.0)
         found["trailing_edge"] = np.where(at_tip, 0.0, -1.0)
     return found

@@ -35,9 +35,9 @@ from kvtheory.theory import closed_forms as cf
 Array = NDArray[np.float64]
 
 NEAR = 1.0
-"""Largest l for the closed form of T: it loses a bit of what T is added to."""
+"""Largest l for the closed form of T: cancellation costs a bit of the sums that contain T."""
 NODES = 24
-"""Of Gauss's rule for the integral from -1 to 1: its error is below rounding from l = 1 on."""
+"""Nodes of Gauss's rule for the integral from -1 to 1, whose error is below rounding from l = 1 on."""
 V, WEIGHTS = (half[NODES // 2 :] for half in leggauss(NODES))
 SQUARES, WEIGHTS = V * V, 2.0 * WEIGHTS * (1.0 - V * V) ** 2
 
@@ -53,7 +53,7 @@ OWN_ERRORS = ()
 
 SHORTER = 9.0 * math.pi / 32.0
 WIDTH = 4.0 / 3.0 / SHORTER**2
-"""Its half length over that of the ball, and its width over the ball's half width, both at rest."""
+"""At rest: half length of the equivalent line over the ball's, and its width over the ball's half width."""
 LOAD_ERROR, FRICTION_COEFFICIENT_ERROR = 0.002, 0.0025
 """The largest differences relative to the ball, rounded up from 0.00192 and 0.00236."""
 
@@ -121,7 +121,7 @@ def angle_and_tail(l: Any) -> tuple[Any, Any]:
 def scaled_root(drive_number: Array, support_number: Array) -> Array:
     """Solve f(s) + kappa (s^2 - 1) = 1 for s = a/a_0 in (0, 1], by Halley's method in logarithms.
 
-    The first guess interpolates between the limits f -> s^4 and 8 lambda s^3/(3 pi).
+    The initial guess interpolates between the limits f -> s^4 and 8 lambda s^3/(3 pi).
     """
     lam, kappa = drive_number, support_number
 

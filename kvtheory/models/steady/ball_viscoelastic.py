@@ -5,7 +5,7 @@ F_2 are explicit in the length c of its contact (theorem F17), and so is a(c): w
 
     W = int W_2(c) dy,    dy = - sqrt(R'/R) a a'(c)/y' dc,    y'^2 = a_0^2 - a(c)^2,
 
-no root is needed but that of the middle plane (derivation F17-growth). The double-exponential rule resolves
+the only root is that of the middle plane (derivation F17-growth). The double-exponential rule resolves
 the square root at y' = 0 and the singularity at c = 0. Where c is close to that of the middle plane, a_0 - a
 follows from the derivatives of a. The load grows with the depth as
 
@@ -29,7 +29,7 @@ from kvtheory.theory.laws import Law
 Array = NDArray[np.float64]
 
 STEP, LAST = 0.0625, 3.9
-"""Of the double-exponential rule, and where its weights vanish."""
+"""Step of the double-exponential rule, and where its weights vanish."""
 T = STEP * np.arange(-int(LAST / STEP), int(LAST / STEP) + 1)
 FALL = np.exp(-np.pi * np.sinh(T))
 NODES = 1.0 / (1.0 + FALL)
@@ -39,8 +39,8 @@ WEIGHTS = STEP * np.pi * np.cosh(T) * NODES * GAPS
 CLOSE = 1e-6
 """Relative distance from the middle plane's c below which a_0 - a is taken from its derivatives."""
 MOST_STEPS, LAST_STEP = 60, 1e-8
-"""Most iterations, of which some six are needed; after a step as small as this the error, of the order of its
-square, is below rounding."""
+"""Most iterations, of which about six are needed; after a step as small as this the error, of the order of
+its square, is below rounding."""
 PART = 256
 """Scenes evaluated together, so that their nodes stay in the cache."""
 
@@ -98,7 +98,7 @@ def contact_length(scene: Scene, row: Law) -> Array:
     """Return the length of the contact in the middle plane, on every support.
 
     At a load by Newton's method in logarithms, from rest. The load is positive and its growth between 2
-    and 5, so that the steps converge from everywhere.
+    and 5, so that the steps converge from any initial guess.
     """
     R, load, spring = scene.indenter.radius, scene.support.weight, scene.support.spring
     if scene.held:

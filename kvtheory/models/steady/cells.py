@@ -20,36 +20,36 @@ from kvtheory.scene.indenters import Profile, beside
 DEGREE, INSET = 15, 1e-6
 """Degree of the series in a cell, and the distance of its last nodes from the ends, over half its width."""
 NODES = np.array([-1.0, *legendre.Legendre.basis(DEGREE).deriv().roots(), 1.0]) * (1.0 - INSET)
-"""Nodes of Lobatto's rule: no jump of the curvature hides beyond them. At an end there may be a kink."""
+"""Nodes of Lobatto's rule, so that no jump of the curvature is missed near an end, which may be a kink."""
 SERIES = np.linalg.inv(legendre.legvander(NODES, DEGREE))
 """Matrix from values at the nodes to coefficients."""
 DENSE = np.linspace(-1.0, 1.0, 33)
 """Points at which the series is examined; a resolved cell holds hardly more than half a wave."""
 VALUES = legendre.legvander(DENSE, DEGREE).T
 TAIL, TAIL_MARGIN = 13, 4.0
-"""First of the last coefficients; truncation error of a series over their sum, in a cell not resolved."""
+"""First of the last coefficients; bound of the truncation error over their sum, in an unresolved cell."""
 RESOLVED, NOISE = 1e-13, 1e-9
 """Last coefficients, over the depth, of a resolved cell, and of one limited by the rounding of the shape."""
 HELPS = 0.25
-"""Largest share of the last coefficients of a smooth shape that remains after a cut."""
+"""Halving a cell of a smooth shape leaves at most this share of the last coefficients."""
 WIDE, FAR_ABOVE = 1e3, 1e9
-"""Height over the depth above which a cell limited by rounding is divided, and one is left unexamined."""
+"""Height over the depth above which a cell limited by rounding is divided, and any cell is omitted."""
 JUMP, NARROW = 1e-3, 1e-9
-"""Last coefficients of a slope, over the slope, that only a jump keeps in so narrow a cell."""
+"""Last coefficients over the slope, and width over the contact: only a jump keeps them so large."""
 PARTS, OCTAVES = 8, 20
-"""Cells of each octave of x at first, and octaves beyond the contact that are examined without a reach."""
+"""Cells of each octave of x at first, and octaves examined beyond the contact if there is no reach."""
 MOST_CELLS = 2**14
 """Most cells; a shape that needs more is not smooth."""
 NEAREST, FARTHEST = 2.0**-200, 2.0**200
-"""Where the search for the width of the contact begins and ends, in m."""
+"""Limits of the search for the width of the contact, in m."""
 AHEAD = 4.0
 """Cells are made for a depth larger by this factor, and are used down to that depth over `AHEAD`."""
 CHECK_RTOL = 1e-11
 """Discrepancy between h and h' that a check allows, relative to the depth."""
 
 HOLLOW, FLAT, BEND = 1e-9, 1e-15, 2.0**-5
-"""Decrease of the slope of a convex shape, and its last coefficients, over the slope, that are rounding; and
-width of a cell, over that of the contact, that only a jump of a higher derivative requires."""
+"""Decrease of h' of a convex shape, and its last coefficients, over h', that count as rounding; and width of
+a cell, over that of the contact, below which a higher derivative must jump there."""
 
 
 class Cells(NamedTuple):
@@ -133,14 +133,14 @@ class Surface:
         return beside(x, to) if x in self.kinks else x
 
     def first(self, enough: Callable[[float, float], bool]) -> float:
-        """Return the first power of two at which the higher of both sides is enough, or the reach."""
+        """Return the first of doubled x at which the higher of both sides is `enough`, or the reach."""
         x, last = self.least, min(self.end, FARTHEST)
         while x < last and not enough(x, max(self.height(-x), self.height(x))):
             x *= 2.0
         return x if x < last else self.end
 
     def shallow(self, load: float, width: Callable[[float], float]) -> float:
-        """Return a depth that, times a width which depends on the half length, is about the load."""
+        """Return an approximate depth at a load: depth times `width` of the half length is the load."""
         x = self.first(lambda x, height: height * width(x) >= load)
         near, far = (max(self.height(-y), self.height(y)) * width(y) for y in (0.5 * x, x))
         if 0.0 < near < load <= far < math.inf:
@@ -148,7 +148,7 @@ class Surface:
         return min(self.height(-x), self.height(x)) or load / x
 
     def cells(self, depth: float) -> Cells:
-        """Return the cells in which h may be below a depth; they serve for others near it."""
+        """Return the cells in which h may be below a depth; they are reused for depths near it."""
         if self._cells is None or not self._cells[0] / AHEAD**2 <= depth <= self._cells[0]:
             self._cells = AHEAD * depth, self._resolved(AHEAD * depth)
         return self._cells[1]
@@ -219,7 +219,7 @@ class Surface:
         return any(start <= kink <= end for kink in self.kinks)
 
     def bends(self, cells: Cells, narrow: float) -> list[float]:
-        """Return where the narrowest of narrow cells close in on a bend that no kink explains."""
+        """Return where cells narrow towards a jump of a derivative that is not at a known kink."""
         width, found = cells.end - cells.start, list[float]()
         for run in np.split(np.arange(width.size), np.flatnonzero(np.diff(width)) + 1):
             start, end, size = cells.start[run[0]], cells.end[run[-1]], width[run[0]]
@@ -230,7 +230,7 @@ class Surface:
         return found
 
     def _bend(self, start: float, end: float) -> float:
-        """Return the bend in an interval: halved until no half is worse resolved than rounding."""
+        """Return where the jump is in an interval, which is bisected until both halves are resolved."""
         while True:
             middle = 0.5 * (start + end)
             halves = np.array([[start, middle], [middle, end]])
@@ -244,9 +244,9 @@ class Surface:
 class ConvexProfile:
     """A convex profile in the direction of sliding, as a series, for the convolution.
 
-    So thousands of slopes need no call of a Python function. A shape that is not convex where it is below the
-    depth may touch in several places; the memory of the surface between them is not modelled here, and the
-    shape is refused.
+    It evaluates thousands of slopes without calls of a Python function. A shape that is not convex where it
+    is below the depth may touch in several places; the memory of the surface between them is not modelled
+    here, and the shape is refused.
     """
 
     def __init__(self, profile: Profile, side: float) -> None:

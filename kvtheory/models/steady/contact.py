@@ -46,16 +46,16 @@ EPS = float(np.finfo(float).eps)
 LINEAR = 1e-8
 """Newton's method squares an error: after a step of this size the error is below rounding."""
 STRIDES = tuple(4.0 ** (2.0**power) for power in range(6, -9, -1))
-"""Factors by which a half length far too short is widened at first, as long as it stays too short."""
+"""Factors by which a half length far too short is increased at first, while it remains too short."""
 COARSE, CLOSER = 7, 3
-"""How many of them are enough where `CLOSER` Newton steps on the load of a parabola follow, as blunt as the
+"""How many of them are enough where `CLOSER` Newton steps follow, on the load of a parabola as blunt as the
 shape."""
 NEAR_REACH = 0.5
-"""Share of the reach at which the search for the half length starts at most."""
+"""The search for the half length starts at no more than this share of the reach."""
 MOST_STEPS = 200
-"""Steps of a root; they are a handful unless a vertex or the reach of a circle is close."""
+"""Most steps of a root; a few suffice unless a vertex or the reach of a circle is close."""
 VERTEX, FLOOR = 1e-290, 1e-20
-"""Shares of the half length below which the trailing edge, and the peak, are at the lowest point."""
+"""Shares of the half length below which the trailing edge and the peak count as at the lowest point."""
 PEAK_RTOL, PEAK_STEPS = 1e-8, 8
 """Tolerance of the position of the peak, whose value has an error of second order, and secant steps towards
 it: one for a power, more for a circle."""
@@ -75,7 +75,7 @@ class Contact(NamedTuple):
     x_moves: Value
     """d a/d(delta), d(x_TE)/d(delta)."""
     rolls: Value
-    """1, or 0 where the pressure jumps through zero at the vertex."""
+    """1, or 0 where the trailing edge is at the vertex, where the pressure jumps through zero."""
     u_te: Value
     load: Value
     load_error: Value
@@ -84,7 +84,7 @@ class Contact(NamedTuple):
     load_curvature: Value
     """d(W/K)/d(delta), d^2(W/K)/d(delta)^2."""
     guess: tuple[Value, Value]
-    """Edges from which those at another depth are found."""
+    """Edges, as initial guess for another depth."""
     noise: Value
     """Relative error of the depth equivalent to rounding: of x_LE, and of u."""
 
@@ -93,7 +93,7 @@ class ConvexLine:
     """A convex, even shape on Kelvin-Voigt: one scene or a column of them."""
 
     in_columns, floor = True, ROUNDING
-    """Whether many depths are solved at once; the relative error of every quantity by rounding."""
+    """Whether columns of depths are solved together; relative rounding error of every quantity."""
 
     def __init__(self, shape: Any, l_r: Value) -> None:
         self.shape, self.l_r, self.reach = shape, l_r, shape.reach
@@ -109,11 +109,11 @@ class ConvexLine:
         return math.inf if reach is math.inf else self.shape.height(reach * (1.0 - EPS))
 
     def shallow(self, load: Value, width: Callable[[float], float]) -> Value:
-        """Return a depth that, times a width which depends on its half length, is about the load."""
+        """Return an approximate depth at a load: depth times `width` of the half length is the load."""
         return self.shape.height(_spaced(self.shape, load**0.5, load, width, STRIDES))
 
     def first(self, load: Value, spring: Value) -> tuple[Value, tuple[Value, ...]]:
-        """Return about the depth at a load, and its edges: of a parabola as blunt as the shape."""
+        """Return initial guesses of depth and edges at a load: of a parabola as blunt as the shape."""
         shape, l_r = self.shape, self.l_r
         extra = l_r + spring
         a = _spaced(shape, load**0.5, load, lambda x: x + extra)
@@ -181,7 +181,7 @@ class ConvexLine:
         by_x = left - at_x * at_x * x_moves * (total / drag)
         peak = _peak(shape, l_r, contact)
         edge = depth * a_moves / a
-        # Zero is the trailing edge at a corner; of a rounded tip it says that the edge is too close to tell.
+        # The trailing edge is exactly 0 at a corner; at a rounded tip, 0 means too close to be resolved.
         lost = pick((rolls * x < SMALLEST) & (shape.bend(x) != 0.0), math.inf, 0.0)
         values = a, -a, rolls * x, load, l_r * total, peak, drag / total
         own = {"trailing_edge": lost, "load": load_error, "friction_force": drag_error}

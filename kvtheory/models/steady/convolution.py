@@ -45,7 +45,7 @@ NODES, BOTH = RULES[3]
 ROOT, TINY = 8.9e-16, 1e-300
 """Tolerances of edges: all digits, however small they are."""
 VERTEX = 1e-290
-"""Share of the half length that is next to the lowest point."""
+"""Distance behind the lowest point, over the half length, at which the pressure there is taken."""
 STRIDE, PEAK_RTOL = 1e-6, 1e-6
 """Relative step of x for the slope of the pressure at its zero, and tolerance of the position of the peak
 between two nodes; the error of its value is of second order."""
@@ -78,14 +78,14 @@ class Arms:
     def works(self, sliding: "Contact", left: Array) -> tuple[float, float]:
         """Return the work of the arms over the contact, and the part lost in it: sums of squares.
 
-        `left` is what they press at the trailing edge.
+        `left` is the pressure of each arm at the trailing edge.
         """
         lost, _ = sliding.total((sliding.rows**2 / (self.stiffness * self.length)).sum(axis=0))
         return float((left**2 / (2.0 * self.stiffness)).sum()) + lost, lost
 
 
 class Springpot:
-    """A springpot, (X/l)^(-alpha)/Gamma(1 - alpha), likewise; for alpha = 1 nothing is remembered."""
+    """A springpot, (X/l)^(-alpha)/Gamma(1 - alpha), likewise; for alpha = 1 it has no memory."""
 
     def __init__(self, length: float, order: float) -> None:
         self.scale, self.rest = length**order / gamma(2.0 - order), 1.0 - order
@@ -218,7 +218,7 @@ class Contact:
 
     @property
     def edge_power(self) -> float:
-        """Relative shift of the trailing edge over that of all pressures: no less than over the depth's.
+        """Relative shift of the trailing edge over that of all pressures: at least that over the depth's.
 
         Ahead of the lowest point u' >= 0: the pressure there is at least delta times G/K at the trailing
         edge, as G does not rise.
@@ -262,13 +262,13 @@ class ViscoelasticLine:
         return min(float(self.shape.height(side * end)) for side in (-1.0, 1.0))
 
     def shallow(self, load: float, width: Any) -> float:
-        """Return a depth that, times a width which depends on its half length, is about the load."""
+        """Return an approximate depth at a load: depth times `width` of the half length is the load."""
         if isinstance(self.shape, ConvexProfile):
             return self.shape.shallow(load, width)
         return float(ConvexLine(self.shape, self.l_r).shallow(load, width))
 
     def first(self, load: float, spring: float) -> tuple[float, tuple[()]]:
-        """Return about the depth at a load."""
+        """Return an initial guess of the depth at a load."""
         return self.shallow(load, lambda x: x + spring), ()
 
     def at(self, depth: float, guess: tuple[()] = ()) -> Contact:

@@ -26,7 +26,7 @@ ROUNDING = 5e-15
 """Relative rounding of an edge or of a formula, the shape function included."""
 
 COARSEST, LEVELS, LAST = 0.125, 5, 3.3
-"""Step of the first rule, number of rules (each halves it), and where the weights vanish."""
+"""Step of the first rule, number of rules (each halves the step), and t at which the weights vanish."""
 SMOOTH = 10
 """Nodes of Gauss's rule for smooth functions, which then are series of Legendre polynomials."""
 RTOL, LIMIT = 1e-14, 1e-6
@@ -36,7 +36,7 @@ RTOL, LIMIT = 1e-14, 1e-6
 def _rule(step: float) -> tuple[Any, Any]:
     """Return nodes from 0 to 1, and two rows of weights: for this step, and for twice that.
 
-    Takahasi and Mori (1974), doi:10.2977/prims/1195192451: singular ends do not matter.
+    Takahasi and Mori (1974), doi:10.2977/prims/1195192451: the ends may be singular.
     """
     count = 2 * int(0.5 * LAST / step)
     t = step * np.arange(-count, count + 1)
@@ -47,7 +47,7 @@ def _rule(step: float) -> tuple[Any, Any]:
 
 
 def _gauss() -> tuple[Any, Any]:
-    """Return Gauss's rule likewise, beside itself without the last two terms of the Legendre series.
+    """Return Gauss's rule likewise, and the same without the last two terms of the Legendre series.
 
     For an analytic function these terms fall geometrically, and the error is that of the term of twice their
     order.
@@ -60,7 +60,7 @@ def _gauss() -> tuple[Any, Any]:
 
 RULES = (_gauss(), *(_rule(COARSEST / 2**level) for level in range(LEVELS)))
 _SIDES = tuple((*np.kron(np.eye(2), nodes), weights) for nodes, weights in RULES)
-"""Nodes on the left, beside zeros; the same on the right; and weights."""
+"""Nodes of the left interval, padded with zeros; those of the right one; and weights."""
 
 
 def integral(
@@ -122,7 +122,7 @@ def some(condition: Any) -> bool:
 def pick(condition: Any, chosen: Value, other: Value) -> Value:
     """Return one of two values, element by element.
 
-    So converged scenes stay unchanged while the rest of a column is iterated, and no result depends on the
+    Thus converged scenes stay unchanged while the rest of a column is iterated, and no result depends on the
     other scenes.
     """
     if isinstance(condition, np.ndarray):

@@ -22,7 +22,7 @@ from kvtheory.scene.model import Scene
 from kvtheory.theory import closed_forms as cf
 
 HALLEY_STEPS = 2
-"""The first guess is within 3 % of the root; cubic convergence gives 1e-5, then all digits."""
+"""The initial guess is within 3 % of the root; cubic convergence gives 1e-5, then all digits."""
 
 HELD, CERTIFICATE = (
     Certificate(
@@ -82,7 +82,7 @@ def depth(scene: Scene) -> Any:
 def scaled_root(drive_number: Array, support_number: Array) -> Array:
     """Solve f_z(s) + kappa (s^2 - 1) = 1 for s = a/a_0 in (0, 1], by Halley's method.
 
-    The first guess interpolates between the limits s = 1 at lambda = 0 and s^2 (3/4 lambda + kappa)
+    The initial guess interpolates between the limits s = 1 at lambda = 0 and s^2 (3/4 lambda + kappa)
     = 1 + kappa at lambda -> oo.
     """
     kappa = support_number

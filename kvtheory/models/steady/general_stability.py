@@ -4,10 +4,10 @@ The law of the foundation gives the response of a parabola (`kvtheory.theory.law
 its strips, by Gauss's rule in the angle whose cosine is the half length of a strip over the largest.
 
 A stiffness k_x(s) = D - M_x s^2 - c_x s - B C/(M s^2 + k_s + A) belongs to each rate s. A stiff spring
-keeps sliding stable. On the way to a soft one two rates enter or leave the right half plane at each frequency
+keeps sliding stable. As it softens, two rates enter or leave the right half plane at each frequency
 where k_x(i omega) is real and positive: they enter where its imaginary part falls through zero over the
-frequency, and leave where it rises. All these frequencies, found on a grid and bisected, tell which
-stiffnesses are stable.
+frequency, and leave where it rises. These frequencies, found on a grid and bisected, give the
+ranges of stable stiffness.
 
 The equation for the rates is transcendental and has infinitely many roots, finitely many to the right of any
 line. The least stable ones are found by Newton's method from many starts; the argument principle counts
@@ -29,42 +29,42 @@ Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
 STATEMENT = (
-    "memory integrals in closed form, checked by quadrature, with what rounding and sums over strips make "
-    "of them to first order; critical stiffnesses from a grid of frequencies that follows resonances; "
+    "memory integrals in closed form, checked by quadrature, with first-order bounds of rounding and of "
+    "sums over strips; critical stiffnesses from a grid of frequencies that follows resonances; "
     "the least stable rates, counted by the argument principle (an error of infinity: the count differs)"
 )
 AT_REST = 1e-9
-"""V tau_i/c of the slowest arm, of the slow sliding that stands for rest."""
+"""V tau_i/c of the slowest arm in the slow sliding that replaces rest."""
 PER_DECADE, ROUGHLY, BEYOND = 48, 20, 2.0
-"""Frequencies per decade, of one velocity and of many; and decades beyond the times of a scene."""
+"""Frequencies per decade, for one velocity and for many; decades searched beyond the scales of a scene."""
 LOWER, LOWER_COUNT = 10.0, 16
-"""Further decades for soft springs next to the maximum of friction, where nothing else changes."""
+"""Further decades for soft springs near the maximum of friction, and their number of frequencies."""
 TURN, REFINEMENTS, CLOSER = 0.4, 24, 3
-"""Phase in a cell above which it is halved, the most halvings, and those of the cells at a zero."""
+"""Phase change above which a cell is halved, most halvings, and halvings of the cells at a zero."""
 BISECTIONS = 52
 NEARBY = 1e-5
-"""Relative difference of frequencies, of rates and of velocities for slopes."""
+"""Relative step of frequencies, rates and velocities in difference quotients."""
 ROUNDING, IN_STRIPS = 16 * 2.0**-52, ball_viscoelastic.RELATIVE_ERROR
 """Relative error of the response of a parabola, and of a ball in any number of strips."""
 FEW, STRIPS, MORE, MOST = 6, 24, 4, 384
-"""Strips of half a ball: those in which rates and unstable velocities are sought, those for crossings, the
-factor by which these grow until the error is small, and the most. Twice as many show it."""
+"""Strips of half a ball: to search for rates and unstable velocities, for crossings at first, the factor by
+which these increase until the error is small, and the most. Twice as many give the error."""
 ACCURATE = 1e-8
-"""Relative error of a critical stiffness that needs no more strips."""
+"""Relative error of a critical stiffness below which the number of strips is not increased."""
 POLISHING, MOVED = 4, 0.1
-"""Newton steps from the roots in few strips to those in more, and how far a logarithm may move."""
+"""Newton steps that refine a root for more strips, and the largest change of its logarithm."""
 NEWTON_STEPS, SETTLED, SAME = 60, 1e-9, 1e-6
-"""Most Newton steps, the last relative step, and the relative distance below which two roots are one."""
+"""Most Newton steps, tolerance of the relative step, and relative distance of roots taken as equal."""
 ANGLES, RADII = 9, 5
 """Starts of Newton's method: directions in the upper half plane, and distances per decade."""
 FAR = 100.0
-"""Distance in logarithms of a stiffness from a critical one that does not exist."""
+"""Stands for |ln(critical stiffness/stiffness)| where there is no critical stiffness."""
 SPEEDS, SPEED_DECADES = 6, 4.0
-"""Velocities per decade, and decades beyond c/V = tau_i, among which the critical velocity is sought."""
+"""Velocities per decade, and decades beyond c/V = tau_i, in the search for the critical velocity."""
 
 
 class Contact(NamedTuple):
-    """Flat scenes in steady sliding, as small motions see them: all of one row each, strips ahead."""
+    """Steady contacts of flat scenes, for small motions; strips along the first axis, if there are any."""
 
     V: Array
     R: Array
@@ -87,7 +87,7 @@ class Contact(NamedTuple):
         return Contact(*parts)
 
     def stiffness(self, s: Complex) -> tuple[Complex, Complex, Array]:
-        """Return the k_x for which s is a rate, what resists vertical motion, and the size of its terms."""
+        """Return k_x at the rate s, the vertical dynamic stiffness, and the magnitude of the terms of k_x."""
         slope, share = self.c / self.R, self.c * self.width
         A, B, C, D = self.law.response(self.c, self.eta, s * (self.c / self.V))
         each = A, slope * B, slope * C, slope * slope * D
@@ -101,7 +101,7 @@ class Contact(NamedTuple):
         return along - coupled, across, np.abs(D) + np.abs(coupled) * (1.0 + size / np.abs(across))
 
     def on_axis(self, row: Any, log: Array) -> tuple[Complex, Complex, Array]:
-        """Return the same of some scenes at the frequencies e^log."""
+        """Return the same for some scenes at the angular frequencies e^log."""
         return self.rows(row).stiffness(1j * np.exp(log))
 
     @property
@@ -110,7 +110,7 @@ class Contact(NamedTuple):
         return ROUNDING if len(self.c) == 1 else IN_STRIPS
 
     def scales(self) -> Array:
-        """Return the rates in 1/s that a scene brings along, on the first axis."""
+        """Return the characteristic rates of each scene in 1/s, along the first axis."""
         passing, law = self.V / self.c, self.law
         found = [*(self.V / law.time), passing.min(axis=0), passing.max(axis=0)]
         if law.damping is not None:
@@ -123,7 +123,7 @@ class Contact(NamedTuple):
 
 
 def contact(scene: Scene, strips: int = 1) -> Contact:
-    """Return what small motions of flat scenes see: a parabola, or a ball in strips."""
+    """Return the contact of flat scenes for small motions: of a parabola, or of a ball in strips."""
     shape, support, foundation = scene.shape, scene.support, scene.foundation
     law = viscoelastic.law(scene)
     if scene.indenter.per_width:
@@ -152,9 +152,9 @@ def contact(scene: Scene, strips: int = 1) -> Contact:
 
 
 class Places(NamedTuple):
-    """Where the imaginary part of k_x changes its sign: scenes, logarithms of frequencies, and ways.
+    """Zeros of the imaginary part of k_x: their scenes, logarithms of frequency, and directions.
 
-    A way is 1 where softer springs have two more unstable rates, and -1 where they have two fewer.
+    `way` is 1 where softer springs have two more unstable rates, and -1 where they have two fewer.
     """
 
     row: NDArray[np.int_]
@@ -163,7 +163,7 @@ class Places(NamedTuple):
 
     @classmethod
     def search(cls, given: Contact, per_decade: int = PER_DECADE) -> "Places":
-        """Return the places of all scenes, by bisection on a grid that is refined at resonances."""
+        """Return the zeros of all scenes, by bisection on a grid that is refined at resonances."""
         own = given.scales()
         low = np.log(own.min(axis=0)) - BEYOND * np.log(10.0)
         high = np.log(own.max(axis=0)) + BEYOND * np.log(10.0)
@@ -182,7 +182,7 @@ class Places(NamedTuple):
         return cls(row, 0.5 * (start + end), way)
 
     def moved(self, given: Contact) -> "Places":
-        """Return them in other strips, by Newton's method from those in fewer; NaN where they are lost."""
+        """Return the zeros for more strips, by Newton's method from these; NaN where one is lost."""
         log = self.log.copy()
         for _ in range(POLISHING):
             low, here, high = (
@@ -194,7 +194,7 @@ class Places(NamedTuple):
 
 
 def _refined(given: Contact, rows: Any, log: Array) -> tuple[Any, Array, Complex]:
-    """Halve cells until no resonance of the vertical motion is between two frequencies."""
+    """Halve cells until the grid resolves the resonances of the vertical motion."""
     k, across, _ = given.on_axis(rows, log)
     for turn in range(REFINEMENTS):
         same = rows[1:] == rows[:-1]
@@ -217,7 +217,7 @@ def _refined(given: Contact, rows: Any, log: Array) -> tuple[Any, Array, Complex
 
 
 class Crossings(NamedTuple):
-    """Where two rates cross the imaginary axis, with relative errors; ways as in `Places`."""
+    """Where two rates cross the imaginary axis, with relative errors; `way` as in `Places`."""
 
     row: NDArray[np.int_]
     stiffness: Array
@@ -250,9 +250,9 @@ class Crossings(NamedTuple):
 
 
 class SmallMotions:
-    """What small motions of flat scenes see in few strips, in enough and in twice as many; all crossings.
+    """Contacts of flat scenes in few strips, in enough and in twice as many; and all crossings.
 
-    Crossings are followed into more strips until these are enough; where one is lost, all are sought again.
+    Crossings are refined for more strips until these are enough; if one is lost, the search is repeated.
     """
 
     def __init__(self, scene: Scene) -> None:
@@ -282,7 +282,7 @@ class SmallMotions:
         found, (upper, lower) = self.crossings, np.full((2, 4, self.size), np.nan)
         hertz = found.omega / (2.0 * np.pi)
         known = np.stack([found.stiffness, hertz, found.error, found.omega_error])
-        order = np.argsort(found.stiffness)  # of several of a scene the last one written stays
+        order = np.argsort(found.stiffness)  # the last one written for a scene stays
         for each, places in ((upper, order), (lower, order[::-1])):
             for i in places:
                 each[:, found.row[i]] = known[:, i]
@@ -309,13 +309,13 @@ class SmallMotions:
 
 
 Value = Callable[..., tuple[Any, Any]]
-"""Of rates, in the strips of a contact: what vanishes at a rate, and the size of its terms."""
+"""The function whose zeros are the rates, in the strips of a contact, and the magnitude of its terms."""
 
 
 def _rates(
     given: Contact, fine: Contact, finer: Contact, spring: float | None
 ) -> tuple[Complex, Array]:
-    """Seek and count the rates of one scene in the strips of `given`; follow them into those of `fine`."""
+    """Find and count the rates of one scene in the strips of `given`; refine them in those of `fine`."""
     degree = 2 * ((spring is not None) + (not given.held))
     own = given.scales()[:, 0]
     if spring is not None:
@@ -438,7 +438,7 @@ def _critical_velocity(scene: Scene) -> tuple[float, float]:
     if not change.size:
         return np.nan, np.nan
     bracket = float(grid[change[0]]), float(grid[change[0] + 1])
-    if not signed(bracket[0]) < 0.0 < signed(bracket[1]):  # in more strips it is next to the cell
+    if not signed(bracket[0]) < 0.0 < signed(bracket[1]):  # with more strips it left the cell
         bracket = bracket[0] - 1.0 / SPEEDS, bracket[1] + 1.0 / SPEEDS
     onset = brentq(signed, *bracket, xtol=1e-15)
     for _ in range(POLISHING):

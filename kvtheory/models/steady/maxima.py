@@ -3,7 +3,7 @@ r"""The maxima of friction over velocity, of every scene for which steady slidin
 On Kelvin-Voigt a dead weight has one in closed form (theorems F3, F19, F20); a fixed indenter, whose
 friction rises to a limit, and a wedge, whose friction coefficient reaches a plateau, have none. Otherwise
 mu(V) is evaluated at equal steps of ln V over all time scales of the scene, more finely on shoulders, and
-each maximum is refined by a bracketing optimiser. It counts only where mu falls by more than its errors on
+each maximum is refined by a bracketing optimiser. It is accepted only if mu falls by more than its errors on
 both sides: a maximum is certain between these two velocities, and they give the error of its velocity.
 """
 
@@ -42,7 +42,7 @@ a maximum that is still missed is less than 3e-8 above its surroundings, without
 WIDEST = 2.0
 """Largest error of ln V; a flatter maximum cannot be distinguished from a plateau."""
 CLOSED_ERROR = 1e-14
-CLOSED_STATEMENT = "closed forms, with one well-conditioned root; that there is no other is proved"
+CLOSED_STATEMENT = "closed forms, with one well-conditioned root, proved to be the only one"
 STATEMENT = (
     "search at {1} velocities per decade, more finely on shoulders, up to {0:g} decades beyond the time "
     "scales of the scene; at both ends of the error of its velocity, friction is below a maximum by more "
@@ -51,7 +51,7 @@ STATEMENT = (
 
 
 def report(scene: Scene, method: str) -> dict[str, Any]:
-    """Return what an `AsymptoteReport` says of the maxima, by a method of steady sliding."""
+    """Return the maxima for an `AsymptoteReport`, by a method of steady sliding."""
     base = scene.at(1.0)  # the maxima do not depend on the velocity of the drive
     closed = scene.indenter.shape in CLOSED and not lacks_kelvin_voigt(scene)
     statement = CLOSED_STATEMENT
@@ -72,7 +72,7 @@ def report(scene: Scene, method: str) -> dict[str, Any]:
 
 
 def _named(found: Array, columns: slice) -> dict[str, Any]:
-    """Return columns of the maxima by name, those of the highest ahead; NaN if there is none."""
+    """Return columns of the maxima by name, the highest first; NaN if there is none."""
     padded = np.concatenate([found, np.full((*found.shape[:-2], 1, 4), np.nan)], axis=-2)
     heights = np.nan_to_num(padded[..., 1], nan=-1.0)
     heights[..., -1] = 0.0

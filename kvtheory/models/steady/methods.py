@@ -51,7 +51,7 @@ def solve_exact(scene: Scene) -> SteadyState:
 
 
 def solve_quadrature(scene: Scene) -> SteadyState:
-    """Integrate the pressure of any indenter; a scene that fails fails the call."""
+    """Integrate the pressure of any indenter; raise if one of the scenes fails."""
     from kvtheory.models.steady import quadrature  # slow to import
 
     certificate = quadrature.certificate(scene)
@@ -127,7 +127,7 @@ def _evaluate(
 
 
 def _blocks(formula: Formula, flat: Scene, own: int, block: int) -> Array:
-    """Return the rows of a formula for flat scenes, block by block."""
+    """Evaluate a formula for flat scenes, block by block."""
     (size,) = flat.shape
     result = np.empty((len(QUANTITIES) + own, size))
     for start in range(0, size, block):

@@ -8,7 +8,7 @@ convex function
     G(t) = (n - 1) t + ln(e^t + c),
 
 so that Newton's method descends to it from q = min(1, c^(-1/(n-1))), where G >= 0. As G''/(2 G') <= 1/2,
-the error e of ln q becomes at most e^2/2. The last step multiplies q, to preserve its digits.
+the error e of ln q becomes at most e^2/2. Each step multiplies q, to preserve its digits.
 
 An indenter that can move finds its depth from the balance of forces in units of the static state,
 
@@ -38,7 +38,7 @@ square, is below rounding."""
 LAST_RESIDUAL = 8 * 2.0**-52
 """Rounding of the residual of the edge, below which iteration does not improve it."""
 RELATIVE_ERROR = 36 * float(np.finfo(float).eps)
-"""8.0e-15, twice the worst that the comparison with more than 50 digits has shown."""
+"""8.0e-15, twice the largest error found by comparison with more than 50 digits."""
 CERTIFICATE = Certificate(
     kind="estimated",
     statement="closed forms and well-conditioned roots in double precision; twice the worst difference "

@@ -15,8 +15,8 @@ a small difference where l_r is small; and h', which may grow without bound towa
 in W. Of the power F V, the last term is dissipated inside the contact; K u_TE^2/2 is dissipated in the
 surface that relaxes behind it.
 
-The support closes the balance. W is convex in the depth and vanishes with it, so that d ln W/d ln delta >= 1:
-every load is carried at one depth, and the depth is relatively no less accurate than the load.
+The balance of forces gives the depth. W is convex in the depth, zero at zero depth: d ln W/d ln delta >= 1,
+so every load is carried at one depth, and the depth is relatively no less accurate than the load.
 """
 
 import math
@@ -40,12 +40,12 @@ UNBALANCED, MARGIN = 1e-6, 2.0
 """Relative error of the load above which a result is refused; safety factor on errors propagated by
 derivatives, which hold for small errors."""
 MOST_STEPS = 200
-"""Trial depths; they are a handful unless the reach or the beginning of another contact is close."""
+"""Most trial depths; a few suffice unless the reach or the start of another contact is close."""
 LAST_STEP, ULPS = {True: 1e-5, False: 3e-8}, 2.0**-49
 """Relative step of the depth after which a cubic and a quadratic method have converged; the least step."""
 SHALLOWER, SHALLOWEST, NARROW = 8.0, 1e-12, 1e-9
-"""A depth without a solution is divided by the first, if none is known to be too shallow. The search ends at
-this share of the first trial depth, and this close between one without a solution and one too shallow."""
+"""Divisor of a depth without a solution, if none is known to be too shallow; share of the first trial depth
+at which the search ends; least relative distance of a depth without a solution from one too shallow."""
 
 FORCES = "load", "friction_force", "peak_pressure"
 """Quantities proportional to the stiffness."""
@@ -148,7 +148,7 @@ def _lines(scene: Scene) -> Callable[[Value], Any]:
 
 
 def _carrying(line_at: Any, l_r: Value, load: Value, spring: Value) -> tuple[Any, Any, Value]:
-    """Return the line, its contact that carries a load, on a spring or without, and the error of the depth.
+    """Return the line, its contact at a load, with or without a spring, and the error of the depth.
 
     The spring is relaxed at the static depth. d ln W/d ln delta >= 1: the depth is no less accurate than the
     load.
@@ -182,7 +182,7 @@ def _contact(line: Any, load: Value, spring: Value) -> Any:
     for _ in range(MOST_STEPS):
         try:
             contact = line.at(depth, guess)
-        except QuadratureError as error:  # perhaps only because this is too deep
+        except QuadratureError as error:  # the depth may be too large
             failure = failure or error
             if isinstance(depth, np.ndarray) or depth < least or depth < low * (1.0 + NARROW):
                 raise failure from None

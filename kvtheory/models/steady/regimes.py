@@ -39,7 +39,7 @@ Formula = Callable[[Scene], Any]
 """A formula of a quantity, in the shape of the scene, for |V|."""
 
 DECADES, ON_ARMS, MOST_DECADES = 30.0, 15.0, 200.0
-"""How far from V*, in powers of ten, the end of a range is sought; 1/alpha times as far for a springpot."""
+"""Decades from V* within which the end of a range is searched for; times 1/alpha for a springpot."""
 POINTS = 301
 """Velocities at which an error that may not be monotonic is evaluated, before the end is refined."""
 VOIGT, MOST_DELAY = 7.0, 0.05
@@ -57,7 +57,7 @@ SCANNED = (
 )
 NOTE = (
     "The limits of friction at low and high velocity are known for a parabola and a ball on any foundation, "
-    "and for a power law and a wedge on Kelvin-Voigt; of this scene only the maxima are."
+    "and for a power law and a wedge on Kelvin-Voigt; for this scene only the maxima are."
 )
 
 MU = "friction_coefficient"
@@ -266,7 +266,7 @@ def _proved(scene: Scene, line: Line, critical: Array, tolerance: float) -> Arra
 
 
 def _far(scene: Scene, critical: Array) -> Array:
-    """Return how far from V* the end of a range is sought, in powers of ten."""
+    """Return the number of decades from V* within which the end of a range is searched for."""
     order = getattr(scene.foundation, "order", 1.0)
     decades = (ON_ARMS if scene.foundation.arms else DECADES) / order
     return np.broadcast_to(np.minimum(decades, MOST_DECADES), critical.shape)
@@ -278,7 +278,7 @@ def _ends(
     """Return the velocities at which the error of each line first passes the tolerance, from its limit on.
 
     If it does not on the way to the far end, the limit holds at every velocity (such as the load on a soft
-    spring). If it is above the tolerance at the limit already, nothing is claimed.
+    spring). If it is above the tolerance at the limit already, the range is empty.
     """
     grid = _far(scene, critical)[..., np.newaxis] * np.linspace(-1.0, 1.0, points)
     wide = scene.mapped(lambda x: np.broadcast_to(x, scene.shape)[..., np.newaxis])

@@ -33,11 +33,11 @@ Array = NDArray[np.float64]
 
 RIM = {True: 3e-4, False: 3e-3}
 """cos t of the last strip of a convex profile, and of one that is evaluated point by point, which is more
-sensitive to rounding: the strips beyond carry less than its fourth power of the load."""
+sensitive to rounding: its fourth power is an upper bound of the share of the load beyond."""
 MIDDLE = 1e-10
-"""y/b of the strips next to the middle plane: a tip that is any sharper makes no difference."""
+"""Smallest y/b of a strip: closer to the middle plane, a sharper tip makes no difference."""
 NEAR = 0.02
-"""Rise over y up to which h is integrated from the lowest point of a strip, where its difference cancels."""
+"""Rise over y up to which h is integrated from the lowest point of a strip: a difference would cancel."""
 NARROWEST = 1e-6
 """Half width of the narrowest strip that is sought, over that of the contact."""
 GAUSS = tuple((0.5 + 0.5 * s, 0.5 * w) for s, w in zip(*leggauss(4), strict=True))
@@ -50,7 +50,7 @@ RTOL, LIMIT = {True: 1e-12, False: 1e-9}, 1e-6
 MARGIN = 4.0
 """Safety factor on the ratio of the last two differences, which estimates the next one."""
 BESIDE = 1e-9
-"""Share of a radius at which the slopes on both sides of a kink are taken, to see where strips change."""
+"""Relative distance from a kink at which the slopes on both sides are taken, to see where strips change."""
 
 
 class Strip:
@@ -59,7 +59,7 @@ class Strip:
     def __init__(self, profile: Any, y: Any, reach: float, nearest: float) -> None:
         self.profile, self.y, self.convex = profile, y, profile.convex
         self.nearest = nearest
-        """Half width of a contact at which the search for one begins."""
+        """Half width at which the search for a contact begins."""
         self.lowest = profile.height(y)
         radii = [kink for kink in profile.kinks if kink > 0.0]
         self.clear = np.min([y, *(abs(kink - y) for kink in radii)], axis=0)
@@ -113,7 +113,7 @@ class Strips:
         self.deepest, self.floor = line.deepest, line.floor
 
     def first(self, load: float, spring: float) -> tuple[float, tuple[()]]:
-        """Return about the depth at a load: that of a ball as blunt as the profile."""
+        """Return an initial guess of the depth at a load: that of a ball as blunt as the profile."""
         wide, l_r = self.indenter.stretch, self.l_r
         return self.line.shallow(load, lambda a: a * wide * (1.5 * a + 1.3 * l_r) + spring), ()
 
@@ -151,7 +151,7 @@ class Strips:
         return Contact(middle, middle.depth, noise, load, slope, friction, lost, error)
 
     def _rows(self, y: Array, depth: Array) -> Array:
-        """Return load, its slope, friction, what is lost, and the errors of load and friction of strips."""
+        """Return load, its slope, friction, its part lost, and the errors of load and friction of strips."""
         nearest = 2.0 ** math.floor(math.log2(NARROWEST * y.max()))
         if self.line.in_columns:
             return self._strip(y[:, None], depth[:, None], nearest)[..., 0]

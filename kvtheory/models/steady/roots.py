@@ -27,7 +27,7 @@ def converge(
 
 
 def cube_root(value: Array) -> Array:
-    """Return the cube root to a unit in the last place: that of some C libraries is four off.
+    """Return the cube root to a unit in the last place; some C libraries are off by four.
 
     >>> float(cube_root(np.array(27.0)))
     3.0

@@ -14,7 +14,7 @@ Per unit width a strip of half length A, with x_TE = sqrt(A^2 + l_r^2) - l_r, ha
     dW/d(ddelta/dt) = K tau (A + x_TE),               dF/dV = K tau (A^3 + x_TE^3)/(3 R^2),
     dW/dV = dF/d(ddelta/dt) = K tau (l_r/R) x_TE.
 
-A parabola is one strip, a ball the sum of its strips. Strips that the motion lifts off or presses down carry
+A parabola is one strip, a ball the sum of its strips. Strips that the motion detaches or attaches carry
 nothing to first order. With l = l_r/a and the tail T of the load of a ball (derivation F20-tail), the sums
 on either side of its middle plane are, in units of a and a^3 (derivation F20-slopes),
 
@@ -35,8 +35,8 @@ from kvtheory.theory import closed_forms as cf
 Array = NDArray[np.float64]
 
 STATEMENT = (
-    "closed forms (theorem F22) in double precision, with what rounding makes of them to first order; "
-    "rates by their polynomial, the velocity to where its stiffness is critical"
+    "closed forms (theorem F22) in double precision, with first-order bounds of rounding; "
+    "rates from their polynomial; velocity by bisection on the critical stiffness"
 )
 ROUNDING = 2.0 * 2.0**-52
 """Relative error of each coefficient. The errors of results that follow from it are at least three times
@@ -44,13 +44,13 @@ those found by comparison with 80 digits on five hundred scenes."""
 POLISHES = 3
 """Newton steps after the eigenvalues of the companion matrix, which lose digits of the slow rates."""
 DECADES, PER_DECADE = (-8.0, 20.0), 16
-"""Powers of ten of the drive number V tau/a_0 between which the critical velocity is sought."""
+"""Powers of ten of the drive number V tau/a_0 between which the critical velocity is searched for."""
 BISECTIONS = 60
-"""To the last digit of a velocity, from a cell of the grid."""
+"""Enough to find a velocity in a cell of the grid to the last digit."""
 NEARBY = 1e-5
-"""Relative difference of velocities for the slope of the critical stiffness."""
+"""Relative step of velocity in the difference quotient of the critical stiffness."""
 SOFT, UNSTABLE, STIFF, NEVER = -1, 0, 1, 2
-"""The stiffness of the spring: below both critical ones, between them, above both, or there are none."""
+"""Spring stiffness below both critical ones, between them, above both; or no critical stiffness exists."""
 
 
 class Onset(NamedTuple):
@@ -105,7 +105,7 @@ class SmallMotions:
         return np.broadcast_shapes(*map(np.shape, (self.T_x, self.g, self.S_z, self.T_z)))
 
     def onsets(self) -> tuple[Onset, Onset]:
-        """Return between which stiffnesses steady sliding is unstable: the lower one and the upper one.
+        """Return the lower and the upper critical stiffness, between which steady sliding is unstable.
 
         Where friction falls with the velocity, every softer spring is unstable: the lower one is then 0.
         """
@@ -196,7 +196,7 @@ def _roots(coefficients: Array, sizes: Array) -> tuple[NDArray[np.complex128], A
         found = np.where(better, found - step, found)
     value, slope = map(np.abs, _horner(scaled, found))
     value = value + ROUNDING * np.abs(_horner(bounds, np.abs(found))[0])
-    with np.errstate(divide="ignore", over="ignore"):  # of a double root nothing is known
+    with np.errstate(divide="ignore", over="ignore"):  # infinite for a double root
         error = degree * value / (slope * np.abs(found))
     order = np.lexsort((found.imag, -found.real))
     found, error = (np.take_along_axis(each, order, axis=-1) for each in (found, error))

@@ -82,7 +82,7 @@ def _block(scene: Scene, wanted: Set[str]) -> tuple[dict[str, Any], dict[str, An
             s, error = motions.rates(spring)
     if not wanted.isdisjoint(RATES):
         found["rates"] = np.stack([s.real, s.imag], axis=-1)
-        with np.errstate(divide="ignore", invalid="ignore"):  # what neither grows nor decays
+        with np.errstate(divide="ignore", invalid="ignore"):  # rates that neither grow nor decay
             found["time_constants"] = -1.0 / s.real
             errors |= {"rates": error, "time_constants": error * np.abs(s) / np.abs(s.real)}
     return found, errors

@@ -11,7 +11,7 @@ The contact grows with the depth and with the load (theorem F17-growth),
 
     a' = 1 - P G/A^2 between 1/2 and 1,   W' = a' c^2 P/R,
 
-G being the value at the trailing edge, so that c is one root, by Halley's method.
+with G at the trailing edge; c is therefore the only root, found by Halley's method.
 """
 
 from typing import Any
