@@ -31,7 +31,7 @@ INTERPRETED = (
 
 
 def main() -> None:
-    """Draw each figure and say how long it took."""
+    """Draw each figure and print how long it took."""
     parser = argparse.ArgumentParser(prog="python -m figures", description=__doc__)
     parser.add_argument(
         "-o", "--output", type=Path, default=drawing.OUTPUT, help="default: %(default)s"

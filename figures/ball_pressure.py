@@ -1,8 +1,8 @@
 """Fig. 4 of the paper for a ball: the pressure in its middle plane over position and time, with both edges.
 
 The scenes are those of "Figs. 3 and 5 of the paper for a ball". In the contact of the middle plane
-p = K (delta - x^2/(2R)) + C (d delta/dt - V x/R) at every instant, so that depth, its rate and the edges are
-enough: of a ball that is held in closed form, of one that may rise by elements in strips.
+p = K (delta - x^2/(2R)) + C (d delta/dt - V x/R) at every instant, so depth, its rate and the edges suffice:
+in closed form for a fixed ball, by elements in strips for one that may rise.
 """
 
 from dataclasses import dataclass
@@ -26,7 +26,7 @@ class MiddlePlane:
     scene: Any
 
     def __getattr__(self, name: str) -> Any:
-        """Return what the series has."""
+        """Return an attribute of the series."""
         return getattr(self.series, name)
 
     def pressure(self, positions: np.ndarray, time: float) -> np.ndarray:

@@ -21,7 +21,7 @@ TITLES = {"fixed": "given depth", "dead-weight": "dead weight"}
 TIMES = np.concatenate([[0.0], np.geomspace(1e-5, 0.2, 200)])
 VELOCITIES = np.geomspace(1e-4, 10.0, 201)
 DENSITY = 60e3
-"""Elements in a metre."""
+"""Elements per metre."""
 
 
 @dataclass(frozen=True)

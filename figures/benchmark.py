@@ -90,7 +90,7 @@ def main() -> None:
         V = velocities(count)
         start = time.perf_counter()
         with warnings.catch_warnings():
-            warnings.simplefilter("ignore")  # quad's own, of the friction that cancels at low V
+            warnings.simplefilter("ignore")  # from quad, as friction cancels at low V
             result = method(V)
         seconds[name] = min(seconds[name], (time.perf_counter() - start) / count)
         other = quadrature(V[:40]) if name == "exact" else exact(V)

@@ -67,7 +67,7 @@ def transient() -> None:
         "kv.transient, certified": lambda: kv.transient(scene),
         "kv.transient, certify=False": lambda: kv.transient(scene, certify=False),
     })  # fmt: skip
-    print("\nTransient of Table 1, compiled; a certified one rests on a second, tighter kernel run")
+    print("\nTransient of Table 1, compiled; a certified one needs a second, tighter kernel run")
     for name, seconds in found.items():
         ratio = seconds / found["kernel run"]
         print(f"{name:34}{1e6 * seconds:10.0f} us{ratio:8.2f} kernel runs")
@@ -82,9 +82,9 @@ def transient() -> None:
 
 
 def chooser() -> None:
-    """Compare the choice of an asymptote with the formula that is chosen."""
+    """Compare the time to choose an asymptote with that of its formula."""
     slowly = kv.Scene(drive=kv.Drive(velocity=1e-3))
-    print("\nChoice of `solve` over the formula that it chooses (asymptote)")
+    print("\nTime of `solve` over that of the formula that it chooses (asymptote)")
     for names in (("friction_coefficient",), tuple(STEADY_UNITS)):
         found = least({
             "choice": partial(_choice, slowly, names),

@@ -82,9 +82,7 @@ def main() -> None:
         row.Tally.steps = row.WORTHWHILE
     start = time.process_time()
     kv.elements(certify=False, at=END)
-    print(
-        f"first call, with what is compiled or loaded: {time.process_time() - start:.1f} s of CPU\n"
-    )
+    print(f"first call, with compiling and loading: {time.process_time() - start:.1f} s of CPU\n")
     table = partial(kv.elements, certify=False)
     calls: dict[str, Callable[[], object]] = {
         **{f"Table 1, {n} per mm": partial(table, per_length=1e3 * n) for n in DENSITIES},

@@ -71,7 +71,7 @@ METHODS: dict[str, tuple[Callable[[float], Any], Callable[[Any], Any]]] = {
         lambda found: (TIMES, found.states(TIMES)[:, 0]),
     ),
 }
-"""How each is run, and the times and depths that are judged: its own steps, if there is no dense output."""
+"""How each is run, and the times and depths that are compared: at its own steps without dense output."""
 
 
 def measured() -> dict[str, list[tuple[float, float]]]:
@@ -95,7 +95,7 @@ def measured() -> dict[str, list[tuple[float, float]]]:
 
 
 def main() -> None:
-    """Measure, and print the time of each method for each target, and by how much LSODA is slower."""
+    """Measure, and print the time of each method for each target, and the ratio of LSODA's time to it."""
     found = measured()
     print("\nTransient of Table 1: microseconds for an error of the depth (times slower: LSODA)\n")
     print(f"{'method':30}" + "".join(f"{target:>16.0e}" for target in TARGETS))

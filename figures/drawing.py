@@ -52,7 +52,7 @@ def produce(
 
 
 def run(name: str, compute: Callable[[], Any], draw: Callable[[Any], Figure]) -> None:
-    """Serve as the command line of one script."""
+    """Run one script from the command line."""
     parser = argparse.ArgumentParser(description=f"Draw {name} with its data as CSV.")
     parser.add_argument(
         "-o", "--output", type=Path, default=OUTPUT, help="directory (default: %(default)s)"
@@ -71,5 +71,5 @@ def _write_csv(path: Path, columns: Columns) -> None:
 
 
 def _written(cell: Any) -> Any:
-    """Return a cell, empty where its value does not exist."""
+    """Return a cell, empty if its value is missing."""
     return "" if isinstance(cell, float) and math.isnan(cell) else cell

@@ -27,7 +27,7 @@ from kvtheory.scene.foundations import Arm
 NODES = (4, 8, 16, 32, 64, 128, 256)
 REPEATS = 3
 MANY = 20_000
-"""Scenes of one call, for the time of one scene among many."""
+"""Scenes solved in one call, to time one scene among many."""
 R, K, DEPTH, V = 0.01, 1e10, 3e-4, 0.1
 
 
@@ -46,7 +46,7 @@ def arms(count: int) -> tuple[Arm, ...]:
 
 
 def by_gauss(series: tuple[Arm, ...], count: int) -> float:
-    """Return mu by Gauss's rule with so many nodes, for the past and for the contact."""
+    """Return mu by Gauss's rule with this number of nodes for the history and for the contact."""
     place, weight = np.polynomial.legendre.leggauss(count)
     place, weight = 0.5 + 0.5 * place, 0.5 * weight
     stiffness, length = np.array([(arm.stiffness, V * arm.relaxation_time) for arm in series]).T

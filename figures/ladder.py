@@ -37,7 +37,7 @@ INERTIAS = np.geomspace(1e-10, 1.0, 41)
 NUMBER = 4.0
 """Drive number of the second panel, about that of Table 1."""
 TIMES = (0.2, 0.5, 1.0, 2.0)
-"""When its series is wanted, in units of tau."""
+"""Times of its series, in units of tau."""
 STEADY, SERIES = "friction_coefficient", "friction_force"
 
 
@@ -60,7 +60,7 @@ class Data:
 
 
 def compute() -> Data:
-    """Let the ladder choose at every point, and find the true errors of what it may choose."""
+    """Let the ladder choose at every point, and compute the true errors of the models."""
     steady = Panel(NUMBERS, _chosen(map(_sliding, NUMBERS), {"quantity": STEADY}), _asymptotes())
     asked = {"quantity": SERIES, "at": TIMES}
     series = Panel(INERTIAS, _chosen(map(_starting, INERTIAS), asked), (_neglected(),))
@@ -82,7 +82,7 @@ def draw(data: Data) -> Figure:
     left, right = drawn.subplots(1, 2, sharey=True)
     _panel(left, data.steady, r"drive number $\lambda = V\tau/a_0$")
     _panel(right, data.series, r"inertia number $\epsilon = M\delta_0/(W_0\tau^2)$")
-    left.set(ylabel="tolerance asked for", title="steady friction coefficient")
+    left.set(ylabel="requested tolerance", title="steady friction coefficient")
     right.set(
         title=rf"friction force at {TIMES[0]} to {TIMES[-1]:g} $\tau$, $\lambda$ = {NUMBER:g}"
     )

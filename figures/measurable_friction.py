@@ -15,7 +15,7 @@ from kvtheory.plots import BLACK, BLUE, GREEN, PURPLE, RED
 
 VELOCITIES = np.geomspace(1e-3, 10.0, 401)
 STIFFNESSES = (1e5, 1e7, 1e9)
-"""In N/m^2, that is per unit width: of a finger, of a good tribometer, of a rigid frame."""
+"""Stiffness per unit width, in N/m^2: of a finger, of a good tribometer, of a rigid frame."""
 COLOURS = (RED, PURPLE, GREEN)
 
 
@@ -43,7 +43,7 @@ def compute() -> Data:
 
 
 def draw(data: Data) -> Figure:
-    """Draw the curve once whole, and what of it lasts on each stiffness, side by side."""
+    """Draw the whole curve, and beside it the part that is stable on each stiffness."""
     drawn = drawing.figure(5.2, 3.4)
     ax = drawn.subplots()
     ax.loglog(VELOCITIES * 1e3, data.friction, ":", color=BLACK, label="steady sliding, exact")

@@ -1,6 +1,6 @@
 """Starts from rest in the plane of depth and depth rate, with the slow manifold and the steady state.
 
-The drive number is that of Table 1; each curve has another inertia number eps. For eps -> 0 the motion
+The drive number is that of Table 1; each curve has a different inertia number eps. For eps -> 0 the motion
 drops onto the slow manifold (F13) at once and follows it; beyond the boundary of F12 it spirals.
 """
 

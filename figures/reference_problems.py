@@ -43,7 +43,7 @@ def reference(scene: kv.Scene) -> tuple[Any, str]:
             return compute(scene), kind
         except ValueError:
             continue
-    raise ValueError("`scene` has no reference: no model holds for it")
+    raise ValueError("`scene` has no reference: no model applies to it")
 
 
 def _instants(scene: kv.Scene) -> Any:
@@ -78,7 +78,7 @@ def judge(scene: kv.Scene, found: Any, kind: str) -> str:
 
 
 def criteria(found: Any, kind: str) -> dict[str, Any]:
-    """Return the allowed difference of a series to the reference, by quantity in SI, and the quantities.
+    """Return the allowed difference of a series from the reference, by quantity in SI, and the quantities.
 
     It is a share of the largest value; the error of the reference is well below it.
     """

@@ -19,20 +19,20 @@ from kvtheory.models.continuum.cycles import cycle
 from kvtheory.plots import BLACK, BLUE
 
 TIMES = (0.01, 0.1, 1.0)
-"""Retardation times in s; the rest is Table 1 under a dead weight, its mass along x too."""
+"""Retardation times in s; the rest is Table 1 under a dead weight, whose mass also moves along x."""
 VELOCITIES = np.geomspace(1e-3, 10.0, 161)
 STIFFNESSES = np.geomspace(1e3, 1e11, 121)
 SIMULATED_VELOCITIES, SIMULATED_STIFFNESSES = VELOCITIES[10::10], STIFFNESSES[30::15]
 DURATION, SWINGS, RTOL = 15.0, 200.0, 1e-3
-"""Duration of the motions in units of the slowest time constant, and most cycles within it; motions with
+"""Duration of the motions in units of the slowest time constant, and largest number of cycles; motions with
 more cycles are omitted."""
 SLOWEST, FASTEST = 1e-3, 1e2
-"""Growth in 1/s between which the shade changes."""
+"""Growth rates in 1/s between which the shade changes."""
 
 
 @dataclass(frozen=True)
 class Data:
-    """By retardation time: critical stiffness over the velocity, growth in 1/s, and what motions did.
+    """By retardation time: critical stiffness over the velocity, growth in 1/s, and how motions ended.
 
     `settled` holds V, k_x and whether the motion settled to steady sliding, or else to stick-slip.
     """

@@ -96,7 +96,7 @@ def draw(data: Data) -> Figure:
         x, v, depth = data.cycles[velocity]
         along.plot(x, v, **style)
         across.plot(depth, v, label=f"{velocity} mm/s", **style)
-    along.set(xlabel="place of the indenter $x$ [mm]", ylabel="sliding $v$ [mm/s]", title="cycles")
+    along.set(xlabel="indenter position $x$ [mm]", ylabel="sliding $v$ [mm/s]", title="cycles")
     across.set(xlabel=r"depth $\delta$ [mm]", ylabel="sliding $v$ [mm/s]")
     across.legend(loc="upper right", fontsize=7)
     return drawn

@@ -1,4 +1,4 @@
-"""Temperature is velocity: friction at five temperatures, and the one master curve that it makes.
+"""Temperature is velocity: friction at five temperatures, and the one master curve that they form.
 
 A ball on a Prony series whose times follow the equation of Williams, Landel and Ferry (derivation F25). Left,
 what a laboratory would see between 0.01 mm/s and 1 m/s. Right, the same over the velocity times the shift

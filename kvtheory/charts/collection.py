@@ -1,4 +1,4 @@
-"""The choice of charts of speed against accuracy: for a user's scene or for the standard ones."""
+"""Choose the work-precision charts to make: for a user's scene or for the standard scenes."""
 
 from collections.abc import Callable, Sequence
 from functools import partial
@@ -16,11 +16,11 @@ Job = Callable[..., Chart]
 """Makes one chart, with an `effort`, and reports its `progress`."""
 ALL = "all"
 VELOCITIES = {"table-1": 0.1, "low-velocity": 1e-3, "high-velocity": 10.0}
-"""Velocity (m/s) of the standard scenes that are Table 1 otherwise, in steady sliding."""
+"""Velocity (m/s) in steady sliding of the standard scenes that otherwise equal Table 1."""
 
 
 def chosen(scene: Scene, standard: Sequence[str], *, quick: bool) -> list[Job]:
-    """Return a job for each chart: of the standard scenes that are named, or else of the scene.
+    """Return a job for each chart: for the standard scenes named, or else for the scene.
 
     The chart of steady sliding, where it suits the scene, comes before that of the transient.
     """
@@ -42,7 +42,7 @@ def chosen(scene: Scene, standard: Sequence[str], *, quick: bool) -> list[Job]:
 
 
 def measure(jobs: Sequence[Job], *, quick: bool, progress: Progress = silent) -> list[Chart]:
-    """Make the charts, one after the other, so that nothing disturbs the times."""
+    """Make the charts one after the other, so that nothing disturbs the timings."""
     charts = []
     for done, job in enumerate(jobs):
 

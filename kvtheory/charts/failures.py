@@ -21,8 +21,8 @@ class Entry:
     """One way in which a method fails.
 
     `unit` and `factor` show the numbers, which are in SI; `x` and `y` are label, factor and scale of the
-    axes; `tolerance` is how far, as a share of the right number (or of `scale`, in SI, where that is
-    zero), the package may be off.
+    axes; `tolerance` is the allowed error of the package relative to the right number (or to `scale`, in
+    SI, where that is zero).
     """
 
     key: str
@@ -49,7 +49,7 @@ class Finding:
     outcome: Outcome
 
     def as_dict(self) -> dict[str, Any]:
-        """Return plain Python values, ready for JSON; what does not exist is None."""
+        """Return plain Python values, ready for JSON; a missing value is None."""
         numbers = {role: getattr(self.outcome, role) for role in ROLES}
         return {
             **{name: getattr(self.entry, name) for name in TEXTS},

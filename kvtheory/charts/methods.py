@@ -25,13 +25,13 @@ LINES_DENSITIES = DENSITIES[:5]
 LINES_RTOL = 1e-6
 """Tolerance of the method of lines: its error in time is below that of the elements."""
 SUNDIALS_LOGS = "SUNLOGGER_WARNING_FILENAME", "SUNLOGGER_ERROR_FILENAME"
-"""File to which SUNDIALS writes its messages, which would otherwise appear within a table."""
+"""Environment variables: files for the messages of SUNDIALS, which would otherwise appear within a table."""
 REACH = 1.6
-"""Margin of the row of the method of lines beyond the indenter's path, in half lengths."""
+"""How far the elements of the method of lines extend beyond the indenter's path, in half lengths."""
 
 
 def transient_methods() -> dict[str, Method]:
-    """Return the methods that can run here: what is not installed is left out."""
+    """Return the available methods; those that are not installed are left out."""
     found = [
         Method("slow manifold", "rtol", TOLERANCES[:9:2], "evaluations", _slow_manifold, "model",
                _starts_forward),
@@ -50,7 +50,7 @@ def _moves(problem: Problem) -> bool:
 
 
 def _starts_forward(problem: Problem) -> bool:
-    """Whether the drive number is positive and constant, as the slow manifold needs it."""
+    """Whether the drive number is positive and constant, as the slow manifold requires."""
     numbers = [number for _, _, number in problem.pieces]
     return _moves(problem) and len(numbers) == 1 and not callable(numbers[0]) and numbers[0] > 0.0
 

@@ -23,14 +23,14 @@ from kvtheory.scene.static_state import StaticState
 
 RTOL = 1e-9
 FINE = 120.0
-"""Elements per unit length, of a static contact that is 2 long: the independent check of the right number."""
+"""Elements per unit length in the independent solution; the static contact has length 2."""
 TABLE1 = StaticState.of(Scene())
 PATH = 3000
-"""Points of the path along which elements are drawn."""
+"""Points of the prescribed path in a simulation by elements."""
 COARSE = 2e4
-"""Elements per metre, a tenth of the paper's, so that single elements are seen in the forces."""
+"""Elements per metre, a tenth of the paper's, so that single elements are visible in the forces."""
 DETUNED = 2.02
-"""Elements that pass between two samples, instead of 2: the sawtooth comes back every 50 samples."""
+"""Elements that pass between two samples, instead of 2: the sawtooth repeats every 50 samples."""
 
 
 def _without_memory(pieces: Sequence[naive.Piece], epsilon: float, s: naive.Array) -> Any:
@@ -43,7 +43,7 @@ def _compare(
     scene: Scene, quantity: str, times: naive.Array, wrong: naive.Array, ours: Any, at: int, said: str = "",
     **elements_options: float,
 ) -> naive.Outcome:  # fmt: skip
-    """Return the outcome at one of the instants, where elements give the right number."""
+    """Return the outcome at one of the instants; the right number is from a simulation by elements."""
     right = elements(scene, at=[float(times[at])], certify=False, **elements_options)  # type: ignore[arg-type]
     package = getattr(ours, quantity)
     return naive.Outcome(
@@ -139,7 +139,7 @@ def _past_the_maximum() -> naive.Outcome:
     V, t = 0.091, np.linspace(0.0, 0.8, 401)
     scene = Scene(drive=Drive(velocity=V, stiffness=1e6), run=Run(0.8))
     rest = StaticState.of(scene)
-    # Sliding goes on forward here, so that no ground is met again: closed forms are enough.
+    # Sliding never reverses here, so the ground ahead is undisturbed: closed forms suffice.
     right = V - rest.velocity * _on_spring(rest, t / rest.time)[3]
     slowest = int(np.argmin(right))
     ours: Any = transient(scene, at=t, rtol=RTOL, certify=False)
@@ -147,7 +147,7 @@ def _past_the_maximum() -> naive.Outcome:
     return naive.Outcome(
         V, right[slowest], ours.sliding_velocity[slowest],
         (t, np.full(t.size, V)), (t, ours.sliding_velocity),
-        f"steady friction force {force:.3g} N/mm, on a curve that says nothing of its stability",
+        f"steady friction force {force:.3g} N/mm, on a curve that does not show its stability",
     )  # fmt: skip
 
 
@@ -160,7 +160,7 @@ def _reversal_forgotten() -> naive.Outcome:
     d, v, _, w = _on_spring(StaticState.of(scene), s)
     states = zip(d, v, number - w, strict=True)
     wrong = naive.LOAD * np.array([naive.closed_forms(*state)[1] for state in states])
-    # Elements along the very path: they remember anyway.
+    # Elements on the same path: they always keep the memory of the surface.
     fine = np.linspace(0.0, end, PATH)
     path: Any = transient(scene, at=fine, rtol=RTOL, certify=False)
     history = list(zip(fine.tolist(), path.sliding_velocity.tolist(), strict=True))
@@ -172,7 +172,7 @@ def _reversal_forgotten() -> naive.Outcome:
 
 
 def _refusal(scene: Scene) -> str:
-    """Return the message of the package where the paper's scheme does not work."""
+    """Return the message of the package where the paper's scheme fails."""
     try:
         elements(scene, scheme="paper", certify=False)
     except (DivergenceError, ValueError) as error:
@@ -212,7 +212,7 @@ def _grid_resonance() -> naive.Outcome:
     locked = _force("paper", 0.01 + 2.0 * passing * samples, passing)[-1]
     wrong = locked / steady(Scene.table1("fixed")).load - 1.0
     every = DETUNED * passing
-    said = f"with exactly two elements in a step it stands still, wrong by {wrong:+.2%}"
+    said = f"with exactly two elements per step the force is constant, wrong by {wrong:+.2%}"
     return _forces(0.01 + every * samples, 0.5 * every, said)
 
 

@@ -1,4 +1,4 @@
-"""Naive implementations: the peers of the charts, and the failures of the atlas.
+"""Naive implementations: for comparison in the charts, and for the failures of the atlas.
 
 None of them uses the methods of the package. Scaled form: depths by delta_0, time by tau, lengths by
 a_0, forces by W_0 (f_x by W_0 delta_0/a_0).
@@ -41,7 +41,7 @@ class Outcome:
     said: str = ""
 
     def __post_init__(self) -> None:
-        for name in ("wrong", "right", "package"):  # which may be numbers of NumPy
+        for name in ("wrong", "right", "package"):  # may be NumPy scalars
             object.__setattr__(self, name, float(getattr(self, name)))
 
 
@@ -112,8 +112,8 @@ def without_memory(
 def stale_elements(scene: Scene, per_length: float) -> tuple[Array, Array]:
     """Return t (s) and depth (m) by the paper's scheme, with surfaces kept fixed within a step.
 
-    In each Runge-Kutta stage an element touches if the indenter is below where it was at the end of the last
-    step. For a parabola under a dead weight, driven with one velocity.
+    In each Runge-Kutta stage an element is in contact if the indenter is below its surface at the end of the
+    last step. For a parabola under a dead weight, driven at a constant velocity.
     """
     R: float = scene.indenter.radius  # type: ignore[union-attr]
     K, tau = scene.foundation.stiffness, scene.foundation.retardation_time
@@ -139,7 +139,7 @@ def stale_elements(scene: Scene, per_length: float) -> tuple[Array, Array]:
         a3 = pull(d + 0.5 * h * v + 0.25 * h * h * a1, v + 0.5 * h * a2)
         a4 = pull(d + h * v + 0.5 * h * h * a2, v + h * a3)
         d, v = d + h * v + h * h * (a1 + a2 + a3) / 6.0, v + h * (a1 + 2 * a2 + 2 * a3 + a4) / 6.0
-        # Two elements pass in a step.
+        # Two elements pass per step.
         free = np.concatenate([np.zeros(2), u[:-2]]) * math.exp(-h / tau)
         u = np.where(pressure(d, v, free) > 0.0, d - height, free)
         time.append((k + 1) * h)

@@ -27,18 +27,18 @@ UNIFORM_TIMES = 41
 AFTER_JUMP = np.geomspace(1e-4, 5e-2, 9)
 """Further instants soon after each jump, as shares of the run."""
 LEAST_SPACING = 1e-6
-"""Smallest distance of instants, as a share of the run."""
+"""Smallest spacing of instants, as a share of the run."""
 REFERENCE_RTOL, INDEPENDENT_RTOL = 1e-12, 1e-10
 NO_MEMORY = 1e-7
-"""If Radau on the two states agrees this well with the continuum, no memory was needed."""
+"""Difference of Radau on the two states from the continuum below which the memory has no effect."""
 DENSITIES = {False: 160.0, True: 60.0}
-"""Elements per half length at rest of the finer reference by elements; for the quick form, fewer."""
+"""Elements per static half length of the finer reference by elements, by `Problem.quick`."""
 TABLE = "work_precision_reference.json"
 """Independent solutions of the standard scenes; its generator is among the tests."""
 LARGE_ERROR = 1e-3
-"""Error of a curve at which a run that reported success is wrong, if it is also far beyond its tolerance."""
+"""Error of a curve above which a run that reported success is wrong, if it also far exceeds the tolerance."""
 FAR_BEYOND = 100.0
-"""Multiple of its tolerance at which an error is far beyond it."""
+"""Multiple of the tolerance above which an error far exceeds it."""
 JUDGED = "depth, maximum", "friction, maximum"
 """Errors by which a run is called wrong."""
 
@@ -73,7 +73,7 @@ class Problem:
 
     @cached_property
     def units(self) -> StaticState:
-        """The scene at rest, the scale of all quantities, with its dimensionless numbers."""
+        """The static state: scales of all quantities, and the dimensionless numbers."""
         return StaticState.of(self.scene)
 
     @cached_property
@@ -100,7 +100,7 @@ class Problem:
             inside = [piece for piece in self.drive.pieces if piece[0] < b and piece[1] > a]
             powers = inside[0][3:]
             constant = len(inside) == 1 and not any(powers[1:])
-            last = math.nextafter(b, a)  # before a jump there
+            last = math.nextafter(b, a)  # just before a jump at b
             rate = partial(lambda last, s: self.drive.velocity(min(s, last)), last)
             found.append((a, b, powers[0] if constant else rate))
         return found
@@ -137,7 +137,7 @@ class Problem:
     def assess(
         self, found: Curves, right: Reference, tolerance: float | None
     ) -> tuple[dict[str, float], str]:
-        """Return the errors, and why a run that reported success is wrong, or nothing."""
+        """Return the errors, and why a run that reported success is wrong, or an empty text."""
         measured = errors(found, right.solution)
         worst = max(measured[name] for name in JUDGED)
         if tolerance is None or worst < max(LARGE_ERROR, FAR_BEYOND * tolerance):
@@ -192,7 +192,7 @@ def by_two_states(problem: Problem, method: str, rtol: float, **how: Any) -> tup
 def by_elements(
     problem: Problem, per_half_length: float, scheme: str, **options: Any
 ) -> tuple[Curves, int]:
-    """Return the curves by elements, so many in a static half length, and how often they were updated."""
+    """Return the curves by elements at this number per static half length, and the count of updates."""
     units = problem.units
     run = elements(
         problem.scene, per_length=per_half_length / units.half_length, scheme=scheme,

@@ -7,9 +7,9 @@ unstable if their difference grows by more than a factor of 1 per step. No stabi
 measurement.
 
 Up to about 1.5 times the limit the runs may leave steady sliding for a cycle with a shorter contact, in
-which their difference decays: there the result depends on where the elements are. Above lambda of about
-20 a step near the limit passes much of the contact, which the prediction takes as fixed: there it is too
-optimistic.
+which their difference decays: there the result depends on the positions of the elements. For lambda above
+about 20 a step near the limit crosses much of the contact, which the prediction takes as fixed: there it is
+too optimistic.
 """
 
 from collections.abc import Callable, Iterator
@@ -32,30 +32,30 @@ from kvtheory.scene import Drive, Foundation, Scene
 from kvtheory.scene.static_state import StaticState
 
 STEPS = 30
-"""Steps over which growth is measured: 2 % a step shows as a factor of 1.8."""
+"""Steps over which growth is measured: 2 % per step gives a factor of 1.8."""
 LATEST = 8
-"""Steps after which growth counts in steady sliding. A run that has blown up may calm down later."""
+"""Steps after which growth counts in steady sliding. A run that has diverged may settle later."""
 NUDGE = 1e-9
-"""Difference of both runs, in depths per step: no contact changes by it, and rounding is far below."""
+"""Initial difference of both runs, in depths per step: it changes no contact, and is far above rounding."""
 BLOWN_UP, DIED_OUT = 1e4, 0.1
 """Multiple of the first difference at which a measurement ends."""
 INITIAL_GROWTH = 1.08
-"""Growth in the first steps that counts as unstable: stable runs diverge by up to 1.06, once."""
+"""Growth in the first steps that counts as unstable: stable runs grow by up to 1.06, once."""
 DEEP = 1e6
-"""Multiple of the static depth to which elements are kept: an unstable indenter may sink."""
+"""Depth that the elements allow, over the static depth: an unstable indenter may sink."""
 PER_HALF_LENGTH = 100.0
-"""Elements in a static half length where the step is given in units of its limit."""
+"""Elements per static half length in the maps over the step."""
 PAPERS_DENSITY = 2e5
 """Elements per metre of the paper (Table 1)."""
 
 VELOCITY_RANGE, TAU_RANGE = (1e-3, 1.0), (3e-3, 3.0)
 NUMBER_RANGE, STEP_RANGE = (0.1, 100.0), (0.2, 5.0)
-"""Ends of the axes of the maps: V in m/s, tau in s, lambda, and the step over its limit."""
+"""Ranges of the axes of the maps: V in m/s, tau in s, lambda, and the step over its limit."""
 POINTS, QUICK_POINTS = (31, 24), (13, 10)
-"""Points of a map each way; maps of schemes that are stable everywhere have half as many."""
+"""Points along the axes of a map; maps of schemes that are stable everywhere have half as many."""
 
 CLASSES = "stable", "unstable at first", "unstable in steady sliding"
-"""Of a point of a map: the start from rest may be unstable though steady sliding is not."""
+"""Classes of a point of a map: the start from rest may be unstable though steady sliding is not."""
 
 
 @dataclass(frozen=True)
@@ -90,7 +90,7 @@ def _walk(
     scene: Scene, name: str, per_length: float, time_step: float, *, nudge: float = 0.0,
     steady: SteadyState | None = None,
 ) -> Iterator[IndenterState]:  # fmt: skip
-    """Step from rest or from steady sliding, with the first velocity `nudge`, until it sinks too deep."""
+    """Yield steps from rest or steady sliding, with initial velocity `nudge`, until it sinks too deep."""
     scheme = SCHEMES[name]
     model = Model.of(scene, 1.0 / per_length, parts=scheme.row.parts_of_elements)
     row = ElementRow(model, model.path(scene), DEEP)
@@ -126,11 +126,11 @@ def unwatched(
 def growth(
     scene: Scene, scheme: str, per_length: float, time_step: float, *, steady: bool
 ) -> float:
-    """Return the factor per step by which the difference of two runs, at first a tiny velocity, grows.
+    """Return the growth factor per step of the difference of two runs, initially a tiny velocity.
 
-    Above 1 the scheme is unstable, below 1 stable. The indenter is a parabola that is driven with one
+    Above 1 the scheme is unstable, below 1 stable. The indenter is a parabola that is driven at one
     positive velocity. With `steady` it begins in steady sliding; else it begins at its static depth,
-    where the very first steps count, for the contact soon changes.
+    where the first steps count, because the contact soon changes.
     """
     sliding = steady_sliding(scene) if steady else None
     depth = StaticState.of(scene).depth if sliding is None else float(sliding.depth)
@@ -152,7 +152,7 @@ def growth(
 
 
 def velocity_map(scheme: str, velocities: Array, retardation_times: Array) -> Map:
-    """Return the map over V (m/s) and tau (s), else Table 1, at the paper's step and density."""
+    """Return the map over V (m/s) and tau (s), Table 1 otherwise, at the paper's step and density."""
 
     def point(V: float, tau: float) -> tuple[Scene, float]:
         foundation = Foundation(Scene().foundation.stiffness, tau)
@@ -163,7 +163,7 @@ def velocity_map(scheme: str, velocities: Array, retardation_times: Array) -> Ma
 
 
 def step_map(scheme: str, numbers: Array, steps: Array) -> Map:
-    """Return the map over lambda and the step over the limit (F15) of the scheme, or else of the paper's."""
+    """Return the map over lambda and the step over the limit (F15) of the scheme, or of the paper's."""
     epsilon = StaticState.of(Scene()).inertia_number
     limited = SCHEMES[scheme if SCHEMES[scheme].tableau else "paper"]
 

@@ -20,14 +20,14 @@ from kvtheory.scene.static_state import StaticState
 R, K, TAU, LOAD = 0.01, 1e10, 0.1, 9806.65
 """Table 1, in SI."""
 FAR = 1e9
-"""l_r/a of the entry on cancellation: Eq. 27 loses twice as many digits as it has decades."""
+"""l_r/a of the entry on cancellation: Eq. 27 loses two digits for each decade of it."""
 SHALLOW = 1e-9
 """Depth (m) of a contact that a quadrature over the whole indenter misses."""
 GIVEN_FRICTION = 0.05
 FIRST_GUESS = 0.1
 """Velocity (m/s) of Table 1, which lies beyond the maximum of the friction coefficient."""
 RUBBER = Arm(3e10, 0.01), Arm(5e9, 1.0)
-"""Arms of a foundation that is not Kelvin-Voigt; its C is mostly that of the slow one."""
+"""Arms of a foundation that is not Kelvin-Voigt; most of its C is that of the slow arm."""
 STEEP = 0.8
 """a/R of the static contact in the entry on the parabola."""
 
@@ -94,7 +94,7 @@ def _no_bracket() -> Outcome:
     peak = float(report.peak_velocity)
     # mu rises from zero to its maximum there (fact F3).
     ours = brentq(excess, 0.0, peak, xtol=1e-18, rtol=1e-15)
-    # F1 and F2 the other way round: mu^3 K R^2/W = m^3/w, whose largest root q is the slow branch.
+    # F1 and F2 inverted: mu^3 K R^2/W = m^3/w; its largest root q is on the slow branch.
     m, n = Polynomial([4.0, -5.0, 2.0, -1.0]), Polynomial([3.0, -2.0, 1.0])
     cube = GIVEN_FRICTION**3 * K * R * R / LOAD
     rise = Polynomial([1.0, 1.0]) ** 2 * n**4  # (1 + q)^2 n^4

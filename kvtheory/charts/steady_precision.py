@@ -30,7 +30,7 @@ NAMES = "depth", "friction coefficient"
 
 
 def suits(scene: Scene) -> bool:
-    """Return whether a scene has this chart: a parabola, a dead weight, a constant velocity above 0."""
+    """Return whether a scene suits this chart: a parabola, a dead weight, a constant velocity above 0."""
     forward = (scene.drive.velocity or 0.0) > 0.0
     return not lacks_paper_model(scene) and scene.support.spring == 0.0 and forward
 
@@ -91,7 +91,7 @@ class SteadyProblem:
         return Reference(right, _errors(other, right), names)
 
     def assess(self, found: Any, right: Reference, _: float | None) -> tuple[dict[str, float], str]:
-        """Return the errors; how many of them a method may have is not known."""
+        """Return the errors, without a verdict: the allowed error of a method is not known."""
         return _errors([Decimal(value) for value in found], right.solution), ""
 
 
@@ -101,7 +101,7 @@ def _errors(found: Any, right: Any) -> dict[str, float]:
 
 
 def _bisect(below: Callable[[Decimal], bool], high: Decimal) -> Decimal:
-    """Return the position between 0 and `high` where `below` ends."""
+    """Return the position between 0 and `high` at which `below` becomes false."""
     low = Decimal(0)
     for _ in range(4 * DIGITS + 80):
         middle = (low + high) / 2
@@ -158,7 +158,7 @@ def brentq_over_quad(
 
 
 def _elements(problem: SteadyProblem, density: float, clock: Clock) -> tuple[Any, int]:
-    """Run a transient until it is steady (F12), with so many elements in the static half length."""
+    """Run a transient until it is steady (F12), with this number of elements per static half length."""
     scene = problem.scene
     state = steady(scene)
     A = math.hypot(state.half_length, state.retardation_length) + state.half_length

@@ -64,7 +64,7 @@ class Reference:
 
 @dataclass(frozen=True)
 class Method:
-    """A way to solve a problem; `solve` returns what it found and the work that this took.
+    """A way to solve a problem; `solve` returns the solution and the work it took.
 
     `kind` is ``"model"`` where the error is that of a simpler model, which no parameter can reduce; `work`
     names the counted operations; `suits` says whether the method applies to a problem; `scenes` is how
@@ -83,7 +83,7 @@ class Method:
 
 @dataclass(frozen=True)
 class Effort:
-    """Repeats of each setting, seconds for one run and for all repeats; one of `every` settings is taken."""
+    """Repeats of each setting; limits (s) of one run and of all repeats; every nth setting is run."""
 
     repeats: int
     longest: float
@@ -181,13 +181,13 @@ def make_chart(
 def _attempt(
     problem: Any, method: Method, right: Reference, points: list[Point], effort: Effort
 ) -> float:
-    """Run each setting once, and keep why it failed; return the time of a call before, which compiles.
+    """Run each setting once, and record failures; return the time of a first call, which compiles.
 
-    Once a setting has timed out, the more expensive ones count as timed out and are not begun.
+    Once a setting has timed out, the more expensive ones count as timed out and are not run.
     """
     rated = method.kind == "numerical" and method.knob == "rtol"
     clock = Clock(effort.longest)
-    # What overflows is told below, by its error or its reason.
+    # Overflow is reported below, by its error or its reason.
     with np.errstate(all="ignore"):
         with suppress(TimedOutError, ArithmeticError, ValueError):
             method.solve(problem, points[0].knob, clock)
@@ -214,7 +214,7 @@ def _repeat(jobs: list[tuple[Point, Callable[[], Any]]], effort: Effort) -> None
     for _ in range(effort.repeats):
         order.shuffle(jobs)
         for point, run in jobs:
-            # Of long runs a second one is enough.
+            # One repeat of a long run is enough.
             enough = whole.elapsed > effort.whole or point.first > effort.longest / 4.0
             if enough and point.times:
                 continue

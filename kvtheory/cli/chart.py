@@ -31,7 +31,7 @@ def chart() -> None:
 def failures(only: str | None, output: Path | None, as_json: bool) -> None:
     """Show how methods fail, with wrong and right numbers."""
     found = []
-    with console.progress_bar("entries") as report:  # what is imported takes a while, too
+    with console.progress_bar("entries") as report:  # the imports take time, too
         from kvtheory.charts.failures import ATLAS, ROLES, findings
         from kvtheory.plots.failures import save_failures, shown
 
@@ -87,7 +87,7 @@ def stability(output: Path, quick: bool) -> None:
     help="Instead of a scene: table-1, low-velocity, high-velocity, small-inertia, stop-and-go, "
     "reversal, hop, or all.",
 )  # fmt: skip
-@click.option("--quick", is_flag=True, help="Fewer settings and repeats: some 15 s for a scene.")
+@click.option("--quick", is_flag=True, help="Fewer settings and repeats: about 15 s per scene.")
 @picture_option("work_precision.png")
 @console.overwrite_option
 def work_precision(

@@ -17,9 +17,9 @@ from kvtheory.cli.group import main
 from kvtheory.cli.outputs import PICTURES, SERIES_SUFFIXES, OutputFile
 
 LARGE_ERROR = 0.05
-"""Of the static state: a larger one is seen in any plot, and is beyond the scatter of a good measurement."""
+"""Relative to the static state: visible in any plot, and beyond the scatter of a good measurement."""
 ROWS = 20
-"""Rows of a long table, about."""
+"""Approximate number of rows printed of a long table."""
 START_TIME = "kvtheory.begun"
 """Start time of a command, in the meta of its context."""
 
@@ -91,15 +91,15 @@ def scene_command(example: str) -> Callable[[Callable[..., Iterator[Any]]], clic
 
 @contextmanager
 def progress_bar(label: str) -> Iterator[Callable[..., None]]:
-    """Provide a function that shows the share done, and a text, when work takes long.
+    """Provide a function that shows the fraction done, and a text, if the work takes long.
 
-    A terminal shows every second or so that the work goes on, also where it reports nothing.
+    A terminal is updated about every second, even if no progress is reported.
     """
     from kvtheory.progress import BEAT, PATIENCE, ProgressLine
 
     context = click.get_current_context(silent=True)
     begun = context.meta.setdefault(START_TIME, time.monotonic()) if context else time.monotonic()
-    patience = max(PATIENCE - (time.monotonic() - begun), 0.0)  # of all parts of a command together
+    patience = max(PATIENCE - (time.monotonic() - begun), 0.0)  # over all parts of a command
     line, over = ProgressLine(label, patience=patience), threading.Event()
 
     def beat() -> None:
@@ -176,7 +176,7 @@ def print_error(about: str, result: Any) -> None:
 
 def print_scenes(scene: Any, result: Any, units: Mapping[str, str]) -> None:
     """Print some quantities of many scenes: a row for each, or about twenty with both ends."""
-    import numpy as np  # as a help text needs none
+    import numpy as np  # not needed for help texts
 
     held = {name: (getattr(result, name), unit) for name, unit in units.items()}
     for key, values in reversed(scene.arrays().items()):

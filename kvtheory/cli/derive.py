@@ -20,14 +20,14 @@ if TYPE_CHECKING:
     from kvtheory.derivations.render import Edition
 
 MOST_NAMED = 20
-"""Labels in one message, at most."""
+"""Largest number of labels in one message."""
 DERIVING = 0.7
-"""Share of the work that is deriving; the rest is printing."""
+"""Share of the progress bar for deriving; the rest is for writing."""
 SHAPE_SYMBOLS = {"radius": "R", "length": "L", "exponent": "n", "inclination": "c_1"}
 SUPPORT_SYMBOLS = {"mass": "M", "gravity": "g", "stiffness": "k_s"}
 """Names of symbols by the keys of a scene."""
 UNUSUAL_CHARACTER = re.compile(r"[^\w .,()+-]")
-"""What the name of a scene may not hold inside a document, where it could be mathematics or markup."""
+"""Replaced in the name of a scene, because a document could take it as mathematics or markup."""
 
 
 @main.command(example="kvtheory derive -o my-thesis --format tex --only eq27,F3 --closure")
@@ -95,7 +95,7 @@ def derive(
         raise ValueError(f"--shape derives a separate chapter; {told}")
     wanted, labels = _formats(formats), find(console.split(only), CONTENTS)
     letters = read_notation(notation) if notation else {}
-    if not (labels or shape):  # then every symbol is shown
+    if not (labels or shape):  # all symbols are shown
         check_letters(letters, NAMES.values())
     given = _quantities(scene, overrides) if numbers else None
     check_directory(output)
@@ -110,7 +110,7 @@ def derive(
 
 
 def _formats(formats: str | None) -> list[str]:
-    """Return the formats asked for, or by default all that can be written."""
+    """Return the requested formats, or by default all that can be written."""
     from kvtheory.derivations.render import FORMATS, check_formats, latex_engine
 
     if formats is not None:
@@ -126,8 +126,8 @@ def _formats(formats: str | None) -> list[str]:
 def _quantities(path: str | None, overrides: Sequence[str]) -> tuple[dict[str, float], str, str]:
     """Return the quantities of a scene and of its steady state by the names of `calculation.GIVEN`.
 
-    Beside them the shape of the indenter, and the scene in words. Forces, masses and springs of a ball are
-    left out, for the symbols of the derivations stand for those per unit width.
+    Also the shape of the indenter, and a description of the scene. Forces, masses and springs of a ball are
+    left out, because the symbols of the derivations stand for those per unit width.
     """
     from kvtheory.api import steady
     from kvtheory.scene import load_scene
@@ -140,7 +140,7 @@ def _quantities(path: str | None, overrides: Sequence[str]) -> tuple[dict[str, f
     velocity = abs(scene.drive.final_velocity)
     if velocity == 0.0:
         raise ValueError(
-            "--numbers: drive.velocity is 0; the closed forms are of an indenter that slides"
+            "--numbers: drive.velocity is 0; the closed forms are for a sliding indenter"
         )
     state, values, line = steady(scene), scene.values(), scene.indenter.per_width
     quantities = {
@@ -151,7 +151,7 @@ def _quantities(path: str | None, overrides: Sequence[str]) -> tuple[dict[str, f
     if line:
         quantities |= {"W": float(state.load), "F": abs(float(state.friction_force))}
     if small := [name for name, value in quantities.items() if not 0.0 < value < math.inf]:
-        raise ValueError(f"--numbers: {', '.join(small)} of this scene cannot be held by a float")
+        raise ValueError(f"--numbers: {', '.join(small)} of this scene: out of range of a float")
     names = {f"indenter.{key}": name for key, name in SHAPE_SYMBOLS.items()}
     if line:
         names |= {f"support.{key}": name for key, name in SUPPORT_SYMBOLS.items()}
@@ -173,7 +173,7 @@ def _edition(
     labels: list[str], closure: bool, shape: str | None, notation: dict[str, str],
     given: tuple[dict[str, float], str, str] | None, report: Callable[[float, str], None],
 ) -> "Edition":  # fmt: skip
-    """Derive what was asked for, after a line that says how much that is."""
+    """Derive what was requested, after a line with the number of records."""
     from kvtheory import __version__
     from kvtheory.derivations.calculation import FOLLOWING, shown_quantities, with_numbers
     from kvtheory.derivations.catalogue import catalogue, wanted_up_to
@@ -188,7 +188,7 @@ def _edition(
     total, count = wanted_up_to(needed), len(labels)
     told = f"all {total} records; --only chooses some"
     if count:
-        told = f"{total} records for the {count} asked for, since each rests on earlier ones"
+        told = f"{total} records for the {count} asked for, since each uses earlier ones"
     click.echo(f"kvtheory: deriving {told}", err=True)
     derived: Iterable[Derivation] = catalogue(needed, report)
     if given:

@@ -12,7 +12,7 @@ import click
 from kvtheory.cli.outputs import check_outputs
 
 DISAGREES, BAD_INPUT, INTERNAL_ERROR, INTERRUPTED, BROKEN_PIPE = 1, 2, 70, 130, 141
-"""Exit status beside 0; 2 also if the output cannot be written."""
+"""Exit statuses other than 0; 2 also if the output cannot be written."""
 
 
 class Failure(click.ClickException):
@@ -31,7 +31,7 @@ class Failure(click.ClickException):
 
 
 class Command(click.Command):
-    """A command whose help ends with an example, and whose errors are messages."""
+    """A command whose help ends with an example, and that reports errors as messages."""
 
     def __init__(self, *args: Any, example: str = "", **kwargs: Any) -> None:
         super().__init__(*args, **kwargs)
@@ -55,7 +55,7 @@ class Command(click.Command):
             why = str(error) or "ask for less at a time"
             raise Failure(f"error: out of memory: {why}") from None
         except OSError as error:
-            if error.filename is None and error.errno is not None:  # of standard output
+            if error.filename is None and error.errno is not None:  # from standard output
                 raise
             named = f'"{error.filename}": {error.strerror}' if error.filename else str(error)
             raise Failure(f"error: {in_options(named, self)}") from None
@@ -70,7 +70,7 @@ class Command(click.Command):
 
 
 class Group(click.Group):
-    """A group that exits with the status of the table above, whatever becomes of its output."""
+    """A group that exits with one of the statuses above, even if its output cannot be written."""
 
     command_class = Command
     group_class = type
@@ -96,12 +96,12 @@ class Group(click.Group):
                 error.show()
         except click.Abort:
             status = INTERRUPTED
-        except SystemExit as end:  # of click, which replaces the output if its pipe is closed
+        except SystemExit as end:  # from click, which replaces the output if its pipe is closed
             status = end.code if sys.stdout is output else BROKEN_PIPE  # type: ignore[assignment]
         try:
             for stream in filter(None, (output, sys.stderr)):
                 stream.flush()
-        except OSError:  # Python would fail at its exit on what is still buffered
+        except OSError:  # else Python would fail at exit on buffered output
             nowhere = os.open(os.devnull, os.O_WRONLY)
             for stream in (sys.stdout, sys.stderr):
                 with suppress(AttributeError, OSError, ValueError):

@@ -27,11 +27,11 @@ BEGINNINGS = {
     ".ipynb": (b'{\n "cells": ',),
     ".bib": (b"@article{NakanoKono2020,",),
 }
-"""How the files that commands write begin; a sweep recognises its own files."""
+"""First bytes of the files that commands write; a sweep recognises its own files."""
 STEADY_HEADER = b"depth [m],half_length [m],"
-"""In the first line of a CSV of steady sliding, after the keys of what varies."""
+"""Part of the first line of a CSV of steady sliding, after the varied keys."""
 BYTES = 2**14
-"""How much of a file is read to recognise it: more than the longest header."""
+"""Bytes of a file that are read to recognise it: more than the longest header."""
 OVERWRITE = "kvtheory.overwrite"
 """Whether `--overwrite` was given, in the meta of a context."""
 

@@ -44,7 +44,7 @@ def steady(scene: "Scene", progress: Any, method: str | None) -> Iterator[Any]:
 def asymptotes(scene: "Scene", progress: Any, tolerance: float) -> Iterator[Any]:
     """Print which asymptotes of friction hold, and their errors.
 
-    Beside them the velocities over which each holds, and the maxima of friction over velocity.
+    Also the velocities over which each holds, and the maxima of friction over velocity.
     """
     from kvtheory.api import asymptotes as examine
 
@@ -60,7 +60,7 @@ def asymptotes(scene: "Scene", progress: Any, tolerance: float) -> Iterator[Any]
 def stability(scene: "Scene", progress: Any) -> Iterator[Any]:
     """Print whether steady sliding on a spring is stable.
 
-    Beside that the critical stiffness of the spring, and the velocity at the onset of instability.
+    Also the critical stiffness of the spring, and the velocity at the onset of instability.
     The spring drive.stiffness holds the indenter in the sliding direction, with drive.damping and
     drive.mass; without a stiffness the drive is rigid. Stable means against small disturbances: a large
     one, such as a sudden start, may still end in stick-slip.
@@ -99,7 +99,7 @@ def stability(scene: "Scene", progress: Any) -> Iterator[Any]:
 
 
 def _print_final_velocity(scene: "Scene") -> None:
-    """Print at which velocity of a history steady sliding is taken."""
+    """Print the velocity of a history at which steady sliding is computed."""
     if scene.drive.history is not None:
         velocity = console.text(scene.drive.final_velocity, "m/s")
         click.echo(f"The drive has a history; taken at its final velocity, {velocity}.")

@@ -22,7 +22,7 @@ SECTIONS: dict[str, tuple[str, dict[str, Any]]] = {
     "drive": ("", {"drive": Drive}),
     "run": ("", {"run": Run}),
 }
-"""The key that chooses, and what it chooses from; nothing is chosen where there is one."""
+"""By section: the key that selects a class, empty if there is only one, and the classes."""
 START = {
     "radius": 0.01, "radius_across": 0.02, "length": 0.01, "exponent": 4.0, "inclination": 0.1,
     "stiffness": 1e10, "retardation_time": 0.1, "order": 0.5,
@@ -32,14 +32,14 @@ START = {
 }  # fmt: skip
 """Start value, in SI, of a slider that the scene does not set: Table 1, and usual values.
 
-Where a line contact has a quantity per unit width, a ball has the same digits in its own unit: 1 kg for
+A quantity per unit width in a line contact has the same digits for a ball, in its own unit: 1 kg for
 1 kg/mm."""
 STIFFNESSES = {"suspended": 3e7, "drive": 1e6, "arm": 3e10}
-"""Start values of the stiffnesses that are not of a foundation."""
+"""Start values of the stiffnesses other than that of a foundation."""
 LINEAR = {"exponent": (1.0, 8.0), "order": (0.05, 1.0), "poisson_ratio": (0.0, 0.49)}
 """Ranges of the sliders that are not logarithmic."""
 DECADES = 3
-"""Range of the other sliders to either side of their start value."""
+"""Range of the other sliders, in decades to either side of their start value."""
 ADDED: dict[tuple[str, str], list[tuple[str, list[str]]]] = {
     ("indenter", "sphere"): [
         ("one radius: a ball", []),
@@ -51,7 +51,7 @@ ADDED: dict[tuple[str, str], list[tuple[str, list[str]]]] = {
         ("with a spring and its own mass", ["stiffness", "damping", "mass"]),
     ],
 }
-"""By section and choice: titles and names of the quantities that may be added to those always present."""
+"""By section and choice: titles and names of the sets of optional quantities."""
 VARIES = "The drive of the scene varies in time; the page takes its final velocity."
 RUBBER = Arm(3e10, 0.01), Arm(5e9, 1.0)
 """Arms shown for a scene without any."""
@@ -123,7 +123,7 @@ def controls(scene: Scene) -> dict[str, Any]:
 
 
 def _values(scene: Scene, section: str) -> dict[str, float]:
-    """Return the quantities that a part of the scene sets, in SI; of a drive its final velocity."""
+    """Return the quantities that a part of the scene sets, in SI; for a drive its final velocity."""
     part = getattr(scene, section)
     found = {name: getattr(part, name) for name in given(part)}
     if section == "drive":
@@ -149,7 +149,7 @@ def _slider(
 
 
 def _alternatives(section: str, name: str, cls: Any) -> list[dict[str, Any]]:
-    """Return the sets of quantities of which one is to be given, and the title of each.
+    """Return the alternative sets of quantities, one of which is to be given, with their titles.
 
     >>> [each["names"] for each in _alternatives("foundation", "kelvin-voigt", FOUNDATIONS["kelvin-voigt"])]
     [['stiffness', 'retardation_time'], ['modulus', 'thickness', 'poisson_ratio', 'retardation_time']]
@@ -168,7 +168,7 @@ def _alternatives(section: str, name: str, cls: Any) -> list[dict[str, Any]]:
 
 
 def _sets(cls: Any) -> Iterator[list[str]]:
-    """Yield the sets of quantities that define a part: the required ones, then others in their place."""
+    """Yield the sets of quantities that define a part: the required ones, then those with alternatives."""
     specs = quantities(cls)
     optional = {name for spec in specs.values() for name in (spec.instead, *spec.excludes)}
     first = [name for name in specs if name in required(cls) or name not in optional]
@@ -197,12 +197,12 @@ def _allowed() -> list[list[str]]:
 
 
 def _exponent(unit: str) -> int:
-    """Return the power of ten that a value in the unit that is shown has to be multiplied by."""
+    """Return the power of ten that converts a value in the displayed unit to SI."""
     return -round(math.log10(UNITS[unit][1]))
 
 
 def _text(value: float, unit: str) -> str:
-    """Return an SI value in the unit that is shown, with the same decimals."""
+    """Return an SI value in the displayed unit, with the same digits."""
     number = Decimal(repr(float(value))).scaleb(-_exponent(unit)).normalize()
     return f"{number:f}" if -8 < number.adjusted() < 12 else f"{number:e}"
 

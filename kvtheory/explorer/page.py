@@ -1,4 +1,4 @@
-"""The explorer as one HTML file: its scripts, its formulas and a scene; nothing is loaded."""
+"""The explorer as one HTML file: its scripts, its formulas and a scene; it loads no other file."""
 
 import json
 import re
@@ -15,7 +15,7 @@ SCRIPTS = (
     "closed_forms", "steady", "ball", "circle", "stability", "rubber", "motion", "scene",
     "charts", "contact", "answers", "playing", "explorer",
 )  # fmt: skip
-"""In the order in which they build on each other."""
+"""In order: each uses only earlier ones."""
 QUANTITY = re.compile(r"@(\*|[A-Za-z]+(?:_[a-z0-9])?)")
 
 
@@ -62,7 +62,7 @@ def explorer_page(scene: Scene) -> str:
 
 
 def formulas() -> dict[str, dict[str, str]]:
-    """Return each formula as MathML: once with symbols, and once with places for numbers."""
+    """Return each formula as MathML: once with symbols, and once with placeholders for numbers."""
     from latex2mathml.converter import convert
 
     table = tomllib.loads(_text("formulas.toml"))

@@ -1,1 +1,1 @@
-"""The ladder: the cheapest model that is enough for what is asked of a scene."""
+"""The ladder: the cheapest model that meets the requested tolerance for a scene."""

@@ -1,4 +1,4 @@
-"""The climb: rungs from cheap to general, until one is known to be enough."""
+"""The climb: models from cheap to general, until one is known to meet the tolerance."""
 
 import math
 from collections.abc import Callable, Mapping, Sequence
@@ -17,10 +17,10 @@ TOO_LARGE, USED = "error too large", "used"
 
 @dataclass(frozen=True)
 class Request:
-    """What is asked of a scene.
+    """What is requested of a scene.
 
     `quantities` must be within `rtol`; `times` (s) are those of a series, None for its own times;
-    `units` has all quantities that the answer holds, those of a series or of steady sliding.
+    `units` lists all quantities of the answer: those of a series or of steady sliding.
     """
 
     quantities: tuple[str, ...]
@@ -38,7 +38,7 @@ class Answer(NamedTuple):
 
 
 class Offer(NamedTuple):
-    """What a model offers before it runs: a bound or an estimate of its error, NaN where only running tells.
+    """What a model offers before it runs: a bound or an estimate of its error, NaN if unknown.
 
     `run` may raise ValueError or ArithmeticError where an assumption turns out to be wrong.
     """
@@ -51,8 +51,8 @@ class Offer(NamedTuple):
 class Rung:
     """A model: its name, its assumptions, and its offer for a scene and a request.
 
-    `judge` costs little for any scene; it raises ValueError or ArithmeticError, which say why, where the
-    model does not apply.
+    `judge` is cheap for any scene; if the model does not apply it raises ValueError or ArithmeticError with
+    the reason.
     """
 
     name: str
@@ -103,7 +103,7 @@ def climb(scene: Scene, request: Request, rungs: Sequence[Rung]) -> Solution:
 
 
 def _failure(request: Request, steps: Sequence[ClimbStep]) -> str:
-    """Say how close each model came, and each reason once, with the models that it holds for."""
+    """State the error that each model reached, and each reason once, with its models."""
     reached, reasons = [], dict[str, list[str]]()
     for step in steps:
         reason = step.outcome

@@ -1,11 +1,11 @@
-"""A Prony series that slow motion cannot tell from Kelvin-Voigt: what the equivalent damper neglects.
+"""A Prony series in slow motion: the error of the equivalent Kelvin-Voigt foundation.
 
-To a motion that changes at the rate sigma, an arm answers as a damper C_i/(1 + sigma tau_i), C_i = K_i tau_i,
-which is between C_i and that of the fastest change. So the answer of the Kelvin-Voigt foundation with C =
-sum C_i is compared with the one whose damping is that of the fastest change: the rate V/a at which elements
-pass the half of the contact, one over the time since the drive changed last, and on a spring sqrt(k_x/M_x).
-What does not depend on this, the layer in which arms are loaded at the leading edge, shows in steady sliding,
-where the error of the equivalent foundation is known exactly.
+In a motion that changes at the rate sigma, an arm acts as a damper C_i/(1 + sigma tau_i), C_i = K_i tau_i,
+which is between C_i and its value at the fastest rate. So the solution for the Kelvin-Voigt foundation with
+C = sum C_i is compared with the one for the damping at the fastest rate: the sum of the rate V/a at which
+elements pass half of the contact, one over the time since the last change of the drive, and on a spring
+sqrt(k_x/M_x). The layer at the leading edge in which arms are loaded does not depend on this rate; its error
+is taken from steady sliding, where the error of the equivalent foundation is known exactly.
 """
 
 import math
@@ -23,20 +23,20 @@ from kvtheory.scene.model import Scene
 from kvtheory.scene.static_state import StaticState
 
 SAFETY = 4.0
-"""Of the estimate: the largest error on random scenes was 0.6 of the estimate with it."""
+"""Safety factor of the estimate: the largest error on random scenes was 0.6 of the estimate with it."""
 LEAST_DAMPING = 0.7
-"""Of C: an arm that gives less than this at the fastest change makes a first-order estimate meaningless."""
+"""Least damping of the arms at the fastest rate, over C, for which a first-order estimate is meaningful."""
 STEADY_NAMES = {"normal_force": "load", "spring_force": "friction_force"}
-"""Names of steady sliding that differ from those of a series."""
+"""Names in steady sliding of the quantities of a series, where they differ."""
 STATEMENT = (
-    "of the Kelvin-Voigt foundation with the damping sum K_i tau_i, beside the error of its solution: "
-    f"{SAFETY:g} times the change by the damping that the fastest change of the motion feels, and by the "
+    "plus the error of the Kelvin-Voigt foundation with the damping sum K_i tau_i: "
+    f"{SAFETY:g} times the change due to the damping at the fastest rate of the motion, and due to the "
     "arms in steady sliding"
 )
 
 
 def damping(scene: Scene, rate: float = 0.0) -> float:
-    """Return that of the damper that stands for the arms in a motion at this rate (1/s)."""
+    """Return the damping equivalent to the arms in a motion at this rate (1/s)."""
     return sum(
         arm.stiffness * arm.relaxation_time / (1.0 + rate * arm.relaxation_time)
         for arm in scene.foundation.arms
@@ -55,7 +55,7 @@ def fastest_rate(steady: Callable[..., SteadyState], scene: Scene, times: Any) -
     Raises
     ------
     ValueError
-        If the arms are too slow for it.
+        If the arms relax too slowly for it.
     """
     changes = np.array([0.0, *scene.drive.changes])
     shortest = min(t - changes[changes <= t].max(initial=0.0) for t in times)
@@ -70,14 +70,14 @@ def fastest_rate(steady: Callable[..., SteadyState], scene: Scene, times: Any) -
 
 
 def _velocities(scene: Scene) -> list[float]:
-    """Return the velocities of the drive, between which it is linear."""
+    """Return the velocities at the nodes of the piecewise linear drive."""
     return list(scene.drive.motion(scene.run.duration, 1.0).velocities)
 
 
 def in_steady_sliding(
     steady: Callable[..., SteadyState], scene: Scene, names: tuple[str, ...]
 ) -> dict[str, float]:
-    """Return how wrong the equivalent foundation is in steady sliding, by its scales, with `SAFETY`."""
+    """Return the scaled error of the equivalent foundation in steady sliding, times `SAFETY`."""
     measures, errors = scales(StaticState.of(scene)), dict.fromkeys(names, 0.0)
     for V in _velocities(scene):
         sliding = replace(scene, drive=Drive(V))
@@ -89,7 +89,7 @@ def in_steady_sliding(
 
 
 def neglected(one: Any, other: Any, scene: Scene, names: tuple[str, ...]) -> dict[str, float]:
-    """Return the difference between the series of two dampings, by its scales, with `SAFETY`."""
+    """Return the scaled difference between the series of two dampings, times `SAFETY`."""
     measures = scales(StaticState.of(scene))
     apart = {name: np.abs(getattr(one, name) - getattr(other, name)) for name in names}
     return {

@@ -1,4 +1,4 @@
-"""The rungs of a time series: exact (where nothing moves), slow manifold, strips, continuum, elements."""
+"""The rungs of a time series: exact (fixed or at rest), slow manifold, strips, continuum, elements."""
 
 import math
 from collections.abc import Callable
@@ -39,33 +39,33 @@ SOLVED = tuple(name for name in TRANSIENT_UNITS if name not in GIVEN)
 ODD = ("friction_force", "leading_edge", "trailing_edge")
 """Quantities that change their sign with the velocity."""
 ON_RIGID = {"sliding_velocity": "velocity", "spring_force": "friction_force"}
-"""On a rigid drive the indenter slides at its velocity, and it bears the friction."""
+"""Quantities of a spring, and what they equal on a rigid drive."""
 OWN_TIMES = 201
-"""Of a series whose times are not given, where the model has no steps of its own."""
+"""Number of times of a series, if none are given and the model has no steps of its own."""
 
 LOOSEST, TIGHTEST = 1e-4, 1e-12
-"""Tolerances of a step of the continuum."""
+"""Largest and smallest tolerance of a step of the continuum."""
 FIRST, NEXT = 0.02, 0.1
-"""The first tolerance of its steps, over the requested one: it meets nineteen certificates in twenty. If not,
-it is scaled by what is missing and by the second number."""
+"""First tolerance of a step over the requested one: it suffices for nineteen certificates in twenty. If not,
+it is scaled by the requested over the achieved error, and by the second number."""
 
 ELEMENTS = 120.0
-"""Elements in the contact at rest, at first."""
+"""Elements in the contact at rest in the first run."""
 LEAST_FINER, MOST_FINER, SPARE = 2.0, {True: 8.0, False: 3.0}, 1.3
-"""Then there are so many times more, within these bounds, as second order in their spacing asks for, and
-somewhat more. The work grows as the square, of a ball as the cube."""
+"""Bounds of the refinement factor (upper: line contact or ball), and margin on the factor that second-order
+convergence requires. The work grows as its square, for a ball as its cube."""
 MOST_UPDATES = {True: 5e7, False: 1e9}
-"""Updates of elements in one run, about a minute and a half: of a line contact, and of a ball, which has
-thousands of them in a step."""
+"""Most element updates in one run, about a minute and a half: for a line contact, and for a ball, which has
+thousands of them per step."""
 OF_AN_ARM = 0.4
-"""The work of an arm of an element, in updates."""
+"""Work of one arm of an element, in element updates."""
 DIMENSIONS = {True: 2, False: 3}
-"""What is refined together: elements, steps, and strips of a ball."""
+"""Number of dimensions refined together: elements, steps, and for a ball strips."""
 BEST_OF_ELEMENTS = 1e-6
-"""With the most work, they come to about this in a start from rest: they are not run for less."""
+"""Approximate error of elements with the most updates, from rest; they are not run for less."""
 
 COARSER = (
-    "or the difference from the run with fewer elements before, over the ratio of their numbers"
+    "or the difference from the previous, coarser run, divided by the ratio of their element counts"
 )
 
 
@@ -82,7 +82,7 @@ def rungs(models: Models) -> tuple[Rung, ...]:
     """Return the rungs in order of cost; those of a ball are exact, strips and elements."""
     table = (
         ("exact", "steady from the first instant: the depth cannot change", _exact),
-        ("slow manifold", "a start from rest, inertia that is soon overcome", _slow),
+        ("slow manifold", "a start from rest, small inertia", _slow),
         ("strips", "a ball held at its depth, no memory", _strips),
         ("continuum", "a parabola, a drive so stiff that it counts as rigid", _stiff),
         ("continuum", "a parabola", _parabola),
@@ -93,11 +93,11 @@ def rungs(models: Models) -> tuple[Rung, ...]:
 
 
 def _exact(models: Models, scene: Scene, request: Request) -> Offer:
-    """Admit what is steady at once: a fixed indenter (Eqs. 26, 33 with d' = 0), and rest."""
+    """Accept what is steady immediately: a fixed indenter (Eqs. 26, 33 with d' = 0), and rest."""
     need(lacks_quadratic(scene) or lacks_kelvin_voigt(scene) or lacks_rigid_drive(scene))
     need("" if scene.drive.constant else "the drive changes")
     velocity = scene.drive.final_velocity
-    need("the indenter rises" if velocity != 0.0 and not scene.held else "")
+    need("the depth changes" if velocity != 0.0 and not scene.held else "")
 
     def run() -> Answer:
         state, measures = models.steady(scene), scales(StaticState.of(scene))
@@ -113,7 +113,7 @@ def _exact(models: Models, scene: Scene, request: Request) -> Offer:
 
 
 def _slow(models: Models, scene: Scene, request: Request) -> Offer:
-    """Judge by scalars: the ratio of the rates, the layer at the first time, the first delay."""
+    """Judge by scalars: the ratio of the rates, the initial layer at the first time, the least error."""
     need(lacks_rigid_paper_model(scene), "" if scene.drive.constant else "the drive changes")
     need("the indenter is fixed" if scene.held else "")
     at_rest = StaticState.of(scene)
@@ -122,10 +122,10 @@ def _slow(models: Models, scene: Scene, request: Request) -> Offer:
 
     def check(ratio: float) -> None:
         if ratio > slow_motion.LARGEST_RATIO:
-            raise ArithmeticError(f"inertia counts: slow over fast rate {ratio:.2g}")
+            raise ArithmeticError(f"inertia is not small: ratio of slow to fast rate {ratio:.2g}")
 
     check(given.ratio)
-    need("an edge would move back over ground that it left" if given.goes_back else "")
+    need("the trailing edge would re-enter deformed foundation" if given.goes_back else "")
     first = 0.0 if request.times is None else min(request.times) / tau
     moving = [name for name in request.quantities if name not in ("depth", "leading_edge", *GIVEN)]
     error = float(given.layer(first)) if moving else 0.0
@@ -141,7 +141,7 @@ def _slow(models: Models, scene: Scene, request: Request) -> Offer:
             name: side.get(name, 1.0) * measures[name] * found.values[name] for name in SOLVED
         }
         statement = (
-            f"{slow_motion.SAFETY:g} times what the slow manifold neglects to first order in the "
+            f"{slow_motion.SAFETY:g} times the error of the slow manifold to first order in the "
             "inertia number"
         )
         errors = {name: float(np.max(found.errors[name])) for name in SOLVED}
@@ -162,7 +162,7 @@ def _parabola(models: Models, scene: Scene, request: Request) -> Offer:
 
 
 def _continuum(models: Models, scene: Scene, request: Request) -> Answer:
-    """Tighten the steps until the certificate is met, or they can be no tighter."""
+    """Reduce the tolerance of the steps until the request is met, or the smallest is reached."""
     step = min(max(FIRST * request.rtol, TIGHTEST), LOOSEST)
     while True:
         answer = _picked(models.transient(scene, at=request.times, rtol=step), request)
@@ -173,7 +173,7 @@ def _continuum(models: Models, scene: Scene, request: Request) -> Answer:
 
 
 def _stiff(models: Models, scene: Scene, request: Request) -> Offer:
-    """Solve on a rigid drive, and estimate what the spring would change."""
+    """Solve on a rigid drive, and estimate the effect of the spring."""
     need(lacks_paper_model(scene), "the drive is rigid" if scene.drive.rigid else "")
     at_rest, error = StaticState.of(scene), math.nan
     if scene.drive.constant and set(request.quantities) - {"depth", *GIVEN}:
@@ -194,11 +194,11 @@ def _stiff(models: Models, scene: Scene, request: Request) -> Offer:
 
 
 def _equivalent(models: Models, scene: Scene, request: Request) -> Offer:
-    """Solve with the equivalent damping, and estimate what that of the fastest rate would change."""
+    """Solve with the equivalent damping, and estimate its error from that at the fastest rate."""
     need("" if scene.foundation.arms else "the foundation has no arms", lacks_parabola(scene))
     need("the drive is a function" if scene.drive.function else "")
     if request.times is None:
-        raise ValueError("no times are given: at the first instant it is wrong")
+        raise ValueError("no times are given, and at the first instant this model is wrong")
     rate = equivalent.fastest_rate(models.steady, scene, request.times)
     solved = tuple(name for name in request.units if name not in GIVEN)
     sliding = equivalent.in_steady_sliding(models.steady, scene, solved)
@@ -216,7 +216,7 @@ def _equivalent(models: Models, scene: Scene, request: Request) -> Offer:
 
 
 def _widened(answer: Answer, statement: str, more: dict[str, float]) -> Answer:
-    """Add to the errors of an answer what its model neglects."""
+    """Add the error of the model to the errors of an answer."""
     own = answer.certificate
     errors = {name: error + more.get(name, 0.0) for name, error in own.relative_error.items()}
     statement = f"{own.statement}; {statement}"
@@ -224,10 +224,10 @@ def _widened(answer: Answer, statement: str, more: dict[str, float]) -> Answer:
 
 
 def _elements(models: Models, scene: Scene, request: Request) -> Offer:
-    """Refine until the certificate is met, or until that would be too much work.
+    """Refine until the certificate is within the tolerance, or the work would be too much.
 
-    A certificate compares with half as many elements, and both may be too coarse to resolve what is fast.
-    So the difference from the coarser run before, over the ratio of their elements, counts too.
+    A certificate compares with half as many elements, and both may be too coarse to resolve fast motion.
+    So the difference from the previous, coarser run, divided by the ratio of elements, counts too.
     """
     need(lacks_arms(scene))
 
@@ -265,7 +265,7 @@ def _elements(models: Models, scene: Scene, request: Request) -> Offer:
 def _series(
     scene: Scene, values: dict[str, Any], own: Certificate, request: Request, result: Any = None
 ) -> Answer:
-    """Return what was requested of constants or of values at the times of the request."""
+    """Return the requested quantities from constants or from values at the requested times."""
     times = _times(scene, request)
     held = {
         name: value if isinstance(value, np.ndarray) else np.full(times.shape, value)
@@ -275,12 +275,12 @@ def _series(
 
 
 def _picked(result: Any, request: Request) -> Answer:
-    """Return what was requested of a transient or of a simulation."""
+    """Return the requested quantities of a transient or of a simulation."""
     return _answer(vars(result), result.certificate, request, result)
 
 
 def _answer(series: Any, own: Certificate, request: Request, result: Any) -> Answer:
-    """Return the series with NaN for what was not requested, and the errors of what was."""
+    """Return the series, NaN where a quantity was not requested, and the errors of those that were."""
     known = {**own.relative_error, **dict.fromkeys(GIVEN, 0.0)}
     wanted = [name for name in request.units if name in (*GIVEN, *request.quantities)]
     source = {name: name if name in series else ON_RIGID[name] for name in wanted}

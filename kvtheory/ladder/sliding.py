@@ -22,7 +22,7 @@ BEST = {
     "exact": 1.9e-15, "exact, power law": 8.0e-15, "exact, any foundation": 5.3e-15,
     "quadrature": 1e-14, "convolution": 2e-13,
 }  # fmt: skip
-"""No certificate of theirs is below these: none of them is run for a smaller tolerance."""
+"""Smallest certified error of each method; none is run for a smaller tolerance."""
 
 PROVED = (
     "asymptotes against the closed forms at both ends of proved bounds of the steady half length, between "

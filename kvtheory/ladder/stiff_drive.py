@@ -1,15 +1,15 @@
-"""A spring so stiff that the drive may count as rigid: what that neglects, to first order in 1/k_x.
+"""A spring so stiff that the drive may count as rigid: the error of that, to first order in 1/k_x.
 
-In scaled form (fact F22) the spring lets the indenter follow the friction f of the rigid drive by
-x = f/κ_x, at the velocity f'/κ_x. Where f jumps, the indenter rings about that, at a velocity w =
-Δf/sqrt(κ_x ε_x). That decays at least as with a damper L^3/4 beside c_x, L the length of the contact: so
-much its dampers resist a motion along x, however the depth follows (derivations F22-dampers, F22-ringing).
-With ξ_m the middle of the contact, all else feels w through the sliding velocity λ - w:
+In scaled form (fact F22) the indenter on the spring follows the friction f of the rigid drive with the
+displacement x = f/κ_x and the velocity f'/κ_x. Where f jumps, the indenter rings about that, at a velocity
+w = Δf/sqrt(κ_x ε_x). This decays at least as fast as with a damper L^3/4 in addition to c_x, L being the
+contact length: its dampers resist a motion along x at least so much (derivations F22-dampers, F22-ringing).
+With ξ_m the middle of the contact, all else depends on w through the sliding velocity λ - w:
 
     ∂f_x/∂λ = r^3 + a^3,   ∂f_z/∂λ = -(3/2) L ξ_m,   ∂p/∂λ = -2 ξ,   δd' = 2 ξ_m w.
 
-So the depth, which feels the mean of w, is wrong by O(1/k_x), and while it rings all else by
-O(1/sqrt(k_x)). To second order a ringing w sinks the indenter, by w^2 r/(2 L) at most in unit time.
+So the depth, which responds to the mean of w, has an error of O(1/k_x), and all else of O(1/sqrt(k_x)) while
+it rings. To second order a ringing w lowers the indenter, by at most w^2 r/(2 L) in unit time.
 """
 
 import math
@@ -22,20 +22,20 @@ from kvtheory.scene.static_state import StaticState
 Array = NDArray[np.float64]
 
 SAFETY = 2.0
-"""Of the estimate."""
+"""Safety factor of the estimate."""
 FASTER = 3.0
-"""Rate, in 1/tau, at which the depth recovers at most: A/B of fact F12, near 2 or less where it counts."""
+"""Upper bound (1/tau) on how fast the depth recovers: A/B of fact F12, near 2 or less where it counts."""
 TINY = 1e-300
 SMALL = 0.3
-"""Of the sliding velocity: where w is more, or where it flies, an estimate of first order is meaningless."""
+"""Largest w over the sliding velocity: above it, and in flight, a first-order estimate is meaningless."""
 STATEMENT = (
-    f"of the rigid drive, beside the error of its solution: {SAFETY:g} times what the stiff spring changes "
+    f"plus the error of the rigid drive: {SAFETY:g} times the change due to the stiff spring, "
     "to first order"
 )
 
 
 def ringing(at_rest: StaticState, first: float) -> float:
-    """Return about the least error, by its scales, that a start from rest has at a scaled time."""
+    """Estimate the least scaled error of a start from rest at a scaled time."""
     number, inertia = abs(at_rest.drive_number), at_rest.drive_inertia_number
     resistance = at_rest.drive_damping_number + 2.0  # L^3/4 of the contact at rest
     swing = math.sqrt(inertia * at_rest.drive_stiffness_number) + resistance
@@ -43,7 +43,7 @@ def ringing(at_rest: StaticState, first: float) -> float:
 
 
 def neglected(series: dict[str, Array], at_rest: StaticState) -> dict[str, Array]:
-    """Return the errors of a series on a rigid drive over its times, by their scales."""
+    """Return the scaled errors of a series on a rigid drive at each of its times."""
     s, number = series["time"] / at_rest.time, series["velocity"] / at_rest.velocity
     force = series["friction_force"] / at_rest.friction_force
     edges = np.array([series["leading_edge"], series["trailing_edge"]]) / at_rest.half_length
@@ -53,7 +53,7 @@ def neglected(series: dict[str, Array], at_rest: StaticState) -> dict[str, Array
     steps, jumps = np.diff(s, prepend=s[0]), np.abs(np.diff(force, prepend=0.0))
     slope = np.divide(jumps, steps, out=np.zeros_like(s), where=steps > 0.0)
     kinks = np.abs(np.diff(slope, prepend=0.0)) / stiffness
-    kinks[0] = math.inf  # there it jumps
+    kinks[0] = math.inf  # the friction jumps at the start
     wave, sunk, found = 0.0, 0.0, []
     for k, step in enumerate(steps.tolist()):
         resistance = at_rest.drive_damping_number + 0.25 * float(length[k]) ** 3

@@ -17,7 +17,7 @@ CURVES = {
     **{name: (symbol, sign) for name, symbol, sign in TRANSIENT_ROWS if name != "velocity"},
     **{name: (f"${QUANTITIES[name].symbol}$", 1.0) for name in SPRING_UNITS},
 }
-"""The curves that are drawn if the data hold them: symbol, sign."""
+"""Curves that are drawn if the data contain them: symbol, sign."""
 DOTS = 200
 """With more samples than this the data are drawn as a line."""
 MARKS = {True: ("ok", GREEN), False: ("fails", RED), None: ("not made", "#777777")}
@@ -25,12 +25,12 @@ HTML_MARKS = {True: ("yes", "✓"), False: ("no", "✗ fails"), None: ("none", "
 HTML_VERDICTS = {
     "agrees": ("#00674b", "#e8f5f0", "The data agree with theory."),
     "disagrees": ("#b34700", "#fdf0e7", "The data disagree with theory."),
-    "cannot tell": ("#5c5c5c", "#f2f2f2", "Whether the data agree with theory cannot be told."),
+    "cannot tell": ("#5c5c5c", "#f2f2f2", "The data are inconclusive."),
 }
 """Colours of text and background, and the verdict in a sentence."""
-EXPLANATIONS = """<h2>What would explain it</h2>
+EXPLANATIONS = """<h2>Possible explanations</h2>
 <div class="wide"><table>
-<thead><tr><th>fault</th><th>explains</th><th>enough</th><th>in words</th></tr></thead><tbody>
+<thead><tr><th>fault</th><th>explains</th><th>enough</th><th>description</th></tr></thead><tbody>
 {}
 </tbody></table></div>"""
 MARGIN = 1.6
@@ -42,7 +42,7 @@ WIDTH = 7.2
 def plot_comparison(axes: Sequence[Sequence[Any]], comparison: Comparison) -> list[Any]:
     """Draw each curve on the pair of axes (data over theory, residual) of its row.
 
-    Returns the lines: theory, data and residual of each curve that the data hold.
+    Returns the lines: theory, data and residual of each curve that the data contain.
 
     >>> import kvtheory as kv
     >>> from matplotlib.figure import Figure
@@ -97,7 +97,7 @@ def draw_comparison(comparison: Comparison, *, checks: bool = True) -> Any:
     title = f"{Path(comparison.source).name}: {comparison.verdict}"
     parts[0].suptitle(title, fontsize=10, parse_math=False)
     axes[0][0].set_title("data over theory", fontsize=9)
-    axes[0][1].set_title("data less theory", fontsize=9)
+    axes[0][1].set_title("data minus theory", fontsize=9)
     if checks:
         _list_checks(parts[1].subplots(), comparison.checks)
     return figure
@@ -141,7 +141,7 @@ def comparison_report(comparison: Comparison, scene: Scene) -> str:
         checks.append(_row(cells, ("", "number", "number", kind, "", "")))
     explanations = []
     for each in comparison.explanations:
-        part = "a sign of it" if each.explained is None else f"{each.explained:.1%}"
+        part = "a symptom" if each.explained is None else f"{each.explained:.1%}"
         cells = each.name, part, "yes" if each.enough else "no", each.text
         explanations.append(_row(cells, ("", "number", "", "")))
     tolerance = comparison.tolerance

@@ -21,7 +21,7 @@ PACKAGES = "kvtheory", "numpy", "scipy", "numba", "scikit-sundae"
 
 
 def save_picture(draw: Callable[[], Any], path: Path) -> None:
-    """Draw a figure in the style of the package and write it as the suffix of `path` says.
+    """Draw a figure in the style of the package and write it in the format given by the suffix of `path`.
 
     Raises
     ------

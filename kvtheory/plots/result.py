@@ -1,4 +1,4 @@
-"""Results of a scene as pictures: those of the paper, and those drawn by `plot` of a result."""
+"""Pictures of results: those of the paper, and those drawn by `plot` of a result."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -23,7 +23,7 @@ SERIES, STEADY = (5.0, 6.4), (5.0, 3.4)
 POINTS = 201
 """Points of the pressure over the contact."""
 BESIDE = {"velocity": "sliding_velocity", "friction_force": "spring_force"}
-"""The quantity of a drive with a spring that is drawn beside another one."""
+"""Quantity that is drawn together with another one if the drive has a spring."""
 MISMATCH = 1e-6
 """Relative difference of the integral of the pressure from the load beyond which the indenter is not a
 parabola, and of the friction coefficient from its closed form beyond which it is not a ball."""
@@ -119,7 +119,7 @@ def plot_result(result: Any, axes: Any = None, **style: Any) -> Any:
 def _plot_contact_pressure(ax: Any, state: SteadyState, style: dict[str, Any]) -> Any:
     """Draw p = K delta (1 - x^2/a^2 - 2 l_r x/a^2) from edge to edge (Eqs. 8 and 12, for V >= 0).
 
-    Of a ball it is the pressure in the middle plane.
+    For a ball it is the pressure in the middle plane.
     """
     a, l = float(state.half_length), float(state.retardation_length / state.half_length)
     low, high = sorted((float(state.leading_edge), float(state.trailing_edge)))
@@ -148,7 +148,7 @@ def _plot_contact_pressure(ax: Any, state: SteadyState, style: dict[str, Any]) -
 
 
 def save_plot(result: Any, path: Path) -> None:
-    """Draw a result and write it as the suffix of `path` says.
+    """Draw a result and write it in the format given by the suffix of `path`.
 
     Raises
     ------

@@ -28,7 +28,7 @@ PAPERS_TAUS = 1e-2, 0.1, 1.0
 TABLE1 = 0.1, 0.1
 """V (m/s) and tau (s) of Table 1."""
 TITLES = {"paper": "paper (Runge-Kutta)", "explicit-euler": "explicit Euler"}
-"""Titles of the schemes whose name alone is not sufficient."""
+"""Titles of the schemes whose name alone is unclear."""
 
 
 def plot_stability(ax: Any, found: Map, factors: tuple[float, float] = (1.0, 1.0)) -> Any:
@@ -81,6 +81,6 @@ def draw_stability(velocity_maps: Sequence[Map], step_maps: Sequence[Map]) -> Pi
 
 
 def save_stability(maps: Mapping[str, Sequence[Map]], path: Path) -> None:
-    """Draw the maps and write them as the suffix of `path` says, with their data as JSON beside."""
+    """Draw the maps and write them in the format that `path` ends in, with their data as JSON beside."""
     data = {"maps": record(maps)}
     save_chart(lambda: draw_stability(maps["velocity"], maps["step"]), data, path)

@@ -16,7 +16,7 @@ from kvtheory.sweeps.plan import Plan
 Array = NDArray[np.float64]
 
 MOST_CURVES = 8
-"""Values of the second dimension up to which curves are drawn; beyond, a map is easier to read."""
+"""Largest number of curves in a family; with more, a map is easier to read."""
 DECADES = 1.5
 """Range of positive values, in powers of ten, from which an axis or colour scale is logarithmic."""
 WORDS = {
@@ -100,7 +100,7 @@ def _chosen(numeric: Sequence[str], quantity: str | None = None) -> str:
     """Return the quantity to draw: the named one, or else the first that can be drawn."""
     name = quantity or (FIRST if FIRST in numeric else next(iter(numeric), ""))
     if not numeric:
-        raise ValueError("no quantity of this sweep is a number, so that nothing can be drawn")
+        raise ValueError("no quantity of this sweep is numeric, so nothing can be drawn")
     if name not in numeric:
         raise ValueError(f'`quantity` = "{name}": {nearest(name, numeric)}')
     return name

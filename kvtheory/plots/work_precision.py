@@ -30,7 +30,7 @@ LOOKS = {
 }  # fmt: skip
 """Colour and marker of each method."""
 SHORT = {"not converged": "no conv.", "wrong but reported success": "wrong, “success”"}
-"""Reasons that are too long for the rail."""
+"""Short forms of the reasons that are too long for the rail."""
 
 
 def plot_work_precision(
@@ -107,6 +107,6 @@ def default_errors(charts: Sequence[Chart]) -> list[str]:
 
 
 def save_work_precision(charts: Sequence[Chart], path: Path) -> None:
-    """Draw the charts and write them as the suffix of `path` says, with their data as JSON beside."""
+    """Draw the charts and write them in the format that `path` ends in, with their data as JSON beside."""
     data = {"charts": [chart.as_dict() for chart in charts]}
     save_chart(lambda: draw_work_precision(charts, default_errors(charts)), data, path)
