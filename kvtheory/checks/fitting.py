@@ -22,7 +22,7 @@ ROWS = 160
 LARGEST = 1e3
 """Upper bound of the difference of a single value, in units of its allowance."""
 SHARE_OF_VALUES = 0.98
-"""Fraction of the values that must be within the allowance for a fault to explain the data; the rest are at jumps."""
+"""Fraction of the values that must be allowed for a fault to explain the data; the rest are at jumps."""
 LEFT_OVER = 1.5
 """Factor on the allowance for a fitted fault, which reproduces the method's own errors only roughly."""
 PRECISION, STEP = 1e-5, 1e-3
@@ -60,8 +60,8 @@ def fixed(name: str, text: str, pair: Pair | None, factor: float | None = None) 
 class Trial(NamedTuple):
     """How a hypothesis fits: the root mean square of the differences relative to what is allowed.
 
-    `enough` says whether the remaining difference is allowed, `value` is the unknown, and `alike` are the parameters
-    that the data cannot distinguish from the one that it names.
+    `enough` says whether the remaining difference is allowed, `value` is the unknown, and `alike` are the
+    parameters that the data cannot distinguish from the one that it names.
     """
 
     hypothesis: Hypothesis
