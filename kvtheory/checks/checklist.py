@@ -176,7 +176,7 @@ def rows_of(case: Case) -> Iterator[Row]:
     """Yield the checks for a case in the order in which they are shown."""
     scene = case.theory.scene
     theorem = "F12" if scene.drive.rigid else "F22"
-    yield Row(SAMPLING, theorem, "s, mean distance of samples", sampling)
+    yield Row(SAMPLING, theorem, "s, mean sampling interval", sampling)
     rest = "depth, relative to the static depth"
     yield Row("initial rest state", "Eq. 40", rest, initial_rest, ("depth",))
     yield Row("jump at t = 0+", "F11", f"distance from theory, {RELATIVE}", jump)
@@ -192,7 +192,7 @@ def rows_of(case: Case) -> Iterator[Row]:
     limit = "F17" if scene.foundation.arms else "F1" if scene.indenter.per_width else "F20"
     yield Row("steady limit", limit, RELATIVE, steady_limit)
     if not scene.drive.rigid:
-        error = "error that elements and steps may make in the sliding velocity, relative to it"
+        error = "possible error of the sliding velocity by elements and steps, relative to it"
         yield Row(PHASE, "F22", error, phase)
     sigma = "standard deviation, relative to the load"
     yield Row(case_of.NOISE, "F15", sigma, case_of.sawtooth, ("normal_force",))

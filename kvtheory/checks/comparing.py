@@ -42,7 +42,7 @@ MOST_NAMED = 20
 """Largest number of unused columns that are named in the diagnosis."""
 INCONCLUSIVE = {
     SAMPLING: "The data are sampled too coarsely to show the transient",
-    PHASE: "Theory cannot say where the cycle of this motion is by now, for such elements and steps",
+    PHASE: "Theory cannot predict the phase of the cycle by now, for such elements and steps",
 }
 """Checks whose failure is no evidence against the data, and what the failure means."""
 MEMORY_UNUSED = (

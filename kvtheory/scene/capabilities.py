@@ -116,7 +116,7 @@ class Question:
     missing: str = ""
 
 
-_NO_ELEMENTS = "A springpot has no finite state; a Prony series that comes near it has one."
+_NO_ELEMENTS = "A springpot has no finite state; a Prony series that approximates it has one."
 QUESTIONS = {
     "exact": Question(
         "steady sliding in closed form", 'steady(scene, method="exact")', lacks_closed_form,
@@ -129,7 +129,7 @@ QUESTIONS = {
     ),
     "asymptote": Question(
         "steady sliding by asymptotes", 'steady(scene, method="asymptote")', lacks_asymptotes,
-        "Other laws have other limits, which `asymptotes` gives without errors that are proved.",
+        "Other laws have other limits, which `asymptotes` gives without proved errors.",
     ),
     "limits": Question(
         "limits of steady sliding", "asymptotes(scene)", lacks_limits,
@@ -194,7 +194,7 @@ def require(lacks: Callable[[Scene], str], scene: Scene, what: str) -> None:
         return
     instead = ""
     if lacks in IN_MOTION and lacks_arms(scene):
-        prony = f'a Prony series (foundation.kind = "{LAWS[1]}") that comes near it'
+        prony = f'a Prony series (foundation.kind = "{LAWS[1]}") that approximates it'
         instead = f"; `steady` holds for it, and `elements` follows {prony}"
     elif lacks in IN_MOTION:
         instead = "; `elements`, or `solve` with `at`, follows any shape and any Prony series"
